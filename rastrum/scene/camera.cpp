@@ -1,0 +1,93 @@
+#include <rastrum/scene/camera.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <rastrum/core/error.hpp>
+
+namespace rastrum {
+namespace {
+
+struct Vec3d {
+  double x, y, z;
+};
+
+Vec3d widen(Vec3 a) {
+  return {a.x, a.y, a.z};
+}
+double dot(Vec3d a, Vec3d b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+Vec3d cross(Vec3d a, Vec3d b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+Vec3d unit(Vec3d a, const char* what) {
+  const double l = std::sqrt(dot(a, a));
+  if (!(l > 0) || !std::isfinite(l)) throw Error(Errc::invalid_argument, what);
+  return {a.x / l, a.y / l, a.z / l};
+}
+
+void require(bool ok, const char* what) {
+  if (!ok) throw Error(Errc::invalid_argument, what);
+}
+
+Mat4d camera_to_clip(const Camera& c, int width, int height) {
+  const double n = c.near_plane;
+  const double f = c.far_plane;
+  require(std::isfinite(n) && f > n, "camera: near must be finite and less than far");
+  const double smaller = std::min(width, height);
+  const double sx = smaller / width;
+  const double sy = smaller / height;
+  Mat4d p;
+  if (c.orthographic) {
+    require(c.orthographic_height > 0 && std::isfinite(c.orthographic_height),
+            "camera: the orthographic height must be > 0 and finite");
+    require(std::isfinite(f), "camera: an orthographic camera needs a finite far plane");
+    p.m[0][0] = 2 / static_cast<double>(c.orthographic_height) * sx;
+    p.m[1][1] = 2 / static_cast<double>(c.orthographic_height) * sy;
+    p.m[2][2] = 1 / (f - n);
+    p.m[2][3] = f / (f - n);
+    p.m[3][3] = 1;
+    return p;
+  }
+  require(n > 0, "camera: near must be > 0 for a perspective camera");
+  require(c.fov_rad > 0 && c.fov_rad < 3.14159F,
+          "camera: the field of view must lie between 0 and 180 degrees");
+  const double cot = 1 / std::tan(static_cast<double>(c.fov_rad) / 2);
+  p.m[0][0] = cot * sx;
+  p.m[1][1] = cot * sy;
+  const bool infinite = std::isinf(f);
+  p.m[2][2] = infinite ? 0 : n / (f - n);
+  p.m[2][3] = infinite ? n : n * f / (f - n);
+  p.m[3][2] = -1;
+  return p;
+}
+
+}  // namespace
+
+Mat4d world_to_camera(const Camera& c) {
+  const Vec3d eye = widen(c.eye);
+  const Vec3d target = widen(c.target);
+  const Vec3d back = unit({eye.x - target.x, eye.y - target.y, eye.z - target.z},
+                          "camera: eye and target must be finite and differ");
+  const Vec3d right = unit(cross(widen(c.up), back),
+                           "camera: up must be finite, not zero and not along the view direction");
+  const Vec3d up = cross(back, right);
+  Mat4d v = Mat4d::identity();
+  const Vec3d axes[3] = {right, up, back};
+  for (int i = 0; i < 3; ++i) {
+    v.m[i][0] = axes[i].x;
+    v.m[i][1] = axes[i].y;
+    v.m[i][2] = axes[i].z;
+    v.m[i][3] = -dot(axes[i], eye);
+  }
+  return v;
+}
+
+Mat4d world_to_clip(const Camera& camera, int width, int height) {
+  return camera_to_clip(camera, width, height) * world_to_camera(camera);
+}
+
+}  // namespace rastrum

@@ -1,0 +1,29 @@
+// The camera: where it stands and what it sees. Right-handed, looks along its own −z, +y up.
+#pragma once
+
+#include <limits>
+
+#include <rastrum/core/mat.hpp>
+#include <rastrum/core/vec.hpp>
+
+namespace rastrum {
+
+struct Camera {
+  Vec3 eye{0, 0, 1};
+  Vec3 target{0, 0, 0};
+  Vec3 up{0, 1, 0};
+  float fov_rad = 1.04719755F;  ///< 60°, across the smaller side of the image
+  bool orthographic = false;
+  float orthographic_height = 2;  ///< world units across the smaller side of the image
+  float near_plane = 0.01F;       ///< > 0 for perspective
+  float far_plane = std::numeric_limits<float>::infinity();  ///< depth 0; beyond it depth stays 0
+};
+
+/// World to clip for a W × H image, reversed depth (near 1, far 0). Composed in float64.
+/// Throws Error{invalid_argument} that names the parameter which is out of range.
+[[nodiscard]] Mat4d world_to_clip(const Camera& camera, int width, int height);
+
+/// World to camera space, a rigid motion.
+[[nodiscard]] Mat4d world_to_camera(const Camera& camera);
+
+}  // namespace rastrum

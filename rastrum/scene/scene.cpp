@@ -1,0 +1,172 @@
+#include <rastrum/scene/scene.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include <rastrum/core/error.hpp>
+
+namespace rastrum {
+namespace {
+
+struct Vec3d {
+  double x = 0, y = 0, z = 0;
+};
+
+Vec3d transform(const Mat4d& m, Vec3 p) {
+  const auto row = [&](int i) {
+    return m.m[i][0] * p.x + m.m[i][1] * p.y + m.m[i][2] * p.z + m.m[i][3];
+  };
+  return {row(0), row(1), row(2)};
+}
+
+bool is_finite(Vec3d p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+/// Calls f(world position) once for each finite vertex in use.
+template <class F>
+void for_each_vertex_in_use(const SceneView& scene, F&& f) {
+  for (const InstanceView& instance : scene.instances) {
+    const MeshView& mesh = instance.mesh;
+    const auto visit = [&](Vec3 p) {
+      const Vec3d q = transform(instance.object_to_world, p);
+      if (is_finite(q)) f(q);
+    };
+    if (mesh.indices.empty()) {
+      for (const Vec3 p : mesh.positions.first(mesh.triangle_count() * 3)) visit(p);
+      continue;
+    }
+    std::vector<bool> used(mesh.positions.size());
+    for (const std::uint32_t i : mesh.indices) {
+      if (i >= used.size())
+        throw Error(Errc::invalid_argument, "mesh: index " + std::to_string(i) + " but only " +
+                                                std::to_string(used.size()) + " vertices");
+      used[i] = true;
+    }
+    for (std::size_t i = 0; i < used.size(); ++i)
+      if (used[i]) visit(mesh.positions[i]);
+  }
+}
+
+struct BoundsD {
+  Vec3d min{}, max{};
+  std::uint64_t count = 0;
+};
+
+BoundsD bounds_float64(const SceneView& scene) {
+  BoundsD b;
+  for_each_vertex_in_use(scene, [&](Vec3d p) {
+    if (b.count++ == 0) b.min = b.max = p;
+    b.min = {std::min(b.min.x, p.x), std::min(b.min.y, p.y), std::min(b.min.z, p.z)};
+    b.max = {std::max(b.max.x, p.x), std::max(b.max.y, p.y), std::max(b.max.z, p.z)};
+  });
+  return b;
+}
+
+Vec3 narrow(Vec3d p) {
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
+
+}  // namespace
+
+void Scene::append(Scene other) {
+  const auto mesh_offset = static_cast<std::uint32_t>(meshes.size());
+  const auto texture_offset = static_cast<std::int32_t>(textures.size());
+  // A file without materials draws with a default of its own once another file brings some.
+  const bool any_materials = !materials.empty() || !other.materials.empty();
+  if (any_materials && materials.empty() && !meshes.empty()) materials.emplace_back();
+  if (any_materials && other.materials.empty() && !other.meshes.empty())
+    other.materials.emplace_back();
+  const auto material_offset = static_cast<std::uint32_t>(materials.size());
+
+  for (Mesh& mesh : other.meshes) {
+    mesh.material += material_offset;
+    for (std::uint32_t& m : mesh.face_materials) m += material_offset;
+    meshes.push_back(std::move(mesh));
+  }
+  for (Instance instance : other.instances) {
+    instance.mesh += mesh_offset;
+    instances.push_back(instance);
+  }
+  for (Material& m : other.materials) {
+    for (std::int32_t* t : {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
+                            &m.occlusion_texture, &m.emissive_texture, &m.alpha_texture})
+      if (*t != kNoTexture) *t += texture_offset;
+    materials.push_back(std::move(m));
+  }
+  std::move(other.textures.begin(), other.textures.end(), std::back_inserter(textures));
+  std::move(other.cameras.begin(), other.cameras.end(), std::back_inserter(cameras));
+  std::move(other.warnings.begin(), other.warnings.end(), std::back_inserter(warnings));
+}
+
+std::uint64_t Scene::triangle_count() const {
+  std::uint64_t n = 0;
+  for (const Instance& i : instances) n += meshes[i.mesh].triangle_count();
+  return n;
+}
+
+SceneBinding::SceneBinding(const Scene& scene) {
+  instances_.reserve(scene.instances.size());
+  for (const Instance& i : scene.instances)
+    instances_.push_back({scene.meshes[i.mesh].view(), i.object_to_world});
+  view_ = {instances_, scene.materials, scene.textures};
+}
+
+Bounds bounds(const SceneView& scene) {
+  const BoundsD b = bounds_float64(scene);
+  return {narrow(b.min), narrow(b.max), b.count};
+}
+
+Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
+  const BoundsD b = bounds_float64(scene);
+  const Vec3d centre = {(b.min.x + b.max.x) / 2, (b.min.y + b.max.y) / 2, (b.min.z + b.max.z) / 2};
+  double r = 0;
+  for_each_vertex_in_use(scene, [&](Vec3d p) {
+    r = std::max(r, std::hypot(p.x - centre.x, p.y - centre.y, p.z - centre.z));
+  });
+  if (r == 0) r = 1;
+  const double distance = r / std::sin(static_cast<double>(fov_rad) / 2);
+  Camera camera;
+  camera.fov_rad = fov_rad;
+  camera.orthographic = orthographic;
+  camera.target = narrow(centre);
+  camera.eye = narrow({centre.x, centre.y, centre.z + distance});
+  camera.near_plane = static_cast<float>(std::max(distance - 1.001 * r, distance / 1000));
+  if (orthographic) {
+    camera.orthographic_height = static_cast<float>(2 * r);
+    camera.far_plane = static_cast<float>(distance + 1.001 * r);
+  }
+  return camera;
+}
+
+std::vector<Vec3> vertex_normals(std::span<const Vec3> positions,
+                                 std::span<const std::uint32_t> indices) {
+  std::vector<Vec3d> sums(positions.size());
+  for (std::size_t t = 0; t + 2 < indices.size(); t += 3) {
+    const std::uint32_t corner[3] = {indices[t], indices[t + 1], indices[t + 2]};
+    const Vec3 a = positions[corner[0]];
+    const Vec3d e1 = {double{positions[corner[1]].x} - a.x, double{positions[corner[1]].y} - a.y,
+                      double{positions[corner[1]].z} - a.z};
+    const Vec3d e2 = {double{positions[corner[2]].x} - a.x, double{positions[corner[2]].y} - a.y,
+                      double{positions[corner[2]].z} - a.z};
+    const Vec3d n = {e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z,
+                     e1.x * e2.y - e1.y * e2.x};
+    if (!is_finite(n)) continue;
+    for (const std::uint32_t c : corner) {
+      sums[c].x += n.x;
+      sums[c].y += n.y;
+      sums[c].z += n.z;
+    }
+  }
+  std::vector<Vec3> normals(positions.size());
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const double l = std::hypot(sums[i].x, sums[i].y, sums[i].z);
+    if (l > 0 && std::isfinite(l))
+      normals[i] = narrow({sums[i].x / l, sums[i].y / l, sums[i].z / l});
+  }
+  return normals;
+}
+
+}  // namespace rastrum

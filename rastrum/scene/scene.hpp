@@ -1,0 +1,83 @@
+// What is drawn: instances of meshes with their materials. `SceneView` borrows the caller's arrays,
+// `Scene` owns what a reader made of a file.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <rastrum/core/mat.hpp>
+#include <rastrum/scene/camera.hpp>
+#include <rastrum/scene/material.hpp>
+#include <rastrum/scene/mesh.hpp>
+
+namespace rastrum {
+
+/// A mesh placed in the world. Triangle ids count through the instances in order.
+struct InstanceView {
+  MeshView mesh;
+  Mat4d object_to_world = Mat4d::identity();
+};
+
+/// Spans over the caller's arrays. An empty `materials` means one default material.
+struct SceneView {
+  std::span<const InstanceView> instances;
+  std::span<const Material> materials;
+  std::span<const Texture> textures;
+};
+
+struct Instance {
+  std::uint32_t mesh = 0;  ///< index into Scene::meshes
+  Mat4d object_to_world = Mat4d::identity();
+};
+
+/// What readers return: meshes, instances in order of submission, materials, textures, cameras.
+struct Scene {
+  std::vector<Mesh> meshes;
+  std::vector<Instance> instances;
+  std::vector<Material> materials;  ///< empty: the file has none
+  std::vector<Texture> textures;
+  std::vector<Camera> cameras;
+  /// What a reader left out or found odd, a sentence each; nothing is lost silently.
+  std::vector<std::string> warnings;
+
+  /// Appends `other` behind this scene: indices into meshes, materials and textures are shifted.
+  void append(Scene other);
+  [[nodiscard]] std::uint64_t triangle_count() const;
+};
+
+/// The borrowed form of a scene; keeps the instance list that the span points to. The scene must
+/// outlive it.
+class SceneBinding {
+ public:
+  explicit SceneBinding(const Scene& scene);
+  [[nodiscard]] SceneView view() const { return view_; }
+
+ private:
+  std::vector<InstanceView> instances_;
+  SceneView view_;
+};
+
+/// Axis-aligned box and the vertices it was taken from.
+struct Bounds {
+  Vec3 min{}, max{};
+  std::uint64_t vertices_in_use = 0;  ///< 0: the box is meaningless
+};
+
+/// Bounds, in world space, of the finite vertices that triangles use. O(vertices + triangles).
+[[nodiscard]] Bounds bounds(const SceneView& scene);
+
+/// The default camera (`--fit`): centre = centre of the bounding box of the vertices in use,
+/// r = distance of the farthest of them from it (0 counts as 1), eye = centre + (0, 0, d) with
+/// d = r / sin(fov/2), looking along −z, +y up, near = max(d − 1.001 r, d / 1000), far infinite;
+/// orthographic: height 2 r, far = d + 1.001 r.
+[[nodiscard]] Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic);
+
+/// Area-weighted vertex normals: at each position index the normalized sum of the cross products of
+/// its triangles' edges. `positions.size()` values; (0, 0, 0) where no triangle touches.
+[[nodiscard]] std::vector<Vec3> vertex_normals(std::span<const Vec3> positions,
+                                               std::span<const std::uint32_t> indices);
+
+}  // namespace rastrum

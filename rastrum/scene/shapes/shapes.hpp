@@ -1,0 +1,50 @@
+// Procedural shapes: what the demo, the tests and the benchmarks draw without any file.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <rastrum/scene/mesh.hpp>
+
+namespace rastrum::shapes {
+
+/// Newell's teapot: 32 bicubic Bézier patches, each tessellated n × n (2 n² triangles a patch),
+/// with analytic normals and texture coordinates. The degenerate edges of lid and bottom stay
+/// degenerate.
+[[nodiscard]] Mesh teapot(int n = 16);
+/// Latitude-longitude sphere of radius 1 with `rings` × `segments` quads.
+[[nodiscard]] Mesh sphere(int rings = 32, int segments = 64);
+/// Tube of radius `tube` around the (p, q) torus knot.
+[[nodiscard]] Mesh torus_knot(int p = 2, int q = 3, int segments = 256, int sides = 24,
+                              float tube = 0.25F);
+/// `count`³ axis-aligned boxes in a grid of unit cells.
+[[nodiscard]] Mesh boxes(int count = 4, float fill = 0.6F);
+/// `strands` crossing curves inside the unit ball as thin ribbons of `segments` quads: 2 · strands
+/// · segments triangles. 22,500 × 64 gives the classic 2.9 M.
+[[nodiscard]] Mesh hairball(int strands = 22500, int segments = 64, float width = 0.002F,
+                            std::uint64_t seed = 1);
+/// Gyroid isosurface on a grid of `cells`³ over `periods` periods, by marching cubes.
+[[nodiscard]] Mesh gyroid(int cells = 64, float periods = 2);
+/// Random triangles with edge lengths drawn from [min_size, max_size] in the cube [−1, 1]³.
+[[nodiscard]] Mesh soup(int count = 10000, float min_size = 0.01F, float max_size = 0.2F,
+                        std::uint64_t seed = 1);
+
+/// Every triangle split in 4 at the edge midpoints, `times` times; shared edges share the new
+/// vertices, triangle t becomes 4t … 4t + 3, attributes are interpolated.
+/// Throws Error{out_of_memory} before anything is allocated if the result exceeds 2³² vertices.
+[[nodiscard]] Mesh subdivide(const Mesh& mesh, int times);
+
+/// A shape by its specification, as on the command line: `teapot`,
+/// `hairball?strands=100&width=0.01`. Throws Error{invalid_argument} naming the shape or parameter
+/// and listing the known ones.
+[[nodiscard]] Mesh from_spec(std::string_view spec);
+
+/// Name, parameters with their defaults, and a line of description of each shape, for `--help`.
+struct ShapeInfo {
+  std::string name, parameters, description;
+};
+[[nodiscard]] std::vector<ShapeInfo> catalogue();
+
+}  // namespace rastrum::shapes
