@@ -1,0 +1,78 @@
+// The façade: scene + camera + options → image.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <rastrum/core/image.hpp>
+#include <rastrum/raster/options.hpp>
+#include <rastrum/scene/scene.hpp>
+
+namespace rastrum {
+
+enum class Device : std::uint8_t { serial, threads, cuda };
+
+enum class Shader : std::uint8_t {
+  flat,       ///< base colour, unlit
+  depth,      ///< grey = reversed depth, stretched over the depths in the picture
+  normal,     ///< (n + 1) / 2 of the world-space unit normal
+  id,         ///< a hash of the triangle id as a colour
+  lambert,    ///< base · (0.1 + 0.8 max(n·l, 0))
+  phong,      ///< lambert + 0.3 max(n·h, 0)³²
+  material,   ///< glTF metallic-roughness, textures, sRGB transfer
+  wireframe,  ///< triangle edges about a pixel wide over the flat surface
+};
+/// The names as on the command line, in the order of the enum.
+[[nodiscard]] std::vector<std::string_view> shader_names();
+/// Throws Error{invalid_argument} that lists the names.
+[[nodiscard]] Shader shader_from_name(std::string_view name);
+[[nodiscard]] std::string_view name(Shader shader);
+
+/// A named point of the coverage × visibility table (`--rasterizer`).
+struct RasterizerInfo {
+  std::string name, coverage, visibility, description;
+};
+[[nodiscard]] const std::vector<RasterizerInfo>& rasterizers();
+
+struct RenderOptions {
+  int width = 1280, height = 720;
+  std::string rasterizer = "auto";
+  Device device = Device::threads;
+  int threads = 0;         ///< 0: all
+  std::optional<Isa> isa;  ///< none: the best this machine has
+  Shader shader = Shader::phong;
+  Cull cull = Cull::none;
+  Vec4 background{0, 0, 0, 0};  ///< display values, straight alpha
+};
+
+/// Renders frames with one set of options; keeps threads and scratch between frames.
+class Renderer {
+ public:
+  /// Throws Error{invalid_argument} for a size, name or number out of range, Error{no_device}.
+  explicit Renderer(RenderOptions options);
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+
+  /// Draws `scene` seen by `camera` into `targets`.
+  /// Meshes without normals are shaded with face normals (see vertex_normals for smooth ones).
+  /// Cost: O(vertices + triangles + covered samples). Throws Error{invalid_argument} naming an
+  /// instance whose index is out of range, Error{out_of_memory} with what was asked for.
+  FrameStats render(const SceneView& scene, const Camera& camera, const Targets& targets);
+
+  [[nodiscard]] const RenderOptions& options() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// One frame with everything chosen by `options`; the short way.
+[[nodiscard]] Image<Rgba8> render(const SceneView& scene, const Camera& camera,
+                                  const RenderOptions& options);
+
+}  // namespace rastrum
