@@ -31,8 +31,7 @@ struct SetUp {
     const ProjectedVertex &a = vertices[indices[3 * t]], &b = vertices[indices[3 * t + 1]],
                           &c = vertices[indices[3 * t + 2]];
     Piece piece{};
-    const bool complete =
-        a.x_fx8 != kNeedsClip && b.x_fx8 != kNeedsClip && c.x_fx8 != kNeedsClip;
+    const bool complete = a.x_fx8 != kNeedsClip && b.x_fx8 != kNeedsClip && c.x_fx8 != kNeedsClip;
     if (!complete || make_piece(a, b, c, t, 0, Cull::none, view, piece) == SetupResult::culled)
       return Piece{};
     return piece;
@@ -116,8 +115,7 @@ void draw(parallel::Cuda& exec, const DeviceFrame& f, const Mat4& object_to_clip
   parallel::tabulate(exec, f.pieces, SetUp{f.projected, f.indices, view});
   parallel::transform(exec, f.pieces, f.block_counts, CountBlocks{view});
   parallel::exclusive_scan(exec, f.block_counts, f.first_block, std::uint64_t{0}, Plus{});
-  const std::uint64_t blocks =
-      parallel::reduce(exec, f.block_counts, std::uint64_t{0}, Plus{});
+  const std::uint64_t blocks = parallel::reduce(exec, f.block_counts, std::uint64_t{0}, Plus{});
   parallel::for_each_index(exec, blocks, CoverBlock{f.pieces, f.first_block, view, f.words});
 }
 

@@ -49,9 +49,8 @@ TEST_P(ThreadCounts, LoopsFollowEachOther) {
 TEST_P(ThreadCounts, NestedLoops) {
   Threads exec(GetParam());
   std::atomic<int> calls = 0;
-  for_each_index(exec, 30, [&](std::size_t) {
-    for_each_index(exec, 30, [&](std::size_t) { ++calls; });
-  });
+  for_each_index(exec, 30,
+                 [&](std::size_t) { for_each_index(exec, 30, [&](std::size_t) { ++calls; }); });
   EXPECT_EQ(calls, 900);
 }
 

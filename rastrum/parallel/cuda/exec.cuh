@@ -1,11 +1,12 @@
 // The data-parallel words on a CUDA device, by CCCL's Thrust. Thin on purpose: Thrust's algorithms
-// are the words. Only for translation units that nvcc compiles. Never run yet (docs/architecture.md).
+// are the words. Only for translation units that nvcc compiles. Never run yet
+// (docs/architecture.md).
 //
 // Ranges are views of device memory and are copied into kernels: std::span over device pointers, or
 // anything small with a size and an operator[] that the device can call. Functors carry RASTRUM_HD.
 // Work goes to the context's stream in order; a word that returns a value waits for it, the others
-// return at once (par_nosync). Thrust allocates its scratch on the device and throws std::bad_alloc,
-// or thrust::system_error for whatever else the device reports.
+// return at once (par_nosync). Thrust allocates its scratch on the device and throws
+// std::bad_alloc, or thrust::system_error for whatever else the device reports.
 #pragma once
 
 #include <cassert>
@@ -76,9 +77,7 @@ struct WriteThrough {
   In in;
   Map map;
   Out out;
-  RASTRUM_HD void operator()(std::size_t i) const {
-    out[static_cast<std::size_t>(map[i])] = in[i];
-  }
+  RASTRUM_HD void operator()(std::size_t i) const { out[static_cast<std::size_t>(map[i])] = in[i]; }
 };
 
 }  // namespace cuda_detail
@@ -102,8 +101,8 @@ void transform(Cuda& exec, In in, Out out, F f) {
   tabulate(exec, out, cuda_detail::Apply<In, F>{in, f});
 }
 
-/// in[0] op … op in[n − 1] behind `initial`. Unlike the CPU's, `op` must commute too, and the bits of
-/// a sum of floats are Thrust's choice. Work O(n), span O(log n); waits.
+/// in[0] op … op in[n − 1] behind `initial`. Unlike the CPU's, `op` must commute too, and the bits
+/// of a sum of floats are Thrust's choice. Work O(n), span O(log n); waits.
 template <Readable In, class T, class Op = std::plus<>>
 [[nodiscard]] T reduce(Cuda& exec, In in, T initial, Op op = {}) {
   const auto values = cuda_detail::values_of(in);
@@ -116,7 +115,8 @@ template <Readable In, Writable Out, class T, class Op = std::plus<>>
 void exclusive_scan(Cuda& exec, In in, Out out, T initial, Op op = {}) {
   assert(std::size(in) == std::size(out));
   const auto values = cuda_detail::values_of(in);
-  thrust::exclusive_scan(exec.policy(), values, values + std::size(in), std::data(out), initial, op);
+  thrust::exclusive_scan(exec.policy(), values, values + std::size(in), std::data(out), initial,
+                         op);
 }
 
 /// out[i] = initial op in[0] op … op in[i]; otherwise the same.
@@ -124,7 +124,8 @@ template <Readable In, Writable Out, class T, class Op = std::plus<>>
 void inclusive_scan(Cuda& exec, In in, Out out, T initial, Op op = {}) {
   assert(std::size(in) == std::size(out));
   const auto values = cuda_detail::values_of(in);
-  thrust::inclusive_scan(exec.policy(), values, values + std::size(in), std::data(out), initial, op);
+  thrust::inclusive_scan(exec.policy(), values, values + std::size(in), std::data(out), initial,
+                         op);
 }
 
 /// out[i] = in[map[i]]; no overlap. Work O(n), span O(1).
