@@ -139,6 +139,7 @@ class GltfReader {
 
   void read() {
     for (const std::size_t root : roots()) walk(root);
+    check_unused_meshes();
     if (scene_.instances.empty())
       scene_.warnings.push_back("its scene holds no triangles (" +
                                 std::to_string(length(document_, "meshes")) + " meshes)");
@@ -199,15 +200,30 @@ class GltfReader {
     }
   }
 
+  /// A mesh that no node draws is read all the same: what is broken is refused, not drawn empty.
+  void check_unused_meshes() {
+    std::vector<std::string> ignored;
+    for (std::size_t i = 0, n = length(document_, "meshes"); i < n; ++i) {
+      if (meshes_.count(i) != 0) continue;
+      document_["meshes"].at(i)["primitives"].for_each([&](const Json& p) {
+        (void)read_primitive(p, document_, buffers_, gltf::TextureUse{}, ignored);
+      });
+    }
+  }
+
   /// Every primitive is a mesh of ours; instances share them.
   void place(std::size_t index, const Json& node, const Mat4d& to_world) {
     auto [it, is_new] = meshes_.try_emplace(index);
     if (is_new) {
       const Json mesh = document_["meshes"].at(index);
       mesh["primitives"].for_each([&](const Json& p) {
-        auto read = read_primitive(p, document_, buffers_, materials_, scene_.warnings);
+        std::optional<std::size_t> material;
+        if (const auto m = p.get("material")) material = m->count();
+        auto read = read_primitive(p, document_, buffers_, materials_.texture_use(material),
+                                   scene_.warnings);
         if (!read) return;
         read->name = mesh.string("name", "");
+        read->material = materials_.use(material);
         it->second.push_back(static_cast<std::uint32_t>(scene_.meshes.size()));
         scene_.meshes.push_back(*std::move(read));
       });

@@ -71,12 +71,12 @@ void check_views(const Json& document, const Counts& n) {
 }
 
 void check_in_view(const Json& owner, const Json& document, const Counts& n, std::size_t count,
-                   std::size_t element) {
+                   std::size_t used, std::size_t element) {
   const std::size_t view = owner["bufferView"].index(n.views);
   const Json v = document["bufferViews"].at(view);
   const std::size_t stride = v.count("byteStride", element);
-  if (stride < element) owner.fail("its elements are longer than its view's byteStride");
-  if (!fits(count, element, stride, owner.count("byteOffset", 0), v["byteLength"].count()))
+  if (stride < used) owner.fail("its elements are longer than its view's byteStride");
+  if (!fits(count, used, stride, owner.count("byteOffset", 0), v["byteLength"].count()))
     owner.fail("reaches beyond its buffer view of " + std::to_string(v["byteLength"].count()) +
                " bytes");
 }
@@ -90,7 +90,7 @@ void check_accessors(const Json& document, const Counts& n) {
     for (const char* bound : {"min", "max"})
       a.for_each(bound, [](const Json& x) { (void)x.number(); });
     if (a.get("bufferView")) {
-      check_in_view(a, document, n, count, type.element_bytes);
+      check_in_view(a, document, n, count, type.used_bytes, type.element_bytes);
     } else if (a.get("byteOffset")) {
       a.fail("has a byteOffset without a bufferView");
     }
@@ -102,8 +102,9 @@ void check_accessors(const Json& document, const Counts& n) {
     const std::size_t index_type = indices["componentType"].count();
     if (index_type != 5121 && index_type != 5123 && index_type != 5125)
       indices.fail("componentType must be an unsigned integer's");
-    check_in_view(indices, document, n, some, component_bytes(indices["componentType"]));
-    check_in_view((*sparse)["values"], document, n, some, type.element_bytes);
+    const std::size_t bytes = component_bytes(indices["componentType"]);
+    check_in_view(indices, document, n, some, bytes, bytes);
+    check_in_view((*sparse)["values"], document, n, some, type.used_bytes, type.element_bytes);
   });
 }
 
@@ -174,6 +175,21 @@ void check_meshes(const Json& document, const Counts& n) {
   });
 }
 
+/// Every node has at most one parent; so there is a loop if some cannot be reached from the nodes
+/// that have none.
+void check_loops(const Json& document, const std::vector<bool>& has_parent) {
+  std::vector<std::size_t> stack;
+  for (std::size_t i = 0; i < has_parent.size(); ++i)
+    if (!has_parent[i]) stack.push_back(i);
+  std::size_t reached = 0;
+  for (; !stack.empty(); ++reached) {
+    const Json node = document["nodes"].at(stack.back());
+    stack.pop_back();
+    node.for_each("children", [&](const Json& c) { stack.push_back(c.count()); });
+  }
+  if (reached != has_parent.size()) document["nodes"].fail("some nodes are their own ancestors");
+}
+
 void check_nodes(const Json& document, const Counts& n) {
   document.for_each("cameras", [](const Json& c) {
     const std::string type = c["type"].string();
@@ -222,6 +238,7 @@ void check_nodes(const Json& document, const Counts& n) {
     if (node.get("rotation") && r[0] == 0 && r[1] == 0 && r[2] == 0 && r[3] == 0)
       node.fail("its rotation is zero");
   });
+  check_loops(document, has_parent);
   document.for_each("scenes", [&](const Json& s) {
     const auto roots = s.get("nodes");
     if (!roots) return;
@@ -323,6 +340,7 @@ AccessorType accessor_type(const Json& accessor) {
     std::size_t column = s.rows * t.component_bytes;
     if (s.columns > 1) column = (column + 3) / 4 * 4;
     t.element_bytes = s.columns * column;
+    t.used_bytes = (s.columns - 1) * column + s.rows * t.component_bytes;
   }
   return t;
 }

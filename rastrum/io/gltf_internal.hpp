@@ -24,6 +24,7 @@ void check(const Json& document, std::vector<std::string>& warnings);
 struct AccessorType {
   std::size_t component_type = 0, component_bytes = 0, components = 0;
   std::size_t element_bytes = 0;  ///< with the padding of matrix columns
+  std::size_t used_bytes = 0;     ///< without the padding of the last column
 };
 [[nodiscard]] AccessorType accessor_type(const Json& accessor);
 /// The type of sparse indices and the like. Throws unless 5120 to 5126 without 5124.
@@ -96,8 +97,9 @@ class Materials {
 };
 
 /// One primitive as a mesh; nullopt, with a warning, where it holds no triangles by its nature.
+/// Mesh::material is left alone, `use` says where the material's textures read.
 [[nodiscard]] std::optional<Mesh> read_primitive(const Json& primitive, const Json& document,
-                                                 Buffers& buffers, Materials& materials,
+                                                 Buffers& buffers, const TextureUse& use,
                                                  std::vector<std::string>& warnings);
 
 }  // namespace rastrum::io::gltf

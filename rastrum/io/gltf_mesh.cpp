@@ -58,7 +58,7 @@ std::vector<std::uint32_t> triangles_of(const std::vector<std::uint32_t>& corner
 }  // namespace
 
 std::optional<Mesh> read_primitive(const Json& primitive, const Json& document, Buffers& buffers,
-                                   Materials& materials, std::vector<std::string>& warnings) {
+                                   const TextureUse& use, std::vector<std::string>& warnings) {
   const Json attributes = primitive["attributes"];
   const auto position = attributes.get("POSITION");
   if (!position) {
@@ -84,10 +84,6 @@ std::optional<Mesh> read_primitive(const Json& primitive, const Json& document, 
     mesh.normals.values = read_attribute<Vec3>(accessors.at(a->count()), buffers, count);
   if (const auto a = attributes.get("COLOR_0"))
     mesh.colors.values = read_attribute<Vec4>(accessors.at(a->count()), buffers, count);
-  std::optional<std::size_t> material;
-  if (const auto m = primitive.get("material")) material = m->count();
-  mesh.material = materials.use(material);
-  const TextureUse use = materials.texture_use(material);
   const std::string set = "TEXCOORD_" + std::to_string(use.set);
   if (const auto a = attributes.get(set.c_str())) {
     mesh.texcoords.values = read_attribute<Vec2>(accessors.at(a->count()), buffers, count);
