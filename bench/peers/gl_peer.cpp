@@ -1,5 +1,7 @@
 // The OpenGL peer; see the header. The vertex shader multiplies the matrix in the written order of
-// transform_point, so that clip coordinates are those of Rastrum.
+// transform_point, so that clip coordinates are those of Rastrum, and turns y over, so that row 0 is
+// the top. glClipControl(GL_UPPER_LEFT) would do that too, but Mesa 22.3 then gives samples on
+// horizontal edges to the triangle above (the bottom-left rule), found by drawing such triangles.
 #include "gl_peer.hpp"
 
 #include <EGL/egl.h>
@@ -28,7 +30,7 @@ void main() {
   clip.y = ((rows[1].x * position.x + rows[1].y * position.y) + rows[1].z * position.z) + rows[1].w;
   clip.z = ((rows[2].x * position.x + rows[2].y * position.y) + rows[2].z * position.z) + rows[2].w;
   clip.w = ((rows[3].x * position.x + rows[3].y * position.y) + rows[3].z * position.z) + rows[3].w;
-  gl_Position = clip;
+  gl_Position = vec4(clip.x, -clip.y, clip.z, clip.w);
   n = normal;
   v = eye.xyz - eye.w * position;
 })";
@@ -139,7 +141,7 @@ struct GlPeer::Impl {
     gl.BindVertexArray(vertex_array);
     gl.GenBuffers(2, buffers);
     gl.GenQueries(1, &query);
-    gl.ClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
+    gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     gl.DepthFunc(GL_GREATER);
     gl.BlendFunc(GL_ONE, GL_ONE);
     gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
