@@ -135,7 +135,8 @@ int run_machine(std::span<const std::string_view> options) {
   line("float32, fused multiply-add", m.gflops_fma, "GFLOP/s");
   line("float32, multiply and add apart", m.gflops, "GFLOP/s");
   if (!json.empty())
-    write_json(json, {{"benchmark", "machine"}, {"machine", machine_json()}, {"limits", to_json(m)}});
+    write_json(json,
+               {{"benchmark", "machine"}, {"machine", machine_json()}, {"limits", to_json(m)}});
   return 0;
 }
 

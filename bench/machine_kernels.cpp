@@ -1,8 +1,10 @@
-// Bandwidth and arithmetic loops, one source for every instruction set (Highway's dynamic dispatch).
+// Bandwidth and arithmetic loops, one source for every instruction set (Highway's dynamic
+// dispatch).
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bench/machine_kernels.cpp"
 #include <hwy/foreach_target.h>  // first: it includes this file once per target
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "machine_kernels.hpp"
@@ -42,8 +44,7 @@ void StreamFloats(float* data, std::size_t n, float value) {
 
 void CopyFloats(const float* from, float* to, std::size_t n) {
   const D d;
-  for (std::size_t i = 0; i < n; i += hn::Lanes(d))
-    hn::Stream(hn::Load(d, from + i), d, to + i);
+  for (std::size_t i = 0; i < n; i += hn::Lanes(d)) hn::Stream(hn::Load(d, from + i), d, to + i);
   hwy::FlushStream();
 }
 

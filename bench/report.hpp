@@ -15,7 +15,7 @@ class Table {
  public:
   struct Column {
     std::string title;
-    int width = 8;     ///< characters; longer cells push the row
+    int width = 8;  ///< characters; longer cells push the row
     bool left = false;
   };
   explicit Table(std::vector<Column> columns) : columns_(std::move(columns)) {}

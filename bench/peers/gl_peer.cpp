@@ -1,6 +1,6 @@
 // The OpenGL peer; see the header. The vertex shader multiplies the matrix in the written order of
-// transform_point, so that clip coordinates are those of Rastrum, and turns y over, so that row 0 is
-// the top. glClipControl(GL_UPPER_LEFT) would do that too, but Mesa 22.3 then gives samples on
+// transform_point, so that clip coordinates are those of Rastrum, and turns y over, so that row 0
+// is the top. glClipControl(GL_UPPER_LEFT) would do that too, but Mesa 22.3 then gives samples on
 // horizontal edges to the triangle above (the bottom-left rule), found by drawing such triangles.
 #include "gl_peer.hpp"
 
