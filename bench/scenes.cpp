@@ -60,7 +60,7 @@ const std::vector<SceneInfo>& peer_scenes() {
       {"bunny", "small/stanford-bunny.obj", {}},
       {"sponza", "sponza/sponza.obj", {}},
       {"dragon", "big/dragon_348k.ply", {}},
-      {"scattered", {}, kScattered},
+      {"scattered", {}, kScattered, 0, true},
       {"brain", "big/brain_iso126_1033k.ply", {}},
       {"bunny-1m", "small/stanford-bunny.obj", {}, 2},
       {"bunny-4m", "small/stanford-bunny.obj", {}, 3},
@@ -73,7 +73,7 @@ const std::vector<SceneInfo>& procedural_scenes() {
       {"shape-teapot", {}, "teapot?n=10"},
       {"torus-knot", {}, "torus_knot?segments=1500&sides=24"},
       {"gyroid", {}, "gyroid?cells=160"},
-      {"scattered", {}, kScattered},
+      {"scattered", {}, kScattered, 0, true},
   };
   return scenes;
 }

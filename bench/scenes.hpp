@@ -15,6 +15,7 @@ struct SceneInfo {
   /// A file under the shared data, or a procedural shape's specification.
   std::string_view file, shape;
   int subdivide = 0;  ///< times each triangle is split in 4
+  bool soup = false;  ///< triangles that share no edges
 };
 
 /// The scenes of `bench peers`, small to large.
