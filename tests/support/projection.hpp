@@ -11,8 +11,9 @@
 
 namespace rastrum::test {
 
+/// float32 values; float64 ones for a finite vertex whose float32 transform overflows.
 struct ClipVertex {
-  float x = 0, y = 0, z = 0, w = 0;
+  double x = 0, y = 0, z = 0, w = 0;
 };
 
 enum class Fate {
@@ -25,14 +26,19 @@ struct ProjectedTriangle {
   std::int64_t id = 0;
   Fate fate = Fate::dropped;
   ClipVertex clip[3];
-  SnappedTriangle snapped;  ///< valid for Fate::whole
+  bool has_position[3] = {};  ///< which corners are in front and inside the guard band
+  SnappedTriangle snapped;    ///< corners with a position; the others are meaningless
 };
 
-/// Object to clip: the float64 product, rounded to float32 once.
-[[nodiscard]] Mat4 object_to_clip(const Camera& camera, const Mat4d& object_to_world, int width,
-                                  int height);
+/// Object to clip, the product in float64.
+[[nodiscard]] Mat4d object_to_clip(const Camera& camera, const Mat4d& object_to_world, int width,
+                                   int height);
 
-[[nodiscard]] ClipVertex to_clip(const Mat4& object_to_clip, Vec3 position);
+/// The matrix rounded to float32 once, then a float32 transform.
+[[nodiscard]] ClipVertex to_clip(const Mat4d& object_to_clip, Vec3 position);
+
+/// False where the vertex is behind the near plane or outside the guard band.
+[[nodiscard]] bool snap(const ClipVertex& c, int width, int height, SnappedVertex& out);
 
 /// Every triangle of `scene` in order of submission. Indices must be in range.
 [[nodiscard]] std::vector<ProjectedTriangle> project(const SceneView& scene, const Camera& camera,
