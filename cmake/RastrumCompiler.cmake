@@ -1,14 +1,17 @@
 # Flags that every target of the project shares. The arithmetic ones are part of the picture rules:
 # multiply and add stay apart, so that every machine gives the same bits.
 add_library(rastrum_flags INTERFACE)
-target_compile_options(rastrum_flags INTERFACE
-  -ffp-contract=off -fno-math-errno
+
+set(cxx_flags -ffp-contract=off -fno-math-errno
   -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wnon-virtual-dtor)
 if(RASTRUM_WERROR)
-  target_compile_options(rastrum_flags INTERFACE -Werror)
+  list(APPEND cxx_flags -Werror)
 endif()
+target_compile_options(rastrum_flags INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:${cxx_flags}>")
+
 if(RASTRUM_SANITIZE)
-  target_compile_options(rastrum_flags INTERFACE
+  set(sanitizer_flags
     -fsanitize=${RASTRUM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_compile_options(rastrum_flags INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:${sanitizer_flags}>")
   target_link_options(rastrum_flags INTERFACE -fsanitize=${RASTRUM_SANITIZE})
 endif()

@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <rastrum/core/image.hpp>
+#include <rastrum/raster/geometry.hpp>
 #include <rastrum/raster/options.hpp>
 #include <rastrum/scene/scene.hpp>
 
@@ -18,7 +20,7 @@ enum class Device : std::uint8_t { serial, threads, cuda };
 
 enum class Shader : std::uint8_t {
   flat,       ///< base colour, unlit
-  depth,      ///< grey = reversed depth, stretched over the depths in the picture
+  depth,      ///< grey = reversed depth
   normal,     ///< (n + 1) / 2 of the world-space unit normal
   id,         ///< a hash of the triangle id as a colour
   lambert,    ///< base · (0.1 + 0.8 max(n·l, 0))
@@ -63,6 +65,12 @@ class Renderer {
   /// Cost: O(vertices + triangles + covered samples). Throws Error{invalid_argument} naming an
   /// instance whose index is out of range, Error{out_of_memory} with what was asked for.
   FrameStats render(const SceneView& scene, const Camera& camera, const Targets& targets);
+
+  /// The programmable form: draws of any vertex source with any shader (raster/program.hpp makes
+  /// both from a caller's functions) and, where `test` is not null, a fragment test for the draws
+  /// that ask for it.
+  FrameStats draw(std::span<raster::Draw> draws, const raster::BlockShader& shader,
+                  const raster::FragmentTest* test, const Targets& targets);
 
   [[nodiscard]] const RenderOptions& options() const;
 

@@ -1,0 +1,27 @@
+# CUDA, where there is a compiler for it: RASTRUM_CUDA_FOUND says so. Nothing of the CPU build needs
+# it; the translation units under tests/cuda keep the shared code compilable for the device.
+set(RASTRUM_CUDA_FOUND OFF)
+if(RASTRUM_CUDA)
+  include(CheckLanguage)
+  check_language(CUDA)
+  if(CMAKE_CUDA_COMPILER)
+    # Machine code of the A100 and the H100, and PTX for what comes after them.
+    if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
+      set(CMAKE_CUDA_ARCHITECTURES 80-real 90)
+    endif()
+    enable_language(CUDA)
+    set(CMAKE_CUDA_STANDARD 20)
+    set(CMAKE_CUDA_STANDARD_REQUIRED ON)
+    set(CMAKE_CUDA_EXTENSIONS OFF)
+    target_compile_options(rastrum_flags INTERFACE
+      "$<$<COMPILE_LANGUAGE:CUDA>:--fmad=false;--extended-lambda;-Xcompiler=-ffp-contract=off>")
+    if(RASTRUM_WERROR)
+      target_compile_options(rastrum_flags INTERFACE
+        "$<$<COMPILE_LANGUAGE:CUDA>:-Werror=all-warnings>")
+    endif()
+    set(RASTRUM_CUDA_FOUND ON)
+  elseif(RASTRUM_CUDA STREQUAL "ON")
+    message(FATAL_ERROR "RASTRUM_CUDA is ON, and no CUDA compiler was found: put nvcc on the PATH, "
+      "or set CMAKE_CUDA_COMPILER")
+  endif()
+endif()

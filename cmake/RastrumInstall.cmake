@@ -1,0 +1,57 @@
+# Installation: headers, library, program, and a package that find_package(Rastrum) finds.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Rastrum)
+
+# A static library leaves its own libraries to whoever links it, so the package must find them too:
+# one find_dependency for each imported target that the library links, the private ones included.
+function(rastrum_dependencies out)
+  set(package_TBB "TBB")
+  set(package_hwy "hwy CONFIG")
+  set(package_PNG "PNG")
+  set(package_JPEG "JPEG")
+  set(package_ZLIB "ZLIB")
+  set(package_OpenEXR "OpenEXR CONFIG")
+  set(package_Imath "Imath CONFIG")
+  set(package_tinyobjloader "tinyobjloader CONFIG")
+  set(package_TinyGLTF "TinyGLTF CONFIG")
+  set(package_nlohmann_json "nlohmann_json CONFIG")
+  set(package_Threads "Threads")
+
+  get_target_property(links rastrum LINK_LIBRARIES)
+  set(calls "")
+  foreach(link IN LISTS links)
+    if(link MATCHES "BUILD_INTERFACE")
+      continue()
+    elseif(NOT link MATCHES "^([A-Za-z_]+)::")
+      message(FATAL_ERROR "rastrum links '${link}', which is no imported target: an installed "
+        "package could not find it elsewhere")
+    elseif(NOT DEFINED package_${CMAKE_MATCH_1})
+      message(FATAL_ERROR "say in cmake/RastrumInstall.cmake which package has '${link}'")
+    endif()
+    list(APPEND calls "find_dependency(${package_${CMAKE_MATCH_1}})")
+  endforeach()
+  list(REMOVE_DUPLICATES calls)
+  list(JOIN calls "\n" calls)
+  set(${out} "${calls}" PARENT_SCOPE)
+endfunction()
+
+rastrum_dependencies(RASTRUM_FIND_DEPENDENCIES)
+configure_package_config_file(cmake/RastrumConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/cmake/RastrumConfig.cmake INSTALL_DESTINATION ${package_dir})
+# Before 1.0 a minor version may change the interface.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/RastrumConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+
+install(DIRECTORY rastrum DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
+install(TARGETS rastrum EXPORT RastrumTargets)
+install(EXPORT RastrumTargets NAMESPACE Rastrum:: DESTINATION ${package_dir})
+install(FILES
+  ${PROJECT_BINARY_DIR}/cmake/RastrumConfig.cmake
+  ${PROJECT_BINARY_DIR}/cmake/RastrumConfigVersion.cmake
+  DESTINATION ${package_dir})
+install(FILES LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+if(TARGET rastrum_program)
+  install(TARGETS rastrum_program)
+endif()

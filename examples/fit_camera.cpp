@@ -1,0 +1,31 @@
+// Places the default camera before an array of triangles that the program owns, and finds where a
+// point of the world falls in the picture: what an overlay of labels needs.
+#include <cstdio>
+#include <vector>
+
+#include <rastrum/scene/scene.hpp>
+
+int main() {
+  // A tetrahedron in the caller's own arrays; Rastrum borrows them and copies nothing.
+  const std::vector<rastrum::Vec3> positions{{1, 1, 1}, {-1, -1, 1}, {-1, 1, -1}, {1, -1, -1}};
+  const std::vector<std::uint32_t> indices{0, 1, 3, 0, 2, 1, 0, 3, 2, 1, 2, 3};
+  rastrum::InstanceView instance;
+  instance.mesh.positions = positions;
+  instance.mesh.indices = indices;
+  rastrum::SceneView scene;
+  scene.instances = {&instance, 1};
+
+  const int width = 1280, height = 720;
+  const float fov_rad = 1.04719755F;  // 60°
+  const rastrum::Camera camera = rastrum::fit_camera(scene, fov_rad, false);
+  std::printf("eye %g %g %g\n", camera.eye.x, camera.eye.y, camera.eye.z);
+
+  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, width, height));
+  for (const rastrum::Vec3 p : positions) {
+    const rastrum::Vec4 clip = rastrum::transform_point(to_clip, p);
+    const float x_px = (clip.x / clip.w + 1) * 0.5F * static_cast<float>(width);
+    const float y_px = (1 - clip.y / clip.w) * 0.5F * static_cast<float>(height);
+    std::printf("(%g, %g, %g) is drawn at pixel (%.1f, %.1f), depth %.6f\n", p.x, p.y, p.z, x_px,
+                y_px, clip.z / clip.w);
+  }
+}

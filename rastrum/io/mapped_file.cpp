@@ -1,0 +1,65 @@
+#include <rastrum/io/mapped_file.hpp>
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include <rastrum/core/error.hpp>
+
+namespace rastrum::io {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& file, int error) {
+  const Errc code = error == ENOENT || error == ENOTDIR ? Errc::not_found : Errc::io;
+  throw Error(code, file.string() + ": cannot be read: " + std::strerror(error));
+}
+
+struct Descriptor {
+  int fd;
+  ~Descriptor() {
+    if (fd >= 0) ::close(fd);
+  }
+};
+
+}  // namespace
+
+MappedFile::MappedFile(const std::filesystem::path& file) {
+  const Descriptor d{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
+  if (d.fd < 0) fail(file, errno);
+  struct stat info {};
+  if (::fstat(d.fd, &info) != 0) fail(file, errno);
+  if (S_ISDIR(info.st_mode)) fail(file, EISDIR);
+  if (!S_ISREG(info.st_mode)) {
+    constexpr std::size_t kChunk = std::size_t{1} << 20;
+    for (;;) {
+      const std::size_t old = copy_.size();
+      copy_.resize(old + kChunk);
+      const ssize_t n = ::read(d.fd, copy_.data() + old, kChunk);
+      if (n < 0 && errno != EINTR) fail(file, errno);
+      copy_.resize(old + static_cast<std::size_t>(n < 0 ? 0 : n));
+      if (n == 0) break;
+    }
+    data_ = copy_.data();
+    size_ = copy_.size();
+    return;
+  }
+  size_ = static_cast<std::size_t>(info.st_size);
+  if (size_ == 0) return;  // mmap refuses empty mappings
+  void* p = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, d.fd, 0);
+  if (p == MAP_FAILED) fail(file, errno);
+  ::madvise(p, size_, MADV_SEQUENTIAL);
+  data_ = static_cast<const std::byte*>(p);
+  mapped_ = true;
+}
+
+MappedFile::~MappedFile() {
+  // munmap takes a non-const pointer although it writes nothing.
+  if (mapped_) ::munmap(const_cast<std::byte*>(data_), size_);
+}
+
+}  // namespace rastrum::io

@@ -1,0 +1,55 @@
+// NPY 1.0 (numpy.lib.format): a magic, a Python dictionary padded so that the data start at a
+// multiple of 64 bytes, the rows.
+#include <bit>
+#include <string>
+
+#include <rastrum/io/atomic_file.hpp>
+#include <rastrum/io/io.hpp>
+
+namespace rastrum::io {
+namespace {
+
+template <class T>
+void write(const std::filesystem::path& file, ImageView<const T> image, const char* type,
+           const char* inner) {
+  if (image.empty() || image.width < 1 || image.height < 1)
+    throw Error(Errc::invalid_argument, file.string() + ": an empty image cannot be written");
+  std::string header = std::string("{'descr': '") +
+                       (std::endian::native == std::endian::little ? '<' : '>') + type +
+                       "', 'fortran_order': False, 'shape': (" + std::to_string(image.height) +
+                       ", " + std::to_string(image.width) + inner + "), }";
+  constexpr std::size_t kPrefix = 10;
+  header.append(63 - (kPrefix + header.size()) % 64, ' ').push_back('\n');
+  const char prefix[kPrefix] = {'\x93',
+                                'N',
+                                'U',
+                                'M',
+                                'P',
+                                'Y',
+                                1,
+                                0,
+                                static_cast<char>(header.size() & 0xFF),
+                                static_cast<char>(header.size() >> 8)};
+  AtomicFile out(file);
+  out.write(prefix, sizeof prefix);
+  out.write(header.data(), header.size());
+  for (int y = 0; y < image.height; ++y)
+    out.write(image.row(y), static_cast<std::size_t>(image.width) * sizeof(T));
+  out.commit();
+}
+
+}  // namespace
+
+void write_npy(const std::filesystem::path& file, ImageView<const Vec4> image) {
+  write(file, image, "f4", ", 4");
+}
+
+void write_npy(const std::filesystem::path& file, ImageView<const float> image) {
+  write(file, image, "f4", "");
+}
+
+void write_npy(const std::filesystem::path& file, ImageView<const std::int64_t> image) {
+  write(file, image, "i8", "");
+}
+
+}  // namespace rastrum::io

@@ -1,0 +1,398 @@
+// Wavefront OBJ. Own reader: tinyobjloader 2.0rc10 stores a polygon's corner count in 8 bits, reads
+// a word that is no number as 0, accepts indices that do not exist and knows no line numbers; its
+// MTL reader is used (mtl.cpp). One mesh for a file, so that triangles keep the file's order over
+// groups, objects and materials.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <rastrum/io/mapped_file.hpp>
+#include <rastrum/io/parse.hpp>
+#include <rastrum/io/text_cursor.hpp>
+
+namespace rastrum::io {
+namespace {
+
+constexpr std::uint32_t kMissing = std::numeric_limits<std::uint32_t>::max();
+
+/// The largest index that faces used of one array and where, to name the line once all values of
+/// the file are known: a face may stand before its vertices.
+struct Use {
+  std::uint32_t largest = 0;
+  std::size_t offset = 0;
+  bool any = false;
+  void note(std::uint32_t index, std::size_t at) {
+    if (any && index <= largest) return;
+    largest = index;
+    offset = at;
+    any = true;
+  }
+};
+
+struct Corner {
+  std::uint32_t position, texcoord, normal;
+};
+
+class ObjReader {
+ public:
+  ObjReader(Bytes bytes, const std::filesystem::path& file)
+      : file_(file), name_(file.string()), in_(as_text(bytes), name_) {}
+
+  Scene read() {
+    while (!in_.at_end()) statement();
+    if (!has_materials_.empty()) finish_materials();
+    check_positions();
+    finish_colors();
+    finish_texcoords();
+    finish_normals();
+    warn_about_the_rest();
+    mesh_.name = file_.stem().string();
+    scene_.instances.push_back({0, Mat4d::identity()});
+    scene_.meshes.push_back(std::move(mesh_));
+    return std::move(scene_);
+  }
+
+ private:
+  /// One line; a backslash at its end joins the next.
+  void statement() {
+    in_.skip_space();
+    if (in_.at_end()) return;
+    start_ = in_.offset();
+    if (in_.peek() == '#') return in_.skip_line();
+    const std::string_view word = in_.token();
+    if (word == "v") {
+      vertex();
+    } else if (word == "vn") {
+      normals_.push_back(vec3("a normal's component"));
+    } else if (word == "vt") {
+      texcoord();
+    } else if (word == "f" || word == "fo") {
+      face();
+    } else if (word == "usemtl") {
+      use_material(rest());
+      return;
+    } else if (word == "mtllib") {
+      read_library(rest());
+      return;
+    } else if (word == "o" || word == "g" || word == "s" || word == "mg") {
+      // Names and smoothing change nothing that is drawn.
+    } else {
+      ++ignored_[std::string(word.substr(0, 24))];
+    }
+    in_.skip_line();
+  }
+
+  bool at_statement_end() {
+    while (in_.at_line_end() == false && in_.peek() == '\\') {
+      in_.advance(1);
+      if (!in_.at_line_end()) in_.fail("a backslash stands in the middle of a line");
+      if (in_.at_end()) return true;
+      in_.advance(1);
+    }
+    return in_.at_line_end() || in_.peek() == '#';
+  }
+
+  std::string rest() {
+    in_.skip_blanks();
+    return std::string(in_.line());
+  }
+
+  float number(const char* what) {
+    if (at_statement_end()) in_.fail_at(start_, std::string("expected ") + what);
+    return in_.word<float>(what);
+  }
+
+  Vec3 vec3(const char* what) {
+    const float x = number(what);
+    const float y = number(what);
+    const float z = number(what);
+    return {x, y, z};
+  }
+
+  /// x y z, x y z w, x y z r g b or x y z r g b a.
+  void vertex() {
+    mesh_.positions.push_back(vec3("a coordinate"));
+    float extra[4];
+    int n = 0;
+    while (n < 4 && !at_statement_end()) extra[n++] = number("a number");
+    if (n < 3) return;
+    if (mesh_.colors.values.size() + 1 < mesh_.positions.size())
+      mesh_.colors.values.resize(mesh_.positions.size() - 1, Vec4{1, 1, 1, 1});
+    mesh_.colors.values.push_back({extra[0], extra[1], extra[2], n == 4 ? extra[3] : 1.0F});
+  }
+
+  void texcoord() {
+    const float u = number("a texture coordinate");
+    const float v = at_statement_end() ? 0 : number("a texture coordinate");
+    texcoords_.push_back({u, 1 - v});  // ours count from the top
+  }
+
+  /// `index` as the file has it: from 1, or negative from the end so far.
+  std::uint32_t resolve(std::int64_t index, std::size_t count, const char* what) {
+    const std::int64_t zero_based =
+        index > 0 ? index - 1 : static_cast<std::int64_t>(count) + index;
+    if (index == 0 || zero_based < 0 || zero_based >= kMissing)
+      in_.fail_at(start_, "the face refers to " + std::string(what) + " " + std::to_string(index) +
+                              ", but there are " + std::to_string(count) + " so far");
+    return static_cast<std::uint32_t>(zero_based);
+  }
+
+  /// v, v/vt, v//vn or v/vt/vn; what a slash announces may be missing.
+  Corner corner() {
+    Corner c{kMissing, kMissing, kMissing};
+    c.position =
+        resolve(in_.number<std::int64_t>("a vertex index"), mesh_.positions.size(), "vertex");
+    position_use_.note(c.position, start_);
+    if (in_.peek() != '/') return c;
+    in_.advance(1);
+    if (is_index()) {
+      c.texcoord = resolve(in_.number<std::int64_t>("a texture coordinate's index"),
+                           texcoords_.size(), "texture coordinate");
+      texcoord_use_.note(c.texcoord, start_);
+    }
+    if (in_.peek() != '/') return c;
+    in_.advance(1);
+    if (is_index()) {
+      c.normal = resolve(in_.number<std::int64_t>("a normal's index"), normals_.size(), "normal");
+      normal_use_.note(c.normal, start_);
+    }
+    return c;
+  }
+
+  [[nodiscard]] bool is_index() const {
+    const char c = in_.peek();
+    return c == '-' || c == '+' || (c >= '0' && c <= '9');
+  }
+
+  void face() {
+    Corner first{}, previous{};
+    std::size_t n = 0;
+    for (; !at_statement_end(); ++n) {
+      const Corner c = corner();
+      if (!TextCursor::is_space(in_.peek()) && in_.peek() != '\\')
+        in_.fail_at(start_, "the face has a corner that is not v, v/vt, v//vn or v/vt/vn");
+      if (n == 0) {
+        first = c;
+      } else if (n >= 2) {
+        for (const Corner& k : {first, previous, c}) {
+          mesh_.indices.push_back(k.position);
+          texcoord_indices_.push_back(k.texcoord);
+          normal_indices_.push_back(k.normal);
+        }
+        face_materials_.push_back(material_);
+      }
+      previous = c;
+    }
+    if (n < 3) ++small_faces_;
+  }
+
+  void read_library(const std::string& names) {
+    // Names may hold spaces; several names may share a line. The whole line is tried first.
+    const auto folder = file_.parent_path();
+    std::vector<std::string> candidates = {names};
+    std::error_code ignored;
+    if (!std::filesystem::exists(folder / names, ignored)) {
+      candidates.clear();
+      TextCursor words(names, name_);
+      for (std::string_view w = words.token(); !w.empty(); w = words.token())
+        candidates.emplace_back(w);
+    }
+    for (std::string c : candidates) {
+      std::replace(c.begin(), c.end(), '\\', '/');
+      if (std::find(libraries_.begin(), libraries_.end(), c) != libraries_.end()) continue;
+      libraries_.push_back(c);
+      read_mtl(folder / c, scene_, by_name_);
+    }
+  }
+
+  void use_material(const std::string& name) {
+    if (const auto known = has_materials_.find(name); known != has_materials_.end()) {
+      material_ = known->second;
+      return;
+    }
+    // Ids of names in order of use; they become indices of Scene::materials at the end, because a
+    // library may stand behind its use.
+    material_ = static_cast<std::uint32_t>(has_materials_.size()) + 1;
+    has_materials_.emplace(name, material_);
+    used_names_.push_back(name);
+  }
+
+  void finish_materials() {
+    std::vector<std::uint32_t> index_of(used_names_.size() + 1, kMissing);
+    bool all = true;
+    const bool unnamed =
+        std::find(face_materials_.begin(), face_materials_.end(), 0U) != face_materials_.end();
+    std::string unknown;
+    for (std::size_t i = 0; i < used_names_.size(); ++i) {
+      const auto it = by_name_.find(used_names_[i]);
+      if (it != by_name_.end()) {
+        index_of[i + 1] = it->second;
+      } else {
+        all = false;
+        unknown += (unknown.empty() ? "" : ", ") + used_names_[i].substr(0, 60);
+      }
+    }
+    if (!unknown.empty())
+      scene_.warnings.push_back(name_ + ": no .mtl file defines " + unknown +
+                                "; drawn with the default material");
+    if (scene_.materials.empty()) return;  // nothing was found: the file has no materials
+    if (!all || unnamed) {
+      const auto fallback = static_cast<std::uint32_t>(scene_.materials.size());
+      Material m;
+      m.name = "default";
+      m.metallic = 0;
+      scene_.materials.push_back(m);
+      std::replace(index_of.begin(), index_of.end(), kMissing, fallback);
+    }
+    for (std::uint32_t& m : face_materials_) m = index_of[m];
+    const bool uniform = std::adjacent_find(face_materials_.begin(), face_materials_.end(),
+                                            std::not_equal_to<>()) == face_materials_.end();
+    if (uniform) {
+      if (!face_materials_.empty()) mesh_.material = face_materials_.front();
+    } else {
+      mesh_.face_materials = std::move(face_materials_);
+    }
+  }
+
+  void check_positions() {
+    if (position_use_.any && position_use_.largest >= mesh_.positions.size())
+      in_.fail_at(position_use_.offset,
+                  "the face refers to vertex " +
+                      std::to_string(std::uint64_t{position_use_.largest} + 1) +
+                      ", but the file has " + std::to_string(mesh_.positions.size()));
+  }
+
+  void finish_colors() {
+    auto& colors = mesh_.colors.values;
+    if (colors.empty()) return;
+    colors.resize(mesh_.positions.size(), Vec4{1, 1, 1, 1});
+    std::size_t bad = 0;
+    for (Vec4& c : colors)
+      for (float* x : {&c.x, &c.y, &c.z, &c.w})
+        if (!std::isfinite(*x)) {
+          *x = 1;
+          ++bad;
+        }
+    if (bad != 0)
+      scene_.warnings.push_back(name_ + ": " + std::to_string(bad) +
+                                " components of vertex colours are not finite; taken as 1");
+  }
+
+  /// Drops what cannot be read, for the whole mesh: a picture without is right, one with some
+  /// value or other is not.
+  template <class T>
+  bool usable(const Use& use, std::vector<std::uint32_t>& indices, const std::vector<T>& values,
+              const char* what) {
+    if (!use.any) return false;
+    if (use.largest < values.size()) return true;
+    scene_.warnings.push_back(
+        name_ + ":" + std::to_string(in_.line_of(use.offset)) + ": the face refers to " + what +
+        " " + std::to_string(std::uint64_t{use.largest} + 1) + ", but the file has " +
+        std::to_string(values.size()) + "; it is drawn without any");
+    indices.clear();
+    return false;
+  }
+
+  void finish_texcoords() {
+    if (!usable(texcoord_use_, texcoord_indices_, texcoords_, "texture coordinate")) return;
+    const auto absent = std::count(texcoord_indices_.begin(), texcoord_indices_.end(), kMissing);
+    if (absent != 0) {
+      const auto zero = static_cast<std::uint32_t>(texcoords_.size());
+      texcoords_.push_back({0, 0});
+      std::replace(texcoord_indices_.begin(), texcoord_indices_.end(), kMissing, zero);
+      scene_.warnings.push_back(name_ + ": " + std::to_string(absent) +
+                                " corners have no texture coordinate; taken as (0, 0)");
+    }
+    store(mesh_.texcoords, std::move(texcoords_), std::move(texcoord_indices_));
+  }
+
+  void finish_normals() {
+    if (!usable(normal_use_, normal_indices_, normals_, "normal")) return;
+    std::size_t filled = 0;
+    for (std::size_t t = 0; t < mesh_.indices.size(); t += 3) {
+      std::uint32_t* const corner = &normal_indices_[t];
+      if (corner[0] != kMissing && corner[1] != kMissing && corner[2] != kMissing) continue;
+      const Vec3 a = mesh_.positions[mesh_.indices[t]];
+      const Vec3 n = cross(mesh_.positions[mesh_.indices[t + 1]] - a,
+                           mesh_.positions[mesh_.indices[t + 2]] - a);
+      const auto flat = static_cast<std::uint32_t>(normals_.size());
+      normals_.push_back(normalize(n));
+      for (int i = 0; i < 3; ++i)
+        if (corner[i] == kMissing) corner[i] = flat;
+      ++filled;
+    }
+    if (filled != 0)
+      scene_.warnings.push_back(name_ + ": " + std::to_string(filled) +
+                                " triangles have no normals, others do; these get their face's");
+    store(mesh_.normals, std::move(normals_), std::move(normal_indices_));
+  }
+
+  /// Corners that number an attribute as they number positions share the positions' indices.
+  template <class T>
+  void store(Attribute<T>& attribute, std::vector<T> values, std::vector<std::uint32_t> indices) {
+    attribute.values = std::move(values);
+    if (indices != mesh_.indices || attribute.values.size() < mesh_.positions.size())
+      attribute.indices = std::move(indices);
+    else
+      attribute.values.resize(mesh_.positions.size());
+  }
+
+  void warn_about_the_rest() {
+    if (small_faces_ != 0)
+      scene_.warnings.push_back(name_ + ": " + std::to_string(small_faces_) +
+                                " faces with fewer than 3 corners are left out");
+    std::string kinds;
+    int listed = 0;
+    for (const auto& [kind, count] : ignored_) {
+      if (++listed > 8) {
+        kinds += ", …";
+        break;
+      }
+      kinds += (kinds.empty() ? "" : ", ") + std::to_string(count) + " × " + printable(kind);
+    }
+    if (!kinds.empty())
+      scene_.warnings.push_back(name_ + ": statements that are not drawn: " + kinds);
+    if (mesh_.indices.empty())
+      scene_.warnings.push_back(name_ + ": holds no faces (" +
+                                std::to_string(mesh_.positions.size()) + " vertices)");
+  }
+
+  static std::string printable(std::string s) {
+    for (char& c : s)
+      if (c < ' ' || c > '~') c = '?';
+    return s;
+  }
+
+  std::filesystem::path file_;
+  std::string name_;
+  TextCursor in_;
+  std::size_t start_ = 0;  ///< offset of the statement being read
+  Scene scene_;
+  Mesh mesh_;
+  std::vector<Vec2> texcoords_;
+  std::vector<Vec3> normals_;
+  std::vector<std::uint32_t> texcoord_indices_, normal_indices_;
+  Use position_use_, texcoord_use_, normal_use_;
+  std::vector<std::string> libraries_, used_names_;
+  std::unordered_map<std::string, std::uint32_t> by_name_;        ///< what .mtl files define
+  std::unordered_map<std::string, std::uint32_t> has_materials_;  ///< what usemtl names
+  std::vector<std::uint32_t> face_materials_;
+  std::uint32_t material_ = 0;  ///< 0: no usemtl yet
+  std::map<std::string, std::size_t> ignored_;
+  std::size_t small_faces_ = 0;
+};
+
+}  // namespace
+
+Scene parse_obj(Bytes bytes, const std::filesystem::path& file) {
+  return ObjReader(bytes, file).read();
+}
+
+}  // namespace rastrum::io

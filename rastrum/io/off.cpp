@@ -1,0 +1,196 @@
+// OFF (Geomview): vertices with normals (N), colours (C), texture coordinates (ST); polygons become
+// fans. '#' starts a comment. Many files have no "OFF" word, glue it to the first count, or have
+// colours without the C.
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <rastrum/io/mapped_file.hpp>
+#include <rastrum/io/parse.hpp>
+#include <rastrum/io/text_cursor.hpp>
+
+namespace rastrum::io {
+namespace {
+
+class OffReader {
+ public:
+  OffReader(Bytes bytes, const std::string& name) : name_(name), in_(as_text(bytes), name_) {}
+
+  Scene read() {
+    header();
+    counts();
+    vertices();
+    faces();
+    if (left_out_ != 0)
+      warnings_.push_back(name_ + ": numbers behind the coordinates of " +
+                          std::to_string(left_out_) + " vertices are left out");
+    if (small_faces_ != 0)
+      warnings_.push_back(name_ + ": " + std::to_string(small_faces_) +
+                          " faces with fewer than 3 corners are left out");
+    if (face_colors_ != 0)
+      warnings_.push_back(name_ + ": the colours of " + std::to_string(face_colors_) +
+                          " faces are left out");
+    if (mesh_.indices.empty())
+      warnings_.push_back(name_ + ": holds no faces (" + std::to_string(mesh_.positions.size()) +
+                          " vertices)");
+    Scene scene = scene_of(std::move(mesh_));
+    scene.warnings = std::move(warnings_);
+    return scene;
+  }
+
+ private:
+  /// Blanks and comments; the end of a line is kept where the format minds it.
+  void skip(bool across_lines) {
+    for (;;) {
+      across_lines ? in_.skip_space() : in_.skip_blanks();
+      if (in_.at_end() || in_.peek() != '#') return;
+      if (!across_lines) {
+        while (!in_.at_end() && in_.peek() != '\n') in_.advance(1);
+        return;
+      }
+      in_.skip_line();
+    }
+  }
+
+  [[nodiscard]] bool line_is_done() {
+    skip(false);
+    return in_.at_line_end();
+  }
+
+  template <class T>
+  T next(const char* what) {
+    skip(true);
+    const T value = in_.number<T>(what);
+    const char after = in_.peek();
+    if (!TextCursor::is_space(after) && after != '#' && !in_.at_end())
+      in_.fail(std::string("expected ") + what + " and a space");
+    return value;
+  }
+
+  void header() {
+    skip(true);
+    const std::size_t start = in_.offset();
+    TextCursor ahead = in_;
+    std::string_view word = ahead.token();
+    const auto has = [&](std::string_view prefix) {
+      if (word.substr(0, prefix.size()) != prefix) return false;
+      word.remove_prefix(prefix.size());
+      in_.advance(prefix.size());
+      return true;
+    };
+    if (word.find("OFF") == std::string_view::npos) {
+      if (word.empty() || word[0] < '0' || word[0] > '9')
+        throw Error(Errc::bad_format, name_ + ": is not OFF: no 'OFF' and no counts at its start");
+      return;
+    }
+    texcoords_ = has("ST");
+    colors_ = has("C");
+    normals_ = has("N");
+    if (has("4") || has("n"))
+      throw Error(Errc::unsupported, name_ + ": its vertices are not three-dimensional");
+    if (!has("OFF")) in_.fail_at(start, "expected [ST][C][N]OFF");
+    if (!line_is_done() && ahead.token() == "BINARY")
+      throw Error(Errc::unsupported, name_ + ": binary OFF is not read; convert it to PLY");
+  }
+
+  void counts() {
+    vertex_count_ = next<std::uint32_t>("the number of vertices");
+    face_count_ = next<std::uint32_t>("the number of faces");
+    if (!line_is_done()) (void)next<std::int64_t>("the number of edges");
+    // "0 0 0" is 6 characters, "3 0 0 0" 8; the last line may lack its end.
+    const std::size_t left = in_.left() + 1;
+    if (vertex_count_ > left / 6 || face_count_ > left / 2)
+      in_.fail("the file is too short for " + std::to_string(vertex_count_) + " vertices and " +
+               std::to_string(face_count_) + " faces");
+  }
+
+  void vertices() {
+    mesh_.positions.reserve(vertex_count_);
+    for (std::uint32_t i = 0; i < vertex_count_; ++i) {
+      mesh_.positions.push_back(vec3("a coordinate"));
+      if (normals_) mesh_.normals.values.push_back(vec3("a normal's component"));
+      float rest[6];
+      int n = 0;
+      bool whole = true;  // colours written as integers are of 255
+      for (; n < 6 && !line_is_done(); ++n) {
+        const std::size_t start = in_.offset();
+        rest[n] = next<float>("a number");
+        if (in_.text().substr(start, in_.offset() - start).find_first_of(".eE") !=
+            std::string_view::npos)
+          whole = false;
+      }
+      finish_vertex(i, rest, n, whole);
+      while (!line_is_done()) (void)next<float>("a number");
+    }
+  }
+
+  void finish_vertex(std::uint32_t i, const float* rest, int n, bool whole) {
+    const int uv = texcoords_ ? 2 : 0;
+    if (texcoords_) {
+      if (n < 2) in_.fail("the vertex has no texture coordinate");
+      mesh_.texcoords.values.push_back({rest[n - 2], 1 - rest[n - 1]});
+    }
+    const int c = n - uv;
+    if (colors_ || (i == 0 && (c == 3 || c == 4))) {
+      if (c != 3 && c != 4) in_.fail("the vertex has no colour");
+      colors_ = true;
+      const float scale = whole ? 1 / 255.0F : 1;
+      mesh_.colors.values.push_back(
+          {rest[0] * scale, rest[1] * scale, rest[2] * scale, c == 4 ? rest[3] * scale : 1.0F});
+    } else if (c != 0) {
+      ++left_out_;
+    }
+  }
+
+  Vec3 vec3(const char* what) {
+    const float x = next<float>(what);
+    const float y = next<float>(what);
+    const float z = next<float>(what);
+    return {x, y, z};
+  }
+
+  std::uint32_t corner() {
+    const auto i = next<std::int64_t>("a vertex index");
+    if (i < 0 || i >= vertex_count_)
+      in_.fail("the face refers to vertex " + std::to_string(i) + ", but the file has " +
+               std::to_string(vertex_count_));
+    return static_cast<std::uint32_t>(i);
+  }
+
+  void faces() {
+    for (std::uint32_t f = 0; f < face_count_; ++f) {
+      const auto n = next<std::uint32_t>("the number of a face's corners");
+      std::uint32_t first = 0, previous = 0;
+      for (std::uint32_t k = 0; k < n; ++k) {
+        const std::uint32_t i = corner();
+        if (k == 0) first = i;
+        if (k >= 2) mesh_.indices.insert(mesh_.indices.end(), {first, previous, i});
+        previous = i;
+      }
+      if (n < 3) ++small_faces_;
+      if (!line_is_done()) ++face_colors_;
+      in_.skip_line();
+    }
+  }
+
+  std::string name_;
+  TextCursor in_;
+  Mesh mesh_;
+  std::vector<std::string> warnings_;
+  bool texcoords_ = false, colors_ = false, normals_ = false;
+  std::uint32_t vertex_count_ = 0, face_count_ = 0;
+  std::size_t small_faces_ = 0, face_colors_ = 0, left_out_ = 0;
+};
+
+}  // namespace
+
+Scene parse_off(Bytes bytes, const std::filesystem::path& file) {
+  Scene scene = OffReader(bytes, file.string()).read();
+  scene.meshes[0].name = file.stem().string();
+  return scene;
+}
+
+}  // namespace rastrum::io

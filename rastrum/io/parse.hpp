@@ -1,0 +1,36 @@
+// The readers behind read_scene, one per format, over bytes in memory: read_scene maps the file and
+// calls them, the fuzzers call them with what they made up. `file` names the bytes in errors and is
+// where textures and the like are looked for; it need not exist.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <unordered_map>
+
+#include <rastrum/scene/scene.hpp>
+
+namespace rastrum::io {
+
+using Bytes = std::span<const std::byte>;
+
+[[nodiscard]] Scene parse_obj(Bytes bytes, const std::filesystem::path& file);
+[[nodiscard]] Scene parse_ply(Bytes bytes, const std::filesystem::path& file);
+[[nodiscard]] Scene parse_stl(Bytes bytes, const std::filesystem::path& file);
+[[nodiscard]] Scene parse_off(Bytes bytes, const std::filesystem::path& file);
+/// .gltf and .glb are told apart by their first bytes.
+[[nodiscard]] Scene parse_gltf(Bytes bytes, const std::filesystem::path& file);
+
+[[nodiscard]] Image<Rgba8> decode_png(Bytes bytes, const std::string& name);
+[[nodiscard]] Image<Rgba8> decode_jpeg(Bytes bytes, const std::string& name);
+
+/// Adds the materials of an .mtl file, in its order, to `scene` and their names to `by_name` (the
+/// first of a name wins). What is missing becomes a warning.
+void read_mtl(const std::filesystem::path& file, Scene& scene,
+              std::unordered_map<std::string, std::uint32_t>& by_name);
+
+/// A scene that draws `mesh` once.
+[[nodiscard]] Scene scene_of(Mesh mesh);
+
+}  // namespace rastrum::io

@@ -1,0 +1,127 @@
+#include <rastrum/io/ply_header.hpp>
+
+#include <algorithm>
+
+#include <rastrum/io/mapped_file.hpp>
+#include <rastrum/io/text_cursor.hpp>
+
+namespace rastrum::io::ply {
+namespace {
+
+constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
+constexpr std::size_t kMostElements = 1000, kMostProperties = 10000;
+
+Type parse_type(TextCursor& in) {
+  struct Name {
+    std::string_view text;
+    Type type;
+  };
+  static constexpr Name kNames[] = {
+      {"char", Type::i8},   {"int8", Type::i8},     {"uchar", Type::u8},   {"uint8", Type::u8},
+      {"short", Type::i16}, {"int16", Type::i16},   {"ushort", Type::u16}, {"uint16", Type::u16},
+      {"int", Type::i32},   {"int32", Type::i32},   {"uint", Type::u32},   {"uint32", Type::u32},
+      {"float", Type::f32}, {"float32", Type::f32}, {"double", Type::f64}, {"float64", Type::f64},
+  };
+  in.skip_blanks();
+  const std::size_t at = in.offset();
+  const std::string_view word = in.at_line_end() ? std::string_view{} : in.token();
+  for (const Name& n : kNames)
+    if (n.text == word) return n.type;
+  in.fail_at(at, quoted(word) + " is no type of a property");
+}
+
+std::string parse_name(TextCursor& in) {
+  if (in.at_line_end()) in.fail("a name is missing");
+  return std::string(in.token().substr(0, 200));
+}
+
+Property parse_property(TextCursor& in) {
+  Property p;
+  in.skip_blanks();
+  TextCursor ahead = in;
+  if (ahead.token() == "list") {
+    in = ahead;
+    p.is_list = true;
+    const std::size_t at = in.offset();
+    p.count_type = parse_type(in);
+    if (!is_integer(p.count_type)) in.fail_at(at, "a list's count must be an integer");
+  }
+  p.type = parse_type(in);
+  p.name = parse_name(in);
+  return p;
+}
+
+}  // namespace
+
+std::size_t Element::least_bytes() const {
+  std::size_t n = 0;
+  for (const Property& p : properties) n += size_of(p.is_list ? p.count_type : p.type);
+  return n;
+}
+
+bool Element::has_list() const {
+  return std::any_of(properties.begin(), properties.end(),
+                     [](const Property& p) { return p.is_list; });
+}
+
+int Element::find(std::initializer_list<std::string_view> names) const {
+  for (std::size_t i = 0; i < properties.size(); ++i)
+    for (const std::string_view n : names)
+      if (properties[i].name == n) return static_cast<int>(i);
+  return -1;
+}
+
+Header parse_header(Bytes bytes, const std::string& name) {
+  TextCursor in(as_text(bytes.first(std::min(bytes.size(), kLongestHeader))), name);
+  Header header;
+  if (in.line() != "ply")
+    throw Error(Errc::bad_format, name + ": is not PLY: no 'ply' at its start");
+  bool has_format = false;
+  std::size_t properties = 0;
+  for (;;) {
+    if (in.at_end()) in.fail("the header has no 'end_header'");
+    const std::size_t start = in.offset();
+    if (in.at_line_end()) {
+      in.skip_line();
+      continue;
+    }
+    const std::string_view word = in.token();
+    if (word == "end_header") {
+      in.skip_line();
+      break;
+    }
+    if (word == "comment" || word == "obj_info") {
+      // Free text.
+    } else if (word == "format") {
+      const std::string_view format = in.at_line_end() ? std::string_view{} : in.token();
+      if (format == "ascii") {
+        header.format = Format::ascii;
+      } else if (format == "binary_little_endian") {
+        header.format = Format::little_endian;
+      } else if (format == "binary_big_endian") {
+        header.format = Format::big_endian;
+      } else {
+        in.fail_at(start, quoted(format) + " is no format of PLY");
+      }
+      has_format = true;
+    } else if (word == "element") {
+      Element e;
+      e.name = parse_name(in);
+      e.count = in.word<std::size_t>("a count");
+      if (header.elements.size() == kMostElements) in.fail_at(start, "there are too many elements");
+      header.elements.push_back(std::move(e));
+    } else if (word == "property") {
+      if (header.elements.empty()) in.fail_at(start, "a property stands before any element");
+      if (++properties > kMostProperties) in.fail_at(start, "there are too many properties");
+      header.elements.back().properties.push_back(parse_property(in));
+    } else {
+      in.fail_at(start, quoted(word) + " does not belong in a header");
+    }
+    in.skip_line();
+  }
+  if (!has_format) in.fail("the header has no 'format'");
+  header.size = in.offset();
+  return header;
+}
+
+}  // namespace rastrum::io::ply

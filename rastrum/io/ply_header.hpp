@@ -1,0 +1,53 @@
+// The header of a PLY file: elements and their properties.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <rastrum/io/parse.hpp>
+
+namespace rastrum::io::ply {
+
+enum class Type : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
+enum class Format : std::uint8_t { ascii, little_endian, big_endian };
+
+[[nodiscard]] constexpr std::size_t size_of(Type t) {
+  constexpr std::size_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+  return kSizes[static_cast<std::size_t>(t)];
+}
+[[nodiscard]] constexpr bool is_integer(Type t) {
+  return t < Type::f32;
+}
+
+struct Property {
+  std::string name;
+  Type type = Type::f32;
+  bool is_list = false;
+  Type count_type = Type::u8;  ///< of a list
+};
+
+struct Element {
+  std::string name;
+  std::size_t count = 0;
+  std::vector<Property> properties;
+
+  /// Bytes of one in a binary file where every list is empty: exact without lists.
+  [[nodiscard]] std::size_t least_bytes() const;
+  [[nodiscard]] bool has_list() const;
+  /// The property of one of these names, or −1.
+  [[nodiscard]] int find(std::initializer_list<std::string_view> names) const;
+};
+
+struct Header {
+  Format format = Format::ascii;
+  std::vector<Element> elements;
+  std::size_t size = 0;  ///< bytes up to the first element
+};
+
+/// Throws Error{bad_format | unsupported} naming the line.
+[[nodiscard]] Header parse_header(Bytes bytes, const std::string& name);
+
+}  // namespace rastrum::io::ply

@@ -1,0 +1,150 @@
+// A place in a text file: tokens, numbers and errors that name file and line. Numbers are read with
+// std::from_chars, correctly rounded, so that a file gives the same bits on every machine.
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include <rastrum/core/error.hpp>
+
+namespace rastrum::io {
+
+/// At most 20 printable characters of `s` in quotes, for messages.
+[[nodiscard]] inline std::string quoted(std::string_view s) {
+  std::string r(1, '\'');
+  for (const char c : s.substr(0, 20)) r += c >= ' ' && c <= '~' ? c : '?';
+  r += '\'';
+  return r;
+}
+
+/// Borrows `text` and `name`; both must outlive it.
+class TextCursor {
+ public:
+  TextCursor(std::string_view text, const std::string& name)
+      : begin_(text.data()), at_(begin_), end_(begin_ + text.size()), name_(&name) {}
+
+  [[nodiscard]] bool at_end() const { return at_ == end_; }
+  [[nodiscard]] std::string_view text() const {
+    return {begin_, static_cast<std::size_t>(end_ - begin_)};
+  }
+  [[nodiscard]] std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
+  [[nodiscard]] std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
+  [[nodiscard]] char peek() const { return at_ == end_ ? '\n' : *at_; }
+  void advance(std::size_t n) { at_ += n; }
+
+  static bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+  }
+  static bool is_space(char c) { return is_blank(c) || c == '\n'; }
+
+  void skip_blanks() {
+    while (at_ != end_ && is_blank(*at_)) ++at_;
+  }
+  void skip_space() {
+    while (at_ != end_ && is_space(*at_)) ++at_;
+  }
+  /// To the first character of the next line.
+  void skip_line() {
+    at_ = std::find(at_, end_, '\n');
+    if (at_ != end_) ++at_;
+  }
+  /// The rest of this line without the line end; moves to the next line.
+  std::string_view line() {
+    const char* first = at_;
+    const char* last = std::find(at_, end_, '\n');
+    at_ = last == end_ ? end_ : last + 1;
+    while (last != first && is_blank(last[-1])) --last;
+    return {first, static_cast<std::size_t>(last - first)};
+  }
+  /// True where nothing but blanks is left of this line; stops at what there is.
+  [[nodiscard]] bool at_line_end() {
+    skip_blanks();
+    return at_ == end_ || *at_ == '\n';
+  }
+  /// The characters up to the next space; empty at the end.
+  std::string_view token() {
+    skip_space();
+    const char* first = at_;
+    while (at_ != end_ && !is_space(*at_)) ++at_;
+    return {first, static_cast<std::size_t>(at_ - first)};
+  }
+
+  /// A number at this place, after blanks or, with `across_lines`, any space.
+  template <class T>
+  T number(const char* what, bool across_lines = false) {
+    across_lines ? skip_space() : skip_blanks();
+    const char* p = at_;
+    if (p != end_ && *p == '+') ++p;
+    T value{};
+    const auto [next, error] = std::from_chars(p, end_, value);
+    if constexpr (std::is_floating_point_v<T>) {
+      if (error == std::errc::result_out_of_range) value = out_of_range<T>(p, next);
+    } else if (error == std::errc::result_out_of_range) {
+      fail(std::string(what) + " is out of range: " + excerpt());
+    }
+    if (next == p || error == std::errc::invalid_argument)
+      fail(std::string("expected ") + what + ", found " + excerpt());
+    at_ = next;
+    return value;
+  }
+  /// The same, for formats where numbers are words: what follows must be a space.
+  template <class T>
+  T word(const char* what, bool across_lines = false) {
+    const T value = number<T>(what, across_lines);
+    if (at_ != end_ && !is_space(*at_))
+      fail(std::string("expected ") + what + ", found " + excerpt());
+    return value;
+  }
+
+  [[noreturn]] void fail(const std::string& message) const { fail_at(offset(), message); }
+  /// The error for the line that holds `offset`.
+  [[noreturn]] void fail_at(std::size_t offset, const std::string& message) const {
+    throw Error(Errc::bad_format, *name_ + ":" + std::to_string(line_of(offset)) + ": " + message);
+  }
+  /// Counted only when it is asked for: keeping it would slow every reader.
+  [[nodiscard]] std::size_t line_of(std::size_t offset) const {
+    assert(offset <= static_cast<std::size_t>(end_ - begin_));
+    return 1 + static_cast<std::size_t>(std::count(begin_, begin_ + offset, '\n'));
+  }
+
+ private:
+  /// What stands here, for messages.
+  [[nodiscard]] std::string excerpt() const {
+    if (at_ == end_) return "the end of the file";
+    if (*at_ == '\n') return "the end of the line";
+    const char* last = std::find_if(at_, end_, is_space);
+    return quoted({at_, static_cast<std::size_t>(last - at_)});
+  }
+  /// from_chars leaves the value alone where it does not fit: the nearest of 0 and infinity.
+  template <class T>
+  static T out_of_range(const char* first, const char* last) {
+    double wide = 0;
+    if (std::from_chars(first, last, wide).ec == std::errc{}) {
+      if (std::abs(wide) < 1) return static_cast<T>(wide);
+      return std::copysign(std::numeric_limits<T>::infinity(), static_cast<T>(wide < 0 ? -1 : 1));
+    }
+    // Too small for float64 as well where the exponent is negative or there is none but zeros.
+    const bool negative = *first == '-';
+    const char* e = std::find_if(first, last, [](char c) { return c == 'e' || c == 'E'; });
+    const bool tiny =
+        e != last ? e + 1 != last && e[1] == '-' : *std::find_if(first, last, [](char c) {
+          return c == '.' || (c >= '1' && c <= '9');
+        }) == '.';
+    const T magnitude = tiny ? T{0} : std::numeric_limits<T>::infinity();
+    return negative ? -magnitude : magnitude;
+  }
+
+  const char* begin_;
+  const char* at_;
+  const char* end_;
+  const std::string* name_;
+};
+
+}  // namespace rastrum::io

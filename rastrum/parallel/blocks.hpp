@@ -1,0 +1,29 @@
+// The fixed cut of an index range that the words share. The blocks depend on n alone, never on the
+// number of threads: a float reduction, whose result depends on the cut, has the same bits
+// everywhere.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include <rastrum/parallel/exec.hpp>
+
+namespace rastrum::parallel {
+
+/// Elements of a block: some microseconds of work for the cheapest functor, well above the price of
+/// a task, and a whole number of 64-bit masks.
+inline constexpr std::size_t kBlock = 4096;
+
+[[nodiscard]] constexpr std::size_t block_count(std::size_t n) {
+  return (n + kBlock - 1) / kBlock;
+}
+
+/// Calls f(block, begin, end) for each block [begin, end) of [0, n).
+template <class Exec, class F>
+void for_each_block(Exec& exec, std::size_t n, F&& f) {
+  for_each_index(exec, block_count(n), [&](std::size_t block) {
+    f(block, block * kBlock, std::min(n, (block + 1) * kBlock));
+  });
+}
+
+}  // namespace rastrum::parallel

@@ -1,0 +1,106 @@
+// Bit masks of 8 to 256 bits with the three operations that expand_masked needs: set, rank, select.
+//
+// Source: paper 1, section 3.1.1. The base clears lowest bits; wider words halve; beyond 64 bits a
+// mask is a pair of masks, so that rank and select cost O(log bits).
+#pragma once
+
+#include <bit>
+#include <cassert>
+#include <cstdint>
+#include <type_traits>
+
+#include <rastrum/core/config.hpp>
+
+namespace rastrum::parallel {
+
+RASTRUM_HD constexpr int popcount(std::uint64_t bits) {
+#if defined(__CUDA_ARCH__)
+  return __popcll(bits);
+#else
+  return std::popcount(bits);
+#endif
+}
+
+/// Index of the lowest set bit. Requires bits ≠ 0.
+RASTRUM_HD constexpr int lowest_bit(std::uint64_t bits) {
+#if defined(__CUDA_ARCH__)
+  return __ffsll(static_cast<long long>(bits)) - 1;
+#else
+  return std::countr_zero(bits);
+#endif
+}
+
+/// Index of the set bit that has k set bits below it, within the low `kWidth` bits.
+/// Requires 0 ≤ k < their number.
+template <int kWidth>
+RASTRUM_HD constexpr int select_bit(std::uint64_t bits, int k) {
+  if constexpr (kWidth <= 8) {
+    for (; k > 0; --k) bits &= bits - 1;
+    return lowest_bit(bits);
+  } else {
+    constexpr int kHalf = kWidth / 2;
+    const int low = popcount(bits & ((std::uint64_t{1} << kHalf) - 1));
+    return k < low ? select_bit<kHalf>(bits, k) : select_bit<kHalf>(bits >> kHalf, k - low) + kHalf;
+  }
+}
+
+/// A set of the numbers 0 … kBits − 1.
+template <int kBits>
+class Mask {
+  static_assert(kBits == 128 || kBits == 256, "masks have 8, 16, 32, 64, 128 or 256 bits");
+
+ public:
+  static constexpr int size() { return kBits; }
+  RASTRUM_HD constexpr void set(int i) { i < kHalf ? low_.set(i) : high_.set(i - kHalf); }
+  [[nodiscard]] RASTRUM_HD constexpr bool test(int i) const {
+    return i < kHalf ? low_.test(i) : high_.test(i - kHalf);
+  }
+  /// Number of elements.
+  [[nodiscard]] RASTRUM_HD constexpr int rank() const { return low_.rank() + high_.rank(); }
+  /// Number of elements < i; 0 ≤ i ≤ kBits. The inverse of select: rank(select(k)) = k.
+  [[nodiscard]] RASTRUM_HD constexpr int rank(int i) const {
+    return i <= kHalf ? low_.rank(i) : low_.rank() + high_.rank(i - kHalf);
+  }
+  /// The element that has k elements below it. Requires 0 ≤ k < rank().
+  [[nodiscard]] RASTRUM_HD constexpr int select(int k) const {
+    const int low = low_.rank();
+    return k < low ? low_.select(k) : high_.select(k - low) + kHalf;
+  }
+
+ private:
+  static constexpr int kHalf = kBits / 2;
+  Mask<kHalf> low_, high_;
+};
+
+template <int kBits>
+requires(kBits == 8 || kBits == 16 || kBits == 32 || kBits == 64) class Mask<kBits> {
+ public:
+  using Word = std::conditional_t<
+      kBits == 8, std::uint8_t,
+      std::conditional_t<kBits == 16, std::uint16_t,
+                         std::conditional_t<kBits == 32, std::uint32_t, std::uint64_t>>>;
+
+  static constexpr int size() { return kBits; }
+  RASTRUM_HD constexpr void set(int i) {
+    assert(i >= 0 && i < kBits);
+    word_ = static_cast<Word>(word_ | std::uint64_t{1} << i);
+  }
+  [[nodiscard]] RASTRUM_HD constexpr bool test(int i) const {
+    assert(i >= 0 && i < kBits);
+    return (word_ >> i & 1) != 0;
+  }
+  [[nodiscard]] RASTRUM_HD constexpr int rank() const { return popcount(word_); }
+  [[nodiscard]] RASTRUM_HD constexpr int rank(int i) const {
+    assert(i >= 0 && i <= kBits);
+    return i == kBits ? rank() : popcount(word_ & ((std::uint64_t{1} << i) - 1));
+  }
+  [[nodiscard]] RASTRUM_HD constexpr int select(int k) const {
+    assert(k >= 0 && k < rank());
+    return select_bit<kBits>(word_, k);
+  }
+
+ private:
+  Word word_ = 0;
+};
+
+}  // namespace rastrum::parallel

@@ -1,0 +1,79 @@
+// exclusive_scan: out[i] = in[0] op … op in[i − 1]; inclusive_scan: … op in[i].
+//
+// Associativity, and the one result where it holds only up to rounding, as in reduce: within a
+// block of kBlock elements the sums run from the block's first element, and the sum of all earlier
+// blocks is put before them.
+// Work O(n) (threads read the input twice), span O(kBlock + n / kBlock). Threads allocate one T per
+// block. Source: Blelloch, "Prefix sums and their applications", 1990; paper 5, appendix A.
+#pragma once
+
+#include <cassert>
+#include <cstddef>
+#include <functional>
+
+#include <rastrum/parallel/blocks.hpp>
+#include <rastrum/parallel/range.hpp>
+#include <rastrum/parallel/reduce.hpp>
+
+namespace rastrum::parallel {
+namespace scan_detail {
+
+/// Writes one block, `carry` being the sum before it; returns the sum behind it.
+template <bool kInclusive, class In, class Out, class T, class Op>
+T scan_block(const In& in, Out& out, std::size_t begin, std::size_t end, T carry, Op& op) {
+  T local = static_cast<T>(in[begin]);  // read before the write: `out` may be `in`
+  if constexpr (!kInclusive) out[begin] = carry;
+  if constexpr (kInclusive) out[begin] = static_cast<T>(op(carry, local));
+  for (std::size_t i = begin + 1; i < end; ++i) {
+    const T value = static_cast<T>(in[i]);
+    if constexpr (!kInclusive) out[i] = static_cast<T>(op(carry, local));
+    local = static_cast<T>(op(local, value));
+    if constexpr (kInclusive) out[i] = static_cast<T>(op(carry, local));
+  }
+  return static_cast<T>(op(carry, local));
+}
+
+template <bool kInclusive, class In, class Out, class T, class Op>
+T scan(Serial& exec, const In& in, Out& out, T carry, Op& op) {
+  for_each_block(exec, std::size(in), [&](std::size_t, std::size_t begin, std::size_t end) {
+    carry = scan_block<kInclusive>(in, out, begin, end, carry, op);
+  });
+  return carry;
+}
+
+template <bool kInclusive, class In, class Out, class T, class Op>
+T scan(Threads& exec, const In& in, Out& out, T carry, Op& op) {
+  const std::size_t n = std::size(in);
+  Buffer<T> before(block_count(n), carry);
+  for_each_block(exec, n, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    before[block] = fold_block<T>(in, begin, end, op);
+  });
+  for (T& b : before) {
+    const T sum = b;
+    b = carry;
+    carry = static_cast<T>(op(carry, sum));
+  }
+  for_each_block(exec, n, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    scan_block<kInclusive>(in, out, begin, end, before[block], op);
+  });
+  return carry;
+}
+
+}  // namespace scan_detail
+
+/// `initial` (as a rule the neutral element) is put before everything; returns the sum of all.
+/// Computes in the type of `initial`. `out` has the size of `in` and may be `in`.
+template <class Exec, Readable In, Writable Out, class T, class Op = std::plus<>>
+T exclusive_scan(Exec& exec, const In& in, Out&& out, T initial, Op op = {}) {
+  assert(std::size(in) == std::size(out));
+  return scan_detail::scan<false>(exec, in, out, initial, op);
+}
+
+/// The same, each sum with its own element.
+template <class Exec, Readable In, Writable Out, class T, class Op = std::plus<>>
+T inclusive_scan(Exec& exec, const In& in, Out&& out, T initial, Op op = {}) {
+  assert(std::size(in) == std::size(out));
+  return scan_detail::scan<true>(exec, in, out, initial, op);
+}
+
+}  // namespace rastrum::parallel

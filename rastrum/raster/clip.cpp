@@ -1,0 +1,119 @@
+#include <rastrum/raster/clip.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rastrum::raster {
+namespace {
+
+struct Corner {
+  Vec4d clip;
+  const ProjectedVertex* original;  ///< null: made by the clipper, or without a float32 position
+};
+
+struct Polygon {
+  int size = 0;
+  Corner corners[kMaxPolygon];
+};
+
+/// Signed distance to a plane, as a linear form of the homogeneous position; ≥ 0 is inside.
+struct Plane {
+  double x, y, z, w;
+  [[nodiscard]] double distance(const Corner& c) const {
+    const double d = x * c.clip.x + y * c.clip.y + z * c.clip.z + w * c.clip.w;
+    // float32 projection is the authority on which vertices are inside.
+    return c.original != nullptr ? std::max(d, 0.0) : d;
+  }
+};
+
+Corner between(const Corner& in, double d_in, const Corner& out, double d_out) {
+  const double t = d_in / (d_in - d_out);
+  const Vec4d &a = in.clip, &b = out.clip;
+  return {
+      {a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t, a.w + (b.w - a.w) * t},
+      nullptr};
+}
+
+void cut(Polygon& polygon, const Plane& plane) {
+  double d[kMaxPolygon];
+  bool any_outside = false;
+  for (int i = 0; i < polygon.size; ++i) {
+    d[i] = plane.distance(polygon.corners[i]);
+    any_outside |= d[i] < 0;
+  }
+  if (!any_outside) return;
+  Polygon kept;
+  for (int i = 0; i < polygon.size; ++i) {
+    const int j = i + 1 == polygon.size ? 0 : i + 1;
+    const Corner &a = polygon.corners[i], &b = polygon.corners[j];
+    if (d[i] >= 0) kept.corners[kept.size++] = a;
+    if (d[i] >= 0 && d[j] < 0) kept.corners[kept.size++] = between(a, d[i], b, d[j]);
+    if (d[i] < 0 && d[j] >= 0) kept.corners[kept.size++] = between(b, d[j], a, d[i]);
+  }
+  polygon = kept;
+}
+
+std::int32_t snap_in_guard_band(double px) {
+  const double clamped = std::clamp(px, double{kGuardMinPx}, double{kGuardMaxPx});
+  return static_cast<std::int32_t>(std::nearbyint(clamped * kSubpixels));
+}
+
+ProjectedVertex project_corner(const Corner& c, Viewport v) {
+  if (c.original != nullptr) return *c.original;
+  const double x = c.clip.x / c.clip.w * v.half_width + v.half_width;
+  const double y = v.half_height - c.clip.y / c.clip.w * v.half_height;
+  // Far beyond a finite far plane float32 depth may overflow; any depth ≤ 0 is drawn as 0.
+  const double depth = std::clamp(c.clip.z / c.clip.w, -1e30, 1.0);
+  return {snap_in_guard_band(x), snap_in_guard_band(y), static_cast<float>(depth), 0.0F};
+}
+
+}  // namespace
+
+ClippedPolygon clip_triangle(const Vec4d (&clip)[3], const ProjectedVertex (&projected)[3],
+                             Viewport viewport) noexcept {
+  Polygon polygon;
+  polygon.size = 3;
+  for (int i = 0; i < 3; ++i) {
+    const bool has_position = projected[i].x_fx8 != kNeedsClip;
+    polygon.corners[i] = {clip[i], has_position ? &projected[i] : nullptr};
+  }
+  const double hw = viewport.half_width;
+  const double hh = viewport.half_height;
+  // px · w = x · hw + w · hw and py · w = w · hh − y · hh where w > 0. Opposite guard planes add up
+  // to w · (max − min) ≥ 0, so they also remove what lies behind the eye of a caller's own
+  // projection.
+  const Plane planes[] = {
+      {0, 0, -1, 1},
+      {hw, 0, 0, hw - kGuardMinPx},
+      {-hw, 0, 0, kGuardMaxPx - hw},
+      {0, -hh, 0, hh - kGuardMinPx},
+      {0, hh, 0, kGuardMaxPx - hh},
+  };
+  for (const Plane& plane : planes) cut(polygon, plane);
+
+  ClippedPolygon result;
+  if (polygon.size < 3) return result;
+  for (int i = 0; i < polygon.size; ++i) {
+    if (!(polygon.corners[i].clip.w > 0)) return {};
+    result.vertices[i] = project_corner(polygon.corners[i], viewport);
+  }
+  result.size = polygon.size;
+  return result;
+}
+
+double orientation(const Vec4d (&c)[3]) noexcept {
+  // The determinant of the three (x, y, w): the volume of the triangle with the eye. Scaled to keep
+  // products of coordinates near FLT_MAX / 16 far from overflow.
+  double m[3][3];
+  for (int i = 0; i < 3; ++i) {
+    const double scale = std::max({std::abs(c[i].x), std::abs(c[i].y), std::abs(c[i].w), 1e-300});
+    m[i][0] = c[i].x / scale;
+    m[i][1] = c[i].y / scale;
+    m[i][2] = c[i].w / scale;
+  }
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+}
+
+}  // namespace rastrum::raster

@@ -1,0 +1,102 @@
+// What the pipeline draws: vertices from any source, triangles over them, and the two hooks of the
+// programmable stages (fragment test and shading), which see blocks, so that one virtual call
+// serves up to 64 fragments.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <rastrum/core/image.hpp>
+#include <rastrum/raster/clip.hpp>
+#include <rastrum/raster/options.hpp>
+#include <rastrum/raster/piece.hpp>
+#include <rastrum/raster/projection.hpp>
+
+namespace rastrum::raster {
+
+/// The vertex stage of a draw.
+class VertexSource {
+ public:
+  virtual ~VertexSource() = default;
+  /// Projects vertices [begin, end) into out[0 … end − begin).
+  virtual void project(std::size_t begin, std::size_t end, Viewport viewport, Isa isa,
+                       ProjectedVertex* out) const noexcept = 0;
+  /// Homogeneous position for the clipper; NaN where the vertex is not finite.
+  [[nodiscard]] virtual Vec4d clip_position(std::size_t vertex) const noexcept = 0;
+};
+
+/// Triangles over one vertex source. Ids count through the draws of a frame in order.
+struct Draw {
+  const VertexSource* source = nullptr;
+  std::size_t vertex_count = 0;
+  std::span<const std::uint32_t> indices;  ///< 3 per triangle; empty: vertices in order
+  std::uint64_t triangle_count = 0;
+  std::uint32_t flags = 0;  ///< of its pieces
+
+  // Filled by the pipeline.
+  std::uint64_t first_id = 0;
+  std::size_t first_vertex = 0;  ///< of this draw in FrameGeometry::projected
+
+  [[nodiscard]] std::uint32_t vertex(std::uint64_t triangle, int corner) const {
+    const std::size_t i = static_cast<std::size_t>(triangle) * 3 + static_cast<std::size_t>(corner);
+    return indices.empty() ? static_cast<std::uint32_t>(i) : indices[i];
+  }
+};
+
+/// The projected scene, for setup and again for shading.
+struct FrameGeometry {
+  int width = 0, height = 0;
+  Viewport viewport;
+  std::span<const Draw> draws;
+  const ProjectedVertex* projected = nullptr;
+
+  /// The draw that holds triangle `id`. O(log draws).
+  [[nodiscard]] const Draw& draw_of(std::uint64_t id) const {
+    std::size_t low = 0;
+    std::size_t high = draws.size();
+    while (high - low > 1) {
+      const std::size_t middle = (low + high) / 2;
+      (draws[middle].first_id <= id ? low : high) = middle;
+    }
+    return draws[low];
+  }
+};
+
+/// Decides which covered samples of a block survive, before the maximum. Thread-safe.
+class FragmentTest {
+ public:
+  virtual ~FragmentTest() = default;
+  /// The subset of `block.mask` that is kept.
+  [[nodiscard]] virtual std::uint64_t test(const FrameGeometry& frame, const Piece& piece,
+                                           const Block& block) const noexcept = 0;
+};
+
+/// Colours of a block, one plane a channel: bit / element 8 · row + column. Premultiplied.
+struct alignas(64) BlockColors {
+  float r[64], g[64], b[64], a[64];
+};
+
+/// Shades the visible surface of a block. Thread-safe.
+class BlockShader {
+ public:
+  virtual ~BlockShader() = default;
+  /// `words` holds the visibility words of the block whose first pixel is (x0, y0); colours of
+  /// pixels with word 0 or outside the image need not be set.
+  virtual void shade(const FrameGeometry& frame, const std::uint64_t (&words)[64], int x0, int y0,
+                     Isa isa, BlockColors& colors) const noexcept = 0;
+};
+
+/// One frame, as the façade hands it to a rasterizer.
+struct FrameRequest {
+  int width = 0, height = 0;
+  Cull cull = Cull::none;
+  Isa isa = Isa::scalar;
+  std::span<Draw> draws;
+  const FragmentTest* test = nullptr;   ///< null: no piece is tested
+  const BlockShader* shader = nullptr;  ///< may be null where no colour is asked for
+  Vec4 background{};                    ///< display values, straight alpha
+  Targets targets;
+};
+
+}  // namespace rastrum::raster

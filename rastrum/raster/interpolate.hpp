@@ -1,0 +1,160 @@
+// Perspective-correct interpolation: f = Σ bᵢ fᵢ / Σ bᵢ with weights bᵢ that are linear on the
+// screen. Computed in float64 from snapped positions, or, for a triangle that was clipped, from the
+// homogeneous positions of the original (Olano and Greer, "Triangle scan conversion using 2D
+// homogeneous coordinates", 1997), so that no attribute is ever clipped. The SIMD shaders have a
+// float32 form for triangles where that is as good.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <utility>
+
+#include <rastrum/raster/geometry.hpp>
+
+namespace rastrum::raster {
+
+/// bᵢ(x, y) = r[i] + p[i] (x − x0) + q[i] (y − y0), in px.
+struct WeightPlanes {
+  double x0 = 0, y0 = 0;
+  double p[3], q[3], r[3];
+};
+
+struct Weights {
+  double b[3];      ///< normalized, they add up to 1
+  double db_dx[3];  ///< change per px of the normalized weights
+  double db_dy[3];
+};
+
+inline WeightPlanes weight_planes(const FrameGeometry& frame, const Draw& draw,
+                                  std::uint64_t triangle) {
+  const ProjectedVertex* vertices = frame.projected + draw.first_vertex;
+  const std::uint32_t index[3] = {draw.vertex(triangle, 0), draw.vertex(triangle, 1),
+                                  draw.vertex(triangle, 2)};
+  const ProjectedVertex &v0 = vertices[index[0]], &v1 = vertices[index[1]],
+                        &v2 = vertices[index[2]];
+  WeightPlanes w;
+  if (v0.x_fx8 != kNeedsClip && v1.x_fx8 != kNeedsClip && v2.x_fx8 != kNeedsClip) {
+    constexpr double kPx = 1.0 / kSubpixels;
+    const double e1x = (v1.x_fx8 - v0.x_fx8) * kPx, e1y = (v1.y_fx8 - v0.y_fx8) * kPx;
+    const double e2x = (v2.x_fx8 - v0.x_fx8) * kPx, e2y = (v2.y_fx8 - v0.y_fx8) * kPx;
+    const double inv_det = 1 / (e1x * e2y - e2x * e1y);
+    w.x0 = v0.x_fx8 * kPx;
+    w.y0 = v0.y_fx8 * kPx;
+    const double p1 = e2y * inv_det, q1 = -e2x * inv_det;
+    const double p2 = -e1y * inv_det, q2 = e1x * inv_det;
+    w.r[0] = v0.inv_w;
+    w.p[0] = -(p1 + p2) * v0.inv_w;
+    w.q[0] = -(q1 + q2) * v0.inv_w;
+    w.r[1] = w.r[2] = 0;
+    w.p[1] = p1 * v1.inv_w;
+    w.q[1] = q1 * v1.inv_w;
+    w.p[2] = p2 * v2.inv_w;
+    w.q[2] = q2 * v2.inv_w;
+    return w;
+  }
+  Vec4d c[3];
+  for (int i = 0; i < 3; ++i) c[i] = draw.source->clip_position(index[i]);
+  const double hw = frame.viewport.half_width;
+  const double hh = frame.viewport.half_height;
+  for (int i = 0; i < 3; ++i) {
+    const Vec4d &a = c[(i + 1) % 3], &b = c[(i + 2) % 3];
+    // The edge opposite of vertex i as a function of NDC (X, Y, 1); X = x / hw − 1, Y = 1 − y / hh.
+    const double ex = a.y * b.w - a.w * b.y;
+    const double ey = a.w * b.x - a.x * b.w;
+    const double ew = a.x * b.y - a.y * b.x;
+    w.p[i] = ex / hw;
+    w.q[i] = -ey / hh;
+    w.r[i] = -ex + ey + ew;
+  }
+  return w;
+}
+
+/// At the sample of pixel (x, y).
+inline Weights weights_at(const WeightPlanes& w, int x, int y) {
+  const double dx = x + 0.5 - w.x0;
+  const double dy = y + 0.5 - w.y0;
+  Weights result;
+  double sum = 0, sum_dx = 0, sum_dy = 0;
+  for (int i = 0; i < 3; ++i) {
+    result.b[i] = w.r[i] + w.p[i] * dx + w.q[i] * dy;
+    sum += result.b[i];
+    sum_dx += w.p[i];
+    sum_dy += w.q[i];
+  }
+  for (int i = 0; i < 3; ++i) {
+    result.b[i] /= sum;
+    result.db_dx[i] = (w.p[i] - result.b[i] * sum_dx) / sum;
+    result.db_dy[i] = (w.q[i] - result.b[i] * sum_dy) / sum;
+  }
+  return result;
+}
+
+/// What a scalar shader knows about a fragment.
+struct Fragment {
+  int x = 0, y = 0;
+  float depth = 0;
+  std::uint64_t id = 0;        ///< triangle in submission order
+  std::uint64_t triangle = 0;  ///< within its draw
+  std::size_t draw = 0;        ///< index into FrameGeometry::draws
+  std::uint32_t vertex[3] = {};
+  Weights weights;
+  const WeightPlanes* planes = nullptr;
+};
+
+/// Finds triangles and their weights for fragment after fragment; neighbours mostly share a
+/// triangle, whose planes are then kept.
+class FragmentLocator {
+ public:
+  explicit FragmentLocator(const FrameGeometry& frame) : frame_(frame) {}
+
+  /// The fragment of triangle `id` at pixel (x, y). Valid until the next call.
+  const Fragment& locate(std::uint64_t id, int x, int y) {
+    if (id != fragment_.id || fragment_.planes == nullptr) {
+      const Draw& draw = frame_.draw_of(id);
+      fragment_.id = id;
+      fragment_.triangle = id - draw.first_id;
+      fragment_.draw = static_cast<std::size_t>(&draw - frame_.draws.data());
+      for (int c = 0; c < 3; ++c) fragment_.vertex[c] = draw.vertex(fragment_.triangle, c);
+      planes_ = weight_planes(frame_, draw, fragment_.triangle);
+      fragment_.planes = &planes_;
+    }
+    fragment_.x = x;
+    fragment_.y = y;
+    fragment_.weights = weights_at(planes_, x, y);
+    return fragment_;
+  }
+
+ private:
+  const FrameGeometry& frame_;
+  Fragment fragment_;
+  WeightPlanes planes_;
+};
+
+/// A BlockShader from a function Vec4(const FrameGeometry&, const Fragment&) that returns the
+/// premultiplied colour of one fragment.
+template <class F>
+class FragmentShader final : public BlockShader {
+ public:
+  explicit FragmentShader(F f) : f_(std::move(f)) {}
+
+  void shade(const FrameGeometry& frame, const std::uint64_t (&words)[64], int x0, int y0, Isa,
+             BlockColors& colors) const noexcept override {
+    FragmentLocator locator(frame);
+    for (int i = 0; i < 64; ++i) {
+      if (words[i] == 0) continue;
+      Fragment fragment =
+          locator.locate(id_of_word(words[i]), x0 + i % kBlockSize, y0 + i / kBlockSize);
+      fragment.depth = std::bit_cast<float>(static_cast<std::uint32_t>(words[i] >> kIdBits));
+      const Vec4 c = f_(frame, fragment);
+      colors.r[i] = c.x;
+      colors.g[i] = c.y;
+      colors.b[i] = c.z;
+      colors.a[i] = c.w;
+    }
+  }
+
+ private:
+  F f_;
+};
+
+}  // namespace rastrum::raster

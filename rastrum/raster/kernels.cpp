@@ -1,0 +1,87 @@
+#include <rastrum/raster/kernels.hpp>
+
+#include <bit>
+
+#include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/kernels_simd.hpp>
+#include <rastrum/raster/setup.hpp>
+
+namespace rastrum::raster {
+namespace {
+
+void project_scalar(const Vec3* positions, std::size_t n, const Mat4& m, Viewport viewport,
+                    ProjectedVertex* out) noexcept {
+  for (std::size_t i = 0; i < n; ++i) out[i] = project(transform_point(m, positions[i]), viewport);
+}
+
+SetupOutput setup_scalar(const SetupInput& in, Piece* pieces, std::uint32_t* slow) noexcept {
+  SetupOutput out;
+  for (std::uint32_t i = 0; i < in.count; ++i) {
+    const std::uint64_t t = in.first + i;
+    ProjectedVertex v[3];
+    bool needs_clip = false;
+    for (std::uint64_t c = 0; c < 3; ++c) {
+      const std::uint64_t index = in.indices != nullptr ? in.indices[t * 3 + c] : t * 3 + c;
+      if (index >= in.vertex_count) {
+        out.index_in_range = false;
+        return out;
+      }
+      v[c] = in.vertices[index];
+      needs_clip |= v[c].x_fx8 == kNeedsClip;
+    }
+    if (needs_clip) {
+      slow[out.slow++] = i;
+    } else if (make_piece(v[0], v[1], v[2], in.first_id + t, in.flags, in.cull, in.view,
+                          pieces[out.pieces]) == SetupResult::drawn) {
+      ++out.pieces;
+    }
+  }
+  return out;
+}
+
+std::size_t cover_scalar(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
+                         std::size_t capacity) noexcept {
+  std::size_t n = 0;
+  for (; cursor < in.count && n + kBlocksPerBin <= capacity; ++cursor) {
+    const std::uint32_t index = in.list[cursor];
+    const Piece& piece = in.pieces[index];
+    const Rect box = sample_bounds(piece.x, piece.y, bin);
+    if (box.empty()) continue;
+    for (int by = box.y0 / kBlockSize; by <= (box.y1 - 1) / kBlockSize; ++by)
+      for (int bx = box.x0 / kBlockSize; bx <= (box.x1 - 1) / kBlockSize; ++bx) {
+        const std::uint64_t mask = cover_8x8(piece, bx, by);
+        if (mask != 0)
+          out[n++] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
+      }
+  }
+  return n;
+}
+
+void maximum_scalar(const Piece* pieces, const Block* blocks, std::size_t n, Rect bin,
+                    std::uint64_t* words) noexcept {
+  for (std::size_t i = 0; i < n; ++i) {
+    const Block& b = blocks[i];
+    const Piece& piece = pieces[b.piece];
+    const int column = b.bx - bin.x0 / kBlockSize;
+    const int row = b.by - bin.y0 / kBlockSize;
+    std::uint64_t* block = words + (row * kBlocksPerBinRow + column) * 64;
+    for (std::uint64_t m = b.mask; m != 0; m &= m - 1) {
+      const int bit = std::countr_zero(m);
+      const int x = b.bx * kBlockSize + bit % kBlockSize;
+      const int y = b.by * kBlockSize + bit / kBlockSize;
+      const std::uint64_t word = make_word(depth_at(piece, x, y), piece.low);
+      block[bit] = word > block[bit] ? word : block[bit];
+    }
+  }
+}
+
+constexpr Kernels kScalar{project_scalar, setup_scalar, cover_scalar, maximum_scalar};
+
+}  // namespace
+
+const Kernels& kernels(Isa isa) noexcept {
+  const Kernels* simd = isa == Isa::scalar ? nullptr : simd_kernels(isa);
+  return simd != nullptr ? *simd : kScalar;
+}
+
+}  // namespace rastrum::raster

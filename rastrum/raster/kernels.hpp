@@ -1,0 +1,72 @@
+// The SIMD leaves of the pipeline: one table of functions per instruction set, chosen once per
+// frame. `Isa::scalar` is the plain C++ of the headers (projection, setup, coverage); every other
+// entry comes from one Highway source and gives the same bits.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <rastrum/core/mat.hpp>
+#include <rastrum/raster/options.hpp>
+#include <rastrum/raster/piece.hpp>
+#include <rastrum/raster/projection.hpp>
+
+namespace rastrum::raster {
+
+/// Triangles [first, first + count) of a draw.
+struct SetupInput {
+  const std::uint32_t* indices = nullptr;  ///< of the draw; null: vertices in order
+  const ProjectedVertex* vertices = nullptr;
+  std::size_t vertex_count = 0;
+  std::uint64_t first = 0;
+  std::uint32_t count = 0;
+  std::uint64_t first_id = 0;  ///< id of triangle 0 of the draw
+  std::uint32_t flags = 0;
+  Cull cull = Cull::none;
+  Rect view;
+};
+
+/// At most this many triangles a call; callers provide that many pieces and slow entries.
+inline constexpr std::uint32_t kSetupBatch = 256;
+
+struct SetupOutput {
+  std::uint32_t pieces = 0;    ///< written
+  std::uint32_t slow = 0;      ///< triangles left to the clipper, as offsets from `first`
+  bool index_in_range = true;  ///< false: the batch was abandoned
+};
+
+/// The pieces of a bin, by their positions in `pieces`.
+struct PieceList {
+  const Piece* pieces = nullptr;
+  const std::uint32_t* list = nullptr;
+  std::size_t count = 0;
+};
+
+/// Bins own their words: 8 × 8 blocks in rows, 64 words each.
+inline constexpr int kBinSize = 64;
+inline constexpr int kBlocksPerBinRow = kBinSize / kBlockSize;
+inline constexpr int kBlocksPerBin = kBlocksPerBinRow * kBlocksPerBinRow;
+
+struct Kernels {
+  /// n positions through the matrix, the divide, the viewport and the snapping.
+  void (*project)(const Vec3* positions, std::size_t n, const Mat4& object_to_clip,
+                  Viewport viewport, ProjectedVertex* out) noexcept;
+
+  /// Culls and sets up a batch.
+  SetupOutput (*setup)(const SetupInput& input, Piece* pieces, std::uint32_t* slow) noexcept;
+
+  /// Writes the blocks of `bin` that pieces list[cursor …] cover, with their masks (none empty),
+  /// until the list ends or fewer than kBlocksPerBin places are left; returns how many, moves the
+  /// cursor.
+  std::size_t (*cover)(const PieceList& pieces, std::size_t& cursor, Rect bin, Block* out,
+                       std::size_t capacity) noexcept;
+
+  /// The atomic sink on words that the caller owns: maximum at every covered sample.
+  void (*maximum)(const Piece* pieces, const Block* blocks, std::size_t n, Rect bin,
+                  std::uint64_t* words) noexcept;
+};
+
+/// The best table at or below `isa` that was compiled for this architecture.
+[[nodiscard]] const Kernels& kernels(Isa isa) noexcept;
+
+}  // namespace rastrum::raster

@@ -1,0 +1,503 @@
+// The pipeline's kernels with Highway, compiled once per instruction set. Each repeats the
+// operations of its scalar twin (kernels.cpp and the headers it uses) in the same order, so it
+// gives the same bits. Vectors have 4 or 8 lanes: a row of a block is 8 samples.
+
+// SSSE3 adds nothing over the scalar build that SSE4 does not; AVX3_DL nothing that these kernels
+// use.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "rastrum/raster/kernels_simd.cpp"
+#include <hwy/foreach_target.h>  // must precede highway.h
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+
+#include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/kernels_simd.hpp>
+
+// The scalar kernels stand in for Highway's baseline target.
+#if HWY_TARGET != HWY_SCALAR
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F32 = hn::CappedTag<float, 8>;
+using I32 = hn::RebindToSigned<F32>;
+using U32 = hn::RebindToUnsigned<F32>;
+using F64 = hn::CappedTag<double, 4>;
+using I64 = hn::CappedTag<std::int64_t, 4>;
+using F = hn::Vec<F32>;
+using I = hn::Vec<I32>;
+using D = hn::Vec<F64>;
+constexpr std::size_t kLanes = hn::MaxLanes(F32{});
+constexpr std::size_t kLanes64 = hn::MaxLanes(F64{});
+constexpr std::size_t kHalves = kLanes / kLanes64;
+
+// ---------------------------------------------------------------------------------------- project
+
+HWY_INLINE F row_times(const float (&m)[4], F x, F y, F z) {
+  const F32 d;
+  const F xy = hn::Add(hn::Mul(hn::Set(d, m[0]), x), hn::Mul(hn::Set(d, m[1]), y));
+  return hn::Add(hn::Add(xy, hn::Mul(hn::Set(d, m[2]), z)), hn::Set(d, m[3]));
+}
+
+HWY_INLINE void project_lanes(F x, F y, F z, const Mat4& m, Viewport viewport,
+                              ProjectedVertex* out) {
+  const F32 d;
+  const I32 di;
+  const F cx = row_times(m.m[0], x, y, z);
+  const F cy = row_times(m.m[1], x, y, z);
+  const F cz = row_times(m.m[2], x, y, z);
+  const F cw = row_times(m.m[3], x, y, z);
+  const F inv_w = hn::Div(hn::Set(d, 1.0F), cw);
+  const F hw = hn::Set(d, viewport.half_width);
+  const F hh = hn::Set(d, viewport.half_height);
+  const F px = hn::Add(hn::Mul(hn::Mul(cx, inv_w), hw), hw);
+  const F py = hn::Sub(hh, hn::Mul(hn::Mul(cy, inv_w), hh));
+  const F depth = hn::Mul(cz, inv_w);
+  const F low = hn::Set(d, kGuardMinPx);
+  const F high = hn::Set(d, kGuardMaxPx);
+  auto ok = hn::And(hn::Gt(cw, hn::Zero(d)), hn::Le(cz, cw));
+  ok = hn::And(ok, hn::And(hn::Ge(px, low), hn::Le(px, high)));
+  ok = hn::And(ok, hn::And(hn::Ge(py, low), hn::Le(py, high)));
+  ok = hn::And(ok, hn::Ge(depth, hn::Set(d, std::numeric_limits<float>::lowest())));
+  const F scale = hn::Set(d, static_cast<float>(kSubpixels));
+  const F zero = hn::Zero(d);
+  const I x8 = hn::NearestInt(hn::Mul(hn::IfThenElse(ok, px, zero), scale));
+  const I y8 = hn::NearestInt(hn::Mul(hn::IfThenElse(ok, py, zero), scale));
+  const auto oki = hn::RebindMask(di, ok);
+  hn::StoreInterleaved4(hn::IfThenElse(oki, x8, hn::Set(di, kNeedsClip)), y8,
+                        hn::BitCast(di, hn::IfThenElseZero(ok, depth)),
+                        hn::BitCast(di, hn::IfThenElseZero(ok, inv_w)), di,
+                        reinterpret_cast<std::int32_t*>(out));
+}
+
+void project(const Vec3* positions, std::size_t n, const Mat4& m, Viewport viewport,
+             ProjectedVertex* out) noexcept {
+  const F32 d;
+  F x, y, z;
+  std::size_t i = 0;
+  for (; i + kLanes <= n; i += kLanes) {
+    hn::LoadInterleaved3(d, &positions[i].x, x, y, z);
+    project_lanes(x, y, z, m, viewport, out + i);
+  }
+  if (i == n) return;
+  Vec3 rest[kLanes] = {};
+  ProjectedVertex projected[kLanes];
+  std::copy_n(positions + i, n - i, rest);
+  hn::LoadInterleaved3(d, &rest[0].x, x, y, z);
+  project_lanes(x, y, z, m, viewport, projected);
+  std::copy_n(projected, n - i, out + i);
+}
+
+// ------------------------------------------------------------------------------------------ setup
+
+/// Corner vertices of kLanes triangles, transposed.
+struct Corners {
+  I x, y;
+  F depth;
+};
+
+using I128 = hn::Full128<std::int32_t>;
+
+/// (x, y, depth, ·) of four vertices as three vectors of four.
+HWY_INLINE void transpose4(const ProjectedVertex* v, const std::uint32_t* index, hn::Vec<I128>& x,
+                           hn::Vec<I128>& y, hn::Vec<I128>& depth) {
+  const I128 d;
+  const hn::Repartition<std::int64_t, I128> d64;
+  const auto load = [&](int lane) HWY_ATTR {
+    return hn::LoadU(d, reinterpret_cast<const std::int32_t*>(v + index[lane]));
+  };
+  const auto v0 = load(0), v1 = load(1), v2 = load(2), v3 = load(3);
+  const auto xy01 = hn::BitCast(d64, hn::InterleaveLower(d, v0, v1));
+  const auto xy23 = hn::BitCast(d64, hn::InterleaveLower(d, v2, v3));
+  const auto zw01 = hn::BitCast(d64, hn::InterleaveUpper(d, v0, v1));
+  const auto zw23 = hn::BitCast(d64, hn::InterleaveUpper(d, v2, v3));
+  x = hn::BitCast(d, hn::InterleaveLower(d64, xy01, xy23));
+  y = hn::BitCast(d, hn::InterleaveUpper(d64, xy01, xy23));
+  depth = hn::BitCast(d, hn::InterleaveLower(d64, zw01, zw23));
+}
+
+HWY_INLINE Corners load_corners(const ProjectedVertex* v, const std::uint32_t* index) {
+  const F32 d;
+  hn::Vec<I128> x, y, depth;
+  transpose4(v, index, x, y, depth);
+#if HWY_MAX_BYTES >= 32
+  const I32 di;
+  hn::Vec<I128> x1, y1, depth1;
+  transpose4(v, index + 4, x1, y1, depth1);
+  return {hn::Combine(di, x1, x), hn::Combine(di, y1, y),
+          hn::BitCast(d, hn::Combine(di, depth1, depth))};
+#else
+  return {x, y, hn::BitCast(d, depth)};
+#endif
+}
+
+HWY_INLINE D half_to_double(I v, std::size_t half) {
+  const F64 d;
+#if HWY_MAX_BYTES >= 32
+  const hn::Half<I32> dh;
+  return hn::PromoteTo(d, half == 0 ? hn::LowerHalf(dh, v) : hn::UpperHalf(dh, v));
+#else
+  const hn::Half<I32> dh;
+  return hn::PromoteTo(
+      d, half == 0 ? hn::LowerHalf(dh, v) : hn::LowerHalf(dh, hn::ConcatUpperUpper(I32{}, v, v)));
+#endif
+}
+
+HWY_INLINE D half_to_double(F v, std::size_t half) {
+  const F64 d;
+  const hn::Half<F32> dh;
+#if HWY_MAX_BYTES >= 32
+  return hn::PromoteTo(d, half == 0 ? hn::LowerHalf(dh, v) : hn::UpperHalf(dh, v));
+#else
+  return hn::PromoteTo(
+      d, half == 0 ? hn::LowerHalf(dh, v) : hn::LowerHalf(dh, hn::ConcatUpperUpper(F32{}, v, v)));
+#endif
+}
+
+/// The indices of kLanes triangles by corner, and whether all are in range.
+HWY_INLINE bool load_indices(const SetupInput& in, std::uint32_t offset,
+                             std::uint32_t (&index)[3][kLanes]) {
+  const U32 d;
+  const std::uint64_t t = in.first + offset;
+  if (in.indices == nullptr) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      for (std::size_t c = 0; c < 3; ++c)
+        index[c][lane] = static_cast<std::uint32_t>((t + lane) * 3 + c);
+    return (t + kLanes) * 3 <= in.vertex_count;
+  }
+  hn::Vec<U32> i0, i1, i2;
+  hn::LoadInterleaved3(d, in.indices + t * 3, i0, i1, i2);
+  hn::StoreU(i0, d, index[0]);
+  hn::StoreU(i1, d, index[1]);
+  hn::StoreU(i2, d, index[2]);
+  const auto largest = hn::Max(i0, hn::Max(i1, i2));
+  const auto last = hn::Set(
+      d, static_cast<std::uint32_t>(std::min<std::size_t>(in.vertex_count - 1, 0xffffffffU)));
+  return hn::AllTrue(d, hn::Eq(hn::Max(largest, last), last));
+}
+
+/// Which of kLanes triangles may cover a sample (bit by lane), and which need the clipper.
+HWY_INLINE std::uint32_t classify(const Corners& a, const Corners& b, const Corners& c,
+                                  const SetupInput& in, std::uint32_t& slow) {
+  const I32 d;
+  const I needs_clip = hn::Set(d, kNeedsClip);
+  const auto clip =
+      hn::Or(hn::Eq(a.x, needs_clip), hn::Or(hn::Eq(b.x, needs_clip), hn::Eq(c.x, needs_clip)));
+  const I before = hn::Set(d, kHalfPixel - 1);
+  const I half = hn::Set(d, kHalfPixel);
+  const I x0 = hn::ShiftRight<kSubpixelBits>(hn::Add(hn::Min(a.x, hn::Min(b.x, c.x)), before));
+  const I y0 = hn::ShiftRight<kSubpixelBits>(hn::Add(hn::Min(a.y, hn::Min(b.y, c.y)), before));
+  const I x1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(hn::Max(a.x, hn::Max(b.x, c.x)), half));
+  const I y1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(hn::Max(a.y, hn::Max(b.y, c.y)), half));
+  // First and last sample, cut to the view; inclusive.
+  const I bx0 = hn::Max(x0, hn::Set(d, in.view.x0));
+  const I by0 = hn::Max(y0, hn::Set(d, in.view.y0));
+  const I bx1 = hn::Min(x1, hn::Set(d, in.view.x1 - 1));
+  const I by1 = hn::Min(y1, hn::Set(d, in.view.y1 - 1));
+  const auto empty = hn::Or(hn::Gt(bx0, bx1), hn::Gt(by0, by1));
+  std::uint8_t clip_bits = 0, empty_bits = 0;
+  hn::StoreMaskBits(d, clip, &clip_bits);
+  hn::StoreMaskBits(d, empty, &empty_bits);
+  constexpr std::uint32_t kAll = (1U << kLanes) - 1;
+  slow = clip_bits & kAll;
+  std::uint32_t alive = kAll & ~(static_cast<std::uint32_t>(empty_bits) | clip_bits);
+  if (alive == 0) return 0;
+
+  // Twice the area, exact in float64: differences have 25 bits, products 50.
+  const I dx1 = hn::Sub(b.x, a.x), dy1 = hn::Sub(b.y, a.y);
+  const I dx2 = hn::Sub(c.x, a.x), dy2 = hn::Sub(c.y, a.y);
+  std::uint32_t culled = 0;
+  for (std::size_t h = 0; h < kHalves; ++h) {
+    const F64 dd;
+    const D area = hn::Sub(hn::Mul(half_to_double(dx1, h), half_to_double(dy2, h)),
+                           hn::Mul(half_to_double(dx2, h), half_to_double(dy1, h)));
+    const D zero = hn::Zero(dd);
+    auto out = hn::Eq(area, zero);
+    if (in.cull == Cull::back) out = hn::Or(out, hn::Gt(area, zero));
+    if (in.cull == Cull::front) out = hn::Or(out, hn::Lt(area, zero));
+    std::uint8_t bits = 0;
+    hn::StoreMaskBits(dd, out, &bits);
+    culled |= (bits & ((1U << kLanes64) - 1)) << (h * kLanes64);
+  }
+  return alive & ~culled;
+}
+
+/// Sets up `n` ≤ kLanes surviving triangles.
+HWY_INLINE void make_pieces(const SetupInput& in, const std::uint32_t (&index)[3][kLanes],
+                            const std::uint32_t* triangle, std::uint32_t n, Piece* out) {
+  const F32 df;
+  const I32 di;
+  const Corners a = load_corners(in.vertices, index[0]);
+  const Corners b = load_corners(in.vertices, index[1]);
+  const Corners c = load_corners(in.vertices, index[2]);
+  const I dx1 = hn::Sub(b.x, a.x), dy1 = hn::Sub(b.y, a.y);
+  const I dx2 = hn::Sub(c.x, a.x), dy2 = hn::Sub(c.y, a.y);
+  HWY_ALIGN float zx[kLanes], zy[kLanes], sign[kLanes];
+  for (std::size_t h = 0; h < kHalves; ++h) {
+    const F64 dd;
+    const hn::Half<F32> dh;
+    const D x1 = half_to_double(dx1, h), y1 = half_to_double(dy1, h);
+    const D x2 = half_to_double(dx2, h), y2 = half_to_double(dy2, h);
+    const D z0 = half_to_double(a.depth, h);
+    const D z1 = hn::Sub(half_to_double(b.depth, h), z0);
+    const D z2 = hn::Sub(half_to_double(c.depth, h), z0);
+    const D det = hn::Sub(hn::Mul(x1, y2), hn::Mul(x2, y1));
+    const D scale = hn::Set(dd, static_cast<double>(kSubpixels));
+    const D gx = hn::Mul(hn::Div(hn::Sub(hn::Mul(z1, y2), hn::Mul(z2, y1)), det), scale);
+    const D gy = hn::Mul(hn::Div(hn::Sub(hn::Mul(z2, x1), hn::Mul(z1, x2)), det), scale);
+    hn::StoreU(hn::DemoteTo(dh, gx), dh, zx + h * kLanes64);
+    hn::StoreU(hn::DemoteTo(dh, gy), dh, zy + h * kLanes64);
+    hn::StoreU(hn::DemoteTo(dh, det), dh, sign + h * kLanes64);
+  }
+  // |det| ≥ 1, so its sign survives the rounding to float32.
+  const auto keep = hn::RebindMask(di, hn::Gt(hn::LoadU(df, sign), hn::Zero(df)));
+  const I sx = hn::IfThenElse(keep, b.x, c.x), sy = hn::IfThenElse(keep, b.y, c.y);
+  const I tx = hn::IfThenElse(keep, c.x, b.x), ty = hn::IfThenElse(keep, c.y, b.y);
+  HWY_ALIGN std::int32_t first[kLanes * 4], second[kLanes * 4];
+  hn::StoreInterleaved4(a.x, sx, tx, a.y, di, first);
+  hn::StoreInterleaved4(sy, ty, hn::BitCast(di, a.depth), hn::BitCast(di, hn::LoadU(df, zx)), di,
+                        second);
+  const I128 d128;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    auto* piece = reinterpret_cast<std::int32_t*>(out + i);
+    hn::Store(hn::Load(d128, first + i * 4), d128, piece);
+    hn::Store(hn::Load(d128, second + i * 4), d128, piece + 4);
+    out[i].zy = zy[i];
+    out[i].flags = in.flags;
+    out[i].low = kIdMask - (in.first_id + in.first + triangle[i]);
+  }
+}
+
+SetupOutput setup(const SetupInput& in, Piece* pieces, std::uint32_t* slow) noexcept {
+  SetupOutput result;
+  // Survivors wait here until there are kLanes of them: a third of a closed mesh survives.
+  std::uint32_t waiting[3][2 * kLanes];
+  std::uint32_t waiting_triangle[2 * kLanes];
+  std::uint32_t waiting_count = 0;
+  std::uint32_t index[3][kLanes];
+  const auto flush = [&](std::uint32_t n) HWY_ATTR {
+    std::uint32_t batch[3][kLanes];
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < kLanes; ++i) batch[c][i] = waiting[c][i < n ? i : 0];
+    make_pieces(in, batch, waiting_triangle, n, pieces + result.pieces);
+    result.pieces += n;
+    waiting_count -= n;
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < kLanes; ++i) waiting[c][i] = waiting[c][i + n];
+    for (std::size_t i = 0; i < kLanes; ++i) waiting_triangle[i] = waiting_triangle[i + n];
+  };
+  std::uint32_t i = 0;
+  for (; i + kLanes <= in.count; i += kLanes) {
+    if (!load_indices(in, i, index)) {
+      result.index_in_range = false;
+      return result;
+    }
+    const Corners a = load_corners(in.vertices, index[0]);
+    const Corners b = load_corners(in.vertices, index[1]);
+    const Corners c = load_corners(in.vertices, index[2]);
+    std::uint32_t clip = 0;
+    std::uint32_t alive = classify(a, b, c, in, clip);
+    for (; clip != 0; clip &= clip - 1)
+      slow[result.slow++] = i + static_cast<std::uint32_t>(std::countr_zero(clip));
+    for (; alive != 0; alive &= alive - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(alive));
+      for (std::size_t corner = 0; corner < 3; ++corner)
+        waiting[corner][waiting_count] = index[corner][lane];
+      waiting_triangle[waiting_count++] = i + lane;
+    }
+    if (waiting_count >= kLanes) flush(kLanes);
+  }
+  if (waiting_count != 0) flush(waiting_count);
+  if (i == in.count) return result;
+  // The last few triangles of a draw take the scalar way, which is the same arithmetic.
+  SetupInput rest = in;
+  rest.first += i;
+  rest.count -= i;
+  const SetupOutput tail =
+      kernels(Isa::scalar).setup(rest, pieces + result.pieces, slow + result.slow);
+  for (std::uint32_t s = 0; s < tail.slow; ++s) slow[result.slow + s] += i;
+  result.pieces += tail.pieces;
+  result.slow += tail.slow;
+  result.index_in_range = tail.index_in_range;
+  return result;
+}
+
+// ------------------------------------------------------------------------------------------ cover
+
+/// cover_8x8 from the three edges' values at the block's first sample, clamped to int32.
+HWY_INLINE std::uint64_t cover_block(const std::int32_t (&base)[3], const I (&steps)[3][8 / kLanes],
+                                     const std::int32_t (&b)[3]) {
+  const I32 d;
+  std::uint64_t mask = 0;
+  for (std::size_t part = 0; part < 8 / kLanes; ++part) {
+    I e0 = hn::Add(hn::Set(d, base[0]), steps[0][part]);
+    I e1 = hn::Add(hn::Set(d, base[1]), steps[1][part]);
+    I e2 = hn::Add(hn::Set(d, base[2]), steps[2][part]);
+    const I b0 = hn::Set(d, b[0]), b1 = hn::Set(d, b[1]), b2 = hn::Set(d, b[2]);
+    for (std::size_t row = 0; row < 8; ++row) {
+      // A negative value of any edge sets the sign bit: outside.
+      const I any = hn::Or(hn::Or(e0, e1), e2);
+      std::uint8_t outside = 0;
+      hn::StoreMaskBits(d, hn::Lt(any, hn::Zero(d)), &outside);
+      const std::uint64_t inside = static_cast<std::uint64_t>(~outside) & ((1U << kLanes) - 1);
+      mask |= inside << (row * 8 + part * kLanes);
+      e0 = hn::Add(e0, b0);
+      e1 = hn::Add(e1, b1);
+      e2 = hn::Add(e2, b2);
+    }
+  }
+  return mask;
+}
+
+std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
+                  std::size_t capacity) noexcept {
+  constexpr std::int64_t kClamp = std::int64_t{1} << 30;
+  const I32 d;
+  std::size_t n = 0;
+  for (; cursor < in.count && n + kBlocksPerBin <= capacity; ++cursor) {
+    if (cursor + 6 < in.count) __builtin_prefetch(in.pieces + in.list[cursor + 6]);
+    const std::uint32_t index = in.list[cursor];
+    const Piece& piece = in.pieces[index];
+    const Rect box = sample_bounds(piece.x, piece.y, bin);
+    if (box.empty()) continue;
+    const int bx0 = box.x0 / kBlockSize, by0 = box.y0 / kBlockSize;
+    const int bx1 = (box.x1 - 1) / kBlockSize, by1 = (box.y1 - 1) / kBlockSize;
+    std::int32_t b[3];
+    std::int64_t row_base[3], block_dx[3], block_dy[3], reach[3];
+    I steps[3][8 / kLanes];
+    for (int i = 0; i < 3; ++i) {
+      const Edge e = edge_function(piece, i);
+      b[i] = e.b;
+      row_base[i] =
+          e.base + std::int64_t{e.a} * (bx0 * kBlockSize) + std::int64_t{e.b} * (by0 * kBlockSize);
+      block_dx[i] = std::int64_t{e.a} * kBlockSize;
+      block_dy[i] = std::int64_t{e.b} * kBlockSize;
+      // The largest value in a block, relative to its first sample: below 0 there, no sample is in.
+      reach[i] = 7 * (std::int64_t{std::max(e.a, 0)} + std::max(e.b, 0));
+      for (std::size_t part = 0; part < 8 / kLanes; ++part)
+        steps[i][part] =
+            hn::Mul(hn::Set(d, e.a), hn::Iota(d, static_cast<std::int32_t>(part * kLanes)));
+    }
+    for (int by = by0; by <= by1; ++by) {
+      std::int64_t base[3] = {row_base[0], row_base[1], row_base[2]};
+      for (int bx = bx0; bx <= bx1; ++bx) {
+        if (base[0] + reach[0] >= 0 && base[1] + reach[1] >= 0 && base[2] + reach[2] >= 0) {
+          const std::int32_t clamped[3] = {
+              static_cast<std::int32_t>(std::clamp(base[0], -kClamp, kClamp)),
+              static_cast<std::int32_t>(std::clamp(base[1], -kClamp, kClamp)),
+              static_cast<std::int32_t>(std::clamp(base[2], -kClamp, kClamp))};
+          const std::uint64_t mask = cover_block(clamped, steps, b);
+          out[n] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
+          n += mask != 0;
+        }
+        for (int i = 0; i < 3; ++i) base[i] += block_dx[i];
+      }
+      for (int i = 0; i < 3; ++i) row_base[i] += block_dy[i];
+    }
+  }
+  return n;
+}
+
+// ---------------------------------------------------------------------------------------- maximum
+
+HWY_INLINE void maximum_row(F depth, std::uint64_t row_bits, std::uint64_t low, std::size_t part,
+                            std::uint64_t* words) {
+  const F32 df;
+  const U32 du;
+  const I64 d64;
+  const hn::RebindToUnsigned<I64> du64;
+  const hn::Half<U32> dh;
+  depth = hn::Min(hn::IfThenElseZero(hn::Gt(depth, hn::Zero(df)), depth), hn::Set(df, 1.0F));
+  const auto bits = hn::BitCast(du, depth);
+  for (std::size_t h = 0; h < kHalves; ++h) {
+#if HWY_MAX_BYTES >= 32
+    const auto half = h == 0 ? hn::LowerHalf(dh, bits) : hn::UpperHalf(dh, bits);
+#else
+    const auto half =
+        h == 0 ? hn::LowerHalf(dh, bits) : hn::LowerHalf(dh, hn::ConcatUpperUpper(du, bits, bits));
+#endif
+    const auto word = hn::Or(hn::ShiftLeft<kIdBits>(hn::PromoteTo(du64, half)), hn::Set(du64, low));
+    const std::size_t column = part * kLanes + h * kLanes64;
+    const auto mask_bits = static_cast<std::uint8_t>((row_bits >> column) & ((1U << kLanes64) - 1));
+    // LoadMaskBits reads whole bytes.
+    std::uint8_t mask_memory[8] = {mask_bits};
+    const auto mask = hn::LoadMaskBits(d64, mask_memory);
+    auto* place = reinterpret_cast<std::int64_t*>(words + column);
+    // Words stay below 2^63, so the signed maximum, which AVX2 has, is the maximum.
+    const auto candidate = hn::IfThenElseZero(mask, hn::BitCast(d64, word));
+    hn::Store(hn::Max(hn::Load(d64, place), candidate), d64, place);
+  }
+}
+
+void maximum(const Piece* pieces, const Block* blocks, std::size_t n, Rect bin,
+             std::uint64_t* words) noexcept {
+  constexpr float kPxPerSubpixel = 1.0F / kSubpixels;
+  const F32 d;
+  const int column0 = bin.x0 / kBlockSize;
+  const int row0 = bin.y0 / kBlockSize;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Block& block = blocks[i];
+    const Piece& p = pieces[block.piece];
+    std::uint64_t* out = words + ((block.by - row0) * kBlocksPerBinRow + (block.bx - column0)) * 64;
+    const float x0 = static_cast<float>(p.x[0]) * kPxPerSubpixel;
+    const float y0 = static_cast<float>(p.y[0]) * kPxPerSubpixel;
+    F along_x[8 / kLanes];
+    for (std::size_t part = 0; part < 8 / kLanes; ++part) {
+      const F column = hn::Iota(
+          d, static_cast<float>(block.bx * kBlockSize) + static_cast<float>(part * kLanes));
+      const F dx = hn::Sub(hn::Add(column, hn::Set(d, 0.5F)), hn::Set(d, x0));
+      along_x[part] = hn::Add(hn::Set(d, p.z0), hn::Mul(hn::Set(d, p.zx), dx));
+    }
+    for (std::uint64_t rest = block.mask; rest != 0;) {
+      const int row = std::countr_zero(rest) / 8;
+      const std::uint64_t row_bits = rest >> (row * 8) & 255;
+      rest &= ~(std::uint64_t{255} << (row * 8));
+      const float dy = (static_cast<float>(block.by * kBlockSize + row) + 0.5F) - y0;
+      const F along_y = hn::Set(d, p.zy * dy);
+      for (std::size_t part = 0; part < 8 / kLanes; ++part)
+        maximum_row(hn::Add(along_x[part], along_y), row_bits, p.low, part, out + row * 8);
+    }
+  }
+}
+
+// Referred to by the table below through its address.
+extern const Kernels kTable;
+const Kernels kTable{project, setup, cover, maximum};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace rastrum::raster
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET != HWY_SCALAR
+
+#if HWY_ONCE
+namespace rastrum::raster {
+
+const Kernels* simd_kernels(Isa isa) noexcept {
+  switch (isa) {
+#if HWY_TARGETS & HWY_SSE4
+    case Isa::sse4:
+      return &N_SSE4::kTable;
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    case Isa::avx2:
+      return &N_AVX2::kTable;
+#endif
+#if HWY_TARGETS & HWY_AVX3
+    case Isa::avx512:
+      return &N_AVX3::kTable;
+#endif
+#if HWY_TARGETS & HWY_NEON
+    case Isa::neon:
+      return &N_NEON::kTable;
+#endif
+    default:
+      return nullptr;
+  }
+}
+
+}  // namespace rastrum::raster
+#endif

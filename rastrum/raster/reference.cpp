@@ -1,0 +1,93 @@
+#include <rastrum/raster/reference.hpp>
+
+#include <algorithm>
+#include <string>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/raster/assemble.hpp>
+#include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/resolve.hpp>
+#include <rastrum/raster/stopwatch.hpp>
+
+namespace rastrum::raster {
+namespace {
+
+/// Keeps the maximum word of each covered sample. Blocks of one row, so that a fragment test sees
+/// the same interface as everywhere.
+void draw_piece(const FrameRequest& request, const FrameGeometry& frame, const Piece& piece,
+                ImageView<std::uint64_t> words, FrameStats& stats) {
+  const Rect box = sample_bounds(piece.x, piece.y, Rect{0, 0, request.width, request.height});
+  for (int y = box.y0; y < box.y1; ++y) {
+    const Span span = row_span(piece, y, box.x0, box.x1);
+    for (int x = span.begin; x < span.end; ++x) {
+      ++stats.fragments;
+      if (!request.targets.overdraw.empty()) ++request.targets.overdraw(x, y);
+      if ((piece.flags & kTested) != 0 && request.test != nullptr) {
+        const std::uint64_t bit = std::uint64_t{1}
+                                  << (y % kBlockSize * kBlockSize + x % kBlockSize);
+        const Block block{0, static_cast<std::uint16_t>(x / kBlockSize),
+                          static_cast<std::uint16_t>(y / kBlockSize), bit};
+        if (request.test->test(frame, piece, block) == 0) continue;
+      }
+      std::uint64_t& word = words(x, y);
+      word = std::max(word, make_word(depth_at(piece, x, y), piece.low));
+    }
+  }
+}
+
+}  // namespace
+
+FrameStats render_reference(FrameRequest& request, MemoryAccount& memory) {
+  Stopwatch watch;
+  FrameStats stats;
+  stats.rasterizer = "reference";
+  stats.visibility = "atomic";
+  const Totals totals = number_draws(request.draws);
+  check_indices(request.draws);
+
+  FrameGeometry frame{request.width, request.height, Viewport::of(request.width, request.height),
+                      request.draws, nullptr};
+  Buffer<ProjectedVertex> projected(memory);
+  projected.reserve(totals.vertices);
+  for (const Draw& draw : request.draws)
+    draw.source->project(0, draw.vertex_count, frame.viewport, Isa::scalar,
+                         projected.data() + draw.first_vertex);
+  frame.projected = projected.data();
+  watch.lap(stats, "project");
+
+  const std::size_t pixels =
+      static_cast<std::size_t>(request.width) * static_cast<std::size_t>(request.height);
+  Buffer<std::uint64_t> buffer(memory);
+  buffer.reserve(pixels);
+  std::fill_n(buffer.data(), pixels, 0);
+  const ImageView<std::uint64_t> words{buffer.data(), request.width, request.height, request.width};
+  if (!request.targets.overdraw.empty())
+    for (int y = 0; y < request.height; ++y)
+      std::fill_n(request.targets.overdraw.row(y), request.width, 0U);
+  stats.triangles.input = totals.triangles;
+  for (const Draw& draw : request.draws)
+    for (std::uint64_t t = 0; t < draw.triangle_count; ++t) {
+      const TriangleFate fate = assemble_triangle(
+          frame, draw, t, request.cull,
+          [&](const Piece& piece) { draw_piece(request, frame, piece, words, stats); });
+      stats.triangles.dropped += fate == TriangleFate::dropped;
+      stats.triangles.culled += fate == TriangleFate::culled;
+      stats.triangles.clipped += fate == TriangleFate::clipped;
+    }
+  stats.triangles.drawn = stats.triangles.input - stats.triangles.dropped - stats.triangles.culled;
+  watch.lap(stats, "rasterize");
+
+  for (int y0 = 0; y0 < request.height; y0 += kBlockSize)
+    for (int x0 = 0; x0 < request.width; x0 += kBlockSize) {
+      std::uint64_t block[64] = {};
+      for (int y = y0; y < std::min(y0 + kBlockSize, request.height); ++y)
+        for (int x = x0; x < std::min(x0 + kBlockSize, request.width); ++x)
+          block[(y - y0) * kBlockSize + (x - x0)] = words(x, y);
+      stats.pixels_covered +=
+          static_cast<std::uint64_t>(resolve_block(request, frame, block, x0, y0));
+    }
+  watch.lap(stats, "shade");
+  return stats;
+}
+
+}  // namespace rastrum::raster

@@ -1,0 +1,25 @@
+// From visibility words to the images a caller asked for. Shared by every rasterizer: shading and
+// output exist once.
+#pragma once
+
+#include <rastrum/raster/geometry.hpp>
+
+namespace rastrum::raster {
+
+/// Shades one 8 × 8 block and writes its part of every target; pixels outside the image are left
+/// out. Returns how many pixels hold a surface.
+int resolve_block(const FrameRequest& request, const FrameGeometry& frame,
+                  const std::uint64_t (&words)[64], int x0, int y0) noexcept;
+
+/// Numbers the triangles and vertices of the draws and returns the totals. Throws
+/// Error{invalid_argument} if there are more triangles than ids.
+struct Totals {
+  std::uint64_t triangles = 0;
+  std::size_t vertices = 0;
+};
+[[nodiscard]] Totals number_draws(std::span<Draw> draws);
+
+/// Throws Error{invalid_argument} naming the first index that is out of range, if there is one.
+void check_indices(std::span<const Draw> draws);
+
+}  // namespace rastrum::raster

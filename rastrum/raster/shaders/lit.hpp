@@ -1,0 +1,42 @@
+// The plain shaders: flat, depth, normal, id, lambert, phong, wireframe. They write display values
+// as they are. The lighting is fixed, so that other renderers can be compared with it:
+//   base · (0.1 + 0.8 max(n·l, 0)) + 0.3 max(n·h, 0)³²,  l = (0.4, 0.6, 1) / |…| in world space,
+// base = the mesh's colours, (0.8, 0.7, 0.6) where it has none; n turned to face the viewer.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <rastrum/raster/geometry.hpp>
+#include <rastrum/scene/camera.hpp>
+#include <rastrum/scene/scene.hpp>
+
+namespace rastrum::raster {
+
+enum class LitModel : std::uint8_t { flat, depth, normal, id, lambert, phong, wireframe };
+
+/// What the lit shaders read of one draw.
+struct LitDraw {
+  MeshView mesh;
+  float normal_matrix[3][3];  ///< object to world, inverse transpose
+};
+
+/// The direction to the viewer at pixel centre (x, y), not normalized: −(d + x · dx + y · dy).
+/// Exact interpolation of positions gives the same direction, because a position lies on its
+/// pixel's ray.
+struct ViewRays {
+  Vec3 d, dx, dy;
+  static ViewRays of(const Camera& camera, int width, int height);
+};
+
+struct LitScene {
+  std::vector<LitDraw> draws;
+  ViewRays rays;
+  LitScene(const SceneView& scene, const Camera& camera, int width, int height);
+};
+
+/// `scene` must outlive the shader.
+[[nodiscard]] std::unique_ptr<BlockShader> make_lit_shader(LitModel model, const LitScene& scene);
+
+}  // namespace rastrum::raster

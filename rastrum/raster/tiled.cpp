@@ -1,0 +1,299 @@
+#include <rastrum/raster/tiled.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <utility>
+#include <vector>
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <rastrum/raster/assemble.hpp>
+#include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/kernels.hpp>
+#include <rastrum/raster/resolve.hpp>
+#include <rastrum/raster/stopwatch.hpp>
+
+namespace rastrum::raster {
+namespace {
+
+/// Triangles of a group: enough to amortize its table of bins, few enough to balance threads.
+constexpr std::uint64_t kMinGroup = 4096;
+constexpr std::uint64_t kGroupsPerThread = 8;
+/// At most so many groups hold pieces at once; more triangles are taken in passes.
+constexpr std::size_t kProjectGrain = 4096;
+constexpr std::size_t kBlockCapacity = 512;
+
+struct BinGrid {
+  int columns, rows;
+  [[nodiscard]] std::size_t count() const {
+    return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  }
+};
+
+/// What became of the triangles [first, last) of the frame: pieces, and their positions by bin.
+struct Group {
+  explicit Group(MemoryAccount& memory)
+      : pieces(memory), pairs(memory), by_bin(memory), bin_begin(memory) {}
+
+  struct Pair {
+    std::uint32_t bin, piece;
+  };
+  Buffer<Piece> pieces;
+  Buffer<Pair> pairs;               ///< in order of submission
+  Buffer<std::uint32_t> by_bin;     ///< pieces, sorted by bin
+  Buffer<std::uint32_t> bin_begin;  ///< bins + 1 offsets into by_bin
+  std::uint32_t piece_count = 0;
+  std::size_t pair_count = 0;
+  FrameStats::Triangles triangles;
+
+  [[nodiscard]] PieceList bin(std::size_t b) const {
+    const std::uint32_t begin = bin_begin[b];
+    return {pieces.data(), by_bin.data() + begin, bin_begin[b + 1] - begin};
+  }
+};
+
+/// Whether the bin's rectangle may hold an inside sample: none lies beyond any one edge.
+bool may_touch(const Edge (&edges)[3], int bin_x, int bin_y) {
+  for (const Edge& e : edges) {
+    const std::int64_t x = bin_x * kBinSize + (e.a > 0 ? kBinSize - 1 : 0);
+    const std::int64_t y = bin_y * kBinSize + (e.b > 0 ? kBinSize - 1 : 0);
+    if (e.base + e.a * x + e.b * y < 0) return false;
+  }
+  return true;
+}
+
+void bin_pieces(Group& group, std::uint32_t first_piece, Rect view, BinGrid grid) {
+  for (std::uint32_t i = first_piece; i < group.piece_count; ++i) {
+    const Piece& piece = group.pieces[i];
+    const Rect box = sample_bounds(piece.x, piece.y, view);
+    const int bx0 = box.x0 / kBinSize, by0 = box.y0 / kBinSize;
+    const int bx1 = (box.x1 - 1) / kBinSize, by1 = (box.y1 - 1) / kBinSize;
+    const std::size_t most =
+        static_cast<std::size_t>(bx1 - bx0 + 1) * static_cast<std::size_t>(by1 - by0 + 1);
+    group.pairs.grow(group.pair_count + most, group.pair_count);
+    const auto add = [&](int bx, int by) {
+      const auto bin = static_cast<std::uint32_t>(by * grid.columns + bx);
+      group.pairs[group.pair_count++] = {bin, i};
+      ++group.bin_begin[bin + 1];
+    };
+    if (most == 1) {
+      add(bx0, by0);
+      continue;
+    }
+    const Edge edges[3] = {edge_function(piece, 0), edge_function(piece, 1),
+                           edge_function(piece, 2)};
+    for (int by = by0; by <= by1; ++by)
+      for (int bx = bx0; bx <= bx1; ++bx)
+        if (may_touch(edges, bx, by)) add(bx, by);
+  }
+}
+
+/// Stable counting sort of the pairs by bin. bin_begin[b + 1] holds the count of bin b on entry.
+void sort_by_bin(Group& group, std::size_t bins) {
+  group.by_bin.reserve(group.pair_count);
+  std::uint32_t* const begin = group.bin_begin.data();
+  // Shifted by one, so that after the scatter each entry has moved on to its own bin's begin.
+  std::uint32_t sum = 0;
+  for (std::size_t b = 0; b < bins; ++b) sum += std::exchange(begin[b + 1], sum);
+  for (std::size_t i = 0; i < group.pair_count; ++i) {
+    const Group::Pair pair = group.pairs[i];
+    group.by_bin[begin[pair.bin + 1]++] = pair.piece;
+  }
+}
+
+/// Setup of triangles [first, last), which may span draws.
+void fill_group(Group& group, const FrameRequest& request, const FrameGeometry& frame,
+                const Kernels& kernel, BinGrid grid, std::uint64_t first, std::uint64_t last,
+                std::atomic<bool>& index_in_range) {
+  const Rect view{0, 0, frame.width, frame.height};
+  group.piece_count = 0;
+  group.pair_count = 0;
+  group.triangles = {};
+  group.bin_begin.reserve(grid.count() + 1);
+  std::fill_n(group.bin_begin.data(), grid.count() + 1, 0U);
+  std::uint32_t slow[kSetupBatch];
+
+  for (std::uint64_t id = first; id < last;) {
+    const Draw& draw = frame.draw_of(id);
+    const std::uint64_t t = id - draw.first_id;
+    const auto count = static_cast<std::uint32_t>(
+        std::min({std::uint64_t{kSetupBatch}, last - id, draw.triangle_count - t}));
+    SetupInput input;
+    input.indices = draw.indices.empty() ? nullptr : draw.indices.data();
+    input.vertices = frame.projected + draw.first_vertex;
+    input.vertex_count = draw.vertex_count;
+    input.first = t;
+    input.count = count;
+    input.first_id = draw.first_id;
+    input.flags = draw.flags;
+    input.cull = request.cull;
+    input.view = view;
+
+    const std::uint32_t first_piece = group.piece_count;
+    group.pieces.grow(first_piece + kSetupBatch, first_piece);
+    const SetupOutput out = kernel.setup(input, group.pieces.data() + first_piece, slow);
+    if (!out.index_in_range) {
+      index_in_range = false;
+      return;
+    }
+    group.piece_count += out.pieces;
+    group.triangles.culled += count - out.pieces - out.slow;
+    for (std::uint32_t s = 0; s < out.slow; ++s) {
+      const TriangleFate fate =
+          assemble_triangle(frame, draw, t + slow[s], request.cull, [&](const Piece& piece) {
+            group.pieces.grow(group.piece_count + 1, group.piece_count);
+            group.pieces[group.piece_count++] = piece;
+          });
+      group.triangles.dropped += fate == TriangleFate::dropped;
+      group.triangles.culled += fate == TriangleFate::culled;
+      group.triangles.clipped += fate == TriangleFate::clipped;
+    }
+    bin_pieces(group, first_piece, view, grid);
+    id += count;
+  }
+  sort_by_bin(group, grid.count());
+}
+
+void test_fragments(const FrameRequest& request, const FrameGeometry& frame, const Piece* pieces,
+                    std::span<Block> blocks) {
+  for (Block& block : blocks)
+    if ((pieces[block.piece].flags & kTested) != 0)
+      block.mask = request.test->test(frame, pieces[block.piece], block);
+}
+
+void count_overdraw(const ImageView<std::uint32_t>& overdraw, std::span<const Block> blocks) {
+  for (const Block& block : blocks)
+    for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
+      const int bit = std::countr_zero(m);
+      ++overdraw(block.bx * kBlockSize + bit % kBlockSize,
+                 block.by * kBlockSize + bit / kBlockSize);
+    }
+}
+
+/// The words of a bin, one per thread.
+struct alignas(64) BinWords {
+  std::uint64_t words[kBlocksPerBin * 64];
+  Block blocks[kBlockCapacity];
+};
+
+struct BinCounts {
+  std::uint64_t fragments = 0, covered = 0;
+};
+
+/// Resolves and shades one bin.
+BinCounts draw_bin(const FrameRequest& request, const FrameGeometry& frame, const Kernels& kernel,
+                   std::span<const Group> groups, std::size_t bin, Rect rect, BinWords& scratch) {
+  BinCounts counts;
+  std::fill_n(scratch.words, kBlocksPerBin * 64, 0);
+  if (!request.targets.overdraw.empty())
+    for (int y = rect.y0; y < rect.y1; ++y)
+      std::fill_n(request.targets.overdraw.row(y) + rect.x0, rect.x1 - rect.x0, 0U);
+  for (const Group& group : groups) {
+    const PieceList pieces = group.bin(bin);
+    for (std::size_t cursor = 0; cursor < pieces.count;) {
+      const std::size_t n = kernel.cover(pieces, cursor, rect, scratch.blocks, kBlockCapacity);
+      const std::span<Block> blocks(scratch.blocks, n);
+      for (const Block& b : blocks)
+        counts.fragments += static_cast<std::uint64_t>(std::popcount(b.mask));
+      if (!request.targets.overdraw.empty()) count_overdraw(request.targets.overdraw, blocks);
+      if (request.test != nullptr) test_fragments(request, frame, pieces.pieces, blocks);
+      kernel.maximum(pieces.pieces, blocks.data(), n, rect, scratch.words);
+    }
+  }
+  for (int by = 0; by < kBlocksPerBinRow; ++by)
+    for (int bx = 0; bx < kBlocksPerBinRow; ++bx) {
+      const int x0 = rect.x0 + bx * kBlockSize, y0 = rect.y0 + by * kBlockSize;
+      if (x0 >= rect.x1 || y0 >= rect.y1) continue;
+      const auto& words = *reinterpret_cast<const std::uint64_t(*)[64]>(
+          scratch.words + (by * kBlocksPerBinRow + bx) * 64);
+      counts.covered += static_cast<std::uint64_t>(resolve_block(request, frame, words, x0, y0));
+    }
+  return counts;
+}
+
+}  // namespace
+
+struct TiledRasterizer::Scratch {
+  explicit Scratch(MemoryAccount& m) : memory(m), projected(m) {}
+  MemoryAccount& memory;
+  Buffer<ProjectedVertex> projected;
+  std::vector<Group> groups;
+  tbb::enumerable_thread_specific<std::unique_ptr<BinWords>> bins;
+
+  BinWords& bin_words() {
+    std::unique_ptr<BinWords>& mine = bins.local();
+    if (!mine) mine = std::make_unique<BinWords>();
+    return *mine;
+  }
+};
+
+TiledRasterizer::TiledRasterizer(MemoryAccount& memory)
+    : scratch_(std::make_unique<Scratch>(memory)) {}
+TiledRasterizer::~TiledRasterizer() = default;
+
+FrameStats TiledRasterizer::render(FrameRequest& request, parallel::Threads& exec) {
+  Stopwatch watch;
+  FrameStats stats;
+  stats.rasterizer = "tiled";
+  stats.visibility = "atomic";
+  stats.isa = request.isa;
+  const Kernels& kernel = kernels(request.isa);
+  const Totals totals = number_draws(request.draws);
+
+  FrameGeometry frame{request.width, request.height, Viewport::of(request.width, request.height),
+                      request.draws, nullptr};
+  scratch_->projected.reserve(totals.vertices);
+  frame.projected = scratch_->projected.data();
+  for (const Draw& draw : request.draws)
+    parallel::for_each_index(
+        exec, (draw.vertex_count + kProjectGrain - 1) / kProjectGrain, [&](std::size_t i) {
+          const std::size_t begin = i * kProjectGrain;
+          const std::size_t end = std::min(begin + kProjectGrain, draw.vertex_count);
+          draw.source->project(begin, end, frame.viewport, request.isa,
+                               scratch_->projected.data() + draw.first_vertex + begin);
+        });
+  watch.lap(stats, "project");
+
+  const BinGrid grid{(request.width + kBinSize - 1) / kBinSize,
+                     (request.height + kBinSize - 1) / kBinSize};
+  const std::uint64_t wanted = kGroupsPerThread * static_cast<std::uint64_t>(exec.concurrency());
+  const std::uint64_t group_size = std::max(kMinGroup, (totals.triangles + wanted - 1) / wanted);
+  const auto group_count =
+      static_cast<std::size_t>((totals.triangles + group_size - 1) / group_size);
+  while (scratch_->groups.size() < group_count) scratch_->groups.emplace_back(scratch_->memory);
+  const std::span<Group> groups(scratch_->groups.data(), group_count);
+  std::atomic<bool> index_in_range = true;
+  parallel::for_each_index(exec, group_count, [&](std::size_t g) {
+    const std::uint64_t first = g * group_size;
+    fill_group(groups[g], request, frame, kernel, grid, first,
+               std::min(first + group_size, totals.triangles), index_in_range);
+  });
+  if (!index_in_range) check_indices(request.draws);
+  stats.triangles.input = totals.triangles;
+  for (const Group& g : groups) {
+    stats.triangles.dropped += g.triangles.dropped;
+    stats.triangles.culled += g.triangles.culled;
+    stats.triangles.clipped += g.triangles.clipped;
+  }
+  stats.triangles.drawn = stats.triangles.input - stats.triangles.dropped - stats.triangles.culled;
+  watch.lap(stats, "setup and bin");
+
+  std::atomic<std::uint64_t> fragments = 0, covered = 0;
+  parallel::for_each_index(exec, grid.count(), [&](std::size_t bin) {
+    const int x0 = static_cast<int>(bin % static_cast<std::size_t>(grid.columns)) * kBinSize;
+    const int y0 = static_cast<int>(bin / static_cast<std::size_t>(grid.columns)) * kBinSize;
+    const Rect rect{x0, y0, std::min(x0 + kBinSize, request.width),
+                    std::min(y0 + kBinSize, request.height)};
+    const BinCounts counts =
+        draw_bin(request, frame, kernel, groups, bin, rect, scratch_->bin_words());
+    fragments.fetch_add(counts.fragments, std::memory_order_relaxed);
+    covered.fetch_add(counts.covered, std::memory_order_relaxed);
+  });
+  stats.fragments = fragments;
+  stats.pixels_covered = covered;
+  watch.lap(stats, "draw and shade");
+  return stats;
+}
+
+}  // namespace rastrum::raster

@@ -1,0 +1,180 @@
+#include <rastrum/render/render.hpp>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/raster/reference.hpp>
+#include <rastrum/raster/shaders/lit.hpp>
+#include <rastrum/raster/tiled.hpp>
+#include <rastrum/raster/transform_source.hpp>
+
+namespace rastrum {
+namespace {
+
+void check_attribute(std::size_t values, std::span<const std::uint32_t> indices,
+                     const MeshView& mesh, std::size_t instance, const char* what) {
+  if (values == 0) return;
+  const auto fail = [&](const std::string& problem) {
+    throw Error(Errc::invalid_argument,
+                "instance " + std::to_string(instance) + ": " + what + " " + problem);
+  };
+  if (indices.empty()) {
+    if (values < mesh.positions.size())
+      fail("are fewer (" + std::to_string(values) + ") than positions (" +
+           std::to_string(mesh.positions.size()) + ")");
+    return;
+  }
+  if (indices.size() < mesh.triangle_count() * 3) fail("have fewer indices than the triangles");
+  for (const std::uint32_t i : indices)
+    if (i >= values)
+      fail("index " + std::to_string(i) + " is out of range, there are " + std::to_string(values));
+}
+
+/// Attributes are read only where a triangle is seen, so their indices are checked before the
+/// frame.
+void check_attributes(const SceneView& scene) {
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const MeshView& mesh = scene.instances[i].mesh;
+    check_attribute(mesh.normals.values.size(), mesh.normals.indices, mesh, i, "normals");
+    check_attribute(mesh.texcoords.values.size(), mesh.texcoords.indices, mesh, i, "texcoords");
+    check_attribute(mesh.colors.values.size(), mesh.colors.indices, mesh, i, "colors");
+  }
+}
+
+template <class T>
+void check_target(const ImageView<T>& view, const RenderOptions& options, const char* what) {
+  if (!view.empty() && (view.width != options.width || view.height != options.height))
+    throw Error(Errc::invalid_argument,
+                std::string("the ") + what + " target is " + std::to_string(view.width) + "x" +
+                    std::to_string(view.height) + ", the frame is not of that size");
+}
+
+raster::LitModel lit_model(Shader shader) {
+  switch (shader) {
+    case Shader::flat:
+      return raster::LitModel::flat;
+    case Shader::depth:
+      return raster::LitModel::depth;
+    case Shader::normal:
+      return raster::LitModel::normal;
+    case Shader::id:
+      return raster::LitModel::id;
+    case Shader::lambert:
+      return raster::LitModel::lambert;
+    case Shader::wireframe:
+      return raster::LitModel::wireframe;
+    default:
+      return raster::LitModel::phong;
+  }
+}
+
+}  // namespace
+
+struct Renderer::Impl {
+  explicit Impl(RenderOptions o) : options(std::move(o)) {}
+
+  RenderOptions options;
+  Isa isa = Isa::scalar;
+  bool reference = false;
+  MemoryAccount memory;
+  std::unique_ptr<parallel::Threads> threads;
+  std::unique_ptr<raster::TiledRasterizer> tiled;
+};
+
+Renderer::Renderer(RenderOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {
+  const RenderOptions& o = impl_->options;
+  if (o.width < 1 || o.height < 1 || o.width > kMaxImageSize || o.height > kMaxImageSize)
+    throw Error(Errc::invalid_argument, "image size " + std::to_string(o.width) + "x" +
+                                            std::to_string(o.height) +
+                                            " is outside 1x1 to 32768x32768");
+  if (o.threads < 0 || o.threads > 4096)
+    throw Error(Errc::invalid_argument, "threads must lie between 0 (all) and 4096");
+  if (o.device == Device::cuda)
+    throw Error(Errc::no_device, "this build has no CUDA backend; use --device threads");
+  const auto& table = rasterizers();
+  if (o.rasterizer != "auto" &&
+      std::none_of(table.begin(), table.end(),
+                   [&](const RasterizerInfo& r) { return r.name == o.rasterizer; })) {
+    std::string known = "auto";
+    for (const RasterizerInfo& r : table) known += ", " + r.name;
+    throw Error(Errc::invalid_argument,
+                "no rasterizer is called '" + o.rasterizer + "'; there are " + known);
+  }
+  const std::vector<Isa> isas = available_isas();
+  impl_->isa = o.isa.value_or(isas.back());
+  if (std::find(isas.begin(), isas.end(), impl_->isa) == isas.end())
+    throw Error(Errc::no_device,
+                "this machine cannot run " + std::string(name(impl_->isa)) + " instructions");
+  impl_->reference = o.device == Device::serial || o.rasterizer == "reference";
+  if (!impl_->reference) {
+    impl_->threads = std::make_unique<parallel::Threads>(o.threads);
+    impl_->tiled = std::make_unique<raster::TiledRasterizer>(impl_->memory);
+  }
+}
+
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+const RenderOptions& Renderer::options() const {
+  return impl_->options;
+}
+
+FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const Targets& targets) {
+  const RenderOptions& o = impl_->options;
+  check_attributes(scene);
+  const Mat4d to_clip = world_to_clip(camera, o.width, o.height);
+  std::vector<raster::TransformSource> sources;
+  sources.reserve(scene.instances.size());
+  std::vector<raster::Draw> draws;
+  draws.reserve(scene.instances.size());
+  for (const InstanceView& instance : scene.instances) {
+    sources.emplace_back(instance.mesh.positions, to_clip * instance.object_to_world);
+    raster::Draw& draw = draws.emplace_back();
+    draw.source = &sources.back();
+    draw.vertex_count = instance.mesh.positions.size();
+    draw.indices = instance.mesh.indices;
+    draw.triangle_count = instance.mesh.triangle_count();
+  }
+  const raster::LitScene lit(scene, camera, o.width, o.height);
+  const auto shader = raster::make_lit_shader(lit_model(o.shader), lit);
+  return draw(draws, *shader, nullptr, targets);
+}
+
+FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::BlockShader& shader,
+                          const raster::FragmentTest* test, const Targets& targets) {
+  const RenderOptions& o = impl_->options;
+  check_target(targets.color8, o, "color8");
+  check_target(targets.color, o, "color");
+  check_target(targets.depth, o, "depth");
+  check_target(targets.ids, o, "ids");
+  check_target(targets.overdraw, o, "overdraw");
+  raster::FrameRequest request;
+  request.width = o.width;
+  request.height = o.height;
+  request.cull = o.cull;
+  request.isa = impl_->reference ? Isa::scalar : impl_->isa;
+  request.draws = draws;
+  request.test = test;
+  request.shader = &shader;
+  request.background = o.background;
+  request.targets = targets;
+  impl_->memory.restart_peak();
+  FrameStats stats = impl_->reference ? raster::render_reference(request, impl_->memory)
+                                      : impl_->tiled->render(request, *impl_->threads);
+  stats.peak_bytes = impl_->memory.peak();
+  return stats;
+}
+
+Image<Rgba8> render(const SceneView& scene, const Camera& camera, const RenderOptions& options) {
+  Image<Rgba8> image(options.width, options.height);
+  Targets targets;
+  targets.color8 = image.view();
+  Renderer(options).render(scene, camera, targets);
+  return image;
+}
+
+}  // namespace rastrum

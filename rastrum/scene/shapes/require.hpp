@@ -1,0 +1,18 @@
+// Argument checks of the procedural shapes: what the caller sees names the shape and the parameter.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace rastrum::shapes {
+
+/// Throws Error{invalid_argument} "SHAPE: PARAMETER must lie in [low, high], got VALUE" unless
+/// low ≤ value ≤ high. NaN is outside of every range.
+void require_range(std::string_view shape, std::string_view parameter, double value, double low,
+                   double high);
+
+/// Throws Error{invalid_argument} naming both parameters unless the mesh's vertices and triangles
+/// can be numbered by 32 bits.
+void require_size(std::string_view shape, std::string_view parameters, double vertices);
+
+}  // namespace rastrum::shapes

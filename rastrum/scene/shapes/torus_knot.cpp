@@ -1,0 +1,88 @@
+// A tube around the (p, q) torus knot: p turns about the y axis while q turns about the tube of a
+// torus with radii 1 and 0.4. The frame is the torus's own normal, which is perpendicular to the
+// curve and closes with it; so the tube closes without a twist correction and its normals are
+// exact.
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <string>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/scene/shapes/require.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/scene/shapes/vec3d.hpp>
+
+namespace rastrum::shapes {
+namespace {
+
+constexpr double kMajor = 1, kMinor = 0.4;
+
+struct Frame {
+  Vec3d point, normal, binormal;
+};
+
+Frame knot_frame(int p, int q, double t) {
+  const double cp = std::cos(p * t), sp = std::sin(p * t);
+  const double cq = std::cos(q * t), sq = std::sin(q * t);
+  const double ring = kMajor + kMinor * cq;
+  const Vec3d outward = {cp, 0, sp}, along = {-sp, 0, cp};
+  const Vec3d normal = outward * cq + Vec3d{0, sq, 0};
+  const Vec3d tangent = along * (p * ring) + (outward * -sq + Vec3d{0, cq, 0}) * (q * kMinor);
+  return {outward * ring + Vec3d{0, kMinor * sq, 0}, normal, unit(cross(tangent, normal))};
+}
+
+}  // namespace
+
+Mesh torus_knot(int p, int q, int segments, int sides, float tube) {
+  require_range("torus_knot", "p", p, 1, 1000);
+  require_range("torus_knot", "q", q, 0, 1000);
+  require_range("torus_knot", "segments", segments, 3, 1 << 24);
+  require_range("torus_knot", "sides", sides, 3, 65536);
+  require_range("torus_knot", "tube", tube, 1e-6, 10);
+  require_size("torus_knot", "segments and sides", (segments + 1.0) * (sides + 1.0));
+  if (std::gcd(p, q) != 1)
+    throw Error(Errc::invalid_argument, "torus_knot: p and q must have no common divisor, got " +
+                                            std::to_string(p) + " and " + std::to_string(q));
+  const auto n = static_cast<std::uint32_t>(segments);
+  const auto m = static_cast<std::uint32_t>(sides);
+
+  Mesh mesh;
+  mesh.name = "torus_knot";
+  const std::size_t vertices = std::size_t{n} * m;
+  mesh.positions.reserve(vertices);
+  mesh.normals.values.reserve(vertices);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const Frame f = knot_frame(p, q, 2 * std::numbers::pi * i / n);
+    for (std::uint32_t j = 0; j < m; ++j) {
+      const double a = 2 * std::numbers::pi * j / m;
+      const Vec3d normal = f.normal * std::cos(a) + f.binormal * std::sin(a);
+      mesh.positions.push_back(static_cast<Vec3>(f.point + normal * double{tube}));
+      mesh.normals.values.push_back(static_cast<Vec3>(normal));
+    }
+  }
+  mesh.texcoords.values.reserve(std::size_t{n + 1} * (m + 1));
+  for (std::uint32_t i = 0; i <= n; ++i)
+    for (std::uint32_t j = 0; j <= m; ++j)
+      mesh.texcoords.values.push_back(
+          {static_cast<float>(double{1} * i / n), static_cast<float>(double{1} * j / m)});
+
+  mesh.indices.reserve(6 * vertices);
+  mesh.texcoords.indices.reserve(6 * vertices);
+  const auto corner = [&](std::uint32_t i, std::uint32_t j) {
+    mesh.indices.push_back(i % n * m + j % m);
+    mesh.texcoords.indices.push_back(i * (m + 1) + j);
+  };
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::uint32_t j = 0; j < m; ++j) {
+      corner(i, j);
+      corner(i, j + 1);
+      corner(i + 1, j + 1);
+      corner(i, j);
+      corner(i + 1, j + 1);
+      corner(i + 1, j);
+    }
+  return mesh;
+}
+
+}  // namespace rastrum::shapes

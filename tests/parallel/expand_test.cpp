@@ -1,0 +1,104 @@
+// expand and expand_masked against their definitions as nested loops.
+#include <utility>
+
+#include <tests/parallel/backends.hpp>
+
+namespace rastrum::parallel::test {
+namespace {
+
+using Pair = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Segment sizes of several characters: the last ones are what simple load balancing breaks on.
+std::vector<std::vector<std::uint32_t>> segment_sizes() {
+  std::vector<std::vector<std::uint32_t>> all = {{}, {0}, {1}, {0, 0, 0}, {100000}};
+  for (const std::size_t n : {2U, 64U, 5000U}) all.push_back(random_values<std::uint32_t>(n, 40));
+  std::vector<std::uint32_t> huge = random_values<std::uint32_t>(5000, 3);
+  huge[1234] = 150001;
+  all.push_back(huge);
+  std::vector<std::uint32_t> empty_ends(20000, 0);
+  empty_ends[10000] = 9000;
+  all.push_back(empty_ends);
+  std::vector<std::uint32_t> around_masks;
+  for (std::uint32_t bits = 8; bits <= 256; bits *= 2)
+    around_masks.insert(around_masks.end(), {bits - 1, bits, bits + 1, 2 * bits, 0});
+  all.push_back(around_masks);
+  return all;
+}
+
+Pair make_pair_of(std::size_t i, std::size_t j) {
+  return {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j)};
+}
+
+TEST(Expand, ListsTheElementsOfAllSegments) {
+  for (const auto& sizes : segment_sizes()) {
+    std::vector<Pair> expected;
+    std::vector<std::uint32_t> expected_owners;
+    for (std::size_t i = 0; i < sizes.size(); ++i)
+      for (std::size_t j = 0; j < sizes[i]; ++j) {
+        expected.push_back(make_pair_of(i, j));
+        expected_owners.push_back(static_cast<std::uint32_t>(i));
+      }
+    on_every_backend([&](auto& exec) {
+      EXPECT_EQ(
+          expand(
+              exec, counting(sizes.size()), [&](std::size_t i) { return sizes[i]; }, make_pair_of),
+          expected);
+      EXPECT_EQ(owners(exec, sizes), expected_owners);
+    });
+  }
+}
+
+TEST(Expand, ExampleOfThePaper) {
+  // Paper 1, section 2.2.2: segments of 3, 2, 1 and 1.
+  const std::vector<int> sizes = {3, 2, 1, 1};
+  const std::vector<std::size_t> offsets = {0, 3, 5, 6};
+  on_every_backend([&](auto& exec) {
+    EXPECT_EQ(expand(
+                  exec, counting(4), [&](std::size_t i) { return sizes[i]; },
+                  [&](std::size_t i, std::size_t j) { return offsets[i] + j + 1; }),
+              (std::vector<std::size_t>{1, 2, 3, 4, 5, 6, 7}));
+  });
+}
+
+template <int kBits>
+void masked_expansion_matches() {
+  // How many of 8 elements hold, by a hash of segment and index: none, few, half, all.
+  for (const std::size_t density : {0U, 1U, 4U, 8U})
+    for (const auto& sizes : segment_sizes()) {
+      const auto holds = [&](std::size_t i, std::size_t j) {
+        return (i * 2654435761U + j * 40503U) / 16 % 8 < density;
+      };
+      std::vector<Pair> expected;
+      for (std::size_t i = 0; i < sizes.size(); ++i)
+        for (std::size_t j = 0; j < sizes[i]; ++j)
+          if (holds(i, j)) expected.push_back(make_pair_of(i, j));
+      on_every_backend([&](auto& exec) {
+        EXPECT_EQ(expand_masked<kBits>(
+                      exec, counting(sizes.size()), [&](std::size_t i) { return sizes[i]; }, holds,
+                      make_pair_of),
+                  expected);
+      });
+    }
+}
+
+TEST(ExpandMasked, MatchesExpandThenFilter8) {
+  masked_expansion_matches<8>();
+}
+TEST(ExpandMasked, MatchesExpandThenFilter16) {
+  masked_expansion_matches<16>();
+}
+TEST(ExpandMasked, MatchesExpandThenFilter32) {
+  masked_expansion_matches<32>();
+}
+TEST(ExpandMasked, MatchesExpandThenFilter64) {
+  masked_expansion_matches<64>();
+}
+TEST(ExpandMasked, MatchesExpandThenFilter128) {
+  masked_expansion_matches<128>();
+}
+TEST(ExpandMasked, MatchesExpandThenFilter256) {
+  masked_expansion_matches<256>();
+}
+
+}  // namespace
+}  // namespace rastrum::parallel::test

@@ -1,0 +1,122 @@
+// transform, tabulate, gather, scatter, index_in_group and the computed ranges.
+#include <algorithm>
+#include <numeric>
+
+#include <tests/parallel/backends.hpp>
+
+namespace rastrum::parallel::test {
+namespace {
+
+std::vector<std::uint32_t> random_permutation(std::size_t n) {
+  std::vector<std::uint32_t> p(n);
+  std::iota(p.begin(), p.end(), 0U);
+  std::shuffle(p.begin(), p.end(), std::mt19937(static_cast<std::uint32_t>(n)));
+  return p;
+}
+
+TEST(Transform, AppliesTheFunctionToEachElement) {
+  for (const std::size_t n : kSizes) {
+    const auto a = random_values<std::uint32_t>(n, 1000, 1);
+    const auto b = random_values<std::uint32_t>(n, 1000, 2);
+    on_every_backend([&](auto& exec) {
+      std::vector<std::uint64_t> out(n, 99);
+      transform(exec, a, out, [](std::uint32_t x) { return std::uint64_t{x} * 3; });
+      for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(out[i], std::uint64_t{a[i]} * 3);
+      transform(exec, a, b, out,
+                [](std::uint32_t x, std::uint32_t y) { return std::uint64_t{x} * 1000 + y; });
+      for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(out[i], std::uint64_t{a[i]} * 1000 + b[i]);
+      transform(exec, out, out, [](std::uint64_t x) { return x + 1; });
+      for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(out[i], std::uint64_t{a[i]} * 1000 + b[i] + 1);
+    });
+  }
+}
+
+TEST(Tabulate, WritesTheFunctionOfTheIndexOnce) {
+  for (const std::size_t n : kSizes)
+    on_every_backend([&](auto& exec) {
+      std::vector<std::size_t> out(n, 7);
+      std::vector<int> calls(n);
+      tabulate(exec, out, [&](std::size_t i) {
+        ++calls[i];
+        return i * i;
+      });
+      for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(out[i], i * i);
+      EXPECT_EQ(std::count(calls.begin(), calls.end(), 1), static_cast<std::ptrdiff_t>(n));
+    });
+}
+
+TEST(Gather, ReadsThroughTheMap) {
+  for (const std::size_t n : kSizes) {
+    const auto in = random_values<std::uint32_t>(n + 5, 1U << 30);
+    const auto map = random_values<std::uint32_t>(n, n + 5);
+    on_every_backend([&](auto& exec) {
+      std::vector<std::uint32_t> out(n);
+      gather(exec, in, map, out);
+      for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(out[i], in[map[i]]);
+      gather(exec, permuted(in, map), counting(n), out);
+      for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(out[i], in[map[i]]);
+    });
+  }
+}
+
+TEST(Scatter, IsTheInverseOfGather) {
+  for (const std::size_t n : kSizes) {
+    const auto in = random_values<std::uint32_t>(n, 1U << 30);
+    const auto map = random_permutation(n);
+    on_every_backend([&](auto& exec) {
+      std::vector<std::uint32_t> out(n), back(n);
+      scatter(exec, in, map, out);
+      for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(out[map[i]], in[i]);
+      gather(exec, out, map, back);
+      EXPECT_EQ(back, in);
+    });
+  }
+}
+
+TEST(Scatter, StencilLeavesTheRestAlone) {
+  for (const std::size_t n : kSizes) {
+    const auto in = random_values<std::uint32_t>(n, 1U << 30);
+    auto map = random_permutation(n);
+    const auto stencil = random_values<std::uint8_t>(n, 2);
+    std::vector<std::uint32_t> expected(n, 42);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (stencil[i] != 0) expected[map[i]] = in[i];
+      // An index behind a false stencil may be anything.
+      if (stencil[i] == 0) map[i] = 0xFFFFFFFFU;
+    }
+    on_every_backend([&](auto& exec) {
+      std::vector<std::uint32_t> out(n, 42);
+      scatter_if(exec, in, map, stencil, out);
+      EXPECT_EQ(out, expected);
+    });
+  }
+}
+
+TEST(Scatter, DiscardTakesEverything) {
+  Serial exec;
+  scatter(exec, counting(5), counting(5), Discard(5));
+  EXPECT_EQ(Discard(5).size(), 5U);
+}
+
+TEST(IndexInGroup, CountsWithinEachGroup) {
+  for (const std::size_t groups : kSizes) {
+    const auto counts = random_values<std::uint32_t>(groups, 6);
+    std::vector<std::uint32_t> group, first, expected;
+    for (std::uint32_t g = 0; g < groups; ++g) {
+      first.push_back(static_cast<std::uint32_t>(group.size()));
+      for (std::uint32_t j = 0; j < counts[g]; ++j) {
+        group.push_back(g);
+        expected.push_back(j);
+      }
+    }
+    on_every_backend([&](auto& exec) {
+      std::vector<std::uint32_t> out(group.size(), 77);
+      index_in_group(exec, group, first, out);
+      EXPECT_EQ(out, expected);
+      EXPECT_EQ(owners(exec, counts), group);
+    });
+  }
+}
+
+}  // namespace
+}  // namespace rastrum::parallel::test

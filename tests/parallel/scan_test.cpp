@@ -1,0 +1,184 @@
+// reduce, the scans, reduce_by_key: definitions, and one result whatever the backend.
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include <tests/parallel/backends.hpp>
+
+namespace rastrum::parallel::test {
+namespace {
+
+/// Associative but not commutative: composition of x ↦ a x + b modulo 2³².
+struct Affine {
+  std::uint32_t a = 1, b = 0;
+  friend bool operator==(const Affine&, const Affine&) = default;
+};
+Affine then(Affine f, Affine g) {
+  return {f.a * g.a, g.a * f.b + g.b};
+}
+std::vector<Affine> random_maps(std::size_t n) {
+  std::mt19937 random(static_cast<std::uint32_t>(n));
+  std::vector<Affine> maps(n);
+  for (Affine& m : maps)
+    m = {static_cast<std::uint32_t>(random()) | 1U, static_cast<std::uint32_t>(random())};
+  return maps;
+}
+
+std::vector<float> random_floats(std::size_t n) {
+  std::mt19937 random(static_cast<std::uint32_t>(n));
+  std::vector<float> values(n);
+  for (float& v : values)
+    v = std::ldexp(static_cast<float>(static_cast<std::int32_t>(random())),
+                   -static_cast<int>(random() % 40));
+  return values;
+}
+
+TEST(Reduce, FoldsInOrderWithoutCommuting) {
+  for (const std::size_t n : kSizes) {
+    const std::vector<Affine> maps = random_maps(n);
+    Affine expected;
+    for (const Affine& m : maps) expected = then(expected, m);
+    on_every_backend([&](auto& exec) { EXPECT_EQ(reduce(exec, maps, Affine{}, then), expected); });
+  }
+}
+
+TEST(Reduce, ComputesInTheTypeOfTheIdentity) {
+  const std::vector<std::uint8_t> ones(100000, 255);
+  on_every_backend([&](auto& exec) {
+    EXPECT_EQ(reduce(exec, ones, std::uint64_t{0}), 25500000U);
+    EXPECT_EQ(reduce(exec, ones, std::uint64_t{5}), 25500005U);
+  });
+}
+
+TEST(Reduce, FloatSumsHaveOneResult) {
+  for (const std::size_t n : kSizes) {
+    const std::vector<float> values = random_floats(n);
+    // The documented cut: blocks from the left, then their sums from the left.
+    float expected = 0;
+    for (std::size_t b = 0; b < n; b += kBlock) {
+      float block = values[b];
+      for (std::size_t i = b + 1; i < std::min(n, b + kBlock); ++i) block += values[i];
+      expected += block;
+    }
+    on_every_backend([&](auto& exec) {
+      EXPECT_EQ(std::bit_cast<std::uint32_t>(reduce(exec, values, 0.0F)),
+                std::bit_cast<std::uint32_t>(expected));
+    });
+  }
+}
+
+TEST(Scan, ExclusiveAndInclusiveMatchTheirDefinitions) {
+  for (const std::size_t n : kSizes) {
+    const std::vector<Affine> maps = random_maps(n);
+    std::vector<Affine> before(n), with(n);
+    Affine sum{3, 4};  // an initial value other than the identity is put before everything
+    for (std::size_t i = 0; i < n; ++i) {
+      before[i] = sum;
+      sum = then(sum, maps[i]);
+      with[i] = sum;
+    }
+    on_every_backend([&](auto& exec) {
+      std::vector<Affine> out(n);
+      EXPECT_EQ(exclusive_scan(exec, maps, out, Affine{3, 4}, then), sum);
+      EXPECT_EQ(out, before);
+      EXPECT_EQ(inclusive_scan(exec, maps, out, Affine{3, 4}, then), sum);
+      EXPECT_EQ(out, with);
+    });
+  }
+}
+
+TEST(Scan, MayWriteOverItsInput) {
+  for (const std::size_t n : kSizes) {
+    const auto values = random_values<std::uint32_t>(n, 1000);
+    std::vector<std::uint32_t> expected(n);
+    std::uint32_t sum = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      expected[i] = sum;
+      sum += values[i];
+    }
+    on_every_backend([&](auto& exec) {
+      auto in_place = values;
+      EXPECT_EQ(exclusive_scan(exec, in_place, in_place, std::uint32_t{0}), sum);
+      EXPECT_EQ(in_place, expected);
+      in_place = values;
+      inclusive_scan(exec, in_place, in_place, std::uint32_t{0});
+      for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(in_place[i], expected[i] + values[i]);
+    });
+  }
+}
+
+TEST(Scan, FloatSumsHaveOneResultOnAllBackends) {
+  const std::vector<float> values = random_floats(100003);
+  std::vector<float> expected(values.size());
+  Serial serial;
+  inclusive_scan(serial, values, expected, 0.0F);
+  on_every_backend([&](auto& exec) {
+    std::vector<float> out(values.size());
+    inclusive_scan(exec, values, out, 0.0F);
+    EXPECT_EQ(std::memcmp(out.data(), expected.data(), out.size() * sizeof(float)), 0);
+  });
+}
+
+/// Runs of equal keys: short ones, one that spans many blocks, and keys that come again.
+std::vector<std::uint32_t> keys_in_runs(std::size_t n) {
+  std::vector<std::uint32_t> keys(n);
+  std::mt19937 random(static_cast<std::uint32_t>(n));
+  std::uint32_t key = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool in_long_run = i > n / 4 && i < n / 4 * 3;
+    if (!in_long_run && random() % 3 == 0) key = (key + 1) % 5;
+    keys[i] = key;
+  }
+  return keys;
+}
+
+TEST(ReduceByKey, FoldsRunsInOrder) {
+  for (const std::size_t n : kSizes) {
+    const std::vector<std::uint32_t> keys = keys_in_runs(n);
+    const std::vector<Affine> maps = random_maps(n);
+    std::vector<std::uint32_t> expected_keys;
+    std::vector<Affine> expected_values;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (i == 0 || keys[i] != keys[i - 1]) {
+        expected_keys.push_back(keys[i]);
+        expected_values.emplace_back();
+      }
+      expected_values.back() = then(expected_values.back(), maps[i]);
+    }
+    on_every_backend([&](auto& exec) {
+      const auto out = reduce_by_key(exec, keys, maps, then);
+      EXPECT_EQ(out.keys, expected_keys);
+      EXPECT_EQ(out.values, expected_values);
+    });
+  }
+}
+
+TEST(ReduceByKey, OneHugeRunAndAllRunsOfOne) {
+  const std::size_t n = 5 * kBlock + 17;
+  on_every_backend([&](auto& exec) {
+    const auto one = reduce_by_key(exec, constant(n, 9U), constant(n, std::uint64_t{1}));
+    EXPECT_EQ(one.keys, std::vector<unsigned>{9U});
+    EXPECT_EQ(one.values, std::vector<std::uint64_t>{n});
+    const auto each = reduce_by_key(exec, counting<std::uint32_t>(n), counting<std::uint32_t>(n));
+    EXPECT_EQ(each.keys.size(), n);
+    EXPECT_EQ(each.keys, each.values);
+  });
+}
+
+TEST(ReduceByKey, FloatSumsHaveOneResultOnAllBackends) {
+  const std::size_t n = 200003;
+  const std::vector<std::uint32_t> keys = keys_in_runs(n);
+  const std::vector<float> values = random_floats(n);
+  Serial serial;
+  const auto expected = reduce_by_key(serial, keys, values);
+  on_every_backend([&](auto& exec) {
+    const auto out = reduce_by_key(exec, keys, values);
+    ASSERT_EQ(out.values.size(), expected.values.size());
+    EXPECT_EQ(
+        std::memcmp(out.values.data(), expected.values.data(), out.values.size() * sizeof(float)),
+        0);
+  });
+}
+
+}  // namespace
+}  // namespace rastrum::parallel::test

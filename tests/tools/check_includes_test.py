@@ -1,0 +1,78 @@
+"""tools/check_includes.py passes the project and catches each kind of violation."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCRIPT = ROOT / "tools" / "check_includes.py"
+
+
+def check(root):
+    run = subprocess.run([sys.executable, SCRIPT, root], capture_output=True, text=True)
+    return run.returncode, run.stdout
+
+
+class CheckIncludes(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        self.write("rastrum/core/vec.hpp", "#pragma once\n#include <cmath>\n")
+
+    def write(self, path, text):
+        file = self.root / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+
+    def assert_caught(self, place, words):
+        code, output = check(self.root)
+        self.assertEqual(code, 1, output)
+        self.assertEqual(len(output.splitlines()), 1, output)
+        self.assertIn(place, output)
+        self.assertIn(words, output)
+
+    def test_project_passes(self):
+        code, output = check(ROOT)
+        self.assertEqual((code, output), (0, ""))
+
+    def test_downward_includes_pass(self):
+        self.write("rastrum/raster/a.cpp",
+                   '#include <rastrum/core/vec.hpp>\n#include "hwy/highway.h"\n')
+        self.write("rastrum/transparency/a.hpp", "#include <rastrum/raster/a.hpp>\n")
+        self.write("apps/rastrum/main.cpp", '#include "commands.hpp"\n')
+        self.assertEqual(check(self.root), (0, ""))
+
+    def test_upward_include(self):
+        self.write("rastrum/core/bad.hpp", "// why\n#  include <rastrum/scene/mesh.hpp>\n")
+        self.assert_caught("rastrum/core/bad.hpp:2", "core may not include scene")
+
+    def test_io_does_not_draw(self):
+        self.write("rastrum/io/bad.cpp", "#include <rastrum/raster/setup.hpp>\n")
+        self.assert_caught("rastrum/io/bad.cpp:1", "io may not include raster")
+
+    def test_rooms_are_apart(self):
+        self.write("rastrum/terrain/bad.cpp", "#include <rastrum/raster/setup.hpp>\n")
+        self.assert_caught("rastrum/terrain/bad.cpp:1", "terrain may not include raster")
+
+    def test_subfolders_belong_to_their_floor(self):
+        self.write("rastrum/scene/shapes/bad.cpp", "#include <rastrum/io/io.hpp>\n")
+        self.assert_caught("rastrum/scene/shapes/bad.cpp:1", "scene may not include io")
+
+    def test_relative_include(self):
+        self.write("rastrum/core/bad.hpp", '#include "vec.hpp"\n')
+        self.assert_caught("rastrum/core/bad.hpp:1", "must be written <rastrum/...>")
+
+    def test_library_does_not_include_programs(self):
+        self.write("apps/rastrum/options.hpp", "")
+        self.write("rastrum/render/bad.cpp", "#include <apps/rastrum/options.hpp>\n")
+        self.assert_caught("rastrum/render/bad.cpp:1", "may not include <apps/rastrum/options.hpp>")
+
+    def test_unknown_floor(self):
+        self.write("rastrum/utils/a.hpp", "")
+        self.assert_caught("rastrum/utils/a.hpp", "is no floor")
+
+
+if __name__ == "__main__":
+    unittest.main()
