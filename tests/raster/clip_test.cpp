@@ -1,5 +1,5 @@
-// The clipper by itself: against a rasterizer in homogeneous coordinates that never clips (Olano and
-// Greer, "Triangle scan conversion using 2D homogeneous coordinates", 1997), in long double.
+// The clipper by itself: against a rasterizer in homogeneous coordinates that never clips (Olano
+// and Greer, "Triangle scan conversion using 2D homogeneous coordinates", 1997), in long double.
 #include <rastrum/raster/clip.hpp>
 
 #include <gtest/gtest.h>
@@ -148,11 +148,12 @@ TEST(Clip, KeepsThePositionsOfCornersThatNeedNoCut) {
       const SnappedVertex& v = t.snapped.v[i];
       bool found = false;
       for (int k = 0; k < polygon.size; ++k)
-        found = found || (polygon.vertices[k].x_fx8 == v.x_fx8 &&
-                          polygon.vertices[k].y_fx8 == v.y_fx8 &&
-                          polygon.vertices[k].depth == v.depth);
+        found =
+            found || (polygon.vertices[k].x_fx8 == v.x_fx8 &&
+                      polygon.vertices[k].y_fx8 == v.y_fx8 && polygon.vertices[k].depth == v.depth);
       // A polygon of no area may be dropped whole.
-      EXPECT_TRUE(found || polygon.size == 0) << "seed " << seed << " id " << t.id << " corner " << i;
+      EXPECT_TRUE(found || polygon.size == 0)
+          << "seed " << seed << " id " << t.id << " corner " << i;
     }
   });
 }
@@ -208,7 +209,8 @@ TEST(Clip, DepthOfNewVertices) {
   for_each_clipped(20000, kWidth, kHeight, [&](const ProjectedTriangle& t, std::uint64_t seed) {
     const raster::ClippedPolygon polygon = clip(t, kWidth, kHeight);
     for (int i = 0; i < polygon.size; ++i) {
-      // Where all corners have depths in [0, 1] the new ones lie between them, the near plane's at 1.
+      // Where all corners have depths in [0, 1] the new ones lie between them, the near plane's
+      // at 1.
       EXPECT_LE(polygon.vertices[i].depth, 1.0F) << "seed " << seed << " id " << t.id;
       ++checked;
     }

@@ -386,6 +386,25 @@ constexpr std::array kKinds = {
     Kind{"edge_on", edge_on},
 };
 
+// Normals and colours, now and then, by the positions' numbers or with numbers of their own.
+void add_attributes(Maker& m) {
+  Random& r = m.random;
+  const auto fill = [&](auto& attribute, auto value) {
+    if (!r.chance(0.5)) return;
+    const bool own = r.chance(0.5) && !m.mesh.indices.empty();
+    const std::size_t n = own ? 7 : m.mesh.positions.size();
+    for (std::size_t i = 0; i < n; ++i) attribute.values.push_back(value());
+    if (own)
+      for (std::size_t i = 0; i < m.mesh.indices.size(); ++i)
+        attribute.indices.push_back(static_cast<std::uint32_t>(r.integer(0, 6)));
+  };
+  fill(m.mesh.normals, [&] { return random_vector(r, 1); });
+  fill(m.mesh.colors, [&] {
+    const Vec3 c = random_vector(r, 0.5) + Vec3{0.5F, 0.5F, 0.5F};
+    return Vec4{c.x, c.y, c.z, 1};
+  });
+}
+
 Mat4d random_placement(Random& r) {
   // A rotation about a random axis, unequal scales (now and then a mirror image), a shift.
   const Vec3 a = normalize(random_vector(r, 1) + Vec3{0, 0.01F, 0});
@@ -412,6 +431,7 @@ GeneratedScene generate(std::uint64_t seed, int width, int height) {
   Maker m{Random(seed * 0x2545F4914F6CDD1DU + 1), width, height, {}, {}};
   m.camera = random_camera(m.random);
   kind.make(m);
+  add_attributes(m);
   GeneratedScene out{kind.name, single(std::move(m.mesh)), m.camera};
   // Now and then the same mesh stands in the scene again, elsewhere.
   if (out.scene.triangle_count() <= 60 && m.random.chance(0.3))
