@@ -22,7 +22,8 @@ function(rastrum_dependencies out)
   get_target_property(links rastrum LINK_LIBRARIES)
   set(calls "")
   foreach(link IN LISTS links)
-    if(link MATCHES "BUILD_INTERFACE")
+    # "::@(…)" marks the folder whose CMakeLists.txt linked the library that follows.
+    if(link MATCHES "BUILD_INTERFACE|^::@")
       continue()
     elseif(NOT link MATCHES "^([A-Za-z_]+)::")
       message(FATAL_ERROR "rastrum links '${link}', which is no imported target: an installed "

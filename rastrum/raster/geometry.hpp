@@ -9,6 +9,7 @@
 
 #include <rastrum/core/image.hpp>
 #include <rastrum/raster/clip.hpp>
+#include <rastrum/raster/color.hpp>
 #include <rastrum/raster/options.hpp>
 #include <rastrum/raster/piece.hpp>
 #include <rastrum/raster/projection.hpp>
@@ -70,11 +71,6 @@ class FragmentTest {
   /// The subset of `block.mask` that is kept.
   [[nodiscard]] virtual std::uint64_t test(const FrameGeometry& frame, const Piece& piece,
                                            const Block& block) const noexcept = 0;
-};
-
-/// Colours of a block, one plane a channel: bit / element 8 · row + column. Premultiplied.
-struct alignas(64) BlockColors {
-  float r[64], g[64], b[64], a[64];
 };
 
 /// Shades the visible surface of a block. Thread-safe.

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include <rastrum/core/mat.hpp>
+#include <rastrum/raster/color.hpp>
 #include <rastrum/raster/options.hpp>
 #include <rastrum/raster/piece.hpp>
 #include <rastrum/raster/projection.hpp>
@@ -64,6 +65,10 @@ struct Kernels {
   /// The atomic sink on words that the caller owns: maximum at every covered sample.
   void (*maximum)(const Piece* pieces, const Block* blocks, std::size_t n, Rect bin,
                   std::uint64_t* words) noexcept;
+
+  /// A whole block of opaque surfaces as 8-bit colours; `background` where words are 0.
+  void (*store_opaque)(const BlockColors& colors, const std::uint64_t (&words)[64],
+                       Rgba8 background, Rgba8* out, std::ptrdiff_t stride) noexcept;
 };
 
 /// The best table at or below `isa` that was compiled for this architecture.

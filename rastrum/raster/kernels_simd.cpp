@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <bit>
 
+#include <rastrum/raster/color.hpp>
 #include <rastrum/raster/coverage.hpp>
 #include <rastrum/raster/kernels_simd.hpp>
 
@@ -464,9 +465,39 @@ void maximum(const Piece* pieces, const Block* blocks, std::size_t n, Rect bin,
   }
 }
 
+// ----------------------------------------------------------------------------------- store_opaque
+
+HWY_INLINE hn::Vec<U32> quantize_lanes(const float* c) {
+  const F32 d;
+  const F v = hn::Load(d, c);
+  const F low = hn::IfThenElseZero(hn::Gt(v, hn::Zero(d)), v);
+  const F clamped = hn::Min(low, hn::Set(d, 1.0F));
+  return hn::BitCast(U32{}, hn::NearestInt(hn::Mul(clamped, hn::Set(d, 255.0F))));
+}
+
+void store_opaque(const BlockColors& colors, const std::uint64_t (&words)[64], Rgba8 background,
+                  Rgba8* out, std::ptrdiff_t stride) noexcept {
+  const U32 d;
+  const auto behind = hn::Set(d, std::bit_cast<std::uint32_t>(background));
+  for (int row = 0; row < kBlockSize; ++row)
+    for (std::size_t part = 0; part < 8; part += kLanes) {
+      const std::size_t i = static_cast<std::size_t>(row) * 8 + part;
+      auto pixel =
+          hn::Or(quantize_lanes(colors.r + i), hn::ShiftLeft<8>(quantize_lanes(colors.g + i)));
+      pixel = hn::Or(pixel, hn::ShiftLeft<16>(quantize_lanes(colors.b + i)));
+      pixel = hn::Or(pixel, hn::Set(d, 0xff000000U));
+      // The upper half of a word is 0 only where the depth is 0, so both halves decide.
+      HWY_ALIGN std::uint32_t covered[kLanes];
+      for (std::size_t lane = 0; lane < kLanes; ++lane) covered[lane] = words[i + lane] != 0;
+      const auto empty = hn::Eq(hn::Load(d, covered), hn::Zero(d));
+      hn::StoreU(hn::IfThenElse(empty, behind, pixel), d,
+                 reinterpret_cast<std::uint32_t*>(out + row * stride + static_cast<int>(part)));
+    }
+}
+
 // Referred to by the table below through its address.
 extern const Kernels kTable;
-const Kernels kTable{project, setup, cover, maximum};
+const Kernels kTable{project, setup, cover, maximum, store_opaque};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace rastrum::raster

@@ -6,20 +6,87 @@
 #include <string>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/raster/kernels.hpp>
 
 namespace rastrum::raster {
 namespace {
 
-std::uint8_t quantize(float c) {
-  const float clamped = c > 0 ? (c < 1 ? c : 1.0F) : 0.0F;
-  return static_cast<std::uint8_t>(std::nearbyint(clamped * 255.0F));
+/// The part of the image that a block covers.
+struct Window {
+  int x0, y0, columns, rows;
+  [[nodiscard]] bool whole() const { return columns == kBlockSize && rows == kBlockSize; }
+};
+
+int count_covered(const std::uint64_t (&words)[64], const Window& w) {
+  int covered = 0;
+  if (w.whole()) {
+    for (const std::uint64_t word : words) covered += word != 0;
+    return covered;
+  }
+  for (int y = 0; y < w.rows; ++y)
+    for (int x = 0; x < w.columns; ++x) covered += words[y * kBlockSize + x] != 0;
+  return covered;
 }
 
-Rgba8 to_straight_rgba8(Vec4 premultiplied) {
-  const float a = premultiplied.w;
-  const float scale = a > 0 && a != 1 ? 1 / a : 1.0F;
-  return {quantize(premultiplied.x * scale), quantize(premultiplied.y * scale),
-          quantize(premultiplied.z * scale), quantize(a)};
+bool all_opaque(const BlockColors& colors, const std::uint64_t (&words)[64]) {
+  bool opaque = true;
+  for (int i = 0; i < 64; ++i) opaque &= words[i] == 0 || colors.a[i] == 1;
+  return opaque;
+}
+
+/// Every case: float targets, translucent colours, blocks cut by the image's edge.
+void store_colors(const FrameRequest& request, const BlockColors& colors,
+                  const std::uint64_t (&words)[64], const Window& w, bool wants_8_bit) {
+  const Vec4 b = request.background;
+  const Vec4 background{b.x * b.w, b.y * b.w, b.z * b.w, b.w};
+  for (int y = 0; y < w.rows; ++y)
+    for (int x = 0; x < w.columns; ++x) {
+      const int i = y * kBlockSize + x;
+      Vec4 color = background;
+      if (words[i] != 0)
+        color = Vec4{colors.r[i], colors.g[i], colors.b[i], colors.a[i]} +
+                background * (1 - colors.a[i]);
+      if (wants_8_bit) request.targets.color8(w.x0 + x, w.y0 + y) = to_straight_rgba8(color);
+      if (!request.targets.color.empty()) request.targets.color(w.x0 + x, w.y0 + y) = color;
+    }
+}
+
+void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
+                    const std::uint64_t (&words)[64], const Window& w, int covered) {
+  const Targets& targets = request.targets;
+  const Vec4 b = request.background;
+  const Rgba8 background = to_straight_rgba8({b.x * b.w, b.y * b.w, b.z * b.w, b.w});
+  bool wants_8_bit = !targets.color8.empty();
+  if (covered == 0 && wants_8_bit) {
+    for (int y = 0; y < w.rows; ++y)
+      std::fill_n(targets.color8.row(w.y0 + y) + w.x0, w.columns, background);
+    wants_8_bit = false;
+  }
+  BlockColors colors;
+  if (covered != 0) {
+    request.shader->shade(frame, words, w.x0, w.y0, request.isa, colors);
+    if (wants_8_bit && w.whole() && all_opaque(colors, words)) {
+      kernels(request.isa)
+          .store_opaque(colors, words, background, &targets.color8(w.x0, w.y0),
+                        targets.color8.stride);
+      wants_8_bit = false;
+    }
+  }
+  if (wants_8_bit || !targets.color.empty()) store_colors(request, colors, words, w, wants_8_bit);
+}
+
+void store_ids_and_depth(const Targets& targets, const std::uint64_t (&words)[64],
+                         const Window& w) {
+  for (int y = 0; y < w.rows; ++y)
+    for (int x = 0; x < w.columns; ++x) {
+      const std::uint64_t word = words[y * kBlockSize + x];
+      if (!targets.depth.empty())
+        targets.depth(w.x0 + x, w.y0 + y) =
+            std::bit_cast<float>(static_cast<std::uint32_t>(word >> kIdBits));
+      if (!targets.ids.empty())
+        targets.ids(w.x0 + x, w.y0 + y) =
+            word == 0 ? -1 : static_cast<std::int64_t>(id_of_word(word));
+    }
 }
 
 }  // namespace
@@ -27,37 +94,12 @@ Rgba8 to_straight_rgba8(Vec4 premultiplied) {
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame,
                   const std::uint64_t (&words)[64], int x0, int y0) noexcept {
   const Targets& targets = request.targets;
-  const int columns = std::min(kBlockSize, request.width - x0);
-  const int rows = std::min(kBlockSize, request.height - y0);
-  int covered = 0;
-  for (int y = 0; y < rows; ++y)
-    for (int x = 0; x < columns; ++x) covered += words[y * kBlockSize + x] != 0;
-
-  const bool wants_color = !targets.color8.empty() || !targets.color.empty();
-  BlockColors colors;
-  if (wants_color && covered != 0) request.shader->shade(frame, words, x0, y0, request.isa, colors);
-  const Vec4 b = request.background;
-  const Vec4 background{b.x * b.w, b.y * b.w, b.z * b.w, b.w};
-
-  for (int y = 0; y < rows; ++y)
-    for (int x = 0; x < columns; ++x) {
-      const int i = y * kBlockSize + x;
-      const std::uint64_t word = words[i];
-      if (wants_color) {
-        Vec4 color = background;
-        if (word != 0) {
-          const float through = 1 - colors.a[i];
-          color = Vec4{colors.r[i], colors.g[i], colors.b[i], colors.a[i]} + background * through;
-        }
-        if (!targets.color8.empty()) targets.color8(x0 + x, y0 + y) = to_straight_rgba8(color);
-        if (!targets.color.empty()) targets.color(x0 + x, y0 + y) = color;
-      }
-      if (!targets.depth.empty())
-        targets.depth(x0 + x, y0 + y) =
-            std::bit_cast<float>(static_cast<std::uint32_t>(word >> kIdBits));
-      if (!targets.ids.empty())
-        targets.ids(x0 + x, y0 + y) = word == 0 ? -1 : static_cast<std::int64_t>(id_of_word(word));
-    }
+  const Window window{x0, y0, std::min(kBlockSize, request.width - x0),
+                      std::min(kBlockSize, request.height - y0)};
+  const int covered = count_covered(words, window);
+  if (!targets.color8.empty() || !targets.color.empty())
+    resolve_colors(request, frame, words, window, covered);
+  if (!targets.depth.empty() || !targets.ids.empty()) store_ids_and_depth(targets, words, window);
   return covered;
 }
 

@@ -20,6 +20,7 @@ enum class LitModel : std::uint8_t { flat, depth, normal, id, lambert, phong, wi
 struct LitDraw {
   MeshView mesh;
   float normal_matrix[3][3];  ///< object to world, inverse transpose
+  bool identity = false;      ///< normal_matrix is a multiple of the identity
 };
 
 /// The direction to the viewer at pixel centre (x, y), not normalized: −(d + x · dx + y · dy).
@@ -33,6 +34,7 @@ struct ViewRays {
 struct LitScene {
   std::vector<LitDraw> draws;
   ViewRays rays;
+  bool colored = false;  ///< some draw has colours of its own
   LitScene(const SceneView& scene, const Camera& camera, int width, int height);
 };
 
