@@ -19,25 +19,25 @@
 namespace rastrum::test {
 namespace {
 
-struct Setup {
+struct Variant {
   int width, height;
   Shader shader;
   Cull cull;
 };
 
 // Sizes around the block (8), the bin (64) and the single pixel.
-constexpr Setup kSetups[] = {
+constexpr Variant kVariants[] = {
     {64, 64, Shader::phong, Cull::none},    {37, 53, Shader::flat, Cull::none},
     {128, 96, Shader::normal, Cull::back},  {1, 1, Shader::id, Cull::none},
     {8, 8, Shader::depth, Cull::front},     {100, 20, Shader::wireframe, Cull::none},
     {17, 128, Shader::lambert, Cull::none}, {65, 33, Shader::phong, Cull::back},
 };
 
-class Family : public testing::TestWithParam<Setup> {};
+class Family : public testing::TestWithParam<Variant> {};
 
 TEST_P(Family, EqualsSerialAndTheOracle) {
   const ThreadsBeyondCores eight(8);
-  const Setup setup = GetParam();
+  const Variant setup = GetParam();
   RenderOptions base;
   base.width = setup.width;
   base.height = setup.height;
@@ -49,7 +49,7 @@ TEST_P(Family, EqualsSerialAndTheOracle) {
   for (const Relative& r : family) renderers.emplace_back(r.options);
 
   const int all = count_from_environment("RASTRUM_FAMILY_SCENES", 10000);
-  const int scenes = std::max(all / static_cast<int>(std::size(kSetups)), kSceneKinds);
+  const int scenes = std::max(all / static_cast<int>(std::size(kVariants)), kSceneKinds);
   std::map<std::string, std::uint64_t> fragments_of_kind;
   int failures = 0;
   for (int i = 0; i < scenes; ++i) {
@@ -76,20 +76,25 @@ TEST_P(Family, EqualsSerialAndTheOracle) {
       EXPECT_TRUE(same_picture(frame, serial, 1)) << pair;
       // One instruction set, one picture: the first member with a set stands for it.
       const auto [entry, is_first] = picture_of.try_emplace(*family[k].options.isa, frame);
-      if (!is_first) EXPECT_TRUE(same_picture(frame, entry->second, 0)) << pair;
+      if (!is_first) {
+        EXPECT_TRUE(same_picture(frame, entry->second, 0)) << pair;
+      }
     }
     if (HasFailure() && ++failures == 3) FAIL() << "three scenes failed; the rest was not drawn";
   }
   // No kind of scene may have become invisible.
-  if (setup.width > 8)
-    for (const auto& [kind, fragments] : fragments_of_kind) EXPECT_GT(fragments, 0U) << kind;
+  for (const auto& [kind, fragments] : fragments_of_kind) {
+    if (setup.width > 8) {
+      EXPECT_GT(fragments, 0U) << kind;
+    }
+  }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sizes, Family, testing::ValuesIn(kSetups),
-                         [](const testing::TestParamInfo<Setup>& info) {
-                           return std::to_string(info.param.width) + "x" +
-                                  std::to_string(info.param.height) + "_" +
-                                  std::string(name(info.param.shader));
+INSTANTIATE_TEST_SUITE_P(Sizes, Family, testing::ValuesIn(kVariants),
+                         [](const testing::TestParamInfo<Variant>& p) {
+                           return std::to_string(p.param.width) + "x" +
+                                  std::to_string(p.param.height) + "_" +
+                                  std::string(name(p.param.shader));
                          });
 
 }  // namespace

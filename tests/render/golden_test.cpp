@@ -64,8 +64,8 @@ TEST_P(Golden, Picture) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, Golden, testing::ValuesIn(kPictures),
-                         [](const testing::TestParamInfo<Picture>& info) {
-                           return std::string(info.param.name);
+                         [](const testing::TestParamInfo<Picture>& p) {
+                           return std::string(p.param.name);
                          });
 
 }  // namespace

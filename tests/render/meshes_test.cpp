@@ -84,8 +84,8 @@ constexpr const char* kFiles[] = {
 };
 
 INSTANTIATE_TEST_SUITE_P(Shared, Meshes, testing::ValuesIn(kFiles),
-                         [](const testing::TestParamInfo<const char*>& info) {
-                           std::string name = std::filesystem::path(info.param).stem().string();
+                         [](const testing::TestParamInfo<const char*>& p) {
+                           std::string name = std::filesystem::path(p.param).stem().string();
                            for (char& c : name)
                              if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
                            return name;
