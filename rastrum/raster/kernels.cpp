@@ -40,7 +40,7 @@ SetupOutput setup_scalar(const SetupInput& in, Piece* pieces, std::uint32_t* slo
 }
 
 std::size_t cover_scalar(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
-                         std::size_t capacity) noexcept {
+                         std::size_t capacity, std::uint64_t& fragments) noexcept {
   std::size_t n = 0;
   for (; cursor < in.count && n + kBlocksPerBin <= capacity; ++cursor) {
     const std::uint32_t index = in.list[cursor];
@@ -49,9 +49,10 @@ std::size_t cover_scalar(const PieceList& in, std::size_t& cursor, Rect bin, Blo
     if (box.empty()) continue;
     for (int by = box.y0 / kBlockSize; by <= (box.y1 - 1) / kBlockSize; ++by)
       for (int bx = box.x0 / kBlockSize; bx <= (box.x1 - 1) / kBlockSize; ++bx) {
-        const std::uint64_t mask = cover_8x8(piece, bx, by);
-        if (mask != 0)
-          out[n++] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
+        const std::uint64_t mask = cover_8x8(piece, bx, by) & samples_inside(bin, bx, by);
+        if (mask == 0) continue;
+        out[n++] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
+        fragments += static_cast<std::uint64_t>(std::popcount(mask));
       }
   }
   return n;
