@@ -62,8 +62,13 @@ TEST_P(Family, EqualsSerialAndTheOracle) {
     const PieceList pieces =
         pieces_of(binding.view(), g.camera, setup.width, setup.height, setup.cull);
     const OracleImage oracle = brute_force(setup.width, setup.height, pieces.triangles);
-    EXPECT_TRUE(same_surfaces(serial, oracle)) << "serial and the oracle";
-    EXPECT_TRUE(counts_add_up(serial));
+    bool good = true;
+    const auto expect = [&good](const testing::AssertionResult& r, const std::string& what) {
+      EXPECT_TRUE(r) << what;
+      good = good && r;
+    };
+    expect(same_surfaces(serial, oracle), "serial and the oracle");
+    expect(counts_add_up(serial), "serial");
     EXPECT_EQ(serial.stats.triangles.input, pieces.input);
     EXPECT_EQ(serial.stats.triangles.dropped, pieces.dropped);
     fragments_of_kind[g.kind] += oracle.fragments();
@@ -71,16 +76,14 @@ TEST_P(Family, EqualsSerialAndTheOracle) {
     for (std::size_t k = 1; k < family.size(); ++k) {
       const Frame frame = draw(renderers[k], binding.view(), g.camera);
       const std::string pair = family[k].name + " and serial";
-      EXPECT_TRUE(same_surfaces(frame, serial)) << pair;
-      EXPECT_TRUE(same_counts(frame.stats, serial.stats)) << pair;
-      EXPECT_TRUE(same_picture(frame, serial, 1)) << pair;
+      expect(same_surfaces(frame, serial), pair);
+      expect(same_counts(frame.stats, serial.stats), pair);
+      expect(same_picture(frame, serial, 1), pair);
       // One instruction set, one picture: the first member with a set stands for it.
       const auto [entry, is_first] = picture_of.try_emplace(*family[k].options.isa, frame);
-      if (!is_first) {
-        EXPECT_TRUE(same_picture(frame, entry->second, 0)) << pair;
-      }
+      if (!is_first) expect(same_picture(frame, entry->second, 0), family[k].name + " and its set");
     }
-    if (HasFailure() && ++failures == 3) FAIL() << "three scenes failed; the rest was not drawn";
+    if (!good && ++failures == 3) FAIL() << "three scenes failed; the rest was not drawn";
   }
   // No kind of scene may have become invisible.
   for (const auto& [kind, fragments] : fragments_of_kind) {
