@@ -59,9 +59,9 @@ Heatmap make_heatmap(ImageView<const std::uint32_t> overdraw) {
   for (int y = 0; y < overdraw.height; ++y)
     for (int x = 0; x < overdraw.width; ++x) {
       const std::uint32_t n = overdraw(x, y);
-      heatmap.image(x, y) =
-          n == 0 ? Rgba8{0, 0, 0, 255}
-                 : heat_ramp()[static_cast<std::size_t>(ramp_index(n, heatmap.max))];
+      heatmap.image(x, y) = n == 0
+                                ? Rgba8{0, 0, 0, 255}
+                                : heat_ramp()[static_cast<std::size_t>(ramp_index(n, heatmap.max))];
     }
   return heatmap;
 }
