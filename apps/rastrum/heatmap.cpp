@@ -45,7 +45,8 @@ const std::array<Rgba8, kRampSize>& heat_ramp() {
 }
 
 int ramp_index(std::uint32_t n, std::uint32_t max) {
-  const double t = std::log1p(static_cast<double>(n)) / std::log1p(static_cast<double>(max));
+  if (n <= 1) return 0;
+  const double t = std::log(static_cast<double>(n)) / std::log(static_cast<double>(max));
   return static_cast<int>(std::lround(t * (kRampSize - 1)));
 }
 

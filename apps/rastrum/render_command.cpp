@@ -237,8 +237,7 @@ void check(const RenderArguments& a) {
   check_outputs(outputs);
 }
 
-void report_warnings(const Scene& scene, const FrameStats& frame) {
-  for (const std::string& w : scene.warnings) warn(w);
+void report_missing(const FrameStats& frame) {
   if (frame.triangles.input == 0) warn("there are no triangles to draw");
   if (frame.triangles.dropped != 0)
     warn(std::to_string(frame.triangles.dropped) + " of " + std::to_string(frame.triangles.input) +
@@ -261,7 +260,7 @@ void write_images(const RenderArguments& a, const Pictures& p, Timeline& timelin
     progress.clear();
     if (!a.quiet)
       std::fprintf(stderr,
-                   "heatmap: black 0, violet 1, light yellow %lu fragments at a pixel, "
+                   "heatmap: black 0, dark violet 1, light yellow %lu fragments at a pixel, "
                    "logarithmic; %lu fragments in all\n",
                    static_cast<unsigned long>(heatmap.max),
                    static_cast<unsigned long>(heatmap.sum));
@@ -278,6 +277,10 @@ int run(RenderArguments& a) {
   const double load_begin = timeline.now_ms();
   const Scene scene = load_inputs(a.inputs, a.normals, timeline, progress);
   const double load_ms = timeline.now_ms() - load_begin;
+  if (!a.quiet && !scene.warnings.empty()) {
+    progress.clear();
+    for (const std::string& w : scene.warnings) warn(w);
+  }
   if (!a.shader_given && !scene.materials.empty()) {
     a.render.shader = Shader::material;
     renderer = std::make_unique<Renderer>(a.render);
@@ -296,7 +299,7 @@ int run(RenderArguments& a) {
       *renderer, binding.view(), camera, wanted, timed, a.frames, pictures, timeline, progress);
   const FrameStats& median = frames[median_frame(frames)];
   progress.clear();
-  if (!a.quiet) report_warnings(scene, median);
+  if (!a.quiet) report_missing(median);
 
   write_images(a, pictures, timeline, progress);
   progress.clear();

@@ -72,6 +72,10 @@ Camera choose_camera(const ViewOptions& o, const Scene& scene, const SceneView& 
   if (o.far_plane) camera.far_plane = static_cast<float>(*o.far_plane);
   if (camera.eye == camera.target)
     throw UsageError(o.target ? "--target" : "--eye", "eye and target must differ");
+  const Vec3 towards = camera.target - camera.eye;
+  if (length(cross(camera.up, towards)) == 0)
+    throw UsageError("--up", o.up ? "must not be zero or along the view direction"
+                                  : "is needed: the camera looks along 0,1,0; try --up 0,0,-1");
   if (!(camera.near_plane < camera.far_plane))
     throw UsageError(o.far_plane ? "--far" : "--near", "the near plane (" +
                                                            std::to_string(camera.near_plane) +
