@@ -76,17 +76,23 @@ void maximum_scalar(const Piece* pieces, const Block* blocks, std::size_t n, Rec
   }
 }
 
-void store_opaque_scalar(const BlockColors& colors, const std::uint64_t (&words)[64],
-                         Rgba8 background, Rgba8* out, std::ptrdiff_t stride) noexcept {
+std::uint64_t covered_scalar(const std::uint64_t* words) noexcept {
+  std::uint64_t mask = 0;
+  for (int i = 0; i < 64; ++i) mask |= std::uint64_t{words[i] != 0} << i;
+  return mask;
+}
+
+void store_opaque_scalar(const BlockColors& colors, std::uint64_t covered, Rgba8 background,
+                         Rgba8* out, std::ptrdiff_t stride) noexcept {
   for (int i = 0; i < 64; ++i)
     out[i / kBlockSize * stride + i % kBlockSize] =
-        words[i] == 0
+        (covered >> i & 1) == 0
             ? background
             : Rgba8{quantize(colors.r[i]), quantize(colors.g[i]), quantize(colors.b[i]), 255};
 }
 
-constexpr Kernels kScalar{project_scalar, setup_scalar, cover_scalar, maximum_scalar,
-                          store_opaque_scalar};
+constexpr Kernels kScalar{project_scalar, setup_scalar,   cover_scalar,
+                          maximum_scalar, covered_scalar, store_opaque_scalar};
 
 }  // namespace
 

@@ -67,9 +67,12 @@ struct Kernels {
   void (*maximum)(const Piece* pieces, const Block* blocks, std::size_t n, Rect bin,
                   std::uint64_t* words) noexcept;
 
-  /// A whole block of opaque surfaces as 8-bit colours; `background` where words are 0.
-  void (*store_opaque)(const BlockColors& colors, const std::uint64_t (&words)[64],
-                       Rgba8 background, Rgba8* out, std::ptrdiff_t stride) noexcept;
+  /// Which of 64 words are not 0.
+  std::uint64_t (*covered)(const std::uint64_t* words) noexcept;
+
+  /// A whole block of opaque colours in 8 bits, `background` where nothing is covered.
+  void (*store_opaque)(const BlockColors& colors, std::uint64_t covered, Rgba8 background,
+                       Rgba8* out, std::ptrdiff_t stride) noexcept;
 };
 
 /// The best table at or below `isa` that was compiled for this architecture.

@@ -578,8 +578,15 @@ HWY_INLINE hn::Vec<U32> quantize_lanes(const float* c) {
   return hn::BitCast(U32{}, hn::NearestInt(hn::Mul(clamped, hn::Set(d, 255.0F))));
 }
 
-void store_opaque(const BlockColors& colors, const std::uint64_t (&words)[64], Rgba8 background,
-                  Rgba8* out, std::ptrdiff_t stride) noexcept {
+/// Lanes of the low bits of `bits`.
+HWY_INLINE hn::Mask<U32> lane_mask(std::uint64_t bits) {
+  // LoadMaskBits reads whole bytes.
+  const std::uint8_t memory[8] = {static_cast<std::uint8_t>(bits & ((1U << kLanes) - 1))};
+  return hn::LoadMaskBits(U32{}, memory);
+}
+
+void store_opaque(const BlockColors& colors, std::uint64_t covered, Rgba8 background, Rgba8* out,
+                  std::ptrdiff_t stride) noexcept {
   const U32 d;
   const auto behind = hn::Set(d, std::bit_cast<std::uint32_t>(background));
   for (int row = 0; row < kBlockSize; ++row)
@@ -589,18 +596,25 @@ void store_opaque(const BlockColors& colors, const std::uint64_t (&words)[64], R
           hn::Or(quantize_lanes(colors.r + i), hn::ShiftLeft<8>(quantize_lanes(colors.g + i)));
       pixel = hn::Or(pixel, hn::ShiftLeft<16>(quantize_lanes(colors.b + i)));
       pixel = hn::Or(pixel, hn::Set(d, 0xff000000U));
-      // The upper half of a word is 0 only where the depth is 0, so both halves decide.
-      HWY_ALIGN std::uint32_t covered[kLanes];
-      for (std::size_t lane = 0; lane < kLanes; ++lane) covered[lane] = words[i + lane] != 0;
-      const auto empty = hn::Eq(hn::Load(d, covered), hn::Zero(d));
-      hn::StoreU(hn::IfThenElse(empty, behind, pixel), d,
+      hn::StoreU(hn::IfThenElse(lane_mask(covered >> i), pixel, behind), d,
                  reinterpret_cast<std::uint32_t*>(out + row * stride + static_cast<int>(part)));
     }
 }
 
+std::uint64_t covered(const std::uint64_t* words) noexcept {
+  const hn::RebindToUnsigned<I64> d;
+  std::uint64_t mask = 0;
+  for (std::size_t i = 0; i < 64; i += kLanes64) {
+    std::uint8_t empty = 0;
+    hn::StoreMaskBits(d, hn::Eq(hn::Load(d, words + i), hn::Zero(d)), &empty);
+    mask |= static_cast<std::uint64_t>(~empty & ((1U << kLanes64) - 1)) << i;
+  }
+  return mask;
+}
+
 // Referred to by the table below through its address.
 extern const Kernels kTable;
-const Kernels kTable{project, setup, cover, maximum, store_opaque};
+const Kernels kTable{project, setup, cover, maximum, covered, store_opaque};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace rastrum::raster

@@ -204,8 +204,7 @@ BinCounts draw_bin(const FrameRequest& request, const FrameGeometry& frame, cons
     for (int bx = 0; bx < kBlocksPerBinRow; ++bx) {
       const int x0 = rect.x0 + bx * kBlockSize, y0 = rect.y0 + by * kBlockSize;
       if (x0 >= rect.x1 || y0 >= rect.y1) continue;
-      const auto& words = *reinterpret_cast<const std::uint64_t(*)[64]>(
-          scratch.words + (by * kBlocksPerBinRow + bx) * 64);
+      const std::uint64_t* words = scratch.words + (by * kBlocksPerBinRow + bx) * 64;
       counts.covered += static_cast<std::uint64_t>(resolve_block(request, frame, words, x0, y0));
     }
   return counts;

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace rastrum::shapes {
@@ -39,25 +40,33 @@ namespace marching_cubes_detail {
 inline constexpr int kFaces[6][4] = {{0, 4, 6, 2}, {5, 1, 3, 7}, {0, 1, 5, 4},
                                      {6, 7, 3, 2}, {1, 0, 2, 3}, {4, 5, 7, 6}};
 
+/// The inverse of edge_start: the corners differ in one bit, and the other two are the edge's k.
 constexpr int edge_between(int a, int b) {
-  for (int edge = 0; edge < 12; ++edge) {
-    const int start = edge_start(edge), end = start | 1 << edge / 4;
-    if ((a == start && b == end) || (a == end && b == start)) return edge;
+  const int both = a & b;
+  switch (a ^ b) {
+    case 1:
+      return both >> 1;
+    case 2:
+      return 4 + ((both & 1) | (both >> 1 & 2));
+    default:
+      return 8 + both;
   }
-  return -1;
 }
 
+/// Bit f for each of the two faces on which an edge lies.
+constexpr std::array<unsigned, 12> faces_of_edges() {
+  std::array<unsigned, 12> faces{};
+  for (unsigned f = 0; f < 6; ++f)
+    for (int i = 0; i < 4; ++i)
+      faces[static_cast<std::size_t>(edge_between(kFaces[f][i], kFaces[f][(i + 1) % 4]))] |= 1U
+                                                                                             << f;
+  return faces;
+}
+inline constexpr std::array<unsigned, 12> kFacesOfEdges = faces_of_edges();
+
 constexpr bool share_a_face(int edge_a, int edge_b) {
-  for (const auto& face : kFaces) {
-    bool has_a = false, has_b = false;
-    for (int i = 0; i < 4; ++i) {
-      const int edge = edge_between(face[i], face[(i + 1) % 4]);
-      has_a |= edge == edge_a;
-      has_b |= edge == edge_b;
-    }
-    if (has_a && has_b) return true;
-  }
-  return false;
+  return (kFacesOfEdges[static_cast<std::size_t>(edge_a)] &
+          kFacesOfEdges[static_cast<std::size_t>(edge_b)]) != 0;
 }
 
 constexpr int fan_apex(const int* loop, int length) {
