@@ -33,9 +33,7 @@ struct ImageView {
   [[nodiscard]] T* row(int y) const { return data + y * stride; }
   [[nodiscard]] T& operator()(int x, int y) const { return data[y * stride + x]; }
   /// To read what may also be written.
-  operator ImageView<const T>() const
-    requires(!std::is_const_v<T>)
-  {
+  operator ImageView<const T>() const requires(!std::is_const_v<T>) {
     return {data, width, height, stride};
   }
 };

@@ -55,9 +55,9 @@ TEST_F(Options, CameraOfOnesOwn) {
   camera.fov_rad = static_cast<float>(35 * std::acos(-1.0) / 180);
   camera.near_plane = 0.75F;
   camera.far_plane = 40;
-  const std::vector<std::string> given{"--eye",        "-3,2.5,4", "--target", "0.25,0.5,-0.125",
-                                       "--up",         "0.5,1,0",  "--fov",    "35",
-                                       "--near",       "0.75",     "--far",    "40"};
+  const std::vector<std::string> given{"--eye",  "-3,2.5,4", "--target", "0.25,0.5,-0.125",
+                                       "--up",   "0.5,1,0",  "--fov",    "35",
+                                       "--near", "0.75",     "--far",    "40"};
   render_.shader = Shader::depth;  // also shows the planes
   auto with_depth = given;
   with_depth.insert(with_depth.end(), {"--shader", "depth"});
@@ -99,8 +99,8 @@ TEST_F(Options, Cull) {
   const std::vector<std::string> eye{"--eye", "3,2,5", "--stats", "s.json", "--cull"};
   std::vector<std::uint64_t> drawn;
   for (const std::string cull : {"none", "back", "front"}) {
-    std::vector<std::string> args{"render", "builtin:boxes?count=1", "-o", cull + ".png",
-                                  "--size", "64x64"};
+    std::vector<std::string> args{"render", "builtin:boxes?count=1", "-o", cull + ".png", "--size",
+                                  "64x64"};
     args.insert(args.end(), eye.begin(), eye.end());
     args.push_back(cull);
     must(args);
@@ -194,8 +194,8 @@ TEST_F(Options, ADeviceThatIsNotHereSaysSo) {
 
 TEST_F(Options, QuietIsQuiet) {
   write("nan.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 1 1\nf 1 2 3\nf 2 3 4\n");
-  const std::vector<std::string> args{"render", "nan.obj",   "-o",    "p.png",
-                                      "--size", "16x16",     "--heatmap", "h.png"};
+  const std::vector<std::string> args{"render", "nan.obj", "-o",        "p.png",
+                                      "--size", "16x16",   "--heatmap", "h.png"};
   const std::string said = must(args);
   EXPECT_NE(said.find("warning: 1 of 2 triangles have a NaN"), std::string::npos) << said;
   EXPECT_NE(said.find("heatmap: "), std::string::npos);

@@ -143,9 +143,11 @@ std::vector<std::vector<float>> Program::exr(const std::string& name,
 }
 
 Drawn draw(const Scene& scene, const Camera& camera, const RenderOptions& options) {
-  Drawn d{Image<Rgba8>(options.width, options.height), Image<Vec4>(options.width, options.height),
+  Drawn d{Image<Rgba8>(options.width, options.height),
+          Image<Vec4>(options.width, options.height),
           Image<float>(options.width, options.height),
-          Image<std::int64_t>(options.width, options.height), {}};
+          Image<std::int64_t>(options.width, options.height),
+          {}};
   const SceneBinding binding(scene);
   Renderer renderer(options);
   d.stats = renderer.render(binding.view(), camera,
