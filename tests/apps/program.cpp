@@ -37,8 +37,8 @@ std::string slurp(const fs::path& file) {
   for (const std::string& a : args) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
   if (::chdir(folder.c_str()) != 0) ::_exit(127);
-  const int o = limits.closed_stdout ? ::open("/dev/full", O_WRONLY)
-                                     : ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  const int o = limits.stdout_full ? ::open("/dev/full", O_WRONLY)
+                                   : ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
   const int e = ::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
   if (o < 0 || e < 0 || ::dup2(o, 1) < 0 || ::dup2(e, 2) < 0) ::_exit(127);
   if (limits.file_bytes >= 0) {

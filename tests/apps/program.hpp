@@ -24,7 +24,7 @@ struct Run {
 /// What the system does to the program.
 struct Limits {
   long file_bytes = -1;  ///< writes beyond it fail, as on a full disk
-  bool closed_stdout = false;
+  bool stdout_full = false;
 };
 
 class Program : public testing::Test {
