@@ -15,4 +15,17 @@ inline constexpr float kSkyMean = (kSky + kGround) / 2, kSkySlope = (kSky - kGro
 inline constexpr float kDielectricF0 = 0.04F;  ///< index of refraction 1.5
 inline constexpr float kMinRoughness = 0.045F;
 
+/// Samples of a block relative to its first pixel's corner, in px.
+struct alignas(64) BlockSamples {
+  float x[64], y[64];
+};
+inline constexpr BlockSamples kSample = [] {
+  BlockSamples s{};
+  for (int i = 0; i < 64; ++i) {
+    s.x[i] = static_cast<float>(i % 8) + 0.5F;
+    s.y[i] = static_cast<float>(i / 8) + 0.5F;
+  }
+  return s;
+}();
+
 }  // namespace rastrum::raster

@@ -1,6 +1,7 @@
-// Materials in lanes: plain loops over the fragments of a block, compiled once per instruction set
-// and vectorized by the compiler. A block is done in two steps: each triangle's run of fragments
-// fills its part of a surface (interpolation and textures), then the whole block is lit at once.
+// Materials in lanes, compiled once per instruction set: plain loops where compilers vectorize
+// them, Highway where they do not (the lights). A block is done in two steps: each triangle's run
+// of fragments fills its part of a surface (interpolation and textures), then the whole block is
+// lit at once.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/shaders/material_simd.cpp"
@@ -19,6 +20,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster {
 namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
 
 /// A triangle that is being shaded.
 struct Triangle {
@@ -292,87 +294,149 @@ HWY_INLINE void fill_surface(const MaterialScene& scene, const Triangle& t, cons
   fill_normals(scene, t, material, run, x0, y0, at, out);
 }
 
-HWY_INLINE float mix(float a, float b, float t) {
-  return a + (b - a) * t;
+using Floats = hn::ScalableTag<float>;
+using F = hn::Vec<Floats>;
+constexpr int kLanes = static_cast<int>(hn::MaxLanes(Floats{}));
+
+struct V3 {
+  F x, y, z;
+};
+
+HWY_INLINE F set(float a) {
+  return hn::Set(Floats{}, a);
 }
-HWY_INLINE Vec3 mix(Vec3 a, Vec3 b, float t) {
-  return a + (b - a) * t;
+HWY_INLINE V3 set(Vec3 a) {
+  return {set(a.x), set(a.y), set(a.z)};
 }
-HWY_INLINE float positive(float a) {
-  return a > 0 ? a : 0.0F;
+HWY_INLINE F load(const float* p) {
+  return hn::Load(Floats{}, p);
 }
-HWY_INLINE float clamp01(float a) {
-  return a > 0 ? (a < 1 ? a : 1.0F) : 0.0F;
+HWY_INLINE V3 load(const float* x, const float* y, const float* z) {
+  return {load(x), load(y), load(z)};
+}
+HWY_INLINE void store(V3 a, float* x, float* y, float* z) {
+  hn::Store(a.x, Floats{}, x);
+  hn::Store(a.y, Floats{}, y);
+  hn::Store(a.z, Floats{}, z);
+}
+HWY_INLINE V3 add(V3 a, V3 b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+HWY_INLINE V3 subtract(V3 a, V3 b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+HWY_INLINE V3 scale(V3 a, F s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+HWY_INLINE V3 product(V3 a, V3 b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+HWY_INLINE F dot(V3 a, V3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+HWY_INLINE F reciprocal_length(V3 a) {
+  return set(1) / hn::Sqrt(dot(a, a));
 }
 
-HWY_INLINE float pow5(float a) {
-  const float a2 = a * a;
+/// NaN becomes the bound.
+HWY_INLINE F at_least(F a, float bound) {
+  return hn::IfThenElse(a > set(bound), a, set(bound));
+}
+HWY_INLINE F at_most(F a, float bound) {
+  return hn::IfThenElse(a < set(bound), a, set(bound));
+}
+HWY_INLINE F clamp01(F a) {
+  return at_most(at_least(a, 0), 1);
+}
+HWY_INLINE F mix(F a, F b, F t) {
+  return a + (b - a) * t;
+}
+HWY_INLINE V3 mix(V3 a, V3 b, F t) {
+  return {mix(a.x, b.x, t), mix(a.y, b.y, t), mix(a.z, b.z, t)};
+}
+
+HWY_INLINE F pow5(F a) {
+  const F a2 = a * a;
   return a2 * a2 * a;
 }
 
+/// srgb_from_linear in lanes, the same bits.
+HWY_INLINE F display(F linear) {
+  const F x = clamp01(linear);
+  const F s2 = hn::Sqrt(x);
+  const F s4 = hn::Sqrt(s2);
+  const F s8 = hn::Sqrt(s4);
+  const F curve = set(kSrgbRoot2) * s2 + set(kSrgbRoot4) * s4 - set(kSrgbRoot8) * s8 -
+                  (set(kSrgbLinear) * x + set(kSrgbConstant));
+  return hn::IfThenElse(x < set(kSrgbKnee), x * set(kSrgbSlope), curve);
+}
+
 struct Reflectance {
-  Vec3 diffuse, f0;
-  float alpha, alpha2;
+  V3 diffuse, f0;
+  F alpha, alpha2;
 };
 
 /// Light of one direction, reflected towards v; n·l ≤ 0 gives nothing.
-HWY_INLINE Vec3 reflect(const Reflectance& s, Vec3 n, Vec3 v, float nv, Vec3 l, float radiance) {
-  const Vec3 half = v + l;
-  const float scale = 1 / std::sqrt(positive(dot(half, half)) + 1e-12F);
-  const float nl = positive(dot(n, l));
-  const float nh = positive(dot(n, half) * scale);
-  const float vh = positive(dot(v, half) * scale);
-  const float lobe = nh * nh * (s.alpha2 - 1) + 1;
-  const float pi_d = s.alpha2 / (lobe * lobe);
-  const float visibility = 0.5F / mix(2 * nl * nv, nl + nv, s.alpha);
-  const Vec3 f = mix(s.f0, Vec3{1, 1, 1}, pow5(clamp01(1 - vh)));
-  const Vec3 diffuse = s.diffuse * (Vec3{1, 1, 1} - f);
-  return (diffuse + f * (pi_d * visibility)) * (nl * radiance);
+HWY_INLINE V3 reflect(const Reflectance& s, V3 n, V3 v, F nv, Vec3 light, float radiance) {
+  const V3 l = set(light);
+  const V3 sum = add(v, l);
+  const V3 half = scale(sum, set(1) / hn::Sqrt(at_least(dot(sum, sum), 1e-12F)));
+  const F nl = at_least(dot(n, l), 0);
+  const F nh = at_least(dot(n, half), 0);
+  const F vh = at_least(dot(v, half), 0);
+  const F lobe = nh * nh * (s.alpha2 - set(1)) + set(1);
+  const F pi_d = s.alpha2 / (lobe * lobe);
+  const F visibility = set(0.5F) / mix(set(2) * nl * nv, nl + nv, s.alpha);
+  const V3 one = set(Vec3{1, 1, 1});
+  const V3 f = mix(s.f0, one, pow5(clamp01(set(1) - vh)));
+  const V3 diffuse = product(s.diffuse, subtract(one, f));
+  return scale(add(diffuse, scale(f, pi_d * visibility)), nl * set(radiance));
+}
+
+HWY_INLINE V3 hemisphere(V3 diffuse, V3 specular, F normal_y, F mirrored_y) {
+  return add(scale(diffuse, set(kSkyMean) + set(kSkySlope) * normal_y),
+             scale(specular, set(kSkyMean) + set(kSkySlope) * mirrored_y));
 }
 
 /// Lights 64 fragments; what lies outside the covered ones does not matter.
 HWY_INLINE void light(const ViewRays& rays, const Surface& s, int x0, int y0, BlockColors& out) {
   const auto& c = s.channel;
-  for (int i = 0; i < 64; ++i) {
-    const float px = static_cast<float>(x0 + i % kBlockSize) + 0.5F;
-    const float py = static_cast<float>(y0 + i / kBlockSize) + 0.5F;
-    const Vec3 towards{-(rays.d.x + rays.dx.x * px + rays.dy.x * py),
-                       -(rays.d.y + rays.dx.y * px + rays.dy.y * py),
-                       -(rays.d.z + rays.dx.z * px + rays.dy.z * py)};
-    const Vec3 v = towards * (1 / std::sqrt(dot(towards, towards)));
-    const Vec3 n{c[Surface::kNormalX][i], c[Surface::kNormalY][i], c[Surface::kNormalZ][i]};
-    const Vec3 base{c[Surface::kBaseR][i], c[Surface::kBaseG][i], c[Surface::kBaseB][i]};
-    const Vec3 emissive{c[Surface::kEmissiveR][i], c[Surface::kEmissiveG][i],
-                        c[Surface::kEmissiveB][i]};
-    const float metallic = clamp01(c[Surface::kMetallic][i]);
-    const float roughness =
-        kMinRoughness + positive(clamp01(c[Surface::kRoughness][i]) - kMinRoughness);
+  for (int i = 0; i < 64; i += kLanes) {
+    const F px = load(kSample.x + i) + set(static_cast<float>(x0));
+    const F py = load(kSample.y + i) + set(static_cast<float>(y0));
+    const V3 away = add(add(set(rays.d), scale(set(rays.dx), px)), scale(set(rays.dy), py));
+    const V3 v = scale(away, set(0) - reciprocal_length(away));
+    const V3 n = load(c[Surface::kNormalX] + i, c[Surface::kNormalY] + i, c[Surface::kNormalZ] + i);
+    const V3 base = load(c[Surface::kBaseR] + i, c[Surface::kBaseG] + i, c[Surface::kBaseB] + i);
+    const F metallic = clamp01(load(c[Surface::kMetallic] + i));
+    const F roughness = at_most(at_least(load(c[Surface::kRoughness] + i), kMinRoughness), 1);
 
     Reflectance surface;
-    surface.diffuse = base * (1 - metallic);
-    surface.f0 = mix(Vec3{kDielectricF0, kDielectricF0, kDielectricF0}, base, metallic);
+    surface.diffuse = scale(base, set(1) - metallic);
+    surface.f0 = mix(set(Vec3{kDielectricF0, kDielectricF0, kDielectricF0}), base, metallic);
     surface.alpha = roughness * roughness;
     surface.alpha2 = surface.alpha * surface.alpha;
+    const F facing = dot(n, v);
+    const F nv = at_least(facing, 1e-4F);
+    V3 color = add(reflect(surface, n, v, nv, kKeyLight, kKeyRadiance),
+                   reflect(surface, n, v, nv, kFillLight, kFillRadiance));
 
-    const float facing = dot(n, v);
-    const float nv = facing > 1e-4F ? facing : 1e-4F;
-    Vec3 color = reflect(surface, n, v, nv, kKeyLight, kKeyRadiance) +
-                 reflect(surface, n, v, nv, kFillLight, kFillRadiance);
+    const V3 f0 = surface.f0;
+    const F smooth = set(1) - roughness;
+    const V3 rise{at_least(smooth - f0.x, 0), at_least(smooth - f0.y, 0),
+                  at_least(smooth - f0.z, 0)};
+    const V3 f = add(f0, scale(rise, pow5(clamp01(set(1) - nv))));
+    const V3 ambient = hemisphere(surface.diffuse, f, n.y, set(2) * facing * n.y - v.y);
+    color = add(color, scale(ambient, load(c[Surface::kOcclusion] + i)));
+    color = add(color, load(c[Surface::kEmissiveR] + i, c[Surface::kEmissiveG] + i,
+                            c[Surface::kEmissiveB] + i));
 
-    const float mirrored_y = 2 * facing * n.y - v.y;
-    const float smooth = 1 - roughness;
-    const Vec3 f0 = surface.f0;
-    const Vec3 rise{positive(smooth - f0.x), positive(smooth - f0.y), positive(smooth - f0.z)};
-    const Vec3 f = f0 + rise * pow5(clamp01(1 - nv));
-    const Vec3 ambient =
-        surface.diffuse * (kSkyMean + kSkySlope * n.y) + f * (kSkyMean + kSkySlope * mirrored_y);
-    color = color + ambient * c[Surface::kOcclusion][i] + emissive;
-
-    const bool unlit = c[Surface::kUnlit][i] != 0;
-    out.r[i] = srgb_from_linear(unlit ? base.x : color.x);
-    out.g[i] = srgb_from_linear(unlit ? base.y : color.y);
-    out.b[i] = srgb_from_linear(unlit ? base.z : color.z);
-    out.a[i] = 1;
+    const auto unlit = load(c[Surface::kUnlit] + i) > set(0);
+    store({display(hn::IfThenElse(unlit, base.x, color.x)),
+           display(hn::IfThenElse(unlit, base.y, color.y)),
+           display(hn::IfThenElse(unlit, base.z, color.z))},
+          out.r + i, out.g + i, out.b + i);
+    hn::Store(set(1), Floats{}, out.a + i);
   }
 }
 
@@ -426,15 +490,11 @@ std::uint64_t alpha_test(const MaterialScene& scene, const FrameGeometry& frame,
   if (material.base_color != nullptr || material.alpha != nullptr) {
     Coordinates at;
     interpolate_texcoords(t, run, at);
-    Texels texels;
-    if (material.base_color != nullptr) {
-      sample(*material.base_color, at, run.n, run.padded, texels);
-      multiply(run, texels.a, alpha);
-    }
-    if (material.alpha != nullptr) {
-      sample(*material.alpha, at, run.n, run.padded, texels);
-      multiply(run, texels.r, alpha);
-    }
+    const auto multiply_alpha = [&](int k, float value) HWY_ATTR { alpha[k] *= value; };
+    if (material.base_color != nullptr)
+      sample<AlphaChannel>(*material.base_color, at, run.n, run.padded, multiply_alpha);
+    if (material.alpha != nullptr)
+      sample<RedChannel>(*material.alpha, at, run.n, run.padded, multiply_alpha);
   }
   for (int k = 0; k < run.n; ++k)
     if (alpha[k] < m.alpha_cutoff) mask &= ~(std::uint64_t{1} << run.lane[k]);

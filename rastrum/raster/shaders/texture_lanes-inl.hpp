@@ -39,6 +39,9 @@ struct Texel {
   float r, g, b, a;
 };
 
+HWY_INLINE float mix(float p, float q, float f) {
+  return p + (q - p) * f;
+}
 HWY_INLINE Texel mix(Texel p, Texel q, float f) {
   return {p.r + (q.r - p.r) * f, p.g + (q.g - p.g) * f, p.b + (q.b - p.b) * f,
           p.a + (q.a - p.a) * f};
@@ -99,24 +102,41 @@ HWY_INLINE void levels_of_detail(const MipChain& chain, const Coordinates& at, i
     }
 }
 
-/// Looks textures up with the wrap modes known to edges: a mirrored picture's edge is its own
-/// neighbour, as a clamped one's.
+/// What of a texel is wanted, decoded.
+struct AllChannels {
+  const float* decode;
+  HWY_INLINE Texel operator()(Rgba8 t) const {
+    return {decode[t.r], decode[t.g], decode[t.b], static_cast<float>(t.a) * (1.0F / 255.0F)};
+  }
+};
+struct RedChannel {
+  const float* decode;
+  HWY_INLINE float operator()(Rgba8 t) const { return decode[t.r]; }
+};
+struct AlphaChannel {
+  const float* decode;
+  HWY_INLINE float operator()(Rgba8 t) const { return static_cast<float>(t.a) * (1.0F / 255.0F); }
+};
+
+/// Lookups at folded coordinates. A mirrored picture's edge is its own neighbour, as a clamped
+/// one's.
+template <class Decode>
 class Lookup {
  public:
   explicit Lookup(const MipChain& chain)
-      : decode_(chain.decode),
+      : decode_{chain.decode},
         wrap_u_(chain.wrap_u == Wrap::repeat),
         wrap_v_(chain.wrap_v == Wrap::repeat) {}
 
-  HWY_INLINE Texel nearest(const MipLevel& level, float u, float v) const {
+  HWY_INLINE auto nearest(const MipLevel& level, float u, float v) const {
     std::int32_t x = static_cast<std::int32_t>(u * static_cast<float>(level.width));
     std::int32_t y = static_cast<std::int32_t>(v * static_cast<float>(level.height));
     if (x >= level.width) x = wrap_u_ ? 0 : level.width - 1;
     if (y >= level.height) y = wrap_v_ ? 0 : level.height - 1;
-    return decode(level.texels[y * level.width + x]);
+    return decode_(level.texels[y * level.width + x]);
   }
 
-  HWY_INLINE Texel linear(const MipLevel& level, float u, float v) const {
+  HWY_INLINE auto linear(const MipLevel& level, float u, float v) const {
     const float x = u * static_cast<float>(level.width) - 0.5F;
     const float y = v * static_cast<float>(level.height) - 0.5F;
     std::int32_t x0 = static_cast<std::int32_t>(x + 1) - 1;  // floor, x ≥ −0.5
@@ -129,49 +149,53 @@ class Lookup {
     y1 = y1 >= level.height ? (wrap_v_ ? 0 : level.height - 1) : y1;
     const Rgba8* const top = level.texels + y0 * level.width;
     const Rgba8* const bottom = level.texels + y1 * level.width;
-    return mix(mix(decode(top[x0]), decode(top[x1]), fx),
-               mix(decode(bottom[x0]), decode(bottom[x1]), fx), fy);
+    return mix(mix(decode_(top[x0]), decode_(top[x1]), fx),
+               mix(decode_(bottom[x0]), decode_(bottom[x1]), fx), fy);
   }
 
  private:
-  HWY_INLINE Texel decode(Rgba8 t) const {
-    return {decode_[t.r], decode_[t.g], decode_[t.b], static_cast<float>(t.a) * (1.0F / 255.0F)};
-  }
-  const float* decode_;
+  Decode decode_;
   bool wrap_u_, wrap_v_;
 };
 
-/// The texture at fragments [0, n); the rest of the last group is set, to nothing in particular.
-HWY_INLINE void sample(const MipChain& chain, const Coordinates& at, int n, int padded,
-                       Texels& out) {
+/// Calls out(k, value) for fragments k in [0, n).
+template <class Decode, class Out>
+HWY_INLINE void sample(const MipChain& chain, const Coordinates& at, int n, int padded, Out&& out) {
   alignas(64) float u[64], v[64], lod[64];
   fold_all(chain.wrap_u, at.u, padded, u);
   fold_all(chain.wrap_v, at.v, padded, v);
   levels_of_detail(chain, at, padded, lod);
-  for (int k = padded - kGroup; k < padded; ++k) out.r[k] = out.g[k] = out.b[k] = out.a[k] = 0;
-  const Lookup lookup(chain);
+  const Lookup<Decode> lookup(chain);
   const float last_level = static_cast<float>(chain.levels - 1);
   for (int k = 0; k < n; ++k) {
-    Texel t;
     if (!(lod[k] > 0)) {
-      t = chain.mag == Filter::linear ? lookup.linear(chain.level[0], u[k], v[k])
-                                      : lookup.nearest(chain.level[0], u[k], v[k]);
-    } else {
-      const float level = lod[k] < last_level ? lod[k] : last_level;
-      if (chain.min == Filter::linear) {
-        const int finer = static_cast<int>(level);
-        const float f = level - static_cast<float>(finer);
-        t = lookup.linear(chain.level[finer], u[k], v[k]);
-        if (f > 0) t = mix(t, lookup.linear(chain.level[finer + 1], u[k], v[k]), f);
-      } else {
-        t = lookup.nearest(chain.level[static_cast<int>(level + 0.5F)], u[k], v[k]);
-      }
+      out(k, chain.mag == Filter::linear ? lookup.linear(chain.level[0], u[k], v[k])
+                                         : lookup.nearest(chain.level[0], u[k], v[k]));
+      continue;
     }
+    const float level = lod[k] < last_level ? lod[k] : last_level;
+    if (chain.min == Filter::nearest) {
+      out(k, lookup.nearest(chain.level[static_cast<int>(level + 0.5F)], u[k], v[k]));
+      continue;
+    }
+    const int finer = static_cast<int>(level);
+    const float f = level - static_cast<float>(finer);
+    auto texel = lookup.linear(chain.level[finer], u[k], v[k]);
+    if (f > 0) texel = mix(texel, lookup.linear(chain.level[finer + 1], u[k], v[k]), f);
+    out(k, texel);
+  }
+}
+
+/// All channels; what follows the nth fragment in its group is set, to nothing in particular.
+HWY_INLINE void sample(const MipChain& chain, const Coordinates& at, int n, int padded,
+                       Texels& out) {
+  for (int k = padded - kGroup; k < padded; ++k) out.r[k] = out.g[k] = out.b[k] = out.a[k] = 0;
+  sample<AllChannels>(chain, at, n, padded, [&](int k, Texel t) HWY_ATTR {
     out.r[k] = t.r;
     out.g[k] = t.g;
     out.b[k] = t.b;
     out.a[k] = t.a;
-  }
+  });
 }
 
 }  // namespace HWY_NAMESPACE
