@@ -10,15 +10,13 @@ if(RASTRUM_CUDA)
       set(CMAKE_CUDA_ARCHITECTURES 80-real 90)
     endif()
     enable_language(CUDA)
-    set(CMAKE_CUDA_STANDARD 20)
-    set(CMAKE_CUDA_STANDARD_REQUIRED ON)
-    set(CMAKE_CUDA_EXTENSIONS OFF)
-    target_compile_options(rastrum_flags INTERFACE
-      "$<$<COMPILE_LANGUAGE:CUDA>:--fmad=false;--extended-lambda;-Xcompiler=-ffp-contract=off>")
-    if(RASTRUM_WERROR)
-      target_compile_options(rastrum_flags INTERFACE
-        "$<$<COMPILE_LANGUAGE:CUDA>:-Werror=all-warnings>")
+    # CMake 3.25.1 does not know yet that nvcc has C++20.
+    if(NOT DEFINED CMAKE_CUDA20_STANDARD_COMPILE_OPTION)
+      set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION -std=c++20)
     endif()
+    set(cuda_flags --fmad=false --expt-relaxed-constexpr -Xcompiler=-ffp-contract=off
+      -Werror=all-warnings)
+    target_compile_options(rastrum_flags INTERFACE "$<$<COMPILE_LANGUAGE:CUDA>:${cuda_flags}>")
     set(RASTRUM_CUDA_FOUND ON)
   elseif(RASTRUM_CUDA STREQUAL "ON")
     message(FATAL_ERROR "RASTRUM_CUDA is ON, and no CUDA compiler was found: put nvcc on the PATH, "

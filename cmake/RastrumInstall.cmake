@@ -45,7 +45,8 @@ configure_package_config_file(cmake/RastrumConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/RastrumConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 
-install(DIRECTORY rastrum DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY rastrum DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} 
+  FILES_MATCHING PATTERN "*.hpp" PATTERN "*.cuh")
 install(TARGETS rastrum EXPORT RastrumTargets)
 install(EXPORT RastrumTargets NAMESPACE Rastrum:: DESTINATION ${package_dir})
 install(FILES

@@ -36,6 +36,12 @@ class TextureReader {
     return it->second;
   }
 
+  void warn() {
+    if (!substitutes_.empty())
+      scene_.warnings.push_back(name_ + ": a .png or .jpg of the same name was read instead of " +
+                                substitutes_);
+  }
+
  private:
   std::int32_t read(const std::string& name, bool clamp) {
     std::string relative = name;
@@ -67,14 +73,14 @@ class TextureReader {
       fs::path twin = file;
       twin.replace_extension(other);
       if (!fs::is_regular_file(twin, ignored)) continue;
-      scene_.warnings.push_back(name_ + ": " + file.filename().string() + " stands in for " +
-                                twin.filename().string());
+      substitutes_ += (substitutes_.empty() ? "" : ", ") + file.filename().string();
       return twin;
     }
     return file;
   }
 
   fs::path folder_;
+  std::string substitutes_;
   std::string name_;
   Scene& scene_;
   std::map<std::string, std::int32_t> known_;
@@ -133,8 +139,11 @@ void read_mtl(const fs::path& file, Scene& scene,
     return;
   }
   for (std::string* s : {&warning, &error}) {
-    while (!s->empty() && s->back() == '\n') s->pop_back();
-    if (!s->empty()) scene.warnings.push_back(file.string() + ": " + s->substr(0, 200));
+    if (s->empty()) continue;
+    const auto lines = std::count(s->begin(), s->end(), '\n');
+    scene.warnings.push_back(file.string() + ": " +
+                             s->substr(0, std::min<std::size_t>(s->find('\n'), 200)) +
+                             (lines > 1 ? " (and " + std::to_string(lines - 1) + " more)" : ""));
   }
   TextureReader texture(file, scene);
   for (const tinyobj::material_t& m : materials) {
@@ -142,6 +151,7 @@ void read_mtl(const fs::path& file, Scene& scene,
     if (by_name.emplace(m.name, static_cast<std::uint32_t>(scene.materials.size())).second)
       scene.materials.push_back(convert(m, texture));
   }
+  texture.warn();
 }
 
 }  // namespace rastrum::io

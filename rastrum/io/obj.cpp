@@ -53,9 +53,10 @@ class ObjReader {
     finish_texcoords();
     finish_normals();
     warn_about_the_rest();
-    mesh_.name = file_.stem().string();
-    scene_.instances.push_back({0, Mat4d::identity()});
-    scene_.meshes.push_back(std::move(mesh_));
+    Scene drawn = scene_of(std::move(mesh_));
+    drawn.meshes[0].name = file_.stem().string();
+    scene_.meshes = std::move(drawn.meshes);
+    scene_.instances = std::move(drawn.instances);
     return std::move(scene_);
   }
 

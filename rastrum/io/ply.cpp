@@ -193,27 +193,27 @@ class PlyReader {
     if (xyz[0] < 0 || xyz[1] < 0 || xyz[2] < 0) fail("its vertices have no x, y and z");
     if (e.count > std::numeric_limits<std::uint32_t>::max())
       throw Error(Errc::unsupported, name_ + ": more than 2³² vertices");
+    if (e.count == 0) return targets;
     mesh_.positions.resize(e.count);
-    for (std::size_t c = 0; c < 3; ++c)
-      place(xyz[c], e.count == 0 ? nullptr : &mesh_.positions[0].x + c, 3, false);
+    for (std::size_t c = 0; c < 3; ++c) place(xyz[c], &mesh_.positions[0].x + c, 3, false);
 
     const int normal[3] = {scalar({"nx", "normal_x"}), scalar({"ny", "normal_y"}),
                            scalar({"nz", "normal_z"})};
-    if (normal[0] >= 0 && normal[1] >= 0 && normal[2] >= 0 && e.count != 0) {
+    if (normal[0] >= 0 && normal[1] >= 0 && normal[2] >= 0) {
       mesh_.normals.values.resize(e.count);
       for (std::size_t c = 0; c < 3; ++c)
         place(normal[c], &mesh_.normals.values[0].x + c, 3, false);
     }
     const int uv[2] = {scalar({"s", "u", "texture_u", "texture_s"}),
                        scalar({"t", "v", "texture_v", "texture_t"})};
-    if (uv[0] >= 0 && uv[1] >= 0 && e.count != 0) {
+    if (uv[0] >= 0 && uv[1] >= 0) {
       mesh_.texcoords.values.resize(e.count);
       for (std::size_t c = 0; c < 2; ++c) place(uv[c], &mesh_.texcoords.values[0].x + c, 2, false);
     }
     const int rgba[4] = {
         scalar({"red", "diffuse_red", "r"}), scalar({"green", "diffuse_green", "g"}),
         scalar({"blue", "diffuse_blue", "b"}), scalar({"alpha", "diffuse_alpha", "a"})};
-    if (rgba[0] >= 0 && rgba[1] >= 0 && rgba[2] >= 0 && e.count != 0) {
+    if (rgba[0] >= 0 && rgba[1] >= 0 && rgba[2] >= 0) {
       mesh_.colors.values.resize(e.count, Vec4{1, 1, 1, 1});
       for (std::size_t c = 0; c < 4; ++c)
         if (rgba[c] >= 0) place(rgba[c], &mesh_.colors.values[0].x + c, 4, true);

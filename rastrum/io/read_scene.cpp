@@ -17,10 +17,8 @@ struct Reader {
   Scene (*parse)(Bytes, const std::filesystem::path&);
 };
 constexpr Reader kReaders[] = {
-    {".obj", parse_obj},
-    {".ply", parse_ply},
-    {".stl", parse_stl},
-    {".off", parse_off},
+    {".obj", parse_obj}, {".ply", parse_ply},   {".stl", parse_stl},
+    {".off", parse_off}, {".gltf", parse_gltf}, {".glb", parse_gltf},
 };
 
 std::string lower(std::string s) {
@@ -37,6 +35,8 @@ std::string lower(std::string s) {
 }  // namespace
 
 Scene scene_of(Mesh mesh) {
+  // Without indices the positions would be drawn in order, and a cloud of points is no triangles.
+  if (mesh.indices.empty()) mesh = {};
   Scene scene;
   scene.meshes.push_back(std::move(mesh));
   scene.instances.push_back({0, Mat4d::identity()});

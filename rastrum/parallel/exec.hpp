@@ -3,9 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <type_traits>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 namespace rastrum::parallel {
@@ -24,7 +23,11 @@ class Threads {
     arena_.initialize();
   }
   [[nodiscard]] int concurrency() const { return arena_.max_concurrency(); }
-  [[nodiscard]] tbb::task_arena& arena() { return arena_; }
+
+  /// Calls body(data, begin, end) for ranges that make up [0, n), of at most `grain` indices each;
+  /// what the bodies wrote is visible to the caller afterwards. The loop behind for_each_index.
+  void for_each_range(std::size_t n, std::size_t grain,
+                      void (*body)(void* data, std::size_t begin, std::size_t end), void* data);
 
  private:
   tbb::task_arena arena_;
@@ -36,17 +39,18 @@ void for_each_index(Serial&, std::size_t n, F&& f) {
   for (std::size_t i = 0; i < n; ++i) f(i);
 }
 
-/// The same; `grain` indices at least are handed out at a time.
+/// The same; at most `grain` indices are handed out at a time.
 template <class F>
 void for_each_index(Threads& exec, std::size_t n, F&& f, std::size_t grain = 1) {
-  exec.arena().execute([&] {
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, n, grain),
-        [&](const tbb::blocked_range<std::size_t>& r) {
-          for (std::size_t i = r.begin(); i != r.end(); ++i) f(i);
-        },
-        tbb::simple_partitioner{});
-  });
+  using Body = std::remove_reference_t<F>;
+  Body* body = &f;
+  exec.for_each_range(
+      n, grain,
+      [](void* data, std::size_t begin, std::size_t end) {
+        Body& call = **static_cast<Body**>(data);
+        for (std::size_t i = begin; i != end; ++i) call(i);
+      },
+      &body);
 }
 
 }  // namespace rastrum::parallel

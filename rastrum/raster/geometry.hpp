@@ -73,14 +73,21 @@ class FragmentTest {
                                            const Block& block) const noexcept = 0;
 };
 
+/// The visible surface of an 8 × 8 block: a word per sample.
+struct VisibleBlock {
+  const std::uint64_t* words = nullptr;  ///< 64, element 8 · row + column
+  std::uint64_t covered = 0;             ///< samples that hold a surface and lie in the image
+  int x0 = 0, y0 = 0;                    ///< first pixel
+};
+
 /// Shades the visible surface of a block. Thread-safe.
 class BlockShader {
  public:
   virtual ~BlockShader() = default;
-  /// `words` holds the visibility words of the block whose first pixel is (x0, y0); colours of
-  /// pixels with word 0 or outside the image need not be set.
-  virtual void shade(const FrameGeometry& frame, const std::uint64_t (&words)[64], int x0, int y0,
-                     Isa isa, BlockColors& colors) const noexcept = 0;
+  /// Sets the colours of the covered samples (others may be set to anything). Returns whether all
+  /// of them are opaque; alpha need not be set then.
+  virtual bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
+                     BlockColors& colors) const noexcept = 0;
 };
 
 /// One frame, as the façade hands it to a rasterizer.

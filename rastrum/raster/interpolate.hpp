@@ -137,20 +137,24 @@ class FragmentShader final : public BlockShader {
  public:
   explicit FragmentShader(F f) : f_(std::move(f)) {}
 
-  void shade(const FrameGeometry& frame, const std::uint64_t (&words)[64], int x0, int y0, Isa,
+  bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa,
              BlockColors& colors) const noexcept override {
     FragmentLocator locator(frame);
-    for (int i = 0; i < 64; ++i) {
-      if (words[i] == 0) continue;
+    bool opaque = true;
+    for (std::uint64_t rest = block.covered; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      const std::uint64_t word = block.words[i];
       Fragment fragment =
-          locator.locate(id_of_word(words[i]), x0 + i % kBlockSize, y0 + i / kBlockSize);
-      fragment.depth = std::bit_cast<float>(static_cast<std::uint32_t>(words[i] >> kIdBits));
+          locator.locate(id_of_word(word), block.x0 + i % kBlockSize, block.y0 + i / kBlockSize);
+      fragment.depth = std::bit_cast<float>(static_cast<std::uint32_t>(word >> kIdBits));
       const Vec4 c = f_(frame, fragment);
       colors.r[i] = c.x;
       colors.g[i] = c.y;
       colors.b[i] = c.z;
       colors.a[i] = c.w;
+      opaque &= c.w == 1;
     }
+    return opaque;
   }
 
  private:

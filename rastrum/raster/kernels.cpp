@@ -40,7 +40,7 @@ SetupOutput setup_scalar(const SetupInput& in, Piece* pieces, std::uint32_t* slo
 }
 
 std::size_t cover_scalar(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
-                         std::size_t capacity) noexcept {
+                         std::size_t capacity, std::uint64_t& fragments) noexcept {
   std::size_t n = 0;
   for (; cursor < in.count && n + kBlocksPerBin <= capacity; ++cursor) {
     const std::uint32_t index = in.list[cursor];
@@ -49,9 +49,10 @@ std::size_t cover_scalar(const PieceList& in, std::size_t& cursor, Rect bin, Blo
     if (box.empty()) continue;
     for (int by = box.y0 / kBlockSize; by <= (box.y1 - 1) / kBlockSize; ++by)
       for (int bx = box.x0 / kBlockSize; bx <= (box.x1 - 1) / kBlockSize; ++bx) {
-        const std::uint64_t mask = cover_8x8(piece, bx, by);
-        if (mask != 0)
-          out[n++] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
+        const std::uint64_t mask = cover_8x8(piece, bx, by) & samples_inside(bin, bx, by);
+        if (mask == 0) continue;
+        out[n++] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
+        fragments += static_cast<std::uint64_t>(std::popcount(mask));
       }
   }
   return n;
@@ -75,17 +76,23 @@ void maximum_scalar(const Piece* pieces, const Block* blocks, std::size_t n, Rec
   }
 }
 
-void store_opaque_scalar(const BlockColors& colors, const std::uint64_t (&words)[64],
-                         Rgba8 background, Rgba8* out, std::ptrdiff_t stride) noexcept {
+std::uint64_t covered_scalar(const std::uint64_t* words) noexcept {
+  std::uint64_t mask = 0;
+  for (int i = 0; i < 64; ++i) mask |= std::uint64_t{words[i] != 0} << i;
+  return mask;
+}
+
+void store_opaque_scalar(const BlockColors& colors, std::uint64_t covered, Rgba8 background,
+                         Rgba8* out, std::ptrdiff_t stride) noexcept {
   for (int i = 0; i < 64; ++i)
     out[i / kBlockSize * stride + i % kBlockSize] =
-        words[i] == 0
+        (covered >> i & 1) == 0
             ? background
             : Rgba8{quantize(colors.r[i]), quantize(colors.g[i]), quantize(colors.b[i]), 255};
 }
 
-constexpr Kernels kScalar{project_scalar, setup_scalar, cover_scalar, maximum_scalar,
-                          store_opaque_scalar};
+constexpr Kernels kScalar{project_scalar, setup_scalar,   cover_scalar,
+                          maximum_scalar, covered_scalar, store_opaque_scalar};
 
 }  // namespace
 

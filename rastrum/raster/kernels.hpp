@@ -31,9 +31,10 @@ struct SetupInput {
 inline constexpr std::uint32_t kSetupBatch = 256;
 
 struct SetupOutput {
-  std::uint32_t pieces = 0;    ///< written
-  std::uint32_t slow = 0;      ///< triangles left to the clipper, as offsets from `first`
-  bool index_in_range = true;  ///< false: the batch was abandoned
+  std::uint32_t pieces = 0;     ///< written
+  std::uint32_t uncovered = 0;  ///< drawn, but found to cover no sample, so no piece was written
+  std::uint32_t slow = 0;       ///< triangles left to the clipper, as offsets from `first`
+  bool index_in_range = true;   ///< false: the batch was abandoned
 };
 
 /// The pieces of a bin, by their positions in `pieces`.
@@ -60,15 +61,18 @@ struct Kernels {
   /// until the list ends or fewer than kBlocksPerBin places are left; returns how many, moves the
   /// cursor.
   std::size_t (*cover)(const PieceList& pieces, std::size_t& cursor, Rect bin, Block* out,
-                       std::size_t capacity) noexcept;
+                       std::size_t capacity, std::uint64_t& fragments) noexcept;
 
   /// The atomic sink on words that the caller owns: maximum at every covered sample.
   void (*maximum)(const Piece* pieces, const Block* blocks, std::size_t n, Rect bin,
                   std::uint64_t* words) noexcept;
 
-  /// A whole block of opaque surfaces as 8-bit colours; `background` where words are 0.
-  void (*store_opaque)(const BlockColors& colors, const std::uint64_t (&words)[64],
-                       Rgba8 background, Rgba8* out, std::ptrdiff_t stride) noexcept;
+  /// Which of 64 words are not 0.
+  std::uint64_t (*covered)(const std::uint64_t* words) noexcept;
+
+  /// A whole block of opaque colours in 8 bits, `background` where nothing is covered.
+  void (*store_opaque)(const BlockColors& colors, std::uint64_t covered, Rgba8 background,
+                       Rgba8* out, std::ptrdiff_t stride) noexcept;
 };
 
 /// The best table at or below `isa` that was compiled for this architecture.

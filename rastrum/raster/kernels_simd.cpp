@@ -181,55 +181,141 @@ HWY_INLINE bool load_indices(const SetupInput& in, std::uint32_t offset,
   return hn::AllTrue(d, hn::Eq(hn::Max(largest, last), last));
 }
 
-/// Which of kLanes triangles may cover a sample (bit by lane), and which need the clipper.
-HWY_INLINE std::uint32_t classify(const Corners& a, const Corners& b, const Corners& c,
-                                  const SetupInput& in, std::uint32_t& slow) {
+HWY_INLINE I min3_lanes(I a, I b, I c) {
+  return hn::Min(a, hn::Min(b, c));
+}
+HWY_INLINE I max3_lanes(I a, I b, I c) {
+  return hn::Max(a, hn::Max(b, c));
+}
+
+template <class M>
+HWY_INLINE std::uint32_t lane_bits(M mask) {
+  std::uint8_t bits = 0;
+  hn::StoreMaskBits(I32{}, mask, &bits);
+  return bits & ((1U << kLanes) - 1);
+}
+
+/// Triangles by lane.
+struct Classes {
+  std::uint32_t drawn = 0;      ///< may cover a sample
+  std::uint32_t uncovered = 0;  ///< would be drawn, but cover none
+  std::uint32_t slow = 0;       ///< need the clipper
+  std::uint32_t micro = 0;      ///< of `drawn`: `flags` holds their coverage
+  HWY_ALIGN std::uint32_t flags[kLanes];
+};
+
+/// Negates v in the lanes where m is −1.
+HWY_INLINE I negate_if(I v, I m) {
+  return hn::Sub(hn::Xor(v, m), m);
+}
+
+/// Coverage of micro triangles, a lane each: the sign bits of the edge functions at kMicroSize²
+/// samples from (x0, y0) on. Boxes of up to 5 px keep every product far inside int32.
+HWY_INLINE I micro_masks(const Corners& a, const Corners& b, const Corners& c, I x0, I y0, I area) {
   const I32 d;
+  const I zero = hn::Zero(d);
+  const I turned = hn::ShiftRight<31>(area);
+  const I px = hn::Add(hn::ShiftLeft<kSubpixelBits>(x0), hn::Set(d, kHalfPixel));
+  const I py = hn::Add(hn::ShiftLeft<kSubpixelBits>(y0), hn::Set(d, kHalfPixel));
+  I value[3], dx[3], dy[3];
+  const auto edge = [&](int i, const Corners& from, const Corners& to) HWY_ATTR {
+    const I ea = negate_if(hn::Sub(from.y, to.y), turned);
+    const I eb = negate_if(hn::Sub(to.x, from.x), turned);
+    const auto top_left = hn::Or(hn::Gt(ea, zero), hn::And(hn::Eq(ea, zero), hn::Gt(eb, zero)));
+    const I at = hn::Add(hn::Mul(ea, hn::Sub(px, from.x)), hn::Mul(eb, hn::Sub(py, from.y)));
+    value[i] = hn::Sub(at, hn::IfThenZeroElse(top_left, hn::Set(d, 1)));
+    dx[i] = hn::ShiftLeft<kSubpixelBits>(ea);
+    dy[i] = hn::ShiftLeft<kSubpixelBits>(eb);
+  };
+  edge(0, a, b);
+  edge(1, b, c);
+  edge(2, c, a);
+  I outside = zero;
+  // Backwards, so that shifting the collected bits left leaves the first sample in bit 0.
+  for (int i = 0; i < 3; ++i)
+    value[i] = hn::Add(value[i], hn::Mul(hn::Add(dx[i], dy[i]), hn::Set(d, kMicroSize - 1)));
+  for (int row = 0; row < kMicroSize; ++row) {
+    I e0 = value[0], e1 = value[1], e2 = value[2];
+    for (int column = 0; column < kMicroSize; ++column) {
+      const I sign = hn::Or(hn::Or(e0, e1), e2);
+      const I bit = hn::BitCast(d, hn::ShiftRight<31>(hn::BitCast(U32{}, sign)));
+      outside = hn::Or(hn::Add(outside, outside), bit);
+      e0 = hn::Sub(e0, dx[0]);
+      e1 = hn::Sub(e1, dx[1]);
+      e2 = hn::Sub(e2, dx[2]);
+    }
+    for (int i = 0; i < 3; ++i) value[i] = hn::Sub(value[i], dy[i]);
+  }
+  return hn::AndNot(outside, hn::Set(d, 0xFFFF));
+}
+
+HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c,
+                            const SetupInput& in) {
+  const I32 d;
+  Classes classes;
   const I needs_clip = hn::Set(d, kNeedsClip);
   const auto clip =
       hn::Or(hn::Eq(a.x, needs_clip), hn::Or(hn::Eq(b.x, needs_clip), hn::Eq(c.x, needs_clip)));
   const I before = hn::Set(d, kHalfPixel - 1);
   const I half = hn::Set(d, kHalfPixel);
-  const I x0 = hn::ShiftRight<kSubpixelBits>(hn::Add(hn::Min(a.x, hn::Min(b.x, c.x)), before));
-  const I y0 = hn::ShiftRight<kSubpixelBits>(hn::Add(hn::Min(a.y, hn::Min(b.y, c.y)), before));
-  const I x1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(hn::Max(a.x, hn::Max(b.x, c.x)), half));
-  const I y1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(hn::Max(a.y, hn::Max(b.y, c.y)), half));
-  // First and last sample, cut to the view; inclusive.
-  const I bx0 = hn::Max(x0, hn::Set(d, in.view.x0));
-  const I by0 = hn::Max(y0, hn::Set(d, in.view.y0));
-  const I bx1 = hn::Min(x1, hn::Set(d, in.view.x1 - 1));
-  const I by1 = hn::Min(y1, hn::Set(d, in.view.y1 - 1));
-  const auto empty = hn::Or(hn::Gt(bx0, bx1), hn::Gt(by0, by1));
-  std::uint8_t clip_bits = 0, empty_bits = 0;
-  hn::StoreMaskBits(d, clip, &clip_bits);
-  hn::StoreMaskBits(d, empty, &empty_bits);
+  // First and last sample of the box; inclusive.
+  const I x0 = hn::ShiftRight<kSubpixelBits>(hn::Add(min3_lanes(a.x, b.x, c.x), before));
+  const I y0 = hn::ShiftRight<kSubpixelBits>(hn::Add(min3_lanes(a.y, b.y, c.y), before));
+  const I x1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(max3_lanes(a.x, b.x, c.x), half));
+  const I y1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(max3_lanes(a.y, b.y, c.y), half));
+  const auto empty =
+      hn::Or(hn::Gt(hn::Max(x0, hn::Set(d, in.view.x0)), hn::Min(x1, hn::Set(d, in.view.x1 - 1))),
+             hn::Gt(hn::Max(y0, hn::Set(d, in.view.y0)), hn::Min(y1, hn::Set(d, in.view.y1 - 1))));
   constexpr std::uint32_t kAll = (1U << kLanes) - 1;
-  slow = clip_bits & kAll;
-  std::uint32_t alive = kAll & ~(static_cast<std::uint32_t>(empty_bits) | clip_bits);
-  if (alive == 0) return 0;
+  classes.slow = lane_bits(clip);
+  const std::uint32_t in_view = kAll & ~(lane_bits(empty) | classes.slow);
+  if (in_view == 0) return classes;
 
-  // Twice the area, exact in float64: differences have 25 bits, products 50.
   const I dx1 = hn::Sub(b.x, a.x), dy1 = hn::Sub(b.y, a.y);
   const I dx2 = hn::Sub(c.x, a.x), dy2 = hn::Sub(c.y, a.y);
+  const I size = hn::Set(d, kMicroSize);
+  const auto small = hn::And(hn::Lt(hn::Sub(x1, x0), size), hn::Lt(hn::Sub(y1, y0), size));
+  const std::uint32_t micro = lane_bits(small) & in_view;
   std::uint32_t culled = 0;
-  for (std::size_t h = 0; h < kHalves; ++h) {
-    const F64 dd;
-    const D area = hn::Sub(hn::Mul(half_to_double(dx1, h), half_to_double(dy2, h)),
-                           hn::Mul(half_to_double(dx2, h), half_to_double(dy1, h)));
-    const D zero = hn::Zero(dd);
+  if (micro != 0) {
+    const I zero = hn::Zero(d);
+    const I area = hn::Sub(hn::Mul(dx1, dy2), hn::Mul(dx2, dy1));
     auto out = hn::Eq(area, zero);
     if (in.cull == Cull::back) out = hn::Or(out, hn::Gt(area, zero));
     if (in.cull == Cull::front) out = hn::Or(out, hn::Lt(area, zero));
-    std::uint8_t bits = 0;
-    hn::StoreMaskBits(dd, out, &bits);
-    culled |= (bits & ((1U << kLanes64) - 1)) << (h * kLanes64);
+    culled = lane_bits(out) & micro;
+    const I masks = micro_masks(a, b, c, x0, y0, area);
+    hn::Store(hn::BitCast(U32{}, hn::Or(hn::ShiftLeft<kMicroShift>(masks),
+                                        hn::Set(d, static_cast<std::int32_t>(kMicro)))),
+              U32{}, classes.flags);
+    classes.uncovered = lane_bits(hn::Eq(masks, zero)) & micro & ~culled;
+    classes.micro = micro & ~culled & ~classes.uncovered;
   }
-  return alive & ~culled;
+  if (micro != in_view) {
+    // Twice the area, exact in float64: differences have 25 bits, products 50.
+    std::uint32_t large_culled = 0;
+    for (std::size_t h = 0; h < kHalves; ++h) {
+      const F64 dd;
+      const D area = hn::Sub(hn::Mul(half_to_double(dx1, h), half_to_double(dy2, h)),
+                             hn::Mul(half_to_double(dx2, h), half_to_double(dy1, h)));
+      const D zero = hn::Zero(dd);
+      auto out = hn::Eq(area, zero);
+      if (in.cull == Cull::back) out = hn::Or(out, hn::Gt(area, zero));
+      if (in.cull == Cull::front) out = hn::Or(out, hn::Lt(area, zero));
+      std::uint8_t bits = 0;
+      hn::StoreMaskBits(dd, out, &bits);
+      large_culled |= (bits & ((1U << kLanes64) - 1)) << (h * kLanes64);
+    }
+    culled |= large_culled & ~micro;
+  }
+  classes.drawn = in_view & ~culled & ~classes.uncovered;
+  return classes;
 }
 
 /// Sets up `n` ≤ kLanes surviving triangles.
 HWY_INLINE void make_pieces(const SetupInput& in, const std::uint32_t (&index)[3][kLanes],
-                            const std::uint32_t* triangle, std::uint32_t n, Piece* out) {
+                            const std::uint32_t* triangle, const std::uint32_t* flags,
+                            std::uint32_t n, Piece* out) {
   const F32 df;
   const I32 di;
   const Corners a = load_corners(in.vertices, index[0]);
@@ -268,7 +354,7 @@ HWY_INLINE void make_pieces(const SetupInput& in, const std::uint32_t (&index)[3
     hn::Store(hn::Load(d128, first + i * 4), d128, piece);
     hn::Store(hn::Load(d128, second + i * 4), d128, piece + 4);
     out[i].zy = zy[i];
-    out[i].flags = in.flags;
+    out[i].flags = flags[i];
     out[i].low = kIdMask - (in.first_id + in.first + triangle[i]);
   }
 }
@@ -277,19 +363,22 @@ SetupOutput setup(const SetupInput& in, Piece* pieces, std::uint32_t* slow) noex
   SetupOutput result;
   // Survivors wait here until there are kLanes of them: a third of a closed mesh survives.
   std::uint32_t waiting[3][2 * kLanes];
-  std::uint32_t waiting_triangle[2 * kLanes];
+  std::uint32_t waiting_triangle[2 * kLanes], waiting_flags[2 * kLanes];
   std::uint32_t waiting_count = 0;
   std::uint32_t index[3][kLanes];
   const auto flush = [&](std::uint32_t n) HWY_ATTR {
     std::uint32_t batch[3][kLanes];
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t i = 0; i < kLanes; ++i) batch[c][i] = waiting[c][i < n ? i : 0];
-    make_pieces(in, batch, waiting_triangle, n, pieces + result.pieces);
+    make_pieces(in, batch, waiting_triangle, waiting_flags, n, pieces + result.pieces);
     result.pieces += n;
     waiting_count -= n;
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t i = 0; i < kLanes; ++i) waiting[c][i] = waiting[c][i + n];
-    for (std::size_t i = 0; i < kLanes; ++i) waiting_triangle[i] = waiting_triangle[i + n];
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      waiting_triangle[i] = waiting_triangle[i + n];
+      waiting_flags[i] = waiting_flags[i + n];
+    }
   };
   std::uint32_t i = 0;
   for (; i + kLanes <= in.count; i += kLanes) {
@@ -300,14 +389,16 @@ SetupOutput setup(const SetupInput& in, Piece* pieces, std::uint32_t* slow) noex
     const Corners a = load_corners(in.vertices, index[0]);
     const Corners b = load_corners(in.vertices, index[1]);
     const Corners c = load_corners(in.vertices, index[2]);
-    std::uint32_t clip = 0;
-    std::uint32_t alive = classify(a, b, c, in, clip);
-    for (; clip != 0; clip &= clip - 1)
-      slow[result.slow++] = i + static_cast<std::uint32_t>(std::countr_zero(clip));
-    for (; alive != 0; alive &= alive - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(alive));
+    const Classes classes = classify(a, b, c, in);
+    for (std::uint32_t rest = classes.slow; rest != 0; rest &= rest - 1)
+      slow[result.slow++] = i + static_cast<std::uint32_t>(std::countr_zero(rest));
+    result.uncovered += static_cast<std::uint32_t>(std::popcount(classes.uncovered));
+    for (std::uint32_t rest = classes.drawn; rest != 0; rest &= rest - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
       for (std::size_t corner = 0; corner < 3; ++corner)
         waiting[corner][waiting_count] = index[corner][lane];
+      waiting_flags[waiting_count] =
+          in.flags | ((classes.micro >> lane & 1U) != 0 ? classes.flags[lane] : 0U);
       waiting_triangle[waiting_count++] = i + lane;
     }
     if (waiting_count >= kLanes) flush(kLanes);
@@ -355,9 +446,10 @@ HWY_INLINE std::uint64_t cover_block(const std::int32_t (&base)[3], const I (&st
 }
 
 std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
-                  std::size_t capacity) noexcept {
+                  std::size_t capacity, std::uint64_t& fragments) noexcept {
   constexpr std::int64_t kClamp = std::int64_t{1} << 30;
   const I32 d;
+  const bool cut = bin.x1 % kBlockSize != 0 || bin.y1 % kBlockSize != 0;
   std::size_t n = 0;
   for (; cursor < in.count && n + kBlocksPerBin <= capacity; ++cursor) {
     if (cursor + 6 < in.count) __builtin_prefetch(in.pieces + in.list[cursor + 6]);
@@ -367,6 +459,19 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
     if (box.empty()) continue;
     const int bx0 = box.x0 / kBlockSize, by0 = box.y0 / kBlockSize;
     const int bx1 = (box.x1 - 1) / kBlockSize, by1 = (box.y1 - 1) / kBlockSize;
+    const auto add = [&](int bx, int by, std::uint64_t mask) HWY_ATTR {
+      if (cut) mask &= samples_inside(bin, bx, by);
+      out[n] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
+      n += mask != 0;
+      fragments += hwy::PopCount(mask);
+    };
+    if ((piece.flags & kMicro) != 0) {
+      const int x0 = first_sample(piece.x), y0 = first_sample(piece.y);
+      for (int by = by0; by <= by1; ++by)
+        for (int bx = bx0; bx <= bx1; ++bx)
+          add(bx, by, micro_cover_8x8(piece.flags, x0, y0, bx, by));
+      continue;
+    }
     std::int32_t b[3];
     std::int64_t row_base[3], block_dx[3], block_dy[3], reach[3];
     I steps[3][8 / kLanes];
@@ -391,9 +496,7 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
               static_cast<std::int32_t>(std::clamp(base[0], -kClamp, kClamp)),
               static_cast<std::int32_t>(std::clamp(base[1], -kClamp, kClamp)),
               static_cast<std::int32_t>(std::clamp(base[2], -kClamp, kClamp))};
-          const std::uint64_t mask = cover_block(clamped, steps, b);
-          out[n] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
-          n += mask != 0;
+          add(bx, by, cover_block(clamped, steps, b));
         }
         for (int i = 0; i < 3; ++i) base[i] += block_dx[i];
       }
@@ -475,8 +578,15 @@ HWY_INLINE hn::Vec<U32> quantize_lanes(const float* c) {
   return hn::BitCast(U32{}, hn::NearestInt(hn::Mul(clamped, hn::Set(d, 255.0F))));
 }
 
-void store_opaque(const BlockColors& colors, const std::uint64_t (&words)[64], Rgba8 background,
-                  Rgba8* out, std::ptrdiff_t stride) noexcept {
+/// Lanes of the low bits of `bits`.
+HWY_INLINE hn::Mask<U32> lane_mask(std::uint64_t bits) {
+  // LoadMaskBits reads whole bytes.
+  const std::uint8_t memory[8] = {static_cast<std::uint8_t>(bits & ((1U << kLanes) - 1))};
+  return hn::LoadMaskBits(U32{}, memory);
+}
+
+void store_opaque(const BlockColors& colors, std::uint64_t covered, Rgba8 background, Rgba8* out,
+                  std::ptrdiff_t stride) noexcept {
   const U32 d;
   const auto behind = hn::Set(d, std::bit_cast<std::uint32_t>(background));
   for (int row = 0; row < kBlockSize; ++row)
@@ -486,18 +596,25 @@ void store_opaque(const BlockColors& colors, const std::uint64_t (&words)[64], R
           hn::Or(quantize_lanes(colors.r + i), hn::ShiftLeft<8>(quantize_lanes(colors.g + i)));
       pixel = hn::Or(pixel, hn::ShiftLeft<16>(quantize_lanes(colors.b + i)));
       pixel = hn::Or(pixel, hn::Set(d, 0xff000000U));
-      // The upper half of a word is 0 only where the depth is 0, so both halves decide.
-      HWY_ALIGN std::uint32_t covered[kLanes];
-      for (std::size_t lane = 0; lane < kLanes; ++lane) covered[lane] = words[i + lane] != 0;
-      const auto empty = hn::Eq(hn::Load(d, covered), hn::Zero(d));
-      hn::StoreU(hn::IfThenElse(empty, behind, pixel), d,
+      hn::StoreU(hn::IfThenElse(lane_mask(covered >> i), pixel, behind), d,
                  reinterpret_cast<std::uint32_t*>(out + row * stride + static_cast<int>(part)));
     }
 }
 
+std::uint64_t covered(const std::uint64_t* words) noexcept {
+  const hn::RebindToUnsigned<I64> d;
+  std::uint64_t mask = 0;
+  for (std::size_t i = 0; i < 64; i += kLanes64) {
+    std::uint8_t empty = 0;
+    hn::StoreMaskBits(d, hn::Eq(hn::Load(d, words + i), hn::Zero(d)), &empty);
+    mask |= static_cast<std::uint64_t>(~empty & ((1U << kLanes64) - 1)) << i;
+  }
+  return mask;
+}
+
 // Referred to by the table below through its address.
 extern const Kernels kTable;
-const Kernels kTable{project, setup, cover, maximum, store_opaque};
+const Kernels kTable{project, setup, cover, maximum, covered, store_opaque};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace rastrum::raster

@@ -25,13 +25,20 @@ RASTRUM_HD constexpr std::uint64_t id_of_word(std::uint64_t word) {
 struct alignas(16) Piece {
   std::int32_t x[3], y[3];  ///< n.8, inside the guard band
   float z0, zx, zy;         ///< depth at vertex 0 and its change per px
-  std::uint32_t flags;      ///< kTested
+  std::uint32_t flags;      ///< kTested, kMicro
   std::uint64_t low;        ///< the word's low part: kIdMask − id
 };
 static_assert(sizeof(Piece) == 48);
 
 /// Fragments of this piece pass a fragment test (alpha mask, discard) before the maximum.
 inline constexpr std::uint32_t kTested = 1;
+
+/// All samples inside the piece's box lie in kMicroSize² pixels, and setup has already found which
+/// of them are covered: bit kMicroShift + kMicroSize · row + column, from the box's first sample
+/// on.
+inline constexpr std::uint32_t kMicro = 2;
+inline constexpr int kMicroSize = 4;
+inline constexpr int kMicroShift = 16;
 
 /// An 8 × 8 block of the screen with the samples that a piece covers: bit 8 · row + column.
 struct Block {
@@ -47,6 +54,20 @@ struct Rect {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   [[nodiscard]] RASTRUM_HD bool empty() const { return x0 >= x1 || y0 >= y1; }
 };
+
+/// The samples of block (bx, by) that lie in `r`.
+RASTRUM_HD inline std::uint64_t samples_inside(Rect r, int bx, int by) {
+  const int x0 = bx * kBlockSize, y0 = by * kBlockSize;
+  std::uint64_t mask = ~std::uint64_t{0};
+  const auto columns = [](unsigned bits) {
+    return std::uint64_t{bits & 255U} * 0x0101010101010101U;
+  };
+  if (x0 < r.x0) mask &= columns(255U << (r.x0 - x0));
+  if (y0 < r.y0) mask &= ~std::uint64_t{0} << (kBlockSize * (r.y0 - y0));
+  if (x0 + kBlockSize > r.x1) mask &= columns(255U >> (x0 + kBlockSize - r.x1));
+  if (y0 + kBlockSize > r.y1) mask &= ~std::uint64_t{0} >> (kBlockSize * (y0 + kBlockSize - r.y1));
+  return mask;
+}
 
 RASTRUM_HD constexpr int min3(int a, int b, int c) {
   return a < b ? (a < c ? a : c) : (b < c ? b : c);

@@ -79,7 +79,7 @@ FrameStats render_reference(FrameRequest& request, MemoryAccount& memory) {
 
   for (int y0 = 0; y0 < request.height; y0 += kBlockSize)
     for (int x0 = 0; x0 < request.width; x0 += kBlockSize) {
-      std::uint64_t block[64] = {};
+      alignas(64) std::uint64_t block[64] = {};
       for (int y = y0; y < std::min(y0 + kBlockSize, request.height); ++y)
         for (int x = x0; x < std::min(x0 + kBlockSize, request.width); ++x)
           block[(y - y0) * kBlockSize + (x - x0)] = words(x, y);

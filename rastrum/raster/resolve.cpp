@@ -17,33 +17,16 @@ struct Window {
   [[nodiscard]] bool whole() const { return columns == kBlockSize && rows == kBlockSize; }
 };
 
-int count_covered(const std::uint64_t (&words)[64], const Window& w) {
-  int covered = 0;
-  if (w.whole()) {
-    for (const std::uint64_t word : words) covered += word != 0;
-    return covered;
-  }
-  for (int y = 0; y < w.rows; ++y)
-    for (int x = 0; x < w.columns; ++x) covered += words[y * kBlockSize + x] != 0;
-  return covered;
-}
-
-bool all_opaque(const BlockColors& colors, const std::uint64_t (&words)[64]) {
-  bool opaque = true;
-  for (int i = 0; i < 64; ++i) opaque &= words[i] == 0 || colors.a[i] == 1;
-  return opaque;
-}
-
 /// Every case: float targets, translucent colours, blocks cut by the image's edge.
-void store_colors(const FrameRequest& request, const BlockColors& colors,
-                  const std::uint64_t (&words)[64], const Window& w, bool wants_8_bit) {
+void store_colors(const FrameRequest& request, const BlockColors& colors, std::uint64_t covered,
+                  const Window& w, bool wants_8_bit) {
   const Vec4 b = request.background;
   const Vec4 background{b.x * b.w, b.y * b.w, b.z * b.w, b.w};
   for (int y = 0; y < w.rows; ++y)
     for (int x = 0; x < w.columns; ++x) {
       const int i = y * kBlockSize + x;
       Vec4 color = background;
-      if (words[i] != 0)
+      if ((covered >> i & 1) != 0)
         color = Vec4{colors.r[i], colors.g[i], colors.b[i], colors.a[i]} +
                 background * (1 - colors.a[i]);
       if (wants_8_bit) request.targets.color8(w.x0 + x, w.y0 + y) = to_straight_rgba8(color);
@@ -52,31 +35,32 @@ void store_colors(const FrameRequest& request, const BlockColors& colors,
 }
 
 void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
-                    const std::uint64_t (&words)[64], const Window& w, int covered) {
+                    const VisibleBlock& block, const Window& w) {
   const Targets& targets = request.targets;
   const Vec4 b = request.background;
   const Rgba8 background = to_straight_rgba8({b.x * b.w, b.y * b.w, b.z * b.w, b.w});
   bool wants_8_bit = !targets.color8.empty();
-  if (covered == 0 && wants_8_bit) {
+  if (block.covered == 0 && wants_8_bit) {
     for (int y = 0; y < w.rows; ++y)
       std::fill_n(targets.color8.row(w.y0 + y) + w.x0, w.columns, background);
     wants_8_bit = false;
   }
   BlockColors colors;
-  if (covered != 0) {
-    request.shader->shade(frame, words, w.x0, w.y0, request.isa, colors);
-    if (wants_8_bit && w.whole() && all_opaque(colors, words)) {
+  if (block.covered != 0) {
+    const bool opaque = request.shader->shade(frame, block, request.isa, colors);
+    if (opaque && wants_8_bit && w.whole()) {
       kernels(request.isa)
-          .store_opaque(colors, words, background, &targets.color8(w.x0, w.y0),
+          .store_opaque(colors, block.covered, background, &targets.color8(w.x0, w.y0),
                         targets.color8.stride);
       wants_8_bit = false;
     }
+    if (opaque) std::fill_n(colors.a, 64, 1.0F);
   }
-  if (wants_8_bit || !targets.color.empty()) store_colors(request, colors, words, w, wants_8_bit);
+  if (wants_8_bit || !targets.color.empty())
+    store_colors(request, colors, block.covered, w, wants_8_bit);
 }
 
-void store_ids_and_depth(const Targets& targets, const std::uint64_t (&words)[64],
-                         const Window& w) {
+void store_ids_and_depth(const Targets& targets, const std::uint64_t* words, const Window& w) {
   for (int y = 0; y < w.rows; ++y)
     for (int x = 0; x < w.columns; ++x) {
       const std::uint64_t word = words[y * kBlockSize + x];
@@ -92,15 +76,18 @@ void store_ids_and_depth(const Targets& targets, const std::uint64_t (&words)[64
 }  // namespace
 
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame,
-                  const std::uint64_t (&words)[64], int x0, int y0) noexcept {
+                  const std::uint64_t* words, int x0, int y0) noexcept {
   const Targets& targets = request.targets;
   const Window window{x0, y0, std::min(kBlockSize, request.width - x0),
                       std::min(kBlockSize, request.height - y0)};
-  const int covered = count_covered(words, window);
+  std::uint64_t covered = kernels(request.isa).covered(words);
+  if (!window.whole())
+    covered &=
+        samples_inside({0, 0, request.width, request.height}, x0 / kBlockSize, y0 / kBlockSize);
   if (!targets.color8.empty() || !targets.color.empty())
-    resolve_colors(request, frame, words, window, covered);
+    resolve_colors(request, frame, {words, covered, x0, y0}, window);
   if (!targets.depth.empty() || !targets.ids.empty()) store_ids_and_depth(targets, words, window);
-  return covered;
+  return std::popcount(covered);
 }
 
 Totals number_draws(std::span<Draw> draws) {

@@ -138,7 +138,7 @@ void fill_group(Group& group, const FrameRequest& request, const FrameGeometry& 
       return;
     }
     group.piece_count += out.pieces;
-    group.triangles.culled += count - out.pieces - out.slow;
+    group.triangles.culled += count - out.pieces - out.uncovered - out.slow;
     for (std::uint32_t s = 0; s < out.slow; ++s) {
       const TriangleFate fate =
           assemble_triangle(frame, draw, t + slow[s], request.cull, [&](const Piece& piece) {
@@ -192,10 +192,9 @@ BinCounts draw_bin(const FrameRequest& request, const FrameGeometry& frame, cons
   for (const Group& group : groups) {
     const PieceList pieces = group.bin(bin);
     for (std::size_t cursor = 0; cursor < pieces.count;) {
-      const std::size_t n = kernel.cover(pieces, cursor, rect, scratch.blocks, kBlockCapacity);
+      const std::size_t n =
+          kernel.cover(pieces, cursor, rect, scratch.blocks, kBlockCapacity, counts.fragments);
       const std::span<Block> blocks(scratch.blocks, n);
-      for (const Block& b : blocks)
-        counts.fragments += static_cast<std::uint64_t>(std::popcount(b.mask));
       if (!request.targets.overdraw.empty()) count_overdraw(request.targets.overdraw, blocks);
       if (request.test != nullptr) test_fragments(request, frame, pieces.pieces, blocks);
       kernel.maximum(pieces.pieces, blocks.data(), n, rect, scratch.words);
@@ -205,8 +204,7 @@ BinCounts draw_bin(const FrameRequest& request, const FrameGeometry& frame, cons
     for (int bx = 0; bx < kBlocksPerBinRow; ++bx) {
       const int x0 = rect.x0 + bx * kBlockSize, y0 = rect.y0 + by * kBlockSize;
       if (x0 >= rect.x1 || y0 >= rect.y1) continue;
-      const auto& words = *reinterpret_cast<const std::uint64_t(*)[64]>(
-          scratch.words + (by * kBlocksPerBinRow + bx) * 64);
+      const std::uint64_t* words = scratch.words + (by * kBlocksPerBinRow + bx) * 64;
       counts.covered += static_cast<std::uint64_t>(resolve_block(request, frame, words, x0, y0));
     }
   return counts;

@@ -46,16 +46,20 @@ TEST_P(RealFiles, HaveTheirTriangles) {
 
 INSTANTIATE_TEST_SUITE_P(
     Data, RealFiles,
-    testing::Values(RealFile{"small/teapot.obj", 6320}, RealFile{"small/suzanne.obj", 968},
-                    RealFile{"small/cow.obj", 5804}, RealFile{"small/rocker-arm.obj", 20088},
-                    RealFile{"small/stanford-bunny.obj", 69451},
-                    RealFile{"small/spot/spot_triangulated.obj", 5856},
-                    RealFile{"small/spot/spot_quadrangulated.obj", 5856},
-                    RealFile{"small/42400-IDGH.stl", 11036},
-                    RealFile{"big/dragon_348k.ply", 348503},
-                    RealFile{"big/brain_iso126_1033k.ply", 1033112},
-                    RealFile{"sponza/sponza.obj", 279163},
-                    RealFile{"depth/ratboy_mohawk_ribbons_138k.ply", 138136}),
+    testing::Values(
+        RealFile{"small/teapot.obj", 6320}, RealFile{"small/suzanne.obj", 968},
+        RealFile{"small/cow.obj", 5804}, RealFile{"small/rocker-arm.obj", 20088},
+        RealFile{"small/stanford-bunny.obj", 69451},
+        RealFile{"small/spot/spot_triangulated.obj", 5856},
+        RealFile{"small/spot/spot_quadrangulated.obj", 5856},
+        RealFile{"small/42400-IDGH.stl", 11036}, RealFile{"big/dragon_348k.ply", 348503},
+        RealFile{"big/brain_iso126_1033k.ply", 1033112}, RealFile{"sponza/sponza.obj", 279163},
+        RealFile{"depth/2CylinderEngine.glb", 121496}, RealFile{"alpha/smallpine/scene.gltf", 1650},
+        RealFile{"alpha/AlphaBlendModeTest.glb", 61}, RealFile{"gltf/BoxTextured.glb", 12},
+        RealFile{"gltf/TextureSettingsTest.glb", 72},
+        RealFile{"gltf/BoxInterleaved/BoxInterleaved.gltf", 12},
+        RealFile{"gltf/SimpleSparseAccessor/SimpleSparseAccessor.gltf", 12},
+        RealFile{"depth/ratboy_mohawk_ribbons_138k.ply", 138136}),
     [](const testing::TestParamInfo<RealFile>& file) {
       std::string name = std::filesystem::path(file.param.path).stem().string();
       std::replace_if(

@@ -66,13 +66,13 @@ class LitShader final : public BlockShader {
  public:
   LitShader(LitModel model, const LitScene& scene) : model_(model), scene_(scene) {}
 
-  void shade(const FrameGeometry& frame, const std::uint64_t (&words)[64], int x0, int y0, Isa isa,
+  bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
              BlockColors& colors) const noexcept override {
-    if (isa != Isa::scalar && shade_lit_simd(isa, model_, scene_, frame, words, x0, y0, colors))
-      return;
+    if (isa != Isa::scalar && shade_lit_simd(isa, model_, scene_, frame, block, colors))
+      return true;
     const FragmentShader scalar(
         [this](const FrameGeometry&, const Fragment& f) { return color(f); });
-    scalar.shade(frame, words, x0, y0, isa, colors);
+    return scalar.shade(frame, block, isa, colors);
   }
 
  private:

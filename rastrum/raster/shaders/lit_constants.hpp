@@ -28,8 +28,9 @@ constexpr Vec3 id_color(std::uint64_t id) {
   return {channel(0), channel(8), channel(16)};
 }
 
-/// The SIMD form (lit_simd.cpp). Returns false where it has none for `model`.
+/// The SIMD form (lit_simd.cpp); its colours are opaque. Returns false where it has none for
+/// `model`.
 bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
-                    const std::uint64_t (&words)[64], int x0, int y0, BlockColors& colors) noexcept;
+                    const VisibleBlock& block, BlockColors& colors) noexcept;
 
 }  // namespace rastrum::raster

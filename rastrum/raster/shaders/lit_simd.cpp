@@ -1,13 +1,13 @@
 // The lit shaders a row of samples at a time, compiled once per instruction set.
 //
-// The weights of a triangle are set up in scalar float32 once per run of samples that see it; where
-// a row sees one triangle its setup is broadcast, otherwise lanes hold different ones, and both
-// give the same bits. float32 weights lose about |longest edge|² / |twice the area| ulps to
-// cancellation, so thin and clipped triangles are interpolated in float64 (interpolate.hpp)
-// instead.
+// What a triangle brings to a row (its normal, its colour) is interpolated for the whole row and
+// blended into the samples that see it; the lighting then runs once for the row. So a sample's bits
+// do not depend on its neighbours. Setting up a triangle is scalar float32, kept for the block.
 //
-// Square roots and divisions are the exact ones: approximate reciprocals differ between makers of
-// the same instruction set.
+// float32 weights lose about |longest edge|² / |twice the area| ulps to cancellation, so thin and
+// clipped triangles are interpolated in float64 (interpolate.hpp) instead. Square roots and
+// divisions are the exact ones: approximate reciprocals differ between makers of the same
+// instruction set.
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
@@ -15,10 +15,8 @@
 #include <hwy/foreach_target.h>  // must precede highway.h
 #include <hwy/highway.h>
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 #include <rastrum/raster/interpolate.hpp>
 #include <rastrum/raster/shaders/lit_constants.hpp>
@@ -28,38 +26,23 @@
 namespace rastrum::raster {
 namespace {
 
-/// Weights λ₁, λ₂ as planes, 1/w, and the attributes of the three corners: one triangle, one column
-/// of numbers, so that lanes can hold different triangles.
-enum Column : int {
-  kX0,
-  kY0,
-  kP1,
-  kQ1,
-  kP2,
-  kQ2,
-  kInvW0,
-  kInvW1,
-  kInvW2,
-  kNormal,               ///< 9: corner-major
-  kColor = kNormal + 9,  ///< 9
-  kColumns = kColor + 9,
-};
-
-struct TriangleColumns {
+/// A triangle as the rows need it.
+struct TriangleSetup {
   std::uint64_t low = 0;  ///< of the word; 0: none yet
   bool exact = false;     ///< interpolate with `planes`
-  float value[kColumns];
+  float x0, y0;           ///< λ₁ = p1 (x − x0) + q1 (y − y0), λ₂ alike
+  float p1, q1, p2, q2;
+  float inv_w[3];
+  Vec3 normal[3];  ///< world space
+  Vec3 color[3];
   WeightPlanes planes;
 };
 
+/// Triangles of a block by their ids' low bits: rows below mostly meet the same ones again.
+constexpr std::size_t kKept = 16;
+
 /// Up to this ratio of squared longest edge to twice the area float32 weights are as good as 1e-5.
 constexpr float kThin = 32.0F;
-
-void put(float* to, Vec3 v) {
-  to[0] = v.x;
-  to[1] = v.y;
-  to[2] = v.z;
-}
 
 Vec3 to_world(const LitDraw& draw, Vec3 n) {
   if (draw.identity) return n;
@@ -70,7 +53,7 @@ Vec3 to_world(const LitDraw& draw, Vec3 n) {
 }
 
 void fetch_weights(const FrameGeometry& frame, const Draw& draw, std::uint64_t t,
-                   const std::uint32_t (&vertex)[3], TriangleColumns& out) {
+                   const std::uint32_t (&vertex)[3], TriangleSetup& out) {
   const ProjectedVertex* vertices = frame.projected + draw.first_vertex;
   const ProjectedVertex &v0 = vertices[vertex[0]], &v1 = vertices[vertex[1]],
                         &v2 = vertices[vertex[2]];
@@ -86,24 +69,22 @@ void fetch_weights(const FrameGeometry& frame, const Draw& draw, std::uint64_t t
               (extent > 128.0F && !(extent < kThin * std::abs(det)));
   if (out.exact) {
     out.planes = weight_planes(frame, draw, t);
-    std::fill_n(out.value, kNormal, 0.0F);
     return;
   }
   const float inv_det = 1.0F / det;
-  float* v = out.value;
-  v[kX0] = static_cast<float>(v0.x_fx8) * kPx;
-  v[kY0] = static_cast<float>(v0.y_fx8) * kPx;
-  v[kP1] = e2y * inv_det;
-  v[kQ1] = -e2x * inv_det;
-  v[kP2] = -e1y * inv_det;
-  v[kQ2] = e1x * inv_det;
-  v[kInvW0] = v0.inv_w;
-  v[kInvW1] = v1.inv_w;
-  v[kInvW2] = v2.inv_w;
+  out.x0 = static_cast<float>(v0.x_fx8) * kPx;
+  out.y0 = static_cast<float>(v0.y_fx8) * kPx;
+  out.p1 = e2y * inv_det;
+  out.q1 = -e2x * inv_det;
+  out.p2 = -e1y * inv_det;
+  out.q2 = e1x * inv_det;
+  out.inv_w[0] = v0.inv_w;
+  out.inv_w[1] = v1.inv_w;
+  out.inv_w[2] = v2.inv_w;
 }
 
 void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t low,
-                    bool wants_normals, TriangleColumns& out) {
+                    bool wants_normals, TriangleSetup& out) {
   out.low = low;
   const std::uint64_t id = kIdMask - low;
   const Draw& draw = frame.draw_of(id);
@@ -112,27 +93,25 @@ void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint
   const std::uint32_t vertex[3] = {draw.vertex(t, 0), draw.vertex(t, 1), draw.vertex(t, 2)};
   fetch_weights(frame, draw, t, vertex, out);
   const MeshView& mesh = lit.mesh;
-  float* v = out.value;
   if (wants_normals && mesh.normals.empty()) {
     const Vec3 a = mesh.positions[vertex[0]];
     const Vec3 n =
         to_world(lit, cross(mesh.positions[vertex[1]] - a, mesh.positions[vertex[2]] - a));
-    for (int c = 0; c < 3; ++c) put(v + kNormal + 3 * c, n);
+    for (Vec3& normal : out.normal) normal = n;
   } else if (wants_normals) {
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t i =
           mesh.normals.indices.empty() ? vertex[c] : mesh.normals.indices[t * 3 + c];
-      put(v + kNormal + 3 * c, to_world(lit, mesh.normals.values[i]));
+      out.normal[c] = to_world(lit, mesh.normals.values[i]);
     }
   }
-  if (mesh.colors.empty()) {
-    for (int c = 0; c < 3; ++c) put(v + kColor + 3 * c, kDefaultBase);
-    return;
-  }
+  if (!scene.colored) return;
   for (std::size_t c = 0; c < 3; ++c) {
+    out.color[c] = kDefaultBase;
+    if (mesh.colors.empty()) continue;
     const std::size_t i = mesh.colors.indices.empty() ? vertex[c] : mesh.colors.indices[t * 3 + c];
     const Vec4 color = mesh.colors.values[i];
-    put(v + kColor + 3 * c, {color.x, color.y, color.z});
+    out.color[c] = {color.x, color.y, color.z};
   }
 }
 
@@ -174,85 +153,67 @@ HWY_INLINE F positive(F v) {
   return hn::IfThenElseZero(hn::Gt(v, hn::Zero(F32{})), v);
 }
 
-/// Columns of kLanes samples: one triangle for all, or one for each.
-struct Lanes {
-  F value[kColumns];
-};
-
-HWY_INLINE V3 corner_sum(const Lanes& lanes, int column, F b0, F b1, F b2) {
-  const auto axis = [&](int i) HWY_ATTR {
-    return hn::Add(
-        hn::Add(hn::Mul(lanes.value[column + i], b0), hn::Mul(lanes.value[column + 3 + i], b1)),
-        hn::Mul(lanes.value[column + 6 + i], b2));
-  };
-  return {axis(0), axis(1), axis(2)};
+HWY_INLINE F corner_sum(float c0, float c1, float c2, F b0, F b1, F b2) {
+  return hn::Add(hn::Add(hn::Mul(set(c0), b0), hn::Mul(set(c1), b1)), hn::Mul(set(c2), b2));
+}
+HWY_INLINE V3 corner_sum(const Vec3 (&v)[3], F b0, F b1, F b2) {
+  return {corner_sum(v[0].x, v[1].x, v[2].x, b0, b1, b2),
+          corner_sum(v[0].y, v[1].y, v[2].y, b0, b1, b2),
+          corner_sum(v[0].z, v[1].z, v[2].z, b0, b1, b2)};
+}
+HWY_INLINE V3 blend(hn::Mask<F32> mask, const V3& yes, const V3& no) {
+  return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y),
+          hn::IfThenElse(mask, yes.z, no.z)};
+}
+HWY_INLINE hn::Mask<F32> lane_mask(std::uint32_t bits) {
+  // LoadMaskBits reads whole bytes.
+  const std::uint8_t memory[8] = {static_cast<std::uint8_t>(bits)};
+  return hn::LoadMaskBits(F32{}, memory);
 }
 
-struct Row {
-  const LitScene* scene;
-  int x, y;  ///< of the first lane
-  bool uniform;
-  bool colored;  ///< some draw has colours of its own
-};
-
-/// Weights of the lanes, up to a common positive factor; `exact` lanes are overwritten in float64.
-HWY_INLINE void row_weights(const Row& row, const Lanes& lanes, const TriangleColumns* triangles,
-                            std::uint32_t exact, F& b0, F& b1, F& b2) {
+/// Weights of triangle `t` at kLanes samples, up to a common positive factor.
+HWY_INLINE void row_weights(const TriangleSetup& t, int x, int y, F& b0, F& b1, F& b2) {
   const F32 d;
-  const F one = set(1.0F);
-  const F px = hn::Add(hn::Iota(d, static_cast<float>(row.x)), set(0.5F));
-  const F py = set(static_cast<float>(row.y) + 0.5F);
-  const F dx = hn::Sub(px, lanes.value[kX0]);
-  const F dy = hn::Sub(py, lanes.value[kY0]);
-  const F l1 = hn::Add(hn::Mul(lanes.value[kP1], dx), hn::Mul(lanes.value[kQ1], dy));
-  const F l2 = hn::Add(hn::Mul(lanes.value[kP2], dx), hn::Mul(lanes.value[kQ2], dy));
-  b0 = hn::Mul(hn::Sub(hn::Sub(one, l1), l2), lanes.value[kInvW0]);
-  b1 = hn::Mul(l1, lanes.value[kInvW1]);
-  b2 = hn::Mul(l2, lanes.value[kInvW2]);
-  if (exact == 0) return;
-  HWY_ALIGN float b[3][kLanes];
-  hn::Store(b0, d, b[0]);
-  hn::Store(b1, d, b[1]);
-  hn::Store(b2, d, b[2]);
-  for (; exact != 0; exact &= exact - 1) {
-    const int lane = std::countr_zero(exact);
-    const TriangleColumns& triangle = triangles[row.uniform ? 0 : lane];
-    const Weights w = weights_at(triangle.planes, row.x + lane, row.y);
-    for (int c = 0; c < 3; ++c) b[c][lane] = static_cast<float>(w.b[c]);
+  if (t.exact) {
+    HWY_ALIGN float b[3][kLanes];
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const Weights w = weights_at(t.planes, x + static_cast<int>(lane), y);
+      for (int c = 0; c < 3; ++c) b[c][lane] = static_cast<float>(w.b[c]);
+    }
+    b0 = hn::Load(d, b[0]);
+    b1 = hn::Load(d, b[1]);
+    b2 = hn::Load(d, b[2]);
+    return;
   }
-  b0 = hn::Load(d, b[0]);
-  b1 = hn::Load(d, b[1]);
-  b2 = hn::Load(d, b[2]);
+  const F px = hn::Add(hn::Iota(d, static_cast<float>(x)), set(0.5F));
+  const F dx = hn::Sub(px, set(t.x0));
+  const float dy = (static_cast<float>(y) + 0.5F) - t.y0;
+  const F l1 = hn::Add(hn::Mul(set(t.p1), dx), set(t.q1 * dy));
+  const F l2 = hn::Add(hn::Mul(set(t.p2), dx), set(t.q2 * dy));
+  b0 = hn::Mul(hn::Sub(hn::Sub(set(1.0F), l1), l2), set(t.inv_w[0]));
+  b1 = hn::Mul(l1, set(t.inv_w[1]));
+  b2 = hn::Mul(l2, set(t.inv_w[2]));
 }
 
+/// The lighting of a row whose normals (not normalized) and base colours are known.
 template <LitModel kModel>
-HWY_INLINE V3 shade_row(const Row& row, const Lanes& lanes, const TriangleColumns* triangles,
-                        std::uint32_t exact) {
+HWY_INLINE V3 light_row(const ViewRays& rays, int x, int y, V3 n, const V3& base) {
   const F32 d;
-  F b0, b1, b2;
-  row_weights(row, lanes, triangles, exact, b0, b1, b2);
-  V3 base{lanes.value[kColor], lanes.value[kColor + 1], lanes.value[kColor + 2]};
-  if (kModel != LitModel::normal && row.colored)
-    base = scale(corner_sum(lanes, kColor, b0, b1, b2),
-                 hn::Div(set(1.0F), hn::Add(hn::Add(b0, b1), b2)));
   if (kModel == LitModel::flat) return base;
-
-  V3 n = normalize(corner_sum(lanes, kNormal, b0, b1, b2));
+  n = normalize(n);
   const F half = set(0.5F);
   if (kModel == LitModel::normal)
     return {hn::Add(hn::Mul(n.x, half), half), hn::Add(hn::Mul(n.y, half), half),
             hn::Add(hn::Mul(n.z, half), half)};
 
-  const ViewRays& rays = row.scene->rays;
-  const F px = hn::Add(hn::Iota(d, static_cast<float>(row.x)), half);
-  const float py = static_cast<float>(row.y) + 0.5F;
+  const F px = hn::Add(hn::Iota(d, static_cast<float>(x)), half);
+  const float py = static_cast<float>(y) + 0.5F;
   const auto ray = [&](float origin, float dx, float dy) HWY_ATTR {
     return hn::Neg(hn::Add(hn::Add(set(origin), hn::Mul(set(dx), px)), set(dy * py)));
   };
   const V3 v = normalize({ray(rays.d.x, rays.dx.x, rays.dy.x), ray(rays.d.y, rays.dx.y, rays.dy.y),
                           ray(rays.d.z, rays.dx.z, rays.dy.z)});
-  const F flip = hn::IfThenElse(hn::Lt(dot(n, v), hn::Zero(d)), set(-1.0F), set(1.0F));
-  n = scale(n, flip);
+  n = scale(n, hn::IfThenElse(hn::Lt(dot(n, v), hn::Zero(d)), set(-1.0F), set(1.0F)));
   const V3 light{set(kLight.x), set(kLight.y), set(kLight.z)};
   const F diffuse = hn::Add(set(kAmbient), hn::Mul(set(kDiffuse), positive(dot(n, light))));
   const V3 lit = scale(base, diffuse);
@@ -264,78 +225,72 @@ HWY_INLINE V3 shade_row(const Row& row, const Lanes& lanes, const TriangleColumn
   return {hn::Add(lit.x, specular), hn::Add(lit.y, specular), hn::Add(lit.z, specular)};
 }
 
+/// The lanes of `covered` whose words hold the triangle `low`.
+HWY_INLINE std::uint32_t same_triangle(const std::uint64_t* words, std::uint64_t low) {
+  constexpr std::size_t kLanes64 = hn::MaxLanes(hn::CappedTag<std::uint64_t, 4>{});
+  const hn::CappedTag<std::uint64_t, 4> d;
+  std::uint32_t same = 0;
+  for (std::size_t i = 0; i < kLanes; i += kLanes64) {
+    std::uint8_t bits = 0;
+    const auto mine = hn::And(hn::Load(d, words + i), hn::Set(d, kIdMask));
+    hn::StoreMaskBits(d, hn::Eq(mine, hn::Set(d, low)), &bits);
+    same |= (bits & ((1U << kLanes64) - 1)) << i;
+  }
+  return same;
+}
+
 template <LitModel kModel>
-void shade_block(const LitScene& scene, const FrameGeometry& frame,
-                 const std::uint64_t (&words)[64], int x0, int y0, BlockColors& colors) {
+void shade_block(const LitScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
+                 BlockColors& colors) {
   const F32 d;
   constexpr bool kNormals = kModel != LitModel::flat;
-  TriangleColumns triangles[kLanes];
-  HWY_ALIGN float columns[kColumns][kLanes];
-  Lanes lanes;
-  std::uint64_t broadcast = 0;  // low part of the triangle that `lanes` holds for a whole row
-  // A lane without a surface keeps what it has; the first one must not read garbage that traps.
-  std::memset(columns, 0, sizeof columns);
+  const bool colored = kModel != LitModel::normal && scene.colored;
+  TriangleSetup kept[kKept];
   for (std::size_t first = 0; first < 64; first += kLanes) {
-    const std::uint64_t* row_words = words + first;
-    Row row{&scene, x0 + static_cast<int>(first % 8), y0 + static_cast<int>(first / 8), true,
-            scene.colored};
-    std::uint64_t some = 0;
-    std::uint64_t differs = 0;
-    for (std::size_t lane = 0; lane < kLanes; ++lane)
-      some = row_words[lane] != 0 ? row_words[lane] : some;
-    if (some == 0) continue;
-    const std::uint64_t low = some & kIdMask;
-    for (std::size_t lane = 0; lane < kLanes; ++lane)
-      differs |= row_words[lane] != 0 ? (row_words[lane] & kIdMask) ^ low : 0;
-    row.uniform = differs == 0;
-
-    std::uint32_t exact = 0;
-    if (row.uniform) {
-      if (low != broadcast) {
-        if (low != triangles[0].low) fetch_triangle(scene, frame, low, kNormals, triangles[0]);
-        for (int c = 0; c < kColumns; ++c) lanes.value[c] = set(triangles[0].value[c]);
-        broadcast = low;
+    auto rest = static_cast<std::uint32_t>(block.covered >> first & ((1U << kLanes) - 1));
+    if (rest == 0) continue;
+    const std::uint64_t* words = block.words + first;
+    const int x = block.x0 + static_cast<int>(first % 8);
+    const int y = block.y0 + static_cast<int>(first / 8);
+    V3 n{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    V3 base{set(kDefaultBase.x), set(kDefaultBase.y), set(kDefaultBase.z)};
+    while (rest != 0) {
+      const std::uint64_t low = words[std::countr_zero(rest)] & kIdMask;
+      TriangleSetup& t = kept[low % kKept];
+      if (t.low != low) fetch_triangle(scene, frame, low, kNormals, t);
+      const std::uint32_t same = same_triangle(words, low) & rest;
+      const auto mask = lane_mask(same);
+      rest &= ~same;
+      if (!kNormals && !colored) continue;
+      F b0, b1, b2;
+      row_weights(t, x, y, b0, b1, b2);
+      if (kNormals) n = blend(mask, corner_sum(t.normal, b0, b1, b2), n);
+      if (colored) {
+        const F inverse = hn::Div(set(1.0F), hn::Add(hn::Add(b0, b1), b2));
+        base = blend(mask, scale(corner_sum(t.color, b0, b1, b2), inverse), base);
       }
-      if (triangles[0].exact) exact = (1U << kLanes) - 1;
-    } else {
-      broadcast = 0;
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        if (row_words[lane] == 0) continue;
-        const std::uint64_t lane_low = row_words[lane] & kIdMask;
-        TriangleColumns& mine = triangles[lane];
-        if (mine.low != lane_low) {
-          if (lane > 0 && triangles[lane - 1].low == lane_low)
-            mine = triangles[lane - 1];
-          else
-            fetch_triangle(scene, frame, lane_low, kNormals, mine);
-        }
-        exact |= static_cast<std::uint32_t>(mine.exact) << lane;
-        for (int c = 0; c < kColumns; ++c) columns[c][lane] = mine.value[c];
-      }
-      for (int c = 0; c < kColumns; ++c) lanes.value[c] = hn::Load(d, columns[c]);
     }
-    const V3 color = shade_row<kModel>(row, lanes, triangles, exact);
+    const V3 color = light_row<kModel>(scene.rays, x, y, n, base);
     hn::Store(color.x, d, colors.r + first);
     hn::Store(color.y, d, colors.g + first);
     hn::Store(color.z, d, colors.b + first);
   }
-  for (std::size_t i = 0; i < 64; i += kLanes) hn::Store(set(1.0F), d, colors.a + i);
 }
 
 bool shade(LitModel model, const LitScene& scene, const FrameGeometry& frame,
-           const std::uint64_t (&words)[64], int x0, int y0, BlockColors& colors) noexcept {
+           const VisibleBlock& block, BlockColors& colors) noexcept {
   switch (model) {
     case LitModel::flat:
-      shade_block<LitModel::flat>(scene, frame, words, x0, y0, colors);
+      shade_block<LitModel::flat>(scene, frame, block, colors);
       return true;
     case LitModel::normal:
-      shade_block<LitModel::normal>(scene, frame, words, x0, y0, colors);
+      shade_block<LitModel::normal>(scene, frame, block, colors);
       return true;
     case LitModel::lambert:
-      shade_block<LitModel::lambert>(scene, frame, words, x0, y0, colors);
+      shade_block<LitModel::lambert>(scene, frame, block, colors);
       return true;
     case LitModel::phong:
-      shade_block<LitModel::phong>(scene, frame, words, x0, y0, colors);
+      shade_block<LitModel::phong>(scene, frame, block, colors);
       return true;
     default:
       return false;
@@ -351,24 +306,23 @@ HWY_AFTER_NAMESPACE();
 namespace rastrum::raster {
 
 bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
-                    const std::uint64_t (&words)[64], int x0, int y0,
-                    BlockColors& colors) noexcept {
+                    const VisibleBlock& block, BlockColors& colors) noexcept {
   switch (isa) {
 #if HWY_TARGETS & HWY_SSE4
     case Isa::sse4:
-      return N_SSE4::shade(model, scene, frame, words, x0, y0, colors);
+      return N_SSE4::shade(model, scene, frame, block, colors);
 #endif
 #if HWY_TARGETS & HWY_AVX2
     case Isa::avx2:
-      return N_AVX2::shade(model, scene, frame, words, x0, y0, colors);
+      return N_AVX2::shade(model, scene, frame, block, colors);
 #endif
 #if HWY_TARGETS & HWY_AVX3
     case Isa::avx512:
-      return N_AVX3::shade(model, scene, frame, words, x0, y0, colors);
+      return N_AVX3::shade(model, scene, frame, block, colors);
 #endif
 #if HWY_TARGETS & HWY_NEON
     case Isa::neon:
-      return N_NEON::shade(model, scene, frame, words, x0, y0, colors);
+      return N_NEON::shade(model, scene, frame, block, colors);
 #endif
     default:
       return false;

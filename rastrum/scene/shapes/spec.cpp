@@ -73,6 +73,16 @@ const std::vector<Shape>& table() {
        {{"count", "4"}, {"fill", "0.6"}},
        "count³ boxes of edge `fill` in a grid of unit cells (12 count³ triangles)",
        [](const Arguments& a) { return boxes(a.get<int>(0), a.get<float>(1)); }},
+      {"hairball",
+       {{"strands", "22500"}, {"segments", "64"}, {"width", "0.002"}, {"seed", "1"}},
+       "crossing curves in the unit ball as thin ribbons (2 strands segments triangles)",
+       [](const Arguments& a) {
+         return hairball(a.get<int>(0), a.get<int>(1), a.get<float>(2), a.get<std::uint64_t>(3));
+       }},
+      {"gyroid",
+       {{"cells", "64"}, {"periods", "2"}},
+       "gyroid surface by marching cubes on a grid of cells³",
+       [](const Arguments& a) { return gyroid(a.get<int>(0), a.get<float>(1)); }},
       {"soup",
        {{"count", "10000"}, {"min_size", "0.01"}, {"max_size", "0.2"}, {"seed", "1"}},
        "random triangles with edges from min_size to max_size in the cube [−1, 1]³",

@@ -1,0 +1,77 @@
+#include "arguments.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+#include <rastrum/core/image.hpp>
+
+namespace rastrum::cli {
+namespace {
+
+template <class T>
+bool convert(std::string_view text, T& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size();
+}
+
+[[noreturn]] void refuse(std::string_view option, std::string_view text, const std::string& wanted) {
+  throw UsageError(option, "expected " + wanted + ", got '" + std::string(text) + "'");
+}
+
+}  // namespace
+
+double parse_number(std::string_view option, std::string_view text) {
+  double value = 0;
+  if (!convert(text, value) || !std::isfinite(value)) refuse(option, text, "a number");
+  return value;
+}
+
+int parse_integer(std::string_view option, std::string_view text, int min, int max) {
+  int value = 0;
+  if (!convert(text, value) || value < min || value > max)
+    refuse(option, text,
+           "a whole number from " + std::to_string(min) + " to " + std::to_string(max));
+  return value;
+}
+
+Vec3 parse_vec3(std::string_view option, std::string_view text) {
+  float values[3] = {};
+  std::string_view rest = text;
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t comma = rest.find(',');
+    const bool last = i == 2;
+    if ((comma == std::string_view::npos) != last || !convert(rest.substr(0, comma), values[i]) ||
+        !std::isfinite(values[i]))
+      refuse(option, text, "three numbers X,Y,Z");
+    if (!last) rest.remove_prefix(comma + 1);
+  }
+  return {values[0], values[1], values[2]};
+}
+
+Size parse_size(std::string_view option, std::string_view text) {
+  Size size;
+  const std::size_t x = text.find('x');
+  if (x == std::string_view::npos || !convert(text.substr(0, x), size.width) ||
+      !convert(text.substr(x + 1), size.height) || size.width < 1 || size.height < 1 ||
+      size.width > kMaxImageSize || size.height > kMaxImageSize)
+    refuse(option, text, "WIDTHxHEIGHT from 1x1 to 32768x32768");
+  return size;
+}
+
+Vec4 parse_color(std::string_view option, std::string_view text) {
+  unsigned channel[4] = {0, 0, 0, 255};
+  const bool has_alpha = text.size() == 9;
+  bool ok = (text.size() == 7 || has_alpha) && text[0] == '#';
+  for (std::size_t i = 0; ok && i < (has_alpha ? 4U : 3U); ++i) {
+    const std::string_view digits = text.substr(1 + 2 * i, 2);
+    const auto [end, error] =
+        std::from_chars(digits.data(), digits.data() + digits.size(), channel[i], 16);
+    ok = error == std::errc{} && end == digits.data() + digits.size();
+  }
+  if (!ok) refuse(option, text, "a colour #rrggbb or #rrggbbaa");
+  const auto value = [&](int i) { return static_cast<float>(channel[i]) / 255.0F; };
+  return {value(0), value(1), value(2), value(3)};
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,31 @@
+// Values of options: text to numbers, and the error for a command line that cannot be meant.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include <rastrum/core/vec.hpp>
+
+namespace rastrum::cli {
+
+/// A command line that cannot be meant (exit status 2). The message begins with the option.
+class UsageError : public std::runtime_error {
+ public:
+  UsageError(std::string_view option, const std::string& problem)
+      : std::runtime_error(std::string(option) + ": " + problem) {}
+};
+
+/// Each throws UsageError that names `option` and shows what is wanted.
+[[nodiscard]] double parse_number(std::string_view option, std::string_view text);  ///< finite
+[[nodiscard]] int parse_integer(std::string_view option, std::string_view text, int min, int max);
+[[nodiscard]] Vec3 parse_vec3(std::string_view option, std::string_view text);  ///< X,Y,Z
+
+struct Size {
+  int width = 1280, height = 720;
+};
+[[nodiscard]] Size parse_size(std::string_view option, std::string_view text);  ///< WxH
+/// '#rrggbb' or '#rrggbbaa', display values in [0, 1], straight alpha.
+[[nodiscard]] Vec4 parse_color(std::string_view option, std::string_view text);
+
+}  // namespace rastrum::cli

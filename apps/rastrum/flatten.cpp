@@ -1,0 +1,109 @@
+#include "flatten.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include <rastrum/core/error.hpp>
+
+namespace rastrum::cli {
+namespace {
+
+Vec3 transform_position(const Mat4d& a, Vec3 p) {
+  const auto row = [&](int i) {
+    return static_cast<float>(a.m[i][0] * p.x + a.m[i][1] * p.y + a.m[i][2] * p.z + a.m[i][3]);
+  };
+  return {row(0), row(1), row(2)};
+}
+
+/// By the cofactors of the linear part: the inverse transpose times the determinant, which needs no
+/// division. A mirror keeps the normals' side, as it turns the winding.
+Vec3 transform_normal(const Mat4d& a, Vec3 n) {
+  const auto cofactor = [&](int i, int j) {
+    const int r0 = (i + 1) % 3, r1 = (i + 2) % 3, c0 = (j + 1) % 3, c1 = (j + 2) % 3;
+    return a.m[r0][c0] * a.m[r1][c1] - a.m[r0][c1] * a.m[r1][c0];
+  };
+  const auto row = [&](int i) {
+    return static_cast<float>(cofactor(i, 0) * n.x + cofactor(i, 1) * n.y + cofactor(i, 2) * n.z);
+  };
+  return normalize(Vec3{row(0), row(1), row(2)});
+}
+
+bool is_identity(const Mat4d& a) {
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j)
+      if (a.m[i][j] != (i == j ? 1 : 0)) return false;
+  return true;
+}
+
+void place(Mesh& mesh, const Mat4d& a) {
+  if (is_identity(a)) return;
+  for (Vec3& p : mesh.positions) p = transform_position(a, p);
+  for (Vec3& n : mesh.normals.values) n = transform_normal(a, n);
+}
+
+/// Drops an attribute that the positions' indices cannot reach, or that the meshes before this one
+/// lack. `kept`: whether the result has it so far.
+template <class T>
+void join(Attribute<T>& into, Attribute<T>& from, std::size_t positions, bool& kept, bool& lost) {
+  const bool usable = from.indices.empty() && from.values.size() >= positions;
+  lost |= !from.empty() && (!usable || !kept);
+  kept = kept && usable && positions != 0;
+  if (!kept) {
+    lost |= !into.empty();
+    into = {};
+    return;
+  }
+  into.values.insert(into.values.end(), from.values.begin(),
+                     from.values.begin() + static_cast<std::ptrdiff_t>(positions));
+}
+
+struct Kept {
+  bool normals = true, texcoords = true, colors = true;
+};
+
+void append(Mesh& into, Mesh& from, Kept& kept, Kept& whole) {
+  const std::size_t first = into.positions.size();
+  const std::size_t count = from.positions.size();
+  if (first + count > std::numeric_limits<std::uint32_t>::max())
+    throw Error(Errc::unsupported, "the scene has more vertices than one mesh can number");
+  into.positions.insert(into.positions.end(), from.positions.begin(), from.positions.end());
+  const std::size_t corners = from.triangle_count() * 3;
+  into.indices.reserve(into.indices.size() + corners);
+  for (std::size_t i = 0; i < corners; ++i)
+    into.indices.push_back(static_cast<std::uint32_t>(first) +
+                           (from.indices.empty() ? static_cast<std::uint32_t>(i) : from.indices[i]));
+  bool lost[3] = {};
+  join(into.normals, from.normals, count, kept.normals, lost[0]);
+  join(into.texcoords, from.texcoords, count, kept.texcoords, lost[1]);
+  join(into.colors, from.colors, count, kept.colors, lost[2]);
+  whole.normals &= !lost[0];
+  whole.texcoords &= !lost[1];
+  whole.colors &= !lost[2];
+}
+
+}  // namespace
+
+Flattened flatten(Scene scene) {
+  Flattened flat{{}, std::move(scene.warnings)};
+  Kept kept, whole;
+  for (const Instance& instance : scene.instances) {
+    Mesh mesh = scene.meshes[instance.mesh];
+    place(mesh, instance.object_to_world);
+    append(flat.mesh, mesh, kept, whole);
+  }
+  const auto tell = [&](bool all, const char* what) {
+    if (!all)
+      flat.warnings.push_back(std::string("the ") + what +
+                              " are left out: some mesh has none, or has them numbered apart from "
+                              "the positions, which PLY cannot say");
+  };
+  tell(whole.normals, "normals");
+  tell(whole.texcoords, "texture coordinates");
+  tell(whole.colors, "colours");
+  if (!scene.materials.empty())
+    flat.warnings.emplace_back("the materials are left out: PLY has none");
+  return flat;
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,21 @@
+// A scene as one mesh in world space, for a format that holds one.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <rastrum/scene/scene.hpp>
+
+namespace rastrum::cli {
+
+struct Flattened {
+  Mesh mesh;
+  std::vector<std::string> warnings;  ///< the scene's, and what the mesh could not keep
+};
+
+/// All instances in order of submission: triangle t of the scene is triangle t of the mesh, and
+/// vertices stay shared as they were. Attributes are kept where every mesh has them numbered as its
+/// positions are. Throws Error{unsupported} beyond 2³² vertices.
+[[nodiscard]] Flattened flatten(Scene scene);
+
+}  // namespace rastrum::cli

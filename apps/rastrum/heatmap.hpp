@@ -1,0 +1,27 @@
+// Overdraw as a picture: how many fragments each pixel took.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <rastrum/core/image.hpp>
+
+namespace rastrum::cli {
+
+struct Heatmap {
+  Image<Rgba8> image;
+  std::uint32_t max = 0;  ///< fragments at the fullest pixel
+  std::uint64_t sum = 0;  ///< over all pixels: FrameStats::fragments
+};
+
+/// Black where there is no fragment; else the ramp at log(1 + n) / log(1 + max), so that two
+/// layers are told apart beside two hundred.
+[[nodiscard]] Heatmap make_heatmap(ImageView<const std::uint32_t> overdraw);
+
+inline constexpr int kRampSize = 1024;
+/// Dark violet through red to light yellow; equal steps look equally far apart.
+[[nodiscard]] const std::array<Rgba8, kRampSize>& heat_ramp();
+/// Where n > 0 fragments lie on the ramp.
+[[nodiscard]] int ramp_index(std::uint32_t n, std::uint32_t max);
+
+}  // namespace rastrum::cli

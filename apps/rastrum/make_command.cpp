@@ -1,0 +1,93 @@
+// `rastrum make SHAPE -o FILE.ply`: procedural meshes and subdivided ones as files.
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <rastrum/io/io.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "flatten.hpp"
+#include "inputs.hpp"
+#include "output.hpp"
+#include "progress.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+/// 4^12 triangles for one: what is beyond that no index can number.
+constexpr int kMaxSubdivisions = 12;
+
+struct MakeArguments {
+  std::string input;
+  Output output;
+  int subdivide = 0;
+  bool quiet = false;
+};
+
+/// A name of the catalogue is a shape; anything else that looks like a path is a file.
+bool is_shape(const std::string& input) {
+  const std::string name = input.substr(0, input.find('?'));
+  for (const shapes::ShapeInfo& shape : shapes::catalogue())
+    if (shape.name == name) return true;
+  return name.find_first_of("./:") == std::string::npos;
+}
+
+int run(const MakeArguments& a) {
+  const Output* const outputs[] = {&a.output};
+  check_outputs(outputs);
+  Progress progress(a.quiet);
+  progress.show("making " + a.input);
+  Scene scene = load_input(is_shape(a.input) ? "builtin:" + a.input : a.input);
+  Flattened flat = flatten(std::move(scene));
+  if (a.subdivide > 0) flat.mesh = shapes::subdivide(flat.mesh, a.subdivide);
+  progress.clear();
+  if (!a.quiet)
+    for (const std::string& w : flat.warnings) warn(w);
+  io::write_ply(a.output.file, flat.mesh);
+  if (!a.quiet)
+    std::fprintf(stderr, "%s: %zu vertices, %zu triangles\n", a.output.file.c_str(),
+                 flat.mesh.positions.size(), flat.mesh.triangle_count());
+  return 0;
+}
+
+}  // namespace
+
+Command add_make_command(CLI::App& app) {
+  auto arguments = std::make_shared<MakeArguments>();
+  CLI::App& make = *app.add_subcommand("make", "Write a shape, or a file's mesh, as binary PLY");
+  make.add_option("SHAPE", arguments->input,
+                  "SHAPE[?name=value,...] of the list below (x, y, z and scale place it), or a file")
+      ->required()
+      ->type_name("");
+  make.add_option_function<std::string>(
+          "-o,--output",
+          [arguments](const std::string& s) {
+            arguments->output = parse_output("-o", s, {Format::ply});
+          },
+          "the .ply file")
+      ->required()
+      ->type_name("FILE");
+  make.add_option_function<std::string>(
+          "--subdivide",
+          [arguments](const std::string& s) {
+            arguments->subdivide = parse_integer("--subdivide", s, 0, kMaxSubdivisions);
+          },
+          "split every triangle in 4, K times (0)")
+      ->type_name("K");
+  make.add_flag("--quiet", arguments->quiet, "print errors alone");
+  std::string footer = "Shapes and their defaults:\n";
+  for (const shapes::ShapeInfo& shape : shapes::catalogue())
+    footer += "  " + shape.name + (shape.parameters.empty() ? "" : "?") + shape.parameters +
+              "\n      " + shape.description + "\n";
+  footer +=
+      "\nExamples:\n"
+      "  rastrum make 'torus_knot?p=3,q=5' -o knot.ply\n"
+      "  rastrum make bunny.obj --subdivide 2 -o bunny16.ply";
+  make.footer(footer);
+  return {&make, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace rastrum::cli

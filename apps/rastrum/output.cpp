@@ -1,0 +1,99 @@
+#include "output.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/io/io.hpp>
+
+#include "arguments.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* extension(Format format) {
+  switch (format) {
+    case Format::png:
+      return ".png";
+    case Format::exr:
+      return ".exr";
+    case Format::npy:
+      return ".npy";
+    case Format::ply:
+      return ".ply";
+    case Format::json:
+      return ".json";
+  }
+  return "";
+}
+
+std::string lower(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
+  return text;
+}
+
+void check_directory(const Output& output) {
+  const auto fail = [&](const std::string& why) {
+    throw Error(Errc::io, output.option + ": " + output.file.string() + " cannot be written: " + why);
+  };
+  std::error_code ignored;
+  if (fs::is_directory(output.file, ignored)) fail("it is a directory");
+  const fs::path parent = output.file.has_parent_path() ? output.file.parent_path() : fs::path(".");
+  if (!fs::is_directory(parent, ignored))
+    fail("there is no directory " + parent.string() + "; create it first");
+  // What exists and is no regular file (a device, a pipe) is written in place.
+  const bool special = fs::exists(output.file, ignored) && !fs::is_regular_file(output.file, ignored);
+  if (!special && ::access(parent.c_str(), W_OK) != 0)
+    fail(parent.string() + ": " + std::strerror(errno));
+}
+
+}  // namespace
+
+Output parse_output(std::string_view option, const std::string& file,
+                    std::initializer_list<Format> formats) {
+  const fs::path path(file);
+  const std::string given = lower(path.extension().string());
+  std::string known;
+  for (const Format format : formats) {
+    if (given == extension(format)) return {std::string(option), path, format};
+    known.append(known.empty() ? "" : ", ").append(extension(format));
+  }
+  throw UsageError(option, "the name of the file must end in " + known + ", got '" + file + "'");
+}
+
+void check_outputs(std::span<const Output* const> outputs) {
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    if (!*outputs[i]) continue;
+    for (std::size_t j = 0; j < i; ++j)
+      if (*outputs[j] && fs::weakly_canonical(outputs[i]->file) ==
+                             fs::weakly_canonical(outputs[j]->file))
+        throw UsageError(outputs[i]->option, outputs[i]->file.string() + " is also the file of " +
+                                                 outputs[j]->option + "; give each its own");
+    check_directory(*outputs[i]);
+  }
+}
+
+void write_color(const Output& output, ImageView<const Rgba8> color8, ImageView<const Vec4> color) {
+  if (output.format == Format::png)
+    io::write_png(output.file, color8);
+  else if (output.format == Format::exr)
+    io::write_exr(output.file, color);
+  else
+    io::write_npy(output.file, color);
+}
+
+void write_depth(const Output& output, ImageView<const float> depth) {
+  if (output.format == Format::exr)
+    io::write_exr(output.file, depth);
+  else
+    io::write_npy(output.file, depth);
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,352 @@
+// `rastrum render INPUT… -o OUT`: the options, then check, load, render, write.
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <rastrum/io/io.hpp>
+#include <rastrum/render/render.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "heatmap.hpp"
+#include "inputs.hpp"
+#include "json_file.hpp"
+#include "output.hpp"
+#include "progress.hpp"
+#include "render_job.hpp"
+#include "stats_json.hpp"
+#include "timeline.hpp"
+#include "view.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+struct RenderArguments {
+  std::vector<std::string> inputs;
+  RenderOptions render;
+  bool shader_given = false;
+  Normals normals = Normals::file;
+  ViewOptions view;
+  bool fit = false;
+  bool frames_given = false;
+  int frames = 1;
+  bool quiet = false;
+  Output color, depth, ids, heatmap, trace, stats;
+};
+
+/// One of a few words. Throws UsageError that lists them.
+template <class T>
+T choose(std::string_view option, const std::string& text,
+         std::initializer_list<std::pair<const char*, T>> choices) {
+  std::string known;
+  for (const auto& [word, value] : choices) {
+    if (text == word) return value;
+    known.append(known.empty() ? "" : ", ").append(word);
+  }
+  throw UsageError(option, "expected one of " + known + ", got '" + text + "'");
+}
+
+Isa parse_isa(const std::string& text) {
+  return choose<Isa>("--isa", text,
+                     {{"scalar", Isa::scalar},
+                      {"sse4", Isa::sse4},
+                      {"avx2", Isa::avx2},
+                      {"avx512", Isa::avx512},
+                      {"neon", Isa::neon}});
+}
+
+std::string check_rasterizer(const std::string& text) {
+  std::string known = "auto";
+  if (text == known) return text;
+  for (const RasterizerInfo& info : rasterizers()) {
+    if (text == info.name) return text;
+    known += ", " + info.name;
+  }
+  throw UsageError("--rasterizer", "expected one of " + known + ", got '" + text + "'");
+}
+
+Shader parse_shader(const std::string& text) {
+  try {
+    return shader_from_name(text);
+  } catch (const Error& e) {
+    throw UsageError("--shader", e.what());
+  }
+}
+
+/// An option whose text `parse` turns into a value; what it throws names the option.
+template <class F>
+CLI::Option* add(CLI::App& app, const char* names, const char* type, const std::string& help,
+                 F parse) {
+  return app
+      .add_option_function<std::string>(names, [parse](const std::string& s) { parse(s); }, help)
+      ->type_name(type);
+}
+
+void add_output_options(CLI::App& app, RenderArguments& a) {
+  const char* group = "Outputs";
+  add(app, "-o,--output", "FILE", ".png: 8 bit, straight alpha; .exr, .npy: float32, premultiplied",
+      [&a](const std::string& s) {
+        a.color = parse_output("-o", s, {Format::png, Format::exr, Format::npy});
+      })
+      ->group(group);
+  add(app, "--depth", "FILE", ".npy or .exr: float32, 1 near, 0 far and where nothing is",
+      [&a](const std::string& s) {
+        a.depth = parse_output("--depth", s, {Format::npy, Format::exr});
+      })
+      ->group(group);
+  add(app, "--ids", "FILE", ".npy: int64, triangle in order of submission, -1 where nothing is",
+      [&a](const std::string& s) { a.ids = parse_output("--ids", s, {Format::npy}); })
+      ->group(group);
+  add(app, "--heatmap", "FILE", ".png: fragments at each pixel as colours; legend on stderr",
+      [&a](const std::string& s) { a.heatmap = parse_output("--heatmap", s, {Format::png}); })
+      ->group(group);
+  add(app, "--stats", "FILE", ".json or - (standard output): counts, memory and times",
+      [&a](const std::string& s) {
+        a.stats = s == "-" ? Output{"--stats", s, Format::json}
+                           : parse_output("--stats", s, {Format::json});
+      })
+      ->group(group);
+  add(app, "--trace", "FILE", ".json: stages for chrome://tracing or ui.perfetto.dev",
+      [&a](const std::string& s) { a.trace = parse_output("--trace", s, {Format::json}); })
+      ->group(group);
+  app.add_flag("--quiet", a.quiet, "print errors alone: no warnings, legend, summary or progress")
+      ->group(group);
+}
+
+void add_picture_options(CLI::App& app, RenderArguments& a) {
+  const char* group = "Picture";
+  add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)",
+      [&a](const std::string& s) {
+        const Size size = parse_size("--size", s);
+        a.render.width = size.width;
+        a.render.height = size.height;
+      })
+      ->group(group);
+  std::string shaders;
+  for (const std::string_view shader : shader_names())
+    shaders.append(shaders.empty() ? "" : ", ").append(shader);
+  add(app, "--shader", "NAME", shaders + " (material where a file has materials, else phong)",
+      [&a](const std::string& s) {
+        a.render.shader = parse_shader(s);
+        a.shader_given = true;
+      })
+      ->group(group);
+  add(app, "--normals", "NAME",
+      "file: the file's, else vertex; vertex: area-weighted means; face (file)",
+      [&a](const std::string& s) {
+        a.normals = choose<Normals>(
+            "--normals", s,
+            {{"file", Normals::file}, {"vertex", Normals::vertex}, {"face", Normals::face}});
+      })
+      ->group(group);
+  add(app, "--cull", "NAME", "none, back, front; counter-clockwise is front (none)",
+      [&a](const std::string& s) {
+        a.render.cull = choose<Cull>(
+            "--cull", s, {{"none", Cull::none}, {"back", Cull::back}, {"front", Cull::front}});
+      })
+      ->group(group);
+  add(app, "--background", "#RRGGBB[AA]", "(#00000000, transparent)",
+      [&a](const std::string& s) { a.render.background = parse_color("--background", s); })
+      ->group(group);
+}
+
+void add_camera_options(CLI::App& app, RenderArguments& a) {
+  const char* group = "Camera (what is not given is taken from --fit)";
+  ViewOptions& v = a.view;
+  app.add_flag("--fit", a.fit, "look along -z at all that is there (the default)")->group(group);
+  add(app, "--camera", "N", "the N-th camera of the files, from 0",
+      [&v](const std::string& s) {
+        v.file_camera = parse_integer("--camera", s, 0, std::numeric_limits<int>::max());
+      })
+      ->group(group);
+  add(app, "--eye", "X,Y,Z", "where the camera stands",
+      [&v](const std::string& s) { v.eye = parse_vec3("--eye", s); })
+      ->group(group);
+  add(app, "--target", "X,Y,Z", "what it looks at",
+      [&v](const std::string& s) { v.target = parse_vec3("--target", s); })
+      ->group(group);
+  add(app, "--up", "X,Y,Z", "which way is up in the picture (0,1,0)",
+      [&v](const std::string& s) { v.up = parse_vec3("--up", s); })
+      ->group(group);
+  add(app, "--fov", "DEG", "field of view across the smaller side (60)",
+      [&v](const std::string& s) { v.fov_deg = parse_number("--fov", s); })
+      ->group(group);
+  add(app, "--near", "N", "distance of the near plane (just before the scene)",
+      [&v](const std::string& s) { v.near_plane = parse_number("--near", s); })
+      ->group(group);
+  add(app, "--far", "F|inf", "distance of the far plane (inf; orthographic: behind the scene)",
+      [&v](const std::string& s) {
+        v.far_plane =
+            s == "inf" ? std::numeric_limits<double>::infinity() : parse_number("--far", s);
+      })
+      ->group(group);
+  add(app, "--orthographic", "HEIGHT|fit",
+      "parallel projection, HEIGHT world units across the smaller side",
+      [&v](const std::string& s) {
+        v.orthographic = true;
+        if (s != "fit") v.orthographic_height = parse_number("--orthographic", s);
+      })
+      ->group(group);
+}
+
+void add_machine_options(CLI::App& app, RenderArguments& a) {
+  const char* group = "Machine";
+  std::string names;
+  for (const RasterizerInfo& info : rasterizers())
+    names.append(names.empty() ? "" : ", ").append(info.name);
+  add(app, "--rasterizer", "NAME", "auto, " + names + " (auto)",
+      [&a](const std::string& s) { a.render.rasterizer = check_rasterizer(s); })
+      ->group(group);
+  add(app, "--device", "NAME", "serial, threads, cuda (threads)",
+      [&a](const std::string& s) {
+        a.render.device = choose<Device>("--device", s,
+                                         {{"serial", Device::serial},
+                                          {"threads", Device::threads},
+                                          {"cuda", Device::cuda}});
+      })
+      ->group(group);
+  add(app, "--threads", "N", "(all)",
+      [&a](const std::string& s) { a.render.threads = parse_integer("--threads", s, 1, 4096); })
+      ->group(group);
+  std::string isas;
+  for (const Isa isa : available_isas()) isas.append(isas.empty() ? "" : ", ").append(name(isa));
+  add(app, "--isa", "NAME", "instruction set; this machine has " + isas + " (the last)",
+      [&a](const std::string& s) { a.render.isa = parse_isa(s); })
+      ->group(group);
+  add(app, "--frames", "N", "render N times; --stats gives median, minimum and maximum (1)",
+      [&a](const std::string& s) {
+        a.frames = parse_integer("--frames", s, 1, 1000000);
+        a.frames_given = true;
+      })
+      ->group(group);
+}
+
+/// What the parser cannot see by itself, before anything is read.
+void check(const RenderArguments& a) {
+  if (!a.color && !a.depth && !a.ids && !a.heatmap && !a.stats && !a.trace)
+    throw UsageError("-o", "say where the picture goes, as in -o picture.png");
+  const ViewOptions& v = a.view;
+  if (a.fit && (v.eye || v.target || v.file_camera))
+    throw UsageError("--fit", "leaves no room for --eye, --target or --camera");
+  if (v.file_camera && v.orthographic)
+    throw UsageError("--orthographic", "the camera of a file has a projection of its own");
+  check_view(v);
+  const bool stats_to_file = a.stats && a.stats.file != "-";
+  const Output none;
+  const Output* const outputs[] = {&a.color,   &a.depth, &a.ids,
+                                   &a.heatmap, &a.trace, stats_to_file ? &a.stats : &none};
+  check_outputs(outputs);
+}
+
+void report_warnings(const Scene& scene, const FrameStats& frame) {
+  for (const std::string& w : scene.warnings) warn(w);
+  if (frame.triangles.input == 0) warn("there are no triangles to draw");
+  if (frame.triangles.dropped != 0)
+    warn(std::to_string(frame.triangles.dropped) + " of " + std::to_string(frame.triangles.input) +
+         " triangles have a NaN or infinite vertex and are not drawn");
+}
+
+void write_images(const RenderArguments& a, const Pictures& p, Timeline& timeline,
+                  Progress& progress) {
+  const auto write = [&](const Output& output, auto&& writer) {
+    if (!output) return;
+    progress.show("writing " + output.file.string());
+    timeline.measure("write " + output.file.string(), "write", writer);
+  };
+  write(a.color, [&] { write_color(a.color, p.color8.view(), p.color.view()); });
+  write(a.depth, [&] { write_depth(a.depth, p.depth.view()); });
+  write(a.ids, [&] { io::write_npy(a.ids.file, p.ids.view()); });
+  write(a.heatmap, [&] {
+    const Heatmap heatmap = make_heatmap(p.overdraw.view());
+    io::write_png(a.heatmap.file, heatmap.image.view());
+    progress.clear();
+    if (!a.quiet)
+      std::fprintf(stderr,
+                   "heatmap: black 0, violet 1, light yellow %lu fragments at a pixel, "
+                   "logarithmic; %lu fragments in all\n",
+                   static_cast<unsigned long>(heatmap.max),
+                   static_cast<unsigned long>(heatmap.sum));
+  });
+}
+
+int run(RenderArguments& a) {
+  check(a);
+  Timeline timeline;
+  Progress progress(a.quiet);
+  // Refuses what this machine or build cannot do before a large file is read.
+  auto renderer = std::make_unique<Renderer>(a.render);
+
+  const double load_begin = timeline.now_ms();
+  const Scene scene = load_inputs(a.inputs, a.normals, timeline, progress);
+  const double load_ms = timeline.now_ms() - load_begin;
+  if (!a.shader_given && !scene.materials.empty()) {
+    a.render.shader = Shader::material;
+    renderer = std::make_unique<Renderer>(a.render);
+  }
+  const SceneBinding binding(scene);
+  const Camera camera = choose_camera(a.view, scene, binding.view());
+
+  const bool timed = a.frames_given || a.stats || a.trace;
+  const Wanted wanted{.color8 = a.color && a.color.format == Format::png,
+                      .color = a.color && a.color.format != Format::png,
+                      .depth = static_cast<bool>(a.depth),
+                      .ids = static_cast<bool>(a.ids),
+                      .overdraw = static_cast<bool>(a.heatmap)};
+  Pictures pictures;
+  const std::vector<FrameStats> frames = render_frames(
+      *renderer, binding.view(), camera, wanted, timed, a.frames, pictures, timeline, progress);
+  const FrameStats& median = frames[median_frame(frames)];
+  progress.clear();
+  if (!a.quiet) report_warnings(scene, median);
+
+  write_images(a, pictures, timeline, progress);
+  progress.clear();
+  if (a.stats) write_json(a.stats.file, stats_json(frames, renderer->options(), load_ms));
+  if (a.trace) write_trace(a.trace.file, timeline);
+  if (!a.quiet && a.color)
+    std::fprintf(stderr, "%s: %dx%d, %lu triangles, %.1f ms%s\n", a.color.file.c_str(),
+                 a.render.width, a.render.height,
+                 static_cast<unsigned long>(median.triangles.input), median.frame_ms,
+                 timed ? " a frame" : "");
+  return 0;
+}
+
+}  // namespace
+
+Command add_render_command(CLI::App& app) {
+  auto arguments = std::make_shared<RenderArguments>();
+  CLI::App& render = *app.add_subcommand("render", "Draw meshes and shapes into an image file");
+  render
+      .add_option("INPUT", arguments->inputs,
+                  "files (.obj .ply .stl .off .gltf .glb) and builtin:SHAPE[?name=value,...], drawn "
+                  "as one scene in this order; x, y, z and scale place a shape")
+      ->required()
+      ->type_name("");
+  add_output_options(render, *arguments);
+  add_picture_options(render, *arguments);
+  add_camera_options(render, *arguments);
+  add_machine_options(render, *arguments);
+  std::string footer = "Shapes and their defaults:\n";
+  for (const shapes::ShapeInfo& shape : shapes::catalogue())
+    footer += "  builtin:" + shape.name + (shape.parameters.empty() ? "" : "?") + shape.parameters +
+              "\n";
+  footer +=
+      "\nTimes: a frame goes from the mesh in memory to the finished 8-bit image in memory. With\n"
+      "--frames, --stats or --trace the timed frames fill that image alone, and one more pass,\n"
+      "which is not timed, fills the others; without them one pass fills all.\n"
+      "\nExamples:\n"
+      "  rastrum render bunny.obj -o bunny.png\n"
+      "  rastrum render scene.glb --camera 0 --size 1920x1080 --background '#20242c' -o scene.png\n"
+      "  rastrum render a.stl b.ply --eye 3,2,5 --target 0,0,0 --depth d.npy --ids i.npy -o c.exr\n"
+      "  rastrum render builtin:teapot 'builtin:sphere?x=3,scale=0.5' --shader normal -o two.png\n"
+      "  rastrum render dragon.ply --frames 20 --stats - --trace frames.json --heatmap heat.png";
+  render.footer(footer);
+  return {&render, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace rastrum::cli

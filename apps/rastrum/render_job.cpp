@@ -1,0 +1,71 @@
+#include "render_job.hpp"
+
+#include <string>
+
+#include "progress.hpp"
+#include "timeline.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+/// Allocates what is wanted and returns the views.
+Targets make_targets(Wanted wanted, const RenderOptions& options, Pictures& pictures) {
+  Targets targets;
+  const auto add = [&](bool want, auto& image, auto& target) {
+    if (!want) return;
+    if (image.empty())
+      image = std::remove_reference_t<decltype(image)>(options.width, options.height);
+    target = image.view();
+  };
+  add(wanted.color8, pictures.color8, targets.color8);
+  add(wanted.color, pictures.color, targets.color);
+  add(wanted.depth, pictures.depth, targets.depth);
+  add(wanted.ids, pictures.ids, targets.ids);
+  add(wanted.overdraw, pictures.overdraw, targets.overdraw);
+  return targets;
+}
+
+}  // namespace
+
+FrameStats timed_render(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                        const Targets& targets, Timeline& timeline, const std::string& label) {
+  const double begin = timeline.now_ms();
+  FrameStats stats = renderer.render(scene, camera, targets);
+  const double whole = timeline.now_ms() - begin;
+  const double before = whole - stats.frame_ms;
+  for (StageTime& stage : stats.stages) {
+    stage.begin_ms += before;
+    stage.end_ms += before;
+  }
+  stats.stages.insert(stats.stages.begin(), {"prepare", 0, before});
+  stats.frame_ms = whole;
+  timeline.add_frame(label, begin, stats);
+  return stats;
+}
+
+std::vector<FrameStats> render_frames(Renderer& renderer, const SceneView& scene,
+                                      const Camera& camera, Wanted wanted, bool timed, int frames,
+                                      Pictures& pictures, Timeline& timeline, Progress& progress) {
+  std::vector<FrameStats> stats;
+  if (!timed) {
+    progress.show("rendering");
+    const Targets all = make_targets(wanted, renderer.options(), pictures);
+    stats.push_back(timed_render(renderer, scene, camera, all, timeline, "frame"));
+    return stats;
+  }
+  const Targets color8 = make_targets({.color8 = true}, renderer.options(), pictures);
+  for (int i = 0; i < frames; ++i) {
+    progress.show("rendering frame " + std::to_string(i + 1) + " of " + std::to_string(frames));
+    stats.push_back(
+        timed_render(renderer, scene, camera, color8, timeline, "frame " + std::to_string(i)));
+  }
+  wanted.color8 = false;
+  if (wanted.color || wanted.depth || wanted.ids || wanted.overdraw) {
+    const Targets others = make_targets(wanted, renderer.options(), pictures);
+    timeline.measure("other images", "images",
+                     [&] { renderer.render(scene, camera, others); });
+  }
+  return stats;
+}
+
+}  // namespace rastrum::cli

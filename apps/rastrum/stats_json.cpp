@@ -1,0 +1,86 @@
+#include "stats_json.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <rastrum/parallel/exec.hpp>
+
+namespace rastrum::cli {
+namespace {
+
+const char* device_name(Device device) {
+  switch (device) {
+    case Device::serial:
+      return "serial";
+    case Device::threads:
+      return "threads";
+    case Device::cuda:
+      return "cuda";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::size_t median_frame(std::span<const FrameStats> frames) {
+  std::vector<std::size_t> order(frames.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto middle = order.begin() + static_cast<std::ptrdiff_t>((frames.size() - 1) / 2);
+  std::nth_element(order.begin(), middle, order.end(), [&](std::size_t a, std::size_t b) {
+    return frames[a].frame_ms < frames[b].frame_ms;
+  });
+  return *middle;
+}
+
+int thread_count(const RenderOptions& options, std::string_view rasterizer) {
+  if (options.device == Device::serial || rasterizer == "reference") return 1;
+  return parallel::Threads(options.threads).concurrency();
+}
+
+nlohmann::ordered_json stats_json(std::span<const FrameStats> frames, const RenderOptions& options,
+                                  double load_ms) {
+  assert(!frames.empty());
+  const FrameStats& median = frames[median_frame(frames)];
+  const auto by_time = [](const FrameStats& a, const FrameStats& b) {
+    return a.frame_ms < b.frame_ms;
+  };
+  const auto [fastest, slowest] = std::minmax_element(frames.begin(), frames.end(), by_time);
+  std::uint64_t peak_bytes = 0;
+  for (const FrameStats& f : frames) peak_bytes = std::max(peak_bytes, f.peak_bytes);
+
+  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+  for (const StageTime& stage : median.stages) {
+    nlohmann::ordered_json& ms = stages[stage.name];
+    ms = (ms.is_null() ? 0.0 : ms.get<double>()) + (stage.end_ms - stage.begin_ms);
+  }
+  const FrameStats::Triangles& t = median.triangles;
+  return {{"version", RASTRUM_VERSION},
+          {"device", device_name(options.device)},
+          {"threads", thread_count(options, median.rasterizer)},
+          {"isa", name(median.isa)},
+          {"rasterizer", median.rasterizer},
+          {"visibility", median.visibility},
+          {"size", {options.width, options.height}},
+          {"triangles",
+           {{"input", t.input},
+            {"dropped", t.dropped},
+            {"culled", t.culled},
+            {"clipped", t.clipped},
+            {"drawn", t.drawn}}},
+          {"fragments", median.fragments},
+          {"pixels_covered", median.pixels_covered},
+          {"peak_bytes", peak_bytes},
+          {"load_ms", load_ms},
+          {"stages_ms", std::move(stages)},
+          {"frame_ms",
+           {{"median", median.frame_ms},
+            {"min", fastest->frame_ms},
+            {"max", slowest->frame_ms},
+            {"frames", frames.size()}}}};
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,25 @@
+// --stats: what the frames were and how long they took.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <rastrum/render/render.hpp>
+
+namespace rastrum::cli {
+
+/// The index of the frame whose time is the median: of an even number the faster of the middle
+/// two, so that its stages add up to the time that is reported.
+[[nodiscard]] std::size_t median_frame(std::span<const FrameStats> frames);
+
+/// Threads that take part in a frame with these options.
+[[nodiscard]] int thread_count(const RenderOptions& options, std::string_view rasterizer);
+
+/// The object of the issue: counts are the same in every frame, `stages_ms` are of the median
+/// frame, `peak_bytes` is the largest of all. Requires a frame.
+[[nodiscard]] nlohmann::ordered_json stats_json(std::span<const FrameStats> frames,
+                                                const RenderOptions& options, double load_ms);
+
+}  // namespace rastrum::cli

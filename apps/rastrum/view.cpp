@@ -1,0 +1,82 @@
+#include "view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "arguments.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+double distance(Vec3 a, Vec3 b) {
+  return std::hypot(double{a.x} - b.x, double{a.y} - b.y, double{a.z} - b.z);
+}
+
+/// A camera of one's own may stand inside the sphere around the scene or at its centre, where the
+/// fit camera's rule would put the near plane at 0.
+void place_planes(Camera& camera, Vec3 centre, double radius) {
+  const double d = distance(camera.eye, centre);
+  camera.near_plane =
+      static_cast<float>(std::max(d - 1.001 * radius, std::max(d, radius) / 1000));
+  if (camera.orthographic) camera.far_plane = static_cast<float>(d + 1.001 * radius);
+}
+
+Camera file_camera(const Scene& scene, int index) {
+  if (static_cast<std::size_t>(index) >= scene.cameras.size())
+    throw UsageError("--camera", scene.cameras.empty()
+                                     ? "the inputs have no camera; leave it out for a view that fits"
+                                     : "the inputs have cameras 0 to " +
+                                           std::to_string(scene.cameras.size() - 1) + ", not " +
+                                           std::to_string(index));
+  return scene.cameras[static_cast<std::size_t>(index)];
+}
+
+}  // namespace
+
+void check_view(const ViewOptions& o) {
+  if (o.fov_deg && !(*o.fov_deg > 0 && *o.fov_deg < 180))
+    throw UsageError("--fov", "must lie between 0 and 180 degrees");
+  if (o.near_plane && !o.orthographic && !o.file_camera && !(*o.near_plane > 0))
+    throw UsageError("--near", "must be greater than 0 for a perspective camera");
+  if (o.near_plane && o.far_plane && !(*o.near_plane < *o.far_plane))
+    throw UsageError("--far", "must be greater than --near");
+  if (o.far_plane && o.orthographic && !std::isfinite(*o.far_plane))
+    throw UsageError("--far", "must be finite for an orthographic camera");
+  if (o.orthographic_height && !(*o.orthographic_height > 0))
+    throw UsageError("--orthographic", "the height must be greater than 0");
+}
+
+Camera choose_camera(const ViewOptions& o, const Scene& scene, const SceneView& view) {
+  Camera camera;
+  if (o.file_camera) {
+    camera = file_camera(scene, *o.file_camera);
+  } else {
+    const double fov_rad = o.fov_deg.value_or(60) * std::numbers::pi / 180;
+    camera = fit_camera(view, static_cast<float>(fov_rad), o.orthographic);
+    if (o.eye) {
+      const Vec3 centre = camera.target;
+      const double radius = distance(camera.eye, centre) * std::sin(fov_rad / 2);
+      camera.eye = *o.eye;
+      place_planes(camera, centre, radius);
+    }
+  }
+  if (o.eye) camera.eye = *o.eye;
+  if (o.target) camera.target = *o.target;
+  if (o.up) camera.up = *o.up;
+  if (o.fov_deg) camera.fov_rad = static_cast<float>(*o.fov_deg * std::numbers::pi / 180);
+  if (o.orthographic_height) camera.orthographic_height = static_cast<float>(*o.orthographic_height);
+  if (o.near_plane) camera.near_plane = static_cast<float>(*o.near_plane);
+  if (o.far_plane) camera.far_plane = static_cast<float>(*o.far_plane);
+  if (camera.eye == camera.target)
+    throw UsageError(o.target ? "--target" : "--eye", "eye and target must differ");
+  if (!(camera.near_plane < camera.far_plane))
+    throw UsageError(o.far_plane ? "--far" : "--near",
+                     "the near plane (" + std::to_string(camera.near_plane) +
+                         ") must be nearer than the far plane (" +
+                         std::to_string(camera.far_plane) + ")");
+  return camera;
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,27 @@
+// From the options of the camera to a camera.
+#pragma once
+
+#include <optional>
+
+#include <rastrum/scene/scene.hpp>
+
+namespace rastrum::cli {
+
+/// What was given; the rest is taken from the fit camera, or from the file's with `camera`.
+struct ViewOptions {
+  std::optional<int> file_camera;
+  std::optional<Vec3> eye, target, up;
+  std::optional<double> fov_deg, near_plane, far_plane;
+  bool orthographic = false;
+  std::optional<double> orthographic_height;  ///< none: the fit camera's
+};
+
+/// Throws UsageError for values that no camera can have; needs no scene, so it comes first.
+void check_view(const ViewOptions& options);
+
+/// The near plane of a camera of one's own is as far from the box as the fit camera's would be.
+/// Throws UsageError where the file has no such camera or the parts do not fit each other.
+[[nodiscard]] Camera choose_camera(const ViewOptions& options, const Scene& scene,
+                                   const SceneView& view);
+
+}  // namespace rastrum::cli

@@ -1,0 +1,49 @@
+// The table of benchmarks and the choice among them.
+#include <bench/bench.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "registry.hpp"
+
+namespace rastrum::bench {
+namespace {
+
+constexpr std::array kBenchmarks = {
+    Benchmark{"machine", "what this machine can do: memory bandwidth, arithmetic", run_machine},
+    Benchmark{"peers", "frames beside OpenGL (Mesa llvmpipe) and Embree, interleaved", run_peers},
+    Benchmark{"peers-check", "coverage, fragment counts and phong against OpenGL's",
+              run_peers_check},
+};
+
+void print_usage(std::FILE* out) {
+  std::fputs("usage: rastrum bench NAME [options]; `rastrum bench NAME --help` lists them\n\n",
+             out);
+  for (const Benchmark& b : kBenchmarks)
+    std::fprintf(out, "  %-12.*s %.*s\n", static_cast<int>(b.name.size()), b.name.data(),
+                 static_cast<int>(b.description.size()), b.description.data());
+}
+
+}  // namespace
+
+std::span<const Benchmark> benchmarks() {
+  return kBenchmarks;
+}
+
+int run(std::span<const std::string_view> args) {
+  if (args.empty() || args[0] == "--help" || args[0] == "-h") {
+    print_usage(stdout);
+    return 0;
+  }
+  const auto found = std::ranges::find(kBenchmarks, args[0], &Benchmark::name);
+  if (found == kBenchmarks.end()) {
+    std::fprintf(stderr, "rastrum bench: there is no benchmark \"%.*s\"\n",
+                 static_cast<int>(args[0].size()), args[0].data());
+    print_usage(stderr);
+    return 2;
+  }
+  return found->run(args.subspan(1));
+}
+
+}  // namespace rastrum::bench

@@ -1,0 +1,35 @@
+// The least time that a frame can take on a machine: what it must read and write over the measured
+// bandwidth, what it must compute over the measured arithmetic. Which of the two is larger binds.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "machine.hpp"
+
+namespace rastrum::bench {
+
+/// What a frame holds.
+struct Workload {
+  std::uint64_t vertices = 0, triangles = 0;
+  std::uint64_t fragments = 0;       ///< samples covered, over all triangles
+  std::uint64_t pixels_covered = 0;  ///< pixels shaded
+  std::uint64_t pixels = 0;          ///< W × H
+};
+
+struct Floor {
+  double bytes = 0, operations = 0;
+  double bytes_ms = 0, operations_ms = 0;
+
+  [[nodiscard]] double ms() const { return bytes_ms > operations_ms ? bytes_ms : operations_ms; }
+  [[nodiscard]] std::string_view binds() const {
+    return bytes_ms > operations_ms ? "bytes" : "ops";
+  }
+};
+
+/// Bytes: positions, normals and indices read once at the read bandwidth, then 4 bytes a pixel
+/// written once by streaming stores. Operations (float32 or integer lanes, counted in floor.cpp)
+/// over the peak with multiply and add apart, which is what the picture rules allow.
+[[nodiscard]] Floor floor_of(const Workload& work, const MachineLimits& machine);
+
+}  // namespace rastrum::bench

@@ -1,0 +1,42 @@
+// Interleaved timing: A B C A B C …, so that what the machine does meanwhile (frequency,
+// neighbours) falls on all alike. Only ratios within a run are worth quoting.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace rastrum::bench {
+
+struct Contender {
+  std::string name;
+  std::function<void()> frame;  ///< what is timed
+};
+
+struct Plan {
+  int rounds = 9;
+  double turn_ms = 30;  ///< a contender's turn: frames until this has passed, one at least
+};
+
+/// Times of one contender: a sample per round, the median of the round's frames.
+struct Timing {
+  std::string name;
+  std::vector<double> samples_ms;
+
+  [[nodiscard]] double median_ms() const;
+  /// Half the distance of the quartiles over the median.
+  [[nodiscard]] double spread() const;
+};
+
+/// Each turn begins with a frame that is not counted (it wakes threads and brings the contender's
+/// own data into the caches), except where a frame takes longer than four turns.
+[[nodiscard]] std::vector<Timing> measure_interleaved(std::span<const Contender> contenders,
+                                                      const Plan& plan);
+
+/// The median of `values`; 0 where there are none.
+[[nodiscard]] double median(std::vector<double> values);
+/// The median over rounds of a's time over b's of the same round.
+[[nodiscard]] double median_ratio(const Timing& a, const Timing& b);
+
+}  // namespace rastrum::bench

@@ -1,0 +1,22 @@
+// Stands where the Embree peer was not built: its constructor says so.
+#include "embree_peer.hpp"
+
+#include <rastrum/core/error.hpp>
+
+namespace rastrum::bench {
+
+struct EmbreePeer::Impl {};
+
+EmbreePeer::EmbreePeer(int) {
+  throw Error(Errc::no_device, "Embree: this build is without it (Debian: libembree-dev)");
+}
+// No object exists, so nothing below is ever called.
+EmbreePeer::~EmbreePeer() = default;
+std::string EmbreePeer::description() const {
+  return {};
+}
+void EmbreePeer::set_mesh(const MeshView&) {}
+void EmbreePeer::build() {}
+void EmbreePeer::trace(const Camera&, ImageView<Rgba8>) {}
+
+}  // namespace rastrum::bench

@@ -1,0 +1,53 @@
+// Rastrum's pictures against the peers', pixel by pixel.
+#pragma once
+
+#include <cstdint>
+
+#include <rastrum/core/image.hpp>
+#include <rastrum/scene/camera.hpp>
+#include <rastrum/scene/mesh.hpp>
+
+namespace rastrum::bench {
+
+/// Fragments at each pixel, ours against a peer's.
+struct CountDifference {
+  std::uint64_t pixels = 0;            ///< where the counts differ
+  std::uint64_t coverage = 0;          ///< of these, where one of the counts is 0
+  std::uint64_t ours = 0, theirs = 0;  ///< fragments in all
+};
+[[nodiscard]] CountDifference compare_counts(const Image<std::uint32_t>& ours,
+                                             const Image<std::uint32_t>& theirs);
+
+/// Colours at the pixels that either picture covers (alpha not 0).
+struct ColorDifference {
+  std::uint64_t covered = 0;   ///< pixels that either covers
+  std::uint64_t one_only = 0;  ///< pixels that one alone covers; they count as far apart
+  std::uint64_t far = 0;       ///< pixels with a channel that differs by more than `tolerance`
+  int largest = 0;             ///< largest difference of a channel where both cover
+
+  /// The share of covered pixels within the tolerance; 1 where nothing is covered.
+  [[nodiscard]] double share() const {
+    return covered == 0 ? 1 : 1 - static_cast<double>(far) / static_cast<double>(covered);
+  }
+};
+[[nodiscard]] ColorDifference compare_colors(const Image<Rgba8>& ours, const Image<Rgba8>& theirs,
+                                             int tolerance);
+
+/// Pixels whose numbers differ.
+[[nodiscard]] std::uint64_t count_different(const Image<std::int64_t>& ours,
+                                            const Image<std::int32_t>& theirs);
+
+/// `count` random triangles whose vertices lie exactly on 1/256 px of a width × height image, from
+/// a pixel across to all of it, many of them with vertices on half pixels, so that samples lie
+/// exactly on edges. z = −0.5. All inside the image: OpenGL drivers clip at its sides, and round
+/// the new vertices.
+[[nodiscard]] Mesh window_triangles(int width, int height, int count, std::uint64_t seed);
+/// Maps window coordinates (x, height − y) to pixels; float32 rounding stays far below 1/512 px, so
+/// that snapping gives back the exact position.
+[[nodiscard]] Camera window_camera(int width, int height);
+
+/// Coverage of `window_triangles` by definition: every sample against every triangle of its box, in
+/// 64-bit integers. Shares no code with the rasterizers.
+[[nodiscard]] Image<std::uint32_t> count_exactly(const Mesh& triangles, int width, int height);
+
+}  // namespace rastrum::bench

@@ -1,0 +1,39 @@
+// Embree primary rays: the peer from the other family. One ray through each pixel centre, in
+// packets of 16 (4 × 4 pixels) where the machine traces those natively, else 8 (4 × 2), shaded with
+// the same `phong`.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <rastrum/core/image.hpp>
+#include <rastrum/scene/camera.hpp>
+#include <rastrum/scene/mesh.hpp>
+
+namespace rastrum::bench {
+
+class EmbreePeer {
+ public:
+  /// Throws Error{no_device} with Embree's reason.
+  explicit EmbreePeer(int threads = 2);
+  ~EmbreePeer();
+  EmbreePeer(const EmbreePeer&) = delete;
+  EmbreePeer& operator=(const EmbreePeer&) = delete;
+
+  [[nodiscard]] std::string description() const;
+
+  /// Copies the mesh into buffers with the padding that Embree asks for. Needs normals that share
+  /// the positions' indices; throws Error{invalid_argument} otherwise.
+  void set_mesh(const MeshView& mesh);
+  /// Builds the acceleration structure anew, at Embree's default quality.
+  void build();
+  /// Traces and shades into `image`; transparent black where a ray meets nothing.
+  /// Throws Error{invalid_argument} before the first `build`.
+  void trace(const Camera& camera, ImageView<Rgba8> image);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rastrum::bench

@@ -1,0 +1,126 @@
+// Tables, JSON and the description of the machine; see the header.
+#include "report.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <thread>
+
+#include <rastrum/core/error.hpp>
+
+#include "commit.hpp"  // written by the build
+
+namespace rastrum::bench {
+namespace {
+
+/// The value behind the first `key : value` line of a file of /proc; empty where there is none.
+std::string proc_value(const char* file, std::string_view key) {
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with(key))
+      if (const auto colon = line.find(':'); colon != std::string::npos)
+        if (const auto begin = line.find_first_not_of(" \t", colon + 1); begin != std::string::npos)
+          return line.substr(begin);
+  return {};
+}
+
+std::string now_utc() {
+  const std::time_t t = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm parts{};
+  gmtime_r(&t, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text;
+}
+
+std::string compiler() {
+#if defined(__clang__)
+  return "clang " __clang_version__;
+#else
+  return "gcc " __VERSION__;
+#endif
+}
+
+/// Characters, not bytes: a column may hold ² or ×.
+int width_of(const std::string& text) {
+  int n = 0;
+  for (const char c : text) n += (static_cast<unsigned char>(c) & 0xC0U) != 0x80U ? 1 : 0;
+  return n;
+}
+
+}  // namespace
+
+void Table::print_row(const std::vector<std::string>& cells) const {
+  for (std::size_t i = 0; i < cells.size() && i < columns_.size(); ++i) {
+    const std::string padding(
+        static_cast<std::size_t>(std::max(0, columns_[i].width - width_of(cells[i]))), ' ');
+    const std::string text = columns_[i].left ? cells[i] + padding : padding + cells[i];
+    std::printf("%s%s", i == 0 ? "" : "  ", text.c_str());
+  }
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+void Table::print_head() const {
+  std::vector<std::string> titles;
+  std::vector<std::string> rules;
+  for (const Column& c : columns_) {
+    titles.push_back(c.title);
+    rules.emplace_back(static_cast<std::size_t>(std::max(c.width, width_of(c.title))), '-');
+  }
+  print_row(titles);
+  print_row(rules);
+}
+
+std::string significant(double value, int digits) {
+  if (!std::isfinite(value)) return "-";
+  const int magnitude = value == 0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(value))));
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", std::max(0, digits - 1 - magnitude), value);
+  return text;
+}
+
+nlohmann::json to_json(const Timing& timing) {
+  return {{"median_ms", timing.median_ms()},
+          {"spread", timing.spread()},
+          {"samples_ms", timing.samples_ms}};
+}
+
+nlohmann::json machine_json() {
+  const std::string memory = proc_value("/proc/meminfo", "MemTotal");
+  const double kib = memory.empty() ? 0 : std::strtod(memory.c_str(), nullptr);
+  return {{"cpu", proc_value("/proc/cpuinfo", "model name")},
+          {"cores", std::thread::hardware_concurrency()},
+          {"memory_gib", std::round(kib / 1048576 * 10) / 10},
+          {"compiler", compiler()},
+          {"commit", kCommit},
+          {"version", kVersion},
+          {"date", now_utc()}};
+}
+
+std::string machine_text() {
+  const nlohmann::json m = machine_json();
+  return m["cpu"].get<std::string>() + ", " + std::to_string(m["cores"].get<unsigned>()) +
+         " cores, " + significant(m["memory_gib"].get<double>()) + " GiB; " +
+         m["compiler"].get<std::string>() + "\nRastrum " + m["version"].get<std::string>() + " (" +
+         m["commit"].get<std::string>() + "), " + m["date"].get<std::string>();
+}
+
+void write_json(const std::string& file, const nlohmann::json& document) {
+  const std::string temporary = file + ".part";
+  {
+    std::ofstream out(temporary);
+    out << document.dump(2) << "\n";
+    if (!out.flush()) throw Error(Errc::io, "cannot write " + temporary);
+  }
+  std::error_code failed;
+  std::filesystem::rename(temporary, file, failed);
+  if (failed) throw Error(Errc::io, "cannot rename " + temporary + ": " + failed.message());
+}
+
+}  // namespace rastrum::bench

@@ -1,0 +1,45 @@
+// What a benchmark leaves behind: a table for people, JSON for programs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "measure.hpp"
+
+namespace rastrum::bench {
+
+/// A table printed row by row, so that a long run shows what it has. Numbers stand right.
+class Table {
+ public:
+  struct Column {
+    std::string title;
+    int width = 8;  ///< characters; longer cells push the row
+    bool left = false;
+  };
+  explicit Table(std::vector<Column> columns) : columns_(std::move(columns)) {}
+
+  void print_head() const;
+  void print_row(const std::vector<std::string>& cells) const;
+
+ private:
+  std::vector<Column> columns_;
+};
+
+/// `value` with `digits` significant digits, without an exponent: 0.123, 4.56, 123, 45678.
+[[nodiscard]] std::string significant(double value, int digits = 3);
+
+/// {"median_ms", "spread", "samples_ms"}.
+[[nodiscard]] nlohmann::json to_json(const Timing& timing);
+
+/// {"cpu", "cores", "memory_gib", "compiler", "commit", "version", "date"}: what a figure needs to
+/// be read later.
+[[nodiscard]] nlohmann::json machine_json();
+/// The same in two lines of text.
+[[nodiscard]] std::string machine_text();
+
+/// Writes `document` beside `file` and renames it. Throws Error{io}.
+void write_json(const std::string& file, const nlohmann::json& document);
+
+}  // namespace rastrum::bench

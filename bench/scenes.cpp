@@ -1,0 +1,103 @@
+// The benchmarks' scenes; see the header.
+#include "scenes.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/io/io.hpp>
+#include <rastrum/scene/scene.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+
+namespace rastrum::bench {
+namespace {
+
+/// A million triangles of about a pixel at 1024²: the default camera sees the cube of the soup from
+/// a distance where a pixel is 0.0039 wide.
+constexpr std::string_view kScattered = "soup?count=1000000&min_size=0.004&max_size=0.0065";
+
+std::filesystem::path data_file(std::string_view name) {
+  const char* shared = std::getenv("RASTRUM_SHARED");
+  return std::filesystem::path(shared != nullptr ? shared : RASTRUM_SHARED_DIR) / "data" / name;
+}
+
+/// The geometry of a scene's instances as one mesh, in order of submission.
+Mesh flatten(const Scene& scene) {
+  Mesh flat;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    const Mat4 to_world = static_cast<Mat4>(instance.object_to_world);
+    if (flat.positions.size() + mesh.positions.size() > std::numeric_limits<std::uint32_t>::max())
+      throw Error(Errc::unsupported, "the scene has more than 2^32 vertices");
+    const auto base = static_cast<std::uint32_t>(flat.positions.size());
+    for (const Vec3 p : mesh.positions) {
+      const Vec4 q = transform_point(to_world, p);
+      flat.positions.push_back({q.x, q.y, q.z});
+    }
+    const std::size_t corners = mesh.triangle_count() * 3;
+    for (std::size_t i = 0; i < corners; ++i)
+      flat.indices.push_back(
+          base + (mesh.indices.empty() ? static_cast<std::uint32_t>(i) : mesh.indices[i]));
+  }
+  return flat;
+}
+
+Mesh geometry_of(const SceneInfo& scene) {
+  if (!scene.file.empty()) return flatten(io::read_scene(data_file(scene.file)));
+  Scene one;
+  one.meshes.push_back(shapes::from_spec(scene.shape));
+  one.instances.push_back({});
+  return flatten(one);
+}
+
+}  // namespace
+
+const std::vector<SceneInfo>& peer_scenes() {
+  static const std::vector<SceneInfo> scenes{
+      {"suzanne", "small/suzanne.obj", {}},
+      {"teapot", "small/teapot.obj", {}},
+      {"bunny", "small/stanford-bunny.obj", {}},
+      {"sponza", "sponza/sponza.obj", {}},
+      {"dragon", "big/dragon_348k.ply", {}},
+      {"scattered", {}, kScattered, 0, true},
+      {"brain", "big/brain_iso126_1033k.ply", {}},
+      {"bunny-1m", "small/stanford-bunny.obj", {}, 2},
+      {"bunny-4m", "small/stanford-bunny.obj", {}, 3},
+  };
+  return scenes;
+}
+
+const std::vector<SceneInfo>& procedural_scenes() {
+  static const std::vector<SceneInfo> scenes{
+      {"shape-teapot", {}, "teapot?n=10"},
+      {"torus-knot", {}, "torus_knot?segments=1500&sides=24"},
+      {"gyroid", {}, "gyroid?cells=160"},
+      {"scattered", {}, kScattered, 0, true},
+  };
+  return scenes;
+}
+
+const SceneInfo& scene_by_name(std::string_view name) {
+  std::string known;
+  for (const auto* list : {&peer_scenes(), &procedural_scenes()})
+    for (const SceneInfo& scene : *list) {
+      if (scene.name == name) return scene;
+      known += (known.empty() ? "" : ", ") + std::string(scene.name);
+    }
+  throw Error(Errc::invalid_argument,
+              "there is no scene \"" + std::string(name) + "\"; known are " + known);
+}
+
+bool available(const SceneInfo& scene) {
+  return scene.file.empty() || std::filesystem::exists(data_file(scene.file));
+}
+
+Mesh load(const SceneInfo& scene) {
+  Mesh mesh = geometry_of(scene);
+  if (scene.subdivide > 0) mesh = shapes::subdivide(mesh, scene.subdivide);
+  mesh.normals = {vertex_normals(mesh.positions, mesh.indices), {}};
+  return mesh;
+}
+
+}  // namespace rastrum::bench

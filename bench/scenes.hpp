@@ -1,0 +1,33 @@
+// What the benchmarks draw: one mesh each, with area-weighted vertex normals that share the
+// positions' indices, and no materials, so that every peer can be given the same arrays.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <rastrum/scene/mesh.hpp>
+
+namespace rastrum::bench {
+
+struct SceneInfo {
+  std::string_view name;
+  /// A file under the shared data, or a procedural shape's specification.
+  std::string_view file, shape;
+  int subdivide = 0;  ///< times each triangle is split in 4
+  bool soup = false;  ///< triangles that share no edges
+};
+
+/// The scenes of `bench peers`, small to large.
+[[nodiscard]] const std::vector<SceneInfo>& peer_scenes();
+/// Those that stand in where the shared data is absent.
+[[nodiscard]] const std::vector<SceneInfo>& procedural_scenes();
+/// Throws Error{invalid_argument} that lists the names.
+[[nodiscard]] const SceneInfo& scene_by_name(std::string_view name);
+
+/// Whether what the scene needs is here: always for shapes.
+[[nodiscard]] bool available(const SceneInfo& scene);
+/// Reads or makes it. Throws Error where the file is absent or broken.
+[[nodiscard]] Mesh load(const SceneInfo& scene);
+
+}  // namespace rastrum::bench

@@ -1,0 +1,225 @@
+// Buffers, URIs and accessors of glTF. Everything was checked against the document
+// (gltf_check.cpp); what is checked here is that a file or chunk holds what the document says.
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include <rastrum/io/gltf_internal.hpp>
+
+namespace rastrum::io::gltf {
+namespace {
+
+/// An accessor without bytes is all zeros; no honest file has more of them.
+constexpr std::size_t kMostZeros = std::size_t{1} << 24;
+
+std::vector<std::byte> decode_base64(std::string_view text, const Json& where) {
+  static constexpr auto kValues = [] {
+    std::array<std::int8_t, 256> v{};
+    v.fill(-1);
+    constexpr std::string_view kDigits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (std::size_t i = 0; i < kDigits.size(); ++i)
+      v[static_cast<unsigned char>(kDigits[i])] = static_cast<std::int8_t>(i);
+    return v;
+  }();
+  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
+  std::vector<std::byte> bytes;
+  bytes.reserve(text.size() / 4 * 3 + 3);
+  std::uint32_t bits = 0;
+  int have = 0;
+  for (const char c : text) {
+    const int v = kValues[static_cast<unsigned char>(c)];
+    if (v < 0) where.fail("holds a character that is not base64");
+    bits = bits << 6 | static_cast<std::uint32_t>(v);
+    have += 6;
+    if (have < 8) continue;
+    have -= 8;
+    bytes.push_back(static_cast<std::byte>(bits >> have & 0xFF));
+  }
+  return bytes;
+}
+
+std::string decode_percent(std::string_view s, const Json& where) {
+  const auto digit = [](char c) {
+    return c >= '0' && c <= '9'   ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
+  };
+  std::string r;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    if (s[i] != '%' || i + 2 >= s.size() || digit(s[i + 1]) < 0 || digit(s[i + 2]) < 0) {
+      r += s[i];
+      continue;
+    }
+    r += static_cast<char>(digit(s[i + 1]) * 16 + digit(s[i + 2]));
+    i += 2;
+  }
+  if (r.find('\0') != std::string::npos) where.fail("holds a zero byte");
+  return r;
+}
+
+template <class T>
+T load(const std::byte* p) {
+  static_assert(std::endian::native == std::endian::little, "glTF is little-endian");
+  T v;
+  std::memcpy(&v, p, sizeof v);
+  return v;
+}
+
+template <class T>
+float to_float(const std::byte* p, bool normalized) {
+  const T v = load<T>(p);
+  if constexpr (std::is_same_v<T, float>) {
+    return v;
+  } else {
+    const auto x = static_cast<float>(v);
+    return normalized ? std::max(x / static_cast<float>(std::numeric_limits<T>::max()), -1.0F) : x;
+  }
+}
+
+float component(const std::byte* p, std::size_t type, bool normalized) {
+  switch (type) {
+    case 5120:
+      return to_float<std::int8_t>(p, normalized);
+    case 5121:
+      return to_float<std::uint8_t>(p, normalized);
+    case 5122:
+      return to_float<std::int16_t>(p, normalized);
+    case 5123:
+      return to_float<std::uint16_t>(p, normalized);
+    case 5125:
+      return to_float<std::uint32_t>(p, normalized);
+    default:
+      return to_float<float>(p, false);
+  }
+}
+
+std::uint32_t unsigned_component(const std::byte* p, std::size_t bytes) {
+  return bytes == 1   ? load<std::uint8_t>(p)
+         : bytes == 2 ? load<std::uint16_t>(p)
+                      : load<std::uint32_t>(p);
+}
+
+}  // namespace
+
+Bytes Buffers::uri(const std::string& uri, const Json& where) {
+  const auto known = owned_.find(uri);
+  if (known != owned_.end())
+    return known->second.mapped ? known->second.mapped->bytes() : known->second.decoded;
+  Owned owned;
+  if (uri.rfind("data:", 0) == 0) {
+    const auto comma = uri.find(',');
+    if (comma == std::string::npos || uri.rfind(";base64", comma) != comma - 7)
+      where.fail("is a data URI that is not base64", Errc::unsupported);
+    owned.decoded = decode_base64(std::string_view(uri).substr(comma + 1), where);
+  } else {
+    const auto colon = uri.find(':');
+    if (colon != std::string::npos && colon < uri.find('/'))
+      where.fail("is neither a data URI nor a file beside this one: " + uri.substr(0, 100),
+                 Errc::unsupported);
+    const auto path = file_.parent_path() / std::filesystem::path(decode_percent(uri, where));
+    try {
+      owned.mapped = std::make_unique<MappedFile>(path);
+    } catch (const Error& e) {
+      where.fail(e.what(), e.code());
+    }
+  }
+  const Owned& kept = owned_.emplace(uri, std::move(owned)).first->second;
+  return kept.mapped ? kept.mapped->bytes() : Bytes(kept.decoded);
+}
+
+std::optional<Bytes> Buffers::buffer(std::size_t index) {
+  const auto known = buffers_.find(index);
+  if (known != buffers_.end()) return known->second;
+  const Json b = document_["buffers"].at(index);
+  std::optional<Bytes> bytes;
+  if (const auto uri_member = b.get("uri")) {
+    bytes = uri(uri_member->string(), *uri_member);
+  } else if (index == 0 && glb_chunk_) {
+    bytes = glb_chunk_;
+  } else {
+    warnings.push_back(b.path() + " has no uri; its bytes are taken as zeros");
+  }
+  const std::size_t size = b["byteLength"].count();
+  if (bytes && bytes->size() < size)
+    b.fail("should hold " + std::to_string(size) + " bytes, but there are " +
+           std::to_string(bytes->size()));
+  if (bytes) bytes = bytes->first(size);
+  buffers_.emplace(index, bytes);
+  return bytes;
+}
+
+std::optional<Bytes> Buffers::view(std::size_t index) {
+  const Json v = document_["bufferViews"].at(index);
+  const auto bytes = buffer(v["buffer"].count());
+  if (!bytes) return std::nullopt;
+  return bytes->subspan(v.count("byteOffset", 0), v["byteLength"].count());
+}
+
+/// `convert(from, to)` makes one element, of `components` values, of its bytes.
+template <class T, class Convert>
+std::vector<T> Buffers::elements(const Json& accessor, Convert convert) {
+  const AccessorType type = accessor_type(accessor);
+  const std::size_t count = accessor["count"].count();
+  std::optional<Bytes> bytes;
+  std::size_t stride = type.element_bytes;
+  if (const auto v = accessor.get("bufferView")) {
+    bytes = view(v->count());
+    stride = document_["bufferViews"].at(v->count()).count("byteStride", type.element_bytes);
+  }
+  if (!bytes && count > kMostZeros)
+    accessor.fail("has " + std::to_string(count) + " elements but no bytes for them",
+                  Errc::unsupported);
+  std::vector<T> values(count * type.components);
+  if (bytes) {
+    const std::byte* from = bytes->data() + accessor.count("byteOffset", 0);
+    for (std::size_t i = 0; i < count; ++i)
+      convert(from + i * stride, &values[i * type.components]);
+  }
+  const auto sparse = accessor.get("sparse");
+  if (!sparse) return values;
+  const Json where = (*sparse)["indices"], what = (*sparse)["values"];
+  const auto at = view(where["bufferView"].count());
+  const auto value = view(what["bufferView"].count());
+  const std::size_t n = (*sparse)["count"].count();
+  const std::size_t index_bytes = component_bytes(where["componentType"]);
+  if (n > kMostZeros && (!at || !value)) sparse->fail("has no bytes", Errc::unsupported);
+  for (std::size_t k = 0; k < n && at && value; ++k) {
+    const std::byte* p = at->data() + where.count("byteOffset", 0) + k * index_bytes;
+    const std::size_t i = unsigned_component(p, index_bytes);
+    if (i >= count)
+      where.fail("refers to element " + std::to_string(i) + " of " + std::to_string(count));
+    convert(value->data() + what.count("byteOffset", 0) + k * type.element_bytes,
+            &values[i * type.components]);
+  }
+  return values;
+}
+
+std::vector<float> Buffers::floats(const Json& accessor) {
+  const AccessorType type = accessor_type(accessor);
+  const bool normalized = accessor.boolean("normalized", false);
+  if (type.component_type == 5126)
+    return elements<float>(accessor, [&](const std::byte* from, float* to) {
+      std::memcpy(to, from, type.components * 4);
+    });
+  return elements<float>(accessor, [&](const std::byte* from, float* to) {
+    for (std::size_t c = 0; c < type.components; ++c)
+      to[c] = component(from + c * type.component_bytes, type.component_type, normalized);
+  });
+}
+
+std::vector<std::uint32_t> Buffers::indices(const Json& accessor) {
+  const AccessorType type = accessor_type(accessor);
+  if (type.components != 1 ||
+      (type.component_type != 5121 && type.component_type != 5123 && type.component_type != 5125))
+    accessor.fail("is read as indices, but is not SCALAR of an unsigned integer");
+  return elements<std::uint32_t>(accessor, [&](const std::byte* from, std::uint32_t* to) {
+    *to = unsigned_component(from, type.component_bytes);
+  });
+}
+
+}  // namespace rastrum::io::gltf

@@ -1,0 +1,105 @@
+// What the parts of the glTF reader share; see gltf.cpp for the way through them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <rastrum/io/gltf_json.hpp>
+#include <rastrum/io/mapped_file.hpp>
+#include <rastrum/io/parse.hpp>
+
+namespace rastrum::io::gltf {
+
+/// Checks every reference, range, length and offset of the document, used or not, before anything
+/// is read. Throws Error{bad_format | unsupported}; appends warnings.
+void check(const Json& document, std::vector<std::string>& warnings);
+
+/// componentType and type of an accessor. `components` is 0 for a type that is not known.
+struct AccessorType {
+  std::size_t component_type = 0, component_bytes = 0, components = 0;
+  std::size_t element_bytes = 0;  ///< with the padding of matrix columns
+  std::size_t used_bytes = 0;     ///< without the padding of the last column
+};
+[[nodiscard]] AccessorType accessor_type(const Json& accessor);
+/// The type of sparse indices and the like. Throws unless 5120 to 5126 without 5124.
+[[nodiscard]] std::size_t component_bytes(const Json& component_type);
+
+/// Bytes of buffers, read when they are asked for.
+class Buffers {
+ public:
+  Buffers(const Json& document, const std::filesystem::path& file, std::optional<Bytes> glb_chunk)
+      : document_(document), file_(file), glb_chunk_(glb_chunk) {}
+
+  /// The bytes of a buffer view; nullopt where the buffer has none (no uri: an application's own).
+  [[nodiscard]] std::optional<Bytes> view(std::size_t index);
+  /// The bytes behind a URI: data: or a file beside this one. `where` names it in errors.
+  [[nodiscard]] Bytes uri(const std::string& uri, const Json& where);
+
+  /// Elements of an accessor as floats, `components` each; integers are normalized where the
+  /// accessor says so. Sparse values are put in. `index` must exist.
+  [[nodiscard]] std::vector<float> floats(const Json& accessor);
+  /// The elements of a SCALAR accessor of unsigned integers.
+  [[nodiscard]] std::vector<std::uint32_t> indices(const Json& accessor);
+
+  std::vector<std::string> warnings;
+
+ private:
+  struct Owned {
+    std::unique_ptr<MappedFile> mapped;
+    std::vector<std::byte> decoded;
+  };
+  [[nodiscard]] std::optional<Bytes> buffer(std::size_t index);
+  template <class T, class Convert>
+  std::vector<T> elements(const Json& accessor, Convert convert);
+
+  const Json& document_;
+  const std::filesystem::path& file_;
+  std::optional<Bytes> glb_chunk_;
+  std::map<std::size_t, std::optional<Bytes>> buffers_;
+  std::map<std::string, Owned> owned_;
+};
+
+/// The affine map of KHR_texture_transform and the set of texture coordinates it applies to.
+struct TextureUse {
+  std::size_t set = 0;
+  float m[2][3] = {{1, 0, 0}, {0, 1, 0}};
+  friend bool operator==(const TextureUse&, const TextureUse&) = default;
+};
+
+/// Materials and their textures, converted when a primitive first uses them.
+class Materials {
+ public:
+  Materials(const Json& document, Buffers& buffers, Scene& scene);
+
+  /// The index in Scene::materials for a primitive's material, or for none.
+  std::uint32_t use(std::optional<std::size_t> material);
+  /// Where this material's textures read the mesh.
+  [[nodiscard]] TextureUse texture_use(std::optional<std::size_t> material) const;
+
+ private:
+  void convert(std::size_t index);
+  std::int32_t texture(const Json& owner, const char* key, const TextureUse& expected);
+  std::int32_t load_texture(std::size_t index);
+  std::int32_t load_image(const Json& image);
+
+  const Json& document_;
+  Buffers& buffers_;
+  Scene& scene_;
+  std::vector<bool> converted_;
+  std::optional<std::uint32_t> default_;
+  std::map<std::size_t, std::int32_t> textures_, images_;  ///< glTF's index to ours
+};
+
+/// One primitive as a mesh; nullopt, with a warning, where it holds no triangles by its nature.
+/// Mesh::material is left alone, `use` says where the material's textures read.
+[[nodiscard]] std::optional<Mesh> read_primitive(const Json& primitive, const Json& document,
+                                                 Buffers& buffers, const TextureUse& use,
+                                                 std::vector<std::string>& warnings);
+
+}  // namespace rastrum::io::gltf

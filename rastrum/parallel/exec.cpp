@@ -1,0 +1,75 @@
+// The one place that calls oneTBB's scheduler. The thread sanitizer does not see into libtbb, which
+// Debian builds without it, and would report every hand-over of work as a race. So this file is
+// compiled without the sanitizer (CMakeLists.txt) and tells it what the scheduler guarantees: what
+// the caller did happens before the bodies, and these before what the caller does next. Races
+// between bodies are still found.
+#include <rastrum/parallel/exec.hpp>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#if defined(RASTRUM_TSAN)
+extern "C" void __tsan_acquire(void* address);
+extern "C" void __tsan_release(void* address);
+#endif
+
+namespace rastrum::parallel {
+namespace {
+
+#if defined(RASTRUM_TSAN)
+/// An edge of happens-before: everything before a `leave` precedes everything after an `enter`.
+struct HandOver {
+  char address = 0;
+  void leave() { __tsan_release(&address); }
+  void enter() { __tsan_acquire(&address); }
+};
+#else
+struct HandOver {
+  void leave() {}
+  void enter() {}
+};
+#endif
+
+/// Takes work over for one range, and hands it back even when the body throws.
+class WithinLoop {
+ public:
+  WithinLoop(HandOver& fork, HandOver& join) : join_(join) { fork.enter(); }
+  ~WithinLoop() { join_.leave(); }
+  WithinLoop(const WithinLoop&) = delete;
+  WithinLoop& operator=(const WithinLoop&) = delete;
+
+ private:
+  HandOver& join_;
+};
+
+/// The caller's side: forks at the beginning, has joined at the end, also of an error's way out.
+class AroundLoop {
+ public:
+  AroundLoop(HandOver& fork, HandOver& join) : join_(join) { fork.leave(); }
+  ~AroundLoop() { join_.enter(); }
+  AroundLoop(const AroundLoop&) = delete;
+  AroundLoop& operator=(const AroundLoop&) = delete;
+
+ private:
+  HandOver& join_;
+};
+
+}  // namespace
+
+void Threads::for_each_range(std::size_t n, std::size_t grain,
+                             void (*body)(void* data, std::size_t begin, std::size_t end),
+                             void* data) {
+  HandOver fork, join;
+  const AroundLoop around(fork, join);
+  arena_.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, n, grain),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          const WithinLoop within(fork, join);
+          body(data, range.begin(), range.end());
+        },
+        tbb::simple_partitioner{});
+  });
+}
+
+}  // namespace rastrum::parallel

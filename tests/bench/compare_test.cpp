@@ -1,0 +1,49 @@
+// The comparisons themselves: they must find what differs.
+#include <bench/peers/compare.hpp>
+
+#include <gtest/gtest.h>
+
+namespace rastrum::bench {
+namespace {
+
+TEST(Compare, CountsFindEachDifference) {
+  Image<std::uint32_t> a(4, 4), b(4, 4);
+  a(1, 1) = b(1, 1) = 3;
+  a(2, 1) = 2, b(2, 1) = 1;
+  b(3, 3) = 1;
+  const CountDifference d = compare_counts(a, b);
+  EXPECT_EQ(d.pixels, 2U);
+  EXPECT_EQ(d.coverage, 1U);
+  EXPECT_EQ(d.ours, 5U);
+  EXPECT_EQ(d.theirs, 5U);
+}
+
+TEST(Compare, ColorsFindEachDifference) {
+  Image<Rgba8> a(4, 1), b(4, 1);
+  a(0, 0) = {10, 20, 30, 255}, b(0, 0) = {11, 19, 30, 255};  // within 1
+  a(1, 0) = {10, 20, 30, 255}, b(1, 0) = {10, 22, 30, 255};  // a channel 2 apart
+  a(2, 0) = {10, 20, 30, 255};                               // one alone covers
+  const ColorDifference d = compare_colors(a, b, 1);
+  EXPECT_EQ(d.covered, 3U);
+  EXPECT_EQ(d.one_only, 1U);
+  EXPECT_EQ(d.far, 2U);
+  EXPECT_EQ(d.largest, 2);
+  EXPECT_DOUBLE_EQ(d.share(), 1.0 / 3);
+}
+
+TEST(Compare, ExactCountsKeepTheTopLeftRule) {
+  // Two right triangles that share a diagonal make the square [0.5, 2.5]² px: its corners and edges
+  // run through samples. Top and left samples belong to it, bottom and right ones do not.
+  const int size = 4;
+  Mesh square;
+  for (const auto& [x, y] : {std::pair{0.5F, 0.5F}, {2.5F, 0.5F}, {2.5F, 2.5F}, {0.5F, 2.5F}})
+    square.positions.push_back({x, size - y, -0.5F});
+  square.indices = {0, 1, 2, 0, 2, 3};
+  const auto counts = count_exactly(square, size, size);
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x)
+      EXPECT_EQ(counts(x, y), x < 2 && y < 2 ? 1U : 0U) << x << ", " << y;
+}
+
+}  // namespace
+}  // namespace rastrum::bench

@@ -1,0 +1,43 @@
+// Rastrum's `phong` against rays traced by Embree: another way to the same picture.
+#include <bench/peers/compare.hpp>
+#include <bench/peers/embree_peer.hpp>
+#include <bench/scenes.hpp>
+
+#include <optional>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/render/render.hpp>
+
+namespace rastrum::bench {
+namespace {
+
+TEST(EmbreePeer, TracesTheSamePicture) {
+  std::optional<EmbreePeer> embree;
+  try {
+    embree.emplace(2);
+  } catch (const Error& e) {
+    if (e.code() != Errc::no_device) throw;
+    GTEST_SKIP() << e.what();
+  }
+  const Mesh mesh = load(scene_by_name("torus-knot"));
+  embree->set_mesh(mesh.view());
+  const InstanceView instance{mesh.view(), Mat4d::identity()};
+  const SceneView scene{{&instance, 1}, {}, {}};
+  const Camera camera = fit_camera(scene, 1.04719755F, false);
+  // Not a multiple of a packet or a tile.
+  RenderOptions options;
+  options.width = 501;
+  options.height = 333;
+  Image<Rgba8> traced(options.width, options.height);
+  EXPECT_THROW(embree->trace(camera, traced.view()), Error);  // nothing is built yet
+  embree->build();
+  embree->trace(camera, traced.view());
+  const ColorDifference d = compare_colors(render(scene, camera, options), traced, 1);
+  EXPECT_GT(d.covered, 10'000U);
+  EXPECT_GE(d.share(), 0.998);
+}
+
+}  // namespace
+}  // namespace rastrum::bench

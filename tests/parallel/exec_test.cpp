@@ -1,0 +1,70 @@
+// The backends' loop: every index once, results visible to the caller afterwards, errors passed on.
+#include <atomic>
+#include <cstddef>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/parallel/exec.hpp>
+
+namespace rastrum::parallel {
+namespace {
+
+template <class Exec>
+void expect_each_index_once(Exec& exec, std::size_t n) {
+  std::vector<int> calls(n, 0);
+  for_each_index(exec, n, [&](std::size_t i) { ++calls[i]; });
+  EXPECT_EQ(calls, std::vector<int>(n, 1));
+}
+
+class ThreadCounts : public testing::TestWithParam<int> {};
+
+TEST(Serial, EachIndexOnce) {
+  Serial exec;
+  expect_each_index_once(exec, 0);
+  expect_each_index_once(exec, 1000);
+}
+
+TEST_P(ThreadCounts, EachIndexOnce) {
+  Threads exec(GetParam());
+  EXPECT_EQ(exec.concurrency(), GetParam());
+  for (const std::size_t n : {0U, 1U, 7U, 100000U}) expect_each_index_once(exec, n);
+}
+
+// One loop after the other over the same memory, written by other threads each time: what a frame's
+// stages do. Under the thread sanitizer it also holds that the loop is a barrier.
+TEST_P(ThreadCounts, LoopsFollowEachOther) {
+  Threads exec(GetParam());
+  constexpr std::size_t n = 10000;
+  std::vector<std::size_t> a(n), b(n);
+  for (std::size_t frame = 0; frame < 20; ++frame) {
+    for_each_index(exec, n, [&](std::size_t i) { a[i] = i + frame; });
+    for_each_index(exec, n, [&](std::size_t i) { b[i] = a[n - 1 - i]; });
+    ASSERT_EQ(std::accumulate(b.begin(), b.end(), std::size_t{0}), n * (n - 1) / 2 + n * frame);
+  }
+}
+
+TEST_P(ThreadCounts, NestedLoops) {
+  Threads exec(GetParam());
+  std::atomic<int> calls = 0;
+  for_each_index(exec, 30,
+                 [&](std::size_t) { for_each_index(exec, 30, [&](std::size_t) { ++calls; }); });
+  EXPECT_EQ(calls, 900);
+}
+
+TEST_P(ThreadCounts, AnErrorReachesTheCaller) {
+  Threads exec(GetParam());
+  EXPECT_THROW(for_each_index(exec, 1000,
+                              [](std::size_t i) {
+                                if (i == 777) throw std::runtime_error("777");
+                              }),
+               std::runtime_error);
+  expect_each_index_once(exec, 1000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Counts, ThreadCounts, testing::Values(1, 2, 8));
+
+}  // namespace
+}  // namespace rastrum::parallel

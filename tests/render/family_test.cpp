@@ -1,0 +1,104 @@
+// Every member of the family draws the same bits as the serial device, and the serial device draws
+// what the brute-force oracle says: over generated scenes, in images of several sizes.
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/render/render.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/family.hpp"
+#include "tests/support/frame.hpp"
+#include "tests/support/pieces.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+struct Variant {
+  int width, height;
+  Shader shader;
+  Cull cull;
+};
+
+// Sizes around the block (8), the bin (64) and the single pixel.
+constexpr Variant kVariants[] = {
+    {64, 64, Shader::phong, Cull::none},    {37, 53, Shader::flat, Cull::none},
+    {128, 96, Shader::normal, Cull::back},  {1, 1, Shader::id, Cull::none},
+    {8, 8, Shader::depth, Cull::front},     {100, 20, Shader::wireframe, Cull::none},
+    {17, 128, Shader::lambert, Cull::none}, {65, 33, Shader::phong, Cull::back},
+};
+
+class Family : public testing::TestWithParam<Variant> {};
+
+TEST_P(Family, EqualsSerialAndTheOracle) {
+  const ThreadsBeyondCores eight(8);
+  const Variant setup = GetParam();
+  RenderOptions base;
+  base.width = setup.width;
+  base.height = setup.height;
+  base.shader = setup.shader;
+  base.cull = setup.cull;
+  base.background = {0.2F, 0.3F, 0.4F, 0.5F};
+  const std::vector<Relative> family = family_of(base);
+  std::vector<Renderer> renderers;
+  for (const Relative& r : family) renderers.emplace_back(r.options);
+
+  const int all = count_from_environment("RASTRUM_FAMILY_SCENES", 10000);
+  const int scenes = std::max(all / static_cast<int>(std::size(kVariants)), kSceneKinds);
+  std::map<std::string, std::uint64_t> fragments_of_kind;
+  int failures = 0;
+  for (int i = 0; i < scenes; ++i) {
+    // Each setup has scenes of its own.
+    const auto seed = static_cast<std::uint64_t>(i + setup.width * 1000000);
+    const GeneratedScene g = generate(seed, setup.width, setup.height);
+    SCOPED_TRACE("scene " + std::to_string(seed) + " (" + g.kind + ")");
+    const SceneBinding binding(g.scene);
+    const Frame serial = draw(renderers[0], binding.view(), g.camera);
+    const PieceList pieces =
+        pieces_of(binding.view(), g.camera, setup.width, setup.height, setup.cull);
+    const OracleImage oracle = brute_force(setup.width, setup.height, pieces.triangles);
+    bool good = true;
+    const auto expect = [&good](const testing::AssertionResult& r, const std::string& what) {
+      EXPECT_TRUE(r) << what;
+      good = good && r;
+    };
+    expect(same_surfaces(serial, oracle), "serial and the oracle");
+    expect(counts_add_up(serial), "serial");
+    EXPECT_EQ(serial.stats.triangles.input, pieces.input);
+    EXPECT_EQ(serial.stats.triangles.dropped, pieces.dropped);
+    fragments_of_kind[g.kind] += oracle.fragments();
+    std::map<Isa, Frame> picture_of{{Isa::scalar, serial}};
+    for (std::size_t k = 1; k < family.size(); ++k) {
+      const Frame frame = draw(renderers[k], binding.view(), g.camera);
+      const std::string pair = family[k].name + " and serial";
+      expect(same_surfaces(frame, serial), pair);
+      expect(same_counts(frame.stats, serial.stats), pair);
+      expect(same_picture(frame, serial, 1), pair);
+      // One instruction set, one picture: the first member with a set stands for it.
+      const auto [entry, is_first] = picture_of.try_emplace(*family[k].options.isa, frame);
+      if (!is_first) expect(same_picture(frame, entry->second, 0), family[k].name + " and its set");
+    }
+    if (!good && ++failures == 3) FAIL() << "three scenes failed; the rest was not drawn";
+  }
+  // No kind of scene may have become invisible.
+  for (const auto& [kind, fragments] : fragments_of_kind) {
+    if (setup.width > 8) {
+      EXPECT_GT(fragments, 0U) << kind;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, Family, testing::ValuesIn(kVariants),
+                         [](const testing::TestParamInfo<Variant>& p) {
+                           return std::to_string(p.param.width) + "x" +
+                                  std::to_string(p.param.height) + "_" +
+                                  std::string(name(p.param.shader));
+                         });
+
+}  // namespace
+}  // namespace rastrum::test

@@ -1,0 +1,72 @@
+// Golden pictures of the procedural shapes, drawn by the serial device: one instruction set, one
+// thread, so that they are compared exactly. The rest of the family is held to within 1/255 of
+// them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include <rastrum/render/render.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+
+#include "tests/support/frame.hpp"
+#include "tests/support/golden.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+struct Picture {
+  const char* name;
+  Mesh (*mesh)();
+  Shader shader;
+  int width, height;
+};
+
+std::ostream& operator<<(std::ostream& out, const Picture& p) {
+  return out << p.name;
+}
+
+constexpr Picture kPictures[] = {
+    {"teapot_phong", [] { return shapes::teapot(12); }, Shader::phong, 200, 150},
+    {"torus_knot_normal", [] { return shapes::torus_knot(2, 3, 160, 16); }, Shader::normal, 150,
+     150},
+    {"boxes_id", [] { return shapes::boxes(3); }, Shader::id, 160, 120},
+    {"sphere_depth", [] { return shapes::sphere(24, 48); }, Shader::depth, 100, 100},
+    {"soup_wireframe", [] { return shapes::soup(40, 0.3F, 1.2F); }, Shader::wireframe, 160, 120},
+};
+
+// From above and the side, a little off every axis, near enough to fill the picture.
+Camera oblique_camera(const SceneView& scene) {
+  Camera c = fit_camera(scene, 0.8F, false);
+  const float distance = length(c.eye - c.target);
+  c.eye = c.target + normalize({0.45F, 0.4F, 1}) * (0.95F * distance);
+  c.near_plane = 0.05F * distance;
+  return c;
+}
+
+class Golden : public testing::TestWithParam<Picture> {};
+
+TEST_P(Golden, Picture) {
+  const Picture& p = GetParam();
+  const Scene scene = single(p.mesh());
+  const SceneBinding binding(scene);
+  const Camera camera = oblique_camera(binding.view());
+  RenderOptions options;
+  options.width = p.width;
+  options.height = p.height;
+  options.shader = p.shader;
+  options.background = {1, 1, 1, 1};
+  options.device = Device::serial;
+  const Frame serial = draw(options, scene, camera);
+  EXPECT_TRUE(matches_golden(p.name, serial.color8));
+  options.device = Device::threads;
+  EXPECT_TRUE(same_picture(draw(options, scene, camera), serial, 1));
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, Golden, testing::ValuesIn(kPictures),
+                         [](const testing::TestParamInfo<Picture>& p) {
+                           return std::string(p.param.name);
+                         });
+
+}  // namespace
+}  // namespace rastrum::test

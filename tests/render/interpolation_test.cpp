@@ -1,0 +1,139 @@
+// Perspective-correct interpolation: within 1e-5 relative of Σ(aᵢfᵢ/wᵢ) / Σ(aᵢ/wᵢ), evaluated in
+// long double at the snapped positions (for a clipped triangle at its homogeneous ones).
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/render/render.hpp>
+
+#include "tests/support/family.hpp"
+#include "tests/support/frame.hpp"
+#include "tests/support/projection.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+using Real = long double;
+
+constexpr int kW = 96, kH = 80;
+
+// A weight of each corner at the sample of pixel (px, py); only their ratios matter.
+std::array<Real, 3> exact_weights(const ProjectedTriangle& t, int px, int py) {
+  const Real x = px + Real(0.5), y = py + Real(0.5);
+  std::array<Real, 3> out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    if (t.fate == Fate::whole) {
+      const auto& a = t.snapped.v[j];
+      const auto& b = t.snapped.v[k];
+      const Real ax = Real(a.x_fx8) / 256, ay = Real(a.y_fx8) / 256;
+      const Real bx = Real(b.x_fx8) / 256, by = Real(b.y_fx8) / 256;
+      out[i] = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / Real(t.clip[i].w);
+    } else {
+      // The determinant of the two other corners and the sample, in homogeneous px.
+      const auto corner = [&](std::size_t n) {
+        const Real w = t.clip[n].w;
+        return std::array<Real, 3>{(Real(t.clip[n].x) + w) * kW / 2,
+                                   (w - Real(t.clip[n].y)) * kH / 2, w};
+      };
+      const auto a = corner(j), b = corner(k);
+      out[i] = (a[1] * b[2] - a[2] * b[1]) * x + (a[2] * b[0] - a[0] * b[2]) * y +
+               (a[0] * b[1] - a[1] * b[0]);
+    }
+  }
+  return out;
+}
+
+struct Worst {
+  Real error = 0;
+  std::string where;
+  int samples = 0, clipped = 0;
+};
+
+void compare(const Frame& f, const Mesh& mesh, const std::vector<ProjectedTriangle>& projected,
+             const std::string& scene, Worst& worst) {
+  for (int y = 0; y < kH; ++y) {
+    for (int x = 0; x < kW; ++x) {
+      if (f.ids(x, y) < 0) continue;
+      const ProjectedTriangle& t = projected[static_cast<std::size_t>(f.ids(x, y))];
+      const auto a = exact_weights(t, x, y);
+      const Real sum = a[0] + a[1] + a[2];
+      // Snapping a clipped triangle may cover a sample just outside of it, where the weights
+      // extrapolate; only what lies inside is interpolation.
+      if (std::ranges::any_of(a, [&](Real v) { return v / sum < 0; })) continue;
+      const auto first = static_cast<std::size_t>(3 * t.id);
+      Real exact[3] = {0, 0, 0};
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Vec4 v = mesh.colors.values[mesh.indices[first + c]];
+        exact[0] += a[c] / sum * v.x;
+        exact[1] += a[c] / sum * v.y;
+        exact[2] += a[c] / sum * v.z;
+      }
+      const Vec4 got = f.color(x, y);
+      ++worst.samples;
+      worst.clipped += t.fate == Fate::needs_clip;
+      const float channels[3] = {got.x, got.y, got.z};
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Real error = std::abs(channels[c] - exact[c]) / exact[c];
+        if (error <= worst.error) continue;
+        worst.error = error;
+        worst.where = scene + " id " + std::to_string(t.id) + " at " + std::to_string(x) + "," +
+                      std::to_string(y) + ": " + std::to_string(channels[c]) + " for " +
+                      std::to_string(static_cast<double>(exact[c]));
+      }
+    }
+  }
+}
+
+// Triangles of every size, |w| from 0.1 to 4, some through the near plane; colours bounded away
+// from 0, so that a relative error means something.
+TEST(Interpolation, WithinOneInHundredThousandOfTheExactValue) {
+  RenderOptions base;
+  base.width = kW;
+  base.height = kH;
+  base.shader = Shader::flat;
+  for (const Relative& r : family_of(base)) {
+    if (r.options.device == Device::threads && r.options.threads != 2) continue;
+    SCOPED_TRACE(r.name);
+    Renderer renderer(r.options);
+    Worst worst;
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+      Random random(seed);
+      Camera camera;
+      camera.eye = {0, 0, 0};
+      camera.target = {0, 0, -1};
+      camera.fov_rad = static_cast<float>(random.real(0.5, 2.0));
+      camera.near_plane = 0.05F;
+      const Placer placer(camera, kW, kH);
+      Mesh mesh;
+      for (int i = 0; i < 20; ++i) {
+        const double size = std::exp(random.real(0, 9));
+        const double x = random.real(0, kW), y = random.real(0, kH);
+        const bool crossing = random.chance(0.2);
+        for (int c = 0; c < 3; ++c) {
+          const auto offset = [&] { return random.real(-size, size); };
+          Vec3 p = placer.at({x + offset(), y + offset(), random.real(0.1, 4)});
+          if (crossing && c == 0) p.z = static_cast<float>(random.real(0, 2));  // behind the eye
+          mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+          mesh.positions.push_back(p);
+          const auto channel = [&] { return static_cast<float>(random.real(0.25, 1)); };
+          mesh.colors.values.push_back({channel(), channel(), channel(), 1});
+        }
+      }
+      const Scene scene = single(std::move(mesh));
+      const SceneBinding binding(scene);
+      compare(draw(renderer, binding.view(), camera), scene.meshes[0],
+              project(binding.view(), camera, kW, kH), "scene " + std::to_string(seed), worst);
+    }
+    EXPECT_LE(static_cast<double>(worst.error), 1e-5) << worst.where;
+    EXPECT_GT(worst.samples, 100000);
+    EXPECT_GT(worst.clipped, 1000);
+  }
+}
+
+}  // namespace
+}  // namespace rastrum::test

@@ -1,0 +1,95 @@
+// Real meshes through the whole family and the oracle: from the default camera, and from so near
+// that triangles cross the near plane and the guard band.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/io/io.hpp>
+#include <rastrum/render/render.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/family.hpp"
+#include "tests/support/frame.hpp"
+#include "tests/support/pieces.hpp"
+
+namespace rastrum::test {
+namespace {
+
+// Stands inside the bounding box and looks at a corner of it.
+Camera close_camera(const SceneView& scene) {
+  const Bounds b = bounds(scene);
+  const Vec3 size = b.max - b.min;
+  Camera c = fit_camera(scene, 1.2F, false);
+  c.eye = b.min + size * Vec3{0.45F, 0.55F, 0.6F};
+  c.target = b.min + size * Vec3{0.1F, 0.2F, 0.0F};
+  c.near_plane = 1e-4F * length(size);
+  return c;
+}
+
+class Meshes : public testing::TestWithParam<const char*> {};
+
+TEST_P(Meshes, EqualOverTheFamilyAndTheOracle) {
+  const std::filesystem::path file = shared_data(GetParam());
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+  const Scene scene = io::read_scene(file);
+  const SceneBinding binding(scene);
+  const ThreadsBeyondCores eight(8);
+  RenderOptions base;
+  base.width = 203;
+  base.height = 149;
+  std::vector<Frame> reference;
+  const Camera cameras[] = {fit_camera(binding.view(), 1.0472F, false),
+                            fit_camera(binding.view(), 1.0472F, true),
+                            close_camera(binding.view())};
+  for (const Relative& r : family_of(base)) {
+    Renderer renderer(r.options);
+    for (std::size_t i = 0; i < std::size(cameras); ++i) {
+      SCOPED_TRACE(r.name + ", camera " + std::to_string(i));
+      const Frame frame = draw(renderer, binding.view(), cameras[i]);
+      ASSERT_TRUE(counts_add_up(frame));
+      if (r.options.device == Device::serial) {
+        const PieceList pieces = pieces_of(binding.view(), cameras[i], base.width, base.height);
+        const OracleImage oracle = brute_force(base.width, base.height, pieces.triangles);
+        EXPECT_GT(oracle.pixels_covered(), 200U);
+        ASSERT_TRUE(same_surfaces(frame, oracle));
+        EXPECT_EQ(frame.stats.triangles.dropped, pieces.dropped);
+        reference.push_back(frame);
+        continue;
+      }
+      ASSERT_TRUE(same_surfaces(frame, reference[i]));
+      ASSERT_TRUE(same_counts(frame.stats, reference[i].stats));
+      const bool same_isa = *r.options.isa == Isa::scalar;
+      ASSERT_TRUE(same_picture(frame, reference[i], same_isa ? 0 : 1));
+    }
+  }
+}
+
+constexpr const char* kFiles[] = {
+    "small/teapot.obj",
+    "small/suzanne.obj",
+    "small/cow.obj",
+    "small/rocker-arm.obj",
+    "small/stanford-bunny.obj",
+    "small/spot/spot_quadrangulated.obj",
+    "small/42400-IDGH.stl",
+    "big/dragon_348k.ply",
+    "big/brain_iso126_1033k.ply",
+    "sponza/sponza.obj",
+    "alpha/smallpine/scene.gltf",
+    "depth/2CylinderEngine.glb",
+    "depth/ratboy_mohawk_ribbons_138k.ply",
+    "gltf/BoxInterleaved/BoxInterleaved.gltf",
+};
+
+INSTANTIATE_TEST_SUITE_P(Shared, Meshes, testing::ValuesIn(kFiles),
+                         [](const testing::TestParamInfo<const char*>& p) {
+                           std::string name = std::filesystem::path(p.param).stem().string();
+                           for (char& c : name)
+                             if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace rastrum::test

@@ -1,0 +1,617 @@
+// Rules of the picture that hold for every scene, device and size; each is the rule of a public
+// conformance suite (dEQP `rasterization`, piglit, D3D11.3) or of docs/conventions.md.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/render/render.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/frame.hpp"
+#include "tests/support/pieces.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+class Properties : public testing::TestWithParam<Device> {
+ protected:
+  [[nodiscard]] static RenderOptions options(int width, int height) {
+    RenderOptions o;
+    o.width = width;
+    o.height = height;
+    o.device = GetParam();
+    o.threads = 4;
+    return o;
+  }
+  ThreadsBeyondCores threads_{4};
+};
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+using Index = std::uint32_t;
+
+void add_triangle(Mesh& mesh, Index a, Index b, Index c) {
+  mesh.indices.insert(mesh.indices.end(), {a, b, c});
+}
+
+// A rectangle of the screen as two triangles, for the pixel camera.
+void add_quad(Mesh& mesh, double x0, double y0, double x1, double y1, double depth, int w, int h) {
+  const auto first = static_cast<Index>(mesh.positions.size());
+  for (const auto& [x, y] : {std::pair{x0, y0}, {x0, y1}, {x1, y1}, {x1, y0}})
+    mesh.positions.push_back(at_pixel(x, y, depth, w, h));
+  add_triangle(mesh, first, first + 1, first + 2);
+  add_triangle(mesh, first, first + 2, first + 3);
+}
+
+Mesh quad(double x0, double y0, double x1, double y1, int w, int h) {
+  Mesh mesh;
+  add_quad(mesh, x0, y0, x1, y1, 0.5, w, h);
+  return mesh;
+}
+
+struct Point {
+  double x, y;
+};
+
+// Distance of p from the segment a b.
+double distance(Point p, Point a, Point b) {
+  const double dx = b.x - a.x, dy = b.y - a.y, l2 = dx * dx + dy * dy;
+  const double t = l2 > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / l2, 0.0, 1.0) : 0;
+  return std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
+}
+
+// Every sample inside the outline is drawn once, every sample outside never; those within the
+// rounding of a corner's position decide for themselves, but never twice.
+void expect_covered_once(const Frame& f, const std::vector<Point>& outline) {
+  for (int y = 0; y < f.overdraw.height(); ++y) {
+    for (int x = 0; x < f.overdraw.width(); ++x) {
+      const Point p{x + 0.5, y + 0.5};
+      double nearest = 1e9;
+      bool inside = false;
+      for (std::size_t i = 0; i < outline.size(); ++i) {
+        const Point a = outline[i], b = outline[(i + 1) % outline.size()];
+        nearest = std::min(nearest, distance(p, a, b));
+        if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
+          inside = !inside;
+      }
+      const std::uint32_t n = f.overdraw(x, y);
+      if (nearest < 0.01) {
+        EXPECT_LE(n, 1U) << x << "," << y;
+      } else {
+        EXPECT_EQ(n, inside ? 1U : 0U) << x << "," << y;
+      }
+    }
+  }
+}
+
+// A place in the image, at a random |w| from 0.1 to 4 for perspective.
+struct Screen {
+  Random& random;
+  int width, height;
+  bool perspective;
+  Camera camera;
+
+  Screen(Random& r, int w, int h)
+      : random(r), width(w), height(h), perspective(r.chance(0.7)), camera(pixel_camera(w, h)) {
+    if (!perspective) return;
+    camera = Camera{};
+    camera.eye = {0, 0, 0};
+    camera.target = {0, 0, -1};
+    camera.fov_rad = static_cast<float>(r.real(0.5, 2.0));
+  }
+  Vec3 at(Point p) {
+    if (!perspective) return at_pixel(p.x, p.y, random.real(0, 1), width, height);
+    return Placer(camera, width, height).at({p.x, p.y, random.real(0.1, 4)});
+  }
+};
+
+TEST_P(Properties, FansCoverSharedEdgesOnce) {
+  constexpr int kW = 61, kH = 70;
+  Renderer renderer(options(kW, kH));
+  for (std::uint64_t seed = 0; seed < 200 && !HasFailure(); ++seed) {
+    SCOPED_TRACE(seed);
+    Random r(seed);
+    Screen screen(r, kW, kH);
+    const Point centre{r.real(5, kW - 5), r.real(5, kH - 5)};
+    const int n = r.integer(3, 30);
+    const double turn = r.real(0, 7);
+    Mesh mesh;
+    mesh.positions.push_back(screen.at(centre));
+    std::vector<Point> outline;
+    for (int i = 0; i < n; ++i) {
+      const double angle = turn + 2 * 3.14159265358979 * i / n, radius = r.real(3, 60);
+      outline.push_back({centre.x + radius * std::cos(angle), centre.y + radius * std::sin(angle)});
+      mesh.positions.push_back(screen.at(outline.back()));
+      const auto a = static_cast<Index>(i + 1), b = static_cast<Index>((i + 1) % n + 1);
+      add_triangle(mesh, 0, a, b);
+    }
+    expect_covered_once(draw(renderer, SceneBinding(single(std::move(mesh))).view(), screen.camera),
+                        outline);
+  }
+}
+
+TEST_P(Properties, RotatedGridsCoverSharedEdgesOnce) {
+  constexpr int kW = 72, kH = 67;
+  Renderer renderer(options(kW, kH));
+  for (std::uint64_t seed = 0; seed < 200 && !HasFailure(); ++seed) {
+    SCOPED_TRACE(seed);
+    Random r(seed);
+    Screen screen(r, kW, kH);
+    const int n = r.integer(1, 12);
+    const double turn = r.real(0, 7), cell = r.real(0.7, 90.0 / n);
+    const Point centre{r.real(5, kW - 5), r.real(5, kH - 5)};
+    const auto node = [&](double i, double j) {
+      const double u = (i - n / 2.0) * cell, v = (j - n / 2.0) * cell;
+      return Point{centre.x + u * std::cos(turn) - v * std::sin(turn),
+                   centre.y + u * std::sin(turn) + v * std::cos(turn)};
+    };
+    Mesh mesh;
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= n; ++i) mesh.positions.push_back(screen.at(node(i, j)));
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        const auto a = static_cast<Index>(j * (n + 1) + i), b = a + 1;
+        const Index c = a + static_cast<Index>(n) + 1, d = c + 1;
+        const bool diagonal = r.chance(0.5);
+        add_triangle(mesh, a, b, diagonal ? d : c);
+        add_triangle(mesh, diagonal ? a : b, d, c);
+      }
+    }
+    expect_covered_once(draw(renderer, SceneBinding(single(std::move(mesh))).view(), screen.camera),
+                        {node(0, 0), node(n, 0), node(n, n), node(0, n)});
+  }
+}
+
+// A floor seen from above: its cells cross the near plane, pass behind the eye and leave the guard
+// band. The reference is the ray through each sample.
+TEST_P(Properties, ClippedFloorsCoverSharedEdgesOnce) {
+  constexpr int kW = 66, kH = 59;
+  Renderer renderer(options(kW, kH));
+  std::uint64_t clipped = 0, fragments = 0;
+  for (std::uint64_t seed = 0; seed < 300 && !HasFailure(); ++seed) {
+    SCOPED_TRACE(seed);
+    Random r(seed);
+    Camera camera;
+    camera.eye = {0, static_cast<float>(r.real(0.3, 1)), 0};
+    camera.target = camera.eye + Vec3{static_cast<float>(r.real(-0.4, 0.4)),
+                                      static_cast<float>(r.real(-1.5, -0.2)), -1};
+    camera.near_plane = static_cast<float>(r.real(0.05, 0.8));
+    camera.fov_rad = static_cast<float>(r.real(0.5, 2.2));
+    const int n = 6;
+    const double turn = r.real(0, 7);
+    const double cell = r.chance(0.5) ? r.real(0.2, 1) : r.real(1, 8);
+    Mesh mesh;
+    for (int j = 0; j <= n; ++j) {
+      for (int i = 0; i <= n; ++i) {
+        const auto inner = [&](int k) { return k > 0 && k < n ? r.real(-0.2, 0.2) : 0.0; };
+        const double u = (i - n / 2.0 + inner(i)) * cell, v = (j - n / 2.0 + inner(j)) * cell;
+        mesh.positions.push_back({static_cast<float>(u * std::cos(turn) - v * std::sin(turn)), 0,
+                                  static_cast<float>(u * std::sin(turn) + v * std::cos(turn))});
+      }
+    }
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        const auto a = static_cast<Index>(j * (n + 1) + i), b = a + 1;
+        const Index c = a + static_cast<Index>(n) + 1, d = c + 1;
+        add_triangle(mesh, a, b, d);
+        add_triangle(mesh, a, d, c);
+      }
+    }
+    const Frame f = draw(renderer, SceneBinding(single(std::move(mesh))).view(), camera);
+    clipped += f.stats.triangles.clipped;
+    fragments += f.stats.fragments;
+
+    const Mat4d view = world_to_camera(camera);
+    const auto on_floor = [&](double x, double y) {
+      const double s = 2 * std::tan(double{camera.fov_rad} / 2) / std::min(kW, kH);
+      const double d[3] = {(x - kW / 2.0) * s, (kH / 2.0 - y) * s, -1};
+      double ray[3];
+      for (int i = 0; i < 3; ++i)
+        ray[i] = view.m[0][i] * d[0] + view.m[1][i] * d[1] + view.m[2][i] * d[2];
+      const double t = -double{camera.eye.y} / ray[1];  // also the distance along −z
+      if (!(t > double{camera.near_plane})) return false;
+      const double px = t * ray[0], pz = t * ray[2];
+      const double u = px * std::cos(turn) + pz * std::sin(turn);
+      const double v = -px * std::sin(turn) + pz * std::cos(turn);
+      return std::max(std::abs(u), std::abs(v)) < n / 2.0 * cell;
+    };
+    for (int y = 0; y < kH; ++y) {
+      for (int x = 0; x < kW; ++x) {
+        // Corners far outside the image are rounded to float32 px, so an edge may move a little.
+        constexpr double kNear = 0.03;
+        int inside = 0;
+        for (const double dx : {-kNear, kNear})
+          for (const double dy : {-kNear, kNear}) inside += on_floor(x + 0.5 + dx, y + 0.5 + dy);
+        const std::uint32_t drawn = f.overdraw(x, y);
+        EXPECT_LE(drawn, 1U) << x << "," << y;
+        if (inside == 0 || inside == 4) {
+          EXPECT_EQ(drawn, inside == 4 ? 1U : 0U) << x << "," << y;
+        }
+      }
+    }
+  }
+  EXPECT_GT(clipped, 1000U);
+  EXPECT_GT(fragments, 100000U);
+}
+
+// The order of triangles decides nothing but the winner among equal depths: the first submitted.
+TEST_P(Properties, PermutingTrianglesChangesOnlyNumbers) {
+  constexpr int kW = 64, kH = 48;
+  Renderer renderer(options(kW, kH));
+  int ties = 0;
+  for (std::uint64_t seed = 0; seed < 320 && !HasFailure(); ++seed) {
+    GeneratedScene g = generate(seed, kW, kH);
+    g.scene.instances.resize(1);
+    SCOPED_TRACE(std::to_string(seed) + " " + g.kind);
+    Mesh& mesh = g.scene.meshes[0];
+    if (mesh.indices.empty()) {
+      mesh.indices.resize(mesh.positions.size());
+      std::iota(mesh.indices.begin(), mesh.indices.end(), 0U);
+    }
+    mesh.normals = {};
+    mesh.colors = {};
+    const Frame before = draw(renderer, SceneBinding(g.scene).view(), g.camera);
+    const std::size_t n = mesh.triangle_count();
+    std::vector<std::size_t> old_of(n), new_of(n);
+    std::iota(old_of.begin(), old_of.end(), std::size_t{0});
+    Random r(seed);
+    for (std::size_t i = n; i > 1; --i)
+      std::swap(old_of[i - 1], old_of[static_cast<std::size_t>(r.integer(0, int(i) - 1))]);
+    std::vector<Index> shuffled;
+    for (std::size_t i = 0; i < n; ++i) {
+      new_of[old_of[i]] = i;
+      for (std::size_t c = 0; c < 3; ++c) shuffled.push_back(mesh.indices[3 * old_of[i] + c]);
+    }
+    mesh.indices = shuffled;
+    const Frame after = draw(renderer, SceneBinding(g.scene).view(), g.camera);
+    EXPECT_TRUE(std::ranges::equal(before.overdraw.pixels(), after.overdraw.pixels()));
+    EXPECT_TRUE(std::ranges::equal(before.depth.pixels(), after.depth.pixels()));
+    for (std::size_t i = 0; i < before.ids.pixels().size(); ++i) {
+      const std::int64_t old_winner = before.ids.pixels()[i], now = after.ids.pixels()[i];
+      ASSERT_EQ(old_winner < 0, now < 0);
+      if (now < 0) continue;
+      const auto first = static_cast<std::size_t>(old_winner);
+      const std::size_t second = old_of[static_cast<std::size_t>(now)];
+      if (first == second) continue;
+      // A tie: each of the two was the first submitted in its order.
+      ++ties;
+      EXPECT_LT(first, second);
+      EXPECT_LT(new_of[second], new_of[first]);
+    }
+  }
+  EXPECT_GT(ties, 1000);
+}
+
+TEST_P(Properties, OneMeshEqualsTheSameTrianglesInInstances) {
+  constexpr int kW = 80, kH = 60;
+  Renderer renderer(options(kW, kH));
+  for (std::uint64_t seed = 0; seed < 64; ++seed) {
+    GeneratedScene g = generate(seed, kW, kH);
+    g.scene.instances.resize(1);
+    SCOPED_TRACE(std::to_string(seed) + " " + g.kind);
+    const Mesh& mesh = g.scene.meshes[0];
+    if (mesh.indices.empty()) continue;
+    const Frame whole = draw(renderer, SceneBinding(g.scene).view(), g.camera);
+    Random r(seed);
+    Scene parts;
+    for (std::size_t begin = 0; begin < mesh.indices.size();) {
+      const std::size_t end =
+          std::min(begin + 3 * static_cast<std::size_t>(r.integer(0, 9)), mesh.indices.size());
+      Mesh part = mesh;
+      const auto slice = [&](std::vector<Index>& v) {
+        if (!v.empty()) v = {v.begin() + std::ptrdiff_t(begin), v.begin() + std::ptrdiff_t(end)};
+      };
+      // An empty part has no positions either, or it would be drawn without indices.
+      if (begin == end) part = Mesh{};
+      slice(part.indices);
+      slice(part.normals.indices);
+      slice(part.colors.indices);
+      parts.instances.push_back({static_cast<Index>(parts.meshes.size()), Mat4d::identity()});
+      parts.meshes.push_back(std::move(part));
+      begin = end;
+    }
+    const Frame split = draw(renderer, SceneBinding(parts).view(), g.camera);
+    EXPECT_TRUE(same_surfaces(whole, split));
+    EXPECT_TRUE(same_counts(whole.stats, split.stats));
+    EXPECT_TRUE(same_picture(whole, split, 0));
+  }
+}
+
+TEST_P(Properties, FullScreenQuadCoversEveryPixelOnce) {
+  for (const auto& [w, h] : {std::pair{1, 1}, {2, 3}, {7, 5}, {64, 64}, {65, 63}, {333, 17}}) {
+    SCOPED_TRACE(std::to_string(w) + "x" + std::to_string(h));
+    const Frame f = draw(options(w, h), single(quad(0, 0, w, h, w, h)), pixel_camera(w, h));
+    EXPECT_TRUE(std::ranges::all_of(f.overdraw.pixels(), [](auto n) { return n == 1; }));
+    EXPECT_TRUE(std::ranges::all_of(f.depth.pixels(), [](float d) { return d == 0.5F; }));
+    EXPECT_EQ(f.stats.fragments, static_cast<std::uint64_t>(w) * static_cast<std::uint64_t>(h));
+    // And far beyond the image on every side, where the guard band cuts it.
+    const Frame far =
+        draw(options(w, h), single(quad(-1e6, -1e6, 1e6, 1e6, w, h)), pixel_camera(w, h));
+    EXPECT_TRUE(std::ranges::all_of(far.overdraw.pixels(), [](auto n) { return n == 1; }));
+    EXPECT_EQ(far.stats.triangles.clipped, 2U);
+  }
+}
+
+// Columns and rows of a 64 × 64 picture that the rectangle covers.
+struct Extent {
+  int x0, y0, x1, y1;
+  friend bool operator==(const Extent&, const Extent&) = default;
+};
+void PrintTo(const Extent& e, std::ostream* out) {
+  *out << "[" << e.x0 << ", " << e.x1 << ") x [" << e.y0 << ", " << e.y1 << ")";
+}
+
+Extent extent_of(const Frame& f) {
+  Extent e{1000, 1000, 0, 0};
+  for (int y = 0; y < f.overdraw.height(); ++y)
+    for (int x = 0; x < f.overdraw.width(); ++x)
+      if (f.overdraw(x, y) != 0)
+        e = {std::min(e.x0, x), std::min(e.y0, y), std::max(e.x1, x + 1), std::max(e.y1, y + 1)};
+  return e;
+}
+
+TEST_P(Properties, SamplesOnAnEdgeBelongToTheTopAndTheLeft) {
+  const Frame f =
+      draw(options(64, 64), single(quad(10.5, 20.5, 14.5, 23.5, 64, 64)), pixel_camera(64, 64));
+  EXPECT_EQ(extent_of(f), (Extent{10, 20, 14, 23}));
+  EXPECT_EQ(f.stats.fragments, 12U);
+}
+
+// Edges 1/512 px beside a sample are a tie between two n.8 positions.
+TEST_P(Properties, SnappingRoundsTiesToEven) {
+  constexpr double kHalf = 1.0 / 512;
+  const auto covered = [&](double x, double y) {
+    return extent_of(
+        draw(options(64, 64), single(quad(x, y, x + 4, y + 4, 64, 64)), pixel_camera(64, 64)));
+  };
+  // 10.5 px = 2688/256, an even number: ± 1/512 px both come back to it, and the left and top edges
+  // own the samples on them.
+  EXPECT_EQ(covered(10.5 + kHalf, 10.5 + kHalf), (Extent{10, 10, 14, 14}));
+  EXPECT_EQ(covered(10.5 - kHalf, 10.5 - kHalf), (Extent{10, 10, 14, 14}));
+  // 3/512 px beside it the tie is between 2689 and 2690.
+  EXPECT_EQ(covered(10.5 + 3 * kHalf, 10.5 + 3 * kHalf), (Extent{11, 11, 15, 15}));
+  EXPECT_EQ(covered(10.5 - 3 * kHalf, 10.5 - 3 * kHalf), (Extent{10, 10, 14, 14}));
+  // 10.5 + 1/256 px lies on the grid: one subpixel beyond the sample.
+  EXPECT_EQ(covered(10.5 + 2 * kHalf, 10.5 - 2 * kHalf), (Extent{11, 10, 15, 14}));
+}
+
+TEST_P(Properties, FarPlane) {
+  constexpr int kW = 60, kH = 40;
+  Camera camera;
+  camera.eye = {0, 0, 0};
+  camera.target = {0, 0, -1};
+  camera.near_plane = 0.25F;
+  const Placer placer(camera, kW, kH);
+  Mesh mesh;
+  const double w_of[] = {0.25, 0.5, 1, 2, 4, 16};
+  for (int i = 0; i < 6; ++i) {
+    const auto first = static_cast<Index>(mesh.positions.size());
+    const double x0 = 10.0 * i, x1 = x0 + 10;
+    for (const auto& [x, y] : {std::pair{x0, 0.0}, {x0, 40.0}, {x1, 40.0}, {x1, 0.0}})
+      mesh.positions.push_back(placer.at({x, y, w_of[i]}));
+    add_triangle(mesh, first, first + 1, first + 2);
+    add_triangle(mesh, first, first + 2, first + 3);
+  }
+  const Scene scene = single(std::move(mesh));
+  const Frame infinite = draw(options(kW, kH), scene, camera);
+  camera.far_plane = 4;
+  const Frame finite = draw(options(kW, kH), scene, camera);
+  EXPECT_TRUE(std::ranges::equal(infinite.ids.pixels(), finite.ids.pixels()));
+  EXPECT_TRUE(std::ranges::equal(infinite.overdraw.pixels(), finite.overdraw.pixels()));
+  for (int i = 0; i < 6; ++i) {
+    const double w = w_of[i], n = 0.25, f = 4;
+    const int x = 10 * i + 5;
+    EXPECT_NEAR(infinite.depth(x, 20), n / w, 1e-6);
+    // 1 at the near plane, 0 at the far plane and beyond, where the surface is still drawn.
+    EXPECT_NEAR(finite.depth(x, 20), std::max(n * (f - w) / (w * (f - n)), 0.0), 1e-6);
+    EXPECT_GE(finite.ids(x, 20), 0);
+  }
+  EXPECT_EQ(finite.depth(55, 20), 0.0F);
+}
+
+TEST_P(Properties, ZeroAreaDrawsNothing) {
+  Mesh mesh;
+  const auto triangle = [&](std::array<Point, 3> p) {
+    const auto first = static_cast<Index>(mesh.positions.size());
+    for (const Point& q : p) mesh.positions.push_back(at_pixel(q.x, q.y, 0.5, 64, 64));
+    add_triangle(mesh, first, first + 1, first + 2);
+  };
+  triangle({{{10.5, 10.5}, {20.5, 20.5}, {30.5, 30.5}}});
+  triangle({{{10.5, 10.5}, {10.5, 10.5}, {30.5, 30.5}}});
+  triangle({{{10.5, 10.5}, {10.5, 10.5}, {10.5, 10.5}}});
+  triangle({{{10.5, 10.5}, {50.5, 10.5}, {30.5, 10.5 + 1.0 / 1024}}});  // flat after snapping
+  triangle({{{-1e5, 10.5}, {1e5, 10.5}, {0, 10.5}}});                   // flat and clipped
+  const Frame f = draw(options(64, 64), single(std::move(mesh)), pixel_camera(64, 64));
+  EXPECT_EQ(f.stats.fragments, 0U);
+  EXPECT_EQ(f.stats.triangles.culled, 5U);
+  EXPECT_EQ(f.stats.triangles.drawn, 0U);
+  EXPECT_TRUE(std::ranges::all_of(f.ids.pixels(), [](auto id) { return id == -1; }));
+}
+
+TEST_P(Properties, NonFiniteTrianglesAreDroppedAndKeepTheirNumbers) {
+  Mesh mesh;
+  add_quad(mesh, 0, 0, 20, 64, 0.5, 64, 64);
+  for (const float bad :
+       {kNan, std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto first = static_cast<Index>(mesh.positions.size());
+      mesh.positions.insert(mesh.positions.end(), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+      Vec3& v = mesh.positions[first + static_cast<Index>(axis)];
+      (axis == 0 ? v.x : axis == 1 ? v.y : v.z) = bad;
+      add_triangle(mesh, first, first + 1, first + 2);
+    }
+  }
+  add_quad(mesh, 40, 0, 64, 64, 0.5, 64, 64);
+  const Frame f = draw(options(64, 64), single(std::move(mesh)), pixel_camera(64, 64));
+  EXPECT_EQ(f.stats.triangles.input, 13U);
+  EXPECT_EQ(f.stats.triangles.dropped, 9U);
+  EXPECT_EQ(f.stats.triangles.drawn, 4U);
+  EXPECT_EQ(f.stats.fragments, 64U * 44U);
+  EXPECT_EQ(f.ids(63, 63), 11);
+  EXPECT_EQ(f.ids(63, 0), 12);
+  EXPECT_EQ(f.ids(30, 30), -1);
+}
+
+TEST_P(Properties, CullingPartitionsTheUnculledPicture) {
+  constexpr int kW = 50, kH = 64;
+  RenderOptions o = options(kW, kH);
+  std::array<Renderer, 3> renderers{Renderer(o), Renderer((o.cull = Cull::back, o)),
+                                    Renderer((o.cull = Cull::front, o))};
+  std::uint64_t fronts = 0, backs = 0;
+  for (std::uint64_t seed = 0; seed < 160; ++seed) {
+    const GeneratedScene g = generate(seed, kW, kH);
+    SCOPED_TRACE(std::to_string(seed) + " " + g.kind);
+    const SceneBinding binding(g.scene);
+    const Frame none = draw(renderers[0], binding.view(), g.camera);
+    const Frame back = draw(renderers[1], binding.view(), g.camera);
+    const Frame front = draw(renderers[2], binding.view(), g.camera);
+    for (std::size_t i = 0; i < none.overdraw.pixels().size(); ++i)
+      ASSERT_EQ(none.overdraw.pixels()[i], back.overdraw.pixels()[i] + front.overdraw.pixels()[i]);
+    EXPECT_EQ(none.stats.triangles.drawn, back.stats.triangles.drawn + front.stats.triangles.drawn);
+    EXPECT_EQ(none.stats.triangles.clipped,
+              back.stats.triangles.clipped + front.stats.triangles.clipped);
+    EXPECT_EQ(none.stats.triangles.dropped, back.stats.triangles.dropped);
+    fronts += back.stats.fragments;
+    backs += front.stats.fragments;
+  }
+  EXPECT_GT(fronts, 10000U);
+  EXPECT_GT(backs, 10000U);
+}
+
+TEST_P(Properties, CounterClockwiseIsFront) {
+  RenderOptions o = options(64, 64);
+  const Scene scene = single(quad(8, 8, 56, 56, 64, 64));  // down, right, up: counter-clockwise
+  o.cull = Cull::back;
+  EXPECT_EQ(draw(o, scene, pixel_camera(64, 64)).stats.fragments, 48U * 48U);
+  o.cull = Cull::front;
+  EXPECT_EQ(draw(o, scene, pixel_camera(64, 64)).stats.fragments, 0U);
+}
+
+TEST_P(Properties, FirstSubmittedWinsEqualDepthAlsoWhenClipped) {
+  constexpr int kSize = 64;
+  // The same plane three times; the first is cut by the guard band, the others are not.
+  Mesh mesh;
+  add_quad(mesh, -1e6, -1e6, 1e6, 1e6, 0.5, kSize, kSize);
+  add_quad(mesh, 8, 8, 56, 56, 0.5, kSize, kSize);
+  add_quad(mesh, 0, 0, 64, 64, 0.25, kSize, kSize);
+  const Frame f = draw(options(kSize, kSize), single(std::move(mesh)), pixel_camera(kSize, kSize));
+  EXPECT_TRUE(std::ranges::all_of(f.ids.pixels(), [](auto id) { return id == 0 || id == 1; }));
+  EXPECT_EQ(f.stats.fragments, 2U * 64 * 64 + 48 * 48);
+}
+
+TEST_P(Properties, IndexOutOfRangeIsAnErrorThatNamesIt) {
+  Mesh good = quad(8, 8, 56, 56, 64, 64), bad = good;
+  bad.indices[4] = 4711;
+  Scene scene;
+  scene.meshes = {good, bad};
+  scene.instances = {{0, Mat4d::identity()}, {1, Mat4d::identity()}};
+  Renderer renderer(options(64, 64));
+  try {
+    (void)draw(renderer, SceneBinding(scene).view(), pixel_camera(64, 64));
+    ADD_FAILURE() << "no error";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::invalid_argument);
+    EXPECT_NE(std::string(e.what()).find("4711"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("instance 1"), std::string::npos) << e.what();
+  }
+  // The renderer is as good as new.
+  scene.meshes[1] = good;
+  EXPECT_EQ(draw(renderer, SceneBinding(scene).view(), pixel_camera(64, 64)).stats.fragments,
+            2U * 48 * 48);
+}
+
+TEST_P(Properties, AttributeIndexOutOfRangeIsAnErrorThatNamesIt) {
+  Mesh mesh = quad(8, 8, 56, 56, 64, 64);
+  mesh.normals.values = {{0, 0, 1}};
+  mesh.normals.indices = {0, 0, 0, 0, 4711, 0};
+  try {
+    (void)draw(options(64, 64), single(std::move(mesh)), pixel_camera(64, 64));
+    ADD_FAILURE() << "no error";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::invalid_argument);
+    EXPECT_NE(std::string(e.what()).find("4711"), std::string::npos) << e.what();
+  }
+}
+
+TEST_P(Properties, AnEmptySceneIsBackground) {
+  RenderOptions o = options(70, 9);
+  o.background = {1, 0.5F, 0, 0.5F};
+  for (const Scene& scene : {Scene{}, single(Mesh{})}) {
+    const Frame f = draw(o, scene, Camera{});
+    EXPECT_EQ(f.stats.fragments, 0U);
+    EXPECT_TRUE(std::ranges::all_of(f.ids.pixels(), [](auto id) { return id == -1; }));
+    EXPECT_TRUE(std::ranges::all_of(f.depth.pixels(), [](float d) { return d == 0; }));
+    EXPECT_TRUE(std::ranges::all_of(f.overdraw.pixels(), [](auto n) { return n == 0; }));
+    EXPECT_TRUE(std::ranges::all_of(f.color8.pixels(), [](Rgba8 c) {
+      return c == Rgba8{255, 128, 0, 128};
+    }));
+    EXPECT_TRUE(std::ranges::all_of(f.color.pixels(), [](Vec4 c) {  // premultiplied
+      return c.x == 0.5F && c.y == 0.25F && c.z == 0 && c.w == 0.5F;
+    }));
+  }
+}
+
+// What is asked for does not depend on what else is asked for.
+TEST_P(Properties, EachTargetAloneEqualsAllTogether) {
+  constexpr int kW = 90, kH = 70;
+  Renderer renderer(options(kW, kH));
+  for (std::uint64_t seed = 0; seed < 48; ++seed) {
+    const GeneratedScene g = generate(seed, kW, kH);
+    SCOPED_TRACE(std::to_string(seed) + " " + g.kind);
+    const SceneBinding binding(g.scene);
+    const Frame all = draw(renderer, binding.view(), g.camera);
+    Frame one = all;
+    const auto render_into = [&](auto& image, auto member) {
+      using Value = std::decay_t<decltype(image.pixels()[0])>;
+      std::ranges::fill(image.pixels(), Value{});
+      Targets targets;
+      targets.*member = image.view();
+      const FrameStats stats = renderer.render(binding.view(), g.camera, targets);
+      EXPECT_TRUE(same_counts(stats, all.stats));
+    };
+    render_into(one.color8, &Targets::color8);
+    render_into(one.depth, &Targets::depth);
+    render_into(one.ids, &Targets::ids);
+    render_into(one.overdraw, &Targets::overdraw);
+    EXPECT_TRUE(same_surfaces(one, all));
+    EXPECT_TRUE(same_picture(one, all, 0));
+  }
+}
+
+// A target may be a window of a larger image.
+TEST_P(Properties, TargetsWithAStrideKeepWhatLiesBesideThem) {
+  constexpr int kW = 40, kH = 30, kStride = 53;
+  const GeneratedScene g = generate(0, kW, kH);
+  const SceneBinding binding(g.scene);
+  Renderer renderer(options(kW, kH));
+  const Frame whole = draw(renderer, binding.view(), g.camera);
+  std::vector<Rgba8> pixels(kStride * kH, Rgba8{9, 9, 9, 9});
+  std::vector<std::int64_t> ids(kStride * kH, -99);
+  Targets targets;
+  targets.color8 = {pixels.data(), kW, kH, kStride};
+  targets.ids = {ids.data(), kW, kH, kStride};
+  renderer.render(binding.view(), g.camera, targets);
+  for (int y = 0; y < kH; ++y) {
+    for (int x = 0; x < kStride; ++x) {
+      const auto i = static_cast<std::size_t>(y * kStride + x);
+      ASSERT_EQ(pixels[i], x < kW ? whole.color8(x, y) : (Rgba8{9, 9, 9, 9})) << x << "," << y;
+      ASSERT_EQ(ids[i], x < kW ? whole.ids(x, y) : -99) << x << "," << y;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, Properties, testing::Values(Device::serial, Device::threads),
+                         [](const testing::TestParamInfo<Device>& p) {
+                           return p.param == Device::serial ? "serial" : "threads";
+                         });
+
+}  // namespace
+}  // namespace rastrum::test

@@ -1,0 +1,176 @@
+#include <rastrum/scene/camera.hpp>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/error.hpp>
+
+namespace rastrum::test {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+struct Clip {
+  double x, y, z, w;
+};
+Clip apply(const Mat4d& m, double x, double y, double z) {
+  const auto row = [&](int i) { return m.m[i][0] * x + m.m[i][1] * y + m.m[i][2] * z + m.m[i][3]; };
+  return {row(0), row(1), row(2), row(3)};
+}
+
+/// A camera that looks from (3, −2, 5) in no special direction.
+Camera oblique() {
+  Camera c;
+  c.eye = {3, -2, 5};
+  c.target = {-1, 4, 2};
+  c.up = {0.2F, 1, -0.3F};
+  c.near_plane = 0.5F;
+  c.far_plane = 20;
+  return c;
+}
+
+/// The world point at camera coordinates (right, up, distance in front of the eye).
+Clip project(const Camera& c, int width, int height, double right, double up, double distance) {
+  const Mat4d v = world_to_camera(c);
+  // The inverse of a rigid motion: world = Rᵀ (p − t).
+  const double p[3] = {right - v.m[0][3], up - v.m[1][3], -distance - v.m[2][3]};
+  double world[3];
+  for (int i = 0; i < 3; ++i) world[i] = v.m[0][i] * p[0] + v.m[1][i] * p[1] + v.m[2][i] * p[2];
+  return apply(world_to_clip(c, width, height), world[0], world[1], world[2]);
+}
+
+TEST(Camera, IsARigidMotionThatPutsTheTargetAhead) {
+  const Camera c = oblique();
+  const Mat4d v = world_to_camera(c);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      double d = 0;
+      for (int k = 0; k < 3; ++k) d += v.m[i][k] * v.m[j][k];
+      EXPECT_NEAR(d, i == j ? 1 : 0, 1e-12);
+    }
+  const auto& m = v.m;
+  const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  EXPECT_NEAR(determinant, 1, 1e-12);
+  const Clip eye = apply(v, 3, -2, 5);
+  EXPECT_NEAR(std::abs(eye.x) + std::abs(eye.y) + std::abs(eye.z), 0, 1e-12);
+  const Clip target = apply(v, -1, 4, 2);
+  EXPECT_NEAR(target.x, 0, 1e-12);
+  EXPECT_NEAR(target.y, 0, 1e-12);
+  EXPECT_NEAR(target.z, -std::sqrt(16.0 + 36.0 + 9.0), 1e-12);
+  // `up` has no part to the right and a positive part upward.
+  const Clip up = apply(v, 3 + 0.2F, -2 + 1, 5 - 0.3F);
+  EXPECT_NEAR(up.x, 0, 1e-6);
+  EXPECT_GT(up.y, 0);
+}
+
+TEST(Camera, AlongMinusZIsTheIdentityButForTheShift) {
+  Camera c;
+  c.eye = {1, 2, 3};
+  c.target = {1, 2, 0};
+  const Mat4d v = world_to_camera(c);
+  const double expected[4][4] = {{1, 0, 0, -1}, {0, 1, 0, -2}, {0, 0, 1, -3}, {0, 0, 0, 1}};
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) EXPECT_EQ(v.m[i][j], expected[i][j]);
+}
+
+TEST(Camera, NearHasDepthOneAndFarZero) {
+  Camera c = oblique();
+  for (const bool orthographic : {false, true}) {
+    c.orthographic = orthographic;
+    const Clip near = project(c, 640, 480, 0.1, -0.2, 0.5);
+    EXPECT_NEAR(near.z / near.w, 1, 1e-7);
+    const Clip far = project(c, 640, 480, 1, 2, 20);
+    EXPECT_NEAR(far.z / far.w, 0, 1e-7);
+    const Clip between = project(c, 640, 480, 1, 2, 7);
+    EXPECT_GT(between.z / between.w, 0);
+    EXPECT_LT(between.z / between.w, 1);
+    EXPECT_NEAR(between.w, orthographic ? 1 : 7, 1e-6);
+  }
+}
+
+TEST(Camera, InfiniteFarGivesNearOverDistance) {
+  Camera c = oblique();
+  c.far_plane = kInfinity;
+  for (const double distance : {0.5, 1.0, 10.0, 1e6}) {
+    const Clip p = project(c, 640, 480, 0.3, 0.1, distance);
+    EXPECT_NEAR(p.z / p.w, 0.5 / distance, 1e-6 * (0.5 / distance));
+  }
+}
+
+TEST(Camera, FieldOfViewSpansTheSmallerSide) {
+  Camera c = oblique();
+  c.fov_rad = 1.2F;
+  const double reach = 7 * std::tan(0.6);
+  for (const auto& [w, h] : {std::pair{800, 400}, {400, 800}, {500, 500}}) {
+    const double sx = w > h ? static_cast<double>(w) / h : 1;
+    const double sy = h > w ? static_cast<double>(h) / w : 1;
+    const Clip p = project(c, w, h, reach * sx, -reach * sy, 7);
+    EXPECT_NEAR(p.x / p.w, 1, 1e-6);
+    EXPECT_NEAR(p.y / p.w, -1, 1e-6);
+    c.orthographic = true;
+    c.orthographic_height = 6;
+    const Clip q = project(c, w, h, 3 * sx, -3 * sy, 7);
+    EXPECT_NEAR(q.x / q.w, 1, 1e-6);
+    EXPECT_NEAR(q.y / q.w, -1, 1e-6);
+    c.orthographic = false;
+  }
+}
+
+TEST(Camera, OrthographicNearMayLieBehindTheEye) {
+  Camera c = oblique();
+  c.orthographic = true;
+  c.near_plane = -3;
+  const Clip p = project(c, 100, 100, 0, 0, -3);
+  EXPECT_NEAR(p.z / p.w, 1, 1e-7);
+}
+
+TEST(Camera, InvalidParametersAreNamed) {
+  const auto expect = [](const char* part, const std::function<void(Camera&)>& change) {
+    Camera c = oblique();
+    change(c);
+    try {
+      static_cast<void>(world_to_clip(c, 640, 480));
+      ADD_FAILURE() << "no error about " << part;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::invalid_argument);
+      EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
+    }
+  };
+  expect("near", [](Camera& c) { c.near_plane = 0; });
+  expect("near", [](Camera& c) { c.near_plane = -1; });
+  expect("near", [](Camera& c) { c.near_plane = kNan; });
+  expect("near", [](Camera& c) { c.near_plane = kInfinity; });
+  expect("far", [](Camera& c) { c.far_plane = 0.5F; });
+  expect("far", [](Camera& c) { c.far_plane = kNan; });
+  expect("field of view", [](Camera& c) { c.fov_rad = 0; });
+  expect("field of view", [](Camera& c) { c.fov_rad = 3.2F; });
+  expect("field of view", [](Camera& c) { c.fov_rad = kNan; });
+  expect("eye and target", [](Camera& c) { c.target = c.eye; });
+  expect("eye and target", [](Camera& c) { c.eye.y = kNan; });
+  expect("eye and target", [](Camera& c) { c.target.x = kInfinity; });
+  expect("up", [](Camera& c) { c.up = {0, 0, 0}; });
+  expect("up", [](Camera& c) { c.up = c.target - c.eye; });
+  expect("up", [](Camera& c) { c.up.z = kNan; });
+  expect("orthographic height", [](Camera& c) {
+    c.orthographic = true;
+    c.orthographic_height = 0;
+  });
+  expect("orthographic height", [](Camera& c) {
+    c.orthographic = true;
+    c.orthographic_height = kInfinity;
+  });
+  expect("far", [](Camera& c) {
+    c.orthographic = true;
+    c.far_plane = kInfinity;
+  });
+}
+
+}  // namespace
+}  // namespace rastrum::test

@@ -1,0 +1,236 @@
+#include <rastrum/scene/scene.hpp>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+
+namespace rastrum::test {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+Scene scene_of(Mesh mesh) {
+  Scene scene;
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.emplace_back();
+  return scene;
+}
+
+void expect_vec(Vec3 actual, Vec3 expected, float tolerance = 0) {
+  EXPECT_NEAR(actual.x, expected.x, tolerance);
+  EXPECT_NEAR(actual.y, expected.y, tolerance);
+  EXPECT_NEAR(actual.z, expected.z, tolerance);
+}
+
+TEST(Bounds, IgnoreUnusedAndNonFiniteVertices) {
+  Mesh mesh;
+  mesh.positions = {{1, 2, 3},  {99, 0, 0},        {-4, 5, 6}, {kNan, 0, -50},
+                    {7, -8, 9}, {0, kInfinity, 0}, {0, 0, -77}};
+  mesh.indices = {0, 2, 4, 3, 5, 0};
+  const Scene scene = scene_of(mesh);
+  const SceneBinding binding(scene);
+  const Bounds b = bounds(binding.view());
+  expect_vec(b.min, {-4, -8, 3});
+  expect_vec(b.max, {7, 5, 9});
+  EXPECT_EQ(b.vertices_in_use, 3U);
+}
+
+TEST(Bounds, WithoutIndicesWholeTrianglesCount) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {50, 50, 50}, {60, 60, 60}};
+  const Scene scene = scene_of(mesh);
+  const Bounds b = bounds(SceneBinding(scene).view());
+  EXPECT_EQ(b.vertices_in_use, 3U);
+  expect_vec(b.max, {1, 1, 0});
+}
+
+TEST(Bounds, AreInWorldSpaceOverAllInstances) {
+  Scene scene = scene_of(shapes::boxes(1, 1));
+  scene.instances.push_back({0, Mat4d::identity()});
+  Mat4d& m = scene.instances[1].object_to_world;
+  m.m[0][0] = 0;  // a quarter turn about z, doubled, and shifted along x
+  m.m[0][1] = -2;
+  m.m[1][0] = 2;
+  m.m[1][1] = 0;
+  m.m[0][3] = 10;
+  const Bounds b = bounds(SceneBinding(scene).view());
+  expect_vec(b.min, {-0.5F, -1, -0.5F});
+  expect_vec(b.max, {11, 1, 0.5F});
+  EXPECT_EQ(b.vertices_in_use, 16U);
+}
+
+TEST(Bounds, RefuseIndicesOutOfRange) {
+  Mesh mesh = shapes::boxes(1);
+  mesh.indices[7] = 8;
+  const Scene scene = scene_of(mesh);
+  EXPECT_THROW(static_cast<void>(bounds(SceneBinding(scene).view())), Error);
+}
+
+TEST(Bounds, OfNothingHaveNoVertices) {
+  const Scene scene;
+  EXPECT_EQ(bounds(SceneBinding(scene).view()).vertices_in_use, 0U);
+}
+
+/// `--fit` written once more from the issue.
+void expect_fitted(const Camera& c, Vec3 centre, double r, double fov, bool orthographic) {
+  const double distance = r / std::sin(fov / 2);
+  const auto tolerance =
+      static_cast<float>(1e-5 * (distance + static_cast<double>(length(centre))));
+  expect_vec(c.target, centre, tolerance);
+  expect_vec(c.eye, centre + Vec3{0, 0, static_cast<float>(distance)}, tolerance);
+  expect_vec(c.up, {0, 1, 0});
+  EXPECT_EQ(c.fov_rad, static_cast<float>(fov));
+  EXPECT_EQ(c.orthographic, orthographic);
+  EXPECT_NEAR(c.near_plane, std::max(distance - 1.001 * r, distance / 1000), 1e-5 * distance);
+  if (orthographic) {
+    EXPECT_NEAR(c.far_plane, distance + 1.001 * r, 1e-5 * distance);
+    EXPECT_NEAR(c.orthographic_height, 2 * r, 1e-5 * r);
+  } else {
+    EXPECT_EQ(c.far_plane, kInfinity);
+  }
+  EXPECT_NO_THROW(static_cast<void>(world_to_clip(c, 640, 480)));
+}
+
+TEST(FitCamera, FollowsItsDefinition) {
+  Mesh mesh;
+  // The farthest vertex from the box's centre (2, 0, 1) is (6, 3, 1), 5 away; the last is unused.
+  mesh.positions = {{6, 3, 1}, {-2, 0, 1}, {2, -3, 2}, {2, 0, 0}, {1000, 0, 0}};
+  mesh.indices = {0, 1, 2, 0, 1, 3};
+  const Scene scene = scene_of(mesh);
+  const SceneBinding binding(scene);
+  for (const double fov : {std::numbers::pi / 3, 0.5, 3.0}) {
+    const auto rounded = static_cast<double>(static_cast<float>(fov));
+    for (const bool orthographic : {false, true})
+      expect_fitted(fit_camera(binding.view(), static_cast<float>(fov), orthographic), {2, 0, 1}, 5,
+                    rounded, orthographic);
+  }
+}
+
+TEST(FitCamera, RadiusZeroCountsAsOne) {
+  Mesh point;
+  point.positions = {{5, 6, 7}, {5, 6, 7}, {5, 6, 7}};
+  const Scene scene = scene_of(point);
+  const Scene nothing;
+  const double fov = static_cast<double>(1.0F);
+  for (const bool orthographic : {false, true}) {
+    expect_fitted(fit_camera(SceneBinding(scene).view(), 1, orthographic), {5, 6, 7}, 1, fov,
+                  orthographic);
+    expect_fitted(fit_camera(SceneBinding(nothing).view(), 1, orthographic), {0, 0, 0}, 1, fov,
+                  orthographic);
+  }
+}
+
+TEST(FitCamera, SeesTheWholeScene) {
+  const Scene scene = scene_of(shapes::teapot(8));
+  const SceneBinding binding(scene);
+  for (const bool orthographic : {false, true}) {
+    const Camera c = fit_camera(binding.view(), 1, orthographic);
+    const Mat4 m = static_cast<Mat4>(world_to_clip(c, 300, 200));
+    for (const Vec3 p : scene.meshes[0].positions) {
+      const Vec4 q = transform_point(m, p);
+      EXPECT_LE(std::abs(q.x), q.w);
+      EXPECT_LE(std::abs(q.y), q.w);
+      EXPECT_GE(q.z, 0);
+      EXPECT_LE(q.z, q.w);
+    }
+  }
+}
+
+TEST(VertexNormals, AreAreaWeighted) {
+  // Two right triangles at vertex 0: one of area 2 in the xy plane, one of area 1/2 in the yz
+  // plane.
+  const std::vector<Vec3> positions = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0},
+                                       {0, 1, 0}, {0, 0, 1}, {9, 9, 9}};
+  const std::vector<std::uint32_t> indices = {0, 1, 2, 0, 3, 4};
+  const std::vector<Vec3> n = vertex_normals(positions, indices);
+  ASSERT_EQ(n.size(), positions.size());
+  expect_vec(n[0], normalize(Vec3{1, 0, 4}), 1e-6F);
+  expect_vec(n[1], {0, 0, 1});
+  expect_vec(n[3], {1, 0, 0});
+  expect_vec(n[5], {0, 0, 0});
+}
+
+TEST(VertexNormals, IgnoreNonFiniteTrianglesAndZeroArea) {
+  const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {kNan, 0, 0}, {2, 0, 0}};
+  const std::vector<std::uint32_t> indices = {0, 1, 2, 0, 1, 3, 0, 1, 4};
+  const std::vector<Vec3> n = vertex_normals(positions, indices);
+  expect_vec(n[0], {0, 0, 1});
+  expect_vec(n[1], {0, 0, 1});
+  expect_vec(n[3], {0, 0, 0});
+  expect_vec(n[4], {0, 0, 0});
+}
+
+TEST(VertexNormals, OfASpherePointOutward) {
+  const Mesh mesh = shapes::sphere(40, 80);
+  const std::vector<Vec3> n = vertex_normals(mesh.positions, mesh.indices);
+  for (std::size_t i = 0; i < n.size(); ++i) EXPECT_GT(dot(n[i], mesh.positions[i]), 0.999F);
+}
+
+/// A scene of two meshes, `materials` materials and `textures` textures, all marked by `mark`.
+Scene marked_scene(float mark, std::size_t materials, std::size_t textures) {
+  Scene s;
+  for (int i = 0; i < 2; ++i) s.meshes.push_back(shapes::boxes(1));
+  s.meshes[0].name = std::to_string(mark);
+  s.instances = {{1, Mat4d::identity()}, {0, Mat4d::identity()}, {1, Mat4d::identity()}};
+  s.materials.resize(materials);
+  for (Material& m : s.materials) m.roughness = mark;
+  s.textures.resize(textures);
+  if (materials > 0 && textures > 0)
+    s.materials.back().emissive_texture = static_cast<std::int32_t>(textures) - 1;
+  if (materials > 0) {
+    s.meshes[1].material = static_cast<std::uint32_t>(materials) - 1;
+    s.meshes[0].face_materials.assign(12, static_cast<std::uint32_t>(materials) - 1);
+  }
+  s.warnings = {std::to_string(mark)};
+  s.cameras.resize(1);
+  return s;
+}
+
+TEST(SceneAppend, ShiftsIndices) {
+  Scene a = marked_scene(0.25F, 2, 3);
+  a.append(marked_scene(0.5F, 3, 2));
+  ASSERT_EQ(a.meshes.size(), 4U);
+  ASSERT_EQ(a.materials.size(), 5U);
+  ASSERT_EQ(a.textures.size(), 5U);
+  EXPECT_EQ(a.cameras.size(), 2U);
+  EXPECT_EQ(a.warnings.size(), 2U);
+  const std::uint32_t expected[] = {1, 0, 1, 3, 2, 3};
+  ASSERT_EQ(a.instances.size(), 6U);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(a.instances[i].mesh, expected[i]);
+  EXPECT_EQ(a.meshes[1].material, 1U);
+  EXPECT_EQ(a.meshes[2].material, 2U);
+  EXPECT_EQ(a.meshes[3].material, 4U);
+  EXPECT_EQ(a.meshes[2].face_materials, std::vector<std::uint32_t>(12, 4));
+  EXPECT_EQ(a.materials[1].emissive_texture, 2);
+  EXPECT_EQ(a.materials[4].emissive_texture, 4);
+  EXPECT_EQ(a.materials[2].emissive_texture, kNoTexture);
+  EXPECT_EQ(a.triangle_count(), 72U);
+}
+
+TEST(SceneAppend, FilesWithoutMaterialsKeepTheDefault) {
+  // First without, then with materials: the first file's meshes must not take the second's.
+  Scene a = marked_scene(0.25F, 0, 0);
+  a.append(marked_scene(0.5F, 2, 1));
+  ASSERT_EQ(a.materials.size(), 3U);
+  EXPECT_EQ(a.meshes[0].material, 0U);
+  EXPECT_EQ(a.materials[0].roughness, Material{}.roughness);
+  EXPECT_EQ(a.materials[a.meshes[3].material].roughness, 0.5F);
+
+  Scene b = marked_scene(0.5F, 2, 1);
+  b.append(marked_scene(0.25F, 0, 0));
+  ASSERT_EQ(b.materials.size(), 3U);
+  EXPECT_EQ(b.materials[b.meshes[2].material].roughness, Material{}.roughness);
+
+  Scene c = marked_scene(0.25F, 0, 0);
+  c.append(marked_scene(0.5F, 0, 0));
+  EXPECT_TRUE(c.materials.empty());
+}
+
+}  // namespace
+}  // namespace rastrum::test

@@ -1,0 +1,67 @@
+#include "tests/support/golden.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+#include <rastrum/io/io.hpp>
+
+namespace rastrum::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Black where the pictures agree; a difference of 1 is already clearly visible.
+Image<Rgba8> difference(const Image<Rgba8>& a, const Image<Rgba8>& b) {
+  const auto amplify = [](int x, int y) {
+    const int d = std::abs(x - y);
+    return static_cast<std::uint8_t>(d == 0 ? 0 : std::min(255, 64 + 4 * d));
+  };
+  Image<Rgba8> out(a.width(), a.height());
+  for (int y = 0; y < a.height(); ++y) {
+    for (int x = 0; x < a.width(); ++x) {
+      const Rgba8 p = a(x, y), q = b(x, y);
+      const std::uint8_t alpha = amplify(p.a, q.a);
+      out(x, y) = {std::max(amplify(p.r, q.r), alpha), std::max(amplify(p.g, q.g), alpha),
+                   std::max(amplify(p.b, q.b), alpha), 255};
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+testing::AssertionResult matches_golden(const std::string& name, const Image<Rgba8>& actual) {
+  const fs::path golden = fs::path(RASTRUM_GOLDEN_DIR) / (name + ".png");
+  const fs::path failures = RASTRUM_GOLDEN_FAILURES_DIR;
+  const auto failed = [&](const char* kind) { return failures / (name + "." + kind + ".png"); };
+  for (const char* kind : {"expected", "actual", "diff"}) {
+    std::error_code absent;
+    fs::remove(failed(kind), absent);
+  }
+  const auto fail = [&](const std::string& why) {
+    return testing::AssertionFailure()
+           << why << "; see " << failed("actual") << " (./dev golden shows and accepts)";
+  };
+  fs::create_directories(failures);
+  if (!fs::exists(golden)) {
+    io::write_png(failed("actual"), actual.view());
+    return fail("there is no golden picture " + golden.string());
+  }
+  const Image<Rgba8> expected = io::read_image(golden);
+  if (expected.width() == actual.width() && expected.height() == actual.height() &&
+      std::ranges::equal(expected.pixels(), actual.pixels()))
+    return testing::AssertionSuccess();
+  io::write_png(failed("expected"), expected.view());
+  io::write_png(failed("actual"), actual.view());
+  if (expected.width() != actual.width() || expected.height() != actual.height())
+    return fail(name + " is not of the golden picture's size");
+  const Image<Rgba8> diff = difference(expected, actual);
+  io::write_png(failed("diff"), diff.view());
+  const auto differing = std::ranges::count_if(
+      diff.pixels(), [](Rgba8 p) { return p.r != 0 || p.g != 0 || p.b != 0; });
+  return fail(name + ": " + std::to_string(differing) + " pixels differ from the golden picture");
+}
+
+}  // namespace rastrum::test

@@ -1,0 +1,18 @@
+// Golden pictures: few, small, in plain Git (tests/golden/NAME.png), compared exactly.
+#pragma once
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/image.hpp>
+
+namespace rastrum::test {
+
+/// Compares with tests/golden/NAME.png. A difference writes NAME.expected.png (where there is one),
+/// NAME.actual.png and NAME.diff.png into golden-failures/ of the build folder, which
+/// `./dev golden` shows and accepts; a match removes them.
+[[nodiscard]] testing::AssertionResult matches_golden(const std::string& name,
+                                                      const Image<Rgba8>& actual);
+
+}  // namespace rastrum::test

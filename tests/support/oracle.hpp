@@ -1,0 +1,51 @@
+// The brute-force oracle: all pixels × all triangles, in exact integers. It shares no code with the
+// library (it includes none of it), so that an agreement of the two is evidence. Plain on purpose.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace rastrum::test {
+
+/// A vertex after projection and snapping: pixels in n.8 fixed point, y down, and its depth.
+struct SnappedVertex {
+  std::int64_t x_fx8 = 0, y_fx8 = 0;
+  float depth = 0;
+};
+
+/// Either a whole triangle or one piece of a clipped one; the pieces share the triangle's id.
+struct SnappedTriangle {
+  SnappedVertex v[3];
+  std::int64_t id = 0;
+};
+
+enum class Keep { all, front, back };
+
+/// W × H, row 0 at the top; `ids` −1 and `depth` 0 where nothing is.
+struct OracleImage {
+  int width = 0, height = 0;
+  std::vector<std::int64_t> ids;
+  std::vector<float> depth;
+  std::vector<std::uint32_t> overdraw;
+
+  [[nodiscard]] std::uint64_t fragments() const;
+  [[nodiscard]] std::uint64_t pixels_covered() const;
+};
+
+/// Twice the signed area in n.8 units, positive where the vertices turn clockwise on the screen.
+[[nodiscard]] std::int64_t twice_area(const SnappedTriangle& t);
+
+/// Whether the sample of pixel (px, py) belongs to `t`: exact, top-left rule.
+[[nodiscard]] bool covers(const SnappedTriangle& t, int px, int py);
+
+/// The depth plane of `t` at the sample of pixel (px, py), by the rules of DESIGN section 2.
+[[nodiscard]] float depth_at(const SnappedTriangle& t, int px, int py);
+
+/// Cost: O(W · H · triangles); only rows and columns that a bounding box misses by more than a
+/// pixel are left out. Coordinates must lie in the guard band [−2¹⁵, 2¹⁶] px (checked).
+[[nodiscard]] OracleImage brute_force(int width, int height,
+                                      std::span<const SnappedTriangle> triangles,
+                                      Keep keep = Keep::all);
+
+}  // namespace rastrum::test

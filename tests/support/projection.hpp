@@ -1,0 +1,47 @@
+// The vertex rules of DESIGN section 2 written a second time, for the tests alone: float32, one
+// order, no contraction. Of the library it uses only the types and `world_to_clip`.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <rastrum/scene/scene.hpp>
+
+#include "tests/support/oracle.hpp"
+
+namespace rastrum::test {
+
+/// float32 values; float64 ones for a finite vertex whose float32 transform overflows.
+struct ClipVertex {
+  double x = 0, y = 0, z = 0, w = 0;
+};
+
+enum class Fate {
+  dropped,     ///< a NaN or infinite vertex
+  whole,       ///< in front of the near plane and inside the guard band: snapped as it is
+  needs_clip,  ///< anything else
+};
+
+struct ProjectedTriangle {
+  std::int64_t id = 0;
+  Fate fate = Fate::dropped;
+  ClipVertex clip[3];
+  bool has_position[3] = {};  ///< which corners are in front and inside the guard band
+  SnappedTriangle snapped;    ///< corners with a position; the others are meaningless
+};
+
+/// Object to clip, the product in float64.
+[[nodiscard]] Mat4d object_to_clip(const Camera& camera, const Mat4d& object_to_world, int width,
+                                   int height);
+
+/// The matrix rounded to float32 once, then a float32 transform.
+[[nodiscard]] ClipVertex to_clip(const Mat4d& object_to_clip, Vec3 position);
+
+/// False where the vertex is behind the near plane or outside the guard band.
+[[nodiscard]] bool snap(const ClipVertex& c, int width, int height, SnappedVertex& out);
+
+/// Every triangle of `scene` in order of submission. Indices must be in range.
+[[nodiscard]] std::vector<ProjectedTriangle> project(const SceneView& scene, const Camera& camera,
+                                                     int width, int height);
+
+}  // namespace rastrum::test

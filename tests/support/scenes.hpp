@@ -1,0 +1,52 @@
+// Generated scenes: small, nasty and reproducible from a seed. Each kind aims at one rule of the
+// picture; the kinds take turns with the seed.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <rastrum/scene/scene.hpp>
+
+namespace rastrum::test {
+
+struct GeneratedScene {
+  std::string kind;
+  Scene scene;
+  Camera camera;
+};
+
+/// How many kinds there are; `generate` draws kind seed % kSceneKinds.
+extern const int kSceneKinds;
+
+/// At most 200 triangles, to be seen in a `width` × `height` image.
+[[nodiscard]] GeneratedScene generate(std::uint64_t seed, int width, int height);
+
+/// A place on the screen and the distance from the eye along the view direction. Braces order the
+/// evaluation of their members, which calls do not: so a seed means one scene with every compiler.
+struct ScreenPoint {
+  double x_px = 0, y_px = 0, w = 1;
+};
+
+/// Places world points where they are wanted on the screen. The points of a `Placer` go through
+/// float64 and are rounded once, so they are exact only for the cameras that say so.
+class Placer {
+ public:
+  Placer(const Camera& camera, int width, int height);
+  /// The world point that is seen there.
+  [[nodiscard]] Vec3 at(ScreenPoint p) const;
+
+ private:
+  Camera camera_;
+  double width_, height_, scale_;  // scale: world units of a pixel (at w = 1 for perspective)
+  Mat4d world_to_camera_;
+};
+
+/// An orthographic camera for which world x = x_px − W/2, y = H/2 − y_px and z = depth, exactly
+/// where W and H are equal powers of two.
+[[nodiscard]] Camera pixel_camera(int width, int height);
+[[nodiscard]] Vec3 at_pixel(double x_px, double y_px, double depth, int width, int height);
+
+/// One mesh, one instance, identity.
+[[nodiscard]] Scene single(Mesh mesh);
+
+}  // namespace rastrum::test
