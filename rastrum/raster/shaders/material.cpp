@@ -31,9 +31,10 @@ class MaterialShader final : public BlockShader {
  public:
   explicit MaterialShader(const MaterialScene& scene) : scene_(scene) {}
 
-  void shade(const FrameGeometry& frame, const std::uint64_t (&words)[64], int x0, int y0, Isa isa,
+  bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
              BlockColors& colors) const noexcept override {
-    material_kernels(isa).shade(scene_, frame, words, x0, y0, colors);
+    material_kernels(isa).shade(scene_, frame, block, colors);
+    return true;
   }
 
  private:

@@ -10,8 +10,9 @@
 namespace rastrum::raster {
 
 struct MaterialKernels {
-  void (*shade)(const MaterialScene& scene, const FrameGeometry& frame,
-                const std::uint64_t (&words)[64], int x0, int y0, BlockColors& colors) noexcept;
+  /// Colours of the covered samples, all opaque.
+  void (*shade)(const MaterialScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
+                BlockColors& colors) noexcept;
   /// The subset of `mask` (bit 8 · row + column of the block at (x0, y0)) where triangle `id` is
   /// not cut out.
   std::uint64_t (*alpha_test)(const MaterialScene& scene, const FrameGeometry& frame,

@@ -436,14 +436,14 @@ HWY_INLINE void light(const ViewRays& rays, const Surface& s, int x0, int y0, Bl
            display(hn::IfThenElse(unlit, base.y, color.y)),
            display(hn::IfThenElse(unlit, base.z, color.z))},
           out.r + i, out.g + i, out.b + i);
-    hn::Store(set(1), Floats{}, out.a + i);
   }
 }
 
-void shade(const MaterialScene& scene, const FrameGeometry& frame, const std::uint64_t (&words)[64],
-           int x0, int y0, BlockColors& colors) noexcept {
-  std::uint64_t left = 0;
-  for (int i = 0; i < 64; ++i) left |= std::uint64_t{words[i] != 0} << i;
+void shade(const MaterialScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
+           BlockColors& colors) noexcept {
+  const std::uint64_t* const words = block.words;
+  const int x0 = block.x0, y0 = block.y0;
+  std::uint64_t left = block.covered;
   Surface surface;
   if (left != ~std::uint64_t{0}) std::memset(&surface, 0, sizeof(surface));
   const Draw* draw = nullptr;
