@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -197,10 +198,11 @@ void count_overdraw(const ImageView<std::uint32_t>& overdraw, Rect bin,
   }
 }
 
-/// The words of a bin, one per thread.
-struct alignas(64) BinWords {
+/// What a thread needs to draw a bin.
+struct alignas(64) BinScratch {
   std::uint64_t words[kBlocksPerBin * 64];
   Block blocks[kBlockCapacity];
+  alignas(64) std::byte shader[kMaxShaderScratch];
 };
 
 struct BinCounts {
@@ -209,7 +211,7 @@ struct BinCounts {
 
 /// Resolves and shades one bin.
 BinCounts draw_bin(const FrameRequest& request, const FrameGeometry& frame, const Kernels& kernel,
-                   std::span<const Group> groups, std::size_t bin, Rect rect, BinWords& scratch) {
+                   std::span<const Group> groups, std::size_t bin, Rect rect, BinScratch& scratch) {
   BinCounts counts;
   std::fill_n(scratch.words, kBlocksPerBin * 64, 0);
   if (!request.targets.overdraw.empty())
@@ -234,12 +236,14 @@ BinCounts draw_bin(const FrameRequest& request, const FrameGeometry& frame, cons
       kernel.maximum(pieces.pieces, blocks.data(), n, rect, scratch.words);
     }
   }
+  if (request.shader != nullptr) std::memset(scratch.shader, 0, request.shader->scratch_bytes());
   for (int by = 0; by < kBlocksPerBinRow; ++by)
     for (int bx = 0; bx < kBlocksPerBinRow; ++bx) {
       const int x0 = rect.x0 + bx * kBlockSize, y0 = rect.y0 + by * kBlockSize;
       if (x0 >= rect.x1 || y0 >= rect.y1) continue;
       const std::uint64_t* words = scratch.words + (by * kBlocksPerBinRow + bx) * 64;
-      counts.covered += static_cast<std::uint64_t>(resolve_block(request, frame, words, x0, y0));
+      counts.covered +=
+          static_cast<std::uint64_t>(resolve_block(request, frame, words, x0, y0, scratch.shader));
     }
   return counts;
 }
@@ -251,11 +255,11 @@ struct TiledRasterizer::Scratch {
   MemoryAccount& memory;
   Buffer<ProjectedVertex> projected;
   std::vector<Group> groups;
-  tbb::enumerable_thread_specific<std::unique_ptr<BinWords>> bins;
+  tbb::enumerable_thread_specific<std::unique_ptr<BinScratch>> bins;
 
-  BinWords& bin_words() {
-    std::unique_ptr<BinWords>& mine = bins.local();
-    if (!mine) mine = std::make_unique<BinWords>();
+  BinScratch& bin_scratch() {
+    std::unique_ptr<BinScratch>& mine = bins.local();
+    if (!mine) mine = std::make_unique<BinScratch>();
     return *mine;
   }
 };
@@ -318,7 +322,7 @@ FrameStats TiledRasterizer::render(FrameRequest& request, parallel::Threads& exe
     const Rect rect{x0, y0, std::min(x0 + kBinSize, request.width),
                     std::min(y0 + kBinSize, request.height)};
     const BinCounts counts =
-        draw_bin(request, frame, kernel, groups, bin, rect, scratch_->bin_words());
+        draw_bin(request, frame, kernel, groups, bin, rect, scratch_->bin_scratch());
     fragments.fetch_add(counts.fragments, std::memory_order_relaxed);
     covered.fetch_add(counts.covered, std::memory_order_relaxed);
   });
