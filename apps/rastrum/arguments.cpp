@@ -15,7 +15,8 @@ bool convert(std::string_view text, T& value) {
   return error == std::errc{} && end == text.data() + text.size();
 }
 
-[[noreturn]] void refuse(std::string_view option, std::string_view text, const std::string& wanted) {
+[[noreturn]] void refuse(std::string_view option, std::string_view text,
+                         const std::string& wanted) {
   throw UsageError(option, "expected " + wanted + ", got '" + std::string(text) + "'");
 }
 

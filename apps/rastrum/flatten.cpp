@@ -71,8 +71,9 @@ void append(Mesh& into, Mesh& from, Kept& kept, Kept& whole) {
   const std::size_t corners = from.triangle_count() * 3;
   into.indices.reserve(into.indices.size() + corners);
   for (std::size_t i = 0; i < corners; ++i)
-    into.indices.push_back(static_cast<std::uint32_t>(first) +
-                           (from.indices.empty() ? static_cast<std::uint32_t>(i) : from.indices[i]));
+    into.indices.push_back(static_cast<std::uint32_t>(first) + (from.indices.empty()
+                                                                    ? static_cast<std::uint32_t>(i)
+                                                                    : from.indices[i]));
   bool lost[3] = {};
   join(into.normals, from.normals, count, kept.normals, lost[0]);
   join(into.texcoords, from.texcoords, count, kept.texcoords, lost[1]);

@@ -45,7 +45,8 @@ const std::array<Rgba8, kRampSize>& heat_ramp() {
 }
 
 int ramp_index(std::uint32_t n, std::uint32_t max) {
-  const double t = std::log1p(static_cast<double>(n)) / std::log1p(static_cast<double>(max));
+  if (n <= 1) return 0;
+  const double t = std::log(static_cast<double>(n)) / std::log(static_cast<double>(max));
   return static_cast<int>(std::lround(t * (kRampSize - 1)));
 }
 
@@ -59,9 +60,9 @@ Heatmap make_heatmap(ImageView<const std::uint32_t> overdraw) {
   for (int y = 0; y < overdraw.height; ++y)
     for (int x = 0; x < overdraw.width; ++x) {
       const std::uint32_t n = overdraw(x, y);
-      heatmap.image(x, y) =
-          n == 0 ? Rgba8{0, 0, 0, 255}
-                 : heat_ramp()[static_cast<std::size_t>(ramp_index(n, heatmap.max))];
+      heatmap.image(x, y) = n == 0
+                                ? Rgba8{0, 0, 0, 255}
+                                : heat_ramp()[static_cast<std::size_t>(ramp_index(n, heatmap.max))];
     }
   return heatmap;
 }

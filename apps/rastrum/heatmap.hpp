@@ -14,8 +14,8 @@ struct Heatmap {
   std::uint64_t sum = 0;  ///< over all pixels: FrameStats::fragments
 };
 
-/// Black where there is no fragment; else the ramp at log(1 + n) / log(1 + max), so that two
-/// layers are told apart beside two hundred.
+/// Black where there is no fragment; else the ramp at log(n) / log(max), so that one layer and two
+/// are told apart beside two hundred.
 [[nodiscard]] Heatmap make_heatmap(ImageView<const std::uint32_t> overdraw);
 
 inline constexpr int kRampSize = 1024;

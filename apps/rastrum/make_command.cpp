@@ -58,8 +58,9 @@ int run(const MakeArguments& a) {
 Command add_make_command(CLI::App& app) {
   auto arguments = std::make_shared<MakeArguments>();
   CLI::App& make = *app.add_subcommand("make", "Write a shape, or a file's mesh, as binary PLY");
-  make.add_option("SHAPE", arguments->input,
-                  "SHAPE[?name=value,...] of the list below (x, y, z and scale place it), or a file")
+  make.add_option(
+          "SHAPE", arguments->input,
+          "SHAPE[?name=value,...] of the list below (x, y, z and scale place it), or a file")
       ->required()
       ->type_name("");
   make.add_option_function<std::string>(

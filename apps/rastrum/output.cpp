@@ -41,7 +41,8 @@ std::string lower(std::string text) {
 
 void check_directory(const Output& output) {
   const auto fail = [&](const std::string& why) {
-    throw Error(Errc::io, output.option + ": " + output.file.string() + " cannot be written: " + why);
+    throw Error(Errc::io,
+                output.option + ": " + output.file.string() + " cannot be written: " + why);
   };
   std::error_code ignored;
   if (fs::is_directory(output.file, ignored)) fail("it is a directory");
@@ -49,7 +50,8 @@ void check_directory(const Output& output) {
   if (!fs::is_directory(parent, ignored))
     fail("there is no directory " + parent.string() + "; create it first");
   // What exists and is no regular file (a device, a pipe) is written in place.
-  const bool special = fs::exists(output.file, ignored) && !fs::is_regular_file(output.file, ignored);
+  const bool special =
+      fs::exists(output.file, ignored) && !fs::is_regular_file(output.file, ignored);
   if (!special && ::access(parent.c_str(), W_OK) != 0)
     fail(parent.string() + ": " + std::strerror(errno));
 }
@@ -72,8 +74,8 @@ void check_outputs(std::span<const Output* const> outputs) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     if (!*outputs[i]) continue;
     for (std::size_t j = 0; j < i; ++j)
-      if (*outputs[j] && fs::weakly_canonical(outputs[i]->file) ==
-                             fs::weakly_canonical(outputs[j]->file))
+      if (*outputs[j] &&
+          fs::weakly_canonical(outputs[i]->file) == fs::weakly_canonical(outputs[j]->file))
         throw UsageError(outputs[i]->option, outputs[i]->file.string() + " is also the file of " +
                                                  outputs[j]->option + "; give each its own");
     check_directory(*outputs[i]);

@@ -83,7 +83,8 @@ template <class F>
 CLI::Option* add(CLI::App& app, const char* names, const char* type, const std::string& help,
                  F parse) {
   return app
-      .add_option_function<std::string>(names, [parse](const std::string& s) { parse(s); }, help)
+      .add_option_function<std::string>(
+          names, [parse](const std::string& s) { parse(s); }, help)
       ->type_name(type);
 }
 
@@ -120,13 +121,11 @@ void add_output_options(CLI::App& app, RenderArguments& a) {
 
 void add_picture_options(CLI::App& app, RenderArguments& a) {
   const char* group = "Picture";
-  add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)",
-      [&a](const std::string& s) {
-        const Size size = parse_size("--size", s);
-        a.render.width = size.width;
-        a.render.height = size.height;
-      })
-      ->group(group);
+  add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)", [&a](const std::string& s) {
+    const Size size = parse_size("--size", s);
+    a.render.width = size.width;
+    a.render.height = size.height;
+  })->group(group);
   std::string shaders;
   for (const std::string_view shader : shader_names())
     shaders.append(shaders.empty() ? "" : ", ").append(shader);
@@ -150,29 +149,27 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
             "--cull", s, {{"none", Cull::none}, {"back", Cull::back}, {"front", Cull::front}});
       })
       ->group(group);
-  add(app, "--background", "#RRGGBB[AA]", "(#00000000, transparent)",
-      [&a](const std::string& s) { a.render.background = parse_color("--background", s); })
-      ->group(group);
+  add(app, "--background", "#RRGGBB[AA]", "(#00000000, transparent)", [&a](const std::string& s) {
+    a.render.background = parse_color("--background", s);
+  })->group(group);
 }
 
 void add_camera_options(CLI::App& app, RenderArguments& a) {
   const char* group = "Camera (what is not given is taken from --fit)";
   ViewOptions& v = a.view;
   app.add_flag("--fit", a.fit, "look along -z at all that is there (the default)")->group(group);
-  add(app, "--camera", "N", "the N-th camera of the files, from 0",
-      [&v](const std::string& s) {
-        v.file_camera = parse_integer("--camera", s, 0, std::numeric_limits<int>::max());
-      })
-      ->group(group);
-  add(app, "--eye", "X,Y,Z", "where the camera stands",
-      [&v](const std::string& s) { v.eye = parse_vec3("--eye", s); })
-      ->group(group);
-  add(app, "--target", "X,Y,Z", "what it looks at",
-      [&v](const std::string& s) { v.target = parse_vec3("--target", s); })
-      ->group(group);
-  add(app, "--up", "X,Y,Z", "which way is up in the picture (0,1,0)",
-      [&v](const std::string& s) { v.up = parse_vec3("--up", s); })
-      ->group(group);
+  add(app, "--camera", "N", "the N-th camera of the files, from 0", [&v](const std::string& s) {
+    v.file_camera = parse_integer("--camera", s, 0, std::numeric_limits<int>::max());
+  })->group(group);
+  add(app, "--eye", "X,Y,Z", "where the camera stands", [&v](const std::string& s) {
+    v.eye = parse_vec3("--eye", s);
+  })->group(group);
+  add(app, "--target", "X,Y,Z", "what it looks at", [&v](const std::string& s) {
+    v.target = parse_vec3("--target", s);
+  })->group(group);
+  add(app, "--up", "X,Y,Z", "which way is up in the picture (0,1,0)", [&v](const std::string& s) {
+    v.up = parse_vec3("--up", s);
+  })->group(group);
   add(app, "--fov", "DEG", "field of view across the smaller side (60)",
       [&v](const std::string& s) { v.fov_deg = parse_number("--fov", s); })
       ->group(group);
@@ -199,20 +196,17 @@ void add_machine_options(CLI::App& app, RenderArguments& a) {
   std::string names;
   for (const RasterizerInfo& info : rasterizers())
     names.append(names.empty() ? "" : ", ").append(info.name);
-  add(app, "--rasterizer", "NAME", "auto, " + names + " (auto)",
-      [&a](const std::string& s) { a.render.rasterizer = check_rasterizer(s); })
-      ->group(group);
-  add(app, "--device", "NAME", "serial, threads, cuda (threads)",
-      [&a](const std::string& s) {
-        a.render.device = choose<Device>("--device", s,
-                                         {{"serial", Device::serial},
-                                          {"threads", Device::threads},
-                                          {"cuda", Device::cuda}});
-      })
-      ->group(group);
-  add(app, "--threads", "N", "(all)",
-      [&a](const std::string& s) { a.render.threads = parse_integer("--threads", s, 1, 4096); })
-      ->group(group);
+  add(app, "--rasterizer", "NAME", "auto, " + names + " (auto)", [&a](const std::string& s) {
+    a.render.rasterizer = check_rasterizer(s);
+  })->group(group);
+  add(app, "--device", "NAME", "serial, threads, cuda (threads)", [&a](const std::string& s) {
+    a.render.device = choose<Device>(
+        "--device", s,
+        {{"serial", Device::serial}, {"threads", Device::threads}, {"cuda", Device::cuda}});
+  })->group(group);
+  add(app, "--threads", "N", "(all)", [&a](const std::string& s) {
+    a.render.threads = parse_integer("--threads", s, 1, 4096);
+  })->group(group);
   std::string isas;
   for (const Isa isa : available_isas()) isas.append(isas.empty() ? "" : ", ").append(name(isa));
   add(app, "--isa", "NAME", "instruction set; this machine has " + isas + " (the last)",
@@ -243,8 +237,7 @@ void check(const RenderArguments& a) {
   check_outputs(outputs);
 }
 
-void report_warnings(const Scene& scene, const FrameStats& frame) {
-  for (const std::string& w : scene.warnings) warn(w);
+void report_missing(const FrameStats& frame) {
   if (frame.triangles.input == 0) warn("there are no triangles to draw");
   if (frame.triangles.dropped != 0)
     warn(std::to_string(frame.triangles.dropped) + " of " + std::to_string(frame.triangles.input) +
@@ -267,7 +260,7 @@ void write_images(const RenderArguments& a, const Pictures& p, Timeline& timelin
     progress.clear();
     if (!a.quiet)
       std::fprintf(stderr,
-                   "heatmap: black 0, violet 1, light yellow %lu fragments at a pixel, "
+                   "heatmap: black 0, dark violet 1, light yellow %lu fragments at a pixel, "
                    "logarithmic; %lu fragments in all\n",
                    static_cast<unsigned long>(heatmap.max),
                    static_cast<unsigned long>(heatmap.sum));
@@ -284,6 +277,10 @@ int run(RenderArguments& a) {
   const double load_begin = timeline.now_ms();
   const Scene scene = load_inputs(a.inputs, a.normals, timeline, progress);
   const double load_ms = timeline.now_ms() - load_begin;
+  if (!a.quiet && !scene.warnings.empty()) {
+    progress.clear();
+    for (const std::string& w : scene.warnings) warn(w);
+  }
   if (!a.shader_given && !scene.materials.empty()) {
     a.render.shader = Shader::material;
     renderer = std::make_unique<Renderer>(a.render);
@@ -302,7 +299,7 @@ int run(RenderArguments& a) {
       *renderer, binding.view(), camera, wanted, timed, a.frames, pictures, timeline, progress);
   const FrameStats& median = frames[median_frame(frames)];
   progress.clear();
-  if (!a.quiet) report_warnings(scene, median);
+  if (!a.quiet) report_missing(median);
 
   write_images(a, pictures, timeline, progress);
   progress.clear();
@@ -322,9 +319,10 @@ Command add_render_command(CLI::App& app) {
   auto arguments = std::make_shared<RenderArguments>();
   CLI::App& render = *app.add_subcommand("render", "Draw meshes and shapes into an image file");
   render
-      .add_option("INPUT", arguments->inputs,
-                  "files (.obj .ply .stl .off .gltf .glb) and builtin:SHAPE[?name=value,...], drawn "
-                  "as one scene in this order; x, y, z and scale place a shape")
+      .add_option(
+          "INPUT", arguments->inputs,
+          "files (.obj .ply .stl .off .gltf .glb) and builtin:SHAPE[?name=value,...], drawn "
+          "as one scene in this order; x, y, z and scale place a shape")
       ->required()
       ->type_name("");
   add_output_options(render, *arguments);
@@ -333,8 +331,8 @@ Command add_render_command(CLI::App& app) {
   add_machine_options(render, *arguments);
   std::string footer = "Shapes and their defaults:\n";
   for (const shapes::ShapeInfo& shape : shapes::catalogue())
-    footer += "  builtin:" + shape.name + (shape.parameters.empty() ? "" : "?") + shape.parameters +
-              "\n";
+    footer +=
+        "  builtin:" + shape.name + (shape.parameters.empty() ? "" : "?") + shape.parameters + "\n";
   footer +=
       "\nTimes: a frame goes from the mesh in memory to the finished 8-bit image in memory. With\n"
       "--frames, --stats or --trace the timed frames fill that image alone, and one more pass,\n"

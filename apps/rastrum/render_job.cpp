@@ -62,8 +62,7 @@ std::vector<FrameStats> render_frames(Renderer& renderer, const SceneView& scene
   wanted.color8 = false;
   if (wanted.color || wanted.depth || wanted.ids || wanted.overdraw) {
     const Targets others = make_targets(wanted, renderer.options(), pictures);
-    timeline.measure("other images", "images",
-                     [&] { renderer.render(scene, camera, others); });
+    timeline.measure("other images", "images", [&] { renderer.render(scene, camera, others); });
   }
   return stats;
 }

@@ -18,18 +18,18 @@ double distance(Vec3 a, Vec3 b) {
 /// fit camera's rule would put the near plane at 0.
 void place_planes(Camera& camera, Vec3 centre, double radius) {
   const double d = distance(camera.eye, centre);
-  camera.near_plane =
-      static_cast<float>(std::max(d - 1.001 * radius, std::max(d, radius) / 1000));
+  camera.near_plane = static_cast<float>(std::max(d - 1.001 * radius, std::max(d, radius) / 1000));
   if (camera.orthographic) camera.far_plane = static_cast<float>(d + 1.001 * radius);
 }
 
 Camera file_camera(const Scene& scene, int index) {
   if (static_cast<std::size_t>(index) >= scene.cameras.size())
-    throw UsageError("--camera", scene.cameras.empty()
-                                     ? "the inputs have no camera; leave it out for a view that fits"
-                                     : "the inputs have cameras 0 to " +
-                                           std::to_string(scene.cameras.size() - 1) + ", not " +
-                                           std::to_string(index));
+    throw UsageError("--camera",
+                     scene.cameras.empty()
+                         ? "the inputs have no camera; leave it out for a view that fits"
+                         : "the inputs have cameras 0 to " +
+                               std::to_string(scene.cameras.size() - 1) + ", not " +
+                               std::to_string(index));
   return scene.cameras[static_cast<std::size_t>(index)];
 }
 
@@ -66,16 +66,21 @@ Camera choose_camera(const ViewOptions& o, const Scene& scene, const SceneView& 
   if (o.target) camera.target = *o.target;
   if (o.up) camera.up = *o.up;
   if (o.fov_deg) camera.fov_rad = static_cast<float>(*o.fov_deg * std::numbers::pi / 180);
-  if (o.orthographic_height) camera.orthographic_height = static_cast<float>(*o.orthographic_height);
+  if (o.orthographic_height)
+    camera.orthographic_height = static_cast<float>(*o.orthographic_height);
   if (o.near_plane) camera.near_plane = static_cast<float>(*o.near_plane);
   if (o.far_plane) camera.far_plane = static_cast<float>(*o.far_plane);
   if (camera.eye == camera.target)
     throw UsageError(o.target ? "--target" : "--eye", "eye and target must differ");
+  const Vec3 towards = camera.target - camera.eye;
+  if (length(cross(camera.up, towards)) == 0)
+    throw UsageError("--up", o.up ? "must not be zero or along the view direction"
+                                  : "is needed: the camera looks along 0,1,0; try --up 0,0,-1");
   if (!(camera.near_plane < camera.far_plane))
-    throw UsageError(o.far_plane ? "--far" : "--near",
-                     "the near plane (" + std::to_string(camera.near_plane) +
-                         ") must be nearer than the far plane (" +
-                         std::to_string(camera.far_plane) + ")");
+    throw UsageError(o.far_plane ? "--far" : "--near", "the near plane (" +
+                                                           std::to_string(camera.near_plane) +
+                                                           ") must be nearer than the far plane (" +
+                                                           std::to_string(camera.far_plane) + ")");
   return camera;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <rastrum/core/error.hpp>
@@ -31,6 +32,10 @@ struct ImageView {
   [[nodiscard]] bool empty() const { return data == nullptr; }
   [[nodiscard]] T* row(int y) const { return data + y * stride; }
   [[nodiscard]] T& operator()(int x, int y) const { return data[y * stride + x]; }
+  /// To read what may also be written.
+  operator ImageView<const T>() const requires(!std::is_const_v<T>) {
+    return {data, width, height, stride};
+  }
 };
 
 /// An owned W × H image, value-initialized.

@@ -7,7 +7,10 @@
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/reference.hpp>
+#include <rastrum/raster/shaders/alpha_test.hpp>
 #include <rastrum/raster/shaders/lit.hpp>
+#include <rastrum/raster/shaders/material.hpp>
+#include <rastrum/raster/shaders/texture.hpp>
 #include <rastrum/raster/tiled.hpp>
 #include <rastrum/raster/transform_source.hpp>
 
@@ -80,6 +83,7 @@ struct Renderer::Impl {
   Isa isa = Isa::scalar;
   bool reference = false;
   MemoryAccount memory;
+  raster::TextureSet textures{memory};
   std::unique_ptr<parallel::Threads> threads;
   std::unique_ptr<raster::TiledRasterizer> tiled;
 };
@@ -126,11 +130,13 @@ const RenderOptions& Renderer::options() const {
 FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const Targets& targets) {
   const RenderOptions& o = impl_->options;
   check_attributes(scene);
+  raster::check_materials(scene);
   const Mat4d to_clip = world_to_clip(camera, o.width, o.height);
   std::vector<raster::TransformSource> sources;
   sources.reserve(scene.instances.size());
   std::vector<raster::Draw> draws;
   draws.reserve(scene.instances.size());
+  bool any_mask = false;
   for (const InstanceView& instance : scene.instances) {
     sources.emplace_back(instance.mesh.positions, to_clip * instance.object_to_world);
     raster::Draw& draw = draws.emplace_back();
@@ -138,10 +144,24 @@ FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const 
     draw.vertex_count = instance.mesh.positions.size();
     draw.indices = instance.mesh.indices;
     draw.triangle_count = instance.mesh.triangle_count();
+    if (!raster::has_mask(instance.mesh, scene.materials)) continue;
+    draw.flags |= raster::kTested;
+    any_mask = true;
   }
+  const bool shades_materials = o.shader == Shader::material;
+  std::optional<raster::MaterialScene> materials;
+  std::unique_ptr<raster::FragmentTest> test;
+  if (shades_materials || any_mask) {
+    impl_->textures.update(scene.textures, raster::texture_uses(scene, shades_materials),
+                           impl_->threads.get());
+    materials.emplace(scene, camera, o.width, o.height, impl_->textures);
+  }
+  if (any_mask)
+    test = raster::make_alpha_test(*materials, impl_->reference ? Isa::scalar : impl_->isa);
+  if (shades_materials)
+    return draw(draws, *raster::make_material_shader(*materials), test.get(), targets);
   const raster::LitScene lit(scene, camera, o.width, o.height);
-  const auto shader = raster::make_lit_shader(lit_model(o.shader), lit);
-  return draw(draws, *shader, nullptr, targets);
+  return draw(draws, *raster::make_lit_shader(lit_model(o.shader), lit), test.get(), targets);
 }
 
 FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::BlockShader& shader,

@@ -1,0 +1,174 @@
+#include <rastrum/io/report.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace rastrum::io {
+namespace {
+
+/// At most this many lines of a kind; a file may have 10⁵ meshes.
+constexpr std::size_t kMostLines = 40;
+
+template <class... Args>
+std::string format(const char* pattern, Args... args) {
+  std::array<char, 400> text;
+  const int n = std::snprintf(text.data(), text.size(), pattern, args...);
+  return {text.data(), std::min(static_cast<std::size_t>(std::max(n, 0)), text.size() - 1)};
+}
+
+/// 1234567 as 1,234,567.
+std::string grouped(std::uint64_t n) {
+  std::string s = std::to_string(n);
+  for (std::size_t i = s.size(); i > 3; i -= 3) s.insert(i - 3, 1, ',');
+  return s;
+}
+
+std::string counted(std::uint64_t n, const char* what) {
+  return grouped(n) + ' ' + what +
+         (n == 1                                                  ? ""
+          : what[std::char_traits<char>::length(what) - 1] == 'h' ? "es"
+                                                                  : "s");
+}
+
+std::string named(const std::string& name) {
+  return name.empty() ? "(no name)" : name.substr(0, 60);
+}
+
+struct Faults {
+  std::uint64_t not_finite = 0, no_area = 0;
+};
+
+Faults faults(const Mesh& mesh) {
+  Faults f;
+  const MeshView v = mesh.view();
+  for (std::size_t t = 0; t < v.triangle_count(); ++t) {
+    Vec3 p[3];
+    for (std::size_t c = 0; c < 3; ++c)
+      p[c] = v.positions[v.indices.empty() ? 3 * t + c : v.indices[3 * t + c]];
+    if (!is_finite(p[0]) || !is_finite(p[1]) || !is_finite(p[2])) {
+      ++f.not_finite;
+      continue;
+    }
+    // In float64, where neither the differences nor the products of usual meshes vanish.
+    const auto sub = [](Vec3 a, Vec3 b) {
+      return std::array<double, 3>{double{a.x} - b.x, double{a.y} - b.y, double{a.z} - b.z};
+    };
+    const auto a = sub(p[1], p[0]), b = sub(p[2], p[0]);
+    if (a[1] * b[2] == a[2] * b[1] && a[2] * b[0] == a[0] * b[2] && a[0] * b[1] == a[1] * b[0])
+      ++f.no_area;
+  }
+  return f;
+}
+
+void describe_meshes(const Scene& scene, std::string& text) {
+  std::vector<std::uint64_t> uses(scene.meshes.size());
+  for (const Instance& i : scene.instances) ++uses[i.mesh];
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    if (i == kMostLines) {
+      text += "  … and " + counted(scene.meshes.size() - i, "mesh") + " more\n";
+      break;
+    }
+    const Mesh& m = scene.meshes[i];
+    text += "  mesh " + std::to_string(i) + " " + named(m.name) + ": " +
+            counted(m.triangle_count(), "triangle") + ", " + grouped(m.positions.size()) +
+            (m.positions.size() == 1 ? " vertex" : " vertices");
+    if (uses[i] != 1) text += ", " + counted(uses[i], "instance");
+    if (!m.normals.empty()) text += ", normals";
+    if (!m.texcoords.empty()) text += ", texture coordinates";
+    if (!m.colors.empty()) text += ", colours";
+    text += '\n';
+  }
+}
+
+void describe_materials(const Scene& scene, std::string& text) {
+  static constexpr const char* kModes[] = {"opaque", "mask", "blend"};
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    if (i == kMostLines) {
+      text += "  … and " + counted(scene.materials.size() - i, "material") + " more\n";
+      break;
+    }
+    const Material& m = scene.materials[i];
+    text += "  material " + std::to_string(i) + " " + named(m.name) + ": " +
+            format("base colour (%.3g, %.3g, %.3g, %.3g), metallic %.3g, roughness %.3g, %s",
+                   static_cast<double>(m.base_color.x), static_cast<double>(m.base_color.y),
+                   static_cast<double>(m.base_color.z), static_cast<double>(m.base_color.w),
+                   static_cast<double>(m.metallic), static_cast<double>(m.roughness),
+                   kModes[static_cast<std::size_t>(m.alpha_mode)]);
+    if (m.unlit) text += ", unlit";
+    if (m.double_sided) text += ", double-sided";
+    if (m.base_color_texture != kNoTexture)
+      text += ", base colour from texture " + std::to_string(m.base_color_texture);
+    text += '\n';
+  }
+  for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+    if (i == kMostLines) {
+      text += "  … and " + counted(scene.textures.size() - i, "texture") + " more\n";
+      break;
+    }
+    const Texture& t = scene.textures[i];
+    text += "  texture " + std::to_string(i) + " " + named(t.name) + ": " +
+            std::to_string(t.image.width()) + "x" + std::to_string(t.image.height()) + '\n';
+  }
+}
+
+void describe_cameras(const Scene& scene, std::string& text) {
+  for (std::size_t i = 0; i < std::min(scene.cameras.size(), kMostLines); ++i) {
+    const Camera& c = scene.cameras[i];
+    text += "  camera " + std::to_string(i) + ": eye " +
+            format("(%g, %g, %g), target (%g, %g, %g), ", static_cast<double>(c.eye.x),
+                   static_cast<double>(c.eye.y), static_cast<double>(c.eye.z),
+                   static_cast<double>(c.target.x), static_cast<double>(c.target.y),
+                   static_cast<double>(c.target.z)) +
+            (c.orthographic
+                 ? format("orthographic, height %g", static_cast<double>(c.orthographic_height))
+                 : format("field of view %g°",
+                          static_cast<double>(c.fov_rad) * 180 / std::numbers::pi)) +
+            '\n';
+  }
+}
+
+}  // namespace
+
+std::string describe(const Scene& scene) {
+  std::vector<Faults> by_mesh;
+  for (const Mesh& m : scene.meshes) by_mesh.push_back(faults(m));
+  Faults all;
+  for (const Instance& i : scene.instances) {
+    all.not_finite += by_mesh[i.mesh].not_finite;
+    all.no_area += by_mesh[i.mesh].no_area;
+  }
+  std::string text = counted(scene.triangle_count(), "triangle") + " in " +
+                     counted(scene.instances.size(), "instance") + " of " +
+                     counted(scene.meshes.size(), "mesh") + ", " +
+                     counted(scene.materials.size(), "material") + ", " +
+                     counted(scene.textures.size(), "texture") + ", " +
+                     counted(scene.cameras.size(), "camera") + '\n';
+  const SceneBinding binding(scene);
+  const Bounds b = bounds(binding.view());
+  if (b.vertices_in_use == 0)
+    text += "  bounds: none\n";
+  else
+    text += "  bounds: " +
+            format("(%g, %g, %g) to (%g, %g, %g), ", static_cast<double>(b.min.x),
+                   static_cast<double>(b.min.y), static_cast<double>(b.min.z),
+                   static_cast<double>(b.max.x), static_cast<double>(b.max.y),
+                   static_cast<double>(b.max.z)) +
+            grouped(b.vertices_in_use) + " vertices in use\n";
+  if (all.not_finite != 0)
+    text +=
+        "  dropped: " + counted(all.not_finite, "triangle") + " with a vertex that is not finite\n";
+  if (all.no_area != 0) text += "  without area: " + counted(all.no_area, "triangle") + '\n';
+  describe_meshes(scene, text);
+  describe_materials(scene, text);
+  describe_cameras(scene, text);
+  for (const std::string& w : scene.warnings) text += "  warning: " + w + '\n';
+  return text;
+}
+
+}  // namespace rastrum::io

@@ -1,0 +1,132 @@
+// What a wrong command line gets: status 2 and a message that names the option.
+#include <utility>
+#include <vector>
+
+#include "arguments.hpp"
+#include "program.hpp"
+
+namespace rastrum::test {
+namespace {
+
+using WrongArguments = Program;
+
+TEST_F(WrongArguments, NameTheOptionAndLoadNothing) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> wrong = {
+      {"--size", {"0x10", "10x0", "-1x5", "10", "10x", "x10", "32769x1", "1x99999", "1e2x5", ""}},
+      {"--eye", {"1,2", "1,2,3,4", "a,b,c", "1,,3", "nan,0,0", "1, 2,3"}},
+      {"--target", {"1", "0,0,inf"}},
+      {"--up", {"0 1 0"}},
+      {"--fov", {"0", "180", "-10", "wide", "nan"}},
+      {"--near", {"0", "-1", "near"}},
+      {"--far", {"-inf", "nan", "far"}},
+      {"--orthographic", {"0", "-2", "tall"}},
+      {"--camera", {"-1", "one", "99999999999"}},
+      {"--rasterizer", {"fast", ""}},
+      {"--device", {"gpu", "Threads"}},
+      {"--threads", {"0", "-1", "2.5", "many"}},
+      {"--isa", {"mmx"}},
+      {"--shader", {"toon"}},
+      {"--normals", {"smooth"}},
+      {"--cull", {"both"}},
+      {"--background", {"red", "#12345", "#1234567", "#12345g", "112233", "#+1+2+3"}},
+      {"--frames", {"0", "-3", "x"}},
+      {"--depth", {"d.png", "d", "d.npy.gz"}},
+      {"--ids", {"i.exr"}},
+      {"--heatmap", {"h.npy"}},
+      {"--stats", {"s.txt", "s"}},
+      {"--trace", {"t"}},
+      {"-o", {"picture", "p.jpg", ".png", ""}},
+  };
+  for (const auto& [option, values] : wrong)
+    for (const std::string& value : values) {
+      std::vector<std::string> args{"render", "no-such-file.obj", option, value};
+      if (option != "-o") args.insert(args.end(), {"-o", "p.png"});
+      const Run r = run(args);
+      EXPECT_EQ(r.status, 2) << option << " '" << value << "'\n" << r.err;
+      EXPECT_EQ(r.err.find("rastrum: error: " + option + ":"), 0U) << r.err;
+      EXPECT_EQ(r.err.find("no-such-file"), std::string::npos) << "it was read first: " << r.err;
+    }
+  EXPECT_TRUE(files().empty());
+}
+
+TEST_F(WrongArguments, ThatContradictEachOther) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> wrong = {
+      {"--fit", {"--fit", "--eye", "1,2,3"}},
+      {"--fit", {"--fit", "--camera", "0"}},
+      {"--far", {"--near", "2", "--far", "1"}},
+      {"--far", {"--orthographic", "2", "--far", "inf"}},
+      {"--orthographic", {"--camera", "0", "--orthographic", "2"}},
+      {"--depth", {"--depth", "same.npy", "--ids", "./same.npy"}},
+      {"--foo", {"--foo"}},
+      {"--size", {"--size", "8x8", "--size", "9x9"}},
+      {"--size", {"--size"}},
+  };
+  for (const auto& [option, extra] : wrong) {
+    std::vector<std::string> args{"render", "no-such-file.obj", "-o", "p.png"};
+    args.insert(args.end(), extra.begin(), extra.end());
+    const Run r = run(args);
+    EXPECT_EQ(r.status, 2) << option << "\n" << r.err;
+    EXPECT_EQ(r.err.find("rastrum: error: "), 0U);
+    const bool named = r.err.find(option) != std::string::npos ||
+                       (option == "--depth" && r.err.find("same.npy") != std::string::npos);
+    EXPECT_TRUE(named) << r.err;
+  }
+}
+
+TEST_F(WrongArguments, ThatTheSceneShows) {
+  const auto fails = [&](std::vector<std::string> args, const std::string& says) {
+    args.insert(args.begin(), "render");
+    args.insert(args.end(), {"-o", "p.png", "--size", "16x16"});
+    const Run r = run(args);
+    EXPECT_EQ(r.status, 2) << r.err;
+    EXPECT_NE(r.err.find(says), std::string::npos) << r.err;
+  };
+  fails({"builtin:sphere", "--camera", "0"}, "--camera: the inputs have no camera");
+  fails({"builtin:sphere", "--eye", "0,0,0"}, "--eye: eye and target must differ");
+  fails({"builtin:sphere", "--eye", "0,5,0", "--target", "0,0,0"}, "--up: is needed");
+  fails({"builtin:sphere", "--up", "0,0,3"}, "--up: must not be");
+  fails({"builtin:sphere", "--far", "0.001"}, "--far: the near plane");
+  fails({"builtin:cube"}, "builtin:cube: no shape 'cube'; known are teapot");
+  fails({"builtin:sphere?rings=x"}, "builtin:sphere?rings=x: ");
+  fails({"builtin:sphere?scale=0"}, "scale must not be 0");
+  fails({"builtin:sphere?x=left"}, ": x: expected a number, got 'left'");
+  EXPECT_TRUE(files().empty());
+}
+
+TEST_F(WrongArguments, NothingToDo) {
+  EXPECT_EQ(run({}).status, 2);
+  EXPECT_EQ(run({"paint"}).status, 2);
+  EXPECT_EQ(run({"render", "-o", "p.png"}).status, 2);
+  const Run no_output = run({"render", "builtin:sphere"});
+  EXPECT_EQ(no_output.status, 2);
+  EXPECT_NE(no_output.err.find("-o: say where the picture goes"), std::string::npos);
+}
+
+TEST_F(WrongArguments, AreToldFromFilesThatCannotBeRead) {
+  const Run r = run({"render", "no-such-file.obj", "-o", "p.png"});
+  EXPECT_EQ(r.status, 1);
+  EXPECT_EQ(r.err.find("rastrum: error: no-such-file.obj"), 0U) << r.err;
+}
+
+TEST_F(WrongArguments, HelpAndVersionSucceed) {
+  EXPECT_EQ(run({"--version"}).out, "rastrum " RASTRUM_VERSION "\n");
+  for (const std::string command : {"render", "info", "make"}) {
+    const Run r = run({command, "--help"});
+    EXPECT_EQ(r.status, 0);
+    EXPECT_NE(r.out.find("Examples:\n  rastrum " + command), std::string::npos) << r.out;
+  }
+  EXPECT_NE(run({"--help"}).out.find("Examples:"), std::string::npos);
+  EXPECT_NE(run({"make", "--help"}).out.find("torus_knot?p=2"), std::string::npos);
+}
+
+TEST(ParseColor, DigitsToDisplayValues) {
+  const Vec4 c = cli::parse_color("--background", "#0033FF80");
+  EXPECT_EQ(c.x, 0.0F);
+  EXPECT_EQ(c.y, 0.2F);
+  EXPECT_EQ(c.z, 1.0F);
+  EXPECT_EQ(c.w, 128 / 255.0F);
+  EXPECT_EQ(cli::parse_color("--background", "#ffffff").w, 1.0F);
+}
+
+}  // namespace
+}  // namespace rastrum::test

@@ -1,0 +1,121 @@
+// When writing fails: status 1, a message that names the file, and nothing half written.
+#include <unistd.h>
+
+#include "program.hpp"
+
+namespace rastrum::test {
+namespace {
+
+using Failure = Program;
+using Args = std::vector<std::string>;
+
+/// Every output, each alone beside a small scene.
+const std::vector<std::pair<std::string, Args>>& outputs() {
+  static const std::vector<std::pair<std::string, Args>> table = {
+      {"p.png", {"-o", "p.png", "--shader", "id"}},
+      {"p.exr", {"-o", "p.exr"}},
+      {"p.npy", {"-o", "p.npy"}},
+      {"d.npy", {"--depth", "d.npy"}},
+      {"d.exr", {"--depth", "d.exr"}},
+      {"i.npy", {"--ids", "i.npy"}},
+      {"h.png", {"--heatmap", "h.png"}},
+      {"s.json", {"--stats", "s.json"}},
+      {"t.json", {"--trace", "t.json"}},
+  };
+  return table;
+}
+
+Args render(const Args& output) {
+  Args args{"render", "builtin:soup?count=500", "--size", "200x200"};
+  args.insert(args.end(), output.begin(), output.end());
+  return args;
+}
+
+TEST_F(Failure, DiskFullLeavesNothing) {
+  for (const auto& [file, output] : outputs()) {
+    const Run r = run(render(output), {.file_bytes = 300});
+    EXPECT_EQ(r.status, 1) << file << "\n" << r.err;
+    EXPECT_NE(r.err.find("rastrum: error: "), std::string::npos) << r.err;
+    EXPECT_NE(r.err.find(file), std::string::npos) << r.err;
+    EXPECT_EQ(files(), Args{}) << file;
+  }
+}
+
+TEST_F(Failure, DiskFullLeavesTheOldFile) {
+  for (const auto& [file, output] : outputs()) {
+    write(file, "old");
+    EXPECT_EQ(run(render(output), {.file_bytes = 300}).status, 1) << file;
+    EXPECT_EQ(read(file), "old") << file;
+    EXPECT_EQ(files(), Args{file});
+    std::filesystem::remove(path(file));
+  }
+}
+
+TEST_F(Failure, DeviceFull) {
+  for (const auto& [file, output] : outputs()) {
+    std::filesystem::create_symlink("/dev/full", path(file));
+    const Run r = run(render(output));
+    EXPECT_EQ(r.status, 1) << file << "\n" << r.err;
+    EXPECT_NE(r.err.find(file), std::string::npos) << r.err;
+    EXPECT_EQ(files(), Args{file});
+    std::filesystem::remove(path(file));
+  }
+}
+
+TEST_F(Failure, StandardOutputFull) {
+  const Run r =
+      run({"render", "builtin:sphere", "--size", "8x8", "--stats", "-"}, {.stdout_full = true});
+  EXPECT_EQ(r.status, 1);
+  EXPECT_NE(r.err.find("standard output"), std::string::npos) << r.err;
+}
+
+TEST_F(Failure, DirectoriesAreCheckedBeforeAnythingIsLoaded) {
+  write("plain", "");
+  std::filesystem::create_directory(path("folder.png"));
+  for (const std::string file : {"missing/p.png", "plain/p.png", "folder.png"}) {
+    const Run r = run({"render", "no-such-file.obj", "-o", file});
+    EXPECT_EQ(r.status, 1) << file;
+    EXPECT_EQ(r.err.find("rastrum: error: -o: " + file + " cannot be written"), 0U) << r.err;
+  }
+  for (const std::string option : {"--depth", "--ids"})
+    EXPECT_EQ(run({"render", "no-such-file.obj", option, "missing/x.npy"})
+                  .err.find("rastrum: error: " + option),
+              0U);
+  for (const std::string option : {"--stats", "--trace"})
+    EXPECT_EQ(run({"render", "no-such-file.obj", option, "missing/x.json"})
+                  .err.find("rastrum: error: " + option),
+              0U);
+  EXPECT_EQ(run({"render", "no-such-file.obj", "--heatmap", "missing/x.png"})
+                .err.find("rastrum: error: --heatmap"),
+            0U);
+  EXPECT_EQ(run({"make", "sphere", "-o", "missing/x.ply"}).status, 1);
+  EXPECT_EQ(files(), (Args{"folder.png", "plain"}));
+}
+
+TEST_F(Failure, ADirectoryThatIsNotWritable) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  std::filesystem::create_directory(path("locked"));
+  std::filesystem::permissions(
+      path("locked"), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  const Run r = run({"render", "no-such-file.obj", "-o", "locked/p.png"});
+  EXPECT_EQ(r.status, 1);
+  EXPECT_NE(r.err.find("locked"), std::string::npos);
+}
+
+TEST_F(Failure, MakeLeavesNothing) {
+  const Run r = run({"make", "sphere", "-o", "s.ply"}, {.file_bytes = 300});
+  EXPECT_EQ(r.status, 1);
+  EXPECT_NE(r.err.find("s.ply"), std::string::npos);
+  EXPECT_EQ(files(), Args{});
+}
+
+TEST_F(Failure, OfOneInputStopsTheRender) {
+  write("bad.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
+  const Run r = run({"render", "builtin:sphere", "bad.ply", "-o", "p.png"});
+  EXPECT_EQ(r.status, 1);
+  EXPECT_NE(r.err.find("bad.ply"), std::string::npos);
+  EXPECT_EQ(files(), Args{"bad.ply"});
+}
+
+}  // namespace
+}  // namespace rastrum::test

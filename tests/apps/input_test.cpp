@@ -1,0 +1,148 @@
+// INPUT…: several at once, builtins and where they stand, materials, cameras, what readers say.
+#include <algorithm>
+#include <set>
+
+#include <rastrum/scene/shapes/shapes.hpp>
+
+#include "inputs.hpp"
+#include "program.hpp"
+
+namespace rastrum::test {
+namespace {
+
+class Inputs : public Program {
+ protected:
+  /// Which ids are seen left and right of the middle of an 80 × 40 picture.
+  struct Halves {
+    std::set<std::int64_t> left, right;
+  };
+  [[nodiscard]] Halves ids_of(const std::vector<std::string>& inputs) const {
+    std::vector<std::string> args{"render"};
+    args.insert(args.end(), inputs.begin(), inputs.end());
+    args.insert(args.end(), {"--ids", "i.npy", "--size", "80x40"});
+    must(args);
+    const std::vector<std::int64_t> ids = npy("i.npy").values<std::int64_t>();
+    Halves halves;
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      if (ids[i] >= 0) (i % 80 < 40 ? halves.left : halves.right).insert(ids[i]);
+    return halves;
+  }
+};
+
+TEST_F(Inputs, IdsCountThroughThemInCommandOrder) {
+  write("a.obj", "v -2 0 0\nv -1 0 0\nv -1 1 0\nf 1 2 3\n");
+  write("b.obj", "v 1 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nf 1 2 3 4\n");
+  using Ids = std::set<std::int64_t>;
+  const Halves ab = ids_of({"a.obj", "b.obj"});
+  EXPECT_EQ(ab.left, (Ids{0}));
+  EXPECT_EQ(ab.right, (Ids{1, 2}));
+  const Halves ba = ids_of({"b.obj", "a.obj"});
+  EXPECT_EQ(ba.left, (Ids{2}));
+  EXPECT_EQ(ba.right, (Ids{0, 1}));
+  const Halves aba = ids_of({"a.obj", "b.obj", "a.obj"});
+  EXPECT_EQ(aba.left, (Ids{0})) << "the first submitted wins equal depths";
+}
+
+TEST_F(Inputs, BuiltinsStandWhereTheyArePlaced) {
+  Scene scene = scene_of(shapes::boxes(1));
+  scene.append(scene_of(shapes::sphere(8, 12)));
+  Mat4d& m = scene.instances[1].object_to_world;
+  m.m[0][0] = m.m[1][1] = m.m[2][2] = 0.75;
+  m.m[0][3] = 2.5;
+  m.m[1][3] = -1;
+  m.m[2][3] = 0.125;
+  RenderOptions options;
+  options.width = 90;
+  options.height = 60;
+  const Drawn expected = draw(scene, fit(scene), options);
+  for (const char* sphere : {"builtin:sphere?rings=8,segments=12,x=2.5,y=-1,z=0.125,scale=0.75",
+                             "builtin:sphere?scale=0.75&x=2.5&rings=8&y=-1&segments=12&z=0.125"}) {
+    must({"render", "builtin:boxes?count=1", sphere, "-o", "p.png", "--ids", "i.npy", "--size",
+          "90x60"});
+    EXPECT_TRUE(same_pixels(png("p.png"), expected.color8)) << sphere;
+    const auto ids = npy("i.npy").values<std::int64_t>();
+    EXPECT_TRUE(std::ranges::equal(ids, expected.ids.pixels())) << sphere;
+  }
+}
+
+TEST_F(Inputs, MaterialIsTheShaderWhereAFileHasMaterials) {
+  write("m.mtl", "newmtl red\nKd 0.8 0.1 0.1\n");
+  write("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
+  must({"render", "m.obj", "-o", "default.png", "--size", "32x32"});
+  must({"render", "m.obj", "-o", "material.png", "--size", "32x32", "--shader", "material"});
+  must({"render", "m.obj", "-o", "phong.png", "--size", "32x32", "--shader", "phong"});
+  EXPECT_TRUE(same_pixels(png("default.png"), png("material.png")));
+  EXPECT_FALSE(same_pixels(png("default.png"), png("phong.png")));
+}
+
+TEST_F(Inputs, CameraOfAFileIsUsedOnlyWhenAskedFor) {
+  // One triangle; two cameras, the second (at z = 5, 40° high) behind a node's translation.
+  write("c.gltf", R"({"asset":{"version":"2.0"},"scene":0,
+    "scenes":[{"nodes":[0,1,2]}],
+    "nodes":[{"mesh":0},{"camera":0,"translation":[0,0,3]},{"camera":1,"translation":[0.5,0,5]}],
+    "cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1,"aspectRatio":1}},
+               {"type":"perspective","perspective":{"yfov":0.6981317,"znear":0.25,"zfar":50,
+                "aspectRatio":1}}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",
+                  "min":[0,0,0],"max":[1,1,0]}],
+    "bufferViews":[{"buffer":0,"byteLength":36}],
+    "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,)"
+                  "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"
+                  R"("}]})");
+  Camera camera;
+  camera.eye = {0.5F, 0, 5};
+  camera.target = {0.5F, 0, 4};
+  camera.fov_rad = 0.6981317F;
+  camera.near_plane = 0.25F;
+  camera.far_plane = 50;
+  Scene scene;
+  scene.meshes.emplace_back().positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  scene.instances.emplace_back();
+  RenderOptions options;
+  options.width = options.height = 48;
+  const auto render = [&](const std::vector<std::string>& extra) {
+    std::vector<std::string> args{"render", "c.gltf", "--depth", "d.npy", "--size", "48x48"};
+    args.insert(args.end(), extra.begin(), extra.end());
+    must(args);
+    return npy("d.npy").values<float>();
+  };
+  EXPECT_TRUE(
+      std::ranges::equal(render({"--camera", "1"}), draw(scene, camera, options).depth.pixels()));
+  EXPECT_TRUE(std::ranges::equal(render({}), draw(scene, fit(scene), options).depth.pixels()));
+  camera.near_plane = 1;
+  EXPECT_TRUE(std::ranges::equal(render({"--camera", "1", "--near", "1"}),
+                                 draw(scene, camera, options).depth.pixels()));
+  const Run r = run({"render", "c.gltf", "-o", "p.png", "--camera", "2"});
+  EXPECT_EQ(r.status, 2);
+  EXPECT_NE(r.err.find("--camera: the inputs have cameras 0 to 1"), std::string::npos) << r.err;
+}
+
+TEST_F(Inputs, WarningsOfReadersAreShown) {
+  write("w.obj", "mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
+  const std::string said = must({"render", "w.obj", "-o", "p.png", "--size", "8x8"});
+  EXPECT_EQ(said.find("warning: "), 0U) << said;
+  EXPECT_NE(said.find("gone.mtl"), std::string::npos) << said;
+}
+
+TEST_F(Inputs, AnEmptySceneIsDrawnAndSaid) {
+  write("e.obj", "v 0 0 0\n");
+  const std::string said =
+      must({"render", "e.obj", "-o", "p.png", "--size", "8x8", "--background", "#010203"});
+  EXPECT_NE(said.find("warning: there are no triangles to draw"), std::string::npos) << said;
+  EXPECT_EQ(png("p.png")(3, 3), (Rgba8{1, 2, 3, 255}));
+}
+
+TEST_F(Inputs, InfoTellsWhatAFileHolds) {
+  write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\nv nan 0 0\nf 1 2 3\nf 1 2 4\n");
+  const Run r = run({"info", "t.obj", "builtin:sphere?rings=4,segments=6"});
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_EQ(r.out.find("t.obj\n"), 0U) << r.out;
+  EXPECT_NE(r.out.find("2 triangles"), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("builtin:sphere?rings=4,segments=6\n"), std::string::npos);
+  EXPECT_NE(r.out.find("36 triangles"), std::string::npos) << r.out;  // 2 (4 − 1) 6
+  EXPECT_EQ(run({"info", "gone.obj"}).status, 1);
+}
+
+}  // namespace
+}  // namespace rastrum::test

@@ -1,0 +1,117 @@
+// `rastrum make`: what is written is the shape, in order, where it was placed.
+#include <rastrum/io/io.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+
+#include "flatten.hpp"
+#include "program.hpp"
+
+namespace rastrum::test {
+namespace {
+
+using Make = Program;
+
+bool same(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  return a == b;
+}
+
+TEST_F(Make, WritesTheShape) {
+  must({"make", "torus_knot?segments=20,sides=5", "-o", "k.ply"});
+  const Scene read = io::read_scene(path("k.ply"));
+  const Mesh expected = shapes::torus_knot(2, 3, 20, 5);
+  ASSERT_EQ(read.meshes.size(), 1U);
+  EXPECT_TRUE(same(read.meshes[0].positions, expected.positions));
+  EXPECT_EQ(read.meshes[0].indices, expected.indices);
+  EXPECT_TRUE(same(read.meshes[0].normals.values, expected.normals.values));
+}
+
+TEST_F(Make, EveryShapeOfTheCatalogueIsListedInHelp) {
+  const std::string help = run({"make", "--help"}).out;
+  for (const shapes::ShapeInfo& shape : shapes::catalogue()) {
+    EXPECT_NE(help.find("\n  " + shape.name), std::string::npos) << shape.name;
+    EXPECT_NE(help.find(shape.description), std::string::npos) << shape.name;
+  }
+}
+
+TEST_F(Make, SubdividesAFile) {
+  write("q.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  must({"make", "q.obj", "--subdivide", "2", "-o", "q.ply"});
+  const Scene read = io::read_scene(path("q.ply"));
+  EXPECT_EQ(read.meshes[0].triangle_count(), 32U);
+  EXPECT_EQ(read.meshes[0].positions.size(), 25U) << "shared edges share their vertices";
+}
+
+TEST_F(Make, PlacesTheShape) {
+  must({"make", "boxes?count=1,x=5,scale=2", "-o", "b.ply"});
+  const Bounds placed = bounds(SceneBinding(io::read_scene(path("b.ply"))).view());
+  const Scene plain = scene_of(shapes::boxes(1));
+  const Bounds b = bounds(SceneBinding(plain).view());
+  EXPECT_EQ(placed.min, (b.min * 2 + Vec3{5, 0, 0}));
+  EXPECT_EQ(placed.max, (b.max * 2 + Vec3{5, 0, 0}));
+}
+
+TEST_F(Make, RefusesWhatItCannotDo) {
+  EXPECT_EQ(run({"make", "cube", "-o", "c.ply"}).status, 2);
+  EXPECT_EQ(run({"make", "sphere"}).status, 2);
+  EXPECT_EQ(run({"make", "sphere", "-o", "s.obj"}).status, 2);
+  EXPECT_EQ(run({"make", "sphere", "--subdivide", "-1", "-o", "s.ply"}).status, 2);
+  EXPECT_EQ(run({"make", "gone.obj", "-o", "s.ply"}).status, 1);
+  EXPECT_TRUE(files().empty());
+}
+
+TEST(Flatten, InstancesInOrderWithTheirMatrices) {
+  Scene scene = scene_of(shapes::sphere(3, 4));
+  Mat4d m = Mat4d::identity();
+  m.m[0][0] = 2;  // a stretch: normals lean against it
+  m.m[0][3] = 10;
+  scene.instances.push_back({0, m});
+  const Mesh& sphere = scene.meshes[0];
+  const std::size_t vertices = sphere.positions.size();
+  const cli::Flattened flat = cli::flatten(scene);
+  ASSERT_EQ(flat.mesh.positions.size(), 2 * vertices);
+  ASSERT_EQ(flat.mesh.triangle_count(), 2 * sphere.triangle_count());
+  EXPECT_TRUE(flat.warnings.empty());
+  for (std::size_t i = 0; i < sphere.indices.size(); ++i) {
+    EXPECT_EQ(flat.mesh.indices[i], sphere.indices[i]);
+    EXPECT_EQ(flat.mesh.indices[sphere.indices.size() + i], sphere.indices[i] + vertices);
+  }
+  for (std::size_t i = 0; i < vertices; ++i) {
+    const Vec3 p = sphere.positions[i], n = sphere.normals.values[i];
+    EXPECT_EQ(flat.mesh.positions[i], p);
+    EXPECT_EQ(flat.mesh.normals.values[i], n);
+    EXPECT_EQ(flat.mesh.positions[vertices + i], (Vec3{2 * p.x + 10, p.y, p.z}));
+    const Vec3 leaning = normalize(Vec3{n.x / 2, n.y, n.z});
+    EXPECT_NEAR(length(flat.mesh.normals.values[vertices + i] - leaning), 0, 1e-6);
+  }
+}
+
+TEST(Flatten, SaysWhatPlyCannotHold) {
+  Scene scene = scene_of(shapes::sphere(3, 4));
+  scene.meshes[0].texcoords = {};
+  Scene other = scene_of(shapes::boxes(1));
+  other.meshes[0].normals = {};
+  other.meshes[0].texcoords = {};
+  scene.append(other);
+  scene.materials.emplace_back();
+  const cli::Flattened flat = cli::flatten(scene);
+  EXPECT_TRUE(flat.mesh.normals.empty());
+  ASSERT_EQ(flat.warnings.size(), 2U);
+  EXPECT_EQ(flat.warnings[0].find("the normals are left out"), 0U);
+  EXPECT_EQ(flat.warnings[1].find("the materials are left out"), 0U);
+}
+
+TEST(Flatten, AttributesNumberedApartAreLeftOutAndSaid) {
+  Scene scene;
+  Mesh& mesh = scene.meshes.emplace_back();
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.indices = {0, 1, 2};
+  mesh.normals.values = {{0, 0, 1}};
+  mesh.normals.indices = {0, 0, 0};
+  scene.instances.emplace_back();
+  const cli::Flattened flat = cli::flatten(scene);
+  EXPECT_TRUE(flat.mesh.normals.empty());
+  ASSERT_EQ(flat.warnings.size(), 1U);
+  EXPECT_EQ(flat.warnings[0].find("the normals are left out"), 0U);
+}
+
+}  // namespace
+}  // namespace rastrum::test

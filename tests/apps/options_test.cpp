@@ -1,0 +1,209 @@
+// Every option of `rastrum render` once, by its effect: the picture is the one that the library
+// draws with the same choice.
+#include <cmath>
+#include <limits>
+
+#include <rastrum/scene/shapes/shapes.hpp>
+
+#include "program.hpp"
+
+namespace rastrum::test {
+namespace {
+
+constexpr int kWidth = 72, kHeight = 56;
+
+class Options : public Program {
+ protected:
+  Options() {
+    render_.width = kWidth;
+    render_.height = kHeight;
+  }
+  /// The program's picture of the boxes with `extra` options, against the library's.
+  void expect(std::vector<std::string> extra, const Camera& camera,
+              const Scene& scene = boxes()) const {
+    const Image<Rgba8> expected = draw(scene, camera, render_).color8;
+    std::string line;
+    for (const std::string& e : extra) line += " " + e;
+    extra.insert(extra.begin(), {"render", "builtin:boxes?count=2", "-o", "p.png", "--size",
+                                 std::to_string(kWidth) + "x" + std::to_string(kHeight)});
+    must(extra);
+    EXPECT_TRUE(same_pixels(png("p.png"), expected)) << line;
+  }
+  static Scene boxes() { return scene_of(shapes::boxes(2)); }
+
+  RenderOptions render_;
+};
+
+TEST_F(Options, DefaultsAreTheFitCameraAndPhong) {
+  expect({}, fit(boxes()));
+  expect({"--fit", "--shader", "phong", "--device", "threads", "--rasterizer", "auto", "--cull",
+          "none", "--background", "#00000000", "--normals", "file"},
+         fit(boxes()));
+}
+
+TEST_F(Options, DefaultSize) {
+  must({"render", "builtin:boxes?count=1", "-o", "p.png"});
+  EXPECT_EQ(png("p.png").width(), 1280);
+  EXPECT_EQ(png("p.png").height(), 720);
+}
+
+TEST_F(Options, CameraOfOnesOwn) {
+  Camera camera;
+  camera.eye = {-3, 2.5F, 4};
+  camera.target = {0.25F, 0.5F, -0.125F};
+  camera.up = {0.5F, 1, 0};
+  camera.fov_rad = static_cast<float>(35 * std::acos(-1.0) / 180);
+  camera.near_plane = 0.75F;
+  camera.far_plane = 40;
+  const std::vector<std::string> given{"--eye",  "-3,2.5,4", "--target", "0.25,0.5,-0.125",
+                                       "--up",   "0.5,1,0",  "--fov",    "35",
+                                       "--near", "0.75",     "--far",    "40"};
+  render_.shader = Shader::depth;  // also shows the planes
+  auto with_depth = given;
+  with_depth.insert(with_depth.end(), {"--shader", "depth"});
+  expect(with_depth, camera);
+
+  camera.far_plane = std::numeric_limits<float>::infinity();
+  with_depth[11] = "inf";
+  expect(with_depth, camera);
+
+  camera.orthographic = true;
+  camera.orthographic_height = 3.5F;
+  camera.far_plane = 40;
+  camera.near_plane = -1;
+  with_depth[11] = "40";
+  with_depth[9] = "-1";
+  with_depth.insert(with_depth.end(), {"--orthographic", "3.5"});
+  expect(with_depth, camera);
+}
+
+TEST_F(Options, OrthographicFit) {
+  const Scene scene = boxes();
+  expect({"--orthographic", "fit"}, fit_camera(SceneBinding(scene).view(), 1.04719755F, true));
+}
+
+TEST_F(Options, Shaders) {
+  for (const std::string_view shader : shader_names()) {
+    render_.shader = shader_from_name(shader);
+    expect({"--shader", std::string(shader)}, fit(boxes()));
+  }
+}
+
+TEST_F(Options, Background) {
+  render_.background = {0, 0.2F, 1, 128 / 255.0F};
+  expect({"--background", "#0033ff80"}, fit(boxes()));
+  EXPECT_EQ(png("p.png")(0, 0), (Rgba8{0, 51, 255, 128}));
+}
+
+TEST_F(Options, Cull) {
+  const std::vector<std::string> eye{"--eye", "3,2,5", "--stats", "s.json", "--cull"};
+  std::vector<std::uint64_t> drawn;
+  for (const std::string cull : {"none", "back", "front"}) {
+    std::vector<std::string> args{"render", "builtin:boxes?count=1", "-o", cull + ".png", "--size",
+                                  "64x64"};
+    args.insert(args.end(), eye.begin(), eye.end());
+    args.push_back(cull);
+    must(args);
+    drawn.push_back(json("s.json")["triangles"]["drawn"].get<std::uint64_t>());
+  }
+  // Three faces of a box are towards the eye.
+  EXPECT_EQ(drawn, (std::vector<std::uint64_t>{12, 6, 6}));
+  EXPECT_TRUE(same_pixels(png("none.png"), png("back.png")));
+  EXPECT_FALSE(same_pixels(png("none.png"), png("front.png")));
+}
+
+TEST_F(Options, Normals) {
+  // A coarse sphere whose file normals, vertex normals and face normals are all different.
+  Mesh mesh = shapes::sphere(5, 7);
+  must({"make", "sphere?rings=5,segments=7", "-o", "s.ply"});
+  const auto check = [&](const std::string& choice, const Mesh& expected) {
+    must({"render", "s.ply", "-o", "p.png", "--size", "72x56", "--normals", choice});
+    const Scene scene = scene_of(expected);
+    EXPECT_TRUE(same_pixels(png("p.png"), draw(scene, fit(scene), render_).color8)) << choice;
+    return png("p.png");
+  };
+  const Image<Rgba8> file = check("file", mesh);
+  mesh.normals.values = vertex_normals(mesh.positions, mesh.indices);
+  const Image<Rgba8> vertex = check("vertex", mesh);
+  mesh.normals = {};
+  const Image<Rgba8> face = check("face", mesh);
+  EXPECT_FALSE(same_pixels(file, face));
+  EXPECT_FALSE(same_pixels(vertex, face));
+  EXPECT_FALSE(same_pixels(file, vertex));
+}
+
+TEST_F(Options, NormalsWhereTheFileHasNone) {
+  write("t.obj", "v 0 0 0\nv 1 0 0.5\nv 0 1 0.5\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
+  for (const char* choice : {"file", "vertex"})
+    must({"render", "t.obj", "-o", std::string(choice) + ".png", "--size", "40x40", "--normals",
+          choice});
+  must({"render", "t.obj", "-o", "face.png", "--size", "40x40", "--normals", "face"});
+  must({"render", "t.obj", "-o", "default.png", "--size", "40x40"});
+  EXPECT_TRUE(same_pixels(png("file.png"), png("vertex.png")));
+  EXPECT_TRUE(same_pixels(png("default.png"), png("vertex.png")));
+  EXPECT_FALSE(same_pixels(png("face.png"), png("vertex.png")));
+}
+
+TEST_F(Options, MachineChoicesReachTheStatisticsAndLeaveThePictureAlone) {
+  const auto stats = [&](std::vector<std::string> extra) {
+    extra.insert(extra.begin(), {"render", "builtin:boxes?count=2", "--stats", "s.json", "--ids",
+                                 "i.npy", "--size", "72x56"});
+    must(extra);
+    return json("s.json");
+  };
+  const auto plain = stats({});
+  const std::string ids = npy("i.npy").data;
+  EXPECT_EQ(plain["device"], "threads");
+  EXPECT_EQ(plain["isa"], std::string(name(available_isas().back())));
+
+  const auto serial = stats({"--device", "serial"});
+  EXPECT_EQ(serial["device"], "serial");
+  EXPECT_EQ(serial["threads"], 1);
+  EXPECT_EQ(npy("i.npy").data, ids);
+  for (const RasterizerInfo& r : rasterizers()) {
+    const auto s = stats({"--rasterizer", r.name});
+    EXPECT_EQ(s["rasterizer"], r.name);
+    EXPECT_EQ(s["visibility"], r.visibility);
+    EXPECT_EQ(npy("i.npy").data, ids) << r.name;
+  }
+  for (const char* threads : {"1", "3"}) {
+    EXPECT_EQ(stats({"--rasterizer", "tiled", "--threads", threads})["threads"].dump(), threads);
+    EXPECT_EQ(npy("i.npy").data, ids) << threads;
+  }
+  for (const Isa isa : available_isas()) {
+    const std::string isa_name(name(isa));
+    EXPECT_EQ(stats({"--rasterizer", "tiled", "--isa", isa_name})["isa"], isa_name);
+    EXPECT_EQ(npy("i.npy").data, ids) << isa_name;
+  }
+  EXPECT_EQ(stats({"--frames", "3"})["frame_ms"]["frames"], 3);
+}
+
+TEST_F(Options, ADeviceThatIsNotHereSaysSo) {
+  RenderOptions cuda;
+  cuda.device = Device::cuda;
+  try {
+    Renderer renderer(cuda);
+    GTEST_SKIP() << "this build has a CUDA backend";
+  } catch (const Error&) {
+  }
+  const Run r = run({"render", "no-such-file.obj", "-o", "p.png", "--device", "cuda"});
+  EXPECT_EQ(r.status, 1);
+  EXPECT_NE(r.err.find("CUDA"), std::string::npos) << r.err;
+  EXPECT_EQ(r.err.find("no-such-file"), std::string::npos) << "it was read first: " << r.err;
+}
+
+TEST_F(Options, QuietIsQuiet) {
+  write("nan.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 1 1\nf 1 2 3\nf 2 3 4\n");
+  const std::vector<std::string> args{"render", "nan.obj", "-o",        "p.png",
+                                      "--size", "16x16",   "--heatmap", "h.png"};
+  const std::string said = must(args);
+  EXPECT_NE(said.find("warning: 1 of 2 triangles have a NaN"), std::string::npos) << said;
+  EXPECT_NE(said.find("heatmap: "), std::string::npos);
+  EXPECT_NE(said.find("p.png: 16x16, 2 triangles"), std::string::npos);
+  auto quiet = args;
+  quiet.emplace_back("--quiet");
+  EXPECT_EQ(must(quiet), "");
+}
+
+}  // namespace
+}  // namespace rastrum::test

@@ -1,0 +1,95 @@
+// The three formats of one picture agree, and depth and ids are the library's.
+#include <algorithm>
+#include <cmath>
+
+#include <rastrum/scene/shapes/shapes.hpp>
+
+#include "program.hpp"
+
+namespace rastrum::test {
+namespace {
+
+class Output : public Program {
+ protected:
+  void render(const std::vector<std::string>& outputs) const {
+    std::vector<std::string> args{"render", "builtin:teapot?n=4", "--size",
+                                  "96x64",  "--background",       "#3366cc80"};
+    args.insert(args.end(), outputs.begin(), outputs.end());
+    must(args);
+  }
+  static Drawn expected() {
+    RenderOptions options;
+    options.width = 96;
+    options.height = 64;
+    options.background = {0.2F, 0.4F, 0.8F, 128 / 255.0F};
+    const Scene scene = scene_of(shapes::teapot(4));
+    return draw(scene, fit(scene), options);
+  }
+};
+
+TEST_F(Output, PngNpyAndExrAgree) {
+  render({"-o", "p.png"});
+  render({"-o", "p.npy"});
+  const Image<Rgba8> picture = png("p.png");
+  const Npy array = npy("p.npy");
+  EXPECT_NE(array.header.find("'<f4'"), std::string::npos);
+  EXPECT_NE(array.header.find("(64, 96, 4)"), std::string::npos) << array.header;
+  const std::vector<float> rgba = array.values<float>();
+  ASSERT_EQ(rgba.size(), 96U * 64 * 4);
+  for (std::size_t i = 0; i < picture.pixels().size(); ++i) {
+    const Rgba8 c = picture.pixels()[i];
+    const float alpha = rgba[4 * i + 3];
+    EXPECT_EQ(std::nearbyint(alpha * 255), c.a);
+    const std::uint8_t straight[3] = {c.r, c.g, c.b};
+    for (std::size_t k = 0; k < 3; ++k)
+      ASSERT_LE(std::abs(rgba[4 * i + k] / alpha * 255 - static_cast<float>(straight[k])), 0.501F);
+  }
+#ifdef RASTRUM_HAS_OPENEXR
+  render({"-o", "p.exr"});
+  const auto planes = exr("p.exr", {"R", "G", "B", "A"});
+  for (std::size_t i = 0; i < picture.pixels().size(); ++i)
+    for (std::size_t k = 0; k < 4; ++k) ASSERT_EQ(planes[k][i], rgba[4 * i + k]);
+#else
+  GTEST_SKIP() << "built without OpenEXR: .exr is not tested";
+#endif
+}
+
+TEST_F(Output, AreTheLibrarysImages) {
+  const Drawn e = expected();
+  // One pass, and with statistics the timed pass and the one after it, give the same.
+  for (const std::vector<std::string> timing : {std::vector<std::string>{}, {"--frames", "2"}}) {
+    std::vector<std::string> outputs{"-o", "p.npy", "--depth", "d.npy", "--ids", "i.npy"};
+    outputs.insert(outputs.end(), timing.begin(), timing.end());
+    render(outputs);
+    const std::vector<float> rgba = npy("p.npy").values<float>();
+    EXPECT_EQ(std::memcmp(rgba.data(), e.color.pixels().data(), rgba.size() * 4), 0);
+    EXPECT_TRUE(std::ranges::equal(npy("d.npy").values<float>(), e.depth.pixels()));
+    EXPECT_TRUE(std::ranges::equal(npy("i.npy").values<std::int64_t>(), e.ids.pixels()));
+    outputs[1] = "p.png";
+    render(outputs);
+    EXPECT_TRUE(same_pixels(png("p.png"), e.color8));
+  }
+  EXPECT_NE(npy("i.npy").header.find("'<i8'"), std::string::npos);
+  EXPECT_NE(npy("i.npy").header.find("(64, 96)"), std::string::npos);
+  EXPECT_NE(npy("d.npy").header.find("(64, 96)"), std::string::npos);
+  EXPECT_EQ(std::ranges::count(e.ids.pixels(), -1), std::ranges::count(e.depth.pixels(), 0.0F));
+}
+
+TEST_F(Output, DepthAsExr) {
+#ifdef RASTRUM_HAS_OPENEXR
+  render({"--depth", "d.exr"});
+  EXPECT_TRUE(std::ranges::equal(exr("d.exr", {"Z"})[0], expected().depth.pixels()));
+  EXPECT_EQ(files(), std::vector<std::string>{"d.exr"});
+#else
+  GTEST_SKIP() << "built without OpenEXR";
+#endif
+}
+
+TEST_F(Output, ExtensionsInAnyCase) {
+  render({"-o", "P.PNG", "--depth", "D.Npy"});
+  EXPECT_EQ(png("P.PNG").width(), 96);
+  EXPECT_EQ(npy("D.Npy").values<float>().size(), 96U * 64);
+}
+
+}  // namespace
+}  // namespace rastrum::test

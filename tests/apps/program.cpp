@@ -1,0 +1,169 @@
+#include "program.hpp"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <sstream>
+
+#ifdef RASTRUM_HAS_OPENEXR
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#endif
+
+#include <rastrum/io/io.hpp>
+
+namespace rastrum::test {
+namespace fs = std::filesystem;
+namespace {
+
+std::string slurp(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// In the child: becomes the program, or ends with 127.
+[[noreturn]] void become_program(const std::vector<std::string>& args, Limits limits,
+                                 const fs::path& folder, const fs::path& out, const fs::path& err) {
+  std::vector<char*> argv{const_cast<char*>(RASTRUM_PROGRAM)};
+  for (const std::string& a : args) argv.push_back(const_cast<char*>(a.c_str()));
+  argv.push_back(nullptr);
+  if (::chdir(folder.c_str()) != 0) ::_exit(127);
+  const int o = limits.stdout_full ? ::open("/dev/full", O_WRONLY)
+                                   : ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  const int e = ::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  if (o < 0 || e < 0 || ::dup2(o, 1) < 0 || ::dup2(e, 2) < 0) ::_exit(127);
+  if (limits.file_bytes >= 0) {
+    std::signal(SIGXFSZ, SIG_IGN);  // write() then fails instead
+    const auto bytes = static_cast<rlim_t>(limits.file_bytes);
+    const rlimit limit{bytes, bytes};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ::execv(RASTRUM_PROGRAM, argv.data());
+  ::_exit(127);
+}
+
+}  // namespace
+
+void Program::SetUp() {
+  std::string pattern = (fs::temp_directory_path() / "rastrum-apps-XXXXXX").string();
+  ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+  folder_ = pattern;
+}
+
+void Program::TearDown() {
+  fs::remove_all(folder_);
+}
+
+Run Program::run(const std::vector<std::string>& args, Limits limits) const {
+  // Beside the folder, so that the folder holds the program's own files alone.
+  const fs::path out = folder_.string() + ".out", err = folder_.string() + ".err";
+  const pid_t child = ::fork();
+  if (child == 0) become_program(args, limits, folder_, out, err);
+  int status = 0;
+  if (child < 0 || ::waitpid(child, &status, 0) != child) return {};
+  Run r{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), slurp(out), slurp(err)};
+  fs::remove(out);
+  fs::remove(err);
+  return r;
+}
+
+std::string Program::must(const std::vector<std::string>& args) const {
+  const Run r = run(args);
+  std::string line;
+  for (const std::string& a : args) line += " " + a;
+  EXPECT_EQ(r.status, 0) << "rastrum" << line << "\n" << r.err;
+  return r.err;
+}
+
+std::vector<std::string> Program::files() const {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& e : fs::directory_iterator(folder_))
+    names.push_back(e.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+void Program::write(const std::string& name, const std::string& text) const {
+  std::ofstream(path(name), std::ios::binary) << text;
+}
+
+std::string Program::read(const std::string& name) const {
+  return slurp(path(name));
+}
+
+nlohmann::ordered_json Program::json(const std::string& name) const {
+  return nlohmann::ordered_json::parse(read(name));
+}
+
+Image<Rgba8> Program::png(const std::string& name) const {
+  return io::read_image(path(name));
+}
+
+Program::Npy Program::npy(const std::string& name) const {
+  const std::string file = read(name);
+  if (file.substr(0, 8) != std::string("\x93NUMPY\x01\x00", 8)) return {};
+  const std::size_t length =
+      static_cast<unsigned char>(file[8]) + 256U * static_cast<unsigned char>(file[9]);
+  return {file.substr(10, length), file.substr(10 + length)};
+}
+
+std::vector<std::vector<float>> Program::exr(const std::string& name,
+                                             const std::vector<std::string>& channels) const {
+  std::vector<std::vector<float>> planes;
+#ifdef RASTRUM_HAS_OPENEXR
+  Imf::InputFile file(path(name).c_str());
+  const Imath::Box2i window = file.header().dataWindow();
+  const auto width = static_cast<std::size_t>(window.max.x + 1);
+  const auto height = static_cast<std::size_t>(window.max.y + 1);
+  planes.assign(channels.size(), std::vector<float>(width * height));
+  Imf::FrameBuffer frame;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const Imf::Channel* channel = file.header().channels().findChannel(channels[c]);
+    EXPECT_NE(channel, nullptr) << channels[c];
+    if (channel != nullptr) EXPECT_EQ(channel->type, Imf::FLOAT) << channels[c];
+    frame.insert(channels[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(planes[c].data()),
+                                         sizeof(float), sizeof(float) * width));
+  }
+  file.setFrameBuffer(frame);
+  file.readPixels(window.min.y, window.max.y);
+#else
+  (void)name;
+  (void)channels;
+#endif
+  return planes;
+}
+
+Drawn draw(const Scene& scene, const Camera& camera, const RenderOptions& options) {
+  Drawn d{Image<Rgba8>(options.width, options.height),
+          Image<Vec4>(options.width, options.height),
+          Image<float>(options.width, options.height),
+          Image<std::int64_t>(options.width, options.height),
+          {}};
+  const SceneBinding binding(scene);
+  Renderer renderer(options);
+  d.stats = renderer.render(binding.view(), camera,
+                            {d.color8.view(), d.color.view(), d.depth.view(), d.ids.view(), {}});
+  return d;
+}
+
+Scene scene_of(Mesh mesh) {
+  Scene scene;
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.emplace_back();
+  return scene;
+}
+
+Camera fit(const Scene& scene) {
+  return fit_camera(SceneBinding(scene).view(), 1.04719755F, false);
+}
+
+}  // namespace rastrum::test

@@ -1,0 +1,85 @@
+// Runs the built program in a directory of the test's own, and reads back what it wrote.
+#pragma once
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <rastrum/core/image.hpp>
+#include <rastrum/render/render.hpp>
+
+namespace rastrum::test {
+
+struct Run {
+  int status = -1;  ///< 128 + signal where it did not exit
+  std::string out, err;
+};
+
+/// What the system does to the program.
+struct Limits {
+  long file_bytes = -1;  ///< writes beyond it fail, as on a full disk
+  bool stdout_full = false;
+};
+
+class Program : public testing::Test {
+ protected:
+  void SetUp() override;
+  void TearDown() override;
+
+  /// Runs `rastrum args…` with the test's directory as the current one.
+  [[nodiscard]] Run run(const std::vector<std::string>& args, Limits limits = {}) const;
+  /// The same, which must succeed; returns what it said on stderr.
+  std::string must(const std::vector<std::string>& args) const;
+
+  [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+  [[nodiscard]] std::vector<std::string> files() const;  ///< names in the directory, sorted
+  void write(const std::string& name, const std::string& text) const;
+  [[nodiscard]] std::string read(const std::string& name) const;
+  [[nodiscard]] nlohmann::ordered_json json(const std::string& name) const;
+  [[nodiscard]] Image<Rgba8> png(const std::string& name) const;
+
+  struct Npy {
+    std::string header;
+    std::string data;
+    template <class T>
+    [[nodiscard]] std::vector<T> values() const {
+      std::vector<T> v(data.size() / sizeof(T));
+      std::memcpy(v.data(), data.data(), v.size() * sizeof(T));
+      return v;
+    }
+  };
+  [[nodiscard]] Npy npy(const std::string& name) const;
+  /// The channels of an EXR, one plane each in the order named, as float32.
+  [[nodiscard]] std::vector<std::vector<float>> exr(const std::string& name,
+                                                    const std::vector<std::string>& channels) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// What the library draws, for comparison with the program's picture.
+struct Drawn {
+  Image<Rgba8> color8;
+  Image<Vec4> color;
+  Image<float> depth;
+  Image<std::int64_t> ids;
+  FrameStats stats;
+};
+[[nodiscard]] Drawn draw(const Scene& scene, const Camera& camera, const RenderOptions& options);
+
+/// One mesh at the origin.
+[[nodiscard]] Scene scene_of(Mesh mesh);
+[[nodiscard]] Camera fit(const Scene& scene);
+
+inline bool same_pixels(const Image<Rgba8>& a, const Image<Rgba8>& b) {
+  return a.width() == b.width() && a.height() == b.height() &&
+         std::equal(a.pixels().begin(), a.pixels().end(), b.pixels().begin());
+}
+
+}  // namespace rastrum::test

@@ -1,0 +1,321 @@
+// glTF documents that the tests write themselves. What the wild sends is in bad_files_test.cpp.
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/io/io.hpp>
+#include <rastrum/io/report.hpp>
+
+#include "tests/io/files.hpp"
+
+namespace rastrum {
+namespace {
+
+using Indices = std::vector<std::uint32_t>;
+using test::raw;
+
+std::string base64(const std::string& bytes) {
+  static constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string r;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t b = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      b = b << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k)
+      r += k <= bytes.size() - i ? kDigits[b >> (18 - 6 * k) & 63U] : '=';
+  }
+  return r;
+}
+
+std::string vec3(float x, float y, float z) {
+  return raw(x) + raw(y) + raw(z);
+}
+
+/// Four corners of a square, then indices 0 1 2 3 as uint16: 48 + 8 bytes.
+std::string square_bytes() {
+  std::string s = vec3(0, 0, 0) + vec3(1, 0, 0) + vec3(0, 1, 0) + vec3(1, 1, 0);
+  for (std::uint16_t i = 0; i < 4; ++i) s += raw(i);
+  return s;
+}
+
+/// A document over `bytes` with one buffer and a view of all of it; `rest` are more members.
+std::string document(const std::string& bytes, const std::string& rest) {
+  return R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":)" + std::to_string(bytes.size()) +
+         R"(,"uri":"data:application/octet-stream;base64,)" + base64(bytes) + R"("}],)" +
+         R"("bufferViews":[{"buffer":0,"byteLength":)" + std::to_string(bytes.size()) + "}]," +
+         rest + "}";
+}
+
+constexpr const char* kSquareAccessors =
+    R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},)"
+    R"({"bufferView":0,"byteOffset":48,"componentType":5123,"count":4,"type":"SCALAR"}])";
+
+std::string square(const std::string& primitive, const std::string& nodes = R"([{"mesh":0}])") {
+  return document(square_bytes(), std::string(kSquareAccessors) + R"(,"meshes":[{"primitives":[)" +
+                                      primitive + R"(]}],"nodes":)" + nodes);
+}
+
+Scene read(const std::string& text) {
+  const test::TempFolder folder;
+  return io::read_scene(folder.write("a.gltf", text));
+}
+
+std::string error_of(const std::string& text, Errc code = Errc::bad_format) {
+  try {
+    read(text);
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), code) << e.what();
+    return e.what();
+  }
+  return "no error";
+}
+
+TEST(Gltf, ListsStripsAndFans) {
+  const auto indices = [](int mode) {
+    const Scene s = read(
+        square(R"({"attributes":{"POSITION":0},"indices":1,"mode":)" + std::to_string(mode) + "}"));
+    return s.meshes.empty() ? Indices{} : s.meshes[0].indices;
+  };
+  EXPECT_EQ(indices(4), (Indices{0, 1, 2}));
+  EXPECT_EQ(indices(5), (Indices{0, 1, 2, 1, 3, 2}));
+  EXPECT_EQ(indices(6), (Indices{0, 1, 2, 0, 2, 3}));
+  EXPECT_EQ(indices(0), Indices{});
+  EXPECT_EQ(indices(1), Indices{});
+}
+
+TEST(Gltf, WithoutIndicesInOrder) {
+  const Scene s = read(square(R"({"attributes":{"POSITION":0}})"));
+  EXPECT_EQ(s.triangle_count(), 1U);
+  EXPECT_EQ(s.meshes[0].positions.size(), 4U);
+}
+
+TEST(Gltf, NodesAreDepthFirstInDoublePrecision) {
+  const Scene s = read(square(
+      R"({"attributes":{"POSITION":0},"indices":1})",
+      R"([{"children":[2,1],"translation":[1,0,0],"scale":[2,2,2]},)"
+      R"({"mesh":0,"translation":[0,0,0.1]},)"
+      R"({"mesh":0,"rotation":[0,0,0.7071067811865476,0.7071067811865476],"children":[3]},)"
+      R"({"mesh":0,"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 5,6,7,1]}],"scenes":[{"nodes":[0]}])"));
+  ASSERT_EQ(s.meshes.size(), 1U) << "instances share their mesh";
+  ASSERT_EQ(s.instances.size(), 3U);
+  const auto& turned = s.instances[0].object_to_world.m;
+  EXPECT_NEAR(turned[0][1], -2, 1e-15);
+  EXPECT_NEAR(turned[1][0], 2, 1e-15);
+  EXPECT_EQ(turned[0][3], 1);
+  const auto& below = s.instances[1].object_to_world.m;
+  EXPECT_NEAR(below[0][3], 1 - 12, 1e-14);
+  EXPECT_NEAR(below[1][3], 10, 1e-14);
+  EXPECT_EQ(s.instances[2].object_to_world.m[2][3], 0.2) << "in float64";
+}
+
+TEST(Gltf, SparseAccessorsOverZerosAndOverBytes) {
+  // Element 1 becomes (7, 8, 9).
+  const std::string bytes = square_bytes() + raw(std::uint32_t{1}) + vec3(7, 8, 9);
+  const std::string sparse =
+      R"("sparse":{"count":1,"indices":{"bufferView":0,"byteOffset":56,"componentType":5125},)"
+      R"("values":{"bufferView":0,"byteOffset":60}})";
+  for (const bool over_zeros : {false, true}) {
+    const std::string view = over_zeros ? "" : R"("bufferView":0,)";
+    const Scene s = read(document(
+        bytes, R"("accessors":[{)" + view + R"("componentType":5126,"count":4,"type":"VEC3",)" +
+                   sparse + R"(}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)" +
+                   R"("nodes":[{"mesh":0}])"));
+    EXPECT_EQ(s.meshes[0].positions[1].y, 8.0F);
+    EXPECT_EQ(s.meshes[0].positions[2].y, over_zeros ? 0.0F : 1.0F);
+  }
+}
+
+TEST(Gltf, StridesAndNormalizedIntegers) {
+  // Interleaved: position of int16 normalized, padded to 8; colour of 4 × uint8.
+  std::string bytes;
+  const std::int16_t xs[3] = {32767, -32768, 0};
+  for (const std::int16_t x : xs)
+    bytes += raw(x) + raw(std::int16_t{0}) + raw(std::int16_t{16384}) + raw(std::int16_t{0}) +
+             std::string("\xFF\0\x33\xFF", 4);
+  const Scene s = read(
+      R"({"asset":{"version":"2.0"},"extensionsRequired":["KHR_mesh_quantization"],)"
+      R"("extensionsUsed":["KHR_mesh_quantization"],"buffers":[{"byteLength":36,"uri":"data:;base64,)" +
+      base64(bytes) +
+      R"("}],"bufferViews":[{"buffer":0,"byteLength":36,"byteStride":12}],"accessors":[)"
+      R"({"bufferView":0,"componentType":5122,"normalized":true,"count":3,"type":"VEC3"},)"
+      R"({"bufferView":0,"byteOffset":8,"componentType":5121,"normalized":true,"count":3,"type":"VEC4"}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"COLOR_0":1}}]}],"nodes":[{"mesh":0}]})");
+  const Mesh& m = s.meshes[0];
+  EXPECT_EQ(m.positions[0].x, 1.0F);
+  EXPECT_EQ(m.positions[1].x, -1.0F);
+  EXPECT_FLOAT_EQ(m.positions[2].z, 16384 / 32767.0F);
+  EXPECT_EQ(m.colors.values[1].x, 1.0F);
+  EXPECT_FLOAT_EQ(m.colors.values[2].z, 0.2F);
+}
+
+TEST(Gltf, MaterialsAndTextures) {
+  const test::TempFolder folder;
+  Image<Rgba8> image(2, 1);
+  image(1, 0) = {1, 2, 3, 4};
+  io::write_png(folder.path("a picture.png"), std::as_const(image).view());
+  const Scene s = io::read_scene(folder.write(
+      "a.gltf",
+      document(
+          square_bytes() + raw(0.0F) + raw(0.0F) + raw(1.0F) + raw(0.0F) + raw(0.0F) + raw(1.0F) +
+              raw(1.0F) + raw(1.0F),
+          R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},)"
+          R"({"bufferView":0,"byteOffset":56,"componentType":5126,"count":4,"type":"VEC2"}],)"
+          R"("extensionsUsed":["KHR_materials_unlit","KHR_texture_transform"],)"
+          R"("images":[{"uri":"a%20picture.png"}],"samplers":[{"wrapS":33071,"wrapT":33648,"magFilter":9728,"minFilter":9729},{}],)"
+          R"("textures":[{"source":0,"sampler":0},{"source":0,"sampler":1}],)"
+          R"("materials":[{"name":"m","alphaMode":"MASK","alphaCutoff":0.25,"doubleSided":true,"emissiveFactor":[1,0.5,0],)"
+          R"("extensions":{"KHR_materials_unlit":{},"KHR_materials_emissive_strength":{"emissiveStrength":4}},)"
+          R"("normalTexture":{"index":1,"scale":0.5,"texCoord":1},)"
+          R"("pbrMetallicRoughness":{"baseColorFactor":[0.1,0.2,0.3,0.4],"metallicFactor":0.6,"roughnessFactor":0.7,)"
+          R"("baseColorTexture":{"index":0,"texCoord":1,"extensions":{"KHR_texture_transform":{"offset":[0.5,0],"scale":[2,3]}}}}}],)"
+          R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_1":1},"material":0},{"attributes":{"POSITION":0}}]}],)"
+          R"("nodes":[{"mesh":0}])")));
+  ASSERT_EQ(s.materials.size(), 2U) << "the second primitive draws with the default material";
+  EXPECT_EQ(s.meshes[1].material, 1U);
+  EXPECT_EQ(s.materials[1].metallic, 1.0F);
+  const Material& m = s.materials[0];
+  EXPECT_EQ(m.base_color.w, 0.4F);
+  EXPECT_EQ(m.roughness, 0.7F);
+  EXPECT_EQ(m.metallic, 0.6F);
+  EXPECT_EQ(m.emissive.y, 2.0F);
+  EXPECT_EQ(m.alpha_mode, AlphaMode::mask);
+  EXPECT_EQ(m.alpha_cutoff, 0.25F);
+  EXPECT_TRUE(m.double_sided && m.unlit);
+  EXPECT_EQ(m.normal_scale, 0.5F);
+  ASSERT_EQ(m.base_color_texture, 0);
+  ASSERT_EQ(m.normal_texture, 1);
+  EXPECT_EQ(s.textures[0].image(1, 0), (Rgba8{1, 2, 3, 4}));
+  EXPECT_EQ(s.textures[0].wrap_u, Wrap::clamp_to_edge);
+  EXPECT_EQ(s.textures[0].wrap_v, Wrap::mirrored_repeat);
+  EXPECT_EQ(s.textures[0].mag, Filter::nearest);
+  EXPECT_FALSE(s.textures[0].mipmaps);
+  EXPECT_EQ(s.textures[1].wrap_u, Wrap::repeat);
+  EXPECT_TRUE(s.textures[1].mipmaps);
+  // The transform is in the coordinates; the normal texture has none, of which a warning tells (as
+  // of the 4 vertices of each list).
+  EXPECT_EQ(s.meshes[0].texcoords.values[3].x, 2.5F);
+  EXPECT_EQ(s.meshes[0].texcoords.values[3].y, 3.0F);
+  EXPECT_EQ(s.warnings.size(), 3U) << io::describe(s);
+}
+
+TEST(Gltf, Cameras) {
+  const Scene s = read(square(
+      R"({"attributes":{"POSITION":0}})",
+      R"([{"mesh":0},{"camera":0,"translation":[1,2,3],"rotation":[0,1,0,0]},{"camera":1}],)"
+      R"("cameras":[{"type":"perspective","perspective":{"yfov":1,"aspectRatio":0.5,"znear":0.25,"zfar":9}},)"
+      R"({"type":"orthographic","orthographic":{"xmag":3,"ymag":2,"znear":0,"zfar":5}}])"));
+  ASSERT_EQ(s.cameras.size(), 2U);
+  EXPECT_EQ(s.cameras[0].eye.z, 3.0F);
+  EXPECT_NEAR(s.cameras[0].target.z, 4.0F, 1e-6F) << "turned about y: it looks along +z";
+  EXPECT_FLOAT_EQ(s.cameras[0].fov_rad, 2 * std::atan(std::tan(0.5F) * 0.5F));
+  EXPECT_EQ(s.cameras[0].far_plane, 9.0F);
+  EXPECT_TRUE(s.cameras[1].orthographic);
+  EXPECT_EQ(s.cameras[1].orthographic_height, 4.0F);
+}
+
+TEST(Gltf, BinaryContainer) {
+  const std::string bytes = square_bytes();
+  std::string json =
+      R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":54}],)"
+      R"("bufferViews":[{"buffer":0,"byteLength":54}],)" +
+      std::string(kSquareAccessors) +
+      R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"nodes":[{"mesh":0}]})";
+  json.replace(json.find("54"), 2, "56");
+  json.replace(json.find("54"), 2, "56");
+  while (json.size() % 4 != 0) json += ' ';
+  const auto chunk = [](const char* type, const std::string& data) {
+    return raw(static_cast<std::uint32_t>(data.size())) + std::string(type, 4) + data;
+  };
+  const std::string body = chunk("JSON", json) + chunk("BIN\0", bytes);
+  const std::string file =
+      "glTF" + raw(std::uint32_t{2}) + raw(static_cast<std::uint32_t>(12 + body.size())) + body;
+  const test::TempFolder folder;
+  EXPECT_EQ(io::read_scene(folder.write("a.glb", file)).meshes[0].indices, (Indices{0, 1, 2}));
+  for (std::size_t n = 0; n < file.size(); ++n)
+    EXPECT_THROW((void)io::read_scene(folder.write("cut.glb", file.substr(0, n))), Error) << n;
+}
+
+TEST(Gltf, RefusesWhatItDoesNotKnow) {
+  EXPECT_NE(
+      error_of(
+          R"({"asset":{"version":"2.0"},"extensionsUsed":["EXT_odd"],"extensionsRequired":["EXT_odd"]})",
+          Errc::unsupported)
+          .find("EXT_odd"),
+      std::string::npos);
+  EXPECT_NE(error_of(R"({"asset":{"version":"1.0"}})", Errc::unsupported).find("asset.version"),
+            std::string::npos);
+  EXPECT_NE(error_of("{").find("a.gltf"), std::string::npos);
+}
+
+TEST(Gltf, ErrorsNameThePlace) {
+  const std::string primitive = R"({"attributes":{"POSITION":0},"indices":1})";
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = square(primitive);
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return error_of(text.replace(at, from.size(), to));
+  };
+  EXPECT_NE(with(R"("indices":1)", R"("indices":2)").find("meshes[0].primitives[0].indices"),
+            std::string::npos);
+  EXPECT_NE(with(R"("count":4)", R"("count":9007199254740991)").find("accessors[0]"),
+            std::string::npos);
+  EXPECT_NE(with(R"("byteOffset":48)", R"("byteOffset":49)").find("accessors[1]"),
+            std::string::npos);
+  EXPECT_NE(with(R"("byteOffset":48)", R"("byteOffset":9007199254740991)").find("accessors[1]"),
+            std::string::npos);
+  EXPECT_NE(with(R"("byteOffset":48)", R"("byteOffset":-4)").find("accessors[1].byteOffset"),
+            std::string::npos);
+  EXPECT_NE(with(R"("byteOffset":48)", R"("byteOffset":12)").find("refers to vertex"),
+            std::string::npos);
+  EXPECT_NE(with(R"("byteLength":56)", R"("byteLength":57)").find("buffers[0]"), std::string::npos);
+  EXPECT_NE(with(R"([{"mesh":0}])", R"([{"mesh":0,"children":[0]}])").find("ancestors"),
+            std::string::npos);
+  EXPECT_NE(
+      with(R"([{"mesh":0}])", R"([{"mesh":0,"children":[1]},{"children":[2]},{"children":[1]}])")
+          .find("parent"),
+      std::string::npos);
+  EXPECT_NE(with(R"([{"mesh":0}])", R"([{"mesh":"0"}])").find("nodes[0].mesh"), std::string::npos);
+  EXPECT_NE(with(R"("type":"VEC3")", R"("type":"VEC2")").find("wrong type"), std::string::npos);
+}
+
+TEST(Gltf, DeepHierarchiesAndDeepJsonDoNotOverflowTheStack) {
+  std::string nodes = "[";
+  for (int i = 0; i < 20000; ++i) nodes += R"({"children":[)" + std::to_string(i + 1) + "]},";
+  const Scene s = read(square(R"({"attributes":{"POSITION":0}})", nodes + R"({"mesh":0}])"));
+  EXPECT_EQ(s.instances.size(), 1U);
+  EXPECT_NE(error_of(std::string(200000, '[')).find("JSON"), std::string::npos);
+  EXPECT_NE(error_of(std::string(200000, '[') + std::string(200000, ']')).find("object"),
+            std::string::npos);
+}
+
+TEST(Gltf, ElementsWithoutBytesAreBounded) {
+  EXPECT_NE(
+      error_of(
+          R"({"asset":{"version":"2.0"},"accessors":[{"componentType":5126,"count":4000000000,"type":"VEC3"}],)"
+          R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}]})",
+          Errc::unsupported)
+          .find("4000000000"),
+      std::string::npos);
+}
+
+TEST(Describe, SaysWhatAFileHolds) {
+  Scene s = read(square(R"({"attributes":{"POSITION":0},"indices":1,"mode":5})",
+                        R"([{"mesh":0},{"mesh":0,"translation":[2,0,0]}])"));
+  s.meshes[0].positions[3].x = std::numeric_limits<float>::quiet_NaN();
+  s.meshes[0].indices.insert(s.meshes[0].indices.end(), {0, 1, 1});
+  const std::string text = io::describe(s);
+  EXPECT_NE(text.find("6 triangles in 2 instances of 1 mesh,"), std::string::npos) << text;
+  EXPECT_NE(text.find("bounds: (0, 0, 0) to (3, 1, 0)"), std::string::npos) << text;
+  EXPECT_NE(text.find("dropped: 2 triangles"), std::string::npos) << text;
+  EXPECT_NE(text.find("without area: 2 triangles"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace rastrum

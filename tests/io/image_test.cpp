@@ -1,0 +1,224 @@
+// Images in and out, and what writers leave behind.
+#include <sys/stat.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/io/io.hpp>
+
+#include "tests/io/files.hpp"
+
+namespace rastrum {
+namespace {
+
+namespace fs = std::filesystem;
+
+Image<Rgba8> random_image(int width, int height) {
+  std::mt19937 random(1);
+  Image<Rgba8> image(width, height);
+  for (Rgba8& p : image.pixels()) {
+    const auto bits = static_cast<std::uint32_t>(random());
+    p = std::bit_cast<Rgba8>(bits);
+  }
+  return image;
+}
+
+std::size_t files_in(const fs::path& folder) {
+  std::size_t n = 0;
+  for ([[maybe_unused]] const auto& e : fs::directory_iterator(folder)) ++n;
+  return n;
+}
+
+TEST(Png, RoundTripsStraightAlpha) {
+  const test::TempFolder folder;
+  const Image<Rgba8> image = random_image(37, 5);
+  io::write_png(folder.path("a.png"), image.view());
+  const Image<Rgba8> back = io::read_image(folder.path("a.png"));
+  ASSERT_EQ(back.width(), 37);
+  ASSERT_EQ(back.height(), 5);
+  for (std::size_t i = 0; i < image.pixels().size(); ++i)
+    EXPECT_EQ(back.pixels()[i], image.pixels()[i]);
+  EXPECT_EQ(files_in(folder.path("")), 1U);
+}
+
+TEST(Png, WritesAPartOfAnImage) {
+  const test::TempFolder folder;
+  const Image<Rgba8> image = random_image(8, 8);
+  ImageView<const Rgba8> part = image.view();
+  part.data += 8 * 2 + 3;
+  part.width = 4;
+  part.height = 3;
+  io::write_png(folder.path("a.png"), part);
+  EXPECT_EQ(io::read_image(folder.path("a.png"))(1, 2), image(4, 4));
+}
+
+TEST(Png, EveryTruncationAndEveryFlippedByteIsAnErrorOrTheSamePicture) {
+  const test::TempFolder folder;
+  const Image<Rgba8> image = random_image(4, 4);
+  io::write_png(folder.path("a.png"), image.view());
+  const std::string good = test::slurp(folder.path("a.png"));
+  const auto decode = [](const std::string& s) {
+    return io::decode_image(std::as_bytes(std::span(s)), "here.png");
+  };
+  for (std::size_t n = 0; n < good.size(); ++n)
+    EXPECT_THROW((void)decode(good.substr(0, n)), Error) << n;
+  for (std::size_t n = 0; n < good.size(); ++n) {
+    std::string bad = good;
+    bad[n] = static_cast<char>(bad[n] ^ 0x10);
+    EXPECT_THROW((void)decode(bad), Error) << n;
+  }
+}
+
+TEST(Png, ASmallFileCannotAskForAHugeImage) {
+  // A whole IHDR of 32768 × 32768 RGBA with its right checksum, then nothing.
+  const char head[] = "\x89PNG\r\n\x1A\n\0\0\0\rIHDR\0\0\x80\0\0\0\x80\0\x08\x06\0\0\0";
+  std::string bytes(head, sizeof head - 1);
+  std::uint32_t crc = 0xFFFFFFFFU;
+  for (std::size_t i = 12; i < bytes.size(); ++i) {
+    crc ^= static_cast<unsigned char>(bytes[i]);
+    for (int k = 0; k < 8; ++k) crc = (crc & 1U) != 0 ? crc >> 1 ^ 0xEDB88320U : crc >> 1;
+  }
+  bytes += test::raw(~crc, true) + std::string("\0\0\0\0IDAT\x35\xAF\x06\x1E", 12);
+  try {
+    (void)io::decode_image(std::as_bytes(std::span(bytes)), "bomb.png");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::bad_format);
+    EXPECT_NE(std::string(e.what()).find("bomb.png"), std::string::npos);
+    EXPECT_NE(std::string(e.what()).find("too short"), std::string::npos) << e.what();
+  }
+}
+
+TEST(Jpeg, TruncationIsAnError) {
+  const fs::path file = test::shared_dir() / "data/terrain/jotunheimen-texture.jpg";
+  if (!fs::exists(file)) GTEST_SKIP() << file << " is not there";
+  const Image<Rgba8> image = io::read_image(file);
+  EXPECT_EQ(image.width(), 4096);
+  EXPECT_EQ(image(100, 100).a, 255);
+  const std::string bytes = test::slurp(file).substr(0, 400000);
+  EXPECT_THROW((void)io::decode_image(std::as_bytes(std::span(bytes)), "cut.jpg"), Error);
+}
+
+TEST(Npy, HeadersAndRows) {
+  const test::TempFolder folder;
+  Image<float> depth(3, 2);
+  depth(2, 1) = 0.5F;
+  io::write_npy(folder.path("d.npy"), std::as_const(depth).view());
+  const std::string bytes = test::slurp(folder.path("d.npy"));
+  EXPECT_EQ(bytes.substr(0, 8), std::string("\x93NUMPY\x01\0", 8));
+  const std::size_t start =
+      10 + static_cast<unsigned char>(bytes[8]) + 256U * static_cast<unsigned char>(bytes[9]);
+  EXPECT_EQ(start % 64, 0U);
+  EXPECT_EQ(bytes[start - 1], '\n');
+  EXPECT_EQ(bytes.substr(10, 61), "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }  ");
+  ASSERT_EQ(bytes.size(), start + 24);
+  EXPECT_EQ(bytes.substr(start + 20), test::raw(0.5F));
+
+  Image<Vec4> color(1, 1);
+  io::write_npy(folder.path("c.npy"), std::as_const(color).view());
+  EXPECT_NE(test::slurp(folder.path("c.npy"))
+                .find("'<f4', 'fortran_order': False, 'shape': (1, 1, 4), }"),
+            std::string::npos);
+  Image<std::int64_t> ids(5, 1);
+  ids(4, 0) = -1;
+  io::write_npy(folder.path("i.npy"), std::as_const(ids).view());
+  EXPECT_NE(
+      test::slurp(folder.path("i.npy")).find("'<i8', 'fortran_order': False, 'shape': (1, 5), }"),
+      std::string::npos);
+}
+
+TEST(Exr, WritesChannelsOrSaysWhatIsMissing) {
+  const test::TempFolder folder;
+  Image<Vec4> color(3, 2);
+  color(1, 1) = {0.25F, 2, -1, 0.5F};
+  try {
+    io::write_exr(folder.path("a.exr"), std::as_const(color).view());
+  } catch (const Error& e) {
+    ASSERT_EQ(e.code(), Errc::unsupported);
+    EXPECT_NE(std::string(e.what()).find("libopenexr-dev"), std::string::npos);
+    GTEST_SKIP() << "built without OpenEXR";
+  }
+  EXPECT_EQ(test::slurp(folder.path("a.exr")).substr(0, 4), "\x76\x2F\x31\x01");
+  EXPECT_EQ(files_in(folder.path("")), 1U);
+}
+
+TEST(Writers, ReplaceTheOldFileAndFollowLinks) {
+  const test::TempFolder folder;
+  folder.write("real.npy", "old");
+  fs::create_symlink("real.npy", folder.path("link.npy"));
+  const Image<float> image(1, 1);
+  io::write_npy(folder.path("link.npy"), image.view());
+  EXPECT_TRUE(fs::is_symlink(folder.path("link.npy")));
+  EXPECT_GT(fs::file_size(folder.path("real.npy")), 64U);
+  EXPECT_EQ(files_in(folder.path("")), 2U);
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  EXPECT_EQ(static_cast<unsigned>(fs::status(folder.path("real.npy")).permissions()),
+            0666U & ~mask);
+}
+
+TEST(Writers, LeaveNothingBehindWhenTheyFail) {
+  const test::TempFolder folder;
+  const Image<float> image(2, 2);
+  const Image<Rgba8> pixels(2, 2);
+  EXPECT_THROW(io::write_npy(folder.path("none/a.npy"), image.view()), Error);
+  EXPECT_THROW(io::write_png(folder.path(""), pixels.view()), Error);
+  EXPECT_THROW(io::write_png(folder.path("a.png"), ImageView<const Rgba8>{}), Error);
+  if (fs::exists("/dev/full")) {
+    try {
+      io::write_npy("/dev/full", image.view());
+      ADD_FAILURE() << "a full device takes nothing";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::io);
+      EXPECT_NE(std::string(e.what()).find("/dev/full"), std::string::npos);
+    }
+    EXPECT_TRUE(fs::is_character_file("/dev/full")) << "a device must not be replaced";
+  }
+  EXPECT_EQ(files_in(folder.path("")), 0U);
+}
+
+TEST(WritePly, RoundTripsWhatSharesThePositions) {
+  const test::TempFolder folder;
+  Mesh m;
+  m.positions = {{0, 0, 0}, {1, 0, 0.1F}, {0, 1, 0}, {5, 5, 5}};
+  m.indices = {0, 1, 2, 2, 1, 3};
+  m.normals.values = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}};
+  m.texcoords.values = {{0, 0}, {1, 0.25F}, {0, 1}, {0.5F, 0.5F}};
+  for (const float red : {51 / 255.0F, 0.123F}) {  // one that bytes hold and one that they do not
+    m.colors.values = {{red, 0, 1, 1}, {0, 0, 0, 0}, {1, 1, 1, 1}, {0, 1, 0, 1}};
+    io::write_ply(folder.path("a.ply"), m);
+    const Scene s = io::read_scene(folder.path("a.ply"));
+    const Mesh& back = s.meshes[0];
+    EXPECT_EQ(back.indices, m.indices);
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_TRUE(back.positions[i] == m.positions[i]);
+      EXPECT_TRUE(back.normals.values[i] == m.normals.values[i]);
+      EXPECT_EQ(back.texcoords.values[i].y, m.texcoords.values[i].y);
+      EXPECT_FLOAT_EQ(back.colors.values[i].x, m.colors.values[i].x);
+      EXPECT_EQ(back.colors.values[i].w, m.colors.values[i].w);
+    }
+  }
+  m.indices = {0, 1, 4};
+  EXPECT_THROW(io::write_ply(folder.path("b.ply"), m), Error);
+}
+
+TEST(WritePly, DrawsPositionsInOrderWhereThereAreNoIndices) {
+  const test::TempFolder folder;
+  Mesh m;
+  m.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  io::write_ply(folder.path("a.ply"), m);
+  EXPECT_EQ(io::read_scene(folder.path("a.ply")).meshes[0].indices,
+            (std::vector<std::uint32_t>{0, 1, 2}));
+}
+
+}  // namespace
+}  // namespace rastrum

@@ -1,0 +1,189 @@
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/io/io.hpp>
+
+#include "tests/io/files.hpp"
+
+namespace rastrum {
+namespace {
+
+using Indices = std::vector<std::uint32_t>;
+using test::raw;
+
+Scene read(const std::string& bytes) {
+  const test::TempFolder folder;
+  return io::read_scene(folder.write("a.ply", bytes));
+}
+
+std::string error_of(const std::string& bytes) {
+  try {
+    read(bytes);
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::bad_format);
+    return e.what();
+  }
+  return "no error";
+}
+
+constexpr const char* kXyz = "property float x\nproperty float y\nproperty float z\n";
+
+std::string header(const std::string& format, int vertices, const std::string& properties,
+                   int faces, const std::string& list) {
+  return "ply\nformat " + format + " 1.0\ncomment made here\nelement vertex " +
+         std::to_string(vertices) + "\n" + properties + "element face " + std::to_string(faces) +
+         "\n" + list + "end_header\n";
+}
+
+TEST(Ply, AsciiWithEverything) {
+  const Scene s =
+      read(header("ascii", 4,
+                  std::string(kXyz) +
+                      "property float nx\nproperty float ny\nproperty float nz\n"
+                      "property float s\nproperty float t\nproperty uchar red\n"
+                      "property uchar green\nproperty uchar blue\nproperty float quality\n",
+                  2, "property list uchar int vertex_indices\n") +
+           "0 0 0 0 0 1 0 0 255 0 51 7\n1 0 0 0 0 1 1 0.25 0 0 0 7\n"
+           "1 1 0 0 0 1 1 1 0 0 0 7\n0 1 0 0 1 0 0 1 0 0 0 7\n4 0 1 2 3\n2 0 1\n");
+  const Mesh& m = s.meshes[0];
+  EXPECT_EQ(m.indices, (Indices{0, 1, 2, 0, 2, 3}));
+  EXPECT_EQ(m.normals.values[3].y, 1.0F);
+  EXPECT_EQ(m.texcoords.values[1].y, 0.75F);
+  EXPECT_EQ(m.colors.values[0].x, 1.0F);
+  EXPECT_FLOAT_EQ(m.colors.values[0].z, 0.2F);
+  EXPECT_EQ(m.colors.values[0].w, 1.0F);
+  EXPECT_EQ(s.warnings.size(), 2U) << "the face of 2 corners, the property quality";
+}
+
+/// The same square in each combination of types and byte orders must be the same mesh.
+template <class Count, class Index, class Real>
+void expect_square(const char* count, const char* index, const char* real, bool big) {
+  SCOPED_TRACE(std::string(count) + " " + index + " " + real + (big ? " big" : " little"));
+  const std::string r = std::string("property ") + real;
+  std::string bytes =
+      header(big ? "binary_big_endian" : "binary_little_endian", 4,
+             r + " x\n" + r + " y\n" + r + " z\nproperty short weight\n", 2,
+             "property list " + std::string(count) + " " + index + " vertex_index\n");
+  const int corners[4][2] = {{0, 0}, {2, 0}, {2, 1}, {0, 1}};
+  for (const auto& c : corners)
+    bytes += raw(static_cast<Real>(c[0]), big) + raw(static_cast<Real>(c[1]), big) +
+             raw(static_cast<Real>(-3), big) + raw(std::int16_t{258}, big);
+  for (const int first : {0, 1}) {
+    bytes += raw(Count{3}, big);
+    for (int k = 0; k < 3; ++k) bytes += raw(static_cast<Index>(first + k), big);
+  }
+  const Scene s = read(bytes);
+  EXPECT_EQ(s.meshes[0].indices, (Indices{0, 1, 2, 1, 2, 3}));
+  EXPECT_EQ(s.meshes[0].positions[2].x, 2.0F);
+  EXPECT_EQ(s.meshes[0].positions[3].y, 1.0F);
+  EXPECT_EQ(s.meshes[0].positions[1].z, -3.0F);
+}
+
+TEST(Ply, BinaryOfAllTypesAndByteOrders) {
+  for (const bool big : {false, true}) {
+    expect_square<std::uint8_t, std::int32_t, float>("uchar", "int", "float", big);
+    expect_square<std::uint8_t, std::uint32_t, double>("uint8", "uint32", "double", big);
+    expect_square<std::int8_t, std::uint8_t, float>("char", "uchar", "float32", big);
+    expect_square<std::uint32_t, std::int16_t, float>("uint", "short", "float", big);
+    expect_square<std::uint16_t, std::uint16_t, std::int16_t>("ushort", "uint16", "short", big);
+    expect_square<std::int32_t, std::int8_t, std::int8_t>("int", "char", "char", big);
+  }
+}
+
+TEST(Ply, PlainTrianglesMayTurnIntoPolygons) {
+  std::string bytes =
+      header("binary_little_endian", 5, kXyz, 3, "property list uchar int vertex_indices\n");
+  for (int i = 0; i < 5; ++i) bytes += raw(static_cast<float>(i)) + raw(0.0F) + raw(1.0F);
+  const auto face = [&](std::initializer_list<int> corners) {
+    bytes += static_cast<char>(corners.size());
+    for (const int c : corners) bytes += raw(c);
+  };
+  face({0, 1, 2});
+  face({4, 3, 2, 1});
+  face({2, 3, 4});
+  EXPECT_EQ(read(bytes).meshes[0].indices, (Indices{0, 1, 2, 4, 3, 2, 4, 2, 1, 2, 3, 4}));
+}
+
+TEST(Ply, StripsTurnEverySecondTriangleAndRestart) {
+  const std::string strips = "property list int int vertex_indices\n";
+  std::string text = header("ascii", 5, kXyz, 1, strips);
+  text.replace(text.find("element face"), 12, "element tristrips");
+  const Scene s = read(text + "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n10 0 1 2 3 4 -1 4 3 2 -1\n");
+  EXPECT_EQ(s.meshes[0].indices, (Indices{0, 1, 2, 2, 1, 3, 2, 3, 4, 4, 3, 2}));
+}
+
+TEST(Ply, UnknownElementsAndListsAreSkipped) {
+  std::string bytes =
+      "ply\nformat binary_big_endian 1.0\nelement camera 2\nproperty double f\n"
+      "property list uchar short path\nelement vertex 3\nproperty list uchar int friends\n" +
+      std::string(kXyz) +
+      "element face 1\nproperty uchar flags\nproperty list uchar int vertex_indices\n"
+      "property list uchar float weights\nend_header\n";
+  for (int i = 0; i < 2; ++i)
+    bytes += raw(1.0, true) + '\2' + raw(std::int16_t{1}, true) + raw(std::int16_t{1}, true);
+  for (int i = 0; i < 3; ++i)
+    bytes +=
+        '\1' + raw(7, true) + raw(static_cast<float>(i), true) + raw(1.0F, true) + raw(2.0F, true);
+  bytes += '\5' + std::string(1, '\3') + raw(2, true) + raw(1, true) + raw(0, true) + '\1' +
+           raw(1.0F, true);
+  const Scene s = read(bytes);
+  EXPECT_EQ(s.meshes[0].indices, (Indices{2, 1, 0}));
+  EXPECT_EQ(s.meshes[0].positions[2].x, 2.0F);
+}
+
+TEST(Ply, ACloudOfPointsHasNoTriangles) {
+  const Scene s = read(header("ascii", 3, kXyz, 0, "") + "0 0 0\n1 0 0\n0 1 0\n");
+  EXPECT_EQ(s.triangle_count(), 0U);
+  EXPECT_EQ(s.warnings.size(), 1U);
+}
+
+TEST(Ply, LiesAreRefusedBeforeAnythingIsAllocated) {
+  const std::string list = "property list uchar int vertex_indices\n";
+  EXPECT_NE(error_of(header("binary_little_endian", 2000000000, kXyz, 0, list)).find("2000000000"),
+            std::string::npos);
+  EXPECT_NE(error_of(header("ascii", 2000000000, kXyz, 0, list)).find("2000000000"),
+            std::string::npos);
+  const std::string vertices = raw(0.0F) + raw(0.0F) + raw(0.0F);
+  EXPECT_NE(
+      error_of(header("binary_little_endian", 1, kXyz, 2000000000, list) + vertices).find("face"),
+      std::string::npos);
+  // A list that claims more than is left, a negative count, an index that does not exist.
+  EXPECT_NE(error_of(header("binary_little_endian", 1, kXyz, 1, list) + vertices + '\xFF' + raw(0))
+                .find("ends"),
+            std::string::npos);
+  EXPECT_NE(error_of(header("binary_little_endian", 1, kXyz, 1,
+                            "property list char int vertex_indices\n") +
+                     vertices + '\xFF' + raw(0))
+                .find("-1"),
+            std::string::npos);
+  EXPECT_NE(error_of(header("binary_little_endian", 1, kXyz, 1, list) + vertices + '\3' + raw(0) +
+                     raw(0) + raw(1))
+                .find("vertex 1"),
+            std::string::npos);
+  EXPECT_NE(error_of(header("binary_little_endian", 1, kXyz, 1, list) + vertices + '\3' + raw(0) +
+                     raw(0) + raw(-1))
+                .find("vertex -1"),
+            std::string::npos);
+  EXPECT_NE(error_of(header("ascii", 1, kXyz, 1, list) + "0 0 x\n3 0 0 0\n").find("a.ply:11: "),
+            std::string::npos);
+}
+
+TEST(Ply, BadHeaders) {
+  EXPECT_NE(error_of("plY\n").find("ply"), std::string::npos);
+  EXPECT_NE(error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\nend_header\n")
+                .find("'half'"),
+            std::string::npos);
+  EXPECT_NE(error_of("ply\nformat ascii 1.0\nelement vertex -1\nend_header\n").find("a.ply:3: "),
+            std::string::npos);
+  EXPECT_NE(error_of("ply\nformat ascii 1.0\n").find("end_header"), std::string::npos);
+  EXPECT_NE(error_of("ply\nelement vertex 0\nend_header\n").find("format"), std::string::npos);
+  EXPECT_NE(error_of("ply\nformat ascii 1.0\nproperty int x\nend_header\n").find("before any"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace rastrum

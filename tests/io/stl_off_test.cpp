@@ -1,0 +1,147 @@
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/io/io.hpp>
+
+#include "tests/io/files.hpp"
+
+namespace rastrum {
+namespace {
+
+using Indices = std::vector<std::uint32_t>;
+using test::raw;
+
+Scene read(const std::string& name, const std::string& bytes) {
+  const test::TempFolder folder;
+  return io::read_scene(folder.write(name, bytes));
+}
+
+std::string error_of(const std::string& name, const std::string& bytes) {
+  try {
+    read(name, bytes);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+std::string binary_stl(std::string head, std::uint32_t count, const std::vector<Vec3>& corners) {
+  head.resize(80, '\0');
+  head += raw(count);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (i % 3 == 0) head += std::string(12, '\xFF');
+    head += raw(corners[i]);
+    if (i % 3 == 2) head += std::string(2, '\0');
+  }
+  return head;
+}
+
+const std::vector<Vec3> kTwo = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+
+constexpr const char* kFacet =
+    "facet normal 0 0 nan\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  VERTEX 0 1e0 0\n "
+    "endloop\nendfacet\n";
+
+TEST(Stl, BinaryMergesEqualVertices) {
+  const Scene s = read("a.STL", binary_stl("made here", 2, kTwo));
+  EXPECT_EQ(s.meshes[0].positions.size(), 4U);
+  EXPECT_EQ(s.meshes[0].indices, (Indices{0, 1, 2, 1, 3, 2}));
+  EXPECT_TRUE(s.meshes[0].normals.empty());
+}
+
+TEST(Stl, BinaryMayCallItselfSolid) {
+  EXPECT_EQ(read("a.stl", binary_stl("solid thing\n", 2, kTwo)).triangle_count(), 2U);
+}
+
+TEST(Stl, VerticesAreMergedByTheirBits) {
+  const Scene s = read("a.stl", binary_stl("", 1, {{0, 0, 0}, {-0.0F, 0, 0}, {1, 0, 0}}));
+  EXPECT_EQ(s.meshes[0].positions.size(), 3U);
+}
+
+TEST(Stl, ManyVerticesMakeTheTableGrow) {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 3 * 5000; ++i) corners.push_back({static_cast<float>(i % 4999), 1, 2});
+  const Scene s = read("a.stl", binary_stl("", 5000, corners));
+  ASSERT_EQ(s.meshes[0].positions.size(), 4999U);
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    ASSERT_TRUE(s.meshes[0].positions[s.meshes[0].indices[i]] == corners[i]);
+}
+
+TEST(Stl, CountsThatLie) {
+  EXPECT_NE(error_of("a.stl", binary_stl("", 3, kTwo)).find("says 3 triangles"), std::string::npos);
+  EXPECT_NE(error_of("a.stl", binary_stl("", 0xFFFFFFFFU, kTwo)).find("4294967295"),
+            std::string::npos);
+  EXPECT_NE(error_of("a.stl", binary_stl("", 0, kTwo)).find("0 triangles"), std::string::npos);
+  EXPECT_NE(error_of("a.stl", "short").find("not STL"), std::string::npos);
+  const Scene s = read("a.stl", binary_stl("", 2, kTwo) + "tail");
+  EXPECT_EQ(s.triangle_count(), 2U);
+  EXPECT_EQ(s.warnings.size(), 1U);
+}
+
+TEST(Stl, AsciiWithSeveralSolids) {
+  const Scene s = read("a.stl", std::string("SOLID the first facet\n") + kFacet +
+                                    "endsolid\nsolid\n" + kFacet + "endsolid x\n");
+  EXPECT_EQ(s.meshes[0].indices, (Indices{0, 1, 2, 0, 1, 2}));
+  EXPECT_EQ(s.meshes[0].positions.size(), 3U);
+  EXPECT_TRUE(s.warnings.empty());
+}
+
+TEST(Stl, AsciiErrorsNameTheLine) {
+  std::string text = std::string("solid\n") + kFacet;
+  EXPECT_NE(error_of("a.stl", text + "facet normal 0 0 0\nouter loop\nvertex 1 2\nendloop\n")
+                .find("a.stl:12: "),
+            std::string::npos);
+  EXPECT_NE(error_of("a.stl", text + "facet normal 0 0 0\nouter loop\nvertex 1 2 3\nendloop\n")
+                .find("1 vertices instead of 3"),
+            std::string::npos);
+  EXPECT_NE(error_of("a.stl", text + "facet normal 0 0 0\nouter loop\n").find("ends inside"),
+            std::string::npos);
+  EXPECT_NE(error_of("a.stl", text + "fect\n").find("'fect'"), std::string::npos);
+}
+
+TEST(Off, PolygonsCommentsAndColours) {
+  const Scene s =
+      read("a.off",
+           "# a comment\nCOFF # more\n4 1 0\n0 0 0 255 0 0\n1 0 0 0 255 0 255\n1 1 0 0 0 51 # c\n"
+           "\n0 1 0 0 0 0\n4 0 1 2 3 0.5 0.5 0.5\n");
+  EXPECT_EQ(s.meshes[0].indices, (Indices{0, 1, 2, 0, 2, 3}));
+  EXPECT_EQ(s.meshes[0].colors.values[0].x, 1.0F);
+  EXPECT_FLOAT_EQ(s.meshes[0].colors.values[2].z, 0.2F);
+  EXPECT_EQ(s.warnings.size(), 1U) << "the colour of the face";
+}
+
+TEST(Off, NormalsAndTextureCoordinates) {
+  const Scene s =
+      read("a.off",
+           "STNOFF 3 1 0\n0 0 0  0 0 1  0 0\n1 0 0  0 0 1  1 0\n0 1 0  0 1 0  0 0.75\n3 0 1 2\n");
+  EXPECT_EQ(s.meshes[0].normals.values[2].y, 1.0F);
+  EXPECT_EQ(s.meshes[0].texcoords.values[2].y, 0.25F);
+}
+
+TEST(Off, Errors) {
+  EXPECT_NE(error_of("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n").find("a.off:6: "),
+            std::string::npos);
+  EXPECT_NE(error_of("a.off", "OFF\n4000000000 1 0\n0 0 0\n").find("too short"), std::string::npos);
+  EXPECT_NE(error_of("a.off", "OFF BINARY\nxxxx").find("binary"), std::string::npos);
+  EXPECT_NE(error_of("a.off", "4OFF\n1 0 0\n0 0 0 1\n").find("three-dimensional"),
+            std::string::npos);
+  EXPECT_NE(error_of("a.off", "hello\n").find("not OFF"), std::string::npos);
+}
+
+TEST(ReadScene, KnowsExtensionsAndNamesMissingFiles) {
+  EXPECT_NE(error_of("a.xyz", "").find("no kind of mesh"), std::string::npos);
+  try {
+    (void)io::read_scene("/nowhere/at/all.ply");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::not_found);
+    EXPECT_NE(std::string(e.what()).find("/nowhere/at/all.ply"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace rastrum
