@@ -35,12 +35,14 @@ constexpr Picture kPictures[] = {
     {"soup_wireframe", [] { return shapes::soup(40, 0.3F, 1.2F); }, Shader::wireframe, 160, 120},
 };
 
-// From above and the side, a little off every axis, near enough to fill the picture.
+// From above and the side, a little off every axis. The near plane
+// touches the bounding sphere, so that depth is spread over its range.
 Camera oblique_camera(const SceneView& scene) {
   Camera c = fit_camera(scene, 0.8F, false);
   const float distance = length(c.eye - c.target);
-  c.eye = c.target + normalize({0.45F, 0.4F, 1}) * (0.95F * distance);
-  c.near_plane = 0.05F * distance;
+  const float radius = distance * std::sin(c.fov_rad / 2);
+  c.eye = c.target + normalize({0.45F, 0.4F, 1}) * (1.05F * distance);
+  c.near_plane = 1.05F * distance - 1.01F * radius;
   return c;
 }
 

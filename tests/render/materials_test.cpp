@@ -1,0 +1,100 @@
+// Materials over the family: textures, alpha masks (whose fragments are tested before the maximum)
+// and several instances. Ids, depth and coverage are the same bits; colours of one instruction set
+// too.
+#include <map>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/render/render.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/family.hpp"
+#include "tests/support/frame.hpp"
+#include "tests/support/random.hpp"
+
+namespace rastrum::test {
+namespace {
+
+Texture noise(Random& r, int size) {
+  Texture t;
+  t.image = Image<Rgba8>(size, size);
+  const auto byte = [&] { return static_cast<std::uint8_t>(r.integer(0, 255)); };
+  for (Rgba8& p : t.image.pixels()) p = {byte(), byte(), byte(), byte()};
+  return t;
+}
+
+// A sphere cut out by a mask around an opaque knot, before a wall of boxes.
+Scene masked_scene(std::uint64_t seed) {
+  Random r(seed);
+  Scene scene;
+  scene.meshes = {shapes::sphere(10, 20), shapes::torus_knot(2, 3, 60, 8), shapes::boxes(3)};
+  for (int i = 0; i < 4; ++i) scene.textures.push_back(noise(r, 1 << r.integer(0, 5)));
+  scene.materials.resize(3);
+  Material& mask = scene.materials[0];
+  mask.base_color_texture = 0;
+  mask.alpha_mode = AlphaMode::mask;
+  mask.alpha_cutoff = static_cast<float>(r.real(0.2, 0.8));
+  mask.double_sided = true;
+  scene.materials[1].base_color_texture = 1;
+  scene.materials[1].metallic_roughness_texture = 2;
+  scene.materials[1].normal_texture = 3;
+  scene.materials[2].base_color = {0.3F, 0.8F, 0.2F, 1};
+  scene.materials[2].metallic = 0.2F;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    scene.meshes[i].material = i;
+    Mat4d m = Mat4d::identity();
+    for (int k = 0; k < 3; ++k) m.m[k][k] = i == 0 ? 2.2 : 1;
+    m.m[2][3] = i == 2 ? -3 : 0;
+    scene.instances.push_back({i, m});
+  }
+  return scene;
+}
+
+TEST(Materials, EqualOverTheFamily) {
+  const ThreadsBeyondCores eight(8);
+  RenderOptions base;
+  base.width = 131;
+  base.height = 99;
+  base.shader = Shader::material;
+  std::vector<Renderer> renderers;
+  const std::vector<Relative> family = family_of(base);
+  for (const Relative& r : family) renderers.emplace_back(r.options);
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    SCOPED_TRACE(seed);
+    const Scene scene = masked_scene(seed);
+    const SceneBinding binding(scene);
+    Camera camera = fit_camera(binding.view(), 1.0F, false);
+    if (seed % 3 == 2) {  // inside the masked sphere
+      camera.eye = {0.3F, 0.2F, 1.6F};
+      camera.near_plane = 0.01F;
+    }
+    const Frame serial = draw(renderers[0], binding.view(), camera);
+    std::map<Isa, Frame> picture_of{{Isa::scalar, serial}};
+    for (std::size_t k = 1; k < family.size(); ++k) {
+      const Frame frame = draw(renderers[k], binding.view(), camera);
+      ASSERT_TRUE(same_surfaces(frame, serial)) << family[k].name;
+      ASSERT_TRUE(same_counts(frame.stats, serial.stats)) << family[k].name;
+      ASSERT_TRUE(same_picture(frame, serial, 1)) << family[k].name;
+      const auto [entry, is_first] = picture_of.try_emplace(*family[k].options.isa, frame);
+      if (!is_first) {
+        ASSERT_TRUE(same_picture(frame, entry->second, 0)) << family[k].name;
+      }
+    }
+    // The mask is seen through: some of what it covers belongs to what lies behind it.
+    const auto sphere = static_cast<std::int64_t>(scene.meshes[0].triangle_count());
+    int kept = 0, seen_through = 0;
+    for (std::size_t i = 0; i < serial.ids.pixels().size(); ++i) {
+      const std::int64_t id = serial.ids.pixels()[i];
+      kept += id >= 0 && id < sphere;
+      seen_through += id >= sphere;
+    }
+    EXPECT_GT(kept, 50);
+    EXPECT_GT(seen_through, 100);
+  }
+}
+
+}  // namespace
+}  // namespace rastrum::test
