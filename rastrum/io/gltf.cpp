@@ -213,7 +213,8 @@ class GltfReader {
 
   /// Every primitive is a mesh of ours; instances share them.
   void place(std::size_t index, const Json& node, const Mat4d& to_world) {
-    auto [it, is_new] = meshes_.try_emplace(index);
+    const bool is_new = meshes_.count(index) == 0;
+    std::vector<std::uint32_t>& ours = meshes_[index];
     if (is_new) {
       const Json mesh = document_["meshes"].at(index);
       mesh["primitives"].for_each([&](const Json& p) {
@@ -224,13 +225,13 @@ class GltfReader {
         if (!read) return;
         read->name = mesh.string("name", "");
         read->material = materials_.use(material);
-        it->second.push_back(static_cast<std::uint32_t>(scene_.meshes.size()));
+        ours.push_back(static_cast<std::uint32_t>(scene_.meshes.size()));
         scene_.meshes.push_back(*std::move(read));
       });
     }
     if (node.get("skin"))
       scene_.warnings.push_back(node.path() + " has a skin; its mesh is drawn unposed");
-    for (const std::uint32_t m : it->second) scene_.instances.push_back({m, to_world});
+    for (const std::uint32_t m : ours) scene_.instances.push_back({m, to_world});
   }
 
   const Json& document_;

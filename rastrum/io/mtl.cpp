@@ -120,19 +120,23 @@ Material convert(const tinyobj::material_t& m, TextureReader& texture) {
 
 void read_mtl(const fs::path& file, Scene& scene,
               std::unordered_map<std::string, std::uint32_t>& by_name) {
-  std::string text;
+  std::optional<MappedFile> mapped;
   try {
-    const MappedFile mapped(file);
-    text = as_text(mapped.bytes());
+    mapped.emplace(file);
   } catch (const Error& e) {
     scene.warnings.push_back(std::string("drawn without these materials: ") + e.what());
     return;
   }
+  parse_mtl(mapped->bytes(), file, scene, by_name);
+}
+
+void parse_mtl(Bytes bytes, const fs::path& file, Scene& scene,
+               std::unordered_map<std::string, std::uint32_t>& by_name) {
   std::map<std::string, int> index_of;
   std::vector<tinyobj::material_t> materials;
   std::string warning, error;
   try {
-    std::istringstream in(text);
+    std::istringstream in{std::string(as_text(bytes))};
     tinyobj::LoadMtl(&index_of, &materials, &in, &warning, &error);
   } catch (const std::exception& e) {
     scene.warnings.push_back(file.string() + ": drawn without these materials: " + e.what());

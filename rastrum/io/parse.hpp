@@ -30,6 +30,9 @@ using Bytes = std::span<const std::byte>;
 void read_mtl(const std::filesystem::path& file, Scene& scene,
               std::unordered_map<std::string, std::uint32_t>& by_name);
 
+void parse_mtl(Bytes bytes, const std::filesystem::path& file, Scene& scene,
+               std::unordered_map<std::string, std::uint32_t>& by_name);
+
 /// A scene that draws `mesh`, whose triangles are all in its indices, once; a mesh without indices
 /// is empty.
 [[nodiscard]] Scene scene_of(Mesh mesh);

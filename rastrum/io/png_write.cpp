@@ -1,5 +1,4 @@
-// PNG through libpng: 8-bit RGBA, straight alpha. Level and filter were measured on a 1920 × 1080
-// picture; see kLevel.
+// PNG through libpng: 8-bit RGBA, straight alpha.
 #include <png.h>
 
 #include <csetjmp>
@@ -11,6 +10,11 @@
 namespace rastrum::io {
 namespace {
 
+/// Measured on a rendered and a photographic picture of 1920 × 1080: level 1 with the filter UP is
+/// the fastest that still filters; level 3 takes 1.5 to 2 times as long for files 6 to 10 %
+/// smaller, level 6 4 to 6 times for 15 to 35 %, choosing between SUB and UP in each row 1.2 to 1.4
+/// times for about 0. No filter is 4 times faster on flat pictures, but files of photographs grow
+/// by half.
 constexpr int kLevel = 1;
 
 struct State {

@@ -42,14 +42,21 @@ void cut(Polygon& polygon, const Plane& plane) {
     any_outside |= d[i] < 0;
   }
   if (!any_outside) return;
+  // Rounding may bend a polygon of huge coordinates so that a plane crosses it more than twice;
+  // what then has too many corners has no shape worth drawing.
   Polygon kept;
+  const auto keep = [&kept](const Corner& c) {
+    if (kept.size < kMaxPolygon) kept.corners[kept.size] = c;
+    ++kept.size;
+  };
   for (int i = 0; i < polygon.size; ++i) {
     const int j = i + 1 == polygon.size ? 0 : i + 1;
     const Corner &a = polygon.corners[i], &b = polygon.corners[j];
-    if (d[i] >= 0) kept.corners[kept.size++] = a;
-    if (d[i] >= 0 && d[j] < 0) kept.corners[kept.size++] = between(a, d[i], b, d[j]);
-    if (d[i] < 0 && d[j] >= 0) kept.corners[kept.size++] = between(b, d[j], a, d[i]);
+    if (d[i] >= 0) keep(a);
+    if (d[i] >= 0 && d[j] < 0) keep(between(a, d[i], b, d[j]));
+    if (d[i] < 0 && d[j] >= 0) keep(between(b, d[j], a, d[i]));
   }
+  if (kept.size > kMaxPolygon) kept.size = 0;
   polygon = kept;
 }
 

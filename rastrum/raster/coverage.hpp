@@ -86,23 +86,4 @@ RASTRUM_HD inline std::uint64_t cover_8x8(const Piece& p, int bx, int by) {
   return mask;
 }
 
-/// The first sample at or after the box of a piece's vertices, where its micro mask begins.
-RASTRUM_HD inline int first_sample(const std::int32_t (&v)[3]) {
-  return (min3(v[0], v[1], v[2]) + kHalfPixel - 1) >> kSubpixelBits;
-}
-
-/// The part of a micro piece's mask that lies in block (bx, by); (x0, y0) is the mask's first
-/// sample.
-RASTRUM_HD inline std::uint64_t micro_cover_8x8(std::uint32_t flags, int x0, int y0, int bx,
-                                                int by) {
-  const std::uint64_t m = flags >> kMicroShift;
-  const std::uint64_t rows = (m & 0xF) | (m & 0xF0) << 4 | (m & 0xF00) << 8 | (m & 0xF000) << 12;
-  const int dx = x0 - bx * kBlockSize, dy = y0 - by * kBlockSize;
-  if (dx <= -kMicroSize || dx >= kBlockSize || dy <= -kMicroSize || dy >= kBlockSize) return 0;
-  constexpr std::uint64_t kEachRow = 0x0101010101010101U;
-  const std::uint64_t moved = dx >= 0 ? (rows & (255U >> dx) * kEachRow) << dx
-                                      : (rows & (15U << -dx & 15U) * kEachRow) >> -dx;
-  return dy >= 0 ? moved << (kBlockSize * dy) : moved >> (kBlockSize * -dy);
-}
-
 }  // namespace rastrum::raster

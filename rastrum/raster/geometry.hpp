@@ -78,7 +78,11 @@ struct VisibleBlock {
   const std::uint64_t* words = nullptr;  ///< 64, element 8 · row + column
   std::uint64_t covered = 0;             ///< samples that hold a surface and lie in the image
   int x0 = 0, y0 = 0;                    ///< first pixel
+  void* scratch = nullptr;               ///< the shader's, zeroed before the first block of a bin
 };
+
+/// Bytes that a shader may ask for, so that they can be set aside for each thread.
+inline constexpr std::size_t kMaxShaderScratch = 16384;
 
 /// Shades the visible surface of a block. Thread-safe.
 class BlockShader {
@@ -88,6 +92,9 @@ class BlockShader {
   /// of them are opaque; alpha need not be set then.
   virtual bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
                      BlockColors& colors) const noexcept = 0;
+  /// How many bytes of VisibleBlock::scratch the shader uses, at most kMaxShaderScratch; 64-byte
+  /// aligned, kept from block to block of a bin.
+  [[nodiscard]] virtual std::size_t scratch_bytes() const noexcept { return 0; }
 };
 
 /// One frame, as the façade hands it to a rasterizer.

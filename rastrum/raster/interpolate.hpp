@@ -69,7 +69,8 @@ inline WeightPlanes weight_planes(const FrameGeometry& frame, const Draw& draw,
   return w;
 }
 
-/// At the sample of pixel (x, y).
+/// At the sample of pixel (x, y). Snapping may put a sample a little outside of a clipped
+/// triangle's exact shape, where thin ones would extrapolate wildly; so weights are cut to [0, 1].
 inline Weights weights_at(const WeightPlanes& w, int x, int y) {
   const double dx = x + 0.5 - w.x0;
   const double dy = y + 0.5 - w.y0;
@@ -81,8 +82,14 @@ inline Weights weights_at(const WeightPlanes& w, int x, int y) {
     sum_dx += w.p[i];
     sum_dy += w.q[i];
   }
+  double inside = 0;
+  for (double& b : result.b) {
+    b /= sum;
+    b = b > 0 ? (b < 1 ? b : 1.0) : 0.0;
+    inside += b;
+  }
   for (int i = 0; i < 3; ++i) {
-    result.b[i] /= sum;
+    result.b[i] /= inside;
     result.db_dx[i] = (w.p[i] - result.b[i] * sum_dx) / sum;
     result.db_dy[i] = (w.q[i] - result.b[i] * sum_dy) / sum;
   }

@@ -14,7 +14,8 @@ void project_scalar(const Vec3* positions, std::size_t n, const Mat4& m, Viewpor
   for (std::size_t i = 0; i < n; ++i) out[i] = project(transform_point(m, positions[i]), viewport);
 }
 
-SetupOutput setup_scalar(const SetupInput& in, Piece* pieces, std::uint32_t* slow) noexcept {
+SetupOutput setup_scalar(const SetupInput& in, Piece* pieces, BinFragment*,
+                         std::uint32_t* slow) noexcept {
   SetupOutput out;
   for (std::uint32_t i = 0; i < in.count; ++i) {
     const std::uint64_t t = in.first + i;
@@ -43,7 +44,7 @@ std::size_t cover_scalar(const PieceList& in, std::size_t& cursor, Rect bin, Blo
                          std::size_t capacity, std::uint64_t& fragments) noexcept {
   std::size_t n = 0;
   for (; cursor < in.count && n + kBlocksPerBin <= capacity; ++cursor) {
-    const std::uint32_t index = in.list[cursor];
+    const std::uint32_t index = in.list[cursor].piece;
     const Piece& piece = in.pieces[index];
     const Rect box = sample_bounds(piece.x, piece.y, bin);
     if (box.empty()) continue;

@@ -25,22 +25,30 @@ struct SetupInput {
   std::uint32_t flags = 0;
   Cull cull = Cull::none;
   Rect view;
+  std::uint32_t bin_columns = 0;  ///< bins in a row of the image
 };
 
-/// At most this many triangles a call; callers provide that many pieces and slow entries.
+/// At most this many triangles a call; callers provide that many pieces and slow entries, and
+/// kMicroSize² times as many fragments.
 inline constexpr std::uint32_t kSetupBatch = 256;
 
 struct SetupOutput {
   std::uint32_t pieces = 0;     ///< written
-  std::uint32_t uncovered = 0;  ///< drawn, but found to cover no sample, so no piece was written
+  std::uint32_t fragments = 0;  ///< written
+  std::uint32_t micro = 0;      ///< drawn as fragments, or covering no sample
   std::uint32_t slow = 0;       ///< triangles left to the clipper, as offsets from `first`
   bool index_in_range = true;   ///< false: the batch was abandoned
+};
+
+/// A (bin, piece) pair.
+struct PieceInBin {
+  std::uint32_t bin, piece;
 };
 
 /// The pieces of a bin, by their positions in `pieces`.
 struct PieceList {
   const Piece* pieces = nullptr;
-  const std::uint32_t* list = nullptr;
+  const PieceInBin* list = nullptr;
   std::size_t count = 0;
 };
 
@@ -54,8 +62,10 @@ struct Kernels {
   void (*project)(const Vec3* positions, std::size_t n, const Mat4& object_to_clip,
                   Viewport viewport, ProjectedVertex* out) noexcept;
 
-  /// Culls and sets up a batch.
-  SetupOutput (*setup)(const SetupInput& input, Piece* pieces, std::uint32_t* slow) noexcept;
+  /// Culls and sets up a batch. A triangle without a fragment test whose box is small enough may
+  /// become fragments instead of a piece, or nothing where it covers no sample.
+  SetupOutput (*setup)(const SetupInput& input, Piece* pieces, BinFragment* fragments,
+                       std::uint32_t* slow) noexcept;
 
   /// Writes the blocks of `bin` that pieces list[cursor …] cover, with their masks (none empty),
   /// until the list ends or fewer than kBlocksPerBin places are left; returns how many, moves the

@@ -16,6 +16,7 @@
 #include <rastrum/raster/color.hpp>
 #include <rastrum/raster/coverage.hpp>
 #include <rastrum/raster/kernels_simd.hpp>
+#include <rastrum/raster/setup.hpp>
 
 // The scalar kernels stand in for Highway's baseline target.
 #if HWY_TARGET != HWY_SCALAR
@@ -197,11 +198,10 @@ HWY_INLINE std::uint32_t lane_bits(M mask) {
 
 /// Triangles by lane.
 struct Classes {
-  std::uint32_t drawn = 0;      ///< may cover a sample
-  std::uint32_t uncovered = 0;  ///< would be drawn, but cover none
-  std::uint32_t slow = 0;       ///< need the clipper
-  std::uint32_t micro = 0;      ///< of `drawn`: `flags` holds their coverage
-  HWY_ALIGN std::uint32_t flags[kLanes];
+  std::uint32_t drawn = 0;  ///< may cover a sample
+  std::uint32_t none = 0;   ///< micro triangles that would be drawn, but cover no sample
+  std::uint32_t slow = 0;   ///< need the clipper
+  HWY_ALIGN std::uint32_t micro[kLanes] = {};  ///< covered samples of micro triangles, 0 for others
 };
 
 /// Negates v in the lanes where m is −1.
@@ -275,7 +275,7 @@ HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c
   const I dx2 = hn::Sub(c.x, a.x), dy2 = hn::Sub(c.y, a.y);
   const I size = hn::Set(d, kMicroSize);
   const auto small = hn::And(hn::Lt(hn::Sub(x1, x0), size), hn::Lt(hn::Sub(y1, y0), size));
-  const std::uint32_t micro = lane_bits(small) & in_view;
+  const std::uint32_t micro = (in.flags & kTested) != 0 ? 0U : lane_bits(small) & in_view;
   std::uint32_t culled = 0;
   if (micro != 0) {
     const I zero = hn::Zero(d);
@@ -285,11 +285,8 @@ HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c
     if (in.cull == Cull::front) out = hn::Or(out, hn::Lt(area, zero));
     culled = lane_bits(out) & micro;
     const I masks = micro_masks(a, b, c, x0, y0, area);
-    hn::Store(hn::BitCast(U32{}, hn::Or(hn::ShiftLeft<kMicroShift>(masks),
-                                        hn::Set(d, static_cast<std::int32_t>(kMicro)))),
-              U32{}, classes.flags);
-    classes.uncovered = lane_bits(hn::Eq(masks, zero)) & micro & ~culled;
-    classes.micro = micro & ~culled & ~classes.uncovered;
+    hn::Store(hn::BitCast(U32{}, hn::IfThenElseZero(small, masks)), U32{}, classes.micro);
+    classes.none = lane_bits(hn::Eq(masks, zero)) & micro & ~culled;
   }
   if (micro != in_view) {
     // Twice the area, exact in float64: differences have 25 bits, products 50.
@@ -308,14 +305,58 @@ HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c
     }
     culled |= large_culled & ~micro;
   }
-  classes.drawn = in_view & ~culled & ~classes.uncovered;
+  classes.drawn = in_view & ~culled & ~classes.none;
   return classes;
 }
 
-/// Sets up `n` ≤ kLanes surviving triangles.
-HWY_INLINE void make_pieces(const SetupInput& in, const std::uint32_t (&index)[3][kLanes],
-                            const std::uint32_t* triangle, const std::uint32_t* flags,
-                            std::uint32_t n, Piece* out) {
+/// The covered samples of a micro triangle as fragments. By value, so that it stays in registers.
+HWY_INLINE std::uint32_t write_fragments(const Piece p, std::uint32_t mask, const SetupInput& in,
+                                         BinFragment* out) {
+  const int first_x = (min3(p.x[0], p.x[1], p.x[2]) + kHalfPixel - 1) >> kSubpixelBits;
+  const int first_y = (min3(p.y[0], p.y[1], p.y[2]) + kHalfPixel - 1) >> kSubpixelBits;
+  std::uint32_t n = 0;
+  for (; mask != 0; mask &= mask - 1) {
+    const int sample = std::countr_zero(mask);
+    const int x = first_x + sample % kMicroSize, y = first_y + sample / kMicroSize;
+    if (x < in.view.x0 || x >= in.view.x1 || y < in.view.y0 || y >= in.view.y1) continue;
+    const auto ux = static_cast<std::uint32_t>(x), uy = static_cast<std::uint32_t>(y);
+    out[n++] = {make_word(depth_at(p, x, y), p.low), uy / kBinSize * in.bin_columns + ux / kBinSize,
+                (uy % kBinSize / kBlockSize * kBlocksPerBinRow + ux % kBinSize / kBlockSize) * 64 +
+                    uy % kBlockSize * kBlockSize + ux % kBlockSize};
+  }
+  return n;
+}
+
+/// Triangles that wait until there are kLanes of them: a third of a closed mesh survives culling.
+struct Waiting {
+  std::uint32_t count = 0;
+  std::uint32_t index[3][2 * kLanes];
+  std::uint32_t triangle[2 * kLanes];
+  std::uint32_t micro[2 * kLanes];
+
+  void add(const std::uint32_t (&corners)[3][kLanes], std::size_t lane, std::uint32_t t,
+           std::uint32_t micro_mask) {
+    for (std::size_t c = 0; c < 3; ++c) index[c][count] = corners[c][lane];
+    triangle[count] = t;
+    micro[count++] = micro_mask;
+  }
+  /// Forgets the first n, which are all or kLanes.
+  void drop(std::uint32_t n) {
+    count -= n;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t c = 0; c < 3; ++c) index[c][i] = index[c][i + n];
+      triangle[i] = triangle[i + n];
+      micro[i] = micro[i + n];
+    }
+  }
+};
+
+/// Sets up the first `n` ≤ kLanes waiting triangles.
+HWY_INLINE void make_pieces(const SetupInput& in, Waiting& waiting, std::uint32_t n, Piece* pieces,
+                            BinFragment* fragments, SetupOutput& out) {
+  std::uint32_t index[3][kLanes];
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < kLanes; ++i) index[c][i] = waiting.index[c][i < n ? i : 0];
   const F32 df;
   const I32 di;
   const Corners a = load_corners(in.vertices, index[0]);
@@ -350,36 +391,28 @@ HWY_INLINE void make_pieces(const SetupInput& in, const std::uint32_t (&index)[3
                         second);
   const I128 d128;
   for (std::uint32_t i = 0; i < n; ++i) {
-    auto* piece = reinterpret_cast<std::int32_t*>(out + i);
-    hn::Store(hn::Load(d128, first + i * 4), d128, piece);
-    hn::Store(hn::Load(d128, second + i * 4), d128, piece + 4);
-    out[i].zy = zy[i];
-    out[i].flags = flags[i];
-    out[i].low = kIdMask - (in.first_id + in.first + triangle[i]);
+    Piece& piece = pieces[out.pieces];
+    auto* words = reinterpret_cast<std::int32_t*>(&piece);
+    hn::Store(hn::Load(d128, first + i * 4), d128, words);
+    hn::Store(hn::Load(d128, second + i * 4), d128, words + 4);
+    piece.zy = zy[i];
+    piece.flags = in.flags;
+    piece.low = kIdMask - (in.first_id + in.first + waiting.triangle[i]);
+    if (waiting.micro[i] == 0) {
+      ++out.pieces;
+      continue;
+    }
+    ++out.micro;
+    out.fragments += write_fragments(piece, waiting.micro[i], in, fragments + out.fragments);
   }
+  waiting.drop(n);
 }
 
-SetupOutput setup(const SetupInput& in, Piece* pieces, std::uint32_t* slow) noexcept {
+SetupOutput setup(const SetupInput& in, Piece* pieces, BinFragment* fragments,
+                  std::uint32_t* slow) noexcept {
   SetupOutput result;
-  // Survivors wait here until there are kLanes of them: a third of a closed mesh survives.
-  std::uint32_t waiting[3][2 * kLanes];
-  std::uint32_t waiting_triangle[2 * kLanes], waiting_flags[2 * kLanes];
-  std::uint32_t waiting_count = 0;
+  Waiting waiting;
   std::uint32_t index[3][kLanes];
-  const auto flush = [&](std::uint32_t n) HWY_ATTR {
-    std::uint32_t batch[3][kLanes];
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t i = 0; i < kLanes; ++i) batch[c][i] = waiting[c][i < n ? i : 0];
-    make_pieces(in, batch, waiting_triangle, waiting_flags, n, pieces + result.pieces);
-    result.pieces += n;
-    waiting_count -= n;
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t i = 0; i < kLanes; ++i) waiting[c][i] = waiting[c][i + n];
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      waiting_triangle[i] = waiting_triangle[i + n];
-      waiting_flags[i] = waiting_flags[i + n];
-    }
-  };
   std::uint32_t i = 0;
   for (; i + kLanes <= in.count; i += kLanes) {
     if (!load_indices(in, i, index)) {
@@ -392,26 +425,23 @@ SetupOutput setup(const SetupInput& in, Piece* pieces, std::uint32_t* slow) noex
     const Classes classes = classify(a, b, c, in);
     for (std::uint32_t rest = classes.slow; rest != 0; rest &= rest - 1)
       slow[result.slow++] = i + static_cast<std::uint32_t>(std::countr_zero(rest));
-    result.uncovered += static_cast<std::uint32_t>(std::popcount(classes.uncovered));
+    result.micro += static_cast<std::uint32_t>(std::popcount(classes.none));
     for (std::uint32_t rest = classes.drawn; rest != 0; rest &= rest - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
-      for (std::size_t corner = 0; corner < 3; ++corner)
-        waiting[corner][waiting_count] = index[corner][lane];
-      waiting_flags[waiting_count] =
-          in.flags | ((classes.micro >> lane & 1U) != 0 ? classes.flags[lane] : 0U);
-      waiting_triangle[waiting_count++] = i + lane;
+      waiting.add(index, lane, i + lane, classes.micro[lane]);
     }
-    if (waiting_count >= kLanes) flush(kLanes);
+    if (waiting.count >= kLanes) make_pieces(in, waiting, kLanes, pieces, fragments, result);
   }
-  if (waiting_count != 0) flush(waiting_count);
+  if (waiting.count != 0) make_pieces(in, waiting, waiting.count, pieces, fragments, result);
   if (i == in.count) return result;
   // The last few triangles of a draw take the scalar way, which is the same arithmetic.
   SetupInput rest = in;
   rest.first += i;
   rest.count -= i;
   const SetupOutput tail =
-      kernels(Isa::scalar).setup(rest, pieces + result.pieces, slow + result.slow);
-  for (std::uint32_t s = 0; s < tail.slow; ++s) slow[result.slow + s] += i;
+      kernels(Isa::scalar)
+          .setup(rest, pieces + result.pieces, fragments + result.fragments, slow + result.slow);
+  for (std::uint32_t t = 0; t < tail.slow; ++t) slow[result.slow + t] += i;
   result.pieces += tail.pieces;
   result.slow += tail.slow;
   result.index_in_range = tail.index_in_range;
@@ -445,6 +475,43 @@ HWY_INLINE std::uint64_t cover_block(const std::int32_t (&base)[3], const I (&st
   return mask;
 }
 
+/// Whether every edge value at the samples of blocks that the piece's box touches fits int32: with
+/// differences up to 2^14 (64 px) and samples up to 8 px outside, |E| < 2 · 2^14 · (2^14 + 2^11) <
+/// 2^30.
+HWY_INLINE bool is_small(const Piece& p) {
+  constexpr int kMost = 1 << 14;
+  return max3(p.x[0], p.x[1], p.x[2]) - min3(p.x[0], p.x[1], p.x[2]) < kMost &&
+         max3(p.y[0], p.y[1], p.y[2]) - min3(p.y[0], p.y[1], p.y[2]) < kMost;
+}
+
+/// The blocks of a small piece: its three edges are set up in the lanes of one vector.
+template <class Add>
+HWY_INLINE void small_cover(const Piece& p, int bx0, int by0, int bx1, int by1, const Add& add) {
+  const I32 d;
+  const int px = bx0 * (kBlockSize * kSubpixels) + kHalfPixel;
+  const int py = by0 * (kBlockSize * kSubpixels) + kHalfPixel;
+  std::int32_t row_base[3], a[3], b[3];
+  I steps[3][8 / kLanes];
+  for (int i = 0; i < 3; ++i) {
+    const int j = i == 2 ? 0 : i + 1;
+    a[i] = p.y[i] - p.y[j];
+    b[i] = p.x[j] - p.x[i];
+    const std::int32_t not_top_left = (a[i] > 0 || (a[i] == 0 && b[i] > 0)) ? 0 : 1;
+    row_base[i] = (a[i] * (px - p.x[i]) + b[i] * (py - p.y[i]) - not_top_left) >> kSubpixelBits;
+    for (std::size_t part = 0; part < 8 / kLanes; ++part)
+      steps[i][part] =
+          hn::Mul(hn::Set(d, a[i]), hn::Iota(d, static_cast<std::int32_t>(part * kLanes)));
+  }
+  for (int by = by0; by <= by1; ++by) {
+    std::int32_t base[3] = {row_base[0], row_base[1], row_base[2]};
+    for (int bx = bx0; bx <= bx1; ++bx) {
+      add(bx, by, cover_block(base, steps, b));
+      for (int i = 0; i < 3; ++i) base[i] += a[i] * kBlockSize;
+    }
+    for (int i = 0; i < 3; ++i) row_base[i] += b[i] * kBlockSize;
+  }
+}
+
 std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
                   std::size_t capacity, std::uint64_t& fragments) noexcept {
   constexpr std::int64_t kClamp = std::int64_t{1} << 30;
@@ -452,8 +519,8 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
   const bool cut = bin.x1 % kBlockSize != 0 || bin.y1 % kBlockSize != 0;
   std::size_t n = 0;
   for (; cursor < in.count && n + kBlocksPerBin <= capacity; ++cursor) {
-    if (cursor + 6 < in.count) __builtin_prefetch(in.pieces + in.list[cursor + 6]);
-    const std::uint32_t index = in.list[cursor];
+    if (cursor + 6 < in.count) __builtin_prefetch(in.pieces + in.list[cursor + 6].piece);
+    const std::uint32_t index = in.list[cursor].piece;
     const Piece& piece = in.pieces[index];
     const Rect box = sample_bounds(piece.x, piece.y, bin);
     if (box.empty()) continue;
@@ -465,11 +532,8 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
       n += mask != 0;
       fragments += hwy::PopCount(mask);
     };
-    if ((piece.flags & kMicro) != 0) {
-      const int x0 = first_sample(piece.x), y0 = first_sample(piece.y);
-      for (int by = by0; by <= by1; ++by)
-        for (int bx = bx0; bx <= bx1; ++bx)
-          add(bx, by, micro_cover_8x8(piece.flags, x0, y0, bx, by));
+    if (is_small(piece)) {
+      small_cover(piece, bx0, by0, bx1, by1, add);
       continue;
     }
     std::int32_t b[3];

@@ -25,7 +25,7 @@ RASTRUM_HD constexpr std::uint64_t id_of_word(std::uint64_t word) {
 struct alignas(16) Piece {
   std::int32_t x[3], y[3];  ///< n.8, inside the guard band
   float z0, zx, zy;         ///< depth at vertex 0 and its change per px
-  std::uint32_t flags;      ///< kTested, kMicro
+  std::uint32_t flags;      ///< kTested
   std::uint64_t low;        ///< the word's low part: kIdMask − id
 };
 static_assert(sizeof(Piece) == 48);
@@ -33,12 +33,14 @@ static_assert(sizeof(Piece) == 48);
 /// Fragments of this piece pass a fragment test (alpha mask, discard) before the maximum.
 inline constexpr std::uint32_t kTested = 1;
 
-/// All samples inside the piece's box lie in kMicroSize² pixels, and setup has already found which
-/// of them are covered: bit kMicroShift + kMicroSize · row + column, from the box's first sample
-/// on.
-inline constexpr std::uint32_t kMicro = 2;
+/// A fragment of a micro triangle, whose coverage and depth setup has found at once: all samples
+/// inside its box lie in kMicroSize² pixels.
+struct BinFragment {
+  std::uint64_t word;
+  std::uint32_t bin;
+  std::uint32_t pixel;  ///< within the bin: 64 · block + 8 · row + column
+};
 inline constexpr int kMicroSize = 4;
-inline constexpr int kMicroShift = 16;
 
 /// An 8 × 8 block of the screen with the samples that a piece covers: bit 8 · row + column.
 struct Block {

@@ -76,7 +76,7 @@ void store_ids_and_depth(const Targets& targets, const std::uint64_t* words, con
 }  // namespace
 
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame,
-                  const std::uint64_t* words, int x0, int y0) noexcept {
+                  const std::uint64_t* words, int x0, int y0, void* scratch) noexcept {
   const Targets& targets = request.targets;
   const Window window{x0, y0, std::min(kBlockSize, request.width - x0),
                       std::min(kBlockSize, request.height - y0)};
@@ -85,7 +85,7 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame,
     covered &=
         samples_inside({0, 0, request.width, request.height}, x0 / kBlockSize, y0 / kBlockSize);
   if (!targets.color8.empty() || !targets.color.empty())
-    resolve_colors(request, frame, {words, covered, x0, y0}, window);
+    resolve_colors(request, frame, {words, covered, x0, y0, scratch}, window);
   if (!targets.depth.empty() || !targets.ids.empty()) store_ids_and_depth(targets, words, window);
   return std::popcount(covered);
 }

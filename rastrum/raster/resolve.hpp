@@ -7,9 +7,10 @@
 namespace rastrum::raster {
 
 /// Shades one 8 × 8 block (`words`: 64, 64-byte aligned) and writes its part of every target;
-/// pixels outside the image are left out. Returns how many pixels hold a surface.
+/// pixels outside the image are left out. `scratch` is the shader's (geometry.hpp). Returns how
+/// many pixels hold a surface.
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame,
-                  const std::uint64_t* words, int x0, int y0) noexcept;
+                  const std::uint64_t* words, int x0, int y0, void* scratch) noexcept;
 
 /// Numbers the triangles and vertices of the draws and returns the totals. Throws
 /// Error{invalid_argument} if there are more triangles than ids.

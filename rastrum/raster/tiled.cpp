@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -31,26 +32,53 @@ struct BinGrid {
   }
 };
 
-/// What became of the triangles [first, last) of the frame: pieces, and their positions by bin.
-struct Group {
-  explicit Group(MemoryAccount& memory)
-      : pieces(memory), pairs(memory), by_bin(memory), bin_begin(memory) {}
+/// Entries of a group, sorted by bin once all are there. `Entry` has a member `bin`.
+template <class Entry>
+class BinLists {
+ public:
+  explicit BinLists(MemoryAccount& memory) : entries_(memory), sorted_(memory), begin_(memory) {}
 
-  struct Pair {
-    std::uint32_t bin, piece;
-  };
-  Buffer<Piece> pieces;
-  Buffer<Pair> pairs;               ///< in order of submission
-  Buffer<std::uint32_t> by_bin;     ///< pieces, sorted by bin
-  Buffer<std::uint32_t> bin_begin;  ///< bins + 1 offsets into by_bin
-  std::uint32_t piece_count = 0;
-  std::size_t pair_count = 0;
-  FrameStats::Triangles triangles;
-
-  [[nodiscard]] PieceList bin(std::size_t b) const {
-    const std::uint32_t begin = bin_begin[b];
-    return {pieces.data(), by_bin.data() + begin, bin_begin[b + 1] - begin};
+  void restart(std::size_t bins) {
+    count_ = 0;
+    begin_.reserve(bins + 1);
+    std::fill_n(begin_.data(), bins + 1, 0U);
   }
+  /// Room for `n` more entries; tell how many were written with `added`.
+  [[nodiscard]] Entry* room(std::size_t n) {
+    entries_.grow(count_ + n, count_);
+    return entries_.data() + count_;
+  }
+  void added(std::size_t n) {
+    for (std::size_t i = count_; i < count_ + n; ++i) ++begin_[entries_[i].bin + 1];
+    count_ += n;
+  }
+  /// Stable counting sort.
+  void sort(std::size_t bins) {
+    sorted_.reserve(count_);
+    // Shifted by one, so that after the scatter each entry has moved on to its own bin's begin.
+    std::uint32_t sum = 0;
+    for (std::size_t b = 0; b < bins; ++b) sum += std::exchange(begin_[b + 1], sum);
+    for (std::size_t i = 0; i < count_; ++i) sorted_[begin_[entries_[i].bin + 1]++] = entries_[i];
+  }
+  [[nodiscard]] std::span<const Entry> bin(std::size_t b) const {
+    return {sorted_.data() + begin_[b], begin_[b + 1] - begin_[b]};
+  }
+
+ private:
+  Buffer<Entry> entries_, sorted_;
+  Buffer<std::uint32_t> begin_;
+  std::size_t count_ = 0;
+};
+
+/// What became of the triangles [first, last) of the frame.
+struct Group {
+  explicit Group(MemoryAccount& memory) : pieces(memory), by_bin(memory), fragments(memory) {}
+
+  Buffer<Piece> pieces;
+  std::uint32_t piece_count = 0;
+  BinLists<PieceInBin> by_bin;
+  BinLists<BinFragment> fragments;
+  FrameStats::Triangles triangles;
 };
 
 /// Whether the bin's rectangle may hold an inside sample: none lies beyond any one edge.
@@ -71,34 +99,21 @@ void bin_pieces(Group& group, std::uint32_t first_piece, Rect view, BinGrid grid
     const int bx1 = (box.x1 - 1) / kBinSize, by1 = (box.y1 - 1) / kBinSize;
     const std::size_t most =
         static_cast<std::size_t>(bx1 - bx0 + 1) * static_cast<std::size_t>(by1 - by0 + 1);
-    group.pairs.grow(group.pair_count + most, group.pair_count);
+    PieceInBin* const out = group.by_bin.room(most);
+    std::size_t n = 0;
     const auto add = [&](int bx, int by) {
-      const auto bin = static_cast<std::uint32_t>(by * grid.columns + bx);
-      group.pairs[group.pair_count++] = {bin, i};
-      ++group.bin_begin[bin + 1];
+      out[n++] = {static_cast<std::uint32_t>(by * grid.columns + bx), i};
     };
     if (most == 1) {
       add(bx0, by0);
-      continue;
+    } else {
+      const Edge edges[3] = {edge_function(piece, 0), edge_function(piece, 1),
+                             edge_function(piece, 2)};
+      for (int by = by0; by <= by1; ++by)
+        for (int bx = bx0; bx <= bx1; ++bx)
+          if (may_touch(edges, bx, by)) add(bx, by);
     }
-    const Edge edges[3] = {edge_function(piece, 0), edge_function(piece, 1),
-                           edge_function(piece, 2)};
-    for (int by = by0; by <= by1; ++by)
-      for (int bx = bx0; bx <= bx1; ++bx)
-        if (may_touch(edges, bx, by)) add(bx, by);
-  }
-}
-
-/// Stable counting sort of the pairs by bin. bin_begin[b + 1] holds the count of bin b on entry.
-void sort_by_bin(Group& group, std::size_t bins) {
-  group.by_bin.reserve(group.pair_count);
-  std::uint32_t* const begin = group.bin_begin.data();
-  // Shifted by one, so that after the scatter each entry has moved on to its own bin's begin.
-  std::uint32_t sum = 0;
-  for (std::size_t b = 0; b < bins; ++b) sum += std::exchange(begin[b + 1], sum);
-  for (std::size_t i = 0; i < group.pair_count; ++i) {
-    const Group::Pair pair = group.pairs[i];
-    group.by_bin[begin[pair.bin + 1]++] = pair.piece;
+    group.by_bin.added(n);
   }
 }
 
@@ -108,10 +123,9 @@ void fill_group(Group& group, const FrameRequest& request, const FrameGeometry& 
                 std::atomic<bool>& index_in_range) {
   const Rect view{0, 0, frame.width, frame.height};
   group.piece_count = 0;
-  group.pair_count = 0;
   group.triangles = {};
-  group.bin_begin.reserve(grid.count() + 1);
-  std::fill_n(group.bin_begin.data(), grid.count() + 1, 0U);
+  group.by_bin.restart(grid.count());
+  group.fragments.restart(grid.count());
   std::uint32_t slow[kSetupBatch];
 
   for (std::uint64_t id = first; id < last;) {
@@ -129,16 +143,19 @@ void fill_group(Group& group, const FrameRequest& request, const FrameGeometry& 
     input.flags = draw.flags;
     input.cull = request.cull;
     input.view = view;
+    input.bin_columns = static_cast<std::uint32_t>(grid.columns);
 
     const std::uint32_t first_piece = group.piece_count;
     group.pieces.grow(first_piece + kSetupBatch, first_piece);
-    const SetupOutput out = kernel.setup(input, group.pieces.data() + first_piece, slow);
+    BinFragment* const fragments = group.fragments.room(kSetupBatch * kMicroSize * kMicroSize);
+    const SetupOutput out = kernel.setup(input, group.pieces.data() + first_piece, fragments, slow);
     if (!out.index_in_range) {
       index_in_range = false;
       return;
     }
     group.piece_count += out.pieces;
-    group.triangles.culled += count - out.pieces - out.uncovered - out.slow;
+    group.fragments.added(out.fragments);
+    group.triangles.culled += count - out.pieces - out.micro - out.slow;
     for (std::uint32_t s = 0; s < out.slow; ++s) {
       const TriangleFate fate =
           assemble_triangle(frame, draw, t + slow[s], request.cull, [&](const Piece& piece) {
@@ -152,7 +169,8 @@ void fill_group(Group& group, const FrameRequest& request, const FrameGeometry& 
     bin_pieces(group, first_piece, view, grid);
     id += count;
   }
-  sort_by_bin(group, grid.count());
+  group.by_bin.sort(grid.count());
+  group.fragments.sort(grid.count());
 }
 
 void test_fragments(const FrameRequest& request, const FrameGeometry& frame, const Piece* pieces,
@@ -171,10 +189,20 @@ void count_overdraw(const ImageView<std::uint32_t>& overdraw, std::span<const Bl
     }
 }
 
-/// The words of a bin, one per thread.
-struct alignas(64) BinWords {
+void count_overdraw(const ImageView<std::uint32_t>& overdraw, Rect bin,
+                    std::span<const BinFragment> fragments) {
+  for (const BinFragment& f : fragments) {
+    const int block = static_cast<int>(f.pixel) / 64, sample = static_cast<int>(f.pixel) % 64;
+    ++overdraw(bin.x0 + block % kBlocksPerBinRow * kBlockSize + sample % kBlockSize,
+               bin.y0 + block / kBlocksPerBinRow * kBlockSize + sample / kBlockSize);
+  }
+}
+
+/// What a thread needs to draw a bin.
+struct alignas(64) BinScratch {
   std::uint64_t words[kBlocksPerBin * 64];
   Block blocks[kBlockCapacity];
+  alignas(64) std::byte shader[kMaxShaderScratch];
 };
 
 struct BinCounts {
@@ -183,14 +211,22 @@ struct BinCounts {
 
 /// Resolves and shades one bin.
 BinCounts draw_bin(const FrameRequest& request, const FrameGeometry& frame, const Kernels& kernel,
-                   std::span<const Group> groups, std::size_t bin, Rect rect, BinWords& scratch) {
+                   std::span<const Group> groups, std::size_t bin, Rect rect, BinScratch& scratch) {
   BinCounts counts;
   std::fill_n(scratch.words, kBlocksPerBin * 64, 0);
   if (!request.targets.overdraw.empty())
     for (int y = rect.y0; y < rect.y1; ++y)
       std::fill_n(request.targets.overdraw.row(y) + rect.x0, rect.x1 - rect.x0, 0U);
   for (const Group& group : groups) {
-    const PieceList pieces = group.bin(bin);
+    const std::span<const BinFragment> fragments = group.fragments.bin(bin);
+    counts.fragments += fragments.size();
+    for (const BinFragment& f : fragments)
+      scratch.words[f.pixel] = std::max(scratch.words[f.pixel], f.word);
+    if (!request.targets.overdraw.empty())
+      count_overdraw(request.targets.overdraw, rect, fragments);
+
+    const std::span<const PieceInBin> in_bin = group.by_bin.bin(bin);
+    const PieceList pieces{group.pieces.data(), in_bin.data(), in_bin.size()};
     for (std::size_t cursor = 0; cursor < pieces.count;) {
       const std::size_t n =
           kernel.cover(pieces, cursor, rect, scratch.blocks, kBlockCapacity, counts.fragments);
@@ -200,12 +236,14 @@ BinCounts draw_bin(const FrameRequest& request, const FrameGeometry& frame, cons
       kernel.maximum(pieces.pieces, blocks.data(), n, rect, scratch.words);
     }
   }
+  if (request.shader != nullptr) std::memset(scratch.shader, 0, request.shader->scratch_bytes());
   for (int by = 0; by < kBlocksPerBinRow; ++by)
     for (int bx = 0; bx < kBlocksPerBinRow; ++bx) {
       const int x0 = rect.x0 + bx * kBlockSize, y0 = rect.y0 + by * kBlockSize;
       if (x0 >= rect.x1 || y0 >= rect.y1) continue;
       const std::uint64_t* words = scratch.words + (by * kBlocksPerBinRow + bx) * 64;
-      counts.covered += static_cast<std::uint64_t>(resolve_block(request, frame, words, x0, y0));
+      counts.covered +=
+          static_cast<std::uint64_t>(resolve_block(request, frame, words, x0, y0, scratch.shader));
     }
   return counts;
 }
@@ -217,11 +255,11 @@ struct TiledRasterizer::Scratch {
   MemoryAccount& memory;
   Buffer<ProjectedVertex> projected;
   std::vector<Group> groups;
-  tbb::enumerable_thread_specific<std::unique_ptr<BinWords>> bins;
+  tbb::enumerable_thread_specific<std::unique_ptr<BinScratch>> bins;
 
-  BinWords& bin_words() {
-    std::unique_ptr<BinWords>& mine = bins.local();
-    if (!mine) mine = std::make_unique<BinWords>();
+  BinScratch& bin_scratch() {
+    std::unique_ptr<BinScratch>& mine = bins.local();
+    if (!mine) mine = std::make_unique<BinScratch>();
     return *mine;
   }
 };
@@ -284,7 +322,7 @@ FrameStats TiledRasterizer::render(FrameRequest& request, parallel::Threads& exe
     const Rect rect{x0, y0, std::min(x0 + kBinSize, request.width),
                     std::min(y0 + kBinSize, request.height)};
     const BinCounts counts =
-        draw_bin(request, frame, kernel, groups, bin, rect, scratch_->bin_words());
+        draw_bin(request, frame, kernel, groups, bin, rect, scratch_->bin_scratch());
     fragments.fetch_add(counts.fragments, std::memory_order_relaxed);
     covered.fetch_add(counts.covered, std::memory_order_relaxed);
   });

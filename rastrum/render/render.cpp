@@ -1,13 +1,18 @@
 #include <rastrum/render/render.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <string>
 #include <utility>
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
+#include <rastrum/raster/interpolate.hpp>
 #include <rastrum/raster/reference.hpp>
+#include <rastrum/raster/shaders/alpha_test.hpp>
 #include <rastrum/raster/shaders/lit.hpp>
+#include <rastrum/raster/shaders/material.hpp>
+#include <rastrum/raster/shaders/texture.hpp>
 #include <rastrum/raster/tiled.hpp>
 #include <rastrum/raster/transform_source.hpp>
 
@@ -56,8 +61,6 @@ raster::LitModel lit_model(Shader shader) {
   switch (shader) {
     case Shader::flat:
       return raster::LitModel::flat;
-    case Shader::depth:
-      return raster::LitModel::depth;
     case Shader::normal:
       return raster::LitModel::normal;
     case Shader::id:
@@ -71,6 +74,31 @@ raster::LitModel lit_model(Shader shader) {
   }
 }
 
+/// Nearest white, farthest black; one depth alone is white. A surface at depth 0 is left to the
+/// background, from which its depth does not tell it.
+void stretch_depth(ImageView<float> depth, Vec4 background, const Targets& targets) {
+  float nearest = 0;
+  float farthest = 1;
+  for (int y = 0; y < depth.height; ++y)
+    for (int x = 0; x < depth.width; ++x) {
+      const float d = depth(x, y);
+      if (!(d > 0)) continue;
+      nearest = std::max(nearest, d);
+      farthest = std::min(farthest, d);
+    }
+  const float scale = nearest > farthest ? 1 / (nearest - farthest) : 0.0F;
+  const Vec4 behind{background.x * background.w, background.y * background.w,
+                    background.z * background.w, background.w};
+  for (int y = 0; y < depth.height; ++y)
+    for (int x = 0; x < depth.width; ++x) {
+      const float d = depth(x, y);
+      const float grey = 1 - (nearest - d) * scale;
+      const Vec4 color = d > 0 ? Vec4{grey, grey, grey, 1} : behind;
+      if (!targets.color8.empty()) targets.color8(x, y) = raster::to_straight_rgba8(color);
+      if (!targets.color.empty()) targets.color(x, y) = color;
+    }
+}
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -80,6 +108,7 @@ struct Renderer::Impl {
   Isa isa = Isa::scalar;
   bool reference = false;
   MemoryAccount memory;
+  raster::TextureSet textures{memory};
   std::unique_ptr<parallel::Threads> threads;
   std::unique_ptr<raster::TiledRasterizer> tiled;
 };
@@ -126,11 +155,13 @@ const RenderOptions& Renderer::options() const {
 FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const Targets& targets) {
   const RenderOptions& o = impl_->options;
   check_attributes(scene);
+  raster::check_materials(scene);
   const Mat4d to_clip = world_to_clip(camera, o.width, o.height);
   std::vector<raster::TransformSource> sources;
   sources.reserve(scene.instances.size());
   std::vector<raster::Draw> draws;
   draws.reserve(scene.instances.size());
+  bool any_mask = false;
   for (const InstanceView& instance : scene.instances) {
     sources.emplace_back(instance.mesh.positions, to_clip * instance.object_to_world);
     raster::Draw& draw = draws.emplace_back();
@@ -138,10 +169,49 @@ FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const 
     draw.vertex_count = instance.mesh.positions.size();
     draw.indices = instance.mesh.indices;
     draw.triangle_count = instance.mesh.triangle_count();
+    if (!raster::has_mask(instance.mesh, scene.materials)) continue;
+    draw.flags |= raster::kTested;
+    any_mask = true;
   }
+  const bool shades_materials = o.shader == Shader::material;
+  std::optional<raster::MaterialScene> materials;
+  std::unique_ptr<raster::FragmentTest> test;
+  if (shades_materials || any_mask) {
+    impl_->textures.update(scene.textures, raster::texture_uses(scene, shades_materials),
+                           impl_->threads.get());
+    materials.emplace(scene, camera, o.width, o.height, impl_->textures);
+  }
+  if (any_mask)
+    test = raster::make_alpha_test(*materials, impl_->reference ? Isa::scalar : impl_->isa);
+  if (shades_materials)
+    return draw(draws, *raster::make_material_shader(*materials), test.get(), targets);
+  if (o.shader == Shader::depth) return draw_depth(draws, test.get(), targets);
   const raster::LitScene lit(scene, camera, o.width, o.height);
-  const auto shader = raster::make_lit_shader(lit_model(o.shader), lit);
-  return draw(draws, *shader, nullptr, targets);
+  return draw(draws, *raster::make_lit_shader(lit_model(o.shader), lit), test.get(), targets);
+}
+
+/// Grey by depth needs the range of depths in the picture, so it is a pass after the frame.
+FrameStats Renderer::draw_depth(std::span<raster::Draw> draws, const raster::FragmentTest* test,
+                                const Targets& targets) {
+  const RenderOptions& o = impl_->options;
+  Image<float> depth;
+  Targets first = targets;
+  first.color8 = {};
+  first.color = {};
+  if (first.depth.empty()) {
+    depth = Image<float>(o.width, o.height);
+    first.depth = depth.view();
+  }
+  const raster::FragmentShader unused(
+      [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
+  FrameStats stats = draw(draws, unused, test, first);
+  const auto begin = std::chrono::steady_clock::now();
+  stretch_depth(first.depth, o.background, targets);
+  const double ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  stats.stages.push_back({"stretch depth", stats.frame_ms, stats.frame_ms + ms});
+  stats.frame_ms += ms;
+  return stats;
 }
 
 FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::BlockShader& shader,

@@ -20,7 +20,7 @@ enum class Device : std::uint8_t { serial, threads, cuda };
 
 enum class Shader : std::uint8_t {
   flat,       ///< base colour, unlit
-  depth,      ///< grey = reversed depth
+  depth,      ///< grey: nearest white, farthest of the picture black
   normal,     ///< (n + 1) / 2 of the world-space unit normal
   id,         ///< a hash of the triangle id as a colour
   lambert,    ///< base · (0.1 + 0.8 max(n·l, 0))
@@ -75,6 +75,8 @@ class Renderer {
   [[nodiscard]] const RenderOptions& options() const;
 
  private:
+  FrameStats draw_depth(std::span<raster::Draw> draws, const raster::FragmentTest* test,
+                        const Targets& targets);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

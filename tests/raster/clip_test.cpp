@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include "tests/support/environment.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
@@ -18,6 +19,8 @@ namespace rastrum::test {
 namespace {
 
 using Real = long double;
+
+constexpr int kWidth = 48, kHeight = 40;
 
 // A line a x + b y + c in px; ≥ 0 is inside.
 struct Line {
@@ -32,22 +35,29 @@ struct Line {
 // The triangle's part in front of the near plane, as four half planes of the screen.
 struct ExactTriangle {
   std::array<Line, 4> lines;
+  Line z, w;  // z and w of the triangle, up to a common factor
   bool edge_on = false;
 
   ExactTriangle(const ProjectedTriangle& t, int width, int height) {
     const Real hw = Real(width) / 2, hh = Real(height) / 2;
-    Real x[3], y[3], w[3];
+    Real x[3], y[3], cw[3];
     for (int i = 0; i < 3; ++i) {
-      w[i] = t.clip[i].w;
-      x[i] = (t.clip[i].x + w[i]) * hw;
-      y[i] = (w[i] - t.clip[i].y) * hh;
+      cw[i] = t.clip[i].w;
+      x[i] = (t.clip[i].x + cw[i]) * hw;
+      y[i] = (cw[i] - t.clip[i].y) * hh;
     }
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-      lines[i] = {y[j] * w[k] - w[j] * y[k], w[j] * x[k] - x[j] * w[k], x[j] * y[k] - y[j] * x[k]};
+      lines[i] = {y[j] * cw[k] - cw[j] * y[k], cw[j] * x[k] - x[j] * cw[k],
+                  x[j] * y[k] - y[j] * x[k]};
     }
-    const Real det = x[0] * lines[0].a + y[0] * lines[0].b + w[0] * lines[0].c;
+    const Real det = x[0] * lines[0].a + y[0] * lines[0].b + cw[0] * lines[0].c;
     edge_on = det == 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Line& l = lines[i];
+      z = {z.a + l.a * t.clip[i].z, z.b + l.b * t.clip[i].z, z.c + l.c * t.clip[i].z};
+      w = {w.a + l.a * t.clip[i].w, w.b + l.b * t.clip[i].w, w.c + l.c * t.clip[i].w};
+    }
     const Real sign = det < 0 ? -1 : 1;
     for (std::size_t i = 0; i < 3; ++i) {
       Line& l = lines[i];
@@ -58,6 +68,10 @@ struct ExactTriangle {
       lines[3].c += l.c * in_front;
     }
   }
+  [[nodiscard]] Real z_over_w(int px, int py) const {
+    const Real x = px + Real(0.5), y = py + Real(0.5);
+    return (z.a * x + z.b * y + z.c) / (w.a * x + w.b * y + w.c);
+  }
   // How deep inside all of the half planes the sample lies, in px; negative outside.
   [[nodiscard]] Real depth(int px, int py) const {
     Real d = std::numeric_limits<Real>::infinity();
@@ -66,23 +80,29 @@ struct ExactTriangle {
   }
 };
 
-// How far snapping may move a corner, and float32 before it: px has four roundings of 2⁻²⁴.
-Real tolerance(const raster::ClippedPolygon& polygon) {
+// How far snapping may move a corner. Those that the clipper made come from float64; those of the
+// triangle itself from float32 px with four roundings of 2⁻²⁴.
+Real tolerance(const ProjectedTriangle& t) {
   Real largest = 0;
-  for (int i = 0; i < polygon.size; ++i)
-    for (const std::int32_t v : {polygon.vertices[i].x_fx8, polygon.vertices[i].y_fx8})
-      largest = std::max(largest, std::abs(Real(v)) / 256);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (t.has_position[i])
+      for (const std::int64_t v : {t.snapped.v[i].x_fx8, t.snapped.v[i].y_fx8})
+        largest = std::max(largest, std::abs(Real(v)) / 256);
   return (1.0L / 512 + largest * 0x1p-22L) * std::sqrt(2.0L) + 1e-9L;
 }
 
-// At least `count` triangles that need the clipper, from the generated scenes whose coordinates are
-// moderate (near FLT_MAX no precision tells on which side of an edge a sample lies).
+enum class Size { moderate, any };
+
+// At least `count` triangles that need the clipper, from generated scenes. Comparisons with the
+// exact rasterizer want moderate ones: near FLT_MAX no precision tells on which side of an edge a
+// sample is.
 template <class F>
-void for_each_clipped(int count, int width, int height, F&& f) {
+void for_each_clipped(int count, Size size, F&& f) {
+  constexpr int width = kWidth, height = kHeight;
   int seen = 0;
   for (std::uint64_t seed = 0; seen < count; ++seed) {
     const GeneratedScene g = generate(seed, width, height);
-    if (g.kind == "extreme") continue;
+    if (g.kind == "extreme" && size == Size::moderate) continue;
     const SceneBinding binding(g.scene);
     for (const ProjectedTriangle& t : project(binding.view(), g.camera, width, height)) {
       if (t.fate != Fate::needs_clip) continue;
@@ -92,11 +112,9 @@ void for_each_clipped(int count, int width, int height, F&& f) {
   }
 }
 
-constexpr int kWidth = 48, kHeight = 40;
-
 TEST(Clip, CoversWhatAnExactHomogeneousRasterizerCovers) {
   int inside = 0, polygons = 0;
-  for_each_clipped(20000, kWidth, kHeight, [&](const ProjectedTriangle& t, std::uint64_t seed) {
+  for_each_clipped(20000, Size::moderate, [&](const ProjectedTriangle& t, std::uint64_t seed) {
     const ExactTriangle exact(t, kWidth, kHeight);
     if (exact.edge_on) return;
     const raster::ClippedPolygon polygon = clip(t, kWidth, kHeight);
@@ -106,7 +124,7 @@ TEST(Clip, CoversWhatAnExactHomogeneousRasterizerCovers) {
     const bool front = raster::orientation(corners) > 0;
     const std::vector<SnappedTriangle> pieces = fan_of(polygon, front, t.id);
     polygons += polygon.size > 0;
-    const Real unsure = tolerance(polygon);
+    const Real unsure = tolerance(t);
     const OracleImage image = brute_force(kWidth, kHeight, pieces);
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
@@ -130,7 +148,7 @@ TEST(Clip, CoversWhatAnExactHomogeneousRasterizerCovers) {
 
 // No sample twice, not even on the inner edges of the fan or where snapping bends the polygon.
 TEST(Clip, PiecesDoNotOverlap) {
-  for_each_clipped(20000, kWidth, kHeight, [&](const ProjectedTriangle& t, std::uint64_t seed) {
+  for_each_clipped(20000, Size::moderate, [&](const ProjectedTriangle& t, std::uint64_t seed) {
     const raster::ClippedPolygon polygon = clip(t, kWidth, kHeight);
     for (const bool front : {false, true}) {
       const OracleImage image = brute_force(kWidth, kHeight, fan_of(polygon, front, t.id));
@@ -141,7 +159,7 @@ TEST(Clip, PiecesDoNotOverlap) {
 }
 
 TEST(Clip, KeepsThePositionsOfCornersThatNeedNoCut) {
-  for_each_clipped(20000, kWidth, kHeight, [&](const ProjectedTriangle& t, std::uint64_t seed) {
+  for_each_clipped(20000, Size::moderate, [&](const ProjectedTriangle& t, std::uint64_t seed) {
     const raster::ClippedPolygon polygon = clip(t, kWidth, kHeight);
     for (int i = 0; i < 3; ++i) {
       if (!t.has_position[i]) continue;
@@ -160,7 +178,7 @@ TEST(Clip, KeepsThePositionsOfCornersThatNeedNoCut) {
 
 // New vertices depend on their edge alone: every way to submit a triangle gives the same set.
 TEST(Clip, NewVerticesDoNotDependOnTheOrderOfCorners) {
-  for_each_clipped(5000, kWidth, kHeight, [&](const ProjectedTriangle& t, std::uint64_t seed) {
+  for_each_clipped(20000, Size::any, [&](const ProjectedTriangle& t, std::uint64_t seed) {
     const auto sorted = [](const raster::ClippedPolygon& p) {
       std::vector<std::array<std::int32_t, 2>> v;
       for (int i = 0; i < p.size; ++i) v.push_back({p.vertices[i].x_fx8, p.vertices[i].y_fx8});
@@ -203,16 +221,75 @@ TEST(Clip, StaysInsideTheGuardBandUpToTheLargestCoordinates) {
   EXPECT_GT(polygons, 100);
 }
 
-// The depth of a new vertex is that of the plane through the original three.
-TEST(Clip, DepthOfNewVertices) {
+// Rounding can bend the polygon of such coordinates until a plane crosses it four times.
+TEST(Clip, NeverHasMoreCornersThanItsPolygonHolds) {
+  constexpr double kKnown[][3][4] = {
+      {{0x1.495a12p+4, -0x1.0b6f92p+65, 0, -0x1.e6da3cp+8},
+       {-0x1.5b3b28p+14, -0x1.8ed2aep+12, -0x1.f2afbcp+34, 0x1.40c054p+51},
+       {0x1.9f7a14p+74, 0x1.91efc6p+122, -0x1.18b2e6p+96, -0x1.4b0a9ep+89}},
+      {{-0x1.fcbcd4p+48, -0x1.492818p+37, 0x1.3eacf6p+78, 0x1.fcd508p+97},
+       {0x1.78b596p+74, 0x1.67a0cep+98, -0x1.1afc36p+114, -0x1.1c52acp+90},
+       {0x1.aa4c16p+8, 0x1.925402p-4, 0x1.e84826p+35, 0}},
+      {{0, -0x1.e95e9ep+38, 0x1.106a64p-10, -0x1.9d0a78p+35},
+       {0x1.0f5ef6p+51, -0x1.6f7c1ep+1, -0x1.e1d8ep+119, -0x1.a5a238p+102},
+       {0x1.b85e62p+35, 0x1.4e3af2p+40, -0x1.e1f1acp+119, 0x1.22ce5cp+55}},
+  };
+  const auto expect_sane = [](const ProjectedTriangle& t) {
+    const raster::ClippedPolygon p = clip(t, kWidth, kHeight);
+    ASSERT_TRUE(p.size == 0 || (p.size >= 3 && p.size <= raster::kMaxPolygon)) << p.size;
+  };
+  const auto triangle = [](const double(&v)[3][4]) {
+    ProjectedTriangle t;
+    for (std::size_t i = 0; i < 3; ++i) {
+      t.clip[i] = {v[i][0], v[i][1], v[i][2], v[i][3]};
+      t.has_position[i] = snap(t.clip[i], kWidth, kHeight, t.snapped.v[i]);
+    }
+    return t;
+  };
+  for (const auto& known : kKnown) expect_sane(triangle(known));
+  Random r(1);
+  const int count = count_from_environment("RASTRUM_CLIP_TRIANGLES", 2000000);
+  for (int i = 0; i < count && !HasFatalFailure(); ++i) {
+    double v[3][4];
+    for (auto& corner : v) {
+      for (double& c : corner) {
+        const auto magnitude = static_cast<float>(std::exp2(r.real(-10, 124)));
+        c = r.chance(0.1) ? 0 : r.chance(0.5) ? magnitude : -magnitude;
+      }
+    }
+    expect_sane(triangle(v));
+  }
+}
+
+// Depth is z / w, which is linear on the screen: the pieces' planes follow that of the triangle, up
+// to its slope times what snapping may move a corner, and the float32 roundings of the piece's
+// plane.
+TEST(Clip, DepthFollowsTheTriangle) {
   int checked = 0;
-  for_each_clipped(20000, kWidth, kHeight, [&](const ProjectedTriangle& t, std::uint64_t seed) {
+  for_each_clipped(5000, Size::moderate, [&](const ProjectedTriangle& t, std::uint64_t seed) {
+    const ExactTriangle exact(t, kWidth, kHeight);
+    if (exact.edge_on) return;
     const raster::ClippedPolygon polygon = clip(t, kWidth, kHeight);
-    for (int i = 0; i < polygon.size; ++i) {
-      // Where all corners have depths in [0, 1] the new ones lie between them, the near plane's
-      // at 1.
-      EXPECT_LE(polygon.vertices[i].depth, 1.0F) << "seed " << seed << " id " << t.id;
-      ++checked;
+    const Real unsure = tolerance(t);
+    std::vector<SnappedTriangle> pieces = fan_of(polygon, true, t.id);
+    for (const SnappedTriangle& p : fan_of(polygon, false, t.id)) pieces.push_back(p);
+    for (const SnappedTriangle& p : pieces) {
+      for (int y = 0; y < kHeight; y += 3) {
+        for (int x = 0; x < kWidth; x += 3) {
+          if (exact.depth(x, y) <= unsure || !covers(p, x, y)) continue;
+          const Real here = exact.z_over_w(x, y);
+          const Real slope =
+              std::abs(exact.z_over_w(x + 1, y) - here) + std::abs(exact.z_over_w(x, y + 1) - here);
+          const SnappedVertex& origin = p.v[0];
+          const Real reach =
+              std::abs(Real(origin.x_fx8) / 256 - x) + std::abs(Real(origin.y_fx8) / 256 - y);
+          const Real roundings = (std::abs(Real(origin.depth)) + reach * slope) * 0x1p-22L;
+          EXPECT_NEAR(double(depth_at(p, x, y)), double(std::clamp<Real>(here, 0, 1)),
+                      double(slope * unsure + roundings))
+              << "seed " << seed << " id " << t.id << " at " << x << "," << y;
+          ++checked;
+        }
+      }
     }
   });
   EXPECT_GT(checked, 10000);

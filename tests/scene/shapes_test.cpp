@@ -76,6 +76,17 @@ TEST(TorusKnot, IsAClosedTube) {
   EXPECT_NEAR(signed_volume(torus), 2 * kPi * kPi * 1.4 * 0.0625, 1e-3);
 }
 
+TEST(TorusKnot, TextureRunsAlongAndAroundTheTube) {
+  // Position i · sides + j has the coordinates (i / segments, j / sides), or 1 where they close.
+  const Mesh mesh = shapes::torus_knot(2, 3, 32, 8);
+  for (std::size_t corner = 0; corner < 3 * mesh.triangle_count(); ++corner) {
+    const std::uint32_t p = position_index(mesh, corner);
+    const Vec2 uv = attribute_at(mesh, mesh.texcoords, corner);
+    EXPECT_EQ(static_cast<std::uint32_t>(uv.x * 32) % 32, p / 8);
+    EXPECT_EQ(static_cast<std::uint32_t>(uv.y * 8) % 8, p % 8);
+  }
+}
+
 TEST(Boxes, AreClosedAndHaveTheirVolume) {
   for (const int count : {1, 2, 5}) {
     const Mesh mesh = shapes::boxes(count, 0.5F);

@@ -5,29 +5,16 @@
 
 #include <rastrum/raster/interpolate.hpp>
 #include <rastrum/raster/shaders/lit_constants.hpp>
+#include <rastrum/raster/shaders/normals.hpp>
 
 namespace rastrum::raster {
 namespace {
 
-Vec3 interpolate(const AttributeView<Vec3>& attribute, const Fragment& f) {
-  Vec3 sum;
-  for (int c = 0; c < 3; ++c) {
-    const std::size_t i = attribute.indices.empty()
-                              ? f.vertex[c]
-                              : attribute.indices[f.triangle * 3 + static_cast<std::size_t>(c)];
-    sum = sum + attribute.values[i] * static_cast<float>(f.weights.b[c]);
-  }
-  return sum;
-}
-
-Vec3 face_normal(const MeshView& mesh, const Fragment& f) {
-  const Vec3 a = mesh.positions[f.vertex[0]];
-  return cross(mesh.positions[f.vertex[1]] - a, mesh.positions[f.vertex[2]] - a);
-}
-
 Vec3 world_normal(const LitDraw& draw, const Fragment& f) {
-  const Vec3 n =
-      draw.mesh.normals.empty() ? face_normal(draw.mesh, f) : interpolate(draw.mesh.normals, f);
+  Vec3 corners[3];
+  corner_normals(draw.mesh, f.triangle, f.vertex, corners);
+  Vec3 n;
+  for (int c = 0; c < 3; ++c) n = n + corners[c] * static_cast<float>(f.weights.b[c]);
   const auto& m = draw.normal_matrix;
   return normalize(Vec3{m[0][0] * n.x + m[0][1] * n.y + m[0][2] * n.z,
                         m[1][0] * n.x + m[1][1] * n.y + m[1][2] * n.z,
@@ -75,14 +62,14 @@ class LitShader final : public BlockShader {
     return scalar.shade(frame, block, isa, colors);
   }
 
+  [[nodiscard]] std::size_t scratch_bytes() const noexcept override { return lit_scratch_bytes(); }
+
  private:
-  Vec4 color(const Fragment& f) const {
+  [[nodiscard]] Vec4 color(const Fragment& f) const {
     const LitDraw& draw = scene_.draws[f.draw];
     switch (model_) {
       case LitModel::flat:
         return opaque(base_color(draw.mesh, f));
-      case LitModel::depth:
-        return {f.depth, f.depth, f.depth, 1};
       case LitModel::normal:
         return opaque(world_normal(draw, f) * 0.5F + Vec3{0.5F, 0.5F, 0.5F});
       case LitModel::id:

@@ -1,4 +1,4 @@
-// The plain shaders: flat, depth, normal, id, lambert, phong, wireframe. They write display values
+// The plain shaders: flat, normal, id, lambert, phong, wireframe. They write display values
 // as they are. The lighting is fixed, so that other renderers can be compared with it:
 //   base · (0.1 + 0.8 max(n·l, 0)) + 0.3 max(n·h, 0)³²,  l = (0.4, 0.6, 1) / |…| in world space,
 // base = the mesh's colours, (0.8, 0.7, 0.6) where it has none; n turned to face the viewer.
@@ -14,7 +14,7 @@
 
 namespace rastrum::raster {
 
-enum class LitModel : std::uint8_t { flat, depth, normal, id, lambert, phong, wireframe };
+enum class LitModel : std::uint8_t { flat, normal, id, lambert, phong, wireframe };
 
 /// What the lit shaders read of one draw.
 struct LitDraw {

@@ -20,6 +20,7 @@
 
 #include <rastrum/raster/interpolate.hpp>
 #include <rastrum/raster/shaders/lit_constants.hpp>
+#include <rastrum/raster/shaders/normals.hpp>
 
 #ifndef RASTRUM_RASTER_SHADERS_LIT_SIMD_ONCE
 #define RASTRUM_RASTER_SHADERS_LIT_SIMD_ONCE
@@ -28,9 +29,9 @@ namespace {
 
 /// A triangle as the rows need it.
 struct TriangleSetup {
-  std::uint64_t low = 0;  ///< of the word; 0: none yet
-  bool exact = false;     ///< interpolate with `planes`
-  float x0, y0;           ///< λ₁ = p1 (x − x0) + q1 (y − y0), λ₂ alike
+  std::uint64_t low;  ///< of the word; 0: none yet
+  bool exact;         ///< interpolate with `planes`
+  float x0, y0;       ///< λ₁ = p1 (x − x0) + q1 (y − y0), λ₂ alike
   float p1, q1, p2, q2;
   float inv_w[3];
   Vec3 normal[3];  ///< world space
@@ -38,14 +39,18 @@ struct TriangleSetup {
   WeightPlanes planes;
 };
 
-/// Triangles of a block by their ids' low bits: rows below mostly meet the same ones again.
-constexpr std::size_t kKept = 16;
+/// The triangles of a bin that were seen last, by their ids' low bits: rows and blocks beside
+/// mostly meet the same ones again.
+struct Kept {
+  static constexpr std::size_t kCount = 64;
+  TriangleSetup triangles[kCount];
+};
+static_assert(sizeof(Kept) <= kMaxShaderScratch);
 
 /// Up to this ratio of squared longest edge to twice the area float32 weights are as good as 1e-5.
 constexpr float kThin = 32.0F;
 
 Vec3 to_world(const LitDraw& draw, Vec3 n) {
-  if (draw.identity) return n;
   const auto& m = draw.normal_matrix;
   return {m[0][0] * n.x + m[0][1] * n.y + m[0][2] * n.z,
           m[1][0] * n.x + m[1][1] * n.y + m[1][2] * n.z,
@@ -93,17 +98,10 @@ void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint
   const std::uint32_t vertex[3] = {draw.vertex(t, 0), draw.vertex(t, 1), draw.vertex(t, 2)};
   fetch_weights(frame, draw, t, vertex, out);
   const MeshView& mesh = lit.mesh;
-  if (wants_normals && mesh.normals.empty()) {
-    const Vec3 a = mesh.positions[vertex[0]];
-    const Vec3 n =
-        to_world(lit, cross(mesh.positions[vertex[1]] - a, mesh.positions[vertex[2]] - a));
-    for (Vec3& normal : out.normal) normal = n;
-  } else if (wants_normals) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::size_t i =
-          mesh.normals.indices.empty() ? vertex[c] : mesh.normals.indices[t * 3 + c];
-      out.normal[c] = to_world(lit, mesh.normals.values[i]);
-    }
+  if (wants_normals) {
+    corner_normals(mesh, t, vertex, out.normal);
+    if (!lit.identity)
+      for (Vec3& n : out.normal) n = to_world(lit, n);
   }
   if (!scene.colored) return;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -245,7 +243,7 @@ void shade_block(const LitScene& scene, const FrameGeometry& frame, const Visibl
   const F32 d;
   constexpr bool kNormals = kModel != LitModel::flat;
   const bool colored = kModel != LitModel::normal && scene.colored;
-  TriangleSetup kept[kKept];
+  TriangleSetup* const kept = static_cast<Kept*>(block.scratch)->triangles;
   for (std::size_t first = 0; first < 64; first += kLanes) {
     auto rest = static_cast<std::uint32_t>(block.covered >> first & ((1U << kLanes) - 1));
     if (rest == 0) continue;
@@ -256,7 +254,7 @@ void shade_block(const LitScene& scene, const FrameGeometry& frame, const Visibl
     V3 base{set(kDefaultBase.x), set(kDefaultBase.y), set(kDefaultBase.z)};
     while (rest != 0) {
       const std::uint64_t low = words[std::countr_zero(rest)] & kIdMask;
-      TriangleSetup& t = kept[low % kKept];
+      TriangleSetup& t = kept[low % Kept::kCount];
       if (t.low != low) fetch_triangle(scene, frame, low, kNormals, t);
       const std::uint32_t same = same_triangle(words, low) & rest;
       const auto mask = lane_mask(same);
@@ -304,6 +302,10 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace rastrum::raster {
+
+std::size_t lit_scratch_bytes() noexcept {
+  return sizeof(Kept);
+}
 
 bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
                     const VisibleBlock& block, BlockColors& colors) noexcept {

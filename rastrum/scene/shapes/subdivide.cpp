@@ -38,6 +38,7 @@ struct Edges {
 Edges find_edges(parallel::Threads& exec, const Indices& indices, std::size_t vertex_count) {
   const std::size_t sides = indices.size();
   Edges edges;
+  if (sides == 0) return edges;
   edges.shift = std::max(1, static_cast<int>(std::bit_width(vertex_count - 1)));
   std::vector<std::uint64_t> keys(sides);
   Indices side(sides);
@@ -56,7 +57,7 @@ Edges find_edges(parallel::Threads& exec, const Indices& indices, std::size_t ve
   edges.of_side.resize(sides);
   parallel::scatter(exec, parallel::Computed(sides, [&](std::size_t i) { return number[i] - 1; }),
                     side, edges.of_side);
-  edges.ends.resize(sides == 0 ? 0 : number.back());
+  edges.ends.resize(number.back());
   parallel::scatter_if(exec, keys,
                        parallel::Computed(sides, [&](std::size_t i) { return number[i] - 1; }),
                        parallel::Computed(sides, is_new), edges.ends);

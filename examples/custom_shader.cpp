@@ -1,0 +1,59 @@
+// A vertex and a fragment function of one's own, with a varying struct of one's own: a waving flag
+// whose stripes are computed at each pixel and whose moth holes are discarded.
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include <rastrum/io/io.hpp>
+#include <rastrum/raster/program.hpp>
+#include <rastrum/render/render.hpp>
+
+using rastrum::Vec2, rastrum::Vec3, rastrum::Vec4;
+
+/// What the vertex function hands to the fragment function: anything with + and * float.
+struct Cloth {
+  Vec2 at;
+  Vec3 normal;
+  Cloth operator+(const Cloth& o) const { return {at + o.at, normal + o.normal}; }
+  Cloth operator*(float s) const { return {at * s, normal * s}; }
+};
+
+int main() {
+  constexpr std::uint32_t kColumns = 64, kRows = 40;
+  std::vector<std::uint32_t> indices;
+  for (std::uint32_t i = 0; i + kColumns < kColumns * kRows; ++i)
+    if (i % kColumns != kColumns - 1)
+      indices.insert(indices.end(),
+                     {i, i + kColumns, i + 1, i + 1, i + kColumns, i + kColumns + 1});
+
+  rastrum::RenderOptions options;
+  options.background = {0.93F, 0.95F, 0.98F, 1};
+  rastrum::Camera camera;
+  camera.eye = {0.3F, 0.4F, 2.2F};
+  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, options.width, options.height));
+
+  const auto vertex = [&](std::uint32_t i) {
+    const Vec2 at{static_cast<float>(i % kColumns) / (kColumns - 1),
+                  static_cast<float>(i / kColumns) / (kRows - 1)};
+    const float phase = 9 * at.x + 2 * at.y;
+    const Vec3 position{3 * at.x - 1.5F, 0.9F - 1.8F * at.y, 0.12F * std::sin(phase)};
+    const Vec3 normal{-0.36F * std::cos(phase), 0.13F * std::cos(phase), 1};
+    return rastrum::raster::VertexOutput<Cloth>{transform_point(to_clip, position), {at, normal}};
+  };
+  const auto shade = [](const Cloth& c, const rastrum::raster::Fragment&) {
+    const float light = 0.25F + 0.75F * dot(normalize(c.normal), normalize(Vec3{0.4F, 0.6F, 1}));
+    const bool red = static_cast<int>(c.at.y * 7) % 2 == 0;
+    return red ? Vec4{0.8F * light, 0.15F * light, 0.2F * light, 1} : Vec4{light, light, light, 1};
+  };
+  const auto is_hole = [](const Cloth& c, const rastrum::raster::Fragment&) {
+    return std::hypot(c.at.x - 0.7F, c.at.y - 0.45F) < 0.06F;
+  };
+  const rastrum::raster::Program program(vertex, shade, is_hole);
+  rastrum::raster::Draw draw = program.draw(kColumns * kRows, indices);
+  rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
+  rastrum::Targets targets;
+  targets.color8 = image.view();
+  rastrum::Renderer(options).draw({&draw, 1}, program, program.test(), targets);
+  rastrum::io::write_png("custom_shader.png", std::as_const(image).view());
+  std::puts("custom_shader.png");
+}

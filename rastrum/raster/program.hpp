@@ -1,0 +1,171 @@
+// The programmable pipeline: a vertex function, a fragment function and, if wanted, a discard
+// function of the caller's own, over a varying struct of the caller's own.
+//
+//   struct Varying { Vec3 color; };  // with V + V and V * float
+//   raster::Program program(
+//       [&](std::uint32_t i) { return raster::VertexOutput<Varying>{clip(i), {color(i)}}; },
+//       [&](const Varying& v, const raster::Fragment&) { return Vec4{v.color.x, …, 1}; });
+//   raster::Draw draw = program.draw(vertex_count, indices);
+//   renderer.draw({&draw, 1}, program, program.test(), targets);
+//
+// Shading is deferred: the vertex function runs once a vertex for positions, and again for the
+// corners of each triangle that is seen in a block, so that no varying is stored. All functions are
+// called from several threads at once and must not throw.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+#include <rastrum/raster/geometry.hpp>
+#include <rastrum/raster/interpolate.hpp>
+#include <rastrum/raster/setup.hpp>
+
+namespace rastrum::raster {
+
+/// What can be interpolated: Σ varyingᵢ · weightᵢ, in the caller's own arithmetic.
+template <class V>
+concept Varying = std::copyable<V> && requires(const V& v, float s) {
+  { v + v } -> std::convertible_to<V>;
+  { v* s } -> std::convertible_to<V>;
+};
+
+template <Varying V>
+struct VertexOutput {
+  Vec4 clip;  ///< reversed depth: z = w at the near plane, 0 at the far one (world_to_clip's)
+  V varying;
+};
+
+/// Discards nothing.
+struct KeepAll {};
+
+/// Vertex: VertexOutput<V>(std::uint32_t index). Shade: Vec4(const V&, const Fragment&), the
+/// premultiplied display value. Discard: bool(const V&, const Fragment&), true for a hole.
+/// A program is the vertex source of its draws and the shader of the frame.
+template <class Vertex, class Shade, class Discard = KeepAll>
+class Program final : public VertexSource, public BlockShader {
+ public:
+  using VaryingType = decltype(std::declval<const Vertex&>()(std::uint32_t{}).varying);
+  static_assert(Varying<VaryingType>, "a varying needs V + V and V * float");
+
+  Program(Vertex vertex, Shade shade, Discard discard = {})
+      : vertex_(std::move(vertex)), shade_(std::move(shade)), test_(*this, std::move(discard)) {}
+  Program(const Program&) = delete;  // draws and the test point to it
+  Program& operator=(const Program&) = delete;
+
+  /// `indices`: 3 per triangle, which must outlive the frame; empty: vertices in order.
+  [[nodiscard]] Draw draw(std::size_t vertex_count,
+                          std::span<const std::uint32_t> indices = {}) const {
+    Draw d;
+    d.source = this;
+    d.vertex_count = vertex_count;
+    d.indices = indices;
+    d.triangle_count = (indices.empty() ? vertex_count : indices.size()) / 3;
+    if constexpr (kDiscards) d.flags = kTested;
+    return d;
+  }
+  /// For Renderer::draw; null where the program discards nothing.
+  [[nodiscard]] const FragmentTest* test() const {
+    if constexpr (kDiscards)
+      return &test_;
+    else
+      return nullptr;
+  }
+
+  void project(std::size_t begin, std::size_t end, Viewport viewport, Isa,
+               ProjectedVertex* out) const noexcept override {
+    for (std::size_t i = begin; i < end; ++i)
+      out[i - begin] = raster::project(vertex_(static_cast<std::uint32_t>(i)).clip, viewport);
+  }
+
+  [[nodiscard]] Vec4d clip_position(std::size_t vertex) const noexcept override {
+    const Vec4 c = vertex_(static_cast<std::uint32_t>(vertex)).clip;
+    return {c.x, c.y, c.z, c.w};
+  }
+
+  bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa,
+             BlockColors& colors) const noexcept override {
+    bool opaque = true;
+    for (std::uint64_t left = block.covered; left != 0;) {
+      const std::uint64_t low = block.words[std::countr_zero(left)] & kIdMask;
+      std::uint64_t mask = 0;
+      for (std::uint64_t m = left; m != 0; m &= m - 1) {
+        const int i = std::countr_zero(m);
+        mask |= std::uint64_t{(block.words[i] & kIdMask) == low} << i;
+      }
+      left &= ~mask;
+      for_each_fragment(frame, id_of_word(low), mask, block.x0, block.y0,
+                        [&](int i, const VaryingType& v, Fragment& fragment) {
+                          fragment.depth = std::bit_cast<float>(
+                              static_cast<std::uint32_t>(block.words[i] >> kIdBits));
+                          const Vec4 c = shade_(v, std::as_const(fragment));
+                          colors.r[i] = c.x;
+                          colors.g[i] = c.y;
+                          colors.b[i] = c.z;
+                          colors.a[i] = c.w;
+                          opaque &= c.w == 1;
+                        });
+    }
+    return opaque;
+  }
+
+ private:
+  static constexpr bool kDiscards = !std::is_same_v<Discard, KeepAll>;
+
+  class Test final : public FragmentTest {
+   public:
+    Test(const Program& program, Discard discard)
+        : program_(program), discard_(std::move(discard)) {}
+
+    std::uint64_t test(const FrameGeometry& frame, const Piece& piece,
+                       const Block& block) const noexcept override {
+      std::uint64_t kept = block.mask;
+      if constexpr (kDiscards)
+        program_.for_each_fragment(frame, id_of_word(piece.low), block.mask, block.bx * kBlockSize,
+                                   block.by * kBlockSize,
+                                   [&](int i, const VaryingType& v, Fragment& fragment) {
+                                     fragment.depth = depth_at(piece, fragment.x, fragment.y);
+                                     if (discard_(v, std::as_const(fragment)))
+                                       kept &= ~(std::uint64_t{1} << i);
+                                   });
+      return kept;
+    }
+
+   private:
+    const Program& program_;
+    Discard discard_;
+  };
+
+  /// Calls f(bit, varying, fragment) for the fragments of triangle `id` in `mask`.
+  template <class F>
+  void for_each_fragment(const FrameGeometry& frame, std::uint64_t id, std::uint64_t mask, int x0,
+                         int y0, F&& f) const {
+    FragmentLocator locator(frame);
+    const Draw& draw = frame.draw_of(id);
+    const std::uint64_t t = id - draw.first_id;
+    const VaryingType corner[3] = {vertex_(draw.vertex(t, 0)).varying,
+                                   vertex_(draw.vertex(t, 1)).varying,
+                                   vertex_(draw.vertex(t, 2)).varying};
+    for (; mask != 0; mask &= mask - 1) {
+      const int i = std::countr_zero(mask);
+      Fragment fragment = locator.locate(id, x0 + i % kBlockSize, y0 + i / kBlockSize);
+      const auto& b = fragment.weights.b;
+      f(i,
+        corner[0] * static_cast<float>(b[0]) + corner[1] * static_cast<float>(b[1]) +
+            corner[2] * static_cast<float>(b[2]),
+        fragment);
+    }
+  }
+
+  Vertex vertex_;
+  Shade shade_;
+  Test test_;
+};
+
+}  // namespace rastrum::raster

@@ -1,0 +1,31 @@
+// The numbers of the material shader; material.hpp says what they are.
+#pragma once
+
+#include <rastrum/core/vec.hpp>
+
+namespace rastrum::raster {
+
+inline constexpr Vec3 kKeyLight{0.32444284F, 0.48666426F, 0.81110710F};  // (0.4, 0.6, 1) / √1.52
+inline constexpr float kKeyRadiance = 0.65F;
+inline constexpr Vec3 kFillLight{-0.79603036F, 0.099503795F,
+                                 0.59702277F};  // (−0.8, 0.1, 0.6)/√1.01
+inline constexpr float kFillRadiance = 0.2F;
+inline constexpr float kSky = 0.3F, kGround = 0.12F;
+inline constexpr float kSkyMean = (kSky + kGround) / 2, kSkySlope = (kSky - kGround) / 2;
+inline constexpr float kDielectricF0 = 0.04F;  ///< index of refraction 1.5
+inline constexpr float kMinRoughness = 0.045F;
+
+/// Samples of a block relative to its first pixel's corner, in px.
+struct alignas(64) BlockSamples {
+  float x[64], y[64];
+};
+inline constexpr BlockSamples kSample = [] {
+  BlockSamples s{};
+  for (int i = 0; i < 64; ++i) {
+    s.x[i] = static_cast<float>(i % 8) + 0.5F;
+    s.y[i] = static_cast<float>(i / 8) + 0.5F;
+  }
+  return s;
+}();
+
+}  // namespace rastrum::raster

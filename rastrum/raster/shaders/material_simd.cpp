@@ -1,0 +1,533 @@
+// Materials in lanes, compiled once per instruction set: plain loops where compilers vectorize
+// them, Highway where they do not (the lights). A block is done in two steps: each triangle's run
+// of fragments fills its part of a surface (interpolation and textures), then the whole block is
+// lit at once.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "rastrum/raster/shaders/material_simd.cpp"
+#include <hwy/foreach_target.h>  // must precede highway.h
+#include <hwy/highway.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include <rastrum/raster/interpolate.hpp>
+#include <rastrum/raster/shaders/material_constants.hpp>
+#include <rastrum/raster/shaders/material_kernels.hpp>
+#include <rastrum/raster/shaders/texture_lanes-inl.hpp>
+
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// A triangle that is being shaded.
+struct Triangle {
+  const MaterialDraw& draw;
+  std::uint64_t index;  ///< within its draw
+  std::uint32_t vertex[3];
+  WeightPlanes planes;
+
+  Triangle(const MaterialScene& scene, const FrameGeometry& frame, const Draw& d, std::uint64_t id)
+      : draw(scene.draws[static_cast<std::size_t>(&d - frame.draws.data())]),
+        index(id - d.first_id),
+        vertex{d.vertex(index, 0), d.vertex(index, 1), d.vertex(index, 2)},
+        planes(weight_planes(frame, d, index)) {}
+
+  template <class T>
+  [[nodiscard]] T corner(const AttributeView<T>& attribute, int c) const {
+    return attribute.values[attribute.indices.empty()
+                                ? vertex[c]
+                                : attribute.indices[index * 3 + static_cast<std::size_t>(c)]];
+  }
+};
+
+/// Fragments of one triangle in a block, densely; the last is repeated up to a whole group.
+struct alignas(64) Run {
+  int n = 0, padded = 0;
+  int lane[64];                    ///< 8 · row + column
+  double scale[64];                ///< 1 / Σ weights
+  float weight1[64], weight2[64];  ///< normalized
+
+  Run(std::uint64_t mask, const WeightPlanes& w, int x0, int y0) {
+    for (; mask != 0; mask &= mask - 1) lane[n++] = std::countr_zero(mask);
+    for (padded = n; padded % kGroup != 0; ++padded) lane[padded] = lane[n - 1];
+    for (int k = 0; k < padded; k += kGroup)
+      for (int j = k; j < k + kGroup; ++j) {
+        const double dx = x0 + lane[j] % kBlockSize + 0.5 - w.x0;
+        const double dy = y0 + lane[j] / kBlockSize + 0.5 - w.y0;
+        const double b0 = w.r[0] + w.p[0] * dx + w.q[0] * dy;
+        const double b1 = w.r[1] + w.p[1] * dx + w.q[1] * dy;
+        const double b2 = w.r[2] + w.p[2] * dx + w.q[2] * dy;
+        const double s = 1 / (b0 + b1 + b2);
+        scale[j] = s;
+        weight1[j] = static_cast<float>(b1 * s);
+        weight2[j] = static_cast<float>(b2 * s);
+      }
+  }
+};
+
+/// a0 + w1 (a1 − a0) + w2 (a2 − a0): exact for an attribute that is constant.
+HWY_INLINE void interpolate(const Run& run, float a0, float a1, float a2, float* HWY_RESTRICT out) {
+  const float d1 = a1 - a0, d2 = a2 - a0;
+  for (int k = 0; k < run.padded; k += kGroup)
+    for (int j = k; j < k + kGroup; ++j) out[j] = a0 + (run.weight1[j] * d1 + run.weight2[j] * d2);
+}
+
+HWY_INLINE void interpolate_texcoords(const Triangle& t, const Run& run, Coordinates& out) {
+  if (t.draw.mesh.texcoords.empty()) {
+    std::memset(&out, 0, sizeof(out));
+    return;
+  }
+  const Vec2 a = t.corner(t.draw.mesh.texcoords, 0);
+  const Vec2 d1 = t.corner(t.draw.mesh.texcoords, 1) - a;
+  const Vec2 d2 = t.corner(t.draw.mesh.texcoords, 2) - a;
+  const WeightPlanes& w = t.planes;
+  const double p = w.p[0] + w.p[1] + w.p[2], q = w.q[0] + w.q[1] + w.q[2];
+  const auto one = [&](float a0, float a1, float a2, float* HWY_RESTRICT value,
+                       float* HWY_RESTRICT dx, float* HWY_RESTRICT dy) HWY_ATTR {
+    // (Σ bᵢ aᵢ / Σ bᵢ)′ = (Σ bᵢ′ aᵢ − value Σ bᵢ′) / Σ bᵢ, all relative to corner 0.
+    const double px = w.p[1] * a1 + w.p[2] * a2, qy = w.q[1] * a1 + w.q[2] * a2;
+    for (int k = 0; k < run.padded; k += kGroup)
+      for (int j = k; j < k + kGroup; ++j) {
+        const float offset = run.weight1[j] * a1 + run.weight2[j] * a2;
+        value[j] = a0 + offset;
+        dx[j] = static_cast<float>((px - offset * p) * run.scale[j]);
+        dy[j] = static_cast<float>((qy - offset * q) * run.scale[j]);
+      }
+  };
+  one(a.x, d1.x, d2.x, out.u, out.u_dx, out.u_dy);
+  one(a.y, d1.y, d2.y, out.v, out.v_dx, out.v_dy);
+}
+
+/// What the lights need to know of 64 fragments.
+struct alignas(64) Surface {
+  enum Channel {
+    kBaseR,
+    kBaseG,
+    kBaseB,
+    kNormalX,
+    kNormalY,
+    kNormalZ,  ///< unit, towards the viewer
+    kMetallic,
+    kRoughness,
+    kOcclusion,
+    kEmissiveR,
+    kEmissiveG,
+    kEmissiveB,
+    kUnlit,  ///< 1: the base colour is the result
+    kChannels
+  };
+  float channel[kChannels][64];
+};
+
+HWY_INLINE void fill(const Run& run, float value, float* out) {
+  for (int k = 0; k < run.padded; ++k) out[k] = value;
+}
+HWY_INLINE void multiply(const Run& run, const float* HWY_RESTRICT factor,
+                         float* HWY_RESTRICT out) {
+  for (int k = 0; k < run.padded; k += kGroup)
+    for (int j = k; j < k + kGroup; ++j) out[j] *= factor[j];
+}
+
+HWY_INLINE Vec3 times(const float (&m)[3][3], Vec3 v) {
+  return {m[0][0] * v.x + m[0][1] * v.y + m[0][2] * v.z,
+          m[1][0] * v.x + m[1][1] * v.y + m[1][2] * v.z,
+          m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z};
+}
+
+/// The directions in which a texture's picture goes right and up, in the world; (0, 0, 0) where the
+/// coordinates span nothing.
+struct TangentFrame {
+  Vec3 right{}, up{};
+
+  explicit TangentFrame(const Triangle& t) {
+    const MeshView& mesh = t.draw.mesh;
+    if (mesh.texcoords.empty()) return;
+    const Vec3 p = mesh.positions[t.vertex[0]];
+    const Vec3 e1 = times(t.draw.to_world, mesh.positions[t.vertex[1]] - p);
+    const Vec3 e2 = times(t.draw.to_world, mesh.positions[t.vertex[2]] - p);
+    const Vec2 a = t.corner(mesh.texcoords, 0);
+    const Vec2 d1 = t.corner(mesh.texcoords, 1) - a, d2 = t.corner(mesh.texcoords, 2) - a;
+    const float sign = d1.x * d2.y - d2.x * d1.y < 0 ? -1.0F : 1.0F;
+    right = normalize((e1 * d2.y - e2 * d1.y) * sign);
+    up = normalize((e1 * d2.x - e2 * d1.x) * sign);  // −∂P/∂v
+  }
+};
+
+HWY_INLINE Vec3 view_direction(const ViewRays& rays, int x0, int y0, int lane) {
+  const float px = static_cast<float>(x0 + lane % kBlockSize) + 0.5F;
+  const float py = static_cast<float>(y0 + lane / kBlockSize) + 0.5F;
+  return normalize(-(rays.d + rays.dx * px + rays.dy * py));
+}
+
+/// Interpolated (or flat) normals, bent by the normal map, turned to the side that is seen.
+HWY_INLINE void fill_normals(const MaterialScene& scene, const Triangle& t,
+                             const BoundMaterial& material, const Run& run, int x0, int y0,
+                             const Coordinates& at, Surface& out) {
+  const MeshView& mesh = t.draw.mesh;
+  float* HWY_RESTRICT nx = out.channel[Surface::kNormalX];
+  float* HWY_RESTRICT ny = out.channel[Surface::kNormalY];
+  float* HWY_RESTRICT nz = out.channel[Surface::kNormalZ];
+  const Vec3 p = mesh.positions[t.vertex[0]];
+  Vec3 face = normalize(times(t.draw.normal_matrix, cross(mesh.positions[t.vertex[1]] - p,
+                                                          mesh.positions[t.vertex[2]] - p)));
+  // A triangle turns one side to the eye, so any of its fragments can tell which.
+  const bool back = dot(face, view_direction(scene.rays, x0, y0, run.lane[0])) < 0;
+  if (back) face = -face;
+  if (mesh.normals.empty()) {
+    fill(run, face.x, nx);
+    fill(run, face.y, ny);
+    fill(run, face.z, nz);
+    if (material.normal == nullptr) return;
+  } else {
+    Vec3 n[3];
+    for (int c = 0; c < 3; ++c) n[c] = times(t.draw.normal_matrix, t.corner(mesh.normals, c));
+    interpolate(run, n[0].x, n[1].x, n[2].x, nx);
+    interpolate(run, n[0].y, n[1].y, n[2].y, ny);
+    interpolate(run, n[0].z, n[1].z, n[2].z, nz);
+    for (int k = 0; k < run.padded; k += kGroup)
+      for (int j = k; j < k + kGroup; ++j) {
+        const float square = nx[j] * nx[j] + ny[j] * ny[j] + nz[j] * nz[j];
+        const float scale = 1 / std::sqrt(square);
+        const bool has = square > 0;
+        const float x = has ? nx[j] * scale : face.x;
+        const float y = has ? ny[j] * scale : face.y;
+        const float z = has ? nz[j] * scale : face.z;
+        const float side = x * face.x + y * face.y + z * face.z < 0 ? -1.0F : 1.0F;
+        nx[j] = x * side;
+        ny[j] = y * side;
+        nz[j] = z * side;
+      }
+  }
+  if (material.normal == nullptr) return;
+
+  const TangentFrame frame(t);
+  Texels map;
+  sample(*material.normal, at, run.n, run.padded, map);
+  // What is a bump on the front is a dent on the back: the tangents turn with the normal.
+  const float strength = back ? -material.material->normal_scale : material.material->normal_scale;
+  for (int k = 0; k < run.padded; k += kGroup)
+    for (int j = k; j < k + kGroup; ++j) {
+      const float x = (map.r[j] * 2 - 1) * strength;
+      const float y = (map.g[j] * 2 - 1) * strength;
+      const float z = map.b[j] * 2 - 1;
+      const Vec3 n{nx[j], ny[j], nz[j]};
+      const Vec3 right = frame.right - n * dot(n, frame.right);
+      const Vec3 up = frame.up - n * dot(n, frame.up);
+      const Vec3 bent = n * z + normalize(right) * x + normalize(up) * y;
+      const float square = dot(bent, bent);
+      const float scale = 1 / std::sqrt(square);
+      nx[j] = square > 0 ? bent.x * scale : n.x;
+      ny[j] = square > 0 ? bent.y * scale : n.y;
+      nz[j] = square > 0 ? bent.z * scale : n.z;
+    }
+}
+
+/// One triangle's part of the surface, densely.
+HWY_INLINE void fill_surface(const MaterialScene& scene, const Triangle& t, const Run& run, int x0,
+                             int y0, Surface& out) {
+  const BoundMaterial& material = scene.material_of(t.draw, t.index);
+  const Material& m = *material.material;
+  const MeshView& mesh = t.draw.mesh;
+  float* const r = out.channel[Surface::kBaseR];
+  float* const g = out.channel[Surface::kBaseG];
+  float* const b = out.channel[Surface::kBaseB];
+  float* const metallic = out.channel[Surface::kMetallic];
+  float* const roughness = out.channel[Surface::kRoughness];
+  float* const occlusion = out.channel[Surface::kOcclusion];
+  float* const emissive_r = out.channel[Surface::kEmissiveR];
+  float* const emissive_g = out.channel[Surface::kEmissiveG];
+  float* const emissive_b = out.channel[Surface::kEmissiveB];
+
+  Coordinates at;
+  const bool textured = material.base_color != nullptr || material.metallic_roughness != nullptr ||
+                        material.normal != nullptr || material.occlusion != nullptr ||
+                        material.emissive != nullptr;
+  if (textured) interpolate_texcoords(t, run, at);
+  Texels texels;
+  const auto look_up = [&](const MipChain& chain)
+                           HWY_ATTR { sample(chain, at, run.n, run.padded, texels); };
+
+  if (mesh.colors.empty()) {
+    fill(run, m.base_color.x, r);
+    fill(run, m.base_color.y, g);
+    fill(run, m.base_color.z, b);
+  } else {
+    Vec4 c[3];
+    for (int i = 0; i < 3; ++i) c[i] = t.corner(mesh.colors, i) * m.base_color;
+    interpolate(run, c[0].x, c[1].x, c[2].x, r);
+    interpolate(run, c[0].y, c[1].y, c[2].y, g);
+    interpolate(run, c[0].z, c[1].z, c[2].z, b);
+  }
+  if (material.base_color != nullptr) {
+    look_up(*material.base_color);
+    multiply(run, texels.r, r);
+    multiply(run, texels.g, g);
+    multiply(run, texels.b, b);
+  }
+  fill(run, m.unlit ? 1.0F : 0.0F, out.channel[Surface::kUnlit]);
+
+  fill(run, m.metallic, metallic);
+  fill(run, m.roughness, roughness);
+  if (material.metallic_roughness != nullptr) {
+    look_up(*material.metallic_roughness);
+    multiply(run, texels.g, roughness);
+    multiply(run, texels.b, metallic);
+  }
+  fill(run, 1, occlusion);
+  if (material.occlusion != nullptr) {
+    look_up(*material.occlusion);
+    for (int k = 0; k < run.padded; ++k)
+      occlusion[k] = 1 + m.occlusion_strength * (texels.r[k] - 1);
+  }
+  fill(run, m.emissive.x, emissive_r);
+  fill(run, m.emissive.y, emissive_g);
+  fill(run, m.emissive.z, emissive_b);
+  if (material.emissive != nullptr) {
+    look_up(*material.emissive);
+    multiply(run, texels.r, emissive_r);
+    multiply(run, texels.g, emissive_g);
+    multiply(run, texels.b, emissive_b);
+  }
+  fill_normals(scene, t, material, run, x0, y0, at, out);
+}
+
+using Floats = hn::ScalableTag<float>;
+using F = hn::Vec<Floats>;
+constexpr int kLanes = static_cast<int>(hn::MaxLanes(Floats{}));
+
+struct V3 {
+  F x, y, z;
+};
+
+HWY_INLINE F set(float a) {
+  return hn::Set(Floats{}, a);
+}
+HWY_INLINE V3 set(Vec3 a) {
+  return {set(a.x), set(a.y), set(a.z)};
+}
+HWY_INLINE F load(const float* p) {
+  return hn::Load(Floats{}, p);
+}
+HWY_INLINE V3 load(const float* x, const float* y, const float* z) {
+  return {load(x), load(y), load(z)};
+}
+HWY_INLINE void store(V3 a, float* x, float* y, float* z) {
+  hn::Store(a.x, Floats{}, x);
+  hn::Store(a.y, Floats{}, y);
+  hn::Store(a.z, Floats{}, z);
+}
+HWY_INLINE V3 add(V3 a, V3 b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+HWY_INLINE V3 subtract(V3 a, V3 b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+HWY_INLINE V3 scale(V3 a, F s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+HWY_INLINE V3 product(V3 a, V3 b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+HWY_INLINE F dot(V3 a, V3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+HWY_INLINE F reciprocal_length(V3 a) {
+  return set(1) / hn::Sqrt(dot(a, a));
+}
+
+/// NaN becomes the bound.
+HWY_INLINE F at_least(F a, float bound) {
+  return hn::IfThenElse(a > set(bound), a, set(bound));
+}
+HWY_INLINE F at_most(F a, float bound) {
+  return hn::IfThenElse(a < set(bound), a, set(bound));
+}
+HWY_INLINE F clamp01(F a) {
+  return at_most(at_least(a, 0), 1);
+}
+HWY_INLINE F mix(F a, F b, F t) {
+  return a + (b - a) * t;
+}
+HWY_INLINE V3 mix(V3 a, V3 b, F t) {
+  return {mix(a.x, b.x, t), mix(a.y, b.y, t), mix(a.z, b.z, t)};
+}
+
+HWY_INLINE F pow5(F a) {
+  const F a2 = a * a;
+  return a2 * a2 * a;
+}
+
+/// srgb_from_linear in lanes, the same bits.
+HWY_INLINE F display(F linear) {
+  const F x = clamp01(linear);
+  const F s2 = hn::Sqrt(x);
+  const F s4 = hn::Sqrt(s2);
+  const F s8 = hn::Sqrt(s4);
+  const F curve = set(kSrgbRoot2) * s2 + set(kSrgbRoot4) * s4 - set(kSrgbRoot8) * s8 -
+                  (set(kSrgbLinear) * x + set(kSrgbConstant));
+  return hn::IfThenElse(x < set(kSrgbKnee), x * set(kSrgbSlope), curve);
+}
+
+struct Reflectance {
+  V3 diffuse, f0;
+  F alpha, alpha2;
+};
+
+/// Light of one direction, reflected towards v; n·l ≤ 0 gives nothing.
+HWY_INLINE V3 reflect(const Reflectance& s, V3 n, V3 v, F nv, Vec3 light, float radiance) {
+  const V3 l = set(light);
+  const V3 sum = add(v, l);
+  const V3 half = scale(sum, set(1) / hn::Sqrt(at_least(dot(sum, sum), 1e-12F)));
+  const F nl = at_least(dot(n, l), 0);
+  const F nh = at_least(dot(n, half), 0);
+  const F vh = at_least(dot(v, half), 0);
+  const F lobe = nh * nh * (s.alpha2 - set(1)) + set(1);
+  const F pi_d = s.alpha2 / (lobe * lobe);
+  const F visibility = set(0.5F) / mix(set(2) * nl * nv, nl + nv, s.alpha);
+  const V3 one = set(Vec3{1, 1, 1});
+  const V3 f = mix(s.f0, one, pow5(clamp01(set(1) - vh)));
+  const V3 diffuse = product(s.diffuse, subtract(one, f));
+  return scale(add(diffuse, scale(f, pi_d * visibility)), nl * set(radiance));
+}
+
+HWY_INLINE V3 hemisphere(V3 diffuse, V3 specular, F normal_y, F mirrored_y) {
+  return add(scale(diffuse, set(kSkyMean) + set(kSkySlope) * normal_y),
+             scale(specular, set(kSkyMean) + set(kSkySlope) * mirrored_y));
+}
+
+/// Lights 64 fragments; what lies outside the covered ones does not matter.
+HWY_INLINE void light(const ViewRays& rays, const Surface& s, int x0, int y0, BlockColors& out) {
+  const auto& c = s.channel;
+  for (int i = 0; i < 64; i += kLanes) {
+    const F px = load(kSample.x + i) + set(static_cast<float>(x0));
+    const F py = load(kSample.y + i) + set(static_cast<float>(y0));
+    const V3 away = add(add(set(rays.d), scale(set(rays.dx), px)), scale(set(rays.dy), py));
+    const V3 v = scale(away, set(0) - reciprocal_length(away));
+    const V3 n = load(c[Surface::kNormalX] + i, c[Surface::kNormalY] + i, c[Surface::kNormalZ] + i);
+    const V3 base = load(c[Surface::kBaseR] + i, c[Surface::kBaseG] + i, c[Surface::kBaseB] + i);
+    const F metallic = clamp01(load(c[Surface::kMetallic] + i));
+    const F roughness = at_most(at_least(load(c[Surface::kRoughness] + i), kMinRoughness), 1);
+
+    Reflectance surface;
+    surface.diffuse = scale(base, set(1) - metallic);
+    surface.f0 = mix(set(Vec3{kDielectricF0, kDielectricF0, kDielectricF0}), base, metallic);
+    surface.alpha = roughness * roughness;
+    surface.alpha2 = surface.alpha * surface.alpha;
+    const F facing = dot(n, v);
+    const F nv = at_least(facing, 1e-4F);
+    V3 color = add(reflect(surface, n, v, nv, kKeyLight, kKeyRadiance),
+                   reflect(surface, n, v, nv, kFillLight, kFillRadiance));
+
+    const V3 f0 = surface.f0;
+    const F smooth = set(1) - roughness;
+    const V3 rise{at_least(smooth - f0.x, 0), at_least(smooth - f0.y, 0),
+                  at_least(smooth - f0.z, 0)};
+    const V3 f = add(f0, scale(rise, pow5(clamp01(set(1) - nv))));
+    const V3 ambient = hemisphere(surface.diffuse, f, n.y, set(2) * facing * n.y - v.y);
+    color = add(color, scale(ambient, load(c[Surface::kOcclusion] + i)));
+    color = add(color, load(c[Surface::kEmissiveR] + i, c[Surface::kEmissiveG] + i,
+                            c[Surface::kEmissiveB] + i));
+
+    const auto unlit = load(c[Surface::kUnlit] + i) > set(0);
+    store({display(hn::IfThenElse(unlit, base.x, color.x)),
+           display(hn::IfThenElse(unlit, base.y, color.y)),
+           display(hn::IfThenElse(unlit, base.z, color.z))},
+          out.r + i, out.g + i, out.b + i);
+  }
+}
+
+void shade(const MaterialScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
+           BlockColors& colors) noexcept {
+  const std::uint64_t* const words = block.words;
+  const int x0 = block.x0, y0 = block.y0;
+  std::uint64_t left = block.covered;
+  Surface surface;
+  if (left != ~std::uint64_t{0}) std::memset(&surface, 0, sizeof(surface));
+  const Draw* draw = nullptr;
+  while (left != 0) {
+    const std::uint64_t low = words[std::countr_zero(left)] & kIdMask;
+    std::uint64_t mask = 0;
+    for (std::uint64_t m = left; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      mask |= std::uint64_t{(words[i] & kIdMask) == low} << i;
+    }
+    left &= ~mask;
+    const std::uint64_t id = id_of_word(low);
+    if (draw == nullptr || id - draw->first_id >= draw->triangle_count) draw = &frame.draw_of(id);
+    const Triangle triangle(scene, frame, *draw, id);
+    const Run run(mask, triangle.planes, x0, y0);
+    if (run.n == 64) {
+      fill_surface(scene, triangle, run, x0, y0, surface);
+      break;
+    }
+    Surface part;
+    fill_surface(scene, triangle, run, x0, y0, part);
+    for (int c = 0; c < Surface::kChannels; ++c)
+      for (int k = 0; k < run.n; ++k) surface.channel[c][run.lane[k]] = part.channel[c][k];
+  }
+  light(scene.rays, surface, x0, y0, colors);
+}
+
+std::uint64_t alpha_test(const MaterialScene& scene, const FrameGeometry& frame, std::uint64_t id,
+                         std::uint64_t mask, int x0, int y0) noexcept {
+  const Draw& draw = frame.draw_of(id);
+  const MaterialDraw& of = scene.draws[static_cast<std::size_t>(&draw - frame.draws.data())];
+  const BoundMaterial& material = scene.material_of(of, id - draw.first_id);
+  const Material& m = *material.material;
+  if (mask == 0 || m.alpha_mode != AlphaMode::mask) return mask;
+  const Triangle t(scene, frame, draw, id);
+  const Run run(mask, t.planes, x0, y0);
+  alignas(64) float alpha[64];
+  if (t.draw.mesh.colors.empty())
+    fill(run, m.base_color.w, alpha);
+  else
+    interpolate(run, t.corner(t.draw.mesh.colors, 0).w * m.base_color.w,
+                t.corner(t.draw.mesh.colors, 1).w * m.base_color.w,
+                t.corner(t.draw.mesh.colors, 2).w * m.base_color.w, alpha);
+  if (material.base_color != nullptr || material.alpha != nullptr) {
+    Coordinates at;
+    interpolate_texcoords(t, run, at);
+    const auto multiply_alpha = [&](int k, float value) HWY_ATTR { alpha[k] *= value; };
+    if (material.base_color != nullptr)
+      sample<AlphaChannel>(*material.base_color, at, run.n, run.padded, multiply_alpha);
+    if (material.alpha != nullptr)
+      sample<RedChannel>(*material.alpha, at, run.n, run.padded, multiply_alpha);
+  }
+  for (int k = 0; k < run.n; ++k)
+    if (alpha[k] < m.alpha_cutoff) mask &= ~(std::uint64_t{1} << run.lane[k]);
+  return mask;
+}
+
+constexpr MaterialKernels kTable{shade, alpha_test};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace rastrum::raster
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace rastrum::raster {
+
+const MaterialKernels& material_kernels(Isa isa) noexcept {
+  switch (isa) {
+#if HWY_TARGETS & HWY_SSE4
+    case Isa::sse4:
+      return N_SSE4::kTable;
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    case Isa::avx2:
+      return N_AVX2::kTable;
+#endif
+#if HWY_TARGETS & HWY_AVX3
+    case Isa::avx512:
+      return N_AVX3::kTable;
+#endif
+    default:
+      return HWY_STATIC_DISPATCH(kTable);
+  }
+}
+
+}  // namespace rastrum::raster
+#endif

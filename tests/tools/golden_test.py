@@ -1,0 +1,70 @@
+"""tools/golden.py lists failed golden pictures, flickers them on a page, and accepts the actual ones."""
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "tools" / "golden.py"
+
+
+class Golden(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        (self.root / "tools").mkdir()
+        shutil.copy(SCRIPT, self.root / "tools")
+
+    def add_failure(self, build, name, **pictures):
+        failures = self.root / "build" / build / "golden-failures"
+        failures.mkdir(parents=True, exist_ok=True)
+        for kind, content in pictures.items():
+            (failures / f"{name}.{kind}.png").write_bytes(content)
+
+    def golden(self, *arguments):
+        run = subprocess.run([sys.executable, self.root / "tools" / "golden.py", *arguments],
+                             capture_output=True, text=True)
+        return run.returncode, run.stdout + run.stderr
+
+    def accepted(self, name):
+        file = self.root / "tests" / "golden" / f"{name}.png"
+        return file.read_bytes() if file.exists() else None
+
+    def test_nothing_failed(self):
+        self.assertEqual(self.golden(), (0, "no golden picture failed (run ./dev test first)\n"))
+
+    def test_lists_and_writes_a_page(self):
+        self.add_failure("ci", "teapot", expected=b"old", actual=b"new", diff=b"diff")
+        code, output = self.golden()
+        self.assertEqual(code, 0)
+        self.assertIn("teapot (ci)", output)
+        page = (self.root / "build" / "golden.html").read_text()
+        for kind in ("expected", "actual", "diff"):
+            self.assertIn(f"teapot.{kind}.png", page)
+
+    def test_accepts_what_is_named(self):
+        self.add_failure("ci", "teapot", expected=b"old", actual=b"new")
+        self.add_failure("ci", "knot", actual=b"first")
+        self.assertEqual(self.golden("accept", "knot")[0], 0)
+        self.assertEqual(self.accepted("knot"), b"first")
+        self.assertIsNone(self.accepted("teapot"))
+        self.assertEqual(self.golden("accept")[0], 0)
+        self.assertEqual(self.accepted("teapot"), b"new")
+        self.assertIn("no golden picture failed", self.golden()[1])
+
+    def test_refuses_a_name_that_did_not_fail(self):
+        self.add_failure("ci", "teapot", actual=b"new")
+        self.assertEqual(self.golden("accept", "taepot")[0], 1)
+        self.assertIsNone(self.accepted("teapot"))
+
+    def test_refuses_two_builds_that_disagree(self):
+        self.add_failure("ci", "teapot", actual=b"one")
+        self.add_failure("asan", "teapot", actual=b"another")
+        self.assertEqual(self.golden("accept")[0], 1)
+        self.assertIsNone(self.accepted("teapot"))
+
+
+if __name__ == "__main__":
+    unittest.main()
