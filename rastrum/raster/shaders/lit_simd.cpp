@@ -15,6 +15,7 @@
 #include <hwy/foreach_target.h>  // must precede highway.h
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -83,9 +84,11 @@ void fetch_weights(const FrameGeometry& frame, const Draw& draw, std::uint64_t t
   out.q1 = -e2x * inv_det;
   out.p2 = -e1y * inv_det;
   out.q2 = e1x * inv_det;
-  out.inv_w[0] = v0.inv_w;
-  out.inv_w[1] = v1.inv_w;
-  out.inv_w[2] = v2.inv_w;
+  // Only ratios count; far away 1 / w is so small that squares of normals would underflow.
+  const float largest = std::max({v0.inv_w, v1.inv_w, v2.inv_w});
+  out.inv_w[0] = v0.inv_w / largest;
+  out.inv_w[1] = v1.inv_w / largest;
+  out.inv_w[2] = v2.inv_w / largest;
 }
 
 void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t low,
