@@ -1,5 +1,5 @@
 // A vertex and a fragment function of one's own, with a varying struct of one's own: a waving flag
-// whose stripes are computed at each pixel and whose moth holes are discarded.
+// whose stripes are computed at each pixel and whose moth hole is discarded.
 #include <cmath>
 #include <cstdio>
 #include <vector>

@@ -33,7 +33,7 @@ const std::array<Rgba8, kRampSize>& heat_ramp() {
     std::array<Rgba8, kRampSize> colors;
     for (int i = 0; i < kRampSize; ++i) {
       const double t = static_cast<double>(i) / (kRampSize - 1);
-      const double lightness = 0.28 + 0.68 * t;
+      const double lightness = 0.32 + 0.64 * t;
       const double hue = (290 + 178 * t) / 180 * std::numbers::pi;  // violet, red, yellow
       const double chroma = 0.15;
       colors[static_cast<std::size_t>(i)] =

@@ -39,6 +39,14 @@ std::string lower(std::string text) {
   return text;
 }
 
+/// One name for each file, whether it exists or not.
+fs::path resolved(const fs::path& file) {
+  std::error_code error;
+  const fs::path absolute = fs::absolute(file, error);
+  const fs::path canonical = fs::weakly_canonical(absolute, error);
+  return error ? absolute.lexically_normal() : canonical;
+}
+
 void check_directory(const Output& output) {
   const auto fail = [&](const std::string& why) {
     throw Error(Errc::io,
@@ -74,8 +82,7 @@ void check_outputs(std::span<const Output* const> outputs) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     if (!*outputs[i]) continue;
     for (std::size_t j = 0; j < i; ++j)
-      if (*outputs[j] &&
-          fs::weakly_canonical(outputs[i]->file) == fs::weakly_canonical(outputs[j]->file))
+      if (*outputs[j] && resolved(outputs[i]->file) == resolved(outputs[j]->file))
         throw UsageError(outputs[i]->option, outputs[i]->file.string() + " is also the file of " +
                                                  outputs[j]->option + "; give each its own");
     check_directory(*outputs[i]);

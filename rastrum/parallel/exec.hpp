@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <type_traits>
 
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 namespace rastrum::parallel {
@@ -14,12 +16,16 @@ struct Serial {
   [[nodiscard]] static int concurrency() { return 1; }
 };
 
-/// oneTBB in an arena of its own. Copyable handle-free object; keep it alive between frames,
-/// starting threads costs more than a small frame.
+/// oneTBB in an arena of its own. Keep it alive between frames: starting threads costs more than a
+/// small frame.
 class Threads {
  public:
   /// `count` threads, the caller's included; 0 takes what the machine has.
+  /// More threads than cores are had as well: oneTBB would cap them.
   explicit Threads(int count = 0) : arena_(count > 0 ? count : tbb::task_arena::automatic) {
+    if (count > tbb::this_task_arena::max_concurrency())
+      more_than_cores_.emplace(tbb::global_control::max_allowed_parallelism,
+                               static_cast<std::size_t>(count));
     arena_.initialize();
   }
   [[nodiscard]] int concurrency() const { return arena_.max_concurrency(); }
@@ -30,6 +36,7 @@ class Threads {
                       void (*body)(void* data, std::size_t begin, std::size_t end), void* data);
 
  private:
+  std::optional<tbb::global_control> more_than_cores_;
   tbb::task_arena arena_;
 };
 

@@ -90,6 +90,22 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame,
   return std::popcount(covered);
 }
 
+void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
+  const Targets& targets = request.targets;
+  const Vec4 b = request.background;
+  const Vec4 background{b.x * b.w, b.y * b.w, b.z * b.w, b.w};
+  const Rgba8 background8 = to_straight_rgba8(background);
+  const auto fill = [&](const auto& target, int y, auto value) {
+    if (!target.empty()) std::fill_n(target.row(y) + rect.x0, rect.x1 - rect.x0, value);
+  };
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    fill(targets.color8, y, background8);
+    fill(targets.color, y, background);
+    fill(targets.depth, y, 0.0F);
+    fill(targets.ids, y, std::int64_t{-1});
+  }
+}
+
 Totals number_draws(std::span<Draw> draws) {
   Totals totals;
   for (Draw& draw : draws) {

@@ -12,6 +12,9 @@ namespace rastrum::raster {
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame,
                   const std::uint64_t* words, int x0, int y0, void* scratch) noexcept;
 
+/// The same for a rectangle that holds no surface.
+void resolve_empty(const FrameRequest& request, Rect rect) noexcept;
+
 /// Numbers the triangles and vertices of the draws and returns the totals. Throws
 /// Error{invalid_argument} if there are more triangles than ids.
 struct Totals {

@@ -18,10 +18,10 @@
 namespace rastrum::raster {
 namespace {
 
-/// Triangles of a group: enough to amortize its table of bins, few enough to balance threads.
+/// Triangles of a group: few enough that what a thread collects stays in its L2 cache …
 constexpr std::uint64_t kMinGroup = 4096;
-constexpr std::uint64_t kGroupsPerThread = 8;
-/// At most so many groups hold pieces at once; more triangles are taken in passes.
+/// … and that the groups' tables of bins together stay small.
+constexpr std::uint64_t kMaxBinTables = std::uint64_t{1} << 18;
 constexpr std::size_t kProjectGrain = 4096;
 constexpr std::size_t kBlockCapacity = 512;
 
@@ -32,42 +32,67 @@ struct BinGrid {
   }
 };
 
-/// Entries of a group, sorted by bin once all are there. `Entry` has a member `bin`.
+/// Entries in the order in which they were made, and how many each bin gets. A thread's: it is
+/// filled again for every group, so that it stays in cache. `Entry` has a member `bin`.
 template <class Entry>
-class BinLists {
+class Collected {
  public:
-  explicit BinLists(MemoryAccount& memory) : entries_(memory), sorted_(memory), begin_(memory) {}
+  explicit Collected(MemoryAccount& memory) : entries_(memory), next_(memory) {}
 
   void restart(std::size_t bins) {
     count_ = 0;
-    begin_.reserve(bins + 1);
-    std::fill_n(begin_.data(), bins + 1, 0U);
+    next_.reserve(bins + 1);
+    std::fill_n(next_.data(), bins + 1, 0U);
   }
-  /// Room for `n` more entries; tell how many were written with `added`.
+  /// Room for `n` more entries; say with `added` how many were written.
   [[nodiscard]] Entry* room(std::size_t n) {
     entries_.grow(count_ + n, count_);
     return entries_.data() + count_;
   }
   void added(std::size_t n) {
-    for (std::size_t i = count_; i < count_ + n; ++i) ++begin_[entries_[i].bin + 1];
+    for (std::size_t i = count_; i < count_ + n; ++i) ++next_[entries_[i].bin + 1];
     count_ += n;
   }
+  [[nodiscard]] std::span<const Entry> entries() const { return {entries_.data(), count_}; }
+  /// bins + 1 numbers; element b + 1 counts bin b.
+  [[nodiscard]] std::span<const std::uint32_t> counts(std::size_t bins) const {
+    return {next_.data(), bins + 1};
+  }
+
+ private:
+  Buffer<Entry> entries_;
+  Buffer<std::uint32_t> next_;
+  std::size_t count_ = 0;
+};
+
+/// The entries of a group, sorted by bin.
+template <class Entry>
+class BinLists {
+ public:
+  explicit BinLists(MemoryAccount& memory) : sorted_(memory), begin_(memory) {}
+
   /// Stable counting sort.
-  void sort(std::size_t bins) {
-    sorted_.reserve(count_);
-    // Shifted by one, so that after the scatter each entry has moved on to its own bin's begin.
+  void sort(const Collected<Entry>& collected, std::size_t bins) {
+    const std::span<const Entry> entries = collected.entries();
+    const std::span<const std::uint32_t> counts = collected.counts(bins);
+    sorted_.reserve(entries.size());
+    begin_.reserve(bins + 1);
+    // Shifted by one, so that after the scatter each element has moved on to its own bin's begin.
     std::uint32_t sum = 0;
-    for (std::size_t b = 0; b < bins; ++b) sum += std::exchange(begin_[b + 1], sum);
-    for (std::size_t i = 0; i < count_; ++i) sorted_[begin_[entries_[i].bin + 1]++] = entries_[i];
+    begin_[0] = 0;
+    for (std::size_t b = 0; b < bins; ++b) {
+      begin_[b + 1] = sum;
+      sum += counts[b + 1];
+    }
+    for (const Entry& entry : entries) sorted_[begin_[entry.bin + 1]++] = entry;
   }
   [[nodiscard]] std::span<const Entry> bin(std::size_t b) const {
     return {sorted_.data() + begin_[b], begin_[b + 1] - begin_[b]};
   }
 
  private:
-  Buffer<Entry> entries_, sorted_;
+  Buffer<Entry> sorted_;
   Buffer<std::uint32_t> begin_;
-  std::size_t count_ = 0;
 };
 
 /// What became of the triangles [first, last) of the frame.
@@ -79,6 +104,17 @@ struct Group {
   BinLists<PieceInBin> by_bin;
   BinLists<BinFragment> fragments;
   FrameStats::Triangles triangles;
+
+  [[nodiscard]] bool is_empty(std::size_t bin) const {
+    return by_bin.bin(bin).empty() && fragments.bin(bin).empty();
+  }
+};
+
+/// What a thread needs to fill a group.
+struct GroupScratch {
+  explicit GroupScratch(MemoryAccount& memory) : pairs(memory), fragments(memory) {}
+  Collected<PieceInBin> pairs;
+  Collected<BinFragment> fragments;
 };
 
 /// Whether the bin's rectangle may hold an inside sample: none lies beyond any one edge.
@@ -91,7 +127,8 @@ bool may_touch(const Edge (&edges)[3], int bin_x, int bin_y) {
   return true;
 }
 
-void bin_pieces(Group& group, std::uint32_t first_piece, Rect view, BinGrid grid) {
+void bin_pieces(const Group& group, std::uint32_t first_piece, Rect view, BinGrid grid,
+                Collected<PieceInBin>& pairs) {
   for (std::uint32_t i = first_piece; i < group.piece_count; ++i) {
     const Piece& piece = group.pieces[i];
     const Rect box = sample_bounds(piece.x, piece.y, view);
@@ -99,7 +136,7 @@ void bin_pieces(Group& group, std::uint32_t first_piece, Rect view, BinGrid grid
     const int bx1 = (box.x1 - 1) / kBinSize, by1 = (box.y1 - 1) / kBinSize;
     const std::size_t most =
         static_cast<std::size_t>(bx1 - bx0 + 1) * static_cast<std::size_t>(by1 - by0 + 1);
-    PieceInBin* const out = group.by_bin.room(most);
+    PieceInBin* const out = pairs.room(most);
     std::size_t n = 0;
     const auto add = [&](int bx, int by) {
       out[n++] = {static_cast<std::uint32_t>(by * grid.columns + bx), i};
@@ -113,19 +150,19 @@ void bin_pieces(Group& group, std::uint32_t first_piece, Rect view, BinGrid grid
         for (int bx = bx0; bx <= bx1; ++bx)
           if (may_touch(edges, bx, by)) add(bx, by);
     }
-    group.by_bin.added(n);
+    pairs.added(n);
   }
 }
 
 /// Setup of triangles [first, last), which may span draws.
-void fill_group(Group& group, const FrameRequest& request, const FrameGeometry& frame,
-                const Kernels& kernel, BinGrid grid, std::uint64_t first, std::uint64_t last,
-                std::atomic<bool>& index_in_range) {
+void fill_group(Group& group, GroupScratch& scratch, const FrameRequest& request,
+                const FrameGeometry& frame, const Kernels& kernel, BinGrid grid,
+                std::uint64_t first, std::uint64_t last, std::atomic<bool>& index_in_range) {
   const Rect view{0, 0, frame.width, frame.height};
   group.piece_count = 0;
   group.triangles = {};
-  group.by_bin.restart(grid.count());
-  group.fragments.restart(grid.count());
+  scratch.pairs.restart(grid.count());
+  scratch.fragments.restart(grid.count());
   std::uint32_t slow[kSetupBatch];
 
   for (std::uint64_t id = first; id < last;) {
@@ -147,14 +184,14 @@ void fill_group(Group& group, const FrameRequest& request, const FrameGeometry& 
 
     const std::uint32_t first_piece = group.piece_count;
     group.pieces.grow(first_piece + kSetupBatch, first_piece);
-    BinFragment* const fragments = group.fragments.room(kSetupBatch * kMicroSize * kMicroSize);
+    BinFragment* const fragments = scratch.fragments.room(kSetupBatch * kMicroSize * kMicroSize);
     const SetupOutput out = kernel.setup(input, group.pieces.data() + first_piece, fragments, slow);
     if (!out.index_in_range) {
       index_in_range = false;
       return;
     }
     group.piece_count += out.pieces;
-    group.fragments.added(out.fragments);
+    scratch.fragments.added(out.fragments);
     group.triangles.culled += count - out.pieces - out.micro - out.slow;
     for (std::uint32_t s = 0; s < out.slow; ++s) {
       const TriangleFate fate =
@@ -166,11 +203,11 @@ void fill_group(Group& group, const FrameRequest& request, const FrameGeometry& 
       group.triangles.culled += fate == TriangleFate::culled;
       group.triangles.clipped += fate == TriangleFate::clipped;
     }
-    bin_pieces(group, first_piece, view, grid);
+    bin_pieces(group, first_piece, view, grid, scratch.pairs);
     id += count;
   }
-  group.by_bin.sort(grid.count());
-  group.fragments.sort(grid.count());
+  group.by_bin.sort(scratch.pairs, grid.count());
+  group.fragments.sort(scratch.fragments, grid.count());
 }
 
 void test_fragments(const FrameRequest& request, const FrameGeometry& frame, const Piece* pieces,
@@ -213,10 +250,14 @@ struct BinCounts {
 BinCounts draw_bin(const FrameRequest& request, const FrameGeometry& frame, const Kernels& kernel,
                    std::span<const Group> groups, std::size_t bin, Rect rect, BinScratch& scratch) {
   BinCounts counts;
-  std::fill_n(scratch.words, kBlocksPerBin * 64, 0);
   if (!request.targets.overdraw.empty())
     for (int y = rect.y0; y < rect.y1; ++y)
       std::fill_n(request.targets.overdraw.row(y) + rect.x0, rect.x1 - rect.x0, 0U);
+  if (std::all_of(groups.begin(), groups.end(), [&](const Group& g) { return g.is_empty(bin); })) {
+    resolve_empty(request, rect);
+    return counts;
+  }
+  std::fill_n(scratch.words, kBlocksPerBin * 64, 0);
   for (const Group& group : groups) {
     const std::span<const BinFragment> fragments = group.fragments.bin(bin);
     counts.fragments += fragments.size();
@@ -256,6 +297,7 @@ struct TiledRasterizer::Scratch {
   Buffer<ProjectedVertex> projected;
   std::vector<Group> groups;
   tbb::enumerable_thread_specific<std::unique_ptr<BinScratch>> bins;
+  tbb::enumerable_thread_specific<GroupScratch> fillers{[this] { return GroupScratch(memory); }};
 
   BinScratch& bin_scratch() {
     std::unique_ptr<BinScratch>& mine = bins.local();
@@ -293,8 +335,9 @@ FrameStats TiledRasterizer::render(FrameRequest& request, parallel::Threads& exe
 
   const BinGrid grid{(request.width + kBinSize - 1) / kBinSize,
                      (request.height + kBinSize - 1) / kBinSize};
-  const std::uint64_t wanted = kGroupsPerThread * static_cast<std::uint64_t>(exec.concurrency());
-  const std::uint64_t group_size = std::max(kMinGroup, (totals.triangles + wanted - 1) / wanted);
+  const std::uint64_t most_groups = std::max<std::uint64_t>(kMaxBinTables / grid.count(), 1);
+  const std::uint64_t group_size =
+      std::max(kMinGroup, (totals.triangles + most_groups - 1) / most_groups);
   const auto group_count =
       static_cast<std::size_t>((totals.triangles + group_size - 1) / group_size);
   while (scratch_->groups.size() < group_count) scratch_->groups.emplace_back(scratch_->memory);
@@ -302,7 +345,7 @@ FrameStats TiledRasterizer::render(FrameRequest& request, parallel::Threads& exe
   std::atomic<bool> index_in_range = true;
   parallel::for_each_index(exec, group_count, [&](std::size_t g) {
     const std::uint64_t first = g * group_size;
-    fill_group(groups[g], request, frame, kernel, grid, first,
+    fill_group(groups[g], scratch_->fillers.local(), request, frame, kernel, grid, first,
                std::min(first + group_size, totals.triangles), index_in_range);
   });
   if (!index_in_range) check_indices(request.draws);

@@ -41,7 +41,7 @@ TEST_F(WrongArguments, NameTheOptionAndLoadNothing) {
     for (const std::string& value : values) {
       std::vector<std::string> args{"render", "no-such-file.obj", option, value};
       if (option != "-o") args.insert(args.end(), {"-o", "p.png"});
-      const Run r = run(args);
+      const Outcome r = run(args);
       EXPECT_EQ(r.status, 2) << option << " '" << value << "'\n" << r.err;
       EXPECT_EQ(r.err.find("rastrum: error: " + option + ":"), 0U) << r.err;
       EXPECT_EQ(r.err.find("no-such-file"), std::string::npos) << "it was read first: " << r.err;
@@ -64,7 +64,7 @@ TEST_F(WrongArguments, ThatContradictEachOther) {
   for (const auto& [option, extra] : wrong) {
     std::vector<std::string> args{"render", "no-such-file.obj", "-o", "p.png"};
     args.insert(args.end(), extra.begin(), extra.end());
-    const Run r = run(args);
+    const Outcome r = run(args);
     EXPECT_EQ(r.status, 2) << option << "\n" << r.err;
     EXPECT_EQ(r.err.find("rastrum: error: "), 0U);
     const bool named = r.err.find(option) != std::string::npos ||
@@ -77,7 +77,7 @@ TEST_F(WrongArguments, ThatTheSceneShows) {
   const auto fails = [&](std::vector<std::string> args, const std::string& says) {
     args.insert(args.begin(), "render");
     args.insert(args.end(), {"-o", "p.png", "--size", "16x16"});
-    const Run r = run(args);
+    const Outcome r = run(args);
     EXPECT_EQ(r.status, 2) << r.err;
     EXPECT_NE(r.err.find(says), std::string::npos) << r.err;
   };
@@ -97,13 +97,13 @@ TEST_F(WrongArguments, NothingToDo) {
   EXPECT_EQ(run({}).status, 2);
   EXPECT_EQ(run({"paint"}).status, 2);
   EXPECT_EQ(run({"render", "-o", "p.png"}).status, 2);
-  const Run no_output = run({"render", "builtin:sphere"});
+  const Outcome no_output = run({"render", "builtin:sphere"});
   EXPECT_EQ(no_output.status, 2);
   EXPECT_NE(no_output.err.find("-o: say where the picture goes"), std::string::npos);
 }
 
 TEST_F(WrongArguments, AreToldFromFilesThatCannotBeRead) {
-  const Run r = run({"render", "no-such-file.obj", "-o", "p.png"});
+  const Outcome r = run({"render", "no-such-file.obj", "-o", "p.png"});
   EXPECT_EQ(r.status, 1);
   EXPECT_EQ(r.err.find("rastrum: error: no-such-file.obj"), 0U) << r.err;
 }
@@ -111,7 +111,7 @@ TEST_F(WrongArguments, AreToldFromFilesThatCannotBeRead) {
 TEST_F(WrongArguments, HelpAndVersionSucceed) {
   EXPECT_EQ(run({"--version"}).out, "rastrum " RASTRUM_VERSION "\n");
   for (const std::string command : {"render", "info", "make"}) {
-    const Run r = run({command, "--help"});
+    const Outcome r = run({command, "--help"});
     EXPECT_EQ(r.status, 0);
     EXPECT_NE(r.out.find("Examples:\n  rastrum " + command), std::string::npos) << r.out;
   }

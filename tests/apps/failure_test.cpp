@@ -33,7 +33,7 @@ Args render(const Args& output) {
 
 TEST_F(Failure, DiskFullLeavesNothing) {
   for (const auto& [file, output] : outputs()) {
-    const Run r = run(render(output), {.file_bytes = 300});
+    const Outcome r = run(render(output), {.file_bytes = 300});
     EXPECT_EQ(r.status, 1) << file << "\n" << r.err;
     EXPECT_NE(r.err.find("rastrum: error: "), std::string::npos) << r.err;
     EXPECT_NE(r.err.find(file), std::string::npos) << r.err;
@@ -54,7 +54,7 @@ TEST_F(Failure, DiskFullLeavesTheOldFile) {
 TEST_F(Failure, DeviceFull) {
   for (const auto& [file, output] : outputs()) {
     std::filesystem::create_symlink("/dev/full", path(file));
-    const Run r = run(render(output));
+    const Outcome r = run(render(output));
     EXPECT_EQ(r.status, 1) << file << "\n" << r.err;
     EXPECT_NE(r.err.find(file), std::string::npos) << r.err;
     EXPECT_EQ(files(), Args{file});
@@ -63,7 +63,7 @@ TEST_F(Failure, DeviceFull) {
 }
 
 TEST_F(Failure, StandardOutputFull) {
-  const Run r =
+  const Outcome r =
       run({"render", "builtin:sphere", "--size", "8x8", "--stats", "-"}, {.stdout_full = true});
   EXPECT_EQ(r.status, 1);
   EXPECT_NE(r.err.find("standard output"), std::string::npos) << r.err;
@@ -73,7 +73,7 @@ TEST_F(Failure, DirectoriesAreCheckedBeforeAnythingIsLoaded) {
   write("plain", "");
   std::filesystem::create_directory(path("folder.png"));
   for (const std::string file : {"missing/p.png", "plain/p.png", "folder.png"}) {
-    const Run r = run({"render", "no-such-file.obj", "-o", file});
+    const Outcome r = run({"render", "no-such-file.obj", "-o", file});
     EXPECT_EQ(r.status, 1) << file;
     EXPECT_EQ(r.err.find("rastrum: error: -o: " + file + " cannot be written"), 0U) << r.err;
   }
@@ -97,13 +97,13 @@ TEST_F(Failure, ADirectoryThatIsNotWritable) {
   std::filesystem::create_directory(path("locked"));
   std::filesystem::permissions(
       path("locked"), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
-  const Run r = run({"render", "no-such-file.obj", "-o", "locked/p.png"});
+  const Outcome r = run({"render", "no-such-file.obj", "-o", "locked/p.png"});
   EXPECT_EQ(r.status, 1);
   EXPECT_NE(r.err.find("locked"), std::string::npos);
 }
 
 TEST_F(Failure, MakeLeavesNothing) {
-  const Run r = run({"make", "sphere", "-o", "s.ply"}, {.file_bytes = 300});
+  const Outcome r = run({"make", "sphere", "-o", "s.ply"}, {.file_bytes = 300});
   EXPECT_EQ(r.status, 1);
   EXPECT_NE(r.err.find("s.ply"), std::string::npos);
   EXPECT_EQ(files(), Args{});
@@ -111,7 +111,7 @@ TEST_F(Failure, MakeLeavesNothing) {
 
 TEST_F(Failure, OfOneInputStopsTheRender) {
   write("bad.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
-  const Run r = run({"render", "builtin:sphere", "bad.ply", "-o", "p.png"});
+  const Outcome r = run({"render", "builtin:sphere", "bad.ply", "-o", "p.png"});
   EXPECT_EQ(r.status, 1);
   EXPECT_NE(r.err.find("bad.ply"), std::string::npos);
   EXPECT_EQ(files(), Args{"bad.ply"});

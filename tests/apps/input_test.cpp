@@ -113,7 +113,7 @@ TEST_F(Inputs, CameraOfAFileIsUsedOnlyWhenAskedFor) {
   camera.near_plane = 1;
   EXPECT_TRUE(std::ranges::equal(render({"--camera", "1", "--near", "1"}),
                                  draw(scene, camera, options).depth.pixels()));
-  const Run r = run({"render", "c.gltf", "-o", "p.png", "--camera", "2"});
+  const Outcome r = run({"render", "c.gltf", "-o", "p.png", "--camera", "2"});
   EXPECT_EQ(r.status, 2);
   EXPECT_NE(r.err.find("--camera: the inputs have cameras 0 to 1"), std::string::npos) << r.err;
 }
@@ -135,7 +135,7 @@ TEST_F(Inputs, AnEmptySceneIsDrawnAndSaid) {
 
 TEST_F(Inputs, InfoTellsWhatAFileHolds) {
   write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\nv nan 0 0\nf 1 2 3\nf 1 2 4\n");
-  const Run r = run({"info", "t.obj", "builtin:sphere?rings=4,segments=6"});
+  const Outcome r = run({"info", "t.obj", "builtin:sphere?rings=4,segments=6"});
   EXPECT_EQ(r.status, 0) << r.err;
   EXPECT_EQ(r.out.find("t.obj\n"), 0U) << r.out;
   EXPECT_NE(r.out.find("2 triangles"), std::string::npos) << r.out;

@@ -60,6 +60,7 @@ TEST_F(Make, RefusesWhatItCannotDo) {
 
 TEST(Flatten, InstancesInOrderWithTheirMatrices) {
   Scene scene = scene_of(shapes::sphere(3, 4));
+  scene.meshes[0].texcoords = {};  // numbered apart from the positions, for the seam
   Mat4d m = Mat4d::identity();
   m.m[0][0] = 2;  // a stretch: normals lean against it
   m.m[0][3] = 10;

@@ -186,7 +186,7 @@ TEST_F(Options, ADeviceThatIsNotHereSaysSo) {
     GTEST_SKIP() << "this build has a CUDA backend";
   } catch (const Error&) {
   }
-  const Run r = run({"render", "no-such-file.obj", "-o", "p.png", "--device", "cuda"});
+  const Outcome r = run({"render", "no-such-file.obj", "-o", "p.png", "--device", "cuda"});
   EXPECT_EQ(r.status, 1);
   EXPECT_NE(r.err.find("CUDA"), std::string::npos) << r.err;
   EXPECT_EQ(r.err.find("no-such-file"), std::string::npos) << "it was read first: " << r.err;

@@ -57,7 +57,7 @@ TEST_F(Output, PngNpyAndExrAgree) {
 TEST_F(Output, AreTheLibrarysImages) {
   const Drawn e = expected();
   // One pass, and with statistics the timed pass and the one after it, give the same.
-  for (const std::vector<std::string> timing : {std::vector<std::string>{}, {"--frames", "2"}}) {
+  for (const std::vector<std::string>& timing : {std::vector<std::string>{}, {"--frames", "2"}}) {
     std::vector<std::string> outputs{"-o", "p.npy", "--depth", "d.npy", "--ids", "i.npy"};
     outputs.insert(outputs.end(), timing.begin(), timing.end());
     render(outputs);

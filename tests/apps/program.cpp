@@ -63,21 +63,22 @@ void Program::TearDown() {
   fs::remove_all(folder_);
 }
 
-Run Program::run(const std::vector<std::string>& args, Limits limits) const {
+Outcome Program::run(const std::vector<std::string>& args, Limits limits) const {
   // Beside the folder, so that the folder holds the program's own files alone.
   const fs::path out = folder_.string() + ".out", err = folder_.string() + ".err";
   const pid_t child = ::fork();
   if (child == 0) become_program(args, limits, folder_, out, err);
   int status = 0;
   if (child < 0 || ::waitpid(child, &status, 0) != child) return {};
-  Run r{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), slurp(out), slurp(err)};
+  Outcome r{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), slurp(out),
+            slurp(err)};
   fs::remove(out);
   fs::remove(err);
   return r;
 }
 
 std::string Program::must(const std::vector<std::string>& args) const {
-  const Run r = run(args);
+  const Outcome r = run(args);
   std::string line;
   for (const std::string& a : args) line += " " + a;
   EXPECT_EQ(r.status, 0) << "rastrum" << line << "\n" << r.err;
@@ -128,8 +129,7 @@ std::vector<std::vector<float>> Program::exr(const std::string& name,
   Imf::FrameBuffer frame;
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const Imf::Channel* channel = file.header().channels().findChannel(channels[c]);
-    EXPECT_NE(channel, nullptr) << channels[c];
-    if (channel != nullptr) EXPECT_EQ(channel->type, Imf::FLOAT) << channels[c];
+    EXPECT_TRUE(channel != nullptr && channel->type == Imf::FLOAT) << channels[c];
     frame.insert(channels[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(planes[c].data()),
                                          sizeof(float), sizeof(float) * width));
   }

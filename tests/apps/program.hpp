@@ -16,7 +16,7 @@
 
 namespace rastrum::test {
 
-struct Run {
+struct Outcome {
   int status = -1;  ///< 128 + signal where it did not exit
   std::string out, err;
 };
@@ -33,7 +33,7 @@ class Program : public testing::Test {
   void TearDown() override;
 
   /// Runs `rastrum args…` with the test's directory as the current one.
-  [[nodiscard]] Run run(const std::vector<std::string>& args, Limits limits = {}) const;
+  [[nodiscard]] Outcome run(const std::vector<std::string>& args, Limits limits = {}) const;
   /// The same, which must succeed; returns what it said on stderr.
   std::string must(const std::vector<std::string>& args) const;
 

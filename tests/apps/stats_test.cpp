@@ -75,7 +75,7 @@ TEST_F(Stats, SumsOfManyTriangles) {
 }
 
 TEST_F(Stats, DashIsStandardOutput) {
-  const Run r = run({"render", "builtin:sphere", "--size", "9x9", "--stats", "-"});
+  const Outcome r = run({"render", "builtin:sphere", "--size", "9x9", "--stats", "-"});
   EXPECT_EQ(r.status, 0);
   EXPECT_EQ(Json::parse(r.out)["size"], Json::array({9, 9}));
   EXPECT_TRUE(files().empty()) << "no file called -";

@@ -15,6 +15,7 @@
 #include <hwy/foreach_target.h>  // must precede highway.h
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -83,9 +84,11 @@ void fetch_weights(const FrameGeometry& frame, const Draw& draw, std::uint64_t t
   out.q1 = -e2x * inv_det;
   out.p2 = -e1y * inv_det;
   out.q2 = e1x * inv_det;
-  out.inv_w[0] = v0.inv_w;
-  out.inv_w[1] = v1.inv_w;
-  out.inv_w[2] = v2.inv_w;
+  // Only ratios count; far away 1 / w is so small that squares of normals would underflow.
+  const float largest = std::max({v0.inv_w, v1.inv_w, v2.inv_w});
+  out.inv_w[0] = v0.inv_w / largest;
+  out.inv_w[1] = v1.inv_w / largest;
+  out.inv_w[2] = v2.inv_w / largest;
 }
 
 void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t low,
@@ -216,9 +219,11 @@ HWY_INLINE V3 light_row(const ViewRays& rays, int x, int y, V3 n, const V3& base
   const F diffuse = hn::Add(set(kAmbient), hn::Mul(set(kDiffuse), positive(dot(n, light))));
   const V3 lit = scale(base, diffuse);
   if (kModel == LitModel::lambert) return lit;
-  F s = positive(
-      dot(n, normalize({hn::Add(v.x, light.x), hn::Add(v.y, light.y), hn::Add(v.z, light.z)})));
-  for (int i = 0; i < 5; ++i) s = hn::Mul(s, s);
+  // (n·h)³² = ((n·u)² / u·u)¹⁶ with u = v + l: the half vector needs no square root.
+  const V3 u{hn::Add(v.x, light.x), hn::Add(v.y, light.y), hn::Add(v.z, light.z)};
+  const F n_u = positive(dot(n, u));
+  F s = hn::Div(hn::Mul(n_u, n_u), hn::Max(dot(u, u), set(1e-20F)));
+  for (int i = 0; i < 4; ++i) s = hn::Mul(s, s);
   const F specular = hn::Mul(s, set(kSpecular));
   return {hn::Add(lit.x, specular), hn::Add(lit.y, specular), hn::Add(lit.z, specular)};
 }

@@ -1,6 +1,8 @@
 #include <rastrum/raster/shaders/texture.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 #include <rastrum/raster/shaders/srgb.hpp>
@@ -40,13 +42,21 @@ Footprint footprint(std::int32_t i, std::int32_t size, std::int32_t next) {
   return {2 * i, 3, {part(next - i), whole, part(i + 1)}};
 }
 
+/// The nearest code; ties to even, because means of two codes are ties half of the time and
+/// rounding them up would brighten each level.
+std::uint8_t nearest_code(float mean) {
+  return static_cast<std::uint8_t>(std::nearbyint(mean));
+}
+
 template <TexelUse kUse>
 void reduce_row(const MipLevel& from, std::int32_t next_width, std::int32_t next_height,
                 std::int32_t y, Rgba8* out) {
-  const DecodeTables& tables = decode_tables();
-  const auto& decode = kUse == TexelUse::color ? tables.srgb : tables.unorm;
-  const auto unorm = [](float c) { return static_cast<std::uint8_t>(c * 255 + 0.5F); };
-  const auto encode = [&](float c) { return kUse == TexelUse::color ? srgb_code(c) : unorm(c); };
+  constexpr bool kColor = kUse == TexelUse::color;
+  const std::array<float, 256>& linear = decode_tables().srgb;
+  const auto value = [&](std::uint8_t code) {
+    return kColor ? linear[code] : static_cast<float>(code);
+  };
+  const auto encode = [](float c) { return kColor ? srgb_code(c) : nearest_code(c); };
   const Footprint rows = footprint(y, from.height, next_height);
   for (std::int32_t x = 0; x < next_width; ++x) {
     const Footprint columns = footprint(x, from.width, next_width);
@@ -56,13 +66,13 @@ void reduce_row(const MipLevel& from, std::int32_t next_width, std::int32_t next
           from.texels + static_cast<std::ptrdiff_t>(rows.first + j) * from.width + columns.first;
       for (int i = 0; i < columns.count; ++i) {
         const float w = rows.weight[j] * columns.weight[i];
-        r += w * decode[row[i].r];
-        g += w * decode[row[i].g];
-        b += w * decode[row[i].b];
-        a += w * tables.unorm[row[i].a];
+        r += w * value(row[i].r);
+        g += w * value(row[i].g);
+        b += w * value(row[i].b);
+        a += w * static_cast<float>(row[i].a);
       }
     }
-    out[x] = {encode(r), encode(g), encode(b), unorm(a)};
+    out[x] = {encode(r), encode(g), encode(b), nearest_code(a)};
   }
 }
 

@@ -1,0 +1,218 @@
+// The programmable pipeline: interpolation against its definition in long double, the built-in
+// phong written again by a caller, discard.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/raster/program.hpp>
+#include <rastrum/render/render.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+
+namespace rastrum::test {
+namespace {
+
+using raster::Fragment;
+using raster::VertexOutput;
+
+constexpr int kWidth = 200, kHeight = 150;
+
+RenderOptions options(Device device) {
+  RenderOptions o;
+  o.width = kWidth;
+  o.height = kHeight;
+  o.device = device;
+  o.threads = 2;
+  o.background = {0, 0, 0, 0};
+  return o;
+}
+
+/// A varying of several parts.
+struct Mixed {
+  Vec3 position;
+  Vec3 normal;
+  float scalar = 0;
+  Mixed operator+(const Mixed& o) const {
+    return {position + o.position, normal + o.normal, scalar + o.scalar};
+  }
+  Mixed operator*(float s) const { return {position * s, normal * s, scalar * s}; }
+};
+
+struct Corner {
+  Vec4 clip;
+  float value;
+};
+
+/// The pixel's ray through homogeneous clip space, or snapped positions and 1/w: what the
+/// conventions say, without the library's planes.
+long double exact_value(const Corner (&c)[3], int x, int y, bool clipped) {
+  using L = long double;
+  const raster::Viewport viewport = raster::Viewport::of(kWidth, kHeight);
+  L b[3];
+  if (clipped) {
+    const L px = (x + 0.5L) / (kWidth / 2.0L) - 1, py = 1 - (y + 0.5L) / (kHeight / 2.0L);
+    for (int i = 0; i < 3; ++i) {
+      const Vec4 &p = c[(i + 1) % 3].clip, &q = c[(i + 2) % 3].clip;
+      b[i] = px * (L{p.y} * q.w - L{p.w} * q.y) + py * (L{p.w} * q.x - L{p.x} * q.w) +
+             (L{p.x} * q.y - L{p.y} * q.x);
+    }
+  } else {
+    L sx[3], sy[3];
+    for (int i = 0; i < 3; ++i) {
+      const raster::ProjectedVertex v = raster::project(c[i].clip, viewport);
+      sx[i] = v.x_fx8 / 256.0L;
+      sy[i] = v.y_fx8 / 256.0L;
+    }
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      b[i] = ((sx[k] - sx[j]) * (y + 0.5L - sy[j]) - (sy[k] - sy[j]) * (x + 0.5L - sx[j])) /
+             c[i].clip.w;
+    }
+  }
+  return (b[0] * c[0].value + b[1] * c[1].value + b[2] * c[2].value) / (b[0] + b[1] + b[2]);
+}
+
+void expect_exact(const Corner (&corners)[3], bool clipped) {
+  const raster::Program program(
+      [&](std::uint32_t i) {
+        return VertexOutput<Mixed>{corners[i].clip, {{}, {}, corners[i].value}};
+      },
+      [](const Mixed& v, const Fragment&) {
+        return Vec4{v.scalar, 0, 0, 1};
+      });
+  for (const Device device : {Device::serial, Device::threads}) {
+    raster::Draw draw = program.draw(3);
+    Image<Vec4> color(kWidth, kHeight);
+    Targets targets;
+    targets.color = color.view();
+    Renderer renderer(options(device));
+    const FrameStats stats = renderer.draw({&draw, 1}, program, program.test(), targets);
+    EXPECT_EQ(stats.triangles.clipped, clipped ? 1U : 0U);
+    EXPECT_GT(stats.pixels_covered, 100U);
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        if (color(x, y).w == 0) continue;
+        const long double exact = exact_value(corners, x, y, clipped);
+        ASSERT_NEAR(static_cast<double>(color(x, y).x / exact), 1, 1e-5) << x << ", " << y;
+      }
+  }
+}
+
+TEST(Program, VaryingsArePerspectiveCorrect) {
+  // w from 0.1 to 4; z = 0.05 is the near plane's w.
+  expect_exact(
+      {{{-0.08F, -0.09F, 0.05F, 0.1F}, 1}, {{3.1F, -1, 0.05F, 4}, 2}, {{-0.5F, 1.7F, 0.05F, 2}, 5}},
+      false);
+  expect_exact(
+      {{{-3, -2, 0.05F, 4}, 100}, {{0.1F, 0.05F, 0.05F, 0.15F}, 1}, {{-3.9F, 3, 0.05F, 4}, 3}},
+      false);
+}
+
+TEST(Program, VaryingsOfNearClippedTrianglesToo) {
+  // The second vertex is nearer than the near plane (z > w), the third behind the eye.
+  expect_exact(
+      {{{-1.2F, -1, 0.1F, 2}, 1}, {{0.2F, -0.1F, 0.1F, 0.05F}, 2}, {{-0.3F, 1.7F, 0.1F, 2.5F}, 7}},
+      true);
+  expect_exact(
+      {{{-1.9F, -1.5F, 0.1F, 2}, 3}, {{0.3F, 0.9F, 0.1F, -1}, 2}, {{1.9F, -1.2F, 0.1F, 2.5F}, 4}},
+      true);
+}
+
+TEST(Program, APhongOfOnesOwnIsTheBuiltInOne) {
+  const Mesh mesh = shapes::sphere(24, 48);
+  ASSERT_FALSE(mesh.normals.empty());
+  Scene scene;
+  scene.meshes.push_back(mesh);
+  scene.instances = {{0, Mat4d::identity()}};
+  const SceneBinding binding(scene);
+  const Camera camera = fit_camera(binding.view(), 1.0F, false);
+  const Mat4 to_clip(world_to_clip(camera, kWidth, kHeight));
+
+  const raster::Program program(
+      [&](std::uint32_t i) {
+        const Vec3 p = mesh.positions[i];
+        return VertexOutput<Mixed>{transform_point(to_clip, p), {p, mesh.normals.values[i], 0}};
+      },
+      [&](const Mixed& m, const Fragment&) {
+        const Vec3 v = normalize(camera.eye - m.position);
+        Vec3 n = normalize(m.normal);
+        if (dot(n, v) < 0) n = -n;
+        const Vec3 l = normalize(Vec3{0.4F, 0.6F, 1});
+        const float diffuse = 0.1F + 0.8F * std::max(dot(n, l), 0.0F);
+        const float shine = 0.3F * std::pow(std::max(dot(n, normalize(v + l)), 0.0F), 32.0F);
+        return Vec4{0.8F * diffuse + shine, 0.7F * diffuse + shine, 0.6F * diffuse + shine, 1};
+      });
+  EXPECT_EQ(program.test(), nullptr);
+  for (const Device device : {Device::serial, Device::threads}) {
+    RenderOptions o = options(device);
+    o.shader = Shader::phong;
+    Renderer renderer(o);
+    Image<Rgba8> own(kWidth, kHeight), built_in(kWidth, kHeight);
+    Image<std::int64_t> own_ids(kWidth, kHeight), ids(kWidth, kHeight);
+    Targets targets;
+    targets.color8 = own.view();
+    targets.ids = own_ids.view();
+    raster::Draw draw = program.draw(mesh.positions.size(), mesh.indices);
+    (void)renderer.draw({&draw, 1}, program, program.test(), targets);
+    targets.color8 = built_in.view();
+    targets.ids = ids.view();
+    const FrameStats stats = renderer.render(binding.view(), camera, targets);
+    ASSERT_GT(stats.pixels_covered, 5000U);
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        ASSERT_EQ(own_ids(x, y), ids(x, y)) << x << ", " << y;
+        const Rgba8 a = own(x, y), b = built_in(x, y);
+        ASSERT_NEAR(a.r, b.r, 1) << x << ", " << y;
+        ASSERT_NEAR(a.g, b.g, 1) << x << ", " << y;
+        ASSERT_NEAR(a.b, b.b, 1) << x << ", " << y;
+        ASSERT_EQ(a.a, b.a) << x << ", " << y;
+      }
+  }
+}
+
+TEST(Program, DiscardedFragmentsAreHoles) {
+  // A quad whose varying is its pixel position, over a smaller depth's quad of the same program.
+  const auto vertex = [](std::uint32_t i) {
+    const bool behind = i >= 6;
+    constexpr int kCorner[6] = {0, 1, 2, 0, 2, 3};
+    const int corner = kCorner[i % 6];
+    const bool right = corner == 1 || corner == 2, top = corner >= 2;
+    const Vec4 clip{right ? 1.0F : -1.0F, top ? 1.0F : -1.0F, behind ? 0.25F : 0.5F, 1};
+    const Vec3 px{right ? float{kWidth} : 0.0F, top ? 0.0F : float{kHeight}, 0};
+    return VertexOutput<Mixed>{clip, {px, {}, behind ? 1.0F : 0.0F}};
+  };
+  const auto is_hole = [](int x, int y) { return (x / 3 + y / 5) % 2 == 0; };
+  const raster::Program program(
+      vertex,
+      [](const Mixed& v, const Fragment& f) {
+        return Vec4{v.scalar, f.depth, 0, 0.5F};
+      },
+      [&](const Mixed& v, const Fragment& f) {
+        EXPECT_EQ(f.depth, v.scalar > 0.5F ? 0.25F : 0.5F);
+        EXPECT_NEAR(v.position.x, static_cast<float>(f.x) + 0.5F, 1e-3F);
+        return v.scalar < 0.5F && is_hole(f.x, f.y);
+      });
+  ASSERT_NE(program.test(), nullptr);
+  for (const Device device : {Device::serial, Device::threads}) {
+    raster::Draw draw = program.draw(12);
+    Image<Vec4> color(kWidth, kHeight);
+    Image<std::int64_t> ids(kWidth, kHeight);
+    Targets targets;
+    targets.color = color.view();
+    targets.ids = ids.view();
+    Renderer renderer(options(device));
+    (void)renderer.draw({&draw, 1}, program, program.test(), targets);
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        ASSERT_EQ(ids(x, y) >= 2, is_hole(x, y)) << x << ", " << y;
+        ASSERT_NEAR(color(x, y).x, is_hole(x, y) ? 1 : 0, 1e-6);
+        ASSERT_EQ(color(x, y).y, is_hole(x, y) ? 0.25F : 0.5F);
+        ASSERT_EQ(color(x, y).w, 0.5F);
+      }
+  }
+}
+
+}  // namespace
+}  // namespace rastrum::test
