@@ -12,27 +12,15 @@
 
 #include <rastrum/render/render.hpp>
 
-#include "tests/support/environment.hpp"
+#include "tests/support/device_test.hpp"
 #include "tests/support/frame.hpp"
-#include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
 namespace {
 
-class Properties : public testing::TestWithParam<Device> {
- protected:
-  [[nodiscard]] static RenderOptions options(int width, int height) {
-    RenderOptions o;
-    o.width = width;
-    o.height = height;
-    o.device = GetParam();
-    o.threads = 4;
-    return o;
-  }
-  ThreadsBeyondCores threads_{4};
-};
+class Properties : public DeviceTest {};
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
@@ -60,187 +48,6 @@ Mesh quad(double x0, double y0, double x1, double y1, int w, int h) {
 struct Point {
   double x, y;
 };
-
-// Distance of p from the segment a b.
-double distance(Point p, Point a, Point b) {
-  const double dx = b.x - a.x, dy = b.y - a.y, l2 = dx * dx + dy * dy;
-  const double t = l2 > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / l2, 0.0, 1.0) : 0;
-  return std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
-}
-
-// Every sample inside the outline is drawn once, every sample outside never; those within the
-// rounding of a corner's position decide for themselves, but never twice.
-void expect_covered_once(const Frame& f, const std::vector<Point>& outline) {
-  for (int y = 0; y < f.overdraw.height(); ++y) {
-    for (int x = 0; x < f.overdraw.width(); ++x) {
-      const Point p{x + 0.5, y + 0.5};
-      double nearest = 1e9;
-      bool inside = false;
-      for (std::size_t i = 0; i < outline.size(); ++i) {
-        const Point a = outline[i], b = outline[(i + 1) % outline.size()];
-        nearest = std::min(nearest, distance(p, a, b));
-        if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
-          inside = !inside;
-      }
-      const std::uint32_t n = f.overdraw(x, y);
-      if (nearest < 0.01) {
-        EXPECT_LE(n, 1U) << x << "," << y;
-      } else {
-        EXPECT_EQ(n, inside ? 1U : 0U) << x << "," << y;
-      }
-    }
-  }
-}
-
-// A place in the image, at a random |w| from 0.1 to 4 for perspective.
-struct Screen {
-  Random& random;
-  int width, height;
-  bool perspective;
-  Camera camera;
-
-  Screen(Random& r, int w, int h)
-      : random(r), width(w), height(h), perspective(r.chance(0.7)), camera(pixel_camera(w, h)) {
-    if (!perspective) return;
-    camera = Camera{};
-    camera.eye = {0, 0, 0};
-    camera.target = {0, 0, -1};
-    camera.fov_rad = static_cast<float>(r.real(0.5, 2.0));
-  }
-  Vec3 at(Point p) {
-    if (!perspective) return at_pixel(p.x, p.y, random.real(0, 1), width, height);
-    return Placer(camera, width, height).at({p.x, p.y, random.real(0.1, 4)});
-  }
-};
-
-TEST_P(Properties, FansCoverSharedEdgesOnce) {
-  constexpr int kW = 61, kH = 70;
-  Renderer renderer(options(kW, kH));
-  for (std::uint64_t seed = 0; seed < 200 && !HasFailure(); ++seed) {
-    SCOPED_TRACE(seed);
-    Random r(seed);
-    Screen screen(r, kW, kH);
-    const Point centre{r.real(5, kW - 5), r.real(5, kH - 5)};
-    const int n = r.integer(3, 30);
-    const double turn = r.real(0, 7);
-    Mesh mesh;
-    mesh.positions.push_back(screen.at(centre));
-    std::vector<Point> outline;
-    for (int i = 0; i < n; ++i) {
-      const double angle = turn + 2 * 3.14159265358979 * i / n, radius = r.real(3, 60);
-      outline.push_back({centre.x + radius * std::cos(angle), centre.y + radius * std::sin(angle)});
-      mesh.positions.push_back(screen.at(outline.back()));
-      const auto a = static_cast<Index>(i + 1), b = static_cast<Index>((i + 1) % n + 1);
-      add_triangle(mesh, 0, a, b);
-    }
-    expect_covered_once(draw(renderer, SceneBinding(single(std::move(mesh))).view(), screen.camera),
-                        outline);
-  }
-}
-
-TEST_P(Properties, RotatedGridsCoverSharedEdgesOnce) {
-  constexpr int kW = 72, kH = 67;
-  Renderer renderer(options(kW, kH));
-  for (std::uint64_t seed = 0; seed < 200 && !HasFailure(); ++seed) {
-    SCOPED_TRACE(seed);
-    Random r(seed);
-    Screen screen(r, kW, kH);
-    const int n = r.integer(1, 12);
-    const double turn = r.real(0, 7), cell = r.real(0.7, 90.0 / n);
-    const Point centre{r.real(5, kW - 5), r.real(5, kH - 5)};
-    const auto node = [&](double i, double j) {
-      const double u = (i - n / 2.0) * cell, v = (j - n / 2.0) * cell;
-      return Point{centre.x + u * std::cos(turn) - v * std::sin(turn),
-                   centre.y + u * std::sin(turn) + v * std::cos(turn)};
-    };
-    Mesh mesh;
-    for (int j = 0; j <= n; ++j)
-      for (int i = 0; i <= n; ++i) mesh.positions.push_back(screen.at(node(i, j)));
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) {
-        const auto a = static_cast<Index>(j * (n + 1) + i), b = a + 1;
-        const Index c = a + static_cast<Index>(n) + 1, d = c + 1;
-        const bool diagonal = r.chance(0.5);
-        add_triangle(mesh, a, b, diagonal ? d : c);
-        add_triangle(mesh, diagonal ? a : b, d, c);
-      }
-    }
-    expect_covered_once(draw(renderer, SceneBinding(single(std::move(mesh))).view(), screen.camera),
-                        {node(0, 0), node(n, 0), node(n, n), node(0, n)});
-  }
-}
-
-// A floor seen from above: its cells cross the near plane, pass behind the eye and leave the guard
-// band. The reference is the ray through each sample.
-TEST_P(Properties, ClippedFloorsCoverSharedEdgesOnce) {
-  constexpr int kW = 66, kH = 59;
-  Renderer renderer(options(kW, kH));
-  std::uint64_t clipped = 0, fragments = 0;
-  for (std::uint64_t seed = 0; seed < 300 && !HasFailure(); ++seed) {
-    SCOPED_TRACE(seed);
-    Random r(seed);
-    Camera camera;
-    camera.eye = {0, static_cast<float>(r.real(0.3, 1)), 0};
-    camera.target = camera.eye + Vec3{static_cast<float>(r.real(-0.4, 0.4)),
-                                      static_cast<float>(r.real(-1.5, -0.2)), -1};
-    camera.near_plane = static_cast<float>(r.real(0.05, 0.8));
-    camera.fov_rad = static_cast<float>(r.real(0.5, 2.2));
-    const int n = 6;
-    const double turn = r.real(0, 7);
-    const double cell = r.chance(0.5) ? r.real(0.2, 1) : r.real(1, 8);
-    Mesh mesh;
-    for (int j = 0; j <= n; ++j) {
-      for (int i = 0; i <= n; ++i) {
-        const auto inner = [&](int k) { return k > 0 && k < n ? r.real(-0.2, 0.2) : 0.0; };
-        const double u = (i - n / 2.0 + inner(i)) * cell, v = (j - n / 2.0 + inner(j)) * cell;
-        mesh.positions.push_back({static_cast<float>(u * std::cos(turn) - v * std::sin(turn)), 0,
-                                  static_cast<float>(u * std::sin(turn) + v * std::cos(turn))});
-      }
-    }
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) {
-        const auto a = static_cast<Index>(j * (n + 1) + i), b = a + 1;
-        const Index c = a + static_cast<Index>(n) + 1, d = c + 1;
-        add_triangle(mesh, a, b, d);
-        add_triangle(mesh, a, d, c);
-      }
-    }
-    const Frame f = draw(renderer, SceneBinding(single(std::move(mesh))).view(), camera);
-    clipped += f.stats.triangles.clipped;
-    fragments += f.stats.fragments;
-
-    const Mat4d view = world_to_camera(camera);
-    const auto on_floor = [&](double x, double y) {
-      const double s = 2 * std::tan(double{camera.fov_rad} / 2) / std::min(kW, kH);
-      const double d[3] = {(x - kW / 2.0) * s, (kH / 2.0 - y) * s, -1};
-      double ray[3];
-      for (int i = 0; i < 3; ++i)
-        ray[i] = view.m[0][i] * d[0] + view.m[1][i] * d[1] + view.m[2][i] * d[2];
-      const double t = -double{camera.eye.y} / ray[1];  // also the distance along −z
-      if (!(t > double{camera.near_plane})) return false;
-      const double px = t * ray[0], pz = t * ray[2];
-      const double u = px * std::cos(turn) + pz * std::sin(turn);
-      const double v = -px * std::sin(turn) + pz * std::cos(turn);
-      return std::max(std::abs(u), std::abs(v)) < n / 2.0 * cell;
-    };
-    for (int y = 0; y < kH; ++y) {
-      for (int x = 0; x < kW; ++x) {
-        // Corners far outside the image are rounded to float32 px, so an edge may move a little.
-        constexpr double kNear = 0.03;
-        int inside = 0;
-        for (const double dx : {-kNear, kNear})
-          for (const double dy : {-kNear, kNear}) inside += on_floor(x + 0.5 + dx, y + 0.5 + dy);
-        const std::uint32_t drawn = f.overdraw(x, y);
-        EXPECT_LE(drawn, 1U) << x << "," << y;
-        if (inside == 0 || inside == 4) {
-          EXPECT_EQ(drawn, inside == 4 ? 1U : 0U) << x << "," << y;
-        }
-      }
-    }
-  }
-  EXPECT_GT(clipped, 1000U);
-  EXPECT_GT(fragments, 100000U);
-}
 
 // The order of triangles decides nothing but the winner among equal depths: the first submitted.
 TEST_P(Properties, PermutingTrianglesChangesOnlyNumbers) {
@@ -609,9 +416,7 @@ TEST_P(Properties, TargetsWithAStrideKeepWhatLiesBesideThem) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, Properties, testing::Values(Device::serial, Device::threads),
-                         [](const testing::TestParamInfo<Device>& p) {
-                           return p.param == Device::serial ? "serial" : "threads";
-                         });
+                         device_name);
 
 }  // namespace
 }  // namespace rastrum::test

@@ -1,0 +1,31 @@
+// A test of the façade that runs on each device.
+#pragma once
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/render/render.hpp>
+
+#include "tests/support/environment.hpp"
+
+namespace rastrum::test {
+
+class DeviceTest : public testing::TestWithParam<Device> {
+ protected:
+  [[nodiscard]] static RenderOptions options(int width, int height) {
+    RenderOptions o;
+    o.width = width;
+    o.height = height;
+    o.device = GetParam();
+    o.threads = 4;
+    return o;
+  }
+  ThreadsBeyondCores threads_{4};
+};
+
+inline std::string device_name(const testing::TestParamInfo<Device>& p) {
+  return p.param == Device::serial ? "serial" : "threads";
+}
+
+}  // namespace rastrum::test
