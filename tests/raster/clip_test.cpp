@@ -114,7 +114,7 @@ void for_each_clipped(int count, Size size, F&& f) {
 
 TEST(Clip, CoversWhatAnExactHomogeneousRasterizerCovers) {
   int inside = 0, polygons = 0;
-  for_each_clipped(20000, Size::moderate, [&](const ProjectedTriangle& t, std::uint64_t seed) {
+  for_each_clipped(8000, Size::moderate, [&](const ProjectedTriangle& t, std::uint64_t seed) {
     const ExactTriangle exact(t, kWidth, kHeight);
     if (exact.edge_on) return;
     const raster::ClippedPolygon polygon = clip(t, kWidth, kHeight);
@@ -142,8 +142,8 @@ TEST(Clip, CoversWhatAnExactHomogeneousRasterizerCovers) {
     }
   });
   // The comparison saw something.
-  EXPECT_GT(polygons, 5000);
-  EXPECT_GT(inside, 1000000);
+  EXPECT_GT(polygons, 2000);
+  EXPECT_GT(inside, 400000);
 }
 
 // No sample twice, not even on the inner edges of the fan or where snapping bends the polygon.
@@ -248,7 +248,7 @@ TEST(Clip, NeverHasMoreCornersThanItsPolygonHolds) {
   };
   for (const auto& known : kKnown) expect_sane(triangle(known));
   Random r(1);
-  const int count = count_from_environment("RASTRUM_CLIP_TRIANGLES", 2000000);
+  const int count = count_from_environment("RASTRUM_CLIP_TRIANGLES", 1000000);
   for (int i = 0; i < count && !HasFatalFailure(); ++i) {
     double v[3][4];
     for (auto& corner : v) {
