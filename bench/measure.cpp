@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 
 namespace rastrum::bench {
 namespace {
@@ -20,6 +21,11 @@ double timed_ms(const std::function<void()>& frame) {
   const auto begin = Clock::now();
   frame();
   return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+/// CPU time of the process so far.
+double cpu_ms() {
+  return static_cast<double>(std::clock()) * 1000 / CLOCKS_PER_SEC;
 }
 
 }  // namespace
@@ -52,7 +58,7 @@ std::vector<Timing> measure_interleaved(std::span<const Contender> contenders, c
   std::vector<Timing> timings;
   std::vector<double> last_ms;
   for (const Contender& c : contenders) {
-    timings.push_back({c.name, {}});
+    timings.push_back({c.name, {}, {}});
     last_ms.push_back(timed_ms(c.frame));
   }
   for (int round = 0; round < plan.rounds; ++round)
@@ -60,10 +66,13 @@ std::vector<Timing> measure_interleaved(std::span<const Contender> contenders, c
       if (last_ms[i] < 4 * plan.turn_ms) contenders[i].frame();
       std::vector<double> frames_ms;
       double turn_ms = 0;
+      const double cpu_begin_ms = cpu_ms();
       do {
         frames_ms.push_back(timed_ms(contenders[i].frame));
         turn_ms += frames_ms.back();
       } while (turn_ms < plan.turn_ms);
+      timings[i].cpu_samples_ms.push_back((cpu_ms() - cpu_begin_ms) /
+                                          static_cast<double>(frames_ms.size()));
       last_ms[i] = median(std::move(frames_ms));
       timings[i].samples_ms.push_back(last_ms[i]);
     }

@@ -23,6 +23,9 @@ struct Plan {
 struct Timing {
   std::string name;
   std::vector<double> samples_ms;
+  /// CPU time of all the process's threads a frame, of each round: steadier than the clock on a
+  /// busy machine, but it counts threads that spin while they wait.
+  std::vector<double> cpu_samples_ms = {};
 
   [[nodiscard]] double median_ms() const;
   /// Half the distance of the quartiles over the median.

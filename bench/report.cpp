@@ -18,6 +18,9 @@
 namespace rastrum::bench {
 namespace {
 
+/// Load above which times are not to be trusted: a core's worth and a bit of someone else's work.
+constexpr double kQuietLoad = 1.2;
+
 /// The value behind the first `key : value` line of a file of /proc; empty where there is none.
 std::string proc_value(const char* file, std::string_view key) {
   std::ifstream in(file);
@@ -27,6 +30,14 @@ std::string proc_value(const char* file, std::string_view key) {
         if (const auto begin = line.find_first_not_of(" \t", colon + 1); begin != std::string::npos)
           return line.substr(begin);
   return {};
+}
+
+/// Processes that ran or wanted to over the last minute; 0 where the system does not say.
+double load_average() {
+  std::ifstream in("/proc/loadavg");
+  double load = 0;
+  in >> load;
+  return load;
 }
 
 std::string now_utc() {
@@ -88,7 +99,8 @@ std::string significant(double value, int digits) {
 nlohmann::json to_json(const Timing& timing) {
   return {{"median_ms", timing.median_ms()},
           {"spread", timing.spread()},
-          {"samples_ms", timing.samples_ms}};
+          {"samples_ms", timing.samples_ms},
+          {"cpu_median_ms", median(timing.cpu_samples_ms)}};
 }
 
 nlohmann::json machine_json() {
@@ -97,6 +109,7 @@ nlohmann::json machine_json() {
   return {{"cpu", proc_value("/proc/cpuinfo", "model name")},
           {"cores", std::thread::hardware_concurrency()},
           {"memory_gib", std::round(kib / 1048576 * 10) / 10},
+          {"load", load_average()},
           {"compiler", compiler()},
           {"commit", kCommit},
           {"version", kVersion},
@@ -108,7 +121,11 @@ std::string machine_text() {
   return m["cpu"].get<std::string>() + ", " + std::to_string(m["cores"].get<unsigned>()) +
          " cores, " + significant(m["memory_gib"].get<double>()) + " GiB; " +
          m["compiler"].get<std::string>() + "\nRastrum " + m["version"].get<std::string>() + " (" +
-         m["commit"].get<std::string>() + "), " + m["date"].get<std::string>();
+         m["commit"].get<std::string>() + "), " + m["date"].get<std::string>() +
+         (m["load"].get<double>() > kQuietLoad
+              ? "\nThe machine is BUSY (load " + significant(m["load"].get<double>()) +
+                    "): no time below is worth quoting."
+              : "");
 }
 
 void write_json(const std::string& file, const nlohmann::json& document) {

@@ -30,13 +30,13 @@ class Table {
 /// `value` with `digits` significant digits, without an exponent: 0.123, 4.56, 123, 45678.
 [[nodiscard]] std::string significant(double value, int digits = 3);
 
-/// {"median_ms", "spread", "samples_ms"}.
+/// {"median_ms", "spread", "samples_ms", "cpu_median_ms"}.
 [[nodiscard]] nlohmann::json to_json(const Timing& timing);
 
-/// {"cpu", "cores", "memory_gib", "compiler", "commit", "version", "date"}: what a figure needs to
-/// be read later.
+/// {"cpu", "cores", "memory_gib", "load", "compiler", "commit", "version", "date"}: what a figure
+/// needs to be read later.
 [[nodiscard]] nlohmann::json machine_json();
-/// The same in two lines of text.
+/// The same as text, with a warning where the machine is busy.
 [[nodiscard]] std::string machine_text();
 
 /// Writes `document` beside `file` and renames it. Throws Error{io}.

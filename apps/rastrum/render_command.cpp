@@ -1,4 +1,5 @@
 // `rastrum render INPUT… -o OUT`: the options, then check, load, render, write.
+#include <algorithm>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -237,6 +238,14 @@ void check(const RenderArguments& a) {
   check_outputs(outputs);
 }
 
+/// Blending needs the layers in order, which the visibility buffer does not keep.
+void report_blended(const Scene& scene) {
+  const auto blended = std::ranges::count(scene.materials, AlphaMode::blend, &Material::alpha_mode);
+  if (blended != 0)
+    warn(std::to_string(blended) + " of " + std::to_string(scene.materials.size()) +
+         " materials ask for blending (alphaMode BLEND) and are drawn opaque");
+}
+
 void report_missing(const FrameStats& frame) {
   if (frame.triangles.input == 0) warn("there are no triangles to draw");
   if (frame.triangles.dropped != 0)
@@ -285,6 +294,7 @@ int run(RenderArguments& a) {
     a.render.shader = Shader::material;
     renderer = std::make_unique<Renderer>(a.render);
   }
+  if (!a.quiet && a.render.shader == Shader::material) report_blended(scene);
   const SceneBinding binding(scene);
   const Camera camera = choose_camera(a.view, scene, binding.view());
 

@@ -8,13 +8,12 @@
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/interpolate.hpp>
-#include <rastrum/raster/reference.hpp>
 #include <rastrum/raster/shaders/alpha_test.hpp>
 #include <rastrum/raster/shaders/lit.hpp>
 #include <rastrum/raster/shaders/material.hpp>
 #include <rastrum/raster/shaders/texture.hpp>
-#include <rastrum/raster/tiled.hpp>
 #include <rastrum/raster/transform_source.hpp>
+#include <rastrum/render/registry.hpp>
 
 namespace rastrum {
 namespace {
@@ -106,11 +105,10 @@ struct Renderer::Impl {
 
   RenderOptions options;
   Isa isa = Isa::scalar;
-  bool reference = false;
   MemoryAccount memory;
   raster::TextureSet textures{memory};
   std::unique_ptr<parallel::Threads> threads;
-  std::unique_ptr<raster::TiledRasterizer> tiled;
+  DrawFrame draw_frame;
 };
 
 Renderer::Renderer(RenderOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {
@@ -123,25 +121,18 @@ Renderer::Renderer(RenderOptions options) : impl_(std::make_unique<Impl>(std::mo
     throw Error(Errc::invalid_argument, "threads must lie between 0 (all) and 4096");
   if (o.device == Device::cuda)
     throw Error(Errc::no_device, "this build has no CUDA backend; use --device threads");
-  const auto& table = rasterizers();
-  if (o.rasterizer != "auto" &&
-      std::none_of(table.begin(), table.end(),
-                   [&](const RasterizerInfo& r) { return r.name == o.rasterizer; })) {
-    std::string known = "auto";
-    for (const RasterizerInfo& r : table) known += ", " + r.name;
-    throw Error(Errc::invalid_argument,
-                "no rasterizer is called '" + o.rasterizer + "'; there are " + known);
-  }
+  const RasterizerRow& row = find_rasterizer(o);
   const std::vector<Isa> isas = available_isas();
   impl_->isa = o.isa.value_or(isas.back());
   if (std::find(isas.begin(), isas.end(), impl_->isa) == isas.end())
     throw Error(Errc::no_device,
                 "this machine cannot run " + std::string(name(impl_->isa)) + " instructions");
-  impl_->reference = o.device == Device::serial || o.rasterizer == "reference";
-  if (!impl_->reference) {
+  // The reference is plain C++ on one thread, whatever else the machine could do.
+  if (row.needs_threads)
     impl_->threads = std::make_unique<parallel::Threads>(o.threads);
-    impl_->tiled = std::make_unique<raster::TiledRasterizer>(impl_->memory);
-  }
+  else
+    impl_->isa = Isa::scalar;
+  impl_->draw_frame = row.make({&impl_->memory, impl_->threads.get()});
 }
 
 Renderer::~Renderer() = default;
@@ -181,8 +172,7 @@ FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const 
                            impl_->threads.get());
     materials.emplace(scene, camera, o.width, o.height, impl_->textures);
   }
-  if (any_mask)
-    test = raster::make_alpha_test(*materials, impl_->reference ? Isa::scalar : impl_->isa);
+  if (any_mask) test = raster::make_alpha_test(*materials, impl_->isa);
   if (shades_materials)
     return draw(draws, *raster::make_material_shader(*materials), test.get(), targets);
   if (o.shader == Shader::depth) return draw_depth(draws, test.get(), targets);
@@ -226,15 +216,14 @@ FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::BlockShad
   request.width = o.width;
   request.height = o.height;
   request.cull = o.cull;
-  request.isa = impl_->reference ? Isa::scalar : impl_->isa;
+  request.isa = impl_->isa;
   request.draws = draws;
   request.test = test;
   request.shader = &shader;
   request.background = o.background;
   request.targets = targets;
   impl_->memory.restart_peak();
-  FrameStats stats = impl_->reference ? raster::render_reference(request, impl_->memory)
-                                      : impl_->tiled->render(request, *impl_->threads);
+  FrameStats stats = impl_->draw_frame(request);
   stats.peak_bytes = impl_->memory.peak();
   return stats;
 }

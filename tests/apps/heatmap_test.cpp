@@ -61,7 +61,7 @@ TEST_F(HeatmapOption, SumOfThePictureIsTheFragments) {
   EXPECT_NE(said.find("; " + std::to_string(fragments) + " fragments in all"), std::string::npos);
 
   std::map<std::uint32_t, std::uint32_t> count_of;  // by colour
-  const auto key = [](Rgba8 c) { return std::uint32_t{c.r} << 16 | c.g << 8 | c.b; };
+  const auto key = [](Rgba8 c) { return std::uint32_t{c.r} << 16 | std::uint32_t{c.g} << 8 | c.b; };
   for (std::uint32_t n = 1; n <= max; ++n)
     count_of[key(cli::heat_ramp()[static_cast<std::size_t>(cli::ramp_index(n, max))])] = n;
   ASSERT_EQ(count_of.size(), max) << "two counts share a colour; use a scene with fewer layers";

@@ -18,15 +18,15 @@ TEST(Measure, MedianTakesTheMiddleOrTheMeanOfTwo) {
 }
 
 TEST(Measure, SpreadIsHalfTheQuartilesDistanceOverTheMedian) {
-  const Timing timing{"", {1, 2, 3, 4, 5}};
+  const Timing timing{"", {1, 2, 3, 4, 5}, {}};
   EXPECT_DOUBLE_EQ(timing.median_ms(), 3);
   EXPECT_DOUBLE_EQ(timing.spread(), (4.0 - 2.0) / 2 / 3);
 }
 
 TEST(Measure, RatioIsTakenRoundByRound) {
   // The machine halves its speed after the first round; the ratio stays.
-  const Timing a{"a", {10, 20, 20}};
-  const Timing b{"b", {2, 4, 4}};
+  const Timing a{"a", {10, 20, 20}, {}};
+  const Timing b{"b", {2, 4, 4}, {}};
   EXPECT_DOUBLE_EQ(median_ratio(a, b), 5);
 }
 
@@ -59,6 +59,8 @@ TEST(Measure, SlowFramesAreNotWarmedUp) {
   EXPECT_EQ(slow, 1 + 2);
   EXPECT_GE(fast, 1 + 2 * 2);
   EXPECT_GE(timings[1].median_ms(), 10);
+  ASSERT_EQ(timings[1].cpu_samples_ms.size(), 2U);
+  EXPECT_LT(timings[1].cpu_samples_ms[0], 9);  // it sleeps
   EXPECT_LT(timings[0].median_ms(), 1);
 }
 

@@ -28,7 +28,8 @@ TEST(Report, SignificantKeepsDigitsAndNoExponent) {
 
 TEST(Report, MachineNamesWhatAFigureNeeds) {
   const nlohmann::json m = machine_json();
-  for (const char* key : {"cpu", "cores", "memory_gib", "compiler", "commit", "version", "date"})
+  for (const char* key :
+       {"cpu", "cores", "memory_gib", "load", "compiler", "commit", "version", "date"})
     EXPECT_TRUE(m.contains(key)) << key;
   EXPECT_FALSE(m["commit"].get<std::string>().empty());
   EXPECT_GE(m["cores"].get<int>(), 1);

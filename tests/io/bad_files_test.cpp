@@ -12,6 +12,7 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <algorithm>
 
 #include <array>
 #include <chrono>
@@ -30,6 +31,7 @@
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/io/io.hpp>
+#include <rastrum/render/render.hpp>
 
 #include "tests/io/files.hpp"
 
@@ -96,7 +98,36 @@ std::string name_of(Errc code) {
   return "?";
 }
 
-/// What is done with a scene that was read: the place to draw it as well.
+/// Draws the scene with the reference and on threads: they must agree, and lose no triangle.
+std::string draw(const Scene& scene) {
+  constexpr int kSize = 64;
+  const SceneBinding binding(scene);
+  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+  Image<std::int64_t> ids[2];
+  Image<Rgba8> colors[2];
+  FrameStats stats[2];
+  for (int i = 0; i < 2; ++i) {
+    RenderOptions options;
+    options.width = options.height = kSize;
+    options.device = i == 0 ? Device::serial : Device::threads;
+    options.threads = 2;
+    options.shader = scene.materials.empty() ? Shader::phong : Shader::material;
+    ids[i] = Image<std::int64_t>(kSize, kSize);
+    colors[i] = Image<Rgba8>(kSize, kSize);
+    Targets targets;
+    targets.ids = ids[i].view();
+    targets.color8 = colors[i].view();
+    stats[i] = Renderer(options).render(binding.view(), camera, targets);
+  }
+  if (!std::ranges::equal(ids[0].pixels(), ids[1].pixels())) return "two pictures of it";
+  if (stats[0].triangles.input != scene.triangle_count()) return "triangles lost";
+  for (const FrameStats& s : stats)
+    if (s.triangles.input != s.triangles.dropped + s.triangles.culled + s.triangles.drawn)
+      return "triangles that do not add up";
+  return {};
+}
+
+/// What is done with a scene that was read.
 std::string examine(const Scene& scene) {
   for (const Instance& i : scene.instances)
     if (i.mesh >= scene.meshes.size()) return "an instance of no mesh";
@@ -115,7 +146,7 @@ std::string examine(const Scene& scene) {
     if (!m.face_materials.empty() && m.face_materials.size() != m.triangle_count())
       return "face_materials of the wrong length";
   }
-  return {};
+  return draw(scene);
 }
 
 std::vector<Vec3> corners(const Scene& scene) {
