@@ -1,5 +1,6 @@
 #include <rastrum/raster/kernels.hpp>
 
+#include <array>
 #include <bit>
 
 #include <rastrum/raster/coverage.hpp>
@@ -92,14 +93,24 @@ void store_opaque_scalar(const BlockColors& colors, std::uint64_t covered, Rgba8
             : Rgba8{quantize(colors.r[i]), quantize(colors.g[i]), quantize(colors.b[i]), 255};
 }
 
+constexpr std::size_t kIsaCount = static_cast<std::size_t>(Isa::neon) + 1;
+
 constexpr Kernels kScalar{project_scalar, setup_scalar,   cover_scalar,
                           maximum_scalar, covered_scalar, store_opaque_scalar};
 
 }  // namespace
 
 const Kernels& kernels(Isa isa) noexcept {
-  const Kernels* simd = isa == Isa::scalar ? nullptr : simd_kernels(isa);
-  return simd != nullptr ? *simd : kScalar;
+  static const std::array<Kernels, kIsaCount> tables = [] {
+    std::array<Kernels, kIsaCount> all;
+    for (std::size_t i = 0; i < kIsaCount; ++i) {
+      all[i] = kScalar;
+      fill_setup_kernels(static_cast<Isa>(i), all[i]);
+      fill_block_kernels(static_cast<Isa>(i), all[i]);
+    }
+    return all;
+  }();
+  return tables[static_cast<std::size_t>(isa)];
 }
 
 }  // namespace rastrum::raster

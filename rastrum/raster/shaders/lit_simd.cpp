@@ -50,6 +50,8 @@ static_assert(sizeof(Kept) <= kMaxShaderScratch);
 
 /// Up to this ratio of squared longest edge to twice the area float32 weights are as good as 1e-5.
 constexpr float kThin = 32.0F;
+/// Below this ratio of the corners' 1 / w a far corner's weight drowns in the near one's rounding.
+constexpr float kSteep = 1e-4F;
 
 Vec3 to_world(const LitDraw& draw, Vec3 n) {
   const auto& m = draw.normal_matrix;
@@ -70,9 +72,12 @@ void fetch_weights(const FrameGeometry& frame, const Draw& draw, std::uint64_t t
   const float e2y = static_cast<float>(v2.y_fx8 - v0.y_fx8) * kPx;
   const float det = e1x * e2y - e2x * e1y;
   const float extent = (e1x * e1x + e1y * e1y) + (e2x * e2x + e2y * e2y);
+  const float smallest = std::min({v0.inv_w, v1.inv_w, v2.inv_w});
+  const float largest = std::max({v0.inv_w, v1.inv_w, v2.inv_w});
   // Up to 16 px every product of edges is exact, however thin the triangle.
-  out.exact = v0.x_fx8 == kNeedsClip || v1.x_fx8 == kNeedsClip || v2.x_fx8 == kNeedsClip ||
-              (extent > 128.0F && !(extent < kThin * std::abs(det)));
+  const bool thin = extent > 128.0F && !(extent < kThin * std::abs(det));
+  out.exact = v0.x_fx8 == kNeedsClip || v1.x_fx8 == kNeedsClip || v2.x_fx8 == kNeedsClip || thin ||
+              !(smallest > kSteep * largest);
   if (out.exact) {
     out.planes = weight_planes(frame, draw, t);
     return;
@@ -85,7 +90,6 @@ void fetch_weights(const FrameGeometry& frame, const Draw& draw, std::uint64_t t
   out.p2 = -e1y * inv_det;
   out.q2 = e1x * inv_det;
   // Only ratios count; far away 1 / w is so small that squares of normals would underflow.
-  const float largest = std::max({v0.inv_w, v1.inv_w, v2.inv_w});
   out.inv_w[0] = v0.inv_w / largest;
   out.inv_w[1] = v1.inv_w / largest;
   out.inv_w[2] = v2.inv_w / largest;
@@ -120,10 +124,11 @@ void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint
 }  // namespace rastrum::raster
 #endif  // RASTRUM_RASTER_SHADERS_LIT_SIMD_ONCE
 
-#if HWY_TARGET != HWY_SCALAR
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster {
 namespace HWY_NAMESPACE {
+namespace {  // several sources have an N_AVX2
 namespace hn = hwy::HWY_NAMESPACE;
 
 using F32 = hn::CappedTag<float, 8>;
@@ -300,10 +305,11 @@ bool shade(LitModel model, const LitScene& scene, const FrameGeometry& frame,
   }
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace rastrum::raster
 HWY_AFTER_NAMESPACE();
-#endif  // HWY_TARGET != HWY_SCALAR
+#endif  // HWY_TARGET
 
 #if HWY_ONCE
 namespace rastrum::raster {
