@@ -144,7 +144,9 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
             {{"file", Normals::file}, {"vertex", Normals::vertex}, {"face", Normals::face}});
       })
       ->group(group);
-  add(app, "--cull", "NAME", "none, back, front; counter-clockwise is front (none)",
+  add(app, "--cull", "NAME",
+      "none, back, front; counter-clockwise is front; with none, the material shader still leaves "
+      "out the back of single-sided glTF materials (none)",
       [&a](const std::string& s) {
         a.render.cull = choose<Cull>(
             "--cull", s, {{"none", Cull::none}, {"back", Cull::back}, {"front", Cull::front}});

@@ -92,6 +92,7 @@ float finite_or(double x, float otherwise) {
 
 Material convert(const tinyobj::material_t& m, TextureReader& texture) {
   Material r;
+  r.double_sided = true;  // MTL knows no sides
   r.name = m.name;
   const auto channel = [](double x) { return std::clamp(finite_or(x, 1), 0.0F, 1.0F); };
   r.base_color = {channel(m.diffuse[0]), channel(m.diffuse[1]), channel(m.diffuse[2]),

@@ -34,6 +34,7 @@ struct Draw {
   std::span<const std::uint32_t> indices;  ///< 3 per triangle; empty: vertices in order
   std::uint64_t triangle_count = 0;
   std::uint32_t flags = 0;  ///< of its pieces
+  Cull cull = Cull::none;   ///< which faces are left out
 
   // Filled by the pipeline.
   std::uint64_t first_id = 0;
@@ -100,7 +101,6 @@ class BlockShader {
 /// One frame, as the façade hands it to a rasterizer.
 struct FrameRequest {
   int width = 0, height = 0;
-  Cull cull = Cull::none;
   Isa isa = Isa::scalar;
   std::span<Draw> draws;
   const FragmentTest* test = nullptr;   ///< null: no piece is tested

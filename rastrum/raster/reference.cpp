@@ -68,7 +68,7 @@ FrameStats render_reference(FrameRequest& request, MemoryAccount& memory) {
   for (const Draw& draw : request.draws)
     for (std::uint64_t t = 0; t < draw.triangle_count; ++t) {
       const TriangleFate fate = assemble_triangle(
-          frame, draw, t, request.cull,
+          frame, draw, t, draw.cull,
           [&](const Piece& piece) { draw_piece(request, frame, piece, words, stats); });
       stats.triangles.dropped += fate == TriangleFate::dropped;
       stats.triangles.culled += fate == TriangleFate::culled;

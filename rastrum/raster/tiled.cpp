@@ -155,9 +155,9 @@ void bin_pieces(const Group& group, std::uint32_t first_piece, Rect view, BinGri
 }
 
 /// Setup of triangles [first, last), which may span draws.
-void fill_group(Group& group, GroupScratch& scratch, const FrameRequest& request,
-                const FrameGeometry& frame, const Kernels& kernel, BinGrid grid,
-                std::uint64_t first, std::uint64_t last, std::atomic<bool>& index_in_range) {
+void fill_group(Group& group, GroupScratch& scratch, const FrameGeometry& frame,
+                const Kernels& kernel, BinGrid grid, std::uint64_t first, std::uint64_t last,
+                std::atomic<bool>& index_in_range) {
   const Rect view{0, 0, frame.width, frame.height};
   group.piece_count = 0;
   group.triangles = {};
@@ -178,7 +178,7 @@ void fill_group(Group& group, GroupScratch& scratch, const FrameRequest& request
     input.count = count;
     input.first_id = draw.first_id;
     input.flags = draw.flags;
-    input.cull = request.cull;
+    input.cull = draw.cull;
     input.view = view;
     input.bin_columns = static_cast<std::uint32_t>(grid.columns);
 
@@ -195,7 +195,7 @@ void fill_group(Group& group, GroupScratch& scratch, const FrameRequest& request
     group.triangles.culled += count - out.pieces - out.micro - out.slow;
     for (std::uint32_t s = 0; s < out.slow; ++s) {
       const TriangleFate fate =
-          assemble_triangle(frame, draw, t + slow[s], request.cull, [&](const Piece& piece) {
+          assemble_triangle(frame, draw, t + slow[s], draw.cull, [&](const Piece& piece) {
             group.pieces.grow(group.piece_count + 1, group.piece_count);
             group.pieces[group.piece_count++] = piece;
           });
@@ -345,7 +345,7 @@ FrameStats TiledRasterizer::render(FrameRequest& request, parallel::Threads& exe
   std::atomic<bool> index_in_range = true;
   parallel::for_each_index(exec, group_count, [&](std::size_t g) {
     const std::uint64_t first = g * group_size;
-    fill_group(groups[g], scratch_->fillers.local(), request, frame, kernel, grid, first,
+    fill_group(groups[g], scratch_->fillers.local(), frame, kernel, grid, first,
                std::min(first + group_size, totals.triangles), index_in_range);
   });
   if (!index_in_range) check_indices(request.draws);

@@ -98,6 +98,20 @@ void stretch_depth(ImageView<float> depth, Vec4 background, const Targets& targe
     }
 }
 
+/// glTF: the back faces of a single-sided material are not seen; a mirroring transform turns them.
+/// Meshes whose faces have materials of their own come from formats without that notion.
+Cull material_cull(const InstanceView& instance, std::span<const Material> materials,
+                   Shader shader) {
+  if (shader != Shader::material || materials.empty() || !instance.mesh.face_materials.empty() ||
+      materials[instance.mesh.material].double_sided)
+    return Cull::none;
+  const auto& m = instance.object_to_world.m;
+  const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  return determinant < 0 ? Cull::front : Cull::back;
+}
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -160,6 +174,7 @@ FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const 
     draw.vertex_count = instance.mesh.positions.size();
     draw.indices = instance.mesh.indices;
     draw.triangle_count = instance.mesh.triangle_count();
+    draw.cull = material_cull(instance, scene.materials, o.shader);
     if (!raster::has_mask(instance.mesh, scene.materials)) continue;
     draw.flags |= raster::kTested;
     any_mask = true;
@@ -215,7 +230,8 @@ FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::BlockShad
   raster::FrameRequest request;
   request.width = o.width;
   request.height = o.height;
-  request.cull = o.cull;
+  if (o.cull != Cull::none)
+    for (raster::Draw& d : draws) d.cull = o.cull;
   request.isa = impl_->isa;
   request.draws = draws;
   request.test = test;

@@ -47,6 +47,7 @@ struct RenderOptions {
   int threads = 0;         ///< 0: all
   std::optional<Isa> isa;  ///< none: the best this machine has
   Shader shader = Shader::phong;
+  /// none: all faces, but with Shader::material the back of single-sided materials is left out.
   Cull cull = Cull::none;
   Vec4 background{0, 0, 0, 0};  ///< display values, straight alpha
 };

@@ -506,8 +506,18 @@ TEST(Material, BackFacesAreLitFromTheirSide) {
   scene.materials.emplace_back();
   const Rgba8 front = draw_quad(scene).color8(9, 9);
   scene.meshes[0].indices = {0, 2, 3, 0, 1, 2};
+  EXPECT_EQ(draw_quad(scene).color8(9, 9).a, 0) << "single-sided";
+  scene.materials[0].double_sided = true;
   EXPECT_EQ(draw_quad(scene).color8(9, 9), front);
   scene.meshes[0].normals.values.assign(4, {0, 0, -1});
+  EXPECT_EQ(draw_quad(scene).color8(9, 9), front);
+}
+
+TEST(Material, MirroringTurnsTheSideThatIsSeen) {
+  Scene scene = single(quad({0, 0}, {1, 1}));
+  scene.materials.emplace_back();
+  const Rgba8 front = draw_quad(scene).color8(9, 9);
+  scene.instances[0].object_to_world.m[0][0] = -1;
   EXPECT_EQ(draw_quad(scene).color8(9, 9), front);
 }
 

@@ -85,9 +85,9 @@ TEST_P(Family, EqualsSerialAndTheOracle) {
     }
     if (!good && ++failures == 3) FAIL() << "three scenes failed; the rest was not drawn";
   }
-  // No kind of scene may have become invisible.
+  // No kind of scene may have become invisible; a few scenes of a kind may be by chance.
   for (const auto& [kind, fragments] : fragments_of_kind) {
-    if (setup.width > 8) {
+    if (setup.width > 8 && scenes >= 20 * kSceneKinds) {
       EXPECT_GT(fragments, 0U) << kind;
     }
   }

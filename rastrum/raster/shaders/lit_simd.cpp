@@ -65,6 +65,11 @@ void fetch_weights(const FrameGeometry& frame, const Draw& draw, std::uint64_t t
   const ProjectedVertex* vertices = frame.projected + draw.first_vertex;
   const ProjectedVertex &v0 = vertices[vertex[0]], &v1 = vertices[vertex[1]],
                         &v2 = vertices[vertex[2]];
+  out.exact = true;
+  if (v0.x_fx8 == kNeedsClip || v1.x_fx8 == kNeedsClip || v2.x_fx8 == kNeedsClip) {
+    out.planes = weight_planes(frame, draw, t);
+    return;
+  }
   constexpr float kPx = 1.0F / kSubpixels;
   const float e1x = static_cast<float>(v1.x_fx8 - v0.x_fx8) * kPx;
   const float e1y = static_cast<float>(v1.y_fx8 - v0.y_fx8) * kPx;
@@ -76,8 +81,7 @@ void fetch_weights(const FrameGeometry& frame, const Draw& draw, std::uint64_t t
   const float largest = std::max({v0.inv_w, v1.inv_w, v2.inv_w});
   // Up to 16 px every product of edges is exact, however thin the triangle.
   const bool thin = extent > 128.0F && !(extent < kThin * std::abs(det));
-  out.exact = v0.x_fx8 == kNeedsClip || v1.x_fx8 == kNeedsClip || v2.x_fx8 == kNeedsClip || thin ||
-              !(smallest > kSteep * largest);
+  out.exact = thin || !(smallest > kSteep * largest);
   if (out.exact) {
     out.planes = weight_planes(frame, draw, t);
     return;

@@ -13,8 +13,8 @@
 // F0 + (max(1 − roughness, F0) − F0) (1 − c)^5 stands in for the integral over the lobe, so that
 // metals are not black. Masking is Hammon's approximation of Smith's height-correlated term (GDC
 // 2017). Roughness is at least 0.045. Normals are turned to the side of the triangle that is seen,
-// with or without double_sided (nothing is culled unless the caller asks). The tangent frame is
-// that of the texture coordinates: their derivative over a triangle is constant in the world, so
+// with or without double_sided (the façade culls the back of single-sided ones). The tangent frame
+// is that of the texture coordinates: their derivative over a triangle is constant in the world, so
 // none is stored or differenced on the screen.
 //
 // Textures: texel (0, 0) at the top left, centres at half texels, trilinear; the level is log2 of

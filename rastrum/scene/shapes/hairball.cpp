@@ -20,7 +20,11 @@ struct Strand {
 
   Strand(Random& random, double radius) {
     p[0] = random.unit_vector() * radius;
-    for (int i : {1, 2}) p[i] = random.unit_vector() * (radius * std::cbrt(random.uniform()));
+    for (int i : {1, 2}) {
+      // Drawn in statements of their own: compilers order the operands of a product as they like.
+      const double r = radius * std::cbrt(random.uniform());
+      p[i] = random.unit_vector() * r;
+    }
     p[3] = random.unit_vector() * radius;
   }
   [[nodiscard]] Vec3d point(double t) const {
