@@ -251,38 +251,76 @@ HWY_INLINE std::uint32_t same_triangle(const std::uint64_t* words, std::uint64_t
   return same;
 }
 
+/// What the lighting of a block needs, by sample.
+struct BlockSurface {
+  HWY_ALIGN float n[3][64];
+  HWY_ALIGN float base[3][64];
+};
+
+HWY_INLINE void store(const V3& v, float (&to)[3][64], std::size_t at) {
+  const F32 d;
+  hn::Store(v.x, d, to[0] + at);
+  hn::Store(v.y, d, to[1] + at);
+  hn::Store(v.z, d, to[2] + at);
+}
+HWY_INLINE V3 load(const float (&from)[3][64], std::size_t at) {
+  const F32 d;
+  return {hn::Load(d, from[0] + at), hn::Load(d, from[1] + at), hn::Load(d, from[2] + at)};
+}
+
+/// Normals (not normalized) and colours of a row, each triangle's blended into its samples.
+HWY_INLINE void interpolate_row(const LitScene& scene, const FrameGeometry& frame,
+                                const VisibleBlock& block, std::size_t first, std::uint32_t rest,
+                                bool wants_normals, bool wants_colors, BlockSurface& surface) {
+  const F32 d;
+  TriangleSetup* const kept = static_cast<Kept*>(block.scratch)->triangles;
+  const std::uint64_t* words = block.words + first;
+  const int x = block.x0 + static_cast<int>(first % 8);
+  const int y = block.y0 + static_cast<int>(first / 8);
+  V3 n{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  V3 base = n;
+  while (rest != 0) {
+    const std::uint64_t low = words[std::countr_zero(rest)] & kIdMask;
+    TriangleSetup& t = kept[low % Kept::kCount];
+    if (t.low != low) fetch_triangle(scene, frame, low, wants_normals, t);
+    const std::uint32_t same = same_triangle(words, low) & rest;
+    const auto mask = lane_mask(same);
+    rest &= ~same;
+    F b0, b1, b2;
+    row_weights(t, x, y, b0, b1, b2);
+    if (wants_normals) n = blend(mask, corner_sum(t.normal, b0, b1, b2), n);
+    if (wants_colors) {
+      const F inverse = hn::Div(set(1.0F), hn::Add(hn::Add(b0, b1), b2));
+      base = blend(mask, scale(corner_sum(t.color, b0, b1, b2), inverse), base);
+    }
+  }
+  if (wants_normals) store(n, surface.n, first);
+  if (wants_colors) store(base, surface.base, first);
+}
+
+/// Two loops: a row's lighting is one long chain of square roots and divisions, and the processor
+/// overlaps the chains of several rows only where little else stands between them.
 template <LitModel kModel>
 void shade_block(const LitScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
                  BlockColors& colors) {
   const F32 d;
   constexpr bool kNormals = kModel != LitModel::flat;
+  constexpr std::uint64_t kRow = (1U << kLanes) - 1;
   const bool colored = kModel != LitModel::normal && scene.colored;
-  TriangleSetup* const kept = static_cast<Kept*>(block.scratch)->triangles;
+  BlockSurface surface;
+  if (kNormals || colored)
+    for (std::size_t first = 0; first < 64; first += kLanes)
+      if (const std::uint64_t row = block.covered >> first & kRow; row != 0)
+        interpolate_row(scene, frame, block, first, static_cast<std::uint32_t>(row), kNormals,
+                        colored, surface);
+
+  V3 base{set(kDefaultBase.x), set(kDefaultBase.y), set(kDefaultBase.z)};
   for (std::size_t first = 0; first < 64; first += kLanes) {
-    auto rest = static_cast<std::uint32_t>(block.covered >> first & ((1U << kLanes) - 1));
-    if (rest == 0) continue;
-    const std::uint64_t* words = block.words + first;
-    const int x = block.x0 + static_cast<int>(first % 8);
-    const int y = block.y0 + static_cast<int>(first / 8);
-    V3 n{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-    V3 base{set(kDefaultBase.x), set(kDefaultBase.y), set(kDefaultBase.z)};
-    while (rest != 0) {
-      const std::uint64_t low = words[std::countr_zero(rest)] & kIdMask;
-      TriangleSetup& t = kept[low % Kept::kCount];
-      if (t.low != low) fetch_triangle(scene, frame, low, kNormals, t);
-      const std::uint32_t same = same_triangle(words, low) & rest;
-      const auto mask = lane_mask(same);
-      rest &= ~same;
-      if (!kNormals && !colored) continue;
-      F b0, b1, b2;
-      row_weights(t, x, y, b0, b1, b2);
-      if (kNormals) n = blend(mask, corner_sum(t.normal, b0, b1, b2), n);
-      if (colored) {
-        const F inverse = hn::Div(set(1.0F), hn::Add(hn::Add(b0, b1), b2));
-        base = blend(mask, scale(corner_sum(t.color, b0, b1, b2), inverse), base);
-      }
-    }
-    const V3 color = light_row<kModel>(scene.rays, x, y, n, base);
+    if ((block.covered >> first & kRow) == 0) continue;
+    if (colored) base = load(surface.base, first);
+    const V3 n = kNormals ? load(surface.n, first) : base;
+    const V3 color = light_row<kModel>(scene.rays, block.x0 + static_cast<int>(first % 8),
+                                       block.y0 + static_cast<int>(first / 8), n, base);
     hn::Store(color.x, d, colors.r + first);
     hn::Store(color.y, d, colors.g + first);
     hn::Store(color.z, d, colors.b + first);
