@@ -134,6 +134,7 @@ HWY_INLINE bool load_indices(const SetupInput& in, std::uint32_t offset,
   hn::StoreU(i1, d, index[1]);
   hn::StoreU(i2, d, index[2]);
   const auto largest = hn::Max(i0, hn::Max(i1, i2));
+  if (in.vertex_count == 0) return false;
   const auto last = hn::Set(
       d, static_cast<std::uint32_t>(std::min<std::size_t>(in.vertex_count - 1, 0xffffffffU)));
   return hn::AllTrue(d, hn::Eq(hn::Max(largest, last), last));

@@ -335,6 +335,15 @@ TEST_P(Properties, IndexOutOfRangeIsAnErrorThatNamesIt) {
             2U * 48 * 48);
 }
 
+TEST_P(Properties, IndicesWithoutPositionsAreAnError) {
+  Scene scene;
+  scene.meshes.emplace_back();
+  scene.meshes[0].indices.assign(3 * 64, 5);
+  scene.instances = {{0, Mat4d::identity()}};
+  Renderer renderer(options(64, 64));
+  EXPECT_THROW((void)draw(renderer, SceneBinding(scene).view(), pixel_camera(64, 64)), Error);
+}
+
 TEST_P(Properties, AttributeIndexOutOfRangeIsAnErrorThatNamesIt) {
   Mesh mesh = quad(8, 8, 56, 56, 64, 64);
   mesh.normals.values = {{0, 0, 1}};

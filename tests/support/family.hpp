@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <rastrum/render/render.hpp>
@@ -13,20 +14,27 @@ struct Relative {
   RenderOptions options;
 };
 
-/// `base` with the serial device first, then threads 1, 2 and 8 for each instruction set.
+/// `base` with the serial device first, then every other row of the registry with threads 1, 2 and 8
+/// for each instruction set.
 inline std::vector<Relative> family_of(const RenderOptions& base) {
   std::vector<Relative> family;
   RenderOptions serial = base;
   serial.device = Device::serial;
   serial.isa = Isa::scalar;
   family.push_back({"serial", serial});
-  for (const Isa isa : available_isas()) {
-    for (const int threads : {1, 2, 8}) {
-      RenderOptions o = base;
-      o.device = Device::threads;
-      o.threads = threads;
-      o.isa = isa;
-      family.push_back({"threads " + std::to_string(threads) + " " + std::string(name(isa)), o});
+  for (const RasterizerInfo& row : rasterizers()) {
+    if (row.name == "reference") continue;  // is what the serial device draws with
+    for (const Isa isa : available_isas()) {
+      for (const int threads : {1, 2, 8}) {
+        RenderOptions o = base;
+        o.rasterizer = row.name;
+        o.device = Device::threads;
+        o.threads = threads;
+        o.isa = isa;
+        std::string title = row.name;
+        title.append(" ").append(std::to_string(threads)).append(" ").append(name(isa));
+        family.push_back({std::move(title), o});
+      }
     }
   }
   return family;
