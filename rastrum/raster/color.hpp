@@ -11,6 +11,15 @@ namespace rastrum::raster {
 /// Colours of a block, one plane a channel: element 8 · row + column. Premultiplied.
 struct alignas(64) BlockColors {
   float r[64], g[64], b[64], a[64];
+
+  /// Sets element i; returns whether `c` is opaque.
+  bool set(int i, Vec4 c) {
+    r[i] = c.x;
+    g[i] = c.y;
+    b[i] = c.z;
+    a[i] = c.w;
+    return c.w == 1;
+  }
 };
 
 /// [0, 1] to 0 … 255, nearest, ties to even; NaN becomes 0.

@@ -154,12 +154,7 @@ class FragmentShader final : public BlockShader {
       Fragment fragment =
           locator.locate(id_of_word(word), block.x0 + i % kBlockSize, block.y0 + i / kBlockSize);
       fragment.depth = std::bit_cast<float>(static_cast<std::uint32_t>(word >> kIdBits));
-      const Vec4 c = f_(frame, fragment);
-      colors.r[i] = c.x;
-      colors.g[i] = c.y;
-      colors.b[i] = c.z;
-      colors.a[i] = c.w;
-      opaque &= c.w == 1;
+      opaque &= colors.set(i, f_(frame, fragment));
     }
     return opaque;
   }

@@ -104,12 +104,7 @@ class Program final : public VertexSource, public BlockShader {
                         [&](int i, const VaryingType& v, Fragment& fragment) {
                           fragment.depth = std::bit_cast<float>(
                               static_cast<std::uint32_t>(block.words[i] >> kIdBits));
-                          const Vec4 c = shade_(v, std::as_const(fragment));
-                          colors.r[i] = c.x;
-                          colors.g[i] = c.y;
-                          colors.b[i] = c.z;
-                          colors.a[i] = c.w;
-                          opaque &= c.w == 1;
+                          opaque &= colors.set(i, shade_(v, std::as_const(fragment)));
                         });
     }
     return opaque;

@@ -14,8 +14,8 @@ struct Relative {
   RenderOptions options;
 };
 
-/// `base` with the serial device first, then every other row of the registry with threads 1, 2 and 8
-/// for each instruction set.
+/// `base` with the serial device first, then every other row of the registry with threads 1, 2 and
+/// 8 for each instruction set.
 inline std::vector<Relative> family_of(const RenderOptions& base) {
   std::vector<Relative> family;
   RenderOptions serial = base;

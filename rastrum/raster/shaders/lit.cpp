@@ -15,10 +15,7 @@ Vec3 world_normal(const LitDraw& draw, const Fragment& f) {
   corner_normals(draw.mesh, f.triangle, f.vertex, corners);
   Vec3 n;
   for (int c = 0; c < 3; ++c) n = n + corners[c] * static_cast<float>(f.weights.b[c]);
-  const auto& m = draw.normal_matrix;
-  return normalize(Vec3{m[0][0] * n.x + m[0][1] * n.y + m[0][2] * n.z,
-                        m[1][0] * n.x + m[1][1] * n.y + m[1][2] * n.z,
-                        m[2][0] * n.x + m[2][1] * n.y + m[2][2] * n.z});
+  return normalize(draw.to_world(n));
 }
 
 Vec3 base_color(const MeshView& mesh, const Fragment& f) {

@@ -21,6 +21,13 @@ struct LitDraw {
   MeshView mesh;
   float normal_matrix[3][3];  ///< object to world, inverse transpose
   bool identity = false;      ///< normal_matrix is a multiple of the identity
+
+  [[nodiscard]] Vec3 to_world(Vec3 n) const {
+    const auto& m = normal_matrix;
+    return {m[0][0] * n.x + m[0][1] * n.y + m[0][2] * n.z,
+            m[1][0] * n.x + m[1][1] * n.y + m[1][2] * n.z,
+            m[2][0] * n.x + m[2][1] * n.y + m[2][2] * n.z};
+  }
 };
 
 /// The direction to the viewer at pixel centre (x, y), not normalized: −(d + x · dx + y · dy).

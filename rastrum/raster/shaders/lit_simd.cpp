@@ -53,13 +53,6 @@ constexpr float kThin = 32.0F;
 /// Below this ratio of the corners' 1 / w a far corner's weight drowns in the near one's rounding.
 constexpr float kSteep = 1e-4F;
 
-Vec3 to_world(const LitDraw& draw, Vec3 n) {
-  const auto& m = draw.normal_matrix;
-  return {m[0][0] * n.x + m[0][1] * n.y + m[0][2] * n.z,
-          m[1][0] * n.x + m[1][1] * n.y + m[1][2] * n.z,
-          m[2][0] * n.x + m[2][1] * n.y + m[2][2] * n.z};
-}
-
 void fetch_weights(const FrameGeometry& frame, const Draw& draw, std::uint64_t t,
                    const std::uint32_t (&vertex)[3], TriangleSetup& out) {
   const ProjectedVertex* vertices = frame.projected + draw.first_vertex;
@@ -112,7 +105,7 @@ void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint
   if (wants_normals) {
     corner_normals(mesh, t, vertex, out.normal);
     if (!lit.identity)
-      for (Vec3& n : out.normal) n = to_world(lit, n);
+      for (Vec3& n : out.normal) n = lit.to_world(n);
   }
   if (!scene.colored) return;
   for (std::size_t c = 0; c < 3; ++c) {
