@@ -61,14 +61,18 @@ Isa parse_isa(const std::string& text) {
                       {"neon", Isa::neon}});
 }
 
-std::string check_rasterizer(const std::string& text) {
-  std::string known = "auto";
-  if (text == known) return text;
-  for (const RasterizerInfo& info : rasterizers()) {
+std::string names_of(const std::vector<AxisInfo>& axis) {
+  std::string names = "auto";
+  for (const AxisInfo& info : axis) names.append(", ").append(info.name);
+  return names;
+}
+
+std::string check_axis(const char* option, const std::vector<AxisInfo>& axis,
+                       const std::string& text) {
+  if (text == "auto") return text;
+  for (const AxisInfo& info : axis)
     if (text == info.name) return text;
-    known += ", " + info.name;
-  }
-  throw UsageError("--rasterizer", "expected one of " + known + ", got '" + text + "'");
+  throw UsageError(option, "expected one of " + names_of(axis) + ", got '" + text + "'");
 }
 
 Shader parse_shader(const std::string& text) {
@@ -196,12 +200,14 @@ void add_camera_options(CLI::App& app, RenderArguments& a) {
 
 void add_machine_options(CLI::App& app, RenderArguments& a) {
   const char* group = "Machine";
-  std::string names;
-  for (const RasterizerInfo& info : rasterizers())
-    names.append(names.empty() ? "" : ", ").append(info.name);
-  add(app, "--rasterizer", "NAME", "auto, " + names + " (auto)", [&a](const std::string& s) {
-    a.render.rasterizer = check_rasterizer(s);
+  add(app, "--rasterizer", "NAME", names_of(rasterizers()) + " (auto)", [&a](const std::string& s) {
+    a.render.rasterizer = check_axis("--rasterizer", rasterizers(), s);
   })->group(group);
+  add(app, "--visibility", "NAME", names_of(visibilities()) + " (auto)",
+      [&a](const std::string& s) {
+        a.render.visibility = check_axis("--visibility", visibilities(), s);
+      })
+      ->group(group);
   add(app, "--device", "NAME", "serial, threads, cuda (threads)", [&a](const std::string& s) {
     a.render.device = choose<Device>(
         "--device", s,

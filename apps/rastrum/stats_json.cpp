@@ -57,6 +57,8 @@ nlohmann::ordered_json stats_json(std::span<const FrameStats> frames, const Rend
     nlohmann::ordered_json& ms = stages[stage.name];
     ms = (ms.is_null() ? 0.0 : ms.get<double>()) + (stage.end_ms - stage.begin_ms);
   }
+  nlohmann::ordered_json counters = nlohmann::ordered_json::object();
+  for (const auto& [name, value] : median.counters) counters[name] = value;
   const FrameStats::Triangles& t = median.triangles;
   return {{"version", RASTRUM_VERSION},
           {"device", device_name(options.device)},
@@ -64,6 +66,7 @@ nlohmann::ordered_json stats_json(std::span<const FrameStats> frames, const Rend
           {"isa", name(median.isa)},
           {"rasterizer", median.rasterizer},
           {"visibility", median.visibility},
+          {"why", median.why},
           {"size", {options.width, options.height}},
           {"triangles",
            {{"input", t.input},
@@ -73,6 +76,7 @@ nlohmann::ordered_json stats_json(std::span<const FrameStats> frames, const Rend
             {"drawn", t.drawn}}},
           {"fragments", median.fragments},
           {"pixels_covered", median.pixels_covered},
+          {"counters", std::move(counters)},
           {"peak_bytes", peak_bytes},
           {"load_ms", load_ms},
           {"stages_ms", std::move(stages)},

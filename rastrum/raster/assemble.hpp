@@ -19,8 +19,8 @@ TriangleFate assemble_triangle(const FrameGeometry& frame, const Draw& draw, std
   const Rect view{0, 0, frame.width, frame.height};
   const std::uint64_t id = draw.first_id + t;
   const std::uint32_t index[3] = {draw.vertex(t, 0), draw.vertex(t, 1), draw.vertex(t, 2)};
-  const ProjectedVertex* vertices = frame.projected + draw.first_vertex;
-  const ProjectedVertex v[3] = {vertices[index[0]], vertices[index[1]], vertices[index[2]]};
+  const ProjectedVertex v[3] = {frame.vertex(draw, index[0]), frame.vertex(draw, index[1]),
+                                frame.vertex(draw, index[2])};
   Piece piece;
   if (v[0].x_fx8 != kNeedsClip && v[1].x_fx8 != kNeedsClip && v[2].x_fx8 != kNeedsClip) {
     if (make_piece(v[0], v[1], v[2], id, draw.flags, cull, view, piece) == SetupResult::culled)

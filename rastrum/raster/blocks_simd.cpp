@@ -87,7 +87,7 @@ HWY_INLINE void small_cover(const Piece& p, int bx0, int by0, int bx1, int by1, 
 }
 
 std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
-                  std::size_t capacity, std::uint64_t& fragments) noexcept {
+                  std::size_t capacity) noexcept {
   constexpr std::int64_t kClamp = std::int64_t{1} << 30;
   const I32 d;
   const bool cut = bin.x1 % kBlockSize != 0 || bin.y1 % kBlockSize != 0;
@@ -104,7 +104,6 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
       if (cut) mask &= samples_inside(bin, bx, by);
       out[n] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
       n += mask != 0;
-      fragments += hwy::PopCount(mask);
     };
     if (is_small(piece)) {
       small_cover(piece, bx0, by0, bx1, by1, add);
@@ -144,11 +143,11 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
   return n;
 }
 
-HWY_INLINE void maximum_row(F depth, std::uint64_t row_bits, std::uint64_t low, std::size_t part,
-                            std::uint64_t* words) {
+/// The words that a row's depths make: kHalves vectors.
+template <class Use>
+HWY_INLINE void for_each_half(F depth, std::uint64_t low, const Use& use) {
   const F32 df;
   const U32 du;
-  const I64 d64;
   const hn::RebindToUnsigned<I64> du64;
   const hn::Half<U32> dh;
   depth = hn::Min(hn::IfThenElseZero(hn::Gt(depth, hn::Zero(df)), depth), hn::Set(df, 1.0F));
@@ -160,47 +159,96 @@ HWY_INLINE void maximum_row(F depth, std::uint64_t row_bits, std::uint64_t low, 
     const auto half =
         h == 0 ? hn::LowerHalf(dh, bits) : hn::LowerHalf(dh, hn::ConcatUpperUpper(du, bits, bits));
 #endif
-    const auto word = hn::Or(hn::ShiftLeft<kIdBits>(hn::PromoteTo(du64, half)), hn::Set(du64, low));
-    const std::size_t column = part * kLanes + h * kLanes64;
-    const auto mask_bits = static_cast<std::uint8_t>((row_bits >> column) & ((1U << kLanes64) - 1));
-    // LoadMaskBits reads whole bytes.
-    std::uint8_t mask_memory[8] = {mask_bits};
-    const auto mask = hn::LoadMaskBits(d64, mask_memory);
-    auto* place = reinterpret_cast<std::int64_t*>(words + column);
-    // Words stay below 2^63, so the signed maximum, which AVX2 has, is the maximum.
-    const auto candidate = hn::IfThenElseZero(mask, hn::BitCast(d64, word));
-    hn::Store(hn::Max(hn::Load(d64, place), candidate), d64, place);
+    use(h, hn::Or(hn::ShiftLeft<kIdBits>(hn::PromoteTo(du64, half)), hn::Set(du64, low)));
   }
 }
 
-void maximum(const Piece* pieces, const Block* blocks, std::size_t n, Rect bin,
-             std::uint64_t* words) noexcept {
-  constexpr float kPxPerSubpixel = 1.0F / kSubpixels;
-  const F32 d;
-  const int column0 = bin.x0 / kBlockSize;
-  const int row0 = bin.y0 / kBlockSize;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Block& block = blocks[i];
-    const Piece& p = pieces[block.piece];
-    std::uint64_t* out = words + ((block.by - row0) * kBlocksPerBinRow + (block.bx - column0)) * 64;
+/// The depths of row `row` of a block, column part by part: the depth formula, lane by lane.
+struct DepthRows {
+  F along_x[8 / kLanes];
+  float y0, zy;
+  int first_row;
+
+  HWY_INLINE DepthRows(const Piece& p, const Block& block) {
+    constexpr float kPxPerSubpixel = 1.0F / kSubpixels;
+    const F32 d;
     const float x0 = static_cast<float>(p.x[0]) * kPxPerSubpixel;
-    const float y0 = static_cast<float>(p.y[0]) * kPxPerSubpixel;
-    F along_x[8 / kLanes];
+    y0 = static_cast<float>(p.y[0]) * kPxPerSubpixel;
+    zy = p.zy;
+    first_row = block.by * kBlockSize;
     for (std::size_t part = 0; part < 8 / kLanes; ++part) {
       const F column = hn::Iota(
           d, static_cast<float>(block.bx * kBlockSize) + static_cast<float>(part * kLanes));
       const F dx = hn::Sub(hn::Add(column, hn::Set(d, 0.5F)), hn::Set(d, x0));
       along_x[part] = hn::Add(hn::Set(d, p.z0), hn::Mul(hn::Set(d, p.zx), dx));
     }
+  }
+  HWY_INLINE F at(int row, std::size_t part) const {
+    const float dy = (static_cast<float>(first_row + row) + 0.5F) - y0;
+    return hn::Add(along_x[part], hn::Set(F32{}, zy * dy));
+  }
+};
+
+void maximum(const Piece* pieces, const Block* blocks, std::size_t n,
+             const SurfaceView& surface) noexcept {
+  const I64 d64;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Block& block = blocks[i];
+    const Piece& p = pieces[block.piece];
+    const DepthRows depths(p, block);
+    std::uint64_t* out = surface.block(block.bx, block.by);
     for (std::uint64_t rest = block.mask; rest != 0;) {
       const int row = std::countr_zero(rest) / 8;
       const std::uint64_t row_bits = rest >> (row * 8) & 255;
       rest &= ~(std::uint64_t{255} << (row * 8));
-      const float dy = (static_cast<float>(block.by * kBlockSize + row) + 0.5F) - y0;
-      const F along_y = hn::Set(d, p.zy * dy);
       for (std::size_t part = 0; part < 8 / kLanes; ++part)
-        maximum_row(hn::Add(along_x[part], along_y), row_bits, p.low, part, out + row * 8);
+        for_each_half(depths.at(row, part), p.low, [&](std::size_t h, const auto word) HWY_ATTR {
+          const std::size_t column = part * kLanes + h * kLanes64;
+          const auto bits =
+              static_cast<std::uint8_t>((row_bits >> column) & ((1U << kLanes64) - 1));
+          // LoadMaskBits reads whole bytes.
+          std::uint8_t mask_memory[8] = {bits};
+          const auto mask = hn::LoadMaskBits(d64, mask_memory);
+          auto* place = reinterpret_cast<std::int64_t*>(out + row * 8 + column);
+          // Words stay below 2^63, so the signed maximum, which AVX2 has, is the maximum.
+          const auto candidate = hn::IfThenElseZero(mask, hn::BitCast(d64, word));
+          hn::Store(hn::Max(hn::Load(d64, place), candidate), d64, place);
+        });
     }
+  }
+}
+
+void words(const Piece& piece, const Block& block, std::uint64_t* out) noexcept {
+  const hn::RebindToUnsigned<I64> d64;
+  const DepthRows depths(piece, block);
+  for (int row = 0; row < kBlockSize; ++row)
+    for (std::size_t part = 0; part < 8 / kLanes; ++part)
+      for_each_half(depths.at(row, part), piece.low, [&](std::size_t h, const auto word) HWY_ATTR {
+        hn::Store(word, d64,
+                  out + static_cast<std::size_t>(row) * 8 + part * kLanes + h * kLanes64);
+      });
+}
+
+void masks(const Piece* pieces, Block* blocks, std::size_t n) noexcept {
+  constexpr std::int64_t kClamp = std::int64_t{1} << 30;
+  const I32 d;
+  for (std::size_t k = 0; k < n; ++k) {
+    Block& block = blocks[k];
+    if (block.mask != 0) continue;
+    std::int32_t base[3], b[3];
+    I steps[3][8 / kLanes];
+    for (int i = 0; i < 3; ++i) {
+      const Edge e = edge_function(pieces[block.piece], i);
+      b[i] = e.b;
+      base[i] = static_cast<std::int32_t>(
+          std::clamp(e.base + std::int64_t{e.a} * (block.bx * kBlockSize) +
+                         std::int64_t{e.b} * (block.by * kBlockSize),
+                     -kClamp, kClamp));
+      for (std::size_t part = 0; part < 8 / kLanes; ++part)
+        steps[i][part] =
+            hn::Mul(hn::Set(d, e.a), hn::Iota(d, static_cast<std::int32_t>(part * kLanes)));
+    }
+    block.mask = cover_block(base, steps, b);
   }
 }
 
@@ -241,6 +289,8 @@ std::uint64_t covered(const std::uint64_t* words) noexcept {
 
 void fill(Kernels& table) {
   table.cover = cover;
+  table.masks = masks;
+  table.words = words;
   table.maximum = maximum;
   table.covered = covered;
   table.store_opaque = store_opaque;

@@ -23,6 +23,12 @@ class VertexSource {
   /// Projects vertices [begin, end) into out[0 … end − begin).
   virtual void project(std::size_t begin, std::size_t end, Viewport viewport, Isa isa,
                        ProjectedVertex* out) const noexcept = 0;
+  /// Projects the vertices that `indices` name, into out[0 … size).
+  virtual void project_indexed(std::span<const std::uint32_t> indices, Viewport viewport, Isa isa,
+                               ProjectedVertex* out) const noexcept {
+    for (std::size_t i = 0; i < indices.size(); ++i)
+      project(indices[i], std::size_t{indices[i]} + 1, viewport, isa, out + i);
+  }
   /// Homogeneous position for the clipper; NaN where the vertex is not finite.
   [[nodiscard]] virtual Vec4d clip_position(std::size_t vertex) const noexcept = 0;
 };
@@ -51,7 +57,15 @@ struct FrameGeometry {
   int width = 0, height = 0;
   Viewport viewport;
   std::span<const Draw> draws;
-  const ProjectedVertex* projected = nullptr;
+  const ProjectedVertex* projected = nullptr;  ///< null: vertices are projected where they are read
+  Isa isa = Isa::scalar;
+
+  [[nodiscard]] ProjectedVertex vertex(const Draw& draw, std::uint32_t index) const {
+    if (projected != nullptr) return projected[draw.first_vertex + index];
+    ProjectedVertex v;
+    draw.source->project(index, std::size_t{index} + 1, viewport, isa, &v);
+    return v;
+  }
 
   /// The draw that holds triangle `id`. O(log draws).
   [[nodiscard]] const Draw& draw_of(std::uint64_t id) const {
@@ -107,6 +121,8 @@ struct FrameRequest {
   const BlockShader* shader = nullptr;  ///< may be null where no colour is asked for
   Vec4 background{};                    ///< display values, straight alpha
   Targets targets;
+  Tuning tuning;
+  bool hierarchical_z = true;
 };
 
 }  // namespace rastrum::raster

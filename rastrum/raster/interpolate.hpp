@@ -27,11 +27,10 @@ struct Weights {
 
 inline WeightPlanes weight_planes(const FrameGeometry& frame, const Draw& draw,
                                   std::uint64_t triangle) {
-  const ProjectedVertex* vertices = frame.projected + draw.first_vertex;
   const std::uint32_t index[3] = {draw.vertex(triangle, 0), draw.vertex(triangle, 1),
                                   draw.vertex(triangle, 2)};
-  const ProjectedVertex &v0 = vertices[index[0]], &v1 = vertices[index[1]],
-                        &v2 = vertices[index[2]];
+  const ProjectedVertex v0 = frame.vertex(draw, index[0]), v1 = frame.vertex(draw, index[1]),
+                        v2 = frame.vertex(draw, index[2]);
   WeightPlanes w;
   if (v0.x_fx8 != kNeedsClip && v1.x_fx8 != kNeedsClip && v2.x_fx8 != kNeedsClip) {
     constexpr double kPx = 1.0 / kSubpixels;

@@ -42,7 +42,7 @@ SetupOutput setup_scalar(const SetupInput& in, Piece* pieces, BinFragment*,
 }
 
 std::size_t cover_scalar(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
-                         std::size_t capacity, std::uint64_t& fragments) noexcept {
+                         std::size_t capacity) noexcept {
   std::size_t n = 0;
   for (; cursor < in.count && n + kBlocksPerBin <= capacity; ++cursor) {
     const std::uint32_t index = in.list[cursor].piece;
@@ -54,20 +54,30 @@ std::size_t cover_scalar(const PieceList& in, std::size_t& cursor, Rect bin, Blo
         const std::uint64_t mask = cover_8x8(piece, bx, by) & samples_inside(bin, bx, by);
         if (mask == 0) continue;
         out[n++] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
-        fragments += static_cast<std::uint64_t>(std::popcount(mask));
       }
   }
   return n;
 }
 
-void maximum_scalar(const Piece* pieces, const Block* blocks, std::size_t n, Rect bin,
-                    std::uint64_t* words) noexcept {
+void masks_scalar(const Piece* pieces, Block* blocks, std::size_t n) noexcept {
+  for (std::size_t i = 0; i < n; ++i)
+    if (blocks[i].mask == 0)
+      blocks[i].mask = cover_8x8(pieces[blocks[i].piece], blocks[i].bx, blocks[i].by);
+}
+
+void words_scalar(const Piece& piece, const Block& block, std::uint64_t* words) noexcept {
+  for (int i = 0; i < 64; ++i)
+    words[i] = make_word(depth_at(piece, block.bx * kBlockSize + i % kBlockSize,
+                                  block.by * kBlockSize + i / kBlockSize),
+                         piece.low);
+}
+
+void maximum_scalar(const Piece* pieces, const Block* blocks, std::size_t n,
+                    const SurfaceView& surface) noexcept {
   for (std::size_t i = 0; i < n; ++i) {
     const Block& b = blocks[i];
     const Piece& piece = pieces[b.piece];
-    const int column = b.bx - bin.x0 / kBlockSize;
-    const int row = b.by - bin.y0 / kBlockSize;
-    std::uint64_t* block = words + (row * kBlocksPerBinRow + column) * 64;
+    std::uint64_t* block = surface.block(b.bx, b.by);
     for (std::uint64_t m = b.mask; m != 0; m &= m - 1) {
       const int bit = std::countr_zero(m);
       const int x = b.bx * kBlockSize + bit % kBlockSize;
@@ -95,8 +105,8 @@ void store_opaque_scalar(const BlockColors& colors, std::uint64_t covered, Rgba8
 
 constexpr std::size_t kIsaCount = static_cast<std::size_t>(Isa::neon) + 1;
 
-constexpr Kernels kScalar{project_scalar, setup_scalar,   cover_scalar,
-                          maximum_scalar, covered_scalar, store_opaque_scalar};
+constexpr Kernels kScalar{project_scalar, setup_scalar,   cover_scalar,   masks_scalar,
+                          words_scalar,   maximum_scalar, covered_scalar, store_opaque_scalar};
 
 }  // namespace
 

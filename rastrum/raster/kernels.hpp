@@ -11,6 +11,7 @@
 #include <rastrum/raster/options.hpp>
 #include <rastrum/raster/piece.hpp>
 #include <rastrum/raster/projection.hpp>
+#include <rastrum/raster/surface.hpp>
 
 namespace rastrum::raster {
 
@@ -26,6 +27,7 @@ struct SetupInput {
   Cull cull = Cull::none;
   Rect view;
   std::uint32_t bin_columns = 0;  ///< bins in a row of the image
+  bool micro = false;             ///< micro triangles may become fragments
 };
 
 /// At most this many triangles a call; callers provide that many pieces and slow entries, and
@@ -62,8 +64,8 @@ struct Kernels {
   void (*project)(const Vec3* positions, std::size_t n, const Mat4& object_to_clip,
                   Viewport viewport, ProjectedVertex* out) noexcept;
 
-  /// Culls and sets up a batch. A triangle without a fragment test whose box is small enough may
-  /// become fragments instead of a piece, or nothing where it covers no sample.
+  /// Culls and sets up a batch. With `micro`, a triangle without a fragment test whose box is small
+  /// enough may become fragments instead of a piece, or nothing where it covers no sample.
   SetupOutput (*setup)(const SetupInput& input, Piece* pieces, BinFragment* fragments,
                        std::uint32_t* slow) noexcept;
 
@@ -71,11 +73,17 @@ struct Kernels {
   /// until the list ends or fewer than kBlocksPerBin places are left; returns how many, moves the
   /// cursor.
   std::size_t (*cover)(const PieceList& pieces, std::size_t& cursor, Rect bin, Block* out,
-                       std::size_t capacity, std::uint64_t& fragments) noexcept;
+                       std::size_t capacity) noexcept;
+
+  /// Finds the masks of blocks whose mask is 0; they may be empty.
+  void (*masks)(const Piece* pieces, Block* blocks, std::size_t n) noexcept;
+
+  /// The words that the piece would have at all 64 samples of a block, covered or not.
+  void (*words)(const Piece& piece, const Block& block, std::uint64_t* words) noexcept;
 
   /// The atomic sink on words that the caller owns: maximum at every covered sample.
-  void (*maximum)(const Piece* pieces, const Block* blocks, std::size_t n, Rect bin,
-                  std::uint64_t* words) noexcept;
+  void (*maximum)(const Piece* pieces, const Block* blocks, std::size_t n,
+                  const SurfaceView& surface) noexcept;
 
   /// Which of 64 words are not 0.
   std::uint64_t (*covered)(const std::uint64_t* words) noexcept;

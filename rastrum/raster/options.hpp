@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <rastrum/core/image.hpp>
@@ -18,13 +19,38 @@ enum class Isa : std::uint8_t { scalar, sse4, avx2, avx512, neon };
 /// Those that this machine can run, slowest first; always begins with `scalar`.
 [[nodiscard]] std::vector<Isa> available_isas();
 
+enum class Schedule : std::uint8_t { automatic, two_stage, persistent };
+enum class BlockOrder : std::uint8_t { row_major, morton };
+
+namespace raster {
+
+/// Parameters of the rasterizers; 0 takes the rasterizer's default, which is its paper's. Bin and
+/// tile sizes are compiled in: `Renderer` refuses a pair that is not, and lists those that are.
+struct Tuning {
+  int bin_px = 0, tile_px = 0;
+  int small_px = 0;  ///< box area up to which a triangle is small (128)
+  int large_px = 0;  ///< box area from which `binned` sends a triangle through its queue (4,000)
+  Schedule schedule = Schedule::automatic;   ///< of `binned`
+  BlockOrder order = BlockOrder::row_major;  ///< in which tiles are walked
+};
+
+}  // namespace raster
+
 /// Images to fill; an empty view is not computed. All must have the frame's size.
 struct Targets {
-  ImageView<Rgba8> color8;            ///< straight alpha
-  ImageView<Vec4> color;              ///< premultiplied float32
-  ImageView<float> depth;             ///< reversed depth in [0, 1], 0 where nothing is
-  ImageView<std::int64_t> ids;        ///< triangle in submission order, −1 where nothing is
-  ImageView<std::uint32_t> overdraw;  ///< fragments at each pixel
+  ImageView<Rgba8> color8{};            ///< straight alpha
+  ImageView<Vec4> color{};              ///< premultiplied float32
+  ImageView<float> depth{};             ///< reversed depth in [0, 1], 0 where nothing is
+  ImageView<std::int64_t> ids{};        ///< triangle in submission order, −1 where nothing is
+  ImageView<std::uint32_t> overdraw{};  ///< fragments at each pixel
+
+  /// Visibility words (docs/conventions.md), for pictures that are drawn in several passes. With
+  /// `load` a pass begins from the words that the ones before have left here, and touches only the
+  /// pixels of the other targets where it is nearer; its ids count from `first_id`, the number of
+  /// primitives in the passes before.
+  ImageView<std::uint64_t> words{};
+  bool load = false;
+  std::uint64_t first_id = 0;
 };
 
 /// One timed part of a frame, in ms since the frame began.
@@ -41,13 +67,16 @@ struct FrameStats {
     std::uint64_t clipped = 0;  ///< cut by the near plane or the guard band
     std::uint64_t drawn = 0;    ///< input − dropped − culled, before any early rejection
   } triangles;
-  std::uint64_t fragments = 0;       ///< samples covered, over all triangles
+  std::uint64_t fragments = 0;       ///< samples covered, over all triangles that were enumerated
   std::uint64_t pixels_covered = 0;  ///< pixels that hold a surface at the end
   std::uint64_t peak_bytes = 0;      ///< scratch, beyond the caller's mesh and images
   std::vector<StageTime> stages;     ///< one after the other; they add up to the frame
   double frame_ms = 0;
   Isa isa = Isa::scalar;
   std::string rasterizer, visibility;
+  std::string why;  ///< why `auto` took them
+  /// The work that is particular to the rasterizer: rows, bins, tile pairs, …
+  std::vector<std::pair<std::string, std::uint64_t>> counters;
 };
 
 }  // namespace rastrum

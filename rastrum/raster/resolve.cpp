@@ -17,81 +17,116 @@ struct Window {
   [[nodiscard]] bool whole() const { return columns == kBlockSize && rows == kBlockSize; }
 };
 
-/// Every case: float targets, translucent colours, blocks cut by the image's edge.
+/// Every case: float targets, translucent colours, blocks cut by the image's edge. Pixels that are
+/// not in `touched` keep what they have.
 void store_colors(const FrameRequest& request, const BlockColors& colors, std::uint64_t covered,
-                  const Window& w, bool wants_8_bit) {
+                  std::uint64_t touched, const Window& w, bool wants_8_bit) {
   const Vec4 b = request.background;
   const Vec4 background{b.x * b.w, b.y * b.w, b.z * b.w, b.w};
-  for (int y = 0; y < w.rows; ++y)
-    for (int x = 0; x < w.columns; ++x) {
-      const int i = y * kBlockSize + x;
-      Vec4 color = background;
-      if ((covered >> i & 1) != 0)
-        color = Vec4{colors.r[i], colors.g[i], colors.b[i], colors.a[i]} +
-                background * (1 - colors.a[i]);
-      if (wants_8_bit) request.targets.color8(w.x0 + x, w.y0 + y) = to_straight_rgba8(color);
-      if (!request.targets.color.empty()) request.targets.color(w.x0 + x, w.y0 + y) = color;
-    }
+  for (std::uint64_t m = touched; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    const int x = w.x0 + i % kBlockSize, y = w.y0 + i / kBlockSize;
+    Vec4 color = background;
+    if ((covered >> i & 1) != 0)
+      color =
+          Vec4{colors.r[i], colors.g[i], colors.b[i], colors.a[i]} + background * (1 - colors.a[i]);
+    if (wants_8_bit) request.targets.color8(x, y) = to_straight_rgba8(color);
+    if (!request.targets.color.empty()) request.targets.color(x, y) = color;
+  }
 }
 
 void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
-                    const VisibleBlock& block, const Window& w) {
+                    const VisibleBlock& block, std::uint64_t touched, const BlockColors* shaded,
+                    const Window& w) {
   const Targets& targets = request.targets;
   const Vec4 b = request.background;
   const Rgba8 background = to_straight_rgba8({b.x * b.w, b.y * b.w, b.z * b.w, b.w});
   bool wants_8_bit = !targets.color8.empty();
-  if (block.covered == 0 && wants_8_bit) {
+  if (block.covered == 0 && wants_8_bit && !targets.load) {
     for (int y = 0; y < w.rows; ++y)
       std::fill_n(targets.color8.row(w.y0 + y) + w.x0, w.columns, background);
     wants_8_bit = false;
   }
-  BlockColors colors;
-  if (block.covered != 0) {
-    const bool opaque = request.shader->shade(frame, block, request.isa, colors);
-    if (opaque && wants_8_bit && w.whole()) {
+  BlockColors own;
+  const BlockColors* colors = shaded;
+  if (block.covered != 0 && shaded == nullptr) {
+    const bool opaque = request.shader->shade(frame, block, request.isa, own);
+    if (opaque && wants_8_bit && w.whole() && touched == ~std::uint64_t{0}) {
       kernels(request.isa)
-          .store_opaque(colors, block.covered, background, &targets.color8(w.x0, w.y0),
+          .store_opaque(own, block.covered, background, &targets.color8(w.x0, w.y0),
                         targets.color8.stride);
       wants_8_bit = false;
     }
-    if (opaque) std::fill_n(colors.a, 64, 1.0F);
+    if (opaque) std::fill_n(own.a, 64, 1.0F);
   }
+  if (colors == nullptr) colors = &own;
   if (wants_8_bit || !targets.color.empty())
-    store_colors(request, colors, block.covered, w, wants_8_bit);
+    store_colors(request, *colors, block.covered, touched, w, wants_8_bit);
 }
 
-void store_ids_and_depth(const Targets& targets, const std::uint64_t* words, const Window& w) {
-  for (int y = 0; y < w.rows; ++y)
-    for (int x = 0; x < w.columns; ++x) {
-      const std::uint64_t word = words[y * kBlockSize + x];
-      if (!targets.depth.empty())
-        targets.depth(w.x0 + x, w.y0 + y) =
-            std::bit_cast<float>(static_cast<std::uint32_t>(word >> kIdBits));
-      if (!targets.ids.empty())
-        targets.ids(w.x0 + x, w.y0 + y) =
-            word == 0 ? -1 : static_cast<std::int64_t>(id_of_word(word));
-    }
+void store_words(const Targets& targets, const std::uint64_t* words, std::uint64_t touched,
+                 const Window& w) {
+  for (std::uint64_t m = touched; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    const int x = w.x0 + i % kBlockSize, y = w.y0 + i / kBlockSize;
+    const std::uint64_t word = words[i];
+    if (!targets.depth.empty())
+      targets.depth(x, y) = std::bit_cast<float>(static_cast<std::uint32_t>(word >> kIdBits));
+    if (!targets.ids.empty())
+      targets.ids(x, y) = word == 0 ? -1 : static_cast<std::int64_t>(id_of_word(word));
+    if (!targets.words.empty()) targets.words(x, y) = word;
+  }
+}
+
+/// The samples that hold a surface of this pass: ids count on from pass to pass.
+std::uint64_t of_this_pass(const std::uint64_t* words, std::uint64_t covered,
+                           std::uint64_t first_id) {
+  std::uint64_t mask = 0;
+  for (std::uint64_t m = covered; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    mask |= std::uint64_t{id_of_word(words[i]) >= first_id} << i;
+  }
+  return mask;
 }
 
 }  // namespace
 
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame,
-                  const std::uint64_t* words, int x0, int y0, void* scratch) noexcept {
+                  const std::uint64_t* words, int x0, int y0, void* scratch,
+                  const BlockColors* shaded) noexcept {
   const Targets& targets = request.targets;
   const Window window{x0, y0, std::min(kBlockSize, request.width - x0),
                       std::min(kBlockSize, request.height - y0)};
   std::uint64_t covered = kernels(request.isa).covered(words);
+  std::uint64_t touched = ~std::uint64_t{0};
   if (!window.whole())
-    covered &=
+    touched =
         samples_inside({0, 0, request.width, request.height}, x0 / kBlockSize, y0 / kBlockSize);
+  covered &= touched;
+  if (targets.load) touched = covered = of_this_pass(words, covered, targets.first_id);
   if (!targets.color8.empty() || !targets.color.empty())
-    resolve_colors(request, frame, {words, covered, x0, y0, scratch}, window);
-  if (!targets.depth.empty() || !targets.ids.empty()) store_ids_and_depth(targets, words, window);
+    resolve_colors(request, frame, {words, covered, x0, y0, scratch}, touched, shaded, window);
+  if (!targets.depth.empty() || !targets.ids.empty() || !targets.words.empty())
+    store_words(targets, words, touched, window);
   return std::popcount(covered);
+}
+
+void load_words(const Targets& targets, Rect rect, const SurfaceView& surface) noexcept {
+  const int bx0 = rect.x0 / kBlockSize, by0 = rect.y0 / kBlockSize;
+  for (int by = by0; by * kBlockSize < rect.y1; ++by) {
+    std::uint64_t* const row = surface.block(bx0, by);
+    std::fill_n(row, static_cast<std::size_t>(block_columns(rect)) * 64, 0);
+    if (!targets.load) continue;
+    for (int y = by * kBlockSize; y < std::min((by + 1) * kBlockSize, rect.y1); ++y)
+      for (int x = rect.x0; x < rect.x1; ++x)
+        row[(x / kBlockSize - bx0) * 64 + y % kBlockSize * kBlockSize + x % kBlockSize] =
+            targets.words(x, y);
+  }
 }
 
 void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
   const Targets& targets = request.targets;
+  if (targets.load) return;
   const Vec4 b = request.background;
   const Vec4 background{b.x * b.w, b.y * b.w, b.z * b.w, b.w};
   const Rgba8 background8 = to_straight_rgba8(background);
@@ -103,21 +138,22 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
     fill(targets.color, y, background);
     fill(targets.depth, y, 0.0F);
     fill(targets.ids, y, std::int64_t{-1});
+    fill(targets.words, y, std::uint64_t{0});
   }
 }
 
-Totals number_draws(std::span<Draw> draws) {
+Totals number_draws(std::span<Draw> draws, std::uint64_t first_id) {
   Totals totals;
   for (Draw& draw : draws) {
-    draw.first_id = totals.triangles;
+    draw.first_id = first_id + totals.triangles;
     draw.first_vertex = totals.vertices;
     totals.triangles += draw.triangle_count;
     totals.vertices += draw.vertex_count;
   }
-  if (totals.triangles > kMaxId)
-    throw Error(Errc::invalid_argument, "the scene has " + std::to_string(totals.triangles) +
-                                            " triangles; at most " + std::to_string(kMaxId) +
-                                            " have an id");
+  if (totals.triangles > kMaxId || first_id > kMaxId - totals.triangles)
+    throw Error(Errc::invalid_argument,
+                "the scene has " + std::to_string(first_id + totals.triangles) +
+                    " triangles; at most " + std::to_string(kMaxId) + " have an id");
   return totals;
 }
 

@@ -3,25 +3,31 @@
 #pragma once
 
 #include <rastrum/raster/geometry.hpp>
+#include <rastrum/raster/surface.hpp>
 
 namespace rastrum::raster {
 
 /// Shades one 8 × 8 block (`words`: 64, 64-byte aligned) and writes its part of every target;
-/// pixels outside the image are left out. `scratch` is the shader's (geometry.hpp). Returns how
-/// many pixels hold a surface.
+/// pixels outside the image are left out, and so are those that an earlier pass won
+/// (Targets::load). `scratch` is the shader's (geometry.hpp); `shaded` are the colours where
+/// visibility has shaded already, else null. Returns how many pixels hold a surface of this pass.
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame,
-                  const std::uint64_t* words, int x0, int y0, void* scratch) noexcept;
+                  const std::uint64_t* words, int x0, int y0, void* scratch,
+                  const BlockColors* shaded = nullptr) noexcept;
 
-/// The same for a rectangle that holds no surface.
+/// What the blocks of `rect` begin with: nothing, or the words of the passes before.
+void load_words(const Targets& targets, Rect rect, const SurfaceView& surface) noexcept;
+
+/// The same for a rectangle in which this pass has no surface.
 void resolve_empty(const FrameRequest& request, Rect rect) noexcept;
 
-/// Numbers the triangles and vertices of the draws and returns the totals. Throws
+/// Numbers the triangles (from `first_id`) and vertices of the draws and returns the totals. Throws
 /// Error{invalid_argument} if there are more triangles than ids.
 struct Totals {
   std::uint64_t triangles = 0;
   std::size_t vertices = 0;
 };
-[[nodiscard]] Totals number_draws(std::span<Draw> draws);
+[[nodiscard]] Totals number_draws(std::span<Draw> draws, std::uint64_t first_id = 0);
 
 /// Throws Error{invalid_argument} naming the first index that is out of range, if there is one.
 void check_indices(std::span<const Draw> draws);

@@ -226,7 +226,8 @@ HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c
   const I dx2 = hn::Sub(c.x, a.x), dy2 = hn::Sub(c.y, a.y);
   const I size = hn::Set(d, kMicroSize);
   const auto small = hn::And(hn::Lt(hn::Sub(x1, x0), size), hn::Lt(hn::Sub(y1, y0), size));
-  const std::uint32_t micro = (in.flags & kTested) != 0 ? 0U : lane_bits(small) & in_view;
+  const std::uint32_t micro =
+      !in.micro || (in.flags & kTested) != 0 ? 0U : lane_bits(small) & in_view;
   std::uint32_t culled = 0;
   if (micro != 0) {
     const I zero = hn::Zero(d);

@@ -16,6 +16,8 @@ class TransformSource final : public VertexSource {
 
   void project(std::size_t begin, std::size_t end, Viewport viewport, Isa isa,
                ProjectedVertex* out) const noexcept override;
+  void project_indexed(std::span<const std::uint32_t> indices, Viewport viewport, Isa isa,
+                       ProjectedVertex* out) const noexcept override;
   [[nodiscard]] Vec4d clip_position(std::size_t vertex) const noexcept override;
 
  private:

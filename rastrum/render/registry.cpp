@@ -1,11 +1,12 @@
 // The names of the façade: shaders and rasterizers.
 #include <array>
 #include <memory>
+#include <span>
 #include <string>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/raster/rasterizer.hpp>
 #include <rastrum/raster/reference.hpp>
-#include <rastrum/raster/tiled.hpp>
 #include <rastrum/render/registry.hpp>
 
 namespace rastrum {
@@ -36,60 +37,73 @@ Shader shader_from_name(std::string_view wanted) {
 
 namespace {
 
-DrawFrame make_reference(const RasterizerResources& with) {
-  return [memory = with.memory](raster::FrameRequest& request) {
-    return raster::render_reference(request, *memory);
-  };
+constexpr std::string_view kReference = "reference";
+
+/// The row of that name; throws with what there is.
+template <class Row>
+const Row& find_row(std::span<const Row> rows, std::string_view wanted, std::string_view what,
+                    std::string known) {
+  for (const Row& row : rows) {
+    if (row.name == wanted) return row;
+    known.append(", ").append(row.name);
+  }
+  throw Error(Errc::invalid_argument, std::string("no ")
+                                          .append(what)
+                                          .append(" is called '")
+                                          .append(wanted)
+                                          .append("'; there are ")
+                                          .append(known));
 }
 
-DrawFrame make_tiled(const RasterizerResources& with) {
-  auto tiled = std::make_shared<raster::TiledRasterizer>(*with.memory);
-  return [tiled, threads = with.threads](raster::FrameRequest& request) {
-    return tiled->render(request, *threads);
+DrawFrame make_reference(const RenderOptions& options, MemoryAccount& memory) {
+  if (options.rasterizer != "auto" && options.rasterizer != kReference)
+    throw Error(Errc::invalid_argument,
+                std::string("the rasterizer '")
+                    .append(options.rasterizer)
+                    .append("' needs --device threads; serial has 'reference'"));
+  return [&memory](raster::FrameRequest& request) {
+    return raster::render_reference(request, memory);
   };
-}
-
-const std::vector<RasterizerRow>& rows() {
-  static const std::vector<RasterizerRow> table{
-      {{"reference", "scanline", "atomic",
-        "rows of triangles in order into one visibility buffer; one thread, plain C++"},
-       false,
-       make_reference},
-      {{"tiled", "tiled", "atomic",
-        "(bin, piece) pairs sorted by bin; a thread owns a bin and shades it in cache"},
-       true,
-       make_tiled},
-  };
-  return table;
 }
 
 }  // namespace
 
-const std::vector<RasterizerInfo>& rasterizers() {
-  static const std::vector<RasterizerInfo> infos = [] {
-    std::vector<RasterizerInfo> list;
-    for (const RasterizerRow& row : rows()) list.push_back(row.info);
+const std::vector<AxisInfo>& rasterizers() {
+  static const std::vector<AxisInfo> infos = [] {
+    std::vector<AxisInfo> list{{std::string(kReference),
+                                "rows of triangles in order into one visibility buffer; one "
+                                "thread, plain C++"}};
+    for (const raster::CoverageRow& row : raster::coverages())
+      list.push_back({std::string(row.name), std::string(row.description)});
     return list;
   }();
   return infos;
 }
 
-const RasterizerRow& find_rasterizer(const RenderOptions& options) {
-  const bool serial = options.device == Device::serial;
-  const std::string wanted =
-      options.rasterizer == "auto" ? (serial ? "reference" : "tiled") : options.rasterizer;
-  std::string known = "auto";
-  for (const RasterizerRow& row : rows()) {
-    if (row.info.name == wanted) {
-      if (serial && row.needs_threads)
-        throw Error(Errc::invalid_argument, "the rasterizer '" + wanted +
-                                                "' needs --device threads; serial has 'reference'");
-      return row;
-    }
-    known += ", " + row.info.name;
-  }
-  throw Error(Errc::invalid_argument,
-              "no rasterizer is called '" + wanted + "'; there are " + known);
+const std::vector<AxisInfo>& visibilities() {
+  static const std::vector<AxisInfo> infos = [] {
+    std::vector<AxisInfo> list;
+    for (const raster::Visibility& row : raster::visibilities())
+      list.push_back({std::string(row.name), std::string(row.description)});
+    return list;
+  }();
+  return infos;
+}
+
+DrawFrame make_rasterizer(const RenderOptions& options, MemoryAccount& memory,
+                          parallel::Threads* threads) {
+  if (threads == nullptr) return make_reference(options, memory);
+  const auto& coverage =
+      options.rasterizer == "auto"
+          ? raster::coverages().front()
+          : find_row(raster::coverages(), options.rasterizer, "rasterizer", "auto, reference");
+  const auto& visibility =
+      options.visibility == "auto"
+          ? raster::visibilities().front()
+          : find_row(raster::visibilities(), options.visibility, "visibility", "auto");
+  auto rasterizer = std::make_shared<raster::Rasterizer>(coverage, visibility, options.tuning,
+                                                         options.memory_limit, memory, *threads);
+  return [rasterizer](raster::FrameRequest& request) { return rasterizer->render(request); };
 }
 
 }  // namespace rastrum

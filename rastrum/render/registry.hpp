@@ -1,8 +1,9 @@
-// The registry of rasterizers: a row for each named point of the coverage × visibility table.
+// The choice of a rasterizer: a point of the coverage × visibility table, or the serial reference.
 #pragma once
 
 #include <functional>
 #include <memory>
+#include <string>
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
@@ -11,23 +12,13 @@
 
 namespace rastrum {
 
-/// What a rasterizer works with; both outlive it. `threads` is null on Device::serial.
-struct RasterizerResources {
-  MemoryAccount* memory = nullptr;
-  parallel::Threads* threads = nullptr;
-};
-
 /// Draws one frame; keeps its scratch from call to call.
 using DrawFrame = std::function<FrameStats(raster::FrameRequest&)>;
 
-struct RasterizerRow {
-  RasterizerInfo info;
-  bool needs_threads = true;
-  DrawFrame (*make)(const RasterizerResources&) = nullptr;
-};
-
-/// The row that the options name; `auto` is the best of the device.
-/// Throws Error{invalid_argument} that lists the names.
-[[nodiscard]] const RasterizerRow& find_rasterizer(const RenderOptions& options);
+/// What the options name; `auto` is chosen anew for each frame, from its size alone. `threads` is
+/// null for the serial reference; both outlive the result. Throws Error{invalid_argument} that
+/// lists the names, or the tunings that were compiled.
+[[nodiscard]] DrawFrame make_rasterizer(const RenderOptions& options, MemoryAccount& memory,
+                                        parallel::Threads* threads);
 
 }  // namespace rastrum

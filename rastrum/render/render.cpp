@@ -135,18 +135,17 @@ Renderer::Renderer(RenderOptions options) : impl_(std::make_unique<Impl>(std::mo
     throw Error(Errc::invalid_argument, "threads must lie between 0 (all) and 4096");
   if (o.device == Device::cuda)
     throw Error(Errc::no_device, "this build has no CUDA backend; use --device threads");
-  const RasterizerRow& row = find_rasterizer(o);
   const std::vector<Isa> isas = available_isas();
   impl_->isa = o.isa.value_or(isas.back());
   if (std::find(isas.begin(), isas.end(), impl_->isa) == isas.end())
     throw Error(Errc::no_device,
                 "this machine cannot run " + std::string(name(impl_->isa)) + " instructions");
   // The reference is plain C++ on one thread, whatever else the machine could do.
-  if (row.needs_threads)
+  if (o.device == Device::threads && o.rasterizer != "reference")
     impl_->threads = std::make_unique<parallel::Threads>(o.threads);
   else
     impl_->isa = Isa::scalar;
-  impl_->draw_frame = row.make({&impl_->memory, impl_->threads.get()});
+  impl_->draw_frame = make_rasterizer(o, impl_->memory, impl_->threads.get());
 }
 
 Renderer::~Renderer() = default;
@@ -227,6 +226,10 @@ FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::BlockShad
   check_target(targets.depth, o, "depth");
   check_target(targets.ids, o, "ids");
   check_target(targets.overdraw, o, "overdraw");
+  check_target(targets.words, o, "words");
+  if (targets.load && targets.words.empty())
+    throw Error(Errc::invalid_argument,
+                "a pass that loads needs the visibility words of the passes before");
   raster::FrameRequest request;
   request.width = o.width;
   request.height = o.height;
@@ -238,6 +241,8 @@ FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::BlockShad
   request.shader = &shader;
   request.background = o.background;
   request.targets = targets;
+  request.tuning = o.tuning;
+  request.hierarchical_z = o.hierarchical_z;
   impl_->memory.restart_peak();
   FrameStats stats = impl_->draw_frame(request);
   stats.peak_bytes = impl_->memory.peak();

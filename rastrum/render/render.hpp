@@ -34,15 +34,23 @@ enum class Shader : std::uint8_t {
 [[nodiscard]] Shader shader_from_name(std::string_view name);
 [[nodiscard]] std::string_view name(Shader shader);
 
-/// A named point of the coverage × visibility table (`--rasterizer`).
-struct RasterizerInfo {
-  std::string name, coverage, visibility, description;
+/// A named way to find what triangles cover (`--rasterizer`) or to resolve the fragments of a pixel
+/// (`--visibility`): the two axes of the family's table.
+struct AxisInfo {
+  std::string name, description;
 };
-[[nodiscard]] const std::vector<RasterizerInfo>& rasterizers();
+/// `reference`, the plain one, then those that combine with every visibility.
+[[nodiscard]] const std::vector<AxisInfo>& rasterizers();
+/// The first is the default.
+[[nodiscard]] const std::vector<AxisInfo>& visibilities();
 
 struct RenderOptions {
   int width = 1280, height = 720;
   std::string rasterizer = "auto";
+  std::string visibility = "auto";
+  raster::Tuning tuning;           ///< of the rasterizer
+  std::uint64_t memory_limit = 0;  ///< bytes of scratch beyond the mesh and the images; 0: none
+  bool hierarchical_z = true;      ///< where the rasterizer has it; changes no pixel
   Device device = Device::threads;
   int threads = 0;         ///< 0: all
   std::optional<Isa> isa;  ///< none: the best this machine has

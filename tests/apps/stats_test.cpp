@@ -33,9 +33,9 @@ TEST_F(Stats, SchemaAndSums) {
         "5", "--stats", "s.json", "--ids", "i.npy"});
   const Json s = json("s.json");
   EXPECT_EQ(keys(s), (std::vector<std::string>{"version", "device", "threads", "isa", "rasterizer",
-                                               "visibility", "size", "triangles", "fragments",
-                                               "pixels_covered", "peak_bytes", "load_ms",
-                                               "stages_ms", "frame_ms"}));
+                                               "visibility", "why", "size", "triangles",
+                                               "fragments", "pixels_covered", "counters",
+                                               "peak_bytes", "load_ms", "stages_ms", "frame_ms"}));
   EXPECT_EQ(s["version"], RASTRUM_VERSION);
   EXPECT_EQ(s["size"], Json::array({60, 40}));
   const Json& t = s["triangles"];

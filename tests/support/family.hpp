@@ -22,7 +22,7 @@ inline std::vector<Relative> family_of(const RenderOptions& base) {
   serial.device = Device::serial;
   serial.isa = Isa::scalar;
   family.push_back({"serial", serial});
-  for (const RasterizerInfo& row : rasterizers()) {
+  for (const AxisInfo& row : rasterizers()) {
     if (row.name == "reference") continue;  // is what the serial device draws with
     for (const Isa isa : available_isas()) {
       for (const int threads : {1, 2, 8}) {

@@ -55,9 +55,8 @@ constexpr float kSteep = 1e-4F;
 
 void fetch_weights(const FrameGeometry& frame, const Draw& draw, std::uint64_t t,
                    const std::uint32_t (&vertex)[3], TriangleSetup& out) {
-  const ProjectedVertex* vertices = frame.projected + draw.first_vertex;
-  const ProjectedVertex &v0 = vertices[vertex[0]], &v1 = vertices[vertex[1]],
-                        &v2 = vertices[vertex[2]];
+  const ProjectedVertex v0 = frame.vertex(draw, vertex[0]), v1 = frame.vertex(draw, vertex[1]),
+                        v2 = frame.vertex(draw, vertex[2]);
   out.exact = true;
   if (v0.x_fx8 == kNeedsClip || v1.x_fx8 == kNeedsClip || v2.x_fx8 == kNeedsClip) {
     out.planes = weight_planes(frame, draw, t);

@@ -1,0 +1,240 @@
+#include <rastrum/raster/coverage/grouped.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <vector>
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/resolve.hpp>
+#include <rastrum/raster/set_up.hpp>
+
+namespace rastrum::raster {
+namespace {
+
+/// Triangles of a group: few enough that what a thread collects stays in its L2 cache …
+constexpr std::uint64_t kMinGroup = 4096;
+/// … and that the groups' tables of bins together stay small.
+constexpr std::uint64_t kMaxBinTables = std::uint64_t{1} << 18;
+
+/// Entries in the order in which they were made, and how many each bin gets. A thread's: it is
+/// filled again for every group, so that it stays in cache. `Entry` has a member `bin`.
+template <class Entry>
+class Collected {
+ public:
+  explicit Collected(MemoryAccount& memory) : entries_(memory), next_(memory) {}
+
+  void restart(std::size_t bins) {
+    count_ = 0;
+    next_.reserve(bins + 1);
+    std::fill_n(next_.data(), bins + 1, 0U);
+  }
+  /// Room for `n` more entries; say with `added` how many were written.
+  [[nodiscard]] Entry* room(std::size_t n) {
+    entries_.grow(count_ + n, count_);
+    return entries_.data() + count_;
+  }
+  void added(std::size_t n) {
+    for (std::size_t i = count_; i < count_ + n; ++i) ++next_[entries_[i].bin + 1];
+    count_ += n;
+  }
+  [[nodiscard]] std::span<const Entry> entries() const { return {entries_.data(), count_}; }
+  /// bins + 1 numbers; element b + 1 counts bin b.
+  [[nodiscard]] std::span<const std::uint32_t> counts(std::size_t bins) const {
+    return {next_.data(), bins + 1};
+  }
+
+ private:
+  Buffer<Entry> entries_;
+  Buffer<std::uint32_t> next_;
+  std::size_t count_ = 0;
+};
+
+/// The entries of a group, sorted by bin.
+template <class Entry>
+class BinLists {
+ public:
+  explicit BinLists(MemoryAccount& memory) : sorted_(memory), begin_(memory) {}
+
+  /// Stable counting sort.
+  void sort(const Collected<Entry>& collected, std::size_t bins) {
+    const std::span<const Entry> entries = collected.entries();
+    const std::span<const std::uint32_t> counts = collected.counts(bins);
+    sorted_.reserve(entries.size());
+    begin_.reserve(bins + 1);
+    // Shifted by one, so that after the scatter each element has moved on to its own bin's begin.
+    std::uint32_t sum = 0;
+    begin_[0] = 0;
+    for (std::size_t b = 0; b < bins; ++b) {
+      begin_[b + 1] = sum;
+      sum += counts[b + 1];
+    }
+    for (const Entry& entry : entries) sorted_[begin_[entry.bin + 1]++] = entry;
+  }
+  [[nodiscard]] std::span<const Entry> bin(std::size_t b) const {
+    return {sorted_.data() + begin_[b], begin_[b + 1] - begin_[b]};
+  }
+
+ private:
+  Buffer<Entry> sorted_;
+  Buffer<std::uint32_t> begin_;
+};
+
+/// What became of the triangles [first, last) of the frame.
+struct Group {
+  explicit Group(MemoryAccount& memory) : pieces(memory), by_bin(memory), fragments(memory) {}
+
+  Pieces pieces;
+  BinLists<PieceInBin> by_bin;
+  BinLists<BinFragment> fragments;
+
+  [[nodiscard]] bool is_empty(std::size_t bin) const {
+    return by_bin.bin(bin).empty() && fragments.bin(bin).empty();
+  }
+};
+
+/// What a thread needs to fill a group.
+struct GroupScratch final : MicroSink {
+  explicit GroupScratch(MemoryAccount& memory) : pairs(memory), micro(memory) {}
+  Collected<PieceInBin> pairs;
+  Collected<BinFragment> micro;
+
+  BinFragment* room(std::size_t n) override { return micro.room(n); }
+  void written(std::size_t n) override { micro.added(n); }
+};
+
+/// Whether the bin's rectangle may hold an inside sample: none lies beyond any one edge.
+bool may_touch(const Edge (&edges)[3], int bin_x, int bin_y) {
+  for (const Edge& e : edges) {
+    const std::int64_t x = bin_x * kBinSize + (e.a > 0 ? kBinSize - 1 : 0);
+    const std::int64_t y = bin_y * kBinSize + (e.b > 0 ? kBinSize - 1 : 0);
+    if (e.base + e.a * x + e.b * y < 0) return false;
+  }
+  return true;
+}
+
+void bin_pieces(std::span<const Piece> pieces, Rect view, int columns,
+                Collected<PieceInBin>& pairs) {
+  std::uint32_t i = 0;
+  for (const Piece& piece : pieces) {
+    const std::uint32_t index = i++;
+    const Rect box = sample_bounds(piece.x, piece.y, view);
+    if (box.empty()) continue;
+    const int bx0 = box.x0 / kBinSize, by0 = box.y0 / kBinSize;
+    const int bx1 = (box.x1 - 1) / kBinSize, by1 = (box.y1 - 1) / kBinSize;
+    const std::size_t most =
+        static_cast<std::size_t>(bx1 - bx0 + 1) * static_cast<std::size_t>(by1 - by0 + 1);
+    PieceInBin* const out = pairs.room(most);
+    std::size_t n = 0;
+    const auto add = [&](int bx, int by) {
+      out[n++] = {static_cast<std::uint32_t>(by * columns + bx), index};
+    };
+    if (most == 1) {
+      add(bx0, by0);
+    } else {
+      const Edge edges[3] = {edge_function(piece, 0), edge_function(piece, 1),
+                             edge_function(piece, 2)};
+      for (int by = by0; by <= by1; ++by)
+        for (int bx = bx0; bx <= bx1; ++bx)
+          if (may_touch(edges, bx, by)) add(bx, by);
+    }
+    pairs.added(n);
+  }
+}
+
+class Grouped final : public Coverage {
+ public:
+  explicit Grouped(MemoryAccount& memory) : memory_(memory) {}
+
+  void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
+    // Bins of the whole image, so that setup need not know of bands; a band draws its own.
+    const Rect image{0, 0, frame.request.width, frame.request.height};
+    const TileGrid bins{image, kBinSize};
+    const std::span<const Group> groups = fill_groups(frame, bins, first, last);
+    frame.watch.lap(frame.stats, "setup and bin");
+
+    const auto first_bin = static_cast<std::size_t>(frame.view.y0 / kBinSize) *
+                           static_cast<std::size_t>(bins.columns());
+    draw_tiles(
+        frame, TileGrid{frame.view, kBinSize},
+        [&](std::size_t tile) {
+          return std::all_of(groups.begin(), groups.end(),
+                             [&](const Group& g) { return g.is_empty(first_bin + tile); });
+        },
+        [&](std::size_t tile, Emitter& emitter) {
+          const Rect rect = bins.rect(first_bin + tile);
+          for (const Group& group : groups) {
+            const std::span<const BinFragment> fragments = group.fragments.bin(first_bin + tile);
+            if (!fragments.empty()) emitter.fragments(rect, fragments);
+            const std::span<const PieceInBin> list = group.by_bin.bin(first_bin + tile);
+            if (list.empty()) continue;
+            const PieceList pieces{group.pieces.data.data(), list.data(), list.size()};
+            emitter.use(pieces.pieces);
+            for (std::size_t cursor = 0; cursor < pieces.count;) {
+              const std::span<Block> room = emitter.room();
+              emitter.written(frame.kernel.cover(pieces, cursor, rect, room.data(), room.size()));
+            }
+            // Groups number their pieces from 0 each.
+            emitter.flush();
+          }
+        });
+    frame.watch.lap(frame.stats, frame.has_surface() ? "draw" : "draw and shade");
+  }
+
+ private:
+  std::span<const Group> fill_groups(Frame& frame, const TileGrid& bins, std::uint64_t first,
+                                     std::uint64_t last);
+
+  MemoryAccount& memory_;
+  std::vector<Group> groups_;
+  tbb::enumerable_thread_specific<GroupScratch> fillers_{[this] { return GroupScratch(memory_); }};
+};
+
+std::span<const Group> Grouped::fill_groups(Frame& frame, const TileGrid& bins, std::uint64_t first,
+                                            std::uint64_t last) {
+  const std::size_t bin_count = bins.count();
+  const std::uint64_t most_groups = std::max<std::uint64_t>(kMaxBinTables / bin_count, 1);
+  const std::uint64_t group_size =
+      std::max(kMinGroup, (last - first + most_groups - 1) / most_groups);
+  const auto group_count = static_cast<std::size_t>((last - first + group_size - 1) / group_size);
+  while (groups_.size() < group_count) groups_.emplace_back(memory_);
+  std::atomic<bool> in_range = true;
+  std::atomic<std::uint64_t> pairs = 0, micro_fragments = 0;
+  parallel::for_each_index(frame.exec, group_count, [&](std::size_t g) {
+    Group& group = groups_[g];
+    GroupScratch& scratch = fillers_.local();
+    group.pieces.count = 0;
+    group.pieces.triangles = {};
+    scratch.pairs.restart(bin_count);
+    scratch.micro.restart(bin_count);
+    const std::uint64_t begin = first + g * group_size;
+    if (!set_up(frame, begin, std::min(begin + group_size, last), group.pieces,
+                frame.visibility.takes_fragments ? &scratch : nullptr)) {
+      in_range = false;
+      return;
+    }
+    bin_pieces(group.pieces.span(), frame.view, bins.columns(), scratch.pairs);
+    group.by_bin.sort(scratch.pairs, bin_count);
+    group.fragments.sort(scratch.micro, bin_count);
+    pairs.fetch_add(scratch.pairs.entries().size(), std::memory_order_relaxed);
+    micro_fragments.fetch_add(scratch.micro.entries().size(), std::memory_order_relaxed);
+  });
+  if (!in_range) check_indices(frame.request.draws);
+  for (std::size_t g = 0; g < group_count; ++g) count_triangles(frame, groups_[g].pieces.triangles);
+  frame.count("bins", pairs);
+  frame.count("micro fragments", micro_fragments);
+  return {groups_.data(), group_count};
+}
+
+}  // namespace
+
+std::unique_ptr<Coverage> make_grouped(const Tuning& tuning, MemoryAccount& memory) {
+  if ((tuning.bin_px != 0 && tuning.bin_px != kBinSize) ||
+      (tuning.tile_px != 0 && tuning.tile_px != kBlockSize))
+    throw Error(Errc::invalid_argument, "'grouped' is compiled for bins of 64 and tiles of 8 px");
+  return std::make_unique<Grouped>(memory);
+}
+
+}  // namespace rastrum::raster

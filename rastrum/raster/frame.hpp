@@ -1,0 +1,235 @@
+// A frame under way: the pipeline that every rasterizer shares (project, batches and bands under a
+// memory limit, shading) and the two places where the axes meet: draw_shared and draw_tiles.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/raster/geometry.hpp>
+#include <rastrum/raster/kernels.hpp>
+#include <rastrum/raster/resolve.hpp>
+#include <rastrum/raster/stopwatch.hpp>
+#include <rastrum/raster/surface.hpp>
+#include <rastrum/raster/visibility/region.hpp>
+
+namespace rastrum::raster {
+
+/// Blocks that are handed to a region at once.
+inline constexpr std::size_t kBlockCapacity = 512;
+
+/// What a thread needs for a tile or a chunk. Kept between frames.
+struct Worker {
+  explicit Worker(MemoryAccount& memory) : words(memory), colors(memory) {}
+
+  alignas(64) Block blocks[kBlockCapacity];
+  alignas(64) std::byte shader[kMaxShaderScratch];
+  Buffer<std::uint64_t> words;  ///< of a tile
+  Buffer<BlockColors> colors;   ///< of a tile, where visibility shades
+  std::unique_ptr<Region> region;
+};
+
+class Frame;
+
+/// Collects the blocks of a chunk and hands them to a region: overdraw is counted and the fragment
+/// test is applied here, in every pass.
+class Emitter {
+ public:
+  Emitter(Frame& frame, Worker& worker, Region& region, std::size_t chunk, bool first_pass)
+      : frame_(frame), worker_(worker), region_(region), chunk_(chunk), first_pass_(first_pass) {}
+  Emitter(const Emitter&) = delete;
+  Emitter& operator=(const Emitter&) = delete;
+
+  /// The pieces that the blocks which follow refer to.
+  void use(const Piece* pieces) {
+    if (pieces == pieces_) return;
+    flush();
+    pieces_ = pieces;
+  }
+  /// A block with the samples that it covers; an empty mask is left out.
+  void add(std::uint32_t piece, int bx, int by, std::uint64_t mask) {
+    worker_.blocks[count_] = {piece, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by),
+                              mask};
+    count_ += mask != 0;
+    if (count_ == kBlockCapacity) flush();
+  }
+  /// A block that touches the view and whose samples are still to be found, many at once.
+  void add_uncovered(std::uint32_t piece, int bx, int by) {
+    worker_.blocks[count_++] = {piece, static_cast<std::uint16_t>(bx),
+                                static_cast<std::uint16_t>(by), 0};
+    to_cover_ = true;
+    if (count_ == kBlockCapacity) flush();
+  }
+  /// Room for kBlocksPerBin blocks or more, to be written by a kernel: say with `written` how many.
+  [[nodiscard]] std::span<Block> room() {
+    if (kBlockCapacity - count_ < static_cast<std::size_t>(kBlocksPerBin)) flush();
+    return {worker_.blocks + count_, kBlockCapacity - count_};
+  }
+  void written(std::size_t n) { count_ += n; }
+  /// Fragments of micro triangles, whose words are known (Visibility::takes_fragments).
+  void fragments(Rect bin, std::span<const BinFragment> fragments);
+
+  void flush();
+
+ private:
+  Frame& frame_;
+  Worker& worker_;
+  Region& region_;
+  const Piece* pieces_ = nullptr;
+  std::size_t chunk_;
+  std::size_t count_ = 0;
+  bool first_pass_;
+  bool to_cover_ = false;
+};
+
+/// Tiles of the screen in the order in which they are walked.
+struct TileGrid {
+  Rect view;
+  int tile_px = kBinSize;
+
+  [[nodiscard]] int columns() const { return (view.x1 - view.x0 + tile_px - 1) / tile_px; }
+  [[nodiscard]] int rows() const { return (view.y1 - view.y0 + tile_px - 1) / tile_px; }
+  [[nodiscard]] std::size_t count() const {
+    return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows());
+  }
+  [[nodiscard]] Rect rect(std::size_t tile) const {
+    const auto c = static_cast<std::size_t>(columns());
+    const int x0 = view.x0 + static_cast<int>(tile % c) * tile_px;
+    const int y0 = view.y0 + static_cast<int>(tile / c) * tile_px;
+    return {x0, y0, std::min(x0 + tile_px, view.x1), std::min(y0 + tile_px, view.y1)};
+  }
+};
+
+/// What a rasterizer keeps between frames.
+struct FrameScratch {
+  FrameScratch(MemoryAccount& m, parallel::Threads& e) : memory(m), exec(e) {}
+
+  MemoryAccount& memory;
+  parallel::Threads& exec;
+  tbb::enumerable_thread_specific<Worker> workers{[this] { return Worker(memory); }};
+  std::unique_ptr<Region> shared;
+};
+
+class Frame {
+ public:
+  Frame(FrameRequest& r, const FrameGeometry& g, const Visibility& v, FrameScratch& s,
+        FrameStats& st, Stopwatch& w)
+      : request(r),
+        geometry(g),
+        kernel(kernels(r.isa)),
+        visibility(v),
+        scratch(s),
+        exec(s.exec),
+        stats(st),
+        watch(w) {}
+
+  FrameRequest& request;
+  FrameGeometry geometry;
+  const Kernels& kernel;
+  const Visibility& visibility;
+  FrameScratch& scratch;
+  parallel::Threads& exec;
+  FrameStats& stats;
+  Stopwatch& watch;
+
+  Rect view;               ///< what is being drawn: the image or a band of it
+  bool first_band = true;  ///< triangles are counted once
+  /// Of the view. Without words tiles keep their own and are shaded at once.
+  SurfaceView surface;
+  std::uint64_t fragment_bytes = 0;  ///< see RegionContext
+
+  std::atomic<std::uint64_t> fragments = 0, pixels_covered = 0;
+  Counters counters;
+
+  [[nodiscard]] bool has_surface() const { return surface.words != nullptr; }
+  [[nodiscard]] RegionContext context(parallel::Threads* threads) const {
+    return {&request, &geometry, &kernel, threads, fragment_bytes};
+  }
+  void count(std::string_view name, std::uint64_t value) { add_counter(counters, name, value); }
+
+  /// Shades and stores the blocks of `rect`. Thread-safe for distinct rectangles.
+  void shade(const SurfaceView& from, Rect rect, Worker& worker);
+  /// The same for a rectangle without any surface.
+  void shade_nothing(Rect rect);
+};
+
+/// Enumerates into the region that all threads share, the view, as often as the visibility asks.
+/// `enumerate(chunk, emitter)` is called concurrently for chunks [0, chunks) and does the same each
+/// time.
+template <class Enumerate>
+void draw_shared(Frame& frame, std::size_t chunks, const Enumerate& enumerate) {
+  FrameScratch& scratch = frame.scratch;
+  if (!scratch.shared) scratch.shared = frame.visibility.make(Sharing::shared, scratch.memory);
+  Region& region = *scratch.shared;
+  region.begin(frame.context(&frame.exec), frame.surface, frame.view, chunks);
+  bool first_pass = true;
+  while (const auto pass = region.next()) {
+    parallel::for_each_index(frame.exec, pass->last - pass->first, [&](std::size_t i) {
+      Emitter emitter(frame, scratch.workers.local(), region, pass->first + i, first_pass);
+      enumerate(pass->first + i, emitter);
+      emitter.flush();
+    });
+    first_pass = false;
+  }
+  region.collect(frame.counters);
+}
+
+/// Lets threads own the tiles of `grid` one by one. `is_empty(tile)` says that nothing would be
+/// enumerated; `enumerate(tile, emitter)` as above. A tile is shaded at once unless the frame has a
+/// surface.
+template <class IsEmpty, class Enumerate>
+void draw_tiles(Frame& frame, const TileGrid& grid, const IsEmpty& is_empty,
+                const Enumerate& enumerate) {
+  FrameScratch& scratch = frame.scratch;
+  parallel::for_each_index(frame.exec, grid.count(), [&](std::size_t tile) {
+    const Rect rect = grid.rect(tile);
+    const bool local = !frame.has_surface();
+    if (is_empty(tile)) {
+      if (local) frame.shade_nothing(rect);
+      return;
+    }
+    Worker& worker = scratch.workers.local();
+    if (!worker.region) worker.region = frame.visibility.make(Sharing::owned, scratch.memory);
+    Region& region = *worker.region;
+    SurfaceView surface;
+    if (local) {
+      // Rows of a whole tile, also at the image's edge: kernels like one stride.
+      surface = {rect.x0 / kBlockSize, rect.y0 / kBlockSize,
+                 (grid.tile_px + kBlockSize - 1) / kBlockSize, nullptr, nullptr};
+      const std::size_t blocks =
+          static_cast<std::size_t>(surface.columns) * static_cast<std::size_t>(block_rows(rect));
+      worker.words.reserve(blocks * 64);
+      surface.words = worker.words.data();
+      load_words(frame.request.targets, rect, surface);
+      if (frame.visibility.shades) {
+        worker.colors.reserve(blocks);
+        surface.colors = worker.colors.data();
+      }
+    } else {
+      surface = frame.surface.part(rect.x0 / kBlockSize, rect.y0 / kBlockSize);
+    }
+    region.begin(frame.context(nullptr), surface, rect, 1);
+    bool first_pass = true;
+    while (region.next()) {
+      Emitter emitter(frame, worker, region, 0, first_pass);
+      enumerate(tile, emitter);
+      emitter.flush();
+      first_pass = false;
+    }
+    if (local) frame.shade(surface, rect, worker);
+  });
+  for (Worker& worker : scratch.workers)
+    if (worker.region) worker.region->collect(frame.counters);
+}
+
+}  // namespace rastrum::raster

@@ -1,0 +1,157 @@
+#include <rastrum/raster/rasterizer.hpp>
+
+#include <algorithm>
+#include <string>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/raster/resolve.hpp>
+
+namespace rastrum::raster {
+namespace {
+
+constexpr std::size_t kProjectGrain = 4096;
+
+/// Below this many bytes for triangles or fragments at once the pieces of the work would be smaller
+/// than what a task costs.
+constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 20;
+
+}  // namespace
+
+/// How the work is cut: bands of rows, and in each band batches of triangles. Without a limit there
+/// is one of both.
+struct Rasterizer::Plan {
+  bool project_first = true;  ///< else vertices are projected where triangles need them
+  bool surface = true;        ///< words for a band, else tiles keep their own
+  int band_rows = 0;
+  std::uint64_t batch = 0;  ///< triangles
+  std::uint64_t fragment_bytes = 0;
+};
+
+Rasterizer::Rasterizer(const CoverageRow& coverage, const Visibility& visibility,
+                       const Tuning& tuning, std::uint64_t memory_limit, MemoryAccount& memory,
+                       parallel::Threads& threads)
+    : row_(coverage),
+      visibility_(visibility),
+      memory_limit_(memory_limit),
+      memory_(memory),
+      threads_(threads),
+      coverage_(coverage.make(tuning, memory)),
+      scratch_(memory, threads),
+      projected_(memory),
+      words_(memory),
+      colors_(memory) {}
+
+Rasterizer::~Rasterizer() = default;
+
+Rasterizer::Plan Rasterizer::plan(const FrameRequest& request, std::uint64_t triangles,
+                                  std::size_t vertices) const {
+  Plan p;
+  p.surface = !row_.owns_tiles;
+  p.band_rows = request.height;
+  p.batch = std::max<std::uint64_t>(triangles, 1);
+  if (memory_limit_ == 0) return p;
+
+  // A quarter each for projected vertices, triangles, the surface and fragments; what one does not
+  // need is not given to another, so that the plan of a frame does not jump.
+  const std::uint64_t share = memory_limit_ / 4;
+  if (share < kLeastShare)
+    throw Error(Errc::out_of_memory,
+                "a memory limit of " + std::to_string(memory_limit_) + " bytes is less than the " +
+                    std::to_string(4 * kLeastShare) + " that a frame needs at least");
+  p.project_first = vertices <= share / sizeof(ProjectedVertex);
+  p.batch = std::min(p.batch, share / static_cast<std::uint64_t>(row_.triangle_bytes));
+  p.fragment_bytes = share;
+  p.surface = p.surface || p.batch < triangles;
+  if (p.surface) {
+    const auto width = static_cast<std::uint64_t>((request.width + kBinSize - 1) / kBinSize) *
+                       static_cast<std::uint64_t>(kBinSize);
+    const std::uint64_t row_bytes = width * static_cast<std::uint64_t>(visibility_.surface_bytes);
+    const std::uint64_t rows = share / row_bytes / kBinSize * kBinSize;
+    p.band_rows = static_cast<int>(
+        std::clamp<std::uint64_t>(rows, kBinSize, static_cast<std::uint64_t>(request.height)));
+    // Rows of bins, so that a band never cuts one.
+    if (p.band_rows < request.height) p.band_rows = p.band_rows / kBinSize * kBinSize;
+  }
+  return p;
+}
+
+void Rasterizer::project(FrameRequest& request, FrameGeometry& frame) {
+  for (const Draw& draw : request.draws)
+    parallel::for_each_index(
+        threads_, (draw.vertex_count + kProjectGrain - 1) / kProjectGrain, [&](std::size_t i) {
+          const std::size_t begin = i * kProjectGrain;
+          const std::size_t end = std::min(begin + kProjectGrain, draw.vertex_count);
+          draw.source->project(begin, end, frame.viewport, request.isa,
+                               projected_.data() + draw.first_vertex + begin);
+        });
+  frame.projected = projected_.data();
+}
+
+void Rasterizer::draw_band(Frame& frame, const Plan& plan, std::uint64_t triangles) {
+  const Rect band = frame.view;
+  const TileGrid tiles{band, kBinSize};
+  if (plan.surface) {
+    const std::size_t blocks = block_count(band);
+    words_.reserve(blocks * 64);
+    if (visibility_.shades) colors_.reserve(blocks);
+    frame.surface = {band.x0 / kBlockSize, band.y0 / kBlockSize, block_columns(band), words_.data(),
+                     visibility_.shades ? colors_.data() : nullptr};
+    parallel::for_each_index(threads_, tiles.count(), [&](std::size_t t) {
+      const Rect r = tiles.rect(t);
+      load_words(frame.request.targets, r,
+                 frame.surface.part(r.x0 / kBlockSize, r.y0 / kBlockSize));
+    });
+  }
+  const std::uint64_t first_id = frame.request.targets.first_id;
+  std::uint64_t drawn = 0;
+  do {  // once without triangles too: the background is drawn
+    const std::uint64_t count = std::min(plan.batch, triangles - drawn);
+    coverage_->draw(frame, first_id + drawn, first_id + drawn + count);
+    drawn += count;
+  } while (drawn < triangles);
+  if (!plan.surface) return;
+  parallel::for_each_index(threads_, tiles.count(), [&](std::size_t t) {
+    const Rect r = tiles.rect(t);
+    frame.shade(frame.surface.part(r.x0 / kBlockSize, r.y0 / kBlockSize), r,
+                scratch_.workers.local());
+  });
+  frame.watch.lap(frame.stats, "shade");
+}
+
+FrameStats Rasterizer::render(FrameRequest& request) {
+  Stopwatch watch;
+  FrameStats stats;
+  stats.rasterizer = row_.name;
+  stats.visibility = visibility_.name;
+  stats.isa = request.isa;
+  const Totals totals = number_draws(request.draws, request.targets.first_id);
+  const Plan cut = plan(request, totals.triangles, totals.vertices);
+
+  FrameGeometry geometry{request.width, request.height, Viewport::of(request.width, request.height),
+                         request.draws, nullptr,        request.isa};
+  if (cut.project_first) {
+    projected_.reserve(totals.vertices);
+    project(request, geometry);
+    watch.lap(stats, "project");
+  }
+  if (!request.targets.overdraw.empty() && !request.targets.load)
+    for (int y = 0; y < request.height; ++y)
+      std::fill_n(request.targets.overdraw.row(y), request.width, 0U);
+
+  Frame frame(request, geometry, visibility_, scratch_, stats, watch);
+  frame.fragment_bytes = cut.fragment_bytes;
+  for (int y = 0; y < request.height; y += cut.band_rows) {
+    frame.view = {0, y, request.width, std::min(y + cut.band_rows, request.height)};
+    frame.first_band = y == 0;
+    draw_band(frame, cut, totals.triangles);
+  }
+  stats.triangles.input = totals.triangles;
+  stats.triangles.drawn = totals.triangles - stats.triangles.dropped - stats.triangles.culled;
+  stats.fragments = frame.fragments;
+  stats.pixels_covered = frame.pixels_covered;
+  for (const auto& [name, value] : frame.counters)
+    stats.counters.emplace_back(std::string(name), value);
+  return stats;
+}
+
+}  // namespace rastrum::raster

@@ -1,0 +1,24 @@
+// atomic: the maximum of the 64-bit words of all fragments, shading deferred (paper 1, section
+// 3.2.3). Where a thread owns the region it is a plain maximum over SIMD lanes.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include <rastrum/raster/visibility/region.hpp>
+
+namespace rastrum::raster {
+
+/// Work O(fragments), no scratch beyond the surface.
+[[nodiscard]] std::unique_ptr<Region> make_atomic(Sharing sharing, MemoryAccount& memory);
+
+/// Raises `word` to at least `value`; other threads may do the same.
+inline void raise_atomically(std::uint64_t& word, std::uint64_t value) {
+  const std::atomic_ref<std::uint64_t> shared(word);
+  std::uint64_t seen = shared.load(std::memory_order_relaxed);
+  while (seen < value && !shared.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
+  }
+}
+
+}  // namespace rastrum::raster

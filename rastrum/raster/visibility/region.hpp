@@ -1,0 +1,89 @@
+// The second axis of the family: how the many fragments of a pixel become one (DESIGN section 3).
+// A visibility method resolves what a coverage enumerates: 8 × 8 blocks of pieces with their masks,
+// a few hundred a call. It sees a region of the screen, which one thread owns (a tile: plain
+// maxima, words that stay in cache) or all share (a frame: atomics and locks).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/raster/geometry.hpp>
+#include <rastrum/raster/kernels.hpp>
+#include <rastrum/raster/surface.hpp>
+
+namespace rastrum::raster {
+
+/// What a method may use of the frame. All of it outlives the region's use.
+struct RegionContext {
+  const FrameRequest* request = nullptr;
+  const FrameGeometry* frame = nullptr;
+  const Kernels* kernel = nullptr;
+  parallel::Threads* exec = nullptr;  ///< null where one thread owns the region
+  std::uint64_t fragment_bytes = 0;   ///< most that fragments may take at once; 0: no limit
+};
+
+/// Named counters of a method's own work: what tells five names from one.
+using Counters = std::vector<std::pair<std::string_view, std::uint64_t>>;
+
+/// Resolves the fragments of a rectangle into a surface. Used from `begin` to the `next` that
+/// returns nothing, again and again; keeps its scratch.
+///
+/// The caller enumerates the same blocks, cut into the same chunks, as often as `next` asks for
+/// it, and calls `blocks` with each chunk's blocks in order, different chunks from different
+/// threads where the region is shared.
+class Region {
+ public:
+  virtual ~Region() = default;
+
+  /// `surface` holds what was drawn before and is raised: words, and colours if the method shades.
+  virtual void begin(const RegionContext& context, const SurfaceView& surface, Rect rect,
+                     std::size_t chunks) = 0;
+
+  /// Chunks [first, last) that the method wants to see now. The first pass is over all of them.
+  struct Pass {
+    std::size_t first = 0, last = 0;
+  };
+  /// Ends a pass and says what the next one is; nothing: the surface is resolved.
+  virtual std::optional<Pass> next() = 0;
+
+  /// No mask is empty and none reaches outside of the image.
+  virtual void blocks(std::size_t chunk, const Piece* pieces, std::span<const Block> blocks) = 0;
+
+  /// Fragments whose word is known already, of a bin that the region is; only for methods that
+  /// `takes_fragments`.
+  virtual void fragments(std::span<const BinFragment>) {}
+
+  /// Adds the work of all frames since the last call to `counters`.
+  virtual void collect(Counters&) {}
+};
+
+enum class Sharing : std::uint8_t {
+  owned,  ///< one thread at a time
+  shared  ///< `blocks` is called by many threads at once
+};
+
+/// A row of the table: a method of visibility.
+struct Visibility {
+  std::string_view name, description;
+  bool shades = false;           ///< fills SurfaceView::colors
+  bool takes_fragments = false;  ///< can be handed finished words of micro triangles
+  /// Bytes of surface a pixel: words, and what the method keeps beside them for a shared region.
+  int surface_bytes = 8;
+  std::unique_ptr<Region> (*make)(Sharing, MemoryAccount&) = nullptr;
+};
+
+/// All methods; the first is the default.
+[[nodiscard]] std::span<const Visibility> visibilities() noexcept;
+
+/// Adds to the counter of that name.
+void add_counter(Counters& counters, std::string_view name, std::uint64_t value);
+
+}  // namespace rastrum::raster

@@ -1,0 +1,27 @@
+// The rows of the visibility axis.
+#include <algorithm>
+#include <array>
+
+#include <rastrum/raster/visibility/atomic.hpp>
+#include <rastrum/raster/visibility/region.hpp>
+
+namespace rastrum::raster {
+
+std::span<const Visibility> visibilities() noexcept {
+  static constexpr std::array kTable{
+      Visibility{"atomic", "64-bit maximum of depth and id, shading deferred", false, true, 8,
+                 make_atomic},
+  };
+  return kTable;
+}
+
+void add_counter(Counters& counters, std::string_view name, std::uint64_t value) {
+  const auto found = std::find_if(counters.begin(), counters.end(),
+                                  [&](const auto& c) { return c.first == name; });
+  if (found != counters.end())
+    found->second += value;
+  else
+    counters.emplace_back(name, value);
+}
+
+}  // namespace rastrum::raster
