@@ -6,7 +6,9 @@
 #include <rastrum/parallel/blocks.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/expand.hpp>
+#include <rastrum/parallel/expand_each.hpp>
 #include <rastrum/parallel/expand_masked.hpp>
+#include <rastrum/parallel/expand_masked_each.hpp>
 #include <rastrum/parallel/filter.hpp>
 #include <rastrum/parallel/gather.hpp>
 #include <rastrum/parallel/index_in_group.hpp>
@@ -17,6 +19,7 @@
 #include <rastrum/parallel/reduce_by_key.hpp>
 #include <rastrum/parallel/scan.hpp>
 #include <rastrum/parallel/scatter.hpp>
+#include <rastrum/parallel/scratch.hpp>
 #include <rastrum/parallel/sort_by_key.hpp>
 #include <rastrum/parallel/tabulate.hpp>
 #include <rastrum/parallel/transform.hpp>
