@@ -32,7 +32,7 @@ class Expansion {
   /// Calls size(in[i]) → integer ≥ 0 once per segment. Requires per_chunk > 0.
   template <class Exec, Readable In, class Size>
   Expansion(Exec& exec, const In& in, Size&& size, std::size_t per_chunk = kBlock)
-      : first_(std::size(in)), per_chunk_(per_chunk) {
+      : first_(make_buffer<std::size_t>(exec, std::size(in))), per_chunk_(per_chunk) {
     assert(per_chunk > 0);
     transform(exec, in, first_, [&](const auto& x) { return static_cast<std::size_t>(size(x)); });
     size_ = exclusive_scan(exec, first_, first_, std::size_t{0});

@@ -32,8 +32,8 @@ class MaskedExpansion {
                   std::size_t per_chunk = kBlock)
       : cut_(
             exec, in, [&](const auto& x) { return masks_for(size(x)); }, kMasksPerGroup),
-        masks_(cut_.size()),
-        before_(cut_.chunks()),
+        masks_(make_buffer<Mask<kBits>>(exec, cut_.size())),
+        before_(make_buffer<std::size_t>(exec, cut_.chunks())),
         per_chunk_(per_chunk) {
     assert(per_chunk > 0);
     expand_chunks(exec, cut_, in, [&](const ExpansionChunk<In>& group) {

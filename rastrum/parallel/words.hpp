@@ -1,8 +1,9 @@
 // All the data-parallel words. A word is a function template whose first argument is the backend;
-// inputs and outputs are ranges (range.hpp) of the caller's, and a vector is returned only where
+// inputs and outputs are ranges (range.hpp) of the caller's, and a Buffer is returned only where
 // its size depends on the data. Functors are called concurrently and must not share mutable state.
 #pragma once
 
+#include <rastrum/parallel/arena.hpp>
 #include <rastrum/parallel/blocks.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/expand.hpp>

@@ -35,6 +35,12 @@ void on_every_backend(F&& f) {
 inline const std::vector<std::size_t> kSizes = {
     0, 1, 2, 63, 64, 65, kBlock - 1, kBlock, kBlock + 1, 3 * kBlock, 50021, 300007};
 
+/// A result of a word, to be compared with what a test expects.
+template <class T>
+std::vector<T> as_vector(const Buffer<T>& buffer) {
+  return {buffer.begin(), buffer.end()};
+}
+
 template <class T>
 std::vector<T> random_values(std::size_t n, std::uint64_t limit, std::uint64_t seed = 1) {
   std::mt19937_64 random(seed + n);

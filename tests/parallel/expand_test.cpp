@@ -23,10 +23,10 @@ TEST(Expand, ListsTheElementsOfAllSegments) {
       }
     on_every_backend([&](auto& exec) {
       EXPECT_EQ(
-          expand(
-              exec, counting(sizes.size()), [&](std::size_t i) { return sizes[i]; }, make_pair_of),
+          as_vector(expand(
+              exec, counting(sizes.size()), [&](std::size_t i) { return sizes[i]; }, make_pair_of)),
           expected);
-      EXPECT_EQ(owners(exec, sizes), expected_owners);
+      EXPECT_EQ(as_vector(owners(exec, sizes)), expected_owners);
     });
   }
 }
@@ -36,9 +36,9 @@ TEST(Expand, ExampleOfThePaper) {
   const std::vector<int> sizes = {3, 2, 1, 1};
   const std::vector<std::size_t> offsets = {0, 3, 5, 6};
   on_every_backend([&](auto& exec) {
-    EXPECT_EQ(expand(
+    EXPECT_EQ(as_vector(expand(
                   exec, counting(4), [&](std::size_t i) { return sizes[i]; },
-                  [&](std::size_t i, std::size_t j) { return offsets[i] + j + 1; }),
+                  [&](std::size_t i, std::size_t j) { return offsets[i] + j + 1; })),
               (std::vector<std::size_t>{1, 2, 3, 4, 5, 6, 7}));
   });
 }
@@ -56,9 +56,9 @@ void masked_expansion_matches() {
         for (std::size_t j = 0; j < sizes[i]; ++j)
           if (holds(i, j)) expected.push_back(make_pair_of(i, j));
       on_every_backend([&](auto& exec) {
-        EXPECT_EQ(expand_masked<kBits>(
+        EXPECT_EQ(as_vector(expand_masked<kBits>(
                       exec, counting(sizes.size()), [&](std::size_t i) { return sizes[i]; }, holds,
-                      make_pair_of),
+                      make_pair_of)),
                   expected);
       });
     }
