@@ -3,17 +3,29 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <rastrum/parallel/arena.hpp>
+
 namespace rastrum::parallel {
 
 /// One thread, plain loops.
-struct Serial {
+class Serial {
+ public:
+  Serial() = default;
+  /// Words take their memory from `memory`, instead of the heap.
+  explicit Serial(std::shared_ptr<Arena> memory) : memory_(std::move(memory)) {}
   [[nodiscard]] static int concurrency() { return 1; }
+  [[nodiscard]] const std::shared_ptr<Arena>& memory() const { return memory_; }
+
+ private:
+  std::shared_ptr<Arena> memory_;
 };
 
 /// oneTBB in an arena of its own. Keep it alive between frames: starting threads costs more than a
@@ -21,14 +33,19 @@ struct Serial {
 class Threads {
  public:
   /// `count` threads, the caller's included; 0 takes what the machine has.
-  /// More threads than cores are had as well: oneTBB would cap them.
-  explicit Threads(int count = 0) : arena_(count > 0 ? count : tbb::task_arena::automatic) {
+  /// More threads than cores are had as well: oneTBB would cap them. Words take their memory from
+  /// an arena that is accounted to `account`, which must outlive the backend and the words'
+  /// results.
+  explicit Threads(int count = 0, MemoryAccount* account = nullptr)
+      : arena_(count > 0 ? count : tbb::task_arena::automatic),
+        memory_(std::make_shared<Arena>(account)) {
     if (count > tbb::this_task_arena::max_concurrency())
       more_than_cores_.emplace(tbb::global_control::max_allowed_parallelism,
                                static_cast<std::size_t>(count));
     arena_.initialize();
   }
   [[nodiscard]] int concurrency() const { return arena_.max_concurrency(); }
+  [[nodiscard]] const std::shared_ptr<Arena>& memory() const { return memory_; }
 
   /// Calls body(data, begin, end) for ranges that make up [0, n), of at most `grain` indices each;
   /// what the bodies wrote is visible to the caller afterwards. The loop behind for_each_index.
@@ -38,6 +55,7 @@ class Threads {
  private:
   std::optional<tbb::global_control> more_than_cores_;
   tbb::task_arena arena_;
+  std::shared_ptr<Arena> memory_;
 };
 
 /// Calls f(i) for i in [0, n). Work O(n), span O(1) on serial's terms, O(log n) with threads.

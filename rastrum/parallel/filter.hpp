@@ -14,8 +14,8 @@ namespace rastrum::parallel {
 /// The predicate is called once per element. Indices instead of elements: filter(exec, counting(n),
 /// predicate of the index).
 template <Readable In, class Predicate>
-[[nodiscard]] Buffer<element_t<In>> filter(Serial&, const In& in, Predicate&& holds) {
-  Buffer<element_t<In>> out;
+[[nodiscard]] Buffer<element_t<In>> filter(Serial& exec, const In& in, Predicate&& holds) {
+  auto out = make_buffer<element_t<In>>(exec);
   for (std::size_t i = 0; i < std::size(in); ++i)
     if (holds(in[i])) out.push_back(in[i]);
   return out;
@@ -24,7 +24,7 @@ template <Readable In, class Predicate>
 template <Readable In, class Predicate>
 [[nodiscard]] Buffer<element_t<In>> filter(Threads& exec, const In& in, Predicate&& holds) {
   const Selection selected = select_elements(exec, in, holds);
-  Buffer<element_t<In>> out(selected.count);
+  auto out = make_buffer<element_t<In>>(exec, selected.count);
   for_each_block(exec, std::size(in), [&](std::size_t block, std::size_t begin, std::size_t end) {
     std::size_t to = selected.before[block];
     for (std::size_t i = begin; i < end; i += 64)

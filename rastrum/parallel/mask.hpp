@@ -66,6 +66,12 @@ class Mask {
     const int low = low_.rank();
     return k < low ? low_.select(k) : high_.select(k - low) + kHalf;
   }
+  /// Calls f(i) for each element, ascending: select(0), select(1), … for O(1) each.
+  template <class F>
+  RASTRUM_HD constexpr void for_each(F&& f) const {
+    low_.for_each(f);
+    high_.for_each([&](int i) { f(i + kHalf); });
+  }
 
  private:
   static constexpr int kHalf = kBits / 2;
@@ -97,6 +103,10 @@ requires(kBits == 8 || kBits == 16 || kBits == 32 || kBits == 64) class Mask<kBi
   [[nodiscard]] RASTRUM_HD constexpr int select(int k) const {
     assert(k >= 0 && k < rank());
     return select_bit<kBits>(word_, k);
+  }
+  template <class F>
+  RASTRUM_HD constexpr void for_each(F&& f) const {
+    for (std::uint64_t rest = word_; rest != 0; rest &= rest - 1) f(lowest_bit(rest));
   }
 
  private:

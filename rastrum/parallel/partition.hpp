@@ -19,9 +19,9 @@ struct Partition {
 
 /// The predicate is called once per element.
 template <Readable In, class Predicate>
-[[nodiscard]] Partition<element_t<In>> partition(Serial&, const In& in, Predicate&& holds) {
-  Partition<element_t<In>> out;
-  Buffer<element_t<In>> others;
+[[nodiscard]] Partition<element_t<In>> partition(Serial& exec, const In& in, Predicate&& holds) {
+  Partition<element_t<In>> out{make_buffer<element_t<In>>(exec)};
+  auto others = make_buffer<element_t<In>>(exec);
   for (std::size_t i = 0; i < std::size(in); ++i)
     (holds(in[i]) ? out.elements : others).push_back(in[i]);
   out.first_count = out.elements.size();
@@ -32,9 +32,7 @@ template <Readable In, class Predicate>
 template <Readable In, class Predicate>
 [[nodiscard]] Partition<element_t<In>> partition(Threads& exec, const In& in, Predicate&& holds) {
   const Selection selected = select_elements(exec, in, holds);
-  Partition<element_t<In>> out;
-  out.elements.resize(std::size(in));
-  out.first_count = selected.count;
+  Partition<element_t<In>> out{make_buffer<element_t<In>>(exec, std::size(in)), selected.count};
   for_each_block(exec, std::size(in), [&](std::size_t block, std::size_t begin, std::size_t end) {
     std::size_t first = selected.before[block];
     std::size_t other = selected.count + (begin - first);

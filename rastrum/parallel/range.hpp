@@ -24,11 +24,6 @@ template <class R>
 using element_t =
     std::remove_cvref_t<decltype(std::declval<const std::remove_reference_t<R>&>()[0])>;
 
-/// What words allocate and return. Neighbouring elements are written by different threads, so they
-/// must be distinct memory; vector<bool>'s are not: return bytes instead.
-template <class T>
-requires(!std::same_as<T, bool>) using Buffer = std::vector<T>;
-
 template <class R>
 concept Writable = requires(R& r, std::size_t i) {
   r[i];

@@ -36,7 +36,7 @@ template <Readable In, class T, class Op = std::plus<>>
 
 template <Readable In, class T, class Op = std::plus<>>
 [[nodiscard]] T reduce(Threads& exec, const In& in, T initial, Op op = {}) {
-  Buffer<T> partial(block_count(std::size(in)), initial);
+  auto partial = make_buffer<T>(exec, block_count(std::size(in)));
   for_each_block(exec, std::size(in), [&](std::size_t block, std::size_t begin, std::size_t end) {
     partial[block] = fold_block<T>(in, begin, end, op);
   });

@@ -26,13 +26,13 @@ struct ReducedByKey {
 
 /// Sizes of `keys` and `values` agree. Sort by key first where equal keys are to meet.
 template <Readable Keys, Readable Values, class Op = std::plus<>>
-[[nodiscard]] ReducedByKey<element_t<Keys>, element_t<Values>> reduce_by_key(Serial&,
+[[nodiscard]] ReducedByKey<element_t<Keys>, element_t<Values>> reduce_by_key(Serial& exec,
                                                                              const Keys& keys,
                                                                              const Values& values,
                                                                              Op op = {}) {
   using V = element_t<Values>;
   assert(std::size(keys) == std::size(values));
-  ReducedByKey<element_t<Keys>, V> out;
+  ReducedByKey<element_t<Keys>, V> out{make_buffer<element_t<Keys>>(exec), make_buffer<V>(exec)};
   const std::size_t n = std::size(keys);
   for (std::size_t i = 0; i < n;) {
     const bool head = i == 0 || !(keys[i] == keys[i - 1]);
@@ -61,7 +61,7 @@ template <Readable Keys, Readable Values, class Op = std::plus<>>
   const std::size_t n = std::size(keys);
   const auto is_head = [&](std::size_t i) { return i == 0 || !(keys[i] == keys[i - 1]); };
 
-  Buffer<std::size_t> heads_before(block_count(n));
+  auto heads_before = make_buffer<std::size_t>(exec, block_count(n));
   for_each_block(exec, n, [&](std::size_t block, std::size_t begin, std::size_t end) {
     std::size_t heads = 0;
     for (std::size_t i = begin; i < end; ++i) heads += std::size_t{is_head(i)};
@@ -69,14 +69,14 @@ template <Readable Keys, Readable Values, class Op = std::plus<>>
   });
   const std::size_t runs = exclusive_scan(exec, heads_before, heads_before, std::size_t{0});
 
-  ReducedByKey<element_t<Keys>, V> out;
-  out.keys.resize(runs);
-  out.values.resize(runs);
+  ReducedByKey<element_t<Keys>, V> out{make_buffer<element_t<Keys>>(exec, runs),
+                                       make_buffer<V>(exec, runs)};
   // A block's first piece, where it continues a run of the block before it.
-  Buffer<V> carried(block_count(n));
-  Buffer<std::uint8_t> carries(block_count(n));
+  auto carried = make_buffer<V>(exec, block_count(n));
+  auto carries = make_buffer<std::uint8_t>(exec, block_count(n));
   for_each_block(exec, n, [&](std::size_t block, std::size_t begin, std::size_t end) {
     std::size_t run = heads_before[block];
+    carries[block] = 0;
     for (std::size_t i = begin; i < end;) {
       const bool head = is_head(i);
       V piece = values[i];

@@ -44,7 +44,7 @@ T scan(Serial& exec, const In& in, Out& out, T carry, Op& op) {
 template <bool kInclusive, class In, class Out, class T, class Op>
 T scan(Threads& exec, const In& in, Out& out, T carry, Op& op) {
   const std::size_t n = std::size(in);
-  Buffer<T> before(block_count(n), carry);
+  auto before = make_buffer<T>(exec, block_count(n));
   for_each_block(exec, n, [&](std::size_t block, std::size_t begin, std::size_t end) {
     before[block] = fold_block<T>(in, begin, end, op);
   });

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include <rastrum/parallel/blocks.hpp>
 #include <rastrum/parallel/mask.hpp>
@@ -15,8 +14,8 @@
 namespace rastrum::parallel {
 
 struct Selection {
-  std::vector<std::uint64_t> words;  ///< bit i % 64 of word i / 64
-  std::vector<std::size_t> before;   ///< selected elements before each block
+  Buffer<std::uint64_t> words;  ///< bit i % 64 of word i / 64
+  Buffer<std::size_t> before;   ///< selected elements before each block
   std::size_t count = 0;
 
   [[nodiscard]] bool test(std::size_t i) const { return (words[i / 64] >> (i % 64) & 1) != 0; }
@@ -26,9 +25,8 @@ struct Selection {
 template <Readable In, class Predicate>
 [[nodiscard]] Selection select_elements(Threads& exec, const In& in, Predicate& holds) {
   const std::size_t n = std::size(in);
-  Selection s;
-  s.words.resize((n + 63) / 64);
-  s.before.resize(block_count(n));
+  Selection s{make_buffer<std::uint64_t>(exec, (n + 63) / 64),
+              make_buffer<std::size_t>(exec, block_count(n))};
   for_each_block(exec, n, [&](std::size_t block, std::size_t begin, std::size_t end) {
     std::size_t count = 0;
     for (std::size_t i = begin; i < end; i += 64) {

@@ -73,8 +73,8 @@ void sort_by_key(Exec& exec, Keys&& key_range, Values&& value_range, int bits = 
   const int passes = (bits + kDigitBits - 1) / kDigitBits;
   const std::size_t chunk_count = chunks_for(exec, n);
   std::vector<Counters> counters(chunk_count);
-  std::vector<K> other_keys(n);
-  std::vector<V> other_values(n);
+  auto other_keys = make_buffer<K>(exec, n);
+  auto other_values = make_buffer<V>(exec, n);
   std::span<K> from_keys = keys, to_keys = other_keys;
   std::span<V> from_values = values, to_values = other_values;
 

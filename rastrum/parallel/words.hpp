@@ -1,12 +1,15 @@
 // All the data-parallel words. A word is a function template whose first argument is the backend;
-// inputs and outputs are ranges (range.hpp) of the caller's, and a vector is returned only where
+// inputs and outputs are ranges (range.hpp) of the caller's, and a Buffer is returned only where
 // its size depends on the data. Functors are called concurrently and must not share mutable state.
 #pragma once
 
+#include <rastrum/parallel/arena.hpp>
 #include <rastrum/parallel/blocks.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/expand.hpp>
+#include <rastrum/parallel/expand_each.hpp>
 #include <rastrum/parallel/expand_masked.hpp>
+#include <rastrum/parallel/expand_masked_each.hpp>
 #include <rastrum/parallel/filter.hpp>
 #include <rastrum/parallel/gather.hpp>
 #include <rastrum/parallel/index_in_group.hpp>
@@ -17,6 +20,7 @@
 #include <rastrum/parallel/reduce_by_key.hpp>
 #include <rastrum/parallel/scan.hpp>
 #include <rastrum/parallel/scatter.hpp>
+#include <rastrum/parallel/scratch.hpp>
 #include <rastrum/parallel/sort_by_key.hpp>
 #include <rastrum/parallel/tabulate.hpp>
 #include <rastrum/parallel/transform.hpp>

@@ -35,12 +35,35 @@ void on_every_backend(F&& f) {
 inline const std::vector<std::size_t> kSizes = {
     0, 1, 2, 63, 64, 65, kBlock - 1, kBlock, kBlock + 1, 3 * kBlock, 50021, 300007};
 
+/// A result of a word, to be compared with what a test expects.
+template <class T>
+std::vector<T> as_vector(const Buffer<T>& buffer) {
+  return {buffer.begin(), buffer.end()};
+}
+
 template <class T>
 std::vector<T> random_values(std::size_t n, std::uint64_t limit, std::uint64_t seed = 1) {
   std::mt19937_64 random(seed + n);
   std::vector<T> values(n);
   for (T& v : values) v = static_cast<T>(random() % limit);
   return values;
+}
+
+/// Segment sizes of several characters: the last ones are what simple load balancing breaks on.
+inline std::vector<std::vector<std::uint32_t>> segment_sizes() {
+  std::vector<std::vector<std::uint32_t>> all = {{}, {0}, {1}, {0, 0, 0}, {100000}};
+  for (const std::size_t n : {2U, 64U, 5000U}) all.push_back(random_values<std::uint32_t>(n, 40));
+  std::vector<std::uint32_t> huge = random_values<std::uint32_t>(5000, 3);
+  huge[1234] = 150001;
+  all.push_back(huge);
+  std::vector<std::uint32_t> empty_ends(20000, 0);
+  empty_ends[10000] = 9000;
+  all.push_back(empty_ends);
+  std::vector<std::uint32_t> around_masks;
+  for (std::uint32_t bits = 8; bits <= 256; bits *= 2)
+    around_masks.insert(around_masks.end(), {bits - 1, bits, bits + 1, 2 * bits, 0});
+  all.push_back(around_masks);
+  return all;
 }
 
 }  // namespace rastrum::parallel::test

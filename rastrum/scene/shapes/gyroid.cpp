@@ -131,7 +131,7 @@ Mesh gyroid(int cells, float periods) {
         unit(gradient(crossing(grid, edge), std::numbers::pi * double{periods})));
   });
 
-  mesh.indices = parallel::expand(
+  const auto indices = parallel::expand(
       exec, crossed_cells(exec, grid),
       [](const Cell& cell) { return 3 * kMarchingCubes[cell.inside].count; },
       [&](const Cell& cell, std::size_t j) {
@@ -142,6 +142,7 @@ Mesh gyroid(int cells, float periods) {
         return static_cast<std::uint32_t>(std::lower_bound(edges.begin(), edges.end(), id) -
                                           edges.begin());
       });
+  mesh.indices.assign(indices.begin(), indices.end());
   return mesh;
 }
 

@@ -1,0 +1,118 @@
+#include <rastrum/parallel/arena.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <string>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
+#include <rastrum/core/error.hpp>
+
+namespace rastrum::parallel {
+namespace {
+
+constexpr std::size_t kAlignment = 64;
+constexpr std::size_t kLargePage = std::size_t{1} << 21;
+/// Smaller blocks are malloc's, which is good at them.
+constexpr std::size_t kSmallestKept = std::size_t{1} << 16;
+
+// The address sanitizer is to see what is used after its release.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kKeeps = false;
+#elif defined(__has_feature)
+constexpr bool kKeeps = !__has_feature(address_sanitizer);
+#else
+constexpr bool kKeeps = true;
+#endif
+
+/// The size of the block that serves `bytes`: 4, 5, 6 or 7 times a power of two.
+std::size_t block_bytes(std::size_t bytes) {
+  const std::size_t step = bytes < kSmallestKept ? kAlignment : std::bit_floor(bytes) / 4;
+  return std::max(kAlignment, (bytes + step - 1) / step * step);
+}
+
+void* system_allocate(std::size_t bytes) noexcept {
+  const bool large = bytes >= 2 * kLargePage;
+  const std::size_t alignment = large ? kLargePage : kAlignment;
+  void* const data = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+#if defined(__linux__)
+  // Advice: what it is not taken for is slower and nothing else.
+  if (large && data != nullptr) static_cast<void>(madvise(data, bytes, MADV_HUGEPAGE));
+#endif
+  return data;
+}
+
+}  // namespace
+
+void* Arena::allocate(std::size_t bytes) {
+  const std::size_t size = bytes > SIZE_MAX / 2 ? bytes : block_bytes(bytes);
+  const std::lock_guard lock(mutex_);
+  for (std::size_t i = kept_.size(); i-- > 0;)
+    if (kept_[i].bytes == size) {
+      void* const data = kept_[i].data;
+      kept_.erase(kept_.begin() + static_cast<std::ptrdiff_t>(i));
+      kept_bytes_ -= size;
+      in_use_ += size;
+      peak_ = std::max(peak_, in_use_);
+      return data;
+    }
+  while (!kept_.empty() && in_use_ + size + kept_bytes_ > std::max(peak_, in_use_ + size))
+    drop_oldest();
+  void* const data = size > SIZE_MAX / 2 ? nullptr : system_allocate(size);
+  if (data == nullptr)
+    throw Error(Errc::out_of_memory, std::string("out of memory: ")
+                                         .append(std::to_string(bytes))
+                                         .append(" bytes of scratch were asked for"));
+  in_use_ += size;
+  peak_ = std::max(peak_, in_use_);
+  if (account_ != nullptr) account_->add(size);
+  return data;
+}
+
+void Arena::release(void* block, std::size_t bytes) noexcept {
+  const std::size_t size = block_bytes(bytes);
+  const std::lock_guard lock(mutex_);
+  in_use_ -= size;
+  if (kKeeps && size >= kSmallestKept) {
+    try {
+      kept_.push_back({block, size});
+      kept_bytes_ += size;
+      return;
+    } catch (const std::bad_alloc&) {
+      // No room to remember it: it goes back.
+    }
+  }
+  std::free(block);
+  if (account_ != nullptr) account_->remove(size);
+}
+
+void Arena::drop_oldest() noexcept {
+  const Block block = kept_.front();
+  kept_.erase(kept_.begin());
+  kept_bytes_ -= block.bytes;
+  std::free(block.data);
+  if (account_ != nullptr) account_->remove(block.bytes);
+}
+
+void Arena::trim() noexcept {
+  const std::lock_guard lock(mutex_);
+  while (!kept_.empty()) drop_oldest();
+}
+
+std::uint64_t Arena::in_use() const {
+  const std::lock_guard lock(mutex_);
+  return in_use_;
+}
+std::uint64_t Arena::held() const {
+  const std::lock_guard lock(mutex_);
+  return in_use_ + kept_bytes_;
+}
+std::uint64_t Arena::peak() const {
+  const std::lock_guard lock(mutex_);
+  return peak_;
+}
+
+}  // namespace rastrum::parallel

@@ -1,0 +1,108 @@
+// The words' memory: reused, bounded by what was out at one time, accounted.
+#include <algorithm>
+#include <cstdint>
+
+#include <tests/parallel/backends.hpp>
+
+#include <rastrum/core/error.hpp>
+
+namespace rastrum::parallel::test {
+namespace {
+
+#if defined(__has_feature)
+constexpr bool kKeeps = !__has_feature(address_sanitizer);
+#elif defined(__SANITIZE_ADDRESS__)
+constexpr bool kKeeps = false;
+#else
+constexpr bool kKeeps = true;
+#endif
+
+constexpr std::size_t kMiB = std::size_t{1} << 20;
+
+TEST(Arena, HandsOutAlignedBlocksOfTheirOwn) {
+  Arena arena;
+  std::vector<std::pair<std::uint8_t*, std::size_t>> blocks;
+  for (const std::size_t bytes : {std::size_t{0}, std::size_t{1}, std::size_t{63}, std::size_t{65},
+                                  std::size_t{100000}, 3 * kMiB, 5 * kMiB + 1}) {
+    auto* const p = static_cast<std::uint8_t*>(arena.allocate(bytes));
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(p) % 64, 0U);
+    std::fill_n(p, bytes, static_cast<std::uint8_t>(blocks.size() + 1));
+    blocks.emplace_back(p, bytes);
+  }
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    EXPECT_TRUE(std::all_of(blocks[i].first, blocks[i].first + blocks[i].second,
+                            [&](std::uint8_t b) { return b == i + 1; }));
+    arena.release(blocks[i].first, blocks[i].second);
+  }
+  EXPECT_EQ(arena.in_use(), 0U);
+}
+
+TEST(Arena, KeepsWhatComesBackAndNoMoreThanWasOut) {
+  if (!kKeeps) GTEST_SKIP() << "the address sanitizer is to see what is used after its release";
+  MemoryAccount account;
+  Arena arena(&account);
+  void* const a = arena.allocate(kMiB);
+  arena.release(a, kMiB);
+  EXPECT_EQ(arena.held(), kMiB);
+  EXPECT_EQ(arena.allocate(kMiB), a);
+  arena.release(a, kMiB);
+
+  // Blocks of all sizes, one at a time: the old ones have to go.
+  for (std::size_t bytes = kMiB; bytes <= 40 * kMiB; bytes = bytes / 4 * 5) {
+    arena.release(arena.allocate(bytes), bytes);
+    ASSERT_LE(arena.held(), arena.peak());
+    ASSERT_GE(arena.peak(), bytes);
+    ASSERT_LE(arena.peak(), bytes / 4 * 5 + 64);
+  }
+  EXPECT_EQ(account.peak(), arena.peak());
+  arena.trim();
+  EXPECT_EQ(arena.held(), 0U);
+}
+
+TEST(Arena, SaysWhatWasAskedForWhenThereIsNone) {
+  Arena arena;
+  for (const std::size_t bytes : {SIZE_MAX, SIZE_MAX / 2 - 5}) try {
+      static_cast<void>(arena.allocate(bytes));
+      FAIL() << "got " << bytes << " bytes";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), Errc::out_of_memory);
+      EXPECT_NE(std::string(error.what()).find(std::to_string(bytes)), std::string::npos);
+    }
+  EXPECT_EQ(arena.in_use(), 0U);
+}
+
+TEST(Arena, BuffersOutliveTheirBackend) {
+  MemoryAccount account;
+  Buffer<std::uint32_t> kept;
+  {
+    Threads exec(2, &account);
+    kept =
+        filter(exec, counting<std::uint32_t>(100000), [](std::uint32_t i) { return i % 2 == 0; });
+  }
+  EXPECT_GE(account.peak(), 50000U * sizeof(std::uint32_t));
+  for (std::uint32_t i = 0; i < 50000; ++i) ASSERT_EQ(kept[i], 2 * i);
+  kept = Buffer<std::uint32_t>();
+  account.restart_peak();
+  EXPECT_EQ(account.peak(), 0U);
+}
+
+TEST(Arena, FramesAfterTheFirstTakeNothingNew) {
+  if (!kKeeps) GTEST_SKIP() << "the address sanitizer is to see what is used after its release";
+  MemoryAccount account;
+  Threads exec(8, &account);
+  std::uint64_t after_the_first = 0;
+  for (int frame = 0; frame < 5; ++frame) {
+    auto keys = random_values<std::uint32_t>(300007, 1000);
+    auto values = keys;
+    sort_by_key(exec, keys, values);
+    const auto reduced = reduce_by_key(exec, keys, values);
+    const auto odd = filter(exec, reduced.keys, [](std::uint32_t k) { return k % 2 == 1; });
+    EXPECT_EQ(odd.size(), 500U);
+    if (frame == 0) after_the_first = account.peak();
+  }
+  EXPECT_GT(after_the_first, 300007U * 8);
+  EXPECT_EQ(account.peak(), after_the_first);
+}
+
+}  // namespace
+}  // namespace rastrum::parallel::test

@@ -1,0 +1,149 @@
+// expand_each and expand_masked_each against their definitions as nested loops: what is visited, in
+// which chunk, in which order, at the first walk and at the second.
+#include <array>
+#include <utility>
+
+#include <tests/parallel/backends.hpp>
+
+namespace rastrum::parallel::test {
+namespace {
+
+/// (segment, j), the results of an expansion in their order.
+using Results = std::vector<std::pair<std::size_t, std::size_t>>;
+
+constexpr std::array<std::size_t, 4> kPerChunk = {1, 7, 64, kBlock};
+
+/// Definition: chunk c of `walk` holds the results from c · per_chunk on, in order.
+template <class Plan, class Walk>
+void expect_chunks(const Plan& plan, const Results& expected, Walk&& walk) {
+  const std::size_t per_chunk = plan.per_chunk();
+  ASSERT_EQ(plan.size(), expected.size());
+  ASSERT_EQ(plan.chunks(), (expected.size() + per_chunk - 1) / per_chunk);
+  for (int repeat = 0; repeat < 2; ++repeat) {
+    Results seen(expected.size());
+    std::vector<std::size_t> visited(plan.chunks(), 0);  // race-free only with one thread a chunk
+    std::vector<std::uint8_t> too_many(plan.chunks(), 0);
+    walk([&](std::size_t c, std::size_t i, std::size_t j) {
+      const std::size_t k = plan.chunk_begin(c) + visited[c]++;
+      if (k < plan.chunk_end(c))
+        seen[k] = {i, j};
+      else
+        too_many[c] = 1;
+    });
+    EXPECT_EQ(seen, expected);
+    for (std::size_t c = 0; c < plan.chunks(); ++c) {
+      ASSERT_EQ(visited[c], plan.chunk_end(c) - plan.chunk_begin(c));
+      ASSERT_EQ(too_many[c], 0);
+    }
+  }
+}
+
+TEST(ExpandEach, VisitsEachResultInItsChunkInOrder) {
+  for (const auto& sizes : segment_sizes()) {
+    Results expected;
+    for (std::size_t i = 0; i < sizes.size(); ++i)
+      for (std::size_t j = 0; j < sizes[i]; ++j) expected.emplace_back(i, j);
+    const auto in = counting(sizes.size());
+    const auto size = [&](std::size_t i) { return sizes[i]; };
+    on_every_backend([&](auto& exec) {
+      for (const std::size_t per_chunk : kPerChunk) {
+        const Expansion plan(exec, in, size, per_chunk);
+        expect_chunks(plan, expected, [&](auto&& f) { expand_each(exec, plan, in, f); });
+      }
+      Results seen(expected.size());
+      std::vector<std::size_t> visited(expected.size() / kBlock + 1, 0);
+      expand_each(exec, in, size, [&](std::size_t c, std::size_t i, std::size_t j) {
+        seen[c * kBlock + visited[c]++] = {i, j};
+      });
+      EXPECT_EQ(seen, expected);
+    });
+  }
+}
+
+TEST(ExpandEach, RunsAreTheSegmentsSharesOfAChunk) {
+  for (const auto& sizes : segment_sizes())
+    on_every_backend([&](auto& exec) {
+      const auto in = counting(sizes.size());
+      const Expansion plan(
+          exec, in, [&](std::size_t i) { return sizes[i]; }, 100);
+      std::vector<Results> runs(plan.chunks());
+      std::vector<std::vector<std::size_t>> owners_of(plan.chunks());
+      expand_chunks(exec, plan, in, [&](const auto& chunk) {
+        EXPECT_EQ(chunk.begin(), chunk.index() * 100);
+        EXPECT_EQ(chunk.size(), chunk.end() - chunk.begin());
+        chunk.each_run([&](std::size_t i, std::size_t begin, std::size_t end) {
+          runs[chunk.index()].emplace_back(begin, end);
+          owners_of[chunk.index()].push_back(i);
+        });
+      });
+      // Joined where a chunk cut them, the runs are the segments that are not empty.
+      std::size_t segment = 0, reached = 0;
+      for (std::size_t c = 0; c < plan.chunks(); ++c)
+        for (std::size_t r = 0; r < runs[c].size(); ++r) {
+          if (reached == 0)
+            while (sizes[segment] == 0) ++segment;
+          ASSERT_EQ(owners_of[c][r], segment);
+          ASSERT_EQ(runs[c][r].first, reached);
+          ASSERT_GT(runs[c][r].second, reached);
+          ASSERT_LE(runs[c][r].second, sizes[segment]);
+          reached = runs[c][r].second;
+          if (reached == sizes[segment]) {
+            ++segment;
+            reached = 0;
+          }
+        }
+      EXPECT_EQ(reached, 0U);
+      for (; segment < sizes.size(); ++segment) ASSERT_EQ(sizes[segment], 0U);
+    });
+}
+
+template <class Width>
+class ExpandMaskedEach : public testing::Test {};
+template <int kBits>
+using Bits = std::integral_constant<int, kBits>;
+using Widths = testing::Types<Bits<8>, Bits<16>, Bits<32>, Bits<64>, Bits<128>, Bits<256>>;
+TYPED_TEST_SUITE(ExpandMaskedEach, Widths);
+
+TYPED_TEST(ExpandMaskedEach, VisitsEachResultInItsChunkInOrder) {
+  constexpr int kBits = TypeParam::value;
+  // How many of 8 elements hold, by a hash of segment and index: none, few, half, all.
+  for (const std::size_t density : {0U, 1U, 4U, 8U})
+    for (const auto& sizes : segment_sizes()) {
+      const auto size = [&](std::size_t i) { return sizes[i]; };
+      const auto holds = [&](std::size_t i, std::size_t j) {
+        return (i * 2654435761U + j * 40503U) / 16 % 8 < density;
+      };
+      Results expected;
+      for (std::size_t i = 0; i < sizes.size(); ++i)
+        for (std::size_t j = 0; j < sizes[i]; ++j)
+          if (holds(i, j)) expected.emplace_back(i, j);
+      const auto in = counting(sizes.size());
+      on_every_backend([&](auto& exec) {
+        for (const std::size_t per_chunk : kPerChunk) {
+          const MaskedExpansion<kBits> plan(exec, in, size, holds, per_chunk);
+          expect_chunks(plan, expected, [&](auto&& f) { expand_masked_each(exec, plan, in, f); });
+        }
+        Results seen(expected.size());
+        std::vector<std::size_t> visited(expected.size() / kBlock + 1, 0);
+        expand_masked_each<kBits>(exec, in, size, holds,
+                                  [&](std::size_t c, std::size_t i, std::size_t j) {
+                                    seen[c * kBlock + visited[c]++] = {i, j};
+                                  });
+        EXPECT_EQ(seen, expected);
+      });
+    }
+}
+
+TEST(MaskedExpansion, AsksThePredicateOncePerElement) {
+  on_every_backend([&](auto& exec) {
+    std::vector<int> asked(100000, 0);
+    const MaskedExpansion<64> plan(
+        exec, counting(1), [](std::size_t) { return 100000; },
+        [&](std::size_t, std::size_t j) { return ++asked[j] % 2 == 1; });
+    expand_masked_each(exec, plan, counting(1), [](std::size_t, std::size_t, std::size_t) {});
+    EXPECT_EQ(asked, std::vector<int>(100000, 1));
+  });
+}
+
+}  // namespace
+}  // namespace rastrum::parallel::test
