@@ -12,10 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
+#include <rastrum/parallel/scratch.hpp>
 #include <rastrum/raster/geometry.hpp>
 #include <rastrum/raster/kernels.hpp>
 #include <rastrum/raster/resolve.hpp>
@@ -116,7 +115,7 @@ struct FrameScratch {
 
   MemoryAccount& memory;
   parallel::Threads& exec;
-  tbb::enumerable_thread_specific<Worker> workers{[this] { return Worker(memory); }};
+  parallel::ScratchPool<Worker> workers{[this] { return Worker(memory); }};
   std::unique_ptr<Region> shared;
 };
 
@@ -228,8 +227,9 @@ void draw_tiles(Frame& frame, const TileGrid& grid, const IsEmpty& is_empty,
     }
     if (local) frame.shade(surface, rect, worker);
   });
-  for (Worker& worker : scratch.workers)
+  scratch.workers.for_each([&](Worker& worker) {
     if (worker.region) worker.region->collect(frame.counters);
+  });
 }
 
 }  // namespace rastrum::raster

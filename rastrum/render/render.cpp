@@ -142,7 +142,7 @@ Renderer::Renderer(RenderOptions options) : impl_(std::make_unique<Impl>(std::mo
                 "this machine cannot run " + std::string(name(impl_->isa)) + " instructions");
   // The reference is plain C++ on one thread, whatever else the machine could do.
   if (o.device == Device::threads && o.rasterizer != "reference")
-    impl_->threads = std::make_unique<parallel::Threads>(o.threads);
+    impl_->threads = std::make_unique<parallel::Threads>(o.threads, &impl_->memory);
   else
     impl_->isa = Isa::scalar;
   impl_->draw_frame = make_rasterizer(o, impl_->memory, impl_->threads.get());

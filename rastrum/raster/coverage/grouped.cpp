@@ -4,8 +4,6 @@
 #include <atomic>
 #include <vector>
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <rastrum/core/error.hpp>
 #include <rastrum/raster/coverage.hpp>
 #include <rastrum/raster/resolve.hpp>
@@ -189,7 +187,7 @@ class Grouped final : public Coverage {
 
   MemoryAccount& memory_;
   std::vector<Group> groups_;
-  tbb::enumerable_thread_specific<GroupScratch> fillers_{[this] { return GroupScratch(memory_); }};
+  parallel::ScratchPool<GroupScratch> fillers_{[this] { return GroupScratch(memory_); }};
 };
 
 std::span<const Group> Grouped::fill_groups(Frame& frame, const TileGrid& bins, std::uint64_t first,
