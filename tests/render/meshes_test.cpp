@@ -13,6 +13,7 @@
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/pieces.hpp"
+#include "tests/support/real_meshes.hpp"
 
 namespace rastrum::test {
 namespace {
@@ -66,30 +67,7 @@ TEST_P(Meshes, EqualOverTheFamilyAndTheOracle) {
   }
 }
 
-constexpr const char* kFiles[] = {
-    "small/teapot.obj",
-    "small/suzanne.obj",
-    "small/cow.obj",
-    "small/rocker-arm.obj",
-    "small/stanford-bunny.obj",
-    "small/spot/spot_quadrangulated.obj",
-    "small/42400-IDGH.stl",
-    "big/dragon_348k.ply",
-    "big/brain_iso126_1033k.ply",
-    "sponza/sponza.obj",
-    "alpha/smallpine/scene.gltf",
-    "depth/2CylinderEngine.glb",
-    "depth/ratboy_mohawk_ribbons_138k.ply",
-    "gltf/BoxInterleaved/BoxInterleaved.gltf",
-};
-
-INSTANTIATE_TEST_SUITE_P(Shared, Meshes, testing::ValuesIn(kFiles),
-                         [](const testing::TestParamInfo<const char*>& p) {
-                           std::string name = std::filesystem::path(p.param).stem().string();
-                           for (char& c : name)
-                             if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Shared, Meshes, testing::ValuesIn(kRealMeshes), name_of_file);
 
 }  // namespace
 }  // namespace rastrum::test

@@ -1,0 +1,167 @@
+// Every point of the coverage × visibility table draws the bits of the serial reference, each in a
+// test of its own, so that a broken row is named: on generated scenes, on meshes, in several
+// passes, with every number of threads, and on the real meshes up to 8192² (label `full`).
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/io/io.hpp>
+#include <rastrum/render/render.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/family.hpp"
+#include "tests/support/frame.hpp"
+#include "tests/support/real_meshes.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+class Table : public testing::TestWithParam<TablePoint> {
+ protected:
+  static RenderOptions serial(int width, int height) {
+    RenderOptions o;
+    o.width = width;
+    o.height = height;
+    o.device = Device::serial;
+    return o;
+  }
+  /// The point, on the n-th of all combinations of threads and instruction sets.
+  static RenderOptions point(int width, int height, int n) {
+    static const std::vector<Isa> isas = available_isas();
+    static constexpr int kThreads[] = {1, 2, 8};
+    RenderOptions o = serial(width, height);
+    o.device = Device::threads;
+    o.rasterizer = GetParam().rasterizer;
+    o.visibility = GetParam().visibility;
+    o.threads = kThreads[n % 3];
+    o.isa = isas[static_cast<std::size_t>(n / 3) % isas.size()];
+    return o;
+  }
+  static int combinations() { return 3 * static_cast<int>(available_isas().size()); }
+};
+
+TEST_P(Table, EqualsSerialOnGeneratedScenes) {
+  const ThreadsBeyondCores eight(8);
+  const int scenes = count_from_environment("RASTRUM_TABLE_SCENES", 120);
+  constexpr int kSizes[][2] = {{64, 64}, {37, 53}, {128, 96}, {1, 1}, {100, 20}};
+  int failures = 0;
+  for (int s = 0; s < static_cast<int>(std::size(kSizes)); ++s) {
+    const auto [width, height] = kSizes[s];
+    Renderer reference(serial(width, height));
+    std::vector<Renderer> renderers;
+    for (int n = 0; n < combinations(); ++n) renderers.emplace_back(point(width, height, n));
+    for (int i = 0; i < scenes / static_cast<int>(std::size(kSizes)); ++i) {
+      const auto seed = static_cast<std::uint64_t>(s * 1000000 + i);
+      const GeneratedScene g = generate(seed, width, height);
+      Renderer& renderer = renderers[static_cast<std::size_t>(i) % renderers.size()];
+      SCOPED_TRACE("scene " + std::to_string(seed) + " (" + g.kind + "), " +
+                   std::to_string(renderer.options().threads) + " threads, " +
+                   std::string(name(*renderer.options().isa)));
+      const SceneBinding binding(g.scene);
+      const Frame expected = draw(reference, binding.view(), g.camera);
+      const Frame actual = draw(renderer, binding.view(), g.camera);
+      EXPECT_TRUE(same_surfaces(actual, expected));
+      EXPECT_TRUE(same_counts(actual.stats, expected.stats));
+      EXPECT_TRUE(counts_add_up(actual));
+      EXPECT_TRUE(same_picture(actual, expected, *renderer.options().isa == Isa::scalar ? 0 : 1));
+      if (HasFailure() && ++failures == 3) FAIL() << "the rest was not drawn";
+    }
+  }
+}
+
+TEST_P(Table, EqualsSerialOnMeshes) {
+  const ThreadsBeyondCores eight(8);
+  for (const char* spec : {"torus_knot", "soup?count=4000", "boxes"}) {
+    const Scene scene = single(shapes::from_spec(spec));
+    const SceneBinding binding(scene);
+    const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+    for (const int size : {64, 200, 256}) {
+      SCOPED_TRACE(std::string(spec) + " at " + std::to_string(size));
+      Renderer reference(serial(size, size));
+      const Frame expected = draw(reference, binding.view(), camera);
+      EXPECT_GT(expected.stats.pixels_covered, 200U);
+      for (int n = 0; n < combinations(); ++n) {
+        Renderer renderer(point(size, size, n));
+        const Frame actual = draw(renderer, binding.view(), camera);
+        ASSERT_TRUE(same_surfaces(actual, expected)) << n;
+        ASSERT_TRUE(same_counts(actual.stats, expected.stats)) << n;
+      }
+    }
+  }
+}
+
+// Two runs of anything give the same bytes, colours included.
+TEST_P(Table, IsTheSameAtEveryRun) {
+  const ThreadsBeyondCores eight(8);
+  const GeneratedScene g = generate(12345, 128, 96);
+  const SceneBinding binding(g.scene);
+  Renderer renderer(point(128, 96, 2));
+  const Frame first = draw(renderer, binding.view(), g.camera);
+  for (int i = 0; i < 3; ++i) {
+    const Frame again = draw(renderer, binding.view(), g.camera);
+    ASSERT_TRUE(same_surfaces(again, first));
+    ASSERT_TRUE(same_picture(again, first, 0));
+    EXPECT_EQ(again.stats.counters, first.stats.counters);
+  }
+}
+
+/// Ids and depth only: at these sizes colours would take the memory of the rest.
+struct Surfaces {
+  Image<float> depth;
+  Image<std::int64_t> ids;
+};
+Surfaces surfaces(const RenderOptions& options, const SceneView& scene, const Camera& camera) {
+  Surfaces s{Image<float>(options.width, options.height),
+             Image<std::int64_t>(options.width, options.height)};
+  Targets targets;
+  targets.depth = s.depth.view();
+  targets.ids = s.ids.view();
+  Renderer(options).render(scene, camera, targets);
+  return s;
+}
+
+class RealMeshes : public testing::TestWithParam<const char*> {};
+
+// Hours on two cores, so only `./dev check --full` runs it (RASTRUM_FULL=1).
+TEST_P(RealMeshes, EqualSerialAtEverySizeAndPoint) {
+  if (count_from_environment("RASTRUM_FULL", 0) == 0) GTEST_SKIP() << "only with RASTRUM_FULL=1";
+  const std::filesystem::path file = shared_data(GetParam());
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+  const Scene scene = io::read_scene(file);
+  const SceneBinding binding(scene);
+  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+  constexpr int kSizes[][2] = {{1, 1}, {64, 64}, {1920, 1080}, {4096, 4096}, {8192, 8192}};
+  for (const auto& [width, height] : kSizes) {
+    if (width > count_from_environment("RASTRUM_FULL_SIZE", 8192)) continue;
+    RenderOptions options;
+    options.width = width;
+    options.height = height;
+    options.device = Device::serial;
+    const Surfaces expected = surfaces(options, binding.view(), camera);
+    options.device = Device::threads;
+    for (const TablePoint& point : table_points()) {
+      options.rasterizer = point.rasterizer;
+      options.visibility = point.visibility;
+      const Surfaces actual = surfaces(options, binding.view(), camera);
+      EXPECT_TRUE(std::ranges::equal(actual.ids.pixels(), expected.ids.pixels()))
+          << test_name(point) << " at " << width;
+      EXPECT_TRUE(std::ranges::equal(actual.depth.pixels(), expected.depth.pixels()))
+          << test_name(point) << " at " << width;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shared, RealMeshes, testing::ValuesIn(kRealMeshes), name_of_file);
+
+std::string name_of(const testing::TestParamInfo<TablePoint>& p) {
+  return test_name(p.param);
+}
+INSTANTIATE_TEST_SUITE_P(Points, Table, testing::ValuesIn(table_points()), name_of);
+
+}  // namespace
+}  // namespace rastrum::test
