@@ -15,6 +15,7 @@
 
 #include <rastrum/raster/color.hpp>
 #include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/depth_bounds.hpp>
 #include <rastrum/raster/kernels_simd.hpp>
 #include <rastrum/raster/lanes-inl.hpp>
 
@@ -59,8 +60,9 @@ HWY_INLINE bool is_small(const Piece& p) {
 }
 
 /// The blocks of a small piece: its three edges are set up in the lanes of one vector.
-template <class Add>
-HWY_INLINE void small_cover(const Piece& p, int bx0, int by0, int bx1, int by1, const Add& add) {
+template <class Hidden, class Add>
+HWY_INLINE void small_cover(const Piece& p, int bx0, int by0, int bx1, int by1,
+                            const Hidden& is_hidden, const Add& add) {
   const I32 d;
   const int px = bx0 * (kBlockSize * kSubpixels) + kHalfPixel;
   const int py = by0 * (kBlockSize * kSubpixels) + kHalfPixel;
@@ -79,7 +81,7 @@ HWY_INLINE void small_cover(const Piece& p, int bx0, int by0, int bx1, int by1, 
   for (int by = by0; by <= by1; ++by) {
     std::int32_t base[3] = {row_base[0], row_base[1], row_base[2]};
     for (int bx = bx0; bx <= bx1; ++bx) {
-      add(bx, by, cover_block(base, steps, b));
+      if (!is_hidden(bx, by)) add(bx, by, cover_block(base, steps, b));
       for (int i = 0; i < 3; ++i) base[i] += a[i] * kBlockSize;
     }
     for (int i = 0; i < 3; ++i) row_base[i] += b[i] * kBlockSize;
@@ -87,17 +89,18 @@ HWY_INLINE void small_cover(const Piece& p, int bx0, int by0, int bx1, int by1, 
 }
 
 std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
-                  std::size_t capacity) noexcept {
+                  std::size_t capacity, DepthBounds* bounds) noexcept {
   constexpr std::int64_t kClamp = std::int64_t{1} << 30;
   const I32 d;
   const bool cut = bin.x1 % kBlockSize != 0 || bin.y1 % kBlockSize != 0;
+  HiddenTest hidden(bounds, bin);
   std::size_t n = 0;
   for (; cursor < in.count && n + kBlocksPerBin <= capacity; ++cursor) {
     if (cursor + 6 < in.count) __builtin_prefetch(in.pieces + in.list[cursor + 6].piece);
     const std::uint32_t index = in.list[cursor].piece;
     const Piece& piece = in.pieces[index];
     const Rect box = sample_bounds(piece.x, piece.y, bin);
-    if (box.empty()) continue;
+    if (box.empty() || hidden.hides_piece(piece, box)) continue;
     const int bx0 = box.x0 / kBlockSize, by0 = box.y0 / kBlockSize;
     const int bx1 = (box.x1 - 1) / kBlockSize, by1 = (box.y1 - 1) / kBlockSize;
     const auto add = [&](int bx, int by, std::uint64_t mask) HWY_ATTR {
@@ -106,7 +109,9 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
       n += mask != 0;
     };
     if (is_small(piece)) {
-      small_cover(piece, bx0, by0, bx1, by1, add);
+      small_cover(
+          piece, bx0, by0, bx1, by1,
+          [&](int bx, int by) HWY_ATTR { return hidden.hides_block(piece, bx, by); }, add);
       continue;
     }
     std::int32_t b[3];
@@ -128,7 +133,8 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
     for (int by = by0; by <= by1; ++by) {
       std::int64_t base[3] = {row_base[0], row_base[1], row_base[2]};
       for (int bx = bx0; bx <= bx1; ++bx) {
-        if (base[0] + reach[0] >= 0 && base[1] + reach[1] >= 0 && base[2] + reach[2] >= 0) {
+        if (base[0] + reach[0] >= 0 && base[1] + reach[1] >= 0 && base[2] + reach[2] >= 0 &&
+            !hidden.hides_block(piece, bx, by)) {
           const std::int32_t clamped[3] = {
               static_cast<std::int32_t>(std::clamp(base[0], -kClamp, kClamp)),
               static_cast<std::int32_t>(std::clamp(base[1], -kClamp, kClamp)),
@@ -276,6 +282,17 @@ void store_opaque(const BlockColors& colors, std::uint64_t covered, Rgba8 backgr
     }
 }
 
+std::uint64_t lowest(const std::uint64_t* words) noexcept {
+  // Words stay below 2^63, so they compare as signed numbers do.
+  const I64 d;
+  const auto* in = reinterpret_cast<const std::int64_t*>(words);
+  auto least = hn::Load(d, in);
+  for (std::size_t i = kLanes64; i < 64; i += kLanes64) least = hn::Min(least, hn::Load(d, in + i));
+  HWY_ALIGN std::int64_t lanes[kLanes64];
+  hn::Store(least, d, lanes);
+  return static_cast<std::uint64_t>(*std::min_element(lanes, lanes + kLanes64));
+}
+
 std::uint64_t covered(const std::uint64_t* words) noexcept {
   const hn::RebindToUnsigned<I64> d;
   std::uint64_t mask = 0;
@@ -292,6 +309,7 @@ void fill(Kernels& table) {
   table.masks = masks;
   table.words = words;
   table.maximum = maximum;
+  table.lowest = lowest;
   table.covered = covered;
   table.store_opaque = store_opaque;
 }

@@ -75,6 +75,8 @@ class Emitter {
     return {worker_.blocks + count_, kBlockCapacity - count_};
   }
   void written(std::size_t n) { count_ += n; }
+  /// What the tile hides by now; null where everything is to be enumerated.
+  [[nodiscard]] DepthBounds* bounds() { return region_.bounds(); }
   /// Fragments of micro triangles, whose words are known (Visibility::takes_fragments).
   void fragments(Rect bin, std::span<const BinFragment> fragments);
 

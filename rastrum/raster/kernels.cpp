@@ -1,9 +1,11 @@
 #include <rastrum/raster/kernels.hpp>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 
 #include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/depth_bounds.hpp>
 #include <rastrum/raster/kernels_simd.hpp>
 #include <rastrum/raster/setup.hpp>
 
@@ -42,15 +44,17 @@ SetupOutput setup_scalar(const SetupInput& in, Piece* pieces, BinFragment*,
 }
 
 std::size_t cover_scalar(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
-                         std::size_t capacity) noexcept {
+                         std::size_t capacity, DepthBounds* bounds) noexcept {
+  HiddenTest hidden(bounds, bin);
   std::size_t n = 0;
   for (; cursor < in.count && n + kBlocksPerBin <= capacity; ++cursor) {
     const std::uint32_t index = in.list[cursor].piece;
     const Piece& piece = in.pieces[index];
     const Rect box = sample_bounds(piece.x, piece.y, bin);
-    if (box.empty()) continue;
+    if (box.empty() || hidden.hides_piece(piece, box)) continue;
     for (int by = box.y0 / kBlockSize; by <= (box.y1 - 1) / kBlockSize; ++by)
       for (int bx = box.x0 / kBlockSize; bx <= (box.x1 - 1) / kBlockSize; ++bx) {
+        if (hidden.hides_block(piece, bx, by)) continue;
         const std::uint64_t mask = cover_8x8(piece, bx, by) & samples_inside(bin, bx, by);
         if (mask == 0) continue;
         out[n++] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
@@ -88,6 +92,10 @@ void maximum_scalar(const Piece* pieces, const Block* blocks, std::size_t n,
   }
 }
 
+std::uint64_t lowest_scalar(const std::uint64_t* words) noexcept {
+  return *std::min_element(words, words + 64);
+}
+
 std::uint64_t covered_scalar(const std::uint64_t* words) noexcept {
   std::uint64_t mask = 0;
   for (int i = 0; i < 64; ++i) mask |= std::uint64_t{words[i] != 0} << i;
@@ -105,8 +113,9 @@ void store_opaque_scalar(const BlockColors& colors, std::uint64_t covered, Rgba8
 
 constexpr std::size_t kIsaCount = static_cast<std::size_t>(Isa::neon) + 1;
 
-constexpr Kernels kScalar{project_scalar, setup_scalar,   cover_scalar,   masks_scalar,
-                          words_scalar,   maximum_scalar, covered_scalar, store_opaque_scalar};
+constexpr Kernels kScalar{project_scalar, setup_scalar,   cover_scalar,
+                          masks_scalar,   words_scalar,   maximum_scalar,
+                          lowest_scalar,  covered_scalar, store_opaque_scalar};
 
 }  // namespace
 

@@ -3,6 +3,7 @@
 // entry comes from one Highway source and gives the same bits.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -59,6 +60,20 @@ inline constexpr int kBinSize = 64;
 inline constexpr int kBlocksPerBinRow = kBinSize / kBlockSize;
 inline constexpr int kBlocksPerBin = kBlocksPerBinRow * kBlocksPerBinRow;
 
+/// Hierarchical Z (Greene, "Hierarchical polygon tiling with coverage masks", 1996; papers 1 and 5
+/// name it as missing): what is surely hidden in a bin. A piece or block is left out where its
+/// highest depth is strictly below a bound, so that no pixel changes, ties included.
+struct DepthBounds {
+  float block[kBlocksPerBin] = {};  ///< no sample of the block is farther; 0: nothing is known
+  float bin = 0;                    ///< the lowest of them
+  std::uint64_t hidden_pieces = 0, hidden_blocks = 0;  ///< what was left out
+
+  void restart() {
+    std::fill_n(block, kBlocksPerBin, 0.0F);
+    bin = 0;
+  }
+};
+
 struct Kernels {
   /// n positions through the matrix, the divide, the viewport and the snapping.
   void (*project)(const Vec3* positions, std::size_t n, const Mat4& object_to_clip,
@@ -71,9 +86,9 @@ struct Kernels {
 
   /// Writes the blocks of `bin` that pieces list[cursor …] cover, with their masks (none empty),
   /// until the list ends or fewer than kBlocksPerBin places are left; returns how many, moves the
-  /// cursor.
+  /// cursor. `bounds` may be null.
   std::size_t (*cover)(const PieceList& pieces, std::size_t& cursor, Rect bin, Block* out,
-                       std::size_t capacity) noexcept;
+                       std::size_t capacity, DepthBounds* bounds) noexcept;
 
   /// Finds the masks of blocks whose mask is 0; they may be empty.
   void (*masks)(const Piece* pieces, Block* blocks, std::size_t n) noexcept;
@@ -84,6 +99,9 @@ struct Kernels {
   /// The atomic sink on words that the caller owns: maximum at every covered sample.
   void (*maximum)(const Piece* pieces, const Block* blocks, std::size_t n,
                   const SurfaceView& surface) noexcept;
+
+  /// The smallest of 64 words.
+  std::uint64_t (*lowest)(const std::uint64_t* words) noexcept;
 
   /// Which of 64 words are not 0.
   std::uint64_t (*covered)(const std::uint64_t* words) noexcept;

@@ -77,6 +77,20 @@ RASTRUM_HD inline float depth_at(const Piece& p, int x, int y) {
   return at_least_0 < 1 ? at_least_0 : 1.0F;
 }
 
+/// The largest depth of any sample of pixels [x0, x1) × [y0, y1): depth_at the corner that the
+/// plane's slopes choose. Rounding keeps the order of exact results, so every operation of depth_at
+/// is monotone in x and in y, and no other sample is nearer. Requires finite slopes.
+RASTRUM_HD inline float highest_depth(const Piece& p, Rect r) {
+  return depth_at(p, p.zx > 0 ? r.x1 - 1 : r.x0, p.zy > 0 ? r.y1 - 1 : r.y0);
+}
+RASTRUM_HD inline float lowest_depth(const Piece& p, Rect r) {
+  return depth_at(p, p.zx > 0 ? r.x0 : r.x1 - 1, p.zy > 0 ? r.y0 : r.y1 - 1);
+}
+/// Slopes that overflow make NaNs at samples level with vertex 0, for which no bound holds.
+RASTRUM_HD inline bool has_depth_bounds(const Piece& p) {
+  return p.zx - p.zx == 0 && p.zy - p.zy == 0;
+}
+
 RASTRUM_HD inline std::uint64_t make_word(float depth, std::uint64_t low) {
   return std::uint64_t{std::bit_cast<std::uint32_t>(depth)} << kIdBits | low;
 }

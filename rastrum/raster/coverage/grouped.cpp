@@ -172,7 +172,8 @@ class Grouped final : public Coverage {
             emitter.use(pieces.pieces);
             for (std::size_t cursor = 0; cursor < pieces.count;) {
               const std::span<Block> room = emitter.room();
-              emitter.written(frame.kernel.cover(pieces, cursor, rect, room.data(), room.size()));
+              emitter.written(frame.kernel.cover(pieces, cursor, rect, room.data(), room.size(),
+                                                 emitter.bounds()));
             }
             // Groups number their pieces from 0 each.
             emitter.flush();

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
+
+#include <rastrum/raster/setup.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -29,10 +32,35 @@ class AtomicRegion : public Region {
   bool done_ = false;
 };
 
+/// Keeps depth bounds beside the words, where the region is a bin (hierarchical Z).
 class OwnedAtomicRegion final : public AtomicRegion {
  public:
+  void begin(const RegionContext& context, const SurfaceView& surface, Rect rect,
+             std::size_t chunks) override {
+    AtomicRegion::begin(context, surface, rect, chunks);
+    // Who counts overdraw wants to see everything.
+    is_bounded_ = context.request->hierarchical_z && context.request->targets.overdraw.empty() &&
+                  rect.x0 % kBinSize == 0 && rect.y0 % kBinSize == 0 &&
+                  rect.x1 - rect.x0 <= kBinSize && rect.y1 - rect.y0 <= kBinSize;
+    if (!is_bounded_) return;
+    bounds_.restart();
+    std::fill_n(unseen_, kBlocksPerBin, 0U);
+    // Blocks outside of the image hide everything.
+    for (int i = 0; i < kBlocksPerBin; ++i)
+      if (i % kBlocksPerBinRow >= block_columns(rect) || i / kBlocksPerBinRow >= block_rows(rect))
+        bounds_.block[i] = 1;
+  }
+
   void blocks(std::size_t, const Piece* pieces, std::span<const Block> blocks) override {
     kernel_->maximum(pieces, blocks.data(), blocks.size(), surface_);
+    if (is_bounded_) raise_bounds(pieces, blocks);
+  }
+
+  DepthBounds* bounds() override { return is_bounded_ ? &bounds_ : nullptr; }
+
+  void collect(Counters& counters) override {
+    add_counter(counters, "hidden pieces", std::exchange(bounds_.hidden_pieces, 0));
+    add_counter(counters, "hidden blocks", std::exchange(bounds_.hidden_blocks, 0));
   }
 
   void fragments(std::span<const BinFragment> fragments) override {
@@ -48,6 +76,39 @@ class OwnedAtomicRegion final : public AtomicRegion {
       word = std::max(word, f.word);
     }
   }
+
+ private:
+  /// After so many samples of pieces that cover a block in part its words are looked at: one such
+  /// look costs about as much as drawing a dozen samples, and where a surface covers a pixel once
+  /// or twice there is nothing to find.
+  static constexpr std::uint32_t kLook = 160;
+
+  void raise_bounds(const Piece* pieces, std::span<const Block> blocks) {
+    bool any = false;
+    for (const Block& b : blocks) {
+      const int i = (b.by - surface_.by0) * kBlocksPerBinRow + (b.bx - surface_.bx0);
+      float& bound = bounds_.block[i];
+      if (b.mask == ~std::uint64_t{0}) {
+        const Piece& piece = pieces[b.piece];
+        const int x0 = b.bx * kBlockSize, y0 = b.by * kBlockSize;
+        if (has_depth_bounds(piece))
+          bound = std::max(bound, lowest_depth(piece, {x0, y0, x0 + kBlockSize, y0 + kBlockSize}));
+        any = true;
+        continue;
+      }
+      unseen_[i] += static_cast<std::uint32_t>(std::popcount(b.mask));
+      if (unseen_[i] < kLook) continue;
+      unseen_[i] = 0;
+      const std::uint64_t lowest = kernel_->lowest(surface_.block(b.bx, b.by));
+      bound = std::max(bound, std::bit_cast<float>(static_cast<std::uint32_t>(lowest >> kIdBits)));
+      any = true;
+    }
+    if (any) bounds_.bin = *std::min_element(bounds_.block, bounds_.block + kBlocksPerBin);
+  }
+
+  DepthBounds bounds_;
+  std::uint32_t unseen_[kBlocksPerBin] = {};
+  bool is_bounded_ = false;
 };
 
 class SharedAtomicRegion final : public AtomicRegion {

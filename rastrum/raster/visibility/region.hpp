@@ -57,6 +57,10 @@ class Region {
   /// No mask is empty and none reaches outside of the image.
   virtual void blocks(std::size_t chunk, const Piece* pieces, std::span<const Block> blocks) = 0;
 
+  /// What is hidden in the bin of an owned region, for coverages that ask before they enumerate;
+  /// null where the method does not know.
+  virtual DepthBounds* bounds() { return nullptr; }
+
   /// Fragments whose word is known already, of a bin that the region is; only for methods that
   /// `takes_fragments`.
   virtual void fragments(std::span<const BinFragment>) {}

@@ -1,0 +1,41 @@
+// The tests of hierarchical Z, for the scalar and the SIMD form of Kernels::cover.
+#pragma once
+
+#include <rastrum/raster/kernels.hpp>
+#include <rastrum/raster/setup.hpp>
+
+namespace rastrum::raster {
+
+/// Asks for one piece after the other in one bin.
+class HiddenTest {
+ public:
+  HiddenTest(DepthBounds* bounds, Rect bin) : bounds_(bounds), bin_(bin) {}
+
+  /// Whether no sample of the piece in `box` can be seen.
+  [[nodiscard]] bool hides_piece(const Piece& piece, Rect box) {
+    usable_ = bounds_ != nullptr && has_depth_bounds(piece);
+    if (!usable_ || !(bounds_->bin > 0) || !(highest_depth(piece, box) < bounds_->bin))
+      return false;
+    ++bounds_->hidden_pieces;
+    return true;
+  }
+  /// The same for a block; after hides_piece of its piece.
+  [[nodiscard]] bool hides_block(const Piece& piece, int bx, int by) {
+    if (!usable_) return false;
+    const int x0 = bx * kBlockSize, y0 = by * kBlockSize;
+    const float bound =
+        bounds_
+            ->block[(y0 - bin_.y0) / kBlockSize * kBlocksPerBinRow + (x0 - bin_.x0) / kBlockSize];
+    if (!(bound > 0) || !(highest_depth(piece, {x0, y0, x0 + kBlockSize, y0 + kBlockSize}) < bound))
+      return false;
+    ++bounds_->hidden_blocks;
+    return true;
+  }
+
+ private:
+  DepthBounds* bounds_;
+  Rect bin_;
+  bool usable_ = false;
+};
+
+}  // namespace rastrum::raster

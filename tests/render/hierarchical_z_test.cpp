@@ -1,0 +1,120 @@
+// Hierarchical Z changes no pixel, and rejects what is hidden.
+#include <algorithm>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/render/render.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/family.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+struct Surfaces {
+  Image<float> depth;
+  Image<std::int64_t> ids;
+  FrameStats stats;
+};
+
+// Without an overdraw target, which would switch the rejection off.
+Surfaces surfaces(Renderer& renderer, const SceneView& scene, const Camera& camera) {
+  const RenderOptions& o = renderer.options();
+  Surfaces s{Image<float>(o.width, o.height), Image<std::int64_t>(o.width, o.height), {}};
+  Targets targets;
+  targets.depth = s.depth.view();
+  targets.ids = s.ids.view();
+  s.stats = renderer.render(scene, camera, targets);
+  return s;
+}
+
+void expect_equal(const Surfaces& a, const Surfaces& b) {
+  EXPECT_TRUE(std::ranges::equal(a.ids.pixels(), b.ids.pixels()));
+  EXPECT_TRUE(std::ranges::equal(a.depth.pixels(), b.depth.pixels()));
+}
+
+std::uint64_t counter(const FrameStats& stats, const std::string& name) {
+  for (const auto& [n, value] : stats.counters)
+    if (n == name) return value;
+  return 0;
+}
+
+RenderOptions options(int width, int height, Device device) {
+  RenderOptions o;
+  o.width = width;
+  o.height = height;
+  o.device = device;
+  return o;
+}
+
+TEST(HierarchicalZ, ChangesNoPixelOfGeneratedScenes) {
+  constexpr int kW = 150, kH = 97;
+  Renderer serial(options(kW, kH, Device::serial));
+  for (const Isa isa : available_isas()) {
+    RenderOptions o = options(kW, kH, Device::threads);
+    o.isa = isa;
+    Renderer renderer(o);
+    for (std::uint64_t seed = 0; seed < 300 && !testing::Test::HasFailure(); ++seed) {
+      const GeneratedScene g = generate(seed, kW, kH);
+      SCOPED_TRACE(std::to_string(seed) + " " + g.kind);
+      const SceneBinding binding(g.scene);
+      expect_equal(surfaces(renderer, binding.view(), g.camera),
+                   surfaces(serial, binding.view(), g.camera));
+    }
+  }
+}
+
+// Layers of a grid of triangles, some at equal depths, some tilted, in random order.
+Scene stack(int layers, int cells, int size, std::uint64_t seed) {
+  Random r(seed);
+  Mesh mesh;
+  for (int layer = 0; layer < layers; ++layer) {
+    const double depth = r.integer(1, layers) / (layers + 1.0);
+    const double tilt = r.integer(0, 2) == 0 ? 0.2 / layers : 0.0;
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (int y = 0; y <= cells; ++y)
+      for (int x = 0; x <= cells; ++x)
+        mesh.positions.push_back(at_pixel(double(x) * size / cells, double(y) * size / cells,
+                                          depth + tilt * (x + y) / cells, size, size));
+    const auto at = [&](int x, int y) {
+      return first + static_cast<std::uint32_t>(y * (cells + 1) + x);
+    };
+    for (int y = 0; y < cells; ++y)
+      for (int x = 0; x < cells; ++x)
+        mesh.indices.insert(mesh.indices.end(), {at(x, y), at(x, y + 1), at(x + 1, y), at(x + 1, y),
+                                                 at(x, y + 1), at(x + 1, y + 1)});
+  }
+  return single(std::move(mesh));
+}
+
+TEST(HierarchicalZ, RejectsWhatIsHiddenAndNothingElse) {
+  constexpr int kSize = 256;
+  for (const int cells : {1, 3, 16, 40}) {
+    const Scene scene = stack(64, cells, kSize, static_cast<std::uint64_t>(cells));
+    const SceneBinding binding(scene);
+    const Camera camera = pixel_camera(kSize, kSize);
+    Renderer serial(options(kSize, kSize, Device::serial));
+    const Surfaces expected = surfaces(serial, binding.view(), camera);
+    for (const Isa isa : available_isas()) {
+      SCOPED_TRACE(std::to_string(cells) + " cells, " + std::string(name(isa)));
+      RenderOptions o = options(kSize, kSize, Device::threads);
+      o.isa = isa;
+      Renderer renderer(o);
+      const Surfaces with = surfaces(renderer, binding.view(), camera);
+      expect_equal(with, expected);
+      EXPECT_GT(counter(with.stats, "hidden pieces") + counter(with.stats, "hidden blocks"), 500U);
+      EXPECT_LT(with.stats.fragments, expected.stats.fragments / 2);
+      o.hierarchical_z = false;
+      Renderer plain(o);
+      const Surfaces without = surfaces(plain, binding.view(), camera);
+      expect_equal(without, expected);
+      EXPECT_EQ(without.stats.fragments, expected.stats.fragments);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rastrum::test
