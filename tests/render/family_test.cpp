@@ -87,7 +87,7 @@ TEST_P(Family, EqualsSerialAndTheOracle) {
   }
   // No kind of scene may have become invisible; a few scenes of a kind may be by chance.
   for (const auto& [kind, fragments] : fragments_of_kind) {
-    if (setup.width > 8 && scenes >= 20 * kSceneKinds) {
+    if (setup.width > 8 && scenes >= 60 * kSceneKinds) {
       EXPECT_GT(fragments, 0U) << kind;
     }
   }

@@ -1,22 +1,15 @@
 #include <rastrum/raster/shaders/lit.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include <rastrum/raster/interpolate.hpp>
 #include <rastrum/raster/shaders/lit_constants.hpp>
-#include <rastrum/raster/shaders/normals.hpp>
+#include <rastrum/raster/shaders/lit_triangle.hpp>
 
 namespace rastrum::raster {
 namespace {
-
-Vec3 world_normal(const LitDraw& draw, const Fragment& f) {
-  Vec3 corners[3];
-  corner_normals(draw.mesh, f.triangle, f.vertex, corners);
-  Vec3 n;
-  for (int c = 0; c < 3; ++c) n = n + corners[c] * static_cast<float>(f.weights.b[c]);
-  return normalize(draw.to_world(n));
-}
 
 Vec3 base_color(const MeshView& mesh, const Fragment& f) {
   if (mesh.colors.empty()) return kDefaultBase;
@@ -46,51 +39,101 @@ float wire(const Fragment& f) {
   return static_cast<float>(std::clamp(1.0 - nearest, 0.0, 1.0));
 }
 
+// The scalar twin of lit_simd.cpp: the same float32 operations in the same order, because where a
+// normal stands at a right angle to the view the last bit decides which side it faces.
+
+Vec3 unit(Vec3 v) {
+  const float square = dot(v, v);
+  return v * (square > 0 ? 1.0F / std::sqrt(square) : 1.0F);
+}
+float positive(float v) {
+  return v > 0 ? v : 0.0F;
+}
+
+struct SampleWeights {
+  float b[3];  ///< up to a common positive factor
+
+  SampleWeights(const LitTriangle& t, int x, int y) {
+    if (t.exact) {
+      const Weights w = weights_at(t.planes, x, y);
+      for (int c = 0; c < 3; ++c) b[c] = static_cast<float>(w.b[c]);
+      return;
+    }
+    const float dx = (static_cast<float>(x) + 0.5F) - t.x0;
+    const float dy = (static_cast<float>(y) + 0.5F) - t.y0;
+    const float l1 = t.p1 * dx + t.q1 * dy;
+    const float l2 = t.p2 * dx + t.q2 * dy;
+    b[0] = (1.0F - l1 - l2) * t.inv_w[0];
+    b[1] = l1 * t.inv_w[1];
+    b[2] = l2 * t.inv_w[2];
+  }
+  [[nodiscard]] Vec3 sum(const Vec3 (&v)[3]) const {
+    return v[0] * b[0] + v[1] * b[1] + v[2] * b[2];
+  }
+};
+
+Vec3 light(LitModel model, const ViewRays& rays, int x, int y, Vec3 normal, Vec3 base) {
+  if (model == LitModel::flat) return base;
+  Vec3 n = unit(normal);
+  if (model == LitModel::normal) return n * 0.5F + Vec3{0.5F, 0.5F, 0.5F};
+  const float px = static_cast<float>(x) + 0.5F;
+  const float py = static_cast<float>(y) + 0.5F;
+  const Vec3 v = unit(-(rays.d + rays.dx * px + rays.dy * py));
+  n = n * (dot(n, v) < 0 ? -1.0F : 1.0F);
+  const Vec3 lit = base * (kAmbient + kDiffuse * positive(dot(n, kLight)));
+  if (model == LitModel::lambert) return lit;
+  // (n·h)³² = ((n·u)² / u·u)¹⁶ with u = v + l: the half vector needs no square root.
+  const Vec3 u = v + kLight;
+  const float n_u = positive(dot(n, u));
+  float s = n_u * n_u / std::max(dot(u, u), 1e-20F);
+  for (int i = 0; i < 4; ++i) s *= s;
+  const float specular = s * kSpecular;
+  return lit + Vec3{specular, specular, specular};
+}
+
 class LitShader final : public BlockShader {
  public:
   LitShader(LitModel model, const LitScene& scene) : model_(model), scene_(scene) {}
 
   bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
              BlockColors& colors) const noexcept override {
+    if (model_ == LitModel::id || model_ == LitModel::wireframe) {
+      const FragmentShader scalar(
+          [this](const FrameGeometry&, const Fragment& f) { return color(f); });
+      return scalar.shade(frame, block, isa, colors);
+    }
     if (isa != Isa::scalar && shade_lit_simd(isa, model_, scene_, frame, block, colors))
       return true;
-    const FragmentShader scalar(
-        [this](const FrameGeometry&, const Fragment& f) { return color(f); });
-    return scalar.shade(frame, block, isa, colors);
+    shade_scalar(frame, block, colors);
+    return true;
   }
 
-  [[nodiscard]] std::size_t scratch_bytes() const noexcept override { return lit_scratch_bytes(); }
+  [[nodiscard]] std::size_t scratch_bytes() const noexcept override {
+    return sizeof(KeptTriangles);
+  }
 
  private:
   [[nodiscard]] Vec4 color(const Fragment& f) const {
-    const LitDraw& draw = scene_.draws[f.draw];
-    switch (model_) {
-      case LitModel::flat:
-        return opaque(base_color(draw.mesh, f));
-      case LitModel::normal:
-        return opaque(world_normal(draw, f) * 0.5F + Vec3{0.5F, 0.5F, 0.5F});
-      case LitModel::id:
-        return opaque(id_color(f.id));
-      case LitModel::wireframe: {
-        const float line = wire(f);
-        return opaque(base_color(draw.mesh, f) * (1 - line) + kWireColor * line);
-      }
-      case LitModel::lambert:
-      case LitModel::phong:
-        break;
+    if (model_ == LitModel::id) return opaque(id_color(f.id));
+    const float line = wire(f);
+    return opaque(base_color(scene_.draws[f.draw].mesh, f) * (1 - line) + kWireColor * line);
+  }
+
+  void shade_scalar(const FrameGeometry& frame, const VisibleBlock& block,
+                    BlockColors& colors) const {
+    KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
+    const bool wants_normals = model_ != LitModel::flat;
+    for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      const int x = block.x0 + i % kBlockSize, y = block.y0 + i / kBlockSize;
+      const LitTriangle& t = kept.find(scene_, frame, block.words[i] & kIdMask, wants_normals);
+      const SampleWeights w(t, x, y);
+      Vec3 base = kDefaultBase;
+      if (scene_.colored && model_ != LitModel::normal)
+        base = w.sum(t.color) * (1.0F / (w.b[0] + w.b[1] + w.b[2]));
+      const Vec3 normal = wants_normals ? w.sum(t.normal) : base;
+      colors.set(i, opaque(light(model_, scene_.rays, x, y, normal, base)));
     }
-    const ViewRays& rays = scene_.rays;
-    const float px = static_cast<float>(f.x) + 0.5F;
-    const float py = static_cast<float>(f.y) + 0.5F;
-    const Vec3 v = normalize(-(rays.d + rays.dx * px + rays.dy * py));
-    Vec3 n = world_normal(draw, f);
-    if (dot(n, v) < 0) n = -n;
-    const float diffuse = kAmbient + kDiffuse * std::max(dot(n, kLight), 0.0F);
-    const Vec3 lit = base_color(draw.mesh, f) * diffuse;
-    if (model_ == LitModel::lambert) return opaque(lit);
-    float s = std::max(dot(n, normalize(v + kLight)), 0.0F);
-    for (int i = 0; i < 5; ++i) s *= s;
-    return opaque(lit + Vec3{s, s, s} * kSpecular);
   }
 
   LitModel model_;

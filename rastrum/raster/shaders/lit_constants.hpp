@@ -28,9 +28,6 @@ constexpr Vec3 id_color(std::uint64_t id) {
   return {channel(0), channel(8), channel(16)};
 }
 
-/// Scratch of the SIMD form.
-[[nodiscard]] std::size_t lit_scratch_bytes() noexcept;
-
 /// The SIMD form (lit_simd.cpp); its colours are opaque. Returns false where it has none for
 /// `model`.
 bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
