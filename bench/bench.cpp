@@ -21,6 +21,12 @@ constexpr std::array kBenchmarks = {
     Benchmark{"paper1-table4", "bins and fine tiles of pineda", run_paper1_table4},
     Benchmark{"paper1-table5", "the threshold of small triangles", run_paper1_table5},
     Benchmark{"paper1-table6", "bins and fine tiles of tiled", run_paper1_table6},
+    Benchmark{"paper2", "large triangles: both schedules of binned, the load", run_paper2},
+    Benchmark{"paper5-table1", "frames a second by data set; GPU over CPU", run_paper5_table1},
+    Benchmark{"paper5-table3", "time, cost and phases by threads", run_paper5_table3},
+    Benchmark{"auto", "auto against every fixed rasterizer × visibility", run_auto},
+    Benchmark{"hashed", "hashed against sorted over depth complexity", run_hashed},
+    Benchmark{"hiz", "the gain of hierarchical Z over depth complexity", run_hiz},
 };
 
 void print_usage(std::FILE* out) {

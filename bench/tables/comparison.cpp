@@ -21,10 +21,11 @@ std::string megabytes(std::uint64_t bytes) {
 
 std::string text_of(const Published& p, const std::string& unit) {
   if (p.value <= 0) return "—";
-  // As printed: the shortest digits that give the value back.
-  char digits[32];
+  // As printed: the shortest digits that give the value back, but 5.0 ms and 22.0 MB.
   const auto shortest = [&](double v) {
-    return std::string(digits, std::to_chars(digits, digits + sizeof digits, v).ptr);
+    char digits[32];
+    std::string number(digits, std::to_chars(digits, digits + sizeof digits, v).ptr);
+    return unit == "ms" && number.find('.') == std::string::npos ? number + ".0" : number;
   };
   std::string text = shortest(p.value) + " " + unit;
   if (p.mb > 0) text.append(", ").append(shortest(p.mb)).append(" MB");

@@ -14,7 +14,7 @@ constexpr std::array kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                              "#e69f00", "#56b4e9", "#5b5b5b", "#8a6d00"};
 constexpr double kWidth = 960, kMargin = 16;
 constexpr double kLeft = 56, kRight = 10, kAbove = 24, kBelow = 40;  ///< around a panel's axes
-constexpr double kCharacter = 6.7;  ///< width of a character at 12 px, about
+constexpr double kCharacter = 7.3;  ///< width of a character at 12 px, about
 
 std::string escaped(const std::string& text) {
   std::string out;
