@@ -15,13 +15,25 @@ constexpr std::array kBenchmarks = {
     Benchmark{"peers", "frames beside OpenGL (Mesa llvmpipe) and Embree, interleaved", run_peers},
     Benchmark{"peers-check", "coverage, fragment counts and phong against OpenGL's",
               run_peers_check},
+    Benchmark{"paper1-table1", "immediate Pineda by hardware", run_paper1_table1},
+    Benchmark{"paper1-table2", "time and memory by share of the triangles", run_paper1_table2},
+    Benchmark{"paper1-table3", "time by size of the picture", run_paper1_table3},
+    Benchmark{"paper1-table4", "bins and fine tiles of pineda", run_paper1_table4},
+    Benchmark{"paper1-table5", "the threshold of small triangles", run_paper1_table5},
+    Benchmark{"paper1-table6", "bins and fine tiles of tiled", run_paper1_table6},
+    Benchmark{"paper2", "large triangles: both schedules of binned, the load", run_paper2},
+    Benchmark{"paper5-table1", "frames a second by data set; GPU over CPU", run_paper5_table1},
+    Benchmark{"paper5-table3", "time, cost and phases by threads", run_paper5_table3},
+    Benchmark{"auto", "auto against every fixed rasterizer × visibility", run_auto},
+    Benchmark{"hashed", "hashed against sorted over depth complexity", run_hashed},
+    Benchmark{"hiz", "the gain of hierarchical Z over depth complexity", run_hiz},
 };
 
 void print_usage(std::FILE* out) {
   std::fputs("usage: rastrum bench NAME [options]; `rastrum bench NAME --help` lists them\n\n",
              out);
   for (const Benchmark& b : kBenchmarks)
-    std::fprintf(out, "  %-12.*s %.*s\n", static_cast<int>(b.name.size()), b.name.data(),
+    std::fprintf(out, "  %-14.*s %.*s\n", static_cast<int>(b.name.size()), b.name.data(),
                  static_cast<int>(b.description.size()), b.description.data());
 }
 

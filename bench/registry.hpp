@@ -14,9 +14,21 @@ struct Benchmark {
 
 [[nodiscard]] std::span<const Benchmark> benchmarks();
 
-// The rows' functions, each in the file of its name.
+// The rows' functions, each in the file of its name (the tables of a paper share one).
 int run_machine(std::span<const std::string_view> options);
 int run_peers(std::span<const std::string_view> options);
 int run_peers_check(std::span<const std::string_view> options);
+int run_paper1_table1(std::span<const std::string_view> options);
+int run_paper1_table2(std::span<const std::string_view> options);
+int run_paper1_table3(std::span<const std::string_view> options);
+int run_paper1_table4(std::span<const std::string_view> options);
+int run_paper1_table5(std::span<const std::string_view> options);
+int run_paper1_table6(std::span<const std::string_view> options);
+int run_paper2(std::span<const std::string_view> options);
+int run_paper5_table1(std::span<const std::string_view> options);
+int run_paper5_table3(std::span<const std::string_view> options);
+int run_auto(std::span<const std::string_view> options);
+int run_hashed(std::span<const std::string_view> options);
+int run_hiz(std::span<const std::string_view> options);
 
 }  // namespace rastrum::bench

@@ -22,27 +22,6 @@ std::filesystem::path data_file(std::string_view name) {
   return std::filesystem::path(shared != nullptr ? shared : RASTRUM_SHARED_DIR) / "data" / name;
 }
 
-/// The geometry of a scene's instances as one mesh, in order of submission.
-Mesh flatten(const Scene& scene) {
-  Mesh flat;
-  for (const Instance& instance : scene.instances) {
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    const Mat4 to_world = static_cast<Mat4>(instance.object_to_world);
-    if (flat.positions.size() + mesh.positions.size() > std::numeric_limits<std::uint32_t>::max())
-      throw Error(Errc::unsupported, "the scene has more than 2^32 vertices");
-    const auto base = static_cast<std::uint32_t>(flat.positions.size());
-    for (const Vec3 p : mesh.positions) {
-      const Vec4 q = transform_point(to_world, p);
-      flat.positions.push_back({q.x, q.y, q.z});
-    }
-    const std::size_t corners = mesh.triangle_count() * 3;
-    for (std::size_t i = 0; i < corners; ++i)
-      flat.indices.push_back(
-          base + (mesh.indices.empty() ? static_cast<std::uint32_t>(i) : mesh.indices[i]));
-  }
-  return flat;
-}
-
 Mesh geometry_of(const SceneInfo& scene) {
   if (!scene.file.empty()) return flatten(io::read_scene(data_file(scene.file)));
   Scene one;
@@ -87,6 +66,26 @@ const SceneInfo& scene_by_name(std::string_view name) {
     }
   throw Error(Errc::invalid_argument,
               "there is no scene \"" + std::string(name) + "\"; known are " + known);
+}
+
+Mesh flatten(const Scene& scene) {
+  Mesh flat;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    const Mat4 to_world = static_cast<Mat4>(instance.object_to_world);
+    if (flat.positions.size() + mesh.positions.size() > std::numeric_limits<std::uint32_t>::max())
+      throw Error(Errc::unsupported, "the scene has more than 2^32 vertices");
+    const auto base = static_cast<std::uint32_t>(flat.positions.size());
+    for (const Vec3 p : mesh.positions) {
+      const Vec4 q = transform_point(to_world, p);
+      flat.positions.push_back({q.x, q.y, q.z});
+    }
+    const std::size_t corners = mesh.triangle_count() * 3;
+    for (std::size_t i = 0; i < corners; ++i)
+      flat.indices.push_back(
+          base + (mesh.indices.empty() ? static_cast<std::uint32_t>(i) : mesh.indices[i]));
+  }
+  return flat;
 }
 
 bool available(const SceneInfo& scene) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <rastrum/scene/mesh.hpp>
+#include <rastrum/scene/scene.hpp>
 
 namespace rastrum::bench {
 
@@ -24,6 +25,10 @@ struct SceneInfo {
 [[nodiscard]] const std::vector<SceneInfo>& procedural_scenes();
 /// Throws Error{invalid_argument} that lists the names.
 [[nodiscard]] const SceneInfo& scene_by_name(std::string_view name);
+
+/// The geometry of a scene's instances as one mesh, in order of submission, without attributes.
+/// Throws Error{unsupported} beyond 2³² vertices.
+[[nodiscard]] Mesh flatten(const Scene& scene);
 
 /// Whether what the scene needs is here: always for shapes.
 [[nodiscard]] bool available(const SceneInfo& scene);

@@ -31,6 +31,7 @@ class Selection {
 
   /// Other defaults than the constructor's.
   void set_sizes(std::vector<Size> sizes) { sizes_ = std::move(sizes); }
+  void set_scenes(std::vector<SceneInfo> scenes) { scenes_ = std::move(scenes); }
 
   [[nodiscard]] const std::vector<SceneInfo>& scenes() const { return scenes_; }
   [[nodiscard]] const std::vector<Size>& sizes() const { return sizes_; }

@@ -1,0 +1,237 @@
+#include "contest.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/core/image.hpp>
+#include <rastrum/raster/transform_source.hpp>
+
+namespace rastrum::bench {
+namespace {
+
+using raster::BlockColors, raster::FrameGeometry, raster::VisibleBlock;
+
+/// A colour of a word alone: no attribute is fetched, so that frames show what coverage and
+/// visibility cost.
+template <class Color>
+class WordShader final : public raster::BlockShader {
+ public:
+  explicit WordShader(Color color) : color_(color) {}
+  bool shade(const FrameGeometry&, const VisibleBlock& block, Isa,
+             BlockColors& colors) const noexcept override {
+    for (int i = 0; i < 64; ++i) {
+      const Vec3 c = color_(block.words[i]);
+      colors.r[i] = c.x;
+      colors.g[i] = c.y;
+      colors.b[i] = c.z;
+    }
+    return true;
+  }
+
+ private:
+  Color color_;
+};
+
+const raster::BlockShader& depth_cubed() {
+  static const WordShader shader([](std::uint64_t word) {
+    const auto d = std::bit_cast<float>(static_cast<std::uint32_t>(word >> raster::kIdBits));
+    const float grey = d * d * d;
+    return Vec3{grey, grey, grey};
+  });
+  return shader;
+}
+
+std::uint64_t hash_of(const Image<std::int64_t>& ids) {
+  // FNV-1a over whole ids.
+  std::uint64_t h = 0xcbf29ce484222325U;
+  for (const std::int64_t id : ids.pixels())
+    h = (h ^ static_cast<std::uint64_t>(id)) * 0x100000001b3U;
+  return h;
+}
+
+/// Whether the frame was drawn by what was asked for: an option that a build does not know yet
+/// would otherwise be measured under a false name.
+std::string absent(const RenderOptions& wanted, const FrameStats& stats) {
+  const auto differs = [](const std::string& want, const std::string& got) {
+    return want != "auto" && want != got;
+  };
+  return differs(wanted.rasterizer, stats.rasterizer) ||
+                 differs(wanted.visibility, stats.visibility)
+             ? "absent"
+             : "";
+}
+
+std::string reason(const Error& e) {
+  if (e.code() != Errc::invalid_argument) return e.what();
+  const std::string_view what = e.what();
+  return what.find("is called") != std::string_view::npos ? "absent" : std::string(what);
+}
+
+/// Runs f; returns why it could not.
+template <class F>
+std::string attempt(F&& f) {
+  try {
+    return f();
+  } catch (const Error& e) {
+    return reason(e);
+  } catch (const std::bad_alloc&) {
+    return "out of memory";
+  }
+}
+
+void add_stages(const FrameStats& stats, std::map<std::string, std::vector<double>>& samples) {
+  std::map<std::string, double> frame;
+  for (const StageTime& s : stats.stages) frame[s.name] += s.end_ms - s.begin_ms;
+  for (const auto& [name, ms] : frame) samples[name].push_back(ms);
+}
+
+std::vector<std::pair<std::string, double>> medians(
+    const FrameStats& order, const std::map<std::string, std::vector<double>>& samples) {
+  std::vector<std::pair<std::string, double>> out;
+  for (const StageTime& s : order.stages)
+    if (std::ranges::find(out, s.name, &std::pair<std::string, double>::first) == out.end())
+      if (const auto found = samples.find(s.name); found != samples.end())
+        out.emplace_back(s.name, median(found->second));
+  return out;
+}
+
+/// An entrant whose picture is right.
+struct Racer {
+  std::size_t index;
+  std::unique_ptr<Renderer> renderer;
+  double first_ms = 0;
+  std::map<std::string, std::vector<double>> stages;
+};
+
+}  // namespace
+
+const raster::BlockShader& triangle_colors() {
+  static const WordShader shader([](std::uint64_t word) {
+    std::uint64_t h = raster::id_of_word(word) * 0x9e3779b97f4a7c15U;
+    const auto channel = [&] {
+      h = h << 8 | h >> 56;
+      return static_cast<float>(h & 255U) / 255.0F;
+    };
+    const float r = channel(), g = channel(), b = channel();
+    return Vec3{r, g, b};
+  });
+  return shader;
+}
+
+std::uint64_t Result::counter(std::string_view counter_name) const {
+  for (const auto& [name_, value] : stats.counters)
+    if (name_ == counter_name) return value;
+  return 0;
+}
+
+FrameStats draw(Renderer& renderer, const Subject& subject, const Targets& targets) {
+  const Mat4d to_clip = world_to_clip(subject.camera, subject.width, subject.height);
+  const raster::TransformSource source(subject.mesh.positions, to_clip);
+  raster::Draw draw;
+  draw.source = &source;
+  draw.vertex_count = subject.mesh.positions.size();
+  draw.indices = subject.mesh.indices;
+  draw.triangle_count = subject.mesh.triangle_count();
+  const raster::BlockShader& shader = subject.shader != nullptr ? *subject.shader : depth_cubed();
+  return renderer.draw({&draw, 1}, shader, nullptr, targets);
+}
+
+Fingerprint fingerprint(const Subject& subject, RenderOptions options) {
+  options.width = subject.width;
+  options.height = subject.height;
+  Renderer renderer(options);
+  Image<std::int64_t> ids(subject.width, subject.height);
+  Targets targets;
+  targets.ids = ids.view();
+  FrameStats stats = draw(renderer, subject, targets);
+  return {hash_of(ids), std::move(stats)};
+}
+
+std::vector<Result> contest(const Subject& subject, std::span<const Entrant> entrants,
+                            const Plan& plan, double hopeless) {
+  std::vector<Result> results(entrants.size());
+  std::vector<Racer> racers;
+  std::optional<std::uint64_t> right;
+  for (std::size_t i = 0; i < entrants.size(); ++i) {
+    RenderOptions options = entrants[i].options;
+    options.width = subject.width;
+    options.height = subject.height;
+    Result& result = results[i];
+    result.name = entrants[i].name;
+    result.not_run = attempt([&]() -> std::string {
+      const Fingerprint print = fingerprint(subject, options);
+      if (std::string why = absent(options, print.stats); !why.empty()) return why;
+      if (!right) {
+        RenderOptions plain;
+        plain.threads = options.threads;
+        right = fingerprint(subject, plain).ids;
+      }
+      result.wrong = print.ids != *right;
+      result.stats = print.stats;
+      return result.wrong ? "WRONG PICTURE" : "";
+    });
+    if (result.ran())
+      racers.push_back({i, std::make_unique<Renderer>(options), result.stats.frame_ms, {}});
+  }
+
+  Image<Rgba8> picture(subject.width, subject.height);
+  Targets targets;
+  targets.color8 = picture.view();
+  double fastest_ms = 1e300;
+  for (const Racer& r : racers) fastest_ms = std::min(fastest_ms, r.first_ms);
+  std::vector<Contender> contenders;
+  for (Racer& r : racers) {
+    if (r.first_ms > hopeless * fastest_ms) {
+      results[r.index].timing = {results[r.index].name, {r.first_ms}};
+      r.renderer.reset();
+      continue;
+    }
+    contenders.push_back({std::to_string(r.index), [&r, &subject, &targets, &results] {
+                            Result& result = results[r.index];
+                            if (!result.ran()) return;
+                            result.not_run = attempt([&]() -> std::string {
+                              const std::uint64_t peak = result.stats.peak_bytes;
+                              result.stats = draw(*r.renderer, subject, targets);
+                              result.stats.peak_bytes = std::max(peak, result.stats.peak_bytes);
+                              add_stages(result.stats, r.stages);
+                              return "";
+                            });
+                          }});
+  }
+  for (Timing& timing : measure_interleaved(contenders, plan)) {
+    const std::size_t i = std::stoul(timing.name);
+    results[i].timing = std::move(timing);
+    results[i].timing.name = results[i].name;
+  }
+  for (const Racer& r : racers)
+    results[r.index].stages_ms = medians(results[r.index].stats, r.stages);
+  return results;
+}
+
+Measured measured_ms(const Result& result, const Subject& subject, bool memory) {
+  Measured m;
+  m.not_run = result.not_run;
+  if (!result.ran()) return m;
+  m.value = result.timing.median_ms();
+  m.spread = result.timing.spread();
+  m.samples_ms = result.timing.samples_ms;
+  m.scratch_bytes = result.stats.peak_bytes;
+  if (memory)
+    m.all_bytes = m.scratch_bytes + subject.mesh.positions.size_bytes() +
+                  subject.mesh.indices.size_bytes() +
+                  static_cast<std::uint64_t>(subject.width) *
+                      static_cast<std::uint64_t>(subject.height) * sizeof(Rgba8);
+  return m;
+}
+
+Measured measured_fps(const Result& result, const Subject& subject) {
+  Measured m = measured_ms(result, subject, false);
+  if (result.ran()) m.value = 1000 / m.value;
+  return m;
+}
+
+}  // namespace rastrum::bench

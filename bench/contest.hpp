@@ -1,0 +1,75 @@
+// Rasterizers against each other on one picture: their ids are compared before anything is timed,
+// then they take turns (measure.hpp).
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <rastrum/raster/geometry.hpp>
+#include <rastrum/render/render.hpp>
+#include <rastrum/scene/camera.hpp>
+#include <rastrum/scene/mesh.hpp>
+
+#include "measure.hpp"
+#include "tables/comparison.hpp"
+
+namespace rastrum::bench {
+
+/// What all draw. The mesh must outlive it.
+struct Subject {
+  MeshView mesh;
+  Camera camera;
+  int width = 0, height = 0;
+  /// A frame ends with 8-bit colours by this shader; null: grey = depth³, as paper 1 shades.
+  const raster::BlockShader* shader = nullptr;
+};
+
+/// One colour a triangle, hashed from its id: what paper 5 draws, and cheap.
+[[nodiscard]] const raster::BlockShader& triangle_colors();
+
+struct Entrant {
+  std::string name;
+  RenderOptions options;  ///< the size is the subject's
+};
+
+struct Result {
+  std::string name;
+  std::string not_run;  ///< why; empty: it ran
+  bool wrong = false;   ///< its ids differ from the default's: `not_run` says so
+  FrameStats stats;     ///< of a frame in the middle of the run
+  Timing timing;
+  std::vector<std::pair<std::string, double>> stages_ms;  ///< medians; equal names are added up
+
+  [[nodiscard]] bool ran() const { return not_run.empty(); }
+  [[nodiscard]] double median_ms() const { return ran() ? timing.median_ms() : 0; }
+  /// The counter of that name, or 0.
+  [[nodiscard]] std::uint64_t counter(std::string_view counter_name) const;
+};
+
+/// Draws one frame of `subject`.
+FrameStats draw(Renderer& renderer, const Subject& subject, const Targets& targets);
+
+/// A hash of the ids of `subject` drawn with `options`, and that frame's statistics.
+struct Fingerprint {
+  std::uint64_t ids = 0;
+  FrameStats stats;
+};
+[[nodiscard]] Fingerprint fingerprint(const Subject& subject, RenderOptions options);
+
+/// A result for each entrant, in order. Each first draws the subject alone; where its ids are not
+/// those of the default (rasterizer and visibility `auto`) it is not timed. An entrant whose names
+/// or sizes this build has not, or that runs out of memory, is not run and says why.
+/// Entrants whose checked frame took longer than `hopeless` times the fastest one's are not timed
+/// further: that frame is their only sample.
+[[nodiscard]] std::vector<Result> contest(const Subject& subject, std::span<const Entrant> entrants,
+                                          const Plan& plan, double hopeless = 1e9);
+
+/// A result as a figure in ms; with `memory` the bytes of mesh, picture and scratch beside it.
+[[nodiscard]] Measured measured_ms(const Result& result, const Subject& subject, bool memory);
+/// The same in frames a second.
+[[nodiscard]] Measured measured_fps(const Result& result, const Subject& subject);
+
+}  // namespace rastrum::bench

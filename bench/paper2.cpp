@@ -1,0 +1,142 @@
+// `rastrum bench paper2`: large triangles by both schedules of `binned` beside paper 2, section 3,
+// and how evenly 64 simulated workers would be loaded (the project's goal: at most 1.1 × the mean).
+#include <vector>
+
+#include "contest.hpp"
+#include "papers/paper2.hpp"
+#include "peers/compare.hpp"
+#include "registry.hpp"
+#include "report.hpp"
+#include "stand_ins.hpp"
+#include "tables/comparison.hpp"
+#include "tables/options.hpp"
+
+namespace rastrum::bench {
+namespace {
+
+constexpr int kWidth = 1920, kHeight = 1080;
+constexpr double kEvenLoad = 1.1;
+/// The counters of the load that the rasterizer simulates.
+constexpr std::string_view kMost = "most loaded of 64 workers", kMean = "mean of 64 workers";
+
+struct Scene {
+  const char* name;
+  int count;
+  double least, most;  ///< fragments of a triangle
+  int published;       ///< the paper's column, or −1
+};
+/// Paper 2 names ranges only; 400 is ours. Very large is up to half the picture.
+constexpr std::array<Scene, 4> kScenes{
+    {{"8 large", 8, paper2::kLargeFragments, paper2::kVeryLargeFragments, 0},
+     {"40 large", 40, paper2::kLargeFragments, paper2::kVeryLargeFragments, 1},
+     {"400 large", 400, paper2::kLargeFragments, paper2::kVeryLargeFragments, -1},
+     {"40 very large", 40, paper2::kVeryLargeFragments, 1e9, 2}}};
+
+/// Where the schedules' figures go among the paper's rows.
+enum PaperRow : std::size_t { kPersistent, kStoreBins, kRasterizeBins, kBoth };
+
+/// A stage of the frame as a figure of its own.
+Measured stage(const Result& result, std::string_view name) {
+  Measured m;
+  m.not_run = result.not_run;
+  for (const auto& [stage_name, ms] : result.stages_ms)
+    if (stage_name == name) m.value = ms;
+  return m;
+}
+
+void add_load(const Result& result, const char* scene, Grid& grid, nlohmann::json& figures) {
+  std::vector<std::string> row{scene, result.name};
+  const std::uint64_t most = result.counter(kMost), mean = result.counter(kMean);
+  if (!result.ran() || mean == 0) {
+    row.push_back(result.ran() ? "not counted" : "not run (" + result.not_run + ")");
+  } else {
+    const double ratio = static_cast<double>(most) / static_cast<double>(mean);
+    row.insert(row.end(), {std::to_string(most), std::to_string(mean), significant(ratio, 4),
+                           ratio <= kEvenLoad ? "yes" : "NO"});
+    figures.push_back({{"table", "load"},
+                       {"row", scene},
+                       {"schedule", result.name},
+                       {"most", most},
+                       {"mean", mean}});
+  }
+  grid.rows.push_back(std::move(row));
+}
+
+}  // namespace
+
+int run_paper2(std::span<const std::string_view> arguments) {
+  TableOptions options;
+  OptionParser parser("paper2", "Large triangles by both schedules of `binned` (paper 2).");
+  options.add_to(parser, false);
+  if (const auto status = parser.parse(arguments)) return *status;
+  options.resolve();
+  const int width = options.size(kWidth), height = options.size(kHeight);
+  const double scale = static_cast<double>(width) * height / (kWidth * kHeight);
+
+  Document document{"paper2", "Paper 2, section 3: large triangles"};
+  if (options.quick) document.notes.push_back(options.quick_note());
+  document.notes.push_back(
+      "Random triangles of 4,000 to 40,000 px (large) and of more, up to half the picture (very "
+      "large), at " +
+      std::to_string(width) + " × " + std::to_string(height) +
+      ", one colour each. The paper tells neither its picture's size nor its triangles. Ours: the "
+      "whole frame from vertices to finished pixels, and of it the two stages of the same name.");
+  Comparison c{"Time by schedule", "ms", "paper, GTX 1070 Ti", options.here(), "schedule", {}, {}};
+  for (const auto& row : paper2::kTable) {
+    c.rows.push_back(row_of(row));
+    Comparison::Row& r = c.rows.back();
+    const std::vector<Published> columns = std::move(r.published);
+    r.published.clear();
+    for (const Scene& s : kScenes)
+      r.published.push_back(s.published < 0 ? Published{}
+                                            : columns[static_cast<std::size_t>(s.published)]);
+    r.ours.assign(kScenes.size(), {});
+  }
+  c.rows.push_back({"auto", "", {}, std::vector<Measured>(kScenes.size())});
+  Grid load{"Coverage work of 64 simulated workers",
+            {"scene", "schedule", "most", "mean", "most ÷ mean", "≤ 1.1"},
+            {}};
+  Grid phases{"Stages of a frame, ms", {"scene", "schedule", "stages"}, {}};
+
+  std::vector<Entrant> entrants;
+  for (const auto schedule : {raster::Schedule::persistent, raster::Schedule::two_stage}) {
+    raster::Tuning tuning;
+    tuning.schedule = schedule;
+    entrants.push_back(entrant(options, "binned", "auto", tuning));
+    entrants.back().name = schedule == raster::Schedule::persistent ? "persistent" : "two-stage";
+  }
+  entrants.push_back(entrant(options, "auto"));
+  bool right = true;
+  for (std::size_t s = 0; s < kScenes.size(); ++s) {
+    const Scene& scene = kScenes[s];
+    progress(scene.name);
+    c.columns.emplace_back(scene.name);
+    const Mesh mesh =
+        sized_triangles(width, height, scene.count, scene.least * scale, scene.most * scale, 1 + s);
+    const Subject subject{mesh.view(), window_camera(width, height), width, height,
+                          &triangle_colors()};
+    const std::vector<Result> results = contest(subject, entrants, options.plan());
+    c.rows[kPersistent].ours[s] = measured_ms(results[0], subject, false);
+    c.rows[kStoreBins].ours[s] = stage(results[1], "store bins");
+    c.rows[kRasterizeBins].ours[s] = stage(results[1], "rasterize bins");
+    c.rows[kBoth].ours[s] = measured_ms(results[1], subject, false);
+    c.rows[kBoth + 1].ours[s] = measured_ms(results[2], subject, false);
+    for (std::size_t i = 0; i < 2; ++i) {
+      add_load(results[i], scene.name, load, document.figures);
+      std::string stages;
+      for (const auto& [name, ms] : results[i].stages_ms)
+        stages.append(stages.empty() ? "" : ", ").append(name).append(" ").append(significant(ms));
+      if (!results[i].ran()) stages = "not run (" + results[i].not_run + ")";
+      phases.rows.push_back({scene.name, results[i].name, stages});
+    }
+    for (const Result& r : results) right = right && !r.wrong;
+  }
+  add(document, c);
+  document.grids.push_back(std::move(load));
+  document.grids.push_back(std::move(phases));
+  document.plot = bars_of(c);
+  publish(document, options.out);
+  return right ? 0 : 1;
+}
+
+}  // namespace rastrum::bench

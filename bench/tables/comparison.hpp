@@ -1,0 +1,58 @@
+// A published table with our figures beside it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <bench/papers/published.hpp>
+
+#include "document.hpp"
+
+namespace rastrum::bench {
+
+/// What was measured here, in a table's unit.
+struct Measured {
+  double value = 0;   ///< 0: not run
+  double spread = 0;  ///< half the distance of the quartiles over the median
+  std::uint64_t scratch_bytes = 0;
+  std::uint64_t all_bytes = 0;  ///< scratch, mesh and picture; 0: memory is not of interest
+  std::string not_run = {};     ///< why, where it was not; empty where nobody asked
+  std::vector<double> samples_ms = {};
+};
+
+struct Comparison {
+  struct Row {
+    std::string name;  ///< e.g. the rasterizer: a line of a plot
+    std::string at;    ///< where it stands along x, e.g. a size; may be empty
+    std::vector<Published> published;
+    std::vector<Measured> ours;  ///< may be empty: the paper's alone
+  };
+  std::string caption;
+  std::string unit;       ///< "ms" (smaller is better) or "FPS"
+  std::string paper, us;  ///< e.g. "paper, M2000M" and "here, 2 threads"
+  std::string first_column;
+  std::vector<std::string> columns;
+  std::vector<Row> rows;
+};
+
+/// The figures of a constexpr row.
+template <std::size_t Columns>
+[[nodiscard]] Comparison::Row row_of(const PublishedRow<Columns>& row) {
+  return {std::string(row.name),
+          std::string(row.at),
+          {row.figures.begin(), row.figures.end()},
+          std::vector<Measured>(Columns)};
+}
+
+/// Appends the table, a line of the paper's figures and one of ours beneath, and its figures as
+/// JSON: {"table", "row", "at", "column", "unit", "published": {…}, "here": {…}}.
+void add(Document& document, const Comparison& comparison);
+
+/// A panel a column; x: the rows' `at`; a colour a name; dashed: the paper, solid: ours.
+[[nodiscard]] Plot lines_of(const Comparison& comparison, const std::string& x_title);
+/// One panel: a group a column, a bar a row; pale: the paper's.
+[[nodiscard]] Plot bars_of(const Comparison& comparison);
+
+}  // namespace rastrum::bench

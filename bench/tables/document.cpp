@@ -1,0 +1,96 @@
+#include "document.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include <bench/report.hpp>
+#include <rastrum/core/error.hpp>
+
+namespace rastrum::bench {
+namespace {
+
+/// A bar would end a cell, a newline the table.
+std::string cell(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '|') out += '\\';
+    out += c == '\n' ? ' ' : c;
+  }
+  return out;
+}
+
+std::size_t characters(const std::string& text) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+/// Columns are padded, so that the table reads well unrendered too.
+std::string to_markdown(const Grid& grid) {
+  std::vector<std::size_t> widths;
+  for (std::size_t c = 0; c < grid.columns.size(); ++c) {
+    std::size_t width = std::max<std::size_t>(characters(cell(grid.columns[c])), 3);
+    for (const auto& row : grid.rows)
+      if (c < row.size()) width = std::max(width, characters(cell(row[c])));
+    widths.push_back(width);
+  }
+  const auto row_text = [&](const std::vector<std::string>& cells) {
+    std::string text = "|";
+    for (std::size_t c = 0; c < widths.size(); ++c) {
+      const std::string content = c < cells.size() ? cell(cells[c]) : std::string();
+      const std::string padding(widths[c] - characters(content), ' ');
+      text.append(" ").append(c == 0 ? content + padding : padding + content).append(" |");
+    }
+    return text.append("\n");
+  };
+  std::string text = grid.caption.empty() ? std::string() : grid.caption + "\n\n";
+  text += row_text(grid.columns) + "|";
+  for (std::size_t c = 0; c < widths.size(); ++c)
+    text.append(c == 0 ? ":" : "-").append(widths[c], '-').append(c == 0 ? "-|" : ":|");
+  text += "\n";
+  for (const auto& row : grid.rows) text += row_text(row);
+  return text;
+}
+
+void write_text(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  if (!out.flush()) throw Error(Errc::io, "cannot write " + file.string());
+}
+
+}  // namespace
+
+std::string to_markdown(const Document& document) {
+  std::string text = "# " + document.title + "\n\n";
+  for (const std::string& note : document.notes) text.append(note).append("\n\n");
+  for (const Grid& grid : document.grids) text.append(to_markdown(grid)).append("\n");
+  std::string machine = machine_text();
+  std::ranges::replace(machine, '\n', ' ');
+  return text.append(machine).append("\n");
+}
+
+nlohmann::json to_json(const Document& document) {
+  return {{"benchmark", document.name},
+          {"title", document.title},
+          {"notes", document.notes},
+          {"machine", machine_json()},
+          {"figures", document.figures}};
+}
+
+void publish(const Document& document, const std::string& folder) {
+  const std::string text = to_markdown(document);
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+  if (folder.empty()) return;
+  const std::filesystem::path path(folder);
+  std::error_code failed;
+  std::filesystem::create_directories(path, failed);
+  if (failed) throw Error(Errc::io, "cannot make the folder " + folder + ": " + failed.message());
+  write_text(path / (document.name + ".md"), text);
+  write_json((path / (document.name + ".json")).string(), to_json(document));
+  if (document.plot) write_text(path / (document.name + ".svg"), to_svg(*document.plot));
+}
+
+}  // namespace rastrum::bench

@@ -1,0 +1,85 @@
+// The options that all benches of tables share.
+#pragma once
+
+#include <algorithm>
+#include <cstdio>
+#include <span>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include <bench/contest.hpp>
+#include <bench/measure.hpp>
+#include <bench/options.hpp>
+
+namespace rastrum::bench {
+
+struct TableOptions {
+  int rounds = 9, threads = 0;
+  std::string mesh, out;
+  bool quick = false;
+
+  void add_to(OptionParser& parser, bool takes_mesh = true) {
+    CLI::App& app = parser.app();
+    if (takes_mesh)
+      app.add_option("--mesh", mesh,
+                     "a mesh for all columns, brought to each column's number of triangles "
+                     "(generated balls)")
+          ->type_name("FILE");
+    app.add_option("--out", out, "write NAME.md, NAME.json and NAME.svg into FOLDER")
+        ->type_name("FOLDER");
+    app.add_option("--rounds", rounds, "rounds of A B C … (9)")->check(CLI::Range(1, 1000));
+    app.add_option("--threads", threads, "threads (all)")->check(CLI::Range(1, 1024));
+    app.add_flag(
+        "--quick", quick,
+        "a smoke test: 1 round, pictures of an eighth of the edge, a 32nd of the triangles");
+  }
+
+  /// To be called after parsing.
+  void resolve() {
+    if (threads == 0) threads = cores();
+    if (quick) rounds = 1;
+  }
+  [[nodiscard]] static int cores() {
+    return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  }
+  [[nodiscard]] Plan plan() const { return {rounds, quick ? 1.0 : 30.0}; }
+  /// A published edge of a picture, or what a smoke test draws instead.
+  [[nodiscard]] int size(int px) const { return quick ? std::max(8, px / 8) : px; }
+  [[nodiscard]] std::size_t triangles(std::size_t n) const {
+    return quick ? std::max<std::size_t>(64, n / 32) : n;
+  }
+  [[nodiscard]] std::string here() const {
+    return "here, " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+  }
+  /// What to say of a smoke test; empty otherwise.
+  [[nodiscard]] std::string quick_note() const {
+    return quick
+               ? "**A smoke test: pictures and meshes are smaller than the paper's, and no figure "
+                 "here may be compared with it.**"
+               : "";
+  }
+  [[nodiscard]] RenderOptions render() const {
+    RenderOptions options;
+    options.threads = threads;
+    return options;
+  }
+};
+
+/// A rasterizer by name, a visibility (or auto) and a tuning.
+[[nodiscard]] inline Entrant entrant(const TableOptions& options, const std::string& rasterizer,
+                                     const std::string& visibility = "auto",
+                                     raster::Tuning tuning = {}) {
+  Entrant e{rasterizer + (visibility == "auto" ? "" : " × " + visibility), options.render()};
+  e.options.rasterizer = rasterizer;
+  e.options.visibility = visibility;
+  e.options.tuning = tuning;
+  return e;
+}
+
+/// Says on stderr what is measured now: tables come at the end.
+inline void progress(const std::string& what) {
+  std::fprintf(stderr, "  %s\n", what.c_str());
+}
+
+}  // namespace rastrum::bench
