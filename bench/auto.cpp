@@ -105,7 +105,7 @@ int run_auto(std::span<const std::string_view> arguments) {
   selection.resolve();
 
   std::vector<Entrant> entrants{entrant(options, "auto")};
-  for (const RasterizerInfo& info : rasterizers())
+  for (const AxisInfo& info : rasterizers())
     for (const char* visibility : kVisibilities)
       if (info.name != "reference" && info.name != "auto")
         entrants.push_back(entrant(options, info.name, visibility));

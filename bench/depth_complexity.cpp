@@ -138,7 +138,7 @@ int run_hiz(std::span<const std::string_view> arguments) {
   plot.places = {"1", "4", "16", "64"};
   std::vector<std::string> names;
   std::vector<Entrant> entrants;
-  for (const RasterizerInfo& info : rasterizers()) {
+  for (const AxisInfo& info : rasterizers()) {
     if (info.name == "reference" || info.name == "auto") continue;
     names.push_back(info.name);
     grid.columns.push_back(info.name);

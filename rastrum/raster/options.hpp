@@ -19,10 +19,10 @@ enum class Isa : std::uint8_t { scalar, sse4, avx2, avx512, neon };
 /// Those that this machine can run, slowest first; always begins with `scalar`.
 [[nodiscard]] std::vector<Isa> available_isas();
 
+namespace raster {
+
 enum class Schedule : std::uint8_t { automatic, two_stage, persistent };
 enum class BlockOrder : std::uint8_t { row_major, morton };
-
-namespace raster {
 
 /// Parameters of the rasterizers; 0 takes the rasterizer's default, which is its paper's. Bin and
 /// tile sizes are compiled in: `Renderer` refuses a pair that is not, and lists those that are.
