@@ -15,6 +15,7 @@ constexpr std::array kBenchmarks = {
     Benchmark{"peers", "frames beside OpenGL (Mesa llvmpipe) and Embree, interleaved", run_peers},
     Benchmark{"peers-check", "coverage, fragment counts and phong against OpenGL's",
               run_peers_check},
+    Benchmark{"words", "expand_masked, sort_by_key, reduce_by_index beside others", run_words},
 };
 
 void print_usage(std::FILE* out) {

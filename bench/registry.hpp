@@ -18,5 +18,6 @@ struct Benchmark {
 int run_machine(std::span<const std::string_view> options);
 int run_peers(std::span<const std::string_view> options);
 int run_peers_check(std::span<const std::string_view> options);
+int run_words(std::span<const std::string_view> options);
 
 }  // namespace rastrum::bench
