@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <type_traits>
-#include <utility>
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -18,9 +17,9 @@ namespace rastrum::parallel {
 /// One thread, plain loops.
 class Serial {
  public:
-  Serial() = default;
-  /// Words take their memory from `memory`, instead of the heap.
-  explicit Serial(std::shared_ptr<Arena> memory) : memory_(std::move(memory)) {}
+  /// Words take their memory from an arena that is accounted to `account`, which must outlive the
+  /// backend and the words' results.
+  explicit Serial(MemoryAccount* account = nullptr) : memory_(std::make_shared<Arena>(account)) {}
   [[nodiscard]] static int concurrency() { return 1; }
   [[nodiscard]] const std::shared_ptr<Arena>& memory() const { return memory_; }
 
@@ -33,9 +32,7 @@ class Serial {
 class Threads {
  public:
   /// `count` threads, the caller's included; 0 takes what the machine has.
-  /// More threads than cores are had as well: oneTBB would cap them. Words take their memory from
-  /// an arena that is accounted to `account`, which must outlive the backend and the words'
-  /// results.
+  /// More threads than cores are had as well: oneTBB would cap them. Memory as in Serial.
   explicit Threads(int count = 0, MemoryAccount* account = nullptr)
       : arena_(count > 0 ? count : tbb::task_arena::automatic),
         memory_(std::make_shared<Arena>(account)) {

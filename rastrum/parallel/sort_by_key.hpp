@@ -1,55 +1,234 @@
-// sort_by_key: sorts pairs by an unsigned integer key, stably, by LSD radix sort with digits of at
-// most 8 bits; passes whose digit is the same in all keys are skipped.
+// sort_by_key: sorts pairs by an unsigned integer key, stably, by radix sort: one pass on the
+// highest digit into buckets that fit a core's cache, then each bucket on the lower digits, lowest
+// first.
 //
-// Threads cut the pairs into a few chunks each; a chunk counts its digits, a scan over (digit,
-// chunk) gives every chunk its places, and the chunks write. A stable sort has one result, so the
-// cut may depend on the number of threads.
-// Work O(n · bits / 8), span O(bits / 8 · (n / threads + 256 · threads)). Allocates n keys and n
-// values.
-// Source: Zagha and Blelloch, "Radix sort for vector multiprocessors", 1991; paper 5, appendix A,
-// takes a comparator instead, which the painting of pixels never needs.
+// Bits that are the same in all keys are found first and left out. A bucket that does not fit (most
+// keys have one highest digit) is passed by all threads together, like the whole. Pairs go back and
+// forth between the caller's two arrays and one of pairs, so their number of passes is even. Writes
+// to many places at once are collected by cache lines. A stable sort has one result, so the cut may
+// depend on the number of threads.
+//
+// Work O(n · bits / 11), span O(n / threads + 2048 · threads + kLargeBucket). Allocates n pairs,
+// packed.
+// Sources: Zagha and Blelloch, "Radix sort for vector multiprocessors", 1991; the lines: Satish et
+// al., "Fast sort on CPUs and GPUs", 2010. Paper 5, appendix A, takes a comparator instead, which
+// the painting of pixels never needs.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <span>
+#include <type_traits>
 #include <utility>
-#include <vector>
 
 #include <rastrum/parallel/exec.hpp>
+#include <rastrum/parallel/scratch.hpp>
 
 namespace rastrum::parallel {
 namespace sort_detail {
 
-inline constexpr int kDigitBits = 8;
-inline constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
-/// Fewer pairs than this a chunk are not worth a task and its 256 counters.
+/// More places to write to at once than this fall out of the second-level cache.
+inline constexpr int kMostFirstBits = 10, kMostDigitBits = 11;
+/// Pairs of a bucket that the first digit is chosen for, and that one thread is given at most.
+inline constexpr std::size_t kBucket = 4096, kLargeBucket = std::size_t{1} << 17;
+/// Pairs of a line: those of 4-byte keys and values fill a cache line.
+inline constexpr std::size_t kLine = 8;
+/// Fewer pairs than this a chunk are not worth a task and its counters.
 inline constexpr std::size_t kSmallestChunk = 16384;
 
-using Counters = std::array<std::size_t, kDigits>;
+#pragma pack(push, 1)
+/// A key and its value without padding.
+template <class K, class V>
+struct Pair {
+  static_assert(std::is_trivially_copyable_v<V>);
+  K key;
+  V value;
+};
+#pragma pack(pop)
+
+/// The two places where pairs lie: the caller's arrays, and an array of pairs.
+template <class K, class V>
+struct Columns {
+  K* keys;
+  V* values;
+  [[nodiscard]] K key(std::size_t i) const { return keys[i]; }
+  [[nodiscard]] Pair<K, V> get(std::size_t i) const { return {keys[i], values[i]}; }
+  void put(std::size_t i, const Pair<K, V>& pair) const {
+    keys[i] = pair.key;
+    values[i] = pair.value;
+  }
+  void put_line(std::size_t i, const Pair<K, V>* line, std::size_t n) const {
+    for (std::size_t k = 0; k < n; ++k) put(i + k, line[k]);
+  }
+  [[nodiscard]] Columns from(std::size_t begin) const { return {keys + begin, values + begin}; }
+};
+template <class K, class V>
+struct Rows {
+  Pair<K, V>* pairs;
+  [[nodiscard]] K key(std::size_t i) const { return pairs[i].key; }
+  [[nodiscard]] Pair<K, V> get(std::size_t i) const { return pairs[i]; }
+  void put(std::size_t i, const Pair<K, V>& pair) const { pairs[i] = pair; }
+  void put_line(std::size_t i, const Pair<K, V>* line, std::size_t n) const {
+    if (n == kLine)
+      std::copy_n(line, kLine, pairs + i);  // of known length: no call
+    else
+      std::copy_n(line, n, pairs + i);
+  }
+  [[nodiscard]] Rows from(std::size_t begin) const { return {pairs + begin}; }
+};
+
+/// Bits [shift, shift + width) of a key.
+struct Digit {
+  int shift = 0, width = 0;
+  [[nodiscard]] std::size_t count() const { return std::size_t{1} << width; }
+  template <class K>
+  [[nodiscard]] std::size_t of(K key) const {
+    return static_cast<std::size_t>(key >> shift) & (count() - 1);
+  }
+};
+
+/// Makes counts[d] the place of the first pair of digit d, in order; returns the number of all.
+template <class Count>
+Count places(Count* counts, std::size_t stride, std::size_t n, Count next = 0) {
+  for (std::size_t i = 0; i < n; ++i) next += std::exchange(counts[i * stride], next);
+  return next;
+}
+
+/// One stable pass on `digit` for what fits a cache: count, then move.
+template <class From, class To>
+void pass(From from, To to, std::uint32_t n, Digit digit) {
+  std::array<std::uint32_t, std::size_t{1} << kMostDigitBits> next;
+  std::fill_n(next.begin(), digit.count(), 0U);
+  for (std::uint32_t i = 0; i < n; ++i) ++next[digit.of(from.key(i))];
+  places(next.data(), 1, digit.count());
+  for (std::uint32_t i = 0; i < n; ++i) to.put(next[digit.of(from.key(i))]++, from.get(i));
+}
+
+/// Moves pairs [begin, end) to next[digit], which it counts up, by lines of kLine pairs: a line is
+/// written when it is full. `first` and `lines` are room for a number and a line per digit.
+template <class From, class To, class P>
+void move_lines(From from, To to, std::size_t begin, std::size_t end, Digit digit,
+                std::size_t* next, std::size_t* first, P* lines) {
+  std::copy_n(next, digit.count(), first);
+  const auto flush = [&](std::size_t d, std::size_t line_end) {
+    const std::size_t line_begin = std::max(first[d], (line_end - 1) / kLine * kLine);
+    to.put_line(line_begin, lines + d * kLine + line_begin % kLine, line_end - line_begin);
+  };
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::size_t d = digit.of(from.key(i)), k = next[d]++;
+    lines[d * kLine + k % kLine] = from.get(i);
+    if (k % kLine == kLine - 1) flush(d, k + 1);
+  }
+  for (std::size_t d = 0; d < digit.count(); ++d)
+    if (next[d] % kLine != 0 && next[d] > first[d]) flush(d, next[d]);
+}
 
 [[nodiscard]] inline std::size_t chunks_for(const Serial&, std::size_t) {
   return 1;
 }
 [[nodiscard]] inline std::size_t chunks_for(const Threads& exec, std::size_t n) {
-  const auto most = static_cast<std::size_t>(exec.concurrency()) * 2;
-  return std::clamp<std::size_t>(n / kSmallestChunk, 1, exec.concurrency() > 1 ? most : 1);
+  return std::clamp<std::size_t>(n / kSmallestChunk, 1,
+                                 static_cast<std::size_t>(exec.concurrency()));
 }
 
-/// Turns digit counts of the chunks into the place of each chunk's first pair of each digit.
-/// Returns false where all pairs have one digit.
-inline bool places(std::span<Counters> counters, std::size_t n) {
-  std::size_t next = 0;
-  for (std::size_t digit = 0; digit < kDigits; ++digit) {
-    const std::size_t first = next;
-    for (Counters& c : counters) next += std::exchange(c[digit], next);
-    if (next - first == n) return false;
+/// Calls f(chunk, begin, end) for `chunks` equal ranges that make up [0, n).
+template <class Exec, class F>
+void for_each_chunk(Exec& exec, std::size_t n, std::size_t chunks, F&& f) {
+  for_each_index(exec, chunks, [&](std::size_t c) {
+    f(c, n / chunks * c, c + 1 == chunks ? n : n / chunks * (c + 1));
+  });
+}
+
+/// One stable pass by all threads. Each counts the digits of its chunk; a scan over (digit, chunk)
+/// gives every chunk its places. Returns where each digit begins, and n behind them.
+template <class Exec, class From, class To>
+Buffer<std::size_t> pass_together(Exec& exec, From from, To to, std::size_t n, Digit digit) {
+  using P = decltype(from.get(0));
+  const std::size_t chunks = chunks_for(exec, n), digits = digit.count();
+  auto next = make_buffer<std::size_t>(exec, chunks * digits);
+  for_each_chunk(exec, n, chunks, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    std::size_t* const counts = next.data() + c * digits;
+    std::fill_n(counts, digits, std::size_t{0});
+    for (std::size_t i = begin; i < end; ++i) ++counts[digit.of(from.key(i))];
+  });
+  auto first = make_buffer<std::size_t>(exec, digits + 1);
+  std::size_t before = 0;
+  for (std::size_t d = 0; d < digits; ++d) {
+    first[d] = before;
+    before = places(next.data() + d, digits, chunks, before);
   }
-  return true;
+  first[digits] = before;
+  auto lines = make_buffer<P>(exec, chunks * digits * kLine);
+  auto begins = make_buffer<std::size_t>(exec, chunks * digits);
+  for_each_chunk(exec, n, chunks, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    move_lines(from, to, begin, end, digit, next.data() + c * digits, begins.data() + c * digits,
+               lines.data() + c * digits * kLine);
+  });
+  return first;
+}
+
+/// How to sort by bits [low, high): by `count` digits, lowest first.
+struct Digits {
+  int low, high, width, count;
+  Digits(int low_bit, int high_bit, std::size_t n) : low(low_bit), high(high_bit) {
+    // Fewer pairs are not worth as many counters.
+    const int most = std::clamp(static_cast<int>(std::bit_width(n)), 6, kMostDigitBits);
+    count = std::max(1, (high - low + most - 1) / most);
+    width = (high - low + count - 1) / count;
+  }
+  [[nodiscard]] Digit operator[](int i) const {
+    const int shift = std::min(low + i * width, high);
+    return {shift, std::min(width, high - shift)};
+  }
+};
+
+/// Sorts the n pairs of `rows` into `columns`, going back and forth; where that ends in the wrong
+/// place, by way of `room`.
+template <class Rows, class Columns>
+void sort_bucket(Rows rows, Columns columns, Rows room, std::uint32_t n, const Digits& digits) {
+  const int last = digits.count - 1;
+  int i = 0;
+  for (; i + 1 < last; i += 2) {
+    pass(rows, columns, n, digits[i]);
+    pass(columns, rows, n, digits[i + 1]);
+  }
+  if (i == last) return pass(rows, columns, n, digits[i]);
+  pass(rows, room, n, digits[i]);
+  pass(room, columns, n, digits[last]);
+}
+
+/// The same by all threads, for a bucket that fits no cache.
+template <class Exec, class Rows, class Columns>
+void sort_bucket_together(Exec& exec, Rows rows, Columns columns, std::size_t n,
+                          const Digits& digits) {
+  for (int i = 0; i < digits.count; ++i)
+    if (i % 2 == 0)
+      pass_together(exec, rows, columns, n, digits[i]);
+    else
+      pass_together(exec, columns, rows, n, digits[i]);
+  if (digits.count % 2 == 0) pass_together(exec, rows, columns, n, Digit{});
+}
+
+/// The bits in which keys differ.
+template <class Exec, class K>
+[[nodiscard]] K differing_bits(Exec& exec, std::span<const K> keys) {
+  const std::size_t chunks = chunks_for(exec, keys.size());
+  auto differing = make_buffer<K>(exec, chunks);
+  for_each_chunk(exec, keys.size(), chunks, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    K bits = 0;
+    for (std::size_t i = begin; i < end; ++i) bits = static_cast<K>(bits | (keys[i] ^ keys[0]));
+    differing[c] = bits;
+  });
+  return std::accumulate(differing.begin(), differing.end(), K{0}, std::bit_or<>());
 }
 
 }  // namespace sort_detail
@@ -65,54 +244,37 @@ void sort_by_key(Exec& exec, Keys&& key_range, Values&& value_range, int bits = 
   using V = typename decltype(values)::value_type;
   static_assert(std::unsigned_integral<K>);
   assert(keys.size() == values.size());
-  if (bits < 0) bits = std::numeric_limits<K>::digits;
-  assert(bits <= std::numeric_limits<K>::digits);
+  constexpr int kKeyBits = std::numeric_limits<K>::digits;
+  if (bits < 0) bits = kKeyBits;
+  assert(bits <= kKeyBits);
   const std::size_t n = keys.size();
-  if (n < 2) return;
+  if (n < 2 || bits == 0) return;
 
-  const int passes = (bits + kDigitBits - 1) / kDigitBits;
-  const std::size_t chunk_count = chunks_for(exec, n);
-  std::vector<Counters> counters(chunk_count);
-  auto other_keys = make_buffer<K>(exec, n);
-  auto other_values = make_buffer<V>(exec, n);
-  std::span<K> from_keys = keys, to_keys = other_keys;
-  std::span<V> from_values = values, to_values = other_values;
+  const K all = static_cast<K>(std::numeric_limits<K>::max() >> (kKeyBits - bits));
+  const K differing = static_cast<K>(differing_bits<Exec, K>(exec, keys) & all);
+  if (differing == 0) return;
+  const int low = std::countr_zero(differing), high = static_cast<int>(std::bit_width(differing));
 
-  for (int pass = 0; pass < passes; ++pass) {
-    const int shift = pass * kDigitBits;
-    const auto limit = (std::size_t{1} << std::min(kDigitBits, bits - shift)) - 1;
-    const auto digit = [=](K key) { return static_cast<std::size_t>(key >> shift) & limit; };
-    const auto chunk_begin = [&](std::size_t c) { return n / chunk_count * c; };
-    const auto chunk_end = [&](std::size_t c) {
-      return c + 1 == chunk_count ? n : chunk_begin(c + 1);
-    };
-    for_each_index(exec, chunk_count, [&](std::size_t c) {
-      counters[c].fill(0);
-      for (std::size_t i = chunk_begin(c); i < chunk_end(c); ++i)
-        ++counters[c][digit(from_keys[i])];
-    });
-    if (!places(counters, n)) continue;
-    for_each_index(exec, chunk_count, [&](std::size_t c) {
-      Counters next = counters[c];
-      for (std::size_t i = chunk_begin(c); i < chunk_end(c); ++i) {
-        const std::size_t to = next[digit(from_keys[i])]++;
-        to_keys[to] = from_keys[i];
-        to_values[to] = from_values[i];
-      }
-    });
-    std::swap(from_keys, to_keys);
-    std::swap(from_values, to_values);
-  }
-  if (from_keys.data() == keys.data()) return;
-  for_each_index(exec, chunk_count, [&](std::size_t c) {
-    const std::size_t begin = n / chunk_count * c;
-    const std::size_t end = c + 1 == chunk_count ? n : n / chunk_count * (c + 1);
-    std::copy(from_keys.begin() + static_cast<std::ptrdiff_t>(begin),
-              from_keys.begin() + static_cast<std::ptrdiff_t>(end),
-              to_keys.begin() + static_cast<std::ptrdiff_t>(begin));
-    std::copy(from_values.begin() + static_cast<std::ptrdiff_t>(begin),
-              from_values.begin() + static_cast<std::ptrdiff_t>(end),
-              to_values.begin() + static_cast<std::ptrdiff_t>(begin));
+  auto pairs = make_buffer<Pair<K, V>>(exec, n);
+  const Columns<K, V> columns{keys.data(), values.data()};
+  const Rows<K, V> rows{pairs.data()};
+  const int width =
+      std::min({static_cast<int>(std::bit_width(n / kBucket)), kMostFirstBits, high - low});
+  const int middle = high - width;
+  const auto first = pass_together(exec, columns, rows, n, Digit{middle, width});
+
+  ScratchPool<Buffer<Pair<K, V>>> rooms([&] { return make_buffer<Pair<K, V>>(exec, 0); });
+  const std::size_t buckets = first.size() - 1;
+  const auto size = [&](std::size_t bucket) { return first[bucket + 1] - first[bucket]; };
+  for (std::size_t b = 0; b < buckets; ++b)
+    if (size(b) > kLargeBucket)
+      sort_bucket_together(exec, rows.from(first[b]), columns.from(first[b]), size(b),
+                           Digits(low, middle, size(b)));
+  for_each_with_scratch(exec, buckets, rooms, [&](std::size_t b, Buffer<Pair<K, V>>& room) {
+    if (size(b) == 0 || size(b) > kLargeBucket) return;
+    if (room.size() < size(b)) room.resize(size(b));
+    sort_bucket(rows.from(first[b]), columns.from(first[b]), Rows<K, V>{room.data()},
+                static_cast<std::uint32_t>(size(b)), Digits(low, middle, size(b)));
   });
 }
 

@@ -2,6 +2,7 @@
 // implementations change their way.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <random>
@@ -64,6 +65,31 @@ inline std::vector<std::vector<std::uint32_t>> segment_sizes() {
     around_masks.insert(around_masks.end(), {bits - 1, bits, bits + 1, 2 * bits, 0});
   all.push_back(around_masks);
   return all;
+}
+
+/// Associative but not commutative: composition of x ↦ a x + b modulo 2³².
+struct Affine {
+  std::uint32_t a = 1, b = 0;
+  friend bool operator==(const Affine&, const Affine&) = default;
+};
+inline Affine then(Affine f, Affine g) {
+  return {f.a * g.a, g.a * f.b + g.b};
+}
+inline std::vector<Affine> random_maps(std::size_t n) {
+  std::mt19937 random(static_cast<std::uint32_t>(n));
+  std::vector<Affine> maps(n);
+  for (Affine& m : maps)
+    m = {static_cast<std::uint32_t>(random()) | 1U, static_cast<std::uint32_t>(random())};
+  return maps;
+}
+
+inline std::vector<float> random_floats(std::size_t n) {
+  std::mt19937 random(static_cast<std::uint32_t>(n));
+  std::vector<float> values(n);
+  for (float& v : values)
+    v = std::ldexp(static_cast<float>(static_cast<std::int32_t>(random())),
+                   -static_cast<int>(random() % 40));
+  return values;
 }
 
 }  // namespace rastrum::parallel::test

@@ -1,4 +1,5 @@
-// transform, tabulate, gather, scatter, index_in_group and the computed ranges.
+// transform, tabulate, for_each, transpose, gather, scatter, index_in_group and the computed
+// ranges.
 #include <algorithm>
 #include <numeric>
 
@@ -43,6 +44,32 @@ TEST(Tabulate, WritesTheFunctionOfTheIndexOnce) {
       for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(out[i], i * i);
       EXPECT_EQ(std::count(calls.begin(), calls.end(), 1), static_cast<std::ptrdiff_t>(n));
     });
+}
+
+TEST(ForEach, CallsTheFunctionOnEachElementOnce) {
+  for (const std::size_t n : kSizes)
+    on_every_backend([&](auto& exec) {
+      auto values = random_values<std::uint32_t>(n, 1000);
+      const auto before = values;
+      for_each(exec, values, [](std::uint32_t& x) { x = x * 2 + 1; });
+      for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(values[i], before[i] * 2 + 1);
+    });
+}
+
+TEST(Transpose, SwapsRowsAndColumns) {
+  for (const std::size_t rows : {0U, 1U, 31U, 32U, 33U, 500U})
+    for (const std::size_t columns : {0U, 1U, 32U, 65U, 301U}) {
+      const auto in = random_values<std::uint32_t>(rows * columns, 1U << 30);
+      on_every_backend([&](auto& exec) {
+        std::vector<std::uint32_t> out(in.size(), 5), back(in.size(), 5);
+        transpose(exec, in, rows, columns, out);
+        for (std::size_t y = 0; y < rows; ++y)
+          for (std::size_t x = 0; x < columns; ++x)
+            ASSERT_EQ(out[x * rows + y], in[y * columns + x]);
+        transpose(exec, out, columns, rows, back);
+        EXPECT_EQ(back, in);
+      });
+    }
 }
 
 TEST(Gather, ReadsThroughTheMap) {

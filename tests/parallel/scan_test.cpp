@@ -1,37 +1,11 @@
 // reduce, the scans, reduce_by_key: definitions, and one result whatever the backend.
 #include <bit>
-#include <cmath>
 #include <cstring>
 
 #include <tests/parallel/backends.hpp>
 
 namespace rastrum::parallel::test {
 namespace {
-
-/// Associative but not commutative: composition of x ↦ a x + b modulo 2³².
-struct Affine {
-  std::uint32_t a = 1, b = 0;
-  friend bool operator==(const Affine&, const Affine&) = default;
-};
-Affine then(Affine f, Affine g) {
-  return {f.a * g.a, g.a * f.b + g.b};
-}
-std::vector<Affine> random_maps(std::size_t n) {
-  std::mt19937 random(static_cast<std::uint32_t>(n));
-  std::vector<Affine> maps(n);
-  for (Affine& m : maps)
-    m = {static_cast<std::uint32_t>(random()) | 1U, static_cast<std::uint32_t>(random())};
-  return maps;
-}
-
-std::vector<float> random_floats(std::size_t n) {
-  std::mt19937 random(static_cast<std::uint32_t>(n));
-  std::vector<float> values(n);
-  for (float& v : values)
-    v = std::ldexp(static_cast<float>(static_cast<std::int32_t>(random())),
-                   -static_cast<int>(random() % 40));
-  return values;
-}
 
 TEST(Reduce, FoldsInOrderWithoutCommuting) {
   for (const std::size_t n : kSizes) {

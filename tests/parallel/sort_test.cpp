@@ -41,6 +41,44 @@ TEST(SortByKey, IsStableAndSortsByTheLowBits) {
   }
 }
 
+// Most keys in one bucket of the first pass, too large for one thread, with one digit left or more.
+TEST(SortByKey, OneHugeBucket) {
+  for (const int bits : {14, 20, 31, 40, 53, 64}) {
+    SCOPED_TRACE(bits);
+    const std::size_t n = 250007;
+    std::vector<std::uint64_t> keys =
+        random_values<std::uint64_t>(n, std::uint64_t{1} << (bits - 8));
+    for (std::size_t i = 0; i < n; i += 50) keys[i] |= std::uint64_t{1} << (bits - 1);
+    sorts_like_stable_sort(keys, bits);
+  }
+}
+
+TEST(SortByKey, MovesValuesOfAnySize) {
+  struct Value {
+    std::uint32_t id;
+    std::uint8_t rest[9];
+  };
+  const std::size_t n = 50021;
+  const auto keys = random_values<std::uint16_t>(n, 5000);
+  on_every_backend([&](auto& exec) {
+    auto sorted = keys;
+    std::vector<Value> values(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      values[i].id = static_cast<std::uint32_t>(i);
+      for (std::uint8_t& b : values[i].rest) b = static_cast<std::uint8_t>(i * 31 + keys[i]);
+    }
+    sort_by_key(exec, sorted, values);
+    for (std::size_t i = 0; i < n; ++i) {
+      ASSERT_EQ(sorted[i], keys[values[i].id]);
+      for (const std::uint8_t b : values[i].rest)
+        ASSERT_EQ(b, static_cast<std::uint8_t>(values[i].id * 31 + sorted[i]));
+      if (i == 0) continue;
+      ASSERT_LE(sorted[i - 1], sorted[i]);
+      ASSERT_TRUE(sorted[i - 1] != sorted[i] || values[i - 1].id < values[i].id);
+    }
+  });
+}
+
 TEST(SortByKey, NoBitsChangeNothing) {
   sorts_like_stable_sort(random_values<std::uint32_t>(1000, 1000), 0);
 }

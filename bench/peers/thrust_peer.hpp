@@ -1,0 +1,18 @@
+// Thrust's sort_by_key on the CPU (CCCL of the CUDA toolkit, or Debian's libthrust-dev), compiled
+// as host code: the peer of ours.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace rastrum::bench {
+
+/// Thrust's version, as 300102; 0 where it was not there when this was built.
+[[nodiscard]] int thrust_version();
+
+/// Sorts pairs by all bits of the key, on `threads` threads of oneTBB, or in one. Requires
+/// thrust_version() ≠ 0.
+void thrust_sort_tbb(std::span<std::uint32_t> keys, std::span<std::uint32_t> values, int threads);
+void thrust_sort_serial(std::span<std::uint32_t> keys, std::span<std::uint32_t> values);
+
+}  // namespace rastrum::bench

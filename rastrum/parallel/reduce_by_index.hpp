@@ -1,0 +1,86 @@
+// reduce_by_index: a generalized histogram. For each i, dest[indices[i]] op= values[i].
+//
+// Indices outside of `dest` are ignored, as in Futhark. The operator must be associative; values of
+// one bin are folded in their order.
+// The 64-bit unsigned maximum, which resolves visibility, is atomic and in place: order does not
+// matter to it. Any other operator sorts the indices and reduces runs (reduce_by_key, whose cut
+// makes one result also where the operator is associative only up to rounding): deterministic, and
+// no bin is contended, however many values it gets.
+//
+// Work O(n), for other operators O(n · log dest) bit operations in the sort; span O(kBlock + n /
+// threads). Allocates nothing, or for other operators 48 bytes and two values per index in range.
+// Source: Futhark's reduce_by_index (paper 1, section 2.2.3); Henriksen et al., "Compiling
+// generalized histograms for GPU", 2020.
+#pragma once
+
+#include <atomic>
+#include <bit>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+#include <rastrum/parallel/blocks.hpp>
+#include <rastrum/parallel/filter.hpp>
+#include <rastrum/parallel/range.hpp>
+#include <rastrum/parallel/reduce_by_key.hpp>
+#include <rastrum/parallel/sort_by_key.hpp>
+#include <rastrum/parallel/transform.hpp>
+
+namespace rastrum::parallel {
+
+/// The larger of two.
+struct Maximum {
+  template <class T>
+  [[nodiscard]] RASTRUM_HD constexpr T operator()(const T& a, const T& b) const {
+    return a < b ? b : a;
+  }
+};
+
+/// word = max(word, value), by many threads at once.
+inline void atomic_maximum(std::uint64_t& word, std::uint64_t value) noexcept {
+  const std::atomic_ref<std::uint64_t> shared(word);
+  std::uint64_t now = shared.load(std::memory_order_relaxed);
+  while (now < value && !shared.compare_exchange_weak(now, value, std::memory_order_relaxed)) {
+  }
+}
+
+/// `dest` is a range of values, changed in place. Sizes of `indices` (integers, of any sign) and
+/// `values` agree.
+template <class Exec, Writable Dest, Readable Indices, Readable Values, class Op>
+void reduce_by_index(Exec& exec, Dest&& dest, const Indices& indices, const Values& values, Op op) {
+  using T = std::remove_cvref_t<decltype(dest[0])>;
+  assert(std::size(indices) == std::size(values));
+  const std::size_t n = std::size(indices), bins = std::size(dest);
+  const auto in_range = [&](std::size_t i) {
+    return std::cmp_greater_equal(indices[i], 0) && std::cmp_less(indices[i], bins);
+  };
+  if constexpr (std::is_same_v<T, std::uint64_t> && std::is_same_v<Op, Maximum>) {
+    for_each_block(exec, n, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        if (in_range(i))
+          atomic_maximum(dest[static_cast<std::size_t>(indices[i])],
+                         static_cast<std::uint64_t>(values[i]));
+    });
+  } else {
+    auto position = filter(exec, counting(n), in_range);
+    auto key = make_buffer<std::size_t>(exec, position.size());
+    transform(exec, position, key,
+              [&](std::size_t i) { return static_cast<std::size_t>(indices[i]); });
+    sort_by_key(exec, key, position, static_cast<int>(std::bit_width(bins)));
+    const auto sums =
+        reduce_by_key(exec, key,
+                      Computed(position.size(),
+                               [&](std::size_t k) { return static_cast<T>(values[position[k]]); }),
+                      op);
+    for_each_block(exec, sums.keys.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        T& bin = dest[sums.keys[k]];
+        bin = static_cast<T>(op(bin, sums.values[k]));
+      }
+    });
+  }
+}
+
+}  // namespace rastrum::parallel

@@ -1,0 +1,152 @@
+// reduce_by_index and segmented_reduce_by_index against the loops that define them.
+#include <cstring>
+#include <numeric>
+
+#include <tests/parallel/backends.hpp>
+
+namespace rastrum::parallel::test {
+namespace {
+
+/// Indices of a histogram, some of them outside: anywhere, or nearly all in one bin.
+std::vector<std::int32_t> random_indices(std::size_t n, std::size_t bins, bool crowded) {
+  std::mt19937 random(static_cast<std::uint32_t>(n + bins));
+  std::vector<std::int32_t> indices(n);
+  for (std::int32_t& i : indices) {
+    i = static_cast<std::int32_t>(random() % (bins + 4)) - 2;
+    if (crowded && random() % 16 != 0) i = static_cast<std::int32_t>(bins / 2);
+  }
+  return indices;
+}
+
+template <class T, class V, class Op>
+void apply(std::vector<T>& dest, const std::vector<std::int32_t>& indices,
+           const std::vector<V>& values, std::size_t begin, std::size_t end, Op op) {
+  for (std::size_t i = begin; i < end; ++i)
+    if (indices[i] >= 0 && static_cast<std::size_t>(indices[i]) < dest.size()) {
+      T& bin = dest[static_cast<std::size_t>(indices[i])];
+      bin = static_cast<T>(op(bin, static_cast<T>(values[i])));
+    }
+}
+
+TEST(ReduceByIndex, MaximumOf64BitWords) {
+  for (const std::size_t n : kSizes)
+    for (const std::size_t bins : {0U, 1U, 1000U})
+      for (const bool crowded : {false, true}) {
+        const auto indices = random_indices(n, bins, crowded);
+        const auto values = random_values<std::uint64_t>(n, ~std::uint64_t{0});
+        const auto old = random_values<std::uint64_t>(bins, ~std::uint64_t{0}, 9);
+        auto expected = old;
+        apply(expected, indices, values, 0, n, Maximum{});
+        on_every_backend([&](auto& exec) {
+          auto dest = old;
+          reduce_by_index(exec, dest, indices, values, Maximum{});
+          EXPECT_EQ(dest, expected);
+        });
+      }
+}
+
+TEST(ReduceByIndex, FoldsInOrderWithoutCommuting) {
+  for (const std::size_t n : kSizes)
+    for (const std::size_t bins : {0U, 1U, 77U, 100000U})
+      for (const bool crowded : {false, true}) {
+        const auto indices = random_indices(n, bins, crowded);
+        const auto maps = random_maps(n);
+        const auto old = random_maps(bins);
+        auto expected = old;
+        apply(expected, indices, maps, 0, n, then);
+        on_every_backend([&](auto& exec) {
+          auto dest = old;
+          reduce_by_index(exec, dest, indices, maps, then);
+          EXPECT_EQ(dest, expected);
+        });
+      }
+}
+
+TEST(ReduceByIndex, ComputesInTheTypeOfTheBins) {
+  const std::vector<std::uint8_t> values(100000, 255);
+  on_every_backend([&](auto& exec) {
+    std::vector<std::uint32_t> dest = {5, 5};
+    reduce_by_index(exec, dest, constant(values.size(), 1), values, std::plus<>());
+    EXPECT_EQ(dest, (std::vector<std::uint32_t>{5, 5 + 255 * 100000}));
+  });
+}
+
+TEST(ReduceByIndex, IgnoresIndicesThatFitNoSignedNumber) {
+  on_every_backend([&](auto& exec) {
+    std::vector<std::uint64_t> dest(3, 1);
+    const std::vector<std::uint64_t> indices = {~std::uint64_t{0}, 3, 2, std::uint64_t{1} << 32};
+    reduce_by_index(exec, dest, indices, constant(4, std::uint64_t{8}), Maximum{});
+    EXPECT_EQ(dest, (std::vector<std::uint64_t>{1, 1, 8}));
+    reduce_by_index(exec, dest, indices, constant(4, std::uint64_t{8}), std::plus<>());
+    EXPECT_EQ(dest, (std::vector<std::uint64_t>{1, 1, 16}));
+  });
+}
+
+TEST(ReduceByIndex, FloatSumsHaveOneResultOnAllBackends) {
+  const std::size_t n = 100003;
+  const auto indices = random_indices(n, 10, true);
+  const auto values = random_floats(n);
+  std::vector<float> expected(10, 1.0F);
+  Serial serial;
+  reduce_by_index(serial, expected, indices, values, std::plus<>());
+  on_every_backend([&](auto& exec) {
+    std::vector<float> dest(10, 1.0F);
+    reduce_by_index(exec, dest, indices, values, std::plus<>());
+    EXPECT_EQ(std::memcmp(dest.data(), expected.data(), 10 * sizeof(float)), 0);
+  });
+}
+
+/// The bins of all segments, one after the other, and how often each was handed out.
+template <class T, class Exec, class First, class Indices, class Values, class Op>
+std::pair<std::vector<T>, std::vector<int>> all_bins(Exec& exec, const First& first,
+                                                     const Indices& indices, const Values& values,
+                                                     std::size_t bins, T neutral, Op op) {
+  std::vector<T> out(first.size() * bins);
+  std::vector<int> calls(first.size(), 0);
+  segmented_reduce_by_index(
+      exec, first, indices, values, bins, neutral, op, [&](std::size_t s, std::span<const T> mine) {
+        ++calls[s];
+        EXPECT_EQ(mine.size(), bins);
+        std::copy(mine.begin(), mine.end(), out.begin() + static_cast<std::ptrdiff_t>(s * bins));
+      });
+  return {out, calls};
+}
+
+TEST(SegmentedReduceByIndex, IsAHistogramOfEachSegment) {
+  auto all_sizes = segment_sizes();
+  all_sizes.push_back({5, 300000, 0, 70000, 3});  // several pieces each
+  for (const auto& sizes : all_sizes)
+    for (const std::size_t bins : {1U, 64U}) {
+      std::vector<std::size_t> first(sizes.size());
+      std::exclusive_scan(sizes.begin(), sizes.end(), first.begin(), std::size_t{0});
+      const std::size_t n = std::reduce(sizes.begin(), sizes.end(), std::size_t{0});
+      const auto indices = random_indices(n, bins, false);
+      const auto maps = random_maps(n);
+      std::vector<Affine> expected;
+      for (std::size_t s = 0; s < sizes.size(); ++s) {
+        std::vector<Affine> mine(bins);
+        apply(mine, indices, maps, first[s], first[s] + sizes[s], then);
+        expected.insert(expected.end(), mine.begin(), mine.end());
+      }
+      on_every_backend([&](auto& exec) {
+        const auto [out, calls] = all_bins(exec, first, indices, maps, bins, Affine{}, then);
+        EXPECT_EQ(out, expected);
+        EXPECT_EQ(calls, std::vector<int>(sizes.size(), 1));
+      });
+    }
+}
+
+TEST(SegmentedReduceByIndex, FloatSumsHaveOneResultOnAllBackends) {
+  const std::vector<std::size_t> first = {0, 250000, 250010};
+  const auto indices = random_indices(300000, 16, false);
+  const auto values = random_floats(300000);
+  Serial serial;
+  const auto expected = all_bins(serial, first, indices, values, 16, 0.0F, std::plus<>()).first;
+  on_every_backend([&](auto& exec) {
+    const auto out = all_bins(exec, first, indices, values, 16, 0.0F, std::plus<>()).first;
+    EXPECT_EQ(std::memcmp(out.data(), expected.data(), out.size() * sizeof(float)), 0);
+  });
+}
+
+}  // namespace
+}  // namespace rastrum::parallel::test

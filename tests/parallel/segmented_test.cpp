@@ -1,0 +1,83 @@
+// segmented_scan and segmented_reduce: definitions, and one result whatever the backend.
+#include <cstring>
+#include <numeric>
+
+#include <tests/parallel/backends.hpp>
+
+namespace rastrum::parallel::test {
+namespace {
+
+/// Where segments of these sizes begin, and how many elements there are.
+std::pair<std::vector<std::uint32_t>, std::size_t> begins(const std::vector<std::uint32_t>& sizes) {
+  std::vector<std::uint32_t> first(sizes.size());
+  std::exclusive_scan(sizes.begin(), sizes.end(), first.begin(), 0U);
+  return {first, std::reduce(sizes.begin(), sizes.end(), std::size_t{0})};
+}
+
+TEST(Segmented, ExampleOfThePaper) {
+  // Paper 1, section 2.2.2.
+  const std::vector<int> data = {1, 2, 3, 4, 5, 6, 7};
+  const std::vector<std::size_t> first = {0, 3, 5, 6};
+  on_every_backend([&](auto& exec) {
+    EXPECT_EQ(as_vector(segmented_reduce(exec, first, data, 0)), (std::vector<int>{6, 9, 6, 7}));
+    std::vector<int> sums(7);
+    segmented_scan<int>(exec, first, data, sums);
+    EXPECT_EQ(sums, (std::vector<int>{1, 3, 6, 4, 9, 6, 7}));
+  });
+}
+
+TEST(Segmented, FoldEachSegmentInOrderWithoutCommuting) {
+  for (const auto& sizes : segment_sizes()) {
+    const auto [first, n] = begins(sizes);
+    const std::vector<Affine> maps = random_maps(n);
+    std::vector<Affine> sums, scanned;
+    for (std::size_t s = 0; s < sizes.size(); ++s) {
+      Affine sum;
+      for (std::size_t j = 0; j < sizes[s]; ++j)
+        scanned.push_back(sum = then(sum, maps[first[s] + j]));
+      sums.push_back(sizes[s] == 0 ? Affine{7, 9} : sum);
+    }
+    on_every_backend([&, &first = first](auto& exec) {
+      EXPECT_EQ(as_vector(segmented_reduce(exec, first, maps, Affine{7, 9}, then)), sums);
+      auto in_place = maps;
+      segmented_scan<Affine>(exec, first, in_place, in_place, then);
+      EXPECT_EQ(in_place, scanned);
+    });
+  }
+}
+
+TEST(Segmented, ComputeInTheTypeThatIsGiven) {
+  const std::vector<std::uint8_t> ones(10000, 255);
+  const std::vector<std::size_t> first = {0, 9000};
+  on_every_backend([&](auto& exec) {
+    EXPECT_EQ(as_vector(segmented_reduce(exec, first, ones, std::uint64_t{0})),
+              (std::vector<std::uint64_t>{255U * 9000, 255U * 1000}));
+    std::vector<std::uint64_t> sums(ones.size());
+    segmented_scan<std::uint64_t>(exec, first, ones, sums);
+    EXPECT_EQ(sums[8999], 255U * 9000);
+    EXPECT_EQ(sums[9999], 255U * 1000);
+  });
+}
+
+TEST(Segmented, FloatSumsHaveOneResultOnAllBackends) {
+  for (const auto& sizes : segment_sizes()) {
+    const auto [first, n] = begins(sizes);
+    const std::vector<float> values = random_floats(n);
+    Serial serial;
+    const auto sums = segmented_reduce(serial, first, values, 0.0F);
+    std::vector<float> scanned(n);
+    segmented_scan<float>(serial, first, values, scanned);
+    on_every_backend([&, &first = first, n = n](auto& exec) {
+      const auto again = segmented_reduce(exec, first, values, 0.0F);
+      ASSERT_EQ(again.size(), sums.size());
+      EXPECT_TRUE(again.empty() ||
+                  std::memcmp(again.data(), sums.data(), sums.size() * sizeof(float)) == 0);
+      std::vector<float> out(n);
+      segmented_scan<float>(exec, first, values, out);
+      EXPECT_TRUE(n == 0 || std::memcmp(out.data(), scanned.data(), n * sizeof(float)) == 0);
+    });
+  }
+}
+
+}  // namespace
+}  // namespace rastrum::parallel::test
