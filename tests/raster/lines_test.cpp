@@ -155,11 +155,11 @@ TEST(Lines, EqualTheOracleAcrossTheGuardBand) {
 TEST(Lines, AreOneFragmentWideAndNearTheIdealLine) {
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     Random r(seed);
-    const SnappedLine l = random_line(r, 10, 60, 5);
+    const SnappedLine l = random_line(r, 60, 100, 5);
     const std::int64_t dx = l.v[1].x_fx8 - l.v[0].x_fx8, dy = l.v[1].y_fx8 - l.v[0].y_fx8;
     const bool x_major = std::abs(dx) >= std::abs(dy);
     std::map<int, std::vector<int>> minor_of;
-    for (const auto& [x, y] : drawn(l, {0, 0, 80, 80}))
+    for (const auto& [x, y] : drawn(l, {0, 0, 160, 160}))
       minor_of[x_major ? x : y].push_back(x_major ? y : x);
     for (auto& [major, minors] : minor_of) {
       ASSERT_EQ(minors.size(), static_cast<std::size_t>(l.width)) << seed;
@@ -174,12 +174,13 @@ TEST(Lines, AreOneFragmentWideAndNearTheIdealLine) {
                            256;
       ASSERT_LE(std::abs((minors.front() + minors.back() + 1) / 2.0 - ideal), 0.5 + 1e-9) << seed;
     }
-    // Every pixel along the major axis between the ends' pixels has its fragments.
+    // Every pixel along the major axis between those of the moved ends has its fragments.
     const std::int64_t low =
         std::min(x_major ? l.v[0].x_fx8 : l.v[0].y_fx8, x_major ? l.v[1].x_fx8 : l.v[1].y_fx8);
     const std::int64_t high =
         std::max(x_major ? l.v[0].x_fx8 : l.v[0].y_fx8, x_major ? l.v[1].x_fx8 : l.v[1].y_fx8);
-    for (auto m = static_cast<int>(low / 256) + 1; m < static_cast<int>(high / 256); ++m)
+    for (auto m = static_cast<int>((low - 1) / 256) + 1; m < static_cast<int>((high - 1) / 256);
+         ++m)
       ASSERT_EQ(minor_of.count(m), 1U) << seed;
   }
 }
