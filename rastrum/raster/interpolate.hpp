@@ -31,8 +31,7 @@ struct Weights {
 inline WeightPlanes line_weight_planes(const FrameGeometry& frame, const Draw& draw,
                                        std::uint64_t line) {
   const std::uint32_t index[2] = {draw.vertex(line, 0), draw.vertex(line, 1)};
-  const ProjectedVertex& v0 = frame.projected[draw.first_vertex + index[0]];
-  const ProjectedVertex& v1 = frame.projected[draw.first_vertex + index[1]];
+  const ProjectedVertex v0 = frame.vertex(draw, index[0]), v1 = frame.vertex(draw, index[1]);
   WeightPlanes w{};
   if (v0.x_fx8 != kNeedsClip && v1.x_fx8 != kNeedsClip) {
     constexpr double kPx = 1.0 / kSubpixels;
@@ -186,10 +185,9 @@ class FragmentLocator {
 
  private:
   [[nodiscard]] bool is_front(const Draw& draw) const {
-    const ProjectedVertex* vertices = frame_.projected + draw.first_vertex;
     const auto& index = fragment_.vertex;
-    const ProjectedVertex &v0 = vertices[index[0]], &v1 = vertices[index[1]],
-                          &v2 = vertices[index[2]];
+    const ProjectedVertex v0 = frame_.vertex(draw, index[0]), v1 = frame_.vertex(draw, index[1]),
+                          v2 = frame_.vertex(draw, index[2]);
     const auto clip = [&](int c) { return draw.source->clip_position(index[c]); };
     const bool counter_clockwise =
         v0.x_fx8 != kNeedsClip && v1.x_fx8 != kNeedsClip && v2.x_fx8 != kNeedsClip

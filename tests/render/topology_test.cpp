@@ -1,5 +1,5 @@
 // Draws of points, lines and triangles in any mix, with widths, sizes, depth biases and windings:
-// every member of the family draws what the brute-force oracle says.
+// serial draws what the brute-force oracle says, and every point of the table what serial draws.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -153,56 +153,62 @@ Expected expected_of(const Mix& mix, int width, int height) {
   return out;
 }
 
-TEST(TopologyFamily, MixesEqualTheOracle) {
-  const ThreadsBeyondCores eight(8);
+auto program_of(const Mix& mix) {
+  return raster::Program(
+      [&mix](std::uint32_t v) {
+        return raster::VertexOutput<Vec4>{mix.clip[v], mix.clip[v]};
+      },
+      [](const Vec4& v, const raster::Fragment& f) {
+        return Vec4{v.x, f.depth, static_cast<float>(f.vertex[0]), f.front ? 1.0F : 0.5F};
+      });
+}
+
+template <class Program>
+std::vector<raster::Draw> draws_of(const Mix& mix, const Program& program) {
+  std::vector<raster::Draw> draws;
+  for (const Plan& plan : mix.plans) {
+    raster::Draw& d =
+        draws.emplace_back(program.draw(mix.clip.size(), plan.indices, plan.topology));
+    d.primitive_count = plan.indices.size() / static_cast<std::size_t>(plan.topology);
+    d.line_width = plan.line_width;
+    d.point_size = plan.point_size;
+    d.depth_bias = plan.bias;
+    d.depth_bias_slope = plan.bias_slope;
+    d.cull = plan.cull;
+    d.winding = plan.winding;
+  }
+  return draws;
+}
+
+RenderOptions serial(int width, int height) {
+  RenderOptions o;
+  o.width = width;
+  o.height = height;
+  o.device = Device::serial;
+  return o;
+}
+
+TEST(Topologies, MixesEqualTheOracle) {
   std::uint64_t clipped = 0, dropped = 0;
   std::map<std::size_t, std::uint64_t> visible;  // pixels by kind of primitive
   const int all = count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 10;
   for (const auto& [width, height] : {std::pair{64, 64}, {37, 91}, {130, 70}}) {
-    RenderOptions base;
-    base.width = width;
-    base.height = height;
-    const std::vector<Relative> family = family_of(base);
-    std::vector<Renderer> renderers;
-    for (const Relative& r : family) renderers.emplace_back(r.options);
+    Renderer renderer(serial(width, height));
     for (int i = 0; i < all / 3; ++i) {
       const auto seed = static_cast<std::uint64_t>(i + width * 100000);
       SCOPED_TRACE("mix " + std::to_string(seed));
       const Mix mix = random_mix(seed, width, height);
-      const raster::Program program(
-          [&](std::uint32_t v) {
-            return raster::VertexOutput<Vec4>{mix.clip[v], mix.clip[v]};
-          },
-          [](const Vec4& v, const raster::Fragment& f) {
-            return Vec4{v.x, f.depth, static_cast<float>(f.vertex[0]), f.front ? 1.0F : 0.5F};
-          });
-      std::vector<raster::Draw> draws;
-      for (const Plan& plan : mix.plans) {
-        raster::Draw& d =
-            draws.emplace_back(program.draw(mix.clip.size(), plan.indices, plan.topology));
-        d.primitive_count = plan.indices.size() / static_cast<std::size_t>(plan.topology);
-        d.line_width = plan.line_width;
-        d.point_size = plan.point_size;
-        d.depth_bias = plan.bias;
-        d.depth_bias_slope = plan.bias_slope;
-        d.cull = plan.cull;
-        d.winding = plan.winding;
-      }
+      const auto program = program_of(mix);
+      std::vector<raster::Draw> draws = draws_of(mix, program);
       const Expected want = expected_of(mix, width, height);
       const OracleImage oracle = brute_force(width, height, want.pieces);
-      const Frame serial = draw(renderers[0], draws, program, nullptr);
-      ASSERT_TRUE(same_surfaces(serial, oracle));
-      ASSERT_TRUE(counts_add_up(serial));
-      ASSERT_EQ(serial.stats.triangles.input, want.input);
-      ASSERT_EQ(serial.stats.triangles.dropped, want.dropped);
-      clipped += serial.stats.triangles.clipped;
+      const Frame frame = draw(renderer, draws, program, nullptr);
+      ASSERT_TRUE(same_surfaces(frame, oracle));
+      ASSERT_TRUE(counts_add_up(frame));
+      ASSERT_EQ(frame.stats.triangles.input, want.input);
+      ASSERT_EQ(frame.stats.triangles.dropped, want.dropped);
+      clipped += frame.stats.triangles.clipped;
       dropped += want.dropped;
-      for (std::size_t k = 1; k < family.size(); ++k) {
-        const Frame frame = draw(renderers[k], draws, program, nullptr);
-        ASSERT_TRUE(same_surfaces(frame, serial)) << family[k].name;
-        ASSERT_TRUE(same_counts(frame.stats, serial.stats)) << family[k].name;
-        ASSERT_TRUE(same_picture(frame, serial, 0)) << family[k].name;
-      }
       for (const SnappedPrimitive& p : want.pieces) {
         const std::int64_t id = std::visit([](const auto& s) { return s.id; }, p.shape);
         visible[p.shape.index()] += static_cast<std::uint64_t>(std::ranges::count(oracle.ids, id));
@@ -216,7 +222,51 @@ TEST(TopologyFamily, MixesEqualTheOracle) {
   }
 }
 
-TEST(TopologyFamily, RefusesWidthsSizesAndBiasesOutOfRange) {
+/// Every point of the table, with any number of threads and every instruction set; a budget so
+/// small that vertices are projected where they are read is one of the cases.
+class TopologyTable : public testing::TestWithParam<TablePoint> {};
+
+TEST_P(TopologyTable, MixesEqualSerial) {
+  const ThreadsBeyondCores eight(8);
+  constexpr int kWidth = 130, kHeight = 91;
+  Renderer reference(serial(kWidth, kHeight));
+  std::vector<Renderer> renderers;
+  for (const Isa isa : available_isas())
+    for (const int threads : {1, 2, 8}) {
+      RenderOptions o = serial(kWidth, kHeight);
+      o.device = Device::threads;
+      o.rasterizer = GetParam().rasterizer;
+      o.visibility = GetParam().visibility;
+      o.threads = threads;
+      o.isa = isa;
+      if (threads == 2) o.memory_limit = std::uint64_t{4} << 20;
+      renderers.emplace_back(o);
+    }
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Mix mix = random_mix(seed, kWidth, kHeight);
+    // More vertices than a quarter of the budget holds.
+    mix.clip.resize(std::size_t{1} << 17, Vec4{0, 0, 0, 1});
+    const auto program = program_of(mix);
+    std::vector<raster::Draw> draws = draws_of(mix, program);
+    const Frame expected = draw(reference, draws, program, nullptr);
+    for (std::size_t k = seed % 3; k < renderers.size(); k += 3) {
+      const Frame frame = draw(renderers[k], draws, program, nullptr);
+      const std::string what = "mix " + std::to_string(seed) + ", " +
+                               std::to_string(renderers[k].options().threads) + " threads, " +
+                               std::string(name(*renderers[k].options().isa));
+      ASSERT_TRUE(same_surfaces(frame, expected)) << what;
+      ASSERT_TRUE(same_counts(frame.stats, expected.stats)) << what;
+      ASSERT_TRUE(same_picture(frame, expected, 0)) << what;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Points, TopologyTable, testing::ValuesIn(table_points()),
+                         [](const testing::TestParamInfo<TablePoint>& p) {
+                           return test_name(p.param);
+                         });
+
+TEST(Topologies, RefusesWidthsSizesAndBiasesOutOfRange) {
   const raster::Program program(
       [](std::uint32_t) {
         return raster::VertexOutput<float>{{0, 0, 0.5F, 1}, 0};
