@@ -1,45 +1,61 @@
-// From a triangle of a draw to its pieces: the slow, complete path (clipper included), used by the
-// reference rasterizer for every triangle and by the fast ones for triangles that need clipping.
+// From a primitive of a draw to its pieces: the slow, complete path (clipper included), used by the
+// reference rasterizer for every primitive and by the fast ones for what the setup kernel leaves:
+// triangles that need clipping or have a depth bias, lines and points.
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
 
 #include <rastrum/raster/geometry.hpp>
+#include <rastrum/raster/points_and_lines.hpp>
 #include <rastrum/raster/setup.hpp>
 
 namespace rastrum::raster {
 
-enum class TriangleFate : std::uint8_t { drawn, clipped, culled, dropped };
+enum class Fate : std::uint8_t { drawn, clipped, culled, dropped };
 
-/// Calls emit(piece) for each piece of triangle `t` of `draw`; says what became of the triangle
-/// (`clipped` triangles are drawn too). Indices must be in range.
+/// The corners of a primitive before and after projection.
+template <std::size_t n>
+struct PrimitiveCorners {
+  ProjectedVertex projected[n];
+  bool needs_clip = false;
+  Vec4d clip[n];  ///< where one of them needs it
+  bool finite = true;
+
+  PrimitiveCorners(const FrameGeometry& frame, const Draw& draw, std::uint64_t primitive) {
+    for (std::size_t i = 0; i < n; ++i) {
+      projected[i] = frame.vertex(draw, draw.vertex(primitive, static_cast<int>(i)));
+      needs_clip |= projected[i].x_fx8 == kNeedsClip;
+    }
+    for (std::size_t i = 0; i < n && needs_clip; ++i) {
+      const Vec4d c = draw.source->clip_position(draw.vertex(primitive, static_cast<int>(i)));
+      clip[i] = c;
+      finite &=
+          std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z) && std::isfinite(c.w);
+    }
+  }
+};
+
 template <class Emit>
-TriangleFate assemble_triangle(const FrameGeometry& frame, const Draw& draw, std::uint64_t t,
-                               Cull cull, Emit&& emit) {
+Fate assemble_triangle(const FrameGeometry& frame, const Draw& draw, std::uint64_t id,
+                       const PrimitiveCorners<3>& c, Emit&& emit) {
+  if (!c.finite) return Fate::dropped;
   const Rect view{0, 0, frame.width, frame.height};
-  const std::uint64_t id = draw.first_id + t;
-  const std::uint32_t index[3] = {draw.vertex(t, 0), draw.vertex(t, 1), draw.vertex(t, 2)};
-  const ProjectedVertex v[3] = {frame.vertex(draw, index[0]), frame.vertex(draw, index[1]),
-                                frame.vertex(draw, index[2])};
+  const Cull cull = draw.effective_cull();
   Piece piece;
-  if (v[0].x_fx8 != kNeedsClip && v[1].x_fx8 != kNeedsClip && v[2].x_fx8 != kNeedsClip) {
+  if (!c.needs_clip) {
+    const auto& v = c.projected;
     if (make_piece(v[0], v[1], v[2], id, draw.flags, cull, view, piece) == SetupResult::culled)
-      return TriangleFate::culled;
+      return Fate::culled;
     emit(piece);
-    return TriangleFate::drawn;
+    return Fate::drawn;
   }
-
-  Vec4d clip[3];
-  for (int i = 0; i < 3; ++i) {
-    clip[i] = draw.source->clip_position(index[i]);
-    if (!std::isfinite(clip[i].x) || !std::isfinite(clip[i].y) || !std::isfinite(clip[i].z) ||
-        !std::isfinite(clip[i].w))
-      return TriangleFate::dropped;
-  }
-  const double facing = orientation(clip);
+  const double facing = orientation(c.clip);
   if (facing == 0 || (cull == Cull::back && facing < 0) || (cull == Cull::front && facing > 0))
-    return TriangleFate::culled;
-  const ClippedPolygon polygon = clip_triangle(clip, v, frame.viewport);
+    return Fate::culled;
+  const ClippedPolygon polygon = clip_triangle(c.clip, c.projected, frame.viewport);
   // Snapping may turn a sliver of the polygon over; only pieces that face as the triangle does
   // count.
   const Cull other_side = facing > 0 ? Cull::back : Cull::front;
@@ -50,7 +66,54 @@ TriangleFate assemble_triangle(const FrameGeometry& frame, const Draw& draw, std
       emit(piece);
       any = true;
     }
-  return any ? TriangleFate::clipped : TriangleFate::culled;
+  return any ? Fate::clipped : Fate::culled;
+}
+
+template <class Emit>
+Fate assemble_line(const FrameGeometry& frame, const Draw& draw, std::uint64_t id,
+                   PrimitiveCorners<2> c, Emit&& emit) {
+  if (!c.finite) return Fate::dropped;
+  if (c.needs_clip && !clip_line(c.clip, c.projected, frame.viewport)) return Fate::culled;
+  Piece piece;
+  if (make_line(c.projected[0], c.projected[1], id, draw.flags, whole_width(draw.line_width),
+                {0, 0, frame.width, frame.height}, piece) == SetupResult::culled)
+    return Fate::culled;
+  emit(piece);
+  return c.needs_clip ? Fate::clipped : Fate::drawn;
+}
+
+template <class Emit>
+Fate assemble_point(const FrameGeometry& frame, const Draw& draw, std::uint64_t id,
+                    PrimitiveCorners<1> c, Emit&& emit) {
+  if (!c.finite) return Fate::dropped;
+  if (c.needs_clip && !clip_point(c.clip[0], frame.viewport, c.projected[0])) return Fate::culled;
+  Piece piece;
+  if (make_point(c.projected[0], id, draw.flags, point_size_fx8(draw.point_size),
+                 {0, 0, frame.width, frame.height}, piece) == SetupResult::culled)
+    return Fate::culled;
+  emit(piece);
+  return Fate::drawn;
+}
+
+/// Calls emit(piece) for each piece of primitive `p` of `draw`; says what became of it (`clipped`
+/// ones are drawn too). Indices must be in range.
+template <class Emit>
+Fate assemble_primitive(const FrameGeometry& frame, const Draw& draw, std::uint64_t p,
+                        Emit&& emit) {
+  const std::uint64_t id = draw.first_id + p;
+  const auto emit_biased = [&](Piece& piece) {
+    add_depth_bias(piece, draw.depth_bias, draw.depth_bias_slope);
+    emit(std::as_const(piece));
+  };
+  switch (draw.topology) {
+    case Topology::points:
+      return assemble_point(frame, draw, id, PrimitiveCorners<1>(frame, draw, p), emit_biased);
+    case Topology::lines:
+      return assemble_line(frame, draw, id, PrimitiveCorners<2>(frame, draw, p), emit_biased);
+    case Topology::triangles:
+      break;
+  }
+  return assemble_triangle(frame, draw, id, PrimitiveCorners<3>(frame, draw, p), emit_biased);
 }
 
 }  // namespace rastrum::raster

@@ -99,8 +99,15 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
     if (cursor + 6 < in.count) __builtin_prefetch(in.pieces + in.list[cursor + 6].piece);
     const std::uint32_t index = in.list[cursor].piece;
     const Piece& piece = in.pieces[index];
-    const Rect box = sample_bounds(piece.x, piece.y, bin);
+    const Rect box = piece_bounds(piece, bin);
     if (box.empty() || hidden.hides_piece(piece, box)) continue;
+    const auto is_hidden = [&](int bx, int by) { return hidden.hides_block(piece, bx, by); };
+    if (!is_triangle(piece)) {
+      cover_blocks(piece, box, bin, is_hidden, [&](int bx, int by, std::uint64_t mask) {
+        out[n++] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
+      });
+      continue;
+    }
     const int bx0 = box.x0 / kBlockSize, by0 = box.y0 / kBlockSize;
     const int bx1 = (box.x1 - 1) / kBlockSize, by1 = (box.y1 - 1) / kBlockSize;
     const auto add = [&](int bx, int by, std::uint64_t mask) HWY_ATTR {
@@ -241,6 +248,10 @@ void masks(const Piece* pieces, Block* blocks, std::size_t n) noexcept {
   for (std::size_t k = 0; k < n; ++k) {
     Block& block = blocks[k];
     if (block.mask != 0) continue;
+    if (!is_triangle(pieces[block.piece])) {
+      block.mask = cover_8x8(pieces[block.piece], block.bx, block.by);
+      continue;
+    }
     std::int32_t base[3], b[3];
     I steps[3][8 / kLanes];
     for (int i = 0; i < 3; ++i) {

@@ -1,6 +1,7 @@
 #include <rastrum/raster/clip.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace rastrum::raster {
@@ -26,12 +27,16 @@ struct Plane {
   }
 };
 
-Corner between(const Corner& in, double d_in, const Corner& out, double d_out) {
-  const double t = d_in / (d_in - d_out);
-  const Vec4d &a = in.clip, &b = out.clip;
+/// A new vertex on the way from a to b.
+Corner at(const Corner& from, const Corner& to, double t) {
+  const Vec4d &a = from.clip, &b = to.clip;
   return {
       {a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t, a.w + (b.w - a.w) * t},
       nullptr};
+}
+
+Corner between(const Corner& in, double d_in, const Corner& out, double d_out) {
+  return at(in, out, d_in / (d_in - d_out));
 }
 
 void cut(Polygon& polygon, const Plane& plane) {
@@ -60,6 +65,19 @@ void cut(Polygon& polygon, const Plane& plane) {
   polygon = kept;
 }
 
+/// The near plane and the guard band. px · w = x · hw + w · hw and py · w = w · hh − y · hh where
+/// w > 0. Opposite guard planes add up to w · (max − min) ≥ 0, so they also remove what lies behind
+/// the eye of a caller's own projection.
+std::array<Plane, 5> planes(Viewport viewport) {
+  const double hw = viewport.half_width;
+  const double hh = viewport.half_height;
+  return {{{0, 0, -1, 1},
+           {hw, 0, 0, hw - kGuardMinPx},
+           {-hw, 0, 0, kGuardMaxPx - hw},
+           {0, -hh, 0, hh - kGuardMinPx},
+           {0, hh, 0, kGuardMaxPx - hh}}};
+}
+
 std::int32_t snap_in_guard_band(double px) {
   const double clamped = std::clamp(px, double{kGuardMinPx}, double{kGuardMaxPx});
   return static_cast<std::int32_t>(std::nearbyint(clamped * kSubpixels));
@@ -84,19 +102,7 @@ ClippedPolygon clip_triangle(const Vec4d (&clip)[3], const ProjectedVertex (&pro
     const bool has_position = projected[i].x_fx8 != kNeedsClip;
     polygon.corners[i] = {clip[i], has_position ? &projected[i] : nullptr};
   }
-  const double hw = viewport.half_width;
-  const double hh = viewport.half_height;
-  // px · w = x · hw + w · hw and py · w = w · hh − y · hh where w > 0. Opposite guard planes add up
-  // to w · (max − min) ≥ 0, so they also remove what lies behind the eye of a caller's own
-  // projection.
-  const Plane planes[] = {
-      {0, 0, -1, 1},
-      {hw, 0, 0, hw - kGuardMinPx},
-      {-hw, 0, 0, kGuardMaxPx - hw},
-      {0, -hh, 0, hh - kGuardMinPx},
-      {0, hh, 0, kGuardMaxPx - hh},
-  };
-  for (const Plane& plane : planes) cut(polygon, plane);
+  for (const Plane& plane : planes(viewport)) cut(polygon, plane);
 
   ClippedPolygon result;
   if (polygon.size < 3) return result;
@@ -106,6 +112,40 @@ ClippedPolygon clip_triangle(const Vec4d (&clip)[3], const ProjectedVertex (&pro
   }
   result.size = polygon.size;
   return result;
+}
+
+bool clip_line(const Vec4d (&clip)[2], ProjectedVertex (&projected)[2],
+               Viewport viewport) noexcept {
+  const auto corner = [&](int i) {
+    return Corner{clip[i], projected[i].x_fx8 != kNeedsClip ? &projected[i] : nullptr};
+  };
+  const Corner a = corner(0), b = corner(1);
+  // How far from a the line stays inside of all planes, and how far from b: each is measured from
+  // the inside end of its plane.
+  double from_a = 1, from_b = 1;
+  for (const Plane& plane : planes(viewport)) {
+    const double da = plane.distance(a), db = plane.distance(b);
+    if (da < 0 && db < 0) return false;
+    if (db < 0) from_a = std::min(from_a, da / (da - db));
+    if (da < 0) from_b = std::min(from_b, db / (db - da));
+  }
+  if (from_a + from_b < 1) return false;
+  const Corner ends[2] = {from_b < 1 ? at(b, a, from_b) : a, from_a < 1 ? at(a, b, from_a) : b};
+  if (!(ends[0].clip.w > 0) || !(ends[1].clip.w > 0)) return false;
+  const ProjectedVertex p0 = project_corner(ends[0], viewport);
+  const ProjectedVertex p1 = project_corner(ends[1], viewport);
+  projected[0] = p0;
+  projected[1] = p1;
+  return true;
+}
+
+bool clip_point(const Vec4d& clip, Viewport viewport, ProjectedVertex& projected) noexcept {
+  const Corner corner{clip, nullptr};
+  for (const Plane& plane : planes(viewport))
+    if (plane.distance(corner) < 0) return false;
+  if (!(clip.w > 0)) return false;
+  projected = project_corner(corner, viewport);
+  return true;
 }
 
 double orientation(const Vec4d (&c)[3]) noexcept {

@@ -1,8 +1,8 @@
 // Clipping against the near plane and the guard band, only where a vertex needs it.
 // The pieces of a triangle depend on the triangle and the full image alone. New vertices are
 // computed in float64 from the inside end of an edge to its outside end, so two triangles that
-// share the edge get the same vertex and stay watertight. (Sutherland and Hodgman, 1974, in
-// homogeneous coordinates.)
+// share the edge get the same vertex and stay watertight. (Sutherland and Hodgman, 1974, and for
+// lines Liang and Barsky, 1984, in homogeneous coordinates.)
 #pragma once
 
 #include <rastrum/raster/projection.hpp>
@@ -27,6 +27,17 @@ struct ClippedPolygon {
 [[nodiscard]] ClippedPolygon clip_triangle(const Vec4d (&clip)[3],
                                            const ProjectedVertex (&projected)[3],
                                            Viewport viewport) noexcept;
+
+/// Cuts the line `clip` (homogeneous, finite) and puts its ends into `projected`, of which those
+/// that have a position keep it. False: nothing is left, `projected` is as before. The result does
+/// not depend on the direction of the line.
+[[nodiscard]] bool clip_line(const Vec4d (&clip)[2], ProjectedVertex (&projected)[2],
+                             Viewport viewport) noexcept;
+
+/// Projects a point without a position in float32 (finite); false where none of the planes' inside
+/// holds it.
+[[nodiscard]] bool clip_point(const Vec4d& clip, Viewport viewport,
+                              ProjectedVertex& projected) noexcept;
 
 /// Sign of the triangle's orientation, also where vertices lie behind the eye: > 0 for
 /// counter-clockwise (front), 0 where it is seen edge-on.

@@ -1,6 +1,6 @@
-// What the pipeline draws: vertices from any source, triangles over them, and the two hooks of the
-// programmable stages (fragment test and shading), which see blocks, so that one virtual call
-// serves up to 64 fragments.
+// What the pipeline draws: vertices from any source, points, lines or triangles over them, and the
+// two hooks of the programmable stages (fragment test and shading), which see blocks, so that one
+// virtual call serves up to 64 fragments.
 #pragma once
 
 #include <cstddef>
@@ -33,22 +33,52 @@ class VertexSource {
   [[nodiscard]] virtual Vec4d clip_position(std::size_t vertex) const noexcept = 0;
 };
 
-/// Triangles over one vertex source. Ids count through the draws of a frame in order.
+/// The value is the number of vertices of a primitive.
+enum class Topology : std::uint8_t { points = 1, lines = 2, triangles = 3 };
+
+/// Which side of a triangle is its front: where its vertices turn counter-clockwise on the screen,
+/// clockwise, or whichever is seen; then no face is culled.
+enum class Winding : std::uint8_t { counter_clockwise, clockwise, either };
+
+/// Wider lines and larger points are refused.
+inline constexpr float kMaxLineWidth = 4096, kMaxPointSize = 4096;
+
+/// Points, lines or triangles over one vertex source. Ids count primitives through the draws of a
+/// frame in order.
 struct Draw {
   const VertexSource* source = nullptr;
   std::size_t vertex_count = 0;
-  std::span<const std::uint32_t> indices;  ///< 3 per triangle; empty: vertices in order
-  std::uint64_t triangle_count = 0;
+  std::span<const std::uint32_t> indices;  ///< empty: vertices in order
+  std::uint64_t primitive_count = 0;
+  Topology topology = Topology::triangles;
   std::uint32_t flags = 0;  ///< of its pieces
-  Cull cull = Cull::none;   ///< which faces are left out
+  Cull cull = Cull::none;   ///< which faces of triangles are left out
+  Winding winding = Winding::counter_clockwise;
+  float line_width = 1;  ///< px across the minor axis, rounded to a whole number of at least 1
+  float point_size = 1;  ///< px, in n.8; less than 1 counts as 1
+  /// Added to the depth of every fragment before it is cut to [0, 1], as GL's polygon offset, but
+  /// for all topologies and in units of reversed depth (more is nearer): depth_bias +
+  /// depth_bias_slope · max(|zx|, |zy|), the change of depth per px.
+  float depth_bias = 0, depth_bias_slope = 0;
 
   // Filled by the pipeline.
   std::uint64_t first_id = 0;
   std::size_t first_vertex = 0;  ///< of this draw in FrameGeometry::projected
 
-  [[nodiscard]] std::uint32_t vertex(std::uint64_t triangle, int corner) const {
-    const std::size_t i = static_cast<std::size_t>(triangle) * 3 + static_cast<std::size_t>(corner);
+  [[nodiscard]] std::uint32_t vertex(std::uint64_t primitive, int corner) const {
+    const std::size_t i = static_cast<std::size_t>(primitive) * static_cast<std::size_t>(topology) +
+                          static_cast<std::size_t>(corner);
     return indices.empty() ? static_cast<std::uint32_t>(i) : indices[i];
+  }
+  /// What the winding makes of `cull`, for counter-clockwise fronts.
+  [[nodiscard]] Cull effective_cull() const {
+    if (cull == Cull::none || winding == Winding::either) return Cull::none;
+    const bool swap = winding == Winding::clockwise;
+    return (cull == Cull::back) != swap ? Cull::back : Cull::front;
+  }
+  /// Whether the setup kernel may make its pieces; otherwise assemble_primitive does.
+  [[nodiscard]] bool has_kernel() const {
+    return topology == Topology::triangles && depth_bias == 0 && depth_bias_slope == 0;
   }
 };
 
@@ -67,7 +97,7 @@ struct FrameGeometry {
     return v;
   }
 
-  /// The draw that holds triangle `id`. O(log draws).
+  /// The draw that holds primitive `id`. O(log draws).
   [[nodiscard]] const Draw& draw_of(std::uint64_t id) const {
     std::size_t low = 0;
     std::size_t high = draws.size();

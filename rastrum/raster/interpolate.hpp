@@ -2,14 +2,17 @@
 // screen. Computed in float64 from snapped positions, or, for a triangle that was clipped, from the
 // homogeneous positions of the original (Olano and Greer, "Triangle scan conversion using 2D
 // homogeneous coordinates", 1997), so that no attribute is ever clipped. The SIMD shaders have a
-// float32 form for triangles where that is as good.
+// float32 form for triangles where that is as good. Along a line the weights change with the major
+// axis alone, as its depth does; a point has one weight.
 #pragma once
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
 #include <rastrum/raster/geometry.hpp>
+#include <rastrum/raster/setup.hpp>
 
 namespace rastrum::raster {
 
@@ -24,6 +27,42 @@ struct Weights {
   double db_dx[3];  ///< change per px of the normalized weights
   double db_dy[3];
 };
+
+inline WeightPlanes line_weight_planes(const FrameGeometry& frame, const Draw& draw,
+                                       std::uint64_t line) {
+  const std::uint32_t index[2] = {draw.vertex(line, 0), draw.vertex(line, 1)};
+  const ProjectedVertex v0 = frame.vertex(draw, index[0]), v1 = frame.vertex(draw, index[1]);
+  WeightPlanes w{};
+  if (v0.x_fx8 != kNeedsClip && v1.x_fx8 != kNeedsClip) {
+    constexpr double kPx = 1.0 / kSubpixels;
+    const double dx = (v1.x_fx8 - v0.x_fx8) * kPx, dy = (v1.y_fx8 - v0.y_fx8) * kPx;
+    const bool x_major = std::abs(dx) >= std::abs(dy);
+    double(&along)[3] = x_major ? w.p : w.q;
+    w.x0 = v0.x_fx8 * kPx;
+    w.y0 = v0.y_fx8 * kPx;
+    w.r[0] = v0.inv_w;
+    along[0] = -v0.inv_w / (x_major ? dx : dy);
+    along[1] = v1.inv_w / (x_major ? dx : dy);
+    return w;
+  }
+  // With X = (b₀ x₀ + b₁ x₁) / (b₀ w₀ + b₁ w₁): b₀ : b₁ = X w₁ − x₁ : x₀ − X w₀, linear in X, the
+  // NDC of the axis along which the line is longer on the screen.
+  const Vec4d a = draw.source->clip_position(index[0]), b = draw.source->clip_position(index[1]);
+  const double hw = frame.viewport.half_width;
+  const double hh = frame.viewport.half_height;
+  if (std::abs(a.x * b.w - b.x * a.w) * hw >= std::abs(a.y * b.w - b.y * a.w) * hh) {
+    w.r[0] = -b.w - b.x;
+    w.p[0] = b.w / hw;
+    w.r[1] = a.x + a.w;
+    w.p[1] = -a.w / hw;
+  } else {
+    w.r[0] = b.w - b.y;
+    w.q[0] = -b.w / hh;
+    w.r[1] = a.y - a.w;
+    w.q[1] = a.w / hh;
+  }
+  return w;
+}
 
 inline WeightPlanes weight_planes(const FrameGeometry& frame, const Draw& draw,
                                   std::uint64_t triangle) {
@@ -99,29 +138,43 @@ inline Weights weights_at(const WeightPlanes& w, int x, int y) {
 struct Fragment {
   int x = 0, y = 0;
   float depth = 0;
-  std::uint64_t id = 0;        ///< triangle in submission order
-  std::uint64_t triangle = 0;  ///< within its draw
+  std::uint64_t id = 0;        ///< primitive in submission order
+  std::uint64_t triangle = 0;  ///< or line or point, within its draw
   std::size_t draw = 0;        ///< index into FrameGeometry::draws
-  std::uint32_t vertex[3] = {};
+  bool front = true;  ///< is seen from its front (Draw::winding; `either`: counter-clockwise)
+  std::uint32_t vertex[3] = {};  ///< as many as the topology has
   Weights weights;
   const WeightPlanes* planes = nullptr;
 };
 
-/// Finds triangles and their weights for fragment after fragment; neighbours mostly share a
-/// triangle, whose planes are then kept.
+/// Finds primitives and their weights for fragment after fragment; neighbours mostly share one,
+/// whose planes are then kept.
 class FragmentLocator {
  public:
   explicit FragmentLocator(const FrameGeometry& frame) : frame_(frame) {}
 
-  /// The fragment of triangle `id` at pixel (x, y). Valid until the next call.
+  /// The fragment of primitive `id` at pixel (x, y). Valid until the next call.
   const Fragment& locate(std::uint64_t id, int x, int y) {
     if (id != fragment_.id || fragment_.planes == nullptr) {
       const Draw& draw = frame_.draw_of(id);
       fragment_.id = id;
       fragment_.triangle = id - draw.first_id;
       fragment_.draw = static_cast<std::size_t>(&draw - frame_.draws.data());
-      for (int c = 0; c < 3; ++c) fragment_.vertex[c] = draw.vertex(fragment_.triangle, c);
-      planes_ = weight_planes(frame_, draw, fragment_.triangle);
+      for (int c = 0; c < static_cast<int>(draw.topology); ++c)
+        fragment_.vertex[c] = draw.vertex(fragment_.triangle, c);
+      switch (draw.topology) {
+        case Topology::points:
+          planes_ = {};
+          planes_.r[0] = 1;
+          break;
+        case Topology::lines:
+          planes_ = line_weight_planes(frame_, draw, fragment_.triangle);
+          break;
+        case Topology::triangles:
+          planes_ = weight_planes(frame_, draw, fragment_.triangle);
+          break;
+      }
+      fragment_.front = draw.topology != Topology::triangles || is_front(draw);
       fragment_.planes = &planes_;
     }
     fragment_.x = x;
@@ -131,6 +184,18 @@ class FragmentLocator {
   }
 
  private:
+  [[nodiscard]] bool is_front(const Draw& draw) const {
+    const auto& index = fragment_.vertex;
+    const ProjectedVertex v0 = frame_.vertex(draw, index[0]), v1 = frame_.vertex(draw, index[1]),
+                          v2 = frame_.vertex(draw, index[2]);
+    const auto clip = [&](int c) { return draw.source->clip_position(index[c]); };
+    const bool counter_clockwise =
+        v0.x_fx8 != kNeedsClip && v1.x_fx8 != kNeedsClip && v2.x_fx8 != kNeedsClip
+            ? twice_area(v0, v1, v2) < 0
+            : orientation({clip(0), clip(1), clip(2)}) > 0;
+    return counter_clockwise != (draw.winding == Winding::clockwise);
+  }
+
   const FrameGeometry& frame_;
   Fragment fragment_;
   WeightPlanes planes_;

@@ -50,15 +50,13 @@ std::size_t cover_scalar(const PieceList& in, std::size_t& cursor, Rect bin, Blo
   for (; cursor < in.count && n + kBlocksPerBin <= capacity; ++cursor) {
     const std::uint32_t index = in.list[cursor].piece;
     const Piece& piece = in.pieces[index];
-    const Rect box = sample_bounds(piece.x, piece.y, bin);
+    const Rect box = piece_bounds(piece, bin);
     if (box.empty() || hidden.hides_piece(piece, box)) continue;
-    for (int by = box.y0 / kBlockSize; by <= (box.y1 - 1) / kBlockSize; ++by)
-      for (int bx = box.x0 / kBlockSize; bx <= (box.x1 - 1) / kBlockSize; ++bx) {
-        if (hidden.hides_block(piece, bx, by)) continue;
-        const std::uint64_t mask = cover_8x8(piece, bx, by) & samples_inside(bin, bx, by);
-        if (mask == 0) continue;
-        out[n++] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
-      }
+    cover_blocks(
+        piece, box, bin, [&](int bx, int by) { return hidden.hides_block(piece, bx, by); },
+        [&](int bx, int by, std::uint64_t mask) {
+          out[n++] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
+        });
   }
   return n;
 }

@@ -1,4 +1,4 @@
-// A piece: a set-up triangle. What coverage enumerates and visibility resolves.
+// A piece: a set-up triangle, line or point. What coverage enumerates and visibility resolves.
 #pragma once
 
 #include <cstdint>
@@ -18,20 +18,30 @@ RASTRUM_HD constexpr std::uint64_t id_of_word(std::uint64_t word) {
   return kIdMask - (word & kIdMask);
 }
 
-/// The triangle is wound so that its inside is where all three edge functions are positive
-/// (clockwise on the screen, whose y points down). Its vertices are its three exact edges: edge i
-/// runs from vertex i to vertex (i + 1) mod 3. Vertex 0 is the first submitted one and the depth
-/// plane's origin.
+/// A triangle is wound so that its inside is where all three edge functions are positive (clockwise
+/// on the screen, whose y points down). Its vertices are its three exact edges: edge i runs from
+/// vertex i to vertex (i + 1) mod 3.
+/// A line keeps its two ends, in x[2] and y[2] the first pixel along its major axis and the one
+/// past the last, and its width in the flags. A point keeps its centre and its pixels
+/// [x[1], x[2]) × [y[1], y[2]).
+/// Vertex 0 is the first submitted one and the depth plane's origin.
 struct alignas(16) Piece {
-  std::int32_t x[3], y[3];  ///< n.8, inside the guard band
+  std::int32_t x[3], y[3];  ///< n.8, inside the guard band, but for what is said to be in pixels
   float z0, zx, zy;         ///< depth at vertex 0 and its change per px
-  std::uint32_t flags;      ///< kTested
+  std::uint32_t flags;      ///< kTested, kLine or kPoint, the width of a line
   std::uint64_t low;        ///< the word's low part: kIdMask − id
 };
 static_assert(sizeof(Piece) == 48);
 
 /// Fragments of this piece pass a fragment test (alpha mask, discard) before the maximum.
 inline constexpr std::uint32_t kTested = 1;
+/// What the piece is; neither: a triangle.
+inline constexpr std::uint32_t kLine = 2, kPoint = 4;
+inline constexpr int kLineWidthShift = 16;
+
+RASTRUM_HD inline bool is_triangle(const Piece& p) {
+  return (p.flags & (kLine | kPoint)) == 0;
+}
 
 /// A fragment of a micro triangle, whose coverage and depth setup has found at once: all samples
 /// inside its box lie in kMicroSize² pixels.

@@ -59,14 +59,17 @@ class Program final : public VertexSource, public BlockShader {
   Program(const Program&) = delete;  // draws and the test point to it
   Program& operator=(const Program&) = delete;
 
-  /// `indices`: 3 per triangle, which must outlive the frame; empty: vertices in order.
-  [[nodiscard]] Draw draw(std::size_t vertex_count,
-                          std::span<const std::uint32_t> indices = {}) const {
+  /// `indices`: 3 per triangle, 2 per line or 1 per point, which must outlive the frame; empty:
+  /// vertices in order.
+  [[nodiscard]] Draw draw(std::size_t vertex_count, std::span<const std::uint32_t> indices = {},
+                          Topology topology = Topology::triangles) const {
     Draw d;
     d.source = this;
     d.vertex_count = vertex_count;
     d.indices = indices;
-    d.triangle_count = (indices.empty() ? vertex_count : indices.size()) / 3;
+    d.topology = topology;
+    d.primitive_count =
+        (indices.empty() ? vertex_count : indices.size()) / static_cast<std::size_t>(topology);
     if constexpr (kDiscards) d.flags = kTested;
     return d;
   }
@@ -137,25 +140,32 @@ class Program final : public VertexSource, public BlockShader {
     Discard discard_;
   };
 
-  /// Calls f(bit, varying, fragment) for the fragments of triangle `id` in `mask`.
+  /// Calls f(bit, varying, fragment) for the fragments of primitive `id` in `mask`.
   template <class F>
   void for_each_fragment(const FrameGeometry& frame, std::uint64_t id, std::uint64_t mask, int x0,
                          int y0, F&& f) const {
     FragmentLocator locator(frame);
     const Draw& draw = frame.draw_of(id);
-    const std::uint64_t t = id - draw.first_id;
-    const VaryingType corner[3] = {vertex_(draw.vertex(t, 0)).varying,
-                                   vertex_(draw.vertex(t, 1)).varying,
-                                   vertex_(draw.vertex(t, 2)).varying};
-    for (; mask != 0; mask &= mask - 1) {
-      const int i = std::countr_zero(mask);
-      Fragment fragment = locator.locate(id, x0 + i % kBlockSize, y0 + i / kBlockSize);
-      const auto& b = fragment.weights.b;
-      f(i,
-        corner[0] * static_cast<float>(b[0]) + corner[1] * static_cast<float>(b[1]) +
-            corner[2] * static_cast<float>(b[2]),
-        fragment);
-    }
+    const auto varying = [&](int corner) {
+      return vertex_(draw.vertex(id - draw.first_id, corner)).varying;
+    };
+    const auto each = [&](auto&& interpolate) {
+      for (std::uint64_t m = mask; m != 0; m &= m - 1) {
+        const int i = std::countr_zero(m);
+        Fragment fragment = locator.locate(id, x0 + i % kBlockSize, y0 + i / kBlockSize);
+        const auto& b = fragment.weights.b;
+        const float weight[3] = {static_cast<float>(b[0]), static_cast<float>(b[1]),
+                                 static_cast<float>(b[2])};
+        f(i, VaryingType(interpolate(weight)), fragment);
+      }
+    };
+    const VaryingType v0 = varying(0);
+    if (draw.topology == Topology::points) return each([&](const auto&) { return v0; });
+    const VaryingType v1 = varying(1);
+    if (draw.topology == Topology::lines)
+      return each([&](const auto& b) { return v0 * b[0] + v1 * b[1]; });
+    const VaryingType v2 = varying(2);
+    each([&](const auto& b) { return v0 * b[0] + v1 * b[1] + v2 * b[2]; });
   }
 
   Vertex vertex_;

@@ -125,7 +125,7 @@ FrameStats Rasterizer::render(FrameRequest& request) {
   stats.visibility = visibility_.name;
   stats.isa = request.isa;
   const Totals totals = number_draws(request.draws, request.targets.first_id);
-  const Plan cut = plan(request, totals.triangles, totals.vertices);
+  const Plan cut = plan(request, totals.primitives, totals.vertices);
 
   FrameGeometry geometry{request.width, request.height, Viewport::of(request.width, request.height),
                          request.draws, nullptr,        request.isa};
@@ -143,10 +143,10 @@ FrameStats Rasterizer::render(FrameRequest& request) {
   for (int y = 0; y < request.height; y += cut.band_rows) {
     frame.view = {0, y, request.width, std::min(y + cut.band_rows, request.height)};
     frame.first_band = y == 0;
-    draw_band(frame, cut, totals.triangles);
+    draw_band(frame, cut, totals.primitives);
   }
-  stats.triangles.input = totals.triangles;
-  stats.triangles.drawn = totals.triangles - stats.triangles.dropped - stats.triangles.culled;
+  stats.triangles.input = totals.primitives;
+  stats.triangles.drawn = totals.primitives - stats.triangles.dropped - stats.triangles.culled;
   stats.fragments = frame.fragments;
   stats.pixels_covered = frame.pixels_covered;
   for (const auto& [name, value] : frame.counters)

@@ -16,7 +16,7 @@ namespace {
 /// the same interface as everywhere.
 void draw_piece(const FrameRequest& request, const FrameGeometry& frame, const Piece& piece,
                 ImageView<std::uint64_t> words, FrameStats& stats) {
-  const Rect box = sample_bounds(piece.x, piece.y, Rect{0, 0, request.width, request.height});
+  const Rect box = piece_bounds(piece, Rect{0, 0, request.width, request.height});
   for (int y = box.y0; y < box.y1; ++y) {
     const Span span = row_span(piece, y, box.x0, box.x1);
     for (int x = span.begin; x < span.end; ++x) {
@@ -64,15 +64,15 @@ FrameStats render_reference(FrameRequest& request, MemoryAccount& memory) {
   if (!request.targets.overdraw.empty())
     for (int y = 0; y < request.height; ++y)
       std::fill_n(request.targets.overdraw.row(y), request.width, 0U);
-  stats.triangles.input = totals.triangles;
+  stats.triangles.input = totals.primitives;
   for (const Draw& draw : request.draws)
-    for (std::uint64_t t = 0; t < draw.triangle_count; ++t) {
-      const TriangleFate fate = assemble_triangle(
-          frame, draw, t, draw.cull,
-          [&](const Piece& piece) { draw_piece(request, frame, piece, words, stats); });
-      stats.triangles.dropped += fate == TriangleFate::dropped;
-      stats.triangles.culled += fate == TriangleFate::culled;
-      stats.triangles.clipped += fate == TriangleFate::clipped;
+    for (std::uint64_t t = 0; t < draw.primitive_count; ++t) {
+      const Fate fate = assemble_primitive(frame, draw, t, [&](const Piece& piece) {
+        draw_piece(request, frame, piece, words, stats);
+      });
+      stats.triangles.dropped += fate == Fate::dropped;
+      stats.triangles.culled += fate == Fate::culled;
+      stats.triangles.clipped += fate == Fate::clipped;
     }
   stats.triangles.drawn = stats.triangles.input - stats.triangles.dropped - stats.triangles.culled;
   watch.lap(stats, "rasterize");

@@ -89,6 +89,19 @@ std::uint64_t of_this_pass(const std::uint64_t* words, std::uint64_t covered,
   return mask;
 }
 
+void check_draw(const Draw& draw) {
+  const auto require = [](bool ok, const char* what) {
+    if (!ok) throw Error(Errc::invalid_argument, what);
+  };
+  // Written so that a NaN fails.
+  require(draw.line_width > 0 && draw.line_width <= kMaxLineWidth,
+          "a draw's line width must be > 0 and at most 4096 px");
+  require(draw.point_size > 0 && draw.point_size <= kMaxPointSize,
+          "a draw's point size must be > 0 and at most 4096 px");
+  require(std::isfinite(draw.depth_bias) && std::isfinite(draw.depth_bias_slope),
+          "a draw's depth bias must be finite");
+}
+
 }  // namespace
 
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame,
@@ -145,15 +158,16 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
 Totals number_draws(std::span<Draw> draws, std::uint64_t first_id) {
   Totals totals;
   for (Draw& draw : draws) {
-    draw.first_id = first_id + totals.triangles;
+    check_draw(draw);
+    draw.first_id = first_id + totals.primitives;
     draw.first_vertex = totals.vertices;
-    totals.triangles += draw.triangle_count;
+    totals.primitives += draw.primitive_count;
     totals.vertices += draw.vertex_count;
   }
-  if (totals.triangles > kMaxId || first_id > kMaxId - totals.triangles)
+  if (totals.primitives > kMaxId || first_id > kMaxId - totals.primitives)
     throw Error(Errc::invalid_argument,
-                "the scene has " + std::to_string(first_id + totals.triangles) +
-                    " triangles; at most " + std::to_string(kMaxId) + " have an id");
+                "the scene has " + std::to_string(first_id + totals.primitives) +
+                    " primitives; at most " + std::to_string(kMaxId) + " have an id");
   return totals;
 }
 

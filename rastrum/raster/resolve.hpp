@@ -21,10 +21,11 @@ void load_words(const Targets& targets, Rect rect, const SurfaceView& surface) n
 /// The same for a rectangle in which this pass has no surface.
 void resolve_empty(const FrameRequest& request, Rect rect) noexcept;
 
-/// Numbers the triangles (from `first_id`) and vertices of the draws and returns the totals. Throws
-/// Error{invalid_argument} if there are more triangles than ids.
+/// Numbers the primitives (from `first_id`) and vertices of the draws and returns the totals.
+/// Throws Error{invalid_argument} if there are more primitives than ids, and for a line width,
+/// point size or depth bias out of range.
 struct Totals {
-  std::uint64_t triangles = 0;
+  std::uint64_t primitives = 0;
   std::size_t vertices = 0;
 };
 [[nodiscard]] Totals number_draws(std::span<Draw> draws, std::uint64_t first_id = 0);

@@ -29,6 +29,18 @@ struct Corners {
   }
 };
 
+/// Leaves primitives [first, first + count) to assemble_primitive, which wants indices in range.
+SetupOutput all_slow(const Draw& draw, std::uint64_t first, std::uint32_t count,
+                     std::uint32_t* slow) {
+  SetupOutput out;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (int corner = 0; corner < static_cast<int>(draw.topology); ++corner)
+      out.index_in_range &= draw.vertex(first + i, corner) < draw.vertex_count;
+    slow[out.slow++] = i;
+  }
+  return out;
+}
+
 }  // namespace
 
 bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces& pieces,
@@ -42,7 +54,7 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
     const Draw& draw = geometry.draw_of(id);
     const std::uint64_t t = id - draw.first_id;
     const auto count = static_cast<std::uint32_t>(
-        std::min({std::uint64_t{kSetupBatch}, last - id, draw.triangle_count - t}));
+        std::min({std::uint64_t{kSetupBatch}, last - id, draw.primitive_count - t}));
     SetupInput input;
     input.first = t;
     input.count = count;
@@ -51,7 +63,7 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
       input.indices = draw.indices.empty() ? nullptr : draw.indices.data();
       input.vertices = geometry.projected + draw.first_vertex;
       input.vertex_count = draw.vertex_count;
-    } else {
+    } else if (draw.has_kernel()) {
       if (!corners.project(geometry, draw, t, count)) return false;
       input.vertices = corners.vertices;
       input.vertex_count = std::size_t{count} * 3;
@@ -59,7 +71,7 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
       input.first_id = id;
     }
     input.flags = draw.flags;
-    input.cull = draw.cull;
+    input.cull = draw.effective_cull();
     input.view = image;
     input.bin_columns = static_cast<std::uint32_t>((geometry.width + kBinSize - 1) / kBinSize);
     input.micro = micro != nullptr;
@@ -68,20 +80,21 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
     BinFragment* const fragments =
         micro == nullptr ? nullptr : micro->room(kSetupBatch * kMicroSize * kMicroSize);
     const SetupOutput out =
-        frame.kernel.setup(input, pieces.data.data() + pieces.count, fragments, slow);
+        draw.has_kernel()
+            ? frame.kernel.setup(input, pieces.data.data() + pieces.count, fragments, slow)
+            : all_slow(draw, t, count, slow);
     if (!out.index_in_range) return false;
     pieces.count += out.pieces;
     if (micro != nullptr) micro->written(out.fragments);
     pieces.triangles.culled += count - out.pieces - out.micro - out.slow;
     for (std::uint32_t s = 0; s < out.slow; ++s) {
-      const TriangleFate fate =
-          assemble_triangle(geometry, draw, t + slow[s], draw.cull, [&](const Piece& piece) {
-            pieces.data.grow(std::size_t{pieces.count} + 1, pieces.count);
-            pieces.data[pieces.count++] = piece;
-          });
-      pieces.triangles.dropped += fate == TriangleFate::dropped;
-      pieces.triangles.culled += fate == TriangleFate::culled;
-      pieces.triangles.clipped += fate == TriangleFate::clipped;
+      const Fate fate = assemble_primitive(geometry, draw, t + slow[s], [&](const Piece& piece) {
+        pieces.data.grow(std::size_t{pieces.count} + 1, pieces.count);
+        pieces.data[pieces.count++] = piece;
+      });
+      pieces.triangles.dropped += fate == Fate::dropped;
+      pieces.triangles.culled += fate == Fate::culled;
+      pieces.triangles.clipped += fate == Fate::clipped;
     }
     id += count;
   }

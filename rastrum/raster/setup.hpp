@@ -64,6 +64,17 @@ RASTRUM_HD inline SetupResult make_piece(const ProjectedVertex& a, const Project
   return SetupResult::drawn;
 }
 
+/// Moves the piece's depth by a constant and by `slope` times its steepest change per px along an
+/// axis (GL's factor), both in units of reversed depth.
+RASTRUM_HD inline void add_depth_bias(Piece& p, float constant, float slope) {
+  if (constant == 0 && slope == 0) return;
+  const double zx = p.zx < 0 ? -p.zx : p.zx;
+  const double zy = p.zy < 0 ? -p.zy : p.zy;
+  const double steepest = zx > zy ? zx : zy;
+  p.z0 = static_cast<float>(static_cast<double>(p.z0) + static_cast<double>(constant) +
+                            static_cast<double>(slope) * steepest);
+}
+
 /// Depth of the sample of pixel (x, y), in [+0, 1].
 RASTRUM_HD inline float depth_at(const Piece& p, int x, int y) {
   constexpr float kPxPerSubpixel = 1.0F / kSubpixels;

@@ -172,7 +172,7 @@ FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const 
     draw.source = &sources.back();
     draw.vertex_count = instance.mesh.positions.size();
     draw.indices = instance.mesh.indices;
-    draw.triangle_count = instance.mesh.triangle_count();
+    draw.primitive_count = instance.mesh.triangle_count();
     draw.cull = material_cull(instance, scene.materials, o.shader);
     if (!raster::has_mask(instance.mesh, scene.materials)) continue;
     draw.flags |= raster::kTested;

@@ -120,6 +120,119 @@ TEST(Program, VaryingsOfNearClippedTrianglesToo) {
       true);
 }
 
+/// The value at the sample along the major axis of the line: of the snapped ends with 1 / w, or of
+/// the homogeneous ones.
+long double exact_on_line(const Corner (&c)[2], int x, int y, bool clipped) {
+  using L = long double;
+  const auto between = [&](L u0, L u1, L u) {  // u: homogeneous coordinate over w at the sample
+    const L b0 = u * c[1].clip.w - u1, b1 = u0 - u * c[0].clip.w;
+    return (b0 * c[0].value + b1 * c[1].value) / (b0 + b1);
+  };
+  if (clipped) {
+    const L dx = (L{c[0].clip.x} * c[1].clip.w - L{c[1].clip.x} * c[0].clip.w) * kWidth;
+    const L dy = (L{c[0].clip.y} * c[1].clip.w - L{c[1].clip.y} * c[0].clip.w) * kHeight;
+    if (std::abs(dx) >= std::abs(dy))
+      return between(c[0].clip.x, c[1].clip.x, (x + 0.5L) / (kWidth / 2.0L) - 1);
+    return between(c[0].clip.y, c[1].clip.y, 1 - (y + 0.5L) / (kHeight / 2.0L));
+  }
+  const raster::Viewport viewport = raster::Viewport::of(kWidth, kHeight);
+  const raster::ProjectedVertex a = raster::project(c[0].clip, viewport);
+  const raster::ProjectedVertex b = raster::project(c[1].clip, viewport);
+  const L dx = (b.x_fx8 - a.x_fx8) / 256.0L, dy = (b.y_fx8 - a.y_fx8) / 256.0L;
+  const L t = std::abs(dx) >= std::abs(dy) ? (x + 0.5L - a.x_fx8 / 256.0L) / dx
+                                           : (y + 0.5L - a.y_fx8 / 256.0L) / dy;
+  const L u = std::clamp(t, 0.0L, 1.0L), b0 = (1 - u) / c[0].clip.w, b1 = u / c[1].clip.w;
+  return (b0 * c[0].value + b1 * c[1].value) / (b0 + b1);
+}
+
+void expect_exact_line(const Corner (&corners)[2], bool clipped) {
+  const raster::Program program(
+      [&](std::uint32_t i) {
+        return VertexOutput<Mixed>{corners[i].clip, {{}, {}, corners[i].value}};
+      },
+      [](const Mixed& v, const Fragment&) {
+        return Vec4{v.scalar, 0, 0, 1};
+      });
+  for (const Device device : {Device::serial, Device::threads}) {
+    raster::Draw draw = program.draw(2, {}, raster::Topology::lines);
+    draw.line_width = 3;
+    Image<Vec4> color(kWidth, kHeight);
+    Targets targets;
+    targets.color = color.view();
+    Renderer renderer(options(device));
+    const FrameStats stats = renderer.draw({&draw, 1}, program, program.test(), targets);
+    EXPECT_EQ(stats.triangles.clipped, clipped ? 1U : 0U);
+    EXPECT_GT(stats.pixels_covered, 150U);
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        if (color(x, y).w == 0) continue;
+        const long double exact = exact_on_line(corners, x, y, clipped);
+        ASSERT_NEAR(static_cast<double>(color(x, y).x / exact), 1, 1e-5) << x << ", " << y;
+      }
+  }
+}
+
+TEST(Program, VaryingsOfLinesArePerspectiveCorrect) {
+  expect_exact_line({{{-0.09F, -0.03F, 0.05F, 0.1F}, 1}, {{3.5F, 1, 0.05F, 4}, 4}}, false);
+  expect_exact_line({{{0.02F, 0.09F, 0.05F, 0.1F}, 7}, {{0.5F, -3.9F, 0.05F, 4}, 2}}, false);
+  // Behind the near plane, behind the eye, beyond the guard band.
+  expect_exact_line({{{-1.9F, -0.5F, 0.1F, 2}, 1}, {{0.01F, 0, 0.1F, 0.05F}, 5}}, true);
+  expect_exact_line({{{0.1F, 1.5F, 0.1F, -1}, 9}, {{0.3F, -2, 0.1F, 2.5F}, 3}}, true);
+  expect_exact_line({{{-1.5F, -1.7F, 0.1F, 2}, 1}, {{4000, 1000, 0.1F, 2}, 1000}}, true);
+}
+
+TEST(Program, APointHasItsVertexsVarying) {
+  const raster::Program program(
+      [](std::uint32_t i) {
+        return VertexOutput<Mixed>{{i == 0 ? -0.5F : 0.5F, 0, 0.5F, 1},
+                                   {{}, {}, 0.1F + 0.3F * static_cast<float>(i)}};
+      },
+      [](const Mixed& v, const Fragment&) {
+        return Vec4{v.scalar, 0, 0, 1};
+      });
+  raster::Draw draw = program.draw(2, {}, raster::Topology::points);
+  draw.point_size = 10;
+  Image<Vec4> color(kWidth, kHeight);
+  Targets targets;
+  targets.color = color.view();
+  const FrameStats stats =
+      Renderer(options(Device::threads)).draw({&draw, 1}, program, program.test(), targets);
+  EXPECT_EQ(stats.pixels_covered, 200U);
+  EXPECT_EQ(color(54, 79).x, 0.1F);
+  EXPECT_EQ(color(154, 70).x, 0.1F + 0.3F);
+}
+
+TEST(Program, FrontIsWhatTheWindingSays) {
+  // One counter-clockwise triangle, one clockwise, and both again with a corner behind the eye.
+  const Vec4 corners[] = {{-0.9F, -0.9F, 0.5F, 1}, {-0.1F, -0.9F, 0.5F, 1}, {-0.5F, 0.9F, 0.5F, 1},
+                          {0.1F, -0.9F, 0.5F, 1},  {0.5F, 0.9F, 0.5F, 1},   {0.9F, -0.9F, 0.5F, 1}};
+  for (const bool clipped : {false, true}) {
+    const raster::Program program(
+        [&](std::uint32_t i) {
+          Vec4 c = corners[i];
+          if (clipped && (i == 2 || i == 4)) c = {c.x, 20, 0.5F, -1};
+          return VertexOutput<Mixed>{c, {}};
+        },
+        [](const Mixed&, const Fragment& f) {
+          return Vec4{f.front ? 1.0F : 0.5F, 0, 0, 1};
+        });
+    for (const auto winding : {raster::Winding::counter_clockwise, raster::Winding::clockwise,
+                               raster::Winding::either}) {
+      raster::Draw draw = program.draw(6);
+      draw.winding = winding;
+      Image<Vec4> color(kWidth, kHeight);
+      Targets targets;
+      targets.color = color.view();
+      const FrameStats stats =
+          Renderer(options(Device::threads)).draw({&draw, 1}, program, nullptr, targets);
+      ASSERT_EQ(stats.triangles.clipped, clipped ? 2U : 0U);
+      const bool swapped = winding == raster::Winding::clockwise;
+      EXPECT_EQ(color(kWidth / 4, kHeight * 3 / 4).x, swapped ? 0.5F : 1.0F) << clipped;
+      EXPECT_EQ(color(kWidth * 3 / 4, kHeight * 3 / 4).x, swapped ? 1.0F : 0.5F) << clipped;
+    }
+  }
+}
+
 TEST(Program, APhongOfOnesOwnIsTheBuiltInOne) {
   const Mesh mesh = shapes::sphere(24, 48);
   ASSERT_FALSE(mesh.normals.empty());

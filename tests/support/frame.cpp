@@ -57,7 +57,11 @@ AssertionResult same_surfaces(int width, std::span<const std::int64_t> ids_a,
 
 }  // namespace
 
-Frame draw(Renderer& renderer, const SceneView& scene, const Camera& camera) {
+namespace {
+
+/// Calls render(targets) with images that hold nonsense.
+template <class Render>
+Frame draw_with(Renderer& renderer, Render&& render) {
   const int w = renderer.options().width, h = renderer.options().height;
   Frame f{Image<Rgba8>(w, h),        Image<Vec4>(w, h),          Image<float>(w, h),
           Image<std::int64_t>(w, h), Image<std::uint32_t>(w, h), {}};
@@ -72,8 +76,22 @@ Frame draw(Renderer& renderer, const SceneView& scene, const Camera& camera) {
   targets.depth = f.depth.view();
   targets.ids = f.ids.view();
   targets.overdraw = f.overdraw.view();
-  f.stats = renderer.render(scene, camera, targets);
+  f.stats = render(targets);
   return f;
+}
+
+}  // namespace
+
+Frame draw(Renderer& renderer, const SceneView& scene, const Camera& camera) {
+  return draw_with(renderer,
+                   [&](const Targets& targets) { return renderer.render(scene, camera, targets); });
+}
+
+Frame draw(Renderer& renderer, std::span<raster::Draw> draws, const raster::BlockShader& shader,
+           const raster::FragmentTest* test) {
+  return draw_with(renderer, [&](const Targets& targets) {
+    return renderer.draw(draws, shader, test, targets);
+  });
 }
 
 Frame draw(const RenderOptions& options, const Scene& scene, const Camera& camera) {

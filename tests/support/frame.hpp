@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include <gtest/gtest.h>
 
@@ -22,6 +23,8 @@ struct Frame {
 
 /// Draws into images that hold nonsense before, so that a pixel which nobody wrote shows.
 [[nodiscard]] Frame draw(Renderer& renderer, const SceneView& scene, const Camera& camera);
+[[nodiscard]] Frame draw(Renderer& renderer, std::span<raster::Draw> draws,
+                         const raster::BlockShader& shader, const raster::FragmentTest* test);
 [[nodiscard]] Frame draw(const RenderOptions& options, const Scene& scene, const Camera& camera);
 
 /// Ids, depth (bits) and overdraw equal; the message names the first pixel that differs.

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <variant>
 #include <vector>
 
 namespace rastrum::test {
@@ -18,6 +19,25 @@ struct SnappedVertex {
 struct SnappedTriangle {
   SnappedVertex v[3];
   std::int64_t id = 0;
+};
+
+/// Width in whole px.
+struct SnappedLine {
+  SnappedVertex v[2];
+  int width = 1;
+  std::int64_t id = 0;
+};
+
+struct SnappedPoint {
+  SnappedVertex v;
+  std::int64_t size_fx8 = 256;
+  std::int64_t id = 0;
+};
+
+/// A primitive and what is added to its depth: constant + slope · its steepest change per px.
+struct SnappedPrimitive {
+  std::variant<SnappedTriangle, SnappedLine, SnappedPoint> shape;
+  float bias = 0, bias_slope = 0;
 };
 
 enum class Keep { all, front, back };
@@ -41,6 +61,19 @@ struct OracleImage {
 
 /// The depth plane of `t` at the sample of pixel (px, py), by the rules of DESIGN section 2.
 [[nodiscard]] float depth_at(const SnappedTriangle& t, int px, int py);
+
+/// Whether a line produces the fragment of pixel (px, py): OpenGL's diamond-exit rule (4.6, 14.5.1)
+/// as it is written, with y down and both ends moved by −(ε, ε²) for an infinitesimal ε. A wide
+/// line is moved by −(width − 1) / 2 across and each of its pixels repeated.
+[[nodiscard]] bool covers(const SnappedLine& l, int px, int py);
+/// Whether the sample of pixel (px, py) lies in the square, moved likewise.
+[[nodiscard]] bool covers(const SnappedPoint& p, int px, int py);
+
+[[nodiscard]] float depth_at(const SnappedPrimitive& p, int px, int py);
+
+/// Cost: O(W · H · primitives) but for a margin about each. Triangles of any facing.
+[[nodiscard]] OracleImage brute_force(int width, int height,
+                                      std::span<const SnappedPrimitive> primitives);
 
 /// Cost: O(W · H · triangles); only rows and columns that a bounding box misses by more than a
 /// pixel are left out. Coordinates must lie in the guard band [−2¹⁵, 2¹⁶] px (checked).

@@ -103,22 +103,12 @@ struct GroupScratch final : MicroSink {
   void written(std::size_t n) override { micro.added(n); }
 };
 
-/// Whether the bin's rectangle may hold an inside sample: none lies beyond any one edge.
-bool may_touch(const Edge (&edges)[3], int bin_x, int bin_y) {
-  for (const Edge& e : edges) {
-    const std::int64_t x = bin_x * kBinSize + (e.a > 0 ? kBinSize - 1 : 0);
-    const std::int64_t y = bin_y * kBinSize + (e.b > 0 ? kBinSize - 1 : 0);
-    if (e.base + e.a * x + e.b * y < 0) return false;
-  }
-  return true;
-}
-
 void bin_pieces(std::span<const Piece> pieces, Rect view, int columns,
                 Collected<PieceInBin>& pairs) {
   std::uint32_t i = 0;
   for (const Piece& piece : pieces) {
     const std::uint32_t index = i++;
-    const Rect box = sample_bounds(piece.x, piece.y, view);
+    const Rect box = piece_bounds(piece, view);
     if (box.empty()) continue;
     const int bx0 = box.x0 / kBinSize, by0 = box.y0 / kBinSize;
     const int bx1 = (box.x1 - 1) / kBinSize, by1 = (box.y1 - 1) / kBinSize;
@@ -132,11 +122,12 @@ void bin_pieces(std::span<const Piece> pieces, Rect view, int columns,
     if (most == 1) {
       add(bx0, by0);
     } else {
-      const Edge edges[3] = {edge_function(piece, 0), edge_function(piece, 1),
-                             edge_function(piece, 2)};
+      const Edges edges = edges_of(piece);
       for (int by = by0; by <= by1; ++by)
-        for (int bx = bx0; bx <= bx1; ++bx)
-          if (may_touch(edges, bx, by)) add(bx, by);
+        for (int bx = bx0; bx <= bx1; ++bx) {
+          const int x0 = bx * kBinSize, y0 = by * kBinSize;
+          if (may_touch(edges, {x0, y0, x0 + kBinSize, y0 + kBinSize})) add(bx, by);
+        }
     }
     pairs.added(n);
   }

@@ -456,7 +456,7 @@ void shade(const MaterialScene& scene, const FrameGeometry& frame, const Visible
     }
     left &= ~mask;
     const std::uint64_t id = id_of_word(low);
-    if (draw == nullptr || id - draw->first_id >= draw->triangle_count) draw = &frame.draw_of(id);
+    if (draw == nullptr || id - draw->first_id >= draw->primitive_count) draw = &frame.draw_of(id);
     const Triangle triangle(scene, frame, *draw, id);
     const Run run(mask, triangle.planes, x0, y0);
     if (run.n == 64) {

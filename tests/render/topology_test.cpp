@@ -1,0 +1,306 @@
+// Draws of points, lines and triangles in any mix, with widths, sizes, depth biases and windings:
+// serial draws what the brute-force oracle says, and every point of the table what serial draws.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/raster/program.hpp>
+#include <rastrum/render/render.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/family.hpp"
+#include "tests/support/frame.hpp"
+#include "tests/support/pieces.hpp"
+#include "tests/support/random.hpp"
+
+namespace rastrum::test {
+namespace {
+
+using raster::Topology;
+using raster::Winding;
+
+/// A draw as the test thinks of it.
+struct Plan {
+  Topology topology = Topology::triangles;
+  std::vector<std::uint32_t> indices;
+  float line_width = 1, point_size = 1, bias = 0, bias_slope = 0;
+  Cull cull = Cull::none;
+  Winding winding = Winding::counter_clockwise;
+};
+
+struct Mix {
+  std::vector<Vec4> clip;
+  std::vector<Plan> plans;
+};
+
+/// A vertex that is seen at (x, y) px, w before the eye.
+Vec4 vertex_at(double x, double y, double w, double depth, int width, int height) {
+  const double ndc_x = 2 * x / width - 1, ndc_y = 1 - 2 * y / height;
+  return {static_cast<float>(ndc_x * w), static_cast<float>(ndc_y * w),
+          static_cast<float>(depth * w), static_cast<float>(w)};
+}
+
+Mix random_mix(std::uint64_t seed, int width, int height) {
+  Random r(seed);
+  Mix mix;
+  const bool orthographic = r.chance(0.5), nasty = r.chance(0.5);
+  for (int i = r.integer(6, 40); i > 0; --i) {
+    const double step = r.chance(0.5) ? 0.5 : 1.0 / 256;
+    const double x = std::floor(r.real(-8, width + 8) / step) * step;
+    const double y = std::floor(r.real(-8, height + 8) / step) * step;
+    const double w = orthographic ? 1 : r.real(0.1, 4);
+    Vec4 v = vertex_at(x, y, w, r.integer(-1, 8) / 8.0, width, height);
+    if (nasty && r.chance(0.1)) v.w = -v.w;        // behind the eye
+    if (nasty && r.chance(0.1)) v.z = v.w + 0.5F;  // before the near plane
+    if (nasty && r.chance(0.1)) v.x *= 1e5F;       // beyond the guard band
+    if (nasty && r.chance(0.05)) v.y = std::numeric_limits<float>::quiet_NaN();
+    mix.clip.push_back(v);
+  }
+  for (int d = r.integer(1, 5); d > 0; --d) {
+    Plan plan;
+    constexpr Topology kTopologies[] = {Topology::points, Topology::lines, Topology::triangles};
+    plan.topology = kTopologies[r.integer(0, 2)];
+    const int primitives = r.integer(0, 12);
+    for (int i = primitives * static_cast<int>(plan.topology); i > 0; --i)
+      plan.indices.push_back(
+          static_cast<std::uint32_t>(r.integer(0, static_cast<int>(mix.clip.size()) - 1)));
+    plan.line_width = static_cast<float>(r.chance(0.5) ? 1 : r.real(0.1, 12));
+    plan.point_size = static_cast<float>(r.chance(0.5) ? r.integer(1, 9) : r.real(0.1, 20));
+    if (r.chance(0.3)) plan.bias = static_cast<float>(r.real(-0.3, 0.3));
+    if (r.chance(0.3)) plan.bias_slope = static_cast<float>(r.integer(-2, 2));
+    plan.cull = static_cast<Cull>(r.integer(0, 2));
+    plan.winding = static_cast<Winding>(r.integer(0, 2));
+    mix.plans.push_back(plan);
+  }
+  return mix;
+}
+
+struct Expected {
+  std::vector<SnappedPrimitive> pieces;
+  std::uint64_t input = 0, dropped = 0;
+};
+
+bool keeps(const Plan& plan, bool counter_clockwise) {
+  if (plan.winding == Winding::either || plan.cull == Cull::none) return true;
+  const bool front = counter_clockwise == (plan.winding == Winding::counter_clockwise);
+  return front == (plan.cull == Cull::back);
+}
+
+SnappedVertex snapped_of(const raster::ProjectedVertex& v) {
+  return {v.x_fx8, v.y_fx8, v.depth};
+}
+
+/// Whole primitives as the tests' own projection snaps them; others as the library's clipper cuts
+/// them (lines_test and clip_test hold it by itself).
+Expected expected_of(const Mix& mix, int width, int height) {
+  Expected out;
+  const raster::Viewport viewport = raster::Viewport::of(width, height);
+  std::int64_t id = -1;
+  for (const Plan& plan : mix.plans) {
+    const auto corners = static_cast<std::size_t>(plan.topology);
+    for (std::size_t first = 0; first < plan.indices.size(); first += corners) {
+      ++out.input;
+      ++id;
+      ProjectedTriangle p;
+      raster::Vec4d clip[3];
+      raster::ProjectedVertex projected[3];
+      bool whole = true, finite = true;
+      for (std::size_t c = 0; c < corners; ++c) {
+        const Vec4 v = mix.clip[plan.indices[first + c]];
+        finite = finite && std::isfinite(v.y);
+        clip[c] = {v.x, v.y, v.z, v.w};
+        p.clip[c] = {v.x, v.y, v.z, v.w};
+        p.has_position[c] = snap(p.clip[c], width, height, p.snapped.v[c]);
+        whole = whole && p.has_position[c];
+        projected[c] = {static_cast<std::int32_t>(p.snapped.v[c].x_fx8),
+                        static_cast<std::int32_t>(p.snapped.v[c].y_fx8), p.snapped.v[c].depth, 0};
+        if (!p.has_position[c]) projected[c].x_fx8 = raster::kNeedsClip;
+      }
+      if (!finite) {
+        ++out.dropped;
+        continue;
+      }
+      const auto add = [&](auto shape) {
+        shape.id = id;
+        out.pieces.push_back({shape, plan.bias, plan.bias_slope});
+      };
+      if (plan.topology == Topology::points) {
+        if (!whole && !raster::clip_point(clip[0], viewport, projected[0])) continue;
+        const double size = std::max(plan.point_size, 1.0F);
+        add(SnappedPoint{snapped_of(projected[0]), std::llrint(size * 256)});
+      } else if (plan.topology == Topology::lines) {
+        raster::Vec4d ends[2] = {clip[0], clip[1]};
+        raster::ProjectedVertex v[2] = {projected[0], projected[1]};
+        if (!whole && !raster::clip_line(ends, v, viewport)) continue;
+        const int line_width = std::max(static_cast<int>(std::lrint(plan.line_width)), 1);
+        add(SnappedLine{{snapped_of(v[0]), snapped_of(v[1])}, line_width});
+      } else if (whole) {
+        const std::int64_t area = twice_area(p.snapped);
+        if (area != 0 && keeps(plan, area < 0)) add(p.snapped);
+      } else {
+        const double facing = raster::orientation(clip);
+        if (facing == 0 || !keeps(plan, facing > 0)) continue;
+        for (const SnappedTriangle& t : fan_of(test::clip(p, width, height), facing > 0, id))
+          add(t);
+      }
+    }
+  }
+  return out;
+}
+
+auto program_of(const Mix& mix) {
+  return raster::Program(
+      [&mix](std::uint32_t v) {
+        return raster::VertexOutput<Vec4>{mix.clip[v], mix.clip[v]};
+      },
+      [](const Vec4& v, const raster::Fragment& f) {
+        return Vec4{v.x, f.depth, static_cast<float>(f.vertex[0]), f.front ? 1.0F : 0.5F};
+      });
+}
+
+template <class Program>
+std::vector<raster::Draw> draws_of(const Mix& mix, const Program& program) {
+  std::vector<raster::Draw> draws;
+  for (const Plan& plan : mix.plans) {
+    raster::Draw& d =
+        draws.emplace_back(program.draw(mix.clip.size(), plan.indices, plan.topology));
+    d.primitive_count = plan.indices.size() / static_cast<std::size_t>(plan.topology);
+    d.line_width = plan.line_width;
+    d.point_size = plan.point_size;
+    d.depth_bias = plan.bias;
+    d.depth_bias_slope = plan.bias_slope;
+    d.cull = plan.cull;
+    d.winding = plan.winding;
+  }
+  return draws;
+}
+
+RenderOptions serial(int width, int height) {
+  RenderOptions o;
+  o.width = width;
+  o.height = height;
+  o.device = Device::serial;
+  return o;
+}
+
+TEST(Topologies, MixesEqualTheOracle) {
+  std::uint64_t clipped = 0, dropped = 0;
+  std::map<std::size_t, std::uint64_t> visible;  // pixels by kind of primitive
+  const int all = count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 10;
+  for (const auto& [width, height] : {std::pair{64, 64}, {37, 91}, {130, 70}}) {
+    Renderer renderer(serial(width, height));
+    for (int i = 0; i < all / 3; ++i) {
+      const auto seed = static_cast<std::uint64_t>(i + width * 100000);
+      SCOPED_TRACE("mix " + std::to_string(seed));
+      const Mix mix = random_mix(seed, width, height);
+      const auto program = program_of(mix);
+      std::vector<raster::Draw> draws = draws_of(mix, program);
+      const Expected want = expected_of(mix, width, height);
+      const OracleImage oracle = brute_force(width, height, want.pieces);
+      const Frame frame = draw(renderer, draws, program, nullptr);
+      ASSERT_TRUE(same_surfaces(frame, oracle));
+      ASSERT_TRUE(counts_add_up(frame));
+      ASSERT_EQ(frame.stats.triangles.input, want.input);
+      ASSERT_EQ(frame.stats.triangles.dropped, want.dropped);
+      clipped += frame.stats.triangles.clipped;
+      dropped += want.dropped;
+      for (const SnappedPrimitive& p : want.pieces) {
+        const std::int64_t id = std::visit([](const auto& s) { return s.id; }, p.shape);
+        visible[p.shape.index()] += static_cast<std::uint64_t>(std::ranges::count(oracle.ids, id));
+      }
+    }
+  }
+  if (all >= 100) {
+    EXPECT_GT(clipped, 20U);
+    EXPECT_GT(dropped, 20U);
+    for (std::size_t kind = 0; kind < 3; ++kind) EXPECT_GT(visible[kind], 1000U) << kind;
+  }
+}
+
+/// Every point of the table, with any number of threads and every instruction set; a budget so
+/// small that vertices are projected where they are read is one of the cases.
+class TopologyTable : public testing::TestWithParam<TablePoint> {};
+
+TEST_P(TopologyTable, MixesEqualSerial) {
+  const ThreadsBeyondCores eight(8);
+  constexpr int kWidth = 130, kHeight = 91;
+  Renderer reference(serial(kWidth, kHeight));
+  std::vector<Renderer> renderers;
+  for (const Isa isa : available_isas())
+    for (const int threads : {1, 2, 8}) {
+      RenderOptions o = serial(kWidth, kHeight);
+      o.device = Device::threads;
+      o.rasterizer = GetParam().rasterizer;
+      o.visibility = GetParam().visibility;
+      o.threads = threads;
+      o.isa = isa;
+      if (threads == 2) o.memory_limit = std::uint64_t{4} << 20;
+      renderers.emplace_back(o);
+    }
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Mix mix = random_mix(seed, kWidth, kHeight);
+    // More vertices than a quarter of the budget holds.
+    mix.clip.resize(std::size_t{1} << 17, Vec4{0, 0, 0, 1});
+    const auto program = program_of(mix);
+    std::vector<raster::Draw> draws = draws_of(mix, program);
+    const Frame expected = draw(reference, draws, program, nullptr);
+    for (std::size_t k = seed % 3; k < renderers.size(); k += 3) {
+      const Frame frame = draw(renderers[k], draws, program, nullptr);
+      const std::string what = "mix " + std::to_string(seed) + ", " +
+                               std::to_string(renderers[k].options().threads) + " threads, " +
+                               std::string(name(*renderers[k].options().isa));
+      ASSERT_TRUE(same_surfaces(frame, expected)) << what;
+      ASSERT_TRUE(same_counts(frame.stats, expected.stats)) << what;
+      ASSERT_TRUE(same_picture(frame, expected, 0)) << what;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Points, TopologyTable, testing::ValuesIn(table_points()),
+                         [](const testing::TestParamInfo<TablePoint>& p) {
+                           return test_name(p.param);
+                         });
+
+TEST(Topologies, RefusesWidthsSizesAndBiasesOutOfRange) {
+  const raster::Program program(
+      [](std::uint32_t) {
+        return raster::VertexOutput<float>{{0, 0, 0.5F, 1}, 0};
+      },
+      [](float, const raster::Fragment&) { return Vec4{}; });
+  for (const Device device : {Device::serial, Device::threads}) {
+    RenderOptions options;
+    options.width = options.height = 16;
+    options.device = device;
+    Renderer renderer(options);
+    const auto refuses = [&](float raster::Draw::*member, float value) {
+      raster::Draw d = program.draw(1, {}, Topology::points);
+      d.*member = value;
+      try {
+        (void)renderer.draw({&d, 1}, program, nullptr, {});
+      } catch (const Error& e) {
+        return e.code() == Errc::invalid_argument;
+      }
+      return false;
+    };
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (const float bad : {0.0F, -1.0F, 5000.0F, nan}) {
+      EXPECT_TRUE(refuses(&raster::Draw::line_width, bad)) << bad;
+      EXPECT_TRUE(refuses(&raster::Draw::point_size, bad)) << bad;
+    }
+    EXPECT_TRUE(refuses(&raster::Draw::depth_bias, nan));
+    EXPECT_TRUE(refuses(&raster::Draw::depth_bias_slope, std::numeric_limits<float>::infinity()));
+    EXPECT_FALSE(refuses(&raster::Draw::line_width, 4096));
+    // An index out of range is found on the way of lines, too.
+    const std::vector<std::uint32_t> indices{0, 1};
+    raster::Draw d = program.draw(1, indices, Topology::lines);
+    EXPECT_THROW((void)renderer.draw({&d, 1}, program, nullptr, {}), Error);
+  }
+}
+
+}  // namespace
+}  // namespace rastrum::test
