@@ -17,6 +17,7 @@
 #include <rastrum/parallel/scratch.hpp>
 #include <rastrum/raster/geometry.hpp>
 #include <rastrum/raster/kernels.hpp>
+#include <rastrum/raster/order.hpp>
 #include <rastrum/raster/resolve.hpp>
 #include <rastrum/raster/stopwatch.hpp>
 #include <rastrum/raster/surface.hpp>
@@ -56,10 +57,9 @@ class Emitter {
     pieces_ = pieces;
   }
   /// A block with the samples that it covers; an empty mask is left out.
-  void add(std::uint32_t piece, int bx, int by, std::uint64_t mask) {
-    worker_.blocks[count_] = {piece, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by),
-                              mask};
-    count_ += mask != 0;
+  void add(const Block& block) {
+    worker_.blocks[count_] = block;
+    count_ += block.mask != 0;
     if (count_ == kBlockCapacity) flush();
   }
   /// A block that touches the view and whose samples are still to be found, many at once.
@@ -93,15 +93,23 @@ class Emitter {
   bool to_cover_ = false;
 };
 
-/// Tiles of the screen in the order in which they are walked.
+/// Tiles of the screen: numbered row by row, walked in any order.
 struct TileGrid {
   Rect view;
   int tile_px = kBinSize;
+  BlockOrder order = BlockOrder::row_major;
 
   [[nodiscard]] int columns() const { return (view.x1 - view.x0 + tile_px - 1) / tile_px; }
   [[nodiscard]] int rows() const { return (view.y1 - view.y0 + tile_px - 1) / tile_px; }
   [[nodiscard]] std::size_t count() const {
     return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows());
+  }
+  /// The tile that is walked as number `position`.
+  [[nodiscard]] std::size_t tile_at(std::size_t position) const {
+    if (order == BlockOrder::row_major) return position;
+    const Cell cell = cell_at(order, position, columns(), rows());
+    return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(columns()) +
+           static_cast<std::size_t>(cell.column);
   }
   [[nodiscard]] Rect rect(std::size_t tile) const {
     const auto c = static_cast<std::size_t>(columns());
@@ -148,6 +156,8 @@ class Frame {
   /// Of the view. Without words tiles keep their own and are shaded at once.
   SurfaceView surface;
   std::uint64_t fragment_bytes = 0;  ///< see RegionContext
+  /// Most that a coverage may expand triangles to (rows, bins, pairs) at once; 0: no limit.
+  std::uint64_t expansion_bytes = 0;
 
   std::atomic<std::uint64_t> fragments = 0, pixels_covered = 0;
   Counters counters;
@@ -185,14 +195,15 @@ void draw_shared(Frame& frame, std::size_t chunks, const Enumerate& enumerate) {
   region.collect(frame.counters);
 }
 
-/// Lets threads own the tiles of `grid` one by one. `is_empty(tile)` says that nothing would be
-/// enumerated; `enumerate(tile, emitter)` as above. A tile is shaded at once unless the frame has a
-/// surface.
+/// Lets threads own the tiles of `grid` (whole blocks) one by one. `is_empty(tile)` says that
+/// nothing would be enumerated; `enumerate(tile, emitter)` as above. A tile is shaded at once
+/// unless the frame has a surface.
 template <class IsEmpty, class Enumerate>
 void draw_tiles(Frame& frame, const TileGrid& grid, const IsEmpty& is_empty,
                 const Enumerate& enumerate) {
   FrameScratch& scratch = frame.scratch;
-  parallel::for_each_index(frame.exec, grid.count(), [&](std::size_t tile) {
+  parallel::for_each_index(frame.exec, grid.count(), [&](std::size_t position) {
+    const std::size_t tile = grid.tile_at(position);
     const Rect rect = grid.rect(tile);
     const bool local = !frame.has_surface();
     if (is_empty(tile)) {

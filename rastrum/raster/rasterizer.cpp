@@ -15,6 +15,9 @@ constexpr std::size_t kProjectGrain = 4096;
 /// than what a task costs.
 constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 20;
 
+/// Pieces of a batch are counted in 32 bits, and the clipper makes fewer than 16 of a triangle.
+constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
+
 }  // namespace
 
 /// How the work is cut: bands of rows, and in each band batches of triangles. Without a limit there
@@ -25,6 +28,7 @@ struct Rasterizer::Plan {
   int band_rows = 0;
   std::uint64_t batch = 0;  ///< triangles
   std::uint64_t fragment_bytes = 0;
+  std::uint64_t expansion_bytes = 0;
 };
 
 Rasterizer::Rasterizer(const CoverageRow& coverage, const Visibility& visibility,
@@ -46,9 +50,9 @@ Rasterizer::~Rasterizer() = default;
 Rasterizer::Plan Rasterizer::plan(const FrameRequest& request, std::uint64_t triangles,
                                   std::size_t vertices) const {
   Plan p;
-  p.surface = !row_.owns_tiles;
+  p.batch = std::clamp<std::uint64_t>(triangles, 1, kLargestBatch);
+  p.surface = !row_.owns_tiles || p.batch < triangles;
   p.band_rows = request.height;
-  p.batch = std::max<std::uint64_t>(triangles, 1);
   if (memory_limit_ == 0) return p;
 
   // A quarter each for projected vertices, triangles, the surface and fragments; what one does not
@@ -59,16 +63,20 @@ Rasterizer::Plan Rasterizer::plan(const FrameRequest& request, std::uint64_t tri
                 "a memory limit of " + std::to_string(memory_limit_) + " bytes is less than the " +
                     std::to_string(4 * kLeastShare) + " that a frame needs at least");
   p.project_first = vertices <= share / sizeof(ProjectedVertex);
-  p.batch = std::min(p.batch, share / static_cast<std::uint64_t>(row_.triangle_bytes));
+  // What triangles are expanded to is known in the middle of a draw only, and what does not fit
+  // then is drawn in turns, onto a surface.
+  p.expansion_bytes = row_.expands ? share / 2 : 0;
+  p.batch = std::min(p.batch,
+                     (share - p.expansion_bytes) / static_cast<std::uint64_t>(row_.triangle_bytes));
   p.fragment_bytes = share;
-  p.surface = p.surface || p.batch < triangles;
+  p.surface = p.surface || row_.expands || p.batch < triangles;
   if (p.surface) {
     const auto width = static_cast<std::uint64_t>((request.width + kBinSize - 1) / kBinSize) *
                        static_cast<std::uint64_t>(kBinSize);
     const std::uint64_t row_bytes = width * static_cast<std::uint64_t>(visibility_.surface_bytes);
     const std::uint64_t rows = share / row_bytes / kBinSize * kBinSize;
-    p.band_rows = static_cast<int>(
-        std::clamp<std::uint64_t>(rows, kBinSize, static_cast<std::uint64_t>(request.height)));
+    p.band_rows = static_cast<int>(std::min(std::max<std::uint64_t>(rows, kBinSize),
+                                            static_cast<std::uint64_t>(request.height)));
     // Rows of bins, so that a band never cuts one.
     if (p.band_rows < request.height) p.band_rows = p.band_rows / kBinSize * kBinSize;
   }
@@ -89,7 +97,7 @@ void Rasterizer::project(FrameRequest& request, FrameGeometry& frame) {
 
 void Rasterizer::draw_band(Frame& frame, const Plan& plan, std::uint64_t triangles) {
   const Rect band = frame.view;
-  const TileGrid tiles{band, kBinSize};
+  const TileGrid tiles{band, kBinSize, frame.request.tuning.order};
   if (plan.surface) {
     const std::size_t blocks = block_count(band);
     words_.reserve(blocks * 64);
@@ -97,7 +105,7 @@ void Rasterizer::draw_band(Frame& frame, const Plan& plan, std::uint64_t triangl
     frame.surface = {band.x0 / kBlockSize, band.y0 / kBlockSize, block_columns(band), words_.data(),
                      visibility_.shades ? colors_.data() : nullptr};
     parallel::for_each_index(threads_, tiles.count(), [&](std::size_t t) {
-      const Rect r = tiles.rect(t);
+      const Rect r = tiles.rect(tiles.tile_at(t));
       load_words(frame.request.targets, r,
                  frame.surface.part(r.x0 / kBlockSize, r.y0 / kBlockSize));
     });
@@ -111,7 +119,7 @@ void Rasterizer::draw_band(Frame& frame, const Plan& plan, std::uint64_t triangl
   } while (drawn < triangles);
   if (!plan.surface) return;
   parallel::for_each_index(threads_, tiles.count(), [&](std::size_t t) {
-    const Rect r = tiles.rect(t);
+    const Rect r = tiles.rect(tiles.tile_at(t));
     frame.shade(frame.surface.part(r.x0 / kBlockSize, r.y0 / kBlockSize), r,
                 scratch_.workers.local());
   });
@@ -140,6 +148,7 @@ FrameStats Rasterizer::render(FrameRequest& request) {
 
   Frame frame(request, geometry, visibility_, scratch_, stats, watch);
   frame.fragment_bytes = cut.fragment_bytes;
+  frame.expansion_bytes = cut.expansion_bytes;
   for (int y = 0; y < request.height; y += cut.band_rows) {
     frame.view = {0, y, request.width, std::min(y + cut.band_rows, request.height)};
     frame.first_band = y == 0;

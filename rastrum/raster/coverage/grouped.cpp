@@ -147,7 +147,7 @@ class Grouped final : public Coverage {
     const auto first_bin = static_cast<std::size_t>(frame.view.y0 / kBinSize) *
                            static_cast<std::size_t>(bins.columns());
     draw_tiles(
-        frame, TileGrid{frame.view, kBinSize},
+        frame, TileGrid{frame.view, kBinSize, frame.request.tuning.order},
         [&](std::size_t tile) {
           return std::all_of(groups.begin(), groups.end(),
                              [&](const Group& g) { return g.is_empty(first_bin + tile); });

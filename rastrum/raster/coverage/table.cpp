@@ -3,6 +3,8 @@
 
 #include <rastrum/raster/coverage/coverage.hpp>
 #include <rastrum/raster/coverage/grouped.hpp>
+#include <rastrum/raster/coverage/pineda.hpp>
+#include <rastrum/raster/coverage/scanline.hpp>
 
 namespace rastrum::raster {
 
@@ -12,7 +14,13 @@ std::span<const CoverageRow> coverages() noexcept {
           "grouped",
           "(bin, piece) pairs sorted in groups of triangles; a thread owns a bin and shades "
           "it in cache",
-          true, 160, make_grouped},
+          true, false, 160, make_grouped},
+      CoverageRow{"scanline", "triangles expanded to rows, rows to columns, at once into the frame",
+                  false, true, 116, make_scanline},
+      CoverageRow{"pineda",
+                  "bins and tiles by edge functions and masks, small triangles apart, at once into "
+                  "the frame",
+                  false, true, 120, make_pineda},
   };
   return kTable;
 }
