@@ -31,10 +31,11 @@ class ByWord final : public BlockShader {
  public:
   bool shade(const FrameGeometry&, const VisibleBlock& block, Isa,
              BlockColors& colors) const noexcept override {
-    // What is kept from block to block must be zero at first, and one thread's.
+    // What is kept from block to block must be zero at first in each case, and one thread's.
     auto* const kept = static_cast<std::uint64_t*>(block.scratch);
-    if (kept[0] != kept[1]) std::abort();
+    if (kept[0] != kept[1] || (kept[2] != 0 && kept[2] != case_number)) std::abort();
     ++kept[0];
+    kept[2] = case_number;
     for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
       colors.set(i, color(block.words[i], block.x0 + i % kBlockSize, block.y0 + i / kBlockSize));
@@ -42,8 +43,9 @@ class ByWord final : public BlockShader {
     ++kept[1];
     return false;
   }
-  [[nodiscard]] std::size_t scratch_bytes() const noexcept override { return 16; }
+  [[nodiscard]] std::size_t scratch_bytes() const noexcept override { return 24; }
 
+  std::uint64_t case_number = 0;
   static Vec4 color(std::uint64_t word, int x, int y) {
     return {static_cast<float>(word & 1023), static_cast<float>(word >> 50), static_cast<float>(x),
             static_cast<float>(y)};
@@ -223,6 +225,7 @@ class Resolver {
   }
 
   SurfaceView whole(const Case& c) {
+    ++shader_.case_number;
     words_.assign(block_count(kImage) * 64, 0);
     colors_.assign(block_count(kImage), BlockColors{});
     const SurfaceView surface{0, 0, block_columns(kImage), words_.data(), colors_.data()};
@@ -327,6 +330,15 @@ TEST_P(Methods, KeepTheMaximumWithinABudget) {
     }
 }
 
+TEST_P(Methods, CountTheSameWithEveryNumberOfThreads) {
+  const ThreadsBeyondCores eight(8);
+  const Case c = generate(7, 16, 200);
+  const auto expected = Resolver(method_, Isa::scalar, 1).shared(c, 0).counters;
+  for (const int threads : {2, 8})
+    for (int i = 0; i < 20; ++i)
+      ASSERT_EQ(Resolver(method_, Isa::scalar, threads).shared(c, 0).counters, expected);
+}
+
 std::vector<std::string> names() {
   std::vector<std::string> all;
   for (const Visibility& v : visibilities()) all.emplace_back(v.name);
@@ -381,6 +393,24 @@ TEST_P(Counted, SortedWritesEveryFragmentOnce) {
   EXPECT_EQ(resolve("sorted", Sharing::owned).counters, expected(slices));
   EXPECT_EQ(resolve("sorted", Sharing::shared, 100000).counters.at("fragments materialized"),
             case_.fragments);
+}
+
+TEST_P(Counted, HashedHasASlotForEveryPixelItMeets) {
+  std::set<std::pair<int, int>> pixels;
+  case_.for_each_fragment([&](const Fragment& f) { pixels.insert({f.x, f.y}); });
+  for (const Sharing sharing : {Sharing::owned, Sharing::shared}) {
+    const auto counters = resolve("hashed", sharing).counters;
+    EXPECT_EQ(counters.at("fragments hashed"), case_.fragments);
+    EXPECT_EQ(counters.at("table entries"), pixels.size());
+    EXPECT_GE(counters.at("probes"), pixels.size());
+    EXPECT_LE(counters.at("probes"), pixels.size() * 4);
+    EXPECT_GE(counters.at("table slots"), pixels.size());
+  }
+  // Counted before: no more than the load factor of 0.7 asks for, up to a few blocks.
+  const auto bound = std::min<std::uint64_t>(case_.fragments, block_count(kImage) * 64);
+  const auto slots = resolve("hashed", Sharing::shared).counters.at("table slots");
+  EXPECT_GE(slots * 7, bound * 10);
+  EXPECT_LE(slots * 7, (bound + 1) * 10 + 256 * 7);
 }
 
 INSTANTIATE_TEST_SUITE_P(Layers, Counted, testing::ValuesIn(kLayers));

@@ -7,10 +7,10 @@
 namespace rastrum::raster {
 namespace {
 
-/// The depth of a word as the plane keeps it: one more than its bits, so that a surface at depth 0
-/// is told from none.
+/// 0 for a surface at depth 0 and for none alike: the second pass, which writes whole words, tells
+/// them apart.
 std::uint32_t depth_of_word(std::uint64_t word) {
-  return word == 0 ? 0U : static_cast<std::uint32_t>(word >> kIdBits) + 1;
+  return static_cast<std::uint32_t>(word >> kIdBits);
 }
 
 template <Sharing kSharing>

@@ -3,6 +3,7 @@
 #include <array>
 
 #include <rastrum/raster/visibility/atomic.hpp>
+#include <rastrum/raster/visibility/hashed.hpp>
 #include <rastrum/raster/visibility/region.hpp>
 #include <rastrum/raster/visibility/search.hpp>
 #include <rastrum/raster/visibility/sorted.hpp>
@@ -21,6 +22,8 @@ std::span<const Visibility> visibilities() noexcept {
                  false, 25, make_tuple_region},
       Visibility{"sorted", "fragments written, sorted by pixel, the maximum of each segment kept",
                  false, true, 8, make_sorted},
+      Visibility{"hashed", "a hash table from pixels to words, compacted and scattered", false,
+                 true, 8, make_hashed},
   };
   return kTable;
 }
