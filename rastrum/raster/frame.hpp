@@ -163,8 +163,10 @@ class Frame {
   Counters counters;
 
   [[nodiscard]] bool has_surface() const { return surface.words != nullptr; }
+  /// `threads`: null for a region that one thread owns; all of those share the budget.
   [[nodiscard]] RegionContext context(parallel::Threads* threads) const {
-    return {&request, &geometry, &kernel, threads, fragment_bytes};
+    const auto owners = threads != nullptr ? 1 : static_cast<std::uint64_t>(exec.concurrency());
+    return {&request, &geometry, &kernel, threads, fragment_bytes / owners};
   }
   void count(std::string_view name, std::uint64_t value) { add_counter(counters, name, value); }
 

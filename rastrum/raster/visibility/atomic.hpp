@@ -14,9 +14,10 @@ namespace rastrum::raster {
 [[nodiscard]] std::unique_ptr<Region> make_atomic(Sharing sharing, MemoryAccount& memory);
 
 /// Raises `word` to at least `value`; other threads may do the same.
-inline void raise_atomically(std::uint64_t& word, std::uint64_t value) {
-  const std::atomic_ref<std::uint64_t> shared(word);
-  std::uint64_t seen = shared.load(std::memory_order_relaxed);
+template <class T>
+void raise_atomically(T& word, T value) {
+  const std::atomic_ref<T> shared(word);
+  T seen = shared.load(std::memory_order_relaxed);
   while (seen < value && !shared.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
   }
 }

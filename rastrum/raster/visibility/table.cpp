@@ -3,7 +3,11 @@
 #include <array>
 
 #include <rastrum/raster/visibility/atomic.hpp>
+#include <rastrum/raster/visibility/hashed.hpp>
 #include <rastrum/raster/visibility/region.hpp>
+#include <rastrum/raster/visibility/search.hpp>
+#include <rastrum/raster/visibility/sorted.hpp>
+#include <rastrum/raster/visibility/tuple.hpp>
 
 namespace rastrum::raster {
 
@@ -11,6 +15,15 @@ std::span<const Visibility> visibilities() noexcept {
   static constexpr std::array kTable{
       Visibility{"atomic", "64-bit maximum of depth and id, shading deferred", false, true, 8,
                  make_atomic},
+      Visibility{"search",
+                 "maximum of the depth, then a second pass for the smallest id that has it", false,
+                 true, 12, make_search},
+      Visibility{"tuple", "word and colour under a lock, every fragment shaded at once", true,
+                 false, 25, make_tuple_region},
+      Visibility{"sorted", "fragments written, sorted by pixel, the maximum of each segment kept",
+                 false, true, 8, make_sorted},
+      Visibility{"hashed", "a hash table from pixels to words, compacted and scattered", false,
+                 true, 8, make_hashed},
   };
   return kTable;
 }

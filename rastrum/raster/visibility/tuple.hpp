@@ -1,0 +1,16 @@
+// tuple: (word, colour) of every fragment, the greater word wins with its colour (paper 1, section
+// 3.2.1). Every fragment is shaded at once; where threads share the region a lock a block guards
+// the pair, which no machine can change at once.
+#pragma once
+
+#include <memory>
+
+#include <rastrum/raster/visibility/region.hpp>
+
+namespace rastrum::raster {
+
+/// Work O(fragments) maxima and O(fragments) shading; colours of 16 bytes a pixel in the surface,
+/// for a shared region a byte a block for the lock. Counter: "fragments shaded".
+[[nodiscard]] std::unique_ptr<Region> make_tuple_region(Sharing sharing, MemoryAccount& memory);
+
+}  // namespace rastrum::raster
