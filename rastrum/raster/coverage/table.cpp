@@ -1,6 +1,7 @@
 // The rows of the coverage axis.
 #include <array>
 
+#include <rastrum/raster/coverage/binned.hpp>
 #include <rastrum/raster/coverage/coverage.hpp>
 #include <rastrum/raster/coverage/grouped.hpp>
 
@@ -13,6 +14,11 @@ std::span<const CoverageRow> coverages() noexcept {
           "(bin, piece) pairs sorted in groups of triangles; a thread owns a bin and shades "
           "it in cache",
           true, 160, make_grouped},
+      CoverageRow{
+          "binned",
+          "batches of 32 triangles; large ones go through a queue of bins, whose tiles are dealt "
+          "out in equal shares or whose bins belong to workers (paper 2)",
+          false, 128, make_binned},
   };
   return kTable;
 }
