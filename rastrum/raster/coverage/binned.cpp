@@ -366,6 +366,7 @@ constexpr std::array kConfigurations{configuration<64, 8>(), configuration<32, 8
 }  // namespace
 
 std::unique_ptr<Coverage> make_binned(const Tuning& tuning, MemoryAccount& memory) {
+  if (tuning.large_px < 0) throw Error(Errc::invalid_argument, "large_px must not be negative");
   const Configuration& paper = kConfigurations.front();
   const int bin_px = tuning.bin_px == 0 ? paper.bin_px : tuning.bin_px;
   const int tile_px = tuning.tile_px == 0 ? paper.tile_px : tuning.tile_px;
