@@ -32,17 +32,37 @@ constexpr std::size_t kTilesPerChunk = 256;
 /// The load is told for this many workers, whatever threads there are.
 constexpr std::size_t kWorkers = 64;
 
-/// What kWorkers would have had to do between two barriers.
+/// What kWorkers would have to do between two barriers.
 class Load {
  public:
   void add(std::size_t turn, std::uint64_t work) { of_[turn % kWorkers] += work; }
-  void count(Frame& frame) const {
-    frame.count("most loaded of 64 workers", *std::max_element(of_.begin(), of_.end()));
-    frame.count("work of 64 workers", std::accumulate(of_.begin(), of_.end(), std::uint64_t{0}));
+  [[nodiscard]] std::uint64_t most() const { return *std::max_element(of_.begin(), of_.end()); }
+  [[nodiscard]] std::uint64_t total() const {
+    return std::accumulate(of_.begin(), of_.end(), std::uint64_t{0});
   }
 
  private:
   std::array<std::uint64_t, kWorkers> of_{};
+};
+
+/// The counters.
+struct Work {
+  std::uint64_t batches = 0, small = 0, large = 0, bins = 0, tile_pairs = 0;
+  std::uint64_t most_loaded = 0, total = 0;
+
+  void add(const Load& load) {
+    most_loaded += load.most();
+    total += load.total();
+  }
+  void count(Frame& frame) const {
+    frame.count("batches", batches);
+    frame.count("small", small);
+    frame.count("large", large);
+    frame.count("bins", bins);
+    frame.count("tile pairs", tile_pairs);
+    frame.count("most loaded of 64 workers", most_loaded);
+    frame.count("work of 64 workers", total);
+  }
 };
 
 /// The work of a batch.
@@ -120,18 +140,16 @@ class Binned final : public Coverage {
     batches_.resize(count);
     parallel::for_each_index(
         frame.exec, count, [&](std::size_t b) { batches_[b] = look_at(b); }, kBatch);
-    Batch sum;
+    work_ = {};
+    work_.batches = count;
     for (const Batch& b : batches_) {
-      sum.small += b.small;
-      sum.large += b.large;
+      work_.small += b.small;
+      work_.large += b.large;
     }
-    frame.count("batches", count);
-    frame.count("small", sum.small);
-    frame.count("large", sum.large);
 
     // Each batch's place in the queue. A round's entries are those of a run of whole batches.
     const parallel::Expansion queue(frame.exec, batches_, [](const Batch& b) { return b.bins; });
-    frame.count("bins", queue.size());
+    work_.bins = queue.size();
     for (std::size_t begin = 0; begin < count;) {
       std::size_t end = begin + 1;
       while (end < count && queue.segment_end(end) - queue.first(begin) <= kQueueEntries) ++end;
@@ -141,6 +159,7 @@ class Binned final : public Coverage {
         draw_two_stage(queue, begin, end);
       begin = end;
     }
+    work_.count(frame);
   }
 
  private:
@@ -223,7 +242,7 @@ class Binned final : public Coverage {
     });
     Load stored;
     for (std::size_t b = begin; b < end; ++b) stored.add(b - begin, batches_[b].blocks);
-    stored.count(frame);
+    work_.add(stored);
     frame.watch.lap(frame.stats, "store bins");
 
     if (queue.empty()) return;
@@ -251,8 +270,8 @@ class Binned final : public Coverage {
     Load load;
     for (std::size_t c = 0; c < tiles.chunks(); ++c)
       load.add(c, tiles.chunk_end(c) - tiles.chunk_begin(c));
-    load.count(frame);
-    frame.count("tile pairs", count);
+    work_.add(load);
+    work_.tile_pairs += count;
     frame.watch.lap(frame.stats, "rasterize bins");
   }
 
@@ -327,8 +346,8 @@ class Binned final : public Coverage {
     Load load;
     for (std::size_t b = 0; b < batches; ++b) load.add(b, batches_[begin + b].blocks);
     for (std::size_t bin = 0; bin < bins; ++bin) load.add(bin, tiles[bin]);
-    load.count(frame);
-    frame.count("tile pairs", std::accumulate(tiles.begin(), tiles.end(), std::uint64_t{0}));
+    work_.add(load);
+    work_.tile_pairs += std::accumulate(tiles.begin(), tiles.end(), std::uint64_t{0});
     frame.watch.lap(frame.stats, "draw");
   }
 
@@ -341,6 +360,7 @@ class Binned final : public Coverage {
   Frame* frame_ = nullptr;
   TileGrid grid_;
   std::span<const Piece> pieces_;
+  Work work_;
   parallel::Buffer<Batch> batches_;
   std::deque<BinQueue> queues_;
 };
