@@ -77,6 +77,8 @@ class Emitter {
   void written(std::size_t n) { count_ += n; }
   /// What the tile hides by now; null where everything is to be enumerated.
   [[nodiscard]] DepthBounds* bounds() { return region_.bounds(); }
+  /// Whether the chunk is enumerated for the first time.
+  [[nodiscard]] bool first_pass() const { return first_pass_; }
   /// Fragments of micro triangles, whose words are known (Visibility::takes_fragments).
   void fragments(Rect bin, std::span<const BinFragment> fragments);
 
@@ -179,22 +181,43 @@ class Frame {
 /// Enumerates into the region that all threads share, the view, as often as the visibility asks.
 /// `enumerate(chunk, emitter)` is called concurrently for chunks [0, chunks) and does the same each
 /// time.
-template <class Enumerate>
-void draw_shared(Frame& frame, std::size_t chunks, const Enumerate& enumerate) {
+///
+/// `first_pass(visit)` runs the first pass, which is over all chunks, in an order of its own: it
+/// calls visit(chunk, part), from any thread, until the parts of each chunk in order,
+/// part(emitter), have done what enumerate(chunk, emitter) will do.
+template <class FirstPass, class Enumerate>
+void draw_shared(Frame& frame, std::size_t chunks, const FirstPass& first_pass,
+                 const Enumerate& enumerate) {
   FrameScratch& scratch = frame.scratch;
   if (!scratch.shared) scratch.shared = frame.visibility.make(Sharing::shared, scratch.memory);
   Region& region = *scratch.shared;
   region.begin(frame.context(&frame.exec), frame.surface, frame.view, chunks);
-  bool first_pass = true;
-  while (const auto pass = region.next()) {
+  const auto visit_in = [&](bool first, std::size_t chunk, const auto& part) {
+    Emitter emitter(frame, scratch.workers.local(), region, chunk, first);
+    part(emitter);
+    emitter.flush();
+  };
+  if (region.next())
+    first_pass([&](std::size_t chunk, const auto& part) { visit_in(true, chunk, part); });
+  while (const auto pass = region.next())
     parallel::for_each_index(frame.exec, pass->last - pass->first, [&](std::size_t i) {
-      Emitter emitter(frame, scratch.workers.local(), region, pass->first + i, first_pass);
-      enumerate(pass->first + i, emitter);
-      emitter.flush();
+      const std::size_t chunk = pass->first + i;
+      visit_in(false, chunk, [&](Emitter& emitter) { enumerate(chunk, emitter); });
     });
-    first_pass = false;
-  }
   region.collect(frame.counters);
+}
+
+/// The same with a first pass like the others.
+template <class Enumerate>
+void draw_shared(Frame& frame, std::size_t chunks, const Enumerate& enumerate) {
+  draw_shared(
+      frame, chunks,
+      [&](const auto& visit) {
+        parallel::for_each_index(frame.exec, chunks, [&](std::size_t chunk) {
+          visit(chunk, [&](Emitter& emitter) { enumerate(chunk, emitter); });
+        });
+      },
+      enumerate);
 }
 
 /// Lets threads own the tiles of `grid` (whole blocks) one by one. `is_empty(tile)` says that

@@ -1,6 +1,7 @@
 // The rows of the coverage axis.
 #include <array>
 
+#include <rastrum/raster/coverage/binned.hpp>
 #include <rastrum/raster/coverage/coverage.hpp>
 #include <rastrum/raster/coverage/grouped.hpp>
 #include <rastrum/raster/coverage/pineda.hpp>
@@ -21,6 +22,11 @@ std::span<const CoverageRow> coverages() noexcept {
                   "bins and tiles by edge functions and masks, small triangles apart, at once into "
                   "the frame",
                   false, true, 120, make_pineda},
+      CoverageRow{
+          "binned",
+          "batches of 32 triangles; large ones go through a queue of bins, whose tiles are dealt "
+          "out in equal shares or whose bins belong to workers (paper 2)",
+          false, true, 128, make_binned},
   };
   return kTable;
 }
