@@ -23,8 +23,6 @@ constexpr double kHopeless = 4;
 /// Rows of more fragments are left out: `sorted` holds them all, 24 bytes each.
 constexpr double kMostFragments = 150e6;
 
-constexpr std::array<const char*, 5> kVisibilities{"atomic", "search", "tuple", "sorted", "hashed"};
-
 /// Rows beside the chosen scenes: few large triangles, many layers.
 struct Extra {
   const char* name;
@@ -105,10 +103,10 @@ int run_auto(std::span<const std::string_view> arguments) {
   selection.resolve();
 
   std::vector<Entrant> entrants{entrant(options, "auto")};
-  for (const AxisInfo& info : rasterizers())
-    for (const char* visibility : kVisibilities)
-      if (info.name != "reference" && info.name != "auto")
-        entrants.push_back(entrant(options, info.name, visibility));
+  for (const AxisInfo& rasterizer : rasterizers())
+    for (const AxisInfo& visibility : visibilities())
+      if (rasterizer.name != "reference")
+        entrants.push_back(entrant(options, rasterizer.name, visibility.name));
 
   Run run;
   const auto measure_row = [&](const std::string& name, const Mesh& mesh, Size size,

@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 
-#include <rastrum/core/error.hpp>
 #include <rastrum/core/image.hpp>
 #include <rastrum/raster/transform_source.hpp>
 
@@ -45,11 +44,14 @@ const raster::BlockShader& depth_cubed() {
   return shader;
 }
 
+std::uint64_t fold(std::uint64_t hash, std::uint64_t value) {
+  return (hash ^ value) * 0x100000001b3U;
+}
+constexpr std::uint64_t kHashBegin = 0xcbf29ce484222325U;
+
 std::uint64_t hash_of(const Image<std::int64_t>& ids) {
-  // FNV-1a over whole ids.
-  std::uint64_t h = 0xcbf29ce484222325U;
-  for (const std::int64_t id : ids.pixels())
-    h = (h ^ static_cast<std::uint64_t>(id)) * 0x100000001b3U;
+  std::uint64_t h = kHashBegin;
+  for (const std::int64_t id : ids.pixels()) h = fold(h, static_cast<std::uint64_t>(id));
   return h;
 }
 
@@ -65,19 +67,13 @@ std::string absent(const RenderOptions& wanted, const FrameStats& stats) {
              : "";
 }
 
-std::string reason(const Error& e) {
-  if (e.code() != Errc::invalid_argument) return e.what();
-  const std::string_view what = e.what();
-  return what.find("is called") != std::string_view::npos ? "absent" : std::string(what);
-}
-
 /// Runs f; returns why it could not.
 template <class F>
 std::string attempt(F&& f) {
   try {
     return f();
   } catch (const Error& e) {
-    return reason(e);
+    return why_not(e);
   } catch (const std::bad_alloc&) {
     return "out of memory";
   }
@@ -122,10 +118,22 @@ const raster::BlockShader& triangle_colors() {
   return shader;
 }
 
+std::string why_not(const Error& e) {
+  if (e.code() != Errc::invalid_argument) return e.what();
+  const std::string_view what = e.what();
+  return what.find("is called") != std::string_view::npos ? "absent" : std::string(what);
+}
+
 std::uint64_t Result::counter(std::string_view counter_name) const {
   for (const auto& [name_, value] : stats.counters)
     if (name_ == counter_name) return value;
   return 0;
+}
+
+std::uint64_t hash_of(std::span<const std::uint64_t> words) {
+  std::uint64_t h = kHashBegin;
+  for (const std::uint64_t word : words) h = fold(h, word);
+  return h;
 }
 
 FrameStats draw(Renderer& renderer, const Subject& subject, const Targets& targets) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/core/error.hpp>
 #include <rastrum/raster/geometry.hpp>
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/camera.hpp>
@@ -52,12 +53,18 @@ struct Result {
 /// Draws one frame of `subject`.
 FrameStats draw(Renderer& renderer, const Subject& subject, const Targets& targets);
 
+/// FNV-1a over whole words.
+[[nodiscard]] std::uint64_t hash_of(std::span<const std::uint64_t> words);
+
 /// A hash of the ids of `subject` drawn with `options`, and that frame's statistics.
 struct Fingerprint {
   std::uint64_t ids = 0;
   FrameStats stats;
 };
 [[nodiscard]] Fingerprint fingerprint(const Subject& subject, RenderOptions options);
+
+/// Why an entrant could not run: "absent" for a name that this build has not, else the message.
+[[nodiscard]] std::string why_not(const Error& e);
 
 /// A result for each entrant, in order. Each first draws the subject alone; where its ids are not
 /// those of the default (rasterizer and visibility `auto`) it is not timed. An entrant whose names

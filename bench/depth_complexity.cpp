@@ -64,7 +64,6 @@ int run_hashed(std::span<const std::string_view> arguments) {
   plot.x_title = "depth complexity";
   plot.y_title = "ms";
   Panel panel{"frame", {{"sorted", {}, 0}, {"hashed", {}, 1}}};
-  Panel ratio_panel{"sorted ÷ hashed", {{"ratio of times", {}, 2}}};
   const std::vector<Entrant> entrants{entrant(options, "scanline", "sorted"),
                                       entrant(options, "scanline", "hashed")};
   bool right = true;
@@ -105,7 +104,6 @@ int run_hashed(std::span<const std::string_view> arguments) {
     plot.places.push_back(std::to_string(layers));
     panel.series[0].values.push_back(or_gap(sorted.median_ms()));
     panel.series[1].values.push_back(or_gap(hashed.median_ms()));
-    ratio_panel.series[0].values.push_back(or_gap(ratio));
   }
   plot.panels = {panel};
   document.grids.push_back(std::move(grid));
@@ -139,7 +137,7 @@ int run_hiz(std::span<const std::string_view> arguments) {
   std::vector<std::string> names;
   std::vector<Entrant> entrants;
   for (const AxisInfo& info : rasterizers()) {
-    if (info.name == "reference" || info.name == "auto") continue;
+    if (info.name == "reference") continue;
     names.push_back(info.name);
     grid.columns.push_back(info.name);
     for (const bool on : {false, true}) {

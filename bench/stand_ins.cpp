@@ -178,6 +178,24 @@ MeshView first_part(const Mesh& mesh, double share) {
   return view;
 }
 
+Mesh subdivided_part(const Mesh& mesh, int times, std::size_t k, std::size_t n) {
+  const std::size_t triangles = mesh.triangle_count();
+  const std::size_t first = triangles * k / n, last = triangles * (k + 1) / n;
+  Mesh part;
+  // Vertices are numbered in the order of their first use.
+  constexpr std::uint32_t kUnseen = ~std::uint32_t{0};
+  std::vector<std::uint32_t> numbers(mesh.positions.size(), kUnseen);
+  for (std::size_t i = first * 3; i < last * 3; ++i) {
+    const std::uint32_t v = mesh.indices.empty() ? static_cast<std::uint32_t>(i) : mesh.indices[i];
+    if (numbers[v] == kUnseen) {
+      numbers[v] = static_cast<std::uint32_t>(part.positions.size());
+      part.positions.push_back(mesh.positions[v]);
+    }
+    part.indices.push_back(numbers[v]);
+  }
+  return shapes::subdivide(part, times);
+}
+
 Camera whole_view(const Mesh& mesh) {
   const InstanceView instance{mesh.view(), Mat4d::identity()};
   return fit_camera({{&instance, 1}, {}, {}}, kFov_rad, false);

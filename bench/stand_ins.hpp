@@ -30,6 +30,11 @@ namespace rastrum::bench {
 /// The default camera of one mesh.
 [[nodiscard]] Camera whole_view(const Mesh& mesh);
 
+/// Part `k` of `n` of `mesh` subdivided `times` times, in order: the parts' triangles one after the
+/// other are those of shapes::subdivide, bit for bit, so that a mesh that does not fit into memory
+/// can be drawn in passes. Vertices that parts share are in both.
+[[nodiscard]] Mesh subdivided_part(const Mesh& mesh, int times, std::size_t k, std::size_t n);
+
 /// A camera on the default one's axis from which `mesh` has about `fragments` covered samples at
 /// width × height, found by bisection over the distance; what it has in the end is in `found`.
 struct FragmentMatch {

@@ -1,0 +1,48 @@
+// `rastrum bench` of the papers' tables, as smoke tests: each runs, checks its pictures and leaves
+// three files that can be read.
+#include <bench/bench.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include <gtest/gtest.h>
+
+namespace rastrum::bench {
+namespace {
+
+class Tables : public testing::TestWithParam<const char*> {};
+
+TEST_P(Tables, RunsQuickly) {
+  const std::string bench = GetParam();
+  const auto folder = std::filesystem::path(testing::TempDir()) / ("rastrum_tables_" + bench);
+  std::filesystem::remove_all(folder);
+  const std::string out = folder.string();
+  const std::vector<std::string_view> args{bench, "--quick", "--out", out};
+  ASSERT_EQ(run(args), 0);
+  std::ifstream file(folder / (bench + ".json"));
+  const nlohmann::json j = nlohmann::json::parse(file);
+  EXPECT_EQ(j["benchmark"], bench);
+  // Something was measured: the default is in every one of these tables.
+  EXPECT_FALSE(j["figures"].empty());
+  const std::string text = j["figures"].dump();
+  EXPECT_EQ(text.find("WRONG"), std::string::npos);
+  EXPECT_GT(std::filesystem::file_size(folder / (bench + ".md")), 500U);
+  EXPECT_GT(std::filesystem::file_size(folder / (bench + ".svg")), 500U);
+  std::filesystem::remove_all(folder);
+}
+
+INSTANTIATE_TEST_SUITE_P(OneAPaper, Tables,
+                         testing::Values("paper1-table1", "paper1-table2", "paper1-table4",
+                                         "paper2", "paper5-table1", "paper5-table3",
+                                         "paper5-table4", "auto", "hashed", "hiz"),
+                         [](const auto& row) {
+                           std::string name = row.param;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace rastrum::bench
