@@ -143,7 +143,7 @@ FrameStats draw(Renderer& renderer, const Subject& subject, const Targets& targe
   draw.source = &source;
   draw.vertex_count = subject.mesh.positions.size();
   draw.indices = subject.mesh.indices;
-  draw.triangle_count = subject.mesh.triangle_count();
+  draw.primitive_count = subject.mesh.triangle_count();
   const raster::BlockShader& shader = subject.shader != nullptr ? *subject.shader : depth_cubed();
   return renderer.draw({&draw, 1}, shader, nullptr, targets);
 }

@@ -99,11 +99,11 @@ int run_paper2(std::span<const std::string_view> arguments) {
   Grid phases{"Stages of a frame, ms", {"scene", "schedule", "stages"}, {}};
 
   std::vector<Entrant> entrants;
-  for (const auto schedule : {Schedule::persistent, Schedule::two_stage}) {
+  for (const auto schedule : {raster::Schedule::persistent, raster::Schedule::two_stage}) {
     raster::Tuning tuning;
     tuning.schedule = schedule;
     entrants.push_back(entrant(options, "binned", "auto", tuning));
-    entrants.back().name = schedule == Schedule::persistent ? "persistent" : "two-stage";
+    entrants.back().name = schedule == raster::Schedule::persistent ? "persistent" : "two-stage";
   }
   entrants.push_back(entrant(options, "auto"));
   bool right = true;

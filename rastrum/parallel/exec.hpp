@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -20,6 +21,8 @@ class Serial {
   /// Words take their memory from an arena that is accounted to `account`, which must outlive the
   /// backend and the words' results.
   explicit Serial(MemoryAccount* account = nullptr) : memory_(std::make_shared<Arena>(account)) {}
+  /// Within a loop of another backend: words take their memory from its arena.
+  explicit Serial(std::shared_ptr<Arena> memory) : memory_(std::move(memory)) {}
   [[nodiscard]] static int concurrency() { return 1; }
   [[nodiscard]] const std::shared_ptr<Arena>& memory() const { return memory_; }
 
