@@ -124,7 +124,11 @@ struct VisibleBlock {
   std::uint64_t covered = 0;             ///< samples that hold a surface and lie in the image
   int x0 = 0, y0 = 0;                    ///< first pixel
   void* scratch = nullptr;               ///< the shader's, zeroed before the first block of a bin
+  BlockColors* extra = nullptr;          ///< its further outputs; null: not wanted
 };
+
+/// How many outputs a shader may have beside its colour.
+inline constexpr std::size_t kMaxExtraTargets = 7;
 
 /// Bytes that a shader may ask for, so that they can be set aside for each thread.
 inline constexpr std::size_t kMaxShaderScratch = 16384;
@@ -140,6 +144,8 @@ class BlockShader {
   /// How many bytes of VisibleBlock::scratch the shader uses, at most kMaxShaderScratch; 64-byte
   /// aligned, kept from block to block of a bin.
   [[nodiscard]] virtual std::size_t scratch_bytes() const noexcept { return 0; }
+  /// How many VisibleBlock::extra it sets (Targets::extra), at most kMaxExtraTargets.
+  [[nodiscard]] virtual std::size_t extra_count() const noexcept { return 0; }
 };
 
 /// One frame, as the façade hands it to a rasterizer.

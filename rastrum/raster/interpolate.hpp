@@ -12,7 +12,7 @@
 #include <utility>
 
 #include <rastrum/raster/geometry.hpp>
-#include <rastrum/raster/setup.hpp>
+#include <rastrum/raster/points_and_lines.hpp>
 
 namespace rastrum::raster {
 
@@ -144,6 +144,7 @@ struct Fragment {
   bool front = true;  ///< is seen from its front (Draw::winding; `either`: counter-clockwise)
   std::uint32_t vertex[3] = {};  ///< as many as the topology has
   Weights weights;
+  Vec2 point;  ///< of a point: where in its square, (0, 0) at the top left to (1, 1)
   const WeightPlanes* planes = nullptr;
 };
 
@@ -157,6 +158,7 @@ class FragmentLocator {
   const Fragment& locate(std::uint64_t id, int x, int y) {
     if (id != fragment_.id || fragment_.planes == nullptr) {
       const Draw& draw = frame_.draw_of(id);
+      square_px_ = 0;
       fragment_.id = id;
       fragment_.triangle = id - draw.first_id;
       fragment_.draw = static_cast<std::size_t>(&draw - frame_.draws.data());
@@ -164,8 +166,7 @@ class FragmentLocator {
         fragment_.vertex[c] = draw.vertex(fragment_.triangle, c);
       switch (draw.topology) {
         case Topology::points:
-          planes_ = {};
-          planes_.r[0] = 1;
+          planes_ = point_planes(draw);
           break;
         case Topology::lines:
           planes_ = line_weight_planes(frame_, draw, fragment_.triangle);
@@ -180,6 +181,9 @@ class FragmentLocator {
     fragment_.x = x;
     fragment_.y = y;
     fragment_.weights = weights_at(planes_, x, y);
+    if (square_px_ > 0)
+      fragment_.point = {static_cast<float>((x + 0.5 - planes_.x0) / square_px_),
+                         static_cast<float>((y + 0.5 - planes_.y0) / square_px_)};
     return fragment_;
   }
 
@@ -196,9 +200,24 @@ class FragmentLocator {
     return counter_clockwise != (draw.winding == Winding::clockwise);
   }
 
+  /// One weight; the planes' origin is the square's top left.
+  WeightPlanes point_planes(const Draw& draw) {
+    ProjectedVertex v = frame_.vertex(draw, fragment_.vertex[0]);
+    if (v.x_fx8 == kNeedsClip)
+      (void)clip_point(draw.source->clip_position(fragment_.vertex[0]), frame_.viewport, v);
+    constexpr double kPx = 1.0 / kSubpixels;
+    square_px_ = point_size_fx8(draw.point_size) * kPx;
+    WeightPlanes w{};
+    w.x0 = v.x_fx8 * kPx - square_px_ / 2;
+    w.y0 = v.y_fx8 * kPx - square_px_ / 2;
+    w.r[0] = 1;
+    return w;
+  }
+
   const FrameGeometry& frame_;
   Fragment fragment_;
   WeightPlanes planes_;
+  double square_px_ = 0;  ///< of a point, else 0
 };
 
 /// A BlockShader from a function Vec4(const FrameGeometry&, const Fragment&) that returns the

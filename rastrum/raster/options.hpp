@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -51,6 +52,10 @@ struct Targets {
   ImageView<std::uint64_t> words{};
   bool load = false;
   std::uint64_t first_id = 0;
+
+  /// Further outputs of the shader (BlockShader::extra_count), as it returns them; 0 where nothing
+  /// is. Like the other targets they must have the frame's size.
+  std::span<const ImageView<Vec4>> extra{};
 };
 
 /// One timed part of a frame, in ms since the frame began.

@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -46,7 +47,8 @@ struct VertexOutput {
 struct KeepAll {};
 
 /// Vertex: VertexOutput<V>(std::uint32_t index). Shade: Vec4(const V&, const Fragment&), the
-/// premultiplied display value. Discard: bool(const V&, const Fragment&), true for a hole.
+/// premultiplied display value, or a std::array or tuple of Vec4, of which those after the first go
+/// to Targets::extra. Discard: bool(const V&, const Fragment&), true for a hole.
 /// A program is the vertex source of its draws and the shader of the frame.
 template <class Vertex, class Shade, class Discard = KeepAll>
 class Program final : public VertexSource, public BlockShader {
@@ -107,13 +109,38 @@ class Program final : public VertexSource, public BlockShader {
                         [&](int i, const VaryingType& v, Fragment& fragment) {
                           fragment.depth = std::bit_cast<float>(
                               static_cast<std::uint32_t>(block.words[i] >> kIdBits));
-                          opaque &= colors.set(i, shade_(v, std::as_const(fragment)));
+                          opaque &= set(block, i, shade_(v, std::as_const(fragment)), colors);
                         });
     }
     return opaque;
   }
 
+  [[nodiscard]] std::size_t extra_count() const noexcept override { return kExtra; }
+
  private:
+  using Output = decltype(std::declval<const Shade&>()(std::declval<const VaryingType&>(),
+                                                       std::declval<const Fragment&>()));
+  static constexpr std::size_t kExtra = [] {
+    if constexpr (std::is_convertible_v<Output, Vec4>)
+      return std::size_t{0};
+    else
+      return std::tuple_size_v<Output> - 1;
+  }();
+  static_assert(kExtra <= kMaxExtraTargets, "a shader has at most 8 outputs");
+
+  /// Returns whether the colour is opaque.
+  static bool set(const VisibleBlock& block, int i, const Output& output, BlockColors& colors) {
+    if constexpr (kExtra == 0 && std::is_convertible_v<Output, Vec4>) {
+      return colors.set(i, output);
+    } else {
+      if (block.extra != nullptr) [&]<std::size_t... k>(std::index_sequence<k...>) {
+          (block.extra[k].set(i, std::get<k + 1>(output)), ...);
+        }
+      (std::make_index_sequence<kExtra>{});
+      return colors.set(i, std::get<0>(output));
+    }
+  }
+
   static constexpr bool kDiscards = !std::is_same_v<Discard, KeepAll>;
 
   class Test final : public FragmentTest {

@@ -64,6 +64,22 @@ void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
     store_colors(request, *colors, block.covered, touched, w, wants_8_bit);
 }
 
+/// Shades into `colors` and all of Targets::extra, which it stores.
+void shade_extra(const FrameRequest& request, const FrameGeometry& frame, VisibleBlock block,
+                 std::uint64_t touched, const Window& w, BlockColors& colors) {
+  BlockColors extra[kMaxExtraTargets];
+  block.extra = extra;
+  if (block.covered != 0 && request.shader->shade(frame, block, request.isa, colors))
+    std::fill_n(colors.a, 64, 1.0F);
+  for (std::size_t k = 0; k < request.targets.extra.size(); ++k)
+    for (std::uint64_t m = touched; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      const BlockColors& c = extra[k];
+      request.targets.extra[k](w.x0 + i % kBlockSize, w.y0 + i / kBlockSize) =
+          (block.covered >> i & 1) != 0 ? Vec4{c.r[i], c.g[i], c.b[i], c.a[i]} : Vec4{};
+    }
+}
+
 void store_words(const Targets& targets, const std::uint64_t* words, std::uint64_t touched,
                  const Window& w) {
   for (std::uint64_t m = touched; m != 0; m &= m - 1) {
@@ -117,8 +133,14 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame,
         samples_inside({0, 0, request.width, request.height}, x0 / kBlockSize, y0 / kBlockSize);
   covered &= touched;
   if (targets.load) touched = covered = of_this_pass(words, covered, targets.first_id);
+  const VisibleBlock block{words, covered, x0, y0, scratch};
+  BlockColors colors;
+  if (!targets.extra.empty()) {
+    shade_extra(request, frame, block, touched, window, colors);
+    shaded = &colors;
+  }
   if (!targets.color8.empty() || !targets.color.empty())
-    resolve_colors(request, frame, {words, covered, x0, y0, scratch}, touched, shaded, window);
+    resolve_colors(request, frame, block, touched, shaded, window);
   if (!targets.depth.empty() || !targets.ids.empty() || !targets.words.empty())
     store_words(targets, words, touched, window);
   return std::popcount(covered);
@@ -147,6 +169,7 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
     if (!target.empty()) std::fill_n(target.row(y) + rect.x0, rect.x1 - rect.x0, value);
   };
   for (int y = rect.y0; y < rect.y1; ++y) {
+    for (const ImageView<Vec4>& extra : targets.extra) fill(extra, y, Vec4{});
     fill(targets.color8, y, background8);
     fill(targets.color, y, background);
     fill(targets.depth, y, 0.0F);

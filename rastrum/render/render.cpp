@@ -227,6 +227,14 @@ FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::BlockShad
   check_target(targets.ids, o, "ids");
   check_target(targets.overdraw, o, "overdraw");
   check_target(targets.words, o, "words");
+  for (const ImageView<Vec4>& extra : targets.extra) {
+    if (extra.empty()) throw Error(Errc::invalid_argument, "an extra target is empty");
+    check_target(extra, o, "extra");
+  }
+  if (targets.extra.size() > shader.extra_count())
+    throw Error(Errc::invalid_argument,
+                std::to_string(targets.extra.size()) + " extra targets, but the shader has " +
+                    std::to_string(shader.extra_count()) + " outputs beside its colour");
   if (targets.load && targets.words.empty())
     throw Error(Errc::invalid_argument,
                 "a pass that loads needs the visibility words of the passes before");

@@ -1,0 +1,78 @@
+// Unit quaternions: rotations without a preferred axis, that can be interpolated (Shoemake,
+// "Animating rotation with quaternion curves", 1985). In float64, as matrices are composed in it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include <rastrum/core/mat.hpp>
+#include <rastrum/core/vec.hpp>
+
+namespace rastrum {
+
+/// w + x i + y j + z k. A rotation by θ about the unit axis a is (cos θ/2, a sin θ/2).
+struct Quaternion {
+  double w = 1, x = 0, y = 0, z = 0;
+};
+
+/// The product: first b's rotation, then a's.
+constexpr Quaternion operator*(const Quaternion& a, const Quaternion& b) {
+  return {
+      a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+      a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+}
+/// The inverse of a unit quaternion.
+constexpr Quaternion conjugate(const Quaternion& q) {
+  return {q.w, -q.x, -q.y, -q.z};
+}
+constexpr double dot(const Quaternion& a, const Quaternion& b) {
+  return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
+}
+/// The unit quaternion along `q`; the identity where its length is 0.
+inline Quaternion normalize(const Quaternion& q) {
+  const double length = std::sqrt(dot(q, q));
+  if (!(length > 0)) return {};
+  return {q.w / length, q.x / length, q.y / length, q.z / length};
+}
+
+/// Right-handed about `axis`, which need not be of unit length; the identity where it is 0.
+inline Quaternion rotation_about(Vec3 axis, double angle_rad) {
+  const double x = axis.x, y = axis.y, z = axis.z;
+  const double length = std::sqrt(x * x + y * y + z * z);
+  if (!(length > 0)) return {};
+  const double s = std::sin(angle_rad / 2) / length;
+  return {std::cos(angle_rad / 2), x * s, y * s, z * s};
+}
+
+/// The rotation's matrix. `q` of unit length.
+constexpr Mat4d rotation(const Quaternion& q) {
+  Mat4d r = Mat4d::identity();
+  const double xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z;
+  const double xy = q.x * q.y, xz = q.x * q.z, yz = q.y * q.z;
+  const double wx = q.w * q.x, wy = q.w * q.y, wz = q.w * q.z;
+  r.m[0][0] = 1 - 2 * (yy + zz);
+  r.m[0][1] = 2 * (xy - wz);
+  r.m[0][2] = 2 * (xz + wy);
+  r.m[1][0] = 2 * (xy + wz);
+  r.m[1][1] = 1 - 2 * (xx + zz);
+  r.m[1][2] = 2 * (yz - wx);
+  r.m[2][0] = 2 * (xz - wy);
+  r.m[2][1] = 2 * (yz + wx);
+  r.m[2][2] = 1 - 2 * (xx + yy);
+  return r;
+}
+
+/// From a (t = 0) to b (t = 1) at constant angular speed, the shorter way round.
+inline Quaternion slerp(const Quaternion& a, const Quaternion& b, double t) {
+  const double cosine = dot(a, b);
+  const double sign = cosine < 0 ? -1 : 1;
+  const double angle = std::acos(std::min(std::abs(cosine), 1.0));
+  // Where the sine vanishes the arc is a straight line to the last bits.
+  const double sine = std::sin(angle);
+  const double wa = sine > 1e-9 ? std::sin((1 - t) * angle) / sine : 1 - t;
+  const double wb = sign * (sine > 1e-9 ? std::sin(t * angle) / sine : t);
+  return normalize(
+      {wa * a.w + wb * b.w, wa * a.x + wb * b.x, wa * a.y + wb * b.y, wa * a.z + wb * b.z});
+}
+
+}  // namespace rastrum

@@ -1,0 +1,77 @@
+#include <rastrum/scene/line_art.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <rastrum/core/error.hpp>
+
+namespace rastrum {
+namespace {
+
+struct Edge {
+  std::uint64_t key;  ///< smaller index, larger index
+  std::uint64_t place;
+};
+
+void add_line(std::vector<Vec3>& lines, Vec3 from, Vec3 normal, float length) {
+  const Vec3 n = normalize(normal);
+  if (!is_finite(n) || !(dot(n, n) > 0)) return;
+  lines.push_back(from);
+  lines.push_back(from + n * length);
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> edge_indices(const MeshView& mesh) {
+  const std::size_t corners = mesh.triangle_count() * 3;
+  const auto index = [&](std::size_t corner) {
+    return mesh.indices.empty() ? static_cast<std::uint32_t>(corner) : mesh.indices[corner];
+  };
+  std::vector<Edge> edges(corners);
+  for (std::size_t c = 0; c < corners; ++c) {
+    const std::uint64_t a = index(c), b = index(c % 3 == 2 ? c - 2 : c + 1);
+    edges[c] = {std::min(a, b) << 32 | std::max(a, b), c};
+  }
+  std::ranges::sort(edges, [](const Edge& a, const Edge& b) {
+    return a.key != b.key ? a.key < b.key : a.place < b.place;
+  });
+  const auto rest = std::ranges::unique(edges, {}, &Edge::key);
+  edges.erase(rest.begin(), rest.end());
+  std::ranges::sort(edges, {}, &Edge::place);
+  std::vector<std::uint32_t> pairs;
+  pairs.reserve(edges.size() * 2);
+  for (const Edge& e : edges) {
+    pairs.push_back(static_cast<std::uint32_t>(e.key >> 32));
+    pairs.push_back(static_cast<std::uint32_t>(e.key));
+  }
+  return pairs;
+}
+
+std::vector<Vec3> normal_lines(const MeshView& mesh, float length) {
+  std::vector<Vec3> lines;
+  const auto at = [](auto values, std::size_t i) {
+    if (i >= values.size())
+      throw Error(Errc::invalid_argument, "normal_lines: an index is out of range");
+    return values[i];
+  };
+  if (!mesh.normals.empty() && mesh.normals.indices.empty()) {
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+      add_line(lines, mesh.positions[i], at(mesh.normals.values, i), length);
+    return lines;
+  }
+  const auto position = [&](std::size_t corner) {
+    return at(mesh.positions, mesh.indices.empty() ? corner : mesh.indices[corner]);
+  };
+  for (std::size_t c = 0; c < mesh.triangle_count() * 3; c += 3) {
+    const Vec3 p[3] = {position(c), position(c + 1), position(c + 2)};
+    if (mesh.normals.empty()) {
+      add_line(lines, (p[0] + p[1] + p[2]) * (1.0F / 3), cross(p[1] - p[0], p[2] - p[0]), length);
+      continue;
+    }
+    for (std::size_t i = 0; i < 3; ++i)
+      add_line(lines, p[i], at(mesh.normals.values, at(mesh.normals.indices, c + i)), length);
+  }
+  return lines;
+}
+
+}  // namespace rastrum
