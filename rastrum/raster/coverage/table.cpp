@@ -4,10 +4,19 @@
 #include <rastrum/raster/coverage/binned.hpp>
 #include <rastrum/raster/coverage/coverage.hpp>
 #include <rastrum/raster/coverage/grouped.hpp>
+#include <rastrum/raster/coverage/hybrid.hpp>
 #include <rastrum/raster/coverage/pineda.hpp>
 #include <rastrum/raster/coverage/scanline.hpp>
+#include <rastrum/raster/coverage/tiled.hpp>
 
 namespace rastrum::raster {
+namespace {
+
+/// Of a coverage on a PieceArray: the piece twice (48 bytes, in its group and in the array), its
+/// index as filtered and as parted (4 each), and its place in one expansion at a time (8).
+constexpr int kIndexedPiece = 2 * 48 + 2 * 4 + 8;
+
+}  // namespace
 
 std::span<const CoverageRow> coverages() noexcept {
   static constexpr std::array kTable{
@@ -17,11 +26,18 @@ std::span<const CoverageRow> coverages() noexcept {
           "it in cache",
           true, false, 160, make_grouped},
       CoverageRow{"scanline", "triangles expanded to rows, rows to columns, at once into the frame",
-                  false, true, 116, make_scanline},
+                  false, true, kIndexedPiece, make_scanline},
       CoverageRow{"pineda",
                   "bins and tiles by edge functions and masks, small triangles apart, at once into "
                   "the frame",
-                  false, true, 120, make_pineda},
+                  false, true, kIndexedPiece, make_pineda},
+      CoverageRow{"tiled",
+                  "(tile, triangle) pairs sorted by tile; a thread owns a tile and shades it in "
+                  "cache",
+                  true, true, kIndexedPiece, make_tiled},
+      CoverageRow{"hybrid",
+                  "small triangles at once into the frame, the others sorted by tile onto it",
+                  false, true, kIndexedPiece, make_hybrid},
       CoverageRow{
           "binned",
           "batches of 32 triangles; large ones go through a queue of bins, whose tiles are dealt "
