@@ -4,6 +4,7 @@
 #include <bit>
 
 #include <rastrum/parallel/scan.hpp>
+#include <rastrum/parallel/scratch.hpp>
 #include <rastrum/parallel/sort_by_key.hpp>
 #include <rastrum/raster/visibility/chunk_counts.hpp>
 #include <rastrum/raster/visibility/fragments.hpp>
@@ -84,8 +85,7 @@ class SliceBySlice {
 
 class OwnedSortedRegion final : public Region {
  public:
-  explicit OwnedSortedRegion(MemoryAccount& memory)
-      : exec_(std::make_shared<parallel::Arena>(&memory)), slices_(memory) {}
+  explicit OwnedSortedRegion(MemoryAccount& memory) : exec_(&memory), slices_(memory) {}
 
   void begin(const RegionContext& context, const SurfaceView& surface, Rect rect,
              std::size_t) override {
@@ -184,7 +184,7 @@ class SharedSortedRegion final : public Region {
         keys_(memory),
         words_(memory),
         slices_(memory),
-        serial_(std::make_shared<parallel::Arena>(&memory)) {}
+        serial_([&memory] { return parallel::Serial(&memory); }) {}
 
   void begin(const RegionContext& context, const SurfaceView& surface, Rect rect,
              std::size_t chunks) override {
@@ -220,7 +220,7 @@ class SharedSortedRegion final : public Region {
         resolve_bands();
         break;
       case Step::streaming:
-        slices_.flush(serial_);
+        slices_.flush(serial_.local());
         break;
     }
     run_ = chunk_counts_.take(most_);
@@ -251,10 +251,11 @@ class SharedSortedRegion final : public Region {
         }
         break;
       default:
+        parallel::Serial& serial = serial_.local();
         for (const Block& b : blocks) {
           const std::uint32_t first = pixels_.block(b.bx, b.by) * 64;
           for_each_fragment(*kernel_, pieces[b.piece], b, [&](std::uint32_t i, std::uint64_t word) {
-            slices_.add(serial_, first + i, word);
+            slices_.add(serial, first + i, word);
           });
         }
     }
@@ -297,9 +298,8 @@ class SharedSortedRegion final : public Region {
     parallel::for_each_index(*exec_, bands_.count(), [&](std::size_t band) {
       for (std::uint64_t at = begins[band]; at < begins[band + 1];) {
         const std::uint64_t n = std::min<std::uint64_t>(slice_, begins[band + 1] - at);
-        parallel::Serial serial(serial_.memory());
-        resolve<Key>(serial, {keys_.data() + at, n}, {words_.data() + at, n}, bands_.pixel_bits(),
-                     pixels_, bands_.first_block(band));
+        resolve<Key>(serial_.local(), {keys_.data() + at, n}, {words_.data() + at, n},
+                     bands_.pixel_bits(), pixels_, bands_.first_block(band));
         sorts_.fetch_add(1, std::memory_order_relaxed);
         at += n;
       }
@@ -312,7 +312,7 @@ class SharedSortedRegion final : public Region {
   Buffer<Key> keys_;
   Buffer<std::uint64_t> words_;
   SliceBySlice slices_;
-  parallel::Serial serial_;
+  parallel::ScratchPool<parallel::Serial> serial_;
   parallel::Threads* exec_ = nullptr;
   const Kernels* kernel_ = nullptr;
   PixelNumbers pixels_;
