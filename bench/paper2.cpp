@@ -17,7 +17,7 @@ namespace {
 constexpr int kWidth = 1920, kHeight = 1080;
 constexpr double kEvenLoad = 1.1;
 /// The counters of the load that the rasterizer simulates.
-constexpr std::string_view kMost = "most loaded of 64 workers", kMean = "mean of 64 workers";
+constexpr std::string_view kMost = "most loaded of 64 workers", kWork = "work of 64 workers";
 
 struct Scene {
   const char* name;
@@ -46,12 +46,13 @@ Measured stage(const Result& result, std::string_view name) {
 
 void add_load(const Result& result, const char* scene, Grid& grid, nlohmann::json& figures) {
   std::vector<std::string> row{scene, result.name};
-  const std::uint64_t most = result.counter(kMost), mean = result.counter(kMean);
-  if (!result.ran() || mean == 0) {
+  const std::uint64_t most = result.counter(kMost), work = result.counter(kWork);
+  if (!result.ran() || work == 0) {
     row.push_back(result.ran() ? "not counted" : "not run (" + result.not_run + ")");
   } else {
-    const double ratio = static_cast<double>(most) / static_cast<double>(mean);
-    row.insert(row.end(), {std::to_string(most), std::to_string(mean), significant(ratio, 4),
+    const double mean = static_cast<double>(work) / 64;
+    const double ratio = static_cast<double>(most) / mean;
+    row.insert(row.end(), {std::to_string(most), significant(mean), significant(ratio, 4),
                            ratio <= kEvenLoad ? "yes" : "NO"});
     figures.push_back({{"table", "load"},
                        {"row", scene},

@@ -516,7 +516,7 @@ TEST(Binned, RefusesATuningThatIsNotCompiled) {
       return std::string(e.what());
     }
   };
-  EXPECT_NE(refuses(48, 8, 0).find("64, 8; 32, 8; 64, 16; 128, 8; 128, 16"), std::string::npos);
+  EXPECT_NE(refuses(48, 8, 0).find("64/8, 32/8, 64/16, 128/8, 128/16"), std::string::npos);
   EXPECT_NE(refuses(0, 32, 0), "");
   EXPECT_NE(refuses(0, 0, -1), "");
   EXPECT_EQ(refuses(0, 0, 0), "");

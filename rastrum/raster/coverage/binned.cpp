@@ -393,13 +393,10 @@ std::unique_ptr<Coverage> make_binned(const Tuning& tuning, MemoryAccount& memor
   std::string known;
   for (const Configuration& c : kConfigurations) {
     if (c.bin_px == bin_px && c.tile_px == tile_px) return c.make(tuning, memory);
-    known.append(known.empty() ? "" : "; ")
-        .append(std::to_string(c.bin_px))
-        .append(", ")
-        .append(std::to_string(c.tile_px));
+    known.append(known.empty() ? "" : ", ").append(std::to_string(c.bin_px));
+    known.append("/").append(std::to_string(c.tile_px));
   }
-  throw Error(Errc::invalid_argument, "'binned' is compiled for bins and tiles of (px): " + known +
-                                          "; not " + std::to_string(bin_px) + ", " +
-                                          std::to_string(tile_px));
+  throw Error(Errc::invalid_argument, "'binned' is compiled for these bins/tiles in px: " + known);
 }
+
 }  // namespace rastrum::raster
