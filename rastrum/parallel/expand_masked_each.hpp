@@ -43,9 +43,8 @@ class MaskedExpansion {
         for (std::size_t k = begin; k < end; ++k) {
           const std::size_t first = k * kBits;
           const int width = static_cast<int>(std::min<std::size_t>(kBits, n - first));
-          Mask<kBits> mask;
-          for (int b = 0; b < width; ++b)
-            if (holds(x, first + static_cast<std::size_t>(b))) mask.set(b);
+          const auto mask = Mask<kBits>::of(
+              width, [&](int b) { return holds(x, first + static_cast<std::size_t>(b)); });
           count += static_cast<std::size_t>(mask.rank());
           masks_[m++] = mask;
         }

@@ -51,6 +51,15 @@ class Mask {
 
  public:
   static constexpr int size() { return kBits; }
+  /// The i < n for which holds(i), asked once each, ascending; 0 ≤ n ≤ kBits. Without branches:
+  /// what holds is what cannot be predicted.
+  template <class Holds>
+  [[nodiscard]] RASTRUM_HD static constexpr Mask of(int n, Holds&& holds) {
+    Mask mask;
+    mask.low_ = Mask<kHalf>::of(n < kHalf ? n : kHalf, holds);
+    if (n > kHalf) mask.high_ = Mask<kHalf>::of(n - kHalf, [&](int i) { return holds(i + kHalf); });
+    return mask;
+  }
   RASTRUM_HD constexpr void set(int i) { i < kHalf ? low_.set(i) : high_.set(i - kHalf); }
   [[nodiscard]] RASTRUM_HD constexpr bool test(int i) const {
     return i < kHalf ? low_.test(i) : high_.test(i - kHalf);
@@ -87,6 +96,16 @@ requires(kBits == 8 || kBits == 16 || kBits == 32 || kBits == 64) class Mask<kBi
                          std::conditional_t<kBits == 32, std::uint32_t, std::uint64_t>>>;
 
   static constexpr int size() { return kBits; }
+  template <class Holds>
+  [[nodiscard]] RASTRUM_HD static constexpr Mask of(int n, Holds&& holds) {
+    assert(n >= 0 && n <= kBits);
+    // Shifted down from the top, because a shift by a constant is cheaper than one by i.
+    std::uint64_t bits = 0;
+    for (int i = 0; i < n; ++i) bits = bits >> 1 | std::uint64_t{static_cast<bool>(holds(i))} << 63;
+    Mask mask;
+    mask.word_ = n == 0 ? Word{0} : static_cast<Word>(bits >> (64 - n));
+    return mask;
+  }
   RASTRUM_HD constexpr void set(int i) {
     assert(i >= 0 && i < kBits);
     word_ = static_cast<Word>(word_ | std::uint64_t{1} << i);

@@ -26,6 +26,17 @@ TYPED_TEST(MaskTest, MatchesASetOfNumbers) {
           elements.push_back(i);
         }
       ASSERT_EQ(mask.rank(), static_cast<int>(elements.size()));
+      std::vector<int> visited, asked;
+      mask.for_each([&](int i) { visited.push_back(i); });
+      ASSERT_EQ(visited, elements);
+      const int below_n = static_cast<int>(random() % static_cast<unsigned>(n + 1));
+      const auto part = TypeParam::of(below_n, [&](int i) {
+        asked.push_back(i);
+        return mask.test(i);
+      });
+      ASSERT_EQ(static_cast<int>(asked.size()), below_n);
+      for (int i = 0; i < n; ++i) ASSERT_EQ(part.test(i), i < below_n && mask.test(i)) << i;
+      for (int i = 0; i < below_n; ++i) ASSERT_EQ(asked[static_cast<std::size_t>(i)], i);
       int below = 0;
       for (int i = 0; i <= n; ++i) {
         ASSERT_EQ(mask.rank(i), below) << i;
