@@ -23,7 +23,8 @@ class Table {
   static constexpr std::uint64_t kSlotBytes = sizeof(std::uint32_t) + sizeof(std::uint64_t);
 
   static std::uint64_t slots_for(std::uint64_t entries) {
-    std::uint64_t slots = (entries * kLoadDenominator / kLoadNumerator / 64 + 1) * 64;
+    // Two blocks' worth at least: a step is longer than one.
+    std::uint64_t slots = (entries * kLoadDenominator / kLoadNumerator / 64 + 2) * 64;
     // The steps of a probe must meet every slot.
     while (std::gcd(slots, kStep) != 1) slots += 64;
     return slots;
