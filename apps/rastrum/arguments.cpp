@@ -36,6 +36,17 @@ int parse_integer(std::string_view option, std::string_view text, int min, int m
   return value;
 }
 
+std::uint64_t parse_bytes(std::string_view option, std::string_view text) {
+  std::uint64_t value = 0;
+  const std::size_t unit = text.empty() ? 0 : std::string_view("KMG").find(text.back());
+  const bool has_unit = !text.empty() && unit != std::string_view::npos;
+  const int shift = has_unit ? 10 * (static_cast<int>(unit) + 1) : 0;
+  if (!convert(text.substr(0, text.size() - (has_unit ? 1 : 0)), value) || value == 0 ||
+      value > (~std::uint64_t{0} >> shift))
+    refuse(option, text, "a number of bytes such as 1500000, 64K, 16M or 2G");
+  return value << shift;
+}
+
 Vec3 parse_vec3(std::string_view option, std::string_view text) {
   float values[3] = {};
   std::string_view rest = text;

@@ -24,6 +24,8 @@ class UsageError : public std::runtime_error {
 struct Size {
   int width = 1280, height = 720;
 };
+[[nodiscard]] std::uint64_t parse_bytes(std::string_view option,
+                                        std::string_view text);  ///< N, NK, NM or NG, from 1
 [[nodiscard]] Size parse_size(std::string_view option, std::string_view text);  ///< WxH
 /// '#rrggbb' or '#rrggbbaa', display values in [0, 1], straight alpha.
 [[nodiscard]] Vec4 parse_color(std::string_view option, std::string_view text);

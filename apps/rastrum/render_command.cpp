@@ -216,6 +216,11 @@ void add_machine_options(CLI::App& app, RenderArguments& a) {
   add(app, "--threads", "N", "(all)", [&a](const std::string& s) {
     a.render.threads = parse_integer("--threads", s, 1, 4096);
   })->group(group);
+  add(app, "--memory-limit", "BYTES",
+      "scratch beyond the mesh and the images, with K, M or G; what does not fit at once is drawn "
+      "piece by piece (none)",
+      [&a](const std::string& s) { a.render.memory_limit = parse_bytes("--memory-limit", s); })
+      ->group(group);
   std::string isas;
   for (const Isa isa : available_isas()) isas.append(isas.empty() ? "" : ", ").append(name(isa));
   add(app, "--isa", "NAME", "instruction set; this machine has " + isas + " (the last)",

@@ -29,6 +29,7 @@ class MemoryAccount {
   void remove(std::size_t bytes) noexcept { held_.fetch_sub(bytes, std::memory_order_relaxed); }
   void restart_peak() noexcept { peak_ = held_.load(); }
   [[nodiscard]] std::uint64_t peak() const noexcept { return peak_; }
+  [[nodiscard]] std::uint64_t held() const noexcept { return held_; }
 
  private:
   std::atomic<std::uint64_t> held_ = 0, peak_ = 0;
@@ -47,19 +48,21 @@ class Buffer {
         data_(std::move(other.data_)),
         capacity_(std::exchange(other.capacity_, 0)) {}
   Buffer& operator=(Buffer&&) = delete;
-  ~Buffer() { account_->remove(capacity_ * sizeof(T)); }
+  ~Buffer() { release(); }
 
   /// At least `count` elements; the first `keep` survive. Amortized O(1) an element when grown by
   /// steps. Throws Error{out_of_memory} with what was asked for.
   void reserve(std::size_t count, std::size_t keep = 0) {
     if (count <= capacity_) return;
     if (count > (std::numeric_limits<std::size_t>::max() - 63) / sizeof(T)) fail(count);
+    // What need not survive goes first, so that both are never held at once.
+    if (keep == 0) release();
     const std::size_t bytes = (count * sizeof(T) + 63) / 64 * 64;
     std::unique_ptr<T[], Free> grown(static_cast<T*>(std::aligned_alloc(64, bytes)));
     if (!grown) fail(count);
     std::copy_n(data_.get(), keep, grown.get());
     account_->add(count * sizeof(T));
-    account_->remove(capacity_ * sizeof(T));
+    release();
     data_ = std::move(grown);
     capacity_ = count;
   }
@@ -77,6 +80,10 @@ class Buffer {
   struct Free {
     void operator()(T* p) const noexcept { std::free(p); }
   };
+  void release() noexcept {
+    data_.reset();
+    account_->remove(std::exchange(capacity_, 0) * sizeof(T));
+  }
   [[noreturn]] static void fail(std::size_t count) {
     throw Error(Errc::out_of_memory, "out of memory: " + std::to_string(count) + " elements of " +
                                          std::to_string(sizeof(T)) + " bytes were asked for");

@@ -158,6 +158,7 @@ struct FrameRequest {
   Vec4 background{};                    ///< display values, straight alpha
   Targets targets;
   Tuning tuning;
+  std::uint64_t texture_bytes = 0;  ///< that a memory limit counts beside the frame's own
   bool hierarchical_z = true;
 };
 

@@ -13,7 +13,10 @@ constexpr std::size_t kProjectGrain = 4096;
 
 /// Below this many bytes for triangles or fragments at once the pieces of the work would be smaller
 /// than what a task costs.
-constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 20;
+constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 19;
+
+/// A thread's own, beside what is dealt out: a tile's words, colours and depths.
+constexpr std::uint64_t kThreadBytes = std::uint64_t{1} << 17;
 
 /// Pieces of a batch are counted in 32 bits, and the clipper makes fewer than 16 of a triangle.
 constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
@@ -55,13 +58,25 @@ Rasterizer::Plan Rasterizer::plan(const FrameRequest& request, std::uint64_t tri
   p.band_rows = request.height;
   if (memory_limit_ == 0) return p;
 
+  const std::uint64_t row_of_pixels =
+      static_cast<std::uint64_t>(block_columns({0, 0, request.width, 1})) * kBlockSize *
+      static_cast<std::uint64_t>(visibility_.surface_bytes);
+  // The least band is a row of bins, so that a band never cuts one.
+  const std::uint64_t least_band = row_of_pixels * kBinSize;
+  const std::uint64_t others =
+      request.texture_bytes + kThreadBytes * static_cast<std::uint64_t>(threads_.concurrency());
+  const std::uint64_t least = others + std::max(least_band, kLeastShare) + 3 * kLeastShare;
+  if (memory_limit_ < least)
+    throw Error(Errc::out_of_memory, std::string("a memory limit of ")
+                                         .append(std::to_string(memory_limit_))
+                                         .append(" bytes is less than the ")
+                                         .append(std::to_string(least))
+                                         .append(" that this frame needs at least"));
+
   // A quarter each for projected vertices, triangles, the surface and fragments; what one does not
   // need is not given to another, so that the plan of a frame does not jump.
-  const std::uint64_t share = memory_limit_ / 4;
-  if (share < kLeastShare)
-    throw Error(Errc::out_of_memory,
-                "a memory limit of " + std::to_string(memory_limit_) + " bytes is less than the " +
-                    std::to_string(4 * kLeastShare) + " that a frame needs at least");
+  const std::uint64_t band_share = std::max((memory_limit_ - others) / 4, least_band);
+  const std::uint64_t share = (memory_limit_ - others - band_share) / 3;
   p.project_first = vertices <= share / sizeof(ProjectedVertex);
   // What triangles are expanded to is known in the middle of a draw only, and what does not fit
   // then is drawn in turns, onto a surface.
@@ -70,16 +85,9 @@ Rasterizer::Plan Rasterizer::plan(const FrameRequest& request, std::uint64_t tri
                      (share - p.expansion_bytes) / static_cast<std::uint64_t>(row_.triangle_bytes));
   p.fragment_bytes = share;
   p.surface = p.surface || row_.expands || p.batch < triangles;
-  if (p.surface) {
-    const auto width = static_cast<std::uint64_t>((request.width + kBinSize - 1) / kBinSize) *
-                       static_cast<std::uint64_t>(kBinSize);
-    const std::uint64_t row_bytes = width * static_cast<std::uint64_t>(visibility_.surface_bytes);
-    const std::uint64_t rows = share / row_bytes / kBinSize * kBinSize;
-    p.band_rows = static_cast<int>(std::min(std::max<std::uint64_t>(rows, kBinSize),
-                                            static_cast<std::uint64_t>(request.height)));
-    // Rows of bins, so that a band never cuts one.
-    if (p.band_rows < request.height) p.band_rows = p.band_rows / kBinSize * kBinSize;
-  }
+  if (p.surface)
+    p.band_rows = static_cast<int>(
+        std::min(band_share / least_band * kBinSize, static_cast<std::uint64_t>(request.height)));
   return p;
 }
 

@@ -250,6 +250,7 @@ FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::BlockShad
   request.background = o.background;
   request.targets = targets;
   request.tuning = o.tuning;
+  request.texture_bytes = impl_->textures.bytes();
   request.hierarchical_z = o.hierarchical_z;
   impl_->memory.restart_peak();
   FrameStats stats = impl_->draw_frame(request);

@@ -25,6 +25,9 @@ constexpr int kLargePx = 4000;
 /// Entries of a round: 4 MiB, and with 64 px bins 250 triangles that fill 1920 × 1080.
 constexpr std::size_t kQueueEntries = std::size_t{1} << 17;
 
+/// An entry with its mask, and its place in the expansion to tiles.
+constexpr std::uint64_t kEntryBytes = 48;
+
 /// Tiles of a chunk at most: some tens of microseconds. Fewer where there would not be a chunk for
 /// each of kWorkers.
 constexpr std::size_t kTilesPerChunk = 256;
@@ -150,9 +153,13 @@ class Binned final : public Coverage {
     // Each batch's place in the queue. A round's entries are those of a run of whole batches.
     const parallel::Expansion queue(frame.exec, batches_, [](const Batch& b) { return b.bins; });
     work_.bins = queue.size();
+    const std::size_t entries =
+        frame.expansion_bytes == 0
+            ? kQueueEntries
+            : std::min<std::size_t>(kQueueEntries, frame.expansion_bytes / kEntryBytes);
     for (std::size_t begin = 0; begin < count;) {
       std::size_t end = begin + 1;
-      while (end < count && queue.segment_end(end) - queue.first(begin) <= kQueueEntries) ++end;
+      while (end < count && queue.segment_end(end) - queue.first(begin) <= entries) ++end;
       if (persistent_)
         draw_persistent(begin, end);
       else

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <vector>
 
 #include <rastrum/core/error.hpp>
@@ -85,6 +86,7 @@ struct Group {
   explicit Group(MemoryAccount& memory) : pieces(memory), by_bin(memory), fragments(memory) {}
 
   Pieces pieces;
+  std::uint32_t binned = 0;  ///< pieces whose pairs are, or were, in by_bin
   BinLists<PieceInBin> by_bin;
   BinLists<BinFragment> fragments;
 
@@ -98,28 +100,42 @@ struct GroupScratch final : MicroSink {
   explicit GroupScratch(MemoryAccount& memory) : pairs(memory), micro(memory) {}
   Collected<PieceInBin> pairs;
   Collected<BinFragment> micro;
+  std::uint32_t first_bin = 0, bins = 0;  ///< of the view, where setup numbers those of the image
 
   BinFragment* room(std::size_t n) override { return micro.room(n); }
-  void written(std::size_t n) override { micro.added(n); }
+  void written(std::size_t n) override {
+    BinFragment* const all = micro.room(0);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      all[kept] = all[i];
+      all[kept].bin -= first_bin;
+      kept += all[kept].bin < bins;
+    }
+    micro.added(kept);
+  }
 };
 
-void bin_pieces(std::span<const Piece> pieces, Rect view, int columns,
-                Collected<PieceInBin>& pairs) {
-  std::uint32_t i = 0;
-  for (const Piece& piece : pieces) {
-    const std::uint32_t index = i++;
+/// Adds the pairs of pieces [first, …) with the bins of `view` until all are there, or as many as
+/// `most` after a piece. Returns the first piece that was left.
+std::uint32_t bin_pieces(std::span<const Piece> pieces, std::uint32_t first, std::size_t most,
+                         const TileGrid& bins, Collected<PieceInBin>& pairs) {
+  const Rect view = bins.view;
+  std::uint32_t index = first;
+  for (; index < pieces.size() && pairs.entries().size() < most; ++index) {
+    const Piece& piece = pieces[index];
     const Rect box = piece_bounds(piece, view);
     if (box.empty()) continue;
     const int bx0 = box.x0 / kBinSize, by0 = box.y0 / kBinSize;
     const int bx1 = (box.x1 - 1) / kBinSize, by1 = (box.y1 - 1) / kBinSize;
-    const std::size_t most =
+    const std::size_t touched =
         static_cast<std::size_t>(bx1 - bx0 + 1) * static_cast<std::size_t>(by1 - by0 + 1);
-    PieceInBin* const out = pairs.room(most);
+    PieceInBin* const out = pairs.room(touched);
     std::size_t n = 0;
     const auto add = [&](int bx, int by) {
-      out[n++] = {static_cast<std::uint32_t>(by * columns + bx), index};
+      const int row = by - view.y0 / kBinSize;
+      out[n++] = {static_cast<std::uint32_t>(row * bins.columns() + bx), index};
     };
-    if (most == 1) {
+    if (touched == 1) {
       add(bx0, by0);
     } else {
       const Edges edges = edges_of(piece);
@@ -131,6 +147,7 @@ void bin_pieces(std::span<const Piece> pieces, Rect view, int columns,
     }
     pairs.added(n);
   }
+  return index;
 }
 
 class Grouped final : public Coverage {
@@ -138,58 +155,49 @@ class Grouped final : public Coverage {
   explicit Grouped(MemoryAccount& memory) : memory_(memory) {}
 
   void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
-    // Bins of the whole image, so that setup need not know of bands; a band draws its own.
-    const Rect image{0, 0, frame.request.width, frame.request.height};
-    const TileGrid bins{image, kBinSize};
-    const std::span<const Group> groups = fill_groups(frame, bins, first, last);
+    const TileGrid bins{frame.view, kBinSize, frame.request.tuning.order};
+    const std::span<Group> groups = set_up_groups(frame, bins, first, last);
     frame.watch.lap(frame.stats, "setup and bin");
-
-    const auto first_bin = static_cast<std::size_t>(frame.view.y0 / kBinSize) *
-                           static_cast<std::size_t>(bins.columns());
-    draw_tiles(
-        frame, TileGrid{frame.view, kBinSize, frame.request.tuning.order},
-        [&](std::size_t tile) {
-          return std::all_of(groups.begin(), groups.end(),
-                             [&](const Group& g) { return g.is_empty(first_bin + tile); });
-        },
-        [&](std::size_t tile, Emitter& emitter) {
-          const Rect rect = bins.rect(first_bin + tile);
-          for (const Group& group : groups) {
-            const std::span<const BinFragment> fragments = group.fragments.bin(first_bin + tile);
-            if (!fragments.empty()) emitter.fragments(rect, fragments);
-            const std::span<const PieceInBin> list = group.by_bin.bin(first_bin + tile);
-            if (list.empty()) continue;
-            const PieceList pieces{group.pieces.data.data(), list.data(), list.size()};
-            emitter.use(pieces.pieces);
-            for (std::size_t cursor = 0; cursor < pieces.count;) {
-              const std::span<Block> room = emitter.room();
-              emitter.written(frame.kernel.cover(pieces, cursor, rect, room.data(), room.size(),
-                                                 emitter.bounds()));
-            }
-            // Groups number their pieces from 0 each.
-            emitter.flush();
-          }
-        });
-    frame.watch.lap(frame.stats, frame.has_surface() ? "draw" : "draw and shade");
+    draw_bins(frame, bins, groups);
+    while (std::any_of(groups.begin(), groups.end(),
+                       [](const Group& g) { return g.binned < g.pieces.count; })) {
+      bin_more(frame, bins, groups);
+      frame.watch.lap(frame.stats, "setup and bin");
+      draw_bins(frame, bins, groups);
+    }
   }
 
  private:
-  std::span<const Group> fill_groups(Frame& frame, const TileGrid& bins, std::uint64_t first,
-                                     std::uint64_t last);
+  /// Fills groups with pieces and fragments, and with pairs as far as there is room for them.
+  std::span<Group> set_up_groups(Frame& frame, const TileGrid& bins, std::uint64_t first,
+                                 std::uint64_t last);
+  /// Replaces pairs and fragments by the next pairs.
+  void bin_more(Frame& frame, const TileGrid& bins, std::span<Group> groups);
+  void draw_bins(Frame& frame, const TileGrid& bins, std::span<const Group> groups);
 
   MemoryAccount& memory_;
   std::vector<Group> groups_;
   parallel::ScratchPool<GroupScratch> fillers_{[this] { return GroupScratch(memory_); }};
 };
 
-std::span<const Group> Grouped::fill_groups(Frame& frame, const TileGrid& bins, std::uint64_t first,
-                                            std::uint64_t last) {
+/// Pairs of a group at one time: each is in the group, and those of a thread's group are collected
+/// before, in memory that has doubled.
+std::size_t most_pairs(const Frame& frame, std::size_t groups) {
+  if (frame.expansion_bytes == 0) return std::numeric_limits<std::size_t>::max();
+  const auto threads = static_cast<std::uint64_t>(frame.exec.concurrency());
+  return frame.expansion_bytes / ((groups + 3 * threads) * sizeof(PieceInBin));
+}
+
+std::span<Group> Grouped::set_up_groups(Frame& frame, const TileGrid& bins, std::uint64_t first,
+                                        std::uint64_t last) {
   const std::size_t bin_count = bins.count();
+  const auto first_bin = static_cast<std::uint32_t>(frame.view.y0 / kBinSize * bins.columns());
   const std::uint64_t most_groups = std::max<std::uint64_t>(kMaxBinTables / bin_count, 1);
   const std::uint64_t group_size =
       std::max(kMinGroup, (last - first + most_groups - 1) / most_groups);
   const auto group_count = static_cast<std::size_t>((last - first + group_size - 1) / group_size);
   while (groups_.size() < group_count) groups_.emplace_back(memory_);
+  const std::size_t most = most_pairs(frame, group_count);
   std::atomic<bool> in_range = true;
   std::atomic<std::uint64_t> pairs = 0, micro_fragments = 0;
   parallel::for_each_index(frame.exec, group_count, [&](std::size_t g) {
@@ -199,13 +207,15 @@ std::span<const Group> Grouped::fill_groups(Frame& frame, const TileGrid& bins, 
     group.pieces.triangles = {};
     scratch.pairs.restart(bin_count);
     scratch.micro.restart(bin_count);
+    scratch.first_bin = first_bin;
+    scratch.bins = static_cast<std::uint32_t>(bin_count);
     const std::uint64_t begin = first + g * group_size;
     if (!set_up(frame, begin, std::min(begin + group_size, last), group.pieces,
                 frame.visibility.takes_fragments ? &scratch : nullptr)) {
       in_range = false;
       return;
     }
-    bin_pieces(group.pieces.span(), frame.view, bins.columns(), scratch.pairs);
+    group.binned = bin_pieces(group.pieces.span(), 0, most, bins, scratch.pairs);
     group.by_bin.sort(scratch.pairs, bin_count);
     group.fragments.sort(scratch.micro, bin_count);
     pairs.fetch_add(scratch.pairs.entries().size(), std::memory_order_relaxed);
@@ -216,6 +226,50 @@ std::span<const Group> Grouped::fill_groups(Frame& frame, const TileGrid& bins, 
   frame.count("bins", pairs);
   frame.count("micro fragments", micro_fragments);
   return {groups_.data(), group_count};
+}
+
+void Grouped::bin_more(Frame& frame, const TileGrid& bins, std::span<Group> groups) {
+  const std::size_t bin_count = bins.count(), most = most_pairs(frame, groups.size());
+  std::atomic<std::uint64_t> pairs = 0;
+  parallel::for_each_index(frame.exec, groups.size(), [&](std::size_t g) {
+    Group& group = groups[g];
+    GroupScratch& scratch = fillers_.local();
+    scratch.pairs.restart(bin_count);
+    scratch.micro.restart(bin_count);
+    group.binned = bin_pieces(group.pieces.span(), group.binned, most, bins, scratch.pairs);
+    group.by_bin.sort(scratch.pairs, bin_count);
+    group.fragments.sort(scratch.micro, bin_count);
+    pairs.fetch_add(scratch.pairs.entries().size(), std::memory_order_relaxed);
+  });
+  frame.count("bins", pairs);
+}
+
+void Grouped::draw_bins(Frame& frame, const TileGrid& bins, std::span<const Group> groups) {
+  draw_tiles(
+      frame, bins,
+      [&](std::size_t bin) {
+        return std::all_of(groups.begin(), groups.end(),
+                           [&](const Group& g) { return g.is_empty(bin); });
+      },
+      [&](std::size_t bin, Emitter& emitter) {
+        const Rect rect = bins.rect(bin);
+        for (const Group& group : groups) {
+          const std::span<const BinFragment> fragments = group.fragments.bin(bin);
+          if (!fragments.empty()) emitter.fragments(rect, fragments);
+          const std::span<const PieceInBin> list = group.by_bin.bin(bin);
+          if (list.empty()) continue;
+          const PieceList pieces{group.pieces.data.data(), list.data(), list.size()};
+          emitter.use(pieces.pieces);
+          for (std::size_t cursor = 0; cursor < pieces.count;) {
+            const std::span<Block> room = emitter.room();
+            emitter.written(frame.kernel.cover(pieces, cursor, rect, room.data(), room.size(),
+                                               emitter.bounds()));
+          }
+          // Groups number their pieces from 0 each.
+          emitter.flush();
+        }
+      });
+  frame.watch.lap(frame.stats, frame.has_surface() ? "draw" : "draw and shade");
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ std::span<const CoverageRow> coverages() noexcept {
           "grouped",
           "(bin, piece) pairs sorted in groups of triangles; a thread owns a bin and shades "
           "it in cache",
-          true, false, 160, make_grouped},
+          true, true, 160, make_grouped},
       CoverageRow{"scanline", "triangles expanded to rows, rows to columns, at once into the frame",
                   false, true, kIndexedPiece, make_scanline},
       CoverageRow{"pineda",

@@ -178,6 +178,14 @@ void TextureSet::update(std::span<const Texture> textures, std::span<const std::
   }
 }
 
+std::uint64_t TextureSet::bytes() const noexcept {
+  std::uint64_t sum = 0;
+  for (const Entry& entry : entries_)
+    for (const Chain* chain : {entry.color.get(), entry.data.get()})
+      if (chain != nullptr) sum += chain->texels.capacity() * sizeof(Rgba8);
+  return sum;
+}
+
 const MipChain* TextureSet::find(std::int32_t texture, TexelUse use) const noexcept {
   if (texture < 0 || static_cast<std::size_t>(texture) >= entries_.size()) return nullptr;
   const Entry& entry = entries_[static_cast<std::size_t>(texture)];

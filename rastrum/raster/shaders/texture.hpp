@@ -55,6 +55,8 @@ class TextureSet {
 
   /// Null where `texture` is kNoTexture, an empty image or was not asked for with this use.
   [[nodiscard]] const MipChain* find(std::int32_t texture, TexelUse use) const noexcept;
+  /// Held at the moment.
+  [[nodiscard]] std::uint64_t bytes() const noexcept;
   /// Chains built so far.
   [[nodiscard]] std::uint64_t builds() const noexcept { return builds_; }
 
