@@ -10,11 +10,13 @@
 #include <algorithm>
 #include <condition_variable>
 #include <cstddef>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include <rastrum/parallel/arena.hpp>
 #include <rastrum/parallel/exec.hpp>
 
 namespace rastrum::parallel {
@@ -23,7 +25,9 @@ template <class T>
 class WorkQueue {
  public:
   /// Chunks have at most `per_chunk` > 0 items; smaller ones only where there are no more.
-  explicit WorkQueue(std::size_t per_chunk = 32) : per_chunk_(per_chunk) {}
+  /// Items lie in `memory`, or on the heap where there is none.
+  explicit WorkQueue(std::size_t per_chunk = 32, std::shared_ptr<Arena> memory = nullptr)
+      : items_(ArenaAllocator<T>(std::move(memory))), per_chunk_(per_chunk) {}
 
   void push(std::span<const T> items) {
     {
@@ -98,7 +102,7 @@ class WorkQueue {
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<T> items_;
+  Buffer<T> items_;
   std::size_t per_chunk_;
   int at_work_ = 0;
 };

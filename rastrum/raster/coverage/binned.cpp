@@ -4,7 +4,6 @@
 #include <array>
 #include <atomic>
 #include <deque>
-#include <mutex>
 #include <numeric>
 #include <string>
 #include <thread>
@@ -13,7 +12,9 @@
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/parallel/expand_each.hpp>
+#include <rastrum/parallel/work_queue.hpp>
 #include <rastrum/raster/coverage/tile_mask.hpp>
+#include <rastrum/raster/order.hpp>
 #include <rastrum/raster/set_up.hpp>
 
 namespace rastrum::raster {
@@ -22,11 +23,9 @@ namespace {
 constexpr std::size_t kBatch = 32;
 constexpr int kLargePx = 4000;
 
-/// Entries of a round: 4 MiB, and with 64 px bins 250 triangles that fill 1920 × 1080.
-constexpr std::size_t kQueueEntries = std::size_t{1} << 17;
-
-/// An entry with its mask, and its place in the expansion to tiles.
-constexpr std::uint64_t kEntryBytes = 48;
+/// Entries of a round where no memory limit asks for fewer: 24 MiB by the paper's sizes, and 2,000
+/// triangles that fill 1920 × 1080.
+constexpr std::size_t kQueueEntries = std::size_t{1} << 20;
 
 /// Tiles of a chunk at most: some tens of microseconds. Fewer where there would not be a chunk for
 /// each of kWorkers.
@@ -93,33 +92,14 @@ class CountAtEnd {
   std::atomic<std::size_t>& count_;
 };
 
-/// What a persistent worker finds of a bin that it owns. Others append meanwhile.
-class BinQueue {
- public:
-  explicit BinQueue(MemoryAccount& memory) : pieces_(memory) {}
-  BinQueue(BinQueue&&) = delete;
+/// A bin that a persistent worker owns.
+struct OwnedBin {
+  explicit OwnedBin(const std::shared_ptr<parallel::Arena>& memory)
+      : waiting(kBatch, memory), drawn(parallel::ArenaAllocator<std::uint32_t>(memory)) {}
 
-  void clear() { size_ = taken_ = 0; }
-  void push(std::uint32_t piece) {
-    const std::lock_guard lock(mutex_);
-    pieces_.grow(size_ + 1, size_);
-    pieces_[size_++] = piece;
-  }
-  /// Copies entries that were not taken yet, in order, as many as there are and fit.
-  std::span<std::uint32_t> take(std::span<std::uint32_t> out) {
-    const std::lock_guard lock(mutex_);
-    const std::size_t n = std::min(out.size(), size_ - taken_);
-    std::copy_n(pieces_.data() + taken_, n, out.data());
-    taken_ += n;
-    return out.first(n);
-  }
-  /// Everything that was ever pushed, once nobody pushes any more.
-  [[nodiscard]] std::span<const std::uint32_t> all() const { return {pieces_.data(), size_}; }
-
- private:
-  std::mutex mutex_;
-  Buffer<std::uint32_t> pieces_;
-  std::size_t size_ = 0, taken_ = 0;
+  parallel::WorkQueue<std::uint32_t> waiting;  ///< pieces
+  parallel::Buffer<std::uint32_t> drawn;       ///< in the order of the first pass, for others
+  std::uint64_t tiles = 0;
 };
 
 template <int kBin, int kTile>
@@ -129,14 +109,13 @@ class Binned final : public Coverage {
 
  public:
   Binned(const Tuning& tuning, MemoryAccount& memory)
-      : memory_(memory),
-        large_px_(tuning.large_px == 0 ? kLargePx : tuning.large_px),
+      : large_px_(tuning.large_px == 0 ? kLargePx : tuning.large_px),
         persistent_(tuning.schedule == Schedule::persistent),
         setup_(memory) {}
 
   void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
     frame_ = &frame;
-    grid_ = {frame.view, kBin};
+    grid_ = {frame.view, kBin, frame.request.tuning.order};
     pieces_ = setup_.fill(frame, first, last);
     frame.watch.lap(frame.stats, "set up");
     const std::size_t count = (pieces_.size() + kBatch - 1) / kBatch;
@@ -150,16 +129,18 @@ class Binned final : public Coverage {
       work_.large += b.large;
     }
 
-    // Each batch's place in the queue. A round's entries are those of a run of whole batches.
-    const parallel::Expansion queue(frame.exec, batches_, [](const Batch& b) { return b.bins; });
-    work_.bins = queue.size();
-    const std::size_t entries =
+    // Each batch's place in the queue. A round's entries are those of a run of whole batches; those
+    // of a single one, at most 32 a bin, take less than the view's words.
+    constexpr std::size_t kEntryBytes = sizeof(Entry<Mask>) + sizeof(std::size_t);
+    const std::size_t most =
         frame.expansion_bytes == 0
             ? kQueueEntries
             : std::min<std::size_t>(kQueueEntries, frame.expansion_bytes / kEntryBytes);
+    const parallel::Expansion queue(frame.exec, batches_, [](const Batch& b) { return b.bins; });
+    work_.bins = queue.size();
     for (std::size_t begin = 0; begin < count;) {
       std::size_t end = begin + 1;
-      while (end < count && queue.segment_end(end) - queue.first(begin) <= entries) ++end;
+      while (end < count && queue.segment_end(end) - queue.first(begin) <= most) ++end;
       if (persistent_)
         draw_persistent(begin, end);
       else
@@ -186,16 +167,29 @@ class Binned final : public Coverage {
     }
   }
 
-  /// The bins (or, by kBlockSize, the blocks) that a box touches, in rows.
-  template <class F>
-  static void each_cell(Rect box, int x0, int y0, int size, const F& f) {
-    for (int y = (box.y0 - y0) / size; y <= (box.y1 - 1 - y0) / size; ++y)
-      for (int x = (box.x0 - x0) / size; x <= (box.x1 - 1 - x0) / size; ++x) f(x, y);
+  /// Bins or blocks: columns and rows of cells of `size` px.
+  struct Cells {
+    int x, y, columns, rows;
+    [[nodiscard]] std::uint32_t count() const {
+      return static_cast<std::uint32_t>(columns) * static_cast<std::uint32_t>(rows);
+    }
+  };
+  static Cells touched(Rect box, int size) {
+    const int x = box.x0 / size, y = box.y0 / size;
+    return {x, y, (box.x1 - 1) / size + 1 - x, (box.y1 - 1) / size + 1 - y};
   }
+  /// Calls f(x, y) in the tuning's order.
   template <class F>
-  void each_bin(Rect box, const F& f) const {
-    each_cell(box, frame_->view.x0, frame_->view.y0, kBin,
-              [&](int x, int y) { f(static_cast<std::uint32_t>(y * grid_.columns() + x)); });
+  void each_cell(const Cells& cells, const F& f) const {
+    for (std::uint32_t i = 0; i < cells.count(); ++i) {
+      const Cell cell = cell_at(grid_.order, i, cells.columns, cells.rows);
+      f(cells.x + cell.column, cells.y + cell.row);
+    }
+  }
+  /// Bins are the view's, not the image's.
+  [[nodiscard]] Cells bins_of(Rect box) const {
+    const int x0 = frame_->view.x0, y0 = frame_->view.y0;
+    return touched({box.x0 - x0, box.y0 - y0, box.x1 - x0, box.y1 - y0}, kBin);
   }
 
   [[nodiscard]] Batch look_at(std::size_t batch) const {
@@ -204,11 +198,11 @@ class Binned final : public Coverage {
         batch,
         [&](std::uint32_t, Rect box) {
           ++b.small;
-          each_cell(box, 0, 0, kBlockSize, [&](int, int) { ++b.blocks; });
+          b.blocks += touched(box, kBlockSize).count();
         },
         [&](std::uint32_t, Rect box) {
           ++b.large;
-          each_bin(box, [&](std::uint32_t) { ++b.bins; });
+          b.bins += bins_of(box).count();
         });
     return b;
   }
@@ -220,11 +214,13 @@ class Binned final : public Coverage {
     each_piece(
         batch,
         [&](std::uint32_t piece, Rect box) {
-          each_cell(box, 0, 0, kBlockSize,
+          each_cell(touched(box, kBlockSize),
                     [&](int bx, int by) { emitter.add_uncovered(piece, bx, by); });
         },
         [&](std::uint32_t piece, Rect box) {
-          each_bin(box, [&](std::uint32_t bin) { store(piece, bin); });
+          each_cell(bins_of(box), [&](int x, int y) {
+            store(piece, static_cast<std::uint32_t>(y * grid_.columns() + x));
+          });
         });
   }
 
@@ -286,10 +282,8 @@ class Binned final : public Coverage {
     Frame& frame = *frame_;
     const std::size_t batches = end - begin, bins = grid_.count();
     const auto workers = static_cast<std::size_t>(frame.exec.concurrency());
-    while (queues_.size() < bins) queues_.emplace_back(memory_);
-    for (std::size_t bin = 0; bin < bins; ++bin) queues_[bin].clear();
-    auto tiles = parallel::make_buffer<std::uint64_t>(frame.exec, bins);
-    std::fill(tiles.begin(), tiles.end(), 0);
+    std::deque<OwnedBin> queues;
+    while (queues.size() < bins) queues.emplace_back(frame.exec.memory());
     // Entries that lie in the queues of each worker's bins: without any it need not look.
     std::vector<std::atomic<std::size_t>> waiting(workers);
     std::atomic<std::size_t> next = 0, stored = 0;
@@ -304,18 +298,19 @@ class Binned final : public Coverage {
         mask.for_each([&](int tile) { draw_tile(piece, rect, tile, emitter); });
         count += static_cast<std::uint64_t>(mask.rank());
       }
-      if (emitter.first_pass()) tiles[bin] += count;
+      if (emitter.first_pass()) queues[bin].tiles += count;
     };
     const auto work = [&](std::size_t worker, const auto& visit) {
-      std::array<std::uint32_t, kBatch> room;
+      std::vector<std::uint32_t> list;
       for (;;) {
         // Asked before the queues are: what comes into them later is not missed.
         const bool all_stored = stored.load(std::memory_order_acquire) == batches;
         if (waiting[worker].load(std::memory_order_acquire) > 0) {
           for (std::size_t bin = worker; bin < bins; bin += workers) {
-            const std::span<std::uint32_t> list = queues_[bin].take(room);
-            if (list.empty()) continue;
+            OwnedBin& owned = queues[bin];
+            if (!owned.waiting.try_pop(list)) continue;
             waiting[worker].fetch_sub(list.size(), std::memory_order_relaxed);
+            owned.drawn.insert(owned.drawn.end(), list.begin(), list.end());
             visit(bin + batches, [&](Emitter& emitter) { draw_bin(bin, list, emitter); });
           }
           continue;
@@ -330,14 +325,14 @@ class Binned final : public Coverage {
         const CountAtEnd count(stored);
         visit(batch, [&](Emitter& emitter) {
           draw_batch(begin + batch, emitter, [&](std::uint32_t piece, std::uint32_t bin) {
-            queues_[bin].push(piece);
+            queues[bin].waiting.push(piece);
             waiting[bin % workers].fetch_add(1, std::memory_order_release);
           });
         });
       }
     };
-    // A bin's entries are in its queue in the order in which the first pass has drawn them, and all
-    // of them belong to its chunk: so whoever drew what when, a second pass finds the same chunks.
+    // All entries of a bin belong to its chunk, and the order in which the first pass has drawn
+    // them is kept: so whoever drew what when, a second pass finds the same chunks.
     draw_shared(
         frame, batches + bins,
         [&](const auto& visit) {
@@ -346,19 +341,20 @@ class Binned final : public Coverage {
         },
         [&](std::size_t chunk, Emitter& emitter) {
           if (chunk >= batches)
-            draw_bin(chunk - batches, queues_[chunk - batches].all(), emitter);
+            draw_bin(chunk - batches, queues[chunk - batches].drawn, emitter);
           else
             draw_batch(begin + chunk, emitter, [](std::uint32_t, std::uint32_t) {});
         });
     Load load;
     for (std::size_t b = 0; b < batches; ++b) load.add(b, batches_[begin + b].blocks);
-    for (std::size_t bin = 0; bin < bins; ++bin) load.add(bin, tiles[bin]);
+    for (std::size_t bin = 0; bin < bins; ++bin) {
+      load.add(bin, queues[bin].tiles);
+      work_.tile_pairs += queues[bin].tiles;
+    }
     work_.add(load);
-    work_.tile_pairs += std::accumulate(tiles.begin(), tiles.end(), std::uint64_t{0});
     frame.watch.lap(frame.stats, "draw");
   }
 
-  MemoryAccount& memory_;
   std::int64_t large_px_;
   bool persistent_;
   PieceArray setup_;
@@ -369,7 +365,6 @@ class Binned final : public Coverage {
   std::span<const Piece> pieces_;
   Work work_;
   parallel::Buffer<Batch> batches_;
-  std::deque<BinQueue> queues_;
 };
 
 struct Configuration {

@@ -7,21 +7,22 @@
 //   persistent  a queue for each bin. Workers own bins (bin modulo workers) and draw what lies in
 //               their queues, or else take the next batch, until there is neither.
 //
-// Deviations. Masks are exact. The two-stage queue's tail is a scan, not an atomic counter: an
-// entry has its place whatever the threads do. Tiles are dealt out, not taken by bins: the paper's
-// shares are uneven where masks are. Queues are as large as they need be; what would make them
-// larger than `kQueueEntries` is drawn in rounds, each complete in itself, so nothing is lost and
-// memory is bounded. Setup is the family's and comes first, and pieces of clipped triangles are
-// batched like others.
+// Deviations. Masks are exact. The place of an entry in the two-stage queue comes from a scan, not
+// from an atomic tail, so it is the same whatever the threads do. The second stage deals out tiles;
+// the paper's takes batches of bins, which are uneven where masks are. The queues are as large as
+// they need be; where a memory limit leaves less room, or beyond a million entries, the batches are
+// drawn in rounds, each complete in itself: nothing overflows, nothing is lost. Persistent workers
+// draw into the words of the frame, not into a copy of their bin: small triangles lie there too.
+// Setup is the family's and comes first; pieces of clipped triangles are batched like others.
 #pragma once
 
 #include <rastrum/raster/coverage/coverage.hpp>
 
 namespace rastrum::raster {
 
-/// Work O(triangles + queue entries + blocks); memory 48 bytes a drawn triangle while all are set
-/// up (twice that for a moment), 24 to 48 an entry. Requires one of the tunings (bin, tile) 32, 8;
-/// 64, 8; 64, 16; 128, 8; 128, 16. `small` is a piece whose box, cut to the view, has less than
+/// Work O(triangles + queue entries + blocks); memory 96 bytes a drawn triangle, 18 to 48 an entry
+/// of the queue (24 by default). Requires one of the tunings 64/8, 32/8,
+/// 64/16, 128/8, 128/16 (bin/tile, px). `small` is a piece whose box, cut to the view, has less than
 /// `large_px` pixels.
 /// Counters: "batches", "small", "large", "bins" (queue entries), "tile pairs" (covered tiles), and
 /// the load if 64 workers had shared the work, which is blocks of small pieces and covered tiles:
