@@ -2,7 +2,6 @@
 // floor of two triangles whose squares are computed at each pixel.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include <rastrum/io/io.hpp>
@@ -20,12 +19,12 @@ struct Surface {
 
 int main() {
   rastrum::Mesh mesh = rastrum::shapes::teapot(16);
-  const auto teapot = static_cast<std::uint32_t>(mesh.positions.size());
+  const auto floor = static_cast<std::uint32_t>(mesh.positions.size());
   for (const Vec3 corner : {Vec3{-900, 0, -900}, {-900, 0, 900}, {900, 0, 900}, {900, 0, -900}}) {
     mesh.positions.push_back(corner);
     mesh.normals.values.push_back({0, 1, 0});
   }
-  for (const std::uint32_t i : {0U, 1U, 2U, 0U, 2U, 3U}) mesh.indices.push_back(teapot + i);
+  for (const std::uint32_t i : {0U, 1U, 2U, 0U, 2U, 3U}) mesh.indices.push_back(floor + i);
 
   rastrum::RenderOptions options;
   options.width = 480;
@@ -43,15 +42,13 @@ int main() {
   const auto shade = [&](const Surface& s, const rastrum::raster::Fragment& f) {
     const Vec3 v = normalize(camera.eye - s.position), l = normalize(Vec3{0.5F, 1, 0.6F});
     const Vec3 n = normalize(s.normal) * (dot(s.normal, v) < 0 ? -1.0F : 1.0F);
-    const bool floor = f.vertex[0] >= teapot;
-    const bool dark = std::fmod(std::floor(s.position.x) + std::floor(s.position.z), 2.0F) != 0;
-    const Vec3 base = !floor ? Vec3{0.75F, 0.3F, 0.2F}
-                      : dark ? Vec3{0.2F, 0.2F, 0.2F}
-                             : Vec3{0.9F, 0.9F, 0.9F};
-    const float light = 0.15F + 0.85F * std::max(dot(n, l), 0.0F);
-    const float shine =
-        floor ? 0 : 0.5F * std::pow(std::max(dot(n, normalize(l + v)), 0.0F), 60.0F);
-    return Vec4{base.x * light + shine, base.y * light + shine, base.z * light + shine, 1};
+    const bool odd = std::fmod(std::floor(s.position.x) + std::floor(s.position.z), 2.0F) != 0;
+    const bool pot = f.vertex[0] < floor;
+    const Vec3 base = pot ? Vec3{0.75F, 0.3F, 0.2F} : Vec3{1, 1, 1} * (odd ? 0.2F : 0.9F);
+    const float shine = pot ? std::pow(std::max(dot(n, normalize(l + v)), 0.0F), 60.0F) : 0;
+    const Vec3 c =
+        base * (0.15F + 0.85F * std::max(dot(n, l), 0.0F)) + Vec3{1, 1, 1} * (0.5F * shine);
+    return Vec4{c.x, c.y, c.z, 1};
   };
   const rastrum::raster::Program program(vertex, shade);
   rastrum::raster::Draw draw = program.draw(mesh.positions.size(), mesh.indices);
