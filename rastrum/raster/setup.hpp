@@ -71,8 +71,10 @@ RASTRUM_HD inline void add_depth_bias(Piece& p, float constant, float slope) {
   const double zx = p.zx < 0 ? -p.zx : p.zx;
   const double zy = p.zy < 0 ? -p.zy : p.zy;
   const double steepest = zx > zy ? zx : zy;
-  p.z0 = static_cast<float>(static_cast<double>(p.z0) + static_cast<double>(constant) +
-                            static_cast<double>(slope) * steepest);
+  const double z0 = static_cast<double>(p.z0) + static_cast<double>(constant) +
+                    static_cast<double>(slope) * steepest;
+  // Finite, so that depth stays monotone.
+  p.z0 = static_cast<float>(z0 > -1e30 ? (z0 < 1e30 ? z0 : 1e30) : -1e30);
 }
 
 /// Depth of the sample of pixel (x, y), in [+0, 1].

@@ -1,6 +1,7 @@
 // The programmable pipeline: interpolation against its definition in long double, the built-in
 // phong written again by a caller, discard.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -200,6 +201,97 @@ TEST(Program, APointHasItsVertexsVarying) {
   EXPECT_EQ(stats.pixels_covered, 200U);
   EXPECT_EQ(color(54, 79).x, 0.1F);
   EXPECT_EQ(color(154, 70).x, 0.1F + 0.3F);
+}
+
+TEST(Program, APointKnowsWhereInItsSquareItIs) {
+  const raster::Program program(
+      [](std::uint32_t) {
+        return VertexOutput<Mixed>{{0.25F, 0.5F, 0.5F, 1}, {}};
+      },
+      [](const Mixed&, const Fragment& f) {
+        return Vec4{f.point.x, f.point.y, 0, 1};
+      });
+  raster::Draw draw = program.draw(1, {}, raster::Topology::points);
+  draw.point_size = 8;  // about (125, 37.5): columns 121 to 128, rows 34 to 41 from its top edge on
+  Image<Vec4> color(kWidth, kHeight);
+  Targets targets;
+  targets.color = color.view();
+  const FrameStats stats =
+      Renderer(options(Device::threads)).draw({&draw, 1}, program, program.test(), targets);
+  ASSERT_EQ(stats.pixels_covered, 64U);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) {
+      EXPECT_NEAR(color(121 + x, 33 + y).x, (static_cast<float>(x) + 0.5F) / 8, 1e-6F);
+      EXPECT_NEAR(color(121 + x, 33 + y).y, static_cast<float>(y) / 8, 1e-6F);
+    }
+}
+
+TEST(Program, SeveralTargetsGetWhatTheShaderReturns) {
+  // Two triangles over each other; one shader of one output, one of three.
+  const auto vertex = [](std::uint32_t i) {
+    constexpr Vec4 kCorners[] = {{-0.8F, -0.8F, 0.5F, 1}, {0.9F, -0.7F, 0.5F, 1},
+                                 {0, 0.9F, 0.5F, 1},      {-0.9F, 0.6F, 0.4F, 1},
+                                 {-0.2F, -0.9F, 0.7F, 1}, {0.8F, 0.8F, 0.6F, 1}};
+    return VertexOutput<Mixed>{kCorners[i], {{}, {}, 0.1F * static_cast<float>(i)}};
+  };
+  const auto color_of = [](const Mixed& v) { return Vec4{v.scalar, 0.5F * v.scalar, 0, 0.75F}; };
+  const raster::Program one(vertex, [&](const Mixed& v, const Fragment&) { return color_of(v); });
+  const raster::Program three(vertex, [&](const Mixed& v, const Fragment& f) {
+    return std::array{
+        color_of(v), Vec4{v.scalar, 2, f.depth, 3},
+        Vec4{static_cast<float>(f.id), static_cast<float>(f.x), static_cast<float>(f.y), 1}};
+  });
+  EXPECT_EQ(one.extra_count(), 0U);
+  ASSERT_EQ(three.extra_count(), 2U);
+  for (const AxisInfo& visibility : visibilities()) {
+    RenderOptions o = options(Device::threads);
+    o.visibility = visibility.name;
+    o.background = {0.1F, 0.2F, 0.3F, 0.5F};
+    Renderer renderer(o);
+    Image<Rgba8> alone(kWidth, kHeight), with(kWidth, kHeight);
+    Image<float> depth(kWidth, kHeight);
+    Image<std::int64_t> ids(kWidth, kHeight);
+    Image<Vec4> second(kWidth, kHeight), third(kWidth, kHeight);
+    std::ranges::fill(second.pixels(), Vec4{-7, -7, -7, -7});
+    std::ranges::fill(third.pixels(), Vec4{-7, -7, -7, -7});
+    Targets targets;
+    targets.color8 = alone.view();
+    raster::Draw draw = one.draw(6);
+    (void)renderer.draw({&draw, 1}, one, nullptr, targets);
+    targets.color8 = with.view();
+    targets.depth = depth.view();
+    targets.ids = ids.view();
+    const std::array extra{second.view(), third.view()};
+    targets.extra = extra;
+    draw = three.draw(6);
+    (void)renderer.draw({&draw, 1}, three, nullptr, targets);
+    EXPECT_TRUE(std::ranges::equal(alone.pixels(), with.pixels())) << visibility.name;
+    int seen[3] = {};
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        const Vec4 a = second(x, y), b = third(x, y);
+        ++seen[ids(x, y) + 1];
+        if (ids(x, y) < 0) {
+          ASSERT_TRUE(a.x == 0 && a.y == 0 && a.z == 0 && a.w == 0 && b.x == 0 && b.w == 0);
+          continue;
+        }
+        ASSERT_EQ(a.y, 2);
+        ASSERT_EQ(a.z, depth(x, y));
+        ASSERT_EQ(b.x, static_cast<float>(ids(x, y)));
+        ASSERT_EQ(b.y, static_cast<float>(x));
+        ASSERT_EQ(b.z, static_cast<float>(y));
+      }
+    for (const int n : seen) EXPECT_GT(n, 1000) << visibility.name;
+
+    // More targets than outputs, and targets of another size, are refused.
+    draw = one.draw(6);
+    EXPECT_THROW((void)renderer.draw({&draw, 1}, one, nullptr, targets), Error);
+    Image<Vec4> small(8, 8);
+    const std::array wrong{small.view()};
+    targets.extra = wrong;
+    draw = three.draw(6);
+    EXPECT_THROW((void)renderer.draw({&draw, 1}, three, nullptr, targets), Error);
+  }
 }
 
 TEST(Program, FrontIsWhatTheWindingSays) {

@@ -13,6 +13,7 @@
 #include <rastrum/core/error.hpp>
 #include <rastrum/parallel/expand_each.hpp>
 #include <rastrum/parallel/work_queue.hpp>
+#include <rastrum/raster/coverage.hpp>
 #include <rastrum/raster/coverage/tile_mask.hpp>
 #include <rastrum/raster/order.hpp>
 #include <rastrum/raster/set_up.hpp>
@@ -157,7 +158,7 @@ class Binned final : public Coverage {
   void each_piece(std::size_t batch, const Small& small, const Large& large) const {
     const std::size_t end = std::min((batch + 1) * kBatch, pieces_.size());
     for (std::size_t i = batch * kBatch; i < end; ++i) {
-      const Rect box = sample_bounds(pieces_[i].x, pieces_[i].y, frame_->view);
+      const Rect box = piece_bounds(pieces_[i], frame_->view);
       if (box.empty()) continue;
       const auto piece = static_cast<std::uint32_t>(i);
       if (std::int64_t{box.x1 - box.x0} * (box.y1 - box.y0) < large_px_)

@@ -1,10 +1,10 @@
 // Which tiles of a bin a piece covers, as a mask (paper 2, section 2, "Tile coverage"): row by row
-// of tiles, from the half-spaces of the three edges.
+// of tiles, from the half-spaces of its edges.
 //
 // The paper extends the edges by half a tile, so that no tile is missed and some are too many. Here
 // the mask is exact: a tile is in it if and only if one of its samples is covered. An edge whose
-// sample farthest inside is outside rules a tile out. Where the two other edges hold all samples of
-// a tile, that farthest sample is covered. What two or three edges cut, tiles at corners and along
+// sample farthest inside is outside rules a tile out. Where all other edges hold all samples of a
+// tile, that farthest sample is covered. What two or more edges cut, tiles at corners and along
 // slivers, is asked row by row.
 #pragma once
 
@@ -27,7 +27,7 @@ inline Span half_line(std::int64_t base, std::int64_t step, int n) {
 }
 
 inline bool covers_any(const Piece& piece, Rect r) {
-  const Rect box = sample_bounds(piece.x, piece.y, r);
+  const Rect box = piece_bounds(piece, r);
   for (int y = box.y0; y < box.y1; ++y) {
     const Span span = row_span(piece, y, box.x0, box.x1);
     if (span.begin < span.end) return true;
@@ -51,13 +51,14 @@ struct TilesOfBin {
   /// The tiles with samples inside of `bin` that `piece` covers.
   static Mask covered(const Piece& piece, Rect bin) {
     Mask mask;
-    const Rect box = sample_bounds(piece.x, piece.y, bin);
+    const Rect box = piece_bounds(piece, bin);
     if (box.empty()) return mask;
     // A tile's sample that is farthest inside an edge and the one farthest outside, for tile (0,
     // 0).
-    std::int64_t inmost[3], outmost[3], along_x[3], along_y[3];
-    for (int i = 0; i < 3; ++i) {
-      const Edge e = edge_function(piece, i);
+    const Edges edges = edges_of(piece);
+    std::int64_t inmost[4], outmost[4], along_x[4], along_y[4];
+    for (int i = 0; i < edges.count; ++i) {
+      const Edge e = edges.edge[i];
       const std::int64_t corner = e.base + std::int64_t{e.a} * bin.x0 + std::int64_t{e.b} * bin.y0;
       inmost[i] = corner + (kTile - 1) * (std::int64_t{std::max(e.a, 0)} + std::max(e.b, 0));
       outmost[i] = corner + (kTile - 1) * (std::int64_t{std::min(e.a, 0)} + std::min(e.b, 0));
@@ -67,8 +68,8 @@ struct TilesOfBin {
     const int first_row = (box.y0 - bin.y0) / kTile, last_row = (box.y1 - 1 - bin.y0) / kTile;
     for (int row = first_row; row <= last_row; ++row) {
       Span touched{(box.x0 - bin.x0) / kTile, (box.x1 - 1 - bin.x0) / kTile + 1};
-      Span held[3];  // tiles whose samples are all inside the edge
-      for (int i = 0; i < 3; ++i) {
+      Span held[4];  // tiles whose samples are all inside the edge
+      for (int i = 0; i < edges.count; ++i) {
         const Span touches = half_line(inmost[i] + along_y[i] * row, along_x[i], kRow);
         touched = {std::max(touched.begin, touches.begin), std::min(touched.end, touches.end)};
         held[i] = half_line(outmost[i] + along_y[i] * row, along_x[i], kRow);
@@ -76,7 +77,8 @@ struct TilesOfBin {
       for (int column = touched.begin; column < touched.end; ++column) {
         const int t = row * kRow + column;
         int cut = 0;
-        for (const Span& h : held) cut += column < h.begin || column >= h.end;
+        for (int i = 0; i < edges.count; ++i)
+          cut += column < held[i].begin || column >= held[i].end;
         const Rect r = tile(bin, t);
         const Rect seen{r.x0, r.y0, std::min(r.x1, bin.x1), std::min(r.y1, bin.y1)};
         const bool whole = seen.x1 == r.x1 && seen.y1 == r.y1;

@@ -1,0 +1,60 @@
+// Several meshes and several passes: a teapot, a ball and 60,000 blades of grass, each with a
+// program of its own. A later pass loads the visibility words of those before, so that the nearer
+// wins.
+#include <algorithm>
+
+#include <rastrum/io/io.hpp>
+#include <rastrum/raster/program.hpp>
+#include <rastrum/render/render.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+
+using rastrum::Vec3, rastrum::Vec4;
+using rastrum::raster::Draw, rastrum::raster::Fragment, rastrum::raster::VertexOutput;
+
+int main() {
+  rastrum::RenderOptions options;
+  options.width = 480;
+  options.height = 360;
+  options.background = {0.6F, 0.78F, 0.95F, 1};
+  rastrum::Camera camera;
+  camera.eye = {0, 2, 6};
+  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, options.width, options.height));
+  rastrum::Renderer renderer(options);
+  rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
+  rastrum::Image<std::uint64_t> words(options.width, options.height);
+  rastrum::Targets targets{.color8 = image.view(), .words = words.view()};
+  const auto pass = [&](const auto& program, Draw draw) {
+    renderer.draw({&draw, 1}, program, program.test(), targets);
+    targets.load = true;
+    targets.first_id += draw.primitive_count;
+  };
+  const auto mesh_pass = [&](const rastrum::Mesh& mesh, Vec3 place, float scale, Vec3 base) {
+    const auto vertex = [&](std::uint32_t i) {
+      const Vec4 clip = transform_point(to_clip, mesh.positions[i] * scale + place);
+      return VertexOutput<Vec3>{clip, mesh.normals.values[i]};
+    };
+    const rastrum::raster::Program program(vertex, [&](Vec3 n, const Fragment&) {
+      const float cosine = dot(normalize(n), Vec3{0.32F, 0.81F, 0.49F});
+      const Vec3 c = base * (0.25F + 0.75F * std::max(cosine, 0.0F));
+      return Vec4{c.x, c.y, c.z, 1};
+    });
+    pass(program, program.draw(mesh.positions.size(), mesh.indices));
+  };
+  mesh_pass(rastrum::shapes::teapot(), {-1, 0, 0.4F}, 0.6F, {0.9F, 0.5F, 0.2F});
+  mesh_pass(rastrum::shapes::sphere(), {1.7F, 0.7F, -0.5F}, 0.9F, {0.5F, 0.5F, 0.9F});
+  const auto blade = [&](std::uint32_t i) {  // left, right, tip
+    const auto random = [&](std::uint32_t salt) {
+      const std::uint32_t h = (i / 3 * 8 + salt) * 0x9e3779b9U, g = (h ^ h >> 15) * 0x85ebca6bU;
+      return static_cast<float>((g ^ g >> 13) & 0xffffU) / 65536;
+    };
+    const bool tip = i % 3 == 2;
+    const float side = tip ? 0.3F * random(2) - 0.15F : i % 3 == 0 ? -0.012F : 0.012F;
+    const Vec3 p{14 * random(0) - 7 + side, tip ? 0.1F + 0.3F * random(3) : 0, 12 * random(1) - 7};
+    return VertexOutput<float>{transform_point(to_clip, p), tip ? 0.6F + 0.3F * random(4) : 0.25F};
+  };
+  const rastrum::raster::Program grass(blade, [](float g, const Fragment&) {
+    return Vec4{0.5F * g, g, 0.15F * g, 1};
+  });
+  pass(grass, grass.draw(std::size_t{3} * 60000));
+  rastrum::io::write_png("grass.png", image.view());
+}

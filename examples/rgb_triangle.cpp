@@ -1,0 +1,34 @@
+// The first example of paper 1: one triangle whose corners are red, green and blue. Varyings are
+// any type with + and * float; here a Vec3.
+#include <cstdio>
+#include <utility>
+
+#include <rastrum/io/io.hpp>
+#include <rastrum/raster/program.hpp>
+#include <rastrum/render/render.hpp>
+
+using rastrum::Vec3, rastrum::Vec4;
+
+int main() {
+  const auto vertex = [](std::uint32_t i) {
+    constexpr Vec4 kCorner[] = {{-0.8F, -0.7F, 0, 1}, {0.8F, -0.7F, 0, 1}, {0, 0.8F, 0, 1}};
+    constexpr Vec3 kColor[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    return rastrum::raster::VertexOutput<Vec3>{kCorner[i], kColor[i]};
+  };
+  const auto shade = [](Vec3 color, const rastrum::raster::Fragment&) {
+    return Vec4{color.x, color.y, color.z, 1};
+  };
+  const rastrum::raster::Program program(vertex, shade);
+  rastrum::raster::Draw draw = program.draw(3);
+
+  rastrum::RenderOptions options;
+  options.width = 480;
+  options.height = 360;
+  options.background = {0.1F, 0.1F, 0.12F, 1};
+  rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
+  rastrum::Targets targets;
+  targets.color8 = image.view();
+  rastrum::Renderer(options).draw({&draw, 1}, program, program.test(), targets);
+  rastrum::io::write_png("rgb_triangle.png", std::as_const(image).view());
+  std::puts("rgb_triangle.png");
+}

@@ -1,0 +1,55 @@
+// A teapot with its wireframe and its normals: triangles and lines of one program in one frame. The
+// surface is moved back by a little more than its own slope, so that the edges on it are seen.
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+#include <rastrum/io/io.hpp>
+#include <rastrum/raster/program.hpp>
+#include <rastrum/render/render.hpp>
+#include <rastrum/scene/line_art.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+
+using rastrum::Vec3, rastrum::Vec4;
+using rastrum::raster::Topology;
+
+int main() {
+  const rastrum::Mesh teapot = rastrum::shapes::teapot(6);
+  const std::vector<std::uint32_t> edges = rastrum::edge_indices(teapot.view());
+  std::vector<Vec3> positions = teapot.positions;
+  std::vector<std::uint32_t> normals;
+  for (const Vec3 p : rastrum::normal_lines(teapot.view(), 0.12F)) {
+    normals.push_back(static_cast<std::uint32_t>(positions.size()));
+    positions.push_back(p);
+  }
+
+  rastrum::Scene scene;
+  scene.meshes.push_back(teapot);
+  scene.instances.resize(1);
+  rastrum::Camera camera = rastrum::fit_camera(rastrum::SceneBinding(scene).view(), 1.0F, false);
+  camera.eye = camera.eye + Vec3{0.8F, 1.4F, -0.6F};
+  rastrum::RenderOptions options;
+  options.width = 480;
+  options.height = 360;
+  options.background = {1, 1, 1, 1};
+  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, options.width, options.height));
+  const auto vertex = [&](std::uint32_t i) {
+    return rastrum::raster::VertexOutput<float>{transform_point(to_clip, positions[i]), 0};
+  };
+  const auto shade = [](float, const rastrum::raster::Fragment& f) {
+    constexpr Vec4 kColors[] = {{0.86F, 0.88F, 0.9F, 1}, {0.1F, 0.2F, 0.4F, 1}, {0.8F, 0.3F, 0, 1}};
+    return kColors[f.draw];
+  };
+  const rastrum::raster::Program program(vertex, shade);
+  rastrum::raster::Draw draws[] = {program.draw(positions.size(), teapot.indices),
+                                   program.draw(positions.size(), edges, Topology::lines),
+                                   program.draw(positions.size(), normals, Topology::lines)};
+  draws[0].depth_bias_slope = -1;
+  draws[0].depth_bias = -1e-6F;
+  rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
+  rastrum::Targets targets;
+  targets.color8 = image.view();
+  rastrum::Renderer(options).draw(draws, program, program.test(), targets);
+  rastrum::io::write_png("teapot_lines.png", std::as_const(image).view());
+  std::puts("teapot_lines.png");
+}

@@ -1,0 +1,45 @@
+// The edges of a mesh as lines, each drawn once, brighter where they are near.
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+#include <rastrum/io/io.hpp>
+#include <rastrum/raster/program.hpp>
+#include <rastrum/render/render.hpp>
+#include <rastrum/scene/line_art.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+
+using rastrum::Vec3, rastrum::Vec4;
+
+int main() {
+  const rastrum::Mesh knot = rastrum::shapes::torus_knot(2, 3, 160, 12);
+  const std::vector<std::uint32_t> edges = rastrum::edge_indices(knot.view());
+
+  rastrum::RenderOptions options;
+  options.width = 480;
+  options.height = 360;
+  options.background = {0.97F, 0.97F, 0.95F, 1};
+  rastrum::Camera camera;
+  camera.eye = {0, 2.4F, 2.8F};
+  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, options.width, options.height));
+  const auto vertex = [&](std::uint32_t i) {
+    const Vec4 clip = transform_point(to_clip, knot.positions[i]);
+    return rastrum::raster::VertexOutput<float>{clip, clip.w};  // the distance along the view
+  };
+  const auto shade = [](float distance, const rastrum::raster::Fragment&) {
+    const float fog = std::clamp((distance - 2.2F) / 3, 0.0F, 0.9F);
+    return Vec4{0.05F + 0.85F * fog, 0.2F + 0.7F * fog, 0.35F + 0.55F * fog, 1};
+  };
+  const rastrum::raster::Program program(vertex, shade);
+  rastrum::raster::Draw draw =
+      program.draw(knot.positions.size(), edges, rastrum::raster::Topology::lines);
+  rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
+  rastrum::Targets targets;
+  targets.color8 = image.view();
+  const rastrum::FrameStats stats =
+      rastrum::Renderer(options).draw({&draw, 1}, program, program.test(), targets);
+  rastrum::io::write_png("wireframe.png", std::as_const(image).view());
+  std::printf("wireframe.png: %llu lines\n",
+              static_cast<unsigned long long>(stats.triangles.input));
+}
