@@ -2,6 +2,7 @@
 
 #include <rastrum/parallel/filter.hpp>
 #include <rastrum/parallel/range.hpp>
+#include <rastrum/raster/coverage.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -14,7 +15,7 @@ struct BoxArea {
   const Piece* pieces;
   Rect view;
   RASTRUM_HD std::uint64_t operator()(std::uint32_t piece) const {
-    const Rect box = sample_bounds(pieces[piece].x, pieces[piece].y, view);
+    const Rect box = piece_bounds(pieces[piece], view);
     if (box.empty()) return 0;
     return static_cast<std::uint64_t>(box.x1 - box.x0) *
            static_cast<std::uint64_t>(box.y1 - box.y0);
@@ -26,7 +27,7 @@ struct BoxBlocks {
   int bx = 0, by = 0, columns = 0, rows = 0;
 
   RASTRUM_HD static BoxBlocks of(const Piece& piece, Rect view) {
-    const Rect box = sample_bounds(piece.x, piece.y, view);
+    const Rect box = piece_bounds(piece, view);
     if (box.empty()) return {};
     const int bx = box.x0 / kBlockSize, by = box.y0 / kBlockSize;
     return {bx, by, (box.x1 - 1) / kBlockSize - bx + 1, (box.y1 - 1) / kBlockSize - by + 1};

@@ -19,7 +19,7 @@ struct RowCount {
   const Piece* pieces;
   Rect view;
   RASTRUM_HD std::size_t operator()(std::uint32_t piece) const {
-    const Rect box = sample_bounds(pieces[piece].x, pieces[piece].y, view);
+    const Rect box = piece_bounds(pieces[piece], view);
     return box.empty() ? 0 : static_cast<std::size_t>(box.y1 - box.y0);
   }
 };
@@ -28,7 +28,7 @@ struct MakeRow {
   const Piece* pieces;
   Rect view;
   RASTRUM_HD Row operator()(std::uint32_t piece, std::size_t j) const {
-    const Rect box = sample_bounds(pieces[piece].x, pieces[piece].y, view);
+    const Rect box = piece_bounds(pieces[piece], view);
     const int y = box.y0 + static_cast<int>(j);
     const Span span = row_span(pieces[piece], y, box.x0, box.x1);
     return {piece, static_cast<std::uint16_t>(y), static_cast<std::uint16_t>(span.begin),

@@ -23,17 +23,6 @@
 
 namespace rastrum::raster {
 
-/// Whether `samples` may hold one that the piece covers: none of the edges has all of them outside.
-RASTRUM_HD inline bool may_touch(const Piece& piece, Rect samples) {
-  for (int i = 0; i < 3; ++i) {
-    const Edge e = edge_function(piece, i);
-    const std::int64_t x = e.a > 0 ? samples.x1 - 1 : samples.x0;
-    const std::int64_t y = e.b > 0 ? samples.y1 - 1 : samples.y0;
-    if (e.base + e.a * x + e.b * y < 0) return false;
-  }
-  return true;
-}
-
 RASTRUM_HD inline Rect intersection(Rect a, Rect b) {
   return {a.x0 > b.x0 ? a.x0 : b.x0, a.y0 > b.y0 ? a.y0 : b.y0, a.x1 < b.x1 ? a.x1 : b.x1,
           a.y1 < b.y1 ? a.y1 : b.y1};
@@ -66,7 +55,7 @@ struct Tiles {
   /// The bins that the box of a piece touches, as columns and rows of the view's.
   [[nodiscard]] Rect bins_of(std::uint32_t piece) const {
     const Rect view = bins.view;
-    const Rect box = sample_bounds(pieces[piece].x, pieces[piece].y, view);
+    const Rect box = piece_bounds(pieces[piece], view);
     if (box.empty()) return {};
     return {(box.x0 - view.x0) / kBin, (box.y0 - view.y0) / kBin, (box.x1 - 1 - view.x0) / kBin + 1,
             (box.y1 - 1 - view.y0) / kBin + 1};
@@ -93,8 +82,8 @@ struct Tiles {
   /// Whether the piece may cover a sample of tile j of its bin.
   [[nodiscard]] bool touches(const BinPair& pair, std::size_t j) const {
     const Piece& piece = pieces[pair.piece];
-    const Rect box = sample_bounds(piece.x, piece.y, tile(pair.bin, j));
-    return !box.empty() && may_touch(piece, box);
+    const Rect box = piece_bounds(piece, tile(pair.bin, j));
+    return !box.empty() && may_touch(edges_of(piece), box);
   }
   /// Number of a tile in the view.
   [[nodiscard]] std::uint32_t tile_id(Rect tile) const {
