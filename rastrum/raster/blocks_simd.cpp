@@ -234,12 +234,15 @@ void maximum(const Piece* pieces, const Block* blocks, std::size_t n,
 void words(const Piece& piece, const Block& block, std::uint64_t* out) noexcept {
   const hn::RebindToUnsigned<I64> d64;
   const DepthRows depths(piece, block);
-  for (int row = 0; row < kBlockSize; ++row)
+  for (std::uint64_t rest = block.mask; rest != 0;) {
+    const int row = std::countr_zero(rest) / 8;
+    rest &= ~(std::uint64_t{255} << (row * 8));
     for (std::size_t part = 0; part < 8 / kLanes; ++part)
       for_each_half(depths.at(row, part), piece.low, [&](std::size_t h, const auto word) HWY_ATTR {
         hn::Store(word, d64,
                   out + static_cast<std::size_t>(row) * 8 + part * kLanes + h * kLanes64);
       });
+  }
 }
 
 void masks(const Piece* pieces, Block* blocks, std::size_t n) noexcept {

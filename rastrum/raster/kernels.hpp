@@ -93,7 +93,8 @@ struct Kernels {
   /// Finds the masks of blocks whose mask is 0; they may be empty.
   void (*masks)(const Piece* pieces, Block* blocks, std::size_t n) noexcept;
 
-  /// The words that the piece would have at all 64 samples of a block, covered or not.
+  /// The words that the piece would have in those rows of a block that it covers a sample of,
+  /// covered or not; the other rows are left as they are.
   void (*words)(const Piece& piece, const Block& block, std::uint64_t* words) noexcept;
 
   /// The atomic sink on words that the caller owns: maximum at every covered sample.

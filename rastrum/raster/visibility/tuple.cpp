@@ -59,7 +59,7 @@ class TupleRegion final : public Region {
   }
 
   void blocks(std::size_t, const Piece* pieces, std::span<const Block> blocks) override {
-    alignas(64) std::uint64_t words[64];
+    alignas(64) std::uint64_t words[64] = {};
     BlockColors colors;
     void* const scratch = shader_scratch();
     for (const Block& b : blocks) {

@@ -1,0 +1,206 @@
+// The memory limit: a frame's scratch stays at or below it for every point of the coverage ×
+// visibility table, on scenes that are far larger, and the picture is the one without a limit. What
+// cannot be honoured is refused with the least that can. And what `sorted` takes a fragment.
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/render/render.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/family.hpp"
+#include "tests/support/frame.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+/// A mesh in a picture, which together take many times `limit`.
+struct Load {
+  std::string name;
+  Mesh mesh;
+  int width, height;
+  std::vector<std::uint64_t> limits;
+};
+
+/// `count` triangles that fill the picture, at depths in no order.
+Mesh layers(int count) {
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const float z = static_cast<float>(i * 7 % count) / static_cast<float>(count);
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), {{-3, -1, z}, {3, -1, z}, {0, 4, z}});
+    mesh.indices.insert(mesh.indices.end(), {first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
+constexpr std::uint64_t kMebi = std::uint64_t{1} << 20;
+
+std::vector<Load> loads() {
+  std::vector<Load> all;
+  if (count_from_environment("RASTRUM_FULL", 0) != 0) {
+    all.push_back({"many triangles",
+                   shapes::soup(1000000, 0.01F, 0.05F),
+                   2048,
+                   2048,
+                   {8 * kMebi, 64 * kMebi}});
+    all.push_back({"many pixels", layers(12), 8192, 8192, {48 * kMebi, 256 * kMebi}});
+    all.push_back({"many layers", layers(2000), 512, 512, {8 * kMebi, 64 * kMebi}});
+    return all;
+  }
+  all.push_back(
+      {"many triangles", shapes::soup(60000, 0.01F, 0.05F), 400, 300, {5 * kMebi, 16 * kMebi}});
+  all.push_back({"many pixels", layers(6), 2000, 700, {12 * kMebi}});
+  all.push_back({"many layers", layers(300), 200, 150, {5 * kMebi}});
+  return all;
+}
+
+Camera straight_on() {
+  Camera camera;
+  camera.eye = {0, 0, 3};
+  camera.target = {0, 0, 0};
+  return camera;
+}
+
+/// Every image but the overdraw, which turns hierarchical Z off.
+struct Picture {
+  Image<Rgba8> color8;
+  Image<float> depth;
+  Image<std::int64_t> ids;
+  FrameStats stats;
+};
+Picture picture(Renderer& renderer, const SceneView& scene) {
+  const int width = renderer.options().width, height = renderer.options().height;
+  Picture p{Image<Rgba8>(width, height),
+            Image<float>(width, height),
+            Image<std::int64_t>(width, height),
+            {}};
+  Targets targets;
+  targets.color8 = p.color8.view();
+  targets.depth = p.depth.view();
+  targets.ids = p.ids.view();
+  p.stats = renderer.render(scene, straight_on(), targets);
+  return p;
+}
+
+bool same(const Picture& a, const Picture& b) {
+  return std::ranges::equal(a.ids.pixels(), b.ids.pixels()) &&
+         std::ranges::equal(a.depth.pixels(), b.depth.pixels()) &&
+         std::ranges::equal(a.color8.pixels(), b.color8.pixels());
+}
+
+RenderOptions options(const TablePoint& point, int width, int height, int threads) {
+  RenderOptions o;
+  o.width = width;
+  o.height = height;
+  o.rasterizer = point.rasterizer;
+  o.visibility = point.visibility;
+  o.threads = threads;
+  o.shader = Shader::normal;
+  return o;
+}
+
+class MemoryLimit : public testing::TestWithParam<TablePoint> {};
+
+TEST_P(MemoryLimit, IsKeptAndChangesNoPixel) {
+  const ThreadsBeyondCores eight(8);
+  for (const Load& load : loads()) {
+    const Scene scene = single(load.mesh);
+    const SceneBinding binding(scene);
+    Renderer free(options({"auto", "auto"}, load.width, load.height, 2));
+    const Picture expected = picture(free, binding.view());
+    ASSERT_GT(expected.stats.pixels_covered, 1000U);
+    for (const std::uint64_t limit : load.limits)
+      for (const int threads : {2, 8}) {
+        RenderOptions o = options(GetParam(), load.width, load.height, threads);
+        o.memory_limit = limit;
+        Renderer renderer(o);
+        // A second frame has what the first one kept.
+        for (int frame = 0; frame < 2; ++frame) {
+          const Picture limited = picture(renderer, binding.view());
+          ASSERT_TRUE(same(limited, expected)) << load.name << ", " << limit;
+          EXPECT_LE(limited.stats.peak_bytes, limit)
+              << load.name << ", " << threads << " threads, frame " << frame;
+        }
+      }
+  }
+}
+
+/// The number in "… is less than the N that this frame needs at least".
+std::uint64_t least_in(const std::string& message) {
+  const std::size_t at = message.find("less than the ");
+  return at == std::string::npos ? 0 : std::stoull(message.substr(at + 14));
+}
+
+TEST_P(MemoryLimit, SaysTheLeastOneWhereItIsTooSmall) {
+  const Load load = loads().back();
+  const Scene scene = single(load.mesh);
+  const SceneBinding binding(scene);
+  RenderOptions o = options(GetParam(), load.width, load.height, 2);
+  Renderer free(o);
+  const Picture expected = picture(free, binding.view());
+  o.memory_limit = 1000;
+  std::uint64_t least = 0;
+  try {
+    Renderer renderer(o);
+    picture(renderer, binding.view());
+    FAIL() << "1000 bytes were enough";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::out_of_memory);
+    EXPECT_NE(std::string(e.what()).find("1000 bytes"), std::string::npos) << e.what();
+    least = least_in(e.what());
+  }
+  o.memory_limit = least - 1;
+  {
+    Renderer renderer(o);
+    EXPECT_THROW(picture(renderer, binding.view()), Error);
+  }
+  o.memory_limit = least;
+  Renderer renderer(o);
+  const Picture limited = picture(renderer, binding.view());
+  EXPECT_TRUE(same(limited, expected));
+  EXPECT_LE(limited.stats.peak_bytes, least);
+}
+
+INSTANTIATE_TEST_SUITE_P(Points, MemoryLimit, testing::ValuesIn(table_points()),
+                         [](const auto& p) { return test_name(p.param); });
+
+class SortedMemory : public testing::TestWithParam<std::string> {};
+
+// Paper 5: 51 bytes a fragment.
+TEST_P(SortedMemory, IsAtMost24BytesAFragment) {
+  const Scene scene = single(layers(40));
+  const SceneBinding binding(scene);
+  Renderer atomic(options({GetParam(), "atomic"}, 512, 512, 2));
+  Renderer sorted(options({GetParam(), "sorted"}, 512, 512, 2));
+  std::uint64_t fragments = 0, beside = 0, with = 0;
+  for (int frame = 0; frame < 2; ++frame) {
+    const FrameStats a = picture(atomic, binding.view()).stats;
+    const FrameStats s = picture(sorted, binding.view()).stats;
+    fragments = s.fragments;
+    beside = a.peak_bytes;
+    with = s.peak_bytes;
+    EXPECT_GT(fragments, 5000000U);
+    EXPECT_LE(with - std::min(with, beside), 24 * fragments) << frame;
+  }
+  RecordProperty("bytes_a_fragment_x100",
+                 std::to_string((with - std::min(with, beside)) * 100 / fragments));
+}
+
+std::vector<std::string> coverage_names() {
+  std::vector<std::string> names;
+  for (const AxisInfo& r : rasterizers())
+    if (r.name != "reference") names.push_back(r.name);
+  return names;
+}
+INSTANTIATE_TEST_SUITE_P(Coverages, SortedMemory, testing::ValuesIn(coverage_names()),
+                         [](const auto& p) { return p.param; });
+
+}  // namespace
+}  // namespace rastrum::test
