@@ -36,6 +36,8 @@
 namespace rastrum::test {
 namespace {
 
+using raster::Schedule;
+
 constexpr std::array kSchedules{Schedule::two_stage, Schedule::persistent};
 constexpr std::array<std::pair<int, int>, 5> kSizes{
     {{64, 8}, {32, 8}, {64, 16}, {128, 8}, {128, 16}}};
@@ -488,7 +490,7 @@ TEST(Binned, EveryPassSeesTheSameChunks) {
         raster::Draw draw;
         draw.source = &source;
         draw.vertex_count = mesh.positions.size();
-        draw.triangle_count = draw.vertex_count / 3;
+        draw.primitive_count = draw.vertex_count / 3;
         raster::FrameRequest request;
         request.width = request.height = kSize;
         request.draws = {&draw, 1};
