@@ -1,6 +1,5 @@
-// Several meshes and several passes: a teapot, a ball and 60,000 blades of grass, each with a
-// program of its own. A later pass loads the visibility words of those before, so that the nearer
-// wins.
+// Several meshes and several passes: a hill, a teapot, a ball and blades of grass. A later pass
+// loads the visibility words of those before, so that the nearer wins.
 #include <algorithm>
 
 #include <rastrum/io/io.hpp>
@@ -13,8 +12,8 @@ using rastrum::raster::Draw, rastrum::raster::Fragment, rastrum::raster::VertexO
 
 int main() {
   rastrum::RenderOptions options;
-  options.width = 480;
-  options.height = 360;
+  options.width = 240;
+  options.height = 180;
   options.background = {0.6F, 0.78F, 0.95F, 1};
   rastrum::Camera camera;
   camera.eye = {0, 2, 6};
@@ -40,6 +39,7 @@ int main() {
     });
     pass(program, program.draw(mesh.positions.size(), mesh.indices));
   };
+  mesh_pass(rastrum::shapes::sphere(64), {0, -300, 0}, 300, {0.15F, 0.35F, 0.08F});
   mesh_pass(rastrum::shapes::teapot(), {-1, 0, 0.4F}, 0.6F, {0.9F, 0.5F, 0.2F});
   mesh_pass(rastrum::shapes::sphere(), {1.7F, 0.7F, -0.5F}, 0.9F, {0.5F, 0.5F, 0.9F});
   const auto blade = [&](std::uint32_t i) {  // left, right, tip
@@ -55,6 +55,6 @@ int main() {
   const rastrum::raster::Program grass(blade, [](float g, const Fragment&) {
     return Vec4{0.5F * g, g, 0.15F * g, 1};
   });
-  pass(grass, grass.draw(std::size_t{3} * 60000));
+  pass(grass, grass.draw(std::size_t{3} * 30000));
   rastrum::io::write_png("grass.png", image.view());
 }

@@ -17,8 +17,8 @@ int main() {
   const std::vector<std::uint32_t> edges = rastrum::edge_indices(knot.view());
 
   rastrum::RenderOptions options;
-  options.width = 480;
-  options.height = 360;
+  options.width = 360;
+  options.height = 270;
   options.background = {0.97F, 0.97F, 0.95F, 1};
   rastrum::Camera camera;
   camera.eye = {0, 2.4F, 2.8F};
