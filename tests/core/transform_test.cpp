@@ -44,7 +44,8 @@ void expect_near(P a, P b, double tolerance = 1e-12) {
   EXPECT_NEAR(a.z, b.z, tolerance);
 }
 
-Vec3 random_vec(Random& r) {
+// Not inlined: the SLP vectorizer of GCC 12 (-O3) drops the rounding of double → float → double.
+[[gnu::noinline]] Vec3 random_vec(Random& r) {
   const double v[3] = {r.real(-2, 2), r.real(-2, 2), r.real(-2, 2)};
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
