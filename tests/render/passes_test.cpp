@@ -3,6 +3,7 @@
 // coverage × visibility table.
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,13 @@ RenderOptions options(const TablePoint& point, int threads) {
   return o;
 }
 
+/// With an index for each corner, whatever the mesh has.
+Mesh indexed(Mesh mesh) {
+  if (mesh.indices.empty())
+    for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) mesh.indices.push_back(i);
+  return mesh;
+}
+
 class Passes : public testing::TestWithParam<TablePoint> {};
 
 /// Draws the mesh in `passes` parts of unequal size, each onto the ones before.
@@ -55,6 +63,8 @@ Frame draw_in_passes(Renderer& renderer, const Scene& scene, const Camera& camer
     const std::size_t last = triangles * (pass + 1) * (pass + 1) / (passes * passes);
     InstanceView part = whole;
     part.mesh.indices = whole.mesh.indices.subspan(first * 3, (last - first) * 3);
+    if (std::span<const std::uint32_t>& normals = part.mesh.normals.indices; !normals.empty())
+      normals = normals.subspan(first * 3, (last - first) * 3);
     targets.load = pass != 0;
     targets.first_id = first;
     renderer.render({{&part, 1}, binding.view().materials, binding.view().textures}, camera,
@@ -67,7 +77,7 @@ Frame draw_in_passes(Renderer& renderer, const Scene& scene, const Camera& camer
 TEST_P(Passes, EqualOneDraw) {
   const ThreadsBeyondCores eight(8);
   for (const char* spec : {"soup?count=3000", "boxes"}) {
-    const Scene scene = single(shapes::from_spec(spec));
+    const Scene scene = single(indexed(shapes::from_spec(spec)));
     const SceneBinding binding(scene);
     const Camera camera = fit_camera(binding.view(), 1.0472F, false);
     for (const int threads : {1, 8})
@@ -100,7 +110,7 @@ class Sieve final : public raster::FragmentTest {
 
 TEST_P(Passes, AllTestFragments) {
   const ThreadsBeyondCores eight(8);
-  const Mesh mesh = shapes::soup(2000, 0.01F, 0.5F);
+  const Mesh mesh = indexed(shapes::soup(2000, 0.01F, 0.5F));
   class Corners final : public raster::VertexSource {
    public:
     explicit Corners(const Mesh& m) : mesh_(m) {}
