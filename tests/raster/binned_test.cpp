@@ -21,7 +21,9 @@
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/raster/coverage/tile_mask.hpp>
+#include <rastrum/raster/points_and_lines.hpp>
 #include <rastrum/raster/rasterizer.hpp>
+#include <rastrum/raster/reference.hpp>
 #include <rastrum/raster/setup.hpp>
 #include <rastrum/raster/transform_source.hpp>
 #include <rastrum/render/render.hpp>
@@ -65,6 +67,11 @@ std::uint64_t counter(const FrameStats& stats, std::string_view name) {
     if (n == name) return value;
   ADD_FAILURE() << "no counter is called " << name;
   return 0;
+}
+
+const raster::CoverageRow& binned_row() {
+  return *std::ranges::find(raster::coverages(), std::string_view("binned"),
+                            &raster::CoverageRow::name);
 }
 
 std::string title(const RenderOptions& o) {
@@ -231,6 +238,40 @@ TEST(TileMask, HoldsExactlyTheTilesWithACoveredSample) {
   expect_exact_masks<128, 16>(5, count / 4);
 }
 
+TEST(TileMask, OfLinesAndPoints) {
+  using Tiles = raster::TilesOfBin<64, 8>;
+  Random random(11);
+  std::array<std::uint64_t, 2> covered{};
+  for (int i = 0; i < 2000; ++i) {
+    const raster::Rect bin{640, 1280, 640 + random.integer(1, 64), 1280 + random.integer(1, 64)};
+    const auto corner = [&] {
+      const int x = random.integer(500 * 256, 900 * 256);
+      return vertex(x, random.integer(1100 * 256, 1500 * 256));
+    };
+    const raster::ProjectedVertex a = corner(), b = corner();
+    raster::Piece piece;
+    const bool is_line = random.chance(0.5);
+    const auto size = random.integer(1, 30);
+    const raster::SetupResult result =
+        is_line ? raster::make_line(a, b, 0, 0, static_cast<std::uint32_t>(size), bin, piece)
+                : raster::make_point(a, 0, 0, size * 700, bin, piece);
+    if (result == raster::SetupResult::culled) continue;
+    const Tiles::Mask mask = Tiles::covered(piece, bin);
+    for (int tile = 0; tile < 64; ++tile) {
+      const raster::Rect r = Tiles::tile(bin, tile);
+      bool any = false;
+      for (int y = r.y0; y < std::min(r.y1, bin.y1); ++y) {
+        const raster::Span span = raster::row_span(piece, y, r.x0, std::min(r.x1, bin.x1));
+        any = any || span.begin < span.end;
+      }
+      ASSERT_EQ(mask.test(tile), any) << i << ", tile " << tile;
+      covered[is_line] += any;
+    }
+  }
+  EXPECT_GT(covered[0], 100U);
+  EXPECT_GT(covered[1], 100U);
+}
+
 TEST(TileMask, HalfLineIsItsDefinition) {
   Random random(7);
   for (int i = 0; i < 20000; ++i) {
@@ -371,6 +412,34 @@ TEST(Binned, QueuesGrow) {
     }
 }
 
+TEST(Binned, DrawsInRoundsWhereMemoryIsShort) {
+  const ThreadsBeyondCores eight(8);
+  constexpr int kSize = 512;
+  constexpr std::uint64_t kLimit = std::uint64_t{24} << 20;
+  const Scene scene = sized_triangles(3000, 30000, 80000, kSize, kSize, 4);
+  const SceneBinding binding(scene);
+  const Camera camera = pixel_camera(kSize, kSize);
+  const Frame expected = draw(serial(kSize, kSize), scene, camera);
+  for (const Schedule schedule : kSchedules) {
+    RenderOptions options = binned(kSize, kSize, schedule, 8);
+    options.tuning.bin_px = 32;
+    SCOPED_TRACE(title(options));
+    const Frame all_at_once = draw(options, scene, camera);
+    options.memory_limit = kLimit;
+    const Frame frame = draw(options, scene, camera);
+    EXPECT_TRUE(same_surfaces(frame, expected));
+    EXPECT_LE(frame.stats.peak_bytes, kLimit);
+    for (const char* name : {"small", "large", "bins", "tile pairs", "work of 64 workers"})
+      EXPECT_EQ(counter(frame.stats, name), counter(all_at_once.stats, name)) << name;
+    const auto stage = schedule == Schedule::persistent ? "draw" : "rasterize bins";
+    const auto rounds = [&](const Frame& f) {
+      return std::ranges::count(f.stats.stages, stage, &StageTime::name);
+    };
+    EXPECT_EQ(rounds(all_at_once), 1);
+    EXPECT_GT(rounds(frame), 1);
+  }
+}
+
 // Must show 4: how evenly 64 workers would share the tiles.
 
 TEST(Binned, TwoStagesLoadAllWorkersAlike) {
@@ -457,9 +526,6 @@ class Again final : public raster::Region {
 TEST(Binned, EveryPassSeesTheSameChunks) {
   const ThreadsBeyondCores eight(8);
   constexpr int kSize = 512;
-  const auto row = std::ranges::find(raster::coverages(), std::string_view("binned"),
-                                     &raster::CoverageRow::name);
-  ASSERT_NE(row, raster::coverages().end());
   raster::Visibility again;
   again.name = "again";
   again.make = [](raster::Sharing, MemoryAccount&) -> std::unique_ptr<raster::Region> {
@@ -486,7 +552,7 @@ TEST(Binned, EveryPassSeesTheSameChunks) {
         parallel::Threads exec(threads, &memory);
         raster::Tuning tuning;
         tuning.schedule = schedule;
-        raster::Rasterizer rasterizer(*row, again, tuning, limit, memory, exec);
+        raster::Rasterizer rasterizer(binned_row(), again, tuning, limit, memory, exec);
         raster::Draw draw;
         draw.source = &source;
         draw.vertex_count = mesh.positions.size();
@@ -502,6 +568,61 @@ TEST(Binned, EveryPassSeesTheSameChunks) {
           EXPECT_GT(Again::blocks_seen, 10000U);
         }
       }
+}
+
+TEST(Binned, SendsLinesAndPointsThroughItsQueues) {
+  constexpr int kSize = 300;
+  Random random(13);
+  std::vector<Vec3> positions;
+  for (int i = 0; i < 400; ++i) {
+    const double x = random.real(0, kSize), y = random.real(0, kSize);
+    positions.push_back(at_pixel(x, y, random.real(0, 1), kSize, kSize));
+  }
+  const raster::TransformSource source(positions,
+                                       world_to_clip(pixel_camera(kSize, kSize), kSize, kSize));
+  std::array<raster::Draw, 2> draws;
+  for (raster::Draw& d : draws) {
+    d.source = &source;
+    d.vertex_count = positions.size();
+  }
+  draws[0].topology = raster::Topology::lines;
+  draws[0].primitive_count = positions.size() / 2;
+  draws[0].line_width = 5;
+  draws[1].topology = raster::Topology::points;
+  draws[1].primitive_count = positions.size();
+  draws[1].point_size = 12.5F;
+  struct Pictures {
+    Image<std::int64_t> ids{kSize, kSize};
+    Image<std::uint32_t> overdraw{kSize, kSize};
+  };
+  const auto request_for = [&](Pictures& p) {
+    raster::FrameRequest request;
+    request.width = request.height = kSize;
+    request.draws = draws;
+    request.targets.ids = p.ids.view();
+    request.targets.overdraw = p.overdraw.view();
+    return request;
+  };
+  MemoryAccount memory;
+  Pictures expected;
+  raster::FrameRequest plain = request_for(expected);
+  const FrameStats stats = raster::render_reference(plain, memory);
+  EXPECT_GT(stats.fragments, 100000U);
+  for (const Schedule schedule : kSchedules) {
+    parallel::Threads exec(2, &memory);
+    raster::Tuning tuning;
+    tuning.schedule = schedule;
+    tuning.large_px = 1;
+    raster::Rasterizer rasterizer(binned_row(), raster::visibilities().front(), tuning, 0, memory,
+                                  exec);
+    Pictures actual;
+    raster::FrameRequest request = request_for(actual);
+    const FrameStats s = rasterizer.render(request);
+    EXPECT_TRUE(std::ranges::equal(actual.overdraw.pixels(), expected.overdraw.pixels()));
+    EXPECT_TRUE(std::ranges::equal(actual.ids.pixels(), expected.ids.pixels()));
+    EXPECT_EQ(counter(s, "small"), 0U);
+    EXPECT_GT(counter(s, "large"), 500U);
+  }
 }
 
 TEST(Binned, RefusesATuningThatIsNotCompiled) {
