@@ -40,7 +40,6 @@ Rasterizer::Rasterizer(const CoverageRow& coverage, const Visibility& visibility
     : row_(coverage),
       visibility_(visibility),
       memory_limit_(memory_limit),
-      memory_(memory),
       threads_(threads),
       coverage_(coverage.make(tuning, memory)),
       scratch_(memory, threads),

@@ -34,7 +34,6 @@ class Rasterizer {
   const CoverageRow& row_;
   const Visibility& visibility_;
   std::uint64_t memory_limit_;
-  MemoryAccount& memory_;
   parallel::Threads& threads_;
   std::unique_ptr<Coverage> coverage_;
   FrameScratch scratch_;

@@ -35,8 +35,10 @@ std::vector<std::uint32_t> edge_indices(const MeshView& mesh) {
   std::ranges::sort(edges, [](const Edge& a, const Edge& b) {
     return a.key != b.key ? a.key < b.key : a.place < b.place;
   });
-  const auto rest = std::ranges::unique(edges, {}, &Edge::key);
-  edges.erase(rest.begin(), rest.end());
+  // Clang 14 does not compile the subrange that std::ranges::unique returns.
+  edges.erase(std::unique(edges.begin(), edges.end(),
+                          [](const Edge& a, const Edge& b) { return a.key == b.key; }),
+              edges.end());
   std::ranges::sort(edges, {}, &Edge::place);
   std::vector<std::uint32_t> pairs;
   pairs.reserve(edges.size() * 2);

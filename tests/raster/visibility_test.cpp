@@ -149,7 +149,7 @@ struct Resolved {
 class Resolver {
  public:
   Resolver(const Visibility& method, Isa isa, int threads)
-      : method_(method), exec_(threads, &memory_), kernel_(kernels(isa)) {
+      : exec_(threads, &memory_), kernel_(kernels(isa)) {
     request_.width = kWidth;
     request_.height = kHeight;
     request_.isa = isa;
@@ -253,7 +253,6 @@ class Resolver {
     return r;
   }
 
-  const Visibility& method_;
   MemoryAccount memory_;
   parallel::Threads exec_;
   const Kernels& kernel_;
@@ -312,6 +311,20 @@ TEST_P(Methods, KeepTheMaximumOfEachPixel) {
           if (HasFatalFailure()) return;
         }
     }
+}
+
+// As few fragments as can be: tables and sorts have least sizes of their own.
+TEST_P(Methods, KeepTheMaximumOfAFewFragments) {
+  const ThreadsBeyondCores eight(8);
+  Resolver resolver(method_, available_isas().back(), 2);
+  for (std::uint64_t seed = 1000; seed < 1200; ++seed) {
+    Case c = generate(seed, 1, 1);
+    c.chunks[0].resize(std::min<std::size_t>(c.chunks[0].size(), 1 + seed % 4));
+    for (Block& b : c.chunks[0]) b.mask &= ~(b.mask - 1) | b.mask >> 40;
+    expect(c, resolver.shared(c, 0));
+    expect(c, resolver.owned(c, 0));
+    if (HasFatalFailure()) return;
+  }
 }
 
 // However little memory fragments may take.
