@@ -105,16 +105,35 @@ struct Racer {
 
 }  // namespace
 
-const raster::BlockShader& triangle_colors() {
-  static const WordShader shader([](std::uint64_t word) {
-    std::uint64_t h = raster::id_of_word(word) * 0x9e3779b97f4a7c15U;
-    const auto channel = [&] {
-      h = h << 8 | h >> 56;
-      return static_cast<float>(h & 255U) / 255.0F;
+/// A hash of the id as a colour, computed once for neighbours of one triangle.
+class TriangleColors final : public raster::BlockShader {
+ public:
+  bool shade(const FrameGeometry&, const VisibleBlock& block, Isa,
+             BlockColors& colors) const noexcept override {
+    std::uint64_t last = ~std::uint64_t{0};
+    Vec3 c;
+    for (int i = 0; i < 64; ++i) {
+      const std::uint64_t id = raster::id_of_word(block.words[i]);
+      if (id != last) c = color(last = id);
+      colors.r[i] = c.x;
+      colors.g[i] = c.y;
+      colors.b[i] = c.z;
+    }
+    return true;
+  }
+
+ private:
+  static Vec3 color(std::uint64_t id) {
+    const std::uint64_t h = id * 0x9e3779b97f4a7c15U;
+    const auto channel = [&](int shift) {
+      return static_cast<float>(h >> shift & 255U) * (1.0F / 255.0F);
     };
-    const float r = channel(), g = channel(), b = channel();
-    return Vec3{r, g, b};
-  });
+    return {channel(56), channel(48), channel(40)};
+  }
+};
+
+const raster::BlockShader& triangle_colors() {
+  static const TriangleColors shader;
   return shader;
 }
 
