@@ -24,6 +24,8 @@ TEST_F(WrongArguments, NameTheOptionAndLoadNothing) {
       {"--rasterizer", {"fast", ""}},
       {"--device", {"gpu", "Threads"}},
       {"--threads", {"0", "-1", "2.5", "many"}},
+      {"--memory-limit",
+       {"0", "-1", "2.5M", "K", "8T", "8m", "99999999999999999999", "99999999999G"}},
       {"--isa", {"mmx"}},
       {"--shader", {"toon"}},
       {"--normals", {"smooth"}},

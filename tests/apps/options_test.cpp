@@ -177,6 +177,11 @@ TEST_F(Options, MachineChoicesReachTheStatisticsAndLeaveThePictureAlone) {
     EXPECT_EQ(stats({"--rasterizer", "grouped", "--isa", isa_name})["isa"], isa_name);
     EXPECT_EQ(npy("i.npy").data, ids) << isa_name;
   }
+  for (const auto& [limit, bytes] :
+       {std::pair{"8000000", 8000000}, {"8000K", 8000 * 1024}, {"8M", 8 << 20}}) {
+    EXPECT_LE(stats({"--memory-limit", limit, "--threads", "2"})["peak_bytes"], bytes);
+    EXPECT_EQ(npy("i.npy").data, ids) << limit;
+  }
   EXPECT_EQ(stats({"--frames", "3"})["frame_ms"]["frames"], 3);
 }
 

@@ -9,7 +9,10 @@
 namespace rastrum::raster {
 namespace {
 
-/// Entries a slot at most.
+/// Entries a slot at most. With 0.5, 0.7 and 0.9 `sorted` took 1.06, 1.13 and 1.16 times the time
+/// of this (`rastrum bench hashed`, depth complexity 1, paired medians of 3 on a busy machine) and
+/// at complexity 8 1.37, 1.42 and 1.21: blocks that are covered whole seldom meet, so that memory
+/// decides until tables are nearly full.
 constexpr std::uint64_t kLoadNumerator = 7, kLoadDenominator = 10;
 
 constexpr std::uint32_t kNoPixel = ~std::uint32_t{0};
