@@ -55,6 +55,21 @@ const Row& find_row(std::span<const Row> rows, std::string_view wanted, std::str
                                           .append(known));
 }
 
+/// One choice for all frames: `rastrum bench auto` has found no size, number of triangles or depth
+/// complexity at which another pair were faster by enough to choose by it (docs/decisions/0010).
+std::string why(const RenderOptions& options) {
+  std::string text;
+  if (options.rasterizer == "auto")
+    text.append("auto takes ")
+        .append(raster::coverages().front().name)
+        .append(": threads own bins, whose words stay in cache and which skip what is hidden");
+  if (options.visibility == "auto")
+    text.append(text.empty() ? "auto takes " : "; ")
+        .append(raster::visibilities().front().name)
+        .append(": a plain maximum where a thread owns the words, and shading once a pixel");
+  return text.empty() ? "as asked for" : text;
+}
+
 DrawFrame make_reference(const RenderOptions& options, MemoryAccount& memory) {
   if (options.rasterizer != "auto" && options.rasterizer != kReference)
     throw Error(Errc::invalid_argument,
@@ -103,7 +118,11 @@ DrawFrame make_rasterizer(const RenderOptions& options, MemoryAccount& memory,
           : find_row(raster::visibilities(), options.visibility, "visibility", "auto");
   auto rasterizer = std::make_shared<raster::Rasterizer>(coverage, visibility, options.tuning,
                                                          options.memory_limit, memory, *threads);
-  return [rasterizer](raster::FrameRequest& request) { return rasterizer->render(request); };
+  return [rasterizer, why = why(options)](raster::FrameRequest& request) {
+    FrameStats stats = rasterizer->render(request);
+    stats.why = why;
+    return stats;
+  };
 }
 
 }  // namespace rastrum
