@@ -1,6 +1,7 @@
 #include <rastrum/raster/frame.hpp>
 
 #include <bit>
+#include <utility>
 
 #include <rastrum/raster/resolve.hpp>
 
@@ -80,7 +81,8 @@ void Emitter::fragments(Rect bin, std::span<const BinFragment> fragments) {
 }
 
 void Frame::shade(const SurfaceView& from, Rect rect, Worker& worker) {
-  if (request.shader != nullptr) std::memset(worker.shader, 0, request.shader->scratch_bytes());
+  if (request.shader != nullptr && std::exchange(worker.shader_of, number) != number)
+    std::memset(worker.shader, 0, request.shader->scratch_bytes());
   std::uint64_t covered = 0;
   for (int y0 = rect.y0; y0 < rect.y1; y0 += kBlockSize)
     for (int x0 = rect.x0; x0 < rect.x1; x0 += kBlockSize) {

@@ -34,6 +34,7 @@ struct Worker {
 
   alignas(64) Block blocks[kBlockCapacity];
   alignas(64) std::byte shader[kMaxShaderScratch];
+  std::uint64_t shader_of = 0;  ///< number of the frame for which it was zeroed
   Buffer<std::uint64_t> words;  ///< of a tile
   Buffer<BlockColors> colors;   ///< of a tile, where visibility shades
   std::unique_ptr<Region> region;
@@ -129,6 +130,7 @@ struct FrameScratch {
   parallel::Threads& exec;
   parallel::ScratchPool<Worker> workers{[this] { return Worker(memory); }};
   std::unique_ptr<Region> shared;
+  std::uint64_t frames = 0;  ///< drawn or under way
 };
 
 class Frame {
@@ -142,7 +144,8 @@ class Frame {
         scratch(s),
         exec(s.exec),
         stats(st),
-        watch(w) {}
+        watch(w),
+        number(++s.frames) {}
 
   FrameRequest& request;
   FrameGeometry geometry;
@@ -152,6 +155,7 @@ class Frame {
   parallel::Threads& exec;
   FrameStats& stats;
   Stopwatch& watch;
+  const std::uint64_t number;  ///< tells the frames of a rasterizer apart
 
   Rect view;               ///< what is being drawn: the image or a band of it
   bool first_band = true;  ///< triangles are counted once

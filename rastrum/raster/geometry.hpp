@@ -123,7 +123,7 @@ struct VisibleBlock {
   const std::uint64_t* words = nullptr;  ///< 64, element 8 · row + column
   std::uint64_t covered = 0;             ///< samples that hold a surface and lie in the image
   int x0 = 0, y0 = 0;                    ///< first pixel
-  void* scratch = nullptr;               ///< the shader's, zeroed before the first block of a bin
+  void* scratch = nullptr;               ///< the shader's, zeroed when a thread begins a frame
   BlockColors* extra = nullptr;          ///< its further outputs; null: not wanted
 };
 
@@ -142,7 +142,7 @@ class BlockShader {
   virtual bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
                      BlockColors& colors) const noexcept = 0;
   /// How many bytes of VisibleBlock::scratch the shader uses, at most kMaxShaderScratch; 64-byte
-  /// aligned, kept from block to block of a bin.
+  /// aligned, kept from block to block of a frame.
   [[nodiscard]] virtual std::size_t scratch_bytes() const noexcept { return 0; }
   /// How many VisibleBlock::extra it sets (Targets::extra), at most kMaxExtraTargets.
   [[nodiscard]] virtual std::size_t extra_count() const noexcept { return 0; }
