@@ -3,6 +3,7 @@
 #include <bit>
 #include <utility>
 
+#include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/resolve.hpp>
 
 namespace rastrum::raster {
@@ -56,7 +57,7 @@ void Emitter::flush() {
   }
   if (first_pass_) {
     std::uint64_t covered = 0;
-    for (const Block& b : blocks) covered += static_cast<std::uint64_t>(std::popcount(b.mask));
+    for (const Block& b : blocks) covered += static_cast<std::uint64_t>(parallel::popcount(b.mask));
     frame_.fragments.fetch_add(covered, std::memory_order_relaxed);
     if (!frame_.request.targets.overdraw.empty())
       count_overdraw(frame_.request.targets.overdraw, blocks);

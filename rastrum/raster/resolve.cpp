@@ -6,6 +6,7 @@
 #include <string>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/kernels.hpp>
 
 namespace rastrum::raster {
@@ -143,7 +144,7 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame,
     resolve_colors(request, frame, block, touched, shaded, window);
   if (!targets.depth.empty() || !targets.ids.empty() || !targets.words.empty())
     store_words(targets, words, touched, window);
-  return std::popcount(covered);
+  return parallel::popcount(covered);
 }
 
 void load_words(const Targets& targets, Rect rect, const SurfaceView& surface) noexcept {

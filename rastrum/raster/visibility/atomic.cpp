@@ -4,6 +4,7 @@
 #include <bit>
 #include <utility>
 
+#include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/setup.hpp>
 
 namespace rastrum::raster {
@@ -96,7 +97,7 @@ class OwnedAtomicRegion final : public AtomicRegion {
         any = true;
         continue;
       }
-      unseen_[i] += static_cast<std::uint32_t>(std::popcount(b.mask));
+      unseen_[i] += static_cast<std::uint32_t>(parallel::popcount(b.mask));
       if (unseen_[i] < kLook) continue;
       unseen_[i] = 0;
       const std::uint64_t lowest = kernel_->lowest(surface_.block(b.bx, b.by));

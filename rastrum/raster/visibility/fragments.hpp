@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/setup.hpp>
 #include <rastrum/raster/visibility/atomic.hpp>
 #include <rastrum/raster/visibility/region.hpp>
@@ -24,7 +25,7 @@ void raise(T& value, T candidate) {
 
 [[nodiscard]] inline std::uint64_t count_fragments(std::span<const Block> blocks) {
   std::uint64_t n = 0;
-  for (const Block& b : blocks) n += static_cast<std::uint64_t>(std::popcount(b.mask));
+  for (const Block& b : blocks) n += static_cast<std::uint64_t>(parallel::popcount(b.mask));
   return n;
 }
 
@@ -35,7 +36,7 @@ inline constexpr int kFewSamples = 6;
 /// Calls f(sample, word) for the covered samples of a block.
 template <class F>
 void for_each_fragment(const Kernels& kernel, const Piece& piece, const Block& block, const F& f) {
-  if (std::popcount(block.mask) <= kFewSamples) {
+  if (parallel::popcount(block.mask) <= kFewSamples) {
     for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
       const float depth = depth_at(piece, block.bx * kBlockSize + i % kBlockSize,

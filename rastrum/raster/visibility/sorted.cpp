@@ -3,6 +3,7 @@
 #include <atomic>
 #include <bit>
 
+#include <rastrum/parallel/mask.hpp>
 #include <rastrum/parallel/scan.hpp>
 #include <rastrum/parallel/scratch.hpp>
 #include <rastrum/parallel/sort_by_key.hpp>
@@ -236,14 +237,14 @@ class SharedSortedRegion final : public Region {
       case Step::counting:
         for (const Block& b : blocks)
           bands_.take(lane, pixels_.block(b.bx, b.by),
-                      static_cast<std::uint64_t>(std::popcount(b.mask)));
+                      static_cast<std::uint64_t>(parallel::popcount(b.mask)));
         break;
       case Step::writing:
         for (const Block& b : blocks) {
           const std::uint32_t block = pixels_.block(b.bx, b.by);
           const std::uint32_t first = bands_.pixel_in_band(block);
           std::uint64_t to =
-              bands_.take(lane, block, static_cast<std::uint64_t>(std::popcount(b.mask)));
+              bands_.take(lane, block, static_cast<std::uint64_t>(parallel::popcount(b.mask)));
           for_each_fragment(*kernel_, pieces[b.piece], b, [&](std::uint32_t i, std::uint64_t word) {
             keys_[to] = static_cast<Key>(first + i);
             words_[to++] = word;
