@@ -88,6 +88,20 @@ HWY_INLINE void small_cover(const Piece& p, int bx0, int by0, int bx1, int by1,
   }
 }
 
+/// Points and lines, the scalar way; apart, so that triangles do not pay for their code.
+HWY_NOINLINE std::size_t cover_other(const Piece& piece, std::uint32_t index, Rect bin,
+                                     HiddenTest& hidden, Block* out) {
+  const Rect box = piece_bounds(piece, bin);
+  if (box.empty() || hidden.hides_piece(piece, box)) return 0;
+  std::size_t n = 0;
+  cover_blocks(
+      piece, box, bin, [&](int bx, int by) { return hidden.hides_block(piece, bx, by); },
+      [&](int bx, int by, std::uint64_t mask) {
+        out[n++] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
+      });
+  return n;
+}
+
 std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
                   std::size_t capacity, DepthBounds* bounds) noexcept {
   constexpr std::int64_t kClamp = std::int64_t{1} << 30;
@@ -99,15 +113,12 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
     if (cursor + 6 < in.count) __builtin_prefetch(in.pieces + in.list[cursor + 6].piece);
     const std::uint32_t index = in.list[cursor].piece;
     const Piece& piece = in.pieces[index];
-    const Rect box = piece_bounds(piece, bin);
-    if (box.empty() || hidden.hides_piece(piece, box)) continue;
-    const auto is_hidden = [&](int bx, int by) { return hidden.hides_block(piece, bx, by); };
     if (!is_triangle(piece)) {
-      cover_blocks(piece, box, bin, is_hidden, [&](int bx, int by, std::uint64_t mask) {
-        out[n++] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
-      });
+      n += cover_other(piece, index, bin, hidden, out + n);
       continue;
     }
+    const Rect box = sample_bounds(piece.x, piece.y, bin);
+    if (box.empty() || hidden.hides_piece(piece, box)) continue;
     const int bx0 = box.x0 / kBlockSize, by0 = box.y0 / kBlockSize;
     const int bx1 = (box.x1 - 1) / kBlockSize, by1 = (box.y1 - 1) / kBlockSize;
     const auto add = [&](int bx, int by, std::uint64_t mask) HWY_ATTR {

@@ -13,29 +13,31 @@ class HiddenTest {
 
   /// Whether no sample of the piece in `box` can be seen.
   [[nodiscard]] bool hides_piece(const Piece& piece, Rect box) {
-    usable_ = bounds_ != nullptr && has_depth_bounds(piece);
-    if (!usable_ || !(bounds_->bin > 0) || !(highest_depth(piece, box) < bounds_->bin))
+    if (bounds_ == nullptr || !(bounds_->bin > 0) || !is_below(piece, box, bounds_->bin))
       return false;
     ++bounds_->hidden_pieces;
     return true;
   }
-  /// The same for a block; after hides_piece of its piece.
+  /// The same for a block.
   [[nodiscard]] bool hides_block(const Piece& piece, int bx, int by) {
-    if (!usable_) return false;
+    if (bounds_ == nullptr) return false;
     const int x0 = bx * kBlockSize, y0 = by * kBlockSize;
     const float bound =
         bounds_
             ->block[(y0 - bin_.y0) / kBlockSize * kBlocksPerBinRow + (x0 - bin_.x0) / kBlockSize];
-    if (!(bound > 0) || !(highest_depth(piece, {x0, y0, x0 + kBlockSize, y0 + kBlockSize}) < bound))
+    if (!(bound > 0) || !is_below(piece, {x0, y0, x0 + kBlockSize, y0 + kBlockSize}, bound))
       return false;
     ++bounds_->hidden_blocks;
     return true;
   }
 
  private:
+  static bool is_below(const Piece& piece, Rect r, float bound) {
+    return has_depth_bounds(piece) && highest_depth(piece, r) < bound;
+  }
+
   DepthBounds* bounds_;
   Rect bin_;
-  bool usable_ = false;
 };
 
 }  // namespace rastrum::raster
