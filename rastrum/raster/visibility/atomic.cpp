@@ -79,8 +79,9 @@ class OwnedAtomicRegion final : public AtomicRegion {
 
  private:
   /// After so many pieces that cover a block in part its words are looked at: one such look costs
-  /// about as much as drawing a dozen samples, and where a surface of small triangles covers a pixel
-  /// once or twice there is nothing to find. (Counting their samples instead cost 3 % of a frame.)
+  /// about as much as drawing a dozen samples, and where a surface of small triangles covers a
+  /// pixel once or twice there is nothing to find. (Counting their samples instead cost 3 % of a
+  /// frame.)
   static constexpr std::uint32_t kLook = 32;
 
   void raise_bounds(const Piece* pieces, std::span<const Block> blocks) {
