@@ -242,7 +242,9 @@ TEST_P(TopologyTable, MixesEqualSerial) {
       if (threads == 2) o.memory_limit = std::uint64_t{4} << 20;
       renderers.emplace_back(o);
     }
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  const auto mixes =
+      static_cast<std::uint64_t>(count_from_environment("RASTRUM_TABLE_SCENES", 120) / 2);
+  for (std::uint64_t seed = 0; seed < mixes; ++seed) {
     Mix mix = random_mix(seed, kWidth, kHeight);
     // More vertices than a quarter of the budget holds.
     mix.clip.resize(std::size_t{1} << 17, Vec4{0, 0, 0, 1});
