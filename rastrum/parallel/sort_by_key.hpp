@@ -89,6 +89,9 @@ struct Rows {
 /// Bits [shift, shift + width) of a key.
 struct Digit {
   int shift = 0, width = 0;
+  Digit() = default;
+  /// Without any bit it may begin behind the last one, where no shift reaches.
+  Digit(int first, int bits) : shift(bits == 0 ? 0 : first), width(bits) {}
   [[nodiscard]] std::size_t count() const { return std::size_t{1} << width; }
   template <class K>
   [[nodiscard]] std::size_t of(K key) const {
