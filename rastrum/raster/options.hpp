@@ -20,6 +20,27 @@ enum class Isa : std::uint8_t { scalar, sse4, avx2, avx512, neon };
 /// Those that this machine can run, slowest first; always begins with `scalar`.
 [[nodiscard]] std::vector<Isa> available_isas();
 
+/// How the translucent fragments of a pixel become one colour (transparency/). All but `exact`,
+/// `unsorted` and `none` approximate it.
+enum class Transparency : std::uint8_t {
+  exact,     ///< every fragment, in the order of visibility words, front to back
+  filter,    ///< sorted blocks and a small filter a pixel (paper 4), without repair
+  unsorted,  ///< every fragment, in the order of submission, the later one in front
+  wboit,     ///< weighted blended (McGuire and Bavoil 2013)
+  mboit4,    ///< four power moments (Münstermann et al. 2018)
+  mboit6,    ///< six power moments
+  mlab4,     ///< multi-layer alpha blending, four layers (Salvi and Vaidyanathan 2014)
+  none       ///< translucent surfaces are drawn opaque
+};
+
+struct TransparencyOptions {
+  Transparency method = Transparency::exact;
+  int filter = 3;  ///< samples that the filter of `filter` holds, 1 to 64
+  /// A block is finished once all of its pixels have this much alpha. 1: what lies behind is
+  /// invisible anyway, so that nothing changes; paper 4 takes 1 − 1/128.
+  float alpha_threshold = 1;
+};
+
 namespace raster {
 
 enum class Schedule : std::uint8_t { automatic, two_stage, persistent };
@@ -55,6 +76,10 @@ struct Targets {
   ImageView<std::uint64_t> words{};
   bool load = false;
   std::uint64_t first_id = 0;
+
+  /// 255 where Transparency::filter blended in a wrong order, and where `exact` had to sort what
+  /// its filter could not hold; else 0.
+  ImageView<std::uint8_t> errors{};
 
   /// Further outputs of the shader (BlockShader::extra_count), as it returns them; 0 where nothing
   /// is. Like the other targets they must have the frame's size.

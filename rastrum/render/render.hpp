@@ -58,6 +58,12 @@ struct RenderOptions {
   /// none: all faces, but with Shader::material the back of single-sided materials is left out.
   Cull cull = Cull::none;
   Vec4 background{0, 0, 0, 0};  ///< display values, straight alpha
+  /// Of every surface, in [0, 1]: opaque materials get it as their alpha, masked ones where they
+  /// are not cut out, and with AlphaMode::blend (or vertex alpha without any material) it
+  /// multiplies alpha.
+  float opacity = 1;
+  TransparencyOptions transparency;
+  int samples = 1;  ///< a pixel: 1, 4, 8 or 16, at D3D11's standard positions
 };
 
 /// Renders frames with one set of options; keeps threads and scratch between frames.
