@@ -22,7 +22,8 @@ void count_overdraw(const ImageView<std::uint32_t>& overdraw, std::span<const Bl
 void count_overdraw(const ImageView<std::uint32_t>& overdraw, Rect bin,
                     std::span<const BinFragment> fragments) {
   for (const BinFragment& f : fragments) {
-    const int block = static_cast<int>(f.pixel) / 64, sample = static_cast<int>(f.pixel) % 64;
+    const auto pixel = static_cast<int>(f.pixel % kTranslucentFragment);
+    const int block = pixel / 64, sample = pixel % 64;
     ++overdraw(bin.x0 + block % kBlocksPerBinRow * kBlockSize + sample % kBlockSize,
                bin.y0 + block / kBlocksPerBinRow * kBlockSize + sample / kBlockSize);
   }
@@ -81,15 +82,20 @@ void Emitter::fragments(Rect bin, std::span<const BinFragment> fragments) {
   region_.fragments(fragments);
 }
 
-void Frame::shade(const SurfaceView& from, Rect rect, Worker& worker) {
+void* Frame::shader_scratch(Worker& worker) const {
   if (request.shader != nullptr && std::exchange(worker.shader_of, number) != number)
     std::memset(worker.shader, 0, request.shader->scratch_bytes());
+  return worker.shader;
+}
+
+void Frame::shade(const SurfaceView& from, Rect rect, Worker& worker) {
+  void* const shader = shader_scratch(worker);
   std::uint64_t covered = 0;
   for (int y0 = rect.y0; y0 < rect.y1; y0 += kBlockSize)
     for (int x0 = rect.x0; x0 < rect.x1; x0 += kBlockSize) {
       const int bx = x0 / kBlockSize, by = y0 / kBlockSize;
-      covered += static_cast<std::uint64_t>(resolve_block(
-          request, geometry, from.block(bx, by), x0, y0, worker.shader, from.colors_of(bx, by)));
+      covered += static_cast<std::uint64_t>(resolve_block(request, geometry, from.block(bx, by), x0,
+                                                          y0, shader, from.colors_of(bx, by)));
     }
   pixels_covered.fetch_add(covered, std::memory_order_relaxed);
 }

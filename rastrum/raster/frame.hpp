@@ -172,10 +172,12 @@ class Frame {
   /// `threads`: null for a region that one thread owns; all of those share the budget.
   [[nodiscard]] RegionContext context(parallel::Threads* threads) const {
     const auto owners = threads != nullptr ? 1 : static_cast<std::uint64_t>(exec.concurrency());
-    return {&request, &geometry, &kernel, threads, fragment_bytes / owners};
+    return {&request, &geometry, &kernel, threads, fragment_bytes / owners, nullptr};
   }
   void count(std::string_view name, std::uint64_t value) { add_counter(counters, name, value); }
 
+  /// What the shader keeps in this frame, zeroed when the worker first asks.
+  [[nodiscard]] void* shader_scratch(Worker& worker) const;
   /// Shades and stores the blocks of `rect`. Thread-safe for distinct rectangles.
   void shade(const SurfaceView& from, Rect rect, Worker& worker);
   /// The same for a rectangle without any surface.
@@ -259,7 +261,9 @@ void draw_tiles(Frame& frame, const TileGrid& grid, const IsEmpty& is_empty,
     } else {
       surface = frame.surface.part(rect.x0 / kBlockSize, rect.y0 / kBlockSize);
     }
-    region.begin(frame.context(nullptr), surface, rect, 1);
+    RegionContext context = frame.context(nullptr);
+    context.shader_scratch = frame.shader_scratch(worker);
+    region.begin(context, surface, rect, 1);
     bool first_pass = true;
     while (region.next()) {
       Emitter emitter(frame, worker, region, 0, first_pass);

@@ -160,6 +160,7 @@ struct FrameRequest {
   Tuning tuning;
   std::uint64_t texture_bytes = 0;  ///< that a memory limit counts beside the frame's own
   bool hierarchical_z = true;
+  TransparencyOptions transparency;  ///< for a visibility that keeps layers
 };
 
 }  // namespace rastrum::raster

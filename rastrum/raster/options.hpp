@@ -39,6 +39,8 @@ struct TransparencyOptions {
   /// A block is finished once all of its pixels have this much alpha. 1: what lies behind is
   /// invisible anyway, so that nothing changes; paper 4 takes 1 − 1/128.
   float alpha_threshold = 1;
+
+  bool operator==(const TransparencyOptions&) const = default;
 };
 
 namespace raster {

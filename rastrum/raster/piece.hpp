@@ -38,6 +38,8 @@ inline constexpr std::uint32_t kTested = 1;
 /// What the piece is; neither: a triangle.
 inline constexpr std::uint32_t kLine = 2, kPoint = 4;
 inline constexpr int kLineWidthShift = 16;
+/// Fragments of this piece are blended with what lies behind them (transparency/).
+inline constexpr std::uint32_t kTranslucent = 8;
 
 RASTRUM_HD inline bool is_triangle(const Piece& p) {
   return (p.flags & (kLine | kPoint)) == 0;
@@ -48,8 +50,9 @@ RASTRUM_HD inline bool is_triangle(const Piece& p) {
 struct BinFragment {
   std::uint64_t word;
   std::uint32_t bin;
-  std::uint32_t pixel;  ///< within the bin: 64 · block + 8 · row + column
+  std::uint32_t pixel;  ///< within the bin: 64 · block + 8 · row + column; kTranslucentFragment
 };
+inline constexpr std::uint32_t kTranslucentFragment = 1U << 16;  ///< of a translucent piece
 inline constexpr int kMicroSize = 4;
 
 /// An 8 × 8 block of the screen with the samples that a piece covers: bit 8 · row + column.

@@ -152,6 +152,9 @@ FrameStats Rasterizer::render(FrameRequest& request) {
   if (!request.targets.overdraw.empty() && !request.targets.load)
     for (int y = 0; y < request.height; ++y)
       std::fill_n(request.targets.overdraw.row(y), request.width, 0U);
+  if (!request.targets.errors.empty())
+    for (int y = 0; y < request.height; ++y)
+      std::fill_n(request.targets.errors.row(y), request.width, std::uint8_t{0});
 
   Frame frame(request, geometry, visibility_, scratch_, stats, watch);
   frame.fragment_bytes = cut.fragment_bytes;

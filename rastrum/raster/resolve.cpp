@@ -138,7 +138,7 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame,
   BlockColors colors;
   if (!targets.extra.empty()) {
     shade_extra(request, frame, block, touched, window, colors);
-    shaded = &colors;
+    if (shaded == nullptr) shaded = &colors;
   }
   if (!targets.color8.empty() || !targets.color.empty())
     resolve_colors(request, frame, block, touched, shaded, window);

@@ -1,4 +1,5 @@
 // The names of the façade: shaders and rasterizers.
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <span>
@@ -8,6 +9,7 @@
 #include <rastrum/raster/rasterizer.hpp>
 #include <rastrum/raster/reference.hpp>
 #include <rastrum/render/registry.hpp>
+#include <rastrum/transparency/layers.hpp>
 
 namespace rastrum {
 namespace {
@@ -70,6 +72,30 @@ std::string why(const RenderOptions& options) {
   return text.empty() ? "as asked for" : text;
 }
 
+bool is_translucent(const raster::FrameRequest& request) {
+  return request.transparency.method != Transparency::none &&
+         std::ranges::any_of(request.draws, [](const raster::Draw& d) {
+           return (d.flags & raster::kTranslucent) != 0;
+         });
+}
+
+/// Layers want a thread that owns a tile, and are a visibility themselves.
+void check_layers(const raster::CoverageRow& coverage, bool visibility_is_asked_for) {
+  if (visibility_is_asked_for)
+    throw Error(Errc::invalid_argument,
+                "something is translucent, and transparency resolves fragments in its own way: "
+                "leave the visibility to 'auto', or ask for transparency 'none'");
+  if (coverage.owns_tiles) return;
+  std::string owners;
+  for (const raster::CoverageRow& row : raster::coverages())
+    if (row.owns_tiles) owners.append(owners.empty() ? "" : ", ").append(row.name);
+  throw Error(Errc::invalid_argument,
+              std::string("something is translucent, and the rasterizer '")
+                  .append(coverage.name)
+                  .append("' keeps no tiles in which layers could be ordered; these do: ")
+                  .append(owners));
+}
+
 DrawFrame make_reference(const RenderOptions& options, MemoryAccount& memory) {
   if (options.rasterizer != "auto" && options.rasterizer != kReference)
     throw Error(Errc::invalid_argument,
@@ -116,10 +142,19 @@ DrawFrame make_rasterizer(const RenderOptions& options, MemoryAccount& memory,
       options.visibility == "auto"
           ? raster::visibilities().front()
           : find_row(raster::visibilities(), options.visibility, "visibility", "auto");
-  auto rasterizer = std::make_shared<raster::Rasterizer>(coverage, visibility, options.tuning,
-                                                         options.memory_limit, memory, *threads);
-  return [rasterizer, why = why(options)](raster::FrameRequest& request) {
-    FrameStats stats = rasterizer->render(request);
+  const auto make = [&memory, threads, &coverage, tuning = options.tuning,
+                     limit = options.memory_limit](const raster::Visibility& by) {
+    return std::make_shared<raster::Rasterizer>(coverage, by, tuning, limit, memory, *threads);
+  };
+  const bool is_asked_for = options.visibility != "auto";
+  return [rasterizer = make(visibility), layered = std::shared_ptr<raster::Rasterizer>(), make,
+          &coverage, is_asked_for, why = why(options)](raster::FrameRequest& request) mutable {
+    const bool blends = is_translucent(request);
+    if (blends) {
+      check_layers(coverage, is_asked_for);
+      if (!layered) layered = make(transparency::layers());
+    }
+    FrameStats stats = (blends ? layered : rasterizer)->render(request);
     stats.why = why;
     return stats;
   };

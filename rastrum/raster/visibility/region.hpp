@@ -28,6 +28,7 @@ struct RegionContext {
   const Kernels* kernel = nullptr;
   parallel::Threads* exec = nullptr;  ///< null where one thread owns the region
   std::uint64_t fragment_bytes = 0;   ///< most that fragments may take at once; 0: no limit
+  void* shader_scratch = nullptr;     ///< VisibleBlock::scratch, where one thread owns the region
 };
 
 /// Named counters of a method's own work: what tells five names from one.
@@ -89,5 +90,7 @@ struct Visibility {
 
 /// Adds to the counter of that name.
 void add_counter(Counters& counters, std::string_view name, std::uint64_t value);
+/// Makes the counter of that name at least `value`.
+void raise_counter(Counters& counters, std::string_view name, std::uint64_t value);
 
 }  // namespace rastrum::raster

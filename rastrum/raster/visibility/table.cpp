@@ -37,4 +37,10 @@ void add_counter(Counters& counters, std::string_view name, std::uint64_t value)
     counters.emplace_back(name, value);
 }
 
+void raise_counter(Counters& counters, std::string_view name, std::uint64_t value) {
+  add_counter(counters, name, 0);
+  std::uint64_t& held = std::ranges::find(counters, name, &Counters::value_type::first)->second;
+  held = std::max(held, value);
+}
+
 }  // namespace rastrum::raster

@@ -1,0 +1,73 @@
+#include <rastrum/transparency/blend.hpp>
+
+#include <algorithm>
+
+#include <rastrum/transparency/blend_kernels.hpp>
+
+namespace rastrum::transparency {
+namespace {
+
+using raster::BlockColors;
+
+/// Porter and Duff's `over`, front to back.
+class FrontToBack final : public LayerBlend {
+ public:
+  FrontToBack(float alpha_threshold, Isa isa)
+      : kernel_(blend_kernels(isa)), opaque_at_(1 - alpha_threshold) {}
+
+  [[nodiscard]] LayerOrder order() const override { return LayerOrder::depth; }
+  void begin(const BlockColors& behind) override {
+    behind_ = &behind;
+    for (float(&channel)[64] : {std::ref(seen_.r), std::ref(seen_.g), std::ref(seen_.b)})
+      std::fill_n(channel, 64, 0.0F);
+    std::fill_n(seen_.through, 64, 1.0F);
+  }
+  std::uint64_t layer(const Layer& l) override {
+    return kernel_.behind(l.colors, l.mask, opaque_at_, seen_);
+  }
+  void finish(BlockColors& out) override {
+    for (int i = 0; i < 64; ++i) {
+      const float through = seen_.through[i];
+      out.r[i] = seen_.r[i] + through * behind_->r[i];
+      out.g[i] = seen_.g[i] + through * behind_->g[i];
+      out.b[i] = seen_.b[i] + through * behind_->b[i];
+      out.a[i] = 1 - through * (1 - behind_->a[i]);
+    }
+  }
+
+ private:
+  const BlendKernels& kernel_;
+  const float opaque_at_;
+  const BlockColors* behind_ = nullptr;
+  Seen seen_;
+};
+
+/// Each layer before those that came earlier: what a GPU does that blends without sorting.
+class AsSubmitted final : public LayerBlend {
+ public:
+  explicit AsSubmitted(Isa isa) : kernel_(blend_kernels(isa)) {}
+
+  void begin(const BlockColors& behind) override { colors_ = behind; }
+  std::uint64_t layer(const Layer& l) override {
+    kernel_.before(l.colors, l.mask, colors_);
+    return 0;
+  }
+  void finish(BlockColors& out) override { out = colors_; }
+
+ private:
+  const BlendKernels& kernel_;
+  BlockColors colors_;
+};
+
+}  // namespace
+
+std::unique_ptr<LayerBlend> make_blend(const TransparencyOptions& options, Isa isa) {
+  switch (options.method) {
+    case Transparency::unsorted:
+      return std::make_unique<AsSubmitted>(isa);
+    default:
+      return std::make_unique<FrontToBack>(options.alpha_threshold, isa);
+  }
+}
+
+}  // namespace rastrum::transparency

@@ -1,0 +1,41 @@
+// How the layers of a block become its colours: what a method of transparency does with planes of
+// shaded fragments, 64 pixels at a time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include <rastrum/raster/color.hpp>
+#include <rastrum/raster/options.hpp>
+#include <rastrum/transparency/layer_lists.hpp>
+
+namespace rastrum::transparency {
+
+/// A plane of fragments: at most one a pixel. Pixels outside of `mask` hold anything.
+struct Layer {
+  const std::uint64_t* words;
+  std::uint64_t mask;
+  const raster::BlockColors& colors;  ///< premultiplied
+};
+
+/// Blends one block after the other. Used: begin; for each pass begin_pass and its layers; finish.
+class LayerBlend {
+ public:
+  virtual ~LayerBlend() = default;
+
+  /// The order in which a pixel's fragments arrive; from layer to layer.
+  [[nodiscard]] virtual LayerOrder order() const { return LayerOrder::submission; }
+  /// How often it wants to see all layers.
+  [[nodiscard]] virtual int passes() const { return 1; }
+  /// `behind`: the opaque surface, premultiplied; 0 where there is none.
+  virtual void begin(const raster::BlockColors& behind) = 0;
+  virtual void begin_pass(int /*pass*/) {}
+  /// Returns the pixels that no further layer of this pass changes.
+  virtual std::uint64_t layer(const Layer& layer) = 0;
+  /// The block's colours, premultiplied.
+  virtual void finish(raster::BlockColors& out) = 0;
+};
+
+[[nodiscard]] std::unique_ptr<LayerBlend> make_blend(const TransparencyOptions& options, Isa isa);
+
+}  // namespace rastrum::transparency

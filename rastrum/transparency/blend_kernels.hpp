@@ -1,0 +1,29 @@
+// The SIMD leaves of blending (blend_simd.cpp), once for each instruction set and with the same
+// bits.
+#pragma once
+
+#include <cstdint>
+
+#include <rastrum/raster/color.hpp>
+#include <rastrum/raster/options.hpp>
+
+namespace rastrum::transparency {
+
+/// Colour so far, premultiplied, and how much of what lies behind is seen through it.
+struct alignas(64) Seen {
+  float r[64], g[64], b[64], through[64];
+};
+
+struct BlendKernels {
+  /// Adds `layer` behind what is seen, at the pixels of `mask`. Returns the pixels of `mask` where
+  /// no more than `opaque_at` is seen through.
+  std::uint64_t (*behind)(const raster::BlockColors& layer, std::uint64_t mask, float opaque_at,
+                          Seen& seen) noexcept;
+  /// Puts `layer` before `colors`, at the pixels of `mask`.
+  void (*before)(const raster::BlockColors& layer, std::uint64_t mask,
+                 raster::BlockColors& colors) noexcept;
+};
+
+[[nodiscard]] const BlendKernels& blend_kernels(Isa isa) noexcept;
+
+}  // namespace rastrum::transparency

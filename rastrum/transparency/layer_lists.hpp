@@ -1,0 +1,139 @@
+// The translucent fragments of an 8 × 8 block in order, a list a pixel: the second stage of the
+// sort of paper 4 ("LucidRaster", sections "Sample blending" and "Phase 3"). The first, which sorts
+// the pieces of a block, makes the fragments arrive nearly in order; here each is inserted from the
+// back of its pixel's list. An insertion that looks back over at most K fragments is the paper's
+// depth filter: what lies farther back has left the filter and is blended already. Where that was
+// too early the paper leaves the pixel wrong; here the pixel is noted, and its list can be sorted.
+//
+// The lists are kept as planes: plane k has the k-th word of every pixel, so that a plane is shaded
+// like a visible surface, and blended, in vectors of pixels. The paper keeps no lists but blends
+// what falls out of the filter; so do planes, only later.
+//
+// Memory is bounded: a list that is full keeps the first fragments of its order and says that some
+// are left for another walk over the block's pieces (`window`).
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/raster/piece.hpp>
+
+namespace rastrum::transparency {
+
+enum class LayerOrder : std::uint8_t {
+  depth,      ///< nearest first, the first submitted first at equal depths: falling words
+  submission  ///< rising ids
+};
+
+class LayerLists {
+ public:
+  explicit LayerLists(MemoryAccount& memory) : planes_(memory), masks_(memory), column_(memory) {}
+
+  /// Begins a block. `filter`: over how many fragments an insertion looks back. `capacity`: most
+  /// planes, at least 2.
+  void restart(LayerOrder order, std::size_t filter, std::size_t capacity) {
+    order_mask_ = order == LayerOrder::depth ? ~std::uint64_t{0} : raster::kIdMask;
+    filter_ = filter;
+    capacity_ = capacity;
+    wanted_ = ~std::uint64_t{0};
+    left_ = misplaced_ = 0;
+    std::fill_n(before_, 64, ~std::uint64_t{0});
+    clear();
+  }
+  /// Whether fragments were left out; then begins the lists of those, which follow behind the ones
+  /// that the planes hold.
+  [[nodiscard]] bool next_window() {
+    if (left_ == 0) return false;
+    std::copy_n(cutoff_, 64, before_);
+    wanted_ = left_;
+    left_ = 0;
+    clear();
+    return true;
+  }
+
+  /// Adds a fragment of pixel i. O(filter), O(log capacity) amortized where its list is full.
+  void insert(int i, std::uint64_t word) {
+    const std::uint64_t bit = std::uint64_t{1} << i;
+    const std::uint64_t own = key(word);
+    if ((wanted_ & bit) == 0 || own >= before_[i]) return;
+    if (own < cutoff_[i]) {
+      left_ |= bit;
+      return;
+    }
+    if (counts_[i] == allocated_ && !grow()) {
+      halve(i);
+      insert(i, word);
+      return;
+    }
+    const std::size_t n = counts_[i]++;
+    masks_[n] |= bit;
+    std::uint64_t* const column = planes_.data() + i;
+    const std::size_t first = n > filter_ ? n - filter_ : 0;
+    std::size_t k = n;
+    for (; k > first && key(column[(k - 1) * 64]) < own; --k) column[k * 64] = column[(k - 1) * 64];
+    column[k * 64] = word;
+    if (k == first && first > 0 && key(column[(k - 1) * 64]) < own) misplaced_ |= bit;
+  }
+
+  /// Sorts the lists of misplaced fragments.
+  void sort() {
+    for (std::uint64_t m = misplaced_; m != 0; m &= m - 1) sort_column(std::countr_zero(m));
+  }
+
+  /// Planes that any pixel has.
+  [[nodiscard]] std::size_t depth() const { return *std::max_element(counts_, counts_ + 64); }
+  /// 64 words; those outside of `mask` are of no fragment. 64-byte aligned.
+  [[nodiscard]] const std::uint64_t* plane(std::size_t k) const { return planes_.data() + k * 64; }
+  [[nodiscard]] std::uint64_t mask(std::size_t k) const { return masks_[k]; }
+  /// Pixels where a fragment arrived behind the filter, in this window or an earlier one.
+  [[nodiscard]] std::uint64_t misplaced() const { return misplaced_; }
+
+ private:
+  [[nodiscard]] std::uint64_t key(std::uint64_t word) const { return word & order_mask_; }
+
+  void clear() {
+    std::fill_n(counts_, 64, 0U);
+    std::fill_n(cutoff_, 64, 0U);
+    std::fill_n(masks_.data(), allocated_, 0U);
+  }
+  bool grow() {
+    if (allocated_ >= capacity_) return false;
+    const std::size_t planes = std::min(capacity_, std::max<std::size_t>(16, allocated_ * 2));
+    planes_.reserve(planes * 64, allocated_ * 64);
+    masks_.reserve(planes, allocated_);
+    std::fill_n(masks_.data() + allocated_, planes - allocated_, 0U);
+    allocated_ = planes;
+    return true;
+  }
+  /// Leaves the last half of a full list to the next window.
+  void halve(int i) {
+    const std::uint64_t bit = std::uint64_t{1} << i;
+    sort_column(i);
+    const std::size_t kept = counts_[i] / 2;
+    cutoff_[i] = key(plane(kept - 1)[i]);
+    for (std::size_t k = kept; k < counts_[i]; ++k) masks_[k] &= ~bit;
+    counts_[i] = static_cast<std::uint32_t>(kept);
+    left_ |= bit;
+  }
+  void sort_column(int i) {
+    const std::size_t n = counts_[i];
+    column_.reserve(n);
+    for (std::size_t k = 0; k < n; ++k) column_[k] = plane(k)[i];
+    std::sort(column_.data(), column_.data() + n,
+              [this](std::uint64_t a, std::uint64_t b) { return key(a) > key(b); });
+    for (std::size_t k = 0; k < n; ++k) planes_[k * 64 + static_cast<std::size_t>(i)] = column_[k];
+  }
+
+  Buffer<std::uint64_t> planes_, masks_, column_;
+  std::size_t allocated_ = 0, capacity_ = 0, filter_ = 0;
+  std::uint64_t order_mask_ = 0;
+  std::uint32_t counts_[64] = {};
+  std::uint64_t before_[64] = {};  ///< keys from here on are in earlier windows
+  std::uint64_t cutoff_[64] = {};  ///< keys below are left to the next window
+  std::uint64_t wanted_ = 0, left_ = 0, misplaced_ = 0;
+};
+
+}  // namespace rastrum::transparency

@@ -1,0 +1,361 @@
+// LucidRaster's rasterization stage (paper 4, stage 3) for threads: a bin's translucent pieces are
+// recorded as 8 × 8 blocks with masks (the paper's tri-blocks), sorted by block, and by the depth
+// at the centroid of their samples; then each pixel's fragments are ordered (layer_lists.hpp) and
+// blended (blend.hpp).
+//
+// Where it deviates: the paper shades fragment by fragment, in the order of blocks; here a plane of
+// fragments, one a pixel, is shaded like a visible surface, so that every shader of the opaque path
+// serves and neighbours share vectors. Bins of low and high density differ in nothing but the
+// capacity of lists, which grow. The sort needs no index in its key, and no limit on blocks.
+#include <rastrum/transparency/layers.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <limits>
+#include <utility>
+
+#include <rastrum/parallel/mask.hpp>
+#include <rastrum/raster/resolve.hpp>
+#include <rastrum/raster/setup.hpp>
+#include <rastrum/raster/visibility/atomic.hpp>
+#include <rastrum/transparency/blend.hpp>
+#include <rastrum/transparency/layer_lists.hpp>
+
+namespace rastrum::transparency {
+namespace {
+
+using raster::BinFragment;
+using raster::Block;
+using raster::BlockColors;
+using raster::kBlockSize;
+using raster::Piece;
+using raster::Rect;
+
+/// A piece's part of a block.
+struct Record {
+  const Piece* piece;
+  std::uint64_t mask;
+  std::uint32_t block;  ///< within the region
+};
+/// A fragment of a micro triangle.
+struct MicroRecord {
+  std::uint64_t word;
+  std::uint32_t block;
+  std::uint32_t sample;
+};
+
+/// What `exact` looks back over before it leaves a pixel to the sort.
+constexpr std::size_t kExactFilter = 8;
+/// Up to so many pieces a block are not sorted: the insertion does it (paper 4: 3).
+constexpr std::size_t kFewPieces = 3;
+/// Layers at once: 16 MiB a thread.
+constexpr std::size_t kMostPlanes = std::size_t{1} << 15;
+constexpr std::size_t kLeastPlanes = 64;
+
+/// Records in the order in which they were made, then by block, still in that order.
+template <class T>
+class ByBlock {
+ public:
+  explicit ByBlock(MemoryAccount& memory) : records_(memory), sorted_(memory), begin_(memory) {}
+
+  void restart() { count_ = 0; }
+  void add(const T& record) {
+    records_.grow(count_ + 1, count_);
+    records_[count_++] = record;
+  }
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+  [[nodiscard]] std::size_t size() const { return count_; }
+  /// Counting sort.
+  void sort(std::size_t blocks) {
+    sorted_.reserve(count_);
+    begin_.reserve(blocks + 2);
+    std::fill_n(begin_.data(), blocks + 2, 0U);
+    for (std::size_t i = 0; i < count_; ++i) ++begin_[records_[i].block + 2];
+    for (std::size_t b = 2; b < blocks + 2; ++b) begin_[b] += begin_[b - 1];
+    for (std::size_t i = 0; i < count_; ++i) sorted_[begin_[records_[i].block + 1]++] = records_[i];
+  }
+  [[nodiscard]] std::span<T> of(std::size_t block) {
+    return {sorted_.data() + begin_[block], begin_[block + 1] - begin_[block]};
+  }
+
+ private:
+  Buffer<T> records_, sorted_;
+  Buffer<std::uint32_t> begin_;
+  std::size_t count_ = 0;
+};
+
+/// Depth at the mean of the samples: the first key of the sort.
+float centroid_depth(const Piece& piece, std::uint64_t mask, int bx, int by) {
+  const auto count = [&](std::uint64_t of) {
+    return static_cast<float>(parallel::popcount(mask & of));
+  };
+  const float n = count(~std::uint64_t{0});
+  const float x =
+      4 * count(0xF0F0F0F0F0F0F0F0U) + 2 * count(0xCCCCCCCCCCCCCCCCU) + count(0xAAAAAAAAAAAAAAAAU);
+  const float y =
+      4 * count(0xFFFFFFFF00000000U) + 2 * count(0xFFFF0000FFFF0000U) + count(0xFF00FF00FF00FF00U);
+  constexpr float kPx = 1.0F / raster::kSubpixels;
+  const float dx =
+      static_cast<float>(bx * kBlockSize) + 0.5F + x / n - static_cast<float>(piece.x[0]) * kPx;
+  const float dy =
+      static_cast<float>(by * kBlockSize) + 0.5F + y / n - static_cast<float>(piece.y[0]) * kPx;
+  return piece.z0 + piece.zx * dx + piece.zy * dy;
+}
+
+class LayersRegion final : public raster::Region {
+ public:
+  explicit LayersRegion(MemoryAccount& memory)
+      : opaque_(raster::make_atomic(raster::Sharing::owned, memory)),
+        records_(memory),
+        micro_(memory),
+        keys_(memory),
+        lists_(memory) {}
+
+  void begin(const raster::RegionContext& context, const raster::SurfaceView& surface, Rect rect,
+             std::size_t chunks) override {
+    context_ = context;
+    surface_ = surface;
+    rect_ = rect;
+    columns_ = raster::block_columns(rect);
+    opaque_->begin(context, surface, rect, chunks);
+    records_.restart();
+    micro_.restart();
+    const Targets& targets = context.request->targets;
+    shader_ = targets.color8.empty() && targets.color.empty() ? nullptr : context.request->shader;
+    const TransparencyOptions& options = context.request->transparency;
+    if (!blend_ || options != made_for_ || context.request->isa != made_with_) {
+      made_for_ = options;
+      made_with_ = context.request->isa;
+      blend_ = make_blend(options, made_with_);
+    }
+    planes_ = kMostPlanes;
+    if (context.fragment_bytes != 0)
+      planes_ = std::clamp<std::size_t>(context.fragment_bytes / 512, kLeastPlanes, kMostPlanes);
+  }
+
+  std::optional<Pass> next() override {
+    const auto pass = opaque_->next();
+    if (!pass) resolve();
+    return pass;
+  }
+
+  void blocks(std::size_t chunk, const Piece* pieces, std::span<const Block> blocks) override {
+    for (std::size_t i = 0; i < blocks.size();) {
+      const auto is_opaque = [&](const Block& b) {
+        return (pieces[b.piece].flags & raster::kTranslucent) == 0;
+      };
+      std::size_t end = i;
+      while (end < blocks.size() && is_opaque(blocks[end])) ++end;
+      if (end > i) opaque_->blocks(chunk, pieces, blocks.subspan(i, end - i));
+      for (; end < blocks.size() && !is_opaque(blocks[end]); ++end)
+        records_.add({pieces + blocks[end].piece, blocks[end].mask,
+                      block_number(blocks[end].bx, blocks[end].by)});
+      i = end;
+    }
+  }
+
+  void fragments(std::span<const BinFragment> fragments) override {
+    for (std::size_t i = 0; i < fragments.size();) {
+      const auto is_opaque = [](const BinFragment& f) {
+        return (f.pixel & raster::kTranslucentFragment) == 0;
+      };
+      std::size_t end = i;
+      while (end < fragments.size() && is_opaque(fragments[end])) ++end;
+      if (end > i) opaque_->fragments(fragments.subspan(i, end - i));
+      for (; end < fragments.size() && !is_opaque(fragments[end]); ++end) {
+        const std::uint32_t pixel = fragments[end].pixel & (raster::kTranslucentFragment - 1);
+        const auto block = static_cast<int>(pixel / 64);
+        micro_.add({fragments[end].word,
+                    static_cast<std::uint32_t>(block / raster::kBlocksPerBinRow * columns_ +
+                                               block % raster::kBlocksPerBinRow),
+                    pixel % 64});
+      }
+      i = end;
+    }
+  }
+
+  raster::DepthBounds* bounds() override { return opaque_->bounds(); }
+
+  void collect(raster::Counters& counters) override {
+    opaque_->collect(counters);
+    const auto add = [&](std::string_view name, std::uint64_t& value) {
+      raster::add_counter(counters, name, std::exchange(value, 0));
+    };
+    add("translucent fragments", fragments_);
+    add("layer blocks", layer_blocks_);
+    add("windows", windows_);
+    if (made_for_.method == Transparency::filter) add("wrong pixels", misplaced_);
+    if (made_for_.method == Transparency::exact) add("repaired pixels", misplaced_);
+    raster::raise_counter(counters, "deepest", std::exchange(deepest_, 0));
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t block_number(int bx, int by) const {
+    return static_cast<std::uint32_t>((by - rect_.y0 / kBlockSize) * columns_ + bx -
+                                      rect_.x0 / kBlockSize);
+  }
+
+  void resolve() {
+    const std::size_t blocks = raster::block_count(rect_);
+    records_.sort(blocks);
+    micro_.sort(blocks);
+    layer_blocks_ += records_.size();
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const int bx = rect_.x0 / kBlockSize + static_cast<int>(b) % columns_;
+      const int by = rect_.y0 / kBlockSize + static_cast<int>(b) / columns_;
+      resolve_block(bx, by, records_.of(b), micro_.of(b));
+    }
+  }
+
+  void resolve_block(int bx, int by, std::span<Record> records,
+                     std::span<const MicroRecord> micro) {
+    std::uint64_t* const words = surface_.block(bx, by);
+    BlockColors& out = *surface_.colors_of(bx, by);
+    BlockColors& behind = records.empty() && micro.empty() ? out : behind_;
+    shade_opaque(words, bx, by, behind);
+    if (&behind == &out) return;
+
+    const LayerOrder order = blend_->order();
+    if (order == LayerOrder::depth && records.size() > kFewPieces) sort_by_depth(records, bx, by);
+    std::uint64_t nearest[64];
+    std::copy_n(words, 64, nearest);
+    blend_->begin(behind);
+    for (int pass = 0; pass < blend_->passes(); ++pass) {
+      blend_->begin_pass(pass);
+      lists_.restart(order, filter(), planes_);
+      std::uint64_t finished = 0;
+      do {
+        fill_lists(words, records, micro, bx, by);
+        if (made_for_.method != Transparency::filter) lists_.sort();
+        const std::size_t depth = lists_.depth();
+        for (std::size_t k = 0; k < depth; ++k) {
+          raise(nearest, lists_.plane(k), lists_.mask(k));
+          const std::uint64_t mask = lists_.mask(k) & ~finished;
+          if (mask == 0) continue;
+          finished |= blend_->layer({lists_.plane(k), mask, shade(lists_.plane(k), mask, bx, by)});
+        }
+        if (pass == 0) {
+          deepest_here_ += depth;
+          for (std::size_t k = 0; k < depth; ++k)
+            fragments_ += static_cast<std::uint64_t>(parallel::popcount(lists_.mask(k)));
+        }
+      } while (lists_.next_window() && ++windows_ != 0);
+      if (pass == 0) note(bx, by);
+    }
+    blend_->finish(out);
+    std::copy_n(nearest, 64, words);
+  }
+
+  [[nodiscard]] std::size_t filter() const {
+    if (made_for_.method == Transparency::filter) return static_cast<std::size_t>(made_for_.filter);
+    return kExactFilter;
+  }
+
+  void fill_lists(const std::uint64_t* words, std::span<const Record> records,
+                  std::span<const MicroRecord> micro, int bx, int by) {
+    alignas(64) std::uint64_t piece_words[64];
+    for (const Record& r : records) {
+      context_.kernel->words(
+          *r.piece, {0, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), r.mask},
+          piece_words);
+      for (std::uint64_t m = r.mask; m != 0; m &= m - 1) {
+        const int i = std::countr_zero(m);
+        if (piece_words[i] > words[i]) lists_.insert(i, piece_words[i]);
+      }
+    }
+    for (const MicroRecord& f : micro)
+      if (f.word > words[f.sample]) lists_.insert(static_cast<int>(f.sample), f.word);
+  }
+
+  void sort_by_depth(std::span<Record> records, int bx, int by) {
+    keys_.reserve(records.size() * 2);
+    Key* const keys = keys_.data();
+    for (std::size_t i = 0; i < records.size(); ++i)
+      keys[i] = {centroid_depth(*records[i].piece, records[i].mask, bx, by), records[i]};
+    std::stable_sort(keys, keys + records.size(),
+                     [](const Key& a, const Key& b) { return a.depth > b.depth; });
+    for (std::size_t i = 0; i < records.size(); ++i) records[i] = keys[i].record;
+  }
+
+  static void raise(std::uint64_t* nearest, const std::uint64_t* words, std::uint64_t mask) {
+    for (std::uint64_t m = mask; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      nearest[i] = std::max(nearest[i], words[i]);
+    }
+  }
+
+  const BlockColors& shade(const std::uint64_t* words, std::uint64_t mask, int bx, int by) {
+    if (shader_ != nullptr &&
+        shader_->shade(*context_.frame,
+                       {words, mask, bx * kBlockSize, by * kBlockSize, context_.shader_scratch},
+                       context_.request->isa, colors_))
+      std::fill_n(colors_.a, 64, 1.0F);
+    return colors_;
+  }
+
+  /// The opaque surface, and nothing where there is none.
+  void shade_opaque(const std::uint64_t* words, int bx, int by, BlockColors& out) {
+    const std::uint64_t covered =
+        context_.kernel->covered(words) &
+        raster::samples_inside({0, 0, context_.request->width, context_.request->height}, bx, by);
+    if (covered != ~std::uint64_t{0}) out = {};
+    if (covered == 0 || shader_ == nullptr) return;
+    const BlockColors& colors = shade(words, covered, bx, by);
+    for (std::uint64_t m = covered; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      out.set(i, {colors.r[i], colors.g[i], colors.b[i], colors.a[i]});
+    }
+  }
+
+  /// Counts what the lists of a block tell.
+  void note(int bx, int by) {
+    deepest_ = std::max(deepest_, std::exchange(deepest_here_, 0));
+    const std::uint64_t wrong = lists_.misplaced();
+    misplaced_ += static_cast<std::uint64_t>(parallel::popcount(wrong));
+    const ImageView<std::uint8_t>& errors = context_.request->targets.errors;
+    if (errors.empty()) return;
+    for (std::uint64_t m = wrong; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      errors(bx * kBlockSize + i % kBlockSize, by * kBlockSize + i / kBlockSize) = 255;
+    }
+  }
+
+  struct Key {
+    float depth;
+    Record record;
+  };
+
+  raster::RegionContext context_;
+  raster::SurfaceView surface_;
+  Rect rect_;
+  int columns_ = 0;
+  const raster::BlockShader* shader_ = nullptr;
+  std::size_t planes_ = 0;
+
+  std::unique_ptr<Region> opaque_;
+  std::unique_ptr<LayerBlend> blend_;
+  TransparencyOptions made_for_;
+  Isa made_with_ = Isa::scalar;
+  ByBlock<Record> records_;
+  ByBlock<MicroRecord> micro_;
+  Buffer<Key> keys_;
+  LayerLists lists_;
+  BlockColors behind_, colors_;
+  std::uint64_t fragments_ = 0, layer_blocks_ = 0, deepest_ = 0, deepest_here_ = 0, windows_ = 0,
+                misplaced_ = 0;
+};
+
+std::unique_ptr<raster::Region> make_layers(raster::Sharing, MemoryAccount& memory) {
+  return std::make_unique<LayersRegion>(memory);
+}
+
+}  // namespace
+
+const raster::Visibility& layers() noexcept {
+  static constexpr raster::Visibility kRow{
+      "layers", "all fragments of a pixel in order, for transparency", true, true, 24, make_layers};
+  return kRow;
+}
+
+}  // namespace rastrum::transparency
