@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <rastrum/transparency/approximations.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
 
 namespace rastrum::transparency {
@@ -65,6 +66,14 @@ std::unique_ptr<LayerBlend> make_blend(const TransparencyOptions& options, Isa i
   switch (options.method) {
     case Transparency::unsorted:
       return std::make_unique<AsSubmitted>(isa);
+    case Transparency::wboit:
+      return make_wboit();
+    case Transparency::mlab4:
+      return make_mlab4();
+    case Transparency::mboit4:
+      return make_mboit(4);
+    case Transparency::mboit6:
+      return make_mboit(6);
     default:
       return std::make_unique<FrontToBack>(options.alpha_threshold, isa);
   }
