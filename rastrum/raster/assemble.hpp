@@ -40,14 +40,14 @@ struct PrimitiveCorners {
 
 template <class Emit>
 Fate assemble_triangle(const FrameGeometry& frame, const Draw& draw, std::uint64_t id,
-                       const PrimitiveCorners<3>& c, Emit&& emit) {
+                       std::uint32_t flags, const PrimitiveCorners<3>& c, Emit&& emit) {
   if (!c.finite) return Fate::dropped;
   const Rect view{0, 0, frame.width, frame.height};
   const Cull cull = draw.effective_cull();
   Piece piece;
   if (!c.needs_clip) {
     const auto& v = c.projected;
-    if (make_piece(v[0], v[1], v[2], id, draw.flags, cull, view, piece) == SetupResult::culled)
+    if (make_piece(v[0], v[1], v[2], id, flags, cull, view, piece) == SetupResult::culled)
       return Fate::culled;
     emit(piece);
     return Fate::drawn;
@@ -61,8 +61,8 @@ Fate assemble_triangle(const FrameGeometry& frame, const Draw& draw, std::uint64
   const Cull other_side = facing > 0 ? Cull::back : Cull::front;
   bool any = false;
   for (int i = 2; i < polygon.size; ++i)
-    if (make_piece(polygon.vertices[0], polygon.vertices[i - 1], polygon.vertices[i], id,
-                   draw.flags, other_side, view, piece) == SetupResult::drawn) {
+    if (make_piece(polygon.vertices[0], polygon.vertices[i - 1], polygon.vertices[i], id, flags,
+                   other_side, view, piece) == SetupResult::drawn) {
       emit(piece);
       any = true;
     }
@@ -71,11 +71,11 @@ Fate assemble_triangle(const FrameGeometry& frame, const Draw& draw, std::uint64
 
 template <class Emit>
 Fate assemble_line(const FrameGeometry& frame, const Draw& draw, std::uint64_t id,
-                   PrimitiveCorners<2> c, Emit&& emit) {
+                   std::uint32_t flags, PrimitiveCorners<2> c, Emit&& emit) {
   if (!c.finite) return Fate::dropped;
   if (c.needs_clip && !clip_line(c.clip, c.projected, frame.viewport)) return Fate::culled;
   Piece piece;
-  if (make_line(c.projected[0], c.projected[1], id, draw.flags, whole_width(draw.line_width),
+  if (make_line(c.projected[0], c.projected[1], id, flags, whole_width(draw.line_width),
                 {0, 0, frame.width, frame.height}, piece) == SetupResult::culled)
     return Fate::culled;
   emit(piece);
@@ -84,11 +84,11 @@ Fate assemble_line(const FrameGeometry& frame, const Draw& draw, std::uint64_t i
 
 template <class Emit>
 Fate assemble_point(const FrameGeometry& frame, const Draw& draw, std::uint64_t id,
-                    PrimitiveCorners<1> c, Emit&& emit) {
+                    std::uint32_t flags, PrimitiveCorners<1> c, Emit&& emit) {
   if (!c.finite) return Fate::dropped;
   if (c.needs_clip && !clip_point(c.clip[0], frame.viewport, c.projected[0])) return Fate::culled;
   Piece piece;
-  if (make_point(c.projected[0], id, draw.flags, point_size_fx8(draw.point_size),
+  if (make_point(c.projected[0], id, flags, point_size_fx8(draw.point_size),
                  {0, 0, frame.width, frame.height}, piece) == SetupResult::culled)
     return Fate::culled;
   emit(piece);
@@ -101,19 +101,23 @@ template <class Emit>
 Fate assemble_primitive(const FrameGeometry& frame, const Draw& draw, std::uint64_t p,
                         Emit&& emit) {
   const std::uint64_t id = draw.first_id + p;
+  const std::uint32_t flags = draw.flags_of(p);
   const auto emit_biased = [&](Piece& piece) {
     add_depth_bias(piece, draw.depth_bias, draw.depth_bias_slope);
     emit(std::as_const(piece));
   };
   switch (draw.topology) {
     case Topology::points:
-      return assemble_point(frame, draw, id, PrimitiveCorners<1>(frame, draw, p), emit_biased);
+      return assemble_point(frame, draw, id, flags, PrimitiveCorners<1>(frame, draw, p),
+                            emit_biased);
     case Topology::lines:
-      return assemble_line(frame, draw, id, PrimitiveCorners<2>(frame, draw, p), emit_biased);
+      return assemble_line(frame, draw, id, flags, PrimitiveCorners<2>(frame, draw, p),
+                           emit_biased);
     case Topology::triangles:
       break;
   }
-  return assemble_triangle(frame, draw, id, PrimitiveCorners<3>(frame, draw, p), emit_biased);
+  return assemble_triangle(frame, draw, id, flags, PrimitiveCorners<3>(frame, draw, p),
+                           emit_biased);
 }
 
 }  // namespace rastrum::raster

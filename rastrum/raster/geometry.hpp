@@ -52,7 +52,10 @@ struct Draw {
   std::uint64_t primitive_count = 0;
   Topology topology = Topology::triangles;
   std::uint32_t flags = 0;  ///< of its pieces
-  Cull cull = Cull::none;   ///< which faces of triangles are left out
+  /// Flags by material, so that a mesh of several needs no draw for each: triangle t has those of
+  /// material_flags[face_materials[t]] too. Both or none.
+  std::span<const std::uint32_t> face_materials, material_flags;
+  Cull cull = Cull::none;  ///< which faces of triangles are left out
   Winding winding = Winding::counter_clockwise;
   float line_width = 1;  ///< px across the minor axis, rounded to a whole number of at least 1
   float point_size = 1;  ///< px, in n.8; less than 1 counts as 1
@@ -69,6 +72,11 @@ struct Draw {
     const std::size_t i = static_cast<std::size_t>(primitive) * static_cast<std::size_t>(topology) +
                           static_cast<std::size_t>(corner);
     return indices.empty() ? static_cast<std::uint32_t>(i) : indices[i];
+  }
+  [[nodiscard]] std::uint32_t flags_of(std::uint64_t primitive) const {
+    return material_flags.empty()
+               ? flags
+               : flags | material_flags[face_materials[static_cast<std::size_t>(primitive)]];
   }
   /// What the winding makes of `cull`, for counter-clockwise fronts.
   [[nodiscard]] Cull effective_cull() const {

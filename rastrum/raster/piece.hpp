@@ -28,7 +28,7 @@ RASTRUM_HD constexpr std::uint64_t id_of_word(std::uint64_t word) {
 struct alignas(16) Piece {
   std::int32_t x[3], y[3];  ///< n.8, inside the guard band, but for what is said to be in pixels
   float z0, zx, zy;         ///< depth at vertex 0 and its change per px
-  std::uint32_t flags;      ///< kTested, kLine or kPoint, the width of a line
+  std::uint32_t flags;      ///< kTested, kTranslucent, kLine or kPoint, the width of a line
   std::uint64_t low;        ///< the word's low part: kIdMask − id
 };
 static_assert(sizeof(Piece) == 48);
@@ -38,7 +38,7 @@ inline constexpr std::uint32_t kTested = 1;
 /// What the piece is; neither: a triangle.
 inline constexpr std::uint32_t kLine = 2, kPoint = 4;
 inline constexpr int kLineWidthShift = 16;
-/// Fragments of this piece are blended with what lies behind them (transparency/).
+/// Fragments of this piece are blended: alpha is the shader's to say.
 inline constexpr std::uint32_t kTranslucent = 8;
 
 RASTRUM_HD inline bool is_triangle(const Piece& p) {
@@ -50,9 +50,10 @@ RASTRUM_HD inline bool is_triangle(const Piece& p) {
 struct BinFragment {
   std::uint64_t word;
   std::uint32_t bin;
-  std::uint32_t pixel;  ///< within the bin: 64 · block + 8 · row + column; kTranslucentFragment
+  std::uint32_t pixel;  ///< within the bin: 64 · block + 8 · row + column, and kTranslucentFragment
 };
-inline constexpr std::uint32_t kTranslucentFragment = 1U << 16;  ///< of a translucent piece
+/// In BinFragment::pixel: the fragment of a translucent piece.
+inline constexpr std::uint32_t kTranslucentFragment = 1U << 16;
 inline constexpr int kMicroSize = 4;
 
 /// An 8 × 8 block of the screen with the samples that a piece covers: bit 8 · row + column.

@@ -117,6 +117,12 @@ void check_draw(const Draw& draw) {
           "a draw's point size must be > 0 and at most 4096 px");
   require(std::isfinite(draw.depth_bias) && std::isfinite(draw.depth_bias_slope),
           "a draw's depth bias must be finite");
+  if (draw.material_flags.empty()) return;
+  require(draw.face_materials.size() >= draw.primitive_count,
+          "a draw with flags by material has fewer face materials than primitives");
+  require(std::all_of(draw.face_materials.begin(), draw.face_materials.end(),
+                      [&](std::uint32_t m) { return m < draw.material_flags.size(); }),
+          "a draw's face material is out of range");
 }
 
 }  // namespace

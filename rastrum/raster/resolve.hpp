@@ -23,7 +23,8 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept;
 
 /// Numbers the primitives (from `first_id`) and vertices of the draws and returns the totals.
 /// Throws Error{invalid_argument} if there are more primitives than ids, and for a line width,
-/// point size or depth bias out of range.
+/// point size, depth bias or face material out of range. O(draws), and O(primitives) of those with
+/// flags by material.
 struct Totals {
   std::uint64_t primitives = 0;
   std::size_t vertices = 0;

@@ -41,6 +41,14 @@ SetupOutput all_slow(const Draw& draw, std::uint64_t first, std::uint32_t count,
   return out;
 }
 
+/// How many of the `count` primitives from `first` on have the flags of the first.
+std::uint32_t equal_flags(const Draw& draw, std::uint64_t first, std::uint32_t count) {
+  if (draw.material_flags.empty()) return count;
+  std::uint32_t n = 1;
+  while (n < count && draw.flags_of(first + n) == draw.flags_of(first)) ++n;
+  return n;
+}
+
 }  // namespace
 
 bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces& pieces,
@@ -53,8 +61,10 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
   for (std::uint64_t id = first; id < last;) {
     const Draw& draw = geometry.draw_of(id);
     const std::uint64_t t = id - draw.first_id;
-    const auto count = static_cast<std::uint32_t>(
-        std::min({std::uint64_t{kSetupBatch}, last - id, draw.primitive_count - t}));
+    const std::uint32_t count = equal_flags(
+        draw, t,
+        static_cast<std::uint32_t>(
+            std::min({std::uint64_t{kSetupBatch}, last - id, draw.primitive_count - t})));
     SetupInput input;
     input.first = t;
     input.count = count;
@@ -70,7 +80,7 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
       input.first = 0;
       input.first_id = id;
     }
-    input.flags = draw.flags;
+    input.flags = draw.flags_of(t);
     input.cull = draw.effective_cull();
     input.view = image;
     input.bin_columns = static_cast<std::uint32_t>((geometry.width + kBinSize - 1) / kBinSize);

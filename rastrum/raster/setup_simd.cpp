@@ -266,17 +266,17 @@ HWY_INLINE std::uint32_t write_fragments(const Piece p, std::uint32_t mask, cons
                                          BinFragment* out) {
   const int first_x = (min3(p.x[0], p.x[1], p.x[2]) + kHalfPixel - 1) >> kSubpixelBits;
   const int first_y = (min3(p.y[0], p.y[1], p.y[2]) + kHalfPixel - 1) >> kSubpixelBits;
-  const std::uint32_t kind = (in.flags & kTranslucent) != 0 ? kTranslucentFragment : 0;
+  const std::uint32_t translucent = (p.flags & kTranslucent) != 0 ? kTranslucentFragment : 0;
   std::uint32_t n = 0;
   for (; mask != 0; mask &= mask - 1) {
     const int sample = std::countr_zero(mask);
     const int x = first_x + sample % kMicroSize, y = first_y + sample / kMicroSize;
     if (x < in.view.x0 || x >= in.view.x1 || y < in.view.y0 || y >= in.view.y1) continue;
     const auto ux = static_cast<std::uint32_t>(x), uy = static_cast<std::uint32_t>(y);
-    out[n++] = {
-        make_word(depth_at(p, x, y), p.low), uy / kBinSize * in.bin_columns + ux / kBinSize,
-        kind | ((uy % kBinSize / kBlockSize * kBlocksPerBinRow + ux % kBinSize / kBlockSize) * 64 +
-                uy % kBlockSize * kBlockSize + ux % kBlockSize)};
+    out[n++] = {make_word(depth_at(p, x, y), p.low), uy / kBinSize * in.bin_columns + ux / kBinSize,
+                ((uy % kBinSize / kBlockSize * kBlocksPerBinRow + ux % kBinSize / kBlockSize) * 64 +
+                 uy % kBlockSize * kBlockSize + ux % kBlockSize) |
+                    translucent};
   }
   return n;
 }

@@ -165,7 +165,8 @@ FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const 
   sources.reserve(scene.instances.size());
   std::vector<raster::Draw> draws;
   draws.reserve(scene.instances.size());
-  bool any_mask = false;
+  const std::vector<std::uint32_t> material_flags = raster::material_flags(scene.materials);
+  std::uint32_t any_flags = 0;
   for (const InstanceView& instance : scene.instances) {
     sources.emplace_back(instance.mesh.positions, to_clip * instance.object_to_world);
     raster::Draw& draw = draws.emplace_back();
@@ -174,10 +175,9 @@ FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const 
     draw.indices = instance.mesh.indices;
     draw.primitive_count = instance.mesh.triangle_count();
     draw.cull = material_cull(instance, scene.materials, o.shader);
-    if (!raster::has_mask(instance.mesh, scene.materials)) continue;
-    draw.flags |= raster::kTested;
-    any_mask = true;
+    any_flags |= raster::set_material_flags(draw, instance.mesh, material_flags);
   }
+  const bool any_mask = (any_flags & raster::kTested) != 0;
   const bool shades_materials = o.shader == Shader::material;
   std::optional<raster::MaterialScene> materials;
   std::unique_ptr<raster::FragmentTest> test;

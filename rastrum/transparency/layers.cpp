@@ -164,7 +164,7 @@ class LayersRegion final : public raster::Region {
       while (end < fragments.size() && is_opaque(fragments[end])) ++end;
       if (end > i) opaque_->fragments(fragments.subspan(i, end - i));
       for (; end < fragments.size() && !is_opaque(fragments[end]); ++end) {
-        const std::uint32_t pixel = fragments[end].pixel & (raster::kTranslucentFragment - 1);
+        const std::uint32_t pixel = fragments[end].pixel & ~raster::kTranslucentFragment;
         const auto block = static_cast<int>(pixel / 64);
         micro_.add({fragments[end].word,
                     static_cast<std::uint32_t>(block / raster::kBlocksPerBinRow * columns_ +

@@ -24,14 +24,35 @@ class AlphaTest final : public FragmentTest {
 
 }  // namespace
 
-bool has_mask(const MeshView& mesh, std::span<const Material> materials) {
-  const auto is_mask = [&](std::uint32_t m) { return materials[m].alpha_mode == AlphaMode::mask; };
-  if (std::none_of(materials.begin(), materials.end(),
-                   [](const Material& m) { return m.alpha_mode == AlphaMode::mask; }))
-    return false;
-  if (mesh.face_materials.empty()) return is_mask(mesh.material);
-  const auto faces = mesh.face_materials.first(mesh.triangle_count());
-  return std::any_of(faces.begin(), faces.end(), is_mask);
+std::vector<std::uint32_t> material_flags(std::span<const Material> materials) {
+  std::vector<std::uint32_t> flags;
+  flags.reserve(materials.size());
+  for (const Material& m : materials)
+    flags.push_back(m.alpha_mode == AlphaMode::mask ? kTested : 0U);
+  return flags;
+}
+
+std::uint32_t set_material_flags(Draw& draw, const MeshView& mesh,
+                                 std::span<const std::uint32_t> flags) {
+  if (flags.empty()) return 0;
+  std::uint32_t any = 0, all = ~0U;
+  if (mesh.face_materials.empty()) {
+    any = all = flags[mesh.material];
+  } else if (std::equal(flags.begin() + 1, flags.end(), flags.begin())) {
+    any = all = flags.front();
+  } else {
+    for (const std::uint32_t m : mesh.face_materials.first(mesh.triangle_count())) {
+      any |= flags[m];
+      all &= flags[m];
+    }
+  }
+  if (any != all) {
+    draw.face_materials = mesh.face_materials;
+    draw.material_flags = flags;
+  } else {
+    draw.flags |= any;
+  }
+  return any;
 }
 
 std::unique_ptr<FragmentTest> make_alpha_test(const MaterialScene& scene, Isa isa) {
