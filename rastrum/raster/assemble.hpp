@@ -40,15 +40,19 @@ struct PrimitiveCorners {
 
 template <class Emit>
 Fate assemble_triangle(const FrameGeometry& frame, const Draw& draw, std::uint64_t id,
-                       std::uint32_t flags, const PrimitiveCorners<3>& c, Emit&& emit) {
+                       std::uint32_t flags, const PrimitiveCorners<3>& c, SampleOffset at,
+                       Emit&& emit) {
   if (!c.finite) return Fate::dropped;
   const Rect view{0, 0, frame.width, frame.height};
   const Cull cull = draw.effective_cull();
   Piece piece;
+  const auto make = [&](const ProjectedVertex& v0, const ProjectedVertex& v1,
+                        const ProjectedVertex& v2, Cull side) {
+    return make_piece(moved(v0, at), moved(v1, at), moved(v2, at), id, flags, side, view, piece);
+  };
   if (!c.needs_clip) {
     const auto& v = c.projected;
-    if (make_piece(v[0], v[1], v[2], id, flags, cull, view, piece) == SetupResult::culled)
-      return Fate::culled;
+    if (make(v[0], v[1], v[2], cull) == SetupResult::culled) return Fate::culled;
     emit(piece);
     return Fate::drawn;
   }
@@ -61,8 +65,8 @@ Fate assemble_triangle(const FrameGeometry& frame, const Draw& draw, std::uint64
   const Cull other_side = facing > 0 ? Cull::back : Cull::front;
   bool any = false;
   for (int i = 2; i < polygon.size; ++i)
-    if (make_piece(polygon.vertices[0], polygon.vertices[i - 1], polygon.vertices[i], id, flags,
-                   other_side, view, piece) == SetupResult::drawn) {
+    if (make(polygon.vertices[0], polygon.vertices[i - 1], polygon.vertices[i], other_side) ==
+        SetupResult::drawn) {
       emit(piece);
       any = true;
     }
@@ -95,13 +99,13 @@ Fate assemble_point(const FrameGeometry& frame, const Draw& draw, std::uint64_t 
   return Fate::drawn;
 }
 
-/// Calls emit(piece) for each piece of primitive `p` of `draw`; says what became of it (`clipped`
-/// ones are drawn too). Indices must be in range.
+/// Calls emit(piece) for each piece of primitive `p` of `draw` at sample `sample`, which lies at
+/// `at`; says what became of it (`clipped` ones are drawn too). Indices must be in range.
 template <class Emit>
-Fate assemble_primitive(const FrameGeometry& frame, const Draw& draw, std::uint64_t p,
-                        Emit&& emit) {
+Fate assemble_primitive(const FrameGeometry& frame, const Draw& draw, std::uint64_t p, Emit&& emit,
+                        std::uint32_t sample = 0, SampleOffset at = {}) {
   const std::uint64_t id = draw.first_id + p;
-  const std::uint32_t flags = draw.flags_of(p);
+  const std::uint32_t flags = draw.flags_of(p) | sample << kSampleShift;
   const auto emit_biased = [&](Piece& piece) {
     add_depth_bias(piece, draw.depth_bias, draw.depth_bias_slope);
     emit(std::as_const(piece));
@@ -116,7 +120,7 @@ Fate assemble_primitive(const FrameGeometry& frame, const Draw& draw, std::uint6
     case Topology::triangles:
       break;
   }
-  return assemble_triangle(frame, draw, id, flags, PrimitiveCorners<3>(frame, draw, p),
+  return assemble_triangle(frame, draw, id, flags, PrimitiveCorners<3>(frame, draw, p), at,
                            emit_biased);
 }
 

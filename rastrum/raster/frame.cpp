@@ -63,11 +63,13 @@ void Emitter::flush() {
     if (!frame_.request.targets.overdraw.empty())
       count_overdraw(frame_.request.targets.overdraw, blocks);
   }
-  if (frame_.request.test != nullptr) {
+  // With several samples a pixel a triangle is tested once a pixel, by who resolves them.
+  if (frame_.request.test != nullptr && frame_.request.samples == 1) {
     blocks = keep(blocks, [&](const Block& b) {
       const Piece& piece = pieces_[b.piece];
-      return (piece.flags & kTested) == 0 ? b.mask
-                                          : frame_.request.test->test(frame_.geometry, piece, b);
+      return (piece.flags & kTested) == 0
+                 ? b.mask
+                 : frame_.request.test->test(frame_.geometry, piece, b, nullptr);
     });
   }
   if (!blocks.empty()) region_.blocks(chunk_, pieces_, blocks);

@@ -13,6 +13,7 @@
 #include <rastrum/raster/options.hpp>
 #include <rastrum/raster/piece.hpp>
 #include <rastrum/raster/projection.hpp>
+#include <rastrum/raster/samples.hpp>
 
 namespace rastrum::raster {
 
@@ -121,18 +122,21 @@ struct FrameGeometry {
 class FragmentTest {
  public:
   virtual ~FragmentTest() = default;
-  /// The subset of `block.mask` that is kept.
+  /// The subset of `block.mask` that is kept. `points`: where in their pixels the fragments are;
+  /// null: at the centres.
   [[nodiscard]] virtual std::uint64_t test(const FrameGeometry& frame, const Piece& piece,
-                                           const Block& block) const noexcept = 0;
+                                           const Block& block,
+                                           const ShadingPoints* points) const noexcept = 0;
 };
 
 /// The visible surface of an 8 × 8 block: a word per sample.
 struct VisibleBlock {
-  const std::uint64_t* words = nullptr;  ///< 64, element 8 · row + column
-  std::uint64_t covered = 0;             ///< samples that hold a surface and lie in the image
-  int x0 = 0, y0 = 0;                    ///< first pixel
-  void* scratch = nullptr;               ///< the shader's, zeroed when a thread begins a frame
-  BlockColors* extra = nullptr;          ///< its further outputs; null: not wanted
+  const std::uint64_t* words = nullptr;   ///< 64, element 8 · row + column
+  std::uint64_t covered = 0;              ///< samples that hold a surface and lie in the image
+  int x0 = 0, y0 = 0;                     ///< first pixel
+  void* scratch = nullptr;                ///< the shader's, zeroed when a thread begins a frame
+  BlockColors* extra = nullptr;           ///< its further outputs; null: not wanted
+  const ShadingPoints* points = nullptr;  ///< where in their pixels; null: at the centres
 };
 
 /// How many outputs a shader may have beside its colour.
@@ -169,6 +173,7 @@ struct FrameRequest {
   std::uint64_t texture_bytes = 0;  ///< that a memory limit counts beside the frame's own
   bool hierarchical_z = true;
   TransparencyOptions transparency;  ///< for a visibility that keeps layers
+  int samples = 1;                   ///< a pixel; more want a visibility that keeps layers
 };
 
 }  // namespace rastrum::raster

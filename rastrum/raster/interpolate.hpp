@@ -107,11 +107,12 @@ inline WeightPlanes weight_planes(const FrameGeometry& frame, const Draw& draw,
   return w;
 }
 
-/// At the sample of pixel (x, y). Snapping may put a sample a little outside of a clipped
-/// triangle's exact shape, where thin ones would extrapolate wildly; so weights are cut to [0, 1].
-inline Weights weights_at(const WeightPlanes& w, int x, int y) {
-  const double dx = x + 0.5 - w.x0;
-  const double dy = y + 0.5 - w.y0;
+/// At a point of pixel (x, y), `from_centre` px from its centre. Snapping may put a sample a little
+/// outside of a clipped triangle's exact shape, where thin ones would extrapolate wildly; so
+/// weights are cut to [0, 1].
+inline Weights weights_at(const WeightPlanes& w, int x, int y, Vec2 from_centre = {0, 0}) {
+  const double dx = x + 0.5 + static_cast<double>(from_centre.x) - w.x0;
+  const double dy = y + 0.5 + static_cast<double>(from_centre.y) - w.y0;
   Weights result;
   double sum = 0, sum_dx = 0, sum_dy = 0;
   for (int i = 0; i < 3; ++i) {
@@ -137,6 +138,7 @@ inline Weights weights_at(const WeightPlanes& w, int x, int y) {
 /// What a scalar shader knows about a fragment.
 struct Fragment {
   int x = 0, y = 0;
+  Vec2 from_centre{0, 0};  ///< where in the pixel it is shaded, px
   float depth = 0;
   std::uint64_t id = 0;        ///< primitive in submission order
   std::uint64_t triangle = 0;  ///< or line or point, within its draw
@@ -154,8 +156,10 @@ class FragmentLocator {
  public:
   explicit FragmentLocator(const FrameGeometry& frame) : frame_(frame) {}
 
-  /// The fragment of primitive `id` at pixel (x, y). Valid until the next call.
-  const Fragment& locate(std::uint64_t id, int x, int y) {
+  /// The fragment of primitive `id` at sample i of a block that begins at pixel (x0, y0); `points`
+  /// as in VisibleBlock. Valid until the next call.
+  const Fragment& locate(std::uint64_t id, int x0, int y0, int i, const ShadingPoints* points) {
+    const int x = x0 + i % kBlockSize, y = y0 + i / kBlockSize;
     if (id != fragment_.id || fragment_.planes == nullptr) {
       const Draw& draw = frame_.draw_of(id);
       square_px_ = 0;
@@ -180,7 +184,8 @@ class FragmentLocator {
     }
     fragment_.x = x;
     fragment_.y = y;
-    fragment_.weights = weights_at(planes_, x, y);
+    fragment_.from_centre = points == nullptr ? Vec2{0, 0} : Vec2{points->dx[i], points->dy[i]};
+    fragment_.weights = weights_at(planes_, x, y, fragment_.from_centre);
     if (square_px_ > 0)
       fragment_.point = {static_cast<float>((x + 0.5 - planes_.x0) / square_px_),
                          static_cast<float>((y + 0.5 - planes_.y0) / square_px_)};
@@ -234,8 +239,7 @@ class FragmentShader final : public BlockShader {
     for (std::uint64_t rest = block.covered; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       const std::uint64_t word = block.words[i];
-      Fragment fragment =
-          locator.locate(id_of_word(word), block.x0 + i % kBlockSize, block.y0 + i / kBlockSize);
+      Fragment fragment = locator.locate(id_of_word(word), block.x0, block.y0, i, block.points);
       fragment.depth = std::bit_cast<float>(static_cast<std::uint32_t>(word >> kIdBits));
       opaque &= colors.set(i, f_(frame, fragment));
     }

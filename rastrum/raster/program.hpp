@@ -105,7 +105,7 @@ class Program final : public VertexSource, public BlockShader {
         mask |= std::uint64_t{(block.words[i] & kIdMask) == low} << i;
       }
       left &= ~mask;
-      for_each_fragment(frame, id_of_word(low), mask, block.x0, block.y0,
+      for_each_fragment(frame, id_of_word(low), mask, block.x0, block.y0, block.points,
                         [&](int i, const VaryingType& v, Fragment& fragment) {
                           fragment.depth = std::bit_cast<float>(
                               static_cast<std::uint32_t>(block.words[i] >> kIdBits));
@@ -148,12 +148,12 @@ class Program final : public VertexSource, public BlockShader {
     Test(const Program& program, Discard discard)
         : program_(program), discard_(std::move(discard)) {}
 
-    std::uint64_t test(const FrameGeometry& frame, const Piece& piece,
-                       const Block& block) const noexcept override {
+    std::uint64_t test(const FrameGeometry& frame, const Piece& piece, const Block& block,
+                       const ShadingPoints* points) const noexcept override {
       std::uint64_t kept = block.mask;
       if constexpr (kDiscards)
         program_.for_each_fragment(frame, id_of_word(piece.low), block.mask, block.bx * kBlockSize,
-                                   block.by * kBlockSize,
+                                   block.by * kBlockSize, points,
                                    [&](int i, const VaryingType& v, Fragment& fragment) {
                                      fragment.depth = depth_at(piece, fragment.x, fragment.y);
                                      if (discard_(v, std::as_const(fragment)))
@@ -170,7 +170,7 @@ class Program final : public VertexSource, public BlockShader {
   /// Calls f(bit, varying, fragment) for the fragments of primitive `id` in `mask`.
   template <class F>
   void for_each_fragment(const FrameGeometry& frame, std::uint64_t id, std::uint64_t mask, int x0,
-                         int y0, F&& f) const {
+                         int y0, const ShadingPoints* points, F&& f) const {
     FragmentLocator locator(frame);
     const Draw& draw = frame.draw_of(id);
     const auto varying = [&](int corner) {
@@ -179,7 +179,7 @@ class Program final : public VertexSource, public BlockShader {
     const auto each = [&](auto&& interpolate) {
       for (std::uint64_t m = mask; m != 0; m &= m - 1) {
         const int i = std::countr_zero(m);
-        Fragment fragment = locator.locate(id, x0 + i % kBlockSize, y0 + i / kBlockSize);
+        Fragment fragment = locator.locate(id, x0, y0, i, points);
         const auto& b = fragment.weights.b;
         const float weight[3] = {static_cast<float>(b[0]), static_cast<float>(b[1]),
                                  static_cast<float>(b[2])};

@@ -27,7 +27,7 @@ void draw_piece(const FrameRequest& request, const FrameGeometry& frame, const P
                                   << (y % kBlockSize * kBlockSize + x % kBlockSize);
         const Block block{0, static_cast<std::uint16_t>(x / kBlockSize),
                           static_cast<std::uint16_t>(y / kBlockSize), bit};
-        if (request.test->test(frame, piece, block) == 0) continue;
+        if (request.test->test(frame, piece, block, nullptr) == 0) continue;
       }
       std::uint64_t& word = words(x, y);
       word = std::max(word, make_word(depth_at(piece, x, y), piece.low));

@@ -1,6 +1,7 @@
 #include <rastrum/raster/set_up.hpp>
 
 #include <algorithm>
+#include <bitset>
 
 #include <rastrum/raster/assemble.hpp>
 #include <rastrum/raster/resolve.hpp>
@@ -11,22 +12,45 @@ namespace {
 /// Triangles of a task: what it makes stays in a core's L2 cache.
 constexpr std::uint64_t kGroup = 4096;
 
-/// The corners of a batch, for frames that keep no projected vertices.
+/// The corners of a batch, for frames that keep no projected vertices or have several samples a
+/// pixel.
 struct Corners {
   std::uint32_t indices[kSetupBatch * 3];
   ProjectedVertex vertices[kSetupBatch * 3];
+  SampleOffset seen_from;
 
   /// Returns whether all indices are in range.
-  bool project(const FrameGeometry& frame, const Draw& draw, std::uint64_t t, std::uint32_t count) {
+  bool load(const FrameGeometry& frame, const Draw& draw, std::uint64_t t, std::uint32_t count) {
     for (std::uint32_t i = 0; i < count; ++i)
       for (int c = 0; c < 3; ++c) {
         const std::uint32_t index = draw.vertex(t + i, c);
         if (index >= draw.vertex_count) return false;
         indices[i * 3 + static_cast<std::uint32_t>(c)] = index;
       }
-    draw.source->project_indexed({indices, count * 3}, frame.viewport, frame.isa, vertices);
+    seen_from = {};
+    if (frame.projected == nullptr)
+      draw.source->project_indexed({indices, count * 3}, frame.viewport, frame.isa, vertices);
+    else
+      for (std::uint32_t i = 0; i < count * 3; ++i)
+        vertices[i] = frame.projected[draw.first_vertex + indices[i]];
     return true;
   }
+  void see_from(SampleOffset at, std::uint32_t count) {
+    const SampleOffset by{at.x - seen_from.x, at.y - seen_from.y};
+    for (std::uint32_t i = 0; i < count * 3; ++i)
+      if (vertices[i].x_fx8 != kNeedsClip) vertices[i] = moved(vertices[i], by);
+    seen_from = at;
+  }
+};
+
+/// Which triangles of a batch some sample of a pixel sees.
+class SeenTriangles {
+ public:
+  void add(std::uint64_t i) { seen_[i] = true; }
+  [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(seen_.count()); }
+
+ private:
+  std::bitset<kSetupBatch> seen_;
 };
 
 /// Leaves primitives [first, first + count) to assemble_primitive, which wants indices in range.
@@ -55,6 +79,8 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
             MicroSink* micro) {
   const FrameGeometry& geometry = frame.geometry;
   const Rect image{0, 0, geometry.width, geometry.height};
+  const std::span<const SampleOffset> samples = sample_offsets(frame.request.samples);
+  if (samples.size() > 1) micro = nullptr;
   std::uint32_t slow[kSetupBatch];
   Corners corners;
 
@@ -69,43 +95,63 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
     input.first = t;
     input.count = count;
     input.first_id = draw.first_id;
-    if (geometry.projected != nullptr) {
+    if (geometry.projected != nullptr && samples.size() == 1) {
       input.indices = draw.indices.empty() ? nullptr : draw.indices.data();
       input.vertices = geometry.projected + draw.first_vertex;
       input.vertex_count = draw.vertex_count;
     } else if (draw.has_kernel()) {
-      if (!corners.project(geometry, draw, t, count)) return false;
+      if (!corners.load(geometry, draw, t, count)) return false;
       input.vertices = corners.vertices;
       input.vertex_count = std::size_t{count} * 3;
       input.first = 0;
       input.first_id = id;
     }
-    input.flags = draw.flags_of(t);
     input.cull = draw.effective_cull();
     input.view = image;
     input.bin_columns = static_cast<std::uint32_t>((geometry.width + kBinSize - 1) / kBinSize);
     input.micro = micro != nullptr;
 
-    pieces.data.grow(std::size_t{pieces.count} + kSetupBatch, pieces.count);
-    BinFragment* const fragments =
-        micro == nullptr ? nullptr : micro->room(kSetupBatch * kMicroSize * kMicroSize);
-    const SetupOutput out =
-        draw.has_kernel()
-            ? frame.kernel.setup(input, pieces.data.data() + pieces.count, fragments, slow)
-            : all_slow(draw, t, count, slow);
-    if (!out.index_in_range) return false;
-    pieces.count += out.pieces;
-    if (micro != nullptr) micro->written(out.fragments);
-    pieces.triangles.culled += count - out.pieces - out.micro - out.slow;
-    for (std::uint32_t s = 0; s < out.slow; ++s) {
-      const Fate fate = assemble_primitive(geometry, draw, t + slow[s], [&](const Piece& piece) {
-        pieces.data.grow(std::size_t{pieces.count} + 1, pieces.count);
-        pieces.data[pieces.count++] = piece;
-      });
-      pieces.triangles.dropped += fate == Fate::dropped;
-      pieces.triangles.culled += fate == Fate::culled;
-      pieces.triangles.clipped += fate == Fate::clipped;
+    SeenTriangles seen;
+    FrameStats::Triangles slow_ones;
+    for (std::uint32_t sample = 0; sample < samples.size(); ++sample) {
+      const SampleOffset at = samples[sample];
+      input.flags = draw.flags_of(t) | sample << kSampleShift;
+      if (samples.size() > 1 && draw.has_kernel()) corners.see_from(at, count);
+      pieces.data.grow(std::size_t{pieces.count} + kSetupBatch, pieces.count);
+      BinFragment* const fragments =
+          micro == nullptr ? nullptr : micro->room(kSetupBatch * kMicroSize * kMicroSize);
+      const SetupOutput out =
+          draw.has_kernel()
+              ? frame.kernel.setup(input, pieces.data.data() + pieces.count, fragments, slow)
+              : all_slow(draw, t, count, slow);
+      if (!out.index_in_range) return false;
+      const std::uint32_t first_piece = pieces.count;
+      pieces.count += out.pieces;
+      if (micro != nullptr) micro->written(out.fragments);
+      slow_ones = {};
+      std::uint32_t slow_culled = 0;
+      for (std::uint32_t k = 0; k < out.slow; ++k) {
+        const Fate fate = assemble_primitive(
+            geometry, draw, t + slow[k],
+            [&](const Piece& piece) {
+              pieces.data.grow(std::size_t{pieces.count} + 1, pieces.count);
+              pieces.data[pieces.count++] = piece;
+            },
+            sample, at);
+        slow_ones.dropped += fate == Fate::dropped;
+        slow_ones.clipped += fate == Fate::clipped;
+        slow_culled += fate == Fate::culled;
+      }
+      if (samples.size() == 1) {
+        pieces.triangles.culled += count - out.pieces - out.micro - out.slow + slow_culled;
+        continue;
+      }
+      for (std::uint32_t k = first_piece; k < pieces.count; ++k)
+        seen.add(kIdMask - pieces.data[k].low - id);
     }
+    if (samples.size() > 1) pieces.triangles.culled += count - seen.count() - slow_ones.dropped;
+    pieces.triangles.dropped += slow_ones.dropped;
+    pieces.triangles.clipped += slow_ones.clipped;
     id += count;
   }
   return true;

@@ -72,28 +72,33 @@ std::string why(const RenderOptions& options) {
   return text.empty() ? "as asked for" : text;
 }
 
-bool is_translucent(const raster::FrameRequest& request) {
-  return request.transparency.method != Transparency::none &&
-         std::ranges::any_of(request.draws, [](const raster::Draw& d) {
-           return (d.flags & raster::kTranslucent) != 0;
-         });
+/// Whether words are not enough: something is translucent, or pixels have several samples.
+bool needs_layers(const raster::FrameRequest& request) {
+  const auto is_translucent = [](const raster::Draw& d) {
+    std::uint32_t flags = d.flags;
+    for (const std::uint32_t of_material : d.material_flags) flags |= of_material;
+    return (flags & raster::kTranslucent) != 0;
+  };
+  return request.samples > 1 || (request.transparency.method != Transparency::none &&
+                                 std::ranges::any_of(request.draws, is_translucent));
 }
 
 /// Layers want a thread that owns a tile, and are a visibility themselves.
 void check_layers(const raster::CoverageRow& coverage, bool visibility_is_asked_for) {
   if (visibility_is_asked_for)
     throw Error(Errc::invalid_argument,
-                "something is translucent, and transparency resolves fragments in its own way: "
-                "leave the visibility to 'auto', or ask for transparency 'none'");
+                "transparency and several samples a pixel resolve fragments in their own way: "
+                "leave the visibility to 'auto'");
   if (coverage.owns_tiles) return;
   std::string owners;
   for (const raster::CoverageRow& row : raster::coverages())
     if (row.owns_tiles) owners.append(owners.empty() ? "" : ", ").append(row.name);
-  throw Error(Errc::invalid_argument,
-              std::string("something is translucent, and the rasterizer '")
-                  .append(coverage.name)
-                  .append("' keeps no tiles in which layers could be ordered; these do: ")
-                  .append(owners));
+  throw Error(
+      Errc::invalid_argument,
+      std::string("transparency and several samples a pixel need a rasterizer that keeps tiles; '")
+          .append(coverage.name)
+          .append("' does not, these do: ")
+          .append(owners));
 }
 
 DrawFrame make_reference(const RenderOptions& options, MemoryAccount& memory) {
@@ -149,12 +154,12 @@ DrawFrame make_rasterizer(const RenderOptions& options, MemoryAccount& memory,
   const bool is_asked_for = options.visibility != "auto";
   return [rasterizer = make(visibility), layered = std::shared_ptr<raster::Rasterizer>(), make,
           &coverage, is_asked_for, why = why(options)](raster::FrameRequest& request) mutable {
-    const bool blends = is_translucent(request);
-    if (blends) {
+    const bool layers = needs_layers(request);
+    if (layers) {
       check_layers(coverage, is_asked_for);
       if (!layered) layered = make(transparency::layers());
     }
-    FrameStats stats = (blends ? layered : rasterizer)->render(request);
+    FrameStats stats = (layers ? layered : rasterizer)->render(request);
     stats.why = why;
     return stats;
   };

@@ -253,6 +253,7 @@ FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::BlockShad
   request.texture_bytes = impl_->textures.bytes();
   request.hierarchical_z = o.hierarchical_z;
   request.transparency = o.transparency;
+  request.samples = o.samples;
   impl_->memory.restart_peak();
   FrameStats stats = impl_->draw_frame(request);
   stats.peak_bytes = impl_->memory.peak();

@@ -17,6 +17,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/raster/piece.hpp>
@@ -28,9 +29,13 @@ enum class LayerOrder : std::uint8_t {
   submission  ///< rising ids
 };
 
+/// `Owner`: what is kept beside each word, or NoOwner.
+struct NoOwner {};
+template <class Owner = NoOwner>
 class LayerLists {
  public:
-  explicit LayerLists(MemoryAccount& memory) : planes_(memory), masks_(memory), column_(memory) {}
+  explicit LayerLists(MemoryAccount& memory)
+      : planes_(memory), masks_(memory), owners_(memory), column_(memory) {}
 
   /// Begins a block. `filter`: over how many fragments an insertion looks back. `capacity`: most
   /// planes, at least 2.
@@ -55,7 +60,7 @@ class LayerLists {
   }
 
   /// Adds a fragment of pixel i. O(filter), O(log capacity) amortized where its list is full.
-  void insert(int i, std::uint64_t word) {
+  void insert(int i, std::uint64_t word, Owner owner = {}) {
     const std::uint64_t bit = std::uint64_t{1} << i;
     const std::uint64_t own = key(word);
     if ((wanted_ & bit) == 0 || own >= before_[i]) return;
@@ -65,16 +70,21 @@ class LayerLists {
     }
     if (counts_[i] == allocated_ && !grow()) {
       halve(i);
-      insert(i, word);
+      insert(i, word, owner);
       return;
     }
     const std::size_t n = counts_[i]++;
     masks_[n] |= bit;
     std::uint64_t* const column = planes_.data() + i;
+    [[maybe_unused]] Owner* const owners = owners_.data() + i;
     const std::size_t first = n > filter_ ? n - filter_ : 0;
     std::size_t k = n;
-    for (; k > first && key(column[(k - 1) * 64]) < own; --k) column[k * 64] = column[(k - 1) * 64];
+    for (; k > first && key(column[(k - 1) * 64]) < own; --k) {
+      column[k * 64] = column[(k - 1) * 64];
+      if constexpr (kOwned) owners[k * 64] = owners[(k - 1) * 64];
+    }
     column[k * 64] = word;
+    if constexpr (kOwned) owners[k * 64] = owner;
     if (k == first && first > 0 && key(column[(k - 1) * 64]) < own) misplaced_ |= bit;
   }
 
@@ -87,6 +97,8 @@ class LayerLists {
   [[nodiscard]] std::size_t depth() const { return *std::max_element(counts_, counts_ + 64); }
   /// 64 words; those outside of `mask` are of no fragment. 64-byte aligned.
   [[nodiscard]] const std::uint64_t* plane(std::size_t k) const { return planes_.data() + k * 64; }
+  /// 64 owners, likewise.
+  [[nodiscard]] const Owner* owners(std::size_t k) const { return owners_.data() + k * 64; }
   [[nodiscard]] std::uint64_t mask(std::size_t k) const { return masks_[k]; }
   /// Pixels where a fragment arrived behind the filter, in this window or an earlier one.
   [[nodiscard]] std::uint64_t misplaced() const { return misplaced_; }
@@ -104,6 +116,7 @@ class LayerLists {
     const std::size_t planes = std::min(capacity_, std::max<std::size_t>(16, allocated_ * 2));
     planes_.reserve(planes * 64, allocated_ * 64);
     masks_.reserve(planes, allocated_);
+    if constexpr (kOwned) owners_.reserve(planes * 64, allocated_ * 64);
     std::fill_n(masks_.data() + allocated_, planes - allocated_, 0U);
     allocated_ = planes;
     return true;
@@ -120,14 +133,29 @@ class LayerLists {
   }
   void sort_column(int i) {
     const std::size_t n = counts_[i];
+    const auto place = [i](std::size_t k) { return k * 64 + static_cast<std::size_t>(i); };
     column_.reserve(n);
-    for (std::size_t k = 0; k < n; ++k) column_[k] = plane(k)[i];
-    std::sort(column_.data(), column_.data() + n,
-              [this](std::uint64_t a, std::uint64_t b) { return key(a) > key(b); });
-    for (std::size_t k = 0; k < n; ++k) planes_[k * 64 + static_cast<std::size_t>(i)] = column_[k];
+    for (std::size_t k = 0; k < n; ++k) {
+      column_[k].word = planes_[place(k)];
+      if constexpr (kOwned) column_[k].owner = owners_[place(k)];
+    }
+    std::stable_sort(column_.data(), column_.data() + n,
+                     [this](const Entry& a, const Entry& b) { return key(a.word) > key(b.word); });
+    for (std::size_t k = 0; k < n; ++k) {
+      planes_[place(k)] = column_[k].word;
+      if constexpr (kOwned) owners_[place(k)] = column_[k].owner;
+    }
   }
 
-  Buffer<std::uint64_t> planes_, masks_, column_;
+  static constexpr bool kOwned = !std::is_same_v<Owner, NoOwner>;
+  struct Entry {
+    std::uint64_t word;
+    [[no_unique_address]] Owner owner;
+  };
+
+  Buffer<std::uint64_t> planes_, masks_;
+  Buffer<Owner> owners_;
+  Buffer<Entry> column_;
   std::size_t allocated_ = 0, capacity_ = 0, filter_ = 0;
   std::uint64_t order_mask_ = 0;
   std::uint32_t counts_[64] = {};

@@ -10,9 +10,7 @@
 #include <rastrum/transparency/layers.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
-#include <limits>
 #include <utility>
 
 #include <rastrum/parallel/mask.hpp>
@@ -21,6 +19,8 @@
 #include <rastrum/raster/visibility/atomic.hpp>
 #include <rastrum/transparency/blend.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
+#include <rastrum/transparency/records.hpp>
+#include <rastrum/transparency/sampled_block.hpp>
 
 namespace rastrum::transparency {
 namespace {
@@ -32,19 +32,6 @@ using raster::kBlockSize;
 using raster::Piece;
 using raster::Rect;
 
-/// A piece's part of a block.
-struct Record {
-  const Piece* piece;
-  std::uint64_t mask;
-  std::uint32_t block;  ///< within the region
-};
-/// A fragment of a micro triangle.
-struct MicroRecord {
-  std::uint64_t word;
-  std::uint32_t block;
-  std::uint32_t sample;
-};
-
 /// What `exact` looks back over before it leaves a pixel to the sort.
 constexpr std::size_t kExactFilter = 8;
 /// Up to so many pieces a block are not sorted: the insertion does it (paper 4: 3).
@@ -53,56 +40,6 @@ constexpr std::size_t kFewPieces = 3;
 constexpr std::size_t kMostPlanes = std::size_t{1} << 15;
 constexpr std::size_t kLeastPlanes = 64;
 
-/// Records in the order in which they were made, then by block, still in that order.
-template <class T>
-class ByBlock {
- public:
-  explicit ByBlock(MemoryAccount& memory) : records_(memory), sorted_(memory), begin_(memory) {}
-
-  void restart() { count_ = 0; }
-  void add(const T& record) {
-    records_.grow(count_ + 1, count_);
-    records_[count_++] = record;
-  }
-  [[nodiscard]] bool empty() const { return count_ == 0; }
-  [[nodiscard]] std::size_t size() const { return count_; }
-  /// Counting sort.
-  void sort(std::size_t blocks) {
-    sorted_.reserve(count_);
-    begin_.reserve(blocks + 2);
-    std::fill_n(begin_.data(), blocks + 2, 0U);
-    for (std::size_t i = 0; i < count_; ++i) ++begin_[records_[i].block + 2];
-    for (std::size_t b = 2; b < blocks + 2; ++b) begin_[b] += begin_[b - 1];
-    for (std::size_t i = 0; i < count_; ++i) sorted_[begin_[records_[i].block + 1]++] = records_[i];
-  }
-  [[nodiscard]] std::span<T> of(std::size_t block) {
-    return {sorted_.data() + begin_[block], begin_[block + 1] - begin_[block]};
-  }
-
- private:
-  Buffer<T> records_, sorted_;
-  Buffer<std::uint32_t> begin_;
-  std::size_t count_ = 0;
-};
-
-/// Depth at the mean of the samples: the first key of the sort.
-float centroid_depth(const Piece& piece, std::uint64_t mask, int bx, int by) {
-  const auto count = [&](std::uint64_t of) {
-    return static_cast<float>(parallel::popcount(mask & of));
-  };
-  const float n = count(~std::uint64_t{0});
-  const float x =
-      4 * count(0xF0F0F0F0F0F0F0F0U) + 2 * count(0xCCCCCCCCCCCCCCCCU) + count(0xAAAAAAAAAAAAAAAAU);
-  const float y =
-      4 * count(0xFFFFFFFF00000000U) + 2 * count(0xFFFF0000FFFF0000U) + count(0xFF00FF00FF00FF00U);
-  constexpr float kPx = 1.0F / raster::kSubpixels;
-  const float dx =
-      static_cast<float>(bx * kBlockSize) + 0.5F + x / n - static_cast<float>(piece.x[0]) * kPx;
-  const float dy =
-      static_cast<float>(by * kBlockSize) + 0.5F + y / n - static_cast<float>(piece.y[0]) * kPx;
-  return piece.z0 + piece.zx * dx + piece.zy * dy;
-}
-
 class LayersRegion final : public raster::Region {
  public:
   explicit LayersRegion(MemoryAccount& memory)
@@ -110,7 +47,8 @@ class LayersRegion final : public raster::Region {
         records_(memory),
         micro_(memory),
         keys_(memory),
-        lists_(memory) {}
+        lists_(memory),
+        sampled_(memory) {}
 
   void begin(const raster::RegionContext& context, const raster::SurfaceView& surface, Rect rect,
              std::size_t chunks) override {
@@ -121,6 +59,7 @@ class LayersRegion final : public raster::Region {
     opaque_->begin(context, surface, rect, chunks);
     records_.restart();
     micro_.restart();
+    samples_ = context.request->samples;
     const Targets& targets = context.request->targets;
     shader_ = targets.color8.empty() && targets.color.empty() ? nullptr : context.request->shader;
     const TransparencyOptions& options = context.request->transparency;
@@ -142,8 +81,9 @@ class LayersRegion final : public raster::Region {
 
   void blocks(std::size_t chunk, const Piece* pieces, std::span<const Block> blocks) override {
     for (std::size_t i = 0; i < blocks.size();) {
+      // With several samples a pixel the words of the surface are not enough for opaque ones.
       const auto is_opaque = [&](const Block& b) {
-        return (pieces[b.piece].flags & raster::kTranslucent) == 0;
+        return samples_ == 1 && (pieces[b.piece].flags & raster::kTranslucent) == 0;
       };
       std::size_t end = i;
       while (end < blocks.size() && is_opaque(blocks[end])) ++end;
@@ -175,19 +115,19 @@ class LayersRegion final : public raster::Region {
     }
   }
 
-  raster::DepthBounds* bounds() override { return opaque_->bounds(); }
+  raster::DepthBounds* bounds() override { return samples_ == 1 ? opaque_->bounds() : nullptr; }
 
   void collect(raster::Counters& counters) override {
     opaque_->collect(counters);
     const auto add = [&](std::string_view name, std::uint64_t& value) {
       raster::add_counter(counters, name, std::exchange(value, 0));
     };
-    add("translucent fragments", fragments_);
+    add("translucent fragments", totals_.fragments);
     add("layer blocks", layer_blocks_);
-    add("windows", windows_);
+    add("windows", totals_.windows);
     if (made_for_.method == Transparency::filter) add("wrong pixels", misplaced_);
     if (made_for_.method == Transparency::exact) add("repaired pixels", misplaced_);
-    raster::raise_counter(counters, "deepest", std::exchange(deepest_, 0));
+    raster::raise_counter(counters, "deepest", std::exchange(totals_.deepest, 0));
   }
 
  private:
@@ -212,12 +152,19 @@ class LayersRegion final : public raster::Region {
                      std::span<const MicroRecord> micro) {
     std::uint64_t* const words = surface_.block(bx, by);
     BlockColors& out = *surface_.colors_of(bx, by);
+    if (samples_ > 1) {
+      note(bx, by,
+           sampled_.resolve(context_, shader_, *blend_, records, bx, by, filter(), planes_,
+                            made_for_.method != Transparency::filter, words, out));
+      return;
+    }
     BlockColors& behind = records.empty() && micro.empty() ? out : behind_;
     shade_opaque(words, bx, by, behind);
     if (&behind == &out) return;
 
     const LayerOrder order = blend_->order();
     if (order == LayerOrder::depth && records.size() > kFewPieces) sort_by_depth(records, bx, by);
+    LayerCounts counts;
     std::uint64_t nearest[64];
     std::copy_n(words, 64, nearest);
     blend_->begin(behind);
@@ -236,13 +183,14 @@ class LayersRegion final : public raster::Region {
           finished |= blend_->layer({lists_.plane(k), mask, shade(lists_.plane(k), mask, bx, by)});
         }
         if (pass == 0) {
-          deepest_here_ += depth;
+          counts.deepest += depth;
           for (std::size_t k = 0; k < depth; ++k)
-            fragments_ += static_cast<std::uint64_t>(parallel::popcount(lists_.mask(k)));
+            counts.fragments += static_cast<std::uint64_t>(parallel::popcount(lists_.mask(k)));
         }
-      } while (lists_.next_window() && ++windows_ != 0);
-      if (pass == 0) note(bx, by);
+      } while (lists_.next_window() && ++counts.windows != 0);
+      counts.misplaced |= lists_.misplaced();
     }
+    note(bx, by, counts);
     blend_->finish(out);
     std::copy_n(nearest, 64, words);
   }
@@ -265,7 +213,7 @@ class LayersRegion final : public raster::Region {
       }
     }
     for (const MicroRecord& f : micro)
-      if (f.word > words[f.sample]) lists_.insert(static_cast<int>(f.sample), f.word);
+      if (f.word > words[f.pixel]) lists_.insert(static_cast<int>(f.pixel), f.word);
   }
 
   void sort_by_depth(std::span<Record> records, int bx, int by) {
@@ -308,14 +256,12 @@ class LayersRegion final : public raster::Region {
     }
   }
 
-  /// Counts what the lists of a block tell.
-  void note(int bx, int by) {
-    deepest_ = std::max(deepest_, std::exchange(deepest_here_, 0));
-    const std::uint64_t wrong = lists_.misplaced();
-    misplaced_ += static_cast<std::uint64_t>(parallel::popcount(wrong));
+  void note(int bx, int by, const LayerCounts& counts) {
+    totals_.add(counts);
+    misplaced_ += static_cast<std::uint64_t>(parallel::popcount(counts.misplaced));
     const ImageView<std::uint8_t>& errors = context_.request->targets.errors;
     if (errors.empty()) return;
-    for (std::uint64_t m = wrong; m != 0; m &= m - 1) {
+    for (std::uint64_t m = counts.misplaced; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
       errors(bx * kBlockSize + i % kBlockSize, by * kBlockSize + i / kBlockSize) = 255;
     }
@@ -332,6 +278,7 @@ class LayersRegion final : public raster::Region {
   int columns_ = 0;
   const raster::BlockShader* shader_ = nullptr;
   std::size_t planes_ = 0;
+  int samples_ = 1;
 
   std::unique_ptr<Region> opaque_;
   std::unique_ptr<LayerBlend> blend_;
@@ -340,10 +287,11 @@ class LayersRegion final : public raster::Region {
   ByBlock<Record> records_;
   ByBlock<MicroRecord> micro_;
   Buffer<Key> keys_;
-  LayerLists lists_;
+  LayerLists<> lists_;
+  SampledBlock sampled_;
   BlockColors behind_, colors_;
-  std::uint64_t fragments_ = 0, layer_blocks_ = 0, deepest_ = 0, deepest_here_ = 0, windows_ = 0,
-                misplaced_ = 0;
+  LayerCounts totals_;
+  std::uint64_t layer_blocks_ = 0, misplaced_ = 0;
 };
 
 std::unique_ptr<raster::Region> make_layers(raster::Sharing, MemoryAccount& memory) {

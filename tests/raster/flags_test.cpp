@@ -27,7 +27,8 @@ constexpr int kWidth = 150, kHeight = 100;
 class DropsAll final : public raster::FragmentTest {
  public:
   std::uint64_t test(const raster::FrameGeometry&, const raster::Piece&,
-                     const raster::Block&) const noexcept override {
+                     const raster::Block&,
+                     const raster::ShadingPoints*) const noexcept override {
     return 0;
   }
 };

@@ -100,7 +100,8 @@ TEST_P(Passes, EqualOneDraw) {
 class Sieve final : public raster::FragmentTest {
  public:
   std::uint64_t test(const raster::FrameGeometry&, const raster::Piece& piece,
-                     const raster::Block& block) const noexcept override {
+                     const raster::Block& block,
+                     const raster::ShadingPoints*) const noexcept override {
     std::uint64_t h = piece.low * 0x9E3779B97F4A7C15U + block.bx * 0xBF58476D1CE4E5B9U +
                       block.by * 0x94D049BB133111EBU;
     h = (h ^ (h >> 31)) * 0xBF58476D1CE4E5B9U;

@@ -11,8 +11,8 @@ class AlphaTest final : public FragmentTest {
  public:
   AlphaTest(const MaterialScene& scene, Isa isa) : scene_(scene), kernels_(material_kernels(isa)) {}
 
-  std::uint64_t test(const FrameGeometry& frame, const Piece& piece,
-                     const Block& block) const noexcept override {
+  std::uint64_t test(const FrameGeometry& frame, const Piece& piece, const Block& block,
+                     const ShadingPoints*) const noexcept override {
     return kernels_.alpha_test(scene_, frame, id_of_word(piece.low), block.mask,
                                block.bx * kBlockSize, block.by * kBlockSize);
   }

@@ -33,7 +33,8 @@ float wire(const Fragment& f) {
   double nearest = 1e9;
   for (int i = 0; i < 3; ++i) {
     const WeightPlanes& w = *f.planes;
-    const double b = w.r[i] + w.p[i] * (f.x + 0.5 - w.x0) + w.q[i] * (f.y + 0.5 - w.y0);
+    const double b = w.r[i] + w.p[i] * (f.x + 0.5 + static_cast<double>(f.from_centre.x) - w.x0) +
+                     w.q[i] * (f.y + 0.5 + static_cast<double>(f.from_centre.y) - w.y0);
     nearest = std::min(nearest, std::abs(b) / std::hypot(w.p[i], w.q[i]));
   }
   return static_cast<float>(std::clamp(1.0 - nearest, 0.0, 1.0));
@@ -53,14 +54,14 @@ float positive(float v) {
 struct SampleWeights {
   float b[3];  ///< up to a common positive factor
 
-  SampleWeights(const LitTriangle& t, int x, int y) {
+  SampleWeights(const LitTriangle& t, int x, int y, Vec2 from_centre) {
     if (t.exact) {
-      const Weights w = weights_at(t.planes, x, y);
+      const Weights w = weights_at(t.planes, x, y, from_centre);
       for (int c = 0; c < 3; ++c) b[c] = static_cast<float>(w.b[c]);
       return;
     }
-    const float dx = (static_cast<float>(x) + 0.5F) - t.x0;
-    const float dy = (static_cast<float>(y) + 0.5F) - t.y0;
+    const float dx = (static_cast<float>(x) + 0.5F + from_centre.x) - t.x0;
+    const float dy = (static_cast<float>(y) + 0.5F + from_centre.y) - t.y0;
     const float l1 = t.p1 * dx + t.q1 * dy;
     const float l2 = t.p2 * dx + t.q2 * dy;
     b[0] = (1.0F - l1 - l2) * t.inv_w[0];
@@ -72,12 +73,13 @@ struct SampleWeights {
   }
 };
 
-Vec3 light(LitModel model, const ViewRays& rays, int x, int y, Vec3 normal, Vec3 base) {
+Vec3 light(LitModel model, const ViewRays& rays, int x, int y, Vec2 from_centre, Vec3 normal,
+           Vec3 base) {
   if (model == LitModel::flat) return base;
   Vec3 n = unit(normal);
   if (model == LitModel::normal) return n * 0.5F + Vec3{0.5F, 0.5F, 0.5F};
-  const float px = static_cast<float>(x) + 0.5F;
-  const float py = static_cast<float>(y) + 0.5F;
+  const float px = static_cast<float>(x) + 0.5F + from_centre.x;
+  const float py = static_cast<float>(y) + 0.5F + from_centre.y;
   const Vec3 v = unit(-(rays.d + rays.dx * px + rays.dy * py));
   n = n * (dot(n, v) < 0 ? -1.0F : 1.0F);
   const Vec3 lit = base * (kAmbient + kDiffuse * positive(dot(n, kLight)));
@@ -127,12 +129,14 @@ class LitShader final : public BlockShader {
       const int i = std::countr_zero(m);
       const int x = block.x0 + i % kBlockSize, y = block.y0 + i / kBlockSize;
       const LitTriangle& t = kept.find(scene_, frame, block.words[i] & kIdMask, wants_normals);
-      const SampleWeights w(t, x, y);
+      const Vec2 from_centre =
+          block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
+      const SampleWeights w(t, x, y, from_centre);
       Vec3 base = kDefaultBase;
       if (scene_.colored && model_ != LitModel::normal)
         base = w.sum(t.color) * (1.0F / (w.b[0] + w.b[1] + w.b[2]));
       const Vec3 normal = wants_normals ? w.sum(t.normal) : base;
-      colors.set(i, opaque(light(model_, scene_.rays, x, y, normal, base)));
+      colors.set(i, opaque(light(model_, scene_.rays, x, y, from_centre, normal, base)));
     }
   }
 

@@ -76,13 +76,36 @@ HWY_INLINE hn::Mask<F32> lane_mask(std::uint32_t bits) {
   return hn::LoadMaskBits(F32{}, memory);
 }
 
-/// Weights of triangle `t` at kLanes samples, up to a common positive factor.
-HWY_INLINE void row_weights(const LitTriangle& t, int x, int y, F& b0, F& b1, F& b2) {
+/// kLanes pixels of a row, and where in them is shaded.
+struct Row {
+  int x, y;
+  const float *dx, *dy;  ///< null: at the centres
+
+  Row(const VisibleBlock& block, std::size_t first)
+      : x(block.x0 + static_cast<int>(first % 8)),
+        y(block.y0 + static_cast<int>(first / 8)),
+        dx(block.points == nullptr ? nullptr : block.points->dx + first),
+        dy(block.points == nullptr ? nullptr : block.points->dy + first) {}
+
+  [[nodiscard]] HWY_INLINE F px() const {
+    const F32 d;
+    const F centre = hn::Add(hn::Iota(d, static_cast<float>(x)), set(0.5F));
+    return dx == nullptr ? centre : hn::Add(centre, hn::Load(d, dx));
+  }
+  [[nodiscard]] HWY_INLINE F py() const {
+    const F centre = set(static_cast<float>(y) + 0.5F);
+    return dy == nullptr ? centre : hn::Add(centre, hn::Load(F32{}, dy));
+  }
+};
+
+/// Weights of triangle `t` at a row, up to a common positive factor.
+HWY_INLINE void row_weights(const LitTriangle& t, const Row& row, F& b0, F& b1, F& b2) {
   const F32 d;
   if (t.exact) {
     HWY_ALIGN float b[3][kLanes];
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const Weights w = weights_at(t.planes, x + static_cast<int>(lane), y);
+      const Vec2 from_centre = row.dx == nullptr ? Vec2{0, 0} : Vec2{row.dx[lane], row.dy[lane]};
+      const Weights w = weights_at(t.planes, row.x + static_cast<int>(lane), row.y, from_centre);
       for (int c = 0; c < 3; ++c) b[c][lane] = static_cast<float>(w.b[c]);
     }
     b0 = hn::Load(d, b[0]);
@@ -90,11 +113,9 @@ HWY_INLINE void row_weights(const LitTriangle& t, int x, int y, F& b0, F& b1, F&
     b2 = hn::Load(d, b[2]);
     return;
   }
-  const F px = hn::Add(hn::Iota(d, static_cast<float>(x)), set(0.5F));
-  const F dx = hn::Sub(px, set(t.x0));
-  const float dy = (static_cast<float>(y) + 0.5F) - t.y0;
-  const F l1 = hn::Add(hn::Mul(set(t.p1), dx), set(t.q1 * dy));
-  const F l2 = hn::Add(hn::Mul(set(t.p2), dx), set(t.q2 * dy));
+  const F dx = hn::Sub(row.px(), set(t.x0)), dy = hn::Sub(row.py(), set(t.y0));
+  const F l1 = hn::Add(hn::Mul(set(t.p1), dx), hn::Mul(set(t.q1), dy));
+  const F l2 = hn::Add(hn::Mul(set(t.p2), dx), hn::Mul(set(t.q2), dy));
   b0 = hn::Mul(hn::Sub(hn::Sub(set(1.0F), l1), l2), set(t.inv_w[0]));
   b1 = hn::Mul(l1, set(t.inv_w[1]));
   b2 = hn::Mul(l2, set(t.inv_w[2]));
@@ -102,7 +123,7 @@ HWY_INLINE void row_weights(const LitTriangle& t, int x, int y, F& b0, F& b1, F&
 
 /// The lighting of a row whose normals (not normalized) and base colours are known.
 template <LitModel kModel>
-HWY_INLINE V3 light_row(const ViewRays& rays, int x, int y, V3 n, const V3& base) {
+HWY_INLINE V3 light_row(const ViewRays& rays, const Row& row, V3 n, const V3& base) {
   const F32 d;
   if (kModel == LitModel::flat) return base;
   n = normalize(n);
@@ -111,10 +132,9 @@ HWY_INLINE V3 light_row(const ViewRays& rays, int x, int y, V3 n, const V3& base
     return {hn::Add(hn::Mul(n.x, half), half), hn::Add(hn::Mul(n.y, half), half),
             hn::Add(hn::Mul(n.z, half), half)};
 
-  const F px = hn::Add(hn::Iota(d, static_cast<float>(x)), half);
-  const float py = static_cast<float>(y) + 0.5F;
+  const F px = row.px(), py = row.py();
   const auto ray = [&](float origin, float dx, float dy) HWY_ATTR {
-    return hn::Neg(hn::Add(hn::Add(set(origin), hn::Mul(set(dx), px)), set(dy * py)));
+    return hn::Neg(hn::Add(hn::Add(set(origin), hn::Mul(set(dx), px)), hn::Mul(set(dy), py)));
   };
   const V3 v = normalize({ray(rays.d.x, rays.dx.x, rays.dy.x), ray(rays.d.y, rays.dx.y, rays.dy.y),
                           ray(rays.d.z, rays.dx.z, rays.dy.z)});
@@ -170,8 +190,7 @@ HWY_INLINE void interpolate_row(const LitScene& scene, const FrameGeometry& fram
   const F32 d;
   KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
   const std::uint64_t* words = block.words + first;
-  const int x = block.x0 + static_cast<int>(first % 8);
-  const int y = block.y0 + static_cast<int>(first / 8);
+  const Row row(block, first);
   V3 n{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   V3 base = n;
   while (rest != 0) {
@@ -181,7 +200,7 @@ HWY_INLINE void interpolate_row(const LitScene& scene, const FrameGeometry& fram
     const auto mask = lane_mask(same);
     rest &= ~same;
     F b0, b1, b2;
-    row_weights(t, x, y, b0, b1, b2);
+    row_weights(t, row, b0, b1, b2);
     if (wants_normals) n = blend(mask, corner_sum(t.normal, b0, b1, b2), n);
     if (wants_colors) {
       const F inverse = hn::Div(set(1.0F), hn::Add(hn::Add(b0, b1), b2));
@@ -213,8 +232,7 @@ void shade_block(const LitScene& scene, const FrameGeometry& frame, const Visibl
     if ((block.covered >> first & kRow) == 0) continue;
     if (colored) base = load(surface.base, first);
     const V3 n = kNormals ? load(surface.n, first) : base;
-    const V3 color = light_row<kModel>(scene.rays, block.x0 + static_cast<int>(first % 8),
-                                       block.y0 + static_cast<int>(first / 8), n, base);
+    const V3 color = light_row<kModel>(scene.rays, Row(block, first), n, base);
     hn::Store(color.x, d, colors.r + first);
     hn::Store(color.y, d, colors.g + first);
     hn::Store(color.z, d, colors.b + first);

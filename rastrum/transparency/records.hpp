@@ -1,0 +1,81 @@
+// What a region of layers records while its pieces are enumerated, and the first stage of its sort:
+// by block (the paper's per-block lists of paper 4, stage 3, phase 2), and in a block by depth.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/parallel/mask.hpp>
+#include <rastrum/raster/piece.hpp>
+
+namespace rastrum::transparency {
+
+/// A piece's part of a block.
+struct Record {
+  const raster::Piece* piece;
+  std::uint64_t mask;   ///< of samples, not empty
+  std::uint32_t block;  ///< within the region
+};
+
+/// A fragment of a micro triangle.
+struct MicroRecord {
+  std::uint64_t word;
+  std::uint32_t block;
+  std::uint32_t pixel;  ///< 8 · row + column
+};
+
+/// Records in the order in which they were made, then by block, still in that order.
+template <class T>
+class ByBlock {
+ public:
+  explicit ByBlock(MemoryAccount& memory) : records_(memory), sorted_(memory), begin_(memory) {}
+
+  void restart() { count_ = 0; }
+  void add(const T& record) {
+    records_.grow(count_ + 1, count_);
+    records_[count_++] = record;
+  }
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+  [[nodiscard]] std::size_t size() const { return count_; }
+  /// Counting sort.
+  void sort(std::size_t blocks) {
+    sorted_.reserve(count_);
+    begin_.reserve(blocks + 2);
+    std::fill_n(begin_.data(), blocks + 2, 0U);
+    for (std::size_t i = 0; i < count_; ++i) ++begin_[records_[i].block + 2];
+    for (std::size_t b = 2; b < blocks + 2; ++b) begin_[b] += begin_[b - 1];
+    for (std::size_t i = 0; i < count_; ++i) sorted_[begin_[records_[i].block + 1]++] = records_[i];
+  }
+  [[nodiscard]] std::span<T> of(std::size_t block) {
+    return {sorted_.data() + begin_[block], begin_[block + 1] - begin_[block]};
+  }
+
+ private:
+  Buffer<T> records_, sorted_;
+  Buffer<std::uint32_t> begin_;
+  std::size_t count_ = 0;
+};
+
+/// Depth of a piece at the mean of the samples of block (bx, by): the first key of the sort.
+[[nodiscard]] inline float centroid_depth(const raster::Piece& piece, std::uint64_t mask, int bx,
+                                          int by) {
+  const auto count = [&](std::uint64_t of) {
+    return static_cast<float>(parallel::popcount(mask & of));
+  };
+  const float n = count(~std::uint64_t{0});
+  const float x =
+      4 * count(0xF0F0F0F0F0F0F0F0U) + 2 * count(0xCCCCCCCCCCCCCCCCU) + count(0xAAAAAAAAAAAAAAAAU);
+  const float y =
+      4 * count(0xFFFFFFFF00000000U) + 2 * count(0xFFFF0000FFFF0000U) + count(0xFF00FF00FF00FF00U);
+  constexpr float kPx = 1.0F / raster::kSubpixels;
+  const float dx = static_cast<float>(bx * raster::kBlockSize) + 0.5F + x / n -
+                   static_cast<float>(piece.x[0]) * kPx;
+  const float dy = static_cast<float>(by * raster::kBlockSize) + 0.5F + y / n -
+                   static_cast<float>(piece.y[0]) * kPx;
+  return piece.z0 + piece.zx * dx + piece.zy * dy;
+}
+
+}  // namespace rastrum::transparency

@@ -1,0 +1,276 @@
+#include <rastrum/transparency/sampled_block.hpp>
+
+#include <algorithm>
+#include <bit>
+
+#include <rastrum/parallel/mask.hpp>
+#include <rastrum/raster/resolve.hpp>
+
+namespace rastrum::transparency {
+
+using raster::BlockColors;
+using raster::kBlockSize;
+using raster::Piece;
+
+template <class F>
+void SampledBlock::for_each_record(const Triangle& t, std::optional<std::uint32_t> only, F&& f) {
+  alignas(64) std::uint64_t words[64];
+  for (std::uint32_t r = t.first; r < t.end; ++r) {
+    const Record& record = records_[r];
+    const auto sample = static_cast<std::uint32_t>(raster::sample_of(*record.piece));
+    const std::uint64_t mask = record.mask & t.kept;
+    if (mask == 0 || sample != only.value_or(sample)) continue;
+    context_->kernel->words(
+        *record.piece, {0, static_cast<std::uint16_t>(bx_), static_cast<std::uint16_t>(by_), mask},
+        words);
+    f(sample, mask, static_cast<const std::uint64_t*>(words));
+  }
+}
+
+/// In order of submission; a triangle's records by sample.
+void SampledBlock::find_triangles() {
+  std::sort(records_.begin(), records_.end(), [](const Record& a, const Record& b) {
+    if (a.piece->low != b.piece->low) return a.piece->low > b.piece->low;
+    return raster::sample_of(*a.piece) < raster::sample_of(*b.piece);
+  });
+  triangle_count_ = 0;
+  const auto n = static_cast<std::uint32_t>(records_.size());
+  for (std::uint32_t first = 0; first < n;) {
+    std::uint32_t end = first + 1;
+    while (end < n && records_[end].piece->low == records_[first].piece->low) ++end;
+    triangles_.grow(triangle_count_ + 1, triangle_count_);
+    triangles_[triangle_count_++] = {first, end, ~std::uint64_t{0}, 0, 0};
+    first = end;
+  }
+}
+
+void SampledBlock::find_points(const Triangle& t, Shaded& out) {
+  const auto offsets = raster::sample_offsets(context_->request->samples);
+  out.mask = 0;
+  for (std::uint32_t r = t.first; r < t.end; ++r) out.mask |= records_[r].mask;
+  std::uint64_t left = out.mask;
+  alignas(64) std::uint64_t words[64];
+  // At the centres: by the pieces that the triangle was clipped to, mostly one, moved back.
+  Piece last{};
+  for (std::uint32_t r = t.first; r < t.end && left != 0; ++r) {
+    const auto offset = offsets[static_cast<std::size_t>(raster::sample_of(*records_[r].piece))];
+    const Piece at_centre = raster::moved(*records_[r].piece, {-offset.x, -offset.y});
+    if (std::ranges::equal(at_centre.x, last.x) && std::ranges::equal(at_centre.y, last.y))
+      continue;
+    last = at_centre;
+    raster::Block block{0, static_cast<std::uint16_t>(bx_), static_cast<std::uint16_t>(by_), 0};
+    context_->kernel->masks(&at_centre, &block, 1);
+    block.mask &= left;
+    if (block.mask != 0) context_->kernel->words(at_centre, block, words);
+    for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      out.words[i] = words[i];
+      out.points.dx[i] = out.points.dy[i] = 0;
+    }
+    left &= ~block.mask;
+  }
+  for (std::uint32_t r = t.first; r < t.end && left != 0; ++r) {
+    const std::uint64_t mask = records_[r].mask & left;
+    if (mask == 0) continue;
+    const Piece& piece = *records_[r].piece;
+    context_->kernel->words(
+        piece, {0, static_cast<std::uint16_t>(bx_), static_cast<std::uint16_t>(by_), mask}, words);
+    const auto offset = offsets[static_cast<std::size_t>(raster::sample_of(piece))];
+    constexpr float kPx = 1.0F / raster::kSubpixels;
+    for (std::uint64_t m = mask; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      out.words[i] = words[i];
+      out.points.dx[i] = static_cast<float>(offset.x) * kPx;
+      out.points.dy[i] = static_cast<float>(offset.y) * kPx;
+    }
+    left &= ~mask;
+  }
+}
+
+void SampledBlock::raise_opaque() {
+  const auto samples = static_cast<std::uint32_t>(context_->request->samples);
+  for (std::uint32_t s = 0; s < samples; ++s) {
+    std::fill_n(opaque_[s], 64, std::uint64_t{0});
+    std::fill_n(owner_[s], 64, kNone);
+  }
+  for (std::uint32_t t = 0; t < triangle_count_; ++t) {
+    if (is_translucent(triangles_[t])) continue;
+    for_each_record(triangles_[t], {}, [&](std::uint32_t s, std::uint64_t mask, const auto* words) {
+      for (std::uint64_t m = mask; m != 0; m &= m - 1) {
+        const int i = std::countr_zero(m);
+        if (words[i] <= opaque_[s][i]) continue;
+        opaque_[s][i] = words[i];
+        owner_[s][i] = t;
+      }
+    });
+  }
+}
+
+void SampledBlock::find_shown() {
+  for (std::uint32_t k = 0; k < triangle_count_; ++k) {
+    Triangle& t = triangles_[k];
+    const bool translucent = is_translucent(t);
+    for_each_record(t, {}, [&](std::uint32_t s, std::uint64_t mask, const auto* words) {
+      for (std::uint64_t m = mask; m != 0; m &= m - 1) {
+        const int i = std::countr_zero(m);
+        const bool shows = translucent ? words[i] > opaque_[s][i] : owner_[s][i] == k;
+        t.shown |= std::uint64_t{shows} << i;
+      }
+    });
+  }
+}
+
+/// Fragments of several triangles are shaded together where they lie at different pixels.
+void SampledBlock::shade() {
+  color_count_ = 0;
+  Shaded plane, own;
+  plane_triangles_.clear();
+  for (std::uint32_t k = 0; k < triangle_count_; ++k) {
+    Triangle& t = triangles_[k];
+    if (t.shown == 0) continue;
+    t.color = color_count_;
+    color_count_ += static_cast<std::uint32_t>(parallel::popcount(t.shown));
+    colors_.grow(color_count_, t.color);
+    find_points(t, own);
+    if ((plane.mask & t.shown) != 0) flush(plane);
+    for (std::uint64_t m = t.shown; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      plane.words[i] = own.words[i];
+      plane.points.dx[i] = own.points.dx[i];
+      plane.points.dy[i] = own.points.dy[i];
+    }
+    plane.mask |= t.shown;
+    plane_triangles_.push_back(k);
+  }
+  flush(plane);
+}
+
+void SampledBlock::flush(Shaded& plane) {
+  if (plane.mask == 0) return;
+  BlockColors shaded;
+  if (shader_ != nullptr) {
+    raster::VisibleBlock block{plane.words, plane.mask, bx_ * kBlockSize, by_ * kBlockSize,
+                               context_->shader_scratch};
+    block.points = &plane.points;
+    if (shader_->shade(*context_->frame, block, context_->request->isa, shaded))
+      std::fill_n(shaded.a, 64, 1.0F);
+    for (const std::uint32_t k : plane_triangles_) {
+      std::uint32_t place = triangles_[k].color;
+      for (std::uint64_t m = triangles_[k].shown; m != 0; m &= m - 1) {
+        const int i = std::countr_zero(m);
+        colors_[place++] = {shaded.r[i], shaded.g[i], shaded.b[i], shaded.a[i]};
+      }
+    }
+  }
+  plane.mask = 0;
+  plane_triangles_.clear();
+}
+
+Vec4 SampledBlock::color(std::uint32_t triangle, int i) const {
+  const Triangle& t = triangles_[triangle];
+  const std::uint64_t before = t.shown & ((std::uint64_t{1} << i) - 1);
+  return colors_[t.color + static_cast<std::uint32_t>(parallel::popcount(before))];
+}
+
+LayerCounts SampledBlock::blend_sample(std::uint32_t sample, BlockColors& out) {
+  LayerCounts counts;
+  BlockColors behind = {}, layer;
+  for (int i = 0; i < 64; ++i)
+    if (owner_[sample][i] != kNone && shader_ != nullptr)
+      behind.set(i, color(owner_[sample][i], i));
+  blend_->begin(behind);
+  for (int pass = 0; pass < blend_->passes(); ++pass) {
+    blend_->begin_pass(pass);
+    lists_.restart(blend_->order(), filter_, planes_);
+    std::uint64_t finished = 0;
+    do {
+      for (std::uint32_t k = 0; k < triangle_count_; ++k) {
+        if (!is_translucent(triangles_[k])) continue;
+        for_each_record(triangles_[k], sample,
+                        [&](std::uint32_t, std::uint64_t mask, const auto* words) {
+                          for (std::uint64_t m = mask; m != 0; m &= m - 1) {
+                            const int i = std::countr_zero(m);
+                            if (words[i] > opaque_[sample][i]) lists_.insert(i, words[i], k);
+                          }
+                        });
+      }
+      if (repair_) lists_.sort();
+      const std::size_t depth = lists_.depth();
+      for (std::size_t k = 0; k < depth; ++k) {
+        const std::uint32_t* const owners = lists_.owners(k);
+        const std::uint64_t mask = lists_.mask(k);
+        for (std::uint64_t m = mask; m != 0; m &= m - 1) {
+          const int i = std::countr_zero(m);
+          nearest_[i] = std::max(nearest_[i], lists_.plane(k)[i]);
+          if (shader_ != nullptr) layer.set(i, color(owners[i], i));
+        }
+        if (pass == 0) counts.fragments += static_cast<std::uint64_t>(parallel::popcount(mask));
+        if ((mask & ~finished) != 0 && shader_ != nullptr)
+          finished |= blend_->layer({lists_.plane(k), mask & ~finished, layer});
+      }
+      if (pass == 0) counts.deepest += depth;
+    } while (lists_.next_window() && ++counts.windows != 0);
+    counts.misplaced |= lists_.misplaced();
+  }
+  blend_->finish(out);
+  return counts;
+}
+
+LayerCounts SampledBlock::resolve(const raster::RegionContext& context,
+                                  const raster::BlockShader* shader, LayerBlend& blend,
+                                  std::span<Record> records, int bx, int by, std::size_t filter,
+                                  std::size_t planes, bool repair, std::uint64_t* words,
+                                  BlockColors& out) {
+  context_ = &context;
+  shader_ = shader;
+  blend_ = &blend;
+  records_ = records;
+  bx_ = bx;
+  by_ = by;
+  filter_ = filter;
+  planes_ = planes;
+  repair_ = repair;
+  find_triangles();
+  test();
+  raise_opaque();
+  find_shown();
+  shade();
+
+  std::fill_n(nearest_, 64, std::uint64_t{0});
+  const auto samples = static_cast<std::uint32_t>(context.request->samples);
+  BlockColors sum = {}, one;
+  LayerCounts counts;
+  for (std::uint32_t s = 0; s < samples; ++s) {
+    for (int i = 0; i < 64; ++i) nearest_[i] = std::max(nearest_[i], opaque_[s][i]);
+    counts.add(blend_sample(s, one));
+    for (int i = 0; i < 64; ++i) {
+      sum.r[i] += one.r[i];
+      sum.g[i] += one.g[i];
+      sum.b[i] += one.b[i];
+      sum.a[i] += one.a[i];
+    }
+  }
+  const float share = 1.0F / static_cast<float>(samples);
+  for (int i = 0; i < 64; ++i)
+    out.set(i, {sum.r[i] * share, sum.g[i] * share, sum.b[i] * share, sum.a[i] * share});
+  std::copy_n(nearest_, 64, words);
+  return counts;
+}
+
+/// The fragment test, once a triangle and pixel.
+void SampledBlock::test() {
+  if (context_->request->test == nullptr) return;
+  Shaded own;
+  for (std::uint32_t k = 0; k < triangle_count_; ++k) {
+    Triangle& t = triangles_[k];
+    const Piece& piece = *records_[t.first].piece;
+    if ((piece.flags & raster::kTested) == 0) continue;
+    find_points(t, own);
+    t.kept = context_->request->test->test(
+        *context_->frame, piece,
+        {0, static_cast<std::uint16_t>(bx_), static_cast<std::uint16_t>(by_), own.mask},
+        &own.points);
+  }
+}
+
+}  // namespace rastrum::transparency

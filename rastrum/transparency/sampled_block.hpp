@@ -1,0 +1,101 @@
+// A block with several samples a pixel (anti-aliasing, which paper 4 leaves as future work): the
+// records are of pieces moved to each sample (raster/samples.hpp). Every sample has its own order
+// of fragments and its own opaque surface; colour and fragment test are a triangle's in a pixel,
+// found once, at the pixel's centre if the triangle covers it, else at the first sample that it
+// covers.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/raster/visibility/region.hpp>
+#include <rastrum/transparency/blend.hpp>
+#include <rastrum/transparency/layer_lists.hpp>
+#include <rastrum/transparency/records.hpp>
+
+namespace rastrum::transparency {
+
+/// What the layers of a block tell.
+struct LayerCounts {
+  std::uint64_t fragments = 0, deepest = 0, windows = 0;
+  std::uint64_t misplaced = 0;  ///< mask of pixels
+
+  void add(const LayerCounts& o) {
+    fragments += o.fragments;
+    deepest = std::max(deepest, o.deepest);
+    windows += o.windows;
+    misplaced |= o.misplaced;
+  }
+};
+
+class SampledBlock {
+ public:
+  explicit SampledBlock(MemoryAccount& memory)
+      : triangles_(memory), colors_(memory), lists_(memory) {}
+
+  /// Sets the block's colours (the mean over the samples, premultiplied) and words (the largest).
+  /// `records`: of opaque and translucent pieces; they are reordered. `filter` and `planes` as
+  /// LayerLists::restart has them; `repair`: sort what the filter misplaced.
+  /// Memory: 16 bytes a fragment that is shaded, 12 bytes a pixel and layer.
+  LayerCounts resolve(const raster::RegionContext& context, const raster::BlockShader* shader,
+                      LayerBlend& blend, std::span<Record> records, int bx, int by,
+                      std::size_t filter, std::size_t planes, bool repair, std::uint64_t* words,
+                      raster::BlockColors& out);
+
+ private:
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+  /// The records of one triangle in the block, of all samples.
+  struct Triangle {
+    std::uint32_t first, end;
+    std::uint64_t kept;   ///< pixels that the fragment test leaves
+    std::uint64_t shown;  ///< pixels where a sample may see it
+    std::uint32_t color;  ///< of the first pixel of `shown` in colors_
+  };
+  /// Where a triangle is shaded: words and points of its pixels.
+  struct Shaded {
+    alignas(64) std::uint64_t words[64];
+    raster::ShadingPoints points;
+    std::uint64_t mask = 0;
+  };
+
+  void find_triangles();
+  void test();
+  void find_points(const Triangle& t, Shaded& out);
+  void raise_opaque();
+  void find_shown();
+  void shade();
+  void flush(Shaded& plane);
+  [[nodiscard]] Vec4 color(std::uint32_t triangle, int i) const;
+  LayerCounts blend_sample(std::uint32_t sample, raster::BlockColors& out);
+  [[nodiscard]] bool is_translucent(const Triangle& t) const {
+    return (records_[t.first].piece->flags & raster::kTranslucent) != 0;
+  }
+  /// Calls f(sample, mask, words) for the records of a triangle, of one sample or all.
+  template <class F>
+  void for_each_record(const Triangle& t, std::optional<std::uint32_t> only, F&& f);
+
+  const raster::RegionContext* context_ = nullptr;
+  const raster::BlockShader* shader_ = nullptr;
+  LayerBlend* blend_ = nullptr;
+  std::span<Record> records_;
+  int bx_ = 0, by_ = 0;
+  std::size_t filter_ = 0, planes_ = 0;
+  bool repair_ = false;
+
+  Buffer<Triangle> triangles_;
+  std::uint32_t triangle_count_ = 0;
+  Buffer<Vec4> colors_;
+  std::uint32_t color_count_ = 0;
+  std::vector<std::uint32_t> plane_triangles_;  ///< whose fragments wait to be shaded
+  LayerLists<std::uint32_t> lists_;             ///< owner: the triangle
+  std::uint64_t opaque_[raster::kMaxSamples][64];
+  std::uint32_t owner_[raster::kMaxSamples][64];  ///< of the opaque word
+  std::uint64_t nearest_[64];
+};
+
+}  // namespace rastrum::transparency
