@@ -139,7 +139,8 @@ class Row {
         sum.g += pixel.g;
         sum.b += pixel.b;
         sum.a += pixel.a;
-        image.layers[i] = std::max(image.layers[i], static_cast<std::uint32_t>(f.size()));
+        const auto layers = std::ranges::count(f, false, &Fragment::opaque);
+        image.layers[i] = std::max(image.layers[i], static_cast<std::uint32_t>(layers));
         f.clear();
       }
       const auto n = static_cast<double>(positions_.size());

@@ -56,7 +56,7 @@ struct LayerImage {
   /// The largest word over the samples, of any surface; −1 and 0 where nothing is.
   std::vector<std::int64_t> ids;
   std::vector<float> depth;
-  /// Fragments that were blended (not hidden by opaque ones) at the sample that has most.
+  /// Translucent fragments that no opaque one hides, at the sample that has most.
   std::vector<std::uint32_t> layers;
   /// Whether equal depths, of two fragments of one sample, decided what was blended in which order.
   std::vector<std::uint8_t> tied;

@@ -284,7 +284,8 @@ void soup(Maker& m) {
       return m.at(u, v, m.random.real(0, 1));
     };
     const Vec3 a = corner(), b = corner(), c = corner();
-    m.triangle(a, b, c, m.color(alpha()), i % 50 < 5);
+    const bool opaque = i % 50 < 5;
+    m.triangle(a, b, c, m.color(opaque ? 1 : alpha()), opaque);
   }
 }
 

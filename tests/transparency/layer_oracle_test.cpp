@@ -102,7 +102,7 @@ TEST(LayerOracle, OpaqueSurfacesHideWhatHasASmallerWord) {
   c.add(flat(0, 0.25F)).add(flat(1, 0.5F)).add(flat(2, 0.5F)).add(flat(3, 0.5F));
   const LayerImage image = c.blend();
   expect_color(image.color[7], {0, 0.5, 0.5, 1});
-  EXPECT_EQ(image.layers[7], 2U);
+  EXPECT_EQ(image.layers[7], 1U);
   EXPECT_EQ(image.tied[7], 1);
   EXPECT_EQ(image.ids[7], 1);
   // What an opaque surface's colour says about alpha is not looked at.
