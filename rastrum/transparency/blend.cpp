@@ -19,7 +19,8 @@ class FrontToBack final : public LayerBlend {
   [[nodiscard]] LayerOrder order() const override { return LayerOrder::depth; }
   void begin(const BlockColors& behind) override {
     behind_ = &behind;
-    for (float(&channel)[64] : {std::ref(seen_.r), std::ref(seen_.g), std::ref(seen_.b)})
+    for (float(&channel)[64] :
+         {std::ref(seen_.r), std::ref(seen_.g), std::ref(seen_.b), std::ref(seen_.a)})
       std::fill_n(channel, 64, 0.0F);
     std::fill_n(seen_.through, 64, 1.0F);
   }
@@ -32,7 +33,8 @@ class FrontToBack final : public LayerBlend {
       out.r[i] = seen_.r[i] + through * behind_->r[i];
       out.g[i] = seen_.g[i] + through * behind_->g[i];
       out.b[i] = seen_.b[i] + through * behind_->b[i];
-      out.a[i] = 1 - through * (1 - behind_->a[i]);
+      // What nothing is seen through is opaque, whatever the sum was rounded to.
+      out.a[i] = through * (1 - behind_->a[i]) == 0 ? 1 : seen_.a[i] + through * behind_->a[i];
     }
   }
 

@@ -9,9 +9,11 @@
 
 namespace rastrum::transparency {
 
-/// Colour so far, premultiplied, and how much of what lies behind is seen through it.
+/// Colour so far, premultiplied, and how much of what lies behind is seen through it. Alpha is
+/// summed as colours are: 1 − through has no more than an absolute precision, and straight colours
+/// divide by alphas of any size.
 struct alignas(64) Seen {
-  float r[64], g[64], b[64], through[64];
+  float r[64], g[64], b[64], a[64], through[64];
 };
 
 struct BlendKernels {

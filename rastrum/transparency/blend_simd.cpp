@@ -40,11 +40,12 @@ std::uint64_t behind(const raster::BlockColors& layer, std::uint64_t mask, float
     const auto add = [&](const float* channel, float* sum) HWY_ATTR {
       const F c = hn::IfThenElseZero(lanes, hn::Load(d, channel + i));
       hn::Store(hn::Add(hn::Load(d, sum + i), hn::Mul(through, c)), d, sum + i);
+      return c;
     };
     add(layer.r, seen.r);
     add(layer.g, seen.g);
     add(layer.b, seen.b);
-    const F a = hn::IfThenElseZero(lanes, hn::Load(d, layer.a + i));
+    const F a = add(layer.a, seen.a);
     const F left = hn::Mul(through, hn::Sub(one, a));
     hn::Store(left, d, seen.through + i);
     opaque |= std::uint64_t{lane_bits(hn::RebindMask(I32{}, hn::Le(left, limit)))} << i;
@@ -90,6 +91,7 @@ std::uint64_t behind_scalar(const raster::BlockColors& layer, std::uint64_t mask
     seen.r[i] += through * layer.r[i];
     seen.g[i] += through * layer.g[i];
     seen.b[i] += through * layer.b[i];
+    seen.a[i] += through * layer.a[i];
     seen.through[i] = through * (1 - layer.a[i]);
     opaque |= std::uint64_t{seen.through[i] <= opaque_at} << i;
   }

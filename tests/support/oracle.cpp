@@ -139,20 +139,20 @@ Plane plane_of(const SnappedPoint& p) {
   return plane_at(p.v, 0, 0);
 }
 
-float depth_at(const Plane& plane, int px, int py) {
-  const float along_x = plane.zx * (static_cast<float>(px) + 0.5F - plane.x0);
-  const float along_y = plane.zy * (static_cast<float>(py) + 0.5F - plane.y0);
+float depth_at(const Plane& plane, std::int64_t x_fx8, std::int64_t y_fx8) {
+  const float along_x = plane.zx * (static_cast<float>(x_fx8) / 256 - plane.x0);
+  const float along_y = plane.zy * (static_cast<float>(y_fx8) / 256 - plane.y0);
   const float d = (plane.z0 + along_x) + along_y;
   if (!(d > 0)) return 0.0F;
   return d < 1 ? d : 1.0F;
 }
 
+}  // namespace
+
 std::uint64_t visibility_word(float depth, std::int64_t id) {
   const std::uint64_t bits = std::bit_cast<std::uint32_t>(depth);
   return bits << 33 | ((std::uint64_t{1} << 33) - 1 - static_cast<std::uint64_t>(id));
 }
-
-}  // namespace
 
 std::uint64_t OracleImage::fragments() const {
   return std::accumulate(overdraw.begin(), overdraw.end(), std::uint64_t{0});
@@ -170,12 +170,15 @@ std::int64_t twice_area(const SnappedTriangle& t) {
 }
 
 bool covers(const SnappedTriangle& t, int px, int py) {
+  return covers_sample(t, sample_fx8(px), sample_fx8(py));
+}
+
+bool covers_sample(const SnappedTriangle& t, std::int64_t x, std::int64_t y) {
   const std::int64_t area = twice_area(t);
   if (area == 0) return false;
   const SnappedVertex& a = t.v[0];
   const SnappedVertex& b = area > 0 ? t.v[1] : t.v[2];
   const SnappedVertex& c = area > 0 ? t.v[2] : t.v[1];
-  const std::int64_t x = sample_fx8(px), y = sample_fx8(py);
   return inside_edge(a, b, x, y) && inside_edge(b, c, x, y) && inside_edge(c, a, x, y);
 }
 
@@ -206,7 +209,11 @@ bool covers(const SnappedPoint& p, int px, int py) {
 }
 
 float depth_at(const SnappedTriangle& t, int px, int py) {
-  return depth_at(plane_of(t), px, py);
+  return depth_at_sample(t, sample_fx8(px), sample_fx8(py));
+}
+
+float depth_at_sample(const SnappedTriangle& t, std::int64_t x_fx8, std::int64_t y_fx8) {
+  return depth_at(plane_of(t), x_fx8, y_fx8);
 }
 
 float depth_at(const SnappedPrimitive& p, int px, int py) {
@@ -214,7 +221,7 @@ float depth_at(const SnappedPrimitive& p, int px, int py) {
   const double steepest = std::max(std::abs(plane.zx), std::abs(plane.zy));
   plane.z0 =
       static_cast<float>(double{plane.z0} + double{p.bias} + double{p.bias_slope} * steepest);
-  return depth_at(plane, px, py);
+  return depth_at(plane, sample_fx8(px), sample_fx8(py));
 }
 
 namespace {

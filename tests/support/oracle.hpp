@@ -59,8 +59,16 @@ struct OracleImage {
 /// Whether the sample of pixel (px, py) belongs to `t`: exact, top-left rule.
 [[nodiscard]] bool covers(const SnappedTriangle& t, int px, int py);
 
+/// Whether the sample at (x, y), n.8 px, belongs to `t`: a pixel has one at its centre, or several.
+[[nodiscard]] bool covers_sample(const SnappedTriangle& t, std::int64_t x_fx8, std::int64_t y_fx8);
+
 /// The depth plane of `t` at the sample of pixel (px, py), by the rules of DESIGN section 2.
 [[nodiscard]] float depth_at(const SnappedTriangle& t, int px, int py);
+[[nodiscard]] float depth_at_sample(const SnappedTriangle& t, std::int64_t x_fx8,
+                                    std::int64_t y_fx8);
+
+/// bits(depth) << 33 | (2³³ − 1 − id): the larger one is in front.
+[[nodiscard]] std::uint64_t visibility_word(float depth, std::int64_t id);
 
 /// Whether a line produces the fragment of pixel (px, py): OpenGL's diamond-exit rule (4.6, 14.5.1)
 /// as it is written, with y down and both ends moved by −(ε, ε²) for an infinitesimal ε. A wide

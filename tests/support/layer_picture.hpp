@@ -1,0 +1,53 @@
+// Frames of translucent scenes, and what differs between two of them or from the oracle.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/render/render.hpp>
+
+#include "tests/support/layer_oracle.hpp"
+#include "tests/support/layer_program.hpp"
+
+namespace rastrum::test {
+
+struct LayerPicture {
+  Image<Rgba8> color8;
+  Image<Vec4> color;
+  Image<float> depth;
+  Image<std::int64_t> ids;
+  Image<std::uint8_t> errors;
+  Image<std::uint32_t> overdraw;  ///< empty unless asked for: counting turns hierarchical Z off
+  FrameStats stats;
+
+  /// 0 where there is none of that name.
+  [[nodiscard]] std::uint64_t counter(std::string_view name) const;
+  [[nodiscard]] std::uint64_t error_pixels() const;
+};
+
+/// Draws into images that hold nonsense before.
+[[nodiscard]] LayerPicture take(Renderer& renderer, LayerProgram& program,
+                                bool with_overdraw = false);
+[[nodiscard]] LayerPicture take(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                                bool with_overdraw = false);
+
+/// How far a float32 channel may be from the exact blend of n layers of colours in [0, 1]:
+/// (4 n + 16) · 2⁻²⁴. What is left of the light after k layers is a product of k factors, each
+/// rounded twice: 2 k roundings of 2⁻²⁴; a layer's share and its sum are rounded once each, and the
+/// shares add up to 1 at most. So 3 n + 1 roundings bound the whole; 4 n + 16 leaves room for other
+/// orders of the same operations, the colour's interpolation, the background and the mean of the
+/// samples. That is 1e-5 at 38 layers, and less than half a step of 8 bits at 8,000.
+[[nodiscard]] double blend_bound(std::uint32_t layers);
+
+/// Colours within blend_bound of the oracle's, 8 bits within 1/255, ids and depth the same bits.
+[[nodiscard]] testing::AssertionResult equals_oracle(const LayerPicture& picture,
+                                                     const LayerImage& oracle);
+
+/// The same bits of all colours, ids and depths.
+[[nodiscard]] testing::AssertionResult same_bits(const LayerPicture& a, const LayerPicture& b);
+
+[[nodiscard]] bool same_color_bits(const LayerPicture& a, const LayerPicture& b, std::size_t pixel);
+
+}  // namespace rastrum::test

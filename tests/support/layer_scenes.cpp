@@ -1,0 +1,462 @@
+// One function a kind, in the order of the table at the end.
+#include "tests/support/layer_scenes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+#include "tests/support/random.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr int kMostFragments = 1000000;
+
+std::uint64_t mix(std::uint64_t v) {
+  return Random(v).bits();
+}
+
+/// The alphas of a scene, so that some are decided by their first layers and others by all.
+class Alphas {
+ public:
+  Alphas(Random& r, int layers) : random_(&r), layers_(layers), style_(r.integer(0, 4)) {}
+
+  double operator()() {
+    Random& r = *random_;
+    switch (style_) {
+      case 0:
+        return r.real(0, 1);
+      case 1:
+        return r.real(0, std::min(1.0, 3.0 / layers_));
+      case 2:  // what draws nothing and what hides all, now and then
+        return r.chance(0.15) ? 0 : r.chance(0.1) ? 1 : r.real(0, std::min(1.0, 10.0 / layers_));
+      case 3:
+        return std::pow(10.0, r.real(-7, 0));
+      default:
+        return 0.5;
+    }
+  }
+
+ private:
+  Random* random_;
+  int layers_, style_;
+};
+
+struct Maker {
+  Random random;
+  int width, height;
+  LayerScene scene;
+  bool flat = false;  ///< the pixel camera: depth is what is asked for, and w = 1
+
+  Maker(std::uint64_t seed, int w, int h) : random(seed), width(w), height(h) {}
+
+  /// z in [0, 1], 1 nearest.
+  Vec3 at(double x_px, double y_px, double z) const {
+    if (flat) return at_pixel(x_px, y_px, z, width, height);
+    return Placer(scene.camera, width, height).at({x_px, y_px, 0.2 + 4 * (1 - z)});
+  }
+  std::uint32_t vertex(Vec3 p) {
+    scene.mesh.positions.push_back(p);
+    return static_cast<std::uint32_t>(scene.mesh.positions.size() - 1);
+  }
+  Vec4 color(double alpha) {
+    const auto channel = [&] { return static_cast<float>(alpha * random.real(0, 1)); };
+    return {channel(), channel(), channel(), static_cast<float>(alpha)};
+  }
+  void triangle(Vec3 a, Vec3 b, Vec3 c, Vec4 paint, bool opaque = false) {
+    const std::uint32_t i = vertex(a), j = vertex(b), k = vertex(c);
+    scene.add(i, j, k, paint, opaque);
+  }
+  void quad(const std::array<Vec3, 4>& p, Vec4 paint, bool opaque = false) {
+    const std::uint32_t i = vertex(p[0]), j = vertex(p[1]), k = vertex(p[2]), l = vertex(p[3]);
+    scene.add(i, j, k, paint, opaque);
+    scene.add(i, k, l, paint, opaque);
+  }
+  double x() { return random.real(-0.3 * width, 1.3 * width); }
+  double y() { return random.real(-0.3 * height, 1.3 * height); }
+  double larger() const { return std::max(width, height); }
+  /// 1 to `most`, few or many alike, and no more than the picture can bear.
+  int count(int most) {
+    const int bearable = std::max(kMostFragments / (width * height), 1);
+    const double log_most = std::log(static_cast<double>(std::min(most, bearable)));
+    return std::max(1, static_cast<int>(std::lround(std::exp(random.real(0, log_most)))));
+  }
+  void look() {
+    flat = random.chance(0.5);
+    if (flat) {
+      scene.camera = pixel_camera(width, height);
+      return;
+    }
+    scene.camera.eye = {0.3F, -0.2F, 2};
+    scene.camera.target = {0.1F, 0.4F, -1};
+    scene.camera.near_plane = 0.1F;
+    if (random.chance(0.3)) scene.camera.far_plane = 5;
+  }
+};
+
+// Large quads through one another, in any position.
+void crossing_quads(Maker& m) {
+  m.look();
+  const int n = m.count(60);
+  Alphas alpha(m.random, n);
+  for (int i = 0; i < n; ++i) {
+    const double x = m.x(), y = m.y(), turn = m.random.real(0, 2 * kPi), size = m.larger();
+    const double dx = size * std::cos(turn), dy = size * std::sin(turn);
+    const Vec4 color = m.color(alpha());
+    const auto z = [&] { return m.random.real(0, 1); };
+    m.quad({m.at(x - dx, y - dy, z()), m.at(x + dy, y - dx, z()), m.at(x + dx, y + dy, z()),
+            m.at(x - dy, y + dx, z())},
+           color);
+  }
+}
+
+// Rectangles in few planes: equal depths everywhere, and the first submitted is in front.
+void coplanar(Maker& m) {
+  m.flat = true;
+  m.scene.camera = pixel_camera(m.width, m.height);
+  const int n = m.count(200);
+  const int planes = m.random.integer(1, 4);
+  Alphas alpha(m.random, n);
+  for (int i = 0; i < n; ++i) {
+    const double x0 = m.x(), x1 = m.x(), y0 = m.y(), y1 = m.y();
+    const double z = m.random.integer(0, planes) / 4.0;
+    m.quad({m.at(x0, y0, z), m.at(x0, y1, z), m.at(x1, y1, z), m.at(x1, y0, z)}, m.color(alpha()));
+  }
+}
+
+// The same sloping triangles again and again, from another corner or the other side. Their planes
+// are equal but for rounding, so that neighbouring pixels differ in who is in front.
+void repeated(Maker& m) {
+  m.look();
+  const int n = m.count(300);
+  Alphas alpha(m.random, n);
+  std::array<Vec3, 3> p{};
+  for (int i = 0; i < n; ++i) {
+    if (i % 40 == 0)
+      for (Vec3& v : p) v = m.at(m.x(), m.y(), m.random.real(0, 1));
+    const auto k = static_cast<std::size_t>(m.random.integer(0, 2));
+    const bool turned = m.random.chance(0.5);
+    m.triangle(p[k], p[(k + (turned ? 2 : 1)) % 3], p[(k + (turned ? 1 : 2)) % 3],
+               m.color(alpha()));
+  }
+}
+
+// Up to 2,000 layers, sloping a little, in no order.
+void stack(Maker& m) {
+  m.look();
+  const int n = m.random.chance(0.3) ? m.count(2000) : std::min(m.count(2000) * 8, 2000);
+  const int bearable = std::max(1, kMostFragments / (m.width * m.height));
+  Alphas alpha(m.random, n);
+  const double slope = m.random.chance(0.5) ? 0 : m.random.real(0, 0.3);
+  for (int i = 0; i < std::min(n, bearable); ++i) {
+    const double z = m.random.real(0, 1), s = m.random.real(-slope, slope);
+    const auto corner = [&](double u, double v, double lean) {
+      return m.at(u * m.width, v * m.height, std::clamp(z + lean, 0.0, 1.0));
+    };
+    m.quad(
+        {corner(-0.1, -0.1, -s), corner(-0.1, 1.1, 0), corner(1.1, 1.1, s), corner(1.1, -0.1, 0)},
+        m.color(alpha()));
+  }
+}
+
+// Strands of hair: bands of a pixel or less in width that cross one another.
+void ribbons(Maker& m) {
+  m.look();
+  const int n = m.count(60), segments = 16;
+  Alphas alpha(m.random, n / 4 + 1);
+  for (int i = 0; i < n; ++i) {
+    const double cx = m.x(), cy = m.y(), radius = m.random.real(0.1, 1) * m.larger();
+    const double start = m.random.real(0, 2 * kPi), thin = std::exp(m.random.real(-3, 1.5));
+    const double z0 = m.random.real(0, 1), z1 = m.random.real(0, 1);
+    const Vec4 color = m.color(alpha());
+    std::uint32_t before[2] = {};
+    for (int s = 0; s <= segments; ++s) {
+      const double t = s / static_cast<double>(segments), angle = start + 2.5 * t;
+      const double z = z0 + (z1 - z0) * t;
+      std::uint32_t now[2];
+      for (int side = 0; side < 2; ++side) {
+        const double r = radius + thin * side;
+        now[side] = m.vertex(m.at(cx + r * std::cos(angle), cy + r * std::sin(angle), z));
+      }
+      if (s > 0) {
+        m.scene.add(before[0], before[1], now[0], color);
+        m.scene.add(before[1], now[1], now[0], color);
+      }
+      std::copy(now, now + 2, before);
+    }
+  }
+}
+
+// Opaque quads cut through translucent ones, some at exactly their depth.
+void opaque_between(Maker& m) {
+  m.look();
+  const int n = m.count(80);
+  Alphas alpha(m.random, n / 2 + 1);
+  for (int i = 0; i < n; ++i) {
+    const bool opaque = i / 5 % 3 == 1;  // runs, that are draws of their own
+    const double x = m.x(), y = m.y(), size = m.larger() * m.random.real(0.1, 0.8);
+    const bool level = m.random.chance(0.4);
+    const double z = m.random.integer(0, 6) / 8.0;
+    const Vec4 color = m.color(opaque ? 1 : alpha());
+    const auto depth = [&] { return level ? z : m.random.real(0, 1); };
+    m.quad({m.at(x - size, y - size, depth()), m.at(x - size, y + size, depth()),
+            m.at(x + size, y + size, depth()), m.at(x + size, y - size, depth())},
+           color, opaque);
+  }
+}
+
+// Corners on both sides of the near plane and of the eye.
+void near_crossing(Maker& m) {
+  m.scene.camera.eye = {0, 0, 0};
+  m.scene.camera.target = {0, 0, -1};
+  m.scene.camera.near_plane = 0.1F;
+  const int n = m.count(60);
+  Alphas alpha(m.random, n);
+  for (int i = 0; i < n; ++i) {
+    const auto corner = [&] {
+      const double x = m.random.real(-2, 2), y = m.random.real(-2, 2);
+      const double z = m.random.chance(0.4) ? m.random.real(-0.05, 0.3) : m.random.real(0.1, 4);
+      return Vec3{static_cast<float>(x), static_cast<float>(y), static_cast<float>(-z)};
+    };
+    const Vec3 a = corner(), b = corner(), c = corner();
+    m.triangle(a, b, c, m.color(alpha()));
+  }
+}
+
+// Triangles of a pixel and less, in heaps.
+void micro(Maker& m) {
+  m.look();
+  const int n = m.random.integer(1, 4000), heaps = m.random.integer(1, 6);
+  Alphas alpha(m.random, 10);
+  const double spread = m.random.real(1, 0.4 * m.larger() + 1);
+  for (int i = 0; i < n; ++i) {
+    Random heap(static_cast<std::uint64_t>(i % heaps) + 77);
+    const double cx = heap.real(0, m.width), cy = heap.real(0, m.height);
+    const double x = cx + m.random.real(-spread, spread), y = cy + m.random.real(-spread, spread);
+    const double size = std::exp(m.random.real(-2, 1.2));
+    const auto corner = [&] {
+      const double u = x + m.random.real(-size, size), v = y + m.random.real(-size, size);
+      return m.at(u, v, m.random.real(0, 1));
+    };
+    const Vec3 a = corner(), b = corner(), c = corner();
+    m.triangle(a, b, c, m.color(alpha()));
+  }
+}
+
+// Wavy sheets of shared edges, one through the other: a mesh as files have it.
+void sheets(Maker& m) {
+  m.look();
+  const int n = std::min(m.count(12), 12), cells = m.random.integer(1, 10);
+  Alphas alpha(m.random, n);
+  for (int i = 0; i < n; ++i) {
+    const double z = m.random.real(0.2, 0.8), wave = m.random.real(0, 0.2);
+    const Vec4 color = m.color(alpha());
+    const auto first = static_cast<std::uint32_t>(m.scene.mesh.positions.size());
+    for (int v = 0; v <= cells; ++v)
+      for (int u = 0; u <= cells; ++u)
+        m.vertex(m.at(m.width * (1.2 * u / cells - 0.1), m.height * (1.2 * v / cells - 0.1),
+                      z + m.random.real(-wave, wave)));
+    const auto row = static_cast<std::uint32_t>(cells) + 1;
+    for (int v = 0; v < cells; ++v)
+      for (int u = 0; u < cells; ++u) {
+        const std::uint32_t a =
+            first + static_cast<std::uint32_t>(v) * row + static_cast<std::uint32_t>(u);
+        m.scene.add(a, a + row, a + 1, color);
+        m.scene.add(a + 1, a + row, a + row + 1, color);
+      }
+  }
+}
+
+// Triangles of every size.
+void soup(Maker& m) {
+  m.look();
+  const int n = m.count(400);
+  Alphas alpha(m.random, n / 4 + 1);
+  for (int i = 0; i < n; ++i) {
+    const double x = m.x(), y = m.y(), size = std::exp(m.random.real(-1, 5));
+    const auto corner = [&] {
+      const double u = x + m.random.real(-size, size), v = y + m.random.real(-size, size);
+      return m.at(u, v, m.random.real(0, 1));
+    };
+    const Vec3 a = corner(), b = corner(), c = corner();
+    const bool opaque = i % 50 < 5;
+    m.triangle(a, b, c, m.color(opaque ? 1 : alpha()), opaque);
+  }
+}
+
+// The nasty geometry of scenes.hpp: clipped, degenerate, not finite, nearly edge-on, ….
+void family(Maker& m) {
+  GeneratedScene g = generate(m.random.bits() >> 1, m.width, m.height);
+  // Coordinates near FLT_MAX do not pass through a program's float32 clip position.
+  while (g.kind == "extreme") g = generate(m.random.bits() >> 1, m.width, m.height);
+  m.scene.kind.append("/").append(g.kind);
+  m.scene.camera = g.camera;
+  m.scene.mesh.positions = g.scene.meshes[0].positions;
+  std::vector<std::uint32_t> indices = g.scene.meshes[0].indices;
+  if (indices.empty()) {
+    indices.resize(m.scene.mesh.positions.size() / 3 * 3);
+    std::iota(indices.begin(), indices.end(), 0U);
+  }
+  Alphas alpha(m.random, 10);
+  const int run = m.random.integer(3, 20);
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+    const bool opaque = static_cast<int>(i / 3) / run % 4 == 3;
+    m.scene.add(indices[i], indices[i + 1], indices[i + 2], m.color(opaque ? 1 : alpha()), opaque);
+  }
+}
+
+struct Kind {
+  const char* name;
+  void (*make)(Maker&);
+};
+constexpr std::array kKinds = {
+    Kind{"crossing_quads", crossing_quads},
+    Kind{"coplanar", coplanar},
+    Kind{"repeated", repeated},
+    Kind{"stack", stack},
+    Kind{"ribbons", ribbons},
+    Kind{"opaque_between", opaque_between},
+    Kind{"near_crossing", near_crossing},
+    Kind{"micro", micro},
+    Kind{"sheets", sheets},
+    Kind{"soup", soup},
+    Kind{"family", family},
+};
+
+Rgba64 wide(Vec4 c) {
+  return {double{c.x}, double{c.y}, double{c.z}, double{c.w}};
+}
+
+}  // namespace
+
+const int kLayerKinds = static_cast<int>(kKinds.size());
+
+void LayerScene::add(std::uint32_t a, std::uint32_t b, std::uint32_t c, Vec4 color,
+                     bool is_opaque) {
+  mesh.indices.insert(mesh.indices.end(), {a, b, c});
+  colors.push_back(color);
+  opaque.push_back(is_opaque ? 1 : 0);
+}
+
+Vec4 LayerScene::pixel_color(std::uint64_t id, int x, int y) const {
+  const std::uint64_t h =
+      mix(id << 32 ^ static_cast<std::uint64_t>(y) << 16 ^ static_cast<std::uint64_t>(x));
+  const auto factor = [&](int shift) {
+    return 0.5F + 0.5F * static_cast<float>(h >> shift & 255) / 255;
+  };
+  const Vec4 c = colors[static_cast<std::size_t>(id)];
+  const float a = opaque[static_cast<std::size_t>(id)] != 0 ? 1 : factor(0);
+  return {c.x * a * factor(8), c.y * a * factor(16), c.z * a * factor(24), c.w * a};
+}
+
+bool LayerScene::is_hole(std::uint64_t id, int x, int y) const {
+  return holes && id % 2 == 0 &&
+         mix(id << 32 ^ static_cast<std::uint64_t>(x) << 16 ^ static_cast<std::uint64_t>(y)) % 3 ==
+             0;
+}
+
+LayerScene generate_layers(std::uint64_t seed, int width, int height) {
+  const Kind& kind = kKinds[seed % kKinds.size()];
+  Maker m(seed * 0x2545F4914F6CDD1DU + 5, width, height);
+  m.scene.kind = kind.name;
+  kind.make(m);
+  LayerScene scene = std::move(m.scene);
+  const int paint = m.random.integer(0, 3);
+  scene.holes = m.random.chance(0.2);
+  if (paint == 1) scene.paint = Paint::pixel;
+  if (paint == 2 && m.flat) {
+    scene.paint = Paint::gradient;
+    for (std::size_t i = 0; i < scene.mesh.indices.size(); ++i) {
+      const Vec4 c = scene.colors[i / 3];
+      const auto factor = static_cast<float>(m.random.real(0, 1));
+      const bool opaque = scene.opaque[i / 3] != 0;
+      scene.corner_colors.push_back(
+          {c.x * factor, c.y * factor, c.z * factor, opaque ? 1 : c.w * factor});
+    }
+  }
+  return scene;
+}
+
+LayerScene layer_stack(std::uint64_t seed, int count, double alpha, int width, int height) {
+  Maker m(seed, width, height);
+  m.scene.kind = "layer_stack";
+  m.flat = true;
+  m.scene.camera = pixel_camera(width, height);
+  std::vector<int> order(static_cast<std::size_t>(count));
+  std::iota(order.begin(), order.end(), 0);
+  for (std::size_t i = order.size(); i > 1; --i)
+    std::swap(order[i - 1], order[static_cast<std::size_t>(m.random.integer(0, int(i) - 1))]);
+  for (const int k : order) {
+    const double z = (k + 0.5) / count;
+    m.quad({m.at(-1, -1, z), m.at(-1, height + 1, z), m.at(width + 1, height + 1, z),
+            m.at(width + 1, -1, z)},
+           m.color(alpha * m.random.real(0.5, 1)));
+  }
+  return std::move(m.scene);
+}
+
+LayerQuestion::LayerQuestion(const LayerScene& scene, int width, int height, int samples,
+                             Vec4 background)
+    : scene_(scene), width_(width), height_(height), samples_(samples) {
+  const Vec4 b = background;
+  background_ = {double{b.x} * b.w, double{b.y} * b.w, double{b.z} * b.w, double{b.w}};
+  const Scene whole = single(scene.mesh);
+  const SceneBinding binding(whole);
+  pieces = pieces_of(binding.view(), scene.camera, width, height);
+}
+
+LayerInput LayerQuestion::input() const {
+  LayerInput in;
+  in.width = width_;
+  in.height = height_;
+  in.samples = samples_;
+  in.background = background_;
+  in.triangles = pieces.triangles;
+  const LayerScene& scene = scene_;
+  in.is_opaque = [&scene](std::int64_t id) {
+    return scene.opaque[static_cast<std::size_t>(id)] != 0;
+  };
+  if (scene.holes)
+    in.is_hole = [&scene](const SnappedTriangle& t, const ShadePoint& p) {
+      return scene.is_hole(static_cast<std::uint64_t>(t.id), p.px, p.py);
+    };
+  switch (scene.paint) {
+    case Paint::triangle:
+      in.color = [&scene](const SnappedTriangle& t, const ShadePoint&) {
+        return wide(scene.colors[static_cast<std::size_t>(t.id)]);
+      };
+      break;
+    case Paint::pixel:
+      in.color = [&scene](const SnappedTriangle& t, const ShadePoint& p) {
+        return wide(scene.pixel_color(static_cast<std::uint64_t>(t.id), p.px, p.py));
+      };
+      break;
+    case Paint::gradient:
+      in.color = [&scene](const SnappedTriangle& t, const ShadePoint& p) {
+        // Linear over the whole triangle, which is what is drawn where w = 1 and nothing clips.
+        Rgba64 sum;
+        const auto area = static_cast<double>(twice_area(t));
+        for (std::size_t c = 0; c < 3; ++c) {
+          const SnappedVertex &a = t.v[(c + 1) % 3], &b = t.v[(c + 2) % 3];
+          const double weight = static_cast<double>((b.x_fx8 - a.x_fx8) * (p.y_fx8 - a.y_fx8) -
+                                                    (b.y_fx8 - a.y_fx8) * (p.x_fx8 - a.x_fx8)) /
+                                area;
+          const Vec4 v = scene.corner_colors[3 * static_cast<std::size_t>(t.id) + c];
+          sum.r += weight * v.x;
+          sum.g += weight * v.y;
+          sum.b += weight * v.z;
+          sum.a += weight * v.w;
+        }
+        return sum;
+      };
+      break;
+  }
+  return in;
+}
+
+}  // namespace rastrum::test

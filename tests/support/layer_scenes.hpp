@@ -1,0 +1,68 @@
+// Generated scenes for transparency: many layers a pixel, in one order and another, crossing, at
+// equal depths, with opaque surfaces between them. Reproducible from a seed.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <rastrum/scene/scene.hpp>
+
+#include "tests/support/layer_oracle.hpp"
+#include "tests/support/pieces.hpp"
+
+namespace rastrum::test {
+
+/// How the fragments of a triangle get their colours.
+enum class Paint {
+  triangle,  ///< one colour
+  pixel,     ///< LayerScene::pixel_color: another one at each pixel
+  gradient,  ///< linear between the colours of its corners; such scenes have w = 1 everywhere
+};
+
+struct LayerScene {
+  std::string kind;
+  Camera camera;
+  Mesh mesh;                         ///< with indices
+  std::vector<Vec4> colors;          ///< of each triangle, premultiplied
+  std::vector<std::uint8_t> opaque;  ///< of each triangle: 1 or 0
+  std::vector<Vec4> corner_colors;   ///< for Paint::gradient: of each index, premultiplied
+  Paint paint = Paint::triangle;
+  bool holes = false;  ///< is_hole leaves out fragments of every second triangle
+
+  /// Premultiplied. Pure, so that threads may ask.
+  [[nodiscard]] Vec4 pixel_color(std::uint64_t id, int x, int y) const;
+  [[nodiscard]] bool is_hole(std::uint64_t id, int x, int y) const;
+
+  [[nodiscard]] std::size_t size() const { return colors.size(); }
+  void add(std::uint32_t a, std::uint32_t b, std::uint32_t c, Vec4 color, bool is_opaque = false);
+};
+
+/// How many kinds there are; `generate_layers` draws kind seed % kLayerKinds.
+extern const int kLayerKinds;
+
+/// To be seen in a `width` × `height` picture: at most 4,000 triangles and about a million
+/// fragments.
+[[nodiscard]] LayerScene generate_layers(std::uint64_t seed, int width, int height);
+
+/// `count` quads that fill the picture in planes across the view, at pairwise different depths in
+/// no order. Alphas are about `alpha`.
+[[nodiscard]] LayerScene layer_stack(std::uint64_t seed, int count, double alpha, int width,
+                                     int height);
+
+/// What the oracle needs of a scene: its snapped triangles and the functions of its colours. Holds
+/// references to `scene`.
+struct LayerQuestion {
+  LayerQuestion(const LayerScene& scene, int width, int height, int samples, Vec4 background);
+  [[nodiscard]] LayerInput input() const;
+
+  PieceList pieces;
+
+ private:
+  const LayerScene& scene_;
+  int width_, height_, samples_;
+  Rgba64 background_;
+};
+
+}  // namespace rastrum::test

@@ -1,0 +1,290 @@
+// Exact transparency is exact: in every pixel of every scene it equals a sort of all fragments by
+// the visibility word, blended in float64; and it is the same bits over threads, rasterizers and
+// tile sizes, and in whatever order (up to ties) the triangles came.
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/render/render.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/layer_picture.hpp"
+#include "tests/support/layer_program.hpp"
+#include "tests/support/layer_scenes.hpp"
+#include "tests/support/random.hpp"
+
+namespace rastrum::test {
+namespace {
+
+struct Relative {
+  std::string name;
+  RenderOptions options;
+};
+
+/// Who must draw the same bits: rasterizers that own tiles, at all their tile sizes, with 1, 2 and
+/// 8 threads; and on each instruction set.
+std::vector<Relative> relatives(const RenderOptions& base, Isa isa) {
+  struct Way {
+    const char* rasterizer;
+    int bin_px, tile_px;
+  };
+  std::vector<Relative> all;
+  const auto add = [&](const Way& way, int threads) {
+    RenderOptions o = base;
+    o.isa = isa;
+    o.rasterizer = way.rasterizer;
+    o.tuning.bin_px = way.bin_px;
+    o.tuning.tile_px = way.tile_px;
+    o.threads = threads;
+    std::string title = way.rasterizer;
+    title.append(" ").append(std::to_string(way.tile_px)).append(", ");
+    title.append(std::to_string(threads)).append(" threads, ").append(name(isa));
+    all.push_back({std::move(title), o});
+  };
+  for (const int threads : {1, 2, 8}) {
+    add({"grouped", 0, 0}, threads);
+    add({"tiled", 0, 0}, threads);
+  }
+  for (const Way& way : {Way{"tiled", 16, 4}, {"tiled", 64, 16}, {"tiled", 128, 8}}) add(way, 2);
+  return all;
+}
+
+struct Size {
+  int width, height;
+  Vec4 background;
+};
+void PrintTo(const Size& size, std::ostream* out) {
+  *out << size.width << " x " << size.height;
+}
+
+RenderOptions options(const Size& size) {
+  RenderOptions o;
+  o.width = size.width;
+  o.height = size.height;
+  o.background = size.background;
+  return o;
+}
+
+// Around the block (8) and the bin (64); the smallest ones bear the deepest scenes.
+constexpr Size kSizes[] = {
+    {1, 1, {0, 0, 0, 0}},         {8, 8, {1, 1, 1, 1}},     {17, 5, {0.2F, 0.3F, 0.4F, 0.5F}},
+    {37, 53, {0, 0, 0, 0}},       {64, 64, {0, 0, 0, 1}},   {100, 20, {0.9F, 0.1F, 0.5F, 0.25F}},
+    {65, 33, {0.5F, 0, 0.5F, 1}}, {160, 120, {0, 0, 0, 0}},
+};
+
+int scene_count() {
+  const int all = count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 10;
+  return std::max(all / static_cast<int>(std::size(kSizes)), kLayerKinds);
+}
+
+class Exact : public testing::TestWithParam<Size> {
+ protected:
+  ThreadsBeyondCores eight_{8};
+};
+
+/// Each size has scenes of its own.
+std::uint64_t seed_of(const Size& size, int i) {
+  return static_cast<std::uint64_t>(i) + static_cast<std::uint64_t>(size.width) * 1000000;
+}
+
+TEST_P(Exact, EqualsTheOracleEverywhere) {
+  const Size size = GetParam();
+  std::vector<std::vector<std::pair<std::string, Renderer>>> by_isa;
+  for (const Isa isa : available_isas()) {
+    auto& family = by_isa.emplace_back();
+    for (const Relative& r : relatives(options(size), isa))
+      family.emplace_back(r.name, Renderer(r.options));
+  }
+  int failures = 0;
+  std::uint32_t most_layers = 0;
+  std::map<std::string, std::uint64_t> fragments_of_kind;
+  for (int i = 0; i < scene_count(); ++i) {
+    const std::uint64_t seed = seed_of(size, i);
+    const LayerScene scene = generate_layers(seed, size.width, size.height);
+    SCOPED_TRACE("scene " + std::to_string(seed) + " (" + scene.kind + ")");
+    const LayerQuestion question(scene, size.width, size.height, 1, size.background);
+    const LayerImage oracle = blend_layers(question.input(), LayerOrder::depth);
+    const OracleImage surfaces = brute_force(size.width, size.height, question.pieces.triangles);
+    const std::uint64_t fragments =
+        std::accumulate(oracle.layers.begin(), oracle.layers.end(), std::uint64_t{0});
+    most_layers = std::max(most_layers, oracle.most_layers());
+    fragments_of_kind[scene.kind.substr(0, scene.kind.find('/'))] += fragments;
+    LayerProgram program(scene, size.width, size.height);
+    bool good = true;
+    const auto expect = [&good](const testing::AssertionResult& r, const std::string& what) {
+      EXPECT_TRUE(r) << what;
+      good = good && r;
+    };
+    for (auto& family : by_isa) {
+      std::optional<LayerPicture> first;
+      for (auto& [name, renderer] : family) {
+        const bool counts = first && &name == &family.back().first;
+        LayerPicture picture = take(renderer, program, counts);
+        if (counts)
+          expect(std::ranges::equal(picture.overdraw.pixels(), surfaces.overdraw)
+                     ? testing::AssertionSuccess()
+                     : testing::AssertionFailure() << "overdraw",
+                 name);
+        if (!first) {
+          expect(equals_oracle(picture, oracle), name);
+          EXPECT_EQ(picture.error_pixels(), picture.counter("repaired pixels")) << name;
+          if (picture.counter("translucent fragments") != fragments ||
+              picture.counter("deepest") != oracle.most_layers())
+            expect(testing::AssertionFailure()
+                       << "fragments " << picture.counter("translucent fragments") << " and "
+                       << fragments << ", deepest " << picture.counter("deepest") << " and "
+                       << oracle.most_layers(),
+                   name);
+          first = std::move(picture);
+          continue;
+        }
+        expect(same_bits(picture, *first), name + " and " + family[0].first);
+      }
+    }
+    if (!good && ++failures == 3) FAIL() << "three scenes failed; the rest was not drawn";
+  }
+  // No kind of scene may have become invisible.
+  if (size.width < 8 || scene_count() < 10 * kLayerKinds) return;
+  EXPECT_EQ(fragments_of_kind.size(), static_cast<std::size_t>(kLayerKinds));
+  for (const auto& [kind, fragments] : fragments_of_kind) EXPECT_GT(fragments, 0U) << kind;
+  EXPECT_GT(most_layers, size.width <= 17 ? 1000U : 10U);
+}
+
+// The surfaces of a translucent picture are those of the opaque one.
+TEST_P(Exact, IdsAndDepthAreThoseOfOpaqueSurfaces) {
+  const Size size = GetParam();
+  Renderer renderer(options(size));
+  for (int i = 0; i < 4 * kLayerKinds; ++i) {
+    LayerScene scene = generate_layers(seed_of(size, i), size.width, size.height);
+    SCOPED_TRACE(scene.kind);
+    LayerProgram program(scene, size.width, size.height);
+    const LayerPicture translucent = take(renderer, program);
+    for (raster::Draw& draw : program.draws()) draw.flags &= ~raster::kTranslucent;
+    const LayerPicture opaque = take(renderer, program);
+    EXPECT_TRUE(std::ranges::equal(translucent.ids.pixels(), opaque.ids.pixels()));
+    EXPECT_TRUE(std::ranges::equal(translucent.depth.pixels(), opaque.depth.pixels()));
+    EXPECT_EQ(translucent.stats.pixels_covered, opaque.stats.pixels_covered);
+  }
+}
+
+/// The triangles of `scene` in another order; element i of the result was order[i].
+LayerScene reordered(const LayerScene& scene, const std::vector<std::size_t>& order) {
+  LayerScene out = scene;
+  out.mesh.indices.clear();
+  out.colors.clear();
+  out.opaque.clear();
+  out.corner_colors.clear();
+  for (const std::size_t t : order) {
+    out.add(scene.mesh.indices[3 * t], scene.mesh.indices[3 * t + 1], scene.mesh.indices[3 * t + 2],
+            scene.colors[t], scene.opaque[t] != 0);
+    for (std::size_t c = 3 * t; c < 3 * t + 3 && !scene.corner_colors.empty(); ++c)
+      out.corner_colors.push_back(scene.corner_colors[c]);
+  }
+  return out;
+}
+
+TEST_P(Exact, OrderOfSubmissionDecidesOnlyTies) {
+  const Size size = GetParam();
+  Renderer renderer(options(size));
+  std::uint64_t compared = 0, tied = 0, seen = 0;
+  for (int i = 0; i < 4 * kLayerKinds; ++i) {
+    LayerScene scene = generate_layers(seed_of(size, i), size.width, size.height);
+    SCOPED_TRACE(scene.kind);
+    scene.holes = false;  // holes and Paint::pixel are by id
+    if (scene.paint == Paint::pixel) scene.paint = Paint::triangle;
+    const LayerQuestion question(scene, size.width, size.height, 1, size.background);
+    const LayerImage oracle = blend_layers(question.input(), LayerOrder::depth);
+    std::vector<std::size_t> order(scene.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    Random r(static_cast<std::uint64_t>(i));
+    for (std::size_t k = order.size(); k > 1; --k)
+      std::swap(order[k - 1], order[static_cast<std::size_t>(r.integer(0, int(k) - 1))]);
+    // Opaque triangles first or last, so that there are few draws.
+    const bool first = r.chance(0.5);
+    std::stable_partition(order.begin(), order.end(),
+                          [&](std::size_t t) { return (scene.opaque[t] != 0) == first; });
+    const LayerScene shuffled = reordered(scene, order);
+    LayerProgram before(scene, size.width, size.height);
+    LayerProgram after(shuffled, size.width, size.height);
+    const LayerPicture a = take(renderer, before), b = take(renderer, after);
+    for (std::size_t p = 0; p < oracle.ids.size(); ++p) {
+      ASSERT_EQ(a.depth.pixels()[p], b.depth.pixels()[p]);
+      if (oracle.tied[p] != 0) {
+        ++tied;
+        continue;
+      }
+      ++compared;
+      seen += oracle.layers[p] > 1;
+      ASSERT_TRUE(same_color_bits(a, b, p)) << "pixel " << p;
+      const std::int64_t id = b.ids.pixels()[p];
+      ASSERT_EQ(a.ids.pixels()[p],
+                id < 0 ? -1 : static_cast<std::int64_t>(order[static_cast<std::size_t>(id)]));
+    }
+  }
+  EXPECT_GT(tied, 0U);
+  EXPECT_GT(compared, tied);
+  EXPECT_GT(seen, 0U);
+}
+
+// Twice the same renderer, and one that has drawn other things before.
+TEST_P(Exact, NothingOfAnEarlierFrameIsLeft) {
+  const Size size = GetParam();
+  Renderer used(options(size));
+  for (int i = 0; i < 2 * kLayerKinds; ++i) {
+    const LayerScene scene = generate_layers(seed_of(size, i), size.width, size.height);
+    SCOPED_TRACE(scene.kind);
+    LayerProgram program(scene, size.width, size.height);
+    Renderer fresh(options(size));
+    const LayerPicture expected = take(fresh, program);
+    const LayerPicture first = take(used, program), again = take(used, program);
+    EXPECT_TRUE(same_bits(first, expected));
+    EXPECT_TRUE(same_bits(again, expected));
+    for (const auto& [counter, value] : again.stats.counters)
+      EXPECT_EQ(value, expected.counter(counter)) << counter;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, Exact, testing::ValuesIn(kSizes), [](const auto& p) {
+  return std::to_string(p.param.width) + "x" + std::to_string(p.param.height);
+});
+
+// Light without alpha adds up, whatever lies before it in no more than its own share.
+TEST(ExactColours, ColourWithoutAlphaIsAdded) {
+  const Size size{16, 16, {0, 0, 0, 1}};
+  LayerScene scene = layer_stack(3, 3, 0.5, size.width, size.height);
+  for (std::size_t i = 0; i < scene.size(); ++i) scene.colors[i] = {0.25F, 0, 0.125F, 0};
+  LayerProgram program(scene, size.width, size.height);
+  Renderer renderer(options(size));
+  const LayerPicture picture = take(renderer, program);
+  EXPECT_EQ(picture.color(5, 5).x, 0.75F);
+  EXPECT_EQ(picture.color(5, 5).y, 0.0F);
+  EXPECT_EQ(picture.color(5, 5).z, 0.375F);
+  EXPECT_EQ(picture.color(5, 5).w, 1.0F);
+}
+
+// However little of it there is, a colour over nothing keeps its hue.
+TEST(ExactColours, FaintLayersKeepTheirHue) {
+  const Size size{16, 16, {0, 0, 0, 0}};
+  for (const float alpha : {1e-3F, 1e-6F, 1e-9F}) {
+    LayerScene scene = layer_stack(4, 5, 0.5, size.width, size.height);
+    for (Vec4& color : scene.colors) color = {0.8F * alpha, 0.4F * alpha, 0.2F * alpha, alpha};
+    LayerProgram program(scene, size.width, size.height);
+    Renderer renderer(options(size));
+    const LayerPicture picture = take(renderer, program);
+    const Rgba8 c = picture.color8(5, 5);
+    EXPECT_EQ((Rgba8{204, 102, 51, c.a}), c) << alpha;
+    EXPECT_NEAR(picture.color(5, 5).w / (5 * alpha), 1, 0.01) << alpha;
+  }
+}
+
+}  // namespace
+}  // namespace rastrum::test

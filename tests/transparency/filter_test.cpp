@@ -1,0 +1,188 @@
+// What is not exact says so: blending without sorting equals an oracle that does the same; paper
+// 4's filter is right wherever it does not mark a pixel, and the marks are counted; the threshold
+// of alpha costs no more than it says.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/render/render.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/layer_picture.hpp"
+#include "tests/support/layer_program.hpp"
+#include "tests/support/layer_scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+constexpr int kWidth = 48, kHeight = 40;
+
+RenderOptions options(Transparency method, int filter = 3) {
+  RenderOptions o;
+  o.width = kWidth;
+  o.height = kHeight;
+  o.background = {0.2F, 0.6F, 0.4F, 0.5F};
+  o.transparency.method = method;
+  o.transparency.filter = filter;
+  o.threads = 2;
+  return o;
+}
+
+int scene_count() {
+  return std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 50, 2 * kLayerKinds);
+}
+
+LayerScene scene_of(int i) {
+  return generate_layers(static_cast<std::uint64_t>(i) + 7000000, kWidth, kHeight);
+}
+
+std::string title(int i, const LayerScene& scene) {
+  return "scene " + std::to_string(i) + " (" + scene.kind + ")";
+}
+
+TEST(Unsorted, EqualsTheOracleThatBlendsAsSubmitted) {
+  const ThreadsBeyondCores eight(8);
+  RenderOptions o = options(Transparency::unsorted);
+  std::vector<Renderer> renderers;
+  for (const Isa isa : available_isas())
+    for (const char* const rasterizer : {"grouped", "tiled"})
+      for (const int threads : {1, 8}) {
+        o.isa = isa;
+        o.rasterizer = rasterizer;
+        o.threads = threads;
+        renderers.emplace_back(o);
+      }
+  std::uint64_t unlike_exact = 0;
+  for (int i = 0; i < scene_count(); ++i) {
+    const LayerScene scene = scene_of(i);
+    SCOPED_TRACE(title(i, scene));
+    const LayerQuestion question(scene, kWidth, kHeight, 1, o.background);
+    const LayerImage oracle = blend_layers(question.input(), LayerOrder::submission);
+    const LayerImage exact = blend_layers(question.input(), LayerOrder::depth);
+    for (std::size_t p = 0; p < oracle.color.size(); ++p)
+      unlike_exact += std::abs(oracle.color[p].r - exact.color[p].r) > 0.01;
+    LayerProgram program(scene, kWidth, kHeight);
+    for (Renderer& renderer : renderers)
+      ASSERT_TRUE(equals_oracle(take(renderer, program), oracle))
+          << renderer.options().rasterizer << " " << name(*renderer.options().isa) << " "
+          << renderer.options().threads;
+  }
+  EXPECT_GT(unlike_exact, 1000U);
+}
+
+TEST(Filter, IsRightWhereItMarksNothing) {
+  Renderer exact(options(Transparency::exact));
+  const int sizes[] = {1, 3, 8, 64};
+  std::vector<Renderer> filters;
+  for (const int k : sizes) filters.emplace_back(options(Transparency::filter, k));
+  std::uint64_t wrong[4] = {}, differing = 0, repaired = 0;
+  for (int i = 0; i < scene_count(); ++i) {
+    const LayerScene scene = scene_of(i);
+    SCOPED_TRACE(title(i, scene));
+    LayerProgram program(scene, kWidth, kHeight);
+    const LayerPicture right = take(exact, program);
+    repaired += right.counter("repaired pixels");
+    EXPECT_EQ(right.counter("repaired pixels"), right.error_pixels());
+    EXPECT_EQ(right.counter("wrong pixels"), 0U);
+    const std::uint64_t deepest = right.counter("deepest");
+    for (std::size_t f = 0; f < filters.size(); ++f) {
+      const LayerPicture picture = take(filters[f], program);
+      const std::uint64_t marked = picture.counter("wrong pixels");
+      EXPECT_EQ(marked, picture.error_pixels());
+      EXPECT_EQ(picture.counter("repaired pixels"), 0U);
+      wrong[f] += marked;
+      // An insertion that looks back over K fragments sorts K + 1.
+      if (static_cast<std::uint64_t>(sizes[f]) >= deepest) {
+        EXPECT_EQ(marked, 0U);
+      }
+      for (std::size_t p = 0; p < picture.ids.pixels().size(); ++p) {
+        const bool same = same_color_bits(picture, right, p);
+        if (picture.errors.pixels()[p] == 0) {
+          ASSERT_TRUE(same) << "filter " << sizes[f] << ", pixel " << p;
+        } else {
+          ASSERT_EQ(picture.errors.pixels()[p], 255);
+          differing += !same;
+        }
+      }
+      EXPECT_TRUE(std::ranges::equal(picture.ids.pixels(), right.ids.pixels()));
+      EXPECT_TRUE(std::ranges::equal(picture.depth.pixels(), right.depth.pixels()));
+    }
+  }
+  // Marks are not made for nothing, and a longer filter makes fewer.
+  EXPECT_GT(differing, 1000U);
+  EXPECT_GT(repaired, 1000U);
+  EXPECT_GT(wrong[0], wrong[1]);
+  EXPECT_GT(wrong[1], wrong[2]);
+  EXPECT_GE(wrong[2], wrong[3]);
+}
+
+// The marks are the same whoever draws.
+TEST(Filter, MarksDoNotDependOnThreads) {
+  const ThreadsBeyondCores eight(8);
+  RenderOptions o = options(Transparency::filter, 1);
+  o.threads = 1;
+  Renderer one(o);
+  o.threads = 8;
+  Renderer eight_threads(o);
+  for (int i = 0; i < 2 * kLayerKinds; ++i) {
+    const LayerScene scene = scene_of(i);
+    SCOPED_TRACE(title(i, scene));
+    LayerProgram program(scene, kWidth, kHeight);
+    const LayerPicture a = take(one, program), b = take(eight_threads, program);
+    EXPECT_TRUE(same_bits(a, b));
+    EXPECT_TRUE(std::ranges::equal(a.errors.pixels(), b.errors.pixels()));
+  }
+}
+
+// What a pixel that is nearly opaque still lets through is all that a threshold may take.
+TEST(AlphaThreshold, CostsNoMoreThanItLetsThrough) {
+  Renderer exact(options(Transparency::exact));
+  std::uint64_t changed = 0;
+  for (const float threshold : {1 - 1.0F / 128, 0.75F}) {
+    RenderOptions o = options(Transparency::exact);
+    o.transparency.alpha_threshold = threshold;
+    Renderer early(o);
+    const double through = 1 - double{threshold};
+    for (int i = 0; i < scene_count(); ++i) {
+      const LayerScene scene = scene_of(i);
+      SCOPED_TRACE(title(i, scene));
+      LayerProgram program(scene, kWidth, kHeight);
+      const LayerPicture a = take(exact, program), b = take(early, program);
+      EXPECT_TRUE(std::ranges::equal(a.ids.pixels(), b.ids.pixels()));
+      EXPECT_TRUE(std::ranges::equal(a.depth.pixels(), b.depth.pixels()));
+      for (std::size_t p = 0; p < a.ids.pixels().size(); ++p) {
+        const Vec4 x = a.color.pixels()[p], y = b.color.pixels()[p];
+        const double off = std::max(
+            {std::abs(x.x - y.x), std::abs(x.y - y.y), std::abs(x.z - y.z), std::abs(x.w - y.w)});
+        ASSERT_LE(off, through + 1e-6) << "pixel " << p;
+        changed += off > 0;
+        // Straight colours over a nearly opaque alpha, each rounded to 8 bits.
+        const Rgba8 u = a.color8.pixels()[p], v = b.color8.pixels()[p];
+        const int steps = std::max(
+            {std::abs(u.r - v.r), std::abs(u.g - v.g), std::abs(u.b - v.b), std::abs(u.a - v.a)});
+        ASSERT_LE(steps, 255 * 2 * through + 1) << "pixel " << p;
+      }
+    }
+  }
+  EXPECT_GT(changed, 1000U);
+}
+
+TEST(TransparencyOptions, NoneDrawsTranslucentSurfacesOpaque) {
+  Renderer none(options(Transparency::none)), exact(options(Transparency::exact));
+  for (int i = 0; i < kLayerKinds; ++i) {
+    const LayerScene scene = scene_of(i);
+    SCOPED_TRACE(title(i, scene));
+    LayerProgram program(scene, kWidth, kHeight);
+    const LayerPicture plain = take(none, program);
+    for (raster::Draw& draw : program.draws()) draw.flags &= ~raster::kTranslucent;
+    EXPECT_TRUE(same_bits(plain, take(exact, program)));
+  }
+}
+
+}  // namespace
+}  // namespace rastrum::test

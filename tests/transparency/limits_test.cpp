@@ -1,0 +1,114 @@
+// No depth is too deep: thousands of layers, also where the memory is limited to far less than
+// their fragments would take.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/render/render.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/layer_picture.hpp"
+#include "tests/support/layer_program.hpp"
+#include "tests/support/layer_scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+constexpr std::uint64_t kMebi = std::uint64_t{1} << 20;
+
+RenderOptions options(int size, std::uint64_t limit, int threads, const char* rasterizer) {
+  RenderOptions o;
+  o.width = o.height = size;
+  o.memory_limit = limit;
+  o.threads = threads;
+  o.rasterizer = rasterizer;
+  o.background = {1, 1, 1, 1};
+  return o;
+}
+
+TEST(Limits, TenThousandLayers) {
+  const ThreadsBeyondCores eight(8);
+  constexpr int kSize = 64, kLayers = 10000;
+  const LayerScene scene = layer_stack(11, kLayers, 4.0 / kLayers, kSize, kSize);
+  const LayerQuestion question(scene, kSize, kSize, 1, {1, 1, 1, 1});
+  const LayerImage oracle = blend_layers(question.input(), LayerOrder::depth);
+  ASSERT_EQ(oracle.most_layers(), static_cast<std::uint32_t>(kLayers));
+  LayerProgram program(scene, kSize, kSize);
+  Renderer free(options(kSize, 0, 2, "auto"));
+  const LayerPicture expected = take(free, program);
+  EXPECT_TRUE(equals_oracle(expected, oracle));
+  EXPECT_EQ(expected.counter("deepest"), static_cast<std::uint64_t>(kLayers));
+  for (const char* const rasterizer : {"grouped", "tiled"})
+    for (const auto& [limit, threads] : {std::pair{16 * kMebi, 8}, {8 * kMebi, 2}}) {
+      SCOPED_TRACE(std::string(rasterizer).append(", ").append(std::to_string(limit)));
+      Renderer limited(options(kSize, limit, threads, rasterizer));
+      for (int frame = 0; frame < 2; ++frame) {
+        const LayerPicture picture = take(limited, program);
+        EXPECT_TRUE(same_bits(picture, expected));
+        EXPECT_LE(picture.stats.peak_bytes, limit) << "frame " << frame;
+      }
+    }
+}
+
+// Generated scenes in less memory than they would take.
+TEST(Limits, LittleMemoryChangesNoPixel) {
+  const ThreadsBeyondCores eight(8);
+  constexpr int kSize = 160;
+  Renderer free(options(kSize, 0, 2, "auto"));
+  std::vector<Renderer> limited;
+  for (const char* const rasterizer : {"grouped", "tiled"})
+    for (const int threads : {2, 8})
+      limited.emplace_back(options(kSize, 4 * kMebi, threads, rasterizer));
+  const int scenes =
+      std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 100, kLayerKinds);
+  std::uint64_t largest = 0;
+  for (int i = 0; i < scenes; ++i) {
+    const LayerScene scene = generate_layers(static_cast<std::uint64_t>(i) + 99, kSize, kSize);
+    SCOPED_TRACE("scene " + std::to_string(i) + " (" + scene.kind + ")");
+    LayerProgram program(scene, kSize, kSize);
+    const LayerPicture expected = take(free, program);
+    largest = std::max(largest, expected.stats.peak_bytes);
+    for (Renderer& renderer : limited) {
+      const LayerPicture picture = take(renderer, program);
+      ASSERT_TRUE(same_bits(picture, expected)) << renderer.options().rasterizer;
+      EXPECT_LE(picture.stats.peak_bytes, renderer.options().memory_limit)
+          << renderer.options().rasterizer << ", " << renderer.options().threads << " threads";
+    }
+  }
+  EXPECT_GT(largest, 4 * kMebi);
+}
+
+// 2.6 · 10⁹ fragments in half a GiB. All layers are level, so that one pixel's blend is everyone's.
+TEST(Limits, TenThousandLayersAt512) {
+  if (count_from_environment("RASTRUM_FULL", 0) == 0) GTEST_SKIP() << "only with RASTRUM_FULL=1";
+  constexpr int kSize = 512, kLayers = 10000;
+  constexpr std::uint64_t kLimit = 512 * kMebi;
+  const LayerScene scene = layer_stack(12, kLayers, 4.0 / kLayers, kSize, kSize);
+  const LayerQuestion question(scene, kSize, kSize, 1, {1, 1, 1, 1});
+  LayerInput one_pixel = question.input();
+  one_pixel.width = one_pixel.height = 1;
+  const LayerImage oracle = blend_layers(one_pixel, LayerOrder::depth);
+  ASSERT_EQ(oracle.most_layers(), static_cast<std::uint32_t>(kLayers));
+  LayerProgram program(scene, kSize, kSize);
+  Renderer renderer(options(kSize, kLimit, 2, "auto"));
+  const LayerPicture picture = take(renderer, program);
+  EXPECT_LE(picture.stats.peak_bytes, kLimit);
+  LayerImage everywhere;
+  everywhere.width = everywhere.height = kSize;
+  everywhere.color.assign(std::size_t{kSize} * kSize, oracle.color[0]);
+  everywhere.depth.assign(std::size_t{kSize} * kSize, oracle.depth[0]);
+  everywhere.layers.assign(std::size_t{kSize} * kSize, oracle.layers[0]);
+  // Of a quad's two halves either one covers a pixel, and both have its colour.
+  everywhere.ids.assign(picture.ids.pixels().begin(), picture.ids.pixels().end());
+  for (const std::int64_t id : everywhere.ids) ASSERT_EQ(id / 2, oracle.ids[0] / 2);
+  EXPECT_TRUE(equals_oracle(picture, everywhere));
+}
+
+}  // namespace
+}  // namespace rastrum::test
