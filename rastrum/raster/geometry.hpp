@@ -143,7 +143,7 @@ struct VisibleBlock {
 inline constexpr std::size_t kMaxExtraTargets = 7;
 
 /// Bytes that a shader may ask for, so that they can be set aside for each thread.
-inline constexpr std::size_t kMaxShaderScratch = 16384;
+inline constexpr std::size_t kMaxShaderScratch = 65536;
 
 /// Shades the visible surface of a block. Thread-safe.
 class BlockShader {

@@ -31,7 +31,7 @@ void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint
 /// The triangles of a bin that were seen last, by their ids' low bits: rows and blocks beside
 /// mostly meet the same ones again.
 struct KeptTriangles {
-  static constexpr std::size_t kCount = 64;
+  static constexpr std::size_t kCount = 256;
   LitTriangle triangles[kCount];
 
   const LitTriangle& find(const LitScene& scene, const FrameGeometry& frame, std::uint64_t low,
