@@ -81,6 +81,8 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
       input.first_id = id;
     }
     input.flags = draw.flags_of(t);
+    // Who draws translucent surfaces opaque knows no such fragments.
+    if (frame.request.transparency.method == Transparency::none) input.flags &= ~kTranslucent;
     input.cull = draw.effective_cull();
     input.view = image;
     input.bin_columns = static_cast<std::uint32_t>((geometry.width + kBinSize - 1) / kBinSize);

@@ -75,7 +75,7 @@ std::string why(const RenderOptions& options) {
 bool is_translucent(const raster::FrameRequest& request) {
   return request.transparency.method != Transparency::none &&
          std::ranges::any_of(request.draws, [](const raster::Draw& d) {
-           return (d.flags & raster::kTranslucent) != 0;
+           return (d.any_flags() & raster::kTranslucent) != 0;
          });
 }
 
@@ -103,6 +103,10 @@ DrawFrame make_reference(const RenderOptions& options, MemoryAccount& memory) {
                     .append(options.rasterizer)
                     .append("' needs --device threads; serial has 'reference'"));
   return [&memory](raster::FrameRequest& request) {
+    if (is_translucent(request))
+      throw Error(Errc::invalid_argument,
+                  "something is translucent, and 'reference' draws opaque surfaces alone: use "
+                  "--device threads, or ask for transparency 'none'");
     return raster::render_reference(request, memory);
   };
 }
