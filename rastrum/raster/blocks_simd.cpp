@@ -18,6 +18,7 @@
 #include <rastrum/raster/depth_bounds.hpp>
 #include <rastrum/raster/kernels_simd.hpp>
 #include <rastrum/raster/lanes-inl.hpp>
+#include <rastrum/raster/shaders/srgb_lanes-inl.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -283,12 +284,16 @@ void masks(const Piece* pieces, Block* blocks, std::size_t n) noexcept {
   }
 }
 
-HWY_INLINE hn::Vec<U32> quantize_lanes(const float* c) {
+HWY_INLINE hn::Vec<U32> quantize_lanes(F v) {
   const F32 d;
-  const F v = hn::Load(d, c);
   const F low = hn::IfThenElseZero(hn::Gt(v, hn::Zero(d)), v);
   const F clamped = hn::Min(low, hn::Set(d, 1.0F));
   return hn::BitCast(U32{}, hn::NearestInt(hn::Mul(clamped, hn::Set(d, 255.0F))));
+}
+
+HWY_INLINE hn::Vec<U32> pack(F r, F g, F b) {
+  const auto red_green = hn::Or(quantize_lanes(r), hn::ShiftLeft<8>(quantize_lanes(g)));
+  return hn::Or(red_green, hn::ShiftLeft<16>(quantize_lanes(b)));
 }
 
 void store_opaque(const BlockColors& colors, std::uint64_t covered, Rgba8 background, Rgba8* out,
@@ -298,13 +303,49 @@ void store_opaque(const BlockColors& colors, std::uint64_t covered, Rgba8 backgr
   for (int row = 0; row < kBlockSize; ++row)
     for (std::size_t part = 0; part < 8; part += kLanes) {
       const std::size_t i = static_cast<std::size_t>(row) * 8 + part;
-      auto pixel =
-          hn::Or(quantize_lanes(colors.r + i), hn::ShiftLeft<8>(quantize_lanes(colors.g + i)));
-      pixel = hn::Or(pixel, hn::ShiftLeft<16>(quantize_lanes(colors.b + i)));
-      pixel = hn::Or(pixel, hn::Set(d, 0xff000000U));
+      const F32 df;
+      const auto rgb =
+          pack(hn::Load(df, colors.r + i), hn::Load(df, colors.g + i), hn::Load(df, colors.b + i));
+      const auto pixel = hn::Or(rgb, hn::Set(d, 0xff000000U));
       hn::StoreU(hn::IfThenElse(lane_mask(covered >> i), pixel, behind), d,
                  reinterpret_cast<std::uint32_t*>(out + row * stride + static_cast<int>(part)));
     }
+}
+
+template <bool kLinear>
+void store_over(const BlockColors& colors, std::uint64_t covered, const Backdrop& backdrop,
+                Rgba8* out, std::ptrdiff_t stride) {
+  const F32 d;
+  const U32 du;
+  const F one = hn::Set(d, 1.0F);
+  const auto empty = hn::Set(du, std::bit_cast<std::uint32_t>(backdrop.empty));
+  for (int row = 0; row < kBlockSize; ++row)
+    for (std::size_t part = 0; part < 8; part += kLanes) {
+      const std::size_t i = static_cast<std::size_t>(row) * 8 + part;
+      const F front = hn::Load(d, colors.a + i), through = hn::Sub(one, front);
+      const auto over = [&](F color, float behind) HWY_ATTR {
+        return hn::Add(color, hn::Mul(hn::Set(d, behind), through));
+      };
+      const F a = over(front, backdrop.color.w);
+      const auto divides = hn::And(hn::Gt(a, hn::Zero(d)), hn::Ne(a, one));
+      const F scale = hn::IfThenElse(divides, hn::Div(one, a), one);
+      const auto straight = [&](const float* channel, float behind) HWY_ATTR {
+        const F c = hn::Mul(over(hn::Load(d, channel + i), behind), scale);
+        if constexpr (kLinear) return srgb_lanes(d, c);
+        return c;
+      };
+      const auto rgb =
+          pack(straight(colors.r, backdrop.color.x), straight(colors.g, backdrop.color.y),
+               straight(colors.b, backdrop.color.z));
+      const auto pixel = hn::Or(rgb, hn::ShiftLeft<24>(quantize_lanes(a)));
+      hn::StoreU(hn::IfThenElse(lane_mask(covered >> i), pixel, empty), du,
+                 reinterpret_cast<std::uint32_t*>(out + row * stride + static_cast<int>(part)));
+    }
+}
+
+void store_blended(const BlockColors& colors, std::uint64_t covered, const Backdrop& backdrop,
+                   Rgba8* out, std::ptrdiff_t stride) noexcept {
+  (backdrop.linear ? store_over<true> : store_over<false>)(colors, covered, backdrop, out, stride);
 }
 
 std::uint64_t lowest(const std::uint64_t* words) noexcept {
@@ -337,6 +378,7 @@ void fill(Kernels& table) {
   table.lowest = lowest;
   table.covered = covered;
   table.store_opaque = store_opaque;
+  table.store_blended = store_blended;
 }
 
 }  // namespace

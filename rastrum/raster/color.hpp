@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include <rastrum/core/image.hpp>
+#include <rastrum/raster/shaders/srgb.hpp>
 
 namespace rastrum::raster {
 
@@ -28,11 +29,38 @@ inline std::uint8_t quantize(float c) {
   return static_cast<std::uint8_t>(std::nearbyint(clamped * 255.0F));
 }
 
-inline Rgba8 to_straight_rgba8(Vec4 premultiplied) {
-  const float a = premultiplied.w;
-  const float scale = a > 0 && a != 1 ? 1 / a : 1.0F;
-  return {quantize(premultiplied.x * scale), quantize(premultiplied.y * scale),
-          quantize(premultiplied.z * scale), quantize(a)};
+inline Vec4 straight_from_premultiplied(Vec4 c) {
+  const float scale = c.w > 0 && c.w != 1 ? 1 / c.w : 1.0F;
+  return {c.x * scale, c.y * scale, c.z * scale, c.w};
 }
+
+inline Rgba8 to_straight_rgba8(Vec4 premultiplied) {
+  const Vec4 c = straight_from_premultiplied(premultiplied);
+  return {quantize(c.x), quantize(c.y), quantize(c.z), quantize(c.w)};
+}
+
+/// Premultiplied linear light to premultiplied display values.
+inline Vec4 display_from_linear(Vec4 premultiplied) {
+  const Vec4 c = straight_from_premultiplied(premultiplied);
+  return {srgb_from_linear(c.x) * c.w, srgb_from_linear(c.y) * c.w, srgb_from_linear(c.z) * c.w,
+          c.w};
+}
+
+/// The same to 8 bits, without the way through premultiplied ones.
+inline Rgba8 linear_to_straight_rgba8(Vec4 premultiplied) {
+  const Vec4 c = straight_from_premultiplied(premultiplied);
+  return {quantize(srgb_from_linear(c.x)), quantize(srgb_from_linear(c.y)),
+          quantize(srgb_from_linear(c.z)), quantize(c.w)};
+}
+
+/// What the colours of a block are drawn over.
+struct Backdrop {
+  Vec4 color{};         ///< premultiplied; linear light where the colours are
+  bool linear = false;  ///< they are
+  Rgba8 empty{};        ///< of pixels that nothing covers
+
+  /// A covered pixel, premultiplied.
+  [[nodiscard]] Vec4 over(Vec4 front) const { return front + color * (1 - front.w); }
+};
 
 }  // namespace rastrum::raster

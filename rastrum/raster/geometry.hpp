@@ -79,6 +79,12 @@ struct Draw {
                ? flags
                : flags | material_flags[face_materials[static_cast<std::size_t>(primitive)]];
   }
+  /// Those that some primitive may have.
+  [[nodiscard]] std::uint32_t any_flags() const {
+    std::uint32_t any = flags;
+    for (const std::uint32_t f : material_flags) any |= f;
+    return any;
+  }
   /// What the winding makes of `cull`, for counter-clockwise fronts.
   [[nodiscard]] Cull effective_cull() const {
     if (cull == Cull::none || winding == Winding::either) return Cull::none;
@@ -174,6 +180,9 @@ struct FrameRequest {
   bool hierarchical_z = true;
   TransparencyOptions transparency;  ///< for a visibility that keeps layers
   int samples = 1;                   ///< a pixel; more want a visibility that keeps layers
+  /// The shader returns linear light: it is blended as such, also over the background, and the sRGB
+  /// transfer is applied to the result.
+  bool linear_light = false;
 };
 
 }  // namespace rastrum::raster

@@ -109,21 +109,35 @@ void store_opaque_scalar(const BlockColors& colors, std::uint64_t covered, Rgba8
             : Rgba8{quantize(colors.r[i]), quantize(colors.g[i]), quantize(colors.b[i]), 255};
 }
 
+void store_blended_scalar(const BlockColors& colors, std::uint64_t covered,
+                          const Backdrop& backdrop, Rgba8* out, std::ptrdiff_t stride) noexcept {
+  for (int i = 0; i < 64; ++i) {
+    Rgba8& pixel = out[i / kBlockSize * stride + i % kBlockSize];
+    const Vec4 c = backdrop.over({colors.r[i], colors.g[i], colors.b[i], colors.a[i]});
+    if ((covered >> i & 1) == 0)
+      pixel = backdrop.empty;
+    else
+      pixel = backdrop.linear ? linear_to_straight_rgba8(c) : to_straight_rgba8(c);
+  }
+}
+
 constexpr std::size_t kIsaCount = static_cast<std::size_t>(Isa::neon) + 1;
 
-constexpr Kernels kScalar{project_scalar, setup_scalar,   cover_scalar,
-                          masks_scalar,   words_scalar,   maximum_scalar,
-                          lowest_scalar,  covered_scalar, store_opaque_scalar};
+constexpr Kernels kScalar{project_scalar,      setup_scalar,        cover_scalar,  masks_scalar,
+                          words_scalar,        maximum_scalar,      lowest_scalar, covered_scalar,
+                          store_opaque_scalar, store_blended_scalar};
 
 }  // namespace
 
 const Kernels& kernels(Isa isa) noexcept {
   static const std::array<Kernels, kIsaCount> tables = [] {
     std::array<Kernels, kIsaCount> all;
-    for (std::size_t i = 0; i < kIsaCount; ++i) {
-      all[i] = kScalar;
-      fill_setup_kernels(static_cast<Isa>(i), all[i]);
-      fill_block_kernels(static_cast<Isa>(i), all[i]);
+    all.fill(kScalar);
+    // Only those of this machine: filling a table is compiled for its instruction set, too.
+    for (const Isa available : available_isas()) {
+      Kernels& table = all[static_cast<std::size_t>(available)];
+      fill_setup_kernels(available, table);
+      fill_block_kernels(available, table);
     }
     return all;
   }();

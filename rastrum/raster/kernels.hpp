@@ -110,6 +110,10 @@ struct Kernels {
   /// A whole block of opaque colours in 8 bits, `background` where nothing is covered.
   void (*store_opaque)(const BlockColors& colors, std::uint64_t covered, Rgba8 background,
                        Rgba8* out, std::ptrdiff_t stride) noexcept;
+
+  /// The same for colours that may be translucent.
+  void (*store_blended)(const BlockColors& colors, std::uint64_t covered, const Backdrop& backdrop,
+                        Rgba8* out, std::ptrdiff_t stride) noexcept;
 };
 
 /// The best table at or below `isa` that was compiled for this architecture.

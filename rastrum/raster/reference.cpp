@@ -64,6 +64,9 @@ FrameStats render_reference(FrameRequest& request, MemoryAccount& memory) {
   if (!request.targets.overdraw.empty())
     for (int y = 0; y < request.height; ++y)
       std::fill_n(request.targets.overdraw.row(y), request.width, 0U);
+  if (!request.targets.errors.empty())
+    for (int y = 0; y < request.height; ++y)
+      std::fill_n(request.targets.errors.row(y), request.width, std::uint8_t{0});
   stats.triangles.input = totals.primitives;
   for (const Draw& draw : request.draws)
     for (std::uint64_t t = 0; t < draw.primitive_count; ++t) {

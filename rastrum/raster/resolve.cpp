@@ -8,6 +8,7 @@
 #include <rastrum/core/error.hpp>
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/kernels.hpp>
+#include <rastrum/raster/shaders/srgb.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -18,20 +19,34 @@ struct Window {
   [[nodiscard]] bool whole() const { return columns == kBlockSize && rows == kBlockSize; }
 };
 
-/// Every case: float targets, translucent colours, blocks cut by the image's edge. Pixels that are
-/// not in `touched` keep what they have.
+/// Three powers, where a frame in linear light has a background.
+Backdrop backdrop_of(const FrameRequest& request) {
+  Vec4 b = request.background;
+  const Rgba8 empty = to_straight_rgba8({b.x * b.w, b.y * b.w, b.z * b.w, b.w});
+  if (request.linear_light && b.w != 0)
+    for (float* const channel : {&b.x, &b.y, &b.z})
+      *channel = static_cast<float>(linear_from_srgb(static_cast<double>(*channel)));
+  return {{b.x * b.w, b.y * b.w, b.z * b.w, b.w}, request.linear_light, empty};
+}
+
+/// Every case: float targets, blocks cut by the image's edge, passes that touch some pixels alone.
+/// Pixels that are not in `touched` keep what they have.
 void store_colors(const FrameRequest& request, const BlockColors& colors, std::uint64_t covered,
-                  std::uint64_t touched, const Window& w, bool wants_8_bit) {
+                  std::uint64_t touched, const Backdrop& backdrop, const Window& w,
+                  bool wants_8_bit) {
   const Vec4 b = request.background;
   const Vec4 background{b.x * b.w, b.y * b.w, b.z * b.w, b.w};
   for (std::uint64_t m = touched; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const int x = w.x0 + i % kBlockSize, y = w.y0 + i / kBlockSize;
     Vec4 color = background;
-    if ((covered >> i & 1) != 0)
-      color =
-          Vec4{colors.r[i], colors.g[i], colors.b[i], colors.a[i]} + background * (1 - colors.a[i]);
-    if (wants_8_bit) request.targets.color8(x, y) = to_straight_rgba8(color);
+    Rgba8 color8 = backdrop.empty;
+    if ((covered >> i & 1) != 0) {
+      color = backdrop.over({colors.r[i], colors.g[i], colors.b[i], colors.a[i]});
+      color8 = backdrop.linear ? linear_to_straight_rgba8(color) : to_straight_rgba8(color);
+      if (backdrop.linear) color = display_from_linear(color);
+    }
+    if (wants_8_bit) request.targets.color8(x, y) = color8;
     if (!request.targets.color.empty()) request.targets.color(x, y) = color;
   }
 }
@@ -40,29 +55,32 @@ void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
                     const VisibleBlock& block, std::uint64_t touched, const BlockColors* shaded,
                     const Window& w) {
   const Targets& targets = request.targets;
-  const Vec4 b = request.background;
-  const Rgba8 background = to_straight_rgba8({b.x * b.w, b.y * b.w, b.z * b.w, b.w});
+  const Backdrop backdrop = backdrop_of(request);
   bool wants_8_bit = !targets.color8.empty();
   if (block.covered == 0 && wants_8_bit && !targets.load) {
     for (int y = 0; y < w.rows; ++y)
-      std::fill_n(targets.color8.row(w.y0 + y) + w.x0, w.columns, background);
+      std::fill_n(targets.color8.row(w.y0 + y) + w.x0, w.columns, backdrop.empty);
     wants_8_bit = false;
   }
   BlockColors own;
   const BlockColors* colors = shaded;
-  if (block.covered != 0 && shaded == nullptr) {
-    const bool opaque = request.shader->shade(frame, block, request.isa, own);
-    if (opaque && wants_8_bit && w.whole() && touched == ~std::uint64_t{0}) {
-      kernels(request.isa)
-          .store_opaque(own, block.covered, background, &targets.color8(w.x0, w.y0),
-                        targets.color8.stride);
-      wants_8_bit = false;
-    }
+  bool opaque = false;
+  if (shaded == nullptr) {
+    colors = &own;
+    if (block.covered != 0) opaque = request.shader->shade(frame, block, request.isa, own);
     if (opaque) std::fill_n(own.a, 64, 1.0F);
   }
-  if (colors == nullptr) colors = &own;
+  if (wants_8_bit && w.whole() && touched == ~std::uint64_t{0}) {
+    const Kernels& kernel = kernels(request.isa);
+    Rgba8* const out = &targets.color8(w.x0, w.y0);
+    if (opaque && !request.linear_light)
+      kernel.store_opaque(*colors, block.covered, backdrop.empty, out, targets.color8.stride);
+    else
+      kernel.store_blended(*colors, block.covered, backdrop, out, targets.color8.stride);
+    wants_8_bit = false;
+  }
   if (wants_8_bit || !targets.color.empty())
-    store_colors(request, *colors, block.covered, touched, w, wants_8_bit);
+    store_colors(request, *colors, block.covered, touched, backdrop, w, wants_8_bit);
 }
 
 /// Shades into `colors` and all of Targets::extra, which it stores.

@@ -116,6 +116,8 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
     for (std::uint32_t sample = 0; sample < samples.size(); ++sample) {
       const SampleOffset at = samples[sample];
       input.flags = draw.flags_of(t) | sample << kSampleShift;
+      // Who draws translucent surfaces opaque knows no such fragments.
+      if (frame.request.transparency.method == Transparency::none) input.flags &= ~kTranslucent;
       if (samples.size() > 1 && draw.has_kernel()) corners.see_from(at, count);
       pieces.data.grow(std::size_t{pieces.count} + kSetupBatch, pieces.count);
       BinFragment* const fragments =

@@ -10,6 +10,7 @@
 #include <rastrum/raster/reference.hpp>
 #include <rastrum/render/registry.hpp>
 #include <rastrum/transparency/layers.hpp>
+#include <rastrum/transparency/reference.hpp>
 
 namespace rastrum {
 namespace {
@@ -74,13 +75,11 @@ std::string why(const RenderOptions& options) {
 
 /// Whether words are not enough: something is translucent, or pixels have several samples.
 bool needs_layers(const raster::FrameRequest& request) {
-  const auto is_translucent = [](const raster::Draw& d) {
-    std::uint32_t flags = d.flags;
-    for (const std::uint32_t of_material : d.material_flags) flags |= of_material;
-    return (flags & raster::kTranslucent) != 0;
-  };
-  return request.samples > 1 || (request.transparency.method != Transparency::none &&
-                                 std::ranges::any_of(request.draws, is_translucent));
+  return request.samples > 1 ||
+         (request.transparency.method != Transparency::none &&
+          std::ranges::any_of(request.draws, [](const raster::Draw& d) {
+            return (d.any_flags() & raster::kTranslucent) != 0;
+          }));
 }
 
 /// Layers want a thread that owns a tile, and are a visibility themselves.
@@ -108,7 +107,8 @@ DrawFrame make_reference(const RenderOptions& options, MemoryAccount& memory) {
                     .append(options.rasterizer)
                     .append("' needs --device threads; serial has 'reference'"));
   return [&memory](raster::FrameRequest& request) {
-    return raster::render_reference(request, memory);
+    return needs_layers(request) ? transparency::render_reference(request, memory)
+                                 : raster::render_reference(request, memory);
   };
 }
 

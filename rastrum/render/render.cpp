@@ -8,7 +8,7 @@
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/interpolate.hpp>
-#include <rastrum/raster/shaders/alpha_test.hpp>
+#include <rastrum/raster/shaders/alpha.hpp>
 #include <rastrum/raster/shaders/lit.hpp>
 #include <rastrum/raster/shaders/material.hpp>
 #include <rastrum/raster/shaders/texture.hpp>
@@ -112,6 +112,20 @@ Cull material_cull(const InstanceView& instance, std::span<const Material> mater
   return determinant < 0 ? Cull::front : Cull::back;
 }
 
+void check_transparency(const RenderOptions& o) {
+  const auto require = [](bool ok, const char* what) {
+    if (!ok) throw Error(Errc::invalid_argument, what);
+  };
+  // Written so that a NaN fails.
+  require(o.opacity >= 0 && o.opacity <= 1, "opacity must lie in [0, 1]");
+  require(o.transparency.filter >= 1 && o.transparency.filter <= 64,
+          "the filter of transparency must hold 1 to 64 samples");
+  require(o.transparency.alpha_threshold > 0 && o.transparency.alpha_threshold <= 1,
+          "the alpha threshold must be > 0 and at most 1");
+  require(o.samples == 1 || o.samples == 4 || o.samples == 8 || o.samples == 16,
+          "samples must be 1, 4, 8 or 16");
+}
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -135,6 +149,7 @@ Renderer::Renderer(RenderOptions options) : impl_(std::make_unique<Impl>(std::mo
     throw Error(Errc::invalid_argument, "threads must lie between 0 (all) and 4096");
   if (o.device == Device::cuda)
     throw Error(Errc::no_device, "this build has no CUDA backend; use --device threads");
+  check_transparency(o);
   const std::vector<Isa> isas = available_isas();
   impl_->isa = o.isa.value_or(isas.back());
   if (std::find(isas.begin(), isas.end(), impl_->isa) == isas.end())
@@ -165,8 +180,10 @@ FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const 
   sources.reserve(scene.instances.size());
   std::vector<raster::Draw> draws;
   draws.reserve(scene.instances.size());
-  const std::vector<std::uint32_t> material_flags = raster::material_flags(scene.materials);
-  std::uint32_t any_flags = 0;
+  const bool blends = o.transparency.method != Transparency::none && o.shader != Shader::depth;
+  const bool all_translucent = blends && o.opacity < 1;
+  const std::vector<std::uint32_t> material_flags = raster::material_flags(scene.materials, blends);
+  std::uint32_t any_flags = 0;  // of materials and vertex colours
   for (const InstanceView& instance : scene.instances) {
     sources.emplace_back(instance.mesh.positions, to_clip * instance.object_to_world);
     raster::Draw& draw = draws.emplace_back();
@@ -175,23 +192,41 @@ FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const 
     draw.indices = instance.mesh.indices;
     draw.primitive_count = instance.mesh.triangle_count();
     draw.cull = material_cull(instance, scene.materials, o.shader);
-    any_flags |= raster::set_material_flags(draw, instance.mesh, material_flags);
+    std::uint32_t flags = raster::set_material_flags(draw, instance.mesh, material_flags);
+    if (blends && scene.materials.empty() &&
+        raster::has_vertex_alpha(instance.mesh, impl_->threads.get())) {
+      draw.flags |= raster::kTranslucent;
+      flags |= raster::kTranslucent;
+    }
+    if (all_translucent) draw.flags |= raster::kTranslucent;
+    any_flags |= flags;
   }
   const bool any_mask = (any_flags & raster::kTested) != 0;
+  const bool any_blend = (any_flags & raster::kTranslucent) != 0;
+  const bool is_translucent = all_translucent || any_blend;
   const bool shades_materials = o.shader == Shader::material;
   std::optional<raster::MaterialScene> materials;
   std::unique_ptr<raster::FragmentTest> test;
-  if (shades_materials || any_mask) {
-    impl_->textures.update(scene.textures, raster::texture_uses(scene, shades_materials),
+  if (shades_materials || any_mask || any_blend) {
+    impl_->textures.update(scene.textures, raster::texture_uses(scene, shades_materials, any_blend),
                            impl_->threads.get());
     materials.emplace(scene, camera, o.width, o.height, impl_->textures);
   }
   if (any_mask) test = raster::make_alpha_test(*materials, impl_->isa);
-  if (shades_materials)
-    return draw(draws, *raster::make_material_shader(*materials), test.get(), targets);
   if (o.shader == Shader::depth) return draw_depth(draws, test.get(), targets);
-  const raster::LitScene lit(scene, camera, o.width, o.height);
-  return draw(draws, *raster::make_lit_shader(lit_model(o.shader), lit), test.get(), targets);
+  const bool linear = is_translucent && shades_materials;
+  std::optional<raster::LitScene> lit;
+  std::unique_ptr<raster::BlockShader> shader;
+  if (shades_materials) {
+    shader = raster::make_material_shader(*materials, linear);
+  } else {
+    lit.emplace(scene, camera, o.width, o.height);
+    shader = raster::make_lit_shader(lit_model(o.shader), *lit);
+  }
+  if (!is_translucent) return draw_in(linear, draws, *shader, test.get(), targets);
+  const auto blended =
+      raster::make_alpha_shader(*shader, any_blend ? &*materials : nullptr, o.opacity);
+  return draw_in(linear, draws, *blended, test.get(), targets);
 }
 
 /// Grey by depth needs the range of depths in the picture, so it is a pass after the frame.
@@ -220,6 +255,12 @@ FrameStats Renderer::draw_depth(std::span<raster::Draw> draws, const raster::Fra
 
 FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::BlockShader& shader,
                           const raster::FragmentTest* test, const Targets& targets) {
+  return draw_in(false, draws, shader, test, targets);
+}
+
+FrameStats Renderer::draw_in(bool linear_light, std::span<raster::Draw> draws,
+                             const raster::BlockShader& shader, const raster::FragmentTest* test,
+                             const Targets& targets) {
   const RenderOptions& o = impl_->options;
   check_target(targets.color8, o, "color8");
   check_target(targets.color, o, "color");
@@ -227,6 +268,7 @@ FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::BlockShad
   check_target(targets.ids, o, "ids");
   check_target(targets.overdraw, o, "overdraw");
   check_target(targets.words, o, "words");
+  check_target(targets.errors, o, "errors");
   for (const ImageView<Vec4>& extra : targets.extra) {
     if (extra.empty()) throw Error(Errc::invalid_argument, "an extra target is empty");
     check_target(extra, o, "extra");
@@ -238,6 +280,12 @@ FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::BlockShad
   if (targets.load && targets.words.empty())
     throw Error(Errc::invalid_argument,
                 "a pass that loads needs the visibility words of the passes before");
+  if (targets.load && o.transparency.method != Transparency::none &&
+      std::ranges::any_of(
+          draws, [](const raster::Draw& d) { return (d.any_flags() & raster::kTranslucent) != 0; }))
+    throw Error(Errc::invalid_argument,
+                "a pass that loads cannot blend translucent surfaces over what the passes before "
+                "have drawn; draw all in one pass");
   raster::FrameRequest request;
   request.width = o.width;
   request.height = o.height;
@@ -254,6 +302,7 @@ FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::BlockShad
   request.hierarchical_z = o.hierarchical_z;
   request.transparency = o.transparency;
   request.samples = o.samples;
+  request.linear_light = linear_light;
   impl_->memory.restart_peak();
   FrameStats stats = impl_->draw_frame(request);
   stats.peak_bytes = impl_->memory.peak();

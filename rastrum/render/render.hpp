@@ -20,7 +20,7 @@ enum class Device : std::uint8_t { serial, threads, cuda };
 
 enum class Shader : std::uint8_t {
   flat,       ///< base colour, unlit
-  depth,      ///< grey: nearest white, farthest of the picture black
+  depth,      ///< grey: nearest white, farthest of the picture black; whatever the opacity
   normal,     ///< (n + 1) / 2 of the world-space unit normal
   id,         ///< a hash of the triangle id as a colour
   lambert,    ///< base · (0.1 + 0.8 max(n·l, 0))
@@ -75,7 +75,9 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Draws `scene` seen by `camera` into `targets`.
+  /// Draws `scene` seen by `camera` into `targets`. What is translucent (RenderOptions::opacity,
+  /// AlphaMode::blend, vertex alpha) is blended unless transparency is `none`; ids, depth and words
+  /// are those of the nearest surface, whatever its alpha.
   /// Meshes without normals are shaded with face normals (see vertex_normals for smooth ones).
   /// Cost: O(vertices + triangles + covered samples). Throws Error{invalid_argument} naming an
   /// instance whose index is out of range, Error{out_of_memory} with what was asked for.
@@ -83,7 +85,8 @@ class Renderer {
 
   /// The programmable form: draws of any vertex source with any shader (raster/program.hpp makes
   /// both from a caller's functions) and, where `test` is not null, a fragment test for the draws
-  /// that ask for it.
+  /// that ask for it. Draws whose flags have raster::kTranslucent are blended by the alpha that the
+  /// shader returns; opacity is the shader's business here.
   FrameStats draw(std::span<raster::Draw> draws, const raster::BlockShader& shader,
                   const raster::FragmentTest* test, const Targets& targets);
 
@@ -92,6 +95,9 @@ class Renderer {
  private:
   FrameStats draw_depth(std::span<raster::Draw> draws, const raster::FragmentTest* test,
                         const Targets& targets);
+  FrameStats draw_in(bool linear_light, std::span<raster::Draw> draws,
+                     const raster::BlockShader& shader, const raster::FragmentTest* test,
+                     const Targets& targets);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -73,7 +73,8 @@ class SampledBlock {
   [[nodiscard]] Vec4 color(std::uint32_t triangle, int i) const;
   LayerCounts blend_sample(std::uint32_t sample, raster::BlockColors& out);
   [[nodiscard]] bool is_translucent(const Triangle& t) const {
-    return (records_[t.first].piece->flags & raster::kTranslucent) != 0;
+    return context_->request->transparency.method != Transparency::none &&
+           (records_[t.first].piece->flags & raster::kTranslucent) != 0;
   }
   /// Calls f(sample, mask, words) for the records of a triangle, of one sample or all.
   template <class F>

@@ -16,6 +16,7 @@
 #include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/materials.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
@@ -35,51 +36,12 @@ class Numbers {
   std::uint64_t state_ = 7;
 };
 
-double display(double linear) {
-  const double c = std::clamp(linear, 0.0, 1.0);
-  return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
-}
-double light(int code) {
-  const double s = code / 255.0;
-  return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-}
 int to_code(double linear) {
   return static_cast<int>(std::lround(display(linear) * 255));
 }
 
-Texture texture(int width, int height, auto&& color_of) {
-  Texture t;
-  t.image = Image<Rgba8>(width, height);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) t.image(x, y) = color_of(x, y);
-  return t;
-}
-Rgba8 grey(int code) {
-  const auto c = static_cast<std::uint8_t>(code);
-  return {c, c, c, 255};
-}
-
-/// A quad over the whole kSize² image at `depth`; texture coordinates `low` at its top left, `high`
-/// at its bottom right.
 Mesh quad(Vec2 low, Vec2 high, double depth = 0.5) {
-  Mesh mesh;
-  for (const int corner : {0, 1, 2, 3}) {
-    const bool right = corner == 1 || corner == 2, bottom = corner >= 2;
-    mesh.positions.push_back(at_pixel(right ? kSize : 0, bottom ? kSize : 0, depth, kSize, kSize));
-    mesh.texcoords.values.push_back({right ? high.x : low.x, bottom ? high.y : low.y});
-  }
-  mesh.indices = {0, 3, 2, 0, 2, 1};
-  return mesh;
-}
-
-Scene unlit(Mesh mesh, Texture t) {
-  Scene scene = single(std::move(mesh));
-  scene.textures.push_back(std::move(t));
-  Material m;
-  m.unlit = true;
-  m.base_color_texture = 0;
-  scene.materials.push_back(m);
-  return scene;
+  return quad(kSize, low, high, depth);
 }
 
 RenderOptions options(Shader shader = Shader::material) {

@@ -10,12 +10,17 @@
 namespace rastrum::raster {
 namespace {
 
-const Material kDefaultMaterial{};
+/// Of scenes without any: what their vertex colours say is translucent.
+const Material kDefaultMaterial = [] {
+  Material m;
+  m.alpha_mode = AlphaMode::blend;
+  return m;
+}();
 
 struct TextureReference {
   std::int32_t texture;
   TexelUse use;
-  bool alpha;  ///< read by the alpha test
+  bool alpha;  ///< alpha comes from it
 };
 
 std::array<TextureReference, 6> references(const Material& m) {
@@ -29,16 +34,17 @@ std::array<TextureReference, 6> references(const Material& m) {
 
 class MaterialShader final : public BlockShader {
  public:
-  explicit MaterialShader(const MaterialScene& scene) : scene_(scene) {}
+  MaterialShader(const MaterialScene& scene, bool linear) : scene_(scene), linear_(linear) {}
 
   bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
              BlockColors& colors) const noexcept override {
-    material_kernels(isa).shade(scene_, frame, block, colors);
+    material_kernels(isa).shade(scene_, frame, block, linear_, colors);
     return true;
   }
 
  private:
   const MaterialScene& scene_;
+  bool linear_;
 };
 
 }  // namespace
@@ -102,17 +108,20 @@ void check_materials(const SceneView& scene) {
   }
 }
 
-std::vector<std::uint8_t> texture_uses(const SceneView& scene, bool shading) {
+std::vector<std::uint8_t> texture_uses(const SceneView& scene, bool shading, bool blending) {
   std::vector<std::uint8_t> uses(scene.textures.size());
-  for (const Material& m : scene.materials)
+  for (const Material& m : scene.materials) {
+    const bool has_alpha =
+        m.alpha_mode == AlphaMode::mask || (m.alpha_mode == AlphaMode::blend && blending);
     for (const TextureReference& r : references(m))
-      if (r.texture != kNoTexture && (shading || (r.alpha && m.alpha_mode == AlphaMode::mask)))
+      if (r.texture != kNoTexture && (shading || (r.alpha && has_alpha)))
         uses[static_cast<std::size_t>(r.texture)] |= static_cast<std::uint8_t>(r.use);
+  }
   return uses;
 }
 
-std::unique_ptr<BlockShader> make_material_shader(const MaterialScene& scene) {
-  return std::make_unique<MaterialShader>(scene);
+std::unique_ptr<BlockShader> make_material_shader(const MaterialScene& scene, bool linear) {
+  return std::make_unique<MaterialShader>(scene, linear);
 }
 
 }  // namespace rastrum::raster

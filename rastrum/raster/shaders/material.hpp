@@ -19,7 +19,8 @@
 //
 // Textures: texel (0, 0) at the top left, centres at half texels, trilinear; the level is log2 of
 // the longer axis of a pixel's footprint, from the analytic derivatives of the weights. The result
-// is written with the sRGB transfer function. AlphaMode::blend is drawn as opaque.
+// is written with the sRGB transfer function; where something is translucent, after blending. Alpha
+// is alpha.hpp's business.
 #pragma once
 
 #include <memory>
@@ -51,7 +52,7 @@ struct MaterialDraw {
   float to_world[3][3];       ///< object to world, directions
 };
 
-/// What the material shader and the alpha test read of a scene.
+/// What the material shader and alpha read of a scene.
 struct MaterialScene {
   std::vector<BoundMaterial> materials;  ///< at least one
   std::vector<MaterialDraw> draws;
@@ -73,10 +74,13 @@ struct MaterialScene {
 void check_materials(const SceneView& scene);
 
 /// The uses TextureSet::update wants: all that `materials` read, or, without `shading`, only what
-/// the alpha test reads.
-[[nodiscard]] std::vector<std::uint8_t> texture_uses(const SceneView& scene, bool shading);
+/// alpha comes from, of masks and, with `blending`, of AlphaMode::blend.
+[[nodiscard]] std::vector<std::uint8_t> texture_uses(const SceneView& scene, bool shading,
+                                                     bool blending);
 
-/// `scene` must outlive the shader.
-[[nodiscard]] std::unique_ptr<BlockShader> make_material_shader(const MaterialScene& scene);
+/// `linear`: leaves the transfer function to FrameRequest::linear_light. `scene` must outlive the
+/// shader.
+[[nodiscard]] std::unique_ptr<BlockShader> make_material_shader(const MaterialScene& scene,
+                                                                bool linear);
 
 }  // namespace rastrum::raster

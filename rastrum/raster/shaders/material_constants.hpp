@@ -14,6 +14,7 @@ inline constexpr float kSky = 0.3F, kGround = 0.12F;
 inline constexpr float kSkyMean = (kSky + kGround) / 2, kSkySlope = (kSky - kGround) / 2;
 inline constexpr float kDielectricF0 = 0.04F;  ///< index of refraction 1.5
 inline constexpr float kMinRoughness = 0.045F;
+inline constexpr float kMostLight = 65504;  ///< of a colour that is blended: no infinities
 
 /// Samples of a block relative to its first pixel's corner, in px.
 struct alignas(64) BlockSamples {

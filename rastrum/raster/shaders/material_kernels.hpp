@@ -9,14 +9,26 @@
 
 namespace rastrum::raster {
 
+/// Samples with alpha > 0, and those with alpha = 1.
+struct AlphaMasks {
+  std::uint64_t visible = 0, opaque = 0;
+};
+
 struct MaterialKernels {
-  /// Colours of the covered samples, all opaque.
+  /// Colours of the covered samples, all opaque, as display values or as linear light.
   void (*shade)(const MaterialScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
-                BlockColors& colors) noexcept;
+                bool linear, BlockColors& colors) noexcept;
   /// The subset of `mask` (bit 8 · row + column of the block at (x0, y0)) where triangle `id` is
-  /// not cut out.
+  /// not cut out. `points` as in VisibleBlock.
   std::uint64_t (*alpha_test)(const MaterialScene& scene, const FrameGeometry& frame,
-                              std::uint64_t id, std::uint64_t mask, int x0, int y0) noexcept;
+                              std::uint64_t id, std::uint64_t mask, int x0, int y0,
+                              const ShadingPoints* points) noexcept;
+  /// The alpha of the covered samples (alpha.hpp), 0 elsewhere: 64 floats, 64-byte aligned.
+  AlphaMasks (*alpha)(const MaterialScene& scene, const FrameGeometry& frame,
+                      const VisibleBlock& block, float opacity, float* out) noexcept;
+  /// Multiplies all 64 colours and their alpha; where `alpha` is 0 they become 0, whatever they
+  /// were.
+  void (*premultiply)(const float* alpha, BlockColors& colors) noexcept;
 };
 
 [[nodiscard]] const MaterialKernels& material_kernels(Isa isa) noexcept;

@@ -15,6 +15,7 @@
 #include <rastrum/raster/interpolate.hpp>
 #include <rastrum/raster/shaders/material_constants.hpp>
 #include <rastrum/raster/shaders/material_kernels.hpp>
+#include <rastrum/raster/shaders/srgb_lanes-inl.hpp>
 #include <rastrum/raster/shaders/texture_lanes-inl.hpp>
 
 HWY_BEFORE_NAMESPACE();
@@ -50,13 +51,17 @@ struct alignas(64) Run {
   double scale[64];                ///< 1 / Σ weights
   float weight1[64], weight2[64];  ///< normalized
 
-  Run(std::uint64_t mask, const WeightPlanes& w, int x0, int y0) {
+  Run(std::uint64_t mask, const WeightPlanes& w, int x0, int y0, const ShadingPoints* points) {
     for (; mask != 0; mask &= mask - 1) lane[n++] = std::countr_zero(mask);
     for (padded = n; padded % kGroup != 0; ++padded) lane[padded] = lane[n - 1];
     for (int k = 0; k < padded; k += kGroup)
       for (int j = k; j < k + kGroup; ++j) {
-        const double dx = x0 + lane[j] % kBlockSize + 0.5 - w.x0;
-        const double dy = y0 + lane[j] / kBlockSize + 0.5 - w.y0;
+        double dx = x0 + lane[j] % kBlockSize + 0.5 - w.x0;
+        double dy = y0 + lane[j] / kBlockSize + 0.5 - w.y0;
+        if (points != nullptr) {
+          dx += static_cast<double>(points->dx[lane[j]]);
+          dy += static_cast<double>(points->dy[lane[j]]);
+        }
         const double b0 = w.r[0] + w.p[0] * dx + w.q[0] * dy;
         const double b1 = w.r[1] + w.p[1] * dx + w.q[1] * dy;
         const double b2 = w.r[2] + w.p[2] * dx + w.q[2] * dy;
@@ -360,15 +365,9 @@ HWY_INLINE F pow5(F a) {
   return a2 * a2 * a;
 }
 
-/// srgb_from_linear in lanes, the same bits.
-HWY_INLINE F display(F linear) {
-  const F x = clamp01(linear);
-  const F s2 = hn::Sqrt(x);
-  const F s4 = hn::Sqrt(s2);
-  const F s8 = hn::Sqrt(s4);
-  const F curve = set(kSrgbRoot2) * s2 + set(kSrgbRoot4) * s4 - set(kSrgbRoot8) * s8 -
-                  (set(kSrgbLinear) * x + set(kSrgbConstant));
-  return hn::IfThenElse(x < set(kSrgbKnee), x * set(kSrgbSlope), curve);
+/// What a shader returns: the display value, or finite linear light.
+HWY_INLINE F written(F linear, bool as_linear) {
+  return as_linear ? at_most(at_least(linear, 0), kMostLight) : srgb_lanes(Floats{}, linear);
 }
 
 struct Reflectance {
@@ -399,11 +398,16 @@ HWY_INLINE V3 hemisphere(V3 diffuse, V3 specular, F normal_y, F mirrored_y) {
 }
 
 /// Lights 64 fragments; what lies outside the covered ones does not matter.
-HWY_INLINE void light(const ViewRays& rays, const Surface& s, int x0, int y0, BlockColors& out) {
+HWY_INLINE void light(const ViewRays& rays, const Surface& s, int x0, int y0,
+                      const ShadingPoints* points, bool linear, BlockColors& out) {
   const auto& c = s.channel;
   for (int i = 0; i < 64; i += kLanes) {
-    const F px = load(kSample.x + i) + set(static_cast<float>(x0));
-    const F py = load(kSample.y + i) + set(static_cast<float>(y0));
+    F px = load(kSample.x + i) + set(static_cast<float>(x0));
+    F py = load(kSample.y + i) + set(static_cast<float>(y0));
+    if (points != nullptr) {
+      px = px + load(points->dx + i);
+      py = py + load(points->dy + i);
+    }
     const V3 away = add(add(set(rays.d), scale(set(rays.dx), px)), scale(set(rays.dy), py));
     const V3 v = scale(away, set(0) - reciprocal_length(away));
     const V3 n = load(c[Surface::kNormalX] + i, c[Surface::kNormalY] + i, c[Surface::kNormalZ] + i);
@@ -432,15 +436,26 @@ HWY_INLINE void light(const ViewRays& rays, const Surface& s, int x0, int y0, Bl
                             c[Surface::kEmissiveB] + i));
 
     const auto unlit = load(c[Surface::kUnlit] + i) > set(0);
-    store({display(hn::IfThenElse(unlit, base.x, color.x)),
-           display(hn::IfThenElse(unlit, base.y, color.y)),
-           display(hn::IfThenElse(unlit, base.z, color.z))},
+    store({written(hn::IfThenElse(unlit, base.x, color.x), linear),
+           written(hn::IfThenElse(unlit, base.y, color.y), linear),
+           written(hn::IfThenElse(unlit, base.z, color.z), linear)},
           out.r + i, out.g + i, out.b + i);
   }
 }
 
+/// The samples of `left` that see the triangle of `low`.
+HWY_INLINE std::uint64_t samples_of(std::uint64_t low, const std::uint64_t* words,
+                                    std::uint64_t left) {
+  std::uint64_t mask = 0;
+  for (std::uint64_t m = left; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    mask |= std::uint64_t{(words[i] & kIdMask) == low} << i;
+  }
+  return mask;
+}
+
 void shade(const MaterialScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
-           BlockColors& colors) noexcept {
+           bool linear, BlockColors& colors) noexcept {
   const std::uint64_t* const words = block.words;
   const int x0 = block.x0, y0 = block.y0;
   std::uint64_t left = block.covered;
@@ -449,16 +464,12 @@ void shade(const MaterialScene& scene, const FrameGeometry& frame, const Visible
   const Draw* draw = nullptr;
   while (left != 0) {
     const std::uint64_t low = words[std::countr_zero(left)] & kIdMask;
-    std::uint64_t mask = 0;
-    for (std::uint64_t m = left; m != 0; m &= m - 1) {
-      const int i = std::countr_zero(m);
-      mask |= std::uint64_t{(words[i] & kIdMask) == low} << i;
-    }
+    const std::uint64_t mask = samples_of(low, words, left);
     left &= ~mask;
     const std::uint64_t id = id_of_word(low);
     if (draw == nullptr || id - draw->first_id >= draw->primitive_count) draw = &frame.draw_of(id);
     const Triangle triangle(scene, frame, *draw, id);
-    const Run run(mask, triangle.planes, x0, y0);
+    const Run run(mask, triangle.planes, x0, y0, block.points);
     if (run.n == 64) {
       fill_surface(scene, triangle, run, x0, y0, surface);
       break;
@@ -468,40 +479,98 @@ void shade(const MaterialScene& scene, const FrameGeometry& frame, const Visible
     for (int c = 0; c < Surface::kChannels; ++c)
       for (int k = 0; k < run.n; ++k) surface.channel[c][run.lane[k]] = part.channel[c][k];
   }
-  light(scene.rays, surface, x0, y0, colors);
+  light(scene.rays, surface, x0, y0, block.points, linear, colors);
+}
+
+/// Whether all fragments of a triangle have the alpha of its material.
+bool is_constant(const MaterialDraw& draw, const BoundMaterial& material) {
+  return draw.mesh.colors.empty() && material.base_color == nullptr && material.alpha == nullptr;
+}
+
+/// A fragment's own alpha: what a mask tests and what blends.
+HWY_INLINE void own_alpha(const Triangle& t, const BoundMaterial& material, const Run& run,
+                          float* HWY_RESTRICT alpha) {
+  const float base = material.material->base_color.w;
+  if (t.draw.mesh.colors.empty())
+    fill(run, base, alpha);
+  else
+    interpolate(run, t.corner(t.draw.mesh.colors, 0).w * base,
+                t.corner(t.draw.mesh.colors, 1).w * base, t.corner(t.draw.mesh.colors, 2).w * base,
+                alpha);
+  if (material.base_color == nullptr && material.alpha == nullptr) return;
+  Coordinates at;
+  interpolate_texcoords(t, run, at);
+  const auto multiply_alpha = [&](int k, float value) HWY_ATTR { alpha[k] *= value; };
+  if (material.base_color != nullptr)
+    sample<AlphaChannel>(*material.base_color, at, run.n, run.padded, multiply_alpha);
+  if (material.alpha != nullptr)
+    sample<RedChannel>(*material.alpha, at, run.n, run.padded, multiply_alpha);
 }
 
 std::uint64_t alpha_test(const MaterialScene& scene, const FrameGeometry& frame, std::uint64_t id,
-                         std::uint64_t mask, int x0, int y0) noexcept {
+                         std::uint64_t mask, int x0, int y0, const ShadingPoints* points) noexcept {
   const Draw& draw = frame.draw_of(id);
   const MaterialDraw& of = scene.draws[static_cast<std::size_t>(&draw - frame.draws.data())];
   const BoundMaterial& material = scene.material_of(of, id - draw.first_id);
   const Material& m = *material.material;
   if (mask == 0 || m.alpha_mode != AlphaMode::mask) return mask;
   const Triangle t(scene, frame, draw, id);
-  const Run run(mask, t.planes, x0, y0);
+  const Run run(mask, t.planes, x0, y0, points);
   alignas(64) float alpha[64];
-  if (t.draw.mesh.colors.empty())
-    fill(run, m.base_color.w, alpha);
-  else
-    interpolate(run, t.corner(t.draw.mesh.colors, 0).w * m.base_color.w,
-                t.corner(t.draw.mesh.colors, 1).w * m.base_color.w,
-                t.corner(t.draw.mesh.colors, 2).w * m.base_color.w, alpha);
-  if (material.base_color != nullptr || material.alpha != nullptr) {
-    Coordinates at;
-    interpolate_texcoords(t, run, at);
-    const auto multiply_alpha = [&](int k, float value) HWY_ATTR { alpha[k] *= value; };
-    if (material.base_color != nullptr)
-      sample<AlphaChannel>(*material.base_color, at, run.n, run.padded, multiply_alpha);
-    if (material.alpha != nullptr)
-      sample<RedChannel>(*material.alpha, at, run.n, run.padded, multiply_alpha);
-  }
+  own_alpha(t, material, run, alpha);
   for (int k = 0; k < run.n; ++k)
     if (alpha[k] < m.alpha_cutoff) mask &= ~(std::uint64_t{1} << run.lane[k]);
   return mask;
 }
 
-constexpr MaterialKernels kTable{shade, alpha_test};
+/// In [0, 1]; NaN becomes 0.
+float clamped(float a) {
+  return a > 0 ? (a < 1 ? a : 1.0F) : 0.0F;
+}
+
+AlphaMasks alpha(const MaterialScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
+                 float opacity, float* out) noexcept {
+  AlphaMasks masks;
+  const auto set = [&](int i, float a) {
+    out[i] = a;
+    masks.visible |= std::uint64_t{a > 0} << i;
+    masks.opaque |= std::uint64_t{a == 1} << i;
+  };
+  std::memset(out, 0, 64 * sizeof(float));
+  const Draw* draw = nullptr;
+  for (std::uint64_t left = block.covered; left != 0;) {
+    const std::uint64_t low = block.words[std::countr_zero(left)] & kIdMask;
+    const std::uint64_t mask = samples_of(low, block.words, left);
+    left &= ~mask;
+    const std::uint64_t id = id_of_word(low);
+    if (draw == nullptr || id - draw->first_id >= draw->primitive_count) draw = &frame.draw_of(id);
+    const MaterialDraw& of = scene.draws[static_cast<std::size_t>(draw - frame.draws.data())];
+    const BoundMaterial& material = scene.material_of(of, id - draw->first_id);
+    const bool blends = material.material->alpha_mode == AlphaMode::blend;
+    if (!blends || is_constant(of, material)) {
+      const float a = clamped(blends ? opacity * material.material->base_color.w : opacity);
+      for (std::uint64_t m = mask; m != 0; m &= m - 1) set(std::countr_zero(m), a);
+      continue;
+    }
+    const Triangle t(scene, frame, *draw, id);
+    const Run run(mask, t.planes, block.x0, block.y0, block.points);
+    alignas(64) float own[64];
+    own_alpha(t, material, run, own);
+    for (int k = 0; k < run.n; ++k) set(run.lane[k], clamped(opacity * own[k]));
+  }
+  return masks;
+}
+
+void premultiply(const float* alpha, BlockColors& colors) noexcept {
+  const Floats d;
+  for (float* const channel : {colors.r, colors.g, colors.b, colors.a})
+    for (int i = 0; i < 64; i += kLanes) {
+      const F a = load(alpha + i);
+      hn::Store(hn::IfThenElseZero(a > set(0), load(channel + i) * a), d, channel + i);
+    }
+}
+
+constexpr MaterialKernels kTable{shade, alpha_test, alpha, premultiply};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace rastrum::raster

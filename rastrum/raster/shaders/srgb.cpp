@@ -3,13 +3,9 @@
 #include <algorithm>
 
 namespace rastrum::raster {
-namespace {
-
 double linear_from_srgb(double s) {
   return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
 }
-
-}  // namespace
 
 const DecodeTables& decode_tables() {
   static const DecodeTables tables = [] {

@@ -7,6 +7,9 @@
 
 namespace rastrum::raster {
 
+/// Display value to linear light, both in [0, 1].
+[[nodiscard]] double linear_from_srgb(double display);
+
 /// 8-bit code to [0, 1]: sRGB to linear light, and plain code / 255.
 struct DecodeTables {
   std::array<float, 256> srgb, unorm;

@@ -1,0 +1,244 @@
+#include <rastrum/transparency/reference.hpp>
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <vector>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/raster/assemble.hpp>
+#include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/resolve.hpp>
+#include <rastrum/raster/stopwatch.hpp>
+#include <rastrum/transparency/blend.hpp>
+
+namespace rastrum::transparency {
+namespace {
+
+using raster::BlockColors;
+using raster::kBlockSize;
+using raster::Piece;
+
+/// A triangle in a pixel: its word at each sample that it covers, and where it is shaded.
+struct Fragment {
+  std::uint64_t words[raster::kMaxSamples] = {};  ///< 0: not covered
+  std::uint64_t shaded_word = 0;                  ///< where it is shaded
+  float dx = 0, dy = 0;                           ///< of that place, px from the centre
+  bool translucent = false;
+  Vec4 color;
+};
+
+using Pixel = std::vector<Fragment>;
+
+/// The words of a primitive at one sample, by pixel.
+void add_words(const raster::FrameRequest& request, const Piece& piece,
+               std::map<std::pair<int, int>, Fragment>& pixels, int sample) {
+  const raster::Rect box = raster::piece_bounds(piece, {0, 0, request.width, request.height});
+  for (int y = box.y0; y < box.y1; ++y) {
+    const raster::Span span = raster::row_span(piece, y, box.x0, box.x1);
+    for (int x = span.begin; x < span.end; ++x) {
+      Fragment& f = pixels[{y, x}];
+      const std::uint64_t word = raster::make_word(raster::depth_at(piece, x, y), piece.low);
+      (sample < 0 ? f.shaded_word : f.words[sample]) = word;
+    }
+  }
+}
+
+/// A block with the one sample of pixel (x, y).
+raster::Block block_of(int x, int y) {
+  return {0, static_cast<std::uint16_t>(x / kBlockSize), static_cast<std::uint16_t>(y / kBlockSize),
+          std::uint64_t{1} << (y % kBlockSize * kBlockSize + x % kBlockSize)};
+}
+
+struct Scene {
+  raster::FrameRequest& request;
+  const raster::FrameGeometry& frame;
+  std::vector<Pixel> pixels;
+  alignas(64) std::byte scratch[raster::kMaxShaderScratch] = {};
+
+  void add(const raster::Draw& draw, std::uint64_t primitive, FrameStats& stats);
+  /// Whether the fragment passes the test.
+  bool keeps(const raster::Draw& draw, std::uint64_t primitive, int x, int y, const Fragment& f);
+  Vec4 shade(int x, int y, const Fragment& f);
+  std::uint64_t resolve(int x, int y, LayerBlend& blend, BlockColors& colors);
+};
+
+bool Scene::keeps(const raster::Draw& draw, std::uint64_t primitive, int x, int y,
+                  const Fragment& f) {
+  if ((draw.flags_of(primitive) & raster::kTested) == 0 || request.test == nullptr) return true;
+  raster::ShadingPoints points{};
+  const raster::Block block = block_of(x, y);
+  const int i = std::countr_zero(block.mask);
+  points.dx[i] = f.dx;
+  points.dy[i] = f.dy;
+  Piece piece{};
+  piece.low = f.shaded_word & raster::kIdMask;
+  piece.z0 = std::bit_cast<float>(static_cast<std::uint32_t>(f.shaded_word >> raster::kIdBits));
+  return request.test->test(frame, piece, block, &points) != 0;
+}
+
+void Scene::add(const raster::Draw& draw, std::uint64_t primitive, FrameStats& stats) {
+  const auto offsets = raster::sample_offsets(request.samples);
+  std::map<std::pair<int, int>, Fragment> covered;
+  raster::Fate fate = raster::Fate::culled;
+  for (std::size_t s = 0; s < offsets.size(); ++s) {
+    const raster::Fate here = raster::assemble_primitive(
+        frame, draw, primitive,
+        [&](const Piece& p) { add_words(request, p, covered, static_cast<int>(s)); },
+        static_cast<std::uint32_t>(s), offsets[s]);
+    if (here != raster::Fate::culled) fate = here;
+  }
+  stats.triangles.dropped += fate == raster::Fate::dropped;
+  stats.triangles.culled += fate == raster::Fate::culled;
+  stats.triangles.clipped += fate == raster::Fate::clipped;
+  // Shaded at the centre where the triangle covers it, else at the first sample that it covers.
+  std::map<std::pair<int, int>, Fragment> centres;
+  (void)raster::assemble_primitive(frame, draw, primitive,
+                                   [&](const Piece& p) { add_words(request, p, centres, -1); });
+  for (auto& [place, fragment] : covered) {
+    const auto [y, x] = place;
+    const auto centre = centres.find(place);
+    if (centre != centres.end()) {
+      fragment.shaded_word = centre->second.shaded_word;
+    } else {
+      const auto first =
+          static_cast<std::size_t>(std::find_if(fragment.words, fragment.words + offsets.size(),
+                                                [](std::uint64_t w) { return w != 0; }) -
+                                   fragment.words);
+      constexpr float kPx = 1.0F / raster::kSubpixels;
+      fragment.shaded_word = fragment.words[first];
+      fragment.dx = static_cast<float>(offsets[first].x) * kPx;
+      fragment.dy = static_cast<float>(offsets[first].y) * kPx;
+    }
+    for (const std::uint64_t word : fragment.words) stats.fragments += word != 0;
+    if (!keeps(draw, primitive, x, y, fragment)) continue;
+    fragment.translucent = request.transparency.method != Transparency::none &&
+                           (draw.flags_of(primitive) & raster::kTranslucent) != 0;
+    fragment.color = shade(x, y, fragment);
+    pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(request.width) +
+           static_cast<std::size_t>(x)]
+        .push_back(fragment);
+  }
+}
+
+Vec4 Scene::shade(int x, int y, const Fragment& f) {
+  if (request.shader == nullptr) return {};
+  alignas(64) std::uint64_t words[64] = {};
+  raster::ShadingPoints points{};
+  const raster::Block block = block_of(x, y);
+  const int i = std::countr_zero(block.mask);
+  words[i] = f.shaded_word;
+  points.dx[i] = f.dx;
+  points.dy[i] = f.dy;
+  raster::VisibleBlock visible{words, block.mask, block.bx * kBlockSize, block.by * kBlockSize,
+                               scratch};
+  visible.points = &points;
+  BlockColors colors;
+  const bool opaque = request.shader->shade(frame, visible, Isa::scalar, colors);
+  return {colors.r[i], colors.g[i], colors.b[i], opaque ? 1.0F : colors.a[i]};
+}
+
+/// The pixel's colour, in its place of `colors`; returns its word.
+std::uint64_t Scene::resolve(int x, int y, LayerBlend& blend, BlockColors& colors) {
+  const Pixel& fragments =
+      pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(request.width) +
+             static_cast<std::size_t>(x)];
+  const int i = y % kBlockSize * kBlockSize + x % kBlockSize;
+  const int samples = request.samples;
+  std::uint64_t nearest = 0;
+  Vec4 sum{0, 0, 0, 0};
+  for (int s = 0; s < samples; ++s) {
+    const Fragment* surface = nullptr;
+    for (const Fragment& f : fragments)
+      if (!f.translucent && f.words[s] > (surface == nullptr ? 0 : surface->words[s])) surface = &f;
+    const std::uint64_t opaque = surface == nullptr ? 0 : surface->words[s];
+    std::vector<const Fragment*> layers;
+    for (const Fragment& f : fragments)
+      if (f.translucent && f.words[s] > opaque) layers.push_back(&f);
+    const std::uint64_t key =
+        blend.order() == LayerOrder::depth ? ~std::uint64_t{0} : raster::kIdMask;
+    std::ranges::stable_sort(layers, [&](const Fragment* a, const Fragment* b) {
+      return (a->words[s] & key) > (b->words[s] & key);
+    });
+    BlockColors behind = {}, layer = {}, out;
+    if (surface != nullptr) behind.set(i, surface->color);
+    blend.begin(behind);
+    alignas(64) std::uint64_t words[64] = {};
+    for (int pass = 0; pass < blend.passes(); ++pass) {
+      blend.begin_pass(pass);
+      for (const Fragment* f : layers) {
+        words[i] = f->words[s];
+        layer.set(i, f->color);
+        const std::uint64_t bit = std::uint64_t{1} << i;
+        if ((blend.layer({words, bit, layer}) & bit) != 0) break;
+      }
+    }
+    blend.finish(out);
+    sum = sum + Vec4{out.r[i], out.g[i], out.b[i], out.a[i]};
+    nearest = std::max(nearest, opaque);
+    for (const Fragment* f : layers) nearest = std::max(nearest, f->words[s]);
+  }
+  colors.set(i, samples == 1 ? sum : sum * (1.0F / static_cast<float>(samples)));
+  return nearest;
+}
+
+}  // namespace
+
+FrameStats render_reference(raster::FrameRequest& request, MemoryAccount& memory) {
+  if (request.transparency.method == Transparency::filter)
+    throw Error(Errc::invalid_argument,
+                "the filter's errors come from sorted blocks, which --device serial does not have; "
+                "use --device threads");
+  raster::Stopwatch watch;
+  FrameStats stats;
+  stats.rasterizer = "reference";
+  stats.visibility = "layers";
+  const raster::Totals totals = raster::number_draws(request.draws);
+  raster::check_indices(request.draws);
+  raster::FrameGeometry frame{request.width, request.height,
+                              raster::Viewport::of(request.width, request.height), request.draws,
+                              nullptr};
+  Buffer<raster::ProjectedVertex> projected(memory);
+  projected.reserve(totals.vertices);
+  for (const raster::Draw& draw : request.draws)
+    draw.source->project(0, draw.vertex_count, frame.viewport, Isa::scalar,
+                         projected.data() + draw.first_vertex);
+  frame.projected = projected.data();
+
+  Scene scene{request, frame, {}};
+  scene.pixels.resize(static_cast<std::size_t>(request.width) *
+                      static_cast<std::size_t>(request.height));
+  stats.triangles.input = totals.primitives;
+  for (const raster::Draw& draw : request.draws)
+    for (std::uint64_t p = 0; p < draw.primitive_count; ++p) scene.add(draw, p, stats);
+  stats.triangles.drawn = stats.triangles.input - stats.triangles.dropped - stats.triangles.culled;
+  watch.lap(stats, "rasterize");
+
+  const std::unique_ptr<LayerBlend> blend = make_blend(request.transparency, Isa::scalar);
+  for (int y0 = 0; y0 < request.height; y0 += kBlockSize)
+    for (int x0 = 0; x0 < request.width; x0 += kBlockSize) {
+      alignas(64) std::uint64_t words[64] = {};
+      BlockColors colors = {};
+      for (int y = y0; y < std::min(y0 + kBlockSize, request.height); ++y)
+        for (int x = x0; x < std::min(x0 + kBlockSize, request.width); ++x)
+          words[(y - y0) * kBlockSize + (x - x0)] = scene.resolve(x, y, *blend, colors);
+      stats.pixels_covered += static_cast<std::uint64_t>(
+          raster::resolve_block(request, frame, words, x0, y0, scene.scratch, &colors));
+    }
+  for (int y = 0; y < request.height; ++y) {
+    if (!request.targets.errors.empty())
+      std::fill_n(request.targets.errors.row(y), request.width, std::uint8_t{0});
+    if (!request.targets.overdraw.empty())
+      for (int x = 0; x < request.width; ++x) {
+        std::uint32_t& count = request.targets.overdraw(x, y) = 0;
+        for (const Fragment& f :
+             scene.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(request.width) +
+                          static_cast<std::size_t>(x)])
+          for (const std::uint64_t word : f.words) count += word != 0;
+      }
+  }
+  watch.lap(stats, "shade");
+  return stats;
+}
+
+}  // namespace rastrum::transparency
