@@ -137,6 +137,7 @@ const Kernels& kernels(Isa isa) noexcept {
     for (const Isa available : available_isas()) {
       Kernels& table = all[static_cast<std::size_t>(available)];
       fill_setup_kernels(available, table);
+      fill_cover_kernels(available, table);
       fill_block_kernels(available, table);
     }
     return all;

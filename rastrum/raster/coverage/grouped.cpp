@@ -18,6 +18,19 @@ constexpr std::uint64_t kMinGroup = 4096;
 /// … and that the groups' tables of bins together stay small.
 constexpr std::uint64_t kMaxBinTables = std::uint64_t{1} << 18;
 
+/// Calls use(bin, run) for runs of entries of the same bin. Neighbours mostly share one, and a
+/// counter that is raised for each of them would be waited for each time.
+template <class Entry, class Use>
+void for_each_run(std::span<const Entry> entries, const Use& use) {
+  for (std::size_t i = 0; i < entries.size();) {
+    const std::uint32_t bin = entries[i].bin;
+    std::size_t end = i + 1;
+    while (end < entries.size() && entries[end].bin == bin) ++end;
+    use(bin, entries.subspan(i, end - i));
+    i = end;
+  }
+}
+
 /// Entries in the order in which they were made, and how many each bin gets. A thread's: it is
 /// filled again for every group, so that it stays in cache. `Entry` has a member `bin`.
 template <class Entry>
@@ -36,7 +49,10 @@ class Collected {
     return entries_.data() + count_;
   }
   void added(std::size_t n) {
-    for (std::size_t i = count_; i < count_ + n; ++i) ++next_[entries_[i].bin + 1];
+    for_each_run(std::span<const Entry>(entries_.data() + count_, n),
+                 [&](std::uint32_t bin, std::span<const Entry> run) {
+                   next_[bin + 1] += static_cast<std::uint32_t>(run.size());
+                 });
     count_ += n;
   }
   [[nodiscard]] std::span<const Entry> entries() const { return {entries_.data(), count_}; }
@@ -70,7 +86,10 @@ class BinLists {
       begin_[b + 1] = sum;
       sum += counts[b + 1];
     }
-    for (const Entry& entry : entries) sorted_[begin_[entry.bin + 1]++] = entry;
+    for_each_run(entries, [&](std::uint32_t bin, std::span<const Entry> run) {
+      std::copy(run.begin(), run.end(), sorted_.data() + begin_[bin + 1]);
+      begin_[bin + 1] += static_cast<std::uint32_t>(run.size());
+    });
   }
   [[nodiscard]] std::span<const Entry> bin(std::size_t b) const {
     return {sorted_.data() + begin_[b], begin_[b + 1] - begin_[b]};
@@ -101,9 +120,14 @@ struct GroupScratch final : MicroSink {
   Collected<PieceInBin> pairs;
   Collected<BinFragment> micro;
   std::uint32_t first_bin = 0, bins = 0;  ///< of the view, where setup numbers those of the image
+  bool whole = true;                      ///< the view is the image
 
   BinFragment* room(std::size_t n) override { return micro.room(n); }
   void written(std::size_t n) override {
+    if (whole) {
+      micro.added(n);
+      return;
+    }
     BinFragment* const all = micro.room(0);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -209,6 +233,7 @@ std::span<Group> Grouped::set_up_groups(Frame& frame, const TileGrid& bins, std:
     scratch.micro.restart(bin_count);
     scratch.first_bin = first_bin;
     scratch.bins = static_cast<std::uint32_t>(bin_count);
+    scratch.whole = frame.view.y0 == 0 && frame.view.y1 == frame.request.height;
     const std::uint64_t begin = first + g * group_size;
     if (!set_up(frame, begin, std::min(begin + group_size, last), group.pieces,
                 frame.visibility.takes_fragments ? &scratch : nullptr)) {
