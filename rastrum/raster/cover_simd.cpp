@@ -103,7 +103,7 @@ HWY_NOINLINE std::size_t cover_other(const Piece& piece, std::uint32_t index, Re
 
 /// A triangle whose box has more than 8 × 8 samples. Returns how many blocks it writes.
 HWY_NOINLINE std::size_t cover_large(const Piece& piece, std::uint32_t index, Rect bin,
-                                   HiddenTest& hidden, Block* out) {
+                                     HiddenTest& hidden, Block* out) {
   constexpr std::int64_t kClamp = std::int64_t{1} << 30;
   const I32 d;
   const bool cut = bin.x1 % kBlockSize != 0 || bin.y1 % kBlockSize != 0;
@@ -157,22 +157,6 @@ HWY_NOINLINE std::size_t cover_large(const Piece& piece, std::uint32_t index, Re
   return n;
 }
 
-/// The pieces of kLanes lanes and their masks.
-struct SmallPieces {
-  HWY_ALIGN std::int32_t x0[kLanes], y0[kLanes];        ///< the first sample of the box
-  HWY_ALIGN std::uint32_t top[kLanes], bottom[kLanes];  ///< rows [0, half) and [half, 2 half)
-  int half = 0;
-  std::uint32_t lanes = 0;  ///< those whose box has at most 8 × 8 samples; others are not set
-
-  /// Bit 8 · row + column, counted from the first sample.
-  [[nodiscard]] std::uint64_t mask(std::size_t lane) const {
-    return top[lane] | std::uint64_t{bottom[lane]} << (kBlockSize * half);
-  }
-};
-
-using U16 = hn::Repartition<std::uint16_t, I32>;
-using I16 = hn::Repartition<std::int16_t, I32>;
-
 /// Words [4 part, 4 part + 4) of kLanes pieces as four vectors.
 HWY_INLINE void load_words(const Piece* const (&pieces)[kLanes], int part, I (&out)[4]) {
   const I128 d;
@@ -200,6 +184,70 @@ HWY_INLINE void load_words(const Piece* const (&pieces)[kLanes], int part, I (&o
   transpose(0, out);
 #endif
 }
+
+/// Vertices of kLanes triangles and the first and last samples of their boxes.
+struct Triangles {
+  I x[3], y[3];
+  I x0, y0, x1, y1;
+};
+
+HWY_INLINE Triangles load_triangles(const Piece* const (&pieces)[kLanes]) {
+  const I32 d;
+  I first[4], second[4];
+  load_words(pieces, 0, first);
+  load_words(pieces, 1, second);
+  Triangles t{{first[0], first[1], first[2]}, {first[3], second[0], second[1]}, {}, {}, {}, {}};
+  const I before = hn::Set(d, kHalfPixel - 1), half = hn::Set(d, kHalfPixel);
+  const auto least = [](const I(&v)[3]) HWY_ATTR { return hn::Min(v[0], hn::Min(v[1], v[2])); };
+  const auto most = [](const I(&v)[3]) HWY_ATTR { return hn::Max(v[0], hn::Max(v[1], v[2])); };
+  t.x0 = hn::ShiftRight<kSubpixelBits>(hn::Add(least(t.x), before));
+  t.y0 = hn::ShiftRight<kSubpixelBits>(hn::Add(least(t.y), before));
+  t.x1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(most(t.x), half));
+  t.y1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(most(t.y), half));
+  return t;
+}
+
+void bins(const Piece* pieces, std::size_t n, Rect view, std::uint32_t* out) noexcept {
+  const I32 d;
+  const int columns = (view.x1 - view.x0 + kBinSize - 1) / kBinSize;
+  const auto bin_of = [&](I sample, int first) HWY_ATTR {
+    static_assert(kBinSize == 1 << 6);
+    return hn::ShiftRight<6>(hn::Sub(sample, hn::Set(d, first)));
+  };
+  for (std::size_t i = 0; i < n; i += kLanes) {
+    const Piece* lanes[kLanes];
+    const std::size_t count = std::min(kLanes, n - i);
+    for (std::size_t k = 0; k < kLanes; ++k) lanes[k] = pieces + i + (k < count ? k : 0);
+    const Triangles t = load_triangles(lanes);
+    const I x0 = hn::Max(t.x0, hn::Set(d, view.x0)), x1 = hn::Min(t.x1, hn::Set(d, view.x1 - 1));
+    const I y0 = hn::Max(t.y0, hn::Set(d, view.y0)), y1 = hn::Min(t.y1, hn::Set(d, view.y1 - 1));
+    const I column = bin_of(x0, view.x0), row = bin_of(y0, view.y0);
+    const auto one = hn::And(hn::Eq(column, bin_of(x1, view.x0)), hn::Eq(row, bin_of(y1, view.y0)));
+    const auto empty = hn::Or(hn::Gt(x0, x1), hn::Gt(y0, y1));
+    const I bin = hn::Add(hn::Mul(row, hn::Set(d, columns)), column);
+    HWY_ALIGN std::int32_t found[kLanes];
+    hn::Store(hn::IfThenElse(hn::AndNot(empty, one), bin, hn::Set(d, -1)), d, found);
+    static_assert(kManyBins == static_cast<std::uint32_t>(-1));
+    for (std::size_t k = 0; k < count; ++k)
+      out[i + k] = is_triangle(*lanes[k]) ? static_cast<std::uint32_t>(found[k]) : kManyBins;
+  }
+}
+
+/// The pieces of kLanes lanes and their masks.
+struct SmallPieces {
+  HWY_ALIGN std::int32_t x0[kLanes], y0[kLanes];        ///< the first sample of the box
+  HWY_ALIGN std::uint32_t top[kLanes], bottom[kLanes];  ///< rows [0, half) and [half, 2 half)
+  int half = 0;
+  std::uint32_t lanes = 0;  ///< those whose box has at most 8 × 8 samples; others are not set
+
+  /// Bit 8 · row + column, counted from the first sample.
+  [[nodiscard]] std::uint64_t mask(std::size_t lane) const {
+    return top[lane] | std::uint64_t{bottom[lane]} << (kBlockSize * half);
+  }
+};
+
+using U16 = hn::Repartition<std::uint16_t, I32>;
+using I16 = hn::Repartition<std::int16_t, I32>;
 
 /// v in both halves of each lane, as 16 bits.
 HWY_INLINE I twice(I low, I high) {
@@ -249,17 +297,10 @@ HWY_INLINE void cover_rows(const I (&base)[3], const I (&a)[3], const I (&b)[3],
 HWY_INLINE void cover_small(const Piece* const (&pieces)[kLanes], SmallPieces& out) {
   const I32 d;
   const I zero = hn::Zero(d);
-  I first[4], second[4];
-  load_words(pieces, 0, first);
-  load_words(pieces, 1, second);
-  const I x[3] = {first[0], first[1], first[2]}, y[3] = {first[3], second[0], second[1]};
-  const I before = hn::Set(d, kHalfPixel - 1), half_pixel = hn::Set(d, kHalfPixel);
-  const auto least = [](const I(&v)[3]) HWY_ATTR { return hn::Min(v[0], hn::Min(v[1], v[2])); };
-  const auto most = [](const I(&v)[3]) HWY_ATTR { return hn::Max(v[0], hn::Max(v[1], v[2])); };
-  const I x0 = hn::ShiftRight<kSubpixelBits>(hn::Add(least(x), before));
-  const I y0 = hn::ShiftRight<kSubpixelBits>(hn::Add(least(y), before));
-  const I last_column = hn::Sub(hn::ShiftRight<kSubpixelBits>(hn::Sub(most(x), half_pixel)), x0);
-  const I last_row = hn::Sub(hn::ShiftRight<kSubpixelBits>(hn::Sub(most(y), half_pixel)), y0);
+  const Triangles t = load_triangles(pieces);
+  const auto& [x, y, x0, y0, x1, y1] = t;
+  const I last_column = hn::Sub(x1, x0), last_row = hn::Sub(y1, y0);
+  const I half_pixel = hn::Set(d, kHalfPixel);
   const I size = hn::Set(d, kBlockSize);
   const auto small = hn::And(hn::Lt(last_column, size), hn::Lt(last_row, size));
   out.lanes = lane_bits(small);
@@ -405,6 +446,7 @@ void masks(const Piece* pieces, Block* blocks, std::size_t n) noexcept {
 }
 
 void fill(Kernels& table) {
+  table.bins = bins;
   table.cover = cover;
   table.masks = masks;
 }

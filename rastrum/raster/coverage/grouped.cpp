@@ -139,37 +139,56 @@ struct GroupScratch final : MicroSink {
   }
 };
 
-/// Adds the pairs of pieces [first, …) with the bins of `view` until all are there, or as many as
-/// `most` after a piece. Returns the first piece that was left.
-std::uint32_t bin_pieces(std::span<const Piece> pieces, std::uint32_t first, std::size_t most,
-                         const TileGrid& bins, Collected<PieceInBin>& pairs) {
+/// Adds the pairs of a piece with the bins of its box that it may touch.
+void bin_piece(const Piece& piece, std::uint32_t index, const TileGrid& bins,
+               Collected<PieceInBin>& pairs) {
   const Rect view = bins.view;
-  std::uint32_t index = first;
-  for (; index < pieces.size() && pairs.entries().size() < most; ++index) {
-    const Piece& piece = pieces[index];
-    const Rect box = piece_bounds(piece, view);
-    if (box.empty()) continue;
-    const int bx0 = box.x0 / kBinSize, by0 = box.y0 / kBinSize;
-    const int bx1 = (box.x1 - 1) / kBinSize, by1 = (box.y1 - 1) / kBinSize;
-    const std::size_t touched =
-        static_cast<std::size_t>(bx1 - bx0 + 1) * static_cast<std::size_t>(by1 - by0 + 1);
-    PieceInBin* const out = pairs.room(touched);
-    std::size_t n = 0;
-    const auto add = [&](int bx, int by) {
+  const Rect box = piece_bounds(piece, view);
+  if (box.empty()) return;
+  const int bx0 = box.x0 / kBinSize, by0 = box.y0 / kBinSize;
+  const int bx1 = (box.x1 - 1) / kBinSize, by1 = (box.y1 - 1) / kBinSize;
+  const std::size_t touched =
+      static_cast<std::size_t>(bx1 - bx0 + 1) * static_cast<std::size_t>(by1 - by0 + 1);
+  PieceInBin* const out = pairs.room(touched);
+  std::size_t n = 0;
+  const Edges edges = edges_of(piece);
+  for (int by = by0; by <= by1; ++by)
+    for (int bx = bx0; bx <= bx1; ++bx) {
+      const int x0 = bx * kBinSize, y0 = by * kBinSize;
+      // A box in one or two bins has a vertex in each.
+      if (touched > 2 && !may_touch(edges, {x0, y0, x0 + kBinSize, y0 + kBinSize})) continue;
       const int row = by - view.y0 / kBinSize;
       out[n++] = {static_cast<std::uint32_t>(row * bins.columns() + bx), index};
-    };
-    if (touched == 1) {
-      add(bx0, by0);
-    } else {
-      const Edges edges = edges_of(piece);
-      for (int by = by0; by <= by1; ++by)
-        for (int bx = bx0; bx <= bx1; ++bx) {
-          const int x0 = bx * kBinSize, y0 = by * kBinSize;
-          if (may_touch(edges, {x0, y0, x0 + kBinSize, y0 + kBinSize})) add(bx, by);
-        }
     }
-    pairs.added(n);
+  pairs.added(n);
+}
+
+/// Adds the pairs of pieces [first, …) with the bins of `view` until all are there, or as many as
+/// `most` after a piece. Returns the first piece that was left.
+std::uint32_t bin_pieces(const Kernels& kernel, std::span<const Piece> pieces, std::uint32_t first,
+                         std::size_t most, const TileGrid& bins, Collected<PieceInBin>& pairs) {
+  std::uint32_t bin[64];
+  std::uint32_t index = first;
+  while (index < pieces.size() && pairs.entries().size() < most) {
+    auto n = static_cast<std::uint32_t>(
+        std::min({std::size(bin), pieces.size() - index, most - pairs.entries().size()}));
+    kernel.bins(pieces.data() + index, n, bins.view, bin);
+    for (std::uint32_t i = 0; i < n;) {
+      PieceInBin* const out = pairs.room(n - i);
+      std::uint32_t k = 0;
+      for (; i < n && bin[i] != kManyBins; ++i) out[k++] = {bin[i], index + i};
+      pairs.added(k);
+      if (i < n) {
+        bin_piece(pieces[index + i], index + i, bins, pairs);
+        ++i;
+      }
+      // A piece that touched many bins may have left no room for those after it.
+      if (i < n && pairs.entries().size() + (n - i) > most) {
+        n = i;
+        break;
+      }
+    }
+    index += n;
   }
   return index;
 }
@@ -240,7 +259,7 @@ std::span<Group> Grouped::set_up_groups(Frame& frame, const TileGrid& bins, std:
       in_range = false;
       return;
     }
-    group.binned = bin_pieces(group.pieces.span(), 0, most, bins, scratch.pairs);
+    group.binned = bin_pieces(frame.kernel, group.pieces.span(), 0, most, bins, scratch.pairs);
     group.by_bin.sort(scratch.pairs, bin_count);
     group.fragments.sort(scratch.micro, bin_count);
     pairs.fetch_add(scratch.pairs.entries().size(), std::memory_order_relaxed);
@@ -261,7 +280,8 @@ void Grouped::bin_more(Frame& frame, const TileGrid& bins, std::span<Group> grou
     GroupScratch& scratch = fillers_.local();
     scratch.pairs.restart(bin_count);
     scratch.micro.restart(bin_count);
-    group.binned = bin_pieces(group.pieces.span(), group.binned, most, bins, scratch.pairs);
+    group.binned =
+        bin_pieces(frame.kernel, group.pieces.span(), group.binned, most, bins, scratch.pairs);
     group.by_bin.sort(scratch.pairs, bin_count);
     group.fragments.sort(scratch.micro, bin_count);
     pairs.fetch_add(scratch.pairs.entries().size(), std::memory_order_relaxed);
