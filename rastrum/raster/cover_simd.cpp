@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 #include <rastrum/raster/coverage.hpp>
 #include <rastrum/raster/depth_bounds.hpp>
@@ -342,28 +343,37 @@ constexpr std::uint64_t columns(int k) {
   return (std::uint64_t{0xFF} >> k) * 0x0101010101010101U;
 }
 
-/// Cuts the mask of a small piece along the blocks of `bin`, up to four.
-HWY_INLINE std::size_t split_small(const SmallPieces& small, std::size_t lane, std::uint32_t index,
-                                   Rect bin, bool cut, Block* out) {
-  const std::uint64_t mask = small.mask(lane);
-  const int x0 = small.x0[lane], y0 = small.y0[lane];
+/// Cuts the mask of a small piece, counted from sample (x0, y0), along the blocks of `bin`, up to
+/// four. Out of line: it needs all registers.
+HWY_NOINLINE std::size_t split_small(std::uint64_t mask, int x0, int y0, std::uint32_t index,
+                                     const Rect& bin, Block* out) {
+  static_assert(std::endian::native == std::endian::little);
   const int bx = x0 >> 3, by = y0 >> 3, sx = x0 & 7, sy = y0 & 7;
-  const bool has_left = bx * kBlockSize >= bin.x0, has_top = by * kBlockSize >= bin.y0;
-  const bool has_right = (bx + 1) * kBlockSize < bin.x1,
-             has_bottom = (by + 1) * kBlockSize < bin.y1;
-  const std::uint64_t left = has_left ? (mask & columns(sx)) << sx : 0;
-  const std::uint64_t right = has_right ? mask >> (8 - sx) & columns(8 - sx) : 0;
-  const std::uint64_t parts[4] = {has_top ? left << (8 * sy) : 0, has_top ? right << (8 * sy) : 0,
-                                  has_bottom ? left >> (8 * (7 - sy)) >> 8 : 0,
-                                  has_bottom ? right >> (8 * (7 - sy)) >> 8 : 0};
+  const std::uint64_t keep = columns(sx);
+  // keep << sx are the columns of this block, so the others of the next one are its complement.
+  std::uint64_t left = (mask & keep) << sx;
+  std::uint64_t right = mask >> (8 - sx) & ~(keep << sx);
+  left = bx * kBlockSize >= bin.x0 ? left : 0;
+  right = (bx + 1) * kBlockSize < bin.x1 ? right : 0;
+  const std::uint64_t top = by * kBlockSize >= bin.y0 ? ~std::uint64_t{0} << (8 * sy) : 0;
+  const std::uint64_t bottom =
+      (by + 1) * kBlockSize < bin.y1 ? ~(~std::uint64_t{0} << (8 * sy)) : 0;
+  // A Block's first half; sums, so that a negative bx takes from by what bx + 1 gives back.
+  constexpr std::uint64_t kOneX = std::uint64_t{1} << 32, kOneY = std::uint64_t{1} << 48;
+  const std::uint64_t at =
+      index + static_cast<std::uint64_t>(bx) * kOneX + static_cast<std::uint64_t>(by) * kOneY;
   std::size_t n = 0;
-  for (int i = 0; i < 4; ++i) {
-    const int x = bx + i % 2, y = by + i / 2;
-    std::uint64_t part = parts[i];
-    if (cut) part &= samples_inside(bin, x, y);
-    out[n] = {index, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), part};
+  const auto add = [&](std::uint64_t place, std::uint64_t part) {
+    const std::uint64_t both[2] = {place, part};
+    std::memcpy(out + n, both, sizeof(Block));
     n += part != 0;
-  }
+  };
+  left = std::rotl(left, 8 * sy);
+  right = std::rotl(right, 8 * sy);
+  add(at, left & top);
+  add(at + kOneX, right & top);
+  add(at + kOneY, left & bottom);
+  add(at + kOneX + kOneY, right & bottom);
   return n;
 }
 
@@ -374,6 +384,18 @@ HWY_INLINE bool knows_depths(const DepthBounds& bounds) {
   for (std::size_t i = 0; i < kBlocksPerBin; i += kLanes)
     most = hn::Max(most, hn::LoadU(d, bounds.block + i));
   return !hn::AllTrue(d, hn::Eq(most, hn::Zero(d)));
+}
+
+/// Leaves the samples in `bin`; returns how many blocks still have some.
+HWY_NOINLINE std::size_t cut_blocks(Rect bin, Block* blocks, std::size_t n) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    Block block = blocks[i];
+    block.mask &= samples_inside(bin, block.bx, block.by);
+    blocks[kept] = block;
+    kept += block.mask != 0;
+  }
+  return kept;
 }
 
 HWY_NOINLINE std::size_t drop_hidden(const Piece& piece, HiddenTest& hidden, Block* blocks,
@@ -410,7 +432,9 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
         n += cover_large(piece, index, bin, hidden, out + n);
       } else {
         if (hides && hidden.hides_piece(piece, sample_bounds(piece.x, piece.y, bin))) continue;
-        const std::size_t written = split_small(small, i, index, bin, cut, out + n);
+        std::size_t written =
+            split_small(small.mask(i), small.x0[i], small.y0[i], index, bin, out + n);
+        if (cut) written = cut_blocks(bin, out + n, written);
         n += hides ? drop_hidden(piece, hidden, out + n, written) : written;
       }
     }
