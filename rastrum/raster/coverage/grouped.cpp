@@ -151,12 +151,13 @@ void bin_piece(const Piece& piece, std::uint32_t index, const TileGrid& bins,
       static_cast<std::size_t>(bx1 - bx0 + 1) * static_cast<std::size_t>(by1 - by0 + 1);
   PieceInBin* const out = pairs.room(touched);
   std::size_t n = 0;
-  const Edges edges = edges_of(piece);
+  // A box in two bins has a vertex in each, unless the view cuts it: not worth asking.
+  const bool asks = touched > 2;
+  const Edges edges = asks ? edges_of(piece) : Edges{};
   for (int by = by0; by <= by1; ++by)
     for (int bx = bx0; bx <= bx1; ++bx) {
       const int x0 = bx * kBinSize, y0 = by * kBinSize;
-      // A box in one or two bins has a vertex in each.
-      if (touched > 2 && !may_touch(edges, {x0, y0, x0 + kBinSize, y0 + kBinSize})) continue;
+      if (asks && !may_touch(edges, {x0, y0, x0 + kBinSize, y0 + kBinSize})) continue;
       const int row = by - view.y0 / kBinSize;
       out[n++] = {static_cast<std::uint32_t>(row * bins.columns() + bx), index};
     }
