@@ -1,5 +1,5 @@
 // Exact coverage: the one interval of a row and the one mask of a block. Every rasterizer covers
-// through these two, or through their SIMD form (blocks_simd.cpp), which tests hold equal to them.
+// through these two, or through their SIMD form (cover_simd.cpp), which tests hold equal to them.
 // Triangles, lines and points are all the common inside of a few edge functions.
 //
 // The arithmetic. An edge from a to b has the function E(p) = (b.x − a.x)(p.y − a.y) −

@@ -43,6 +43,10 @@ SetupOutput setup_scalar(const SetupInput& in, Piece* pieces, BinFragment*,
   return out;
 }
 
+void bins_scalar(const Piece*, std::size_t n, Rect, std::uint32_t* bins) noexcept {
+  std::fill_n(bins, n, kManyBins);
+}
+
 std::size_t cover_scalar(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
                          std::size_t capacity, DepthBounds* bounds) noexcept {
   HiddenTest hidden(bounds, bin);
@@ -123,9 +127,9 @@ void store_blended_scalar(const BlockColors& colors, std::uint64_t covered,
 
 constexpr std::size_t kIsaCount = static_cast<std::size_t>(Isa::neon) + 1;
 
-constexpr Kernels kScalar{project_scalar,      setup_scalar,        cover_scalar,  masks_scalar,
-                          words_scalar,        maximum_scalar,      lowest_scalar, covered_scalar,
-                          store_opaque_scalar, store_blended_scalar};
+constexpr Kernels kScalar{project_scalar,      setup_scalar,         cover_scalar,  masks_scalar,
+                          words_scalar,        maximum_scalar,       lowest_scalar, covered_scalar,
+                          store_opaque_scalar, store_blended_scalar, bins_scalar};
 
 }  // namespace
 
@@ -137,6 +141,7 @@ const Kernels& kernels(Isa isa) noexcept {
     for (const Isa available : available_isas()) {
       Kernels& table = all[static_cast<std::size_t>(available)];
       fill_setup_kernels(available, table);
+      fill_cover_kernels(available, table);
       fill_block_kernels(available, table);
     }
     return all;

@@ -60,6 +60,8 @@ inline constexpr int kBinSize = 64;
 inline constexpr int kBlocksPerBinRow = kBinSize / kBlockSize;
 inline constexpr int kBlocksPerBin = kBlocksPerBinRow * kBlocksPerBinRow;
 
+inline constexpr std::uint32_t kManyBins = 0xFFFFFFFF;
+
 /// Hierarchical Z (Greene, "Hierarchical polygon tiling with coverage masks", 1996; papers 1 and 5
 /// name it as missing): what is surely hidden in a bin. A piece or block is left out where its
 /// highest depth is strictly below a bound, so that no pixel changes, ties included.
@@ -114,6 +116,10 @@ struct Kernels {
   /// The same for colours that may be translucent.
   void (*store_blended)(const BlockColors& colors, std::uint64_t covered, const Backdrop& backdrop,
                         Rgba8* out, std::ptrdiff_t stride) noexcept;
+
+  /// The bin of `view` (row by row, from a corner of a bin on) that holds the boxes of pieces [0,
+  /// n), or kManyBins where that has to be looked at: a box in several or in none, a line, a point.
+  void (*bins)(const Piece* pieces, std::size_t n, Rect view, std::uint32_t* bins) noexcept;
 };
 
 /// The best table at or below `isa` that was compiled for this architecture.

@@ -18,6 +18,19 @@ constexpr std::uint64_t kMinGroup = 4096;
 /// … and that the groups' tables of bins together stay small.
 constexpr std::uint64_t kMaxBinTables = std::uint64_t{1} << 18;
 
+/// Calls use(bin, run) for runs of entries of the same bin. Neighbours mostly share one, and a
+/// counter that is raised for each of them would be waited for each time.
+template <class Entry, class Use>
+void for_each_run(std::span<const Entry> entries, const Use& use) {
+  for (std::size_t i = 0; i < entries.size();) {
+    const std::uint32_t bin = entries[i].bin;
+    std::size_t end = i + 1;
+    while (end < entries.size() && entries[end].bin == bin) ++end;
+    use(bin, entries.subspan(i, end - i));
+    i = end;
+  }
+}
+
 /// Entries in the order in which they were made, and how many each bin gets. A thread's: it is
 /// filled again for every group, so that it stays in cache. `Entry` has a member `bin`.
 template <class Entry>
@@ -36,7 +49,10 @@ class Collected {
     return entries_.data() + count_;
   }
   void added(std::size_t n) {
-    for (std::size_t i = count_; i < count_ + n; ++i) ++next_[entries_[i].bin + 1];
+    for_each_run(std::span<const Entry>(entries_.data() + count_, n),
+                 [&](std::uint32_t bin, std::span<const Entry> run) {
+                   next_[bin + 1] += static_cast<std::uint32_t>(run.size());
+                 });
     count_ += n;
   }
   [[nodiscard]] std::span<const Entry> entries() const { return {entries_.data(), count_}; }
@@ -70,7 +86,10 @@ class BinLists {
       begin_[b + 1] = sum;
       sum += counts[b + 1];
     }
-    for (const Entry& entry : entries) sorted_[begin_[entry.bin + 1]++] = entry;
+    for_each_run(entries, [&](std::uint32_t bin, std::span<const Entry> run) {
+      std::copy(run.begin(), run.end(), sorted_.data() + begin_[bin + 1]);
+      begin_[bin + 1] += static_cast<std::uint32_t>(run.size());
+    });
   }
   [[nodiscard]] std::span<const Entry> bin(std::size_t b) const {
     return {sorted_.data() + begin_[b], begin_[b + 1] - begin_[b]};
@@ -101,9 +120,14 @@ struct GroupScratch final : MicroSink {
   Collected<PieceInBin> pairs;
   Collected<BinFragment> micro;
   std::uint32_t first_bin = 0, bins = 0;  ///< of the view, where setup numbers those of the image
+  bool whole = true;                      ///< the view is the image
 
   BinFragment* room(std::size_t n) override { return micro.room(n); }
   void written(std::size_t n) override {
+    if (whole) {
+      micro.added(n);
+      return;
+    }
     BinFragment* const all = micro.room(0);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -115,37 +139,57 @@ struct GroupScratch final : MicroSink {
   }
 };
 
-/// Adds the pairs of pieces [first, …) with the bins of `view` until all are there, or as many as
-/// `most` after a piece. Returns the first piece that was left.
-std::uint32_t bin_pieces(std::span<const Piece> pieces, std::uint32_t first, std::size_t most,
-                         const TileGrid& bins, Collected<PieceInBin>& pairs) {
+/// Adds the pairs of a piece with the bins of its box that it may touch.
+void bin_piece(const Piece& piece, std::uint32_t index, const TileGrid& bins,
+               Collected<PieceInBin>& pairs) {
   const Rect view = bins.view;
-  std::uint32_t index = first;
-  for (; index < pieces.size() && pairs.entries().size() < most; ++index) {
-    const Piece& piece = pieces[index];
-    const Rect box = piece_bounds(piece, view);
-    if (box.empty()) continue;
-    const int bx0 = box.x0 / kBinSize, by0 = box.y0 / kBinSize;
-    const int bx1 = (box.x1 - 1) / kBinSize, by1 = (box.y1 - 1) / kBinSize;
-    const std::size_t touched =
-        static_cast<std::size_t>(bx1 - bx0 + 1) * static_cast<std::size_t>(by1 - by0 + 1);
-    PieceInBin* const out = pairs.room(touched);
-    std::size_t n = 0;
-    const auto add = [&](int bx, int by) {
+  const Rect box = piece_bounds(piece, view);
+  if (box.empty()) return;
+  const int bx0 = box.x0 / kBinSize, by0 = box.y0 / kBinSize;
+  const int bx1 = (box.x1 - 1) / kBinSize, by1 = (box.y1 - 1) / kBinSize;
+  const std::size_t touched =
+      static_cast<std::size_t>(bx1 - bx0 + 1) * static_cast<std::size_t>(by1 - by0 + 1);
+  PieceInBin* const out = pairs.room(touched);
+  std::size_t n = 0;
+  // A box in two bins has a vertex in each, unless the view cuts it: not worth asking.
+  const bool asks = touched > 2;
+  const Edges edges = asks ? edges_of(piece) : Edges{};
+  for (int by = by0; by <= by1; ++by)
+    for (int bx = bx0; bx <= bx1; ++bx) {
+      const int x0 = bx * kBinSize, y0 = by * kBinSize;
+      if (asks && !may_touch(edges, {x0, y0, x0 + kBinSize, y0 + kBinSize})) continue;
       const int row = by - view.y0 / kBinSize;
       out[n++] = {static_cast<std::uint32_t>(row * bins.columns() + bx), index};
-    };
-    if (touched == 1) {
-      add(bx0, by0);
-    } else {
-      const Edges edges = edges_of(piece);
-      for (int by = by0; by <= by1; ++by)
-        for (int bx = bx0; bx <= bx1; ++bx) {
-          const int x0 = bx * kBinSize, y0 = by * kBinSize;
-          if (may_touch(edges, {x0, y0, x0 + kBinSize, y0 + kBinSize})) add(bx, by);
-        }
     }
-    pairs.added(n);
+  pairs.added(n);
+}
+
+/// Adds the pairs of pieces [first, …) with the bins of `view` until all are there, or as many as
+/// `most` after a piece. Returns the first piece that was left.
+std::uint32_t bin_pieces(const Kernels& kernel, std::span<const Piece> pieces, std::uint32_t first,
+                         std::size_t most, const TileGrid& bins, Collected<PieceInBin>& pairs) {
+  std::uint32_t bin[64];
+  std::uint32_t index = first;
+  while (index < pieces.size() && pairs.entries().size() < most) {
+    auto n = static_cast<std::uint32_t>(
+        std::min({std::size(bin), pieces.size() - index, most - pairs.entries().size()}));
+    kernel.bins(pieces.data() + index, n, bins.view, bin);
+    for (std::uint32_t i = 0; i < n;) {
+      PieceInBin* const out = pairs.room(n - i);
+      std::uint32_t k = 0;
+      for (; i < n && bin[i] != kManyBins; ++i) out[k++] = {bin[i], index + i};
+      pairs.added(k);
+      if (i < n) {
+        bin_piece(pieces[index + i], index + i, bins, pairs);
+        ++i;
+      }
+      // A piece that touched many bins may have left no room for those after it.
+      if (i < n && pairs.entries().size() + (n - i) > most) {
+        n = i;
+        break;
+      }
+    }
+    index += n;
   }
   return index;
 }
@@ -209,13 +253,14 @@ std::span<Group> Grouped::set_up_groups(Frame& frame, const TileGrid& bins, std:
     scratch.micro.restart(bin_count);
     scratch.first_bin = first_bin;
     scratch.bins = static_cast<std::uint32_t>(bin_count);
+    scratch.whole = frame.view.y0 == 0 && frame.view.y1 == frame.request.height;
     const std::uint64_t begin = first + g * group_size;
     if (!set_up(frame, begin, std::min(begin + group_size, last), group.pieces,
                 frame.visibility.takes_fragments ? &scratch : nullptr)) {
       in_range = false;
       return;
     }
-    group.binned = bin_pieces(group.pieces.span(), 0, most, bins, scratch.pairs);
+    group.binned = bin_pieces(frame.kernel, group.pieces.span(), 0, most, bins, scratch.pairs);
     group.by_bin.sort(scratch.pairs, bin_count);
     group.fragments.sort(scratch.micro, bin_count);
     pairs.fetch_add(scratch.pairs.entries().size(), std::memory_order_relaxed);
@@ -236,7 +281,8 @@ void Grouped::bin_more(Frame& frame, const TileGrid& bins, std::span<Group> grou
     GroupScratch& scratch = fillers_.local();
     scratch.pairs.restart(bin_count);
     scratch.micro.restart(bin_count);
-    group.binned = bin_pieces(group.pieces.span(), group.binned, most, bins, scratch.pairs);
+    group.binned =
+        bin_pieces(frame.kernel, group.pieces.span(), group.binned, most, bins, scratch.pairs);
     group.by_bin.sort(scratch.pairs, bin_count);
     group.fragments.sort(scratch.micro, bin_count);
     pairs.fetch_add(scratch.pairs.entries().size(), std::memory_order_relaxed);
