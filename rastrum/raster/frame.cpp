@@ -21,12 +21,8 @@ void count_overdraw(const ImageView<std::uint32_t>& overdraw, std::span<const Bl
 
 void count_overdraw(const ImageView<std::uint32_t>& overdraw, Rect bin,
                     std::span<const BinFragment> fragments) {
-  for (const BinFragment& f : fragments) {
-    const auto pixel = static_cast<int>(f.pixel & ~kTranslucentFragment);
-    const int block = pixel / 64, sample = pixel % 64;
-    ++overdraw(bin.x0 + block % kBlocksPerBinRow * kBlockSize + sample % kBlockSize,
-               bin.y0 + block / kBlocksPerBinRow * kBlockSize + sample / kBlockSize);
-  }
+  for (const BinFragment& f : fragments)
+    ++overdraw(bin.x0 + column_in_bin(f), bin.y0 + row_in_bin(f));
 }
 
 /// Keeps the blocks that `mask_of` leaves samples, in order.

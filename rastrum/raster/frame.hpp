@@ -164,6 +164,10 @@ class Frame {
   std::uint64_t fragment_bytes = 0;  ///< see RegionContext
   /// Most that a coverage may expand triangles to (rows, bins, pairs) at once; 0: no limit.
   std::uint64_t expansion_bytes = 0;
+  /// Most that the pieces of a view, and what they are expanded to, may take at once where all have
+  /// to be there (Visibility::keeps_layers); 0: no limit.
+  std::uint64_t view_bytes = 0;
+  bool fits = true;  ///< else the view was not drawn
 
   std::atomic<std::uint64_t> fragments = 0, pixels_covered = 0;
   Counters counters;
@@ -226,56 +230,67 @@ void draw_shared(Frame& frame, std::size_t chunks, const Enumerate& enumerate) {
       enumerate);
 }
 
-/// Lets threads own the tiles of `grid` (whole blocks) one by one. `is_empty(tile)` says that
-/// nothing would be enumerated; `enumerate(tile, emitter)` as above. A tile is shaded at once
-/// unless the frame has a surface.
+/// Draws a tile (whole blocks, at most `tile_px` across) that the calling thread owns.
+/// `enumerate(emitter)` as above. It is shaded at once unless the frame has a surface.
+template <class Enumerate>
+void draw_tile(Frame& frame, Rect rect, int tile_px, bool is_empty, const Enumerate& enumerate) {
+  FrameScratch& scratch = frame.scratch;
+  const bool local = !frame.has_surface();
+  if (is_empty) {
+    if (local) frame.shade_nothing(rect);
+    return;
+  }
+  Worker& worker = scratch.workers.local();
+  if (!worker.region) worker.region = frame.visibility.make(Sharing::owned, scratch.memory);
+  Region& region = *worker.region;
+  SurfaceView surface;
+  if (local) {
+    // Rows of a whole tile, also at the image's edge: kernels like one stride.
+    surface = {rect.x0 / kBlockSize, rect.y0 / kBlockSize, (tile_px + kBlockSize - 1) / kBlockSize,
+               nullptr, nullptr};
+    const std::size_t blocks =
+        static_cast<std::size_t>(surface.columns) * static_cast<std::size_t>(block_rows(rect));
+    worker.words.reserve(blocks * 64);
+    surface.words = worker.words.data();
+    load_words(frame.request.targets, rect, surface);
+    if (frame.visibility.shades) {
+      worker.colors.reserve(blocks);
+      surface.colors = worker.colors.data();
+    }
+  } else {
+    surface = frame.surface.part(rect.x0 / kBlockSize, rect.y0 / kBlockSize);
+  }
+  RegionContext context = frame.context(nullptr);
+  context.shader_scratch = frame.shader_scratch(worker);
+  region.begin(context, surface, rect, 1);
+  bool first_pass = true;
+  while (region.next()) {
+    Emitter emitter(frame, worker, region, 0, first_pass);
+    enumerate(emitter);
+    emitter.flush();
+    first_pass = false;
+  }
+  if (local) frame.shade(surface, rect, worker);
+}
+
+/// Adds the counters of the tiles that were drawn.
+inline void collect_tiles(Frame& frame) {
+  frame.scratch.workers.for_each([&](Worker& worker) {
+    if (worker.region) worker.region->collect(frame.counters);
+  });
+}
+
+/// Lets threads own the tiles of `grid` one by one. `is_empty(tile)` says that nothing would be
+/// enumerated; `enumerate(tile, emitter)` as above.
 template <class IsEmpty, class Enumerate>
 void draw_tiles(Frame& frame, const TileGrid& grid, const IsEmpty& is_empty,
                 const Enumerate& enumerate) {
-  FrameScratch& scratch = frame.scratch;
   parallel::for_each_index(frame.exec, grid.count(), [&](std::size_t position) {
     const std::size_t tile = grid.tile_at(position);
-    const Rect rect = grid.rect(tile);
-    const bool local = !frame.has_surface();
-    if (is_empty(tile)) {
-      if (local) frame.shade_nothing(rect);
-      return;
-    }
-    Worker& worker = scratch.workers.local();
-    if (!worker.region) worker.region = frame.visibility.make(Sharing::owned, scratch.memory);
-    Region& region = *worker.region;
-    SurfaceView surface;
-    if (local) {
-      // Rows of a whole tile, also at the image's edge: kernels like one stride.
-      surface = {rect.x0 / kBlockSize, rect.y0 / kBlockSize,
-                 (grid.tile_px + kBlockSize - 1) / kBlockSize, nullptr, nullptr};
-      const std::size_t blocks =
-          static_cast<std::size_t>(surface.columns) * static_cast<std::size_t>(block_rows(rect));
-      worker.words.reserve(blocks * 64);
-      surface.words = worker.words.data();
-      load_words(frame.request.targets, rect, surface);
-      if (frame.visibility.shades) {
-        worker.colors.reserve(blocks);
-        surface.colors = worker.colors.data();
-      }
-    } else {
-      surface = frame.surface.part(rect.x0 / kBlockSize, rect.y0 / kBlockSize);
-    }
-    RegionContext context = frame.context(nullptr);
-    context.shader_scratch = frame.shader_scratch(worker);
-    region.begin(context, surface, rect, 1);
-    bool first_pass = true;
-    while (region.next()) {
-      Emitter emitter(frame, worker, region, 0, first_pass);
-      enumerate(tile, emitter);
-      emitter.flush();
-      first_pass = false;
-    }
-    if (local) frame.shade(surface, rect, worker);
+    draw_tile(frame, grid.rect(tile), grid.tile_px, is_empty(tile),
+              [&](Emitter& emitter) { enumerate(tile, emitter); });
   });
-  scratch.workers.for_each([&](Worker& worker) {
-    if (worker.region) worker.region->collect(frame.counters);
-  });
+  collect_tiles(frame);
 }
 
 }  // namespace rastrum::raster

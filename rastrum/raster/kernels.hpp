@@ -62,6 +62,16 @@ inline constexpr int kBlocksPerBin = kBlocksPerBinRow * kBlocksPerBinRow;
 
 inline constexpr std::uint32_t kManyBins = 0xFFFFFFFF;
 
+/// Where in its bin a fragment lies, px.
+RASTRUM_HD inline int column_in_bin(const BinFragment& f) {
+  const auto pixel = static_cast<int>(f.pixel & ~kTranslucentFragment);
+  return pixel / 64 % kBlocksPerBinRow * kBlockSize + pixel % kBlockSize;
+}
+RASTRUM_HD inline int row_in_bin(const BinFragment& f) {
+  const auto pixel = static_cast<int>(f.pixel & ~kTranslucentFragment);
+  return pixel / 64 / kBlocksPerBinRow * kBlockSize + pixel % 64 / kBlockSize;
+}
+
 /// Hierarchical Z (Greene, "Hierarchical polygon tiling with coverage masks", 1996; papers 1 and 5
 /// name it as missing): what is surely hidden in a bin. A piece or block is left out where its
 /// highest depth is strictly below a bound, so that no pixel changes, ties included.

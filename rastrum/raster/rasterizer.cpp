@@ -32,6 +32,7 @@ struct Rasterizer::Plan {
   std::uint64_t batch = 0;  ///< triangles
   std::uint64_t fragment_bytes = 0;
   std::uint64_t expansion_bytes = 0;
+  std::uint64_t view_bytes = 0;
 };
 
 Rasterizer::Rasterizer(const CoverageRow& coverage, const Visibility& visibility,
@@ -53,6 +54,7 @@ Rasterizer::Plan Rasterizer::plan(const FrameRequest& request, std::uint64_t tri
                                   std::size_t vertices) const {
   Plan p;
   p.batch = std::clamp<std::uint64_t>(triangles, 1, kLargestBatch);
+  if (visibility_.keeps_layers) p.batch = std::max<std::uint64_t>(triangles, 1);
   p.surface = !row_.owns_tiles || p.batch < triangles;
   p.band_rows = request.height;
   if (memory_limit_ == 0) return p;
@@ -77,6 +79,18 @@ Rasterizer::Plan Rasterizer::plan(const FrameRequest& request, std::uint64_t tri
   const std::uint64_t band_share = std::max((memory_limit_ - others) / 4, least_band);
   const std::uint64_t share = (memory_limit_ - others - band_share) / 3;
   p.project_first = vertices <= share / sizeof(ProjectedVertex);
+  if (visibility_.keeps_layers) {
+    // Tiles keep their own words; the view is cut until its pieces fit.
+    p.fragment_bytes = share;
+    p.view_bytes = share;
+    if (!row_.cuts_views && triangles * static_cast<std::uint64_t>(request.samples) >
+                                share / static_cast<std::uint64_t>(row_.triangle_bytes))
+      throw Error(Errc::out_of_memory,
+                  std::string("'").append(row_.name).append(
+                      "' keeps all triangles of a frame with layers at once, more than the "
+                      "memory limit leaves room for; take 'grouped'"));
+    return p;
+  }
   // What triangles are expanded to is known in the middle of a draw only, and what does not fit
   // then is drawn in turns, onto a surface.
   p.expansion_bytes = row_.expands ? share / 2 : 0;
@@ -102,6 +116,34 @@ void Rasterizer::project(FrameRequest& request, FrameGeometry& frame) {
   frame.projected = projected_.data();
 }
 
+/// Draws the view, in halves where it does not fit.
+void Rasterizer::draw_view(Frame& frame, std::uint64_t first, std::uint64_t last) {
+  const Rect view = frame.view;
+  coverage_->draw(frame, first, last);
+  frame.first_band = frame.first_band && !frame.fits;
+  if (frame.fits) return;
+  const int columns = (view.x1 - view.x0 + kBinSize - 1) / kBinSize;
+  const int rows = (view.y1 - view.y0 + kBinSize - 1) / kBinSize;
+  if (columns == 1 && rows == 1)
+    throw Error(Errc::out_of_memory,
+                std::string("a memory limit of ")
+                    .append(std::to_string(memory_limit_))
+                    .append(" bytes does not hold what touches the 64 x 64 pixels at (")
+                    .append(std::to_string(view.x0))
+                    .append(", ")
+                    .append(std::to_string(view.y0))
+                    .append("), which layers need at once"));
+  Rect a = view, b = view;
+  if (rows > 1)
+    a.y1 = b.y0 = view.y0 + (rows + 1) / 2 * kBinSize;
+  else
+    a.x1 = b.x0 = view.x0 + (columns + 1) / 2 * kBinSize;
+  for (const Rect& half : {a, b}) {
+    frame.view = half;
+    draw_view(frame, first, last);
+  }
+}
+
 void Rasterizer::draw_band(Frame& frame, const Plan& plan, std::uint64_t triangles) {
   const Rect band = frame.view;
   const TileGrid tiles{band, kBinSize, frame.request.tuning.order};
@@ -118,6 +160,7 @@ void Rasterizer::draw_band(Frame& frame, const Plan& plan, std::uint64_t triangl
     });
   }
   const std::uint64_t first_id = frame.request.targets.first_id;
+  if (visibility_.keeps_layers) return draw_view(frame, first_id, first_id + triangles);
   std::uint64_t drawn = 0;
   do {  // once without triangles too: the background is drawn
     const std::uint64_t count = std::min(plan.batch, triangles - drawn);
@@ -159,6 +202,7 @@ FrameStats Rasterizer::render(FrameRequest& request) {
   Frame frame(request, geometry, visibility_, scratch_, stats, watch);
   frame.fragment_bytes = cut.fragment_bytes;
   frame.expansion_bytes = cut.expansion_bytes;
+  frame.view_bytes = cut.view_bytes;
   for (int y = 0; y < request.height; y += cut.band_rows) {
     frame.view = {0, y, request.width, std::min(y + cut.band_rows, request.height)};
     frame.first_band = y == 0;

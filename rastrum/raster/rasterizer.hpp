@@ -29,6 +29,7 @@ class Rasterizer {
   [[nodiscard]] Plan plan(const FrameRequest& request, std::uint64_t triangles,
                           std::size_t vertices) const;
   void project(FrameRequest& request, FrameGeometry& frame);
+  void draw_view(Frame& frame, std::uint64_t first, std::uint64_t last);
   void draw_band(Frame& frame, const Plan& plan, std::uint64_t triangles);
 
   const CoverageRow& row_;

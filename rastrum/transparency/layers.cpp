@@ -46,7 +46,7 @@ class LayersRegion final : public raster::Region {
       : opaque_(raster::make_atomic(raster::Sharing::owned, memory)),
         records_(memory),
         micro_(memory),
-        keys_(memory),
+        order_(memory),
         lists_(memory),
         sampled_(memory) {}
 
@@ -104,12 +104,12 @@ class LayersRegion final : public raster::Region {
       while (end < fragments.size() && is_opaque(fragments[end])) ++end;
       if (end > i) opaque_->fragments(fragments.subspan(i, end - i));
       for (; end < fragments.size() && !is_opaque(fragments[end]); ++end) {
-        const std::uint32_t pixel = fragments[end].pixel & ~raster::kTranslucentFragment;
-        const auto block = static_cast<int>(pixel / 64);
-        micro_.add({fragments[end].word,
-                    static_cast<std::uint32_t>(block / raster::kBlocksPerBinRow * columns_ +
-                                               block % raster::kBlocksPerBinRow),
-                    pixel % 64});
+        const BinFragment& f = fragments[end];
+        // They count from the bin, of which the region may be a part.
+        const int x = rect_.x0 / raster::kBinSize * raster::kBinSize + raster::column_in_bin(f);
+        const int y = rect_.y0 / raster::kBinSize * raster::kBinSize + raster::row_in_bin(f);
+        micro_.add({f.word, block_number(x / kBlockSize, y / kBlockSize),
+                    static_cast<std::uint32_t>(y % kBlockSize * kBlockSize + x % kBlockSize)});
       }
       i = end;
     }
@@ -163,7 +163,7 @@ class LayersRegion final : public raster::Region {
     if (&behind == &out) return;
 
     const LayerOrder order = blend_->order();
-    if (order == LayerOrder::depth && records.size() > kFewPieces) sort_by_depth(records, bx, by);
+    sort_by_depth(records, order == LayerOrder::depth && records.size() > kFewPieces, bx, by);
     LayerCounts counts;
     std::uint64_t nearest[64];
     std::copy_n(words, 64, nearest);
@@ -203,7 +203,8 @@ class LayersRegion final : public raster::Region {
   void fill_lists(const std::uint64_t* words, std::span<const Record> records,
                   std::span<const MicroRecord> micro, int bx, int by) {
     alignas(64) std::uint64_t piece_words[64];
-    for (const Record& r : records) {
+    for (std::size_t k = 0; k < records.size(); ++k) {
+      const Record& r = records[order_[k] & 0xFFFFFFFFU];
       context_.kernel->words(
           *r.piece, {0, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), r.mask},
           piece_words);
@@ -216,14 +217,17 @@ class LayersRegion final : public raster::Region {
       if (f.word > words[f.pixel]) lists_.insert(static_cast<int>(f.pixel), f.word);
   }
 
-  void sort_by_depth(std::span<Record> records, int bx, int by) {
-    keys_.reserve(records.size() * 2);
-    Key* const keys = keys_.data();
-    for (std::size_t i = 0; i < records.size(); ++i)
-      keys[i] = {centroid_depth(*records[i].piece, records[i].mask, bx, by), records[i]};
-    std::stable_sort(keys, keys + records.size(),
-                     [](const Key& a, const Key& b) { return a.depth > b.depth; });
-    for (std::size_t i = 0; i < records.size(); ++i) records[i] = keys[i].record;
+  /// Puts the numbers of a block's records into order_: nearest first, or as they are.
+  void sort_by_depth(std::span<const Record> records, bool sort, int bx, int by) {
+    order_.reserve(records.size());
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      order_[i] = i;
+      if (!sort) continue;
+      const float depth = centroid_depth(*records[i].piece, records[i].mask, bx, by);
+      const std::uint32_t bits = depth > 0 ? std::bit_cast<std::uint32_t>(depth) : 0;
+      order_[i] |= std::uint64_t{~bits} << 32;
+    }
+    if (sort) std::sort(order_.data(), order_.data() + records.size());
   }
 
   static void raise(std::uint64_t* nearest, const std::uint64_t* words, std::uint64_t mask) {
@@ -267,11 +271,6 @@ class LayersRegion final : public raster::Region {
     }
   }
 
-  struct Key {
-    float depth;
-    Record record;
-  };
-
   raster::RegionContext context_;
   raster::SurfaceView surface_;
   Rect rect_;
@@ -286,7 +285,7 @@ class LayersRegion final : public raster::Region {
   Isa made_with_ = Isa::scalar;
   ByBlock<Record> records_;
   ByBlock<MicroRecord> micro_;
-  Buffer<Key> keys_;
+  Buffer<std::uint64_t> order_;  ///< of a block's records: ~depth << 32 | number
   LayerLists<> lists_;
   SampledBlock sampled_;
   BlockColors behind_, colors_;
@@ -302,7 +301,8 @@ std::unique_ptr<raster::Region> make_layers(raster::Sharing, MemoryAccount& memo
 
 const raster::Visibility& layers() noexcept {
   static constexpr raster::Visibility kRow{
-      "layers", "all fragments of a pixel in order, for transparency", true, true, 24, make_layers};
+      "layers", "all fragments of a pixel in order, for transparency", true, true, 24, make_layers,
+      true};
   return kRow;
 }
 

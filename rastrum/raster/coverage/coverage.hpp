@@ -17,6 +17,7 @@ class Coverage {
  public:
   virtual ~Coverage() = default;
   /// Draws triangles [first, last) of the frame's numbering. Names its work in frame.counters.
+  /// Where the view needs more than Frame::view_bytes it draws nothing and clears Frame::fits.
   virtual void draw(Frame& frame, std::uint64_t first, std::uint64_t last) = 0;
 };
 
@@ -28,6 +29,7 @@ struct CoverageRow {
   bool expands = false;
   /// Bytes of scratch a triangle, beside what it is expanded to, for cutting a frame into batches.
   int triangle_bytes = 96;
+  bool cuts_views = false;  ///< heeds Frame::view_bytes
   /// Throws Error{invalid_argument} for a tuning that was not compiled, listing those that were.
   std::unique_ptr<Coverage> (*make)(const Tuning&, MemoryAccount&) = nullptr;
 };

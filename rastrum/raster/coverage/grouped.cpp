@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include <rastrum/core/error.hpp>
@@ -100,6 +102,11 @@ class BinLists {
   Buffer<std::uint32_t> begin_;
 };
 
+/// Bins of layers with more entries are cut to 32², and those with even more to 16² px (paper 4's
+/// future work; there 32² for all): what is recorded of a part stays in a core's cache, and threads
+/// share what is dense.
+constexpr std::size_t kSparseBin = 1 << 13, kDenseBin = 1 << 16;
+
 /// What became of the triangles [first, last) of the frame.
 struct Group {
   explicit Group(MemoryAccount& memory) : pieces(memory), by_bin(memory), fragments(memory) {}
@@ -116,11 +123,25 @@ struct Group {
 
 /// What a thread needs to fill a group.
 struct GroupScratch final : MicroSink {
-  explicit GroupScratch(MemoryAccount& memory) : pairs(memory), micro(memory) {}
+  explicit GroupScratch(MemoryAccount& memory) : pieces(memory), pairs(memory), micro(memory) {}
+  Pieces pieces;  ///< of a group, before those outside of the view are left out
   Collected<PieceInBin> pairs;
   Collected<BinFragment> micro;
-  std::uint32_t first_bin = 0, bins = 0;  ///< of the view, where setup numbers those of the image
-  bool whole = true;                      ///< the view is the image
+  bool whole = true;        ///< the view is the image, whose bins setup numbers; else:
+  int image_columns = 0;    ///< bins in a row of it
+  int column = 0, row = 0;  ///< the view's first bin
+  int columns = 0, rows = 0;
+
+  void restart(const Frame& frame, const TileGrid& bins) {
+    pairs.restart(bins.count());
+    micro.restart(bins.count());
+    whole = bins.count() == TileGrid{{0, 0, frame.request.width, frame.request.height}}.count();
+    image_columns = (frame.request.width + kBinSize - 1) / kBinSize;
+    column = bins.view.x0 / kBinSize;
+    row = bins.view.y0 / kBinSize;
+    columns = bins.columns();
+    rows = bins.rows();
+  }
 
   BinFragment* room(std::size_t n) override { return micro.room(n); }
   void written(std::size_t n) override {
@@ -131,9 +152,11 @@ struct GroupScratch final : MicroSink {
     BinFragment* const all = micro.room(0);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < n; ++i) {
+      const auto bin = static_cast<int>(all[i].bin);
+      const int x = bin % image_columns - column, y = bin / image_columns - row;
       all[kept] = all[i];
-      all[kept].bin -= first_bin;
-      kept += all[kept].bin < bins;
+      all[kept].bin = static_cast<std::uint32_t>(y * columns + x);
+      kept += x >= 0 && x < columns && y >= 0 && y < rows;
     }
     micro.added(kept);
   }
@@ -158,8 +181,8 @@ void bin_piece(const Piece& piece, std::uint32_t index, const TileGrid& bins,
     for (int bx = bx0; bx <= bx1; ++bx) {
       const int x0 = bx * kBinSize, y0 = by * kBinSize;
       if (asks && !may_touch(edges, {x0, y0, x0 + kBinSize, y0 + kBinSize})) continue;
-      const int row = by - view.y0 / kBinSize;
-      out[n++] = {static_cast<std::uint32_t>(row * bins.columns() + bx), index};
+      const int row = by - view.y0 / kBinSize, column = bx - view.x0 / kBinSize;
+      out[n++] = {static_cast<std::uint32_t>(row * bins.columns() + column), index};
     }
   pairs.added(n);
 }
@@ -200,8 +223,16 @@ class Grouped final : public Coverage {
 
   void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
     const TileGrid bins{frame.view, kBinSize, frame.request.tuning.order};
-    const std::span<Group> groups = set_up_groups(frame, bins, first, last);
+    if (frame.view_bytes != 0) groups_.clear();  // what other views needed
+    const auto set_up = set_up_groups(frame, bins, first, last);
     frame.watch.lap(frame.stats, "setup and bin");
+    frame.fits = set_up.has_value();
+    if (!set_up) return;
+    const std::span<Group> groups = *set_up;
+    if (frame.visibility.keeps_layers) {
+      draw_layers(frame, bins, groups);
+      return;
+    }
     draw_bins(frame, bins, groups);
     while (std::any_of(groups.begin(), groups.end(),
                        [](const Group& g) { return g.binned < g.pieces.count; })) {
@@ -213,11 +244,14 @@ class Grouped final : public Coverage {
 
  private:
   /// Fills groups with pieces and fragments, and with pairs as far as there is room for them.
-  std::span<Group> set_up_groups(Frame& frame, const TileGrid& bins, std::uint64_t first,
-                                 std::uint64_t last);
+  /// Nothing: they take more than Frame::view_bytes.
+  std::optional<std::span<Group>> set_up_groups(Frame& frame, const TileGrid& bins,
+                                                std::uint64_t first, std::uint64_t last);
   /// Replaces pairs and fragments by the next pairs.
   void bin_more(Frame& frame, const TileGrid& bins, std::span<Group> groups);
   void draw_bins(Frame& frame, const TileGrid& bins, std::span<const Group> groups);
+  /// The same for a visibility that keeps layers: dense bins are cut.
+  void draw_layers(Frame& frame, const TileGrid& bins, std::span<const Group> groups);
 
   MemoryAccount& memory_;
   std::vector<Group> groups_;
@@ -232,10 +266,17 @@ std::size_t most_pairs(const Frame& frame, std::size_t groups) {
   return frame.expansion_bytes / ((groups + 3 * threads) * sizeof(PieceInBin));
 }
 
-std::span<Group> Grouped::set_up_groups(Frame& frame, const TileGrid& bins, std::uint64_t first,
-                                        std::uint64_t last) {
+/// Leaves out the pieces that do not touch the view.
+void keep_in_view(Pieces& pieces, Rect view) {
+  std::uint32_t kept = 0;
+  for (std::uint32_t i = 0; i < pieces.count; ++i)
+    if (!piece_bounds(pieces.data[i], view).empty()) pieces.data[kept++] = pieces.data[i];
+  pieces.count = kept;
+}
+
+std::optional<std::span<Group>> Grouped::set_up_groups(Frame& frame, const TileGrid& bins,
+                                                       std::uint64_t first, std::uint64_t last) {
   const std::size_t bin_count = bins.count();
-  const auto first_bin = static_cast<std::uint32_t>(frame.view.y0 / kBinSize * bins.columns());
   const std::uint64_t most_groups = std::max<std::uint64_t>(kMaxBinTables / bin_count, 1);
   const std::uint64_t group_size =
       std::max(kMinGroup, (last - first + most_groups - 1) / most_groups);
@@ -243,34 +284,48 @@ std::span<Group> Grouped::set_up_groups(Frame& frame, const TileGrid& bins, std:
   while (groups_.size() < group_count) groups_.emplace_back(memory_);
   const std::size_t most = most_pairs(frame, group_count);
   std::atomic<bool> in_range = true;
-  std::atomic<std::uint64_t> pairs = 0, micro_fragments = 0;
+  std::atomic<std::uint64_t> pairs = 0, micro_fragments = 0, bytes = 0;
+  const bool limited = frame.view_bytes != 0;
   parallel::for_each_index(frame.exec, group_count, [&](std::size_t g) {
+    if (limited && bytes.load(std::memory_order_relaxed) > frame.view_bytes) return;
     Group& group = groups_[g];
     GroupScratch& scratch = fillers_.local();
-    group.pieces.count = 0;
-    group.pieces.triangles = {};
-    scratch.pairs.restart(bin_count);
-    scratch.micro.restart(bin_count);
-    scratch.first_bin = first_bin;
-    scratch.bins = static_cast<std::uint32_t>(bin_count);
-    scratch.whole = frame.view.y0 == 0 && frame.view.y1 == frame.request.height;
+    Pieces& pieces = limited ? scratch.pieces : group.pieces;
+    pieces.count = 0;
+    pieces.triangles = {};
+    scratch.restart(frame, bins);
     const std::uint64_t begin = first + g * group_size;
-    if (!set_up(frame, begin, std::min(begin + group_size, last), group.pieces,
+    if (!set_up(frame, begin, std::min(begin + group_size, last), pieces,
                 frame.visibility.takes_fragments ? &scratch : nullptr)) {
       in_range = false;
       return;
     }
-    group.binned = bin_pieces(frame.kernel, group.pieces.span(), 0, most, bins, scratch.pairs);
+    if (limited) keep_in_view(pieces, frame.view);
+    group.binned = bin_pieces(frame.kernel, pieces.span(), 0, most, bins, scratch.pairs);
+    const std::size_t n = scratch.pairs.entries().size(), m = scratch.micro.entries().size();
+    if (limited) {
+      const std::uint64_t own = pieces.count * sizeof(Piece) + n * sizeof(PieceInBin) +
+                                m * sizeof(BinFragment) + 2 * bin_count * sizeof(std::uint32_t);
+      if (bytes.fetch_add(own, std::memory_order_relaxed) + own > frame.view_bytes) return;
+      group.pieces.data.reserve(pieces.count);
+      std::copy_n(pieces.data.data(), pieces.count, group.pieces.data.data());
+      group.pieces.count = pieces.count;
+      group.pieces.triangles = pieces.triangles;
+    }
     group.by_bin.sort(scratch.pairs, bin_count);
     group.fragments.sort(scratch.micro, bin_count);
-    pairs.fetch_add(scratch.pairs.entries().size(), std::memory_order_relaxed);
-    micro_fragments.fetch_add(scratch.micro.entries().size(), std::memory_order_relaxed);
+    pairs.fetch_add(n, std::memory_order_relaxed);
+    micro_fragments.fetch_add(m, std::memory_order_relaxed);
   });
   if (!in_range) check_indices(frame.request.draws);
+  if (limited && bytes > frame.view_bytes) {
+    groups_.clear();
+    return std::nullopt;
+  }
   for (std::size_t g = 0; g < group_count; ++g) count_triangles(frame, groups_[g].pieces.triangles);
   frame.count("bins", pairs);
   frame.count("micro fragments", micro_fragments);
-  return {groups_.data(), group_count};
+  return std::span<Group>{groups_.data(), group_count};
 }
 
 void Grouped::bin_more(Frame& frame, const TileGrid& bins, std::span<Group> groups) {
@@ -279,8 +334,7 @@ void Grouped::bin_more(Frame& frame, const TileGrid& bins, std::span<Group> grou
   parallel::for_each_index(frame.exec, groups.size(), [&](std::size_t g) {
     Group& group = groups[g];
     GroupScratch& scratch = fillers_.local();
-    scratch.pairs.restart(bin_count);
-    scratch.micro.restart(bin_count);
+    scratch.restart(frame, bins);
     group.binned =
         bin_pieces(frame.kernel, group.pieces.span(), group.binned, most, bins, scratch.pairs);
     group.by_bin.sort(scratch.pairs, bin_count);
@@ -288,6 +342,41 @@ void Grouped::bin_more(Frame& frame, const TileGrid& bins, std::span<Group> grou
     pairs.fetch_add(scratch.pairs.entries().size(), std::memory_order_relaxed);
   });
   frame.count("bins", pairs);
+}
+
+/// Those of a bin's fragments that lie in the part `rect` of it.
+void emit_fragments(std::span<const BinFragment> fragments, Rect bin, Rect rect, Emitter& emitter) {
+  if (fragments.empty()) return;
+  if (rect.x0 == bin.x0 && rect.y0 == bin.y0 && rect.x1 == bin.x1 && rect.y1 == bin.y1)
+    return emitter.fragments(bin, fragments);
+  BinFragment inside[256];
+  std::size_t n = 0;
+  for (const BinFragment& f : fragments) {
+    const int x = bin.x0 + column_in_bin(f), y = bin.y0 + row_in_bin(f);
+    if (x < rect.x0 || x >= rect.x1 || y < rect.y0 || y >= rect.y1) continue;
+    inside[n++] = f;
+    if (n == std::size(inside)) emitter.fragments(bin, {inside, std::exchange(n, 0)});
+  }
+  if (n != 0) emitter.fragments(bin, {inside, n});
+}
+
+/// Enumerates what groups have in a bin, or in the part `rect` of it.
+void enumerate_bin(Frame& frame, std::span<const Group> groups, std::size_t bin, Rect whole,
+                   Rect rect, Emitter& emitter) {
+  for (const Group& group : groups) {
+    emit_fragments(group.fragments.bin(bin), whole, rect, emitter);
+    const std::span<const PieceInBin> list = group.by_bin.bin(bin);
+    if (list.empty()) continue;
+    const PieceList pieces{group.pieces.data.data(), list.data(), list.size()};
+    emitter.use(pieces.pieces);
+    for (std::size_t cursor = 0; cursor < pieces.count;) {
+      const std::span<Block> room = emitter.room();
+      emitter.written(
+          frame.kernel.cover(pieces, cursor, rect, room.data(), room.size(), emitter.bounds()));
+    }
+    // Groups number their pieces from 0 each.
+    emitter.flush();
+  }
 }
 
 void Grouped::draw_bins(Frame& frame, const TileGrid& bins, std::span<const Group> groups) {
@@ -299,23 +388,37 @@ void Grouped::draw_bins(Frame& frame, const TileGrid& bins, std::span<const Grou
       },
       [&](std::size_t bin, Emitter& emitter) {
         const Rect rect = bins.rect(bin);
-        for (const Group& group : groups) {
-          const std::span<const BinFragment> fragments = group.fragments.bin(bin);
-          if (!fragments.empty()) emitter.fragments(rect, fragments);
-          const std::span<const PieceInBin> list = group.by_bin.bin(bin);
-          if (list.empty()) continue;
-          const PieceList pieces{group.pieces.data.data(), list.data(), list.size()};
-          emitter.use(pieces.pieces);
-          for (std::size_t cursor = 0; cursor < pieces.count;) {
-            const std::span<Block> room = emitter.room();
-            emitter.written(frame.kernel.cover(pieces, cursor, rect, room.data(), room.size(),
-                                               emitter.bounds()));
-          }
-          // Groups number their pieces from 0 each.
-          emitter.flush();
-        }
+        enumerate_bin(frame, groups, bin, rect, rect, emitter);
       });
   frame.watch.lap(frame.stats, frame.has_surface() ? "draw" : "draw and shade");
+}
+
+void Grouped::draw_layers(Frame& frame, const TileGrid& bins, std::span<const Group> groups) {
+  struct Part {
+    std::size_t bin, entries;
+    Rect rect;
+    int side_px;
+  };
+  std::vector<Part> parts;
+  for (std::size_t position = 0; position < bins.count(); ++position) {
+    const std::size_t bin = bins.tile_at(position);
+    const Rect rect = bins.rect(bin);
+    std::size_t entries = 0;
+    for (const Group& g : groups) entries += g.by_bin.bin(bin).size() + g.fragments.bin(bin).size();
+    const int side = entries <= kSparseBin ? kBinSize : entries <= kDenseBin ? 32 : 16;
+    for (int y = rect.y0; y < rect.y1; y += side)
+      for (int x = rect.x0; x < rect.x1; x += side)
+        parts.push_back(
+            {bin, entries, {x, y, std::min(x + side, rect.x1), std::min(y + side, rect.y1)}, side});
+  }
+  parallel::for_each_index(frame.exec, parts.size(), [&](std::size_t i) {
+    const Part& part = parts[i];
+    draw_tile(frame, part.rect, part.side_px, part.entries == 0, [&](Emitter& emitter) {
+      enumerate_bin(frame, groups, part.bin, bins.rect(part.bin), part.rect, emitter);
+    });
+  });
+  collect_tiles(frame);
+  frame.watch.lap(frame.stats, "draw and shade");
 }
 
 }  // namespace

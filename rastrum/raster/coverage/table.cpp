@@ -24,25 +24,25 @@ std::span<const CoverageRow> coverages() noexcept {
           "grouped",
           "(bin, piece) pairs sorted in groups of triangles; a thread owns a bin and shades "
           "it in cache",
-          true, true, 160, make_grouped},
+          true, true, 160, true, make_grouped},
       CoverageRow{"scanline", "triangles expanded to rows, rows to columns, at once into the frame",
-                  false, true, kIndexedPiece, make_scanline},
+                  false, true, kIndexedPiece, false, make_scanline},
       CoverageRow{"pineda",
                   "bins and tiles by edge functions and masks, small triangles apart, at once into "
                   "the frame",
-                  false, true, kIndexedPiece, make_pineda},
+                  false, true, kIndexedPiece, false, make_pineda},
       CoverageRow{"tiled",
                   "(tile, triangle) pairs sorted by tile; a thread owns a tile and shades it in "
                   "cache",
-                  true, true, kIndexedPiece, make_tiled},
+                  true, true, kIndexedPiece, false, make_tiled},
       CoverageRow{"hybrid",
                   "small triangles at once into the frame, the others sorted by tile onto it",
-                  false, true, kIndexedPiece, make_hybrid},
+                  false, true, kIndexedPiece, false, make_hybrid},
       CoverageRow{
           "binned",
           "batches of 32 triangles; large ones go through a queue of bins, whose tiles are dealt "
           "out in equal shares or whose bins belong to workers (paper 2)",
-          false, true, 128, make_binned},
+          false, true, 128, false, make_binned},
   };
   return kTable;
 }

@@ -71,8 +71,11 @@ class OwnedAtomicRegion final : public AtomicRegion {
     }
     for (const BinFragment& f : fragments) {
       const auto block = static_cast<int>(f.pixel / 64);
-      std::uint64_t& word = surface_.block(surface_.bx0 + block % kBlocksPerBinRow,
-                                           surface_.by0 + block / kBlocksPerBinRow)[f.pixel % 64];
+      // The region may be a part of the bin that the fragments count from.
+      const int bx0 = surface_.bx0 / kBlocksPerBinRow * kBlocksPerBinRow;
+      const int by0 = surface_.by0 / kBlocksPerBinRow * kBlocksPerBinRow;
+      std::uint64_t& word = surface_.block(bx0 + block % kBlocksPerBinRow,
+                                           by0 + block / kBlocksPerBinRow)[f.pixel % 64];
       word = std::max(word, f.word);
     }
   }

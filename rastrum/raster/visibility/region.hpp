@@ -83,6 +83,9 @@ struct Visibility {
   /// Bytes of surface a pixel: words, and what the method keeps beside them for a shared region.
   int surface_bytes = 8;
   std::unique_ptr<Region> (*make)(Sharing, MemoryAccount&) = nullptr;
+  /// Needs every fragment of a tile at once, from a coverage whose threads own tiles: triangles
+  /// cannot be drawn in batches or turns.
+  bool keeps_layers = false;
 };
 
 /// All methods; the first is the default.
