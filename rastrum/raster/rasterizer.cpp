@@ -83,12 +83,11 @@ Rasterizer::Plan Rasterizer::plan(const FrameRequest& request, std::uint64_t tri
     // Tiles keep their own words; the view is cut until its pieces fit.
     p.fragment_bytes = share;
     p.view_bytes = share;
-    if (!row_.cuts_views && triangles * static_cast<std::uint64_t>(request.samples) >
-                                share / static_cast<std::uint64_t>(row_.triangle_bytes))
-      throw Error(Errc::out_of_memory,
+    if (!row_.cuts_views)
+      throw Error(Errc::invalid_argument,
                   std::string("'").append(row_.name).append(
-                      "' keeps all triangles of a frame with layers at once, more than the "
-                      "memory limit leaves room for; take 'grouped'"));
+                      "' keeps all triangles of a frame with layers at once, whatever the "
+                      "memory limit; 'grouped' heeds it"));
     return p;
   }
   // What triangles are expanded to is known in the middle of a draw only, and what does not fit

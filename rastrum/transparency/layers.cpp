@@ -39,6 +39,8 @@ constexpr std::size_t kFewPieces = 3;
 /// Layers at once: 16 MiB a thread.
 constexpr std::size_t kMostPlanes = std::size_t{1} << 15;
 constexpr std::size_t kLeastPlanes = 64;
+/// A word and an owner for each pixel, and the mask.
+constexpr std::uint64_t kPlaneBytes = 64 * 12 + 8;
 
 class LayersRegion final : public raster::Region {
  public:
@@ -70,7 +72,8 @@ class LayersRegion final : public raster::Region {
     }
     planes_ = kMostPlanes;
     if (context.fragment_bytes != 0)
-      planes_ = std::clamp<std::size_t>(context.fragment_bytes / 512, kLeastPlanes, kMostPlanes);
+      planes_ = std::clamp<std::size_t>(context.fragment_bytes / (2 * kPlaneBytes), kLeastPlanes,
+                                        kMostPlanes);
   }
 
   std::optional<Pass> next() override {

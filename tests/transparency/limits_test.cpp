@@ -44,16 +44,17 @@ TEST(Limits, TenThousandLayers) {
   const LayerPicture expected = take(free, program);
   EXPECT_TRUE(equals_oracle(expected, oracle));
   EXPECT_EQ(expected.counter("deepest"), static_cast<std::uint64_t>(kLayers));
-  for (const char* const rasterizer : {"grouped", "tiled"})
-    for (const auto& [limit, threads] : {std::pair{16 * kMebi, 8}, {8 * kMebi, 2}}) {
-      SCOPED_TRACE(std::string(rasterizer).append(", ").append(std::to_string(limit)));
-      Renderer limited(options(kSize, limit, threads, rasterizer));
-      for (int frame = 0; frame < 2; ++frame) {
-        const LayerPicture picture = take(limited, program);
-        EXPECT_TRUE(same_bits(picture, expected));
-        EXPECT_LE(picture.stats.peak_bytes, limit) << "frame " << frame;
-      }
+  for (const auto& [limit, threads] : {std::pair{16 * kMebi, 8}, {8 * kMebi, 2}}) {
+    SCOPED_TRACE(limit);
+    Renderer limited(options(kSize, limit, threads, "grouped"));
+    for (int frame = 0; frame < 2; ++frame) {
+      const LayerPicture picture = take(limited, program);
+      EXPECT_TRUE(same_bits(picture, expected));
+      EXPECT_LE(picture.stats.peak_bytes, limit) << "frame " << frame;
     }
+  }
+  Renderer tiled(options(kSize, 16 * kMebi, 2, "tiled"));
+  EXPECT_THROW((void)take(tiled, program), Error);
 }
 
 // Generated scenes in less memory than they would take.
@@ -62,14 +63,15 @@ TEST(Limits, LittleMemoryChangesNoPixel) {
   constexpr int kSize = 160;
   Renderer free(options(kSize, 0, 2, "auto"));
   std::vector<Renderer> limited;
-  for (const char* const rasterizer : {"grouped", "tiled"})
-    for (const int threads : {2, 8})
-      limited.emplace_back(options(kSize, 4 * kMebi, threads, rasterizer));
+  for (const int threads : {2, 8})
+    limited.emplace_back(options(kSize, 4 * kMebi, threads, "grouped"));
   const int scenes =
       std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 100, kLayerKinds);
   std::uint64_t largest = 0;
-  for (int i = 0; i < scenes; ++i) {
-    const LayerScene scene = generate_layers(static_cast<std::uint64_t>(i) + 99, kSize, kSize);
+  for (int i = 0; i <= scenes; ++i) {
+    const LayerScene scene =
+        i == scenes ? layer_stack(12, 1500, 0.01, kSize, kSize)
+                    : generate_layers(static_cast<std::uint64_t>(i) + 99, kSize, kSize);
     SCOPED_TRACE("scene " + std::to_string(i) + " (" + scene.kind + ")");
     LayerProgram program(scene, kSize, kSize);
     const LayerPicture expected = take(free, program);

@@ -106,6 +106,8 @@ class BinLists {
 /// future work; there 32² for all): what is recorded of a part stays in a core's cache, and threads
 /// share what is dense.
 constexpr std::size_t kSparseBin = 1 << 13, kDenseBin = 1 << 16;
+/// What a region of layers keeps of a piece in a block: 24 bytes twice and a key.
+constexpr std::uint64_t kRecordBytes = 56;
 
 /// What became of the triangles [first, last) of the frame.
 struct Group {
@@ -393,30 +395,53 @@ void Grouped::draw_bins(Frame& frame, const TileGrid& bins, std::span<const Grou
   frame.watch.lap(frame.stats, frame.has_surface() ? "draw" : "draw and shade");
 }
 
+/// A bin or a part of it.
+struct Part {
+  std::size_t bin, entries;
+  Rect rect;
+  int side_px;
+
+  /// Most that a region may record of it.
+  [[nodiscard]] std::uint64_t record_bytes() const {
+    const auto across = static_cast<std::uint64_t>(side_px / kBlockSize);
+    return entries * across * across * kRecordBytes;
+  }
+};
+
+/// Cuts a bin into parts whose side its density and the memory for records ask for.
+void cut_bin(std::size_t bin, Rect rect, std::size_t entries, std::uint64_t most_bytes,
+             std::vector<Part>& parts) {
+  int side = entries <= kSparseBin ? kBinSize : entries <= kDenseBin ? 32 : 16;
+  while (most_bytes != 0 && side > kBlockSize &&
+         Part{bin, entries, {}, side}.record_bytes() > most_bytes)
+    side /= 2;
+  for (int y = rect.y0; y < rect.y1; y += side)
+    for (int x = rect.x0; x < rect.x1; x += side)
+      parts.push_back(
+          {bin, entries, {x, y, std::min(x + side, rect.x1), std::min(y + side, rect.y1)}, side});
+}
+
 void Grouped::draw_layers(Frame& frame, const TileGrid& bins, std::span<const Group> groups) {
-  struct Part {
-    std::size_t bin, entries;
-    Rect rect;
-    int side_px;
-  };
+  const std::uint64_t most_bytes = frame.context(nullptr).fragment_bytes / 2;
   std::vector<Part> parts;
   for (std::size_t position = 0; position < bins.count(); ++position) {
     const std::size_t bin = bins.tile_at(position);
-    const Rect rect = bins.rect(bin);
     std::size_t entries = 0;
     for (const Group& g : groups) entries += g.by_bin.bin(bin).size() + g.fragments.bin(bin).size();
-    const int side = entries <= kSparseBin ? kBinSize : entries <= kDenseBin ? 32 : 16;
-    for (int y = rect.y0; y < rect.y1; y += side)
-      for (int x = rect.x0; x < rect.x1; x += side)
-        parts.push_back(
-            {bin, entries, {x, y, std::min(x + side, rect.x1), std::min(y + side, rect.y1)}, side});
+    cut_bin(bin, bins.rect(bin), entries, most_bytes, parts);
   }
-  parallel::for_each_index(frame.exec, parts.size(), [&](std::size_t i) {
-    const Part& part = parts[i];
+  // Those that need more than a thread's share of a memory limit are drawn alone.
+  const auto alone = std::stable_partition(parts.begin(), parts.end(), [&](const Part& p) {
+    return most_bytes == 0 || p.record_bytes() <= most_bytes;
+  });
+  const auto draw = [&](const Part& part) {
     draw_tile(frame, part.rect, part.side_px, part.entries == 0, [&](Emitter& emitter) {
       enumerate_bin(frame, groups, part.bin, bins.rect(part.bin), part.rect, emitter);
     });
-  });
+  };
+  parallel::for_each_index(frame.exec, static_cast<std::size_t>(alone - parts.begin()),
+                           [&](std::size_t i) { draw(parts[i]); });
+  std::for_each(alone, parts.end(), draw);
   collect_tiles(frame);
   frame.watch.lap(frame.stats, "draw and shade");
 }
