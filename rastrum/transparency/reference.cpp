@@ -110,7 +110,10 @@ void Scene::add(const raster::Draw& draw, std::uint64_t primitive, FrameStats& s
       fragment.dx = static_cast<float>(offsets[first].x) * kPx;
       fragment.dy = static_cast<float>(offsets[first].y) * kPx;
     }
-    for (const std::uint64_t word : fragment.words) stats.fragments += word != 0;
+    const auto samples = static_cast<std::uint32_t>(
+        std::ranges::count_if(fragment.words, [](std::uint64_t word) { return word != 0; }));
+    stats.fragments += samples;
+    if (!request.targets.overdraw.empty()) request.targets.overdraw(x, y) += samples;
     if (!keeps(draw, primitive, x, y, fragment)) continue;
     fragment.translucent = request.transparency.method != Transparency::none &&
                            (draw.flags_of(primitive) & raster::kTranslucent) != 0;
@@ -205,6 +208,12 @@ FrameStats render_reference(raster::FrameRequest& request, MemoryAccount& memory
                          projected.data() + draw.first_vertex);
   frame.projected = projected.data();
 
+  for (int y = 0; y < request.height; ++y) {
+    if (!request.targets.errors.empty())
+      std::fill_n(request.targets.errors.row(y), request.width, std::uint8_t{0});
+    if (!request.targets.overdraw.empty())
+      std::fill_n(request.targets.overdraw.row(y), request.width, 0U);
+  }
   Scene scene{request, frame, {}};
   scene.pixels.resize(static_cast<std::size_t>(request.width) *
                       static_cast<std::size_t>(request.height));
@@ -225,18 +234,6 @@ FrameStats render_reference(raster::FrameRequest& request, MemoryAccount& memory
       stats.pixels_covered += static_cast<std::uint64_t>(
           raster::resolve_block(request, frame, words, x0, y0, scene.scratch, &colors));
     }
-  for (int y = 0; y < request.height; ++y) {
-    if (!request.targets.errors.empty())
-      std::fill_n(request.targets.errors.row(y), request.width, std::uint8_t{0});
-    if (!request.targets.overdraw.empty())
-      for (int x = 0; x < request.width; ++x) {
-        std::uint32_t& count = request.targets.overdraw(x, y) = 0;
-        for (const Fragment& f :
-             scene.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(request.width) +
-                          static_cast<std::size_t>(x)])
-          for (const std::uint64_t word : f.words) count += word != 0;
-      }
-  }
   watch.lap(stats, "shade");
   return stats;
 }

@@ -41,7 +41,7 @@ int to_code(double linear) {
 }
 
 Mesh quad(Vec2 low, Vec2 high, double depth = 0.5) {
-  return quad(kSize, low, high, depth);
+  return test::quad(kSize, low, high, depth);
 }
 
 RenderOptions options(Shader shader = Shader::material) {
