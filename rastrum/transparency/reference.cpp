@@ -110,10 +110,10 @@ void Scene::add(const raster::Draw& draw, std::uint64_t primitive, FrameStats& s
       fragment.dx = static_cast<float>(offsets[first].x) * kPx;
       fragment.dy = static_cast<float>(offsets[first].y) * kPx;
     }
-    for (const std::uint64_t word : fragment.words) {
-      stats.fragments += word != 0;
-      if (!request.targets.overdraw.empty()) request.targets.overdraw(x, y) += word != 0;
-    }
+    const auto samples = static_cast<std::uint32_t>(
+        std::ranges::count_if(fragment.words, [](std::uint64_t word) { return word != 0; }));
+    stats.fragments += samples;
+    if (!request.targets.overdraw.empty()) request.targets.overdraw(x, y) += samples;
     if (!keeps(draw, primitive, x, y, fragment)) continue;
     fragment.translucent = request.transparency.method != Transparency::none &&
                            (draw.flags_of(primitive) & raster::kTranslucent) != 0;
