@@ -11,11 +11,13 @@
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/render/render.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
 
 #include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_program.hpp"
 #include "tests/support/layer_scenes.hpp"
+#include "tests/support/random.hpp"
 
 namespace rastrum::test {
 namespace {
@@ -56,32 +58,50 @@ TEST(Limits, TenThousandLayers) {
     }
 }
 
-// Generated scenes in less memory than they would take.
+/// Triangles of all sizes in all places, many more than fit into the limits below.
+LayerScene many_triangles(int count) {
+  LayerScene scene;
+  scene.kind = "many triangles";
+  scene.mesh = shapes::soup(count, 0.01F, 0.05F);
+  scene.camera.eye = {0, 0, 3};
+  const std::vector<Vec3> positions = scene.mesh.positions;
+  Random r(8);
+  for (std::uint32_t t = 0; t < positions.size() / 3; ++t) {
+    const auto channel = [&] { return 0.4F * static_cast<float>(r.real(0, 1)); };
+    const Vec4 color{channel(), channel(), channel(), 0.4F};
+    scene.add(3 * t, 3 * t + 1, 3 * t + 2, color);
+  }
+  return scene;
+}
+
+// Less memory than the frame would take, and generated scenes in little.
 TEST(Limits, LittleMemoryChangesNoPixel) {
   const ThreadsBeyondCores eight(8);
   constexpr int kSize = 160;
+  constexpr std::uint64_t kLimit = 5 * kMebi;
   Renderer free(options(kSize, 0, 2, "auto"));
   std::vector<Renderer> limited;
   for (const char* const rasterizer : {"grouped", "tiled"})
     for (const int threads : {2, 8})
-      limited.emplace_back(options(kSize, 4 * kMebi, threads, rasterizer));
-  const int scenes =
-      std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 100, kLayerKinds);
-  std::uint64_t largest = 0;
-  for (int i = 0; i < scenes; ++i) {
-    const LayerScene scene = generate_layers(static_cast<std::uint64_t>(i) + 99, kSize, kSize);
-    SCOPED_TRACE("scene " + std::to_string(i) + " (" + scene.kind + ")");
+      limited.emplace_back(options(kSize, kLimit, threads, rasterizer));
+  const auto expect_same = [&](const LayerScene& scene, std::uint64_t least) {
+    SCOPED_TRACE(scene.kind);
     LayerProgram program(scene, kSize, kSize);
     const LayerPicture expected = take(free, program);
-    largest = std::max(largest, expected.stats.peak_bytes);
+    EXPECT_GE(expected.stats.peak_bytes, least);
     for (Renderer& renderer : limited) {
       const LayerPicture picture = take(renderer, program);
       ASSERT_TRUE(same_bits(picture, expected)) << renderer.options().rasterizer;
-      EXPECT_LE(picture.stats.peak_bytes, renderer.options().memory_limit)
+      EXPECT_LE(picture.stats.peak_bytes, kLimit)
           << renderer.options().rasterizer << ", " << renderer.options().threads << " threads";
     }
-  }
-  EXPECT_GT(largest, 4 * kMebi);
+  };
+  const int scenes =
+      std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 100, kLayerKinds);
+  for (int i = 0; i < scenes; ++i)
+    expect_same(generate_layers(static_cast<std::uint64_t>(i) + 99, kSize, kSize), 0);
+  expect_same(many_triangles(60000), kLimit);
+  expect_same(layer_stack(13, 2500, 0.002, kSize, kSize), kLimit);
 }
 
 // 2.6 · 10⁹ fragments in half a GiB. All layers are level, so that one pixel's blend is everyone's.
