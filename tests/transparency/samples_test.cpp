@@ -121,5 +121,39 @@ TEST_P(Samples, OpaqueSurfacesEqualTheOracle) {
 INSTANTIATE_TEST_SUITE_P(Standard, Samples, testing::Values(4, 8, 16),
                          [](const auto& p) { return std::to_string(p.param); });
 
+// The serial device, which is written for plainness, draws the same; also without sorting.
+class Serial : public Samples {};
+
+TEST_P(Serial, EqualsTheOracleAndThreads) {
+  const int samples = GetParam();
+  const Size size{37, 53};
+  const int scenes =
+      std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 250, kLayerKinds);
+  for (const Transparency method : {Transparency::exact, Transparency::unsorted}) {
+    RenderOptions o = options(size, samples);
+    o.transparency.method = method;
+    o.isa = Isa::scalar;
+    o.threads = 2;
+    Renderer threads(o);
+    o.device = Device::serial;
+    Renderer serial(o);
+    const LayerOrder order =
+        method == Transparency::exact ? LayerOrder::depth : LayerOrder::submission;
+    for (int i = 0; i < scenes; ++i) {
+      const LayerScene scene = generate_layers(static_cast<std::uint64_t>(i) + 83000, size.width,
+                                               size.height, 100000 / samples);
+      SCOPED_TRACE("scene " + std::to_string(i) + " (" + scene.kind + ")");
+      const LayerQuestion question(scene, size.width, size.height, samples, o.background);
+      LayerProgram program(scene, size.width, size.height);
+      const LayerPicture picture = take(serial, program);
+      ASSERT_TRUE(equals_oracle(picture, blend_layers(question.input(), order)));
+      ASSERT_TRUE(same_bits(picture, take(threads, program)));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Standard, Serial, testing::Values(1, 4, 8, 16),
+                         [](const auto& p) { return std::to_string(p.param); });
+
 }  // namespace
 }  // namespace rastrum::test
