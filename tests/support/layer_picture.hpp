@@ -41,9 +41,13 @@ struct LayerPicture {
 /// samples. That is 1e-5 at 38 layers, and less than half a step of 8 bits at 8,000.
 [[nodiscard]] double blend_bound(std::uint32_t layers);
 
-/// Colours within blend_bound of the oracle's, 8 bits within 1/255, ids and depth the same bits.
+enum class Check {
+  all,    ///< float32 colours within blend_bound, and the others
+  bits8,  ///< 8-bit colours within 1/255, ids and depth the same bits
+};
 [[nodiscard]] testing::AssertionResult equals_oracle(const LayerPicture& picture,
-                                                     const LayerImage& oracle);
+                                                     const LayerImage& oracle,
+                                                     Check check = Check::all);
 
 /// The same bits of all colours, ids and depths.
 [[nodiscard]] testing::AssertionResult same_bits(const LayerPicture& a, const LayerPicture& b);

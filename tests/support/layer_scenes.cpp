@@ -15,7 +15,6 @@ namespace rastrum::test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kMostFragments = 1000000;
 
 std::uint64_t mix(std::uint64_t v) {
   return Random(v).bits();
@@ -49,11 +48,14 @@ class Alphas {
 
 struct Maker {
   Random random;
-  int width, height;
+  int width, height, most_fragments;
   LayerScene scene;
   bool flat = false;  ///< the pixel camera: depth is what is asked for, and w = 1
 
-  Maker(std::uint64_t seed, int w, int h) : random(seed), width(w), height(h) {}
+  Maker(std::uint64_t seed, int w, int h, int most)
+      : random(seed), width(w), height(h), most_fragments(most) {}
+
+  [[nodiscard]] int most_layers() const { return std::max(most_fragments / (width * height), 1); }
 
   /// z in [0, 1], 1 nearest.
   Vec3 at(double x_px, double y_px, double z) const {
@@ -82,8 +84,7 @@ struct Maker {
   double larger() const { return std::max(width, height); }
   /// 1 to `most`, few or many alike, and no more than the picture can bear.
   int count(int most) {
-    const int bearable = std::max(kMostFragments / (width * height), 1);
-    const double log_most = std::log(static_cast<double>(std::min(most, bearable)));
+    const double log_most = std::log(static_cast<double>(std::min(most, most_layers())));
     return std::max(1, static_cast<int>(std::lround(std::exp(random.real(0, log_most)))));
   }
   void look() {
@@ -150,10 +151,9 @@ void repeated(Maker& m) {
 void stack(Maker& m) {
   m.look();
   const int n = m.random.chance(0.3) ? m.count(2000) : std::min(m.count(2000) * 8, 2000);
-  const int bearable = std::max(1, kMostFragments / (m.width * m.height));
   Alphas alpha(m.random, n);
   const double slope = m.random.chance(0.5) ? 0 : m.random.real(0, 0.3);
-  for (int i = 0; i < std::min(n, bearable); ++i) {
+  for (int i = 0; i < std::min(n, m.most_layers()); ++i) {
     const double z = m.random.real(0, 1), s = m.random.real(-slope, slope);
     const auto corner = [&](double u, double v, double lean) {
       return m.at(u * m.width, v * m.height, std::clamp(z + lean, 0.0, 1.0));
@@ -360,9 +360,9 @@ bool LayerScene::is_hole(std::uint64_t id, int x, int y) const {
              0;
 }
 
-LayerScene generate_layers(std::uint64_t seed, int width, int height) {
+LayerScene generate_layers(std::uint64_t seed, int width, int height, int most_fragments) {
   const Kind& kind = kKinds[seed % kKinds.size()];
-  Maker m(seed * 0x2545F4914F6CDD1DU + 5, width, height);
+  Maker m(seed * 0x2545F4914F6CDD1DU + 5, width, height, most_fragments);
   m.scene.kind = kind.name;
   kind.make(m);
   LayerScene scene = std::move(m.scene);
@@ -383,7 +383,7 @@ LayerScene generate_layers(std::uint64_t seed, int width, int height) {
 }
 
 LayerScene layer_stack(std::uint64_t seed, int count, double alpha, int width, int height) {
-  Maker m(seed, width, height);
+  Maker m(seed, width, height, count);
   m.scene.kind = "layer_stack";
   m.flat = true;
   m.scene.camera = pixel_camera(width, height);

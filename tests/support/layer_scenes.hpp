@@ -42,9 +42,9 @@ struct LayerScene {
 /// How many kinds there are; `generate_layers` draws kind seed % kLayerKinds.
 extern const int kLayerKinds;
 
-/// To be seen in a `width` × `height` picture: at most 4,000 triangles and about a million
-/// fragments.
-[[nodiscard]] LayerScene generate_layers(std::uint64_t seed, int width, int height);
+/// To be seen in a `width` × `height` picture: at most 4,000 triangles and about `most_fragments`.
+[[nodiscard]] LayerScene generate_layers(std::uint64_t seed, int width, int height,
+                                         int most_fragments = 1000000);
 
 /// `count` quads that fill the picture in planes across the view, at pairwise different depths in
 /// no order. Alphas are about `alpha`.

@@ -1,4 +1,4 @@
-// The real meshes that tests draw, where the shared data is there.
+// The real meshes that tests draw, where the shared data is there, and how they are looked at.
 #pragma once
 
 #include <cctype>
@@ -6,6 +6,8 @@
 #include <string>
 
 #include <gtest/gtest.h>
+
+#include <rastrum/scene/scene.hpp>
 
 namespace rastrum::test {
 
@@ -31,6 +33,17 @@ inline std::string name_of_file(const testing::TestParamInfo<const char*>& p) {
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
   return name;
+}
+
+/// Stands inside the bounding box and looks at a corner of it.
+inline Camera close_camera(const SceneView& scene) {
+  const Bounds b = bounds(scene);
+  const Vec3 size = b.max - b.min;
+  Camera c = fit_camera(scene, 1.2F, false);
+  c.eye = b.min + size * Vec3{0.45F, 0.55F, 0.6F};
+  c.target = b.min + size * Vec3{0.1F, 0.2F, 0.0F};
+  c.near_plane = 1e-4F * length(size);
+  return c;
 }
 
 }  // namespace rastrum::test

@@ -1,0 +1,113 @@
+// Real meshes, and a ball of hair, drawn translucent: every fragment in its place. From the default
+// camera, and from so near that triangles cross the near plane and the guard band.
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/io/io.hpp>
+#include <rastrum/render/render.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/layer_picture.hpp"
+#include "tests/support/layer_program.hpp"
+#include "tests/support/layer_scenes.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/real_meshes.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+constexpr int kWidth = 203, kHeight = 149;
+
+/// All triangles of `scene` in world space, in colours at random with `alpha`.
+LayerScene in_colors(const Scene& scene, float alpha) {
+  LayerScene out;
+  out.kind = "mesh";
+  out.paint = Paint::pixel;
+  Random random(5);
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    const auto first = static_cast<std::uint32_t>(out.mesh.positions.size());
+    const auto& m = instance.object_to_world.m;
+    for (const Vec3& p : mesh.positions) {
+      const auto row = [&](int i) {
+        return static_cast<float>(m[i][0] * p.x + m[i][1] * p.y + m[i][2] * p.z + m[i][3]);
+      };
+      out.mesh.positions.push_back({row(0), row(1), row(2)});
+    }
+    const MeshView view = mesh.view();
+    for (std::size_t t = 0; t < view.triangle_count(); ++t) {
+      const auto corner = [&](std::size_t c) {
+        const std::size_t i = 3 * t + c;
+        return first + (mesh.indices.empty() ? static_cast<std::uint32_t>(i) : mesh.indices[i]);
+      };
+      const auto channel = [&] { return alpha * static_cast<float>(random.real(0, 1)); };
+      const Vec4 color{channel(), channel(), channel(), alpha};
+      out.add(corner(0), corner(1), corner(2), color);
+    }
+  }
+  return out;
+}
+
+void expect_exact(LayerScene scene, std::uint32_t least_depth) {
+  const ThreadsBeyondCores eight(8);
+  const Scene whole = single(scene.mesh);
+  const SceneBinding binding(whole);
+  const Camera cameras[] = {fit_camera(binding.view(), 1.0472F, false),
+                            close_camera(binding.view())};
+  RenderOptions o;
+  o.width = kWidth;
+  o.height = kHeight;
+  o.background = {0.1F, 0.2F, 0.3F, 0.5F};
+  for (const Camera& camera : cameras) {
+    scene.camera = camera;
+    const LayerQuestion question(scene, kWidth, kHeight, 1, o.background);
+    const LayerImage oracle = blend_layers(question.input(), LayerOrder::depth);
+    EXPECT_GE(oracle.most_layers(), least_depth);
+    LayerProgram program(scene, kWidth, kHeight);
+    for (const Isa isa : available_isas()) {
+      o.isa = isa;
+      o.rasterizer = "grouped";
+      o.threads = 2;
+      const LayerPicture picture = [&] {
+        Renderer renderer(o);
+        return take(renderer, program);
+      }();
+      ASSERT_TRUE(equals_oracle(picture, oracle)) << name(isa);
+      EXPECT_EQ(picture.counter("deepest"), oracle.most_layers());
+      EXPECT_EQ(picture.counter("translucent fragments"),
+                std::accumulate(oracle.layers.begin(), oracle.layers.end(), std::uint64_t{0}));
+      EXPECT_EQ(picture.counter("repaired pixels"), picture.error_pixels());
+      o.rasterizer = "tiled";
+      o.threads = 8;
+      Renderer renderer(o);
+      ASSERT_TRUE(same_bits(take(renderer, program), picture)) << name(isa);
+    }
+  }
+}
+
+class LayeredMeshes : public testing::TestWithParam<const char*> {};
+
+TEST_P(LayeredMeshes, EqualTheOracle) {
+  const std::string file = GetParam();
+  if (!std::filesystem::exists(shared_data(file))) GTEST_SKIP() << file << " is not there";
+  const bool is_brain = file.find("brain") != std::string::npos;
+  expect_exact(in_colors(io::read_scene(shared_data(file)), is_brain ? 0.3F : 0.5F), 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shared, LayeredMeshes, testing::ValuesIn(kRealMeshes), name_of_file);
+
+TEST(LayeredShapes, HairballEqualsTheOracle) {
+  expect_exact(in_colors(single(shapes::hairball(3000, 48, 0.02F)), 0.1F), 60);
+}
+
+}  // namespace
+}  // namespace rastrum::test
