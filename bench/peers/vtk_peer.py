@@ -64,7 +64,9 @@ class Peer:
         self.renderer.SetBackground(0, 0, 0)
         self.renderer.SetBackgroundAlpha(0)
         self.renderer.SetUseDepthPeeling(True)
-        self.renderer.SetMaximumNumberOfPeels(0)  # until nothing is left
+        # Until nothing is left. 0 is documented as "no limit", but dual depth peeling (9.1) then
+        # peels nothing and blends unsorted.
+        self.renderer.SetMaximumNumberOfPeels(1 << 20)
         self.renderer.SetOcclusionRatio(0)
         self.window = vtk.vtkRenderWindow()
         self.window.SetOffScreenRendering(True)
