@@ -225,7 +225,7 @@ void measure_thresholds(TransparencyRow& row, View& view, const TransparencyPlan
     if (i % 2 == 1) options.alpha_threshold = paper4::kAlphaThreshold;
     Lap& lap = row.thresholds[i];
     lap.name = std::string(i % 2 == 1 ? "threshold" : "exact") + " at opacity " +
-               significant(static_cast<double>(kThresholdOpacities[i / 2]), 2);
+               significant(static_cast<double>(kThresholdOpacities[i / 2]), 1);
     renderers.push_back(
         view.check(lap, view.options(options, kThresholdOpacities[i / 2]), picture));
     view.enter(race, lap, renderers.back().get());

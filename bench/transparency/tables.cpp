@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <bench/papers/paper4.hpp>
 #include <bench/report.hpp>
@@ -73,48 +74,57 @@ void add_absent(Grid& grid, std::span<const std::string> absent) {
   for (const std::string& scene : absent) grid.rows.push_back({scene, "not run: no file"});
 }
 
+/// The stage that takes most of a frame, and its share.
+std::string longest_stage(const FrameStats& stats) {
+  std::map<std::string, double> ms;
+  for (const StageTime& s : stats.stages) ms[s.name] += s.end_ms - s.begin_ms;
+  const auto longest = std::ranges::max_element(ms, {}, [](const auto& s) { return s.second; });
+  if (longest == ms.end()) return "";
+  return longest->first + " " + significant(100 * longest->second / stats.frame_ms, 2) + " %";
+}
+
 Grid times_grid(std::span<const TransparencyRow> rows) {
   Grid grid{
-      "### Time\n\nms a frame; ÷: the peer's time over ours. All take turns in one run.",
-      {"scene, size",    "triangles",        "fragments",         "deepest",    "unsorted",
-       "exact",          "exact ÷ unsorted", "llvmpipe unsorted", "÷ unsorted", "÷ exact",
-       "llvmpipe lists", "÷ exact",          "llvmpipe peeling",  "passes",     "÷ exact",
-       "VTK peeling",    "÷ exact",          "exact's floor",     "binds",      "exact ÷ floor",
-       "goals missed"},
+      "### Time\n\nms a frame. The floor: positions, normals and indices read once and pixels "
+      "written once, or every fragment covered, shaded and blended; whichever takes longer.",
+      {"scene, size", "triangles", "fragments", "deepest", "unsorted", "exact", "exact ÷ unsorted",
+       "its floor", "binds", "exact ÷ floor", "most time in", "goals missed"},
       {}};
   Summary over_unsorted;
   for (const TransparencyRow& row : rows) {
     const Lap &exact = row.ours[kExact], &unsorted = row.ours[kUnsorted];
-    const auto& p = row.peers;
     over_unsorted.add(ratio(exact, unsorted));
-    const bool peeled = p[kGlPeeling].ran();
-    grid.rows.push_back(
-        {title(row),
-         std::to_string(row.work.triangles),
-         std::to_string(row.work.fragments),
-         std::to_string(row.deepest),
-         ms(unsorted),
-         ms(exact),
-         times(exact, unsorted),
-         ms(p[kGlUnsorted]),
-         times(p[kGlUnsorted], unsorted),
-         times(p[kGlUnsorted], exact),
-         ms(p[kGlLists]),
-         times(p[kGlLists], exact),
-         ms(p[kGlPeeling]),
-         peeled ? (p[kGlPeeling].at_least ? "> " : "") + std::to_string(p[kGlPeeling].passes) : "",
-         times(p[kGlPeeling], exact),
-         ms(p[kVtkPeeling]),
-         times(p[kVtkPeeling], exact),
-         significant(row.floor.ms()),
-         std::string(row.floor.binds()),
-         exact.ran() ? significant(exact.timing.median_ms() / row.floor.ms()) : "",
-         missed_goals(row)});
+    const double floor_ms = row.floor.ms();
+    grid.rows.push_back({title(row), std::to_string(row.work.triangles),
+                         std::to_string(row.work.fragments), std::to_string(row.deepest),
+                         ms(unsorted), ms(exact), times(exact, unsorted), significant(floor_ms),
+                         std::string(row.floor.binds()),
+                         exact.ran() ? significant(exact.timing.median_ms() / floor_ms) : "",
+                         exact.ran() ? longest_stage(exact.stats) : "", missed_goals(row)});
   }
   if (over_unsorted.count > 0)
     grid.rows.push_back({"average (goal ≤ 2)", "", "", "", "", "",
                          significant(over_unsorted.mean()) +
                              (over_unsorted.mean() <= kOverUnsortedAverage ? "" : " MISSED")});
+  return grid;
+}
+
+Grid peers_grid(std::span<const TransparencyRow> rows) {
+  Grid grid{"### Peers\n\nms a frame, and the peer's time over ours of the same rounds.",
+            {"scene, size", "llvmpipe unsorted", "÷ unsorted", "÷ exact", "llvmpipe lists",
+             "÷ exact", "llvmpipe peeling", "passes", "÷ exact", "VTK peeling", "÷ exact"},
+            {}};
+  for (const TransparencyRow& row : rows) {
+    const Lap &exact = row.ours[kExact], &unsorted = row.ours[kUnsorted];
+    const auto& p = row.peers;
+    std::string passes;
+    if (p[kGlPeeling].ran())
+      passes = (p[kGlPeeling].at_least ? "> " : "") + std::to_string(p[kGlPeeling].passes);
+    grid.rows.push_back({title(row), ms(p[kGlUnsorted]), times(p[kGlUnsorted], unsorted),
+                         times(p[kGlUnsorted], exact), ms(p[kGlLists]), times(p[kGlLists], exact),
+                         ms(p[kGlPeeling]), passes, times(p[kGlPeeling], exact), ms(p[kVtkPeeling]),
+                         times(p[kVtkPeeling], exact)});
+  }
   return grid;
 }
 
@@ -151,9 +161,9 @@ Grid techniques_grid(std::span<const TransparencyRow> rows) {
       if (lap.ran()) {
         const auto found = std::ranges::find(paper4::kOthers, lap.name, &paper4::Other::technique);
         std::string published =
-            found != paper4::kOthers.end() ? significant(found->over_unsorted) : "";
+            found != paper4::kOthers.end() ? shortest(found->over_unsorted) : "";
         if (lap.name == kTechniques[kFilter3].name)
-          published = significant(paper4::kOverUnsorted.average);
+          published = shortest(paper4::kOverUnsorted.average);
         const bool same = lap.error.rmse == 0;
         cells.insert(cells.end(),
                      {times(lap, row.ours[kUnsorted]), published, megabytes(lap.stats.peak_bytes),
@@ -178,7 +188,7 @@ Grid errors_grid(std::span<const TransparencyRow> rows) {
     grid.columns.push_back("pixels");
     grid.columns.push_back("paper 4, %");
   }
-  const auto published = [](double value) { return value > 0 ? significant(value, 2) : ""; };
+  const auto published = [](double value) { return value > 0 ? shortest(value) : ""; };
   std::array<Summary, paper4::kFilters.size()> average;
   for (const TransparencyRow& row : rows) {
     std::vector<std::string> cells{title(row)};
@@ -200,7 +210,7 @@ Grid errors_grid(std::span<const TransparencyRow> rows) {
   }
   std::vector<std::string> cells{"average"};
   for (std::size_t i = 0; i < average.size(); ++i) {
-    cells.push_back(percent(average[i].mean()));
+    cells.push_back(average[i].count > 0 ? percent(average[i].mean()) : "");
     cells.push_back("");
     cells.push_back(published(paper4::kAverage.percent[i]));
   }
@@ -222,7 +232,7 @@ Grid paper_grid(std::span<const TransparencyRow> rows) {
       {"scene, size", "exact ÷ unsorted", "filter:3 ÷ unsorted", "samples a block"},
       {}};
   for (const float opacity : kThresholdOpacities)
-    grid.columns.push_back("threshold at opacity " + significant(static_cast<double>(opacity), 2));
+    grid.columns.push_back("threshold at opacity " + significant(static_cast<double>(opacity), 1));
   for (const TransparencyRow& row : rows) {
     const Lap& unsorted = row.ours[kUnsorted];
     std::vector<std::string> cells{title(row), times(row.ours[kExact], unsorted),
@@ -238,8 +248,8 @@ Grid paper_grid(std::span<const TransparencyRow> rows) {
   }
   const auto& paper = paper4::kOverUnsorted;
   grid.rows.push_back({"paper 4, average of its scenes and GPUs", "",
-                       significant(paper.average) + " (" + significant(paper.least) + " to " +
-                           significant(paper.most) + ")"});
+                       shortest(paper.average) + " (" + shortest(paper.least) + " to " +
+                           shortest(paper.most) + ")"});
   return grid;
 }
 
@@ -337,7 +347,8 @@ std::string missed_goals(const TransparencyRow& row) {
 
 void add_transparency(Document& document, std::span<const TransparencyRow> rows,
                       std::span<const std::string> absent) {
-  for (const auto grid : {times_grid, memory_grid, techniques_grid, errors_grid, paper_grid}) {
+  for (const auto grid :
+       {times_grid, peers_grid, memory_grid, techniques_grid, errors_grid, paper_grid}) {
     document.grids.push_back(grid(rows));
     add_absent(document.grids.back(), absent);
   }
