@@ -74,10 +74,15 @@ void add_absent(Grid& grid, std::span<const std::string> absent) {
   for (const std::string& scene : absent) grid.rows.push_back({scene, "not run: no file"});
 }
 
-/// The stage that takes most of a frame, and its share.
-std::string longest_stage(const FrameStats& stats) {
+std::map<std::string, double> stages_ms(const FrameStats& stats) {
   std::map<std::string, double> ms;
   for (const StageTime& s : stats.stages) ms[s.name] += s.end_ms - s.begin_ms;
+  return ms;
+}
+
+/// The stage that takes most of a frame, and its share.
+std::string longest_stage(const FrameStats& stats) {
+  const auto ms = stages_ms(stats);
   const auto longest = std::ranges::max_element(ms, {}, [](const auto& s) { return s.second; });
   if (longest == ms.end()) return "";
   return longest->first + " " + significant(100 * longest->second / stats.frame_ms, 2) + " %";
@@ -179,8 +184,8 @@ Grid techniques_grid(std::span<const TransparencyRow> rows) {
 Grid errors_grid(std::span<const TransparencyRow> rows) {
   Grid grid{
       "### Wrong pixels of the filters\n\nPixels blended in another order than exact's, in "
-      "percent of the picture (paper 4: of the same scene, where it is published; its "
-      "pictures are 2560 × 1330 from its own cameras).",
+      "percent of the picture (paper 4: of the same scene from its own cameras, where it is "
+      "published).",
       {"scene, size"},
       {}};
   for (const int filter : paper4::kFilters) {
@@ -294,10 +299,7 @@ nlohmann::json json_of(const Lap& lap, bool ours) {
   j["peak_bytes"] = lap.stats.peak_bytes;
   j["wrong_pixels"] = lap.wrong_pixels;
   for (const auto& [counter, value] : lap.stats.counters) j["counters"][counter] = value;
-  nlohmann::json stages;
-  for (const StageTime& s : lap.stats.stages)
-    stages[s.name] = stages.value(s.name, 0.0) + s.end_ms - s.begin_ms;
-  j["stages_ms"] = stages;
+  j["stages_ms"] = stages_ms(lap.stats);
   return j;
 }
 

@@ -34,6 +34,8 @@ TransparencyRow row() {
   for (const Technique& t : kTechniques) r.ours.push_back(lap(t.name, 20));
   r.ours[kExact].timing.samples_ms = {15, 15, 15};
   r.ours[kExact].stats.peak_bytes = 4'000'000;
+  r.ours[kExact].stats.stages = {{"set up", 0, 3}, {"tiles", 3, 14}, {"set up", 14, 15}};
+  r.ours[kExact].stats.frame_ms = 15;
   r.ours[kUnsorted].timing.samples_ms = {10, 10, 10};
   r.ours[kFilter3].wrong_pixels = 41;
   const double peers[]{80, 150, 750, 750};
@@ -46,10 +48,13 @@ void set_ms(Lap& lap, double ms) {
   lap.timing.samples_ms = {ms, ms, ms};
 }
 
-std::string tables_of(const TransparencyRow& r, std::vector<std::string> absent = {}) {
+Document document_of(const TransparencyRow& r, std::vector<std::string> absent = {}) {
   Document document{"transparency", "t"};
   add_transparency(document, {&r, 1}, absent);
-  return to_markdown(document);
+  return document;
+}
+std::string tables_of(const TransparencyRow& r, std::vector<std::string> absent = {}) {
+  return to_markdown(document_of(r, std::move(absent)));
 }
 
 TEST(TransparencyGoals, EachIsJudged) {
@@ -95,11 +100,24 @@ TEST(TransparencyTables, ShowWhatWasMeasuredAndWhatWasPublished) {
   TransparencyRow r = row();
   r.peers[kVtkPeeling].not_run = "VTK: not here";
   const std::string text = tables_of(r, {"pine"});
-  for (const char* part : {"hairball, 100x100", "1.5", "8", "16.0",  // 16 B × 10⁶ + 4 B × 10⁴
-                           "0.41", "12.5", "3.3 (2.1 to 5.1)", "white-oak (not at hand)",
-                           "not run (VTK: not here)", "not run: no file", "mboit4"})
+  for (const char* part :
+       {"hairball, 100x100", "1.5", "8", "16.0",  // 16 B × 10⁶ + 4 B × 10⁴
+        "tiles 73 %", "0.41", "12.5", "3.3 (2.1 to 5.1)", "white-oak (not at hand)",
+        "not run (VTK: not here)", "not run: no file", "mboit4"})
     EXPECT_NE(text.find(part), std::string::npos) << part;
   EXPECT_EQ(text.find("hairball (not at hand)"), std::string::npos);
+}
+
+TEST(TransparencyTables, KeepTheirFigures) {
+  const Document document = document_of(row());
+  const nlohmann::json& j = document.figures.at(0);
+  EXPECT_EQ(j["scene"], "hairball");
+  EXPECT_DOUBLE_EQ(j["exact_over_unsorted"], 1.5);
+  EXPECT_EQ(j["ours"].size(), kTechniques.size());
+  EXPECT_DOUBLE_EQ(j["ours"][kExact]["stages_ms"]["set up"], 4);
+  EXPECT_EQ(j["peers"].size(), static_cast<std::size_t>(kPeerCount));
+  EXPECT_DOUBLE_EQ(j["ratios"]["llvmpipe lists ÷ exact"], 10);
+  EXPECT_EQ(j["thresholds"].size(), 4U);
 }
 
 TEST(TransparencyMeasure, RunsWithoutPeers) {
