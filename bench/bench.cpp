@@ -28,6 +28,8 @@ constexpr std::array kBenchmarks = {
     Benchmark{"auto", "auto against every fixed rasterizer × visibility", run_auto},
     Benchmark{"hashed", "hashed against sorted over depth complexity", run_hashed},
     Benchmark{"hiz", "the gain of hierarchical Z over depth complexity", run_hiz},
+    Benchmark{"transparency", "exact against unsorted, approximations, lists, peeling",
+              run_transparency},
     Benchmark{"words", "expand_masked, sort_by_key, reduce_by_index beside others", run_words},
 };
 

@@ -19,8 +19,11 @@ constexpr double kPerTriangle = 3 * 6 + 3 + 16;
 constexpr double kPerFragment = 6 + 4 + 1;
 // Barycentrics 9 and a division; n and v: 6 values of 5 operations; two normalizations of 10;
 // n·v and turn 6 + 3; n·l 5 and its term 3; h 3 + 10; n·h 5; power and scale 6; 3 channels of
-// multiply, add, scale, round.
-constexpr double kPerPixel = 10 + 30 + 20 + 9 + 8 + 13 + 5 + 6 + 12;
+// multiply, add; and of scale, round where the colour is stored.
+constexpr double kPerShade = 10 + 30 + 20 + 9 + 8 + 13 + 5 + 6 + 6;
+constexpr double kPerPixel = kPerShade + 6;
+// What still shines through times alpha, 3 channels of multiply and add, what then shines through.
+constexpr double kPerBlend = 1 + 6 + 1;
 
 }  // namespace
 
@@ -32,7 +35,8 @@ Floor floor_of(const Workload& work, const MachineLimits& machine) {
   Floor floor;
   floor.bytes = read + written;
   floor.operations = kPerVertex * count(work.vertices) + kPerTriangle * count(work.triangles) +
-                     kPerFragment * count(work.fragments) + kPerPixel * count(work.pixels_covered);
+                     kPerFragment * count(work.fragments) + kPerPixel * count(work.pixels_covered) +
+                     (kPerShade + kPerBlend) * count(work.blended);
   floor.bytes_ms = (read / machine.read_gbs + written / machine.stream_gbs) / 1e6;
   floor.operations_ms = floor.operations / machine.gflops / 1e6;
   return floor;

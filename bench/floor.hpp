@@ -15,6 +15,7 @@ struct Workload {
   std::uint64_t fragments = 0;       ///< samples covered, over all triangles
   std::uint64_t pixels_covered = 0;  ///< pixels shaded
   std::uint64_t pixels = 0;          ///< W × H
+  std::uint64_t blended = 0;         ///< translucent fragments: shaded, then blended
 };
 
 struct Floor {

@@ -1,6 +1,7 @@
 // Tables, JSON and the description of the machine; see the header.
 #include "report.hpp"
 
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -94,6 +95,11 @@ std::string significant(double value, int digits) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", std::max(0, digits - 1 - magnitude), value);
   return text;
+}
+
+std::string shortest(double value) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
 }
 
 nlohmann::json to_json(const Timing& timing) {

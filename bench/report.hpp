@@ -30,6 +30,9 @@ class Table {
 /// `value` with `digits` significant digits, without an exponent: 0.123, 4.56, 123, 45678.
 [[nodiscard]] std::string significant(double value, int digits = 3);
 
+/// `value` with as many digits as give it back, as a paper prints it: 1.02, 0.5, 16.
+[[nodiscard]] std::string shortest(double value);
+
 /// {"median_ms", "spread", "samples_ms", "cpu_median_ms"}.
 [[nodiscard]] nlohmann::json to_json(const Timing& timing);
 

@@ -47,6 +47,22 @@ const std::vector<SceneInfo>& peer_scenes() {
   return scenes;
 }
 
+const std::vector<SceneInfo>& transparency_scenes() {
+  static const std::vector<SceneInfo> scenes{
+      {"pine", "alpha/smallpine/scene.gltf", {}},
+      {"teapot", "small/teapot.obj", {}},
+      {"boxes", {}, "boxes?count=10"},  // 12,000 triangles, as many as the paper's
+      {"bunny", "small/stanford-bunny.obj", {}},
+      {"engine", "depth/2CylinderEngine.glb", {}},
+      {"hair", "depth/ratboy_mohawk_ribbons_138k.ply", {}},
+      {"sponza", "sponza/sponza.obj", {}},
+      {"dragon", "big/dragon_348k.ply", {}},
+      {"brain", "big/brain_iso126_1033k.ply", {}},
+      {"hairball", {}, "hairball"},  // 2,880,000, as many as the paper's
+  };
+  return scenes;
+}
+
 const std::vector<SceneInfo>& procedural_scenes() {
   static const std::vector<SceneInfo> scenes{
       {"shape-teapot", {}, "teapot?n=10"},
@@ -59,7 +75,7 @@ const std::vector<SceneInfo>& procedural_scenes() {
 
 const SceneInfo& scene_by_name(std::string_view name) {
   std::string known;
-  for (const auto* list : {&peer_scenes(), &procedural_scenes()})
+  for (const auto* list : {&peer_scenes(), &transparency_scenes(), &procedural_scenes()})
     for (const SceneInfo& scene : *list) {
       if (scene.name == name) return scene;
       known += (known.empty() ? "" : ", ") + std::string(scene.name);

@@ -21,6 +21,9 @@ struct SceneInfo {
 
 /// The scenes of `bench peers`, small to large.
 [[nodiscard]] const std::vector<SceneInfo>& peer_scenes();
+/// The scenes of `bench transparency`, small to large: paper 4's as far as there are any, then
+/// scientists' ones.
+[[nodiscard]] const std::vector<SceneInfo>& transparency_scenes();
 /// Those that stand in where the shared data is absent.
 [[nodiscard]] const std::vector<SceneInfo>& procedural_scenes();
 /// Throws Error{invalid_argument} that lists the names.

@@ -1,15 +1,24 @@
-// Stands where the OpenGL peer was not built: its constructor says so.
-#include "gl_peer.hpp"
-
+// Stands where the OpenGL peers were not built: their constructors say so.
 #include <rastrum/core/error.hpp>
 
+#include "gl_peer.hpp"
+#include "gl_transparency.hpp"
+
 namespace rastrum::bench {
+namespace {
 
-struct GlPeer::Impl {};
-
-GlPeer::GlPeer(int) {
+[[noreturn]] void say_so() {
   throw Error(Errc::no_device,
               "OpenGL: this build has no EGL (Debian: libegl-dev libgl-dev libgl1-mesa-dri)");
+}
+
+}  // namespace
+
+struct GlPeer::Impl {};
+struct GlTransparency::Impl {};
+
+GlPeer::GlPeer(int) {
+  say_so();
 }
 // No object exists, so nothing below is ever called.
 GlPeer::~GlPeer() = default;
@@ -34,6 +43,25 @@ Image<std::uint32_t> GlPeer::fragment_counts() {
 }
 std::uint64_t GlPeer::samples_passed() {
   return 0;
+}
+
+GlTransparency::GlTransparency(int) {
+  say_so();
+}
+GlTransparency::~GlTransparency() = default;
+std::string GlTransparency::description() const {
+  return {};
+}
+void GlTransparency::set_mesh(const MeshView&) {}
+void GlTransparency::set_view(const Camera&, int, int) {}
+std::uint64_t GlTransparency::fragments() const {
+  return 0;
+}
+GlTransparency::Frame GlTransparency::draw(GlBlending, float, GlPrecision, double) {
+  return {};
+}
+Image<Vec4> GlTransparency::picture() {
+  return {};
 }
 
 }  // namespace rastrum::bench

@@ -51,6 +51,31 @@ ColorDifference compare_colors(const Image<Rgba8>& ours, const Image<Rgba8>& the
   return d;
 }
 
+double PictureError::psnr() const {
+  return -20 * std::log10(rmse);
+}
+
+PictureError picture_error(const Image<Vec4>& ours, const Image<Vec4>& theirs, double tolerance) {
+  PictureError e;
+  double squares = 0;
+  for (std::size_t i = 0; i < ours.pixels().size(); ++i) {
+    const Vec4 a = ours.pixels()[i], b = theirs.pixels()[i];
+    if (a.w == 0 && b.w == 0) continue;
+    ++e.covered;
+    const auto apart = [](float x, float y) {
+      return std::abs(static_cast<double>(std::min(x, 1.0F)) -
+                      static_cast<double>(std::min(y, 1.0F)));
+    };
+    const double red = apart(a.x, b.x), green = apart(a.y, b.y), blue = apart(a.z, b.z);
+    squares += red * red + green * green + blue * blue;
+    const double most = std::max({red, green, blue, apart(a.w, b.w)});
+    e.worst = std::max(e.worst, most);
+    e.far += most > tolerance ? 1U : 0U;
+  }
+  if (e.covered != 0) e.rmse = std::sqrt(squares / (3 * static_cast<double>(e.covered)));
+  return e;
+}
+
 std::uint64_t count_different(const Image<std::int64_t>& ours, const Image<std::int32_t>& theirs) {
   std::uint64_t n = 0;
   for (std::size_t i = 0; i < ours.pixels().size(); ++i)

@@ -33,6 +33,23 @@ struct ColorDifference {
 [[nodiscard]] ColorDifference compare_colors(const Image<Rgba8>& ours, const Image<Rgba8>& theirs,
                                              int tolerance);
 
+/// Premultiplied float pictures at the pixels that either covers (alpha not 0), as they look over
+/// black: displayed, so that more than 1 is 1.
+struct PictureError {
+  std::uint64_t covered = 0;  ///< pixels that either covers
+  std::uint64_t far = 0;      ///< pixels with a channel, alpha too, farther apart than `tolerance`
+  double rmse = 0;            ///< over red, green and blue
+  double worst = 0;           ///< largest difference of a channel, alpha too
+
+  [[nodiscard]] double share() const {
+    return covered == 0 ? 1 : 1 - static_cast<double>(far) / static_cast<double>(covered);
+  }
+  /// Of a signal in [0, 1], in dB; infinite where nothing differs.
+  [[nodiscard]] double psnr() const;
+};
+[[nodiscard]] PictureError picture_error(const Image<Vec4>& ours, const Image<Vec4>& theirs,
+                                         double tolerance);
+
 /// Pixels whose numbers differ.
 [[nodiscard]] std::uint64_t count_different(const Image<std::int64_t>& ours,
                                             const Image<std::int32_t>& theirs);

@@ -1,4 +1,4 @@
-// The OpenGL 4.5 functions that the peer calls, fetched through EGL: so that nothing but libEGL is
+// The OpenGL 4.5 functions that the peers call, fetched through EGL: so that nothing but libEGL is
 // linked, and a machine with another libGL works.
 #pragma once
 
@@ -63,6 +63,20 @@ struct GlApi {
   PFNGLBEGINQUERYPROC BeginQuery = nullptr;
   PFNGLENDQUERYPROC EndQuery = nullptr;
   PFNGLGETQUERYOBJECTUI64VPROC GetQueryObjectui64v = nullptr;
+  PFNGLACTIVETEXTUREPROC ActiveTexture = nullptr;
+  PFNGLBINDBUFFERBASEPROC BindBufferBase = nullptr;
+  PFNGLBINDTEXTUREPROC BindTexture = nullptr;
+  PFNGLCLEARBUFFERDATAPROC ClearBufferData = nullptr;
+  PFNGLCOLORMASKPROC ColorMask = nullptr;
+  PFNGLDELETEPROGRAMPROC DeleteProgram = nullptr;
+  PFNGLDELETETEXTURESPROC DeleteTextures = nullptr;
+  PFNGLDRAWARRAYSPROC DrawArrays = nullptr;
+  PFNGLFRAMEBUFFERTEXTURE2DPROC FramebufferTexture2D = nullptr;
+  PFNGLGENTEXTURESPROC GenTextures = nullptr;
+  PFNGLMEMORYBARRIERPROC MemoryBarrier = nullptr;
+  PFNGLTEXSTORAGE2DPROC TexStorage2D = nullptr;
+  PFNGLUNIFORM1FPROC Uniform1f = nullptr;
+  PFNGLUNIFORM1IPROC Uniform1i = nullptr;
 
   /// Fetches all of them with `get_proc_address(name)`; throws Error{no_device} naming the first
   /// that is missing.
@@ -126,6 +140,20 @@ struct GlApi {
     fetch(gl.BeginQuery, "glBeginQuery");
     fetch(gl.EndQuery, "glEndQuery");
     fetch(gl.GetQueryObjectui64v, "glGetQueryObjectui64v");
+    fetch(gl.ActiveTexture, "glActiveTexture");
+    fetch(gl.BindBufferBase, "glBindBufferBase");
+    fetch(gl.BindTexture, "glBindTexture");
+    fetch(gl.ClearBufferData, "glClearBufferData");
+    fetch(gl.ColorMask, "glColorMask");
+    fetch(gl.DeleteProgram, "glDeleteProgram");
+    fetch(gl.DeleteTextures, "glDeleteTextures");
+    fetch(gl.DrawArrays, "glDrawArrays");
+    fetch(gl.FramebufferTexture2D, "glFramebufferTexture2D");
+    fetch(gl.GenTextures, "glGenTextures");
+    fetch(gl.MemoryBarrier, "glMemoryBarrier");
+    fetch(gl.TexStorage2D, "glTexStorage2D");
+    fetch(gl.Uniform1f, "glUniform1f");
+    fetch(gl.Uniform1i, "glUniform1i");
     return gl;
   }
 };

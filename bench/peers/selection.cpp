@@ -51,15 +51,18 @@ void Selection::resolve() {
   }
   const auto is_file = [](const SceneInfo& s) { return !s.file.empty(); };
   const bool any_file_wanted = std::ranges::any_of(scenes_, is_file);
-  std::erase_if(scenes_, [](const SceneInfo& scene) {
+  std::erase_if(scenes_, [this](const SceneInfo& scene) {
     if (available(scene)) return false;
+    absent_.push_back(scene);
     std::printf("skipped: %.*s (no %.*s in the shared data)\n", static_cast<int>(scene.name.size()),
                 scene.name.data(), static_cast<int>(scene.file.size()), scene.file.data());
     return true;
   });
   if (any_file_wanted && std::ranges::none_of(scenes_, is_file)) {
     std::printf("procedural shapes stand in\n");
-    scenes_ = procedural_scenes();
+    for (const SceneInfo& shape : procedural_scenes())
+      if (std::ranges::find(scenes_, shape.name, &SceneInfo::name) == scenes_.end())
+        scenes_.push_back(shape);
   }
 }
 

@@ -25,7 +25,8 @@ class Selection {
   /// Adds the options; call `resolve` once they are parsed.
   void add_to(OptionParser& parser);
   /// Replaces the defaults by what was asked for. Scenes whose files are absent are left out, each
-  /// with a line on stdout; where none of the files is here, the procedural shapes stand in.
+  /// with a line on stdout; where none of the files is here, the procedural shapes stand in, beside
+  /// those that were asked for.
   /// Throws Error{invalid_argument} for a name or size that is none.
   void resolve();
 
@@ -34,10 +35,12 @@ class Selection {
   void set_scenes(std::vector<SceneInfo> scenes) { scenes_ = std::move(scenes); }
 
   [[nodiscard]] const std::vector<SceneInfo>& scenes() const { return scenes_; }
+  /// Those that were left out.
+  [[nodiscard]] const std::vector<SceneInfo>& absent() const { return absent_; }
   [[nodiscard]] const std::vector<Size>& sizes() const { return sizes_; }
 
  private:
-  std::vector<SceneInfo> scenes_;
+  std::vector<SceneInfo> scenes_, absent_;
   std::vector<Size> sizes_;
   std::vector<std::string> scene_names_, size_names_;
 };

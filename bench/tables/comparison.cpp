@@ -1,7 +1,6 @@
 #include "comparison.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 
 #include <bench/report.hpp>
@@ -21,14 +20,13 @@ std::string megabytes(std::uint64_t bytes) {
 
 std::string text_of(const Published& p, const std::string& unit) {
   if (p.value <= 0) return "—";
-  // As printed: the shortest digits that give the value back, but 5.0 ms and 22.0 MB.
-  const auto shortest = [&](double v) {
-    char digits[32];
-    std::string number(digits, std::to_chars(digits, digits + sizeof digits, v).ptr);
+  // As printed: 5.0 ms and 22.0 MB.
+  const auto printed = [&](double v) {
+    const std::string number = shortest(v);
     return unit == "ms" && number.find('.') == std::string::npos ? number + ".0" : number;
   };
-  std::string text = shortest(p.value) + " " + unit;
-  if (p.mb > 0) text.append(", ").append(shortest(p.mb)).append(" MB");
+  std::string text = printed(p.value) + " " + unit;
+  if (p.mb > 0) text.append(", ").append(printed(p.mb)).append(" MB");
   return text;
 }
 

@@ -31,6 +31,21 @@ TEST(Compare, ColorsFindEachDifference) {
   EXPECT_DOUBLE_EQ(d.share(), 1.0 / 3);
 }
 
+TEST(Compare, PicturesAreComparedAsTheyLookOverBlack) {
+  Image<Vec4> a(4, 1), b(4, 1);
+  a(0, 0) = b(0, 0) = {0.5F, 0.25F, 0.125F, 1};
+  a(1, 0) = {0.5F, 0.5F, 0.5F, 1}, b(1, 0) = {0.5F, 0.75F, 0.5F, 1};
+  a(2, 0) = {1.5F, 0, 0, 1}, b(2, 0) = {1, 0, 0, 0.5F};  // displayed alike, but for alpha
+  const PictureError e = picture_error(a, b, 0.1);       // the last pixel is empty in both
+  EXPECT_EQ(e.covered, 3U);
+  EXPECT_EQ(e.far, 2U);
+  EXPECT_DOUBLE_EQ(e.worst, 0.5);
+  EXPECT_DOUBLE_EQ(e.rmse, 0.25 / 3);
+  EXPECT_NEAR(e.psnr(), 21.58, 0.01);
+  EXPECT_DOUBLE_EQ(e.share(), 1.0 / 3);
+  EXPECT_EQ(picture_error(a, a, 0).worst, 0);
+}
+
 TEST(Compare, ExactCountsKeepTheTopLeftRule) {
   // Two right triangles that share a diagonal make the square [0.5, 2.5]² px: its corners and edges
   // run through samples. Top and left samples belong to it, bottom and right ones do not.

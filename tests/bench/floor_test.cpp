@@ -36,6 +36,14 @@ TEST(Floor, SaysWhichOneBinds) {
   EXPECT_GE(floor.operations, 1e9);
 }
 
+TEST(Floor, ABlendedFragmentIsShadedButNotStored) {
+  Workload opaque, translucent;
+  opaque.pixels_covered = translucent.blended = 1000;
+  const double stored = floor_of(opaque, machine()).operations;
+  const double blended = floor_of(translucent, machine()).operations;
+  EXPECT_DOUBLE_EQ(blended - stored, 1000 * (8.0 - 6.0));
+}
+
 TEST(Machine, MeasuresSomethingPossible) {
   const MachineLimits m = measure_machine(1);
   EXPECT_EQ(m.threads, 1);

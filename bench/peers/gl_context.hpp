@@ -1,0 +1,76 @@
+// What the OpenGL peers share: a context without a window (EGL's surfaceless platform, OpenGL 4.5
+// core, Mesa's llvmpipe), programs, a mesh in static buffers, and `phong` as GLSL.
+#pragma once
+
+#include <EGL/egl.h>
+
+#include <string>
+
+#include <rastrum/core/mat.hpp>
+#include <rastrum/scene/camera.hpp>
+#include <rastrum/scene/mesh.hpp>
+
+#include "gl_api.hpp"
+
+namespace rastrum::bench {
+
+/// `#version`, then `vec3 phong()` of the inputs that `GlContext::mesh_program`'s vertex shader
+/// passes on: base (0.8, 0.7, 0.6), both sides lit. What a fragment shader begins with.
+extern const char* const kGlslPhong;
+
+struct GlProgram {
+  GLuint name = 0;
+  GLint rows = -1, eye = -1;
+};
+
+/// One at a time in a process; bound to the thread that made it.
+class GlContext {
+ public:
+  /// Starts llvmpipe on `threads` rasterizing threads (Mesa reads that once a process).
+  /// Throws Error{no_device} saying what is missing.
+  explicit GlContext(int threads);
+  ~GlContext();
+  GlContext(const GlContext&) = delete;
+  GlContext& operator=(const GlContext&) = delete;
+
+  GlApi gl;
+
+  /// GL_VERSION and GL_RENDERER.
+  [[nodiscard]] std::string description() const;
+  /// Throws Error if OpenGL has one to tell.
+  void check(const char* where) const;
+  [[nodiscard]] GLint limit(GLenum what) const;
+
+  /// A program that draws the mesh, and one of any two stages. Throws Error{unsupported} with the
+  /// compiler's words.
+  [[nodiscard]] GlProgram mesh_program(const std::string& fragment_source) const;
+  [[nodiscard]] GLuint program(const std::string& vertex_source,
+                               const std::string& fragment_source) const;
+
+  /// Copies positions, indices and the normals that share the positions' indices into static
+  /// buffers. Throws Error{invalid_argument} where the normals have indices of their own.
+  void set_mesh(const MeshView& mesh);
+  /// Takes `world_to_clip(camera, width, height)`, rounded to float32. Throws Error{unsupported}
+  /// where the driver has no framebuffer that large. Returns whether the size is another now.
+  bool set_view(const Camera& camera, int width, int height);
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+
+  /// Draws the mesh into the bound framebuffer.
+  void draw_mesh(const GlProgram& program) const;
+
+ private:
+  void start_egl();
+  void stop_egl();
+  [[nodiscard]] GLuint shader(GLenum stage, const std::string& source) const;
+
+  EGLDisplay display_ = EGL_NO_DISPLAY;
+  EGLContext context_ = EGL_NO_CONTEXT;
+  GLuint buffers_[2] = {};  // vertices, indices
+  GLsizei index_count_ = 0;
+  int width_ = 0, height_ = 0;
+  Mat4 world_to_clip_{};
+  Vec4 eye_{};
+};
+
+}  // namespace rastrum::bench

@@ -1,0 +1,40 @@
+// VTK's depth peeling (dual where the driver can, which llvmpipe does), which is how scientists
+// draw translucent surfaces on CPUs today: Debian's python3-vtk9 in a child process (vtk_peer.py),
+// so that nothing is built against VTK.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <rastrum/core/image.hpp>
+#include <rastrum/scene/camera.hpp>
+#include <rastrum/scene/mesh.hpp>
+
+namespace rastrum::bench {
+
+class VtkPeer {
+ public:
+  /// Starts `$RASTRUM_VTK_PYTHON`, or /usr/bin/python3, and Xvfb where there is no display, with
+  /// llvmpipe on `threads` rasterizing threads. Throws Error{no_device} saying what is missing.
+  explicit VtkPeer(int threads = 2);
+  ~VtkPeer();
+  VtkPeer(const VtkPeer&) = delete;
+  VtkPeer& operator=(const VtkPeer&) = delete;
+
+  [[nodiscard]] std::string description() const;
+  /// The mesh has indices, and normals that share them; else Error{invalid_argument}.
+  void set_mesh(const MeshView& mesh);
+  /// The camera is a perspective one along −z with +y up; else Error{unsupported}.
+  void set_view(const Camera& camera, int width, int height);
+
+  /// Draws with the peers' `phong` until no layer is left; waits for the end.
+  void draw(float opacity);
+  /// The last frame's colours, premultiplied, of 8 bits.
+  [[nodiscard]] Image<Vec4> picture();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rastrum::bench

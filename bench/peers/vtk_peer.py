@@ -1,0 +1,165 @@
+"""VTK's depth peeling, drawn for `rastrum bench transparency` by a child process.
+
+Debian's package (python3-vtk9) is built for X11: where there is no DISPLAY, Xvfb is started. Lines on
+stdin are commands, each is answered by one line on stdout, "done" or "error …":
+
+    mesh FILE VERTICES TRIANGLES   positions, normals (float32 × 3), indices (uint32 × 3), raw
+    view WIDTH HEIGHT FOV_RAD EX EY EZ TX TY TZ UX UY UZ
+    draw OPACITY                   one frame, finished
+    picture FILE                   the frame as RGBA8, row 0 at the top, raw
+
+VTK's own light is replaced by the peers' `phong` (gl_context.cpp), so that all shade alike. The
+camera must look along −z with +y up, as the bench's do: normals are in camera space here.
+"""
+
+import array
+import math
+import os
+import subprocess
+import sys
+
+answers = os.fdopen(os.dup(1), "w", buffering=1)
+os.dup2(2, 1)  # what libraries print is no answer
+
+PHONG = """
+  vec3 to_eye = cameraParallel != 0 ? vec3(0.0, 0.0, 1.0) : normalize(-vertexVC.xyz);
+  vec3 way = normalize(normalVCVSOutput);
+  if (dot(way, to_eye) < 0.0) way = -way;
+  vec3 towards = normalize(vec3(0.4, 0.6, 1.0));
+  vec3 halfway = normalize(towards + to_eye);
+  float lit = 0.1 + 0.8 * max(dot(way, towards), 0.0);
+  float highlight = 0.3 * pow(max(dot(way, halfway), 0.0), 32.0);
+  gl_FragData[0] = vec4(vec3(0.8, 0.7, 0.6) * lit + highlight, opacity);
+"""
+
+
+def start_display():
+    if os.environ.get("DISPLAY"):
+        return None
+    end, other = os.pipe()
+    server = subprocess.Popen(
+        ["Xvfb", "-displayfd", str(other), "-screen", "0", "64x64x24", "-nolisten", "tcp"],
+        pass_fds=[other], stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    os.close(other)
+    number = os.fdopen(end).readline().strip()
+    if not number:
+        raise RuntimeError("Xvfb gives no display")
+    os.environ["DISPLAY"] = ":" + number
+    return server
+
+
+class Peer:
+    def __init__(self):
+        import vtk
+
+        self.vtk = vtk
+        self.actor = vtk.vtkActor()
+        self.mapper = vtk.vtkPolyDataMapper()
+        self.actor.SetMapper(self.mapper)
+        self.actor.GetProperty().SetInterpolationToPhong()
+        self.actor.GetShaderProperty().AddFragmentShaderReplacement(
+            "//VTK::Light::Impl", True, PHONG, False)
+        self.renderer = vtk.vtkRenderer()
+        self.renderer.AddActor(self.actor)
+        self.renderer.SetBackground(0, 0, 0)
+        self.renderer.SetBackgroundAlpha(0)
+        self.renderer.SetUseDepthPeeling(True)
+        # Until nothing is left. 0 is documented as "no limit", but dual depth peeling (9.1) then
+        # peels nothing and blends unsorted.
+        self.renderer.SetMaximumNumberOfPeels(1 << 20)
+        self.renderer.SetOcclusionRatio(0)
+        self.window = vtk.vtkRenderWindow()
+        self.window.SetOffScreenRendering(True)
+        self.window.SetAlphaBitPlanes(True)
+        self.window.SetMultiSamples(0)
+        self.window.AddRenderer(self.renderer)
+
+    def describe(self):
+        self.window.SetSize(64, 64)
+        self.window.Render()
+        capabilities = self.window.ReportCapabilities().splitlines()
+        renderer = [line.split(":", 1)[1].strip() for line in capabilities
+                    if line.startswith("OpenGL renderer string")]
+        return "VTK " + self.vtk.vtkVersion().GetVTKVersion() + " on " + " ".join(renderer)
+
+    def mesh(self, file, vertices, triangles):
+        vtk = self.vtk
+        vertices, triangles = int(vertices), int(triangles)
+        with open(file, "rb") as data:
+            positions, normals = array.array("f"), array.array("f")
+            positions.fromfile(data, 3 * vertices)
+            normals.fromfile(data, 3 * vertices)
+            indices = array.array("i")
+            indices.fromfile(data, 3 * triangles)
+        offsets = array.array("i", range(0, 3 * triangles + 1, 3))
+
+        def vtk_array(kind, values, components):
+            out = kind()
+            out.SetNumberOfComponents(components)
+            out.SetVoidArray(values, len(values), 1)
+            return out
+
+        points = vtk.vtkPoints()
+        points.SetData(vtk_array(vtk.vtkFloatArray, positions, 3))
+        cells = vtk.vtkCellArray()
+        cells.SetData(vtk_array(vtk.vtkTypeInt32Array, offsets, 1),
+                      vtk_array(vtk.vtkTypeInt32Array, indices, 1))
+        data = vtk.vtkPolyData()
+        data.SetPoints(points)
+        data.SetPolys(cells)
+        data.GetPointData().SetNormals(vtk_array(vtk.vtkFloatArray, normals, 3))
+        self.mapper.SetInputData(data)
+        self.kept = positions, normals, indices, offsets  # VTK borrows them
+
+    def view(self, width, height, fov, *where):
+        width, height = int(width), int(height)
+        where = [float(w) for w in where]
+        self.window.SetSize(width, height)
+        camera = self.renderer.GetActiveCamera()
+        camera.SetPosition(where[0:3])
+        camera.SetFocalPoint(where[3:6])
+        camera.SetViewUp(where[6:9])
+        camera.SetViewAngle(math.degrees(float(fov)))
+        camera.SetUseHorizontalViewAngle(width < height)
+        self.renderer.ResetCameraClippingRange()
+
+    def draw(self, opacity):
+        self.actor.GetProperty().SetOpacity(float(opacity))
+        self.window.Render()
+        self.window.WaitForCompletion()
+        if not self.renderer.GetLastRenderingUsedDepthPeeling():
+            raise RuntimeError("VTK did not peel")
+
+    def picture(self, file):
+        width, height = self.window.GetSize()
+        pixels = self.vtk.vtkUnsignedCharArray()
+        self.window.GetRGBACharPixelData(0, 0, width - 1, height - 1, 0, pixels)
+        data = bytes(memoryview(pixels))
+        row = 4 * width
+        with open(file, "wb") as out:
+            for y in reversed(range(height)):
+                out.write(data[y * row:(y + 1) * row])
+
+
+def main():
+    server = None
+    try:
+        server = start_display()
+        peer = Peer()
+        print("done", peer.describe(), file=answers)
+        commands = {"mesh": peer.mesh, "view": peer.view, "draw": peer.draw,
+                    "picture": peer.picture}
+        for line in sys.stdin:
+            command, *arguments = line.split()
+            commands[command](*arguments)
+            print("done", file=answers)
+    except Exception as e:  # whatever it is, the bench is to say it
+        print("error", type(e).__name__ + ":", " ".join(str(e).split()), file=answers)
+    finally:
+        if server:
+            server.terminate()
+            server.wait()
+        os._exit(0)  # VTK would say goodbye to the display
+
+
+main()
