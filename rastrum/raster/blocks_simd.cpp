@@ -117,19 +117,28 @@ void maximum(const Piece* pieces, const Block* blocks, std::size_t n,
     const auto low = hn::Set(d64, static_cast<std::int64_t>(p.low));
     std::uint64_t* out = surface.block(block.bx, block.by);
     const std::uint64_t mask = block.mask;
-    for (std::uint64_t rest = parts_of(mask); rest != 0; rest &= rest - 1) {
-      const int first = std::countr_zero(rest);
-      const std::uint64_t bits = mask >> first & ((1U << kLanes64) - 1);
+    const auto word_at = [&](int first) HWY_ATTR {
       auto depth = hn::Add(hn::Load(dh, by_column + first % kBlockSize),
                            hn::Set(dh, by_row[first / kBlockSize]));
       depth = hn::IfThenElseZero(hn::Gt(depth, hn::Zero(dh)), depth);
       depth = hn::Min(depth, hn::Set(dh, 1.0F));
       const auto high = hn::PromoteTo(d64, hn::BitCast(hn::RebindToSigned<hn::Half<F32>>(), depth));
-      const auto word = hn::Or(hn::ShiftLeft<kIdBits>(high), low);
+      return hn::Or(hn::ShiftLeft<kIdBits>(high), low);
+    };
+    const auto raise = [&](int first, hn::Vec<I64> word) HWY_ATTR {
       // Words stay below 2^63, so the signed maximum, which AVX2 has, is the maximum.
-      const auto candidate = hn::And(word, hn::Load(d64, kLaneTable.keep[bits]));
       auto* place = reinterpret_cast<std::int64_t*>(out + first);
-      hn::Store(hn::Max(hn::Load(d64, place), candidate), d64, place);
+      hn::Store(hn::Max(hn::Load(d64, place), word), d64, place);
+    };
+    if (mask == ~std::uint64_t{0}) {
+      for (int first = 0; first < 64; first += static_cast<int>(kLanes64))
+        raise(first, word_at(first));
+      continue;
+    }
+    for (std::uint64_t rest = parts_of(mask); rest != 0; rest &= rest - 1) {
+      const int first = std::countr_zero(rest);
+      const std::uint64_t bits = mask >> first & ((1U << kLanes64) - 1);
+      raise(first, hn::And(word_at(first), hn::Load(d64, kLaneTable.keep[bits])));
     }
   }
 }
