@@ -84,7 +84,7 @@ Rasterizer::Plan Rasterizer::plan(const FrameRequest& request, std::uint64_t tri
     p.fragment_bytes = share;
     p.view_bytes = share;
     if (!row_.cuts_views)
-      throw Error(Errc::invalid_argument,
+      throw Error(Errc::out_of_memory,
                   std::string("'").append(row_.name).append(
                       "' keeps all triangles of a frame with layers at once, whatever the "
                       "memory limit; 'grouped' heeds it"));
