@@ -353,11 +353,15 @@ HWY_NOINLINE std::size_t split_small(std::uint64_t mask, int x0, int y0, std::ui
   // keep << sx are the columns of this block, so the others of the next one are its complement.
   std::uint64_t left = (mask & keep) << sx;
   std::uint64_t right = mask >> (8 - sx) & ~(keep << sx);
-  left = bx * kBlockSize >= bin.x0 ? left : 0;
-  right = (bx + 1) * kBlockSize < bin.x1 ? right : 0;
-  const std::uint64_t top = by * kBlockSize >= bin.y0 ? ~std::uint64_t{0} << (8 * sy) : 0;
-  const std::uint64_t bottom =
-      (by + 1) * kBlockSize < bin.y1 ? ~(~std::uint64_t{0} << (8 * sy)) : 0;
+  // Also where no sample of the box lies in `bin`, which may be a part of the one in the list.
+  const auto is_between = [](int v, int begin, int end) {
+    return static_cast<unsigned>(v - begin) < static_cast<unsigned>(end - begin);
+  };
+  left = is_between(bx * kBlockSize, bin.x0, bin.x1) ? left : 0;
+  right = is_between((bx + 1) * kBlockSize, bin.x0, bin.x1) ? right : 0;
+  const std::uint64_t rows = ~std::uint64_t{0} << (8 * sy);
+  const std::uint64_t top = is_between(by * kBlockSize, bin.y0, bin.y1) ? rows : 0;
+  const std::uint64_t bottom = is_between((by + 1) * kBlockSize, bin.y0, bin.y1) ? ~rows : 0;
   // A Block's first half; sums, so that a negative bx takes from by what bx + 1 gives back.
   constexpr std::uint64_t kOneX = std::uint64_t{1} << 32, kOneY = std::uint64_t{1} << 48;
   const std::uint64_t at =
