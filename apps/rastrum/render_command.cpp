@@ -22,6 +22,7 @@
 #include "render_job.hpp"
 #include "stats_json.hpp"
 #include "timeline.hpp"
+#include "transparency.hpp"
 #include "view.hpp"
 
 namespace rastrum::cli {
@@ -37,7 +38,7 @@ struct RenderArguments {
   bool frames_given = false;
   int frames = 1;
   bool quiet = false;
-  Output color, depth, ids, heatmap, trace, stats;
+  Output color, depth, ids, heatmap, errors, trace, stats;
 };
 
 /// One of a few words. Throws UsageError that lists them.
@@ -111,6 +112,11 @@ void add_output_options(CLI::App& app, RenderArguments& a) {
   add(app, "--heatmap", "FILE", ".png: fragments at each pixel as colours; legend on stderr",
       [&a](const std::string& s) { a.heatmap = parse_output("--heatmap", s, {Format::png}); })
       ->group(group);
+  add(app, "--show-errors", "FILE",
+      ".png: the picture in grey, and red where filter:K blended in a wrong order, or exact had to "
+      "sort a pixel that its filter could not hold",
+      [&a](const std::string& s) { a.errors = parse_output("--show-errors", s, {Format::png}); })
+      ->group(group);
   add(app, "--stats", "FILE", ".json or - (standard output): counts, memory and times",
       [&a](const std::string& s) {
         a.stats = s == "-" ? Output{"--stats", s, Format::json}
@@ -159,6 +165,40 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
   add(app, "--background", "#RRGGBB[AA]", "(#00000000, transparent)", [&a](const std::string& s) {
     a.render.background = parse_color("--background", s);
   })->group(group);
+}
+
+void add_transparency_options(CLI::App& app, RenderArguments& a) {
+  const char* group = "Transparency and samples";
+  add(app, "--opacity", "A",
+      "of every surface, 0 to 1: opaque and masked materials get alpha A, what blends alpha * A "
+      "(1)",
+      [&a](const std::string& s) {
+        const double opacity = parse_number("--opacity", s);
+        if (!(opacity >= 0 && opacity <= 1))
+          throw UsageError("--opacity", "must lie in 0 to 1, got '" + s + "'");
+        a.render.opacity = static_cast<float>(opacity);
+      })
+      ->group(group);
+  add(app, "--transparency", "NAME",
+      transparency_words() +
+          "; filter:K orders by blocks and K fragments a pixel, without repair; none draws what is "
+          "translucent opaque (exact)",
+      [&a](const std::string& s) { parse_transparency(s, a.render.transparency); })
+      ->group(group);
+  add(app, "--alpha-threshold", "[A]",
+      "leaves out what lies behind blocks that have this alpha; alone: 1 - 1/128 (1: nothing)",
+      [&a](const std::string& s) {
+        a.render.transparency.alpha_threshold = parse_alpha_threshold(s);
+      })
+      ->expected(0, 1)
+      ->group(group);
+  add(app, "--samples", "N",
+      "1, 4, 8 or 16 a pixel, at D3D11's standard positions; --ids and --depth are of the nearest "
+      "one (1)",
+      [&a](const std::string& s) {
+        a.render.samples = choose<int>("--samples", s, {{"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}});
+      })
+      ->group(group);
 }
 
 void add_camera_options(CLI::App& app, RenderArguments& a) {
@@ -236,7 +276,7 @@ void add_machine_options(CLI::App& app, RenderArguments& a) {
 
 /// What the parser cannot see by itself, before anything is read.
 void check(const RenderArguments& a) {
-  if (!a.color && !a.depth && !a.ids && !a.heatmap && !a.stats && !a.trace)
+  if (!a.color && !a.depth && !a.ids && !a.heatmap && !a.errors && !a.stats && !a.trace)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
   const ViewOptions& v = a.view;
   if (a.fit && (v.eye || v.target || v.file_camera))
@@ -246,17 +286,23 @@ void check(const RenderArguments& a) {
   check_view(v);
   const bool stats_to_file = a.stats && a.stats.file != "-";
   const Output none;
-  const Output* const outputs[] = {&a.color,   &a.depth, &a.ids,
-                                   &a.heatmap, &a.trace, stats_to_file ? &a.stats : &none};
+  const Output* const outputs[] = {&a.color,
+                                   &a.depth,
+                                   &a.ids,
+                                   &a.heatmap,
+                                   &a.errors,
+                                   &a.trace,
+                                   stats_to_file ? &a.stats : &none};
   check_outputs(outputs);
 }
 
-/// Blending needs the layers in order, which the visibility buffer does not keep.
 void report_blended(const Scene& scene) {
   const auto blended = std::ranges::count(scene.materials, AlphaMode::blend, &Material::alpha_mode);
   if (blended != 0)
     warn(std::to_string(blended) + " of " + std::to_string(scene.materials.size()) +
-         " materials ask for blending (alphaMode BLEND) and are drawn opaque");
+         " materials ask for blending (alphaMode BLEND) and are drawn opaque, as --transparency "
+         "none "
+         "says");
 }
 
 void report_missing(const FrameStats& frame) {
@@ -264,6 +310,19 @@ void report_missing(const FrameStats& frame) {
   if (frame.triangles.dropped != 0)
     warn(std::to_string(frame.triangles.dropped) + " of " + std::to_string(frame.triangles.input) +
          " triangles have a NaN or infinite vertex and are not drawn");
+}
+
+void write_error_picture(const RenderArguments& a, const Pictures& p, Progress& progress) {
+  const ErrorPicture picture = make_error_picture(p.color8.view(), p.errors.view());
+  io::write_png(a.errors.file, picture.image.view());
+  progress.clear();
+  if (a.quiet) return;
+  const bool repaired = a.render.transparency.method == Transparency::exact;
+  std::fprintf(stderr, "%s: %lu of %lu pixels are red: %s\n", a.errors.file.c_str(),
+               static_cast<unsigned long>(picture.wrong),
+               static_cast<unsigned long>(p.errors.pixels().size()),
+               repaired ? "the filter could not hold them, and they were sorted"
+                        : "blended in a wrong order");
 }
 
 void write_images(const RenderArguments& a, const Pictures& p, Timeline& timeline,
@@ -287,6 +346,7 @@ void write_images(const RenderArguments& a, const Pictures& p, Timeline& timelin
                    static_cast<unsigned long>(heatmap.max),
                    static_cast<unsigned long>(heatmap.sum));
   });
+  write(a.errors, [&] { write_error_picture(a, p, progress); });
 }
 
 int run(RenderArguments& a) {
@@ -307,16 +367,17 @@ int run(RenderArguments& a) {
     a.render.shader = Shader::material;
     renderer = std::make_unique<Renderer>(a.render);
   }
-  if (!a.quiet && a.render.shader == Shader::material) report_blended(scene);
+  if (!a.quiet && a.render.transparency.method == Transparency::none) report_blended(scene);
   const SceneBinding binding(scene);
   const Camera camera = choose_camera(a.view, scene, binding.view());
 
   const bool timed = a.frames_given || a.stats || a.trace;
-  const Wanted wanted{.color8 = a.color && a.color.format == Format::png,
+  const Wanted wanted{.color8 = (a.color && a.color.format == Format::png) || a.errors,
                       .color = a.color && a.color.format != Format::png,
                       .depth = static_cast<bool>(a.depth),
                       .ids = static_cast<bool>(a.ids),
-                      .overdraw = static_cast<bool>(a.heatmap)};
+                      .overdraw = static_cast<bool>(a.heatmap),
+                      .errors = static_cast<bool>(a.errors)};
   Pictures pictures;
   const std::vector<FrameStats> frames = render_frames(
       *renderer, binding.view(), camera, wanted, timed, a.frames, pictures, timeline, progress);
@@ -350,6 +411,7 @@ Command add_render_command(CLI::App& app) {
       ->type_name("");
   add_output_options(render, *arguments);
   add_picture_options(render, *arguments);
+  add_transparency_options(render, *arguments);
   add_camera_options(render, *arguments);
   add_machine_options(render, *arguments);
   std::string footer = "Shapes and their defaults:\n";
@@ -365,6 +427,8 @@ Command add_render_command(CLI::App& app) {
       "  rastrum render scene.glb --camera 0 --size 1920x1080 --background '#20242c' -o scene.png\n"
       "  rastrum render a.stl b.ply --eye 3,2,5 --target 0,0,0 --depth d.npy --ids i.npy -o c.exr\n"
       "  rastrum render builtin:teapot 'builtin:sphere?x=3,scale=0.5' --shader normal -o two.png\n"
+      "  rastrum render engine.glb --opacity 0.3 --samples 4 -o see_through.png\n"
+      "  rastrum render hair.ply --opacity 0.5 --transparency filter:3 --show-errors wrong.png\n"
       "  rastrum render dragon.ply --frames 20 --stats - --trace frames.json --heatmap heat.png";
   render.footer(footer);
   return {&render, [arguments] { return run(*arguments); }};

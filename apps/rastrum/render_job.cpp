@@ -22,6 +22,7 @@ Targets make_targets(Wanted wanted, const RenderOptions& options, Pictures& pict
   add(wanted.depth, pictures.depth, targets.depth);
   add(wanted.ids, pictures.ids, targets.ids);
   add(wanted.overdraw, pictures.overdraw, targets.overdraw);
+  add(wanted.errors, pictures.errors, targets.errors);
   return targets;
 }
 
@@ -60,7 +61,7 @@ std::vector<FrameStats> render_frames(Renderer& renderer, const SceneView& scene
         timed_render(renderer, scene, camera, color8, timeline, "frame " + std::to_string(i)));
   }
   wanted.color8 = false;
-  if (wanted.color || wanted.depth || wanted.ids || wanted.overdraw) {
+  if (wanted.color || wanted.depth || wanted.ids || wanted.overdraw || wanted.errors) {
     const Targets others = make_targets(wanted, renderer.options(), pictures);
     timeline.measure("other images", "images", [&] { renderer.render(scene, camera, others); });
   }

@@ -12,7 +12,7 @@ class Timeline;
 
 /// The images that outputs ask for.
 struct Wanted {
-  bool color8 = false, color = false, depth = false, ids = false, overdraw = false;
+  bool color8 = false, color = false, depth = false, ids = false, overdraw = false, errors = false;
 };
 
 struct Pictures {
@@ -21,6 +21,7 @@ struct Pictures {
   Image<float> depth;
   Image<std::int64_t> ids;
   Image<std::uint32_t> overdraw;
+  Image<std::uint8_t> errors;
 };
 
 /// `frame_ms` and the stages are of the whole call, from the caller's mesh in memory to the

@@ -267,7 +267,8 @@ class LayersRegion final : public raster::Region {
     totals_.add(counts);
     misplaced_ += static_cast<std::uint64_t>(parallel::popcount(counts.misplaced));
     const ImageView<std::uint8_t>& errors = context_.request->targets.errors;
-    if (errors.empty()) return;
+    // By order of submission nothing is out of depth order.
+    if (errors.empty() || blend_->order() != LayerOrder::depth) return;
     for (std::uint64_t m = counts.misplaced; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
       errors(bx * kBlockSize + i % kBlockSize, by * kBlockSize + i / kBlockSize) = 255;

@@ -53,12 +53,16 @@ Scene masked_scene(std::uint64_t seed) {
   return scene;
 }
 
-TEST(Materials, EqualOverTheFamily) {
+class Materials : public testing::TestWithParam<float> {};
+
+TEST_P(Materials, EqualOverTheFamily) {
   const ThreadsBeyondCores eight(8);
   RenderOptions base;
   base.width = 131;
   base.height = 99;
   base.shader = Shader::material;
+  base.opacity = GetParam();
+  base.background = {0.3F, 0.7F, 0.1F, 0.6F};
   std::vector<Renderer> renderers;
   const std::vector<Relative> family = family_of(base);
   for (const Relative& r : family) renderers.emplace_back(r.options);
@@ -95,6 +99,9 @@ TEST(Materials, EqualOverTheFamily) {
     EXPECT_GT(seen_through, 100);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Opacity, Materials, testing::Values(1.0F, 0.4F),
+                         [](const auto& p) { return p.param < 1 ? "Translucent" : "Opaque"; });
 
 }  // namespace
 }  // namespace rastrum::test

@@ -143,6 +143,7 @@ TEST_P(RealMeshes, EqualSerialAtEverySizeAndPoint) {
     RenderOptions options;
     options.width = width;
     options.height = height;
+    options.transparency.method = Transparency::none;  // which every point of the table draws
     options.device = Device::serial;
     const Surfaces expected = surfaces(options, binding.view(), camera);
     options.device = Device::threads;

@@ -1,0 +1,30 @@
+// The words of --transparency, and the picture of --show-errors.
+#pragma once
+
+#include <string>
+
+#include <rastrum/core/image.hpp>
+#include <rastrum/raster/options.hpp>
+
+namespace rastrum::cli {
+
+/// A name of Transparency, or filter:K with K from 1 to 64, into `options`. Throws UsageError that
+/// lists them.
+void parse_transparency(const std::string& text, TransparencyOptions& options);
+/// The words that parse_transparency knows.
+[[nodiscard]] std::string transparency_words();
+
+/// From the CLI's text after --alpha-threshold; empty: paper 4's 1 − 1/128. Throws UsageError.
+[[nodiscard]] float parse_alpha_threshold(const std::string& text);
+
+struct ErrorPicture {
+  Image<Rgba8> image;
+  std::uint64_t wrong = 0;  ///< pixels
+};
+
+/// Red where `errors` is not 0, else the picture over black as a dim grey, so that one sees where
+/// the errors are.
+[[nodiscard]] ErrorPicture make_error_picture(ImageView<const Rgba8> color8,
+                                              ImageView<const std::uint8_t> errors);
+
+}  // namespace rastrum::cli

@@ -1,0 +1,160 @@
+// --opacity, --transparency, --alpha-threshold, --samples and --show-errors, by their effects.
+#include "transparency.hpp"
+
+#include <rastrum/scene/shapes/shapes.hpp>
+
+#include "arguments.hpp"
+#include "program.hpp"
+
+namespace rastrum::test {
+namespace {
+
+class TransparencyOption : public Program {
+ protected:
+  TransparencyOption() {
+    render_.width = 72;
+    render_.height = 56;
+    render_.opacity = 0.25F;
+  }
+  /// The program's picture with these options is the library's with `render_`.
+  Image<Rgba8> expect(std::vector<std::string> options) const {
+    const Scene scene = scene_of(shapes::boxes(3));
+    const Image<Rgba8> expected = draw(scene, fit(scene), render_).color8;
+    std::string line;
+    for (const std::string& o : options) line += " " + o;
+    options.insert(options.begin(), {"render", "builtin:boxes?count=3", "-o", "p.png", "--size",
+                                     "72x56", "--opacity", "0.25"});
+    must(options);
+    Image<Rgba8> picture = png("p.png");
+    EXPECT_TRUE(same_pixels(picture, expected)) << line;
+    return picture;
+  }
+  RenderOptions render_;
+};
+
+TEST_F(TransparencyOption, Methods) {
+  const Image<Rgba8> exact = expect({});
+  EXPECT_LT(exact(36, 28).a, 255);
+  for (const auto& [word, method] : {std::pair{"unsorted", Transparency::unsorted},
+                                     {"wboit", Transparency::wboit},
+                                     {"mboit4", Transparency::mboit4},
+                                     {"mboit6", Transparency::mboit6},
+                                     {"none", Transparency::none}}) {
+    render_.transparency.method = method;
+    EXPECT_FALSE(same_pixels(expect({"--transparency", word}), exact)) << word;
+  }
+  // Four layers hold all that these boxes have.
+  render_.transparency.method = Transparency::mlab4;
+  (void)expect({"--transparency", "mlab4"});
+  render_.transparency = {};
+  EXPECT_TRUE(same_pixels(expect({"--transparency", "exact"}), exact));
+  render_.transparency = {Transparency::filter, 5, 1};
+  (void)expect({"--transparency", "filter:5"});
+}
+
+TEST_F(TransparencyOption, AlphaThresholdWithAndWithoutValue) {
+  const Image<Rgba8> all = expect({});
+  render_.transparency.alpha_threshold = 0.25F;
+  EXPECT_FALSE(same_pixels(expect({"--alpha-threshold", "0.25"}), all));
+  render_.transparency.alpha_threshold = 1 - 1 / 128.0F;
+  (void)expect({"--alpha-threshold"});
+  (void)expect({"--alpha-threshold", "0.9921875"});
+}
+
+TEST_F(TransparencyOption, Samples) {
+  const Image<Rgba8> one = expect({});
+  for (const int samples : {4, 8, 16}) {
+    render_.samples = samples;
+    EXPECT_FALSE(same_pixels(expect({"--samples", std::to_string(samples)}), one));
+  }
+  render_.samples = 1;
+  EXPECT_TRUE(same_pixels(expect({"--samples", "1"}), one));
+}
+
+TEST_F(TransparencyOption, WordsOfTheParser) {
+  TransparencyOptions options;
+  cli::parse_transparency("filter:64", options);
+  EXPECT_EQ(options.method, Transparency::filter);
+  EXPECT_EQ(options.filter, 64);
+  for (const char* wrong : {"", "filter", "filter:", "filter:0", "filter:65", "filter:3x", "Exact"})
+    EXPECT_THROW(cli::parse_transparency(wrong, options), cli::UsageError) << wrong;
+  EXPECT_EQ(cli::parse_alpha_threshold(""), 0.9921875F);
+  EXPECT_EQ(cli::parse_alpha_threshold("1"), 1);
+  for (const char* wrong : {"0", "-1", "1.01", "nan", "x"})
+    EXPECT_THROW((void)cli::parse_alpha_threshold(wrong), cli::UsageError) << wrong;
+}
+
+TEST_F(TransparencyOption, StatisticsCountLayers) {
+  must({"render", "builtin:boxes?count=3", "--opacity", "0.5", "--stats", "s.json", "--size",
+        "72x56"});
+  const auto counters = json("s.json")["counters"];
+  EXPECT_GT(counters["translucent fragments"], 0);
+  EXPECT_GT(counters["layer blocks"], 0);
+  EXPECT_GT(counters["deepest"], 2);
+  EXPECT_TRUE(counters.contains("repaired pixels"));
+  EXPECT_EQ(json("s.json")["visibility"], "layers");
+  must({"render", "builtin:boxes?count=3", "--opacity", "0.5", "--stats", "s.json", "--size",
+        "72x56", "--transparency", "filter:1"});
+  EXPECT_TRUE(json("s.json")["counters"].contains("wrong pixels"));
+}
+
+TEST_F(TransparencyOption, ErrorsArePaintedRedOverTheGreyPicture) {
+  // A soup's triangles cross each other: a filter of one fragment must fail somewhere.
+  const std::vector<std::string> base{"render",    "builtin:soup", "--size",        "160x120",
+                                      "--opacity", "0.5",          "--transparency"};
+  const auto red_of = [&](const std::string& method, bool timed) {
+    std::vector<std::string> args = base;
+    args.insert(args.end(), {method, "--show-errors", "e.png", "-o", "p.png"});
+    if (timed) args.insert(args.end(), {"--stats", "s.json"});
+    const std::string said = must(args);
+    std::uint64_t red = 0;
+    const Image<Rgba8> picture = png("e.png");
+    for (const Rgba8 c : picture.pixels()) {
+      red += c == Rgba8{255, 0, 0, 255};
+      EXPECT_TRUE((c == Rgba8{255, 0, 0, 255}) || (c.r == c.g && c.g == c.b && c.r < 129));
+    }
+    EXPECT_NE(said.find("e.png: " + std::to_string(red) + " of 19200 pixels are red"),
+              std::string::npos)
+        << said;
+    if (timed) {
+      const auto counters = json("s.json")["counters"];
+      EXPECT_EQ(counters[method == "exact" ? "repaired pixels" : "wrong pixels"], red);
+    }
+    return red;
+  };
+  const std::uint64_t wrong = red_of("filter:1", false);
+  EXPECT_GT(wrong, 0U);
+  EXPECT_EQ(red_of("filter:1", true), wrong);
+  (void)red_of("exact", true);
+  EXPECT_EQ(red_of("unsorted", false), 0U);
+}
+
+TEST(ErrorPicture, GreyIsTheLumaOverBlack) {
+  Image<Rgba8> picture(3, 1);
+  picture(0, 0) = {255, 255, 255, 255};
+  picture(1, 0) = {255, 255, 255, 128};
+  picture(2, 0) = {10, 200, 30, 255};
+  Image<std::uint8_t> errors(3, 1);
+  errors(2, 0) = 255;
+  const cli::ErrorPicture p = cli::make_error_picture(picture.view(), errors.view());
+  EXPECT_EQ(p.image(0, 0), (Rgba8{127, 127, 127, 255}));
+  EXPECT_EQ(p.image(1, 0), (Rgba8{64, 64, 64, 255}));
+  EXPECT_EQ(p.image(2, 0), (Rgba8{255, 0, 0, 255}));
+  EXPECT_EQ(p.wrong, 1U);
+}
+
+TEST_F(TransparencyOption, BlendMaterialsAreBlendedAndOnlyNoneWarns) {
+  write("m.mtl", "newmtl glass\nKd 1 0 0\nd 0.5\n");
+  write("t.obj", "mtllib m.mtl\nusemtl glass\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::vector<std::string> args{"render", "t.obj", "-o", "p.png", "--size", "33x33"};
+  EXPECT_EQ(must(args).find("BLEND"), std::string::npos);
+  EXPECT_EQ(png("p.png")(14, 18).a, 128);
+  auto none = args;
+  none.insert(none.end(), {"--transparency", "none"});
+  EXPECT_NE(must(none).find("1 of 1 materials ask for blending (alphaMode BLEND)"),
+            std::string::npos);
+  EXPECT_EQ(png("p.png")(14, 18).a, 255);
+}
+
+}  // namespace
+}  // namespace rastrum::test
