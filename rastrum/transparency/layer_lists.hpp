@@ -43,6 +43,7 @@ class LayerLists {
     order_mask_ = order == LayerOrder::depth ? ~std::uint64_t{0} : raster::kIdMask;
     filter_ = filter;
     capacity_ = capacity;
+    room_ = std::min(allocated_, capacity);
     wanted_ = ~std::uint64_t{0};
     left_ = misplaced_ = 0;
     std::fill_n(before_, 64, ~std::uint64_t{0});
@@ -68,7 +69,7 @@ class LayerLists {
       left_ |= bit;
       return;
     }
-    if (counts_[i] == allocated_ && !grow()) {
+    if (counts_[i] == room_ && !grow()) {
       halve(i);
       insert(i, word, owner);
       return;
@@ -112,13 +113,13 @@ class LayerLists {
     std::fill_n(masks_.data(), allocated_, 0U);
   }
   bool grow() {
-    if (allocated_ >= capacity_) return false;
+    if (room_ == capacity_) return false;
     const std::size_t planes = std::min(capacity_, std::max<std::size_t>(16, allocated_ * 2));
     planes_.reserve(planes * 64, allocated_ * 64);
     masks_.reserve(planes, allocated_);
     if constexpr (kOwned) owners_.reserve(planes * 64, allocated_ * 64);
     std::fill_n(masks_.data() + allocated_, planes - allocated_, 0U);
-    allocated_ = planes;
+    allocated_ = room_ = planes;
     return true;
   }
   /// Leaves the last half of a full list to the next window.
@@ -156,7 +157,7 @@ class LayerLists {
   Buffer<std::uint64_t> planes_, masks_;
   Buffer<Owner> owners_;
   Buffer<Entry> column_;
-  std::size_t allocated_ = 0, capacity_ = 0, filter_ = 0;
+  std::size_t allocated_ = 0, capacity_ = 0, room_ = 0, filter_ = 0;
   std::uint64_t order_mask_ = 0;
   std::uint32_t counts_[64] = {};
   std::uint64_t before_[64] = {};  ///< keys from here on are in earlier windows
