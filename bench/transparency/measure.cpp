@@ -213,6 +213,10 @@ void count_work(TransparencyRow& row, const Mesh& mesh, const View& view,
   if (blocks != 0)
     row.samples_per_block = static_cast<double>(fragments) / static_cast<double>(blocks);
   row.floor = floor_of(row.work, plan.machine);
+  Renderer opaque(view.options(kTechniques[kExact].options, 1));
+  Targets targets;
+  targets.color = unused.view();
+  row.opaque_bytes = view.draw(opaque, targets).peak_bytes;
 }
 
 void measure_thresholds(TransparencyRow& row, View& view, const TransparencyPlan& plan) {

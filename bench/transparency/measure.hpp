@@ -66,12 +66,13 @@ struct TransparencyRow {
   std::string scene;
   Size size;
   Workload work;
-  Floor floor;                   ///< of exact
-  std::uint64_t deepest = 0;     ///< fragments of the pixel that has most
-  double samples_per_block = 0;  ///< fragments over pieces, in blocks of 8 × 8 that they touch
-  std::vector<Lap> ours;         ///< kTechniques
-  std::vector<Lap> peers;        ///< kPeerNames
-  std::vector<Lap> thresholds;   ///< for each opacity: exact without, exact with the threshold
+  Floor floor;                     ///< of exact
+  std::uint64_t deepest = 0;       ///< fragments of the pixel that has most
+  std::uint64_t opaque_bytes = 0;  ///< scratch of the same frame with opaque surfaces
+  double samples_per_block = 0;    ///< fragments over pieces, in blocks of 8 × 8 that they touch
+  std::vector<Lap> ours;           ///< kTechniques
+  std::vector<Lap> peers;          ///< kPeerNames
+  std::vector<Lap> thresholds;     ///< for each opacity: exact without, exact with the threshold
 
   [[nodiscard]] bool right() const;
   /// Bytes of per-pixel lists: nodes and heads.
