@@ -344,7 +344,8 @@ constexpr std::uint64_t columns(int k) {
 }
 
 /// Cuts the mask of a small piece, counted from sample (x0, y0), along the blocks of `bin`, up to
-/// four. Out of line: it needs all registers.
+/// four. A bin that is drawn in parts has pieces that touch others of them alone. Out of line: it
+/// needs all registers.
 HWY_NOINLINE std::size_t split_small(std::uint64_t mask, int x0, int y0, std::uint32_t index,
                                      const Rect& bin, Block* out) {
   static_assert(std::endian::native == std::endian::little);
@@ -353,11 +354,13 @@ HWY_NOINLINE std::size_t split_small(std::uint64_t mask, int x0, int y0, std::ui
   // keep << sx are the columns of this block, so the others of the next one are its complement.
   std::uint64_t left = (mask & keep) << sx;
   std::uint64_t right = mask >> (8 - sx) & ~(keep << sx);
-  left = bx * kBlockSize >= bin.x0 ? left : 0;
-  right = (bx + 1) * kBlockSize < bin.x1 ? right : 0;
-  const std::uint64_t top = by * kBlockSize >= bin.y0 ? ~std::uint64_t{0} << (8 * sy) : 0;
-  const std::uint64_t bottom =
-      (by + 1) * kBlockSize < bin.y1 ? ~(~std::uint64_t{0} << (8 * sy)) : 0;
+  const auto in = [](int block, int begin, int end) {  // begin <= 8 block < end
+    return static_cast<unsigned>(block * kBlockSize - begin) < static_cast<unsigned>(end - begin);
+  };
+  left = in(bx, bin.x0, bin.x1) ? left : 0;
+  right = in(bx + 1, bin.x0, bin.x1) ? right : 0;
+  const std::uint64_t top = in(by, bin.y0, bin.y1) ? ~std::uint64_t{0} << (8 * sy) : 0;
+  const std::uint64_t bottom = in(by + 1, bin.y0, bin.y1) ? ~(~std::uint64_t{0} << (8 * sy)) : 0;
   // A Block's first half; sums, so that a negative bx takes from by what bx + 1 gives back.
   constexpr std::uint64_t kOneX = std::uint64_t{1} << 32, kOneY = std::uint64_t{1} << 48;
   const std::uint64_t at =
