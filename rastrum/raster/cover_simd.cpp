@@ -344,7 +344,8 @@ constexpr std::uint64_t columns(int k) {
 }
 
 /// Cuts the mask of a small piece, counted from sample (x0, y0), along the blocks of `bin`, up to
-/// four. Out of line: it needs all registers.
+/// four. A bin that is drawn in parts has pieces that touch others of them alone. Out of line: it
+/// needs all registers.
 HWY_NOINLINE std::size_t split_small(std::uint64_t mask, int x0, int y0, std::uint32_t index,
                                      const Rect& bin, Block* out) {
   static_assert(std::endian::native == std::endian::little);

@@ -15,6 +15,7 @@
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/render/render.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
 
 #include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
@@ -256,6 +257,30 @@ TEST_P(Exact, NothingOfAnEarlierFrameIsLeft) {
 INSTANTIATE_TEST_SUITE_P(Sizes, Exact, testing::ValuesIn(kSizes), [](const auto& p) {
   return std::to_string(p.param.width) + "x" + std::to_string(p.param.height);
 });
+
+// Bins that hold thousands of triangles are drawn in parts, also where those cover few samples.
+TEST(ExactBins, DenseOnesEqualTheOracle) {
+  const ThreadsBeyondCores eight(8);
+  const Size size{100, 70, {0.5F, 0.5F, 0.5F, 1}};
+  LayerScene scene;
+  scene.mesh = shapes::soup(20000, 0.01F, 0.3F);
+  scene.camera.eye = {0, 0, 3};
+  Random r(6);
+  for (std::uint32_t t = 0; t < 20000; ++t) {
+    const auto channel = [&] { return 0.1F * static_cast<float>(r.real(0, 1)); };
+    const Vec4 color{channel(), channel(), channel(), 0.1F};
+    scene.add(3 * t, 3 * t + 1, 3 * t + 2, color);
+  }
+  const LayerQuestion question(scene, size.width, size.height, 1, size.background);
+  const LayerImage oracle = blend_layers(question.input(), LayerOrder::depth);
+  EXPECT_GT(oracle.most_layers(), 50U);
+  LayerProgram program(scene, size.width, size.height);
+  for (const Isa isa : available_isas())
+    for (const Relative& relative : relatives(options(size), isa)) {
+      Renderer renderer(relative.options);
+      ASSERT_TRUE(equals_oracle(take(renderer, program), oracle)) << relative.name;
+    }
+}
 
 // Light without alpha adds up, whatever lies before it in no more than its own share.
 TEST(ExactColours, ColourWithoutAlphaIsAdded) {
