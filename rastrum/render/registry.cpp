@@ -58,8 +58,8 @@ const Row& find_row(std::span<const Row> rows, std::string_view wanted, std::str
                                           .append(known));
 }
 
-/// One choice for all frames: on the rows of `rastrum bench auto` that were run (at 1024²) no other
-/// pair was faster by enough to choose by it (docs/decisions/0010).
+/// One choice for all frames: on no row of `rastrum bench auto` another pair was faster by enough to
+/// choose by it (docs/decisions/0010).
 std::string why(const RenderOptions& options) {
   std::string text;
   if (options.rasterizer == "auto")
