@@ -58,15 +58,18 @@ const Row& find_row(std::span<const Row> rows, std::string_view wanted, std::str
                                           .append(known));
 }
 
-/// One choice for all frames: on no row of `rastrum bench auto` another pair was faster by enough to
-/// choose by it (docs/decisions/0010).
-std::string why(const RenderOptions& options) {
+/// One choice for all frames: on no row of `rastrum bench auto` another pair was faster by enough
+/// to choose by it (docs/decisions/0010).
+std::string why(const RenderOptions& options, bool layers) {
   std::string text;
   if (options.rasterizer == "auto")
     text.append("auto takes ")
         .append(raster::coverages().front().name)
         .append(": threads own bins, whose words stay in cache and which skip what is hidden");
-  if (options.visibility == "auto")
+  if (layers)
+    text.append(text.empty() ? "" : "; ")
+        .append("layers, because something is translucent or pixels have several samples");
+  else if (options.visibility == "auto")
     text.append(text.empty() ? "auto takes " : "; ")
         .append(raster::visibilities().front().name)
         .append(": a plain maximum where a thread owns the words, and shading once a pixel");
@@ -75,11 +78,10 @@ std::string why(const RenderOptions& options) {
 
 /// Whether words are not enough: something is translucent, or pixels have several samples.
 bool needs_layers(const raster::FrameRequest& request) {
-  return request.samples > 1 ||
-         (request.transparency.method != Transparency::none &&
-          std::ranges::any_of(request.draws, [](const raster::Draw& d) {
-            return (d.any_flags() & raster::kTranslucent) != 0;
-          }));
+  return request.samples > 1 || (request.transparency.method != Transparency::none &&
+                                 std::ranges::any_of(request.draws, [](const raster::Draw& d) {
+                                   return (d.any_flags() & raster::kTranslucent) != 0;
+                                 }));
 }
 
 /// Layers want a thread that owns a tile, and are a visibility themselves.
@@ -153,14 +155,15 @@ DrawFrame make_rasterizer(const RenderOptions& options, MemoryAccount& memory,
   };
   const bool is_asked_for = options.visibility != "auto";
   return [rasterizer = make(visibility), layered = std::shared_ptr<raster::Rasterizer>(), make,
-          &coverage, is_asked_for, why = why(options)](raster::FrameRequest& request) mutable {
+          &coverage, is_asked_for, why_words = why(options, false),
+          why_layers = why(options, true)](raster::FrameRequest& request) mutable {
     const bool layers = needs_layers(request);
     if (layers) {
       check_layers(coverage, is_asked_for);
       if (!layered) layered = make(transparency::layers());
     }
     FrameStats stats = (layers ? layered : rasterizer)->render(request);
-    stats.why = why;
+    stats.why = layers ? why_layers : why_words;
     return stats;
   };
 }

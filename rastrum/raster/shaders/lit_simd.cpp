@@ -98,12 +98,16 @@ struct Row {
   }
 };
 
-/// Weights of triangle `t` at a row, up to a common positive factor.
-HWY_INLINE void row_weights(const LitTriangle& t, const Row& row, F& b0, F& b1, F& b2) {
+/// Weights of triangle `t` at the pixels `wanted` of a row, up to a common positive factor; at the
+/// others they may be anything.
+HWY_INLINE void row_weights(const LitTriangle& t, const Row& row, std::uint32_t wanted, F& b0,
+                            F& b1, F& b2) {
   const F32 d;
   if (t.exact) {
-    HWY_ALIGN float b[3][kLanes];
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    // One by one, since most triangles that are so thin have few samples in a row.
+    HWY_ALIGN float b[3][kLanes] = {};
+    for (; wanted != 0; wanted &= wanted - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(wanted));
       const Vec2 from_centre = row.dx == nullptr ? Vec2{0, 0} : Vec2{row.dx[lane], row.dy[lane]};
       const Weights w = weights_at(t.planes, row.x + static_cast<int>(lane), row.y, from_centre);
       for (int c = 0; c < 3; ++c) b[c][lane] = static_cast<float>(w.b[c]);
@@ -200,7 +204,7 @@ HWY_INLINE void interpolate_row(const LitScene& scene, const FrameGeometry& fram
     const auto mask = lane_mask(same);
     rest &= ~same;
     F b0, b1, b2;
-    row_weights(t, row, b0, b1, b2);
+    row_weights(t, row, same, b0, b1, b2);
     if (wants_normals) n = blend(mask, corner_sum(t.normal, b0, b1, b2), n);
     if (wants_colors) {
       const F inverse = hn::Div(set(1.0F), hn::Add(hn::Add(b0, b1), b2));
