@@ -77,7 +77,7 @@ class LayerLists {
     const std::size_t n = counts_[i]++;
     masks_[n] |= bit;
     std::uint64_t* const column = planes_.data() + i;
-    [[maybe_unused]] Owner* const owners = owners_.data() + i;
+    [[maybe_unused]] Owner* const owners = kOwned ? owners_.data() + i : nullptr;
     const std::size_t first = n > filter_ ? n - filter_ : 0;
     std::size_t k = n;
     for (; k > first && key(column[(k - 1) * 64]) < own; --k) {
