@@ -234,7 +234,7 @@ Grid errors_grid(std::span<const TransparencyRow> rows) {
   grid.rows.push_back(std::move(cells));
   for (const paper4::WrongPixels& paper : paper4::kWrongPixels)
     if (std::ranges::find(rows, paper.scene, &TransparencyRow::scene) == rows.end()) {
-      std::vector<std::string> line{std::string(paper.scene) + " (not at hand)"};
+      std::vector<std::string> line{std::string(paper.scene) + " (not drawn here)"};
       for (const double value : paper.percent) line.insert(line.end(), {"", "", published(value)});
       grid.rows.push_back(std::move(line));
     }

@@ -4,7 +4,9 @@
 #include <bench/registry.hpp>
 #include <bench/scenes.hpp>
 
+#include <cstdlib>
 #include <set>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -41,6 +43,26 @@ TEST(Selection, ParsesSizes) {
   EXPECT_EQ(size_text(size), "1920x1080");
   for (const char* bad : {"", "x", "12", "12x", "x12", "0x5", "-1x5", "12x12x", "12 x 12"})
     EXPECT_THROW(static_cast<void>(parse_size(bad)), Error) << bad;
+}
+
+TEST(Selection, ShapesStandInBesideThoseAskedForWhereNoFileIsHere) {
+  const char* const shared = std::getenv("RASTRUM_SHARED");
+  const std::string before = shared != nullptr ? shared : "";
+  setenv("RASTRUM_SHARED", "/no-such-folder", 1);
+  Selection selection(transparency_scenes(), {{64, 64}});
+  selection.resolve();
+  if (shared != nullptr)
+    setenv("RASTRUM_SHARED", before.c_str(), 1);
+  else
+    unsetenv("RASTRUM_SHARED");
+  std::set<std::string_view> names, absent;
+  for (const SceneInfo& scene : selection.scenes())
+    EXPECT_TRUE(names.insert(scene.name).second) << scene.name;
+  for (const SceneInfo& scene : selection.absent()) absent.insert(scene.name);
+  for (const char* name : {"boxes", "hairball", "gyroid"})
+    EXPECT_TRUE(names.contains(name)) << name;
+  for (const char* name : {"pine", "bunny", "brain"}) EXPECT_TRUE(absent.contains(name)) << name;
+  EXPECT_EQ(absent.size() + 2, transparency_scenes().size());
 }
 
 TEST(Scenes, NamesAreUniqueAndFound) {

@@ -102,10 +102,10 @@ TEST(TransparencyTables, ShowWhatWasMeasuredAndWhatWasPublished) {
   const std::string text = tables_of(r, {"pine"});
   for (const char* part :
        {"hairball, 100x100", "1.5", "8", "16.0",  // 16 B × 10⁶ + 4 B × 10⁴
-        "tiles 73 %", "0.41", "12.5", "3.3 (2.1 to 5.1)", "white-oak (not at hand)",
+        "tiles 73 %", "0.41", "12.5", "3.3 (2.1 to 5.1)", "white-oak (not drawn here)",
         "not run (VTK: not here)", "not run: no file", "mboit4"})
     EXPECT_NE(text.find(part), std::string::npos) << part;
-  EXPECT_EQ(text.find("hairball (not at hand)"), std::string::npos);
+  EXPECT_EQ(text.find("hairball (not drawn here)"), std::string::npos);
 }
 
 TEST(TransparencyTables, KeepTheirFigures) {
