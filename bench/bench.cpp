@@ -30,6 +30,8 @@ constexpr std::array kBenchmarks = {
     Benchmark{"hiz", "the gain of hierarchical Z over depth complexity", run_hiz},
     Benchmark{"transparency", "exact against unsorted, approximations, lists, peeling",
               run_transparency},
+    Benchmark{"transparency-pictures", "one scene by every technique, and how it differs",
+              run_transparency_pictures},
     Benchmark{"words", "expand_masked, sort_by_key, reduce_by_index beside others", run_words},
 };
 
@@ -37,7 +39,7 @@ void print_usage(std::FILE* out) {
   std::fputs("usage: rastrum bench NAME [options]; `rastrum bench NAME --help` lists them\n\n",
              out);
   for (const Benchmark& b : kBenchmarks)
-    std::fprintf(out, "  %-14.*s %.*s\n", static_cast<int>(b.name.size()), b.name.data(),
+    std::fprintf(out, "  %-21.*s %.*s\n", static_cast<int>(b.name.size()), b.name.data(),
                  static_cast<int>(b.description.size()), b.description.data());
 }
 

@@ -32,6 +32,7 @@ int run_auto(std::span<const std::string_view> options);
 int run_hashed(std::span<const std::string_view> options);
 int run_hiz(std::span<const std::string_view> options);
 int run_transparency(std::span<const std::string_view> options);
+int run_transparency_pictures(std::span<const std::string_view> options);
 int run_words(std::span<const std::string_view> options);
 
 }  // namespace rastrum::bench
