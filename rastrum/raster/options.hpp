@@ -36,8 +36,8 @@ enum class Transparency : std::uint8_t {
 struct TransparencyOptions {
   Transparency method = Transparency::exact;
   int filter = 3;  ///< samples that the filter of `filter` holds, 1 to 64
-  /// A block is finished once all of its pixels have this much alpha. 1: what lies behind is
-  /// invisible anyway, so that nothing changes; paper 4 takes 1 − 1/128.
+  /// A pixel (a sample) is finished once it has this much alpha. 1: what lies behind is invisible
+  /// anyway, so that nothing changes; paper 4 takes 1 − 1/128, for whole half-blocks.
   float alpha_threshold = 1;
 
   bool operator==(const TransparencyOptions&) const = default;

@@ -27,16 +27,7 @@ class FrontToBack final : public LayerBlend {
   std::uint64_t layer(const Layer& l) override {
     return kernel_.behind(l.colors, l.mask, opaque_at_, seen_);
   }
-  void finish(BlockColors& out) override {
-    for (int i = 0; i < 64; ++i) {
-      const float through = seen_.through[i];
-      out.r[i] = seen_.r[i] + through * behind_->r[i];
-      out.g[i] = seen_.g[i] + through * behind_->g[i];
-      out.b[i] = seen_.b[i] + through * behind_->b[i];
-      // What nothing is seen through is opaque, whatever the sum was rounded to.
-      out.a[i] = through * (1 - behind_->a[i]) == 0 ? 1 : seen_.a[i] + through * behind_->a[i];
-    }
-  }
+  void finish(BlockColors& out) override { kernel_.finish(seen_, *behind_, out); }
 
  private:
   const BlendKernels& kernel_;

@@ -53,6 +53,23 @@ std::uint64_t behind(const raster::BlockColors& layer, std::uint64_t mask, float
   return opaque & mask;
 }
 
+void finish(const Seen& seen, const raster::BlockColors& behind,
+            raster::BlockColors& out) noexcept {
+  const F32 d;
+  const F one = hn::Set(d, 1.0F);
+  for (std::size_t i = 0; i < 64; i += kLanes) {
+    const F through = hn::Load(d, seen.through + i);
+    const auto over = [&](const float* sum, const float* channel) HWY_ATTR {
+      return hn::Add(hn::Load(d, sum + i), hn::Mul(through, hn::Load(d, channel + i)));
+    };
+    hn::Store(over(seen.r, behind.r), d, out.r + i);
+    hn::Store(over(seen.g, behind.g), d, out.g + i);
+    hn::Store(over(seen.b, behind.b), d, out.b + i);
+    const F left = hn::Mul(through, hn::Sub(one, hn::Load(d, behind.a + i)));
+    hn::Store(hn::IfThenElse(hn::Eq(left, hn::Zero(d)), one, over(seen.a, behind.a)), d, out.a + i);
+  }
+}
+
 void before(const raster::BlockColors& layer, std::uint64_t mask,
             raster::BlockColors& colors) noexcept {
   const F32 d;
@@ -70,7 +87,7 @@ void before(const raster::BlockColors& layer, std::uint64_t mask,
   });
 }
 
-constexpr BlendKernels kTable{behind, before};
+constexpr BlendKernels kTable{behind, finish, before};
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
@@ -98,6 +115,18 @@ std::uint64_t behind_scalar(const raster::BlockColors& layer, std::uint64_t mask
   return opaque;
 }
 
+void finish_scalar(const Seen& seen, const raster::BlockColors& behind,
+                   raster::BlockColors& out) noexcept {
+  for (int i = 0; i < 64; ++i) {
+    const float through = seen.through[i];
+    out.r[i] = seen.r[i] + through * behind.r[i];
+    out.g[i] = seen.g[i] + through * behind.g[i];
+    out.b[i] = seen.b[i] + through * behind.b[i];
+    // What nothing is seen through is opaque, whatever the sum was rounded to.
+    out.a[i] = through * (1 - behind.a[i]) == 0 ? 1 : seen.a[i] + through * behind.a[i];
+  }
+}
+
 void before_scalar(const raster::BlockColors& layer, std::uint64_t mask,
                    raster::BlockColors& colors) noexcept {
   for (std::uint64_t m = mask; m != 0; m &= m - 1) {
@@ -110,7 +139,7 @@ void before_scalar(const raster::BlockColors& layer, std::uint64_t mask,
   }
 }
 
-constexpr BlendKernels kScalar{behind_scalar, before_scalar};
+constexpr BlendKernels kScalar{behind_scalar, finish_scalar, before_scalar};
 
 }  // namespace
 

@@ -44,7 +44,6 @@ class LayerLists {
     filter_ = filter;
     capacity_ = capacity;
     room_ = std::min(allocated_, capacity);
-    wanted_ = ~std::uint64_t{0};
     left_ = misplaced_ = 0;
     std::fill_n(before_, 64, ~std::uint64_t{0});
     clear();
@@ -53,8 +52,7 @@ class LayerLists {
   /// that the planes hold.
   [[nodiscard]] bool next_window() {
     if (left_ == 0) return false;
-    std::copy_n(cutoff_, 64, before_);
-    wanted_ = left_;
+    for (int i = 0; i < 64; ++i) before_[i] = (left_ >> i & 1) != 0 ? cutoff_[i] : 0;
     left_ = 0;
     clear();
     return true;
@@ -64,7 +62,7 @@ class LayerLists {
   void insert(int i, std::uint64_t word, Owner owner = {}) {
     const std::uint64_t bit = std::uint64_t{1} << i;
     const std::uint64_t own = key(word);
-    if ((wanted_ & bit) == 0 || own >= before_[i]) return;
+    if (own >= before_[i]) return;
     if (own < cutoff_[i]) {
       left_ |= bit;
       return;
@@ -160,9 +158,9 @@ class LayerLists {
   std::size_t allocated_ = 0, capacity_ = 0, room_ = 0, filter_ = 0;
   std::uint64_t order_mask_ = 0;
   std::uint32_t counts_[64] = {};
-  std::uint64_t before_[64] = {};  ///< keys from here on are in earlier windows
+  std::uint64_t before_[64] = {};  ///< keys from here on are in earlier windows, 0: all are
   std::uint64_t cutoff_[64] = {};  ///< keys below are left to the next window
-  std::uint64_t wanted_ = 0, left_ = 0, misplaced_ = 0;
+  std::uint64_t left_ = 0, misplaced_ = 0;
 };
 
 }  // namespace rastrum::transparency
