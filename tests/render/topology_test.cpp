@@ -268,6 +268,54 @@ INSTANTIATE_TEST_SUITE_P(Points, TopologyTable, testing::ValuesIn(table_points()
                            return test_name(p.param);
                          });
 
+// Translucent points, lines and triangles among opaque ones; with several samples points and lines
+// are at all samples of their pixels.
+TEST(Topologies, LayersOfMixesEqualSerial) {
+  const ThreadsBeyondCores eight(8);
+  constexpr int kWidth = 61, kHeight = 47;
+  const auto mixes =
+      static_cast<std::uint64_t>(count_from_environment("RASTRUM_TABLE_SCENES", 120) / 4);
+  for (const int samples : {1, 4}) {
+    RenderOptions options = serial(kWidth, kHeight);
+    options.samples = samples;
+    Renderer reference(options);
+    options.device = Device::threads;
+    std::vector<Renderer> renderers;
+    for (const char* const rasterizer : {"grouped", "tiled"})
+      for (const Isa isa : {Isa::scalar, available_isas().back()}) {
+        options.rasterizer = rasterizer;
+        options.isa = isa;
+        options.threads = isa == Isa::scalar ? 1 : 8;
+        renderers.emplace_back(options);
+      }
+    std::uint64_t layers = 0;
+    for (std::uint64_t seed = 0; seed < mixes; ++seed) {
+      const Mix mix = random_mix(seed, kWidth, kHeight);
+      const raster::Program program(
+          [&mix](std::uint32_t v) {
+            return raster::VertexOutput<Vec4>{mix.clip[v], mix.clip[v]};
+          },
+          [](const Vec4&, const raster::Fragment& f) {
+            return Vec4{0.25F, f.depth / 2, static_cast<float>(f.vertex[0] % 4) / 8, 0.5F};
+          });
+      std::vector<raster::Draw> draws = draws_of(mix, program);
+      for (std::size_t d = seed % 2; d < draws.size(); d += 2)
+        draws[d].flags = raster::kTranslucent;
+      const Frame expected = draw(reference, draws, program, nullptr);
+      for (Renderer& renderer : renderers) {
+        const Frame frame = draw(renderer, draws, program, nullptr);
+        const std::string what = "mix " + std::to_string(seed) + ", " +
+                                 renderer.options().rasterizer + ", " + std::to_string(samples);
+        ASSERT_TRUE(same_surfaces(frame, expected)) << what;
+        ASSERT_TRUE(same_picture(frame, expected, 0)) << what;
+        for (const auto& [counter, value] : frame.stats.counters)
+          if (counter == "translucent fragments") layers += value;
+      }
+    }
+    EXPECT_GT(layers, 1000U);
+  }
+}
+
 TEST(Topologies, RefusesWidthsSizesAndBiasesOutOfRange) {
   const raster::Program program(
       [](std::uint32_t) {
