@@ -186,7 +186,7 @@ void add_transparency_options(CLI::App& app, RenderArguments& a) {
       [&a](const std::string& s) { parse_transparency(s, a.render.transparency); })
       ->group(group);
   add(app, "--alpha-threshold", "[A]",
-      "leaves out what lies behind blocks that have this alpha; alone: 1 - 1/128 (1: nothing)",
+      "leaves out what lies behind pixels that have this alpha; alone: 1 - 1/128 (1: nothing)",
       [&a](const std::string& s) {
         a.render.transparency.alpha_threshold = parse_alpha_threshold(s);
       })

@@ -319,7 +319,7 @@ std::unique_ptr<raster::Region> make_layers(raster::Sharing, MemoryAccount& memo
 
 const raster::Visibility& layers() noexcept {
   static constexpr raster::Visibility kRow{
-      "layers", "all fragments of a pixel in order, for transparency", true, true, 24, make_layers,
+      "layers", "all fragments of a pixel in order, for transparency", true, true, 0, make_layers,
       true};
   return kRow;
 }

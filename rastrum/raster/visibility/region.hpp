@@ -80,7 +80,8 @@ struct Visibility {
   std::string_view name, description;
   bool shades = false;           ///< fills SurfaceView::colors
   bool takes_fragments = false;  ///< can be handed finished words of micro triangles
-  /// Bytes of surface a pixel: words, and what the method keeps beside them for a shared region.
+  /// Bytes of surface a pixel: words, and what the method keeps beside them for a shared region; 0
+  /// where only tiles have surfaces.
   int surface_bytes = 8;
   std::unique_ptr<Region> (*make)(Sharing, MemoryAccount&) = nullptr;
   /// Needs every fragment of a tile at once, from a coverage whose threads own tiles: triangles
