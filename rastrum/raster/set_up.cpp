@@ -80,7 +80,9 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
   const FrameGeometry& geometry = frame.geometry;
   const Rect image{0, 0, geometry.width, geometry.height};
   const std::span<const SampleOffset> samples = sample_offsets(frame.request.samples);
-  if (samples.size() > 1) micro = nullptr;
+  // Fragments are of one sample a pixel, and the filter's errors are those of sorted pieces.
+  if (samples.size() > 1 || frame.request.transparency.method == Transparency::filter)
+    micro = nullptr;
   std::uint32_t slow[kSetupBatch];
   Corners corners;
 
