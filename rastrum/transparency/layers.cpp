@@ -5,8 +5,8 @@
 //
 // Where it deviates: the paper shades fragment by fragment, in the order of blocks; here a plane of
 // fragments, one a pixel, is shaded like a visible surface, so that every shader of the opaque path
-// serves and neighbours share vectors. Bins of low and high density differ in nothing but the
-// capacity of lists, which grow. The sort needs no index in its key, and no limit on blocks.
+// serves and neighbours share vectors. Lists grow, so that no density of a bin needs a rasterizer
+// of its own; `grouped` cuts dense bins to smaller regions, and all are in flight at once.
 #include <rastrum/transparency/layers.hpp>
 
 #include <algorithm>
@@ -240,9 +240,7 @@ class LayersRegion final : public raster::Region {
     for (std::size_t i = 0; i < records.size(); ++i) {
       order_[i] = i;
       if (!sort) continue;
-      const float depth = centroid_depth(*records[i].piece, records[i].mask, bx, by);
-      const std::uint32_t bits = depth > 0 ? std::bit_cast<std::uint32_t>(depth) : 0;
-      order_[i] |= std::uint64_t{~bits} << 32;
+      order_[i] |= near_first(*records[i].piece, records[i].mask, bx, by);
     }
     if (sort) std::sort(order_.data(), order_.data() + records.size());
   }

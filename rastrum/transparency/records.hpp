@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -76,6 +77,13 @@ class ByBlock {
   const float dy = static_cast<float>(by * raster::kBlockSize) + 0.5F + y / n -
                    static_cast<float>(piece.y[0]) * kPx;
   return piece.z0 + piece.zx * dx + piece.zy * dy;
+}
+
+/// The high half of a key that sorts the nearest first.
+[[nodiscard]] inline std::uint64_t near_first(const raster::Piece& piece, std::uint64_t mask,
+                                              int bx, int by) {
+  const float depth = centroid_depth(piece, mask, bx, by);
+  return std::uint64_t{~(depth > 0 ? std::bit_cast<std::uint32_t>(depth) : 0)} << 32;
 }
 
 }  // namespace rastrum::transparency

@@ -44,6 +44,17 @@ void SampledBlock::find_triangles() {
   }
 }
 
+/// By the depth at the centroid of the first sample's part, nearest first, or as submitted.
+void SampledBlock::order_triangles() {
+  order_.reserve(triangle_count_);
+  const bool by_depth = blend_->order() == LayerOrder::depth;
+  for (std::uint32_t k = 0; k < triangle_count_; ++k) {
+    const Record& r = records_[triangles_[k].first];
+    order_[k] = (by_depth ? near_first(*r.piece, r.mask, bx_, by_) : 0) | k;
+  }
+  if (by_depth) std::sort(order_.data(), order_.data() + triangle_count_);
+}
+
 void SampledBlock::find_points(const Triangle& t, Shaded& out) {
   const auto offsets = raster::sample_offsets(context_->request->samples);
   out.mask = 0;
@@ -184,7 +195,8 @@ LayerCounts SampledBlock::blend_sample(std::uint32_t sample, BlockColors& out) {
     lists_.restart(blend_->order(), filter_, planes_);
     std::uint64_t finished = 0;
     do {
-      for (std::uint32_t k = 0; k < triangle_count_; ++k) {
+      for (std::uint32_t n = 0; n < triangle_count_; ++n) {
+        const auto k = static_cast<std::uint32_t>(order_[n]);
         if (!is_translucent(triangles_[k])) continue;
         for_each_record(triangles_[k], sample,
                         [&](std::uint32_t, std::uint64_t mask, const auto* words) {
@@ -231,6 +243,7 @@ LayerCounts SampledBlock::resolve(const raster::RegionContext& context,
   planes_ = planes;
   repair_ = repair;
   find_triangles();
+  order_triangles();
   test();
   raise_opaque();
   find_shown();

@@ -35,7 +35,7 @@ struct LayerCounts {
 class SampledBlock {
  public:
   explicit SampledBlock(MemoryAccount& memory)
-      : triangles_(memory), colors_(memory), lists_(memory) {}
+      : triangles_(memory), order_(memory), colors_(memory), lists_(memory) {}
 
   /// Sets the block's colours (the mean over the samples, premultiplied) and words (the largest).
   /// `records`: of opaque and translucent pieces; they are reordered. `filter` and `planes` as
@@ -64,6 +64,7 @@ class SampledBlock {
   };
 
   void find_triangles();
+  void order_triangles();
   void test();
   void find_points(const Triangle& t, Shaded& out);
   void raise_opaque();
@@ -90,6 +91,7 @@ class SampledBlock {
 
   Buffer<Triangle> triangles_;
   std::uint32_t triangle_count_ = 0;
+  Buffer<std::uint64_t> order_;  ///< of the triangles, as insertion wants them: in the low half
   Buffer<Vec4> colors_;
   std::uint32_t color_count_ = 0;
   std::vector<std::uint32_t> plane_triangles_;  ///< whose fragments wait to be shaded

@@ -26,8 +26,7 @@ constexpr int kWidth = 150, kHeight = 100;
 /// Drops every fragment that it is asked about.
 class DropsAll final : public raster::FragmentTest {
  public:
-  std::uint64_t test(const raster::FrameGeometry&, const raster::Piece&,
-                     const raster::Block&,
+  std::uint64_t test(const raster::FrameGeometry&, const raster::Piece&, const raster::Block&,
                      const raster::ShadingPoints*) const noexcept override {
     return 0;
   }
