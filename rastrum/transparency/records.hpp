@@ -39,7 +39,6 @@ class ByBlock {
     records_.grow(count_ + 1, count_);
     records_[count_++] = record;
   }
-  [[nodiscard]] bool empty() const { return count_ == 0; }
   [[nodiscard]] std::size_t size() const { return count_; }
   /// Counting sort.
   void sort(std::size_t blocks) {

@@ -235,6 +235,11 @@ TEST(Approximations, MultiLayerBlendingIsExactForFourLayersInAnyOrder) {
     const Stack four(seed, 4, true);
     EXPECT_LT(difference(blended(four, Transparency::mlab4), blended(four, Transparency::exact)),
               1e-6F);
+    // With three layers kept the last but one would come behind what it hides.
+    Stack five(seed, 5, false);
+    std::swap(five.words[3], five.words[4]);
+    EXPECT_LT(difference(blended(five, Transparency::mlab4), blended(five, Transparency::exact)),
+              1e-6F);
     const Stack twelve(seed, 12, true);
     EXPECT_GT(
         difference(blended(twelve, Transparency::mlab4), blended(twelve, Transparency::exact)),
