@@ -78,10 +78,7 @@ std::string why(const RenderOptions& options, bool layers) {
 
 /// Whether words are not enough: something is translucent, or pixels have several samples.
 bool needs_layers(const raster::FrameRequest& request) {
-  return request.samples > 1 || (request.transparency.method != Transparency::none &&
-                                 std::ranges::any_of(request.draws, [](const raster::Draw& d) {
-                                   return (d.any_flags() & raster::kTranslucent) != 0;
-                                 }));
+  return request.samples > 1 || blends(request.draws, request.transparency);
 }
 
 /// Layers want a thread that owns a tile, and are a visibility themselves.
@@ -115,6 +112,13 @@ DrawFrame make_reference(const RenderOptions& options, MemoryAccount& memory) {
 }
 
 }  // namespace
+
+bool blends(std::span<const raster::Draw> draws, const TransparencyOptions& options) {
+  return options.method != Transparency::none &&
+         std::ranges::any_of(draws, [](const raster::Draw& d) {
+           return (d.any_flags() & raster::kTranslucent) != 0;
+         });
+}
 
 const std::vector<AxisInfo>& rasterizers() {
   static const std::vector<AxisInfo> infos = [] {

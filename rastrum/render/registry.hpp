@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 
 #include <rastrum/core/memory.hpp>
@@ -11,6 +12,9 @@
 #include <rastrum/render/render.hpp>
 
 namespace rastrum {
+
+/// Whether a draw has translucent primitives, and they are not to be drawn opaque.
+[[nodiscard]] bool blends(std::span<const raster::Draw> draws, const TransparencyOptions& options);
 
 /// Draws one frame; keeps its scratch from call to call.
 using DrawFrame = std::function<FrameStats(raster::FrameRequest&)>;

@@ -280,11 +280,7 @@ FrameStats Renderer::draw_in(bool linear_light, std::span<raster::Draw> draws,
   if (targets.load && targets.words.empty())
     throw Error(Errc::invalid_argument,
                 "a pass that loads needs the visibility words of the passes before");
-  const bool is_translucent = o.transparency.method != Transparency::none &&
-                              std::ranges::any_of(draws, [](const raster::Draw& d) {
-                                return (d.any_flags() & raster::kTranslucent) != 0;
-                              });
-  if (targets.load && (is_translucent || o.samples > 1))
+  if (targets.load && (blends(draws, o.transparency) || o.samples > 1))
     throw Error(Errc::invalid_argument,
                 "a pass that loads can neither blend translucent surfaces over what the passes "
                 "before have drawn nor add samples to it; draw all in one pass");
