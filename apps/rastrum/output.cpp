@@ -29,6 +29,8 @@ const char* extension(Format format) {
       return ".ply";
     case Format::json:
       return ".json";
+    case Format::mp4:
+      return ".mp4";
   }
   return "";
 }

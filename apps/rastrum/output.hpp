@@ -11,7 +11,7 @@
 
 namespace rastrum::cli {
 
-enum class Format { png, exr, npy, ply, json };
+enum class Format { png, exr, npy, ply, json, mp4 };
 
 /// A file that an option asks for; `file` is empty where the option was not given.
 struct Output {

@@ -1,7 +1,8 @@
 // `rastrum render INPUT… -o OUT`: the options, then check, load, render, write.
 #include <algorithm>
+#include <array>
 #include <cstdio>
-#include <limits>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,16 +11,20 @@
 
 #include <rastrum/io/io.hpp>
 #include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
 
 #include "arguments.hpp"
+#include "camera_path.hpp"
 #include "commands.hpp"
 #include "heatmap.hpp"
 #include "inputs.hpp"
+#include "json_fields.hpp"
 #include "json_file.hpp"
+#include "mp4.hpp"
+#include "numbered.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "render_job.hpp"
+#include "scene_options.hpp"
 #include "stats_json.hpp"
 #include "timeline.hpp"
 #include "transparency.hpp"
@@ -28,77 +33,23 @@
 namespace rastrum::cli {
 namespace {
 
-struct RenderArguments {
-  std::vector<std::string> inputs;
-  RenderOptions render;
-  bool shader_given = false;
-  Normals normals = Normals::file;
-  ViewOptions view;
-  bool fit = false;
+struct RenderArguments : SceneArguments {
+  std::filesystem::path path;
+  double fps = 30;
+  bool fps_given = false;
   bool frames_given = false;
   int frames = 1;
   bool quiet = false;
   Output color, depth, ids, heatmap, errors, trace, stats;
 };
 
-/// One of a few words. Throws UsageError that lists them.
-template <class T>
-T choose(std::string_view option, const std::string& text,
-         std::initializer_list<std::pair<const char*, T>> choices) {
-  std::string known;
-  for (const auto& [word, value] : choices) {
-    if (text == word) return value;
-    known.append(known.empty() ? "" : ", ").append(word);
-  }
-  throw UsageError(option, "expected one of " + known + ", got '" + text + "'");
-}
-
-Isa parse_isa(const std::string& text) {
-  return choose<Isa>("--isa", text,
-                     {{"scalar", Isa::scalar},
-                      {"sse4", Isa::sse4},
-                      {"avx2", Isa::avx2},
-                      {"avx512", Isa::avx512},
-                      {"neon", Isa::neon}});
-}
-
-std::string names_of(const std::vector<AxisInfo>& axis) {
-  std::string names = "auto";
-  for (const AxisInfo& info : axis) names.append(", ").append(info.name);
-  return names;
-}
-
-std::string check_axis(const char* option, const std::vector<AxisInfo>& axis,
-                       const std::string& text) {
-  if (text == "auto") return text;
-  for (const AxisInfo& info : axis)
-    if (text == info.name) return text;
-  throw UsageError(option, "expected one of " + names_of(axis) + ", got '" + text + "'");
-}
-
-Shader parse_shader(const std::string& text) {
-  try {
-    return shader_from_name(text);
-  } catch (const Error& e) {
-    throw UsageError("--shader", e.what());
-  }
-}
-
-/// An option whose text `parse` turns into a value; what it throws names the option.
-template <class F>
-CLI::Option* add(CLI::App& app, const char* names, const char* type, const std::string& help,
-                 F parse) {
-  return app
-      .add_option_function<std::string>(
-          names, [parse](const std::string& s) { parse(s); }, help)
-      ->type_name(type);
-}
-
 void add_output_options(CLI::App& app, RenderArguments& a) {
   const char* group = "Outputs";
-  add(app, "-o,--output", "FILE", ".png: 8 bit, straight alpha; .exr, .npy: float32, premultiplied",
+  add(app, "-o,--output", "FILE",
+      ".png: 8 bit, straight alpha; .exr, .npy: float32, premultiplied; with --path also .mp4, "
+      "over black",
       [&a](const std::string& s) {
-        a.color = parse_output("-o", s, {Format::png, Format::exr, Format::npy});
+        a.color = parse_output("-o", s, {Format::png, Format::exr, Format::npy, Format::mp4});
       })
       ->group(group);
   add(app, "--depth", "FILE", ".npy or .exr: float32, 1 near, 0 far and where nothing is",
@@ -130,160 +81,58 @@ void add_output_options(CLI::App& app, RenderArguments& a) {
       ->group(group);
 }
 
-void add_picture_options(CLI::App& app, RenderArguments& a) {
-  const char* group = "Picture";
-  add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)", [&a](const std::string& s) {
-    const Size size = parse_size("--size", s);
-    a.render.width = size.width;
-    a.render.height = size.height;
-  })->group(group);
-  std::string shaders;
-  for (const std::string_view shader : shader_names())
-    shaders.append(shaders.empty() ? "" : ", ").append(shader);
-  add(app, "--shader", "NAME", shaders + " (material where a file has materials, else phong)",
-      [&a](const std::string& s) {
-        a.render.shader = parse_shader(s);
-        a.shader_given = true;
-      })
+void add_path_options(CLI::App& app, RenderArguments& a) {
+  const char* group = "Camera path";
+  add(app, "--path", "FILE",
+      "draw a picture for each moment of a camera path (docs/window.md): -o 'frame_%04d.png' or, "
+      "through ffmpeg, -o flight.mp4",
+      [&a](const std::string& s) { a.path = s; })
       ->group(group);
-  add(app, "--normals", "NAME",
-      "file: the file's, else vertex; vertex: area-weighted means; face (file)",
-      [&a](const std::string& s) {
-        a.normals = choose<Normals>(
-            "--normals", s,
-            {{"file", Normals::file}, {"vertex", Normals::vertex}, {"face", Normals::face}});
-      })
-      ->group(group);
-  add(app, "--cull", "NAME",
-      "none, back, front; counter-clockwise is front; with none, the material shader still leaves "
-      "out the back of single-sided glTF materials (none)",
-      [&a](const std::string& s) {
-        a.render.cull = choose<Cull>(
-            "--cull", s, {{"none", Cull::none}, {"back", Cull::back}, {"front", Cull::front}});
-      })
-      ->group(group);
-  add(app, "--background", "#RRGGBB[AA]", "(#00000000, transparent)", [&a](const std::string& s) {
-    a.render.background = parse_color("--background", s);
+  add(app, "--fps", "N", "pictures a second of the path (30)", [&a](const std::string& s) {
+    a.fps = parse_number("--fps", s);
+    a.fps_given = true;
+    if (!(a.fps > 0 && a.fps <= 1000)) throw UsageError("--fps", "must lie in 0 to 1000");
   })->group(group);
 }
 
-void add_transparency_options(CLI::App& app, RenderArguments& a) {
-  const char* group = "Transparency and samples";
-  add(app, "--opacity", "A",
-      "of every surface, 0 to 1: opaque and masked materials get alpha A, what blends alpha * A "
-      "(1)",
-      [&a](const std::string& s) {
-        const double opacity = parse_number("--opacity", s);
-        if (!(opacity >= 0 && opacity <= 1))
-          throw UsageError("--opacity", "must lie in 0 to 1, got '" + s + "'");
-        a.render.opacity = static_cast<float>(opacity);
-      })
-      ->group(group);
-  add(app, "--transparency", "NAME",
-      transparency_words() +
-          "; filter:K orders by blocks and K fragments a pixel, without repair; none draws what is "
-          "translucent opaque (exact)",
-      [&a](const std::string& s) { parse_transparency(s, a.render.transparency); })
-      ->group(group);
-  add(app, "--alpha-threshold", "[A]",
-      "leaves out what lies behind pixels that have this alpha; alone: 1 - 1/128 (1: nothing)",
-      [&a](const std::string& s) {
-        a.render.transparency.alpha_threshold = parse_alpha_threshold(s);
-      })
-      ->expected(0, 1)
-      ->group(group);
-  add(app, "--samples", "N",
-      "1, 4, 8 or 16 a pixel, at D3D11's standard positions; --ids and --depth are of the nearest "
-      "one (1)",
-      [&a](const std::string& s) {
-        a.render.samples = choose<int>("--samples", s, {{"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}});
-      })
-      ->group(group);
-}
-
-void add_camera_options(CLI::App& app, RenderArguments& a) {
-  const char* group = "Camera (what is not given is taken from --fit)";
-  ViewOptions& v = a.view;
-  app.add_flag("--fit", a.fit, "look along -z at all that is there (the default)")->group(group);
-  add(app, "--camera", "N", "the N-th camera of the files, from 0", [&v](const std::string& s) {
-    v.file_camera = parse_integer("--camera", s, 0, std::numeric_limits<int>::max());
-  })->group(group);
-  add(app, "--eye", "X,Y,Z", "where the camera stands", [&v](const std::string& s) {
-    v.eye = parse_vec3("--eye", s);
-  })->group(group);
-  add(app, "--target", "X,Y,Z", "what it looks at", [&v](const std::string& s) {
-    v.target = parse_vec3("--target", s);
-  })->group(group);
-  add(app, "--up", "X,Y,Z", "which way is up in the picture (0,1,0)", [&v](const std::string& s) {
-    v.up = parse_vec3("--up", s);
-  })->group(group);
-  add(app, "--fov", "DEG", "field of view across the smaller side (60)",
-      [&v](const std::string& s) { v.fov_deg = parse_number("--fov", s); })
-      ->group(group);
-  add(app, "--near", "N", "distance of the near plane (just before the scene)",
-      [&v](const std::string& s) { v.near_plane = parse_number("--near", s); })
-      ->group(group);
-  add(app, "--far", "F|inf", "distance of the far plane (inf; orthographic: behind the scene)",
-      [&v](const std::string& s) {
-        v.far_plane =
-            s == "inf" ? std::numeric_limits<double>::infinity() : parse_number("--far", s);
-      })
-      ->group(group);
-  add(app, "--orthographic", "HEIGHT|fit",
-      "parallel projection, HEIGHT world units across the smaller side",
-      [&v](const std::string& s) {
-        v.orthographic = true;
-        if (s != "fit") v.orthographic_height = parse_number("--orthographic", s);
-      })
-      ->group(group);
-}
-
-void add_machine_options(CLI::App& app, RenderArguments& a) {
-  const char* group = "Machine";
-  add(app, "--rasterizer", "NAME", names_of(rasterizers()) + " (auto)", [&a](const std::string& s) {
-    a.render.rasterizer = check_axis("--rasterizer", rasterizers(), s);
-  })->group(group);
-  add(app, "--visibility", "NAME", names_of(visibilities()) + " (auto)",
-      [&a](const std::string& s) {
-        a.render.visibility = check_axis("--visibility", visibilities(), s);
-      })
-      ->group(group);
-  add(app, "--device", "NAME", "serial, threads, cuda (threads)", [&a](const std::string& s) {
-    a.render.device = choose<Device>(
-        "--device", s,
-        {{"serial", Device::serial}, {"threads", Device::threads}, {"cuda", Device::cuda}});
-  })->group(group);
-  add(app, "--threads", "N", "(all)", [&a](const std::string& s) {
-    a.render.threads = parse_integer("--threads", s, 1, 4096);
-  })->group(group);
-  add(app, "--memory-limit", "BYTES",
-      "scratch beyond the mesh and the images, with K, M or G; what does not fit at once is drawn "
-      "piece by piece (none)",
-      [&a](const std::string& s) { a.render.memory_limit = parse_bytes("--memory-limit", s); })
-      ->group(group);
-  std::string isas;
-  for (const Isa isa : available_isas()) isas.append(isas.empty() ? "" : ", ").append(name(isa));
-  add(app, "--isa", "NAME", "instruction set; this machine has " + isas + " (the last)",
-      [&a](const std::string& s) { a.render.isa = parse_isa(s); })
-      ->group(group);
+void add_frames_option(CLI::App& app, RenderArguments& a) {
   add(app, "--frames", "N", "render N times; --stats gives median, minimum and maximum (1)",
       [&a](const std::string& s) {
         a.frames = parse_integer("--frames", s, 1, 1000000);
         a.frames_given = true;
       })
-      ->group(group);
+      ->group(kMachineGroup);
+}
+
+/// The outputs that hold one picture, so that a path needs a numbered name for each.
+std::array<Output RenderArguments::*, 5> picture_outputs() {
+  return {&RenderArguments::color, &RenderArguments::depth, &RenderArguments::ids,
+          &RenderArguments::heatmap, &RenderArguments::errors};
+}
+
+void check_path(const RenderArguments& a) {
+  if (a.frames_given)
+    throw UsageError("--frames", "leaves no room for --path: both say how many frames are drawn");
+  for (const auto member : picture_outputs()) {
+    const Output& output = a.*member;
+    if (!output) continue;
+    if (output.format == Format::mp4)
+      Mp4Writer::check(a.render.width, a.render.height);
+    else
+      static_cast<void>(NumberedName(output.option, output.file.string()));
+  }
+  static_cast<void>(read_json(a.path));  // a spoilt file is refused before a large scene is read
 }
 
 /// What the parser cannot see by itself, before anything is read.
 void check(const RenderArguments& a) {
   if (!a.color && !a.depth && !a.ids && !a.heatmap && !a.errors && !a.stats && !a.trace)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
-  const ViewOptions& v = a.view;
-  if (a.fit && (v.eye || v.target || v.file_camera))
-    throw UsageError("--fit", "leaves no room for --eye, --target or --camera");
-  if (v.file_camera && v.orthographic)
-    throw UsageError("--orthographic", "the camera of a file has a projection of its own");
-  check_view(v);
+  check_scene_arguments(a);
+  if (a.path.empty() && a.fps_given) throw UsageError("--fps", "is for --path");
+  if (a.path.empty() && a.color && a.color.format == Format::mp4)
+    throw UsageError("-o", "an .mp4 is drawn along a camera path: give --path");
+  if (!a.path.empty()) check_path(a);
   const bool stats_to_file = a.stats && a.stats.file != "-";
   const Output none;
   const Output* const outputs[] = {&a.color,
@@ -332,7 +181,8 @@ void write_images(const RenderArguments& a, const Pictures& p, Timeline& timelin
     progress.show("writing " + output.file.string());
     timeline.measure("write " + output.file.string(), "write", writer);
   };
-  write(a.color, [&] { write_color(a.color, p.color8.view(), p.color.view()); });
+  if (a.color.format != Format::mp4)
+    write(a.color, [&] { write_color(a.color, p.color8.view(), p.color.view()); });
   write(a.depth, [&] { write_depth(a.depth, p.depth.view()); });
   write(a.ids, [&] { io::write_npy(a.ids.file, p.ids.view()); });
   write(a.heatmap, [&] {
@@ -347,6 +197,68 @@ void write_images(const RenderArguments& a, const Pictures& p, Timeline& timelin
                    static_cast<unsigned long>(heatmap.sum));
   });
   write(a.errors, [&] { write_error_picture(a, p, progress); });
+}
+
+Wanted wanted_of(const RenderArguments& a) {
+  const bool floats = a.color.format == Format::exr || a.color.format == Format::npy;
+  return {.color8 = (a.color && !floats) || a.errors,
+          .color = a.color && floats,
+          .depth = static_cast<bool>(a.depth),
+          .ids = static_cast<bool>(a.ids),
+          .overdraw = static_cast<bool>(a.heatmap),
+          .errors = static_cast<bool>(a.errors)};
+}
+
+/// `a` with the names of picture `number`; throws UsageError where many pictures share a name.
+RenderArguments with_numbers(const RenderArguments& a, std::size_t number, std::size_t count) {
+  RenderArguments numbered = a;
+  for (const auto member : picture_outputs()) {
+    Output& output = numbered.*member;
+    if (!output || output.format == Format::mp4) continue;
+    const NumberedName name(output.option, output.file.string());
+    if (!name.has_number() && count > 1)
+      throw UsageError(output.option, "the path has " + std::to_string(count) +
+                                          " pictures: number them, as in frame_%04d" +
+                                          output.file.extension().string());
+    output.file = name.at(number);
+  }
+  return numbered;
+}
+
+int run_path(const RenderArguments& a, Renderer& renderer, const SceneView& scene,
+             const Camera& base, double load_ms, Timeline& timeline, Progress& progress) {
+  const CameraPath path = read_camera_path(a.path, base);
+  const std::vector<double> times = frame_times(path.first_s(), path.last_s(), a.fps);
+  const BoundingSphere sphere = bounding_sphere(scene);
+  static_cast<void>(with_numbers(a, 0, times.size()));
+  std::unique_ptr<Mp4Writer> video;
+  if (a.color && a.color.format == Format::mp4)
+    video = std::make_unique<Mp4Writer>(a.color.file, a.render.width, a.render.height, a.fps);
+
+  Pictures pictures;
+  std::vector<FrameStats> frames;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    progress.show("picture " + std::to_string(i + 1) + " of " + std::to_string(times.size()));
+    Camera camera = path.at(times[i]);
+    if (!path.has_planes() && !a.view.near_plane) place_planes(camera, sphere);
+    const auto stats = render_frames(renderer, scene, camera, wanted_of(a), false, 1, pictures,
+                                     timeline, progress);
+    frames.push_back(stats.front());
+    write_images(with_numbers(a, i, times.size()), pictures, timeline, progress);
+    if (video) video->add(pictures.color8.view());
+  }
+  if (video) video->finish();
+  progress.clear();
+  const FrameStats& median = frames[median_frame(frames)];
+  if (!a.quiet) report_missing(median);
+  if (a.stats) write_json(a.stats.file, stats_json(frames, renderer.options(), load_ms));
+  if (a.trace) write_trace(a.trace.file, timeline);
+  if (!a.quiet && a.color)
+    std::fprintf(stderr, "%s: %lu pictures of %dx%d, %lu triangles, %.1f ms a picture\n",
+                 a.color.file.c_str(), static_cast<unsigned long>(times.size()), a.render.width,
+                 a.render.height, static_cast<unsigned long>(median.triangles.input),
+                 median.frame_ms);
+  return 0;
 }
 
 int run(RenderArguments& a) {
@@ -371,16 +283,13 @@ int run(RenderArguments& a) {
   const SceneBinding binding(scene);
   const Camera camera = choose_camera(a.view, scene, binding.view());
 
+  if (!a.path.empty())
+    return run_path(a, *renderer, binding.view(), camera, load_ms, timeline, progress);
   const bool timed = a.frames_given || a.stats || a.trace;
-  const Wanted wanted{.color8 = (a.color && a.color.format == Format::png) || a.errors,
-                      .color = a.color && a.color.format != Format::png,
-                      .depth = static_cast<bool>(a.depth),
-                      .ids = static_cast<bool>(a.ids),
-                      .overdraw = static_cast<bool>(a.heatmap),
-                      .errors = static_cast<bool>(a.errors)};
   Pictures pictures;
-  const std::vector<FrameStats> frames = render_frames(
-      *renderer, binding.view(), camera, wanted, timed, a.frames, pictures, timeline, progress);
+  const std::vector<FrameStats> frames =
+      render_frames(*renderer, binding.view(), camera, wanted_of(a), timed, a.frames, pictures,
+                    timeline, progress);
   const FrameStats& median = frames[median_frame(frames)];
   progress.clear();
   if (!a.quiet) report_missing(median);
@@ -402,22 +311,15 @@ int run(RenderArguments& a) {
 Command add_render_command(CLI::App& app) {
   auto arguments = std::make_shared<RenderArguments>();
   CLI::App& render = *app.add_subcommand("render", "Draw meshes and shapes into an image file");
-  render
-      .add_option(
-          "INPUT", arguments->inputs,
-          "files (.obj .ply .stl .off .gltf .glb) and builtin:SHAPE[?name=value,...], drawn "
-          "as one scene in this order; x, y, z and scale place a shape")
-      ->required()
-      ->type_name("");
+  add_input_option(render, *arguments)->required();
   add_output_options(render, *arguments);
   add_picture_options(render, *arguments);
   add_transparency_options(render, *arguments);
   add_camera_options(render, *arguments);
+  add_path_options(render, *arguments);
   add_machine_options(render, *arguments);
-  std::string footer = "Shapes and their defaults:\n";
-  for (const shapes::ShapeInfo& shape : shapes::catalogue())
-    footer +=
-        "  builtin:" + shape.name + (shape.parameters.empty() ? "" : "?") + shape.parameters + "\n";
+  add_frames_option(render, *arguments);
+  std::string footer = shapes_help();
   footer +=
       "\nTimes: a frame goes from the mesh in memory to the finished 8-bit image in memory. With\n"
       "--frames, --stats or --trace the timed frames fill that image alone, and one more pass,\n"
@@ -429,7 +331,8 @@ Command add_render_command(CLI::App& app) {
       "  rastrum render builtin:teapot 'builtin:sphere?x=3,scale=0.5' --shader normal -o two.png\n"
       "  rastrum render engine.glb --opacity 0.3 --samples 4 -o see_through.png\n"
       "  rastrum render hair.ply --opacity 0.5 --transparency filter:3 --show-errors wrong.png\n"
-      "  rastrum render dragon.ply --frames 20 --stats - --trace frames.json --heatmap heat.png";
+      "  rastrum render dragon.ply --frames 20 --stats - --trace frames.json --heatmap heat.png\n"
+      "  rastrum render dragon.ply --path flight.json --fps 60 -o 'frame_%04d.png'";
   render.footer(footer);
   return {&render, [arguments] { return run(*arguments); }};
 }

@@ -14,14 +14,6 @@ double distance(Vec3 a, Vec3 b) {
   return std::hypot(double{a.x} - b.x, double{a.y} - b.y, double{a.z} - b.z);
 }
 
-/// A camera of one's own may stand inside the sphere around the scene or at its centre, where the
-/// fit camera's rule would put the near plane at 0.
-void place_planes(Camera& camera, Vec3 centre, double radius) {
-  const double d = distance(camera.eye, centre);
-  camera.near_plane = static_cast<float>(std::max(d - 1.001 * radius, std::max(d, radius) / 1000));
-  if (camera.orthographic) camera.far_plane = static_cast<float>(d + 1.001 * radius);
-}
-
 Camera file_camera(const Scene& scene, int index) {
   if (static_cast<std::size_t>(index) >= scene.cameras.size())
     throw UsageError("--camera",
@@ -34,6 +26,19 @@ Camera file_camera(const Scene& scene, int index) {
 }
 
 }  // namespace
+
+BoundingSphere bounding_sphere(const SceneView& view) {
+  constexpr float kFov = 1;
+  const Camera fit = fit_camera(view, kFov, false);
+  return {fit.target, distance(fit.eye, fit.target) * std::sin(double{kFov} / 2)};
+}
+
+void place_planes(Camera& camera, const BoundingSphere& scene) {
+  const double d = distance(camera.eye, scene.centre);
+  const double r = scene.radius;
+  camera.near_plane = static_cast<float>(std::max(d - 1.001 * r, std::max(d, r) / 1000));
+  if (camera.orthographic) camera.far_plane = static_cast<float>(d + 1.001 * r);
+}
 
 void check_view(const ViewOptions& o) {
   if (o.fov_deg && !(*o.fov_deg > 0 && *o.fov_deg < 180))
@@ -56,10 +61,10 @@ Camera choose_camera(const ViewOptions& o, const Scene& scene, const SceneView& 
     const double fov_rad = o.fov_deg.value_or(60) * std::numbers::pi / 180;
     camera = fit_camera(view, static_cast<float>(fov_rad), o.orthographic);
     if (o.eye) {
-      const Vec3 centre = camera.target;
-      const double radius = distance(camera.eye, centre) * std::sin(fov_rad / 2);
+      const BoundingSphere sphere{camera.target,
+                                  distance(camera.eye, camera.target) * std::sin(fov_rad / 2)};
       camera.eye = *o.eye;
-      place_planes(camera, centre, radius);
+      place_planes(camera, sphere);
     }
   }
   if (o.eye) camera.eye = *o.eye;

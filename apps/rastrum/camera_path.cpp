@@ -1,0 +1,210 @@
+#include "camera_path.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include <rastrum/core/error.hpp>
+
+#include "json_fields.hpp"
+#include "json_file.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// The numbers of a camera in the order of their curves.
+struct Column {
+  float Camera::*scalar;  ///< null: a component of `vector`
+  Vec3 Camera::*vector;
+  float Vec3::*component;
+  Tangent tangent;
+
+  [[nodiscard]] float& of(Camera& c) const {
+    return scalar != nullptr ? c.*scalar : (c.*vector).*component;
+  }
+};
+
+constexpr Column curve(Vec3 Camera::*vector, float Vec3::*component) {
+  return {nullptr, vector, component, Tangent::curve};
+}
+constexpr Column bounded(float Camera::*scalar) {
+  return {scalar, nullptr, nullptr, Tangent::monotone};
+}
+constexpr Column kColumns[] = {curve(&Camera::eye, &Vec3::x),
+                               curve(&Camera::eye, &Vec3::y),
+                               curve(&Camera::eye, &Vec3::z),
+                               curve(&Camera::target, &Vec3::x),
+                               curve(&Camera::target, &Vec3::y),
+                               curve(&Camera::target, &Vec3::z),
+                               curve(&Camera::up, &Vec3::x),
+                               curve(&Camera::up, &Vec3::y),
+                               curve(&Camera::up, &Vec3::z),
+                               bounded(&Camera::fov_rad),
+                               bounded(&Camera::orthographic_height),
+                               bounded(&Camera::near_plane),
+                               bounded(&Camera::far_plane)};
+
+float to_float(const JsonFields& fields, const char* name, double value) {
+  if (!(std::abs(value) <= std::numeric_limits<float>::max()))
+    fields.fail(name, "the number is too large");
+  return static_cast<float>(value);
+}
+
+void read_vec3(JsonFields& fields, const char* name, Vec3& into) {
+  if (const auto v = fields.numbers(name, 3))
+    into = {to_float(fields, name, (*v)[0]), to_float(fields, name, (*v)[1]),
+            to_float(fields, name, (*v)[2])};
+}
+
+void read_planes(JsonFields& fields, PathKey& key) {
+  Camera& c = key.camera;
+  if (const auto n = fields.number("near")) {
+    c.near_plane = to_float(fields, "near", *n);
+    key.has_planes = true;
+  }
+  const nlohmann::ordered_json* far = fields.value("far");
+  if (far != nullptr && *far == "inf")
+    c.far_plane = std::numeric_limits<float>::infinity();
+  else if (far != nullptr)
+    c.far_plane = to_float(fields, "far", *fields.number("far"));
+  if (far != nullptr && !key.has_planes) fields.fail("far", "needs near beside it");
+}
+
+/// What the renderer would refuse later, said with the place in the file.
+void check_camera(const JsonFields& fields, const PathKey& key) {
+  const Camera& c = key.camera;
+  if (c.eye == c.target) fields.fail("eye", "eye and target must differ");
+  if (length(cross(c.up, c.target - c.eye)) == 0)
+    fields.fail("up", "must not be zero or along the view direction");
+  if (!key.has_planes) return;
+  if (!c.orthographic && !(c.near_plane > 0)) fields.fail("near", "must be greater than 0");
+  if (!(c.near_plane < c.far_plane)) fields.fail("far", "must be greater than near");
+  if (c.orthographic && !std::isfinite(c.far_plane))
+    fields.fail("far", "must be finite for an orthographic camera");
+}
+
+PathKey read_key(const JsonFields::Element& element, const PathKey& before, bool first) {
+  JsonFields fields(*element.value, element.place);
+  PathKey key = before;
+  Camera& c = key.camera;
+  const auto time = fields.number("time");
+  if (!time && !first) fields.fail("time", "is needed: the seconds at which the camera is here");
+  key.time_s = time.value_or(0);
+  if (!first && !(key.time_s > before.time_s))
+    fields.fail("time", "must be greater than the time of the key before");
+  read_vec3(fields, "eye", c.eye);
+  read_vec3(fields, "target", c.target);
+  read_vec3(fields, "up", c.up);
+  const auto fov_deg = fields.number("fov");
+  const auto height = fields.number("orthographic");
+  if (fov_deg && height) fields.fail("orthographic", "leaves no room for fov");
+  if (fov_deg && !(*fov_deg > 0 && *fov_deg < 180))
+    fields.fail("fov", "must lie between 0 and 180 degrees");
+  if (height && !(*height > 0)) fields.fail("orthographic", "the height must be greater than 0");
+  if (fov_deg) c.fov_rad = static_cast<float>(*fov_deg * kDegree);
+  if (height) c.orthographic_height = to_float(fields, "orthographic", *height);
+  if (fov_deg || height) c.orthographic = height.has_value();
+  read_planes(fields, key);
+  fields.finish();
+  if (!first && c.orthographic != before.camera.orthographic)
+    fields.fail("a path is orthographic in all keys or in none");
+  if (!first && key.has_planes != before.has_planes)
+    fields.fail("near", "is given in the first key or in none");
+  if (!first && std::isinf(c.far_plane) != std::isinf(before.camera.far_plane))
+    fields.fail("far", "is inf in all keys or in none");
+  check_camera(fields, key);
+  return key;
+}
+
+}  // namespace
+
+CameraPath::CameraPath(std::vector<PathKey> keys, Interpolation interpolation)
+    : keys_(std::move(keys)) {
+  assert(!keys_.empty());
+  std::vector<double> times;
+  for (const PathKey& key : keys_) times.push_back(key.time_s);
+  for (const Column& column : kColumns) {
+    std::vector<double> values;
+    for (PathKey& key : keys_) {
+      const float value = column.of(key.camera);
+      values.push_back(std::isfinite(value) ? value : 0);
+    }
+    curves_.emplace_back(times, std::move(values), interpolation, column.tangent);
+  }
+}
+
+Camera CameraPath::at(double time_s) const {
+  Camera camera = keys_.front().camera;
+  for (std::size_t i = 0; i < curves_.size(); ++i) {
+    float& value = kColumns[i].of(camera);
+    if (std::isfinite(value)) value = static_cast<float>(curves_[i].at(time_s));
+  }
+  return camera;
+}
+
+CameraPath read_camera_path(const std::filesystem::path& file, const Camera& base) {
+  const nlohmann::ordered_json json = read_json(file);
+  JsonFields fields(json, file.string());
+  Interpolation interpolation = Interpolation::smooth;
+  if (const auto word = fields.text("interpolation")) {
+    if (*word != "smooth" && *word != "linear")
+      fields.fail("interpolation", "expected smooth or linear, got '" + *word + "'");
+    if (*word == "linear") interpolation = Interpolation::linear;
+  }
+  const std::vector<JsonFields::Element> elements = fields.array("keys");
+  static_cast<void>(fields.has("events"));  // of a script, which a window replays
+  static_cast<void>(fields.has("fps"));
+  fields.finish();
+  if (elements.empty()) fields.fail("keys", "a path needs at least one key");
+  std::vector<PathKey> keys;
+  PathKey before{.camera = base};
+  for (const JsonFields::Element& element : elements)
+    before = keys.emplace_back(read_key(element, before, keys.empty()));
+  return {std::move(keys), interpolation};
+}
+
+void write_camera_path(const std::filesystem::path& file, std::span<const PathKey> keys) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  const auto vec = [](Vec3 v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
+  for (const PathKey& key : keys) {
+    const Camera& c = key.camera;
+    nlohmann::ordered_json entry{
+        {"time", key.time_s}, {"eye", vec(c.eye)}, {"target", vec(c.target)}, {"up", vec(c.up)}};
+    if (c.orthographic)
+      entry["orthographic"] = c.orthographic_height;
+    else
+      entry["fov"] = c.fov_rad / kDegree;
+    if (key.has_planes) {
+      entry["near"] = c.near_plane;
+      if (std::isinf(c.far_plane))
+        entry["far"] = "inf";
+      else
+        entry["far"] = c.far_plane;
+    }
+    list.push_back(std::move(entry));
+  }
+  write_json(file, {{"keys", std::move(list)}});
+}
+
+std::vector<double> frame_times(double first_s, double last_s, double fps) {
+  constexpr double kMost = 1e6;
+  // Rounding must not lose the last picture of a path whose length is a multiple of a frame.
+  const double count = std::floor((last_s - first_s) * fps * (1 + 1e-12)) + 1;
+  if (!(count <= kMost))
+    throw Error(Errc::invalid_argument, "the path has " + std::to_string(count) +
+                                            " pictures, the most is a million; lower --fps");
+  std::vector<double> times(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < times.size(); ++i)
+    times[i] = std::min(first_s + static_cast<double>(i) / fps, last_s);
+  return times;
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,51 @@
+// Camera paths: keys in time, read from JSON and written to it (docs/window.md has the format).
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <rastrum/scene/camera.hpp>
+
+#include "key_curve.hpp"
+
+namespace rastrum::cli {
+
+struct PathKey {
+  double time_s = 0;
+  Camera camera;
+  /// Whether near_plane and far_plane are meant; else they follow the scene (place_planes).
+  bool has_planes = false;
+};
+
+/// A camera that moves. Eye, target and up go through the keys on curves, what has bounds (field of
+/// view, height, planes) without leaving the range of neighbouring keys; the projection's kind is
+/// the first key's.
+class CameraPath {
+ public:
+  /// Requires at least one key, times increasing, planes in all keys or in none.
+  CameraPath(std::vector<PathKey> keys, Interpolation interpolation);
+
+  [[nodiscard]] double first_s() const { return keys_.front().time_s; }
+  [[nodiscard]] double last_s() const { return keys_.back().time_s; }
+  [[nodiscard]] bool has_planes() const { return keys_.front().has_planes; }
+  /// At a key's time exactly its camera; before the first and after the last those.
+  [[nodiscard]] Camera at(double time_s) const;
+
+ private:
+  std::vector<PathKey> keys_;
+  std::vector<KeyCurve> curves_;
+};
+
+/// `base`: what the first key leaves out; a later key takes it from the key before.
+/// Throws Error{not_found, io, bad_format} naming the file and the key.
+[[nodiscard]] CameraPath read_camera_path(const std::filesystem::path& file, const Camera& base);
+/// Floats keep their bits. Throws Error{io}.
+void write_camera_path(const std::filesystem::path& file, std::span<const PathKey> keys);
+
+/// The times of the pictures of a path: first + i / fps up to `last`, at least one.
+/// Throws Error{invalid_argument} beyond a million.
+[[nodiscard]] std::vector<double> frame_times(double first_s, double last_s, double fps);
+
+}  // namespace rastrum::cli

@@ -1,0 +1,210 @@
+#include "scene_options.hpp"
+
+#include <limits>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+
+#include "transparency.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+Isa parse_isa(const std::string& text) {
+  return choose<Isa>("--isa", text,
+                     {{"scalar", Isa::scalar},
+                      {"sse4", Isa::sse4},
+                      {"avx2", Isa::avx2},
+                      {"avx512", Isa::avx512},
+                      {"neon", Isa::neon}});
+}
+
+std::string names_of(const std::vector<AxisInfo>& axis) {
+  std::string names = "auto";
+  for (const AxisInfo& info : axis) names.append(", ").append(info.name);
+  return names;
+}
+
+std::string check_axis(const char* option, const std::vector<AxisInfo>& axis,
+                       const std::string& text) {
+  if (text == "auto") return text;
+  for (const AxisInfo& info : axis)
+    if (text == info.name) return text;
+  throw UsageError(option, "expected one of " + names_of(axis) + ", got '" + text + "'");
+}
+
+Shader parse_shader(const std::string& text) {
+  try {
+    return shader_from_name(text);
+  } catch (const Error& e) {
+    throw UsageError("--shader", e.what());
+  }
+}
+
+}  // namespace
+
+CLI::Option* add_input_option(CLI::App& app, SceneArguments& a) {
+  return app
+      .add_option(
+          "INPUT", a.inputs,
+          "files (.obj .ply .stl .off .gltf .glb) and builtin:SHAPE[?name=value,...], drawn "
+          "as one scene in this order; x, y, z and scale place a shape")
+      ->type_name("");
+}
+
+void add_picture_options(CLI::App& app, SceneArguments& a) {
+  const char* group = "Picture";
+  add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)", [&a](const std::string& s) {
+    const Size size = parse_size("--size", s);
+    a.render.width = size.width;
+    a.render.height = size.height;
+  })->group(group);
+  std::string shaders;
+  for (const std::string_view shader : shader_names())
+    shaders.append(shaders.empty() ? "" : ", ").append(shader);
+  add(app, "--shader", "NAME", shaders + " (material where a file has materials, else phong)",
+      [&a](const std::string& s) {
+        a.render.shader = parse_shader(s);
+        a.shader_given = true;
+      })
+      ->group(group);
+  add(app, "--normals", "NAME",
+      "file: the file's, else vertex; vertex: area-weighted means; face (file)",
+      [&a](const std::string& s) {
+        a.normals = choose<Normals>(
+            "--normals", s,
+            {{"file", Normals::file}, {"vertex", Normals::vertex}, {"face", Normals::face}});
+      })
+      ->group(group);
+  add(app, "--cull", "NAME",
+      "none, back, front; counter-clockwise is front; with none, the material shader still leaves "
+      "out the back of single-sided glTF materials (none)",
+      [&a](const std::string& s) {
+        a.render.cull = choose<Cull>(
+            "--cull", s, {{"none", Cull::none}, {"back", Cull::back}, {"front", Cull::front}});
+      })
+      ->group(group);
+  add(app, "--background", "#RRGGBB[AA]", "(#00000000, transparent)", [&a](const std::string& s) {
+    a.render.background = parse_color("--background", s);
+  })->group(group);
+}
+
+void add_transparency_options(CLI::App& app, SceneArguments& a) {
+  const char* group = "Transparency and samples";
+  add(app, "--opacity", "A",
+      "of every surface, 0 to 1: opaque and masked materials get alpha A, what blends alpha * A "
+      "(1)",
+      [&a](const std::string& s) {
+        const double opacity = parse_number("--opacity", s);
+        if (!(opacity >= 0 && opacity <= 1))
+          throw UsageError("--opacity", "must lie in 0 to 1, got '" + s + "'");
+        a.render.opacity = static_cast<float>(opacity);
+      })
+      ->group(group);
+  add(app, "--transparency", "NAME",
+      transparency_words() +
+          "; filter:K orders by blocks and K fragments a pixel, without repair; none draws what is "
+          "translucent opaque (exact)",
+      [&a](const std::string& s) { parse_transparency(s, a.render.transparency); })
+      ->group(group);
+  add(app, "--alpha-threshold", "[A]",
+      "leaves out what lies behind pixels that have this alpha; alone: 1 - 1/128 (1: nothing)",
+      [&a](const std::string& s) {
+        a.render.transparency.alpha_threshold = parse_alpha_threshold(s);
+      })
+      ->expected(0, 1)
+      ->group(group);
+  add(app, "--samples", "N",
+      "1, 4, 8 or 16 a pixel, at D3D11's standard positions; --ids and --depth are of the nearest "
+      "one (1)",
+      [&a](const std::string& s) {
+        a.render.samples = choose<int>("--samples", s, {{"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}});
+      })
+      ->group(group);
+}
+
+void add_camera_options(CLI::App& app, SceneArguments& a) {
+  const char* group = "Camera (what is not given is taken from --fit)";
+  ViewOptions& v = a.view;
+  app.add_flag("--fit", a.fit, "look along -z at all that is there (the default)")->group(group);
+  add(app, "--camera", "N", "the N-th camera of the files, from 0", [&v](const std::string& s) {
+    v.file_camera = parse_integer("--camera", s, 0, std::numeric_limits<int>::max());
+  })->group(group);
+  add(app, "--eye", "X,Y,Z", "where the camera stands", [&v](const std::string& s) {
+    v.eye = parse_vec3("--eye", s);
+  })->group(group);
+  add(app, "--target", "X,Y,Z", "what it looks at", [&v](const std::string& s) {
+    v.target = parse_vec3("--target", s);
+  })->group(group);
+  add(app, "--up", "X,Y,Z", "which way is up in the picture (0,1,0)", [&v](const std::string& s) {
+    v.up = parse_vec3("--up", s);
+  })->group(group);
+  add(app, "--fov", "DEG", "field of view across the smaller side (60)",
+      [&v](const std::string& s) { v.fov_deg = parse_number("--fov", s); })
+      ->group(group);
+  add(app, "--near", "N", "distance of the near plane (just before the scene)",
+      [&v](const std::string& s) { v.near_plane = parse_number("--near", s); })
+      ->group(group);
+  add(app, "--far", "F|inf", "distance of the far plane (inf; orthographic: behind the scene)",
+      [&v](const std::string& s) {
+        v.far_plane =
+            s == "inf" ? std::numeric_limits<double>::infinity() : parse_number("--far", s);
+      })
+      ->group(group);
+  add(app, "--orthographic", "HEIGHT|fit",
+      "parallel projection, HEIGHT world units across the smaller side",
+      [&v](const std::string& s) {
+        v.orthographic = true;
+        if (s != "fit") v.orthographic_height = parse_number("--orthographic", s);
+      })
+      ->group(group);
+}
+
+void add_machine_options(CLI::App& app, SceneArguments& a) {
+  const char* group = kMachineGroup;
+  add(app, "--rasterizer", "NAME", names_of(rasterizers()) + " (auto)", [&a](const std::string& s) {
+    a.render.rasterizer = check_axis("--rasterizer", rasterizers(), s);
+  })->group(group);
+  add(app, "--visibility", "NAME", names_of(visibilities()) + " (auto)",
+      [&a](const std::string& s) {
+        a.render.visibility = check_axis("--visibility", visibilities(), s);
+      })
+      ->group(group);
+  add(app, "--device", "NAME", "serial, threads, cuda (threads)", [&a](const std::string& s) {
+    a.render.device = choose<Device>(
+        "--device", s,
+        {{"serial", Device::serial}, {"threads", Device::threads}, {"cuda", Device::cuda}});
+  })->group(group);
+  add(app, "--threads", "N", "(all)", [&a](const std::string& s) {
+    a.render.threads = parse_integer("--threads", s, 1, 4096);
+  })->group(group);
+  add(app, "--memory-limit", "BYTES",
+      "scratch beyond the mesh and the images, with K, M or G; what does not fit at once is drawn "
+      "piece by piece (none)",
+      [&a](const std::string& s) { a.render.memory_limit = parse_bytes("--memory-limit", s); })
+      ->group(group);
+  std::string isas;
+  for (const Isa isa : available_isas()) isas.append(isas.empty() ? "" : ", ").append(name(isa));
+  add(app, "--isa", "NAME", "instruction set; this machine has " + isas + " (the last)",
+      [&a](const std::string& s) { a.render.isa = parse_isa(s); })
+      ->group(group);
+}
+
+std::string shapes_help() {
+  std::string text = "Shapes and their defaults:\n";
+  for (const shapes::ShapeInfo& shape : shapes::catalogue())
+    text +=
+        "  builtin:" + shape.name + (shape.parameters.empty() ? "" : "?") + shape.parameters + "\n";
+  return text;
+}
+
+void check_scene_arguments(const SceneArguments& a) {
+  const ViewOptions& v = a.view;
+  if (a.fit && (v.eye || v.target || v.file_camera))
+    throw UsageError("--fit", "leaves no room for --eye, --target or --camera");
+  if (v.file_camera && v.orthographic)
+    throw UsageError("--orthographic", "the camera of a file has a projection of its own");
+  check_view(v);
+}
+
+}  // namespace rastrum::cli
