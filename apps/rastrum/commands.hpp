@@ -15,6 +15,7 @@ struct Command {
 [[nodiscard]] Command add_render_command(CLI::App& app);
 [[nodiscard]] Command add_info_command(CLI::App& app);
 [[nodiscard]] Command add_make_command(CLI::App& app);
+[[nodiscard]] Command add_view_command(CLI::App& app);
 [[nodiscard]] Command add_bench_command(CLI::App& app);
 
 }  // namespace rastrum::cli

@@ -44,9 +44,8 @@ int main(int argc, char** argv) {
       "rastrum COMMAND --help shows the options of each command.");
   try {
     const std::vector<rastrum::cli::Command> commands{
-        rastrum::cli::add_render_command(app),
-        rastrum::cli::add_info_command(app),
-        rastrum::cli::add_make_command(app),
+        rastrum::cli::add_render_command(app), rastrum::cli::add_view_command(app),
+        rastrum::cli::add_info_command(app),   rastrum::cli::add_make_command(app),
 #ifdef RASTRUM_HAS_BENCH
         rastrum::cli::add_bench_command(app),
 #endif

@@ -27,6 +27,15 @@ std::string transparency_words() {
   return words;
 }
 
+std::vector<std::string> transparency_names() {
+  std::vector<std::string> names;
+  for (const auto& [word, method] : kWords) {
+    names.emplace_back(word);
+    if (method == Transparency::exact) names.emplace_back(kFilter.substr(0, kFilter.size() - 1));
+  }
+  return names;
+}
+
 void parse_transparency(const std::string& text, TransparencyOptions& options) {
   for (const auto& [word, method] : kWords)
     if (text == word) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <rastrum/core/image.hpp>
 #include <rastrum/raster/options.hpp>
@@ -13,6 +14,9 @@ namespace rastrum::cli {
 void parse_transparency(const std::string& text, TransparencyOptions& options);
 /// The words that parse_transparency knows.
 [[nodiscard]] std::string transparency_words();
+
+/// A word for each value of Transparency, in its order; the filter without its number.
+[[nodiscard]] std::vector<std::string> transparency_names();
 
 /// From the CLI's text after --alpha-threshold; empty: paper 4's 1 − 1/128. Throws UsageError.
 [[nodiscard]] float parse_alpha_threshold(const std::string& text);

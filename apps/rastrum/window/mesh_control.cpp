@@ -1,0 +1,225 @@
+#include "mesh_control.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rastrum::cli::window {
+namespace {
+
+constexpr double kFlySpeed = 0.5;   ///< scene radii a second
+constexpr double kFaster = 4;       ///< with Shift
+constexpr double kTurnSpeed = 1.5;  ///< rad a second
+constexpr double kZoomSpeed = 2;    ///< factor a second
+constexpr double kWheelZoom = 1.15;
+constexpr double kPole = 0.01;  ///< rad that the view keeps from straight up and down
+
+constexpr KeyHelp kKeys[] = {
+    {"w, s", "fly forward, back"},     {"a, d", "fly left, right"},
+    {"q, e", "fly down, up"},          {"left, right, up, down", "orbit"},
+    {"=, -", "zoom in, out"},          {"left shift, right shift", "held: four times as fast"},
+    {"home", "back to the beginning"},
+};
+
+constexpr const char* kMoving[] = {"w",    "s",     "a",  "d",    "q", "e",
+                                   "left", "right", "up", "down", "=", "-"};
+
+}  // namespace
+
+std::span<const KeyHelp> MeshControl::keys() {
+  return kKeys;
+}
+
+MeshControl::MeshControl(const Camera& home, const BoundingSphere& scene, bool follow_planes)
+    : home_(home), scene_(scene), follow_planes_(follow_planes) {
+  go_home();
+}
+
+void MeshControl::go_home() {
+  place(home_);
+}
+
+void MeshControl::place(const Camera& camera) {
+  const auto widen = [](Vec3 v) { return Vector{v.x, v.y, v.z}; };
+  camera_ = camera;
+  eye_ = widen(camera.eye);
+  target_ = widen(camera.target);
+  const Vector up = widen(camera.up);
+  const double l = std::hypot(up.x, up.y, up.z);
+  up_ = {up.x / l, up.y / l, up.z / l};
+  ++version_;
+}
+
+void MeshControl::resize(int width, int height) {
+  width_ = std::max(width, 1);
+  height_ = std::max(height, 1);
+}
+
+MeshControl::Axes MeshControl::axes() const {
+  const auto cross = [](const Vector& a, const Vector& b) {
+    return Vector{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  };
+  const auto unit = [](const Vector& a) {
+    const double l = std::hypot(a.x, a.y, a.z);
+    return Vector{a.x / l, a.y / l, a.z / l};
+  };
+  const Vector back = unit({eye_.x - target_.x, eye_.y - target_.y, eye_.z - target_.z});
+  const Vector right = unit(cross(up_, back));
+  return {right, cross(back, right), back};
+}
+
+/// `v` turned about `up`, then towards it (pitch > 0) without reaching it.
+MeshControl::Vector MeshControl::rotated(const Vector& v, const Vector& up, double yaw_rad,
+                                         double pitch_rad) {
+  const double length = std::hypot(v.x, v.y, v.z);
+  const double along = (v.x * up.x + v.y * up.y + v.z * up.z) / length;
+  Vector flat{v.x / length - along * up.x, v.y / length - along * up.y,
+              v.z / length - along * up.z};
+  const double flat_length = std::hypot(flat.x, flat.y, flat.z);
+  flat = {flat.x / flat_length, flat.y / flat_length, flat.z / flat_length};
+  const Vector side{up.y * flat.z - up.z * flat.y, up.z * flat.x - up.x * flat.z,
+                    up.x * flat.y - up.y * flat.x};
+  const double limit = std::numbers::pi / 2 - kPole;
+  const double pitch = std::clamp(std::atan2(along, flat_length) + pitch_rad, -limit, limit);
+  const double c = std::cos(yaw_rad) * std::cos(pitch), s = std::sin(yaw_rad) * std::cos(pitch);
+  const double u = std::sin(pitch);
+  return {length * (c * flat.x + s * side.x + u * up.x),
+          length * (c * flat.y + s * side.y + u * up.y),
+          length * (c * flat.z + s * side.z + u * up.z)};
+}
+
+void MeshControl::orbit(double yaw_rad, double pitch_rad) {
+  const Vector offset{eye_.x - target_.x, eye_.y - target_.y, eye_.z - target_.z};
+  const Vector turned = rotated(offset, up_, yaw_rad, pitch_rad);
+  eye_ = {target_.x + turned.x, target_.y + turned.y, target_.z + turned.z};
+}
+
+void MeshControl::look(double yaw_rad, double pitch_rad) {
+  const Vector offset{target_.x - eye_.x, target_.y - eye_.y, target_.z - eye_.z};
+  const Vector turned = rotated(offset, up_, yaw_rad, pitch_rad);
+  target_ = {eye_.x + turned.x, eye_.y + turned.y, eye_.z + turned.z};
+}
+
+void MeshControl::shift(const Vector& by) {
+  eye_ = {eye_.x + by.x, eye_.y + by.y, eye_.z + by.z};
+  target_ = {target_.x + by.x, target_.y + by.y, target_.z + by.z};
+}
+
+/// What lies as far away as the target stays under the pointer.
+void MeshControl::pan(double dx_px, double dy_px) {
+  const double distance = std::hypot(eye_.x - target_.x, eye_.y - target_.y, eye_.z - target_.z);
+  const double across = camera_.orthographic ? double{camera_.orthographic_height}
+                                             : 2 * distance * std::tan(double{camera_.fov_rad} / 2);
+  const double unit = across / std::min(width_, height_);
+  const Axes a = axes();
+  const double r = -dx_px * unit, u = dy_px * unit;
+  shift({r * a.right.x + u * a.up.x, r * a.right.y + u * a.up.y, r * a.right.z + u * a.up.z});
+}
+
+/// `factor` > 1 comes nearer. A parallel projection shows less instead. The bounds keep numbers
+/// sane: nobody sees anything beyond them.
+void MeshControl::zoom(double factor) {
+  constexpr double kNearest = 1e-4, kFarthest = 1e4;  // scene radii
+  const double r = scene_.radius;
+  if (camera_.orthographic) {
+    const double height = double{camera_.orthographic_height} / factor;
+    camera_.orthographic_height =
+        static_cast<float>(std::clamp(height, kNearest * r, kFarthest * r));
+    return;
+  }
+  const Vector offset{eye_.x - target_.x, eye_.y - target_.y, eye_.z - target_.z};
+  const double length = std::hypot(offset.x, offset.y, offset.z);
+  const double scale = std::clamp(length / factor, kNearest * r, kFarthest * r) / length;
+  eye_ = {target_.x + offset.x * scale, target_.y + offset.y * scale, target_.z + offset.z * scale};
+}
+
+/// From the float64 state to the camera.
+void MeshControl::update() {
+  const auto narrow = [](const Vector& v) {
+    return Vec3{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+  };
+  camera_.eye = narrow(eye_);
+  camera_.target = narrow(target_);
+  if (follow_planes_) place_planes(camera_, scene_);
+  ++version_;
+}
+
+void MeshControl::drag(double dx_px, double dy_px) {
+  // Across the smaller side of the window is half a turn.
+  const double turn = std::numbers::pi / std::min(width_, height_);
+  if (drag_ == Drag::pan)
+    pan(dx_px, dy_px);
+  else if (drag_ == Drag::orbit)
+    orbit(-dx_px * turn, dy_px * turn);
+  else
+    look(-dx_px * turn / 2, -dy_px * turn / 2);
+  update();
+}
+
+void MeshControl::handle(const Event& event) {
+  switch (event.kind) {
+    case Event::Kind::key_down:
+      if (event.ctrl) return;
+      if (event.key == "home") return go_home();
+      held_.insert(event.key);
+      fast_ = fast_ || event.key == "left shift" || event.key == "right shift";
+      return;
+    case Event::Kind::key_up:
+      held_.erase(event.key);
+      fast_ = held("left shift") || held("right shift");
+      return;
+    case Event::Kind::button_down:
+      if (event.button == Button::right)
+        drag_ = Drag::look;
+      else
+        drag_ = event.button == Button::middle || event.shift ? Drag::pan : Drag::orbit;
+      x_ = event.x;
+      y_ = event.y;
+      return;
+    case Event::Kind::button_up:
+      drag_ = Drag::none;
+      return;
+    case Event::Kind::move:
+      if (drag_ != Drag::none && (event.x != x_ || event.y != y_)) drag(event.x - x_, event.y - y_);
+      x_ = event.x;
+      y_ = event.y;
+      return;
+    case Event::Kind::wheel:
+      zoom(std::pow(kWheelZoom, event.y));
+      return update();
+    case Event::Kind::leave:
+      held_.clear();
+      fast_ = false;
+      drag_ = Drag::none;
+      return;
+  }
+}
+
+bool MeshControl::moving() const {
+  return drag_ != Drag::none || std::any_of(std::begin(kMoving), std::end(kMoving),
+                                            [&](const char* k) { return held(k); });
+}
+
+void MeshControl::advance(double dt_s) {
+  const auto way = [&](const char* forth, const char* back) {
+    return static_cast<double>(held(forth)) - static_cast<double>(held(back));
+  };
+  const double forward = way("w", "s"), right = way("d", "a"), up = way("e", "q");
+  const double yaw = way("right", "left"), pitch = way("up", "down"), nearer = way("=", "-");
+  if (forward == 0 && right == 0 && up == 0 && yaw == 0 && pitch == 0 && nearer == 0) return;
+  const double pace = dt_s * (fast_ ? kFaster : 1);
+  if (forward != 0 || right != 0 || up != 0) {
+    const Axes a = axes();
+    const double step = pace * kFlySpeed * scene_.radius;
+    const double f = -forward * step, r = right * step, u = up * step;
+    shift({f * a.back.x + r * a.right.x + u * up_.x, f * a.back.y + r * a.right.y + u * up_.y,
+           f * a.back.z + r * a.right.z + u * up_.z});
+    // A parallel projection looks the same from everywhere along its axis.
+    if (camera_.orthographic && forward != 0) zoom(std::pow(kZoomSpeed, forward * pace));
+  }
+  if (yaw != 0 || pitch != 0) orbit(yaw * pace * kTurnSpeed, pitch * pace * kTurnSpeed);
+  if (nearer != 0) zoom(std::pow(kZoomSpeed, nearer * pace));
+  update();
+}
+
+}  // namespace rastrum::cli::window

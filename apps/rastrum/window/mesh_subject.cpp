@@ -1,0 +1,300 @@
+#include "mesh_subject.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include <rastrum/core/error.hpp>
+
+#include "heatmap.hpp"
+#include "progress.hpp"
+#include "render_job.hpp"
+#include "timeline.hpp"
+
+namespace rastrum::cli::window {
+namespace {
+
+constexpr KeyHelp kKeys[] = {{"m", "next shader (with Shift: the one before, as below)"},
+                             {"n", "next rasterizer"},
+                             {"v", "next visibility"},
+                             {"t", "next transparency"},
+                             {"o, l", "more, less opacity"},
+                             {"b", "next number of samples"},
+                             {"h", "heat map"}};
+
+std::string text(const char* format, double value) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, format, value);
+  return buffer;
+}
+
+std::vector<std::pair<std::string, std::string>> rows(const FrameStats& s) {
+  const auto count = [](std::uint64_t n) { return std::to_string(n); };
+  std::vector<std::pair<std::string, std::string>> r{
+      {"rasterizer", s.rasterizer + ", " + s.visibility},
+      {"why", s.why},
+      {"triangles", count(s.triangles.input)},
+      {"drawn", count(s.triangles.drawn)},
+      {"culled", count(s.triangles.culled)},
+      {"clipped", count(s.triangles.clipped)},
+      {"dropped", count(s.triangles.dropped)},
+      {"fragments", count(s.fragments)},
+      {"layers a pixel", s.pixels_covered == 0
+                             ? "0"
+                             : text("%.2f", static_cast<double>(s.fragments) /
+                                                static_cast<double>(s.pixels_covered))},
+      {"scratch", text("%.1f MiB", static_cast<double>(s.peak_bytes) / (1 << 20))}};
+  for (const auto& [name, value] : s.counters) r.emplace_back(name, count(value));
+  std::erase_if(r, [](const auto& row) { return row.second.empty(); });
+  return r;
+}
+
+/// The name after `now` in a ring of names; before it with `back`. Not among them: the first.
+std::string next(const std::vector<std::string>& names, const std::string& now, bool back) {
+  const auto found = std::find(names.begin(), names.end(), now);
+  if (found == names.end()) return names.front();
+  const std::size_t i = static_cast<std::size_t>(found - names.begin());
+  return names[(i + (back ? names.size() - 1 : 1)) % names.size()];
+}
+
+std::vector<std::string> axis_names(const std::vector<AxisInfo>& axis) {
+  std::vector<std::string> names{"auto"};
+  for (const AxisInfo& info : axis) names.push_back(info.name);
+  return names;
+}
+
+}  // namespace
+
+std::shared_ptr<const LoadedScene> load_scene(const SceneArguments& a) {
+  Timeline timeline;
+  Progress progress(true);
+  return std::make_shared<const LoadedScene>(load_inputs(a.inputs, a.normals, timeline, progress));
+}
+
+/// A renderer for the size of moving pictures and one for full ones, so that going from one to the
+/// other costs neither threads nor scratch.
+class MeshSubject::Renderers {
+ public:
+  Renderer& get(const RenderOptions& options, std::uint64_t version) {
+    std::erase_if(kept_, [&](const Kept& k) { return k.version != version; });
+    const auto same_size = [&](const Kept& k) {
+      return k.renderer->options().width == options.width &&
+             k.renderer->options().height == options.height;
+    };
+    auto found = std::find_if(kept_.begin(), kept_.end(), same_size);
+    if (found == kept_.end()) {
+      if (kept_.size() == kMost) kept_.erase(kept_.begin());
+      kept_.push_back({version, std::make_unique<Renderer>(options)});
+      found = kept_.end() - 1;
+    }
+    std::rotate(found, found + 1, kept_.end());  // the last used is the last to go
+    return *kept_.back().renderer;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 2;
+  struct Kept {
+    std::uint64_t version;
+    std::unique_ptr<Renderer> renderer;
+  };
+  std::vector<Kept> kept_;
+};
+
+MeshSubject::MeshSubject(SceneArguments arguments, std::shared_ptr<const LoadedScene> scene)
+    : control_(Camera{}, {}, true), renderers_(std::make_shared<Renderers>()) {
+  settings_.render = arguments.render;
+  show(std::move(arguments), std::move(scene));
+}
+
+MeshSubject::~MeshSubject() = default;
+
+void MeshSubject::show(SceneArguments arguments, std::shared_ptr<const LoadedScene> scene) {
+  const ViewOptions& v = arguments.view;
+  const Camera camera = choose_camera(v, scene->scene, scene->binding.view());
+  if (!arguments.shader_given)
+    settings_.render.shader = scene->scene.materials.empty() ? Shader::phong : Shader::material;
+  arguments_ = std::move(arguments);
+  scene_ = std::move(scene);
+  base_version_ = version() + 1;
+  control_ = MeshControl(camera, scene_->sphere,
+                         !arguments_.view.near_plane && !arguments_.view.file_camera);
+  control_.resize(width_, height_);
+  ++settings_version_;
+}
+
+std::uint64_t MeshSubject::version() const {
+  return base_version_ + control_.version() + settings_version_;
+}
+
+void MeshSubject::resize(int width, int height) {
+  width_ = width;
+  height_ = height;
+  control_.resize(width, height);
+}
+
+void MeshSubject::set(Settings settings) {
+  settings_ = std::move(settings);
+  ++settings_version_;
+}
+
+void MeshSubject::handle(const Event& event) {
+  if (event.kind == Event::Kind::key_down && !event.ctrl) {
+    for (const KeyHelp& help : kKeys)
+      if (help.has(event.key)) return change(event.key[0], event.shift);
+  }
+  control_.handle(event);
+}
+
+void MeshSubject::change(char key, bool back) {
+  Settings s = settings_;
+  RenderOptions& r = s.render;
+  switch (key) {
+    case 'm': {
+      std::vector<std::string> names;
+      for (const std::string_view n : shader_names()) names.emplace_back(n);
+      r.shader = shader_from_name(next(names, std::string(name(r.shader)), back));
+      arguments_.shader_given = true;
+      break;
+    }
+    case 'n':
+      r.rasterizer = next(axis_names(rasterizers()), r.rasterizer, back);
+      break;
+    case 'v':
+      r.visibility = next(axis_names(visibilities()), r.visibility, back);
+      break;
+    case 't': {
+      constexpr int kMethods = static_cast<int>(Transparency::none) + 1;
+      const int now = static_cast<int>(r.transparency.method);
+      r.transparency.method =
+          static_cast<Transparency>((now + (back ? kMethods - 1 : 1)) % kMethods);
+      break;
+    }
+    case 'o':
+    case 'l':
+      r.opacity = std::clamp(std::round(r.opacity * 20 + (key == 'o' ? 1 : -1)) / 20, 0.0F, 1.0F);
+      break;
+    case 'b': {
+      const std::vector<std::string> samples{"1", "4", "8", "16"};
+      r.samples = std::stoi(next(samples, std::to_string(r.samples), back));
+      break;
+    }
+    case 'h':
+      s.heat_map = !s.heat_map;
+      break;
+    default:
+      return;
+  }
+  set(std::move(s));
+}
+
+std::function<Drawn()> MeshSubject::draw(int width, int height) {
+  RenderOptions options = settings_.render;
+  options.width = width;
+  options.height = height;
+  return [options, heat_map = settings_.heat_map, version = settings_version_, scene = scene_,
+          camera = control_.camera(), renderers = renderers_]() -> Drawn {
+    Renderer& renderer = renderers->get(options, version);
+    Drawn drawn{Image<Rgba8>(options.width, options.height), options.background.w == 1, {}};
+    Image<std::uint32_t> overdraw;
+    Targets targets;
+    targets.color8 = drawn.image.view();
+    if (heat_map) {
+      overdraw = Image<std::uint32_t>(options.width, options.height);
+      targets.overdraw = overdraw.view();
+    }
+    Timeline timeline;
+    const FrameStats stats =
+        timed_render(renderer, scene->binding.view(), camera, targets, timeline, "frame");
+    drawn.figures = {stats.frame_ms, stats.stages, rows(stats)};
+    if (heat_map) {
+      Heatmap heat = make_heatmap(overdraw.view());
+      drawn.image = std::move(heat.image);
+      drawn.opaque = true;
+      drawn.figures.rows.emplace_back("most fragments", std::to_string(heat.max));
+    }
+    return drawn;
+  };
+}
+
+Worker::Job MeshSubject::open(const std::filesystem::path& file) {
+  SceneArguments arguments = arguments_;
+  arguments.inputs = {file.string()};
+  // Where the camera stood says nothing about another file.
+  arguments.view.file_camera.reset();
+  arguments.view.eye.reset();
+  arguments.view.target.reset();
+  arguments.view.near_plane.reset();
+  arguments.view.far_plane.reset();
+  arguments.view.orthographic_height.reset();
+  return [this, arguments]() -> Worker::Done {
+    auto scene = load_scene(arguments);
+    return [this, arguments, scene] {
+      SceneArguments now = arguments;
+      now.shader_given = arguments_.shader_given;
+      show(std::move(now), scene);
+    };
+  };
+}
+
+void MeshSubject::set_options(const std::string& options) {
+  CLI::App app;
+  SceneArguments changed;
+  changed.render = settings_.render;
+  add_picture_options(app, changed);
+  add_transparency_options(app, changed);
+  add_machine_options(app, changed);
+  try {
+    app.parse(options);
+  } catch (const CLI::ParseError& e) {
+    throw Error(Errc::invalid_argument, options + ": " + e.what());
+  }
+  Settings s = settings_;
+  s.render = changed.render;
+  arguments_.shader_given = arguments_.shader_given || changed.shader_given;
+  set(std::move(s));
+}
+
+void MeshSubject::write_camera(const std::filesystem::path& file) const {
+  const PathKey key{0, control_.camera(), true};
+  write_camera_path(file, {&key, 1});
+}
+
+void MeshSubject::record(const std::filesystem::path& file) {
+  std::vector<PathKey> keys = recorded_;
+  // Planes for the way between the keys are found for each picture.
+  keys.push_back({static_cast<double>(keys.size()) * kRecordStep_s, control_.camera(), false});
+  write_camera_path(file, keys);
+  recorded_ = std::move(keys);
+}
+
+std::pair<double, double> MeshSubject::follow(const std::filesystem::path& file) {
+  path_ = read_camera_path(file, control_.camera());
+  return {path_->first_s(), path_->last_s()};
+}
+
+void MeshSubject::go_to(double time_s) {
+  Camera camera = path_->at(time_s);
+  if (!path_->has_planes() && !arguments_.view.near_plane) place_planes(camera, scene_->sphere);
+  control_.place(camera);
+}
+
+std::string MeshSubject::title() const {
+  std::string names;
+  for (const std::string& input : arguments_.inputs)
+    names.append(names.empty() ? "" : ", ").append(input);
+  return names;
+}
+
+std::span<const KeyHelp> MeshSubject::command_keys() {
+  return kKeys;
+}
+
+std::vector<KeyHelp> MeshSubject::keys() const {
+  std::vector<KeyHelp> all(MeshControl::keys().begin(), MeshControl::keys().end());
+  all.insert(all.end(), std::begin(kKeys), std::end(kKeys));
+  return all;
+}
+
+}  // namespace rastrum::cli::window

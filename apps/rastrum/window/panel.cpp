@@ -1,0 +1,135 @@
+#include "panel.hpp"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace rastrum::cli::window {
+namespace {
+
+constexpr float kPanelWidth = 330, kMargin = 8;
+const ImVec4 kErrorColor{1, 0.45F, 0.4F, 1};
+const ImVec4 kQuiet{0.7F, 0.7F, 0.7F, 1};
+
+/// Each stage as a bar where it lies in the frame.
+void draw_stages(const Figures& figures) {
+  const double whole = std::max(figures.frame_ms, 1e-6);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float width = ImGui::GetContentRegionAvail().x;
+  const float height = ImGui::GetTextLineHeight();
+  for (const StageTime& stage : figures.stages) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const auto x = [&](double ms) {
+      return at.x + width * static_cast<float>(std::clamp(ms / whole, 0.0, 1.0));
+    };
+    list.AddRectFilled({at.x, at.y}, {at.x + width, at.y + height}, IM_COL32(255, 255, 255, 16));
+    list.AddRectFilled({x(stage.begin_ms), at.y},
+                       {std::max(x(stage.end_ms), x(stage.begin_ms) + 1), at.y + height},
+                       IM_COL32(70, 130, 200, 190));
+    ImGui::Text("%-12s %8.2f ms", stage.name.c_str(), stage.end_ms - stage.begin_ms);
+  }
+}
+
+void draw_times(Viewer& viewer) {
+  const Drawn* const picture = viewer.picture();
+  if (picture == nullptr) {
+    ImGui::TextUnformatted("drawing the first picture");
+    return;
+  }
+  const Figures& f = picture->figures;
+  ImGui::Text("%.2f ms, %d x %d%s", f.frame_ms, picture->image.width(), picture->image.height(),
+              viewer.step() == 0 ? "" : " (moving)");
+  const std::vector<float>& ms = viewer.history_ms();
+  if (!ms.empty())
+    ImGui::PlotLines("##times", ms.data(), static_cast<int>(ms.size()), 0, nullptr, 0,
+                     *std::max_element(ms.begin(), ms.end()) * 1.1F, {-1, 40});
+  draw_stages(f);
+}
+
+void draw_rows(const Figures& figures) {
+  if (!ImGui::BeginTable("rows", 2, ImGuiTableFlags_SizingFixedFit)) return;
+  for (const auto& [what, value] : figures.rows) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(what.c_str());
+    ImGui::TableNextColumn();
+    ImGui::TextWrapped("%s", value.c_str());
+  }
+  ImGui::EndTable();
+}
+
+void draw_keys(const std::vector<KeyHelp>& keys) {
+  for (const KeyHelp& k : keys)
+    ImGui::TextWrapped("%s: %s", std::string(k.keys).c_str(), std::string(k.what).c_str());
+}
+
+void draw_moving(Viewer& viewer) {
+  bool adaptive = viewer.options().adaptive;
+  if (ImGui::Checkbox("fewer pixels while moving", &adaptive)) viewer.set_adaptive(adaptive);
+  auto target = static_cast<float>(viewer.options().target_ms);
+  if (adaptive && ImGui::SliderFloat("ms a frame", &target, 5, 200, "%.0f"))
+    viewer.set_target(double{target});
+}
+
+void message_lines(const Viewer& viewer) {
+  if (!viewer.error().empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, kErrorColor);
+    ImGui::TextWrapped("%s", viewer.error().c_str());
+    ImGui::PopStyleColor();
+  }
+  if (!viewer.notice().empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, kQuiet);
+    ImGui::TextWrapped("%s", viewer.notice().c_str());
+    ImGui::PopStyleColor();
+  }
+}
+
+}  // namespace
+
+void draw_panel(Viewer& viewer, const Controls& controls) {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({kMargin, kMargin}, ImGuiCond_Once);
+  ImGui::SetNextWindowSizeConstraints({kPanelWidth, 0}, {kPanelWidth, screen.y - 2 * kMargin});
+  ImGui::SetNextWindowBgAlpha(0.8F);
+  ImGui::Begin("rastrum", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::PushItemWidth(kPanelWidth * 0.55F);
+  message_lines(viewer);
+  draw_times(viewer);
+  ImGui::Separator();
+  controls();
+  draw_moving(viewer);
+  if (viewer.picture() != nullptr && ImGui::CollapsingHeader("Figures"))
+    draw_rows(viewer.picture()->figures);
+  if (ImGui::CollapsingHeader("Keys")) {
+    draw_keys(viewer.subject().keys());
+    draw_keys(Viewer::keys());
+    ImGui::TextWrapped("Drag: orbit; right: look around; middle or Shift: pan; wheel: zoom.");
+    ImGui::TextWrapped("Drop a file on the window to open it.");
+  }
+  ImGui::PopItemWidth();
+  ImGui::End();
+}
+
+void draw_messages(const Viewer& viewer) {
+  if (viewer.error().empty()) return;
+  ImGui::SetNextWindowPos({kMargin, kMargin});
+  ImGui::SetNextWindowSize({kPanelWidth, 0});
+  ImGui::Begin("error", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize);
+  message_lines(viewer);
+  ImGui::End();
+}
+
+bool choose_name(const char* label, const std::vector<std::string>& names, std::string& now) {
+  bool changed = false;
+  if (!ImGui::BeginCombo(label, now.c_str())) return false;
+  for (const std::string& name : names)
+    if (ImGui::Selectable(name.c_str(), name == now) && name != now) {
+      now = name;
+      changed = true;
+    }
+  ImGui::EndCombo();
+  return changed;
+}
+
+}  // namespace rastrum::cli::window

@@ -1,0 +1,303 @@
+#include "shell.hpp"
+
+#include <SDL.h>
+#include <backends/imgui_impl_sdl.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include <rastrum/core/error.hpp>
+
+#include "imgui_sdl.hpp"
+#include "panel.hpp"
+
+namespace rastrum::cli::window {
+namespace {
+
+constexpr int kIdle_ms = 100;       ///< between looks at the clock where nothing moves
+constexpr int kFrame_ms = 8;        ///< where something does
+constexpr double kLongest_s = 0.1;  ///< a step of motion, so that a pause is not a leap
+constexpr int kImguiFrames = 3;     ///< until ImGui has settled after an event
+
+[[noreturn]] void fail(const char* what) {
+  throw Error(Errc::no_device, std::string(what) + ": " + SDL_GetError());
+}
+
+/// SDL, ImGui, the window and what belongs to it, undone in reverse.
+class Screen {
+ public:
+  Screen(const std::string& title, int width, int height) {
+    SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
+    SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // Ctrl-C in the terminal ends the program
+    if (SDL_Init(SDL_INIT_VIDEO) != 0)
+      fail("there is no display to open a window on (`rastrum render` draws into files)");
+    window_ = SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED,
+                               width, height, SDL_WINDOW_RESIZABLE);
+    if (window_ == nullptr) undo_and_fail("the window cannot be opened");
+    // The pictures are made by the CPU: a copy is all there is to do. SDL_RENDER_DRIVER chooses
+    // another one.
+    renderer_ = SDL_CreateRenderer(window_, -1, SDL_RENDERER_SOFTWARE);
+    if (renderer_ == nullptr) undo_and_fail("the window cannot be drawn to");
+    wake_event_ = SDL_RegisterEvents(1);
+    SDL_EventState(SDL_DROPFILE, SDL_ENABLE);
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;  // no file where the program happens to run
+    ImGui::StyleColorsDark();
+    ImGui_ImplSDL2_InitForSDLRenderer(window_);
+    fonts_.emplace(renderer_);
+  }
+  ~Screen() { undo(); }
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+
+  [[nodiscard]] SDL_Window* window() { return window_; }
+  [[nodiscard]] std::pair<int, int> size() const {
+    int width = 0, height = 0;
+    SDL_GetRendererOutputSize(renderer_, &width, &height);
+    return {width, height};
+  }
+  /// From any thread.
+  void wake() const {
+    SDL_Event event{};
+    event.type = wake_event_;
+    SDL_PushEvent(&event);
+  }
+  [[nodiscard]] bool is_wake(const SDL_Event& event) const { return event.type == wake_event_; }
+
+  /// The picture over the whole window, then ImGui's lists.
+  void present(const Drawn* picture, std::uint64_t serial) {
+    SDL_SetRenderDrawColor(renderer_, 0, 0, 0, 255);
+    SDL_RenderClear(renderer_);
+    if (picture != nullptr) {
+      if (serial != shown_) upload(*picture);
+      shown_ = serial;
+      SDL_RenderCopy(renderer_, texture_, nullptr, nullptr);
+    }
+    ImGui::Render();
+    draw_imgui(renderer_, *ImGui::GetDrawData());
+    SDL_RenderPresent(renderer_);
+  }
+
+ private:
+  void upload(const Drawn& picture) {
+    const int w = picture.image.width(), h = picture.image.height();
+    if (texture_ == nullptr || w != width_ || h != height_) {
+      if (texture_ != nullptr) SDL_DestroyTexture(texture_);
+      texture_ =
+          SDL_CreateTexture(renderer_, SDL_PIXELFORMAT_RGBA32, SDL_TEXTUREACCESS_STREAMING, w, h);
+      if (texture_ == nullptr) fail("the picture cannot be shown");
+      SDL_SetTextureScaleMode(texture_, SDL_ScaleModeLinear);
+      width_ = w;
+      height_ = h;
+    }
+    SDL_SetTextureBlendMode(texture_, picture.opaque ? SDL_BLENDMODE_NONE : SDL_BLENDMODE_BLEND);
+    SDL_UpdateTexture(texture_, nullptr, picture.image.pixels().data(),
+                      w * static_cast<int>(sizeof(Rgba8)));
+  }
+  void undo() {
+    if (fonts_) {
+      fonts_.reset();
+      ImGui_ImplSDL2_Shutdown();
+      ImGui::DestroyContext();
+    }
+    if (texture_ != nullptr) SDL_DestroyTexture(texture_);
+    if (renderer_ != nullptr) SDL_DestroyRenderer(renderer_);
+    if (window_ != nullptr) SDL_DestroyWindow(window_);
+    SDL_Quit();
+  }
+  [[noreturn]] void undo_and_fail(const char* what) {
+    const std::string why = SDL_GetError();
+    undo();
+    throw Error(Errc::no_device, std::string(what) + ": " + why);
+  }
+
+  SDL_Window* window_ = nullptr;
+  SDL_Renderer* renderer_ = nullptr;
+  SDL_Texture* texture_ = nullptr;
+  int width_ = 0, height_ = 0;
+  std::uint64_t shown_ = 0;
+  Uint32 wake_event_ = 0;
+  std::optional<ImguiFonts> fonts_;
+};
+
+std::string key_name(const SDL_Keysym& key) {
+  std::string name = SDL_GetKeyName(key.sym);
+  for (char& c : name)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
+  // The plus sign is on the key of the equals sign, or has its own beside the numbers.
+  if (name == "keypad +" || name == "+") return "=";
+  if (name == "keypad -") return "-";
+  return name;
+}
+
+Button button_of(Uint8 button) {
+  if (button == SDL_BUTTON_MIDDLE) return Button::middle;
+  return button == SDL_BUTTON_RIGHT ? Button::right : Button::left;
+}
+
+class Shell {
+ public:
+  Shell(std::unique_ptr<Subject> subject, const ViewerOptions& viewer, const ShellOptions& options,
+        const Controls& controls)
+      : screen_("rastrum " + subject->title(), viewer.width, viewer.height),
+        viewer_(std::move(subject), viewer, [this] { screen_.wake(); }),
+        controls_(controls) {
+    if (options.script) replay_.emplace(*options.script, viewer_);
+  }
+
+  void run() {
+    auto before = Clock::now();
+    int redraws = kImguiFrames;
+    while (!quit_) {
+      const bool active = replay_ || viewer_.busy() || redraws > 0;
+      if (wait_for_events(replay_ ? 0 : active ? kFrame_ms : kIdle_ms)) redraws = kImguiFrames;
+      const auto now = Clock::now();
+      const double dt_s = std::chrono::duration<double>(now - before).count();
+      before = now;
+      if (replay_) {
+        replay_step();
+        redraws = kImguiFrames;
+      } else {
+        viewer_.advance(std::min(dt_s, kLongest_s));
+        if (viewer_.update()) redraws = kImguiFrames;
+      }
+      if (redraws > 0) {
+        present();
+        --redraws;
+      }
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// Whether there was one that may change what is seen.
+  bool wait_for_events(int timeout_ms) {
+    SDL_Event event;
+    bool any = false;
+    for (bool more = SDL_WaitEventTimeout(&event, timeout_ms) == 1; more;
+         more = SDL_PollEvent(&event) == 1) {
+      any = any || !screen_.is_wake(event);
+      take(event);
+    }
+    return any;
+  }
+
+  void take(const SDL_Event& event) {
+    ImGui_ImplSDL2_ProcessEvent(&event);
+    const ImGuiIO& io = ImGui::GetIO();
+    Event e;
+    e.shift = (SDL_GetModState() & KMOD_SHIFT) != 0;
+    e.ctrl = (SDL_GetModState() & KMOD_CTRL) != 0;
+    switch (event.type) {
+      case SDL_QUIT:
+        quit_ = true;
+        return;
+      case SDL_WINDOWEVENT:
+        return take_window(event.window);
+      case SDL_DROPFILE:
+        viewer_.open(event.drop.file);
+        SDL_free(event.drop.file);
+        return;
+      case SDL_KEYDOWN:
+      case SDL_KEYUP:
+        e.key = key_name(event.key.keysym);
+        e.kind = event.type == SDL_KEYDOWN ? Event::Kind::key_down : Event::Kind::key_up;
+        if (event.key.repeat != 0) return;
+        return take_key(e);
+      case SDL_MOUSEBUTTONDOWN:
+      case SDL_MOUSEBUTTONUP:
+        e.kind =
+            event.type == SDL_MOUSEBUTTONDOWN ? Event::Kind::button_down : Event::Kind::button_up;
+        e.button = button_of(event.button.button);
+        e.x = event.button.x;
+        e.y = event.button.y;
+        // A press on the panel is the panel's; a release always ends a drag.
+        if (e.kind == Event::Kind::button_down && io.WantCaptureMouse && panel_) return;
+        return send(e);
+      case SDL_MOUSEMOTION:
+        e.kind = Event::Kind::move;
+        e.x = event.motion.x;
+        e.y = event.motion.y;
+        return send(e);
+      case SDL_MOUSEWHEEL:
+        e.kind = Event::Kind::wheel;
+        e.y = double{event.wheel.preciseY};
+        if (io.WantCaptureMouse && panel_) return;
+        return send(e);
+      default:
+        return;
+    }
+  }
+
+  void take_window(const SDL_WindowEvent& event) {
+    if (event.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
+      const auto [width, height] = screen_.size();
+      viewer_.resize(width, height);
+    } else if (event.event == SDL_WINDOWEVENT_FOCUS_LOST) {
+      send({.kind = Event::Kind::leave});
+    }
+  }
+
+  void take_key(const Event& e) {
+    const bool down = e.kind == Event::Kind::key_down;
+    if (down && e.ctrl && e.key == "q") {
+      quit_ = true;
+      return;
+    }
+    // While a text is edited keys are text; their releases still count.
+    if (down && ImGui::GetIO().WantTextInput) return;
+    if (down && e.key == "tab") {
+      panel_ = !panel_;
+      return;
+    }
+    send(e);
+  }
+
+  /// A person's events would spoil a replay.
+  void send(const Event& e) {
+    if (!replay_) viewer_.handle(e);
+  }
+
+  void replay_step() {
+    const auto begin = Clock::now();
+    replay_->step();
+    if (const auto size = replay_->take_size())
+      SDL_SetWindowSize(screen_.window(), size->first, size->second);
+    quit_ = quit_ || replay_->quit();
+    // No faster than its own time; SDL sleeps in whole milliseconds.
+    const double left_ms = 1000 / replay_->fps() -
+                           std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    if (left_ms >= 1) SDL_Delay(static_cast<Uint32>(left_ms));
+    if (replay_->finished()) replay_.reset();
+  }
+
+  void present() {
+    ImGui_ImplSDL2_NewFrame();
+    ImGui::NewFrame();
+    if (panel_)
+      draw_panel(viewer_, controls_);
+    else
+      draw_messages(viewer_);
+    screen_.present(viewer_.picture(), viewer_.serial());
+  }
+
+  Screen screen_;
+  Viewer viewer_;
+  const Controls& controls_;
+  std::optional<Replay> replay_;
+  bool panel_ = true;
+  bool quit_ = false;
+};
+
+}  // namespace
+
+void run_shell(std::unique_ptr<Subject> subject, const ViewerOptions& viewer,
+               const ShellOptions& options, const Controls& controls) {
+  Shell(std::move(subject), viewer, options, controls).run();
+}
+
+}  // namespace rastrum::cli::window

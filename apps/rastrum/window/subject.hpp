@@ -1,0 +1,74 @@
+// What a window looks at: a scene of meshes or a terrain, with its camera and its options.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <rastrum/core/image.hpp>
+#include <rastrum/raster/options.hpp>
+
+#include "event.hpp"
+#include "worker.hpp"
+
+namespace rastrum::cli::window {
+
+/// What is said about a frame beside its picture.
+struct Figures {
+  double frame_ms = 0;
+  std::vector<StageTime> stages;
+  std::vector<std::pair<std::string, std::string>> rows;  ///< what it is, how much
+};
+
+struct Drawn {
+  Image<Rgba8> image;
+  bool opaque = true;  ///< all alpha is 255
+  Figures figures;
+};
+
+/// All members are of the window's thread. What `draw` and `open` return runs on the worker's.
+class Subject {
+ public:
+  Subject() = default;
+  virtual ~Subject() = default;
+  Subject(const Subject&) = delete;
+  Subject& operator=(const Subject&) = delete;
+
+  virtual void handle(const Event& event) = 0;
+  virtual void advance(double dt_s) = 0;
+  virtual void resize(int width, int height) = 0;
+  /// Whether the next picture is going to differ from this one by itself.
+  [[nodiscard]] virtual bool moving() const = 0;
+  /// A number that is another one whenever the picture would be.
+  [[nodiscard]] virtual std::uint64_t version() const = 0;
+
+  /// Draws what is to be seen now at this size; holds all that it needs. Throws Error.
+  [[nodiscard]] virtual std::function<Drawn()> draw(int width, int height) = 0;
+  /// Reads a file and, back on the window's thread, shows it. Throws Error.
+  [[nodiscard]] virtual Worker::Job open(const std::filesystem::path& file) = 0;
+  /// Options as on the command line, as in "--shader normal --opacity 0.5". Throws Error and leaves
+  /// everything as it was.
+  virtual void set_options(const std::string& options) = 0;
+
+  /// The path file of the camera as it stands: drawn again it gives the same picture.
+  virtual void write_camera(const std::filesystem::path& file) const = 0;
+  /// Appends the camera to the path that is being recorded and writes all of it.
+  virtual void record(const std::filesystem::path& file) = 0;
+  /// Reads a path to follow; first and last second. Throws Error.
+  virtual std::pair<double, double> follow(const std::filesystem::path& file) = 0;
+  /// Stands where the path is at `time_s`; requires follow().
+  virtual void go_to(double time_s) = 0;
+
+  [[nodiscard]] virtual std::string title() const = 0;
+  [[nodiscard]] virtual std::vector<KeyHelp> keys() const = 0;
+};
+
+/// Seconds between two keys that a person records.
+inline constexpr double kRecordStep_s = 2;
+
+}  // namespace rastrum::cli::window

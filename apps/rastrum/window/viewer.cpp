@@ -1,0 +1,243 @@
+#include "viewer.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <utility>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/io/io.hpp>
+
+#include "arguments.hpp"
+
+namespace rastrum::cli::window {
+namespace {
+
+constexpr double kRest_s = 0.15;       ///< without change, before the full picture is drawn
+constexpr std::size_t kHistory = 120;  ///< frame times that are kept
+
+constexpr KeyHelp kKeys[] = {{"p", "screenshot, with its camera as a path file"},
+                             {"k", "add the camera to a path that render --path draws"},
+                             {"tab", "hide or show the panel"},
+                             {"ctrl+q", "quit"}};
+
+int scaled(int size, std::size_t step) {
+  return std::max(static_cast<int>(size * kScales[step] + 0.5), 1);
+}
+
+}  // namespace
+
+Viewer::Viewer(std::unique_ptr<Subject> subject, ViewerOptions options, std::function<void()> wake)
+    : subject_(std::move(subject)),
+      options_(std::move(options)),
+      resolution_(options_.target_ms),
+      worker_(std::move(wake)) {
+  subject_->resize(options_.width, options_.height);
+}
+
+std::vector<KeyHelp> Viewer::keys() {
+  return {std::begin(kKeys), std::end(kKeys)};
+}
+
+void Viewer::set_target(double ms) {
+  options_.target_ms = ms;
+  resolution_.set_target(ms);
+}
+
+void Viewer::handle(const Event& event) {
+  if (event.kind == Event::Kind::key_down && !event.ctrl && event.key == "p")
+    screenshot(free_name());
+  else if (event.kind == Event::Kind::key_down && !event.ctrl && event.key == "k")
+    record();
+  else
+    subject_->handle(event);
+}
+
+void Viewer::resize(int width, int height) {
+  options_.width = std::clamp(width, 1, kMaxImageSize);
+  options_.height = std::clamp(height, 1, kMaxImageSize);
+  subject_->resize(options_.width, options_.height);
+}
+
+void Viewer::open(const std::filesystem::path& file) {
+  opens_.push_back(file);
+}
+
+void Viewer::screenshot(const std::filesystem::path& file) {
+  screenshots_.push_back(file);
+}
+
+void Viewer::set_options(const std::string& options) {
+  try {
+    subject_->set_options(options);
+    error_.clear();
+  } catch (const std::exception& e) {
+    error_ = e.what();
+  }
+}
+
+void Viewer::record() {
+  try {
+    if (recording_.empty()) recording_ = free_name().replace_extension(".path.json");
+    subject_->record(recording_);
+    notice_ = "key added to " + recording_.string();
+  } catch (const std::exception& e) {
+    error_ = e.what();
+  }
+}
+
+std::filesystem::path Viewer::free_name() const {
+  constexpr std::size_t kMost = 1000000;
+  std::error_code ignored;
+  for (std::size_t i = 0; i < kMost; ++i) {
+    std::filesystem::path name = options_.screenshots.at(i);
+    const bool asked =
+        std::find(screenshots_.begin(), screenshots_.end(), name) != screenshots_.end();
+    std::filesystem::path path_name = name;
+    path_name.replace_extension(".path.json");
+    if (!options_.screenshots.has_number() || (!asked && !std::filesystem::exists(name, ignored) &&
+                                               !std::filesystem::exists(path_name, ignored)))
+      return name;
+  }
+  return options_.screenshots.at(kMost);
+}
+
+void Viewer::advance(double dt_s) {
+  subject_->advance(dt_s);
+  const std::uint64_t version = subject_->version();
+  const bool changed = version != seen_version_;
+  seen_version_ = version;
+  still_s_ = changed || subject_->moving() ? 0 : still_s_ + dt_s;
+}
+
+Viewer::State Viewer::now() const {
+  return {subject_->version(), options_.width, options_.height, 0};
+}
+
+bool Viewer::resting() const {
+  return !options_.adaptive || (still_s_ >= kRest_s && seen_version_ == subject_->version());
+}
+
+std::optional<std::size_t> Viewer::next_step() const {
+  const State wanted = now();
+  if (!wanted.same_view(shown_)) {
+    if (!options_.adaptive) return 0;
+    // Nothing drawn yet: a glance, which also tells how fast this scene is.
+    if (resolution_.expected_ms(0) == 0) return kScales.size() - 1;
+    return resolution_.moving_step();
+  }
+  if (shown_.step == 0 || !resting()) return std::nullopt;
+  return options_.adaptive ? resolution_.still_step(shown_.step) : 0;
+}
+
+bool Viewer::busy() const {
+  return worker_.busy() || !screenshots_.empty() || !opens_.empty() || subject_->moving() ||
+         next_step().has_value() || (shown_.step != 0 && !resting());
+}
+
+void Viewer::submit(Worker::Job job, std::function<void()> failed) {
+  worker_.submit([this, job = std::move(job), failed = std::move(failed)]() -> Worker::Done {
+    std::string what;
+    try {
+      return job();
+    } catch (const std::bad_alloc&) {
+      what = "out of memory; try a smaller window or fewer samples";
+    } catch (const std::exception& e) {
+      what = e.what();
+    }
+    return [this, what, failed] {
+      error_ = what;
+      if (failed) failed();
+    };
+  });
+}
+
+void Viewer::draw(std::size_t step) {
+  State state = now();
+  state.step = step;
+  std::function<Drawn()> drawing;
+  const auto show_nothing_new = [this, state] {
+    shown_ = state;  // not tried again until something changes
+    shown_.step = 0;
+    failed_ = true;
+  };
+  try {
+    drawing = subject_->draw(scaled(state.width, step), scaled(state.height, step));
+  } catch (const std::exception& e) {
+    error_ = e.what();
+    show_nothing_new();
+    return;
+  }
+  submit(
+      [this, drawing = std::move(drawing), state]() -> Worker::Done {
+        auto drawn = std::make_shared<const Drawn>(drawing());
+        return [this, drawn, state] {
+          picture_ = drawn;
+          shown_ = state;
+          ++serial_;
+          failed_ = false;
+          error_.clear();
+          resolution_.add(state.step, drawn->figures.frame_ms);
+          if (history_ms_.size() == kHistory) history_ms_.erase(history_ms_.begin());
+          history_ms_.push_back(static_cast<float>(drawn->figures.frame_ms));
+        };
+      },
+      show_nothing_new);
+}
+
+void Viewer::write_screenshot(const std::filesystem::path& file) {
+  try {
+    subject_->write_camera(std::filesystem::path(file).replace_extension(".json"));
+  } catch (const std::exception& e) {
+    error_ = e.what();
+    return;
+  }
+  submit([this, file, picture = picture_]() -> Worker::Done {
+    io::write_png(file, picture->image.view());
+    return [this, file] { notice_ = "wrote " + file.string(); };
+  });
+}
+
+bool Viewer::update() {
+  const bool news = worker_.poll();
+  if (worker_.busy()) return news;
+  if (!opens_.empty()) {
+    const std::filesystem::path file = opens_.front();
+    opens_.erase(opens_.begin());
+    notice_ = "reading " + file.string();
+    submit([this, file, job = subject_->open(file)]() -> Worker::Done {
+      return [this, file, done = job()] {
+        done();
+        resolution_.forget();
+        error_.clear();
+        notice_ = "showing " + file.string();
+      };
+    });
+    return true;
+  }
+  if (const auto step = next_step()) {
+    draw(*step);
+    return true;
+  }
+  if (!screenshots_.empty() && shown_.step == 0) {
+    const std::filesystem::path file = screenshots_.front();
+    screenshots_.erase(screenshots_.begin());
+    if (failed_)
+      notice_ = file.string() + " is not written: these options draw no picture";
+    else
+      write_screenshot(file);
+    return true;
+  }
+  return news;
+}
+
+void Viewer::settle() {
+  const bool adaptive = std::exchange(options_.adaptive, false);
+  while (worker_.busy() || next_step() || !opens_.empty() || !screenshots_.empty()) {
+    worker_.wait();
+    update();
+  }
+  options_.adaptive = adaptive;
+}
+
+}  // namespace rastrum::cli::window

@@ -1,0 +1,102 @@
+// The session of a window without the window: which picture is drawn when and at what resolution,
+// screenshots, files that are dropped, and the errors of all that as text.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "event.hpp"
+#include "numbered.hpp"
+#include "resolution.hpp"
+#include "subject.hpp"
+#include "worker.hpp"
+
+namespace rastrum::cli::window {
+
+struct ViewerOptions {
+  int width = 1280, height = 720;
+  double target_ms = 33;  ///< of a frame while something moves
+  /// Whether a moving picture may have fewer pixels; without, every picture is full.
+  bool adaptive = true;
+  NumberedName screenshots{"--screenshots", "rastrum_%04d.png"};
+};
+
+class Viewer {
+ public:
+  /// `wake`: called on another thread when there is something for update().
+  Viewer(std::unique_ptr<Subject> subject, ViewerOptions options, std::function<void()> wake);
+
+  void handle(const Event& event);
+  void resize(int width, int height);
+  /// Opens a file in place of what is shown.
+  void open(const std::filesystem::path& file);
+  /// Writes the picture once it is full and still: a PNG and, beside it, a .json with the camera.
+  void screenshot(const std::filesystem::path& file);
+  /// As the option line of a script; what is wrong becomes the message.
+  void set_options(const std::string& options);
+  /// `dt_s`: seconds since the last call.
+  void advance(double dt_s);
+  /// Takes what is finished and begins what is next. True where a new picture or message is there.
+  bool update();
+  /// Updates until the full picture is there and everything asked for is done.
+  void settle();
+
+  [[nodiscard]] Subject& subject() { return *subject_; }
+  /// The newest picture, or null before the first; `step` tells its resolution.
+  [[nodiscard]] const Drawn* picture() const { return picture_.get(); }
+  [[nodiscard]] std::size_t step() const { return shown_.step; }
+  /// Counts the pictures.
+  [[nodiscard]] std::uint64_t serial() const { return serial_; }
+  [[nodiscard]] const std::vector<float>& history_ms() const { return history_ms_; }
+  /// Something to do or to wait for: update() wants to be called soon.
+  [[nodiscard]] bool busy() const;
+  [[nodiscard]] const std::string& error() const { return error_; }
+  [[nodiscard]] const std::string& notice() const { return notice_; }
+  void set_adaptive(bool adaptive) { options_.adaptive = adaptive; }
+  [[nodiscard]] const ViewerOptions& options() const { return options_; }
+  void set_target(double ms);
+
+  [[nodiscard]] static std::vector<KeyHelp> keys();
+
+ private:
+  struct State {
+    std::uint64_t version = ~std::uint64_t{0};
+    int width = 0, height = 0;
+    std::size_t step = 0;
+    [[nodiscard]] bool same_view(const State& o) const {
+      return version == o.version && width == o.width && height == o.height;
+    }
+  };
+  [[nodiscard]] State now() const;
+  [[nodiscard]] bool resting() const;
+  /// The step to draw next; none: nothing to draw.
+  [[nodiscard]] std::optional<std::size_t> next_step() const;
+  void draw(std::size_t step);
+  void write_screenshot(const std::filesystem::path& file);
+  /// Runs `job` on the worker; what it throws becomes the error.
+  void submit(Worker::Job job, std::function<void()> failed = {});
+  [[nodiscard]] std::filesystem::path free_name() const;
+  void record();
+
+  std::unique_ptr<Subject> subject_;
+  ViewerOptions options_;
+  Resolution resolution_;
+  State shown_;
+  bool failed_ = false;  ///< what shown_ names could not be drawn
+  std::uint64_t seen_version_ = 0;
+  double still_s_ = 0;
+  std::shared_ptr<const Drawn> picture_;
+  std::uint64_t serial_ = 0;
+  std::vector<float> history_ms_;
+  std::string error_, notice_;
+  std::vector<std::filesystem::path> screenshots_, opens_;
+  std::filesystem::path recording_;
+  Worker worker_;  ///< last: its thread uses what is above
+};
+
+}  // namespace rastrum::cli::window
