@@ -1,0 +1,340 @@
+// The session of the window without a window: resolution while moving, screenshots, files, errors,
+// and scripts that replay the same way.
+#include <chrono>
+#include <thread>
+
+#include <rastrum/core/error.hpp>
+
+#include "program.hpp"
+#include "window/mesh_subject.hpp"
+#include "window/script.hpp"
+#include "window/viewer.hpp"
+
+namespace rastrum::test {
+namespace {
+
+using namespace cli::window;
+
+/// Draws one colour, as slowly as it is told to.
+class FakeSubject final : public Subject {
+ public:
+  void handle(const Event& event) override {
+    is_moving = event.kind == Event::Kind::key_down;
+    ++version_;
+  }
+  void advance(double) override { version_ += is_moving; }
+  void resize(int, int) override {}
+  [[nodiscard]] bool moving() const override { return is_moving; }
+  [[nodiscard]] std::uint64_t version() const override { return version_; }
+  [[nodiscard]] std::function<Drawn()> draw(int width, int height) override {
+    return [this, width, height]() -> Drawn {
+      if (refuse) throw Error(Errc::invalid_argument, "these options do not fit");
+      Drawn d{Image<Rgba8>(width, height), true, {}};
+      d.figures.frame_ms = ms_a_pixel * width * height;
+      ++pictures;
+      return d;
+    };
+  }
+  [[nodiscard]] Worker::Job open(const std::filesystem::path& file) override {
+    return [this, file]() -> Worker::Done {
+      if (file == "bad") throw Error(Errc::bad_format, "bad: is spoilt");
+      return [this] { ++version_; };
+    };
+  }
+  void set_options(const std::string& options) override {
+    if (options == "bad") throw Error(Errc::invalid_argument, "no such option");
+    ++version_;
+  }
+  void write_camera(const std::filesystem::path& file) const override {
+    std::ofstream(file) << "camera";
+  }
+  void record(const std::filesystem::path&) override {}
+  std::pair<double, double> follow(const std::filesystem::path&) override { return {0, 0}; }
+  void go_to(double) override {}
+  [[nodiscard]] std::string title() const override { return "fake"; }
+  [[nodiscard]] std::vector<KeyHelp> keys() const override { return {{"w", "move"}}; }
+
+  bool is_moving = false, refuse = false;
+  double ms_a_pixel = 1;
+  int pictures = 0;
+
+ private:
+  std::uint64_t version_ = 1;
+};
+
+Event press(const char* name, Event::Kind kind = Event::Kind::key_down) {
+  Event e;
+  e.kind = kind;
+  e.key = name;
+  return e;
+}
+
+class ViewerTest : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    auto owned = std::make_unique<FakeSubject>();
+    subject = owned.get();
+    ViewerOptions options;
+    options.width = 64;
+    options.height = 32;
+    options.screenshots = cli::NumberedName("", path("shot_%02d.png").string());
+    viewer = std::make_unique<Viewer>(std::move(owned), options, [] {});
+  }
+  void TearDown() override {
+    viewer.reset();
+    Program::TearDown();
+  }
+  /// As the window's loop does, without its clock.
+  void run_for(double seconds) {
+    constexpr double kStep = 0.01;
+    for (double t = 0; t < seconds; t += kStep) {
+      viewer->advance(kStep);
+      viewer->update();
+      for (int i = 0; i < 200 && !viewer->update(); ++i)
+        std::this_thread::sleep_for(std::chrono::microseconds(50));
+    }
+  }
+  FakeSubject* subject = nullptr;
+  std::unique_ptr<Viewer> viewer;
+};
+
+TEST_F(ViewerTest, FewerPixelsWhileMovingAllWhenStill) {
+  subject->ms_a_pixel = 400.0 / (64 * 32);  // 25 ms with a quarter of the side
+  run_for(0.5);
+  EXPECT_EQ(viewer->picture()->image.width(), 64);
+  viewer->handle(press("w"));
+  run_for(0.5);
+  EXPECT_EQ(viewer->picture()->image.width(), 16);
+  EXPECT_EQ(viewer->picture()->image.height(), 8);
+  viewer->handle(press("w", Event::Kind::key_up));
+  run_for(0.05);
+  EXPECT_EQ(viewer->picture()->image.width(), 16);
+  run_for(0.5);
+  EXPECT_EQ(viewer->picture()->image.width(), 64);
+  EXPECT_FALSE(viewer->busy());
+  const int pictures = subject->pictures;
+  run_for(0.2);
+  EXPECT_EQ(subject->pictures, pictures) << "nothing has changed, nothing is drawn";
+}
+
+TEST_F(ViewerTest, WithoutAdaptionEveryPictureIsFull) {
+  subject->ms_a_pixel = 1;
+  viewer->set_adaptive(false);
+  viewer->handle(press("w"));
+  for (int i = 0; i < 20; ++i) {
+    run_for(0.01);
+    if (viewer->picture() != nullptr) EXPECT_EQ(viewer->picture()->image.width(), 64);
+  }
+  EXPECT_NE(viewer->picture(), nullptr);
+}
+
+TEST_F(ViewerTest, AResizeIsANewPicture) {
+  run_for(0.5);
+  viewer->resize(100, 50);
+  run_for(0.5);
+  EXPECT_EQ(viewer->picture()->image.width(), 100);
+  EXPECT_EQ(viewer->picture()->image.height(), 50);
+}
+
+TEST_F(ViewerTest, ErrorsAreShownAndThePictureStays) {
+  run_for(0.5);
+  const Drawn* const before = viewer->picture();
+  viewer->open("bad");
+  viewer->settle();
+  EXPECT_EQ(viewer->error(), "bad: is spoilt");
+  EXPECT_EQ(viewer->picture(), before);
+  viewer->set_options("bad");
+  EXPECT_EQ(viewer->error(), "no such option");
+  subject->refuse = true;
+  viewer->set_options("refused");
+  viewer->settle();
+  EXPECT_EQ(viewer->error(), "these options do not fit");
+  EXPECT_EQ(viewer->picture(), before);
+  run_for(0.2);
+  EXPECT_FALSE(viewer->busy()) << "tried again without end";
+  subject->refuse = false;
+  viewer->set_options("good");
+  viewer->settle();
+  EXPECT_EQ(viewer->error(), "");
+  EXPECT_NE(viewer->picture(), before);
+}
+
+TEST_F(ViewerTest, ScreenshotsAreFullAndNumbered) {
+  subject->ms_a_pixel = 1;
+  run_for(0.5);
+  viewer->handle(press("w"));
+  run_for(0.3);
+  ASSERT_LT(viewer->picture()->image.width(), 64);
+  viewer->handle(press("p"));
+  viewer->handle(press("p"));
+  run_for(0.1);
+  EXPECT_TRUE(files().empty()) << "no picture of a moving view with fewer pixels";
+  viewer->handle(press("w", Event::Kind::key_up));
+  run_for(1);
+  EXPECT_EQ(files(), (std::vector<std::string>{"shot_00.json", "shot_00.png", "shot_01.json",
+                                               "shot_01.png"}));
+  EXPECT_EQ(png("shot_01.png").width(), 64);
+  EXPECT_FALSE(viewer->busy());
+}
+
+TEST_F(ViewerTest, AScreenshotThatCannotBeWrittenIsAnError) {
+  viewer->screenshot(path("no/such/folder.png"));
+  viewer->settle();
+  EXPECT_NE(viewer->error(), "");
+  subject->refuse = true;
+  viewer->set_options("refused");
+  viewer->screenshot(path("a.png"));
+  viewer->settle();
+  EXPECT_TRUE(files().empty());
+  EXPECT_NE(viewer->notice().find("a.png is not written"), std::string::npos);
+}
+
+TEST_F(ViewerTest, EndsWhileAPictureIsDrawn) {
+  viewer->advance(0);
+  viewer->update();
+  viewer.reset();  // waits for the thread, and is silent about the picture
+}
+
+class MeshViewerTest : public Program {
+ protected:
+  /// A replay of `script` on `input`; the viewer's last error.
+  std::string replay(const std::string& input, const std::string& script) {
+    write("script.json", script);
+    cli::SceneArguments a;
+    a.inputs = {input};
+    a.render.background = {0.1F, 0.2F, 0.3F, 1};
+    auto subject = std::make_unique<MeshSubject>(a, load_scene(a));
+    std::vector<KeyHelp> keys = subject->keys();
+    ViewerOptions options;
+    options.width = 120;
+    options.height = 90;
+    Viewer viewer(std::move(subject), options, [] {});
+    Replay replay(read_script(path("script.json"), keys), viewer);
+    while (!replay.finished()) replay.step();
+    title = viewer.subject().title();
+    return viewer.error();
+  }
+  [[nodiscard]] std::string shot(const std::string& name) const {
+    return R"("screenshot": ")" + path(name).string() + "\"";
+  }
+  /// The picture that `rastrum render` makes of the camera file of a screenshot.
+  Image<Rgba8> rendered(const std::string& input, const std::string& name, const std::string& size,
+                        const std::vector<std::string>& more = {}) {
+    std::vector<std::string> args{"render", input,          "--path",  name + ".json", "--size",
+                                  size,     "--background", "#1a334d", "-o",           "r.png"};
+    args.insert(args.end(), more.begin(), more.end());
+    must(args);
+    return png("r.png");
+  }
+  std::string title;
+};
+
+TEST_F(MeshViewerTest, ScreenshotsAreWhatRenderDraws) {
+  EXPECT_EQ(replay("builtin:teapot", R"({"fps": 50, "events": [
+      {)" + shot("a.png") + R"(},
+      {"time": 0.1, "key_down": "right"}, {"time": 0.1, "key_down": "w"},
+      {"time": 0.5, "key_up": "right"}, {"time": 0.5, "key_up": "w"},
+      {"time": 0.6, )" + shot("b.png") + R"(},
+      {"time": 0.7, "options": "--shader normal --opacity 0.5 --samples 4", )" +
+                                         shot("c.png") + R"(},
+      {"time": 0.8, "size": [50, 70], )" +
+                                         shot("d.png") + R"(},
+      {"time": 0.9, "key": "h", )" + shot("e.png") +
+                                         R"(}]})"),
+            "");
+  const std::string t = "builtin:teapot";
+  EXPECT_TRUE(same_pixels(png("a.png"), rendered(t, "a", "120x90")));
+  EXPECT_TRUE(same_pixels(png("b.png"), rendered(t, "b", "120x90")));
+  EXPECT_FALSE(same_pixels(png("a.png"), png("b.png")));
+  const std::vector<std::string> glass{"--shader", "normal", "--opacity", "0.5", "--samples", "4"};
+  EXPECT_TRUE(same_pixels(png("c.png"), rendered(t, "c", "120x90", glass)));
+  EXPECT_TRUE(same_pixels(png("d.png"), rendered(t, "d", "50x70", glass)));
+  auto heat = glass;
+  heat.insert(heat.end(), {"--heatmap", "heat.png"});
+  static_cast<void>(rendered(t, "e", "50x70", heat));
+  EXPECT_TRUE(same_pixels(png("e.png"), png("heat.png")));
+}
+
+TEST_F(MeshViewerTest, TwoReplaysAreTheSame) {
+  const auto pictures = [&](const char* a, const char* b) {
+    EXPECT_EQ(replay("builtin:gyroid", R"({"keys": [{"eye": [3, 2, 3], "target": [0, 0, 0]},
+                                                    {"time": 1, "eye": [-3, 1, 3]}],
+        "fps": 10, "events": [{"time": 0.3, )" +
+                                           shot(a) + R"(}, {"time": 1, )" + shot(b) + "}]}"),
+              "");
+  };
+  pictures("a1.png", "b1.png");
+  pictures("a2.png", "b2.png");
+  EXPECT_EQ(read("a1.png"), read("a2.png"));
+  EXPECT_EQ(read("b1.png"), read("b2.png"));
+  EXPECT_NE(read("a1.png"), read("b1.png"));
+  // And those of the path: picture 3 of ten a second is the one at 0.3 s.
+  must({"render", "builtin:gyroid", "--path", "script.json", "--fps", "10", "--size", "120x90",
+        "--background", "#1a334d", "-o", "f%d.png"});
+  EXPECT_TRUE(same_pixels(png("a1.png"), png("f3.png")));
+  EXPECT_TRUE(same_pixels(png("b1.png"), png("f10.png")));
+}
+
+TEST_F(MeshViewerTest, OpensFilesAndSurvivesBadOnes) {
+  must({"make", "torus_knot", "-o", "knot.ply"});
+  write("bad.ply", "ply\nnonsense");
+  EXPECT_NE(replay("builtin:sphere", R"({"events": [{"open": ")" + path("bad.ply").string() +
+                                         R"("}, {"time": 0.1, )" + shot("a.png") + "}]}")
+                .find("bad.ply"),
+            std::string::npos);
+  EXPECT_TRUE(same_pixels(png("a.png"), rendered("builtin:sphere", "a", "120x90")));
+  EXPECT_EQ(title, "builtin:sphere");
+  EXPECT_EQ(replay("builtin:sphere", R"({"events": [{"open": ")" + path("knot.ply").string() +
+                                         R"("}, {"time": 0.1, )" + shot("b.png") + "}]}"),
+            "");
+  EXPECT_TRUE(same_pixels(png("b.png"), rendered("knot.ply", "b", "120x90")));
+  EXPECT_EQ(title, path("knot.ply").string());
+}
+
+TEST_F(MeshViewerTest, RefusedOptionsLeaveThePicture) {
+  EXPECT_NE(replay("builtin:sphere", R"({"events": [{"options": "--shader nonsense"},
+      {"time": 0.1, )" + shot("a.png") + "}]}")
+                .find("nonsense"),
+            std::string::npos);
+  EXPECT_TRUE(same_pixels(png("a.png"), rendered("builtin:sphere", "a", "120x90")));
+}
+
+TEST_F(MeshViewerTest, RecordedKeysAreAPath) {
+  EXPECT_EQ(replay("builtin:teapot", R"({"events": [{"key": "right"}]})"), "");
+  cli::SceneArguments a;
+  a.inputs = {"builtin:teapot"};
+  MeshSubject subject(a, load_scene(a));
+  subject.record(path("p.json"));
+  subject.handle(press("d"));
+  subject.advance(1);
+  subject.record(path("p.json"));
+  const auto p = cli::read_camera_path(path("p.json"), Camera{});
+  EXPECT_EQ(p.last_s(), 2);
+  EXPECT_EQ(p.at(2).eye, subject.control().camera().eye);
+  EXPECT_NE(p.at(0).eye, p.at(2).eye);
+}
+
+TEST_F(MeshViewerTest, ScriptsWithMistakesNameThePlace) {
+  const auto expect = [&](const std::string& script, const std::string& words) {
+    try {
+      replay("builtin:sphere", script);
+      ADD_FAILURE() << "accepted: " << script;
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("script.json"), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
+    }
+  };
+  expect("{}", "needs keys");
+  expect(R"({"events": [{"key": "hyper"}]})", "events[0]: key: there is no key 'hyper'");
+  expect(R"({"events": [{"time": 1}]})", "events[0]: the step does nothing");
+  expect(R"({"events": [{"time": 1, "key": "w"}, {"time": 0, "key": "w"}]})", "events[1]: time");
+  expect(R"({"events": [{"button_down": "fourth"}]})", "expected left, middle or right");
+  expect(R"({"events": [{"size": [0, 5]}]})", "events[0]: size");
+  expect(R"({"events": [{"presss": "w"}]})", "unknown name 'presss'");
+  expect(R"({"fps": 0, "events": [{"key": "w"}]})", "fps");
+  expect(R"({"keys": [{"fov": 999}]})", "keys[0]: fov");
+}
+
+}  // namespace
+}  // namespace rastrum::test
