@@ -11,7 +11,7 @@ find_package_handle_standard_args(RastrumWindow
   REQUIRED_VARS SDL2_LIBRARIES IMGUI_LIBRARY IMGUI_INCLUDE_DIR)
 
 if(RastrumWindow_FOUND AND NOT TARGET Rastrum::Window)
-  add_library(Rastrum::Window INTERFACE IMPORTED)
+  add_library(Rastrum::Window INTERFACE IMPORTED GLOBAL)
   target_include_directories(Rastrum::Window INTERFACE ${IMGUI_INCLUDE_DIR} ${SDL2_INCLUDE_DIRS})
   target_link_libraries(Rastrum::Window INTERFACE
     ${IMGUI_LIBRARY} $<$<BOOL:${STB_LIBRARY}>:${STB_LIBRARY}> ${SDL2_LIBRARIES})

@@ -10,15 +10,6 @@
 namespace rastrum::cli {
 namespace {
 
-Isa parse_isa(const std::string& text) {
-  return choose<Isa>("--isa", text,
-                     {{"scalar", Isa::scalar},
-                      {"sse4", Isa::sse4},
-                      {"avx2", Isa::avx2},
-                      {"avx512", Isa::avx512},
-                      {"neon", Isa::neon}});
-}
-
 std::string names_of(const std::vector<AxisInfo>& axis) {
   std::string names = "auto";
   for (const AxisInfo& info : axis) names.append(", ").append(info.name);
@@ -171,9 +162,7 @@ void add_machine_options(CLI::App& app, SceneArguments& a) {
       })
       ->group(group);
   add(app, "--device", "NAME", "serial, threads, cuda (threads)", [&a](const std::string& s) {
-    a.render.device = choose<Device>(
-        "--device", s,
-        {{"serial", Device::serial}, {"threads", Device::threads}, {"cuda", Device::cuda}});
+    a.render.device = parse_device(s);
   })->group(group);
   add(app, "--threads", "N", "(all)", [&a](const std::string& s) {
     a.render.threads = parse_integer("--threads", s, 1, 4096);
@@ -183,9 +172,7 @@ void add_machine_options(CLI::App& app, SceneArguments& a) {
       "piece by piece (none)",
       [&a](const std::string& s) { a.render.memory_limit = parse_bytes("--memory-limit", s); })
       ->group(group);
-  std::string isas;
-  for (const Isa isa : available_isas()) isas.append(isas.empty() ? "" : ", ").append(name(isa));
-  add(app, "--isa", "NAME", "instruction set; this machine has " + isas + " (the last)",
+  add(app, "--isa", "NAME", "instruction set; this machine has " + isa_words() + " (the last)",
       [&a](const std::string& s) { a.render.isa = parse_isa(s); })
       ->group(group);
 }

@@ -14,6 +14,7 @@ namespace rastrum::test {
 namespace {
 
 using namespace cli::window;
+using Picture = cli::window::Drawn;  // program.hpp has a Drawn of its own
 
 /// Draws one colour, as slowly as it is told to.
 class FakeSubject final : public Subject {
@@ -26,10 +27,10 @@ class FakeSubject final : public Subject {
   void resize(int, int) override {}
   [[nodiscard]] bool moving() const override { return is_moving; }
   [[nodiscard]] std::uint64_t version() const override { return version_; }
-  [[nodiscard]] std::function<Drawn()> draw(int width, int height) override {
-    return [this, width, height]() -> Drawn {
+  [[nodiscard]] std::function<Picture()> draw(int width, int height) override {
+    return [this, width, height]() -> Picture {
       if (refuse) throw Error(Errc::invalid_argument, "these options do not fit");
-      Drawn d{Image<Rgba8>(width, height), true, {}};
+      Picture d{Image<Rgba8>(width, height), true, {}};
       d.figures.frame_ms = ms_a_pixel * width * height;
       ++pictures;
       return d;
@@ -124,7 +125,9 @@ TEST_F(ViewerTest, WithoutAdaptionEveryPictureIsFull) {
   viewer->handle(press("w"));
   for (int i = 0; i < 20; ++i) {
     run_for(0.01);
-    if (viewer->picture() != nullptr) EXPECT_EQ(viewer->picture()->image.width(), 64);
+    if (viewer->picture() != nullptr) {
+      EXPECT_EQ(viewer->picture()->image.width(), 64);
+    }
   }
   EXPECT_NE(viewer->picture(), nullptr);
 }
@@ -139,7 +142,7 @@ TEST_F(ViewerTest, AResizeIsANewPicture) {
 
 TEST_F(ViewerTest, ErrorsAreShownAndThePictureStays) {
   run_for(0.5);
-  const Drawn* const before = viewer->picture();
+  const Picture* const before = viewer->picture();
   viewer->open("bad");
   viewer->settle();
   EXPECT_EQ(viewer->error(), "bad: is spoilt");

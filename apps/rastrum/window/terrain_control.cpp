@@ -1,0 +1,137 @@
+#include "terrain_control.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rastrum::cli::window {
+namespace {
+
+// A second of each key. The original program moves some 90 cells a second, too.
+constexpr double kMove = 90;                     // cells
+constexpr double kTurn = 1;                      // rad
+constexpr double kHorizon = 0.5;                 // heights of the window
+constexpr double kClimb = 90;                    // cells
+constexpr double kDistance = 2;                  // factor
+constexpr double kFov = std::numbers::pi / 6;    // rad
+constexpr double kSunTurn = 45, kSunClimb = 15;  // degrees
+constexpr double kRoll = 0.5;                    // rad
+constexpr double kFaster = 4;                    // with Shift
+constexpr double kLeastDistance = 10, kMostDistance = 1e6;
+constexpr double kLeastFov = 0.1, kMostFov = 3;  // rad; a planar picture ends before π
+
+constexpr KeyHelp kKeys[] = {
+    {"w, s", "move forward, back"},
+    {"a, d", "turn left, right"},
+    {"q, e", "look up, down (horizon)"},
+    {"r, f", "height up, down"},
+    {"up, down", "see farther, less far"},
+    {"o, l", "wider, narrower field of view"},
+    {"u, j", "sun higher, lower"},
+    {"n, m", "sun left, right"},
+    {"left, right", "roll"},
+    {"left shift, right shift", "held: four times as fast"},
+    {"home", "back to the beginning"},
+};
+
+}  // namespace
+
+std::span<const KeyHelp> TerrainControl::keys() {
+  return kKeys;
+}
+
+TerrainControl::TerrainControl(const TerrainPose& home) : home_(home), pose_(home) {}
+
+void TerrainControl::place(const TerrainPose& pose) {
+  pose_ = pose;
+  ++version_;
+}
+
+void TerrainControl::resize(int, int height) {
+  if (height_ > 0 && height != height_) {
+    home_.camera.horizon_px *= height / height_;
+    pose_.camera.horizon_px *= height / height_;
+    ++version_;
+  }
+  height_ = height;
+}
+
+void TerrainControl::handle(const Event& event) {
+  switch (event.kind) {
+    case Event::Kind::key_down:
+      if (event.ctrl) return;
+      if (event.key == "home") return place(home_);
+      held_.insert(event.key);
+      return;
+    case Event::Kind::key_up:
+      held_.erase(event.key);
+      return;
+    case Event::Kind::button_down:
+      dragging_ = true;
+      x_ = event.x;
+      y_ = event.y;
+      return;
+    case Event::Kind::button_up:
+      dragging_ = false;
+      return;
+    case Event::Kind::move:
+      // What is seen follows the pointer: the horizon in pixels, the angle about as fast.
+      if (dragging_ && (event.x != x_ || event.y != y_)) {
+        pose_.camera.angle_rad += (event.x - x_) * pose_.fov_rad / std::max(height_ * 1.5, 1.0);
+        pose_.camera.horizon_px += event.y - y_;
+        ++version_;
+      }
+      x_ = event.x;
+      y_ = event.y;
+      return;
+    case Event::Kind::wheel:
+      pose_.camera.altitude += event.y * kClimb / 10;
+      ++version_;
+      return;
+    case Event::Kind::leave:
+      held_.clear();
+      dragging_ = false;
+      return;
+  }
+}
+
+bool TerrainControl::moving() const {
+  if (dragging_) return true;
+  for (const KeyHelp& help : kKeys) {
+    bool any = false;
+    help.each([&](std::string_view key) { any = any || held_.contains(key); });
+    if (any && !help.has("left shift")) return true;
+  }
+  return false;
+}
+
+void TerrainControl::advance(double dt_s) {
+  const TerrainPose before = pose_;
+  terrain::TerrainCamera& c = pose_.camera;
+  const bool fast = held("left shift") || held("right shift");
+  const double t = dt_s * (fast ? kFaster : 1);
+  c.angle_rad += way("a", "d") * kTurn * t;
+  const double step = way("w", "s") * kMove * t;
+  c.x -= std::sin(c.angle_rad) * step;
+  c.y -= std::cos(c.angle_rad) * step;
+  c.horizon_px += way("q", "e") * kHorizon * height_ * t;
+  c.altitude += way("r", "f") * kClimb * t;
+  c.roll_rad += way("left", "right") * kRoll * t;
+  // Values that a file or a person gave stay, also beyond what keys reach, until a key is held.
+  if (const double w = way("up", "down"); w != 0)
+    pose_.distance =
+        std::clamp(pose_.distance * std::pow(kDistance, w * t), kLeastDistance, kMostDistance);
+  if (const double w = way("o", "l"); w != 0)
+    pose_.fov_rad = std::clamp(pose_.fov_rad + w * kFov * t, kLeastFov, kMostFov);
+  pose_.sun.azimuth_deg =
+      std::fmod(pose_.sun.azimuth_deg + way("m", "n") * kSunTurn * t + 360, 360);
+  pose_.sun.elevation_deg =
+      std::clamp(pose_.sun.elevation_deg + way("u", "j") * kSunClimb * t, -90.0, 90.0);
+  const bool changed = !(c == before.camera) || pose_.distance != before.distance ||
+                       pose_.fov_rad != before.fov_rad ||
+                       pose_.sun.azimuth_deg != before.sun.azimuth_deg ||
+                       pose_.sun.elevation_deg != before.sun.elevation_deg;
+  if (changed) ++version_;
+}
+
+}  // namespace rastrum::cli::window
