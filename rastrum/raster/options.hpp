@@ -4,21 +4,16 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <rastrum/core/image.hpp>
+#include <rastrum/core/stage_time.hpp>
+#include <rastrum/parallel/device.hpp>
 
 namespace rastrum {
 
 enum class Cull : std::uint8_t { none, back, front };
-
-/// Instruction sets that the SIMD leaves are compiled for. `scalar` is plain C++.
-enum class Isa : std::uint8_t { scalar, sse4, avx2, avx512, neon };
-[[nodiscard]] std::string_view name(Isa isa);
-/// Those that this machine can run, slowest first; always begins with `scalar`.
-[[nodiscard]] std::vector<Isa> available_isas();
 
 /// How the translucent fragments of a pixel become one colour (transparency/). All but `exact`,
 /// `unsorted` and `none` approximate it.
@@ -86,12 +81,6 @@ struct Targets {
   /// Further outputs of the shader (BlockShader::extra_count), as it returns them; 0 where nothing
   /// is. Like the other targets they must have the frame's size.
   std::span<const ImageView<Vec4>> extra{};
-};
-
-/// One timed part of a frame, in ms since the frame began.
-struct StageTime {
-  std::string name;
-  double begin_ms = 0, end_ms = 0;
 };
 
 struct FrameStats {

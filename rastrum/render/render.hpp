@@ -10,13 +10,12 @@
 #include <vector>
 
 #include <rastrum/core/image.hpp>
+#include <rastrum/parallel/device.hpp>
 #include <rastrum/raster/geometry.hpp>
 #include <rastrum/raster/options.hpp>
 #include <rastrum/scene/scene.hpp>
 
 namespace rastrum {
-
-enum class Device : std::uint8_t { serial, threads, cuda };
 
 enum class Shader : std::uint8_t {
   flat,       ///< base colour, unlit

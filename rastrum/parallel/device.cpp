@@ -1,4 +1,4 @@
-#include <rastrum/raster/options.hpp>
+#include <rastrum/parallel/device.hpp>
 
 #include <hwy/targets.h>
 

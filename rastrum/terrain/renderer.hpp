@@ -1,0 +1,40 @@
+// Voxel space: the picture of a terrain from the samples along its columns, near to far (Freeman's
+// patent of 1996; Macke's program; paper 3). docs/terrain.md has the rules.
+#pragma once
+
+#include <memory>
+
+#include <rastrum/core/mat.hpp>
+#include <rastrum/terrain/options.hpp>
+#include <rastrum/terrain/terrain.hpp>
+
+namespace rastrum::terrain {
+
+/// Draws frames with one set of options; keeps threads, scratch and pyramids between frames.
+class TerrainRenderer {
+ public:
+  /// Throws Error{invalid_argument} that names an option out of range, Error{no_device}.
+  explicit TerrainRenderer(TerrainOptions options);
+  ~TerrainRenderer();
+  TerrainRenderer(TerrainRenderer&&) noexcept;
+  TerrainRenderer& operator=(TerrainRenderer&&) noexcept;
+
+  /// Fills `targets`. The picture depends on terrain, camera and options alone: not on the method
+  /// (but for Filter and cells that are the same), device, threads or instruction set.
+  /// Cost: O(width · slices + width · height). Throws Error{invalid_argument} for a camera that is
+  /// not finite or farther than 1e12 cells away, or targets of another size.
+  TerrainStats render(const Terrain& terrain, const TerrainCamera& camera,
+                      const TerrainTargets& targets);
+
+  [[nodiscard]] const TerrainOptions& options() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The camera as it stands `clearance` above the ground under it, if it was lower.
+[[nodiscard]] TerrainCamera above_ground(const Terrain& terrain, const TerrainCamera& camera,
+                                         double clearance, Tiling tiling = Tiling::repeat);
+
+}  // namespace rastrum::terrain

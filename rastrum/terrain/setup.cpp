@@ -1,0 +1,167 @@
+#include <rastrum/terrain/setup.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace rastrum::terrain {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kMaxDistance = 1e7;
+/// Offsets from the camera stay exact as integers in float32 up to here.
+constexpr double kMaxExtent = 0x1p24;
+constexpr double kMaxSlices = 0x1p24;
+constexpr double kFarAway = 1e12;
+
+void require(bool good, const std::string& message) {
+  if (!good) throw Error(Errc::invalid_argument, message);
+}
+
+/// Cells across the view at distance 1: from the middle to the edge.
+double half_width(const TerrainOptions& o) {
+  return o.projection == Projection::planar ? std::tan(o.fov_rad / 2) : o.fov_rad / 2;
+}
+
+double distance_of(const TerrainOptions& o, double k) {
+  return 1 + k * o.step + o.dz * (k * (k + 1) / 2);
+}
+
+/// How many slices lie before `distance`.
+double slice_count(const TerrainOptions& o) {
+  if (o.distance <= 1) return 0;
+  // The root of distance_of(k) = distance, then the last steps by the formula itself.
+  const double b = o.step + o.dz / 2, reach = o.distance - 1;
+  double k = std::floor(2 * reach / (b + std::sqrt(b * b + 2 * o.dz * reach)));
+  while (k > 0 && distance_of(o, k - 1) >= o.distance) --k;
+  while (distance_of(o, k) < o.distance) ++k;
+  return k;
+}
+
+}  // namespace
+
+void check(const TerrainOptions& o) {
+  require(o.width >= 1 && o.height >= 1 && o.width <= kMaxImageSize && o.height <= kMaxImageSize,
+          "terrain: the size " + std::to_string(o.width) + "x" + std::to_string(o.height) +
+              " is outside 1x1 to 32768x32768");
+  require(o.distance >= 0 && o.distance <= kMaxDistance,
+          "terrain: the distance must lie between 0 and 1e7 cells");
+  const bool planar = o.projection == Projection::planar;
+  require(o.fov_rad > 0 && (planar ? o.fov_rad < kPi : o.fov_rad <= 2 * kPi),
+          planar ? "terrain: a planar view must be wider than 0 and less than 180 degrees (the "
+                   "cylindrical projection goes up to 360)"
+                 : "terrain: a cylindrical view must be wider than 0 and at most 360 degrees");
+  require(o.scale_px >= 0 && o.scale_px <= 1e7, "terrain: the scale must lie between 0 and 1e7");
+  require(o.step > 0 && o.step <= 1e7, "terrain: the step must be above 0 and at most 1e7");
+  require(o.dz >= 0 && o.dz <= 1e7, "terrain: dz must lie between 0 and 1e7");
+  require(o.fog.density >= 0 && std::isfinite(o.fog.density),
+          "terrain: the fog's density must be a number, at least 0");
+  require(o.fog.start >= 0 && std::isfinite(o.fog.start),
+          "terrain: the fog must start at a distance of at least 0");
+  require(!o.ground_clearance || std::isfinite(*o.ground_clearance),
+          "terrain: the clearance above the ground must be a finite number");
+  require(o.threads >= 0, "terrain: the number of threads must be at least 0 (all)");
+  if (o.classic) {
+    const TerrainOptions d;
+    require(o.fov_rad == d.fov_rad && o.scale_px == d.scale_px && o.step == d.step &&
+                o.dz == d.dz && o.projection == d.projection && o.filter == d.filter &&
+                !o.ground_clearance,
+            "terrain: the classic picture has its own field of view, scale, steps, projection, "
+            "clearance and no filter; leave them or the classic option out");
+  } else {
+    require(!(half_width(o) * o.distance > kMaxExtent || slice_count(o) > kMaxSlices),
+            "terrain: this distance with this field of view and step takes samples up to " +
+                std::to_string(half_width(o) * o.distance) + " cells away in " +
+                std::to_string(slice_count(o)) +
+                " steps, and 2^24 is the limit of both; choose a smaller distance or larger steps");
+  }
+  if (o.device == Device::cuda)
+    throw Error(Errc::no_device, "terrain: there is no CUDA device for it; use threads or serial");
+}
+
+void check(const TerrainCamera& c) {
+  for (const double v : {c.x, c.y, c.altitude, c.angle_rad, c.horizon_px, c.roll_rad})
+    require(std::isfinite(v), "terrain: the camera holds a number that is not finite");
+  require(std::abs(c.x) <= kFarAway && std::abs(c.y) <= kFarAway,
+          "terrain: the camera is farther than 1e12 cells from the map's corner");
+  require(std::abs(c.altitude) <= kFarAway, "terrain: the camera's altitude is beyond 1e12");
+  require(std::abs(c.horizon_px) <= 1e6, "terrain: the horizon lies beyond 1e6 pixels");
+  require(std::abs(c.angle_rad) <= 1e6 && std::abs(c.roll_rad) <= 1e6,
+          "terrain: angles must lie within 1e6 radians");
+}
+
+double scale_px(const TerrainOptions& o) {
+  if (o.classic) return 240;
+  return o.scale_px > 0 ? o.scale_px : o.width / 2.0 / half_width(o);
+}
+
+Setup set_up(const TerrainOptions& o, const TerrainCamera& camera, const Terrain& terrain) {
+  Setup s;
+  s.height = o.height;
+  s.sky = o.sky;
+  s.fog = o.fog.color.value_or(o.sky);
+  s.altitude = static_cast<float>(camera.altitude);
+  s.horizon = static_cast<float>(camera.horizon_px + 0.5);
+
+  const auto w = static_cast<std::size_t>(o.width);
+  s.ux.resize(w);
+  s.uy.resize(w);
+  const double half = half_width(o);
+  const double sin = std::sin(camera.angle_rad), cos = std::cos(camera.angle_rad);
+  for (std::size_t i = 0; i < w; ++i) {
+    // To the right of the view's axis, and along it.
+    double right = ((static_cast<double>(i) + 0.5) * 2 / o.width - 1) * half, ahead = 1;
+    if (o.projection == Projection::cylindrical) {
+      ahead = std::cos(right);
+      right = std::sin(right);
+    }
+    s.ux[i] = static_cast<float>(cos * right - sin * ahead);
+    s.uy[i] = static_cast<float>(-sin * right - cos * ahead);
+  }
+
+  s.camera_x = std::floor(camera.x);
+  s.camera_y = std::floor(camera.y);
+  s.fx = std::min(static_cast<float>(camera.x - s.camera_x), 1 - 0x1p-24F);
+  s.fy = std::min(static_cast<float>(camera.y - s.camera_y), 1 - 0x1p-24F);
+  if (terrain.is_map()) {
+    const auto reduced = [&](double corner, int size) {
+      const auto cell = static_cast<std::int64_t>(corner);
+      const std::int64_t far = 1 << 30;  // beyond the edge, whatever the offset
+      if (o.tiling == Tiling::clamp) return static_cast<int>(std::clamp(cell, -far, far));
+      return static_cast<int>(
+          tiled(cell, o.tiling == Tiling::mirror ? 2 * size : size, Tiling::repeat));
+    };
+    s.cell_x = reduced(s.camera_x, terrain.heights()->width());
+    s.cell_y = reduced(s.camera_y, terrain.heights()->height());
+  }
+
+  const auto n = static_cast<std::size_t>(slice_count(o));
+  const double scale = scale_px(o), spacing = 2 * half / o.width;
+  s.slices.resize(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    Slice& slice = s.slices[k];
+    const double z = distance_of(o, static_cast<double>(k));
+    slice.z = static_cast<float>(z);
+    slice.rows = static_cast<float>(scale / z);
+    if (o.filter == Filter::mip) {
+      const double step = o.step + o.dz * static_cast<double>(k);
+      slice.level = std::max(0, std::ilogb(std::max(step, z * spacing)));
+    }
+    if (o.fog.density > 0) {
+      const double through = std::exp(-o.fog.density * std::max(0.0, z - o.fog.start));
+      slice.clear = static_cast<std::uint32_t>(std::lround(256 * through));
+    }
+  }
+  // Filtered heights may exceed the highest by a rounding.
+  const float top = terrain.highest() + std::abs(terrain.highest()) * 0x1p-20F;
+  float lowest_row = std::numeric_limits<float>::infinity();
+  for (std::size_t k = n; k-- > 0;) {
+    const float row = (s.altitude - top) * s.slices[k].rows + s.horizon;
+    lowest_row = row < lowest_row ? row : lowest_row;
+    s.slices[k].lowest_row = std::isnan(row) ? -std::numeric_limits<float>::infinity() : lowest_row;
+  }
+  return s;
+}
+
+}  // namespace rastrum::terrain

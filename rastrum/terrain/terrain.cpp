@@ -1,0 +1,99 @@
+#include <rastrum/terrain/terrain.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <rastrum/terrain/renderer.hpp>
+
+namespace rastrum::terrain {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Grey from the lowest height to the highest; holes are never seen.
+Image<Rgba8> grey_of(const Image<float>& heights, float highest) {
+  float lowest = kInfinity;
+  for (const float h : heights.pixels())
+    if (h < lowest) lowest = h;
+  Image<Rgba8> grey(heights.width(), heights.height());
+  const float scale = highest > lowest ? 255 / (highest - lowest) : 0;
+  for (std::size_t i = 0; i < grey.pixels().size(); ++i) {
+    const float g = (heights.pixels()[i] - lowest) * scale;
+    const auto value = static_cast<std::uint8_t>(g > 0 ? std::min(g, 255.0F) : 0.0F);
+    grey.pixels()[i] = {value, value, value, 255};
+  }
+  return grey;
+}
+
+std::int64_t cell_at(double at, int size, Tiling tiling) {
+  // Beyond 2⁵² there are no cells to tell apart, and int64 has to hold what is given.
+  return tiled(static_cast<std::int64_t>(std::clamp(std::floor(at), -0x1p52, 0x1p52)), size,
+               tiling);
+}
+
+}  // namespace
+
+Terrain::Terrain(HeightMap map) : highest_(-kInfinity) {
+  if (map.heights.empty())
+    throw Error(Errc::invalid_argument, "the height map has no cell; give it at least one");
+  for (const float h : map.heights.pixels())
+    if (h > highest_) highest_ = h;
+  if (map.colors.empty()) map.colors = grey_of(map.heights, highest_);
+  heights_ = std::make_shared<const Image<float>>(std::move(map.heights));
+  colors_ = std::make_shared<const Image<Rgba8>>(std::move(map.colors));
+}
+
+Terrain::Terrain(std::shared_ptr<const Surface> surface)
+    : surface_(std::move(surface)), highest_(kInfinity) {
+  if (surface_ == nullptr) throw Error(Errc::invalid_argument, "the terrain has no surface");
+}
+
+Terrain Terrain::with_colors(Image<Rgba8> colors) const {
+  if (!is_map()) throw Error(Errc::invalid_argument, "a terrain of functions has its own colours");
+  if (colors.empty()) throw Error(Errc::invalid_argument, "the colours of a terrain are empty");
+  Terrain other = *this;
+  other.colors_ = std::make_shared<const Image<Rgba8>>(std::move(colors));
+  return other;
+}
+
+float Terrain::height_at(double x, double y, Tiling tiling) const {
+  if (!is_map()) {
+    float height = 0;
+    surface_->heights(&x, &y, 1, &height);
+    return height;
+  }
+  return (*heights_)(static_cast<int>(cell_at(x, heights_->width(), tiling)),
+                     static_cast<int>(cell_at(y, heights_->height(), tiling)));
+}
+
+Rgba8 Terrain::color_at(double x, double y, Tiling tiling) const {
+  if (!is_map()) {
+    Rgba8 color;
+    surface_->colors(&x, &y, 1, &color);
+    return color;
+  }
+  // The texel under the point, where a cell has several or a part of one.
+  const auto texel = [tiling](double at, int cells, int texels) {
+    const std::int64_t cell = cell_at(at, cells, tiling);
+    if (texels == cells) return static_cast<int>(cell);
+    double within = at - std::floor(at);
+    if (tiling == Tiling::mirror && cell != cell_at(at, 2 * cells, Tiling::repeat))
+      within = 1 - within;
+    if (tiling == Tiling::clamp && (at < 0 || at >= cells)) within = at < 0 ? 0 : 1;
+    const double position = (static_cast<double>(cell) + within) * texels / cells;
+    return std::min(static_cast<int>(position), texels - 1);
+  };
+  return (*colors_)(texel(x, heights_->width(), colors_->width()),
+                    texel(y, heights_->height(), colors_->height()));
+}
+
+TerrainCamera above_ground(const Terrain& terrain, const TerrainCamera& camera, double clearance,
+                           Tiling tiling) {
+  TerrainCamera lifted = camera;
+  const double ground = terrain.height_at(camera.x, camera.y, tiling);
+  if (ground + clearance > camera.altitude) lifted.altitude = ground + clearance;
+  return lifted;
+}
+
+}  // namespace rastrum::terrain
