@@ -68,8 +68,14 @@ Sweep plan_sweep(const ShadowCaster& map, const SunRay& ray, std::vector<RayStep
   p.columns = p.along_x ? map.heights.width : map.heights.height;
   p.rows = p.along_x ? map.heights.height : map.heights.width;
   const double s = across / std::abs(along), tau = ray.rise / std::abs(along);
-  int reach = 1;
-  for (const RayStep& step : steps) reach = std::max(reach, std::abs(p.along_x ? step.dx : step.dy));
+  int reach = 0;
+  for (std::size_t k = 0; k < steps.size(); ++k)
+    for (const int ahead = std::abs(p.along_x ? steps[k].dx : steps[k].dy); reach <= ahead; ++reach)
+      p.first_step.push_back(static_cast<std::uint32_t>(k));
+  p.first_step.push_back(static_cast<std::uint32_t>(steps.size()));
+  for (const RayStep& step : steps)
+    p.along.push_back({std::abs(p.along_x ? step.dx : step.dy), p.along_x ? step.dy : step.dx,
+                       static_cast<float>(step.climb)});
   p.steps = std::move(steps);
   const int all = p.columns + reach;
   p.column.reserve(static_cast<std::size_t>(all));
@@ -83,8 +89,8 @@ Sweep plan_sweep(const ShadowCaster& map, const SunRay& ray, std::vector<RayStep
     p.first_band = std::min(a, b);
     p.bands = p.rows + std::abs(a - b);
   }
-  const double largest =
-      std::max(std::abs(static_cast<double>(map.highest)), std::abs(static_cast<double>(map.lowest)));
+  const double largest = std::max(std::abs(static_cast<double>(map.highest)),
+                                  std::abs(static_cast<double>(map.lowest)));
   p.slack = static_cast<float>((largest + (all + 1) * tau) * 0x1p-21);
   return p;
 }

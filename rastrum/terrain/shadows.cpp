@@ -127,7 +127,7 @@ SunRay sun_ray(const Sun& sun) {
   check(sun);
   const auto [east, north] = sin_cos_deg(sun.azimuth_deg);
   const auto [up, flat] = sin_cos_deg(sun.elevation_deg);
-  return {east, -north, up / flat};
+  return {east, -north, up / std::abs(flat)};  // no −0 at the zenith
 }
 
 std::vector<RayStep> ray_steps(const SunRay& ray, double relief) {
@@ -173,11 +173,12 @@ Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun
   if (steps.size() < kFewSteps || !(map.relief() > 0)) return shadow;
   on_device(options, [&](auto& exec) {
     if (kernels.sweep == nullptr) {
-      parallel::for_each_index(exec, static_cast<std::size_t>(heights.height), [&](std::size_t row) {
-        const int y = static_cast<int>(row);
-        for (int x = 0; x < heights.width; ++x)
-          shadow(x, y) = in_shadow(map, steps, x, y) ? 1 : 0;
-      });
+      parallel::for_each_index(exec, static_cast<std::size_t>(heights.height),
+                               [&](std::size_t row) {
+                                 const int y = static_cast<int>(row);
+                                 for (int x = 0; x < heights.width; ++x)
+                                   shadow(x, y) = in_shadow(map, steps, x, y) ? 1 : 0;
+                               });
       return;
     }
     const Sweep sweep = plan_sweep(map, ray, std::move(steps));
@@ -187,6 +188,8 @@ Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun
       kernels.sweep(sweep, first, std::min(first + kBandGrain, sweep.bands), shadow.view());
     });
   });
+  for (std::size_t i = 0; i < copy.pixels().size(); ++i)
+    if (copy.pixels()[i] == -kInfinity) shadow.pixels()[i] = 0;
   return shadow;
 }
 
@@ -242,8 +245,7 @@ Image<std::uint16_t> hidden_samples(ImageView<const float> heights, const Sun& s
     for (int x = 0; x < heights.width; ++x) {
       const float own = map.heights(x, y);
       int n = 0;
-      for (const MarchSample& s : samples)
-        n += own + s.climb < map.at(x + s.dx, y + s.dy) ? 1 : 0;
+      for (const MarchSample& s : samples) n += own + s.climb < map.at(x + s.dx, y + s.dy) ? 1 : 0;
       counts(x, y) = own == -kInfinity ? std::uint16_t{0} : static_cast<std::uint16_t>(n);
     }
   };
