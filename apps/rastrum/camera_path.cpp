@@ -150,15 +150,17 @@ Camera CameraPath::at(double time_s) const {
   return camera;
 }
 
+Interpolation read_interpolation(JsonFields& fields) {
+  const auto word = fields.text("interpolation");
+  if (word && *word != "smooth" && *word != "linear")
+    fields.fail("interpolation", "expected smooth or linear, got '" + *word + "'");
+  return word && *word == "linear" ? Interpolation::linear : Interpolation::smooth;
+}
+
 CameraPath read_camera_path(const std::filesystem::path& file, const Camera& base) {
   const nlohmann::ordered_json json = read_json(file);
   JsonFields fields(json, file.string());
-  Interpolation interpolation = Interpolation::smooth;
-  if (const auto word = fields.text("interpolation")) {
-    if (*word != "smooth" && *word != "linear")
-      fields.fail("interpolation", "expected smooth or linear, got '" + *word + "'");
-    if (*word == "linear") interpolation = Interpolation::linear;
-  }
+  const Interpolation interpolation = read_interpolation(fields);
   const std::vector<JsonFields::Element> elements = fields.array("keys");
   static_cast<void>(fields.has("events"));  // of a script, which a window replays
   static_cast<void>(fields.has("fps"));

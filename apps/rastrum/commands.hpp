@@ -13,9 +13,11 @@ struct Command {
 };
 
 [[nodiscard]] Command add_render_command(CLI::App& app);
+[[nodiscard]] Command add_terrain_command(CLI::App& app);
 [[nodiscard]] Command add_info_command(CLI::App& app);
 [[nodiscard]] Command add_make_command(CLI::App& app);
 [[nodiscard]] Command add_view_command(CLI::App& app);
+[[nodiscard]] Command add_view_terrain_command(CLI::App& app);  ///< `view --terrain`, see main
 [[nodiscard]] Command add_bench_command(CLI::App& app);
 
 }  // namespace rastrum::cli

@@ -1,8 +1,10 @@
 // The program `rastrum`: parses the command line, runs one subcommand, turns exceptions into one
 // line on stderr. Exit status: 0 done, 1 the outside world (files, devices, memory), 2 usage.
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -32,25 +34,36 @@ int report_usage(const char* what, const CLI::App& app) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Rastrum draws triangle meshes in software.", "rastrum"};
+  CLI::App app{"Rastrum draws triangle meshes and terrains in software.", "rastrum"};
   app.set_version_flag("--version", "rastrum " RASTRUM_VERSION);
   app.require_subcommand(1);
   app.footer(
       "Examples:\n"
       "  rastrum render bunny.obj -o bunny.png\n"
       "  rastrum render builtin:teapot -o teapot.exr --size 1920x1080 --stats -\n"
+      "  rastrum terrain --height map.png --color map.jpg -o flight.png\n"
       "  rastrum info scene.glb\n"
       "  rastrum make 'torus_knot?p=3,q=5' -o knot.ply\n"
       "rastrum COMMAND --help shows the options of each command.");
   try {
     const std::vector<rastrum::cli::Command> commands{
-        rastrum::cli::add_render_command(app), rastrum::cli::add_view_command(app),
+        rastrum::cli::add_render_command(app), rastrum::cli::add_terrain_command(app),
+        rastrum::cli::add_view_command(app),   rastrum::cli::add_view_terrain_command(app),
         rastrum::cli::add_info_command(app),   rastrum::cli::add_make_command(app),
 #ifdef RASTRUM_HAS_BENCH
         rastrum::cli::add_bench_command(app),
 #endif
     };
-    app.parse(argc, argv);
+    // The options of meshes and of terrains share names, so each has a parser of its own.
+    std::vector<const char*> args(argv, argv + argc);
+    const auto terrain = std::find_if(args.begin(), args.end(), [](const char* arg) {
+      return std::string_view(arg) == "--terrain";
+    });
+    if (args.size() > 2 && std::string_view(args[1]) == "view" && terrain != args.end()) {
+      args.erase(terrain);
+      args[1] = "view-terrain";
+    }
+    app.parse(static_cast<int>(args.size()), args.data());
     for (const rastrum::cli::Command& command : commands)
       if (command.parser->parsed()) return command.run();
     return 0;

@@ -1,13 +1,18 @@
-// `rastrum view INPUT…`: the window, where it has been built in.
+// `rastrum view INPUT…` and `rastrum view --terrain …`: the window, where it has been built in.
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <rastrum/core/error.hpp>
 
 #include "commands.hpp"
 #include "scene_options.hpp"
+#include "terrain_options.hpp"
 #include "window/mesh_subject.hpp"
+#include "window/terrain_subject.hpp"
 #include "window/viewer.hpp"
 #ifdef RASTRUM_HAS_WINDOW
 #include "window/panel.hpp"
@@ -17,17 +22,24 @@
 namespace rastrum::cli {
 namespace {
 
-struct ViewArguments : SceneArguments {
+struct WindowArguments {
   std::string script;
   window::ViewerOptions viewer;
 };
+struct ViewArguments : SceneArguments {
+  WindowArguments window;
+};
+struct ViewTerrainArguments : TerrainSceneArguments {
+  std::vector<std::string> maps;
+  WindowArguments window;
+};
 
 #ifdef RASTRUM_HAS_WINDOW
-int run(ViewArguments& a) {
-  check_scene_arguments(a);
-  a.viewer.width = a.render.width;
-  a.viewer.height = a.render.height;
-  auto subject = std::make_unique<window::MeshSubject>(a, window::load_scene(a));
+
+int show(std::unique_ptr<window::Subject> subject, WindowArguments& a, int width, int height,
+         const window::Controls& controls) {
+  a.viewer.width = width;
+  a.viewer.height = height;
   window::ShellOptions shell;
   if (!a.script.empty()) {
     std::vector<window::KeyHelp> keys = subject->keys();
@@ -35,18 +47,89 @@ int run(ViewArguments& a) {
     keys.insert(keys.end(), more.begin(), more.end());
     shell.script = window::read_script(a.script, keys);
   }
-  window::MeshSubject& meshes = *subject;
-  window::run_shell(std::move(subject), a.viewer, shell,
-                    [&meshes] { window::draw_mesh_controls(meshes); });
+  window::run_shell(std::move(subject), a.viewer, shell, controls);
   return 0;
 }
+
+int run(ViewArguments& a) {
+  check_scene_arguments(a);
+  auto subject = std::make_unique<window::MeshSubject>(a, window::load_scene(a));
+  window::MeshSubject& meshes = *subject;
+  return show(std::move(subject), a.window, a.render.width, a.render.height,
+              [&meshes] { window::draw_mesh_controls(meshes); });
+}
+
+/// What F1 goes through: --height, the further files, the function.
+std::vector<TerrainInput> maps_of(const ViewTerrainArguments& a) {
+  std::vector<TerrainInput> maps;
+  TerrainInput one = a.input;
+  one.function.clear();
+  if (one.color && !one.height) throw UsageError("--color", "goes with --height");
+  if (one.height) maps.push_back(one);
+  for (const std::string& file : a.maps) {
+    one.height = file;
+    one.color.reset();
+    maps.push_back(one);
+  }
+  if (!a.input.function.empty()) {
+    one.height.reset();
+    one.color.reset();
+    one.function = a.input.function;
+    maps.push_back(one);
+  }
+  if (maps.empty()) throw UsageError("--terrain", "give a height map or --function");
+  return maps;
+}
+
+int run(ViewTerrainArguments& a) {
+  auto subject = std::make_unique<window::TerrainSubject>(a, maps_of(a));
+  window::TerrainSubject& terrain = *subject;
+  return show(std::move(subject), a.window, a.options.width, a.options.height,
+              [&terrain] { window::draw_terrain_controls(terrain); });
+}
+
 #else
-int run(ViewArguments&) {
+
+template <class Arguments>
+int run(Arguments&) {
   throw Error(Errc::unsupported,
               "this rastrum was built without a window: install SDL2 and Dear ImGui (Debian: "
               "libsdl2-dev libimgui-dev) and build it again");
 }
+
 #endif
+
+void add_window_options(CLI::App& app, WindowArguments& a) {
+  const char* group = "Window";
+  add(app, "--script", "FILE", "replay a camera path or a list of events (docs/window.md)",
+      [&a](const std::string& s) { a.script = s; })
+      ->group(group);
+  add(app, "--screenshots", "NAME", "what screenshots are called (rastrum_%04d.png)",
+      [&a](const std::string& s) {
+        if (!s.ends_with(".png")) throw UsageError("--screenshots", "the name must end in .png");
+        a.viewer.screenshots = NumberedName("--screenshots", s);
+      })
+      ->group(group);
+  add(app, "--target-ms", "N", "milliseconds that a frame may take while something moves (33)",
+      [&a](const std::string& s) {
+        a.viewer.target_ms = parse_number("--target-ms", s);
+        if (!(a.viewer.target_ms > 0)) throw UsageError("--target-ms", "must be greater than 0");
+      })
+      ->group(group);
+}
+
+std::string keys_help(std::span<const window::KeyHelp> camera,
+                      std::span<const window::KeyHelp> options) {
+  std::string text = "Keys:\n";
+  const auto list = [&](std::span<const window::KeyHelp> keys) {
+    for (const window::KeyHelp& k : keys)
+      text.append("  ").append(k.keys).append(": ").append(k.what).append("\n");
+  };
+  list(camera);
+  list(options);
+  list(window::Viewer::keys());
+  return text;
+}
 
 }  // namespace
 
@@ -54,43 +137,45 @@ Command add_view_command(CLI::App& app) {
   auto arguments = std::make_shared<ViewArguments>();
   ViewArguments& a = *arguments;
   a.render.background = parse_color("--background", "#20242c");
-  CLI::App& view = *app.add_subcommand("view", "Look at meshes and shapes in a window");
+  CLI::App& view = *app.add_subcommand(
+      "view", "Look at meshes in a window, or fly over a terrain with --terrain");
   add_input_option(view, a)->required();
-  const char* group = "Window";
-  add(view, "--script", "FILE", "replay a camera path or a list of events (docs/window.md)",
-      [&a](const std::string& s) { a.script = s; })
-      ->group(group);
-  add(view, "--screenshots", "NAME", "what screenshots are called (rastrum_%04d.png)",
-      [&a](const std::string& s) {
-        if (!s.ends_with(".png")) throw UsageError("--screenshots", "the name must end in .png");
-        a.viewer.screenshots = NumberedName("--screenshots", s);
-      })
-      ->group(group);
-  add(view, "--target-ms", "N", "milliseconds that a frame may take while something moves (33)",
-      [&a](const std::string& s) {
-        a.viewer.target_ms = parse_number("--target-ms", s);
-        if (!(a.viewer.target_ms > 0)) throw UsageError("--target-ms", "must be greater than 0");
-      })
-      ->group(group);
+  // For --help alone: main takes the command line of a terrain to view-terrain.
+  view.add_flag_callback(
+      "--terrain", [] {}, "fly over a terrain; see rastrum view --terrain --help");
+  add_window_options(view, a.window);
   add_picture_options(view, a);
   add_transparency_options(view, a);
   add_camera_options(view, a);
   add_machine_options(view, a);
-  std::string footer = "Keys:\n";
-  const auto list = [&](const window::KeyHelp& k) {
-    footer.append("  ").append(k.keys).append(": ").append(k.what).append("\n");
-  };
-  for (const window::KeyHelp& k : window::MeshControl::keys()) list(k);
-  for (const window::KeyHelp& k : window::MeshSubject::command_keys()) list(k);
-  for (const window::KeyHelp& k : window::Viewer::keys()) list(k);
-  footer +=
-      "Drag to orbit, with the right button to look around, with the middle one or Shift to pan;\n"
-      "the wheel zooms; a file dropped on the window is opened.\n"
-      "\nExamples:\n"
-      "  rastrum view dragon.ply\n"
-      "  rastrum view engine.glb --opacity 0.3 --samples 4\n"
-      "  rastrum view builtin:teapot --script flight.json";
-  view.footer(footer);
+  view.footer(keys_help(window::MeshControl::keys(), window::MeshSubject::command_keys()) +
+              "Drag to orbit, with the right button to look around, with the middle one or Shift\n"
+              "to pan; the wheel zooms; a file dropped on the window is opened.\n"
+              "\nExamples:\n"
+              "  rastrum view dragon.ply\n"
+              "  rastrum view engine.glb --opacity 0.3 --samples 4\n"
+              "  rastrum view builtin:teapot --script flight.json\n"
+              "  rastrum view --terrain --height alps.png --color alps.jpg --shadows sharp");
+  return {&view, [arguments] { return run(*arguments); }};
+}
+
+Command add_view_terrain_command(CLI::App& app) {
+  auto arguments = std::make_shared<ViewTerrainArguments>();
+  ViewTerrainArguments& a = *arguments;
+  CLI::App& view =
+      *app.add_subcommand("view-terrain", "Fly over a terrain; also view --terrain")->group("");
+  view.add_option("MAP", a.maps, "further height maps, for the key F1")->type_name("");
+  add_window_options(view, a.window);
+  add_terrain_inputs(view, a);
+  add_terrain_camera(view, a);
+  add_terrain_picture(view, a);
+  add_terrain_light(view, a);
+  add_terrain_machine(view, a);
+  view.footer(keys_help(window::TerrainControl::keys(), window::TerrainSubject::command_keys()) +
+              "Drag to turn, the wheel climbs; a height map dropped on the window is opened.\n"
+              "\nExamples:\n"
+              "  rastrum view --terrain --height alps.png --color alps.jpg --shadows sharp\n"
+              "  rastrum view --terrain one.dem two.tif --function hills");
   return {&view, [arguments] { return run(*arguments); }};
 }
 

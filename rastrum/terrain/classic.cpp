@@ -2,13 +2,141 @@
 // accumulated along a slice, 240 rows whatever the resolution, heights truncated toward zero.
 // A map of another size than 1024² repeats, mirrors or ends by the floor of the coordinates. Holes
 // draw nothing.
+//
+// On threads, a block of 64 columns needs the position of each slice at its first column, so those
+// are accumulated first; a block accumulates on from there, eight slices side by side.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include <rastrum/parallel/for_each.hpp>
+#include <rastrum/terrain/blocks.hpp>
 #include <rastrum/terrain/methods.hpp>
 
 namespace rastrum::terrain {
+
+namespace {
+
+/// Where a slice begins, and its step from column to column.
+struct Line {
+  double z, rows, x, y, dx, dy;
+};
+
+std::vector<Line> lines_of(const TerrainOptions& options, const TerrainCamera& camera) {
+  std::vector<Line> lines;
+  const double sin = std::sin(camera.angle_rad), cos = std::cos(camera.angle_rad);
+  double dz = 1;
+  for (double z = 1; z < options.distance; dz += 0.005, z += dz) {
+    const double x = -cos * z - sin * z, y = sin * z - cos * z;
+    lines.push_back({z, 1 / z * 240, x + camera.x, y + camera.y,
+                     (cos * z - sin * z - x) / options.width,
+                     (-sin * z - cos * z - y) / options.width});
+  }
+  return lines;
+}
+
+/// The lines as arrays, with as many more that go nowhere as fill the last group; and the positions
+/// at the first column of each block.
+struct Table {
+  std::vector<double> dx, dy, x, y;
+  std::vector<double> lowest_row;
+  std::size_t slices = 0;  ///< of a block, in x and y
+
+  Table(parallel::Threads& exec, const Kernels& kernels, const std::vector<Line>& lines,
+        std::size_t blocks, double altitude, double horizon, double highest)
+      : slices((lines.size() + kClassicSlices - 1) / kClassicSlices * kClassicSlices) {
+    dx.resize(slices);
+    dy.resize(slices);
+    x.resize(slices * blocks);
+    y.resize(slices * blocks);
+    lowest_row.resize(lines.size());
+    double lowest = std::numeric_limits<double>::infinity();
+    for (std::size_t k = lines.size(); k-- > 0;) {
+      const Line& line = lines[k];
+      dx[k] = line.dx;
+      dy[k] = line.dy;
+      x[k] = line.x;
+      y[k] = line.y;
+      lowest = std::min(lowest, (altitude - highest) * line.rows + horizon);
+      lowest_row[k] = lowest;
+    }
+    parallel::for_each_index(exec, slices / kClassicSlices, [&](std::size_t group) {
+      const std::size_t k = group * kClassicSlices;
+      for (std::size_t b = 1; b < blocks; ++b) {
+        double* to_x = x.data() + b * slices + k;
+        double* to_y = y.data() + b * slices + k;
+        std::copy_n(to_x - slices, kClassicSlices, to_x);
+        std::copy_n(to_y - slices, kClassicSlices, to_y);
+        kernels.advance(kClassicSlices, kBlockColumns, dx.data() + k, dy.data() + k, to_x, to_y);
+      }
+    });
+  }
+};
+
+}  // namespace
+
+Counts draw_classic(parallel::Threads& exec, Isa isa, BlockPool& pool, const Terrain& terrain,
+                    const TerrainOptions& options, const TerrainCamera& camera,
+                    const TerrainTargets& targets) {
+  const std::vector<Line> lines = lines_of(options, camera);
+  const auto columns = static_cast<std::size_t>(options.width);
+  const Table table(exec, kernels(isa), lines, (columns + kBlockColumns - 1) / kBlockColumns,
+                    camera.altitude, camera.horizon_px, static_cast<double>(terrain.highest()));
+  const Image<float>& heights = *terrain.heights();
+  const Image<Rgba8>& colors = *terrain.colors();
+  const auto power_of_two = [](int n) { return (n & (n - 1)) == 0; };
+  const double reach =
+      std::max(std::abs(camera.x), std::abs(camera.y)) + 2 * options.distance + kBlockColumns;
+  const MapSize map{heights.width(), heights.height(), options.tiling,
+                    options.tiling == Tiling::repeat && power_of_two(heights.width()) &&
+                        power_of_two(heights.height()) && reach < 0x1p31};
+  const bool direct = heights.width() == colors.width() && heights.height() == colors.height();
+
+  return draw_blocks(
+      exec, isa, pool, options.sky, targets, options.width, options.height,
+      [&](const Kernels& kernels, std::size_t first, std::size_t n, BlockMarks& marks) {
+        const double* x = table.x.data() + first / kBlockColumns * table.slices;
+        const double* y = table.y.data() + first / kBlockColumns * table.slices;
+        alignas(64) std::int32_t cells[kBlockColumns * kClassicSlices];
+        ColumnBlock block;
+        block.restart(n, options.height);
+        Counts counts;
+        for (std::size_t k = 0; k < lines.size(); ++k) {
+          if (static_cast<double>(block.deepest) <= table.lowest_row[k]) break;
+          const std::size_t lane = k % kClassicSlices;
+          if (lane == 0)
+            kernels.classic_cells({x + k, y + k, table.dx.data() + k, table.dy.data() + k}, map, n,
+                                  cells);
+          for (std::size_t i = 0; i < n; ++i) {
+            block.cells[i] = cells[i * kClassicSlices + lane];
+            block.heights[i] = heights.pixels()[static_cast<std::size_t>(block.cells[i])];
+          }
+          counts.samples += n;
+          const std::size_t visible =
+              kernels.occlude64(camera.altitude, lines[k].rows, camera.horizon_px, n, block);
+          if (visible == 0) continue;
+          counts.visible += visible;
+          marks.put_depth(block, visible, static_cast<float>(lines[k].z));
+          if (direct) {
+            marks.put_cells(block, visible, colors.pixels().data());
+            continue;
+          }
+          Rgba8 seen[kBlockColumns];
+          for (std::size_t i = 0; i < visible; ++i) {
+            const auto column = static_cast<std::size_t>(block.mark[i]) % kBlockColumns;
+            double px = x[k], py = y[k];
+            for (std::size_t c = 0; c < column; ++c) {
+              px += table.dx[k];
+              py += table.dy[k];
+            }
+            seen[i] = terrain.color_at(px, py, options.tiling);
+          }
+          marks.put_colors(block, visible, seen);
+        }
+        return counts;
+      });
+}
 
 Counts draw_classic_reference(const Terrain& terrain, const TerrainOptions& options,
                               const TerrainCamera& camera, const TerrainTargets& targets) {

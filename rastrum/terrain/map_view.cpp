@@ -106,19 +106,26 @@ float MapView::height_at(float x, float y, int level) const {
     return above + ty * (below - above);
   }
   level = std::min(level, pyramid->height_levels() - 1);
+  return pyramid->heights(level).pixels()[static_cast<std::size_t>(cell_at(x, y, level))];
+}
+
+std::int32_t MapView::cell_at(float x, float y, int level) const {
   const std::int32_t i = cell_x + static_cast<std::int32_t>(std::floor(x));
   const std::int32_t j = cell_y + static_cast<std::int32_t>(std::floor(y));
-  return pyramid->heights(level)(column(i) >> level, row(j) >> level);
+  const auto column = static_cast<std::int32_t>(tiled(i, width, tiling)) >> level;
+  const auto row = static_cast<std::int32_t>(tiled(j, height, tiling)) >> level;
+  return row * pyramid->heights(level).width() + column;
 }
 
 Rgba8 MapView::color_at(float x, float y, int level) const {
+  if (colors_match()) {
+    level = std::min(level, pyramid->height_levels() - 1);
+    return pyramid->colors(level).pixels()[static_cast<std::size_t>(cell_at(x, y, level))];
+  }
   const float x0 = std::floor(x), y0 = std::floor(y);
   const std::int32_t i = cell_x + static_cast<std::int32_t>(x0);
   const std::int32_t j = cell_y + static_cast<std::int32_t>(y0);
   const Image<Rgba8>& whole = pyramid->colors(0);
-  if (filter == Filter::none && whole.width() == width && whole.height() == height)
-    return whole(static_cast<int>(tiled(i, width, tiling)),
-                 static_cast<int>(tiled(j, height, tiling)));
   const float u = texels(i, x - x0, width, color_x, tiling);
   const float v = texels(j, y - y0, height, color_y, tiling);
   if (filter != Filter::bilinear) {

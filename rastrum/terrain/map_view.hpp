@@ -63,6 +63,13 @@ struct MapView {
 
   [[nodiscard]] float height_at(float x, float y, int level) const;
   [[nodiscard]] Rgba8 color_at(float x, float y, int level) const;
+  /// The index of the cell in its level; unless filtered.
+  [[nodiscard]] std::int32_t cell_at(float x, float y, int level) const;
+  /// A cell's colour has the cell's index.
+  [[nodiscard]] bool colors_match() const {
+    return filter != Filter::bilinear && pyramid->colors(0).width() == width &&
+           pyramid->colors(0).height() == height;
+  }
 };
 
 /// `color` with `clear` of 256 left of it.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include <rastrum/parallel/exec.hpp>
 #include <rastrum/terrain/options.hpp>
 #include <rastrum/terrain/samples.hpp>
 
@@ -15,7 +16,21 @@ struct Counts {
 /// Column by column, span by span: the reference of the others.
 Counts draw_reference(const Samples& samples, const TerrainTargets& targets);
 
-/// Macke's program in float64, camera lifted before.
+struct BlockPool;
+
+/// Blocks of columns with SIMD.
+Counts draw_fast(parallel::Threads& exec, Isa isa, BlockPool& pool, const Samples& samples,
+                 const TerrainTargets& targets);
+
+/// Paper 3's words.
+Counts draw_words(parallel::Serial& exec, const Samples& samples, const TerrainTargets& targets);
+Counts draw_words(parallel::Threads& exec, const Samples& samples, const TerrainTargets& targets);
+
+/// Macke's program in float64, camera lifted before. Positions must stay within 2^51 cells.
+Counts draw_classic(parallel::Threads& exec, Isa isa, BlockPool& pool, const Terrain& terrain,
+                    const TerrainOptions& options, const TerrainCamera& camera,
+                    const TerrainTargets& targets);
+/// The same in plain loops.
 Counts draw_classic_reference(const Terrain& terrain, const TerrainOptions& options,
                               const TerrainCamera& camera, const TerrainTargets& targets);
 

@@ -54,7 +54,7 @@ inline constexpr Rgba8 kSky{0x90, 0x90, 0xE0, 255};
 
 struct TerrainOptions {
   int width = 1280, height = 720;
-  double distance = 800;  ///< cells; how far samples are taken, up to 1e7
+  double distance = 800;  ///< cells; how far samples are taken, up to 8e6
   /// The original program bit for bit (docs/terrain.md): float64, its scale of 240 rows, 90°,
   /// 10 above the ground, steps of 1, 1.005, …. Fov, scale, steps, projection, filter (but none)
   /// and ground clearance are then refused unless they stand at their defaults.

@@ -4,19 +4,32 @@
 #include <string>
 #include <utility>
 
+#include <rastrum/terrain/blocks.hpp>
 #include <rastrum/terrain/methods.hpp>
 #include <rastrum/terrain/setup.hpp>
 
 namespace rastrum::terrain {
 
 struct TerrainRenderer::Impl {
+  explicit Impl(TerrainOptions given)
+      : options(std::move(given)),
+        isa(options.isa.value_or(available_isas().back())),
+        pool(memory),
+        serial(&memory) {
+    if (options.device == Device::threads) exec.emplace(options.threads, &memory);
+  }
   TerrainOptions options;
+  Isa isa;
+  MemoryAccount memory;
+  BlockPool pool;
+  parallel::Serial serial;
+  std::optional<parallel::Threads> exec;
   std::optional<Pyramid> pyramid;  ///< of the map that was drawn last
 };
 
 TerrainRenderer::TerrainRenderer(TerrainOptions options) {
   check(options);
-  impl_ = std::make_unique<Impl>(Impl{std::move(options), {}});
+  impl_ = std::make_unique<Impl>(std::move(options));
 }
 TerrainRenderer::~TerrainRenderer() = default;
 TerrainRenderer::TerrainRenderer(TerrainRenderer&&) noexcept = default;
@@ -44,7 +57,10 @@ TerrainStats TerrainRenderer::render(const Terrain& terrain, const TerrainCamera
 
   Counts counts;
   if (options.classic) {
-    counts = draw_classic_reference(terrain, options, stats.camera, targets);
+    counts = impl_->exec && terrain.is_map()
+                 ? draw_classic(*impl_->exec, impl_->isa, impl_->pool, terrain, options,
+                                stats.camera, targets)
+                 : draw_classic_reference(terrain, options, stats.camera, targets);
   } else {
     const Setup setup = set_up(options, stats.camera, terrain);
     Samples samples{setup, terrain, {}};
@@ -55,7 +71,12 @@ TerrainStats TerrainRenderer::render(const Terrain& terrain, const TerrainCamera
       samples.map = MapView(*impl_->pyramid, options, setup);
     }
     stats.slices = setup.slices.size();
-    counts = draw_reference(samples, targets);
+    if (options.method == Method::words)
+      counts = impl_->exec ? draw_words(*impl_->exec, samples, targets)
+                           : draw_words(impl_->serial, samples, targets);
+    else
+      counts = impl_->exec ? draw_fast(*impl_->exec, impl_->isa, impl_->pool, samples, targets)
+                           : draw_reference(samples, targets);
   }
   stats.samples = counts.samples;
   stats.visible = counts.visible;

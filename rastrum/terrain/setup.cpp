@@ -9,9 +9,9 @@ namespace rastrum::terrain {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kMaxDistance = 1e7;
+constexpr double kMaxDistance = 8e6;
 /// Offsets from the camera stay exact as integers in float32 up to here.
-constexpr double kMaxExtent = 0x1p24;
+constexpr double kMaxExtent = 0x1p23;
 constexpr double kMaxSlices = 0x1p24;
 constexpr double kFarAway = 1e12;
 
@@ -46,7 +46,7 @@ void check(const TerrainOptions& o) {
           "terrain: the size " + std::to_string(o.width) + "x" + std::to_string(o.height) +
               " is outside 1x1 to 32768x32768");
   require(o.distance >= 0 && o.distance <= kMaxDistance,
-          "terrain: the distance must lie between 0 and 1e7 cells");
+          "terrain: the distance must lie between 0 and 8e6 cells");
   const bool planar = o.projection == Projection::planar;
   require(o.fov_rad > 0 && (planar ? o.fov_rad < kPi : o.fov_rad <= 2 * kPi),
           planar ? "terrain: a planar view must be wider than 0 and less than 180 degrees (the "
@@ -70,11 +70,12 @@ void check(const TerrainOptions& o) {
             "terrain: the classic picture has its own field of view, scale, steps, projection, "
             "clearance and no filter; leave them or the classic option out");
   } else {
-    require(!(half_width(o) * o.distance > kMaxExtent || slice_count(o) > kMaxSlices),
-            "terrain: this distance with this field of view and step takes samples up to " +
-                std::to_string(half_width(o) * o.distance) + " cells away in " +
-                std::to_string(slice_count(o)) +
-                " steps, and 2^24 is the limit of both; choose a smaller distance or larger steps");
+    const double extent = std::max(1.0, half_width(o)) * o.distance;
+    require(
+        !(extent > kMaxExtent || slice_count(o) > kMaxSlices),
+        "terrain: this distance with this field of view and step takes samples up to " +
+            std::to_string(extent) + " cells away in " + std::to_string(slice_count(o)) +
+            " steps, and 2^23 and 2^24 are the limits; choose a smaller distance or larger steps");
   }
   if (o.device == Device::cuda)
     throw Error(Errc::no_device, "terrain: there is no CUDA device for it; use threads or serial");

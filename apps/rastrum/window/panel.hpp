@@ -9,6 +9,7 @@
 namespace rastrum::cli::window {
 
 class MeshSubject;
+class TerrainSubject;
 
 /// Inside an ImGui frame.
 void draw_panel(Viewer& viewer, const Controls& controls);
@@ -20,5 +21,8 @@ bool choose_name(const char* label, const std::vector<std::string>& names, std::
 
 /// The controls of meshes.
 void draw_mesh_controls(MeshSubject& subject);
+
+/// The controls of a terrain.
+void draw_terrain_controls(TerrainSubject& subject);
 
 }  // namespace rastrum::cli::window

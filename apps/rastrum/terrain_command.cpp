@@ -1,0 +1,178 @@
+// `rastrum terrain (--height FILE | --function NAME) -o OUT`: the options, then check, load, light,
+// render, write.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <rastrum/io/io.hpp>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/terrain/renderer.hpp>
+
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "json_file.hpp"
+#include "output.hpp"
+#include "progress.hpp"
+#include "terrain_options.hpp"
+#include "timeline.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+using terrain::Shadows;
+using terrain::TerrainStats;
+
+struct TerrainArguments : TerrainSceneArguments {
+  int frames = 1;
+  bool quiet = false;
+  Output color, depth, stats;
+};
+
+void add_outputs(CLI::App& app, TerrainArguments& a) {
+  const char* group = "Outputs";
+  add(app, "-o,--output", "FILE", ".png: 8 bit", [&a](const std::string& s) {
+    a.color = parse_output("-o", s, {Format::png});
+  })->group(group);
+  add(app, "--depth", "FILE", ".npy or .exr: float32, cells along the view, inf where the sky is",
+      [&a](const std::string& s) {
+        a.depth = parse_output("--depth", s, {Format::npy, Format::exr});
+      })
+      ->group(group);
+  add(app, "--stats", "FILE", ".json or - (standard output): counts, memory and times",
+      [&a](const std::string& s) {
+        a.stats = s == "-" ? Output{"--stats", s, Format::json}
+                           : parse_output("--stats", s, {Format::json});
+      })
+      ->group(group);
+  app.add_flag("--quiet", a.quiet, "print errors alone")->group(group);
+}
+
+void add_frames(CLI::App& app, TerrainArguments& a) {
+  add(app, "--frames", "N", "render N times; --stats gives median, minimum and maximum (1)",
+      [&a](const std::string& s) { a.frames = parse_integer("--frames", s, 1, 1000000); })
+      ->group("Machine");
+}
+
+void check(const TerrainArguments& a) {
+  if (!a.color && !a.depth && !a.stats)
+    throw UsageError("-o", "say where the picture goes, as in -o picture.png");
+  const bool stats_to_file = a.stats && a.stats.file != "-";
+  const Output none;
+  const Output* const outputs[] = {&a.color, &a.depth, stats_to_file ? &a.stats : &none};
+  check_outputs(outputs);
+}
+
+nlohmann::ordered_json stats_json(std::vector<TerrainStats> frames, const TerrainArguments& a,
+                                  const LoadedTerrain& source, double load_ms, double light_ms) {
+  std::ranges::sort(frames, {}, &TerrainStats::frame_ms);
+  const TerrainStats& median = frames[(frames.size() - 1) / 2];
+  const bool serial = a.options.device == Device::serial;
+  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+  for (const StageTime& stage : median.stages) {
+    nlohmann::ordered_json& ms = stages[stage.name];
+    ms = (ms.is_null() ? 0.0 : ms.get<double>()) + (stage.end_ms - stage.begin_ms);
+  }
+  return {{"version", RASTRUM_VERSION},
+          {"device", serial ? "serial" : "threads"},
+          {"threads", serial ? 1 : parallel::Threads(a.options.threads).concurrency()},
+          {"isa", name(median.isa)},
+          {"size", {a.options.width, a.options.height}},
+          {"map", {source.width(), source.height()}},
+          {"heights", {source.lowest(), source.highest()}},
+          {"camera",
+           {{"x", median.camera.x}, {"y", median.camera.y}, {"altitude", median.camera.altitude}}},
+          {"slices", median.slices},
+          {"samples", median.samples},
+          {"visible", median.visible},
+          {"peak_bytes", median.peak_bytes},
+          {"load_ms", load_ms},
+          {"light_ms", light_ms},
+          {"stages_ms", std::move(stages)},
+          {"frame_ms",
+           {{"median", median.frame_ms},
+            {"min", frames.front().frame_ms},
+            {"max", frames.back().frame_ms},
+            {"frames", frames.size()}}}};
+}
+
+int run(TerrainArguments& a) {
+  check(a);
+  Timeline timeline;
+  Progress progress(a.quiet);
+  // Refuses what cannot be drawn before a large file is read.
+  terrain::TerrainRenderer renderer(a.options);
+
+  progress.show("loading");
+  const LoadedTerrain source(a.input);
+  const double load_ms = timeline.now_ms();
+  progress.show("lighting");
+  const terrain::Terrain terrain =
+      source.lit(a.light, {a.options.tiling, a.options.device, a.options.threads, a.options.isa});
+  const double light_ms = timeline.now_ms() - load_ms;
+  const terrain::TerrainCamera camera = camera_of(a, source);
+
+  Image<Rgba8> color(a.options.width, a.options.height);
+  std::vector<TerrainStats> frames;
+  for (int i = 0; i < a.frames; ++i) {
+    progress.show("rendering frame " + std::to_string(i + 1) + " of " + std::to_string(a.frames));
+    frames.push_back(renderer.render(terrain, camera, {.color8 = color.view()}));
+  }
+  if (a.color) io::write_png(a.color.file, color.view());
+  if (a.depth) {
+    Image<float> depth(a.options.width, a.options.height);
+    renderer.render(terrain, camera, {.depth = depth.view()});
+    write_depth(a.depth, depth.view());
+  }
+  progress.clear();
+  const auto fastest = std::ranges::min(frames, {}, &TerrainStats::frame_ms).frame_ms;
+  if (a.stats)
+    write_json(a.stats.file, stats_json(std::move(frames), a, source, load_ms, light_ms));
+  if (!a.quiet && a.color)
+    std::fprintf(stderr, "%s: %dx%d, map %dx%d, %.1f ms%s\n", a.color.file.c_str(), a.options.width,
+                 a.options.height, source.width(), source.height(), fastest,
+                 a.frames > 1 ? " the fastest frame" : "");
+  return 0;
+}
+
+}  // namespace
+
+Command add_terrain_command(CLI::App& app) {
+  auto arguments = std::make_shared<TerrainArguments>();
+  CLI::App& command =
+      *app.add_subcommand("terrain", "Fly over a height map or a function (Voxel Space)");
+  add_terrain_inputs(command, *arguments);
+  add_outputs(command, *arguments);
+  add_terrain_camera(command, *arguments);
+  add_terrain_picture(command, *arguments);
+  add_terrain_light(command, *arguments);
+  add_terrain_machine(command, *arguments);
+  add_frames(command, *arguments);
+  std::string footer = "Functions:\n";
+  for (const terrain::FunctionInfo& f : terrain::named_functions())
+    footer.append("  ").append(f.name).append("\n      ").append(f.description).append("\n");
+  footer +=
+      "\nA cell is a pixel of the height map; heights, distances and positions are in cells.\n"
+      "Times: a frame goes from the lit map in memory to the finished image in memory; load_ms "
+      "and\n"
+      "light_ms come before, once.\n"
+      "\nExamples:\n"
+      "  rastrum terrain --height D1.png --color C1W.png -o flight.png\n"
+      "  rastrum terrain --height D1.png --color C1W.png --classic --size 800x450 -o original.png\n"
+      "  rastrum terrain --height SainteHelens.dem --tile clamp --sun 250,25 --shadows sharp -o "
+      "h.png\n"
+      "  rastrum terrain --function noise --filter bilinear --fog 0.002 --distance 2000 -o "
+      "noise.png\n"
+      "  rastrum terrain --function '30*sin(x/40)*cos(y/40)' --altitude 60 -o eggs.png\n"
+      "  rastrum terrain --height map.npy --filter mip --frames 20 --stats - -o map.png";
+  command.footer(footer);
+  return {&command, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace rastrum::cli

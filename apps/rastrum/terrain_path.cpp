@@ -1,0 +1,98 @@
+#include "terrain_path.hpp"
+
+#include <cassert>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include <rastrum/core/error.hpp>
+
+#include "camera_path.hpp"
+#include "json_fields.hpp"
+#include "json_file.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+using terrain::TerrainCamera;
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double TerrainCamera::*kColumns[] = {
+    &TerrainCamera::x,         &TerrainCamera::y,          &TerrainCamera::altitude,
+    &TerrainCamera::angle_rad, &TerrainCamera::horizon_px, &TerrainCamera::roll_rad};
+
+TerrainPathKey read_key(const JsonFields::Element& element, const TerrainPathKey& before,
+                        bool first) {
+  JsonFields fields(*element.value, element.place);
+  TerrainPathKey key = before;
+  TerrainCamera& c = key.camera;
+  const auto time = fields.number("time");
+  if (!time && !first) fields.fail("time", "is needed: the seconds at which the camera is here");
+  key.time_s = time.value_or(0);
+  if (!first && !(key.time_s > before.time_s))
+    fields.fail("time", "must be greater than the time of the key before");
+  if (const auto position = fields.numbers("position", 2)) {
+    c.x = (*position)[0];
+    c.y = (*position)[1];
+  }
+  c.altitude = fields.number("altitude").value_or(c.altitude);
+  if (const auto angle_deg = fields.number("angle")) c.angle_rad = *angle_deg * kDegree;
+  c.horizon_px = fields.number("horizon").value_or(c.horizon_px);
+  if (const auto roll_deg = fields.number("roll")) c.roll_rad = *roll_deg * kDegree;
+  fields.finish();
+  return key;
+}
+
+}  // namespace
+
+TerrainPath::TerrainPath(std::vector<TerrainPathKey> keys, Interpolation interpolation)
+    : keys_(std::move(keys)) {
+  assert(!keys_.empty());
+  std::vector<double> times;
+  for (const TerrainPathKey& key : keys_) times.push_back(key.time_s);
+  for (const auto column : kColumns) {
+    std::vector<double> values;
+    for (const TerrainPathKey& key : keys_) values.push_back(key.camera.*column);
+    curves_.emplace_back(times, std::move(values), interpolation, Tangent::curve);
+  }
+}
+
+TerrainCamera TerrainPath::at(double time_s) const {
+  TerrainCamera camera;
+  for (std::size_t i = 0; i < curves_.size(); ++i) camera.*kColumns[i] = curves_[i].at(time_s);
+  return camera;
+}
+
+TerrainPath read_terrain_path(const std::filesystem::path& file, const TerrainCamera& base) {
+  const nlohmann::ordered_json json = read_json(file);
+  JsonFields fields(json, file.string());
+  const Interpolation interpolation = read_interpolation(fields);
+  const std::vector<JsonFields::Element> elements = fields.array("keys");
+  static_cast<void>(fields.has("events"));  // of a script, which a window replays
+  static_cast<void>(fields.has("fps"));
+  fields.finish();
+  if (elements.empty()) fields.fail("keys", "a path needs at least one key");
+  std::vector<TerrainPathKey> keys;
+  TerrainPathKey before{.camera = base};
+  for (const JsonFields::Element& element : elements)
+    before = keys.emplace_back(read_key(element, before, keys.empty()));
+  return {std::move(keys), interpolation};
+}
+
+void write_terrain_path(const std::filesystem::path& file, std::span<const TerrainPathKey> keys) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const TerrainPathKey& key : keys) {
+    const TerrainCamera& c = key.camera;
+    list.push_back({{"time", key.time_s},
+                    {"position", {c.x, c.y}},
+                    {"altitude", c.altitude},
+                    {"angle", c.angle_rad / kDegree},
+                    {"horizon", c.horizon_px},
+                    {"roll", c.roll_rad / kDegree}});
+  }
+  write_json(file, {{"keys", std::move(list)}});
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,60 @@
+// The controls of a terrain: each edits a copy, which is set where one has changed.
+#include <imgui.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "panel.hpp"
+#include "terrain_subject.hpp"
+
+namespace rastrum::cli::window {
+namespace {
+
+template <class T>
+bool choose_value(const char* label, const std::vector<std::string>& names, T& value) {
+  std::string now = names[static_cast<std::size_t>(value)];
+  if (!choose_name(label, names, now)) return false;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i] == now) value = static_cast<T>(i);
+  return true;
+}
+
+bool slide(const char* label, double& value, float least, float most, const char* format,
+           ImGuiSliderFlags flags = ImGuiSliderFlags_None) {
+  auto v = static_cast<float>(value);
+  if (!ImGui::SliderFloat(label, &v, least, most, format, flags)) return false;
+  value = double{v};
+  return true;
+}
+
+bool edit_pose(TerrainPose& p) {
+  bool changed = slide("distance", p.distance, 10, 10000, "%.0f", ImGuiSliderFlags_Logarithmic);
+  changed |= slide("field of view", p.fov_rad, 0.1F, 3, "%.2f rad");
+  changed |= slide("sun azimuth", p.sun.azimuth_deg, 0, 360, "%.0f deg");
+  changed |= slide("sun elevation", p.sun.elevation_deg, -10, 90, "%.0f deg");
+  changed |= slide("altitude", p.camera.altitude, -100, 1000, "%.0f");
+  changed |= slide("roll", p.camera.roll_rad, -3.2F, 3.2F, "%.2f rad");
+  return changed;
+}
+
+}  // namespace
+
+void draw_terrain_controls(TerrainSubject& subject) {
+  TerrainPose pose = subject.control().pose();
+  if (edit_pose(pose)) subject.control().place(pose);
+  TerrainSubject::Settings s = subject.settings();
+  terrain::TerrainOptions& o = s.options;
+  bool changed = choose_value("filter", {"none", "bilinear", "mip"}, o.filter);
+  changed |= choose_value("shadows", {"none", "accumulated", "sharp", "soft"}, s.light.shadows);
+  changed |= slide("fog", o.fog.density, 0, 0.02F, "%.4f");
+  changed |= slide("fog begins", o.fog.start, 0, 2000, "%.0f");
+  changed |= choose_value("tiling", {"repeat", "mirror", "clamp"}, o.tiling);
+  changed |= choose_value("projection", {"planar", "cylindrical"}, o.projection);
+  changed |= choose_value("method", {"fast", "words"}, o.method);
+  changed |= ImGui::Checkbox("classic", &o.classic);
+  if (changed) subject.set(std::move(s));
+  if (ImGui::Button("next map")) subject.next_map();
+}
+
+}  // namespace rastrum::cli::window

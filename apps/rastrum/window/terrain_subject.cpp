@@ -1,0 +1,282 @@
+#include "terrain_subject.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+#include <rastrum/core/error.hpp>
+
+namespace rastrum::cli::window {
+namespace {
+
+using terrain::TerrainOptions;
+
+constexpr KeyHelp kKeys[] = {
+    {"1", "map or function"},      {"f1", "next map"}, {"b", "next filter"},
+    {"c", "next kind of shadows"}, {"g", "fog"},       {"v", "fast, or paper 3's scans"},
+    {"t", "next tiling"}};
+
+/// What a lit terrain depends on beside its map.
+auto light_key(const terrain::Light& l, terrain::Tiling tiling) {
+  return std::make_tuple(l.sun.azimuth_deg, l.sun.elevation_deg, l.shadows, l.hill_shading,
+                         l.ambient, l.sun_radius_deg, l.march.distance, l.march.steps, tiling);
+}
+
+template <class T>
+T next(T value, T last, bool back) {
+  const int n = static_cast<int>(last) + 1;
+  return static_cast<T>((static_cast<int>(value) + (back ? n - 1 : 1)) % n);
+}
+
+std::string name_of(const TerrainInput& input) {
+  return input.height ? input.height->string() : input.function;
+}
+
+}  // namespace
+
+/// What is kept from frame to frame: the map, the light on it, a renderer for moving pictures and
+/// one for full ones.
+class TerrainSubject::Stage {
+ public:
+  /// Reads the map unless it is the one that is there.
+  const LoadedTerrain& map(const TerrainInput& input) {
+    const std::string name = name_of(input);
+    if (!source_ || name != name_) {
+      lit_.reset();
+      source_ = std::make_unique<LoadedTerrain>(input);
+      name_ = name;
+    }
+    return *source_;
+  }
+  void put(const TerrainInput& input, std::unique_ptr<LoadedTerrain> source) {
+    lit_.reset();
+    source_ = std::move(source);
+    name_ = name_of(input);
+  }
+  const terrain::Terrain& lit(const terrain::Light& light, const TerrainOptions& o) {
+    const auto key = light_key(light, o.tiling);
+    if (!lit_ || key != key_) {
+      lit_.emplace(source_->lit(light, {o.tiling, o.device, o.threads, o.isa}));
+      key_ = key;
+    }
+    return *lit_;
+  }
+  terrain::TerrainRenderer& renderer(const TerrainOptions& options, std::uint64_t version) {
+    std::erase_if(kept_, [&](const Kept& k) { return k.version != version; });
+    auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) {
+      const TerrainOptions& o = k.renderer.options();
+      return o.width == options.width && o.height == options.height &&
+             o.distance == options.distance && o.fov_rad == options.fov_rad;
+    });
+    if (found == kept_.end()) {
+      if (kept_.size() == kMost) kept_.erase(kept_.begin());
+      kept_.push_back({version, terrain::TerrainRenderer(options)});
+      found = kept_.end() - 1;
+    }
+    std::rotate(found, found + 1, kept_.end());
+    return kept_.back().renderer;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 2;
+  struct Kept {
+    std::uint64_t version;
+    terrain::TerrainRenderer renderer;
+  };
+  std::string name_;
+  std::unique_ptr<LoadedTerrain> source_;
+  std::optional<terrain::Terrain> lit_;
+  decltype(light_key({}, {})) key_;
+  std::vector<Kept> kept_;
+};
+
+TerrainSubject::TerrainSubject(const TerrainSceneArguments& arguments,
+                               std::vector<TerrainInput> maps)
+    : maps_(std::move(maps)),
+      settings_{arguments.options, arguments.light},
+      control_(TerrainPose{}),
+      width_(arguments.options.width),
+      height_(arguments.options.height),
+      stage_(std::make_shared<Stage>()) {
+  TerrainPose home;
+  home.camera = camera_of(arguments, stage_->map(maps_.front()));
+  home.distance = arguments.options.distance;
+  home.fov_rad = arguments.options.fov_rad;
+  home.sun = arguments.light.sun;
+  control_ = TerrainControl(home);
+  control_.resize(arguments.options.width, arguments.options.height);
+}
+
+TerrainSubject::~TerrainSubject() = default;
+
+void TerrainSubject::set(Settings settings) {
+  settings_ = std::move(settings);
+  ++settings_version_;
+}
+
+void TerrainSubject::next_map() {
+  map_ = (map_ + 1) % maps_.size();
+  ++settings_version_;
+}
+
+void TerrainSubject::resize(int width, int height) {
+  width_ = width;
+  height_ = height;
+  control_.resize(width, height);
+}
+
+std::uint64_t TerrainSubject::version() const {
+  return settings_version_ + control_.version();
+}
+
+void TerrainSubject::handle(const Event& event) {
+  if (event.kind == Event::Kind::key_down && !event.ctrl)
+    for (const KeyHelp& help : kKeys)
+      if (help.has(event.key)) return change(event.key, event.shift);
+  control_.handle(event);
+}
+
+void TerrainSubject::change(std::string_view key, bool back) {
+  constexpr double kFogDensity = 0.002;  // half of the colour at 350 cells
+  Settings s = settings_;
+  TerrainOptions& o = s.options;
+  if (key == "f1") return next_map();
+  if (key == "1") {
+    const bool map = maps_[map_].height.has_value();
+    const auto other = std::find_if(maps_.begin(), maps_.end(), [&](const TerrainInput& m) {
+      return m.height.has_value() != map;
+    });
+    if (other == maps_.end()) return;
+    map_ = static_cast<std::size_t>(other - maps_.begin());
+  } else if (key == "b") {
+    o.filter = next(o.filter, terrain::Filter::mip, back);
+  } else if (key == "c") {
+    s.light.shadows = next(s.light.shadows, terrain::Shadows::soft, back);
+  } else if (key == "g") {
+    o.fog.density = o.fog.density > 0 ? 0 : kFogDensity;
+  } else if (key == "v") {
+    o.method = next(o.method, terrain::Method::words, back);
+  } else if (key == "t") {
+    o.tiling = next(o.tiling, terrain::Tiling::clamp, back);
+  }
+  set(std::move(s));
+}
+
+std::function<Drawn()> TerrainSubject::draw(int width, int height) {
+  const TerrainPose& pose = control_.pose();
+  TerrainOptions o = settings_.options;
+  terrain::Light light = settings_.light;
+  terrain::TerrainCamera camera = pose.camera;
+  light.sun = pose.sun;
+  o.distance = pose.distance;
+  if (!o.classic) o.fov_rad = pose.fov_rad;
+  // Fewer pixels see the same: what is given in pixels shrinks with them. The original program's
+  // scale is fixed, so it is always drawn in full.
+  if (o.classic) {
+    height = height_;
+    width = width_;
+  }
+  const double shrunk = static_cast<double>(height) / height_;
+  camera.horizon_px *= shrunk;
+  o.scale_px *= shrunk;
+  o.width = width;
+  o.height = height;
+  return [o, light, camera, input = maps_[map_], version = settings_version_,
+          stage = stage_]() -> Drawn {
+    terrain::TerrainRenderer& renderer = stage->renderer(o, version);
+    static_cast<void>(stage->map(input));
+    const terrain::Terrain& lit = stage->lit(light, o);
+    Drawn drawn{Image<Rgba8>(o.width, o.height), true, {}};
+    const terrain::TerrainStats s = renderer.render(lit, camera, {.color8 = drawn.image.view()});
+    const auto count = [](std::uint64_t n) { return std::to_string(n); };
+    drawn.figures = {s.frame_ms,
+                     s.stages,
+                     {{"slices", count(s.slices)},
+                      {"samples", count(s.samples)},
+                      {"visible", count(s.visible)},
+                      {"scratch", count(s.peak_bytes >> 10) + " KiB"},
+                      {"position", count(static_cast<std::uint64_t>(std::abs(s.camera.x))) + ", " +
+                                       count(static_cast<std::uint64_t>(std::abs(s.camera.y)))},
+                      {"instructions", std::string(name(s.isa))}}};
+    return drawn;
+  };
+}
+
+Worker::Job TerrainSubject::open(const std::filesystem::path& file) {
+  TerrainInput input;
+  input.height = file;
+  return [this, input, stage = stage_]() -> Worker::Done {
+    stage->put(input, std::make_unique<LoadedTerrain>(input));
+    return [this, input] {
+      maps_.push_back(input);
+      map_ = maps_.size() - 1;
+      ++settings_version_;
+    };
+  };
+}
+
+void TerrainSubject::set_options(const std::string& options) {
+  CLI::App app;
+  TerrainSceneArguments changed;
+  const TerrainPose& pose = control_.pose();
+  changed.options = settings_.options;
+  changed.options.distance = pose.distance;
+  changed.options.fov_rad = pose.fov_rad;
+  changed.light = settings_.light;
+  changed.light.sun = pose.sun;
+  add_terrain_picture(app, changed);
+  add_terrain_light(app, changed);
+  add_terrain_machine(app, changed);
+  try {
+    app.parse(options);
+  } catch (const CLI::ParseError& e) {
+    throw Error(Errc::invalid_argument, options + ": " + e.what());
+  }
+  TerrainPose now = pose;
+  now.distance = changed.options.distance;
+  now.fov_rad = changed.options.fov_rad;
+  now.sun = changed.light.sun;
+  control_.place(now);
+  set({changed.options, changed.light});
+}
+
+void TerrainSubject::write_camera(const std::filesystem::path& file) const {
+  const TerrainPathKey key{0, control_.pose().camera};
+  write_terrain_path(file, {&key, 1});
+}
+
+void TerrainSubject::record(const std::filesystem::path& file) {
+  std::vector<TerrainPathKey> keys = recorded_;
+  keys.push_back({static_cast<double>(keys.size()) * kRecordStep_s, control_.pose().camera});
+  write_terrain_path(file, keys);
+  recorded_ = std::move(keys);
+}
+
+std::pair<double, double> TerrainSubject::follow(const std::filesystem::path& file) {
+  path_ = read_terrain_path(file, control_.pose().camera);
+  return {path_->first_s(), path_->last_s()};
+}
+
+void TerrainSubject::go_to(double time_s) {
+  TerrainPose pose = control_.pose();
+  pose.camera = path_->at(time_s);
+  control_.place(pose);
+}
+
+std::string TerrainSubject::title() const {
+  return name_of(maps_[map_]);
+}
+
+std::span<const KeyHelp> TerrainSubject::command_keys() {
+  return kKeys;
+}
+
+std::vector<KeyHelp> TerrainSubject::keys() const {
+  std::vector<KeyHelp> all(TerrainControl::keys().begin(), TerrainControl::keys().end());
+  all.insert(all.end(), std::begin(kKeys), std::end(kKeys));
+  return all;
+}
+
+}  // namespace rastrum::cli::window

@@ -1,0 +1,66 @@
+// A terrain in the window: its maps, options, light and camera.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <rastrum/terrain/renderer.hpp>
+
+#include "subject.hpp"
+#include "terrain_control.hpp"
+#include "terrain_options.hpp"
+#include "terrain_path.hpp"
+
+namespace rastrum::cli::window {
+
+class TerrainSubject final : public Subject {
+ public:
+  /// What the panel changes, beside the pose.
+  struct Settings {
+    terrain::TerrainOptions options;
+    terrain::Light light;
+  };
+
+  /// `maps`: what F1 goes through, at least one; the first is read here. `arguments.input` is not
+  /// used. Throws Error, UsageError.
+  TerrainSubject(const TerrainSceneArguments& arguments, std::vector<TerrainInput> maps);
+  ~TerrainSubject() override;
+
+  [[nodiscard]] const Settings& settings() const { return settings_; }
+  void set(Settings settings);
+  [[nodiscard]] TerrainControl& control() { return control_; }
+  void next_map();
+
+  void handle(const Event& event) override;
+  void advance(double dt_s) override { control_.advance(dt_s); }
+  void resize(int width, int height) override;
+  [[nodiscard]] bool moving() const override { return control_.moving(); }
+  [[nodiscard]] std::uint64_t version() const override;
+  [[nodiscard]] std::function<Drawn()> draw(int width, int height) override;
+  [[nodiscard]] Worker::Job open(const std::filesystem::path& file) override;
+  void set_options(const std::string& options) override;
+  void write_camera(const std::filesystem::path& file) const override;
+  void record(const std::filesystem::path& file) override;
+  std::pair<double, double> follow(const std::filesystem::path& file) override;
+  void go_to(double time_s) override;
+  [[nodiscard]] std::string title() const override;
+  [[nodiscard]] std::vector<KeyHelp> keys() const override;
+  /// The keys that change options.
+  [[nodiscard]] static std::span<const KeyHelp> command_keys();
+
+ private:
+  class Stage;  // of the worker's thread
+  void change(std::string_view key, bool back);
+
+  std::vector<TerrainInput> maps_;
+  std::size_t map_ = 0;
+  Settings settings_;
+  TerrainControl control_;
+  int width_ = 1, height_ = 1;  ///< of the window, px
+  std::uint64_t settings_version_ = 1;
+  std::shared_ptr<Stage> stage_;
+  std::optional<TerrainPath> path_;
+  std::vector<TerrainPathKey> recorded_;
+};
+
+}  // namespace rastrum::cli::window

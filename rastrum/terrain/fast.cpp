@@ -1,0 +1,90 @@
+// The fast path, without paper 3's scans (its section 5.5 asks for that): a column keeps the row it
+// is drawn down to, a running minimum, and a sample that lies above it leaves a mark there, its
+// colour in the first row it shows. Columns go in blocks of 64, whose slices are walked near to far
+// in vectors of columns, until nothing can show any more: every column is full, or even the highest
+// peak of the map would stay below. Then rows are written once, top to bottom: the mark of a pixel,
+// or what is above it. So spans are never drawn, and bytes are written whole lines at a time.
+#include <bit>
+#include <cstring>
+#include <limits>
+
+#include <rastrum/terrain/blocks.hpp>
+#include <rastrum/terrain/methods.hpp>
+
+namespace rastrum::terrain {
+namespace {
+
+/// One block's walk over a terrain of functions: a call for the heights of a slice, one for the
+/// colours of what is visible.
+struct SurfaceWalk {
+  const Samples& samples;
+  alignas(64) double x[kBlockColumns], y[kBlockColumns];
+
+  void place(const Slice& slice, const ColumnBlock& block, std::size_t i, std::size_t column) {
+    const Setup& s = samples.setup;
+    x[i] = s.camera_x + static_cast<double>(s.fx + slice.z * block.ux[column]);
+    y[i] = s.camera_y + static_cast<double>(s.fy + slice.z * block.uy[column]);
+  }
+  void heights(const Slice& slice, std::size_t n, ColumnBlock& block) {
+    for (std::size_t i = 0; i < n; ++i) place(slice, block, i, i);
+    samples.terrain.surface().heights(x, y, n, block.heights);
+  }
+  void colors(const Slice& slice, const ColumnBlock& block, std::size_t n, Rgba8* out) {
+    for (std::size_t i = 0; i < n; ++i)
+      place(slice, block, i, static_cast<std::size_t>(block.mark[i]) % kBlockColumns);
+    samples.terrain.surface().colors(x, y, n, out);
+    for (std::size_t i = 0; i < n; ++i) out[i] = faded(out[i], samples.setup.fog, slice.clear);
+  }
+};
+
+Counts walk(const Samples& samples, const Kernels& kernels, std::size_t first, std::size_t n,
+            BlockMarks& marks) {
+  const Setup& setup = samples.setup;
+  const bool is_map = samples.terrain.is_map();
+  const bool direct = is_map && samples.map.colors_match();
+  ColumnBlock block;
+  std::copy_n(setup.ux.data() + first, n, block.ux);
+  std::copy_n(setup.uy.data() + first, n, block.uy);
+  block.restart(n, setup.height);
+  SurfaceWalk surface{samples, {}, {}};
+  Counts counts;
+  for (const Slice& slice : setup.slices) {
+    if (block.deepest <= slice.lowest_row) break;
+    counts.samples += n;
+    if (is_map)
+      kernels.heights(samples, slice, n, block);
+    else
+      surface.heights(slice, n, block);
+    const std::size_t visible =
+        kernels.occlude(setup.altitude, slice.rows, setup.horizon, n, block);
+    if (visible == 0) continue;
+    counts.visible += visible;
+    marks.put_depth(block, visible, slice.z);
+    if (direct && slice.clear == 256) {
+      const int level = std::min(slice.level, samples.map.pyramid->height_levels() - 1);
+      marks.put_cells(block, visible, samples.map.pyramid->colors(level).pixels().data());
+      continue;
+    }
+    Rgba8 colors[kBlockColumns];
+    if (is_map)
+      for (std::size_t i = 0; i < visible; ++i)
+        colors[i] =
+            samples.color(first + static_cast<std::size_t>(block.mark[i]) % kBlockColumns, slice);
+    else
+      surface.colors(slice, block, visible, colors);
+    marks.put_colors(block, visible, colors);
+  }
+  return counts;
+}
+
+}  // namespace
+
+Counts draw_fast(parallel::Threads& exec, Isa isa, BlockPool& pool, const Samples& samples,
+                 const TerrainTargets& targets) {
+  return draw_blocks(exec, isa, pool, samples.setup.sky, targets,
+                     static_cast<int>(samples.setup.ux.size()), samples.setup.height,
+                     [&](const Kernels& kernels, std::size_t first, std::size_t n,
+                         BlockMarks& marks) { return walk(samples, kernels, first, n, marks); });
+}
+
+}  // namespace rastrum::terrain

@@ -1,0 +1,93 @@
+// The scalar kernels: the operations of kernels_simd.cpp one column at a time.
+#include <rastrum/terrain/kernels.hpp>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace rastrum::terrain {
+namespace {
+
+void heights_scalar(const Samples& samples, const Slice& slice, std::size_t n,
+                    ColumnBlock& b) noexcept {
+  const MapView& map = samples.map;
+  const int level = std::min(slice.level, map.pyramid->height_levels() - 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    const float x = samples.setup.fx + slice.z * b.ux[i], y = samples.setup.fy + slice.z * b.uy[i];
+    b.heights[i] = map.height_at(x, y, level);
+    b.cells[i] = map.filter == Filter::bilinear ? 0 : map.cell_at(x, y, level);
+  }
+}
+
+template <class Real>
+std::size_t occlude_scalar(Real altitude, Real rows, Real horizon, std::size_t n,
+                           ColumnBlock& b) noexcept {
+  std::size_t visible = 0;
+  b.deepest = -std::numeric_limits<float>::infinity();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Real row = (altitude - static_cast<Real>(b.heights[i])) * rows + horizon;
+    if (!(row < static_cast<Real>(b.hidden[i]))) {
+      b.deepest = std::max(b.deepest, b.hidden[i]);
+      continue;
+    }
+    const auto top = static_cast<std::int32_t>(row > 0 ? row : 0);
+    b.hidden[i] = top > 0 ? static_cast<float>(top) : -std::numeric_limits<float>::infinity();
+    b.deepest = std::max(b.deepest, b.hidden[i]);
+    b.mark[visible] = top * static_cast<std::int32_t>(kBlockColumns) + static_cast<int>(i);
+    b.cell[visible++] = b.cells[i];
+  }
+  return visible;
+}
+
+void advance_scalar(std::size_t count, std::size_t columns, const double* dx, const double* dy,
+                    double* x, double* y) noexcept {
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t i = 0; i < columns; ++i) {
+      x[k] += dx[k];
+      y[k] += dy[k];
+    }
+}
+
+void classic_cells_scalar(const ClassicSlices& s, const MapSize& map, std::size_t n,
+                          std::int32_t* cells) noexcept {
+  const auto cell = [&map](double at, int size) {
+    return static_cast<std::int32_t>(
+        tiled(static_cast<std::int64_t>(std::floor(at)), size, map.tiling));
+  };
+  for (std::size_t k = 0; k < kClassicSlices; ++k) {
+    double x = s.x[k], y = s.y[k];
+    for (std::size_t i = 0; i < n; ++i, x += s.dx[k], y += s.dy[k])
+      cells[i * kClassicSlices + k] = cell(y, map.height) * map.width + cell(x, map.width);
+  }
+}
+
+void fill_scalar(std::uint32_t* marks, int first, int last, std::size_t n, std::uint32_t* above,
+                 std::uint32_t* out, std::ptrdiff_t stride, bool) noexcept {
+  for (int y = first; y < last; ++y) {
+    std::uint32_t* row = marks + static_cast<std::size_t>(y) * kBlockColumns;
+    for (std::size_t i = 0; i < n; ++i) {
+      above[i] = row[i] != 0 ? row[i] : above[i];
+      row[i] = 0;
+      out[y * stride + static_cast<std::ptrdiff_t>(i)] = above[i];
+    }
+  }
+}
+
+constexpr Kernels kScalar{heights_scalar, occlude_scalar<float>, occlude_scalar<double>,
+                          advance_scalar, classic_cells_scalar,  fill_scalar};
+
+}  // namespace
+
+const Kernels& kernels(Isa isa) noexcept {
+  static const auto tables = [] {
+    std::array<Kernels, static_cast<std::size_t>(Isa::neon) + 1> all;
+    all.fill(kScalar);
+    // Only those of this machine: filling a table is compiled for its instruction set, too.
+    for (const Isa available : available_isas())
+      fill_kernels(available, all[static_cast<std::size_t>(available)]);
+    return all;
+  }();
+  return tables[static_cast<std::size_t>(isa)];
+}
+
+}  // namespace rastrum::terrain

@@ -1,0 +1,89 @@
+// The SIMD leaves of the fast path: one table of functions per instruction set, chosen once per
+// frame. They work on the columns of one block; every table gives the same bits.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <rastrum/core/image.hpp>
+#include <rastrum/parallel/device.hpp>
+#include <rastrum/terrain/samples.hpp>
+
+namespace rastrum::terrain {
+
+/// Columns of a block: a row of it is four cache lines of colours, and its marks at 1,080 rows stay
+/// within 276 KiB of a second-level cache.
+inline constexpr std::size_t kBlockColumns = 64;
+
+/// What is known about a block's columns while its slices are walked. Arrays are aligned for
+/// vectors, and whole: columns beyond the picture are hidden from the start.
+struct ColumnBlock {
+  alignas(64) float ux[kBlockColumns] = {}, uy[kBlockColumns] = {};
+  /// The first row that is drawn, −inf once that is the picture's first one.
+  alignas(64) float hidden[kBlockColumns];
+  float deepest;  ///< the largest of them: no column shows anything from there on
+  alignas(64) float heights[kBlockColumns] = {};       ///< of the slice at hand
+  alignas(64) std::int32_t cells[kBlockColumns] = {};  ///< where they were read, in their level
+  /// What of it is visible: where its mark belongs (row · kBlockColumns + column), and its cell.
+  /// Room for a vector beyond the last.
+  alignas(64) std::int32_t mark[kBlockColumns * 2], cell[kBlockColumns * 2];
+
+  /// Nothing is drawn yet in columns [0, n) of a picture `height` rows high.
+  void restart(std::size_t n, int height) {
+    for (std::size_t i = 0; i < kBlockColumns; ++i)
+      hidden[i] = i < n ? static_cast<float>(height) : -std::numeric_limits<float>::infinity();
+    deepest = static_cast<float>(height);
+  }
+};
+
+/// Where classic samples stand: N slices side by side, so that positions accumulate along each.
+struct ClassicSlices {
+  const double* x;  ///< at the block's first column
+  const double* y;
+  const double* dx;
+  const double* dy;
+};
+
+struct MapSize {
+  int width, height;
+  Tiling tiling;
+  bool powers_of_two;  ///< and repeated, and no position beyond ±2³¹
+};
+
+struct Kernels {
+  /// Heights and cells of columns [0, n) on a slice. No cells with Filter::bilinear.
+  void (*heights)(const Samples& samples, const Slice& slice, std::size_t n,
+                  ColumnBlock& block) noexcept;
+
+  /// The columns whose sample lies above all before: lowers `hidden` and `deepest`, lists them in
+  /// order in `mark` and `cell`; returns how many. Its row is (altitude − height) · rows + horizon.
+  std::size_t (*occlude)(float altitude, float rows, float horizon, std::size_t n,
+                         ColumnBlock& block) noexcept;
+  /// The same in float64, `hidden` being integers all the same.
+  std::size_t (*occlude64)(double altitude, double rows, double horizon, std::size_t n,
+                           ColumnBlock& block) noexcept;
+
+  /// The positions of `count` slices moved on by `columns` columns, one addition each.
+  void (*advance)(std::size_t count, std::size_t columns, const double* dx, const double* dy,
+                  double* x, double* y) noexcept;
+  /// cells[column · kClassicSlices + slice] of kClassicSlices slices.
+  void (*classic_cells)(const ClassicSlices& slices, const MapSize& map, std::size_t n,
+                        std::int32_t* cells) noexcept;
+
+  /// Gives every empty (0) mark of rows [first, last) the one above it, or what `above` holds, and
+  /// writes rows to `out`; the marks are empty afterwards. Streams past the caches with `stream`.
+  void (*fill)(std::uint32_t* marks, int first, int last, std::size_t n, std::uint32_t* above,
+               std::uint32_t* out, std::ptrdiff_t stride, bool stream) noexcept;
+};
+
+/// Slices that classic positions are accumulated for at a time; their number is rounded up to it.
+inline constexpr std::size_t kClassicSlices = 8;
+
+/// The best table at or below `isa` that was compiled for this architecture.
+[[nodiscard]] const Kernels& kernels(Isa isa) noexcept;
+
+/// Where the Highway source meets the table; returns false where `isa` was not compiled.
+bool fill_kernels(Isa isa, Kernels& table) noexcept;
+
+}  // namespace rastrum::terrain

@@ -1,0 +1,170 @@
+// The classic picture against a transcription of the original program's rules (FACTS, "Voxel
+// Space") that shares no code with the library: integer maps, its own tiling, one pixel at a time.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/terrain/renderer.hpp>
+
+#include "tests/terrain/maps.hpp"
+
+namespace rastrum::terrain {
+namespace {
+
+struct Original {
+  int map_width, map_height;
+  std::vector<std::uint8_t> altitude;
+  std::vector<std::uint32_t> color;  ///< 0xAABBGGRR
+};
+
+Original original_of(const HeightMap& map) {
+  Original o{map.heights.width(), map.heights.height(), {}, {}};
+  for (const float h : map.heights.pixels()) o.altitude.push_back(static_cast<std::uint8_t>(h));
+  for (const Rgba8 c : map.colors.pixels())
+    o.color.push_back(0xFF000000U | static_cast<std::uint32_t>(c.b) << 16 |
+                      static_cast<std::uint32_t>(c.g) << 8 | c.r);
+  return o;
+}
+
+/// The rules as the original has them; the map repeats with its own size.
+std::vector<std::uint32_t> original_frame(const Original& map, TerrainCamera camera, int W, int H,
+                                          double distance) {
+  const auto offset = [&](double x, double y) {
+    double row = std::fmod(std::floor(y), map.map_height);
+    double col = std::fmod(std::floor(x), map.map_width);
+    if (row < 0) row += map.map_height;
+    if (col < 0) col += map.map_width;
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(map.map_width) +
+           static_cast<std::size_t>(col);
+  };
+  const double ground = map.altitude[offset(camera.x, camera.y)];
+  if (ground + 10 > camera.altitude) camera.altitude = ground + 10;
+
+  std::vector<std::uint32_t> screen(static_cast<std::size_t>(W) * static_cast<std::size_t>(H),
+                                    0xFFE09090);
+  std::vector<double> hiddeny(static_cast<std::size_t>(W), H);
+  const double sinang = std::sin(camera.angle_rad), cosang = std::cos(camera.angle_rad);
+  double deltaz = 1;
+  double z = 1;
+  while (z < distance) {
+    double plx = -cosang * z - sinang * z;
+    double ply = sinang * z - cosang * z;
+    const double prx = cosang * z - sinang * z;
+    const double pry = -sinang * z - cosang * z;
+    const double dx = (prx - plx) / W;
+    const double dy = (pry - ply) / W;
+    plx += camera.x;
+    ply += camera.y;
+    const double invz = 1 / z * 240;
+    for (int i = 0; i < W; ++i) {
+      const std::size_t at = offset(plx, ply);
+      const double h = std::trunc((camera.altitude - map.altitude[at]) * invz + camera.horizon_px);
+      double& hidden = hiddeny[static_cast<std::size_t>(i)];
+      for (double y = h < 0 ? 0 : h; y < hidden; ++y)
+        screen[static_cast<std::size_t>(y) * static_cast<std::size_t>(W) +
+               static_cast<std::size_t>(i)] = map.color[at];
+      if (h < hidden) hidden = h;
+      plx += dx;
+      ply += dy;
+    }
+    deltaz += 0.005;
+    z += deltaz;
+  }
+  return screen;
+}
+
+std::size_t differences(const Image<Rgba8>& picture, const std::vector<std::uint32_t>& screen) {
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < screen.size(); ++i) {
+    const Rgba8 c = picture.pixels()[i];
+    const std::uint32_t mine = static_cast<std::uint32_t>(c.a) << 24 |
+                               static_cast<std::uint32_t>(c.b) << 16 |
+                               static_cast<std::uint32_t>(c.g) << 8 | c.r;
+    different += mine != screen[i];
+  }
+  return different;
+}
+
+TerrainOptions classic(int width, int height, double distance) {
+  TerrainOptions options;
+  options.classic = true;
+  options.width = width;
+  options.height = height;
+  options.distance = distance;
+  return options;
+}
+
+/// Every way to draw it, each compared with the transcription.
+void expect_original(const HeightMap& map, const TerrainCamera& camera, TerrainOptions options,
+                     bool all) {
+  const std::vector<std::uint32_t> screen =
+      original_frame(original_of(map), camera, options.width, options.height, options.distance);
+  const Terrain terrain(map);
+  const auto compare = [&](const char* name) {
+    Image<Rgba8> picture(options.width, options.height);
+    TerrainRenderer(options).render(terrain, camera, {picture.view(), {}});
+    EXPECT_EQ(differences(picture, screen), 0U)
+        << name << " threads " << options.threads << " camera " << camera.x << ", " << camera.y
+        << ", " << camera.altitude << ", " << camera.angle_rad << ", horizon " << camera.horizon_px
+        << ", " << options.width << "x" << options.height << ", distance " << options.distance
+        << ", map " << map.heights.width() << "x" << map.heights.height();
+  };
+  if (all) {
+    options.device = Device::serial;
+    compare("serial");
+  }
+  options.device = Device::threads;
+  for (const int threads : {1, 2, 8}) {
+    options.threads = threads;
+    for (const Isa isa : available_isas()) {
+      if (!all && isa != available_isas().back()) continue;
+      options.isa = isa;
+      compare(std::string(name(isa)).c_str());
+    }
+  }
+}
+
+TEST(Classic, EqualsTheOriginalOnRandomCamerasAndMaps) {
+  std::mt19937 random(3);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const int sizes[][2] = {{1024, 1024}, {64, 64},  {1, 1},    {1, 37},  {53, 1},
+                          {100, 60},    {256, 64}, {333, 77}, {31, 512}};
+  for (int i = 0; i < 1000; ++i) {
+    const auto& size = sizes[i % 100 == 0 ? 0 : 1 + i % 8];
+    const HeightMap map = test::random_map(size[0], size[1], random, between(0, 1));
+    TerrainCamera camera;
+    const double far = i % 7 == 0 ? 1e9 : i % 3 == 0 ? 5000 : 500;
+    camera.x = between(-far, far);
+    camera.y = between(-far, far);
+    camera.altitude = i % 11 == 0 ? between(-1e6, 1e6) : between(-50, 400);
+    camera.angle_rad = between(-7, 7);
+    camera.horizon_px = between(-150, 300);
+    const int width = 1 + static_cast<int>(random() % 200);
+    const int height = 1 + static_cast<int>(random() % 120);
+    expect_original(map, camera, classic(width, height, between(0, i % 5 == 0 ? 2000 : 300)),
+                    i % 4 == 0);
+    if (HasFailure()) return;
+  }
+}
+
+TEST(Classic, EqualsTheOriginalOnLargePictures) {
+  std::mt19937 random(4);
+  for (const double rough : {0.02, 0.4}) {
+    const HeightMap map = test::random_map(1024, 1024, random, rough);
+    for (const double distance : {800.0, 2000.0}) {
+      expect_original(map, {}, classic(800, 450, distance), true);
+      expect_original(map, {.angle_rad = 2.1}, classic(1920, 1080, distance), false);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rastrum::terrain
