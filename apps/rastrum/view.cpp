@@ -61,10 +61,8 @@ Camera choose_camera(const ViewOptions& o, const Scene& scene, const SceneView& 
     const double fov_rad = o.fov_deg.value_or(60) * std::numbers::pi / 180;
     camera = fit_camera(view, static_cast<float>(fov_rad), o.orthographic);
     if (o.eye) {
-      const BoundingSphere sphere{camera.target,
-                                  distance(camera.eye, camera.target) * std::sin(fov_rad / 2)};
       camera.eye = *o.eye;
-      place_planes(camera, sphere);
+      place_planes(camera, bounding_sphere(view));
     }
   }
   if (o.eye) camera.eye = *o.eye;

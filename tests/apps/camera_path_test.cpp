@@ -182,7 +182,7 @@ TEST_F(CameraPathFile, PicturesAreThoseOfTheirCameras) {
     must(args);
     const std::string n = std::to_string(number++);
     EXPECT_TRUE(same_pixels(png("one.png"), png("f_0" + n + ".png"))) << eye;
-    EXPECT_EQ(read("one.npy"), read("d" + n + ".npy")) << eye;
+    EXPECT_TRUE(read("one.npy") == read("d" + n + ".npy")) << eye;
   }
   EXPECT_FALSE(std::filesystem::exists(path("f_03.png")));
 }
@@ -273,7 +273,7 @@ TEST_F(FakeFfmpeg, ItsFailureIsOursInItsWords) {
 }
 
 TEST_F(FakeFfmpeg, AFailureAfterAllPicturesCountsToo) {
-  make("while read -r line; do :; done; exit 1\n");
+  make("/bin/cat >/dev/null; exit 1\n");
   const Outcome r = video();
   EXPECT_EQ(r.status, 1);
   EXPECT_NE(r.err.find("ffmpeg failed"), std::string::npos) << r.err;

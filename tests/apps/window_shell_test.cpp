@@ -1,6 +1,5 @@
 // The window itself: a virtual X server, real keys and buttons by xdotool, and the program's own
 // screenshots, which say where the camera stands and are compared with `rastrum render`.
-#include <X11/Xlib.h>
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,10 +13,9 @@
 #include <thread>
 
 #include "program.hpp"
-
-// X.h's names are macros.
-#undef Success
-#undef None
+// clang-format off: last, since its names are macros
+#include <X11/Xlib.h>
+// clang-format on
 
 namespace rastrum::test {
 namespace {
@@ -102,7 +100,7 @@ void press_close(const std::string& window) {
   XCloseDisplay(display);
 }
 
-class Window : public Program {
+class WindowTest : public Program {
  protected:
   void SetUp() override {
     Program::SetUp();
@@ -213,7 +211,7 @@ class Window : public Program {
 
 const std::vector<std::string> kTeapot{"builtin:teapot"};
 
-TEST_F(Window, KeysMoveTheCameraAndScreenshotsAreWhatRenderDraws) {
+TEST_F(WindowTest, KeysMoveTheCameraAndScreenshotsAreWhatRenderDraws) {
   open({"builtin:teapot", "--size", "400x300"});
   const std::string home = screenshot();
   expect_rendered(home, kTeapot);
@@ -238,7 +236,7 @@ TEST_F(Window, KeysMoveTheCameraAndScreenshotsAreWhatRenderDraws) {
   expect_closed();
 }
 
-TEST_F(Window, TheMouseOrbitsPansAndZooms) {
+TEST_F(WindowTest, TheMouseOrbitsPansAndZooms) {
   open({"builtin:teapot", "--size", "700x500"});
   const auto home = key_of(screenshot());
   // Right of the panel.
@@ -262,7 +260,7 @@ TEST_F(Window, TheMouseOrbitsPansAndZooms) {
   expect_closed();
 }
 
-TEST_F(Window, KeysChangeThePicture) {
+TEST_F(WindowTest, KeysChangeThePicture) {
   open({"builtin:teapot", "--size", "300x200"});
   std::vector<std::string> options{"builtin:teapot"};
   const auto shows = [&](const std::string& keys, std::vector<std::string> more) {
@@ -285,7 +283,7 @@ TEST_F(Window, KeysChangeThePicture) {
   expect_closed();
 }
 
-TEST_F(Window, AResizeKeepsThePictureRight) {
+TEST_F(WindowTest, AResizeKeepsThePictureRight) {
   open({"builtin:teapot", "--size", "640x480"});
   EXPECT_EQ(png(screenshot() + ".png").width(), 640);
   for (const char* size : {"333 250", "900 700", "1 1"}) {
@@ -304,7 +302,7 @@ TEST_F(Window, AResizeKeepsThePictureRight) {
   expect_closed();
 }
 
-TEST_F(Window, ThePanelChangesThePicture) {
+TEST_F(WindowTest, ThePanelChangesThePicture) {
   open({"builtin:teapot", "--size", "700x600"});
   const std::string before = screenshot();
   // Where a click lands depends on ImGui's layout; some row of the panel is the heat map's box, and
@@ -323,7 +321,7 @@ TEST_F(Window, ThePanelChangesThePicture) {
   expect_closed();
 }
 
-TEST_F(Window, AScriptEndsTheWindowItself) {
+TEST_F(WindowTest, AScriptEndsTheWindowItself) {
   write("s.json", R"({"fps": 30, "keys": [{"eye": [6, 4, 6], "target": [0, 1, 0]},
                                           {"time": 0.5, "eye": [-6, 4, 6]}],
       "events": [{"time": 0.2, "screenshot": "a.png"}, {"time": 0.3, "size": [320, 200]},
@@ -335,7 +333,7 @@ TEST_F(Window, AScriptEndsTheWindowItself) {
   EXPECT_EQ(png("b.png").width(), 320);
 }
 
-TEST_F(Window, WithoutADisplayItSaysSo) {
+TEST_F(WindowTest, WithoutADisplayItSaysSo) {
   ::setenv("DISPLAY", ":98765", 1);
   const Outcome r = run({"view", "builtin:teapot"});
   EXPECT_EQ(r.status, 1);

@@ -1,6 +1,7 @@
 #include "terrain_subject.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <tuple>
@@ -189,9 +190,11 @@ std::function<Drawn()> TerrainSubject::draw(int width, int height) {
     static_cast<void>(stage->map(input));
     const terrain::Terrain& lit = stage->lit(light, o);
     Drawn drawn{Image<Rgba8>(o.width, o.height), true, {}};
+    const auto begin = std::chrono::steady_clock::now();
     const terrain::TerrainStats s = renderer.render(lit, camera, {.color8 = drawn.image.view()});
+    const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - begin;
     const auto count = [](std::uint64_t n) { return std::to_string(n); };
-    drawn.figures = {s.frame_ms,
+    drawn.figures = {ms.count(),
                      s.stages,
                      {{"slices", count(s.slices)},
                       {"samples", count(s.samples)},
