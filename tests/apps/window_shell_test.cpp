@@ -112,7 +112,9 @@ class WindowTest : public Program {
     int ends[2];
     ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
     server_.start({"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen", "0", "1024x800x24",
-                   "-nolisten", "tcp"},
+                   "-nolisten", "tcp",
+                   // Else it starts anew, and refuses who comes, whenever xdotool leaves it empty.
+                   "-noreset"},
                   path(""), path("").string() + "../" + name("Xvfb.err"), ends[1]);
     ::close(ends[1]);
     // The server writes its number once it is there; the end of the pipe if it never is.

@@ -5,6 +5,7 @@
 
 #include <rastrum/core/error.hpp>
 
+#include "arguments.hpp"
 #include "program.hpp"
 #include "window/mesh_subject.hpp"
 #include "window/script.hpp"
@@ -206,7 +207,7 @@ class MeshViewerTest : public Program {
     write("script.json", script);
     cli::SceneArguments a;
     a.inputs = {input};
-    a.render.background = {0.1F, 0.2F, 0.3F, 1};
+    a.render.background = cli::parse_color("", "#1a334d");
     auto subject = std::make_unique<MeshSubject>(a, load_scene(a));
     std::vector<KeyHelp> keys = subject->keys();
     ViewerOptions options;

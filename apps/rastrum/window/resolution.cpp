@@ -36,6 +36,9 @@ double Resolution::expected_ms(std::size_t step) const {
 
 std::size_t Resolution::moving_step() const {
   constexpr double kWorth = 1.25;
+  // One size does not tell pixels from triangles: the next one does.
+  const bool one = ms_[newest_] && !other_;
+  if (one && newest_ > 0 && expected_ms(0) > target_ms_) return newest_ - 1;
   const double most = std::max(target_ms_, kWorth * expected_ms(kScales.size() - 1));
   for (std::size_t step = 0; step < kScales.size(); ++step)
     if (expected_ms(step) <= most) return step;

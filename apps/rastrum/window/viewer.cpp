@@ -135,8 +135,8 @@ bool Viewer::busy() const {
          next_step().has_value() || (shown_.step != 0 && !resting());
 }
 
-void Viewer::submit(Worker::Job job, std::function<void()> failed) {
-  worker_.submit([this, job = std::move(job), failed = std::move(failed)]() -> Worker::Done {
+void Viewer::submit(Worker::Job job, std::function<void(const std::string&)> failed) {
+  worker_.submit([job = std::move(job), failed = std::move(failed)]() -> Worker::Done {
     std::string what;
     try {
       return job();
@@ -145,10 +145,7 @@ void Viewer::submit(Worker::Job job, std::function<void()> failed) {
     } catch (const std::exception& e) {
       what = e.what();
     }
-    return [this, what, failed] {
-      error_ = what;
-      if (failed) failed();
-    };
+    return [what, failed] { failed(what); };
   });
 }
 
@@ -156,7 +153,8 @@ void Viewer::draw(std::size_t step) {
   State state = now();
   state.step = step;
   std::function<Drawn()> drawing;
-  const auto show_nothing_new = [this, state] {
+  const auto show_nothing_new = [this, state](const std::string& what) {
+    draw_error_ = what;
     shown_ = state;  // not tried again until something changes
     shown_.step = 0;
     failed_ = true;
@@ -164,8 +162,7 @@ void Viewer::draw(std::size_t step) {
   try {
     drawing = subject_->draw(scaled(state.width, step), scaled(state.height, step));
   } catch (const std::exception& e) {
-    error_ = e.what();
-    show_nothing_new();
+    show_nothing_new(e.what());
     return;
   }
   submit(
@@ -176,7 +173,7 @@ void Viewer::draw(std::size_t step) {
           shown_ = state;
           ++serial_;
           failed_ = false;
-          error_.clear();
+          draw_error_.clear();
           resolution_.add(state.step, drawn->figures.frame_ms);
           if (history_ms_.size() == kHistory) history_ms_.erase(history_ms_.begin());
           history_ms_.push_back(static_cast<float>(drawn->figures.frame_ms));
@@ -192,10 +189,12 @@ void Viewer::write_screenshot(const std::filesystem::path& file) {
     error_ = e.what();
     return;
   }
-  submit([this, file, picture = picture_]() -> Worker::Done {
-    io::write_png(file, picture->image.view());
-    return [this, file] { notice_ = "wrote " + file.string(); };
-  });
+  submit(
+      [this, file, picture = picture_]() -> Worker::Done {
+        io::write_png(file, picture->image.view());
+        return [this, file] { notice_ = "wrote " + file.string(); };
+      },
+      [this](const std::string& what) { error_ = what; });
 }
 
 bool Viewer::update() {
@@ -205,14 +204,16 @@ bool Viewer::update() {
     const std::filesystem::path file = opens_.front();
     opens_.erase(opens_.begin());
     notice_ = "reading " + file.string();
-    submit([this, file, job = subject_->open(file)]() -> Worker::Done {
-      return [this, file, done = job()] {
-        done();
-        resolution_.forget();
-        error_.clear();
-        notice_ = "showing " + file.string();
-      };
-    });
+    submit(
+        [this, file, job = subject_->open(file)]() -> Worker::Done {
+          return [this, file, done = job()] {
+            done();
+            resolution_.forget();
+            error_.clear();
+            notice_ = "showing " + file.string();
+          };
+        },
+        [this](const std::string& what) { error_ = what; });
     return true;
   }
   if (const auto step = next_step()) {

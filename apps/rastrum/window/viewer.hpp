@@ -55,7 +55,11 @@ class Viewer {
   [[nodiscard]] const std::vector<float>& history_ms() const { return history_ms_; }
   /// Something to do or to wait for: update() wants to be called soon.
   [[nodiscard]] bool busy() const;
-  [[nodiscard]] const std::string& error() const { return error_; }
+  /// Why there is no picture of what is wanted, or else what went wrong with the last file or
+  /// option.
+  [[nodiscard]] const std::string& error() const {
+    return draw_error_.empty() ? error_ : draw_error_;
+  }
   [[nodiscard]] const std::string& notice() const { return notice_; }
   void set_adaptive(bool adaptive) { options_.adaptive = adaptive; }
   [[nodiscard]] const ViewerOptions& options() const { return options_; }
@@ -79,7 +83,7 @@ class Viewer {
   void draw(std::size_t step);
   void write_screenshot(const std::filesystem::path& file);
   /// Runs `job` on the worker; what it throws becomes the error.
-  void submit(Worker::Job job, std::function<void()> failed = {});
+  void submit(Worker::Job job, std::function<void(const std::string& what)> failed);
   [[nodiscard]] std::filesystem::path free_name() const;
   void record();
 
@@ -93,7 +97,7 @@ class Viewer {
   std::shared_ptr<const Drawn> picture_;
   std::uint64_t serial_ = 0;
   std::vector<float> history_ms_;
-  std::string error_, notice_;
+  std::string draw_error_, error_, notice_;
   std::vector<std::filesystem::path> screenshots_, opens_;
   std::filesystem::path recording_;
   Worker worker_;  ///< last: its thread uses what is above
