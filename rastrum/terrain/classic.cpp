@@ -72,13 +72,27 @@ struct Table {
       }
     });
   }
+
+  /// No height on slices [first, last] of a block of n columns exceeds it.
+  [[nodiscard]] double highest(const Ceiling& ceiling, Tiling tiling, const double* block_x,
+                               const double* block_y, std::size_t first, std::size_t last,
+                               std::size_t n) const {
+    const auto cells = [&](const double* at, const std::vector<double>& step) {
+      const double a = at[first], b = at[last], c = a + step[first] * static_cast<double>(n),
+                   d = b + step[last] * static_cast<double>(n);
+      // One more on each side, for what accumulating rounds.
+      return CellRange{static_cast<std::int64_t>(std::floor(std::min({a, b, c, d}))) - 1,
+                       static_cast<std::int64_t>(std::floor(std::max({a, b, c, d}))) + 1};
+    };
+    return static_cast<double>(ceiling.over(cells(block_x, dx), cells(block_y, dy), tiling));
+  }
 };
 
 }  // namespace
 
 Counts draw_classic(parallel::Threads& exec, Isa isa, BlockPool& pool, const Terrain& terrain,
-                    const TerrainOptions& options, const TerrainCamera& camera,
-                    const TerrainTargets& targets) {
+                    const Ceiling& ceiling, const TerrainOptions& options,
+                    const TerrainCamera& camera, const TerrainTargets& targets) {
   const std::vector<Line> lines = lines_of(options, camera);
   const auto columns = static_cast<std::size_t>(options.width);
   const Table table(exec, kernels(isa), lines, (columns + kBlockColumns - 1) / kBlockColumns,
@@ -105,9 +119,18 @@ Counts draw_classic(parallel::Threads& exec, Isa isa, BlockPool& pool, const Ter
         for (std::size_t k = 0; k < lines.size(); ++k) {
           if (static_cast<double>(block.deepest) <= table.lowest_row[k]) break;
           const std::size_t lane = k % kClassicSlices;
-          if (lane == 0)
+          if (lane == 0) {
+            const std::size_t last = std::min(k + kClassicSlices, lines.size()) - 1;
+            const double top = table.highest(ceiling, options.tiling, x, y, k, last, n);
+            const double row = std::min((camera.altitude - top) * lines[k].rows,
+                                        (camera.altitude - top) * lines[last].rows);
+            if (static_cast<double>(block.deepest) <= row + camera.horizon_px) {
+              k = last;
+              continue;
+            }
             kernels.classic_cells({x + k, y + k, table.dx.data() + k, table.dy.data() + k}, map, n,
                                   cells);
+          }
           for (std::size_t i = 0; i < n; ++i) {
             block.cells[i] = cells[i * kClassicSlices + lane];
             block.heights[i] = heights.pixels()[static_cast<std::size_t>(block.cells[i])];

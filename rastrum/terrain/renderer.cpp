@@ -24,6 +24,7 @@ struct TerrainRenderer::Impl {
   BlockPool pool;
   parallel::Serial serial;
   std::optional<parallel::Threads> exec;
+  std::optional<Ceiling> ceiling;
   std::optional<Pyramid> pyramid;  ///< of the map that was drawn last
 };
 
@@ -55,20 +56,24 @@ TerrainStats TerrainRenderer::render(const Terrain& terrain, const TerrainCamera
   const std::optional<double> clearance = options.classic ? 10 : options.ground_clearance;
   if (clearance) stats.camera = above_ground(terrain, given, *clearance, options.tiling);
 
+  if (terrain.is_map() && impl_->exec && !(impl_->ceiling && impl_->ceiling->is_of(terrain)))
+    impl_->ceiling.emplace(terrain.heights());
+
   Counts counts;
   if (options.classic) {
     counts = impl_->exec && terrain.is_map()
-                 ? draw_classic(*impl_->exec, impl_->isa, impl_->pool, terrain, options,
-                                stats.camera, targets)
+                 ? draw_classic(*impl_->exec, impl_->isa, impl_->pool, terrain, *impl_->ceiling,
+                                options, stats.camera, targets)
                  : draw_classic_reference(terrain, options, stats.camera, targets);
   } else {
     const Setup setup = set_up(options, stats.camera, terrain);
-    Samples samples{setup, terrain, {}};
+    Samples samples{setup, terrain, {}, nullptr};
     if (terrain.is_map()) {
       const bool whole = options.filter == Filter::mip;
       if (!impl_->pyramid || !impl_->pyramid->is_of(terrain, whole))
         impl_->pyramid.emplace(terrain.heights(), terrain.colors(), whole);
       samples.map = MapView(*impl_->pyramid, options, setup);
+      samples.ceiling = impl_->ceiling ? &*impl_->ceiling : nullptr;
     }
     stats.slices = setup.slices.size();
     if (options.method == Method::words)
