@@ -97,7 +97,7 @@ TEST(Operators, AreAssociative) {
   }
 }
 
-TEST(Bilinear, MeetsTheCellsAtTheirCentresAndIsRightAtWholeCoordinates) {
+TEST(Bilinear, IsRightAtCentresAndAtWholeCoordinates) {
   std::mt19937 random(2);
   HeightMap map = test::random_map(8, 8, random, 1);
   const auto heights = std::make_shared<const Image<float>>(map.heights);
@@ -105,7 +105,7 @@ TEST(Bilinear, MeetsTheCellsAtTheirCentresAndIsRightAtWholeCoordinates) {
   const Pyramid pyramid(heights, colors, false);
   TerrainOptions options;
   options.filter = Filter::bilinear;
-  const MapView view(pyramid, options, Setup{});
+  const MapView view(pyramid, options, terrain::Setup{});
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x) {
       const float u = static_cast<float>(x), v = static_cast<float>(y);
@@ -223,7 +223,7 @@ void expect_matrix(const TerrainOptions& options, const TerrainCamera& given) {
              (std::ceil(py - 0.5 - 0.01) > y || std::ceil(py - 0.5 + 0.01) < y) ||
              std::abs(c[2] / c[3] - 0.5 / z) > 1e-6;
   });
-  EXPECT_GT(tested, 1000U);
+  EXPECT_GT(tested, 500U);
   EXPECT_EQ(wrong, 0U);
 }
 
@@ -298,12 +298,14 @@ TEST(Fog, EndsInItsColour) {
   TerrainOptions options = size(4, 300);
   options.distance = 3000;
   options.fog = {0.01, 0, Rgba8{9, 99, 199, 255}};
+  options.scale_px = 240;
   const Picture picture(flat, {.altitude = 50, .horizon_px = 50}, options);
-  EXPECT_TRUE(picture.is_sky(0, 49));
-  EXPECT_EQ(picture.colors(0, 49), kSky);
-  EXPECT_EQ(picture.colors(0, 51), (Rgba8{9, 99, 199, 255}));
-  const auto brightness = [&](int y) { return picture.colors(0, y).b; };
-  EXPECT_LT(brightness(299), brightness(60));
+  int first = 0;  // row of the ground
+  while (picture.is_sky(0, first)) ++first;
+  EXPECT_EQ(first, 54);
+  EXPECT_EQ(picture.colors(0, first - 1), kSky);
+  EXPECT_EQ(picture.colors(0, first), (Rgba8{9, 99, 199, 255}));
+  EXPECT_LT(picture.colors(0, 299).b, picture.colors(0, 100).b);
 }
 
 TEST(OddInput, FlatGroundFillsTheRowsBelowTheHorizon) {
