@@ -126,10 +126,11 @@ Counts walk(const Samples& samples, const Kernels& kernels, std::size_t first, s
 
 Counts draw_fast(parallel::Threads& exec, Isa isa, BlockPool& pool, const Samples& samples,
                  const TerrainTargets& targets) {
-  return draw_blocks(exec, isa, pool, samples.setup.sky, targets,
-                     static_cast<int>(samples.setup.ux.size()), samples.setup.height,
-                     [&](const Kernels& kernels, std::size_t first, std::size_t n,
-                         BlockMarks& marks) { return walk(samples, kernels, first, n, marks); });
+  const Blocks blocks(static_cast<int>(samples.setup.ux.size()), targets);
+  return draw_blocks(exec, isa, pool, samples.setup.sky, targets, blocks, samples.setup.height,
+                     [&](const Kernels& kernels, std::size_t b, BlockMarks& marks) {
+                       return walk(samples, kernels, blocks.first(b), blocks.size(b), marks);
+                     });
 }
 
 }  // namespace rastrum::terrain

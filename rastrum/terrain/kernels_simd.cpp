@@ -3,6 +3,7 @@
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/terrain/kernels_simd.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>  // must precede highway.h
 #include <hwy/highway.h>
 
@@ -310,6 +311,8 @@ void fill(std::uint32_t* marks, int first, int last, std::size_t n, std::uint32_
       row[i] = 0;
     }
   }
+  // Streamed stores are ordered with nothing else.
+  if (stream) hwy::FlushStream();
 }
 
 constexpr Kernels kTable{heights_tiled, occlude, occlude64, advance, classic_cells, fill};
