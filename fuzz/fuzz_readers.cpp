@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/io/height_map.hpp>
 #include <rastrum/io/io.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/io/report.hpp>
@@ -62,6 +63,16 @@ void run(std::span<const std::byte> bytes) {
   for (const auto& [name, index] : by_name) require(index < scene.materials.size());
 #elif defined(RASTRUM_FUZZ_image)
   (void)io::decode_image(bytes, "input");
+#elif defined(RASTRUM_FUZZ_height)
+  // The first byte chooses the format.
+  if (bytes.empty()) return;
+  const auto rest = bytes.subspan(1);
+  const unsigned format = std::to_integer<unsigned>(bytes[0]) % 4;
+  const io::HeightGrid grid = format == 0   ? io::decode_height_png(rest, "input")
+                              : format == 1 ? io::decode_height_npy(rest, "input")
+                              : format == 2 ? io::decode_height_dem(rest, "input")
+                                            : io::decode_height_raw(rest, "input");
+  require(!grid.heights.empty() && grid.units_per_cell > 0);
 #else
 #error "which reader?"
 #endif

@@ -1,10 +1,11 @@
 // PNG through libpng, to straight RGBA8: palettes, grey, tRNS and 16 bit expanded or scaled,
-// interlaced or not. Strict: a damaged chunk is an error, not a warning. libpng leaves by longjmp;
-// so the two functions that call it hold no object with a destructor, and what it needs is in a
-// state that outlives them.
+// interlaced or not; or to heights, which keep their 16 bits. Strict: a damaged chunk is an error,
+// not a warning. libpng leaves by longjmp; so the two functions that call it hold no object with a
+// destructor, and what it needs is in a state that outlives them.
 #include <png.h>
 
 #include <algorithm>
+#include <bit>
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
@@ -12,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include <rastrum/io/height_map.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 
@@ -66,46 +68,85 @@ bool read_header(State* state) {
   return true;
 }
 
-bool read_rows(State* state, png_bytepp rows) {
+/// Rows of RGBA, of `channel_bytes` (1 or 2, in this machine's order) each.
+bool read_rows(State* state, png_bytepp rows, std::size_t channel_bytes) {
   if (setjmp(state->jump) != 0) return false;
   png_structp png = state->png;
-  png_set_expand(png);
-  png_set_scale_16(png);
+  if (channel_bytes == 1) {
+    png_set_expand(png);
+    png_set_scale_16(png);
+  } else {
+    png_set_expand_16(png);
+    if (std::endian::native == std::endian::little) png_set_swap(png);
+  }
   png_set_gray_to_rgb(png);
-  png_set_add_alpha(png, 0xFF, PNG_FILLER_AFTER);
+  png_set_add_alpha(png, channel_bytes == 1 ? 0xFF : 0xFFFF, PNG_FILLER_AFTER);
   png_set_interlace_handling(png);
   png_read_update_info(png, state->info);
-  if (png_get_rowbytes(png, state->info) != std::size_t{4} * state->width)
+  if (png_get_rowbytes(png, state->info) != channel_bytes * 4 * state->width)
     png_error(png, "its pixels do not become RGBA");
   png_read_image(png, rows);
   png_read_end(png, nullptr);
   return true;
 }
 
-}  // namespace
+[[noreturn]] void fail(const std::string& name, const char* what) {
+  throw Error(Errc::bad_format, name + ": is not a sound PNG: " + what);
+}
 
-Image<Rgba8> decode_png(Bytes bytes, const std::string& name) {
+/// Reads the header of what is a PNG of a size that its bytes can fill.
+void open(State& state, Bytes bytes, const std::string& name) {
   // Apple's own variant: no zlib header, BGRA, premultiplied.
   if (bytes.size() >= 16 && as_text(bytes).substr(12, 4) == "CgBI")
     throw Error(Errc::unsupported,
                 name +
                     ": is an iPhone PNG (CgBI), which only Apple's tools read; convert it with "
                     "`pngcrush -revert-iphone-optimizations`");
-  State state;
   state.at = bytes.data();
   state.left = bytes.size();
-  const auto fail = [&](const char* what) {
-    throw Error(Errc::bad_format, name + ": is not a sound PNG: " + what);
-  };
-  if (!read_header(&state)) fail(state.message);
+  if (!read_header(&state)) fail(name, state.message);
   // Deflate makes at most 1,032 bytes of one: a small file cannot ask for a huge image.
-  if (state.raw_bytes / 1032 > bytes.size()) fail("it is too short for its size");
-  Image<Rgba8> image(static_cast<int>(state.width), static_cast<int>(state.height));
+  if (state.raw_bytes / 1032 > bytes.size()) fail(name, "it is too short for its size");
+}
+
+template <class Pixel>
+Image<Pixel> read_pixels(State& state, const std::string& name) {
+  Image<Pixel> image(static_cast<int>(state.width), static_cast<int>(state.height));
   std::vector<png_bytep> rows(state.height);
   for (std::size_t y = 0; y < rows.size(); ++y)
     rows[y] = reinterpret_cast<png_bytep>(&image(0, static_cast<int>(y)));
-  if (!read_rows(&state, rows.data())) fail(state.message);
+  if (!read_rows(&state, rows.data(), sizeof(Pixel) / 4)) fail(name, state.message);
   return image;
+}
+
+}  // namespace
+
+Image<Rgba8> decode_png(Bytes bytes, const std::string& name) {
+  State state;
+  open(state, bytes, name);
+  return read_pixels<Rgba8>(state, name);
+}
+
+HeightGrid decode_height_png(Bytes bytes, const std::string& name) {
+  struct Rgba16 {
+    std::uint16_t r = 0, g = 0, b = 0, a = 0;
+  };
+  State state;
+  open(state, bytes, name);
+  const bool wide = png_get_bit_depth(state.png, state.info) == 16;
+  const Image<Rgba16> pixels = read_pixels<Rgba16>(state, name);
+  HeightGrid grid{Image<float>(pixels.width(), pixels.height()), wide ? 257.0 : 1.0};
+  for (int y = 0; y < pixels.height(); ++y)
+    for (int x = 0; x < pixels.width(); ++x) {
+      const Rgba16 p = pixels(x, y);
+      if (p.r != p.g || p.r != p.b)
+        throw Error(Errc::unsupported, name + ": its pixel (" + std::to_string(x) + ", " +
+                                           std::to_string(y) +
+                                           ") has a colour, but heights are grey");
+      // libpng makes 16 bits of 8 by 257.
+      grid.heights(x, y) = static_cast<float>(wide ? p.r : p.r / 257);
+    }
+  return grid;
 }
 
 }  // namespace rastrum::io

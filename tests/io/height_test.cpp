@@ -1,0 +1,425 @@
+// Height maps: what is in the file is what is read, in every type and order; what is damaged is
+// refused with its name and place.
+#include <cmath>
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/io/height_map.hpp>
+#include <rastrum/io/io.hpp>
+
+#include "tests/io/files.hpp"
+
+namespace rastrum {
+namespace {
+
+using io::HeightGrid;
+
+std::span<const std::byte> bytes_of(const std::string& s) {
+  return std::as_bytes(std::span(s.data(), s.size()));
+}
+
+/// The error of f(), which must be of `code` and say `part`.
+template <class F>
+void expect_refused(Errc code, const std::string& part, F&& f) {
+  try {
+    f();
+    ADD_FAILURE() << "no error that says: " << part;
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), code) << e.what();
+    EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
+    EXPECT_EQ(std::string(e.what()).find("in.put"), 0U) << "names the file: " << e.what();
+  }
+}
+
+// --- NPY
+
+std::string npy(const std::string& descr, const std::string& order, const std::string& shape,
+                const std::string& data, char version = 1) {
+  std::string header =
+      "{'descr': '" + descr + "', 'fortran_order': " + order + ", 'shape': " + shape + ", }\n";
+  std::string file("\x93NUMPY", 6);
+  file += version;
+  file += '\0';
+  file += static_cast<char>(header.size());
+  file.append(version == 1 ? 1 : 3, '\0');
+  return file + header + data;
+}
+
+HeightGrid read_npy(const std::string& file) {
+  return io::decode_height_npy(bytes_of(file), "in.put");
+}
+
+template <class T>
+void check_type(const char* kind) {
+  // 2 rows of 3; negative where the type has it.
+  const T values[6] = {T(1), T(2), T(3), T(100), std::is_signed_v<T> ? T(-5) : T(5), T(6)};
+  for (const bool swap : {false, true})
+    for (const bool fortran : {false, true}) {
+      std::string data;
+      for (std::size_t i = 0; i < 6; ++i)
+        data += test::raw(values[fortran ? i % 2 * 3 + i / 2 : i], swap);
+      const HeightGrid g = read_npy(
+          npy((swap ? ">" : "<") + std::string(kind), fortran ? "True" : "False", "(2, 3)", data));
+      ASSERT_EQ(g.heights.width(), 3);
+      ASSERT_EQ(g.heights.height(), 2);
+      for (std::size_t i = 0; i < 6; ++i)
+        EXPECT_EQ(g.heights.pixels()[i], static_cast<float>(values[i]))
+            << kind << " swap " << swap << " fortran " << fortran << " at " << i;
+    }
+}
+
+TEST(HeightNpy, EveryTypeOrderAndEndianness) {
+  check_type<float>("f4");
+  check_type<double>("f8");
+  check_type<std::int8_t>("i1");
+  check_type<std::uint8_t>("u1");
+  check_type<std::int16_t>("i2");
+  check_type<std::uint16_t>("u2");
+  check_type<std::int32_t>("i4");
+  check_type<std::uint32_t>("u4");
+}
+
+TEST(HeightNpy, VersionsTwoAndThreeAndWhatFloat32CannotHold) {
+  for (const char version : {char{2}, char{3}})
+    EXPECT_EQ(read_npy(npy("<f4", "False", "(1,1)", test::raw(7.5F), version)).heights(0, 0), 7.5F);
+  const HeightGrid g = read_npy(npy(
+      "<f8", "False", "(1, 3)", test::raw(1e300) + test::raw(-1e300) + test::raw(std::nan(""))));
+  EXPECT_EQ(g.heights(0, 0), INFINITY);
+  EXPECT_EQ(g.heights(1, 0), -INFINITY);
+  EXPECT_TRUE(std::isnan(g.heights(2, 0)));
+}
+
+TEST(HeightNpy, RefusesWhatIsDamaged) {
+  const std::string four(16, '\0');
+  const std::string good = npy("<f4", "False", "(2, 2)", four);
+  ASSERT_NO_THROW((void)read_npy(good));
+  for (std::size_t n = 0; n < good.size(); ++n)
+    expect_refused(Errc::bad_format, "", [&] { (void)read_npy(good.substr(0, n)); });
+  const auto refuse = [](Errc code, const std::string& part, const std::string& file) {
+    SCOPED_TRACE(part);
+    expect_refused(code, part, [&] { (void)read_npy(file); });
+  };
+  refuse(Errc::bad_format, "3 of 4", npy("<f4", "False", "(2, 2)", four.substr(1)));
+  refuse(Errc::unsupported, "3 dimensions", npy("<f4", "False", "(2, 2, 1)", four));
+  refuse(Errc::unsupported, "1 dimensions", npy("<f4", "False", "(4,)", four));
+  refuse(Errc::unsupported, "'<c8'", npy("<c8", "False", "(1, 2)", four));
+  refuse(Errc::unsupported, "outside", npy("<f4", "False", "(0, 2)", four));
+  refuse(Errc::unsupported, "outside", npy("<f4", "False", "(4294967296, 4294967296)", four));
+  refuse(Errc::bad_format, "no number", npy("<f4", "False", "(99999999999999999999999, 1)", four));
+  refuse(Errc::bad_format, "no number", npy("<f4", "False", "(-2, 2)", four));
+  refuse(Errc::bad_format, "no number", npy("<f4", "False", "(2, 2", four));
+  refuse(Errc::bad_format, "fortran_order", npy("<f4", "Maybe", "(2, 2)", four));
+  refuse(Errc::bad_format, "version", npy("<f4", "False", "(2, 2)", four, 9));
+}
+
+// --- Raw
+
+TEST(HeightRaw, SquareOrOfTheGivenSize) {
+  std::string file;
+  for (int i = 0; i < 16; ++i) file += std::string{static_cast<char>(i), '\x01'};
+  const HeightGrid square = io::decode_height_raw(bytes_of(file), "in.put");
+  EXPECT_EQ(square.heights.width(), 4);
+  EXPECT_EQ(square.heights(1, 2), 256 + 9);
+  EXPECT_EQ(square.units_per_cell, 257);
+  const HeightGrid wide = io::decode_height_raw(bytes_of(file), "in.put", {8, 2});
+  EXPECT_EQ(wide.heights.width(), 8);
+  EXPECT_EQ(wide.heights(1, 1), 256 + 9);
+}
+
+TEST(HeightRaw, RefusesOtherSizes) {
+  const std::string odd(31, '\0'), six(12, '\0');
+  const auto read = [](const std::string& f, io::RawSize size = {}) {
+    return [&f, size] { (void)io::decode_height_raw(bytes_of(f), "in.put", size); };
+  };
+  expect_refused(Errc::bad_format, "31 bytes", read(odd));
+  expect_refused(Errc::bad_format, "--height-size", read(six));
+  expect_refused(Errc::bad_format, "--height-size", read(""));
+  expect_refused(Errc::bad_format, "take 8", read(six, {2, 2}));
+  expect_refused(Errc::bad_format, "has 12", read(six, {-6, -1}));
+  expect_refused(Errc::bad_format, "has 12", read(six, {2147483647, 2147483647}));
+}
+
+// --- PNG
+
+/// Grey PNGs that this library does not write: 16 bit, made with stored deflate blocks.
+std::string png16(int width, int height, const std::vector<int>& values) {
+  const auto be32 = [](std::uint32_t v) { return test::raw(v, true); };
+  const auto crc = [](const std::string& s) {
+    std::uint32_t c = ~0U;
+    for (const char ch : s) {
+      c ^= static_cast<unsigned char>(ch);
+      for (int k = 0; k < 8; ++k) c = (c & 1) != 0 ? c >> 1 ^ 0xEDB88320U : c >> 1;
+    }
+    return ~c;
+  };
+  const auto chunk = [&](const std::string& type, const std::string& data) {
+    return be32(static_cast<std::uint32_t>(data.size())) + type + data + be32(crc(type + data));
+  };
+  std::string rows;
+  for (int y = 0; y < height; ++y) {
+    rows += '\0';
+    for (int x = 0; x < width; ++x)
+      rows += test::raw(static_cast<std::uint16_t>(values[static_cast<std::size_t>(y * width + x)]),
+                        true);
+  }
+  std::uint32_t a = 1, b = 0;
+  for (const char c : rows) {
+    a = (a + static_cast<unsigned char>(c)) % 65521;
+    b = (b + a) % 65521;
+  }
+  const auto n = static_cast<std::uint16_t>(rows.size());
+  const std::string zlib = std::string("\x78\x01\x01", 3) + test::raw(n) +
+                           test::raw(static_cast<std::uint16_t>(~n)) + rows + be32(b << 16 | a);
+  return "\x89PNG\r\n\x1a\n" +
+         chunk("IHDR", be32(static_cast<std::uint32_t>(width)) +
+                           be32(static_cast<std::uint32_t>(height)) +
+                           std::string("\x10\0\0\0\0", 5)) +
+         chunk("IDAT", zlib) + chunk("IEND", "");
+}
+
+TEST(HeightPng, SixteenBitsAreKept) {
+  const std::string file = png16(3, 2, {0, 1, 256, 65535, 4660, 300});
+  const HeightGrid g = io::decode_height_png(bytes_of(file), "in.put");
+  ASSERT_EQ(g.heights.width(), 3);
+  const float expected[6] = {0, 1, 256, 65535, 4660, 300};
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(g.heights.pixels()[i], expected[i]);
+  EXPECT_EQ(g.units_per_cell, 257);
+  for (std::size_t n = 0; n < file.size(); ++n)
+    expect_refused(Errc::bad_format, "PNG", [&] {
+      const std::string cut = file.substr(0, n);
+      (void)io::decode_height_png(bytes_of(cut), "in.put");
+    });
+}
+
+TEST(HeightPng, EightBitsAsTheyAreAndNoColours) {
+  const test::TempFolder folder;
+  Image<Rgba8> image(256, 1);
+  for (int x = 0; x < 256; ++x) {
+    const auto v = static_cast<std::uint8_t>(x);
+    image(x, 0) = {v, v, v, 255};
+  }
+  io::write_png(folder.path("h.png"), image.view());
+  const HeightGrid g = io::read_heights(folder.path("h.png"));
+  for (int x = 0; x < 256; ++x) EXPECT_EQ(g.heights(x, 0), static_cast<float>(x));
+  EXPECT_EQ(g.units_per_cell, 1);
+  image(7, 0).g = 8;
+  io::write_png(folder.path("c.png"), image.view());
+  const std::string file = test::slurp(folder.path("c.png"));
+  expect_refused(Errc::unsupported, "(7, 0)",
+                 [&] { (void)io::decode_height_png(bytes_of(file), "in.put"); });
+}
+
+// --- USGS DEM
+
+void put(std::string& record, std::size_t at, const std::string& text, std::size_t width) {
+  record.replace(at, width, std::string(width - text.size(), ' ') + text);
+}
+
+struct DemProfile {
+  double x, y, datum;
+  std::vector<int> elevations;
+};
+
+std::string dem(const std::vector<DemProfile>& profiles, const std::string& elevation_unit = "2",
+                const std::string& line_end = "") {
+  std::string a(1024, ' ');
+  put(a, 528, "2", 6);
+  put(a, 534, elevation_unit, 6);
+  put(a, 816, "0.300000E+02", 12);
+  put(a, 828, "0.300000D+02", 12);
+  put(a, 840, "0.5", 12);
+  put(a, 852, "1", 6);
+  put(a, 858, std::to_string(profiles.size()), 6);
+  std::string file = a + line_end;
+  for (const DemProfile& p : profiles) {
+    std::string block(1024, ' ');
+    put(block, 12, std::to_string(p.elevations.size()), 6);
+    put(block, 18, "1", 6);
+    put(block, 24, std::to_string(p.x) + "D+00", 24);
+    put(block, 48, std::to_string(p.y) + "D+00", 24);
+    put(block, 72, std::to_string(p.datum) + "D+00", 24);
+    std::size_t at = 144;
+    for (const int e : p.elevations) {
+      if (at + 6 > 1020) {
+        file += block + line_end;
+        block.assign(1024, ' ');
+        at = 0;
+      }
+      put(block, at, std::to_string(e), 6);
+      at += 6;
+    }
+    file += block + line_end;
+  }
+  return file;
+}
+
+HeightGrid read_dem(const std::string& file) {
+  return io::decode_height_dem(bytes_of(file), "in.put");
+}
+
+TEST(HeightDem, ProfilesOfDifferingStartsDatumScaleAndVoids) {
+  for (const std::string line_end : {"", "\n", "\r\n"}) {
+    const HeightGrid g = read_dem(dem(
+        {{1000, 5030, 0, {10, 20}}, {1030, 5000, 100, {1, 2, 3, 4}}, {1060, 5060, 0, {-32767, 8}}},
+        "2", line_end));
+    ASSERT_EQ(g.heights.width(), 3);
+    ASSERT_EQ(g.heights.height(), 4);
+    const float v = NAN;
+    const float expected[12] = {v,  102,    4,  //
+                                10, 101.5F, v,  //
+                                5,  101,    v,  //
+                                v,  100.5F, v};
+    for (std::size_t i = 0; i < 12; ++i) {
+      const float got = g.heights.pixels()[i];
+      EXPECT_TRUE(got == expected[i] || (std::isnan(got) && std::isnan(expected[i])))
+          << i << ": " << got;
+    }
+    EXPECT_EQ(g.units_per_cell, 30);
+  }
+  EXPECT_NEAR(read_dem(dem({{0, 0, 0, {1}}}, "1")).units_per_cell, 30 / 0.3048, 1e-9);
+}
+
+TEST(HeightDem, LongProfilesGoOverBlocks) {
+  std::vector<int> elevations(700);
+  for (std::size_t i = 0; i < elevations.size(); ++i) elevations[i] = static_cast<int>(2 * i);
+  const HeightGrid g = read_dem(dem({{0, 0, 0, elevations}, {30, 0, 0, {5}}}));
+  ASSERT_EQ(g.heights.height(), 700);
+  for (int i = 0; i < 700; ++i) EXPECT_EQ(g.heights(0, 699 - i), static_cast<float>(i));
+  EXPECT_EQ(g.heights(1, 699), 2.5F);
+}
+
+TEST(HeightDem, RefusesWhatIsDamaged) {
+  const std::string good = dem({{0, 0, 0, {1, 2}}, {30, 0, 0, {3, 4}}});
+  ASSERT_NO_THROW((void)read_dem(good));
+  // The last block is blank after its elevations, so cuts there lose nothing.
+  for (std::size_t n = 0; n<2048 + 144 + 12; n += n> 1000 && n < 1100 ? 1 : 13)
+    expect_refused(Errc::bad_format, n < 1024 ? "first record" : "record ",
+                   [&] { (void)read_dem(good.substr(0, n)); });
+  const auto with = [&](std::size_t at, const std::string& text, std::size_t width,
+                        const std::string& part) {
+    SCOPED_TRACE(part);
+    std::string bad = good;
+    put(bad, at, text, width);
+    expect_refused(Errc::bad_format, part, [&] { (void)read_dem(bad); });
+  };
+  with(534, "3", 6, "record 1, byte 535: the unit of elevation");
+  with(828, "0.0", 12, "record 1, byte 829: the resolution along y");
+  with(828, "-3.0", 12, "byte 829");
+  with(828, "nan", 12, "byte 829");
+  with(858, "99999", 6, "byte 859");
+  with(858, "3", 6, "record 4, byte 13: the file ends before");
+  with(1024 + 12, "0", 6, "record 2, byte 13");
+  with(1024 + 12, "", 6, "is missing");
+  with(1024 + 12, "9999", 6, "the file ends before");
+  with(1024 + 48, "1.0D+30", 24, "farther apart");
+  std::string strewn = good;
+  put(strewn, 1024 + 24, "900000.0D+00", 24);
+  put(strewn, 1024 + 48, "900000.0D+00", 24);
+  expect_refused(Errc::bad_format, "do not fill", [&] { (void)read_dem(strewn); });
+  with(1024 + 144, "1x", 6, "record 2, byte 145: an elevation is no whole number: '1x'");
+}
+
+TEST(HeightDem, TheRealMap) {
+  const auto file = test::shared_dir() / "data" / "terrain" / "SainteHelens.dem";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+  const HeightGrid g = io::read_heights(file);
+  EXPECT_EQ(g.heights.width(), 327);  // its A record
+  EXPECT_NEAR(g.units_per_cell, 30, 1e-12);
+  float least = INFINITY, most = -INFINITY;
+  for (const float h : g.heights.pixels()) {
+    if (std::isnan(h)) continue;
+    least = std::min(least, h);
+    most = std::max(most, h);
+  }
+  EXPECT_EQ(least, 682.0F);  // as its A record says
+  EXPECT_EQ(most, 2543.0F);
+}
+
+// --- The door
+
+#ifdef RASTRUM_HAS_GDAL
+/// An uncompressed float32 TIFF with a cell size and a value for "no data".
+std::string tiff(const std::vector<float>& heights, std::uint32_t width, std::uint32_t height) {
+  const std::string no_data("-9999", 6);
+  const std::uint32_t first_data = 8 + 2 + 12 * 12 + 4;
+  std::string entries, data;
+  const auto entry = [&](int tag, int type, std::uint32_t count, const std::string& value) {
+    entries += test::raw(static_cast<std::uint16_t>(tag));
+    entries += test::raw(static_cast<std::uint16_t>(type)) + test::raw(count);
+    if (value.size() <= 4) {
+      entries += value + std::string(4 - value.size(), '\0');
+    } else {
+      entries += test::raw(first_data + static_cast<std::uint32_t>(data.size()));
+      data += value;
+    }
+  };
+  const auto number = [&](int tag, std::uint32_t value) { entry(tag, 4, 1, test::raw(value)); };
+  std::string pixels;
+  for (const float h : heights) pixels += test::raw(h);
+  const std::string scale = test::raw(10.0) + test::raw(10.0) + test::raw(0.0);
+  const std::string tie =
+      std::string(24, '\0') + test::raw(500.0) + test::raw(900.0) + test::raw(0.0);
+  number(256, width);
+  number(257, height);
+  number(258, 32);
+  number(259, 1);
+  number(262, 1);
+  number(273, first_data + 24 + 48 + 6);
+  number(277, 1);
+  number(279, static_cast<std::uint32_t>(pixels.size()));
+  number(339, 3);
+  entry(33550, 12, 3, scale);
+  entry(33922, 12, 6, tie);
+  entry(42113, 2, 6, no_data);
+  return std::string("II*\0\x08\0\0\0", 8) + test::raw(std::uint16_t{12}) + entries +
+         std::string(4, '\0') + data + pixels;
+}
+
+TEST(HeightGdal, ReadsGeoTiff) {
+  const test::TempFolder folder;
+  const std::string file = tiff({1, 2, -9999, 4.5F, -3, 1e6F}, 3, 2);
+  const HeightGrid g = io::read_heights(folder.write("g.tif", file));
+  ASSERT_EQ(g.heights.width(), 3);
+  ASSERT_EQ(g.heights.height(), 2);
+  EXPECT_EQ(g.heights(0, 0), 1);
+  EXPECT_TRUE(std::isnan(g.heights(2, 0)));
+  EXPECT_EQ(g.heights(0, 1), 4.5F);
+  EXPECT_EQ(g.heights(2, 1), 1e6F);
+  EXPECT_EQ(g.units_per_cell, 10);
+  for (const std::size_t n : {3U, 20U, 100U, 200U}) {
+    const auto cut = folder.write("cut.tif", file.substr(0, n));
+    try {
+      (void)io::read_heights(cut);
+      ADD_FAILURE() << n;
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("cut.tif"), std::string::npos) << e.what();
+    }
+  }
+}
+#endif
+
+TEST(ReadHeights, NamesWhatItDoesNotRead) {
+  const test::TempFolder folder;
+  const auto error = [](const std::filesystem::path& file) -> std::string {
+    try {
+      (void)io::read_heights(file);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return {};
+  };
+  EXPECT_NE(error(folder.path("gone.png")).find("gone.png"), std::string::npos);
+  EXPECT_NE(error(folder.path("gone.tif")).find("gone.tif"), std::string::npos);
+  EXPECT_NE(error(folder.write("a.txt", "1 2")).find("no kind of height map"), std::string::npos);
+  const std::string tif = error(folder.write("bad.tif", "II*"));
+#ifdef RASTRUM_HAS_GDAL
+  EXPECT_NE(tif.find("no sound GeoTIFF"), std::string::npos) << tif;
+#else
+  EXPECT_NE(tif.find("libgdal-dev"), std::string::npos) << tif;
+#endif
+}
+
+}  // namespace
+}  // namespace rastrum
