@@ -1,0 +1,36 @@
+// Terrains that are functions of the plane: named ones, and expressions.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <rastrum/terrain/light.hpp>
+
+namespace rastrum::terrain {
+
+struct FunctionInfo {
+  std::string_view name, description;
+  double low, high;  ///< what the heights lie between
+};
+
+/// Those of paper 3 (its figure 6.1 and its program's list) and fractal noise. Their arithmetic is
+/// ours (no sine of the C library), so they are the same bits on every machine.
+[[nodiscard]] const std::vector<FunctionInfo>& named_functions();
+
+/// Throws Error{not_found} that lists the names.
+[[nodiscard]] HeightFunction named_function(std::string_view name);
+
+/// A formula of x and y in the language of muParser, such as `40*sin(x/30)*cos(y/50)`.
+/// Throws Error{invalid_argument} with the place of the mistake, Error{unsupported} where the
+/// library was built without muParser.
+[[nodiscard]] HeightFunction expression_function(const std::string& expression);
+
+/// The least and the greatest finite height on a grid of 128² points over [0, 1024)², for the
+/// colours of expressions; (0, 1) where there is none.
+struct HeightRange {
+  double low = 0, high = 1;
+};
+[[nodiscard]] HeightRange sampled_range(const HeightFunction& function);
+
+}  // namespace rastrum::terrain

@@ -1,0 +1,162 @@
+#include <rastrum/terrain/light.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/terrain/color_map.hpp>
+
+namespace rastrum::terrain {
+namespace {
+
+void check(const Light& light) {
+  if (!(light.ambient >= 0 && light.ambient <= 1))
+    throw Error(Errc::invalid_argument, "the ambient light must lie in 0 to 1");
+}
+
+/// What a cell shows of its colour.
+Image<float> light_of(const HeightMap& map, bool shade, const Light& light,
+                      const ShadowOptions& options) {
+  const ImageView<const float> heights = map.heights.view();
+  Image<float> factor(heights.width, heights.height);
+  std::ranges::fill(factor.pixels(), 1.0F);
+  if (shade) factor = hill_shading(heights, light.sun, light.ambient, options.tiling);
+  const std::span<float> f = factor.pixels();
+  if (light.shadows == Shadows::accumulated) {
+    const Image<std::uint16_t> n = hidden_samples(heights, light.sun, light.march, options);
+    for (std::size_t i = 0; i < f.size(); ++i)
+      f[i] *= std::sqrt(1 / (1 + static_cast<float>(n.pixels()[i])));
+  } else if (light.shadows == Shadows::sharp) {
+    // A shadow leaves the ambient light; on a slope that is all there is already.
+    const Image<std::uint8_t> dark = sharp_shadows(heights, light.sun, options);
+    for (std::size_t i = 0; i < f.size(); ++i)
+      if (dark.pixels()[i] != 0) f[i] = std::min(f[i], light.ambient);
+  } else if (light.shadows == Shadows::soft) {
+    const Image<std::uint8_t> seen = soft_light(heights, light.sun, light.sun_radius_deg, options);
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      const float least = std::min(f[i], light.ambient);
+      f[i] = least + (f[i] - least) * (static_cast<float>(seen.pixels()[i]) / 255);
+    }
+  }
+  return factor;
+}
+
+Rgba8 lit(Rgba8 color, float factor) {
+  const auto channel = [&](std::uint8_t c) {
+    return static_cast<std::uint8_t>(
+        std::clamp(static_cast<float>(c) * factor + 0.5F, 0.0F, 255.0F));
+  };
+  return {channel(color.r), channel(color.g), channel(color.b), 255};
+}
+
+/// Differences are taken over this many cells.
+constexpr double kSlopeStep = 1;
+
+class LitFunction final : public Surface {
+ public:
+  LitFunction(HeightFunction function, double low, double high, const Light& light)
+      : function_(std::move(function)),
+        low_(low),
+        scale_(high > low ? 1 / (high - low) : 0),
+        light_(light) {
+    const double azimuth = light.sun.azimuth_deg * (std::numbers::pi / 180);
+    const double elevation = light.sun.elevation_deg * (std::numbers::pi / 180);
+    if (light.shadows == Shadows::none) return;
+    for (int k = 1; k < light.march.steps; ++k) {
+      const double t = light.march.distance * k / light.march.steps;
+      steps_.push_back({t * std::sin(azimuth) * std::cos(elevation),
+                        -t * std::cos(azimuth) * std::cos(elevation), t * std::sin(elevation)});
+    }
+  }
+
+  void heights(const double* x, const double* y, std::size_t n, float* out) const override {
+    function_(x, y, n, out);
+  }
+
+  void colors(const double* x, const double* y, std::size_t n, Rgba8* out) const override {
+    for (std::size_t i = 0; i < n; ++i) out[i] = color(x[i], y[i]);
+  }
+
+ private:
+  struct Step {
+    double x, y, climb;
+  };
+
+  [[nodiscard]] Rgba8 color(double x, double y) const {
+    const std::array<double, 5> xs{x, x - kSlopeStep, x + kSlopeStep, x, x};
+    const std::array<double, 5> ys{y, y, y, y - kSlopeStep, y + kSlopeStep};
+    std::array<float, 5> h{};
+    function_(xs.data(), ys.data(), h.size(), h.data());
+    float factor = 1;
+    if (light_.hill_shading)
+      factor = hill_shade((h[2] - h[1]) / static_cast<float>(2 * kSlopeStep),
+                          (h[4] - h[3]) / static_cast<float>(2 * kSlopeStep), light_.sun,
+                          light_.ambient);
+    return lit(height_color((static_cast<double>(h[0]) - low_) * scale_),
+               shadowed(x, y, h[0], factor));
+  }
+
+  [[nodiscard]] float shadowed(double x, double y, float own, float factor) const {
+    if (steps_.empty()) return factor;
+    constexpr std::size_t kBatch = 64;
+    std::array<double, kBatch> xs{}, ys{};
+    std::array<float, kBatch> h{};
+    int hidden = 0;
+    for (std::size_t at = 0; at < steps_.size(); at += kBatch) {
+      const std::size_t n = std::min(kBatch, steps_.size() - at);
+      for (std::size_t k = 0; k < n; ++k) {
+        xs[k] = x + steps_[at + k].x;
+        ys[k] = y + steps_[at + k].y;
+      }
+      function_(xs.data(), ys.data(), n, h.data());
+      for (std::size_t k = 0; k < n; ++k)
+        hidden += own + static_cast<float>(steps_[at + k].climb) < h[k] ? 1 : 0;
+      if (light_.shadows == Shadows::sharp && hidden != 0) break;
+    }
+    if (light_.shadows == Shadows::accumulated)
+      return factor * std::sqrt(1 / (1 + static_cast<float>(hidden)));
+    const float least = std::min(factor, light_.ambient);
+    if (light_.shadows == Shadows::sharp) return hidden != 0 ? least : factor;
+    constexpr float kWholeShadow = 8;
+    return factor + (least - factor) * std::min(1.0F, static_cast<float>(hidden) / kWholeShadow);
+  }
+
+  HeightFunction function_;
+  double low_, scale_;
+  Light light_;
+  std::vector<Step> steps_;
+};
+
+}  // namespace
+
+Image<Rgba8> lit_colors(const HeightMap& map, const Light& light, const ShadowOptions& options) {
+  check(light);
+  const Image<float> factor = light_of(map, light.hill_shading, light, options);
+  const Image<Rgba8> by_height =
+      map.colors.empty() ? colors_by_height(map.heights.view()) : Image<Rgba8>();
+  const Image<Rgba8>& colors = map.colors.empty() ? by_height : map.colors;
+  Image<Rgba8> out(std::max(colors.width(), factor.width()),
+                   std::max(colors.height(), factor.height()));
+  const auto scaled = [](int i, int from, int to) {
+    return static_cast<int>(std::int64_t{i} * to / from);
+  };
+  for (int y = 0; y < out.height(); ++y)
+    for (int x = 0; x < out.width(); ++x)
+      out(x, y) = lit(
+          colors(scaled(x, out.width(), colors.width()), scaled(y, out.height(), colors.height())),
+          factor(scaled(x, out.width(), factor.width()), scaled(y, out.height(), factor.height())));
+  return out;
+}
+
+Terrain function_terrain(HeightFunction function, double low, double high, const Light& light) {
+  check(light);
+  if (!std::isfinite(light.sun.azimuth_deg) || !std::isfinite(light.sun.elevation_deg))
+    throw Error(Errc::invalid_argument, "the sun's angles must be finite");
+  return Terrain(std::make_shared<const LitFunction>(std::move(function), low, high, light));
+}
+
+}  // namespace rastrum::terrain

@@ -1,0 +1,49 @@
+// The stage before the renderer: sun and shadows make lit colours, so that the renderer only
+// samples heights and colours.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+#include <rastrum/core/image.hpp>
+#include <rastrum/terrain/shadows.hpp>
+#include <rastrum/terrain/terrain.hpp>
+
+namespace rastrum::terrain {
+
+enum class Shadows : std::uint8_t {
+  none,
+  accumulated,  ///< paper 3: colour · √(1 / (1 + n)), n the hidden samples of a march
+  sharp,        ///< colour · ambient where the sun is hidden
+  soft,         ///< between the two by the part of the sun's disc that is seen
+};
+
+struct Light {
+  Sun sun{};
+  Shadows shadows = Shadows::none;
+  /// Slopes get hill_shade. For colours that are painted without light; satellite pictures have it.
+  bool hill_shading = false;
+  float ambient = 0.45F;           ///< of a colour, where no sun is; [0, 1]
+  double sun_radius_deg = 0.2666;  ///< of soft shadows
+  March march{};                   ///< of accumulated ones
+};
+
+/// The colours of a map in this light, opaque. Colours of another size than the heights are kept
+/// where they are finer and repeated where they are coarser. Empty ones are colors_by_height.
+/// Cost: the shadows', and O(cells). Throws Error{invalid_argument} for what no light can be.
+[[nodiscard]] Image<Rgba8> lit_colors(const HeightMap& map, const Light& light,
+                                      const ShadowOptions& options = {});
+
+/// Heights of n points of the plane; called from several threads at once.
+using HeightFunction =
+    std::function<void(const double* x, const double* y, std::size_t n, float* heights)>;
+
+/// A terrain of a function: height_color between `low` and `high`, with slopes by central
+/// differences, in this light. Shadows are by the march of each visible sample (paper 3's
+/// generate_shadowmap with a function), `sharp` dark where any sample hides the sun and `soft`
+/// where more and more do: there are no cells that could be traversed.
+[[nodiscard]] Terrain function_terrain(HeightFunction function, double low, double high,
+                                       const Light& light);
+
+}  // namespace rastrum::terrain

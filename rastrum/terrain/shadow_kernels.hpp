@@ -1,0 +1,32 @@
+// The SIMD leaves of shadows, one table per instruction set; null members where the scalar code of
+// shadows.cpp is the way.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <rastrum/terrain/shadow_ray.hpp>
+#include <rastrum/terrain/shadow_sweep.hpp>
+
+namespace rastrum::terrain {
+
+/// A sample of the march: its cell from the one where the ray begins, and the climb until there.
+struct MarchSample {
+  std::int32_t dx = 0, dy = 0;
+  float climb = 0;
+};
+
+struct ShadowKernels {
+  /// Counts of hidden samples of row y.
+  void (*march_row)(const ShadowCaster& map, const std::vector<MarchSample>& samples, int y,
+                    std::uint16_t* counts) noexcept = nullptr;
+  /// sharp_shadows for the bands [first, last) of a sweep.
+  void (*sweep)(const Sweep& sweep, int first, int last, ImageView<std::uint8_t> shadow) = nullptr;
+  /// Range of the finite heights of a row; true where all are finite.
+  bool (*range)(const float* row, std::size_t n, float& lowest, float& highest) noexcept = nullptr;
+};
+
+[[nodiscard]] const ShadowKernels& shadow_kernels(Isa isa) noexcept;
+
+}  // namespace rastrum::terrain

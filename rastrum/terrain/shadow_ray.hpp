@@ -1,0 +1,64 @@
+// The ray from the middle of a cell to the sun, as the list of cells that it enters. All cells of a
+// map have the same size, so the list is the same for each of them (Amanatides and Woo, "A fast
+// voxel traversal algorithm", 1987, done once instead of once a cell).
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <rastrum/terrain/shadows.hpp>
+
+namespace rastrum::terrain {
+
+/// The way to the sun over the ground, a unit vector, and how much a ray climbs on a cell's length.
+/// Suns at multiples of 45° lie exactly on axes and diagonals.
+struct SunRay {
+  double x = 0, y = 0, rise = 0;
+};
+
+/// Throws Error{invalid_argument} for angles that are not finite, or an elevation above 90°.
+[[nodiscard]] SunRay sun_ray(const Sun& sun);
+
+/// The longest shadow, in cells of the axis that the ray follows.
+inline constexpr int kLongestShadow = 65536;
+
+struct RayStep {
+  std::int32_t dx = 0, dy = 0;  ///< from the cell where the ray begins
+  double climb = 0;             ///< of the ray until it enters
+};
+
+/// Every cell until the ray has climbed more than `relief`, in order. Requires rise > 0.
+[[nodiscard]] std::vector<RayStep> ray_steps(const SunRay& ray, double relief);
+
+/// Heights whose holes are −inf, with the range of the others.
+struct ShadowCaster {
+  ImageView<const float> heights;
+  Tiling tiling = Tiling::repeat;
+  float lowest = 0, highest = 0;
+  [[nodiscard]] double relief() const {
+    return static_cast<double>(highest) - static_cast<double>(lowest);
+  }
+  [[nodiscard]] float at(std::int64_t x, std::int64_t y) const {
+    const auto inside = [](std::int64_t i, std::int64_t n) { return i >= 0 && i < n; };
+    if (!inside(x, heights.width)) x = tiled(x, heights.width, tiling);
+    if (!inside(y, heights.height)) y = tiled(y, heights.height, tiling);
+    return heights(static_cast<int>(x), static_cast<int>(y));
+  }
+};
+
+/// The definition, for one cell, from step `first` on; stops at the first cell that hides the sun.
+[[nodiscard]] inline bool in_shadow(const ShadowCaster& map, const std::vector<RayStep>& steps,
+                                    int x, int y) {
+  const auto own = static_cast<double>(map.heights(x, y));
+  if (own == -std::numeric_limits<double>::infinity()) return false;
+  for (const RayStep& s : steps) {
+    const double ray = own + s.climb;
+    if (ray >= static_cast<double>(map.highest)) return false;
+    if (static_cast<double>(map.at(x + s.dx, y + s.dy)) > ray) return true;
+  }
+  return false;
+}
+
+}  // namespace rastrum::terrain

@@ -1,0 +1,267 @@
+// The doors of shadows.hpp: plain loops for `serial` and the scalar instruction set, which are the
+// definition; the kernels of shadows_simd.cpp for the others.
+#include <rastrum/terrain/shadows.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/terrain/shadow_kernels.hpp>
+#include <rastrum/terrain/shadow_ray.hpp>
+#include <rastrum/terrain/shadow_sweep.hpp>
+
+namespace rastrum::terrain {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// (sin, cos) of degrees, exact at multiples of 45° in the sense that both are then 0, ±1 or of one
+/// length.
+std::pair<double, double> sin_cos_deg(double degrees) {
+  const double turn = std::fmod(degrees, 360.0);
+  const double octant = std::round(turn / 45.0);
+  const double rest = (turn - octant * 45.0) * (std::numbers::pi / 180);
+  const double s = std::sin(rest), c = std::cos(rest);
+  constexpr double kHalf = std::numbers::sqrt2 / 2;
+  const double diagonal_s = kHalf * (s + c), diagonal_c = kHalf * (c - s);
+  switch ((static_cast<int>(octant) % 8 + 8) % 8) {
+    case 0:
+      return {s, c};
+    case 1:
+      return {diagonal_s, diagonal_c};
+    case 2:
+      return {c, -s};
+    case 3:
+      return {diagonal_c, -diagonal_s};
+    case 4:
+      return {-s, -c};
+    case 5:
+      return {-diagonal_s, -diagonal_c};
+    case 6:
+      return {-c, s};
+    default:
+      return {-diagonal_c, diagonal_s};
+  }
+}
+
+void check(const Sun& sun) {
+  if (!std::isfinite(sun.azimuth_deg) || !std::isfinite(sun.elevation_deg) ||
+      sun.elevation_deg > 90)
+    throw Error(Errc::invalid_argument,
+                "the sun's angles must be finite, and its elevation at most 90 degrees");
+}
+
+/// Runs f on the backend that the options ask for.
+template <class F>
+void on_device(const ShadowOptions& options, F&& f) {
+  if (options.device == Device::cuda)
+    throw Error(Errc::no_device, "shadows are not computed on cuda; use serial or threads");
+  if (options.device == Device::serial) {
+    parallel::Serial exec;
+    f(exec);
+  } else {
+    parallel::Threads exec(options.threads);
+    f(exec);
+  }
+}
+
+/// The kernels of the options; `serial` is plain C++.
+const ShadowKernels& kernels_of(const ShadowOptions& options) {
+  if (options.device == Device::serial) return shadow_kernels(Isa::scalar);
+  const std::vector<Isa> available = available_isas();
+  const Isa isa = options.isa.value_or(available.back());
+  if (std::ranges::find(available, isa) == available.end())
+    throw Error(Errc::invalid_argument, "this machine has no " + std::string(name(isa)));
+  return shadow_kernels(isa);
+}
+
+/// The map without its holes: a copy where it has any, in `copy`.
+ShadowCaster caster_of(ImageView<const float> heights, Tiling tiling, const ShadowKernels& kernels,
+                       Image<float>& copy) {
+  ShadowCaster map{heights, tiling, kInfinity, -kInfinity};
+  bool finite = true;
+  const auto width = static_cast<std::size_t>(heights.width);
+  const auto range = [&](const float* row, float& low, float& high) {
+    if (kernels.range != nullptr) return kernels.range(row, width, low, high);
+    bool all = true;
+    for (std::size_t x = 0; x < width; ++x) {
+      all = all && std::isfinite(row[x]);
+      low = std::min(low, row[x]);
+      high = std::max(high, row[x]);
+    }
+    return all;
+  };
+  for (int y = 0; y < heights.height; ++y)
+    finite = range(heights.row(y), map.lowest, map.highest) && finite;
+  if (finite) return map;
+  copy = Image<float>(heights.width, heights.height);
+  map.heights = copy.view();
+  map.lowest = kInfinity;
+  map.highest = -kInfinity;
+  for (int y = 0; y < heights.height; ++y)
+    for (int x = 0; x < heights.width; ++x) {
+      const float h = heights(x, y);
+      const bool hole = !std::isfinite(h);
+      copy(x, y) = hole ? -kInfinity : h;
+      if (hole) continue;
+      map.lowest = std::min(map.lowest, h);
+      map.highest = std::max(map.highest, h);
+    }
+  return map;
+}
+
+/// Rows of a map that a thread takes at once.
+constexpr std::size_t kRowGrain = 8;
+/// Bands of a sweep that a thread takes at once: the block of cells then stays in the first cache.
+constexpr int kBandGrain = 512;
+
+}  // namespace
+
+SunRay sun_ray(const Sun& sun) {
+  check(sun);
+  const auto [east, north] = sin_cos_deg(sun.azimuth_deg);
+  const auto [up, flat] = sin_cos_deg(sun.elevation_deg);
+  return {east, -north, up / std::abs(flat)};  // no −0 at the zenith
+}
+
+std::vector<RayStep> ray_steps(const SunRay& ray, double relief) {
+  // Crossings that are nearer than this, of the way so far, are one: a corner.
+  constexpr double kCorner = 1e-9;
+  const double per_x = 1 / std::abs(ray.x), per_y = 1 / std::abs(ray.y);
+  const int sx = ray.x < 0 ? -1 : 1, sy = ray.y < 0 ? -1 : 1;
+  std::vector<RayStep> steps;
+  std::int32_t nx = 0, ny = 0;  // borders crossed
+  for (;;) {
+    const double tx = ray.x == 0 ? std::numeric_limits<double>::infinity() : (nx + 0.5) * per_x;
+    const double ty = ray.y == 0 ? std::numeric_limits<double>::infinity() : (ny + 0.5) * per_y;
+    const double t = std::min(tx, ty);
+    if (!(t * ray.rise <= relief)) return steps;
+    const bool corner = std::abs(tx - ty) <= kCorner * t;
+    if (tx <= ty || corner) ++nx;
+    if (ty <= tx || corner) ++ny;
+    // Through a corner the ray is in the next cell from the later of the two crossings on.
+    steps.push_back({sx * nx, sy * ny, (corner ? std::max(tx, ty) : t) * ray.rise});
+  }
+}
+
+Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun,
+                                  const ShadowOptions& options) {
+  SunRay ray = sun_ray(sun);
+  Image<std::uint8_t> shadow(heights.width, heights.height);
+  const ShadowKernels& kernels = kernels_of(options);
+  Image<float> copy;
+  const ShadowCaster map = caster_of(heights, options.tiling, kernels, copy);
+  if (!(map.lowest <= map.highest)) return shadow;  // holes alone
+  if (!(sun.elevation_deg > 0)) {
+    for (std::size_t i = 0; i < shadow.pixels().size(); ++i)
+      shadow.pixels()[i] =
+          map.heights(static_cast<int>(i % static_cast<std::size_t>(heights.width)),
+                      static_cast<int>(i / static_cast<std::size_t>(heights.width))) == -kInfinity
+              ? 0
+              : 1;
+    return shadow;
+  }
+  const double along = std::max(std::abs(ray.x), std::abs(ray.y));
+  ray.rise = std::max(ray.rise, map.relief() * along / kLongestShadow);
+  std::vector<RayStep> steps = ray_steps(ray, map.relief());
+  if (steps.empty() || !(map.relief() > 0)) return shadow;
+  on_device(options, [&](auto& exec) {
+    if (kernels.sweep == nullptr) {
+      parallel::for_each_index(exec, static_cast<std::size_t>(heights.height),
+                               [&](std::size_t row) {
+                                 const int y = static_cast<int>(row);
+                                 for (int x = 0; x < heights.width; ++x)
+                                   shadow(x, y) = in_shadow(map, steps, x, y) ? 1 : 0;
+                               });
+      return;
+    }
+    const Sweep sweep = plan_sweep(map, ray, std::move(steps));
+    const int parts = (sweep.bands + kBandGrain - 1) / kBandGrain;
+    parallel::for_each_index(exec, static_cast<std::size_t>(parts), [&](std::size_t part) {
+      const int first = static_cast<int>(part) * kBandGrain;
+      kernels.sweep(sweep, first, std::min(first + kBandGrain, sweep.bands), shadow.view());
+    });
+  });
+  for (std::size_t i = 0; i < copy.pixels().size(); ++i)
+    if (copy.pixels()[i] == -kInfinity) shadow.pixels()[i] = 0;
+  return shadow;
+}
+
+Image<std::uint8_t> soft_light(ImageView<const float> heights, const Sun& sun, double radius_deg,
+                               const ShadowOptions& options) {
+  check(sun);
+  if (!(radius_deg >= 0 && radius_deg <= 45))
+    throw Error(Errc::invalid_argument, "the sun's radius must lie in 0 to 45 degrees");
+  constexpr int kPoints = 16;
+  Image<std::uint16_t> lit(heights.width, heights.height);
+  for (int i = 0; i < kPoints; ++i) {
+    // Vogel's spiral: equal areas, the golden angle apart.
+    const double r = radius_deg * std::sqrt((i + 0.5) / kPoints);
+    const double a = i * std::numbers::pi * (3 - std::sqrt(5.0));
+    const double elevation = sun.elevation_deg + r * std::sin(a);
+    // Across the sky a degree of azimuth is cos(elevation) long; at the zenith there is no more
+    // than half a turn of it.
+    const double across = std::cos(sun.elevation_deg * std::numbers::pi / 180);
+    const double turn = std::min(180.0, std::abs(r * std::cos(a)) / std::max(across, 1e-9));
+    Sun point{sun.azimuth_deg + std::copysign(turn, std::cos(a)), elevation};
+    if (elevation > 90) point = {point.azimuth_deg + 180, 180 - elevation};
+    const Image<std::uint8_t> shadow = sharp_shadows(heights, point, options);
+    for (std::size_t k = 0; k < lit.pixels().size(); ++k)
+      lit.pixels()[k] = static_cast<std::uint16_t>(lit.pixels()[k] + 1 - shadow.pixels()[k]);
+  }
+  Image<std::uint8_t> light(heights.width, heights.height);
+  for (std::size_t k = 0; k < lit.pixels().size(); ++k)
+    light.pixels()[k] = static_cast<std::uint8_t>((lit.pixels()[k] * 255 + kPoints / 2) / kPoints);
+  return light;
+}
+
+Image<std::uint16_t> hidden_samples(ImageView<const float> heights, const Sun& sun,
+                                    const March& march, const ShadowOptions& options) {
+  check(sun);
+  if (!(march.distance > 0 && march.distance <= kLongestShadow) || march.steps < 2 ||
+      march.steps > 65536)
+    throw Error(Errc::invalid_argument,
+                "a march must be above 0 to 65536 cells long and have 2 to 65536 steps");
+  const auto [east, north] = sin_cos_deg(sun.azimuth_deg);
+  const auto [up, flat] = sin_cos_deg(sun.elevation_deg);
+  std::vector<MarchSample> samples;
+  for (int k = 1; k < march.steps; ++k) {
+    const double t = march.distance * k / march.steps;
+    samples.push_back({static_cast<std::int32_t>(std::floor(t * east * flat)),
+                       static_cast<std::int32_t>(std::floor(t * -north * flat)),
+                       static_cast<float>(t * up)});
+  }
+  const ShadowKernels& kernels = kernels_of(options);
+  Image<float> copy;
+  const ShadowCaster map = caster_of(heights, options.tiling, kernels, copy);
+  Image<std::uint16_t> counts(heights.width, heights.height);
+  const auto plain_row = [&](int y) {
+    for (int x = 0; x < heights.width; ++x) {
+      const float own = map.heights(x, y);
+      int n = 0;
+      for (const MarchSample& s : samples) n += own + s.climb < map.at(x + s.dx, y + s.dy) ? 1 : 0;
+      counts(x, y) = own == -kInfinity ? std::uint16_t{0} : static_cast<std::uint16_t>(n);
+    }
+  };
+  on_device(options, [&](auto& exec) {
+    const auto rows = static_cast<std::size_t>(heights.height);
+    const auto row = [&](std::size_t i) {
+      const int y = static_cast<int>(i);
+      if (kernels.march_row != nullptr)
+        kernels.march_row(map, samples, y, &counts(0, y));
+      else
+        plain_row(y);
+    };
+    if constexpr (std::is_same_v<std::remove_reference_t<decltype(exec)>, parallel::Threads>)
+      parallel::for_each_index(exec, rows, row, kRowGrain);
+    else
+      parallel::for_each_index(exec, rows, row);
+  });
+  return counts;
+}
+
+}  // namespace rastrum::terrain
