@@ -13,6 +13,7 @@ struct Command {
 };
 
 [[nodiscard]] Command add_render_command(CLI::App& app);
+[[nodiscard]] Command add_terrain_command(CLI::App& app);
 [[nodiscard]] Command add_info_command(CLI::App& app);
 [[nodiscard]] Command add_make_command(CLI::App& app);
 [[nodiscard]] Command add_bench_command(CLI::App& app);

@@ -32,21 +32,21 @@ int report_usage(const char* what, const CLI::App& app) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Rastrum draws triangle meshes in software.", "rastrum"};
+  CLI::App app{"Rastrum draws triangle meshes and terrains in software.", "rastrum"};
   app.set_version_flag("--version", "rastrum " RASTRUM_VERSION);
   app.require_subcommand(1);
   app.footer(
       "Examples:\n"
       "  rastrum render bunny.obj -o bunny.png\n"
       "  rastrum render builtin:teapot -o teapot.exr --size 1920x1080 --stats -\n"
+      "  rastrum terrain --height map.png --color map.jpg -o flight.png\n"
       "  rastrum info scene.glb\n"
       "  rastrum make 'torus_knot?p=3,q=5' -o knot.ply\n"
       "rastrum COMMAND --help shows the options of each command.");
   try {
     const std::vector<rastrum::cli::Command> commands{
-        rastrum::cli::add_render_command(app),
-        rastrum::cli::add_info_command(app),
-        rastrum::cli::add_make_command(app),
+        rastrum::cli::add_render_command(app), rastrum::cli::add_terrain_command(app),
+        rastrum::cli::add_info_command(app),   rastrum::cli::add_make_command(app),
 #ifdef RASTRUM_HAS_BENCH
         rastrum::cli::add_bench_command(app),
 #endif

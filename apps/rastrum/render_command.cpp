@@ -17,6 +17,7 @@
 #include "heatmap.hpp"
 #include "inputs.hpp"
 #include "json_file.hpp"
+#include "option.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "render_job.hpp"
@@ -41,27 +42,6 @@ struct RenderArguments {
   Output color, depth, ids, heatmap, errors, trace, stats;
 };
 
-/// One of a few words. Throws UsageError that lists them.
-template <class T>
-T choose(std::string_view option, const std::string& text,
-         std::initializer_list<std::pair<const char*, T>> choices) {
-  std::string known;
-  for (const auto& [word, value] : choices) {
-    if (text == word) return value;
-    known.append(known.empty() ? "" : ", ").append(word);
-  }
-  throw UsageError(option, "expected one of " + known + ", got '" + text + "'");
-}
-
-Isa parse_isa(const std::string& text) {
-  return choose<Isa>("--isa", text,
-                     {{"scalar", Isa::scalar},
-                      {"sse4", Isa::sse4},
-                      {"avx2", Isa::avx2},
-                      {"avx512", Isa::avx512},
-                      {"neon", Isa::neon}});
-}
-
 std::string names_of(const std::vector<AxisInfo>& axis) {
   std::string names = "auto";
   for (const AxisInfo& info : axis) names.append(", ").append(info.name);
@@ -82,16 +62,6 @@ Shader parse_shader(const std::string& text) {
   } catch (const Error& e) {
     throw UsageError("--shader", e.what());
   }
-}
-
-/// An option whose text `parse` turns into a value; what it throws names the option.
-template <class F>
-CLI::Option* add(CLI::App& app, const char* names, const char* type, const std::string& help,
-                 F parse) {
-  return app
-      .add_option_function<std::string>(
-          names, [parse](const std::string& s) { parse(s); }, help)
-      ->type_name(type);
 }
 
 void add_output_options(CLI::App& app, RenderArguments& a) {
@@ -249,9 +219,7 @@ void add_machine_options(CLI::App& app, RenderArguments& a) {
       })
       ->group(group);
   add(app, "--device", "NAME", "serial, threads, cuda (threads)", [&a](const std::string& s) {
-    a.render.device = choose<Device>(
-        "--device", s,
-        {{"serial", Device::serial}, {"threads", Device::threads}, {"cuda", Device::cuda}});
+    a.render.device = parse_device(s);
   })->group(group);
   add(app, "--threads", "N", "(all)", [&a](const std::string& s) {
     a.render.threads = parse_integer("--threads", s, 1, 4096);
@@ -261,9 +229,7 @@ void add_machine_options(CLI::App& app, RenderArguments& a) {
       "piece by piece (none)",
       [&a](const std::string& s) { a.render.memory_limit = parse_bytes("--memory-limit", s); })
       ->group(group);
-  std::string isas;
-  for (const Isa isa : available_isas()) isas.append(isas.empty() ? "" : ", ").append(name(isa));
-  add(app, "--isa", "NAME", "instruction set; this machine has " + isas + " (the last)",
+  add(app, "--isa", "NAME", "instruction set; this machine has " + isa_words() + " (the last)",
       [&a](const std::string& s) { a.render.isa = parse_isa(s); })
       ->group(group);
   add(app, "--frames", "N", "render N times; --stats gives median, minimum and maximum (1)",

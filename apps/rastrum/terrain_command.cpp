@@ -1,0 +1,398 @@
+// `rastrum terrain (--height FILE | --function NAME) -o OUT`: the options, then check, load, light,
+// render, write.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <rastrum/io/io.hpp>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/terrain/renderer.hpp>
+
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "json_file.hpp"
+#include "option.hpp"
+#include "output.hpp"
+#include "progress.hpp"
+#include "terrain_input.hpp"
+#include "timeline.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+using terrain::Shadows;
+using terrain::TerrainStats;
+
+struct TerrainArguments {
+  TerrainInput input;
+  terrain::TerrainOptions options;
+  terrain::Light light;
+  std::optional<double> x, y, altitude, horizon_px;
+  double angle_deg = 0, roll_deg = 0;
+  int frames = 1;
+  bool quiet = false;
+  Output color, depth, stats;
+};
+
+constexpr double kRadians = std::numbers::pi / 180;
+
+/// N numbers with commas between them.
+std::vector<double> parse_numbers(const char* option, const std::string& text, std::size_t n,
+                                  const char* wanted) {
+  std::vector<double> values;
+  std::size_t at = 0;
+  for (; values.size() < n; ++at) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    values.push_back(parse_number(option, std::string_view(text).substr(at, comma - at)));
+    at = comma;
+    if (at == text.size()) break;
+  }
+  if (values.size() != n || at < text.size())
+    throw UsageError(option, std::string("expected ") + wanted + ", got '" + text + "'");
+  return values;
+}
+
+Rgba8 parse_rgb(const char* option, const std::string& text) {
+  const Vec4 c = parse_color(option, text);
+  const auto channel = [](float v) { return static_cast<std::uint8_t>(v * 255.0F + 0.5F); };
+  return {channel(c.x), channel(c.y), channel(c.z), 255};
+}
+
+/// DENSITY[,START[,#RRGGBB]]
+terrain::Fog parse_fog(const std::string& text) {
+  terrain::Fog fog;
+  std::string rest = text;
+  if (const std::size_t hash = rest.find(",#"); hash != std::string::npos) {
+    fog.color = parse_rgb("--fog", rest.substr(hash + 1));
+    rest.resize(hash);
+  }
+  const bool has_start = rest.find(',') != std::string::npos;
+  const std::vector<double> v =
+      parse_numbers("--fog", rest, has_start ? 2 : 1, "DENSITY[,START[,#rrggbb]]");
+  fog.density = v[0];
+  if (has_start) fog.start = v[1];
+  return fog;
+}
+
+void add_inputs(CLI::App& app, TerrainArguments& a) {
+  const char* group = "Terrain";
+  add(app, "--height", "FILE",
+      "heights: .png (8 or 16 bit, grey), .raw .bin .r16 (uint16), .npy, .dem (USGS), .tif .tiff",
+      [&a](const std::string& s) { a.input.height = s; })
+      ->group(group);
+  add(app, "--color", "FILE",
+      "colours, .png or .jpg of any size, stretched over the map (by height, and shaded slopes)",
+      [&a](const std::string& s) { a.input.color = s; })
+      ->group(group);
+  std::string names;
+  for (const terrain::FunctionInfo& f : terrain::named_functions())
+    names.append(names.empty() ? "" : ", ").append(f.name);
+  add(app, "--function", "NAME|EXPR",
+      names + ", or a formula of x and y (cells) such as '40*sin(x/30)*cos(y/50)'",
+      [&a](const std::string& s) { a.input.function = s; })
+      ->group(group);
+  add(app, "--height-size", "WxH", "cells of a raw height map (square)",
+      [&a](const std::string& s) {
+        const Size size = parse_size("--height-size", s);
+        a.input.raw_size = {size.width, size.height};
+      })
+      ->group(group);
+  add(app, "--height-scale", "S",
+      "cells that a unit of the file is high (1; 16 bit: 1/257; .dem, .tif: 1 / cell size)",
+      [&a](const std::string& s) { a.input.height_scale = parse_number("--height-scale", s); })
+      ->group(group);
+  add(app, "--tile", "NAME", "beyond the map's edge: repeat, mirror, clamp (repeat)",
+      [&a](const std::string& s) {
+        a.options.tiling = choose<terrain::Tiling>("--tile", s,
+                                                   {{"repeat", terrain::Tiling::repeat},
+                                                    {"mirror", terrain::Tiling::mirror},
+                                                    {"clamp", terrain::Tiling::clamp}});
+      })
+      ->group(group);
+}
+
+void add_outputs(CLI::App& app, TerrainArguments& a) {
+  const char* group = "Outputs";
+  add(app, "-o,--output", "FILE", ".png: 8 bit", [&a](const std::string& s) {
+    a.color = parse_output("-o", s, {Format::png});
+  })->group(group);
+  add(app, "--depth", "FILE", ".npy or .exr: float32, cells along the view, inf where the sky is",
+      [&a](const std::string& s) {
+        a.depth = parse_output("--depth", s, {Format::npy, Format::exr});
+      })
+      ->group(group);
+  add(app, "--stats", "FILE", ".json or - (standard output): counts, memory and times",
+      [&a](const std::string& s) {
+        a.stats = s == "-" ? Output{"--stats", s, Format::json}
+                           : parse_output("--stats", s, {Format::json});
+      })
+      ->group(group);
+  app.add_flag("--quiet", a.quiet, "print errors alone")->group(group);
+}
+
+void add_camera(CLI::App& app, TerrainArguments& a) {
+  const char* group = "Camera";
+  add(app, "--position", "X,Y", "cells, x east and y south (half the width, 0.78 of the height)",
+      [&a](const std::string& s) {
+        const std::vector<double> v = parse_numbers("--position", s, 2, "X,Y");
+        a.x = v[0];
+        a.y = v[1];
+      })
+      ->group(group);
+  add(app, "--altitude", "H", "cells (a tenth of the relief above the highest; --classic: 78)",
+      [&a](const std::string& s) { a.altitude = parse_number("--altitude", s); })
+      ->group(group);
+  add(app, "--angle", "DEG", "0 looks north, 90 west (0)", [&a](const std::string& s) {
+    a.angle_deg = parse_number("--angle", s);
+  })->group(group);
+  add(app, "--horizon", "ROW",
+      "pixels from the top; smaller looks down (a quarter; --classic: 100)",
+      [&a](const std::string& s) { a.horizon_px = parse_number("--horizon", s); })
+      ->group(group);
+  add(app, "--roll", "DEG", "turns the picture counter-clockwise (0)", [&a](const std::string& s) {
+    a.roll_deg = parse_number("--roll", s);
+  })->group(group);
+  add(app, "--clearance", "H", "lifts the camera to so many cells above the ground (not at all)",
+      [&a](const std::string& s) { a.options.ground_clearance = parse_number("--clearance", s); })
+      ->group(group);
+}
+
+void add_picture(CLI::App& app, TerrainArguments& a) {
+  const char* group = "Picture";
+  terrain::TerrainOptions& o = a.options;
+  add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)", [&o](const std::string& s) {
+    const Size size = parse_size("--size", s);
+    o.width = size.width;
+    o.height = size.height;
+  })->group(group);
+  add(app, "--distance", "D", "cells that are seen (800)", [&o](const std::string& s) {
+    o.distance = parse_number("--distance", s);
+  })->group(group);
+  add(app, "--fov", "DEG", "field of view across (90)", [&o](const std::string& s) {
+    o.fov_rad = parse_number("--fov", s) * kRadians;
+  })->group(group);
+  add(app, "--scale", "PX",
+      "rows that a height of 1 takes at distance 1 (as columns in the middle)",
+      [&o](const std::string& s) { o.scale_px = parse_number("--scale", s); })
+      ->group(group);
+  add(app, "--dz", "G", "steps along the view grow by this, from 1 (0.005)",
+      [&o](const std::string& s) { o.dz = parse_number("--dz", s); })
+      ->group(group);
+  add(app, "--filter", "NAME", "none, bilinear, mip (none)", [&o](const std::string& s) {
+    o.filter = choose<terrain::Filter>("--filter", s,
+                                       {{"none", terrain::Filter::none},
+                                        {"bilinear", terrain::Filter::bilinear},
+                                        {"mip", terrain::Filter::mip}});
+  })->group(group);
+  add(app, "--projection", "NAME",
+      "planar, or cylindrical: nothing is stretched at wide angles, up to 360 (planar)",
+      [&o](const std::string& s) {
+        o.projection =
+            choose<terrain::Projection>("--projection", s,
+                                        {{"planar", terrain::Projection::planar},
+                                         {"cylindrical", terrain::Projection::cylindrical}});
+      })
+      ->group(group);
+  add(app, "--sky", "#RRGGBB", "(#9090e0)", [&o](const std::string& s) {
+    o.sky = parse_rgb("--sky", s);
+  })->group(group);
+  add(app, "--fog", "DENSITY[,START[,#RRGGBB]]",
+      "per cell, from START cells on, to this colour (none; 0; the sky's)",
+      [&o](const std::string& s) { o.fog = parse_fog(s); })
+      ->group(group);
+  app.add_flag("--classic", o.classic,
+               "the original program bit for bit: 90 degrees, scale 240, 10 above the ground")
+      ->group(group);
+}
+
+void add_light(CLI::App& app, TerrainArguments& a) {
+  const char* group = "Light";
+  add(app, "--sun", "AZIMUTH,ELEVATION",
+      "degrees, clockwise from north and above the horizon (315,35)",
+      [&a](const std::string& s) {
+        const std::vector<double> v = parse_numbers("--sun", s, 2, "AZIMUTH,ELEVATION");
+        if (v[1] > 90)
+          throw UsageError("--sun", "the elevation must be at most 90, got '" + s + "'");
+        a.light.sun = {v[0], v[1]};
+      })
+      ->group(group);
+  add(app, "--shadows", "NAME",
+      "none; accumulated: darker by the number of hidden samples (paper 3); sharp: exact; soft: "
+      "with "
+      "the sun's size (none)",
+      [&a](const std::string& s) {
+        a.light.shadows = choose<Shadows>("--shadows", s,
+                                          {{"none", Shadows::none},
+                                           {"accumulated", Shadows::accumulated},
+                                           {"sharp", Shadows::sharp},
+                                           {"soft", Shadows::soft}});
+      })
+      ->group(group);
+  add(app, "--sun-radius", "DEG", "of the disc that casts soft shadows (0.2666)",
+      [&a](const std::string& s) {
+        a.light.sun_radius_deg = parse_number("--sun-radius", s);
+        if (!(a.light.sun_radius_deg >= 0 && a.light.sun_radius_deg <= 45))
+          throw UsageError("--sun-radius", "must lie in 0 to 45, got '" + s + "'");
+      })
+      ->group(group);
+}
+
+void add_machine(CLI::App& app, TerrainArguments& a) {
+  const char* group = "Machine";
+  terrain::TerrainOptions& o = a.options;
+  add(app, "--method", "NAME", "fast; words: paper 3's scans, the same picture (fast)",
+      [&o](const std::string& s) {
+        o.method = choose<terrain::Method>(
+            "--method", s, {{"fast", terrain::Method::fast}, {"words", terrain::Method::words}});
+      })
+      ->group(group);
+  add(app, "--device", "NAME", "serial, threads (threads)", [&o](const std::string& s) {
+    o.device = parse_device(s);
+  })->group(group);
+  add(app, "--threads", "N", "(all)", [&o](const std::string& s) {
+    o.threads = parse_integer("--threads", s, 1, 4096);
+  })->group(group);
+  add(app, "--isa", "NAME", "instruction set; this machine has " + isa_words() + " (the last)",
+      [&o](const std::string& s) { o.isa = parse_isa(s); })
+      ->group(group);
+  add(app, "--frames", "N", "render N times; --stats gives median, minimum and maximum (1)",
+      [&a](const std::string& s) { a.frames = parse_integer("--frames", s, 1, 1000000); })
+      ->group(group);
+}
+
+void check(const TerrainArguments& a) {
+  if (!a.color && !a.depth && !a.stats)
+    throw UsageError("-o", "say where the picture goes, as in -o picture.png");
+  const bool stats_to_file = a.stats && a.stats.file != "-";
+  const Output none;
+  const Output* const outputs[] = {&a.color, &a.depth, stats_to_file ? &a.stats : &none};
+  check_outputs(outputs);
+}
+
+/// Where one stands who did not say: over the south of the map, looking down on all of it.
+terrain::TerrainCamera camera_of(const TerrainArguments& a, const LoadedTerrain& source) {
+  terrain::TerrainCamera camera;
+  camera.x = a.x.value_or(source.width() / 2.0);
+  camera.y = a.y.value_or(source.height() * (800.0 / 1024));
+  const double relief = source.highest() - source.lowest();
+  camera.altitude =
+      a.altitude.value_or(a.options.classic ? 78 : source.highest() + std::max(relief / 10, 1.0));
+  camera.angle_rad = a.angle_deg * kRadians;
+  camera.horizon_px = a.horizon_px.value_or(a.options.classic ? 100 : a.options.height / 4);
+  camera.roll_rad = a.roll_deg * kRadians;
+  return camera;
+}
+
+nlohmann::ordered_json stats_json(std::vector<TerrainStats> frames, const TerrainArguments& a,
+                                  const LoadedTerrain& source, double load_ms, double light_ms) {
+  std::ranges::sort(frames, {}, &TerrainStats::frame_ms);
+  const TerrainStats& median = frames[(frames.size() - 1) / 2];
+  const bool serial = a.options.device == Device::serial;
+  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+  for (const StageTime& stage : median.stages) {
+    nlohmann::ordered_json& ms = stages[stage.name];
+    ms = (ms.is_null() ? 0.0 : ms.get<double>()) + (stage.end_ms - stage.begin_ms);
+  }
+  return {{"version", RASTRUM_VERSION},
+          {"device", serial ? "serial" : "threads"},
+          {"threads", serial ? 1 : parallel::Threads(a.options.threads).concurrency()},
+          {"isa", name(median.isa)},
+          {"size", {a.options.width, a.options.height}},
+          {"map", {source.width(), source.height()}},
+          {"heights", {source.lowest(), source.highest()}},
+          {"camera",
+           {{"x", median.camera.x}, {"y", median.camera.y}, {"altitude", median.camera.altitude}}},
+          {"slices", median.slices},
+          {"samples", median.samples},
+          {"visible", median.visible},
+          {"peak_bytes", median.peak_bytes},
+          {"load_ms", load_ms},
+          {"light_ms", light_ms},
+          {"stages_ms", std::move(stages)},
+          {"frame_ms",
+           {{"median", median.frame_ms},
+            {"min", frames.front().frame_ms},
+            {"max", frames.back().frame_ms},
+            {"frames", frames.size()}}}};
+}
+
+int run(TerrainArguments& a) {
+  check(a);
+  Timeline timeline;
+  Progress progress(a.quiet);
+  // Refuses what cannot be drawn before a large file is read.
+  terrain::TerrainRenderer renderer(a.options);
+
+  progress.show("loading");
+  const LoadedTerrain source(a.input);
+  const double load_ms = timeline.now_ms();
+  progress.show("lighting");
+  const terrain::Terrain terrain =
+      source.lit(a.light, {a.options.tiling, a.options.device, a.options.threads, a.options.isa});
+  const double light_ms = timeline.now_ms() - load_ms;
+  const terrain::TerrainCamera camera = camera_of(a, source);
+
+  Image<Rgba8> color(a.options.width, a.options.height);
+  std::vector<TerrainStats> frames;
+  for (int i = 0; i < a.frames; ++i) {
+    progress.show("rendering frame " + std::to_string(i + 1) + " of " + std::to_string(a.frames));
+    frames.push_back(renderer.render(terrain, camera, {.color8 = color.view()}));
+  }
+  if (a.color) io::write_png(a.color.file, color.view());
+  if (a.depth) {
+    Image<float> depth(a.options.width, a.options.height);
+    renderer.render(terrain, camera, {.depth = depth.view()});
+    write_depth(a.depth, depth.view());
+  }
+  progress.clear();
+  const auto fastest = std::ranges::min(frames, {}, &TerrainStats::frame_ms).frame_ms;
+  if (a.stats)
+    write_json(a.stats.file, stats_json(std::move(frames), a, source, load_ms, light_ms));
+  if (!a.quiet && a.color)
+    std::fprintf(stderr, "%s: %dx%d, map %dx%d, %.1f ms%s\n", a.color.file.c_str(), a.options.width,
+                 a.options.height, source.width(), source.height(), fastest,
+                 a.frames > 1 ? " the fastest frame" : "");
+  return 0;
+}
+
+}  // namespace
+
+Command add_terrain_command(CLI::App& app) {
+  auto arguments = std::make_shared<TerrainArguments>();
+  CLI::App& command =
+      *app.add_subcommand("terrain", "Fly over a height map or a function (Voxel Space)");
+  add_inputs(command, *arguments);
+  add_outputs(command, *arguments);
+  add_camera(command, *arguments);
+  add_picture(command, *arguments);
+  add_light(command, *arguments);
+  add_machine(command, *arguments);
+  std::string footer = "Functions:\n";
+  for (const terrain::FunctionInfo& f : terrain::named_functions())
+    footer.append("  ").append(f.name).append("\n      ").append(f.description).append("\n");
+  footer +=
+      "\nA cell is a pixel of the height map; heights, distances and positions are in cells.\n"
+      "Times: a frame goes from the lit map in memory to the finished image in memory; load_ms "
+      "and\n"
+      "light_ms come before, once.\n"
+      "\nExamples:\n"
+      "  rastrum terrain --height D1.png --color C1W.png -o flight.png\n"
+      "  rastrum terrain --height D1.png --color C1W.png --classic --size 800x450 -o original.png\n"
+      "  rastrum terrain --height SainteHelens.dem --tile clamp --sun 250,25 --shadows sharp -o "
+      "h.png\n"
+      "  rastrum terrain --function noise --filter bilinear --fog 0.002 --distance 2000 -o "
+      "noise.png\n"
+      "  rastrum terrain --function '30*sin(x/40)*cos(y/40)' --altitude 60 -o eggs.png\n"
+      "  rastrum terrain --height map.npy --filter mip --frames 20 --stats - -o map.png";
+  command.footer(footer);
+  return {&command, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,47 @@
+// Terrains as the command line names them: a height map with or without colours, a function, an
+// expression.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <rastrum/io/height_map.hpp>
+#include <rastrum/terrain/functions.hpp>
+#include <rastrum/terrain/light.hpp>
+#include <rastrum/terrain/terrain.hpp>
+
+namespace rastrum::cli {
+
+struct TerrainInput {
+  std::optional<std::filesystem::path> height, color;
+  io::RawSize raw_size;                ///< of raw heights
+  std::optional<double> height_scale;  ///< none: the file's own (1/257 for 16 bit, 1/cell for DEM)
+  std::string function;                ///< a name or an expression, where there is no file
+};
+
+/// Read once, lit as often as the sun moves.
+class LoadedTerrain {
+ public:
+  /// Throws Error that names the file or the expression; UsageError unless there is one of a height
+  /// file and a function, and colours only with a file.
+  explicit LoadedTerrain(const TerrainInput& input);
+
+  /// What is drawn. Where there are no colours, they are by height and slopes are shaded.
+  [[nodiscard]] terrain::Terrain lit(terrain::Light light,
+                                     const terrain::ShadowOptions& options) const;
+
+  [[nodiscard]] bool is_map() const { return !map_.heights.empty(); }
+  [[nodiscard]] int width() const { return is_map() ? map_.heights.width() : 1024; }
+  [[nodiscard]] int height() const { return is_map() ? map_.heights.height() : 1024; }
+  /// The range of the heights, in cells; of functions as far as it is known.
+  [[nodiscard]] double lowest() const { return low_; }
+  [[nodiscard]] double highest() const { return high_; }
+
+ private:
+  terrain::HeightMap map_;
+  terrain::HeightFunction function_;
+  double low_ = 0, high_ = 0;
+};
+
+}  // namespace rastrum::cli
