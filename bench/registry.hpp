@@ -25,6 +25,7 @@ int run_paper1_table4(std::span<const std::string_view> options);
 int run_paper1_table5(std::span<const std::string_view> options);
 int run_paper1_table6(std::span<const std::string_view> options);
 int run_paper2(std::span<const std::string_view> options);
+int run_paper3(std::span<const std::string_view> options);
 int run_paper5_table1(std::span<const std::string_view> options);
 int run_paper5_table3(std::span<const std::string_view> options);
 int run_paper5_table4(std::span<const std::string_view> options);

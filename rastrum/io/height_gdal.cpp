@@ -1,72 +1,145 @@
-// GeoTIFF through GDAL: the first band, its value for "no data" a void. Without the library at
-// build time the function says what to install.
+// GeoTIFF through GDAL: the first band, its value for "no data" a void. The library is loaded when
+// a file asks for it: linked, its hundred libraries would cost every start of the program 50 ms (3
+// without). Where it was absent at build time the function says what to install.
 #include <rastrum/io/height_map.hpp>
 
-#ifdef RASTRUM_HAS_GDAL
+#ifdef RASTRUM_GDAL_LIBRARY
+#include <dlfcn.h>
 #include <gdal.h>
 #include <ogr_srs_api.h>
 
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
 
 #include <rastrum/io/mapped_file.hpp>
 #endif
 
 namespace rastrum::io {
-#ifdef RASTRUM_HAS_GDAL
+#ifdef RASTRUM_GDAL_LIBRARY
 namespace {
 
+/// The functions that are used of it, found once.
+class Gdal {
+ public:
+  static const Gdal& get(const std::string& name) {
+    static const Gdal gdal(name);
+    return gdal;
+  }
+
+ private:
+  void* library_;
+  std::string name_;
+
+  explicit Gdal(const std::string& name)
+      : library_(::dlopen(RASTRUM_GDAL_LIBRARY, RTLD_NOW | RTLD_LOCAL)), name_(name) {
+    if (library_ == nullptr)
+      throw Error(Errc::unsupported, name + ": GeoTIFF needs " RASTRUM_GDAL_LIBRARY
+                                            ", which this machine lacks (Debian: libgdal-dev)");
+    find(register_all, "GDALAllRegister");
+    find(open, "GDALOpenEx");
+    find(close, "GDALClose");
+    find(x_size, "GDALGetRasterXSize");
+    find(y_size, "GDALGetRasterYSize");
+    find(count, "GDALGetRasterCount");
+    find(band, "GDALGetRasterBand");
+    find(raster_io, "GDALRasterIO");
+    find(no_data, "GDALGetRasterNoDataValue");
+    find(geo_transform, "GDALGetGeoTransform");
+    find(spatial_ref, "GDALGetSpatialRef");
+    find(is_geographic, "OSRIsGeographic");
+    find(linear_units, "OSRGetLinearUnits");
+    find(push_handler, "CPLPushErrorHandler");
+    find(pop_handler, "CPLPopErrorHandler");
+    find(quiet_handler, "CPLQuietErrorHandler");
+    find(last_error, "CPLGetLastErrorMsg");
+    register_all();
+  }
+  template <class F>
+  void find(F*& f, const char* symbol) {
+    f = reinterpret_cast<F*>(::dlsym(library_, symbol));
+    if (f == nullptr)
+      throw Error(Errc::unsupported,
+                  name_ + ": " RASTRUM_GDAL_LIBRARY " here is of another version (no " + symbol +
+                      "); build rastrum against it");
+  }
+
+ public:
+  decltype(GDALAllRegister)* register_all;
+  decltype(GDALOpenEx)* open;
+  decltype(GDALClose)* close;
+  decltype(GDALGetRasterXSize)* x_size;
+  decltype(GDALGetRasterYSize)* y_size;
+  decltype(GDALGetRasterCount)* count;
+  decltype(GDALGetRasterBand)* band;
+  decltype(GDALRasterIO)* raster_io;
+  decltype(GDALGetRasterNoDataValue)* no_data;
+  decltype(GDALGetGeoTransform)* geo_transform;
+  decltype(GDALGetSpatialRef)* spatial_ref;
+  decltype(OSRIsGeographic)* is_geographic;
+  decltype(OSRGetLinearUnits)* linear_units;
+  decltype(CPLPushErrorHandler)* push_handler;
+  decltype(CPLPopErrorHandler)* pop_handler;
+  decltype(CPLQuietErrorHandler)* quiet_handler;
+  decltype(CPLGetLastErrorMsg)* last_error;
+};
+
 /// GDAL would print on stderr; what it says goes into our error instead.
-struct Quiet {
-  Quiet() { CPLPushErrorHandler(CPLQuietErrorHandler); }
-  ~Quiet() { CPLPopErrorHandler(); }
+class Quiet {
+ public:
+  explicit Quiet(const Gdal& gdal) : gdal_(gdal) { gdal.push_handler(gdal.quiet_handler); }
+  ~Quiet() { gdal_.pop_handler(); }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+ private:
+  const Gdal& gdal_;
 };
 
 /// Metres along a row of pixels; 1 where the file does not say.
-double cell_metres(GDALDatasetH data) {
+double cell_metres(const Gdal& gdal, GDALDatasetH data) {
   double t[6];
-  if (GDALGetGeoTransform(data, t) != CE_None) return 1;
+  if (gdal.geo_transform(data, t) != CE_None) return 1;
   const double step = std::hypot(t[1], t[4]);
   if (!std::isfinite(step) || !(step > 0)) return 1;
   constexpr double kMetresPerDegree = 111320;
-  const OGRSpatialReferenceH where = GDALGetSpatialRef(data);
-  if (where != nullptr && OSRIsGeographic(where) != 0) return step * kMetresPerDegree;
-  const double unit = where != nullptr ? OSRGetLinearUnits(where, nullptr) : 1;
+  const OGRSpatialReferenceH where = gdal.spatial_ref(data);
+  if (where != nullptr && gdal.is_geographic(where) != 0) return step * kMetresPerDegree;
+  const double unit = where != nullptr ? gdal.linear_units(where, nullptr) : 1;
   return unit > 0 ? step * unit : step;
 }
 
 }  // namespace
 
 HeightGrid read_height_gdal(const std::filesystem::path& file) {
-  static std::once_flag registered;
-  std::call_once(registered, GDALAllRegister);
   { const MappedFile exists(file); }  // our own words for a file that cannot be read
-  const Quiet quiet;
+  const Gdal& gdal = Gdal::get(file.string());
+  const Quiet quiet(gdal);
   const auto fail = [&](const char* what) {
-    throw Error(Errc::bad_format, file.string() + ": " + what + ": " + CPLGetLastErrorMsg());
+    throw Error(Errc::bad_format, file.string() + ": " + what + ": " + gdal.last_error());
   };
   const char* const drivers[] = {"GTiff", nullptr};
-  const std::unique_ptr<void, void (*)(void*)> data(
-      GDALOpenEx(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers, nullptr, nullptr),
-      [](void* d) { GDALClose(d); });
+  const std::unique_ptr<void, decltype(GDALClose)*> data(
+      gdal.open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers, nullptr, nullptr),
+      gdal.close);
   if (!data) fail("is no sound GeoTIFF");
-  const int width = GDALGetRasterXSize(data.get()), height = GDALGetRasterYSize(data.get());
-  if (GDALGetRasterCount(data.get()) < 1) fail("holds no band of heights");
+  const int width = gdal.x_size(data.get()), height = gdal.y_size(data.get());
+  if (gdal.count(data.get()) < 1) fail("holds no band of heights");
   if (width > kMaxImageSize || height > kMaxImageSize)
     throw Error(Errc::unsupported, file.string() + ": its size " + std::to_string(width) + "x" +
                                        std::to_string(height) + " is above 32768x32768");
-  const GDALRasterBandH band = GDALGetRasterBand(data.get(), 1);
-  HeightGrid grid{Image<float>(width, height), cell_metres(data.get())};
-  if (GDALRasterIO(band, GF_Read, 0, 0, width, height, grid.heights.pixels().data(), width, height,
-                   GDT_Float32, 0, 0) != CE_None)
+  const GDALRasterBandH band = gdal.band(data.get(), 1);
+  HeightGrid grid{Image<float>(width, height), cell_metres(gdal, data.get())};
+  if (gdal.raster_io(band, GF_Read, 0, 0, width, height, grid.heights.pixels().data(), width,
+                     height, GDT_Float32, 0, 0) != CE_None)
     fail("its heights cannot be read");
   int has_void = 0;
-  const auto no_data = static_cast<float>(GDALGetRasterNoDataValue(band, &has_void));
+  const double no_data = gdal.no_data(band, &has_void);
   if (has_void != 0)
     for (float& h : grid.heights.pixels())
-      if (h == no_data) h = std::numeric_limits<float>::quiet_NaN();
+      // As GDAL does, which holds it in float64 and the heights in float32.
+      if (std::abs(static_cast<double>(h) - no_data) <= std::abs(no_data) * 1e-7)
+        h = std::numeric_limits<float>::quiet_NaN();
   return grid;
 }
 

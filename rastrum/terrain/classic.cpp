@@ -3,7 +3,7 @@
 // A map of another size than 1024² repeats, mirrors or ends by the floor of the coordinates. Holes
 // draw nothing.
 //
-// On threads, a block of 64 columns needs the position of each slice at its first column, so those
+// On threads, a block of columns needs the position of each slice at its first column, so those
 // are accumulated first; a block accumulates on from there, eight slices side by side.
 #include <algorithm>
 #include <cmath>
@@ -44,12 +44,12 @@ struct Table {
   std::size_t slices = 0;  ///< of a block, in x and y
 
   Table(parallel::Threads& exec, const Kernels& kernels, const std::vector<Line>& lines,
-        std::size_t blocks, double altitude, double horizon, double highest)
+        const Blocks& blocks, double altitude, double horizon, double highest)
       : slices((lines.size() + kClassicSlices - 1) / kClassicSlices * kClassicSlices) {
     dx.resize(slices);
     dy.resize(slices);
-    x.resize(slices * blocks);
-    y.resize(slices * blocks);
+    x.resize(slices * blocks.count);
+    y.resize(slices * blocks.count);
     lowest_row.resize(lines.size());
     double lowest = std::numeric_limits<double>::infinity();
     for (std::size_t k = lines.size(); k-- > 0;) {
@@ -63,26 +63,41 @@ struct Table {
     }
     parallel::for_each_index(exec, slices / kClassicSlices, [&](std::size_t group) {
       const std::size_t k = group * kClassicSlices;
-      for (std::size_t b = 1; b < blocks; ++b) {
+      for (std::size_t b = 1; b < blocks.count; ++b) {
         double* to_x = x.data() + b * slices + k;
         double* to_y = y.data() + b * slices + k;
         std::copy_n(to_x - slices, kClassicSlices, to_x);
         std::copy_n(to_y - slices, kClassicSlices, to_y);
-        kernels.advance(kClassicSlices, kBlockColumns, dx.data() + k, dy.data() + k, to_x, to_y);
+        kernels.advance(kClassicSlices, blocks.size(b - 1), dx.data() + k, dy.data() + k, to_x,
+                        to_y);
       }
     });
+  }
+
+  /// No height on slices [first, last] of a block of n columns exceeds it.
+  [[nodiscard]] double highest(const Ceiling& ceiling, Tiling tiling, const double* block_x,
+                               const double* block_y, std::size_t first, std::size_t last,
+                               std::size_t n) const {
+    const auto cells = [&](const double* at, const std::vector<double>& step) {
+      const double a = at[first], b = at[last], c = a + step[first] * static_cast<double>(n),
+                   d = b + step[last] * static_cast<double>(n);
+      // One more on each side, for what accumulating rounds.
+      return CellRange{static_cast<std::int64_t>(std::floor(std::min({a, b, c, d}))) - 1,
+                       static_cast<std::int64_t>(std::floor(std::max({a, b, c, d}))) + 1};
+    };
+    return static_cast<double>(ceiling.over(cells(block_x, dx), cells(block_y, dy), tiling));
   }
 };
 
 }  // namespace
 
 Counts draw_classic(parallel::Threads& exec, Isa isa, BlockPool& pool, const Terrain& terrain,
-                    const TerrainOptions& options, const TerrainCamera& camera,
-                    const TerrainTargets& targets) {
+                    const Ceiling& ceiling, const TerrainOptions& options,
+                    const TerrainCamera& camera, const TerrainTargets& targets) {
   const std::vector<Line> lines = lines_of(options, camera);
-  const auto columns = static_cast<std::size_t>(options.width);
-  const Table table(exec, kernels(isa), lines, (columns + kBlockColumns - 1) / kBlockColumns,
-                    camera.altitude, camera.horizon_px, static_cast<double>(terrain.highest()));
+  const Blocks blocks(options.width, targets);
+  const Table table(exec, kernels(isa), lines, blocks, camera.altitude, camera.horizon_px,
+                    static_cast<double>(terrain.highest()));
   const Image<float>& heights = *terrain.heights();
   const Image<Rgba8>& colors = *terrain.colors();
   const auto power_of_two = [](int n) { return (n & (n - 1)) == 0; };
@@ -94,10 +109,11 @@ Counts draw_classic(parallel::Threads& exec, Isa isa, BlockPool& pool, const Ter
   const bool direct = heights.width() == colors.width() && heights.height() == colors.height();
 
   return draw_blocks(
-      exec, isa, pool, options.sky, targets, options.width, options.height,
-      [&](const Kernels& kernels, std::size_t first, std::size_t n, BlockMarks& marks) {
-        const double* x = table.x.data() + first / kBlockColumns * table.slices;
-        const double* y = table.y.data() + first / kBlockColumns * table.slices;
+      exec, isa, pool, options.sky, targets, blocks, options.height,
+      [&](const Kernels& kernels, std::size_t b, BlockMarks& marks) {
+        const std::size_t n = blocks.size(b);
+        const double* x = table.x.data() + b * table.slices;
+        const double* y = table.y.data() + b * table.slices;
         alignas(64) std::int32_t cells[kBlockColumns * kClassicSlices];
         ColumnBlock block;
         block.restart(n, options.height);
@@ -105,9 +121,18 @@ Counts draw_classic(parallel::Threads& exec, Isa isa, BlockPool& pool, const Ter
         for (std::size_t k = 0; k < lines.size(); ++k) {
           if (static_cast<double>(block.deepest) <= table.lowest_row[k]) break;
           const std::size_t lane = k % kClassicSlices;
-          if (lane == 0)
+          if (lane == 0) {
+            const std::size_t last = std::min(k + kClassicSlices, lines.size()) - 1;
+            const double top = table.highest(ceiling, options.tiling, x, y, k, last, n);
+            const double row = std::min((camera.altitude - top) * lines[k].rows,
+                                        (camera.altitude - top) * lines[last].rows);
+            if (static_cast<double>(block.deepest) <= row + camera.horizon_px) {
+              k = last;
+              continue;
+            }
             kernels.classic_cells({x + k, y + k, table.dx.data() + k, table.dy.data() + k}, map, n,
                                   cells);
+          }
           for (std::size_t i = 0; i < n; ++i) {
             block.cells[i] = cells[i * kClassicSlices + lane];
             block.heights[i] = heights.pixels()[static_cast<std::size_t>(block.cells[i])];

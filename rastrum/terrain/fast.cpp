@@ -4,7 +4,8 @@
 // in vectors of columns, until nothing can show any more: every column is full, or even the highest
 // peak of the map would stay below. Then rows are written once, top to bottom: the mark of a pixel,
 // or what is above it. So spans are never drawn, and bytes are written whole lines at a time.
-#include <bit>
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -13,6 +14,10 @@
 
 namespace rastrum::terrain {
 namespace {
+
+/// Slices that are left out at a time where all of them are hidden. Measured with blocks of 32 and
+/// 64 columns and groups of 4, 8 and 16: 8 in blocks of 64 was the fastest, by little.
+constexpr std::size_t kGroup = 8;
 
 /// One block's walk over a terrain of functions: a call for the heights of a slice, one for the
 /// colours of what is visible.
@@ -37,6 +42,37 @@ struct SurfaceWalk {
   }
 };
 
+/// The directions of a block's columns.
+struct Fan {
+  float ux0, ux1, uy0, uy1;
+
+  explicit Fan(const ColumnBlock& b, std::size_t n)
+      : ux0(*std::min_element(b.ux, b.ux + n)),
+        ux1(*std::max_element(b.ux, b.ux + n)),
+        uy0(*std::min_element(b.uy, b.uy + n)),
+        uy1(*std::max_element(b.uy, b.uy + n)) {}
+
+  /// The cells that samples at distances [z0, z1] read along one axis.
+  static CellRange cells(float u0, float u1, float z0, float z1, float within, std::int32_t cell) {
+    const float low = within + std::min(z0 * u0, z1 * u0);
+    const float high = within + std::max(z0 * u1, z1 * u1);
+    // One more on each side, for the neighbours of a filter.
+    return {cell + static_cast<std::int64_t>(std::floor(low)) - 1,
+            cell + static_cast<std::int64_t>(std::floor(high)) + 1};
+  }
+  /// No sample on slices [first, last] lies above this row.
+  [[nodiscard]] float lowest_row(const Samples& samples, const Slice& first,
+                                 const Slice& last) const {
+    const Setup& s = samples.setup;
+    const float top =
+        samples.ceiling->over(cells(ux0, ux1, first.z, last.z, s.fx, s.cell_x),
+                              cells(uy0, uy1, first.z, last.z, s.fy, s.cell_y), samples.map.tiling);
+    // Filtered heights may exceed the highest by a rounding.
+    const float height = top + std::abs(top) * 0x1p-20F;
+    return std::min(samples.row(height, first), samples.row(height, last));
+  }
+};
+
 Counts walk(const Samples& samples, const Kernels& kernels, std::size_t first, std::size_t n,
             BlockMarks& marks) {
   const Setup& setup = samples.setup;
@@ -48,8 +84,17 @@ Counts walk(const Samples& samples, const Kernels& kernels, std::size_t first, s
   block.restart(n, setup.height);
   SurfaceWalk surface{samples, {}, {}};
   Counts counts;
-  for (const Slice& slice : setup.slices) {
+  const Fan fan(block, n);
+  for (std::size_t k = 0; k < setup.slices.size(); ++k) {
+    const Slice& slice = setup.slices[k];
     if (block.deepest <= slice.lowest_row) break;
+    if (is_map && k % kGroup == 0) {
+      const std::size_t last = std::min(k + kGroup, setup.slices.size()) - 1;
+      if (block.deepest <= fan.lowest_row(samples, slice, setup.slices[last])) {
+        k = last;
+        continue;
+      }
+    }
     counts.samples += n;
     if (is_map)
       kernels.heights(samples, slice, n, block);
@@ -81,10 +126,11 @@ Counts walk(const Samples& samples, const Kernels& kernels, std::size_t first, s
 
 Counts draw_fast(parallel::Threads& exec, Isa isa, BlockPool& pool, const Samples& samples,
                  const TerrainTargets& targets) {
-  return draw_blocks(exec, isa, pool, samples.setup.sky, targets,
-                     static_cast<int>(samples.setup.ux.size()), samples.setup.height,
-                     [&](const Kernels& kernels, std::size_t first, std::size_t n,
-                         BlockMarks& marks) { return walk(samples, kernels, first, n, marks); });
+  const Blocks blocks(static_cast<int>(samples.setup.ux.size()), targets);
+  return draw_blocks(exec, isa, pool, samples.setup.sky, targets, blocks, samples.setup.height,
+                     [&](const Kernels& kernels, std::size_t b, BlockMarks& marks) {
+                       return walk(samples, kernels, blocks.first(b), blocks.size(b), marks);
+                     });
 }
 
 }  // namespace rastrum::terrain

@@ -3,6 +3,7 @@
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/terrain/kernels_simd.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>  // must precede highway.h
 #include <hwy/highway.h>
 
@@ -106,7 +107,9 @@ void heights(const Samples& samples, const Slice& slice, std::size_t n, ColumnBl
       }
       const I cell = hn::Add(hn::Mul(row, stride), column);
       hn::Store(cell, di, b.cells + i);
-      hn::Store(hn::GatherIndex(d, cells, cell), d, b.heights + i);
+      // Eight loads take less time than a gather on Zen 3, and no more elsewhere.
+      for (std::size_t lane = 0; lane < kLanes; ++lane)
+        b.heights[i + lane] = cells[b.cells[i + lane]];
     }
   }
 }
@@ -136,8 +139,14 @@ HWY_INLINE std::size_t list(ColumnBlock& b, std::size_t i, std::size_t listed,
   const I column = hn::Iota(d, static_cast<std::int32_t>(i));
   const I mark =
       hn::Add(hn::Mul(top, hn::Set(d, static_cast<std::int32_t>(kBlockColumns))), column);
+  const I cell = hn::Load(d, b.cells + i);
+  if (hn::AllTrue(d, visible)) {
+    hn::StoreU(mark, d, b.mark + listed);
+    hn::StoreU(cell, d, b.cell + listed);
+    return listed + kLanes;
+  }
   hn::CompressStore(mark, visible, d, b.mark + listed);
-  return listed + hn::CompressStore(hn::Load(d, b.cells + i), visible, d, b.cell + listed);
+  return listed + hn::CompressStore(cell, visible, d, b.cell + listed);
 }
 
 std::size_t occlude(float altitude, float rows, float horizon, std::size_t n,
@@ -302,6 +311,8 @@ void fill(std::uint32_t* marks, int first, int last, std::size_t n, std::uint32_
       row[i] = 0;
     }
   }
+  // Streamed stores are ordered with nothing else.
+  if (stream) hwy::FlushStream();
 }
 
 constexpr Kernels kTable{heights_tiled, occlude, occlude64, advance, classic_cells, fill};

@@ -28,8 +28,8 @@ Counts draw_words(parallel::Threads& exec, const Samples& samples, const Terrain
 
 /// Macke's program in float64, camera lifted before. Positions must stay within 2^51 cells.
 Counts draw_classic(parallel::Threads& exec, Isa isa, BlockPool& pool, const Terrain& terrain,
-                    const TerrainOptions& options, const TerrainCamera& camera,
-                    const TerrainTargets& targets);
+                    const Ceiling& ceiling, const TerrainOptions& options,
+                    const TerrainCamera& camera, const TerrainTargets& targets);
 /// The same in plain loops.
 Counts draw_classic_reference(const Terrain& terrain, const TerrainOptions& options,
                               const TerrainCamera& camera, const TerrainTargets& targets);

@@ -88,7 +88,8 @@ struct TerrainTargets {
 struct TerrainStats {
   TerrainCamera camera;          ///< as drawn: lifted from the ground where that was asked for
   std::uint64_t slices = 0;      ///< distances at which each column may be sampled
-  std::uint64_t samples = 0;     ///< heights read
+  std::uint64_t samples = 0;     ///< heights read; what is left out varies a little with where
+                                 ///< the targets lie in memory
   std::uint64_t visible = 0;     ///< samples that were drawn
   std::uint64_t peak_bytes = 0;  ///< scratch and pyramids, beyond the terrain and the images
   std::vector<StageTime> stages;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include <rastrum/terrain/ceiling.hpp>
 #include <rastrum/terrain/map_view.hpp>
 #include <rastrum/terrain/setup.hpp>
 #include <rastrum/terrain/terrain.hpp>
@@ -13,7 +14,8 @@ namespace rastrum::terrain {
 struct Samples {
   const Setup& setup;
   const Terrain& terrain;
-  MapView map;  ///< where the terrain is one
+  MapView map;                       ///< where the terrain is one
+  const Ceiling* ceiling = nullptr;  ///< of the map, for methods that leave out what is hidden
 
   [[nodiscard]] float offset_x(std::size_t column, const Slice& slice) const {
     return setup.fx + slice.z * setup.ux[column];

@@ -6,7 +6,6 @@
 namespace rastrum::terrain {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Fractions and columns that are nearer than this are taken as both sides of the border: far above
 /// what float64 rounds, and above the crossings that do not count (10⁻⁹ of 65,536 cells).
 constexpr double kMargin = 1e-4;
@@ -16,7 +15,6 @@ struct Crossing {
   double enter, leave;
 };
 Crossing cross(double f, double s, int r) {
-  if (s == 0) return {-kInfinity, kInfinity};
   const double a = (r - f) / s, b = (r + 1 - f) / s;
   return {std::min(a, b), std::max(a, b)};
 }
@@ -30,6 +28,16 @@ SweepColumn plan_column(int column, double s, double tau) {
   c.part = std::min(static_cast<std::int32_t>((phi - band) * kSubBands), kSubBands - 1);
   c.begin = static_cast<float>((x + 0.5) * tau);
   c.row = static_cast<std::int32_t>(std::floor(s * x + std::min(s, 0.0) - kMargin));
+  // Along an axis or a diagonal every ray runs in the same cells: from side to side of a row's
+  // middle, or from corner to corner. Nothing is left between the bounds.
+  if (s == 0 || std::abs(s) == 1) {
+    const auto part = static_cast<std::size_t>(c.part);
+    const std::int32_t row = s == 0 ? 0 : s > 0 ? column : -column - 1;
+    c.row = row;
+    c.count[part] = 1;
+    c.entries[part][0] = {0, static_cast<float>(x * tau), static_cast<float>(x * tau)};
+    return c;
+  }
   for (int part = 0; part < kSubBands; ++part) {
     const double low = static_cast<double>(part) / kSubBands - kMargin;
     const double high = static_cast<double>(part + 1) / kSubBands + kMargin;
@@ -37,16 +45,12 @@ SweepColumn plan_column(int column, double s, double tau) {
     for (int i = 0; i < 4; ++i) {
       const Crossing p = cross(low, s, c.row + i), q = cross(high, s, c.row + i);
       // Lines of the part enter the row between these, and leave it between those.
-      double first = std::max(std::min(p.enter, q.enter), x);
-      double last = std::max(std::max(p.enter, q.enter), x);
+      const double first = std::max(std::min(p.enter, q.enter), x);
+      const double last = std::max(std::max(p.enter, q.enter), x);
       const double first_out = std::min(std::min(p.leave, q.leave), x + 1);
       const double last_out = std::min(std::max(p.leave, q.leave), x + 1);
-      bool any = first <= x + 1 + kMargin && last_out >= x - kMargin;
-      bool all = last + kMargin < x + 1 && first_out > x + kMargin;
-      if (s == 0) {  // along an axis every ray runs in the middle of its row
-        any = all = c.row + i == 0;
-        first = last = x;
-      }
+      const bool any = first <= x + 1 + kMargin && last_out >= x - kMargin;
+      const bool all = last + kMargin < x + 1 && first_out > x + kMargin;
       if (!any) continue;
       c.entries[static_cast<std::size_t>(part)][static_cast<std::size_t>(count++)] = {
           i, static_cast<float>(std::max(first - kMargin, x) * tau),

@@ -1,4 +1,4 @@
-// Sharp shadows by a sweep towards the viewer of the sun, exact, in O(1) a cell.
+// Sharp shadows by a sweep over the columns of a map, from the sun's side on; exact, O(1) a cell.
 //
 // Turn the map so that the sun lies towards larger X (the axis nearer to its azimuth) and rays are
 // lines y = c + s·X, |s| ≤ 1. A ray that climbs `tau` a column is blocked by a cell of height h
@@ -13,8 +13,11 @@
 // however far a shadow reaches. What lies between them, the edges of shadows, is decided by the
 // traversal that defines the shadow; so the result is exact, whatever the sweep rounds to.
 //
-// A maximum pyramid, which paper 3's readers would expect, is slower here: a ray costs 20 to 40
-// nodes, the sweep about 20 instructions for 16 cells.
+// On axes and diagonals, rays of all cells run alike and nothing lies between the bounds; elsewhere
+// 5 to 10 % of the cells of real maps do. Most of these are decided in vectors by the next columns,
+// and the rest skips blocks of columns by their upper bounds, a pyramid of one level along the ray.
+// (A maximum pyramid over the map and a ray for each cell would cost 20 to 40 nodes a cell, which
+// is no less than the march of 256 samples in vectors.)
 #pragma once
 
 #include <array>

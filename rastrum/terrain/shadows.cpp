@@ -118,8 +118,6 @@ ShadowCaster caster_of(ImageView<const float> heights, Tiling tiling, const Shad
 constexpr std::size_t kRowGrain = 8;
 /// Bands of a sweep that a thread takes at once: the block of cells then stays in the first cache.
 constexpr int kBandGrain = 512;
-/// A ray of so few cells is walked; planning a sweep would cost more.
-constexpr std::size_t kFewSteps = 1;
 
 }  // namespace
 
@@ -170,7 +168,7 @@ Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun
   const double along = std::max(std::abs(ray.x), std::abs(ray.y));
   ray.rise = std::max(ray.rise, map.relief() * along / kLongestShadow);
   std::vector<RayStep> steps = ray_steps(ray, map.relief());
-  if (steps.size() < kFewSteps || !(map.relief() > 0)) return shadow;
+  if (steps.empty() || !(map.relief() > 0)) return shadow;
   on_device(options, [&](auto& exec) {
     if (kernels.sweep == nullptr) {
       parallel::for_each_index(exec, static_cast<std::size_t>(heights.height),

@@ -132,6 +132,7 @@ class Block {
         stride_((static_cast<std::size_t>(bands) + kSweepBlock + 8 + 2 * kLanes) / kLanes * kLanes),
         cells_(stride_ * kSweepBlock) {}
 
+  [[nodiscard]] std::size_t stride() const { return stride_; }
   /// The row of band 0's first cell.
   [[nodiscard]] int low() const { return low_; }
   [[nodiscard]] const float* column(int c) const {
@@ -221,11 +222,18 @@ class Sweeper {
         shadow_(shadow),
         blocks_at_hand_{Block(sweep, static_cast<int>(padded_)),
                         Block(sweep, static_cast<int>(padded_))},
-        bounds_(4 * padded_, -kInfinity),
+        lower_(kSubBands * padded_, -kInfinity),
         blocks_((sweep.column.size() + kSweepBlock - 1) / kSweepBlock),
         upper_in_(blocks_ * kSubBands * padded_),
-        upper_from_(blocks_ * kSubBands * padded_),
-        dark_(padded_ * kSweepBlock) {}
+        upper_from_((blocks_ + 1) * kSubBands * padded_, -kInfinity),
+        dark_(padded_ * kSweepBlock),
+        stride_(blocks_at_hand_[0].stride()) {
+    const std::size_t reach = sweep.step_at(2 * kSweepBlock);
+    for (std::size_t k = 0; k < reach; ++k) {
+      const SweepStep& s = sweep.along[k];
+      near_.push_back({s.ahead * static_cast<std::ptrdiff_t>(stride_) + s.across, s.climb});
+    }
+  }
 
   void run() {
     const int all = static_cast<int>(sweep_.column.size());
@@ -238,7 +246,7 @@ class Sweeper {
       }
       std::swap(current_, previous_);
       current_->load(x0, n, first_, low);
-      for (std::size_t i = 0; i < padded_; i += kLanes) sweep_vector(x0, n, low, i);
+      sweep_block(x0, n);
       if (sweep_.along_x && x0 + kSweepBlock <= sweep_.columns) {
         store_turned(x0);
         continue;
@@ -250,56 +258,82 @@ class Sweeper {
  private:
   static_assert(kSubBands == 2);
 
-  HWY_INLINE void sweep_vector(int x0, int n, int low, std::size_t i) {
+  /// Columns outside, bands inside: what a column is to all bands stays in registers.
+  void sweep_block(int x0, int n) {
     const F32 d;
-    float* const bounds = bounds_.data() + 4 * i;
-    // Over the columns behind the block, and in it.
-    const F far_upper0 = hn::LoadU(d, bounds), far_upper1 = hn::LoadU(d, bounds + kLanes);
-    F lower0 = hn::LoadU(d, bounds + 2 * kLanes), lower1 = hn::LoadU(d, bounds + 3 * kLanes);
-    F upper0 = hn::Set(d, -kInfinity), upper1 = upper0;
+    const int block = x0 / kSweepBlock;
+    std::fill_n(&upper_in(block, 0, 0), kSubBands * padded_, -kInfinity);
     for (int c = n - 1; c >= 0; --c) {
-      const SweepColumn& column = sweep_.column[static_cast<std::size_t>(x0 + c)];
-      const float* const cells = current_->column(c) + i;
-      if (x0 + c < sweep_.columns) {
-        const F own = hn::LoadU(d, cells + (column.begin_row - low));
-        const F upper =
-            column.part == 0 ? hn::Max(far_upper0, upper0) : hn::Max(far_upper1, upper1);
-        const F lower = column.part == 0 ? lower0 : lower1;
-        const auto dark = hn::Gt(lower, hn::Sub(own, hn::Set(d, column.begin - sweep_.slack)));
-        const F ray = hn::Sub(own, hn::Set(d, column.begin + sweep_.slack));
-        std::uint8_t* const to = dark_.data() + static_cast<std::size_t>(c) * padded_ + i;
-        const U32 du;
-        const hn::Rebind<std::uint8_t, U32> d8;
-        hn::StoreU(hn::TruncateTo(
-                       d8, hn::And(hn::VecFromMask(du, hn::RebindMask(du, dark)), hn::Set(du, 1))),
-                   d8, to);
-        const auto undecided = hn::AndNot(dark, hn::Gt(upper, ray));
-        if (!hn::AllFalse(d, undecided)) decide(undecided, own, ray, x0 + c, i, to);
-      }
-      const SweepEntry* e = column.entries[0].data();
-      for (int k = column.count[0]; k > 0; --k, ++e) {
-        const F h = hn::LoadU(d, cells + (column.row - low + e->row));
-        upper0 = hn::Max(upper0, hn::Sub(h, hn::Set(d, e->upper)));
-        lower0 = hn::Max(lower0, hn::Sub(h, hn::Set(d, e->lower)));
-      }
-      e = column.entries[1].data();
-      for (int k = column.count[1]; k > 0; --k, ++e) {
-        const F h = hn::LoadU(d, cells + (column.row - low + e->row));
-        upper1 = hn::Max(upper1, hn::Sub(h, hn::Set(d, e->upper)));
-        lower1 = hn::Max(lower1, hn::Sub(h, hn::Set(d, e->lower)));
+      const int x = x0 + c;
+      const SweepColumn& column = sweep_.column[static_cast<std::size_t>(x)];
+      if (x < sweep_.columns) test_column(column, x, c, block);
+      const float* const cells = current_->column(c) + (column.row - current_->low());
+      for (int part = 0; part < kSubBands; ++part) {
+        const SweepEntry* const e = column.entries[static_cast<std::size_t>(part)].data();
+        float* const upper = &upper_in(block, part, 0);
+        float* const lower = lower_.data() + static_cast<std::size_t>(part) * padded_;
+        switch (column.count[static_cast<std::size_t>(part)]) {
+          case 0:
+            break;
+          case 1:
+            raise<1>(e, cells, upper, lower);
+            break;
+          case 2:
+            raise<2>(e, cells, upper, lower);
+            break;
+          case 3:
+            raise<3>(e, cells, upper, lower);
+            break;
+          default:
+            raise<4>(e, cells, upper, lower);
+        }
       }
     }
-    const int block = x0 / kSweepBlock;
-    hn::StoreU(upper0, d, &upper_in(block, 0, i));
-    hn::StoreU(upper1, d, &upper_in(block, 1, i));
-    upper0 = hn::Max(upper0, far_upper0);
-    upper1 = hn::Max(upper1, far_upper1);
-    hn::StoreU(upper0, d, &upper_from(block, 0, i));
-    hn::StoreU(upper1, d, &upper_from(block, 1, i));
-    hn::StoreU(upper0, d, bounds);
-    hn::StoreU(upper1, d, bounds + kLanes);
-    hn::StoreU(lower0, d, bounds + 2 * kLanes);
-    hn::StoreU(lower1, d, bounds + 3 * kLanes);
+    for (int part = 0; part < kSubBands; ++part)
+      for (std::size_t i = 0; i < padded_; i += kLanes)
+        hn::StoreU(hn::Max(hn::LoadU(d, &upper_in(block, part, i)),
+                           hn::LoadU(d, &upper_from(block + 1, part, i))),
+                   d, &upper_from(block, part, i));
+  }
+
+  /// Lifts the bounds of a part of all bands by the cells that its rays may enter in a column.
+  template <int kEntries>
+  HWY_INLINE void raise(const SweepEntry* entries, const float* cells, float* upper,
+                        float* lower) const {
+    const F32 d;
+    for (std::size_t i = 0; i < padded_; i += kLanes) {
+      F up = hn::LoadU(d, upper + i), low = hn::LoadU(d, lower + i);
+      for (int k = 0; k < kEntries; ++k) {
+        const F h = hn::LoadU(d, cells + i + entries[k].row);
+        up = hn::Max(up, hn::Sub(h, hn::Set(d, entries[k].upper)));
+        low = hn::Max(low, hn::Sub(h, hn::Set(d, entries[k].lower)));
+      }
+      hn::StoreU(up, d, upper + i);
+      hn::StoreU(low, d, lower + i);
+    }
+  }
+
+  void test_column(const SweepColumn& column, int x, int c, int block) {
+    const F32 d;
+    const U32 du;
+    const hn::Rebind<std::uint8_t, U32> d8;
+    const float* const cells = current_->column(c) + (column.begin_row - current_->low());
+    const float* const upper = &upper_in(block, column.part, 0);
+    const float* const far = &upper_from(block + 1, column.part, 0);
+    const float* const lower = lower_.data() + static_cast<std::size_t>(column.part) * padded_;
+    std::uint8_t* const to = dark_.data() + static_cast<std::size_t>(c) * padded_;
+    const F surely = hn::Set(d, column.begin - sweep_.slack);
+    const F perhaps = hn::Set(d, column.begin + sweep_.slack);
+    for (std::size_t i = 0; i < padded_; i += kLanes) {
+      const F own = hn::LoadU(d, cells + i), ray = hn::Sub(own, perhaps);
+      const F most = hn::Max(hn::LoadU(d, upper + i), hn::LoadU(d, far + i));
+      const auto dark = hn::Gt(hn::LoadU(d, lower + i), hn::Sub(own, surely));
+      hn::StoreU(hn::TruncateTo(
+                     d8, hn::And(hn::VecFromMask(du, hn::RebindMask(du, dark)), hn::Set(du, 1))),
+                 d8, to + i);
+      const auto undecided = hn::AndNot(dark, hn::Gt(most, ray));
+      if (!hn::AllFalse(d, undecided)) decide(undecided, own, ray, x, i, to + i);
+    }
   }
 
   /// The upper bound of a block alone, and of all columns from it on.
@@ -325,25 +359,32 @@ class Sweeper {
 
   /// Vectors first: the cells of the next few columns, which are still at hand, decide most of what
   /// the bounds do not. Where they leave it open, or float32 might, the definition decides.
-  HWY_INLINE void decide(hn::Mask<F32> undecided, F own, F ray, int x, std::size_t i,
-                         std::uint8_t* dark) {
+  HWY_NOINLINE void decide(hn::Mask<F32> undecided, F own, F ray, int x, std::size_t i,
+                           std::uint8_t* dark) {
     const F32 d;
-    const int block = x / kSweepBlock;
+    const int block = static_cast<int>(static_cast<unsigned>(x) / kSweepBlock);
     // To the end of a block, whose bounds are known: this one, or the next where that is near.
-    const int end_block = kSweepBlock - x % kSweepBlock > 4 ? block + 1 : block + 2;
+    const int end_block = (block + 1) * kSweepBlock - x > 4 ? block + 1 : block + 2;
     const std::size_t end = sweep_.step_at(end_block * kSweepBlock - x);
     const F above = hn::Add(own, hn::Set(d, sweep_.slack));
     const F below = hn::Sub(own, hn::Set(d, sweep_.slack));
     const int begin_row = sweep_.column[static_cast<std::size_t>(x)].begin_row;
     F highest = hn::Set(d, -kInfinity);
-    for (std::size_t k = 0; k < end; ++k) {
-      const SweepStep& s = sweep_.along[k];
-      const int column = x + s.ahead;
-      const Block& cells = column / kSweepBlock == block ? *current_ : *previous_;
-      const F h = hn::LoadU(
-          d, cells.column(column % kSweepBlock) + i + (begin_row + s.across - cells.low()));
-      highest = hn::Max(highest, hn::Sub(h, hn::Set(d, s.climb)));
-    }
+    const auto walk = [&](const float* from, std::size_t k, std::size_t last) HWY_ATTR {
+      for (; k < last; ++k) {
+        const F h = hn::LoadU(d, from + near_[k].cell);
+        highest = hn::Max(highest, hn::Sub(h, hn::Set(d, near_[k].climb)));
+      }
+    };
+    const int c = x - block * kSweepBlock;
+    const auto row = static_cast<std::ptrdiff_t>(i) + begin_row;
+    const std::size_t own_end = std::min(end, sweep_.step_at(kSweepBlock - c));
+    walk(current_->column(c) + (row - current_->low()), 0, own_end);
+    // Those of the block before, as if its columns went on from this one's.
+    if (own_end < end)
+      walk(previous_->column(0) +
+               ((c - kSweepBlock) * static_cast<std::ptrdiff_t>(stride_) + row - previous_->low()),
+           own_end, end);
     const auto hidden = hn::Gt(highest, above);
     const auto near_open = hn::Gt(highest, below);
     auto open = near_open;
@@ -373,7 +414,7 @@ class Sweeper {
 
   /// The definition, without the blocks whose upper bound is not above the cell's ray; those before
   /// `block` are known to cast no shadow here.
-  [[nodiscard]] bool traverse(int x, std::int64_t row, std::size_t i, int block) {
+  [[nodiscard]] HWY_NOINLINE bool traverse(int x, std::int64_t row, std::size_t i, int block) {
     const auto [cx, cy] = cell_of(x, row);
     const float height = sweep_.map.heights(cx, cy);
     const auto own = static_cast<double>(height);
@@ -470,10 +511,17 @@ class Sweeper {
   Block blocks_at_hand_[2];
   Block* current_ = &blocks_at_hand_[0];
   Block* previous_ = &blocks_at_hand_[1];  ///< the one before, nearer to the sun
-  std::vector<float> bounds_;              ///< 2 upper and 2 lower vectors for each vector of bands
+  std::vector<float> lower_;               ///< of each part
   std::size_t blocks_;
   std::vector<float> upper_in_, upper_from_;
   std::vector<std::uint8_t> dark_;  ///< of the block, column by column
+  /// The steps of two blocks, as distances in a Block.
+  struct Near {
+    std::ptrdiff_t cell;
+    float climb;
+  };
+  std::size_t stride_;
+  std::vector<Near> near_;
 };
 
 void sweep(const Sweep& plan, int first, int last, ImageView<std::uint8_t> shadow) {

@@ -18,6 +18,7 @@ enum class Tiling : std::uint8_t { repeat, mirror, clamp };
 
 /// The cell of a map that is `size` long to which coordinate `i` belongs; floor, not truncation.
 [[nodiscard]] inline std::int64_t tiled(std::int64_t i, std::int64_t size, Tiling tiling) {
+  if (static_cast<std::uint64_t>(i) < static_cast<std::uint64_t>(size)) return i;
   const auto modulo = [](std::int64_t a, std::int64_t n) {
     const std::int64_t r = a % n;
     return r < 0 ? r + n : r;

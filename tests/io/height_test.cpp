@@ -82,10 +82,10 @@ TEST(HeightNpy, EveryTypeOrderAndEndianness) {
 }
 
 TEST(HeightNpy, VersionsTwoAndThreeAndWhatFloat32CannotHold) {
-  for (const char version : {2, 3})
+  for (const char version : {char{2}, char{3}})
     EXPECT_EQ(read_npy(npy("<f4", "False", "(1,1)", test::raw(7.5F), version)).heights(0, 0), 7.5F);
-  const HeightGrid g = read_npy(
-      npy("<f8", "False", "(1, 3)", test::raw(1e300) + test::raw(-1e300) + test::raw(std::nan(""))));
+  const HeightGrid g = read_npy(npy(
+      "<f8", "False", "(1, 3)", test::raw(1e300) + test::raw(-1e300) + test::raw(std::nan(""))));
   EXPECT_EQ(g.heights(0, 0), INFINITY);
   EXPECT_EQ(g.heights(1, 0), -INFINITY);
   EXPECT_TRUE(std::isnan(g.heights(2, 0)));
@@ -338,6 +338,67 @@ TEST(HeightDem, TheRealMap) {
 }
 
 // --- The door
+
+#ifdef RASTRUM_HAS_GDAL
+/// An uncompressed float32 TIFF with a cell size and a value for "no data".
+std::string tiff(const std::vector<float>& heights, std::uint32_t width, std::uint32_t height) {
+  const std::string no_data("-9999", 6);
+  const std::uint32_t first_data = 8 + 2 + 12 * 12 + 4;
+  std::string entries, data;
+  const auto entry = [&](int tag, int type, std::uint32_t count, const std::string& value) {
+    entries += test::raw(static_cast<std::uint16_t>(tag));
+    entries += test::raw(static_cast<std::uint16_t>(type)) + test::raw(count);
+    if (value.size() <= 4) {
+      entries += value + std::string(4 - value.size(), '\0');
+    } else {
+      entries += test::raw(first_data + static_cast<std::uint32_t>(data.size()));
+      data += value;
+    }
+  };
+  const auto number = [&](int tag, std::uint32_t value) { entry(tag, 4, 1, test::raw(value)); };
+  std::string pixels;
+  for (const float h : heights) pixels += test::raw(h);
+  const std::string scale = test::raw(10.0) + test::raw(10.0) + test::raw(0.0);
+  const std::string tie =
+      std::string(24, '\0') + test::raw(500.0) + test::raw(900.0) + test::raw(0.0);
+  number(256, width);
+  number(257, height);
+  number(258, 32);
+  number(259, 1);
+  number(262, 1);
+  number(273, first_data + 24 + 48 + 6);
+  number(277, 1);
+  number(279, static_cast<std::uint32_t>(pixels.size()));
+  number(339, 3);
+  entry(33550, 12, 3, scale);
+  entry(33922, 12, 6, tie);
+  entry(42113, 2, 6, no_data);
+  return std::string("II*\0\x08\0\0\0", 8) + test::raw(std::uint16_t{12}) + entries +
+         std::string(4, '\0') + data + pixels;
+}
+
+TEST(HeightGdal, ReadsGeoTiff) {
+  const test::TempFolder folder;
+  const std::string file = tiff({1, 2, -9999, 4.5F, -3, 1e6F}, 3, 2);
+  const HeightGrid g = io::read_heights(folder.write("g.tif", file));
+  ASSERT_EQ(g.heights.width(), 3);
+  ASSERT_EQ(g.heights.height(), 2);
+  EXPECT_EQ(g.heights(0, 0), 1);
+  EXPECT_TRUE(std::isnan(g.heights(2, 0)));
+  EXPECT_EQ(g.heights(0, 1), 4.5F);
+  EXPECT_EQ(g.heights(2, 1), 1e6F);
+  EXPECT_EQ(g.units_per_cell, 10);
+  for (const std::size_t n : {3U, 20U, 100U, 200U}) {
+    const auto cut = folder.write("cut.tif", file.substr(0, n));
+    try {
+      (void)io::read_heights(cut);
+      ADD_FAILURE() << n;
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("cut.tif"), std::string::npos) << e.what();
+    }
+  }
+}
+#endif
 
 TEST(ReadHeights, NamesWhatItDoesNotRead) {
   const test::TempFolder folder;

@@ -1,13 +1,63 @@
-// What a terrain answers at a point, on any size of map and beyond its edges.
-#include <rastrum/terrain/renderer.hpp>
-
+// What a terrain answers at a point, the operators of the words, the options beyond the original:
+// filters, projections, roll, fog, the matrix; and odd input.
 #include <cmath>
 #include <limits>
+#include <random>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include <rastrum/terrain/ceiling.hpp>
+#include <rastrum/terrain/map_view.hpp>
+#include <rastrum/terrain/matrix.hpp>
+#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/terrain/words.hpp>
+
+#include "tests/terrain/maps.hpp"
+
 namespace rastrum::terrain {
 namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr double kPi = 3.14159265358979323846;
+
+struct Picture {
+  Image<Rgba8> colors;
+  Image<float> depth;
+  TerrainStats stats;
+
+  Picture(const Terrain& terrain, const TerrainCamera& camera, const TerrainOptions& options)
+      : colors(options.width, options.height), depth(options.width, options.height) {
+    stats = TerrainRenderer(options).render(terrain, camera, {colors.view(), depth.view()});
+  }
+  [[nodiscard]] std::size_t different(const Picture& other) const {
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < colors.pixels().size(); ++i)
+      n += !(colors.pixels()[i] == other.colors.pixels()[i]) ||
+           depth.pixels()[i] != other.depth.pixels()[i];
+    return n;
+  }
+  [[nodiscard]] bool is_sky(int x, int y) const { return depth(x, y) == kInfinity; }
+};
+
+TerrainOptions size(int width, int height) {
+  TerrainOptions options;
+  options.width = width;
+  options.height = height;
+  return options;
+}
+
+std::string message_of(const TerrainOptions& options, const TerrainCamera& camera = {}) {
+  try {
+    const Terrain flat(HeightMap{Image<float>(4, 4), {}});
+    TerrainRenderer(options).render(flat, camera, {});
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
 
 TEST(Tiled, FloorsNegativeCoordinates) {
   EXPECT_EQ(tiled(-1, 3, Tiling::repeat), 2);
@@ -16,8 +66,349 @@ TEST(Tiled, FloorsNegativeCoordinates) {
   EXPECT_EQ(tiled(-1, 3, Tiling::mirror), 0);
   EXPECT_EQ(tiled(3, 3, Tiling::mirror), 2);
   EXPECT_EQ(tiled(-4, 3, Tiling::mirror), 2);
+  EXPECT_EQ(tiled(6, 3, Tiling::mirror), 0);
   EXPECT_EQ(tiled(-5, 3, Tiling::clamp), 0);
   EXPECT_EQ(tiled(5, 3, Tiling::clamp), 2);
+}
+
+TEST(Operators, AreAssociative) {
+  std::mt19937 random(1);
+  const auto pair = [&] {
+    const std::int32_t row = random() % 4 == 0 ? kNoRow : static_cast<std::int32_t>(random() % 5);
+    return Pair{
+        {static_cast<std::uint8_t>(random()), 0, 0, 255}, static_cast<float>(random() % 100), row};
+  };
+  const auto pixel = [&] {
+    return Pixel{{static_cast<std::uint8_t>(random()), 0, 0, 255},
+                 static_cast<float>(random() % 3)};
+  };
+  const Occlude occlude;
+  const Fill fill;
+  for (int i = 0; i < 10000; ++i) {
+    const Pair a = pair(), b = pair(), c = pair();
+    EXPECT_EQ(occlude(occlude(a, b), c), occlude(a, occlude(b, c)));
+    EXPECT_EQ(occlude(a, kNoPair), a);
+    const Pixel p = pixel(), q = pixel(), r = pixel();
+    // Empty pixels are all alike, whatever colour is left in them.
+    const Pixel left = fill(fill(p, q), r), right = fill(p, fill(q, r));
+    EXPECT_TRUE(left == right || (left.depth == 0 && right.depth == 0));
+    EXPECT_EQ(fill(Pixel{}, q).depth, q.depth);
+    EXPECT_EQ(fill(p, Pixel{}), p);
+  }
+}
+
+TEST(Bilinear, IsRightAtCentresAndAtWholeCoordinates) {
+  std::mt19937 random(2);
+  HeightMap map = test::random_map(8, 8, random, 1);
+  const auto heights = std::make_shared<const Image<float>>(map.heights);
+  const auto colors = std::make_shared<const Image<Rgba8>>(map.colors);
+  const Pyramid pyramid(heights, colors, false);
+  TerrainOptions options;
+  options.filter = Filter::bilinear;
+  const MapView view(pyramid, options, terrain::Setup{});
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) {
+      const float u = static_cast<float>(x), v = static_cast<float>(y);
+      EXPECT_EQ(view.height_at(u + 0.5F, v + 0.5F, 0), map.heights(x, y));
+      EXPECT_EQ(view.color_at(u + 0.5F, v + 0.5F, 0), map.colors(x, y));
+      const float mean = (map.heights((x + 7) % 8, (y + 7) % 8) + map.heights(x, (y + 7) % 8) +
+                          map.heights((x + 7) % 8, y) + map.heights(x, y)) /
+                         4;
+      EXPECT_NEAR(view.height_at(u, v, 0), mean, 1e-4F) << x << ", " << y;
+    }
+}
+
+TEST(Pyramid, HoldsMaximaAndMeansOfOddSizesAndHoles) {
+  HeightMap map{Image<float>(3, 2), Image<Rgba8>(3, 2)};
+  const float heights[] = {1, kNaN, kNaN, 2, 5, kNaN};
+  std::copy_n(heights, 6, map.heights.pixels().data());
+  map.colors(0, 0) = {10, 0, 0, 255};
+  map.colors(1, 0) = {20, 0, 0, 255};
+  map.colors(2, 0) = {30, 0, 0, 255};
+  map.colors(2, 1) = {41, 0, 0, 255};
+  const Pyramid pyramid(std::make_shared<const Image<float>>(map.heights),
+                        std::make_shared<const Image<Rgba8>>(map.colors), true);
+  ASSERT_EQ(pyramid.height_levels(), 3);
+  EXPECT_EQ(pyramid.heights(1)(0, 0), 5);
+  EXPECT_TRUE(std::isnan(pyramid.heights(1)(1, 0)));
+  EXPECT_EQ(pyramid.heights(2)(0, 0), 5);
+  EXPECT_EQ(pyramid.colors(1)(0, 0).r, 8);   // (10 + 20 + 0 + 0 + 2) / 4
+  EXPECT_EQ(pyramid.colors(1)(1, 0).r, 36);  // (30 + 41 + 1) / 2
+}
+
+TEST(Ceiling, IsNeverBelowAHeightOfTheRectangle) {
+  std::mt19937 random(6);
+  for (int i = 0; i < 300; ++i) {
+    const int width = 1 + static_cast<int>(random() % 90);
+    const int height = 1 + static_cast<int>(random() % 90);
+    const HeightMap map = test::random_map(width, height, random, 1);
+    const Ceiling ceiling(std::make_shared<const Image<float>>(map.heights));
+    const auto tiling = static_cast<Tiling>(i % 3);
+    const auto range = [&] {
+      const auto first = static_cast<std::int64_t>(random() % 400) - 200;
+      return CellRange{first, first + static_cast<std::int64_t>(random() % 60)};
+    };
+    const CellRange x = range(), y = range();
+    float highest = -kInfinity;
+    for (std::int64_t v = y.first; v <= y.last; ++v)
+      for (std::int64_t u = x.first; u <= x.last; ++u)
+        highest = std::max(highest, map.heights(static_cast<int>(tiled(u, width, tiling)),
+                                                static_cast<int>(tiled(v, height, tiling))));
+    EXPECT_GE(ceiling.over(x, y, tiling), highest) << i;
+  }
+}
+
+TEST(Roll, QuarterTurnsAreThePixelsThemselves) {
+  std::mt19937 random(7);
+  const Terrain terrain(test::random_map(64, 64, random));
+  for (const auto projection : {Projection::planar, Projection::cylindrical}) {
+    TerrainOptions options = size(90, 90);
+    options.distance = 200;
+    options.projection = projection;
+    const TerrainCamera level{.x = 3, .y = 5, .altitude = 300, .horizon_px = 30};
+    const Picture upright(terrain, level, options);
+    for (int quarter = -4; quarter <= 4; ++quarter) {
+      TerrainCamera rolled = level;
+      rolled.roll_rad = quarter * kPi / 2;
+      const Picture picture(terrain, rolled, options);
+      std::size_t wrong = 0;
+      for (int y = 0; y < 90; ++y)
+        for (int x = 0; x < 90; ++x) {
+          int u = x, v = y;  // where this pixel was before the turn
+          for (int t = 0; t < (quarter + 8) % 4; ++t) {
+            const int before = u;
+            u = 89 - v;
+            v = before;
+          }
+          wrong += !(picture.colors(x, y) == upright.colors(u, v)) ||
+                   picture.depth(x, y) != upright.depth(u, v);
+        }
+      EXPECT_EQ(wrong, 0U) << "quarter " << quarter;
+    }
+  }
+}
+
+/// Upper ends of the picture's spans: the pixels that a sample is first drawn in.
+template <class Each>
+void for_each_top(const Picture& picture, Each&& each) {
+  for (int y = 1; y < picture.depth.height(); ++y)
+    for (int x = 0; x < picture.depth.width(); ++x)
+      if (picture.depth(x, y) != picture.depth(x, y - 1) && !picture.is_sky(x, y)) each(x, y);
+}
+
+/// Each sample that is seen, brought back into the world by hand, falls on its pixel.
+void expect_matrix(const TerrainOptions& options, const TerrainCamera& given) {
+  std::mt19937 random(8);
+  const Terrain terrain(test::random_map(128, 128, random, 0.1));
+  const Picture picture(terrain, given, options);
+  const TerrainCamera camera = picture.stats.camera;
+  const Mat4d clip = world_to_clip(options, camera, 0.5);
+  const double sin = std::sin(camera.angle_rad), cos = std::cos(camera.angle_rad);
+  const double half = options.classic ? 1 : std::tan(options.fov_rad / 2);
+  std::size_t tested = 0, wrong = 0;
+  for_each_top(picture, [&](int x, int y) {
+    const double z = static_cast<double>(picture.depth(x, y));
+    const double right = z * half * ((x + (options.classic ? 0 : 0.5)) * 2 / options.width - 1);
+    const double wx = camera.x + cos * right - sin * z, wy = camera.y - sin * right - cos * z;
+    // A sample on a cell's edge is rounded either way.
+    if (std::abs(wx - std::round(wx)) < 1e-3 || std::abs(wy - std::round(wy)) < 1e-3) return;
+    const double p[4] = {wx, static_cast<double>(terrain.height_at(wx, wy)), wy, 1};
+    double c[4] = {};
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 4; ++k) c[i] += clip.m[i][k] * p[k];
+    const double px = (c[0] / c[3] + 1) / 2 * options.width;
+    const double py = (1 - c[1] / c[3]) / 2 * options.height;
+    ++tested;
+    wrong += std::abs(px - (x + 0.5)) > 0.01 ||
+             (std::ceil(py - 0.5 - 0.01) > y || std::ceil(py - 0.5 + 0.01) < y) ||
+             std::abs(c[2] / c[3] - 0.5 / z) > 1e-6;
+  });
+  EXPECT_GT(tested, 500U);
+  EXPECT_EQ(wrong, 0U);
+}
+
+TEST(Matrix, PutsWhatIsSeenOnItsPixel) {
+  TerrainOptions options = size(200, 150);
+  options.distance = 300;
+  const TerrainCamera camera{
+      .x = 40.3, .y = -17.6, .altitude = 290, .angle_rad = 0.7, .horizon_px = 40};
+  expect_matrix(options, camera);
+  options.fov_rad = 2;
+  options.scale_px = 77;
+  expect_matrix(options, camera);
+  TerrainOptions classic = size(200, 150);
+  classic.classic = true;
+  classic.distance = 300;
+  expect_matrix(classic, camera);
+}
+
+TEST(Matrix, FollowsTheRollAndRefusesCylinders) {
+  TerrainOptions options = size(120, 80);
+  TerrainCamera camera{.altitude = 50, .horizon_px = 10, .roll_rad = kPi / 2};
+  TerrainCamera level = camera;
+  level.roll_rad = 0;
+  // A point in both pictures: turned counter-clockwise about the centre, right goes up.
+  const auto pixel = [&](const TerrainCamera& c) {
+    const Mat4d m = world_to_clip(options, c);
+    const double p[4] = {c.x + 20, 60, c.y - 100, 1};
+    double q[4] = {};
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 4; ++k) q[i] += m.m[i][k] * p[k];
+    return std::pair{q[0] / q[3] * 60, -q[1] / q[3] * 40};  // px from the centre
+  };
+  const auto [ax, ay] = pixel(level);
+  const auto [bx, by] = pixel(camera);
+  EXPECT_NEAR(bx, ay, 1e-9);
+  EXPECT_NEAR(by, -ax, 1e-9);
+  options.projection = Projection::cylindrical;
+  EXPECT_THROW((void)world_to_clip(options, camera), Error);
+}
+
+TEST(Cylinder, StretchesNothing) {
+  // A ring of posts at equal angles: as many columns apart everywhere, all of one height.
+  const Terrain posts = Terrain::of(
+      [](double x, double y) {
+        const double turn = std::atan2(x, -y) / (2 * kPi) * 36, r = std::hypot(x, y);
+        return r > 50 && r < 60 && std::abs(turn - std::round(turn)) < 0.1 ? 40.0F : -1000.0F;
+      },
+      [](double, double) {
+        return Rgba8{1, 2, 3, 255};
+      });
+  TerrainOptions options = size(720, 200);
+  options.projection = Projection::cylindrical;
+  options.fov_rad = 2 * kPi;
+  options.distance = 70;
+  const Picture picture(posts, {.x = 0, .y = 0, .altitude = 0, .horizon_px = 199}, options);
+  int edges = 0, top = -1;
+  for (int x = 0; x < 720; ++x) {
+    const int next = (x + 20) % 720;
+    EXPECT_EQ(picture.is_sky(x, 150), picture.is_sky(next, 150)) << x;
+    edges += picture.is_sky(x, 150) != picture.is_sky((x + 1) % 720, 150);
+    if (picture.is_sky(x, 150)) continue;
+    int first = 0;
+    while (picture.is_sky(x, first)) ++first;
+    EXPECT_TRUE(top == -1 || std::abs(first - top) <= 1) << x;
+    top = first;
+  }
+  EXPECT_EQ(edges, 72);
+}
+
+TEST(Fog, EndsInItsColour) {
+  const Terrain flat(HeightMap{Image<float>(1, 1), {}});
+  TerrainOptions options = size(4, 300);
+  options.distance = 3000;
+  options.fog = {0.01, 0, Rgba8{9, 99, 199, 255}};
+  options.scale_px = 240;
+  const Picture picture(flat, {.altitude = 50, .horizon_px = 50}, options);
+  int first = 0;  // row of the ground
+  while (picture.is_sky(0, first)) ++first;
+  EXPECT_EQ(first, 54);
+  EXPECT_EQ(picture.colors(0, first - 1), kSky);
+  EXPECT_EQ(picture.colors(0, first), (Rgba8{9, 99, 199, 255}));
+  EXPECT_LT(picture.colors(0, 299).b, picture.colors(0, 100).b);
+}
+
+TEST(OddInput, FlatGroundFillsTheRowsBelowTheHorizon) {
+  for (const float height : {0.0F, -500.0F, 1e6F}) {
+    HeightMap map{Image<float>(5, 3), {}};
+    for (float& h : map.heights.pixels()) h = height;
+    TerrainOptions options = size(40, 60);
+    options.distance = 1e5;
+    options.step = 0.25;
+    const Picture picture(Terrain(std::move(map)),
+                          {.altitude = static_cast<double>(height) + 8, .horizon_px = 20}, options);
+    for (int y = 0; y < 60; ++y)
+      for (int x = 0; x < 40; ++x) EXPECT_EQ(picture.is_sky(x, y), y < 20) << height << ": " << y;
+  }
+}
+
+TEST(OddInput, HolesLetThroughWhatLiesBehind) {
+  HeightMap map{Image<float>(64, 64), {}};
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x)
+      map.heights(x, y) = y == 20 ? 100.0F : y < 60 && y > 30 ? kNaN : 0.0F;
+  TerrainOptions options = size(32, 100);
+  options.tiling = Tiling::clamp;
+  const TerrainCamera camera{.x = 32, .y = 62, .altitude = 10, .horizon_px = 50};
+  const Picture picture(Terrain(map), camera, options);
+  // No sample on the hole, so the wall behind it is drawn down to the ground before it.
+  for (const float depth : picture.depth.pixels()) EXPECT_FALSE(depth > 3 && depth < 31) << depth;
+  for (float& h : map.heights.pixels()) h = kNaN;
+  const Picture nothing(Terrain(map), camera, options);
+  EXPECT_TRUE(nothing.is_sky(16, 99));
+}
+
+TEST(OddInput, UnderTheGroundOneSeesOnlyGround) {
+  const Terrain flat(HeightMap{Image<float>(8, 8), {}});
+  TerrainOptions options = size(16, 16);
+  const Picture under(flat, {.altitude = -20, .horizon_px = 8}, options);
+  for (const float depth : under.depth.pixels()) EXPECT_EQ(depth, 1);
+  options.ground_clearance = 10;
+  const Picture lifted(flat, {.altitude = -20, .horizon_px = 8}, options);
+  EXPECT_EQ(lifted.stats.camera.altitude, 10);
+  EXPECT_TRUE(lifted.is_sky(3, 0));
+}
+
+TEST(OddInput, HighAndFarCamerasAndLongViews) {
+  std::mt19937 random(9);
+  const Terrain terrain(test::random_map(48, 80, random));
+  TerrainOptions options = size(64, 64);
+  options.distance = 1e6;
+  options.dz = 0.01;
+  const Picture high(terrain, {.altitude = 1e6, .horizon_px = 0}, options);
+  EXPECT_FALSE(high.is_sky(32, 63));
+  // By whole periods away everything looks the same.
+  options.distance = 300;
+  const Picture near(terrain, {.x = 5.5, .y = 7.25, .altitude = 300, .horizon_px = 8}, options);
+  const Picture far(terrain,
+                    {.x = 5.5 - 48 * 1e8, .y = 7.25 + 80 * 1e8, .altitude = 300, .horizon_px = 8},
+                    options);
+  EXPECT_EQ(near.different(far), 0U);
+}
+
+TEST(OddInput, IsRefusedWithTheOptionsName) {
+  TerrainOptions options = size(8, 8);
+  EXPECT_EQ(message_of(options), "");
+  options.width = 0;
+  EXPECT_NE(message_of(options).find("size 0x8"), std::string::npos);
+  options = size(8, 8);
+  options.distance = kNaN;
+  EXPECT_NE(message_of(options).find("distance"), std::string::npos);
+  options = size(8, 8);
+  options.fov_rad = kPi;
+  EXPECT_NE(message_of(options).find("view"), std::string::npos);
+  options = size(8, 8);
+  options.distance = 1e6;
+  options.step = 1e-3;
+  options.dz = 0;
+  EXPECT_NE(message_of(options).find("larger steps"), std::string::npos);
+  options = size(8, 8);
+  options.classic = true;
+  options.filter = Filter::bilinear;
+  EXPECT_NE(message_of(options).find("classic"), std::string::npos);
+  options.filter = Filter::none;
+  EXPECT_NE(message_of(options, {.roll_rad = 1}).find("roll"), std::string::npos);
+  options = size(8, 8);
+  EXPECT_NE(message_of(options, {.x = 1e300}).find("camera"), std::string::npos);
+  EXPECT_NE(message_of(options, {.altitude = std::nan("")}).find("camera"), std::string::npos);
+  options.device = Device::cuda;
+  EXPECT_NE(message_of(options).find("CUDA"), std::string::npos);
+  EXPECT_THROW(Terrain(HeightMap{}), Error);
+}
+
+TEST(OddInput, LargeMaps) {
+  // 16,384²: 1 GiB of heights, touched once; one colour for all.
+  HeightMap map{Image<float>(16384, 16384), Image<Rgba8>(1, 1)};
+  map.heights(16383, 16380) = 1000;
+  map.colors(0, 0) = {1, 2, 3, 255};
+  const Terrain terrain(std::move(map));
+  TerrainOptions options = size(64, 48);
+  options.distance = 100;
+  const Picture picture(terrain, {.x = 16383.5, .y = 16400.5, .altitude = 20, .horizon_px = 24},
+                        options);
+  EXPECT_FALSE(picture.is_sky(31, 0)) << "the peak";
+  EXPECT_TRUE(picture.is_sky(10, 0));
+  EXPECT_EQ(picture.colors(10, 47), (Rgba8{1, 2, 3, 255}));
 }
 
 }  // namespace

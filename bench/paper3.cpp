@@ -1,0 +1,301 @@
+// `rastrum bench paper3`: paper 3, section 5.6 (time over distance, columns and rows), and frames
+// of the usual sizes beside the original program under node and the floor: 4 bytes a pixel written
+// once by streaming stores, 4 bytes a sample read once.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include <rastrum/terrain/renderer.hpp>
+
+#include "machine.hpp"
+#include "papers/paper3.hpp"
+#include "peers/node_peer.hpp"
+#include "registry.hpp"
+#include "report.hpp"
+#include "tables/document.hpp"
+#include "tables/options.hpp"
+
+namespace rastrum::bench {
+namespace {
+
+using namespace terrain;  // NOLINT: its names are the subject here
+
+/// Hills of eight octaves, 1024², whole heights 0 to 200; the same at every run.
+HeightMap hills() {
+  constexpr int kSize = 1024;
+  std::mt19937 random(1);
+  std::vector<double> sum(kSize * kSize);
+  double amplitude = 1;
+  for (int cells = 4; cells <= kSize / 2; cells *= 2, amplitude /= 2) {
+    Image<float> grid(cells, cells);
+    for (float& g : grid.pixels()) g = static_cast<float>(random() % 10000) / 10000;
+    const int step = kSize / cells;
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        const auto ease = [step](int at) {
+          const double t = (at % step + 0.5) / step;
+          return t * t * (3 - 2 * t);
+        };
+        const auto at = [&](int i, int j) {
+          return static_cast<double>(grid(i % cells, j % cells));
+        };
+        const int i = x / step, j = y / step;
+        const double u = ease(x), v = ease(y);
+        const double above = at(i, j) * (1 - u) + at(i + 1, j) * u;
+        const double below = at(i, j + 1) * (1 - u) + at(i + 1, j + 1) * u;
+        sum[static_cast<std::size_t>(y * kSize + x)] += amplitude * (above * (1 - v) + below * v);
+      }
+  }
+  const auto [low, high] = std::minmax_element(sum.begin(), sum.end());
+  HeightMap map{Image<float>(kSize, kSize), Image<Rgba8>(kSize, kSize)};
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const int h = static_cast<int>((sum[i] - *low) / (*high - *low) * 200);
+    map.heights.pixels()[i] = static_cast<float>(h);
+    const auto channel = [&](int base) {
+      return static_cast<std::uint8_t>(base + static_cast<int>(random() % 16));
+    };
+    map.colors.pixels()[i] = {channel(60 + h / 2), channel(120 - h / 3), channel(40), 255};
+  }
+  return map;
+}
+
+/// One way to draw, with its own threads and picture.
+struct Entry {
+  std::string name;
+  std::shared_ptr<TerrainRenderer> renderer;
+  std::shared_ptr<Image<Rgba8>> picture;
+  TerrainStats stats;
+  Timing timing;
+
+  Entry(std::string n, const TerrainOptions& options)
+      : name(std::move(n)),
+        renderer(std::make_shared<TerrainRenderer>(options)),
+        picture(std::make_shared<Image<Rgba8>>(options.width, options.height)) {
+    timing.name = name;
+  }
+  void frame(const Terrain& terrain) {
+    stats = renderer->render(terrain, TerrainCamera{}, {picture->view(), {}});
+  }
+};
+
+/// Rounds of A B C … and, last in each, the peer's turn.
+void interleave(const Terrain& terrain, std::vector<Entry>& entries, NodePeer* peer,
+                std::vector<double>& peer_ms, const Plan& plan) {
+  std::vector<Contender> contenders;
+  for (Entry& e : entries) contenders.push_back({e.name, [&e, &terrain] { e.frame(terrain); }});
+  Plan one = plan;
+  one.rounds = 1;
+  for (int round = 0; round < plan.rounds; ++round) {
+    const std::vector<Timing> timings = measure_interleaved(contenders, one);
+    for (std::size_t i = 0; i < entries.size(); ++i)
+      entries[i].timing.samples_ms.push_back(timings[i].samples_ms.front());
+    if (peer != nullptr) peer_ms.push_back(peer->turn_ms());
+  }
+}
+
+std::uint64_t hash_of(const Image<Rgba8>& picture) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const Rgba8 c : picture.pixels()) {
+    const std::uint32_t pixel = static_cast<std::uint32_t>(c.a) << 24 |
+                                static_cast<std::uint32_t>(c.b) << 16 |
+                                static_cast<std::uint32_t>(c.g) << 8 | c.r;
+    hash = (hash ^ pixel) * 0x100000001b3U;
+  }
+  return hash;
+}
+
+TerrainOptions like_classic(int width, int height, double distance, int threads) {
+  TerrainOptions o;
+  o.width = width;
+  o.height = height;
+  o.distance = distance;
+  o.threads = threads;
+  o.scale_px = 240;
+  o.ground_clearance = 10;
+  return o;
+}
+
+struct Size {
+  int width, height;
+  double distance;
+  bool all_threads;
+};
+constexpr Size kSizes[] = {{800, 450, 800, false},
+                           {1920, 1080, 800, false},
+                           {1920, 1080, 2000, false},
+                           {3840, 2160, 2000, false},
+                           {3840, 2160, 2000, true}};
+
+/// Returns false where classic's picture is not the peer's.
+bool frames(const TableOptions& options, const HeightMap& map, Document& document) {
+  const Terrain terrain(map);
+  const MachineLimits one = measure_machine(1), all = measure_machine(options.threads);
+  Grid grid{"Frames of the default camera, ms (in brackets: times as fast as node, round by round)",
+            {"picture, distance", "threads", "node", "classic", "fast", "mip, dz 0.02", "words",
+             "floor", "fast / floor"},
+            {}};
+  bool right = true;
+  for (Size size : kSizes) {
+    size.width = options.size(size.width);
+    size.height = options.size(size.height);
+    const int threads = size.all_threads ? options.threads : 1;
+    const std::string label = std::to_string(size.width) + "×" + std::to_string(size.height) +
+                              ", " + significant(size.distance);
+    progress(label);
+    std::optional<NodePeer> peer;
+    std::string why_not;
+    try {
+      peer.emplace(map, size.width, size.height, size.distance);
+    } catch (const Error& e) {
+      why_not = e.what();
+    }
+    TerrainOptions fast = like_classic(size.width, size.height, size.distance, threads);
+    TerrainOptions classic;
+    classic.classic = true;
+    classic.width = size.width;
+    classic.height = size.height;
+    classic.distance = size.distance;
+    classic.threads = threads;
+    TerrainOptions mip = fast, words = fast;
+    mip.filter = terrain::Filter::mip;
+    mip.dz = 0.02;
+    words.method = Method::words;
+    std::vector<Entry> entries;
+    entries.emplace_back("classic", classic);
+    entries.emplace_back("fast", fast);
+    entries.emplace_back("mip", mip);
+    entries.emplace_back("words", words);
+    entries[0].frame(terrain);
+    if (peer && hash_of(*entries[0].picture) != peer->hash()) {
+      document.notes.push_back("**" + label +
+                               ": classic's picture is not node's; nothing was timed.**");
+      right = false;
+      continue;
+    }
+    std::vector<double> peer_ms;
+    interleave(terrain, entries, peer ? &*peer : nullptr, peer_ms, options.plan());
+    Timing node;
+    node.name = "node";
+    node.samples_ms = peer_ms;
+    const MachineLimits& machine = size.all_threads ? all : one;
+    const TerrainStats& stats = entries[1].stats;
+    const double floor_ms = 4.0 * size.width * size.height / machine.stream_gbs / 1e6 +
+                            4.0 * static_cast<double>(stats.samples) / machine.read_gbs / 1e6;
+    std::vector<std::string> row{
+        label, std::to_string(threads),
+        peer ? significant(node.median_ms()) : "not run (" + why_not + ")"};
+    for (const Entry& e : entries) {
+      std::string cell = significant(e.timing.median_ms());
+      if (peer) cell.append(" (").append(significant(median_ratio(node, e.timing), 2)).append(")");
+      row.push_back(std::move(cell));
+      document.figures.push_back({{"table", "frames"},
+                                  {"picture", label},
+                                  {"threads", threads},
+                                  {"method", e.name},
+                                  {"samples", e.stats.samples},
+                                  {"visible", e.stats.visible},
+                                  {"slices", e.stats.slices},
+                                  {"scratch_bytes", e.stats.peak_bytes},
+                                  {"here", to_json(e.timing)},
+                                  {"node_ms", peer_ms},
+                                  {"floor_ms", floor_ms}});
+    }
+    row.push_back(significant(floor_ms));
+    row.push_back(significant(entries[1].timing.median_ms() / floor_ms, 2));
+    grid.rows.push_back(std::move(row));
+  }
+  document.grids.push_back(std::move(grid));
+  return right;
+}
+
+/// Figures 5.6 to 5.8.
+void scaling(const TableOptions& options, const HeightMap& map, Document& document) {
+  const Terrain terrain(map);
+  Plot plot;
+  plot.title = "Paper 3, figures 5.6 to 5.8: time, the other two at 10";
+  plot.x_title = "d, m or l";
+  plot.y_title = "ms";
+  plot.log_x = true;
+  for (const int n : paper3::kSizes) {
+    plot.places.push_back(significant(n));
+    plot.x.push_back(n);
+  }
+  Grid grid{"Figures 5.6 to 5.8: ms, the other two parameters at 10", {"what grows", "method"}, {}};
+  for (const std::string& place : plot.places) grid.columns.push_back(place);
+  for (const char what : {'d', 'm', 'l'}) {
+    progress(std::string("scaling by ") + what);
+    std::vector<std::string> names{"words, serial", "words", "fast"};
+    std::vector<std::vector<double>> ms(names.size());
+    std::vector<std::vector<std::string>> cells(names.size());
+    for (const int n : paper3::kSizes) {
+      const bool too_large = what != 'd' && n > kMaxImageSize;
+      std::vector<Entry> entries;
+      std::vector<double> none;
+      if (!too_large) {
+        TerrainOptions o =
+            like_classic(what == 'm' ? n : paper3::kFixed, what == 'l' ? n : paper3::kFixed,
+                         what == 'd' ? n : paper3::kFixed, options.threads);
+        o.method = Method::words;
+        entries.emplace_back(names[1], o);
+        o.device = Device::serial;
+        entries.emplace(entries.begin(), names[0], o);
+        o.device = Device::threads;
+        o.method = Method::fast;
+        entries.emplace_back(names[2], o);
+        interleave(terrain, entries, nullptr, none, options.plan());
+      }
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        ms[i].push_back(too_large ? std::nan("") : entries[i].timing.median_ms());
+        cells[i].push_back(too_large ? "not run (pictures end at 32,768)"
+                                     : significant(ms[i].back()));
+        if (too_large) continue;
+        document.figures.push_back({{"table", "scaling"},
+                                    {"grows", std::string(1, what)},
+                                    {"at", n},
+                                    {"method", names[i]},
+                                    {"here", to_json(entries[i].timing)}});
+      }
+    }
+    Panel panel{std::string(1, what), {}};
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      panel.series.push_back({names[i], ms[i], static_cast<int>(i), false});
+      std::vector<std::string> row{std::string(1, what), names[i]};
+      row.insert(row.end(), cells[i].begin(), cells[i].end());
+      grid.rows.push_back(std::move(row));
+    }
+    plot.panels.push_back(std::move(panel));
+  }
+  document.grids.push_back(std::move(grid));
+  document.plot = std::move(plot);
+}
+
+}  // namespace
+
+int run_paper3(std::span<const std::string_view> arguments) {
+  TableOptions options;
+  OptionParser parser("paper3", "Paper 3, section 5.6, and frames beside the original under node.");
+  options.add_to(parser, false);
+  if (const auto status = parser.parse(arguments)) return *status;
+  options.resolve();
+  Document document{"paper3", "Paper 3: Voxel Space"};
+  if (options.quick) document.notes.push_back(options.quick_note());
+  document.notes.push_back(std::string("The paper measured on a ")
+                               .append(paper3::kMachine)
+                               .append(" and draws its figures without printing them. ")
+                               .append(paper3::kFindings));
+  document.notes.push_back(
+      "Node runs the original program, one thread; classic's picture was compared with node's, "
+      "pixel by pixel, before anything was timed. The floor is 4 bytes a pixel at the measured "
+      "streaming bandwidth and 4 bytes a sample read by `fast` at the read bandwidth.");
+  const HeightMap map = hills();
+  const bool right = frames(options, map, document);
+  scaling(options, map, document);
+  publish(document, options.out);
+  return right ? 0 : 1;
+}
+
+}  // namespace rastrum::bench

@@ -1,0 +1,19 @@
+// FutSpace (Kristensen, Rasmussen, Sørensen and Troelsen, 2020), section 5.6: what its figures 5.6
+// to 5.8 vary. The figures are drawn, not printed, so there is no number of theirs to stand beside
+// ours; what the text says of them is here.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace rastrum::bench::paper3 {
+
+inline constexpr std::string_view kMachine = "Ryzen 5 3600 (C) and GTX 1080 (OpenCL)";
+/// Two of distance d, columns m and rows l stay at this, the third grows.
+inline constexpr int kFixed = 10;
+inline constexpr std::array kSizes{10, 100, 1000, 10000, 100000, 1000000};
+inline constexpr std::string_view kFindings =
+    "The paper finds that time grows least with d, since slices grow with its root, and most with "
+    "m; parallel time behaves alike on its GPU.";
+
+}  // namespace rastrum::bench::paper3

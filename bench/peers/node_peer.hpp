@@ -1,0 +1,31 @@
+// The original Voxel Space program under node (peers/voxel_space.js), in a process of its own that
+// draws when it is told to: interleaved with ours, in the same minute.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include <rastrum/terrain/terrain.hpp>
+
+namespace rastrum::bench {
+
+class NodePeer {
+ public:
+  /// `map`: 1024², whole heights 0 to 255. Throws Error{no_device} where node does not start, with
+  /// what to install.
+  NodePeer(const terrain::HeightMap& map, int width, int height, double distance);
+  ~NodePeer();
+  NodePeer(NodePeer&&) noexcept;
+
+  /// FNV-1a over the pixels of the default camera's frame, as 0xAABBGGRR words.
+  [[nodiscard]] std::uint64_t hash() const;
+  /// The median of frames for 30 ms.
+  [[nodiscard]] double turn_ms();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rastrum::bench

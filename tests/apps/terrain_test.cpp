@@ -1,0 +1,260 @@
+// `rastrum terrain`: each option by its effect, the picture being the one that the library draws
+// with the same choice; inputs that cannot be drawn.
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include <rastrum/io/io.hpp>
+#include <rastrum/terrain/color_map.hpp>
+#include <rastrum/terrain/functions.hpp>
+#include <rastrum/terrain/light.hpp>
+#include <rastrum/terrain/renderer.hpp>
+
+#include "program.hpp"
+
+namespace rastrum::test {
+namespace {
+
+using namespace terrain;
+using TerrainFilter = terrain::Filter;
+
+constexpr int kWidth = 96, kHeight = 64, kMap = 60;
+constexpr double kRadians = std::numbers::pi / 180;
+
+class TerrainProgram : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    options_.width = kWidth;
+    options_.height = kHeight;
+    camera_ = {kMap / 2.0, kMap * (800.0 / 1024), 40, 0, 20, 0};
+    map_.heights = Image<float>(kMap, kMap);
+    map_.colors = Image<Rgba8>(kMap, kMap);
+    Image<Rgba8> grey(kMap, kMap);
+    for (int y = 0; y < kMap; ++y)
+      for (int x = 0; x < kMap; ++x) {
+        const auto h = static_cast<std::uint8_t>(16 + 15 * std::sin(x * 0.21) * std::cos(y * 0.17));
+        map_.heights(x, y) = h;
+        grey(x, y) = {h, h, h, 255};
+        map_.colors(x, y) = {static_cast<std::uint8_t>(4 * x), static_cast<std::uint8_t>(4 * y), 90,
+                             255};
+      }
+    io::write_png(path("h.png"), grey.view());
+    io::write_png(path("c.png"), map_.colors.view());
+  }
+
+  [[nodiscard]] static std::vector<std::string> base() {
+    return {"terrain", "--height", "h.png",      "--color", "c.png",     "-o", "p.png",
+            "--size",  "96x64",    "--altitude", "40",      "--horizon", "20"};
+  }
+  [[nodiscard]] Image<Rgba8> drawn(const HeightMap& map) const {
+    Image<Rgba8> image(options_.width, options_.height);
+    TerrainRenderer(options_).render(Terrain(HeightMap{map.heights, map.colors}), camera_,
+                                     {.color8 = image.view()});
+    return image;
+  }
+  /// The program's picture with `extra` options, against the library's of `map`.
+  void expect(const std::vector<std::string>& extra, const HeightMap& map) const {
+    std::vector<std::string> args = base();
+    std::string line;
+    for (const std::string& e : extra) {
+      line += " " + e;
+      args.push_back(e);
+    }
+    must(args);
+    EXPECT_TRUE(same_pixels(png("p.png"), drawn(map))) << line;
+  }
+  void expect(const std::vector<std::string>& extra) const { expect(extra, map_); }
+  /// Usage errors (2) and errors of the world (1) leave no file and say `part`.
+  void refuse(int status, const std::string& part, const std::vector<std::string>& args) const {
+    std::vector<std::string> all{"terrain"};
+    all.insert(all.end(), args.begin(), args.end());
+    const Outcome r = run(all);
+    EXPECT_EQ(r.status, status) << part << "\n" << r.err;
+    EXPECT_NE(r.err.find(part), std::string::npos) << r.err;
+    for (const std::string& f : files())
+      EXPECT_TRUE(f == "h.png" || f == "c.png" || f == "bad.dem") << f;
+  }
+
+  TerrainOptions options_;
+  TerrainCamera camera_;
+  HeightMap map_;
+};
+
+TEST_F(TerrainProgram, Defaults) {
+  expect({});
+  std::vector<std::string> plain{"terrain", "--height", "h.png", "--color", "c.png", "-o", "d.png"};
+  must(plain);
+  EXPECT_EQ(png("d.png").width(), 1280);
+  EXPECT_EQ(png("d.png").height(), 720);
+}
+
+TEST_F(TerrainProgram, Camera) {
+  camera_.x = -7.5;
+  camera_.y = 21;
+  camera_.angle_rad = 33 * kRadians;
+  camera_.roll_rad = -20 * kRadians;
+  expect({"--position", "-7.5,21", "--angle", "33", "--roll", "-20"});
+  options_.ground_clearance = 100;
+  expect({"--position", "-7.5,21", "--angle", "33", "--roll", "-20", "--clearance", "100"});
+}
+
+TEST_F(TerrainProgram, Picture) {
+  options_.distance = 250;
+  options_.fov_rad = 60 * kRadians;
+  options_.scale_px = 70;
+  options_.dz = 0.01;
+  options_.sky = {1, 2, 3, 255};
+  options_.fog = {0.01, 20, Rgba8{255, 128, 0, 255}};
+  expect({"--distance", "250", "--fov", "60", "--scale", "70", "--dz", "0.01", "--sky", "#010203",
+          "--fog", "0.01,20,#ff8000"});
+  options_.fog = {0.02, 0, {}};
+  expect({"--distance", "250", "--fov", "60", "--scale", "70", "--dz", "0.01", "--sky", "#010203",
+          "--fog", "0.02"});
+}
+
+TEST_F(TerrainProgram, FiltersTilesProjectionMachine) {
+  for (const auto& [word, filter] :
+       {std::pair("none", TerrainFilter::none), std::pair("bilinear", TerrainFilter::bilinear),
+        std::pair("mip", TerrainFilter::mip)}) {
+    options_.filter = filter;
+    expect({"--filter", word});
+  }
+  options_.filter = TerrainFilter::none;
+  for (const auto& [word, tiling] :
+       {std::pair("repeat", Tiling::repeat), std::pair("mirror", Tiling::mirror),
+        std::pair("clamp", Tiling::clamp)}) {
+    options_.tiling = tiling;
+    expect({"--tile", word});
+  }
+  options_.projection = Projection::cylindrical;
+  expect({"--tile", "clamp", "--projection", "cylindrical", "--device", "serial"});
+  expect({"--tile", "clamp", "--projection", "cylindrical", "--isa", "scalar", "--threads", "2",
+          "--method", "words"});
+}
+
+TEST_F(TerrainProgram, Classic) {
+  options_.classic = true;
+  expect({"--classic"});
+  camera_.altitude = 78;
+  camera_.horizon_px = 100;
+  const std::vector<std::string> own{"terrain", "--height", "h.png",  "--color", "c.png",
+                                     "-o",      "p.png",    "--size", "96x64",   "--classic"};
+  must(own);
+  EXPECT_TRUE(same_pixels(png("p.png"), drawn(map_))) << "78 up, horizon at 100";
+}
+
+TEST_F(TerrainProgram, LightAndShadows) {
+  const Sun sun{250, 25};
+  std::vector<Image<Rgba8>> pictures;
+  for (const auto& [word, shadows] :
+       {std::pair("accumulated", Shadows::accumulated), std::pair("sharp", Shadows::sharp),
+        std::pair("soft", Shadows::soft)}) {
+    const Light light{.sun = sun, .shadows = shadows, .sun_radius_deg = 4};
+    expect({"--sun", "250,25", "--shadows", word, "--sun-radius", "4"},
+           {map_.heights, lit_colors(map_, light)});
+    for (const Image<Rgba8>& other : pictures) EXPECT_FALSE(same_pixels(png("p.png"), other));
+    pictures.push_back(png("p.png"));
+  }
+}
+
+TEST_F(TerrainProgram, WithoutColours) {
+  must({"terrain", "--height", "h.png", "-o", "p.png", "--size", "96x64", "--altitude", "40",
+        "--horizon", "20", "--sun", "10,20"});
+  const HeightMap bare{map_.heights, {}};
+  EXPECT_TRUE(same_pixels(
+      png("p.png"),
+      drawn({map_.heights, lit_colors(bare, {.sun = {10, 20}, .hill_shading = true})})));
+}
+
+TEST_F(TerrainProgram, Functions) {
+  const auto picture = [&](const HeightFunction& f, double low, double high) {
+    Image<Rgba8> image(kWidth, kHeight);
+    TerrainRenderer(options_).render(function_terrain(f, low, high, {.hill_shading = true}),
+                                     {512, 800, 90, 0, 16, 0}, {.color8 = image.view()});
+    return image;
+  };
+  for (const FunctionInfo& f : named_functions()) {
+    must({"terrain", "--function", std::string(f.name), "-o", "p.png", "--size", "96x64",
+          "--altitude", "90"});
+    EXPECT_TRUE(same_pixels(png("p.png"), picture(named_function(f.name), f.low, f.high)))
+        << f.name;
+  }
+  const Outcome r = run({"terrain", "--function", "20*sin(x/30)", "-o", "p.png", "--size", "96x64",
+                         "--altitude", "90"});
+  if (r.err.find("libmuparser-dev") != std::string::npos) return;
+  ASSERT_EQ(r.status, 0) << r.err;
+  const HeightFunction f = expression_function("20*sin(x/30)");
+  const HeightRange range = sampled_range(f);
+  EXPECT_TRUE(same_pixels(png("p.png"), picture(f, range.low, range.high)));
+}
+
+TEST_F(TerrainProgram, RawHeightsOfASizeAndScale) {
+  std::string raw;
+  for (int i = 0; i < kMap * kMap; ++i) {
+    const auto v = static_cast<int>(map_.heights.pixels()[static_cast<std::size_t>(i)]) * 257;
+    raw += static_cast<char>(v & 255);
+    raw += static_cast<char>(v >> 8);
+  }
+  write("h.raw", raw);
+  std::vector<std::string> args = base();
+  args[2] = "h.raw";
+  must(args);
+  EXPECT_TRUE(same_pixels(png("p.png"), drawn(map_))) << "16 bits have the range of 8";
+  for (float& h : map_.heights.pixels()) h *= 257 * 0.5F;
+  for (const char* e : {"--height-size", "60x60", "--height-scale", "0.5"}) args.push_back(e);
+  must(args);
+  EXPECT_TRUE(same_pixels(png("p.png"), drawn(map_)));
+}
+
+TEST_F(TerrainProgram, DepthAndStats) {
+  std::vector<std::string> args = base();
+  for (const char* e :
+       {"--depth", "d.npy", "--stats", "s.json", "--frames", "3", "--distance", "90"})
+    args.push_back(e);
+  must(args);
+  options_.distance = 90;
+  Image<float> depth(kWidth, kHeight);
+  const TerrainStats stats = TerrainRenderer(options_).render(
+      Terrain(HeightMap{map_.heights, map_.colors}), camera_, {.depth = depth.view()});
+  const std::vector<float> got = npy("d.npy").values<float>();
+  ASSERT_EQ(got.size(), depth.pixels().size());
+  EXPECT_EQ(std::memcmp(got.data(), depth.pixels().data(), got.size() * sizeof(float)), 0);
+  const nlohmann::ordered_json json = this->json("s.json");
+  EXPECT_EQ(json["size"], (nlohmann::json{96, 64}));
+  EXPECT_EQ(json["map"], (nlohmann::json{kMap, kMap}));
+  EXPECT_EQ(json["slices"], stats.slices);
+  EXPECT_EQ(json["frame_ms"]["frames"], 3);
+  EXPECT_EQ(json["camera"]["altitude"], 40);
+}
+
+TEST_F(TerrainProgram, RefusesWhatItCannotDraw) {
+  refuse(2, "-o:", {"--height", "h.png"});
+  refuse(2, "--height:", {"-o", "p.png"});
+  refuse(2, "--height:", {"--height", "h.png", "--function", "expo", "-o", "p.png"});
+  refuse(2, "--color:", {"--function", "expo", "--color", "c.png", "-o", "p.png"});
+  refuse(2, "--shadows: expected one of none, accumulated, sharp, soft",
+         {"--height", "h.png", "--shadows", "hard", "-o", "p.png"});
+  refuse(2, "--sun:", {"--height", "h.png", "--sun", "10", "-o", "p.png"});
+  refuse(2, "--sun:", {"--height", "h.png", "--sun", "10,91", "-o", "p.png"});
+  refuse(2, "--sun:", {"--height", "h.png", "--sun", "10,20,30", "-o", "p.png"});
+  refuse(2, "--position:", {"--height", "h.png", "--position", "1,", "-o", "p.png"});
+  refuse(2, "--fog:", {"--height", "h.png", "--fog", "1,2,3", "-o", "p.png"});
+  refuse(2, "-o:", {"--height", "h.png", "-o", "p.jpg"});
+  refuse(1, "gone.png", {"--height", "gone.png", "-o", "p.png"});
+  refuse(1, "c.png: its pixel", {"--height", "c.png", "-o", "p.png"});
+  refuse(1, "there are cosines", {"--function", "hills", "-o", "p.png"});
+  refuse(1, "CUDA", {"--height", "h.png", "--device", "cuda", "-o", "p.png"});
+  write("bad.dem", "no dem");
+  refuse(1, "bad.dem", {"--height", "bad.dem", "-o", "p.png"});
+}
+
+TEST_F(TerrainProgram, HelpNamesEveryFunctionAndAnExample) {
+  const std::string help = run({"terrain", "--help"}).out;
+  for (const FunctionInfo& f : named_functions())
+    EXPECT_NE(help.find(std::string(f.description)), std::string::npos) << f.name;
+  EXPECT_NE(help.find("rastrum terrain --height D1.png"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace rastrum::test
