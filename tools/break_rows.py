@@ -6,7 +6,7 @@ usage: break_rows.py [--list] [NAME...]
 Each break replaces one text of one source file, builds table_test and the tests of the broken axis,
 and compares the rows whose tests fail with those that it should break: five names are five
 algorithms. What rows share is broken, too, so that it shows how far it reaches. Without names all
-breaks are made: some ten minutes on two cores, less with what ccache knows.
+breaks are made, which takes half an hour on two busy cores and less with what ccache knows.
 
 Works on HEAD in a Git worktree of its own, build/break-rows, which is removed at the end and after
 ^C; the caller's sources are not touched. Prints a table in Markdown; exits with 1 where rows failed
@@ -148,6 +148,10 @@ BREAKS = (
     Break("sorted, shared", "visibility/sorted.cpp",
           "keys_[to] = static_cast<Key>(first + i);", "keys_[to] = static_cast<Key>(first);",
           SHARING, ("sorted",), why="coverages without tiles; hybrid for small triangles"),
+    Break("sorted, micro triangles", "visibility/sorted.cpp",
+          "slices_.add(exec_, pixels_.pixel(f), f.word);",
+          "slices_.add(exec_, pixels_.pixel(f) & ~1U, f.word);",
+          ("grouped",), ("sorted",), why="only grouped makes fragments of its own"),
     Break("hashed, maximum", "visibility/hashed.cpp",
           "raster::raise<kSharing>(words_[slot], word);",
           "if (found == Slot::taken) raster::raise<kSharing>(words_[slot], word);",
@@ -159,6 +163,10 @@ BREAKS = (
           "probes += table_.raise(home, block * 64 + i, word);",
           "probes += table_.raise(home, block * 64, word);",
           SHARING, ("hashed",), why="coverages without tiles; hybrid for small triangles"),
+    Break("hashed, micro triangles", "visibility/hashed.cpp",
+          "const std::uint32_t pixel = pixels_.pixel(f);",
+          "const std::uint32_t pixel = pixels_.pixel(f) & ~1U;",
+          ("grouped",), ("hashed",), why="only grouped makes fragments of its own"),
 
     # What visibilities share.
     Break("fragments one by one", "visibility/fragments.hpp",
