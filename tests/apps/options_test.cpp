@@ -183,6 +183,16 @@ TEST_F(Options, MachineChoicesReachTheStatisticsAndLeaveThePictureAlone) {
     EXPECT_LE(stats({"--memory-limit", limit, "--threads", "2"})["peak_bytes"], bytes);
     EXPECT_EQ(npy("i.npy").data, ids) << limit;
   }
+  // So small a frame would keep to those by itself: what is too little is refused by its bytes.
+  for (const auto& [limit, bytes] :
+       {std::pair{"1000", "1000"}, {"1K", "1024"}, {"1M", "1048576"}}) {
+    const Outcome r = run({"render", "builtin:boxes?count=2", "-o", "p.png", "--size", "72x56",
+                           "--memory-limit", limit});
+    EXPECT_EQ(r.status, 1) << limit;
+    EXPECT_NE(r.err.find(std::string("a memory limit of ").append(bytes).append(" bytes")),
+              std::string::npos)
+        << r.err;
+  }
   EXPECT_EQ(stats({"--frames", "3"})["frame_ms"]["frames"], 3);
 }
 
