@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Breaks the rows of the coverage × visibility table on purpose and sees that only their tests fail.
+"""Breaks rows of the coverage × visibility table on purpose and sees that only their tests fail.
 
 usage: break_rows.py [--list] [NAME...]
 
@@ -62,7 +62,7 @@ BREAKS = (
           "static_cast<std::size_t>(box.y1 - box.y0);",
           "static_cast<std::size_t>(box.y1 - box.y0 - 1);",  # a triangle's last row
           ("scanline",), units=("scanline", "hybrid"),
-          why="hybrid's tuning `small_path = rows` is scanline for small triangles, in its own tests"),
+          why="hybrid's tuning `small_path = rows`, in its own tests, is scanline"),
     Break("pineda, small", "coverage/pineda.cpp",
           "all.first(parted.first_count)", "all.first(parted.first_count / 2)", ("pineda",)),
     Break("pineda, large", "coverage/pineda.cpp",
@@ -117,10 +117,12 @@ BREAKS = (
 
     # --- Visibilities -----------------------------------------------------------------------------
     Break("atomic, owned", "visibility/atomic.cpp",
-          "blocks.data(), blocks.size(), surface_);", "blocks.data(), blocks.size() / 2, surface_);",
+          "blocks.data(), blocks.size(), surface_);",
+          "blocks.data(), blocks.size() / 2, surface_);",
           OWNING, ("atomic",), why="coverages with tiles"),
     Break("atomic, shared", "visibility/atomic.cpp",
-          "raise_atomically(out[i], words[i]);", "if (i % 2 == 0) raise_atomically(out[i], words[i]);",
+          "raise_atomically(out[i], words[i]);",
+          "if (i % 2 == 0) raise_atomically(out[i], words[i]);",
           SHARING, ("atomic",), why="coverages without tiles; hybrid for small triangles"),
     Break("atomic, micro triangles", "visibility/atomic.cpp",
           "surface_.words[f.pixel] = std::max(surface_.words[f.pixel], f.word);",
@@ -260,7 +262,7 @@ def break_all(breaks):
     for axis in axes:
         if any(broken_rows(axis)):
             raise Failure(f"before anything was broken: {broken_rows(axis)}")
-    print("| broken | points of the table that failed | rows whose own tests failed | as expected |")
+    print("| broken | points that failed | rows whose own tests failed | as expected |")
     print("|---|---|---|---|", flush=True)
     wrong = 0
     for b in breaks:
@@ -269,9 +271,9 @@ def break_all(breaks):
         wrong += not right
         verdict = "yes" + (f": {b.why}" if b.why else "") if right else (
             f"**no**: {describe(b.expected_points())}; {', '.join(sorted(b.expected_units()))}")
-        print(f"| {b.name} | {describe(points)} | {', '.join(sorted(units)) or 'none'} | {verdict} |",
-              flush=True)
-    print(f"\n{len(breaks) - wrong} of {len(breaks)} breaks were seen by the tests of their rows alone")
+        rows = ", ".join(sorted(units)) or "none"
+        print(f"| {b.name} | {describe(points)} | {rows} | {verdict} |", flush=True)
+    print(f"\n{len(breaks) - wrong} of {len(breaks)} breaks were seen by their rows' tests alone")
     return wrong
 
 
@@ -281,7 +283,8 @@ def main(arguments):
         return 0
     unknown = set(arguments) - {b.name for b in BREAKS}
     if unknown:
-        print(f"break_rows.py: no break is called {', '.join(unknown)}; see --list", file=sys.stderr)
+        print(f"break_rows.py: no break is called {', '.join(unknown)}; see --list",
+              file=sys.stderr)
         return 2
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     git = ("git", "-C", ROOT, "worktree")
