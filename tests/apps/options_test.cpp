@@ -1,5 +1,6 @@
 // Every option of `rastrum render` once, by its effect: the picture is the one that the library
 // draws with the same choice.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -18,16 +19,19 @@ class Options : public Program {
     render_.width = kWidth;
     render_.height = kHeight;
   }
-  /// The program's picture of the boxes with `extra` options, against the library's.
+  /// The program's picture of the boxes with `extra` options, and its depths, which alone show the
+  /// camera's planes, against the library's.
   void expect(std::vector<std::string> extra, const Camera& camera,
               const Scene& scene = boxes()) const {
-    const Image<Rgba8> expected = draw(scene, camera, render_).color8;
+    const Drawn expected = draw(scene, camera, render_);
     std::string line;
     for (const std::string& e : extra) line += " " + e;
-    extra.insert(extra.begin(), {"render", "builtin:boxes?count=2", "-o", "p.png", "--size",
-                                 std::to_string(kWidth) + "x" + std::to_string(kHeight)});
+    extra.insert(extra.begin(),
+                 {"render", "builtin:boxes?count=2", "-o", "p.png", "--depth", "d.npy", "--size",
+                  std::to_string(kWidth) + "x" + std::to_string(kHeight)});
     must(extra);
-    EXPECT_TRUE(same_pixels(png("p.png"), expected)) << line;
+    EXPECT_TRUE(same_pixels(png("p.png"), expected.color8)) << line;
+    EXPECT_TRUE(std::ranges::equal(npy("d.npy").values<float>(), expected.depth.pixels())) << line;
   }
   static Scene boxes() { return scene_of(shapes::boxes(2)); }
 
@@ -55,26 +59,23 @@ TEST_F(Options, CameraOfOnesOwn) {
   camera.fov_rad = static_cast<float>(35 * std::acos(-1.0) / 180);
   camera.near_plane = 0.75F;
   camera.far_plane = 40;
-  const std::vector<std::string> given{"--eye",  "-3,2.5,4", "--target", "0.25,0.5,-0.125",
-                                       "--up",   "0.5,1,0",  "--fov",    "35",
-                                       "--near", "0.75",     "--far",    "40"};
-  render_.shader = Shader::depth;  // also shows the planes
-  auto with_depth = given;
-  with_depth.insert(with_depth.end(), {"--shader", "depth"});
-  expect(with_depth, camera);
+  std::vector<std::string> given{"--eye",  "-3,2.5,4", "--target", "0.25,0.5,-0.125",
+                                 "--up",   "0.5,1,0",  "--fov",    "35",
+                                 "--near", "0.75",     "--far",    "40"};
+  expect(given, camera);
 
   camera.far_plane = std::numeric_limits<float>::infinity();
-  with_depth[11] = "inf";
-  expect(with_depth, camera);
+  given[11] = "inf";
+  expect(given, camera);
 
   camera.orthographic = true;
   camera.orthographic_height = 3.5F;
   camera.far_plane = 40;
   camera.near_plane = -1;
-  with_depth[11] = "40";
-  with_depth[9] = "-1";
-  with_depth.insert(with_depth.end(), {"--orthographic", "3.5"});
-  expect(with_depth, camera);
+  given[11] = "40";
+  given[9] = "-1";
+  given.insert(given.end(), {"--orthographic", "3.5"});
+  expect(given, camera);
 }
 
 TEST_F(Options, OrthographicFit) {
@@ -181,6 +182,16 @@ TEST_F(Options, MachineChoicesReachTheStatisticsAndLeaveThePictureAlone) {
        {std::pair{"8000000", 8000000}, {"8000K", 8000 * 1024}, {"8M", 8 << 20}}) {
     EXPECT_LE(stats({"--memory-limit", limit, "--threads", "2"})["peak_bytes"], bytes);
     EXPECT_EQ(npy("i.npy").data, ids) << limit;
+  }
+  // So small a frame would keep to those by itself: what is too little is refused by its bytes.
+  for (const auto& [limit, bytes] :
+       {std::pair{"1000", "1000"}, {"1K", "1024"}, {"1M", "1048576"}}) {
+    const Outcome r = run({"render", "builtin:boxes?count=2", "-o", "p.png", "--size", "72x56",
+                           "--memory-limit", limit});
+    EXPECT_EQ(r.status, 1) << limit;
+    EXPECT_NE(r.err.find(std::string("a memory limit of ").append(bytes).append(" bytes")),
+              std::string::npos)
+        << r.err;
   }
   EXPECT_EQ(stats({"--frames", "3"})["frame_ms"]["frames"], 3);
 }

@@ -89,6 +89,8 @@ TEST(ChooseCamera, FileCameraTakesWhatIsGiven) {
   EXPECT_EQ(choose(o, scene).near_plane, 0.5F);
   o.far_plane = 30;
   EXPECT_EQ(choose(o, scene).far_plane, 30);
+  o.fov_deg = 90;
+  EXPECT_NEAR(choose(o, scene).fov_rad, std::acos(-1.0) / 2, 1e-6);
   o.file_camera = 2;
   EXPECT_THROW((void)choose(o, scene), cli::UsageError);
 }

@@ -51,6 +51,9 @@ TEST(Selection, ShapesStandInBesideThoseAskedForWhereNoFileIsHere) {
   setenv("RASTRUM_SHARED", "/no-such-folder", 1);
   Selection selection(transparency_scenes(), {{64, 64}});
   selection.resolve();
+  // One of these is a shape already, and must not stand in beside itself.
+  Selection peers(peer_scenes(), {{64, 64}});
+  peers.resolve();
   if (shared != nullptr)
     setenv("RASTRUM_SHARED", before.c_str(), 1);
   else
@@ -63,6 +66,10 @@ TEST(Selection, ShapesStandInBesideThoseAskedForWhereNoFileIsHere) {
     EXPECT_TRUE(names.contains(name)) << name;
   for (const char* name : {"pine", "bunny", "brain"}) EXPECT_TRUE(absent.contains(name)) << name;
   EXPECT_EQ(absent.size() + 2, transparency_scenes().size());
+  names.clear();
+  for (const SceneInfo& scene : peers.scenes())
+    EXPECT_TRUE(names.insert(scene.name).second) << scene.name;
+  EXPECT_EQ(names.size(), procedural_scenes().size());
 }
 
 TEST(Scenes, NamesAreUniqueAndFound) {

@@ -4,6 +4,7 @@
 
 #include <bench/scenes.hpp>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -121,7 +122,9 @@ TEST(TransparencyTables, KeepTheirFigures) {
 }
 
 TEST(TransparencyMeasure, RunsWithoutPeers) {
-  Mesh mesh = shapes::torus_knot(2, 3, 128, 12);
+  // Triangles that cross each other: more than a filter of three can hold.
+  Mesh mesh = shapes::soup(1500, 0.1F, 0.8F);
+  for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) mesh.indices.push_back(i);
   mesh.normals = {vertex_normals(mesh.positions, mesh.indices), {}};
   TransparencyPeers peers;
   peers.no_gl = "no OpenGL";
@@ -141,7 +144,7 @@ TEST(TransparencyMeasure, RunsWithoutPeers) {
     if (r.ours[i].name.find("filter") != std::string::npos) continue;
     EXPECT_GT(r.ours[i].error.worst, 1e-4) << r.ours[i].name;
   }
-  EXPECT_GE(r.ours[kFilter3].wrong_pixels, r.ours[kFilter3 + 2].wrong_pixels);
+  EXPECT_GT(r.ours[kFilter3].wrong_pixels, r.ours[kFilter3 + 2].wrong_pixels);
   EXPECT_GT(r.deepest, 3U);
   EXPECT_GT(r.samples_per_block, 1);
   EXPECT_LE(r.samples_per_block, 64);

@@ -1,6 +1,7 @@
 // Every method of visibility against a plain maximum at each pixel, on generated blocks: one thread
 // that owns the region and many that share it, few and many layers, equal depths, depth 0, begun on
-// a surface that holds words already. And each method's counters, exactly.
+// a surface that holds words already, and some of them as finished fragments. And each method's
+// counters, exactly.
 #include <algorithm>
 #include <bit>
 #include <map>
@@ -149,7 +150,7 @@ struct Resolved {
 class Resolver {
  public:
   Resolver(const Visibility& method, Isa isa, int threads)
-      : exec_(threads, &memory_), kernel_(kernels(isa)) {
+      : exec_(threads, &memory_), kernel_(kernels(isa)), takes_fragments_(method.takes_fragments) {
     request_.width = kWidth;
     request_.height = kHeight;
     request_.isa = isa;
@@ -171,18 +172,26 @@ class Resolver {
     return read(surface, *shared_);
   }
 
-  /// Bins one after the other; every second one has its words in memory of its own.
+  /// Bins one after the other; every second one has its words in memory of its own. Where the
+  /// method takes finished fragments every third block is handed over as such.
   Resolved owned(const Case& c, std::uint64_t fragment_bytes) {
     const SurfaceView surface = whole(c);
     for (int y = 0; y < kHeight; y += kBinSize)
       for (int x = 0; x < kWidth; x += kBinSize) {
         const Rect bin{x, y, std::min(x + kBinSize, kWidth), std::min(y + kBinSize, kHeight)};
         std::vector<Block> blocks;
+        std::vector<BinFragment> finished;
+        std::size_t n = 0;
         for (const std::vector<Block>& chunk : c.chunks)
-          for (const Block& b : chunk)
-            if (b.bx * kBlockSize / kBinSize == x / kBinSize &&
-                b.by * kBlockSize / kBinSize == y / kBinSize)
+          for (const Block& b : chunk) {
+            if (b.bx * kBlockSize / kBinSize != x / kBinSize ||
+                b.by * kBlockSize / kBinSize != y / kBinSize)
+              continue;
+            if (takes_fragments_ && n++ % 3 == 0)
+              add_fragments(c.pieces[b.piece], b, finished);
+            else
               blocks.push_back(b);
+          }
         const SurfaceView part = surface.part(x / kBlockSize, y / kBlockSize);
         SurfaceView local = part;
         local.columns = kBlocksPerBinRow;
@@ -199,6 +208,7 @@ class Resolver {
         while (const auto pass = owned_->next()) {
           EXPECT_EQ(pass->first, 0U);
           EXPECT_EQ(pass->last, 1U);
+          if (!finished.empty()) owned_->fragments(finished);
           hand_over(*owned_, 0, c.pieces, blocks);
         }
         if (is_local) copy(bin, local, part);
@@ -213,6 +223,16 @@ class Resolver {
       const std::size_t n = std::min<std::size_t>(blocks.size(), 37);
       region.blocks(chunk, pieces.data(), blocks.first(n));
       blocks = blocks.subspan(n);
+    }
+  }
+
+  static void add_fragments(const Piece& piece, const Block& b, std::vector<BinFragment>& to) {
+    const int block = b.by % kBlocksPerBinRow * kBlocksPerBinRow + b.bx % kBlocksPerBinRow;
+    for (std::uint64_t m = b.mask; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      const int x = b.bx * kBlockSize + i % kBlockSize, y = b.by * kBlockSize + i / kBlockSize;
+      to.push_back({make_word(depth_at(piece, x, y), piece.low), 0,
+                    static_cast<std::uint32_t>(64 * block + i)});
     }
   }
 
@@ -256,6 +276,7 @@ class Resolver {
   MemoryAccount memory_;
   parallel::Threads exec_;
   const Kernels& kernel_;
+  bool takes_fragments_;
   FrameRequest request_;
   FrameGeometry frame_;
   ByWord shader_;

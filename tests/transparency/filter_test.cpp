@@ -121,21 +121,32 @@ TEST(Filter, IsRightWhereItMarksNothing) {
   EXPECT_GE(wrong[2], wrong[3]);
 }
 
-// The marks are the same whoever draws.
+// The marks are the same whoever draws. The picture has more than one bin, else one thread draws
+// it.
 TEST(Filter, MarksDoNotDependOnThreads) {
   const ThreadsBeyondCores eight(8);
-  RenderOptions o = options(Transparency::filter, 1);
-  o.threads = 1;
-  Renderer one(o);
-  o.threads = 8;
-  Renderer eight_threads(o);
-  for (int i = 0; i < 2 * kLayerKinds; ++i) {
-    const LayerScene scene = scene_of(i);
-    SCOPED_TRACE(title(i, scene));
-    LayerProgram program(scene, kWidth, kHeight);
-    const LayerPicture a = take(one, program), b = take(eight_threads, program);
-    EXPECT_TRUE(same_bits(a, b));
-    EXPECT_TRUE(std::ranges::equal(a.errors.pixels(), b.errors.pixels()));
+  constexpr int kWide = 200, kHigh = 150;
+  for (const char* const rasterizer : {"grouped", "tiled"}) {
+    RenderOptions o = options(Transparency::filter, 1);
+    o.width = kWide;
+    o.height = kHigh;
+    o.rasterizer = rasterizer;
+    o.threads = 1;
+    Renderer one(o);
+    o.threads = 8;
+    Renderer eight_threads(o);
+    std::uint64_t marked = 0;
+    for (int i = 0; i < 2 * kLayerKinds; ++i) {
+      const LayerScene scene =
+          generate_layers(static_cast<std::uint64_t>(i) + 7100000, kWide, kHigh);
+      SCOPED_TRACE(title(i, scene) + " " + rasterizer);
+      LayerProgram program(scene, kWide, kHigh);
+      const LayerPicture a = take(one, program), b = take(eight_threads, program);
+      EXPECT_TRUE(same_bits(a, b));
+      EXPECT_TRUE(std::ranges::equal(a.errors.pixels(), b.errors.pixels()));
+      marked += a.error_pixels();
+    }
+    EXPECT_GT(marked, 1000U) << rasterizer;
   }
 }
 

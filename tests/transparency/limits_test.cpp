@@ -138,6 +138,8 @@ TEST(Limits, TenThousandLayersAt512) {
   Renderer renderer(options(kSize, kLimit, 2, "auto"));
   const LayerPicture picture = take(renderer, program);
   EXPECT_LE(picture.stats.peak_bytes, kLimit);
+  // The bound on colours would let a few layers of so many vanish.
+  EXPECT_EQ(picture.counter("translucent fragments"), std::uint64_t{kLayers} * kSize * kSize);
   LayerImage everywhere;
   everywhere.width = everywhere.height = kSize;
   everywhere.color.assign(std::size_t{kSize} * kSize, oracle.color[0]);
