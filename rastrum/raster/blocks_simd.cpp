@@ -24,26 +24,6 @@ namespace rastrum::raster {
 namespace HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
 
-/// The words that a row's depths make: kHalves vectors.
-template <class Use>
-HWY_INLINE void for_each_half(F depth, std::uint64_t low, const Use& use) {
-  const F32 df;
-  const U32 du;
-  const hn::RebindToUnsigned<I64> du64;
-  const hn::Half<U32> dh;
-  depth = hn::Min(hn::IfThenElseZero(hn::Gt(depth, hn::Zero(df)), depth), hn::Set(df, 1.0F));
-  const auto bits = hn::BitCast(du, depth);
-  for (std::size_t h = 0; h < kHalves; ++h) {
-#if HWY_MAX_BYTES >= 32
-    const auto half = h == 0 ? hn::LowerHalf(dh, bits) : hn::UpperHalf(dh, bits);
-#else
-    const auto half =
-        h == 0 ? hn::LowerHalf(dh, bits) : hn::LowerHalf(dh, hn::ConcatUpperUpper(du, bits, bits));
-#endif
-    use(h, hn::Or(hn::ShiftLeft<kIdBits>(hn::PromoteTo(du64, half)), hn::Set(du64, low)));
-  }
-}
-
 /// The depths of row `row` of a block, column part by part: the depth formula, lane by lane.
 struct DepthRows {
   F along_x[8 / kLanes];

@@ -142,7 +142,7 @@ struct VisibleBlock {
   int x0 = 0, y0 = 0;                     ///< first pixel
   void* scratch = nullptr;                ///< the shader's, zeroed when a thread begins a frame
   BlockColors* extra = nullptr;           ///< its further outputs; null: not wanted
-  const ShadingPoints* points = nullptr;  ///< where in their pixels; null: at the centres
+  const ShadingPoints* points = nullptr;  ///< where they are; null: at their pixels' centres
 };
 
 /// How many outputs a shader may have beside its colour.
@@ -159,6 +159,8 @@ class BlockShader {
   /// of them are opaque; alpha need not be set then.
   virtual bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
                      BlockColors& colors) const noexcept = 0;
+  /// Asks the cache for what shading primitive `id` will read: a hint for who knows long before.
+  virtual void prefetch(const FrameGeometry& /*frame*/, std::uint64_t /*id*/) const noexcept {}
   /// How many bytes of VisibleBlock::scratch the shader uses, at most kMaxShaderScratch; 64-byte
   /// aligned, kept from block to block of a frame.
   [[nodiscard]] virtual std::size_t scratch_bytes() const noexcept { return 0; }

@@ -156,10 +156,17 @@ class FragmentLocator {
  public:
   explicit FragmentLocator(const FrameGeometry& frame) : frame_(frame) {}
 
-  /// The fragment of primitive `id` at sample i of a block that begins at pixel (x0, y0); `points`
+  /// The fragment of primitive `id` at element i of a block that begins at pixel (x0, y0); `points`
   /// as in VisibleBlock. Valid until the next call.
   const Fragment& locate(std::uint64_t id, int x0, int y0, int i, const ShadingPoints* points) {
-    const int x = x0 + i % kBlockSize, y = y0 + i / kBlockSize;
+    int x = x0 + i % kBlockSize, y = y0 + i / kBlockSize;
+    Vec2 from_centre{0, 0};
+    if (points != nullptr) {
+      const Vec2 by{std::floor(points->dx[i] + 0.5F), std::floor(points->dy[i] + 0.5F)};
+      x += static_cast<int>(by.x);
+      y += static_cast<int>(by.y);
+      from_centre = {points->dx[i] - by.x, points->dy[i] - by.y};
+    }
     if (id != fragment_.id || fragment_.planes == nullptr) {
       const Draw& draw = frame_.draw_of(id);
       square_px_ = 0;
@@ -184,7 +191,7 @@ class FragmentLocator {
     }
     fragment_.x = x;
     fragment_.y = y;
-    fragment_.from_centre = points == nullptr ? Vec2{0, 0} : Vec2{points->dx[i], points->dy[i]};
+    fragment_.from_centre = from_centre;
     fragment_.weights = weights_at(planes_, x, y, fragment_.from_centre);
     if (square_px_ > 0)
       fragment_.point = {static_cast<float>((x + 0.5 - planes_.x0) / square_px_),

@@ -14,6 +14,8 @@
 
 #include <hwy/highway.h>
 
+#include <rastrum/raster/piece.hpp>
+
 // The scalar kernels stand in for Highway's baseline targets.
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -71,6 +73,27 @@ HWY_INLINE hn::Mask<U32> lane_mask(std::uint64_t bits) {
   // LoadMaskBits reads whole bytes.
   const std::uint8_t memory[8] = {static_cast<std::uint8_t>(bits & ((1U << kLanes) - 1))};
   return hn::LoadMaskBits(U32{}, memory);
+}
+
+/// Calls use(h, words) with the words that depths, which it clamps, make with a piece's low part:
+/// kHalves vectors.
+template <class Use>
+HWY_INLINE void for_each_half(F depth, std::uint64_t low, const Use& use) {
+  const F32 df;
+  const U32 du;
+  const hn::RebindToUnsigned<I64> du64;
+  const hn::Half<U32> dh;
+  depth = hn::Min(hn::IfThenElseZero(hn::Gt(depth, hn::Zero(df)), depth), hn::Set(df, 1.0F));
+  const auto bits = hn::BitCast(du, depth);
+  for (std::size_t h = 0; h < kHalves; ++h) {
+#if HWY_MAX_BYTES >= 32
+    const auto half = h == 0 ? hn::LowerHalf(dh, bits) : hn::UpperHalf(dh, bits);
+#else
+    const auto half =
+        h == 0 ? hn::LowerHalf(dh, bits) : hn::LowerHalf(dh, hn::ConcatUpperUpper(du, bits, bits));
+#endif
+    use(h, hn::Or(hn::ShiftLeft<kIdBits>(hn::PromoteTo(du64, half)), hn::Set(du64, low)));
+  }
 }
 
 }  // namespace

@@ -14,7 +14,9 @@ using raster::BlockColors;
 class FrontToBack final : public LayerBlend {
  public:
   FrontToBack(float alpha_threshold, Isa isa)
-      : kernel_(blend_kernels(isa)), opaque_at_(1 - alpha_threshold) {}
+      : kernel_(blend_kernels(isa)),
+        packed_(packed_kernels(isa)),
+        opaque_at_(1 - alpha_threshold) {}
 
   [[nodiscard]] LayerOrder order() const override { return LayerOrder::depth; }
   void begin(const BlockColors& behind) override {
@@ -27,10 +29,15 @@ class FrontToBack final : public LayerBlend {
   std::uint64_t layer(const Layer& l) override {
     return kernel_.behind(l.colors, l.mask, opaque_at_, seen_);
   }
+  bool row(const PackedRow& row, std::size_t first) override {
+    packed_.behind(row, first, seen_);
+    return true;
+  }
   void finish(BlockColors& out) override { kernel_.finish(seen_, *behind_, out); }
 
  private:
   const BlendKernels& kernel_;
+  const PackedKernels& packed_;
   const float opaque_at_;
   const BlockColors* behind_ = nullptr;
   Seen seen_;
@@ -39,17 +46,22 @@ class FrontToBack final : public LayerBlend {
 /// Each layer before those that came earlier: what a GPU does that blends without sorting.
 class AsSubmitted final : public LayerBlend {
  public:
-  explicit AsSubmitted(Isa isa) : kernel_(blend_kernels(isa)) {}
+  explicit AsSubmitted(Isa isa) : kernel_(blend_kernels(isa)), packed_(packed_kernels(isa)) {}
 
   void begin(const BlockColors& behind) override { colors_ = behind; }
   std::uint64_t layer(const Layer& l) override {
     kernel_.before(l.colors, l.mask, colors_);
     return 0;
   }
+  bool row(const PackedRow& row, std::size_t first) override {
+    packed_.before(row, first, colors_);
+    return true;
+  }
   void finish(BlockColors& out) override { out = colors_; }
 
  private:
   const BlendKernels& kernel_;
+  const PackedKernels& packed_;
   BlockColors colors_;
 };
 

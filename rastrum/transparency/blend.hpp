@@ -8,6 +8,7 @@
 #include <rastrum/raster/color.hpp>
 #include <rastrum/raster/options.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
+#include <rastrum/transparency/packed_kernels.hpp>
 
 namespace rastrum::transparency {
 
@@ -32,6 +33,9 @@ class LayerBlend {
   virtual void begin_pass(int /*pass*/) {}
   /// Returns the pixels that no further layer of this pass changes.
   virtual std::uint64_t layer(const Layer& layer) = 0;
+  /// Takes all layers of a row of pixels at once, elements `first` … of the block, in this pass.
+  /// False: only layer by layer.
+  virtual bool row(const PackedRow& /*row*/, std::size_t /*first*/) { return false; }
   /// The block's colours, premultiplied.
   virtual void finish(raster::BlockColors& out) = 0;
 };

@@ -19,6 +19,7 @@
 #include <rastrum/raster/visibility/atomic.hpp>
 #include <rastrum/transparency/blend.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
+#include <rastrum/transparency/packed_fragments.hpp>
 #include <rastrum/transparency/records.hpp>
 #include <rastrum/transparency/sampled_block.hpp>
 
@@ -51,6 +52,7 @@ class LayersRegion final : public raster::Region {
         micro_(memory),
         order_(memory),
         lists_(memory),
+        packed_(memory),
         sampled_(memory) {}
 
   void begin(const raster::RegionContext& context, const raster::SurfaceView& surface, Rect rect,
@@ -75,6 +77,7 @@ class LayersRegion final : public raster::Region {
     if (context.fragment_bytes != 0)
       planes_ = std::clamp<std::size_t>(context.fragment_bytes / (2 * kPlaneBytes), kLeastPlanes,
                                         kMostPlanes);
+    packed_.begin(context.request->isa, context.fragment_bytes / 2);
   }
 
   std::optional<Pass> next() override {
@@ -141,15 +144,50 @@ class LayersRegion final : public raster::Region {
   }
 
   void resolve() {
+    layer_blocks_ += records_.size();
+    const BlockGrid grid{rect_.x0 / kBlockSize, rect_.y0 / kBlockSize, columns_,
+                         raster::block_rows(rect_)};
+    if (grid.columns * kBlockSize <= kPackedPitch && grid.rows * kBlockSize <= kPackedPitch &&
+        resolve_packed(grid, records_.in_order(), micro_.in_order()))
+      return;
     const std::size_t blocks = raster::block_count(rect_);
     records_.sort(blocks);
     micro_.sort(blocks);
-    layer_blocks_ += records_.size();
     for (std::size_t b = 0; b < blocks; ++b) {
       const int bx = rect_.x0 / kBlockSize + static_cast<int>(b) % columns_;
       const int by = rect_.y0 / kBlockSize + static_cast<int>(b) / columns_;
       resolve_block(bx, by, records_.of(b), micro_.of(b));
     }
+  }
+
+  /// All blocks of `grid` at once, if what they have is little enough and no method needs planes.
+  bool resolve_packed(const BlockGrid& grid, std::span<const Record> records,
+                      std::span<const MicroRecord> micro) {
+    // The filter is a method by itself, and a threshold pays where the nearest are shaded first.
+    if (samples_ > 1 || made_for_.method == Transparency::filter || made_for_.alpha_threshold < 1)
+      return false;
+    if (!packed_.collect(records, micro, grid, surface_, *context_.frame, shader_)) return false;
+    if (blend_->order() == LayerOrder::depth) packed_.sort();
+    if (shader_ != nullptr) packed_.shade(context_, *shader_);
+    for (int by = grid.by; by < grid.by + grid.rows; ++by)
+      for (int bx = grid.bx; bx < grid.bx + grid.columns; ++bx) {
+        std::uint64_t* const words = surface_.block(bx, by);
+        BlockColors& out = *surface_.colors_of(bx, by);
+        const bool any = packed_.any(bx, by);
+        shade_opaque(words, bx, by, any ? behind_ : out);
+        if (!any) continue;
+        if (shader_ != nullptr) {
+          blend_->begin(behind_);
+          packed_.blend(bx, by, *blend_);
+          blend_->finish(out);
+        }
+        packed_.raise(bx, by, words);
+      }
+    LayerCounts counts;
+    counts.fragments = packed_.fragments();
+    counts.deepest = packed_.deepest();
+    totals_.add(counts);
+    return true;
   }
 
   void resolve_block(int bx, int by, std::span<Record> records,
@@ -162,6 +200,7 @@ class LayersRegion final : public raster::Region {
                             made_for_.method != Transparency::filter, words, out));
       return;
     }
+    if (resolve_packed({bx, by, 1, 1, block_number(bx, by)}, records, micro)) return;
     BlockColors& behind = records.empty() && micro.empty() ? out : behind_;
     shade_opaque(words, bx, by, behind);
     if (&behind == &out) return;
@@ -303,6 +342,7 @@ class LayersRegion final : public raster::Region {
   ByBlock<MicroRecord> micro_;
   Buffer<std::uint64_t> order_;  ///< of a block's records: ~depth << 32 | number
   LayerLists<> lists_;
+  PackedFragments packed_;
   SampledBlock sampled_;
   BlockColors behind_, colors_;
   LayerCounts totals_;

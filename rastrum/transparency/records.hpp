@@ -40,6 +40,7 @@ class ByBlock {
     records_[count_++] = record;
   }
   [[nodiscard]] std::size_t size() const { return count_; }
+  [[nodiscard]] std::span<const T> in_order() const { return {records_.data(), count_}; }
   /// Counting sort.
   void sort(std::size_t blocks) {
     sorted_.reserve(count_);

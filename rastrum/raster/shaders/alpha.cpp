@@ -52,6 +52,9 @@ class AlphaShader final : public BlockShader {
     return false;
   }
 
+  void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept override {
+    inner_.prefetch(frame, id);
+  }
   [[nodiscard]] std::size_t scratch_bytes() const noexcept override {
     return inner_.scratch_bytes();
   }

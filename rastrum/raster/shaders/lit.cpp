@@ -110,6 +110,10 @@ class LitShader final : public BlockShader {
     return true;
   }
 
+  void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept override {
+    prefetch_triangle(scene_, frame, id, model_ != LitModel::flat);
+  }
+
   [[nodiscard]] std::size_t scratch_bytes() const noexcept override {
     return sizeof(KeptTriangles);
   }

@@ -28,6 +28,10 @@ struct LitTriangle {
 void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t low,
                     bool wants_normals, LitTriangle& out);
 
+/// Asks the cache for what fetch_triangle reads at random.
+void prefetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t id,
+                       bool wants_normals) noexcept;
+
 /// The triangles of a bin that were seen last, by their ids' low bits: rows and blocks beside
 /// mostly meet the same ones again.
 struct KeptTriangles {

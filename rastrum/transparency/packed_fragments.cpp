@@ -1,0 +1,212 @@
+#include <rastrum/transparency/packed_fragments.hpp>
+
+#include <algorithm>
+#include <bit>
+
+#include <rastrum/parallel/mask.hpp>
+
+namespace rastrum::transparency {
+namespace {
+
+using raster::BlockColors;
+using raster::kBlockSize;
+using raster::kIdMask;
+
+/// Twice the second cache: what was measured to be no worse than planes.
+constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 20;
+/// Word, pixel and colour.
+constexpr std::uint64_t kFragmentBytes = 8 + 2 + sizeof(Vec4);
+/// A pixel's list is of 16-bit length.
+constexpr std::size_t kMostFragments = 65535;
+
+}  // namespace
+
+void PackedFragments::begin(Isa isa, std::uint64_t bytes) {
+  kernel_ = &packed_kernels(isa);
+  most_bytes_ = bytes == 0 ? kMostBytes : std::min(bytes, kMostBytes);
+}
+
+bool PackedFragments::collect(std::span<const Record> records, std::span<const MicroRecord> micro,
+                              const BlockGrid& grid, const raster::SurfaceView& opaque,
+                              const raster::FrameGeometry& frame,
+                              const raster::BlockShader* shader) {
+  std::size_t most = micro.size();
+  for (const Record& r : records) most += static_cast<std::size_t>(parallel::popcount(r.mask));
+  if (most > kMostFragments || most * kFragmentBytes > most_bytes_) return false;
+  // Shaders take 64 at a time.
+  words_.reserve(most + kPackSlack + 64);
+  pixels_.reserve(most + kPackSlack + 64);
+  for (int y = 0; y < grid.rows; ++y)
+    for (int x = 0; x < grid.columns; ++x) {
+      const std::uint64_t* const words = opaque.block(grid.bx + x, grid.by + y);
+      const bool any = std::any_of(words, words + 64, [](std::uint64_t w) { return w != 0; });
+      opaque_[y * (kPackedPitch / 8) + x] = any ? words : nullptr;
+    }
+  count_ = 0;
+  last_low_ = kIdMask;
+  auto m = micro.begin();
+  for (const Record& r : records) {
+    for (; m != micro.end() && (m->word & kIdMask) > r.piece->low; ++m)
+      if (!add(*m, grid)) return false;
+    if (shader != nullptr) shader->prefetch(frame, raster::id_of_word(r.piece->low));
+    if (!add(r, grid)) return false;
+  }
+  for (; m != micro.end(); ++m)
+    if (!add(*m, grid)) return false;
+  return deal(grid);
+}
+
+bool PackedFragments::add(const Record& record, const BlockGrid& grid) {
+  const auto block = static_cast<int>(record.block - grid.first);
+  const int row = block / grid.columns, column = block - row * grid.columns;
+  const std::size_t n = kernel_->pack(
+      *record.piece, record.mask, (grid.bx + column) * kBlockSize, (grid.by + row) * kBlockSize,
+      static_cast<std::uint32_t>((row * kPackedPitch + column) * kBlockSize),
+      words_.data() + count_, pixels_.data() + count_);
+  return append(n, opaque_[row * (kPackedPitch / 8) + column]);
+}
+
+bool PackedFragments::add(const MicroRecord& fragment, const BlockGrid& grid) {
+  const auto block = static_cast<int>(fragment.block - grid.first);
+  const int row = block / grid.columns, column = block - row * grid.columns;
+  const auto pixel = static_cast<int>(fragment.pixel);
+  words_[count_] = fragment.word;
+  pixels_[count_] =
+      static_cast<std::uint16_t>((row * kBlockSize + pixel / kBlockSize) * kPackedPitch +
+                                 column * kBlockSize + pixel % kBlockSize);
+  return append(1, opaque_[row * (kPackedPitch / 8) + column]);
+}
+
+/// Takes the n fragments of one triangle in one block that were written behind the others.
+bool PackedFragments::append(std::size_t n, const std::uint64_t* opaque) {
+  const std::uint64_t low = words_[count_] & kIdMask;
+  if (low > last_low_) return false;
+  last_low_ = low;
+  if (opaque == nullptr) {
+    count_ += n;
+    return true;
+  }
+  for (std::size_t end = count_ + n, f = count_; f < end; ++f) {
+    const std::size_t pixel = pixels_[f];
+    words_[count_] = words_[f];
+    pixels_[count_] = pixels_[f];
+    count_ +=
+        words_[f] > opaque[pixel / kPackedPitch % kBlockSize * kBlockSize + pixel % kBlockSize];
+  }
+  return true;
+}
+
+/// Deals the fragments' keys to their pixels.
+bool PackedFragments::deal(const BlockGrid& grid) {
+  grid_ = grid;
+  sorted_ = false;
+  std::fill_n(left_, grid.rows * kBlockSize * kPackedPitch, std::uint16_t{0});
+  for (std::size_t f = 0; f < count_; ++f) ++left_[pixels_[f]];
+  std::size_t end = 0;
+  deepest_ = 0;
+  for (int y = 0; y < grid.rows * kBlockSize; ++y)
+    for (int x = 0; x < grid.columns; ++x) {
+      const int r = y * (kPackedPitch / 8) + x;
+      const std::uint32_t layers = *std::max_element(left_ + r * 8, left_ + r * 8 + 8);
+      rows_[r] = {static_cast<std::uint32_t>(end), layers};
+      end += layers * 8;
+      deepest_ = std::max<std::size_t>(deepest_, layers);
+    }
+  if (count_ * kFragmentBytes + end * sizeof(std::uint64_t) > 2 * most_bytes_) return false;
+  keys_.reserve(end);
+  std::fill_n(keys_.data(), end, 0U);
+  // The last comes first, so that counts turn into places.
+  for (std::size_t f = count_; f-- > 0;) {
+    const std::size_t pixel = pixels_[f];
+    const std::size_t k = --left_[pixel];
+    keys_[rows_[pixel / 8].begin + k * 8 + pixel % 8] = packed_key(words_[f], f);
+  }
+  return true;
+}
+
+void PackedFragments::sort() {
+  sorted_ = true;
+  for (int y = 0; y < grid_.rows * kBlockSize; ++y)
+    for (int x = 0; x < grid_.columns; ++x)
+      if (const Row& r = rows_[y * (kPackedPitch / 8) + x]; r.layers > 1)
+        kernel_->sort(keys_.data() + r.begin, r.layers);
+}
+
+void PackedFragments::shade(const raster::RegionContext& context,
+                            const raster::BlockShader& shader) {
+  const std::size_t blocks = (count_ + 63) / 64;
+  colors_.reserve(1 + blocks * 64);
+  colors_[0] = {};
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::size_t n = std::min<std::size_t>(64, count_ - b * 64);
+    kernel_->points(pixels_.data() + b * 64, points_);
+    raster::VisibleBlock block{words_.data() + b * 64, ~std::uint64_t{0} >> (64 - n),
+                               grid_.bx * kBlockSize, grid_.by * kBlockSize,
+                               context.shader_scratch};
+    block.points = &points_;
+    if (shader.shade(*context.frame, block, context.request->isa, plane_))
+      std::fill_n(plane_.a, 64, 1.0F);
+    kernel_->interleave(plane_, colors_.data() + 1 + b * 64);
+  }
+}
+
+bool PackedFragments::any(int bx, int by) const {
+  for (int y = 0; y < kBlockSize; ++y)
+    if (row(bx, by, y).layers != 0) return true;
+  return false;
+}
+
+void PackedFragments::raise(int bx, int by, std::uint64_t* words) const {
+  for (int y = 0; y < kBlockSize; ++y) {
+    const Row& r = row(bx, by, y);
+    for (std::size_t x = 0; x < 8; ++x) {
+      const std::uint64_t* const column = keys_.data() + r.begin + x;
+      std::uint64_t nearest = 0;
+      // Sorted, the first is.
+      for (std::size_t k = 0; k < (sorted_ ? std::min(r.layers, 1U) : r.layers); ++k)
+        nearest = std::max(nearest, column[k * 8]);
+      if (nearest == 0) continue;
+      std::uint64_t& word = words[static_cast<std::size_t>(y) * 8 + x];
+      word = std::max(word, words_[number_of_key(nearest)]);
+    }
+  }
+}
+
+void PackedFragments::blend(int bx, int by, LayerBlend& blend) {
+  for (int pass = 0; pass < blend.passes(); ++pass) {
+    blend.begin_pass(pass);
+    for (int y = 0; y < kBlockSize; ++y) {
+      const Row& r = row(bx, by, y);
+      const PackedRow packed{keys_.data() + r.begin, r.layers, colors_.data()};
+      if (!blend.row(packed, static_cast<std::size_t>(y) * 8)) {
+        blend_planes(bx, by, blend);
+        break;
+      }
+    }
+  }
+}
+
+void PackedFragments::blend_planes(int bx, int by, LayerBlend& blend) {
+  std::uint32_t layers = 0;
+  for (int y = 0; y < kBlockSize; ++y) layers = std::max(layers, row(bx, by, y).layers);
+  std::uint64_t finished = 0;
+  for (std::uint32_t k = 0; k < layers; ++k) {
+    std::uint64_t mask = 0;
+    for (int y = 0; y < kBlockSize; ++y) {
+      const Row& r = row(bx, by, y);
+      if (k >= r.layers) continue;
+      const std::uint64_t* const keys = keys_.data() + r.begin + std::size_t{k} * 8;
+      const auto first = static_cast<std::size_t>(y) * 8;
+      kernel_->gather({keys, 1, colors_.data()}, first, plane_);
+      for (std::size_t x = 0; x < 8; ++x) {
+        if (keys[x] == 0) continue;
+        mask |= std::uint64_t{1} << (first + x);
+        plane_words_[first + x] = words_[number_of_key(keys[x])];
+      }
+    }
+    mask &= ~finished;
+    if (mask != 0) finished |= blend.layer({plane_words_, mask, plane_});
+  }
+}
+
+}  // namespace rastrum::transparency

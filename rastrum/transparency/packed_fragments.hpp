@@ -1,0 +1,94 @@
+// The translucent fragments of a region in the order of submission, in which those of a triangle
+// lie side by side: they are shaded so, 64 at a time whatever their pixels, because a triangle is
+// then set up for shading once and interpolated for a few full vectors, not for a part of each row
+// that it touches. What is sorted, by pixel, are their numbers. For regions of moderate depth: what
+// is deeper, or wants to see the nearest layers first, goes plane by plane (layers.cpp).
+//
+// Paper 4 shades fragments before they are in order, too ("Phase 3": segments of 256 samples).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/raster/visibility/region.hpp>
+#include <rastrum/transparency/blend.hpp>
+#include <rastrum/transparency/packed_kernels.hpp>
+#include <rastrum/transparency/records.hpp>
+
+namespace rastrum::transparency {
+
+/// At most 8 × 8 blocks, row by row; the first has the number `first` in its records.
+struct BlockGrid {
+  int bx, by;  ///< of the first block
+  int columns, rows;
+  std::uint32_t first = 0;
+};
+
+class PackedFragments {
+ public:
+  explicit PackedFragments(MemoryAccount& memory)
+      : words_(memory), pixels_(memory), colors_(memory), keys_(memory) {}
+
+  /// Begins a region. `bytes`: what its fragments may take, 0 for the default of a MiB.
+  void begin(Isa isa, std::uint64_t bytes);
+
+  /// Collects the fragments that lie before the words of `opaque`. Returns false and collects
+  /// nothing if there are too many for the memory, or if they do not come in the order of ids.
+  /// `frame` and `shader`, which may be null, are for a hint of what will be shaded.
+  bool collect(std::span<const Record> records, std::span<const MicroRecord> micro,
+               const BlockGrid& grid, const raster::SurfaceView& opaque,
+               const raster::FrameGeometry& frame, const raster::BlockShader* shader);
+  /// Puts the nearest first; they are in the order of submission before.
+  void sort();
+  void shade(const raster::RegionContext& context, const raster::BlockShader& shader);
+  /// Whether the block has any of them.
+  [[nodiscard]] bool any(int bx, int by) const;
+  /// Raises the words of a block to those of the nearest fragments.
+  void raise(int bx, int by, std::uint64_t* words) const;
+  /// Blends the layers of a block, which were shaded and are in the order that `blend` wants.
+  void blend(int bx, int by, LayerBlend& blend);
+
+  [[nodiscard]] std::size_t fragments() const { return count_; }
+  /// Of the pixel that has most.
+  [[nodiscard]] std::size_t deepest() const { return deepest_; }
+
+ private:
+  /// Eight pixels of a row and their keys, `layers` times 8, from keys_[begin] on.
+  struct Row {
+    std::uint32_t begin, layers;
+  };
+  static constexpr int kRows = kPackedPitch * kPackedPitch / 8;
+
+  bool add(const Record& record, const BlockGrid& grid);
+  bool add(const MicroRecord& fragment, const BlockGrid& grid);
+  bool append(std::size_t n, const std::uint64_t* opaque);
+  bool deal(const BlockGrid& grid);
+  /// A pass of a method that wants to see a layer of all pixels at a time.
+  void blend_planes(int bx, int by, LayerBlend& blend);
+  [[nodiscard]] const Row& row(int bx, int by, int y) const {
+    return rows_[((by - grid_.by) * 8 + y) * (kPackedPitch / 8) + bx - grid_.bx];
+  }
+
+  const PackedKernels* kernel_ = nullptr;
+  std::uint64_t most_bytes_ = 0;
+  BlockGrid grid_{};
+  const std::uint64_t* opaque_[kPackedPitch / 8 * (kPackedPitch / 8)] = {};  ///< null: none
+  std::uint64_t last_low_ = 0;  ///< of the words; ids rise as these fall
+  bool sorted_ = false;
+
+  Buffer<std::uint64_t> words_;
+  Buffer<std::uint16_t> pixels_;
+  std::size_t count_ = 0;
+  Buffer<Vec4> colors_;  ///< by number + 1
+  Buffer<std::uint64_t> keys_;
+  std::size_t deepest_ = 0;
+  Row rows_[kRows];
+  alignas(64) std::uint16_t left_[kPackedPitch * kPackedPitch];  ///< fragments of a pixel to deal
+  raster::ShadingPoints points_;
+  raster::BlockColors plane_;
+  alignas(64) std::uint64_t plane_words_[64];
+};
+
+}  // namespace rastrum::transparency

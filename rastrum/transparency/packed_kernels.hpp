@@ -1,0 +1,72 @@
+// The SIMD leaves of packed fragments (packed_simd.cpp), once for each instruction set and with the
+// same bits.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <rastrum/core/vec.hpp>
+#include <rastrum/raster/color.hpp>
+#include <rastrum/raster/options.hpp>
+#include <rastrum/raster/piece.hpp>
+#include <rastrum/raster/samples.hpp>
+#include <rastrum/transparency/blend_kernels.hpp>
+
+namespace rastrum::transparency {
+
+/// Pixels of a region of at most 64 × 64 px are numbered 64 · row + column.
+inline constexpr int kPackedPitch = 64;
+
+/// Kernels may write this many elements beyond what they return.
+inline constexpr std::size_t kPackSlack = 8;
+
+/// A key is a fragment's depth and, in the place of an id, its number: keys of a pixel compare as
+/// words do where numbers rise with ids. 0: none.
+constexpr std::uint64_t packed_key(std::uint64_t word, std::size_t number) {
+  return (word & ~raster::kIdMask) | (raster::kIdMask - number);
+}
+constexpr std::size_t number_of_key(std::uint64_t key) {
+  return static_cast<std::size_t>(raster::kIdMask - (key & raster::kIdMask));
+}
+
+/// The fragments of 8 pixels: `layers` rows of 8 keys, and the colours of all fragments by number,
+/// beginning with colors[1]; colors[0] is 0.
+struct PackedRow {
+  const std::uint64_t* keys;
+  std::size_t layers;
+  const Vec4* colors;
+};
+
+/// The place of a key's colour: without a branch, as 0 is that of no key.
+constexpr std::uint32_t color_of_key(std::uint64_t key) {
+  return 0U - static_cast<std::uint32_t>(key);
+}
+
+struct PackedKernels {
+  /// The fragments of `piece` at the samples of `mask` in the block at pixel (x, y), whose first
+  /// pixel has the number `first`: words and pixels. Returns how many.
+  std::size_t (*pack)(const raster::Piece& piece, std::uint64_t mask, int x, int y,
+                      std::uint32_t first, std::uint64_t* words, std::uint16_t* pixels) noexcept;
+
+  /// Where 64 fragments are, for a shader that takes element i to be at row i / 8, column i % 8.
+  void (*points)(const std::uint16_t* pixels, raster::ShadingPoints& points) noexcept;
+
+  /// Sorts the keys of 8 pixels, each pixel's largest first: `keys` is `layers` rows of 8.
+  void (*sort)(std::uint64_t* keys, std::size_t layers) noexcept;
+
+  /// 64 colours, one after the other.
+  void (*interleave)(const raster::BlockColors& colors, Vec4* out) noexcept;
+
+  /// The colours of the first 8 keys of `row`: elements `first` … of `out`, 0 where there is none.
+  void (*gather)(const PackedRow& row, std::size_t first, raster::BlockColors& out) noexcept;
+
+  /// All layers of a row one behind the other, as BlendKernels::behind has it: elements `first` … .
+  void (*behind)(const PackedRow& row, std::size_t first, Seen& seen) noexcept;
+
+  /// All layers of a row one before the other, as BlendKernels::before has it.
+  void (*before)(const PackedRow& row, std::size_t first, raster::BlockColors& colors) noexcept;
+};
+
+[[nodiscard]] const PackedKernels& packed_kernels(Isa isa) noexcept;
+
+}  // namespace rastrum::transparency
