@@ -1,8 +1,8 @@
 // `rastrum terrain (--height FILE | --function NAME) -o OUT`: the options, then check, load, light,
 // render, write.
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -16,11 +16,16 @@
 #include <rastrum/terrain/renderer.hpp>
 
 #include "arguments.hpp"
+#include "camera_path.hpp"
 #include "commands.hpp"
+#include "json_fields.hpp"
 #include "json_file.hpp"
+#include "mp4.hpp"
+#include "numbered.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "terrain_options.hpp"
+#include "terrain_path.hpp"
 #include "timeline.hpp"
 
 namespace rastrum::cli {
@@ -30,15 +35,17 @@ using terrain::Shadows;
 using terrain::TerrainStats;
 
 struct TerrainArguments : TerrainSceneArguments {
-  int frames = 1;
+  std::filesystem::path path;
+  std::optional<double> fps;
+  std::optional<int> frames;
   bool quiet = false;
   Output color, depth, stats;
 };
 
 void add_outputs(CLI::App& app, TerrainArguments& a) {
   const char* group = "Outputs";
-  add(app, "-o,--output", "FILE", ".png: 8 bit", [&a](const std::string& s) {
-    a.color = parse_output("-o", s, {Format::png});
+  add(app, "-o,--output", "FILE", ".png: 8 bit; with --path also .mp4", [&a](const std::string& s) {
+    a.color = parse_output("-o", s, {Format::png, Format::mp4});
   })->group(group);
   add(app, "--depth", "FILE", ".npy or .exr: float32, cells along the view, inf where the sky is",
       [&a](const std::string& s) {
@@ -54,19 +61,61 @@ void add_outputs(CLI::App& app, TerrainArguments& a) {
   app.add_flag("--quiet", a.quiet, "print errors alone")->group(group);
 }
 
+void add_path(CLI::App& app, TerrainArguments& a) {
+  const char* group = "Camera path";
+  add(app, "--path", "FILE",
+      "draw a picture for each moment of a camera path (docs/window.md): -o 'frame_%04d.png' or, "
+      "through ffmpeg, -o flight.mp4",
+      [&a](const std::string& s) { a.path = s; })
+      ->group(group);
+  add(app, "--fps", "N", "pictures a second of the path (30)", [&a](const std::string& s) {
+    a.fps = parse_number("--fps", s);
+    if (!(*a.fps > 0 && *a.fps <= 1000)) throw UsageError("--fps", "must lie in 0 to 1000");
+  })->group(group);
+}
+
 void add_frames(CLI::App& app, TerrainArguments& a) {
   add(app, "--frames", "N", "render N times; --stats gives median, minimum and maximum (1)",
       [&a](const std::string& s) { a.frames = parse_integer("--frames", s, 1, 1000000); })
       ->group("Machine");
 }
 
+void check_path(const TerrainArguments& a) {
+  if (a.frames)
+    throw UsageError("--frames", "leaves no room for --path: both say how many frames are drawn");
+  for (const Output* const output : {&a.color, &a.depth}) {
+    if (!*output) continue;
+    if (output->format == Format::mp4)
+      Mp4Writer::check(a.options.width, a.options.height);
+    else
+      static_cast<void>(NumberedName(output->option, output->file.string()));
+  }
+  static_cast<void>(read_json(a.path));  // a spoilt file is refused before a large map is read
+}
+
 void check(const TerrainArguments& a) {
   if (!a.color && !a.depth && !a.stats)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
+  if (a.path.empty() && a.fps) throw UsageError("--fps", "is for --path");
+  if (a.path.empty() && a.color && a.color.format == Format::mp4)
+    throw UsageError("-o", "an .mp4 is drawn along a camera path: give --path");
+  if (!a.path.empty()) check_path(a);
   const bool stats_to_file = a.stats && a.stats.file != "-";
   const Output none;
   const Output* const outputs[] = {&a.color, &a.depth, stats_to_file ? &a.stats : &none};
   check_outputs(outputs);
+}
+
+/// The file of picture `number`. Throws UsageError where `count` pictures share a name.
+Output numbered(Output output, std::size_t number, std::size_t count) {
+  if (!output || output.format == Format::mp4) return output;
+  const NumberedName name(output.option, output.file.string());
+  if (!name.has_number() && count > 1)
+    throw UsageError(output.option, "the path has " + std::to_string(count) +
+                                        " pictures: number them, as in frame_%04d" +
+                                        output.file.extension().string());
+  output.file = name.at(number);
+  return output;
 }
 
 nlohmann::ordered_json stats_json(std::vector<TerrainStats> frames, const TerrainArguments& a,
@@ -102,6 +151,62 @@ nlohmann::ordered_json stats_json(std::vector<TerrainStats> frames, const Terrai
             {"frames", frames.size()}}}};
 }
 
+/// A lit terrain and what draws it; times of loading and lighting for the statistics.
+struct Stage {
+  const LoadedTerrain& source;
+  const terrain::Terrain& terrain;
+  terrain::TerrainRenderer& renderer;
+  double load_ms, light_ms;
+};
+
+void draw_depth(const Stage& stage, const terrain::TerrainCamera& camera, const Output& output) {
+  const terrain::TerrainOptions& o = stage.renderer.options();
+  Image<float> depth(o.width, o.height);
+  stage.renderer.render(stage.terrain, camera, {.depth = depth.view()});
+  write_depth(output, depth.view());
+}
+
+void write_stats(const TerrainArguments& a, const Stage& stage, std::vector<TerrainStats> frames) {
+  if (!a.stats) return;
+  write_json(a.stats.file,
+             stats_json(std::move(frames), a, stage.source, stage.load_ms, stage.light_ms));
+}
+
+int run_path(const TerrainArguments& a, const Stage& stage, const terrain::TerrainCamera& base,
+             Progress& progress) {
+  constexpr double kDefaultFps = 30;
+  const double fps = a.fps.value_or(kDefaultFps);
+  const TerrainPath path = read_terrain_path(a.path, base);
+  const std::vector<double> times = frame_times(path.first_s(), path.last_s(), fps);
+  const std::size_t count = times.size();
+  // Names are refused before anything is drawn.
+  for (const Output* const output : {&a.color, &a.depth})
+    static_cast<void>(numbered(*output, 0, count));
+  std::unique_ptr<Mp4Writer> video;
+  if (a.color && a.color.format == Format::mp4)
+    video = std::make_unique<Mp4Writer>(a.color.file, a.options.width, a.options.height, fps);
+
+  Image<Rgba8> color(a.options.width, a.options.height);
+  std::vector<TerrainStats> frames;
+  for (std::size_t i = 0; i < count; ++i) {
+    progress.show("picture " + std::to_string(i + 1) + " of " + std::to_string(count));
+    const terrain::TerrainCamera camera = path.at(times[i]);
+    frames.push_back(stage.renderer.render(stage.terrain, camera, {.color8 = color.view()}));
+    if (video)
+      video->add(color.view());
+    else if (a.color)
+      io::write_png(numbered(a.color, i, count).file, color.view());
+    if (a.depth) draw_depth(stage, camera, numbered(a.depth, i, count));
+  }
+  if (video) video->finish();
+  progress.clear();
+  write_stats(a, stage, std::move(frames));
+  if (!a.quiet && a.color)
+    std::fprintf(stderr, "%s: %lu pictures of %dx%d\n", a.color.file.c_str(),
+                 static_cast<unsigned long>(count), a.options.width, a.options.height);
+  return 0;
+}
+
 int run(TerrainArguments& a) {
   check(a);
   Timeline timeline;
@@ -115,29 +220,26 @@ int run(TerrainArguments& a) {
   progress.show("lighting");
   const terrain::Terrain terrain =
       source.lit(a.light, {a.options.tiling, a.options.device, a.options.threads, a.options.isa});
-  const double light_ms = timeline.now_ms() - load_ms;
+  const Stage stage{source, terrain, renderer, load_ms, timeline.now_ms() - load_ms};
   const terrain::TerrainCamera camera = camera_of(a, source);
+  if (!a.path.empty()) return run_path(a, stage, camera, progress);
 
   Image<Rgba8> color(a.options.width, a.options.height);
   std::vector<TerrainStats> frames;
-  for (int i = 0; i < a.frames; ++i) {
-    progress.show("rendering frame " + std::to_string(i + 1) + " of " + std::to_string(a.frames));
+  const int count = a.frames.value_or(1);
+  for (int i = 0; i < count; ++i) {
+    progress.show("rendering frame " + std::to_string(i + 1) + " of " + std::to_string(count));
     frames.push_back(renderer.render(terrain, camera, {.color8 = color.view()}));
   }
   if (a.color) io::write_png(a.color.file, color.view());
-  if (a.depth) {
-    Image<float> depth(a.options.width, a.options.height);
-    renderer.render(terrain, camera, {.depth = depth.view()});
-    write_depth(a.depth, depth.view());
-  }
+  if (a.depth) draw_depth(stage, camera, a.depth);
   progress.clear();
   const auto fastest = std::ranges::min(frames, {}, &TerrainStats::frame_ms).frame_ms;
-  if (a.stats)
-    write_json(a.stats.file, stats_json(std::move(frames), a, source, load_ms, light_ms));
+  write_stats(a, stage, std::move(frames));
   if (!a.quiet && a.color)
     std::fprintf(stderr, "%s: %dx%d, map %dx%d, %.1f ms%s\n", a.color.file.c_str(), a.options.width,
                  a.options.height, source.width(), source.height(), fastest,
-                 a.frames > 1 ? " the fastest frame" : "");
+                 count > 1 ? " the fastest frame" : "");
   return 0;
 }
 
@@ -150,6 +252,7 @@ Command add_terrain_command(CLI::App& app) {
   add_terrain_inputs(command, *arguments);
   add_outputs(command, *arguments);
   add_terrain_camera(command, *arguments);
+  add_path(command, *arguments);
   add_terrain_picture(command, *arguments);
   add_terrain_light(command, *arguments);
   add_terrain_machine(command, *arguments);
@@ -170,7 +273,8 @@ Command add_terrain_command(CLI::App& app) {
       "  rastrum terrain --function noise --filter bilinear --fog 0.002 --distance 2000 -o "
       "noise.png\n"
       "  rastrum terrain --function '30*sin(x/40)*cos(y/40)' --altitude 60 -o eggs.png\n"
-      "  rastrum terrain --height map.npy --filter mip --frames 20 --stats - -o map.png";
+      "  rastrum terrain --height map.npy --filter mip --frames 20 --stats - -o map.png\n"
+      "  rastrum terrain --function noise --path flight.json --fps 60 -o 'frame_%04d.png'";
   command.footer(footer);
   return {&command, [arguments] { return run(*arguments); }};
 }

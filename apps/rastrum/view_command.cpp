@@ -175,7 +175,7 @@ Command add_view_terrain_command(CLI::App& app) {
               "Drag to turn, the wheel climbs; a height map dropped on the window is opened.\n"
               "\nExamples:\n"
               "  rastrum view --terrain --height alps.png --color alps.jpg --shadows sharp\n"
-              "  rastrum view --terrain one.dem two.tif --function hills");
+              "  rastrum view --terrain one.dem two.tif --function noise");
   return {&view, [arguments] { return run(*arguments); }};
 }
 

@@ -1,0 +1,349 @@
+// Terrains in the window without a window: keys and time to a camera, path files, and pictures that
+// are, bit for bit, those of `rastrum terrain`.
+#include <cmath>
+#include <numbers>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/io/io.hpp>
+
+#include "program.hpp"
+#include "terrain_path.hpp"
+#include "window/terrain_control.hpp"
+#include "window/terrain_subject.hpp"
+
+namespace rastrum::test {
+namespace {
+
+using namespace cli::window;
+using cli::TerrainInput;
+using cli::TerrainPath;
+using cli::TerrainPathKey;
+using terrain::TerrainCamera;
+
+constexpr double kPi = std::numbers::pi;
+
+Event key(const char* name, Event::Kind kind = Event::Kind::key_down) {
+  Event e;
+  e.kind = kind;
+  e.key = name;
+  return e;
+}
+Event mouse(Event::Kind kind, double x, double y) {
+  Event e;
+  e.kind = kind;
+  e.x = x;
+  e.y = y;
+  return e;
+}
+
+TerrainPose pose_at(const TerrainCamera& camera) {
+  TerrainPose pose;
+  pose.camera = camera;
+  return pose;
+}
+
+class TerrainKeys : public testing::Test {
+ protected:
+  TerrainKeys() : control(pose_at({100, 200, 50, 0, 80, 0})) { control.resize(640, 400); }
+  /// The pose after `name` was held for a second from home on.
+  const TerrainPose& after(const char* name, int steps = 10) {
+    control.handle(key("home"));
+    control.handle(key(name));
+    for (int i = 0; i < steps; ++i) control.advance(1.0 / steps);
+    control.handle(key(name, Event::Kind::key_up));
+    return control.pose();
+  }
+  TerrainControl control;
+};
+
+TEST_F(TerrainKeys, EachMovesItsWay) {
+  EXPECT_NEAR(after("w").camera.y, 110, 1e-9);  // 90 cells towards the north
+  EXPECT_NEAR(after("s").camera.y, 290, 1e-9);
+  EXPECT_EQ(after("s").camera.x, 100);
+  EXPECT_NEAR(after("a").camera.angle_rad, 1, 1e-9);
+  EXPECT_NEAR(after("d").camera.angle_rad, -1, 1e-9);
+  EXPECT_NEAR(after("q").camera.horizon_px, 280, 1e-9);  // half the height more
+  EXPECT_NEAR(after("e").camera.horizon_px, -120, 1e-9);
+  EXPECT_NEAR(after("r").camera.altitude, 140, 1e-9);
+  EXPECT_NEAR(after("f").camera.altitude, -40, 1e-9);
+  EXPECT_NEAR(after("left").camera.roll_rad, 0.5, 1e-9);
+  EXPECT_NEAR(after("right").camera.roll_rad, -0.5, 1e-9);
+  EXPECT_NEAR(after("up").distance, 1600, 1e-6);
+  EXPECT_NEAR(after("down").distance, 400, 1e-6);
+  EXPECT_NEAR(after("o").fov_rad, kPi / 2 + kPi / 6, 1e-9);
+  EXPECT_NEAR(after("l").fov_rad, kPi / 2 - kPi / 6, 1e-9);
+  const terrain::Sun home;
+  EXPECT_NEAR(after("u").sun.elevation_deg, home.elevation_deg + 15, 1e-9);
+  EXPECT_NEAR(after("j").sun.elevation_deg, home.elevation_deg - 15, 1e-9);
+  EXPECT_NEAR(std::remainder(after("m").sun.azimuth_deg - home.azimuth_deg, 360), 45, 1e-9);
+  EXPECT_NEAR(std::remainder(after("n").sun.azimuth_deg - home.azimuth_deg, 360), -45, 1e-9);
+}
+
+TEST_F(TerrainKeys, ForwardIsWhereItLooks) {
+  control.place(pose_at({0, 0, 50, kPi / 2, 80, 0}));
+  control.handle(key("w"));
+  control.advance(1);
+  EXPECT_NEAR(control.pose().camera.x, -90, 1e-9);  // a quarter turn to the left: west
+  EXPECT_NEAR(control.pose().camera.y, 0, 1e-9);
+}
+
+TEST_F(TerrainKeys, TimeCountsNotFramesAndShiftIsFaster) {
+  const double few = after("w", 2).camera.y;
+  EXPECT_NEAR(after("w", 1000).camera.y, few, 1e-6);
+  control.handle(key("left shift"));
+  EXPECT_NEAR(after("w").camera.y, 200 - 4 * 90, 1e-9);
+}
+
+TEST_F(TerrainKeys, BoundsHoldWhatKeysReach) {
+  control.handle(key("l"));
+  control.handle(key("down"));
+  control.handle(key("u"));
+  control.advance(100);
+  EXPECT_EQ(control.pose().fov_rad, 0.1);
+  EXPECT_EQ(control.pose().distance, 10);
+  EXPECT_EQ(control.pose().sun.elevation_deg, 90);
+  control.handle(Event{});  // the window lost the keyboard
+  control.handle(key("o"));
+  control.handle(key("up"));
+  control.advance(100);
+  EXPECT_EQ(control.pose().fov_rad, 3);
+  EXPECT_EQ(control.pose().distance, 1e6);
+}
+
+TEST_F(TerrainKeys, TheHorizonKeepsItsPartOfTheWindow) {
+  control.resize(640, 800);
+  EXPECT_EQ(control.pose().camera.horizon_px, 160);
+  control.handle(key("home"));
+  EXPECT_EQ(control.pose().camera.horizon_px, 160);
+}
+
+TEST_F(TerrainKeys, ADragTurnsAndTheWheelClimbs) {
+  control.handle(mouse(Event::Kind::move, 5, 5));
+  EXPECT_EQ(control.pose().camera, (TerrainCamera{100, 200, 50, 0, 80, 0})) << "nothing is held";
+  control.handle(mouse(Event::Kind::button_down, 10, 10));
+  control.handle(mouse(Event::Kind::move, 40, 30));
+  control.handle(mouse(Event::Kind::button_up, 40, 30));
+  EXPECT_GT(control.pose().camera.angle_rad, 0);
+  EXPECT_EQ(control.pose().camera.horizon_px, 100);
+  control.handle(mouse(Event::Kind::wheel, 0, 2));
+  EXPECT_EQ(control.pose().camera.altitude, 68);
+}
+
+TEST_F(TerrainKeys, MovingAndVersionTellWhatHappens) {
+  const unsigned long at_rest = control.version();
+  control.advance(1);
+  EXPECT_EQ(control.version(), at_rest);
+  control.handle(key("x"));
+  control.handle(key("left shift"));
+  EXPECT_FALSE(control.moving());
+  for (const char* name : {"w", "u", "left"}) {
+    const unsigned long before = control.version();
+    control.handle(key(name));
+    EXPECT_TRUE(control.moving()) << name;
+    control.advance(0.1);
+    EXPECT_NE(control.version(), before) << name;
+    control.handle(key(name, Event::Kind::key_up));
+    EXPECT_FALSE(control.moving()) << name;
+  }
+}
+
+class TerrainPathFile : public Program {
+ protected:
+  [[nodiscard]] TerrainPath path_of(const std::string& text) const {
+    write("p.json", text);
+    return cli::read_terrain_path(path("p.json"), {1, 2, 3, 0.5, 4, 0.25});
+  }
+};
+
+TEST_F(TerrainPathFile, WhatAKeyLeavesOutIsTheKeysBefore) {
+  const TerrainPath p = path_of(R"({"interpolation": "linear", "keys": [{"altitude": 9},
+      {"time": 2, "position": [5, 6], "angle": 90}, {"time": 3, "roll": -180, "horizon": 7}]})");
+  EXPECT_EQ(p.first_s(), 0);
+  EXPECT_EQ(p.last_s(), 3);
+  EXPECT_EQ(p.at(0), (TerrainCamera{1, 2, 9, 0.5, 4, 0.25}));
+  EXPECT_EQ(p.at(2), (TerrainCamera{5, 6, 9, kPi / 2, 4, 0.25}));
+  EXPECT_EQ(p.at(3), (TerrainCamera{5, 6, 9, kPi / 2, 7, -kPi}));
+  EXPECT_EQ(p.at(1).x, 3);  // half way
+  EXPECT_EQ(p.at(1).y, 4);
+  EXPECT_EQ(p.at(99), p.at(3));
+}
+
+TEST_F(TerrainPathFile, WrittenAndReadIsTheSame) {
+  const TerrainPathKey keys[] = {{0.1, {1 / 3.0, -1e-30, 3e20, 0.7, 12.25, -2}},
+                                 {1 / 3.0, {0, 0, 0, -9, 1e-3, 1e-9}}};
+  cli::write_terrain_path(path("out.json"), keys);
+  const TerrainPath p = cli::read_terrain_path(path("out.json"), {});
+  for (const TerrainPathKey& k : keys) {
+    const TerrainCamera c = p.at(k.time_s);
+    EXPECT_EQ(c.x, k.camera.x);
+    EXPECT_EQ(c.y, k.camera.y);
+    EXPECT_EQ(c.altitude, k.camera.altitude);
+    EXPECT_EQ(c.horizon_px, k.camera.horizon_px);
+    EXPECT_DOUBLE_EQ(c.angle_rad, k.camera.angle_rad);  // by way of degrees
+    EXPECT_DOUBLE_EQ(c.roll_rad, k.camera.roll_rad);
+  }
+}
+
+TEST_F(TerrainPathFile, ErrorsNameThePlace) {
+  const auto expect = [&](const std::string& text, const std::string& words) {
+    try {
+      static_cast<void>(path_of(text));
+      ADD_FAILURE() << "accepted: " << text;
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("p.json"), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
+    }
+  };
+  expect("{", "is not JSON");
+  expect("{}", "keys: a path needs at least one key");
+  expect(R"({"keys": [{"position": [1]}]})", "keys[0]: position: expected an array of 2 numbers");
+  expect(R"({"keys": [{"eye": [1, 2, 3]}]})", "unknown name 'eye'");
+  expect(R"({"keys": [{}, {"roll": 1}]})", "keys[1]: time: is needed");
+  expect(R"({"keys": [{"time": 2}, {"time": 2}]})", "keys[1]: time: must be greater");
+}
+
+class TerrainInWindow : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    Image<Rgba8> grey(64, 64);
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 64; ++x) {
+        const auto h = static_cast<std::uint8_t>(30 + 20 * std::sin(x * 0.2) * std::cos(y * 0.3));
+        grey(x, y) = {h, h, h, 255};
+      }
+    io::write_png(path("h.png"), grey.view());
+    arguments.options.width = 96;
+    arguments.options.height = 64;
+    TerrainInput map, function;
+    map.height = path("h.png");
+    function.function = "noise";
+    subject = std::make_unique<TerrainSubject>(arguments, std::vector{map, function});
+  }
+  /// What the window shows now.
+  [[nodiscard]] Image<Rgba8> shown() const { return subject->draw(96, 64)().image; }
+  /// What `rastrum terrain` draws with the camera of the window.
+  [[nodiscard]] Image<Rgba8> rendered(std::vector<std::string> options) const {
+    subject->write_camera(path("camera.json"));
+    options.insert(options.begin(),
+                   {"terrain", "--size", "96x64", "--path", "camera.json", "-o", "r.png"});
+    must(options);
+    return png("r.png");
+  }
+  cli::TerrainSceneArguments arguments;
+  std::unique_ptr<TerrainSubject> subject;
+};
+
+TEST_F(TerrainInWindow, PicturesAreTheCommands) {
+  const Image<Rgba8> home = shown();
+  EXPECT_TRUE(same_pixels(home, rendered({"--height", "h.png"})));
+  subject->handle(key("a"));
+  subject->handle(key("w"));
+  subject->advance(0.1);
+  EXPECT_FALSE(same_pixels(shown(), home));
+  EXPECT_TRUE(same_pixels(shown(), rendered({"--height", "h.png"})));
+  subject->handle(Event{});
+  subject->set_options("--shadows sharp --sun 200,20 --distance 300");
+  EXPECT_TRUE(same_pixels(shown(), rendered({"--height", "h.png", "--shadows", "sharp", "--sun",
+                                             "200,20", "--distance", "300"})));
+}
+
+TEST_F(TerrainInWindow, KeysChangeOptionsBothWays) {
+  const auto shows = [&](const char* name, const std::vector<std::string>& options) {
+    const std::uint64_t before = subject->version();
+    subject->handle(key(name));
+    EXPECT_NE(subject->version(), before) << name;
+    std::vector<std::string> all{"--height", "h.png"};
+    all.insert(all.end(), options.begin(), options.end());
+    EXPECT_TRUE(same_pixels(shown(), rendered(all))) << name;
+    Event back = key(name);
+    back.shift = true;
+    subject->handle(back);
+  };
+  const Image<Rgba8> home = shown();
+  shows("b", {"--filter", "bilinear"});
+  shows("c", {"--shadows", "accumulated"});
+  shows("g", {"--fog", "0.002"});
+  shows("t", {"--tile", "mirror"});
+  EXPECT_TRUE(same_pixels(shown(), home));
+  subject->handle(key("v"));
+  EXPECT_EQ(subject->settings().options.method, terrain::Method::words);
+  EXPECT_TRUE(same_pixels(shown(), home)) << "the same picture by paper 3's scans";
+}
+
+TEST_F(TerrainInWindow, OtherMapsAndFiles) {
+  subject->handle(key("f1"));
+  EXPECT_EQ(subject->title(), "noise");
+  EXPECT_TRUE(same_pixels(shown(), rendered({"--function", "noise"})));
+  subject->handle(key("1"));
+  EXPECT_EQ(subject->title(), path("h.png").string());
+  write("bad.png", "nonsense");
+  EXPECT_THROW(static_cast<void>(subject->open(path("bad.png"))()), Error);
+  EXPECT_TRUE(same_pixels(shown(), rendered({"--height", "h.png"}))) << "the map stays";
+  EXPECT_THROW(subject->set_options("--filter nonsense"), std::exception);
+}
+
+TEST_F(TerrainInWindow, RecordedKeysAreFollowed) {
+  subject->record(path("p.json"));
+  const TerrainCamera home = subject->control().pose().camera;
+  subject->handle(key("w"));
+  subject->advance(1);
+  subject->handle(Event{});
+  subject->record(path("p.json"));
+  const TerrainCamera away = subject->control().pose().camera;
+  EXPECT_NE(home.y, away.y);
+  EXPECT_EQ(subject->follow(path("p.json")), std::make_pair(0.0, kRecordStep_s));
+  subject->go_to(0);
+  EXPECT_EQ(subject->control().pose().camera.y, home.y);
+  subject->go_to(kRecordStep_s);
+  EXPECT_EQ(subject->control().pose().camera.y, away.y);
+}
+
+class TerrainAlongAPath : public Program {};
+
+TEST_F(TerrainAlongAPath, PicturesAreThoseOfTheirCameras) {
+  write("p.json", R"({"keys": [{"position": [10, 20], "altitude": 90, "horizon": 15},
+                               {"time": 1, "position": [30, -40], "angle": 50, "roll": 20}],
+                      "interpolation": "linear"})");
+  must({"terrain", "--function", "noise", "--size", "80x60", "--path", "p.json", "--fps", "2", "-o",
+        "f_%02d.png", "--depth", "d%d.npy", "--stats", "s.json"});
+  const struct {
+    const char *position, *angle, *roll;
+  } moments[] = {{"10,20", "0", "0"}, {"20,-10", "25", "10"}, {"30,-40", "50", "20"}};
+  for (int i = 0; const auto& m : moments) {
+    must({"terrain", "--function", "noise", "--size", "80x60", "--position", m.position,
+          "--altitude", "90", "--horizon", "15", "--angle", m.angle, "--roll", m.roll, "-o",
+          "o.png", "--depth", "o.npy"});
+    const std::string n = std::to_string(i++);
+    EXPECT_TRUE(same_pixels(png("o.png"), png("f_0" + n + ".png"))) << n;
+    EXPECT_TRUE(read("o.npy") == read("d" + n + ".npy")) << n;
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("f_03.png")));
+  EXPECT_FALSE(same_pixels(png("f_00.png"), png("f_02.png")));
+  EXPECT_EQ(json("s.json")["frame_ms"]["frames"], 3);
+}
+
+TEST_F(TerrainAlongAPath, RefusesWhatCannotBeMeant) {
+  write("p.json", R"({"keys": [{}, {"time": 1, "altitude": 99}]})");
+  write("q.json", R"({"keys": [{"eye": [1, 2, 3]}]})");
+  const std::vector<std::string> there = files();
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& words) {
+    std::vector<std::string> args{"terrain", "--function", "noise", "--size", "32x32"};
+    args.insert(args.end(), more.begin(), more.end());
+    const Outcome r = run(args);
+    EXPECT_NE(r.status, 0) << words;
+    EXPECT_NE(r.err.find(words), std::string::npos) << r.err;
+    EXPECT_EQ(files(), there) << words;
+  };
+  refused({"--path", "p.json", "-o", "one.png"}, "number them, as in frame_%04d.png");
+  refused({"--path", "p.json", "-o", "a%d.png", "--depth", "d.npy"}, "frame_%04d.npy");
+  refused({"--path", "p.json", "-o", "a%s.png"}, "expected a name with one %d");
+  refused({"--path", "p.json", "-o", "a%d.png", "--frames", "3"}, "leaves no room for --path");
+  refused({"--fps", "3", "-o", "a.png"}, "is for --path");
+  refused({"-o", "a.mp4"}, "give --path");
+  refused({"--path", "q.json", "-o", "a.png"}, "unknown name 'eye'");
+  refused({"--path", "none.json", "-o", "a.png"}, "none.json");
+}
+
+}  // namespace
+}  // namespace rastrum::test
