@@ -131,9 +131,11 @@ class Server {
                     "-r", "-noreset"},
                    log_, log_ / "err", ends[1]);
     ::close(ends[1]);
-    // It writes its number once it listens; the pipe ends without where it dies.
+    // It writes its number and, in a write of its own, the end of the line once it listens; where
+    // nobody reads that to the end it dies.
     char byte = 0;
-    const bool listens = ::read(ends[0], &byte, 1) == 1;
+    bool listens = false;
+    while (!listens && ::read(ends[0], &byte, 1) == 1) listens = byte == '\n';
     ::close(ends[0]);
     if (listens)
       wait_until([&] {
