@@ -22,7 +22,7 @@ constexpr std::array kBenchmarks = {
     Benchmark{"paper1-table5", "the threshold of small triangles", run_paper1_table5},
     Benchmark{"paper1-table6", "bins and fine tiles of tiled", run_paper1_table6},
     Benchmark{"paper2", "large triangles: both schedules of binned, the load", run_paper2},
-    Benchmark{"paper3", "voxel space: beside node, the floor; over d, m and l", run_paper3},
+    Benchmark{"paper3", "voxel space: beside node, the floor; over d, m and l; shadows", run_paper3},
     Benchmark{"paper5-table1", "frames a second by data set; GPU over CPU", run_paper5_table1},
     Benchmark{"paper5-table3", "time, cost and phases by threads", run_paper5_table3},
     Benchmark{"paper5-table4", "subdivisions × image scale, streamed", run_paper5_table4},
