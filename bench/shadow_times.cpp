@@ -69,7 +69,7 @@ void over_q_and_samples(const TableOptions& options, const Image<float>& heights
             {}};
   std::vector<int> sizes(paper3::kShadowSizes.begin(), paper3::kShadowSizes.end());
   if (options.quick) sizes.resize(2);
-  for (const int n : sizes) grid.columns.push_back(significant(n, 5));
+  for (const int n : sizes) grid.columns.push_back(std::to_string(n));
   for (const bool grows_q : {true, false}) {
     progress(grows_q ? "shadows by q" : "shadows by d_c");
     const std::string what = grows_q ? "q (r = 128, d_c = 32)" : "d_c (q = r = 128)";
