@@ -1,6 +1,6 @@
-// `rastrum bench paper3`: paper 3, section 5.6 (time over distance, columns and rows), and frames
-// of the usual sizes beside the original program under node and the floor: 4 bytes a pixel written
-// once by streaming stores, 4 bytes a sample read once.
+// `rastrum bench paper3`: paper 3, sections 5.6 (time over distance, columns and rows) and 6.2
+// (shadows), and frames of the usual sizes beside the original program under node and the floor: 4
+// bytes a pixel written once by streaming stores, 4 bytes a sample read once.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -16,6 +16,7 @@
 #include "peers/node_peer.hpp"
 #include "registry.hpp"
 #include "report.hpp"
+#include "shadow_times.hpp"
 #include "tables/document.hpp"
 #include "tables/options.hpp"
 
@@ -277,7 +278,8 @@ void scaling(const TableOptions& options, const HeightMap& map, Document& docume
 
 int run_paper3(std::span<const std::string_view> arguments) {
   TableOptions options;
-  OptionParser parser("paper3", "Paper 3, section 5.6, and frames beside the original under node.");
+  OptionParser parser("paper3",
+                      "Paper 3, sections 5.6 and 6.2, and frames beside the original under node.");
   options.add_to(parser, false);
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
@@ -294,6 +296,7 @@ int run_paper3(std::span<const std::string_view> arguments) {
   const HeightMap map = hills();
   const bool right = frames(options, map, document);
   scaling(options, map, document);
+  add_shadow_times(options, map.heights, document);
   publish(document, options.out);
   return right ? 0 : 1;
 }

@@ -3,15 +3,17 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <fstream>
+#include <filesystem>
 #include <random>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include <rastrum/io/height_map.hpp>
 #include <rastrum/terrain/renderer.hpp>
 
+#include "tests/support/environment.hpp"
 #include "tests/terrain/maps.hpp"
 
 namespace rastrum::terrain {
@@ -153,6 +155,24 @@ TEST(Classic, EqualsTheOriginalOnRandomCamerasAndMaps) {
                     i % 4 == 0);
     if (HasFailure()) return;
   }
+}
+
+/// The real map in the range of the classic ones; colours that tell neighbours apart.
+TEST(Classic, EqualsTheOriginalOnTheRealMap) {
+  const auto file = test::shared_data("terrain/jotunheimen512.bin");
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+  HeightMap map{io::read_heights(file).heights, Image<Rgba8>(512, 512)};
+  ASSERT_EQ(map.heights.width(), 512);
+  std::mt19937 random(5);
+  for (float& h : map.heights.pixels()) h = std::floor(h / 257);
+  for (Rgba8& c : map.colors.pixels()) {
+    const auto bits = static_cast<std::uint32_t>(random());
+    c = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8),
+         static_cast<std::uint8_t>(bits >> 16), 255};
+  }
+  expect_original(map, {}, classic(800, 450, 800), true);
+  expect_original(map, {.x = -77.5, .y = 3000, .angle_rad = 4, .horizon_px = 200},
+                  classic(1920, 1080, 2000), false);
 }
 
 TEST(Classic, EqualsTheOriginalOnLargePictures) {

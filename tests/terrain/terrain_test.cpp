@@ -12,6 +12,7 @@
 #include <rastrum/terrain/map_view.hpp>
 #include <rastrum/terrain/matrix.hpp>
 #include <rastrum/terrain/renderer.hpp>
+#include <rastrum/terrain/setup.hpp>
 #include <rastrum/terrain/words.hpp>
 
 #include "tests/terrain/maps.hpp"
@@ -88,12 +89,17 @@ TEST(Operators, AreAssociative) {
     const Pair a = pair(), b = pair(), c = pair();
     EXPECT_EQ(occlude(occlude(a, b), c), occlude(a, occlude(b, c)));
     EXPECT_EQ(occlude(a, kNoPair), a);
+    EXPECT_EQ(occlude(kNoPair, a).row, a.row);
+    EXPECT_EQ(occlude(a, b), b.row < a.row ? b : a) << "of one row the nearer is seen";
     const Pixel p = pixel(), q = pixel(), r = pixel();
     // Empty pixels are all alike, whatever colour is left in them.
     const Pixel left = fill(fill(p, q), r), right = fill(p, fill(q, r));
     EXPECT_TRUE(left == right || (left.depth == 0 && right.depth == 0));
     EXPECT_EQ(fill(Pixel{}, q).depth, q.depth);
     EXPECT_EQ(fill(p, Pixel{}), p);
+    if (q.depth != 0) {
+      EXPECT_EQ(fill(p, q), q) << "what was drawn stays";
+    }
   }
 }
 
@@ -134,6 +140,86 @@ TEST(Pyramid, HoldsMaximaAndMeansOfOddSizesAndHoles) {
   EXPECT_EQ(pyramid.heights(2)(0, 0), 5);
   EXPECT_EQ(pyramid.colors(1)(0, 0).r, 8);   // (10 + 20 + 0 + 0 + 2) / 4
   EXPECT_EQ(pyramid.colors(1)(1, 0).r, 36);  // (30 + 41 + 1) / 2
+}
+
+TEST(MapView, TilesHeightsAndColoursOfAnotherSizeAsTheTerrainDoes) {
+  std::mt19937 random(12);
+  HeightMap map = test::random_map(10, 13, random, 1);
+  map.colors = test::random_map(37, 91, random).colors;
+  const Terrain terrain(map);
+  const Pyramid pyramid(terrain.heights(), terrain.colors(), false);
+  std::uniform_real_distribution<float> at(-70, 70);
+  for (const Tiling tiling : {Tiling::repeat, Tiling::mirror, Tiling::clamp}) {
+    TerrainOptions options;
+    options.tiling = tiling;
+    const MapView view(pyramid, options, terrain::Setup{});
+    for (int i = 0; i < 5000; ++i) {
+      const float x = at(random), y = at(random);
+      const auto x64 = static_cast<double>(x), y64 = static_cast<double>(y);
+      EXPECT_EQ(view.height_at(x, y, 0), terrain.height_at(x64, y64, tiling));
+      // Float32 may round over a texel's edge.
+      const Rgba8 color = view.color_at(x, y, 0);
+      bool found = false;
+      for (const double dx : {-1e-5, 1e-5})
+        for (const double dy : {-1e-5, 1e-5})
+          found = found || terrain.color_at(x64 + dx, y64 + dy, tiling) == color;
+      EXPECT_TRUE(found) << x << ", " << y << " tiling " << static_cast<int>(tiling);
+    }
+  }
+}
+
+TEST(Mip, TakesTheLevelOfTheStepOrOfTheColumnsWidth) {
+  TerrainOptions options = size(100, 50);  // a column is z / 50 wide
+  options.filter = Filter::mip;
+  options.dz = 0;
+  options.distance = 500;
+  const Terrain flat(HeightMap{Image<float>(4, 4), {}});
+  const terrain::Setup fine = set_up(options, {}, flat);
+  for (const Slice& slice : fine.slices) {
+    const int level = slice.z <= 100 ? 0 : slice.z <= 200 ? 1 : slice.z <= 400 ? 2 : 3;
+    EXPECT_EQ(slice.level, level) << slice.z;
+  }
+  options.step = 5;
+  for (const Slice& slice : set_up(options, {}, flat).slices)
+    EXPECT_EQ(slice.level, slice.z < 400 ? 2 : 3) << slice.z;
+}
+
+TEST(Mip, FarTerrainIsTheMeanOfItsColours) {
+  HeightMap map{Image<float>(64, 64), Image<Rgba8>(64, 64)};
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x)
+      map.colors(x, y) = (x + y) % 2 == 0 ? Rgba8{200, 0, 0, 255} : Rgba8{0, 0, 100, 255};
+  TerrainOptions options = size(80, 60);
+  options.distance = 4000;
+  const TerrainCamera camera{.altitude = 30, .horizon_px = 10};
+  const Picture aliased(Terrain(map), camera, options);
+  options.filter = Filter::mip;
+  const Picture mean(Terrain(map), camera, options);
+  int far = 0;
+  for (int y = 0; y < 60; ++y)
+    for (int x = 0; x < 80; ++x) {
+      if (mean.is_sky(x, y) || mean.depth(x, y) < 100) continue;
+      ++far;
+      EXPECT_EQ(mean.colors(x, y), (Rgba8{100, 0, 50, 255}));
+      EXPECT_NE(aliased.colors(x, y), (Rgba8{100, 0, 50, 255}));
+    }
+  EXPECT_GT(far, 300);
+}
+
+TEST(Mip, ColoursOfTwiceTheSizeAreReadOneLevelUp) {
+  HeightMap map{Image<float>(2, 2), Image<Rgba8>(4, 4)};
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 4; ++x)
+      map.colors(x, y) = {static_cast<std::uint8_t>(40 * x), static_cast<std::uint8_t>(40 * y), 0,
+                          255};
+  const Pyramid pyramid(std::make_shared<const Image<float>>(map.heights),
+                        std::make_shared<const Image<Rgba8>>(map.colors), true);
+  TerrainOptions options;
+  options.filter = Filter::mip;
+  const MapView view(pyramid, options, terrain::Setup{});
+  EXPECT_EQ(view.color_at(0.1F, 0.9F, 0), (Rgba8{20, 20, 0, 255}));
+  EXPECT_EQ(view.color_at(1.9F, 0.1F, 0), (Rgba8{100, 20, 0, 255}));
+  EXPECT_EQ(view.color_at(1.9F, 0.1F, 1), (Rgba8{60, 60, 0, 255}));
 }
 
 TEST(Ceiling, IsNeverBelowAHeightOfTheRectangle) {
@@ -186,6 +272,92 @@ TEST(Roll, QuarterTurnsAreThePixelsThemselves) {
       EXPECT_EQ(wrong, 0U) << "quarter " << quarter;
     }
   }
+}
+
+/// A wall across the view, coloured by where one looks at it, in a picture that is no square.
+TEST(Roll, AnyAngleShowsWhatTheTurnedRaysMeet) {
+  const Terrain wall = Terrain::of(
+      [](double, double y) { return y < -49.5 ? 1000.0F : -1000.0F; },
+      [](double x, double) {
+        return Rgba8{static_cast<std::uint8_t>(std::clamp(128 + x, 0.0, 255.0)), 0, 0, 255};
+      });
+  TerrainOptions options = size(120, 80);
+  options.distance = 60;
+  options.dz = 0;
+  for (const auto projection : {Projection::planar, Projection::cylindrical})
+    for (const double roll : {0.5, -1.1, 2.0, 3.5}) {
+      options.projection = projection;
+      const Picture picture(wall, {.x = 0, .y = 0, .altitude = 0, .roll_rad = roll}, options);
+      for (int y = 0; y < 80; ++y)
+        for (int x = 0; x < 120; ++x) {
+          const double across = std::cos(roll) * (x + 0.5 - 60) - std::sin(roll) * (y + 0.5 - 40);
+          // A column's ray; the cylinder's samples lie at equal distances along it.
+          double right = 50 * across / 60;
+          if (projection == Projection::cylindrical) {
+            const double angle = across / 60 * kPi / 4;
+            right = std::tan(angle) * 50;
+            if (std::abs(angle) > 0.5) continue;
+          }
+          EXPECT_NEAR(picture.colors(x, y).r, 128 + right, 2)
+              << x << ", " << y << " rolled by " << roll;
+        }
+    }
+}
+
+TEST(Roll, TurnsTheHorizonAboutThePicturesCentre) {
+  const Terrain flat(HeightMap{Image<float>(1, 1), {}});
+  TerrainOptions options = size(120, 80);
+  options.distance = 1e5;
+  options.step = 0.25;
+  for (const double roll : {0.0, 0.5, -1.1, 2.0}) {
+    const Picture picture(flat, {.altitude = 8, .horizon_px = 52, .roll_rad = roll}, options);
+    for (int y = 0; y < 80; ++y)
+      for (int x = 0; x < 120; ++x) {
+        const double row = 40 + std::sin(roll) * (x + 0.5 - 60) + std::cos(roll) * (y + 0.5 - 40);
+        if (std::abs(row - 52) < 0.6) continue;  // the pixel that the horizon runs through
+        EXPECT_EQ(picture.is_sky(x, y), row < 52) << x << ", " << y << " rolled by " << roll;
+      }
+  }
+}
+
+TEST(Scale, DrawsASquareAsHighAsWide) {
+  const Terrain board = Terrain::of(
+      [](double x, double y) { return y < -49.5 && std::abs(x) < 10 ? 20.0F : -9999.0F; },
+      [](double, double) {
+        return Rgba8{1, 2, 3, 255};
+      });
+  TerrainOptions options = size(300, 200);
+  options.distance = 50.5;
+  options.dz = 0;
+  for (const double fov : {0.9, 2.0}) {
+    options.fov_rad = fov;
+    // Its foot is at the horizon.
+    const Picture picture(board, {.x = 0, .y = 0, .altitude = 0, .horizon_px = 199}, options);
+    int wide = 0, high = 0;
+    for (int x = 0; x < 300; ++x) wide += !picture.is_sky(x, 198);
+    for (int y = 0; y < 199; ++y) high += !picture.is_sky(150, y);
+    EXPECT_NEAR(wide, 20 * 150 / (50 * std::tan(fov / 2)), 1.5);
+    EXPECT_NEAR(high, wide, 2);
+  }
+}
+
+TEST(Clearance, LiftsTheCameraAboveTheGroundUnderItAlone) {
+  HeightMap map{Image<float>(4, 4), {}};
+  map.heights(1, 2) = 30;
+  const Terrain terrain(map);
+  TerrainOptions options = size(4, 4);
+  options.ground_clearance = 5;
+  const auto altitude = [&](double x, double y, double given) {
+    return Picture(terrain, {.x = x, .y = y, .altitude = given}, options).stats.camera.altitude;
+  };
+  EXPECT_EQ(altitude(1.5, 2.5, 10), 35);
+  EXPECT_EQ(altitude(5.5, -1.5, 10), 35) << "tiled";
+  EXPECT_EQ(altitude(1.5, 2.5, 40), 40);
+  EXPECT_EQ(altitude(0.5, 2.5, 10), 10);
+  options.tiling = Tiling::clamp;
+  EXPECT_EQ(altitude(5.5, -1.5, 10), 10);
+  options.ground_clearance = {};
+  EXPECT_EQ(altitude(1.5, 2.5, 10), 10);
 }
 
 /// Upper ends of the picture's spans: the pixels that a sample is first drawn in.
@@ -271,8 +443,8 @@ TEST(Cylinder, StretchesNothing) {
         const double turn = std::atan2(x, -y) / (2 * kPi) * 36, r = std::hypot(x, y);
         return r > 50 && r < 60 && std::abs(turn - std::round(turn)) < 0.1 ? 40.0F : -1000.0F;
       },
-      [](double, double) {
-        return Rgba8{1, 2, 3, 255};
+      [](double x, double) {
+        return Rgba8{static_cast<std::uint8_t>(x > 0 ? 200 : 100), 2, 3, 255};
       });
   TerrainOptions options = size(720, 200);
   options.projection = Projection::cylindrical;
@@ -285,6 +457,9 @@ TEST(Cylinder, StretchesNothing) {
     EXPECT_EQ(picture.is_sky(x, 150), picture.is_sky(next, 150)) << x;
     edges += picture.is_sky(x, 150) != picture.is_sky((x + 1) % 720, 150);
     if (picture.is_sky(x, 150)) continue;
+    if (std::abs(x - 360) > 4 && x > 4 && x < 716) {
+      EXPECT_EQ(picture.colors(x, 150).r, x > 360 ? 200 : 100) << "east is on the right: " << x;
+    }
     int first = 0;
     while (picture.is_sky(x, first)) ++first;
     EXPECT_TRUE(top == -1 || std::abs(first - top) <= 1) << x;
@@ -306,6 +481,28 @@ TEST(Fog, EndsInItsColour) {
   EXPECT_EQ(picture.colors(0, first - 1), kSky);
   EXPECT_EQ(picture.colors(0, first), (Rgba8{9, 99, 199, 255}));
   EXPECT_LT(picture.colors(0, 299).b, picture.colors(0, 100).b);
+}
+
+TEST(Fog, IsTheShareOfTheRulesBeyondItsStart) {
+  HeightMap map{Image<float>(1, 1), Image<Rgba8>(1, 1)};
+  map.colors(0, 0) = {255, 100, 0, 255};
+  const Terrain flat(map);
+  for (const double start : {0.0, 60.0}) {
+    TerrainOptions options = size(3, 200);
+    options.fog = {0.01, start, Rgba8{0, 200, 255, 255}};
+    options.scale_px = 100;
+    const Picture picture(flat, {.altitude = 30, .horizon_px = 20}, options);
+    int fogged = 0;
+    for (int y = 30; y < 200; ++y) {
+      const auto z = static_cast<double>(picture.depth(1, y));
+      const double clear = std::exp(-0.01 * std::max(0.0, z - start));
+      fogged += clear < 0.9;
+      EXPECT_NEAR(picture.colors(1, y).r, 255 * clear, 1.1) << z;
+      EXPECT_NEAR(picture.colors(1, y).g, 200 - 100 * clear, 1.1) << z;
+      EXPECT_NEAR(picture.colors(1, y).b, 255 - 255 * clear, 1.1) << z;
+    }
+    EXPECT_GT(fogged, 20);
+  }
 }
 
 TEST(OddInput, FlatGroundFillsTheRowsBelowTheHorizon) {
