@@ -48,8 +48,8 @@ RASTRUM_HD inline Piece moved(Piece p, SampleOffset by) {
 }
 
 /// Where 64 fragments of a block are shaded, px from the centre of the pixel 8 · row + column that
-/// their element stands for: elsewhere in it, in [−0.5, 0.5), or in another pixel of the block, where
-/// fragments are packed without regard to their pixels. Multiples of 1/16.
+/// their element stands for: elsewhere in it, in [−0.5, 0.5), or in another pixel of the block,
+/// where fragments are packed without regard to their pixels. Multiples of 1/16.
 struct alignas(64) ShadingPoints {
   float dx[64], dy[64];
 };

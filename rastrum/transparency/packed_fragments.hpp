@@ -31,7 +31,7 @@ class PackedFragments {
   explicit PackedFragments(MemoryAccount& memory)
       : words_(memory), pixels_(memory), colors_(memory), keys_(memory) {}
 
-  /// Begins a region. `bytes`: what its fragments may take, 0 for the default of a MiB.
+  /// Begins a region. `bytes`: what its fragments may take, 0 for the default of 2 MiB.
   void begin(Isa isa, std::uint64_t bytes);
 
   /// Collects the fragments that lie before the words of `opaque`. Returns false and collects

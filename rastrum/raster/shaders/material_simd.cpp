@@ -50,9 +50,13 @@ struct alignas(64) Run {
   int lane[64];                    ///< 8 · row + column
   double scale[64];                ///< 1 / Σ weights
   float weight1[64], weight2[64];  ///< normalized
+  Vec2 first_px;                   ///< where the first fragment is
 
   Run(std::uint64_t mask, const WeightPlanes& w, int x0, int y0, const ShadingPoints* points) {
     for (; mask != 0; mask &= mask - 1) lane[n++] = std::countr_zero(mask);
+    first_px = {static_cast<float>(x0 + lane[0] % kBlockSize) + 0.5F,
+                static_cast<float>(y0 + lane[0] / kBlockSize) + 0.5F};
+    if (points != nullptr) first_px = first_px + Vec2{points->dx[lane[0]], points->dy[lane[0]]};
     for (padded = n; padded % kGroup != 0; ++padded) lane[padded] = lane[n - 1];
     for (int k = 0; k < padded; k += kGroup)
       for (int j = k; j < k + kGroup; ++j) {
@@ -161,16 +165,14 @@ struct TangentFrame {
   }
 };
 
-HWY_INLINE Vec3 view_direction(const ViewRays& rays, int x0, int y0, int lane) {
-  const float px = static_cast<float>(x0 + lane % kBlockSize) + 0.5F;
-  const float py = static_cast<float>(y0 + lane / kBlockSize) + 0.5F;
-  return normalize(-(rays.d + rays.dx * px + rays.dy * py));
+HWY_INLINE Vec3 view_direction(const ViewRays& rays, Vec2 px) {
+  return normalize(-(rays.d + rays.dx * px.x + rays.dy * px.y));
 }
 
 /// Interpolated (or flat) normals, bent by the normal map, turned to the side that is seen.
 HWY_INLINE void fill_normals(const MaterialScene& scene, const Triangle& t,
-                             const BoundMaterial& material, const Run& run, int x0, int y0,
-                             const Coordinates& at, Surface& out) {
+                             const BoundMaterial& material, const Run& run, const Coordinates& at,
+                             Surface& out) {
   const MeshView& mesh = t.draw.mesh;
   float* HWY_RESTRICT nx = out.channel[Surface::kNormalX];
   float* HWY_RESTRICT ny = out.channel[Surface::kNormalY];
@@ -179,7 +181,7 @@ HWY_INLINE void fill_normals(const MaterialScene& scene, const Triangle& t,
   Vec3 face = normalize(times(t.draw.normal_matrix, cross(mesh.positions[t.vertex[1]] - p,
                                                           mesh.positions[t.vertex[2]] - p)));
   // A triangle turns one side to the eye, so any of its fragments can tell which.
-  const bool back = dot(face, view_direction(scene.rays, x0, y0, run.lane[0])) < 0;
+  const bool back = dot(face, view_direction(scene.rays, run.first_px)) < 0;
   if (back) face = -face;
   if (mesh.normals.empty()) {
     fill(run, face.x, nx);
@@ -231,8 +233,8 @@ HWY_INLINE void fill_normals(const MaterialScene& scene, const Triangle& t,
 }
 
 /// One triangle's part of the surface, densely.
-HWY_INLINE void fill_surface(const MaterialScene& scene, const Triangle& t, const Run& run, int x0,
-                             int y0, Surface& out) {
+HWY_INLINE void fill_surface(const MaterialScene& scene, const Triangle& t, const Run& run,
+                             Surface& out) {
   const BoundMaterial& material = scene.material_of(t.draw, t.index);
   const Material& m = *material.material;
   const MeshView& mesh = t.draw.mesh;
@@ -296,7 +298,7 @@ HWY_INLINE void fill_surface(const MaterialScene& scene, const Triangle& t, cons
     multiply(run, texels.g, emissive_g);
     multiply(run, texels.b, emissive_b);
   }
-  fill_normals(scene, t, material, run, x0, y0, at, out);
+  fill_normals(scene, t, material, run, at, out);
 }
 
 using Floats = hn::ScalableTag<float>;
@@ -471,11 +473,11 @@ void shade(const MaterialScene& scene, const FrameGeometry& frame, const Visible
     const Triangle triangle(scene, frame, *draw, id);
     const Run run(mask, triangle.planes, x0, y0, block.points);
     if (run.n == 64) {
-      fill_surface(scene, triangle, run, x0, y0, surface);
+      fill_surface(scene, triangle, run, surface);
       break;
     }
     Surface part;
-    fill_surface(scene, triangle, run, x0, y0, part);
+    fill_surface(scene, triangle, run, part);
     for (int c = 0; c < Surface::kChannels; ++c)
       for (int k = 0; k < run.n; ++k) surface.channel[c][run.lane[k]] = part.channel[c][k];
   }
