@@ -123,7 +123,7 @@ class Server {
   void try_number(int number) {
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) return;
-    name_ = ":" + std::to_string(number);
+    name_ = std::string(":").append(std::to_string(number));
     process_.start({"Xvfb", name_, "-displayfd", std::to_string(ends[1]), "-screen", "0",
                     "1024x800x24", "-nolisten", "tcp",
                     // No key repeats because this machine was busy between press and release; and
@@ -382,6 +382,19 @@ TEST_F(WindowTest, WithoutThePanelThePictureIsOnTheScreen) {
   EXPECT_FALSE(same_pixels(screen(700, 500), picture)) << "the panel lies over it";
   tool("key Tab");
   EXPECT_TRUE(wait_until([&] { return same_pixels(screen(700, 500), picture); }));
+  tool("key ctrl+q");
+  expect_closed();
+}
+
+TEST_F(WindowTest, ADragOnThePanelIsThePanels) {
+  open({"builtin:teapot", "--size", "700x500"});
+  const auto home = key_of(screenshot());
+  tool("mousemove --window " + window_ +
+       " 100 60 mousedown 1 mousemove_relative --sync 60 0 mousemove_relative --sync 10 0 mouseup "
+       "1");
+  EXPECT_EQ(key_of(screenshot()), home);
+  tool("mousemove --window " + window_ + " 100 60 click 4");
+  EXPECT_EQ(key_of(screenshot()), home);
   tool("key ctrl+q");
   expect_closed();
 }

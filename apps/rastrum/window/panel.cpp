@@ -87,10 +87,11 @@ void message_lines(const Viewer& viewer) {
 
 }  // namespace
 
-void draw_panel(Viewer& viewer, const Controls& controls) {
+Area draw_panel(Viewer& viewer, const Controls& controls) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({kMargin, kMargin}, ImGuiCond_Once);
-  ImGui::SetNextWindowSizeConstraints({kPanelWidth, 0}, {kPanelWidth, screen.y - 2 * kMargin});
+  ImGui::SetNextWindowSizeConstraints({kPanelWidth, 0},
+                                      {kPanelWidth, std::max(screen.y - 2 * kMargin, kMargin)});
   ImGui::SetNextWindowBgAlpha(0.8F);
   ImGui::Begin("rastrum", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PushItemWidth(kPanelWidth * 0.55F);
@@ -108,7 +109,9 @@ void draw_panel(Viewer& viewer, const Controls& controls) {
     ImGui::TextWrapped("Drop a file on the window to open it.");
   }
   ImGui::PopItemWidth();
+  const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
   ImGui::End();
+  return {at.x, at.y, at.x + size.x, at.y + size.y};
 }
 
 void draw_messages(const Viewer& viewer) {

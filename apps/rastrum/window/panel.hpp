@@ -11,8 +11,16 @@ namespace rastrum::cli::window {
 class MeshSubject;
 class TerrainSubject;
 
-/// Inside an ImGui frame.
-void draw_panel(Viewer& viewer, const Controls& controls);
+/// What a panel covers, px of the window.
+struct Area {
+  float x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  [[nodiscard]] bool holds(double x, double y) const {
+    return x >= double{x0} && x < double{x1} && y >= double{y0} && y < double{y1};
+  }
+};
+
+/// Inside an ImGui frame. Returns where the panel is.
+Area draw_panel(Viewer& viewer, const Controls& controls);
 /// Errors and notices alone, where the panel is hidden.
 void draw_messages(const Viewer& viewer);
 

@@ -188,7 +188,6 @@ class Shell {
 
   void take(const SDL_Event& event) {
     ImGui_ImplSDL2_ProcessEvent(&event);
-    const ImGuiIO& io = ImGui::GetIO();
     Event e;
     e.shift = (SDL_GetModState() & KMOD_SHIFT) != 0;
     e.ctrl = (SDL_GetModState() & KMOD_CTRL) != 0;
@@ -216,7 +215,7 @@ class Shell {
         e.x = event.button.x;
         e.y = event.button.y;
         // A press on the panel is the panel's; a release always ends a drag.
-        if (e.kind == Event::Kind::button_down && io.WantCaptureMouse && panel_) return;
+        if (e.kind == Event::Kind::button_down && is_panels(event.button.x, event.button.y)) return;
         return send(e);
       case SDL_MOUSEMOTION:
         e.kind = Event::Kind::move;
@@ -226,11 +225,17 @@ class Shell {
       case SDL_MOUSEWHEEL:
         e.kind = Event::Kind::wheel;
         e.y = double{event.wheel.preciseY};
-        if (io.WantCaptureMouse && panel_) return;
+        if (is_panels(event.wheel.mouseX, event.wheel.mouseY)) return;
         return send(e);
       default:
         return;
     }
+  }
+
+  /// ImGui says whose the mouse is only after a frame, and a press may come with the motion that
+  /// leads to it; what hangs out of the panel, such as a list, is under the mouse already.
+  [[nodiscard]] bool is_panels(int x, int y) const {
+    return panel_ && (ImGui::GetIO().WantCaptureMouse || area_.holds(x, y));
   }
 
   void take_window(const SDL_WindowEvent& event) {
@@ -279,7 +284,7 @@ class Shell {
     ImGui_ImplSDL2_NewFrame();
     ImGui::NewFrame();
     if (panel_)
-      draw_panel(viewer_, controls_);
+      area_ = draw_panel(viewer_, controls_);
     else
       draw_messages(viewer_);
     screen_.present(viewer_.picture(), viewer_.serial());
@@ -290,6 +295,7 @@ class Shell {
   const Controls& controls_;
   std::optional<Replay> replay_;
   bool panel_ = true;
+  Area area_;  ///< of the panel, as it was drawn last
   bool quit_ = false;
 };
 
