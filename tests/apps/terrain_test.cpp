@@ -221,8 +221,8 @@ TEST_F(TerrainProgram, DepthAndStats) {
   ASSERT_EQ(got.size(), depth.pixels().size());
   EXPECT_EQ(std::memcmp(got.data(), depth.pixels().data(), got.size() * sizeof(float)), 0);
   const nlohmann::ordered_json json = this->json("s.json");
-  EXPECT_EQ(json["size"], (nlohmann::json{96, 64}));
-  EXPECT_EQ(json["map"], (nlohmann::json{kMap, kMap}));
+  EXPECT_EQ(json["size"], (nlohmann::ordered_json{96, 64}));
+  EXPECT_EQ(json["map"], (nlohmann::ordered_json{kMap, kMap}));
   EXPECT_EQ(json["slices"], stats.slices);
   EXPECT_EQ(json["frame_ms"]["frames"], 3);
   EXPECT_EQ(json["camera"]["altitude"], 40);

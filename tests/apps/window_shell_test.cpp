@@ -166,9 +166,7 @@ class WindowTest : public Program {
     ::setenv("DISPLAY", server_->name().c_str(), 1);
     ::setenv("SDL_VIDEODRIVER", "x11", 1);
     ::unsetenv("DBUS_SESSION_BUS_ADDRESS");
-#ifdef RASTRUM_LSAN_SUPPRESSIONS
     ::setenv("LSAN_OPTIONS", "suppressions=" RASTRUM_LSAN_SUPPRESSIONS ":print_suppressions=0", 1);
-#endif
   }
   void TearDown() override {
     viewer_.stop(SIGKILL);

@@ -31,6 +31,8 @@ class Screen {
  public:
   Screen(const std::string& title, int width, int height) {
     SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
+    // A software renderer would go through OpenGL to the screen, which users need not have.
+    SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // Ctrl-C in the terminal ends the program
     if (SDL_Init(SDL_INIT_VIDEO) != 0)
       fail("there is no display to open a window on (`rastrum render` draws into files)");
