@@ -14,6 +14,7 @@
 
 #include "json_fields.hpp"
 #include "json_file.hpp"
+#include "path_keys.hpp"
 
 namespace rastrum::cli {
 namespace {
@@ -95,11 +96,7 @@ PathKey read_key(const JsonFields::Element& element, const PathKey& before, bool
   JsonFields fields(*element.value, element.place);
   PathKey key = before;
   Camera& c = key.camera;
-  const auto time = fields.number("time");
-  if (!time && !first) fields.fail("time", "is needed: the seconds at which the camera is here");
-  key.time_s = time.value_or(0);
-  if (!first && !(key.time_s > before.time_s))
-    fields.fail("time", "must be greater than the time of the key before");
+  key.time_s = read_key_time(fields, first ? std::nullopt : std::optional(before.time_s));
   read_vec3(fields, "eye", c.eye);
   read_vec3(fields, "target", c.target);
   read_vec3(fields, "up", c.up);
@@ -150,26 +147,8 @@ Camera CameraPath::at(double time_s) const {
   return camera;
 }
 
-Interpolation read_interpolation(JsonFields& fields) {
-  const auto word = fields.text("interpolation");
-  if (word && *word != "smooth" && *word != "linear")
-    fields.fail("interpolation", "expected smooth or linear, got '" + *word + "'");
-  return word && *word == "linear" ? Interpolation::linear : Interpolation::smooth;
-}
-
 CameraPath read_camera_path(const std::filesystem::path& file, const Camera& base) {
-  const nlohmann::ordered_json json = read_json(file);
-  JsonFields fields(json, file.string());
-  const Interpolation interpolation = read_interpolation(fields);
-  const std::vector<JsonFields::Element> elements = fields.array("keys");
-  static_cast<void>(fields.has("events"));  // of a script, which a window replays
-  static_cast<void>(fields.has("fps"));
-  fields.finish();
-  if (elements.empty()) fields.fail("keys", "a path needs at least one key");
-  std::vector<PathKey> keys;
-  PathKey before{.camera = base};
-  for (const JsonFields::Element& element : elements)
-    before = keys.emplace_back(read_key(element, before, keys.empty()));
+  auto [keys, interpolation] = read_path_keys(file, PathKey{.camera = base}, read_key);
   return {std::move(keys), interpolation};
 }
 

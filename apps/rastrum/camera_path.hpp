@@ -44,10 +44,6 @@ class CameraPath {
 /// Floats keep their bits. Throws Error{io}.
 void write_camera_path(const std::filesystem::path& file, std::span<const PathKey> keys);
 
-class JsonFields;
-/// The member "interpolation" of a path; smooth where it is absent.
-[[nodiscard]] Interpolation read_interpolation(JsonFields& fields);
-
 /// The times of the pictures of a path: first + i / fps up to `last`, at least one.
 /// Throws Error{invalid_argument} beyond a million.
 [[nodiscard]] std::vector<double> frame_times(double first_s, double last_s, double fps);

@@ -9,9 +9,9 @@
 
 #include <rastrum/core/error.hpp>
 
-#include "camera_path.hpp"
 #include "json_fields.hpp"
 #include "json_file.hpp"
+#include "path_keys.hpp"
 
 namespace rastrum::cli {
 namespace {
@@ -28,11 +28,7 @@ TerrainPathKey read_key(const JsonFields::Element& element, const TerrainPathKey
   JsonFields fields(*element.value, element.place);
   TerrainPathKey key = before;
   TerrainCamera& c = key.camera;
-  const auto time = fields.number("time");
-  if (!time && !first) fields.fail("time", "is needed: the seconds at which the camera is here");
-  key.time_s = time.value_or(0);
-  if (!first && !(key.time_s > before.time_s))
-    fields.fail("time", "must be greater than the time of the key before");
+  key.time_s = read_key_time(fields, first ? std::nullopt : std::optional(before.time_s));
   if (const auto position = fields.numbers("position", 2)) {
     c.x = (*position)[0];
     c.y = (*position)[1];
@@ -66,18 +62,7 @@ TerrainCamera TerrainPath::at(double time_s) const {
 }
 
 TerrainPath read_terrain_path(const std::filesystem::path& file, const TerrainCamera& base) {
-  const nlohmann::ordered_json json = read_json(file);
-  JsonFields fields(json, file.string());
-  const Interpolation interpolation = read_interpolation(fields);
-  const std::vector<JsonFields::Element> elements = fields.array("keys");
-  static_cast<void>(fields.has("events"));  // of a script, which a window replays
-  static_cast<void>(fields.has("fps"));
-  fields.finish();
-  if (elements.empty()) fields.fail("keys", "a path needs at least one key");
-  std::vector<TerrainPathKey> keys;
-  TerrainPathKey before{.camera = base};
-  for (const JsonFields::Element& element : elements)
-    before = keys.emplace_back(read_key(element, before, keys.empty()));
+  auto [keys, interpolation] = read_path_keys(file, TerrainPathKey{.camera = base}, read_key);
   return {std::move(keys), interpolation};
 }
 
