@@ -28,12 +28,6 @@ constexpr bool kKeeps = !__has_feature(address_sanitizer);
 constexpr bool kKeeps = true;
 #endif
 
-/// The size of the block that serves `bytes`: 4, 5, 6 or 7 times a power of two.
-std::size_t block_bytes(std::size_t bytes) {
-  const std::size_t step = bytes < kSmallestKept ? kAlignment : std::bit_floor(bytes) / 4;
-  return std::max(kAlignment, (bytes + step - 1) / step * step);
-}
-
 void* system_allocate(std::size_t bytes) noexcept {
   const bool large = bytes >= 2 * kLargePage;
   const std::size_t alignment = large ? kLargePage : kAlignment;
@@ -45,7 +39,24 @@ void* system_allocate(std::size_t bytes) noexcept {
   return data;
 }
 
+void system_release(void* block) noexcept {
+  std::free(block);
+}
+
 }  // namespace
+
+MemorySource host_memory() {
+  return {system_allocate, system_release, "scratch"};
+}
+
+/// The size of the block that serves `bytes`: 4, 5, 6 or 7 times a power of two.
+std::size_t Arena::block_bytes(std::size_t bytes) const {
+  const std::size_t least = source_.keeps_all ? 4 * kAlignment : kAlignment;
+  const bool exact = bytes < kSmallestKept && !source_.keeps_all;
+  const std::size_t wanted = std::max(bytes, least);
+  const std::size_t step = exact ? kAlignment : std::bit_floor(wanted) / 4;
+  return (wanted + step - 1) / step * step;
+}
 
 void* Arena::allocate(std::size_t bytes) {
   const std::size_t size = bytes > SIZE_MAX / 2 ? bytes : block_bytes(bytes);
@@ -59,13 +70,20 @@ void* Arena::allocate(std::size_t bytes) {
       peak_ = std::max(peak_, in_use_);
       return data;
     }
-  while (!kept_.empty() && in_use_ + size + kept_bytes_ > std::max(peak_, in_use_ + size))
+  while (!source_.keeps_all && !kept_.empty() &&
+         in_use_ + size + kept_bytes_ > std::max(peak_, in_use_ + size))
     drop_oldest();
-  void* const data = size > SIZE_MAX / 2 ? nullptr : system_allocate(size);
+  void* data = size > SIZE_MAX / 2 ? nullptr : source_.allocate(size);
+  if (data == nullptr && !kept_.empty() && size <= SIZE_MAX / 2) {
+    while (!kept_.empty()) drop_oldest();
+    data = source_.allocate(size);
+  }
   if (data == nullptr)
     throw Error(Errc::out_of_memory, std::string("out of memory: ")
                                          .append(std::to_string(bytes))
-                                         .append(" bytes of scratch were asked for"));
+                                         .append(" bytes of ")
+                                         .append(source_.name)
+                                         .append(" were asked for"));
   in_use_ += size;
   peak_ = std::max(peak_, in_use_);
   if (account_ != nullptr) account_->add(size);
@@ -76,7 +94,7 @@ void Arena::release(void* block, std::size_t bytes) noexcept {
   const std::size_t size = block_bytes(bytes);
   const std::lock_guard lock(mutex_);
   in_use_ -= size;
-  if (kKeeps && size >= kSmallestKept) {
+  if (source_.keeps_all || (kKeeps && size >= kSmallestKept)) {
     try {
       kept_.push_back({block, size});
       kept_bytes_ += size;
@@ -85,7 +103,7 @@ void Arena::release(void* block, std::size_t bytes) noexcept {
       // No room to remember it: it goes back.
     }
   }
-  std::free(block);
+  source_.release(block);
   if (account_ != nullptr) account_->remove(size);
 }
 
@@ -93,7 +111,7 @@ void Arena::drop_oldest() noexcept {
   const Block block = kept_.front();
   kept_.erase(kept_.begin());
   kept_bytes_ -= block.bytes;
-  std::free(block.data);
+  source_.release(block.data);
   if (account_ != nullptr) account_->remove(block.bytes);
 }
 

@@ -18,14 +18,27 @@
 
 namespace rastrum::parallel {
 
+/// Where an arena's blocks come from. Both functions are thread-safe.
+struct MemorySource {
+  void* (*allocate)(std::size_t bytes) noexcept;  ///< null where there is none
+  void (*release)(void* block) noexcept;
+  const char* name;  ///< of the memory, in messages
+  /// Asking for a block stops the device: all of any size are kept, and go back only to be asked
+  /// for again in another size.
+  bool keeps_all = false;
+};
+/// The heap; large blocks in large pages.
+[[nodiscard]] MemorySource host_memory();
+
 /// Hands out blocks, and keeps those that come back, up to the most that was out at one time: what
-/// it holds never exceeds that. Thread-safe. Shared by its backend and by the buffers that came
-/// from it, whichever lives longest.
+/// it holds never exceeds that, unless the source is to be asked as seldom as can be. Thread-safe.
+/// Shared by its backend and by the buffers that came from it, whichever lives longest.
 class Arena {
  public:
   /// Blocks are accounted to `account`, where there is one, while the arena holds them, handed out
   /// or not; it must outlive the arena.
-  explicit Arena(MemoryAccount* account = nullptr) : account_(account) {}
+  explicit Arena(MemoryAccount* account = nullptr, MemorySource source = host_memory())
+      : account_(account), source_(source) {}
   ~Arena() { trim(); }
   Arena(const Arena&) = delete;
   Arena& operator=(const Arena&) = delete;
@@ -51,9 +64,11 @@ class Arena {
     void* data;
     std::size_t bytes;
   };
+  [[nodiscard]] std::size_t block_bytes(std::size_t bytes) const;
   void drop_oldest() noexcept;
 
   MemoryAccount* account_;
+  MemorySource source_;
   mutable std::mutex mutex_;
   std::vector<Block> kept_;  ///< oldest first
   std::uint64_t kept_bytes_ = 0, in_use_ = 0, peak_ = 0;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include <rastrum/core/config.hpp>
 #include <rastrum/parallel/exec.hpp>
 
 namespace rastrum::parallel {
@@ -17,6 +18,17 @@ inline constexpr std::size_t kBlock = 4096;
 [[nodiscard]] constexpr std::size_t block_count(std::size_t n) {
   return (n + kBlock - 1) / kBlock;
 }
+
+/// Calls f(block, begin, end) for one block [begin, end) of [0, n).
+template <class F>
+struct CallWithBlock {
+  std::size_t n;
+  F f;
+  RASTRUM_HD void operator()(std::size_t block) const {
+    const std::size_t end = (block + 1) * kBlock;
+    f(block, block * kBlock, end < n ? end : n);
+  }
+};
 
 /// Calls f(block, begin, end) for each block [begin, end) of [0, n).
 template <class Exec, class F>

@@ -14,9 +14,9 @@
 // Source: expand is paper 1, section 2.2.2; the walk without an array is ours.
 #pragma once
 
-#include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <span>
 #include <utility>
 
 #include <rastrum/parallel/blocks.hpp>
@@ -26,67 +26,118 @@
 
 namespace rastrum::parallel {
 
-/// Where the results of each segment lie, and how they are cut into chunks.
-class Expansion {
+namespace expand_detail {
+
+/// The size of a segment, as a functor that a device can call.
+template <class Size>
+struct SizeOf {
+  Size size;
+  template <class X>
+  RASTRUM_HD std::size_t operator()(const X& x) const {
+    return static_cast<std::size_t>(size(x));
+  }
+};
+
+/// The last place in the ascending `first` whose value is ≤ `value`; first[0] ≤ value.
+template <class First>
+[[nodiscard]] RASTRUM_HD constexpr std::size_t last_at_most(const First& first, std::size_t value) {
+  std::size_t low = 0;
+  for (std::size_t n = std::size(first); n > 1;) {
+    const std::size_t half = n / 2;
+    if (first[low + half] <= value) low += half;
+    n -= half;
+  }
+  return low;
+}
+
+}  // namespace expand_detail
+
+/// Results of a chunk where the caller does not say: one thread makes them.
+template <class Exec>
+inline constexpr std::size_t kResultsPerChunk = kBlock;
+
+/// Where the results of each segment lie, and how they are cut into chunks. `First` is an array of
+/// numbers: a backend's buffer, or a view of one.
+template <class First>
+class BasicExpansion {
  public:
   /// Calls size(in[i]) → integer ≥ 0 once per segment. Requires per_chunk > 0.
   template <class Exec, Readable In, class Size>
-  Expansion(Exec& exec, const In& in, Size&& size, std::size_t per_chunk = kBlock)
+  BasicExpansion(Exec& exec, const In& in, const Size& size,
+                 std::size_t per_chunk = kResultsPerChunk<Exec>)
       : first_(make_buffer<std::size_t>(exec, std::size(in))), per_chunk_(per_chunk) {
     assert(per_chunk > 0);
-    transform(exec, in, first_, [&](const auto& x) { return static_cast<std::size_t>(size(x)); });
+    transform(exec, in, first_, expand_detail::SizeOf<Size>{size});
     size_ = exclusive_scan(exec, first_, first_, std::size_t{0});
+  }
+  BasicExpansion(First first, std::size_t size, std::size_t per_chunk)
+      : first_(first), size_(size), per_chunk_(per_chunk) {}
+
+  /// What a kernel takes instead; must not outlive this.
+  [[nodiscard]] BasicExpansion<std::span<const std::size_t>> view() const {
+    return {std::span<const std::size_t>(first_.data(), first_.size()), size_, per_chunk_};
   }
 
   /// Number of results.
-  [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] std::size_t segments() const { return first_.size(); }
+  [[nodiscard]] RASTRUM_HD std::size_t size() const { return size_; }
+  [[nodiscard]] RASTRUM_HD std::size_t segments() const { return first_.size(); }
   /// The result with which segment i begins: first(i) + j is made from its j.
-  [[nodiscard]] std::size_t first(std::size_t i) const { return first_[i]; }
-  [[nodiscard]] std::size_t segment_end(std::size_t i) const {
+  [[nodiscard]] RASTRUM_HD std::size_t first(std::size_t i) const { return first_[i]; }
+  [[nodiscard]] RASTRUM_HD std::size_t segment_end(std::size_t i) const {
     return i + 1 < first_.size() ? first_[i + 1] : size_;
   }
   /// The segment that makes `result`; requires result < size(). O(log n).
-  [[nodiscard]] std::size_t segment_of(std::size_t result) const {
+  [[nodiscard]] RASTRUM_HD std::size_t segment_of(std::size_t result) const {
     // Empty segments begin where the next one does: the last of them is meant.
-    return static_cast<std::size_t>(std::upper_bound(first_.begin(), first_.end(), result) -
-                                    first_.begin() - 1);
+    return expand_detail::last_at_most(first_, result);
   }
 
-  [[nodiscard]] std::size_t per_chunk() const { return per_chunk_; }
-  [[nodiscard]] std::size_t chunks() const { return (size_ + per_chunk_ - 1) / per_chunk_; }
+  [[nodiscard]] RASTRUM_HD std::size_t per_chunk() const { return per_chunk_; }
+  [[nodiscard]] RASTRUM_HD std::size_t chunks() const {
+    return (size_ + per_chunk_ - 1) / per_chunk_;
+  }
   /// Chunk c holds the results [chunk_begin(c), chunk_end(c)).
-  [[nodiscard]] std::size_t chunk_begin(std::size_t c) const { return c * per_chunk_; }
-  [[nodiscard]] std::size_t chunk_end(std::size_t c) const {
-    return std::min(size_, (c + 1) * per_chunk_);
+  [[nodiscard]] RASTRUM_HD std::size_t chunk_begin(std::size_t c) const { return c * per_chunk_; }
+  [[nodiscard]] RASTRUM_HD std::size_t chunk_end(std::size_t c) const {
+    const std::size_t end = (c + 1) * per_chunk_;
+    return end < size_ ? end : size_;
   }
 
  private:
-  Buffer<std::size_t> first_;
+  First first_;
   std::size_t size_ = 0, per_chunk_;
 };
+using Expansion = BasicExpansion<Buffer<std::size_t>>;
+
+/// The expansion of a backend, for listings that are written for any.
+template <class Exec, Readable In, class Size>
+[[nodiscard]] auto make_expansion(Exec& exec, const In& in, const Size& size,
+                                  std::size_t per_chunk = kResultsPerChunk<Exec>) {
+  return BasicExpansion<decltype(make_buffer<std::size_t>(exec, 0))>(exec, in, size, per_chunk);
+}
 
 /// One chunk of an expansion, to be walked in order. Borrows the expansion and its input.
-template <class In>
+template <class In, class Plan = Expansion>
 class ExpansionChunk {
  public:
-  ExpansionChunk(const Expansion& expansion, const In& in, std::size_t index)
+  RASTRUM_HD ExpansionChunk(const Plan& expansion, const In& in, std::size_t index)
       : expansion_(&expansion), in_(&in), index_(index) {}
 
-  [[nodiscard]] std::size_t index() const { return index_; }
+  [[nodiscard]] RASTRUM_HD std::size_t index() const { return index_; }
   /// The results it holds: begin() is the number of the first one.
-  [[nodiscard]] std::size_t begin() const { return expansion_->chunk_begin(index_); }
-  [[nodiscard]] std::size_t end() const { return expansion_->chunk_end(index_); }
-  [[nodiscard]] std::size_t size() const { return end() - begin(); }
+  [[nodiscard]] RASTRUM_HD std::size_t begin() const { return expansion_->chunk_begin(index_); }
+  [[nodiscard]] RASTRUM_HD std::size_t end() const { return expansion_->chunk_end(index_); }
+  [[nodiscard]] RASTRUM_HD std::size_t size() const { return end() - begin(); }
 
   /// Calls f(in[i], j_begin, j_end) for each segment's share of the chunk, which is not empty: for
   /// sinks that have something to do once per segment.
   template <class F>
-  void each_run(F&& f) const {
+  RASTRUM_HD void each_run(F&& f) const {
     const std::size_t stop = end();
     std::size_t i = expansion_->segment_of(begin());
     for (std::size_t k = begin(); k < stop; ++i) {
-      const std::size_t run_end = std::min(stop, expansion_->segment_end(i));
+      const std::size_t segment_end = expansion_->segment_end(i);
+      const std::size_t run_end = segment_end < stop ? segment_end : stop;
       if (k == run_end) continue;
       const std::size_t first = expansion_->first(i);
       f((*in_)[i], k - first, run_end - first);
@@ -95,14 +146,14 @@ class ExpansionChunk {
   }
   /// Calls f(in[i], j) for each result of the chunk.
   template <class F>
-  void each(F&& f) const {
+  RASTRUM_HD void each(F&& f) const {
     each_run([&](const auto& element, std::size_t begin, std::size_t end) {
       for (std::size_t j = begin; j < end; ++j) f(element, j);
     });
   }
 
  private:
-  const Expansion* expansion_;
+  const Plan* expansion_;
   const In* in_;
   std::size_t index_;
 };

@@ -12,9 +12,9 @@
 // Source: paper 1, section 3.1.2, and its first future work (section 4.4).
 #pragma once
 
-#include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <span>
 
 #include <rastrum/parallel/expand_each.hpp>
 #include <rastrum/parallel/mask.hpp>
@@ -22,55 +22,100 @@
 
 namespace rastrum::parallel {
 
-/// Which elements of all segments hold, and how those are cut into chunks.
-template <int kBits>
-class MaskedExpansion {
+namespace masked_detail {
+
+template <int kBits, class Size>
+struct MasksFor {
+  Size size;
+  template <class X>
+  RASTRUM_HD std::size_t operator()(const X& x) const {
+    return (static_cast<std::size_t>(size(x)) + kBits - 1) / kBits;
+  }
+};
+
+/// Asks the predicate for the masks of a group and counts what holds.
+template <int kBits, class Size, class Holds>
+struct FillMasks {
+  Size size;
+  Holds holds;
+  std::span<Mask<kBits>> masks;
+  std::span<std::size_t> counts;  ///< of each group
+  template <class Chunk>
+  RASTRUM_HD void operator()(const Chunk& group) const {
+    std::size_t m = group.begin(), count = 0;
+    group.each_run([&](const auto& x, std::size_t begin, std::size_t end) {
+      const auto n = static_cast<std::size_t>(size(x));
+      for (std::size_t k = begin; k < end; ++k) {
+        const std::size_t first = k * kBits, rest = n - first;
+        const int width = rest < kBits ? static_cast<int>(rest) : kBits;
+        const auto mask = Mask<kBits>::of(
+            width, [&](int b) { return holds(x, first + static_cast<std::size_t>(b)); });
+        count += static_cast<std::size_t>(mask.rank());
+        masks[m++] = mask;
+      }
+    });
+    counts[group.index()] = count;
+  }
+};
+
+}  // namespace masked_detail
+
+/// Elements whose predicate one thread asks: as many as a block has.
+template <class Exec>
+inline constexpr std::size_t kElementsPerGroup = kBlock;
+
+/// Which elements of all segments hold, and how those are cut into chunks. `Masks` and `Numbers`
+/// are a backend's buffers, or views of them.
+template <int kBits, class Masks, class Numbers>
+class BasicMaskedExpansion {
  public:
   /// Calls size and holds(in[i], j) once; both must be pure. Requires per_chunk > 0.
   template <class Exec, Readable In, class Size, class Holds>
-  MaskedExpansion(Exec& exec, const In& in, Size&& size, Holds&& holds,
-                  std::size_t per_chunk = kBlock)
-      : cut_(
-            exec, in, [&](const auto& x) { return masks_for(size(x)); }, kMasksPerGroup),
+  BasicMaskedExpansion(Exec& exec, const In& in, const Size& size, const Holds& holds,
+                       std::size_t per_chunk = kResultsPerChunk<Exec>)
+      : cut_(exec, in, masked_detail::MasksFor<kBits, Size>{size},
+             (kElementsPerGroup<Exec> + kBits - 1) / kBits),
         masks_(make_buffer<Mask<kBits>>(exec, cut_.size())),
         before_(make_buffer<std::size_t>(exec, cut_.chunks())),
         per_chunk_(per_chunk) {
     assert(per_chunk > 0);
-    expand_chunks(exec, cut_, in, [&](const ExpansionChunk<In>& group) {
-      std::size_t m = group.begin(), count = 0;
-      group.each_run([&](const auto& x, std::size_t begin, std::size_t end) {
-        const auto n = static_cast<std::size_t>(size(x));
-        for (std::size_t k = begin; k < end; ++k) {
-          const std::size_t first = k * kBits;
-          const int width = static_cast<int>(std::min<std::size_t>(kBits, n - first));
-          const auto mask = Mask<kBits>::of(
-              width, [&](int b) { return holds(x, first + static_cast<std::size_t>(b)); });
-          count += static_cast<std::size_t>(mask.rank());
-          masks_[m++] = mask;
-        }
-      });
-      before_[group.index()] = count;
-    });
+    expand_chunks(exec, cut_, in,
+                  masked_detail::FillMasks<kBits, Size, Holds>{size, holds, view_of(masks_),
+                                                               view_of(before_)});
     size_ = exclusive_scan(exec, before_, before_, std::size_t{0});
+  }
+  BasicMaskedExpansion(BasicExpansion<Numbers> cut, Masks masks, Numbers before, std::size_t size,
+                       std::size_t per_chunk)
+      : cut_(cut), masks_(masks), before_(before), size_(size), per_chunk_(per_chunk) {}
+
+  /// What a kernel takes instead; must not outlive this.
+  [[nodiscard]] auto view() const {
+    using MaskView = std::span<const Mask<kBits>>;
+    using NumberView = std::span<const std::size_t>;
+    return BasicMaskedExpansion<kBits, MaskView, NumberView>(
+        cut_.view(), MaskView(masks_.data(), masks_.size()),
+        NumberView(before_.data(), before_.size()), size_, per_chunk_);
   }
 
   /// Number of results: elements that hold.
-  [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] std::size_t segments() const { return cut_.segments(); }
-  [[nodiscard]] std::size_t per_chunk() const { return per_chunk_; }
-  [[nodiscard]] std::size_t chunks() const { return (size_ + per_chunk_ - 1) / per_chunk_; }
+  [[nodiscard]] RASTRUM_HD std::size_t size() const { return size_; }
+  [[nodiscard]] RASTRUM_HD std::size_t segments() const { return cut_.segments(); }
+  [[nodiscard]] RASTRUM_HD std::size_t per_chunk() const { return per_chunk_; }
+  [[nodiscard]] RASTRUM_HD std::size_t chunks() const {
+    return (size_ + per_chunk_ - 1) / per_chunk_;
+  }
   /// Chunk c holds the results [chunk_begin(c), chunk_end(c)).
-  [[nodiscard]] std::size_t chunk_begin(std::size_t c) const { return c * per_chunk_; }
-  [[nodiscard]] std::size_t chunk_end(std::size_t c) const {
-    return std::min(size_, (c + 1) * per_chunk_);
+  [[nodiscard]] RASTRUM_HD std::size_t chunk_begin(std::size_t c) const { return c * per_chunk_; }
+  [[nodiscard]] RASTRUM_HD std::size_t chunk_end(std::size_t c) const {
+    const std::size_t end = (c + 1) * per_chunk_;
+    return end < size_ ? end : size_;
   }
 
   /// Calls f(in[i], j) for the results [begin, end) in order. O(log n + end − begin + kBlock / 8).
   template <class In, class F>
-  void walk(const In& in, std::size_t begin, std::size_t end, F&& f) const {
+  RASTRUM_HD void walk(const In& in, std::size_t begin, std::size_t end, F&& f) const {
     if (begin == end) return;
-    const auto group = static_cast<std::size_t>(
-        std::upper_bound(before_.begin(), before_.end(), begin) - before_.begin() - 1);
+    const std::size_t group = expand_detail::last_at_most(before_, begin);
     std::size_t m = cut_.chunk_begin(group);
     auto skip = begin - before_[group], left = end - begin;
     for (; skip >= rank(m); ++m) skip -= rank(m);
@@ -80,7 +125,7 @@ class MaskedExpansion {
       for (; m < cut_.segment_end(i) && left > 0; ++m) {
         const std::size_t base = (m - cut_.first(i)) * kBits, count = rank(m);
         const auto visit = [&](int b) { f(element, base + static_cast<std::size_t>(b)); };
-        const std::size_t stop = std::min(count, skip + left);
+        const std::size_t stop = skip + left < count ? skip + left : count;
         if (stop - skip == count)
           masks_[m].for_each(visit);
         else
@@ -92,42 +137,49 @@ class MaskedExpansion {
   }
 
  private:
-  /// As many predicates as a block has elements.
-  static constexpr std::size_t kMasksPerGroup = kBlock / kBits;
-  [[nodiscard]] static std::size_t masks_for(auto size) {
-    return (static_cast<std::size_t>(size) + kBits - 1) / kBits;
-  }
-  [[nodiscard]] std::size_t rank(std::size_t m) const {
+  [[nodiscard]] RASTRUM_HD std::size_t rank(std::size_t m) const {
     return static_cast<std::size_t>(masks_[m].rank());
   }
 
-  Expansion cut_;  ///< of segments into masks; its chunks are the groups
-  Buffer<Mask<kBits>> masks_;
-  Buffer<std::size_t> before_;  ///< results before each group
+  BasicExpansion<Numbers> cut_;  ///< of segments into masks; its chunks are the groups
+  Masks masks_;
+  Numbers before_;  ///< results before each group
   std::size_t size_ = 0, per_chunk_;
 };
+template <int kBits>
+using MaskedExpansion = BasicMaskedExpansion<kBits, Buffer<Mask<kBits>>, Buffer<std::size_t>>;
+
+/// The masked expansion of a backend, for listings that are written for any.
+template <int kBits = 64, class Exec, Readable In, class Size, class Holds>
+[[nodiscard]] auto make_masked_expansion(Exec& exec, const In& in, const Size& size,
+                                         const Holds& holds,
+                                         std::size_t per_chunk = kResultsPerChunk<Exec>) {
+  return BasicMaskedExpansion<kBits, decltype(make_buffer<Mask<kBits>>(exec, 0)),
+                              decltype(make_buffer<std::size_t>(exec, 0))>(exec, in, size, holds,
+                                                                           per_chunk);
+}
 
 /// One chunk of a masked expansion, to be walked in order. Borrows the expansion and its input.
-template <int kBits, class In>
+template <int kBits, class In, class Plan = MaskedExpansion<kBits>>
 class MaskedChunk {
  public:
-  MaskedChunk(const MaskedExpansion<kBits>& expansion, const In& in, std::size_t index)
+  RASTRUM_HD MaskedChunk(const Plan& expansion, const In& in, std::size_t index)
       : expansion_(&expansion), in_(&in), index_(index) {}
 
-  [[nodiscard]] std::size_t index() const { return index_; }
+  [[nodiscard]] RASTRUM_HD std::size_t index() const { return index_; }
   /// The results it holds: begin() is the number of the first one.
-  [[nodiscard]] std::size_t begin() const { return expansion_->chunk_begin(index_); }
-  [[nodiscard]] std::size_t end() const { return expansion_->chunk_end(index_); }
-  [[nodiscard]] std::size_t size() const { return end() - begin(); }
+  [[nodiscard]] RASTRUM_HD std::size_t begin() const { return expansion_->chunk_begin(index_); }
+  [[nodiscard]] RASTRUM_HD std::size_t end() const { return expansion_->chunk_end(index_); }
+  [[nodiscard]] RASTRUM_HD std::size_t size() const { return end() - begin(); }
 
   /// Calls f(in[i], j) for each result of the chunk.
   template <class F>
-  void each(F&& f) const {
+  RASTRUM_HD void each(F&& f) const {
     expansion_->walk(*in_, begin(), end(), f);
   }
 
  private:
-  const MaskedExpansion<kBits>* expansion_;
+  const Plan* expansion_;
   const In* in_;
   std::size_t index_;
 };

@@ -6,6 +6,7 @@
 #include <concepts>
 #include <cstddef>
 #include <iterator>
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -46,24 +47,58 @@ class Computed {
   F f_;
 };
 
+namespace range_detail {
+
+// Named, for a kernel's arguments may not have the type of a lambda of the host.
+template <class Integer>
+struct IndexItself {
+  [[nodiscard]] RASTRUM_HD constexpr Integer operator()(std::size_t i) const {
+    return static_cast<Integer>(i);
+  }
+};
+template <class T>
+struct SameValue {
+  T value;
+  [[nodiscard]] RASTRUM_HD constexpr T operator()(std::size_t) const { return value; }
+};
+
+template <class R>
+inline constexpr bool kIsView = false;
+template <class T>
+inline constexpr bool kIsView<std::span<T>> = true;
+template <class F>
+inline constexpr bool kIsView<Computed<F>> = true;
+/// A view is copied, which a device needs; what owns its elements is referred to.
+template <class R>
+using borrowed_t = std::conditional_t<kIsView<R>, R, const R&>;
+
+template <class Source, class Map>
+struct ReadThrough {
+  borrowed_t<Source> source;
+  borrowed_t<Map> map;
+  [[nodiscard]] RASTRUM_HD constexpr decltype(auto) operator()(std::size_t i) const {
+    return source[static_cast<std::size_t>(map[i])];
+  }
+};
+
+}  // namespace range_detail
+
 /// 0, 1, …, n − 1.
 template <class Integer = std::size_t>
 [[nodiscard]] RASTRUM_HD constexpr auto counting(std::size_t n) {
-  return Computed(n, [](std::size_t i) { return static_cast<Integer>(i); });
+  return Computed(n, range_detail::IndexItself<Integer>{});
 }
 
 /// `value`, n times.
 template <class T>
 [[nodiscard]] RASTRUM_HD constexpr auto constant(std::size_t n, T value) {
-  return Computed(n, [value](std::size_t) { return value; });
+  return Computed(n, range_detail::SameValue<T>{value});
 }
 
 /// source[map[i]]; borrows both.
 template <Readable Source, Readable Map>
 [[nodiscard]] RASTRUM_HD constexpr auto permuted(const Source& source, const Map& map) {
-  return Computed(std::size(map), [&source, &map](std::size_t i) -> decltype(auto) {
-    return source[static_cast<std::size_t>(map[i])];
-  });
+  return Computed(std::size(map), range_detail::ReadThrough<Source, Map>{source, map});
 }
 
 /// Takes n values and keeps none.
@@ -82,5 +117,28 @@ class Discard {
  private:
   std::size_t n_;
 };
+
+/// What has no data() is read where it lies.
+template <class R>
+struct Referred {
+  R* range;
+  [[nodiscard]] constexpr std::size_t size() const { return std::size(*range); }
+  [[nodiscard]] constexpr decltype(auto) operator[](std::size_t i) const { return (*range)[i]; }
+};
+
+/// A range as a named functor holds it, cheap to copy: a span of what owns its elements, and a copy
+/// of what is a view. It must not outlive the range.
+template <class R>
+[[nodiscard]] constexpr auto view_of(R&& range) {
+  using Plain = std::remove_cvref_t<R>;
+  if constexpr (range_detail::kIsView<Plain> || std::same_as<Plain, Discard>)
+    return Plain(range);
+  else if constexpr (requires { std::data(range); })
+    return std::span(std::data(range), std::size(range));
+  else
+    return Referred<std::remove_reference_t<R>>{&range};
+}
+template <class R>
+using view_t = decltype(view_of(std::declval<R>()));
 
 }  // namespace rastrum::parallel

@@ -17,7 +17,7 @@ namespace rastrum::parallel {
 
 /// in[begin] op … op in[end − 1] from the left, in T. Requires begin < end.
 template <class T, Readable In, class Op>
-[[nodiscard]] T fold_block(const In& in, std::size_t begin, std::size_t end, Op& op) {
+[[nodiscard]] RASTRUM_HD T fold_block(const In& in, std::size_t begin, std::size_t end, Op& op) {
   T sum = static_cast<T>(in[begin]);
   for (std::size_t i = begin + 1; i < end; ++i)
     sum = static_cast<T>(op(sum, static_cast<T>(in[i])));

@@ -20,7 +20,8 @@ namespace scan_detail {
 
 /// Writes one block, `carry` being the sum before it; returns the sum behind it.
 template <bool kInclusive, class In, class Out, class T, class Op>
-T scan_block(const In& in, Out& out, std::size_t begin, std::size_t end, T carry, Op& op) {
+RASTRUM_HD T scan_block(const In& in, Out& out, std::size_t begin, std::size_t end, T carry,
+                        Op& op) {
   T local = static_cast<T>(in[begin]);  // read before the write: `out` may be `in`
   if constexpr (!kInclusive) out[begin] = carry;
   if constexpr (kInclusive) out[begin] = static_cast<T>(op(carry, local));

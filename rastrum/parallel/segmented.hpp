@@ -11,11 +11,11 @@
 // Source: Futhark's segmented library (paper 1, section 2.2.2); Blelloch, 1990.
 #pragma once
 
-#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
 
 #include <rastrum/parallel/blocks.hpp>
 #include <rastrum/parallel/range.hpp>
@@ -27,16 +27,16 @@ namespace segmented_detail {
 
 /// Calls f(segment, begin, end) for each segment's share of [begin, end) that is not empty.
 template <class First, class F>
-void for_each_run(const First& first, std::size_t begin, std::size_t end, F&& f) {
+RASTRUM_HD void for_each_run(const First& first, std::size_t begin, std::size_t end, F&& f) {
   const std::size_t segments = std::size(first);
-  const auto at = [&](std::size_t s) { return static_cast<std::size_t>(first[s]); };
   std::size_t low = 0, high = segments;  // the last segment that begins at or before `begin`
   while (high - low > 1) {
     const std::size_t middle = low + (high - low) / 2;
-    (at(middle) <= begin ? low : high) = middle;
+    (static_cast<std::size_t>(first[middle]) <= begin ? low : high) = middle;
   }
   for (std::size_t s = low; begin < end; ++s) {
-    const std::size_t stop = s + 1 < segments ? std::min(end, at(s + 1)) : end;
+    std::size_t stop = s + 1 < segments ? static_cast<std::size_t>(first[s + 1]) : end;
+    if (stop > end) stop = end;
     if (stop <= begin) continue;
     f(s, begin, stop);
     begin = stop;
@@ -44,8 +44,134 @@ void for_each_run(const First& first, std::size_t begin, std::size_t end, F&& f)
 }
 
 template <class First>
-[[nodiscard]] bool begins_at(const First& first, std::size_t segment, std::size_t i) {
+[[nodiscard]] RASTRUM_HD bool begins_at(const First& first, std::size_t segment, std::size_t i) {
   return static_cast<std::size_t>(first[segment]) == i;
+}
+
+// The passes, named and over views, so that they are a device's as well.
+
+/// What a block's last run sums up to, and whether that run begins within the block.
+template <class T, class First, class In, class Op>
+struct SumLastRun {
+  First first;
+  In in;
+  std::span<T> last;
+  std::span<std::uint8_t> closed;
+  Op op;
+  RASTRUM_HD void operator()(std::size_t block, std::size_t begin, std::size_t end) const {
+    Op plus = op;
+    for_each_run(first, begin, end, [&](std::size_t s, std::size_t run, std::size_t stop) {
+      if (stop != end) return;
+      last[block] = fold_block<T>(in, run, stop, plus);
+      closed[block] = begins_at(first, s, run) ? 1 : 0;
+    });
+  }
+};
+
+/// Makes last[b] the sum of the segment that runs into the block behind b. By one thread.
+template <class T, class Op>
+struct CarryAcrossBlocks {
+  std::span<T> last;
+  std::span<const std::uint8_t> closed;
+  Op op;
+  RASTRUM_HD void operator()(std::size_t) const {
+    Op plus = op;
+    for (std::size_t b = 1; b < last.size(); ++b)
+      if (closed[b] == 0) last[b] = static_cast<T>(plus(last[b - 1], last[b]));
+  }
+};
+
+template <class T, class First, class In, class Out, class Op>
+struct ScanRuns {
+  First first;
+  In in;
+  Out out;
+  std::span<const T> last;
+  Op op;
+  RASTRUM_HD void operator()(std::size_t block, std::size_t begin, std::size_t end) const {
+    Op plus = op;
+    for_each_run(first, begin, end, [&](std::size_t s, std::size_t run, std::size_t stop) {
+      const bool carried = !begins_at(first, s, run);
+      T sum = static_cast<T>(in[run]);
+      for (std::size_t i = run;;) {
+        const T before = sum;
+        if (i + 1 < stop) sum = static_cast<T>(plus(sum, static_cast<T>(in[i + 1])));
+        out[i] = carried ? static_cast<T>(plus(last[block - 1], before)) : before;
+        if (++i == stop) break;
+      }
+    });
+  }
+};
+
+/// A block's first piece, where it continues a segment of the block before it.
+template <class T>
+struct Carried {
+  T piece;
+  std::size_t segment;
+};
+
+template <class T, class First, class In, class Op>
+struct ReduceRuns {
+  First first;
+  In in;
+  std::span<T> out;
+  std::span<Carried<T>> carried;
+  Op op;
+  RASTRUM_HD void operator()(std::size_t block, std::size_t begin, std::size_t end) const {
+    Op plus = op;
+    carried[block].segment = std::size(first);
+    for_each_run(first, begin, end, [&](std::size_t s, std::size_t run, std::size_t stop) {
+      const T piece = fold_block<T>(in, run, stop, plus);
+      if (begins_at(first, s, run))
+        out[s] = piece;
+      else
+        carried[block] = {piece, s};
+    });
+  }
+};
+
+/// Puts the pieces to their segments, in order. By one thread.
+template <class T, class Op>
+struct AddCarried {
+  std::span<T> out;
+  std::span<const Carried<T>> carried;
+  Op op;
+  RASTRUM_HD void operator()(std::size_t) const {
+    Op plus = op;
+    for (const Carried<T>& c : carried)
+      if (c.segment < out.size()) out[c.segment] = static_cast<T>(plus(out[c.segment], c.piece));
+  }
+};
+
+template <class T>
+struct Always {
+  T value;
+  RASTRUM_HD T operator()(std::size_t) const { return value; }
+};
+
+template <class T, class Exec, class First, class In, class Out, class Op>
+void scan_in_blocks(Exec& exec, First first, In in, Out out, Op op) {
+  const std::size_t n = std::size(in);
+  auto last = make_buffer<T>(exec, block_count(n));
+  auto closed = make_buffer<std::uint8_t>(exec, block_count(n));
+  const auto last_view = view_of(last);
+  const auto closed_view = view_of(closed);
+  for_each_block(exec, n, SumLastRun<T, First, In, Op>{first, in, last_view, closed_view, op});
+  for_each_index(exec, 1, CarryAcrossBlocks<T, Op>{last_view, closed_view, op});
+  for_each_block(exec, n, ScanRuns<T, First, In, Out, Op>{first, in, out, last_view, op});
+}
+
+template <class Exec, class First, class In, class T, class Op>
+[[nodiscard]] auto reduce_in_blocks(Exec& exec, First first, In in, T neutral, Op op) {
+  const std::size_t n = std::size(in);
+  auto out = make_buffer<T>(exec, std::size(first));
+  auto carried = make_buffer<Carried<T>>(exec, block_count(n));
+  const auto out_view = view_of(out);
+  const auto carried_view = view_of(carried);
+  tabulate(exec, out, Always<T>{neutral});
+  for_each_block(exec, n, ReduceRuns<T, First, In, Op>{first, in, out_view, carried_view, op});
+  for_each_index(exec, 1, AddCarried<T, Op>{out_view, carried_view, op});
+  return out;
 }
 
 }  // namespace segmented_detail
@@ -57,33 +183,8 @@ template <class T, class Exec, Readable First, Readable In, Writable Out, class 
 void segmented_scan(Exec& exec, const First& first, const In& in, Out&& out, Op op = {}) {
   using namespace segmented_detail;
   assert(std::size(in) == std::size(out));
-  const std::size_t n = std::size(in);
-  assert(n == 0 || (std::size(first) > 0 && begins_at(first, 0, 0)));
-  // What a block's last run sums up to, and whether that run begins within the block.
-  auto last = make_buffer<T>(exec, block_count(n));
-  auto closed = make_buffer<std::uint8_t>(exec, block_count(n));
-  for_each_block(exec, n, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    for_each_run(first, begin, end, [&](std::size_t s, std::size_t run, std::size_t stop) {
-      if (stop != end) return;
-      last[block] = fold_block<T>(in, run, stop, op);
-      closed[block] = begins_at(first, s, run) ? 1 : 0;
-    });
-  });
-  // From here on: the sum of the segment that runs into the next block.
-  for (std::size_t b = 1; b < last.size(); ++b)
-    if (closed[b] == 0) last[b] = static_cast<T>(op(last[b - 1], last[b]));
-  for_each_block(exec, n, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    for_each_run(first, begin, end, [&](std::size_t s, std::size_t run, std::size_t stop) {
-      const bool carried = !begins_at(first, s, run);
-      T sum = static_cast<T>(in[run]);
-      for (std::size_t i = run;;) {
-        const T before = sum;
-        if (i + 1 < stop) sum = static_cast<T>(op(sum, static_cast<T>(in[i + 1])));
-        out[i] = carried ? static_cast<T>(op(last[block - 1], before)) : before;
-        if (++i == stop) break;
-      }
-    });
-  });
+  assert(std::size(in) == 0 || (std::size(first) > 0 && begins_at(first, 0, 0)));
+  scan_in_blocks<T>(exec, view_of(first), view_of(in), view_of(out), op);
 }
 
 /// One value per segment: in[first[s]] op … , `neutral` where the segment is empty. `first` as
@@ -92,29 +193,8 @@ template <class Exec, Readable First, Readable In, class T, class Op = std::plus
 [[nodiscard]] Buffer<T> segmented_reduce(Exec& exec, const First& first, const In& in, T neutral,
                                          Op op = {}) {
   using namespace segmented_detail;
-  const std::size_t n = std::size(in);
-  assert(n == 0 || (std::size(first) > 0 && begins_at(first, 0, 0)));
-  auto out = make_buffer<T>(exec, std::size(first));
-  tabulate(exec, out, [&](std::size_t) { return neutral; });
-  // A block's first piece, where it continues a segment of the block before it.
-  struct Carried {
-    T piece;
-    std::size_t segment;
-  };
-  auto carried = make_buffer<Carried>(exec, block_count(n));
-  for_each_block(exec, n, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    carried[block].segment = std::size(first);
-    for_each_run(first, begin, end, [&](std::size_t s, std::size_t run, std::size_t stop) {
-      const T piece = fold_block<T>(in, run, stop, op);
-      if (begins_at(first, s, run))
-        out[s] = piece;
-      else
-        carried[block] = {piece, s};
-    });
-  });
-  for (const Carried& c : carried)
-    if (c.segment < out.size()) out[c.segment] = static_cast<T>(op(out[c.segment], c.piece));
-  return out;
+  assert(std::size(in) == 0 || (std::size(first) > 0 && begins_at(first, 0, 0)));
+  return reduce_in_blocks(exec, view_of(first), view_of(in), neutral, op);
 }
 
 }  // namespace rastrum::parallel
