@@ -23,3 +23,10 @@ if(RASTRUM_CUDA)
       "or set CMAKE_CUDA_COMPILER")
   endif()
 endif()
+
+# Thrust's headers also serve a plain C++ compiler: tests run the device's words on the CPU.
+if(RASTRUM_CUDA_FOUND)
+  find_package(CUDAToolkit REQUIRED)
+  find_path(RASTRUM_CCCL_INCLUDE_DIR thrust/version.h
+    HINTS ${CUDAToolkit_INCLUDE_DIRS} PATH_SUFFIXES cccl DOC "The folder of thrust/ and cub/")
+endif()

@@ -19,6 +19,7 @@ function(rastrum_dependencies out)
   set(package_TinyGLTF "TinyGLTF CONFIG")
   set(package_nlohmann_json "nlohmann_json CONFIG")
   set(package_Threads "Threads")
+  set(package_CUDA "CUDAToolkit")
 
   get_target_property(links rastrum LINK_LIBRARIES)
   set(calls "")

@@ -36,9 +36,11 @@ inline Isa parse_isa(const std::string& text) {
 }
 
 inline Device parse_device(const std::string& text) {
-  return choose<Device>(
-      "--device", text,
-      {{"serial", Device::serial}, {"threads", Device::threads}, {"cuda", Device::cuda}});
+  return choose<Device>("--device", text,
+                        {{"serial", Device::serial},
+                         {"threads", Device::threads},
+                         {"cuda", Device::cuda},
+                         {"auto", Device::automatic}});
 }
 
 /// The instruction sets of this machine, for help texts.

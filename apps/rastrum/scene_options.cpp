@@ -161,7 +161,7 @@ void add_machine_options(CLI::App& app, SceneArguments& a) {
         a.render.visibility = check_axis("--visibility", visibilities(), s);
       })
       ->group(group);
-  add(app, "--device", "NAME", "serial, threads, cuda (threads)", [&a](const std::string& s) {
+  add(app, "--device", "NAME", "serial, threads, cuda, auto (threads)", [&a](const std::string& s) {
     a.render.device = parse_device(s);
   })->group(group);
   add(app, "--threads", "N", "(all)", [&a](const std::string& s) {

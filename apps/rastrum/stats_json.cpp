@@ -10,22 +10,6 @@
 #include <rastrum/parallel/exec.hpp>
 
 namespace rastrum::cli {
-namespace {
-
-const char* device_name(Device device) {
-  switch (device) {
-    case Device::serial:
-      return "serial";
-    case Device::threads:
-      return "threads";
-    case Device::cuda:
-      return "cuda";
-  }
-  return "";
-}
-
-}  // namespace
-
 std::size_t median_frame(std::span<const FrameStats> frames) {
   std::vector<std::size_t> order(frames.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -61,7 +45,8 @@ nlohmann::ordered_json stats_json(std::span<const FrameStats> frames, const Rend
   for (const auto& [name, value] : median.counters) counters[name] = value;
   const FrameStats::Triangles& t = median.triangles;
   return {{"version", RASTRUM_VERSION},
-          {"device", device_name(options.device)},
+          {"device", name(median.device)},
+          {"device_why", median.device_why},
           {"threads", thread_count(options, median.rasterizer)},
           {"isa", name(median.isa)},
           {"rasterizer", median.rasterizer},

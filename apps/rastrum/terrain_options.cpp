@@ -205,7 +205,7 @@ void add_terrain_machine(CLI::App& app, TerrainSceneArguments& a) {
             "--method", s, {{"fast", terrain::Method::fast}, {"words", terrain::Method::words}});
       })
       ->group(group);
-  add(app, "--device", "NAME", "serial, threads (threads)", [&o](const std::string& s) {
+  add(app, "--device", "NAME", "serial, threads, cuda, auto (threads)", [&o](const std::string& s) {
     o.device = parse_device(s);
   })->group(group);
   add(app, "--threads", "N", "(all)", [&o](const std::string& s) {

@@ -2,7 +2,43 @@
 
 #include <hwy/targets.h>
 
+#include <rastrum/core/error.hpp>
+#include <rastrum/parallel/cuda/status.hpp>
+
 namespace rastrum {
+
+std::string_view name(Device device) {
+  switch (device) {
+    case Device::serial:
+      return "serial";
+    case Device::threads:
+      return "threads";
+    case Device::cuda:
+      return "cuda";
+    case Device::automatic:
+      return "auto";
+  }
+  return "";
+}
+
+DeviceChoice choose_device(Device wanted, bool draws_on_cuda) {
+  if (wanted == Device::serial || wanted == Device::threads) return {wanted, ""};
+  const parallel::CudaStatus status = parallel::cuda_status();
+  std::string why_not = status.why_not;
+  if (status.usable && !draws_on_cuda)
+    why_not = std::string("there is a ")
+                  .append(status.name)
+                  .append(", and this renderer has no CUDA code yet");
+  if (wanted == Device::automatic) {
+    if (why_not.empty()) return {Device::cuda, "there is a " + status.name};
+    return {Device::threads, std::string("no CUDA: ").append(why_not)};
+  }
+  if (!why_not.empty())
+    throw Error(Errc::no_device, std::string("--device cuda: CUDA cannot be used: ")
+                                     .append(why_not)
+                                     .append("; or use --device threads"));
+  return {Device::cuda, ""};
+}
 
 std::string_view name(Isa isa) {
   switch (isa) {

@@ -3,12 +3,23 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
 namespace rastrum {
 
-enum class Device : std::uint8_t { serial, threads, cuda };
+/// `automatic` takes the best that there is (choose_device).
+enum class Device : std::uint8_t { serial, threads, cuda, automatic };
+[[nodiscard]] std::string_view name(Device device);
+
+struct DeviceChoice {
+  Device device;    ///< not `automatic`
+  std::string why;  ///< what `automatic` went by; empty where a device was asked for
+};
+/// For a renderer that draws on a CUDA device, or does not (`draws_on_cuda`). Throws
+/// Error{no_device} with what to do where `cuda` is asked for and cannot be had.
+[[nodiscard]] DeviceChoice choose_device(Device wanted, bool draws_on_cuda);
 
 /// Instruction sets that the SIMD leaves are compiled for. `scalar` is plain C++.
 enum class Isa : std::uint8_t { scalar, sse4, avx2, avx512, neon };

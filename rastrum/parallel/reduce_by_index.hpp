@@ -40,11 +40,16 @@ struct Maximum {
 };
 
 /// word = max(word, value), by many threads at once.
-inline void atomic_maximum(std::uint64_t& word, std::uint64_t value) noexcept {
+RASTRUM_HD inline void atomic_maximum(std::uint64_t& word, std::uint64_t value) noexcept {
+#if defined(__CUDA_ARCH__)
+  static_assert(sizeof(unsigned long long) == sizeof(std::uint64_t));
+  atomicMax(reinterpret_cast<unsigned long long*>(&word), value);
+#else
   const std::atomic_ref<std::uint64_t> shared(word);
   std::uint64_t now = shared.load(std::memory_order_relaxed);
   while (now < value && !shared.compare_exchange_weak(now, value, std::memory_order_relaxed)) {
   }
+#endif
 }
 
 /// `dest` is a range of values, changed in place. Sizes of `indices` (integers, of any sign) and

@@ -28,6 +28,7 @@
 #include <rastrum/parallel/selection.hpp>
 #include <rastrum/parallel/sort_by_key.hpp>
 #include <rastrum/parallel/tabulate.hpp>
+#include <rastrum/parallel/team.hpp>
 #include <rastrum/parallel/transform.hpp>
 #include <rastrum/parallel/transpose.hpp>
 #include <rastrum/parallel/unique.hpp>

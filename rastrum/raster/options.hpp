@@ -99,6 +99,8 @@ struct FrameStats {
   Isa isa = Isa::scalar;
   std::string rasterizer, visibility;
   std::string why;  ///< why `auto` took them
+  Device device = Device::threads;
+  std::string device_why;  ///< why Device::automatic took it
   /// The work that is particular to the rasterizer: rows, bins, tile pairs, …
   std::vector<std::pair<std::string, std::uint64_t>> counters;
 };

@@ -132,6 +132,7 @@ struct Renderer::Impl {
   explicit Impl(RenderOptions o) : options(std::move(o)) {}
 
   RenderOptions options;
+  std::string device_why;
   Isa isa = Isa::scalar;
   MemoryAccount memory;
   raster::TextureSet textures{memory};
@@ -147,9 +148,10 @@ Renderer::Renderer(RenderOptions options) : impl_(std::make_unique<Impl>(std::mo
                                             " is outside 1x1 to 32768x32768");
   if (o.threads < 0 || o.threads > 4096)
     throw Error(Errc::invalid_argument, "threads must lie between 0 (all) and 4096");
-  if (o.device == Device::cuda)
-    throw Error(Errc::no_device, "this build has no CUDA backend; use --device threads");
   check_transparency(o);
+  DeviceChoice choice = choose_device(o.device, false);
+  impl_->options.device = choice.device;
+  impl_->device_why = std::move(choice.why);
   const std::vector<Isa> isas = available_isas();
   impl_->isa = o.isa.value_or(isas.back());
   if (std::find(isas.begin(), isas.end(), impl_->isa) == isas.end())
@@ -304,6 +306,8 @@ FrameStats Renderer::draw_in(bool linear_light, std::span<raster::Draw> draws,
   impl_->memory.restart_peak();
   FrameStats stats = impl_->draw_frame(request);
   stats.peak_bytes = impl_->memory.peak();
+  stats.device = o.device;
+  stats.device_why = impl_->device_why;
   return stats;
 }
 

@@ -50,7 +50,7 @@ struct RenderOptions {
   raster::Tuning tuning;           ///< of the rasterizer
   std::uint64_t memory_limit = 0;  ///< bytes of scratch beyond the mesh and the images; 0: none
   bool hierarchical_z = true;      ///< where the rasterizer has it; changes no pixel
-  Device device = Device::threads;
+  Device device = Device::threads;  ///< options() of a Renderer has what `automatic` took
   int threads = 0;         ///< 0: all
   std::optional<Isa> isa;  ///< none: the best this machine has
   Shader shader = Shader::phong;

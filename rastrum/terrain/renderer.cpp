@@ -37,6 +37,7 @@ struct TerrainRenderer::Impl {
         isa(options.isa.value_or(available_isas().back())),
         pool(memory),
         serial(&memory) {
+    options.device = choose_device(options.device, false).device;
     if (options.device == Device::threads) exec.emplace(options.threads, &memory);
   }
 

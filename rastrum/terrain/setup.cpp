@@ -77,8 +77,7 @@ void check(const TerrainOptions& o) {
             std::to_string(extent) + " cells away in " + std::to_string(slice_count(o)) +
             " steps, and 2^23 and 2^24 are the limits; choose a smaller distance or larger steps");
   }
-  if (o.device == Device::cuda)
-    throw Error(Errc::no_device, "terrain: there is no CUDA device for it; use threads or serial");
+  static_cast<void>(choose_device(o.device, false));
 }
 
 void check(const TerrainCamera& c) {

@@ -58,9 +58,7 @@ void check(const Sun& sun) {
 /// Runs f on the backend that the options ask for.
 template <class F>
 void on_device(const ShadowOptions& options, F&& f) {
-  if (options.device == Device::cuda)
-    throw Error(Errc::no_device, "shadows are not computed on cuda; use serial or threads");
-  if (options.device == Device::serial) {
+  if (choose_device(options.device, false).device == Device::serial) {
     parallel::Serial exec;
     f(exec);
   } else {

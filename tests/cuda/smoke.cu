@@ -6,7 +6,7 @@
 
 #include <rastrum/core/mat.hpp>
 #include <rastrum/core/vec.hpp>
-#include <rastrum/parallel/cuda/exec.cuh>
+#include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/raster/coverage.hpp>
 #include <rastrum/raster/piece.hpp>
 #include <rastrum/raster/projection.hpp>
@@ -58,19 +58,10 @@ struct CoverBlock {
   std::span<const Piece> pieces;
   std::span<const std::uint64_t> first;
   Rect view;
-  std::span<unsigned long long> words;  ///< W × H, zero
+  std::span<std::uint64_t> words;  ///< W × H, zero
 
-  RASTRUM_HD std::size_t piece_of(std::uint64_t i) const {
-    std::size_t low = 0, high = first.size();
-    while (high - low > 1) {
-      const std::size_t middle = (low + high) / 2;
-      (first[middle] <= i ? low : high) = middle;
-    }
-    return low;
-  }
-
-  __device__ void operator()(std::size_t i) const {
-    const std::size_t p = piece_of(i);
+  RASTRUM_HD void operator()(std::size_t i) const {
+    const std::size_t p = parallel::expand_detail::last_at_most(first, i);
     const Rect blocks = blocks_of(pieces[p], view);
     const int k = static_cast<int>(i - first[p]);
     const int bx = blocks.x0 + k % (blocks.x1 - blocks.x0);
@@ -84,16 +75,9 @@ struct CoverBlock {
         if ((mask >> (row * kBlockSize + x % kBlockSize) & 1) == 0) continue;
         const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(view.x1) +
                         static_cast<std::size_t>(x);
-        atomicMax(&words[at], make_word(depth_at(pieces[p], x, y), pieces[p].low));
+        parallel::atomic_maximum(words[at], make_word(depth_at(pieces[p], x, y), pieces[p].low));
       }
     }
-  }
-};
-
-struct Plus {
-  template <class T>
-  RASTRUM_HD T operator()(T a, T b) const {
-    return a + b;
   }
 };
 
@@ -104,7 +88,7 @@ struct DeviceFrame {
   std::span<ProjectedVertex> projected;
   std::span<Piece> pieces;
   std::span<std::uint64_t> block_counts, first_block;
-  std::span<unsigned long long> words;
+  std::span<std::uint64_t> words;
 };
 
 void draw(parallel::Cuda& exec, const DeviceFrame& f, const Mat4& object_to_clip, int width,
@@ -114,19 +98,9 @@ void draw(parallel::Cuda& exec, const DeviceFrame& f, const Mat4& object_to_clip
                       ProjectVertex{object_to_clip, Viewport::of(width, height)});
   parallel::tabulate(exec, f.pieces, SetUp{f.projected, f.indices, view});
   parallel::transform(exec, f.pieces, f.block_counts, CountBlocks{view});
-  parallel::exclusive_scan(exec, f.block_counts, f.first_block, std::uint64_t{0}, Plus{});
-  const std::uint64_t blocks = parallel::reduce(exec, f.block_counts, std::uint64_t{0}, Plus{});
+  const std::uint64_t blocks =
+      parallel::exclusive_scan(exec, f.block_counts, f.first_block, std::uint64_t{0});
   parallel::for_each_index(exec, blocks, CoverBlock{f.pieces, f.first_block, view, f.words});
-}
-
-/// The words that the pipeline above does not need.
-void instantiate_the_rest(parallel::Cuda& exec, std::span<std::uint64_t> keys,
-                          std::span<std::uint32_t> values, std::span<const Vec3> in,
-                          std::span<Vec3> out) {
-  parallel::sort_by_key(exec, keys, values);
-  parallel::inclusive_scan(exec, keys, keys, std::uint64_t{0}, Plus{});
-  parallel::gather(exec, in, values, out);
-  parallel::scatter(exec, in, values, out);
 }
 
 }  // namespace rastrum::raster

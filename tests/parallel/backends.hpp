@@ -1,5 +1,6 @@
 // Every word is held against its definition on every backend, with sizes around those at which the
-// implementations change their way.
+// implementations change their way. Compiled with RASTRUM_TEST_DEVICE_WORDS the backend is that of
+// rastrum/parallel/cuda, on the CPU (system.cuh).
 #pragma once
 
 #include <cmath>
@@ -13,8 +14,25 @@
 #include <tbb/global_control.h>
 
 #include <rastrum/parallel/words.hpp>
+#if defined(RASTRUM_TEST_DEVICE_WORDS)
+#include <rastrum/parallel/cuda/words.cuh>
+#endif
 
 namespace rastrum::parallel::test {
+
+#if defined(RASTRUM_TEST_DEVICE_WORDS)
+template <class F>
+void on_every_backend(F&& f) {
+  SCOPED_TRACE("cuda on the CPU");
+  Cuda exec;
+  f(exec);
+}
+template <class T>
+std::vector<T> as_vector(const DeviceBuffer<T>& buffer) {
+  Cuda exec;
+  return to_host(exec, buffer);
+}
+#else
 
 /// Calls f(backend) for serial and for 1, 2 and 8 threads.
 template <class F>
@@ -32,6 +50,7 @@ void on_every_backend(F&& f) {
     f(exec);
   }
 }
+#endif
 
 inline const std::vector<std::size_t> kSizes = {
     0, 1, 2, 63, 64, 65, kBlock - 1, kBlock, kBlock + 1, 3 * kBlock, 50021, 300007};

@@ -47,13 +47,14 @@ TEST(ExpandEach, VisitsEachResultInItsChunkInOrder) {
     const auto size = [&](std::size_t i) { return sizes[i]; };
     on_every_backend([&](auto& exec) {
       for (const std::size_t per_chunk : kPerChunk) {
-        const Expansion plan(exec, in, size, per_chunk);
+        const auto plan = make_expansion(exec, in, size, per_chunk);
         expect_chunks(plan, expected, [&](auto&& f) { expand_each(exec, plan, in, f); });
       }
       Results seen(expected.size());
-      std::vector<std::size_t> visited(expected.size() / kBlock + 1, 0);
+      constexpr std::size_t kDefault = kResultsPerChunk<std::remove_cvref_t<decltype(exec)>>;
+      std::vector<std::size_t> visited(expected.size() / kDefault + 1, 0);
       expand_each(exec, in, size, [&](std::size_t c, std::size_t i, std::size_t j) {
-        seen[c * kBlock + visited[c]++] = {i, j};
+        seen[c * kDefault + visited[c]++] = {i, j};
       });
       EXPECT_EQ(seen, expected);
     });
@@ -64,7 +65,7 @@ TEST(ExpandEach, RunsAreTheSegmentsSharesOfAChunk) {
   for (const auto& sizes : segment_sizes())
     on_every_backend([&](auto& exec) {
       const auto in = counting(sizes.size());
-      const Expansion plan(
+      const auto plan = make_expansion(
           exec, in, [&](std::size_t i) { return sizes[i]; }, 100);
       std::vector<Results> runs(plan.chunks());
       std::vector<std::vector<std::size_t>> owners_of(plan.chunks());
@@ -120,14 +121,15 @@ TYPED_TEST(ExpandMaskedEach, VisitsEachResultInItsChunkInOrder) {
       const auto in = counting(sizes.size());
       on_every_backend([&](auto& exec) {
         for (const std::size_t per_chunk : kPerChunk) {
-          const MaskedExpansion<kBits> plan(exec, in, size, holds, per_chunk);
+          const auto plan = make_masked_expansion<kBits>(exec, in, size, holds, per_chunk);
           expect_chunks(plan, expected, [&](auto&& f) { expand_masked_each(exec, plan, in, f); });
         }
         Results seen(expected.size());
-        std::vector<std::size_t> visited(expected.size() / kBlock + 1, 0);
+        constexpr std::size_t kDefault = kResultsPerChunk<std::remove_cvref_t<decltype(exec)>>;
+        std::vector<std::size_t> visited(expected.size() / kDefault + 1, 0);
         expand_masked_each<kBits>(exec, in, size, holds,
                                   [&](std::size_t c, std::size_t i, std::size_t j) {
-                                    seen[c * kBlock + visited[c]++] = {i, j};
+                                    seen[c * kDefault + visited[c]++] = {i, j};
                                   });
         EXPECT_EQ(seen, expected);
       });
@@ -137,7 +139,7 @@ TYPED_TEST(ExpandMaskedEach, VisitsEachResultInItsChunkInOrder) {
 TEST(MaskedExpansion, AsksThePredicateOncePerElement) {
   on_every_backend([&](auto& exec) {
     std::vector<int> asked(100000, 0);
-    const MaskedExpansion<64> plan(
+    const auto plan = make_masked_expansion<64>(
         exec, counting(1), [](std::size_t) { return 100000; },
         [&](std::size_t, std::size_t j) { return ++asked[j] % 2 == 1; });
     expand_masked_each(exec, plan, counting(1), [](std::size_t, std::size_t, std::size_t) {});

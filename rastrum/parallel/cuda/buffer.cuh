@@ -1,0 +1,110 @@
+// Memory of the device: what words allocate and return there, and the ways across.
+#pragma once
+
+#include <cassert>
+#include <cstddef>
+#include <memory>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <rastrum/parallel/cuda/exec.cuh>
+#include <rastrum/parallel/range.hpp>
+
+namespace rastrum::parallel {
+
+/// n elements on the device, uninitialized, in the memory of a Cuda context, which they may
+/// outlive. The host sees where they lie and not what they are: to_host copies them.
+template <class T>
+class DeviceBuffer {
+  static_assert(std::is_trivially_copy_constructible_v<T> && std::is_trivially_destructible_v<T>);
+
+ public:
+  using value_type = T;
+  DeviceBuffer() noexcept = default;
+  DeviceBuffer(std::shared_ptr<Arena> arena, std::size_t n) : arena_(std::move(arena)), size_(n) {
+    if (n > SIZE_MAX / sizeof(T))
+      throw Error(Errc::out_of_memory, std::to_string(n).append(" elements fit no memory"));
+    if (n > 0) data_ = static_cast<T*>(arena_->allocate(n * sizeof(T)));
+  }
+  DeviceBuffer(DeviceBuffer&& other) noexcept
+      : arena_(std::move(other.arena_)),
+        data_(std::exchange(other.data_, nullptr)),
+        size_(std::exchange(other.size_, 0)) {}
+  DeviceBuffer& operator=(DeviceBuffer&& other) noexcept {
+    std::swap(arena_, other.arena_);
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    return *this;
+  }
+  ~DeviceBuffer() {
+    if (data_ != nullptr) arena_->release(data_, size_ * sizeof(T));
+  }
+
+  [[nodiscard]] RASTRUM_HD T* data() noexcept { return data_; }
+  [[nodiscard]] RASTRUM_HD const T* data() const noexcept { return data_; }
+  [[nodiscard]] RASTRUM_HD std::size_t size() const noexcept { return size_; }
+  /// For the device alone; kernels take view_of(buffer), which has it too.
+  [[nodiscard]] RASTRUM_HD T& operator[](std::size_t i) noexcept { return data_[i]; }
+  [[nodiscard]] RASTRUM_HD const T& operator[](std::size_t i) const noexcept { return data_[i]; }
+
+ private:
+  std::shared_ptr<Arena> arena_;
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+template <class T>
+[[nodiscard]] DeviceBuffer<T> make_buffer(const Cuda& exec, std::size_t n = 0) {
+  return DeviceBuffer<T>(exec.memory(), n);
+}
+
+/// A copy of `source`, contiguous memory of the host, which may go when this returns. Waits.
+template <class R>
+[[nodiscard]] auto to_device(Cuda& exec, const R& source) {
+  auto out =
+      make_buffer<std::remove_cvref_t<decltype(*std::data(source))>>(exec, std::size(source));
+  cuda_system::copy(exec.stream(), out.data(), std::data(source),
+                    out.size() * sizeof(*std::data(source)));
+  exec.wait();
+  return out;
+}
+/// A copy of contiguous memory of the device. Waits.
+template <class R>
+[[nodiscard]] auto to_host(Cuda& exec, const R& source) {
+  std::vector<std::remove_cvref_t<decltype(*std::data(source))>> out(std::size(source));
+  cuda_system::copy(exec.stream(), out.data(), std::data(source),
+                    out.size() * sizeof(*std::data(source)));
+  exec.wait();
+  return out;
+}
+
+/// A number that the device has yet to find. Asking for it waits.
+template <class T>
+class Pending {
+ public:
+  Pending(Cuda& exec, DeviceBuffer<T> cell) : exec_(&exec), cell_(std::move(cell)) {}
+  [[nodiscard]] T get() const { return to_host(*exec_, cell_)[0]; }
+  operator T() const { return get(); }
+  /// Where it will be on the device.
+  [[nodiscard]] const T* device() const { return cell_.data(); }
+  friend bool operator==(const Pending& a, const T& b) { return a.get() == b; }
+
+ private:
+  Cuda* exec_;
+  DeviceBuffer<T> cell_;
+};
+
+/// A range as kernels take it. What owns memory of the host is refused where that is not theirs.
+template <class R>
+[[nodiscard]] auto device_view(R&& range) {
+  using View = view_t<R>;
+  constexpr bool owns_host_memory = requires(std::remove_cvref_t<R> r) {
+    r.push_back(*std::data(r));
+  };
+  static_assert(cuda_system::kOnHost || !owns_host_memory,
+                "this range is the host's; copy it with to_device");
+  return View(view_of(range));
+}
+
+}  // namespace rastrum::parallel

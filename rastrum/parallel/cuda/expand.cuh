@@ -1,0 +1,141 @@
+// expand, owners, expand_masked and their walks on a device; see expand_each.hpp and
+// expand_masked_each.hpp for what they compute, whose code this is: a thread takes a chunk.
+//
+// So where the caller does not say how large a chunk is, it is one result, which its thread finds
+// by binary search (of neighbours the same way, in the cache), and neighbours write side by side. A
+// thread asks the predicates of one mask.
+//
+// Work O((n + total) log n), span O(per_chunk + log n). Allocate as on the CPU, and 8 bytes a mask.
+// Expansions wait for their size.
+#pragma once
+
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include <rastrum/parallel/cuda/reduce.cuh>
+#include <rastrum/parallel/expand.hpp>
+#include <rastrum/parallel/expand_masked.hpp>
+
+namespace rastrum::parallel {
+
+template <>
+inline constexpr std::size_t kResultsPerChunk<Cuda> = 1;
+template <>
+inline constexpr std::size_t kElementsPerGroup<Cuda> = 1;
+
+using DeviceExpansion = BasicExpansion<DeviceBuffer<std::size_t>>;
+template <int kBits>
+using DeviceMaskedExpansion =
+    BasicMaskedExpansion<kBits, DeviceBuffer<Mask<kBits>>, DeviceBuffer<std::size_t>>;
+
+namespace cuda_detail {
+
+template <class Chunk, class Plan, class In, class F>
+struct CallWithChunk {
+  Plan plan;
+  In in;
+  F f;
+  RASTRUM_HD void operator()(std::size_t c) const { f(Chunk(plan, in, c)); }
+};
+template <class F>
+struct CallWithEach {
+  F f;
+  template <class Chunk>
+  RASTRUM_HD void operator()(const Chunk& chunk) const {
+    const std::size_t c = chunk.index();
+    chunk.each([&](const auto& element, std::size_t j) { f(c, element, j); });
+  }
+};
+/// Writes the results of a chunk.
+template <class Get, class T>
+struct WriteEach {
+  Get get;
+  T* out;
+  template <class Chunk>
+  RASTRUM_HD void operator()(const Chunk& chunk) const {
+    std::size_t k = chunk.begin();
+    chunk.each([&](const auto& element, std::size_t j) { out[k++] = get(element, j); });
+  }
+};
+template <class Counts>
+struct CountOf {
+  Counts counts;
+  RASTRUM_HD std::size_t operator()(std::uint32_t i) const {
+    return static_cast<std::size_t>(counts[i]);
+  }
+};
+struct FirstOfBoth {
+  RASTRUM_HD std::uint32_t operator()(std::uint32_t i, std::size_t) const { return i; }
+};
+
+}  // namespace cuda_detail
+
+template <Readable In, class F>
+void expand_chunks(Cuda& exec, const DeviceExpansion& expansion, const In& in, F&& f) {
+  assert(std::size(in) == expansion.segments());
+  using InView = decltype(device_view(in));
+  using Plan = decltype(expansion.view());
+  for_each_index(
+      exec, expansion.chunks(),
+      cuda_detail::CallWithChunk<ExpansionChunk<InView, Plan>, Plan, InView, std::decay_t<F>>{
+          expansion.view(), device_view(in), f});
+}
+template <int kBits, Readable In, class F>
+void expand_chunks(Cuda& exec, const DeviceMaskedExpansion<kBits>& expansion, const In& in, F&& f) {
+  assert(std::size(in) == expansion.segments());
+  using InView = decltype(device_view(in));
+  using Plan = decltype(expansion.view());
+  for_each_index(
+      exec, expansion.chunks(),
+      cuda_detail::CallWithChunk<MaskedChunk<kBits, InView, Plan>, Plan, InView, std::decay_t<F>>{
+          expansion.view(), device_view(in), f});
+}
+
+template <Readable In, class F>
+void expand_each(Cuda& exec, const DeviceExpansion& expansion, const In& in, F&& f) {
+  expand_chunks(exec, expansion, in, cuda_detail::CallWithEach<std::decay_t<F>>{f});
+}
+template <Readable In, class Size, class F>
+void expand_each(Cuda& exec, const In& in, Size&& size, F&& f) {
+  expand_each(exec, make_expansion(exec, in, size), in, f);
+}
+template <int kBits, Readable In, class F>
+void expand_masked_each(Cuda& exec, const DeviceMaskedExpansion<kBits>& expansion, const In& in,
+                        F&& f) {
+  expand_chunks(exec, expansion, in, cuda_detail::CallWithEach<std::decay_t<F>>{f});
+}
+template <int kBits = 64, Readable In, class Size, class Holds, class F>
+void expand_masked_each(Cuda& exec, const In& in, Size&& size, Holds&& holds, F&& f) {
+  expand_masked_each(exec, make_masked_expansion<kBits>(exec, in, size, holds), in, f);
+}
+
+template <Readable In, class Size, class Get>
+[[nodiscard]] DeviceBuffer<expanded_t<In, Get>> expand(Cuda& exec, const In& in, Size&& size,
+                                                       Get&& get) {
+  using T = expanded_t<In, Get>;
+  const auto expansion = make_expansion(exec, in, size);
+  auto out = make_buffer<T>(exec, expansion.size());
+  expand_chunks(exec, expansion, in, cuda_detail::WriteEach<std::decay_t<Get>, T>{get, out.data()});
+  return out;
+}
+
+template <int kBits = 64, Readable In, class Size, class Holds, class Get>
+[[nodiscard]] DeviceBuffer<expanded_t<In, Get>> expand_masked(Cuda& exec, const In& in, Size&& size,
+                                                              Holds&& holds, Get&& get) {
+  using T = expanded_t<In, Get>;
+  const auto expansion = make_masked_expansion<kBits>(exec, in, size, holds);
+  auto out = make_buffer<T>(exec, expansion.size());
+  expand_chunks(exec, expansion, in, cuda_detail::WriteEach<std::decay_t<Get>, T>{get, out.data()});
+  return out;
+}
+
+template <Readable Counts>
+[[nodiscard]] DeviceBuffer<std::uint32_t> owners(Cuda& exec, const Counts& counts) {
+  return expand(exec, counting<std::uint32_t>(std::size(counts)),
+                cuda_detail::CountOf<decltype(device_view(counts))>{device_view(counts)},
+                cuda_detail::FirstOfBoth{});
+}
+
+}  // namespace rastrum::parallel

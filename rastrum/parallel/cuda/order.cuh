@@ -1,0 +1,24 @@
+// Which folds may be cut anywhere: those whose result is the same bits however the operands are
+// grouped and in whatever order they come. All others keep the CPU's cut (reduce.hpp).
+#pragma once
+
+#include <concepts>
+#include <functional>
+
+#include <rastrum/parallel/reduce_by_index.hpp>
+
+namespace rastrum::parallel {
+
+/// Specialize it for an associative and commutative function of yours.
+template <class T, class Op>
+inline constexpr bool kAnyOrder = false;
+template <std::integral T>
+inline constexpr bool kAnyOrder<T, std::plus<>> = true;
+template <std::integral T>
+inline constexpr bool kAnyOrder<T, std::plus<T>> = true;
+template <std::integral T>
+inline constexpr bool kAnyOrder<T, std::bit_or<>> = true;
+template <std::integral T>
+inline constexpr bool kAnyOrder<T, Maximum> = true;
+
+}  // namespace rastrum::parallel

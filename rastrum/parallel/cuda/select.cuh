@@ -1,0 +1,100 @@
+// filter, partition and unique on a device; see filter.hpp, partition.hpp and unique.hpp.
+//
+// The predicate is asked once per element and kept as a byte; the bytes are counted, so that the
+// result has its size when it is allocated (waits), and Thrust's copy_if or stable_partition_copy
+// moves the elements. Work O(n), span O(log n). Allocate the result, n bytes and CUB's scratch.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <type_traits>
+
+#include <thrust/copy.h>
+#include <thrust/partition.h>
+
+#include <rastrum/parallel/cuda/reduce.cuh>
+
+namespace rastrum::parallel {
+namespace cuda_detail {
+
+template <class In, class Predicate>
+struct Holds {
+  In in;
+  Predicate holds;
+  RASTRUM_HD std::uint8_t operator()(std::size_t i) const {
+    return static_cast<bool>(holds(in[i])) ? std::uint8_t{1} : std::uint8_t{0};
+  }
+};
+struct IsSet {
+  RASTRUM_HD bool operator()(std::uint8_t flag) const { return flag != 0; }
+};
+
+struct Flags {
+  DeviceBuffer<std::uint8_t> flags;
+  std::size_t count;
+};
+template <class View, class Predicate>
+[[nodiscard]] Flags flag_elements(Cuda& exec, View view, Predicate holds) {
+  Flags out{make_buffer<std::uint8_t>(exec, std::size(view)), 0};
+  tabulate(exec, out.flags, Holds<View, Predicate>{view, holds});
+  out.count = reduce(exec, out.flags, std::size_t{0});
+  return out;
+}
+
+/// Whether i begins a run.
+template <class In, class Equal>
+struct IsFirst {
+  In in;
+  Equal equal;
+  RASTRUM_HD bool operator()(std::size_t i) const { return i == 0 || !equal(in[i - 1], in[i]); }
+};
+
+}  // namespace cuda_detail
+
+template <Readable In, class Predicate>
+[[nodiscard]] DeviceBuffer<element_t<In>> filter(Cuda& exec, const In& in, Predicate&& holds) {
+  using T = element_t<In>;
+  auto view = device_view(in);
+  const auto flagged =
+      cuda_detail::flag_elements<decltype(view), std::decay_t<Predicate>>(exec, view, holds);
+  auto out = make_buffer<T>(exec, flagged.count);
+  const auto values = cuda_detail::values_as<T>(view);
+  thrust::copy_if(exec.policy(), values, values + static_cast<std::ptrdiff_t>(std::size(in)),
+                  flagged.flags.data(), out.data(), cuda_detail::IsSet{});
+  return out;
+}
+
+template <class T>
+struct DevicePartition {
+  DeviceBuffer<T> elements;
+  std::size_t first_count = 0;  ///< how many of them the predicate holds for
+};
+
+template <Readable In, class Predicate>
+[[nodiscard]] DevicePartition<element_t<In>> partition(Cuda& exec, const In& in,
+                                                       Predicate&& holds) {
+  using T = element_t<In>;
+  auto view = device_view(in);
+  const auto flagged =
+      cuda_detail::flag_elements<decltype(view), std::decay_t<Predicate>>(exec, view, holds);
+  DevicePartition<T> out{make_buffer<T>(exec, std::size(in)), flagged.count};
+  const auto values = cuda_detail::values_as<T>(view);
+  thrust::stable_partition_copy(exec.policy(), values,
+                                values + static_cast<std::ptrdiff_t>(std::size(in)),
+                                flagged.flags.data(), out.elements.data(),
+                                out.elements.data() + flagged.count, cuda_detail::IsSet{});
+  return out;
+}
+
+template <Readable In, class Equal = std::equal_to<>>
+[[nodiscard]] DeviceBuffer<element_t<In>> unique(Cuda& exec, const In& in, Equal equal = {}) {
+  auto view = device_view(in);
+  const auto heads = filter(exec, counting(std::size(in)),
+                            cuda_detail::IsFirst<decltype(view), Equal>{view, equal});
+  auto out = make_buffer<element_t<In>>(exec, heads.size());
+  gather(exec, in, heads, out);
+  return out;
+}
+
+}  // namespace rastrum::parallel

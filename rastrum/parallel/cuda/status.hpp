@@ -1,0 +1,21 @@
+// Whether there is a CUDA device to compute on; callable from any build, on any machine.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace rastrum::parallel {
+
+struct CudaStatus {
+  bool usable = false;
+  /// Where it is not: what is missing and what to do about it, as the end of a sentence.
+  std::string why_not;
+  std::string name;  ///< of the current device
+  std::uint64_t free_bytes = 0, total_bytes = 0;
+};
+
+/// Asks the driver, and makes its context, which takes some tenths of a second the first time.
+/// Throws nothing but std::bad_alloc.
+[[nodiscard]] CudaStatus cuda_status();
+
+}  // namespace rastrum::parallel

@@ -1,0 +1,213 @@
+// What CUDA and the CPU do differently under the words of this folder, and nothing else. nvcc takes
+// the first half. A plain C++ compiler that is told THRUST_DEVICE_SYSTEM_CPP takes the second,
+// where the device's memory is the heap, a team is threads of the system, and all else is the same
+// code: so the tests of the words run it where there is no GPU.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+
+#include <thrust/execution_policy.h>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/parallel/arena.hpp>
+#include <rastrum/parallel/exec.hpp>
+
+#if THRUST_DEVICE_SYSTEM == THRUST_DEVICE_SYSTEM_CUDA
+#include <cuda_runtime_api.h>
+#include <cub/device/device_radix_sort.cuh>
+#elif THRUST_DEVICE_SYSTEM == THRUST_DEVICE_SYSTEM_CPP
+#include <barrier>
+#include <cstring>
+#include <numeric>
+#include <thread>
+
+#include <thrust/sort.h>
+#else
+#error "the words of rastrum/parallel/cuda know THRUST_DEVICE_SYSTEM_CUDA and _CPP"
+#endif
+
+namespace rastrum::parallel::cuda_system {
+
+#if THRUST_DEVICE_SYSTEM == THRUST_DEVICE_SYSTEM_CUDA
+
+using Stream = cudaStream_t;
+inline constexpr bool kOnHost = false;
+
+/// Throws Error{out_of_memory} or Error{no_device} that says what was being done.
+inline void check(cudaError_t error, const char* doing) {
+  if (error == cudaSuccess) return;
+  const Errc code = error == cudaErrorMemoryAllocation ? Errc::out_of_memory : Errc::no_device;
+  throw Error(code,
+              std::string("CUDA: ").append(doing).append(": ").append(cudaGetErrorString(error)));
+}
+
+/// Memory of the current device. Freeing it waits for all work on the device.
+[[nodiscard]] inline MemorySource memory_source() {
+  return {[](std::size_t bytes) noexcept -> void* {
+            void* block = nullptr;
+            if (cudaMalloc(&block, bytes) == cudaSuccess) return block;
+            static_cast<void>(cudaGetLastError());  // the arena says what happened
+            return nullptr;
+          },
+          [](void* block) noexcept { static_cast<void>(cudaFree(block)); }, "CUDA memory", true};
+}
+
+[[nodiscard]] inline Stream make_stream() {
+  Stream stream = nullptr;
+  check(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "making a stream");
+  return stream;
+}
+inline void destroy_stream(Stream stream) noexcept {
+  static_cast<void>(cudaStreamSynchronize(stream));
+  static_cast<void>(cudaStreamDestroy(stream));
+}
+inline void wait(Stream stream) {
+  check(cudaStreamSynchronize(stream), "waiting for a stream");
+}
+/// Between host and device, either way; of pageable host memory it may wait for the stream.
+inline void copy(Stream stream, void* to, const void* from, std::size_t bytes) {
+  check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, stream), "copying");
+}
+
+template <class Allocator>
+[[nodiscard]] auto policy(Allocator& allocator, Stream stream) {
+  return thrust::cuda::par_nosync(allocator).on(stream);
+}
+
+/// Sorts pairs by the low `bits` bits; which of the two rooms has the result is returned (0 or 1).
+/// `allocate(bytes)` is scratch that lives until the sort is over on the stream.
+template <class K, class V, class Allocate>
+[[nodiscard]] int sort_pairs(Stream stream, K* keys[2], V* values[2], std::size_t n, int bits,
+                             Allocate&& allocate) {
+  cub::DoubleBuffer<K> key_rooms(keys[0], keys[1]);
+  cub::DoubleBuffer<V> value_rooms(values[0], values[1]);
+  std::size_t bytes = 0;
+  check(cub::DeviceRadixSort::SortPairs(nullptr, bytes, key_rooms, value_rooms, n, 0, bits, stream),
+        "measuring a sort");
+  auto scratch = allocate(bytes);
+  check(cub::DeviceRadixSort::SortPairs(scratch.data(), bytes, key_rooms, value_rooms, n, 0, bits,
+                                        stream),
+        "sorting");
+  return key_rooms.selector;
+}
+
+/// A block of threads.
+class Team {
+ public:
+  [[nodiscard]] __device__ std::size_t rank() const { return threadIdx.x; }
+  [[nodiscard]] __device__ std::size_t size() const { return blockDim.x; }
+  __device__ void sync() const { __syncthreads(); }
+};
+
+#if defined(__CUDACC__)
+template <class T, class F>
+__global__ void team_kernel(std::size_t n, F f) {
+  __shared__ alignas(T) unsigned char room[sizeof(T)];
+  T& scratch = *reinterpret_cast<T*>(room);
+  const Team team;
+  for (std::size_t i = blockIdx.x; i < n; i += gridDim.x) {
+    f(i, scratch, team);
+    team.sync();
+  }
+}
+
+/// Calls f(i, scratch, team) for i in [0, n) by teams of kThreads.
+template <class T, int kThreads, class F>
+void launch_teams(Stream stream, std::size_t n, F f) {
+  if (n == 0) return;
+  constexpr std::size_t kMostBlocks = std::size_t{1} << 20;
+  const auto blocks = static_cast<unsigned>(n < kMostBlocks ? n : kMostBlocks);
+  team_kernel<T><<<blocks, kThreads, 0, stream>>>(n, f);
+  check(cudaGetLastError(), "starting teams");
+}
+#endif
+
+#else
+
+struct Stream {
+  friend bool operator==(Stream, Stream) = default;
+};
+inline constexpr bool kOnHost = true;
+
+[[nodiscard]] inline MemorySource memory_source() {
+  MemorySource source = host_memory();
+  source.name = "device memory";
+  source.keeps_all = true;
+  return source;
+}
+[[nodiscard]] inline Stream make_stream() {
+  return {};
+}
+inline void destroy_stream(Stream) noexcept {}
+inline void wait(Stream) {}
+inline void copy(Stream, void* to, const void* from, std::size_t bytes) {
+  if (bytes > 0) std::memcpy(to, from, bytes);
+}
+template <class Allocator>
+[[nodiscard]] auto policy(Allocator& allocator, Stream) {
+  return thrust::cpp::par(allocator);
+}
+
+template <class K>
+struct LessInLowBits {
+  K mask;
+  bool operator()(K a, K b) const { return (a & mask) < (b & mask); }
+};
+
+/// As CUB's: the result is in the second room, so that the way back is tested as well.
+template <class K, class V, class Allocate>
+[[nodiscard]] int sort_pairs(Stream, K* keys[2], V* values[2], std::size_t n, int bits,
+                             Allocate&& allocate) {
+  auto order = allocate(n * sizeof(std::size_t));
+  auto* const index = static_cast<std::size_t*>(static_cast<void*>(order.data()));
+  std::iota(index, index + n, std::size_t{0});
+  const auto all = std::numeric_limits<K>::digits;
+  const LessInLowBits<K> less{static_cast<K>(std::numeric_limits<K>::max() >> (all - bits))};
+  thrust::stable_sort(thrust::cpp::par, index, index + n,
+                      [&](std::size_t a, std::size_t b) { return less(keys[0][a], keys[0][b]); });
+  for (std::size_t i = 0; i < n; ++i) {
+    keys[1][i] = keys[0][index[i]];
+    values[1][i] = values[0][index[i]];
+  }
+  return 1;
+}
+
+/// Threads of the system with a barrier: slow, and as concurrent as a block of threads.
+class Team {
+ public:
+  Team(std::size_t rank, std::size_t size, std::barrier<>& barrier)
+      : rank_(rank), size_(size), barrier_(&barrier) {}
+  [[nodiscard]] std::size_t rank() const { return rank_; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  void sync() const { barrier_->arrive_and_wait(); }
+
+ private:
+  std::size_t rank_, size_;
+  std::barrier<>* barrier_;
+};
+
+template <class T, int kThreads, class F>
+void launch_teams(Stream, std::size_t n, F f) {
+  // Few and odd: shares that are not a whole number show.
+  constexpr std::size_t kMembers = kThreads < 3 ? kThreads : 3;
+  if (n == 0) return;
+  T scratch;
+  std::barrier<> barrier(kMembers);
+  const auto member = [&](std::size_t rank) {
+    const Team team(rank, kMembers, barrier);
+    for (std::size_t i = 0; i < n; ++i) {
+      f(i, scratch, team);
+      team.sync();
+    }
+  };
+  std::vector<std::jthread> others;
+  for (std::size_t rank = 1; rank < kMembers; ++rank) others.emplace_back(member, rank);
+  member(0);
+}
+
+#endif
+
+}  // namespace rastrum::parallel::cuda_system

@@ -1,0 +1,20 @@
+// The words on whatever the build calls a device: a GPU, or the CPU (CMakeLists.txt).
+#include <gtest/gtest.h>
+
+#include <rastrum/parallel/cuda/status.hpp>
+
+#include "words_on_device.hpp"
+
+namespace rastrum::parallel::test {
+namespace {
+
+TEST(Cuda, EveryWordIsBitEqualToSerial) {
+#if !defined(RASTRUM_TEST_DEVICE_WORDS)
+  const CudaStatus status = cuda_status();
+  if (!status.usable) GTEST_SKIP() << status.why_not;
+#endif
+  EXPECT_EQ(words_that_differ(), std::vector<std::string>{});
+}
+
+}  // namespace
+}  // namespace rastrum::parallel::test

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace rastrum::parallel::test {
+
+/// Runs every word of rastrum/parallel/cuda on the current device and on Serial; the names of those
+/// whose results differ. Throws what the device reports.
+[[nodiscard]] std::vector<std::string> words_that_differ();
+
+}  // namespace rastrum::parallel::test

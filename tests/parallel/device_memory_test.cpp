@@ -1,0 +1,90 @@
+// What the device's backend has of its own: a queue that is worked off in passes, memory that is
+// pooled, and sums that wait for who asks.
+#include <algorithm>
+#include <numeric>
+
+#include <tests/parallel/backends.hpp>
+
+namespace rastrum::parallel::test {
+namespace {
+
+// A binary tree, grown by the work itself, whose levels are the passes.
+TEST(PassQueue, WorkThatMakesWorkIsAllDoneInOrder) {
+  constexpr std::size_t kNodes = 100000;
+  Cuda exec;
+  const std::vector<std::size_t> roots = {1};
+  PassQueue<std::size_t> queue(exec, roots);
+  std::vector<std::size_t> visited;
+  const auto children = [](std::size_t node) {
+    return std::size_t{2 * node <= kNodes} + std::size_t{2 * node + 1 <= kNodes};
+  };
+  const std::size_t passes =
+      queue.work_off(children, [&](std::size_t node, std::span<std::size_t> next) {
+        visited.push_back(node);
+        EXPECT_EQ(next.size(), children(node));
+        for (std::size_t c = 0; c < next.size(); ++c) next[c] = 2 * node + c;
+      });
+  std::vector<std::size_t> expected(kNodes);
+  std::iota(expected.begin(), expected.end(), std::size_t{1});
+  EXPECT_EQ(visited, expected);
+  EXPECT_EQ(passes, 17U);
+  EXPECT_EQ(queue.size(), 0U);
+}
+
+TEST(PassQueue, NothingToDoEndsAtOnce) {
+  Cuda exec;
+  PassQueue<int> queue(exec, {});
+  EXPECT_EQ(queue.work_off([](int) { return 1; }, [](int, std::span<int>) { FAIL(); }), 0U);
+}
+
+TEST(DeviceMemory, FramesAfterTheFirstAskForNothing) {
+  MemoryAccount account;
+  Cuda exec(&account);
+  std::uint64_t after_the_first = 0;
+  for (int frame = 0; frame < 5; ++frame) {
+    auto keys = random_values<std::uint32_t>(300007, 1000);
+    auto values = keys;
+    sort_by_key(exec, keys, values, 10);
+    const auto reduced = reduce_by_key(exec, keys, values);
+    const auto odd = filter(exec, reduced.keys, [](std::uint32_t k) { return k % 2 == 1; });
+    EXPECT_EQ(odd.size(), 500U);
+    if (frame == 0) after_the_first = exec.memory()->held();
+    EXPECT_EQ(exec.memory()->held(), after_the_first);
+  }
+  EXPECT_GT(after_the_first, 300007U * 8);
+  EXPECT_EQ(account.peak(), after_the_first);
+  EXPECT_EQ(account.held(), after_the_first);
+}
+
+TEST(DeviceMemory, BuffersMoveAndOutliveTheirContext) {
+  MemoryAccount account;
+  DeviceBuffer<int> kept;
+  {
+    Cuda exec(&account);
+    const std::vector<int> values = {3, 1, 4, 1, 5};
+    auto buffer = to_device(exec, values);
+    DeviceBuffer<int> moved(std::move(buffer));
+    EXPECT_EQ(buffer.size(), 0U);
+    kept = std::move(moved);
+    EXPECT_EQ(to_host(exec, kept), values);
+  }
+  Cuda other;
+  EXPECT_EQ(to_host(other, kept), (std::vector<int>{3, 1, 4, 1, 5}));
+  EXPECT_GT(account.held(), 0U);
+  kept = {};
+  EXPECT_EQ(account.held(), 0U);
+}
+
+TEST(Pending, IsTheSumThatAScanHadWhenItWasDone) {
+  Cuda exec;
+  std::vector<std::uint32_t> values = {1, 2, 3, 4};
+  const auto sum = exclusive_scan(exec, values, values, std::uint32_t{10});
+  EXPECT_EQ(values, (std::vector<std::uint32_t>{10, 11, 13, 16}));
+  std::fill(values.begin(), values.end(), 77U);
+  const std::uint32_t asked = sum;
+  EXPECT_EQ(asked, 20U);
+  EXPECT_EQ(*sum.device(), 20U);
+}
+
+}  // namespace
+}  // namespace rastrum::parallel::test
