@@ -19,12 +19,13 @@
 #include <cuda_runtime_api.h>
 #include <cub/device/device_radix_sort.cuh>
 #elif THRUST_DEVICE_SYSTEM == THRUST_DEVICE_SYSTEM_CPP
-#include <barrier>
 #include <cstring>
+#include <limits>
 #include <numeric>
-#include <thread>
 
 #include <thrust/sort.h>
+
+#include <rastrum/parallel/cuda/team_on_host.hpp>
 #else
 #error "the words of rastrum/parallel/cuda know THRUST_DEVICE_SYSTEM_CUDA and _CPP"
 #endif
@@ -175,18 +176,18 @@ template <class K, class V, class Allocate>
   return 1;
 }
 
-/// Threads of the system with a barrier: slow, and as concurrent as a block of threads.
+/// A member of a team of coroutines.
+template <class Host>
 class Team {
  public:
-  Team(std::size_t rank, std::size_t size, std::barrier<>& barrier)
-      : rank_(rank), size_(size), barrier_(&barrier) {}
+  Team(std::size_t rank, std::size_t size, Host& host) : rank_(rank), size_(size), host_(&host) {}
   [[nodiscard]] std::size_t rank() const { return rank_; }
   [[nodiscard]] std::size_t size() const { return size_; }
-  void sync() const { barrier_->arrive_and_wait(); }
+  void sync() const { host_->sync(rank_); }
 
  private:
   std::size_t rank_, size_;
-  std::barrier<>* barrier_;
+  Host* host_;
 };
 
 template <class T, int kThreads, class F>
@@ -195,17 +196,14 @@ void launch_teams(Stream, std::size_t n, F f) {
   constexpr std::size_t kMembers = kThreads < 3 ? kThreads : 3;
   if (n == 0) return;
   T scratch;
-  std::barrier<> barrier(kMembers);
-  const auto member = [&](std::size_t rank) {
-    const Team team(rank, kMembers, barrier);
+  const auto body = [&](std::size_t rank, auto& host) {
+    const Team<std::remove_reference_t<decltype(host)>> team(rank, kMembers, host);
     for (std::size_t i = 0; i < n; ++i) {
       f(i, scratch, team);
       team.sync();
     }
   };
-  std::vector<std::jthread> others;
-  for (std::size_t rank = 1; rank < kMembers; ++rank) others.emplace_back(member, rank);
-  member(0);
+  TeamOnHost<kMembers, decltype(body)>::run(body);
 }
 
 #endif
