@@ -1,6 +1,6 @@
 // What CUDA and the CPU do differently under the words of this folder, and nothing else. nvcc takes
 // the first half. A plain C++ compiler that is told THRUST_DEVICE_SYSTEM_CPP takes the second,
-// where the device's memory is the heap, a team is threads of the system, and all else is the same
+// where the device's memory is the heap, a team is coroutines, and all else is the same
 // code: so the tests of the words run it where there is no GPU.
 #pragma once
 
