@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include <rastrum/core/image.hpp>
@@ -161,6 +162,8 @@ class BlockShader {
                      BlockColors& colors) const noexcept = 0;
   /// Asks the cache for what shading primitive `id` will read: a hint for who knows long before.
   virtual void prefetch(const FrameGeometry& /*frame*/, std::uint64_t /*id*/) const noexcept {}
+  /// The alpha of all fragments, where it is one and known before they are shaded.
+  [[nodiscard]] virtual std::optional<float> alpha() const noexcept { return std::nullopt; }
   /// How many bytes of VisibleBlock::scratch the shader uses, at most kMaxShaderScratch; 64-byte
   /// aligned, kept from block to block of a frame.
   [[nodiscard]] virtual std::size_t scratch_bytes() const noexcept { return 0; }

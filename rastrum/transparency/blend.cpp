@@ -19,6 +19,7 @@ class FrontToBack final : public LayerBlend {
         opaque_at_(1 - alpha_threshold) {}
 
   [[nodiscard]] LayerOrder order() const override { return LayerOrder::depth; }
+  [[nodiscard]] float opaque_at() const override { return opaque_at_; }
   void begin(const BlockColors& behind) override {
     behind_ = &behind;
     for (float(&channel)[64] :
@@ -30,7 +31,7 @@ class FrontToBack final : public LayerBlend {
     return kernel_.behind(l.colors, l.mask, opaque_at_, seen_);
   }
   bool row(const PackedRow& row, std::size_t first) override {
-    packed_.behind(row, first, seen_);
+    packed_.behind(row, first, opaque_at_, seen_);
     return true;
   }
   void finish(BlockColors& out) override { kernel_.finish(seen_, *behind_, out); }

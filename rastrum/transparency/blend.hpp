@@ -28,6 +28,9 @@ class LayerBlend {
   [[nodiscard]] virtual LayerOrder order() const { return LayerOrder::submission; }
   /// How often it wants to see all layers.
   [[nodiscard]] virtual int passes() const { return 1; }
+  /// A pixel is finished where no more than this is seen through its layers; 0: nothing is left
+  /// out.
+  [[nodiscard]] virtual float opaque_at() const { return 0; }
   /// `behind`: the opaque surface, premultiplied; 0 where there is none.
   virtual void begin(const raster::BlockColors& behind) = 0;
   virtual void begin_pass(int /*pass*/) {}

@@ -160,15 +160,14 @@ class LayersRegion final : public raster::Region {
     }
   }
 
-  /// All blocks of `grid` at once, if what they have is little enough and no method needs planes.
+  /// All blocks of `grid` at once, if what they have is little enough and the method is not the
+  /// filter, which is an order by planes.
   bool resolve_packed(const BlockGrid& grid, std::span<const Record> records,
                       std::span<const MicroRecord> micro) {
-    // The filter is a method by itself, and a threshold pays where the nearest are shaded first.
-    if (samples_ > 1 || made_for_.method == Transparency::filter || made_for_.alpha_threshold < 1)
-      return false;
+    if (samples_ > 1 || made_for_.method == Transparency::filter) return false;
     if (!packed_.collect(records, micro, grid, surface_, *context_.frame, shader_)) return false;
     if (blend_->order() == LayerOrder::depth) packed_.sort();
-    if (shader_ != nullptr) packed_.shade(context_, *shader_);
+    if (shader_ != nullptr) packed_.shade(context_, *shader_, blend_->opaque_at());
     for (int by = grid.by; by < grid.by + grid.rows; ++by)
       for (int bx = grid.bx; bx < grid.bx + grid.columns; ++bx) {
         std::uint64_t* const words = surface_.block(bx, by);

@@ -19,6 +19,18 @@ constexpr std::uint64_t kFragmentBytes = 8 + 2 + sizeof(Vec4);
 /// A pixel's list is of 16-bit length.
 constexpr std::size_t kMostFragments = 65535;
 
+/// Layers that are shaded before it is known how much they hide.
+constexpr std::uint32_t kFirstTurn = 4;
+
+/// How many layers of `alpha` a pixel takes before no more than `opaque_at` is seen through it, as
+/// the kernels count.
+std::uint32_t layers_until(float alpha, float opaque_at) {
+  std::uint32_t layers = 0;
+  for (float through = 1; !(through <= opaque_at) && layers < kMostFragments; ++layers)
+    through *= 1 - alpha;
+  return layers;
+}
+
 }  // namespace
 
 void PackedFragments::begin(Isa isa, std::uint64_t bytes) {
@@ -132,21 +144,88 @@ void PackedFragments::sort() {
         kernel_->sort(keys_.data() + r.begin, r.layers);
 }
 
-void PackedFragments::shade(const raster::RegionContext& context,
-                            const raster::BlockShader& shader) {
+void PackedFragments::shade(const raster::RegionContext& context, const raster::BlockShader& shader,
+                            float opaque_at) {
   const std::size_t blocks = (count_ + 63) / 64;
   colors_.reserve(1 + blocks * 64);
   colors_[0] = {};
-  for (std::size_t b = 0; b < blocks; ++b) {
-    const std::size_t n = std::min<std::size_t>(64, count_ - b * 64);
+  wanted_.reserve(blocks);
+  std::fill_n(wanted_.data(), blocks, ~std::uint64_t{0});
+  if (count_ % 64 != 0) wanted_[blocks - 1] = ~std::uint64_t{0} >> (64 - count_ % 64);
+  if (opaque_at > 0) {
+    const std::optional<float> alpha = shader.alpha();
+    if (!alpha) return shade_by_turns(context, shader, opaque_at);
+    const std::uint32_t most = layers_until(*alpha, opaque_at);
+    leave_out_behind(most);
+    for (Row& row : rows_) row.layers = std::min(row.layers, most);
+  }
+  shade_wanted(context, shader);
+}
+
+void PackedFragments::shade_wanted(const raster::RegionContext& context,
+                                   const raster::BlockShader& shader) {
+  // Where only some are wanted, rows of 8 mostly are as a whole, as a triangle's fragments lie side
+  // by side; so they stay where they are.
+  for (std::size_t b = 0; b < (count_ + 63) / 64; ++b) {
+    if (wanted_[b] == 0) continue;
     kernel_->points(pixels_.data() + b * 64, points_);
-    raster::VisibleBlock block{words_.data() + b * 64, ~std::uint64_t{0} >> (64 - n),
-                               grid_.bx * kBlockSize, grid_.by * kBlockSize,
-                               context.shader_scratch};
+    raster::VisibleBlock block{words_.data() + b * 64, wanted_[b], grid_.bx * kBlockSize,
+                               grid_.by * kBlockSize, context.shader_scratch};
     block.points = &points_;
     if (shader.shade(*context.frame, block, context.request->isa, plane_))
       std::fill_n(plane_.a, 64, 1.0F);
-    kernel_->interleave(plane_, colors_.data() + 1 + b * 64);
+    Vec4* const colors = colors_.data() + 1 + b * 64;
+    if (block.covered == ~std::uint64_t{0}) {
+      kernel_->interleave(plane_, colors);
+      continue;
+    }
+    for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      colors[i] = {plane_.r[i], plane_.g[i], plane_.b[i], plane_.a[i]};
+    }
+  }
+}
+
+void PackedFragments::leave_out_behind(std::uint32_t most) {
+  if (deepest_ <= most) return;
+  for (int y = 0; y < grid_.rows * kBlockSize; ++y)
+    for (int x = 0; x < grid_.columns; ++x) {
+      const Row& r = rows_[y * (kPackedPitch / 8) + x];
+      for (std::size_t k = std::size_t{most} * 8; k < std::size_t{r.layers} * 8; ++k) {
+        const std::uint64_t key = keys_[r.begin + k];
+        if (key == 0) continue;
+        const std::size_t number = number_of_key(key);
+        wanted_[number / 64] &= ~(std::uint64_t{1} << number % 64);
+      }
+    }
+}
+
+void PackedFragments::shade_by_turns(const raster::RegionContext& context,
+                                     const raster::BlockShader& shader, float opaque_at) {
+  std::uint32_t begin = 0, end = kFirstTurn;
+  leave_out_behind(end);
+  shade_wanted(context, shader);
+  std::fill_n(through_, std::size(through_), 1.0F);
+  for (; end < deepest_; begin = end, end *= 2) {
+    std::fill_n(wanted_.data(), (count_ + 63) / 64, 0U);
+    bool any = false;
+    for (int y = 0; y < grid_.rows * kBlockSize; ++y)
+      for (int x = 0; x < grid_.columns * kBlockSize; ++x) {
+        const Row& r = rows_[(y * kPackedPitch + x) / 8];
+        if (r.layers <= end) continue;
+        const std::uint64_t* const keys = keys_.data() + r.begin + x % 8;
+        float& through = through_[y * kPackedPitch + x];
+        for (std::size_t k = begin; k < end && keys[k * 8] != 0 && !(through <= opaque_at); ++k)
+          through *= 1 - colors_[color_of_key(keys[k * 8])].w;
+        if (through <= opaque_at) continue;
+        for (std::size_t k = end; k < std::min(r.layers, 2 * end) && keys[k * 8] != 0; ++k) {
+          const std::size_t number = number_of_key(keys[k * 8]);
+          wanted_[number / 64] |= std::uint64_t{1} << number % 64;
+          any = true;
+        }
+      }
+    if (!any) return;
+    shade_wanted(context, shader);
   }
 }
 

@@ -2,7 +2,7 @@
 // lie side by side: they are shaded so, 64 at a time whatever their pixels, because a triangle is
 // then set up for shading once and interpolated for a few full vectors, not for a part of each row
 // that it touches. What is sorted, by pixel, are their numbers. For regions of moderate depth: what
-// is deeper, or wants to see the nearest layers first, goes plane by plane (layers.cpp).
+// is deeper goes plane by plane (layers.cpp).
 //
 // Paper 4 shades fragments before they are in order, too ("Phase 3": segments of 256 samples).
 #pragma once
@@ -29,7 +29,7 @@ struct BlockGrid {
 class PackedFragments {
  public:
   explicit PackedFragments(MemoryAccount& memory)
-      : words_(memory), pixels_(memory), colors_(memory), keys_(memory) {}
+      : words_(memory), pixels_(memory), colors_(memory), keys_(memory), wanted_(memory) {}
 
   /// Begins a region. `bytes`: what its fragments may take, 0 for the default of 2 MiB.
   void begin(Isa isa, std::uint64_t bytes);
@@ -42,7 +42,10 @@ class PackedFragments {
                const raster::FrameGeometry& frame, const raster::BlockShader* shader);
   /// Puts the nearest first; they are in the order of submission before.
   void sort();
-  void shade(const raster::RegionContext& context, const raster::BlockShader& shader);
+  /// `opaque_at` as LayerBlend has it: above 0 they must be sorted, and layers behind which it
+  /// hides need not be shaded.
+  void shade(const raster::RegionContext& context, const raster::BlockShader& shader,
+             float opaque_at);
   /// Whether the block has any of them.
   [[nodiscard]] bool any(int bx, int by) const;
   /// Raises the words of a block to those of the nearest fragments.
@@ -65,6 +68,14 @@ class PackedFragments {
   bool add(const MicroRecord& fragment, const BlockGrid& grid);
   bool append(std::size_t n, const std::uint64_t* opaque);
   bool deal(const BlockGrid& grid);
+  /// Shades those that `wanted_` has.
+  void shade_wanted(const raster::RegionContext& context, const raster::BlockShader& shader);
+  /// Shades the nearest layers and then, as far as pixels are not finished, twice as many and so
+  /// on.
+  void shade_by_turns(const raster::RegionContext& context, const raster::BlockShader& shader,
+                      float opaque_at);
+  /// Leaves out the layers of each pixel behind the first `most`.
+  void leave_out_behind(std::uint32_t most);
   /// A pass of a method that wants to see a layer of all pixels at a time.
   void blend_planes(int bx, int by, LayerBlend& blend);
   [[nodiscard]] const Row& row(int bx, int by, int y) const {
@@ -83,9 +94,11 @@ class PackedFragments {
   std::size_t count_ = 0;
   Buffer<Vec4> colors_;  ///< by number + 1
   Buffer<std::uint64_t> keys_;
+  Buffer<std::uint64_t> wanted_;  ///< a bit a fragment: to be shaded
   std::size_t deepest_ = 0;
   Row rows_[kRows];
   alignas(64) std::uint16_t left_[kPackedPitch * kPackedPitch];  ///< fragments of a pixel to deal
+  float through_[kPackedPitch * kPackedPitch];                   ///< by turns: seen through a pixel
   raster::ShadingPoints points_;
   raster::BlockColors plane_;
   alignas(64) std::uint64_t plane_words_[64];

@@ -61,7 +61,8 @@ struct PackedKernels {
   void (*gather)(const PackedRow& row, std::size_t first, raster::BlockColors& out) noexcept;
 
   /// All layers of a row one behind the other, as BlendKernels::behind has it: elements `first` … .
-  void (*behind)(const PackedRow& row, std::size_t first, Seen& seen) noexcept;
+  /// With `opaque_at` above 0 a pixel takes no more once no more than that is seen through it.
+  void (*behind)(const PackedRow& row, std::size_t first, float opaque_at, Seen& seen) noexcept;
 
   /// All layers of a row one before the other, as BlendKernels::before has it.
   void (*before)(const PackedRow& row, std::size_t first, raster::BlockColors& colors) noexcept;

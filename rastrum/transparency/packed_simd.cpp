@@ -228,7 +228,8 @@ void gather(const PackedRow& row, std::size_t first, raster::BlockColors& out) n
   }
 }
 
-void behind(const PackedRow& row, std::size_t first, Seen& seen) noexcept {
+template <bool kStops>
+HWY_INLINE void behind_rows(const PackedRow& row, std::size_t first, float opaque_at, Seen& seen) {
   const F32 d;
   const F one = hn::Set(d, 1.0F);
   for (std::size_t part = 0; part < 8; part += kLanes) {
@@ -236,7 +237,14 @@ void behind(const PackedRow& row, std::size_t first, Seen& seen) noexcept {
     F r = hn::Load(d, seen.r + i), g = hn::Load(d, seen.g + i), b = hn::Load(d, seen.b + i);
     F a = hn::Load(d, seen.a + i), through = hn::Load(d, seen.through + i);
     for (std::size_t k = 0; k < row.layers; ++k) {
-      const Colors c = load_colors(row.keys + k * 8 + part, row.colors);
+      Colors c = load_colors(row.keys + k * 8 + part, row.colors);
+      if constexpr (kStops) {
+        // What a finished pixel hides may never have been shaded.
+        const auto finished = hn::Le(through, hn::Set(d, opaque_at));
+        if (hn::AllTrue(d, finished)) break;
+        for (F* const channel : {&c.r, &c.g, &c.b, &c.a})
+          *channel = hn::IfThenZeroElse(finished, *channel);
+      }
       r = hn::Add(r, hn::Mul(through, c.r));
       g = hn::Add(g, hn::Mul(through, c.g));
       b = hn::Add(b, hn::Mul(through, c.b));
@@ -249,6 +257,13 @@ void behind(const PackedRow& row, std::size_t first, Seen& seen) noexcept {
     hn::Store(a, d, seen.a + i);
     hn::Store(through, d, seen.through + i);
   }
+}
+
+void behind(const PackedRow& row, std::size_t first, float opaque_at, Seen& seen) noexcept {
+  if (opaque_at > 0)
+    behind_rows<true>(row, first, opaque_at, seen);
+  else
+    behind_rows<false>(row, first, opaque_at, seen);
 }
 
 void before(const PackedRow& row, std::size_t first, raster::BlockColors& colors) noexcept {
@@ -329,11 +344,12 @@ void gather_scalar(const PackedRow& row, std::size_t first, raster::BlockColors&
   for (std::size_t i = 0; i < 8; ++i) out.set(static_cast<int>(first + i), color_at(row, i));
 }
 
-void behind_scalar(const PackedRow& row, std::size_t first, Seen& seen) noexcept {
+void behind_scalar(const PackedRow& row, std::size_t first, float opaque_at, Seen& seen) noexcept {
   for (std::size_t k = 0; k < row.layers; ++k)
     for (std::size_t i = first; i < first + 8; ++i) {
       const Vec4& c = color_at(row, k * 8 + i - first);
       const float through = seen.through[i];
+      if (opaque_at > 0 && through <= opaque_at) continue;
       seen.r[i] += through * c.x;
       seen.g[i] += through * c.y;
       seen.b[i] += through * c.z;

@@ -85,6 +85,12 @@ LayerPicture take(Renderer& renderer, LayerProgram& program, bool with_overdraw)
   });
 }
 
+LayerPicture take(Renderer& renderer, LayerProgram& program, const raster::BlockShader& shader) {
+  return take_with(renderer, false, [&](const Targets& targets) {
+    return renderer.draw(program.draws(), shader, program.test(), targets);
+  });
+}
+
 LayerPicture take(Renderer& renderer, const SceneView& scene, const Camera& camera,
                   bool with_overdraw) {
   return take_with(renderer, with_overdraw,

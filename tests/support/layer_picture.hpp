@@ -30,6 +30,9 @@ struct LayerPicture {
 /// Draws into images that hold nonsense before.
 [[nodiscard]] LayerPicture take(Renderer& renderer, LayerProgram& program,
                                 bool with_overdraw = false);
+/// The program's draws by another shader.
+[[nodiscard]] LayerPicture take(Renderer& renderer, LayerProgram& program,
+                                const raster::BlockShader& shader);
 [[nodiscard]] LayerPicture take(Renderer& renderer, const SceneView& scene, const Camera& camera,
                                 bool with_overdraw = false);
 

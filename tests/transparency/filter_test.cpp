@@ -2,8 +2,11 @@
 // 4's filter is right wherever it does not mark a pixel, and the marks are counted; the threshold
 // of alpha costs no more than it says.
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +24,8 @@ namespace rastrum::test {
 namespace {
 
 constexpr int kWidth = 48, kHeight = 40;
+/// Little more than the least that a picture can be drawn in.
+constexpr std::uint64_t kLittleMemory = std::uint64_t{5} << 19;
 
 RenderOptions options(Transparency method, int filter = 3) {
   RenderOptions o;
@@ -77,10 +82,10 @@ TEST(Unsorted, EqualsTheOracleThatBlendsAsSubmitted) {
 
 TEST(Filter, IsRightWhereItMarksNothing) {
   Renderer exact(options(Transparency::exact));
-  // A threshold, even one that hides nothing, wants planes, which are filtered and then repaired.
-  RenderOptions with_threshold = options(Transparency::exact);
-  with_threshold.transparency.alpha_threshold = std::nextafter(1.0F, 0.0F);
-  Renderer repairing(with_threshold);
+  // Blocks of more fragments than memory go by planes, which are filtered and then repaired.
+  RenderOptions with_little_memory = options(Transparency::exact);
+  with_little_memory.memory_limit = kLittleMemory;
+  Renderer repairing(with_little_memory);
   const int sizes[] = {1, 3, 8, 64};
   std::vector<Renderer> filters;
   for (const int k : sizes) filters.emplace_back(options(Transparency::filter, k));
@@ -189,6 +194,83 @@ TEST(AlphaThreshold, CostsNoMoreThanItLetsThrough) {
     }
   }
   EXPECT_GT(changed, 1000U);
+}
+
+/// The colours of a program with one alpha, of which it says or does not say that it is one, and
+/// how many fragments were shaded.
+class OneAlpha final : public raster::BlockShader {
+ public:
+  OneAlpha(const raster::BlockShader& inner, float alpha, bool says)
+      : inner_(inner), alpha_(alpha), says_(says) {}
+
+  bool shade(const raster::FrameGeometry& frame, const raster::VisibleBlock& block, Isa isa,
+             raster::BlockColors& colors) const noexcept override {
+    (void)inner_.shade(frame, block, isa, colors);
+    for (int i = 0; i < 64; ++i) {
+      for (float* const channel : {colors.r, colors.g, colors.b}) channel[i] *= alpha_;
+      colors.a[i] = alpha_;
+    }
+    shaded_ += static_cast<std::uint64_t>(std::popcount(block.covered));
+    return false;
+  }
+  [[nodiscard]] std::optional<float> alpha() const noexcept override {
+    return says_ ? std::optional(alpha_) : std::nullopt;
+  }
+  [[nodiscard]] std::size_t scratch_bytes() const noexcept override {
+    return inner_.scratch_bytes();
+  }
+  [[nodiscard]] std::uint64_t shaded() const { return shaded_; }
+
+ private:
+  const raster::BlockShader& inner_;
+  const float alpha_;
+  const bool says_;
+  mutable std::atomic<std::uint64_t> shaded_ = 0;
+};
+
+// The layers that are left out are those of the serial device, which goes through them one by one,
+// and what is left out costs no shading.
+TEST(AlphaThreshold, LeavesOutTheSameLayersHoweverTheyAreShaded) {
+  constexpr float kAlphas[] = {0.02F, 0.3F, 0.5F, 0.9F, 1.0F};
+  std::uint64_t all = 0, said = 0, not_said = 0;
+  for (const float threshold : {1 - 1.0F / 128, 0.75F}) {
+    RenderOptions o = options(Transparency::exact);
+    Renderer exact(o);
+    o.transparency.alpha_threshold = threshold;
+    std::vector<Renderer> renderers;
+    for (const Isa isa : available_isas()) {
+      o.isa = isa;
+      renderers.emplace_back(o);
+    }
+    o.isa.reset();
+    o.memory_limit = kLittleMemory;
+    renderers.emplace_back(o);
+    o.memory_limit = 0;
+    o.device = Device::serial;
+    Renderer serial(o);
+    for (int i = 0; i < 2 * kLayerKinds; ++i) {
+      const LayerScene scene = scene_of(i);
+      SCOPED_TRACE(title(i, scene));
+      LayerProgram program(scene, kWidth, kHeight);
+      const LayerPicture own = take(serial, program);
+      for (Renderer& renderer : renderers) EXPECT_TRUE(same_bits(take(renderer, program), own));
+      const OneAlpha says(program.shader(), kAlphas[i % 5], true);
+      const OneAlpha is_silent(program.shader(), kAlphas[i % 5], false);
+      const OneAlpha everywhere(program.shader(), kAlphas[i % 5], true);
+      const LayerPicture expected = take(serial, program, everywhere);
+      const std::uint64_t before = everywhere.shaded();
+      (void)take(exact, program, everywhere);
+      all += (everywhere.shaded() - before) * renderers.size();
+      for (Renderer& renderer : renderers) {
+        EXPECT_TRUE(same_bits(take(renderer, program, says), expected)) << kAlphas[i % 5];
+        EXPECT_TRUE(same_bits(take(renderer, program, is_silent), expected)) << kAlphas[i % 5];
+      }
+      said += says.shaded();
+      not_said += is_silent.shaded();
+    }
+  }
+  EXPECT_LT(said, not_said);
+  EXPECT_LT(not_said, all / 2);
 }
 
 TEST(TransparencyOptions, NoneDrawsTranslucentSurfacesOpaque) {

@@ -134,11 +134,14 @@ TEST_P(Packed, BlendsAsPlanesDo) {
     }
     const PackedRow row{aligned, layers, colors.data()};
     for (const std::size_t first : {std::size_t{0}, std::size_t{56}}) {
+      const float opaque_at = layers % 2 == 0 ? 0 : 0.3F;
       Seen seen, expected_seen;
       BlockColors over, expected_over;
+      std::uint64_t finished = 0;
       for (int i = 0; i < 64; ++i) {
         seen.r[i] = seen.g[i] = seen.b[i] = seen.a[i] = number(0) / 4;
         seen.through[i] = number(0);
+        finished |= std::uint64_t{opaque_at > 0 && seen.through[i] <= opaque_at} << i;
         over.set(i, {number(0), number(0), number(0), number(0)});
       }
       expected_seen = seen;
@@ -160,10 +163,11 @@ TEST_P(Packed, BlendsAsPlanesDo) {
           mask |= std::uint64_t{1} << (first + i);
           EXPECT_EQ(gathered.g[first + i], plane.g[first + i]);
         }
-        (void)planes.behind(plane, mask, 0, expected_seen);
+        const std::uint64_t drawn = opaque_at > 0 ? mask & ~finished : mask;
+        finished |= planes.behind(plane, drawn, opaque_at, expected_seen);
         planes.before(plane, mask, expected_over);
       }
-      packed_kernels(GetParam()).behind(row, first, seen);
+      packed_kernels(GetParam()).behind(row, first, opaque_at, seen);
       packed_kernels(GetParam()).before(row, first, over);
       EXPECT_EQ(std::memcmp(&seen, &expected_seen, sizeof(seen)), 0) << layers;
       EXPECT_EQ(std::memcmp(&over, &expected_over, sizeof(over)), 0) << layers;

@@ -55,6 +55,10 @@ class AlphaShader final : public BlockShader {
   void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept override {
     inner_.prefetch(frame, id);
   }
+  [[nodiscard]] std::optional<float> alpha() const noexcept override {
+    const std::optional<float> own = inner_.alpha();
+    return own && blending_ == nullptr ? std::optional(*own * opacity_) : std::nullopt;
+  }
   [[nodiscard]] std::size_t scratch_bytes() const noexcept override {
     return inner_.scratch_bytes();
   }

@@ -114,6 +114,7 @@ class LitShader final : public BlockShader {
     prefetch_triangle(scene_, frame, id, model_ != LitModel::flat);
   }
 
+  [[nodiscard]] std::optional<float> alpha() const noexcept override { return 1.0F; }
   [[nodiscard]] std::size_t scratch_bytes() const noexcept override {
     return sizeof(KeptTriangles);
   }

@@ -42,6 +42,8 @@ class MaterialShader final : public BlockShader {
     return true;
   }
 
+  [[nodiscard]] std::optional<float> alpha() const noexcept override { return 1.0F; }
+
  private:
   const MaterialScene& scene_;
   bool linear_;
