@@ -165,7 +165,7 @@ class LayersRegion final : public raster::Region {
   bool resolve_packed(const BlockGrid& grid, std::span<const Record> records,
                       std::span<const MicroRecord> micro) {
     if (samples_ > 1 || made_for_.method == Transparency::filter) return false;
-    if (!packed_.collect(records, micro, grid, surface_, *context_.frame, shader_)) return false;
+    if (!packed_.collect(records, micro, grid, surface_)) return false;
     if (blend_->order() == LayerOrder::depth) packed_.sort();
     if (shader_ != nullptr) packed_.shade(context_, *shader_, blend_->opaque_at());
     for (int by = grid.by; by < grid.by + grid.rows; ++by)

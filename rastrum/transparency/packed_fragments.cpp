@@ -39,9 +39,7 @@ void PackedFragments::begin(Isa isa, std::uint64_t bytes) {
 }
 
 bool PackedFragments::collect(std::span<const Record> records, std::span<const MicroRecord> micro,
-                              const BlockGrid& grid, const raster::SurfaceView& opaque,
-                              const raster::FrameGeometry& frame,
-                              const raster::BlockShader* shader) {
+                              const BlockGrid& grid, const raster::SurfaceView& opaque) {
   std::size_t most = micro.size();
   for (const Record& r : records) most += static_cast<std::size_t>(parallel::popcount(r.mask));
   if (most > kMostFragments || most * kFragmentBytes > most_bytes_) return false;
@@ -56,11 +54,12 @@ bool PackedFragments::collect(std::span<const Record> records, std::span<const M
     }
   count_ = 0;
   last_low_ = kIdMask;
+  first_.reserve(most / 64 + 1);
+  std::fill_n(first_.data(), most / 64 + 1, 0U);
   auto m = micro.begin();
   for (const Record& r : records) {
     for (; m != micro.end() && (m->word & kIdMask) > r.piece->low; ++m)
       if (!add(*m, grid)) return false;
-    if (shader != nullptr) shader->prefetch(frame, raster::id_of_word(r.piece->low));
     if (!add(r, grid)) return false;
   }
   for (; m != micro.end(); ++m)
@@ -93,6 +92,7 @@ bool PackedFragments::add(const MicroRecord& fragment, const BlockGrid& grid) {
 bool PackedFragments::append(std::size_t n, const std::uint64_t* opaque) {
   const std::uint64_t low = words_[count_] & kIdMask;
   if (low > last_low_) return false;
+  if (low != last_low_) first_[count_ / 64] |= std::uint64_t{1} << count_ % 64;
   last_low_ = low;
   if (opaque == nullptr) {
     count_ += n;
@@ -166,7 +166,14 @@ void PackedFragments::shade_wanted(const raster::RegionContext& context,
                                    const raster::BlockShader& shader) {
   // Where only some are wanted, rows of 8 mostly are as a whole, as a triangle's fragments lie side
   // by side; so they stay where they are.
-  for (std::size_t b = 0; b < (count_ + 63) / 64; ++b) {
+  const std::size_t blocks = (count_ + 63) / 64;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    // While this block is shaded, the vertices of the next come from memory.
+    if (b + 1 < blocks)
+      for (std::uint64_t m = wanted_[b + 1] & first_[b + 1]; m != 0; m &= m - 1) {
+        const std::size_t number = (b + 1) * 64 + static_cast<std::size_t>(std::countr_zero(m));
+        shader.prefetch(*context.frame, raster::id_of_word(words_[number]));
+      }
     if (wanted_[b] == 0) continue;
     kernel_->points(pixels_.data() + b * 64, points_);
     raster::VisibleBlock block{words_.data() + b * 64, wanted_[b], grid_.bx * kBlockSize,

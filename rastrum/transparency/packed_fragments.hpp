@@ -29,17 +29,20 @@ struct BlockGrid {
 class PackedFragments {
  public:
   explicit PackedFragments(MemoryAccount& memory)
-      : words_(memory), pixels_(memory), colors_(memory), keys_(memory), wanted_(memory) {}
+      : words_(memory),
+        pixels_(memory),
+        colors_(memory),
+        keys_(memory),
+        first_(memory),
+        wanted_(memory) {}
 
   /// Begins a region. `bytes`: what its fragments may take, 0 for the default of 2 MiB.
   void begin(Isa isa, std::uint64_t bytes);
 
   /// Collects the fragments that lie before the words of `opaque`. Returns false and collects
   /// nothing if there are too many for the memory, or if they do not come in the order of ids.
-  /// `frame` and `shader`, which may be null, are for a hint of what will be shaded.
   bool collect(std::span<const Record> records, std::span<const MicroRecord> micro,
-               const BlockGrid& grid, const raster::SurfaceView& opaque,
-               const raster::FrameGeometry& frame, const raster::BlockShader* shader);
+               const BlockGrid& grid, const raster::SurfaceView& opaque);
   /// Puts the nearest first; they are in the order of submission before.
   void sort();
   /// `opaque_at` as LayerBlend has it: above 0 they must be sorted, and layers behind which it
@@ -94,7 +97,7 @@ class PackedFragments {
   std::size_t count_ = 0;
   Buffer<Vec4> colors_;  ///< by number + 1
   Buffer<std::uint64_t> keys_;
-  Buffer<std::uint64_t> wanted_;  ///< a bit a fragment: to be shaded
+  Buffer<std::uint64_t> first_, wanted_;  ///< a bit a fragment: first of a triangle; to be shaded
   std::size_t deepest_ = 0;
   Row rows_[kRows];
   alignas(64) std::uint16_t left_[kPackedPitch * kPackedPitch];  ///< fragments of a pixel to deal

@@ -13,17 +13,15 @@ namespace rastrum::raster {
 /// The normal of the triangle's plane, counter-clockwise in front; its largest component is 1. In
 /// float64, because products of coordinates up to FLT_MAX / 16 overflow float32. 0 without area.
 inline Vec3 face_normal(const MeshView& mesh, const std::uint32_t (&vertex)[3]) {
-  const Vec3 a = mesh.positions[vertex[0]];
-  double e[2][3];
-  for (int i = 0; i < 2; ++i) {
-    const Vec3 b = mesh.positions[vertex[i + 1]];
-    e[i][0] = static_cast<double>(b.x) - static_cast<double>(a.x);
-    e[i][1] = static_cast<double>(b.y) - static_cast<double>(a.y);
-    e[i][2] = static_cast<double>(b.z) - static_cast<double>(a.z);
-  }
-  const double x = e[0][1] * e[1][2] - e[0][2] * e[1][1];
-  const double y = e[0][2] * e[1][0] - e[0][0] * e[1][2];
-  const double z = e[0][0] * e[1][1] - e[0][1] * e[1][0];
+  // By reference: GCC 12 reads copies back by other parts than it wrote, and waits for the writes.
+  const Vec3 &a = mesh.positions[vertex[0]], &b = mesh.positions[vertex[1]],
+             &c = mesh.positions[vertex[2]];
+  const double ax = a.x, ay = a.y, az = a.z;
+  const double ux = b.x - ax, uy = b.y - ay, uz = b.z - az;
+  const double vx = c.x - ax, vy = c.y - ay, vz = c.z - az;
+  const double x = uy * vz - uz * vy;
+  const double y = uz * vx - ux * vz;
+  const double z = ux * vy - uy * vx;
   const double largest = std::max({std::abs(x), std::abs(y), std::abs(z)});
   if (!(largest > 0)) return {};
   return {static_cast<float>(x / largest), static_cast<float>(y / largest),
