@@ -103,6 +103,12 @@ class LayersRegion final : public raster::Region {
   }
 
   void fragments(std::span<const BinFragment> fragments) override {
+    // They count from the bin, of which the region may be a part.
+    constexpr std::uint32_t kBlocks = raster::kBinSize / kBlockSize;
+    const auto columns = static_cast<std::uint32_t>(columns_);
+    const std::uint32_t first =
+        static_cast<std::uint32_t>(rect_.y0 / kBlockSize) % kBlocks * columns +
+        static_cast<std::uint32_t>(rect_.x0 / kBlockSize) % kBlocks;
     for (std::size_t i = 0; i < fragments.size();) {
       const auto is_opaque = [](const BinFragment& f) {
         return (f.pixel & raster::kTranslucentFragment) == 0;
@@ -112,11 +118,8 @@ class LayersRegion final : public raster::Region {
       if (end > i) opaque_->fragments(fragments.subspan(i, end - i));
       for (; end < fragments.size() && !is_opaque(fragments[end]); ++end) {
         const BinFragment& f = fragments[end];
-        // They count from the bin, of which the region may be a part.
-        const int x = rect_.x0 / raster::kBinSize * raster::kBinSize + raster::column_in_bin(f);
-        const int y = rect_.y0 / raster::kBinSize * raster::kBinSize + raster::row_in_bin(f);
-        micro_.add({f.word, block_number(x / kBlockSize, y / kBlockSize),
-                    static_cast<std::uint32_t>(y % kBlockSize * kBlockSize + x % kBlockSize)});
+        const std::uint32_t block = f.pixel / 64 % (kBlocks * kBlocks);
+        micro_.add({f.word, block / kBlocks * columns + block % kBlocks - first, f.pixel % 64});
       }
       i = end;
     }

@@ -50,7 +50,9 @@ bool PackedFragments::collect(std::span<const Record> records, std::span<const M
     for (int x = 0; x < grid.columns; ++x) {
       const std::uint64_t* const words = opaque.block(grid.bx + x, grid.by + y);
       const bool any = std::any_of(words, words + 64, [](std::uint64_t w) { return w != 0; });
-      opaque_[y * (kPackedPitch / 8) + x] = any ? words : nullptr;
+      const int block = y * grid.columns + x;
+      opaque_[block] = any ? words : nullptr;
+      first_pixel_[block] = static_cast<std::uint16_t>((y * kPackedPitch + x) * kBlockSize);
     }
   count_ = 0;
   last_low_ = kIdMask;
@@ -68,24 +70,22 @@ bool PackedFragments::collect(std::span<const Record> records, std::span<const M
 }
 
 bool PackedFragments::add(const Record& record, const BlockGrid& grid) {
-  const auto block = static_cast<int>(record.block - grid.first);
-  const int row = block / grid.columns, column = block - row * grid.columns;
-  const std::size_t n = kernel_->pack(
-      *record.piece, record.mask, (grid.bx + column) * kBlockSize, (grid.by + row) * kBlockSize,
-      static_cast<std::uint32_t>((row * kPackedPitch + column) * kBlockSize),
-      words_.data() + count_, pixels_.data() + count_);
-  return append(n, opaque_[row * (kPackedPitch / 8) + column]);
+  const std::uint32_t block = record.block - grid.first;
+  const int first = first_pixel_[block];
+  const std::size_t n =
+      kernel_->pack(*record.piece, record.mask, grid.bx * kBlockSize + first % kPackedPitch,
+                    grid.by * kBlockSize + first / kPackedPitch, static_cast<std::uint32_t>(first),
+                    words_.data() + count_, pixels_.data() + count_);
+  return append(n, opaque_[block]);
 }
 
 bool PackedFragments::add(const MicroRecord& fragment, const BlockGrid& grid) {
-  const auto block = static_cast<int>(fragment.block - grid.first);
-  const int row = block / grid.columns, column = block - row * grid.columns;
-  const auto pixel = static_cast<int>(fragment.pixel);
+  const std::uint32_t block = fragment.block - grid.first;
   words_[count_] = fragment.word;
   pixels_[count_] =
-      static_cast<std::uint16_t>((row * kBlockSize + pixel / kBlockSize) * kPackedPitch +
-                                 column * kBlockSize + pixel % kBlockSize);
-  return append(1, opaque_[row * (kPackedPitch / 8) + column]);
+      static_cast<std::uint16_t>(first_pixel_[block] + fragment.pixel / kBlockSize * kPackedPitch +
+                                 fragment.pixel % kBlockSize);
+  return append(1, opaque_[block]);
 }
 
 /// Takes the n fragments of one triangle in one block that were written behind the others.

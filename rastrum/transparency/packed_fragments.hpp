@@ -88,7 +88,10 @@ class PackedFragments {
   const PackedKernels* kernel_ = nullptr;
   std::uint64_t most_bytes_ = 0;
   BlockGrid grid_{};
-  const std::uint64_t* opaque_[kPackedPitch / 8 * (kPackedPitch / 8)] = {};  ///< null: none
+  static constexpr int kBlocks =
+      kPackedPitch / raster::kBlockSize * (kPackedPitch / raster::kBlockSize);
+  const std::uint64_t* opaque_[kBlocks] = {};  ///< by block of the grid; null: none
+  std::uint16_t first_pixel_[kBlocks] = {};
   std::uint64_t last_low_ = 0;  ///< of the words; ids rise as these fall
   bool sorted_ = false;
 
