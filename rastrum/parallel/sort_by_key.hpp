@@ -2,7 +2,8 @@
 // highest digit into buckets that fit a core's cache, then each bucket on the lower digits, lowest
 // first.
 //
-// Bits that are the same in all keys are found first and left out. A bucket that does not fit (most
+// Bits that are the same in all keys are left out; they are found while the highest digit is
+// counted, which is counted again where it turns out to be another. A bucket that does not fit (most
 // keys have one highest digit) is passed by all threads together, like the whole. Pairs go back and
 // forth between the caller's two arrays and one of pairs, so their number of passes is even. Writes
 // to many places at once are collected by cache lines. A stable sort has one result, so the cut may
@@ -42,6 +43,8 @@ inline constexpr int kMostFirstBits = 10, kMostDigitBits = 11;
 inline constexpr std::size_t kBucket = 4096, kLargeBucket = std::size_t{1} << 17;
 /// Pairs of a line: those of 4-byte keys and values fill a cache line.
 inline constexpr std::size_t kLine = 8;
+/// Pairs whose places are fetched at once: 4-byte keys of so many fill a cache line.
+inline constexpr std::uint32_t kFetched = 16;
 /// Fewer pairs than this a chunk are not worth a task and its counters.
 inline constexpr std::size_t kSmallestChunk = 16384;
 
@@ -69,6 +72,10 @@ struct Columns {
   void put_line(std::size_t i, const Pair<K, V>* line, std::size_t n) const {
     for (std::size_t k = 0; k < n; ++k) put(i + k, line[k]);
   }
+  void fetch(std::size_t i) const {
+    __builtin_prefetch(keys + i, 1);
+    __builtin_prefetch(values + i, 1);
+  }
   [[nodiscard]] Columns from(std::size_t begin) const { return {keys + begin, values + begin}; }
 };
 template <class K, class V>
@@ -83,6 +90,7 @@ struct Rows {
     else
       std::copy_n(line, n, pairs + i);
   }
+  void fetch(std::size_t) const {}  // was read a moment ago
   [[nodiscard]] Rows from(std::size_t begin) const { return {pairs + begin}; }
 };
 
@@ -92,6 +100,7 @@ struct Digit {
   Digit() = default;
   /// Without any bit it may begin behind the last one, where no shift reaches.
   Digit(int first, int bits) : shift(bits == 0 ? 0 : first), width(bits) {}
+  bool operator==(const Digit&) const = default;
   [[nodiscard]] std::size_t count() const { return std::size_t{1} << width; }
   template <class K>
   [[nodiscard]] std::size_t of(K key) const {
@@ -106,14 +115,46 @@ Count places(Count* counts, std::size_t stride, std::size_t n, Count next = 0) {
   return next;
 }
 
-/// One stable pass on `digit` for what fits a cache: count, then move.
+inline constexpr std::size_t kMostCounters = std::size_t{1} << kMostDigitBits;
+
+/// Moves n pairs to the places that `counts` of the digit says.
+template <class From, class To>
+void move_pairs(From from, To to, std::uint32_t n, Digit digit, std::uint32_t* counts) {
+  places(counts, 1, digit.count());
+  for (std::uint32_t i = 0; i < n; ++i) to.put(counts[digit.of(from.key(i))]++, from.get(i));
+}
+
+/// One stable pass on `digit` for what fits a cache: count, then move. Meanwhile the lines of `to`
+/// are fetched: stores to lines that no cache holds wait for each other.
 template <class From, class To>
 void pass(From from, To to, std::uint32_t n, Digit digit) {
-  std::array<std::uint32_t, std::size_t{1} << kMostDigitBits> next;
-  std::fill_n(next.begin(), digit.count(), 0U);
-  for (std::uint32_t i = 0; i < n; ++i) ++next[digit.of(from.key(i))];
-  places(next.data(), 1, digit.count());
-  for (std::uint32_t i = 0; i < n; ++i) to.put(next[digit.of(from.key(i))]++, from.get(i));
+  std::array<std::uint32_t, kMostCounters> counts;
+  std::fill_n(counts.begin(), digit.count(), 0U);
+  for (std::uint32_t i = 0; i < n;) {
+    to.fetch(i);
+    for (const std::uint32_t end = std::min(n, i + kFetched); i < end; ++i)
+      ++counts[digit.of(from.key(i))];
+  }
+  move_pairs(from, to, n, digit, counts.data());
+}
+
+/// The same on two digits, by way of `middle`; both are counted at once.
+template <class From, class Middle, class To>
+void two_passes(From from, Middle middle, To to, std::uint32_t n, Digit first, Digit second) {
+  // One behind the other: at a distance of 4096 bytes loads would wait for stores to the other.
+  std::array<std::uint32_t, 2 * kMostCounters> counts;
+  std::uint32_t* const second_counts = counts.data() + first.count();
+  std::fill_n(counts.begin(), first.count() + second.count(), 0U);
+  for (std::uint32_t i = 0; i < n;) {
+    to.fetch(i);
+    for (const std::uint32_t end = std::min(n, i + kFetched); i < end; ++i) {
+      const auto key = from.key(i);
+      ++counts[first.of(key)];
+      ++second_counts[second.of(key)];
+    }
+  }
+  move_pairs(from, middle, n, first, counts.data());
+  move_pairs(middle, to, n, second, second_counts);
 }
 
 /// Moves pairs [begin, end) to next[digit], which it counts up, by lines of kLine pairs: a line is
@@ -151,18 +192,36 @@ void for_each_chunk(Exec& exec, std::size_t n, std::size_t chunks, F&& f) {
   });
 }
 
-/// One stable pass by all threads. Each counts the digits of its chunk; a scan over (digit, chunk)
-/// gives every chunk its places. Returns where each digit begins, and n behind them.
+/// How often each chunk of [0, n) has each value of `digit`, chunk by chunk; the bits in which keys
+/// differ from the first one on the way.
+template <class Exec, class From, class K>
+Buffer<std::size_t> count_digits(Exec& exec, From from, std::size_t n, Digit digit, K& differing) {
+  const std::size_t chunks = chunks_for(exec, n), digits = digit.count();
+  auto counts = make_buffer<std::size_t>(exec, chunks * digits);
+  auto differ = make_buffer<K>(exec, chunks);
+  for_each_chunk(exec, n, chunks, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    std::size_t* const own = counts.data() + c * digits;
+    std::fill_n(own, digits, std::size_t{0});
+    const K some = from.key(0);
+    K bits = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const K key = from.key(i);
+      bits = static_cast<K>(bits | (key ^ some));
+      ++own[digit.of(key)];
+    }
+    differ[c] = bits;
+  });
+  differing = std::accumulate(differ.begin(), differ.end(), K{0}, std::bit_or<>());
+  return counts;
+}
+
+/// One stable pass by all threads from what count_digits says: a scan over (digit, chunk) gives
+/// every chunk its places. Returns where each digit begins, and n behind them.
 template <class Exec, class From, class To>
-Buffer<std::size_t> pass_together(Exec& exec, From from, To to, std::size_t n, Digit digit) {
+Buffer<std::size_t> move_together(Exec& exec, From from, To to, std::size_t n, Digit digit,
+                                  Buffer<std::size_t> next) {
   using P = decltype(from.get(0));
   const std::size_t chunks = chunks_for(exec, n), digits = digit.count();
-  auto next = make_buffer<std::size_t>(exec, chunks * digits);
-  for_each_chunk(exec, n, chunks, [&](std::size_t c, std::size_t begin, std::size_t end) {
-    std::size_t* const counts = next.data() + c * digits;
-    std::fill_n(counts, digits, std::size_t{0});
-    for (std::size_t i = begin; i < end; ++i) ++counts[digit.of(from.key(i))];
-  });
   auto first = make_buffer<std::size_t>(exec, digits + 1);
   std::size_t before = 0;
   for (std::size_t d = 0; d < digits; ++d) {
@@ -177,6 +236,14 @@ Buffer<std::size_t> pass_together(Exec& exec, From from, To to, std::size_t n, D
                lines.data() + c * digits * kLine);
   });
   return first;
+}
+
+/// One stable pass by all threads.
+template <class Exec, class From, class To>
+void pass_together(Exec& exec, From from, To to, std::size_t n, Digit digit) {
+  decltype(from.key(0)) differing;
+  auto counts = count_digits(exec, from, n, digit, differing);
+  move_together(exec, from, to, n, digit, std::move(counts));
 }
 
 /// How to sort by bits [low, high): by `count` digits, lowest first.
@@ -200,13 +267,9 @@ template <class Rows, class Columns>
 void sort_bucket(Rows rows, Columns columns, Rows room, std::uint32_t n, const Digits& digits) {
   const int last = digits.count - 1;
   int i = 0;
-  for (; i + 1 < last; i += 2) {
-    pass(rows, columns, n, digits[i]);
-    pass(columns, rows, n, digits[i + 1]);
-  }
+  for (; i + 1 < last; i += 2) two_passes(rows, columns, rows, n, digits[i], digits[i + 1]);
   if (i == last) return pass(rows, columns, n, digits[i]);
-  pass(rows, room, n, digits[i]);
-  pass(room, columns, n, digits[last]);
+  two_passes(rows, room, columns, n, digits[i], digits[last]);
 }
 
 /// The same by all threads, for a bucket that fits no cache.
@@ -219,19 +282,6 @@ void sort_bucket_together(Exec& exec, Rows rows, Columns columns, std::size_t n,
     else
       pass_together(exec, columns, rows, n, digits[i]);
   if (digits.count % 2 == 0) pass_together(exec, rows, columns, n, Digit{});
-}
-
-/// The bits in which keys differ.
-template <class Exec, class K>
-[[nodiscard]] K differing_bits(Exec& exec, std::span<const K> keys) {
-  const std::size_t chunks = chunks_for(exec, keys.size());
-  auto differing = make_buffer<K>(exec, chunks);
-  for_each_chunk(exec, keys.size(), chunks, [&](std::size_t c, std::size_t begin, std::size_t end) {
-    K bits = 0;
-    for (std::size_t i = begin; i < end; ++i) bits = static_cast<K>(bits | (keys[i] ^ keys[0]));
-    differing[c] = bits;
-  });
-  return std::accumulate(differing.begin(), differing.end(), K{0}, std::bit_or<>());
 }
 
 }  // namespace sort_detail
@@ -253,18 +303,25 @@ void sort_by_key(Exec& exec, Keys&& key_range, Values&& value_range, int bits = 
   const std::size_t n = keys.size();
   if (n < 2 || bits == 0) return;
 
+  const Columns<K, V> columns{keys.data(), values.data()};
+  const auto first_width = [n](int at_most) {
+    return std::min({static_cast<int>(std::bit_width(n / kBucket)), kMostFirstBits, at_most});
+  };
+  // Counted before it is known which bits differ: mostly the highest one does.
+  const Digit guess{bits - first_width(bits), first_width(bits)};
+  K differing;
+  auto counts = count_digits(exec, columns, n, guess, differing);
   const K all = static_cast<K>(std::numeric_limits<K>::max() >> (kKeyBits - bits));
-  const K differing = static_cast<K>(differing_bits<Exec, K>(exec, keys) & all);
+  differing = static_cast<K>(differing & all);
   if (differing == 0) return;
   const int low = std::countr_zero(differing), high = static_cast<int>(std::bit_width(differing));
+  const int middle = high - first_width(high - low);
+  const Digit digit{middle, high - middle};
+  if (!(digit == guess)) counts = count_digits(exec, columns, n, digit, differing);
 
   auto pairs = make_buffer<Pair<K, V>>(exec, n);
-  const Columns<K, V> columns{keys.data(), values.data()};
   const Rows<K, V> rows{pairs.data()};
-  const int width =
-      std::min({static_cast<int>(std::bit_width(n / kBucket)), kMostFirstBits, high - low});
-  const int middle = high - width;
-  const auto first = pass_together(exec, columns, rows, n, Digit{middle, width});
+  const auto first = move_together(exec, columns, rows, n, digit, std::move(counts));
 
   ScratchPool<Buffer<Pair<K, V>>> rooms([&] { return make_buffer<Pair<K, V>>(exec, 0); });
   const std::size_t buckets = first.size() - 1;
