@@ -3,11 +3,11 @@
 // first.
 //
 // Bits that are the same in all keys are left out; they are found while the highest digit is
-// counted, which is counted again where it turns out to be another. A bucket that does not fit (most
-// keys have one highest digit) is passed by all threads together, like the whole. Pairs go back and
-// forth between the caller's two arrays and one of pairs, so their number of passes is even. Writes
-// to many places at once are collected by cache lines. A stable sort has one result, so the cut may
-// depend on the number of threads.
+// counted, which is counted again where it turns out to be another. A bucket that does not fit
+// (most keys have one highest digit) is passed by all threads together, like the whole. Pairs go
+// back and forth between the caller's two arrays and one of pairs, so their number of passes is
+// even. Writes to many places at once are collected by cache lines. A stable sort has one result,
+// so the cut may depend on the number of threads.
 //
 // Work O(n · bits / 11), span O(n / threads + 2048 · threads + kLargeBucket). Allocates n pairs,
 // packed.
