@@ -105,30 +105,24 @@ struct Racer {
 
 }  // namespace
 
-/// A hash of the id as a colour, computed once for neighbours of one triangle.
+/// A hash of the id as a colour: no branch, so that compilers make vectors of it.
 class TriangleColors final : public raster::BlockShader {
  public:
   bool shade(const FrameGeometry&, const VisibleBlock& block, Isa,
              BlockColors& colors) const noexcept override {
-    std::uint64_t last = ~std::uint64_t{0};
-    Vec3 c;
     for (int i = 0; i < 64; ++i) {
-      const std::uint64_t id = raster::id_of_word(block.words[i]);
-      if (id != last) c = color(last = id);
-      colors.r[i] = c.x;
-      colors.g[i] = c.y;
-      colors.b[i] = c.z;
+      const auto id = static_cast<std::uint32_t>(raster::id_of_word(block.words[i]));
+      const std::uint32_t h = id * 0x9e3779b1U;
+      colors.r[i] = channel(h >> 24);
+      colors.g[i] = channel(h >> 16 & 255U);
+      colors.b[i] = channel(h >> 8 & 255U);
     }
     return true;
   }
 
  private:
-  static Vec3 color(std::uint64_t id) {
-    const std::uint64_t h = id * 0x9e3779b97f4a7c15U;
-    const auto channel = [&](int shift) {
-      return static_cast<float>(h >> shift & 255U) * (1.0F / 255.0F);
-    };
-    return {channel(56), channel(48), channel(40)};
+  static float channel(std::uint32_t byte) {
+    return static_cast<float>(static_cast<int>(byte)) * (1.0F / 255.0F);
   }
 };
 

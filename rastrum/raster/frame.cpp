@@ -88,12 +88,13 @@ void* Frame::shader_scratch(Worker& worker) const {
 
 void Frame::shade(const SurfaceView& from, Rect rect, Worker& worker) {
   void* const shader = shader_scratch(worker);
+  const Backdrop backdrop = backdrop_of(request);
   std::uint64_t covered = 0;
   for (int y0 = rect.y0; y0 < rect.y1; y0 += kBlockSize)
     for (int x0 = rect.x0; x0 < rect.x1; x0 += kBlockSize) {
       const int bx = x0 / kBlockSize, by = y0 / kBlockSize;
-      covered += static_cast<std::uint64_t>(resolve_block(request, geometry, from.block(bx, by), x0,
-                                                          y0, shader, from.colors_of(bx, by)));
+      covered += static_cast<std::uint64_t>(resolve_block(
+          request, geometry, backdrop, from.block(bx, by), x0, y0, shader, from.colors_of(bx, by)));
     }
   pixels_covered.fetch_add(covered, std::memory_order_relaxed);
 }

@@ -81,14 +81,15 @@ FrameStats render_reference(FrameRequest& request, MemoryAccount& memory) {
   watch.lap(stats, "rasterize");
 
   alignas(64) std::byte scratch[kMaxShaderScratch] = {};
+  const Backdrop backdrop = backdrop_of(request);
   for (int y0 = 0; y0 < request.height; y0 += kBlockSize)
     for (int x0 = 0; x0 < request.width; x0 += kBlockSize) {
       alignas(64) std::uint64_t block[64] = {};
       for (int y = y0; y < std::min(y0 + kBlockSize, request.height); ++y)
         for (int x = x0; x < std::min(x0 + kBlockSize, request.width); ++x)
           block[(y - y0) * kBlockSize + (x - x0)] = words(x, y);
-      stats.pixels_covered +=
-          static_cast<std::uint64_t>(resolve_block(request, frame, block, x0, y0, scratch));
+      stats.pixels_covered += static_cast<std::uint64_t>(
+          resolve_block(request, frame, backdrop, block, x0, y0, scratch));
     }
   watch.lap(stats, "shade");
   return stats;

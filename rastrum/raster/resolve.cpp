@@ -19,16 +19,6 @@ struct Window {
   [[nodiscard]] bool whole() const { return columns == kBlockSize && rows == kBlockSize; }
 };
 
-/// Three powers, where a frame in linear light has a background.
-Backdrop backdrop_of(const FrameRequest& request) {
-  Vec4 b = request.background;
-  const Rgba8 empty = to_straight_rgba8({b.x * b.w, b.y * b.w, b.z * b.w, b.w});
-  if (request.linear_light && b.w != 0)
-    for (float* const channel : {&b.x, &b.y, &b.z})
-      *channel = static_cast<float>(linear_from_srgb(static_cast<double>(*channel)));
-  return {{b.x * b.w, b.y * b.w, b.z * b.w, b.w}, request.linear_light, empty};
-}
-
 /// Every case: float targets, blocks cut by the image's edge, passes that touch some pixels alone.
 /// Pixels that are not in `touched` keep what they have.
 void store_colors(const FrameRequest& request, const BlockColors& colors, std::uint64_t covered,
@@ -53,9 +43,8 @@ void store_colors(const FrameRequest& request, const BlockColors& colors, std::u
 
 void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
                     const VisibleBlock& block, std::uint64_t touched, const BlockColors* shaded,
-                    const Window& w) {
+                    const Backdrop& backdrop, const Window& w) {
   const Targets& targets = request.targets;
-  const Backdrop backdrop = backdrop_of(request);
   bool wants_8_bit = !targets.color8.empty();
   if (block.covered == 0 && wants_8_bit && !targets.load) {
     for (int y = 0; y < w.rows; ++y)
@@ -68,15 +57,19 @@ void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
   if (shaded == nullptr) {
     colors = &own;
     if (block.covered != 0) opaque = request.shader->shade(frame, block, request.isa, own);
-    if (opaque) std::fill_n(own.a, 64, 1.0F);
   }
-  if (wants_8_bit && w.whole() && touched == ~std::uint64_t{0}) {
-    const Kernels& kernel = kernels(request.isa);
-    Rgba8* const out = &targets.color8(w.x0, w.y0);
-    if (opaque && !request.linear_light)
-      kernel.store_opaque(*colors, block.covered, backdrop.empty, out, targets.color8.stride);
-    else
-      kernel.store_blended(*colors, block.covered, backdrop, out, targets.color8.stride);
+  const Kernels& kernel = kernels(request.isa);
+  const bool stores_block = wants_8_bit && w.whole() && touched == ~std::uint64_t{0};
+  if (stores_block && opaque && !request.linear_light) {
+    kernel.store_opaque(*colors, block.covered, backdrop.empty, &targets.color8(w.x0, w.y0),
+                        targets.color8.stride);
+    if (targets.color.empty()) return;
+    wants_8_bit = false;
+  }
+  if (opaque) std::fill_n(own.a, 64, 1.0F);
+  if (stores_block && wants_8_bit) {
+    kernel.store_blended(*colors, block.covered, backdrop, &targets.color8(w.x0, w.y0),
+                         targets.color8.stride);
     wants_8_bit = false;
   }
   if (wants_8_bit || !targets.color.empty())
@@ -145,7 +138,16 @@ void check_draw(const Draw& draw) {
 
 }  // namespace
 
-int resolve_block(const FrameRequest& request, const FrameGeometry& frame,
+Backdrop backdrop_of(const FrameRequest& request) {
+  Vec4 b = request.background;
+  const Rgba8 empty = to_straight_rgba8({b.x * b.w, b.y * b.w, b.z * b.w, b.w});
+  if (request.linear_light && b.w != 0)
+    for (float* const channel : {&b.x, &b.y, &b.z})
+      *channel = static_cast<float>(linear_from_srgb(static_cast<double>(*channel)));
+  return {{b.x * b.w, b.y * b.w, b.z * b.w, b.w}, request.linear_light, empty};
+}
+
+int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const Backdrop& backdrop,
                   const std::uint64_t* words, int x0, int y0, void* scratch,
                   const BlockColors* shaded) noexcept {
   const Targets& targets = request.targets;
@@ -165,7 +167,7 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame,
     if (shaded == nullptr) shaded = &colors;
   }
   if (!targets.color8.empty() || !targets.color.empty())
-    resolve_colors(request, frame, block, touched, shaded, window);
+    resolve_colors(request, frame, block, touched, shaded, backdrop, window);
   if (!targets.depth.empty() || !targets.ids.empty() || !targets.words.empty())
     store_words(targets, words, touched, window);
   return parallel::popcount(covered);

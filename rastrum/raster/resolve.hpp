@@ -7,11 +7,14 @@
 
 namespace rastrum::raster {
 
+/// What a frame's colours are drawn over. Up to three powers: once a frame or tile.
+[[nodiscard]] Backdrop backdrop_of(const FrameRequest& request);
+
 /// Shades one 8 × 8 block (`words`: 64, 64-byte aligned) and writes its part of every target;
 /// pixels outside the image are left out, and so are those that an earlier pass won
 /// (Targets::load). `scratch` is the shader's (geometry.hpp); `shaded` are the colours where
 /// visibility has shaded already, else null. Returns how many pixels hold a surface of this pass.
-int resolve_block(const FrameRequest& request, const FrameGeometry& frame,
+int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const Backdrop& backdrop,
                   const std::uint64_t* words, int x0, int y0, void* scratch,
                   const BlockColors* shaded = nullptr) noexcept;
 

@@ -224,6 +224,7 @@ FrameStats render_reference(raster::FrameRequest& request, MemoryAccount& memory
   watch.lap(stats, "rasterize");
 
   const std::unique_ptr<LayerBlend> blend = make_blend(request.transparency, Isa::scalar);
+  const raster::Backdrop backdrop = raster::backdrop_of(request);
   for (int y0 = 0; y0 < request.height; y0 += kBlockSize)
     for (int x0 = 0; x0 < request.width; x0 += kBlockSize) {
       alignas(64) std::uint64_t words[64] = {};
@@ -232,7 +233,7 @@ FrameStats render_reference(raster::FrameRequest& request, MemoryAccount& memory
         for (int x = x0; x < std::min(x0 + kBlockSize, request.width); ++x)
           words[(y - y0) * kBlockSize + (x - x0)] = scene.resolve(x, y, *blend, colors);
       stats.pixels_covered += static_cast<std::uint64_t>(
-          raster::resolve_block(request, frame, words, x0, y0, scene.scratch, &colors));
+          raster::resolve_block(request, frame, backdrop, words, x0, y0, scene.scratch, &colors));
     }
   watch.lap(stats, "shade");
   return stats;
