@@ -1,155 +1,29 @@
-// The window itself: a virtual X server, real keys and buttons by xdotool, and the program's own
-// screenshots, which say where the camera stands and are compared with `rastrum render`.
-#include <fcntl.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
+// The window itself: a virtual X server, real keys and buttons by xdotool, files dropped as a file
+// manager does, and the program's own screenshots, which say where the camera stands and are
+// compared with `rastrum render`.
+//
+// Nothing here waits for a time to pass: what is waited for is the picture on the screen, the
+// window's title or a file, and whatever ends the program ends the waiting.
 #include <array>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
 #include <memory>
-#include <thread>
+
+#include <rastrum/io/io.hpp>
 
 #include "program.hpp"
-// clang-format off: last, since its names are macros
-#include <X11/Xlib.h>
-#include <X11/Xutil.h>
-// clang-format on
+#include "x_server.hpp"
 
 namespace rastrum::test {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-using std::chrono::milliseconds;
-// A machine that runs everything at once, under a sanitizer, is slow.
-constexpr std::chrono::seconds kPatience{150};
-
-/// A process of the test's own, ended with it.
-class Process {
- public:
-  Process() = default;
-  ~Process() { stop(SIGKILL); }
-  Process(const Process&) = delete;
-  Process& operator=(const Process&) = delete;
-
-  /// `inherit`: a descriptor that stays open in the child, or −1; stderr goes to `err`.
-  void start(const std::vector<std::string>& command, const std::filesystem::path& folder,
-             const std::filesystem::path& err, int inherit = -1) {
-    std::vector<char*> argv;
-    for (const std::string& a : command) argv.push_back(const_cast<char*>(a.c_str()));
-    argv.push_back(nullptr);
-    child_ = ::fork();
-    if (child_ != 0) return;
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that is killed leaves none behind
-    const int e = ::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    if (e < 0 || ::dup2(e, 1) < 0 || ::dup2(e, 2) < 0 || ::chdir(folder.c_str()) != 0) ::_exit(127);
-    if (inherit >= 0) ::fcntl(inherit, F_SETFD, 0);
-    ::execvp(argv[0], argv.data());
-    ::_exit(127);
-  }
-  [[nodiscard]] bool running() {
-    if (child_ <= 0) return false;
-    int status = 0;
-    if (::waitpid(child_, &status, WNOHANG) != child_) return true;
-    ended(status);
-    return false;
-  }
-  void stop(int signal) {
-    if (!running()) return;
-    ::kill(child_, signal);
-    int status = 0;
-    ::waitpid(child_, &status, 0);
-    ended(status);
-  }
-  /// As Outcome::status; −1 while it runs.
-  [[nodiscard]] int status() const { return status_; }
-
- private:
-  void ended(int status) {
-    child_ = -1;
-    status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  }
-  pid_t child_ = -1;
-  int status_ = -1;
-};
-
-bool wait_until(const std::function<bool()>& done) {
-  const auto end = Clock::now() + kPatience;
-  while (!done()) {
-    if (Clock::now() > end) return false;
-    std::this_thread::sleep_for(milliseconds(20));
-  }
-  return true;
-}
+/// The panel's column; what is right of it is the picture.
+constexpr int kPanel_px = 345;
 
 bool have(const char* program) {
   return std::system((std::string("command -v ") + program + " >/dev/null 2>&1").c_str()) == 0;
 }
-
-/// A virtual X server for all cases of this process, with a connection of the test's own.
-class Server {
- public:
-  Server() {
-    char folder[] = "/tmp/rastrum-xvfb-XXXXXX";
-    if (::mkdtemp(folder) == nullptr) return;
-    log_ = folder;
-    // Numbers of this process, far from those that a server searching for one tries: while it
-    // searches it takes the sockets of others away.
-    constexpr int kFirst = 2000, kNumbers = 40000, kTries = 5, kStride = 7919;
-    for (int i = 0; i < kTries && display_ == nullptr; ++i)
-      try_number(kFirst + (static_cast<int>(::getpid()) + i * kStride) % kNumbers);
-  }
-  ~Server() {
-    if (display_ != nullptr) XCloseDisplay(display_);
-    process_.stop(SIGTERM);
-    if (!log_.empty()) std::filesystem::remove_all(log_);
-  }
-  Server(const Server&) = delete;
-  Server& operator=(const Server&) = delete;
-
-  /// Null where there is no server.
-  [[nodiscard]] Display* display() const { return display_; }
-  [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] std::string said() const {
-    std::ifstream in(log_ / "err");
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-
- private:
-  void try_number(int number) {
-    int ends[2];
-    if (::pipe2(ends, O_CLOEXEC) != 0) return;
-    name_ = std::string(":").append(std::to_string(number));
-    process_.start({"Xvfb", name_, "-displayfd", std::to_string(ends[1]), "-screen", "0",
-                    "1024x800x24", "-nolisten", "tcp",
-                    // No key repeats because this machine was busy between press and release; and
-                    // the server does not start anew when its last client leaves.
-                    "-r", "-noreset"},
-                   log_, log_ / "err", ends[1]);
-    ::close(ends[1]);
-    // It writes its number and, in a write of its own, the end of the line once it listens; where
-    // nobody reads that to the end it dies.
-    char byte = 0;
-    bool listens = false;
-    while (!listens && ::read(ends[0], &byte, 1) == 1) listens = byte == '\n';
-    ::close(ends[0]);
-    if (listens)
-      wait_until([&] {
-        display_ = XOpenDisplay(name_.c_str());
-        return display_ != nullptr || !process_.running();
-      });
-    if (display_ == nullptr) process_.stop(SIGKILL);
-  }
-
-  std::filesystem::path log_;
-  std::string name_;
-  Process process_;
-  Display* display_ = nullptr;
-};
 
 class WindowTest : public Program {
  protected:
@@ -161,7 +35,7 @@ class WindowTest : public Program {
 #endif
     for (const char* program : {"Xvfb", "xdotool"})
       if (!have(program)) GTEST_SKIP() << program << " is missing (Debian: xvfb, xdotool)";
-    if (!server_) server_ = std::make_unique<Server>();
+    if (!server_) server_ = std::make_unique<XServer>();
     if (server_->display() == nullptr)
       GTEST_SKIP() << "Xvfb does not start here: " << server_->said();
     ::setenv("DISPLAY", server_->name().c_str(), 1);
@@ -180,70 +54,38 @@ class WindowTest : public Program {
     return path("").parent_path().string() + ".view.err";
   }
 
-  void open(std::vector<std::string> args) {
+  void start(std::vector<std::string> args) {
     args.insert(args.begin(), {RASTRUM_PROGRAM, "view"});
     viewer_.start(args, path(""), err());
-    ASSERT_TRUE(wait_until([&] {
-      window_ = tool("search --onlyvisible --name '^rastrum '");
-      return !window_.empty() || !viewer_.running();
-    }));
-    ASSERT_FALSE(window_.empty()) << said();
-    // No window manager gives it the keyboard. Until it is mapped the server refuses, too.
-    ASSERT_TRUE(wait_until([&] {
-      tool("windowfocus " + window_);
-      Window focus = 0;
-      int revert = 0;
-      XGetInputFocus(server_->display(), &focus, &revert);
-      return focus == std::stoul(window_) || !viewer_.running();
-    }));
-    ASSERT_TRUE(viewer_.running()) << said();
   }
-  /// Asks the window to close, as a window manager's button does.
-  void press_close() {
-    Display* const display = server_->display();
-    XEvent event{};
-    event.xclient.type = ClientMessage;
-    event.xclient.window = std::stoul(window_);
-    event.xclient.message_type = XInternAtom(display, "WM_PROTOCOLS", 0);
-    event.xclient.format = 32;
-    event.xclient.data.l[0] = static_cast<long>(XInternAtom(display, "WM_DELETE_WINDOW", 0));
-    XSendEvent(display, event.xclient.window, 0, NoEventMask, &event);
-    XFlush(display);
+  /// The same, until its window has the keyboard.
+  void open(std::vector<std::string> args) {
+    start(std::move(args));
+    ASSERT_TRUE(comes_true([&] {
+      window_ = server_->window_of(viewer_.id());
+      return window_ != 0 && server_->focus(window_);
+    })) << said();
   }
-  /// What the window shows, as the server has it.
-  [[nodiscard]] Image<Rgba8> screen(int width, int height) const {
-    Image<Rgba8> image(width, height);
-    XImage* const x_image =
-        XGetImage(server_->display(), std::stoul(window_), 0, 0, static_cast<unsigned>(width),
-                  static_cast<unsigned>(height), AllPlanes, ZPixmap);
-    if (x_image == nullptr) return image;
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x) {
-        const unsigned long p = XGetPixel(x_image, x, y);
-        image(x, y) = {static_cast<std::uint8_t>(p >> 16 & 255),
-                       static_cast<std::uint8_t>(p >> 8 & 255), static_cast<std::uint8_t>(p & 255),
-                       255};
-      }
-    XDestroyImage(x_image);
-    return image;
+  /// Waits, as long as the program runs.
+  bool comes_true(const std::function<bool()>& what) {
+    bool is_true = false;
+    wait_until([&] {
+      is_true = what();
+      return is_true || !viewer_.running();
+    });
+    return is_true;
   }
   /// What the program wrote.
   [[nodiscard]] std::string said() const {
     std::ifstream in(err());
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  /// Runs xdotool; its first line.
-  static std::string tool(const std::string& args) {
-    std::FILE* const pipe = ::popen(("xdotool " + args + " 2>/dev/null").c_str(), "r");
-    if (pipe == nullptr) return {};
-    std::array<char, 64> text{};
-    const bool any = std::fgets(text.data(), text.size(), pipe) != nullptr;
-    while (std::fgetc(pipe) != EOF) {
-    }
-    ::pclose(pipe);
-    std::string line = any ? text.data() : "";
-    while (!line.empty() && line.back() == '\n') line.pop_back();
-    return line;
+  /// Runs xdotool.
+  static void tool(const std::string& args) {
+    EXPECT_EQ(std::system(("xdotool " + args + " >/dev/null 2>&1").c_str()), 0) << args;
+  }
+  void at_window(const std::string& place, const std::string& actions) const {
+    tool("mousemove --window " + std::to_string(window_) + " " + place + " " + actions);
   }
   /// Presses P and waits for the picture and its camera; its name without the ending.
   std::string screenshot() {
@@ -251,28 +93,62 @@ class WindowTest : public Program {
     std::snprintf(stem, sizeof stem, "rastrum_%04d", shots_++);
     tool("key p");
     const std::string png_name = std::string(stem) + ".png";
-    EXPECT_TRUE(wait_until([&] {
-      return std::filesystem::exists(path(png_name)) || !viewer_.running();
-    })) << png_name;
-    EXPECT_TRUE(viewer_.running()) << said();
+    EXPECT_TRUE(comes_true([&] { return std::filesystem::exists(path(png_name)); }))
+        << png_name << said();
     return stem;
   }
-  /// Whether a screenshot is, bit for bit, what `rastrum render` draws with its camera.
-  void expect_rendered(const std::string& shot, const std::vector<std::string>& options) {
+  /// The screen where it shows the picture and nothing else.
+  [[nodiscard]] Image<Rgba8> seen(const Image<Rgba8>& like) const {
+    return server_->pixels(window_, kPanel_px, 0, like.width() - kPanel_px, like.height());
+  }
+  [[nodiscard]] bool shows(const Image<Rgba8>& picture) const {
+    Image<Rgba8> part(picture.width() - kPanel_px, picture.height());
+    for (int y = 0; y < part.height(); ++y)
+      for (int x = 0; x < part.width(); ++x) part(x, y) = picture(x + kPanel_px, y);
+    return same_pixels(part, seen(picture));
+  }
+  /// Holds a key until something else than `shot` is on the screen.
+  void hold(const std::string& key, const std::string& shot) {
     const Image<Rgba8> picture = png(shot + ".png");
-    std::vector<std::string> args{
-        "render",       "--quiet",
-        "--path",       shot + ".json",
-        "--size",       std::to_string(picture.width()) + "x" + std::to_string(picture.height()),
-        "--background", "#20242c",
-        "-o",           "rendered.png"};
+    EXPECT_TRUE(comes_true([&] { return shows(picture); })) << shot;
+    tool("keydown " + key);
+    EXPECT_TRUE(comes_true([&] { return !shows(picture); })) << key;
+    tool("keyup " + key);
+  }
+  /// Whether a screenshot is, bit for bit, what `rastrum COMMAND` draws with its camera.
+  void expect_drawn(const std::string& command, const std::string& shot,
+                    const std::vector<std::string>& options) {
+    const Image<Rgba8> picture = png(shot + ".png");
+    const std::string size =
+        std::to_string(picture.width()) + "x" + std::to_string(picture.height());
+    std::vector<std::string> args{command, "--path", shot + ".json", "--size",
+                                  size,    "-o",     "rendered.png"};
     args.insert(args.end(), options.begin(), options.end());
     must(args);
     EXPECT_TRUE(same_pixels(picture, png("rendered.png"))) << shot;
     std::filesystem::remove(path("rendered.png"));
   }
+  void expect_rendered(const std::string& shot, std::vector<std::string> options) {
+    options.insert(options.end(), {"--quiet", "--background", "#20242c"});
+    expect_drawn("render", shot, options);
+  }
   [[nodiscard]] nlohmann::ordered_json key_of(const std::string& shot) const {
     return json(shot + ".json")["keys"][0];
+  }
+  void drop(const std::string& name) {
+    EXPECT_EQ(drop_file(*server_, window_, path(name)), "") << name << said();
+  }
+  void expect_title(const std::string& what) {
+    EXPECT_TRUE(comes_true([&] { return server_->title(window_) == "rastrum " + what; }))
+        << server_->title(window_) << said();
+  }
+  /// Whether a message in the colour of errors is on the screen.
+  [[nodiscard]] bool shows_error(int width, int height) const {
+    const auto near = [](int a, int b) { return a >= b - 2 && a <= b + 2; };
+    int red = 0;
+    for (const Rgba8 p : server_->pixels(window_, 0, 0, width, height).pixels())
+      red += near(p.r, 255) && near(p.g, 115) && near(p.b, 102);
+    return red > 50;
   }
   /// Its end, which must be a clean one: under a sanitizer a leak is not.
   void expect_closed() {
@@ -281,27 +157,27 @@ class WindowTest : public Program {
     EXPECT_EQ(said(), "");
   }
 
-  static inline std::unique_ptr<Server> server_;
+  static inline std::unique_ptr<XServer> server_;
   Process viewer_;
-  std::string window_;
+  XWindow window_ = 0;
   int shots_ = 0;
 };
 
 const std::vector<std::string> kTeapot{"builtin:teapot"};
 
 TEST_F(WindowTest, KeysMoveTheCameraAndScreenshotsAreWhatRenderDraws) {
-  open({"builtin:teapot", "--size", "400x300"});
+  open({"builtin:teapot", "--size", "700x500"});
   const std::string home = screenshot();
   expect_rendered(home, kTeapot);
 
-  tool("keydown d sleep 0.3 keyup d");
+  hold("d", home);
   const std::string right = screenshot();
   expect_rendered(right, kTeapot);
   EXPECT_GT(key_of(right)["eye"][0], key_of(home)["eye"][0]);
   EXPECT_EQ(key_of(right)["eye"][2], key_of(home)["eye"][2]);
   EXPECT_FALSE(same_pixels(png(right + ".png"), png(home + ".png")));
 
-  tool("keydown w sleep 0.3 keyup w");
+  hold("w", right);
   const std::string nearer = screenshot();
   expect_rendered(nearer, kTeapot);
   EXPECT_LT(key_of(nearer)["eye"][2], key_of(right)["eye"][2]);
@@ -319,8 +195,10 @@ TEST_F(WindowTest, TheMouseOrbitsPansAndZooms) {
   const auto home = key_of(screenshot());
   // Right of the panel.
   const auto drag = [&](const std::string& button) {
-    tool("mousemove --window " + window_ + " 500 300 mousedown " + button +
-         " mousemove_relative --sync 60 0 mousemove_relative --sync 10 0 mouseup " + button);
+    at_window("500 300", "mousedown " + button +
+                             " mousemove_relative --sync 60 0 mousemove_relative --sync 10 0"
+                             " mouseup " +
+                             button);
   };
   drag("1");
   const auto orbited = key_of(screenshot());
@@ -334,53 +212,136 @@ TEST_F(WindowTest, TheMouseOrbitsPansAndZooms) {
   const std::string zoomed = screenshot();
   EXPECT_LT(key_of(zoomed)["eye"][2], home["eye"][2]);
   expect_rendered(zoomed, kTeapot);
-  press_close();
+  server_->close(window_);
   expect_closed();
 }
 
 TEST_F(WindowTest, KeysChangeThePicture) {
   open({"builtin:teapot", "--size", "300x200"});
   std::vector<std::string> options{"builtin:teapot"};
-  const auto shows = [&](const std::string& keys, std::vector<std::string> more) {
+  const auto draws = [&](const std::string& keys, std::vector<std::string> more) {
     tool("key " + keys);
     options.insert(options.end(), more.begin(), more.end());
     expect_rendered(screenshot(), options);
   };
-  shows("m", {"--shader", "material"});
-  shows("l l l l l l", {"--opacity", "0.7"});
-  shows("t", {"--transparency", "filter:3"});
-  shows("b", {"--samples", "4"});
+  draws("m", {"--shader", "material"});
+  draws("l l l l l l", {"--opacity", "0.7"});
+  draws("t", {"--transparency", "filter:3"});
+  draws("b", {"--samples", "4"});
+  // The heat map of all that: its picture is another output of the same frame.
+  tool("key h");
+  const std::string heat = screenshot();
+  std::vector<std::string> heat_options = options;
+  heat_options.insert(heat_options.end(), {"--path", heat + ".json", "--size", "300x200", "--quiet",
+                                           "-o", "x.png", "--heatmap", "heat.png"});
+  heat_options.insert(heat_options.begin(), "render");
+  must(heat_options);
+  EXPECT_TRUE(same_pixels(png(heat + ".png"), png("heat.png")));
+  EXPECT_FALSE(same_pixels(png(heat + ".png"), png("x.png")));
+  draws("h", {});
+  // A rasterizer that has no samples draws nothing, so that there is no screenshot to wait for.
+  tool("key n n n");
+  EXPECT_TRUE(comes_true([&] { return shows_error(300, 200); }));
+  tool("key shift+n shift+n shift+n");
+  EXPECT_TRUE(comes_true([&] { return !shows_error(300, 200); }));
+  draws("m shift+m", {});
   tool("key ctrl+q");
+  expect_closed();
+}
+
+// What a machine with other things to do makes of typing: the program wakes up to many events.
+TEST_F(WindowTest, KeysThatComeAtOnceAreTakenOneByOne) {
+  open({"builtin:teapot", "--size", "300x200"});
+  screenshot();
+  const auto while_it_sleeps = [&](const std::string& keys) {
+    viewer_.signal(SIGSTOP);
+    tool("key " + keys);
+    viewer_.signal(SIGCONT);
+  };
+  while_it_sleeps("b b shift+b");
+  expect_rendered(screenshot(), {"builtin:teapot", "--samples", "4"});
+  while_it_sleeps("ctrl+q");
   expect_closed();
 }
 
 TEST_F(WindowTest, AResizeKeepsThePictureRight) {
   open({"builtin:teapot", "--size", "640x480"});
   EXPECT_EQ(png(screenshot() + ".png").width(), 640);
-  for (const auto& [width, height] : {std::pair{333, 250}, {900, 700}, {60, 40}}) {
-    XResizeWindow(server_->display(), std::stoul(window_), static_cast<unsigned>(width),
-                  static_cast<unsigned>(height));
-    XSync(server_->display(), False);
-    // The window hears of it when the server gets to it.
+  std::string last;
+  for (const auto& size :
+       {std::array{333, 250}, {1, 1}, {901, 703}, {3, 700}, {640, 1}, {640, 480}}) {
+    server_->resize(window_, size[0], size[1]);
+    // The window hears of it when the server gets to it: a key may come before.
     std::string shot;
-    const int wanted = width;
-    EXPECT_TRUE(wait_until([&] {
+    EXPECT_TRUE(comes_true([&] {
       shot = screenshot();
-      return png(shot + ".png").width() == wanted || testing::Test::HasFailure();
-    }));
-    EXPECT_EQ(png(shot + ".png").height(), height);
+      const Image<Rgba8> picture = png(shot + ".png");
+      return HasFailure() || (picture.width() == size[0] && picture.height() == size[1]);
+    })) << size[0]
+        << " x " << size[1];
     expect_rendered(shot, kTeapot);
+    last = shot;
   }
-  press_close();
+  EXPECT_TRUE(same_pixels(png("rastrum_0000.png"), png(last + ".png")));
+  server_->close(window_);
+  expect_closed();
+}
+
+TEST_F(WindowTest, AMeshIsDropped) {
+  must({"make", "torus_knot", "-o", "a knot.ply"});
+  write("bad.ply", "ply\nnonsense");
+  open({"builtin:teapot", "--size", "700x500"});
+  const std::string home = screenshot();
+  EXPECT_FALSE(shows_error(700, 500));
+  drop("bad.ply");
+  EXPECT_TRUE(comes_true([&] { return shows_error(700, 500); }));
+  expect_title("builtin:teapot");
+  const std::string still = screenshot();
+  EXPECT_TRUE(same_pixels(png(still + ".png"), png(home + ".png"))) << "the picture stays";
+
+  drop("a knot.ply");
+  expect_title(path("a knot.ply").string());
+  expect_rendered(screenshot(), {"a knot.ply"});
+  EXPECT_TRUE(comes_true([&] { return !shows_error(700, 500); }));
+  tool("key ctrl+q");
+  expect_closed();
+}
+
+TEST_F(WindowTest, AHeightMapIsDropped) {
+  Image<Rgba8> hills(64, 64);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) {
+      const auto h = static_cast<std::uint8_t>((x - 32) * (y - 32) / 16 + 64);
+      hills(x, y) = {h, h, h, 255};
+    }
+  io::write_png(path("hills.png"), hills.view());
+  write("bad.png", "\x89PNG and no more");
+  open({"--terrain", "--function", "wavy", "--size", "700x500"});
+  expect_title("wavy");
+  const std::string home = screenshot();
+  expect_drawn("terrain", home, {"--function", "wavy"});
+  drop("bad.png");
+  EXPECT_TRUE(comes_true([&] { return shows_error(700, 500); }));
+  expect_title("wavy");
+  const std::string still = screenshot();
+  EXPECT_TRUE(same_pixels(png(still + ".png"), png(home + ".png"))) << "the picture stays";
+
+  drop("hills.png");
+  expect_title(path("hills.png").string());
+  expect_drawn("terrain", screenshot(), {"--height", "hills.png"});
+  EXPECT_TRUE(comes_true([&] { return !shows_error(700, 500); }));
+  server_->close(window_);
   expect_closed();
 }
 
 TEST_F(WindowTest, WithoutThePanelThePictureIsOnTheScreen) {
   open({"builtin:teapot", "--size", "700x500"});
   const Image<Rgba8> picture = png(screenshot() + ".png");
-  EXPECT_FALSE(same_pixels(screen(700, 500), picture)) << "the panel lies over it";
+  const auto screen = [&] { return server_->pixels(window_, 0, 0, 700, 500); };
+  EXPECT_TRUE(comes_true([&] { return shows(picture); }));
+  EXPECT_FALSE(same_pixels(screen(), picture)) << "the panel lies over it";
   tool("key Tab");
-  EXPECT_TRUE(wait_until([&] { return same_pixels(screen(700, 500), picture); }));
+  EXPECT_TRUE(comes_true([&] { return same_pixels(screen(), picture); }));
   tool("key ctrl+q");
   expect_closed();
 }
@@ -388,11 +349,10 @@ TEST_F(WindowTest, WithoutThePanelThePictureIsOnTheScreen) {
 TEST_F(WindowTest, ADragOnThePanelIsThePanels) {
   open({"builtin:teapot", "--size", "700x500"});
   const auto home = key_of(screenshot());
-  tool("mousemove --window " + window_ +
-       " 100 60 mousedown 1 mousemove_relative --sync 60 0 mousemove_relative --sync 10 0 mouseup "
-       "1");
+  at_window("100 60",
+            "mousedown 1 mousemove_relative --sync 60 0 mousemove_relative --sync 10 0 mouseup 1");
   EXPECT_EQ(key_of(screenshot()), home);
-  tool("mousemove --window " + window_ + " 100 60 click 4");
+  at_window("100 60", "click 4");
   EXPECT_EQ(key_of(screenshot()), home);
   tool("key ctrl+q");
   expect_closed();
@@ -403,7 +363,7 @@ TEST_F(WindowTest, AScriptEndsTheWindowItself) {
                                           {"time": 0.5, "eye": [-6, 4, 6]}],
       "events": [{"time": 0.2, "screenshot": "a.png"}, {"time": 0.3, "size": [320, 200]},
                  {"time": 0.5, "screenshot": "b.png"}, {"time": 0.6, "quit": true}]})");
-  open({"builtin:teapot", "--size", "400x300", "--script", "s.json"});
+  start({"builtin:teapot", "--size", "400x300", "--script", "s.json"});
   expect_closed();
   expect_rendered("a", kTeapot);
   expect_rendered("b", kTeapot);

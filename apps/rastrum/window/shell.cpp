@@ -29,15 +29,15 @@ constexpr int kImguiFrames = 3;     ///< until ImGui has settled after an event
 /// SDL, ImGui, the window and what belongs to it, undone in reverse.
 class Screen {
  public:
-  Screen(const std::string& title, int width, int height) {
+  Screen(const std::string& what, int width, int height) {
     SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
     // A software renderer would go through OpenGL to the screen, which users need not have.
     SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // Ctrl-C in the terminal ends the program
     if (SDL_Init(SDL_INIT_VIDEO) != 0)
       fail("there is no display to open a window on (`rastrum render` draws into files)");
-    window_ = SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED,
-                               width, height, SDL_WINDOW_RESIZABLE);
+    window_ = SDL_CreateWindow(title_of(what).c_str(), SDL_WINDOWPOS_UNDEFINED,
+                               SDL_WINDOWPOS_UNDEFINED, width, height, SDL_WINDOW_RESIZABLE);
     if (window_ == nullptr) undo_and_fail("the window cannot be opened");
     // The pictures are made by the CPU: a copy is all there is to do. SDL_RENDER_DRIVER chooses
     // another one.
@@ -56,6 +56,11 @@ class Screen {
   Screen& operator=(const Screen&) = delete;
 
   [[nodiscard]] SDL_Window* window() { return window_; }
+  /// What is shown, for the bar of the window.
+  void set_title(const std::string& what) {
+    const std::string title = title_of(what);
+    if (title != SDL_GetWindowTitle(window_)) SDL_SetWindowTitle(window_, title.c_str());
+  }
   [[nodiscard]] std::pair<int, int> size() const {
     int width = 0, height = 0;
     SDL_GetRendererOutputSize(renderer_, &width, &height);
@@ -84,6 +89,9 @@ class Screen {
   }
 
  private:
+  static std::string title_of(const std::string& what) {
+    return std::string("rastrum ").append(what);
+  }
   void upload(const Drawn& picture) {
     const int w = picture.image.width(), h = picture.image.height();
     if (texture_ == nullptr || w != width_ || h != height_) {
@@ -144,7 +152,7 @@ class Shell {
  public:
   Shell(std::unique_ptr<Subject> subject, const ViewerOptions& viewer, const ShellOptions& options,
         const Controls& controls)
-      : screen_("rastrum " + subject->title(), viewer.width, viewer.height),
+      : screen_(subject->title(), viewer.width, viewer.height),
         viewer_(std::move(subject), viewer, [this] { screen_.wake(); }),
         controls_(controls) {
     if (options.script) replay_.emplace(*options.script, viewer_);
@@ -190,9 +198,11 @@ class Shell {
 
   void take(const SDL_Event& event) {
     ImGui_ImplSDL2_ProcessEvent(&event);
+    // SDL_GetModState() is of the newest event that SDL has read, which may be many after this one.
+    if (event.type == SDL_KEYDOWN || event.type == SDL_KEYUP) modifiers_ = event.key.keysym.mod;
     Event e;
-    e.shift = (SDL_GetModState() & KMOD_SHIFT) != 0;
-    e.ctrl = (SDL_GetModState() & KMOD_CTRL) != 0;
+    e.shift = (modifiers_ & KMOD_SHIFT) != 0;
+    e.ctrl = (modifiers_ & KMOD_CTRL) != 0;
     switch (event.type) {
       case SDL_QUIT:
         quit_ = true;
@@ -283,6 +293,7 @@ class Shell {
   }
 
   void present() {
+    screen_.set_title(viewer_.subject().title());
     ImGui_ImplSDL2_NewFrame();
     ImGui::NewFrame();
     if (panel_)
@@ -296,6 +307,7 @@ class Shell {
   Viewer viewer_;
   const Controls& controls_;
   std::optional<Replay> replay_;
+  unsigned modifiers_ = 0;  ///< held at the event that is being taken
   bool panel_ = true;
   Area area_;  ///< of the panel, as it was drawn last
   bool quit_ = false;
