@@ -8,6 +8,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <rastrum/parallel/stop.hpp>
+
 #if defined(RASTRUM_TSAN)
 extern "C" void __tsan_acquire(void* address);
 extern "C" void __tsan_release(void* address);
@@ -59,17 +61,25 @@ class AroundLoop {
 void Threads::for_each_range(std::size_t n, std::size_t grain,
                              void (*body)(void* data, std::size_t begin, std::size_t end),
                              void* data) {
-  HandOver fork, join;
-  const AroundLoop around(fork, join);
-  arena_.execute([&] {
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, n, grain),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-          const WithinLoop within(fork, join);
-          body(data, range.begin(), range.end());
-        },
-        tbb::simple_partitioner{});
-  });
+  const std::stop_token* const stop = StopScope::current();
+  const auto stopped = [stop] { return stop != nullptr && stop->stop_requested(); };
+  {
+    HandOver fork, join;
+    const AroundLoop around(fork, join);
+    arena_.execute([&] {
+      tbb::parallel_for(
+          tbb::blocked_range<std::size_t>(0, n, grain),
+          [&](const tbb::blocked_range<std::size_t>& range) {
+            const WithinLoop within(fork, join);
+            if (stopped()) return;
+            const StopScope scope(stop);
+            body(data, range.begin(), range.end());
+          },
+          tbb::simple_partitioner{});
+    });
+  }
+  // Ranges may have been left out: nothing that follows is to see their results.
+  if (stopped()) throw Stopped{};
 }
 
 }  // namespace rastrum::parallel

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <rastrum/parallel/mask.hpp>
+#include <rastrum/parallel/stop.hpp>
 #include <rastrum/raster/resolve.hpp>
 
 namespace rastrum::raster {
@@ -41,6 +42,7 @@ std::span<Block> keep(std::span<Block> blocks, const MaskOf& mask_of) {
 
 void Emitter::flush() {
   if (count_ == 0) return;
+  parallel::throw_if_stopped();  // one tile or chunk may have most of the scene
   std::span<Block> blocks(worker_.blocks, count_);
   count_ = 0;
   if (to_cover_) {

@@ -202,10 +202,17 @@ FrameStats Rasterizer::render(FrameRequest& request) {
   frame.fragment_bytes = cut.fragment_bytes;
   frame.expansion_bytes = cut.expansion_bytes;
   frame.view_bytes = cut.view_bytes;
-  for (int y = 0; y < request.height; y += cut.band_rows) {
-    frame.view = {0, y, request.width, std::min(y + cut.band_rows, request.height)};
-    frame.first_band = y == 0;
-    draw_band(frame, cut, totals.primitives);
+  try {
+    for (int y = 0; y < request.height; y += cut.band_rows) {
+      frame.view = {0, y, request.width, std::min(y + cut.band_rows, request.height)};
+      frame.first_band = y == 0;
+      draw_band(frame, cut, totals.primitives);
+    }
+  } catch (...) {
+    // Regions have counted for a frame that will not be; nothing of it is to be in the next one's.
+    scratch_.shared.reset();
+    scratch_.workers.for_each([](Worker& worker) { worker.region.reset(); });
+    throw;
   }
   stats.triangles.input = totals.primitives;
   stats.triangles.drawn = totals.primitives - stats.triangles.dropped - stats.triangles.culled;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/parallel/stop.hpp>
 #include <rastrum/raster/assemble.hpp>
 #include <rastrum/raster/coverage.hpp>
 #include <rastrum/raster/resolve.hpp>
@@ -70,6 +71,7 @@ FrameStats render_reference(FrameRequest& request, MemoryAccount& memory) {
   stats.triangles.input = totals.primitives;
   for (const Draw& draw : request.draws)
     for (std::uint64_t t = 0; t < draw.primitive_count; ++t) {
+      parallel::throw_if_stopped();
       const Fate fate = assemble_primitive(frame, draw, t, [&](const Piece& piece) {
         draw_piece(request, frame, piece, words, stats);
       });
@@ -82,7 +84,8 @@ FrameStats render_reference(FrameRequest& request, MemoryAccount& memory) {
 
   alignas(64) std::byte scratch[kMaxShaderScratch] = {};
   const Backdrop backdrop = backdrop_of(request);
-  for (int y0 = 0; y0 < request.height; y0 += kBlockSize)
+  for (int y0 = 0; y0 < request.height; y0 += kBlockSize) {
+    parallel::throw_if_stopped();
     for (int x0 = 0; x0 < request.width; x0 += kBlockSize) {
       alignas(64) std::uint64_t block[64] = {};
       for (int y = y0; y < std::min(y0 + kBlockSize, request.height); ++y)
@@ -91,6 +94,7 @@ FrameStats render_reference(FrameRequest& request, MemoryAccount& memory) {
       stats.pixels_covered += static_cast<std::uint64_t>(
           resolve_block(request, frame, backdrop, block, x0, y0, scratch));
     }
+  }
   watch.lap(stats, "shade");
   return stats;
 }

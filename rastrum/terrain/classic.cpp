@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <rastrum/parallel/for_each.hpp>
+#include <rastrum/parallel/stop.hpp>
 #include <rastrum/terrain/blocks.hpp>
 #include <rastrum/terrain/methods.hpp>
 
@@ -122,6 +123,7 @@ Counts draw_classic(parallel::Threads& exec, Isa isa, BlockPool& pool, const Ter
           if (static_cast<double>(block.deepest) <= table.lowest_row[k]) break;
           const std::size_t lane = k % kClassicSlices;
           if (lane == 0) {
+            if (parallel::stop_requested()) break;  // as in fast.cpp
             const std::size_t last = std::min(k + kClassicSlices, lines.size()) - 1;
             const double top = table.highest(ceiling, options.tiling, x, y, k, last, n);
             const double row = std::min((camera.altitude - top) * lines[k].rows,
@@ -176,6 +178,7 @@ Counts draw_classic_reference(const Terrain& terrain, const TerrainOptions& opti
   const double sin = std::sin(camera.angle_rad), cos = std::cos(camera.angle_rad);
   double dz = 1;
   for (double z = 1; z < options.distance; dz += 0.005, z += dz) {
+    parallel::throw_if_stopped();
     double x = -cos * z - sin * z, y = sin * z - cos * z;
     const double dx = (cos * z - sin * z - x) / width, dy = (-sin * z - cos * z - y) / width;
     x += camera.x;

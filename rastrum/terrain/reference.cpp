@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include <rastrum/parallel/stop.hpp>
 #include <rastrum/terrain/methods.hpp>
 
 namespace rastrum::terrain {
@@ -21,6 +22,7 @@ Counts draw_reference(const Samples& samples, const TerrainTargets& targets) {
   const Setup& setup = samples.setup;
   Counts counts;
   for (std::size_t column = 0; column < setup.ux.size(); ++column) {
+    parallel::throw_if_stopped();
     const int x = static_cast<int>(column);
     int hidden = setup.height;  // rows from here on are drawn
     for (const Slice& slice : setup.slices) {

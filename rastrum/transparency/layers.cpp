@@ -14,6 +14,7 @@
 #include <utility>
 
 #include <rastrum/parallel/mask.hpp>
+#include <rastrum/parallel/stop.hpp>
 #include <rastrum/raster/resolve.hpp>
 #include <rastrum/raster/setup.hpp>
 #include <rastrum/raster/visibility/atomic.hpp>
@@ -157,6 +158,7 @@ class LayersRegion final : public raster::Region {
     records_.sort(blocks);
     micro_.sort(blocks);
     for (std::size_t b = 0; b < blocks; ++b) {
+      parallel::throw_if_stopped();  // thousands of layers take long
       const int bx = rect_.x0 / kBlockSize + static_cast<int>(b) % columns_;
       const int by = rect_.y0 / kBlockSize + static_cast<int>(b) / columns_;
       resolve_block(bx, by, records_.of(b), micro_.of(b));

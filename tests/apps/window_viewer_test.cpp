@@ -1,9 +1,11 @@
 // The session of the window without a window: resolution while moving, screenshots, files, errors,
 // and scripts that replay the same way.
+#include <atomic>
 #include <chrono>
 #include <thread>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/parallel/stop.hpp>
 
 #include "arguments.hpp"
 #include "program.hpp"
@@ -17,7 +19,7 @@ namespace {
 using namespace cli::window;
 using Picture = cli::window::Drawn;  // program.hpp has a Drawn of its own
 
-/// Draws one colour, as slowly as it is told to.
+/// Draws one colour, as slowly as it is told to, row by row: its unit of work.
 class FakeSubject final : public Subject {
  public:
   void handle(const Event& event) override {
@@ -32,6 +34,11 @@ class FakeSubject final : public Subject {
     return [this, width, height]() -> Picture {
       if (refuse) throw Error(Errc::invalid_argument, "these options do not fit");
       Picture d{Image<Rgba8>(width, height), true, {}};
+      for (int row = 0; row < height; ++row) {
+        if (width == hold_width && row == kHoldRow) hold();
+        parallel::throw_if_stopped();
+        if (width == hold_width) ++*rows;
+      }
       d.figures.frame_ms = ms_a_pixel * width * height;
       ++pictures;
       return d;
@@ -60,7 +67,21 @@ class FakeSubject final : public Subject {
   double ms_a_pixel = 1;
   int pictures = 0;
 
+  /// Pictures of this width wait in the middle, until they are let go or stopped.
+  static constexpr int kHoldRow = 2;
+  std::atomic<int> hold_width = -1;
+  std::atomic<int>* rows = nullptr;  ///< of those pictures; outlives the subject
+  std::atomic<bool> held = false, let_go = false;
+
  private:
+  void hold() {
+    held = true;
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (!let_go && !parallel::stop_requested() && std::chrono::steady_clock::now() < end)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    let_go = true;
+  }
+
   std::uint64_t version_ = 1;
 };
 
@@ -77,6 +98,7 @@ class ViewerTest : public Program {
     Program::SetUp();
     auto owned = std::make_unique<FakeSubject>();
     subject = owned.get();
+    subject->rows = &rows;
     ViewerOptions options;
     options.width = 64;
     options.height = 32;
@@ -97,6 +119,19 @@ class ViewerTest : public Program {
         std::this_thread::sleep_for(std::chrono::microseconds(50));
     }
   }
+  /// Runs until a picture is held in its middle.
+  void run_until_held() {
+    for (int i = 0; i < 20000 && !subject->held; ++i) run_for(0.01);
+    ASSERT_TRUE(subject->held);
+    rows = 0;
+  }
+  /// Updates once, then until the picture under way is finished or given up.
+  void finish_picture() {
+    viewer->update();
+    subject->let_go = true;
+    while (!viewer->update()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  std::atomic<int> rows = 0;
   FakeSubject* subject = nullptr;
   std::unique_ptr<Viewer> viewer;
 };
@@ -192,6 +227,57 @@ TEST_F(ViewerTest, AScreenshotThatCannotBeWrittenIsAnError) {
   viewer->settle();
   EXPECT_TRUE(files().empty());
   EXPECT_NE(viewer->notice().find("a.png is not written"), std::string::npos);
+}
+
+// The bound is in work: not one more row of the full picture, and the preview's rows are the next.
+TEST_F(ViewerTest, AFullPictureIsGivenUpWhenTheViewMoves) {
+  subject->hold_width = 64;
+  run_until_held();
+  EXPECT_LT(viewer->picture()->image.width(), 64) << "a coarse one is there already";
+  const std::uint64_t serial = viewer->serial();
+  viewer->handle(press("w"));
+  finish_picture();
+  EXPECT_EQ(rows, 0) << "of the full picture, after the key";
+  EXPECT_EQ(viewer->serial(), serial);
+  subject->hold_width = -1;
+  run_for(0.05);
+  EXPECT_GT(viewer->serial(), serial);
+  EXPECT_EQ(viewer->picture()->image.width(), 8);
+  viewer->handle(press("w", Event::Kind::key_up));
+  run_for(1);
+  EXPECT_EQ(viewer->picture()->image.width(), 64) << "and it is drawn once the view rests";
+  EXPECT_EQ(viewer->error(), "");
+}
+
+TEST_F(ViewerTest, AFullPictureIsGivenUpForAFile) {
+  subject->hold_width = 64;
+  run_until_held();
+  viewer->open("bad");
+  finish_picture();
+  EXPECT_EQ(rows, 0);
+  subject->hold_width = -1;
+  run_for(1);
+  EXPECT_EQ(viewer->error(), "bad: is spoilt");
+  EXPECT_EQ(viewer->picture()->image.width(), 64) << "the view has not changed after all";
+}
+
+TEST_F(ViewerTest, PicturesOfAMovingViewAreFinished) {
+  run_for(0.5);
+  viewer->handle(press("w"));
+  run_for(0.1);
+  subject->hold_width = viewer->picture()->image.width();
+  run_until_held();
+  const std::uint64_t serial = viewer->serial();
+  viewer->advance(0.01);  // the view has moved on
+  finish_picture();
+  EXPECT_EQ(viewer->serial(), serial + 1) << "else there would be none while it moves";
+}
+
+TEST_F(ViewerTest, TheEndGivesUpWhatIsDrawn) {
+  subject->hold_width = 64;
+  run_until_held();
+  viewer.reset();
+  EXPECT_EQ(rows, 0) << "after the window was closed";
 }
 
 TEST_F(ViewerTest, EndsWhileAPictureIsDrawn) {

@@ -3,11 +3,13 @@
 #include <cstddef>
 #include <numeric>
 #include <stdexcept>
+#include <stop_token>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include <rastrum/parallel/exec.hpp>
+#include <rastrum/parallel/stop.hpp>
 
 namespace rastrum::parallel {
 namespace {
@@ -62,6 +64,49 @@ TEST_P(ThreadCounts, AnErrorReachesTheCaller) {
                               }),
                std::runtime_error);
   expect_each_index_once(exec, 1000);
+}
+
+TEST_P(ThreadCounts, AStoppedLoopLeavesOutWhatHasNotBegun) {
+  Threads exec(GetParam());
+  std::stop_source source;
+  const std::stop_token token = source.get_token();
+  constexpr std::size_t n = 10000;
+  {
+    const StopScope scope(token);
+    expect_each_index_once(exec, n);
+    std::atomic<std::size_t> calls = 0;
+    EXPECT_THROW(for_each_index(exec, n,
+                                [&](std::size_t) {
+                                  if (++calls == 10) source.request_stop();
+                                }),
+                 Stopped);
+    // The others have at most begun one each.
+    EXPECT_LE(calls, 10 + static_cast<std::size_t>(GetParam()) - 1);
+    EXPECT_THROW(for_each_index(exec, 1, [](std::size_t) {}), Stopped);
+    {
+      const StopScope none(nullptr);
+      expect_each_index_once(exec, n);
+    }
+    EXPECT_TRUE(stop_requested());
+  }
+  EXPECT_FALSE(stop_requested());
+  expect_each_index_once(exec, n);
+}
+
+TEST_P(ThreadCounts, BodiesAndTheirLoopsSeeTheStop) {
+  Threads exec(GetParam());
+  std::stop_source source;
+  const std::stop_token token = source.get_token();
+  const StopScope scope(token);
+  std::atomic<int> inner = 0;
+  EXPECT_THROW(for_each_index(exec, 30,
+                              [&](std::size_t) {
+                                source.request_stop();
+                                EXPECT_TRUE(stop_requested());
+                                for_each_index(exec, 30, [&](std::size_t) { ++inner; });
+                              }),
+               Stopped);
+  EXPECT_EQ(inner, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Counts, ThreadCounts, testing::Values(1, 2, 8));

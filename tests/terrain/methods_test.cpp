@@ -1,13 +1,16 @@
 // All ways to a picture give the same bits: serial, threads, every instruction set; maps and
 // functions, filters, tilings, projections, fog, with depth.
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include <rastrum/parallel/stop.hpp>
 #include <rastrum/terrain/renderer.hpp>
 
 #include "tests/terrain/maps.hpp"
@@ -108,6 +111,66 @@ TEST(Methods, GiveTheSamePictureOfFunctions) {
   options.fog = {0.01, 20, Rgba8{200, 100, 0, 255}};
   expect_same_everywhere(waves, {.x = 5, .y = -8, .altitude = 40, .horizon_px = 20}, options,
                          "waves");
+}
+
+// A frame that is stopped ends after a bounded number of samples, and the next one is whole.
+TEST(Methods, EndSoonWhenStopped) {
+  std::atomic<std::int64_t> samples = 0, stop_at = -1;
+  std::stop_source source;
+  const Terrain hills = Terrain::of(
+      [&](double x, double y) {
+        if (samples++ == stop_at) source.request_stop();
+        return static_cast<float>(20 * std::cos(x / 9) * std::sin(y / 7));
+      },
+      [](double x, double) {
+        return Rgba8{static_cast<std::uint8_t>(std::abs(x)), 7, 99, 255};
+      });
+  TerrainOptions options;
+  options.width = 640;
+  options.height = 120;
+  options.distance = 4000;
+  options.threads = 2;
+  const TerrainCamera camera{.x = 5, .y = -8, .altitude = 400, .horizon_px = 100};
+  struct Case {
+    Method method;
+    Device device;
+    std::int64_t most;
+  };
+  constexpr std::int64_t kColumns = 64, kSlices = 8;  // of a look at the token, see fast.cpp
+  const std::int64_t slices = [&] {
+    Image<Rgba8> colors(options.width, options.height);
+    return static_cast<std::int64_t>(
+        TerrainRenderer(options).render(hills, camera, {.color8 = colors.view()}).slices);
+  }();
+  for (const Case& c : {Case{Method::fast, Device::threads, 2 * kColumns * kSlices},
+                        Case{Method::words, Device::threads, 2 * 4096},
+                        Case{Method::fast, Device::serial, slices}}) {
+    SCOPED_TRACE(std::to_string(static_cast<int>(c.method)) + ", device " +
+                 std::to_string(static_cast<int>(c.device)));
+    options.method = c.method;
+    options.device = c.device;
+    stop_at = -1;
+    const Picture expected(hills, camera, options);
+    TerrainRenderer renderer(options);
+    Image<Rgba8> colors(options.width, options.height);
+    Image<float> depth(options.width, options.height);
+    samples = 0;
+    stop_at = 10000;
+    source = {};
+    {
+      const std::stop_token token = source.get_token();
+      const parallel::StopScope scope(token);
+      EXPECT_THROW(renderer.render(hills, camera, {colors.view(), depth.view()}),
+                   parallel::Stopped);
+    }
+    EXPECT_LE(samples - stop_at - 1, c.most);
+    stop_at = -1;
+    renderer.render(hills, camera, {colors.view(), depth.view()});
+    EXPECT_TRUE(std::equal(colors.pixels().begin(), colors.pixels().end(),
+                           expected.colors.pixels().begin()));
+    EXPECT_TRUE(
+        std::equal(depth.pixels().begin(), depth.pixels().end(), expected.depth.pixels().begin()));
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/io/io.hpp>
+#include <rastrum/parallel/stop.hpp>
 
 #include "arguments.hpp"
 
@@ -33,6 +34,10 @@ Viewer::Viewer(std::unique_ptr<Subject> subject, ViewerOptions options, std::fun
       resolution_(options_.target_ms),
       worker_(std::move(wake)) {
   subject_->resize(options_.width, options_.height);
+}
+
+Viewer::~Viewer() {
+  drawing_.request_stop();
 }
 
 std::vector<KeyHelp> Viewer::keys() {
@@ -165,9 +170,18 @@ void Viewer::draw(std::size_t step) {
     show_nothing_new(e.what());
     return;
   }
+  refining_.reset();
+  if (state.same_view(shown_)) refining_ = state;
+  drawing_ = {};
   submit(
-      [this, drawing = std::move(drawing), state]() -> Worker::Done {
-        auto drawn = std::make_shared<const Drawn>(drawing());
+      [this, drawing = std::move(drawing), state, stop = drawing_.get_token()]() -> Worker::Done {
+        std::shared_ptr<const Drawn> drawn;
+        try {
+          const parallel::StopScope scope(stop);
+          drawn = std::make_shared<const Drawn>(drawing());
+        } catch (const parallel::Stopped&) {
+          return [] {};
+        }
         return [this, drawn, state] {
           picture_ = drawn;
           shown_ = state;
@@ -199,7 +213,10 @@ void Viewer::write_screenshot(const std::filesystem::path& file) {
 
 bool Viewer::update() {
   const bool news = worker_.poll();
-  if (worker_.busy()) return news;
+  if (worker_.busy()) {
+    if (refining_ && (!refining_->same_view(now()) || !opens_.empty())) drawing_.request_stop();
+    return news;
+  }
   if (!opens_.empty()) {
     const std::filesystem::path file = opens_.front();
     opens_.erase(opens_.begin());

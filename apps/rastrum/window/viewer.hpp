@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,8 @@ class Viewer {
  public:
   /// `wake`: called on another thread when there is something for update().
   Viewer(std::unique_ptr<Subject> subject, ViewerOptions options, std::function<void()> wake);
+  /// Gives up the picture that is being drawn.
+  ~Viewer();
 
   void handle(const Event& event);
   void resize(int width, int height);
@@ -91,6 +94,10 @@ class Viewer {
   ViewerOptions options_;
   Resolution resolution_;
   State shown_;
+  /// Being drawn: a finer picture of what is shown, given up when something else is wanted. Every
+  /// other picture is finished, so that there is one from time to time whatever moves.
+  std::optional<State> refining_;
+  std::stop_source drawing_;
   bool failed_ = false;  ///< what shown_ names could not be drawn
   std::uint64_t seen_version_ = 0;
   double still_s_ = 0;

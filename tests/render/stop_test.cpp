@@ -1,0 +1,190 @@
+// A frame that is stopped (parallel/stop.hpp) ends after a bounded amount of work, counted in calls
+// of the caller's own functions, and leaves nothing behind: the next frame of the same renderer is
+// that of a new one, counters included. For every point of the coverage × visibility table, and
+// with layers.
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/parallel/stop.hpp>
+#include <rastrum/raster/frame.hpp>
+#include <rastrum/render/render.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/family.hpp"
+#include "tests/support/frame.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+constexpr int kSize = 256;
+/// What a thread has in hand: the blocks that go to a region together.
+constexpr std::int64_t kCapacity = raster::kBlockCapacity;
+
+/// Counts calls, asks to stop at one of them, and counts what comes after.
+class Trigger {
+ public:
+  explicit Trigger(std::int64_t at = -1) : at_(at) {}
+  void call() {
+    const std::int64_t n = calls_.fetch_add(1, std::memory_order_relaxed);
+    if (n == at_) source_.request_stop();
+  }
+  [[nodiscard]] std::stop_token token() const { return source_.get_token(); }
+  [[nodiscard]] std::int64_t calls() const { return calls_; }
+  [[nodiscard]] std::int64_t after() const { return calls_ - at_ - 1; }
+
+ private:
+  std::int64_t at_;
+  std::atomic<std::int64_t> calls_ = 0;
+  std::stop_source source_;
+};
+
+/// A soup whose vertices, fragments and pixels are counted.
+class Counted final : public raster::VertexSource,
+                      public raster::FragmentTest,
+                      public raster::BlockShader {
+ public:
+  Counted() : mesh_(shapes::soup(4000, 0.02F, 0.5F)) {}
+
+  struct Triggers {
+    Trigger project, test, shade;
+  };
+  void use(Triggers& t) { triggers_ = &t; }
+  [[nodiscard]] raster::Draw draw(bool translucent) const {
+    raster::Draw d;
+    d.source = this;
+    d.vertex_count = mesh_.positions.size();
+    d.indices = mesh_.indices;
+    d.primitive_count = mesh_.triangle_count();
+    d.flags = raster::kTested | (translucent ? raster::kTranslucent : 0);
+    return d;
+  }
+
+  void project(std::size_t begin, std::size_t end, raster::Viewport viewport, Isa,
+               raster::ProjectedVertex* out) const noexcept override {
+    triggers_->project.call();
+    for (std::size_t i = begin; i < end; ++i) out[i - begin] = raster::project(at(i), viewport);
+  }
+  [[nodiscard]] raster::Vec4d clip_position(std::size_t i) const noexcept override {
+    const Vec4 p = at(i);
+    return {p.x, p.y, p.z, p.w};
+  }
+  std::uint64_t test(const raster::FrameGeometry&, const raster::Piece&, const raster::Block& block,
+                     const raster::ShadingPoints*) const noexcept override {
+    triggers_->test.call();
+    return block.mask;
+  }
+  bool shade(const raster::FrameGeometry&, const raster::VisibleBlock& block, Isa,
+             raster::BlockColors& colors) const noexcept override {
+    triggers_->shade.call();
+    for (int i = 0; i < 64; ++i)
+      colors.set(i, {static_cast<float>(block.words[i] & 255) / 512, 0.25F, 0, 0.5F});
+    return false;
+  }
+
+ private:
+  [[nodiscard]] Vec4 at(std::size_t i) const {
+    const Vec3 p = mesh_.positions[i];
+    return {p.x, p.y, p.z * 0.25F + 0.5F, 1};
+  }
+  Mesh mesh_;
+  Triggers* triggers_ = nullptr;
+};
+
+Frame frame(Renderer& renderer, Counted& counted, Counted::Triggers& triggers, bool translucent) {
+  counted.use(triggers);
+  raster::Draw d = counted.draw(translucent);
+  return draw(renderer, {&d, 1}, counted, &counted);
+}
+
+/// Stops frames of one renderer at calls of each function, and compares whole ones between them.
+/// `most_shaded`: blocks that may follow.
+void expect_bounded(const RenderOptions& o, bool translucent, std::int64_t most_shaded) {
+  const std::int64_t most_tested = kCapacity * o.threads;
+  Counted counted;
+  Counted::Triggers whole;
+  Renderer fresh(o), renderer(o);
+  const Frame expected = frame(fresh, counted, whole, translucent);
+  for (Trigger Counted::Triggers::*const which :
+       {&Counted::Triggers::project, &Counted::Triggers::test, &Counted::Triggers::shade}) {
+    const std::int64_t calls = (whole.*which).calls();
+    ASSERT_GT(calls, 0);
+    for (const std::int64_t at : {std::int64_t{0}, calls / 3}) {
+      Counted::Triggers triggers;
+      std::destroy_at(&(triggers.*which));
+      std::construct_at(&(triggers.*which), at);
+      const std::stop_token token = (triggers.*which).token();
+      const parallel::StopScope scope(token);
+      EXPECT_THROW(static_cast<void>(frame(renderer, counted, triggers, translucent)),
+                   parallel::Stopped);
+      EXPECT_LE((triggers.*which).after(),
+                which == &Counted::Triggers::shade ? most_shaded : most_tested)
+          << "of " << calls << ", stopped at " << at;
+    }
+    Counted::Triggers again;
+    const Frame actual = frame(renderer, counted, again, translucent);
+    EXPECT_TRUE(same_surfaces(actual, expected));
+    EXPECT_TRUE(same_picture(actual, expected, 0));
+    EXPECT_TRUE(same_counts(actual.stats, expected.stats));
+    EXPECT_EQ(actual.stats.counters, expected.stats.counters);
+  }
+}
+
+RenderOptions options(int threads) {
+  RenderOptions o;
+  o.width = o.height = kSize;
+  o.threads = threads;
+  return o;
+}
+
+class Stop : public testing::TestWithParam<TablePoint> {};
+
+TEST_P(Stop, EndsSoonAndLeavesNothing) {
+  const ThreadsBeyondCores four(4);
+  RenderOptions o = options(4);
+  o.rasterizer = GetParam().rasterizer;
+  o.visibility = GetParam().visibility;
+  // A thread shades a bin; `tuple` shades what it stores, where blocks are handed on.
+  expect_bounded(o, false, o.visibility == "tuple" ? 4 * kCapacity : 4 * raster::kBlocksPerBin);
+}
+
+INSTANTIATE_TEST_SUITE_P(Points, Stop, testing::ValuesIn(table_points()),
+                         [](const auto& p) { return test_name(p.param); });
+
+TEST(StopLayers, EndSoonAndLeaveNothing) {
+  const ThreadsBeyondCores four(4);
+  for (const int threads : {1, 4})
+    for (const Transparency method : {Transparency::exact, Transparency::filter}) {
+      SCOPED_TRACE(std::to_string(threads) + " threads, method " +
+                   std::to_string(static_cast<int>(method)));
+      RenderOptions o = options(threads);
+      o.transparency.method = method;
+      expect_bounded(o, true, kCapacity * threads);
+    }
+}
+
+TEST(StopReference, EndsSoon) {
+  RenderOptions o;
+  o.width = o.height = 64;
+  o.device = Device::serial;
+  Renderer renderer(o);
+  const Scene scene = single(shapes::from_spec("boxes"));
+  const SceneBinding binding(scene);
+  std::stop_source source;
+  const std::stop_token token = source.get_token();
+  const parallel::StopScope scope(token);
+  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+  EXPECT_NO_THROW(static_cast<void>(draw(renderer, binding.view(), camera)));
+  source.request_stop();
+  EXPECT_THROW(static_cast<void>(draw(renderer, binding.view(), camera)), parallel::Stopped);
+}
+
+}  // namespace
+}  // namespace rastrum::test
