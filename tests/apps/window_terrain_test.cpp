@@ -1,6 +1,7 @@
 // Terrains in the window without a window: keys and time to a camera, path files, and pictures that
 // are, bit for bit, those of `rastrum terrain`.
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include <rastrum/core/error.hpp>
@@ -246,6 +247,31 @@ TEST_F(TerrainInWindow, PicturesAreTheCommands) {
   subject->set_options("--shadows sharp --sun 200,20 --distance 300");
   EXPECT_TRUE(same_pixels(shown(), rendered({"--height", "h.png", "--shadows", "sharp", "--sun",
                                              "200,20", "--distance", "300"})));
+}
+
+// Sun, distance and field of view belong to the keys, not to the options that began.
+TEST_F(TerrainInWindow, HeldKeysChangeThePicture) {
+  Image<Rgba8> before = shown();
+  const auto hold = [&](const char* name) {
+    subject->handle(key(name));
+    subject->advance(0.5);
+    subject->handle(key(name, Event::Kind::key_up));
+    EXPECT_FALSE(same_pixels(shown(), before)) << name;
+    before = shown();
+  };
+  const auto exact = [](double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.17g", value);
+    return std::string(text);
+  };
+  for (const char* name : {"j", "m", "down"}) hold(name);
+  const TerrainPose& pose = subject->control().pose();
+  std::vector<std::string> options{
+      "--height",   "h.png",
+      "--sun",      exact(pose.sun.azimuth_deg) + "," + exact(pose.sun.elevation_deg),
+      "--distance", exact(pose.distance)};
+  EXPECT_TRUE(same_pixels(shown(), rendered(options)));
+  hold("o");
 }
 
 TEST_F(TerrainInWindow, KeysChangeOptionsBothWays) {
