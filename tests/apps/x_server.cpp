@@ -111,8 +111,8 @@ XServer::XServer() {
   // Numbers of this process, far from those that a server searching for one tries: while it
   // searches it takes the sockets of others away.
   constexpr int kFirst = 2000, kNumbers = 40000, kTries = 5, kStride = 7919;
-  for (int i = 0; i < kTries && display_ == nullptr; ++i)
-    try_number(kFirst + (static_cast<int>(::getpid()) + i * kStride) % kNumbers);
+  for (int i = 0; i < kTries; ++i)
+    if (!fails_with(kFirst + (static_cast<int>(::getpid()) + i * kStride) % kNumbers)) return;
 }
 
 XServer::~XServer() {
@@ -126,9 +126,9 @@ std::string XServer::said() const {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-void XServer::try_number(int number) {
+bool XServer::fails_with(int number) {
   int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) return;
+  if (::pipe2(ends, O_CLOEXEC) != 0) return false;
   name_ = std::string(":").append(std::to_string(number));
   process_.start({"Xvfb", name_, "-displayfd", std::to_string(ends[1]), "-screen", "0",
                   "1024x800x24", "-nolisten", "tcp",
@@ -139,14 +139,14 @@ void XServer::try_number(int number) {
   ::close(ends[1]);
   // It writes its number and, in a write of its own, the end of the line once it listens; where
   // nobody reads that to the end it dies.
-  bool listens = false;
-  for (;;) {
+  bool listens = false, answers = true;
+  while (!listens && answers) {
     pollfd ready{ends[0], POLLIN, 0};
     const auto patience = std::chrono::duration_cast<milliseconds>(kPatience).count();
     char byte = 0;
-    if (::poll(&ready, 1, static_cast<int>(patience)) <= 0 || ::read(ends[0], &byte, 1) != 1) break;
+    answers = ::poll(&ready, 1, static_cast<int>(patience)) > 0;
+    if (!answers || ::read(ends[0], &byte, 1) != 1) break;
     listens = byte == '\n';
-    if (listens) break;
   }
   ::close(ends[0]);
   if (listens)
@@ -155,6 +155,7 @@ void XServer::try_number(int number) {
       return display_ != nullptr || !process_.running();
     });
   if (display_ == nullptr) process_.stop(SIGKILL);
+  return answers && !listens;
 }
 
 XWindow XServer::window_of(pid_t process) const {

@@ -73,7 +73,8 @@ class XServer {
   [[nodiscard]] Image<Rgba8> pixels(XWindow window, int x, int y, int width, int height) const;
 
  private:
-  void try_number(int number);
+  /// Starts the server with this number. True: it gave up at once, so another one may do.
+  bool fails_with(int number);
 
   std::filesystem::path folder_;
   std::string name_;
