@@ -74,6 +74,11 @@ struct Targets {
   bool load = false;
   std::uint64_t first_id = 0;
 
+  /// The targets hold a picture already, by its reversed depth in `depth` (0 where nothing is).
+  /// Only what is nearer is drawn, so of equal depths the picture's wins, as submitted first; it is
+  /// blended over `color8` and `color`, and pixels that nothing reaches keep all they have.
+  bool over = false;
+
   /// 255 where Transparency::filter blended in a wrong order, and where `exact` had to sort what
   /// its filter could not hold; else 0.
   ImageView<std::uint8_t> errors{};

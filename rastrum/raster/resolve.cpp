@@ -19,22 +19,53 @@ struct Window {
   [[nodiscard]] bool whole() const { return columns == kBlockSize && rows == kBlockSize; }
 };
 
-/// Every case: float targets, blocks cut by the image's edge, passes that touch some pixels alone.
-/// Pixels that are not in `touched` keep what they have.
+/// Three powers, where what lies behind is in linear light. `b`: straight, display values.
+Backdrop backdrop_of(Vec4 b, bool linear_light) {
+  const Rgba8 empty = to_straight_rgba8({b.x * b.w, b.y * b.w, b.z * b.w, b.w});
+  if (linear_light && b.w != 0)
+    for (float* const channel : {&b.x, &b.y, &b.z})
+      *channel = static_cast<float>(linear_from_srgb(static_cast<double>(*channel)));
+  return {{b.x * b.w, b.y * b.w, b.z * b.w, b.w}, linear_light, empty};
+}
+
+Vec4 straight(Vec4 premultiplied) {
+  return straight_from_premultiplied(premultiplied);
+}
+Vec4 straight(Rgba8 c) {
+  const auto unit = [](std::uint8_t v) { return static_cast<float>(v) / 255.0F; };
+  return {unit(c.r), unit(c.g), unit(c.b), unit(c.a)};
+}
+
+Vec4 color_over(Vec4 front, const Backdrop& behind) {
+  const Vec4 color = behind.over(front);
+  return behind.linear ? display_from_linear(color) : color;
+}
+Rgba8 color8_over(Vec4 front, const Backdrop& behind) {
+  const Vec4 color = behind.over(front);
+  return behind.linear ? linear_to_straight_rgba8(color) : to_straight_rgba8(color);
+}
+
+/// Every case: float targets, pictures that are drawn over, blocks cut by the image's edge, passes
+/// that touch some pixels alone. Pixels that are not in `touched` keep what they have.
 void store_colors(const FrameRequest& request, const BlockColors& colors, std::uint64_t covered,
                   std::uint64_t touched, const Backdrop& backdrop, const Window& w,
                   bool wants_8_bit) {
   const Vec4 b = request.background;
   const Vec4 background{b.x * b.w, b.y * b.w, b.z * b.w, b.w};
+  const bool over = request.targets.over;
+  const auto behind = [&](const auto& target, int x, int y) {
+    return over && !target.empty() ? backdrop_of(straight(target(x, y)), request.linear_light)
+                                   : backdrop;
+  };
   for (std::uint64_t m = touched; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const int x = w.x0 + i % kBlockSize, y = w.y0 + i / kBlockSize;
     Vec4 color = background;
     Rgba8 color8 = backdrop.empty;
     if ((covered >> i & 1) != 0) {
-      color = backdrop.over({colors.r[i], colors.g[i], colors.b[i], colors.a[i]});
-      color8 = backdrop.linear ? linear_to_straight_rgba8(color) : to_straight_rgba8(color);
-      if (backdrop.linear) color = display_from_linear(color);
+      const Vec4 front{colors.r[i], colors.g[i], colors.b[i], colors.a[i]};
+      color = color_over(front, behind(request.targets.color, x, y));
+      if (wants_8_bit) color8 = color8_over(front, behind(request.targets.color8, x, y));
     }
     if (wants_8_bit) request.targets.color8(x, y) = color8;
     if (!request.targets.color.empty()) request.targets.color(x, y) = color;
@@ -46,7 +77,7 @@ void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
                     const Backdrop& backdrop, const Window& w) {
   const Targets& targets = request.targets;
   bool wants_8_bit = !targets.color8.empty();
-  if (block.covered == 0 && wants_8_bit && !targets.load) {
+  if (block.covered == 0 && wants_8_bit && !targets.load && !targets.over) {
     for (int y = 0; y < w.rows; ++y)
       std::fill_n(targets.color8.row(w.y0 + y) + w.x0, w.columns, backdrop.empty);
     wants_8_bit = false;
@@ -59,7 +90,8 @@ void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
     if (block.covered != 0) opaque = request.shader->shade(frame, block, request.isa, own);
   }
   const Kernels& kernel = kernels(request.isa);
-  const bool stores_block = wants_8_bit && w.whole() && touched == ~std::uint64_t{0};
+  const bool stores_block =
+      wants_8_bit && w.whole() && touched == ~std::uint64_t{0} && !targets.over;
   if (stores_block && opaque && !request.linear_light) {
     kernel.store_opaque(*colors, block.covered, backdrop.empty, &targets.color8(w.x0, w.y0),
                         targets.color8.stride);
@@ -139,12 +171,7 @@ void check_draw(const Draw& draw) {
 }  // namespace
 
 Backdrop backdrop_of(const FrameRequest& request) {
-  Vec4 b = request.background;
-  const Rgba8 empty = to_straight_rgba8({b.x * b.w, b.y * b.w, b.z * b.w, b.w});
-  if (request.linear_light && b.w != 0)
-    for (float* const channel : {&b.x, &b.y, &b.z})
-      *channel = static_cast<float>(linear_from_srgb(static_cast<double>(*channel)));
-  return {{b.x * b.w, b.y * b.w, b.z * b.w, b.w}, request.linear_light, empty};
+  return backdrop_of(request.background, request.linear_light);
 }
 
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const Backdrop& backdrop,
@@ -159,6 +186,7 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const
     touched =
         samples_inside({0, 0, request.width, request.height}, x0 / kBlockSize, y0 / kBlockSize);
   covered &= touched;
+  if (targets.over) touched = covered;
   if (targets.load) touched = covered = of_this_pass(words, covered, targets.first_id);
   const VisibleBlock block{words, covered, x0, y0, scratch};
   BlockColors colors;
@@ -188,7 +216,7 @@ void load_words(const Targets& targets, Rect rect, const SurfaceView& surface) n
 
 void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
   const Targets& targets = request.targets;
-  if (targets.load) return;
+  if (targets.load || targets.over) return;
   const Vec4 b = request.background;
   const Vec4 background{b.x * b.w, b.y * b.w, b.z * b.w, b.w};
   const Rgba8 background8 = to_straight_rgba8(background);

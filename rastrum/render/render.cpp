@@ -8,6 +8,7 @@
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/interpolate.hpp>
+#include <rastrum/raster/over_picture.hpp>
 #include <rastrum/raster/shaders/alpha.hpp>
 #include <rastrum/raster/shaders/lit.hpp>
 #include <rastrum/raster/shaders/material.hpp>
@@ -126,6 +127,15 @@ void check_transparency(const RenderOptions& o) {
           "samples must be 1, 4, 8 or 16");
 }
 
+void check_over(const Targets& targets, const RenderOptions& o) {
+  const auto require = [](bool ok, const char* what) {
+    if (!ok) throw Error(Errc::invalid_argument, what);
+  };
+  require(!targets.depth.empty(), "to draw over a picture its depth is needed");
+  require(!targets.load, "a pass that loads words knows what it draws over by them");
+  require(o.samples == 1, "a picture that is drawn over has one sample a pixel");
+}
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -235,6 +245,10 @@ FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const 
 FrameStats Renderer::draw_depth(std::span<raster::Draw> draws, const raster::FragmentTest* test,
                                 const Targets& targets) {
   const RenderOptions& o = impl_->options;
+  if (targets.over)
+    throw Error(Errc::invalid_argument,
+                "the depth shader stretches the depths of a whole picture and cannot draw over "
+                "one; take another shader");
   Image<float> depth;
   Targets first = targets;
   first.color8 = {};
@@ -286,6 +300,12 @@ FrameStats Renderer::draw_in(bool linear_light, std::span<raster::Draw> draws,
     throw Error(Errc::invalid_argument,
                 "a pass that loads can neither blend translucent surfaces over what the passes "
                 "before have drawn nor add samples to it; draw all in one pass");
+  std::optional<raster::OverPicture> over;
+  if (targets.over) {
+    check_over(targets, o);
+    draws = over.emplace(targets.depth, draws, test).draws();
+    test = &*over;
+  }
   raster::FrameRequest request;
   request.width = o.width;
   request.height = o.height;

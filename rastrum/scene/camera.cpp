@@ -87,6 +87,7 @@ Mat4d world_to_camera(const Camera& c) {
 }
 
 Mat4d world_to_clip(const Camera& camera, int width, int height) {
+  if (camera.matrix) return *camera.matrix;
   return camera_to_clip(camera, width, height) * world_to_camera(camera);
 }
 

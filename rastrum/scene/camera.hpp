@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include <rastrum/core/mat.hpp>
 #include <rastrum/core/vec.hpp>
@@ -17,6 +18,9 @@ struct Camera {
   float orthographic_height = 2;  ///< world units across the smaller side of the image
   float near_plane = 0.01F;       ///< > 0 for perspective
   float far_plane = std::numeric_limits<float>::infinity();  ///< depth 0; beyond it depth stays 0
+  /// World to clip, for what no lens of this kind sees (a terrain's horizon is a shear); depth
+  /// reversed. Nothing else counts then.
+  std::optional<Mat4d> matrix;
 };
 
 /// World to clip for a W × H image, reversed depth (near 1, far 0). Composed in float64.

@@ -33,6 +33,11 @@ class TerrainRenderer {
   std::unique_ptr<Impl> impl_;
 };
 
+/// The height of the ground at a point as it is drawn near by: of the cell, between the centres of
+/// four with Filter::bilinear; NaN in a hole.
+[[nodiscard]] double ground_at(const Terrain& terrain, double x, double y,
+                               const TerrainOptions& options);
+
 /// The camera as it stands `clearance` above the ground under it, if it was lower.
 [[nodiscard]] TerrainCamera above_ground(const Terrain& terrain, const TerrainCamera& camera,
                                          double clearance, Tiling tiling = Tiling::repeat);

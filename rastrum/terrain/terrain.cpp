@@ -88,6 +88,17 @@ Rgba8 Terrain::color_at(double x, double y, Tiling tiling) const {
                     texel(y, heights_->height(), colors_->height()));
 }
 
+double ground_at(const Terrain& terrain, double x, double y, const TerrainOptions& options) {
+  const auto at = [&](double u, double v) {
+    return static_cast<double>(terrain.height_at(u, v, options.tiling));
+  };
+  if (!terrain.is_map() || options.filter != Filter::bilinear) return at(x, y);
+  const double u = std::floor(x - 0.5), v = std::floor(y - 0.5);
+  const double tx = x - 0.5 - u, ty = y - 0.5 - v;
+  return std::lerp(std::lerp(at(u, v), at(u + 1, v), tx),
+                   std::lerp(at(u, v + 1), at(u + 1, v + 1), tx), ty);
+}
+
 TerrainCamera above_ground(const Terrain& terrain, const TerrainCamera& camera, double clearance,
                            Tiling tiling) {
   TerrainCamera lifted = camera;

@@ -169,9 +169,33 @@ void normal_matrix(const Mat4d& object_to_world, float (&out)[3][3]) {
     for (int j = 0; j < 3; ++j) out[i][j] = static_cast<float>(cofactor[i][j] * scale);
 }
 
+/// Of any matrix with a centre of projection: the directions that rows x, y and w take to
+/// (x_ndc, y_ndc, 1), by Cramer's rule.
+ViewRays rays_of(const Mat4d& clip, int width, int height) {
+  struct Row {
+    double x, y, z;
+  };
+  const auto row = [&](int i) { return Row{clip.m[i][0], clip.m[i][1], clip.m[i][2]}; };
+  const auto cross = [](Row a, Row b) {
+    return Row{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  };
+  const Row x = row(0), y = row(1), w = row(3);
+  const Row to_x = cross(y, w), to_y = cross(w, x), to_w = cross(x, y);
+  const double determinant = x.x * to_x.x + x.y * to_x.y + x.z * to_x.z;
+  const auto direction = [&](double across, double up, double ahead) {
+    const auto sum = [&](double a, double b, double c) {
+      return static_cast<float>((across * a + up * b + ahead * c) / determinant);
+    };
+    return Vec3{sum(to_x.x, to_y.x, to_w.x), sum(to_x.y, to_y.y, to_w.y),
+                sum(to_x.z, to_y.z, to_w.z)};
+  };
+  return {direction(-1, 1, 1), direction(2.0 / width, 0, 0), direction(0, -2.0 / height, 0)};
+}
+
 }  // namespace
 
 ViewRays ViewRays::of(const Camera& camera, int width, int height) {
+  if (camera.matrix) return rays_of(*camera.matrix, width, height);
   const Mat4d v = world_to_camera(camera);
   const auto axis = [&](int i, double scale) {
     return Vec3{static_cast<float>(v.m[i][0] * scale), static_cast<float>(v.m[i][1] * scale),

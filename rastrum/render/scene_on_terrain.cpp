@@ -1,0 +1,82 @@
+#include <rastrum/render/scene_on_terrain.hpp>
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/terrain/matrix.hpp>
+
+namespace rastrum {
+namespace {
+
+/// About +y, as the terrain's camera turns: 0 faces +z, the south.
+Mat4d turn(double angle_rad) {
+  Mat4d m = Mat4d::identity();
+  const double s = std::sin(angle_rad), c = std::cos(angle_rad);
+  m.m[0][0] = m.m[2][2] = c;
+  m.m[0][2] = s;
+  m.m[2][0] = -s;
+  return m;
+}
+
+}  // namespace
+
+SceneOnTerrain::SceneOnTerrain(RenderOptions options)
+    : renderer_(std::move(options)), depth_(renderer_.options().width, renderer_.options().height) {
+  const RenderOptions& o = renderer_.options();
+  if (o.device == Device::threads) threads_ = std::make_unique<parallel::Threads>(o.threads);
+}
+
+template <class Row>
+void SceneOnTerrain::for_each_row(const Row& row) {
+  const auto rows = static_cast<std::size_t>(depth_.height());
+  const auto call = [&](std::size_t y) { row(static_cast<int>(y)); };
+  if (threads_)
+    parallel::for_each_index(*threads_, rows, call);
+  else
+    for (std::size_t y = 0; y < rows; ++y) call(y);
+}
+
+FrameStats SceneOnTerrain::draw(const TerrainScene& given, const terrain::TerrainOptions& options,
+                                const terrain::TerrainCamera& camera,
+                                const terrain::TerrainTargets& picture) {
+  const int width = depth_.width(), height = depth_.height();
+  if (picture.depth.empty() || picture.depth.width != width || picture.depth.height != height ||
+      options.width != width || options.height != height)
+    throw Error(Errc::invalid_argument,
+                std::string("to stand on a terrain, its depth is needed, ")
+                    .append(std::to_string(width) + "x" + std::to_string(height)));
+  Camera view;
+  view.matrix = terrain::world_to_clip(options, camera, kNear);
+
+  instances_.assign(given.scene.instances.begin(), given.scene.instances.end());
+  for (const std::size_t i : given.facing) {
+    if (i >= instances_.size())
+      throw Error(Errc::invalid_argument, std::string("no instance has the number ")
+                                              .append(std::to_string(i))
+                                              .append(" that is to face the camera"));
+    instances_[i].object_to_world = instances_[i].object_to_world * turn(camera.angle_rad);
+  }
+  SceneView scene = given.scene;
+  scene.instances = instances_;
+
+  for_each_row([&](int y) {
+    for (int x = 0; x < width; ++x)
+      depth_(x, y) = terrain::reversed_depth(picture.depth(x, y), kNear);
+  });
+  Targets targets;
+  targets.color8 = picture.color8;
+  targets.depth = depth_.view();
+  targets.over = true;
+  const FrameStats stats = renderer_.render(scene, view, targets);
+  for_each_row([&](int y) {
+    for (int x = 0; x < width; ++x)
+      // What is the terrain's keeps its bits.
+      if (depth_(x, y) != terrain::reversed_depth(picture.depth(x, y), kNear))
+        picture.depth(x, y) = static_cast<float>(kNear / static_cast<double>(depth_(x, y)));
+  });
+  return stats;
+}
+
+}  // namespace rastrum

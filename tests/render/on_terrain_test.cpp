@@ -1,0 +1,526 @@
+// Meshes and sprites on a terrain: every pixel is that of the nearer of two pictures drawn apart
+// and composed here, translucent layers lie over the terrain, and what stands on a cell is seen
+// where the cell is.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/raster/interpolate.hpp>
+#include <rastrum/raster/transform_source.hpp>
+#include <rastrum/render/scene_on_terrain.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/scene/sprite.hpp>
+#include <rastrum/terrain/matrix.hpp>
+#include <rastrum/terrain/renderer.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/materials.hpp"
+
+namespace rastrum::test {
+namespace {
+
+using terrain::Terrain;
+using terrain::TerrainCamera;
+using terrain::TerrainOptions;
+
+constexpr int kWidth = 240, kHeight = 160, kMap = 256;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Hills in waves, 0 to 60 high.
+Terrain hills() {
+  terrain::HeightMap map{Image<float>(kMap, kMap), Image<Rgba8>(kMap, kMap)};
+  for (int y = 0; y < kMap; ++y)
+    for (int x = 0; x < kMap; ++x) {
+      map.heights(x, y) =
+          static_cast<float>(std::floor(30 + 30 * std::sin(x * 0.05) * std::cos(y * 0.07)));
+      map.colors(x, y) = {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), 60, 255};
+    }
+  return Terrain(std::move(map));
+}
+
+TerrainOptions terrain_options() {
+  TerrainOptions o;
+  o.width = kWidth;
+  o.height = kHeight;
+  o.distance = 400;
+  return o;
+}
+RenderOptions render_options(Shader shader = Shader::flat) {
+  RenderOptions o;
+  o.width = kWidth;
+  o.height = kHeight;
+  o.shader = shader;
+  return o;
+}
+
+Mat4d at(double x, double height, double y, double scale) {
+  Mat4d m = Mat4d::identity();
+  for (int i = 0; i < 3; ++i) m.m[i][i] = scale;
+  m.m[0][3] = x;
+  m.m[1][3] = height;
+  m.m[2][3] = y;
+  return m;
+}
+Scene placed(Mesh mesh, const Mat4d& where) {
+  Scene scene;
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.push_back({0, where});
+  return scene;
+}
+
+struct Picture {
+  Image<Rgba8> color{kWidth, kHeight};
+  Image<float> depth{kWidth, kHeight};
+  TerrainCamera camera;  ///< as drawn
+
+  Picture(const Terrain& ground, const TerrainOptions& options, const TerrainCamera& given) {
+    camera = terrain::TerrainRenderer(options)
+                 .render(ground, given, {color.view(), depth.view()})
+                 .camera;
+  }
+  FrameStats add(const Scene& scene, const TerrainOptions& options, const RenderOptions& how,
+                 const std::vector<std::size_t>& facing = {}) {
+    const SceneBinding binding(scene);
+    return SceneOnTerrain(how).draw({binding.view(), facing}, options, camera,
+                                    {color.view(), depth.view()});
+  }
+};
+
+/// The scene without the terrain.
+struct Alone {
+  Image<Rgba8> color{kWidth, kHeight};
+  Image<float> depth{kWidth, kHeight};
+
+  Alone(const Scene& scene, const TerrainOptions& options, const TerrainCamera& camera,
+        const RenderOptions& how) {
+    Camera view;
+    view.matrix = terrain::world_to_clip(options, camera, SceneOnTerrain::kNear);
+    const SceneBinding binding(scene);
+    Targets targets;
+    targets.color8 = color.view();
+    targets.depth = depth.view();
+    Renderer(how).render(binding.view(), view, targets);
+  }
+};
+
+int difference(Rgba8 a, Rgba8 b) {
+  return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
+}
+
+struct View {
+  const char* name;
+  TerrainOptions options;
+  TerrainCamera camera;
+};
+/// Over the hills from every side: planar, rolled, looking down, classic; both methods.
+std::vector<View> views() {
+  const TerrainOptions plain = terrain_options();
+  const TerrainCamera south{128, 240, 75, 0, 40, 0};
+  std::vector<View> list{{"plain", plain, south}};
+  const auto add = [&](const char* name, auto&& change) {
+    list.push_back({name, plain, south});
+    change(list.back().options, list.back().camera);
+  };
+  add("rolled", [](TerrainOptions&, TerrainCamera& c) { c.roll_rad = 0.6; });
+  add("looks down", [](TerrainOptions&, TerrainCamera& c) { c.horizon_px = -30; });
+  add("from the east", [](TerrainOptions& o, TerrainCamera& c) {
+    c.x = 250;
+    c.y = 90;
+    c.angle_rad = 1.4;
+    o.fov_rad = 1.1;
+  });
+  add("words", [](TerrainOptions& o, TerrainCamera&) { o.method = terrain::Method::words; });
+  add("bilinear", [](TerrainOptions& o, TerrainCamera&) { o.filter = terrain::Filter::bilinear; });
+  add("serial", [](TerrainOptions& o, TerrainCamera&) { o.device = Device::serial; });
+  add("classic", [](TerrainOptions& o, TerrainCamera&) { o.classic = true; });
+  add("classic, turned", [](TerrainOptions& o, TerrainCamera& c) {
+    o.classic = true;
+    c.angle_rad = 0.4;
+    c.horizon_px = 20;
+  });
+  return list;
+}
+
+TEST(OnTerrain, ABoxBehindAHillIsSeenWhereItIsNearer) {
+  const Terrain ground = hills();
+  // Its foot lies behind the crest that runs through y = 180.
+  const Scene box = placed(shapes::boxes(1, 1), at(100, 30, 120, 50));
+  for (const View& v : views()) {
+    SCOPED_TRACE(v.name);
+    const Picture before(ground, v.options, v.camera);
+    const Alone alone(box, v.options, before.camera, render_options(Shader::normal));
+    Picture both = before;
+    both.add(box, v.options, render_options(Shader::normal));
+    std::size_t shown = 0, hidden = 0, wrong = 0;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        const float d = alone.depth(x, y);
+        const float of_terrain =
+            static_cast<float>(SceneOnTerrain::kNear / static_cast<double>(before.depth(x, y)));
+        const bool wins = d > of_terrain;
+        shown += wins;
+        hidden += d > 0 && !wins;
+        const Rgba8 color = wins ? alone.color(x, y) : before.color(x, y);
+        const float depth = wins
+                                ? static_cast<float>(SceneOnTerrain::kNear / static_cast<double>(d))
+                                : before.depth(x, y);
+        wrong += !(both.color(x, y) == color) || both.depth(x, y) != depth;
+      }
+    EXPECT_EQ(wrong, 0U);
+    EXPECT_GT(shown, 200U);
+    EXPECT_GT(hidden, 200U);
+  }
+}
+
+TEST(OnTerrain, TranslucentSurfacesLieOverTheTerrain) {
+  const Terrain ground = hills();
+  const Scene box = placed(shapes::boxes(1, 1), at(100, 30, 120, 50));
+  RenderOptions opaque = render_options(Shader::normal);
+  opaque.cull = Cull::back;  // one layer
+  RenderOptions glass = opaque;
+  glass.opacity = 0.3F;
+  for (const View& v : views()) {
+    SCOPED_TRACE(v.name);
+    const Picture before(ground, v.options, v.camera);
+    const Alone alone(box, v.options, before.camera, opaque);
+    Picture both = before;
+    both.add(box, v.options, glass);
+    int worst = 0;
+    std::size_t blended = 0;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        const Rgba8 behind = before.color(x, y), front = alone.color(x, y);
+        if (!(alone.depth(x, y) >
+              terrain::reversed_depth(before.depth(x, y), SceneOnTerrain::kNear))) {
+          EXPECT_EQ(both.color(x, y), behind) << x << ", " << y;
+          continue;
+        }
+        ++blended;
+        const auto mix = [](int a, int b) {
+          return static_cast<std::uint8_t>(std::lround(0.3 * a + 0.7 * b));
+        };
+        worst = std::max(
+            worst, difference(both.color(x, y), {mix(front.r, behind.r), mix(front.g, behind.g),
+                                                 mix(front.b, behind.b), 255}));
+        EXPECT_EQ(both.color(x, y).a, 255);
+      }
+    EXPECT_LE(worst, 1);
+    EXPECT_GT(blended, 200U);
+  }
+}
+
+TEST(OnTerrain, SpritesFaceTheCameraAndBlendInLinearLight) {
+  // Left half green at half alpha, right half opaque but for a clear top row of texels.
+  Image<Rgba8> picture(8, 16);
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 8; ++x)
+      picture(x, y) = y < 8 ? Rgba8{255, 0, 255, 0}
+                            : (x < 4 ? Rgba8{20, 200, 40, 128} : Rgba8{250, 10, 30, 255});
+  Scene scene = sprite(picture);
+  scene.textures[0].mag = scene.textures[0].min = Filter::nearest;
+  const Terrain flat(terrain::HeightMap{Image<float>(kMap, kMap), [] {
+                                          Image<Rgba8> c(kMap, kMap);
+                                          for (Rgba8& p : c.pixels()) p = {180, 140, 90, 255};
+                                          return c;
+                                        }()});
+  const TerrainOptions options = terrain_options();
+  const double size = 24, away = 60;
+  scene.instances[0].object_to_world = at(128, 0, 128, size);
+  for (const double angle : {0.0, 0.9, 2.5, -1.57}) {
+    SCOPED_TRACE(angle);
+    // Around the sprite, which is always in the middle.
+    const TerrainCamera camera{
+        128 + away * std::sin(angle), 128 + away * std::cos(angle), 30, angle, 50, 0};
+    const Picture before(flat, options, camera);
+    Picture both = before;
+    both.add(scene, options, render_options(Shader::material), {0});
+    int half = 0, whole = 0, other = 0;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        const Rgba8 got = both.color(x, y), behind = before.color(x, y);
+        if (got == behind) continue;
+        const auto mix = [&](int front, int back) {
+          const double a = 128 / 255.0;
+          return static_cast<std::uint8_t>(
+              std::lround(255 * display(a * light(front) + (1 - a) * light(back))));
+        };
+        const Rgba8 blend{mix(20, behind.r), mix(200, behind.g), mix(40, behind.b), 255};
+        if (difference(got, {250, 10, 30, 255}) <= 1)
+          ++whole;
+        else if (difference(got, blend) <= 1)
+          ++half;
+        else
+          ++other;
+      }
+    EXPECT_EQ(other, 0);
+    // 12 × 24 cells, of which the lower half shows, at 2 px a cell: two halves of 12 × 24 px.
+    EXPECT_NEAR(half, 12 * 24, 30);
+    EXPECT_NEAR(whole, 12 * 24, 30);
+  }
+}
+
+TEST(OnTerrain, WhatStandsOnACellIsSeenWhereTheCellIs) {
+  // A flat map at 5 with one red cell; on its middle a thin pole, of two blades.
+  Mesh pole;
+  pole.positions = {{-0.3F, 0, 0}, {0.3F, 0, 0}, {0.3F, 12, 0}, {-0.3F, 12, 0},
+                    {0, 0, -0.3F}, {0, 0, 0.3F}, {0, 12, 0.3F}, {0, 12, -0.3F}};
+  pole.indices = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7};
+  const Scene one = placed(pole, at(100.5, 5, 130.5, 1));
+  terrain::HeightMap map{Image<float>(kMap, kMap), Image<Rgba8>(kMap, kMap)};
+  std::fill(map.heights.pixels().begin(), map.heights.pixels().end(), 5.0F);
+  std::fill(map.colors.pixels().begin(), map.colors.pixels().end(), Rgba8{0, 90, 0, 255});
+  map.colors(100, 130) = {255, 0, 0, 255};
+  const Terrain ground(std::move(map));
+  for (const bool classic : {false, true})
+    for (const double angle : {0.0, 0.35, 1.9, 3.6})
+      for (const double roll : {0.0, 0.4}) {
+        if (classic && roll != 0) continue;
+        SCOPED_TRACE(std::to_string(classic) + " " + std::to_string(angle) + " " +
+                     std::to_string(roll));
+        TerrainOptions options = terrain_options();
+        options.classic = classic;
+        options.step = classic ? options.step : 0.25;
+        // Classic's steps are 4 rows long here: the pole stands on its slice 27.
+        const double away = classic ? 1 + 27 + 0.005 * 27 * 28 / 2 : 30, aside = 6;
+        const TerrainCamera camera{100.5 + away * std::sin(angle) + aside * std::cos(angle),
+                                   130.5 + away * std::cos(angle) - aside * std::sin(angle),
+                                   classic ? 18.0 : 35.0,
+                                   angle,
+                                   30,
+                                   roll};
+        const Picture before(ground, options, camera);
+        Picture both = before;
+        both.add(one, options, render_options(Shader::flat));
+        const Alone alone(one, options, before.camera, render_options(Shader::flat));
+        // The pole's lowest pixel along the picture's own vertical, and that of it on the ground,
+        // which hides what of the blades is behind the cell.
+        double lowest = -kInfinity, lowest_seen = -kInfinity;
+        int px = -1, py = -1;
+        for (int y = 0; y < kHeight; ++y)
+          for (int x = 0; x < kWidth; ++x) {
+            const double down = x * std::sin(roll) + y * std::cos(roll);
+            if (!(both.color(x, y) == before.color(x, y)))
+              lowest_seen = std::max(lowest_seen, down);
+            if (!(alone.depth(x, y) > 0) || down <= lowest) continue;
+            lowest = down;
+            px = x;
+            py = y;
+          }
+        EXPECT_NEAR(lowest_seen, lowest, 3);
+        ASSERT_GE(px, 0) << "the pole is not seen";
+        int nearest = 1000;
+        for (int y = 0; y < kHeight; ++y)
+          for (int x = 0; x < kWidth; ++x)
+            if (before.color(x, y).r > 60)
+              nearest = std::min(nearest, std::max(std::abs(x - px), std::abs(y - py)));
+        EXPECT_LE(nearest, 1) << "its foot is drawn at " << px << ", " << py;
+      }
+}
+
+/// A cloud of triangles on and in the hills.
+Scene cloud() {
+  return placed(shapes::soup(600, 0.05F, 0.5F, 3), at(120, 40, 130, 60));
+}
+
+TEST(OnTerrain, IsTheSameOnEveryDeviceByEveryMethodAndInLittleMemory) {
+  const ThreadsBeyondCores eight(8);
+  const Terrain ground = hills();
+  const TerrainOptions options = terrain_options();
+  const Picture before(ground, options, views()[1].camera);
+  const Scene scene = cloud();
+  for (const float opacity : {1.0F, 0.4F}) {
+    RenderOptions plain = render_options(Shader::lambert);
+    plain.isa = Isa::scalar;
+    plain.opacity = opacity;
+    RenderOptions serial = plain;
+    serial.device = Device::serial;
+    Picture reference = before;
+    reference.add(scene, options, serial);
+    std::vector<RenderOptions> all;
+    for (const AxisInfo& rasterizer : rasterizers()) {
+      // Layers want tiles of a thread's own.
+      if (rasterizer.name == "reference") continue;
+      const bool owns = rasterizer.name == "grouped" || rasterizer.name == "tiled";
+      if (opacity < 1 && !owns) continue;
+      RenderOptions o = plain;
+      o.rasterizer = rasterizer.name;
+      o.threads = 8;
+      all.push_back(o);
+      if (opacity == 1) {
+        for (const AxisInfo& visibility : visibilities()) {
+          all.push_back(o);
+          all.back().visibility = visibility.name;
+        }
+      }
+    }
+    RenderOptions little = plain;
+    little.threads = 2;
+    little.memory_limit = 3 << 20;
+    all.push_back(little);
+    for (const RenderOptions& o : all) {
+      Picture got = before;
+      got.add(scene, options, o);
+      EXPECT_TRUE(std::equal(got.color.pixels().begin(), got.color.pixels().end(),
+                             reference.color.pixels().begin()))
+          << o.rasterizer << " " << o.visibility << " " << o.memory_limit << " " << opacity;
+      EXPECT_TRUE(std::equal(got.depth.pixels().begin(), got.depth.pixels().end(),
+                             reference.depth.pixels().begin()))
+          << o.rasterizer << " " << o.visibility << " " << o.memory_limit << " " << opacity;
+    }
+  }
+}
+
+/// Discards whatever asks for the test.
+struct Nothing final : raster::FragmentTest {
+  std::uint64_t test(const raster::FrameGeometry&, const raster::Piece&, const raster::Block&,
+                     const raster::ShadingPoints*) const noexcept override {
+    return 0;
+  }
+};
+
+TEST(OverPicture, AsksTheTestOfADrawForThatDrawAlone) {
+  const Mesh box = shapes::boxes(1, 1);
+  Camera camera;
+  camera.eye = {0, 0, 4};
+  const Mat4d to_clip = world_to_clip(camera, kWidth, kHeight);
+  const raster::TransformSource sources[] = {{box.positions, to_clip * at(-0.8, 0, 0, 1)},
+                                             {box.positions, to_clip * at(0.8, 0, 0, 1)}};
+  raster::Draw draws[2];
+  for (int i = 0; i < 2; ++i) {
+    draws[i].source = &sources[i];
+    draws[i].vertex_count = box.positions.size();
+    draws[i].indices = box.indices;
+    draws[i].primitive_count = box.triangle_count();
+  }
+  draws[1].flags = raster::kTested;
+  Image<float> depth(kWidth, kHeight);
+  Targets targets;
+  targets.depth = depth.view();
+  targets.over = true;
+  const raster::FragmentShader shader(
+      [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
+  const Nothing nothing;
+  Renderer(render_options()).draw(draws, shader, &nothing, targets);
+  std::size_t left = 0, right = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) (x < kWidth / 2 ? left : right) += depth(x, y) > 0;
+  EXPECT_GT(left, 500U);
+  EXPECT_EQ(right, 0U);
+  EXPECT_EQ(draws[0].flags, 0U) << "the caller's draws stay as they are";
+}
+
+TEST(OnTerrain, LightsAsALensWithTheSameMatrix) {
+  const Scene scene = placed(shapes::sphere(24, 32), at(3, 1, -2, 4));
+  Camera lens;
+  lens.eye = {1, 7, 12};
+  lens.target = {2, 0, -1};
+  const SceneBinding binding(scene);
+  Camera matrix;
+  matrix.matrix = world_to_clip(lens, kWidth, kHeight);
+  for (const Shader shader : {Shader::phong, Shader::material}) {
+    const Image<Rgba8> a = render(binding.view(), lens, render_options(shader));
+    const Image<Rgba8> b = render(binding.view(), matrix, render_options(shader));
+    int worst = 0;
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < a.pixels().size(); ++i) {
+      EXPECT_EQ(a.pixels()[i].a, b.pixels()[i].a);
+      seen += a.pixels()[i].a != 0;
+      worst = std::max(worst, difference(a.pixels()[i], b.pixels()[i]));
+    }
+    EXPECT_GT(seen, 2000U);
+    EXPECT_LE(worst, 1);
+  }
+}
+
+TEST(OverPicture, KeepsThePictureWhereDepthsAreEqualAndWhereNothingIs) {
+  const Scene scene = placed(shapes::boxes(2, 0.7F), at(0, 0, 0, 1));
+  const SceneBinding binding(scene);
+  const Camera camera = fit_camera(binding.view(), 1, false);
+  Image<Rgba8> color(kWidth, kHeight);
+  Image<float> depth(kWidth, kHeight), again(kWidth, kHeight);
+  Image<Vec4> floats(kWidth, kHeight);
+  Targets targets;
+  targets.color8 = color.view();
+  targets.depth = depth.view();
+  Renderer(render_options(Shader::flat)).render(binding.view(), camera, targets);
+  const Image<Rgba8> first = color;
+  again = depth;
+  // The same surfaces in another colour: all ties.
+  targets.over = true;
+  Renderer(render_options(Shader::normal)).render(binding.view(), camera, targets);
+  EXPECT_TRUE(std::equal(color.pixels().begin(), color.pixels().end(), first.pixels().begin()));
+  // Half of the picture is moved away: there the surfaces win, over a picture of floats as well.
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth / 2; ++x) depth(x, y) = std::nextafter(depth(x, y), 0.0F);
+  std::fill(floats.pixels().begin(), floats.pixels().end(), Vec4{0.5F, 0.25F, 0, 1});
+  RenderOptions glass = render_options(Shader::flat);
+  glass.opacity = 0.5F;
+  glass.cull = Cull::back;
+  targets.color = floats.view();
+  targets.color8 = {};
+  Renderer(glass).render(binding.view(), camera, targets);
+  std::size_t drawn = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const bool expected = x < kWidth / 2 && again(x, y) > 0;
+      drawn += expected;
+      const Vec4 c = floats(x, y);
+      EXPECT_NEAR(c.x, expected ? 0.4F + 0.25F : 0.5F, 1e-6F) << x << ", " << y;
+      EXPECT_NEAR(c.y, expected ? 0.35F + 0.125F : 0.25F, 1e-6F);
+      EXPECT_EQ(c.w, 1);
+      EXPECT_EQ(depth(x, y), again(x, y));
+    }
+  EXPECT_GT(drawn, 1000U);
+}
+
+TEST(OnTerrain, RefusesWhatCannotBeComposed) {
+  const Scene box = placed(shapes::boxes(1, 1), at(100, 30, 120, 50));
+  const SceneBinding binding(box);
+  Image<Rgba8> color(kWidth, kHeight);
+  Image<float> depth(kWidth, kHeight), small(8, 8);
+  const terrain::TerrainTargets targets{color.view(), depth.view()};
+  const auto message = [&](const TerrainOptions& options, const RenderOptions& how,
+                           const terrain::TerrainTargets& to,
+                           const std::vector<std::size_t>& facing = {}) -> std::string {
+    try {
+      SceneOnTerrain(how).draw({binding.view(), facing}, options, {}, to);
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::invalid_argument);
+      return e.what();
+    }
+    return "";
+  };
+  const TerrainOptions good = terrain_options();
+  EXPECT_EQ(message(good, render_options(), targets), "");
+  TerrainOptions ring = good;
+  ring.projection = terrain::Projection::cylindrical;
+  EXPECT_NE(message(ring, render_options(), targets).find("cylindrical"), std::string::npos);
+  EXPECT_NE(message(good, render_options(Shader::depth), targets).find("depth shader"),
+            std::string::npos);
+  RenderOptions samples = render_options();
+  samples.samples = 4;
+  EXPECT_NE(message(good, samples, targets).find("one sample"), std::string::npos);
+  EXPECT_NE(message(good, render_options(), targets, {1}).find("the number 1"), std::string::npos);
+  EXPECT_NE(message(good, render_options(), {color.view(), {}}).find("240x160"), std::string::npos);
+  EXPECT_NE(message(good, render_options(), {color.view(), small.view()}).find("240x160"),
+            std::string::npos);
+}
+
+TEST(Sprite, IsAsHighAsOneAndNeedsAPicture) {
+  const Scene scene = sprite(Image<Rgba8>(30, 20));
+  const SceneBinding binding(scene);
+  const Bounds box = bounds(binding.view());
+  EXPECT_EQ(box.min.x, -0.75F);
+  EXPECT_EQ(box.max.x, 0.75F);
+  EXPECT_EQ(box.min.y, 0);
+  EXPECT_EQ(box.max.y, 1);
+  EXPECT_THROW(sprite({}), Error);
+}
+
+}  // namespace
+}  // namespace rastrum::test
