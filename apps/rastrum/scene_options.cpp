@@ -43,13 +43,7 @@ CLI::Option* add_input_option(CLI::App& app, SceneArguments& a) {
       ->type_name("");
 }
 
-void add_picture_options(CLI::App& app, SceneArguments& a) {
-  const char* group = "Picture";
-  add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)", [&a](const std::string& s) {
-    const Size size = parse_size("--size", s);
-    a.render.width = size.width;
-    a.render.height = size.height;
-  })->group(group);
+void add_shading_options(CLI::App& app, SceneArguments& a, const char* group) {
   std::string shaders;
   for (const std::string_view shader : shader_names())
     shaders.append(shaders.empty() ? "" : ", ").append(shader);
@@ -75,13 +69,22 @@ void add_picture_options(CLI::App& app, SceneArguments& a) {
             "--cull", s, {{"none", Cull::none}, {"back", Cull::back}, {"front", Cull::front}});
       })
       ->group(group);
+}
+
+void add_picture_options(CLI::App& app, SceneArguments& a) {
+  const char* group = "Picture";
+  add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)", [&a](const std::string& s) {
+    const Size size = parse_size("--size", s);
+    a.render.width = size.width;
+    a.render.height = size.height;
+  })->group(group);
+  add_shading_options(app, a, group);
   add(app, "--background", "#RRGGBB[AA]", "(#00000000, transparent)", [&a](const std::string& s) {
     a.render.background = parse_color("--background", s);
   })->group(group);
 }
 
-void add_transparency_options(CLI::App& app, SceneArguments& a) {
-  const char* group = "Transparency and samples";
+void add_blending_options(CLI::App& app, SceneArguments& a, const char* group) {
   add(app, "--opacity", "A",
       "of every surface, 0 to 1: opaque and masked materials get alpha A, what blends alpha * A "
       "(1)",
@@ -105,6 +108,11 @@ void add_transparency_options(CLI::App& app, SceneArguments& a) {
       })
       ->expected(0, 1)
       ->group(group);
+}
+
+void add_transparency_options(CLI::App& app, SceneArguments& a) {
+  const char* group = "Transparency and samples";
+  add_blending_options(app, a, group);
   add(app, "--samples", "N",
       "1, 4, 8 or 16 a pixel, at D3D11's standard positions; --ids and --depth are of the nearest "
       "one (1)",
@@ -151,8 +159,7 @@ void add_camera_options(CLI::App& app, SceneArguments& a) {
       ->group(group);
 }
 
-void add_machine_options(CLI::App& app, SceneArguments& a) {
-  const char* group = kMachineGroup;
+void add_rasterizer_options(CLI::App& app, SceneArguments& a, const char* group) {
   add(app, "--rasterizer", "NAME", names_of(rasterizers()) + " (auto)", [&a](const std::string& s) {
     a.render.rasterizer = check_axis("--rasterizer", rasterizers(), s);
   })->group(group);
@@ -161,17 +168,22 @@ void add_machine_options(CLI::App& app, SceneArguments& a) {
         a.render.visibility = check_axis("--visibility", visibilities(), s);
       })
       ->group(group);
+  add(app, "--memory-limit", "BYTES",
+      "scratch beyond the mesh and the images, with K, M or G; what does not fit at once is drawn "
+      "piece by piece (none)",
+      [&a](const std::string& s) { a.render.memory_limit = parse_bytes("--memory-limit", s); })
+      ->group(group);
+}
+
+void add_machine_options(CLI::App& app, SceneArguments& a) {
+  const char* group = kMachineGroup;
+  add_rasterizer_options(app, a, group);
   add(app, "--device", "NAME", "serial, threads, cuda, auto (threads)", [&a](const std::string& s) {
     a.render.device = parse_device(s);
   })->group(group);
   add(app, "--threads", "N", "(all)", [&a](const std::string& s) {
     a.render.threads = parse_integer("--threads", s, 1, 4096);
   })->group(group);
-  add(app, "--memory-limit", "BYTES",
-      "scratch beyond the mesh and the images, with K, M or G; what does not fit at once is drawn "
-      "piece by piece (none)",
-      [&a](const std::string& s) { a.render.memory_limit = parse_bytes("--memory-limit", s); })
-      ->group(group);
   add(app, "--isa", "NAME", "instruction set; this machine has " + isa_words() + " (the last)",
       [&a](const std::string& s) { a.render.isa = parse_isa(s); })
       ->group(group);

@@ -24,6 +24,7 @@
 #include "numbered.hpp"
 #include "output.hpp"
 #include "progress.hpp"
+#include "terrain_objects.hpp"
 #include "terrain_options.hpp"
 #include "terrain_path.hpp"
 #include "timeline.hpp"
@@ -35,6 +36,7 @@ using terrain::Shadows;
 using terrain::TerrainStats;
 
 struct TerrainArguments : TerrainSceneArguments {
+  TerrainObjectArguments objects;
   std::filesystem::path path;
   std::optional<double> fps;
   std::optional<int> frames;
@@ -100,6 +102,7 @@ void check(const TerrainArguments& a) {
   if (a.path.empty() && a.color && a.color.format == Format::mp4)
     throw UsageError("-o", "an .mp4 is drawn along a camera path: give --path");
   if (!a.path.empty()) check_path(a);
+  check_terrain_objects(a.objects, a.options);
   const bool stats_to_file = a.stats && a.stats.file != "-";
   const Output none;
   const Output* const outputs[] = {&a.color, &a.depth, stats_to_file ? &a.stats : &none};
@@ -156,20 +159,41 @@ struct Stage {
   const LoadedTerrain& source;
   const terrain::Terrain& terrain;
   terrain::TerrainRenderer& renderer;
+  TerrainObjects* objects;  ///< null: none
   double load_ms, light_ms;
 };
 
-void draw_depth(const Stage& stage, const terrain::TerrainCamera& camera, const Output& output) {
-  const terrain::TerrainOptions& o = stage.renderer.options();
-  Image<float> depth(o.width, o.height);
-  stage.renderer.render(stage.terrain, camera, {.depth = depth.view()});
-  write_depth(output, depth.view());
-}
+/// The terrain and what stands on it. Colours alone are timed, but objects need the depth.
+struct Pictures {
+  Image<Rgba8> color;
+  Image<float> depth;
+
+  Pictures(const Stage& stage, bool wants_depth)
+      : color(stage.renderer.options().width, stage.renderer.options().height) {
+    if (wants_depth || stage.objects != nullptr)
+      depth = Image<float>(color.width(), color.height());
+  }
+  TerrainStats draw(const Stage& stage, const terrain::TerrainCamera& camera) {
+    terrain::TerrainTargets targets{.color8 = color.view()};
+    if (stage.objects != nullptr) targets.depth = depth.view();
+    TerrainStats stats = stage.renderer.render(stage.terrain, camera, targets);
+    if (stage.objects != nullptr) stage.objects->draw(targets, stats);
+    return stats;
+  }
+  /// Requires draw() of the same frame, which leaves the depth where there are objects.
+  void write_depth(const Stage& stage, const terrain::TerrainCamera& camera, const Output& output) {
+    if (stage.objects == nullptr)
+      stage.renderer.render(stage.terrain, camera, {.depth = depth.view()});
+    cli::write_depth(output, depth.view());
+  }
+};
 
 void write_stats(const TerrainArguments& a, const Stage& stage, std::vector<TerrainStats> frames) {
   if (!a.stats) return;
-  write_json(a.stats.file,
-             stats_json(std::move(frames), a, stage.source, stage.load_ms, stage.light_ms));
+  nlohmann::ordered_json json =
+      stats_json(std::move(frames), a, stage.source, stage.load_ms, stage.light_ms);
+  if (stage.objects != nullptr) json["objects"] = {{"triangles", stage.objects->triangles()}};
+  write_json(a.stats.file, json);
 }
 
 int run_path(const TerrainArguments& a, const Stage& stage, const terrain::TerrainCamera& base,
@@ -186,17 +210,17 @@ int run_path(const TerrainArguments& a, const Stage& stage, const terrain::Terra
   if (a.color && a.color.format == Format::mp4)
     video = std::make_unique<Mp4Writer>(a.color.file, a.options.width, a.options.height, fps);
 
-  Image<Rgba8> color(a.options.width, a.options.height);
+  Pictures pictures(stage, static_cast<bool>(a.depth));
   std::vector<TerrainStats> frames;
   for (std::size_t i = 0; i < count; ++i) {
     progress.show("picture " + std::to_string(i + 1) + " of " + std::to_string(count));
     const terrain::TerrainCamera camera = path.at(times[i]);
-    frames.push_back(stage.renderer.render(stage.terrain, camera, {.color8 = color.view()}));
+    frames.push_back(pictures.draw(stage, camera));
     if (video)
-      video->add(color.view());
+      video->add(pictures.color.view());
     else if (a.color)
-      io::write_png(numbered(a.color, i, count).file, color.view());
-    if (a.depth) draw_depth(stage, camera, numbered(a.depth, i, count));
+      io::write_png(numbered(a.color, i, count).file, pictures.color.view());
+    if (a.depth) pictures.write_depth(stage, camera, numbered(a.depth, i, count));
   }
   if (video) video->finish();
   progress.clear();
@@ -215,24 +239,36 @@ int run(TerrainArguments& a) {
   terrain::TerrainRenderer renderer(a.options);
 
   progress.show("loading");
+  std::optional<TerrainObjects> objects;
+  if (!a.objects.objects.empty()) objects.emplace(a.objects, a.options, timeline, progress);
+  progress.show("loading");
   const LoadedTerrain source(a.input);
   const double load_ms = timeline.now_ms();
   progress.show("lighting");
   const terrain::Terrain terrain =
       source.lit(a.light, {a.options.tiling, a.options.device, a.options.threads, a.options.isa});
-  const Stage stage{source, terrain, renderer, load_ms, timeline.now_ms() - load_ms};
+  if (objects) {
+    objects->place(terrain);
+    if (!a.quiet && !objects->warnings().empty()) {
+      progress.clear();
+      for (const std::string& w : objects->warnings()) warn(w);
+    }
+  }
+  const Stage stage{source,   terrain,
+                    renderer, objects ? &*objects : nullptr,
+                    load_ms,  timeline.now_ms() - load_ms};
   const terrain::TerrainCamera camera = camera_of(a, source);
   if (!a.path.empty()) return run_path(a, stage, camera, progress);
 
-  Image<Rgba8> color(a.options.width, a.options.height);
+  Pictures pictures(stage, static_cast<bool>(a.depth));
   std::vector<TerrainStats> frames;
   const int count = a.frames.value_or(1);
   for (int i = 0; i < count; ++i) {
     progress.show("rendering frame " + std::to_string(i + 1) + " of " + std::to_string(count));
-    frames.push_back(renderer.render(terrain, camera, {.color8 = color.view()}));
+    frames.push_back(pictures.draw(stage, camera));
   }
-  if (a.color) io::write_png(a.color.file, color.view());
-  if (a.depth) draw_depth(stage, camera, a.depth);
+  if (a.color) io::write_png(a.color.file, pictures.color.view());
+  if (a.depth) pictures.write_depth(stage, camera, a.depth);
   progress.clear();
   const auto fastest = std::ranges::min(frames, {}, &TerrainStats::frame_ms).frame_ms;
   write_stats(a, stage, std::move(frames));
@@ -255,6 +291,7 @@ Command add_terrain_command(CLI::App& app) {
   add_path(command, *arguments);
   add_terrain_picture(command, *arguments);
   add_terrain_light(command, *arguments);
+  add_terrain_objects(command, arguments->objects);
   add_terrain_machine(command, *arguments);
   add_frames(command, *arguments);
   std::string footer = "Functions:\n";
@@ -274,7 +311,9 @@ Command add_terrain_command(CLI::App& app) {
       "noise.png\n"
       "  rastrum terrain --function '30*sin(x/40)*cos(y/40)' --altitude 60 -o eggs.png\n"
       "  rastrum terrain --height map.npy --filter mip --frames 20 --stats - -o map.png\n"
-      "  rastrum terrain --function noise --path flight.json --fps 60 -o 'frame_%04d.png'";
+      "  rastrum terrain --function noise --path flight.json --fps 60 -o 'frame_%04d.png'\n"
+      "  rastrum terrain --height D1.png --mesh 'tower.obj@x=510,y=640,scale=3' --opacity 0.5 \\\n"
+      "      --sprite 'tree.png@x=500,y=700,size=9' -o inhabited.png";
   command.footer(footer);
   return {&command, [arguments] { return run(*arguments); }};
 }

@@ -1,0 +1,198 @@
+#include "terrain_objects.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/io/io.hpp>
+#include <rastrum/scene/sprite.hpp>
+
+#include "arguments.hpp"
+#include "inputs.hpp"
+#include "progress.hpp"
+#include "timeline.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// INPUT[@name=value,…]
+TerrainObject parse_object(const char* option, const std::string& text, bool is_sprite) {
+  TerrainObject object{text, text, is_sprite, {}};
+  const std::size_t at = text.rfind('@');
+  if (at == std::string::npos) {
+    if (is_sprite)
+      throw UsageError(option, "say where it stands, as in '" + text + "@x=500,y=700'");
+    return object;
+  }
+  object.input = text.substr(0, at);
+  Standing standing;
+  bool has_x = false, has_y = false;
+  for (std::size_t begin = at; begin < text.size();) {
+    const std::size_t end = std::min(text.find(',', ++begin), text.size());
+    const std::string item = text.substr(begin, end - begin);
+    begin = end;
+    const std::size_t equals = std::min(item.find('='), item.size());
+    const std::string name = item.substr(0, equals);
+    const auto value = [&] {
+      return parse_number(std::string(option).append(" ").append(name),
+                          std::string_view(item).substr(std::min(equals + 1, item.size())));
+    };
+    if (name == "x") {
+      standing.x = value();
+      has_x = true;
+    } else if (name == "y") {
+      standing.y = value();
+      has_y = true;
+    } else if (name == "height") {
+      standing.height = value();
+    } else if (name == (is_sprite ? "size" : "scale")) {
+      standing.scale = value();
+      if (!(standing.scale > 0))
+        throw UsageError(option, name + " must be above 0 in '" + text + "'");
+    } else if (name == "turn" && !is_sprite) {
+      standing.turn_deg = value();
+    } else {
+      throw UsageError(option, "expected " +
+                                   std::string(is_sprite ? "x, y, height and size"
+                                                         : "x, y, height, scale and turn") +
+                                   " after @, got '" + item + "'");
+    }
+  }
+  if (!has_x || !has_y) throw UsageError(option, "x and y are missing in '" + text + "'");
+  object.standing = standing;
+  return object;
+}
+
+/// Scaled and turned about the origin, then moved.
+Mat4d placement(const Standing& s, double up) {
+  Mat4d m = Mat4d::identity();
+  const double sin = std::sin(s.turn_deg * kDegree) * s.scale;
+  const double cos = std::cos(s.turn_deg * kDegree) * s.scale;
+  m.m[0][0] = m.m[2][2] = cos;
+  m.m[0][2] = sin;
+  m.m[2][0] = -sin;
+  m.m[1][1] = s.scale;
+  m.m[0][3] = s.x;
+  m.m[1][3] = up;
+  m.m[2][3] = s.y;
+  return m;
+}
+
+double ground_under(const TerrainObject& object, const terrain::Terrain& terrain,
+                    const terrain::TerrainOptions& options) {
+  const Standing& s = *object.standing;
+  if (terrain.is_map()) {
+    const int width = terrain.heights()->width(), height = terrain.heights()->height();
+    if (!(s.x >= 0 && s.x < width && s.y >= 0 && s.y < height))
+      throw UsageError(object.text, "stands off the map, which has " + std::to_string(width) + "x" +
+                                        std::to_string(height) +
+                                        " cells; give the height of its foot, as in height=20");
+  }
+  const double ground = terrain::ground_at(terrain, s.x, s.y, options);
+  if (!std::isfinite(ground))
+    throw UsageError(
+        object.text,
+        "stands in a hole of the terrain; give the height of its foot, as in height=20");
+  return ground;
+}
+
+}  // namespace
+
+void add_terrain_objects(CLI::App& app, TerrainObjectArguments& a) {
+  const char* group = "Meshes and sprites";
+  // Each use of the option is an object.
+  const auto add_object = [&](const char* name, const char* type, const char* help,
+                              bool is_sprite) {
+    app.add_option_function<std::vector<std::string>>(
+           name,
+           [&a, name, is_sprite](const std::vector<std::string>& texts) {
+             for (const std::string& text : texts)
+               a.objects.push_back(parse_object(name, text, is_sprite));
+           },
+           help)
+        ->type_name(type)
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->group(group);
+  };
+  add_object("--mesh", "INPUT[@x=X,y=Y,...]",
+             "a file or builtin:SHAPE as `render` takes them, +y up, at cell X, Y; height=H of its "
+             "lowest point (the ground's), scale=S (1), turn=DEG counter-clockwise (0). Without @ "
+             "its x, y and z are the terrain's x, height and y. Can be repeated",
+             false);
+  add_object(
+      "--sprite", "FILE@x=X,y=Y,...",
+      "a .png or .jpg that faces the camera, blended by its alpha, at cell X, Y; height=H of "
+      "its foot (the ground's), size=S cells high (1). Can be repeated",
+      true);
+  add_shading_options(app, a.scene, group);
+  add_blending_options(app, a.scene, group);
+  add_rasterizer_options(app, a.scene, group);
+}
+
+void check_terrain_objects(const TerrainObjectArguments& a,
+                           const terrain::TerrainOptions& options) {
+  if (a.objects.empty()) return;
+  const char* option = a.objects.front().is_sprite ? "--sprite" : "--mesh";
+  if (options.projection != terrain::Projection::planar)
+    throw UsageError(option, "triangles stay straight only with --projection planar");
+  if (a.scene.render.shader == Shader::depth)
+    throw UsageError("--shader", "depth is of a whole picture; on a terrain take another");
+}
+
+TerrainObjects::TerrainObjects(const TerrainObjectArguments& a,
+                               const terrain::TerrainOptions& options, Timeline& timeline,
+                               Progress& progress)
+    : options_(options) {
+  for (const TerrainObject& object : a.objects) {
+    const std::size_t first = scene_.instances.size();
+    progress.show("loading " + object.input);
+    if (object.is_sprite)
+      scene_.append(sprite(io::read_image(object.input)));
+    else
+      scene_.append(load_inputs({object.input}, a.scene.normals, timeline, progress));
+    parts_.push_back({object, first, scene_.instances.size()});
+    if (object.is_sprite) facing_.push_back(first);
+  }
+  RenderOptions render = a.scene.render;
+  render.width = options.width;
+  render.height = options.height;
+  render.device = options.device;
+  render.threads = options.threads;
+  render.isa = options.isa;
+  if (!a.scene.shader_given && !scene_.materials.empty()) render.shader = Shader::material;
+  painter_.emplace(std::move(render));
+}
+
+void TerrainObjects::place(const terrain::Terrain& terrain) {
+  {
+    const SceneBinding own(scene_);
+    const SceneView whole = own.view();
+    for (const Part& part : parts_) {
+      if (!part.object.standing) continue;
+      const Standing& s = *part.object.standing;
+      const double foot = s.height ? *s.height : ground_under(part.object, terrain, options_);
+      const SceneView alone{whole.instances.subspan(part.first, part.last - part.first), {}, {}};
+      const Bounds box = bounds(alone);
+      const double lowest = box.vertices_in_use > 0 ? static_cast<double>(box.min.y) : 0;
+      const Mat4d m = placement(s, foot - s.scale * lowest);
+      for (std::size_t i = part.first; i < part.last; ++i)
+        scene_.instances[i].object_to_world = m * scene_.instances[i].object_to_world;
+    }
+  }
+  binding_.emplace(scene_);
+}
+
+void TerrainObjects::draw(const terrain::TerrainTargets& picture, terrain::TerrainStats& stats) {
+  const FrameStats drawn =
+      painter_->draw({binding_->view(), facing_}, options_, stats.camera, picture);
+  stats.stages.push_back({"objects", stats.frame_ms, stats.frame_ms + drawn.frame_ms});
+  stats.frame_ms += drawn.frame_ms;
+  stats.peak_bytes += drawn.peak_bytes;
+}
+
+}  // namespace rastrum::cli
