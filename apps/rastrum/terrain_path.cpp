@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -23,6 +24,15 @@ constexpr double TerrainCamera::*kColumns[] = {
     &TerrainCamera::x,         &TerrainCamera::y,          &TerrainCamera::altitude,
     &TerrainCamera::angle_rad, &TerrainCamera::horizon_px, &TerrainCamera::roll_rad};
 
+/// In degrees, as people write them, or in radians, of which no bit is lost.
+void read_angle(JsonFields& fields, const char* degrees, const char* radians, double& angle_rad) {
+  const std::optional<double> deg = fields.number(degrees), rad = fields.number(radians);
+  if (deg && rad)
+    fields.fail(radians, std::string("gives what '").append(degrees).append("' gives, too"));
+  if (deg) angle_rad = *deg * kDegree;
+  if (rad) angle_rad = *rad;
+}
+
 TerrainPathKey read_key(const JsonFields::Element& element, const TerrainPathKey& before,
                         bool first) {
   JsonFields fields(*element.value, element.place);
@@ -34,9 +44,9 @@ TerrainPathKey read_key(const JsonFields::Element& element, const TerrainPathKey
     c.y = (*position)[1];
   }
   c.altitude = fields.number("altitude").value_or(c.altitude);
-  if (const auto angle_deg = fields.number("angle")) c.angle_rad = *angle_deg * kDegree;
+  read_angle(fields, "angle", "angle_rad", c.angle_rad);
   c.horizon_px = fields.number("horizon").value_or(c.horizon_px);
-  if (const auto roll_deg = fields.number("roll")) c.roll_rad = *roll_deg * kDegree;
+  read_angle(fields, "roll", "roll_rad", c.roll_rad);
   fields.finish();
   return key;
 }
@@ -73,9 +83,9 @@ void write_terrain_path(const std::filesystem::path& file, std::span<const Terra
     list.push_back({{"time", key.time_s},
                     {"position", {c.x, c.y}},
                     {"altitude", c.altitude},
-                    {"angle", c.angle_rad / kDegree},
+                    {"angle_rad", c.angle_rad},
                     {"horizon", c.horizon_px},
-                    {"roll", c.roll_rad / kDegree}});
+                    {"roll_rad", c.roll_rad}});
   }
   write_json(file, {{"keys", std::move(list)}});
 }

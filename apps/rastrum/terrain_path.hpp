@@ -35,7 +35,7 @@ class TerrainPath {
 /// Throws Error{not_found, io, bad_format} naming the file and the key.
 [[nodiscard]] TerrainPath read_terrain_path(const std::filesystem::path& file,
                                             const terrain::TerrainCamera& base);
-/// Keeps all bits but those of angles, which are written in degrees. Throws Error{io}.
+/// Keeps all bits: angles are written in radians. Throws Error{io}.
 void write_terrain_path(const std::filesystem::path& file, std::span<const TerrainPathKey> keys);
 
 }  // namespace rastrum::cli

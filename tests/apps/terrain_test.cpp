@@ -1,8 +1,10 @@
 // `rastrum terrain`: each option by its effect, the picture being the one that the library draws
 // with the same choice; inputs that cannot be drawn.
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <numbers>
+#include <random>
 
 #include <rastrum/io/io.hpp>
 #include <rastrum/terrain/color_map.hpp>
@@ -11,6 +13,7 @@
 #include <rastrum/terrain/renderer.hpp>
 
 #include "program.hpp"
+#include "terrain_path.hpp"
 
 namespace rastrum::test {
 namespace {
@@ -226,6 +229,60 @@ TEST_F(TerrainProgram, DepthAndStats) {
   EXPECT_EQ(json["slices"], stats.slices);
   EXPECT_EQ(json["frame_ms"]["frames"], 3);
   EXPECT_EQ(json["camera"]["altitude"], 40);
+}
+
+TEST_F(TerrainProgram, AVideoHasThePicturesOfThePath) {
+  if (std::system("command -v ffmpeg ffprobe >/dev/null") != 0)
+    GTEST_SKIP() << "ffmpeg is missing (Debian: ffmpeg)";
+  // Two and a half seconds, 4 pictures in each.
+  write("p.json",
+        R"({"keys": [{"position": [30, 50]}, {"time": 2.5, "position": [20, 9], "angle": 70,
+                               "altitude": 55, "roll": 20}]})");
+  const auto along = [&](const char* output) {
+    must({"terrain", "--height", "h.png", "--color", "c.png", "--size", "160x96", "--altitude",
+          "40", "--horizon", "20", "--path", "p.json", "--fps", "4", "-o", output});
+  };
+  along("v.mp4");
+  along("f%d.png");
+  const std::string in = "cd '" + path("").string() + "' && ";
+  ASSERT_EQ(std::system((in + "ffprobe -v error -count_frames -select_streams v:0 -show_entries "
+                              "stream=width,height,nb_read_frames -of csv=p=0 v.mp4 > n.txt && "
+                              "ffmpeg -loglevel error -i v.mp4 -vf scale=in_color_matrix=bt709 "
+                              "-pix_fmt rgba v%d.png")
+                            .c_str()),
+            0);
+  EXPECT_EQ(read("n.txt"), "160,96,11\n");
+  EXPECT_FALSE(std::filesystem::exists(path("f11.png")));
+  for (int i = 0; i < 11; ++i) {  // ffmpeg counts from 1
+    const Image<Rgba8> a = png("f" + std::to_string(i) + ".png");
+    const Image<Rgba8> b = png("v" + std::to_string(i + 1) + ".png");
+    double sum = 0;
+    for (std::size_t k = 0; k < a.pixels().size(); ++k)
+      sum += std::abs(a.pixels()[k].r - b.pixels()[k].r) +
+             std::abs(a.pixels()[k].g - b.pixels()[k].g) +
+             std::abs(a.pixels()[k].b - b.pixels()[k].b);
+    // Compressed, with a quarter of the colours: near on the whole, and not another picture.
+    EXPECT_LT(sum / static_cast<double>(a.pixels().size()), 24) << i;
+  }
+}
+
+TEST_F(TerrainProgram, APathKeepsEveryBitOfItsAngles) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> angle(-4, 4);
+  std::vector<cli::TerrainPathKey> keys;
+  for (int i = 0; i < 200; ++i)
+    keys.push_back({0.25 * i, {1.0 / 3, 2, 3, angle(random), 4, angle(random)}});
+  cli::write_terrain_path(path("p.json"), keys);
+  const cli::TerrainPath read = cli::read_terrain_path(path("p.json"), {});
+  for (const cli::TerrainPathKey& key : keys) EXPECT_EQ(read.at(key.time_s), key.camera);
+  write("both.json", R"({"keys": [{"angle": 1, "angle_rad": 1}]})");
+  try {
+    static_cast<void>(cli::read_terrain_path(path("both.json"), {}));
+    ADD_FAILURE() << "two angles in one key";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("both.json"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("angle_rad"), std::string::npos) << e.what();
+  }
 }
 
 TEST_F(TerrainProgram, RefusesWhatItCannotDraw) {

@@ -180,8 +180,8 @@ TEST_F(TerrainPathFile, WrittenAndReadIsTheSame) {
     EXPECT_EQ(c.y, k.camera.y);
     EXPECT_EQ(c.altitude, k.camera.altitude);
     EXPECT_EQ(c.horizon_px, k.camera.horizon_px);
-    EXPECT_DOUBLE_EQ(c.angle_rad, k.camera.angle_rad);  // by way of degrees
-    EXPECT_DOUBLE_EQ(c.roll_rad, k.camera.roll_rad);
+    EXPECT_EQ(c.angle_rad, k.camera.angle_rad);
+    EXPECT_EQ(c.roll_rad, k.camera.roll_rad);
   }
 }
 
