@@ -233,6 +233,7 @@ int run_path(const TerrainArguments& a, const Stage& stage, const terrain::Terra
 
 int run(TerrainArguments& a) {
   check(a);
+  if (!a.options.classic) a.options.sky = terrain::sky_in(a.options.sky, a.light.sun);
   Timeline timeline;
   Progress progress(a.quiet);
   // Refuses what cannot be drawn before a large file is read.

@@ -152,9 +152,9 @@ void add_terrain_picture(CLI::App& app, TerrainSceneArguments& a) {
                                          {"cylindrical", terrain::Projection::cylindrical}});
       })
       ->group(group);
-  add(app, "--sky", "#RRGGBB", "(#9090e0)", [&o](const std::string& s) {
-    o.sky = parse_rgb("--sky", s);
-  })->group(group);
+  add(app, "--sky", "#RRGGBB", "with the sun high; it dims with a sun below 30 degrees (#9090e0)",
+      [&o](const std::string& s) { o.sky = parse_rgb("--sky", s); })
+      ->group(group);
   add(app, "--fog", "DENSITY[,START[,#RRGGBB]]",
       "per cell, from START cells on, to this colour (none; 0; the sky's)",
       [&o](const std::string& s) { o.fog = parse_fog(s); })

@@ -133,6 +133,16 @@ class LitFunction final : public Surface {
 
 }  // namespace
 
+Rgba8 sky_in(Rgba8 by_day, const Sun& sun) noexcept {
+  constexpr double kDay = 30, kNight = -6, kLeast = 1.0 / 16;
+  const double day = std::clamp((sun.elevation_deg - kNight) / (kDay - kNight), 0.0, 1.0);
+  const double share = kLeast + (1 - kLeast) * day;
+  const auto dim = [share](std::uint8_t v) {
+    return static_cast<std::uint8_t>(std::lround(v * share));
+  };
+  return {dim(by_day.r), dim(by_day.g), dim(by_day.b), by_day.a};
+}
+
 Image<Rgba8> lit_colors(const HeightMap& map, const Light& light, const ShadowOptions& options) {
   check(light);
   const Image<float> factor = light_of(map, light.hill_shading, light, options);

@@ -29,6 +29,11 @@ struct Light {
   March march{};                   ///< of accumulated ones
 };
 
+/// The sky in the light of the sun, as FutSpace's dims with it (paper 3's program; the paper gives
+/// no rule, so this is ours): `by_day` where the sun stands 30° high or more, from there on falling
+/// linearly to a sixteenth at −6°, the end of civil twilight, and staying so.
+[[nodiscard]] Rgba8 sky_in(Rgba8 by_day, const Sun& sun) noexcept;
+
 /// The colours of a map in this light, opaque. Colours of another size than the heights are kept
 /// where they are finer and repeated where they are coarser. Empty ones are colors_by_height.
 /// Cost: the shadows', and O(cells). Throws Error{invalid_argument} for what no light can be.

@@ -149,6 +149,7 @@ TEST_F(TerrainProgram, Classic) {
 
 TEST_F(TerrainProgram, LightAndShadows) {
   const Sun sun{250, 25};
+  options_.sky = sky_in(kSky, sun);
   std::vector<Image<Rgba8>> pictures;
   for (const auto& [word, shadows] :
        {std::pair("accumulated", Shadows::accumulated), std::pair("sharp", Shadows::sharp),
@@ -161,9 +162,22 @@ TEST_F(TerrainProgram, LightAndShadows) {
   }
 }
 
+TEST_F(TerrainProgram, TheSkyDimsWithTheSunButNotTheOriginals) {
+  options_.sky = {80, 160, 255, 255};
+  expect({"--sky", "#50a0ff", "--sun", "315,30"});
+  options_.sky = {43, 85, 135, 255};  // half way to a sixteenth: 17/32
+  expect({"--sky", "#50a0ff", "--sun", "315,12"});
+  options_.sky = {5, 10, 16, 255};
+  expect({"--sky", "#50a0ff", "--sun", "315,-6"});
+  options_.sky = {80, 160, 255, 255};
+  options_.classic = true;
+  expect({"--classic", "--sky", "#50a0ff", "--sun", "315,-6"});
+}
+
 TEST_F(TerrainProgram, WithoutColours) {
   must({"terrain", "--height", "h.png", "-o", "p.png", "--size", "96x64", "--altitude", "40",
         "--horizon", "20", "--sun", "10,20"});
+  options_.sky = sky_in(kSky, {10, 20});
   const HeightMap bare{map_.heights, {}};
   EXPECT_TRUE(same_pixels(
       png("p.png"),

@@ -69,7 +69,7 @@ class TerrainSubject::Stage {
     auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) {
       const TerrainOptions& o = k.renderer.options();
       return o.width == options.width && o.height == options.height &&
-             o.distance == options.distance && o.fov_rad == options.fov_rad;
+             o.distance == options.distance && o.fov_rad == options.fov_rad && o.sky == options.sky;
     });
     if (found == kept_.end()) {
       if (kept_.size() == kMost) kept_.erase(kept_.begin());
@@ -172,7 +172,10 @@ std::function<Drawn()> TerrainSubject::draw(int width, int height) {
   terrain::TerrainCamera camera = pose.camera;
   light.sun = pose.sun;
   o.distance = pose.distance;
-  if (!o.classic) o.fov_rad = pose.fov_rad;
+  if (!o.classic) {
+    o.fov_rad = pose.fov_rad;
+    o.sky = terrain::sky_in(o.sky, light.sun);
+  }
   // Fewer pixels see the same: what is given in pixels shrinks with them. The original program's
   // scale is fixed, so it is always drawn in full.
   if (o.classic) {
