@@ -47,12 +47,12 @@ struct RenderOptions {
   int width = 1280, height = 720;
   std::string rasterizer = "auto";
   std::string visibility = "auto";
-  raster::Tuning tuning;           ///< of the rasterizer
-  std::uint64_t memory_limit = 0;  ///< bytes of scratch beyond the mesh and the images; 0: none
-  bool hierarchical_z = true;      ///< where the rasterizer has it; changes no pixel
+  raster::Tuning tuning;            ///< of the rasterizer
+  std::uint64_t memory_limit = 0;   ///< bytes of scratch beyond the mesh and the images; 0: none
+  bool hierarchical_z = true;       ///< where the rasterizer has it; changes no pixel
   Device device = Device::threads;  ///< options() of a Renderer has what `automatic` took
-  int threads = 0;         ///< 0: all
-  std::optional<Isa> isa;  ///< none: the best this machine has
+  int threads = 0;                  ///< 0: all
+  std::optional<Isa> isa;           ///< none: the best this machine has
   Shader shader = Shader::phong;
   /// none: all faces, but with Shader::material the back of single-sided materials is left out.
   Cull cull = Cull::none;
