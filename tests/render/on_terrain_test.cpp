@@ -519,7 +519,7 @@ TEST(Sprite, IsAsHighAsOneAndNeedsAPicture) {
   EXPECT_EQ(box.max.x, 0.75F);
   EXPECT_EQ(box.min.y, 0);
   EXPECT_EQ(box.max.y, 1);
-  EXPECT_THROW(sprite({}), Error);
+  EXPECT_THROW((void)sprite({}), Error);
 }
 
 }  // namespace
