@@ -146,8 +146,8 @@ class WindowTest : public Program {
   [[nodiscard]] bool shows_error(int width, int height) const {
     const auto near = [](int a, int b) { return a >= b - 2 && a <= b + 2; };
     int red = 0;
-    for (const Rgba8 p : server_->pixels(window_, 0, 0, width, height).pixels())
-      red += near(p.r, 255) && near(p.g, 115) && near(p.b, 102);
+    const Image<Rgba8> screen = server_->pixels(window_, 0, 0, width, height);
+    for (const Rgba8 p : screen.pixels()) red += near(p.r, 255) && near(p.g, 115) && near(p.b, 102);
     return red > 50;
   }
   /// Its end, which must be a clean one: under a sanitizer a leak is not.
