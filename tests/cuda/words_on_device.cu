@@ -95,6 +95,16 @@ struct VisitNode {
 
 constexpr std::size_t kMany = 20011;
 
+struct Backwards {
+  RASTRUM_HD U operator()(std::size_t i) const { return kMany - 1 - i; }
+};
+struct IsOddIndex {
+  RASTRUM_HD bool operator()(std::size_t i) const { return i % 2 == 1; }
+};
+struct TimesFour {
+  RASTRUM_HD U operator()(std::size_t i) const { return 4 * i; }
+};
+
 /// What the words make of the same numbers on a backend: one list a name. `Copy` brings ranges to
 /// the host.
 struct Result {
@@ -241,16 +251,6 @@ class Run {
     keep("for_each_team", out);
   }
   void keep_number(const char* word, U number) { results_.push_back({word, {number}}); }
-
-  struct Backwards {
-    RASTRUM_HD U operator()(std::size_t i) const { return kMany - 1 - i; }
-  };
-  struct IsOddIndex {
-    RASTRUM_HD bool operator()(std::size_t i) const { return i % 2 == 1; }
-  };
-  struct TimesFour {
-    RASTRUM_HD U operator()(std::size_t i) const { return 4 * i; }
-  };
 
   Exec exec_;
   std::vector<Result> results_;

@@ -17,6 +17,23 @@
 
 namespace rastrum::parallel {
 
+namespace cuda_detail {
+
+// Not a private member: nvcc's host code names the types of a kernel's arguments.
+template <class T, class F, class Plan>
+struct Push {
+  std::span<const T> items;
+  std::span<T> next;
+  Plan places;
+  F f;
+  RASTRUM_HD void operator()(std::size_t i) const {
+    const std::size_t begin = places.first(i);
+    f(items[i], next.subspan(begin, places.segment_end(i) - begin));
+  }
+};
+
+}  // namespace cuda_detail
+
 template <class T>
 class PassQueue {
  public:
@@ -36,7 +53,7 @@ class PassQueue {
       const auto places = make_expansion(*exec_, items_, pushes);
       auto next = make_buffer<T>(*exec_, places.size());
       for_each_index(*exec_, items_.size(),
-                     Push<std::decay_t<F>, decltype(places.view())>{
+                     cuda_detail::Push<T, std::decay_t<F>, decltype(places.view())>{
                          view_of(std::as_const(items_)), view_of(next), places.view(), f});
       items_ = std::move(next);
     }
@@ -44,18 +61,6 @@ class PassQueue {
   }
 
  private:
-  template <class F, class Plan>
-  struct Push {
-    std::span<const T> items;
-    std::span<T> next;
-    Plan places;
-    F f;
-    RASTRUM_HD void operator()(std::size_t i) const {
-      const std::size_t begin = places.first(i);
-      f(items[i], next.subspan(begin, places.segment_end(i) - begin));
-    }
-  };
-
   Cuda* exec_;
   DeviceBuffer<T> items_;
 };
