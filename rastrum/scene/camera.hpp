@@ -20,7 +20,7 @@ struct Camera {
   float far_plane = std::numeric_limits<float>::infinity();  ///< depth 0; beyond it depth stays 0
   /// World to clip, for what no lens of this kind sees (a terrain's horizon is a shear); depth
   /// reversed. Nothing else counts then.
-  std::optional<Mat4d> matrix;
+  std::optional<Mat4d> matrix{};
 };
 
 /// World to clip for a W × H image, reversed depth (near 1, far 0). Composed in float64.

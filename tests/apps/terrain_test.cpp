@@ -268,8 +268,8 @@ TEST_F(TerrainProgram, AVideoHasThePicturesOfThePath) {
   EXPECT_EQ(read("n.txt"), "160,96,11\n");
   EXPECT_FALSE(std::filesystem::exists(path("f11.png")));
   for (int i = 0; i < 11; ++i) {  // ffmpeg counts from 1
-    const Image<Rgba8> a = png("f" + std::to_string(i) + ".png");
-    const Image<Rgba8> b = png("v" + std::to_string(i + 1) + ".png");
+    const Image<Rgba8> a = png(std::string("f").append(std::to_string(i)).append(".png"));
+    const Image<Rgba8> b = png(std::string("v").append(std::to_string(i + 1)).append(".png"));
     double sum = 0;
     for (std::size_t k = 0; k < a.pixels().size(); ++k)
       sum += std::abs(a.pixels()[k].r - b.pixels()[k].r) +
