@@ -11,35 +11,19 @@
 #include <rastrum/scene/sprite.hpp>
 #include <rastrum/terrain/renderer.hpp>
 
-#include "program.hpp"
+#include "hills.hpp"
 
 namespace rastrum::test {
 namespace {
 
-constexpr int kWidth = 96, kHeight = 64, kMap = 60;
 constexpr double kRadians = std::numbers::pi / 180;
 
-class TerrainObjectsProgram : public Program {
+class TerrainObjectsProgram : public ProgramOnHills {
  protected:
   void SetUp() override {
-    Program::SetUp();
-    options_.width = kWidth;
-    options_.height = kHeight;
+    ProgramOnHills::SetUp();
     options_.distance = 120;
     camera_ = {30, 58, 40, 0, 10, 0};
-    Image<Rgba8> grey(kMap, kMap);
-    map_.heights = Image<float>(kMap, kMap);
-    map_.colors = Image<Rgba8>(kMap, kMap);
-    for (int y = 0; y < kMap; ++y)
-      for (int x = 0; x < kMap; ++x) {
-        const auto h = static_cast<std::uint8_t>(16 + 15 * std::sin(x * 0.21) * std::cos(y * 0.17));
-        map_.heights(x, y) = h;
-        grey(x, y) = {h, h, h, 255};
-        map_.colors(x, y) = {static_cast<std::uint8_t>(4 * x), static_cast<std::uint8_t>(4 * y), 90,
-                             255};
-      }
-    io::write_png(path("h.png"), grey.view());
-    io::write_png(path("c.png"), map_.colors.view());
     sprite_ = Image<Rgba8>(4, 8);
     for (int y = 0; y < 8; ++y)
       for (int x = 0; x < 4; ++x)
@@ -100,9 +84,6 @@ class TerrainObjectsProgram : public Program {
     EXPECT_FALSE(same_pixels(got, drawn(nullptr).color)) << what << ": nothing stands there";
   }
 
-  terrain::TerrainOptions options_;
-  terrain::TerrainCamera camera_;
-  terrain::HeightMap map_;
   Image<Rgba8> sprite_;
 };
 

@@ -12,7 +12,7 @@
 #include <rastrum/terrain/light.hpp>
 #include <rastrum/terrain/renderer.hpp>
 
-#include "program.hpp"
+#include "hills.hpp"
 #include "terrain_path.hpp"
 
 namespace rastrum::test {
@@ -21,29 +21,13 @@ namespace {
 using namespace terrain;
 using TerrainFilter = terrain::Filter;
 
-constexpr int kWidth = 96, kHeight = 64, kMap = 60;
 constexpr double kRadians = std::numbers::pi / 180;
 
-class TerrainProgram : public Program {
+class TerrainProgram : public ProgramOnHills {
  protected:
   void SetUp() override {
-    Program::SetUp();
-    options_.width = kWidth;
-    options_.height = kHeight;
+    ProgramOnHills::SetUp();
     camera_ = {kMap / 2.0, kMap * (800.0 / 1024), 40, 0, 20, 0};
-    map_.heights = Image<float>(kMap, kMap);
-    map_.colors = Image<Rgba8>(kMap, kMap);
-    Image<Rgba8> grey(kMap, kMap);
-    for (int y = 0; y < kMap; ++y)
-      for (int x = 0; x < kMap; ++x) {
-        const auto h = static_cast<std::uint8_t>(16 + 15 * std::sin(x * 0.21) * std::cos(y * 0.17));
-        map_.heights(x, y) = h;
-        grey(x, y) = {h, h, h, 255};
-        map_.colors(x, y) = {static_cast<std::uint8_t>(4 * x), static_cast<std::uint8_t>(4 * y), 90,
-                             255};
-      }
-    io::write_png(path("h.png"), grey.view());
-    io::write_png(path("c.png"), map_.colors.view());
   }
 
   [[nodiscard]] static std::vector<std::string> base() {
@@ -78,10 +62,6 @@ class TerrainProgram : public Program {
     for (const std::string& f : files())
       EXPECT_TRUE(f == "h.png" || f == "c.png" || f == "bad.dem") << f;
   }
-
-  TerrainOptions options_;
-  TerrainCamera camera_;
-  HeightMap map_;
 };
 
 TEST_F(TerrainProgram, Defaults) {
