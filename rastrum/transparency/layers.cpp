@@ -74,11 +74,13 @@ class LayersRegion final : public raster::Region {
       made_with_ = context.request->isa;
       blend_ = make_blend(options, made_with_);
     }
+    // Half of what fragments may take is for records (grouped.cpp cuts bins by it), and a worker
+    // may come to keep both planes and packed fragments.
+    const std::uint64_t share = context.fragment_bytes / 4;
     planes_ = kMostPlanes;
-    if (context.fragment_bytes != 0)
-      planes_ = std::clamp<std::size_t>(context.fragment_bytes / (2 * kPlaneBytes), kLeastPlanes,
-                                        kMostPlanes);
-    packed_.begin(context.request->isa, context.fragment_bytes / 2);
+    if (share != 0)
+      planes_ = std::clamp<std::size_t>(share / kPlaneBytes, kLeastPlanes, kMostPlanes);
+    packed_.begin(context.request->isa, share);
   }
 
   std::optional<Pass> next() override {

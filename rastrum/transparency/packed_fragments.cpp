@@ -12,10 +12,11 @@ using raster::BlockColors;
 using raster::kBlockSize;
 using raster::kIdMask;
 
-/// As many as a list's length allows: 64 k fragments were a little faster than half of them.
-constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 21;
-/// Word, pixel and colour.
-constexpr std::uint64_t kFragmentBytes = 8 + 2 + sizeof(Vec4);
+/// As many as a list's length allows, with their keys: 64 k fragments were a little faster than
+/// half of them.
+constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 22;
+/// Word, pixel, colour, and what is kept a bit a fragment.
+constexpr std::uint64_t kFragmentBytes = 8 + 2 + sizeof(Vec4) + 1;
 /// A pixel's list is of 16-bit length.
 constexpr std::size_t kMostFragments = 65535;
 
@@ -124,7 +125,7 @@ bool PackedFragments::deal(const BlockGrid& grid) {
       end += layers * 8;
       deepest_ = std::max<std::size_t>(deepest_, layers);
     }
-  if (count_ * kFragmentBytes + end * sizeof(std::uint64_t) > 2 * most_bytes_) return false;
+  if (count_ * kFragmentBytes + end * sizeof(std::uint64_t) > most_bytes_) return false;
   keys_.reserve(end);
   std::fill_n(keys_.data(), end, 0U);
   // The last comes first, so that counts turn into places.

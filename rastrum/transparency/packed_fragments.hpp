@@ -36,7 +36,8 @@ class PackedFragments {
         first_(memory),
         wanted_(memory) {}
 
-  /// Begins a region. `bytes`: what its fragments may take, 0 for the default of 2 MiB.
+  /// Begins a region. `bytes`: what its fragments may take with their keys, 0 for the default of 4
+  /// MiB.
   void begin(Isa isa, std::uint64_t bytes);
 
   /// Collects the fragments that lie before the words of `opaque`. Returns false and collects
