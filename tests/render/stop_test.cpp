@@ -28,21 +28,25 @@ constexpr int kSize = 256;
 /// What a thread has in hand: the blocks that go to a region together.
 constexpr std::int64_t kCapacity = raster::kBlockCapacity;
 
-/// Counts calls, asks to stop at one of them, and counts what comes after.
+/// Counts calls, asks to stop at one of them, and counts those that begin after it was asked: not
+/// by their number, for the thread that asks may have slept between the two.
 class Trigger {
  public:
   explicit Trigger(std::int64_t at = -1) : at_(at) {}
   void call() {
-    const std::int64_t n = calls_.fetch_add(1, std::memory_order_relaxed);
-    if (n == at_) source_.request_stop();
+    if (source_.stop_requested()) {
+      after_.fetch_add(1, std::memory_order_relaxed);
+    } else if (calls_.fetch_add(1, std::memory_order_relaxed) == at_) {
+      source_.request_stop();
+    }
   }
   [[nodiscard]] std::stop_token token() const { return source_.get_token(); }
   [[nodiscard]] std::int64_t calls() const { return calls_; }
-  [[nodiscard]] std::int64_t after() const { return calls_ - at_ - 1; }
+  [[nodiscard]] std::int64_t after() const { return after_; }
 
  private:
   std::int64_t at_;
-  std::atomic<std::int64_t> calls_ = 0;
+  std::atomic<std::int64_t> calls_ = 0, after_ = 0;
   std::stop_source source_;
 };
 
