@@ -11,6 +11,8 @@
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/stop.hpp>
 
+#include "tests/support/stop_trigger.hpp"
+
 namespace rastrum::parallel {
 namespace {
 
@@ -68,20 +70,15 @@ TEST_P(ThreadCounts, AnErrorReachesTheCaller) {
 
 TEST_P(ThreadCounts, AStoppedLoopLeavesOutWhatHasNotBegun) {
   Threads exec(GetParam());
-  std::stop_source source;
-  const std::stop_token token = source.get_token();
+  test::StopTrigger trigger(9);
+  const std::stop_token token = trigger.token();
   constexpr std::size_t n = 10000;
   {
     const StopScope scope(token);
     expect_each_index_once(exec, n);
-    std::atomic<std::size_t> calls = 0;
-    EXPECT_THROW(for_each_index(exec, n,
-                                [&](std::size_t) {
-                                  if (++calls == 10) source.request_stop();
-                                }),
-                 Stopped);
+    EXPECT_THROW(for_each_index(exec, n, [&](std::size_t) { trigger.call(); }), Stopped);
     // The others have at most begun one each.
-    EXPECT_LE(calls, 10 + static_cast<std::size_t>(GetParam()) - 1);
+    EXPECT_LE(trigger.after(), GetParam() - 1);
     EXPECT_THROW(for_each_index(exec, 1, [](std::size_t) {}), Stopped);
     {
       const StopScope none(nullptr);

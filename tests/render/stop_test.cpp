@@ -2,7 +2,6 @@
 // of the caller's own functions, and leaves nothing behind: the next frame of the same renderer is
 // that of a new one, counters included. For every point of the coverage × visibility table, and
 // with layers.
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <stop_token>
@@ -20,6 +19,7 @@
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/stop_trigger.hpp"
 
 namespace rastrum::test {
 namespace {
@@ -27,28 +27,6 @@ namespace {
 constexpr int kSize = 256;
 /// What a thread has in hand: the blocks that go to a region together.
 constexpr std::int64_t kCapacity = raster::kBlockCapacity;
-
-/// Counts calls, asks to stop at one of them, and counts those that begin after it was asked: not
-/// by their number, for the thread that asks may have slept between the two.
-class Trigger {
- public:
-  explicit Trigger(std::int64_t at = -1) : at_(at) {}
-  void call() {
-    if (source_.stop_requested()) {
-      after_.fetch_add(1, std::memory_order_relaxed);
-    } else if (calls_.fetch_add(1, std::memory_order_relaxed) == at_) {
-      source_.request_stop();
-    }
-  }
-  [[nodiscard]] std::stop_token token() const { return source_.get_token(); }
-  [[nodiscard]] std::int64_t calls() const { return calls_; }
-  [[nodiscard]] std::int64_t after() const { return after_; }
-
- private:
-  std::int64_t at_;
-  std::atomic<std::int64_t> calls_ = 0, after_ = 0;
-  std::stop_source source_;
-};
 
 /// A soup whose vertices, fragments and pixels are counted.
 class Counted final : public raster::VertexSource,
@@ -58,7 +36,7 @@ class Counted final : public raster::VertexSource,
   Counted() : mesh_(shapes::soup(4000, 0.02F, 0.5F)) {}
 
   struct Triggers {
-    Trigger project, test, shade;
+    StopTrigger project, test, shade;
   };
   void use(Triggers& t) { triggers_ = &t; }
   [[nodiscard]] raster::Draw draw(bool translucent) const {
@@ -116,7 +94,7 @@ void expect_bounded(const RenderOptions& o, bool translucent, std::int64_t most_
   Counted::Triggers whole;
   Renderer fresh(o), renderer(o);
   const Frame expected = frame(fresh, counted, whole, translucent);
-  for (Trigger Counted::Triggers::*const which :
+  for (StopTrigger Counted::Triggers::*const which :
        {&Counted::Triggers::project, &Counted::Triggers::test, &Counted::Triggers::shade}) {
     const std::int64_t calls = (whole.*which).calls();
     ASSERT_GT(calls, 0);

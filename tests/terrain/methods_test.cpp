@@ -1,6 +1,5 @@
 // All ways to a picture give the same bits: serial, threads, every instruction set; maps and
 // functions, filters, tilings, projections, fog, with depth.
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -13,6 +12,7 @@
 #include <rastrum/parallel/stop.hpp>
 #include <rastrum/terrain/renderer.hpp>
 
+#include "tests/support/stop_trigger.hpp"
 #include "tests/terrain/maps.hpp"
 
 namespace rastrum::terrain {
@@ -115,11 +115,10 @@ TEST(Methods, GiveTheSamePictureOfFunctions) {
 
 // A frame that is stopped ends after a bounded number of samples, and the next one is whole.
 TEST(Methods, EndSoonWhenStopped) {
-  std::atomic<std::int64_t> samples = 0, stop_at = -1;
-  std::stop_source source;
+  test::StopTrigger* trigger = nullptr;
   const Terrain hills = Terrain::of(
       [&](double x, double y) {
-        if (samples++ == stop_at) source.request_stop();
+        if (trigger != nullptr) trigger->call();
         return static_cast<float>(20 * std::cos(x / 9) * std::sin(y / 7));
       },
       [](double x, double) {
@@ -149,22 +148,20 @@ TEST(Methods, EndSoonWhenStopped) {
                  std::to_string(static_cast<int>(c.device)));
     options.method = c.method;
     options.device = c.device;
-    stop_at = -1;
     const Picture expected(hills, camera, options);
     TerrainRenderer renderer(options);
     Image<Rgba8> colors(options.width, options.height);
     Image<float> depth(options.width, options.height);
-    samples = 0;
-    stop_at = 10000;
-    source = {};
+    test::StopTrigger at(10000);
+    trigger = &at;
     {
-      const std::stop_token token = source.get_token();
+      const std::stop_token token = at.token();
       const parallel::StopScope scope(token);
       EXPECT_THROW(renderer.render(hills, camera, {colors.view(), depth.view()}),
                    parallel::Stopped);
     }
-    EXPECT_LE(samples - stop_at - 1, c.most);
-    stop_at = -1;
+    trigger = nullptr;
+    EXPECT_LE(at.after(), c.most);
     renderer.render(hills, camera, {colors.view(), depth.view()});
     EXPECT_TRUE(std::equal(colors.pixels().begin(), colors.pixels().end(),
                            expected.colors.pixels().begin()));

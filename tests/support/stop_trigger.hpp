@@ -1,0 +1,34 @@
+// Asks to stop at one of many calls and counts those that begin after it was asked, from any
+// thread: not by their number, for the thread that asks may have slept between the two.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <stop_token>
+
+namespace rastrum::test {
+
+class StopTrigger {
+ public:
+  /// `at`: the call that asks, from 0; none if negative.
+  explicit StopTrigger(std::int64_t at = -1) : at_(at) {}
+
+  void call() {
+    if (source_.stop_requested()) {
+      after_.fetch_add(1, std::memory_order_relaxed);
+    } else if (before_.fetch_add(1, std::memory_order_relaxed) == at_) {
+      source_.request_stop();
+    }
+  }
+  [[nodiscard]] std::stop_token token() const { return source_.get_token(); }
+  /// Calls in all.
+  [[nodiscard]] std::int64_t calls() const { return before_ + after_; }
+  [[nodiscard]] std::int64_t after() const { return after_; }
+
+ private:
+  std::int64_t at_;
+  std::atomic<std::int64_t> before_ = 0, after_ = 0;
+  std::stop_source source_;
+};
+
+}  // namespace rastrum::test
