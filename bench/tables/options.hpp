@@ -19,21 +19,7 @@ struct TableOptions {
   std::string mesh, out;
   bool quick = false;
 
-  void add_to(OptionParser& parser, bool takes_mesh = true) {
-    CLI::App& app = parser.app();
-    if (takes_mesh)
-      app.add_option("--mesh", mesh,
-                     "a mesh for all columns, brought to each column's number of triangles "
-                     "(generated balls)")
-          ->type_name("FILE");
-    app.add_option("--out", out, "write NAME.md, NAME.json and NAME.svg into FOLDER")
-        ->type_name("FOLDER");
-    app.add_option("--rounds", rounds, "rounds of A B C … (9)")->check(CLI::Range(1, 1000));
-    app.add_option("--threads", threads, "threads (all)")->check(CLI::Range(1, 1024));
-    app.add_flag(
-        "--quick", quick,
-        "a smoke test: 1 round, pictures of an eighth of the edge, a 32nd of the triangles");
-  }
+  void add_to(OptionParser& parser, bool takes_mesh = true);
 
   /// To be called after parsing.
   void resolve() {

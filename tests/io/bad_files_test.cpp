@@ -15,7 +15,6 @@
 #include <algorithm>
 
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -48,7 +47,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMostSeconds = 2;
+constexpr double kMostSeconds = 2;  ///< of processors' time: others may keep them busy
 
 struct Row {
   std::string path, verb, detail, twin;
@@ -270,6 +269,18 @@ std::string outcome_within_limits(const Row& row) {
 }
 #endif
 
+/// Of this process and of the children that it has waited for.
+double processor_seconds() {
+  double seconds = 0;
+  for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage used{};
+    ::getrusage(who, &used);
+    for (const timeval& t : {used.ru_utime, used.ru_stime})
+      seconds += static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
+  }
+  return seconds;
+}
+
 class BadFiles : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
@@ -285,11 +296,10 @@ TEST_P(BadFiles, EndAsTheTableSays) {
   for (const Row& row : read_table()) {
     if (row.path.rfind(GetParam(), 0) != 0) continue;
     SCOPED_TRACE(row.path);
-    const auto start = std::chrono::steady_clock::now();
+    const double start = processor_seconds();
     const std::string got = outcome_within_limits(row);
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     EXPECT_EQ(got, row.verb + " " + row.detail);
-    EXPECT_LT(took.count(), kMostSeconds);
+    EXPECT_LT(processor_seconds() - start, kMostSeconds);
     found << row.path << ' ' << got << '\n';
     ++rows;
     drawn += row.verb != "refuse" ? 1U : 0U;

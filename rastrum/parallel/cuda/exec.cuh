@@ -4,9 +4,8 @@
 // - What they read and write is memory of the device: DeviceBuffer, std::span over device pointers,
 //   or anything small with a size and an operator[] that the device can call (range.hpp). Views are
 //   copied into kernels. Nothing is moved between host and device but where it is asked for.
-// - Functors carry RASTRUM_HD, are copied, and may refer to memory of the device only. nvcc takes
-// no
-//   lambda of a host function; give them names.
+// - Functors carry RASTRUM_HD, are copied, and may refer to memory of the device only. Give them
+//   names: nvcc takes no lambda of a host function.
 // - Work goes to the stream in order. A word that returns a number waits for it; a sum that a scan
 //   returns waits when it is asked for (Pending); the others return at once.
 // - Memory comes from an arena that keeps all blocks until trim(), so that a frame like the one

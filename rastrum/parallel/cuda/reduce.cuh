@@ -46,6 +46,20 @@ template <class T>
   return view.data();
 }
 
+/// The elements converted to T, the first one behind `initial`: Thrust's inclusive scan takes no
+/// initial value before CUDA 12.8.
+template <class T, class View, class Op>
+struct ReadBehind {
+  View view;
+  T initial;
+  Op op;
+  RASTRUM_HD T operator()(std::size_t i) const {
+    if (i > 0) return static_cast<T>(view[i]);
+    Op plus = op;
+    return static_cast<T>(plus(initial, static_cast<T>(view[0])));
+  }
+};
+
 template <class T, class In, class Op>
 struct FoldBlock {
   In in;
@@ -127,12 +141,14 @@ Pending<T> scan(Cuda& exec, In in, Out out, T initial, Op op) {
     const auto before = fold_blocks(exec, in, initial, op, total.data());
     for_each_block(exec, n, ScanBlock<kInclusive, T, In, Out, Op>{in, out, view_of(before), op});
   } else {
-    const auto values = values_as<T>(in);
     if constexpr (kInclusive) {
+      const auto values = thrust::make_transform_iterator(thrust::counting_iterator<std::size_t>(0),
+                                                          ReadBehind<T, In, Op>{in, initial, op});
       thrust::inclusive_scan(exec.policy(), values, values + static_cast<std::ptrdiff_t>(n),
-                             std::data(out), initial, op);
+                             std::data(out), op);
       for_each_index(exec, 1, KeepLast<T, Out>{out, n, total.data()});
     } else {
+      const auto values = values_as<T>(in);
       for_each_index(exec, 1, KeepLast<T, In>{in, n, total.data()});
       thrust::exclusive_scan(exec.policy(), values, values + static_cast<std::ptrdiff_t>(n),
                              std::data(out), initial, op);
