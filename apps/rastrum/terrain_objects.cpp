@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/core/quaternion.hpp>
 #include <rastrum/io/io.hpp>
 #include <rastrum/scene/sprite.hpp>
 
@@ -69,13 +70,9 @@ TerrainObject parse_object(const char* option, const std::string& text, bool is_
 
 /// Scaled and turned about the origin, then moved.
 Mat4d placement(const Standing& s, double up) {
-  Mat4d m = Mat4d::identity();
-  const double sin = std::sin(s.turn_deg * kDegree) * s.scale;
-  const double cos = std::cos(s.turn_deg * kDegree) * s.scale;
-  m.m[0][0] = m.m[2][2] = cos;
-  m.m[0][2] = sin;
-  m.m[2][0] = -sin;
-  m.m[1][1] = s.scale;
+  Mat4d m = rotation(rotation_about({0, 1, 0}, s.turn_deg * kDegree));
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) m.m[i][j] *= s.scale;
   m.m[0][3] = s.x;
   m.m[1][3] = up;
   m.m[2][3] = s.y;

@@ -56,42 +56,14 @@ template <class First>
 template <class Exec>
 inline constexpr std::size_t kResultsPerChunk = kBlock;
 
-/// Where the results of each segment lie, and how they are cut into chunks. `First` is an array of
-/// numbers: a backend's buffer, or a view of one.
-template <class First>
-class BasicExpansion {
+/// How many results there are, and their cut into chunks of equal size.
+class ChunkCut {
  public:
-  /// Calls size(in[i]) → integer ≥ 0 once per segment. Requires per_chunk > 0.
-  template <class Exec, Readable In, class Size>
-  BasicExpansion(Exec& exec, const In& in, const Size& size,
-                 std::size_t per_chunk = kResultsPerChunk<Exec>)
-      : first_(make_buffer<std::size_t>(exec, std::size(in))), per_chunk_(per_chunk) {
+  ChunkCut(std::size_t size, std::size_t per_chunk) : size_(size), per_chunk_(per_chunk) {
     assert(per_chunk > 0);
-    transform(exec, in, first_, expand_detail::SizeOf<Size>{size});
-    size_ = exclusive_scan(exec, first_, first_, std::size_t{0});
   }
-  BasicExpansion(First first, std::size_t size, std::size_t per_chunk)
-      : first_(first), size_(size), per_chunk_(per_chunk) {}
-
-  /// What a kernel takes instead; must not outlive this.
-  [[nodiscard]] BasicExpansion<std::span<const std::size_t>> view() const {
-    return {std::span<const std::size_t>(first_.data(), first_.size()), size_, per_chunk_};
-  }
-
   /// Number of results.
   [[nodiscard]] RASTRUM_HD std::size_t size() const { return size_; }
-  [[nodiscard]] RASTRUM_HD std::size_t segments() const { return first_.size(); }
-  /// The result with which segment i begins: first(i) + j is made from its j.
-  [[nodiscard]] RASTRUM_HD std::size_t first(std::size_t i) const { return first_[i]; }
-  [[nodiscard]] RASTRUM_HD std::size_t segment_end(std::size_t i) const {
-    return i + 1 < first_.size() ? first_[i + 1] : size_;
-  }
-  /// The segment that makes `result`; requires result < size(). O(log n).
-  [[nodiscard]] RASTRUM_HD std::size_t segment_of(std::size_t result) const {
-    // Empty segments begin where the next one does: the last of them is meant.
-    return expand_detail::last_at_most(first_, result);
-  }
-
   [[nodiscard]] RASTRUM_HD std::size_t per_chunk() const { return per_chunk_; }
   [[nodiscard]] RASTRUM_HD std::size_t chunks() const {
     return (size_ + per_chunk_ - 1) / per_chunk_;
@@ -103,9 +75,47 @@ class BasicExpansion {
     return end < size_ ? end : size_;
   }
 
+ protected:
+  void set_size(std::size_t size) { size_ = size; }
+
+ private:
+  std::size_t size_, per_chunk_;
+};
+
+/// Where the results of each segment lie, and how they are cut into chunks. `First` is an array of
+/// numbers: a backend's buffer, or a view of one.
+template <class First>
+class BasicExpansion : public ChunkCut {
+ public:
+  /// Calls size(in[i]) → integer ≥ 0 once per segment. Requires per_chunk > 0.
+  template <class Exec, Readable In, class Size>
+  BasicExpansion(Exec& exec, const In& in, const Size& size,
+                 std::size_t per_chunk = kResultsPerChunk<Exec>)
+      : ChunkCut(0, per_chunk), first_(make_buffer<std::size_t>(exec, std::size(in))) {
+    transform(exec, in, first_, expand_detail::SizeOf<Size>{size});
+    set_size(exclusive_scan(exec, first_, first_, std::size_t{0}));
+  }
+  BasicExpansion(First first, const ChunkCut& cut) : ChunkCut(cut), first_(first) {}
+
+  /// What a kernel takes instead; must not outlive this.
+  [[nodiscard]] BasicExpansion<std::span<const std::size_t>> view() const {
+    return {std::span<const std::size_t>(first_.data(), first_.size()), *this};
+  }
+
+  [[nodiscard]] RASTRUM_HD std::size_t segments() const { return first_.size(); }
+  /// The result with which segment i begins: first(i) + j is made from its j.
+  [[nodiscard]] RASTRUM_HD std::size_t first(std::size_t i) const { return first_[i]; }
+  [[nodiscard]] RASTRUM_HD std::size_t segment_end(std::size_t i) const {
+    return i + 1 < first_.size() ? first_[i + 1] : size();
+  }
+  /// The segment that makes `result`; requires result < size(). O(log n).
+  [[nodiscard]] RASTRUM_HD std::size_t segment_of(std::size_t result) const {
+    // Empty segments begin where the next one does: the last of them is meant.
+    return expand_detail::last_at_most(first_, result);
+  }
+
  private:
   First first_;
-  std::size_t size_ = 0, per_chunk_;
 };
 using Expansion = BasicExpansion<Buffer<std::size_t>>;
 

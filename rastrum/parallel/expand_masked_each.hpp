@@ -67,26 +67,25 @@ inline constexpr std::size_t kElementsPerGroup = kBlock;
 /// Which elements of all segments hold, and how those are cut into chunks. `Masks` and `Numbers`
 /// are a backend's buffers, or views of them.
 template <int kBits, class Masks, class Numbers>
-class BasicMaskedExpansion {
+class BasicMaskedExpansion : public ChunkCut {
  public:
   /// Calls size and holds(in[i], j) once; both must be pure. Requires per_chunk > 0.
   template <class Exec, Readable In, class Size, class Holds>
   BasicMaskedExpansion(Exec& exec, const In& in, const Size& size, const Holds& holds,
                        std::size_t per_chunk = kResultsPerChunk<Exec>)
-      : cut_(exec, in, masked_detail::MasksFor<kBits, Size>{size},
+      : ChunkCut(0, per_chunk),
+        cut_(exec, in, masked_detail::MasksFor<kBits, Size>{size},
              (kElementsPerGroup<Exec> + kBits - 1) / kBits),
         masks_(make_buffer<Mask<kBits>>(exec, cut_.size())),
-        before_(make_buffer<std::size_t>(exec, cut_.chunks())),
-        per_chunk_(per_chunk) {
-    assert(per_chunk > 0);
+        before_(make_buffer<std::size_t>(exec, cut_.chunks())) {
     expand_chunks(exec, cut_, in,
                   masked_detail::FillMasks<kBits, Size, Holds>{size, holds, view_of(masks_),
                                                                view_of(before_)});
-    size_ = exclusive_scan(exec, before_, before_, std::size_t{0});
+    set_size(exclusive_scan(exec, before_, before_, std::size_t{0}));
   }
-  BasicMaskedExpansion(BasicExpansion<Numbers> cut, Masks masks, Numbers before, std::size_t size,
-                       std::size_t per_chunk)
-      : cut_(cut), masks_(masks), before_(before), size_(size), per_chunk_(per_chunk) {}
+  BasicMaskedExpansion(BasicExpansion<Numbers> masks_cut, Masks masks, Numbers before,
+                       const ChunkCut& cut)
+      : ChunkCut(cut), cut_(masks_cut), masks_(masks), before_(before) {}
 
   /// What a kernel takes instead; must not outlive this.
   [[nodiscard]] auto view() const {
@@ -94,22 +93,10 @@ class BasicMaskedExpansion {
     using NumberView = std::span<const std::size_t>;
     return BasicMaskedExpansion<kBits, MaskView, NumberView>(
         cut_.view(), MaskView(masks_.data(), masks_.size()),
-        NumberView(before_.data(), before_.size()), size_, per_chunk_);
+        NumberView(before_.data(), before_.size()), *this);
   }
 
-  /// Number of results: elements that hold.
-  [[nodiscard]] RASTRUM_HD std::size_t size() const { return size_; }
   [[nodiscard]] RASTRUM_HD std::size_t segments() const { return cut_.segments(); }
-  [[nodiscard]] RASTRUM_HD std::size_t per_chunk() const { return per_chunk_; }
-  [[nodiscard]] RASTRUM_HD std::size_t chunks() const {
-    return (size_ + per_chunk_ - 1) / per_chunk_;
-  }
-  /// Chunk c holds the results [chunk_begin(c), chunk_end(c)).
-  [[nodiscard]] RASTRUM_HD std::size_t chunk_begin(std::size_t c) const { return c * per_chunk_; }
-  [[nodiscard]] RASTRUM_HD std::size_t chunk_end(std::size_t c) const {
-    const std::size_t end = (c + 1) * per_chunk_;
-    return end < size_ ? end : size_;
-  }
 
   /// Calls f(in[i], j) for the results [begin, end) in order. O(log n + end − begin + kBlock / 8).
   template <class In, class F>
@@ -144,7 +131,6 @@ class BasicMaskedExpansion {
   BasicExpansion<Numbers> cut_;  ///< of segments into masks; its chunks are the groups
   Masks masks_;
   Numbers before_;  ///< results before each group
-  std::size_t size_ = 0, per_chunk_;
 };
 template <int kBits>
 using MaskedExpansion = BasicMaskedExpansion<kBits, Buffer<Mask<kBits>>, Buffer<std::size_t>>;

@@ -1,26 +1,13 @@
 #include <rastrum/render/scene_on_terrain.hpp>
 
-#include <cmath>
 #include <string>
 #include <utility>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/core/quaternion.hpp>
 #include <rastrum/terrain/matrix.hpp>
 
 namespace rastrum {
-namespace {
-
-/// About +y, as the terrain's camera turns: 0 faces +z, the south.
-Mat4d turn(double angle_rad) {
-  Mat4d m = Mat4d::identity();
-  const double s = std::sin(angle_rad), c = std::cos(angle_rad);
-  m.m[0][0] = m.m[2][2] = c;
-  m.m[0][2] = s;
-  m.m[2][0] = -s;
-  return m;
-}
-
-}  // namespace
 
 SceneOnTerrain::SceneOnTerrain(RenderOptions options)
     : renderer_(std::move(options)), depth_(renderer_.options().width, renderer_.options().height) {
@@ -56,7 +43,9 @@ FrameStats SceneOnTerrain::draw(const TerrainScene& given, const terrain::Terrai
       throw Error(Errc::invalid_argument, std::string("no instance has the number ")
                                               .append(std::to_string(i))
                                               .append(" that is to face the camera"));
-    instances_[i].object_to_world = instances_[i].object_to_world * turn(camera.angle_rad);
+    // As the terrain's camera turns: 0 faces +z, the south.
+    instances_[i].object_to_world =
+        instances_[i].object_to_world * rotation(rotation_about({0, 1, 0}, camera.angle_rad));
   }
   SceneView scene = given.scene;
   scene.instances = instances_;
