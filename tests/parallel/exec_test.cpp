@@ -4,6 +4,7 @@
 #include <numeric>
 #include <stdexcept>
 #include <stop_token>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/stop.hpp>
 
+#include "tests/support/environment.hpp"
 #include "tests/support/stop_trigger.hpp"
 
 namespace rastrum::parallel {
@@ -90,15 +92,25 @@ TEST_P(ThreadCounts, AStoppedLoopLeavesOutWhatHasNotBegun) {
   expect_each_index_once(exec, n);
 }
 
+// Asked by a worker where there is one: the caller has the token in force anyway.
 TEST_P(ThreadCounts, BodiesAndTheirLoopsSeeTheStop) {
+  const test::ThreadsBeyondCores eight(8);
   Threads exec(GetParam());
   std::stop_source source;
   const std::stop_token token = source.get_token();
   const StopScope scope(token);
+  const std::thread::id caller = std::this_thread::get_id();
+  std::atomic<bool> asked = false;
   std::atomic<int> inner = 0;
   EXPECT_THROW(for_each_index(exec, 30,
                               [&](std::size_t) {
-                                source.request_stop();
+                                if (GetParam() > 1 && std::this_thread::get_id() == caller) {
+                                  asked.wait(false);
+                                } else {
+                                  source.request_stop();
+                                  asked = true;
+                                  asked.notify_all();
+                                }
                                 EXPECT_TRUE(stop_requested());
                                 for_each_index(exec, 30, [&](std::size_t) { ++inner; });
                               }),

@@ -1,16 +1,22 @@
 // The classic picture against a transcription of the original program's rules (FACTS, "Voxel
 // Space") that shares no code with the library: integer maps, its own tiling, one pixel at a time.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <random>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include <rastrum/io/height_map.hpp>
+#include <rastrum/parallel/stop.hpp>
+#include <rastrum/terrain/blocks.hpp>
+#include <rastrum/terrain/ceiling.hpp>
 #include <rastrum/terrain/renderer.hpp>
 
 #include "tests/support/environment.hpp"
@@ -184,6 +190,39 @@ TEST(Classic, EqualsTheOriginalOnLargePictures) {
       expect_original(map, {.angle_rad = 2.1}, classic(1920, 1080, distance), false);
     }
   }
+}
+
+// Asked where a block has begun, its memory taken and no slice sampled: nothing but sky is drawn.
+TEST(Classic, ABlockEndsSoonWhenStopped) {
+  std::mt19937 random(6);
+  const Terrain terrain(test::random_map(64, 64, random));
+  const TerrainOptions options = classic(200, 100, 300);
+  const TerrainCamera camera{.altitude = 150, .horizon_px = 20};
+  MemoryAccount memory;
+  parallel::Threads exec(2, &memory);
+  const Ceiling ceiling(terrain.heights());
+  const auto draw = [&](const std::function<void()>& begun) {
+    BlockPool pool(memory);
+    pool.marks = parallel::ScratchPool<BlockMarks>([&] {
+      begun();
+      return BlockMarks(memory);
+    });
+    Image<Rgba8> colors(options.width, options.height);
+    std::ranges::fill(colors.pixels(), options.sky);
+    try {
+      draw_classic(exec, available_isas().back(), pool, terrain, ceiling, options, camera,
+                   {.color8 = colors.view()});
+    } catch (const parallel::Stopped&) {
+    }
+    return std::ranges::count(colors.pixels(), options.sky);
+  };
+  const std::ptrdiff_t all = options.width * options.height;
+  EXPECT_LT(draw([] {}), all / 2);
+  std::stop_source source;
+  const std::stop_token token = source.get_token();
+  const parallel::StopScope scope(token);
+  EXPECT_EQ(draw([&] { source.request_stop(); }), all);
+  EXPECT_TRUE(source.stop_requested()) << "else no block has begun";
 }
 
 }  // namespace

@@ -134,6 +134,7 @@ TEST(Methods, EndSoonWhenStopped) {
     Method method;
     Device device;
     std::int64_t most;
+    bool classic = false;
   };
   constexpr std::int64_t kColumns = 64, kSlices = 8;  // of a look at the token, see fast.cpp
   const std::int64_t slices = [&] {
@@ -141,11 +142,14 @@ TEST(Methods, EndSoonWhenStopped) {
     return static_cast<std::int64_t>(
         TerrainRenderer(options).render(hills, camera, {.color8 = colors.view()}).slices);
   }();
-  for (const Case& c : {Case{Method::fast, Device::threads, 2 * kColumns * kSlices},
-                        Case{Method::words, Device::threads, 2 * 4096},
-                        Case{Method::fast, Device::serial, slices}}) {
+  for (const Case& c :
+       {Case{Method::fast, Device::threads, 2 * kColumns * kSlices},
+        Case{Method::words, Device::threads, 2 * 4096}, Case{Method::fast, Device::serial, slices},
+        // Of a function it is drawn slice by slice.
+        Case{Method::fast, Device::serial, options.width, true}}) {
     SCOPED_TRACE(std::to_string(static_cast<int>(c.method)) + ", device " +
-                 std::to_string(static_cast<int>(c.device)));
+                 std::to_string(static_cast<int>(c.device)) + (c.classic ? ", classic" : ""));
+    options.classic = c.classic;
     options.method = c.method;
     options.device = c.device;
     const Picture expected(hills, camera, options);
