@@ -10,55 +10,97 @@ namespace {
 /// what float64 rounds, and above the crossings that do not count (10⁻⁹ of 65,536 cells).
 constexpr double kMargin = 1e-4;
 
-/// Where y = f + s·x is in row r: x from `enter` to `leave`, without regard to columns.
-struct Crossing {
-  double enter, leave;
-};
-Crossing cross(double f, double s, int r) {
-  const double a = (r - f) / s, b = (r + 1 - f) / s;
-  return {std::min(a, b), std::max(a, b)};
+/// Units that two heights, each half a unit and less than a tenth off, and a ray's begin, rounded
+/// down, may be off together: below the begin's sum, and above it.
+constexpr int kBelow = 3, kAbove = 1;
+
+std::int64_t floor_of(double v) {
+  return static_cast<std::int64_t>(std::floor(v));
 }
 
-SweepColumn plan_column(int column, double s, double tau) {
-  SweepColumn c;
+/// The rays of a plan.
+struct Rays {
+  double s, tau;   ///< rows, units a column
+  double columns;  ///< a row, with the sign of s
+  bool alike;      ///< along an axis or a diagonal
+};
+
+SweepColumn plan_column(int column, const Rays& rays) {
   const double x = column;
-  const double phi = 0.5 - s * (x + 0.5);
+  const double phi = 0.5 - rays.s * (x + 0.5);
   const double band = std::floor(phi);
+  SweepColumn c;
   c.begin_row = static_cast<std::int32_t>(-band);
   c.part = std::min(static_cast<std::int32_t>((phi - band) * kSubBands), kSubBands - 1);
-  c.begin = static_cast<float>((x + 0.5) * tau);
-  c.row = static_cast<std::int32_t>(std::floor(s * x + std::min(s, 0.0) - kMargin));
-  // Along an axis or a diagonal every ray runs in the same cells: from side to side of a row's
-  // middle, or from corner to corner. Nothing is left between the bounds.
-  if (s == 0 || std::abs(s) == 1) {
-    const auto part = static_cast<std::size_t>(c.part);
-    const std::int32_t row = s == 0 ? 0 : s > 0 ? column : -column - 1;
-    c.row = row;
-    c.count[part] = 1;
-    c.entries[part][0] = {0, static_cast<float>(x * tau), static_cast<float>(x * tau)};
-    return c;
+  c.begin = floor_of((x + 0.5) * rays.tau);
+  return c;
+}
+
+/// Adds the cells of column x that rays of a part enter, row by row.
+template <class Add>
+void each_entry(int column, int part, const Rays& rays, const Add& add) {
+  const double x = column, s = rays.s;
+  const double low = static_cast<double>(part) / kSubBands - kMargin;
+  const double high = static_cast<double>(part + 1) / kSubBands + kMargin;
+  const auto row = static_cast<std::int32_t>(std::floor(s * x + std::min(s, 0.0) - kMargin));
+  // The lines that enter and leave a row first, and last; y = f + s·x is in row r from
+  // (r + in − f)/s to (r + out − f)/s.
+  const double early = s > 0 ? high : low, late = s > 0 ? low : high;
+  const int in = s > 0 ? 0 : 1, out = 1 - in;
+  for (int i = 0; i < 4; ++i) {
+    const double r = row + i;
+    const double first = std::max((r + in - early) * rays.columns, x);
+    const double last = std::max((r + in - late) * rays.columns, x);
+    const double first_out = std::min((r + out - early) * rays.columns, x + 1);
+    const double last_out = std::min((r + out - late) * rays.columns, x + 1);
+    if (!(first <= x + 1 + kMargin && last_out >= x - kMargin)) continue;
+    const bool all = last + kMargin < x + 1 && first_out > x + kMargin;
+    add(row + i, floor_of(std::max(first - kMargin, x) * rays.tau), all,
+        floor_of((last + (last > x ? kMargin : 0)) * rays.tau) + 1);
   }
-  for (int part = 0; part < kSubBands; ++part) {
-    const double low = static_cast<double>(part) / kSubBands - kMargin;
-    const double high = static_cast<double>(part + 1) / kSubBands + kMargin;
-    auto& count = c.count[static_cast<std::size_t>(part)];
-    for (int i = 0; i < 4; ++i) {
-      const Crossing p = cross(low, s, c.row + i), q = cross(high, s, c.row + i);
-      // Lines of the part enter the row between these, and leave it between those.
-      const double first = std::max(std::min(p.enter, q.enter), x);
-      const double last = std::max(std::max(p.enter, q.enter), x);
-      const double first_out = std::min(std::min(p.leave, q.leave), x + 1);
-      const double last_out = std::min(std::max(p.leave, q.leave), x + 1);
-      const bool any = first <= x + 1 + kMargin && last_out >= x - kMargin;
-      const bool all = last + kMargin < x + 1 && first_out > x + kMargin;
-      if (!any) continue;
-      c.entries[static_cast<std::size_t>(part)][static_cast<std::size_t>(count++)] = {
-          i, static_cast<float>(std::max(first - kMargin, x) * tau),
-          all ? static_cast<float>((last + (last > x ? kMargin : 0)) * tau)
-              : std::numeric_limits<float>::infinity()};
+}
+
+/// Adds what a block does with part p of the bands.
+void plan_part(Sweep& p, SweepBlock& block, int x0, int part, const Rays& rays) {
+  using Kind = SweepStep::Kind;
+  const auto add = [&](Kind kind, int c, std::int32_t row, std::int64_t upper, std::int64_t lower) {
+    block.low = std::min(block.low, row);
+    p.steps.push_back({kind, static_cast<std::uint8_t>(c), row,
+                       static_cast<std::int16_t>(upper - block.frame),
+                       static_cast<std::int16_t>(lower - block.frame)});
+  };
+  for (int c = kSweepBlock - 1; c >= 0; --c) {
+    const int x = x0 + c;
+    const SweepColumn& column = p.column[static_cast<std::size_t>(x)];
+    if (x < p.columns && column.part == part)
+      add(Kind::cells_begin, c, column.begin_row, column.begin + kBelow, column.begin - kAbove);
+    if (!rays.alike) {
+      each_entry(x, part, rays,
+                 [&](std::int32_t row, std::int64_t upper, bool all, std::int64_t lower) {
+                   add(all ? Kind::all_enter : Kind::may_enter, c, row, upper, all ? lower : upper);
+                 });
+    } else if (column.part == part) {
+      // Every ray runs in the same cells: from side to side of a row's middle, or from corner to
+      // corner.
+      const std::int32_t row = rays.s == 0 ? 0 : rays.s > 0 ? x : -x - 1;
+      const double at = x * rays.tau;
+      add(Kind::all_enter, c, row, floor_of(at), static_cast<std::int64_t>(std::ceil(at)));
     }
   }
-  return c;
+}
+
+/// The finest units whose sums fit 16 bits: heights and what is taken off them on a block and the
+/// half column before a ray's begin; and what a ray climbs on two blocks. `tau`: cells a column.
+SweepUnits units_of(const ShadowCaster& map, double tau) {
+  const double relief = map.relief();
+  const double units = std::min(65500 / (1 + (kSweepBlock + 0.5) * tau / relief),
+                                32700 / ((2 * kSweepBlock + 1) * tau / relief));
+  SweepUnits u;
+  u.lowest = map.lowest;
+  u.scale = static_cast<float>(units / relief);
+  const double most = (kSweepBlock + 0.5) * tau * static_cast<double>(u.scale) + 8;
+  u.zero = static_cast<std::int16_t>(SweepUnits::least + static_cast<int>(most));
+  return u;
 }
 
 }  // namespace
@@ -71,19 +113,37 @@ Sweep plan_sweep(const ShadowCaster& map, const SunRay& ray, std::vector<RayStep
   p.flipped = along < 0;
   p.columns = p.along_x ? map.heights.width : map.heights.height;
   p.rows = p.along_x ? map.heights.height : map.heights.width;
-  const double s = across / std::abs(along), tau = ray.rise / std::abs(along);
+  p.units = units_of(map, ray.rise / std::abs(along));
+  const auto scale = static_cast<double>(p.units.scale);
+  const double s = across / std::abs(along);
+  const Rays rays{s, ray.rise / std::abs(along) * scale, 1 / s, s == 0 || std::abs(s) == 1};
   int reach = 0;
-  for (std::size_t k = 0; k < steps.size(); ++k)
-    for (const int ahead = std::abs(p.along_x ? steps[k].dx : steps[k].dy); reach <= ahead; ++reach)
-      p.first_step.push_back(static_cast<std::uint32_t>(k));
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const int ahead = std::abs(p.along_x ? steps[k].dx : steps[k].dy);
+    for (; reach <= ahead; ++reach) p.first_step.push_back(static_cast<std::uint32_t>(k));
+    if (ahead < 2 * kSweepBlock)
+      p.near.push_back({ahead, p.along_x ? steps[k].dy : steps[k].dx,
+                        static_cast<std::int32_t>(steps[k].climb * scale)});
+  }
   p.first_step.push_back(static_cast<std::uint32_t>(steps.size()));
-  for (const RayStep& step : steps)
-    p.along.push_back({std::abs(p.along_x ? step.dx : step.dy), p.along_x ? step.dy : step.dx,
-                       static_cast<float>(step.climb)});
-  p.steps = std::move(steps);
-  const int all = p.columns + reach;
-  p.column.reserve(static_cast<std::size_t>(all));
-  for (int x = 0; x < all; ++x) p.column.push_back(plan_column(x, s, tau));
+  p.ray = std::move(steps);
+
+  const int blocks = (p.columns + reach + kSweepBlock - 1) / kSweepBlock;
+  p.column.reserve(static_cast<std::size_t>(blocks) * kSweepBlock);
+  for (int x = 0; x < blocks * kSweepBlock; ++x) p.column.push_back(plan_column(x, rays));
+  p.blocks.resize(static_cast<std::size_t>(blocks));
+  p.steps.reserve(p.column.size() * 2 * kSubBands + p.column.size());
+  for (int b = 0; b < blocks; ++b) {
+    SweepBlock& block = p.blocks[static_cast<std::size_t>(b)];
+    const int x0 = b * kSweepBlock;
+    block.frame = floor_of(x0 * rays.tau);
+    block.low = p.column[static_cast<std::size_t>(x0)].begin_row;
+    for (int part = 0; part < kSubBands; ++part) {
+      block.first[static_cast<std::size_t>(part)] = static_cast<std::uint32_t>(p.steps.size());
+      plan_part(p, block, x0, part, rays);
+    }
+    block.first[kSubBands] = static_cast<std::uint32_t>(p.steps.size());
+  }
   p.cyclic = map.tiling == Tiling::repeat;
   if (p.cyclic) {
     p.bands = p.rows;
@@ -93,9 +153,6 @@ Sweep plan_sweep(const ShadowCaster& map, const SunRay& ray, std::vector<RayStep
     p.first_band = std::min(a, b);
     p.bands = p.rows + std::abs(a - b);
   }
-  const double largest = std::max(std::abs(static_cast<double>(map.highest)),
-                                  std::abs(static_cast<double>(map.lowest)));
-  p.slack = static_cast<float>((largest + (all + 1) * tau) * 0x1p-21);
   return p;
 }
 

@@ -13,15 +13,23 @@
 // however far a shadow reaches. What lies between them, the edges of shadows, is decided by the
 // traversal that defines the shadow; so the result is exact, whatever the sweep rounds to.
 //
-// On axes and diagonals, rays of all cells run alike and nothing lies between the bounds; elsewhere
-// 5 to 10 % of the cells of real maps do. Most of these are decided in vectors by the next columns,
-// and the rest skips blocks of columns by their upper bounds, a pyramid of one level along the ray.
-// (A maximum pyramid over the map and a ray for each cell would cost 20 to 40 nodes a cell, which
-// is no less than the march of 256 samples in vectors.)
+// The sweep computes in whole units of a part of the relief, in 16 bits. A unit is not too coarse
+// for any sun: the longest shadow of 65,536 cells lets rays climb at least about one a column, so
+// what rounding leaves open is decided a few cells further. Columns come in blocks, and within a
+// block all is relative to its begin, its frame: a height h that is met at X_e counts as
+// h − (X_e − X of the block)·tau, and no sum leaves 16 bits; from a block to the next the bounds
+// lose what a ray climbs on it, down to a value that nothing is below.
+//
+// On axes and diagonals, rays of all cells run alike and nothing but rounding lies between the
+// bounds; elsewhere 5 to 10 % of the cells of real maps do. Most of these are decided in vectors by
+// the next columns, and the rest skips blocks of columns by their upper bounds, a pyramid of one
+// level along the ray. (A maximum pyramid over the map and a ray for each cell would cost 20 to 40
+// nodes a cell, which is no less than the march of 256 samples in vectors.)
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <rastrum/terrain/shadow_ray.hpp>
@@ -32,42 +40,65 @@ inline constexpr int kSubBands = 2;
 /// Columns a block: its cells are copied, turned and tiled, before they are swept.
 inline constexpr int kSweepBlock = 16;
 
-/// One cell that rays of a part of a band may enter in a column.
-struct SweepEntry {
-  std::int32_t row = 0;  ///< from SweepColumn::row
-  float upper = 0;       ///< X_e·tau at the earliest; +inf never
-  float lower = 0;       ///< at the latest; +inf where a ray may miss it
+/// Heights as the sweep sees them: h is round((h − lowest) · scale) + zero, at most half a unit and
+/// a few hundredths, which float32 rounds, away from it. Holes are as high as the lowest height,
+/// which never surely hides the sun from another.
+struct SweepUnits {
+  static constexpr std::int16_t least = std::numeric_limits<std::int16_t>::min();
+  float lowest = 0, scale = 0;
+  std::int16_t zero = 0;  ///< of the lowest height: nothing subtracted in a block overflows
 };
 
-/// What lines meet in a column, for all bands alike.
+/// What is done with a cell of a column for all bands alike.
+struct SweepStep {
+  enum class Kind : std::uint8_t {
+    may_enter,   ///< rays of the part may enter it: raises the upper bound
+    all_enter,   ///< all do: raises both
+    cells_begin  ///< the column's own cells, whose rays lie in this part: they are judged
+  };
+  Kind kind;
+  std::uint8_t column;  ///< of the block
+  std::int32_t row;     ///< of band 0's cell, from the first band's number
+  /// What to take off the cell's height: where it is entered, for the upper bound and the lower;
+  /// where a ray begins, for a sum that upper bounds must exceed to hide the sun perhaps, and one
+  /// that lower bounds must exceed to hide it surely.
+  std::int16_t upper, lower;
+};
+
 struct SweepColumn {
-  std::int32_t row = 0;        ///< band 0's entries lie in rows [row, row + 4)
   std::int32_t begin_row = 0;  ///< the cell whose ray is in band 0 lies in this row
   std::int32_t part = 0;       ///< of the band, in which rays of this column's cells lie
-  float begin = 0;             ///< (X + 1/2)·tau
-  std::array<std::int32_t, kSubBands> count{};
-  std::array<std::array<SweepEntry, 4>, kSubBands> entries{};
+  std::int64_t begin = 0;      ///< (X + 1/2)·tau in units, rounded down
+};
+
+struct SweepBlock {
+  std::int64_t frame = 0;  ///< X·tau of its first column in units, rounded down
+  std::int32_t low = 0;    ///< the least of all rows below
+  /// Part p's are [first[p], first[p + 1]) of Sweep::steps, the farthest column's first.
+  std::array<std::uint32_t, kSubBands + 1> first{};
 };
 
 /// A RayStep as the sweep sees it.
-struct SweepStep {
+struct SweepRayStep {
   std::int32_t ahead = 0, across = 0;  ///< columns, rows
-  float climb = 0;
+  std::int32_t climb = 0;              ///< in units, rounded down
 };
 
 struct Sweep {
   ShadowCaster map;
-  std::vector<RayStep> steps;
-  std::vector<SweepStep> along;           ///< the same
-  std::vector<std::uint32_t> first_step;  ///< that lies this many columns ahead
+  SweepUnits units;
+  std::vector<RayStep> ray;
+  std::vector<SweepRayStep> near;         ///< the same, on two blocks
+  std::vector<std::uint32_t> first_step;  ///< of the ray, that lies this many columns ahead
   bool along_x = true;                    ///< X runs along the map's x; else along its y
   bool flipped = false;                   ///< against it
   int columns = 0;                        ///< of the map along X
   int rows = 0;                           ///< across
   int first_band = 0, bands = 0;
-  bool cyclic = false;              ///< rows repeat, and band b is band b + rows
-  float slack = 0;                  ///< bounds are widened by what float32 may round
-  std::vector<SweepColumn> column;  ///< the map's, then those beyond that cast shadows on it
+  bool cyclic = false;  ///< rows repeat, and band b is band b + rows
+  std::vector<SweepStep> steps;
+  std::vector<SweepBlock> blocks;  ///< the map's, then those beyond that cast shadows on it
+  std::vector<SweepColumn> column;
 
   /// The first step at least `ahead` columns from where the ray begins.
   [[nodiscard]] std::size_t step_at(int ahead) const {
@@ -76,7 +107,13 @@ struct Sweep {
   }
 };
 
-/// Requires steps (those of `ray`) and a map with finite heights.
+/// Whether float32 has units for a map; there is none of so large or small a relief that it has
+/// not, but in tests.
+[[nodiscard]] inline bool can_sweep(const ShadowCaster& map) {
+  return map.relief() > 0x1p-90 && map.relief() < 0x1p90;
+}
+
+/// Requires steps (those of `ray`) and a map that can be swept.
 [[nodiscard]] Sweep plan_sweep(const ShadowCaster& map, const SunRay& ray,
                                std::vector<RayStep> steps);
 

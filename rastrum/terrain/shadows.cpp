@@ -168,7 +168,7 @@ Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun
   std::vector<RayStep> steps = ray_steps(ray, map.relief());
   if (steps.empty() || !(map.relief() > 0)) return shadow;
   on_device(options, [&](auto& exec) {
-    if (kernels.sweep == nullptr) {
+    if (kernels.sweep == nullptr || !can_sweep(map)) {
       parallel::for_each_index(exec, static_cast<std::size_t>(heights.height),
                                [&](std::size_t row) {
                                  const int y = static_cast<int>(row);

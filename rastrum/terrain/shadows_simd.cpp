@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -123,93 +124,186 @@ void march_row(const ShadowCaster& map, const std::vector<MarchSample>& samples,
 
 // --- The sweep ----------------------------------------------------------------------------------
 
-/// A block of columns, turned so that the rows of a column lie side by side.
+using I16 = hn::CappedTag<std::int16_t, 32>;
+using V = hn::Vec<I16>;
+using U8 = hn::Rebind<std::uint8_t, I16>;
+constexpr std::size_t kBands = hn::MaxLanes(I16{});
+/// Bands whose bounds are in registers together.
+constexpr std::size_t kGroupBands = 4 * kBands;
+constexpr std::int16_t kLeast = SweepUnits::least;
+
+/// Heights as units, 8 at a time.
+class Quantizer {
+ public:
+  using D = hn::Full128<std::int16_t>;
+  static constexpr std::int64_t kCells = 8;
+
+  explicit Quantizer(const SweepUnits& units)
+      : lowest_(hn::Set(F8{}, units.lowest)),
+        scale_(hn::Set(F8{}, units.scale)),
+        zero_(hn::Set(F8{}, static_cast<float>(units.zero))) {}
+
+  [[nodiscard]] HWY_INLINE hn::Vec<D> operator()(const float* from) const { return of(F8{}, from); }
+
+ private:
+  using F8 = hn::CappedTag<float, kCells>;
+  static_assert(hn::MaxLanes(F8{}) >= kCells / 2);
+  template <class DF>
+  [[nodiscard]] HWY_INLINE hn::Vec<D> of(DF df, const float* from) const {
+    const hn::Rebind<std::int16_t, DF> d;
+    if constexpr (hn::MaxLanes(df) == kCells)
+      return hn::DemoteTo(d, units(df, from));
+    else
+      return hn::Combine(D{}, hn::DemoteTo(d, units(df, from + kCells / 2)),
+                         hn::DemoteTo(d, units(df, from)));
+  }
+  template <class DF>
+  [[nodiscard]] HWY_INLINE auto units(DF df, const float* from) const {
+    const auto above = hn::Sub(hn::LoadU(df, from), lowest_);
+    return hn::NearestInt(hn::Max(hn::MulAdd(above, scale_, zero_), zero_));
+  }
+  hn::Vec<F8> lowest_, scale_, zero_;
+};
+
+/// A block of columns in units, turned so that the rows of a column lie side by side.
 class Block {
  public:
   Block(const Sweep& sweep, int bands)
       : sweep_(sweep),
         // |s| ≤ 1: over a block rows shift by its width, and a column's lie within 4.
-        stride_((static_cast<std::size_t>(bands) + kSweepBlock + 8 + 2 * kLanes) / kLanes * kLanes),
+        rows_(bands + kSweepBlock + 8),
+        stride_((static_cast<std::size_t>(rows_ + Quantizer::kCells) + kBands) / kBands * kBands),
         cells_(stride_ * kSweepBlock) {}
 
   [[nodiscard]] std::size_t stride() const { return stride_; }
-  /// The row of band 0's first cell.
-  [[nodiscard]] int low() const { return low_; }
-  [[nodiscard]] const float* column(int c) const {
-    return cells_.data() + static_cast<std::size_t>(c) * stride_;
+  /// Column c's cell in `row` of the sweep's, for the first band.
+  [[nodiscard]] const std::int16_t* cell(int c, std::int64_t row) const {
+    return cells_.data() + static_cast<std::size_t>(c) * stride_ + (row - low_);
   }
-  /// Columns x0 …, `n` of them; row `low` of band 0, which is the map's `first_band`, and on.
-  void load(int x0, int n, int first_band, int low) {
+  /// Columns x0 … from row `low` of the band `first_band` on.
+  void load(int x0, int first_band, int low) {
     low_ = low;
     const std::int64_t row0 = std::int64_t{first_band} + low;
     const ShadowCaster& map = sweep_.map;
     std::int64_t source[kSweepBlock];
-    bool up = n == kSweepBlock, down = up;
-    for (int c = 0; c < n; ++c) {
+    bool up = true, down = true;
+    for (int c = 0; c < kSweepBlock; ++c) {
       const std::int64_t x = sweep_.flipped ? std::int64_t{sweep_.columns} - 1 - (x0 + c) : x0 + c;
       source[c] = tiled(x, sweep_.columns, map.tiling);
       up = up && source[c] == source[0] + c;
       down = down && source[c] == source[0] - c;
     }
-    for_each_run(
-        row0, static_cast<std::int64_t>(stride_), sweep_.rows, map.tiling,
-        [&](std::int64_t i, std::int64_t from, std::int64_t length, std::int64_t step) HWY_ATTR {
-          if (!sweep_.along_x) {
-            for (int c = 0; c < n; ++c)
-              copy_run(map.heights.row(static_cast<int>(source[c])) + from, length, step, at(c, i));
-          } else if (up || down) {
-            turn(std::min(source[0], source[kSweepBlock - 1]), down, i, from, length, step);
-          } else {
-            turn_by_cells(source, n, i, from, length, step);
-          }
-        });
+    const Quantizer quantize(sweep_.units);
+    for_each_run(row0, rows_, sweep_.rows, map.tiling,
+                 [&](std::int64_t i, std::int64_t from, std::int64_t length, std::int64_t step)
+                     HWY_ATTR {
+                       if (!sweep_.along_x) {
+                         for (int c = 0; c < kSweepBlock; ++c)
+                           take(quantize, map.heights.row(static_cast<int>(source[c])) + from,
+                                length, step, at(c, i));
+                       } else {
+                         for (std::int64_t k = 0; k < length; k += Quantizer::kCells)
+                           turn(quantize, source, up, down, i + k, from + k * step, step,
+                                std::min(Quantizer::kCells, length - k));
+                       }
+                     });
   }
 
  private:
-  [[nodiscard]] float* at(int c, std::int64_t i) {
+  [[nodiscard]] std::int16_t* at(int c, std::int64_t i) {
     return cells_.data() + static_cast<std::size_t>(c) * stride_ + i;
   }
-  void turn_by_cells(const std::int64_t* source, int n, std::int64_t i, std::int64_t from,
-                     std::int64_t length, std::int64_t step) {
-    for (std::int64_t k = 0; k < length; ++k) {
-      const float* const row = sweep_.map.heights.row(static_cast<int>(from + k * step));
-      for (int c = 0; c < n; ++c) *at(c, i + k) = row[source[c]];
+  /// Whole vectors are stored: what is beyond the end is overwritten by the next run, or never
+  /// read.
+  static HWY_INLINE void take(const Quantizer& quantize, const float* from, std::int64_t n,
+                              std::int64_t step, std::int16_t* to) {
+    std::int64_t k = 0;
+    if (step == 1)
+      for (; k + Quantizer::kCells <= n; k += Quantizer::kCells)
+        hn::StoreU(quantize(from + k), Quantizer::D{}, to + k);
+    for (; k < n; k += Quantizer::kCells) {
+      float beside[Quantizer::kCells] = {};
+      copy_run(from + k * step, std::min(Quantizer::kCells, n - k), step, beside);
+      hn::StoreU(quantize(beside), Quantizer::D{}, to + k);
     }
   }
-  /// 4 rows and 4 columns at a time.
-  HWY_INLINE void turn(std::int64_t left, bool reversed, std::int64_t i, std::int64_t from,
-                       std::int64_t length, std::int64_t step) {
-    const hn::Full128<float> d;
-    const auto& heights = sweep_.map.heights;
-    std::int64_t k = 0;
-    for (; k + 4 <= length; k += 4) {
-      const float* rows[4];
-      for (int r = 0; r < 4; ++r)
-        rows[r] = heights.row(static_cast<int>(from + (k + r) * step)) + left;
-      for (int q = 0; q < kSweepBlock; q += 4) {
-        const auto r0 = hn::LoadU(d, rows[0] + q), r1 = hn::LoadU(d, rows[1] + q);
-        const auto r2 = hn::LoadU(d, rows[2] + q), r3 = hn::LoadU(d, rows[3] + q);
-        const auto a = hn::InterleaveLower(d, r0, r1), b = hn::InterleaveLower(d, r2, r3);
-        const auto e = hn::InterleaveUpper(d, r0, r1), f = hn::InterleaveUpper(d, r2, r3);
-        const auto to = [&](int c) HWY_ATTR {
-          return at(reversed ? kSweepBlock - 1 - (q + c) : q + c, i + k);
-        };
-        hn::StoreU(hn::ConcatLowerLower(d, b, a), d, to(0));
-        hn::StoreU(hn::ConcatUpperUpper(d, b, a), d, to(1));
-        hn::StoreU(hn::ConcatLowerLower(d, f, e), d, to(2));
-        hn::StoreU(hn::ConcatUpperUpper(d, f, e), d, to(3));
-      }
+  /// 8 rows of the map, `length` of which count.
+  HWY_INLINE void turn(const Quantizer& quantize, const std::int64_t* source, bool up, bool down,
+                       std::int64_t i, std::int64_t from, std::int64_t step, std::int64_t length) {
+    const Quantizer::D d;
+    float beside[8][kSweepBlock];
+    const float* rows[8];
+    for (std::int64_t r = 0; r < 8; ++r) {
+      const float* const row =
+          sweep_.map.heights.row(static_cast<int>(from + std::min(r, length - 1) * step));
+      rows[r] = row + std::min(source[0], source[kSweepBlock - 1]);
+      if (up || down) continue;
+      for (int c = 0; c < kSweepBlock; ++c) beside[r][c] = row[source[c]];
+      rows[r] = beside[r];
     }
-    for (; k < length; ++k) {
-      const float* const row = heights.row(static_cast<int>(from + k * step)) + left;
-      for (int c = 0; c < kSweepBlock; ++c) *at(reversed ? kSweepBlock - 1 - c : c, i + k) = row[c];
+    for (int half = 0; half < kSweepBlock; half += 8) {
+      hn::Vec<Quantizer::D> a[8], b[8];
+      for (int r = 0; r < 8; ++r) a[r] = quantize(rows[r] + half);
+      for (int round = 0; round < 3; ++round) {
+        for (int r = 0; r < 4; ++r) {
+          b[2 * r] = hn::InterleaveLower(d, a[r], a[r + 4]);
+          b[2 * r + 1] = hn::InterleaveUpper(d, a[r], a[r + 4]);
+        }
+        for (int r = 0; r < 8; ++r) a[r] = b[r];
+      }
+      for (int c = 0; c < 8; ++c)
+        hn::StoreU(a[c], d, at(down ? kSweepBlock - 1 - (half + c) : half + c, i));
     }
   }
 
   const Sweep& sweep_;
   int low_ = 0;
+  std::int64_t rows_;
   std::size_t stride_;
-  std::vector<float> cells_;
+  std::vector<std::int16_t> cells_;
+};
+
+/// One of the bounds of a group of bands.
+struct Bound {
+  V v0, v1, v2, v3;
+
+  static HWY_INLINE Bound load(const std::int16_t* from) {
+    const I16 d;
+    return {hn::LoadU(d, from), hn::LoadU(d, from + kBands), hn::LoadU(d, from + 2 * kBands),
+            hn::LoadU(d, from + 3 * kBands)};
+  }
+  static HWY_INLINE Bound set(std::int16_t value) {
+    const V v = hn::Set(I16{}, value);
+    return {v, v, v, v};
+  }
+  HWY_INLINE void store(std::int16_t* to) const {
+    const I16 d;
+    hn::StoreU(v0, d, to);
+    hn::StoreU(v1, d, to + kBands);
+    hn::StoreU(v2, d, to + 2 * kBands);
+    hn::StoreU(v3, d, to + 3 * kBands);
+  }
+  HWY_INLINE void raise(const Bound& cells, std::int16_t by) {
+    const V less = hn::Set(I16{}, by);
+    v0 = hn::Max(v0, hn::Sub(cells.v0, less));
+    v1 = hn::Max(v1, hn::Sub(cells.v1, less));
+    v2 = hn::Max(v2, hn::Sub(cells.v2, less));
+    v3 = hn::Max(v3, hn::Sub(cells.v3, less));
+  }
+  HWY_INLINE void raise(const Bound& other) {
+    v0 = hn::Max(v0, other.v0);
+    v1 = hn::Max(v1, other.v1);
+    v2 = hn::Max(v2, other.v2);
+    v3 = hn::Max(v3, other.v3);
+  }
+  /// In the frame of a block that lies `climb` before its own.
+  HWY_INLINE void sink(std::int16_t climb) {
+    const V less = hn::Set(I16{}, climb);
+    v0 = hn::SaturatedSub(v0, less);
+    v1 = hn::SaturatedSub(v1, less);
+    v2 = hn::SaturatedSub(v2, less);
+    v3 = hn::SaturatedSub(v3, less);
+  }
 };
 
 class Sweeper {
@@ -218,129 +312,111 @@ class Sweeper {
       : sweep_(sweep),
         first_(sweep.first_band + first),
         bands_(last - first),
-        padded_((static_cast<std::size_t>(bands_) + kLanes - 1) / kLanes * kLanes),
+        padded_((static_cast<std::size_t>(bands_) + kGroupBands - 1) / kGroupBands * kGroupBands),
         shadow_(shadow),
         blocks_at_hand_{Block(sweep, static_cast<int>(padded_)),
                         Block(sweep, static_cast<int>(padded_))},
-        lower_(kSubBands * padded_, -kInfinity),
-        blocks_((sweep.column.size() + kSweepBlock - 1) / kSweepBlock),
-        upper_in_(blocks_ * kSubBands * padded_),
-        upper_from_((blocks_ + 1) * kSubBands * padded_, -kInfinity),
+        lower_(kSubBands * padded_, kLeast),
+        blocks_(static_cast<int>(sweep.blocks.size())),
+        upper_in_(new std::int16_t[sweep.blocks.size() * kSubBands * padded_]),
+        upper_from_(new std::int16_t[(sweep.blocks.size() + 1) * kSubBands * padded_]),
         dark_(padded_ * kSweepBlock),
         stride_(blocks_at_hand_[0].stride()) {
-    const std::size_t reach = sweep.step_at(2 * kSweepBlock);
-    for (std::size_t k = 0; k < reach; ++k) {
-      const SweepStep& s = sweep.along[k];
-      near_.push_back({s.ahead * static_cast<std::ptrdiff_t>(stride_) + s.across, s.climb});
-    }
+    std::fill_n(&upper_from(blocks_, 0, 0), kSubBands * padded_, kLeast);
+    for (const SweepRayStep& s : sweep.near)
+      near_.push_back({s.ahead * static_cast<std::ptrdiff_t>(stride_) + s.across,
+                       static_cast<std::int16_t>(s.climb)});
   }
 
   void run() {
-    const int all = static_cast<int>(sweep_.column.size());
-    for (int x0 = (all - 1) / kSweepBlock * kSweepBlock; x0 >= 0; x0 -= kSweepBlock) {
-      const int n = std::min(kSweepBlock, all - x0);
-      int low = sweep_.column[static_cast<std::size_t>(x0)].row;
-      for (int c = 0; c < n; ++c) {
-        const SweepColumn& column = sweep_.column[static_cast<std::size_t>(x0 + c)];
-        low = std::min({low, column.row, column.begin_row});
-      }
+    for (int block = blocks_ - 1; block >= 0; --block) {
       std::swap(current_, previous_);
-      current_->load(x0, n, first_, low);
-      sweep_block(x0, n);
-      if (sweep_.along_x && x0 + kSweepBlock <= sweep_.columns) {
+      current_->load(block * kSweepBlock, first_,
+                     sweep_.blocks[static_cast<std::size_t>(block)].low);
+      for (int part = 0; part < kSubBands; ++part) sweep_part(block, part);
+      const int x0 = block * kSweepBlock;
+      const int own = std::min(kSweepBlock, sweep_.columns - x0);
+      for (int c = 0; c < own; ++c) decide_column(block, c);
+      if (sweep_.along_x && own == kSweepBlock) {
         store_turned(x0);
         continue;
       }
-      for (int c = 0; c < n && x0 + c < sweep_.columns; ++c) store_column(x0 + c, c, 0, bands_);
+      for (int c = 0; c < own; ++c) store_column(x0 + c, c, 0, bands_);
     }
   }
 
  private:
-  static_assert(kSubBands == 2);
+  /// What is known of a cell: lit is 0.
+  enum State : std::uint8_t { kDark = 1, kUndecided = 2 };
 
-  /// Columns outside, bands inside: what a column is to all bands stays in registers.
-  void sweep_block(int x0, int n) {
-    const F32 d;
-    const int block = x0 / kSweepBlock;
-    std::fill_n(&upper_in(block, 0, 0), kSubBands * padded_, -kInfinity);
-    for (int c = n - 1; c >= 0; --c) {
-      const int x = x0 + c;
-      const SweepColumn& column = sweep_.column[static_cast<std::size_t>(x)];
-      if (x < sweep_.columns) test_column(column, x, c, block);
-      const float* const cells = current_->column(c) + (column.row - current_->low());
-      for (int part = 0; part < kSubBands; ++part) {
-        const SweepEntry* const e = column.entries[static_cast<std::size_t>(part)].data();
-        float* const upper = &upper_in(block, part, 0);
-        float* const lower = lower_.data() + static_cast<std::size_t>(part) * padded_;
-        switch (column.count[static_cast<std::size_t>(part)]) {
-          case 0:
-            break;
-          case 1:
-            raise<1>(e, cells, upper, lower);
-            break;
-          case 2:
-            raise<2>(e, cells, upper, lower);
-            break;
-          case 3:
-            raise<3>(e, cells, upper, lower);
-            break;
-          default:
-            raise<4>(e, cells, upper, lower);
+  /// A SweepStep where its cells are.
+  struct Step {
+    SweepStep::Kind kind;
+    std::int16_t upper, lower;
+    const std::int16_t* cells;
+    std::uint8_t* dark;
+  };
+
+  /// Bands outside, columns inside: the bounds of a group stay in registers.
+  void sweep_part(int block, int part) {
+    const SweepBlock& b = sweep_.blocks[static_cast<std::size_t>(block)];
+    const auto p = static_cast<std::size_t>(part);
+    if (b.first[p] == b.first[p + 1]) return;
+    steps_.clear();
+    for (std::uint32_t k = b.first[p]; k < b.first[p + 1]; ++k) {
+      const SweepStep& s = sweep_.steps[k];
+      steps_.push_back({s.kind, s.upper, s.lower, current_->cell(s.column, s.row),
+                        dark_.data() + s.column * padded_});
+    }
+    const bool last = block + 1 == blocks_;
+    const auto climb = static_cast<std::int16_t>(
+        last ? 0 : sweep_.blocks[static_cast<std::size_t>(block) + 1].frame - b.frame);
+    for (std::size_t i = 0; i < padded_; i += kGroupBands) sweep_group(block, part, i, climb);
+  }
+
+  HWY_INLINE void sweep_group(int block, int part, std::size_t i, std::int16_t climb) {
+    std::int16_t* const lower_at = lower_.data() + static_cast<std::size_t>(part) * padded_ + i;
+    Bound upper = Bound::set(kLeast), lower = Bound::load(lower_at);
+    Bound far = Bound::load(&upper_from(block + 1, part, i));
+    lower.sink(climb);
+    far.sink(climb);
+    for (const Step& s : steps_) {
+      const Bound cells = Bound::load(s.cells + i);
+      switch (s.kind) {
+        case SweepStep::Kind::all_enter:
+          lower.raise(cells, s.lower);
+          [[fallthrough]];
+        case SweepStep::Kind::may_enter:
+          upper.raise(cells, s.upper);
+          break;
+        case SweepStep::Kind::cells_begin: {
+          std::uint8_t* const to = s.dark + i;
+          judge(s, cells.v0, upper.v0, far.v0, lower.v0, to);
+          judge(s, cells.v1, upper.v1, far.v1, lower.v1, to + kBands);
+          judge(s, cells.v2, upper.v2, far.v2, lower.v2, to + 2 * kBands);
+          judge(s, cells.v3, upper.v3, far.v3, lower.v3, to + 3 * kBands);
         }
       }
     }
-    for (int part = 0; part < kSubBands; ++part)
-      for (std::size_t i = 0; i < padded_; i += kLanes)
-        hn::StoreU(hn::Max(hn::LoadU(d, &upper_in(block, part, i)),
-                           hn::LoadU(d, &upper_from(block + 1, part, i))),
-                   d, &upper_from(block, part, i));
+    lower.store(lower_at);
+    upper.store(&upper_in(block, part, i));
+    upper.raise(far);
+    upper.store(&upper_from(block, part, i));
   }
 
-  /// Lifts the bounds of a part of all bands by the cells that its rays may enter in a column.
-  template <int kEntries>
-  HWY_INLINE void raise(const SweepEntry* entries, const float* cells, float* upper,
-                        float* lower) const {
-    const F32 d;
-    for (std::size_t i = 0; i < padded_; i += kLanes) {
-      F up = hn::LoadU(d, upper + i), low = hn::LoadU(d, lower + i);
-      for (int k = 0; k < kEntries; ++k) {
-        const F h = hn::LoadU(d, cells + i + entries[k].row);
-        up = hn::Max(up, hn::Sub(h, hn::Set(d, entries[k].upper)));
-        low = hn::Max(low, hn::Sub(h, hn::Set(d, entries[k].lower)));
-      }
-      hn::StoreU(up, d, upper + i);
-      hn::StoreU(low, d, lower + i);
-    }
-  }
-
-  void test_column(const SweepColumn& column, int x, int c, int block) {
-    const F32 d;
-    const U32 du;
-    const hn::Rebind<std::uint8_t, U32> d8;
-    const float* const cells = current_->column(c) + (column.begin_row - current_->low());
-    const float* const upper = &upper_in(block, column.part, 0);
-    const float* const far = &upper_from(block + 1, column.part, 0);
-    const float* const lower = lower_.data() + static_cast<std::size_t>(column.part) * padded_;
-    std::uint8_t* const to = dark_.data() + static_cast<std::size_t>(c) * padded_;
-    const F surely = hn::Set(d, column.begin - sweep_.slack);
-    const F perhaps = hn::Set(d, column.begin + sweep_.slack);
-    for (std::size_t i = 0; i < padded_; i += kLanes) {
-      const F own = hn::LoadU(d, cells + i), ray = hn::Sub(own, perhaps);
-      const F most = hn::Max(hn::LoadU(d, upper + i), hn::LoadU(d, far + i));
-      const auto dark = hn::Gt(hn::LoadU(d, lower + i), hn::Sub(own, surely));
-      hn::StoreU(hn::TruncateTo(
-                     d8, hn::And(hn::VecFromMask(du, hn::RebindMask(du, dark)), hn::Set(du, 1))),
-                 d8, to + i);
-      const auto undecided = hn::AndNot(dark, hn::Gt(most, ray));
-      if (!hn::AllFalse(d, undecided)) decide(undecided, own, ray, x, i, to + i);
-    }
+  static HWY_INLINE void judge(const Step& s, V own, V upper, V far, V lower, std::uint8_t* to) {
+    const I16 d;
+    const auto dark = hn::Gt(lower, hn::Sub(own, hn::Set(d, s.lower)));
+    const auto perhaps = hn::Gt(hn::Max(upper, far), hn::Sub(own, hn::Set(d, s.upper)));
+    const V state = hn::And(hn::VecFromMask(d, perhaps), hn::Set(d, kUndecided));
+    hn::StoreU(hn::DemoteTo(U8{}, hn::IfThenElse(dark, hn::Set(d, kDark), state)), U8{}, to);
   }
 
   /// The upper bound of a block alone, and of all columns from it on.
-  [[nodiscard]] float& upper_in(int block, int part, std::size_t i) {
+  [[nodiscard]] std::int16_t& upper_in(int block, int part, std::size_t i) {
     return upper_in_[static_cast<std::size_t>(block * kSubBands + part) * padded_ + i];
   }
-  [[nodiscard]] float& upper_from(int block, int part, std::size_t i) {
+  [[nodiscard]] std::int16_t& upper_from(int block, int part, std::size_t i) {
     return upper_from_[static_cast<std::size_t>(block * kSubBands + part) * padded_ + i];
   }
 
@@ -357,78 +433,94 @@ class Sweeper {
                           : std::pair(static_cast<int>(row), along);
   }
 
+  void decide_column(int block, int c) {
+    const U8 d8;
+    std::uint8_t* const dark = dark_.data() + static_cast<std::size_t>(c) * padded_;
+    for (std::size_t i = 0; i < padded_; i += kBands) {
+      const auto state = hn::LoadU(d8, dark + i);
+      if (!hn::AllFalse(d8, hn::TestBit(state, hn::Set(d8, kUndecided)))) decide(block, c, i, dark);
+    }
+  }
+
+  /// The frame of a block, seen from where the rays of column x begin.
+  [[nodiscard]] std::int64_t climb_to(int block, int x) const {
+    return sweep_.blocks[static_cast<std::size_t>(block)].frame -
+           sweep_.column[static_cast<std::size_t>(x)].begin;
+  }
+
   /// Vectors first: the cells of the next few columns, which are still at hand, decide most of what
-  /// the bounds do not. Where they leave it open, or float32 might, the definition decides.
-  HWY_NOINLINE void decide(hn::Mask<F32> undecided, F own, F ray, int x, std::size_t i,
-                           std::uint8_t* dark) {
-    const F32 d;
-    const int block = static_cast<int>(static_cast<unsigned>(x) / kSweepBlock);
+  /// the bounds do not. Where they leave it open, the definition decides.
+  HWY_NOINLINE void decide(int block, int c, std::size_t i, std::uint8_t* dark) {
+    const I16 d;
+    const int x = block * kSweepBlock + c;
     // To the end of a block, whose bounds are known: this one, or the next where that is near.
-    const int end_block = (block + 1) * kSweepBlock - x > 4 ? block + 1 : block + 2;
+    const int end_block = kSweepBlock - c > 4 ? block + 1 : block + 2;
     const std::size_t end = sweep_.step_at(end_block * kSweepBlock - x);
-    const F above = hn::Add(own, hn::Set(d, sweep_.slack));
-    const F below = hn::Sub(own, hn::Set(d, sweep_.slack));
-    const int begin_row = sweep_.column[static_cast<std::size_t>(x)].begin_row;
-    F highest = hn::Set(d, -kInfinity);
-    const auto walk = [&](const float* from, std::size_t k, std::size_t last) HWY_ATTR {
-      for (; k < last; ++k) {
-        const F h = hn::LoadU(d, from + near_[k].cell);
-        highest = hn::Max(highest, hn::Sub(h, hn::Set(d, near_[k].climb)));
-      }
+    const SweepColumn& column = sweep_.column[static_cast<std::size_t>(x)];
+    const auto row = static_cast<std::int64_t>(i) + column.begin_row;
+    const V own = hn::LoadU(d, current_->cell(c, row));
+    V highest = hn::Set(d, kLeast);
+    const auto walk = [&](const std::int16_t* from, std::size_t k, std::size_t last) HWY_ATTR {
+      for (; k < last; ++k)
+        highest = hn::Max(highest, hn::SaturatedSub(hn::LoadU(d, from + near_[k].cell),
+                                                    hn::Set(d, near_[k].climb)));
     };
-    const int c = x - block * kSweepBlock;
-    const auto row = static_cast<std::ptrdiff_t>(i) + begin_row;
     const std::size_t own_end = std::min(end, sweep_.step_at(kSweepBlock - c));
-    walk(current_->column(c) + (row - current_->low()), 0, own_end);
+    walk(current_->cell(c, row), 0, own_end);
     // Those of the block before, as if its columns went on from this one's.
     if (own_end < end)
-      walk(previous_->column(0) +
-               ((c - kSweepBlock) * static_cast<std::ptrdiff_t>(stride_) + row - previous_->low()),
+      walk(previous_->cell(0, row) + (c - kSweepBlock) * static_cast<std::ptrdiff_t>(stride_),
            own_end, end);
-    const auto hidden = hn::Gt(highest, above);
-    const auto near_open = hn::Gt(highest, below);
+    // Both heights and the climb are off by less than 2.1 together.
+    const auto hidden = hn::Gt(highest, hn::SaturatedAdd(own, hn::Set(d, 2)));
+    const auto near_open = hn::Gt(highest, hn::SaturatedSub(own, hn::Set(d, 2)));
     auto open = near_open;
-    if (end_block < static_cast<int>(blocks_)) {
-      const int part = sweep_.column[static_cast<std::size_t>(x)].part;
-      open = hn::Or(open, hn::Gt(hn::LoadU(d, &upper_from(end_block, part, i)), ray));
+    if (end_block < blocks_) {
+      const auto climb = static_cast<std::int16_t>(climb_to(end_block, x) - 3);
+      open = hn::Or(open, hn::Gt(hn::LoadU(d, &upper_from(end_block, column.part, i)),
+                                 hn::SaturatedAdd(own, hn::Set(d, climb))));
     }
+    const V state = hn::PromoteTo(d, hn::LoadU(U8{}, dark + i));
+    const auto undecided = hn::Eq(state, hn::Set(d, kUndecided));
     open = hn::And(hn::AndNot(hidden, open), undecided);
-    std::uint8_t hidden_bits[8] = {}, open_bits[8] = {}, near_bits[8] = {};
-    hn::StoreMaskBits(d, hn::And(hidden, undecided), hidden_bits);
+    const V decided =
+        hn::IfThenElse(undecided, hn::And(hn::VecFromMask(d, hidden), hn::Set(d, kDark)), state);
+    hn::StoreU(hn::DemoteTo(U8{}, decided), U8{}, dark + i);
+    if (hn::AllFalse(d, open)) return;
+    std::uint8_t open_bits[8] = {}, near_bits[8] = {};
     hn::StoreMaskBits(d, open, open_bits);
     hn::StoreMaskBits(d, near_open, near_bits);
-    for (std::size_t byte = 0; byte < (kLanes + 7) / 8; ++byte) {
-      for (unsigned m = hidden_bits[byte]; m != 0; m &= m - 1)
-        dark[byte * 8 + static_cast<unsigned>(std::countr_zero(m))] = 1;
+    for (std::size_t byte = 0; byte < (kBands + 7) / 8; ++byte)
       for (unsigned m = open_bits[byte]; m != 0; m &= m - 1) {
         const auto bit = static_cast<unsigned>(std::countr_zero(m));
-        const std::size_t k = byte * 8 + bit;
-        if (i + k >= static_cast<std::size_t>(bands_)) continue;
-        const std::int64_t row = row_of(x, i + k);
-        if (row < 0 || row >= sweep_.rows) continue;
+        const std::size_t k = i + byte * 8 + bit;
+        if (k >= static_cast<std::size_t>(bands_)) continue;
+        const std::int64_t at = row_of(x, k);
+        if (at < 0 || at >= sweep_.rows) continue;
         const bool near = (near_bits[byte] >> bit & 1) != 0;
-        dark[k] = traverse(x, row, i + k, near ? block : end_block) ? 1 : 0;
+        dark[k] = traverse(x, at, k, near ? block : end_block) ? kDark : 0;
       }
-    }
   }
 
   /// The definition, without the blocks whose upper bound is not above the cell's ray; those before
   /// `block` are known to cast no shadow here.
   [[nodiscard]] HWY_NOINLINE bool traverse(int x, std::int64_t row, std::size_t i, int block) {
     const auto [cx, cy] = cell_of(x, row);
-    const float height = sweep_.map.heights(cx, cy);
-    const auto own = static_cast<double>(height);
-    const SweepColumn& column = sweep_.column[static_cast<std::size_t>(x)];
-    const float ray = height - (column.begin + sweep_.slack);
+    const auto own = static_cast<double>(sweep_.map.heights(cx, cy));
+    const int part = sweep_.column[static_cast<std::size_t>(x)].part;
     const int own_block = x / kSweepBlock;
-    for (const int last = static_cast<int>(blocks_); block < last; ++block) {
+    const std::int64_t units =
+        *current_->cell(x % kSweepBlock, static_cast<std::int64_t>(i) +
+                                             sweep_.column[static_cast<std::size_t>(x)].begin_row);
+    for (; block < blocks_; ++block) {
       if (block > own_block) {
-        if (upper_from(block, column.part, i) <= ray) return false;
-        if (upper_in(block, column.part, i) <= ray) continue;
+        const std::int64_t ray = units + climb_to(block, x) - 3;
+        if (upper_from(block, part, i) <= ray) return false;
+        if (upper_in(block, part, i) <= ray) continue;
       }
       const std::size_t end = sweep_.step_at((block + 1) * kSweepBlock - x);
       for (std::size_t k = sweep_.step_at(block * kSweepBlock - x); k < end; ++k) {
-        const RayStep& s = sweep_.steps[k];
+        const RayStep& s = sweep_.ray[k];
         if (static_cast<double>(sweep_.map.at(cx + s.dx, cy + s.dy)) > own + s.climb) return true;
       }
     }
@@ -511,17 +603,18 @@ class Sweeper {
   Block blocks_at_hand_[2];
   Block* current_ = &blocks_at_hand_[0];
   Block* previous_ = &blocks_at_hand_[1];  ///< the one before, nearer to the sun
-  std::vector<float> lower_;               ///< of each part
-  std::size_t blocks_;
-  std::vector<float> upper_in_, upper_from_;
-  std::vector<std::uint8_t> dark_;  ///< of the block, column by column
+  std::vector<std::int16_t> lower_;        ///< of each part, in the frame of the block before
+  int blocks_;
+  std::unique_ptr<std::int16_t[]> upper_in_, upper_from_;  ///< in their block's frame
+  std::vector<std::uint8_t> dark_;                         ///< of the block, column by column
   /// The steps of two blocks, as distances in a Block.
   struct Near {
     std::ptrdiff_t cell;
-    float climb;
+    std::int16_t climb;
   };
   std::size_t stride_;
   std::vector<Near> near_;
+  std::vector<Step> steps_;
 };
 
 void sweep(const Sweep& plan, int first, int last, ImageView<std::uint8_t> shadow) {
