@@ -21,12 +21,16 @@ struct ShadowKernels {
   /// Counts of hidden samples of row y.
   void (*march_row)(const ShadowCaster& map, const std::vector<MarchSample>& samples, int y,
                     std::uint16_t* counts) noexcept = nullptr;
-  /// sharp_shadows for the bands [first, last) of a sweep.
-  void (*sweep)(const Sweep& sweep, int first, int last, ImageView<std::uint8_t> shadow) = nullptr;
   /// Range of the finite heights of a row; true where all are finite.
   bool (*range)(const float* row, std::size_t n, float& lowest, float& highest) noexcept = nullptr;
 };
 
 [[nodiscard]] const ShadowKernels& shadow_kernels(Isa isa) noexcept;
+
+/// sharp_shadows for the bands [first, last) of a sweep.
+using SweepKernel = void (*)(const Sweep& sweep, int first, int last,
+                             ImageView<std::uint8_t> shadow);
+/// Null where the plain definition is the way.
+[[nodiscard]] SweepKernel sweep_kernel(Isa isa) noexcept;
 
 }  // namespace rastrum::terrain

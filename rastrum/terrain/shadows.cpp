@@ -67,14 +67,14 @@ void on_device(const ShadowOptions& options, F&& f) {
   }
 }
 
-/// The kernels of the options; `serial` is plain C++.
-const ShadowKernels& kernels_of(const ShadowOptions& options) {
-  if (options.device == Device::serial) return shadow_kernels(Isa::scalar);
+/// The instruction set of the options; `serial` is plain C++.
+Isa isa_of(const ShadowOptions& options) {
+  if (options.device == Device::serial) return Isa::scalar;
   const std::vector<Isa> available = available_isas();
   const Isa isa = options.isa.value_or(available.back());
   if (std::ranges::find(available, isa) == available.end())
     throw Error(Errc::invalid_argument, "this machine has no " + std::string(name(isa)));
-  return shadow_kernels(isa);
+  return isa;
 }
 
 /// The map without its holes: a copy where it has any, in `copy`.
@@ -150,7 +150,8 @@ Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun
                                   const ShadowOptions& options) {
   SunRay ray = sun_ray(sun);
   Image<std::uint8_t> shadow(heights.width, heights.height);
-  const ShadowKernels& kernels = kernels_of(options);
+  const Isa isa = isa_of(options);
+  const ShadowKernels& kernels = shadow_kernels(isa);
   Image<float> copy;
   const ShadowCaster map = caster_of(heights, options.tiling, kernels, copy);
   if (!(map.lowest <= map.highest)) return shadow;  // holes alone
@@ -167,8 +168,9 @@ Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun
   ray.rise = std::max(ray.rise, map.relief() * along / kLongestShadow);
   std::vector<RayStep> steps = ray_steps(ray, map.relief());
   if (steps.empty() || !(map.relief() > 0)) return shadow;
+  const SweepKernel kernel = can_sweep(map) ? sweep_kernel(isa) : nullptr;
   on_device(options, [&](auto& exec) {
-    if (kernels.sweep == nullptr || !can_sweep(map)) {
+    if (kernel == nullptr) {
       parallel::for_each_index(exec, static_cast<std::size_t>(heights.height),
                                [&](std::size_t row) {
                                  const int y = static_cast<int>(row);
@@ -181,7 +183,7 @@ Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun
     const int parts = (sweep.bands + kBandGrain - 1) / kBandGrain;
     parallel::for_each_index(exec, static_cast<std::size_t>(parts), [&](std::size_t part) {
       const int first = static_cast<int>(part) * kBandGrain;
-      kernels.sweep(sweep, first, std::min(first + kBandGrain, sweep.bands), shadow.view());
+      kernel(sweep, first, std::min(first + kBandGrain, sweep.bands), shadow.view());
     });
   });
   for (std::size_t i = 0; i < copy.pixels().size(); ++i)
@@ -233,7 +235,7 @@ Image<std::uint16_t> hidden_samples(ImageView<const float> heights, const Sun& s
                        static_cast<std::int32_t>(std::floor(t * -north * flat)),
                        static_cast<float>(t * up)});
   }
-  const ShadowKernels& kernels = kernels_of(options);
+  const ShadowKernels& kernels = shadow_kernels(isa_of(options));
   Image<float> copy;
   const ShadowCaster map = caster_of(heights, options.tiling, kernels, copy);
   Image<std::uint16_t> counts(heights.width, heights.height);

@@ -1,0 +1,58 @@
+// Rows and columns of a tiled map as runs of its own; for each instruction set once, in what
+// includes it.
+#if defined(RASTRUM_TERRAIN_SHADOW_RUNS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_TERRAIN_SHADOW_RUNS_INL_HPP
+#undef RASTRUM_TERRAIN_SHADOW_RUNS_INL_HPP
+#else
+#define RASTRUM_TERRAIN_SHADOW_RUNS_INL_HPP
+#endif
+
+#include <algorithm>
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+#include <rastrum/terrain/terrain.hpp>
+
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::terrain {
+namespace HWY_NAMESPACE {
+namespace {
+
+/// Calls f(i, source, n, step) for runs that make up coordinates [begin, begin + n): run i … is
+/// source, source + step, … of an axis that is `size` long.
+template <class Run>
+HWY_INLINE void for_each_run(std::int64_t begin, std::int64_t n, std::int64_t size, Tiling tiling,
+                             const Run& f) {
+  for (std::int64_t i = 0; i < n;) {
+    const std::int64_t at = begin + i;
+    const std::int64_t source = tiled(at, size, tiling);
+    std::int64_t length = n - i, step = 1;
+    if (tiling == Tiling::clamp && (at < 0 || at >= size)) {
+      step = 0;
+      if (at < 0) length = std::min(length, -at);
+    } else if (tiling == Tiling::mirror && tiled(at, 2 * size, Tiling::repeat) >= size) {
+      step = -1;
+      length = std::min(length, source + 1);
+    } else {
+      length = std::min(length, size - source);
+    }
+    f(i, source, length, step);
+    i += length;
+  }
+}
+
+HWY_INLINE void copy_run(const float* from, std::int64_t n, std::int64_t step, float* to) {
+  if (step == 1) {
+    std::copy_n(from, n, to);
+  } else {
+    for (std::int64_t k = 0; k < n; ++k) to[k] = from[k * step];
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace rastrum::terrain
+HWY_AFTER_NAMESPACE();
+
+#endif  // RASTRUM_TERRAIN_SHADOW_RUNS_INL_HPP

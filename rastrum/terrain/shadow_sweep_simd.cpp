@@ -1,0 +1,621 @@
+// The sweep of shadow_sweep.hpp with Highway, compiled once per instruction set: bands lie in
+// lanes. It gives the definition's bits whatever it is compiled for.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "rastrum/terrain/shadow_sweep_simd.cpp"
+#include <hwy/foreach_target.h>  // must precede highway.h
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <rastrum/terrain/shadow_kernels.hpp>
+#include <rastrum/terrain/shadow_runs-inl.hpp>
+#include <rastrum/terrain/shadow_sweep.hpp>
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::terrain {
+namespace HWY_NAMESPACE {
+namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using I16 = hn::CappedTag<std::int16_t, 32>;
+using V = hn::Vec<I16>;
+using U8 = hn::Rebind<std::uint8_t, I16>;
+constexpr std::size_t kBands = hn::MaxLanes(I16{});
+/// Bands whose bounds are in registers together.
+constexpr std::size_t kGroupBands = 4 * kBands;
+constexpr std::int16_t kLeast = SweepUnits::least;
+
+/// Heights as units: float32 rounds to whole numbers where it has no bits for parts of them, which
+/// leaves the number in the lower half of its 32 bits. (Conversions with care for overflow take
+/// three operations more.)
+class Quantizer {
+ public:
+  using D = hn::CappedTag<float, 8>;
+  using Wide = hn::Vec<hn::RebindToSigned<D>>;
+  static constexpr std::int64_t kCells = hn::MaxLanes(D{});
+  static_assert(kCells >= 4);
+
+  explicit Quantizer(const SweepUnits& units)
+      : lowest_(hn::Set(D{}, units.lowest)),
+        scale_(hn::Set(D{}, units.scale)),
+        zero_(hn::Set(D{}, 0x1.8p23F + static_cast<float>(units.zero))) {}
+
+  /// In the lower halves.
+  [[nodiscard]] HWY_INLINE Wide operator()(const float* from) const {
+    const auto above = hn::Sub(hn::LoadU(D{}, from), lowest_);
+    return hn::BitCast(hn::RebindToSigned<D>{}, hn::Max(hn::MulAdd(above, scale_, zero_), zero_));
+  }
+
+ private:
+  hn::Vec<D> lowest_, scale_, zero_;
+};
+
+/// Blocks of columns in units, turned so that the rows of a column lie side by side. Several at
+/// once, because rows of a map are pages apart, and lines of the cache longer than a block.
+class Panel {
+ public:
+  static constexpr int kBlocks = 4;
+  static constexpr int kColumns = kBlocks * kSweepBlock;
+
+  Panel(const Sweep& sweep, int bands)
+      : sweep_(sweep),
+        // |s| ≤ 1: over a panel rows shift by its width, and a column's lie within 4.
+        rows_(bands + kColumns + 8),
+        stride_((static_cast<std::size_t>(rows_ + kBeyond) + kBands) / kBands * kBands),
+        cells_(stride_ * kColumns) {}
+
+  [[nodiscard]] std::size_t stride() const { return stride_; }
+  /// Column c's cell in `row` of the sweep's, for the first band.
+  [[nodiscard]] const std::int16_t* cell(int c, std::int64_t row) const {
+    return cells_.data() + static_cast<std::size_t>(c) * stride_ + (row - low_);
+  }
+  /// Blocks [first, last) of the sweep, rows from the least that `first_band` needs on.
+  HWY_NOINLINE void load(int first, int last, int first_band) {
+    low_ = sweep_.blocks[static_cast<std::size_t>(first)].low;
+    for (int b = first + 1; b < last; ++b)
+      low_ = std::min(low_, sweep_.blocks[static_cast<std::size_t>(b)].low);
+    const std::int64_t row0 = std::int64_t{first_band} + low_;
+    const ShadowCaster& map = sweep_.map;
+    const int n = last - first;
+    Source sources[kBlocks];
+    for (int b = 0; b < n; ++b) sources[b] = source_of((first + b) * kSweepBlock);
+    const Quantizer quantize(sweep_.units);
+    for_each_run(
+        row0, rows_, sweep_.rows, map.tiling,
+        [&](std::int64_t i, std::int64_t from, std::int64_t length, std::int64_t step) HWY_ATTR {
+          if (!sweep_.along_x) {
+            for (int c = 0; c < n * kSweepBlock; ++c) {
+              const std::int64_t row = sources[c / kSweepBlock].columns[c % kSweepBlock];
+              take(quantize, map.heights.row(static_cast<int>(row)) + from, length, step, at(c, i));
+            }
+          } else {
+            for (std::int64_t k = 0; k < length; k += kTurned) {
+              const float* rows[kTurned];
+              for (std::int64_t r = 0; r < kTurned; ++r)
+                rows[r] =
+                    map.heights.row(static_cast<int>(from + std::min(k + r, length - 1) * step));
+              const std::int64_t next = from + (k + kAhead) * step;
+              for (int b = 0; k + kAhead + kTurned <= length && b < n; ++b)
+                for (std::int64_t r = 0; r < kTurned; ++r)
+                  __builtin_prefetch(map.heights.row(static_cast<int>(next + r * step)) +
+                                     sources[b].least);
+              for (int b = 0; b < n; ++b) turn(quantize, sources[b], rows, b * kSweepBlock, i + k);
+            }
+          }
+        });
+  }
+
+ private:
+  using D32 = hn::RebindToSigned<Quantizer::D>;
+  using D16 = hn::Repartition<std::int16_t, D32>;
+  /// Rows that are turned together; whole vectors are stored, and what is beyond the end is
+  /// overwritten by the next run, or not read.
+  static constexpr std::int64_t kTurned = 8;
+  static constexpr std::int64_t kAhead = 32;
+  static constexpr std::int64_t kBeyond = 2 * Quantizer::kCells;
+
+  [[nodiscard]] std::int16_t* at(int c, std::int64_t i) {
+    return cells_.data() + static_cast<std::size_t>(c) * stride_ + i;
+  }
+  static HWY_INLINE void take(const Quantizer& quantize, const float* from, std::int64_t n,
+                              std::int64_t step, std::int16_t* to) {
+    constexpr std::int64_t kTaken = 2 * Quantizer::kCells;
+    const auto put = [&](const float* cells, std::int16_t* at) HWY_ATTR {
+      const D16 d;
+      const auto low = hn::BitCast(d, quantize(cells));
+      const auto high = hn::BitCast(d, quantize(cells + Quantizer::kCells));
+      hn::StoreU(hn::ConcatEven(d, high, low), d, at);
+    };
+    std::int64_t k = 0;
+    if (step == 1)
+      for (; k + kTaken <= n; k += kTaken) put(from + k, to + k);
+    for (; k < n; k += kTaken) {
+      float beside[kTaken] = {};
+      copy_run(from + k * step, std::min(kTaken, n - k), step, beside);
+      put(beside, to + k);
+    }
+  }
+  /// Where a block's columns are.
+  struct Source {
+    std::int64_t columns[kSweepBlock];
+    std::int64_t least;  ///< of them
+    bool up, down;       ///< one after the other, or the other way round
+  };
+  [[nodiscard]] Source source_of(int x0) const {
+    Source s{{}, 0, true, true};
+    for (int c = 0; c < kSweepBlock; ++c) {
+      const std::int64_t x = sweep_.flipped ? std::int64_t{sweep_.columns} - 1 - (x0 + c) : x0 + c;
+      s.columns[c] = tiled(x, sweep_.columns, sweep_.map.tiling);
+      s.up = s.up && s.columns[c] == s.columns[0] + c;
+      s.down = s.down && s.columns[c] == s.columns[0] - c;
+    }
+    s.least = std::min(s.columns[0], s.columns[kSweepBlock - 1]);
+    return s;
+  }
+  /// 8 rows of the map in the columns of a block.
+  HWY_INLINE void turn(const Quantizer& quantize, const Source& source, const float* const* of_map,
+                       int c0, std::int64_t i) {
+    float beside[kTurned][kSweepBlock];
+    const float* rows[kTurned];
+    for (int r = 0; r < kTurned; ++r) {
+      rows[r] = of_map[r] + source.least;
+      if (source.up || source.down) continue;
+      for (int c = 0; c < kSweepBlock; ++c) beside[r][c] = of_map[r][source.columns[c]];
+      rows[r] = beside[r];
+    }
+    const auto stride = static_cast<std::ptrdiff_t>(stride_);
+    std::int16_t* const column = at(c0 + (source.down ? kSweepBlock - 1 : 0), i);
+    const std::ptrdiff_t next = source.down ? -stride : stride;
+    const D32 d;
+    const hn::Repartition<std::int64_t, D32> d64;
+    for (int q = 0; q < kSweepBlock; q += static_cast<int>(Quantizer::kCells)) {
+      // Two rows in each of these, then four, then all eight.
+      const auto pair = [&](int r) HWY_ATTR {
+        return hn::BitCast(
+            d, hn::OddEven(hn::BitCast(D16{}, hn::ShiftLeft<16>(quantize(rows[r + 1] + q))),
+                           hn::BitCast(D16{}, quantize(rows[r] + q))));
+      };
+      const auto a = pair(0), b = pair(2), e = pair(4), f = pair(6);
+      const auto ab = hn::BitCast(d64, hn::InterleaveLower(d, a, b));
+      const auto ef = hn::BitCast(d64, hn::InterleaveLower(d, e, f));
+      const auto ab2 = hn::BitCast(d64, hn::InterleaveUpper(d, a, b));
+      const auto ef2 = hn::BitCast(d64, hn::InterleaveUpper(d, e, f));
+      const auto to = [&](int c) { return column + c * next; };
+      put_columns(hn::InterleaveLower(d64, ab, ef), to(q), to(q + 4));
+      put_columns(hn::InterleaveUpper(d64, ab, ef), to(q + 1), to(q + 5));
+      put_columns(hn::InterleaveLower(d64, ab2, ef2), to(q + 2), to(q + 6));
+      put_columns(hn::InterleaveUpper(d64, ab2, ef2), to(q + 3), to(q + 7));
+    }
+  }
+
+  /// Each 128 bits are eight rows of a column.
+  template <class V64>
+  static HWY_INLINE void put_columns(V64 v, std::int16_t* first, std::int16_t* second) {
+    const hn::Full128<std::int16_t> d;
+    const hn::DFromV<V64> d64;
+    if constexpr (hn::MaxLanes(d64) == 2) {
+      hn::StoreU(hn::BitCast(d, v), d, first);
+    } else {
+      const hn::Half<decltype(d64)> half;
+      hn::StoreU(hn::BitCast(d, hn::LowerHalf(half, v)), d, first);
+      hn::StoreU(hn::BitCast(d, hn::UpperHalf(half, v)), d, second);
+    }
+  }
+
+  const Sweep& sweep_;
+  int low_ = 0;
+  std::int64_t rows_;
+  std::size_t stride_;
+  std::vector<std::int16_t> cells_;
+};
+
+/// One of the bounds of a group of bands.
+struct Bound {
+  V v0, v1, v2, v3;
+
+  static HWY_INLINE Bound load(const std::int16_t* from) {
+    const I16 d;
+    return {hn::LoadU(d, from), hn::LoadU(d, from + kBands), hn::LoadU(d, from + 2 * kBands),
+            hn::LoadU(d, from + 3 * kBands)};
+  }
+  static HWY_INLINE Bound set(std::int16_t value) {
+    const V v = hn::Set(I16{}, value);
+    return {v, v, v, v};
+  }
+  HWY_INLINE void store(std::int16_t* to) const {
+    const I16 d;
+    hn::StoreU(v0, d, to);
+    hn::StoreU(v1, d, to + kBands);
+    hn::StoreU(v2, d, to + 2 * kBands);
+    hn::StoreU(v3, d, to + 3 * kBands);
+  }
+  HWY_INLINE void raise(const Bound& cells, std::int16_t by) {
+    const V less = hn::Set(I16{}, by);
+    v0 = hn::Max(v0, hn::Sub(cells.v0, less));
+    v1 = hn::Max(v1, hn::Sub(cells.v1, less));
+    v2 = hn::Max(v2, hn::Sub(cells.v2, less));
+    v3 = hn::Max(v3, hn::Sub(cells.v3, less));
+  }
+  HWY_INLINE void raise(const Bound& other) {
+    v0 = hn::Max(v0, other.v0);
+    v1 = hn::Max(v1, other.v1);
+    v2 = hn::Max(v2, other.v2);
+    v3 = hn::Max(v3, other.v3);
+  }
+  /// In the frame of a block that lies `climb` before its own.
+  HWY_INLINE void sink(std::int16_t climb) {
+    const V less = hn::Set(I16{}, climb);
+    v0 = hn::SaturatedSub(v0, less);
+    v1 = hn::SaturatedSub(v1, less);
+    v2 = hn::SaturatedSub(v2, less);
+    v3 = hn::SaturatedSub(v3, less);
+  }
+};
+
+class Sweeper {
+ public:
+  Sweeper(const Sweep& sweep, int first, int last, ImageView<std::uint8_t> shadow)
+      : sweep_(sweep),
+        first_(sweep.first_band + first),
+        bands_(last - first),
+        padded_((static_cast<std::size_t>(bands_) + kGroupBands - 1) / kGroupBands * kGroupBands),
+        shadow_(shadow),
+        panels_{Panel(sweep, static_cast<int>(padded_)), Panel(sweep, static_cast<int>(padded_))},
+        lower_(kSubBands * padded_, kLeast),
+        blocks_(static_cast<int>(sweep.blocks.size())),
+        upper_in_(new std::int16_t[sweep.blocks.size() * kSubBands * padded_]),
+        upper_from_(new std::int16_t[(sweep.blocks.size() + 1) * kSubBands * padded_]),
+        dark_(padded_ * Panel::kColumns),
+        stride_(panels_[0].stride()) {
+    std::fill_n(&upper_from(blocks_, 0, 0), kSubBands * padded_, kLeast);
+    for (const SweepRayStep& s : sweep.near)
+      near_.push_back({s.ahead * static_cast<std::ptrdiff_t>(stride_) + s.across,
+                       static_cast<std::int16_t>(s.climb)});
+  }
+
+  void run() {
+    for (int last = blocks_; last > 0; last = first_block_) {
+      first_block_ = (last - 1) / Panel::kBlocks * Panel::kBlocks;
+      std::swap(current_, previous_);
+      current_->load(first_block_, last, first_);
+      for (int block = last - 1; block >= first_block_; --block) {
+        for (int part = 0; part < kSubBands; ++part) sweep_part(block, part);
+        for (int c = 0; c < kSweepBlock && block * kSweepBlock + c < sweep_.columns; ++c)
+          decide_column(block, c);
+      }
+      const int own = std::min(last * kSweepBlock, sweep_.columns) - first_block_ * kSweepBlock;
+      if (own > 0) store(own);
+    }
+  }
+
+ private:
+  /// What is known of a cell: lit is 0.
+  enum State : std::uint8_t { kDark = 1, kUndecided = 2 };
+
+  /// A SweepStep where its cells are.
+  struct Step {
+    SweepStep::Kind kind;
+    std::int16_t upper, lower;
+    const std::int16_t* cells;
+    std::uint8_t* dark;
+  };
+
+  /// Bands outside, columns inside: the bounds of a group stay in registers.
+  HWY_NOINLINE void sweep_part(int block, int part) {
+    const SweepBlock& b = sweep_.blocks[static_cast<std::size_t>(block)];
+    const auto p = static_cast<std::size_t>(part);
+    if (b.first[p] == b.first[p + 1]) return;
+    steps_.clear();
+    for (std::uint32_t k = b.first[p]; k < b.first[p + 1]; ++k) {
+      const SweepStep& s = sweep_.steps[k];
+      const int c = in_panel(block, s.column);
+      steps_.push_back({s.kind, s.upper, s.lower, current_->cell(c, s.row), dark_of(c)});
+    }
+    const bool last = block + 1 == blocks_;
+    const auto climb = static_cast<std::int16_t>(
+        last ? 0 : sweep_.blocks[static_cast<std::size_t>(block) + 1].frame - b.frame);
+    for (std::size_t i = 0; i < padded_; i += kGroupBands) sweep_group(block, part, i, climb);
+  }
+
+  HWY_INLINE void sweep_group(int block, int part, std::size_t i, std::int16_t climb) {
+    std::int16_t* const lower_at = lower_.data() + static_cast<std::size_t>(part) * padded_ + i;
+    Bound upper = Bound::set(kLeast), lower = Bound::load(lower_at);
+    Bound far = Bound::load(&upper_from(block + 1, part, i));
+    lower.sink(climb);
+    far.sink(climb);
+    for (const Step& s : steps_) {
+      const Bound cells = Bound::load(s.cells + i);
+      switch (s.kind) {
+        case SweepStep::Kind::all_enter:
+          lower.raise(cells, s.lower);
+          [[fallthrough]];
+        case SweepStep::Kind::may_enter:
+          upper.raise(cells, s.upper);
+          break;
+        case SweepStep::Kind::cells_begin: {
+          std::uint8_t* const to = s.dark + i;
+          judge(s, cells.v0, upper.v0, far.v0, lower.v0, to);
+          judge(s, cells.v1, upper.v1, far.v1, lower.v1, to + kBands);
+          judge(s, cells.v2, upper.v2, far.v2, lower.v2, to + 2 * kBands);
+          judge(s, cells.v3, upper.v3, far.v3, lower.v3, to + 3 * kBands);
+        }
+      }
+    }
+    lower.store(lower_at);
+    upper.store(&upper_in(block, part, i));
+    upper.raise(far);
+    upper.store(&upper_from(block, part, i));
+  }
+
+  static HWY_INLINE void judge(const Step& s, V own, V upper, V far, V lower, std::uint8_t* to) {
+    const I16 d;
+    const auto dark = hn::Gt(lower, hn::Sub(own, hn::Set(d, s.lower)));
+    const auto perhaps = hn::Gt(hn::Max(upper, far), hn::Sub(own, hn::Set(d, s.upper)));
+    const V state = hn::And(hn::VecFromMask(d, perhaps), hn::Set(d, kUndecided));
+    hn::StoreU(hn::DemoteTo(U8{}, hn::IfThenElse(dark, hn::Set(d, kDark), state)), U8{}, to);
+  }
+
+  /// Column c of a block at hand, counted from the panel's first.
+  [[nodiscard]] int in_panel(int block, int c) const {
+    return (block - first_block_) * kSweepBlock + c;
+  }
+  [[nodiscard]] std::uint8_t* dark_of(int c) {
+    return dark_.data() + static_cast<std::size_t>(c) * padded_;
+  }
+  /// The upper bound of a block alone, and of all columns from it on.
+  [[nodiscard]] std::int16_t& upper_in(int block, int part, std::size_t i) {
+    return upper_in_[static_cast<std::size_t>(block * kSubBands + part) * padded_ + i];
+  }
+  [[nodiscard]] std::int16_t& upper_from(int block, int part, std::size_t i) {
+    return upper_from_[static_cast<std::size_t>(block * kSubBands + part) * padded_ + i];
+  }
+
+  /// The row of the map of a band's cell in a column; outside of [0, rows) there is none.
+  [[nodiscard]] std::int64_t row_of(int x, std::size_t i) const {
+    const std::int64_t row = std::int64_t{first_} + static_cast<std::int64_t>(i) +
+                             sweep_.column[static_cast<std::size_t>(x)].begin_row;
+    return sweep_.cyclic ? tiled(row, sweep_.rows, Tiling::repeat) : row;
+  }
+  /// Where the map has what the sweep calls (x, row).
+  [[nodiscard]] std::pair<int, int> cell_of(int x, std::int64_t row) const {
+    const int along = sweep_.flipped ? sweep_.columns - 1 - x : x;
+    return sweep_.along_x ? std::pair(along, static_cast<int>(row))
+                          : std::pair(static_cast<int>(row), along);
+  }
+
+  HWY_NOINLINE void decide_column(int block, int c) {
+    const U8 d8;
+    std::uint8_t* const dark = dark_of(in_panel(block, c));
+    for (std::size_t i = 0; i < padded_; i += kBands) {
+      const auto state = hn::LoadU(d8, dark + i);
+      if (!hn::AllFalse(d8, hn::TestBit(state, hn::Set(d8, kUndecided)))) decide(block, c, i, dark);
+    }
+  }
+
+  /// The frame of a block, seen from where the rays of column x begin.
+  [[nodiscard]] std::int64_t climb_to(int block, int x) const {
+    return sweep_.blocks[static_cast<std::size_t>(block)].frame -
+           sweep_.column[static_cast<std::size_t>(x)].begin;
+  }
+
+  /// Vectors first: the cells of the next few columns, which are still at hand, decide most of what
+  /// the bounds do not. Where they leave it open, the definition decides.
+  HWY_NOINLINE void decide(int block, int c, std::size_t i, std::uint8_t* dark) {
+    const I16 d;
+    const int x = block * kSweepBlock + c;
+    // To the end of a block, whose bounds are known: this one, or the next where that is near.
+    const int end_block = kSweepBlock - c > 4 ? block + 1 : block + 2;
+    const std::size_t end = sweep_.step_at(end_block * kSweepBlock - x);
+    const SweepColumn& column = sweep_.column[static_cast<std::size_t>(x)];
+    const auto row = static_cast<std::int64_t>(i) + column.begin_row;
+    const std::int16_t* const at = current_->cell(in_panel(block, c), row);
+    const V own = hn::LoadU(d, at);
+    V highest = hn::Set(d, kLeast);
+    const auto walk = [&](const std::int16_t* from, std::size_t k, std::size_t last) HWY_ATTR {
+      for (; k < last; ++k)
+        highest = hn::Max(highest, hn::SaturatedSub(hn::LoadU(d, from + near_[k].cell),
+                                                    hn::Set(d, near_[k].climb)));
+    };
+    const int left = Panel::kColumns - in_panel(block, c);
+    const std::size_t own_end = std::min(end, sweep_.step_at(left));
+    walk(at, 0, own_end);
+    // Those of the panel before, as if its columns went on from this one's.
+    if (own_end < end)
+      walk(previous_->cell(0, row) - left * static_cast<std::ptrdiff_t>(stride_), own_end, end);
+    // Both heights and the climb are off by less than 2.1 together.
+    const auto hidden = hn::Gt(highest, hn::SaturatedAdd(own, hn::Set(d, 2)));
+    const auto near_open = hn::Gt(highest, hn::SaturatedSub(own, hn::Set(d, 2)));
+    auto open = near_open;
+    if (end_block < blocks_) {
+      const auto climb = static_cast<std::int16_t>(climb_to(end_block, x) - 3);
+      open = hn::Or(open, hn::Gt(hn::LoadU(d, &upper_from(end_block, column.part, i)),
+                                 hn::SaturatedAdd(own, hn::Set(d, climb))));
+    }
+    const V state = hn::PromoteTo(d, hn::LoadU(U8{}, dark + i));
+    const auto undecided = hn::Eq(state, hn::Set(d, kUndecided));
+    open = hn::And(hn::AndNot(hidden, open), undecided);
+    const V decided =
+        hn::IfThenElse(undecided, hn::And(hn::VecFromMask(d, hidden), hn::Set(d, kDark)), state);
+    hn::StoreU(hn::DemoteTo(U8{}, decided), U8{}, dark + i);
+    if (hn::AllFalse(d, open)) return;
+    std::uint8_t open_bits[8] = {}, near_bits[8] = {};
+    hn::StoreMaskBits(d, open, open_bits);
+    hn::StoreMaskBits(d, near_open, near_bits);
+    for (std::size_t byte = 0; byte < (kBands + 7) / 8; ++byte)
+      for (unsigned m = open_bits[byte]; m != 0; m &= m - 1) {
+        const auto bit = static_cast<unsigned>(std::countr_zero(m));
+        const std::size_t k = i + byte * 8 + bit;
+        if (k >= static_cast<std::size_t>(bands_)) continue;
+        const std::int64_t of_map = row_of(x, k);
+        if (of_map < 0 || of_map >= sweep_.rows) continue;
+        const bool near = (near_bits[byte] >> bit & 1) != 0;
+        dark[k] = traverse(x, of_map, k, near ? block : end_block) ? kDark : 0;
+      }
+  }
+
+  /// The definition, without the blocks whose upper bound is not above the cell's ray; those before
+  /// `block` are known to cast no shadow here.
+  [[nodiscard]] HWY_NOINLINE bool traverse(int x, std::int64_t row, std::size_t i, int block) {
+    const auto [cx, cy] = cell_of(x, row);
+    const auto own = static_cast<double>(sweep_.map.heights(cx, cy));
+    const int part = sweep_.column[static_cast<std::size_t>(x)].part;
+    const int own_block = x / kSweepBlock;
+    const std::int64_t units = *current_->cell(
+        x - first_block_ * kSweepBlock,
+        static_cast<std::int64_t>(i) + sweep_.column[static_cast<std::size_t>(x)].begin_row);
+    for (; block < blocks_; ++block) {
+      if (block > own_block) {
+        const std::int64_t ray = units + climb_to(block, x) - 3;
+        if (upper_from(block, part, i) <= ray) return false;
+        if (upper_in(block, part, i) <= ray) continue;
+      }
+      const std::size_t end = sweep_.step_at((block + 1) * kSweepBlock - x);
+      for (std::size_t k = sweep_.step_at(block * kSweepBlock - x); k < end; ++k) {
+        const RayStep& s = sweep_.ray[k];
+        if (static_cast<double>(sweep_.map.at(cx + s.dx, cy + s.dy)) > own + s.climb) return true;
+      }
+    }
+    return false;
+  }
+
+  /// The panel's first n columns. Where columns lie side by side in each row of the map, 16 × 16
+  /// cells at a time are turned in registers; what is left at the ends is stored cell by cell.
+  HWY_NOINLINE void store(int n) {
+    const int x0 = first_block_ * kSweepBlock;
+    if (!sweep_.along_x) {
+      for (int c = 0; c < n; ++c) store_column(x0, c, 0, bands_);
+      return;
+    }
+    std::int32_t begin[Panel::kColumns];
+    for (int c = 0; c < n; ++c)
+      begin[c] = sweep_.column[static_cast<std::size_t>(x0 + c)].begin_row;
+    const auto [low, high] = std::minmax_element(begin, begin + n);
+    // `at` counts rows from the first band's.
+    for (std::int32_t at = *low; at < *high + bands_; at += kSweepBlock) {
+      const std::int64_t from = std::int64_t{first_} + at;
+      const std::int64_t row = sweep_.cyclic ? tiled(from, sweep_.rows, Tiling::repeat) : from;
+      const bool whole = row >= 0 && row + kSweepBlock <= sweep_.rows;
+      for (int c0 = 0; c0 < n; c0 += kSweepBlock) {
+        const int end = std::min(c0 + kSweepBlock, n);
+        const auto has_all = [&](std::int32_t b) {
+          return at >= b && at + kSweepBlock <= b + bands_;
+        };
+        // From column to column rows shift one way.
+        if (whole && end == c0 + kSweepBlock && has_all(begin[c0]) && has_all(begin[end - 1])) {
+          const std::uint8_t* columns[kSweepBlock];
+          for (int c = c0; c < end; ++c)
+            columns[sweep_.flipped ? end - 1 - c : c - c0] = dark_of(c) + (at - begin[c]);
+          const int left = cell_of(x0 + (sweep_.flipped ? end - 1 : c0), 0).first;
+          turn_16(columns, &shadow_(left, static_cast<int>(row)));
+        } else {
+          for (int c = c0; c < end; ++c)
+            store_column(x0, c, at - begin[c], at - begin[c] + kSweepBlock);
+        }
+      }
+    }
+  }
+
+  /// Those of the bands [begin, end) of a column that there are.
+  void store_column(int x0, int c, int begin, int end) {
+    const std::uint8_t* const dark = dark_of(c);
+    end = std::min(end, bands_);
+    for (int i = std::max(begin, 0); i < end;) {
+      const std::int64_t row = row_of(x0 + c, static_cast<std::size_t>(i));
+      if (row < 0) {
+        i += static_cast<int>(-row);
+        continue;
+      }
+      if (row >= sweep_.rows) break;
+      const int n = static_cast<int>(std::min(std::int64_t{end} - i, sweep_.rows - row));
+      const auto [cx, cy] = cell_of(x0 + c, row);
+      std::uint8_t* to = &shadow_(cx, cy);
+      if (sweep_.along_x) {
+        for (int k = 0; k < n; ++k, to += shadow_.stride) *to = dark[i + k];
+      } else {
+        std::copy_n(dark + i, n, to);
+      }
+      i += n;
+    }
+  }
+
+  HWY_INLINE void turn_16(const std::uint8_t* const* columns, std::uint8_t* to) {
+    static_assert(kSweepBlock == 16);
+    const hn::Full128<std::uint8_t> d;
+    hn::Vec<hn::Full128<std::uint8_t>> a[16], b[16];
+    for (int c = 0; c < 16; ++c) a[c] = hn::LoadU(d, columns[c]);
+    for (int round = 0; round < 4; ++round) {
+      for (int c = 0; c < 8; ++c) {
+        b[2 * c] = hn::InterleaveLower(d, a[c], a[c + 8]);
+        b[2 * c + 1] = hn::InterleaveUpper(d, a[c], a[c + 8]);
+      }
+      for (int c = 0; c < 16; ++c) a[c] = b[c];
+    }
+    for (int r = 0; r < 16; ++r) hn::StoreU(a[r], d, to + r * shadow_.stride);
+  }
+
+  const Sweep& sweep_;
+  int first_, bands_;
+  std::size_t padded_;
+  ImageView<std::uint8_t> shadow_;
+  Panel panels_[2];
+  Panel* current_ = &panels_[0];
+  Panel* previous_ = &panels_[1];    ///< the one before, nearer to the sun
+  int first_block_ = 0;              ///< of the current one
+  std::vector<std::int16_t> lower_;  ///< of each part, in the frame of the block before
+  int blocks_;
+  std::unique_ptr<std::int16_t[]> upper_in_, upper_from_;  ///< in their block's frame
+  std::vector<std::uint8_t> dark_;                         ///< of the panel, column by column
+  /// The steps of two blocks, as distances in a Panel.
+  struct Near {
+    std::ptrdiff_t cell;
+    std::int16_t climb;
+  };
+  std::size_t stride_;
+  std::vector<Near> near_;
+  std::vector<Step> steps_;
+};
+
+void sweep(const Sweep& plan, int first, int last, ImageView<std::uint8_t> shadow) {
+  Sweeper(plan, first, last, shadow).run();
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace rastrum::terrain
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+
+#if HWY_ONCE
+namespace rastrum::terrain {
+
+SweepKernel sweep_kernel(Isa isa) noexcept {
+  switch (isa) {
+#if HWY_TARGETS & HWY_SSE4
+    case Isa::sse4:
+      return N_SSE4::sweep;
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    case Isa::avx2:
+      return N_AVX2::sweep;
+#endif
+#if HWY_TARGETS & HWY_AVX3
+    case Isa::avx512:
+      return N_AVX3::sweep;
+#endif
+#if HWY_TARGETS & HWY_NEON
+    case Isa::neon:
+      return N_NEON::sweep;
+#endif
+    default:
+      return nullptr;
+  }
+}
+
+}  // namespace rastrum::terrain
+#endif
