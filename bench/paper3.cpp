@@ -233,7 +233,7 @@ class WideFrame {
 
   void draw(Method method, Device device) {
     const Setup setup = set_up(options_, camera_, terrain_);
-    const Samples samples{setup, terrain_, MapView(pyramid_, options_, setup), &ceiling_};
+    const Samples samples{{setup, MapView(pyramid_, options_, setup)}, terrain_, &ceiling_};
     const TerrainTargets targets{{pixels_.data(), options_.width, options_.height, options_.width},
                                  {}};
     if (method == Method::fast)

@@ -29,11 +29,11 @@ struct ImageView {
   int width = 0, height = 0;
   std::ptrdiff_t stride = 0;  ///< elements from a row to the next
 
-  [[nodiscard]] bool empty() const { return data == nullptr; }
-  [[nodiscard]] T* row(int y) const { return data + y * stride; }
-  [[nodiscard]] T& operator()(int x, int y) const { return data[y * stride + x]; }
+  [[nodiscard]] RASTRUM_HD bool empty() const { return data == nullptr; }
+  [[nodiscard]] RASTRUM_HD T* row(int y) const { return data + y * stride; }
+  [[nodiscard]] RASTRUM_HD T& operator()(int x, int y) const { return data[y * stride + x]; }
   /// To read what may also be written.
-  operator ImageView<const T>() const requires(!std::is_const_v<T>) {
+  RASTRUM_HD operator ImageView<const T>() const requires(!std::is_const_v<T>) {
     return {data, width, height, stride};
   }
 };

@@ -11,6 +11,7 @@
 
 #include <rastrum/parallel/stop.hpp>
 #include <rastrum/terrain/blocks.hpp>
+#include <rastrum/terrain/fan.hpp>
 #include <rastrum/terrain/methods.hpp>
 
 namespace rastrum::terrain {
@@ -28,7 +29,7 @@ struct SurfaceWalk {
   alignas(64) double x[kBlockColumns], y[kBlockColumns];
 
   void place(const Slice& slice, const ColumnBlock& block, std::size_t i, std::size_t column) {
-    const Setup& s = samples.setup;
+    const SetupView& s = samples.setup;
     x[i] = s.camera_x + static_cast<double>(s.fx + slice.z * block.ux[column]);
     y[i] = s.camera_y + static_cast<double>(s.fy + slice.z * block.uy[column]);
   }
@@ -44,40 +45,9 @@ struct SurfaceWalk {
   }
 };
 
-/// The directions of a block's columns.
-struct Fan {
-  float ux0, ux1, uy0, uy1;
-
-  explicit Fan(const ColumnBlock& b, std::size_t n)
-      : ux0(*std::min_element(b.ux, b.ux + n)),
-        ux1(*std::max_element(b.ux, b.ux + n)),
-        uy0(*std::min_element(b.uy, b.uy + n)),
-        uy1(*std::max_element(b.uy, b.uy + n)) {}
-
-  /// The cells that samples at distances [z0, z1] read along one axis.
-  static CellRange cells(float u0, float u1, float z0, float z1, float within, std::int32_t cell) {
-    const float low = within + std::min(z0 * u0, z1 * u0);
-    const float high = within + std::max(z0 * u1, z1 * u1);
-    // One more on each side, for the neighbours of a filter.
-    return {cell + static_cast<std::int64_t>(std::floor(low)) - 1,
-            cell + static_cast<std::int64_t>(std::floor(high)) + 1};
-  }
-  /// No sample on slices [first, last] lies above this row.
-  [[nodiscard]] float lowest_row(const Samples& samples, const Slice& first,
-                                 const Slice& last) const {
-    const Setup& s = samples.setup;
-    const float top =
-        samples.ceiling->over(cells(ux0, ux1, first.z, last.z, s.fx, s.cell_x),
-                              cells(uy0, uy1, first.z, last.z, s.fy, s.cell_y), samples.map.tiling);
-    // Filtered heights may exceed the highest by a rounding.
-    const float height = top + std::abs(top) * 0x1p-20F;
-    return std::min(samples.row(height, first), samples.row(height, last));
-  }
-};
-
 Counts walk(const Samples& samples, const Kernels& kernels, std::size_t first, std::size_t n,
             BlockMarks& marks) {
-  const Setup& setup = samples.setup;
+  const SetupView& setup = samples.setup;
   const bool is_map = samples.terrain.is_map();
   const bool direct = is_map && samples.map.colors_match();
   ColumnBlock block;
@@ -86,7 +56,8 @@ Counts walk(const Samples& samples, const Kernels& kernels, std::size_t first, s
   block.restart(n, setup.height);
   SurfaceWalk surface{samples, {}, {}};
   Counts counts;
-  const Fan fan(block, n);
+  const Fan fan(setup, first, n);
+  const CeilingView ceiling = is_map ? samples.ceiling->view() : CeilingView{};
   for (std::size_t k = 0; k < setup.slices.size(); ++k) {
     const Slice& slice = setup.slices[k];
     if (block.deepest <= slice.lowest_row) break;
@@ -94,7 +65,7 @@ Counts walk(const Samples& samples, const Kernels& kernels, std::size_t first, s
     if (k % kGroup == 0 && parallel::stop_requested()) break;
     if (is_map && k % kGroup == 0) {
       const std::size_t last = std::min(k + kGroup, setup.slices.size()) - 1;
-      if (block.deepest <= fan.lowest_row(samples, slice, setup.slices[last])) {
+      if (block.deepest <= fan.lowest_row(samples, ceiling, slice, setup.slices[last])) {
         k = last;
         continue;
       }
@@ -110,8 +81,8 @@ Counts walk(const Samples& samples, const Kernels& kernels, std::size_t first, s
     counts.visible += visible;
     marks.put_depth(block, visible, slice.z);
     if (direct && slice.clear == 256) {
-      const int level = std::min(slice.level, samples.map.pyramid->height_levels() - 1);
-      marks.put_cells(block, visible, samples.map.pyramid->colors(level).pixels().data());
+      const int level = samples.map.height_level(slice.level);
+      marks.put_cells(block, visible, samples.map.colors(level).data);
       continue;
     }
     Rgba8 colors[kBlockColumns];

@@ -11,7 +11,7 @@ namespace {
 void heights_scalar(const Samples& samples, const Slice& slice, std::size_t n,
                     ColumnBlock& b) noexcept {
   const MapView& map = samples.map;
-  const int level = std::min(slice.level, map.pyramid->height_levels() - 1);
+  const int level = map.height_level(slice.level);
   for (std::size_t i = 0; i < n; ++i) {
     const float x = samples.setup.fx + slice.z * b.ux[i], y = samples.setup.fy + slice.z * b.uy[i];
     b.heights[i] = map.height_at(x, y, level);

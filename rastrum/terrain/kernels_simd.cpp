@@ -69,12 +69,11 @@ void heights(const Samples& samples, const Slice& slice, std::size_t n, ColumnBl
   const F32 d;
   const I32 di;
   const MapView& map = samples.map;
-  const int level =
-      kFilter == Filter::mip ? std::min(slice.level, map.pyramid->height_levels() - 1) : 0;
-  const Image<float>& image = map.pyramid->heights(level);
-  const float* cells = image.pixels().data();
+  const int level = kFilter == Filter::mip ? map.height_level(slice.level) : 0;
+  const ImageView<const float>& image = map.heights(level);
+  const float* cells = image.data;
   const Axis<kWrap> across(map.width), down(map.height);
-  const I stride = hn::Set(di, image.width());
+  const I stride = hn::Set(di, image.width);
   const I cell_x = hn::Set(di, map.cell_x), cell_y = hn::Set(di, map.cell_y);
   const F z = hn::Set(d, slice.z), fx = hn::Set(d, samples.setup.fx);
   const F fy = hn::Set(d, samples.setup.fy);

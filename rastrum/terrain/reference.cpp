@@ -19,7 +19,7 @@ void draw_span(const TerrainTargets& targets, int x, int from, int to, Rgba8 col
 }  // namespace
 
 Counts draw_reference(const Samples& samples, const TerrainTargets& targets) {
-  const Setup& setup = samples.setup;
+  const SetupView& setup = samples.setup;
   Counts counts;
   for (std::size_t column = 0; column < setup.ux.size(); ++column) {
     parallel::throw_if_stopped();
@@ -28,10 +28,8 @@ Counts draw_reference(const Samples& samples, const TerrainTargets& targets) {
     for (const Slice& slice : setup.slices) {
       if (hidden == 0) break;
       ++counts.samples;
-      const float row = samples.row(samples.height(column, slice), slice);
-      if (!(row < static_cast<float>(hidden))) continue;
-      const int top = row > 0 ? static_cast<int>(row) : 0;
-      if (top == hidden) continue;
+      const int top = setup.first_row(samples.height(column, slice), slice);
+      if (top >= hidden) continue;
       draw_span(targets, x, top, hidden, samples.color(column, slice), slice.z);
       hidden = top;
       ++counts.visible;

@@ -77,7 +77,7 @@ Counts TerrainRenderer::Impl::draw(const Terrain& terrain, const TerrainOptions&
   }
   const Setup setup = set_up(how, camera, terrain);
   stats.slices = setup.slices.size();
-  Samples samples{setup, terrain, {}, ceiling ? &*ceiling : nullptr};
+  Samples samples{{setup, {}}, terrain, ceiling ? &*ceiling : nullptr};
   if (terrain.is_map()) samples.map = MapView(*pyramid, how, setup);
   if (how.method == Method::words)
     return exec ? draw_words(*exec, samples, targets) : draw_words(serial, samples, targets);

@@ -96,7 +96,12 @@ double scale_px(const TerrainOptions& o) {
   return o.scale_px > 0 ? o.scale_px : o.width / 2.0 / half_width(o);
 }
 
-Setup set_up(const TerrainOptions& o, const TerrainCamera& camera, const Terrain& terrain) {
+Extent extent_of(const Terrain& terrain) {
+  if (!terrain.is_map()) return {};
+  return {terrain.heights()->width(), terrain.heights()->height(), terrain.highest()};
+}
+
+Setup set_up(const TerrainOptions& o, const TerrainCamera& camera, const Extent& terrain) {
   Setup s;
   s.height = o.height;
   s.sky = o.sky;
@@ -124,7 +129,7 @@ Setup set_up(const TerrainOptions& o, const TerrainCamera& camera, const Terrain
   s.camera_y = std::floor(camera.y);
   s.fx = std::min(static_cast<float>(camera.x - s.camera_x), 1 - 0x1p-24F);
   s.fy = std::min(static_cast<float>(camera.y - s.camera_y), 1 - 0x1p-24F);
-  if (terrain.is_map()) {
+  if (terrain.width > 0) {
     const auto reduced = [&](double corner, int size) {
       const auto cell = static_cast<std::int64_t>(corner);
       const std::int64_t far = 1 << 30;  // beyond the edge, whatever the offset
@@ -132,8 +137,8 @@ Setup set_up(const TerrainOptions& o, const TerrainCamera& camera, const Terrain
       return static_cast<int>(
           tiled(cell, o.tiling == Tiling::mirror ? 2 * size : size, Tiling::repeat));
     };
-    s.cell_x = reduced(s.camera_x, terrain.heights()->width());
-    s.cell_y = reduced(s.camera_y, terrain.heights()->height());
+    s.cell_x = reduced(s.camera_x, terrain.width);
+    s.cell_y = reduced(s.camera_y, terrain.height);
   }
 
   const auto n = static_cast<std::size_t>(slice_count(o));
@@ -153,8 +158,7 @@ Setup set_up(const TerrainOptions& o, const TerrainCamera& camera, const Terrain
       slice.clear = static_cast<std::uint32_t>(std::lround(256 * through));
     }
   }
-  // Filtered heights may exceed the highest by a rounding.
-  const float top = terrain.highest() + std::abs(terrain.highest()) * 0x1p-20F;
+  const float top = filtered_bound(terrain.highest);
   float lowest_row = std::numeric_limits<float>::infinity();
   for (std::size_t k = n; k-- > 0;) {
     const float row = (s.altitude - top) * s.slices[k].rows + s.horizon;

@@ -7,7 +7,11 @@
 // · rows + horizon. Multiply and add are kept apart.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <span>
 #include <vector>
 
 #include <rastrum/terrain/options.hpp>
@@ -24,9 +28,8 @@ struct Slice {
   std::uint32_t clear = 256;  ///< of 256: what the fog leaves of a colour
 };
 
-struct Setup {
-  std::vector<float> ux, uy;            ///< of each column: cells per cell of distance
-  std::vector<Slice> slices;            ///< near to far
+/// What all samples of a frame share.
+struct SharedSetup {
   double camera_x = 0, camera_y = 0;    ///< corner of the camera's cell
   std::int32_t cell_x = 0, cell_y = 0;  ///< the same within a map's period (or beyond its edge)
   float fx = 0, fy = 0;                 ///< of the camera in its cell, [0, 1)
@@ -34,6 +37,49 @@ struct Setup {
   float horizon = 0;  ///< rows, with the half row that makes floor(row) the first centre below
   int height = 0;     ///< of the picture
   Rgba8 sky, fog;
+};
+
+struct Setup : SharedSetup {
+  std::vector<float> ux, uy;  ///< of each column: cells per cell of distance
+  std::vector<Slice> slices;  ///< near to far
+};
+
+/// What filtered heights do not exceed where none of the heights exceeds `highest`: a rounding
+/// more.
+[[nodiscard]] RASTRUM_HD inline float filtered_bound(float highest) {
+  return highest + std::abs(highest) * 0x1p-20F;
+}
+
+/// The first row that a sample is drawn in where it is drawn in none.
+inline constexpr std::int32_t kNoRow = std::numeric_limits<std::int32_t>::max();
+
+/// A Setup as methods see it: by value, with the lists wherever the device has them.
+struct SetupView : SharedSetup {
+  std::span<const float> ux, uy;
+  std::span<const Slice> slices;
+
+  SetupView(const Setup& s) : SetupView(s, s.ux, s.uy, s.slices) {}
+  SetupView(const SharedSetup& shared, std::span<const float> across, std::span<const float> down,
+            std::span<const Slice> along)
+      : SharedSetup(shared), ux(across), uy(down), slices(along) {}
+
+  [[nodiscard]] RASTRUM_HD float offset_x(std::size_t column, const Slice& slice) const {
+    return fx + slice.z * ux[column];
+  }
+  [[nodiscard]] RASTRUM_HD float offset_y(std::size_t column, const Slice& slice) const {
+    return fy + slice.z * uy[column];
+  }
+  /// The row of a height, counted from the top; NaN in a hole. Its floor is the first row that is
+  /// drawn.
+  [[nodiscard]] RASTRUM_HD float row(float ground, const Slice& slice) const {
+    return (altitude - ground) * slice.rows + horizon;
+  }
+  /// That row within the picture, or kNoRow.
+  [[nodiscard]] RASTRUM_HD std::int32_t first_row(float ground, const Slice& slice) const {
+    const float at = row(ground, slice);
+    if (!(at < static_cast<float>(height))) return kNoRow;  // also NaN
+    return at > 0 ? static_cast<std::int32_t>(at) : 0;
+  }
 };
 
 /// Throws Error{invalid_argument} that names the option out of range.
@@ -44,8 +90,19 @@ void check(const TerrainCamera& camera);
 /// Rows that a height of 1 takes at distance 1.
 [[nodiscard]] double scale_px(const TerrainOptions& options);
 
+/// What a setup has to know of a terrain.
+struct Extent {
+  int width = 0, height = 0;  ///< cells of a map; 0: functions
+  float highest = std::numeric_limits<float>::infinity();
+};
+[[nodiscard]] Extent extent_of(const Terrain& terrain);
+
 /// Requires checked options and camera. O(width + slices).
 [[nodiscard]] Setup set_up(const TerrainOptions& options, const TerrainCamera& camera,
-                           const Terrain& terrain);
+                           const Extent& terrain);
+[[nodiscard]] inline Setup set_up(const TerrainOptions& options, const TerrainCamera& camera,
+                                  const Terrain& terrain) {
+  return set_up(options, camera, extent_of(terrain));
+}
 
 }  // namespace rastrum::terrain

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include <rastrum/core/config.hpp>
 #include <rastrum/core/image.hpp>
 
 namespace rastrum::terrain {
@@ -17,7 +18,8 @@ namespace rastrum::terrain {
 enum class Tiling : std::uint8_t { repeat, mirror, clamp };
 
 /// The cell of a map that is `size` long to which coordinate `i` belongs; floor, not truncation.
-[[nodiscard]] inline std::int64_t tiled(std::int64_t i, std::int64_t size, Tiling tiling) {
+[[nodiscard]] RASTRUM_HD inline std::int64_t tiled(std::int64_t i, std::int64_t size,
+                                                   Tiling tiling) {
   if (static_cast<std::uint64_t>(i) < static_cast<std::uint64_t>(size)) return i;
   const auto modulo = [](std::int64_t a, std::int64_t n) {
     const std::int64_t r = a % n;

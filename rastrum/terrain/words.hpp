@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 #include <rastrum/core/config.hpp>
 #include <rastrum/core/image.hpp>
+#include <rastrum/terrain/setup.hpp>
 
 namespace rastrum::terrain {
 
@@ -19,7 +19,6 @@ struct Pair {
   std::int32_t row = 0;
   friend bool operator==(const Pair&, const Pair&) = default;
 };
-inline constexpr std::int32_t kNoRow = std::numeric_limits<std::int32_t>::max();
 /// Of `occlude`.
 inline constexpr Pair kNoPair{{}, 0, kNoRow};
 
