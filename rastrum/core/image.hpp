@@ -1,6 +1,7 @@
 // Images: row 0 at the top, rows contiguous, pixel (x, y) at index y · width + x.
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -32,8 +33,10 @@ struct ImageView {
   [[nodiscard]] RASTRUM_HD bool empty() const { return data == nullptr; }
   [[nodiscard]] RASTRUM_HD T* row(int y) const { return data + y * stride; }
   [[nodiscard]] RASTRUM_HD T& operator()(int x, int y) const { return data[y * stride + x]; }
-  /// To read what may also be written.
-  RASTRUM_HD operator ImageView<const T>() const requires(!std::is_const_v<T>) {
+  /// To read what may also be written. (A template, for nvcc warns of conversions to the same
+  /// type.)
+  template <std::same_as<const T> U>
+  RASTRUM_HD operator ImageView<U>() const requires(!std::is_const_v<T>) {
     return {data, width, height, stride};
   }
 };

@@ -39,9 +39,12 @@ struct CeilingView {
   static constexpr int kFirstLevel = 4;
   std::span<const ImageView<const float>> levels;  ///< of cells of 2⁴, 2⁵, …
   int width = 0, height = 0;                       ///< of the map
+  int first_level = kFirstLevel;                   ///< of the list: its cells are of 2^first_level
 
   /// No height in x × y of the tiled map exceeds it; −inf where all are holes. At most 25 reads.
   [[nodiscard]] RASTRUM_HD float over(CellRange x, CellRange y, Tiling tiling) const;
+  /// The same by cells of the list's `level` alone.
+  [[nodiscard]] RASTRUM_HD float on_level(int level, CellRange x, CellRange y, Tiling tiling) const;
 };
 
 class Ceiling {
@@ -98,14 +101,18 @@ RASTRUM_HD inline float CeilingView::over(CellRange x, CellRange y, Tiling tilin
   const std::int64_t across = x.last - x.first, down = y.last - y.first;
   const std::int64_t longest = across > down ? across : down;
   int level = 0;
-  while (level + 1 < static_cast<int>(levels.size()) && (longest >> (kFirstLevel + level)) > 3)
+  while (level + 1 < static_cast<int>(levels.size()) && (longest >> (first_level + level)) > 3)
     ++level;
+  return on_level(level, x, y, tiling);
+}
+
+RASTRUM_HD inline float CeilingView::on_level(int level, CellRange x, CellRange y,
+                                              Tiling tiling) const {
   const ImageView<const float>& maxima = levels[static_cast<std::size_t>(level)];
   const ceiling_detail::Pieces columns = ceiling_detail::pieces_of(x, width, tiling);
   const ceiling_detail::Pieces rows = ceiling_detail::pieces_of(y, height, tiling);
-  const auto cell = [level](std::int64_t i) {
-    return static_cast<int>(i >> (kFirstLevel + level));
-  };
+  const int shift = first_level + level;
+  const auto cell = [shift](std::int64_t i) { return static_cast<int>(i >> shift); };
   float highest = -std::numeric_limits<float>::infinity();
   for (int v = 0; v < rows.count; ++v)
     for (int u = 0; u < columns.count; ++u)

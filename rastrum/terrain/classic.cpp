@@ -13,19 +13,13 @@
 #include <rastrum/parallel/for_each.hpp>
 #include <rastrum/parallel/stop.hpp>
 #include <rastrum/terrain/blocks.hpp>
+#include <rastrum/terrain/classic.hpp>
 #include <rastrum/terrain/methods.hpp>
 
 namespace rastrum::terrain {
 
-namespace {
-
-/// Where a slice begins, and its step from column to column.
-struct Line {
-  double z, rows, x, y, dx, dy;
-};
-
-std::vector<Line> lines_of(const TerrainOptions& options, const TerrainCamera& camera) {
-  std::vector<Line> lines;
+std::vector<ClassicLine> classic_lines(const TerrainOptions& options, const TerrainCamera& camera) {
+  std::vector<ClassicLine> lines;
   const double sin = std::sin(camera.angle_rad), cos = std::cos(camera.angle_rad);
   double dz = 1;
   for (double z = 1; z < options.distance; dz += 0.005, z += dz) {
@@ -37,6 +31,8 @@ std::vector<Line> lines_of(const TerrainOptions& options, const TerrainCamera& c
   return lines;
 }
 
+namespace {
+
 /// The lines as arrays, with as many more that go nowhere as fill the last group; and the positions
 /// at the first column of each block.
 struct Table {
@@ -44,7 +40,7 @@ struct Table {
   std::vector<double> lowest_row;
   std::size_t slices = 0;  ///< of a block, in x and y
 
-  Table(parallel::Threads& exec, const Kernels& kernels, const std::vector<Line>& lines,
+  Table(parallel::Threads& exec, const Kernels& kernels, const std::vector<ClassicLine>& lines,
         const Blocks& blocks, double altitude, double horizon, double highest)
       : slices((lines.size() + kClassicSlices - 1) / kClassicSlices * kClassicSlices) {
     dx.resize(slices);
@@ -54,7 +50,7 @@ struct Table {
     lowest_row.resize(lines.size());
     double lowest = std::numeric_limits<double>::infinity();
     for (std::size_t k = lines.size(); k-- > 0;) {
-      const Line& line = lines[k];
+      const ClassicLine& line = lines[k];
       dx[k] = line.dx;
       dy[k] = line.dy;
       x[k] = line.x;
@@ -80,11 +76,7 @@ struct Table {
                                const double* block_y, std::size_t first, std::size_t last,
                                std::size_t n) const {
     const auto cells = [&](const double* at, const std::vector<double>& step) {
-      const double a = at[first], b = at[last], c = a + step[first] * static_cast<double>(n),
-                   d = b + step[last] * static_cast<double>(n);
-      // One more on each side, for what accumulating rounds.
-      return CellRange{static_cast<std::int64_t>(std::floor(std::min({a, b, c, d}))) - 1,
-                       static_cast<std::int64_t>(std::floor(std::max({a, b, c, d}))) + 1};
+      return classic_range(at[first], step[first], at[last], step[last], n);
     };
     return static_cast<double>(ceiling.over(cells(block_x, dx), cells(block_y, dy), tiling));
   }
@@ -95,7 +87,7 @@ struct Table {
 Counts draw_classic(parallel::Threads& exec, Isa isa, BlockPool& pool, const Terrain& terrain,
                     const Ceiling& ceiling, const TerrainOptions& options,
                     const TerrainCamera& camera, const TerrainTargets& targets) {
-  const std::vector<Line> lines = lines_of(options, camera);
+  const std::vector<ClassicLine> lines = classic_lines(options, camera);
   const Blocks blocks(options.width, targets);
   const Table table(exec, kernels(isa), lines, blocks, camera.altitude, camera.horizon_px,
                     static_cast<double>(terrain.highest()));

@@ -11,6 +11,7 @@ namespace rastrum::terrain {
 
 struct Counts {
   std::uint64_t samples = 0, visible = 0;
+  std::uint64_t slices = 0;  ///< of a device
 };
 
 /// Column by column, span by span: the reference of the others.

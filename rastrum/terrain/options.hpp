@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -86,12 +87,15 @@ struct TerrainTargets {
 };
 
 struct TerrainStats {
-  TerrainCamera camera;          ///< as drawn: lifted from the ground where that was asked for
-  std::uint64_t slices = 0;      ///< distances at which each column may be sampled
-  std::uint64_t samples = 0;     ///< heights read; what is left out varies a little with where
-                                 ///< the targets lie in memory
-  std::uint64_t visible = 0;     ///< samples that were drawn
-  std::uint64_t peak_bytes = 0;  ///< scratch and pyramids, beyond the terrain and the images
+  TerrainCamera camera;             ///< as drawn: lifted from the ground where that was asked for
+  std::uint64_t slices = 0;         ///< distances at which each column may be sampled
+  std::uint64_t samples = 0;        ///< heights read; what is left out varies a little with where
+                                    ///< the targets lie in memory
+  std::uint64_t visible = 0;        ///< samples that were drawn
+  std::uint64_t peak_bytes = 0;     ///< scratch and pyramids, beyond the terrain and the images
+  std::uint64_t device_bytes = 0;   ///< of a GPU's memory: the map, the images, scratch
+  Device device = Device::threads;  ///< that drew
+  std::string device_why;  ///< why Device::automatic took it, or why not the one that was asked for
   std::vector<StageTime> stages;
   double frame_ms = 0;
   Isa isa = Isa::scalar;

@@ -1,11 +1,14 @@
 #include <rastrum/terrain/renderer.hpp>
 
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include <rastrum/parallel/cuda/status.hpp>
 #include <rastrum/terrain/blocks.hpp>
+#include <rastrum/terrain/cuda/device.hpp>
 #include <rastrum/terrain/methods.hpp>
 #include <rastrum/terrain/roll.hpp>
 #include <rastrum/terrain/setup.hpp>
@@ -35,33 +38,74 @@ struct TerrainRenderer::Impl {
   explicit Impl(TerrainOptions given)
       : options(std::move(given)),
         isa(options.isa.value_or(available_isas().back())),
+        asked(options.device),
         pool(memory),
         serial(&memory) {
-    options.device = choose_device(options.device, false).device;
-    if (options.device == Device::threads) exec.emplace(options.threads, &memory);
+    DeviceChoice choice = choose_device(options.device, true);
+    options.device = choice.device;
+    device_why = std::move(choice.why);
+    if (options.device == Device::threads) static_cast<void>(threads());
+    if (options.device == Device::cuda) gpu = make_device_renderer();
   }
 
-  void prepare(const Terrain& terrain);
+  [[nodiscard]] parallel::Threads& threads();
+  [[nodiscard]] DeviceChoice place(const Terrain& terrain, const TerrainOptions& how);
+  void prepare(const Terrain& terrain, Device where);
   Counts draw(const Terrain& terrain, const TerrainOptions& how, const TerrainCamera& camera,
-              const TerrainTargets& targets, TerrainStats& stats);
+              const TerrainTargets& targets, TerrainStats& stats, Stopwatch& stopwatch);
   Counts draw_rolled(const Terrain& terrain, const TerrainCamera& camera,
-                     const TerrainTargets& targets, TerrainStats& stats);
+                     const TerrainTargets& targets, TerrainStats& stats, Stopwatch& stopwatch);
 
   TerrainOptions options;
   Isa isa;
+  Device asked;
+  std::string device_why;
   MemoryAccount memory;
   BlockPool pool;
   parallel::Serial serial;
   std::optional<parallel::Threads> exec;
+  std::unique_ptr<DeviceRenderer> gpu;
+  std::uint64_t fits_gpu = 0;  ///< bytes that were found to fit
   // Of the map that was drawn last.
   std::optional<Ceiling> ceiling;
   std::optional<Pyramid> pyramid;
 };
 
+parallel::Threads& TerrainRenderer::Impl::threads() {
+  if (!exec) exec.emplace(options.threads, &memory);
+  return *exec;
+}
+
+/// What draws a frame of this terrain.
+DeviceChoice TerrainRenderer::Impl::place(const Terrain& terrain, const TerrainOptions& how) {
+  DeviceChoice choice{options.device, device_why};
+  if (options.device != Device::cuda) return choice;
+  const std::uint64_t bytes = terrain.is_map() ? device_bytes(terrain, how) : 0;
+  std::string why_not;
+  if (!terrain.is_map()) {
+    why_not = "this terrain is a function, which the CPU alone can call";
+  } else if (bytes > fits_gpu) {
+    const std::uint64_t free = parallel::cuda_status().free_bytes + gpu->bytes();
+    if (bytes > free)
+      why_not = "a map of " + std::to_string(terrain.heights()->width()) + "x" +
+                std::to_string(terrain.heights()->height()) + " cells in a picture of " +
+                std::to_string(how.width) + "x" + std::to_string(how.height) + " takes up to " +
+                std::to_string((bytes >> 20) + 1) + " MiB of the GPU's memory, and " +
+                std::to_string(free >> 20) + " MiB are free";
+    else
+      fits_gpu = bytes;
+  }
+  if (why_not.empty()) return choice;
+  if (terrain.is_map() && asked == Device::cuda)
+    throw Error(Errc::out_of_memory, "terrain: " + why_not + "; use --device threads");
+  return {Device::threads, "no CUDA: " + why_not};
+}
+
 /// What is computed once a map.
-void TerrainRenderer::Impl::prepare(const Terrain& terrain) {
-  if (!terrain.is_map()) return;
-  if (exec && !(ceiling && ceiling->is_of(terrain))) ceiling.emplace(terrain.heights());
+void TerrainRenderer::Impl::prepare(const Terrain& terrain, Device where) {
+  if (!terrain.is_map() || where == Device::cuda) return;
+  if (where == Device::threads && !(ceiling && ceiling->is_of(terrain)))
+    ceiling.emplace(terrain.heights());
   const bool whole = options.filter == Filter::mip;
   if (!(pyramid && pyramid->is_of(terrain, whole)))
     pyramid.emplace(terrain.heights(), terrain.colors(), whole);
@@ -69,10 +113,18 @@ void TerrainRenderer::Impl::prepare(const Terrain& terrain) {
 
 Counts TerrainRenderer::Impl::draw(const Terrain& terrain, const TerrainOptions& how,
                                    const TerrainCamera& camera, const TerrainTargets& targets,
-                                   TerrainStats& stats) {
+                                   TerrainStats& stats, Stopwatch& stopwatch) {
+  if (stats.device == Device::cuda) {
+    const auto lap = [&](const char* stage) { stopwatch.lap(stage); };
+    const Counts counts = gpu->draw(terrain, how, camera, targets, lap);
+    stats.slices = counts.slices;
+    stats.device_bytes = gpu->bytes();
+    return counts;
+  }
+  const bool on_threads = stats.device == Device::threads;
   if (how.classic) {
-    if (exec && terrain.is_map())
-      return draw_classic(*exec, isa, pool, terrain, *ceiling, how, camera, targets);
+    if (on_threads && terrain.is_map())
+      return draw_classic(threads(), isa, pool, terrain, *ceiling, how, camera, targets);
     return draw_classic_reference(terrain, how, camera, targets);
   }
   const Setup setup = set_up(how, camera, terrain);
@@ -80,12 +132,15 @@ Counts TerrainRenderer::Impl::draw(const Terrain& terrain, const TerrainOptions&
   Samples samples{{setup, {}}, terrain, ceiling ? &*ceiling : nullptr};
   if (terrain.is_map()) samples.map = MapView(*pyramid, how, setup);
   if (how.method == Method::words)
-    return exec ? draw_words(*exec, samples, targets) : draw_words(serial, samples, targets);
-  return exec ? draw_fast(*exec, isa, pool, samples, targets) : draw_reference(samples, targets);
+    return on_threads ? draw_words(threads(), samples, targets)
+                      : draw_words(serial, samples, targets);
+  return on_threads ? draw_fast(threads(), isa, pool, samples, targets)
+                    : draw_reference(samples, targets);
 }
 
 Counts TerrainRenderer::Impl::draw_rolled(const Terrain& terrain, const TerrainCamera& camera,
-                                          const TerrainTargets& targets, TerrainStats& stats) {
+                                          const TerrainTargets& targets, TerrainStats& stats,
+                                          Stopwatch& stopwatch) {
   const Upright upright = upright_of(options, camera);
   Image<Rgba8> colors;
   Image<float> depth;
@@ -98,17 +153,20 @@ Counts TerrainRenderer::Impl::draw_rolled(const Terrain& terrain, const TerrainC
     depth = Image<float>(upright.options.width, upright.options.height);
     whole.depth = depth.view();
   }
-  const Counts counts = draw(terrain, upright.options, upright.camera, whole, stats);
+  const Counts counts = draw(terrain, upright.options, upright.camera, whole, stats, stopwatch);
   const auto row = [&](std::size_t y) {
     if (!colors.empty())
       roll_row(whole.color8, camera.roll_rad, static_cast<int>(y), targets.color8);
     if (!depth.empty()) roll_row(whole.depth, camera.roll_rad, static_cast<int>(y), targets.depth);
   };
   const auto rows = static_cast<std::size_t>(options.height);
-  if (exec)
-    parallel::for_each_index(*exec, rows, row);
-  else
+  if (stats.device == Device::serial)
     parallel::for_each_index(serial, rows, row);
+  else
+    parallel::for_each_index(threads(), rows, row);
+  if (stats.device == Device::cuda)
+    stats.device_why.append(stats.device_why.empty() ? "" : "; ")
+        .append("the CPU rolls the picture");
   stats.peak_bytes += colors.pixels().size_bytes() + depth.pixels().size_bytes();
   return counts;
 }
@@ -141,17 +199,21 @@ TerrainStats TerrainRenderer::render(const Terrain& terrain, const TerrainCamera
                     .append(std::to_string(options.width) + "x" + std::to_string(options.height)));
   TerrainStats stats;
   Stopwatch stopwatch(stats);
-  stats.isa = options.device == Device::threads ? impl_->isa : Isa::scalar;
   stats.camera = given;
+  const bool rolled = given.roll_rad != 0;
+  DeviceChoice place = impl_->place(terrain, rolled ? upright_of(options, given).options : options);
+  stats.device = place.device;
+  stats.device_why = std::move(place.why);
+  stats.isa = stats.device == Device::threads ? impl_->isa : Isa::scalar;
   const std::optional<double> clearance = options.classic ? 10 : options.ground_clearance;
   if (clearance) stats.camera = above_ground(terrain, given, *clearance, options.tiling);
   impl_->memory.restart_peak();
-  impl_->prepare(terrain);
+  impl_->prepare(terrain, stats.device);
   stopwatch.lap("prepare");
 
-  const Counts counts = given.roll_rad != 0
-                            ? impl_->draw_rolled(terrain, stats.camera, targets, stats)
-                            : impl_->draw(terrain, options, stats.camera, targets, stats);
+  const Counts counts =
+      rolled ? impl_->draw_rolled(terrain, stats.camera, targets, stats, stopwatch)
+             : impl_->draw(terrain, options, stats.camera, targets, stats, stopwatch);
   stats.samples = counts.samples;
   stats.visible = counts.visible;
   stats.peak_bytes += impl_->memory.peak() + (impl_->ceiling ? impl_->ceiling->bytes() : 0) +

@@ -10,7 +10,9 @@
 
 namespace rastrum::terrain {
 
-/// Draws frames with one set of options; keeps threads, scratch and pyramids between frames.
+/// Draws frames with one set of options; keeps threads, scratch and pyramids between frames, and
+/// with Device::cuda the map that was drawn last in the device's memory. What a device cannot draw,
+/// functions for one, is drawn by the CPU's threads, and TerrainStats::device_why says so.
 class TerrainRenderer {
  public:
   /// Throws Error{invalid_argument} that names an option out of range, Error{no_device}.
@@ -22,7 +24,8 @@ class TerrainRenderer {
   /// Fills `targets`. The picture depends on terrain, camera and options alone: not on the method
   /// (but for Filter and cells that are the same), device, threads or instruction set.
   /// Cost: O(width · slices + width · height). Throws Error{invalid_argument} for a camera that is
-  /// not finite or farther than 1e12 cells away, or targets of another size.
+  /// not finite or farther than 1e12 cells away, or targets of another size;
+  /// Error{out_of_memory} for a map that is too large for the CUDA device that was asked for.
   TerrainStats render(const Terrain& terrain, const TerrainCamera& camera,
                       const TerrainTargets& targets);
 

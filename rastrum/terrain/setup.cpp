@@ -12,7 +12,6 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kMaxDistance = 8e6;
 /// Offsets from the camera stay exact as integers in float32 up to here.
 constexpr double kMaxExtent = 0x1p23;
-constexpr double kMaxSlices = 0x1p24;
 constexpr double kFarAway = 1e12;
 
 void require(bool good, const std::string& message) {
@@ -77,7 +76,7 @@ void check(const TerrainOptions& o) {
             std::to_string(extent) + " cells away in " + std::to_string(slice_count(o)) +
             " steps, and 2^23 and 2^24 are the limits; choose a smaller distance or larger steps");
   }
-  static_cast<void>(choose_device(o.device, false));
+  static_cast<void>(choose_device(o.device, true));
 }
 
 void check(const TerrainCamera& c) {

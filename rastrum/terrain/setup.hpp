@@ -82,6 +82,8 @@ struct SetupView : SharedSetup {
   }
 };
 
+inline constexpr double kMaxSlices = 0x1p24;
+
 /// Throws Error{invalid_argument} that names the option out of range.
 void check(const TerrainOptions& options);
 /// Throws Error{invalid_argument} where it is not finite or too far away.

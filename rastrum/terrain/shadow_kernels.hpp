@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <span>
 #include <vector>
 
 #include <rastrum/terrain/shadow_ray.hpp>
@@ -16,6 +18,19 @@ struct MarchSample {
   std::int32_t dx = 0, dy = 0;
   float climb = 0;
 };
+/// Throws Error{invalid_argument} for a sun or march out of range.
+[[nodiscard]] std::vector<MarchSample> march_samples(const Sun& sun, const March& march);
+
+/// hidden_samples of one cell.
+[[nodiscard]] RASTRUM_HD inline std::uint16_t hidden_count(const ShadowCaster& map,
+                                                           std::span<const MarchSample> samples,
+                                                           int x, int y) {
+  const float own = map.heights(x, y);
+  if (own == -std::numeric_limits<float>::infinity()) return 0;
+  int n = 0;
+  for (const MarchSample& s : samples) n += own + s.climb < map.at(x + s.dx, y + s.dy) ? 1 : 0;
+  return static_cast<std::uint16_t>(n);
+}
 
 struct ShadowKernels {
   /// Counts of hidden samples of row y.

@@ -24,6 +24,9 @@ struct SunRay {
 /// The longest shadow, in cells of the axis that the ray follows.
 inline constexpr int kLongestShadow = 65536;
 
+/// The same for a sun above the horizon, no lower than makes shadows on this relief that long.
+[[nodiscard]] SunRay sun_ray(const Sun& sun, double relief);
+
 struct RayStep {
   std::int32_t dx = 0, dy = 0;  ///< from the cell where the ray begins
   double climb = 0;             ///< of the ray until it enters
@@ -40,7 +43,7 @@ struct ShadowCaster {
   [[nodiscard]] double relief() const {
     return static_cast<double>(highest) - static_cast<double>(lowest);
   }
-  [[nodiscard]] float at(std::int64_t x, std::int64_t y) const {
+  [[nodiscard]] RASTRUM_HD float at(std::int64_t x, std::int64_t y) const {
     const auto inside = [](std::int64_t i, std::int64_t n) { return i >= 0 && i < n; };
     if (!inside(x, heights.width)) x = tiled(x, heights.width, tiling);
     if (!inside(y, heights.height)) y = tiled(y, heights.height, tiling);

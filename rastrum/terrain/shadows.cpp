@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/parallel/exec.hpp>
+#include <rastrum/terrain/cuda/device.hpp>
 #include <rastrum/terrain/shadow_kernels.hpp>
 #include <rastrum/terrain/shadow_ray.hpp>
 #include <rastrum/terrain/shadow_sweep.hpp>
@@ -55,10 +57,23 @@ void check(const Sun& sun) {
                 "the sun's angles must be finite, and its elevation at most 90 degrees");
 }
 
-/// Runs f on the backend that the options ask for.
+/// What f finds on a CUDA device, where the options ask for one; none where the CPU is to do it,
+/// for `automatic` also because the map is too large.
 template <class F>
-void on_device(const ShadowOptions& options, F&& f) {
-  if (choose_device(options.device, false).device == Device::serial) {
+auto on_cuda(const ShadowOptions& options, F&& f) -> std::optional<decltype(f())> {
+  if (choose_device(options.device, true).device != Device::cuda) return std::nullopt;
+  try {
+    return f();
+  } catch (const Error& e) {
+    if (options.device != Device::automatic || e.code() != Errc::out_of_memory) throw;
+    return std::nullopt;
+  }
+}
+
+/// Runs f on the CPU's backend that the options ask for.
+template <class F>
+void on_cpu(const ShadowOptions& options, F&& f) {
+  if (options.device == Device::serial) {
     parallel::Serial exec;
     f(exec);
   } else {
@@ -126,6 +141,13 @@ SunRay sun_ray(const Sun& sun) {
   return {east, -north, up / std::abs(flat)};  // no −0 at the zenith
 }
 
+SunRay sun_ray(const Sun& sun, double relief) {
+  SunRay ray = sun_ray(sun);
+  const double along = std::max(std::abs(ray.x), std::abs(ray.y));
+  ray.rise = std::max(ray.rise, relief * along / kLongestShadow);
+  return ray;
+}
+
 std::vector<RayStep> ray_steps(const SunRay& ray, double relief) {
   // Crossings that are nearer than this, of the way so far, are one: a corner.
   constexpr double kCorner = 1e-9;
@@ -148,7 +170,10 @@ std::vector<RayStep> ray_steps(const SunRay& ray, double relief) {
 
 Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun,
                                   const ShadowOptions& options) {
-  SunRay ray = sun_ray(sun);
+  check(sun);
+  if (const auto dark =
+          on_cuda(options, [&] { return sharp_shadows_on_device(heights, sun, options.tiling); }))
+    return *dark;
   Image<std::uint8_t> shadow(heights.width, heights.height);
   const Isa isa = isa_of(options);
   const ShadowKernels& kernels = shadow_kernels(isa);
@@ -164,12 +189,11 @@ Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun
               : 1;
     return shadow;
   }
-  const double along = std::max(std::abs(ray.x), std::abs(ray.y));
-  ray.rise = std::max(ray.rise, map.relief() * along / kLongestShadow);
+  const SunRay ray = sun_ray(sun, map.relief());
   std::vector<RayStep> steps = ray_steps(ray, map.relief());
   if (steps.empty() || !(map.relief() > 0)) return shadow;
   const SweepKernel kernel = can_sweep(map) ? sweep_kernel(isa) : nullptr;
-  on_device(options, [&](auto& exec) {
+  on_cpu(options, [&](auto& exec) {
     if (kernel == nullptr) {
       parallel::for_each_index(exec, static_cast<std::size_t>(heights.height),
                                [&](std::size_t row) {
@@ -219,8 +243,7 @@ Image<std::uint8_t> soft_light(ImageView<const float> heights, const Sun& sun, d
   return light;
 }
 
-Image<std::uint16_t> hidden_samples(ImageView<const float> heights, const Sun& sun,
-                                    const March& march, const ShadowOptions& options) {
+std::vector<MarchSample> march_samples(const Sun& sun, const March& march) {
   check(sun);
   if (!(march.distance > 0 && march.distance <= kLongestShadow) || march.steps < 2 ||
       march.steps > 65536)
@@ -235,19 +258,23 @@ Image<std::uint16_t> hidden_samples(ImageView<const float> heights, const Sun& s
                        static_cast<std::int32_t>(std::floor(t * -north * flat)),
                        static_cast<float>(t * up)});
   }
+  return samples;
+}
+
+Image<std::uint16_t> hidden_samples(ImageView<const float> heights, const Sun& sun,
+                                    const March& march, const ShadowOptions& options) {
+  const std::vector<MarchSample> samples = march_samples(sun, march);
+  if (const auto hidden = on_cuda(
+          options, [&] { return hidden_samples_on_device(heights, sun, march, options.tiling); }))
+    return *hidden;
   const ShadowKernels& kernels = shadow_kernels(isa_of(options));
   Image<float> copy;
   const ShadowCaster map = caster_of(heights, options.tiling, kernels, copy);
   Image<std::uint16_t> counts(heights.width, heights.height);
   const auto plain_row = [&](int y) {
-    for (int x = 0; x < heights.width; ++x) {
-      const float own = map.heights(x, y);
-      int n = 0;
-      for (const MarchSample& s : samples) n += own + s.climb < map.at(x + s.dx, y + s.dy) ? 1 : 0;
-      counts(x, y) = own == -kInfinity ? std::uint16_t{0} : static_cast<std::uint16_t>(n);
-    }
+    for (int x = 0; x < heights.width; ++x) counts(x, y) = hidden_count(map, samples, x, y);
   };
-  on_device(options, [&](auto& exec) {
+  on_cpu(options, [&](auto& exec) {
     const auto rows = static_cast<std::size_t>(heights.height);
     const auto row = [&](std::size_t i) {
       const int y = static_cast<int>(i);

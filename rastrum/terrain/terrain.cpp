@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <rastrum/terrain/cell.hpp>
 #include <rastrum/terrain/renderer.hpp>
 
 namespace rastrum::terrain {
@@ -24,12 +25,6 @@ Image<Rgba8> grey_of(const Image<float>& heights, float highest) {
     grey.pixels()[i] = {value, value, value, 255};
   }
   return grey;
-}
-
-std::int64_t cell_at(double at, int size, Tiling tiling) {
-  // Beyond 2⁵² there are no cells to tell apart, and int64 has to hold what is given.
-  return tiled(static_cast<std::int64_t>(std::clamp(std::floor(at), -0x1p52, 0x1p52)), size,
-               tiling);
 }
 
 }  // namespace
@@ -73,19 +68,8 @@ Rgba8 Terrain::color_at(double x, double y, Tiling tiling) const {
     surface_->colors(&x, &y, 1, &color);
     return color;
   }
-  // The texel under the point, where a cell has several or a part of one.
-  const auto texel = [tiling](double at, int cells, int texels) {
-    const std::int64_t cell = cell_at(at, cells, tiling);
-    if (texels == cells) return static_cast<int>(cell);
-    double within = at - std::floor(at);
-    if (tiling == Tiling::mirror && cell != cell_at(at, 2 * cells, Tiling::repeat))
-      within = 1 - within;
-    if (tiling == Tiling::clamp && (at < 0 || at >= cells)) within = at < 0 ? 0 : 1;
-    const double position = (static_cast<double>(cell) + within) * texels / cells;
-    return std::min(static_cast<int>(position), texels - 1);
-  };
-  return (*colors_)(texel(x, heights_->width(), colors_->width()),
-                    texel(y, heights_->height(), colors_->height()));
+  return (*colors_)(texel_at(x, heights_->width(), colors_->width(), tiling),
+                    texel_at(y, heights_->height(), colors_->height(), tiling));
 }
 
 double ground_at(const Terrain& terrain, double x, double y, const TerrainOptions& options) {

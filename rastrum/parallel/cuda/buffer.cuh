@@ -59,13 +59,20 @@ template <class T>
   return DeviceBuffer<T>(exec.memory(), n);
 }
 
-/// A copy of `source`, contiguous memory of the host, which may go when this returns. Waits.
+/// A copy of `source`, contiguous memory of the host, which must stay as it is until the context
+/// was waited for.
 template <class R>
-[[nodiscard]] auto to_device(Cuda& exec, const R& source) {
+[[nodiscard]] auto upload(Cuda& exec, const R& source) {
   auto out =
       make_buffer<std::remove_cvref_t<decltype(*std::data(source))>>(exec, std::size(source));
   cuda_system::copy(exec.stream(), out.data(), std::data(source),
                     out.size() * sizeof(*std::data(source)));
+  return out;
+}
+/// The same, and waits: `source` may go when this returns.
+template <class R>
+[[nodiscard]] auto to_device(Cuda& exec, const R& source) {
+  auto out = upload(exec, source);
   exec.wait();
   return out;
 }

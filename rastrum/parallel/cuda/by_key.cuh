@@ -1,10 +1,10 @@
 // reduce_by_key, segmented_scan and segmented_reduce on a device; see reduce_by_key.hpp and
 // segmented.hpp for what they compute.
 //
-// Where any order gives the same bits (kAnyOrder) by Thrust, a segment being known by its number,
-// which is found by binary search: work O(n · log segments), span O(log n). Else the CPU's passes,
-// with a thread a block of kBlock elements, and the same bits. reduce_by_key waits for the number
-// of runs.
+// Where any order (or grouping, for the scan) gives the same bits by Thrust, a segment being known
+// by its number, which is found by binary search: work O(n · log segments), span O(log n). Else the
+// CPU's passes, with a thread a block of kBlock elements, and the same bits. reduce_by_key waits
+// for the number of runs.
 #pragma once
 
 #include <cassert>
@@ -75,7 +75,7 @@ void segmented_scan(Cuda& exec, const First& first, const In& in, Out&& out, Op 
   auto begins = device_view(first);
   auto view = device_view(in);
   auto to = device_view(out);
-  if constexpr (kAnyOrder<T, Op>) {
+  if constexpr (kAnyGrouping<T, Op>) {
     const auto segment = cuda_detail::values_as<std::size_t>(
         Computed(std::size(in), cuda_detail::SegmentOf<decltype(begins)>{begins}));
     thrust::inclusive_scan_by_key(

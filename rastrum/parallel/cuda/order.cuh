@@ -1,5 +1,6 @@
 // Which folds may be cut anywhere: those whose result is the same bits however the operands are
-// grouped and in whatever order they come. All others keep the CPU's cut (reduce.hpp).
+// grouped and, but for scans, in whatever order they come. All others keep the CPU's cut
+// (reduce.hpp).
 #pragma once
 
 #include <concepts>
@@ -20,5 +21,9 @@ template <std::integral T>
 inline constexpr bool kAnyOrder<T, std::bit_or<>> = true;
 template <std::integral T>
 inline constexpr bool kAnyOrder<T, Maximum> = true;
+
+/// What is enough for a scan, which keeps the order. Specialize it for an associative function.
+template <class T, class Op>
+inline constexpr bool kAnyGrouping = kAnyOrder<T, Op>;
 
 }  // namespace rastrum::parallel

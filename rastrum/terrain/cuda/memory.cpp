@@ -1,0 +1,35 @@
+#include <algorithm>
+
+#include <rastrum/terrain/cuda/device.hpp>
+#include <rastrum/terrain/setup.hpp>
+
+namespace rastrum::terrain {
+
+std::uint64_t device_bytes(const Terrain& map, const TerrainOptions& options) {
+  const auto area = [](std::int64_t width, std::int64_t height) {
+    return static_cast<std::uint64_t>(width * height);
+  };
+  constexpr std::uint64_t kBytes = 4;  // of a height, a colour, a depth
+  const std::uint64_t cells = area(map.heights()->width(), map.heights()->height()) +
+                              area(map.colors()->width(), map.colors()->height());
+  // The maxima of 16 × 16 cells and more; a pyramid, whose odd sizes round up.
+  std::uint64_t bytes = cells * kBytes + cells * kBytes / 128;
+  if (options.filter == Filter::mip) bytes += cells * kBytes / 2;
+  bytes += 2 * kBytes * area(options.width, options.height);
+  const auto slices = static_cast<std::uint64_t>(
+      std::min(options.distance / std::min(1.0, options.step), kMaxSlices));
+  // A batch of the words (words_listing.hpp): pairs, two screens, and what Thrust wants beside
+  // them.
+  constexpr std::uint64_t kBatch = std::uint64_t{1} << 21, kWordsBytes = 64;
+  if (options.method == Method::words) bytes += kWordsBytes * std::max(kBatch, slices);
+  // Where teams of 16 columns begin on the classic slices, whose steps are no shorter than 1.
+  constexpr std::uint64_t kTeamColumns = 16, kStartBytes = 16;
+  if (options.classic)
+    bytes += kStartBytes * slices * (static_cast<std::uint64_t>(options.width) / kTeamColumns + 1);
+  // The setup's lists. An arena rounds blocks up by a quarter.
+  constexpr std::uint64_t kSetupBytes = 64, kSmall = std::uint64_t{1} << 20;
+  bytes += kSmall + kSetupBytes * slices;
+  return bytes + bytes / 4;
+}
+
+}  // namespace rastrum::terrain

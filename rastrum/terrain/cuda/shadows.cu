@@ -1,0 +1,44 @@
+// sharp_shadows and hidden_samples of maps that lie on the host, on a CUDA device.
+#include <rastrum/terrain/cuda/device.hpp>
+#include <rastrum/terrain/cuda/shadows.cuh>
+
+namespace rastrum::terrain {
+namespace {
+
+/// The result of compute(exec, map on the device), brought back.
+template <class T, class F>
+Image<T> on_device(ImageView<const float> heights, const F& compute) {
+  parallel::Cuda exec;
+  const auto width = static_cast<std::size_t>(heights.width);
+  auto cells = parallel::make_buffer<float>(exec, width * static_cast<std::size_t>(heights.height));
+  for (int y = 0; y < heights.height; ++y)
+    parallel::cuda_system::copy(exec.stream(), cells.data() + static_cast<std::size_t>(y) * width,
+                                heights.row(y), width * sizeof(float));
+  const parallel::DeviceBuffer<T> result = compute(
+      exec, ImageView<const float>{cells.data(), heights.width, heights.height, heights.width});
+  Image<T> out(heights.width, heights.height);
+  parallel::cuda_system::copy(exec.stream(), out.pixels().data(), result.data(),
+                              result.size() * sizeof(T));
+  exec.wait();
+  return out;
+}
+
+}  // namespace
+
+Image<std::uint8_t> sharp_shadows_on_device(ImageView<const float> heights, const Sun& sun,
+                                            Tiling tiling) {
+  return on_device<std::uint8_t>(heights,
+                                 [&](parallel::Cuda& exec, const ImageView<const float>& map) {
+                                   return sharp_shadows(exec, map, sun, tiling);
+                                 });
+}
+
+Image<std::uint16_t> hidden_samples_on_device(ImageView<const float> heights, const Sun& sun,
+                                              const March& march, Tiling tiling) {
+  return on_device<std::uint16_t>(heights,
+                                  [&](parallel::Cuda& exec, const ImageView<const float>& map) {
+                                    return hidden_samples(exec, map, sun, march, tiling);
+                                  });
+}
+
+}  // namespace rastrum::terrain

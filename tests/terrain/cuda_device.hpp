@@ -1,0 +1,24 @@
+// A device for the tests of rastrum/terrain/cuda: the CPU, with as much memory as a test says
+// (cuda_device.cpp); or a GPU, without which the tests are skipped.
+#pragma once
+
+#include <cstdint>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/parallel/cuda/status.hpp>
+
+namespace rastrum::test {
+
+class TerrainOnDevice : public testing::Test {
+ protected:
+  void SetUp() override {
+    set_free_bytes(std::uint64_t{1} << 40);
+    const parallel::CudaStatus status = parallel::cuda_status();
+    if (!status.usable) GTEST_SKIP() << status.why_not;
+  }
+  /// What the device has free from now on.
+  static void set_free_bytes(std::uint64_t bytes);
+};
+
+}  // namespace rastrum::test

@@ -1,0 +1,277 @@
+// The terrain renderer with Device::cuda. Compiled here with Thrust's C++ system the device is the
+// CPU (parallel/cuda/system.cuh), so all that kernels compute is held to the serial reference bit
+// for bit where there is no GPU; with nvcc the same tests run on one.
+#include <algorithm>
+#include <limits>
+#include <random>
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/io/height_map.hpp>
+#include <rastrum/parallel/cuda/status.hpp>
+#include <rastrum/terrain/functions.hpp>
+#include <rastrum/terrain/renderer.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/terrain/cuda_device.hpp"
+#include "tests/terrain/maps.hpp"
+
+namespace rastrum::terrain {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+struct Picture {
+  Image<Rgba8> colors;
+  Image<float> depth;
+  TerrainStats stats;
+
+  Picture(const Terrain& terrain, const TerrainCamera& camera, const TerrainOptions& options)
+      : colors(options.width, options.height), depth(options.width, options.height) {
+    TerrainRenderer renderer(options);
+    stats = renderer.render(terrain, camera, {colors.view(), depth.view()});
+  }
+};
+
+void expect_equal(const Picture& expected, const Picture& got, const std::string& what) {
+  std::size_t colors = 0, depths = 0;
+  for (std::size_t i = 0; i < expected.colors.pixels().size(); ++i) {
+    colors += !(expected.colors.pixels()[i] == got.colors.pixels()[i]);
+    depths += expected.depth.pixels()[i] != got.depth.pixels()[i];
+  }
+  EXPECT_EQ(colors, 0U) << what;
+  EXPECT_EQ(depths, 0U) << what;
+  EXPECT_EQ(got.stats.visible, expected.stats.visible) << what;
+  EXPECT_EQ(got.stats.slices, expected.stats.slices) << what;
+}
+
+/// The device's methods against the serial reference.
+void expect_same_on_device(const Terrain& terrain, const TerrainCamera& camera,
+                           TerrainOptions options, const std::string& what) {
+  options.device = Device::serial;
+  options.method = Method::fast;
+  const Picture expected(terrain, camera, options);
+  options.device = Device::cuda;
+  for (const Method method : {Method::fast, Method::words}) {
+    options.method = method;
+    const Picture got(terrain, camera, options);
+    EXPECT_EQ(got.stats.device, Device::cuda);
+    expect_equal(expected, got, what + (method == Method::fast ? ", fast" : ", words"));
+    if (options.classic) break;
+  }
+}
+
+class CudaTerrain : public test::TerrainOnDevice {};
+
+TEST_F(CudaTerrain, RandomMapsAreTheReferencesBits) {
+  std::mt19937 random(71);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const int sizes[][2] = {{64, 64}, {100, 60}, {1, 1}, {1, 37}, {53, 1}, {129, 65}, {300, 200}};
+  for (int i = 0; i < 180; ++i) {
+    const auto& size = sizes[random() % 7];
+    HeightMap map = test::random_map(size[0], size[1], random, between(0, 0.5));
+    if (i % 5 == 1) map.colors = test::random_map(37, 91, random).colors;
+    if (i % 5 == 2)
+      for (float& h : map.heights.pixels()) h -= 200;
+    if (i % 6 == 1)
+      for (int k = 0; k < 20; ++k)
+        map.heights.pixels()[random() % map.heights.pixels().size()] = kNaN;
+    TerrainOptions options;
+    options.width = 1 + static_cast<int>(random() % 150);
+    options.height = 1 + static_cast<int>(random() % 90);
+    options.distance = between(1, i % 13 == 0 ? 9000 : 400);
+    options.filter = static_cast<Filter>(i % 3);
+    options.tiling = static_cast<Tiling>(i / 3 % 3);
+    options.projection = static_cast<Projection>(i / 9 % 2);
+    options.fov_rad = between(0.3, options.projection == Projection::planar ? 2.5 : 6.28);
+    options.dz = i % 4 == 0 ? 0.1 : 0.005;
+    options.scale_px = i % 3 == 0 ? 240 : 0;
+    if (i % 4 == 1) options.fog = {between(0, 0.02), between(0, 50), {}};
+    TerrainCamera camera;
+    const double far = i % 7 == 0 ? 1e9 : 500;
+    camera.x = between(-far, far);
+    camera.y = between(-far, far);
+    camera.altitude = i % 11 == 0 ? between(-1e6, 1e6) : between(-250, 400);
+    camera.angle_rad = between(-7, 7);
+    camera.horizon_px = between(-50, 100);
+    camera.roll_rad = i % 10 == 9 ? between(-7, 7) : 0;
+    expect_same_on_device(Terrain(std::move(map)), camera, options, "case " + std::to_string(i));
+    if (HasFailure()) return;
+  }
+}
+
+TEST_F(CudaTerrain, ARealMapIsTheReferencesBits) {
+  const auto file = test::shared_data("terrain/SainteHelens.dem");
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
+  io::HeightGrid grid = io::read_heights(file);
+  HeightMap map{std::move(grid.heights), {}};
+  for (float& h : map.heights.pixels()) h /= static_cast<float>(grid.units_per_cell);
+  const Terrain terrain(std::move(map));
+  TerrainOptions options;
+  options.width = 333;
+  options.height = 190;
+  options.distance = 1500;
+  options.tiling = Tiling::clamp;
+  for (const Filter filter : {Filter::none, Filter::bilinear, Filter::mip}) {
+    options.filter = filter;
+    expect_same_on_device(terrain, {.x = 200, .y = 420, .altitude = 130, .horizon_px = 40}, options,
+                          "filter " + std::to_string(static_cast<int>(filter)));
+  }
+}
+
+TEST_F(CudaTerrain, TheClassicPictureIsTheOriginals) {
+  std::mt19937 random(72);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const int sizes[][2] = {{64, 64}, {100, 60}, {1, 1}, {1, 37}, {256, 256}};
+  for (int i = 0; i < 80; ++i) {
+    const auto& size = sizes[random() % 5];
+    HeightMap map = test::random_map(size[0], size[1], random, between(0, 0.5));
+    if (i % 5 == 1) map.colors = test::random_map(37, 91, random).colors;
+    if (i % 6 == 1) map.heights.pixels()[random() % map.heights.pixels().size()] = kNaN;
+    TerrainOptions options;
+    options.classic = true;
+    options.width = 1 + static_cast<int>(random() % 150);
+    options.height = 1 + static_cast<int>(random() % 90);
+    options.distance = between(1, i % 13 == 0 ? 9000 : 800);
+    options.tiling = static_cast<Tiling>(i % 3);
+    TerrainCamera camera;
+    const double far = i % 7 == 0 ? 1e9 : 500;
+    camera.x = between(-far, far);
+    camera.y = between(-far, far);
+    camera.altitude = between(-50, 400);
+    camera.angle_rad = between(-7, 7);
+    camera.horizon_px = between(-50, 100);
+    expect_same_on_device(Terrain(std::move(map)), camera, options, "case " + std::to_string(i));
+    if (HasFailure()) return;
+  }
+}
+
+// The walk leaves out what maxima hide, or the device would be slower than the CPU.
+TEST_F(CudaTerrain, LeavesOutWhatIsHidden) {
+  std::mt19937 random(3);
+  const Terrain hills(test::random_map(1024, 1024, random, 0.1));
+  TerrainOptions options;
+  options.width = 160;
+  options.height = 100;
+  options.distance = 2000;
+  options.device = Device::cuda;
+  const TerrainCamera low{.x = 300, .y = 500, .altitude = 200, .horizon_px = 40};
+  const Picture picture(hills, low, options);
+  EXPECT_GT(picture.stats.samples, picture.stats.visible);
+  EXPECT_LT(picture.stats.samples, 160 * picture.stats.slices / 2);
+}
+
+TEST_F(CudaTerrain, TargetsMayHaveGapsOrBeLeftOut) {
+  std::mt19937 random(4);
+  const Terrain terrain(test::random_map(50, 70, random));
+  TerrainOptions options;
+  options.width = 61;
+  options.height = 40;
+  options.device = Device::serial;
+  const TerrainCamera camera{.altitude = 300, .horizon_px = 5};
+  const Picture expected(terrain, camera, options);
+  options.device = Device::cuda;
+  TerrainRenderer renderer(options);
+  Image<Rgba8> wide(80, 41);
+  for (Rgba8& p : wide.pixels()) p = {1, 2, 3, 4};
+  const ImageView<Rgba8> part{wide.view().data + 5, 61, 40, 80};
+  renderer.render(terrain, camera, {part, {}});
+  Image<float> depth(61, 40);
+  renderer.render(terrain, camera, {{}, depth.view()});
+  for (int y = 0; y < 41; ++y)
+    for (int x = 0; x < 80; ++x) {
+      const bool inside = x >= 5 && x < 66 && y < 40;
+      EXPECT_EQ(wide(x, y), inside ? expected.colors(x - 5, y) : (Rgba8{1, 2, 3, 4}));
+      if (inside) {
+        EXPECT_EQ(depth(x - 5, y), expected.depth(x - 5, y));
+      }
+    }
+  EXPECT_EQ(renderer.render(terrain, camera, {}).visible, expected.stats.visible);
+}
+
+TEST_F(CudaTerrain, AFrameLikeTheOneBeforeAllocatesNothingAndCopiesNoMap) {
+  std::mt19937 random(5);
+  const Terrain a(test::random_map(256, 200, random)), b(test::random_map(256, 200, random));
+  TerrainOptions options;
+  options.width = 200;
+  options.height = 100;
+  options.device = Device::cuda;
+  TerrainRenderer renderer(options);
+  Image<Rgba8> colors(200, 100);
+  const TerrainCamera camera{.altitude = 300, .horizon_px = 10};
+  const std::uint64_t bytes = renderer.render(a, camera, {colors.view(), {}}).device_bytes;
+  EXPECT_GT(bytes, 8U * 256 * 200);
+  EXPECT_LT(bytes, 12U * 256 * 200 + (1U << 18));
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(renderer.render(a, camera, {colors.view(), {}}).device_bytes, bytes);
+  // Another map of that size takes its place; other colours are seen.
+  const auto first = colors;
+  EXPECT_LE(renderer.render(b, camera, {colors.view(), {}}).device_bytes, bytes + 256 * 200);
+  options.device = Device::serial;
+  EXPECT_TRUE(std::ranges::equal(colors.pixels(), Picture(b, camera, options).colors.pixels()));
+  renderer.render(a.with_colors(*b.colors()), camera, {colors.view(), {}});
+  EXPECT_TRUE(std::ranges::equal(
+      colors.pixels(), Picture(a.with_colors(*b.colors()), camera, options).colors.pixels()));
+  EXPECT_FALSE(std::ranges::equal(colors.pixels(), first.pixels()));
+}
+
+TEST_F(CudaTerrain, FunctionsGoToTheCpuAndTheStatisticsSayWhy) {
+  const Terrain waves = function_terrain(named_function("wavy"), 0, 80, {});
+  TerrainOptions options;
+  options.width = 80;
+  options.height = 60;
+  options.device = Device::cuda;
+  const Picture picture(waves, {.altitude = 100}, options);
+  EXPECT_EQ(picture.stats.device, Device::threads);
+  EXPECT_NE(picture.stats.device_why.find("function"), std::string::npos)
+      << picture.stats.device_why;
+  options.device = Device::serial;
+  expect_equal(Picture(waves, {.altitude = 100}, options), picture, "waves");
+}
+
+TEST_F(CudaTerrain, ARollIsTheCpusAndTheStatisticsSayIt) {
+  std::mt19937 random(9);
+  const Terrain terrain(test::random_map(50, 70, random));
+  TerrainOptions options;
+  options.width = 80;
+  options.height = 60;
+  options.device = Device::automatic;
+  EXPECT_EQ(Picture(terrain, {}, options).stats.device_why.find("there is a "), 0U);
+  const Picture rolled(terrain, {.roll_rad = 1}, options);
+  EXPECT_NE(rolled.stats.device_why.find("the CPU rolls"), std::string::npos);
+  EXPECT_EQ(rolled.stats.device, Device::cuda);
+}
+
+TEST_F(CudaTerrain, AMapThatIsTooLargeIsRefusedByNameAndAutoGoesToTheCpu) {
+  std::mt19937 random(6);
+  const Terrain terrain(test::random_map(1024, 512, random));
+  TerrainOptions options;
+  options.width = 80;
+  options.height = 60;
+  set_free_bytes(std::uint64_t{3} << 20);
+  options.device = Device::cuda;
+  try {
+    const Picture picture(terrain, {}, options);
+    FAIL() << "there was room for " << picture.stats.device_bytes;
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::out_of_memory);
+    for (const char* part : {"1024x512", "80x60", "3 MiB are free", "--device threads"})
+      EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
+  }
+  options.device = Device::automatic;
+  const Picture picture(terrain, {}, options);
+  EXPECT_EQ(picture.stats.device, Device::threads);
+  EXPECT_NE(picture.stats.device_why.find("1024x512"), std::string::npos)
+      << picture.stats.device_why;
+  options.device = Device::serial;
+  expect_equal(Picture(terrain, {}, options), picture, "on threads");
+}
+
+}  // namespace
+}  // namespace rastrum::terrain
