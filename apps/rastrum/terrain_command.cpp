@@ -125,14 +125,15 @@ nlohmann::ordered_json stats_json(std::vector<TerrainStats> frames, const Terrai
                                   const LoadedTerrain& source, double load_ms, double light_ms) {
   std::ranges::sort(frames, {}, &TerrainStats::frame_ms);
   const TerrainStats& median = frames[(frames.size() - 1) / 2];
-  const bool serial = a.options.device == Device::serial;
+  const bool serial = median.device == Device::serial;
   nlohmann::ordered_json stages = nlohmann::ordered_json::object();
   for (const StageTime& stage : median.stages) {
     nlohmann::ordered_json& ms = stages[stage.name];
     ms = (ms.is_null() ? 0.0 : ms.get<double>()) + (stage.end_ms - stage.begin_ms);
   }
   return {{"version", RASTRUM_VERSION},
-          {"device", serial ? "serial" : "threads"},
+          {"device", name(median.device)},
+          {"device_why", median.device_why},
           {"threads", serial ? 1 : parallel::Threads(a.options.threads).concurrency()},
           {"isa", name(median.isa)},
           {"size", {a.options.width, a.options.height}},
@@ -144,6 +145,7 @@ nlohmann::ordered_json stats_json(std::vector<TerrainStats> frames, const Terrai
           {"samples", median.samples},
           {"visible", median.visible},
           {"peak_bytes", median.peak_bytes},
+          {"device_bytes", median.device_bytes},
           {"load_ms", load_ms},
           {"light_ms", light_ms},
           {"stages_ms", std::move(stages)},

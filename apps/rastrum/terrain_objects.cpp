@@ -158,7 +158,8 @@ TerrainObjects::TerrainObjects(const TerrainObjectArguments& a,
   RenderOptions render = a.scene.render;
   render.width = options.width;
   render.height = options.height;
-  render.device = options.device;
+  // Their pictures' depth lies with the host, whatever drew the terrain.
+  render.device = options.device == Device::serial ? Device::serial : Device::threads;
   render.threads = options.threads;
   render.isa = options.isa;
   if (!a.scene.shader_given && !scene_.materials.empty()) render.shader = Shader::material;
@@ -190,6 +191,9 @@ void TerrainObjects::draw(const terrain::TerrainTargets& picture, terrain::Terra
   stats.stages.push_back({"objects", stats.frame_ms, stats.frame_ms + drawn.frame_ms});
   stats.frame_ms += drawn.frame_ms;
   stats.peak_bytes += drawn.peak_bytes;
+  if (stats.device == Device::cuda)
+    stats.device_why.append(stats.device_why.empty() ? "" : "; ")
+        .append("the CPU draws meshes and sprites");
 }
 
 }  // namespace rastrum::cli

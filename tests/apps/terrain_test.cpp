@@ -7,6 +7,7 @@
 #include <random>
 
 #include <rastrum/io/io.hpp>
+#include <rastrum/parallel/cuda/status.hpp>
 #include <rastrum/terrain/color_map.hpp>
 #include <rastrum/terrain/functions.hpp>
 #include <rastrum/terrain/light.hpp>
@@ -225,6 +226,26 @@ TEST_F(TerrainProgram, DepthAndStats) {
   EXPECT_EQ(json["camera"]["altitude"], 40);
 }
 
+TEST_F(TerrainProgram, AutoTakesADeviceAndSaysWhy) {
+  const parallel::CudaStatus status = parallel::cuda_status();
+  const auto drawn = [&](const std::vector<const char*>& more) {
+    std::vector<std::string> args = base();
+    args.insert(args.end(), {"--stats", "s.json"});
+    args.insert(args.end(), more.begin(), more.end());
+    must(args);
+    return json("s.json");
+  };
+  const auto chosen = drawn({"--device", "auto", "--shadows", "sharp"});
+  EXPECT_EQ(chosen["device"], status.usable ? "cuda" : "threads");
+  const std::string why = chosen["device_why"];
+  EXPECT_NE(why.find(status.usable ? status.name : status.why_not), std::string::npos) << why;
+  EXPECT_EQ(chosen["device_bytes"] == 0, !status.usable);
+  const auto asked = drawn({"--device", "serial"});
+  EXPECT_EQ(asked["device"], "serial");
+  EXPECT_EQ(asked["device_why"], "");
+  EXPECT_EQ(asked["threads"], 1);
+}
+
 TEST_F(TerrainProgram, AVideoHasThePicturesOfThePath) {
   if (std::system("command -v ffmpeg ffprobe >/dev/null") != 0)
     GTEST_SKIP() << "ffmpeg is missing (Debian: ffmpeg)";
@@ -295,7 +316,8 @@ TEST_F(TerrainProgram, RefusesWhatItCannotDraw) {
   refuse(1, "gone.png", {"--height", "gone.png", "-o", "p.png"});
   refuse(1, "c.png: its pixel", {"--height", "c.png", "-o", "p.png"});
   refuse(1, "there are cosines", {"--function", "hills", "-o", "p.png"});
-  refuse(1, "CUDA", {"--height", "h.png", "--device", "cuda", "-o", "p.png"});
+  if (!parallel::cuda_status().usable)
+    refuse(1, "CUDA", {"--height", "h.png", "--device", "cuda", "-o", "p.png"});
   write("bad.dem", "no dem");
   refuse(1, "bad.dem", {"--height", "bad.dem", "-o", "p.png"});
 }

@@ -17,8 +17,9 @@ CudaStatus cuda_status() {
 }
 }  // namespace parallel
 
-void test::TerrainOnDevice::set_free_bytes(std::uint64_t bytes) {
+bool test::TerrainOnDevice::set_free_bytes(std::uint64_t bytes) {
   free_bytes = bytes;
+  return true;
 }
 
 }  // namespace rastrum

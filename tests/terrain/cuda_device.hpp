@@ -1,5 +1,5 @@
 // A device for the tests of rastrum/terrain/cuda: the CPU, with as much memory as a test says
-// (cuda_device.cpp); or a GPU, without which the tests are skipped.
+// (cuda_device.cpp); or a GPU, without which the tests are skipped (cuda_gpu.cpp).
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@ namespace rastrum::test {
 class TerrainOnDevice : public testing::Test {
  protected:
   void SetUp() override {
-    set_free_bytes(std::uint64_t{1} << 40);
+    static_cast<void>(set_free_bytes(std::uint64_t{1} << 40));
     const parallel::CudaStatus status = parallel::cuda_status();
-    if (!status.usable) GTEST_SKIP() << status.why_not;
+    if (!status.usable) GTEST_SKIP() << "no device: " << status.why_not;
   }
-  /// What the device has free from now on.
-  static void set_free_bytes(std::uint64_t bytes);
+  /// What the device has free from now on; false for a GPU, which has what it has.
+  static bool set_free_bytes(std::uint64_t bytes);
 };
 
 }  // namespace rastrum::test

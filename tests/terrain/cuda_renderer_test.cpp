@@ -1,6 +1,6 @@
 // The terrain renderer with Device::cuda. Compiled here with Thrust's C++ system the device is the
 // CPU (parallel/cuda/system.cuh), so all that kernels compute is held to the serial reference bit
-// for bit where there is no GPU; with nvcc the same tests run on one.
+// for bit where there is no GPU; as cuda_terrain_test the same tests run on one.
 #include <algorithm>
 #include <limits>
 #include <random>
@@ -254,7 +254,7 @@ TEST_F(CudaTerrain, AMapThatIsTooLargeIsRefusedByNameAndAutoGoesToTheCpu) {
   TerrainOptions options;
   options.width = 80;
   options.height = 60;
-  set_free_bytes(std::uint64_t{3} << 20);
+  if (!set_free_bytes(std::uint64_t{3} << 20)) GTEST_SKIP() << "a GPU has what it has";
   options.device = Device::cuda;
   try {
     const Picture picture(terrain, {}, options);
