@@ -17,6 +17,7 @@
 #include <atomic>
 #include <bit>
 #include <cassert>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -49,6 +50,18 @@ RASTRUM_HD inline void atomic_maximum(std::uint64_t& word, std::uint64_t value) 
   std::uint64_t now = shared.load(std::memory_order_relaxed);
   while (now < value && !shared.compare_exchange_weak(now, value, std::memory_order_relaxed)) {
   }
+#endif
+}
+
+/// word += value, by many threads at once.
+template <class T>
+requires(std::same_as<T, std::uint32_t> || std::same_as<T, std::uint64_t>) RASTRUM_HD
+    inline void atomic_add(T& word, T value) noexcept {
+#if defined(__CUDA_ARCH__)
+  using Native = std::conditional_t<sizeof(T) == 4, unsigned, unsigned long long>;
+  atomicAdd(reinterpret_cast<Native*>(&word), static_cast<Native>(value));
+#else
+  std::atomic_ref<T>(word).fetch_add(value, std::memory_order_relaxed);
 #endif
 }
 

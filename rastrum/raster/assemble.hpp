@@ -1,6 +1,8 @@
 // From a primitive of a draw to its pieces: the slow, complete path (clipper included), used by the
 // reference rasterizer for every primitive and by the fast ones for what the setup kernel leaves:
-// triangles that need clipping or have a depth bias, lines and points.
+// triangles that need clipping or have a depth bias, lines and points. A device takes it for all
+// (cuda/pieces.cuh), so it is a template on who knows the vertices: FrameGeometry or
+// DeviceGeometry.
 #pragma once
 
 #include <cmath>
@@ -14,6 +16,9 @@
 
 namespace rastrum::raster {
 
+/// Pieces of one primitive: the fan of a polygon.
+inline constexpr int kMaxPieces = kMaxPolygon - 2;
+
 enum class Fate : std::uint8_t { drawn, clipped, culled, dropped };
 
 /// The corners of a primitive before and after projection.
@@ -24,13 +29,14 @@ struct PrimitiveCorners {
   Vec4d clip[n];  ///< where one of them needs it
   bool finite = true;
 
-  PrimitiveCorners(const FrameGeometry& frame, const Draw& draw, std::uint64_t primitive) {
+  template <class Geometry>
+  RASTRUM_HD PrimitiveCorners(const Geometry& frame, const Draw& draw, std::uint64_t primitive) {
     for (std::size_t i = 0; i < n; ++i) {
       projected[i] = frame.vertex(draw, draw.vertex(primitive, static_cast<int>(i)));
       needs_clip |= projected[i].x_fx8 == kNeedsClip;
     }
     for (std::size_t i = 0; i < n && needs_clip; ++i) {
-      const Vec4d c = draw.source->clip_position(draw.vertex(primitive, static_cast<int>(i)));
+      const Vec4d c = frame.clip_position(draw, draw.vertex(primitive, static_cast<int>(i)));
       clip[i] = c;
       finite &=
           std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z) && std::isfinite(c.w);
@@ -38,10 +44,10 @@ struct PrimitiveCorners {
   }
 };
 
-template <class Emit>
-Fate assemble_triangle(const FrameGeometry& frame, const Draw& draw, std::uint64_t id,
-                       std::uint32_t flags, const PrimitiveCorners<3>& c, SampleOffset at,
-                       Emit&& emit) {
+template <class Geometry, class Emit>
+RASTRUM_HD Fate assemble_triangle(const Geometry& frame, const Draw& draw, std::uint64_t id,
+                                  std::uint32_t flags, const PrimitiveCorners<3>& c,
+                                  SampleOffset at, Emit&& emit) {
   if (!c.finite) return Fate::dropped;
   const Rect view{0, 0, frame.width, frame.height};
   const Cull cull = draw.effective_cull();
@@ -73,9 +79,9 @@ Fate assemble_triangle(const FrameGeometry& frame, const Draw& draw, std::uint64
   return any ? Fate::clipped : Fate::culled;
 }
 
-template <class Emit>
-Fate assemble_line(const FrameGeometry& frame, const Draw& draw, std::uint64_t id,
-                   std::uint32_t flags, PrimitiveCorners<2> c, Emit&& emit) {
+template <class Geometry, class Emit>
+RASTRUM_HD Fate assemble_line(const Geometry& frame, const Draw& draw, std::uint64_t id,
+                              std::uint32_t flags, PrimitiveCorners<2> c, Emit&& emit) {
   if (!c.finite) return Fate::dropped;
   if (c.needs_clip && !clip_line(c.clip, c.projected, frame.viewport)) return Fate::culled;
   Piece piece;
@@ -86,9 +92,9 @@ Fate assemble_line(const FrameGeometry& frame, const Draw& draw, std::uint64_t i
   return c.needs_clip ? Fate::clipped : Fate::drawn;
 }
 
-template <class Emit>
-Fate assemble_point(const FrameGeometry& frame, const Draw& draw, std::uint64_t id,
-                    std::uint32_t flags, PrimitiveCorners<1> c, Emit&& emit) {
+template <class Geometry, class Emit>
+RASTRUM_HD Fate assemble_point(const Geometry& frame, const Draw& draw, std::uint64_t id,
+                               std::uint32_t flags, PrimitiveCorners<1> c, Emit&& emit) {
   if (!c.finite) return Fate::dropped;
   if (c.needs_clip && !clip_point(c.clip[0], frame.viewport, c.projected[0])) return Fate::culled;
   Piece piece;
@@ -100,10 +106,11 @@ Fate assemble_point(const FrameGeometry& frame, const Draw& draw, std::uint64_t 
 }
 
 /// Calls emit(piece) for each piece of primitive `p` of `draw` at sample `sample`, which lies at
-/// `at`; says what became of it (`clipped` ones are drawn too). Indices must be in range.
-template <class Emit>
-Fate assemble_primitive(const FrameGeometry& frame, const Draw& draw, std::uint64_t p, Emit&& emit,
-                        std::uint32_t sample = 0, SampleOffset at = {}) {
+/// `at`; says what became of it (`clipped` ones are drawn too). At most kMaxPieces of a primitive.
+/// Indices must be in range.
+template <class Geometry, class Emit>
+RASTRUM_HD Fate assemble_primitive(const Geometry& frame, const Draw& draw, std::uint64_t p,
+                                   Emit&& emit, std::uint32_t sample = 0, SampleOffset at = {}) {
   const std::uint64_t id = draw.first_id + p;
   const std::uint32_t flags = draw.flags_of(p) | sample << kSampleShift;
   const auto emit_biased = [&](Piece& piece) {

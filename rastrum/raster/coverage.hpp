@@ -154,8 +154,10 @@ RASTRUM_HD inline Span row_span(const Piece& p, int y, int x0, int x1) {
   return {static_cast<int>(begin), static_cast<int>(end)};
 }
 
-/// The samples of block (bx, by) inside of all edges; bit 8 · row + column.
-RASTRUM_HD inline std::uint64_t cover_8x8(const Edges& edges, int bx, int by) {
+/// The samples of block (bx, by) inside of all edges; bit 8 · row + column. Of its rows and columns
+/// in `within` alone, which are columns [x0, x1) and rows [y0, y1) of the block.
+RASTRUM_HD inline std::uint64_t cover_8x8(const Edges& edges, int bx, int by,
+                                          Rect within = {0, 0, kBlockSize, kBlockSize}) {
   constexpr std::int64_t kClamp = std::int64_t{1} << 30;
   std::uint64_t mask = ~std::uint64_t{0};
   for (int k = 0; k < edges.count; ++k) {
@@ -165,8 +167,8 @@ RASTRUM_HD inline std::uint64_t cover_8x8(const Edges& edges, int bx, int by) {
     const auto base =
         static_cast<std::int32_t>(corner < -kClamp ? -kClamp : (corner > kClamp ? kClamp : corner));
     std::uint64_t inside = 0;
-    for (int row = 0; row < kBlockSize; ++row)
-      for (int column = 0; column < kBlockSize; ++column)
+    for (int row = within.y0; row < within.y1; ++row)
+      for (int column = within.x0; column < within.x1; ++column)
         if (base + e.a * column + e.b * row >= 0)
           inside |= std::uint64_t{1} << (row * kBlockSize + column);
     mask &= inside;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include <rastrum/core/config.hpp>
 #include <rastrum/core/image.hpp>
 #include <rastrum/raster/clip.hpp>
 #include <rastrum/raster/color.hpp>
@@ -70,12 +71,12 @@ struct Draw {
   std::uint64_t first_id = 0;
   std::size_t first_vertex = 0;  ///< of this draw in FrameGeometry::projected
 
-  [[nodiscard]] std::uint32_t vertex(std::uint64_t primitive, int corner) const {
+  [[nodiscard]] RASTRUM_HD std::uint32_t vertex(std::uint64_t primitive, int corner) const {
     const std::size_t i = static_cast<std::size_t>(primitive) * static_cast<std::size_t>(topology) +
                           static_cast<std::size_t>(corner);
     return indices.empty() ? static_cast<std::uint32_t>(i) : indices[i];
   }
-  [[nodiscard]] std::uint32_t flags_of(std::uint64_t primitive) const {
+  [[nodiscard]] RASTRUM_HD std::uint32_t flags_of(std::uint64_t primitive) const {
     return material_flags.empty()
                ? flags
                : flags | material_flags[face_materials[static_cast<std::size_t>(primitive)]];
@@ -87,7 +88,7 @@ struct Draw {
     return any;
   }
   /// What the winding makes of `cull`, for counter-clockwise fronts.
-  [[nodiscard]] Cull effective_cull() const {
+  [[nodiscard]] RASTRUM_HD Cull effective_cull() const {
     if (cull == Cull::none || winding == Winding::either) return Cull::none;
     const bool swap = winding == Winding::clockwise;
     return (cull == Cull::back) != swap ? Cull::back : Cull::front;
@@ -97,6 +98,18 @@ struct Draw {
     return topology == Topology::triangles && depth_bias == 0 && depth_bias_slope == 0;
   }
 };
+
+/// The draw that holds primitive `id`. O(log draws).
+[[nodiscard]] RASTRUM_HD inline const Draw& draw_with(std::span<const Draw> draws,
+                                                      std::uint64_t id) {
+  std::size_t low = 0;
+  std::size_t high = draws.size();
+  while (high - low > 1) {
+    const std::size_t middle = (low + high) / 2;
+    (draws[middle].first_id <= id ? low : high) = middle;
+  }
+  return draws[low];
+}
 
 /// The projected scene, for setup and again for shading.
 struct FrameGeometry {
@@ -113,16 +126,13 @@ struct FrameGeometry {
     return v;
   }
 
-  /// The draw that holds primitive `id`. O(log draws).
-  [[nodiscard]] const Draw& draw_of(std::uint64_t id) const {
-    std::size_t low = 0;
-    std::size_t high = draws.size();
-    while (high - low > 1) {
-      const std::size_t middle = (low + high) / 2;
-      (draws[middle].first_id <= id ? low : high) = middle;
-    }
-    return draws[low];
+  /// As VertexSource's.
+  [[nodiscard]] Vec4d clip_position(const Draw& draw, std::uint32_t index) const {
+    return draw.source->clip_position(index);
   }
+
+  /// The draw that holds primitive `id`. O(log draws).
+  [[nodiscard]] const Draw& draw_of(std::uint64_t id) const { return draw_with(draws, id); }
 };
 
 /// Decides which covered samples of a block survive, before the maximum. Thread-safe.

@@ -87,11 +87,11 @@ RASTRUM_HD inline SetupResult make_point(const ProjectedVertex& v, std::uint64_t
 }
 
 /// A draw's width as it is drawn: to the nearest whole number, ties to even, at least 1 (GL).
-inline std::uint32_t whole_width(float width) {
+RASTRUM_HD inline std::uint32_t whole_width(float width) {
   return width > 1 ? static_cast<std::uint32_t>(std::nearbyint(width)) : 1;
 }
 
-inline std::int32_t point_size_fx8(float size) {
+RASTRUM_HD inline std::int32_t point_size_fx8(float size) {
   return size > 1 ? static_cast<std::int32_t>(std::nearbyint(size * kSubpixels)) : kSubpixels;
 }
 

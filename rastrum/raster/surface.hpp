@@ -17,11 +17,11 @@ struct SurfaceView {
   std::uint64_t* words = nullptr;
   BlockColors* colors = nullptr;  ///< per block, where visibility shades at once; else null
 
-  [[nodiscard]] std::size_t index(int bx, int by) const {
+  [[nodiscard]] RASTRUM_HD std::size_t index(int bx, int by) const {
     return static_cast<std::size_t>(by - by0) * static_cast<std::size_t>(columns) +
            static_cast<std::size_t>(bx - bx0);
   }
-  [[nodiscard]] std::uint64_t* block(int bx, int by) const { return words + index(bx, by) * 64; }
+  [[nodiscard]] RASTRUM_HD std::uint64_t* block(int bx, int by) const { return words + index(bx, by) * 64; }
   [[nodiscard]] BlockColors* colors_of(int bx, int by) const {
     return colors == nullptr ? nullptr : colors + index(bx, by);
   }
@@ -32,13 +32,13 @@ struct SurfaceView {
 };
 
 /// Blocks across `r`, whose first pixel is the first of a block.
-[[nodiscard]] constexpr int block_columns(Rect r) {
+[[nodiscard]] RASTRUM_HD constexpr int block_columns(Rect r) {
   return (r.x1 - r.x0 + kBlockSize - 1) / kBlockSize;
 }
-[[nodiscard]] constexpr int block_rows(Rect r) {
+[[nodiscard]] RASTRUM_HD constexpr int block_rows(Rect r) {
   return (r.y1 - r.y0 + kBlockSize - 1) / kBlockSize;
 }
-[[nodiscard]] constexpr std::size_t block_count(Rect r) {
+[[nodiscard]] RASTRUM_HD constexpr std::size_t block_count(Rect r) {
   return static_cast<std::size_t>(block_columns(r)) * static_cast<std::size_t>(block_rows(r));
 }
 

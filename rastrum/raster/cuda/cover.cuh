@@ -1,0 +1,119 @@
+// Coverage on a device, by size: a thread, a warp or a block of threads finds the samples of a
+// piece by the one cover_8x8 and puts their words by atomic maximum.
+//
+// A team finds the masks of many blocks first, a block of the screen a member, and shares them:
+// then neighbours write neighbouring words. Source of the three sizes: paper 1's hybrid,
+// section 3.4, and paper 2's queue of large triangles.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <rastrum/parallel/mask.hpp>
+#include <rastrum/parallel/reduce_by_index.hpp>
+#include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/setup.hpp>
+#include <rastrum/raster/surface.hpp>
+
+namespace rastrum::raster {
+
+/// Across a tile of large triangles, px.
+inline constexpr int kDeviceTile = 64;
+
+/// Where words go. Memory of the device.
+struct DeviceSurface {
+  Rect view;          ///< what is drawn; begins with a tile's first pixel
+  SurfaceView words;  ///< its blocks
+  std::uint32_t* overdraw =
+      nullptr;  ///< fragments of each sample, in the places of the words; null
+
+  /// A fragment of `piece` at element i of block (bx, by).
+  RASTRUM_HD void put(const Piece& piece, int bx, int by, int i) const {
+    const std::size_t at = words.index(bx, by) * 64 + static_cast<std::size_t>(i);
+    const float depth =
+        depth_at(piece, bx * kBlockSize + i % kBlockSize, by * kBlockSize + i / kBlockSize);
+    parallel::atomic_maximum(words.words[at], make_word(depth, piece.low));
+    if (overdraw != nullptr) parallel::atomic_add(overdraw[at], 1U);
+  }
+};
+
+[[nodiscard]] RASTRUM_HD inline std::uint64_t area_of(Rect r) {
+  return r.empty()
+             ? 0
+             : static_cast<std::uint64_t>(r.x1 - r.x0) * static_cast<std::uint64_t>(r.y1 - r.y0);
+}
+[[nodiscard]] RASTRUM_HD inline Rect common_of(Rect a, Rect b) {
+  return {a.x0 > b.x0 ? a.x0 : b.x0, a.y0 > b.y0 ? a.y0 : b.y0, a.x1 < b.x1 ? a.x1 : b.x1,
+          a.y1 < b.y1 ? a.y1 : b.y1};
+}
+
+/// The samples of block (bx, by) inside of the edges and of `box`, of which it looks at no others.
+[[nodiscard]] RASTRUM_HD inline std::uint64_t cover_box(const Edges& edges, Rect box, int bx,
+                                                        int by) {
+  const int x0 = bx * kBlockSize, y0 = by * kBlockSize;
+  const Rect part = common_of(box, {x0, y0, x0 + kBlockSize, y0 + kBlockSize});
+  return cover_8x8(edges, bx, by, {part.x0 - x0, part.y0 - y0, part.x1 - x0, part.y1 - y0});
+}
+
+/// The blocks that a box, not empty, touches: row by row.
+struct BlocksOf {
+  int bx0, by0, columns, rows;
+
+  RASTRUM_HD explicit BlocksOf(Rect box)
+      : bx0(box.x0 / kBlockSize),
+        by0(box.y0 / kBlockSize),
+        columns((box.x1 - 1) / kBlockSize - bx0 + 1),
+        rows((box.y1 - 1) / kBlockSize - by0 + 1) {}
+  [[nodiscard]] RASTRUM_HD int count() const { return columns * rows; }
+  [[nodiscard]] RASTRUM_HD int bx(int k) const { return bx0 + k % columns; }
+  [[nodiscard]] RASTRUM_HD int by(int k) const { return by0 + k / columns; }
+};
+
+/// By one thread; returns the number of fragments. `box`: of the piece in the view, not empty.
+RASTRUM_HD inline int draw_by_thread(const DeviceSurface& surface, const Piece& piece, Rect box) {
+  const Edges edges = edges_of(piece);
+  const BlocksOf blocks(box);
+  int fragments = 0;
+  for (int k = 0; k < blocks.count(); ++k) {
+    const int bx = blocks.bx(k), by = blocks.by(k);
+    const std::uint64_t mask = cover_box(edges, box, bx, by);
+    fragments += parallel::popcount(mask);
+    for (std::uint64_t m = mask; m != 0; m &= m - 1)
+      surface.put(piece, bx, by, parallel::lowest_bit(m));
+  }
+  return fragments;
+}
+
+struct TeamMasks {
+  static constexpr int kCount = 64;
+  std::uint64_t mask[kCount];
+};
+
+/// By a team; adds the number of fragments to *fragments. `box` as above, the same for all members.
+template <class Team>
+RASTRUM_HD void draw_by_team(const DeviceSurface& surface, const Piece& piece, Rect box,
+                             std::uint64_t* fragments, TeamMasks& shared, const Team& team) {
+  const Edges edges = edges_of(piece);
+  const BlocksOf blocks(box);
+  std::uint64_t mine = 0;
+  for (int first = 0; first < blocks.count(); first += TeamMasks::kCount) {
+    const int left = blocks.count() - first;
+    const int n = left < TeamMasks::kCount ? left : TeamMasks::kCount;
+    for (std::size_t k = team.rank(); k < static_cast<std::size_t>(n); k += team.size()) {
+      const int block = first + static_cast<int>(k);
+      const std::uint64_t mask = cover_box(edges, box, blocks.bx(block), blocks.by(block));
+      shared.mask[k] = mask;
+      mine += static_cast<std::uint64_t>(parallel::popcount(mask));
+    }
+    team.sync();
+    for (std::size_t k = team.rank(); k < static_cast<std::size_t>(n) * 64; k += team.size()) {
+      const int block = first + static_cast<int>(k / 64), i = static_cast<int>(k % 64);
+      if ((shared.mask[k / 64] >> i & 1) != 0)
+        surface.put(piece, blocks.bx(block), blocks.by(block), i);
+    }
+    team.sync();
+  }
+  if (mine > 0) parallel::atomic_add(*fragments, mine);
+}
+
+}  // namespace rastrum::raster

@@ -1,0 +1,170 @@
+// From primitives to pieces on a device: assemble_primitive (assemble.hpp), clipper included, by a
+// thread a primitive, in order of submission: counted, scanned, written.
+//
+// make_pieces writes all pieces of a range of primitives, for who wants them as an array (exact
+// transparency); the rasterizer (rasterizer.cuh) draws the small ones where they are made and has
+// the others written.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/parallel/cuda/words.cuh>
+#include <rastrum/raster/assemble.hpp>
+#include <rastrum/raster/cuda/geometry.cuh>
+
+namespace rastrum::raster {
+
+/// What became of a primitive.
+struct Outcome {
+  std::uint16_t fragments = 0;  ///< of the pieces that were drawn at once
+  std::uint8_t pieces = 0;      ///< that are to be written
+  Fate fate = Fate::culled;
+  bool valid = true;  ///< its indices, and its material's number, are in range
+};
+
+/// The sum of many.
+struct Outcomes {
+  std::uint64_t dropped = 0, culled = 0, clipped = 0, invalid = 0;
+  std::uint64_t fragments = 0, pieces = 0;
+
+  Outcomes() = default;
+  RASTRUM_HD explicit Outcomes(const Outcome& o)
+      : dropped(o.fate == Fate::dropped),
+        culled(o.fate == Fate::culled),
+        clipped(o.fate == Fate::clipped),
+        invalid(!o.valid),
+        fragments(o.fragments),
+        pieces(o.pieces) {}
+};
+struct AddOutcomes {
+  RASTRUM_HD Outcomes operator()(Outcomes a, const Outcomes& b) const {
+    a.dropped += b.dropped;
+    a.culled += b.culled;
+    a.clipped += b.clipped;
+    a.invalid += b.invalid;
+    a.fragments += b.fragments;
+    a.pieces += b.pieces;
+    return a;
+  }
+};
+
+/// Primitives [first, …) of a frame, as they are seen from sample `sample`.
+struct Assembly {
+  DeviceGeometry geometry;
+  std::uint64_t first = 0;
+  std::uint32_t sample = 0;
+  SampleOffset at{};
+
+  /// Calls emit(piece) for the pieces of primitive first + i; `pieces` and `fragments` of the
+  /// result are the caller's to fill.
+  template <class Emit>
+  RASTRUM_HD Outcome assemble(std::size_t i, Emit&& emit) const {
+    const std::uint64_t id = first + i;
+    const Draw& draw = geometry.draw_of(id);
+    const std::uint64_t p = id - draw.first_id;
+    Outcome out;
+    for (int corner = 0; corner < static_cast<int>(draw.topology); ++corner)
+      out.valid = out.valid && draw.vertex(p, corner) < draw.vertex_count;
+    if (!draw.material_flags.empty())
+      out.valid = out.valid && p < draw.face_materials.size() &&
+                  draw.face_materials[static_cast<std::size_t>(p)] < draw.material_flags.size();
+    if (out.valid) out.fate = assemble_primitive(geometry, draw, p, emit, sample, at);
+    return out;
+  }
+};
+
+namespace cuda_detail {
+
+struct PiecesOf {
+  RASTRUM_HD std::size_t operator()(const Outcome& o) const { return o.pieces; }
+};
+struct KeepsAll {
+  RASTRUM_HD bool operator()(const Piece&) const { return true; }
+};
+
+struct CountPieces {
+  Assembly assembly;
+  RASTRUM_HD Outcome operator()(std::size_t i) const {
+    std::uint8_t pieces = 0;
+    Outcome out = assembly.assemble(i, [&](const Piece&) { ++pieces; });
+    out.pieces = pieces;
+    return out;
+  }
+};
+
+/// The pieces of primitive first + which[k] that keep(piece) holds for, at the places of segment k.
+template <class Which, class Keep, class Places>
+struct WritePieces {
+  Assembly assembly;
+  Which which;
+  Keep keep;
+  Places places;
+  Piece* out;
+  RASTRUM_HD void operator()(std::size_t k) const {
+    std::size_t at = places.first(k);
+    if (at == places.segment_end(k)) return;
+    assembly.assemble(which[k], [&](const Piece& piece) {
+      if (keep(piece)) out[at++] = piece;
+    });
+  }
+};
+
+}  // namespace cuda_detail
+
+/// Those of primitives first + which[k] for which keep(piece) holds, in order; `pieces_of[k]` says
+/// how many those are of each. Work O(size + pieces). Memory: 48 B a piece and 8 B a primitive.
+/// Waits.
+template <class Exec, class Which, class PieceCounts, class Keep>
+[[nodiscard]] auto write_pieces(Exec& exec, const Assembly& assembly, const Which& which,
+                                const PieceCounts& pieces_of, Keep keep) {
+  const auto places = parallel::make_expansion(exec, pieces_of, cuda_detail::PiecesOf{});
+  auto pieces = parallel::make_buffer<Piece>(exec, places.size());
+  const auto view = parallel::view_of(which);
+  parallel::for_each_index(
+      exec, std::size(which),
+      cuda_detail::WritePieces<std::remove_cvref_t<decltype(view)>, Keep, decltype(places.view())>{
+          assembly, view, keep, places.view(), pieces.data()});
+  return pieces;
+}
+
+/// Throws Error{invalid_argument} where an index or a face material was out of range.
+inline void check_valid(const Outcomes& sum) {
+  if (sum.invalid > 0)
+    throw Error(Errc::invalid_argument,
+                std::to_string(sum.invalid)
+                    .append(" primitives have an index or a face material that is out of range"));
+}
+
+template <class Buffer>
+struct MadePieces {
+  Buffer pieces;  ///< in order of submission
+  Outcomes sum;
+};
+
+/// All pieces of primitives [first, last) of `scene` at a sample (samples.hpp), and what became of
+/// the primitives. Throws as check_valid, and Error{out_of_memory}. Work O(primitives), with a
+/// scan. Memory: 48 B a piece, 14 B a primitive while it works. Waits.
+template <class Exec>
+[[nodiscard]] auto make_pieces(Exec& exec, const DeviceScene<Exec>& scene, std::uint64_t first,
+                               std::uint64_t last, std::uint32_t sample = 0, SampleOffset at = {}) {
+  const auto n = static_cast<std::size_t>(last - first);
+  const Assembly assembly{scene.geometry(), first, sample, at};
+  auto outcomes = parallel::make_buffer<Outcome>(exec, n);
+  parallel::tabulate(exec, outcomes, cuda_detail::CountPieces{assembly});
+  const Outcomes sum = parallel::reduce(exec, outcomes, Outcomes{}, AddOutcomes{});
+  check_valid(sum);
+  auto pieces =
+      write_pieces(exec, assembly, parallel::counting(n), outcomes, cuda_detail::KeepsAll{});
+  return MadePieces<decltype(pieces)>{std::move(pieces), sum};
+}
+
+}  // namespace rastrum::raster
+
+namespace rastrum::parallel {
+template <>
+inline constexpr bool kAnyOrder<raster::Outcomes, raster::AddOutcomes> = true;
+}  // namespace rastrum::parallel

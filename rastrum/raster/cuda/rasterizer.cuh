@@ -1,0 +1,226 @@
+// The rasterizer of a device: a listing of words, for any backend that has DeviceBuffers.
+//
+//   project            a thread a vertex                                           geometry.cuh
+//   set up, and draw   a thread a primitive: small pieces (a box up to small_px)   pieces.cuh,
+//                      at once, the others are counted                             cover.cuh
+//   write the others   scan, then a thread a primitive that has some
+//   draw them          a warp a piece of the middle; a block of threads for each
+//                      64 × 64 tile of a large one (a box from large_px on)
+//   resolve            the caller's: a band of words is ready
+//
+// Order does not matter to a maximum of words, so neither the sizes nor the cut into bands of rows
+// and batches of primitives, which a memory limit asks for, change a bit. Culling of boxes that
+// miss every sample is setup's (make_piece). Sources: paper 1, hybrid; paper 2; decision 0014.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/parallel/cuda/words.cuh>
+#include <rastrum/parallel/stop.hpp>
+#include <rastrum/raster/cuda/cover.cuh>
+#include <rastrum/raster/cuda/pieces.cuh>
+#include <rastrum/raster/stopwatch.hpp>
+
+namespace rastrum::raster {
+
+/// Boxes in px² from which on a piece is for a warp, and for blocks of threads.
+struct DeviceSizes {
+  std::uint64_t small_px = 128, large_px = 4000;
+
+  /// Asked for by a caller; 0: as above. A small piece's fragments are counted in 16 bits.
+  static DeviceSizes of(const Tuning& tuning) {
+    DeviceSizes s;
+    if (tuning.small_px > 0)
+      s.small_px = std::min<std::uint64_t>(static_cast<std::uint64_t>(tuning.small_px), 4096);
+    if (tuning.large_px > 0) s.large_px = static_cast<std::uint64_t>(tuning.large_px);
+    return s;
+  }
+};
+
+/// How a frame is cut so that its scratch on the device stays below a limit.
+struct DevicePlan {
+  bool project_first = true;
+  int band_rows = 0;          ///< whole tiles
+  std::uint64_t batch = 0;    ///< primitives that are set up at once
+  std::uint64_t written = 0;  ///< of those with larger pieces, whose pieces are there at once
+
+  /// `limit`: bytes, 0 for any. Throws Error{out_of_memory} where not even the least band fits.
+  static DevicePlan of(std::uint64_t limit, int width, int height, std::uint64_t primitives,
+                       std::uint64_t vertices, bool counts_overdraw) {
+    constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
+    constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 19;
+    // An outcome, its place and CUB's flags; the pieces of a primitive and their places.
+    constexpr std::uint64_t kSetUpBytes = 24, kWrittenBytes = kMaxPieces * (sizeof(Piece) + 8) + 16;
+    DevicePlan p;
+    p.band_rows = (height + kDeviceTile - 1) / kDeviceTile * kDeviceTile;
+    p.batch = p.written = std::clamp<std::uint64_t>(primitives, 1, kLargestBatch);
+    if (limit == 0) return p;
+    const auto columns = static_cast<std::uint64_t>(block_columns({0, 0, width, 1}));
+    const std::uint64_t least_band =
+        columns * kBlockSize * kDeviceTile * (sizeof(std::uint64_t) + (counts_overdraw ? 4 : 0));
+    const std::uint64_t least = std::max(least_band, kLeastShare) + 3 * kLeastShare;
+    if (limit < least)
+      throw Error(Errc::out_of_memory,
+                  std::string("a memory limit of ")
+                      .append(std::to_string(limit))
+                      .append(" bytes is less than the ")
+                      .append(std::to_string(least))
+                      .append(" that this frame needs at least on the device"));
+    const std::uint64_t band_share = std::max(limit / 4, least_band);
+    const std::uint64_t share = (limit - band_share) / 3;
+    p.project_first = vertices * sizeof(ProjectedVertex) <= share;
+    p.band_rows = static_cast<int>(std::min<std::uint64_t>(
+        band_share / least_band * kDeviceTile, static_cast<std::uint64_t>(p.band_rows)));
+    p.batch = std::min(p.batch, share / kSetUpBytes);
+    p.written = std::min(p.written, share / kWrittenBytes);
+    return p;
+  }
+};
+
+namespace cuda_detail {
+
+/// Draws the small pieces of a primitive and counts the others.
+struct DrawSmall {
+  Assembly assembly;
+  DeviceSurface surface;
+  std::uint64_t small_px;
+  RASTRUM_HD Outcome operator()(std::size_t i) const {
+    int fragments = 0;
+    std::uint8_t larger = 0;
+    Outcome out = assembly.assemble(i, [&](const Piece& piece) {
+      const Rect box = piece_bounds(piece, surface.view);
+      const std::uint64_t area = area_of(box);
+      if (area > small_px)
+        ++larger;
+      else if (area > 0)
+        fragments += draw_by_thread(surface, piece, box);
+    });
+    out.fragments = static_cast<std::uint16_t>(fragments);
+    out.pieces = larger;
+    return out;
+  }
+};
+struct IsLarger {
+  Rect view;
+  std::uint64_t than_px;
+  RASTRUM_HD bool operator()(const Piece& piece) const {
+    return area_of(piece_bounds(piece, view)) > than_px;
+  }
+};
+struct HasPieces {
+  std::span<const Outcome> outcomes;
+  RASTRUM_HD bool operator()(std::uint32_t i) const { return outcomes[i].pieces > 0; }
+};
+
+struct DrawMiddle {
+  std::span<const Piece> pieces;
+  DeviceSurface surface;
+  std::uint64_t large_px;
+  std::uint64_t* fragments;
+  template <class Team>
+  RASTRUM_HD void operator()(std::size_t i, TeamMasks& shared, const Team& team) const {
+    const Piece& piece = pieces[i];
+    const Rect box = piece_bounds(piece, surface.view);
+    if (area_of(box) < large_px) draw_by_team(surface, piece, box, fragments, shared, team);
+  }
+};
+
+/// The tiles that a box touches, in numbers of tiles of the view.
+RASTRUM_HD inline Rect tiles_of(Rect box, Rect view) {
+  return {(box.x0 - view.x0) / kDeviceTile, (box.y0 - view.y0) / kDeviceTile,
+          (box.x1 - 1 - view.x0) / kDeviceTile + 1, (box.y1 - 1 - view.y0) / kDeviceTile + 1};
+}
+/// How many tiles a large piece touches; 0 of one that is not.
+struct CountTiles {
+  Rect view;
+  std::uint64_t large_px;
+  RASTRUM_HD std::size_t operator()(const Piece& piece) const {
+    const Rect box = piece_bounds(piece, view);
+    return area_of(box) < large_px ? 0 : static_cast<std::size_t>(area_of(tiles_of(box, view)));
+  }
+};
+template <class Places>
+struct DrawTile {
+  std::span<const Piece> pieces;
+  DeviceSurface surface;
+  Places places;
+  std::uint64_t* fragments;
+  template <class Team>
+  RASTRUM_HD void operator()(std::size_t i, TeamMasks& shared, const Team& team) const {
+    const std::size_t k = places.segment_of(i);
+    const Piece& piece = pieces[k];
+    const Rect view = surface.view;
+    const Rect box = piece_bounds(piece, view);
+    const Rect tiles = tiles_of(box, view);
+    const int j = static_cast<int>(i - places.first(k)), columns = tiles.x1 - tiles.x0;
+    const int x0 = view.x0 + (tiles.x0 + j % columns) * kDeviceTile;
+    const int y0 = view.y0 + (tiles.y0 + j / columns) * kDeviceTile;
+    const Rect part = common_of(box, {x0, y0, x0 + kDeviceTile, y0 + kDeviceTile});
+    if (may_touch(edges_of(piece), part))
+      draw_by_team(surface, piece, part, fragments, shared, team);
+  }
+};
+
+}  // namespace cuda_detail
+
+/// What one band has counted.
+struct DeviceCounts {
+  Outcomes sum;  ///< fragments: of small pieces alone
+  std::uint64_t fragments = 0;
+  std::uint64_t larger_pieces = 0, tiles = 0, batches = 0;
+};
+
+/// Draws all primitives of `scene` onto the words of `surface`, which hold what was drawn before,
+/// or 0. Throws as check_valid, Error{out_of_memory}, and parallel::Stopped between batches. Waits.
+template <class Exec>
+[[nodiscard]] DeviceCounts draw_surface(Exec& exec, const DeviceScene<Exec>& scene,
+                                        const DeviceSurface& surface, const DevicePlan& plan,
+                                        DeviceSizes sizes) {
+  using parallel::view_of;
+  DeviceCounts counts;
+  const std::uint64_t end = scene.first_id() + scene.primitives();
+  auto fragments = parallel::make_buffer<std::uint64_t>(exec, 1);
+  parallel::tabulate(exec, fragments, parallel::range_detail::SameValue<std::uint64_t>{0});
+  for (std::uint64_t first = scene.first_id(); first < end; first += plan.batch) {
+    parallel::throw_if_stopped();
+    ++counts.batches;
+    const Assembly assembly{scene.geometry(), first};
+    const auto n = static_cast<std::size_t>(std::min(plan.batch, end - first));
+    auto outcomes = parallel::make_buffer<Outcome>(exec, n);
+    parallel::tabulate(exec, outcomes, cuda_detail::DrawSmall{assembly, surface, sizes.small_px});
+    const Outcomes sum = parallel::reduce(exec, outcomes, Outcomes{}, AddOutcomes{});
+    check_valid(sum);
+    counts.sum = AddOutcomes{}(counts.sum, sum);
+    if (sum.pieces == 0) continue;
+
+    const auto larger = parallel::filter(exec, parallel::counting<std::uint32_t>(n),
+                                         cuda_detail::HasPieces{view_of(std::as_const(outcomes))});
+    for (std::size_t at = 0; at < larger.size(); at += plan.written) {
+      const std::span<const std::uint32_t> which =
+          view_of(larger).subspan(at, std::min(plan.written, larger.size() - at));
+      const auto pieces = write_pieces(exec, assembly, which,
+                                       parallel::permuted(view_of(std::as_const(outcomes)), which),
+                                       cuda_detail::IsLarger{surface.view, sizes.small_px});
+      const std::span<const Piece> drawn = view_of(pieces);
+      parallel::for_each_team<TeamMasks, 32>(
+          exec, drawn.size(),
+          cuda_detail::DrawMiddle{drawn, surface, sizes.large_px, fragments.data()});
+      const auto tiles = parallel::make_expansion(
+          exec, drawn, cuda_detail::CountTiles{surface.view, sizes.large_px});
+      parallel::for_each_team<TeamMasks, 128>(exec, tiles.size(),
+                                              cuda_detail::DrawTile<decltype(tiles.view())>{
+                                                  drawn, surface, tiles.view(), fragments.data()});
+      counts.larger_pieces += drawn.size();
+      counts.tiles += tiles.size();
+    }
+  }
+  counts.fragments = counts.sum.fragments + parallel::to_host(exec, fragments)[0];
+  return counts;
+}
+
+}  // namespace rastrum::raster
