@@ -105,7 +105,7 @@ struct FrameStats {
   std::string rasterizer, visibility;
   std::string why;  ///< why `auto` took them
   Device device = Device::threads;
-  std::string device_why;  ///< why Device::automatic took it
+  std::string device_why;  ///< why Device::automatic took it, or why not Device::cuda
   /// The work that is particular to the rasterizer: rows, bins, tile pairs, …
   std::vector<std::pair<std::string, std::uint64_t>> counters;
 };

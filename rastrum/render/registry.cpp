@@ -6,6 +6,7 @@
 #include <string>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/raster/cuda/rasterizer.hpp>
 #include <rastrum/raster/rasterizer.hpp>
 #include <rastrum/raster/reference.hpp>
 #include <rastrum/render/registry.hpp>
@@ -111,6 +112,51 @@ DrawFrame make_reference(const RenderOptions& options, MemoryAccount& memory) {
   };
 }
 
+constexpr std::string_view kBySize = "by-size";
+
+/// Why the device leaves a frame to the CPU; empty where it draws it.
+std::string why_not_on_cuda(const raster::FrameRequest& request) {
+  if (needs_layers(request))
+    return "translucent surfaces and several samples a pixel have no CUDA code yet";
+  if (request.test != nullptr && std::ranges::any_of(request.draws, [](const raster::Draw& d) {
+        return (d.any_flags() & raster::kTested) != 0;
+      }))
+    return "fragment tests (alpha masks, discard, drawing over a picture) have no CUDA code yet";
+  return {};
+}
+
+/// The device's one rasterizer, and for what it has no code a rasterizer of the CPU.
+DrawFrame make_on_cuda(const RenderOptions& options, MemoryAccount& memory,
+                       parallel::Threads& threads) {
+  if (options.rasterizer != "auto" && options.rasterizer != kBySize)
+    throw Error(Errc::invalid_argument, std::string("the rasterizer '")
+                                            .append(options.rasterizer)
+                                            .append("' needs --device threads; cuda has '")
+                                            .append(kBySize)
+                                            .append("'"));
+  if (options.visibility != "auto" && options.visibility != raster::visibilities().front().name)
+    throw Error(Errc::invalid_argument, std::string("the visibility '")
+                                            .append(options.visibility)
+                                            .append("' needs --device threads; cuda has '")
+                                            .append(raster::visibilities().front().name)
+                                            .append("'"));
+  RenderOptions on_threads = options;
+  on_threads.device = Device::threads;
+  on_threads.rasterizer = on_threads.visibility = "auto";
+  return
+      [device = std::shared_ptr<raster::CudaRasterizer>(
+           raster::make_cuda_rasterizer(options.memory_limit, memory, threads)),
+       host = DrawFrame(), on_threads, &memory, &threads](raster::FrameRequest& request) mutable {
+        const std::string why_not = why_not_on_cuda(request);
+        if (why_not.empty()) return device->render(request);
+        if (!host) host = make_rasterizer(on_threads, memory, &threads);
+        FrameStats stats = host(request);
+        stats.device = Device::threads;
+        stats.device_why = why_not;
+        return stats;
+      };
+}
+
 }  // namespace
 
 bool blends(std::span<const raster::Draw> draws, const TransparencyOptions& options) {
@@ -145,6 +191,7 @@ const std::vector<AxisInfo>& visibilities() {
 DrawFrame make_rasterizer(const RenderOptions& options, MemoryAccount& memory,
                           parallel::Threads* threads) {
   if (threads == nullptr) return make_reference(options, memory);
+  if (options.device == Device::cuda) return make_on_cuda(options, memory, *threads);
   const auto& coverage =
       options.rasterizer == "auto"
           ? raster::coverages().front()

@@ -7,6 +7,7 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
+#include <rastrum/raster/cuda/rasterizer.hpp>
 #include <rastrum/raster/interpolate.hpp>
 #include <rastrum/raster/over_picture.hpp>
 #include <rastrum/raster/shaders/alpha.hpp>
@@ -159,7 +160,10 @@ Renderer::Renderer(RenderOptions options) : impl_(std::make_unique<Impl>(std::mo
   if (o.threads < 0 || o.threads > 4096)
     throw Error(Errc::invalid_argument, "threads must lie between 0 (all) and 4096");
   check_transparency(o);
-  DeviceChoice choice = choose_device(o.device, false);
+  DeviceChoice choice = choose_device(o.device, raster::draws_on_cuda());
+  if (o.device == Device::automatic && choice.device == Device::cuda &&
+      (o.rasterizer != "auto" || o.visibility != "auto"))
+    choice = {Device::threads, "a rasterizer or a visibility of the CPU was asked for"};
   impl_->options.device = choice.device;
   impl_->device_why = std::move(choice.why);
   const std::vector<Isa> isas = available_isas();
@@ -168,7 +172,7 @@ Renderer::Renderer(RenderOptions options) : impl_(std::make_unique<Impl>(std::mo
     throw Error(Errc::no_device,
                 "this machine cannot run " + std::string(name(impl_->isa)) + " instructions");
   // The reference is plain C++ on one thread, whatever else the machine could do.
-  if (o.device == Device::threads && o.rasterizer != "reference")
+  if (o.device != Device::serial && o.rasterizer != "reference")
     impl_->threads = std::make_unique<parallel::Threads>(o.threads, &impl_->memory);
   else
     impl_->isa = Isa::scalar;
@@ -326,8 +330,9 @@ FrameStats Renderer::draw_in(bool linear_light, std::span<raster::Draw> draws,
   impl_->memory.restart_peak();
   FrameStats stats = impl_->draw_frame(request);
   stats.peak_bytes = impl_->memory.peak();
-  stats.device = o.device;
-  stats.device_why = impl_->device_why;
+  // A frame that the device leaves to the CPU says so itself.
+  if (o.device != Device::cuda) stats.device = o.device;
+  if (stats.device_why.empty()) stats.device_why = impl_->device_why;
   return stats;
 }
 

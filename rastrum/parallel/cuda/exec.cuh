@@ -30,6 +30,8 @@
 
 namespace rastrum::parallel {
 
+inline namespace RASTRUM_DEVICE_SYSTEM {
+
 class Cuda {
  public:
   /// A stream of its own on the current device. Memory that words take is accounted to `account`,
@@ -74,6 +76,8 @@ class Cuda {
   std::shared_ptr<Arena> memory_;
   Scratch scratch_{memory_.get()};
 };
+
+}  // namespace RASTRUM_DEVICE_SYSTEM
 
 /// Calls f(i) for i in [0, n). Work O(n), span O(1).
 template <class F>

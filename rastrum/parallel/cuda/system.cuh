@@ -15,10 +15,14 @@
 #include <rastrum/parallel/arena.hpp>
 #include <rastrum/parallel/exec.hpp>
 
+// Names say which half they are of: a test on the CPU may be linked with the library's code for
+// GPUs.
 #if THRUST_DEVICE_SYSTEM == THRUST_DEVICE_SYSTEM_CUDA
+#define RASTRUM_DEVICE_SYSTEM on_gpu
 #include <cuda_runtime_api.h>
 #include <cub/device/device_radix_sort.cuh>
 #elif THRUST_DEVICE_SYSTEM == THRUST_DEVICE_SYSTEM_CPP
+#define RASTRUM_DEVICE_SYSTEM on_cpu
 #include <cstring>
 #include <limits>
 #include <numeric>
@@ -31,6 +35,7 @@
 #endif
 
 namespace rastrum::parallel::cuda_system {
+inline namespace RASTRUM_DEVICE_SYSTEM {
 
 #if THRUST_DEVICE_SYSTEM == THRUST_DEVICE_SYSTEM_CUDA
 
@@ -208,4 +213,5 @@ void launch_teams(Stream, std::size_t n, F f) {
 
 #endif
 
+}  // namespace RASTRUM_DEVICE_SYSTEM
 }  // namespace rastrum::parallel::cuda_system

@@ -1,0 +1,200 @@
+// A frame of the façade on a device: the host's arrays over, bands of words drawn (rasterizer.cuh),
+// and each band resolved, there (resolve.cuh) or, where a target or the shader has no device form,
+// by the host's resolve_block on the words that come back.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/parallel/cuda/status.hpp>
+#include <rastrum/parallel/cuda/words.cuh>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/parallel/scratch.hpp>
+#include <rastrum/raster/cuda/rasterizer.cuh>
+#include <rastrum/raster/cuda/rasterizer.hpp>
+#include <rastrum/raster/cuda/upload.cuh>
+#include <rastrum/raster/resolve.hpp>
+#include <rastrum/raster/stopwatch.hpp>
+
+namespace rastrum::raster {
+
+template <class Exec>
+class DeviceRasterizer final : public CudaRasterizer {
+ public:
+  DeviceRasterizer(std::uint64_t memory_limit, MemoryAccount& memory, parallel::Threads& threads)
+      : memory_limit_(memory_limit),
+        threads_(threads),
+        exec_(&memory),
+        words_(memory),
+        overdraw_(memory) {}
+
+  [[nodiscard]] FrameStats render(FrameRequest& request) override {
+    Stopwatch watch;
+    FrameStats stats;
+    stats.rasterizer = "by-size";
+    stats.visibility = "atomic";
+    stats.isa = request.isa;
+    stats.device = Device::cuda;
+    const Totals totals = number_draws(request.draws, request.targets.first_id);
+    try {
+      draw_frame(request, totals, stats, watch);
+    } catch (const Error& error) {
+      // Which index was out of range is for the host to find.
+      if (error.code() == Errc::invalid_argument) check_indices(request.draws);
+      throw;
+    }
+    stats.triangles.input = totals.primitives;
+    stats.triangles.drawn = totals.primitives - stats.triangles.dropped - stats.triangles.culled;
+    return stats;
+  }
+
+ private:
+  /// Bytes of scratch beside what is copied: what was asked for, or what is there. 0: any.
+  [[nodiscard]] std::uint64_t limit() const {
+    if (memory_limit_ != 0) return memory_limit_;
+    return free_bytes_ == 0
+               ? 0
+               : (free_bytes_ - std::min(free_bytes_, exec_.memory()->in_use())) / 4 * 3;
+  }
+
+  void draw_frame(FrameRequest& request, const Totals& totals, FrameStats& stats,
+                  Stopwatch& watch) {
+    Uploads<Exec> uploads(exec_);
+    std::vector<cuda_detail::HostVertices> made;
+    const std::vector<DeviceDraw> draws = upload(uploads, request, threads_, made);
+    watch.lap(stats, "upload");
+    const bool counts_overdraw = !request.targets.overdraw.empty();
+    const DevicePlan plan = DevicePlan::of(limit(), request.width, request.height,
+                                           totals.primitives, totals.vertices, counts_overdraw);
+    const DeviceScene<Exec> scene(exec_, draws, request.width, request.height,
+                                  request.targets.first_id, plan.project_first);
+    exec_.wait();
+    watch.lap(stats, "project");
+    if (!request.targets.errors.empty())
+      for (int y = 0; y < request.height; ++y)
+        std::fill_n(request.targets.errors.row(y), request.width, std::uint8_t{0});
+
+    FrameGeometry geometry{
+        request.width, request.height, Viewport::of(request.width, request.height),
+        request.draws, nullptr,        request.isa};
+    parallel::ScratchPool<ShaderScratch> shaders;
+    std::uint64_t bands = 0;
+    DeviceCounts counts;
+    for (int y = 0; y < request.height; y += plan.band_rows, ++bands) {
+      const Rect view{0, y, request.width, std::min(y + plan.band_rows, request.height)};
+      const std::size_t blocks = block_count(view);
+      auto words = parallel::make_buffer<std::uint64_t>(exec_, blocks * 64);
+      auto overdraw =
+          parallel::make_buffer<std::uint32_t>(exec_, counts_overdraw ? blocks * 64 : 0);
+      DeviceSurface surface{
+          view, {0, y / kBlockSize, block_columns(view), words.data(), nullptr}, overdraw.data()};
+      begin(request, view, words, overdraw);
+      const DeviceCounts band =
+          draw_surface(exec_, scene, surface, plan, DeviceSizes::of(request.tuning));
+      if (bands == 0) counts.sum = band.sum;
+      counts.fragments += band.fragments;
+      counts.larger_pieces += band.larger_pieces;
+      counts.tiles += band.tiles;
+      counts.batches += band.batches;
+      watch.lap(stats, "rasterize");
+      if (counts_overdraw) store_overdraw(request, view, overdraw);
+      stats.pixels_covered += resolve_on_host(request, geometry, view, words, shaders);
+      watch.lap(stats, "shade");
+    }
+    stats.triangles.dropped = counts.sum.dropped;
+    stats.triangles.culled = counts.sum.culled;
+    stats.triangles.clipped = counts.sum.clipped;
+    stats.fragments = counts.fragments;
+    stats.why = "shaded by the host's threads";
+    stats.counters = {{"bands", bands},
+                      {"batches", counts.batches},
+                      {"larger pieces", counts.larger_pieces},
+                      {"tile pairs", counts.tiles}};
+  }
+
+  struct ShaderScratch {
+    alignas(64) std::byte bytes[kMaxShaderScratch] = {};
+  };
+  using Words = decltype(parallel::make_buffer<std::uint64_t>(std::declval<Exec&>(), 0));
+  using Counts = decltype(parallel::make_buffer<std::uint32_t>(std::declval<Exec&>(), 0));
+
+  /// Calls f(block row) by all threads.
+  template <class F>
+  void for_each_row(Rect view, F&& f) {
+    parallel::for_each_index(threads_, static_cast<std::size_t>(block_rows(view)),
+                             [&](std::size_t r) { f(view.y0 / kBlockSize + static_cast<int>(r)); });
+  }
+  [[nodiscard]] SurfaceView host_surface(Rect view) {
+    words_.reserve(block_count(view) * 64);
+    return {0, view.y0 / kBlockSize, block_columns(view), words_.data(), nullptr};
+  }
+
+  /// Nothing, or the words of the passes before.
+  void begin(const FrameRequest& request, Rect view, Words& words, Counts& overdraw) {
+    if (request.targets.load) {
+      load_words(request.targets, view, host_surface(view));
+      parallel::cuda_system::copy(exec_.stream(), words.data(), words_.data(),
+                                  words.size() * sizeof(std::uint64_t));
+      exec_.wait();
+    } else {
+      parallel::tabulate(exec_, words, parallel::range_detail::SameValue<std::uint64_t>{0});
+    }
+    parallel::tabulate(exec_, overdraw, parallel::range_detail::SameValue<std::uint32_t>{0});
+  }
+
+  void store_overdraw(const FrameRequest& request, Rect view, const Counts& overdraw) {
+    overdraw_.reserve(overdraw.size());
+    parallel::cuda_system::copy(exec_.stream(), overdraw_.data(), overdraw.data(),
+                                overdraw.size() * sizeof(std::uint32_t));
+    exec_.wait();
+    const SurfaceView places{0, view.y0 / kBlockSize, block_columns(view), nullptr, nullptr};
+    const Targets& targets = request.targets;
+    for_each_row(view, [&](int by) {
+      for (int y = by * kBlockSize; y < std::min((by + 1) * kBlockSize, view.y1); ++y)
+        for (int x = 0; x < view.x1; ++x) {
+          const std::uint32_t n =
+              overdraw_[places.index(x / kBlockSize, by) * 64 +
+                        static_cast<std::size_t>(y % kBlockSize * kBlockSize + x % kBlockSize)];
+          targets.overdraw(x, y) = n + (targets.load ? targets.overdraw(x, y) : 0);
+        }
+    });
+  }
+
+  /// All targets, from words that come back. Returns how many pixels hold a surface.
+  [[nodiscard]] std::uint64_t resolve_on_host(const FrameRequest& request,
+                                              const FrameGeometry& geometry, Rect view,
+                                              const Words& words,
+                                              parallel::ScratchPool<ShaderScratch>& shaders) {
+    const SurfaceView surface = host_surface(view);
+    parallel::cuda_system::copy(exec_.stream(), words_.data(), words.data(),
+                                words.size() * sizeof(std::uint64_t));
+    exec_.wait();
+    const Backdrop backdrop = backdrop_of(request);
+    std::atomic<std::uint64_t> covered = 0;
+    for_each_row(view, [&](int by) {
+      std::uint64_t here = 0;
+      for (int bx = 0; bx < surface.columns; ++bx)
+        here += static_cast<std::uint64_t>(resolve_block(request, geometry, backdrop,
+                                                         surface.block(bx, by), bx * kBlockSize,
+                                                         by * kBlockSize, shaders.local().bytes));
+      covered.fetch_add(here, std::memory_order_relaxed);
+    });
+    return covered;
+  }
+
+  std::uint64_t memory_limit_;
+  std::uint64_t free_bytes_ = parallel::cuda_status().free_bytes;  ///< before the first frame
+  parallel::Threads& threads_;
+  Exec exec_;
+  Buffer<std::uint64_t> words_;     ///< of the host, in the device's places
+  Buffer<std::uint32_t> overdraw_;  ///< alike
+};
+
+}  // namespace rastrum::raster

@@ -1,0 +1,16 @@
+// The rasterizer of a CUDA device, instantiated. Tests compile this file as C++, for the CPU.
+#include <rastrum/raster/cuda/frame.cuh>
+
+namespace rastrum::raster {
+
+bool draws_on_cuda() noexcept {
+  return true;
+}
+
+std::unique_ptr<CudaRasterizer> make_cuda_rasterizer(std::uint64_t memory_limit,
+                                                     MemoryAccount& memory,
+                                                     parallel::Threads& threads) {
+  return std::make_unique<DeviceRasterizer<parallel::Cuda>>(memory_limit, memory, threads);
+}
+
+}  // namespace rastrum::raster

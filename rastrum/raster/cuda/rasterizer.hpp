@@ -1,0 +1,34 @@
+// The rasterizer of a CUDA device, for who is no translation unit of nvcc.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/raster/geometry.hpp>
+
+namespace rastrum::raster {
+
+/// Keeps its stream and its memory between frames. One frame at a time.
+class CudaRasterizer {
+ public:
+  virtual ~CudaRasterizer() = default;
+  /// One frame without fragment tests and layers, one sample a pixel: targets as
+  /// Rasterizer::render. The caller's arrays are copied to the device each time. What the device
+  /// has no shader for is shaded by the host's threads; FrameStats::why says so. Throws
+  /// Error{invalid_argument} where an index is out of range, Error{out_of_memory} with what was
+  /// asked for, Error{no_device} for what the driver reports.
+  [[nodiscard]] virtual FrameStats render(FrameRequest& request) = 0;
+};
+
+/// Whether the library was built with it.
+[[nodiscard]] bool draws_on_cuda() noexcept;
+
+/// `memory_limit`: bytes of scratch on the device beyond the copies of meshes, 0: three quarters of
+/// what is free there. `memory` and `threads` outlive it. Throws Error{no_device}.
+[[nodiscard]] std::unique_ptr<CudaRasterizer> make_cuda_rasterizer(std::uint64_t memory_limit,
+                                                                   MemoryAccount& memory,
+                                                                   parallel::Threads& threads);
+
+}  // namespace rastrum::raster

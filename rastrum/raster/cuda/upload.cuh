@@ -1,0 +1,92 @@
+// A host's draws as a device's: the arrays are copied, each once a frame, however many draws have
+// it. A vertex stage that is no matrix over positions is run by the host's threads.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <rastrum/parallel/cuda/words.cuh>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/raster/cuda/geometry.cuh>
+#include <rastrum/raster/geometry.hpp>
+#include <rastrum/raster/transform_source.hpp>
+
+namespace rastrum::raster {
+
+/// Copies of arrays on the device, for a frame.
+template <class Exec>
+class Uploads {
+ public:
+  explicit Uploads(Exec& exec) : exec_(&exec) {}
+
+  /// The copy, which lives as long as this. Copied once for each place and length. Waits.
+  template <class T>
+  [[nodiscard]] std::span<const T> operator()(std::span<const T> host) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    if (host.empty()) return {};
+    const auto [at, is_new] = copies_.try_emplace({host.data(), host.size_bytes()});
+    if (is_new) at->second = parallel::to_device(*exec_, std::as_bytes(host));
+    return {static_cast<const T*>(static_cast<const void*>(at->second.data())), host.size()};
+  }
+
+ private:
+  using Bytes = decltype(parallel::make_buffer<std::byte>(std::declval<Exec&>(), 0));
+  Exec* exec_;
+  std::map<std::pair<const void*, std::size_t>, Bytes> copies_;
+};
+
+namespace cuda_detail {
+
+/// What the host makes of the vertices of a stage of its own.
+struct HostVertices {
+  std::vector<ProjectedVertex> projected;
+  std::vector<Vec4d> clip;
+
+  HostVertices(const Draw& draw, Viewport viewport, Isa isa, parallel::Threads& threads)
+      : projected(draw.vertex_count), clip(draw.vertex_count) {
+    constexpr std::size_t kGrain = 4096;
+    parallel::for_each_index(threads, (draw.vertex_count + kGrain - 1) / kGrain,
+                             [&](std::size_t part) {
+                               const std::size_t begin = part * kGrain;
+                               const std::size_t end = std::min(begin + kGrain, draw.vertex_count);
+                               draw.source->project(begin, end, viewport, isa, &projected[begin]);
+                               for (std::size_t i = begin; i < end; ++i)
+                                 clip[i] = draw.source->clip_position(i);
+                             });
+  }
+};
+
+}  // namespace cuda_detail
+
+/// The draws of a request on the device. `made` keeps what the host has made until the copies are.
+template <class Exec>
+[[nodiscard]] std::vector<DeviceDraw> upload(Uploads<Exec>& uploads, const FrameRequest& request,
+                                             parallel::Threads& threads,
+                                             std::vector<cuda_detail::HostVertices>& made) {
+  std::vector<DeviceDraw> draws;
+  made.reserve(request.draws.size());
+  const Viewport viewport = Viewport::of(request.width, request.height);
+  for (const Draw& draw : request.draws) {
+    DeviceDraw& d = draws.emplace_back();
+    d.draw = draw;
+    d.draw.indices = uploads(draw.indices);
+    d.draw.face_materials = uploads(draw.face_materials);
+    d.draw.material_flags = uploads(draw.material_flags);
+    if (const auto* const matrix = dynamic_cast<const TransformSource*>(draw.source)) {
+      d.vertices.positions = uploads(matrix->positions());
+      d.vertices.object_to_clip = matrix->object_to_clip();
+    } else {
+      const auto& host = made.emplace_back(draw, viewport, request.isa, threads);
+      d.vertices.projected = uploads(std::span(host.projected));
+      d.vertices.clip = uploads(std::span(host.clip));
+    }
+  }
+  return draws;
+}
+
+}  // namespace rastrum::raster

@@ -1,0 +1,316 @@
+// The device's rasterizer draws the bits of the serial reference: through the façade's --device
+// cuda, whose code for the device this program has on the CPU (CMakeLists.txt).
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/parallel/cuda/status.hpp>
+#include <rastrum/raster/program.hpp>
+#include <rastrum/render/render.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/frame.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+RenderOptions options(int width, int height, Device device) {
+  RenderOptions o;
+  o.width = width;
+  o.height = height;
+  o.device = device;
+  o.threads = 2;
+  o.isa = Isa::scalar;
+  o.background = {0.2F, 0.3F, 0.4F, 0.5F};
+  return o;
+}
+
+void skip_without_device() {
+  const parallel::CudaStatus status = parallel::cuda_status();
+  if (!status.usable) GTEST_SKIP() << status.why_not;
+}
+
+std::uint64_t counter(const FrameStats& stats, std::string_view name) {
+  for (const auto& [key, value] : stats.counters)
+    if (key == name) return value;
+  ADD_FAILURE() << "no counter " << name;
+  return 0;
+}
+
+testing::AssertionResult same_frame(const Frame& a, const Frame& b) {
+  if (auto r = same_surfaces(a, b); !r) return r;
+  if (auto r = same_counts(a.stats, b.stats); !r) return r;
+  if (auto r = same_picture(a, b, 0); !r) return r;
+  const auto x = a.color.pixels(), y = b.color.pixels();
+  if (std::memcmp(x.data(), y.data(), x.size_bytes()) != 0)
+    return testing::AssertionFailure() << "float colours differ";
+  return testing::AssertionSuccess();
+}
+
+struct Variant {
+  int width, height;
+  Shader shader;
+  Cull cull;
+};
+class CudaFamily : public testing::TestWithParam<Variant> {
+ protected:
+  void SetUp() override { skip_without_device(); }
+};
+class CudaRasterizer : public testing::Test {
+ protected:
+  void SetUp() override { skip_without_device(); }
+};
+
+TEST_P(CudaFamily, EqualsSerial) {
+  const Variant v = GetParam();
+  RenderOptions on_serial = options(v.width, v.height, Device::serial);
+  on_serial.shader = v.shader;
+  on_serial.cull = v.cull;
+  RenderOptions on_cuda = on_serial;
+  on_cuda.device = Device::cuda;
+  Renderer serial(on_serial), cuda(on_cuda);
+  const int scenes = count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 50;
+  for (int i = 0; i < std::max(scenes, kSceneKinds); ++i) {
+    const auto seed = static_cast<std::uint64_t>(i + v.width * 1000000);
+    const GeneratedScene g = generate(seed, v.width, v.height);
+    const SceneBinding binding(g.scene);
+    const Frame expected = draw(serial, binding.view(), g.camera);
+    const Frame frame = draw(cuda, binding.view(), g.camera);
+    ASSERT_TRUE(same_frame(frame, expected)) << "scene " << seed << " (" << g.kind << ")";
+    ASSERT_TRUE(counts_add_up(frame));
+    ASSERT_EQ(frame.stats.device, Device::cuda);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Variants, CudaFamily,
+                         testing::Values(Variant{64, 64, Shader::phong, Cull::none},
+                                         Variant{37, 53, Shader::flat, Cull::none},
+                                         Variant{128, 96, Shader::normal, Cull::back},
+                                         Variant{1, 1, Shader::id, Cull::none},
+                                         Variant{8, 8, Shader::depth, Cull::front},
+                                         Variant{100, 20, Shader::wireframe, Cull::none},
+                                         Variant{17, 128, Shader::lambert, Cull::none},
+                                         Variant{65, 33, Shader::material, Cull::none}));
+
+/// Soup from less than a pixel to all of the picture.
+Scene soup(int triangles, int width, int height) {
+  Random random(7);
+  Mesh mesh;
+  for (int t = 0; t < triangles; ++t) {
+    const double size = t % 300 == 0 ? 600 : t % 7 == 0 ? 60 : random.real(0.3, 12);
+    const double x = random.real(0, width), y = random.real(0, height);
+    for (int c = 0; c < 3; ++c)
+      mesh.positions.push_back(at_pixel(x + random.real(-size, size), y + random.real(-size, size),
+                                        random.real(0.1, 0.9), width, height));
+  }
+  return single(std::move(mesh));
+}
+
+// Each of the three sizes draws everything once, and neither they nor bands and batches change a
+// bit.
+TEST_F(CudaRasterizer, SizesAndCutsChangeNothing) {
+  constexpr int kWidth = 300, kHeight = 500, kTriangles = 30000;
+  const Scene scene = soup(kTriangles, kWidth, kHeight);
+  const SceneBinding binding(scene);
+  const Camera camera = pixel_camera(kWidth, kHeight);
+  Renderer serial(options(kWidth, kHeight, Device::serial));
+  const Frame expected = draw(serial, binding.view(), camera);
+  struct Cut {
+    int small_px, large_px;
+    std::uint64_t limit;
+  };
+  std::vector<FrameStats> stats;
+  for (const Cut cut : {Cut{0, 0, 0}, Cut{1, 1 << 30, 0}, Cut{1, 2, 0}, Cut{4000, 0, 0},
+                        Cut{0, 0, 2200000}, Cut{1, 500, 2200000}}) {
+    RenderOptions o = options(kWidth, kHeight, Device::cuda);
+    o.tuning.small_px = cut.small_px;
+    o.tuning.large_px = cut.large_px;
+    o.memory_limit = cut.limit;
+    Renderer cuda(o);
+    const Frame frame = draw(cuda, binding.view(), camera);
+    ASSERT_TRUE(same_frame(frame, expected))
+        << cut.small_px << ' ' << cut.large_px << ' ' << cut.limit;
+    stats.push_back(frame.stats);
+  }
+  EXPECT_GT(counter(stats[0], "larger pieces"), 500U);
+  EXPECT_LT(counter(stats[0], "larger pieces"), kTriangles / 2);
+  EXPECT_GT(counter(stats[0], "tile pairs"), 1000U);
+  EXPECT_EQ(counter(stats[1], "tile pairs"), 0U);
+  EXPECT_GT(counter(stats[2], "larger pieces"), kTriangles / 2);
+  EXPECT_GT(counter(stats[2], "tile pairs"), counter(stats[2], "larger pieces"));
+  EXPECT_LT(counter(stats[3], "larger pieces"), counter(stats[0], "larger pieces"));
+  EXPECT_EQ(counter(stats[0], "bands"), 1U);
+  EXPECT_EQ(counter(stats[0], "batches"), 1U);
+  EXPECT_GT(counter(stats[4], "bands"), 1U);
+  EXPECT_GT(counter(stats[4], "batches"), counter(stats[4], "bands"));
+}
+
+TEST_F(CudaRasterizer, RefusesALimitThatHoldsNoBand) {
+  RenderOptions o = options(4000, 100, Device::cuda);
+  o.memory_limit = 1 << 20;
+  Renderer cuda(o);
+  const Scene scene = soup(10, 64, 64);
+  try {
+    (void)draw(cuda, SceneBinding(scene).view(), pixel_camera(64, 64));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), Errc::out_of_memory);
+    EXPECT_NE(std::string(error.what()).find("memory limit of 1048576 bytes"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(CudaRasterizer, FramesAfterTheFirstHoldNoMore) {
+  Renderer cuda(options(200, 150, Device::cuda));
+  const Scene scene = soup(5000, 200, 150);
+  const SceneBinding binding(scene);
+  const Camera camera = pixel_camera(200, 150);
+  const std::uint64_t first = draw(cuda, binding.view(), camera).stats.peak_bytes;
+  EXPECT_GT(first, 200U * 150 * 8);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(draw(cuda, binding.view(), camera).stats.peak_bytes, first);
+}
+
+TEST_F(CudaRasterizer, NamesAnIndexOutOfRange) {
+  Renderer cuda(options(64, 64, Device::cuda));
+  Scene scene = soup(2, 64, 64);
+  scene.meshes[0].indices = {0, 1, 2, 3, 4, 6};
+  try {
+    (void)draw(cuda, SceneBinding(scene).view(), pixel_camera(64, 64));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), Errc::invalid_argument);
+    EXPECT_NE(std::string(error.what()).find("index 6 is out of range"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(CudaRasterizer, SaysWhatItLeavesToTheCpu) {
+  RenderOptions o = options(64, 64, Device::cuda);
+  o.opacity = 0.5F;
+  Renderer cuda(o);
+  o.device = Device::serial;
+  Renderer serial(o);
+  const Scene scene = soup(200, 64, 64);
+  const SceneBinding binding(scene);
+  const Frame frame = draw(cuda, binding.view(), pixel_camera(64, 64));
+  EXPECT_TRUE(same_picture(frame, draw(serial, binding.view(), pixel_camera(64, 64)), 0));
+  EXPECT_EQ(frame.stats.device, Device::threads);
+  EXPECT_NE(frame.stats.device_why.find("translucent"), std::string::npos);
+}
+
+TEST_F(CudaRasterizer, IsTakenByAutoUnlessTheCpusIsAskedFor) {
+  RenderOptions o = options(64, 64, Device::automatic);
+  EXPECT_EQ(Renderer(o).options().device, Device::cuda);
+  o.rasterizer = "tiled";
+  EXPECT_EQ(Renderer(o).options().device, Device::threads);
+  o.device = Device::cuda;
+  EXPECT_THROW(Renderer{o}, Error);
+  o.rasterizer = "by-size";
+  EXPECT_EQ(Renderer(o).options().device, Device::cuda);
+}
+
+/// Points, lines and triangles over one vertex function, some behind the eye, beyond the guard band
+/// or not finite; with widths, biases and windings.
+struct Mix {
+  std::vector<Vec4> clip;
+  std::vector<std::vector<std::uint32_t>> indices;
+  std::vector<raster::Draw> draws;
+
+  template <class Program>
+  void make_draws(Random& r, const Program& program) {
+    constexpr raster::Topology kTopologies[] = {raster::Topology::points, raster::Topology::lines,
+                                                raster::Topology::triangles};
+    for (int d = 0; d < 6; ++d) {
+      const raster::Topology topology = kTopologies[d % 3];
+      auto& list = indices.emplace_back();
+      for (int i = 30 * static_cast<int>(topology); i > 0; --i)
+        list.push_back(static_cast<std::uint32_t>(r.integer(0, static_cast<int>(clip.size()) - 1)));
+      raster::Draw& draw = draws.emplace_back(program.draw(clip.size(), list, topology));
+      draw.line_width = static_cast<float>(r.real(0.1, 9));
+      draw.point_size = static_cast<float>(r.real(0.1, 30));
+      if (r.chance(0.5)) draw.depth_bias = static_cast<float>(r.real(-0.3, 0.3));
+      if (r.chance(0.5)) draw.depth_bias_slope = static_cast<float>(r.integer(-2, 2));
+      draw.cull = static_cast<Cull>(r.integer(0, 2));
+      draw.winding = static_cast<raster::Winding>(r.integer(0, 2));
+    }
+  }
+  Mix(Random& r, int width, int height) {
+    indices.reserve(8);
+    for (int i = 0; i < 60; ++i) {
+      const double w = r.real(0.1, 4);
+      Vec4 v{static_cast<float>((2 * r.real(-8, width + 8) / width - 1) * w),
+             static_cast<float>((1 - 2 * r.real(-8, height + 8) / height) * w),
+             static_cast<float>(r.integer(0, 8) / 8.0 * w), static_cast<float>(w)};
+      if (r.chance(0.05)) v.w = -v.w;
+      if (r.chance(0.05)) v.z = v.w + 0.5F;
+      if (r.chance(0.05)) v.x *= 1e5F;
+      if (r.chance(0.02)) v.y = std::numeric_limits<float>::quiet_NaN();
+      clip.push_back(v);
+    }
+  }
+};
+
+TEST_F(CudaRasterizer, DrawsOfAllTopologiesEqualSerial) {
+  constexpr int kWidth = 130, kHeight = 91;
+  Renderer serial(options(kWidth, kHeight, Device::serial));
+  Renderer cuda(options(kWidth, kHeight, Device::cuda));
+  FrameStats::Triangles seen;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Random random(seed);
+    Mix mix(random, kWidth, kHeight);
+    const raster::Program program(
+        [&mix](std::uint32_t v) {
+          return raster::VertexOutput<Vec4>{mix.clip[v], mix.clip[v]};
+        },
+        [](const Vec4& v, const raster::Fragment& f) {
+          return Vec4{v.x, f.depth, static_cast<float>(f.vertex[0]), 1};
+        });
+    mix.make_draws(random, program);
+    const Frame expected = draw(serial, mix.draws, program, nullptr);
+    const Frame frame = draw(cuda, mix.draws, program, nullptr);
+    ASSERT_TRUE(same_frame(frame, expected)) << seed;
+    seen.clipped += frame.stats.triangles.clipped;
+    seen.dropped += frame.stats.triangles.dropped;
+  }
+  EXPECT_GT(seen.clipped, 100U);
+  EXPECT_GT(seen.dropped, 100U);
+}
+
+TEST_F(CudaRasterizer, PassesEqualOneDraw) {
+  constexpr int kWidth = 150, kHeight = 200;
+  const Scene scene = soup(3000, kWidth, kHeight);
+  const SceneBinding binding(scene);
+  const Camera camera = pixel_camera(kWidth, kHeight);
+  RenderOptions o = options(kWidth, kHeight, Device::cuda);
+  Renderer cuda(o);
+  const Frame once = draw(cuda, binding.view(), camera);
+  Frame f;
+  f.color8 = Image<Rgba8>(kWidth, kHeight);
+  f.color = Image<Vec4>(kWidth, kHeight);
+  f.depth = Image<float>(kWidth, kHeight);
+  f.ids = Image<std::int64_t>(kWidth, kHeight);
+  f.overdraw = Image<std::uint32_t>(kWidth, kHeight);
+  Image<std::uint64_t> words(kWidth, kHeight);
+  Targets targets{f.color8.view(), f.color.view(), f.depth.view(), f.ids.view(), f.overdraw.view()};
+  targets.words = words.view();
+  const InstanceView whole = binding.view().instances[0];
+  for (const auto& [first, last] : {std::pair{0U, 700U}, {700U, 3000U}}) {
+    InstanceView part = whole;
+    part.mesh.positions = whole.mesh.positions.subspan(first * 3, (last - first) * 3);
+    targets.load = first != 0;
+    targets.first_id = first;
+    cuda.render({{&part, 1}, {}, {}}, camera, targets);
+  }
+  EXPECT_TRUE(same_surfaces(f, once));
+  EXPECT_TRUE(same_picture(f, once, 0));
+}
+
+}  // namespace
+}  // namespace rastrum::test
