@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include <rastrum/core/config.hpp>
 #include <rastrum/core/image.hpp>
 #include <rastrum/raster/shaders/srgb.hpp>
 
@@ -24,17 +25,17 @@ struct alignas(64) BlockColors {
 };
 
 /// [0, 1] to 0 … 255, nearest, ties to even; NaN becomes 0.
-inline std::uint8_t quantize(float c) {
+RASTRUM_HD inline std::uint8_t quantize(float c) {
   const float clamped = c > 0 ? (c < 1 ? c : 1.0F) : 0.0F;
   return static_cast<std::uint8_t>(std::nearbyint(clamped * 255.0F));
 }
 
-inline Vec4 straight_from_premultiplied(Vec4 c) {
+RASTRUM_HD inline Vec4 straight_from_premultiplied(Vec4 c) {
   const float scale = c.w > 0 && c.w != 1 ? 1 / c.w : 1.0F;
   return {c.x * scale, c.y * scale, c.z * scale, c.w};
 }
 
-inline Rgba8 to_straight_rgba8(Vec4 premultiplied) {
+RASTRUM_HD inline Rgba8 to_straight_rgba8(Vec4 premultiplied) {
   const Vec4 c = straight_from_premultiplied(premultiplied);
   return {quantize(c.x), quantize(c.y), quantize(c.z), quantize(c.w)};
 }
@@ -60,7 +61,7 @@ struct Backdrop {
   Rgba8 empty{};        ///< of pixels that nothing covers
 
   /// A covered pixel, premultiplied.
-  [[nodiscard]] Vec4 over(Vec4 front) const { return front + color * (1 - front.w); }
+  [[nodiscard]] RASTRUM_HD Vec4 over(Vec4 front) const { return front + color * (1 - front.w); }
 };
 
 }  // namespace rastrum::raster

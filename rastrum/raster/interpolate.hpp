@@ -2,7 +2,8 @@
 // screen. Computed in float64 from snapped positions, or, for a triangle that was clipped, from the
 // homogeneous positions of the original (Olano and Greer, "Triangle scan conversion using 2D
 // homogeneous coordinates", 1997), so that no attribute is ever clipped. The SIMD shaders have a
-// float32 form for triangles where that is as good. Along a line the weights change with the major
+// float32 form for triangles where that is as good. Templates on who knows the vertices, as in
+// assemble.hpp. Along a line the weights change with the major
 // axis alone, as its depth does; a point has one weight.
 #pragma once
 
@@ -28,8 +29,9 @@ struct Weights {
   double db_dy[3];
 };
 
-inline WeightPlanes line_weight_planes(const FrameGeometry& frame, const Draw& draw,
-                                       std::uint64_t line) {
+template <class Geometry>
+RASTRUM_HD WeightPlanes line_weight_planes(const Geometry& frame, const Draw& draw,
+                                           std::uint64_t line) {
   const std::uint32_t index[2] = {draw.vertex(line, 0), draw.vertex(line, 1)};
   const ProjectedVertex v0 = frame.vertex(draw, index[0]), v1 = frame.vertex(draw, index[1]);
   WeightPlanes w{};
@@ -47,7 +49,7 @@ inline WeightPlanes line_weight_planes(const FrameGeometry& frame, const Draw& d
   }
   // With X = (b₀ x₀ + b₁ x₁) / (b₀ w₀ + b₁ w₁): b₀ : b₁ = X w₁ − x₁ : x₀ − X w₀, linear in X, the
   // NDC of the axis along which the line is longer on the screen.
-  const Vec4d a = draw.source->clip_position(index[0]), b = draw.source->clip_position(index[1]);
+  const Vec4d a = frame.clip_position(draw, index[0]), b = frame.clip_position(draw, index[1]);
   const double hw = frame.viewport.half_width;
   const double hh = frame.viewport.half_height;
   if (std::abs(a.x * b.w - b.x * a.w) * hw >= std::abs(a.y * b.w - b.y * a.w) * hh) {
@@ -64,8 +66,9 @@ inline WeightPlanes line_weight_planes(const FrameGeometry& frame, const Draw& d
   return w;
 }
 
-inline WeightPlanes weight_planes(const FrameGeometry& frame, const Draw& draw,
-                                  std::uint64_t triangle) {
+template <class Geometry>
+RASTRUM_HD WeightPlanes weight_planes(const Geometry& frame, const Draw& draw,
+                                      std::uint64_t triangle) {
   const std::uint32_t index[3] = {draw.vertex(triangle, 0), draw.vertex(triangle, 1),
                                   draw.vertex(triangle, 2)};
   const ProjectedVertex v0 = frame.vertex(draw, index[0]), v1 = frame.vertex(draw, index[1]),
@@ -91,7 +94,7 @@ inline WeightPlanes weight_planes(const FrameGeometry& frame, const Draw& draw,
     return w;
   }
   Vec4d c[3];
-  for (int i = 0; i < 3; ++i) c[i] = draw.source->clip_position(index[i]);
+  for (int i = 0; i < 3; ++i) c[i] = frame.clip_position(draw, index[i]);
   const double hw = frame.viewport.half_width;
   const double hh = frame.viewport.half_height;
   for (int i = 0; i < 3; ++i) {
@@ -110,7 +113,8 @@ inline WeightPlanes weight_planes(const FrameGeometry& frame, const Draw& draw,
 /// At a point of pixel (x, y), `from_centre` px from its centre. Snapping may put a sample a little
 /// outside of a clipped triangle's exact shape, where thin ones would extrapolate wildly; so
 /// weights are cut to [0, 1].
-inline Weights weights_at(const WeightPlanes& w, int x, int y, Vec2 from_centre = {0, 0}) {
+RASTRUM_HD inline Weights weights_at(const WeightPlanes& w, int x, int y,
+                                     Vec2 from_centre = {0, 0}) {
   const double dx = x + 0.5 + static_cast<double>(from_centre.x) - w.x0;
   const double dy = y + 0.5 + static_cast<double>(from_centre.y) - w.y0;
   Weights result;
@@ -204,7 +208,7 @@ class FragmentLocator {
     const auto& index = fragment_.vertex;
     const ProjectedVertex v0 = frame_.vertex(draw, index[0]), v1 = frame_.vertex(draw, index[1]),
                           v2 = frame_.vertex(draw, index[2]);
-    const auto clip = [&](int c) { return draw.source->clip_position(index[c]); };
+    const auto clip = [&](int c) { return frame_.clip_position(draw, index[c]); };
     const bool counter_clockwise =
         v0.x_fx8 != kNeedsClip && v1.x_fx8 != kNeedsClip && v2.x_fx8 != kNeedsClip
             ? twice_area(v0, v1, v2) < 0
@@ -216,7 +220,7 @@ class FragmentLocator {
   WeightPlanes point_planes(const Draw& draw) {
     ProjectedVertex v = frame_.vertex(draw, fragment_.vertex[0]);
     if (v.x_fx8 == kNeedsClip)
-      (void)clip_point(draw.source->clip_position(fragment_.vertex[0]), frame_.viewport, v);
+      (void)clip_point(frame_.clip_position(draw, fragment_.vertex[0]), frame_.viewport, v);
     constexpr double kPx = 1.0 / kSubpixels;
     square_px_ = point_size_fx8(draw.point_size) * kPx;
     WeightPlanes w{};

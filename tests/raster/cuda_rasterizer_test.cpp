@@ -87,6 +87,10 @@ TEST_P(CudaFamily, EqualsSerial) {
     ASSERT_TRUE(same_frame(frame, expected)) << "scene " << seed << " (" << g.kind << ")";
     ASSERT_TRUE(counts_add_up(frame));
     ASSERT_EQ(frame.stats.device, Device::cuda);
+    const bool by_host = v.shader == Shader::material || v.shader == Shader::wireframe;
+    ASSERT_NE(frame.stats.why.find(by_host ? "shaded by the host" : "shaded on the device"),
+              std::string::npos)
+        << frame.stats.why;
   }
 }
 INSTANTIATE_TEST_SUITE_P(Variants, CudaFamily,
@@ -128,7 +132,7 @@ TEST_F(CudaRasterizer, SizesAndCutsChangeNothing) {
   };
   std::vector<FrameStats> stats;
   for (const Cut cut : {Cut{0, 0, 0}, Cut{1, 1 << 30, 0}, Cut{1, 2, 0}, Cut{4000, 0, 0},
-                        Cut{0, 0, 2200000}, Cut{1, 500, 2200000}}) {
+                        Cut{0, 0, 3000000}, Cut{1, 500, 3000000}}) {
     RenderOptions o = options(kWidth, kHeight, Device::cuda);
     o.tuning.small_px = cut.small_px;
     o.tuning.large_px = cut.large_px;
@@ -137,6 +141,10 @@ TEST_F(CudaRasterizer, SizesAndCutsChangeNothing) {
     const Frame frame = draw(cuda, binding.view(), camera);
     ASSERT_TRUE(same_frame(frame, expected))
         << cut.small_px << ' ' << cut.large_px << ' ' << cut.limit;
+    // The mesh's copy is not counted, as the mesh is not.
+    if (cut.limit > 0) {
+      EXPECT_LE(frame.stats.peak_bytes, cut.limit + std::uint64_t{kTriangles} * 3 * sizeof(Vec3));
+    }
     stats.push_back(frame.stats);
   }
   EXPECT_GT(counter(stats[0], "larger pieces"), 500U);

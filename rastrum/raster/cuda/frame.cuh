@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@
 #include <rastrum/parallel/scratch.hpp>
 #include <rastrum/raster/cuda/rasterizer.cuh>
 #include <rastrum/raster/cuda/rasterizer.hpp>
+#include <rastrum/raster/cuda/resolve.cuh>
 #include <rastrum/raster/cuda/upload.cuh>
 #include <rastrum/raster/resolve.hpp>
 #include <rastrum/raster/stopwatch.hpp>
@@ -71,8 +73,12 @@ class DeviceRasterizer final : public CudaRasterizer {
     const std::vector<DeviceDraw> draws = upload(uploads, request, threads_, made);
     watch.lap(stats, "upload");
     const bool counts_overdraw = !request.targets.overdraw.empty();
+    const std::optional<Resolver> resolver = resolver_of(request, uploads);
+    const std::uint64_t pixel_bytes =
+        (counts_overdraw ? sizeof(std::uint32_t) : 0) +
+        (resolver ? sizeof(std::uint32_t) + DeviceTargets::bytes_of(request.targets) : 0);
     const DevicePlan plan = DevicePlan::of(limit(), request.width, request.height,
-                                           totals.primitives, totals.vertices, counts_overdraw);
+                                           totals.primitives, totals.vertices, pixel_bytes);
     const DeviceScene<Exec> scene(exec_, draws, request.width, request.height,
                                   request.targets.first_id, plan.project_first);
     exec_.wait();
@@ -105,14 +111,17 @@ class DeviceRasterizer final : public CudaRasterizer {
       counts.batches += band.batches;
       watch.lap(stats, "rasterize");
       if (counts_overdraw) store_overdraw(request, view, overdraw);
-      stats.pixels_covered += resolve_on_host(request, geometry, view, words, shaders);
+      stats.pixels_covered += resolver
+                                  ? resolve_on_device(request, *resolver, scene.geometry(), surface)
+                                  : resolve_on_host(request, geometry, view, words, shaders);
       watch.lap(stats, "shade");
     }
     stats.triangles.dropped = counts.sum.dropped;
     stats.triangles.culled = counts.sum.culled;
     stats.triangles.clipped = counts.sum.clipped;
     stats.fragments = counts.fragments;
-    stats.why = "shaded by the host's threads";
+    stats.why = std::string("cuda has by-size: a thread, a warp or blocks of threads a triangle; ")
+                    .append(resolver ? "shaded on the device" : "shaded by the host's threads");
     stats.counters = {{"bands", bands},
                       {"batches", counts.batches},
                       {"larger pieces", counts.larger_pieces},
@@ -165,6 +174,89 @@ class DeviceRasterizer final : public CudaRasterizer {
           targets.overdraw(x, y) = n + (targets.load ? targets.overdraw(x, y) : 0);
         }
     });
+  }
+
+  /// What the device resolves a frame with.
+  struct Resolver {
+    LitModel model = LitModel::flat;
+    std::optional<LitUpload<Exec>> lit;  ///< none: no colours are wanted
+  };
+  /// None where the frame has a target, a way to blend or a shader without a device form.
+  [[nodiscard]] std::optional<Resolver> resolver_of(const FrameRequest& request,
+                                                    Uploads<Exec>& uploads) {
+    const Targets& t = request.targets;
+    if (t.load || t.over || !t.extra.empty() || request.linear_light) return std::nullopt;
+    if (t.color8.empty() && t.color.empty()) return Resolver{};
+    const std::optional<LitForm> form =
+        request.shader != nullptr ? lit_form(*request.shader) : std::nullopt;
+    if (!form || !LitOnDevice::has(form->model)) return std::nullopt;
+    Resolver r;
+    r.model = form->model;
+    r.lit.emplace(exec_, uploads, *form);
+    return r;
+  }
+
+  /// An image of a band on the device, where the host has one.
+  template <class T>
+  class Band {
+    using Pixels = decltype(parallel::make_buffer<T>(std::declval<Exec&>(), 0));
+
+   public:
+    Band(Exec& exec, const ImageView<T>& host, Rect view)
+        : exec_(exec),
+          host_(host),
+          view_(view),
+          pixels_(parallel::make_buffer<T>(exec, host.empty() ? 0 : area_of(view))) {}
+    [[nodiscard]] ImageView<T> on_device() {
+      const int width = view_.x1 - view_.x0;
+      return {pixels_.data(), width, view_.y1 - view_.y0, width};
+    }
+    /// Does not wait.
+    void store() {
+      if (host_.empty()) return;
+      const auto width = static_cast<std::size_t>(view_.x1 - view_.x0);
+      const auto rows = static_cast<std::size_t>(view_.y1 - view_.y0);
+      // Rows that lie together are one copy.
+      const std::size_t at_once = host_.stride == view_.x1 ? rows : 1;
+      for (std::size_t y = 0; y < rows; y += at_once)
+        parallel::cuda_system::copy(exec_.stream(), host_.row(view_.y0 + static_cast<int>(y)),
+                                    pixels_.data() + y * width, at_once * width * sizeof(T));
+    }
+
+   private:
+    Exec& exec_;
+    ImageView<T> host_;
+    Rect view_;
+    Pixels pixels_;
+  };
+
+  /// All targets, on the device. Returns how many pixels hold a surface.
+  [[nodiscard]] std::uint64_t resolve_on_device(const FrameRequest& request,
+                                                const Resolver& resolver,
+                                                const DeviceGeometry& geometry,
+                                                const DeviceSurface& surface) {
+    const Targets& t = request.targets;
+    const Rect view = surface.view;
+    Band<Rgba8> color8(exec_, t.color8, view);
+    Band<Vec4> color(exec_, t.color, view);
+    Band<float> depth(exec_, t.depth, view);
+    Band<std::int64_t> ids(exec_, t.ids, view);
+    Band<std::uint64_t> words(exec_, t.words, view);
+    const DeviceTargets targets{color8.on_device(), color.on_device(), depth.on_device(),
+                                ids.on_device(), words.on_device()};
+    const Backdrop backdrop = backdrop_of(request);
+    const std::uint64_t covered =
+        resolver.lit
+            ? resolve_surface(exec_, surface, targets,
+                              LitOnDevice{resolver.model, geometry, resolver.lit->view()}, backdrop)
+            : resolve_surface(exec_, surface, targets, NoColors{}, backdrop);
+    color8.store();
+    color.store();
+    depth.store();
+    ids.store();
+    words.store();
+    exec_.wait();
+    return covered;
   }
 
   /// All targets, from words that come back. Returns how many pixels hold a surface.

@@ -49,9 +49,10 @@ struct DevicePlan {
   std::uint64_t batch = 0;    ///< primitives that are set up at once
   std::uint64_t written = 0;  ///< of those with larger pieces, whose pieces are there at once
 
-  /// `limit`: bytes, 0 for any. Throws Error{out_of_memory} where not even the least band fits.
+  /// `limit`: bytes, 0 for any. `pixel_bytes`: what is kept of a pixel beside its word. Throws
+  /// Error{out_of_memory} where not even the least band fits.
   static DevicePlan of(std::uint64_t limit, int width, int height, std::uint64_t primitives,
-                       std::uint64_t vertices, bool counts_overdraw) {
+                       std::uint64_t vertices, std::uint64_t pixel_bytes) {
     constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
     constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 19;
     // An outcome, its place and CUB's flags; the pieces of a primitive and their places.
@@ -62,7 +63,7 @@ struct DevicePlan {
     if (limit == 0) return p;
     const auto columns = static_cast<std::uint64_t>(block_columns({0, 0, width, 1}));
     const std::uint64_t least_band =
-        columns * kBlockSize * kDeviceTile * (sizeof(std::uint64_t) + (counts_overdraw ? 4 : 0));
+        columns * kBlockSize * kDeviceTile * (sizeof(std::uint64_t) + pixel_bytes);
     const std::uint64_t least = std::max(least_band, kLeastShare) + 3 * kLeastShare;
     if (limit < least)
       throw Error(Errc::out_of_memory,

@@ -6,7 +6,7 @@
 
 #include <rastrum/raster/interpolate.hpp>
 #include <rastrum/raster/shaders/lit_constants.hpp>
-#include <rastrum/raster/shaders/lit_triangle.hpp>
+#include <rastrum/raster/shaders/lit_scalar.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -40,59 +40,6 @@ float wire(const Fragment& f) {
   return static_cast<float>(std::clamp(1.0 - nearest, 0.0, 1.0));
 }
 
-// The scalar twin of lit_simd.cpp: the same float32 operations in the same order, because where a
-// normal stands at a right angle to the view the last bit decides which side it faces.
-
-Vec3 unit(Vec3 v) {
-  const float square = dot(v, v);
-  return v * (square > 0 ? 1.0F / std::sqrt(square) : 1.0F);
-}
-float positive(float v) {
-  return v > 0 ? v : 0.0F;
-}
-
-struct SampleWeights {
-  float b[3];  ///< up to a common positive factor
-
-  SampleWeights(const LitTriangle& t, int x, int y, Vec2 from_centre) {
-    if (t.exact) {
-      const Weights w = weights_at(t.planes, x, y, from_centre);
-      for (int c = 0; c < 3; ++c) b[c] = static_cast<float>(w.b[c]);
-      return;
-    }
-    const float dx = (static_cast<float>(x) + 0.5F + from_centre.x) - t.x0;
-    const float dy = (static_cast<float>(y) + 0.5F + from_centre.y) - t.y0;
-    const float l1 = t.p1 * dx + t.q1 * dy;
-    const float l2 = t.p2 * dx + t.q2 * dy;
-    b[0] = (1.0F - l1 - l2) * t.inv_w[0];
-    b[1] = l1 * t.inv_w[1];
-    b[2] = l2 * t.inv_w[2];
-  }
-  [[nodiscard]] Vec3 sum(const Vec3 (&v)[3]) const {
-    return v[0] * b[0] + v[1] * b[1] + v[2] * b[2];
-  }
-};
-
-Vec3 light(LitModel model, const ViewRays& rays, int x, int y, Vec2 from_centre, Vec3 normal,
-           Vec3 base) {
-  if (model == LitModel::flat) return base;
-  Vec3 n = unit(normal);
-  if (model == LitModel::normal) return n * 0.5F + Vec3{0.5F, 0.5F, 0.5F};
-  const float px = static_cast<float>(x) + 0.5F + from_centre.x;
-  const float py = static_cast<float>(y) + 0.5F + from_centre.y;
-  const Vec3 v = unit(-(rays.d + rays.dx * px + rays.dy * py));
-  n = n * (dot(n, v) < 0 ? -1.0F : 1.0F);
-  const Vec3 lit = base * (kAmbient + kDiffuse * positive(dot(n, kLight)));
-  if (model == LitModel::lambert) return lit;
-  // (n·h)³² = ((n·u)² / u·u)¹⁶ with u = v + l: the half vector needs no square root.
-  const Vec3 u = v + kLight;
-  const float n_u = positive(dot(n, u));
-  float s = n_u * n_u / std::max(dot(u, u), 1e-20F);
-  for (int i = 0; i < 4; ++i) s *= s;
-  const float specular = s * kSpecular;
-  return lit + Vec3{specular, specular, specular};
-}
-
 class LitShader final : public BlockShader {
  public:
   LitShader(LitModel model, const LitScene& scene) : model_(model), scene_(scene) {}
@@ -118,6 +65,7 @@ class LitShader final : public BlockShader {
   [[nodiscard]] std::size_t scratch_bytes() const noexcept override {
     return sizeof(KeptTriangles);
   }
+  [[nodiscard]] LitForm form() const { return {model_, &scene_}; }
 
  private:
   [[nodiscard]] Vec4 color(const Fragment& f) const {
@@ -130,18 +78,14 @@ class LitShader final : public BlockShader {
                     BlockColors& colors) const {
     KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
     const bool wants_normals = model_ != LitModel::flat;
+    const LitView view{scene_.draws, scene_.rays, scene_.colored};
     for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
       const int x = block.x0 + i % kBlockSize, y = block.y0 + i / kBlockSize;
       const LitTriangle& t = kept.find(scene_, frame, block.words[i] & kIdMask, wants_normals);
       const Vec2 from_centre =
           block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
-      const SampleWeights w(t, x, y, from_centre);
-      Vec3 base = kDefaultBase;
-      if (scene_.colored && model_ != LitModel::normal)
-        base = w.sum(t.color) * (1.0F / (w.b[0] + w.b[1] + w.b[2]));
-      const Vec3 normal = wants_normals ? w.sum(t.normal) : base;
-      colors.set(i, opaque(light(model_, scene_.rays, x, y, from_centre, normal, base)));
+      colors.set(i, opaque(shade_lit(model_, view, t, x, y, from_centre)));
     }
   }
 
@@ -226,6 +170,11 @@ LitScene::LitScene(const SceneView& scene, const Camera& camera, int width, int 
 
 std::unique_ptr<BlockShader> make_lit_shader(LitModel model, const LitScene& scene) {
   return std::make_unique<LitShader>(model, scene);
+}
+
+std::optional<LitForm> lit_form(const BlockShader& shader) {
+  const auto* const lit = dynamic_cast<const LitShader*>(&shader);
+  return lit != nullptr ? std::optional(lit->form()) : std::nullopt;
 }
 
 }  // namespace rastrum::raster

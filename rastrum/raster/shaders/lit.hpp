@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,7 +23,7 @@ struct LitDraw {
   float normal_matrix[3][3];  ///< object to world, inverse transpose
   bool identity = false;      ///< normal_matrix is a multiple of the identity
 
-  [[nodiscard]] Vec3 to_world(Vec3 n) const {
+  [[nodiscard]] RASTRUM_HD Vec3 to_world(Vec3 n) const {
     const auto& m = normal_matrix;
     return {m[0][0] * n.x + m[0][1] * n.y + m[0][2] * n.z,
             m[1][0] * n.x + m[1][1] * n.y + m[1][2] * n.z,
@@ -45,7 +46,21 @@ struct LitScene {
   LitScene(const SceneView& scene, const Camera& camera, int width, int height);
 };
 
+/// What the scalar form reads, of the host's memory or a device's (lit_scalar.hpp).
+struct LitView {
+  std::span<const LitDraw> draws;
+  ViewRays rays;
+  bool colored = false;
+};
+
 /// `scene` must outlive the shader.
 [[nodiscard]] std::unique_ptr<BlockShader> make_lit_shader(LitModel model, const LitScene& scene);
+
+/// What make_lit_shader was given; none for another shader.
+struct LitForm {
+  LitModel model;
+  const LitScene* scene;
+};
+[[nodiscard]] std::optional<LitForm> lit_form(const BlockShader& shader);
 
 }  // namespace rastrum::raster

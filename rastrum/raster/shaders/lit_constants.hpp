@@ -15,7 +15,7 @@ inline constexpr float kAmbient = 0.1F, kDiffuse = 0.8F, kSpecular = 0.3F;
 inline constexpr Vec3 kLight{0.32444284F, 0.48666426F, 0.81110710F};
 
 /// A hash of the id (the finalizer of MurmurHash3) as an 8-bit colour, never black.
-constexpr Vec3 id_color(std::uint64_t id) {
+RASTRUM_HD constexpr Vec3 id_color(std::uint64_t id) {
   auto h = static_cast<std::uint32_t>(id ^ (id >> 32));
   h ^= h >> 16;
   h *= 0x85ebca6bU;

@@ -1,82 +1,9 @@
 #include <rastrum/raster/shaders/lit_triangle.hpp>
 
-#include <algorithm>
-#include <cmath>
-
-#include <rastrum/raster/shaders/lit_constants.hpp>
-#include <rastrum/raster/shaders/normals.hpp>
-
 namespace rastrum::raster {
-namespace {
-
-/// Up to this ratio of squared longest edge to twice the area float32 weights are as good as 1e-5.
-constexpr float kThin = 32.0F;
-/// Below this ratio of the corners' 1 / w a far corner's weight drowns in the near one's rounding.
-constexpr float kSteep = 1e-4F;
-
-void fetch_weights(const FrameGeometry& frame, const Draw& draw, std::uint64_t t,
-                   const std::uint32_t (&vertex)[3], LitTriangle& out) {
-  const ProjectedVertex v0 = frame.vertex(draw, vertex[0]), v1 = frame.vertex(draw, vertex[1]),
-                        v2 = frame.vertex(draw, vertex[2]);
-  out.exact = true;
-  if (v0.x_fx8 == kNeedsClip || v1.x_fx8 == kNeedsClip || v2.x_fx8 == kNeedsClip) {
-    out.planes = weight_planes(frame, draw, t);
-    return;
-  }
-  constexpr float kPx = 1.0F / kSubpixels;
-  const float e1x = static_cast<float>(v1.x_fx8 - v0.x_fx8) * kPx;
-  const float e1y = static_cast<float>(v1.y_fx8 - v0.y_fx8) * kPx;
-  const float e2x = static_cast<float>(v2.x_fx8 - v0.x_fx8) * kPx;
-  const float e2y = static_cast<float>(v2.y_fx8 - v0.y_fx8) * kPx;
-  const float det = e1x * e2y - e2x * e1y;
-  const float extent = (e1x * e1x + e1y * e1y) + (e2x * e2x + e2y * e2y);
-  const float smallest = std::min({v0.inv_w, v1.inv_w, v2.inv_w});
-  const float largest = std::max({v0.inv_w, v1.inv_w, v2.inv_w});
-  // Up to 16 px every product of edges is exact, however thin the triangle.
-  const bool thin = extent > 128.0F && !(extent < kThin * std::abs(det));
-  out.exact = thin || !(smallest > kSteep * largest);
-  if (out.exact) {
-    out.planes = weight_planes(frame, draw, t);
-    return;
-  }
-  const float inv_det = 1.0F / det;
-  out.x0 = static_cast<float>(v0.x_fx8) * kPx;
-  out.y0 = static_cast<float>(v0.y_fx8) * kPx;
-  out.p1 = e2y * inv_det;
-  out.q1 = -e2x * inv_det;
-  out.p2 = -e1y * inv_det;
-  out.q2 = e1x * inv_det;
-  // Only ratios count; far away 1 / w is so small that squares of normals would underflow.
-  out.inv_w[0] = v0.inv_w / largest;
-  out.inv_w[1] = v1.inv_w / largest;
-  out.inv_w[2] = v2.inv_w / largest;
-}
-
-}  // namespace
-
 void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t low,
                     bool wants_normals, LitTriangle& out) {
-  out.low = low;
-  const std::uint64_t id = kIdMask - low;
-  const Draw& draw = frame.draw_of(id);
-  const LitDraw& lit = scene.draws[static_cast<std::size_t>(&draw - frame.draws.data())];
-  const std::uint64_t t = id - draw.first_id;
-  const std::uint32_t vertex[3] = {draw.vertex(t, 0), draw.vertex(t, 1), draw.vertex(t, 2)};
-  fetch_weights(frame, draw, t, vertex, out);
-  const MeshView& mesh = lit.mesh;
-  if (wants_normals) {
-    corner_normals(mesh, t, vertex, out.normal);
-    if (!lit.identity)
-      for (Vec3& n : out.normal) n = lit.to_world(n);
-  }
-  if (!scene.colored) return;
-  for (std::size_t c = 0; c < 3; ++c) {
-    out.color[c] = kDefaultBase;
-    if (mesh.colors.empty()) continue;
-    const std::size_t i = mesh.colors.indices.empty() ? vertex[c] : mesh.colors.indices[t * 3 + c];
-    const Vec4 color = mesh.colors.values[i];
-    out.color[c] = {color.x, color.y, color.z};
-  }
+  fetch_triangle(LitView{scene.draws, scene.rays, scene.colored}, frame, low, wants_normals, out);
 }
 
 void prefetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t id,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include <rastrum/core/config.hpp>
 #include <rastrum/core/vec.hpp>
 #include <rastrum/scene/mesh.hpp>
 
@@ -12,7 +13,7 @@ namespace rastrum::raster {
 
 /// The normal of the triangle's plane, counter-clockwise in front; its largest component is 1. In
 /// float64, because products of coordinates up to FLT_MAX / 16 overflow float32. 0 without area.
-inline Vec3 face_normal(const MeshView& mesh, const std::uint32_t (&vertex)[3]) {
+RASTRUM_HD inline Vec3 face_normal(const MeshView& mesh, const std::uint32_t (&vertex)[3]) {
   // By reference: GCC 12 reads copies back by other parts than it wrote, and waits for the writes.
   const Vec3 &a = mesh.positions[vertex[0]], &b = mesh.positions[vertex[1]],
              &c = mesh.positions[vertex[2]];
@@ -29,7 +30,7 @@ inline Vec3 face_normal(const MeshView& mesh, const std::uint32_t (&vertex)[3]) 
 }
 
 /// A caller's normal, scaled where its square would leave float32; 0 where it is not finite.
-inline Vec3 safe_normal(Vec3 n) {
+RASTRUM_HD inline Vec3 safe_normal(Vec3 n) {
   const float largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
   if (largest > 1e-15F && largest < 1e15F) return n;
   if (!is_finite(n) || largest == 0) return {};
@@ -37,8 +38,8 @@ inline Vec3 safe_normal(Vec3 n) {
 }
 
 /// The normals at the corners of triangle `t`, in object space.
-inline void corner_normals(const MeshView& mesh, std::uint64_t t, const std::uint32_t (&vertex)[3],
-                           Vec3 (&out)[3]) {
+RASTRUM_HD inline void corner_normals(const MeshView& mesh, std::uint64_t t,
+                                      const std::uint32_t (&vertex)[3], Vec3 (&out)[3]) {
   if (mesh.normals.empty()) {
     out[0] = out[1] = out[2] = face_normal(mesh, vertex);
     return;

@@ -1,0 +1,139 @@
+// From words to images on a device: a thread a pixel. Depth, ids and words of any frame; colours of
+// opaque surfaces by a shader that is a functor, Vec3(word, x, y): LitOnDevice has the built-in
+// shaders but `material` and `wireframe`, by their scalar form, so their bits.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <rastrum/core/image.hpp>
+#include <rastrum/parallel/cuda/words.cuh>
+#include <rastrum/raster/color.hpp>
+#include <rastrum/raster/cuda/cover.cuh>
+#include <rastrum/raster/cuda/geometry.cuh>
+#include <rastrum/raster/cuda/upload.cuh>
+#include <rastrum/raster/shaders/lit_scalar.hpp>
+
+namespace rastrum::raster {
+
+/// Images in memory of the device, as Targets; an empty view is not computed. Pixel (0, 0) is that
+/// of DeviceSurface::view, whose size they have.
+struct DeviceTargets {
+  ImageView<Rgba8> color8{};
+  ImageView<Vec4> color{};
+  ImageView<float> depth{};
+  ImageView<std::int64_t> ids{};
+  ImageView<std::uint64_t> words{};
+
+  /// Bytes of a pixel of those that are wanted of `t`.
+  static std::uint64_t bytes_of(const Targets& t) {
+    return (t.color8.empty() ? 0 : sizeof(Rgba8)) + (t.color.empty() ? 0 : sizeof(Vec4)) +
+           (t.depth.empty() ? 0 : sizeof(float)) + (t.ids.empty() ? 0 : sizeof(std::int64_t)) +
+           (t.words.empty() ? 0 : sizeof(std::uint64_t));
+  }
+};
+
+/// The lit shaders for which has() says so. `scene`: spans of the device's.
+struct LitOnDevice {
+  LitModel model = LitModel::flat;
+  DeviceGeometry geometry;
+  LitView scene;
+
+  static bool has(LitModel model) { return model != LitModel::wireframe; }
+  RASTRUM_HD Vec3 operator()(std::uint64_t word, int x, int y) const {
+    if (model == LitModel::id) return id_color(id_of_word(word));
+    LitTriangle t;
+    fetch_triangle(scene, geometry, word & kIdMask, model != LitModel::flat, t);
+    return shade_lit(model, scene, t, x, y, {0, 0});
+  }
+};
+
+/// Where no colours are wanted.
+struct NoColors {
+  RASTRUM_HD Vec3 operator()(std::uint64_t, int, int) const { return {}; }
+};
+
+namespace cuda_detail {
+
+/// Pixel i of the view, row by row; returns whether it holds a surface.
+template <class Shade>
+struct ResolvePixel {
+  DeviceSurface surface;
+  DeviceTargets targets;
+  Shade shade;
+  Backdrop backdrop;
+  RASTRUM_HD std::uint32_t operator()(std::size_t i) const {
+    const Rect view = surface.view;
+    const auto width = static_cast<std::size_t>(view.x1 - view.x0);
+    const int x = view.x0 + static_cast<int>(i % width), y = view.y0 + static_cast<int>(i / width);
+    const std::uint64_t word = surface.words.block(
+        x / kBlockSize, y / kBlockSize)[y % kBlockSize * kBlockSize + x % kBlockSize];
+    const auto put = [&](const auto& image, const auto& value) {
+      if (image.data != nullptr) image.data[(y - view.y0) * image.stride + (x - view.x0)] = value;
+    };
+    if (targets.color8.data != nullptr || targets.color.data != nullptr) {
+      Vec4 color = backdrop.color;
+      Rgba8 color8 = backdrop.empty;
+      if (word != 0) {
+        const Vec3 c = shade(word, x, y);
+        color = backdrop.over({c.x, c.y, c.z, 1});
+        color8 = to_straight_rgba8(color);
+      }
+      put(targets.color8, color8);
+      put(targets.color, color);
+    }
+    put(targets.depth, std::bit_cast<float>(static_cast<std::uint32_t>(word >> kIdBits)));
+    put(targets.ids, word == 0 ? std::int64_t{-1} : static_cast<std::int64_t>(id_of_word(word)));
+    put(targets.words, word);
+    return word != 0 ? 1 : 0;
+  }
+};
+
+}  // namespace cuda_detail
+
+/// Fills `targets` from the words of `surface`, over `backdrop`, which is of display values.
+/// Returns how many pixels hold a surface. Work O(pixels). Waits.
+template <class Exec, class Shade>
+[[nodiscard]] std::uint64_t resolve_surface(Exec& exec, const DeviceSurface& surface,
+                                            const DeviceTargets& targets, const Shade& shade,
+                                            const Backdrop& backdrop) {
+  auto covered = parallel::make_buffer<std::uint32_t>(exec, area_of(surface.view));
+  parallel::tabulate(exec, covered,
+                     cuda_detail::ResolvePixel<Shade>{surface, targets, shade, backdrop});
+  return parallel::reduce(exec, covered, std::uint64_t{0});
+}
+
+/// The arrays that the lit shaders read, on the device. `draws`: the host's. The result's spans
+/// live as long as `uploads`. Waits.
+template <class Exec>
+class LitUpload {
+ public:
+  LitUpload(Exec& exec, Uploads<Exec>& uploads, const LitForm& form) {
+    const bool wants_normals = form.model != LitModel::flat && form.model != LitModel::id;
+    std::vector<LitDraw> draws;
+    for (LitDraw draw : form.scene->draws) {
+      MeshView& mesh = draw.mesh;
+      const auto move = [&](auto& attribute, bool wanted) {
+        if (!wanted) return;
+        attribute.values = uploads(attribute.values);
+        attribute.indices = uploads(attribute.indices);
+      };
+      if (wants_normals && mesh.normals.empty()) mesh.positions = uploads(mesh.positions);
+      move(mesh.normals, wants_normals);
+      move(mesh.colors, form.scene->colored);
+      draws.push_back(draw);
+    }
+    draws_ = parallel::to_device(exec, draws);
+    view_ = {{draws_.data(), draws_.size()}, form.scene->rays, form.scene->colored};
+  }
+  [[nodiscard]] const LitView& view() const { return view_; }
+
+ private:
+  decltype(parallel::make_buffer<LitDraw>(std::declval<Exec&>(), 0)) draws_;
+  LitView view_;
+};
+
+}  // namespace rastrum::raster
