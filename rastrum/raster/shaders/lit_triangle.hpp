@@ -97,7 +97,7 @@ RASTRUM_HD void fetch_triangle(const LitView& scene, const Geometry& frame, std:
   for (std::size_t c = 0; c < 3; ++c) {
     constexpr Vec3 default_base = kDefaultBase;
     out.color[c] = default_base;
-    if (mesh.colors.empty()) continue;
+    if (mesh.colors.values.empty()) continue;
     const std::size_t i = mesh.colors.indices.empty() ? vertex[c] : mesh.colors.indices[t * 3 + c];
     const Vec4 color = mesh.colors.values[i];
     out.color[c] = {color.x, color.y, color.z};

@@ -40,7 +40,7 @@ RASTRUM_HD inline Vec3 safe_normal(Vec3 n) {
 /// The normals at the corners of triangle `t`, in object space.
 RASTRUM_HD inline void corner_normals(const MeshView& mesh, std::uint64_t t,
                                       const std::uint32_t (&vertex)[3], Vec3 (&out)[3]) {
-  if (mesh.normals.empty()) {
+  if (mesh.normals.values.empty()) {
     out[0] = out[1] = out[2] = face_normal(mesh, vertex);
     return;
   }
