@@ -191,6 +191,7 @@ struct FrameRequest {
   Vec4 background{};                    ///< display values, straight alpha
   Targets targets;
   Tuning tuning;
+  bool in_place = false;            ///< arrays and targets are memory of the device that draws
   std::uint64_t texture_bytes = 0;  ///< that a memory limit counts beside the frame's own
   bool hierarchical_z = true;
   TransparencyOptions transparency;  ///< for a visibility that keeps layers

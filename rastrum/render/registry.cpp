@@ -149,6 +149,9 @@ DrawFrame make_on_cuda(const RenderOptions& options, MemoryAccount& memory,
        host = DrawFrame(), on_threads, &memory, &threads](raster::FrameRequest& request) mutable {
         const std::string why_not = why_not_on_cuda(request);
         if (why_not.empty()) return device->render(request);
+        if (request.in_place)
+          throw Error(Errc::unsupported,
+                      std::string("arrays in the device's memory (in_place): ").append(why_not));
         if (!host) host = make_rasterizer(on_threads, memory, &threads);
         FrameStats stats = host(request);
         stats.device = Device::threads;

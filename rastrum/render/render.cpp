@@ -128,6 +128,23 @@ void check_transparency(const RenderOptions& o) {
           "samples must be 1, 4, 8 or 16");
 }
 
+/// What of a frame in a device's memory the host would have to read or write.
+void check_in_place(const SceneView& scene, const Targets& targets, const RenderOptions& o) {
+  const auto require = [](bool ok, const char* what) {
+    if (!ok)
+      throw Error(Errc::unsupported,
+                  std::string("arrays in the device's memory (in_place): ").append(what));
+  };
+  require(
+      o.shader != Shader::depth && o.shader != Shader::material && o.shader != Shader::wireframe,
+      "the shaders depth, material and wireframe need them in the host's");
+  require(scene.materials.empty(), "materials need them in the host's");
+  require(o.opacity == 1 && o.samples == 1, "surfaces must be opaque, with one sample a pixel");
+  require(targets.overdraw.empty() && targets.errors.empty() && targets.extra.empty() &&
+              !targets.load && !targets.over,
+          "of the targets there are color8, color, depth, ids and words, in one pass");
+}
+
 void check_over(const Targets& targets, const RenderOptions& o) {
   const auto require = [](bool ok, const char* what) {
     if (!ok) throw Error(Errc::invalid_argument, what);
@@ -189,7 +206,11 @@ const RenderOptions& Renderer::options() const {
 
 FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const Targets& targets) {
   const RenderOptions& o = impl_->options;
-  check_attributes(scene);
+  const bool in_place = o.in_place && o.device == Device::cuda;
+  if (in_place)
+    check_in_place(scene, targets, o);
+  else
+    check_attributes(scene);
   raster::check_materials(scene);
   const Mat4d to_clip = world_to_clip(camera, o.width, o.height);
   std::vector<raster::TransformSource> sources;
@@ -209,7 +230,7 @@ FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const 
     draw.primitive_count = instance.mesh.triangle_count();
     draw.cull = material_cull(instance, scene.materials, o.shader);
     std::uint32_t flags = raster::set_material_flags(draw, instance.mesh, material_flags);
-    if (blends && scene.materials.empty() &&
+    if (blends && scene.materials.empty() && !in_place &&
         raster::has_vertex_alpha(instance.mesh, impl_->threads.get())) {
       draw.flags |= raster::kTranslucent;
       flags |= raster::kTranslucent;
@@ -322,6 +343,7 @@ FrameStats Renderer::draw_in(bool linear_light, std::span<raster::Draw> draws,
   request.background = o.background;
   request.targets = targets;
   request.tuning = o.tuning;
+  request.in_place = o.in_place && o.device == Device::cuda;
   request.texture_bytes = impl_->textures.bytes();
   request.hierarchical_z = o.hierarchical_z;
   request.transparency = o.transparency;

@@ -52,7 +52,12 @@ struct RenderOptions {
   bool hierarchical_z = true;       ///< where the rasterizer has it; changes no pixel
   Device device = Device::threads;  ///< options() of a Renderer has what `automatic` took
   int threads = 0;                  ///< 0: all
-  std::optional<Isa> isa;           ///< none: the best this machine has
+  /// The scene's arrays (positions, indices, normals, colours) and the targets are memory of the
+  /// device that draws: with `cuda` CUDA's, of which nothing is copied, else the host's, as always.
+  /// For opaque scenes without materials, by a shader of the device; Renderer::render says what
+  /// not.
+  bool in_place = false;
+  std::optional<Isa> isa;  ///< none: the best this machine has
   Shader shader = Shader::phong;
   /// none: all faces, but with Shader::material the back of single-sided materials is left out.
   Cull cull = Cull::none;
@@ -79,7 +84,8 @@ class Renderer {
   /// are those of the nearest surface, whatever its alpha.
   /// Meshes without normals are shaded with face normals (see vertex_normals for smooth ones).
   /// Cost: O(vertices + triangles + covered samples). Throws Error{invalid_argument} naming an
-  /// instance whose index is out of range, Error{out_of_memory} with what was asked for.
+  /// instance whose index is out of range, Error{out_of_memory} with what was asked for,
+  /// Error{unsupported} for what RenderOptions::in_place has not.
   FrameStats render(const SceneView& scene, const Camera& camera, const Targets& targets);
 
   /// The programmable form: draws of any vertex source with any shader (raster/program.hpp makes

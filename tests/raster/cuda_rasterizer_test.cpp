@@ -224,6 +224,59 @@ TEST_F(CudaRasterizer, IsTakenByAutoUnlessTheCpusIsAskedFor) {
   EXPECT_EQ(Renderer(o).options().device, Device::cuda);
 }
 
+#if !defined(RASTRUM_TEST_ON_GPU)
+// Here the device's memory is the host's; what a GPU would do is read these arrays where they are.
+TEST_F(CudaRasterizer, InPlaceNothingIsCopied) {
+  constexpr int kWidth = 200, kHeight = 150, kTriangles = 20000;
+  Scene scene = soup(kTriangles, kWidth, kHeight);
+  Mesh& mesh = scene.meshes[0];
+  Random random(3);
+  for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) {
+    mesh.indices.push_back(i);
+    mesh.colors.values.push_back({static_cast<float>(random.real(0, 1)), 0.5F, 0.25F, 1});
+    mesh.colors.indices.push_back(i / 2);
+  }
+  const SceneBinding binding(scene);
+  const Camera camera = pixel_camera(kWidth, kHeight);
+  RenderOptions o = options(kWidth, kHeight, Device::serial);
+  Renderer serial(o);
+  Frame expected = draw(serial, binding.view(), camera);
+  Frame frame = draw(serial, SceneBinding(soup(1, 8, 8)).view(), camera);
+  Targets targets{frame.color8.view(), frame.color.view(), frame.depth.view(), frame.ids.view()};
+  o.device = Device::cuda;
+  Renderer copying(o);
+  const std::uint64_t copied = copying.render(binding.view(), camera, targets).peak_bytes;
+  o.in_place = true;
+  Renderer in_place(o);
+  const FrameStats stats = in_place.render(binding.view(), camera, targets);
+  frame.overdraw = expected.overdraw;
+  EXPECT_TRUE(same_surfaces(frame, expected));
+  EXPECT_TRUE(same_picture(frame, expected, 0));
+  EXPECT_EQ(stats.fragments, expected.stats.fragments);
+  // Blocks of the arena are up to a quarter larger than what is asked for.
+  const std::uint64_t arrays = mesh.positions.size() * (sizeof(Vec3) + sizeof(Vec4) + 2 * 4) +
+                               std::uint64_t{kWidth} * kHeight * (4 + 16 + 4 + 8);
+  EXPECT_GE(copied, stats.peak_bytes + arrays);
+
+  const auto refuses = [&](const Targets& wanted, const char* what) {
+    try {
+      (void)in_place.render(binding.view(), camera, wanted);
+      ADD_FAILURE() << "not refused: " << what;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+    }
+  };
+  Targets with_overdraw = targets;
+  with_overdraw.overdraw = expected.overdraw.view();
+  refuses(with_overdraw, "of the targets there are");
+  mesh.colors.indices.back() = static_cast<std::uint32_t>(mesh.positions.size());
+  refuses(targets, "colors have an index out of range");
+  mesh.colors.indices.back() = 0;
+  mesh.indices.back() = static_cast<std::uint32_t>(mesh.positions.size());
+  refuses(targets, "1 primitives have an index");
+}
+#endif
+
 /// Points, lines and triangles over one vertex function, some behind the eye, beyond the guard band
 /// or not finite; with widths, biases and windings.
 struct Mix {

@@ -49,7 +49,7 @@ class DeviceRasterizer final : public CudaRasterizer {
       draw_frame(request, totals, stats, watch);
     } catch (const Error& error) {
       // Which index was out of range is for the host to find.
-      if (error.code() == Errc::invalid_argument) check_indices(request.draws);
+      if (error.code() == Errc::invalid_argument && !request.in_place) check_indices(request.draws);
       throw;
     }
     stats.triangles.input = totals.primitives;
@@ -68,15 +68,18 @@ class DeviceRasterizer final : public CudaRasterizer {
 
   void draw_frame(FrameRequest& request, const Totals& totals, FrameStats& stats,
                   Stopwatch& watch) {
-    Uploads<Exec> uploads(exec_);
+    Uploads<Exec> uploads(exec_, request.in_place);
     std::vector<cuda_detail::HostVertices> made;
     const std::vector<DeviceDraw> draws = upload(uploads, request, threads_, made);
     watch.lap(stats, "upload");
     const bool counts_overdraw = !request.targets.overdraw.empty();
     const std::optional<Resolver> resolver = resolver_of(request, uploads);
+    if (request.in_place && !resolver)
+      throw Error(Errc::unsupported,
+                  "arrays in the device's memory (in_place): this shader needs them in the host's");
     const std::uint64_t pixel_bytes =
-        (counts_overdraw ? sizeof(std::uint32_t) : 0) +
-        (resolver ? sizeof(std::uint32_t) + DeviceTargets::bytes_of(request.targets) : 0);
+        (counts_overdraw ? sizeof(std::uint32_t) : 0) + (resolver ? sizeof(std::uint32_t) : 0) +
+        (resolver && !request.in_place ? DeviceTargets::bytes_of(request.targets) : 0);
     const DevicePlan plan = DevicePlan::of(limit(), request.width, request.height,
                                            totals.primitives, totals.vertices, pixel_bytes);
     const DeviceScene<Exec> scene(exec_, draws, request.width, request.height,
@@ -196,24 +199,27 @@ class DeviceRasterizer final : public CudaRasterizer {
     return r;
   }
 
-  /// An image of a band on the device, where the host has one.
+  /// An image of a band on the device, where the caller has one; in place, the caller's.
   template <class T>
   class Band {
     using Pixels = decltype(parallel::make_buffer<T>(std::declval<Exec&>(), 0));
 
    public:
-    Band(Exec& exec, const ImageView<T>& host, Rect view)
+    Band(Exec& exec, const ImageView<T>& host, Rect view, bool in_place)
         : exec_(exec),
           host_(host),
           view_(view),
-          pixels_(parallel::make_buffer<T>(exec, host.empty() ? 0 : area_of(view))) {}
+          in_place_(in_place),
+          pixels_(parallel::make_buffer<T>(exec, host.empty() || in_place ? 0 : area_of(view))) {}
     [[nodiscard]] ImageView<T> on_device() {
       const int width = view_.x1 - view_.x0;
+      if (in_place_ && !host_.empty())
+        return {host_.row(view_.y0), width, view_.y1 - view_.y0, host_.stride};
       return {pixels_.data(), width, view_.y1 - view_.y0, width};
     }
     /// Does not wait.
     void store() {
-      if (host_.empty()) return;
+      if (host_.empty() || in_place_) return;
       const auto width = static_cast<std::size_t>(view_.x1 - view_.x0);
       const auto rows = static_cast<std::size_t>(view_.y1 - view_.y0);
       // Rows that lie together are one copy.
@@ -227,6 +233,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     Exec& exec_;
     ImageView<T> host_;
     Rect view_;
+    bool in_place_;
     Pixels pixels_;
   };
 
@@ -237,11 +244,11 @@ class DeviceRasterizer final : public CudaRasterizer {
                                                 const DeviceSurface& surface) {
     const Targets& t = request.targets;
     const Rect view = surface.view;
-    Band<Rgba8> color8(exec_, t.color8, view);
-    Band<Vec4> color(exec_, t.color, view);
-    Band<float> depth(exec_, t.depth, view);
-    Band<std::int64_t> ids(exec_, t.ids, view);
-    Band<std::uint64_t> words(exec_, t.words, view);
+    Band<Rgba8> color8(exec_, t.color8, view, request.in_place);
+    Band<Vec4> color(exec_, t.color, view, request.in_place);
+    Band<float> depth(exec_, t.depth, view, request.in_place);
+    Band<std::int64_t> ids(exec_, t.ids, view, request.in_place);
+    Band<std::uint64_t> words(exec_, t.words, view, request.in_place);
     const DeviceTargets targets{color8.on_device(), color.on_device(), depth.on_device(),
                                 ids.on_device(), words.on_device()};
     const Backdrop backdrop = backdrop_of(request);

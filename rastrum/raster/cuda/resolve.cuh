@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <rastrum/core/image.hpp>
@@ -106,6 +107,34 @@ template <class Exec, class Shade>
   return parallel::reduce(exec, covered, std::uint64_t{0});
 }
 
+namespace cuda_detail {
+
+struct IsBeyond {
+  std::span<const std::uint32_t> indices;
+  std::size_t end;
+  RASTRUM_HD std::uint32_t operator()(std::size_t i) const { return indices[i] >= end ? 1 : 0; }
+};
+
+}  // namespace cuda_detail
+
+/// Throws Error{invalid_argument} where `attribute`, spans of the device's, has fewer values than
+/// `mesh` reads. Waits where it has indices.
+template <class Exec, class Attribute>
+void check_attribute(Exec& exec, const Attribute& attribute, const MeshView& mesh,
+                     const char* what) {
+  const auto require = [&](bool ok, const char* problem) {
+    if (!ok) throw Error(Errc::invalid_argument, std::string(what).append(problem));
+  };
+  if (attribute.values.empty()) return;
+  if (attribute.indices.empty())
+    return require(attribute.values.size() >= mesh.positions.size(), " are fewer than positions");
+  require(attribute.indices.size() >= mesh.triangle_count() * 3,
+          " have fewer indices than the triangles");
+  const auto beyond = parallel::Computed(
+      attribute.indices.size(), cuda_detail::IsBeyond{attribute.indices, attribute.values.size()});
+  require(parallel::reduce(exec, beyond, std::uint64_t{0}) == 0, " have an index out of range");
+}
+
 /// The arrays that the lit shaders read, on the device. `draws`: the host's. The result's spans
 /// live as long as `uploads`. Waits.
 template <class Exec>
@@ -124,6 +153,11 @@ class LitUpload {
       if (wants_normals && mesh.normals.empty()) mesh.positions = uploads(mesh.positions);
       move(mesh.normals, wants_normals);
       move(mesh.colors, form.scene->colored);
+      // The façade has checked what it could read.
+      if (uploads.in_place()) {
+        check_attribute(exec, mesh.normals, mesh, "normals");
+        check_attribute(exec, mesh.colors, mesh, "colors");
+      }
       draws.push_back(draw);
     }
     draws_ = parallel::to_device(exec, draws);

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/core/error.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/cuda/geometry.cuh>
@@ -22,13 +23,16 @@ namespace rastrum::raster {
 template <class Exec>
 class Uploads {
  public:
-  explicit Uploads(Exec& exec) : exec_(&exec) {}
+  /// `in_place`: what it is given lies on the device already, and is not copied.
+  explicit Uploads(Exec& exec, bool in_place = false) : exec_(&exec), in_place_(in_place) {}
+
+  [[nodiscard]] bool in_place() const { return in_place_; }
 
   /// The copy, which lives as long as this. Copied once for each place and length. Waits.
   template <class T>
   [[nodiscard]] std::span<const T> operator()(std::span<const T> host) {
     static_assert(std::is_trivially_copyable_v<T>);
-    if (host.empty()) return {};
+    if (host.empty() || in_place_) return host;
     const auto [at, is_new] = copies_.try_emplace({host.data(), host.size_bytes()});
     if (is_new) at->second = parallel::to_device(*exec_, std::as_bytes(host));
     return {static_cast<const T*>(static_cast<const void*>(at->second.data())), host.size()};
@@ -37,6 +41,7 @@ class Uploads {
  private:
   using Bytes = decltype(parallel::make_buffer<std::byte>(std::declval<Exec&>(), 0));
   Exec* exec_;
+  bool in_place_;
   std::map<std::pair<const void*, std::size_t>, Bytes> copies_;
 };
 
@@ -81,6 +86,10 @@ template <class Exec>
       d.vertices.positions = uploads(matrix->positions());
       d.vertices.object_to_clip = matrix->object_to_clip();
     } else {
+      if (uploads.in_place())
+        throw Error(Errc::unsupported,
+                    "arrays in the device's memory (in_place): a vertex stage of the host's "
+                    "cannot read them");
       const auto& host = made.emplace_back(draw, viewport, request.isa, threads);
       d.vertices.projected = uploads(std::span(host.projected));
       d.vertices.clip = uploads(std::span(host.clip));
