@@ -6,8 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/raster/cuda/pieces.cuh>
+#include <rastrum/raster/cuda/rasterizer.cuh>
 #include <rastrum/raster/resolve.hpp>
 
+#include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
@@ -50,7 +52,7 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
               frame, d, p, [&](const raster::Piece& piece) { expected.push_back(piece); }, 3, at);
           sum = raster::AddOutcomes{}(sum, raster::Outcomes(o));
         }
-      const auto made = raster::make_pieces(exec, scene, 0, total, 3, at);
+      const auto made = raster::make_pieces(exec, scene, 0, total, raster::KeepsAll{}, 3, at);
       ASSERT_EQ(made.pieces.size(), expected.size());
       EXPECT_EQ(made.sum.culled, sum.culled);
       EXPECT_EQ(made.sum.clipped, sum.clipped);
@@ -62,6 +64,56 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
       }
     }
   }
+}
+
+// Flagged pieces are left out of the words, in all three sizes, and kept for who draws them.
+TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
+  constexpr int kSize = 256;
+  Random random(5);
+  std::vector<Vec3> positions[2];
+  for (int t = 0; t < 400; ++t) {
+    const double size = t % 20 == 0 ? 200 : t % 3 == 0 ? 30 : 4;
+    const double x = random.real(0, kSize), y = random.real(0, kSize);
+    for (int c = 0; c < 3; ++c)
+      positions[t % 2].push_back(at_pixel(x + random.real(-size, size),
+                                          y + random.real(-size, size), random.real(0.1, 0.9),
+                                          kSize, kSize));
+  }
+  const Mat4d to_clip = world_to_clip(pixel_camera(kSize, kSize), kSize, kSize);
+  raster::DeviceDraw draws[2];
+  for (int d = 0; d < 2; ++d) {
+    draws[d].draw.vertex_count = positions[d].size();
+    draws[d].draw.primitive_count = positions[d].size() / 3;
+    draws[d].vertices.positions = positions[d];
+    draws[d].vertices.object_to_clip = to_clip;
+  }
+  draws[1].draw.flags = raster::kTranslucent;
+  parallel::Cuda exec;
+  const auto words_of = [&](std::span<const raster::DeviceDraw> drawn, std::uint32_t skip) {
+    const raster::DeviceScene<parallel::Cuda> scene(exec, drawn, kSize, kSize);
+    std::vector<std::uint64_t> words(kSize * kSize);
+    const raster::Rect view{0, 0, kSize, kSize};
+    const raster::DeviceSurface surface{view, {0, 0, kSize / 8, words.data(), nullptr}};
+    const auto plan = raster::DevicePlan::of(0, kSize, kSize, scene.primitives(), 0, 0);
+    EXPECT_GT(raster::draw_surface(exec, scene, surface, plan, {}, skip).tiles, 0U);
+    return words;
+  };
+  const auto all = words_of(draws, 0), kept = words_of(draws, raster::kTranslucent);
+  EXPECT_EQ(kept, words_of({draws, 1}, 0));
+  EXPECT_NE(kept, all);
+
+  const raster::DeviceScene<parallel::Cuda> scene(exec, draws, kSize, kSize);
+  const auto flagged = raster::make_pieces(exec, scene, 0, scene.primitives(),
+                                           raster::KeepsFlagged{raster::kTranslucent});
+  std::vector<std::uint64_t> expected, ids;
+  for (const raster::Piece& p : parallel::to_host(
+           exec,
+           raster::make_pieces(exec, scene, 0, scene.primitives(), raster::KeepsAll{}).pieces))
+    if (p.flags == raster::kTranslucent) expected.push_back(raster::id_of_word(p.low));
+  for (const raster::Piece& p : parallel::to_host(exec, flagged.pieces))
+    ids.push_back(raster::id_of_word(p.low));
+  EXPECT_EQ(ids, expected);
+  EXPECT_GT(ids.size(), 150U);
 }
 
 }  // namespace

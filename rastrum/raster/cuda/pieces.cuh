@@ -82,15 +82,13 @@ namespace cuda_detail {
 struct PiecesOf {
   RASTRUM_HD std::size_t operator()(const Outcome& o) const { return o.pieces; }
 };
-struct KeepsAll {
-  RASTRUM_HD bool operator()(const Piece&) const { return true; }
-};
-
+template <class Keep>
 struct CountPieces {
   Assembly assembly;
+  Keep keep;
   RASTRUM_HD Outcome operator()(std::size_t i) const {
     std::uint8_t pieces = 0;
-    Outcome out = assembly.assemble(i, [&](const Piece&) { ++pieces; });
+    Outcome out = assembly.assemble(i, [&](const Piece& piece) { pieces += keep(piece); });
     out.pieces = pieces;
     return out;
   }
@@ -145,20 +143,30 @@ struct MadePieces {
   Outcomes sum;
 };
 
-/// All pieces of primitives [first, last) of `scene` at a sample (samples.hpp), and what became of
-/// the primitives. Throws as check_valid, and Error{out_of_memory}. Work O(primitives), with a
-/// scan. Memory: 48 B a piece, 14 B a primitive while it works. Waits.
-template <class Exec>
+/// Which pieces make_pieces keeps: all, or those that have a flag of `any`.
+struct KeepsAll {
+  RASTRUM_HD bool operator()(const Piece&) const { return true; }
+};
+struct KeepsFlagged {
+  std::uint32_t any;
+  RASTRUM_HD bool operator()(const Piece& piece) const { return (piece.flags & any) != 0; }
+};
+
+/// The pieces of primitives [first, last) of `scene` that keep(piece) holds for, at a sample
+/// (samples.hpp), and what became of the primitives. Throws as check_valid, and
+/// Error{out_of_memory}. Work O(primitives), with a scan. Memory: 48 B a piece, 14 B a primitive
+/// while it works. Waits.
+template <class Exec, class Keep>
 [[nodiscard]] auto make_pieces(Exec& exec, const DeviceScene<Exec>& scene, std::uint64_t first,
-                               std::uint64_t last, std::uint32_t sample = 0, SampleOffset at = {}) {
+                               std::uint64_t last, Keep keep, std::uint32_t sample = 0,
+                               SampleOffset at = {}) {
   const auto n = static_cast<std::size_t>(last - first);
   const Assembly assembly{scene.geometry(), first, sample, at};
   auto outcomes = parallel::make_buffer<Outcome>(exec, n);
-  parallel::tabulate(exec, outcomes, cuda_detail::CountPieces{assembly});
+  parallel::tabulate(exec, outcomes, cuda_detail::CountPieces<Keep>{assembly, keep});
   const Outcomes sum = parallel::reduce(exec, outcomes, Outcomes{}, AddOutcomes{});
   check_valid(sum);
-  auto pieces =
-      write_pieces(exec, assembly, parallel::counting(n), outcomes, cuda_detail::KeepsAll{});
+  auto pieces = write_pieces(exec, assembly, parallel::counting(n), outcomes, keep);
   return MadePieces<decltype(pieces)>{std::move(pieces), sum};
 }
 

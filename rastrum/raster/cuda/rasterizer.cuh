@@ -90,10 +90,12 @@ struct DrawSmall {
   Assembly assembly;
   DeviceSurface surface;
   std::uint64_t small_px;
+  std::uint32_t skip;
   RASTRUM_HD Outcome operator()(std::size_t i) const {
     int fragments = 0;
     std::uint8_t larger = 0;
     Outcome out = assembly.assemble(i, [&](const Piece& piece) {
+      if ((piece.flags & skip) != 0) return;
       const Rect box = piece_bounds(piece, surface.view);
       const std::uint64_t area = area_of(box);
       if (area > small_px)
@@ -109,8 +111,9 @@ struct DrawSmall {
 struct IsLarger {
   Rect view;
   std::uint64_t than_px;
+  std::uint32_t skip;
   RASTRUM_HD bool operator()(const Piece& piece) const {
-    return area_of(piece_bounds(piece, view)) > than_px;
+    return (piece.flags & skip) == 0 && area_of(piece_bounds(piece, view)) > than_px;
   }
 };
 struct HasPieces {
@@ -177,11 +180,13 @@ struct DeviceCounts {
 };
 
 /// Draws all primitives of `scene` onto the words of `surface`, which hold what was drawn before,
-/// or 0. Throws as check_valid, Error{out_of_memory}, and parallel::Stopped between batches. Waits.
+/// or 0; pieces that have a flag of `skip` are left to others, though what became of them is
+/// counted. Throws as check_valid, Error{out_of_memory}, and parallel::Stopped between batches.
+/// Waits.
 template <class Exec>
 [[nodiscard]] DeviceCounts draw_surface(Exec& exec, const DeviceScene<Exec>& scene,
                                         const DeviceSurface& surface, const DevicePlan& plan,
-                                        DeviceSizes sizes) {
+                                        DeviceSizes sizes, std::uint32_t skip = 0) {
   using parallel::view_of;
   DeviceCounts counts;
   const std::uint64_t end = scene.first_id() + scene.primitives();
@@ -193,7 +198,8 @@ template <class Exec>
     const Assembly assembly{scene.geometry(), first};
     const auto n = static_cast<std::size_t>(std::min(plan.batch, end - first));
     auto outcomes = parallel::make_buffer<Outcome>(exec, n);
-    parallel::tabulate(exec, outcomes, cuda_detail::DrawSmall{assembly, surface, sizes.small_px});
+    parallel::tabulate(exec, outcomes,
+                       cuda_detail::DrawSmall{assembly, surface, sizes.small_px, skip});
     const Outcomes sum = parallel::reduce(exec, outcomes, Outcomes{}, AddOutcomes{});
     check_valid(sum);
     counts.sum = AddOutcomes{}(counts.sum, sum);
@@ -206,7 +212,7 @@ template <class Exec>
           view_of(larger).subspan(at, std::min(plan.written, larger.size() - at));
       const auto pieces = write_pieces(exec, assembly, which,
                                        parallel::permuted(view_of(std::as_const(outcomes)), which),
-                                       cuda_detail::IsLarger{surface.view, sizes.small_px});
+                                       cuda_detail::IsLarger{surface.view, sizes.small_px, skip});
       const std::span<const Piece> drawn = view_of(pieces);
       parallel::for_each_team<TeamMasks, 32>(
           exec, drawn.size(),
