@@ -10,6 +10,7 @@
 
 #include <rastrum/raster/lanes-inl.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
+#include <rastrum/transparency/over.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -99,43 +100,40 @@ HWY_AFTER_NAMESPACE();
 namespace rastrum::transparency {
 namespace {
 
+SeenPixel at(const Seen& seen, int i) {
+  return {seen.r[i], seen.g[i], seen.b[i], seen.a[i], seen.through[i]};
+}
+Vec4 at(const raster::BlockColors& colors, int i) {
+  return {colors.r[i], colors.g[i], colors.b[i], colors.a[i]};
+}
+
 std::uint64_t behind_scalar(const raster::BlockColors& layer, std::uint64_t mask, float opaque_at,
                             Seen& seen) noexcept {
   std::uint64_t opaque = 0;
   for (std::uint64_t m = mask; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    const float through = seen.through[i];
-    seen.r[i] += through * layer.r[i];
-    seen.g[i] += through * layer.g[i];
-    seen.b[i] += through * layer.b[i];
-    seen.a[i] += through * layer.a[i];
-    seen.through[i] = through * (1 - layer.a[i]);
-    opaque |= std::uint64_t{seen.through[i] <= opaque_at} << i;
+    SeenPixel pixel = at(seen, i);
+    add_behind(pixel, at(layer, i));
+    seen.r[i] = pixel.r;
+    seen.g[i] = pixel.g;
+    seen.b[i] = pixel.b;
+    seen.a[i] = pixel.a;
+    seen.through[i] = pixel.through;
+    opaque |= std::uint64_t{pixel.through <= opaque_at} << i;
   }
   return opaque;
 }
 
 void finish_scalar(const Seen& seen, const raster::BlockColors& behind,
                    raster::BlockColors& out) noexcept {
-  for (int i = 0; i < 64; ++i) {
-    const float through = seen.through[i];
-    out.r[i] = seen.r[i] + through * behind.r[i];
-    out.g[i] = seen.g[i] + through * behind.g[i];
-    out.b[i] = seen.b[i] + through * behind.b[i];
-    // What nothing is seen through is opaque, whatever the sum was rounded to.
-    out.a[i] = through * (1 - behind.a[i]) == 0 ? 1 : seen.a[i] + through * behind.a[i];
-  }
+  for (int i = 0; i < 64; ++i) out.set(i, over(at(seen, i), at(behind, i)));
 }
 
 void before_scalar(const raster::BlockColors& layer, std::uint64_t mask,
                    raster::BlockColors& colors) noexcept {
   for (std::uint64_t m = mask; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    const float behind = 1 - layer.a[i];
-    colors.r[i] = layer.r[i] + behind * colors.r[i];
-    colors.g[i] = layer.g[i] + behind * colors.g[i];
-    colors.b[i] = layer.b[i] + behind * colors.b[i];
-    colors.a[i] = layer.a[i] + behind * colors.a[i];
+    colors.set(i, transparency::before(at(layer, i), at(colors, i)));
   }
 }
 

@@ -61,8 +61,8 @@ class ByBlock {
 };
 
 /// Depth of a piece at the mean of the samples of block (bx, by): the first key of the sort.
-[[nodiscard]] inline float centroid_depth(const raster::Piece& piece, std::uint64_t mask, int bx,
-                                          int by) {
+[[nodiscard]] RASTRUM_HD inline float centroid_depth(const raster::Piece& piece, std::uint64_t mask,
+                                                     int bx, int by) {
   const auto count = [&](std::uint64_t of) {
     return static_cast<float>(parallel::popcount(mask & of));
   };
@@ -80,8 +80,8 @@ class ByBlock {
 }
 
 /// The high half of a key that sorts the nearest first.
-[[nodiscard]] inline std::uint64_t near_first(const raster::Piece& piece, std::uint64_t mask,
-                                              int bx, int by) {
+[[nodiscard]] RASTRUM_HD inline std::uint64_t near_first(const raster::Piece& piece,
+                                                         std::uint64_t mask, int bx, int by) {
   const float depth = centroid_depth(piece, mask, bx, by);
   return std::uint64_t{~(depth > 0 ? std::bit_cast<std::uint32_t>(depth) : 0)} << 32;
 }

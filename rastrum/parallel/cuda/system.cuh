@@ -100,6 +100,10 @@ template <class K, class V, class Allocate>
   return key_rooms.selector;
 }
 
+/// How many members a team of for_each_team has, for arrays of what each keeps to itself.
+template <int kThreads>
+inline constexpr std::size_t kTeamMembers = kThreads;
+
 /// A block of threads.
 class Team {
  public:
@@ -181,6 +185,10 @@ template <class K, class V, class Allocate>
   return 1;
 }
 
+/// Few and odd: shares that are not a whole number show.
+template <int kThreads>
+inline constexpr std::size_t kTeamMembers = kThreads < 3 ? kThreads : 3;
+
 /// A member of a team of coroutines.
 template <class Host>
 class Team {
@@ -197,8 +205,7 @@ class Team {
 
 template <class T, int kThreads, class F>
 void launch_teams(Stream, std::size_t n, F f) {
-  // Few and odd: shares that are not a whole number show.
-  constexpr std::size_t kMembers = kThreads < 3 ? kThreads : 3;
+  constexpr std::size_t kMembers = kTeamMembers<kThreads>;
   if (n == 0) return;
   T scratch;
   const auto body = [&](std::size_t rank, auto& host) {

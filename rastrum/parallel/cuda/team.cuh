@@ -1,0 +1,108 @@
+// What the members of a team do together in their shared memory: a sort, prefix sums, and the
+// atomics of words that several of them change. For bodies of for_each_team; every member calls
+// them.
+//
+// Sources: Batcher, "Sorting networks and their applications", 1968 (bitonic); Blelloch, "Prefix
+// sums and their applications", 1990 (two sweeps over a tree). Both are in place and right for a
+// team of any size: an element's value never waits in a register for a sync.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <rastrum/core/config.hpp>
+
+namespace rastrum::parallel {
+
+/// word += value (of 2³²), by many threads at once; returns what it was.
+RASTRUM_HD inline std::uint32_t atomic_add(std::uint32_t& word, std::uint32_t value) noexcept {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(&word, value);
+#else
+  return std::atomic_ref<std::uint32_t>(word).fetch_add(value, std::memory_order_relaxed);
+#endif
+}
+RASTRUM_HD inline void atomic_add(std::uint64_t& word, std::uint64_t value) noexcept {
+#if defined(__CUDA_ARCH__)
+  atomicAdd(reinterpret_cast<unsigned long long*>(&word), value);
+#else
+  std::atomic_ref<std::uint64_t>(word).fetch_add(value, std::memory_order_relaxed);
+#endif
+}
+/// word |= bits, by many threads at once.
+RASTRUM_HD inline void atomic_or(std::uint64_t& word, std::uint64_t bits) noexcept {
+#if defined(__CUDA_ARCH__)
+  atomicOr(reinterpret_cast<unsigned long long*>(&word), bits);
+#else
+  std::atomic_ref<std::uint64_t>(word).fetch_or(bits, std::memory_order_relaxed);
+#endif
+}
+
+/// The next power of two: how many elements the two below need room for.
+[[nodiscard]] RASTRUM_HD constexpr std::size_t team_room(std::size_t n) {
+  std::size_t room = 1;
+  while (room < n) room *= 2;
+  return room;
+}
+
+/// Sorts n pairs by their keys, ascending; keys are unsigned, and for equal ones the order is open.
+/// Overwrites team_room(n) keys and values. Begins and ends with a sync.
+/// Work O(n log² n), span O(log² n) steps of n / team.
+template <class K, class V, class Team>
+RASTRUM_HD void team_sort(K* keys, V* values, std::size_t n, const Team& team) {
+  const std::size_t room = team_room(n);
+  for (std::size_t i = n + team.rank(); i < room; i += team.size()) {
+    keys[i] = std::numeric_limits<K>::max();
+    values[i] = V{};
+  }
+  team.sync();
+  for (std::size_t run = 2; run <= room; run *= 2)
+    for (std::size_t step = run / 2; step > 0; step /= 2) {
+      for (std::size_t i = team.rank(); i < room / 2; i += team.size()) {
+        const std::size_t below = i & (step - 1);
+        const std::size_t a = (i - below) * 2 + below, b = a + step;
+        const K first = keys[a], second = keys[b];
+        const bool rising = (a & run) == 0;
+        if (rising ? !(second < first) : !(first < second)) continue;
+        keys[a] = second;
+        keys[b] = first;
+        const V value = values[a];
+        values[a] = values[b];
+        values[b] = value;
+      }
+      team.sync();
+    }
+}
+
+/// values[i] becomes the sum of the first i values, for i ≤ n: the last is the sum of all.
+/// Overwrites team_room(n) + 1 values. Begins and ends with a sync. Work O(n), span O(log n) steps.
+template <class T, class Team>
+RASTRUM_HD void team_prefix_sums(T* values, std::size_t n, const Team& team) {
+  const std::size_t room = team_room(n);
+  for (std::size_t i = n + team.rank(); i < room; i += team.size()) values[i] = 0;
+  team.sync();
+  for (std::size_t step = 1; step < room; step *= 2) {
+    for (std::size_t i = team.rank(); i < room / (2 * step); i += team.size())
+      values[(2 * i + 2) * step - 1] += values[(2 * i + 1) * step - 1];
+    team.sync();
+  }
+  if (team.rank() == 0) {
+    values[room] = values[room - 1];
+    values[room - 1] = 0;
+  }
+  team.sync();
+  for (std::size_t step = room / 2; step > 0; step /= 2) {
+    for (std::size_t i = team.rank(); i < room / (2 * step); i += team.size()) {
+      T& left = values[(2 * i + 1) * step - 1];
+      T& right = values[(2 * i + 2) * step - 1];
+      const T sum = left + right;
+      left = right;
+      right = sum;
+    }
+    team.sync();
+  }
+}
+
+}  // namespace rastrum::parallel

@@ -1,0 +1,133 @@
+// Blocks with more records than shared memory holds: their fragments are written to the memory of
+// the device, pixel behind pixel, sorted by (pixel, word) and blended, a thread a pixel. The tier
+// that has no limit, which paper 4 lacks (its high rasterizer paints such bins red).
+//
+// The sort is two stable ones (sort_by_key), as a word has no bits left for a pixel. Pixels go in
+// turns, so that what is sorted keeps to a budget; one pixel at least goes at a time, which takes
+// 24 bytes for each of its layers, less than the pieces themselves.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <rastrum/parallel/cuda/reduce.cuh>
+#include <rastrum/parallel/cuda/sort_by_key.cuh>
+#include <rastrum/transparency/cuda/block_teams.cuh>
+#include <rastrum/transparency/cuda/turns.cuh>
+
+namespace rastrum::transparency::cuda {
+
+/// Pixel q is pixel q % 64 of block blocks[q / 64].
+template <class Frame>
+struct DeepPixels {
+  Frame frame;
+  RecordView records;
+  std::span<const std::size_t> blocks;
+
+  RASTRUM_HD std::size_t place(std::size_t q) const {
+    return frame.place(blocks[q / 64], static_cast<int>(q % 64));
+  }
+  /// Calls f(word) for the fragments before the opaque surface, as their records come.
+  template <class F>
+  RASTRUM_HD void each_word(std::size_t q, const F& f) const {
+    const std::size_t b = blocks[q / 64];
+    const int p = static_cast<int>(q % 64);
+    const std::size_t at = place(q);
+    if (at == Frame::kNowhere) return;
+    const std::uint64_t opaque = frame.words[at];
+    const int x = frame.x_of(b, p), y = frame.y_of(b, p);
+    for (const raster::Block& record : records.of(b)) {
+      if ((record.mask >> p & 1) == 0) continue;
+      const std::uint64_t word = frame.word(frame.pieces[record.piece], x, y);
+      if (word > opaque) f(word);
+    }
+  }
+};
+
+template <class Frame>
+struct CountDeep {
+  DeepPixels<Frame> pixels;
+  std::size_t count;
+  /// Behind the last pixel 0, in whose place the scan puts the sum.
+  RASTRUM_HD std::uint64_t operator()(std::size_t q) const {
+    std::uint64_t n = 0;
+    if (q < count) pixels.each_word(q, [&](std::uint64_t) { ++n; });
+    return n;
+  }
+};
+
+template <class Pixel, class Frame>
+struct WriteDeep {
+  DeepPixels<Frame> pixels;
+  std::span<const std::uint64_t> first;
+  std::size_t begin;  ///< pixels from here on
+  std::uint64_t* keys;
+  std::uint32_t* owners;
+  RASTRUM_HD void operator()(std::size_t i) const {
+    std::uint64_t at = first[begin + i] - first[begin];
+    pixels.each_word(begin + i, [&](std::uint64_t word) {
+      keys[at] = Pixel::fragment_key(word);
+      owners[at++] = static_cast<std::uint32_t>(i);
+    });
+  }
+};
+
+/// Blends the sorted fragments of a pixel. They come in order, so nothing is held back.
+template <class Pixel, class Frame>
+struct BlendDeep {
+  DeepPixels<Frame> pixels;
+  std::span<const std::uint64_t> first;
+  std::size_t begin;
+  const std::uint64_t* keys;
+  std::uint64_t* counters;
+  RASTRUM_HD void operator()(std::size_t i) const {
+    const std::size_t q = begin + i;
+    const std::uint64_t n = first[q + 1] - first[q];
+    if (n == 0) return;
+    const Frame& frame = pixels.frame;
+    const std::size_t at = pixels.place(q), b = pixels.blocks[q / 64];
+    const int p = static_cast<int>(q % 64), x = frame.x_of(b, p), y = frame.y_of(b, p);
+    const std::uint64_t* const mine = keys + (first[q] - first[begin]);
+    Pixel pixel;
+    pixel.begin(frame.colors[at]);
+    for (std::uint64_t k = 0; k < n; ++k) {
+      const std::uint64_t word = Pixel::word_of_key(mine[k]);
+      if (word <= pixel.limit(0)) break;
+      pixel.take({word, frame.shade(word, x, y)}, frame.opaque_at);
+    }
+    pixel.end(frame.opaque_at);
+    frame.colors[at] = pixel.color(frame.colors[at]);
+    frame.words[at] = pixel.nearest();
+    count_layers(counters, n, n, 0);
+  }
+};
+
+/// Blends `blocks`, sorting at most `most` fragments at a time (but a whole pixel's). Waits for the
+/// number of fragments, and for where a turn ends where they take several.
+template <class Pixel, class Frame>
+void blend_deep(parallel::Cuda& exec, const Frame& frame, const RecordView& records,
+                std::span<const std::size_t> blocks, std::uint64_t most, std::uint64_t* counters) {
+  if (blocks.empty()) return;
+  const DeepPixels<Frame> pixels{frame, records, blocks};
+  const std::size_t count = blocks.size() * 64;
+  auto first = parallel::make_buffer<std::uint64_t>(exec, count + 1);
+  parallel::tabulate(exec, first, CountDeep<Frame>{pixels, count});
+  const std::uint64_t all = parallel::exclusive_scan(exec, first, first, std::uint64_t{0});
+  const auto places = parallel::view_of(std::as_const(first));
+  for (Turn turn; next_turn(exec, places, all, most, turn);) {
+    if (turn.items == 0) continue;
+    auto keys = parallel::make_buffer<std::uint64_t>(exec, turn.items);
+    auto owners = parallel::make_buffer<std::uint32_t>(exec, turn.items);
+    const std::size_t n = turn.end - turn.begin;
+    parallel::for_each_index(
+        exec, n, WriteDeep<Pixel, Frame>{pixels, places, turn.begin, keys.data(), owners.data()});
+    parallel::sort_by_key(exec, keys, owners);
+    parallel::sort_by_key(exec, owners, keys, static_cast<int>(std::bit_width(n - 1)));
+    parallel::for_each_index(
+        exec, n, BlendDeep<Pixel, Frame>{pixels, places, turn.begin, keys.data(), counters});
+  }
+}
+
+}  // namespace rastrum::transparency::cuda

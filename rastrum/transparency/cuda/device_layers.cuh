@@ -1,0 +1,247 @@
+// Exact transparency on a device: LucidRaster's pipeline (paper 4, "Pipeline description", stages 2
+// and 3) over pieces that are set up.
+//
+//   pieces ──count──▶ records a block ──scan──▶ places ──write──▶ records: (piece, block, mask)
+//          ──by density──▶ low, high: a team a block, in shared memory     block_teams.cuh
+//                          deep: fragments sorted in the device's memory   deep_pixels.cuh
+//
+// Where it deviates from the paper: bins are blocks of 8 × 8 pixels, whose records carry exact
+// masks; threads share blocks of boxes, whatever their triangle (expand_each), not rows within a
+// subgroup; no density has a limit; and what the filter cannot order is put right. The order of
+// layers and the colours are those of the host's scalar path, bit for bit, in whatever order the
+// records were written, as nothing but counts depends on it. Unsorted blending takes the same way
+// with another key: a device without a rasterizer's order in hardware must sort for that, too.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+
+#include <rastrum/parallel/cuda/expand.cuh>
+#include <rastrum/parallel/cuda/select.cuh>
+#include <rastrum/raster/coverage.hpp>
+#include <rastrum/transparency/cuda/block_teams.cuh>
+#include <rastrum/transparency/cuda/deep_pixels.cuh>
+#include <rastrum/transparency/cuda/device_layers.hpp>
+#include <rastrum/transparency/cuda/turns.cuh>
+
+namespace rastrum::transparency {
+
+/// A frame whose opaque surface is drawn. Memory of the device; rows of `width` pixels, row 0 at
+/// the top.
+struct DeviceLayers {
+  int width = 0, height = 0;
+  std::span<const raster::Piece> pieces;  ///< those with kTranslucent are blended, others left out
+  std::span<std::uint64_t> words;         ///< of the opaque surface; raised to the nearest layer's
+  std::span<Vec4> colors;  ///< premultiplied: the opaque surface, 0 where none is; then the picture
+};
+
+namespace cuda {
+
+/// The blocks of a piece's box in the rows of `view`; none of an opaque piece.
+struct BlocksOfPiece {
+  std::span<const raster::Piece> pieces;
+  raster::Rect view;
+
+  RASTRUM_HD raster::Rect box(std::uint32_t piece) const {
+    const raster::Rect px = raster::piece_bounds(pieces[piece], view);
+    if (px.empty()) return {};
+    return {px.x0 / raster::kBlockSize, px.y0 / raster::kBlockSize,
+            (px.x1 - 1) / raster::kBlockSize + 1, (px.y1 - 1) / raster::kBlockSize + 1};
+  }
+  RASTRUM_HD std::size_t operator()(std::uint32_t piece) const {
+    if ((pieces[piece].flags & raster::kTranslucent) == 0) return 0;
+    const raster::Rect b = box(piece);
+    return static_cast<std::size_t>(b.x1 - b.x0) * static_cast<std::size_t>(b.y1 - b.y0);
+  }
+  /// The j-th of them; its mask may be empty.
+  RASTRUM_HD raster::Block block(std::uint32_t piece, std::size_t j) const {
+    const raster::Rect b = box(piece);
+    const auto columns = static_cast<std::size_t>(b.x1 - b.x0);
+    const int bx = b.x0 + static_cast<int>(j % columns), by = b.y0 + static_cast<int>(j / columns);
+    raster::Block out{piece, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), 0};
+    const raster::Edges edges = raster::edges_of(pieces[piece]);
+    const int x0 = bx * raster::kBlockSize, y0 = by * raster::kBlockSize;
+    if (raster::may_touch(edges, {x0, y0, x0 + raster::kBlockSize, y0 + raster::kBlockSize}))
+      out.mask = raster::cover_8x8(edges, bx, by) & raster::samples_inside(view, bx, by);
+    return out;
+  }
+};
+
+struct CountRecord {
+  BlocksOfPiece blocks;
+  std::size_t columns;
+  std::span<std::uint32_t> counts;
+  RASTRUM_HD void operator()(std::size_t, std::uint32_t piece, std::size_t j) const {
+    const raster::Block b = blocks.block(piece, j);
+    if (b.mask != 0) parallel::atomic_add(counts[b.by * columns + b.bx], 1);
+  }
+};
+
+/// Writes the records of a turn and counts down what is left to write of each block.
+struct WriteRecord {
+  BlocksOfPiece blocks;
+  std::size_t columns;
+  Turn turn;
+  std::span<const std::uint64_t> first;
+  std::span<std::uint32_t> counts;
+  std::span<raster::Block> records;
+  RASTRUM_HD void operator()(std::size_t, std::uint32_t piece, std::size_t j) const {
+    const raster::Block record = blocks.block(piece, j);
+    if (record.mask == 0) return;
+    const std::size_t b = record.by * columns + record.bx;
+    if (b < turn.begin || b >= turn.end) return;
+    const std::uint32_t left = parallel::atomic_add(counts[b], ~std::uint32_t{0});
+    records[first[b] - turn.first + left - 1] = record;
+  }
+};
+
+struct BlockOfTurn {
+  std::size_t begin;
+  RASTRUM_HD std::size_t operator()(std::size_t i) const { return begin + i; }
+};
+/// Whether a block has more than `above` records and no more than `most`.
+struct HasRecords {
+  std::span<const std::uint64_t> first;
+  std::uint64_t above, most;
+  RASTRUM_HD bool operator()(std::size_t b) const {
+    const std::uint64_t n = first[b + 1] - first[b];
+    return n > above && n <= most;
+  }
+};
+
+/// The stages of one frame with one way of blending.
+template <class Pixel, class Frame>
+class LayerListing {
+ public:
+  LayerListing(parallel::Cuda& exec, const Frame& frame, const DeviceLayerTuning& tuning)
+      : exec_(exec), frame_(frame), tuning_(tuning) {
+    constexpr std::uint64_t kDefaultBytes = std::uint64_t{1} << 29;
+    const std::uint64_t bytes = tuning.bytes == 0 ? kDefaultBytes : tuning.bytes;
+    // Half for records; a fragment has a key and an owner, twice while they are sorted.
+    most_records_ = std::max<std::uint64_t>(bytes / 2 / sizeof(raster::Block), 1);
+    most_fragments_ = std::max<std::uint64_t>(bytes / 2 / 24, 1);
+    tuning_.low_records = std::min(tuning_.low_records, LowDensity::kRecords);
+    tuning_.high_records =
+        std::max(std::min(tuning_.high_records, HighDensity::kRecords), tuning_.low_records);
+  }
+
+  [[nodiscard]] DeviceLayerCounts operator()() {
+    const auto pieces = parallel::counting<std::uint32_t>(frame_.pieces.size());
+    const std::size_t columns = frame_.columns();
+    const std::size_t blocks =
+        columns *
+        static_cast<std::size_t>((frame_.height + raster::kBlockSize - 1) / raster::kBlockSize);
+    // One more, in whose place the scan puts the sum.
+    auto counts = parallel::make_buffer<std::uint32_t>(exec_, blocks + 1);
+    parallel::tabulate(exec_, counts, parallel::range_detail::SameValue<std::uint32_t>{0});
+    auto counters = parallel::make_buffer<std::uint64_t>(exec_, kCounters);
+    parallel::tabulate(exec_, counters, parallel::range_detail::SameValue<std::uint64_t>{0});
+    const BlocksOfPiece whole{frame_.pieces, rows(0, blocks, columns)};
+    {
+      const auto plan = parallel::make_expansion(exec_, pieces, whole);
+      parallel::expand_each(exec_, plan, pieces,
+                            CountRecord{whole, columns, parallel::view_of(counts)});
+    }
+    auto first = parallel::make_buffer<std::uint64_t>(exec_, blocks + 1);
+    out_.records = parallel::exclusive_scan(exec_, counts, first, std::uint64_t{0});
+    const auto places = parallel::view_of(std::as_const(first));
+    for (Turn turn; next_turn(exec_, places, out_.records, most_records_, turn);) {
+      ++out_.turns;
+      auto records = parallel::make_buffer<raster::Block>(exec_, turn.items);
+      const BlocksOfPiece part{frame_.pieces, rows(turn.begin, turn.end, columns)};
+      const auto plan = parallel::make_expansion(exec_, pieces, part);
+      parallel::expand_each(exec_, plan, pieces,
+                            WriteRecord{part, columns, turn, places, parallel::view_of(counts),
+                                        parallel::view_of(records)});
+      blend(turn, {records.data(), places, turn.first}, counters.data());
+    }
+    const auto totals = parallel::to_host(exec_, counters);
+    out_.fragments = totals[kFragments];
+    out_.deepest = totals[kDeepest];
+    out_.repaired = totals[kRepaired];
+    return out_;
+  }
+
+ private:
+  /// The rows of pixels in which the blocks [begin, end) lie.
+  [[nodiscard]] raster::Rect rows(std::size_t begin, std::size_t end, std::size_t columns) const {
+    const auto y0 = static_cast<int>(begin / columns) * raster::kBlockSize;
+    const auto y1 = static_cast<int>((end + columns - 1) / columns) * raster::kBlockSize;
+    return {0, y0, frame_.width, std::min(y1, frame_.height)};
+  }
+
+  void blend(const Turn& turn, const RecordView& records, std::uint64_t* counters) {
+    const std::uint64_t low = tuning_.low_records, high = tuning_.high_records;
+    const auto low_blocks = blocks_with(turn, records.first, 0, low);
+    parallel::for_each_team<BlockScratch<LowDensity>, LowDensity::kThreads>(
+        exec_, low_blocks.size(),
+        BlendBlock<LowDensity, Pixel, Frame>{frame_, records, parallel::view_of(low_blocks),
+                                             counters});
+    const auto high_blocks = blocks_with(turn, records.first, low, high);
+    parallel::for_each_team<BlockScratch<HighDensity>, HighDensity::kThreads>(
+        exec_, high_blocks.size(),
+        BlendBlock<HighDensity, Pixel, Frame>{frame_, records, parallel::view_of(high_blocks),
+                                              counters});
+    const auto deep_blocks =
+        blocks_with(turn, records.first, high, std::numeric_limits<std::uint64_t>::max());
+    blend_deep<Pixel>(exec_, frame_, records, parallel::view_of(deep_blocks), most_fragments_,
+                      counters);
+    out_.low_blocks += low_blocks.size();
+    out_.high_blocks += high_blocks.size();
+    out_.deep_blocks += deep_blocks.size();
+  }
+  [[nodiscard]] auto blocks_with(const Turn& turn, std::span<const std::uint64_t> first,
+                                 std::uint64_t above, std::uint64_t most) {
+    return parallel::filter(exec_,
+                            parallel::Computed(turn.end - turn.begin, BlockOfTurn{turn.begin}),
+                            HasRecords{first, above, most});
+  }
+
+  parallel::Cuda& exec_;
+  const Frame frame_;
+  DeviceLayerTuning tuning_;
+  std::uint64_t most_records_ = 0, most_fragments_ = 0;
+  DeviceLayerCounts out_;
+};
+
+}  // namespace cuda
+
+/// Blends the translucent pieces of `layers` over its opaque surface.
+/// `options`: exact or unsorted (why_not_on_a_device), and the alpha threshold.
+/// `shade`: (word, x, y) → premultiplied Vec4, the colour of a fragment at a pixel's centre; the
+/// word has its depth and id (piece.hpp). `test`: (word, x, y) → bool, for pieces with kTested.
+/// Both are copied into kernels, are called any number of times, and must be pure.
+/// Waits for sizes and, at the end, for its counts. Memory: 8 bytes a piece, 12 a block, and what
+/// `tuning.bytes` says. Work O(blocks of boxes + fragments · log of a block's records) where the
+/// filter orders nearly all.
+/// Throws Error{invalid_argument} for other methods or more than 2³² pieces, Error{out_of_memory}.
+template <class Shade, class Test = cuda::KeepAll>
+DeviceLayerCounts blend_layers(parallel::Cuda& exec, const DeviceLayers& layers,
+                               const TransparencyOptions& options, const Shade& shade,
+                               const Test& test = {}, const DeviceLayerTuning& tuning = {}) {
+  if (options.method != Transparency::exact && options.method != Transparency::unsorted)
+    throw Error(Errc::invalid_argument,
+                std::string("transparency on a device is exact or unsorted: ")
+                    .append(why_not_on_a_device(options, 1)));
+  if (layers.pieces.size() > std::numeric_limits<std::uint32_t>::max())
+    throw Error(Errc::invalid_argument,
+                "a device blends at most 2^32 - 1 pieces at a time; draw the picture in bands");
+  using Frame = cuda::FrameView<Shade, Test>;
+  const Frame frame{layers.width,
+                    layers.height,
+                    layers.pieces,
+                    layers.words.data(),
+                    layers.colors.data(),
+                    1 - options.alpha_threshold,
+                    shade,
+                    test};
+  if (options.method == Transparency::unsorted)
+    return cuda::LayerListing<cuda::AsSubmittedPixel, Frame>(exec, frame, tuning)();
+  return cuda::LayerListing<cuda::FrontToBackPixel, Frame>(exec, frame, tuning)();
+}
+
+}  // namespace rastrum::transparency

@@ -1,0 +1,147 @@
+// Exact transparency of a device with the colours and holes of generated scenes, for nvcc and, on
+// the CPU, for a C++ compiler.
+#include "layers_on_device.hpp"
+
+#include <cstddef>
+#include <span>
+
+#include <rastrum/parallel/cuda/words.cuh>
+#include <rastrum/transparency/cuda/device_layers.cuh>
+
+namespace rastrum::test {
+namespace {
+
+/// The first number of Random(v).
+RASTRUM_HD std::uint64_t mix(std::uint64_t v) {
+  std::uint64_t z = v + 0x9E3779B97F4A7C15U;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
+  return z ^ (z >> 31);
+}
+
+/// LayerScene's colours: Paint::triangle, or Paint::pixel.
+struct PaintFragment {
+  std::span<const Vec4> paint;
+  std::span<const std::uint8_t> opaque;
+  bool by_pixel;
+
+  RASTRUM_HD Vec4 operator()(std::uint64_t word, int x, int y) const {
+    const std::uint64_t id = raster::id_of_word(word);
+    const Vec4 c = paint[id];
+    if (!by_pixel) return c;
+    const std::uint64_t h =
+        mix(id << 32 ^ static_cast<std::uint64_t>(y) << 16 ^ static_cast<std::uint64_t>(x));
+    const auto factor = [&](int shift) {
+      return 0.5F + 0.5F * static_cast<float>(h >> shift & 255) / 255;
+    };
+    const float a = opaque[id] != 0 ? 1 : factor(0);
+    return {c.x * a * factor(8), c.y * a * factor(16), c.z * a * factor(24), c.w * a};
+  }
+};
+/// LayerScene::is_hole, of scenes that have them.
+struct IsNoHole {
+  RASTRUM_HD bool operator()(std::uint64_t word, int x, int y) const {
+    const std::uint64_t id = raster::id_of_word(word);
+    return id % 2 != 0 ||
+           mix(id << 32 ^ static_cast<std::uint64_t>(x) << 16 ^ static_cast<std::uint64_t>(y)) %
+                   3 !=
+               0;
+  }
+};
+
+class OnDevice {
+ public:
+  OnDevice(parallel::Cuda& exec, const LayersFrame& f)
+      : exec_(exec),
+        frame_(f),
+        pieces_(parallel::to_device(exec, f.pieces)),
+        words_(parallel::to_device(exec, f.words)),
+        colors_(parallel::to_device(exec, f.colors)),
+        paint_(parallel::to_device(exec, f.paint)),
+        opaque_(parallel::to_device(exec, f.opaque)) {}
+
+  transparency::DeviceLayerCounts blend(const TransparencyOptions& options,
+                                        const transparency::DeviceLayerTuning& tuning) {
+    using parallel::view_of;
+    const transparency::DeviceLayers layers{frame_.width, frame_.height,
+                                            view_of(std::as_const(pieces_)), view_of(words_),
+                                            view_of(colors_)};
+    return transparency::blend_layers(
+        exec_, layers, options,
+        PaintFragment{view_of(std::as_const(paint_)), view_of(std::as_const(opaque_)),
+                      frame_.by_pixel},
+        IsNoHole{}, tuning);
+  }
+  void fetch(LayersFrame& out) {
+    out.words = parallel::to_host(exec_, words_);
+    out.colors = parallel::to_host(exec_, colors_);
+  }
+
+ private:
+  parallel::Cuda& exec_;
+  const LayersFrame& frame_;
+  parallel::DeviceBuffer<raster::Piece> pieces_;
+  parallel::DeviceBuffer<std::uint64_t> words_;
+  parallel::DeviceBuffer<Vec4> colors_, paint_;
+  parallel::DeviceBuffer<std::uint8_t> opaque_;
+};
+
+struct TeamScratch {
+  std::uint32_t keys[64], places[64], sums[65];
+};
+struct TeamWords {
+  std::span<const std::uint32_t> in;
+  std::span<std::uint32_t> sorted, places, sums;
+  template <class Team>
+  RASTRUM_HD void operator()(std::size_t, TeamScratch& s, const Team& team) const {
+    const std::size_t n = in.size();
+    for (std::size_t i = team.rank(); i < n; i += team.size()) {
+      s.keys[i] = s.sums[i] = in[i];
+      s.places[i] = static_cast<std::uint32_t>(i);
+    }
+    parallel::team_sort(s.keys, s.places, n, team);
+    parallel::team_prefix_sums(s.sums, n, team);
+    for (std::size_t i = team.rank(); i < n; i += team.size()) {
+      sorted[i] = s.keys[i];
+      places[i] = s.places[i];
+    }
+    for (std::size_t i = team.rank(); i <= n; i += team.size()) sums[i] = s.sums[i];
+  }
+};
+
+}  // namespace
+
+transparency::DeviceLayerCounts blend_on_device(LayersFrame& frame,
+                                                const TransparencyOptions& options,
+                                                const transparency::DeviceLayerTuning& tuning) {
+  parallel::Cuda exec;
+  OnDevice on_device(exec, frame);
+  const transparency::DeviceLayerCounts counts = on_device.blend(options, tuning);
+  on_device.fetch(frame);
+  return counts;
+}
+
+std::uint64_t growth_of_a_second_frame(const LayersFrame& frame) {
+  parallel::Cuda exec;
+  OnDevice first(exec, frame), second(exec, frame);
+  first.blend({}, {});
+  const std::uint64_t held = exec.memory()->held();
+  second.blend({}, {});
+  return exec.memory()->held() - held;
+}
+
+TeamResult team_words(const std::vector<std::uint32_t>& values) {
+  parallel::Cuda exec;
+  const auto in = parallel::to_device(exec, values);
+  auto sorted = parallel::make_buffer<std::uint32_t>(exec, values.size());
+  auto places = parallel::make_buffer<std::uint32_t>(exec, values.size());
+  auto sums = parallel::make_buffer<std::uint32_t>(exec, values.size() + 1);
+  parallel::for_each_team<TeamScratch, 32>(
+      exec, 1,
+      TeamWords{parallel::view_of(in), parallel::view_of(sorted), parallel::view_of(places),
+                parallel::view_of(sums)});
+  return {parallel::to_host(exec, sorted), parallel::to_host(exec, places),
+          parallel::to_host(exec, sums)};
+}
+
+}  // namespace rastrum::test

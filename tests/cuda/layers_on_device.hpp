@@ -1,0 +1,40 @@
+// Layers on whatever the build calls a device, for tests that do not know of it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <rastrum/core/vec.hpp>
+#include <rastrum/raster/piece.hpp>
+#include <rastrum/transparency/cuda/device_layers.hpp>
+
+namespace rastrum::test {
+
+/// A frame on the host: pieces, the opaque surface, and what the colours of a LayerScene are made
+/// of.
+struct LayersFrame {
+  int width = 0, height = 0;
+  std::vector<raster::Piece> pieces;
+  std::vector<std::uint64_t> words;
+  std::vector<Vec4> colors;
+  std::vector<Vec4> paint;           ///< by id
+  std::vector<std::uint8_t> opaque;  ///< by id
+  bool by_pixel = false;             ///< Paint::pixel; else Paint::triangle
+};
+
+/// Changes words and colours as blend_layers does.
+transparency::DeviceLayerCounts blend_on_device(LayersFrame& frame,
+                                                const TransparencyOptions& options,
+                                                const transparency::DeviceLayerTuning& tuning);
+/// Two frames alike, one after the other: by how many bytes the second made the device's memory
+/// grow.
+std::uint64_t growth_of_a_second_frame(const LayersFrame& frame);
+
+/// Sorts pairs, and sums up, in a team's memory: what the words of team.cuh make of `values`, at
+/// most 64.
+struct TeamResult {
+  std::vector<std::uint32_t> sorted, places, sums;
+};
+TeamResult team_words(const std::vector<std::uint32_t>& values);
+
+}  // namespace rastrum::test

@@ -1,0 +1,320 @@
+// Layers on a device are the host's: the same order and the same bits of every colour as the scalar
+// path, in each tier, whatever the budget. Where there is no GPU the device is the CPU
+// (CMakeLists.txt), with the code that nvcc compiles.
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/raster/assemble.hpp>
+#include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/frame.hpp>
+#include <rastrum/render/render.hpp>
+#include <rastrum/transparency/cuda/device_layers.hpp>
+
+#include "tests/cuda/layers_on_device.hpp"
+#include "tests/support/environment.hpp"
+#include "tests/support/layer_picture.hpp"
+#include "tests/support/layer_program.hpp"
+#include "tests/support/layer_scenes.hpp"
+#include "tests/support/random.hpp"
+
+#if !defined(RASTRUM_TEST_DEVICE_WORDS)
+#include <rastrum/parallel/cuda/status.hpp>
+#endif
+
+namespace rastrum::test {
+namespace {
+
+using transparency::DeviceLayerCounts;
+using transparency::DeviceLayerTuning;
+
+/// Pieces as the host's setup makes them, and the opaque surface.
+LayersFrame frame_of(const LayerScene& scene, LayerProgram& program, int width, int height) {
+  LayersFrame f;
+  f.width = width;
+  f.height = height;
+  f.paint = scene.colors;
+  f.opaque = scene.opaque;
+  f.by_pixel = scene.paint == Paint::pixel;
+  const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  f.words.assign(pixels, 0);
+  f.colors.assign(pixels, {});
+  const std::span<raster::Draw> draws = program.draws();
+  const raster::Totals totals = raster::number_draws(draws);
+  const raster::FrameGeometry geometry{width, height, raster::Viewport::of(width, height), draws,
+                                       nullptr};
+  std::vector<raster::ProjectedVertex> projected(totals.vertices);
+  raster::FrameGeometry whole = geometry;
+  for (const raster::Draw& draw : draws)
+    draw.source->project(0, draw.vertex_count, geometry.viewport, Isa::scalar,
+                         projected.data() + draw.first_vertex);
+  whole.projected = projected.data();
+  for (const raster::Draw& draw : draws)
+    for (std::uint64_t p = 0; p < draw.primitive_count; ++p)
+      static_cast<void>(raster::assemble_primitive(
+          whole, draw, p, [&](const raster::Piece& piece) { f.pieces.push_back(piece); }));
+  for (const raster::Piece& piece : f.pieces) {
+    if ((piece.flags & raster::kTranslucent) != 0) continue;
+    const raster::Rect box = raster::piece_bounds(piece, {0, 0, width, height});
+    for (int y = box.y0; y < box.y1; ++y) {
+      const raster::Span span = raster::row_span(piece, y, box.x0, box.x1);
+      for (int x = span.begin; x < span.end; ++x) {
+        const std::uint64_t id = raster::kIdMask - piece.low;
+        if (scene.is_hole(id, x, y)) continue;
+        const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                              static_cast<std::size_t>(x);
+        const std::uint64_t word = raster::make_word(raster::depth_at(piece, x, y), piece.low);
+        if (word <= f.words[i]) continue;
+        f.words[i] = word;
+        f.colors[i] =
+            f.by_pixel ? scene.pixel_color(id, x, y) : scene.colors[static_cast<std::size_t>(id)];
+      }
+    }
+  }
+  return f;
+}
+
+/// What the functors of layers_on_device.cu can paint.
+LayerScene scene_of(std::uint64_t seed, int width, int height, int most_fragments) {
+  LayerScene scene = generate_layers(seed, width, height, most_fragments);
+  if (scene.paint == Paint::gradient) scene.paint = Paint::triangle;
+  return scene;
+}
+
+std::string show(Vec4 c) {
+  std::string out = "(";
+  for (const float v : {c.x, c.y, c.z, c.w}) out.append(std::to_string(v)).append(" ");
+  return out.append(")");
+}
+
+testing::AssertionResult equals_host(const LayersFrame& f, const LayerPicture& host) {
+  const auto bits = [](float v) { return std::bit_cast<std::uint32_t>(v); };
+  for (std::size_t i = 0; i < f.words.size(); ++i) {
+    const std::uint64_t word = f.words[i];
+    const std::int64_t id = word == 0 ? -1 : static_cast<std::int64_t>(raster::id_of_word(word));
+    const auto place = [&] {
+      return std::string(" at (")
+          .append(std::to_string(i % static_cast<std::size_t>(f.width)))
+          .append(", ")
+          .append(std::to_string(i / static_cast<std::size_t>(f.width)))
+          .append(")");
+    };
+    if (id != host.ids.pixels()[i])
+      return testing::AssertionFailure()
+             << "id " << id << " and the host's " << host.ids.pixels()[i] << place();
+    if (static_cast<std::uint32_t>(word >> raster::kIdBits) != bits(host.depth.pixels()[i]))
+      return testing::AssertionFailure() << "depth" << place();
+    const Vec4 a = f.colors[i], b = host.color.pixels()[i];
+    if (bits(a.x) != bits(b.x) || bits(a.y) != bits(b.y) || bits(a.z) != bits(b.z) ||
+        bits(a.w) != bits(b.w))
+      return testing::AssertionFailure()
+             << "colour " << show(a) << " and the host's " << show(b) << place();
+  }
+  return testing::AssertionSuccess();
+}
+
+RenderOptions host_options(int width, int height, Device device,
+                           const TransparencyOptions& method = {}) {
+  RenderOptions o;
+  o.width = width;
+  o.height = height;
+  o.background = {0, 0, 0, 0};
+  o.device = device;
+  o.isa = Isa::scalar;
+  o.threads = 2;
+  o.transparency = method;
+  return o;
+}
+
+class CudaLayers : public testing::Test {
+ protected:
+  void SetUp() override {
+#if !defined(RASTRUM_TEST_DEVICE_WORDS)
+    const parallel::CudaStatus status = parallel::cuda_status();
+    if (!status.usable) GTEST_SKIP() << status.why_not;
+#endif
+  }
+};
+
+struct Way {
+  const char* name;
+  DeviceLayerTuning tuning;
+};
+/// Each tier alone, all of them at once, and budgets that take many turns.
+const Way kWays[] = {
+    {"as it is", {}},          {"high density alone", {0, 2048, 0}},
+    {"deep alone", {0, 0, 0}}, {"three tiers", {3, 9, 0}},
+    {"4 KiB", {3, 9, 4096}},   {"no bytes", {256, 2048, 1}},
+};
+const int kSizes[][2] = {{1, 1}, {17, 5}, {37, 53}, {64, 64}, {100, 20}};
+
+int scene_count() {
+  return std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 200, kLayerKinds);
+}
+
+TEST_F(CudaLayers, EqualTheHostInEveryTierAndBudget) {
+  DeviceLayerCounts all;
+  std::uint64_t most_layers = 0;
+  for (const auto& [width, height] : kSizes)
+    for (int i = 0; i < scene_count(); ++i) {
+      const std::uint64_t seed = static_cast<std::uint64_t>(i + 7919 * width);
+      const LayerScene scene = scene_of(seed, width, height, 100000);
+      SCOPED_TRACE("scene " + std::to_string(seed) + " (" + scene.kind + ")");
+      LayerProgram program(scene, width, height);
+      Renderer renderer(host_options(width, height, i % 4 == 0 ? Device::serial : Device::threads));
+      const LayerPicture host = take(renderer, program);
+      const LayersFrame start = frame_of(scene, program, width, height);
+      for (const Way& way : kWays) {
+        LayersFrame f = start;
+        const DeviceLayerCounts counts = blend_on_device(f, {}, way.tuning);
+        ASSERT_TRUE(equals_host(f, host)) << way.name;
+        if (host.stats.device != Device::serial && host.stats.visibility == "layers") {
+          EXPECT_EQ(counts.fragments, host.counter("translucent fragments")) << way.name;
+          EXPECT_EQ(counts.deepest, host.counter("deepest")) << way.name;
+        }
+        most_layers = std::max(most_layers, counts.deepest);
+        all.repaired += counts.repaired;
+        all.low_blocks += counts.low_blocks;
+        all.high_blocks += counts.high_blocks;
+        all.deep_blocks += counts.deep_blocks;
+        all.turns += counts.turns;
+        if (way.tuning.bytes == 1) {
+          // A turn holds one block, and what lies empty beside it.
+          EXPECT_GE(counts.turns, counts.low_blocks + counts.high_blocks + counts.deep_blocks);
+        }
+      }
+    }
+  EXPECT_GE(most_layers, 1000U);
+  EXPECT_GT(all.repaired, 0U);
+  EXPECT_GT(all.low_blocks, 0U);
+  EXPECT_GT(all.high_blocks, 0U);
+  EXPECT_GT(all.deep_blocks, 0U);
+}
+
+TEST_F(CudaLayers, UnsortedAndThresholdsEqualTheHost) {
+  TransparencyOptions unsorted, paper, early;
+  unsorted.method = Transparency::unsorted;
+  paper.alpha_threshold = 1 - 1.0F / 128;
+  early.alpha_threshold = 0.5F;
+  const int width = 37, height = 21;
+  for (const TransparencyOptions& method : {unsorted, paper, early}) {
+    for (int i = 0; i < 2 * kLayerKinds; ++i) {
+      const LayerScene scene = scene_of(static_cast<std::uint64_t>(i), width, height, 30000);
+      SCOPED_TRACE(scene.kind);
+      LayerProgram program(scene, width, height);
+      Renderer renderer(host_options(width, height, Device::serial, method));
+      const LayerPicture host = take(renderer, program);
+      const LayersFrame start = frame_of(scene, program, width, height);
+      for (const Way& way : kWays) {
+        LayersFrame f = start;
+        static_cast<void>(blend_on_device(f, method, way.tuning));
+        ASSERT_TRUE(equals_host(f, host)) << way.name << ", threshold " << method.alpha_threshold;
+      }
+    }
+  }
+}
+
+// Two thousand layers a pixel, in no order: more than shared memory holds, without being asked for.
+TEST_F(CudaLayers, DeepStacksGoThroughTheDevicesMemory) {
+  const int size = 16;
+  const LayerScene scene = layer_stack(5, 2000, 0.01, size, size);
+  LayerProgram program(scene, size, size);
+  Renderer renderer(host_options(size, size, Device::threads));
+  const LayerPicture host = take(renderer, program);
+  for (const std::uint64_t bytes : {std::uint64_t{0}, std::uint64_t{1} << 16}) {
+    LayersFrame f = frame_of(scene, program, size, size);
+    const DeviceLayerCounts counts = blend_on_device(f, {}, {256, 2048, bytes});
+    EXPECT_TRUE(equals_host(f, host));
+    EXPECT_EQ(counts.deepest, 2000U);
+    EXPECT_EQ(counts.fragments, 2000U * size * size);
+    EXPECT_GT(counts.deep_blocks, 0U);
+    EXPECT_EQ(counts.turns, bytes == 0 ? 1U : 4U);
+  }
+}
+
+// Whatever wrote the records in whatever order, nothing of it is left in the picture or the counts.
+TEST_F(CudaLayers, OrderOfPiecesDoesNotMatter) {
+  const int width = 40, height = 40;
+  Random r(3);
+  for (int i = 0; i < kLayerKinds; ++i) {
+    const LayerScene scene = scene_of(static_cast<std::uint64_t>(i), width, height, 30000);
+    SCOPED_TRACE(scene.kind);
+    LayerProgram program(scene, width, height);
+    LayersFrame a = frame_of(scene, program, width, height), b = a;
+    for (std::size_t k = b.pieces.size(); k > 1; --k)
+      std::swap(b.pieces[k - 1],
+                b.pieces[static_cast<std::size_t>(r.integer(0, static_cast<int>(k) - 1))]);
+    for (const Transparency method : {Transparency::exact, Transparency::unsorted}) {
+      TransparencyOptions options;
+      options.method = method;
+      LayersFrame x = a, y = b;
+      const DeviceLayerCounts one = blend_on_device(x, options, {4, 64, 0});
+      const DeviceLayerCounts other = blend_on_device(y, options, {4, 64, 0});
+      EXPECT_EQ(x.words, y.words);
+      EXPECT_EQ(one.fragments, other.fragments);
+      EXPECT_EQ(one.records, other.records);
+      for (std::size_t p = 0; p < x.colors.size(); ++p)
+        ASSERT_EQ(show(x.colors[p]), show(y.colors[p]));
+    }
+  }
+}
+
+// A frame like the one before asks for no memory.
+TEST_F(CudaLayers, ASteadyFrameAllocatesNothing) {
+  const int size = 64;
+  const LayerScene scene = scene_of(0, size, size, 100000);
+  LayerProgram program(scene, size, size);
+  EXPECT_EQ(growth_of_a_second_frame(frame_of(scene, program, size, size)), 0U);
+}
+
+TEST_F(CudaLayers, WhatADeviceDoesNotHaveIsRefused) {
+  LayersFrame f;
+  f.width = f.height = 8;
+  f.words.resize(64);
+  f.colors.resize(64);
+  TransparencyOptions options;
+  EXPECT_EQ(transparency::why_not_on_a_device(options, 1), "");
+  EXPECT_NE(transparency::why_not_on_a_device(options, 4), "");
+  for (const Transparency method : {Transparency::filter, Transparency::wboit, Transparency::mboit4,
+                                    Transparency::mboit6, Transparency::mlab4}) {
+    options.method = method;
+    EXPECT_NE(transparency::why_not_on_a_device(options, 1), "");
+    try {
+      static_cast<void>(blend_on_device(f, options, {}));
+      ADD_FAILURE();
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::invalid_argument);
+      EXPECT_NE(std::string(e.what()).find("exact or unsorted"), std::string::npos) << e.what();
+    }
+  }
+}
+
+TEST_F(CudaLayers, TeamsSortAndSumUp) {
+  Random r(1);
+  for (std::size_t n = 0; n <= 64; ++n) {
+    std::vector<std::uint32_t> values(n);
+    for (std::uint32_t& v : values)
+      v = r.chance(0.1) ? 0xFFFFFFFFU : static_cast<std::uint32_t>(r.integer(0, 40));
+    const TeamResult got = team_words(values);
+    std::vector<std::uint32_t> sorted = values, sums(n + 1, 0);
+    std::ranges::sort(sorted);
+    EXPECT_EQ(got.sorted, sorted);
+    std::partial_sum(values.begin(), values.end(), sums.begin() + 1);
+    EXPECT_EQ(got.sums, sums);
+    // Values go with their keys; equal keys may change places.
+    for (std::size_t i = 0; i < n; ++i) {
+      if (sorted[i] == 0xFFFFFFFFU) continue;
+      ASSERT_LT(got.places[i], n);
+      EXPECT_EQ(values[got.places[i]], sorted[i]);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rastrum::test
