@@ -2,6 +2,7 @@
 // the CPU, for a C++ compiler.
 #include "layers_on_device.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 
@@ -49,37 +50,61 @@ struct IsNoHole {
   }
 };
 
+/// Rows [y0, y1) of a frame on the device.
 class OnDevice {
  public:
-  OnDevice(parallel::Cuda& exec, const LayersFrame& f)
+  OnDevice(parallel::Cuda& exec, const LayersFrame& f, int y0, int y1)
       : exec_(exec),
-        frame_(f),
+        view_{0, y0, f.width, y1},
+        by_pixel_(f.by_pixel),
         pieces_(parallel::to_device(exec, f.pieces)),
-        words_(parallel::to_device(exec, f.words)),
-        colors_(parallel::to_device(exec, f.colors)),
+        words_(parallel::to_device(exec, in_blocks(f.words))),
+        colors_(parallel::to_device(exec, in_blocks(f.colors))),
         paint_(parallel::to_device(exec, f.paint)),
         opaque_(parallel::to_device(exec, f.opaque)) {}
 
   transparency::DeviceLayerCounts blend(const TransparencyOptions& options,
                                         const transparency::DeviceLayerTuning& tuning) {
     using parallel::view_of;
-    const transparency::DeviceLayers layers{frame_.width, frame_.height,
-                                            view_of(std::as_const(pieces_)), view_of(words_),
+    const transparency::DeviceLayers layers{view_, view_of(std::as_const(pieces_)), view_of(words_),
                                             view_of(colors_)};
     return transparency::blend_layers(
         exec_, layers, options,
-        PaintFragment{view_of(std::as_const(paint_)), view_of(std::as_const(opaque_)),
-                      frame_.by_pixel},
+        PaintFragment{view_of(std::as_const(paint_)), view_of(std::as_const(opaque_)), by_pixel_},
         IsNoHole{}, tuning);
   }
   void fetch(LayersFrame& out) {
-    out.words = parallel::to_host(exec_, words_);
-    out.colors = parallel::to_host(exec_, colors_);
+    const auto words = parallel::to_host(exec_, words_);
+    const auto colors = parallel::to_host(exec_, colors_);
+    each_pixel([&](std::size_t pixel, std::size_t element) {
+      out.words[pixel] = words[element];
+      out.colors[pixel] = colors[element];
+    });
   }
 
  private:
+  /// f(place in the frame's rows, place in the blocks of the view).
+  template <class F>
+  void each_pixel(F f) const {
+    const auto columns = static_cast<std::size_t>((view_.x1 + 7) / 8);
+    for (int y = view_.y0; y < view_.y1; ++y)
+      for (int x = 0; x < view_.x1; ++x) {
+        const auto u = static_cast<std::size_t>(x), v = static_cast<std::size_t>(y - view_.y0);
+        f(static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.x1) + u,
+          ((v / 8) * columns + u / 8) * 64 + v % 8 * 8 + u % 8);
+      }
+  }
+  template <class T>
+  [[nodiscard]] std::vector<T> in_blocks(const std::vector<T>& rows) const {
+    const auto columns = static_cast<std::size_t>((view_.x1 + 7) / 8);
+    std::vector<T> out(columns * static_cast<std::size_t>((view_.y1 - view_.y0 + 7) / 8) * 64);
+    each_pixel([&](std::size_t pixel, std::size_t element) { out[element] = rows[pixel]; });
+    return out;
+  }
+
   parallel::Cuda& exec_;
-  const LayersFrame& frame_;
+  const raster::Rect view_;
+  const bool by_pixel_;
   parallel::DeviceBuffer<raster::Piece> pieces_;
   parallel::DeviceBuffer<std::uint64_t> words_;
   parallel::DeviceBuffer<Vec4> colors_, paint_;
@@ -113,17 +138,30 @@ struct TeamWords {
 
 transparency::DeviceLayerCounts blend_on_device(LayersFrame& frame,
                                                 const TransparencyOptions& options,
-                                                const transparency::DeviceLayerTuning& tuning) {
+                                                const transparency::DeviceLayerTuning& tuning,
+                                                int band_rows) {
   parallel::Cuda exec;
-  OnDevice on_device(exec, frame);
-  const transparency::DeviceLayerCounts counts = on_device.blend(options, tuning);
-  on_device.fetch(frame);
-  return counts;
+  transparency::DeviceLayerCounts sum;
+  const int rows = band_rows == 0 ? frame.height : band_rows;
+  for (int y = 0; y < frame.height; y += rows) {
+    OnDevice band(exec, frame, y, std::min(y + rows, frame.height));
+    const transparency::DeviceLayerCounts c = band.blend(options, tuning);
+    band.fetch(frame);
+    sum.fragments += c.fragments;
+    sum.deepest = std::max(sum.deepest, c.deepest);
+    sum.repaired += c.repaired;
+    sum.records += c.records;
+    sum.low_blocks += c.low_blocks;
+    sum.high_blocks += c.high_blocks;
+    sum.deep_blocks += c.deep_blocks;
+    sum.turns += c.turns;
+  }
+  return sum;
 }
 
 std::uint64_t growth_of_a_second_frame(const LayersFrame& frame) {
   parallel::Cuda exec;
-  OnDevice first(exec, frame), second(exec, frame);
+  OnDevice first(exec, frame, 0, frame.height), second(exec, frame, 0, frame.height);
   first.blend({}, {});
   const std::uint64_t held = exec.memory()->held();
   second.blend({}, {});

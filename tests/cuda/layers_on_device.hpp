@@ -22,10 +22,12 @@ struct LayersFrame {
   bool by_pixel = false;             ///< Paint::pixel; else Paint::triangle
 };
 
-/// Changes words and colours as blend_layers does.
+/// Changes words and colours, which are rows of pixels here, as blend_layers does: in bands of
+/// `band_rows` rows, whole blocks; 0: at once. Counts are those of all bands.
 transparency::DeviceLayerCounts blend_on_device(LayersFrame& frame,
                                                 const TransparencyOptions& options,
-                                                const transparency::DeviceLayerTuning& tuning);
+                                                const transparency::DeviceLayerTuning& tuning,
+                                                int band_rows = 0);
 /// Two frames alike, one after the other: by how many bytes the second made the device's memory
 /// grow.
 std::uint64_t growth_of_a_second_frame(const LayersFrame& frame);

@@ -145,8 +145,9 @@ class CudaLayers : public testing::Test {
 struct Way {
   const char* name;
   DeviceLayerTuning tuning;
+  int band_rows = 0;
 };
-/// Each tier alone, all of them at once, and budgets that take many turns.
+/// Each tier alone, all of them at once, budgets that take many turns, and bands.
 const Way kWays[] = {
     {"as it is", {}},          {"high density alone", {0, 2048, 0}},
     {"deep alone", {0, 0, 0}}, {"three tiers", {3, 9, 0}},
@@ -172,7 +173,7 @@ TEST_F(CudaLayers, EqualTheHostInEveryTierAndBudget) {
       const LayersFrame start = frame_of(scene, program, width, height);
       for (const Way& way : kWays) {
         LayersFrame f = start;
-        const DeviceLayerCounts counts = blend_on_device(f, {}, way.tuning);
+        const DeviceLayerCounts counts = blend_on_device(f, {}, way.tuning, way.band_rows);
         ASSERT_TRUE(equals_host(f, host)) << way.name;
         if (host.stats.device != Device::serial && host.stats.visibility == "layers") {
           EXPECT_EQ(counts.fragments, host.counter("translucent fragments")) << way.name;
@@ -213,7 +214,7 @@ TEST_F(CudaLayers, UnsortedAndThresholdsEqualTheHost) {
       const LayersFrame start = frame_of(scene, program, width, height);
       for (const Way& way : kWays) {
         LayersFrame f = start;
-        static_cast<void>(blend_on_device(f, method, way.tuning));
+        static_cast<void>(blend_on_device(f, method, way.tuning, way.band_rows));
         ASSERT_TRUE(equals_host(f, host)) << way.name << ", threshold " << method.alpha_threshold;
       }
     }

@@ -16,27 +16,29 @@
 
 namespace rastrum::parallel {
 
-/// word += value (of 2³²), by many threads at once; returns what it was.
-RASTRUM_HD inline std::uint32_t atomic_add(std::uint32_t& word, std::uint32_t value) noexcept {
+/// word += value (modulo 2³²), by many threads at once; returns what it was.
+RASTRUM_HD inline std::uint32_t atomic_fetch_add(std::uint32_t& word,
+                                                 std::uint32_t value) noexcept {
 #if defined(__CUDA_ARCH__)
   return atomicAdd(&word, value);
 #else
   return std::atomic_ref<std::uint32_t>(word).fetch_add(value, std::memory_order_relaxed);
 #endif
 }
-RASTRUM_HD inline void atomic_add(std::uint64_t& word, std::uint64_t value) noexcept {
+RASTRUM_HD inline std::uint64_t atomic_fetch_add(std::uint64_t& word,
+                                                 std::uint64_t value) noexcept {
 #if defined(__CUDA_ARCH__)
-  atomicAdd(reinterpret_cast<unsigned long long*>(&word), value);
+  return atomicAdd(reinterpret_cast<unsigned long long*>(&word), value);
 #else
-  std::atomic_ref<std::uint64_t>(word).fetch_add(value, std::memory_order_relaxed);
+  return std::atomic_ref<std::uint64_t>(word).fetch_add(value, std::memory_order_relaxed);
 #endif
 }
-/// word |= bits, by many threads at once.
-RASTRUM_HD inline void atomic_or(std::uint64_t& word, std::uint64_t bits) noexcept {
+/// word |= bits, likewise.
+RASTRUM_HD inline std::uint64_t atomic_fetch_or(std::uint64_t& word, std::uint64_t bits) noexcept {
 #if defined(__CUDA_ARCH__)
-  atomicOr(reinterpret_cast<unsigned long long*>(&word), bits);
+  return atomicOr(reinterpret_cast<unsigned long long*>(&word), bits);
 #else
-  std::atomic_ref<std::uint64_t>(word).fetch_or(bits, std::memory_order_relaxed);
+  return std::atomic_ref<std::uint64_t>(word).fetch_or(bits, std::memory_order_relaxed);
 #endif
 }
 

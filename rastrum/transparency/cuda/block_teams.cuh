@@ -44,9 +44,9 @@ enum Counter : std::size_t { kFragments, kDeepest, kRepaired, kCounters };
 RASTRUM_HD inline void count_layers(std::uint64_t* counters, std::uint64_t fragments,
                                     std::uint64_t deepest, std::uint64_t repaired) {
   if (fragments == 0) return;
-  parallel::atomic_add(counters[kFragments], fragments);
+  parallel::atomic_fetch_add(counters[kFragments], fragments);
   parallel::atomic_maximum(counters[kDeepest], deepest);
-  if (repaired != 0) parallel::atomic_add(counters[kRepaired], repaired);
+  if (repaired != 0) parallel::atomic_fetch_add(counters[kRepaired], repaired);
 }
 
 /// Low density: two warps, a thread a pixel, in 9 KiB; as nvcc 13 compiles it for sm_90 (76
@@ -96,10 +96,8 @@ struct BlendBlock {
     prepare(b, mine, s, team);
     const std::size_t total = s.first[mine.size()];
     Pixel pixels[kShare];
-    each_own(team, [&](std::size_t k, std::size_t p) {
-      const std::size_t at = frame.place(b, static_cast<int>(p));
-      pixels[k].begin(at == Frame::kNowhere ? Vec4{} : frame.colors[at]);
-    });
+    each_own(team,
+             [&](std::size_t k, std::size_t p) { pixels[k].begin(frame.colors[b * 64 + p]); });
     for (std::size_t begin = 0; begin < total; begin += Density::kSegment) {
       const std::size_t left = total - begin;
       shade(b, mine, begin, left < Density::kSegment ? left : Density::kSegment, s, team);
@@ -109,7 +107,7 @@ struct BlendBlock {
     }
     each_own(team, [&](std::size_t k, std::size_t p) {
       if (s.layers[p] == 0) return;
-      finish(pixels[k], b, static_cast<int>(p), mine, s);
+      finish(pixels[k], b, p, mine, s);
     });
     team.sync();
     if (team.rank() != 0) return;
@@ -139,8 +137,7 @@ struct BlendBlock {
       s.order[k] = static_cast<std::uint16_t>(k);
     }
     each_own(team, [&](std::size_t, std::size_t p) {
-      const std::size_t at = frame.place(b, static_cast<int>(p));
-      s.opaque[p] = s.limit[p] = at == Frame::kNowhere ? ~std::uint64_t{0} : frame.words[at];
+      s.opaque[p] = s.limit[p] = frame.words[b * 64 + p];
       s.layers[p] = 0;
       for (std::uint64_t& bits : s.takers[p]) bits = 0;
     });
@@ -159,11 +156,12 @@ struct BlendBlock {
     for (std::size_t i = team.rank(); i < n; i += team.size()) {
       const std::size_t r = parallel::expand_detail::last_at_most(first, begin + i);
       const raster::Block& record = mine[s.order[r]];
-      const int p = parallel::select_bit<64>(record.mask, static_cast<int>(begin + i - first[r]));
+      const auto p = static_cast<std::size_t>(
+          parallel::select_bit<64>(record.mask, static_cast<int>(begin + i - first[r])));
       const int x = frame.x_of(b, p), y = frame.y_of(b, p);
       const std::uint64_t word = frame.word(frame.pieces[record.piece], x, y);
       if (word <= s.opaque[p]) continue;
-      parallel::atomic_add(s.layers[p], 1);
+      parallel::atomic_fetch_add(s.layers[p], 1);
       if (word <= s.limit[p]) continue;
       const Vec4 color = frame.shade(word, x, y);
       s.words[i] = word;
@@ -171,7 +169,7 @@ struct BlendBlock {
       s.g[i] = color.y;
       s.b[i] = color.z;
       s.a[i] = color.w;
-      parallel::atomic_or(s.takers[p][i / 64], std::uint64_t{1} << i % 64);
+      parallel::atomic_fetch_or(s.takers[p][i / 64], std::uint64_t{1} << i % 64);
     }
   }
 
@@ -186,16 +184,16 @@ struct BlendBlock {
     s.limit[p] = pixel.limit(s.opaque[p]);
   }
 
-  RASTRUM_HD void finish(Pixel& pixel, std::size_t b, int p, std::span<const raster::Block> mine,
-                         Scratch& s) const {
-    const std::size_t at = frame.place(b, p);
+  RASTRUM_HD void finish(Pixel& pixel, std::size_t b, std::size_t p,
+                         std::span<const raster::Block> mine, Scratch& s) const {
+    const std::size_t at = b * 64 + p;
     pixel.end(frame.opaque_at);
     if (!pixel.misplaced()) {
       frame.colors[at] = pixel.color(frame.colors[at]);
       frame.words[at] = pixel.nearest();
       return;
     }
-    parallel::atomic_add(s.repaired, 1);
+    parallel::atomic_fetch_add(s.repaired, 1);
     const int x = frame.x_of(b, p), y = frame.y_of(b, p);
     const auto walk = [&](const auto& f) {
       for (std::size_t k = 0; k < mine.size(); ++k) {

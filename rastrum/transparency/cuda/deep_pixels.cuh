@@ -26,17 +26,12 @@ struct DeepPixels {
   RecordView records;
   std::span<const std::size_t> blocks;
 
-  RASTRUM_HD std::size_t place(std::size_t q) const {
-    return frame.place(blocks[q / 64], static_cast<int>(q % 64));
-  }
+  RASTRUM_HD std::size_t place(std::size_t q) const { return blocks[q / 64] * 64 + q % 64; }
   /// Calls f(word) for the fragments before the opaque surface, as their records come.
   template <class F>
   RASTRUM_HD void each_word(std::size_t q, const F& f) const {
-    const std::size_t b = blocks[q / 64];
-    const int p = static_cast<int>(q % 64);
-    const std::size_t at = place(q);
-    if (at == Frame::kNowhere) return;
-    const std::uint64_t opaque = frame.words[at];
+    const std::size_t b = blocks[q / 64], p = q % 64;
+    const std::uint64_t opaque = frame.words[place(q)];
     const int x = frame.x_of(b, p), y = frame.y_of(b, p);
     for (const raster::Block& record : records.of(b)) {
       if ((record.mask >> p & 1) == 0) continue;
@@ -88,7 +83,7 @@ struct BlendDeep {
     if (n == 0) return;
     const Frame& frame = pixels.frame;
     const std::size_t at = pixels.place(q), b = pixels.blocks[q / 64];
-    const int p = static_cast<int>(q % 64), x = frame.x_of(b, p), y = frame.y_of(b, p);
+    const int x = frame.x_of(b, q % 64), y = frame.y_of(b, q % 64);
     const std::uint64_t* const mine = keys + (first[q] - first[begin]);
     Pixel pixel;
     pixel.begin(frame.colors[at]);
@@ -117,7 +112,6 @@ void blend_deep(parallel::Cuda& exec, const Frame& frame, const RecordView& reco
   const std::uint64_t all = parallel::exclusive_scan(exec, first, first, std::uint64_t{0});
   const auto places = parallel::view_of(std::as_const(first));
   for (Turn turn; next_turn(exec, places, all, most, turn);) {
-    if (turn.items == 0) continue;
     auto keys = parallel::make_buffer<std::uint64_t>(exec, turn.items);
     auto owners = parallel::make_buffer<std::uint32_t>(exec, turn.items);
     const std::size_t n = turn.end - turn.begin;

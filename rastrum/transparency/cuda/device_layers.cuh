@@ -14,6 +14,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -30,10 +31,11 @@
 
 namespace rastrum::transparency {
 
-/// A frame whose opaque surface is drawn. Memory of the device; rows of `width` pixels, row 0 at
-/// the top.
+/// A frame, or a band of its rows, whose opaque surface is drawn. Memory of the device: 8 × 8
+/// blocks of `view`, row by row, of 64 pixels each, element 8 · row + column; those of the last
+/// ones that lie outside are set, too, and stay as they are.
 struct DeviceLayers {
-  int width = 0, height = 0;
+  raster::Rect view;                      ///< px; begins with a block's first pixel
   std::span<const raster::Piece> pieces;  ///< those with kTranslucent are blended, others left out
   std::span<std::uint64_t> words;         ///< of the opaque surface; raised to the nearest layer's
   std::span<Vec4> colors;  ///< premultiplied: the opaque surface, 0 where none is; then the picture
@@ -41,9 +43,29 @@ struct DeviceLayers {
 
 namespace cuda {
 
+/// The smallest word of a block: what lies behind it is hidden in all of it.
+struct FarthestOfBlock {
+  raster::Rect view;
+  std::size_t columns;
+  std::span<const std::uint64_t> words;
+  RASTRUM_HD std::uint64_t operator()(std::size_t b) const {
+    const int bx = view.x0 / raster::kBlockSize + static_cast<int>(b % columns);
+    const int by = view.y0 / raster::kBlockSize + static_cast<int>(b / columns);
+    std::uint64_t farthest = ~std::uint64_t{0};
+    for (std::uint64_t m = raster::samples_inside(view, bx, by); m != 0; m &= m - 1) {
+      const std::uint64_t word = words[b * 64 + static_cast<std::size_t>(parallel::lowest_bit(m))];
+      if (word < farthest) farthest = word;
+    }
+    return farthest;
+  }
+};
+
 /// The blocks of a piece's box in the rows of `view`; none of an opaque piece.
 struct BlocksOfPiece {
   std::span<const raster::Piece> pieces;
+  std::span<const std::uint64_t> farthest;
+  std::size_t columns;  ///< of blocks
+  int bx0, by0;         ///< the first block
   raster::Rect view;
 
   RASTRUM_HD raster::Rect box(std::uint32_t piece) const {
@@ -57,34 +79,40 @@ struct BlocksOfPiece {
     const raster::Rect b = box(piece);
     return static_cast<std::size_t>(b.x1 - b.x0) * static_cast<std::size_t>(b.y1 - b.y0);
   }
-  /// The j-th of them; its mask may be empty.
+  RASTRUM_HD std::size_t number(const raster::Block& b) const {
+    return static_cast<std::size_t>(b.by - by0) * columns + static_cast<std::size_t>(b.bx - bx0);
+  }
+  /// The j-th of them; its mask is empty where nothing of the piece is seen.
   RASTRUM_HD raster::Block block(std::uint32_t piece, std::size_t j) const {
+    const raster::Piece& p = pieces[piece];
     const raster::Rect b = box(piece);
-    const auto columns = static_cast<std::size_t>(b.x1 - b.x0);
-    const int bx = b.x0 + static_cast<int>(j % columns), by = b.y0 + static_cast<int>(j / columns);
+    const auto across = static_cast<std::size_t>(b.x1 - b.x0);
+    const int bx = b.x0 + static_cast<int>(j % across), by = b.y0 + static_cast<int>(j / across);
     raster::Block out{piece, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), 0};
-    const raster::Edges edges = raster::edges_of(pieces[piece]);
+    const raster::Edges edges = raster::edges_of(p);
     const int x0 = bx * raster::kBlockSize, y0 = by * raster::kBlockSize;
-    if (raster::may_touch(edges, {x0, y0, x0 + raster::kBlockSize, y0 + raster::kBlockSize}))
-      out.mask = raster::cover_8x8(edges, bx, by) & raster::samples_inside(view, bx, by);
+    const raster::Rect px{x0, y0, x0 + raster::kBlockSize, y0 + raster::kBlockSize};
+    if (!raster::may_touch(edges, px)) return out;
+    if (raster::has_depth_bounds(p) &&
+        raster::make_word(raster::highest_depth(p, px), p.low) <= farthest[number(out)])
+      return out;
+    out.mask = raster::cover_8x8(edges, bx, by) & raster::samples_inside(view, bx, by);
     return out;
   }
 };
 
 struct CountRecord {
   BlocksOfPiece blocks;
-  std::size_t columns;
   std::span<std::uint32_t> counts;
   RASTRUM_HD void operator()(std::size_t, std::uint32_t piece, std::size_t j) const {
     const raster::Block b = blocks.block(piece, j);
-    if (b.mask != 0) parallel::atomic_add(counts[b.by * columns + b.bx], 1);
+    if (b.mask != 0) parallel::atomic_fetch_add(counts[blocks.number(b)], 1);
   }
 };
 
 /// Writes the records of a turn and counts down what is left to write of each block.
 struct WriteRecord {
   BlocksOfPiece blocks;
-  std::size_t columns;
   Turn turn;
   std::span<const std::uint64_t> first;
   std::span<std::uint32_t> counts;
@@ -92,9 +120,9 @@ struct WriteRecord {
   RASTRUM_HD void operator()(std::size_t, std::uint32_t piece, std::size_t j) const {
     const raster::Block record = blocks.block(piece, j);
     if (record.mask == 0) return;
-    const std::size_t b = record.by * columns + record.bx;
+    const std::size_t b = blocks.number(record);
     if (b < turn.begin || b >= turn.end) return;
-    const std::uint32_t left = parallel::atomic_add(counts[b], ~std::uint32_t{0});
+    const std::uint32_t left = parallel::atomic_fetch_add(counts[b], ~std::uint32_t{0});
     records[first[b] - turn.first + left - 1] = record;
   }
 };
@@ -118,7 +146,7 @@ template <class Pixel, class Frame>
 class LayerListing {
  public:
   LayerListing(parallel::Cuda& exec, const Frame& frame, const DeviceLayerTuning& tuning)
-      : exec_(exec), frame_(frame), tuning_(tuning) {
+      : exec_(exec), frame_(frame), tuning_(tuning), blocks_(frame.columns() * frame.rows()) {
     constexpr std::uint64_t kDefaultBytes = std::uint64_t{1} << 29;
     const std::uint64_t bytes = tuning.bytes == 0 ? kDefaultBytes : tuning.bytes;
     // Half for records; a fragment has a key and an owner, twice while they are sorted.
@@ -130,33 +158,38 @@ class LayerListing {
   }
 
   [[nodiscard]] DeviceLayerCounts operator()() {
-    const auto pieces = parallel::counting<std::uint32_t>(frame_.pieces.size());
-    const std::size_t columns = frame_.columns();
-    const std::size_t blocks =
-        columns *
-        static_cast<std::size_t>((frame_.height + raster::kBlockSize - 1) / raster::kBlockSize);
     // One more, in whose place the scan puts the sum.
-    auto counts = parallel::make_buffer<std::uint32_t>(exec_, blocks + 1);
+    auto counts = parallel::make_buffer<std::uint32_t>(exec_, blocks_ + 1);
     parallel::tabulate(exec_, counts, parallel::range_detail::SameValue<std::uint32_t>{0});
     auto counters = parallel::make_buffer<std::uint64_t>(exec_, kCounters);
     parallel::tabulate(exec_, counters, parallel::range_detail::SameValue<std::uint64_t>{0});
-    const BlocksOfPiece whole{frame_.pieces, rows(0, blocks, columns)};
-    {
-      const auto plan = parallel::make_expansion(exec_, pieces, whole);
-      parallel::expand_each(exec_, plan, pieces,
-                            CountRecord{whole, columns, parallel::view_of(counts)});
-    }
-    auto first = parallel::make_buffer<std::uint64_t>(exec_, blocks + 1);
+    auto farthest = parallel::make_buffer<std::uint64_t>(exec_, blocks_);
+    parallel::tabulate(
+        exec_, farthest,
+        FarthestOfBlock{frame_.view, frame_.columns(), {frame_.words, blocks_ * 64}});
+
+    const auto pieces = parallel::counting<std::uint32_t>(frame_.pieces.size());
+    BlocksOfPiece boxes{frame_.pieces,
+                        parallel::view_of(farthest),
+                        frame_.columns(),
+                        frame_.view.x0 / raster::kBlockSize,
+                        frame_.view.y0 / raster::kBlockSize,
+                        frame_.view};
+    auto plan = parallel::make_expansion(exec_, pieces, boxes);
+    parallel::expand_each(exec_, plan, pieces, CountRecord{boxes, parallel::view_of(counts)});
+    auto first = parallel::make_buffer<std::uint64_t>(exec_, blocks_ + 1);
     out_.records = parallel::exclusive_scan(exec_, counts, first, std::uint64_t{0});
     const auto places = parallel::view_of(std::as_const(first));
     for (Turn turn; next_turn(exec_, places, out_.records, most_records_, turn);) {
       ++out_.turns;
+      if (turn.items != out_.records) {
+        boxes.view = rows(turn.begin, turn.end);
+        plan = parallel::make_expansion(exec_, pieces, boxes);
+      }
       auto records = parallel::make_buffer<raster::Block>(exec_, turn.items);
-      const BlocksOfPiece part{frame_.pieces, rows(turn.begin, turn.end, columns)};
-      const auto plan = parallel::make_expansion(exec_, pieces, part);
-      parallel::expand_each(exec_, plan, pieces,
-                            WriteRecord{part, columns, turn, places, parallel::view_of(counts),
-                                        parallel::view_of(records)});
+      parallel::expand_each(
+          exec_, plan, pieces,
+          WriteRecord{boxes, turn, places, parallel::view_of(counts), parallel::view_of(records)});
       blend(turn, {records.data(), places, turn.first}, counters.data());
     }
     const auto totals = parallel::to_host(exec_, counters);
@@ -168,10 +201,12 @@ class LayerListing {
 
  private:
   /// The rows of pixels in which the blocks [begin, end) lie.
-  [[nodiscard]] raster::Rect rows(std::size_t begin, std::size_t end, std::size_t columns) const {
-    const auto y0 = static_cast<int>(begin / columns) * raster::kBlockSize;
-    const auto y1 = static_cast<int>((end + columns - 1) / columns) * raster::kBlockSize;
-    return {0, y0, frame_.width, std::min(y1, frame_.height)};
+  [[nodiscard]] raster::Rect rows(std::size_t begin, std::size_t end) const {
+    const std::size_t columns = frame_.columns();
+    const raster::Rect& v = frame_.view;
+    const int y0 = v.y0 + static_cast<int>(begin / columns) * raster::kBlockSize;
+    const int y1 = v.y0 + static_cast<int>((end + columns - 1) / columns) * raster::kBlockSize;
+    return {v.x0, y0, v.x1, std::min(y1, v.y1)};
   }
 
   void blend(const Turn& turn, const RecordView& records, std::uint64_t* counters) {
@@ -204,6 +239,7 @@ class LayerListing {
   parallel::Cuda& exec_;
   const Frame frame_;
   DeviceLayerTuning tuning_;
+  const std::size_t blocks_;
   std::uint64_t most_records_ = 0, most_fragments_ = 0;
   DeviceLayerCounts out_;
 };
@@ -215,7 +251,7 @@ class LayerListing {
 /// `shade`: (word, x, y) → premultiplied Vec4, the colour of a fragment at a pixel's centre; the
 /// word has its depth and id (piece.hpp). `test`: (word, x, y) → bool, for pieces with kTested.
 /// Both are copied into kernels, are called any number of times, and must be pure.
-/// Waits for sizes and, at the end, for its counts. Memory: 8 bytes a piece, 12 a block, and what
+/// Waits for sizes and, at the end, for its counts. Memory: 8 bytes a piece, 20 a block, and what
 /// `tuning.bytes` says. Work O(blocks of boxes + fragments · log of a block's records) where the
 /// filter orders nearly all.
 /// Throws Error{invalid_argument} for other methods or more than 2³² pieces, Error{out_of_memory}.
@@ -231,14 +267,15 @@ DeviceLayerCounts blend_layers(parallel::Cuda& exec, const DeviceLayers& layers,
     throw Error(Errc::invalid_argument,
                 "a device blends at most 2^32 - 1 pieces at a time; draw the picture in bands");
   using Frame = cuda::FrameView<Shade, Test>;
-  const Frame frame{layers.width,
-                    layers.height,
+  const Frame frame{layers.view,
                     layers.pieces,
                     layers.words.data(),
                     layers.colors.data(),
                     1 - options.alpha_threshold,
                     shade,
                     test};
+  assert(layers.words.size() == frame.columns() * frame.rows() * 64 &&
+         layers.colors.size() == layers.words.size());
   if (options.method == Transparency::unsorted)
     return cuda::LayerListing<cuda::AsSubmittedPixel, Frame>(exec, frame, tuning)();
   return cuda::LayerListing<cuda::FrontToBackPixel, Frame>(exec, frame, tuning)();

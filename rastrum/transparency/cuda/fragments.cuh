@@ -24,10 +24,11 @@ struct KeepAll {
   RASTRUM_HD bool operator()(std::uint64_t, int, int) const { return true; }
 };
 
-/// A frame as kernels see it. Memory of the device; rows of `width` pixels, row 0 at the top.
+/// A frame, or a band of it, as kernels see it. Memory of the device: 8 × 8 blocks, row by row, of
+/// 64 pixels each, element 8 · row + column.
 template <class Shade, class Test>
 struct FrameView {
-  int width, height;
+  raster::Rect view;  ///< begins with a block's first pixel
   std::span<const raster::Piece> pieces;
   std::uint64_t* words;  ///< of the opaque surface; become those of the nearest fragment
   Vec4* colors;          ///< of the opaque surface, premultiplied; become the picture's
@@ -35,22 +36,20 @@ struct FrameView {
   Shade shade;           ///< (word, x, y) → premultiplied colour
   Test test;             ///< (word, x, y) → whether a fragment of a piece with kTested is there
 
-  /// Pixel i of block b, row by row: its place in the rows, or no place outside of the image.
-  static constexpr std::size_t kNowhere = SIZE_MAX;
-  RASTRUM_HD int x_of(std::size_t b, int i) const {
-    return static_cast<int>(b % columns()) * raster::kBlockSize + i % raster::kBlockSize;
-  }
-  RASTRUM_HD int y_of(std::size_t b, int i) const {
-    return static_cast<int>(b / columns()) * raster::kBlockSize + i / raster::kBlockSize;
-  }
-  RASTRUM_HD std::size_t place(std::size_t b, int i) const {
-    const int x = x_of(b, i), y = y_of(b, i);
-    if (x >= width || y >= height) return kNowhere;
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-           static_cast<std::size_t>(x);
-  }
   RASTRUM_HD std::size_t columns() const {
-    return static_cast<std::size_t>((width + raster::kBlockSize - 1) / raster::kBlockSize);
+    return static_cast<std::size_t>((view.x1 - view.x0 + raster::kBlockSize - 1) /
+                                    raster::kBlockSize);
+  }
+  RASTRUM_HD std::size_t rows() const {
+    return static_cast<std::size_t>((view.y1 - view.y0 + raster::kBlockSize - 1) /
+                                    raster::kBlockSize);
+  }
+  /// Where pixel i of block b lies.
+  RASTRUM_HD int x_of(std::size_t b, std::size_t i) const {
+    return view.x0 + static_cast<int>(b % columns() * raster::kBlockSize + i % raster::kBlockSize);
+  }
+  RASTRUM_HD int y_of(std::size_t b, std::size_t i) const {
+    return view.y0 + static_cast<int>(b / columns() * raster::kBlockSize + i / raster::kBlockSize);
   }
   /// The word of a fragment; 0 where the test leaves it out.
   RASTRUM_HD std::uint64_t word(const raster::Piece& piece, int x, int y) const {
