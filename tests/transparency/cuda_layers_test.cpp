@@ -149,9 +149,13 @@ struct Way {
 };
 /// Each tier alone, all of them at once, budgets that take many turns, and bands.
 const Way kWays[] = {
-    {"as it is", {}},          {"high density alone", {0, 2048, 0}},
-    {"deep alone", {0, 0, 0}}, {"three tiers", {3, 9, 0}},
-    {"4 KiB", {3, 9, 4096}},   {"no bytes", {256, 2048, 1}},
+    {"as it is", {}},
+    {"high density alone", {0, 2048, 0}},
+    {"deep alone", {0, 0, 0}},
+    {"three tiers", {3, 9, 0}},
+    {"4 KiB", {3, 9, 4096}},
+    {"no bytes", {256, 2048, 1}},
+    {"bands", {3, 9, 4096}, 16},
 };
 const int kSizes[][2] = {{1, 1}, {17, 5}, {37, 53}, {64, 64}, {100, 20}};
 
@@ -162,6 +166,7 @@ int scene_count() {
 TEST_F(CudaLayers, EqualTheHostInEveryTierAndBudget) {
   DeviceLayerCounts all;
   std::uint64_t most_layers = 0;
+  int counted = 0;
   for (const auto& [width, height] : kSizes)
     for (int i = 0; i < scene_count(); ++i) {
       const std::uint64_t seed = static_cast<std::uint64_t>(i + 7919 * width);
@@ -175,7 +180,8 @@ TEST_F(CudaLayers, EqualTheHostInEveryTierAndBudget) {
         LayersFrame f = start;
         const DeviceLayerCounts counts = blend_on_device(f, {}, way.tuning, way.band_rows);
         ASSERT_TRUE(equals_host(f, host)) << way.name;
-        if (host.stats.device != Device::serial && host.stats.visibility == "layers") {
+        if (host.stats.rasterizer != "reference" && host.stats.visibility == "layers") {
+          ++counted;
           EXPECT_EQ(counts.fragments, host.counter("translucent fragments")) << way.name;
           EXPECT_EQ(counts.deepest, host.counter("deepest")) << way.name;
         }
@@ -191,7 +197,8 @@ TEST_F(CudaLayers, EqualTheHostInEveryTierAndBudget) {
         }
       }
     }
-  EXPECT_GE(most_layers, 1000U);
+  EXPECT_GT(counted, 0);
+  if (scene_count() > kLayerKinds) EXPECT_GE(most_layers, 1000U);
   EXPECT_GT(all.repaired, 0U);
   EXPECT_GT(all.low_blocks, 0U);
   EXPECT_GT(all.high_blocks, 0U);

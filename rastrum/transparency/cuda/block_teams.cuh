@@ -142,7 +142,10 @@ struct BlendBlock {
       for (std::uint64_t& bits : s.takers[p]) bits = 0;
     });
     if (team.rank() == 0) s.repaired = 0;
-    parallel::team_sort(s.keys, s.order, mine.size(), team);
+    if (mine.size() > Pixel::kAnyOrder)
+      parallel::team_sort(s.keys, s.order, mine.size(), team);
+    else
+      team.sync();
     for (std::size_t k = team.rank(); k < mine.size(); k += team.size())
       s.first[k] = static_cast<std::uint32_t>(parallel::popcount(mine[s.order[k]].mask));
     parallel::team_prefix_sums(s.first, mine.size(), team);

@@ -71,6 +71,8 @@ struct Sample {
 class FrontToBackPixel {
  public:
   static constexpr std::size_t kHeld = 4;
+  /// So few records may come in any order.
+  static constexpr std::size_t kAnyOrder = kHeld + 1;
 
   /// The key by which records are sorted; ascending is the order in which fragments should come.
   /// The piece's number makes it one order, whoever wrote the records.
@@ -130,6 +132,7 @@ class FrontToBackPixel {
 /// sorting them by it is exact.
 class AsSubmittedPixel {
  public:
+  static constexpr std::size_t kAnyOrder = 1;
   static RASTRUM_HD std::uint64_t record_key(const raster::Piece& piece, const raster::Block&) {
     return raster::kIdMask - piece.low;
   }
