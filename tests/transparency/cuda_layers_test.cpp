@@ -198,7 +198,9 @@ TEST_F(CudaLayers, EqualTheHostInEveryTierAndBudget) {
       }
     }
   EXPECT_GT(counted, 0);
-  if (scene_count() > kLayerKinds) EXPECT_GE(most_layers, 1000U);
+  if (scene_count() > kLayerKinds) {
+    EXPECT_GE(most_layers, 1000U);
+  }
   EXPECT_GT(all.repaired, 0U);
   EXPECT_GT(all.low_blocks, 0U);
   EXPECT_GT(all.high_blocks, 0U);
