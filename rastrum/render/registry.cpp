@@ -115,14 +115,13 @@ DrawFrame make_reference(const RenderOptions& options, MemoryAccount& memory) {
 constexpr std::string_view kBySize = "by-size";
 
 /// Why the device leaves a frame to the CPU; empty where it draws it.
-std::string why_not_on_cuda(const raster::FrameRequest& request) {
-  if (needs_layers(request))
-    return "translucent surfaces and several samples a pixel have no CUDA code yet";
+std::string why_not_on_cuda(const raster::CudaRasterizer& device,
+                            const raster::FrameRequest& request) {
   if (request.test != nullptr && std::ranges::any_of(request.draws, [](const raster::Draw& d) {
         return (d.any_flags() & raster::kTested) != 0;
       }))
     return "fragment tests (alpha masks, discard, drawing over a picture) have no CUDA code yet";
-  return {};
+  return needs_layers(request) ? device.why_no_layers(request) : std::string();
 }
 
 /// The device's one rasterizer, and for what it has no code a rasterizer of the CPU.
@@ -147,7 +146,7 @@ DrawFrame make_on_cuda(const RenderOptions& options, MemoryAccount& memory,
       [device = std::shared_ptr<raster::CudaRasterizer>(
            raster::make_cuda_rasterizer(options.memory_limit, memory, threads)),
        host = DrawFrame(), on_threads, &memory, &threads](raster::FrameRequest& request) mutable {
-        const std::string why_not = why_not_on_cuda(request);
+        const std::string why_not = why_not_on_cuda(*device, request);
         if (why_not.empty()) return device->render(request);
         if (request.in_place)
           throw Error(Errc::unsupported,

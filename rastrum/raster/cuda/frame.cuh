@@ -23,11 +23,14 @@
 #include <rastrum/raster/cuda/resolve.cuh>
 #include <rastrum/raster/cuda/upload.cuh>
 #include <rastrum/raster/resolve.hpp>
+#include <rastrum/raster/shaders/alpha.hpp>
 #include <rastrum/raster/stopwatch.hpp>
 
 namespace rastrum::raster {
 
-template <class Exec>
+/// `Layers` is what blends translucent pieces: transparency::SceneLayers, which stands above this
+/// floor.
+template <class Exec, class Layers>
 class DeviceRasterizer final : public CudaRasterizer {
  public:
   DeviceRasterizer(std::uint64_t memory_limit, MemoryAccount& memory, parallel::Threads& threads)
@@ -37,6 +40,13 @@ class DeviceRasterizer final : public CudaRasterizer {
         words_(memory),
         overdraw_(memory) {}
 
+  [[nodiscard]] std::string why_no_layers(const FrameRequest& request) const override {
+    if (std::string why(Layers::why_not(request)); !why.empty()) return why;
+    if (!request.targets.overdraw.empty()) return "overdraw of translucent surfaces is the CPU's";
+    return can_resolve(request) ? std::string()
+                                : "translucent fragments are shaded where they are, and the device "
+                                  "has no form of this shader or target";
+  }
   [[nodiscard]] FrameStats render(FrameRequest& request) override {
     Stopwatch watch;
     FrameStats stats;
@@ -77,8 +87,15 @@ class DeviceRasterizer final : public CudaRasterizer {
     if (request.in_place && !resolver)
       throw Error(Errc::unsupported,
                   "arrays in the device's memory (in_place): this shader needs them in the host's");
+    const bool layered = request.transparency.method != Transparency::none &&
+                         std::ranges::any_of(request.draws, [](const Draw& draw) {
+                           return (draw.any_flags() & kTranslucent) != 0;
+                         });
+    Layers layers;
+    // Layers need a colour, and what is known of its block.
     const std::uint64_t pixel_bytes =
-        (counts_overdraw ? sizeof(std::uint32_t) : 0) + (resolver ? sizeof(std::uint32_t) : 0) +
+        (layered ? sizeof(Vec4) + 1 : 0) + (counts_overdraw ? sizeof(std::uint32_t) : 0) +
+        (resolver ? sizeof(std::uint32_t) : 0) +
         (resolver && !request.in_place ? DeviceTargets::bytes_of(request.targets) : 0);
     const DevicePlan plan = DevicePlan::of(limit(), request.width, request.height,
                                            totals.primitives, totals.vertices, pixel_bytes);
@@ -105,8 +122,8 @@ class DeviceRasterizer final : public CudaRasterizer {
       DeviceSurface surface{
           view, {0, y / kBlockSize, block_columns(view), words.data(), nullptr}, overdraw.data()};
       begin(request, view, words, overdraw);
-      const DeviceCounts band =
-          draw_surface(exec_, scene, surface, plan, DeviceSizes::of(request.tuning));
+      const DeviceCounts band = draw_surface(
+          exec_, scene, surface, plan, DeviceSizes::of(request.tuning), layered ? kTranslucent : 0);
       if (bands == 0) counts.sum = band.sum;
       counts.fragments += band.fragments;
       counts.larger_pieces += band.larger_pieces;
@@ -114,9 +131,22 @@ class DeviceRasterizer final : public CudaRasterizer {
       counts.batches += band.batches;
       watch.lap(stats, "rasterize");
       if (counts_overdraw) store_overdraw(request, view, overdraw);
-      stats.pixels_covered += resolver
-                                  ? resolve_on_device(request, *resolver, scene.geometry(), surface)
-                                  : resolve_on_host(request, geometry, view, words, shaders);
+      if (resolver) {
+        const LitOnDevice shade = resolver->shade(scene.geometry());
+        auto colors = parallel::make_buffer<Vec4>(exec_, layered ? words.size() : 0);
+        if (layered) {
+          parallel::tabulate(exec_, colors,
+                             cuda_detail::ColorOfElement<LitOnDevice>{surface.words, shade});
+          layers.blend(exec_, scene, surface, parallel::view_of(colors), request.transparency,
+                       shade, plan.batch, limit() / 8);
+          watch.lap(stats, "layers");
+        }
+        stats.pixels_covered +=
+            layered ? resolve_on_device(request, ColorsOfSurface{surface, colors.data()}, surface)
+                    : resolve_on_device(request, shade, surface);
+      } else {
+        stats.pixels_covered += resolve_on_host(request, geometry, view, words, shaders);
+      }
       watch.lap(stats, "shade");
     }
     stats.triangles.dropped = counts.sum.dropped;
@@ -129,6 +159,7 @@ class DeviceRasterizer final : public CudaRasterizer {
                       {"batches", counts.batches},
                       {"larger pieces", counts.larger_pieces},
                       {"tile pairs", counts.tiles}};
+    if (layered) layers.count(stats);
   }
 
   struct ShaderScratch {
@@ -182,20 +213,45 @@ class DeviceRasterizer final : public CudaRasterizer {
   /// What the device resolves a frame with.
   struct Resolver {
     LitModel model = LitModel::flat;
+    float opacity = 1;
     std::optional<LitUpload<Exec>> lit;  ///< none: no colours are wanted
+
+    [[nodiscard]] LitOnDevice shade(const DeviceGeometry& geometry) const {
+      return lit ? LitOnDevice{model, geometry, lit->view(), opacity}
+                 : LitOnDevice{model, geometry, {}, 0};
+    }
   };
+  /// A lit shader, and the opacity around it.
+  struct OpacityForm {
+    LitForm lit;
+    float opacity;
+  };
+  [[nodiscard]] static std::optional<OpacityForm> form_of(const FrameRequest& request) {
+    if (request.shader == nullptr) return std::nullopt;
+    const AlphaForm alpha = alpha_form(*request.shader).value_or(AlphaForm{request.shader, 1});
+    const std::optional<LitForm> lit = lit_form(*alpha.inner);
+    if (!lit || !LitOnDevice::has(lit->model)) return std::nullopt;
+    return OpacityForm{*lit, alpha.opacity};
+  }
+  [[nodiscard]] static bool wants_colors(const Targets& t) {
+    return !t.color8.empty() || !t.color.empty();
+  }
+  /// Whether no target, way to blend or shader of the frame lacks a form for the device.
+  [[nodiscard]] static bool can_resolve(const FrameRequest& request) {
+    const Targets& t = request.targets;
+    if (t.load || t.over || !t.extra.empty() || request.linear_light) return false;
+    return !wants_colors(t) || form_of(request);
+  }
   /// None where the frame has a target, a way to blend or a shader without a device form.
   [[nodiscard]] std::optional<Resolver> resolver_of(const FrameRequest& request,
                                                     Uploads<Exec>& uploads) {
-    const Targets& t = request.targets;
-    if (t.load || t.over || !t.extra.empty() || request.linear_light) return std::nullopt;
-    if (t.color8.empty() && t.color.empty()) return Resolver{};
-    const std::optional<LitForm> form =
-        request.shader != nullptr ? lit_form(*request.shader) : std::nullopt;
-    if (!form || !LitOnDevice::has(form->model)) return std::nullopt;
+    if (!can_resolve(request)) return std::nullopt;
     Resolver r;
-    r.model = form->model;
-    r.lit.emplace(exec_, uploads, *form);
+    if (!wants_colors(request.targets)) return r;
+    const OpacityForm form = *form_of(request);
+    r.model = form.lit.model;
+    r.opacity = form.opacity;
+    r.lit.emplace(exec_, uploads, form.lit);
     return r;
   }
 
@@ -238,9 +294,8 @@ class DeviceRasterizer final : public CudaRasterizer {
   };
 
   /// All targets, on the device. Returns how many pixels hold a surface.
-  [[nodiscard]] std::uint64_t resolve_on_device(const FrameRequest& request,
-                                                const Resolver& resolver,
-                                                const DeviceGeometry& geometry,
+  template <class Shade>
+  [[nodiscard]] std::uint64_t resolve_on_device(const FrameRequest& request, const Shade& shade,
                                                 const DeviceSurface& surface) {
     const Targets& t = request.targets;
     const Rect view = surface.view;
@@ -252,11 +307,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     const DeviceTargets targets{color8.on_device(), color.on_device(), depth.on_device(),
                                 ids.on_device(), words.on_device()};
     const Backdrop backdrop = backdrop_of(request);
-    const std::uint64_t covered =
-        resolver.lit
-            ? resolve_surface(exec_, surface, targets,
-                              LitOnDevice{resolver.model, geometry, resolver.lit->view()}, backdrop)
-            : resolve_surface(exec_, surface, targets, NoColors{}, backdrop);
+    const std::uint64_t covered = resolve_surface(exec_, surface, targets, shade, backdrop);
     color8.store();
     color.store();
     depth.store();

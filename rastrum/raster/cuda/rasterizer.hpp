@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
@@ -14,11 +15,13 @@ namespace rastrum::raster {
 class CudaRasterizer {
  public:
   virtual ~CudaRasterizer() = default;
-  /// One frame without fragment tests and layers, one sample a pixel: targets as
-  /// Rasterizer::render. The caller's arrays are copied to the device each time. What the device
-  /// has no shader for is shaded by the host's threads; FrameStats::why says so. Throws
-  /// Error{invalid_argument} where an index is out of range, Error{out_of_memory} with what was
-  /// asked for, Error{no_device} for what the driver reports.
+  /// Why a frame with layers or several samples a pixel is left to the CPU; empty: it is not.
+  [[nodiscard]] virtual std::string why_no_layers(const FrameRequest& request) const = 0;
+  /// One frame without fragment tests, one sample a pixel, and with layers only where why_no_layers
+  /// says nothing: targets as Rasterizer::render. The caller's arrays are copied to the device each
+  /// time. What the device has no shader for is shaded by the host's threads; FrameStats::why says
+  /// so. Throws Error{invalid_argument} where an index is out of range, Error{out_of_memory} with
+  /// what was asked for, Error{no_device} for what the driver reports.
   [[nodiscard]] virtual FrameStats render(FrameRequest& request) = 0;
 };
 

@@ -1,5 +1,5 @@
-// From words to images on a device: a thread a pixel. Depth, ids and words of any frame; colours of
-// opaque surfaces by a shader that is a functor, Vec3(word, x, y): LitOnDevice has the built-in
+// From words to images on a device: a thread a pixel. Depth, ids and words of any frame; colours by
+// a shader that is a functor, (word, x, y) to a premultiplied Vec4: LitOnDevice has the built-in
 // shaders but `material` and `wireframe`, by their scalar form, so their bits.
 #pragma once
 
@@ -37,14 +37,22 @@ struct DeviceTargets {
   }
 };
 
-/// The lit shaders for which has() says so. `scene`: spans of the device's.
+/// The lit shaders for which has() says so, at one opacity as AlphaShader has it; at 0 nothing is
+/// read. `scene`: spans of the device's.
 struct LitOnDevice {
   LitModel model = LitModel::flat;
   DeviceGeometry geometry;
   LitView scene;
+  float opacity = 1;
 
   static bool has(LitModel model) { return model != LitModel::wireframe; }
-  RASTRUM_HD Vec3 operator()(std::uint64_t word, int x, int y) const {
+  RASTRUM_HD Vec4 operator()(std::uint64_t word, int x, int y) const {
+    if (!(opacity > 0)) return {};
+    const Vec3 c = color(word, x, y);
+    if (opacity == 1) return {c.x, c.y, c.z, 1};
+    return {c.x * opacity, c.y * opacity, c.z * opacity, opacity};
+  }
+  RASTRUM_HD Vec3 color(std::uint64_t word, int x, int y) const {
     if (model == LitModel::id) return id_color(id_of_word(word));
     LitTriangle t;
     fetch_triangle(scene, geometry, word & kIdMask, model != LitModel::flat, t);
@@ -52,12 +60,33 @@ struct LitOnDevice {
   }
 };
 
-/// Where no colours are wanted.
-struct NoColors {
-  RASTRUM_HD Vec3 operator()(std::uint64_t, int, int) const { return {}; }
+/// Colours that lie in the places of the words of a surface.
+struct ColorsOfSurface {
+  DeviceSurface surface;
+  const Vec4* colors;
+  RASTRUM_HD Vec4 operator()(std::uint64_t, int x, int y) const {
+    return colors[surface.words.index(x / kBlockSize, y / kBlockSize) * 64 +
+                  static_cast<std::size_t>(y % kBlockSize * kBlockSize + x % kBlockSize)];
+  }
 };
 
 namespace cuda_detail {
+
+/// The colour of element i of a surface, 0 where nothing is.
+template <class Shade>
+struct ColorOfElement {
+  SurfaceView words;
+  Shade shade;
+  RASTRUM_HD Vec4 operator()(std::size_t i) const {
+    const std::uint64_t word = words.words[i];
+    if (word == 0) return {};
+    const auto columns = static_cast<std::size_t>(words.columns);
+    const int bx = words.bx0 + static_cast<int>(i / 64 % columns);
+    const int by = words.by0 + static_cast<int>(i / 64 / columns);
+    const int e = static_cast<int>(i % 64);
+    return shade(word, bx * kBlockSize + e % kBlockSize, by * kBlockSize + e / kBlockSize);
+  }
+};
 
 /// Pixel i of the view, row by row; returns whether it holds a surface.
 template <class Shade>
@@ -79,8 +108,7 @@ struct ResolvePixel {
       Vec4 color = backdrop.color;
       Rgba8 color8 = backdrop.empty;
       if (word != 0) {
-        const Vec3 c = shade(word, x, y);
-        color = backdrop.over({c.x, c.y, c.z, 1});
+        color = backdrop.over(shade(word, x, y));
         color8 = to_straight_rgba8(color);
       }
       put(targets.color8, color8);

@@ -62,6 +62,9 @@ class AlphaShader final : public BlockShader {
   [[nodiscard]] std::size_t scratch_bytes() const noexcept override {
     return inner_.scratch_bytes();
   }
+  [[nodiscard]] std::optional<AlphaForm> form() const {
+    return blending_ == nullptr ? std::optional(AlphaForm{&inner_, opacity_}) : std::nullopt;
+  }
 
  private:
   const BlockShader& inner_;
@@ -131,6 +134,11 @@ std::unique_ptr<FragmentTest> make_alpha_test(const MaterialScene& scene, Isa is
 std::unique_ptr<BlockShader> make_alpha_shader(const BlockShader& inner,
                                                const MaterialScene* blending, float opacity) {
   return std::make_unique<AlphaShader>(inner, blending, opacity);
+}
+
+std::optional<AlphaForm> alpha_form(const BlockShader& shader) {
+  const auto* const alpha = dynamic_cast<const AlphaShader*>(&shader);
+  return alpha == nullptr ? std::nullopt : alpha->form();
 }
 
 }  // namespace rastrum::raster

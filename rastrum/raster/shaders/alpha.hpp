@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -42,5 +43,12 @@ std::uint32_t set_material_flags(Draw& draw, const MeshView& mesh,
 [[nodiscard]] std::unique_ptr<BlockShader> make_alpha_shader(const BlockShader& inner,
                                                              const MaterialScene* blending,
                                                              float opacity);
+
+/// What make_alpha_shader was given where it blends no material; none for another shader.
+struct AlphaForm {
+  const BlockShader* inner;
+  float opacity;
+};
+[[nodiscard]] std::optional<AlphaForm> alpha_form(const BlockShader& shader);
 
 }  // namespace rastrum::raster

@@ -1,5 +1,7 @@
-// The rasterizer of a CUDA device, instantiated. Tests compile this file as C++, for the CPU.
+// The rasterizer of a CUDA device with what blends its layers, instantiated. Tests compile this
+// file as C++, for the CPU.
 #include <rastrum/raster/cuda/frame.cuh>
+#include <rastrum/transparency/cuda/scene_layers.cuh>
 
 namespace rastrum::raster {
 
@@ -10,7 +12,8 @@ bool draws_on_cuda() noexcept {
 std::unique_ptr<CudaRasterizer> make_cuda_rasterizer(std::uint64_t memory_limit,
                                                      MemoryAccount& memory,
                                                      parallel::Threads& threads) {
-  return std::make_unique<DeviceRasterizer<parallel::Cuda>>(memory_limit, memory, threads);
+  return std::make_unique<DeviceRasterizer<parallel::Cuda, transparency::SceneLayers>>(
+      memory_limit, memory, threads);
 }
 
 }  // namespace rastrum::raster

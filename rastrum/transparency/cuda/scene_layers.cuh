@@ -1,0 +1,138 @@
+// The layers of a scene on a device: the translucent pieces of a band of rows are set up and
+// blended over its opaque surface (device_layers.cuh). A band whose pieces take too much memory is
+// cut in two, down to a row of blocks.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <rastrum/raster/cuda/pieces.cuh>
+#include <rastrum/raster/cuda/rasterizer.cuh>
+#include <rastrum/transparency/cuda/device_layers.cuh>
+
+namespace rastrum::transparency {
+namespace cuda {
+
+/// What is blended in `view`.
+struct IsLayerIn {
+  raster::Rect view;
+  RASTRUM_HD bool operator()(const raster::Piece& piece) const {
+    return (piece.flags & raster::kTranslucent) != 0 && !raster::piece_bounds(piece, view).empty();
+  }
+};
+
+}  // namespace cuda
+
+/// What a device's frame does with translucent pieces; the hook of raster::DeviceRasterizer.
+class SceneLayers {
+ public:
+  [[nodiscard]] static std::string_view why_not(const raster::FrameRequest& request) {
+    return why_not_on_a_device(request.transparency, request.samples);
+  }
+
+  /// Blends the translucent pieces of `scene` over `colors`, in the places of the words of
+  /// `surface`, and raises those. `shade` as of blend_layers. `batch`: primitives that are set up
+  /// at once; `bytes`: what pieces, and again what their records, may take, 0: any. Waits.
+  template <class Exec, class Shade>
+  void blend(Exec& exec, const raster::DeviceScene<Exec>& scene,
+             const raster::DeviceSurface& surface, std::span<Vec4> colors,
+             const TransparencyOptions& options, const Shade& shade, std::uint64_t batch,
+             std::uint64_t bytes) {
+    blend_rows(Band<Exec, Shade>{exec, scene, surface, colors, options, shade, batch, bytes},
+               surface.view);
+  }
+  void count(FrameStats& stats) const {
+    stats.visibility = "layers";
+    stats.fragments += counts_.fragments;
+    const std::pair<const char*, std::uint64_t> all[] = {
+        {"translucent fragments", counts_.fragments}, {"layer blocks", counts_.records},
+        {"low blocks", counts_.low_blocks},           {"high blocks", counts_.high_blocks},
+        {"deep blocks", counts_.deep_blocks},         {"turns", counts_.turns},
+        {"repaired pixels", counts_.repaired},        {"deepest", counts_.deepest}};
+    for (const auto& [name, value] : all) stats.counters.emplace_back(name, value);
+  }
+
+ private:
+  template <class Exec, class Shade>
+  struct Band {
+    Exec& exec;
+    const raster::DeviceScene<Exec>& scene;
+    const raster::DeviceSurface& surface;
+    std::span<Vec4> colors;
+    const TransparencyOptions& options;
+    const Shade& shade;
+    std::uint64_t batch, bytes;
+
+    /// Calls f(assembly, outcomes) for each batch of primitives and their pieces in `view`.
+    template <class F>
+    void each_batch(const raster::Rect& view, F&& f) const {
+      const std::uint64_t end = scene.first_id() + scene.primitives();
+      for (std::uint64_t first = scene.first_id(); first < end; first += batch) {
+        parallel::throw_if_stopped();
+        const raster::Assembly assembly{scene.geometry(), first};
+        auto outcomes = parallel::make_buffer<raster::Outcome>(
+            exec, static_cast<std::size_t>(std::min(batch, end - first)));
+        parallel::tabulate(exec, outcomes,
+                           raster::cuda_detail::CountPieces<cuda::IsLayerIn>{assembly, {view}});
+        f(assembly, outcomes);
+      }
+    }
+  };
+
+  template <class Exec, class Shade>
+  void blend_rows(const Band<Exec, Shade>& band, const raster::Rect& view) {
+    using parallel::view_of;
+    Exec& exec = band.exec;
+    std::uint64_t count = 0;
+    band.each_batch(view, [&](const raster::Assembly&, const auto& outcomes) {
+      count += parallel::reduce(exec, outcomes, raster::Outcomes{}, raster::AddOutcomes{}).pieces;
+    });
+    if (count == 0) return;
+    const int rows = raster::block_rows(view);
+    if (band.bytes != 0 && count > band.bytes / sizeof(raster::Piece) && rows > 1) {
+      const int middle = view.y0 + rows / 2 * raster::kBlockSize;
+      blend_rows(band, {view.x0, view.y0, view.x1, middle});
+      return blend_rows(band, {view.x0, middle, view.x1, view.y1});
+    }
+    auto pieces = parallel::make_buffer<raster::Piece>(exec, static_cast<std::size_t>(count));
+    std::size_t at = 0;
+    band.each_batch(view, [&](const raster::Assembly& assembly, const auto& outcomes) {
+      const auto places =
+          parallel::make_expansion(exec, view_of(outcomes), raster::cuda_detail::PiecesOf{});
+      const auto which = parallel::counting(outcomes.size());
+      parallel::for_each_index(
+          exec, outcomes.size(),
+          raster::cuda_detail::WritePieces<std::remove_cvref_t<decltype(which)>, cuda::IsLayerIn,
+                                           decltype(places.view())>{
+              assembly, which, {view}, places.view(), pieces.data() + at});
+      at += places.size();
+    });
+    const std::size_t first =
+        band.surface.words.index(view.x0 / raster::kBlockSize, view.y0 / raster::kBlockSize) * 64;
+    const std::size_t size = raster::block_count(view) * 64;
+    DeviceLayerTuning tuning;
+    tuning.bytes = band.bytes;
+    const DeviceLayerCounts c = blend_layers(exec,
+                                             DeviceLayers{view,
+                                                          view_of(std::as_const(pieces)),
+                                                          {band.surface.words.words + first, size},
+                                                          band.colors.subspan(first, size)},
+                                             band.options, band.shade, cuda::KeepAll{}, tuning);
+    counts_.fragments += c.fragments;
+    counts_.deepest = std::max(counts_.deepest, c.deepest);
+    counts_.repaired += c.repaired;
+    counts_.records += c.records;
+    counts_.low_blocks += c.low_blocks;
+    counts_.high_blocks += c.high_blocks;
+    counts_.deep_blocks += c.deep_blocks;
+    counts_.turns += c.turns;
+  }
+
+  DeviceLayerCounts counts_;
+};
+
+}  // namespace rastrum::transparency

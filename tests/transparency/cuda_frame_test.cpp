@@ -1,0 +1,128 @@
+// Translucent frames of --device cuda are the host's, through the façade: the pieces are the
+// device's own, and so are the shaders. In this program the device is the CPU
+// (tests/raster/CMakeLists.txt).
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/parallel/cuda/status.hpp>
+#include <rastrum/render/render.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/layer_picture.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+RenderOptions options(int width, int height, Device device) {
+  RenderOptions o;
+  o.width = width;
+  o.height = height;
+  o.device = device;
+  o.threads = 2;
+  o.isa = Isa::scalar;
+  o.background = {0.2F, 0.3F, 0.4F, 0.5F};
+  o.opacity = 0.4F;
+  return o;
+}
+
+class CudaLayeredFrame : public testing::Test {
+ protected:
+  void SetUp() override {
+    const parallel::CudaStatus status = parallel::cuda_status();
+    if (!status.usable) GTEST_SKIP() << status.why_not;
+  }
+};
+
+TEST_F(CudaLayeredFrame, EqualsTheThreads) {
+  struct Way {
+    int width, height;
+    Shader shader;
+    Transparency method;
+    float opacity;
+  };
+  std::uint64_t blended = 0;
+  for (const Way& way : {Way{64, 64, Shader::phong, Transparency::exact, 0.4F},
+                         {37, 53, Shader::flat, Transparency::unsorted, 0.7F},
+                         {100, 150, Shader::normal, Transparency::exact, 0},
+                         {17, 128, Shader::lambert, Transparency::none, 0.5F},
+                         {8, 8, Shader::id, Transparency::exact, 0.99F}}) {
+    RenderOptions o = options(way.width, way.height, Device::threads);
+    o.shader = way.shader;
+    o.transparency.method = way.method;
+    o.opacity = way.opacity;
+    RenderOptions on_cuda = o;
+    on_cuda.device = Device::cuda;
+    Renderer threads(o), cuda(on_cuda);
+    for (int i = 0; i < 2 * kSceneKinds; ++i) {
+      const GeneratedScene g = generate(static_cast<std::uint64_t>(i), way.width, way.height);
+      SCOPED_TRACE(std::to_string(i).append(", ").append(g.kind));
+      const SceneBinding binding(g.scene);
+      const LayerPicture expected = take(threads, binding.view(), g.camera);
+      const LayerPicture frame = take(cuda, binding.view(), g.camera);
+      ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
+      ASSERT_TRUE(same_bits(frame, expected));
+      EXPECT_EQ(frame.stats.pixels_covered, expected.stats.pixels_covered);
+      if (expected.stats.visibility != "layers") continue;
+      EXPECT_EQ(frame.stats.visibility, "layers");
+      EXPECT_EQ(frame.counter("translucent fragments"), expected.counter("translucent fragments"));
+      EXPECT_EQ(frame.counter("deepest"), expected.counter("deepest"));
+      blended += frame.counter("translucent fragments");
+    }
+  }
+  EXPECT_GT(blended, 1000U);
+}
+
+// With little memory the picture goes in bands, and they in parts whose pieces fit.
+TEST_F(CudaLayeredFrame, AMemoryLimitChangesNothing) {
+  Scene scene = single(shapes::soup(20000, 0.01F, 0.3F));
+  Camera camera;
+  camera.eye = {0, 0, 3};
+  RenderOptions o = options(128, 200, Device::cuda);
+  o.shader = Shader::flat;
+  const SceneBinding binding(scene);
+  Renderer free(o);
+  const LayerPicture expected = take(free, binding.view(), camera);
+  EXPECT_EQ(expected.counter("turns"), 1U);
+  o.memory_limit = std::uint64_t{3} << 20;
+  Renderer limited(o);
+  const LayerPicture frame = take(limited, binding.view(), camera);
+  EXPECT_TRUE(same_bits(frame, expected));
+  EXPECT_GT(frame.counter("turns"), frame.counter("bands"));
+  EXPECT_EQ(frame.counter("translucent fragments"), expected.counter("translucent fragments"));
+  o.memory_limit = 0;
+  o.device = Device::threads;
+  Renderer threads(o);
+  EXPECT_TRUE(same_bits(take(threads, binding.view(), camera), expected));
+}
+
+// What has no form on the device is drawn by the CPU, which says why.
+TEST_F(CudaLayeredFrame, TheRestIsTheCPUs) {
+  const Scene scene = single(shapes::soup(20, 0.3F, 0.5F));
+  Camera camera;
+  camera.eye = {0, 0, 3};
+  const SceneBinding binding(scene);
+  const auto why = [&](const RenderOptions& o) {
+    RenderOptions on_threads = o;
+    on_threads.device = Device::threads;
+    Renderer cuda(o), threads(on_threads);
+    const LayerPicture frame = take(cuda, binding.view(), camera);
+    EXPECT_TRUE(same_bits(frame, take(threads, binding.view(), camera)));
+    EXPECT_EQ(frame.stats.device, Device::threads);
+    return frame.stats.device_why;
+  };
+  RenderOptions o = options(40, 40, Device::cuda);
+  o.shader = Shader::material;
+  EXPECT_NE(why(o).find("no form of this shader"), std::string::npos) << why(o);
+  o.shader = Shader::flat;
+  o.samples = 4;
+  EXPECT_NE(why(o).find("several samples"), std::string::npos) << why(o);
+  o.samples = 1;
+  o.transparency.method = Transparency::mlab4;
+  EXPECT_NE(why(o).find("approximations"), std::string::npos) << why(o);
+}
+
+}  // namespace
+}  // namespace rastrum::test
