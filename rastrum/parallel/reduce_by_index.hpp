@@ -53,15 +53,15 @@ RASTRUM_HD inline void atomic_maximum(std::uint64_t& word, std::uint64_t value) 
 #endif
 }
 
-/// word += value, by many threads at once.
+/// word += value, by many threads at once; returns what it was.
 template <class T>
-requires(std::same_as<T, std::uint32_t> || std::same_as<T, std::uint64_t>) RASTRUM_HD
-    inline void atomic_add(T& word, T value) noexcept {
+requires(std::same_as<T, std::uint32_t> || std::same_as<T, std::uint64_t>) RASTRUM_HD inline T
+    atomic_add(T& word, T value) noexcept {
 #if defined(__CUDA_ARCH__)
   using Native = std::conditional_t<sizeof(T) == 4, unsigned, unsigned long long>;
-  atomicAdd(reinterpret_cast<Native*>(&word), static_cast<Native>(value));
+  return static_cast<T>(atomicAdd(reinterpret_cast<Native*>(&word), static_cast<Native>(value)));
 #else
-  std::atomic_ref<T>(word).fetch_add(value, std::memory_order_relaxed);
+  return std::atomic_ref<T>(word).fetch_add(value, std::memory_order_relaxed);
 #endif
 }
 

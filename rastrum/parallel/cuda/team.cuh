@@ -16,29 +16,12 @@
 
 namespace rastrum::parallel {
 
-/// word += value (modulo 2³²), by many threads at once; returns what it was.
-RASTRUM_HD inline std::uint32_t atomic_fetch_add(std::uint32_t& word,
-                                                 std::uint32_t value) noexcept {
+/// word |= bits, by many threads at once.
+RASTRUM_HD inline void atomic_or(std::uint64_t& word, std::uint64_t bits) noexcept {
 #if defined(__CUDA_ARCH__)
-  return atomicAdd(&word, value);
+  atomicOr(reinterpret_cast<unsigned long long*>(&word), bits);
 #else
-  return std::atomic_ref<std::uint32_t>(word).fetch_add(value, std::memory_order_relaxed);
-#endif
-}
-RASTRUM_HD inline std::uint64_t atomic_fetch_add(std::uint64_t& word,
-                                                 std::uint64_t value) noexcept {
-#if defined(__CUDA_ARCH__)
-  return atomicAdd(reinterpret_cast<unsigned long long*>(&word), value);
-#else
-  return std::atomic_ref<std::uint64_t>(word).fetch_add(value, std::memory_order_relaxed);
-#endif
-}
-/// word |= bits, likewise.
-RASTRUM_HD inline std::uint64_t atomic_fetch_or(std::uint64_t& word, std::uint64_t bits) noexcept {
-#if defined(__CUDA_ARCH__)
-  return atomicOr(reinterpret_cast<unsigned long long*>(&word), bits);
-#else
-  return std::atomic_ref<std::uint64_t>(word).fetch_or(bits, std::memory_order_relaxed);
+  std::atomic_ref<std::uint64_t>(word).fetch_or(bits, std::memory_order_relaxed);
 #endif
 }
 

@@ -44,14 +44,15 @@ enum Counter : std::size_t { kFragments, kDeepest, kRepaired, kCounters };
 RASTRUM_HD inline void count_layers(std::uint64_t* counters, std::uint64_t fragments,
                                     std::uint64_t deepest, std::uint64_t repaired) {
   if (fragments == 0) return;
-  parallel::atomic_fetch_add(counters[kFragments], fragments);
+  parallel::atomic_add(counters[kFragments], fragments);
   parallel::atomic_maximum(counters[kDeepest], deepest);
-  if (repaired != 0) parallel::atomic_fetch_add(counters[kRepaired], repaired);
+  if (repaired != 0) parallel::atomic_add(counters[kRepaired], repaired);
 }
 
-/// Low density: two warps, a thread a pixel, in 9 KiB; as nvcc 13 compiles it for sm_90 (76
-/// registers, no spills) 13 teams fit a multiprocessor. High: what 48 KiB hold, with more threads
-/// to shade and to sort. Neither was measured on a GPU.
+/// Low density: two warps, a thread a pixel, in 9 KiB. High: what 48 KiB hold, with more threads to
+/// shade and to sort. As nvcc 13 compiles them for sm_90, without spills, a thread takes 76
+/// registers with a trivial shader, so that 13 teams of low density fit a multiprocessor, and 167
+/// with the lit shaders, 6 teams. Neither was measured on a GPU.
 struct LowDensity {
   static constexpr std::size_t kRecords = 256, kSegment = 128;
   static constexpr int kThreads = 64;
@@ -164,7 +165,7 @@ struct BlendBlock {
       const int x = frame.x_of(b, p), y = frame.y_of(b, p);
       const std::uint64_t word = frame.word(frame.pieces[record.piece], x, y);
       if (word <= s.opaque[p]) continue;
-      parallel::atomic_fetch_add(s.layers[p], 1);
+      parallel::atomic_add(s.layers[p], 1U);
       if (word <= s.limit[p]) continue;
       const Vec4 color = frame.shade(word, x, y);
       s.words[i] = word;
@@ -172,7 +173,7 @@ struct BlendBlock {
       s.g[i] = color.y;
       s.b[i] = color.z;
       s.a[i] = color.w;
-      parallel::atomic_fetch_or(s.takers[p][i / 64], std::uint64_t{1} << i % 64);
+      parallel::atomic_or(s.takers[p][i / 64], std::uint64_t{1} << i % 64);
     }
   }
 
@@ -196,7 +197,7 @@ struct BlendBlock {
       frame.words[at] = pixel.nearest();
       return;
     }
-    parallel::atomic_fetch_add(s.repaired, 1);
+    parallel::atomic_add(s.repaired, 1U);
     const int x = frame.x_of(b, p), y = frame.y_of(b, p);
     const auto walk = [&](const auto& f) {
       for (std::size_t k = 0; k < mine.size(); ++k) {

@@ -106,7 +106,7 @@ struct CountRecord {
   std::span<std::uint32_t> counts;
   RASTRUM_HD void operator()(std::size_t, std::uint32_t piece, std::size_t j) const {
     const raster::Block b = blocks.block(piece, j);
-    if (b.mask != 0) parallel::atomic_fetch_add(counts[blocks.number(b)], 1);
+    if (b.mask != 0) parallel::atomic_add(counts[blocks.number(b)], 1U);
   }
 };
 
@@ -122,7 +122,7 @@ struct WriteRecord {
     if (record.mask == 0) return;
     const std::size_t b = blocks.number(record);
     if (b < turn.begin || b >= turn.end) return;
-    const std::uint32_t left = parallel::atomic_fetch_add(counts[b], ~std::uint32_t{0});
+    const std::uint32_t left = parallel::atomic_add(counts[b], ~std::uint32_t{0});
     records[first[b] - turn.first + left - 1] = record;
   }
 };
