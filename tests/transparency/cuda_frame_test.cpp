@@ -91,6 +91,9 @@ TEST_F(CudaLayeredFrame, AMemoryLimitChangesNothing) {
   const LayerPicture frame = take(limited, binding.view(), camera);
   EXPECT_TRUE(same_bits(frame, expected));
   EXPECT_GT(frame.counter("turns"), frame.counter("bands"));
+  // The mesh's copy is not counted, as the mesh is not.
+  EXPECT_LE(frame.stats.peak_bytes, o.memory_limit + 60000 * sizeof(Vec3));
+  EXPECT_GT(expected.stats.peak_bytes, o.memory_limit + 60000 * sizeof(Vec3));
   EXPECT_EQ(frame.counter("translucent fragments"), expected.counter("translucent fragments"));
   o.memory_limit = 0;
   o.device = Device::threads;
