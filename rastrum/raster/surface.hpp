@@ -21,7 +21,9 @@ struct SurfaceView {
     return static_cast<std::size_t>(by - by0) * static_cast<std::size_t>(columns) +
            static_cast<std::size_t>(bx - bx0);
   }
-  [[nodiscard]] RASTRUM_HD std::uint64_t* block(int bx, int by) const { return words + index(bx, by) * 64; }
+  [[nodiscard]] RASTRUM_HD std::uint64_t* block(int bx, int by) const {
+    return words + index(bx, by) * 64;
+  }
   [[nodiscard]] BlockColors* colors_of(int bx, int by) const {
     return colors == nullptr ? nullptr : colors + index(bx, by);
   }
