@@ -193,6 +193,46 @@ TEST(SharpShadows, RealMap) {
     EXPECT_GT(check_sharp(part, azimuth, elevation, Tiling::clamp), 10U);
 }
 
+/// All devices against the plain definition, where the oracle's squares are too large.
+std::size_t check_devices(const Image<float>& map, const Sun& sun, Tiling tiling) {
+  const auto all = devices(tiling);
+  const Image<std::uint8_t> expected = sharp_shadows(map.view(), sun, all[0]);
+  for (const ShadowOptions& options : all) {
+    const Image<std::uint8_t> got = sharp_shadows(map.view(), sun, options);
+    EXPECT_TRUE(std::ranges::equal(got.pixels(), expected.pixels()))
+        << "azimuth " << sun.azimuth_deg << " elevation " << sun.elevation_deg << " isa "
+        << (options.isa ? name(*options.isa) : "best");
+  }
+  return count_dark(expected);
+}
+
+/// From reliefs that float32 has no units for, on either side; and from rays that climb all of it
+/// within two columns to such that climb a few units a column.
+TEST(SharpShadows, ReliefsOfAllSizesAndShadowsOfAllLengths) {
+  const Image<float> ground = noise(70, 90, 1, 9);
+  for (const double relief : {1e-37, 1e-20, 1.0, 1e20, 6e38})
+    for (const double length : {1.5, 4.0, 60.0, 5e3}) {
+      Image<float> map = ground;
+      for (float& h : map.pixels()) h = (2 * h - 1) * static_cast<float>(relief / 2);
+      // So near to 90° that it rounds to it where the relief is large.
+      const double elevation = std::atan(relief / length) * 180 / std::numbers::pi;
+      for (const double azimuth : {20.0, 70.0, 90.0, 225.0}) {
+        const std::size_t dark = check_devices(map, {azimuth, elevation}, Tiling::repeat);
+        EXPECT_EQ(dark > 0, elevation < 90) << "relief " << relief << " length " << length;
+      }
+    }
+}
+
+/// A unit of the whole relief is more than all hills.
+TEST(SharpShadows, OneSpikeAmongHills) {
+  for (const float height : {1e3F, 1e7F}) {
+    Image<float> map = noise(20, 25, 20, 10);
+    map(8, 12) = height;
+    for (const double azimuth : {70.0, 225.0})
+      EXPECT_GT(check_devices(map, {azimuth, 15}, Tiling::clamp), 5U);
+  }
+}
+
 TEST(SharpShadows, HolesNeitherCastNorReceive) {
   Image<float> map(20, 20);
   map(10, 10) = 5;
