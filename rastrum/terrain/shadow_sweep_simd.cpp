@@ -416,11 +416,16 @@ class Sweeper {
     const auto row = static_cast<std::int64_t>(i) + column.begin_row;
     const std::int16_t* const at = current_->cell(in_panel(block, c), row);
     const V own = hn::LoadU(d, at);
-    V highest = hn::Set(d, kLeast);
+    V highest = hn::Set(d, kLeast), others = highest;
+    const auto seen = [&](const std::int16_t* from, const Near& step) HWY_ATTR {
+      return hn::SaturatedSub(hn::LoadU(d, from + step.cell), hn::Set(d, step.climb));
+    };
     const auto walk = [&](const std::int16_t* from, std::size_t k, std::size_t last) HWY_ATTR {
-      for (; k < last; ++k)
-        highest = hn::Max(highest, hn::SaturatedSub(hn::LoadU(d, from + near_[k].cell),
-                                                    hn::Set(d, near_[k].climb)));
+      for (; k + 2 <= last; k += 2) {
+        highest = hn::Max(highest, seen(from, near_[k]));
+        others = hn::Max(others, seen(from, near_[k + 1]));
+      }
+      if (k < last) highest = hn::Max(highest, seen(from, near_[k]));
     };
     const int left = Panel::kColumns - in_panel(block, c);
     const std::size_t own_end = std::min(end, sweep_.step_at(left));
@@ -428,6 +433,7 @@ class Sweeper {
     // Those of the panel before, as if its columns went on from this one's.
     if (own_end < end)
       walk(previous_->cell(0, row) - left * static_cast<std::ptrdiff_t>(stride_), own_end, end);
+    highest = hn::Max(highest, others);
     // Both heights and the climb are off by less than 2.1 together.
     const auto hidden = hn::Gt(highest, hn::SaturatedAdd(own, hn::Set(d, 2)));
     const auto near_open = hn::Gt(highest, hn::SaturatedSub(own, hn::Set(d, 2)));
