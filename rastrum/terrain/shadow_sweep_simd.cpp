@@ -117,6 +117,7 @@ class Panel {
   /// Rows that are turned together; whole vectors are stored, and what is beyond the end is
   /// overwritten by the next run, or not read.
   static constexpr std::int64_t kTurned = 8;
+  /// Rows whose lines are fetched ahead: pages apart, nobody else sees what comes next.
   static constexpr std::int64_t kAhead = 32;
   static constexpr std::int64_t kBeyond = 2 * Quantizer::kCells;
 
@@ -186,25 +187,24 @@ class Panel {
       const auto ef = hn::BitCast(d64, hn::InterleaveLower(d, e, f));
       const auto ab2 = hn::BitCast(d64, hn::InterleaveUpper(d, a, b));
       const auto ef2 = hn::BitCast(d64, hn::InterleaveUpper(d, e, f));
-      const auto to = [&](int c) { return column + c * next; };
-      put_columns(hn::InterleaveLower(d64, ab, ef), to(q), to(q + 4));
-      put_columns(hn::InterleaveUpper(d64, ab, ef), to(q + 1), to(q + 5));
-      put_columns(hn::InterleaveLower(d64, ab2, ef2), to(q + 2), to(q + 6));
-      put_columns(hn::InterleaveUpper(d64, ab2, ef2), to(q + 3), to(q + 7));
+      put_columns(hn::InterleaveLower(d64, ab, ef), column + q * next, next);
+      put_columns(hn::InterleaveUpper(d64, ab, ef), column + (q + 1) * next, next);
+      put_columns(hn::InterleaveLower(d64, ab2, ef2), column + (q + 2) * next, next);
+      put_columns(hn::InterleaveUpper(d64, ab2, ef2), column + (q + 3) * next, next);
     }
   }
 
-  /// Each 128 bits are eight rows of a column.
+  /// Each 128 bits are eight rows of a column, the upper ones of the fourth column from there.
   template <class V64>
-  static HWY_INLINE void put_columns(V64 v, std::int16_t* first, std::int16_t* second) {
+  static HWY_INLINE void put_columns(V64 v, std::int16_t* to, std::ptrdiff_t next) {
     const hn::Full128<std::int16_t> d;
     const hn::DFromV<V64> d64;
     if constexpr (hn::MaxLanes(d64) == 2) {
-      hn::StoreU(hn::BitCast(d, v), d, first);
+      hn::StoreU(hn::BitCast(d, v), d, to);
     } else {
       const hn::Half<decltype(d64)> half;
-      hn::StoreU(hn::BitCast(d, hn::LowerHalf(half, v)), d, first);
-      hn::StoreU(hn::BitCast(d, hn::UpperHalf(half, v)), d, second);
+      hn::StoreU(hn::BitCast(d, hn::LowerHalf(half, v)), d, to);
+      hn::StoreU(hn::BitCast(d, hn::UpperHalf(half, v)), d, to + 4 * next);
     }
   }
 
