@@ -111,7 +111,7 @@ std::uint64_t draw_columns(Exec& exec, const AnySamples& samples, std::size_t fi
   auto frame = make_buffer<Pixel>(exec, l * m);
   transpose(exec, screen, m, l, frame);
   const Pixel sky{samples.setup.sky, std::numeric_limits<float>::infinity()};
-  for_each_index(exec, l * m, WritePixel{{frame.data(), frame.size()}, first, m, sky, targets});
+  for_each(exec, counting(l * m), WritePixel{{frame.data(), frame.size()}, first, m, sky, targets});
   return reduce(exec, Computed(n * m, CountSeen{{seen, n}}), std::uint64_t{0});
 }
 
