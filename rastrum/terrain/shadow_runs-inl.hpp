@@ -14,6 +14,7 @@
 
 #include <rastrum/terrain/terrain.hpp>
 
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
 namespace rastrum::terrain {
 namespace HWY_NAMESPACE {
@@ -54,5 +55,6 @@ HWY_INLINE void copy_run(const float* from, std::int64_t n, std::int64_t step, f
 }  // namespace HWY_NAMESPACE
 }  // namespace rastrum::terrain
 HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
 
 #endif  // RASTRUM_TERRAIN_SHADOW_RUNS_INL_HPP
