@@ -226,10 +226,10 @@ TEST(SharpShadows, ReliefsOfAllSizesAndShadowsOfAllLengths) {
 /// A unit of the whole relief is more than all hills.
 TEST(SharpShadows, OneSpikeAmongHills) {
   for (const float height : {1e3F, 1e7F}) {
-    Image<float> map = noise(20, 25, 20, 10);
-    map(8, 12) = height;
+    Image<float> map = noise(12, 15, 20, 10);
+    map(8, 9) = height;
     for (const double azimuth : {70.0, 225.0})
-      EXPECT_GT(check_devices(map, {azimuth, 15}, Tiling::clamp), 5U);
+      EXPECT_GT(check_devices(map, {azimuth, 15}, Tiling::clamp), 2U);
   }
 }
 
