@@ -87,18 +87,27 @@ DeviceChoice TerrainRenderer::Impl::place(const Terrain& terrain, const TerrainO
   } else if (bytes > fits_gpu) {
     const std::uint64_t free = parallel::cuda_status().free_bytes + gpu->bytes();
     if (bytes > free)
-      why_not = "a map of " + std::to_string(terrain.heights()->width()) + "x" +
-                std::to_string(terrain.heights()->height()) + " cells in a picture of " +
-                std::to_string(how.width) + "x" + std::to_string(how.height) + " takes up to " +
-                std::to_string((bytes >> 20) + 1) + " MiB of the GPU's memory, and " +
-                std::to_string(free >> 20) + " MiB are free";
+      why_not.append("a map of ")
+          .append(std::to_string(terrain.heights()->width()))
+          .append("x")
+          .append(std::to_string(terrain.heights()->height()))
+          .append(" cells in a picture of ")
+          .append(std::to_string(how.width))
+          .append("x")
+          .append(std::to_string(how.height))
+          .append(" takes up to ")
+          .append(std::to_string((bytes >> 20) + 1))
+          .append(" MiB of the GPU's memory, and ")
+          .append(std::to_string(free >> 20))
+          .append(" MiB are free");
     else
       fits_gpu = bytes;
   }
   if (why_not.empty()) return choice;
   if (terrain.is_map() && asked == Device::cuda)
-    throw Error(Errc::out_of_memory, "terrain: " + why_not + "; use --device threads");
-  return {Device::threads, "no CUDA: " + why_not};
+    throw Error(Errc::out_of_memory,
+                std::string("terrain: ").append(why_not).append("; use --device threads"));
+  return {Device::threads, std::string("no CUDA: ").append(why_not)};
 }
 
 /// What is computed once a map.

@@ -27,7 +27,8 @@ double distance_of(const TerrainOptions& o, double k) {
   return 1 + k * o.step + o.dz * (k * (k + 1) / 2);
 }
 
-/// How many slices lie before `distance`.
+}  // namespace
+
 double slice_count(const TerrainOptions& o) {
   if (o.distance <= 1) return 0;
   // The root of distance_of(k) = distance, then the last steps by the formula itself.
@@ -37,8 +38,6 @@ double slice_count(const TerrainOptions& o) {
   while (distance_of(o, k) < o.distance) ++k;
   return k;
 }
-
-}  // namespace
 
 void check(const TerrainOptions& o) {
   require(o.width >= 1 && o.height >= 1 && o.width <= kMaxImageSize && o.height <= kMaxImageSize,

@@ -89,6 +89,9 @@ void check(const TerrainOptions& options);
 /// Throws Error{invalid_argument} where it is not finite or too far away.
 void check(const TerrainCamera& camera);
 
+/// How many slices lie before `distance`; of `classic`, too, up to a few that rounding decides.
+[[nodiscard]] double slice_count(const TerrainOptions& options);
+
 /// Rows that a height of 1 takes at distance 1.
 [[nodiscard]] double scale_px(const TerrainOptions& options);
 

@@ -16,13 +16,12 @@ std::uint64_t device_bytes(const Terrain& map, const TerrainOptions& options) {
   std::uint64_t bytes = cells * kBytes + cells * kBytes / 128;
   if (options.filter == Filter::mip) bytes += cells * kBytes / 2;
   bytes += 2 * kBytes * area(options.width, options.height);
-  const auto slices = static_cast<std::uint64_t>(
-      std::min(options.distance / std::min(1.0, options.step), kMaxSlices));
+  const auto slices = static_cast<std::uint64_t>(std::min(slice_count(options), kMaxSlices));
   // A batch of the words (words_listing.hpp): pairs, two screens, and what Thrust wants beside
   // them.
   constexpr std::uint64_t kBatch = std::uint64_t{1} << 21, kWordsBytes = 64;
   if (options.method == Method::words) bytes += kWordsBytes * std::max(kBatch, slices);
-  // Where teams of 16 columns begin on the classic slices, whose steps are no shorter than 1.
+  // Where teams of 16 columns begin on the classic slices.
   constexpr std::uint64_t kTeamColumns = 16, kStartBytes = 16;
   if (options.classic)
     bytes += kStartBytes * slices * (static_cast<std::uint64_t>(options.width) / kTeamColumns + 1);
