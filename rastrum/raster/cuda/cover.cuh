@@ -27,12 +27,15 @@ struct DeviceSurface {
   std::uint32_t* overdraw =
       nullptr;  ///< fragments of each sample, in the places of the words; null
 
-  /// A fragment of `piece` at element i of block (bx, by).
+  /// The word of `piece` at element i of block (bx, by).
+  [[nodiscard]] RASTRUM_HD static std::uint64_t word(const Piece& piece, int bx, int by, int i) {
+    const int x = bx * kBlockSize + i % kBlockSize, y = by * kBlockSize + i / kBlockSize;
+    return make_word(depth_at(piece, x, y), piece.low);
+  }
+  /// A fragment of `piece` there.
   RASTRUM_HD void put(const Piece& piece, int bx, int by, int i) const {
     const std::size_t at = words.index(bx, by) * 64 + static_cast<std::size_t>(i);
-    const float depth =
-        depth_at(piece, bx * kBlockSize + i % kBlockSize, by * kBlockSize + i / kBlockSize);
-    parallel::atomic_maximum(words.words[at], make_word(depth, piece.low));
+    parallel::atomic_maximum(words.words[at], word(piece, bx, by, i));
     if (overdraw != nullptr) parallel::atomic_add(overdraw[at], 1U);
   }
 };
@@ -69,6 +72,11 @@ struct BlocksOf {
   [[nodiscard]] RASTRUM_HD int by(int k) const { return by0 + k / columns; }
 };
 
+/// The tiles that a box touches, in numbers of tiles of the view.
+RASTRUM_HD inline Rect tiles_of(Rect box, Rect view) {
+  return {(box.x0 - view.x0) / kDeviceTile, (box.y0 - view.y0) / kDeviceTile,
+          (box.x1 - 1 - view.x0) / kDeviceTile + 1, (box.y1 - 1 - view.y0) / kDeviceTile + 1};
+}
 /// By one thread; returns the number of fragments. `box`: of the piece in the view, not empty.
 RASTRUM_HD inline int draw_by_thread(const DeviceSurface& surface, const Piece& piece, Rect box) {
   const Edges edges = edges_of(piece);

@@ -23,6 +23,7 @@
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/parallel/stop.hpp>
 #include <rastrum/raster/cuda/cover.cuh>
+#include <rastrum/raster/cuda/owned_tiles.cuh>
 #include <rastrum/raster/cuda/pieces.cuh>
 #include <rastrum/raster/stopwatch.hpp>
 
@@ -31,6 +32,7 @@ namespace rastrum::raster {
 /// Boxes in px² from which on a piece is for a warp, and for blocks of threads.
 struct DeviceSizes {
   std::uint64_t small_px = 128, large_px = 4000;
+  bool owned_tiles = false;  ///< large pieces by owned_tiles.cuh, where no overdraw is counted
 
   /// Asked for by a caller; 0: as above. A small piece's fragments are counted in 16 bits.
   static DeviceSizes of(const Tuning& tuning) {
@@ -48,6 +50,7 @@ struct DevicePlan {
   int band_rows = 0;          ///< whole tiles
   std::uint64_t batch = 0;    ///< primitives that are set up at once
   std::uint64_t written = 0;  ///< of those with larger pieces, whose pieces are there at once
+  std::uint64_t pairs = ~std::uint64_t{0};  ///< of large pieces and tiles, where these are sorted
 
   /// `limit`: bytes, 0 for any. `pixel_bytes`: what is kept of a pixel beside its word. Throws
   /// Error{out_of_memory} where not even the least band fits.
@@ -78,7 +81,8 @@ struct DevicePlan {
     p.band_rows = static_cast<int>(std::min<std::uint64_t>(
         band_share / least_band * kDeviceTile, static_cast<std::uint64_t>(p.band_rows)));
     p.batch = std::min(p.batch, share / kSetUpBytes);
-    p.written = std::min(p.written, share / kWrittenBytes);
+    p.written = std::min(p.written, share / 2 / kWrittenBytes);
+    p.pairs = share / 2 / kOwnedPairBytes;
     return p;
   }
 };
@@ -111,9 +115,8 @@ struct DrawSmall {
 struct IsLarger {
   Rect view;
   std::uint64_t than_px;
-  std::uint32_t skip;
   RASTRUM_HD bool operator()(const Piece& piece) const {
-    return (piece.flags & skip) == 0 && area_of(piece_bounds(piece, view)) > than_px;
+    return area_of(piece_bounds(piece, view)) > than_px;
   }
 };
 struct HasPieces {
@@ -134,11 +137,6 @@ struct DrawMiddle {
   }
 };
 
-/// The tiles that a box touches, in numbers of tiles of the view.
-RASTRUM_HD inline Rect tiles_of(Rect box, Rect view) {
-  return {(box.x0 - view.x0) / kDeviceTile, (box.y0 - view.y0) / kDeviceTile,
-          (box.x1 - 1 - view.x0) / kDeviceTile + 1, (box.y1 - 1 - view.y0) / kDeviceTile + 1};
-}
 /// How many tiles a large piece touches; 0 of one that is not.
 struct CountTiles {
   Rect view;
@@ -212,16 +210,20 @@ template <class Exec>
           view_of(larger).subspan(at, std::min(plan.written, larger.size() - at));
       const auto pieces = write_pieces(exec, assembly, which,
                                        parallel::permuted(view_of(std::as_const(outcomes)), which),
-                                       cuda_detail::IsLarger{surface.view, sizes.small_px, skip});
+                                       cuda_detail::IsLarger{surface.view, sizes.small_px});
       const std::span<const Piece> drawn = view_of(pieces);
       parallel::for_each_team<TeamMasks, 32>(
           exec, drawn.size(),
           cuda_detail::DrawMiddle{drawn, surface, sizes.large_px, fragments.data()});
       const auto tiles = parallel::make_expansion(
           exec, drawn, cuda_detail::CountTiles{surface.view, sizes.large_px});
-      parallel::for_each_team<TeamMasks, 128>(exec, tiles.size(),
-                                              cuda_detail::DrawTile<decltype(tiles.view())>{
-                                                  drawn, surface, tiles.view(), fragments.data()});
+      if (sizes.owned_tiles && surface.overdraw == nullptr && tiles.size() <= plan.pairs)
+        draw_owned_tiles(exec, drawn, tiles, surface, fragments.data());
+      else
+        parallel::for_each_team<TeamMasks, 128>(
+            exec, tiles.size(),
+            cuda_detail::DrawTile<decltype(tiles.view())>{drawn, surface, tiles.view(),
+                                                          fragments.data()});
       counts.larger_pieces += drawn.size();
       counts.tiles += tiles.size();
     }

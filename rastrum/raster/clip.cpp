@@ -1,0 +1,1 @@
+#include <rastrum/raster/clip-inl.hpp>
