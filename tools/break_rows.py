@@ -58,7 +58,7 @@ class Break:
 
 BREAKS = (
     # --- Coverages --------------------------------------------------------------------------------
-    Break("scanline", "coverage/scanline.cpp",
+    Break("scanline", "coverage/rows.hpp",
           "static_cast<std::size_t>(box.y1 - box.y0);",
           "static_cast<std::size_t>(box.y1 - box.y0 - 1);",  # a triangle's last row
           ("scanline",), units=("scanline", "hybrid"),
@@ -104,10 +104,10 @@ BREAKS = (
           why="tuple takes no finished words: it has to shade"),
 
     # What coverages share: the papers build one on the other.
-    Break("blocks of small boxes", "coverage/immediate.cpp",
+    Break("blocks of small boxes", "coverage/boxes.hpp",
           "(box.x1 - 1) / kBlockSize - bx + 1,", "(box.x1 - 1) / kBlockSize - bx,",
           ("pineda", "hybrid"), why="both draw small triangles so (paper 1, table 5)"),
-    Break("bins and tiles", "coverage/tiles.hpp",
+    Break("bins and tiles", "coverage/bins.hpp",
           "return !box.empty() && may_touch(edges_of(piece), box);",
           "return j != 0 && !box.empty() && may_touch(edges_of(piece), box);",
           ("pineda", "tiled", "hybrid"), why="the hierarchy of all three (paper 1, section 3.1.3)"),

@@ -17,10 +17,10 @@
 #include <rastrum/parallel/scratch.hpp>
 #include <rastrum/raster/geometry.hpp>
 #include <rastrum/raster/kernels.hpp>
-#include <rastrum/raster/order.hpp>
 #include <rastrum/raster/resolve.hpp>
 #include <rastrum/raster/stopwatch.hpp>
 #include <rastrum/raster/surface.hpp>
+#include <rastrum/raster/tile_grid.hpp>
 #include <rastrum/raster/visibility/region.hpp>
 
 namespace rastrum::raster {
@@ -94,32 +94,6 @@ class Emitter {
   std::size_t count_ = 0;
   bool first_pass_;
   bool to_cover_ = false;
-};
-
-/// Tiles of the screen: numbered row by row, walked in any order.
-struct TileGrid {
-  Rect view;
-  int tile_px = kBinSize;
-  BlockOrder order = BlockOrder::row_major;
-
-  [[nodiscard]] int columns() const { return (view.x1 - view.x0 + tile_px - 1) / tile_px; }
-  [[nodiscard]] int rows() const { return (view.y1 - view.y0 + tile_px - 1) / tile_px; }
-  [[nodiscard]] std::size_t count() const {
-    return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows());
-  }
-  /// The tile that is walked as number `position`.
-  [[nodiscard]] std::size_t tile_at(std::size_t position) const {
-    if (order == BlockOrder::row_major) return position;
-    const Cell cell = cell_at(order, position, columns(), rows());
-    return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(columns()) +
-           static_cast<std::size_t>(cell.column);
-  }
-  [[nodiscard]] Rect rect(std::size_t tile) const {
-    const auto c = static_cast<std::size_t>(columns());
-    const int x0 = view.x0 + static_cast<int>(tile % c) * tile_px;
-    const int y0 = view.y0 + static_cast<int>(tile / c) * tile_px;
-    return {x0, y0, std::min(x0 + tile_px, view.x1), std::min(y0 + tile_px, view.y1)};
-  }
 };
 
 /// What a rasterizer keeps between frames.

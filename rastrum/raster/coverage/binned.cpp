@@ -14,7 +14,7 @@
 #include <rastrum/parallel/expand_each.hpp>
 #include <rastrum/parallel/stop.hpp>
 #include <rastrum/parallel/work_queue.hpp>
-#include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/coverage/boxes.hpp>
 #include <rastrum/raster/coverage/tile_mask.hpp>
 #include <rastrum/raster/order.hpp>
 #include <rastrum/raster/set_up.hpp>
@@ -23,7 +23,6 @@ namespace rastrum::raster {
 namespace {
 
 constexpr std::size_t kBatch = 32;
-constexpr int kLargePx = 4000;
 
 /// Entries of a round where no memory limit asks for fewer: 24 MiB by the paper's sizes, and 2,000
 /// triangles that fill 1920 × 1080.

@@ -1,21 +1,13 @@
 #include <rastrum/raster/visibility/hashed.hpp>
 
 #include <atomic>
-#include <numeric>
 
 #include <rastrum/raster/visibility/chunk_counts.hpp>
 #include <rastrum/raster/visibility/fragments.hpp>
+#include <rastrum/raster/visibility/hash_slots.hpp>
 
 namespace rastrum::raster {
 namespace {
-
-/// Entries a slot at most. With 0.5, 0.7 and 0.9 `sorted` took 1.06, 1.13 and 1.16 times the time
-/// of this (`rastrum bench hashed`, depth complexity 1, paired medians of 3 on a busy machine) and
-/// at complexity 8 1.37, 1.42 and 1.21: blocks that are covered whole seldom meet, so that memory
-/// decides until tables are nearly full.
-constexpr std::uint64_t kLoadNumerator = 7, kLoadDenominator = 10;
-
-constexpr std::uint32_t kNoPixel = ~std::uint32_t{0};
 
 /// From pixels to words. Empty between uses.
 template <Sharing kSharing>
@@ -23,24 +15,17 @@ class Table {
  public:
   explicit Table(MemoryAccount& memory) : pixels_(memory), words_(memory) {}
 
-  static constexpr std::uint64_t kSlotBytes = sizeof(std::uint32_t) + sizeof(std::uint64_t);
-
-  static std::uint64_t slots_for(std::uint64_t entries) {
-    // Two blocks' worth at least: a step is longer than one.
-    std::uint64_t slots = (entries * kLoadDenominator / kLoadNumerator / 64 + 2) * 64;
-    // The steps of a probe must meet every slot.
-    while (std::gcd(slots, kStep) != 1) slots += 64;
-    return slots;
-  }
   /// The most entries that fit into `bytes`, at least some blocks' worth.
   static std::uint64_t entries_for(std::uint64_t bytes) {
-    return std::max<std::uint64_t>(bytes / kSlotBytes * kLoadNumerator / kLoadDenominator, 512) -
+    return std::max<std::uint64_t>(
+               bytes / HashSlots::kBytes * HashSlots::kLoadNumerator / HashSlots::kLoadDenominator,
+               512) -
            256;
   }
 
   /// Room for `entries`; `exec` may be null.
   void restart(std::uint64_t entries, parallel::Threads* exec) {
-    slots_ = slots_for(entries);
+    slots_ = HashSlots::of(entries).count;
     slots_used_ += slots_;
     if (slots_ <= pixels_.capacity()) return;
     pixels_.reserve(slots_);
@@ -53,8 +38,7 @@ class Table {
 
   /// Where the probes for the samples of a block begin.
   [[nodiscard]] std::uint64_t home(std::uint32_t block) const {
-    const std::uint32_t hash = (block ^ block >> 15) * 0x9E3779B1U;
-    return (std::uint64_t{hash} * (slots_ / 64) >> 32) * 64;
+    return HashSlots{slots_}.home(block);
   }
   /// Raises the word of a pixel; there must be room. Returns the slots looked at where the pixel is
   /// new, else 0: their sum does not depend on the order in which pixels come.
@@ -63,8 +47,7 @@ class Table {
     std::uint64_t probes = 1;
     Slot found;
     while ((found = take(pixels_[slot], pixel)) == Slot::of_another) {
-      slot += kStep;
-      if (slot >= slots_) slot -= slots_;
+      slot = HashSlots{slots_}.next(slot);
       ++probes;
     }
     raster::raise<kSharing>(words_[slot], word);
@@ -97,9 +80,6 @@ class Table {
   }
 
  private:
-  /// On to the next block's slots and the next sample.
-  static constexpr std::uint64_t kStep = 65;
-
   enum class Slot { taken, known, of_another };
 
   /// Takes the slot for the pixel if nobody has.
