@@ -82,12 +82,15 @@ bool needs_layers(const raster::FrameRequest& request) {
   return request.samples > 1 || blends(request.draws, request.transparency);
 }
 
+[[noreturn]] void refuse_visibility() {
+  throw Error(Errc::invalid_argument,
+              "transparency and several samples a pixel resolve fragments in their own way: "
+              "leave the visibility to 'auto'");
+}
+
 /// Layers want a thread that owns a tile, and are a visibility themselves.
 void check_layers(const raster::CoverageRow& coverage, bool visibility_is_asked_for) {
-  if (visibility_is_asked_for)
-    throw Error(Errc::invalid_argument,
-                "transparency and several samples a pixel resolve fragments in their own way: "
-                "leave the visibility to 'auto'");
+  if (visibility_is_asked_for) refuse_visibility();
   if (coverage.owns_tiles) return;
   std::string owners;
   for (const raster::CoverageRow& row : raster::coverages())
@@ -124,39 +127,71 @@ std::string why_not_on_cuda(const raster::CudaRasterizer& device,
   return needs_layers(request) ? device.why_no_layers(request) : std::string();
 }
 
-/// The device's one rasterizer, and for what it has no code a rasterizer of the CPU.
+/// What the options name of a device's rasterizers: a point of the table, or by-size.
+struct OnCuda {
+  std::string_view coverage, visibility;  ///< empty: by-size
+  std::string why;                        ///< auto took it, or the CPU draws it
+  bool is_the_cpus = false;
+};
+
+OnCuda choose_on_cuda(const RenderOptions& options, MemoryAccount& memory) {
+  const std::string_view atomic = raster::visibilities().front().name;
+  const auto& visibility =
+      options.visibility == "auto"
+          ? raster::visibilities().front()
+          : find_row(raster::visibilities(), options.visibility, "visibility", "auto");
+  if (options.rasterizer == kBySize && visibility.name != atomic)
+    throw Error(Errc::invalid_argument, std::string("by-size draws by '")
+                                            .append(atomic)
+                                            .append("'; leave the rasterizer to 'auto' for the "
+                                                    "visibility '")
+                                            .append(visibility.name)
+                                            .append("'"));
+  if (options.rasterizer == kBySize || (options.rasterizer == "auto" && visibility.name == atomic))
+    return {};
+  if (options.rasterizer == "auto")
+    return {"hybrid", visibility.name, "auto takes hybrid, for by-size has no other visibility"};
+  const auto& coverage =
+      find_row(raster::coverages(), options.rasterizer, "rasterizer", "auto, reference, by-size");
+  // Refuses sizes of bins and tiles that the host refuses.
+  static_cast<void>(coverage.make(options.tuning, memory));
+  if (coverage.name == raster::coverages().front().name)
+    return {{}, {}, "'grouped' keeps its groups and bins in a core's cache: it is the CPU's", true};
+  if (options.tuning.schedule == raster::Schedule::persistent)
+    return {{}, {}, "the persistent schedule of 'binned' is the CPU's", true};
+  return {coverage.name, visibility.name, {}};
+}
+
+/// The device's rasterizers, and for what they have no code a rasterizer of the CPU.
 DrawFrame make_on_cuda(const RenderOptions& options, MemoryAccount& memory,
                        parallel::Threads& threads) {
-  if (options.rasterizer != "auto" && options.rasterizer != kBySize)
-    throw Error(Errc::invalid_argument, std::string("the rasterizer '")
-                                            .append(options.rasterizer)
-                                            .append("' needs --device threads; cuda has '")
-                                            .append(kBySize)
-                                            .append("'"));
-  if (options.visibility != "auto" && options.visibility != raster::visibilities().front().name)
-    throw Error(Errc::invalid_argument, std::string("the visibility '")
-                                            .append(options.visibility)
-                                            .append("' needs --device threads; cuda has '")
-                                            .append(raster::visibilities().front().name)
-                                            .append("'"));
+  const OnCuda chosen = choose_on_cuda(options, memory);
   RenderOptions on_threads = options;
   on_threads.device = Device::threads;
-  on_threads.rasterizer = on_threads.visibility = "auto";
-  return
-      [device = std::shared_ptr<raster::CudaRasterizer>(
-           raster::make_cuda_rasterizer(options.memory_limit, memory, threads)),
-       host = DrawFrame(), on_threads, &memory, &threads](raster::FrameRequest& request) mutable {
-        const std::string why_not = why_not_on_cuda(*device, request);
-        if (why_not.empty()) return device->render(request);
-        if (request.in_place)
-          throw Error(Errc::unsupported,
-                      std::string("arrays in the device's memory (in_place): ").append(why_not));
-        if (!host) host = make_rasterizer(on_threads, memory, &threads);
-        FrameStats stats = host(request);
-        stats.device = Device::threads;
-        stats.device_why = why_not;
-        return stats;
-      };
+  if (options.rasterizer == kBySize) on_threads.rasterizer = "auto";
+  return [device =
+              chosen.is_the_cpus
+                  ? nullptr
+                  : std::shared_ptr<raster::CudaRasterizer>(raster::make_cuda_rasterizer(
+                        chosen.coverage, chosen.visibility, options.memory_limit, memory, threads)),
+          host = DrawFrame(), on_threads, why = chosen.why, &memory,
+          &threads](raster::FrameRequest& request) mutable {
+    if (needs_layers(request) && on_threads.visibility != "auto") refuse_visibility();
+    const std::string why_not = device ? why_not_on_cuda(*device, request) : why;
+    if (why_not.empty()) {
+      FrameStats stats = device->render(request);
+      if (!why.empty()) stats.why = std::string(why).append("; ").append(stats.why);
+      return stats;
+    }
+    if (request.in_place)
+      throw Error(Errc::unsupported,
+                  std::string("arrays in the device's memory (in_place): ").append(why_not));
+    if (!host) host = make_rasterizer(on_threads, memory, &threads);
+    FrameStats stats = host(request);
+    stats.device = Device::threads;
+    stats.device_why = why_not;
+    return stats;
+  };
 }
 
 }  // namespace

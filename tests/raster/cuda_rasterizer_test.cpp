@@ -219,6 +219,8 @@ TEST_F(CudaRasterizer, IsTakenByAutoUnlessTheCpusIsAskedFor) {
   o.rasterizer = "tiled";
   EXPECT_EQ(Renderer(o).options().device, Device::threads);
   o.device = Device::cuda;
+  EXPECT_EQ(Renderer(o).options().device, Device::cuda);
+  o.rasterizer = "by-colour";
   EXPECT_THROW(Renderer{o}, Error);
   o.rasterizer = "by-size";
   EXPECT_EQ(Renderer(o).options().device, Device::cuda);

@@ -1,6 +1,7 @@
-// A frame of the façade on a device: the host's arrays over, bands of words drawn (rasterizer.cuh),
-// and each band resolved, there (resolve.cuh) or, where a target or the shader has no device form,
-// by the host's resolve_block on the words that come back.
+// A frame of the façade on a device: the host's arrays over, bands of words drawn (rasterizer.cuh,
+// or family/family.cuh where a point of the table is asked for), and each band resolved, there
+// (resolve.cuh) or, where a target or the shader has no device form, by the host's resolve_block on
+// the words that come back.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <rastrum/core/memory.hpp>
@@ -18,6 +20,7 @@
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/scratch.hpp>
+#include <rastrum/raster/cuda/family/family.cuh>
 #include <rastrum/raster/cuda/rasterizer.cuh>
 #include <rastrum/raster/cuda/rasterizer.hpp>
 #include <rastrum/raster/cuda/resolve.cuh>
@@ -33,12 +36,16 @@ namespace rastrum::raster {
 template <class Exec, class Layers>
 class DeviceRasterizer final : public CudaRasterizer {
  public:
-  DeviceRasterizer(std::uint64_t memory_limit, MemoryAccount& memory, parallel::Threads& threads)
+  /// The names of a point of the family's table; empty: by-size.
+  DeviceRasterizer(std::string_view coverage, std::string_view visibility,
+                   std::uint64_t memory_limit, MemoryAccount& memory, parallel::Threads& threads)
       : memory_limit_(memory_limit),
         threads_(threads),
         exec_(&memory),
         words_(memory),
-        overdraw_(memory) {}
+        overdraw_(memory) {
+    if (!coverage.empty()) family_ = family::point_of<Exec>(coverage, visibility);
+  }
 
   [[nodiscard]] std::string why_no_layers(const FrameRequest& request) const override {
     if (std::string why(Layers::why_not(request)); !why.empty()) return why;
@@ -50,8 +57,8 @@ class DeviceRasterizer final : public CudaRasterizer {
   [[nodiscard]] FrameStats render(FrameRequest& request) override {
     Stopwatch watch;
     FrameStats stats;
-    stats.rasterizer = "by-size";
-    stats.visibility = "atomic";
+    stats.rasterizer = family_ ? family_->coverage->name : "by-size";
+    stats.visibility = family_ ? family_->visibility->name : "atomic";
     stats.isa = request.isa;
     stats.device = Device::cuda;
     const Totals totals = number_draws(request.draws, request.targets.first_id);
@@ -92,10 +99,11 @@ class DeviceRasterizer final : public CudaRasterizer {
                            return (draw.any_flags() & kTranslucent) != 0;
                          });
     Layers layers;
+    const bool shades_all = family_ && family_->visibility->shades && resolver && resolver->lit;
     // Layers need a colour, and what is known of its block.
     const std::uint64_t pixel_bytes =
-        (layered ? sizeof(Vec4) + 1 : 0) + (counts_overdraw ? sizeof(std::uint32_t) : 0) +
-        (resolver ? sizeof(std::uint32_t) : 0) +
+        (layered ? sizeof(Vec4) + 1 : 0) + (family_ ? family_->visibility->pixel_bytes : 0) +
+        (counts_overdraw ? sizeof(std::uint32_t) : 0) + (resolver ? sizeof(std::uint32_t) : 0) +
         (resolver && !request.in_place ? DeviceTargets::bytes_of(request.targets) : 0);
     const DevicePlan plan = DevicePlan::of(limit(), request.width, request.height,
                                            totals.primitives, totals.vertices, pixel_bytes);
@@ -113,6 +121,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     parallel::ScratchPool<ShaderScratch> shaders;
     std::uint64_t bands = 0;
     DeviceCounts counts;
+    Counters own;
     for (int y = 0; y < request.height; y += plan.band_rows, ++bands) {
       const Rect view{0, y, request.width, std::min(y + plan.band_rows, request.height)};
       const std::size_t blocks = block_count(view);
@@ -122,8 +131,16 @@ class DeviceRasterizer final : public CudaRasterizer {
       DeviceSurface surface{
           view, {0, y / kBlockSize, block_columns(view), words.data(), nullptr}, overdraw.data()};
       begin(request, view, words, overdraw);
-      const DeviceCounts band = draw_surface(
-          exec_, scene, surface, plan, DeviceSizes::of(request.tuning), layered ? kTranslucent : 0);
+      auto colors = parallel::make_buffer<Vec4>(exec_, layered || shades_all ? words.size() : 0);
+      family::Shading shading;
+      if (shades_all)
+        shading = {shade_fragments(surface.words, resolver->shade(scene.geometry())),
+                   parallel::view_of(colors)};
+      const std::uint32_t skip = layered ? kTranslucent : 0;
+      const DeviceCounts band = family_ ? draw_surface(exec_, scene, surface, plan, *family_,
+                                                       request.tuning, skip, shading, own)
+                                        : draw_surface(exec_, scene, surface, plan,
+                                                       DeviceSizes::of(request.tuning), skip);
       if (bands == 0) counts.sum = band.sum;
       counts.fragments += band.fragments;
       counts.larger_pieces += band.larger_pieces;
@@ -133,17 +150,18 @@ class DeviceRasterizer final : public CudaRasterizer {
       if (counts_overdraw) store_overdraw(request, view, overdraw);
       if (resolver) {
         const LitOnDevice shade = resolver->shade(scene.geometry());
-        auto colors = parallel::make_buffer<Vec4>(exec_, layered ? words.size() : 0);
         if (layered) {
-          parallel::tabulate(exec_, colors,
-                             cuda_detail::ColorOfElement<LitOnDevice>{surface.words, shade});
+          if (!shades_all)
+            parallel::tabulate(exec_, colors,
+                               cuda_detail::ColorOfElement<LitOnDevice>{surface.words, shade});
           layers.blend(exec_, scene, surface, parallel::view_of(colors), request.transparency,
                        shade, plan.batch, limit() / 8);
           watch.lap(stats, "layers");
         }
         stats.pixels_covered +=
-            layered ? resolve_on_device(request, ColorsOfSurface{surface, colors.data()}, surface)
-                    : resolve_on_device(request, shade, surface);
+            layered || shades_all
+                ? resolve_on_device(request, ColorsOfSurface{surface, colors.data()}, surface)
+                : resolve_on_device(request, shade, surface);
       } else {
         stats.pixels_covered += resolve_on_host(request, geometry, view, words, shaders);
       }
@@ -153,13 +171,29 @@ class DeviceRasterizer final : public CudaRasterizer {
     stats.triangles.culled = counts.sum.culled;
     stats.triangles.clipped = counts.sum.clipped;
     stats.fragments = counts.fragments;
-    stats.why = std::string("cuda has by-size: a thread, a warp or blocks of threads a triangle; ")
-                    .append(resolver ? "shaded on the device" : "shaded by the host's threads");
+    stats.why = std::string(family_ ? "as asked for"
+                                    : "cuda has by-size: a thread, a warp or blocks of threads a "
+                                      "triangle")
+                    .append(resolver ? "; shaded on the device" : "; shaded by the host's threads");
     stats.counters = {{"bands", bands},
-                      {"batches", counts.batches},
-                      {"larger pieces", counts.larger_pieces},
-                      {"tile pairs", counts.tiles}};
+                      {family_ ? "batches of primitives" : "batches", counts.batches}};
+    if (family_) {
+      for (const auto& [name, value] : own) stats.counters.emplace_back(name, value);
+    } else {
+      stats.counters.emplace_back("larger pieces", counts.larger_pieces);
+      stats.counters.emplace_back("tile pairs", counts.tiles);
+    }
     if (layered) layers.count(stats);
+  }
+
+  /// family::Shading::shade; must not outlive the arrays of `shade`.
+  template <class Shade>
+  [[nodiscard]] auto shade_fragments(const SurfaceView& words, const Shade& shade) {
+    return [this, words, shade](std::span<const std::uint32_t> element,
+                                std::span<const std::uint64_t> word, std::span<Vec4> colors) {
+      parallel::tabulate(exec_, colors,
+                         family::ColorOfFragment<Shade>{words, element, word, shade});
+    };
   }
 
   struct ShaderScratch {
@@ -339,6 +373,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     return covered;
   }
 
+  std::optional<family::Point<Exec>> family_;  ///< none: by-size
   std::uint64_t memory_limit_;
   std::uint64_t free_bytes_ = parallel::cuda_status().free_bytes;  ///< before the first frame
   parallel::Threads& threads_;

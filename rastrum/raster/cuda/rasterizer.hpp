@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
@@ -28,9 +29,13 @@ class CudaRasterizer {
 /// Whether the library was built with it.
 [[nodiscard]] bool draws_on_cuda() noexcept;
 
-/// `memory_limit`: bytes of scratch on the device beyond the copies of meshes, 0: three quarters of
-/// what is free there. `memory` and `threads` outlive it. Throws Error{no_device}.
-[[nodiscard]] std::unique_ptr<CudaRasterizer> make_cuda_rasterizer(std::uint64_t memory_limit,
+/// `coverage` and `visibility`: a point of the table, whose rows are the host's but for `grouped`;
+/// or both empty: `by-size`, the device's own. `memory_limit`: bytes of scratch on the device
+/// beyond the copies of meshes, 0: three quarters of what is free there. `memory` and `threads`
+/// outlive it. Throws Error{no_device}.
+[[nodiscard]] std::unique_ptr<CudaRasterizer> make_cuda_rasterizer(std::string_view coverage,
+                                                                   std::string_view visibility,
+                                                                   std::uint64_t memory_limit,
                                                                    MemoryAccount& memory,
                                                                    parallel::Threads& threads);
 

@@ -9,11 +9,13 @@ bool draws_on_cuda() noexcept {
   return true;
 }
 
-std::unique_ptr<CudaRasterizer> make_cuda_rasterizer(std::uint64_t memory_limit,
+std::unique_ptr<CudaRasterizer> make_cuda_rasterizer(std::string_view coverage,
+                                                     std::string_view visibility,
+                                                     std::uint64_t memory_limit,
                                                      MemoryAccount& memory,
                                                      parallel::Threads& threads) {
   return std::make_unique<DeviceRasterizer<parallel::Cuda, transparency::SceneLayers>>(
-      memory_limit, memory, threads);
+      coverage, visibility, memory_limit, memory, threads);
 }
 
 }  // namespace rastrum::raster

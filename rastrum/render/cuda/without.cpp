@@ -8,7 +8,8 @@ bool draws_on_cuda() noexcept {
   return false;
 }
 
-std::unique_ptr<CudaRasterizer> make_cuda_rasterizer(std::uint64_t, MemoryAccount&,
+std::unique_ptr<CudaRasterizer> make_cuda_rasterizer(std::string_view, std::string_view,
+                                                     std::uint64_t, MemoryAccount&,
                                                      parallel::Threads&) {
   throw Error(Errc::no_device, "this program was built without CUDA");
 }

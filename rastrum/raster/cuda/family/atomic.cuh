@@ -1,0 +1,31 @@
+// atomic on a device: the 64-bit maximum of words (paper 1, section 3.2.1), a thread a sample.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <rastrum/raster/cuda/family/fragments.cuh>
+
+namespace rastrum::raster::family {
+
+struct RaiseWord {
+  const Piece* pieces;
+  SurfaceView words;
+  RASTRUM_HD void operator()(const Block& b, int i) const {
+    const Fragment f = fragment_at(pieces, words, b, i);
+    parallel::atomic_maximum(words.words[f.element], f.word);
+  }
+};
+
+/// Work O(fragments); no memory.
+template <class Exec>
+class AtomicOnDevice final : public DeviceVisibility<Exec> {
+ public:
+  explicit AtomicOnDevice(FamilyFrame<Exec>&) {}
+  void resolve(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
+               std::span<const Block> blocks, std::uint64_t) override {
+    for_each_sample(frame.exec, blocks, RaiseWord{pieces.data(), frame.surface.words});
+  }
+};
+
+}  // namespace rastrum::raster::family

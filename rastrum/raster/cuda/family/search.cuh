@@ -1,0 +1,88 @@
+// search on a device: a first pass over a turn's blocks raises the depths, with 32-bit atomics, a
+// second one the words of the fragments that have the depth of their pixel (paper 1, section
+// 3.2.2). Between turns the depths are those of the words, and are kept.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include <rastrum/raster/cuda/family/fragments.cuh>
+
+namespace rastrum::raster::family {
+
+/// value = max(value, candidate), by many threads at once.
+RASTRUM_HD inline void raise_depth(std::uint32_t& value, std::uint32_t candidate) noexcept {
+#if defined(__CUDA_ARCH__)
+  atomicMax(&value, candidate);
+#else
+  const std::atomic_ref<std::uint32_t> shared(value);
+  std::uint32_t now = shared.load(std::memory_order_relaxed);
+  while (now < candidate &&
+         !shared.compare_exchange_weak(now, candidate, std::memory_order_relaxed)) {
+  }
+#endif
+}
+
+[[nodiscard]] RASTRUM_HD inline std::uint32_t depth_bits(std::uint64_t word) {
+  return static_cast<std::uint32_t>(word >> kIdBits);
+}
+
+/// 0 for a surface at depth 0 and for none alike: the second pass, which raises whole words, tells
+/// them apart.
+struct DepthOfWord {
+  const std::uint64_t* words;
+  RASTRUM_HD std::uint32_t operator()(std::size_t i) const { return depth_bits(words[i]); }
+};
+struct RaiseDepth {
+  const Piece* pieces;
+  SurfaceView words;
+  std::uint32_t* depth;
+  RASTRUM_HD void operator()(const Block& b, int i) const {
+    const Fragment f = fragment_at(pieces, words, b, i);
+    raise_depth(depth[f.element], depth_bits(f.word));
+  }
+};
+struct RaiseWordOfDepth {
+  const Piece* pieces;
+  SurfaceView words;
+  const std::uint32_t* depth;
+  std::uint64_t* matches;
+  RASTRUM_HD void operator()(const Block& b, int i) const {
+    const Fragment f = fragment_at(pieces, words, b, i);
+    if (depth[f.element] != depth_bits(f.word)) return;
+    parallel::atomic_maximum(words.words[f.element], f.word);
+    parallel::atomic_add(*matches, std::uint64_t{1});
+  }
+};
+
+/// Work O(fragments), twice; 4 bytes a pixel. Counters: "fragments compared", of the second pass,
+/// and "depth matches" among them, which grow with the number of turns.
+template <class Exec>
+class SearchOnDevice final : public DeviceVisibility<Exec> {
+ public:
+  explicit SearchOnDevice(FamilyFrame<Exec>& frame)
+      : depth_(parallel::make_buffer<std::uint32_t>(frame.exec, frame.pixel_count())),
+        matches_(parallel::make_buffer<std::uint64_t>(frame.exec, 1)) {
+    parallel::tabulate(frame.exec, depth_, DepthOfWord{frame.surface.words.words});
+    parallel::tabulate(frame.exec, matches_, parallel::range_detail::SameValue<std::uint64_t>{0});
+  }
+  void resolve(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
+               std::span<const Block> blocks, std::uint64_t fragments) override {
+    const SurfaceView& words = frame.surface.words;
+    for_each_sample(frame.exec, blocks, RaiseDepth{pieces.data(), words, depth_.data()});
+    for_each_sample(frame.exec, blocks,
+                    RaiseWordOfDepth{pieces.data(), words, depth_.data(), matches_.data()});
+    frame.count("fragments compared", fragments);
+  }
+  void finish(FamilyFrame<Exec>& frame) override {
+    frame.count("depth matches", parallel::to_host(frame.exec, matches_)[0]);
+  }
+
+ private:
+  decltype(parallel::make_buffer<std::uint32_t>(std::declval<Exec&>(), 0)) depth_;
+  decltype(parallel::make_buffer<std::uint64_t>(std::declval<Exec&>(), 0)) matches_;
+};
+
+}  // namespace rastrum::raster::family

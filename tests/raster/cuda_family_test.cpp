@@ -1,0 +1,331 @@
+// Every point of the coverage × visibility table that a device has draws the bits of the serial
+// reference, each in a test of its own, so that a broken row is named; and its rows do the work of
+// the host's rows of the same names, by their counters. Through the façade's --device cuda, whose
+// code for the device this program has on the CPU (CMakeLists.txt).
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/parallel/cuda/status.hpp>
+#include <rastrum/raster/program.hpp>
+#include <rastrum/render/render.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/family.hpp"
+#include "tests/support/frame.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+RenderOptions options(int width, int height, Device device) {
+  RenderOptions o;
+  o.width = width;
+  o.height = height;
+  o.device = device;
+  o.threads = 2;
+  o.isa = Isa::scalar;
+  o.background = {0.2F, 0.3F, 0.4F, 0.5F};
+  return o;
+}
+RenderOptions options(int width, int height, Device device, const TablePoint& point) {
+  RenderOptions o = options(width, height, device);
+  o.rasterizer = point.rasterizer;
+  o.visibility = point.visibility;
+  return o;
+}
+
+std::vector<TablePoint> device_points() {
+  std::vector<TablePoint> points = table_points();
+  std::erase_if(points, [](const TablePoint& p) { return p.rasterizer == "grouped"; });
+  return points;
+}
+
+testing::AssertionResult same_frame(const Frame& a, const Frame& b) {
+  if (auto r = same_surfaces(a, b); !r) return r;
+  if (auto r = same_counts(a.stats, b.stats); !r) return r;
+  if (auto r = same_picture(a, b, 0); !r) return r;
+  return counts_add_up(a);
+}
+
+std::uint64_t counter(const FrameStats& stats, std::string_view name) {
+  for (const auto& [key, value] : stats.counters)
+    if (key == name) return value;
+  ADD_FAILURE() << "no counter " << name;
+  return 0;
+}
+
+/// The counters of both that say the same of them. Tables of `hashed` are the host's where a frame
+/// has one, not each tile.
+void expect_same_work(const FrameStats& device, const FrameStats& host, const TablePoint& point) {
+  static constexpr std::string_view kSame[] = {"rows",
+                                               "runs",
+                                               "small",
+                                               "large",
+                                               "bins",
+                                               "tile pairs",
+                                               "fragments compared",
+                                               "depth matches",
+                                               "fragments materialized",
+                                               "fragments hashed",
+                                               "fragments shaded"};
+  static constexpr std::string_view kTables[] = {"table slots", "table entries", "probes"};
+  const bool owned = point.rasterizer == "tiled" || point.rasterizer == "hybrid";
+  int compared = 0;
+  for (const auto& [name, value] : host.counters) {
+    if (std::ranges::count(kSame, name) == 0 && (owned || std::ranges::count(kTables, name) == 0))
+      continue;
+    // What a frame without such fragments does not say on the device.
+    const auto found =
+        std::ranges::find(device.counters, name, &std::pair<std::string, std::uint64_t>::first);
+    EXPECT_EQ(found == device.counters.end() ? 0 : found->second, value) << name;
+    ++compared;
+  }
+  EXPECT_GT(compared, 1);
+}
+
+class CudaTable : public testing::TestWithParam<TablePoint> {
+ protected:
+  void SetUp() override {
+    const parallel::CudaStatus status = parallel::cuda_status();
+    if (!status.usable) GTEST_SKIP() << status.why_not;
+  }
+};
+
+TEST_P(CudaTable, EqualsSerialAndDoesTheHostsWork) {
+  constexpr int kSizes[][2] = {{64, 64}, {37, 53}, {1, 1}, {128, 96}};
+  const int scenes = std::max(count_from_environment("RASTRUM_TABLE_SCENES", 120) / 20, 1);
+  for (const auto& [width, height] : kSizes) {
+    Renderer serial(options(width, height, Device::serial));
+    Renderer host(options(width, height, Device::threads, GetParam()));
+    Renderer cuda(options(width, height, Device::cuda, GetParam()));
+    for (int i = 0; i < scenes; ++i) {
+      const auto seed = static_cast<std::uint64_t>(width * 1000000 + i);
+      const GeneratedScene g = generate(seed, width, height);
+      const SceneBinding binding(g.scene);
+      const Frame frame = draw(cuda, binding.view(), g.camera);
+      ASSERT_TRUE(same_frame(frame, draw(serial, binding.view(), g.camera)))
+          << "scene " << seed << " (" << g.kind << ")";
+      EXPECT_EQ(frame.stats.rasterizer, GetParam().rasterizer);
+      EXPECT_EQ(frame.stats.visibility, GetParam().visibility);
+      EXPECT_EQ(frame.stats.device, Device::cuda);
+      expect_same_work(frame.stats, draw(host, binding.view(), g.camera).stats, GetParam());
+    }
+  }
+}
+
+/// From less than a pixel to all of the picture, some at one depth.
+Scene soup(int triangles, int width, int height) {
+  Random random(7);
+  Mesh mesh;
+  for (int t = 0; t < triangles; ++t) {
+    const double size = t % 100 == 0 ? 300 : t % 7 == 0 ? 40 : random.real(0.3, 12);
+    const double x = random.real(0, width), y = random.real(0, height);
+    const bool flat = t % 5 == 0;
+    for (int c = 0; c < 3; ++c)
+      mesh.positions.push_back(at_pixel(x + random.real(-size, size), y + random.real(-size, size),
+                                        flat ? 0.5 : random.real(0.1, 0.9), width, height));
+  }
+  return single(std::move(mesh));
+}
+
+// Bands, batches, and turns of rows, bins, blocks and fragments.
+TEST_P(CudaTable, NothingFailsForSize) {
+  constexpr int kWidth = 200, kHeight = 300, kTriangles = 4000;
+  constexpr std::uint64_t kLimit = 4000000;
+  const Scene scene = soup(kTriangles, kWidth, kHeight);
+  const SceneBinding binding(scene);
+  const Camera camera = pixel_camera(kWidth, kHeight);
+  Renderer serial(options(kWidth, kHeight, Device::serial));
+  const Frame expected = draw(serial, binding.view(), camera);
+  RenderOptions o = options(kWidth, kHeight, Device::cuda, GetParam());
+  Renderer free(o);
+  const Frame at_once = draw(free, binding.view(), camera);
+  EXPECT_TRUE(same_frame(at_once, expected));
+  EXPECT_EQ(counter(at_once.stats, "bands"), 1U);
+  o.memory_limit = kLimit;
+  Renderer limited(o);
+  const Frame in_turns = draw(limited, binding.view(), camera);
+  EXPECT_TRUE(same_frame(in_turns, expected));
+  EXPECT_GT(counter(in_turns.stats, "bands"), 1U);
+  // The mesh's copy is not counted, as the mesh is not.
+  EXPECT_LE(in_turns.stats.peak_bytes, kLimit + std::uint64_t{kTriangles} * 3 * sizeof(Vec3));
+  if (GetParam().visibility == "sorted") {
+    EXPECT_LE(counter(at_once.stats, "sorts"), 2U);
+    EXPECT_GT(counter(in_turns.stats, "sorts"), 4 * counter(in_turns.stats, "bands"));
+  }
+}
+
+// Points, lines and triangles over one vertex function, some behind the eye, wide, biased.
+TEST_P(CudaTable, DrawsAllTopologies) {
+  constexpr int kWidth = 90, kHeight = 61;
+  Renderer serial(options(kWidth, kHeight, Device::serial));
+  Renderer cuda(options(kWidth, kHeight, Device::cuda, GetParam()));
+  constexpr raster::Topology kTopologies[] = {raster::Topology::points, raster::Topology::lines,
+                                              raster::Topology::triangles};
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    Random random(seed);
+    std::vector<Vec4> clip;
+    for (int i = 0; i < 40; ++i) {
+      const double w = random.chance(0.1) ? -0.5 : random.real(0.1, 4);
+      clip.push_back({static_cast<float>((2 * random.real(-8, kWidth + 8) / kWidth - 1) * w),
+                      static_cast<float>((1 - 2 * random.real(-8, kHeight + 8) / kHeight) * w),
+                      static_cast<float>(random.integer(0, 8) / 8.0 * w), static_cast<float>(w)});
+    }
+    const raster::Program program(
+        [&clip](std::uint32_t v) {
+          return raster::VertexOutput<Vec4>{clip[v], clip[v]};
+        },
+        [](const Vec4& v, const raster::Fragment& f) {
+          return Vec4{v.x, f.depth, static_cast<float>(f.vertex[0]), 1};
+        });
+    std::vector<std::vector<std::uint32_t>> indices(std::size(kTopologies));
+    std::vector<raster::Draw> draws;
+    for (std::size_t t = 0; t < std::size(kTopologies); ++t) {
+      for (int i = 0; i < 15 * static_cast<int>(kTopologies[t]); ++i)
+        indices[t].push_back(static_cast<std::uint32_t>(random.integer(0, 39)));
+      raster::Draw& d = draws.emplace_back(program.draw(clip.size(), indices[t], kTopologies[t]));
+      d.line_width = static_cast<float>(random.real(0.1, 9));
+      d.point_size = static_cast<float>(random.real(0.1, 30));
+      d.depth_bias = static_cast<float>(random.real(-0.3, 0.3));
+    }
+    const Frame expected = draw(serial, draws, program, nullptr);
+    EXPECT_GT(expected.stats.pixels_covered, 200U);
+    ASSERT_TRUE(same_frame(draw(cuda, draws, program, nullptr), expected)) << seed;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Points, CudaTable, testing::ValuesIn(device_points()),
+                         [](const testing::TestParamInfo<TablePoint>& p) {
+                           return test_name(p.param);
+                         });
+
+class CudaRows : public CudaTable {};
+
+// Sizes of bins and tiles, orders and ways of small triangles are the host's, too.
+TEST_P(CudaRows, TuningsAreTheHosts) {
+  constexpr int kWidth = 300, kHeight = 140;
+  const Scene scene = soup(1500, kWidth, kHeight);
+  const SceneBinding binding(scene);
+  const Camera camera = pixel_camera(kWidth, kHeight);
+  Renderer serial(options(kWidth, kHeight, Device::serial));
+  const Frame expected = draw(serial, binding.view(), camera);
+  const bool binned = GetParam().rasterizer == "binned";
+  raster::Tuning tunings[4];
+  tunings[0].bin_px = binned ? 32 : 16;
+  tunings[0].tile_px = binned ? 8 : 4;
+  tunings[0].small_px = 20;
+  tunings[1].bin_px = 64;
+  tunings[1].tile_px = 16;
+  tunings[1].order = raster::BlockOrder::morton;
+  tunings[2].bin_px = 128;
+  tunings[2].tile_px = 8;
+  tunings[2].large_px = 500;
+  tunings[3].small_path = raster::SmallPath::rows;
+  tunings[3].large_px = 1;
+  for (const raster::Tuning& tuning : tunings) {
+    RenderOptions o = options(kWidth, kHeight, Device::cuda, GetParam());
+    o.tuning = tuning;
+    Renderer cuda(o);
+    o.device = Device::threads;
+    Renderer host(o);
+    const Frame frame = draw(cuda, binding.view(), camera);
+    ASSERT_TRUE(same_frame(frame, expected)) << tuning.bin_px << '/' << tuning.tile_px;
+    const Frame on_host = draw(host, binding.view(), camera);
+    expect_same_work(frame.stats, on_host.stats, GetParam());
+    if (binned) {
+      EXPECT_EQ(counter(frame.stats, "batches"), counter(on_host.stats, "batches"));
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(
+    Rows, CudaRows,
+    testing::Values(TablePoint{"scanline", "sorted"}, TablePoint{"pineda", "sorted"},
+                    TablePoint{"tiled", "sorted"}, TablePoint{"hybrid", "sorted"},
+                    TablePoint{"binned", "sorted"}),
+    [](const testing::TestParamInfo<TablePoint>& p) { return p.param.rasterizer; });
+
+class CudaChoice : public CudaTable {
+ protected:
+  static std::string refusal(const RenderOptions& o) {
+    try {
+      Renderer renderer(o);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), Errc::invalid_argument);
+      return error.what();
+    }
+    return "not refused";
+  }
+  static bool has(const std::string& text, std::string_view what) {
+    return text.find(what) != std::string::npos;
+  }
+};
+
+TEST_P(CudaChoice, NamesWhatTheDeviceHas) {
+  const auto refused = [](const char* rasterizer, const char* visibility) {
+    return refusal(options(8, 8, Device::cuda, {rasterizer, visibility}));
+  };
+  EXPECT_TRUE(has(refused("by-size", "sorted"), "by-size draws by 'atomic'"));
+  EXPECT_TRUE(has(refused("scanlines", "auto"), "by-size, grouped, scanline"));
+  EXPECT_TRUE(has(refused("auto", "nearest"), "auto, atomic, search"));
+  RenderOptions o = options(8, 8, Device::cuda, {"tiled", "auto"});
+  o.tuning.bin_px = 48;
+  EXPECT_TRUE(has(refusal(o), "32/8"));
+}
+
+TEST_P(CudaChoice, SaysWhatItTook) {
+  const Scene scene = soup(200, 64, 64);
+  const SceneBinding binding(scene);
+  const auto stats_of = [&](const RenderOptions& o) {
+    Renderer renderer(o);
+    return draw(renderer, binding.view(), pixel_camera(64, 64)).stats;
+  };
+  const FrameStats by_size = stats_of(options(64, 64, Device::cuda));
+  EXPECT_EQ(by_size.rasterizer, "by-size");
+  EXPECT_TRUE(has(by_size.why, "cuda has by-size"));
+  const FrameStats hybrid = stats_of(options(64, 64, Device::cuda, {"auto", "hashed"}));
+  EXPECT_EQ(hybrid.rasterizer, "hybrid");
+  EXPECT_EQ(hybrid.visibility, "hashed");
+  EXPECT_TRUE(has(hybrid.why, "auto takes hybrid"));
+  const FrameStats grouped = stats_of(options(64, 64, Device::cuda, {"grouped", "auto"}));
+  EXPECT_EQ(grouped.device, Device::threads);
+  EXPECT_EQ(grouped.rasterizer, "grouped");
+  EXPECT_TRUE(has(grouped.device_why, "it is the CPU's"));
+  RenderOptions o = options(64, 64, Device::cuda, {"binned", "auto"});
+  o.tuning.schedule = raster::Schedule::persistent;
+  EXPECT_TRUE(has(stats_of(o).device_why, "persistent"));
+}
+
+// Translucent pieces are the layers' on every row, and opaque ones the row's.
+TEST_P(CudaChoice, LayersCombineWithTheRows) {
+  constexpr int kSize = 64;
+  Scene scene = soup(150, kSize, kSize);
+  Mesh& mesh = scene.meshes[0];
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    mesh.colors.values.push_back({0.5F, 0.25F, 0.75F, i / 3 % 2 == 0 ? 0.5F : 1.0F});
+  const SceneBinding binding(scene);
+  const Camera camera = pixel_camera(kSize, kSize);
+  RenderOptions o = options(kSize, kSize, Device::serial);
+  o.opacity = 0.5F;
+  Renderer serial(o);
+  const Frame expected = draw(serial, binding.view(), camera);
+  o.device = Device::cuda;
+  o.rasterizer = "tiled";
+  Renderer cuda(o);
+  const Frame frame = draw(cuda, binding.view(), camera);
+  EXPECT_TRUE(same_picture(frame, expected, 0));
+  o.visibility = "sorted";
+  Renderer with_visibility(o);
+  EXPECT_THROW((void)draw(with_visibility, binding.view(), camera), Error);
+}
+
+INSTANTIATE_TEST_SUITE_P(Device, CudaChoice, testing::Values(TablePoint{}),
+                         [](const auto&) { return std::string("choice"); });
+
+}  // namespace
+}  // namespace rastrum::test
