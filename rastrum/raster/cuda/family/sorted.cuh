@@ -26,7 +26,8 @@ struct RaiseToMaximum {
   }
 };
 
-/// Work O(fragments · digits); 44 bytes a fragment. Counters: "fragments materialized", "sorts".
+/// Work O(fragments · digits); 44 bytes a fragment. Counters: "fragments materialized", "sorts",
+/// "segments", a pixel of a sort each.
 template <class Exec>
 class SortedOnDevice final : public DeviceVisibility<Exec> {
  public:
@@ -43,6 +44,7 @@ class SortedOnDevice final : public DeviceVisibility<Exec> {
           frame.exec, segments.keys.size(),
           RaiseToMaximum{segments.keys.data(), segments.values.data(), frame.surface.words.words});
       frame.count("sorts", 1);
+      frame.count("segments", segments.keys.size());
     });
     frame.count("fragments materialized", fragments);
   }
