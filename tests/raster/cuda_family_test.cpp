@@ -17,6 +17,7 @@
 #include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/layer_picture.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -308,27 +309,28 @@ TEST_P(CudaChoice, SaysWhatItTook) {
   EXPECT_TRUE(has(stats_of(o).device_why, "persistent"));
 }
 
-// Translucent pieces are the layers' on every row, and opaque ones the row's.
+// Translucent pieces are the layers', whatever the row; a visibility of another kind is refused.
 TEST_P(CudaChoice, LayersCombineWithTheRows) {
   constexpr int kSize = 64;
-  Scene scene = soup(150, kSize, kSize);
-  Mesh& mesh = scene.meshes[0];
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-    mesh.colors.values.push_back({0.5F, 0.25F, 0.75F, i / 3 % 2 == 0 ? 0.5F : 1.0F});
+  const Scene scene = soup(150, kSize, kSize);
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kSize, kSize);
-  RenderOptions o = options(kSize, kSize, Device::serial);
+  RenderOptions o = options(kSize, kSize, Device::threads);
   o.opacity = 0.5F;
-  Renderer serial(o);
-  const Frame expected = draw(serial, binding.view(), camera);
+  Renderer threads(o);
+  const LayerPicture expected = take(threads, binding.view(), camera);
   o.device = Device::cuda;
-  o.rasterizer = "tiled";
-  Renderer cuda(o);
-  const Frame frame = draw(cuda, binding.view(), camera);
-  EXPECT_TRUE(same_picture(frame, expected, 0));
+  for (const char* rasterizer : {"tiled", "scanline"}) {
+    o.rasterizer = rasterizer;
+    Renderer cuda(o);
+    const LayerPicture picture = take(cuda, binding.view(), camera);
+    EXPECT_EQ(picture.stats.device, Device::cuda) << picture.stats.device_why;
+    EXPECT_EQ(picture.stats.rasterizer, rasterizer);
+    EXPECT_TRUE(same_bits(picture, expected));
+  }
   o.visibility = "sorted";
   Renderer with_visibility(o);
-  EXPECT_THROW((void)draw(with_visibility, binding.view(), camera), Error);
+  EXPECT_THROW((void)take(with_visibility, binding.view(), camera), Error);
 }
 
 INSTANTIATE_TEST_SUITE_P(Device, CudaChoice, testing::Values(TablePoint{}),

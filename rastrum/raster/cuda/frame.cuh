@@ -151,9 +151,8 @@ class DeviceRasterizer final : public CudaRasterizer {
       if (resolver) {
         const LitOnDevice shade = resolver->shade(scene.geometry());
         if (layered) {
-          if (!shades_all)
-            parallel::tabulate(exec_, colors,
-                               cuda_detail::ColorOfElement<LitOnDevice>{surface.words, shade});
+          parallel::tabulate(exec_, colors,
+                             cuda_detail::ColorOfElement<LitOnDevice>{surface.words, shade});
           layers.blend(exec_, scene, surface, parallel::view_of(colors), request.transparency,
                        shade, plan.batch, limit() / 8);
           watch.lap(stats, "layers");
