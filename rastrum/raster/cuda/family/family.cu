@@ -38,8 +38,7 @@ inline constexpr std::array kVisibilities{
     VisibilityOnDevice<Exec>{"atomic", 0, false, make<AtomicOnDevice<Exec>, Exec>},
     VisibilityOnDevice<Exec>{"search", sizeof(std::uint32_t), false,
                              make<SearchOnDevice<Exec>, Exec>},
-    VisibilityOnDevice<Exec>{"tuple", sizeof(Seen) + sizeof(Vec4), true,
-                             make<TupleOnDevice<Exec>, Exec>},
+    VisibilityOnDevice<Exec>{"tuple", sizeof(Vec4), true, make<TupleOnDevice<Exec>, Exec>},
     VisibilityOnDevice<Exec>{"sorted", 0, false, make<SortedOnDevice<Exec>, Exec>},
     VisibilityOnDevice<Exec>{"hashed", 0, false, make<HashedOnDevice<Exec>, Exec>},
 };

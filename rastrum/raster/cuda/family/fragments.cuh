@@ -2,6 +2,7 @@
 // number, a part of them in memory at a time.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -77,6 +78,18 @@ void each_written_part(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
                                      at, begin, element.data(), word.data()});
         f(element, word);
       });
+}
+
+/// Sorts the elements of a part's fragments; returns which fragment each was. A pixel's fragments
+/// are then a segment. Of the family's sorts none has other types: CUB's is most of what nvcc
+/// compiles.
+template <class Exec, class Elements>
+[[nodiscard]] auto sort_by_pixel(FamilyFrame<Exec>& frame, Elements& element) {
+  auto which = parallel::make_buffer<std::uint32_t>(frame.exec, element.size());
+  parallel::tabulate(frame.exec, which, parallel::range_detail::IndexItself<std::uint32_t>{});
+  parallel::sort_by_key(frame.exec, element, which,
+                        static_cast<int>(std::bit_width(frame.pixel_count() - 1)));
+  return which;
 }
 
 }  // namespace rastrum::raster::family

@@ -133,9 +133,11 @@ class FamilyFrame {
 
  private:
   [[nodiscard]] std::size_t share(std::uint64_t of_bytes, std::uint64_t each) const {
-    if (bytes == 0) return std::numeric_limits<std::size_t>::max();
+    // Fragments are numbered in 32 bits.
+    constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
+    if (bytes == 0) return kMost;
     // An arena's blocks are up to a quarter larger than what was asked for.
-    return std::max<std::size_t>(static_cast<std::size_t>(of_bytes / each / 5 * 4), 1);
+    return std::clamp<std::size_t>(static_cast<std::size_t>(of_bytes / each / 5 * 4), 1, kMost);
   }
 };
 

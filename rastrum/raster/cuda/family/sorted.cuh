@@ -1,12 +1,10 @@
 // sorted on a device: fragments are counted, written, sorted by pixel, and the maximum of each
 // pixel's segment is kept (paper 5, sections 3.1 to 3.4): no atomic operation on a pixel.
 //
-// Deviations: what is sorted is (pixel, word), 12 bytes, and what does not fit into the memory is
-// sorted part by part, each raising the surface.
+// As in the paper an index is sorted, by radix, and the words are gathered where they are reduced.
+// What does not fit into the memory is sorted part by part, each raising the surface.
 #pragma once
 
-#include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -15,6 +13,11 @@
 
 namespace rastrum::raster::family {
 
+struct WordAt {
+  const std::uint64_t* word;
+  const std::uint32_t* which;
+  RASTRUM_HD std::uint64_t operator()(std::size_t k) const { return word[which[k]]; }
+};
 /// A segment has its pixel for itself.
 struct RaiseToMaximum {
   const std::uint32_t* element;
@@ -31,15 +34,17 @@ struct RaiseToMaximum {
 template <class Exec>
 class SortedOnDevice final : public DeviceVisibility<Exec> {
  public:
-  explicit SortedOnDevice(FamilyFrame<Exec>& frame)
-      : bits_(static_cast<int>(std::bit_width(frame.pixel_count() - 1))) {}
+  explicit SortedOnDevice(FamilyFrame<Exec>&) {}
   void resolve(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
                std::span<const Block> blocks, std::uint64_t fragments) override {
-    // Key and word, twice while they are sorted and once reduced, and a share of what does it.
-    constexpr std::uint64_t kFragmentBytes = 3 * 12 + 8;
+    // Its word, its element and index twice while they are sorted, its segment's, and a share of
+    // what sorts and reduces.
+    constexpr std::uint64_t kFragmentBytes = 8 + 2 * 8 + 12 + 8;
     each_written_part(frame, pieces, blocks, kFragmentBytes, [&](auto& element, auto& word) {
-      parallel::sort_by_key(frame.exec, element, word, bits_);
-      const auto segments = parallel::reduce_by_key(frame.exec, element, word, parallel::Maximum{});
+      const auto which = sort_by_pixel(frame, element);
+      const auto segments = parallel::reduce_by_key(
+          frame.exec, element, parallel::Computed(which.size(), WordAt{word.data(), which.data()}),
+          parallel::Maximum{});
       parallel::for_each_index(
           frame.exec, segments.keys.size(),
           RaiseToMaximum{segments.keys.data(), segments.values.data(), frame.surface.words.words});
@@ -48,9 +53,6 @@ class SortedOnDevice final : public DeviceVisibility<Exec> {
     });
     frame.count("fragments materialized", fragments);
   }
-
- private:
-  int bits_;
 };
 
 }  // namespace rastrum::raster::family

@@ -1,6 +1,6 @@
 // tuple on a device: every fragment is shaded, and (word, colour) pairs are reduced by their
-// pixels' indices, the greater word with its colour (paper 1, section 3.2.1). No machine changes 24
-// bytes at once, so reduce_by_index sorts.
+// pixels, the greater word with its colour (paper 1, section 3.2.1). No machine changes 24 bytes at
+// once, so the fragments of a pixel are brought together by a sort.
 #pragma once
 
 #include <cstddef>
@@ -32,64 +32,60 @@ inline constexpr bool kAnyOrder<raster::family::Seen, raster::family::GreaterWor
 
 namespace rastrum::raster::family {
 
-struct SeenOfWord {
-  const std::uint64_t* words;
-  RASTRUM_HD Seen operator()(std::size_t i) const { return {words[i], {}}; }
-};
-struct SeenOfFragment {
-  const std::uint64_t* words;
-  const Vec4* colors;  ///< may be null
+struct SeenAt {
+  const std::uint64_t* word;
+  const Vec4* color;  ///< null: not wanted
+  const std::uint32_t* which;
   RASTRUM_HD Seen operator()(std::size_t k) const {
-    return {words[k], colors == nullptr ? Vec4{} : colors[k]};
+    const std::uint32_t i = which[k];
+    return {word[i], color == nullptr ? Vec4{} : color[i]};
   }
 };
-struct StoreSeen {
-  const Seen* seen;
+/// A segment has its pixel for itself.
+struct RaiseToSeen {
+  const std::uint32_t* element;
+  const Seen* nearest;
   std::uint64_t* words;
-  Vec4* colors;  ///< may be null
-  RASTRUM_HD void operator()(std::size_t i) const {
-    words[i] = seen[i].word;
-    if (colors != nullptr) colors[i] = seen[i].color;
+  Vec4* colors;  ///< null: not wanted
+  RASTRUM_HD void operator()(std::size_t k) const {
+    const std::uint32_t i = element[k];
+    if (nearest[k].word <= words[i]) return;
+    words[i] = nearest[k].word;
+    if (colors != nullptr) colors[i] = nearest[k].color;
   }
 };
 
-/// Work O(fragments) shading and O(fragments · digits); 32 bytes a pixel. Counter: "fragments
+/// Work O(fragments) shading and O(fragments · digits); 80 bytes a fragment. Counter: "fragments
 /// shaded", none where the frame wants no colours or the host shades what it sees.
 template <class Exec>
 class TupleOnDevice final : public DeviceVisibility<Exec> {
  public:
-  explicit TupleOnDevice(FamilyFrame<Exec>& frame)
-      : seen_(parallel::make_buffer<Seen>(frame.exec, frame.pixel_count())) {
-    parallel::tabulate(frame.exec, seen_, SeenOfWord{frame.surface.words.words});
-  }
+  explicit TupleOnDevice(FamilyFrame<Exec>&) {}
   void resolve(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
                std::span<const Block> blocks, std::uint64_t) override {
-    // Its element, word and colour; sorted, its place and its element twice; its run's sum.
-    constexpr std::uint64_t kFragmentBytes =
-        12 + sizeof(Vec4) + 1 + 4 * sizeof(std::size_t) + sizeof(std::size_t) + sizeof(Seen) + 16;
-    const auto& shade = frame.shading.shade;
+    using parallel::view_of;
+    // Its word and colour, its element and index twice while they are sorted, its segment's, and a
+    // share of what sorts and reduces.
+    constexpr std::uint64_t kFragmentBytes = 8 + sizeof(Vec4) + 2 * 8 + 4 + sizeof(Seen) + 8;
+    const Shading& shading = frame.shading;
     each_written_part(frame, pieces, blocks, kFragmentBytes, [&](auto& element, auto& word) {
-      auto color = parallel::make_buffer<Vec4>(frame.exec, shade ? word.size() : 0);
-      if (shade) {
-        shade(parallel::view_of(std::as_const(element)), parallel::view_of(std::as_const(word)),
-              parallel::view_of(color));
+      auto color = parallel::make_buffer<Vec4>(frame.exec, shading.shade ? word.size() : 0);
+      if (shading.shade) {
+        shading.shade(view_of(std::as_const(element)), view_of(std::as_const(word)),
+                      view_of(color));
         frame.count("fragments shaded", word.size());
       }
-      parallel::reduce_by_index(
-          frame.exec, seen_, element,
-          parallel::Computed(word.size(), SeenOfFragment{word.data(), color.data()}),
+      const auto which = sort_by_pixel(frame, element);
+      const auto nearest = parallel::reduce_by_key(
+          frame.exec, element,
+          parallel::Computed(which.size(), SeenAt{word.data(), color.data(), which.data()}),
           GreaterWord{});
+      parallel::for_each_index(
+          frame.exec, nearest.keys.size(),
+          RaiseToSeen{nearest.keys.data(), nearest.values.data(), frame.surface.words.words,
+                      shading.shade ? shading.colors.data() : nullptr});
     });
   }
-  void finish(FamilyFrame<Exec>& frame) override {
-    parallel::for_each_index(
-        frame.exec, seen_.size(),
-        StoreSeen{seen_.data(), frame.surface.words.words,
-                  frame.shading.colors.empty() ? nullptr : frame.shading.colors.data()});
-  }
-
- private:
-  decltype(parallel::make_buffer<Seen>(std::declval<Exec&>(), 0)) seen_;
 };
 
 }  // namespace rastrum::raster::family
