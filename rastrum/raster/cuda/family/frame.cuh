@@ -30,9 +30,8 @@ namespace rastrum::raster::family {
 struct Shading {
   std::function<void(std::span<const std::uint32_t>, std::span<const std::uint64_t>,
                      std::span<Vec4>)>
-      shade;  ///< null: no colours are wanted
-  std::span<Vec4>
-      colors;  ///< of the surface, in the places of its words; set where words are not 0
+      shade;               ///< null: no colours are wanted
+  std::span<Vec4> colors;  ///< of the surface, in the places of its words; set where those rise
 };
 
 /// Bytes of a block of a turn, with its place among the fragments.
