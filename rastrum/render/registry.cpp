@@ -4,11 +4,13 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/raster/cuda/rasterizer.hpp>
 #include <rastrum/raster/rasterizer.hpp>
 #include <rastrum/raster/reference.hpp>
+#include <rastrum/render/device_work.hpp>
 #include <rastrum/render/registry.hpp>
 #include <rastrum/transparency/layers.hpp>
 #include <rastrum/transparency/reference.hpp>
@@ -162,36 +164,43 @@ OnCuda choose_on_cuda(const RenderOptions& options, MemoryAccount& memory) {
   return {coverage.name, visibility.name, {}};
 }
 
-/// The device's rasterizers, and for what they have no code a rasterizer of the CPU.
+/// The device's rasterizers, and for what they have no code, or `automatic` expects to be done
+/// sooner there, a rasterizer of the CPU.
 DrawFrame make_on_cuda(const RenderOptions& options, MemoryAccount& memory,
-                       parallel::Threads& threads) {
+                       parallel::Threads& threads, const std::string& automatic_why) {
   const OnCuda chosen = choose_on_cuda(options, memory);
   RenderOptions on_threads = options;
   on_threads.device = Device::threads;
   if (options.rasterizer == kBySize) on_threads.rasterizer = "auto";
-  return [device =
-              chosen.is_the_cpus
-                  ? nullptr
-                  : std::shared_ptr<raster::CudaRasterizer>(raster::make_cuda_rasterizer(
-                        chosen.coverage, chosen.visibility, options.memory_limit, memory, threads)),
-          host = DrawFrame(), on_threads, why = chosen.why, &memory,
-          &threads](raster::FrameRequest& request) mutable {
-    if (needs_layers(request) && on_threads.visibility != "auto") refuse_visibility();
-    const std::string why_not = device ? why_not_on_cuda(*device, request) : why;
-    if (why_not.empty()) {
-      FrameStats stats = device->render(request);
-      if (!why.empty()) stats.why = std::string(why).append("; ").append(stats.why);
-      return stats;
-    }
-    if (request.in_place)
-      throw Error(Errc::unsupported,
-                  std::string("arrays in the device's memory (in_place): ").append(why_not));
-    if (!host) host = make_rasterizer(on_threads, memory, &threads);
-    FrameStats stats = host(request);
-    stats.device = Device::threads;
-    stats.device_why = why_not;
-    return stats;
-  };
+  return
+      [device =
+           chosen.is_the_cpus
+               ? nullptr
+               : std::shared_ptr<raster::CudaRasterizer>(raster::make_cuda_rasterizer(
+                     chosen.coverage, chosen.visibility, options.memory_limit, memory, threads)),
+       host = DrawFrame(), on_threads, why = chosen.why, &memory, &threads,
+       there = DeviceChoice{Device::cuda, automatic_why}](raster::FrameRequest& request) mutable {
+        if (needs_layers(request) && on_threads.visibility != "auto") refuse_visibility();
+        DeviceChoice choice{Device::threads, device ? why_not_on_cuda(*device, request) : why};
+        if (choice.why.empty())
+          choice = there.why.empty() || request.in_place
+                       ? there
+                       : choose_device(there, device_work(request), threads.concurrency());
+        if (choice.device == Device::cuda) {
+          FrameStats stats = device->render(request);
+          if (!why.empty()) stats.why = std::string(why).append("; ").append(stats.why);
+          if (stats.device_why.empty()) stats.device_why = std::move(choice.why);
+          return stats;
+        }
+        if (request.in_place)
+          throw Error(Errc::unsupported,
+                      std::string("arrays in the device's memory (in_place): ").append(choice.why));
+        if (!host) host = make_rasterizer(on_threads, memory, &threads);
+        FrameStats stats = host(request);
+        stats.device = Device::threads;
+        stats.device_why = std::move(choice.why);
+        return stats;
+      };
 }
 
 }  // namespace
@@ -226,9 +235,9 @@ const std::vector<AxisInfo>& visibilities() {
 }
 
 DrawFrame make_rasterizer(const RenderOptions& options, MemoryAccount& memory,
-                          parallel::Threads* threads) {
+                          parallel::Threads* threads, const std::string& automatic_why) {
   if (threads == nullptr) return make_reference(options, memory);
-  if (options.device == Device::cuda) return make_on_cuda(options, memory, *threads);
+  if (options.device == Device::cuda) return make_on_cuda(options, memory, *threads, automatic_why);
   const auto& coverage =
       options.rasterizer == "auto"
           ? raster::coverages().front()

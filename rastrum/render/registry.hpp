@@ -20,9 +20,12 @@ namespace rastrum {
 using DrawFrame = std::function<FrameStats(raster::FrameRequest&)>;
 
 /// What the options name; `auto` is chosen anew for each frame, from its size alone. `threads` is
-/// null for the serial reference; both outlive the result. Throws Error{invalid_argument} that
-/// lists the names, or the tunings that were compiled.
+/// null for the serial reference; both outlive the result. `automatic_why`: what Device::automatic
+/// took CUDA for; each frame is then the device's only if it is expected to be worth it
+/// (device_work.hpp). Throws Error{invalid_argument} that lists the names, or the tunings that were
+/// compiled.
 [[nodiscard]] DrawFrame make_rasterizer(const RenderOptions& options, MemoryAccount& memory,
-                                        parallel::Threads* threads);
+                                        parallel::Threads* threads,
+                                        const std::string& automatic_why = {});
 
 }  // namespace rastrum

@@ -193,7 +193,7 @@ Renderer::Renderer(RenderOptions options) : impl_(std::make_unique<Impl>(std::mo
     impl_->threads = std::make_unique<parallel::Threads>(o.threads, &impl_->memory);
   else
     impl_->isa = Isa::scalar;
-  impl_->draw_frame = make_rasterizer(o, impl_->memory, impl_->threads.get());
+  impl_->draw_frame = make_rasterizer(o, impl_->memory, impl_->threads.get(), impl_->device_why);
 }
 
 Renderer::~Renderer() = default;

@@ -47,11 +47,13 @@ struct RenderOptions {
   int width = 1280, height = 720;
   std::string rasterizer = "auto";
   std::string visibility = "auto";
-  raster::Tuning tuning;            ///< of the rasterizer
-  std::uint64_t memory_limit = 0;   ///< bytes of scratch beyond the mesh and the images; 0: none
-  bool hierarchical_z = true;       ///< where the rasterizer has it; changes no pixel
-  Device device = Device::threads;  ///< options() of a Renderer has what `automatic` took
-  int threads = 0;                  ///< 0: all
+  raster::Tuning tuning;           ///< of the rasterizer
+  std::uint64_t memory_limit = 0;  ///< bytes of scratch beyond the mesh and the images; 0: none
+  bool hierarchical_z = true;      ///< where the rasterizer has it; changes no pixel
+  /// options() of a Renderer has what `automatic` took. With a GPU there, each frame that the
+  /// threads are expected to draw sooner is left to them: FrameStats::device_why has the figures.
+  Device device = Device::threads;
+  int threads = 0;  ///< 0: all
   /// The scene's arrays (positions, indices, normals, colours) and the targets are memory of the
   /// device that draws: with `cuda` CUDA's, of which nothing is copied, else the host's, as always.
   /// For opaque scenes without materials, by a shader of the device; Renderer::render says what

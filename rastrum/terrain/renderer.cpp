@@ -9,6 +9,7 @@
 #include <rastrum/parallel/cuda/status.hpp>
 #include <rastrum/terrain/blocks.hpp>
 #include <rastrum/terrain/cuda/device.hpp>
+#include <rastrum/terrain/device_work.hpp>
 #include <rastrum/terrain/methods.hpp>
 #include <rastrum/terrain/roll.hpp>
 #include <rastrum/terrain/setup.hpp>
@@ -49,7 +50,8 @@ struct TerrainRenderer::Impl {
   }
 
   [[nodiscard]] parallel::Threads& threads();
-  [[nodiscard]] DeviceChoice place(const Terrain& terrain, const TerrainOptions& how);
+  [[nodiscard]] DeviceChoice place(const Terrain& terrain, const TerrainOptions& how,
+                                   const TerrainTargets& targets);
   void prepare(const Terrain& terrain, Device where);
   Counts draw(const Terrain& terrain, const TerrainOptions& how, const TerrainCamera& camera,
               const TerrainTargets& targets, TerrainStats& stats, Stopwatch& stopwatch);
@@ -77,7 +79,8 @@ parallel::Threads& TerrainRenderer::Impl::threads() {
 }
 
 /// What draws a frame of this terrain.
-DeviceChoice TerrainRenderer::Impl::place(const Terrain& terrain, const TerrainOptions& how) {
+DeviceChoice TerrainRenderer::Impl::place(const Terrain& terrain, const TerrainOptions& how,
+                                          const TerrainTargets& targets) {
   DeviceChoice choice{options.device, device_why};
   if (options.device != Device::cuda) return choice;
   const std::uint64_t bytes = terrain.is_map() ? device_bytes(terrain, how) : 0;
@@ -103,7 +106,10 @@ DeviceChoice TerrainRenderer::Impl::place(const Terrain& terrain, const TerrainO
     else
       fits_gpu = bytes;
   }
-  if (why_not.empty()) return choice;
+  if (why_not.empty())
+    return asked == Device::automatic
+               ? choose_device(choice, device_work(terrain, how, targets), threads().concurrency())
+               : choice;
   if (terrain.is_map() && asked == Device::cuda)
     throw Error(Errc::out_of_memory,
                 std::string("terrain: ").append(why_not).append("; use --device threads"));
@@ -210,7 +216,8 @@ TerrainStats TerrainRenderer::render(const Terrain& terrain, const TerrainCamera
   Stopwatch stopwatch(stats);
   stats.camera = given;
   const bool rolled = given.roll_rad != 0;
-  DeviceChoice place = impl_->place(terrain, rolled ? upright_of(options, given).options : options);
+  DeviceChoice place =
+      impl_->place(terrain, rolled ? upright_of(options, given).options : options, targets);
   stats.device = place.device;
   stats.device_why = std::move(place.why);
   stats.isa = stats.device == Device::threads ? impl_->isa : Isa::scalar;

@@ -198,24 +198,25 @@ TEST_F(Options, MachineChoicesReachTheStatisticsAndLeaveThePictureAlone) {
 }
 
 TEST_F(Options, ADeviceThatIsNotHereSaysSo) {
+  const parallel::CudaStatus status = parallel::cuda_status();
+  if (status.usable) GTEST_SKIP() << "there is a " << status.name;
   const Outcome r = run({"render", "no-such-file.obj", "-o", "p.png", "--device", "cuda"});
   EXPECT_EQ(r.status, 1);
   EXPECT_NE(r.err.find("--device cuda: CUDA cannot be used: "), std::string::npos) << r.err;
   EXPECT_NE(r.err.find("use --device threads"), std::string::npos) << r.err;
   EXPECT_EQ(r.err.find("no-such-file"), std::string::npos) << "it was read first: " << r.err;
-  const parallel::CudaStatus status = parallel::cuda_status();
-  EXPECT_NE(r.err.find(status.usable ? status.name : status.why_not), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find(status.why_not), std::string::npos) << r.err;
 }
 
 TEST_F(Options, AutoTakesADeviceAndSaysWhy) {
   must({"render", "builtin:boxes?count=2", "--size", "72x56", "--device", "auto", "--stats",
         "auto.json", "-o", "auto.png"});
   const auto s = json("auto.json");
-  EXPECT_EQ(s["device"], "threads");
+  EXPECT_EQ(s["device"], "threads");  // with a GPU too: the picture is small
   const parallel::CudaStatus status = parallel::cuda_status();
   const std::string why = s["device_why"];
   EXPECT_NE(why.find(status.usable ? status.name : status.why_not), std::string::npos) << why;
-  EXPECT_EQ(why.find("no CUDA: "), 0U) << why;
+  EXPECT_EQ(why.find(status.usable ? "there is a " : "no CUDA: "), 0U) << why;
   must({"render", "builtin:boxes?count=2", "--size", "72x56", "--stats", "asked.json"});
   EXPECT_EQ(json("asked.json")["device_why"], "");
 }

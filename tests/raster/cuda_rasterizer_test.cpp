@@ -35,7 +35,7 @@ RenderOptions options(int width, int height, Device device) {
 
 void skip_without_device() {
   const parallel::CudaStatus status = parallel::cuda_status();
-  if (!status.usable) GTEST_SKIP() << status.why_not;
+  if (!status.usable) GTEST_SKIP() << "no device: " << status.why_not;
 }
 
 std::uint64_t counter(const FrameStats& stats, std::string_view name) {
@@ -224,6 +224,30 @@ TEST_F(CudaRasterizer, IsTakenByAutoUnlessTheCpusIsAskedFor) {
   EXPECT_THROW(Renderer{o}, Error);
   o.rasterizer = "by-size";
   EXPECT_EQ(Renderer(o).options().device, Device::cuda);
+}
+
+TEST_F(CudaRasterizer, AutoLeavesToTheThreadsWhatTheyDrawSooner) {
+  RenderOptions o = options(64, 64, Device::automatic);
+  o.threads = 1;
+  const Scene small = soup(200, 64, 64), large = soup(100000, 64, 64);
+  const SceneBinding few(small), many(large);
+  Renderer renderer(o);
+  const Frame on_threads = draw(renderer, few.view(), pixel_camera(64, 64));
+  const Frame on_device = draw(renderer, many.view(), pixel_camera(64, 64));
+  EXPECT_EQ(on_threads.stats.device, Device::threads);
+  EXPECT_NE(on_threads.stats.device_why.find(", but 200 primitives at 64x64 are expected"),
+            std::string::npos)
+      << on_threads.stats.device_why;
+  EXPECT_EQ(on_device.stats.device, Device::cuda);
+  EXPECT_NE(on_device.stats.device_why.find("; 100000 primitives at 64x64 are expected"),
+            std::string::npos)
+      << on_device.stats.device_why;
+  o.device = Device::cuda;
+  Renderer asked(o);
+  const Frame frame = draw(asked, few.view(), pixel_camera(64, 64));
+  EXPECT_EQ(frame.stats.device, Device::cuda);
+  EXPECT_EQ(frame.stats.device_why, "");
+  EXPECT_TRUE(same_frame(frame, on_threads));
 }
 
 #if !defined(RASTRUM_TEST_ON_GPU)

@@ -241,11 +241,34 @@ TEST_F(CudaTerrain, ARollIsTheCpusAndTheStatisticsSayIt) {
   TerrainOptions options;
   options.width = 80;
   options.height = 60;
-  options.device = Device::automatic;
-  EXPECT_EQ(Picture(terrain, {}, options).stats.device_why.find("there is a "), 0U);
+  options.device = Device::cuda;
   const Picture rolled(terrain, {.roll_rad = 1}, options);
   EXPECT_NE(rolled.stats.device_why.find("the CPU rolls"), std::string::npos);
   EXPECT_EQ(rolled.stats.device, Device::cuda);
+}
+
+TEST_F(CudaTerrain, AutoLeavesToTheThreadsWhatTheyDrawSooner) {
+  std::mt19937 random(10);
+  const Terrain terrain(test::random_map(50, 70, random));
+  TerrainOptions options;
+  options.width = 80;
+  options.height = 60;
+  options.threads = 1;
+  options.device = Device::automatic;
+  const Picture small(terrain, {}, options);
+  EXPECT_EQ(small.stats.device, Device::threads);
+  EXPECT_EQ(small.stats.device_bytes, 0U);
+  EXPECT_EQ(small.stats.device_why.find("there is a "), 0U) << small.stats.device_why;
+  EXPECT_NE(small.stats.device_why.find(", but 80x60 pixels"), std::string::npos);
+  options.method = Method::words;
+  options.width = 640;
+  options.height = 200;
+  const Picture large(terrain, {}, options);
+  EXPECT_EQ(large.stats.device, Device::cuda);
+  EXPECT_NE(large.stats.device_why.find("; 640x200 pixels"), std::string::npos)
+      << large.stats.device_why;
+  options.device = Device::serial;
+  expect_equal(Picture(terrain, {}, options), large, "large");
 }
 
 TEST_F(CudaTerrain, AMapThatIsTooLargeIsRefusedByNameAndAutoGoesToTheCpu) {

@@ -1,0 +1,15 @@
+// What a frame of terrain is expected to cost, for Device::automatic (parallel/device_estimate.hpp).
+#pragma once
+
+#include <rastrum/parallel/device_estimate.hpp>
+#include <rastrum/terrain/options.hpp>
+#include <rastrum/terrain/terrain.hpp>
+
+namespace rastrum::terrain {
+
+/// Of a map in steady flight: the device keeps it, so a frame carries a small share of its copy.
+/// `targets`: which images come back.
+[[nodiscard]] FrameWork device_work(const Terrain& map, const TerrainOptions& options,
+                                    const TerrainTargets& targets);
+
+}  // namespace rastrum::terrain

@@ -1,0 +1,59 @@
+// What a frame of terrain is thought to cost, by hand, and which frames are worth a GPU.
+#include <rastrum/terrain/device_work.hpp>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/terrain/setup.hpp>
+
+namespace rastrum::terrain {
+namespace {
+
+Terrain flat(int edge) {
+  return Terrain(HeightMap{Image<float>(edge, edge), Image<Rgba8>(edge, edge)});
+}
+
+FrameWork work(const Terrain& map, const TerrainOptions& options) {
+  Image<Rgba8> picture(options.width, options.height);
+  return device_work(map, options, {picture.view(), {}});
+}
+
+TEST(TerrainDeviceWork, CountsImagesAndAShareOfTheMap) {
+  const Terrain map = flat(64);
+  TerrainOptions options;
+  options.width = 100;
+  options.height = 50;
+  options.distance = 200;
+  const std::uint64_t share = 64 * 64 * (4 + 4) / 16;
+  EXPECT_EQ(work(map, options).bytes, share + 100 * 50 * 4);
+  Image<float> depth(100, 50);
+  EXPECT_EQ(device_work(map, options, {{}, depth.view()}).bytes, share + 100 * 50 * 4);
+  const auto slices = static_cast<std::uint64_t>(100 * slice_count(options));
+  EXPECT_NE(work(map, options).what.find(std::to_string(slices)), std::string::npos);
+}
+
+TEST(TerrainDeviceWork, PicturesThatComeBackAreTheThreadsAndWordsTheDevices) {
+  const Terrain map = flat(256);
+  TerrainOptions options;
+  options.width = 320;
+  options.height = 200;
+  const auto worth = [&](int threads) {
+    return estimate(work(map, options), threads).is_worth_it();
+  };
+  EXPECT_FALSE(worth(4));
+  options.width = 3840;
+  options.height = 2160;
+  options.distance = 2000;
+  EXPECT_TRUE(worth(1));
+  EXPECT_FALSE(worth(16));
+  options.method = Method::words;
+  EXPECT_TRUE(worth(16));
+  // A map that takes longer to copy than to draw.
+  options = {};
+  options.width = 640;
+  options.height = 360;
+  EXPECT_TRUE(estimate(work(flat(64), options), 1).is_worth_it());
+  EXPECT_FALSE(estimate(work(flat(2048), options), 1).is_worth_it());
+}
+
+}  // namespace
+}  // namespace rastrum::terrain
