@@ -11,7 +11,7 @@ namespace {
 TEST(Cuda, EveryWordIsBitEqualToSerial) {
 #if !defined(RASTRUM_TEST_DEVICE_WORDS)
   const CudaStatus status = cuda_status();
-  if (!status.usable) GTEST_SKIP() << status.why_not;
+  if (!status.usable) GTEST_SKIP() << "no device: " << status.why_not;
 #endif
   EXPECT_EQ(words_that_differ(), std::vector<std::string>{});
 }

@@ -94,7 +94,7 @@ class CudaTable : public testing::TestWithParam<TablePoint> {
  protected:
   void SetUp() override {
     const parallel::CudaStatus status = parallel::cuda_status();
-    if (!status.usable) GTEST_SKIP() << status.why_not;
+    if (!status.usable) GTEST_SKIP() << "no device: " << status.why_not;
   }
 };
 

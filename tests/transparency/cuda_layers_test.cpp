@@ -137,7 +137,7 @@ class CudaLayers : public testing::Test {
   void SetUp() override {
 #if !defined(RASTRUM_TEST_DEVICE_WORDS)
     const parallel::CudaStatus status = parallel::cuda_status();
-    if (!status.usable) GTEST_SKIP() << status.why_not;
+    if (!status.usable) GTEST_SKIP() << "no device: " << status.why_not;
 #endif
   }
 };
