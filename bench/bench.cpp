@@ -27,6 +27,7 @@ constexpr std::array kBenchmarks = {
     Benchmark{"paper5-table1", "frames a second by data set; GPU over CPU", run_paper5_table1},
     Benchmark{"paper5-table3", "time, cost and phases by threads", run_paper5_table3},
     Benchmark{"paper5-table4", "subdivisions × image scale, streamed", run_paper5_table4},
+    Benchmark{"cuda", "a GPU: words, paper5-table4, paper2, paper3, transparency", run_cuda},
     Benchmark{"auto", "auto against every fixed rasterizer × visibility", run_auto},
     Benchmark{"hashed", "hashed against sorted over depth complexity", run_hashed},
     Benchmark{"hiz", "the gain of hierarchical Z over depth complexity", run_hiz},

@@ -6,8 +6,11 @@
 #include <memory>
 #include <optional>
 
+#include <bench/cuda/in_place.hpp>
 #include <rastrum/core/image.hpp>
 #include <rastrum/raster/transform_source.hpp>
+
+#include "attempt.hpp"
 
 namespace rastrum::bench {
 namespace {
@@ -58,6 +61,8 @@ std::uint64_t hash_of(const Image<std::int64_t>& ids) {
 /// Whether the frame was drawn by what was asked for: an option that a build does not know yet
 /// would otherwise be measured under a false name.
 std::string absent(const RenderOptions& wanted, const FrameStats& stats) {
+  if (wanted.device == Device::cuda && stats.device != Device::cuda)
+    return "left to the CPU: " + stats.device_why;
   const auto differs = [](const std::string& want, const std::string& got) {
     return want != "auto" && want != got;
   };
@@ -65,18 +70,6 @@ std::string absent(const RenderOptions& wanted, const FrameStats& stats) {
                  differs(wanted.visibility, stats.visibility)
              ? "absent"
              : "";
-}
-
-/// Runs f; returns why it could not.
-template <class F>
-std::string attempt(F&& f) {
-  try {
-    return f();
-  } catch (const Error& e) {
-    return why_not(e);
-  } catch (const std::bad_alloc&) {
-    return "out of memory";
-  }
 }
 
 void add_stages(const FrameStats& stats, std::map<std::string, std::vector<double>>& samples) {
@@ -95,10 +88,20 @@ std::vector<std::pair<std::string, double>> medians(
   return out;
 }
 
-/// An entrant whose picture is right.
+/// The subject and the picture in a device's memory.
+struct OnDevice {
+  MeshesInPlace meshes;
+  InPlace frame;
+  OnDevice(const Subject& subject, const RenderOptions& options) : frame(options, subject.camera) {
+    meshes.add(subject.mesh);
+  }
+};
+
+/// An entrant whose picture is right, with one of two ways to draw.
 struct Racer {
   std::size_t index;
   std::unique_ptr<Renderer> renderer;
+  std::unique_ptr<OnDevice> on_device;
   double first_ms = 0;
   std::map<std::string, std::vector<double>> stages;
 };
@@ -150,6 +153,10 @@ std::uint64_t hash_of(std::span<const std::uint64_t> words) {
 }
 
 FrameStats draw(Renderer& renderer, const Subject& subject, const Targets& targets) {
+  if (subject.facade_shader) {
+    const InstanceView instance{subject.mesh, Mat4d::identity()};
+    return renderer.render({{&instance, 1}, {}, {}}, subject.camera, targets);
+  }
   const Mat4d to_clip = world_to_clip(subject.camera, subject.width, subject.height);
   const raster::TransformSource source(subject.mesh.positions, to_clip);
   raster::Draw draw;
@@ -164,6 +171,12 @@ FrameStats draw(Renderer& renderer, const Subject& subject, const Targets& targe
 Fingerprint fingerprint(const Subject& subject, RenderOptions options) {
   options.width = subject.width;
   options.height = subject.height;
+  if (options.in_place) {
+    OnDevice there(subject, options);
+    FrameStats stats;
+    const std::uint64_t hash = hash_of(there.frame.ids(there.meshes, stats));
+    return {hash, std::move(stats)};
+  }
   Renderer renderer(options);
   Image<std::int64_t> ids(subject.width, subject.height);
   Targets targets;
@@ -195,8 +208,16 @@ std::vector<Result> contest(const Subject& subject, std::span<const Entrant> ent
       result.stats = print.stats;
       return result.wrong ? "WRONG PICTURE" : "";
     });
-    if (result.ran())
-      racers.push_back({i, std::make_unique<Renderer>(options), result.stats.frame_ms, {}});
+    if (!result.ran()) continue;
+    Racer racer{i, nullptr, nullptr, result.stats.frame_ms, {}};
+    result.not_run = attempt([&]() -> std::string {
+      if (options.in_place)
+        racer.on_device = std::make_unique<OnDevice>(subject, options);
+      else
+        racer.renderer = std::make_unique<Renderer>(options);
+      return "";
+    });
+    if (result.ran()) racers.push_back(std::move(racer));
   }
 
   Image<Rgba8> picture(subject.width, subject.height);
@@ -209,6 +230,7 @@ std::vector<Result> contest(const Subject& subject, std::span<const Entrant> ent
     if (r.first_ms > hopeless * fastest_ms) {
       results[r.index].timing = {results[r.index].name, {r.first_ms}};
       r.renderer.reset();
+      r.on_device.reset();
       continue;
     }
     contenders.push_back({std::to_string(r.index), [&r, &subject, &targets, &results] {
@@ -216,7 +238,9 @@ std::vector<Result> contest(const Subject& subject, std::span<const Entrant> ent
                             if (!result.ran()) return;
                             result.not_run = attempt([&]() -> std::string {
                               const std::uint64_t peak = result.stats.peak_bytes;
-                              result.stats = draw(*r.renderer, subject, targets);
+                              result.stats = r.on_device
+                                                 ? r.on_device->frame.draw(r.on_device->meshes)
+                                                 : draw(*r.renderer, subject, targets);
                               result.stats.peak_bytes = std::max(peak, result.stats.peak_bytes);
                               add_stages(result.stats, r.stages);
                               return "";

@@ -26,6 +26,8 @@ struct Subject {
   int width = 0, height = 0;
   /// A frame ends with 8-bit colours by this shader; null: grey = depth³, as paper 1 shades.
   const raster::BlockShader* shader = nullptr;
+  /// Colours by the façade's shader of the entrant's options instead, which a device has too.
+  bool facade_shader = false;
 };
 
 /// One colour a triangle, hashed from its id: what paper 5 draws, and cheap.
@@ -33,7 +35,8 @@ struct Subject {
 
 struct Entrant {
   std::string name;
-  RenderOptions options;  ///< the size is the subject's
+  RenderOptions
+      options;  ///< the size is the subject's; in_place: its arrays are copied there before
 };
 
 struct Result {

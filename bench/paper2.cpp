@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "contest.hpp"
+#include "cuda/rates.hpp"
 #include "papers/paper2.hpp"
 #include "peers/compare.hpp"
 #include "registry.hpp"
@@ -69,6 +70,7 @@ int run_paper2(std::span<const std::string_view> arguments) {
   TableOptions options;
   OptionParser parser("paper2", "Large triangles by both schedules of `binned` (paper 2).");
   options.add_to(parser, false);
+  options.add_device(parser);
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
   const int width = options.size(kWidth), height = options.size(kHeight);
@@ -107,6 +109,17 @@ int run_paper2(std::span<const std::string_view> arguments) {
     entrants.back().name = schedule == raster::Schedule::persistent ? "persistent" : "two-stage";
   }
   entrants.push_back(entrant(options, "auto"));
+  MachineLimits device;
+  std::vector<Rates> rates;
+  if (options.on_cuda()) {
+    device = measure_device(options);
+    document.notes.push_back(device_note(options, device));
+    for (Entrant& e : device_entrants(options)) {
+      c.rows.push_back({e.name, "", {}, std::vector<Measured>(kScenes.size())});
+      rates.emplace_back(e.name, "scene");
+      entrants.push_back(std::move(e));
+    }
+  }
   bool right = true;
   for (std::size_t s = 0; s < kScenes.size(); ++s) {
     const Scene& scene = kScenes[s];
@@ -114,14 +127,20 @@ int run_paper2(std::span<const std::string_view> arguments) {
     c.columns.emplace_back(scene.name);
     const Mesh mesh =
         sized_triangles(width, height, scene.count, scene.least * scale, scene.most * scale, 1 + s);
-    const Subject subject{mesh.view(), window_camera(width, height), width, height,
-                          &triangle_colors()};
+    const Subject subject{mesh.view(), window_camera(width, height), width,
+                          height,      &triangle_colors(),           options.on_cuda()};
     const std::vector<Result> results = contest(subject, entrants, options.plan());
     c.rows[kPersistent].ours[s] = measured_ms(results[0], subject, false);
     c.rows[kStoreBins].ours[s] = stage(results[1], "store bins");
     c.rows[kRasterizeBins].ours[s] = stage(results[1], "rasterize bins");
     c.rows[kBoth].ours[s] = measured_ms(results[1], subject, false);
-    c.rows[kBoth + 1].ours[s] = measured_ms(results[2], subject, false);
+    for (std::size_t i = 2; i < results.size(); ++i)
+      c.rows[kBoth + i - 1].ours[s] = measured_ms(results[i], subject, false);
+    for (std::size_t i = 0; i < rates.size(); ++i)
+      rates[i].add(scene.name, "all", mesh.triangle_count(), results[3 + i].median_ms(),
+                   floor_ms(mesh.triangle_count(),
+                            static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height),
+                            device, mesh.positions.size()));
     for (std::size_t i = 0; i < 2; ++i) {
       add_load(results[i], scene.name, load, document.figures);
       std::string stages;
@@ -133,6 +152,7 @@ int run_paper2(std::span<const std::string_view> arguments) {
     for (const Result& r : results) right = right && !r.wrong;
   }
   add(document, c);
+  for (const Rates& r : rates) r.add_to(document);
   document.grids.push_back(std::move(load));
   document.grids.push_back(std::move(phases));
   document.plot = bars_of(c);

@@ -13,6 +13,7 @@
 #include <rastrum/terrain/methods.hpp>
 #include <rastrum/terrain/renderer.hpp>
 
+#include "cuda/rates.hpp"
 #include "machine.hpp"
 #include "papers/paper3.hpp"
 #include "peers/node_peer.hpp"
@@ -133,14 +134,31 @@ constexpr Size kSizes[] = {{800, 450, 800, false},
                            {3840, 2160, 2000, false},
                            {3840, 2160, 2000, true}};
 
+/// Those of the threads come first, then what a device has.
+constexpr std::size_t kFast = 1, kFirstOnDevice = 4;
+
+/// The first of the device's whose picture is not the threads'; null: there is none.
+const Entry* differs_from_fast(std::vector<Entry>& entries, const Terrain& terrain) {
+  entries[kFast].frame(terrain);
+  for (std::size_t i = kFirstOnDevice; i < entries.size(); ++i) {
+    entries[i].frame(terrain);
+    if (hash_of(*entries[i].picture) != hash_of(*entries[kFast].picture)) return &entries[i];
+  }
+  return nullptr;
+}
+
 /// Returns false where classic's picture is not the peer's.
-bool frames(const TableOptions& options, const HeightMap& map, Document& document) {
+bool frames(const TableOptions& options, const MachineLimits& device, const HeightMap& map,
+            Document& document) {
   const Terrain terrain(map);
   const MachineLimits one = measure_machine(1), all = measure_machine(options.threads);
   Grid grid{"Frames of the default camera, ms (in brackets: times as fast as node, round by round)",
             {"picture, distance", "threads", "node", "classic", "fast", "mip, dz 0.02", "words",
              "floor", "fast / floor"},
             {}};
+  if (options.on_cuda())
+    grid.columns.insert(grid.columns.end(),
+                        {"fast, cuda", "words, cuda", "its floor", "fast, cuda / floor"});
   bool right = true;
   for (Size size : kSizes) {
     size.width = options.size(size.width);
@@ -172,10 +190,21 @@ bool frames(const TableOptions& options, const HeightMap& map, Document& documen
     entries.emplace_back("fast", fast);
     entries.emplace_back("mip", mip);
     entries.emplace_back("words", words);
+    if (options.on_cuda())
+      for (TerrainOptions* on_device : {&fast, &words}) {
+        on_device->device = Device::cuda;
+        entries.emplace_back(on_device == &fast ? "fast, cuda" : "words, cuda", *on_device);
+      }
     entries[0].frame(terrain);
     if (peer && hash_of(*entries[0].picture) != peer->hash()) {
       document.notes.push_back("**" + label +
                                ": classic's picture is not node's; nothing was timed.**");
+      right = false;
+      continue;
+    }
+    if (const Entry* wrong = differs_from_fast(entries, terrain)) {
+      document.notes.push_back("**" + label + ": the picture of " + wrong->name +
+                               " is not that of fast; nothing was timed.**");
       right = false;
       continue;
     }
@@ -191,10 +220,11 @@ bool frames(const TableOptions& options, const HeightMap& map, Document& documen
     std::vector<std::string> row{
         label, std::to_string(threads),
         peer ? significant(node.median_ms()) : "not run (" + why_not + ")"};
+    std::vector<std::string> on_device;
     for (const Entry& e : entries) {
       std::string cell = significant(e.timing.median_ms());
       if (peer) cell.append(" (").append(significant(median_ratio(node, e.timing), 2)).append(")");
-      row.push_back(std::move(cell));
+      (e.stats.device == Device::cuda ? on_device : row).push_back(std::move(cell));
       document.figures.push_back({{"table", "frames"},
                                   {"picture", label},
                                   {"threads", threads},
@@ -209,6 +239,18 @@ bool frames(const TableOptions& options, const HeightMap& map, Document& documen
     }
     row.push_back(significant(floor_ms));
     row.push_back(significant(entries[1].timing.median_ms() / floor_ms, 2));
+    if (options.on_cuda()) {
+      const Entry& there = entries[kFirstOnDevice];
+      const double its_ms = 4.0 *
+                            (static_cast<double>(size.width) * size.height +
+                             static_cast<double>(there.stats.samples)) /
+                            device.copy_gbs / 1e6;
+      row.insert(row.end(), on_device.begin(), on_device.end());
+      row.push_back(significant(its_ms));
+      row.push_back(significant(there.timing.median_ms() / its_ms, 2));
+      document.figures.push_back(
+          {{"table", "device floor"}, {"picture", label}, {"threads", threads}, {"ms", its_ms}});
+    }
     grid.rows.push_back(std::move(row));
   }
   document.grids.push_back(std::move(grid));
@@ -346,6 +388,7 @@ int run_paper3(std::span<const std::string_view> arguments) {
   OptionParser parser("paper3",
                       "Paper 3, sections 5.6 and 6.2, and frames beside the original under node.");
   options.add_to(parser, false);
+  options.add_device(parser);
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
   Document document{"paper3", "Paper 3: Voxel Space"};
@@ -359,8 +402,13 @@ int run_paper3(std::span<const std::string_view> arguments) {
       "pixel by pixel, before anything was timed. The floor is 4 bytes a pixel at the measured "
       "streaming bandwidth and 4 bytes a sample read by `fast` at the read bandwidth.");
   const HeightMap map = hills();
-  const bool right = frames(options, map, document) && scaling(options, map, document);
-  add_shadow_times(options, map.heights, document);
+  MachineLimits device;
+  if (options.on_cuda()) {
+    device = measure_device(options);
+    document.notes.push_back(device_note(options, device));
+  }
+  bool right = frames(options, device, map, document) && scaling(options, map, document);
+  right = add_shadow_times(options, map.heights, document) && right;
   publish(document, options.out);
   return right ? 0 : 1;
 }

@@ -13,7 +13,10 @@
 #include <rastrum/core/image.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
+#include "attempt.hpp"
 #include "contest.hpp"
+#include "cuda/in_place.hpp"
+#include "cuda/rates.hpp"
 #include "paper5_data.hpp"
 #include "papers/paper5.hpp"
 #include "registry.hpp"
@@ -44,6 +47,7 @@ struct Cell {
   Image<std::uint64_t> words;
   Image<Rgba8> picture;
   double ms = 0;
+  std::vector<double> samples_ms = {};
   std::uint64_t scratch = 0;
   std::uint64_t hash = 0;    ///< of the words in the end
   std::string stopped = {};  ///< why; empty: whole
@@ -70,6 +74,8 @@ void draw_pass(Cell& cell, const Mesh& part, std::uint64_t first_id, const Rende
   targets.first_id = first_id;
   const auto begin = std::chrono::steady_clock::now();
   const FrameStats stats = draw(renderer, subject, targets);
+  if (options.device == Device::cuda && stats.device != Device::cuda)
+    throw Error(Errc::unsupported, "left to the CPU: " + stats.device_why);
   cell.ms +=
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   cell.scratch = std::max(cell.scratch, stats.peak_bytes);
@@ -96,13 +102,10 @@ void stream(std::vector<Cell>& cells, const Mesh& base, int times, std::size_t p
       for (std::size_t i = begin; i < end; ++i) {
         Cell& cell = cells[i];
         if (!cell.stopped.empty()) continue;
-        try {
+        cell.stopped = attempt([&]() -> std::string {
           draw_pass(cell, part, first_id, entrant.options);
-        } catch (const Error& e) {
-          cell.stopped = why_not(e);
-        } catch (const std::bad_alloc&) {
-          cell.stopped = "out of memory";
-        }
+          return "";
+        });
         if (cell.stopped.empty() && cell.ms > limits.seconds * 1000 && k + 1 < parts)
           cell.stopped = "stopped after " + significant(cell.ms / 1000) + " s, at triangle " +
                          std::to_string(first_id + part.triangle_count());
@@ -110,12 +113,57 @@ void stream(std::vector<Cell>& cells, const Mesh& base, int times, std::size_t p
       first_id += part.triangle_count();
     }
     for (std::size_t i = begin; i < end; ++i) {
+      cells[i].samples_ms = {cells[i].ms};
       cells[i].hash = hash_of(cells[i].words.pixels());
       cells[i].words = {};
       cells[i].picture = {};
     }
     begin = end;
   }
+}
+
+/// The same on a device that holds all parts at once: each frame is one pass, and takes its turns.
+void draw_in_place(std::vector<Cell>& cells, const Mesh& base, int times, std::size_t parts,
+                   const Entrant& entrant, const Plan& plan) {
+  MeshesInPlace meshes;
+  const std::string stopped = attempt([&]() -> std::string {
+    for (std::size_t k = 0; k < parts; ++k)
+      meshes.add(subdivided_part(base, times, k, parts).view());
+    return "";
+  });
+  for (Cell& cell : cells) {
+    cell.stopped = stopped;
+    if (!stopped.empty()) continue;
+    cell.stopped = attempt([&]() -> std::string {
+      RenderOptions options = entrant.options;
+      options.width = cell.subject.width;
+      options.height = cell.subject.height;
+      InPlace frame(options, cell.subject.camera);
+      FrameStats stats;
+      cell.hash = hash_of(frame.words(meshes, stats).pixels());
+      cell.scratch = stats.peak_bytes;
+      const Contender contender{"", [&] { static_cast<void>(frame.draw(meshes)); }};
+      cell.samples_ms = measure_interleaved({&contender, 1}, plan)[0].samples_ms;
+      cell.ms = median(cell.samples_ms);
+      return "";
+    });
+  }
+}
+
+/// Triangles a second and times the floor, of a table of frames a second.
+void add_rates(Document& document, const Comparison& table, const std::string& name,
+               std::size_t base_triangles, const MachineLimits& device) {
+  Rates rates(name, table.first_column);
+  for (std::size_t r = 0; r < paper5::kScales.size(); ++r)
+    for (std::size_t times = 0; times < kColumns; ++times) {
+      const auto scale = static_cast<std::uint64_t>(paper5::kScales[r]);
+      const auto picture = static_cast<std::uint64_t>(paper5::kBunny.width * paper5::kBunny.height);
+      const std::uint64_t triangles = static_cast<std::uint64_t>(base_triangles) << (2 * times);
+      const double fps = table.rows[r].ours[times].value;
+      rates.add(table.rows[r].at, table.columns[times], triangles, fps > 0 ? 1000 / fps : 0,
+                floor_ms(triangles, picture * scale * scale, device));
+    }
+  rates.add_to(document);
 }
 
 }  // namespace
@@ -128,6 +176,7 @@ int run_paper5_table4(std::span<const std::string_view> arguments) {
                       "Paper 5, table 4: Bunny by subdivisions and image scale, streamed where it "
                       "does not fit.");
   options.add_to(parser);
+  options.add_device(parser);
   CLI::App& app = parser.app();
   app.add_option("--memory-limit", limits.memory, "scratch of a frame in bytes (2 GiB)")
       ->transform(CLI::AsSizeValue(false));
@@ -158,14 +207,21 @@ int run_paper5_table4(std::span<const std::string_view> arguments) {
   document.notes.push_back(
       "Up to " + std::to_string(limits.part_triangles) +
       " triangles the mesh is in memory and the choices take turns; beyond, it is made part by "
-      "part, each part is one pass into the picture, and only the passes are timed, once. Scratch "
-      "is limited to " +
+      "part, each part is one pass into the picture, and only the passes are timed, once. The "
+      "threads' scratch is limited to " +
       significant(static_cast<double>(limits.memory) / 1e9) +
       " GB; the picture and its words (12 bytes a pixel) are the caller's. A whole frame of both "
       "choices has the same ids in every cell.");
 
   std::vector<Entrant> entrants{entrant(options, "scanline", "sorted"), entrant(options, "auto")};
   for (Entrant& e : entrants) e.options.memory_limit = limits.memory;
+  MachineLimits device;
+  if (options.on_cuda()) {
+    entrants.erase(entrants.begin());
+    for (Entrant& e : device_entrants(options)) entrants.push_back(std::move(e));
+    device = measure_device(options);
+    document.notes.push_back(device_note(options, device));
+  }
   std::vector<Comparison> tables;
   for (const Entrant& e : entrants) {
     Comparison c{
@@ -193,6 +249,7 @@ int run_paper5_table4(std::span<const std::string_view> arguments) {
       Subject subject = matched.subject();
       subject.width = bunny.width * scale;
       subject.height = bunny.height * scale;
+      subject.facade_shader = options.on_cuda();
       if (whole) {
         progress("  scale " + std::to_string(scale));
         subject.mesh = whole->view();
@@ -215,7 +272,11 @@ int run_paper5_table4(std::span<const std::string_view> arguments) {
     for (std::size_t e = 0; e < entrants.size(); ++e) {
       std::vector<Cell> run = cells;
       progress("  " + entrants[e].name);
-      stream(run, matched.mesh, static_cast<int>(times), parts, entrants[e], limits);
+      if (entrants[e].options.in_place)
+        draw_in_place(run, matched.mesh, static_cast<int>(times), parts, entrants[e],
+                      options.plan());
+      else
+        stream(run, matched.mesh, static_cast<int>(times), parts, entrants[e], limits);
       for (std::size_t i = 0; i < run.size(); ++i) {
         Measured& m = tables[e].rows[run[i].row].ours[times];
         m.not_run = run[i].stopped;
@@ -228,11 +289,13 @@ int run_paper5_table4(std::span<const std::string_view> arguments) {
         }
         m.value = 1000 / run[i].ms;
         m.scratch_bytes = run[i].scratch;
-        m.samples_ms = {run[i].ms};
+        m.samples_ms = run[i].samples_ms;
       }
     }
   }
   for (const Comparison& c : tables) add(document, c);
+  for (std::size_t e = 1; options.on_cuda() && e < entrants.size(); ++e)
+    add_rates(document, tables[e], entrants[e].name, base_triangles, device);
   document.plot = lines_of(tables.back(), "image scale");
   publish(document, options.out);
   return right ? 0 : 1;

@@ -34,6 +34,7 @@ int run_hashed(std::span<const std::string_view> options);
 int run_hiz(std::span<const std::string_view> options);
 int run_transparency(std::span<const std::string_view> options);
 int run_transparency_pictures(std::span<const std::string_view> options);
+int run_cuda(std::span<const std::string_view> options);
 int run_words(std::span<const std::string_view> options);
 
 }  // namespace rastrum::bench

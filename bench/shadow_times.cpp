@@ -30,6 +30,8 @@ Image<float> tiled_map(const Image<float>& heights, int width, int height) {
 struct ShadowTimes {
   Timing march, sharp;
   double hidden = 0;  ///< part of the cells that is in sharp shadow
+  Timing device_march = {}, device_sharp = {};
+  bool right = true;  ///< the device's shadows are the threads'
 };
 
 ShadowTimes time_shadows(const TableOptions& options, int threads, const Image<float>& map,
@@ -38,13 +40,31 @@ ShadowTimes time_shadows(const TableOptions& options, int threads, const Image<f
   how.threads = threads;
   Image<std::uint16_t> counts;
   Image<std::uint8_t> dark;
-  const std::array contenders{
+  std::vector<Contender> contenders{
       Contender{"march", [&] { counts = hidden_samples(map.view(), sun, march, how); }},
       Contender{"sharp", [&] { dark = sharp_shadows(map.view(), sun, how); }}};
+  ShadowOptions there = how;
+  there.device = Device::cuda;
+  Image<std::uint16_t> device_counts;
+  Image<std::uint8_t> device_dark;
+  if (options.on_cuda()) {
+    contenders.push_back(
+        {"march", [&] { device_counts = hidden_samples(map.view(), sun, march, there); }});
+    contenders.push_back({"sharp", [&] { device_dark = sharp_shadows(map.view(), sun, there); }});
+    for (const Contender& c : contenders) c.frame();
+    if (!std::ranges::equal(counts.pixels(), device_counts.pixels()) ||
+        !std::ranges::equal(dark.pixels(), device_dark.pixels()))
+      return {{}, {}, 0, {}, {}, false};
+  }
   const std::vector<Timing> timings = measure_interleaved(contenders, options.plan());
   const auto hidden = std::ranges::count(dark.pixels(), std::uint8_t{1});
-  return {timings[0], timings[1],
-          static_cast<double>(hidden) / static_cast<double>(dark.pixels().size())};
+  ShadowTimes times{timings[0], timings[1],
+                    static_cast<double>(hidden) / static_cast<double>(dark.pixels().size())};
+  if (options.on_cuda()) {
+    times.device_march = timings[2];
+    times.device_sharp = timings[3];
+  }
+  return times;
 }
 
 void record(Document& document, const ShadowTimes& times, const Image<float>& map, const Sun& sun,
@@ -59,10 +79,14 @@ void record(Document& document, const ShadowTimes& times, const Image<float>& ma
                               {"hidden", times.hidden},
                               {"march", to_json(times.march)},
                               {"sharp", to_json(times.sharp)}});
+  if (!times.device_march.samples_ms.empty()) {
+    document.figures.back()["device_march"] = to_json(times.device_march);
+    document.figures.back()["device_sharp"] = to_json(times.device_sharp);
+  }
 }
 
-/// Figures 6.7 and 6.8.
-void over_q_and_samples(const TableOptions& options, const Image<float>& heights,
+/// Figures 6.7 and 6.8. Returns false where a device's shadows are wrong.
+bool over_q_and_samples(const TableOptions& options, const Image<float>& heights,
                         Document& document) {
   Grid grid{"Figures 6.7 and 6.8: shadows, ms, all threads (sharp takes no samples)",
             {"what grows", "method"},
@@ -74,22 +98,34 @@ void over_q_and_samples(const TableOptions& options, const Image<float>& heights
     progress(grows_q ? "shadows by q" : "shadows by d_c");
     const std::string what = grows_q ? "q (r = 128, d_c = 32)" : "d_c (q = r = 128)";
     std::vector<std::string> march{what, "march"}, sharp{what, "sharp"};
+    std::vector<std::string> device_march{what, "march, cuda"}, device_sharp{what, "sharp, cuda"};
     for (const int n : sizes) {
       const Image<float> map =
           tiled_map(heights, grows_q ? n : paper3::kShadowEdge, paper3::kShadowEdge);
       const March how{1024, grows_q ? paper3::kShadowSamples : n};
       const ShadowTimes times = time_shadows(options, options.threads, map, {}, how);
+      if (!times.right) {
+        document.notes.push_back("**Shadows at " + what + " = " + std::to_string(n) +
+                                 ": the device's are not the threads'; nothing was timed.**");
+        return false;
+      }
       march.push_back(significant(times.march.median_ms()));
       sharp.push_back(significant(times.sharp.median_ms()));
+      device_march.push_back(significant(times.device_march.median_ms()));
+      device_sharp.push_back(significant(times.device_sharp.median_ms()));
       record(document, times, map, {}, how, options.threads);
     }
     grid.rows.push_back(std::move(march));
     grid.rows.push_back(std::move(sharp));
+    if (!options.on_cuda()) continue;
+    grid.rows.push_back(std::move(device_march));
+    grid.rows.push_back(std::move(device_sharp));
   }
   document.grids.push_back(std::move(grid));
+  return true;
 }
 
-void over_suns(const TableOptions& options, const Image<float>& heights, Document& document) {
+bool over_suns(const TableOptions& options, const Image<float>& heights, Document& document) {
   const int edge = options.size(1024);
   const Image<float> map = tiled_map(heights, edge, edge);
   const std::string size = std::to_string(edge);
@@ -107,6 +143,11 @@ void over_suns(const TableOptions& options, const Image<float>& heights, Documen
     for (const double azimuth : azimuths) {
       const Sun sun{azimuth, elevation};
       const ShadowTimes times = time_shadows(options, 1, map, sun, {});
+      if (!times.right) {
+        document.notes.push_back("**Shadows of a sun at " + significant(azimuth) +
+                                 "°: the device's are not the threads'; nothing was timed.**");
+        return false;
+      }
       row.push_back(significant(median_ratio(times.march, times.sharp), 2) + " (" +
                     significant(times.sharp.median_ms()) + "; " +
                     significant(100 * times.hidden, 2) + " %)");
@@ -115,14 +156,14 @@ void over_suns(const TableOptions& options, const Image<float>& heights, Documen
     grid.rows.push_back(std::move(row));
   }
   document.grids.push_back(std::move(grid));
+  return true;
 }
 
 }  // namespace
 
-void add_shadow_times(const TableOptions& options, const Image<float>& heights,
+bool add_shadow_times(const TableOptions& options, const Image<float>& heights,
                       Document& document) {
-  over_q_and_samples(options, heights, document);
-  over_suns(options, heights, document);
+  return over_q_and_samples(options, heights, document) && over_suns(options, heights, document);
 }
 
 }  // namespace rastrum::bench

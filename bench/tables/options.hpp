@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include <bench/contest.hpp>
 #include <bench/measure.hpp>
@@ -18,14 +19,16 @@ struct TableOptions {
   int rounds = 9, threads = 0;
   std::string mesh, out;
   bool quick = false;
+  Device device = Device::threads;  ///< cuda: beside the threads
+  std::string gpu = {};             ///< its name
 
   void add_to(OptionParser& parser, bool takes_mesh = true);
+  /// --device, for tables that can add a GPU's figures.
+  void add_device(OptionParser& parser);
 
-  /// To be called after parsing.
-  void resolve() {
-    if (threads == 0) threads = cores();
-    if (quick) rounds = 1;
-  }
+  /// To be called after parsing. Throws Error{no_device} where the device cannot be had.
+  void resolve();
+  [[nodiscard]] bool on_cuda() const { return device == Device::cuda; }
   [[nodiscard]] static int cores() {
     return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   }
@@ -36,7 +39,8 @@ struct TableOptions {
     return quick ? std::max<std::size_t>(64, n / 32) : n;
   }
   [[nodiscard]] std::string here() const {
-    return "here, " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+    return "here, " + std::to_string(threads) + (threads == 1 ? " thread" : " threads") +
+           (gpu.empty() ? "" : " and " + gpu);
   }
   /// What to say of a smoke test; empty otherwise.
   [[nodiscard]] std::string quick_note() const {
@@ -48,6 +52,7 @@ struct TableOptions {
   [[nodiscard]] RenderOptions render() const {
     RenderOptions options;
     options.threads = threads;
+    options.shader = Shader::id;  // where the façade shades: one colour a triangle
     return options;
   }
 };
@@ -61,6 +66,17 @@ struct TableOptions {
   e.options.visibility = visibility;
   e.options.tuning = tuning;
   return e;
+}
+
+/// A GPU's way with the host's arrays, copied there each frame and the picture back; and with both
+/// in its memory. For subjects of the façade's shaders.
+[[nodiscard]] inline std::vector<Entrant> device_entrants(const TableOptions& options) {
+  Entrant copied{"cuda", options.render()};
+  copied.options.device = Device::cuda;
+  Entrant in_place = copied;
+  in_place.name = "cuda, in place";
+  in_place.options.in_place = true;
+  return {copied, in_place};
 }
 
 /// Says on stderr what is measured now: tables come at the end.

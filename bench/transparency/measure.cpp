@@ -219,6 +219,36 @@ void count_work(TransparencyRow& row, const Mesh& mesh, const View& view,
   row.opaque_bytes = view.draw(opaque, targets).peak_bytes;
 }
 
+/// The device's pictures against the threads' of the same technique, pixel by pixel.
+void measure_device(Race& race, TransparencyRow& row, View& view,
+                    const std::vector<Image<Vec4>>& pictures, const TransparencyPlan& plan,
+                    std::vector<std::unique_ptr<Renderer>>& renderers) {
+  row.device_floor_ms = floor_of(row.work, plan.device).bytes_ms;
+  row.device.resize(kOnDevice.size());
+  for (std::size_t i = 0; i < row.device.size(); ++i) {
+    const Technique& technique = kTechniques[kOnDevice[i]];
+    Lap& lap = row.device[i];
+    lap.name = std::string(technique.name).append(", cuda");
+    lap.not_run = row.ours[kOnDevice[i]].not_run;
+    if (!lap.not_run.empty()) continue;
+    RenderOptions o = view.options(technique.options, plan.opacity);
+    o.device = Device::cuda;
+    Image<Vec4> picture(row.size.width, row.size.height);
+    std::unique_ptr<Renderer> renderer = view.check(lap, o, picture);
+    if (renderer && lap.stats.device != Device::cuda)
+      lap.not_run = "left to the CPU: " + lap.stats.device_why;
+    if (lap.not_run.empty()) {
+      lap.error = picture_error(pictures[kOnDevice[i]], picture, kTolerance);
+      lap.wrong = lap.error.far != 0;
+      if (lap.wrong)
+        lap.not_run = "WRONG PICTURE: " + std::to_string(lap.error.far) + " pixels differ";
+    }
+    if (!lap.not_run.empty()) continue;
+    renderers.push_back(std::move(renderer));
+    view.enter(race, lap, renderers.back().get());
+  }
+}
+
 void measure_thresholds(TransparencyRow& row, View& view, const TransparencyPlan& plan) {
   Race race;
   std::vector<std::unique_ptr<Renderer>> renderers;
@@ -250,7 +280,8 @@ double ratio(const Lap& a, const Lap& b) {
 }
 
 bool TransparencyRow::right() const {
-  return std::ranges::none_of(peers, &Lap::wrong) && std::ranges::none_of(ours, &Lap::wrong);
+  return std::ranges::none_of(peers, &Lap::wrong) && std::ranges::none_of(ours, &Lap::wrong) &&
+         std::ranges::none_of(device, &Lap::wrong);
 }
 
 std::uint64_t TransparencyRow::list_bytes() const {
@@ -278,6 +309,7 @@ TransparencyRow measure_transparency(const Mesh& mesh, Size size, TransparencyPe
     if (lap.not_run.empty()) lap.error = picture_error(pictures[kExact], pictures[i], kTolerance);
     view.enter(race, lap, renderers.back().get());
   }
+  if (plan.on_cuda) measure_device(race, row, view, pictures, plan, renderers);
   measure_peers(race, row, view, pictures, peers, plan);
   race.run(plan.plan);
   renderers.clear();

@@ -34,6 +34,8 @@ inline constexpr std::array<Technique, 9> kTechniques{{{"exact", {Transparency::
                                                        {"mboit6", {Transparency::mboit6}},
                                                        {"mlab4", {Transparency::mlab4}}}};
 inline constexpr std::size_t kExact = 0, kUnsorted = 1, kFilter3 = 2;
+/// Those of kTechniques that a CUDA device has.
+inline constexpr std::array kOnDevice{kExact, kUnsorted};
 
 /// The peers, in the order of TransparencyRow::peers.
 enum Peer : std::size_t { kGlUnsorted, kGlLists, kGlPeeling, kVtkPeeling, kPeerCount };
@@ -73,6 +75,8 @@ struct TransparencyRow {
   std::vector<Lap> ours;           ///< kTechniques
   std::vector<Lap> peers;          ///< kPeerNames
   std::vector<Lap> thresholds;     ///< for each opacity: exact without, exact with the threshold
+  std::vector<Lap> device;         ///< kOnDevice on CUDA, or none
+  double device_floor_ms = 0;      ///< of exact there, bytes alone
 
   [[nodiscard]] bool right() const;
   /// Bytes of per-pixel lists: nodes and heads.
@@ -92,6 +96,8 @@ struct TransparencyPlan {
   /// Peeling is stopped after this, and then VTK's is not begun.
   double patience_ms = 20000;
   MachineLimits machine;
+  bool on_cuda = false;  ///< the device's techniques take turns with the threads'
+  MachineLimits device = {};
 };
 
 /// The mesh has vertex normals that share its indices; the peers have it already.

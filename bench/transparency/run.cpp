@@ -2,6 +2,7 @@
 // approximations, paper 4's filters, llvmpipe's three ways and VTK's peeling.
 #include <cstdio>
 
+#include <bench/cuda/rates.hpp>
 #include <bench/machine.hpp>
 #include <bench/peers/selection.hpp>
 #include <bench/registry.hpp>
@@ -34,6 +35,7 @@ int run_transparency(std::span<const std::string_view> arguments) {
   Selection selection(transparency_scenes(), {{1024, 1024}, {1920, 1080}});
   OptionParser parser("transparency", "Translucent surfaces: exact, unsorted, approximate, peers.");
   options.add_to(parser, false);
+  options.add_device(parser);
   selection.add_to(parser);
   parser.app()
       .add_option("--opacity", opacity, "of every surface (0.5)")
@@ -69,6 +71,11 @@ int run_transparency(std::span<const std::string_view> arguments) {
   plan.opacity = static_cast<float>(opacity);
   plan.patience_ms = patience_s * 1000;
   plan.machine = measure_machine(options.threads);
+  plan.on_cuda = options.on_cuda();
+  if (plan.on_cuda) {
+    plan.device = measure_device(options);
+    document.notes.push_back(device_note(options, plan.device));
+  }
 
   std::vector<TransparencyRow> rows;
   bool right = true;

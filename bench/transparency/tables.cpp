@@ -315,6 +315,33 @@ nlohmann::json json_of(const Lap& lap, bool ours) {
   return j;
 }
 
+Grid device_grid(std::span<const TransparencyRow> rows) {
+  Grid grid{
+      "### On the device\n\nms a frame; arrays over, blended, the picture back. The floor: "
+      "positions, normals and indices read once and pixels written once, at the device's "
+      "bandwidth. Paper 4 has exact ÷ unsorted hardware blending " +
+          shortest(paper4::kOverUnsorted.average) + " (" + shortest(paper4::kOverUnsorted.least) +
+          " to " + shortest(paper4::kOverUnsorted.most) + ").",
+      {"scene, size", "fragments", "unsorted", "exact", "exact ÷ unsorted", "threads' exact ÷ it",
+       "10⁶ triangles/s", "10⁶ fragments/s", "floor", "exact ÷ floor"},
+      {}};
+  for (const TransparencyRow& row : rows) {
+    const Lap &exact = row.device[0], &unsorted = row.device[1];
+    std::vector<std::string>& cells = grid.rows.emplace_back(
+        std::initializer_list<std::string>{title(row), std::to_string(row.work.fragments),
+                                           ms(unsorted), ms(exact), times(exact, unsorted)});
+    if (!exact.ran()) continue;
+    const double frame_ms = exact.timing.median_ms();
+    const auto rate = [&](std::uint64_t n) {
+      return significant(static_cast<double>(n) / frame_ms / 1e3);
+    };
+    cells.insert(cells.end(), {times(row.ours[kExact], exact), rate(row.work.triangles),
+                               rate(row.work.fragments), significant(row.device_floor_ms),
+                               significant(frame_ms / row.device_floor_ms)});
+  }
+  return grid;
+}
+
 nlohmann::json json_of(const TransparencyRow& row) {
   nlohmann::json j = {{"scene", row.scene},
                       {"size", size_text(row.size)},
@@ -333,6 +360,8 @@ nlohmann::json json_of(const TransparencyRow& row) {
                       {"goals_missed", missed_goals(row)}};
   for (const Lap& lap : row.ours) j["ours"].push_back(json_of(lap, true));
   for (const Lap& lap : row.peers) j["peers"].push_back(json_of(lap, false));
+  for (const Lap& lap : row.device) j["device"].push_back(json_of(lap, true));
+  if (!row.device.empty()) j["device_floor_ms"] = row.device_floor_ms;
   for (const Lap& lap : row.thresholds) j["thresholds"].push_back(json_of(lap, true));
   for (const Goal& goal : kGoals)
     j["ratios"][goal.name] = ratio(row.peers[goal.peer], row.ours[goal.technique]);
@@ -367,6 +396,7 @@ void add_transparency(Document& document, std::span<const TransparencyRow> rows,
     document.grids.push_back(grid(rows));
     add_absent(document.grids.back(), absent);
   }
+  if (!rows.empty() && !rows.front().device.empty()) document.grids.push_back(device_grid(rows));
   for (const TransparencyRow& row : rows) document.figures.push_back(json_of(row));
   document.plot = plot_of(rows);
 }

@@ -1,0 +1,82 @@
+// What the benchmarks ask of a CUDA device, without a header of CUDA. device.cu has it;
+// no_device.cpp where there is no compiler for it. All throw Error{no_device} for what the driver
+// reports.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace rastrum::bench {
+
+/// A block of the device's memory, uninitialized. Throws Error{out_of_memory}.
+class DeviceMemory {
+ public:
+  DeviceMemory() = default;
+  explicit DeviceMemory(std::size_t bytes);
+  ~DeviceMemory();
+  DeviceMemory(DeviceMemory&& other) noexcept : data_(std::exchange(other.data_, nullptr)) {}
+  DeviceMemory& operator=(DeviceMemory&& other) noexcept {
+    std::swap(data_, other.data_);
+    return *this;
+  }
+
+  [[nodiscard]] void* data() const { return data_; }
+  /// Both wait.
+  void write(const void* from, std::size_t bytes);
+  void read(void* to, std::size_t bytes) const;
+
+ private:
+  void* data_ = nullptr;
+};
+
+/// A copy of an array of the host's.
+template <class T>
+class DeviceArray {
+ public:
+  explicit DeviceArray(std::span<const T> from) : memory_(from.size_bytes()), size_(from.size()) {
+    memory_.write(from.data(), from.size_bytes());
+  }
+  [[nodiscard]] std::span<const T> view() const {
+    return {static_cast<const T*>(memory_.data()), size_};
+  }
+
+ private:
+  DeviceMemory memory_;
+  std::size_t size_;
+};
+
+/// The words that are timed, and a copy, which says what the device's memory gives.
+enum class Word : std::uint8_t { copy, exclusive_scan, sort_by_key, reduce_by_index, expand };
+
+/// What they work on: as many elements each, but for `counts`.
+struct WordInput {
+  std::vector<std::uint32_t> keys, values;
+  std::vector<std::uint32_t> index;   ///< of a bin, below `bins`
+  std::vector<std::uint64_t> words;   ///< copied, and folded into bins by their maximum
+  std::vector<std::uint32_t> counts;  ///< scanned; and how often each owner is written by expand
+  std::size_t bins = 0;
+};
+
+/// The words on the device, over a copy of the input.
+class DeviceWords {
+ public:
+  explicit DeviceWords(const WordInput& input);
+  ~DeviceWords();
+  DeviceWords(const DeviceWords&) = delete;
+  DeviceWords& operator=(const DeviceWords&) = delete;
+
+  /// Waits. sort_by_key copies its pairs first, reduce_by_index empties its bins.
+  void run(Word word);
+  /// What the last run has left; of sort_by_key key and value in one.
+  [[nodiscard]] std::vector<std::uint64_t> result() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rastrum::bench

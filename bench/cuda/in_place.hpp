@@ -1,0 +1,54 @@
+// Frames of meshes that lie in a device's memory, into pictures there (RenderOptions::in_place):
+// the frame as a simulation on the device has it, and as the papers time theirs.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <rastrum/core/image.hpp>
+#include <rastrum/render/render.hpp>
+#include <rastrum/scene/camera.hpp>
+#include <rastrum/scene/mesh.hpp>
+
+#include "device.hpp"
+
+namespace rastrum::bench {
+
+/// Positions and indices of meshes, drawn one after the other as one.
+class MeshesInPlace {
+ public:
+  /// Copies them to the device. Throws Error{out_of_memory}.
+  void add(const MeshView& mesh);
+
+  [[nodiscard]] const std::vector<InstanceView>& instances() const { return instances_; }
+
+ private:
+  std::vector<DeviceArray<Vec3>> positions_;
+  std::vector<DeviceArray<std::uint32_t>> indices_;
+  std::vector<InstanceView> instances_;
+};
+
+/// A renderer with its picture on the device.
+class InPlace {
+ public:
+  /// `options.in_place` and the device are set; the shader must have a form there.
+  InPlace(const RenderOptions& options, const Camera& camera);
+
+  /// A frame that ends in 8-bit colours.
+  FrameStats draw(const MeshesInPlace& meshes);
+  /// A frame that ends in visibility words, or in ids.
+  [[nodiscard]] Image<std::uint64_t> words(const MeshesInPlace& meshes, FrameStats& stats);
+  [[nodiscard]] Image<std::int64_t> ids(const MeshesInPlace& meshes, FrameStats& stats);
+
+ private:
+  FrameStats draw(const MeshesInPlace& meshes, const Targets& targets);
+  template <class T>
+  [[nodiscard]] Image<T> drawn(const MeshesInPlace& meshes, ImageView<T> Targets::*target,
+                               FrameStats& stats);
+
+  Renderer renderer_;
+  Camera camera_;
+  DeviceMemory color8_;
+};
+
+}  // namespace rastrum::bench

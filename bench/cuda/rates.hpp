@@ -1,0 +1,47 @@
+// What the tables say of a device's figures beside the times: items a second, and how far the time
+// is from the floor, the bytes that a frame must read and write over the measured bandwidth.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <bench/machine.hpp>
+#include <bench/tables/document.hpp>
+#include <bench/tables/options.hpp>
+
+namespace rastrum::bench {
+
+/// The device's memory by the word that copies, best of several: half of what moves is read, half
+/// written, and floors take both alike. No arithmetic is measured: `gflops` is infinite.
+[[nodiscard]] MachineLimits measure_device(const TableOptions& options);
+/// The GPU, its bandwidth and that of the bus, in words.
+[[nodiscard]] std::string device_note(const TableOptions& options, const MachineLimits& device);
+
+/// Positions and indices read once, RGBA8 written once. `vertices` 0: half as many as triangles, as
+/// closed meshes have.
+[[nodiscard]] double floor_ms(std::uint64_t triangles, std::uint64_t pixels,
+                              const MachineLimits& device, std::uint64_t vertices = 0);
+
+/// A grid of 10⁶ items a second and times over the floor; places that were not measured are empty.
+class Rates {
+ public:
+  Rates(std::string name, std::string first_column, std::string items = "triangles")
+      : name_(std::move(name)), first_column_(std::move(first_column)), items_(std::move(items)) {}
+
+  /// ms 0: not measured.
+  void add(const std::string& row, const std::string& column, std::uint64_t items, double ms,
+           double floor_ms);
+  void add_to(Document& document) const;
+
+ private:
+  struct Figure {
+    std::string row, column;
+    std::uint64_t items;
+    double ms, floor_ms;
+  };
+  std::string name_, first_column_, items_;
+  std::vector<Figure> figures_;
+};
+
+}  // namespace rastrum::bench

@@ -1,0 +1,120 @@
+// `rastrum bench cuda` where there is no GPU: all its tables, small, with the device's code
+// compiled for the CPU (CMakeLists.txt). Each checks its pictures against those of the threads, and
+// says so.
+#include <bench/bench.hpp>
+#include <bench/cuda/device.hpp>
+#include <bench/cuda/rates.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/parallel/cuda/status.hpp>
+
+namespace rastrum::parallel {
+
+// In the place of the library's, which looks for a driver.
+CudaStatus cuda_status() {
+  CudaStatus status;
+  status.usable = true;
+  status.name = "CPU in the place of a GPU";
+  status.free_bytes = status.total_bytes = std::uint64_t{1} << 36;
+  return status;
+}
+
+}  // namespace rastrum::parallel
+
+namespace rastrum::bench {
+namespace {
+
+/// The figures of one table of `bench cuda`.
+nlohmann::json figures(const std::filesystem::path& folder, const std::string& name) {
+  std::ifstream file(folder / (name + ".json"));
+  return nlohmann::json::parse(file)["figures"];
+}
+
+TEST(BenchCuda, AllTablesRunAndTheDevicesPicturesAreRight) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "rastrum_bench_cuda";
+  std::filesystem::remove_all(folder);
+  const std::string out = folder.string();
+  const std::vector<std::string_view> args{"cuda", "--quick", "--threads", "2", "--out", out};
+  ASSERT_EQ(run(args), 0);
+  for (const char* name : {"cuda", "paper2", "paper3", "transparency", "paper5-table4"}) {
+    std::ifstream file(folder / (std::string(name) + ".md"));
+    const std::string text(std::istreambuf_iterator<char>(file), {});
+    EXPECT_NE(text.find("CPU in the place of a GPU: its memory copies "), std::string::npos)
+        << name;
+    EXPECT_EQ(text.find("WRONG"), std::string::npos) << text;
+    EXPECT_EQ(text.find("left to the CPU"), std::string::npos) << text;
+  }
+
+  std::set<std::string> words;
+  for (const nlohmann::json& f : figures(folder, "cuda")) {
+    words.insert(f["word"].get<std::string>());
+    EXPECT_GT(f["cuda"]["median_ms"], 0);
+    EXPECT_GT(f["floor_ms"], 0);
+  }
+  EXPECT_EQ(words.size(), 5U);
+
+  // Subdivided 0, 1 and 2 times at scales 1, 2 and 4, of which the finest is drawn in parts.
+  std::set<std::string> copied, in_place;
+  for (const nlohmann::json& f : figures(folder, "paper5-table4")) {
+    const std::string table = f["table"];
+    if (!f.contains("floor_ms")) continue;
+    EXPECT_GT(f["floor_ms"], 0);
+    EXPECT_GT(f["ms"], 0);
+    (table.starts_with("cuda, in place") ? in_place : copied)
+        .insert(f["row"].get<std::string>() + " " + f["column"].get<std::string>());
+  }
+  EXPECT_EQ(copied.size(), 9U);
+  EXPECT_EQ(in_place.size(), 9U);
+
+  std::set<std::string> methods, shadows;
+  for (const nlohmann::json& f : figures(folder, "paper3")) {
+    if (f["table"] == "frames") methods.insert(f["method"].get<std::string>());
+    if (!f.contains("device_sharp")) continue;
+    EXPECT_GT(f["device_sharp"]["median_ms"], 0);
+    EXPECT_GT(f["device_march"]["median_ms"], 0);
+    shadows.insert(f["width"].dump() + " " + f["samples"].dump());
+  }
+  EXPECT_TRUE(methods.contains("fast, cuda") && methods.contains("words, cuda"));
+  EXPECT_GE(shadows.size(), 3U);
+
+  for (const nlohmann::json& row : figures(folder, "transparency")) {
+    ASSERT_EQ(row["device"].size(), 2U);
+    for (const nlohmann::json& lap : row["device"]) EXPECT_GT(lap["median_ms"], 0) << lap.dump();
+    EXPECT_GT(row["device_floor_ms"], 0);
+  }
+  std::filesystem::remove_all(folder);
+}
+
+TEST(BenchCuda, TheFloorIsEachByteOnceOverTheBandwidth) {
+  MachineLimits device;
+  device.copy_gbs = 2;
+  // 500 + 1000 times 12 bytes, 2000 of 4, at 2 bytes a nanosecond.
+  EXPECT_DOUBLE_EQ(floor_ms(1000, 2000, device), (12 * 1500 + 4 * 2000) / 2e6);
+  EXPECT_DOUBLE_EQ(floor_ms(1000, 2000, device, 3000), (12 * 4000 + 4 * 2000) / 2e6);
+}
+
+TEST(BenchCuda, RatesAreItemsASecondAndTimesOverTheFloor) {
+  Rates rates("cuda", "scene");
+  rates.add("a", "x", 3'000'000, 2, 0.5);
+  rates.add("a", "y", 1, 0, 1);
+  rates.add("b", "y", 5'000'000, 5, 1);
+  Document document{"d", "t"};
+  rates.add_to(document);
+  const std::vector<std::vector<std::string>> rows{{"a", "1500 (4.00)", ""},
+                                                   {"b", "", "1000 (5.00)"}};
+  EXPECT_EQ(document.grids[0].rows, rows);
+  EXPECT_EQ(document.grids[0].columns, (std::vector<std::string>{"scene", "x", "y"}));
+  EXPECT_EQ(document.figures.size(), 2U);
+}
+
+}  // namespace
+}  // namespace rastrum::bench
