@@ -23,11 +23,12 @@ struct LayersFrame {
 };
 
 /// Changes words and colours, which are rows of pixels here, as blend_layers does: in bands of
-/// `band_rows` rows, whole blocks; 0: at once. Counts are those of all bands.
+/// `band_rows` rows, whole blocks; 0: at once. Counts are those of all bands. `by_warps`: how
+/// blocks are sorted.
 transparency::DeviceLayerCounts blend_on_device(LayersFrame& frame,
                                                 const TransparencyOptions& options,
                                                 const transparency::DeviceLayerTuning& tuning,
-                                                int band_rows = 0);
+                                                int band_rows = 0, bool by_warps = false);
 /// Two frames alike, one after the other: by how many bytes the second made the device's memory
 /// grow.
 std::uint64_t growth_of_a_second_frame(const LayersFrame& frame);
@@ -37,6 +38,6 @@ std::uint64_t growth_of_a_second_frame(const LayersFrame& frame);
 struct TeamResult {
   std::vector<std::uint32_t> sorted, places, sums;
 };
-TeamResult team_words(const std::vector<std::uint32_t>& values);
+TeamResult team_words(const std::vector<std::uint32_t>& values, bool by_warps);
 
 }  // namespace rastrum::test

@@ -1,4 +1,5 @@
 // Pieces that a device makes, with the device's code on the CPU.
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -8,6 +9,7 @@
 #include <rastrum/raster/cuda/pieces.cuh>
 #include <rastrum/raster/cuda/rasterizer.cuh>
 #include <rastrum/raster/resolve.hpp>
+#include <rastrum/raster/samples.hpp>
 
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
@@ -42,25 +44,50 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
       const raster::DeviceScene<parallel::Cuda> scene(exec, device_draws, kWidth, kHeight, 0,
                                                       project_first);
       ASSERT_EQ(scene.primitives(), total);
-      const raster::SampleOffset at{37, -90};
-      std::vector<raster::Piece> expected;
-      raster::Outcomes sum;
-      for (const raster::Draw& d : draws)
-        for (std::uint64_t p = 0; p < d.primitive_count; ++p) {
-          raster::Outcome o;
-          o.fate = raster::assemble_primitive(
-              frame, d, p, [&](const raster::Piece& piece) { expected.push_back(piece); }, 3, at);
-          sum = raster::AddOutcomes{}(sum, raster::Outcomes(o));
+      for (const int samples : {1, 4, 16}) {
+        // What each sample sees, and what becomes of a primitive that some of them see.
+        const auto pattern = raster::SamplePattern::of(samples);
+        std::vector<std::vector<raster::Piece>> expected(static_cast<std::size_t>(samples));
+        raster::Outcomes sum;
+        for (const raster::Draw& d : draws)
+          for (std::uint64_t p = 0; p < d.primitive_count; ++p) {
+            raster::Outcome o;
+            for (std::size_t s = 0; s < expected.size(); ++s) {
+              const raster::Fate fate = raster::assemble_primitive(
+                  frame, d, p, [&](const raster::Piece& piece) { expected[s].push_back(piece); }, 0,
+                  pattern.at[s]);
+              if (fate != raster::Fate::culled) o.fate = fate;
+            }
+            sum = raster::AddOutcomes{}(sum, raster::Outcomes(o));
+          }
+        const auto made = raster::make_pieces(exec, scene, 0, total, raster::KeepsAll{}, pattern);
+        EXPECT_EQ(made.sum.culled, sum.culled);
+        EXPECT_EQ(made.sum.clipped, sum.clipped);
+        EXPECT_EQ(made.sum.dropped, sum.dropped);
+        for (std::size_t s = 0; s < expected.size(); ++s) {
+          std::vector<raster::Piece> seen;
+          for (const raster::Piece& piece : parallel::to_host(exec, made.pieces)) {
+            const raster::Piece p = raster::moved(piece, pattern.at[s]);
+            if (!raster::piece_bounds(p, {0, 0, kWidth, kHeight}).empty()) seen.push_back(p);
+          }
+          // Of a clipped primitive those that the first sample does not see come later.
+          const auto before = [](const raster::Piece& a, const raster::Piece& b) {
+            return std::memcmp(&a, &b, sizeof a) < 0;
+          };
+          const auto by_bytes = [&](std::vector<raster::Piece>& v) {
+            std::ranges::sort(v, before);
+          };
+          if (samples > 1) {
+            by_bytes(seen);
+            by_bytes(expected[s]);
+          }
+          ASSERT_EQ(seen.size(), expected[s].size());
+          if (!seen.empty()) {
+            EXPECT_EQ(
+                std::memcmp(seen.data(), expected[s].data(), seen.size() * sizeof(raster::Piece)),
+                0);
+          }
         }
-      const auto made = raster::make_pieces(exec, scene, 0, total, raster::KeepsAll{}, 3, at);
-      ASSERT_EQ(made.pieces.size(), expected.size());
-      EXPECT_EQ(made.sum.culled, sum.culled);
-      EXPECT_EQ(made.sum.clipped, sum.clipped);
-      EXPECT_EQ(made.sum.dropped, sum.dropped);
-      if (!expected.empty()) {
-        EXPECT_EQ(std::memcmp(made.pieces.data(), expected.data(),
-                              expected.size() * sizeof(raster::Piece)),
-                  0);
       }
     }
   }
@@ -84,20 +111,28 @@ TEST(CudaOwnedTiles, DrawTheBitsOfThePlainOnes) {
   auto plan = raster::DevicePlan::of(0, kWidth, kHeight, scene.primitives(), 0, 0);
   raster::DeviceSizes sizes;
   for (const raster::Rect view : {raster::Rect{0, 0, kWidth, kHeight}, {0, 64, kWidth, 128}}) {
-    const auto draw = [&](bool owned) {
+    const auto draw = [&](bool owned, int samples) {
       sizes.owned_tiles = owned;
-      std::vector<std::uint64_t> words(raster::block_count(view) * 64);
+      const std::size_t plane = raster::block_count(view) * 64;
+      std::vector<std::uint64_t> words(plane * static_cast<std::size_t>(samples));
       const raster::DeviceSurface surface{
-          view, {0, view.y0 / 8, raster::block_columns(view), words.data(), nullptr}};
+          view,
+          {0, view.y0 / 8, raster::block_columns(view), words.data(), nullptr},
+          nullptr,
+          plane,
+          raster::SamplePattern::of(samples)};
       const raster::DeviceCounts counts = raster::draw_surface(exec, scene, surface, plan, sizes);
       return std::pair(words, counts.fragments);
     };
     for (const std::uint64_t written : {scene.primitives(), std::uint64_t{17}}) {
       plan.written = written;
-      const auto plain = draw(false), owned = draw(true);
-      EXPECT_TRUE(plain.first == owned.first);
-      EXPECT_EQ(plain.second, owned.second);
-      EXPECT_GT(owned.second, 100000U);
+      for (const int samples : {1, 4}) {
+        if (samples > 1 && written == 17) continue;
+        const auto plain = draw(false, samples), owned = draw(true, samples);
+        EXPECT_TRUE(plain.first == owned.first);
+        EXPECT_EQ(plain.second, owned.second);
+        EXPECT_GT(owned.second, 100000U * static_cast<unsigned>(samples));
+      }
     }
   }
 }

@@ -370,6 +370,44 @@ TEST_F(CudaRasterizer, DrawsOfAllTopologiesEqualSerial) {
   EXPECT_GT(seen.dropped, 100U);
 }
 
+// Points and lines are the same at all samples, triangles are not. Without colours, as the shader
+// is the host's.
+TEST_F(CudaRasterizer, SamplesOfAllTopologiesEqualSerial) {
+  constexpr int kWidth = 83, kHeight = 61;
+  RenderOptions o = options(kWidth, kHeight, Device::serial);
+  o.samples = 4;
+  Renderer serial(o);
+  o.device = Device::cuda;
+  Renderer cuda(o);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Random random(seed);
+    Mix mix(random, kWidth, kHeight);
+    const raster::Program program(
+        [&mix](std::uint32_t v) {
+          return raster::VertexOutput<Vec4>{mix.clip[v], mix.clip[v]};
+        },
+        [](const Vec4& v, const raster::Fragment&) { return v; });
+    mix.make_draws(random, program);
+    const auto take = [&](Renderer& renderer) {
+      Frame f;
+      f.depth = Image<float>(kWidth, kHeight);
+      f.ids = Image<std::int64_t>(kWidth, kHeight);
+      f.overdraw = Image<std::uint32_t>(kWidth, kHeight);
+      Targets targets;
+      targets.depth = f.depth.view();
+      targets.ids = f.ids.view();
+      targets.overdraw = f.overdraw.view();
+      std::vector<raster::Draw> draws = mix.draws;
+      f.stats = renderer.draw(draws, program, nullptr, targets);
+      return f;
+    };
+    const Frame expected = take(serial), frame = take(cuda);
+    ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
+    ASSERT_TRUE(same_surfaces(frame, expected)) << seed;
+    ASSERT_TRUE(same_counts(frame.stats, expected.stats)) << seed;
+  }
+}
+
 TEST_F(CudaRasterizer, PassesEqualOneDraw) {
   constexpr int kWidth = 150, kHeight = 200;
   const Scene scene = soup(3000, kWidth, kHeight);

@@ -119,10 +119,11 @@ TEST_F(CudaLayeredFrame, TheRestIsTheCPUs) {
   RenderOptions o = options(40, 40, Device::cuda);
   o.shader = Shader::material;
   EXPECT_NE(why(o).find("no form of this shader"), std::string::npos) << why(o);
-  o.shader = Shader::flat;
+  o.opacity = 1;
   o.samples = 4;
   EXPECT_NE(why(o).find("several samples"), std::string::npos) << why(o);
-  o.samples = 1;
+  o = options(40, 40, Device::cuda);
+  o.shader = Shader::flat;
   o.transparency.method = Transparency::mlab4;
   EXPECT_NE(why(o).find("approximations"), std::string::npos) << why(o);
 }

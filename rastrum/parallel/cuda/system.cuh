@@ -37,6 +37,12 @@
 namespace rastrum::parallel::cuda_system {
 inline namespace RASTRUM_DEVICE_SYSTEM {
 
+/// Whether a body of for_each_team says that its members shuffle.
+template <class F>
+inline constexpr bool kWantsWarps = requires {
+  requires F::kWantsWarps;
+};
+
 #if THRUST_DEVICE_SYSTEM == THRUST_DEVICE_SYSTEM_CUDA
 
 using Stream = cudaStream_t;
@@ -100,8 +106,9 @@ template <class K, class V, class Allocate>
   return key_rooms.selector;
 }
 
-/// How many members a team of for_each_team has, for arrays of what each keeps to itself.
-template <int kThreads>
+/// How many members a team of for_each_team has, for arrays of what each keeps to itself;
+/// `kWarps`: of a body that asks for whole warps.
+template <int kThreads, bool kWarps = false>
 inline constexpr std::size_t kTeamMembers = kThreads;
 
 /// A block of threads.
@@ -110,14 +117,20 @@ class Team {
   [[nodiscard]] __device__ std::size_t rank() const { return threadIdx.x; }
   [[nodiscard]] __device__ std::size_t size() const { return blockDim.x; }
   __device__ void sync() const { __syncthreads(); }
+  static constexpr std::size_t kWarp = 32;
+  template <class T>
+  [[nodiscard]] __device__ T shuffle_xor(T value, std::size_t lanes) const {
+    return static_cast<T>(__shfl_xor_sync(0xFFFFFFFFU, value, static_cast<int>(lanes)));
+  }
 };
 
 #if defined(__CUDACC__)
-template <class T, class F>
+template <class T, int kThreads, class F>
 __global__ void team_kernel(std::size_t n, F f) {
   __shared__ alignas(T) unsigned char room[sizeof(T)];
   T& scratch = *reinterpret_cast<T*>(room);
   const Team team;
+  static_assert(!kWantsWarps<F> || std::size_t{kThreads} % Team::kWarp == 0);
   for (std::size_t i = blockIdx.x; i < n; i += gridDim.x) {
     f(i, scratch, team);
     team.sync();
@@ -130,7 +143,7 @@ void launch_teams(Stream stream, std::size_t n, F f) {
   if (n == 0) return;
   constexpr std::size_t kMostBlocks = std::size_t{1} << 20;
   const auto blocks = static_cast<unsigned>(n < kMostBlocks ? n : kMostBlocks);
-  team_kernel<T><<<blocks, kThreads, 0, stream>>>(n, f);
+  team_kernel<T, kThreads><<<blocks, kThreads, 0, stream>>>(n, f);
   check(cudaGetLastError(), "starting teams");
 }
 #endif
@@ -185,9 +198,11 @@ template <class K, class V, class Allocate>
   return 1;
 }
 
-/// Few and odd: shares that are not a whole number show.
-template <int kThreads>
-inline constexpr std::size_t kTeamMembers = kThreads < 3 ? kThreads : 3;
+/// Few and odd: shares that are not a whole number show. Or two small warps.
+template <int kThreads, bool kWarps = false>
+inline constexpr std::size_t kTeamMembers = kWarps         ? 8
+                                            : kThreads < 3 ? kThreads
+                                                           : 3;
 
 /// A member of a team of coroutines.
 template <class Host>
@@ -197,6 +212,12 @@ class Team {
   [[nodiscard]] std::size_t rank() const { return rank_; }
   [[nodiscard]] std::size_t size() const { return size_; }
   void sync() const { host_->sync(rank_); }
+  static constexpr std::size_t kWarp = 4;
+  template <class T>
+  [[nodiscard]] T shuffle_xor(T value, std::size_t lanes) const {
+    static_assert(std::is_integral_v<T>);
+    return static_cast<T>(host_->value_of(rank_, rank_ ^ lanes, std::uint64_t{value}));
+  }
 
  private:
   std::size_t rank_, size_;
@@ -205,7 +226,7 @@ class Team {
 
 template <class T, int kThreads, class F>
 void launch_teams(Stream, std::size_t n, F f) {
-  constexpr std::size_t kMembers = kTeamMembers<kThreads>;
+  constexpr std::size_t kMembers = kTeamMembers<kThreads, kWantsWarps<F>>;
   if (n == 0) return;
   T scratch;
   const auto body = [&](std::size_t rank, auto& host) {

@@ -12,6 +12,7 @@
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/parallel/reduce_by_index.hpp>
 #include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/cuda/sample_pattern.hpp>
 #include <rastrum/raster/setup.hpp>
 #include <rastrum/raster/surface.hpp>
 
@@ -20,23 +21,40 @@ namespace rastrum::raster {
 /// Across a tile of large triangles, px.
 inline constexpr int kDeviceTile = 64;
 
-/// Where words go. Memory of the device.
+/// Where words go. Memory of the device. With several samples a pixel each has a plane of words,
+/// and pieces are those of the pixels' centres, moved before they are drawn (samples.hpp).
 struct DeviceSurface {
-  Rect view;          ///< what is drawn; begins with a tile's first pixel
-  SurfaceView words;  ///< its blocks
-  std::uint32_t* overdraw =
-      nullptr;  ///< fragments of each sample, in the places of the words; null
+  Rect view;                          ///< what is drawn; begins with a tile's first pixel
+  SurfaceView words;                  ///< its blocks
+  std::uint32_t* overdraw = nullptr;  ///< fragments of each pixel, in the places of the words; null
+  std::size_t plane = 0;              ///< from a sample's words to the next one's
+  SamplePattern samples{};
 
   /// The word of `piece` at element i of block (bx, by).
   [[nodiscard]] RASTRUM_HD static std::uint64_t word(const Piece& piece, int bx, int by, int i) {
     const int x = bx * kBlockSize + i % kBlockSize, y = by * kBlockSize + i / kBlockSize;
     return make_word(depth_at(piece, x, y), piece.low);
   }
-  /// A fragment of `piece` there.
-  RASTRUM_HD void put(const Piece& piece, int bx, int by, int i) const {
+  /// A fragment of `piece` there, which is as that sample sees it.
+  RASTRUM_HD void put(const Piece& piece, int bx, int by, int i, int sample = 0) const {
     const std::size_t at = words.index(bx, by) * 64 + static_cast<std::size_t>(i);
-    parallel::atomic_maximum(words.words[at], word(piece, bx, by, i));
+    parallel::atomic_maximum(plane_of(sample)[at], word(piece, bx, by, i));
     if (overdraw != nullptr) parallel::atomic_add(overdraw[at], 1U);
+  }
+  [[nodiscard]] RASTRUM_HD std::uint64_t* plane_of(int sample) const {
+    return words.words + static_cast<std::size_t>(sample) * plane;
+  }
+  [[nodiscard]] RASTRUM_HD Rect bounds(const Piece& piece) const {
+    return sampled_bounds(piece, view, samples);
+  }
+  /// Calls f(sample, piece, its box in `part`) for the samples that the piece may cover there.
+  template <class F>
+  RASTRUM_HD void each_sample(const Piece& piece, Rect part, F&& f) const {
+    for (int s = 0; s < samples.count; ++s) {
+      const Piece seen = moved(piece, samples.at[s]);
+      const Rect box = piece_bounds(seen, part);
+      if (!box.empty()) f(s, seen, box);
+    }
   }
 };
 
@@ -78,7 +96,8 @@ RASTRUM_HD inline Rect tiles_of(Rect box, Rect view) {
           (box.x1 - 1 - view.x0) / kDeviceTile + 1, (box.y1 - 1 - view.y0) / kDeviceTile + 1};
 }
 /// By one thread; returns the number of fragments. `box`: of the piece in the view, not empty.
-RASTRUM_HD inline int draw_by_thread(const DeviceSurface& surface, const Piece& piece, Rect box) {
+RASTRUM_HD inline int draw_by_thread(const DeviceSurface& surface, const Piece& piece, Rect box,
+                                     int sample = 0) {
   const Edges edges = edges_of(piece);
   const BlocksOf blocks(box);
   int fragments = 0;
@@ -87,7 +106,7 @@ RASTRUM_HD inline int draw_by_thread(const DeviceSurface& surface, const Piece& 
     const std::uint64_t mask = cover_box(edges, box, bx, by);
     fragments += parallel::popcount(mask);
     for (std::uint64_t m = mask; m != 0; m &= m - 1)
-      surface.put(piece, bx, by, parallel::lowest_bit(m));
+      surface.put(piece, bx, by, parallel::lowest_bit(m), sample);
   }
   return fragments;
 }
@@ -100,7 +119,8 @@ struct TeamMasks {
 /// By a team; adds the number of fragments to *fragments. `box` as above, the same for all members.
 template <class Team>
 RASTRUM_HD void draw_by_team(const DeviceSurface& surface, const Piece& piece, Rect box,
-                             std::uint64_t* fragments, TeamMasks& shared, const Team& team) {
+                             std::uint64_t* fragments, TeamMasks& shared, const Team& team,
+                             int sample = 0) {
   const Edges edges = edges_of(piece);
   const BlocksOf blocks(box);
   std::uint64_t mine = 0;
@@ -117,7 +137,7 @@ RASTRUM_HD void draw_by_team(const DeviceSurface& surface, const Piece& piece, R
     for (std::size_t k = team.rank(); k < static_cast<std::size_t>(n) * 64; k += team.size()) {
       const int block = first + static_cast<int>(k / 64), i = static_cast<int>(k % 64);
       if ((shared.mask[k / 64] >> i & 1) != 0)
-        surface.put(piece, blocks.bx(block), blocks.by(block), i);
+        surface.put(piece, blocks.bx(block), blocks.by(block), i, sample);
     }
     team.sync();
   }

@@ -24,6 +24,7 @@
 #include <rastrum/raster/cuda/rasterizer.cuh>
 #include <rastrum/raster/cuda/rasterizer.hpp>
 #include <rastrum/raster/cuda/resolve.cuh>
+#include <rastrum/raster/cuda/samples.cuh>
 #include <rastrum/raster/cuda/upload.cuh>
 #include <rastrum/raster/resolve.hpp>
 #include <rastrum/raster/shaders/alpha.hpp>
@@ -49,10 +50,14 @@ class DeviceRasterizer final : public CudaRasterizer {
 
   [[nodiscard]] std::string why_no_layers(const FrameRequest& request) const override {
     if (std::string why(Layers::why_not(request)); !why.empty()) return why;
-    if (!request.targets.overdraw.empty()) return "overdraw of translucent surfaces is the CPU's";
+    if (family_ && request.samples > 1)
+      return "of the device's rasterizers by-size has several samples a pixel";
+    if (!request.targets.overdraw.empty() && is_layered(request))
+      return "overdraw of translucent surfaces is the CPU's";
     return can_resolve(request) ? std::string()
-                                : "translucent fragments are shaded where they are, and the device "
-                                  "has no form of this shader or target";
+                                : "translucent fragments, and those of several samples, are "
+                                  "shaded where they are, and the device has no form of this "
+                                  "shader or target";
   }
   [[nodiscard]] FrameStats render(FrameRequest& request) override {
     Stopwatch watch;
@@ -75,6 +80,12 @@ class DeviceRasterizer final : public CudaRasterizer {
   }
 
  private:
+  [[nodiscard]] static bool is_layered(const FrameRequest& request) {
+    return request.transparency.method != Transparency::none &&
+           std::ranges::any_of(request.draws, [](const Draw& draw) {
+             return (draw.any_flags() & kTranslucent) != 0;
+           });
+  }
   /// Bytes of scratch beside what is copied: what was asked for, or what is there. 0: any.
   [[nodiscard]] std::uint64_t limit() const {
     if (memory_limit_ != 0) return memory_limit_;
@@ -94,15 +105,16 @@ class DeviceRasterizer final : public CudaRasterizer {
     if (request.in_place && !resolver)
       throw Error(Errc::unsupported,
                   "arrays in the device's memory (in_place): this shader needs them in the host's");
-    const bool layered = request.transparency.method != Transparency::none &&
-                         std::ranges::any_of(request.draws, [](const Draw& draw) {
-                           return (draw.any_flags() & kTranslucent) != 0;
-                         });
+    const bool layered = is_layered(request);
     Layers layers;
+    const SamplePattern samples = SamplePattern::of(request.samples);
+    const auto planes = static_cast<std::uint64_t>(samples.count);
     const bool shades_all = family_ && family_->visibility->shades && resolver && resolver->lit;
-    // Layers need a colour, and what is known of its block.
+    // Layers need a colour, and what is known of its block; so does each of several samples.
+    const bool in_colors = layered || planes > 1;
     const std::uint64_t pixel_bytes =
-        (layered ? sizeof(Vec4) + 1 : 0) + (family_ ? family_->visibility->pixel_bytes : 0) +
+        (planes - 1) * sizeof(std::uint64_t) + (in_colors ? planes * sizeof(Vec4) + 1 : 0) +
+        (family_ ? family_->visibility->pixel_bytes : 0) +
         (counts_overdraw ? sizeof(std::uint32_t) : 0) + (resolver ? sizeof(std::uint32_t) : 0) +
         (resolver && !request.in_place ? DeviceTargets::bytes_of(request.targets) : 0);
     const DevicePlan plan = DevicePlan::of(limit(), request.width, request.height,
@@ -125,22 +137,26 @@ class DeviceRasterizer final : public CudaRasterizer {
     for (int y = 0; y < request.height; y += plan.band_rows, ++bands) {
       const Rect view{0, y, request.width, std::min(y + plan.band_rows, request.height)};
       const std::size_t blocks = block_count(view);
-      auto words = parallel::make_buffer<std::uint64_t>(exec_, blocks * 64);
+      auto words = parallel::make_buffer<std::uint64_t>(exec_, planes * blocks * 64);
       auto overdraw =
           parallel::make_buffer<std::uint32_t>(exec_, counts_overdraw ? blocks * 64 : 0);
-      DeviceSurface surface{
-          view, {0, y / kBlockSize, block_columns(view), words.data(), nullptr}, overdraw.data()};
+      DeviceSurface surface{view,
+                            {0, y / kBlockSize, block_columns(view), words.data(), nullptr},
+                            overdraw.data(),
+                            blocks * 64,
+                            samples};
       begin(request, view, words, overdraw);
-      auto colors = parallel::make_buffer<Vec4>(exec_, layered || shades_all ? words.size() : 0);
+      auto colors = parallel::make_buffer<Vec4>(exec_, in_colors || shades_all ? words.size() : 0);
       family::Shading shading;
       if (shades_all)
         shading = {shade_fragments(surface.words, resolver->shade(scene.geometry())),
                    parallel::view_of(colors)};
       const std::uint32_t skip = layered ? kTranslucent : 0;
-      const DeviceCounts band = family_ ? draw_surface(exec_, scene, surface, plan, *family_,
-                                                       request.tuning, skip, shading, own)
-                                        : draw_surface(exec_, scene, surface, plan,
-                                                       DeviceSizes::of(request.tuning), skip);
+      const DeviceCounts band =
+          family_ ? draw_surface(exec_, scene, surface, plan, *family_, request.tuning, skip,
+                                 shading, own)
+                  : draw_surface(exec_, scene, surface, plan,
+                                 DeviceSizes::of(request.tuning, samples.count), skip);
       if (bands == 0) counts.sum = band.sum;
       counts.fragments += band.fragments;
       counts.larger_pieces += band.larger_pieces;
@@ -150,7 +166,15 @@ class DeviceRasterizer final : public CudaRasterizer {
       if (counts_overdraw) store_overdraw(request, view, overdraw);
       if (resolver) {
         const LitOnDevice shade = resolver->shade(scene.geometry());
-        if (layered) {
+        if (planes > 1) {
+          const ShadedOnce<LitOnDevice> once{scene.geometry(), samples, shade};
+          shade_samples(exec_, surface, parallel::view_of(colors), once);
+          if (layered)
+            layers.blend(exec_, scene, surface, parallel::view_of(colors), request.transparency,
+                         once, plan.batch, limit() / 8);
+          mean_of_samples(exec_, surface, parallel::view_of(colors));
+          watch.lap(stats, "samples");
+        } else if (layered) {
           parallel::tabulate(exec_, colors,
                              cuda_detail::ColorOfElement<LitOnDevice>{surface.words, shade});
           layers.blend(exec_, scene, surface, parallel::view_of(colors), request.transparency,
@@ -158,7 +182,7 @@ class DeviceRasterizer final : public CudaRasterizer {
           watch.lap(stats, "layers");
         }
         stats.pixels_covered +=
-            layered || shades_all
+            in_colors || shades_all
                 ? resolve_on_device(request, ColorsOfSurface{surface, colors.data()}, surface)
                 : resolve_on_device(request, shade, surface);
       } else {

@@ -36,13 +36,14 @@ namespace cuda_detail {
 template <class Places>
 struct PairOf {
   std::span<const Piece> pieces;
-  Rect view;
+  DeviceSurface surface;
   Places places;
   std::uint32_t* tile;
   std::uint32_t* piece;
   RASTRUM_HD void operator()(std::size_t i) const {
     const std::size_t k = places.segment_of(i);
-    const Rect tiles = tiles_of(piece_bounds(pieces[k], view), view);
+    const Rect view = surface.view;
+    const Rect tiles = tiles_of(surface.bounds(pieces[k]), view);
     const int j = static_cast<int>(i - places.first(k)), across = tiles.x1 - tiles.x0;
     const int columns = (view.x1 - view.x0 + kDeviceTile - 1) / kDeviceTile;
     tile[i] = static_cast<std::uint32_t>((tiles.y0 + j / across) * columns + tiles.x0 + j % across);
@@ -51,6 +52,8 @@ struct PairOf {
 };
 
 struct DrawOwnedTile {
+  static constexpr std::size_t kSamples = OwnedTile::kBlocks * 64;
+
   std::span<const Piece> pieces;
   DeviceSurface surface;
   std::span<const std::uint32_t> tile, first;  ///< each tile that is touched, and its first pair
@@ -59,18 +62,27 @@ struct DrawOwnedTile {
 
   template <class Team>
   RASTRUM_HD void operator()(std::size_t t, OwnedTile& own, const Team& team) const {
-    constexpr std::size_t kSamples = OwnedTile::kBlocks * 64;
     const Rect view = surface.view;
     const int columns = (view.x1 - view.x0 + kDeviceTile - 1) / kDeviceTile;
     const int x0 = view.x0 + static_cast<int>(tile[t]) % columns * kDeviceTile;
     const int y0 = view.y0 + static_cast<int>(tile[t]) / columns * kDeviceTile;
     const Rect in_view = common_of(view, {x0, y0, x0 + kDeviceTile, y0 + kDeviceTile});
-    const int bx0 = x0 / kBlockSize, by0 = y0 / kBlockSize;
+    std::uint64_t mine = 0;
+    for (int s = 0; s < surface.samples.count; ++s)
+      mine += draw(t, in_view, x0 / kBlockSize, y0 / kBlockSize, s, own, team);
+    if (mine > 0) parallel::atomic_add(*fragments, mine);
+  }
+
+ private:
+  /// One sample; returns the fragments of a member.
+  template <class Team>
+  RASTRUM_HD std::uint64_t draw(std::size_t t, Rect in_view, int bx0, int by0, int s,
+                                OwnedTile& own, const Team& team) const {
     for (std::size_t k = team.rank(); k < kSamples; k += team.size()) own.words[k] = 0;
     std::uint64_t mine = 0;
     const std::size_t end = t + 1 < first.size() ? first[t + 1] : piece.size();
     for (std::size_t pair = first[t]; pair < end; ++pair) {
-      const Piece& p = pieces[piece[pair]];
+      const Piece p = moved(pieces[piece[pair]], surface.samples.at[s]);
       const Rect box = piece_bounds(p, in_view);
       const Edges edges = edges_of(p);
       for (std::size_t k = team.rank(); k < OwnedTile::kBlocks; k += team.size()) {
@@ -91,10 +103,10 @@ struct DrawOwnedTile {
     for (std::size_t k = team.rank(); k < kSamples; k += team.size())
       if (own.words[k] != 0) {
         const int bx = bx0 + static_cast<int>(k / 64 % 8), by = by0 + static_cast<int>(k / 512);
-        parallel::atomic_maximum(surface.words.words[surface.words.index(bx, by) * 64 + k % 64],
+        parallel::atomic_maximum(surface.plane_of(s)[surface.words.index(bx, by) * 64 + k % 64],
                                  own.words[k]);
       }
-    if (mine > 0) parallel::atomic_add(*fragments, mine);
+    return mine;
   }
 };
 
@@ -111,7 +123,7 @@ void draw_owned_tiles(Exec& exec, std::span<const Piece> pieces, const Places& p
   auto piece = parallel::make_buffer<std::uint32_t>(exec, places.size());
   parallel::for_each_index(exec, places.size(),
                            cuda_detail::PairOf<decltype(places.view())>{
-                               pieces, surface.view, places.view(), tile.data(), piece.data()});
+                               pieces, surface, places.view(), tile.data(), piece.data()});
   const std::uint64_t tiles = area_of(tiles_of(surface.view, surface.view));
   parallel::sort_by_key(exec, tile, piece, static_cast<int>(std::bit_width(tiles)));
   const auto pairs =

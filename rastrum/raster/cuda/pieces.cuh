@@ -14,7 +14,9 @@
 #include <rastrum/core/error.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/raster/assemble.hpp>
+#include <rastrum/raster/coverage.hpp>
 #include <rastrum/raster/cuda/geometry.cuh>
+#include <rastrum/raster/cuda/sample_pattern.hpp>
 
 namespace rastrum::raster {
 
@@ -52,15 +54,15 @@ struct AddOutcomes {
   }
 };
 
-/// Primitives [first, …) of a frame, as they are seen from sample `sample`.
+/// Primitives [first, …) of a frame.
 struct Assembly {
   DeviceGeometry geometry;
   std::uint64_t first = 0;
-  std::uint32_t sample = 0;
-  SampleOffset at{};
+  SamplePattern samples{};
 
-  /// Calls emit(piece) for the pieces of primitive first + i; `pieces` and `fragments` of the
-  /// result are the caller's to fill.
+  /// Calls emit(piece) for the pieces of primitive first + i that have a sample of the image in
+  /// their box, as they lie at the centres of pixels: moved() (samples.hpp) makes of them what a
+  /// sample sees. `pieces` and `fragments` of the result are the caller's to fill.
   template <class Emit>
   RASTRUM_HD Outcome assemble(std::size_t i, Emit&& emit) const {
     const std::uint64_t id = first + i;
@@ -72,7 +74,22 @@ struct Assembly {
     if (!draw.material_flags.empty())
       out.valid = out.valid && p < draw.face_materials.size() &&
                   draw.face_materials[static_cast<std::size_t>(p)] < draw.material_flags.size();
-    if (out.valid) out.fate = assemble_primitive(geometry, draw, p, emit, sample, at);
+    if (!out.valid) return out;
+    const Rect image{0, 0, geometry.width, geometry.height};
+    for (int s = 0; s < samples.count; ++s) {
+      const SampleOffset at = samples.at[s];
+      const auto emit_new = [&](const Piece& seen) {
+        const Piece piece = moved(seen, {-at.x, -at.y});
+        for (int t = 0; t < s; ++t)
+          if (!piece_bounds(moved(piece, samples.at[t]), image).empty()) return;
+        emit(piece);
+      };
+      // Setup leaves out what has no sample in its box, so others may see what the first does not;
+      // but what was drawn whole is there.
+      const Fate here = assemble_primitive(geometry, draw, p, emit_new, 0, at);
+      if (here != Fate::culled) out.fate = here;
+      if (here == Fate::drawn || here == Fate::dropped) break;
+    }
     return out;
   }
 };
@@ -152,16 +169,15 @@ struct KeepsFlagged {
   RASTRUM_HD bool operator()(const Piece& piece) const { return (piece.flags & any) != 0; }
 };
 
-/// The pieces of primitives [first, last) of `scene` that keep(piece) holds for, at a sample
-/// (samples.hpp), and what became of the primitives. Throws as check_valid, and
+/// The pieces of primitives [first, last) of `scene` that keep(piece) holds for, as Assembly has
+/// them, and what became of the primitives. Throws as check_valid, and
 /// Error{out_of_memory}. Work O(primitives), with a scan. Memory: 48 B a piece, 14 B a primitive
 /// while it works. Waits.
 template <class Exec, class Keep>
 [[nodiscard]] auto make_pieces(Exec& exec, const DeviceScene<Exec>& scene, std::uint64_t first,
-                               std::uint64_t last, Keep keep, std::uint32_t sample = 0,
-                               SampleOffset at = {}) {
+                               std::uint64_t last, Keep keep, const SamplePattern& samples = {}) {
   const auto n = static_cast<std::size_t>(last - first);
-  const Assembly assembly{scene.geometry(), first, sample, at};
+  const Assembly assembly{scene.geometry(), first, samples};
   auto outcomes = parallel::make_buffer<Outcome>(exec, n);
   parallel::tabulate(exec, outcomes, cuda_detail::CountPieces<Keep>{assembly, keep});
   const Outcomes sum = parallel::reduce(exec, outcomes, Outcomes{}, AddOutcomes{});

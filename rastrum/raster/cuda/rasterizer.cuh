@@ -34,11 +34,13 @@ struct DeviceSizes {
   std::uint64_t small_px = 128, large_px = 4000;
   bool owned_tiles = false;  ///< large pieces by owned_tiles.cuh, where no overdraw is counted
 
-  /// Asked for by a caller; 0: as above. A small piece's fragments are counted in 16 bits.
-  static DeviceSizes of(const Tuning& tuning) {
+  /// Asked for by a caller; 0: as above. A small piece's fragments are counted in 16 bits, at all
+  /// samples.
+  static DeviceSizes of(const Tuning& tuning, int samples = 1) {
     DeviceSizes s;
     if (tuning.small_px > 0)
-      s.small_px = std::min<std::uint64_t>(static_cast<std::uint64_t>(tuning.small_px), 4096);
+      s.small_px = std::min(static_cast<std::uint64_t>(tuning.small_px),
+                            std::uint64_t{4096} / static_cast<std::uint64_t>(samples));
     if (tuning.large_px > 0) s.large_px = static_cast<std::uint64_t>(tuning.large_px);
     return s;
   }
@@ -100,12 +102,12 @@ struct DrawSmall {
     std::uint8_t larger = 0;
     Outcome out = assembly.assemble(i, [&](const Piece& piece) {
       if ((piece.flags & skip) != 0) return;
-      const Rect box = piece_bounds(piece, surface.view);
-      const std::uint64_t area = area_of(box);
-      if (area > small_px)
+      if (area_of(surface.bounds(piece)) > small_px)
         ++larger;
-      else if (area > 0)
-        fragments += draw_by_thread(surface, piece, box);
+      else
+        surface.each_sample(piece, surface.view, [&](int s, const Piece& seen, Rect box) {
+          fragments += draw_by_thread(surface, seen, box, s);
+        });
     });
     out.fragments = static_cast<std::uint16_t>(fragments);
     out.pieces = larger;
@@ -113,10 +115,10 @@ struct DrawSmall {
   }
 };
 struct IsLarger {
-  Rect view;
+  DeviceSurface surface;
   std::uint64_t than_px;
   RASTRUM_HD bool operator()(const Piece& piece) const {
-    return area_of(piece_bounds(piece, view)) > than_px;
+    return area_of(surface.bounds(piece)) > than_px;
   }
 };
 struct HasPieces {
@@ -132,18 +134,21 @@ struct DrawMiddle {
   template <class Team>
   RASTRUM_HD void operator()(std::size_t i, TeamMasks& shared, const Team& team) const {
     const Piece& piece = pieces[i];
-    const Rect box = piece_bounds(piece, surface.view);
-    if (area_of(box) < large_px) draw_by_team(surface, piece, box, fragments, shared, team);
+    if (area_of(surface.bounds(piece)) >= large_px) return;
+    surface.each_sample(piece, surface.view, [&](int s, const Piece& seen, Rect box) {
+      draw_by_team(surface, seen, box, fragments, shared, team, s);
+    });
   }
 };
 
 /// How many tiles a large piece touches; 0 of one that is not.
 struct CountTiles {
-  Rect view;
+  DeviceSurface surface;
   std::uint64_t large_px;
   RASTRUM_HD std::size_t operator()(const Piece& piece) const {
-    const Rect box = piece_bounds(piece, view);
-    return area_of(box) < large_px ? 0 : static_cast<std::size_t>(area_of(tiles_of(box, view)));
+    const Rect box = surface.bounds(piece);
+    if (area_of(box) < large_px) return 0;
+    return static_cast<std::size_t>(area_of(tiles_of(box, surface.view)));
   }
 };
 template <class Places>
@@ -157,14 +162,15 @@ struct DrawTile {
     const std::size_t k = places.segment_of(i);
     const Piece& piece = pieces[k];
     const Rect view = surface.view;
-    const Rect box = piece_bounds(piece, view);
-    const Rect tiles = tiles_of(box, view);
+    const Rect tiles = tiles_of(surface.bounds(piece), view);
     const int j = static_cast<int>(i - places.first(k)), columns = tiles.x1 - tiles.x0;
     const int x0 = view.x0 + (tiles.x0 + j % columns) * kDeviceTile;
     const int y0 = view.y0 + (tiles.y0 + j / columns) * kDeviceTile;
-    const Rect part = common_of(box, {x0, y0, x0 + kDeviceTile, y0 + kDeviceTile});
-    if (may_touch(edges_of(piece), part))
-      draw_by_team(surface, piece, part, fragments, shared, team);
+    const Rect tile = common_of(view, {x0, y0, x0 + kDeviceTile, y0 + kDeviceTile});
+    surface.each_sample(piece, tile, [&](int s, const Piece& seen, Rect part) {
+      if (may_touch(edges_of(seen), part))
+        draw_by_team(surface, seen, part, fragments, shared, team, s);
+    });
   }
 };
 
@@ -193,7 +199,7 @@ template <class Exec>
   for (std::uint64_t first = scene.first_id(); first < end; first += plan.batch) {
     parallel::throw_if_stopped();
     ++counts.batches;
-    const Assembly assembly{scene.geometry(), first};
+    const Assembly assembly{scene.geometry(), first, surface.samples};
     const auto n = static_cast<std::size_t>(std::min(plan.batch, end - first));
     auto outcomes = parallel::make_buffer<Outcome>(exec, n);
     parallel::tabulate(exec, outcomes,
@@ -210,13 +216,13 @@ template <class Exec>
           view_of(larger).subspan(at, std::min(plan.written, larger.size() - at));
       const auto pieces = write_pieces(exec, assembly, which,
                                        parallel::permuted(view_of(std::as_const(outcomes)), which),
-                                       cuda_detail::IsLarger{surface.view, sizes.small_px});
+                                       cuda_detail::IsLarger{surface, sizes.small_px});
       const std::span<const Piece> drawn = view_of(pieces);
       parallel::for_each_team<TeamMasks, 32>(
           exec, drawn.size(),
           cuda_detail::DrawMiddle{drawn, surface, sizes.large_px, fragments.data()});
-      const auto tiles = parallel::make_expansion(
-          exec, drawn, cuda_detail::CountTiles{surface.view, sizes.large_px});
+      const auto tiles =
+          parallel::make_expansion(exec, drawn, cuda_detail::CountTiles{surface, sizes.large_px});
       if (sizes.owned_tiles && surface.overdraw == nullptr && tiles.size() <= plan.pairs)
         draw_owned_tiles(exec, drawn, tiles, surface, fragments.data());
       else

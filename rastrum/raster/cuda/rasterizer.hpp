@@ -18,7 +18,7 @@ class CudaRasterizer {
   virtual ~CudaRasterizer() = default;
   /// Why a frame with layers or several samples a pixel is left to the CPU; empty: it is not.
   [[nodiscard]] virtual std::string why_no_layers(const FrameRequest& request) const = 0;
-  /// One frame without fragment tests, one sample a pixel, and with layers only where why_no_layers
+  /// One frame without fragment tests, and with layers or several samples only where why_no_layers
   /// says nothing: targets as Rasterizer::render. The caller's arrays are copied to the device each
   /// time. What the device has no shader for is shaded by the host's threads; FrameStats::why says
   /// so. Throws Error{invalid_argument} where an index is out of range, Error{out_of_memory} with

@@ -46,17 +46,17 @@ struct LitOnDevice {
   float opacity = 1;
 
   static bool has(LitModel model) { return model != LitModel::wireframe; }
-  RASTRUM_HD Vec4 operator()(std::uint64_t word, int x, int y) const {
+  RASTRUM_HD Vec4 operator()(std::uint64_t word, int x, int y, Vec2 from_centre = {0, 0}) const {
     if (!(opacity > 0)) return {};
-    const Vec3 c = color(word, x, y);
+    const Vec3 c = color(word, x, y, from_centre);
     if (opacity == 1) return {c.x, c.y, c.z, 1};
     return {c.x * opacity, c.y * opacity, c.z * opacity, opacity};
   }
-  RASTRUM_HD Vec3 color(std::uint64_t word, int x, int y) const {
+  RASTRUM_HD Vec3 color(std::uint64_t word, int x, int y, Vec2 from_centre) const {
     if (model == LitModel::id) return id_color(id_of_word(word));
     LitTriangle t;
     fetch_triangle(scene, geometry, word & kIdMask, model != LitModel::flat, t);
-    return shade_lit(model, scene, t, x, y, {0, 0});
+    return shade_lit(model, scene, t, x, y, from_centre);
   }
 };
 

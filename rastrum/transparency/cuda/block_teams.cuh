@@ -9,7 +9,8 @@
 //
 // Where it deviates: a team owns a block, not a bin of 16 of them, because records carry their
 // masks from binning and need no second division; so a team is small, many are in flight, and low
-// and high density are two sizes of one kernel. Sorting goes through shared memory, not shuffles.
+// and high density are two sizes of one kernel. Sorting goes through shared memory, or within warps
+// by shuffles, as the paper's does.
 #pragma once
 
 #include <cstddef>
@@ -53,14 +54,20 @@ RASTRUM_HD inline void count_layers(std::uint64_t* counters, std::uint64_t fragm
 /// shade and to sort. As nvcc 13 compiles them for sm_90, without spills, a thread takes 76
 /// registers with a trivial shader, so that 13 teams of low density fit a multiprocessor, and 167
 /// with the lit shaders, 6 teams. Neither was measured on a GPU.
+template <bool sort_by_warps>
 struct LowDensity {
   static constexpr std::size_t kRecords = 256, kSegment = 128;
   static constexpr int kThreads = 64;
+  static constexpr bool kSortByWarps = sort_by_warps;
 };
+template <bool sort_by_warps>
 struct HighDensity {
   static constexpr std::size_t kRecords = 2048, kSegment = 256;
   static constexpr int kThreads = 256;
+  static constexpr bool kSortByWarps = sort_by_warps;
 };
+/// How records are sorted where nobody asks: not by shuffles, until a GPU has measured both.
+inline constexpr bool kSortByWarps = false;
 
 template <class Density>
 struct BlockScratch {
@@ -80,10 +87,11 @@ template <class Density, class Pixel, class Frame>
 struct BlendBlock {
   using Scratch = BlockScratch<Density>;
   static_assert(sizeof(Scratch) <= 48 * 1024);
+  static constexpr bool kWantsWarps = Density::kSortByWarps;
+  static constexpr std::size_t kMembers =
+      parallel::cuda_system::kTeamMembers<Density::kThreads, kWantsWarps>;
   /// Pixels that a member keeps to itself: one, where there are threads enough.
-  static constexpr std::size_t kShare =
-      (64 + parallel::cuda_system::kTeamMembers<Density::kThreads> - 1) /
-      parallel::cuda_system::kTeamMembers<Density::kThreads>;
+  static constexpr std::size_t kShare = (64 + kMembers - 1) / kMembers;
 
   Frame frame;
   RecordView records;
@@ -143,13 +151,20 @@ struct BlendBlock {
       for (std::uint64_t& bits : s.takers[p]) bits = 0;
     });
     if (team.rank() == 0) s.repaired = 0;
-    if (mine.size() > Pixel::kAnyOrder)
-      parallel::team_sort(s.keys, s.order, mine.size(), team);
-    else
-      team.sync();
+    sort(s, mine.size(), team);
     for (std::size_t k = team.rank(); k < mine.size(); k += team.size())
       s.first[k] = static_cast<std::uint32_t>(parallel::popcount(mine[s.order[k]].mask));
     parallel::team_prefix_sums(s.first, mine.size(), team);
+  }
+
+  template <class Team>
+  RASTRUM_HD static void sort(Scratch& s, std::size_t n, const Team& team) {
+    if (n <= Pixel::kAnyOrder)
+      team.sync();
+    else if constexpr (Density::kSortByWarps)
+      parallel::team_sort_by_warps(s.keys, s.order, n, team);
+    else
+      parallel::team_sort(s.keys, s.order, n, team);
   }
 
   /// Samples [begin, begin + n) of the sorted records.

@@ -24,6 +24,7 @@
 #include <rastrum/parallel/cuda/expand.cuh>
 #include <rastrum/parallel/cuda/select.cuh>
 #include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/cuda/sample_pattern.hpp>
 #include <rastrum/transparency/cuda/block_teams.cuh>
 #include <rastrum/transparency/cuda/deep_pixels.cuh>
 #include <rastrum/transparency/cuda/device_layers.hpp>
@@ -31,9 +32,9 @@
 
 namespace rastrum::transparency {
 
-/// A frame, or a band of its rows, whose opaque surface is drawn. Memory of the device: 8 × 8
-/// blocks of `view`, row by row, of 64 pixels each, element 8 · row + column; those of the last
-/// ones that lie outside are set, too, and stay as they are.
+/// A frame, or a band of its rows, with one sample a pixel, whose opaque surface is drawn. Memory
+/// of the device: 8 × 8 blocks of `view`, row by row, of 64 pixels each, element 8 · row + column;
+/// those of the last ones that lie outside are set, too, and stay as they are.
 struct DeviceLayers {
   raster::Rect view;                      ///< px; begins with a block's first pixel
   std::span<const raster::Piece> pieces;  ///< those with kTranslucent are blended, others left out
@@ -41,21 +42,32 @@ struct DeviceLayers {
   std::span<Vec4> colors;  ///< premultiplied: the opaque surface, 0 where none is; then the picture
 };
 
+/// The same with several samples: words and colours are planes, `plane` elements apart, and pieces
+/// those of the pixels' centres (raster/cuda/pieces.cuh).
+struct DeviceSampledLayers : DeviceLayers {
+  raster::SamplePattern samples;
+  std::size_t plane = 0;
+};
+
 namespace cuda {
 
-/// The smallest word of a block: what lies behind it is hidden in all of it.
+/// The smallest word of a block at any sample: what lies behind it is hidden in all of it.
 struct FarthestOfBlock {
   raster::Rect view;
   std::size_t columns;
-  std::span<const std::uint64_t> words;
+  const std::uint64_t* words;
+  std::size_t plane;
+  int samples;
   RASTRUM_HD std::uint64_t operator()(std::size_t b) const {
     const int bx = view.x0 / raster::kBlockSize + static_cast<int>(b % columns);
     const int by = view.y0 / raster::kBlockSize + static_cast<int>(b / columns);
     std::uint64_t farthest = ~std::uint64_t{0};
-    for (std::uint64_t m = raster::samples_inside(view, bx, by); m != 0; m &= m - 1) {
-      const std::uint64_t word = words[b * 64 + static_cast<std::size_t>(parallel::lowest_bit(m))];
-      if (word < farthest) farthest = word;
-    }
+    for (int s = 0; s < samples; ++s)
+      for (std::uint64_t m = raster::samples_inside(view, bx, by); m != 0; m &= m - 1) {
+        const std::uint64_t word = words[static_cast<std::size_t>(s) * plane + b * 64 +
+                                         static_cast<std::size_t>(parallel::lowest_bit(m))];
+        if (word < farthest) farthest = word;
+      }
     return farthest;
   }
 };
@@ -67,9 +79,10 @@ struct BlocksOfPiece {
   std::size_t columns;  ///< of blocks
   int bx0, by0;         ///< the first block
   raster::Rect view;
+  raster::SamplePattern samples;
 
   RASTRUM_HD raster::Rect box(std::uint32_t piece) const {
-    const raster::Rect px = raster::piece_bounds(pieces[piece], view);
+    const raster::Rect px = raster::sampled_bounds(pieces[piece], view, samples);
     if (px.empty()) return {};
     return {px.x0 / raster::kBlockSize, px.y0 / raster::kBlockSize,
             (px.x1 - 1) / raster::kBlockSize + 1, (px.y1 - 1) / raster::kBlockSize + 1};
@@ -82,21 +95,25 @@ struct BlocksOfPiece {
   RASTRUM_HD std::size_t number(const raster::Block& b) const {
     return static_cast<std::size_t>(b.by - by0) * columns + static_cast<std::size_t>(b.bx - bx0);
   }
-  /// The j-th of them; its mask is empty where nothing of the piece is seen.
+  /// The j-th of them, with the pixels of which a sample is covered; none where nothing of the
+  /// piece is seen.
   RASTRUM_HD raster::Block block(std::uint32_t piece, std::size_t j) const {
-    const raster::Piece& p = pieces[piece];
     const raster::Rect b = box(piece);
     const auto across = static_cast<std::size_t>(b.x1 - b.x0);
     const int bx = b.x0 + static_cast<int>(j % across), by = b.y0 + static_cast<int>(j / across);
     raster::Block out{piece, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), 0};
-    const raster::Edges edges = raster::edges_of(p);
     const int x0 = bx * raster::kBlockSize, y0 = by * raster::kBlockSize;
     const raster::Rect px{x0, y0, x0 + raster::kBlockSize, y0 + raster::kBlockSize};
-    if (!raster::may_touch(edges, px)) return out;
-    if (raster::has_depth_bounds(p) &&
-        raster::make_word(raster::highest_depth(p, px), p.low) <= farthest[number(out)])
-      return out;
-    out.mask = raster::cover_8x8(edges, bx, by) & raster::samples_inside(view, bx, by);
+    for (int s = 0; s < samples.count; ++s) {
+      const raster::Piece p = raster::moved(pieces[piece], samples.at[s]);
+      const raster::Edges edges = raster::edges_of(p);
+      if (!raster::may_touch(edges, px)) continue;
+      if (raster::has_depth_bounds(p) &&
+          raster::make_word(raster::highest_depth(p, px), p.low) <= farthest[number(out)])
+        continue;
+      out.mask |= raster::cover_8x8(edges, bx, by);
+    }
+    out.mask &= raster::samples_inside(view, bx, by);
     return out;
   }
 };
@@ -142,19 +159,29 @@ struct HasRecords {
 };
 
 /// The stages of one frame with one way of blending.
-template <class Pixel, class Frame>
+template <bool sort_by_warps, class Pixel, class Frame>
 class LayerListing {
+  using Low = LowDensity<sort_by_warps>;
+  using High = HighDensity<sort_by_warps>;
+
  public:
-  LayerListing(parallel::Cuda& exec, const Frame& frame, const DeviceLayerTuning& tuning)
-      : exec_(exec), frame_(frame), tuning_(tuning), blocks_(frame.columns() * frame.rows()) {
+  /// Planes of words and colours are `plane` elements apart, one for each of `samples`.
+  LayerListing(parallel::Cuda& exec, const Frame& frame, const raster::SamplePattern& samples,
+               std::size_t plane, const DeviceLayerTuning& tuning)
+      : exec_(exec),
+        frame_(frame),
+        samples_(samples),
+        plane_(plane),
+        tuning_(tuning),
+        blocks_(frame.columns() * frame.rows()) {
     constexpr std::uint64_t kDefaultBytes = std::uint64_t{1} << 29;
     const std::uint64_t bytes = tuning.bytes == 0 ? kDefaultBytes : tuning.bytes;
     // Half for records; a fragment has a key and an owner, twice while they are sorted.
     most_records_ = std::max<std::uint64_t>(bytes / 2 / sizeof(raster::Block), 1);
     most_fragments_ = std::max<std::uint64_t>(bytes / 2 / 24, 1);
-    tuning_.low_records = std::min(tuning_.low_records, LowDensity::kRecords);
+    tuning_.low_records = std::min(tuning_.low_records, Low::kRecords);
     tuning_.high_records =
-        std::max(std::min(tuning_.high_records, HighDensity::kRecords), tuning_.low_records);
+        std::max(std::min(tuning_.high_records, High::kRecords), tuning_.low_records);
   }
 
   [[nodiscard]] DeviceLayerCounts operator()() {
@@ -166,7 +193,7 @@ class LayerListing {
     auto farthest = parallel::make_buffer<std::uint64_t>(exec_, blocks_);
     parallel::tabulate(
         exec_, farthest,
-        FarthestOfBlock{frame_.view, frame_.columns(), {frame_.words, blocks_ * 64}});
+        FarthestOfBlock{frame_.view, frame_.columns(), frame_.words, plane_, samples_.count});
 
     const auto pieces = parallel::counting<std::uint32_t>(frame_.pieces.size());
     BlocksOfPiece boxes{frame_.pieces,
@@ -174,7 +201,8 @@ class LayerListing {
                         frame_.columns(),
                         frame_.view.x0 / raster::kBlockSize,
                         frame_.view.y0 / raster::kBlockSize,
-                        frame_.view};
+                        frame_.view,
+                        samples_};
     auto plan = parallel::make_expansion(exec_, pieces, boxes);
     parallel::expand_each(exec_, plan, pieces, CountRecord{boxes, parallel::view_of(counts)});
     auto first = parallel::make_buffer<std::uint64_t>(exec_, blocks_ + 1);
@@ -212,19 +240,20 @@ class LayerListing {
   void blend(const Turn& turn, const RecordView& records, std::uint64_t* counters) {
     const std::uint64_t low = tuning_.low_records, high = tuning_.high_records;
     const auto low_blocks = blocks_with(turn, records.first, 0, low);
-    parallel::for_each_team<BlockScratch<LowDensity>, LowDensity::kThreads>(
-        exec_, low_blocks.size(),
-        BlendBlock<LowDensity, Pixel, Frame>{frame_, records, parallel::view_of(low_blocks),
-                                             counters});
     const auto high_blocks = blocks_with(turn, records.first, low, high);
-    parallel::for_each_team<BlockScratch<HighDensity>, HighDensity::kThreads>(
-        exec_, high_blocks.size(),
-        BlendBlock<HighDensity, Pixel, Frame>{frame_, records, parallel::view_of(high_blocks),
-                                              counters});
     const auto deep_blocks =
         blocks_with(turn, records.first, high, std::numeric_limits<std::uint64_t>::max());
-    blend_deep<Pixel>(exec_, frame_, records, parallel::view_of(deep_blocks), most_fragments_,
-                      counters);
+    for (int s = 0; s < samples_.count; ++s) {
+      const Frame frame = frame_.at_sample(samples_.at[s], static_cast<std::size_t>(s) * plane_);
+      parallel::for_each_team<BlockScratch<Low>, Low::kThreads>(
+          exec_, low_blocks.size(),
+          BlendBlock<Low, Pixel, Frame>{frame, records, parallel::view_of(low_blocks), counters});
+      parallel::for_each_team<BlockScratch<High>, High::kThreads>(
+          exec_, high_blocks.size(),
+          BlendBlock<High, Pixel, Frame>{frame, records, parallel::view_of(high_blocks), counters});
+      blend_deep<Pixel>(exec_, frame, records, parallel::view_of(deep_blocks), most_fragments_,
+                        counters);
+    }
     out_.low_blocks += low_blocks.size();
     out_.high_blocks += high_blocks.size();
     out_.deep_blocks += deep_blocks.size();
@@ -238,11 +267,34 @@ class LayerListing {
 
   parallel::Cuda& exec_;
   const Frame frame_;
+  const raster::SamplePattern samples_;
+  const std::size_t plane_;
   DeviceLayerTuning tuning_;
   const std::size_t blocks_;
   std::uint64_t most_records_ = 0, most_fragments_ = 0;
   DeviceLayerCounts out_;
 };
+
+/// Both functions below: frames of one sample and of several.
+template <bool sort_by_warps, class Frame>
+DeviceLayerCounts blend(parallel::Cuda& exec, const DeviceLayers& layers, const Frame& frame,
+                        const raster::SamplePattern& samples, std::size_t plane,
+                        Transparency method, const DeviceLayerTuning& tuning) {
+  if (method != Transparency::exact && method != Transparency::unsorted)
+    throw Error(Errc::invalid_argument,
+                std::string("transparency on a device is exact or unsorted: ")
+                    .append(why_not_on_a_device(method)));
+  if (layers.pieces.size() > std::numeric_limits<std::uint32_t>::max())
+    throw Error(Errc::invalid_argument,
+                "a device blends at most 2^32 - 1 pieces at a time; draw the picture in bands");
+  assert(layers.words.size() >= frame.columns() * frame.rows() * 64 &&
+         layers.colors.size() == layers.words.size());
+  if (method == Transparency::unsorted)
+    return LayerListing<sort_by_warps, AsSubmittedPixel, Frame>(exec, frame, samples, plane,
+                                                                tuning)();
+  return LayerListing<sort_by_warps, FrontToBackPixel, Frame>(exec, frame, samples, plane,
+                                                              tuning)();
+}
 
 }  // namespace cuda
 
@@ -251,21 +303,15 @@ class LayerListing {
 /// `shade`: (word, x, y) → premultiplied Vec4, the colour of a fragment at a pixel's centre; the
 /// word has its depth and id (piece.hpp). `test`: (word, x, y) → bool, for pieces with kTested.
 /// Both are copied into kernels, are called any number of times, and must be pure.
+/// `sort_by_warps`: blocks in shared memory are sorted by shuffles (team_sort_by_warps).
 /// Waits for sizes and, at the end, for its counts. Memory: 8 bytes a piece, 20 a block, and what
 /// `tuning.bytes` says. Work O(blocks of boxes + fragments · log of a block's records) where the
 /// filter orders nearly all.
 /// Throws Error{invalid_argument} for other methods or more than 2³² pieces, Error{out_of_memory}.
-template <class Shade, class Test = cuda::KeepAll>
+template <bool sort_by_warps = cuda::kSortByWarps, class Shade, class Test = cuda::KeepAll>
 DeviceLayerCounts blend_layers(parallel::Cuda& exec, const DeviceLayers& layers,
                                const TransparencyOptions& options, const Shade& shade,
                                const Test& test = {}, const DeviceLayerTuning& tuning = {}) {
-  if (options.method != Transparency::exact && options.method != Transparency::unsorted)
-    throw Error(Errc::invalid_argument,
-                std::string("transparency on a device is exact or unsorted: ")
-                    .append(why_not_on_a_device(options, 1)));
-  if (layers.pieces.size() > std::numeric_limits<std::uint32_t>::max())
-    throw Error(Errc::invalid_argument,
-                "a device blends at most 2^32 - 1 pieces at a time; draw the picture in bands");
   using Frame = cuda::FrameView<Shade, Test>;
   const Frame frame{layers.view,
                     layers.pieces,
@@ -274,11 +320,24 @@ DeviceLayerCounts blend_layers(parallel::Cuda& exec, const DeviceLayers& layers,
                     1 - options.alpha_threshold,
                     shade,
                     test};
-  assert(layers.words.size() == frame.columns() * frame.rows() * 64 &&
-         layers.colors.size() == layers.words.size());
-  if (options.method == Transparency::unsorted)
-    return cuda::LayerListing<cuda::AsSubmittedPixel, Frame>(exec, frame, tuning)();
-  return cuda::LayerListing<cuda::FrontToBackPixel, Frame>(exec, frame, tuning)();
+  return cuda::blend<sort_by_warps>(exec, layers, frame, {}, 0, options.method, tuning);
+}
+
+/// The same at each of several samples, which have their own planes of words and colours. `shade`
+/// and `test` are asked at each of them for the one colour and answer that a primitive has in a
+/// pixel; of the word they may read the id (raster::ShadedOnce). Records are found, and ordered by
+/// depth, once for all samples. Work: that of one, times the samples.
+template <bool sort_by_warps = cuda::kSortByWarps, class Shade, class Test = cuda::KeepAll>
+DeviceLayerCounts blend_sampled_layers(parallel::Cuda& exec, const DeviceSampledLayers& layers,
+                                       const TransparencyOptions& options, const Shade& shade,
+                                       const Test& test = {},
+                                       const DeviceLayerTuning& tuning = {}) {
+  using Frame = cuda::SampledView<Shade, Test>;
+  const Frame frame{{layers.view, layers.pieces, layers.words.data(), layers.colors.data(),
+                     1 - options.alpha_threshold, shade, test},
+                    {}};
+  return cuda::blend<sort_by_warps>(exec, layers, frame, layers.samples, layers.plane,
+                                    options.method, tuning);
 }
 
 }  // namespace rastrum::transparency

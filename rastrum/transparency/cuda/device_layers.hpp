@@ -29,10 +29,8 @@ struct DeviceLayerCounts {
 };
 
 /// Why a frame's layers are left to the CPU, for the statistics; empty: the device has them.
-[[nodiscard]] constexpr std::string_view why_not_on_a_device(const TransparencyOptions& options,
-                                                             int samples) {
-  if (samples > 1) return "several samples a pixel of translucent surfaces are the CPU's";
-  switch (options.method) {
+[[nodiscard]] constexpr std::string_view why_not_on_a_device(Transparency method) {
+  switch (method) {
     case Transparency::exact:
     case Transparency::unsorted:
     case Transparency::none:

@@ -12,6 +12,7 @@
 #include <span>
 
 #include <rastrum/core/vec.hpp>
+#include <rastrum/raster/cuda/sample_pattern.hpp>
 #include <rastrum/raster/piece.hpp>
 #include <rastrum/raster/setup.hpp>
 #include <rastrum/transparency/over.hpp>
@@ -51,10 +52,34 @@ struct FrameView {
   RASTRUM_HD int y_of(std::size_t b, std::size_t i) const {
     return view.y0 + static_cast<int>(b / columns() * raster::kBlockSize + i / raster::kBlockSize);
   }
+  [[nodiscard]] FrameView at_sample(raster::SampleOffset, std::size_t) const { return *this; }
   /// The word of a fragment; 0 where the test leaves it out.
   RASTRUM_HD std::uint64_t word(const raster::Piece& piece, int x, int y) const {
     const std::uint64_t w = raster::make_word(raster::depth_at(piece, x, y), piece.low);
     return (piece.flags & raster::kTested) != 0 && !test(w, x, y) ? 0 : w;
+  }
+};
+
+/// One of several samples of a frame. The pieces are those of the pixels' centres, and records have
+/// the pixels of which they cover any sample, so a fragment may be none; `shade` and `test` are
+/// asked for a piece in a pixel, and say the same for all of its samples.
+template <class Shade, class Test>
+struct SampledView : FrameView<Shade, Test> {
+  raster::SampleOffset at{};
+
+  /// The sample that lies at `where`, with the plane of words and colours that begins `first`
+  /// elements behind.
+  [[nodiscard]] SampledView at_sample(raster::SampleOffset where, std::size_t first) const {
+    SampledView v = *this;
+    v.words += first;
+    v.colors += first;
+    v.at = where;
+    return v;
+  }
+  RASTRUM_HD std::uint64_t word(const raster::Piece& piece, int x, int y) const {
+    const raster::Piece seen = raster::moved(piece, at);
+    if (!raster::covers_centre(raster::edges_of(seen), x, y)) return 0;
+    return FrameView<Shade, Test>::word(seen, x, y);
   }
 };
 

@@ -12,6 +12,7 @@
 
 #include <rastrum/raster/cuda/pieces.cuh>
 #include <rastrum/raster/cuda/rasterizer.cuh>
+#include <rastrum/raster/cuda/samples.cuh>
 #include <rastrum/transparency/cuda/device_layers.cuh>
 
 namespace rastrum::transparency {
@@ -20,8 +21,10 @@ namespace cuda {
 /// What is blended in `view`.
 struct IsLayerIn {
   raster::Rect view;
+  raster::SamplePattern samples;
   RASTRUM_HD bool operator()(const raster::Piece& piece) const {
-    return (piece.flags & raster::kTranslucent) != 0 && !raster::piece_bounds(piece, view).empty();
+    return (piece.flags & raster::kTranslucent) != 0 &&
+           !raster::sampled_bounds(piece, view, samples).empty();
   }
 };
 
@@ -31,11 +34,12 @@ struct IsLayerIn {
 class SceneLayers {
  public:
   [[nodiscard]] static std::string_view why_not(const raster::FrameRequest& request) {
-    return why_not_on_a_device(request.transparency, request.samples);
+    return why_not_on_a_device(request.transparency.method);
   }
 
   /// Blends the translucent pieces of `scene` over `colors`, in the places of the words of
-  /// `surface`, and raises those. `shade` as of blend_layers. `batch`: primitives that are set up
+  /// `surface`, all its planes, and raises those. `shade` as of blend_layers, or a
+  /// raster::ShadedOnce where there are several samples. `batch`: primitives that are set up
   /// at once; `bytes`: what pieces, and again what their records, may take, 0: any. Waits.
   template <class Exec, class Shade>
   void blend(Exec& exec, const raster::DeviceScene<Exec>& scene,
@@ -73,11 +77,12 @@ class SceneLayers {
       const std::uint64_t end = scene.first_id() + scene.primitives();
       for (std::uint64_t first = scene.first_id(); first < end; first += batch) {
         parallel::throw_if_stopped();
-        const raster::Assembly assembly{scene.geometry(), first};
+        const raster::Assembly assembly{scene.geometry(), first, surface.samples};
         auto outcomes = parallel::make_buffer<raster::Outcome>(
             exec, static_cast<std::size_t>(std::min(batch, end - first)));
-        parallel::tabulate(exec, outcomes,
-                           raster::cuda_detail::CountPieces<cuda::IsLayerIn>{assembly, {view}});
+        parallel::tabulate(
+            exec, outcomes,
+            raster::cuda_detail::CountPieces<cuda::IsLayerIn>{assembly, {view, surface.samples}});
         f(assembly, outcomes);
       }
     }
@@ -108,20 +113,25 @@ class SceneLayers {
           exec, outcomes.size(),
           raster::cuda_detail::WritePieces<std::remove_cvref_t<decltype(which)>, cuda::IsLayerIn,
                                            decltype(places.view())>{
-              assembly, which, {view}, places.view(), pieces.data() + at});
+              assembly, which, {view, band.surface.samples}, places.view(), pieces.data() + at});
       at += places.size();
     });
     const std::size_t first =
         band.surface.words.index(view.x0 / raster::kBlockSize, view.y0 / raster::kBlockSize) * 64;
-    const std::size_t size = raster::block_count(view) * 64;
+    const auto before = static_cast<std::size_t>(band.surface.samples.count - 1);
+    const std::size_t size = before * band.surface.plane + raster::block_count(view) * 64;
     DeviceLayerTuning tuning;
     tuning.bytes = band.bytes;
-    const DeviceLayerCounts c = blend_layers(exec,
-                                             DeviceLayers{view,
-                                                          view_of(std::as_const(pieces)),
-                                                          {band.surface.words.words + first, size},
-                                                          band.colors.subspan(first, size)},
-                                             band.options, band.shade, cuda::KeepAll{}, tuning);
+    const DeviceLayers layers{view,
+                              view_of(std::as_const(pieces)),
+                              {band.surface.words.words + first, size},
+                              band.colors.subspan(first, size)};
+    DeviceLayerCounts c;
+    if constexpr (raster::kIsShadedOnce<Shade>)
+      c = blend_sampled_layers(exec, {layers, band.surface.samples, band.surface.plane},
+                               band.options, band.shade, cuda::KeepAll{}, tuning);
+    else
+      c = blend_layers(exec, layers, band.options, band.shade, cuda::KeepAll{}, tuning);
     counts_.fragments += c.fragments;
     counts_.deepest = std::max(counts_.deepest, c.deepest);
     counts_.repaired += c.repaired;

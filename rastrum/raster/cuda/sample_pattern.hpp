@@ -1,0 +1,52 @@
+// The samples of a pixel (samples.hpp) by value, as kernels of a device take them.
+#pragma once
+
+#include <algorithm>
+#include <span>
+
+#include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/samples.hpp>
+
+namespace rastrum::raster {
+
+/// Without more said: one, at the centre.
+struct SamplePattern {
+  int count = 1;
+  SampleOffset at[kMaxSamples] = {};
+  SampleOffset least{}, most{};  ///< of all, in x and in y
+
+  /// Of 1, 4, 8 or 16 samples.
+  [[nodiscard]] static SamplePattern of(int samples) {
+    const std::span<const SampleOffset> offsets = sample_offsets(samples);
+    SamplePattern p;
+    p.count = static_cast<int>(offsets.size());
+    std::ranges::copy(offsets, p.at);
+    for (const SampleOffset& o : offsets) {
+      p.least = {std::min(p.least.x, o.x), std::min(p.least.y, o.y)};
+      p.most = {std::max(p.most.x, o.x), std::max(p.most.y, o.y)};
+    }
+    return p;
+  }
+};
+
+/// Whether the centre of pixel (x, y) is inside of the edges.
+[[nodiscard]] RASTRUM_HD inline bool covers_centre(const Edges& edges, int x, int y) {
+  bool inside = true;
+  for (int k = 0; k < edges.count; ++k) {
+    const Edge& e = edges.edge[k];
+    inside = inside && e.base + std::int64_t{e.a} * x + std::int64_t{e.b} * y >= 0;
+  }
+  return inside;
+}
+
+/// The pixels of `view` of which the piece, as it lies at their centres, may cover a sample. May be
+/// empty.
+[[nodiscard]] RASTRUM_HD inline Rect sampled_bounds(const Piece& piece, Rect view,
+                                                    const SamplePattern& samples) {
+  if (samples.count == 1) return piece_bounds(piece, view);
+  const Rect first = piece_bounds(moved(piece, samples.most), view);
+  const Rect last = piece_bounds(moved(piece, samples.least), view);
+  return {first.x0, first.y0, last.x1, last.y1};
+}
+
+}  // namespace rastrum::raster

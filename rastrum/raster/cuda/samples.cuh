@@ -1,0 +1,129 @@
+// Several samples a pixel on a device: the surface has a plane of words for each sample
+// (cover.cuh); here they become colours, a plane each, and in the end one picture.
+//
+// A triangle has one colour in a pixel, as on the host: that of the pixel's centre if the triangle
+// covers it, else of the first sample that it covers. A word does not say which that is, so the
+// triangle is assembled again: a thread that shades fetches its vertices anyhow. The opaque surface
+// is shaded once a triangle and pixel; who blends layers asks again at each sample.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <rastrum/parallel/cuda/words.cuh>
+#include <rastrum/raster/assemble.hpp>
+#include <rastrum/raster/cuda/cover.cuh>
+#include <rastrum/raster/cuda/geometry.cuh>
+
+namespace rastrum::raster {
+
+/// Where a primitive is shaded in a pixel of which it covers a sample.
+struct ShadingPlace {
+  std::uint64_t word;  ///< there
+  Vec2 from_centre;    ///< px
+};
+
+[[nodiscard]] RASTRUM_HD inline ShadingPlace shading_place(const DeviceGeometry& geometry,
+                                                           const SamplePattern& samples,
+                                                           std::uint64_t id, int x, int y) {
+  const Draw& draw = geometry.draw_of(id);
+  ShadingPlace place{kIdMask - id, {0, 0}};
+  for (int s = -1; s < samples.count; ++s) {
+    const SampleOffset at = s < 0 ? SampleOffset{} : samples.at[s];
+    bool found = false;
+    const auto look = [&](const Piece& piece) {
+      if (!covers_centre(edges_of(piece), x, y)) return;
+      constexpr float kPx = 1.0F / kSubpixels;
+      place = {make_word(depth_at(piece, x, y), piece.low),
+               {static_cast<float>(at.x) * kPx, static_cast<float>(at.y) * kPx}};
+      found = true;
+    };
+    assemble_primitive(geometry, draw, id - draw.first_id, look, 0, at);
+    if (found) break;
+  }
+  return place;
+}
+
+/// Of a shader that takes a place, (word, x, y, from_centre), one that is asked at any sample:
+/// (word, x, y), where the word says no more than which primitive.
+template <class Shade>
+struct ShadedOnce {
+  DeviceGeometry geometry;
+  SamplePattern samples;
+  Shade shade;
+  RASTRUM_HD Vec4 operator()(std::uint64_t word, int x, int y) const {
+    const ShadingPlace place = shading_place(geometry, samples, id_of_word(word), x, y);
+    return shade(place.word, x, y, place.from_centre);
+  }
+};
+
+template <class Shade>
+inline constexpr bool kIsShadedOnce = false;
+template <class Shade>
+inline constexpr bool kIsShadedOnce<ShadedOnce<Shade>> = true;
+
+namespace cuda_detail {
+
+/// The colours of element i of all planes, 0 where nothing is.
+template <class Shade>
+struct ShadeSamples {
+  DeviceSurface surface;
+  Vec4* colors;
+  Shade shade;
+  RASTRUM_HD void operator()(std::size_t i) const {
+    const auto columns = static_cast<std::size_t>(surface.words.columns);
+    const int x = (surface.words.bx0 + static_cast<int>(i / 64 % columns)) * kBlockSize +
+                  static_cast<int>(i % kBlockSize);
+    const int y = (surface.words.by0 + static_cast<int>(i / 64 / columns)) * kBlockSize +
+                  static_cast<int>(i % 64 / kBlockSize);
+    for (int s = 0; s < surface.samples.count; ++s) {
+      const std::uint64_t word = surface.plane_of(s)[i];
+      Vec4& color = colors[static_cast<std::size_t>(s) * surface.plane + i];
+      int same = 0;
+      while (same < s && ((surface.plane_of(same)[i] ^ word) & kIdMask) != 0) ++same;
+      if (word == 0)
+        color = {};
+      else if (same < s)
+        color = colors[static_cast<std::size_t>(same) * surface.plane + i];
+      else
+        color = shade(word, x, y);
+    }
+  }
+};
+
+struct MeanOfSamples {
+  DeviceSurface surface;
+  Vec4* colors;
+  RASTRUM_HD void operator()(std::size_t i) const {
+    Vec4 sum{0, 0, 0, 0};
+    std::uint64_t nearest = 0;
+    for (int s = 0; s < surface.samples.count; ++s) {
+      const std::uint64_t word = surface.plane_of(s)[i];
+      nearest = word > nearest ? word : nearest;
+      sum = sum + colors[static_cast<std::size_t>(s) * surface.plane + i];
+    }
+    surface.plane_of(0)[i] = nearest;
+    colors[i] = sum * (1.0F / static_cast<float>(surface.samples.count));
+  }
+};
+
+}  // namespace cuda_detail
+
+/// The colours of an opaque surface, in planes as its words. `shade`: (word, x, y) → premultiplied
+/// Vec4 of a primitive in a pixel (ShadedOnce). Work O(pixels · samples), each primitive of a pixel
+/// shaded once.
+template <class Exec, class Shade>
+void shade_samples(Exec& exec, const DeviceSurface& surface, std::span<Vec4> colors,
+                   const Shade& shade) {
+  parallel::for_each_index(exec, surface.plane,
+                           cuda_detail::ShadeSamples<Shade>{surface, colors.data(), shade});
+}
+
+/// Makes the first plane the picture: the largest word of a pixel's samples and their mean colour.
+template <class Exec>
+void mean_of_samples(Exec& exec, const DeviceSurface& surface, std::span<Vec4> colors) {
+  parallel::for_each_index(exec, surface.plane, cuda_detail::MeanOfSamples{surface, colors.data()});
+}
+
+}  // namespace rastrum::raster
