@@ -186,6 +186,27 @@ TEST_F(CudaSamples, PartsOfABandEqualTheWhole) {
   EXPECT_EQ(frame.counter("translucent fragments"), expected.counter("translucent fragments"));
 }
 
+// Blocks with more records than a team of high density takes, and some with fewer.
+TEST_F(CudaSamples, DeepBlocksEqualTheThreads) {
+  const Scene scene = single(shapes::soup(9000, 0.2F, 0.6F));
+  const SceneBinding binding(scene);
+  Camera camera;
+  camera.eye = {0, 0, 3};
+  RenderOptions o = options(28, 20, 4, Device::cuda);
+  o.shader = Shader::flat;
+  o.opacity = 0.1F;
+  Renderer cuda(o);
+  o.device = Device::threads;
+  Renderer threads(o);
+  const LayerPicture frame = take(cuda, binding.view(), camera);
+  const LayerPicture expected = take(threads, binding.view(), camera);
+  EXPECT_TRUE(same_bits(frame, expected));
+  EXPECT_GT(frame.counter("deep blocks"), 0U);
+  EXPECT_GT(frame.counter("high blocks"), 0U);
+  EXPECT_EQ(frame.counter("translucent fragments"), expected.counter("translucent fragments"));
+  EXPECT_EQ(frame.counter("deepest"), expected.counter("deepest"));
+}
+
 INSTANTIATE_TEST_SUITE_P(Standard, CudaSampled, testing::Values(4, 8, 16),
                          [](const auto& p) { return std::to_string(p.param); });
 

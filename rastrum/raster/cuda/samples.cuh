@@ -4,7 +4,7 @@
 // A triangle has one colour in a pixel, as on the host: that of the pixel's centre if the triangle
 // covers it, else of the first sample that it covers. A word does not say which that is, so the
 // triangle is assembled again: a thread that shades fetches its vertices anyhow. The opaque surface
-// is shaded once a triangle and pixel; who blends layers asks again at each sample.
+// is shaded once a triangle and pixel, layers once for four samples.
 #pragma once
 
 #include <cstddef>
@@ -55,6 +55,12 @@ struct ShadedOnce {
   RASTRUM_HD Vec4 operator()(std::uint64_t word, int x, int y) const {
     const ShadingPlace place = shading_place(geometry, samples, id_of_word(word), x, y);
     return shade(place.word, x, y, place.from_centre);
+  }
+  /// The same for who has one of the primitive's pieces, as it lies at the pixels' centres: most
+  /// cover them.
+  RASTRUM_HD Vec4 operator()(const Piece& piece, std::uint64_t word, int x, int y) const {
+    if (!covers_centre(edges_of(piece), x, y)) return (*this)(word, x, y);
+    return shade(make_word(depth_at(piece, x, y), piece.low), x, y, Vec2{0, 0});
   }
 };
 

@@ -7,6 +7,9 @@
 // of the segment in order, through the depth filter. Pixels that it could not order are blended
 // again, exactly, by their thread alone.
 //
+// With several samples a pixel a team blends four of them at once: a segment is shaded once, and a
+// thread takes its samples at one of a pixel's.
+//
 // Where it deviates: a team owns a block, not a bin of 16 of them, because records carry their
 // masks from binning and need no second division; so a team is small, many are in flight, and low
 // and high density are two sizes of one kernel. Sorting goes through shared memory, or within warps
@@ -50,10 +53,11 @@ RASTRUM_HD inline void count_layers(std::uint64_t* counters, std::uint64_t fragm
   if (repaired != 0) parallel::atomic_add(counters[kRepaired], repaired);
 }
 
-/// Low density: two warps, a thread a pixel, in 9 KiB. High: what 48 KiB hold, with more threads to
-/// shade and to sort. As nvcc 13 compiles them for sm_90, without spills, a thread takes 76
-/// registers with a trivial shader, so that 13 teams of low density fit a multiprocessor, and 167
-/// with the lit shaders, 6 teams. Neither was measured on a GPU.
+/// Low density: two warps, a thread a pixel, in 9 KiB; with four samples a thread a sample. High:
+/// what 48 KiB hold, with more threads to shade and to sort. As nvcc 13 compiles them for sm_90,
+/// without spills, a thread takes 76 registers with a trivial shader, so that 13 teams of low
+/// density fit a multiprocessor, and 167 with the lit shaders, 6 teams. Neither was measured on a
+/// GPU.
 template <bool sort_by_warps>
 struct LowDensity {
   static constexpr std::size_t kRecords = 256, kSegment = 128;
@@ -69,29 +73,34 @@ struct HighDensity {
 /// How records are sorted where nobody asks: not by shuffles, until a GPU has measured both.
 inline constexpr bool kSortByWarps = false;
 
-template <class Density>
+template <class Density, std::size_t samples>
 struct BlockScratch {
   static constexpr std::size_t kSegmentWords = Density::kSegment / 64;
+  static constexpr std::size_t kPlaces = 64 * samples;  ///< the pixels of each sample
 
   std::uint64_t keys[Density::kRecords];
-  std::uint16_t order[Density::kRecords];      ///< of the records, as sorted
-  std::uint32_t first[Density::kRecords + 1];  ///< sample of each sorted record
-  std::uint64_t words[Density::kSegment];      ///< and colours of its samples
+  std::uint16_t order[Density::kRecords];           ///< of the records, as sorted
+  std::uint32_t first[Density::kRecords + 1];       ///< sample of each sorted record
+  std::uint64_t words[samples][Density::kSegment];  ///< of its samples, 0: not there; colours
   float r[Density::kSegment], g[Density::kSegment], b[Density::kSegment], a[Density::kSegment];
   std::uint64_t takers[64][kSegmentWords];  ///< which samples of the segment a pixel has
-  std::uint64_t opaque[64], limit[64];
-  std::uint32_t layers[64], repaired;
+  std::uint64_t opaque[kPlaces], limit[kPlaces];
+  std::uint32_t layers[kPlaces], repaired;
 };
 
 template <class Density, class Pixel, class Frame>
 struct BlendBlock {
-  using Scratch = BlockScratch<Density>;
+  static constexpr int kSamples = Frame::kSamples;
+  using Scratch = BlockScratch<Density, std::size_t{kSamples}>;
   static_assert(sizeof(Scratch) <= 48 * 1024);
   static constexpr bool kWantsWarps = Density::kSortByWarps;
+  static constexpr int kThreads =
+      Density::kThreads < 64 * kSamples ? 64 * kSamples : Density::kThreads;
   static constexpr std::size_t kMembers =
-      parallel::cuda_system::kTeamMembers<Density::kThreads, kWantsWarps>;
-  /// Pixels that a member keeps to itself: one, where there are threads enough.
-  static constexpr std::size_t kShare = (64 + kMembers - 1) / kMembers;
+      parallel::cuda_system::kTeamMembers<kThreads, kWantsWarps>;
+  /// Places that a member keeps to itself: one, where there are threads enough. Place 64 · s + p is
+  /// sample s of pixel p.
+  static constexpr std::size_t kShare = (Scratch::kPlaces + kMembers - 1) / kMembers;
 
   Frame frame;
   RecordView records;
@@ -105,37 +114,46 @@ struct BlendBlock {
     prepare(b, mine, s, team);
     const std::size_t total = s.first[mine.size()];
     Pixel pixels[kShare];
-    each_own(team,
-             [&](std::size_t k, std::size_t p) { pixels[k].begin(frame.colors[b * 64 + p]); });
+    each_own(team, [&](std::size_t k, std::size_t q) {
+      pixels[k].begin(frame.color_of(sample_of(q), b * 64 + q % 64));
+    });
     for (std::size_t begin = 0; begin < total; begin += Density::kSegment) {
       const std::size_t left = total - begin;
       shade(b, mine, begin, left < Density::kSegment ? left : Density::kSegment, s, team);
       team.sync();
-      each_own(team, [&](std::size_t k, std::size_t p) { take(pixels[k], p, s); });
+      each_own(team, [&](std::size_t k, std::size_t q) { take(pixels[k], q, s); });
+      if constexpr (kSamples > 1) team.sync();  // all samples of a pixel read its takers
+      each_own(team, [&](std::size_t, std::size_t q) { clear_takers(q, s); });
       team.sync();
     }
-    each_own(team, [&](std::size_t k, std::size_t p) {
-      if (s.layers[p] == 0) return;
-      finish(pixels[k], b, p, mine, s);
+    each_own(team, [&](std::size_t k, std::size_t q) {
+      if (s.layers[q] == 0) return;
+      finish(pixels[k], b, q, mine, s);
     });
     team.sync();
     if (team.rank() != 0) return;
     std::uint64_t fragments = 0, deepest = 0;
-    for (std::size_t p = 0; p < 64; ++p) {
-      fragments += s.layers[p];
-      if (s.layers[p] > deepest) deepest = s.layers[p];
+    for (const std::uint32_t layers : s.layers) {
+      fragments += layers;
+      if (layers > deepest) deepest = layers;
     }
     count_layers(counters, fragments, deepest, s.repaired);
   }
 
  private:
-  /// f(k, p) for the k-th pixel p of a member. Unrolled, a pixel stays in registers.
+  RASTRUM_HD static int sample_of(std::size_t q) { return static_cast<int>(q / 64); }
+  /// f(k, q) for the k-th place q of a member. Unrolled, a pixel stays in registers.
   template <class Team, class F>
   RASTRUM_HD static void each_own(const Team& team, const F& f) {
     for (std::size_t k = 0; k < kShare; ++k) {
-      const std::size_t p = team.rank() + k * team.size();
-      if (p < 64) f(k, p);
+      const std::size_t q = team.rank() + k * team.size();
+      if (q < Scratch::kPlaces) f(k, q);
     }
+  }
+
+  RASTRUM_HD static void clear_takers(std::size_t q, Scratch& s) {
+    if (q < 64)
+      for (std::uint64_t& bits : s.takers[q]) bits = 0;
   }
 
   template <class Team>
@@ -145,10 +163,10 @@ struct BlendBlock {
       s.keys[k] = Pixel::record_key(frame.pieces[mine[k].piece], mine[k]);
       s.order[k] = static_cast<std::uint16_t>(k);
     }
-    each_own(team, [&](std::size_t, std::size_t p) {
-      s.opaque[p] = s.limit[p] = frame.words[b * 64 + p];
-      s.layers[p] = 0;
-      for (std::uint64_t& bits : s.takers[p]) bits = 0;
+    each_own(team, [&](std::size_t, std::size_t q) {
+      s.opaque[q] = s.limit[q] = frame.word_of(sample_of(q), b * 64 + q % 64);
+      s.layers[q] = 0;
+      clear_takers(q, s);
     });
     if (team.rank() == 0) s.repaired = 0;
     sort(s, mine.size(), team);
@@ -178,12 +196,21 @@ struct BlendBlock {
       const auto p = static_cast<std::size_t>(
           parallel::select_bit<64>(record.mask, static_cast<int>(begin + i - first[r])));
       const int x = frame.x_of(b, p), y = frame.y_of(b, p);
-      const std::uint64_t word = frame.word(frame.pieces[record.piece], x, y);
-      if (word <= s.opaque[p]) continue;
-      parallel::atomic_add(s.layers[p], 1U);
-      if (word <= s.limit[p]) continue;
-      const Vec4 color = frame.shade(word, x, y);
-      s.words[i] = word;
+      const raster::Piece& piece = frame.pieces[record.piece];
+      std::uint64_t seen = 0;
+      for (int sample = 0; sample < kSamples; ++sample) {
+        const std::size_t q = static_cast<std::size_t>(sample) * 64 + p;
+        std::uint64_t& word = s.words[sample][i];
+        word = frame.word(piece, x, y, sample);
+        if (word > s.opaque[q]) parallel::atomic_add(s.layers[q], 1U);
+        // A limit is never below the opaque word.
+        if (word <= s.limit[q])
+          word = 0;
+        else
+          seen = word;
+      }
+      if (seen == 0) continue;
+      const Vec4 color = frame.color(piece, seen, x, y);
       s.r[i] = color.x;
       s.g[i] = color.y;
       s.b[i] = color.z;
@@ -192,24 +219,27 @@ struct BlendBlock {
     }
   }
 
-  RASTRUM_HD void take(Pixel& pixel, std::size_t p, Scratch& s) const {
-    for (std::size_t w = 0; w < Scratch::kSegmentWords; ++w) {
-      for (std::uint64_t bits = s.takers[p][w]; bits != 0; bits &= bits - 1) {
+  RASTRUM_HD void take(Pixel& pixel, std::size_t q, Scratch& s) const {
+    for (std::size_t w = 0; w < Scratch::kSegmentWords; ++w)
+      for (std::uint64_t bits = s.takers[q % 64][w]; bits != 0; bits &= bits - 1) {
         const std::size_t i = w * 64 + static_cast<std::size_t>(parallel::lowest_bit(bits));
-        pixel.take({s.words[i], {s.r[i], s.g[i], s.b[i], s.a[i]}}, frame.opaque_at);
+        const std::uint64_t word = s.words[q / 64][i];
+        if (word == 0) continue;
+        pixel.take({word, {s.r[i], s.g[i], s.b[i], s.a[i]}}, frame.opaque_at);
       }
-      s.takers[p][w] = 0;
-    }
-    s.limit[p] = pixel.limit(s.opaque[p]);
+    s.limit[q] = pixel.limit(s.opaque[q]);
   }
 
-  RASTRUM_HD void finish(Pixel& pixel, std::size_t b, std::size_t p,
+  RASTRUM_HD void finish(Pixel& pixel, std::size_t b, std::size_t q,
                          std::span<const raster::Block> mine, Scratch& s) const {
-    const std::size_t at = b * 64 + p;
+    const std::size_t p = q % 64;
+    const int sample = sample_of(q);
+    std::uint64_t& out = frame.word_of(sample, b * 64 + p);
+    Vec4& color = frame.color_of(sample, b * 64 + p);
     pixel.end(frame.opaque_at);
     if (!pixel.misplaced()) {
-      frame.colors[at] = pixel.color(frame.colors[at]);
-      frame.words[at] = pixel.nearest();
+      color = pixel.color(color);
+      out = pixel.nearest();
       return;
     }
     parallel::atomic_add(s.repaired, 1U);
@@ -218,16 +248,16 @@ struct BlendBlock {
       for (std::size_t k = 0; k < mine.size(); ++k) {
         const raster::Block& record = mine[s.order[k]];
         if ((record.mask >> p & 1) == 0) continue;
-        const std::uint64_t word = frame.word(frame.pieces[record.piece], x, y);
-        if (word > s.opaque[p]) f(word);
+        const std::uint64_t word = frame.word(frame.pieces[record.piece], x, y, sample);
+        if (word > s.opaque[q]) f(word);
       }
     };
     std::uint64_t nearest = 0;
     const SeenPixel seen = blend_in_windows(
         walk, [&](std::uint64_t word) { return frame.shade(word, x, y); }, frame.opaque_at,
         nearest);
-    frame.colors[at] = over(seen, frame.colors[at]);
-    frame.words[at] = nearest;
+    color = over(seen, color);
+    out = nearest;
   }
 };
 

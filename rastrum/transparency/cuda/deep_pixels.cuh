@@ -25,17 +25,18 @@ struct DeepPixels {
   Frame frame;
   RecordView records;
   std::span<const std::size_t> blocks;
+  int sample;  ///< of those that the frame has at once
 
   RASTRUM_HD std::size_t place(std::size_t q) const { return blocks[q / 64] * 64 + q % 64; }
   /// Calls f(word) for the fragments before the opaque surface, as their records come.
   template <class F>
   RASTRUM_HD void each_word(std::size_t q, const F& f) const {
     const std::size_t b = blocks[q / 64], p = q % 64;
-    const std::uint64_t opaque = frame.words[place(q)];
+    const std::uint64_t opaque = frame.word_of(sample, place(q));
     const int x = frame.x_of(b, p), y = frame.y_of(b, p);
     for (const raster::Block& record : records.of(b)) {
       if ((record.mask >> p & 1) == 0) continue;
-      const std::uint64_t word = frame.word(frame.pieces[record.piece], x, y);
+      const std::uint64_t word = frame.word(frame.pieces[record.piece], x, y, sample);
       if (word > opaque) f(word);
     }
   }
@@ -86,26 +87,28 @@ struct BlendDeep {
     const int x = frame.x_of(b, q % 64), y = frame.y_of(b, q % 64);
     const std::uint64_t* const mine = keys + (first[q] - first[begin]);
     Pixel pixel;
-    pixel.begin(frame.colors[at]);
+    Vec4& color = frame.color_of(pixels.sample, at);
+    pixel.begin(color);
     for (std::uint64_t k = 0; k < n; ++k) {
       const std::uint64_t word = Pixel::word_of_key(mine[k]);
       if (word <= pixel.limit(0)) break;
       pixel.take({word, frame.shade(word, x, y)}, frame.opaque_at);
     }
     pixel.end(frame.opaque_at);
-    frame.colors[at] = pixel.color(frame.colors[at]);
-    frame.words[at] = pixel.nearest();
+    color = pixel.color(color);
+    frame.word_of(pixels.sample, at) = pixel.nearest();
     count_layers(counters, n, n, 0);
   }
 };
 
-/// Blends `blocks`, sorting at most `most` fragments at a time (but a whole pixel's). Waits for the
-/// number of fragments, and for where a turn ends where they take several.
+/// Blends a sample of `blocks`, sorting at most `most` fragments at a time (but a whole pixel's).
+/// Waits for the number of fragments, and for where a turn ends where they take several.
 template <class Pixel, class Frame>
 void blend_deep(parallel::Cuda& exec, const Frame& frame, const RecordView& records,
-                std::span<const std::size_t> blocks, std::uint64_t most, std::uint64_t* counters) {
+                std::span<const std::size_t> blocks, int sample, std::uint64_t most,
+                std::uint64_t* counters) {
   if (blocks.empty()) return;
-  const DeepPixels<Frame> pixels{frame, records, blocks};
+  const DeepPixels<Frame> pixels{frame, records, blocks, sample};
   const std::size_t count = blocks.size() * 64;
   auto first = parallel::make_buffer<std::uint64_t>(exec, count + 1);
   parallel::tabulate(exec, first, CountDeep<Frame>{pixels, count});

@@ -243,20 +243,24 @@ class LayerListing {
     const auto high_blocks = blocks_with(turn, records.first, low, high);
     const auto deep_blocks =
         blocks_with(turn, records.first, high, std::numeric_limits<std::uint64_t>::max());
-    for (int s = 0; s < samples_.count; ++s) {
-      const Frame frame = frame_.at_sample(samples_.at[s], static_cast<std::size_t>(s) * plane_);
-      parallel::for_each_team<BlockScratch<Low>, Low::kThreads>(
-          exec_, low_blocks.size(),
-          BlendBlock<Low, Pixel, Frame>{frame, records, parallel::view_of(low_blocks), counters});
-      parallel::for_each_team<BlockScratch<High>, High::kThreads>(
-          exec_, high_blocks.size(),
-          BlendBlock<High, Pixel, Frame>{frame, records, parallel::view_of(high_blocks), counters});
-      blend_deep<Pixel>(exec_, frame, records, parallel::view_of(deep_blocks), most_fragments_,
-                        counters);
+    for (int first = 0; first < samples_.count; first += Frame::kSamples) {
+      const Frame frame = frame_.from_sample(samples_, first, plane_);
+      blend_teams<Low>(frame, records, parallel::view_of(low_blocks), counters);
+      blend_teams<High>(frame, records, parallel::view_of(high_blocks), counters);
+      for (int s = 0; s < Frame::kSamples; ++s)
+        blend_deep<Pixel>(exec_, frame, records, parallel::view_of(deep_blocks), s, most_fragments_,
+                          counters);
     }
     out_.low_blocks += low_blocks.size();
     out_.high_blocks += high_blocks.size();
     out_.deep_blocks += deep_blocks.size();
+  }
+  template <class Density>
+  void blend_teams(const Frame& frame, const RecordView& records,
+                   std::span<const std::size_t> blocks, std::uint64_t* counters) {
+    using Blend = BlendBlock<Density, Pixel, Frame>;
+    parallel::for_each_team<typename Blend::Scratch, Blend::kThreads>(
+        exec_, blocks.size(), Blend{frame, records, blocks, counters});
   }
   [[nodiscard]] auto blocks_with(const Turn& turn, std::span<const std::uint64_t> first,
                                  std::uint64_t above, std::uint64_t most) {
@@ -324,9 +328,10 @@ DeviceLayerCounts blend_layers(parallel::Cuda& exec, const DeviceLayers& layers,
 }
 
 /// The same at each of several samples, which have their own planes of words and colours. `shade`
-/// and `test` are asked at each of them for the one colour and answer that a primitive has in a
-/// pixel; of the word they may read the id (raster::ShadedOnce). Records are found, and ordered by
-/// depth, once for all samples. Work: that of one, times the samples.
+/// (a raster::ShadedOnce, or alike) and `test` are asked for the one colour and answer that a
+/// primitive has in a pixel, by the word of any of its samples, so they may read its id alone.
+/// Records are found once for all samples, ordered and shaded once for four. Work: that of one,
+/// times the samples.
 template <bool sort_by_warps = cuda::kSortByWarps, class Shade, class Test = cuda::KeepAll>
 DeviceLayerCounts blend_sampled_layers(parallel::Cuda& exec, const DeviceSampledLayers& layers,
                                        const TransparencyOptions& options, const Shade& shade,
@@ -335,7 +340,8 @@ DeviceLayerCounts blend_sampled_layers(parallel::Cuda& exec, const DeviceSampled
   using Frame = cuda::SampledView<Shade, Test>;
   const Frame frame{{layers.view, layers.pieces, layers.words.data(), layers.colors.data(),
                      1 - options.alpha_threshold, shade, test},
-                    {}};
+                    {},
+                    0};
   return cuda::blend<sort_by_warps>(exec, layers, frame, layers.samples, layers.plane,
                                     options.method, tuning);
 }

@@ -52,32 +52,56 @@ struct FrameView {
   RASTRUM_HD int y_of(std::size_t b, std::size_t i) const {
     return view.y0 + static_cast<int>(b / columns() * raster::kBlockSize + i / raster::kBlockSize);
   }
-  [[nodiscard]] FrameView at_sample(raster::SampleOffset, std::size_t) const { return *this; }
-  /// The word of a fragment; 0 where the test leaves it out.
-  RASTRUM_HD std::uint64_t word(const raster::Piece& piece, int x, int y) const {
+  /// Samples of a pixel that a kernel blends at once.
+  static constexpr int kSamples = 1;
+  [[nodiscard]] FrameView from_sample(const raster::SamplePattern&, int, std::size_t) const {
+    return *this;
+  }
+  /// Of a sample of those, the word and the colour of element `at`.
+  RASTRUM_HD std::uint64_t& word_of(int, std::size_t at) const { return words[at]; }
+  RASTRUM_HD Vec4& color_of(int, std::size_t at) const { return colors[at]; }
+  /// The word of a fragment; 0 where there is none or the test leaves it out.
+  RASTRUM_HD std::uint64_t word(const raster::Piece& piece, int x, int y, int = 0) const {
     const std::uint64_t w = raster::make_word(raster::depth_at(piece, x, y), piece.low);
     return (piece.flags & raster::kTested) != 0 && !test(w, x, y) ? 0 : w;
   }
+  /// The colour of a piece in a pixel; `word` is its word there, of any sample.
+  RASTRUM_HD Vec4 color(const raster::Piece&, std::uint64_t word, int x, int y) const {
+    return shade(word, x, y);
+  }
 };
 
-/// One of several samples of a frame. The pieces are those of the pixels' centres, and records have
-/// the pixels of which they cover any sample, so a fragment may be none; `shade` and `test` are
-/// asked for a piece in a pixel, and say the same for all of its samples.
+/// Four of the samples of a frame, whose words and colours are planes. The pieces are those of the
+/// pixels' centres, and records have the pixels of which they cover any sample, so a fragment may
+/// be none; `shade` and `test` are asked for a piece in a pixel, and say the same for all of its
+/// samples, so four samples ask once.
 template <class Shade, class Test>
 struct SampledView : FrameView<Shade, Test> {
-  raster::SampleOffset at{};
+  static constexpr int kSamples = 4;
+  raster::SampleOffset at[kSamples] = {};
+  std::size_t plane = 0;  ///< from a sample's words and colours to the next one's
 
-  /// The sample that lies at `where`, with the plane of words and colours that begins `first`
-  /// elements behind.
-  [[nodiscard]] SampledView at_sample(raster::SampleOffset where, std::size_t first) const {
+  /// Of a frame of the first samples the one from sample `first` on.
+  [[nodiscard]] SampledView from_sample(const raster::SamplePattern& samples, int first,
+                                        std::size_t plane_size) const {
     SampledView v = *this;
-    v.words += first;
-    v.colors += first;
-    v.at = where;
+    v.words += static_cast<std::size_t>(first) * plane_size;
+    v.colors += static_cast<std::size_t>(first) * plane_size;
+    v.plane = plane_size;
+    for (int s = 0; s < kSamples; ++s) v.at[s] = samples.at[first + s];
     return v;
   }
-  RASTRUM_HD std::uint64_t word(const raster::Piece& piece, int x, int y) const {
-    const raster::Piece seen = raster::moved(piece, at);
+  RASTRUM_HD std::uint64_t& word_of(int s, std::size_t i) const {
+    return this->words[static_cast<std::size_t>(s) * plane + i];
+  }
+  RASTRUM_HD Vec4& color_of(int s, std::size_t i) const {
+    return this->colors[static_cast<std::size_t>(s) * plane + i];
+  }
+  RASTRUM_HD Vec4 color(const raster::Piece& piece, std::uint64_t word, int x, int y) const {
+    return this->shade(piece, word, x, y);
+  }
+  RASTRUM_HD std::uint64_t word(const raster::Piece& piece, int x, int y, int s) const {
+    const raster::Piece seen = raster::moved(piece, at[s]);
     if (!raster::covers_centre(raster::edges_of(seen), x, y)) return 0;
     return FrameView<Shade, Test>::word(seen, x, y);
   }
