@@ -122,6 +122,9 @@ TEST_F(CudaLayeredFrame, TheRestIsTheCPUs) {
   o.opacity = 1;
   o.samples = 4;
   EXPECT_NE(why(o).find("several samples"), std::string::npos) << why(o);
+  o.shader = Shader::flat;
+  o.rasterizer = "tiled";
+  EXPECT_NE(why(o).find("by-size has several samples"), std::string::npos) << why(o);
   o = options(40, 40, Device::cuda);
   o.shader = Shader::flat;
   o.transparency.method = Transparency::mlab4;

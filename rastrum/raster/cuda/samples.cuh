@@ -24,9 +24,10 @@ struct ShadingPlace {
   Vec2 from_centre;    ///< px
 };
 
-[[nodiscard]] RASTRUM_HD inline ShadingPlace shading_place(const DeviceGeometry& geometry,
-                                                           const SamplePattern& samples,
-                                                           std::uint64_t id, int x, int y) {
+/// A call, not inline: it holds the clipper, and nvcc took minutes for kernels that had it several
+/// times.
+[[nodiscard]] __attribute__((noinline)) RASTRUM_HD inline ShadingPlace shading_place(
+    const DeviceGeometry& geometry, const SamplePattern& samples, std::uint64_t id, int x, int y) {
   const Draw& draw = geometry.draw_of(id);
   ShadingPlace place{kIdMask - id, {0, 0}};
   for (int s = -1; s < samples.count; ++s) {
@@ -59,8 +60,11 @@ struct ShadedOnce {
   /// The same for who has one of the primitive's pieces, as it lies at the pixels' centres: most
   /// cover them.
   RASTRUM_HD Vec4 operator()(const Piece& piece, std::uint64_t word, int x, int y) const {
-    if (!covers_centre(edges_of(piece), x, y)) return (*this)(word, x, y);
-    return shade(make_word(depth_at(piece, x, y), piece.low), x, y, Vec2{0, 0});
+    const ShadingPlace place =
+        covers_centre(edges_of(piece), x, y)
+            ? ShadingPlace{make_word(depth_at(piece, x, y), piece.low), {0, 0}}
+            : shading_place(geometry, samples, id_of_word(word), x, y);
+    return shade(place.word, x, y, place.from_centre);
   }
 };
 
