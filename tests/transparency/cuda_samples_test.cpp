@@ -39,7 +39,7 @@ class CudaSamples : public testing::Test {
  protected:
   void SetUp() override {
     const parallel::CudaStatus status = parallel::cuda_status();
-    if (!status.usable) GTEST_SKIP() << status.why_not;
+    if (!status.usable) GTEST_SKIP() << "no device: " << status.why_not;
   }
 };
 
