@@ -114,7 +114,9 @@ int run_paper2(std::span<const std::string_view> arguments) {
   if (options.on_cuda()) {
     device = measure_device(options);
     document.notes.push_back(device_note(options, device));
-    for (Entrant& e : device_entrants(options)) {
+    raster::Tuning two_stage;
+    two_stage.schedule = raster::Schedule::two_stage;
+    for (Entrant& e : device_entrants(options, entrant(options, "binned", "auto", two_stage))) {
       c.rows.push_back({e.name, "", {}, std::vector<Measured>(kScenes.size())});
       rates.emplace_back(e.name, "scene");
       entrants.push_back(std::move(e));

@@ -218,7 +218,8 @@ int run_paper5_table4(std::span<const std::string_view> arguments) {
   MachineLimits device;
   if (options.on_cuda()) {
     entrants.erase(entrants.begin());
-    for (Entrant& e : device_entrants(options)) entrants.push_back(std::move(e));
+    for (Entrant& e : device_entrants(options, entrant(options, "scanline", "sorted")))
+      entrants.push_back(std::move(e));
     device = measure_device(options);
     document.notes.push_back(device_note(options, device));
   }

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <bench/contest.hpp>
@@ -68,15 +69,20 @@ struct TableOptions {
   return e;
 }
 
-/// A GPU's way with the host's arrays, copied there each frame and the picture back; and with both
-/// in its memory. For subjects of the façade's shaders.
-[[nodiscard]] inline std::vector<Entrant> device_entrants(const TableOptions& options) {
+/// A GPU's ways, for subjects of the façade's shaders: a paper's own rasterizer with arrays and
+/// picture in its memory; the default with the host's, copied there each frame and the picture
+/// back; and the default with both there.
+[[nodiscard]] inline std::vector<Entrant> device_entrants(const TableOptions& options,
+                                                          Entrant papers) {
+  papers.name.append(", cuda, in place");
+  papers.options.device = Device::cuda;
+  papers.options.in_place = true;
   Entrant copied{"cuda", options.render()};
   copied.options.device = Device::cuda;
   Entrant in_place = copied;
   in_place.name = "cuda, in place";
   in_place.options.in_place = true;
-  return {copied, in_place};
+  return {std::move(papers), std::move(copied), std::move(in_place)};
 }
 
 /// Says on stderr what is measured now: tables come at the end.
