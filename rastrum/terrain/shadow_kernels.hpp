@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <rastrum/terrain/shadow_ray.hpp>
+#include <rastrum/terrain/shadow_reach.hpp>
 #include <rastrum/terrain/shadow_sweep.hpp>
 
 namespace rastrum::terrain {
@@ -36,8 +37,10 @@ struct ShadowKernels {
   /// Counts of hidden samples of row y.
   void (*march_row)(const ShadowCaster& map, const std::vector<MarchSample>& samples, int y,
                     std::uint16_t* counts) noexcept = nullptr;
-  /// Range of the finite heights of a row; true where all are finite.
-  bool (*range)(const float* row, std::size_t n, float& lowest, float& highest) noexcept = nullptr;
+  /// Ranges of a row of tiles: of `rows` <= HeightTiles::kEdge rows of `width` heights, `stride`
+  /// apart. True where all are finite; the ranges hold only then, or where what is not is -inf.
+  bool (*tile_ranges)(const float* heights, std::ptrdiff_t stride, int rows, std::size_t width,
+                      float* lowest, float* highest) noexcept = nullptr;
 };
 
 [[nodiscard]] const ShadowKernels& shadow_kernels(Isa isa) noexcept;

@@ -60,9 +60,10 @@ class Panel {
 
   Panel(const Sweep& sweep, int bands)
       : sweep_(sweep),
-        // |s| ≤ 1: over a panel rows shift by its width, and a column's lie within 4.
-        rows_(bands + kColumns + 8),
-        stride_((static_cast<std::size_t>(rows_ + kBeyond) + kBands) / kBands * kBands),
+        bands_(bands),
+        // |s| ≤ 1: over a panel rows shift by its width at most, and a column's lie within 4.
+        stride_((static_cast<std::size_t>(bands + kColumns + 8 + kBeyond) + kBands) / kBands *
+                kBands),
         cells_(stride_ * kColumns) {}
 
   [[nodiscard]] std::size_t stride() const { return stride_; }
@@ -73,8 +74,11 @@ class Panel {
   /// Blocks [first, last) of the sweep, rows from the least that `first_band` needs on.
   HWY_NOINLINE void load(int first, int last, int first_band) {
     low_ = sweep_.blocks[static_cast<std::size_t>(first)].low;
-    for (int b = first + 1; b < last; ++b)
+    std::int32_t high = low_;
+    for (int b = first; b < last; ++b) {
       low_ = std::min(low_, sweep_.blocks[static_cast<std::size_t>(b)].low);
+      high = std::max(high, sweep_.blocks[static_cast<std::size_t>(b)].high);
+    }
     const std::int64_t row0 = std::int64_t{first_band} + low_;
     const ShadowCaster& map = sweep_.map;
     const int n = last - first;
@@ -82,7 +86,7 @@ class Panel {
     for (int b = 0; b < n; ++b) sources[b] = source_of((first + b) * kSweepBlock);
     const Quantizer quantize(sweep_.units);
     for_each_run(
-        row0, rows_, sweep_.rows, map.tiling,
+        row0, bands_ + high - low_ + 1, sweep_.rows, map.tiling,
         [&](std::int64_t i, std::int64_t from, std::int64_t length, std::int64_t step) HWY_ATTR {
           if (!sweep_.along_x) {
             for (int c = 0; c < n * kSweepBlock; ++c) {
@@ -205,7 +209,7 @@ class Panel {
 
   const Sweep& sweep_;
   int low_ = 0;
-  std::int64_t rows_;
+  std::int64_t bands_;
   std::size_t stride_;
   std::vector<std::int16_t> cells_;
 };

@@ -65,6 +65,7 @@ void plan_part(Sweep& p, SweepBlock& block, int x0, int part, const Rays& rays) 
   using Kind = SweepStep::Kind;
   const auto add = [&](Kind kind, int c, std::int32_t row, std::int64_t upper, std::int64_t lower) {
     block.low = std::min(block.low, row);
+    block.high = std::max(block.high, row);
     p.steps.push_back({kind, static_cast<std::uint8_t>(c), row,
                        static_cast<std::int16_t>(upper - block.frame),
                        static_cast<std::int16_t>(lower - block.frame)});
@@ -105,7 +106,8 @@ SweepUnits units_of(const ShadowCaster& map, double tau) {
 
 }  // namespace
 
-Sweep plan_sweep(const ShadowCaster& map, const SunRay& ray, std::vector<RayStep> steps) {
+Sweep plan_sweep(const ShadowCaster& map, const HeightTiles& tiles, const SunRay& ray,
+                 std::vector<RayStep> steps) {
   Sweep p;
   p.map = map;
   p.along_x = std::abs(ray.x) >= std::abs(ray.y);
@@ -128,7 +130,20 @@ Sweep plan_sweep(const ShadowCaster& map, const SunRay& ray, std::vector<RayStep
   p.first_step.push_back(static_cast<std::uint32_t>(steps.size()));
   p.ray = std::move(steps);
 
-  const int blocks = (p.columns + reach + kSweepBlock - 1) / kSweepBlock;
+  p.cyclic = map.tiling == Tiling::repeat;
+  if (p.cyclic) {
+    p.bands = p.rows;
+  } else {
+    const int a = -plan_column(0, rays).begin_row;
+    const int b = -plan_column(p.columns - 1, rays).begin_row;
+    p.first_band = std::min(a, b);
+    p.bands = p.rows + std::abs(a - b);
+  }
+  p.reach = reach_of(map, tiles,
+                     {p.along_x, p.flipped, p.columns, p.rows, s, ray.rise / std::abs(along),
+                      p.first_band, p.bands},
+                     kSweepBlock, (p.columns + reach + kSweepBlock - 1) / kSweepBlock);
+  const int blocks = *std::ranges::max_element(p.reach);
   p.column.reserve(static_cast<std::size_t>(blocks) * kSweepBlock);
   for (int x = 0; x < blocks * kSweepBlock; ++x) p.column.push_back(plan_column(x, rays));
   p.blocks.resize(static_cast<std::size_t>(blocks));
@@ -137,21 +152,12 @@ Sweep plan_sweep(const ShadowCaster& map, const SunRay& ray, std::vector<RayStep
     SweepBlock& block = p.blocks[static_cast<std::size_t>(b)];
     const int x0 = b * kSweepBlock;
     block.frame = floor_of(x0 * rays.tau);
-    block.low = p.column[static_cast<std::size_t>(x0)].begin_row;
+    block.low = block.high = p.column[static_cast<std::size_t>(x0)].begin_row;
     for (int part = 0; part < kSubBands; ++part) {
       block.first[static_cast<std::size_t>(part)] = static_cast<std::uint32_t>(p.steps.size());
       plan_part(p, block, x0, part, rays);
     }
     block.first[kSubBands] = static_cast<std::uint32_t>(p.steps.size());
-  }
-  p.cyclic = map.tiling == Tiling::repeat;
-  if (p.cyclic) {
-    p.bands = p.rows;
-  } else {
-    const int a = -p.column[0].begin_row;
-    const int b = -p.column[static_cast<std::size_t>(p.columns - 1)].begin_row;
-    p.first_band = std::min(a, b);
-    p.bands = p.rows + std::abs(a - b);
   }
   return p;
 }

@@ -33,6 +33,7 @@
 #include <vector>
 
 #include <rastrum/terrain/shadow_ray.hpp>
+#include <rastrum/terrain/shadow_reach.hpp>
 
 namespace rastrum::terrain {
 
@@ -72,8 +73,8 @@ struct SweepColumn {
 };
 
 struct SweepBlock {
-  std::int64_t frame = 0;  ///< X·tau of its first column in units, rounded down
-  std::int32_t low = 0;    ///< the least of all rows below
+  std::int64_t frame = 0;          ///< X·tau of its first column in units, rounded down
+  std::int32_t low = 0, high = 0;  ///< the least and greatest of all rows below
   /// Part p's are [first[p], first[p + 1]) of Sweep::steps, the farthest column's first.
   std::array<std::uint32_t, kSubBands + 1> first{};
 };
@@ -98,6 +99,7 @@ struct Sweep {
   bool cyclic = false;  ///< rows repeat, and band b is band b + rows
   std::vector<SweepStep> steps;
   std::vector<SweepBlock> blocks;  ///< the map's, then those beyond that cast shadows on it
+  std::vector<int> reach;          ///< of these, for each kReachBands bands
   std::vector<SweepColumn> column;
 
   /// The first step at least `ahead` columns from where the ray begins.
@@ -113,8 +115,8 @@ struct Sweep {
   return map.relief() > 0x1p-100 && map.relief() < 0x1p126;
 }
 
-/// Requires steps (those of `ray`) and a map that can be swept.
-[[nodiscard]] Sweep plan_sweep(const ShadowCaster& map, const SunRay& ray,
+/// Requires steps (those of `ray`), the map's tiles and a map that can be swept.
+[[nodiscard]] Sweep plan_sweep(const ShadowCaster& map, const HeightTiles& tiles, const SunRay& ray,
                                std::vector<RayStep> steps);
 
 }  // namespace rastrum::terrain

@@ -82,9 +82,10 @@ class Sweeper {
         shadow_(shadow),
         panels_{Panel(sweep, static_cast<int>(padded_)), Panel(sweep, static_cast<int>(padded_))},
         lower_(kSubBands * padded_, kLeast),
-        blocks_(static_cast<int>(sweep.blocks.size())),
-        upper_in_(new std::int16_t[sweep.blocks.size() * kSubBands * padded_]),
-        upper_from_(new std::int16_t[(sweep.blocks.size() + 1) * kSubBands * padded_]),
+        blocks_(*std::max_element(sweep.reach.begin() + first / kReachBands,
+                                  sweep.reach.begin() + (last - 1) / kReachBands + 1)),
+        upper_in_(new std::int16_t[static_cast<std::size_t>(blocks_) * kSubBands * padded_]),
+        upper_from_(new std::int16_t[static_cast<std::size_t>(blocks_ + 1) * kSubBands * padded_]),
         dark_(padded_ * Panel::kColumns),
         stride_(panels_[0].stride()) {
     std::fill_n(&upper_from(blocks_, 0, 0), kSubBands * padded_, kLeast);
@@ -203,33 +204,54 @@ class Sweeper {
                           : std::pair(static_cast<int>(row), along);
   }
 
-  HWY_NOINLINE void decide_column(int block, int c) {
-    const U8 d8;
-    std::uint8_t* const dark = dark_of(in_panel(block, c));
-    for (std::size_t i = 0; i < padded_; i += kBands) {
-      const auto state = hn::LoadU(d8, dark + i);
-      if (!hn::AllFalse(d8, hn::TestBit(state, hn::Set(d8, kUndecided)))) decide(block, c, i, dark);
-    }
-  }
-
   /// The frame of a block, seen from where the rays of column x begin.
   [[nodiscard]] std::int64_t climb_to(int block, int x) const {
     return sweep_.blocks[static_cast<std::size_t>(block)].frame -
            sweep_.column[static_cast<std::size_t>(x)].begin;
   }
 
-  /// Vectors first: the cells of the next few columns, which are still at hand, decide most of what
-  /// the bounds do not. Where they leave it open, the definition decides.
-  HWY_NOINLINE void decide(int block, int c, std::size_t i, std::uint8_t* dark) {
-    const I16 d;
-    const int x = block * kSweepBlock + c;
+  /// How a column's undecided cells look at the next columns, which are still at hand.
+  struct Outlook {
+    int x, end_block;            ///< the cells' column; the first block that is not looked at
+    const std::int16_t* own;     ///< the cell of band 0
+    const std::int16_t* before;  ///< the same as if the panel before went on in this one's columns
+    std::size_t own_steps, steps;  ///< of near_, in this panel and in all
+    const std::int16_t* upper;     ///< upper bounds from end_block on; null where nothing is
+    std::int16_t climb;            ///< that a ray has until there, but for what is rounded
+  };
+  [[nodiscard]] Outlook outlook_of(int block, int c) {
+    Outlook o{};
+    o.x = block * kSweepBlock + c;
     // To the end of a block, whose bounds are known: this one, or the next where that is near.
-    const int end_block = kSweepBlock - c > 4 ? block + 1 : block + 2;
-    const std::size_t end = sweep_.step_at(end_block * kSweepBlock - x);
-    const SweepColumn& column = sweep_.column[static_cast<std::size_t>(x)];
-    const auto row = static_cast<std::int64_t>(i) + column.begin_row;
-    const std::int16_t* const at = current_->cell(in_panel(block, c), row);
-    const V own = hn::LoadU(d, at);
+    o.end_block = std::min(kSweepBlock - c > 4 ? block + 1 : block + 2, blocks_);
+    const SweepColumn& column = sweep_.column[static_cast<std::size_t>(o.x)];
+    const int left = Panel::kColumns - in_panel(block, c);
+    o.own = current_->cell(in_panel(block, c), column.begin_row);
+    o.before = previous_->cell(0, column.begin_row) - left * static_cast<std::ptrdiff_t>(stride_);
+    o.steps = sweep_.step_at(o.end_block * kSweepBlock - o.x);
+    o.own_steps = std::min(o.steps, sweep_.step_at(left));
+    if (o.end_block < blocks_) {
+      o.upper = &upper_from(o.end_block, column.part, 0);
+      o.climb = static_cast<std::int16_t>(climb_to(o.end_block, o.x) - 3);
+    }
+    return o;
+  }
+
+  HWY_NOINLINE void decide_column(int block, int c) {
+    const U8 d8;
+    std::uint8_t* const dark = dark_of(in_panel(block, c));
+    const Outlook outlook = outlook_of(block, c);
+    for (std::size_t i = 0; i < padded_; i += kBands) {
+      const auto state = hn::LoadU(d8, dark + i);
+      if (!hn::AllFalse(d8, hn::TestBit(state, hn::Set(d8, kUndecided)))) decide(outlook, i, dark);
+    }
+  }
+
+  /// Vectors first: the next columns decide most of what the bounds do not. Where they leave it
+  /// open, the definition decides.
+  HWY_INLINE void decide(const Outlook& o, std::size_t i, std::uint8_t* dark) {
+    const I16 d;
+    const V own = hn::LoadU(d, o.own + i);
     V highest = hn::Set(d, kLeast), others = highest;
     const auto seen = [&](const std::int16_t* from, const Near& step) HWY_ATTR {
       return hn::SaturatedSub(hn::LoadU(d, from + step.cell), hn::Set(d, step.climb));
@@ -241,22 +263,16 @@ class Sweeper {
       }
       if (k < last) highest = hn::Max(highest, seen(from, near_[k]));
     };
-    const int left = Panel::kColumns - in_panel(block, c);
-    const std::size_t own_end = std::min(end, sweep_.step_at(left));
-    walk(at, 0, own_end);
-    // Those of the panel before, as if its columns went on from this one's.
-    if (own_end < end)
-      walk(previous_->cell(0, row) - left * static_cast<std::ptrdiff_t>(stride_), own_end, end);
+    walk(o.own + i, 0, o.own_steps);
+    if (o.own_steps < o.steps) walk(o.before + i, o.own_steps, o.steps);
     highest = hn::Max(highest, others);
     // Both heights and the climb are off by less than 2.1 together.
     const auto hidden = hn::Gt(highest, hn::SaturatedAdd(own, hn::Set(d, 2)));
     const auto near_open = hn::Gt(highest, hn::SaturatedSub(own, hn::Set(d, 2)));
     auto open = near_open;
-    if (end_block < blocks_) {
-      const auto climb = static_cast<std::int16_t>(climb_to(end_block, x) - 3);
-      open = hn::Or(open, hn::Gt(hn::LoadU(d, &upper_from(end_block, column.part, i)),
-                                 hn::SaturatedAdd(own, hn::Set(d, climb))));
-    }
+    if (o.upper != nullptr)
+      open = hn::Or(open,
+                    hn::Gt(hn::LoadU(d, o.upper + i), hn::SaturatedAdd(own, hn::Set(d, o.climb))));
     const V state = hn::PromoteTo(d, hn::LoadU(U8{}, dark + i));
     const auto undecided = hn::Eq(state, hn::Set(d, kUndecided));
     open = hn::And(hn::AndNot(hidden, open), undecided);
@@ -267,15 +283,20 @@ class Sweeper {
     std::uint8_t open_bits[8] = {}, near_bits[8] = {};
     hn::StoreMaskBits(d, open, open_bits);
     hn::StoreMaskBits(d, near_open, near_bits);
+    decide_open(o, i, open_bits, near_bits, dark);
+  }
+
+  HWY_NOINLINE void decide_open(const Outlook& o, std::size_t i, const std::uint8_t* open,
+                                const std::uint8_t* near, std::uint8_t* dark) {
     for (std::size_t byte = 0; byte < (kBands + 7) / 8; ++byte)
-      for (unsigned m = open_bits[byte]; m != 0; m &= m - 1) {
+      for (unsigned m = open[byte]; m != 0; m &= m - 1) {
         const auto bit = static_cast<unsigned>(std::countr_zero(m));
         const std::size_t k = i + byte * 8 + bit;
         if (k >= static_cast<std::size_t>(bands_)) continue;
-        const std::int64_t of_map = row_of(x, k);
+        const std::int64_t of_map = row_of(o.x, k);
         if (of_map < 0 || of_map >= sweep_.rows) continue;
-        const bool near = (near_bits[byte] >> bit & 1) != 0;
-        dark[k] = traverse(x, of_map, k, near ? block : end_block) ? kDark : 0;
+        const bool from_own = (near[byte] >> bit & 1) != 0;
+        dark[k] = traverse(o.x, of_map, k, from_own ? o.x / kSweepBlock : o.end_block) ? kDark : 0;
       }
   }
 

@@ -14,6 +14,7 @@
 #include <rastrum/terrain/cuda/device.hpp>
 #include <rastrum/terrain/shadow_kernels.hpp>
 #include <rastrum/terrain/shadow_ray.hpp>
+#include <rastrum/terrain/shadow_reach.hpp>
 #include <rastrum/terrain/shadow_sweep.hpp>
 
 namespace rastrum::terrain {
@@ -92,29 +93,51 @@ Isa isa_of(const ShadowOptions& options) {
   return isa;
 }
 
-/// The map without its holes: a copy where it has any, in `copy`.
-ShadowCaster caster_of(ImageView<const float> heights, Tiling tiling, const ShadowKernels& kernels,
-                       Image<float>& copy) {
-  ShadowCaster map{heights, tiling, kInfinity, -kInfinity};
+/// ShadowKernels::tile_ranges in plain C++.
+bool plain_tile_ranges(const float* heights, std::ptrdiff_t stride, int rows, std::size_t width,
+                       float* lowest, float* highest) noexcept {
+  const std::size_t tiles = (width + HeightTiles::kEdge - 1) / HeightTiles::kEdge;
+  std::fill_n(lowest, tiles, kInfinity);
+  std::fill_n(highest, tiles, -kInfinity);
   bool finite = true;
-  const auto width = static_cast<std::size_t>(heights.width);
-  const auto range = [&](const float* row, float& low, float& high) {
-    if (kernels.range != nullptr) return kernels.range(row, width, low, high);
-    bool all = true;
+  for (int row = 0; row < rows; ++row, heights += stride)
     for (std::size_t x = 0; x < width; ++x) {
-      all = all && std::isfinite(row[x]);
-      low = std::min(low, row[x]);
-      high = std::max(high, row[x]);
+      const std::size_t tile = x / HeightTiles::kEdge;
+      finite = finite && std::isfinite(heights[x]);
+      lowest[tile] = std::min(lowest[tile], heights[x]);
+      highest[tile] = std::max(highest[tile], heights[x]);
     }
-    return all;
-  };
-  for (int y = 0; y < heights.height; ++y)
-    finite = range(heights.row(y), map.lowest, map.highest) && finite;
-  if (finite) return map;
+  return finite;
+}
+
+/// True where all heights are finite.
+bool find_tiles(ImageView<const float> heights, const ShadowKernels& kernels, HeightTiles& tiles) {
+  const auto ranges = kernels.tile_ranges != nullptr ? kernels.tile_ranges : plain_tile_ranges;
+  tiles.resize(heights.width, heights.height);
+  bool finite = true;
+  for (int row = 0; row < tiles.down; ++row) {
+    const int y = row * HeightTiles::kEdge;
+    const std::size_t first = tiles.at(0, row);
+    finite =
+        ranges(heights.row(y), heights.stride, std::min(HeightTiles::kEdge, heights.height - y),
+               static_cast<std::size_t>(heights.width), &tiles.lowest[first],
+               &tiles.highest[first]) &&
+        finite;
+  }
+  return finite;
+}
+
+/// The map without its holes, a copy where it has any, in `copy`; and its tiles.
+ShadowCaster caster_of(ImageView<const float> heights, Tiling tiling, const ShadowKernels& kernels,
+                       Image<float>& copy, HeightTiles& tiles) {
+  ShadowCaster map{heights, tiling, kInfinity, -kInfinity};
+  if (find_tiles(heights, kernels, tiles)) {
+    map.lowest = *std::ranges::min_element(tiles.lowest);
+    map.highest = *std::ranges::max_element(tiles.highest);
+    return map;
+  }
   copy = Image<float>(heights.width, heights.height);
   map.heights = copy.view();
-  map.lowest = kInfinity;
-  map.highest = -kInfinity;
   for (int y = 0; y < heights.height; ++y)
     for (int x = 0; x < heights.width; ++x) {
       const float h = heights(x, y);
@@ -124,6 +147,7 @@ ShadowCaster caster_of(ImageView<const float> heights, Tiling tiling, const Shad
       map.lowest = std::min(map.lowest, h);
       map.highest = std::max(map.highest, h);
     }
+  find_tiles(map.heights, kernels, tiles);
   return map;
 }
 
@@ -178,7 +202,8 @@ Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun
   const Isa isa = isa_of(options);
   const ShadowKernels& kernels = shadow_kernels(isa);
   Image<float> copy;
-  const ShadowCaster map = caster_of(heights, options.tiling, kernels, copy);
+  HeightTiles tiles;
+  const ShadowCaster map = caster_of(heights, options.tiling, kernels, copy, tiles);
   if (!(map.lowest <= map.highest)) return shadow;  // holes alone
   if (!(sun.elevation_deg > 0)) {
     for (std::size_t i = 0; i < shadow.pixels().size(); ++i)
@@ -203,7 +228,7 @@ Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun
                                });
       return;
     }
-    const Sweep sweep = plan_sweep(map, ray, std::move(steps));
+    const Sweep sweep = plan_sweep(map, tiles, ray, std::move(steps));
     const int parts = (sweep.bands + kBandGrain - 1) / kBandGrain;
     parallel::for_each_index(exec, static_cast<std::size_t>(parts), [&](std::size_t part) {
       const int first = static_cast<int>(part) * kBandGrain;
@@ -269,7 +294,8 @@ Image<std::uint16_t> hidden_samples(ImageView<const float> heights, const Sun& s
     return *hidden;
   const ShadowKernels& kernels = shadow_kernels(isa_of(options));
   Image<float> copy;
-  const ShadowCaster map = caster_of(heights, options.tiling, kernels, copy);
+  HeightTiles tiles;
+  const ShadowCaster map = caster_of(heights, options.tiling, kernels, copy, tiles);
   Image<std::uint16_t> counts(heights.width, heights.height);
   const auto plain_row = [&](int y) {
     for (int x = 0; x < heights.width; ++x) counts(x, y) = hidden_count(map, samples, x, y);

@@ -1,6 +1,6 @@
 // The march of paper 3 with Highway, compiled once per instruction set: 4 vectors of a row at a
-// time. It repeats the scalar operations and gives the same counts. And the range of a map's
-// heights.
+// time. It repeats the scalar operations and gives the same counts. And the ranges of the heights
+// in tiles of a map.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/terrain/shadows_simd.cpp"
@@ -84,33 +84,58 @@ void march_row(const ShadowCaster& map, const std::vector<MarchSample>& samples,
   }
 }
 
-bool range(const float* row, std::size_t n, float& lowest, float& highest) noexcept {
+/// Columns that are folded together: their ranges stay in the first cache.
+constexpr std::size_t kStrip = 1024;
+
+/// Rows first, four at a time, into a range per column; these last.
+bool tile_ranges(const float* heights, std::ptrdiff_t stride, int rows, std::size_t width,
+                 float* lowest, float* highest) noexcept {
+  static_assert(kStrip % HeightTiles::kEdge == 0 && HeightTiles::kEdge % kLanes == 0);
+  constexpr std::size_t kEdge = HeightTiles::kEdge;
   const F32 d;
-  F low = hn::Set(d, kInfinity), high = hn::Set(d, -kInfinity);
+  float lows[kStrip], highs[kStrip];
   // The difference to itself is NaN for what is not finite, and 0 for all else.
   F odd = hn::Zero(d);
-  std::size_t i = 0;
-  for (; i + kLanes <= n; i += kLanes) {
-    const F v = hn::LoadU(d, row + i);
-    odd = hn::Or(odd, hn::Sub(v, v));
-    low = hn::Min(low, v);
-    high = hn::Max(high, v);
+  bool finite = true;
+  for (std::size_t begin = 0; begin < width; begin += kStrip) {
+    const std::size_t n = std::min(kStrip, width - begin), padded = (n + kEdge - 1) / kEdge * kEdge;
+    std::fill_n(lows, padded, kInfinity);
+    std::fill_n(highs, padded, -kInfinity);
+    for (int r = 0; r < rows; r += 4) {
+      const auto row = [&](int k) { return heights + std::min(r + k, rows - 1) * stride + begin; };
+      const float *const a = row(0), *const b = row(1), *const e = row(2), *const f = row(3);
+      std::size_t i = 0;
+      for (; i + kLanes <= n; i += kLanes) {
+        const F u = hn::LoadU(d, a + i), v = hn::LoadU(d, b + i);
+        const F w = hn::LoadU(d, e + i), z = hn::LoadU(d, f + i);
+        const F low = hn::Min(hn::Min(u, v), hn::Min(w, z));
+        const F high = hn::Max(hn::Max(u, v), hn::Max(w, z));
+        odd = hn::Or(odd, hn::Or(hn::Or(hn::Sub(u, u), hn::Sub(v, v)),
+                                 hn::Or(hn::Sub(w, w), hn::Sub(z, z))));
+        hn::StoreU(hn::Min(hn::LoadU(d, lows + i), low), d, lows + i);
+        hn::StoreU(hn::Max(hn::LoadU(d, highs + i), high), d, highs + i);
+      }
+      for (; i < n; ++i)
+        for (const float* const from : {a, b, e, f}) {
+          finite = finite && from[i] - from[i] == 0;
+          lows[i] = std::min(lows[i], from[i]);
+          highs[i] = std::max(highs[i], from[i]);
+        }
+    }
+    for (std::size_t i = 0; i < padded; i += kEdge) {
+      F low = hn::LoadU(d, lows + i), high = hn::LoadU(d, highs + i);
+      for (std::size_t k = kLanes; k < kEdge; k += kLanes) {
+        low = hn::Min(low, hn::LoadU(d, lows + i + k));
+        high = hn::Max(high, hn::LoadU(d, highs + i + k));
+      }
+      lowest[(begin + i) / kEdge] = hn::GetLane(hn::MinOfLanes(d, low));
+      highest[(begin + i) / kEdge] = hn::GetLane(hn::MaxOfLanes(d, high));
+    }
   }
-  float lows[kLanes], highs[kLanes];
-  hn::StoreU(low, d, lows);
-  hn::StoreU(high, d, highs);
-  bool finite = hn::AllTrue(d, hn::Eq(odd, odd));
-  for (; i < n; ++i) {
-    finite = finite && row[i] - row[i] == 0;
-    lowest = std::min(lowest, row[i]);
-    highest = std::max(highest, row[i]);
-  }
-  lowest = std::min(lowest, *std::min_element(lows, lows + kLanes));
-  highest = std::max(highest, *std::max_element(highs, highs + kLanes));
-  return finite;
+  return finite && hn::AllTrue(d, hn::Eq(odd, odd));
 }
 
-constexpr ShadowKernels kTable{march_row, range};
+constexpr ShadowKernels kTable{march_row, tile_ranges};
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
