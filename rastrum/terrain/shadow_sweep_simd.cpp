@@ -227,9 +227,10 @@ class Sweeper {
     const SweepColumn& column = sweep_.column[static_cast<std::size_t>(o.x)];
     const int left = Panel::kColumns - in_panel(block, c);
     o.own = current_->cell(in_panel(block, c), column.begin_row);
-    o.before = previous_->cell(0, column.begin_row) - left * static_cast<std::ptrdiff_t>(stride_);
     o.steps = sweep_.step_at(o.end_block * kSweepBlock - o.x);
     o.own_steps = std::min(o.steps, sweep_.step_at(left));
+    if (o.own_steps < o.steps)
+      o.before = previous_->cell(0, column.begin_row) - left * static_cast<std::ptrdiff_t>(stride_);
     if (o.end_block < blocks_) {
       o.upper = &upper_from(o.end_block, column.part, 0);
       o.climb = static_cast<std::int16_t>(climb_to(o.end_block, o.x) - 3);

@@ -223,6 +223,15 @@ TEST(SharpShadows, ReliefsOfAllSizesAndShadowsOfAllLengths) {
     }
 }
 
+/// Plains behind the edge on the sun's side: the sweep looks at nothing beyond the map.
+TEST(SharpShadows, NothingBeyondTheMapIsHighEnough) {
+  Image<float> map = noise(64, 70, 20, 11);
+  for (int y = 0; y < map.height(); ++y)
+    for (int x = 0; x < 48; ++x) map(x, y) = 0;
+  for (const double azimuth : {75.0, 90.0, 100.0})
+    EXPECT_GT(check_sharp(map, azimuth, 25, Tiling::repeat), 500U);
+}
+
 /// A unit of the whole relief is more than all hills.
 TEST(SharpShadows, OneSpikeAmongHills) {
   for (const float height : {1e3F, 1e7F}) {
