@@ -241,11 +241,15 @@ class Sweeper {
   HWY_NOINLINE void decide_column(int block, int c) {
     const U8 d8;
     std::uint8_t* const dark = dark_of(in_panel(block, c));
+    const auto undecided = [&](std::size_t i) HWY_ATTR {
+      return !hn::AllFalse(d8, hn::TestBit(hn::LoadU(d8, dark + i), hn::Set(d8, kUndecided)));
+    };
+    std::size_t i = 0;
+    while (i < padded_ && !undecided(i)) i += kBands;
+    if (i == padded_) return;
     const Outlook outlook = outlook_of(block, c);
-    for (std::size_t i = 0; i < padded_; i += kBands) {
-      const auto state = hn::LoadU(d8, dark + i);
-      if (!hn::AllFalse(d8, hn::TestBit(state, hn::Set(d8, kUndecided)))) decide(outlook, i, dark);
-    }
+    for (; i < padded_; i += kBands)
+      if (undecided(i)) decide(outlook, i, dark);
   }
 
   /// Vectors first: the next columns decide most of what the bounds do not. Where they leave it
