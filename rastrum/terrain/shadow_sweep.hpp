@@ -18,7 +18,8 @@
 // what rounding leaves open is decided a few cells further. Columns come in blocks, and within a
 // block all is relative to its begin, its frame: a height h that is met at X_e counts as
 // h − (X_e − X of the block)·tau, and no sum leaves 16 bits; from a block to the next the bounds
-// lose what a ray climbs on it, down to a value that nothing is below.
+// lose what a ray climbs on it, down to a value that nothing is below. Beyond the map there are as
+// many as shadow_reach.hpp says.
 //
 // On axes and diagonals, rays of all cells run alike and nothing but rounding lies between the
 // bounds; elsewhere 5 to 10 % of the cells of real maps do. Most of these are decided in vectors by
