@@ -1,4 +1,5 @@
-// What a frame of terrain is expected to cost, for Device::automatic (parallel/device_estimate.hpp).
+// What a frame of terrain is expected to cost, for Device::automatic
+// (parallel/device_estimate.hpp).
 #pragma once
 
 #include <rastrum/parallel/device_estimate.hpp>
