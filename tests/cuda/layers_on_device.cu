@@ -128,7 +128,7 @@ struct TeamWords {
       s.keys[i] = s.sums[i] = in[i];
       s.places[i] = static_cast<std::uint32_t>(i);
     }
-    if constexpr (by_warps)
+    if constexpr (kWantsWarps)
       parallel::team_sort_by_warps(s.keys, s.places, n, team);
     else
       parallel::team_sort(s.keys, s.places, n, team);
