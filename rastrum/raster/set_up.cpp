@@ -43,8 +43,8 @@ struct Corners {
   }
 };
 
-/// Which triangles of a batch some sample of a pixel sees.
-class SeenTriangles {
+/// Triangles of a batch: those that some sample of a pixel sees, say.
+class TriangleSet {
  public:
   void add(std::uint64_t i) { seen_[i] = true; }
   [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(seen_.count()); }
@@ -113,8 +113,7 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
     input.bin_columns = static_cast<std::uint32_t>((geometry.width + kBinSize - 1) / kBinSize);
     input.micro = micro != nullptr;
 
-    SeenTriangles seen;
-    FrameStats::Triangles slow_ones;
+    TriangleSet seen, clipped, dropped;
     for (std::uint32_t sample = 0; sample < samples.size(); ++sample) {
       const SampleOffset at = samples[sample];
       input.flags = draw.flags_of(t) | sample << kSampleShift;
@@ -132,7 +131,6 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
       const std::uint32_t first_piece = pieces.count;
       pieces.count += out.pieces;
       if (micro != nullptr) micro->written(out.fragments);
-      slow_ones = {};
       std::uint32_t slow_culled = 0;
       for (std::uint32_t k = 0; k < out.slow; ++k) {
         const Fate fate = assemble_primitive(
@@ -142,8 +140,8 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
               pieces.data[pieces.count++] = piece;
             },
             sample, at);
-        slow_ones.dropped += fate == Fate::dropped;
-        slow_ones.clipped += fate == Fate::clipped;
+        if (fate == Fate::dropped) dropped.add(slow[k]);
+        if (fate == Fate::clipped) clipped.add(slow[k]);
         slow_culled += fate == Fate::culled;
       }
       if (samples.size() == 1) {
@@ -153,9 +151,9 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
       for (std::uint32_t k = first_piece; k < pieces.count; ++k)
         seen.add(kIdMask - pieces.data[k].low - id);
     }
-    if (samples.size() > 1) pieces.triangles.culled += count - seen.count() - slow_ones.dropped;
-    pieces.triangles.dropped += slow_ones.dropped;
-    pieces.triangles.clipped += slow_ones.clipped;
+    if (samples.size() > 1) pieces.triangles.culled += count - seen.count() - dropped.count();
+    pieces.triangles.dropped += dropped.count();
+    pieces.triangles.clipped += clipped.count();
     id += count;
   }
   return true;

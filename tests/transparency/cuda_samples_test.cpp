@@ -111,6 +111,7 @@ TEST_P(CudaSampled, LayersEqualSerial) {
       const LayerPicture host = take(threads, binding.view(), g.camera);
       EXPECT_EQ(frame.counter("translucent fragments"), host.counter("translucent fragments"));
       EXPECT_EQ(frame.counter("deepest"), host.counter("deepest"));
+      EXPECT_EQ(frame.stats.triangles.clipped, host.stats.triangles.clipped);
       EXPECT_EQ(frame.stats.pixels_covered, expected.stats.pixels_covered);
       EXPECT_EQ(frame.stats.triangles.culled, expected.stats.triangles.culled);
       EXPECT_EQ(frame.stats.triangles.clipped, expected.stats.triangles.clipped);
