@@ -1,29 +1,19 @@
-// The rows of the family on a device, instantiated, and the driver. Tests compile this file as C++,
-// for the CPU.
+// The coverages of the family on a device, instantiated, and the driver; visibilities.cu has the
+// rest, so that two cores can compile. Tests compile these files as C++, for the CPU.
 #include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
 
 #include <rastrum/core/error.hpp>
-#include <rastrum/raster/cuda/family/atomic.cuh>
 #include <rastrum/raster/cuda/family/binned.cuh>
 #include <rastrum/raster/cuda/family/family.cuh>
-#include <rastrum/raster/cuda/family/hashed.cuh>
 #include <rastrum/raster/cuda/family/hybrid.cuh>
 #include <rastrum/raster/cuda/family/pineda.cuh>
 #include <rastrum/raster/cuda/family/scanline.cuh>
-#include <rastrum/raster/cuda/family/search.cuh>
-#include <rastrum/raster/cuda/family/sorted.cuh>
 #include <rastrum/raster/cuda/family/tiled.cuh>
-#include <rastrum/raster/cuda/family/tuple.cuh>
 
 namespace rastrum::raster::family {
-
-template <class Visibility, class Exec>
-std::unique_ptr<DeviceVisibility<Exec>> make(FamilyFrame<Exec>& frame) {
-  return std::make_unique<Visibility>(frame);
-}
 
 template <class Exec>
 inline constexpr std::array kCoverages{
@@ -33,16 +23,6 @@ inline constexpr std::array kCoverages{
     CoverageOnDevice<Exec>{"hybrid", draw_hybrid<Exec>},
     CoverageOnDevice<Exec>{"binned", draw_binned<Exec>},
 };
-template <class Exec>
-inline constexpr std::array kVisibilities{
-    VisibilityOnDevice<Exec>{"atomic", 0, false, make<AtomicOnDevice<Exec>, Exec>},
-    VisibilityOnDevice<Exec>{"search", sizeof(std::uint32_t), false,
-                             make<SearchOnDevice<Exec>, Exec>},
-    VisibilityOnDevice<Exec>{"tuple", sizeof(Vec4), true, make<TupleOnDevice<Exec>, Exec>},
-    VisibilityOnDevice<Exec>{"sorted", 0, false, make<SortedOnDevice<Exec>, Exec>},
-    VisibilityOnDevice<Exec>{"hashed", 0, false, make<HashedOnDevice<Exec>, Exec>},
-};
-
 template <class Rows>
 [[nodiscard]] auto row_of(const Rows& rows, std::string_view name) {
   const auto found = std::ranges::find(rows, name, &Rows::value_type::name);
@@ -53,7 +33,7 @@ template <class Rows>
 
 template <class Exec>
 Point<Exec> point_of(std::string_view coverage, std::string_view visibility) {
-  return {row_of(kCoverages<Exec>, coverage), row_of(kVisibilities<Exec>, visibility)};
+  return {row_of(kCoverages<Exec>, coverage), row_of(visibilities_on_device<Exec>(), visibility)};
 }
 
 struct IsDrawnIn {

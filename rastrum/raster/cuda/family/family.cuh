@@ -1,5 +1,5 @@
 // The papers' rasterizers on a device, for who draws with them: the rows of both axes by their
-// names, and the driver around them. The rows' code is compiled once, in family.cu.
+// names, and the driver around them. The rows are compiled once, in family.cu and visibilities.cu.
 #pragma once
 
 #include <cstddef>
@@ -27,6 +27,9 @@ struct VisibilityOnDevice {
   bool shades = false;            ///< sets Shading::colors
   std::unique_ptr<DeviceVisibility<Exec>> (*make)(FamilyFrame<Exec>&) = nullptr;
 };
+
+template <class Exec>
+[[nodiscard]] std::span<const VisibilityOnDevice<Exec>> visibilities_on_device();
 
 /// A point of the table.
 template <class Exec>
