@@ -7,3 +7,6 @@
 #else
 #define RASTRUM_HD
 #endif
+
+/// The same for what loops over lanes must take in whole, whatever instruction set they have.
+#define RASTRUM_HD_LEAF RASTRUM_HD inline __attribute__((always_inline))

@@ -40,15 +40,23 @@ RASTRUM_HD inline Rgba8 to_straight_rgba8(Vec4 premultiplied) {
   return {quantize(c.x), quantize(c.y), quantize(c.z), quantize(c.w)};
 }
 
+RASTRUM_HD inline Vec4 premultiplied_from_straight(Vec4 c) {
+  return {c.x * c.w, c.y * c.w, c.z * c.w, c.w};
+}
+RASTRUM_HD inline Vec4 straight_from_rgba8(Rgba8 c) {
+  return {static_cast<float>(c.r) / 255.0F, static_cast<float>(c.g) / 255.0F,
+          static_cast<float>(c.b) / 255.0F, static_cast<float>(c.a) / 255.0F};
+}
+
 /// Premultiplied linear light to premultiplied display values.
-inline Vec4 display_from_linear(Vec4 premultiplied) {
+RASTRUM_HD inline Vec4 display_from_linear(Vec4 premultiplied) {
   const Vec4 c = straight_from_premultiplied(premultiplied);
   return {srgb_from_linear(c.x) * c.w, srgb_from_linear(c.y) * c.w, srgb_from_linear(c.z) * c.w,
           c.w};
 }
 
 /// The same to 8 bits, without the way through premultiplied ones.
-inline Rgba8 linear_to_straight_rgba8(Vec4 premultiplied) {
+RASTRUM_HD inline Rgba8 linear_to_straight_rgba8(Vec4 premultiplied) {
   const Vec4 c = straight_from_premultiplied(premultiplied);
   return {quantize(srgb_from_linear(c.x)), quantize(srgb_from_linear(c.y)),
           quantize(srgb_from_linear(c.z)), quantize(c.w)};
@@ -60,6 +68,20 @@ struct Backdrop {
   bool linear = false;  ///< they are
   Rgba8 empty{};        ///< of pixels that nothing covers
 
+  /// What a display value, straight alpha, is for colours that are no linear light.
+  [[nodiscard]] RASTRUM_HD static Backdrop of(Vec4 straight) {
+    const Vec4 color = premultiplied_from_straight(straight);
+    return {color, false, to_straight_rgba8(color)};
+  }
+  /// A covered pixel as it is written.
+  [[nodiscard]] RASTRUM_HD Vec4 color_over(Vec4 front) const {
+    const Vec4 c = over(front);
+    return linear ? display_from_linear(c) : c;
+  }
+  [[nodiscard]] RASTRUM_HD Rgba8 color8_over(Vec4 front) const {
+    const Vec4 c = over(front);
+    return linear ? linear_to_straight_rgba8(c) : to_straight_rgba8(c);
+  }
   /// A covered pixel, premultiplied.
   [[nodiscard]] RASTRUM_HD Vec4 over(Vec4 front) const { return front + color * (1 - front.w); }
 };

@@ -21,28 +21,21 @@ struct Window {
 
 /// Three powers, where what lies behind is in linear light. `b`: straight, display values.
 Backdrop backdrop_of(Vec4 b, bool linear_light) {
-  const Rgba8 empty = to_straight_rgba8({b.x * b.w, b.y * b.w, b.z * b.w, b.w});
-  if (linear_light && b.w != 0)
+  Backdrop backdrop = Backdrop::of(b);
+  if (!linear_light) return backdrop;
+  if (b.w != 0)
     for (float* const channel : {&b.x, &b.y, &b.z})
       *channel = static_cast<float>(linear_from_srgb(static_cast<double>(*channel)));
-  return {{b.x * b.w, b.y * b.w, b.z * b.w, b.w}, linear_light, empty};
+  backdrop.color = premultiplied_from_straight(b);
+  backdrop.linear = true;
+  return backdrop;
 }
 
 Vec4 straight(Vec4 premultiplied) {
   return straight_from_premultiplied(premultiplied);
 }
 Vec4 straight(Rgba8 c) {
-  const auto unit = [](std::uint8_t v) { return static_cast<float>(v) / 255.0F; };
-  return {unit(c.r), unit(c.g), unit(c.b), unit(c.a)};
-}
-
-Vec4 color_over(Vec4 front, const Backdrop& behind) {
-  const Vec4 color = behind.over(front);
-  return behind.linear ? display_from_linear(color) : color;
-}
-Rgba8 color8_over(Vec4 front, const Backdrop& behind) {
-  const Vec4 color = behind.over(front);
-  return behind.linear ? linear_to_straight_rgba8(color) : to_straight_rgba8(color);
+  return straight_from_rgba8(c);
 }
 
 /// Every case: float targets, pictures that are drawn over, blocks cut by the image's edge, passes
@@ -50,8 +43,7 @@ Rgba8 color8_over(Vec4 front, const Backdrop& behind) {
 void store_colors(const FrameRequest& request, const BlockColors& colors, std::uint64_t covered,
                   std::uint64_t touched, const Backdrop& backdrop, const Window& w,
                   bool wants_8_bit) {
-  const Vec4 b = request.background;
-  const Vec4 background{b.x * b.w, b.y * b.w, b.z * b.w, b.w};
+  const Vec4 background = premultiplied_from_straight(request.background);
   const bool over = request.targets.over;
   const auto behind = [&](const auto& target, int x, int y) {
     return over && !target.empty() ? backdrop_of(straight(target(x, y)), request.linear_light)
@@ -64,8 +56,8 @@ void store_colors(const FrameRequest& request, const BlockColors& colors, std::u
     Rgba8 color8 = backdrop.empty;
     if ((covered >> i & 1) != 0) {
       const Vec4 front{colors.r[i], colors.g[i], colors.b[i], colors.a[i]};
-      color = color_over(front, behind(request.targets.color, x, y));
-      if (wants_8_bit) color8 = color8_over(front, behind(request.targets.color8, x, y));
+      color = behind(request.targets.color, x, y).color_over(front);
+      if (wants_8_bit) color8 = behind(request.targets.color8, x, y).color8_over(front);
     }
     if (wants_8_bit) request.targets.color8(x, y) = color8;
     if (!request.targets.color.empty()) request.targets.color(x, y) = color;
@@ -217,8 +209,7 @@ void load_words(const Targets& targets, Rect rect, const SurfaceView& surface) n
 void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
   const Targets& targets = request.targets;
   if (targets.load || targets.over) return;
-  const Vec4 b = request.background;
-  const Vec4 background{b.x * b.w, b.y * b.w, b.z * b.w, b.w};
+  const Vec4 background = premultiplied_from_straight(request.background);
   const Rgba8 background8 = to_straight_rgba8(background);
   const auto fill = [&](const auto& target, int y, auto value) {
     if (!target.empty()) std::fill_n(target.row(y) + rect.x0, rect.x1 - rect.x0, value);

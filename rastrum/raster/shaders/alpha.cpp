@@ -14,7 +14,7 @@ class AlphaTest final : public FragmentTest {
 
   std::uint64_t test(const FrameGeometry& frame, const Piece& piece, const Block& block,
                      const ShadingPoints* points) const noexcept override {
-    return kernels_.alpha_test(scene_, frame, id_of_word(piece.low), block.mask,
+    return kernels_.alpha_test(scene_.view(), frame, id_of_word(piece.low), block.mask,
                                block.bx * kBlockSize, block.by * kBlockSize, points);
   }
 
@@ -34,7 +34,7 @@ class AlphaShader final : public BlockShader {
     alignas(64) float alpha[64];
     AlphaMasks masks;
     if (blending_ != nullptr) {
-      masks = kernel.alpha(*blending_, frame, block, opacity_, alpha);
+      masks = kernel.alpha(blending_->view(), frame, block, opacity_, alpha);
     } else {
       std::fill_n(alpha, 64, opacity_);
       if (opacity_ > 0) masks.visible = block.covered;

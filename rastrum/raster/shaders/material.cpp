@@ -38,11 +38,12 @@ class MaterialShader final : public BlockShader {
 
   bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
              BlockColors& colors) const noexcept override {
-    material_kernels(isa).shade(scene_, frame, block, linear_, colors);
+    material_kernels(isa).shade(scene_.view(), frame, block, linear_, colors);
     return true;
   }
 
   [[nodiscard]] std::optional<float> alpha() const noexcept override { return 1.0F; }
+  [[nodiscard]] MaterialForm form() const { return {&scene_, linear_}; }
 
  private:
   const MaterialScene& scene_;
@@ -70,7 +71,9 @@ MaterialScene::MaterialScene(const SceneView& scene, const Camera& camera, int w
       }
   }
   const auto bind = [&](const Material& m) {
-    materials.push_back({&m, textures.find(m.base_color_texture, TexelUse::color),
+    materials.push_back({m.base_color, m.metallic, m.roughness, m.normal_scale,
+                         m.occlusion_strength, m.emissive, m.alpha_mode, m.alpha_cutoff, m.unlit,
+                         textures.find(m.base_color_texture, TexelUse::color),
                          textures.find(m.metallic_roughness_texture, TexelUse::data),
                          textures.find(m.normal_texture, TexelUse::data),
                          textures.find(m.occlusion_texture, TexelUse::data),
@@ -124,6 +127,11 @@ std::vector<std::uint8_t> texture_uses(const SceneView& scene, bool shading, boo
 
 std::unique_ptr<BlockShader> make_material_shader(const MaterialScene& scene, bool linear) {
   return std::make_unique<MaterialShader>(scene, linear);
+}
+
+std::optional<MaterialForm> material_form(const BlockShader& shader) {
+  const auto* const material = dynamic_cast<const MaterialShader*>(&shader);
+  return material != nullptr ? std::optional(material->form()) : std::nullopt;
 }
 
 }  // namespace rastrum::raster

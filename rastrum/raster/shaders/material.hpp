@@ -23,7 +23,9 @@
 // is alpha.hpp's business.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,9 +37,15 @@
 
 namespace rastrum::raster {
 
-/// A material and the textures it reads; null where it reads none.
+/// A material as shaders read it: its numbers, and its textures, null where it has none.
 struct BoundMaterial {
-  const Material* material = nullptr;
+  Vec4 base;
+  float metallic = 1, roughness = 1;
+  float normal_scale = 1, occlusion_strength = 1;
+  Vec3 emission;
+  AlphaMode alpha_mode = AlphaMode::opaque;
+  float alpha_cutoff = 0.5F;
+  bool unlit = false;
   const MipChain* base_color = nullptr;
   const MipChain* metallic_roughness = nullptr;
   const MipChain* normal = nullptr;
@@ -52,6 +60,19 @@ struct MaterialDraw {
   float to_world[3][3];       ///< object to world, directions
 };
 
+/// What shaders read of a scene's materials, of the host's memory or a device's.
+struct MaterialView {
+  std::span<const BoundMaterial> materials;
+  std::span<const MaterialDraw> draws;
+  ViewRays rays;
+
+  [[nodiscard]] RASTRUM_HD const BoundMaterial& material_of(const MaterialDraw& draw,
+                                                            std::uint64_t triangle) const {
+    const auto& of_face = draw.mesh.face_materials;
+    return materials[of_face.empty() ? draw.mesh.material : of_face[triangle]];
+  }
+};
+
 /// What the material shader and alpha read of a scene.
 struct MaterialScene {
   std::vector<BoundMaterial> materials;  ///< at least one
@@ -62,11 +83,7 @@ struct MaterialScene {
   MaterialScene(const SceneView& scene, const Camera& camera, int width, int height,
                 const TextureSet& textures);
 
-  [[nodiscard]] const BoundMaterial& material_of(const MaterialDraw& draw,
-                                                 std::uint64_t triangle) const {
-    const auto& of_face = draw.mesh.face_materials;
-    return materials[of_face.empty() ? draw.mesh.material : of_face[triangle]];
-  }
+  [[nodiscard]] MaterialView view() const { return {materials, draws, rays}; }
 };
 
 /// Throws Error{invalid_argument} naming the material or instance whose index into textures or
@@ -82,5 +99,12 @@ void check_materials(const SceneView& scene);
 /// shader.
 [[nodiscard]] std::unique_ptr<BlockShader> make_material_shader(const MaterialScene& scene,
                                                                 bool linear);
+
+/// What make_material_shader was given; none for another shader.
+struct MaterialForm {
+  const MaterialScene* scene;
+  bool linear;
+};
+[[nodiscard]] std::optional<MaterialForm> material_form(const BlockShader& shader);
 
 }  // namespace rastrum::raster

@@ -1,5 +1,5 @@
-// The lane-parallel part of materials (material_simd.cpp), once for each instruction set. It is
-// plain C++ that compilers vectorize; operations and their order are the same everywhere, so the
+// Materials over blocks: in lanes, once for each instruction set (material_simd.cpp), and fragment
+// by fragment (material_scalar.cpp). Operations and their order are the same everywhere, so the
 // bits are too.
 #pragma once
 
@@ -16,20 +16,23 @@ struct AlphaMasks {
 
 struct MaterialKernels {
   /// Colours of the covered samples, all opaque, as display values or as linear light.
-  void (*shade)(const MaterialScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
+  void (*shade)(const MaterialView& scene, const FrameGeometry& frame, const VisibleBlock& block,
                 bool linear, BlockColors& colors) noexcept;
   /// The subset of `mask` (bit 8 · row + column of the block at (x0, y0)) where triangle `id` is
   /// not cut out. `points` as in VisibleBlock.
-  std::uint64_t (*alpha_test)(const MaterialScene& scene, const FrameGeometry& frame,
+  std::uint64_t (*alpha_test)(const MaterialView& scene, const FrameGeometry& frame,
                               std::uint64_t id, std::uint64_t mask, int x0, int y0,
                               const ShadingPoints* points) noexcept;
   /// The alpha of the covered samples (alpha.hpp), 0 elsewhere: 64 floats, 64-byte aligned.
-  AlphaMasks (*alpha)(const MaterialScene& scene, const FrameGeometry& frame,
+  AlphaMasks (*alpha)(const MaterialView& scene, const FrameGeometry& frame,
                       const VisibleBlock& block, float opacity, float* out) noexcept;
   /// Multiplies all 64 colours and their alpha; where `alpha` is 0 they become 0, whatever they
   /// were.
   void (*premultiply)(const float* alpha, BlockColors& colors) noexcept;
 };
+
+/// Those of Isa::scalar: material_scalar.hpp, fragment by fragment.
+[[nodiscard]] const MaterialKernels& scalar_material_kernels() noexcept;
 
 [[nodiscard]] const MaterialKernels& material_kernels(Isa isa) noexcept;
 

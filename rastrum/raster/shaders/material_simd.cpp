@@ -15,6 +15,7 @@
 #include <rastrum/raster/interpolate.hpp>
 #include <rastrum/raster/shaders/material_constants.hpp>
 #include <rastrum/raster/shaders/material_kernels.hpp>
+#include <rastrum/raster/shaders/material_triangle.hpp>
 #include <rastrum/raster/shaders/srgb_lanes-inl.hpp>
 #include <rastrum/raster/shaders/texture_lanes-inl.hpp>
 
@@ -23,40 +24,16 @@ namespace rastrum::raster {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A triangle that is being shaded.
-struct Triangle {
-  const MaterialDraw& draw;
-  std::uint64_t index;  ///< within its draw
-  std::uint32_t vertex[3];
-  WeightPlanes planes;
-
-  Triangle(const MaterialScene& scene, const FrameGeometry& frame, const Draw& d, std::uint64_t id)
-      : draw(scene.draws[static_cast<std::size_t>(&d - frame.draws.data())]),
-        index(id - d.first_id),
-        vertex{d.vertex(index, 0), d.vertex(index, 1), d.vertex(index, 2)},
-        planes(weight_planes(frame, d, index)) {}
-
-  template <class T>
-  [[nodiscard]] T corner(const AttributeView<T>& attribute, int c) const {
-    return attribute.values[attribute.indices.empty()
-                                ? vertex[c]
-                                : attribute.indices[index * 3 + static_cast<std::size_t>(c)]];
-  }
-};
-
 /// Fragments of one triangle in a block, densely; the last is repeated up to a whole group.
 struct alignas(64) Run {
   int n = 0, padded = 0;
   int lane[64];                    ///< 8 · row + column
   double scale[64];                ///< 1 / Σ weights
   float weight1[64], weight2[64];  ///< normalized
-  Vec2 first_px;                   ///< where the first fragment is
+  float x[64], y[64];              ///< where they are, px
 
   Run(std::uint64_t mask, const WeightPlanes& w, int x0, int y0, const ShadingPoints* points) {
     for (; mask != 0; mask &= mask - 1) lane[n++] = std::countr_zero(mask);
-    first_px = {static_cast<float>(x0 + lane[0] % kBlockSize) + 0.5F,
-                static_cast<float>(y0 + lane[0] / kBlockSize) + 0.5F};
-    if (points != nullptr) first_px = first_px + Vec2{points->dx[lane[0]], points->dy[lane[0]]};
     for (padded = n; padded % kGroup != 0; ++padded) lane[padded] = lane[n - 1];
     for (int k = 0; k < padded; k += kGroup)
       for (int j = k; j < k + kGroup; ++j) {
@@ -65,6 +42,12 @@ struct alignas(64) Run {
         if (points != nullptr) {
           dx += static_cast<double>(points->dx[lane[j]]);
           dy += static_cast<double>(points->dy[lane[j]]);
+        }
+        x[j] = static_cast<float>(x0 + lane[j] % kBlockSize) + 0.5F;
+        y[j] = static_cast<float>(y0 + lane[j] / kBlockSize) + 0.5F;
+        if (points != nullptr) {
+          x[j] += points->dx[lane[j]];
+          y[j] += points->dy[lane[j]];
         }
         const double b0 = w.r[0] + w.p[0] * dx + w.q[0] * dy;
         const double b1 = w.r[1] + w.p[1] * dx + w.q[1] * dy;
@@ -84,7 +67,7 @@ HWY_INLINE void interpolate(const Run& run, float a0, float a1, float a2, float*
     for (int j = k; j < k + kGroup; ++j) out[j] = a0 + (run.weight1[j] * d1 + run.weight2[j] * d2);
 }
 
-HWY_INLINE void interpolate_texcoords(const Triangle& t, const Run& run, Coordinates& out) {
+HWY_INLINE void interpolate_texcoords(const MaterialTriangle& t, const Run& run, Coordinates& out) {
   if (t.draw.mesh.texcoords.empty()) {
     std::memset(&out, 0, sizeof(out));
     return;
@@ -140,54 +123,27 @@ HWY_INLINE void multiply(const Run& run, const float* HWY_RESTRICT factor,
     for (int j = k; j < k + kGroup; ++j) out[j] *= factor[j];
 }
 
-HWY_INLINE Vec3 times(const float (&m)[3][3], Vec3 v) {
-  return {m[0][0] * v.x + m[0][1] * v.y + m[0][2] * v.z,
-          m[1][0] * v.x + m[1][1] * v.y + m[1][2] * v.z,
-          m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z};
-}
-
-/// The directions in which a texture's picture goes right and up, in the world; (0, 0, 0) where the
-/// coordinates span nothing.
-struct TangentFrame {
-  Vec3 right{}, up{};
-
-  explicit TangentFrame(const Triangle& t) {
-    const MeshView& mesh = t.draw.mesh;
-    if (mesh.texcoords.empty()) return;
-    const Vec3 p = mesh.positions[t.vertex[0]];
-    const Vec3 e1 = times(t.draw.to_world, mesh.positions[t.vertex[1]] - p);
-    const Vec3 e2 = times(t.draw.to_world, mesh.positions[t.vertex[2]] - p);
-    const Vec2 a = t.corner(mesh.texcoords, 0);
-    const Vec2 d1 = t.corner(mesh.texcoords, 1) - a, d2 = t.corner(mesh.texcoords, 2) - a;
-    const float sign = d1.x * d2.y - d2.x * d1.y < 0 ? -1.0F : 1.0F;
-    right = normalize((e1 * d2.y - e2 * d1.y) * sign);
-    up = normalize((e1 * d2.x - e2 * d1.x) * sign);  // −∂P/∂v
-  }
-};
-
-HWY_INLINE Vec3 view_direction(const ViewRays& rays, Vec2 px) {
-  return normalize(-(rays.d + rays.dx * px.x + rays.dy * px.y));
-}
-
 /// Interpolated (or flat) normals, bent by the normal map, turned to the side that is seen.
-HWY_INLINE void fill_normals(const MaterialScene& scene, const Triangle& t,
+HWY_INLINE void fill_normals(const MaterialView& scene, const MaterialTriangle& t,
                              const BoundMaterial& material, const Run& run, const Coordinates& at,
                              Surface& out) {
   const MeshView& mesh = t.draw.mesh;
   float* HWY_RESTRICT nx = out.channel[Surface::kNormalX];
   float* HWY_RESTRICT ny = out.channel[Surface::kNormalY];
   float* HWY_RESTRICT nz = out.channel[Surface::kNormalZ];
-  const Vec3 p = mesh.positions[t.vertex[0]];
-  Vec3 face = normalize(times(t.draw.normal_matrix, cross(mesh.positions[t.vertex[1]] - p,
-                                                          mesh.positions[t.vertex[2]] - p)));
-  // A triangle turns one side to the eye, so any of its fragments can tell which.
-  const bool back = dot(face, view_direction(scene.rays, run.first_px)) < 0;
-  if (back) face = -face;
+  const Vec3 face = t.face_normal();
+  const ViewRays rays = scene.rays;
+  alignas(64) float side[64];
+  for (int k = 0; k < run.padded; k += kGroup)
+    for (int j = k; j < k + kGroup; ++j)
+      side[j] = is_seen_from_behind(rays, face, run.x[j], run.y[j]) ? -1.0F : 1.0F;
   if (mesh.normals.empty()) {
-    fill(run, face.x, nx);
-    fill(run, face.y, ny);
-    fill(run, face.z, nz);
-    if (material.normal == nullptr) return;
+    for (int k = 0; k < run.padded; k += kGroup)
+      for (int j = k; j < k + kGroup; ++j) {
+        nx[j] = face.x * side[j];
+        ny[j] = face.y * side[j];
+        nz[j] = face.z * side[j];
+      }
   } else {
     Vec3 n[3];
     for (int c = 0; c < 3; ++c) n[c] = times(t.draw.normal_matrix, t.corner(mesh.normals, c));
@@ -196,16 +152,10 @@ HWY_INLINE void fill_normals(const MaterialScene& scene, const Triangle& t,
     interpolate(run, n[0].z, n[1].z, n[2].z, nz);
     for (int k = 0; k < run.padded; k += kGroup)
       for (int j = k; j < k + kGroup; ++j) {
-        const float square = nx[j] * nx[j] + ny[j] * ny[j] + nz[j] * nz[j];
-        const float scale = 1 / std::sqrt(square);
-        const bool has = square > 0;
-        const float x = has ? nx[j] * scale : face.x;
-        const float y = has ? ny[j] * scale : face.y;
-        const float z = has ? nz[j] * scale : face.z;
-        const float side = x * face.x + y * face.y + z * face.z < 0 ? -1.0F : 1.0F;
-        nx[j] = x * side;
-        ny[j] = y * side;
-        nz[j] = z * side;
+        const Vec3 smooth = turned({nx[j], ny[j], nz[j]}, face, side[j]);
+        nx[j] = smooth.x;
+        ny[j] = smooth.y;
+        nz[j] = smooth.z;
       }
   }
   if (material.normal == nullptr) return;
@@ -213,30 +163,21 @@ HWY_INLINE void fill_normals(const MaterialScene& scene, const Triangle& t,
   const TangentFrame frame(t);
   Texels map;
   sample(*material.normal, at, run.n, run.padded, map);
-  // What is a bump on the front is a dent on the back: the tangents turn with the normal.
-  const float strength = back ? -material.material->normal_scale : material.material->normal_scale;
   for (int k = 0; k < run.padded; k += kGroup)
     for (int j = k; j < k + kGroup; ++j) {
-      const float x = (map.r[j] * 2 - 1) * strength;
-      const float y = (map.g[j] * 2 - 1) * strength;
-      const float z = map.b[j] * 2 - 1;
-      const Vec3 n{nx[j], ny[j], nz[j]};
-      const Vec3 right = frame.right - n * dot(n, frame.right);
-      const Vec3 up = frame.up - n * dot(n, frame.up);
-      const Vec3 bent = n * z + normalize(right) * x + normalize(up) * y;
-      const float square = dot(bent, bent);
-      const float scale = 1 / std::sqrt(square);
-      nx[j] = square > 0 ? bent.x * scale : n.x;
-      ny[j] = square > 0 ? bent.y * scale : n.y;
-      nz[j] = square > 0 ? bent.z * scale : n.z;
+      // What is a bump on the front is a dent on the back: the tangents turn with the normal.
+      const Vec3 bent = frame.bend({nx[j], ny[j], nz[j]}, map.r[j], map.g[j], map.b[j],
+                                   material.normal_scale * side[j]);
+      nx[j] = bent.x;
+      ny[j] = bent.y;
+      nz[j] = bent.z;
     }
 }
 
 /// One triangle's part of the surface, densely.
-HWY_INLINE void fill_surface(const MaterialScene& scene, const Triangle& t, const Run& run,
+HWY_INLINE void fill_surface(const MaterialView& scene, const MaterialTriangle& t, const Run& run,
                              Surface& out) {
-  const BoundMaterial& material = scene.material_of(t.draw, t.index);
-  const Material& m = *material.material;
+  const BoundMaterial& m = scene.material_of(t.draw, t.index);
   const MeshView& mesh = t.draw.mesh;
   float* const r = out.channel[Surface::kBaseR];
   float* const g = out.channel[Surface::kBaseG];
@@ -249,27 +190,26 @@ HWY_INLINE void fill_surface(const MaterialScene& scene, const Triangle& t, cons
   float* const emissive_b = out.channel[Surface::kEmissiveB];
 
   Coordinates at;
-  const bool textured = material.base_color != nullptr || material.metallic_roughness != nullptr ||
-                        material.normal != nullptr || material.occlusion != nullptr ||
-                        material.emissive != nullptr;
+  const bool textured = m.base_color != nullptr || m.metallic_roughness != nullptr ||
+                        m.normal != nullptr || m.occlusion != nullptr || m.emissive != nullptr;
   if (textured) interpolate_texcoords(t, run, at);
   Texels texels;
   const auto look_up = [&](const MipChain& chain)
                            HWY_ATTR { sample(chain, at, run.n, run.padded, texels); };
 
   if (mesh.colors.empty()) {
-    fill(run, m.base_color.x, r);
-    fill(run, m.base_color.y, g);
-    fill(run, m.base_color.z, b);
+    fill(run, m.base.x, r);
+    fill(run, m.base.y, g);
+    fill(run, m.base.z, b);
   } else {
     Vec4 c[3];
-    for (int i = 0; i < 3; ++i) c[i] = t.corner(mesh.colors, i) * m.base_color;
+    for (int i = 0; i < 3; ++i) c[i] = t.corner(mesh.colors, i) * m.base;
     interpolate(run, c[0].x, c[1].x, c[2].x, r);
     interpolate(run, c[0].y, c[1].y, c[2].y, g);
     interpolate(run, c[0].z, c[1].z, c[2].z, b);
   }
-  if (material.base_color != nullptr) {
-    look_up(*material.base_color);
+  if (m.base_color != nullptr) {
+    look_up(*m.base_color);
     multiply(run, texels.r, r);
     multiply(run, texels.g, g);
     multiply(run, texels.b, b);
@@ -278,27 +218,27 @@ HWY_INLINE void fill_surface(const MaterialScene& scene, const Triangle& t, cons
 
   fill(run, m.metallic, metallic);
   fill(run, m.roughness, roughness);
-  if (material.metallic_roughness != nullptr) {
-    look_up(*material.metallic_roughness);
+  if (m.metallic_roughness != nullptr) {
+    look_up(*m.metallic_roughness);
     multiply(run, texels.g, roughness);
     multiply(run, texels.b, metallic);
   }
   fill(run, 1, occlusion);
-  if (material.occlusion != nullptr) {
-    look_up(*material.occlusion);
+  if (m.occlusion != nullptr) {
+    look_up(*m.occlusion);
     for (int k = 0; k < run.padded; ++k)
       occlusion[k] = 1 + m.occlusion_strength * (texels.r[k] - 1);
   }
-  fill(run, m.emissive.x, emissive_r);
-  fill(run, m.emissive.y, emissive_g);
-  fill(run, m.emissive.z, emissive_b);
-  if (material.emissive != nullptr) {
-    look_up(*material.emissive);
+  fill(run, m.emission.x, emissive_r);
+  fill(run, m.emission.y, emissive_g);
+  fill(run, m.emission.z, emissive_b);
+  if (m.emissive != nullptr) {
+    look_up(*m.emissive);
     multiply(run, texels.r, emissive_r);
     multiply(run, texels.g, emissive_g);
     multiply(run, texels.b, emissive_b);
   }
-  fill_normals(scene, t, material, run, at, out);
+  fill_normals(scene, t, m, run, at, out);
 }
 
 using Floats = hn::ScalableTag<float>;
@@ -456,7 +396,7 @@ HWY_INLINE std::uint64_t samples_of(std::uint64_t low, const std::uint64_t* word
   return mask;
 }
 
-void shade(const MaterialScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
+void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleBlock& block,
            bool linear, BlockColors& colors) noexcept {
   const std::uint64_t* const words = block.words;
   const int x0 = block.x0, y0 = block.y0;
@@ -470,7 +410,7 @@ void shade(const MaterialScene& scene, const FrameGeometry& frame, const Visible
     left &= ~mask;
     const std::uint64_t id = id_of_word(low);
     if (draw == nullptr || id - draw->first_id >= draw->primitive_count) draw = &frame.draw_of(id);
-    const Triangle triangle(scene, frame, *draw, id);
+    const MaterialTriangle triangle(scene, frame, *draw, id);
     const Run run(mask, triangle.planes, x0, y0, block.points);
     if (run.n == 64) {
       fill_surface(scene, triangle, run, surface);
@@ -484,15 +424,10 @@ void shade(const MaterialScene& scene, const FrameGeometry& frame, const Visible
   light(scene.rays, surface, x0, y0, block.points, linear, colors);
 }
 
-/// Whether all fragments of a triangle have the alpha of its material.
-bool is_constant(const MaterialDraw& draw, const BoundMaterial& material) {
-  return draw.mesh.colors.empty() && material.base_color == nullptr && material.alpha == nullptr;
-}
-
 /// A fragment's own alpha: what a mask tests and what blends.
-HWY_INLINE void own_alpha(const Triangle& t, const BoundMaterial& material, const Run& run,
+HWY_INLINE void own_alpha(const MaterialTriangle& t, const BoundMaterial& material, const Run& run,
                           float* HWY_RESTRICT alpha) {
-  const float base = material.material->base_color.w;
+  const float base = material.base.w;
   if (t.draw.mesh.colors.empty())
     fill(run, base, alpha);
   else
@@ -509,28 +444,22 @@ HWY_INLINE void own_alpha(const Triangle& t, const BoundMaterial& material, cons
     sample<RedChannel>(*material.alpha, at, run.n, run.padded, multiply_alpha);
 }
 
-std::uint64_t alpha_test(const MaterialScene& scene, const FrameGeometry& frame, std::uint64_t id,
+std::uint64_t alpha_test(const MaterialView& scene, const FrameGeometry& frame, std::uint64_t id,
                          std::uint64_t mask, int x0, int y0, const ShadingPoints* points) noexcept {
   const Draw& draw = frame.draw_of(id);
   const MaterialDraw& of = scene.draws[static_cast<std::size_t>(&draw - frame.draws.data())];
   const BoundMaterial& material = scene.material_of(of, id - draw.first_id);
-  const Material& m = *material.material;
-  if (mask == 0 || m.alpha_mode != AlphaMode::mask) return mask;
-  const Triangle t(scene, frame, draw, id);
+  if (mask == 0 || material.alpha_mode != AlphaMode::mask) return mask;
+  const MaterialTriangle t(scene, frame, draw, id);
   const Run run(mask, t.planes, x0, y0, points);
   alignas(64) float alpha[64];
   own_alpha(t, material, run, alpha);
   for (int k = 0; k < run.n; ++k)
-    if (alpha[k] < m.alpha_cutoff) mask &= ~(std::uint64_t{1} << run.lane[k]);
+    if (alpha[k] < material.alpha_cutoff) mask &= ~(std::uint64_t{1} << run.lane[k]);
   return mask;
 }
 
-/// In [0, 1]; NaN becomes 0.
-float clamped(float a) {
-  return a > 0 ? (a < 1 ? a : 1.0F) : 0.0F;
-}
-
-AlphaMasks alpha(const MaterialScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
+AlphaMasks alpha(const MaterialView& scene, const FrameGeometry& frame, const VisibleBlock& block,
                  float opacity, float* out) noexcept {
   AlphaMasks masks;
   const auto set = [&](int i, float a) {
@@ -548,17 +477,17 @@ AlphaMasks alpha(const MaterialScene& scene, const FrameGeometry& frame, const V
     if (draw == nullptr || id - draw->first_id >= draw->primitive_count) draw = &frame.draw_of(id);
     const MaterialDraw& of = scene.draws[static_cast<std::size_t>(draw - frame.draws.data())];
     const BoundMaterial& material = scene.material_of(of, id - draw->first_id);
-    const bool blends = material.material->alpha_mode == AlphaMode::blend;
-    if (!blends || is_constant(of, material)) {
-      const float a = clamped(blends ? opacity * material.material->base_color.w : opacity);
+    const bool blends = material.alpha_mode == AlphaMode::blend;
+    if (!blends || has_constant_alpha(of, material)) {
+      const float a = clamped_alpha(blends ? opacity * material.base.w : opacity);
       for (std::uint64_t m = mask; m != 0; m &= m - 1) set(std::countr_zero(m), a);
       continue;
     }
-    const Triangle t(scene, frame, *draw, id);
+    const MaterialTriangle t(scene, frame, *draw, id);
     const Run run(mask, t.planes, block.x0, block.y0, block.points);
     alignas(64) float own[64];
     own_alpha(t, material, run, own);
-    for (int k = 0; k < run.n; ++k) set(run.lane[k], clamped(opacity * own[k]));
+    for (int k = 0; k < run.n; ++k) set(run.lane[k], clamped_alpha(opacity * own[k]));
   }
   return masks;
 }
@@ -583,6 +512,8 @@ namespace rastrum::raster {
 
 const MaterialKernels& material_kernels(Isa isa) noexcept {
   switch (isa) {
+    case Isa::scalar:
+      return scalar_material_kernels();
 #if HWY_TARGETS & HWY_SSE4
     case Isa::sse4:
       return N_SSE4::kTable;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include <rastrum/core/config.hpp>
+
 namespace rastrum::raster {
 
 /// Display value to linear light, both in [0, 1].
@@ -26,7 +28,7 @@ inline constexpr float kSrgbRoot2 = 0.65398306F, kSrgbRoot4 = 0.68871534F, kSrgb
                        kSrgbLinear = 0.020187189F, kSrgbConstant = 0.0040672144F;
 
 /// Linear light to display value, both in [0, 1]; what lies outside is clamped, NaN becomes 0.
-inline float srgb_from_linear(float linear) {
+RASTRUM_HD inline float srgb_from_linear(float linear) {
   const float x = linear > 0 ? (linear < 1 ? linear : 1.0F) : 0.0F;
   const float s2 = std::sqrt(x);
   const float s4 = std::sqrt(s2);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
@@ -102,6 +103,8 @@ struct TextureSet::Chain {
   MipChain chain;
 
   void build(const Texture& texture, TexelUse use, parallel::Threads* exec) {
+    static std::atomic<std::uint64_t> number = 0;
+    chain.number = ++number;
     const Image<Rgba8>& image = texture.image;
     const DecodeTables& tables = decode_tables();
     chain.decode = (use == TexelUse::color ? tables.srgb : tables.unorm).data();

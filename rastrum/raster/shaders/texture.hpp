@@ -35,6 +35,7 @@ struct MipChain {
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   Filter mag = Filter::linear, min = Filter::linear;
   int levels = 0;
+  std::uint64_t number = 0;  ///< of the picture: that of no other chain, whatever lies where
   MipLevel level[kMaxLevels];
 };
 
