@@ -19,6 +19,9 @@ class OverPicture final : public FragmentTest {
 
   /// The draws, all of them tested.
   [[nodiscard]] std::span<Draw> draws() { return draws_; }
+  /// What it was given.
+  [[nodiscard]] std::span<const Draw> given() const { return given_; }
+  [[nodiscard]] const FragmentTest* inner() const { return inner_; }
 
   [[nodiscard]] std::uint64_t test(const FrameGeometry& frame, const Piece& piece,
                                    const Block& block,

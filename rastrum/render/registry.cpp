@@ -122,10 +122,7 @@ constexpr std::string_view kBySize = "by-size";
 /// Why the device leaves a frame to the CPU; empty where it draws it.
 std::string why_not_on_cuda(const raster::CudaRasterizer& device,
                             const raster::FrameRequest& request) {
-  if (request.test != nullptr && std::ranges::any_of(request.draws, [](const raster::Draw& d) {
-        return (d.any_flags() & raster::kTested) != 0;
-      }))
-    return "fragment tests (alpha masks, discard, drawing over a picture) have no CUDA code yet";
+  if (std::string why = device.why_no_test(request); !why.empty()) return why;
   return needs_layers(request) ? device.why_no_layers(request) : std::string();
 }
 

@@ -87,7 +87,7 @@ TEST_P(CudaFamily, EqualsSerial) {
     ASSERT_TRUE(same_frame(frame, expected)) << "scene " << seed << " (" << g.kind << ")";
     ASSERT_TRUE(counts_add_up(frame));
     ASSERT_EQ(frame.stats.device, Device::cuda);
-    const bool by_host = v.shader == Shader::material || v.shader == Shader::wireframe;
+    const bool by_host = v.shader == Shader::wireframe;
     ASSERT_NE(frame.stats.why.find(by_host ? "shaded by the host" : "shaded on the device"),
               std::string::npos)
         << frame.stats.why;
@@ -431,7 +431,8 @@ TEST_F(CudaRasterizer, PassesEqualOneDraw) {
     part.mesh.positions = whole.mesh.positions.subspan(first * 3, (last - first) * 3);
     targets.load = first != 0;
     targets.first_id = first;
-    cuda.render({{&part, 1}, {}, {}}, camera, targets);
+    const FrameStats stats = cuda.render({{&part, 1}, {}, {}}, camera, targets);
+    EXPECT_NE(stats.why.find("shaded on the device"), std::string::npos) << stats.why;
   }
   EXPECT_TRUE(same_surfaces(f, once));
   EXPECT_TRUE(same_picture(f, once, 0));

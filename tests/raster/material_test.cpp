@@ -24,18 +24,6 @@ namespace {
 
 constexpr int kSize = 64;
 
-/// Numbers from a seed, the same everywhere.
-class Numbers {
- public:
-  std::uint32_t operator()(std::uint32_t below) {
-    state_ = state_ * 6364136223846793005U + 1442695040888963407U;
-    return static_cast<std::uint32_t>((state_ >> 33) % below);
-  }
-
- private:
-  std::uint64_t state_ = 7;
-};
-
 int to_code(double linear) {
   return static_cast<int>(std::lround(display(linear) * 255));
 }
@@ -513,54 +501,6 @@ TEST(Material, IndicesOutOfRangeAreNamed) {
   EXPECT_NE(message(scene).find("material 3"), std::string::npos);
   scene.meshes[0].face_materials = {0};
   EXPECT_NE(message(scene).find("fewer face materials"), std::string::npos);
-}
-
-/// Everything at once, in perspective, cut by the near plane.
-Scene everything() {
-  Numbers numbers;
-  Scene scene;
-  const auto noise = [&](int size) {
-    return texture(size, size, [&](int, int) {
-      return Rgba8{static_cast<std::uint8_t>(numbers(256)), static_cast<std::uint8_t>(numbers(256)),
-                   static_cast<std::uint8_t>(128 + numbers(128)),
-                   static_cast<std::uint8_t>(numbers(256))};
-    });
-  };
-  for (const int size : {37, 64, 128}) scene.textures.push_back(noise(size));
-  scene.textures[1].wrap_u = Wrap::mirrored_repeat;
-  scene.textures[2].wrap_v = Wrap::clamp_to_edge;
-  for (int i = 0; i < 4; ++i) {
-    Material m;
-    m.base_color_texture = i % 3;
-    m.metallic_roughness_texture = (i + 1) % 3;
-    m.normal_texture = i == 1 ? kNoTexture : 2;
-    m.occlusion_texture = 1;
-    m.emissive = {0.1F, 0, 0.1F};
-    m.emissive_texture = 0;
-    m.unlit = i == 2;
-    if (i % 2 == 1) m.alpha_mode = AlphaMode::mask;
-    if (i == 3) m.alpha_texture = 1;
-    scene.materials.push_back(m);
-  }
-  const auto coordinate = [&](float range) {
-    return (static_cast<float>(numbers(2000)) / 1000 - 1) * range;
-  };
-  Mesh mesh;
-  for (std::uint32_t i = 0; i < 150; ++i) {
-    const Vec3 centre{coordinate(1), coordinate(1), coordinate(1.2F)};
-    const float size = i % 7 == 0 ? 2.0F : 0.3F;
-    for (std::uint32_t c = 0; c < 3; ++c) {
-      mesh.positions.push_back(centre + Vec3{coordinate(size), coordinate(size), coordinate(size)});
-      mesh.normals.values.push_back({coordinate(1), coordinate(1), coordinate(1)});
-      mesh.texcoords.values.push_back({coordinate(3), coordinate(3)});
-      mesh.colors.values.push_back({1, 0.5F + coordinate(0.5F), 1, 0.75F + coordinate(0.25F)});
-      mesh.indices.push_back(3 * i + c);
-    }
-    mesh.face_materials.push_back(i % 4);
-  }
-  scene.meshes.push_back(std::move(mesh));
-  scene.instances = {{0, Mat4d::identity()}};
-  return scene;
 }
 
 TEST(Material, TheSameBitsEverywhere) {

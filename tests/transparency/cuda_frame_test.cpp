@@ -117,7 +117,7 @@ TEST_F(CudaLayeredFrame, TheRestIsTheCPUs) {
     return frame.stats.device_why;
   };
   RenderOptions o = options(40, 40, Device::cuda);
-  o.shader = Shader::material;
+  o.shader = Shader::wireframe;
   EXPECT_NE(why(o).find("no form of this shader"), std::string::npos) << why(o);
   o.opacity = 1;
   o.samples = 4;

@@ -1,7 +1,7 @@
 // A frame of the façade on a device: the host's arrays over, bands of words drawn (rasterizer.cuh,
 // or family/family.cuh where a point of the table is asked for), and each band resolved, there
-// (resolve.cuh) or, where a target or the shader has no device form, by the host's resolve_block on
-// the words that come back.
+// (resolve.cuh) or, where a target or the shader has no device form (shading.cuh), by the host's
+// resolve_block on the words that come back.
 #pragma once
 
 #include <algorithm>
@@ -25,9 +25,10 @@
 #include <rastrum/raster/cuda/rasterizer.hpp>
 #include <rastrum/raster/cuda/resolve.cuh>
 #include <rastrum/raster/cuda/samples.cuh>
+#include <rastrum/raster/cuda/shading.cuh>
+#include <rastrum/raster/cuda/tested.cuh>
 #include <rastrum/raster/cuda/upload.cuh>
 #include <rastrum/raster/resolve.hpp>
-#include <rastrum/raster/shaders/alpha.hpp>
 #include <rastrum/raster/stopwatch.hpp>
 
 namespace rastrum::raster {
@@ -43,15 +44,23 @@ class DeviceRasterizer final : public CudaRasterizer {
       : memory_limit_(memory_limit),
         threads_(threads),
         exec_(&memory),
+        textures_(exec_),
         words_(memory),
         overdraw_(memory) {
     if (!coverage.empty()) family_ = family::point_of<Exec>(coverage, visibility);
   }
 
+  [[nodiscard]] std::string why_no_test(const FrameRequest& request) const override {
+    return !has_tests(request) || TestForm::of(*request.test)
+               ? std::string()
+               : "a caller's fragment test (discard) is code of the CPU";
+  }
   [[nodiscard]] std::string why_no_layers(const FrameRequest& request) const override {
     if (std::string why(Layers::why_not(request)); !why.empty()) return why;
     if (family_ && request.samples > 1)
       return "of the device's rasterizers by-size has several samples a pixel";
+    if (request.samples > 1 && uses_materials(request))
+      return "several samples a pixel of materials, masks and tests are the CPU's";
     if (!request.targets.overdraw.empty() && is_layered(request))
       return "overdraw of translucent surfaces is the CPU's";
     return can_resolve(request) ? std::string()
@@ -101,22 +110,25 @@ class DeviceRasterizer final : public CudaRasterizer {
     const std::vector<DeviceDraw> draws = upload(uploads, request, threads_, made);
     watch.lap(stats, "upload");
     const bool counts_overdraw = !request.targets.overdraw.empty();
-    const std::optional<Resolver> resolver = resolver_of(request, uploads);
-    if (request.in_place && !resolver)
+    const bool resolves = can_resolve(request);
+    const std::uint64_t textures_before = textures_.copies();
+    const DeviceShading<Exec> look(exec_, uploads, textures_, request);
+    if (request.in_place && !resolves)
       throw Error(Errc::unsupported,
                   "arrays in the device's memory (in_place): this shader needs them in the host's");
     const bool layered = is_layered(request);
     Layers layers;
     const SamplePattern samples = SamplePattern::of(request.samples);
     const auto planes = static_cast<std::uint64_t>(samples.count);
-    const bool shades_all = family_ && family_->visibility->shades && resolver && resolver->lit;
+    const bool shades_all =
+        family_ && family_->visibility->shades && resolves && wants_colors(request.targets);
     // Layers need a colour, and what is known of its block; so does each of several samples.
     const bool in_colors = layered || planes > 1;
     const std::uint64_t pixel_bytes =
         (planes - 1) * sizeof(std::uint64_t) + (in_colors ? planes * sizeof(Vec4) + 1 : 0) +
         (family_ ? family_->visibility->pixel_bytes : 0) +
-        (counts_overdraw ? sizeof(std::uint32_t) : 0) + (resolver ? sizeof(std::uint32_t) : 0) +
-        (resolver && !request.in_place ? DeviceTargets::bytes_of(request.targets) : 0);
+        (counts_overdraw ? sizeof(std::uint32_t) : 0) + (resolves ? sizeof(std::uint32_t) : 0) +
+        (resolves && !request.in_place ? DeviceTargets::bytes_of(request.targets) : 0);
     const DevicePlan plan = DevicePlan::of(limit(), request.width, request.height,
                                            totals.primitives, totals.vertices, pixel_bytes);
     const DeviceScene<Exec> scene(exec_, draws, request.width, request.height,
@@ -146,17 +158,22 @@ class DeviceRasterizer final : public CudaRasterizer {
                             blocks * 64,
                             samples};
       begin(request, view, words, overdraw);
+      Images images(exec_, request, view, resolves);
+      const TestOnDevice test = look.test(scene.geometry(), images.depth_behind(request), view.y0);
       auto colors = parallel::make_buffer<Vec4>(exec_, in_colors || shades_all ? words.size() : 0);
       family::Shading shading;
       if (shades_all)
-        shading = {shade_fragments(surface.words, resolver->shade(scene.geometry())),
-                   parallel::view_of(colors)};
+        look.with(scene.geometry(), test, [&](const auto& shade, const auto&) {
+          shading = {shade_fragments(surface.words, shade), parallel::view_of(colors)};
+        });
       const std::uint32_t skip = layered ? kTranslucent : 0;
-      const DeviceCounts band =
-          family_ ? draw_surface(exec_, scene, surface, plan, *family_, request.tuning, skip,
+      const std::uint32_t untested = skip | (look.has_test() ? kTested : 0);
+      DeviceCounts band =
+          family_ ? draw_surface(exec_, scene, surface, plan, *family_, request.tuning, untested,
                                  shading, own)
                   : draw_surface(exec_, scene, surface, plan,
-                                 DeviceSizes::of(request.tuning, samples.count), skip);
+                                 DeviceSizes::of(request.tuning, samples.count), untested);
+      if (look.has_test()) band.fragments += draw_tested(exec_, scene, surface, plan, skip, test);
       if (bands == 0) counts.sum = band.sum;
       counts.fragments += band.fragments;
       counts.larger_pieces += band.larger_pieces;
@@ -164,30 +181,38 @@ class DeviceRasterizer final : public CudaRasterizer {
       counts.batches += band.batches;
       watch.lap(stats, "rasterize");
       if (counts_overdraw) store_overdraw(request, view, overdraw);
-      if (resolver) {
-        const LitOnDevice shade = resolver->shade(scene.geometry());
-        if (planes > 1) {
-          const ShadedOnce<LitOnDevice> once{scene.geometry(), samples, shade};
-          shade_samples(exec_, surface, parallel::view_of(colors), once);
-          if (layered)
+      if (resolves)
+        look.with(scene.geometry(), test, [&](const auto& shade, const auto& keeps) {
+          using Shade = std::remove_cvref_t<decltype(shade)>;
+          if (!in_colors && !shades_all) {
+            stats.pixels_covered += resolve_on_device(request, shade, surface, images);
+            return;
+          }
+          // Tested pieces are drawn after the others, without colours.
+          if (planes == 1 && (shades_all ? look.has_test() : layered))
+            parallel::tabulate(exec_, colors,
+                               cuda_detail::ColorOfElement<Shade>{surface.words, shade});
+          if constexpr (std::is_same_v<Shade, LitOnDevice>) {
+            if (planes > 1) {
+              const ShadedOnce<Shade> once{scene.geometry(), samples, shade};
+              shade_samples(exec_, surface, parallel::view_of(colors), once);
+              if (layered)
+                layers.blend(exec_, scene, surface, parallel::view_of(colors), request.transparency,
+                             once, keeps, plan.batch, limit() / 8);
+              mean_of_samples(exec_, surface, parallel::view_of(colors));
+              watch.lap(stats, "samples");
+            }
+          }
+          if (planes == 1 && layered) {
             layers.blend(exec_, scene, surface, parallel::view_of(colors), request.transparency,
-                         once, plan.batch, limit() / 8);
-          mean_of_samples(exec_, surface, parallel::view_of(colors));
-          watch.lap(stats, "samples");
-        } else if (layered) {
-          parallel::tabulate(exec_, colors,
-                             cuda_detail::ColorOfElement<LitOnDevice>{surface.words, shade});
-          layers.blend(exec_, scene, surface, parallel::view_of(colors), request.transparency,
-                       shade, plan.batch, limit() / 8);
-          watch.lap(stats, "layers");
-        }
-        stats.pixels_covered +=
-            in_colors || shades_all
-                ? resolve_on_device(request, ColorsOfSurface{surface, colors.data()}, surface)
-                : resolve_on_device(request, shade, surface);
-      } else {
+                         shade, keeps, plan.batch, limit() / 8);
+            watch.lap(stats, "layers");
+          }
+          stats.pixels_covered +=
+              resolve_on_device(request, ColorsOfSurface{surface, colors.data()}, surface, images);
+        });
+      else
         stats.pixels_covered += resolve_on_host(request, geometry, view, words, shaders);
-      }
       watch.lap(stats, "shade");
     }
     stats.triangles.dropped = counts.sum.dropped;
@@ -197,9 +222,10 @@ class DeviceRasterizer final : public CudaRasterizer {
     stats.why = std::string(family_ ? "as asked for"
                                     : "cuda has by-size: a thread, a warp or blocks of threads a "
                                       "triangle")
-                    .append(resolver ? "; shaded on the device" : "; shaded by the host's threads");
+                    .append(resolves ? "; shaded on the device" : "; shaded by the host's threads");
     stats.counters = {{"bands", bands},
-                      {family_ ? "batches of primitives" : "batches", counts.batches}};
+                      {family_ ? "batches of primitives" : "batches", counts.batches},
+                      {"textures copied", textures_.copies() - textures_before}};
     if (family_) {
       for (const auto& [name, value] : own) stats.counters.emplace_back(name, value);
     } else {
@@ -267,63 +293,23 @@ class DeviceRasterizer final : public CudaRasterizer {
     });
   }
 
-  /// What the device resolves a frame with.
-  struct Resolver {
-    LitModel model = LitModel::flat;
-    float opacity = 1;
-    std::optional<LitUpload<Exec>> lit;  ///< none: no colours are wanted
-
-    [[nodiscard]] LitOnDevice shade(const DeviceGeometry& geometry) const {
-      return lit ? LitOnDevice{model, geometry, lit->view(), opacity}
-                 : LitOnDevice{model, geometry, {}, 0};
-    }
-  };
-  /// A lit shader, and the opacity around it.
-  struct OpacityForm {
-    LitForm lit;
-    float opacity;
-  };
-  [[nodiscard]] static std::optional<OpacityForm> form_of(const FrameRequest& request) {
-    if (request.shader == nullptr) return std::nullopt;
-    const AlphaForm alpha = alpha_form(*request.shader).value_or(AlphaForm{request.shader, 1});
-    const std::optional<LitForm> lit = lit_form(*alpha.inner);
-    if (!lit || !LitOnDevice::has(lit->model)) return std::nullopt;
-    return OpacityForm{*lit, alpha.opacity};
-  }
-  [[nodiscard]] static bool wants_colors(const Targets& t) {
-    return !t.color8.empty() || !t.color.empty();
-  }
-  /// Whether no target, way to blend or shader of the frame lacks a form for the device.
-  [[nodiscard]] static bool can_resolve(const FrameRequest& request) {
-    const Targets& t = request.targets;
-    if (t.load || t.over || !t.extra.empty() || request.linear_light) return false;
-    return !wants_colors(t) || form_of(request);
-  }
-  /// None where the frame has a target, a way to blend or a shader without a device form.
-  [[nodiscard]] std::optional<Resolver> resolver_of(const FrameRequest& request,
-                                                    Uploads<Exec>& uploads) {
-    if (!can_resolve(request)) return std::nullopt;
-    Resolver r;
-    if (!wants_colors(request.targets)) return r;
-    const OpacityForm form = *form_of(request);
-    r.model = form.lit.model;
-    r.opacity = form.opacity;
-    r.lit.emplace(exec_, uploads, form.lit);
-    return r;
-  }
-
   /// An image of a band on the device, where the caller has one; in place, the caller's.
   template <class T>
   class Band {
     using Pixels = decltype(parallel::make_buffer<T>(std::declval<Exec&>(), 0));
 
    public:
-    Band(Exec& exec, const ImageView<T>& host, Rect view, bool in_place)
+    Band(Exec& exec, const ImageView<T>& host, Rect view, bool in_place, bool keeps)
         : exec_(exec),
           host_(host),
           view_(view),
           in_place_(in_place),
-          pixels_(parallel::make_buffer<T>(exec, host.empty() || in_place ? 0 : area_of(view))) {}
+          pixels_(parallel::make_buffer<T>(exec, host.empty() || in_place ? 0 : area_of(view))) {
+      if (keeps && pixels_.size() > 0)
+        each_part([&](T* there, T* here, std::size_t n) {
+          parallel::cuda_system::copy(exec_.stream(), there, here, n * sizeof(T));
+        });
+    }
     [[nodiscard]] ImageView<T> on_device() {
       const int width = view_.x1 - view_.x0;
       if (in_place_ && !host_.empty())
@@ -332,17 +318,23 @@ class DeviceRasterizer final : public CudaRasterizer {
     }
     /// Does not wait.
     void store() {
-      if (host_.empty() || in_place_) return;
-      const auto width = static_cast<std::size_t>(view_.x1 - view_.x0);
-      const auto rows = static_cast<std::size_t>(view_.y1 - view_.y0);
-      // Rows that lie together are one copy.
-      const std::size_t at_once = host_.stride == view_.x1 ? rows : 1;
-      for (std::size_t y = 0; y < rows; y += at_once)
-        parallel::cuda_system::copy(exec_.stream(), host_.row(view_.y0 + static_cast<int>(y)),
-                                    pixels_.data() + y * width, at_once * width * sizeof(T));
+      if (pixels_.size() > 0)
+        each_part([&](T* there, T* here, std::size_t n) {
+          parallel::cuda_system::copy(exec_.stream(), here, there, n * sizeof(T));
+        });
     }
 
    private:
+    /// Calls f(device, host, pixels). Rows that lie together are one part.
+    template <class F>
+    void each_part(F&& f) {
+      const auto width = static_cast<std::size_t>(view_.x1 - view_.x0);
+      const auto rows = static_cast<std::size_t>(view_.y1 - view_.y0);
+      const std::size_t at_once = host_.stride == view_.x1 ? rows : 1;
+      for (std::size_t y = 0; y < rows; y += at_once)
+        f(pixels_.data() + y * width, host_.row(view_.y0 + static_cast<int>(y)), at_once * width);
+    }
+
     Exec& exec_;
     ImageView<T> host_;
     Rect view_;
@@ -350,26 +342,51 @@ class DeviceRasterizer final : public CudaRasterizer {
     Pixels pixels_;
   };
 
+  /// A band of all targets on the device; with what they hold, where they keep it.
+  struct Images {
+    Band<Rgba8> color8;
+    Band<Vec4> color;
+    Band<float> depth;
+    Band<std::int64_t> ids;
+    Band<std::uint64_t> words;
+
+    /// `resolves`: they are wanted; else but what tests read.
+    Images(Exec& exec, const FrameRequest& request, Rect view, bool resolves)
+        : color8(of(exec, request, request.targets.color8, view, resolves)),
+          color(of(exec, request, request.targets.color, view, resolves)),
+          depth(of(exec, request, request.targets.depth, view, resolves || request.targets.over)),
+          ids(of(exec, request, request.targets.ids, view, resolves)),
+          words(of(exec, request, request.targets.words, view, resolves)) {}
+
+    [[nodiscard]] ImageView<const float> depth_behind(const FrameRequest& request) {
+      if (!request.targets.over) return {};
+      const ImageView<float> d = depth.on_device();
+      return {d.data, d.width, d.height, d.stride};
+    }
+
+   private:
+    template <class T>
+    static Band<T> of(Exec& exec, const FrameRequest& request, const ImageView<T>& target,
+                      Rect view, bool wanted) {
+      return Band<T>(exec, wanted ? target : ImageView<T>{}, view, request.in_place,
+                     request.targets.over || request.targets.load);
+    }
+  };
+
   /// All targets, on the device. Returns how many pixels hold a surface.
   template <class Shade>
   [[nodiscard]] std::uint64_t resolve_on_device(const FrameRequest& request, const Shade& shade,
-                                                const DeviceSurface& surface) {
-    const Targets& t = request.targets;
-    const Rect view = surface.view;
-    Band<Rgba8> color8(exec_, t.color8, view, request.in_place);
-    Band<Vec4> color(exec_, t.color, view, request.in_place);
-    Band<float> depth(exec_, t.depth, view, request.in_place);
-    Band<std::int64_t> ids(exec_, t.ids, view, request.in_place);
-    Band<std::uint64_t> words(exec_, t.words, view, request.in_place);
-    const DeviceTargets targets{color8.on_device(), color.on_device(), depth.on_device(),
-                                ids.on_device(), words.on_device()};
-    const Backdrop backdrop = backdrop_of(request);
-    const std::uint64_t covered = resolve_surface(exec_, surface, targets, shade, backdrop);
-    color8.store();
-    color.store();
-    depth.store();
-    ids.store();
-    words.store();
+                                                const DeviceSurface& surface, Images& images) {
+    const DeviceTargets targets{images.color8.on_device(), images.color.on_device(),
+                                images.depth.on_device(), images.ids.on_device(),
+                                images.words.on_device()};
+    const std::uint64_t covered =
+        resolve_surface(exec_, surface, targets, shade, ResolveRules::of(request));
+    images.color8.store();
+    images.color.store();
+    images.depth.store();
+    images.ids.store();
+    images.words.store();
     exec_.wait();
     return covered;
   }
@@ -401,6 +418,7 @@ class DeviceRasterizer final : public CudaRasterizer {
   std::uint64_t free_bytes_ = parallel::cuda_status().free_bytes;  ///< before the first frame
   parallel::Threads& threads_;
   Exec exec_;
+  DeviceTextures<Exec> textures_;
   Buffer<std::uint64_t> words_;     ///< of the host, in the device's places
   Buffer<std::uint32_t> overdraw_;  ///< alike
 };

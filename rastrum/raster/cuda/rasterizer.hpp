@@ -16,13 +16,16 @@ namespace rastrum::raster {
 class CudaRasterizer {
  public:
   virtual ~CudaRasterizer() = default;
+  /// Why a frame whose fragments are tested is left to the CPU; empty: it is not.
+  [[nodiscard]] virtual std::string why_no_test(const FrameRequest& request) const = 0;
   /// Why a frame with layers or several samples a pixel is left to the CPU; empty: it is not.
   [[nodiscard]] virtual std::string why_no_layers(const FrameRequest& request) const = 0;
-  /// One frame without fragment tests, and with layers or several samples only where why_no_layers
-  /// says nothing: targets as Rasterizer::render. The caller's arrays are copied to the device each
-  /// time. What the device has no shader for is shaded by the host's threads; FrameStats::why says
-  /// so. Throws Error{invalid_argument} where an index is out of range, Error{out_of_memory} with
-  /// what was asked for, Error{no_device} for what the driver reports.
+  /// One frame of which neither why_no_test nor, where it has layers or several samples a pixel,
+  /// why_no_layers says anything: targets as Rasterizer::render. The caller's arrays are copied to
+  /// the device each time, textures when they are new. What the device has no shader for is shaded
+  /// by the host's threads; FrameStats::why says so. Throws Error{invalid_argument} where an index
+  /// is out of range, Error{out_of_memory} with what was asked for, Error{no_device} for what the
+  /// driver reports.
   [[nodiscard]] virtual FrameStats render(FrameRequest& request) = 0;
 };
 
@@ -31,8 +34,8 @@ class CudaRasterizer {
 
 /// `coverage` and `visibility`: a point of the table, whose rows are the host's but for `grouped`;
 /// or both empty: `by-size`, the device's own. `memory_limit`: bytes of scratch on the device
-/// beyond the copies of meshes, 0: three quarters of what is free there. `memory` and `threads`
-/// outlive it. Throws Error{no_device}.
+/// beyond the copies of meshes and textures, 0: three quarters of what is free there. `memory` and
+/// `threads` outlive it. Throws Error{no_device}.
 [[nodiscard]] std::unique_ptr<CudaRasterizer> make_cuda_rasterizer(std::string_view coverage,
                                                                    std::string_view visibility,
                                                                    std::uint64_t memory_limit,

@@ -1,6 +1,7 @@
 // From words to images on a device: a thread a pixel. Depth, ids and words of any frame; colours by
-// a shader that is a functor, (word, x, y) to a premultiplied Vec4: LitOnDevice has the built-in
-// shaders but `material` and `wireframe`, by their scalar form, so their bits.
+// a shader that is a functor, (word, x, y) to a premultiplied Vec4: LitOnDevice has the lit shaders
+// but `wireframe`, by their scalar form, so their bits; materials.cuh has `material`. The rules are
+// those of the host's resolve_block.
 #pragma once
 
 #include <bit>
@@ -16,6 +17,7 @@
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/geometry.cuh>
 #include <rastrum/raster/cuda/upload.cuh>
+#include <rastrum/raster/resolve.hpp>
 #include <rastrum/raster/shaders/lit_scalar.hpp>
 
 namespace rastrum::raster {
@@ -60,6 +62,31 @@ struct LitOnDevice {
   }
 };
 
+/// A test that keeps all fragments.
+struct KeepsFragments {
+  RASTRUM_HD bool operator()(std::uint64_t, int, int) const { return true; }
+};
+
+/// How colours meet what is there; as Targets and FrameRequest have it.
+struct ResolveRules {
+  Backdrop backdrop;
+  Vec4 background;  ///< of pixels that nothing covers: premultiplied display values
+  bool over = false;
+  bool load = false;
+  std::uint64_t first_id = 0;
+
+  static ResolveRules of(const FrameRequest& request) {
+    return {backdrop_of(request), premultiplied_from_straight(request.background),
+            request.targets.over, request.targets.load, request.targets.first_id};
+  }
+  /// Whether the pixel of a word holds a surface of this pass.
+  [[nodiscard]] RASTRUM_HD bool covers(std::uint64_t word) const {
+    return word != 0 && (!load || id_of_word(word) >= first_id);
+  }
+  /// Whether pixels that hold none keep what they have.
+  [[nodiscard]] RASTRUM_HD bool keeps() const { return over || load; }
+};
+
 /// Colours that lie in the places of the words of a surface.
 struct ColorsOfSurface {
   DeviceSurface surface;
@@ -94,7 +121,7 @@ struct ResolvePixel {
   DeviceSurface surface;
   DeviceTargets targets;
   Shade shade;
-  Backdrop backdrop;
+  ResolveRules rules;
   RASTRUM_HD std::uint32_t operator()(std::size_t i) const {
     const Rect view = surface.view;
     const auto width = static_cast<std::size_t>(view.x1 - view.x0);
@@ -104,34 +131,44 @@ struct ResolvePixel {
     const auto put = [&](const auto& image, const auto& value) {
       if (image.data != nullptr) image.data[(y - view.y0) * image.stride + (x - view.x0)] = value;
     };
-    if (targets.color8.data != nullptr || targets.color.data != nullptr) {
-      Vec4 color = backdrop.color;
-      Rgba8 color8 = backdrop.empty;
-      if (word != 0) {
-        color = backdrop.over(shade(word, x, y));
-        color8 = to_straight_rgba8(color);
-      }
-      put(targets.color8, color8);
-      put(targets.color, color);
+    const bool covered = rules.covers(word);
+    if (!covered && rules.keeps()) return 0;
+    if (covered && (targets.color8.data != nullptr || targets.color.data != nullptr)) {
+      const Vec4 front = shade(word, x, y);
+      const auto at = [&](const auto& image) {
+        return image.data[(y - view.y0) * image.stride + (x - view.x0)];
+      };
+      if (targets.color8.data != nullptr)
+        put(targets.color8,
+            (rules.over ? Backdrop::of(straight_from_rgba8(at(targets.color8))) : rules.backdrop)
+                .color8_over(front));
+      if (targets.color.data != nullptr)
+        put(targets.color,
+            (rules.over ? Backdrop::of(straight_from_premultiplied(at(targets.color)))
+                        : rules.backdrop)
+                .color_over(front));
+    } else {
+      put(targets.color8, rules.backdrop.empty);
+      put(targets.color, rules.background);
     }
     put(targets.depth, std::bit_cast<float>(static_cast<std::uint32_t>(word >> kIdBits)));
     put(targets.ids, word == 0 ? std::int64_t{-1} : static_cast<std::int64_t>(id_of_word(word)));
     put(targets.words, word);
-    return word != 0 ? 1 : 0;
+    return covered ? 1 : 0;
   }
 };
 
 }  // namespace cuda_detail
 
-/// Fills `targets` from the words of `surface`, over `backdrop`, which is of display values.
-/// Returns how many pixels hold a surface. Work O(pixels). Waits.
+/// Fills `targets` from the words of `surface`; where `rules` keep or are over something, they hold
+/// it. Returns how many pixels hold a surface. Work O(pixels). Waits.
 template <class Exec, class Shade>
 [[nodiscard]] std::uint64_t resolve_surface(Exec& exec, const DeviceSurface& surface,
                                             const DeviceTargets& targets, const Shade& shade,
-                                            const Backdrop& backdrop) {
+                                            const ResolveRules& rules) {
   auto covered = parallel::make_buffer<std::uint32_t>(exec, area_of(surface.view));
   parallel::tabulate(exec, covered,
-                     cuda_detail::ResolvePixel<Shade>{surface, targets, shade, backdrop});
+                     cuda_detail::ResolvePixel<Shade>{surface, targets, shade, rules});
   return parallel::reduce(exec, covered, std::uint64_t{0});
 }
 

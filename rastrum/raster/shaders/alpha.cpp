@@ -17,6 +17,7 @@ class AlphaTest final : public FragmentTest {
     return kernels_.alpha_test(scene_.view(), frame, id_of_word(piece.low), block.mask,
                                block.bx * kBlockSize, block.by * kBlockSize, points);
   }
+  [[nodiscard]] const MaterialScene& scene() const { return scene_; }
 
  private:
   const MaterialScene& scene_;
@@ -62,9 +63,7 @@ class AlphaShader final : public BlockShader {
   [[nodiscard]] std::size_t scratch_bytes() const noexcept override {
     return inner_.scratch_bytes();
   }
-  [[nodiscard]] std::optional<AlphaForm> form() const {
-    return blending_ == nullptr ? std::optional(AlphaForm{&inner_, opacity_}) : std::nullopt;
-  }
+  [[nodiscard]] AlphaForm form() const { return {&inner_, blending_, opacity_}; }
 
  private:
   const BlockShader& inner_;
@@ -138,7 +137,12 @@ std::unique_ptr<BlockShader> make_alpha_shader(const BlockShader& inner,
 
 std::optional<AlphaForm> alpha_form(const BlockShader& shader) {
   const auto* const alpha = dynamic_cast<const AlphaShader*>(&shader);
-  return alpha == nullptr ? std::nullopt : alpha->form();
+  return alpha == nullptr ? std::nullopt : std::optional(alpha->form());
+}
+
+const MaterialScene* alpha_test_form(const FragmentTest& test) {
+  const auto* const alpha = dynamic_cast<const AlphaTest*>(&test);
+  return alpha == nullptr ? nullptr : &alpha->scene();
 }
 
 }  // namespace rastrum::raster

@@ -44,11 +44,15 @@ std::uint32_t set_material_flags(Draw& draw, const MeshView& mesh,
                                                              const MaterialScene* blending,
                                                              float opacity);
 
-/// What make_alpha_shader was given where it blends no material; none for another shader.
+/// What make_alpha_shader was given; none for another shader.
 struct AlphaForm {
   const BlockShader* inner;
+  const MaterialScene* blending;
   float opacity;
 };
 [[nodiscard]] std::optional<AlphaForm> alpha_form(const BlockShader& shader);
+
+/// What make_alpha_test was given; null for another test.
+[[nodiscard]] const MaterialScene* alpha_test_form(const FragmentTest& test);
 
 }  // namespace rastrum::raster

@@ -38,16 +38,17 @@ class SceneLayers {
   }
 
   /// Blends the translucent pieces of `scene` over `colors`, in the places of the words of
-  /// `surface`, all its planes, and raises those. `shade` as of blend_layers, or a
+  /// `surface`, all its planes, and raises those. `shade` and `test` as of blend_layers, `shade` a
   /// raster::ShadedOnce where there are several samples. `batch`: primitives that are set up
   /// at once; `bytes`: what pieces, and again what their records, may take, 0: any. Waits.
-  template <class Exec, class Shade>
+  template <class Exec, class Shade, class Test>
   void blend(Exec& exec, const raster::DeviceScene<Exec>& scene,
              const raster::DeviceSurface& surface, std::span<Vec4> colors,
-             const TransparencyOptions& options, const Shade& shade, std::uint64_t batch,
-             std::uint64_t bytes) {
-    blend_rows(Band<Exec, Shade>{exec, scene, surface, colors, options, shade, batch, bytes},
-               surface.view);
+             const TransparencyOptions& options, const Shade& shade, const Test& test,
+             std::uint64_t batch, std::uint64_t bytes) {
+    blend_rows(
+        Band<Exec, Shade, Test>{exec, scene, surface, colors, options, shade, test, batch, bytes},
+        surface.view);
   }
   void count(FrameStats& stats) const {
     stats.visibility = "layers";
@@ -61,7 +62,7 @@ class SceneLayers {
   }
 
  private:
-  template <class Exec, class Shade>
+  template <class Exec, class Shade, class Test>
   struct Band {
     Exec& exec;
     const raster::DeviceScene<Exec>& scene;
@@ -69,6 +70,7 @@ class SceneLayers {
     std::span<Vec4> colors;
     const TransparencyOptions& options;
     const Shade& shade;
+    const Test& test;
     std::uint64_t batch, bytes;
 
     /// Calls f(assembly, outcomes) for each batch of primitives and their pieces in `view`.
@@ -88,8 +90,8 @@ class SceneLayers {
     }
   };
 
-  template <class Exec, class Shade>
-  void blend_rows(const Band<Exec, Shade>& band, const raster::Rect& view) {
+  template <class Exec, class Shade, class Test>
+  void blend_rows(const Band<Exec, Shade, Test>& band, const raster::Rect& view) {
     using parallel::view_of;
     Exec& exec = band.exec;
     std::uint64_t count = 0;
@@ -129,9 +131,9 @@ class SceneLayers {
     DeviceLayerCounts c;
     if constexpr (raster::kIsShadedOnce<Shade>)
       c = blend_sampled_layers(exec, {layers, band.surface.samples, band.surface.plane},
-                               band.options, band.shade, cuda::KeepAll{}, tuning);
+                               band.options, band.shade, band.test, tuning);
     else
-      c = blend_layers(exec, layers, band.options, band.shade, cuda::KeepAll{}, tuning);
+      c = blend_layers(exec, layers, band.options, band.shade, band.test, tuning);
     counts_.fragments += c.fragments;
     counts_.deepest = std::max(counts_.deepest, c.deepest);
     counts_.repaired += c.repaired;

@@ -1,0 +1,199 @@
+// Materials on a device: their textures, which stay there from frame to frame, the arrays that
+// shaders read, and the functors that shade and test by material_scalar.hpp, so with the bits of
+// the host's serial picture.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <rastrum/parallel/cuda/words.cuh>
+#include <rastrum/raster/cuda/geometry.cuh>
+#include <rastrum/raster/cuda/resolve.cuh>
+#include <rastrum/raster/cuda/upload.cuh>
+#include <rastrum/raster/shaders/material_scalar.hpp>
+
+namespace rastrum::raster {
+
+/// Colours and alpha where a scene's materials have a say: the colours are theirs or those of a lit
+/// shader, and alpha is the opacity or, for those that blend, their own too (alpha.hpp).
+struct MaterialOnDevice {
+  LitOnDevice lit;  ///< its opacity is not looked at
+  MaterialView scene;
+  float opacity = 1;
+  bool shades = false;  ///< the colours are the materials'
+  bool blends = false;  ///< alpha is theirs, too
+  bool linear = false;  ///< colours are linear light
+
+  RASTRUM_HD Vec4 operator()(std::uint64_t word, int x, int y, Vec2 from_centre = {0, 0}) const {
+    const std::uint64_t id = id_of_word(word);
+    const float alpha =
+        blends ? alpha_at(scene, lit.geometry, id, x, y, from_centre, opacity) : opacity;
+    if (!(alpha > 0)) return {};
+    const Vec3 c = shades ? color(id, x, y, from_centre) : lit.color(word, x, y, from_centre);
+    if (alpha == 1) return {c.x, c.y, c.z, 1};
+    return {c.x * alpha, c.y * alpha, c.z * alpha, alpha};
+  }
+
+ private:
+  RASTRUM_HD Vec3 color(std::uint64_t id, int x, int y, Vec2 from_centre) const {
+    const MaterialTriangle t(scene, lit.geometry, lit.geometry.draw_of(id), id);
+    return shade_material(scene, t, MaterialPoint(t.planes, x, y, from_centre), linear);
+  }
+};
+
+/// The library's own fragment tests: alpha masks, and the depth of a picture that is drawn over.
+struct TestOnDevice {
+  DeviceGeometry geometry;
+  MaterialView masks;
+  bool has_masks = false;
+  /// Flags of each draw beside those by material: a mask is looked at where they say kTested.
+  std::span<const std::uint32_t> flags;
+  ImageView<const float> behind;  ///< of the band that begins in row `y0`; null: nothing is
+  int y0 = 0;
+
+  /// Whether the fragment is kept.
+  RASTRUM_HD bool operator()(std::uint64_t word, int x, int y) const {
+    if (behind.data != nullptr) {
+      const float depth = behind.data[(y - y0) * behind.stride + x];
+      // What has depth 0 is drawn where nothing is.
+      if (depth > 0 && !(std::bit_cast<float>(static_cast<std::uint32_t>(word >> kIdBits)) > depth))
+        return false;
+    }
+    if (!has_masks) return true;
+    const std::uint64_t id = id_of_word(word);
+    const Draw& draw = geometry.draw_of(id);
+    const auto p = static_cast<std::size_t>(id - draw.first_id);
+    std::uint32_t tested = flags[geometry.number_of(draw)];
+    if (!draw.material_flags.empty()) tested |= draw.material_flags[draw.face_materials[p]];
+    return (tested & kTested) == 0 || passes_mask(masks, geometry, id, x, y, {0, 0});
+  }
+};
+
+/// The texels of a scene's textures on the device, each copied there once; what a frame does not
+/// read goes with the next.
+template <class Exec>
+class DeviceTextures {
+ public:
+  explicit DeviceTextures(Exec& exec) : exec_(exec) {}
+
+  /// Chains that are asked for before the next begin() are kept.
+  void begin() {
+    std::erase_if(kept_, [](const auto& kept) { return !kept.second.is_read; });
+    for (auto& kept : kept_) kept.second.is_read = false;
+  }
+  /// `host` with pointers of the device's. Waits where it is new.
+  [[nodiscard]] MipChain operator()(const MipChain& host) {
+    auto at = kept_.find(host.number);
+    if (at == kept_.end()) at = kept_.emplace(host.number, copy_of(host)).first;
+    Kept& kept = at->second;
+    kept.is_read = true;
+    MipChain chain = host;
+    chain.decode = kept.decode.data();
+    const Rgba8* texels = kept.texels.data();
+    for (int l = 0; l < host.levels; ++l) {
+      chain.level[l].texels = texels;
+      texels += texels_of(host.level[l]);
+    }
+    return chain;
+  }
+  /// Chains copied so far.
+  [[nodiscard]] std::uint64_t copies() const { return copies_; }
+
+ private:
+  template <class T>
+  using Array = decltype(parallel::make_buffer<T>(std::declval<Exec&>(), 0));
+  struct Kept {
+    Array<Rgba8> texels;
+    Array<float> decode;
+    bool is_read = false;
+  };
+
+  [[nodiscard]] static std::size_t texels_of(const MipLevel& level) {
+    return static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height);
+  }
+  [[nodiscard]] Kept copy_of(const MipChain& host) {
+    Kept kept;
+    std::size_t texels = 0;
+    for (int l = 0; l < host.levels; ++l) texels += texels_of(host.level[l]);
+    kept.texels = parallel::make_buffer<Rgba8>(exec_, texels);
+    kept.decode = parallel::make_buffer<float>(exec_, 256);
+    parallel::cuda_system::copy(exec_.stream(), kept.decode.data(), host.decode,
+                                256 * sizeof(float));
+    Rgba8* to = kept.texels.data();
+    for (int l = 0; l < host.levels; to += texels_of(host.level[l]), ++l)
+      parallel::cuda_system::copy(exec_.stream(), to, host.level[l].texels,
+                                  texels_of(host.level[l]) * sizeof(Rgba8));
+    exec_.wait();
+    ++copies_;
+    return kept;
+  }
+
+  Exec& exec_;
+  std::map<std::uint64_t, Kept> kept_;
+  std::uint64_t copies_ = 0;
+};
+
+/// What is read of a scene's materials.
+enum class MaterialUse : std::uint8_t { alpha, all };
+
+/// A scene's materials and the arrays of its meshes on the device. Lives as long as `uploads` and
+/// the textures' frame. Waits.
+template <class Exec>
+class MaterialUpload {
+  template <class T>
+  using Array = decltype(parallel::make_buffer<T>(std::declval<Exec&>(), 0));
+
+ public:
+  MaterialUpload(Exec& exec, Uploads<Exec>& uploads, DeviceTextures<Exec>& textures,
+                 const MaterialScene& scene, MaterialUse use) {
+    std::vector<MipChain> chains;
+    std::vector<BoundMaterial> materials = scene.materials;
+    const auto each_texture = [&](BoundMaterial& m, auto&& f) {
+      if (use == MaterialUse::all)
+        for (const MipChain** chain : {&m.metallic_roughness, &m.normal, &m.occlusion, &m.emissive})
+          f(*chain);
+      for (const MipChain** chain : {&m.base_color, &m.alpha}) f(*chain);
+    };
+    for (BoundMaterial& m : materials)
+      each_texture(m, [&](const MipChain*& chain) {
+        if (chain != nullptr) chains.push_back(textures(*chain));
+      });
+    chains_ = parallel::to_device(exec, chains);
+    const MipChain* next = chains_.data();
+    for (BoundMaterial& m : materials)
+      each_texture(m, [&](const MipChain*& chain) {
+        if (chain != nullptr) chain = next++;
+      });
+    materials_ = parallel::to_device(exec, materials);
+
+    std::vector<MaterialDraw> draws = scene.draws;
+    for (MaterialDraw& draw : draws) {
+      MeshView& mesh = draw.mesh;
+      const auto move = [&](auto& attribute) {
+        attribute.values = uploads(attribute.values);
+        attribute.indices = uploads(attribute.indices);
+      };
+      mesh.face_materials = uploads(mesh.face_materials);
+      move(mesh.texcoords);
+      move(mesh.colors);
+      if (use == MaterialUse::alpha) continue;
+      mesh.positions = uploads(mesh.positions);
+      move(mesh.normals);
+    }
+    draws_ = parallel::to_device(exec, draws);
+    view_ = {{materials_.data(), materials_.size()}, {draws_.data(), draws_.size()}, scene.rays};
+  }
+  [[nodiscard]] const MaterialView& view() const { return view_; }
+
+ private:
+  Array<MipChain> chains_;
+  Array<BoundMaterial> materials_;
+  Array<MaterialDraw> draws_;
+  MaterialView view_;
+};
+
+}  // namespace rastrum::raster

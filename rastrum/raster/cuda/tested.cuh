@@ -1,0 +1,101 @@
+// Pieces with a fragment test on a device: a thread for each 8 × 8 block that a piece's box
+// touches, whatever the piece's size, puts the words of the fragments that the test keeps. What
+// lies behind the word that is there already is not asked for. Order does not matter to a maximum
+// of words.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include <rastrum/parallel/cuda/expand.cuh>
+#include <rastrum/parallel/cuda/words.cuh>
+#include <rastrum/parallel/stop.hpp>
+#include <rastrum/raster/cuda/cover.cuh>
+#include <rastrum/raster/cuda/pieces.cuh>
+#include <rastrum/raster/cuda/rasterizer.cuh>
+
+namespace rastrum::raster {
+namespace cuda_detail {
+
+/// What is tested and drawn in `view`.
+struct IsTestedIn {
+  Rect view;
+  std::uint32_t skip;
+  RASTRUM_HD bool operator()(const Piece& piece) const {
+    return (piece.flags & kTested) != 0 && (piece.flags & skip) == 0 &&
+           !piece_bounds(piece, view).empty();
+  }
+};
+struct BlocksOfBox {
+  Rect view;
+  RASTRUM_HD std::size_t operator()(const Piece& piece) const {
+    return static_cast<std::size_t>(BlocksOf(piece_bounds(piece, view)).count());
+  }
+};
+template <class Test>
+struct DrawTested {
+  DeviceSurface surface;
+  Test test;
+  std::uint64_t* fragments;
+  RASTRUM_HD void operator()(std::size_t, const Piece& piece, std::size_t j) const {
+    const Rect box = piece_bounds(piece, surface.view);
+    const BlocksOf blocks(box);
+    const int bx = blocks.bx(static_cast<int>(j)), by = blocks.by(static_cast<int>(j));
+    const std::uint64_t mask = cover_box(edges_of(piece), box, bx, by);
+    if (mask == 0) return;
+    parallel::atomic_add(*fragments, static_cast<std::uint64_t>(parallel::popcount(mask)));
+    for (std::uint64_t m = mask; m != 0; m &= m - 1) {
+      const int i = parallel::lowest_bit(m);
+      const std::size_t at = surface.words.index(bx, by) * 64 + static_cast<std::size_t>(i);
+      if (surface.overdraw != nullptr) parallel::atomic_add(surface.overdraw[at], 1U);
+      const std::uint64_t word = DeviceSurface::word(piece, bx, by, i);
+      if (word > surface.words.words[at] &&
+          test(word, bx * kBlockSize + i % kBlockSize, by * kBlockSize + i / kBlockSize))
+        parallel::atomic_maximum(surface.words.words[at], word);
+    }
+  }
+};
+
+}  // namespace cuda_detail
+
+/// Draws the pieces of `scene` that have kTested, and no flag of `skip`, onto the words of
+/// `surface`, where test(word, x, y) holds. Returns the number of fragments before the test. What
+/// became of the primitives is draw_surface's to count, and to check. Memory as of draw_surface.
+/// Work O(primitives + blocks of boxes + fragments). Waits.
+template <class Exec, class Test>
+[[nodiscard]] std::uint64_t draw_tested(Exec& exec, const DeviceScene<Exec>& scene,
+                                        const DeviceSurface& surface, const DevicePlan& plan,
+                                        std::uint32_t skip, const Test& test) {
+  using parallel::view_of;
+  const std::uint64_t end = scene.first_id() + scene.primitives();
+  const cuda_detail::IsTestedIn keep{surface.view, skip};
+  auto fragments = parallel::make_buffer<std::uint64_t>(exec, 1);
+  parallel::tabulate(exec, fragments, parallel::range_detail::SameValue<std::uint64_t>{0});
+  for (std::uint64_t first = scene.first_id(); first < end; first += plan.batch) {
+    parallel::throw_if_stopped();
+    const Assembly assembly{scene.geometry(), first};
+    const auto n = static_cast<std::size_t>(std::min(plan.batch, end - first));
+    auto outcomes = parallel::make_buffer<Outcome>(exec, n);
+    parallel::tabulate(exec, outcomes,
+                       cuda_detail::CountPieces<cuda_detail::IsTestedIn>{assembly, keep});
+    const auto tested = parallel::filter(exec, parallel::counting<std::uint32_t>(n),
+                                         cuda_detail::HasPieces{view_of(std::as_const(outcomes))});
+    for (std::size_t at = 0; at < tested.size(); at += plan.written) {
+      const std::span<const std::uint32_t> which =
+          view_of(tested).subspan(at, std::min(plan.written, tested.size() - at));
+      const auto pieces = write_pieces(
+          exec, assembly, which, parallel::permuted(view_of(std::as_const(outcomes)), which), keep);
+      const std::span<const Piece> drawn = view_of(pieces);
+      const auto blocks =
+          parallel::make_expansion(exec, drawn, cuda_detail::BlocksOfBox{surface.view});
+      parallel::expand_each(exec, blocks, drawn,
+                            cuda_detail::DrawTested<Test>{surface, test, fragments.data()});
+    }
+  }
+  return parallel::to_host(exec, fragments)[0];
+}
+
+}  // namespace rastrum::raster

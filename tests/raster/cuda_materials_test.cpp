@@ -1,0 +1,275 @@
+// Materials, alpha masks and pictures that are drawn over, on a device: the bits of the host's
+// scalar form. In this program the device is the CPU (CMakeLists.txt).
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/parallel/cuda/status.hpp>
+#include <rastrum/raster/program.hpp>
+#include <rastrum/render/render.hpp>
+
+#include "tests/support/frame.hpp"
+#include "tests/support/layer_picture.hpp"
+#include "tests/support/materials.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+constexpr int kWidth = 107, kHeight = 91;
+
+RenderOptions options(Device device, Shader shader = Shader::material) {
+  RenderOptions o;
+  o.width = kWidth;
+  o.height = kHeight;
+  o.device = device;
+  o.shader = shader;
+  o.threads = 2;
+  o.isa = Isa::scalar;
+  o.background = {0.2F, 0.3F, 0.4F, 0.5F};
+  return o;
+}
+
+Camera near_camera() {
+  Camera camera;
+  camera.eye = {0.2F, 0.1F, 1.1F};
+  camera.near_plane = 0.3F;
+  return camera;
+}
+
+std::uint64_t counter(const FrameStats& stats, std::string_view name) {
+  for (const auto& [key, value] : stats.counters)
+    if (key == name) return value;
+  ADD_FAILURE() << "no counter " << name;
+  return 0;
+}
+
+bool same_colors(const Image<Vec4>& a, const Image<Vec4>& b) {
+  return std::memcmp(a.pixels().data(), b.pixels().data(), a.pixels().size_bytes()) == 0;
+}
+
+class CudaMaterials : public testing::Test {
+ protected:
+  void SetUp() override {
+    const parallel::CudaStatus status = parallel::cuda_status();
+    if (!status.usable) GTEST_SKIP() << status.why_not;
+  }
+};
+
+// All textures, normal maps, masks and vertex colours, opaque; in one band and in several.
+TEST_F(CudaMaterials, EqualSerial) {
+  Scene scene = everything();
+  const SceneBinding binding(scene);
+  const Camera camera = near_camera();
+  for (const Shader shader : {Shader::material, Shader::phong, Shader::depth, Shader::wireframe}) {
+    SCOPED_TRACE(name(shader));
+    Renderer serial(options(Device::serial, shader));
+    const Frame expected = draw(serial, binding.view(), camera);
+    ASSERT_GT(expected.stats.triangles.clipped, 0U);
+    for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{2300000}}) {
+      RenderOptions o = options(Device::cuda, shader);
+      o.memory_limit = limit;
+      Renderer cuda(o);
+      const Frame frame = draw(cuda, binding.view(), camera);
+      EXPECT_TRUE(same_surfaces(frame, expected));
+      EXPECT_TRUE(same_counts(frame.stats, expected.stats));
+      EXPECT_TRUE(same_picture(frame, expected, 0));
+      EXPECT_TRUE(same_colors(frame.color, expected.color));
+      EXPECT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
+      if (shader == Shader::material) {
+        EXPECT_EQ(counter(frame.stats, "bands") > 1, limit > 0);
+      }
+      EXPECT_NE(frame.stats.why.find(shader == Shader::wireframe ? "by the host" : "on the device"),
+                std::string::npos)
+          << frame.stats.why;
+    }
+  }
+}
+
+// The papers' rasterizers leave what is tested to the same code, and the visibility that shades at
+// once knows no colour of it.
+TEST_F(CudaMaterials, TheFamilyEqualsSerial) {
+  const Scene scene = everything();
+  const SceneBinding binding(scene);
+  Renderer serial(options(Device::serial));
+  const Frame expected = draw(serial, binding.view(), near_camera());
+  for (const auto& [rasterizer, visibility] :
+       {std::pair{"scanline", "tuple"}, {"binned", "tuple"}, {"tiled", "sorted"}}) {
+    RenderOptions o = options(Device::cuda);
+    o.rasterizer = rasterizer;
+    o.visibility = visibility;
+    Renderer cuda(o);
+    const Frame frame = draw(cuda, binding.view(), near_camera());
+    ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
+    EXPECT_EQ(frame.stats.visibility, visibility);
+    EXPECT_TRUE(same_surfaces(frame, expected)) << rasterizer;
+    EXPECT_TRUE(same_picture(frame, expected, 0)) << rasterizer;
+    EXPECT_TRUE(same_colors(frame.color, expected.color)) << rasterizer;
+    EXPECT_EQ(frame.stats.fragments, expected.stats.fragments);
+  }
+}
+
+// Whether a mask cuts a hole depends on nothing but the fragment: what lies behind shows.
+TEST_F(CudaMaterials, MasksShowWhatLiesBehind) {
+  Scene scene = everything();
+  for (Material& m : scene.materials) m.alpha_mode = AlphaMode::opaque;
+  Renderer cuda(options(Device::cuda, Shader::id));
+  const Frame whole = draw(cuda, SceneBinding(scene).view(), near_camera());
+  scene.materials[1].alpha_mode = scene.materials[3].alpha_mode = AlphaMode::mask;
+  const Frame frame = draw(cuda, SceneBinding(scene).view(), near_camera());
+  std::uint64_t holes = 0;
+  for (std::size_t i = 0; i < whole.ids.pixels().size(); ++i)
+    holes += frame.ids.pixels()[i] != whole.ids.pixels()[i];
+  EXPECT_GT(holes, 500U);
+  EXPECT_EQ(frame.stats.fragments, whole.stats.fragments);
+}
+
+// Materials that blend, in linear light or under a lit shader; with an opacity; with masks among
+// them.
+TEST_F(CudaMaterials, LayersEqualTheThreads) {
+  struct Way {
+    Shader shader;
+    Transparency method;
+    float opacity;
+  };
+  Scene scene = everything();
+  scene.materials[0].alpha_mode = AlphaMode::blend;
+  scene.materials[0].alpha_texture = 1;
+  scene.materials[2].alpha_mode = AlphaMode::blend;
+  const SceneBinding binding(scene);
+  std::uint64_t blended = 0;
+  for (const Way& way : {Way{Shader::material, Transparency::exact, 1},
+                         {Shader::material, Transparency::unsorted, 0.6F},
+                         {Shader::material, Transparency::none, 1},
+                         {Shader::lambert, Transparency::exact, 1},
+                         {Shader::flat, Transparency::exact, 0.7F}}) {
+    SCOPED_TRACE(std::string(name(way.shader)).append(" ").append(std::to_string(way.opacity)));
+    RenderOptions o = options(Device::threads, way.shader);
+    o.transparency.method = way.method;
+    o.opacity = way.opacity;
+    Renderer threads(o);
+    o.device = Device::cuda;
+    Renderer cuda(o);
+    const LayerPicture expected = take(threads, binding.view(), near_camera());
+    const LayerPicture frame = take(cuda, binding.view(), near_camera());
+    ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
+    EXPECT_TRUE(same_bits(frame, expected));
+    EXPECT_EQ(frame.counter("translucent fragments"), expected.counter("translucent fragments"));
+    blended += frame.counter("translucent fragments");
+  }
+  EXPECT_GT(blended, 10000U);
+}
+
+// A scene without materials whose vertex colours are translucent has one that blends.
+TEST_F(CudaMaterials, TranslucentVertexColoursEqualTheThreads) {
+  Scene scene = everything();
+  scene.materials.clear();
+  scene.meshes[0].face_materials.clear();
+  const SceneBinding binding(scene);
+  for (const Shader shader : {Shader::material, Shader::flat}) {
+    Renderer threads(options(Device::threads, shader)), cuda(options(Device::cuda, shader));
+    const LayerPicture frame = take(cuda, binding.view(), near_camera());
+    EXPECT_TRUE(same_bits(frame, take(threads, binding.view(), near_camera())));
+    EXPECT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
+    EXPECT_GT(frame.counter("translucent fragments"), 1000U);
+  }
+}
+
+TEST_F(CudaMaterials, TexturesAreCopiedWhenTheyAreNew) {
+  Scene scene = everything();
+  Renderer serial(options(Device::serial)), cuda(options(Device::cuda));
+  const auto copied = [&] {
+    const SceneBinding binding(scene);
+    const Frame frame = draw(cuda, binding.view(), near_camera());
+    EXPECT_TRUE(same_picture(frame, draw(serial, binding.view(), near_camera()), 0));
+    return counter(frame.stats, "textures copied");
+  };
+  // Each of the three is colour for one material and data for another.
+  EXPECT_EQ(copied(), 6U);
+  EXPECT_EQ(copied(), 0U);
+  scene.textures[0].wrap_u = Wrap::clamp_to_edge;  // that is no texel
+  EXPECT_EQ(copied(), 0U);
+  for (Rgba8& texel : scene.textures[2].image.pixels()) texel.g ^= 0xff;
+  EXPECT_EQ(copied(), 2U);
+}
+
+/// A picture with `second` drawn over `first`.
+Frame drawn_over(const RenderOptions& o, const SceneView& first, const SceneView& second) {
+  Renderer renderer(o);
+  Frame frame = draw(renderer, first, near_camera());
+  Targets targets;
+  targets.color8 = frame.color8.view();
+  targets.color = frame.color.view();
+  targets.depth = frame.depth.view();
+  targets.ids = frame.ids.view();
+  targets.over = true;
+  frame.stats = renderer.render(second, near_camera(), targets);
+  return frame;
+}
+
+TEST_F(CudaMaterials, PicturesDrawnOverEqualTheThreads) {
+  const Scene masks = everything();
+  Scene behind = everything(), blending = everything();
+  for (Vec3& p : behind.meshes[0].positions) p = {p.y, p.z, p.x};
+  blending.materials[0].alpha_mode = AlphaMode::blend;
+  const SceneBinding first(behind);
+  struct Way {
+    const Scene* scene;
+    Shader shader;
+    bool on_device;
+  };
+  for (const Way& way : {Way{&masks, Shader::material, true},
+                         {&masks, Shader::flat, true},
+                         {&masks, Shader::wireframe, true},
+                         {&blending, Shader::phong, true},
+                         {&blending, Shader::material, false}}) {
+    SCOPED_TRACE(name(way.shader));
+    const SceneBinding second(*way.scene);
+    const Frame expected =
+        drawn_over(options(Device::threads, way.shader), first.view(), second.view());
+    for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{2500000}}) {
+      RenderOptions o = options(Device::cuda, way.shader);
+      o.memory_limit = limit;
+      const Frame frame = drawn_over(o, first.view(), second.view());
+      EXPECT_EQ(frame.stats.device == Device::cuda, way.on_device) << frame.stats.device_why;
+      if (way.on_device && way.shader == Shader::material) {
+        EXPECT_EQ(counter(frame.stats, "bands") > 1, limit > 0);
+      }
+      EXPECT_TRUE(same_picture(frame, expected, 0));
+      EXPECT_TRUE(same_colors(frame.color, expected.color));
+      EXPECT_EQ(std::memcmp(frame.depth.pixels().data(), expected.depth.pixels().data(),
+                            frame.depth.pixels().size_bytes()),
+                0);
+      EXPECT_TRUE(std::ranges::equal(frame.ids.pixels(), expected.ids.pixels()));
+      EXPECT_EQ(frame.stats.pixels_covered, expected.stats.pixels_covered);
+    }
+    EXPECT_GT(expected.stats.pixels_covered, 500U);
+    EXPECT_LT(expected.stats.pixels_covered, 9000U);
+  }
+}
+
+TEST_F(CudaMaterials, ACallersDiscardIsTheCPUs) {
+  const raster::Program program(
+      [](std::uint32_t v) {
+        return raster::VertexOutput<Vec4>{{v == 1 ? 3.0F : -1.0F, v == 2 ? 3.0F : -1.0F, 0.5F, 1},
+                                          {}};
+      },
+      [](const Vec4&, const raster::Fragment&) {
+        return Vec4{1, 0, 0, 1};
+      },
+      [](const Vec4&, const raster::Fragment& f) { return f.x % 2 == 0; });
+  raster::Draw one = program.draw(3);
+  Renderer cuda(options(Device::cuda)), threads(options(Device::threads));
+  const Frame frame = draw(cuda, {&one, 1}, program, program.test());
+  EXPECT_EQ(frame.stats.device, Device::threads);
+  EXPECT_NE(frame.stats.device_why.find("discard"), std::string::npos) << frame.stats.device_why;
+  EXPECT_TRUE(same_surfaces(frame, draw(threads, {&one, 1}, program, program.test())));
+}
+
+}  // namespace
+}  // namespace rastrum::test
