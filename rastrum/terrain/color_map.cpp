@@ -1,7 +1,6 @@
 #include <rastrum/terrain/color_map.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -9,47 +8,12 @@
 #include <rastrum/terrain/shadow_ray.hpp>
 
 namespace rastrum::terrain {
-namespace {
-
-/// Display values at equal steps of t; found by walking L* = 30 + 67 t in CIE Lab through these
-/// hues.
-constexpr std::array<std::array<double, 3>, 8> kHypsometric{{{36, 79, 56},
-                                                             {61, 100, 60},
-                                                             {94, 121, 68},
-                                                             {139, 138, 82},
-                                                             {181, 157, 105},
-                                                             {208, 181, 143},
-                                                             {224, 210, 191},
-                                                             {247, 247, 246}}};
-
-/// The unit vector to the sun: east, south, up.
-struct ToSun {
-  float x, y, z;
-};
-ToSun to_sun(const Sun& sun) {
+ToSun ToSun::of(const Sun& sun) {
   const SunRay ray = sun_ray({sun.azimuth_deg, 45});
   const double up = std::sin(sun.elevation_deg * std::numbers::pi / 180);
   const double flat = std::cos(sun.elevation_deg * std::numbers::pi / 180);
   return {static_cast<float>(ray.x * flat), static_cast<float>(ray.y * flat),
           static_cast<float>(up)};
-}
-
-float shade(float dx, float dy, const ToSun& s, float ambient) {
-  const float cosine = (s.z - dx * s.x - dy * s.y) / std::sqrt(1 + dx * dx + dy * dy);
-  return ambient + (1 - ambient) * (cosine > 0 ? cosine : 0);
-}
-
-}  // namespace
-
-Rgba8 height_color(double t) {
-  const double at = (t > 0 ? std::min(t, 1.0) : 0.0) * (kHypsometric.size() - 1);
-  const auto i = std::min(static_cast<std::size_t>(at), kHypsometric.size() - 2);
-  const double f = at - static_cast<double>(i);
-  const auto channel = [&](std::size_t c) {
-    return static_cast<std::uint8_t>(
-        std::lround(kHypsometric[i][c] + f * (kHypsometric[i + 1][c] - kHypsometric[i][c])));
-  };
-  return {channel(0), channel(1), channel(2), 255};
 }
 
 Image<Rgba8> colors_by_height(ImageView<const float> heights) {
@@ -73,12 +37,12 @@ Image<Rgba8> colors_by_height(ImageView<const float> heights) {
 }
 
 float hill_shade(float dx, float dy, const Sun& sun, float ambient) {
-  return shade(dx, dy, to_sun(sun), ambient);
+  return ToSun::of(sun).shade(dx, dy, ambient);
 }
 
 Image<float> hill_shading(ImageView<const float> heights, const Sun& sun, float ambient,
                           Tiling tiling) {
-  const ToSun to = to_sun(sun);
+  const ToSun to = ToSun::of(sun);
   Image<float> light(heights.width, heights.height);
   const auto at = [&](std::int64_t x, std::int64_t y, float own) {
     const float h = heights(static_cast<int>(tiled(x, heights.width, tiling)),
@@ -89,8 +53,8 @@ Image<float> hill_shading(ImageView<const float> heights, const Sun& sun, float 
     for (int x = 0; x < heights.width; ++x) {
       const float own = heights(x, y);
       if (!std::isfinite(own)) continue;
-      light(x, y) = shade((at(x + 1, y, own) - at(x - 1, y, own)) / 2,
-                          (at(x, y + 1, own) - at(x, y - 1, own)) / 2, to, ambient);
+      light(x, y) = to.shade((at(x + 1, y, own) - at(x - 1, y, own)) / 2,
+                             (at(x, y + 1, own) - at(x, y - 1, own)) / 2, ambient);
     }
   return light;
 }

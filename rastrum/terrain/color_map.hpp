@@ -1,6 +1,10 @@
 // Colours for heights that have none, and the light of a hillside.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
+
+#include <rastrum/core/config.hpp>
 #include <rastrum/core/image.hpp>
 #include <rastrum/terrain/shadows.hpp>
 
@@ -9,7 +13,23 @@ namespace rastrum::terrain {
 /// From lowland (t = 0) to snow (t = 1), clamped; NaN is 0. Hypsometric hues whose lightness rises
 /// evenly (CIE L* from 30 to 97), so that equal steps of height look equal and a print in grey
 /// still shows them.
-[[nodiscard]] Rgba8 height_color(double t);
+[[nodiscard]] RASTRUM_HD inline Rgba8 height_color(double t) {
+  // Display values at equal steps of t; found by walking L* = 30 + 67 t in CIE Lab through these
+  // hues.
+  constexpr std::size_t kHues = 8;
+  constexpr double kHypsometric[kHues][3] = {{36, 79, 56},    {61, 100, 60},   {94, 121, 68},
+                                             {139, 138, 82},  {181, 157, 105}, {208, 181, 143},
+                                             {224, 210, 191}, {247, 247, 246}};
+  const double at = (t > 0 ? (t < 1 ? t : 1.0) : 0.0) * (kHues - 1);
+  const auto whole = static_cast<std::size_t>(at);
+  const std::size_t i = whole < kHues - 2 ? whole : kHues - 2;
+  const double f = at - static_cast<double>(i);
+  const auto channel = [&](std::size_t c) {
+    return static_cast<std::uint8_t>(
+        std::lround(kHypsometric[i][c] + f * (kHypsometric[i + 1][c] - kHypsometric[i][c])));
+  };
+  return {channel(0), channel(1), channel(2), 255};
+}
 
 /// height_color of each height between the lowest and the highest; holes are black.
 [[nodiscard]] Image<Rgba8> colors_by_height(ImageView<const float> heights);
@@ -17,6 +37,17 @@ namespace rastrum::terrain {
 /// What a slope shows of the sun's light: ambient + (1 − ambient) · max(0, cosine between the
 /// normal and the sun). `dx`, `dy`: change of the height over a cell to the east and to the south.
 [[nodiscard]] float hill_shade(float dx, float dy, const Sun& sun, float ambient);
+
+/// The unit vector to the sun: east, south, up.
+struct ToSun {
+  float x = 0, y = 0, z = 1;
+  static ToSun of(const Sun& sun);
+  /// hill_shade, for many slopes.
+  [[nodiscard]] RASTRUM_HD float shade(float dx, float dy, float ambient) const {
+    const float cosine = (z - dx * x - dy * y) / std::sqrt(1 + dx * dx + dy * dy);
+    return ambient + (1 - ambient) * (cosine > 0 ? cosine : 0);
+  }
+};
 
 /// hill_shade of each cell, by central differences within the tiled map; holes next to a cell count
 /// as its own height.

@@ -25,9 +25,11 @@ FrameWork device_work(const Terrain& map, const TerrainOptions& options,
     return static_cast<std::uint64_t>(width * height);
   };
   const std::uint64_t pixels = area(options.width, options.height);
+  // A function costs more a slice than a map, on either; how much is not known.
   const std::uint64_t map_bytes =
-      area(map.heights()->width(), map.heights()->height()) * sizeof(float) +
-      area(map.colors()->width(), map.colors()->height()) * sizeof(Rgba8);
+      map.is_map() ? area(map.heights()->width(), map.heights()->height()) * sizeof(float) +
+                         area(map.colors()->width(), map.colors()->height()) * sizeof(Rgba8)
+                   : 0;
   const bool words = options.method == Method::words && !options.classic;
   const double slices = std::min(slice_count(options), static_cast<double>(kMaxSlices)) *
                         static_cast<double>(options.width);

@@ -9,6 +9,7 @@
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/terrain/color_map.hpp>
+#include <rastrum/terrain/function_light.hpp>
 
 namespace rastrum::terrain {
 namespace {
@@ -45,24 +46,16 @@ Image<float> light_of(const HeightMap& map, bool shade, const Light& light,
   return factor;
 }
 
-Rgba8 lit(Rgba8 color, float factor) {
-  const auto channel = [&](std::uint8_t c) {
-    return static_cast<std::uint8_t>(
-        std::clamp(static_cast<float>(c) * factor + 0.5F, 0.0F, 255.0F));
-  };
-  return {channel(color.r), channel(color.g), channel(color.b), 255};
-}
-
-/// Differences are taken over this many cells.
-constexpr double kSlopeStep = 1;
-
 class LitFunction final : public Surface {
  public:
   LitFunction(HeightFunction function, double low, double high, const Light& light)
       : function_(std::move(function)),
-        low_(low),
-        scale_(high > low ? 1 / (high - low) : 0),
-        light_(light) {
+        light_{low,
+               high > low ? 1 / (high - low) : 0,
+               light.hill_shading,
+               light.shadows,
+               light.ambient,
+               ToSun::of(light.sun)} {
     const double azimuth = light.sun.azimuth_deg * (std::numbers::pi / 180);
     const double elevation = light.sun.elevation_deg * (std::numbers::pi / 180);
     if (light.shadows == Shadows::none) return;
@@ -81,27 +74,23 @@ class LitFunction final : public Surface {
     for (std::size_t i = 0; i < n; ++i) out[i] = color(x[i], y[i]);
   }
 
- private:
-  struct Step {
-    double x, y, climb;
-  };
+  [[nodiscard]] std::optional<FunctionView> view() const {
+    const auto* const named = function_.target<NamedHeights>();
+    return named == nullptr ? std::nullopt
+                            : std::optional(FunctionView{named->function, light_, steps_});
+  }
 
+ private:
   [[nodiscard]] Rgba8 color(double x, double y) const {
     const std::array<double, 5> xs{x, x - kSlopeStep, x + kSlopeStep, x, x};
     const std::array<double, 5> ys{y, y, y, y - kSlopeStep, y + kSlopeStep};
     std::array<float, 5> h{};
     function_(xs.data(), ys.data(), h.size(), h.data());
-    float factor = 1;
-    if (light_.hill_shading)
-      factor = hill_shade((h[2] - h[1]) / static_cast<float>(2 * kSlopeStep),
-                          (h[4] - h[3]) / static_cast<float>(2 * kSlopeStep), light_.sun,
-                          light_.ambient);
-    return lit(height_color((static_cast<double>(h[0]) - low_) * scale_),
-               shadowed(x, y, h[0], factor));
+    const float factor = light_.slope(h[1], h[2], h[3], h[4]);
+    return light_.color(h[0], light_.shadowed(factor, hidden_samples(x, y, h[0])));
   }
 
-  [[nodiscard]] float shadowed(double x, double y, float own, float factor) const {
-    if (steps_.empty()) return factor;
+  [[nodiscard]] int hidden_samples(double x, double y, float own) const {
     constexpr std::size_t kBatch = 64;
     std::array<double, kBatch> xs{}, ys{};
     std::array<float, kBatch> h{};
@@ -114,21 +103,15 @@ class LitFunction final : public Surface {
       }
       function_(xs.data(), ys.data(), n, h.data());
       for (std::size_t k = 0; k < n; ++k)
-        hidden += own + static_cast<float>(steps_[at + k].climb) < h[k] ? 1 : 0;
+        hidden += FunctionLight::hides(h[k], own, steps_[at + k]) ? 1 : 0;
       if (light_.shadows == Shadows::sharp && hidden != 0) break;
     }
-    if (light_.shadows == Shadows::accumulated)
-      return factor * std::sqrt(1 / (1 + static_cast<float>(hidden)));
-    const float least = std::min(factor, light_.ambient);
-    if (light_.shadows == Shadows::sharp) return hidden != 0 ? least : factor;
-    constexpr float kWholeShadow = 8;
-    return factor + (least - factor) * std::min(1.0F, static_cast<float>(hidden) / kWholeShadow);
+    return hidden;
   }
 
   HeightFunction function_;
-  double low_, scale_;
-  Light light_;
-  std::vector<Step> steps_;
+  FunctionLight light_;
+  std::vector<FunctionStep> steps_;
 };
 
 }  // namespace
@@ -167,6 +150,11 @@ Terrain function_terrain(HeightFunction function, double low, double high, const
   if (!std::isfinite(light.sun.azimuth_deg) || !std::isfinite(light.sun.elevation_deg))
     throw Error(Errc::invalid_argument, "the sun's angles must be finite");
   return Terrain(std::make_shared<const LitFunction>(std::move(function), low, high, light));
+}
+
+std::optional<FunctionView> function_view(const Surface& surface) {
+  const auto* const lit_function = dynamic_cast<const LitFunction*>(&surface);
+  return lit_function == nullptr ? std::nullopt : lit_function->view();
 }
 
 }  // namespace rastrum::terrain

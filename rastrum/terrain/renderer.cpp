@@ -53,8 +53,10 @@ struct TerrainRenderer::Impl {
   [[nodiscard]] DeviceChoice place(const Terrain& terrain, const TerrainOptions& how,
                                    const TerrainTargets& targets);
   void prepare(const Terrain& terrain, Device where);
+  /// `roll`, which a device heeds: null for an upright picture.
   Counts draw(const Terrain& terrain, const TerrainOptions& how, const TerrainCamera& camera,
-              const TerrainTargets& targets, TerrainStats& stats, Stopwatch& stopwatch);
+              const Roll* roll, const TerrainTargets& targets, TerrainStats& stats,
+              Stopwatch& stopwatch);
   Counts draw_rolled(const Terrain& terrain, const TerrainCamera& camera,
                      const TerrainTargets& targets, TerrainStats& stats, Stopwatch& stopwatch);
 
@@ -83,18 +85,20 @@ DeviceChoice TerrainRenderer::Impl::place(const Terrain& terrain, const TerrainO
                                           const TerrainTargets& targets) {
   DeviceChoice choice{options.device, device_why};
   if (options.device != Device::cuda) return choice;
-  const std::uint64_t bytes = terrain.is_map() ? device_bytes(terrain, how) : 0;
-  std::string why_not;
-  if (!terrain.is_map()) {
-    why_not = "this terrain is a function, which the CPU alone can call";
-  } else if (bytes > fits_gpu) {
+  std::string why_not = why_not_on_device(terrain, how);
+  const bool is_drawn_there = why_not.empty();
+  const std::uint64_t bytes = is_drawn_there ? device_bytes(terrain, how) : 0;
+  if (bytes > fits_gpu) {
     const std::uint64_t free = parallel::cuda_status().free_bytes + gpu->bytes();
     if (bytes > free)
-      why_not.append("a map of ")
-          .append(std::to_string(terrain.heights()->width()))
-          .append("x")
-          .append(std::to_string(terrain.heights()->height()))
-          .append(" cells in a picture of ")
+      why_not
+          .append(terrain.is_map() ? std::string("a map of ")
+                                         .append(std::to_string(terrain.heights()->width()))
+                                         .append("x")
+                                         .append(std::to_string(terrain.heights()->height()))
+                                         .append(" cells")
+                                   : "a function")
+          .append(" in a picture of ")
           .append(std::to_string(how.width))
           .append("x")
           .append(std::to_string(how.height))
@@ -110,7 +114,7 @@ DeviceChoice TerrainRenderer::Impl::place(const Terrain& terrain, const TerrainO
     return asked == Device::automatic
                ? choose_device(choice, device_work(terrain, how, targets), threads().concurrency())
                : choice;
-  if (terrain.is_map() && asked == Device::cuda)
+  if (is_drawn_there && asked == Device::cuda)
     throw Error(Errc::out_of_memory,
                 std::string("terrain: ").append(why_not).append("; use --device threads"));
   return {Device::threads, std::string("no CUDA: ").append(why_not)};
@@ -127,11 +131,12 @@ void TerrainRenderer::Impl::prepare(const Terrain& terrain, Device where) {
 }
 
 Counts TerrainRenderer::Impl::draw(const Terrain& terrain, const TerrainOptions& how,
-                                   const TerrainCamera& camera, const TerrainTargets& targets,
-                                   TerrainStats& stats, Stopwatch& stopwatch) {
+                                   const TerrainCamera& camera, const Roll* roll,
+                                   const TerrainTargets& targets, TerrainStats& stats,
+                                   Stopwatch& stopwatch) {
   if (stats.device == Device::cuda) {
     const auto lap = [&](const char* stage) { stopwatch.lap(stage); };
-    const Counts counts = gpu->draw(terrain, how, camera, targets, lap);
+    const Counts counts = gpu->draw(terrain, how, camera, roll, targets, lap);
     stats.slices = counts.slices;
     stats.device_bytes = gpu->bytes();
     return counts;
@@ -157,6 +162,9 @@ Counts TerrainRenderer::Impl::draw_rolled(const Terrain& terrain, const TerrainC
                                           const TerrainTargets& targets, TerrainStats& stats,
                                           Stopwatch& stopwatch) {
   const Upright upright = upright_of(options, camera);
+  const Roll roll(camera.roll_rad, options.width, options.height);
+  if (stats.device == Device::cuda)
+    return draw(terrain, upright.options, upright.camera, &roll, targets, stats, stopwatch);
   Image<Rgba8> colors;
   Image<float> depth;
   TerrainTargets whole;
@@ -168,20 +176,20 @@ Counts TerrainRenderer::Impl::draw_rolled(const Terrain& terrain, const TerrainC
     depth = Image<float>(upright.options.width, upright.options.height);
     whole.depth = depth.view();
   }
-  const Counts counts = draw(terrain, upright.options, upright.camera, whole, stats, stopwatch);
-  const auto row = [&](std::size_t y) {
-    if (!colors.empty())
-      roll_row(whole.color8, camera.roll_rad, static_cast<int>(y), targets.color8);
-    if (!depth.empty()) roll_row(whole.depth, camera.roll_rad, static_cast<int>(y), targets.depth);
+  const Counts counts =
+      draw(terrain, upright.options, upright.camera, nullptr, whole, stats, stopwatch);
+  const auto row = [&](std::size_t number) {
+    const int y = static_cast<int>(number);
+    for (int x = 0; x < options.width; ++x) {
+      if (!colors.empty()) targets.color8(x, y) = roll(std::as_const(colors).view(), x, y);
+      if (!depth.empty()) targets.depth(x, y) = roll(std::as_const(depth).view(), x, y);
+    }
   };
   const auto rows = static_cast<std::size_t>(options.height);
   if (stats.device == Device::serial)
     parallel::for_each_index(serial, rows, row);
   else
     parallel::for_each_index(threads(), rows, row);
-  if (stats.device == Device::cuda)
-    stats.device_why.append(stats.device_why.empty() ? "" : "; ")
-        .append("the CPU rolls the picture");
   stats.peak_bytes += colors.pixels().size_bytes() + depth.pixels().size_bytes();
   return counts;
 }
@@ -229,7 +237,7 @@ TerrainStats TerrainRenderer::render(const Terrain& terrain, const TerrainCamera
 
   const Counts counts =
       rolled ? impl_->draw_rolled(terrain, stats.camera, targets, stats, stopwatch)
-             : impl_->draw(terrain, options, stats.camera, targets, stats, stopwatch);
+             : impl_->draw(terrain, options, stats.camera, nullptr, targets, stats, stopwatch);
   stats.samples = counts.samples;
   stats.visible = counts.visible;
   stats.peak_bytes += impl_->memory.peak() + (impl_->ceiling ? impl_->ceiling->bytes() : 0) +

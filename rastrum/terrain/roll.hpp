@@ -4,6 +4,12 @@
 // of 90° both are the pixels themselves.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include <rastrum/core/config.hpp>
+#include <rastrum/core/image.hpp>
 #include <rastrum/terrain/options.hpp>
 
 namespace rastrum::terrain {
@@ -16,10 +22,55 @@ struct Upright {
 /// Throws Error{invalid_argument} where it would exceed the largest picture.
 [[nodiscard]] Upright upright_of(const TerrainOptions& options, const TerrainCamera& camera);
 
-/// Row y of `out`, which `roll_rad` turns counter-clockwise out of `upright`.
-void roll_row(const ImageView<const Rgba8>& upright, double roll_rad, int y,
-              const ImageView<Rgba8>& out) noexcept;
-void roll_row(const ImageView<const float>& upright, double roll_rad, int y,
-              const ImageView<float>& out) noexcept;
+/// The pixels of a picture of width × height that is turned counter-clockwise out of an upright
+/// one. Kernels copy it: sine and cosine are the host's library's, on every device.
+class Roll {
+ public:
+  Roll(double roll_rad, int width, int height);
+
+  [[nodiscard]] RASTRUM_HD Rgba8 operator()(const ImageView<const Rgba8>& upright, int x,
+                                            int y) const {
+    const Position at = position(upright.width, upright.height, x, y);
+    // Positions in 1/256 px, so that what is a centre up to rounding is one.
+    const auto u = static_cast<std::int64_t>(std::floor((at.x - 0.5) * 256 + 0.5));
+    const auto v = static_cast<std::int64_t>(std::floor((at.y - 0.5) * 256 + 0.5));
+    const auto tx = static_cast<std::uint32_t>(u & 255), ty = static_cast<std::uint32_t>(v & 255);
+    const auto pixel = [&](std::int64_t i, std::int64_t j) {
+      return upright(static_cast<int>(std::clamp<std::int64_t>(i, 0, upright.width - 1)),
+                     static_cast<int>(std::clamp<std::int64_t>(j, 0, upright.height - 1)));
+    };
+    const std::int64_t i = u >> 8, j = v >> 8;
+    const Rgba8 a = pixel(i, j), b = pixel(i + 1, j), c = pixel(i, j + 1), d = pixel(i + 1, j + 1);
+    const auto mix = [&](std::uint8_t Rgba8::*channel) {
+      const std::uint32_t above = a.*channel * (256 - tx) + b.*channel * tx;
+      const std::uint32_t below = c.*channel * (256 - tx) + d.*channel * tx;
+      return static_cast<std::uint8_t>((above * (256 - ty) + below * ty + 32768) >> 16);
+    };
+    return {mix(&Rgba8::r), mix(&Rgba8::g), mix(&Rgba8::b), mix(&Rgba8::a)};
+  }
+  [[nodiscard]] RASTRUM_HD float operator()(const ImageView<const float>& upright, int x,
+                                            int y) const {
+    const Position at = position(upright.width, upright.height, x, y);
+    // As for colours, or the floor of what is a centre up to rounding might be its neighbour.
+    const auto pixel = [](double p, int size) {
+      return static_cast<int>(std::clamp(std::floor(p + 1e-6), 0.0, size - 1.0));
+    };
+    return upright(pixel(at.x, upright.width), pixel(at.y, upright.height));
+  }
+
+ private:
+  struct Position {
+    double x, y;  ///< px in the upright picture
+  };
+  [[nodiscard]] RASTRUM_HD Position position(int upright_width, int upright_height, int x,
+                                             int y) const {
+    const double dx = x + 0.5 - width_ / 2.0, dy = y + 0.5 - height_ / 2.0;
+    return {upright_width / 2.0 + (dx * cos_ - dy * sin_),
+            upright_height / 2.0 + (dx * sin_ + dy * cos_)};
+  }
+
+  double cos_, sin_;
+  int width_, height_;
+};
 
 }  // namespace rastrum::terrain

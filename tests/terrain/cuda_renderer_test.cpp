@@ -221,30 +221,80 @@ TEST_F(CudaTerrain, AFrameLikeTheOneBeforeAllocatesNothingAndCopiesNoMap) {
   EXPECT_FALSE(std::ranges::equal(colors.pixels(), first.pixels()));
 }
 
-TEST_F(CudaTerrain, FunctionsGoToTheCpuAndTheStatisticsSayWhy) {
-  const Terrain waves = function_terrain(named_function("wavy"), 0, 80, {});
-  TerrainOptions options;
-  options.width = 80;
-  options.height = 60;
-  options.device = Device::cuda;
-  const Picture picture(waves, {.altitude = 100}, options);
-  EXPECT_EQ(picture.stats.device, Device::threads);
-  EXPECT_NE(picture.stats.device_why.find("function"), std::string::npos)
-      << picture.stats.device_why;
-  options.device = Device::serial;
-  expect_equal(Picture(waves, {.altitude = 100}, options), picture, "waves");
+TEST_F(CudaTerrain, NamedFunctionsAreTheReferencesBits) {
+  int i = 0;
+  for (const FunctionInfo& info : named_functions())
+    for (const Shadows shadows :
+         {Shadows::none, Shadows::accumulated, Shadows::sharp, Shadows::soft}) {
+      Light light;
+      light.sun = {70.0 + 40 * i, 12};
+      light.shadows = shadows;
+      light.hill_shading = i % 3 != 0;
+      light.march = {60, 70 + i};
+      TerrainOptions options;
+      options.width = 57 + i;
+      options.height = 40;
+      options.distance = 300;
+      options.dz = 0.02;
+      options.projection = static_cast<Projection>(i % 2);
+      if (i % 4 == 1) options.fog = {0.004, 20, {}};
+      const TerrainCamera camera{.x = 1e6 * (i % 5) + 470,
+                                 .y = 380.0 - 97 * i,
+                                 .altitude = 160,
+                                 .angle_rad = i * 0.7,
+                                 .horizon_px = 12,
+                                 .roll_rad = i % 5 == 4 ? 0.4 : 0};
+      expect_same_on_device(
+          function_terrain(named_function(info.name), info.low, info.high, light), camera, options,
+          std::string(info.name).append(" ").append(std::to_string(static_cast<int>(shadows))));
+      if (HasFailure()) return;
+      ++i;
+    }
 }
 
-TEST_F(CudaTerrain, ARollIsTheCpusAndTheStatisticsSayIt) {
+TEST_F(CudaTerrain, OtherFunctionsGoToTheCpuAndTheStatisticsSayWhy) {
+  const auto why = [](const Terrain& terrain, bool classic) {
+    TerrainOptions options;
+    options.width = 80;
+    options.height = 60;
+    options.classic = classic;
+    options.device = Device::cuda;
+    const Picture picture(terrain, {.altitude = 100}, options);
+    EXPECT_EQ(picture.stats.device, Device::threads);
+    options.device = Device::serial;
+    expect_equal(Picture(terrain, {.altitude = 100}, options), picture, "functions");
+    return picture.stats.device_why;
+  };
+  const HeightFunction own = [](const double* x, const double*, std::size_t n, float* out) {
+    for (std::size_t i = 0; i < n; ++i) out[i] = x[i] > 20 ? 40.0F : 0.0F;
+  };
+  EXPECT_NE(why(function_terrain(own, 0, 80, {}), false).find("caller's"), std::string::npos);
+  const auto flat = [](double, double) { return 3.0F; };
+  const auto grey = [](double, double) { return Rgba8{9, 9, 9, 255}; };
+  EXPECT_NE(why(Terrain::of(flat, grey), false).find("caller's"), std::string::npos);
+  const Terrain waves = function_terrain(named_function("wavy"), 0, 80, {});
+  EXPECT_NE(why(waves, true).find("classic"), std::string::npos);
+}
+
+TEST_F(CudaTerrain, RolledPicturesOfOneKindAreTheReferences) {
   std::mt19937 random(9);
   const Terrain terrain(test::random_map(50, 70, random));
   TerrainOptions options;
   options.width = 80;
   options.height = 60;
+  const TerrainCamera camera{.altitude = 90, .horizon_px = 20, .roll_rad = 1};
+  options.device = Device::serial;
+  const Picture expected(terrain, camera, options);
   options.device = Device::cuda;
-  const Picture rolled(terrain, {.roll_rad = 1}, options);
-  EXPECT_NE(rolled.stats.device_why.find("the CPU rolls"), std::string::npos);
-  EXPECT_EQ(rolled.stats.device, Device::cuda);
+  TerrainRenderer renderer(options);
+  Image<Rgba8> colors(80, 60);
+  Image<float> depth(80, 60);
+  const TerrainStats stats = renderer.render(terrain, camera, {colors.view(), {}});
+  EXPECT_EQ(stats.device, Device::cuda);
+  EXPECT_EQ(stats.device_why, "");
+  static_cast<void>(renderer.render(terrain, camera, {{}, depth.view()}));
+  EXPECT_TRUE(std::ranges::equal(colors.pixels(), expected.colors.pixels()));
+  EXPECT_TRUE(std::ranges::equal(depth.pixels(), expected.depth.pixels()));
 }
 
 TEST_F(CudaTerrain, AutoLeavesToTheThreadsWhatTheyDrawSooner) {

@@ -5,8 +5,11 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
+#include <string>
 
 #include <rastrum/terrain/methods.hpp>
+#include <rastrum/terrain/roll.hpp>
 #include <rastrum/terrain/shadows.hpp>
 #include <rastrum/terrain/terrain.hpp>
 
@@ -16,10 +19,12 @@ namespace rastrum::terrain {
 class DeviceRenderer {
  public:
   virtual ~DeviceRenderer() = default;
-  /// Fills `targets`, memory of the host, with a frame of a map without roll. Calls `lap` with the
-  /// name of each stage that is done. Throws Error{out_of_memory}, Error{no_device}.
-  virtual Counts draw(const Terrain& map, const TerrainOptions& options,
-                      const TerrainCamera& camera, const TerrainTargets& targets,
+  /// Fills `targets`, memory of the host, with a frame of a terrain of which
+  /// why_not_on_device says nothing; with `roll`, which may be null,
+  /// out of the upright one that options and camera are of. Calls `lap` with the name of each stage
+  /// that is done. Throws Error{out_of_memory}, Error{no_device}.
+  virtual Counts draw(const Terrain& terrain, const TerrainOptions& options,
+                      const TerrainCamera& camera, const Roll* roll, const TerrainTargets& targets,
                       const std::function<void(const char* stage)>& lap) = 0;
   /// Of the device's memory.
   [[nodiscard]] virtual std::uint64_t bytes() const = 0;
@@ -27,12 +32,19 @@ class DeviceRenderer {
 
 [[nodiscard]] std::unique_ptr<DeviceRenderer> make_device_renderer();
 
-/// The most of a device's memory that draw() takes for such frames.
-[[nodiscard]] std::uint64_t device_bytes(const Terrain& map, const TerrainOptions& options);
+/// Why a device does not draw such a terrain; empty: it does. A map, or a named function in its
+/// light.
+[[nodiscard]] std::string why_not_on_device(const Terrain& terrain, const TerrainOptions& options);
+
+/// The most of a device's memory that draw() takes for such frames, rolled or not.
+[[nodiscard]] std::uint64_t device_bytes(const Terrain& terrain, const TerrainOptions& options);
 
 /// sharp_shadows and hidden_samples of a map on the host; the same bits.
 [[nodiscard]] Image<std::uint8_t> sharp_shadows_on_device(ImageView<const float> heights,
                                                           const Sun& sun, Tiling tiling);
+/// soft_light of the points of the sun's disc, fewer than 256; the map is copied once.
+[[nodiscard]] Image<std::uint8_t> light_of_suns_on_device(ImageView<const float> heights,
+                                                          std::span<const Sun> suns, Tiling tiling);
 [[nodiscard]] Image<std::uint16_t> hidden_samples_on_device(ImageView<const float> heights,
                                                             const Sun& sun, const March& march,
                                                             Tiling tiling);

@@ -25,7 +25,7 @@ namespace rastrum::terrain {
   const MapSamples samples{on_device.view(), MapView(map.levels(), options, setup)};
   Counts counts = options.method == Method::words
                       ? draw_by_words(exec, samples, targets)
-                      : draw_by_teams(exec, PlanarWalk{samples, map.ceiling()}, targets);
+                      : draw_by_teams(exec, PlanarWalk{{samples}, map.ceiling()}, targets);
   counts.slices = setup.slices.size();
   return counts;
 }

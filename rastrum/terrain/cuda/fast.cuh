@@ -14,7 +14,8 @@
 // Before that, each member asks for one group of slices whether even the highest cells under it
 // would stay hidden (ceiling.hpp, `classic` its own bound); what does is left out by all.
 //
-// A walk over `Walk`, which says where samples lie: PlanarWalk here, ClassicWalk in classic.cuh.
+// A walk over `Walk`, which says where samples lie: PlanarWalk here, FunctionWalk in functions.cuh,
+// ClassicWalk in classic.cuh.
 // Work O(columns · slices), span O(slices / kTeamSlices · (kTeamSlices + rows)). Sizes are not
 // measured: at 1,920 columns there are as many teams as an A100 or H100 has multiprocessors.
 #pragma once
@@ -41,10 +42,10 @@ template <class Real>
   return row < static_cast<Real>(height) ? static_cast<std::int32_t>(row) : kNoRow;
 }
 
-/// The samples of setup.hpp.
-struct PlanarWalk {
-  MapSamples samples;
-  CeilingView ceiling;
+/// The samples of setup.hpp; who is derived from it bounds them.
+template <class AnySamples>
+struct SamplesWalk {
+  AnySamples samples;
 
   [[nodiscard]] RASTRUM_HD std::size_t columns() const { return samples.setup.ux.size(); }
   [[nodiscard]] RASTRUM_HD std::size_t slices() const { return samples.setup.slices.size(); }
@@ -62,6 +63,12 @@ struct PlanarWalk {
   [[nodiscard]] RASTRUM_HD bool ends(std::int32_t deepest, std::size_t k) const {
     return static_cast<float>(deepest) <= samples.setup.slices[k].lowest_row;
   }
+};
+
+/// Those of a map.
+struct PlanarWalk : SamplesWalk<MapSamples> {
+  CeilingView ceiling;
+
   /// What samples of columns [first, first + n) on slices [begin, end) do not rise above.
   [[nodiscard]] RASTRUM_HD std::int32_t lowest_row(std::size_t first, std::size_t n,
                                                    std::size_t begin, std::size_t end) const {

@@ -1,21 +1,34 @@
+// What of terrains a device draws, and in how much memory: without a header of CUDA.
 #include <algorithm>
 
 #include <rastrum/terrain/cuda/device.hpp>
+#include <rastrum/terrain/function_light.hpp>
 #include <rastrum/terrain/setup.hpp>
 
 namespace rastrum::terrain {
 
-std::uint64_t device_bytes(const Terrain& map, const TerrainOptions& options) {
+std::string why_not_on_device(const Terrain& terrain, const TerrainOptions& options) {
+  if (terrain.is_map()) return {};
+  if (!function_view(terrain.surface()))
+    return "this terrain is a function of the caller's or an expression, which the CPU alone can "
+           "call";
+  return options.classic ? "the classic picture of a function is the CPU's" : std::string();
+}
+
+std::uint64_t device_bytes(const Terrain& terrain, const TerrainOptions& options) {
   const auto area = [](std::int64_t width, std::int64_t height) {
     return static_cast<std::uint64_t>(width * height);
   };
   constexpr std::uint64_t kBytes = 4;  // of a height, a colour, a depth
-  const std::uint64_t cells = area(map.heights()->width(), map.heights()->height()) +
-                              area(map.colors()->width(), map.colors()->height());
+  const std::uint64_t cells = terrain.is_map()
+                                  ? area(terrain.heights()->width(), terrain.heights()->height()) +
+                                        area(terrain.colors()->width(), terrain.colors()->height())
+                                  : 0;
   // The maxima of 16 × 16 cells and more; a pyramid, whose odd sizes round up.
   std::uint64_t bytes = cells * kBytes + cells * kBytes / 128;
   if (options.filter == Filter::mip) bytes += cells * kBytes / 2;
-  bytes += 2 * kBytes * area(options.width, options.height);
+  // A rolled picture is no larger than the upright one that it is taken from.
+  bytes += 2 * 2 * kBytes * area(options.width, options.height);
   const auto slices = static_cast<std::uint64_t>(std::min(slice_count(options), kMaxSlices));
   // A batch of the words (words_listing.hpp): pairs, two screens, and what Thrust wants beside
   // them.
@@ -25,6 +38,10 @@ std::uint64_t device_bytes(const Terrain& map, const TerrainOptions& options) {
   constexpr std::uint64_t kTeamColumns = 16, kStartBytes = 16;
   if (options.classic)
     bytes += kStartBytes * slices * (static_cast<std::uint64_t>(options.width) / kTeamColumns + 1);
+  // The march of a function's shadows.
+  if (!terrain.is_map())
+    if (const auto function = function_view(terrain.surface()))
+      bytes += function->steps.size_bytes();
   // The setup's lists. An arena rounds blocks up by a quarter.
   constexpr std::uint64_t kSetupBytes = 64, kSmall = std::uint64_t{1} << 20;
   bytes += kSmall + kSetupBytes * slices;

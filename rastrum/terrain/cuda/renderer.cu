@@ -3,6 +3,7 @@
 // allocates nothing.
 #include <rastrum/terrain/cuda/device.hpp>
 #include <rastrum/terrain/cuda/draw.cuh>
+#include <rastrum/terrain/cuda/functions.cuh>
 
 #include <memory>
 #include <optional>
@@ -10,20 +11,37 @@
 namespace rastrum::terrain {
 namespace {
 
+/// Pixel (x, y) of a rolled picture.
+template <class T>
+struct RollPixel {
+  Roll roll;
+  ImageView<const T> upright;
+  RASTRUM_HD T operator()(int x, int y) const { return roll(upright, x, y); }
+};
+
 /// A picture of one kind on the device, and its way back.
 template <class T>
 class DevicePicture {
  public:
-  /// As large as `wanted`, or nothing where that is empty.
-  [[nodiscard]] ImageView<T> like(parallel::Cuda& exec, const ImageView<T>& wanted) {
+  /// Of this size; nothing where `wanted` is empty.
+  [[nodiscard]] ImageView<T> sized(parallel::Cuda& exec, const ImageView<T>& wanted, int width,
+                                   int height) {
     if (wanted.empty()) return {};
-    const std::size_t pixels =
-        static_cast<std::size_t>(wanted.width) * static_cast<std::size_t>(wanted.height);
+    const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     if (pixels_.size() != pixels) {
       pixels_ = {};
       pixels_ = parallel::make_buffer<T>(exec, pixels);
     }
-    return {pixels_.data(), wanted.width, wanted.height, wanted.width};
+    return {pixels_.data(), width, height, width};
+  }
+  /// As large as `wanted`, turned out of `upright`, on the device; nothing where that is empty.
+  void roll(parallel::Cuda& exec, const Roll& roll, const ImageView<T>& upright,
+            const ImageView<T>& wanted) {
+    if (wanted.empty()) return;
+    static_cast<void>(sized(exec, wanted, wanted.width, wanted.height));
+    const ImageView<const T> from{upright.data, upright.width, upright.height, upright.stride};
+    parallel::tabulate(exec, pixels_,
+                       cuda_detail::CellOfIndex<RollPixel<T>>{{roll, from}, wanted.width});
   }
   /// Does not wait.
   void copy_to(parallel::Cuda& exec, const ImageView<T>& target) const {
@@ -44,17 +62,24 @@ class DevicePicture {
 
 class CudaRenderer final : public DeviceRenderer {
  public:
-  Counts draw(const Terrain& map, const TerrainOptions& options, const TerrainCamera& camera,
-              const TerrainTargets& targets,
+  Counts draw(const Terrain& terrain, const TerrainOptions& options, const TerrainCamera& camera,
+              const Roll* roll, const TerrainTargets& targets,
               const std::function<void(const char* stage)>& lap) override {
-    keep(map, options.filter == Filter::mip);
+    if (terrain.is_map()) keep(terrain, options.filter == Filter::mip);
     lap("map");
-    const TerrainTargets on_device{colors_.like(exec_, targets.color8),
-                                   depths_.like(exec_, targets.depth)};
-    const Counts counts = draw_frame(exec_, *map_, options, camera, on_device);
+    const int width = options.width, height = options.height;
+    const TerrainTargets on_device{colors_.sized(exec_, targets.color8, width, height),
+                                   depths_.sized(exec_, targets.depth, width, height)};
+    const Counts counts = terrain.is_map() ? draw_frame(exec_, *map_, options, camera, on_device)
+                                           : draw_frame(exec_, *function_view(terrain.surface()),
+                                                        options, camera, on_device);
+    if (roll != nullptr) {
+      rolled_colors_.roll(exec_, *roll, on_device.color8, targets.color8);
+      rolled_depths_.roll(exec_, *roll, on_device.depth, targets.depth);
+    }
     lap("draw");
-    colors_.copy_to(exec_, targets.color8);
-    depths_.copy_to(exec_, targets.depth);
+    (roll != nullptr ? rolled_colors_ : colors_).copy_to(exec_, targets.color8);
+    (roll != nullptr ? rolled_depths_ : depths_).copy_to(exec_, targets.depth);
     exec_.wait();
     lap("copy");
     return counts;
@@ -96,8 +121,8 @@ class CudaRenderer final : public DeviceRenderer {
   parallel::DeviceBuffer<Rgba8> texels_;
   std::optional<DeviceMap> map_;
   bool whole_ = false;
-  DevicePicture<Rgba8> colors_;
-  DevicePicture<float> depths_;
+  DevicePicture<Rgba8> colors_, rolled_colors_;
+  DevicePicture<float> depths_, rolled_depths_;
 };
 
 }  // namespace

@@ -1,0 +1,100 @@
+// The light of a terrain that is a function, on any device: what a point shows of its colour, from
+// the heights about it and along the march to the sun. The host asks its function for many heights
+// at once (light.cpp), a device for one after the other; what is made of them is here.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <rastrum/core/config.hpp>
+#include <rastrum/core/image.hpp>
+#include <rastrum/terrain/color_map.hpp>
+#include <rastrum/terrain/function_values.hpp>
+#include <rastrum/terrain/light.hpp>
+#include <rastrum/terrain/terrain.hpp>
+
+namespace rastrum::terrain {
+
+[[nodiscard]] RASTRUM_HD inline Rgba8 lit(Rgba8 color, float factor) {
+  const auto channel = [&](std::uint8_t c) {
+    const float v = static_cast<float>(c) * factor + 0.5F;
+    return static_cast<std::uint8_t>(v > 0 ? (v < 255 ? v : 255.0F) : 0.0F);
+  };
+  return {channel(color.r), channel(color.g), channel(color.b), 255};
+}
+
+/// A sample of the march, from the point.
+struct FunctionStep {
+  double x, y, climb;
+};
+
+/// Differences are taken over this many cells.
+inline constexpr double kSlopeStep = 1;
+
+struct FunctionLight {
+  double low = 0, scale = 0;  ///< a height's place in the colours is (height − low) · scale
+  bool hill_shading = false;
+  Shadows shadows = Shadows::none;
+  float ambient = 0.45F;
+  ToSun to_sun{};
+
+  /// What a slope leaves of the light, from the heights kSlopeStep to each side.
+  [[nodiscard]] RASTRUM_HD float slope(float west, float east, float north, float south) const {
+    if (!hill_shading) return 1;
+    return to_sun.shade((east - west) / static_cast<float>(2 * kSlopeStep),
+                        (south - north) / static_cast<float>(2 * kSlopeStep), ambient);
+  }
+  /// Whether a sample of the march hides the sun.
+  [[nodiscard]] RASTRUM_HD static bool hides(float height, float own, const FunctionStep& step) {
+    return own + static_cast<float>(step.climb) < height;
+  }
+  /// What is left where so many hide it; of sharp shadows, one as many.
+  [[nodiscard]] RASTRUM_HD float shadowed(float factor, int hidden) const {
+    if (shadows == Shadows::none) return factor;
+    if (shadows == Shadows::accumulated)
+      return factor * std::sqrt(1 / (1 + static_cast<float>(hidden)));
+    const float least = ambient < factor ? ambient : factor;
+    if (shadows == Shadows::sharp) return hidden != 0 ? least : factor;
+    constexpr float kWholeShadow = 8;
+    const float part = static_cast<float>(hidden) / kWholeShadow;
+    return factor + (least - factor) * (part < 1 ? part : 1.0F);
+  }
+  [[nodiscard]] RASTRUM_HD Rgba8 color(float height, float factor) const {
+    return lit(height_color((static_cast<double>(height) - low) * scale), factor);
+  }
+};
+
+/// A named function in its light, for kernels; `steps` lie where they run.
+struct FunctionView {
+  NamedFunction function = NamedFunction::cosines;
+  FunctionLight light;
+  std::span<const FunctionStep> steps;
+
+  [[nodiscard]] RASTRUM_HD float height(double x, double y) const {
+    return height_of(function, x, y);
+  }
+  [[nodiscard]] RASTRUM_HD Rgba8 color(double x, double y) const {
+    const float own = height(x, y);
+    float factor = 1;
+    if (light.hill_shading)
+      factor = light.slope(height(x - kSlopeStep, y), height(x + kSlopeStep, y),
+                           height(x, y - kSlopeStep), height(x, y + kSlopeStep));
+    int hidden = 0;
+    for (const FunctionStep& step : steps) {
+      hidden += FunctionLight::hides(height(x + step.x, y + step.y), own, step) ? 1 : 0;
+      if (hidden != 0 && light.shadows == Shadows::sharp) break;
+    }
+    return light.color(own, light.shadowed(factor, hidden));
+  }
+};
+
+/// A terrain of function_terrain as a device can have it, its steps in the host's memory and as
+/// long as the surface; none of a caller's own function or surface.
+[[nodiscard]] std::optional<FunctionView> function_view(const Surface& surface);
+
+}  // namespace rastrum::terrain
