@@ -240,15 +240,13 @@ Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun
   return shadow;
 }
 
-Image<std::uint8_t> soft_light(ImageView<const float> heights, const Sun& sun, double radius_deg,
-                               const ShadowOptions& options) {
-  check(sun);
-  if (!(radius_deg >= 0 && radius_deg <= 45))
-    throw Error(Errc::invalid_argument, "the sun's radius must lie in 0 to 45 degrees");
+namespace {
+
+/// Points of the sun's disc: Vogel's spiral, equal areas, the golden angle apart.
+std::vector<Sun> points_of_disc(const Sun& sun, double radius_deg) {
   constexpr int kPoints = 16;
-  Image<std::uint16_t> lit(heights.width, heights.height);
+  std::vector<Sun> points;
   for (int i = 0; i < kPoints; ++i) {
-    // Vogel's spiral: equal areas, the golden angle apart.
     const double r = radius_deg * std::sqrt((i + 0.5) / kPoints);
     const double a = i * std::numbers::pi * (3 - std::sqrt(5.0));
     const double elevation = sun.elevation_deg + r * std::sin(a);
@@ -258,13 +256,32 @@ Image<std::uint8_t> soft_light(ImageView<const float> heights, const Sun& sun, d
     const double turn = std::min(180.0, std::abs(r * std::cos(a)) / std::max(across, 1e-9));
     Sun point{sun.azimuth_deg + std::copysign(turn, std::cos(a)), elevation};
     if (elevation > 90) point = {point.azimuth_deg + 180, 180 - elevation};
+    check(point);
+    points.push_back(point);
+  }
+  return points;
+}
+
+}  // namespace
+
+Image<std::uint8_t> soft_light(ImageView<const float> heights, const Sun& sun, double radius_deg,
+                               const ShadowOptions& options) {
+  check(sun);
+  if (!(radius_deg >= 0 && radius_deg <= 45))
+    throw Error(Errc::invalid_argument, "the sun's radius must lie in 0 to 45 degrees");
+  const std::vector<Sun> points = points_of_disc(sun, radius_deg);
+  if (const auto light = on_cuda(
+          options, [&] { return light_of_suns_on_device(heights, points, options.tiling); }))
+    return *light;
+  Image<std::uint16_t> lit(heights.width, heights.height);
+  for (const Sun& point : points) {
     const Image<std::uint8_t> shadow = sharp_shadows(heights, point, options);
     for (std::size_t k = 0; k < lit.pixels().size(); ++k)
       lit.pixels()[k] = static_cast<std::uint16_t>(lit.pixels()[k] + 1 - shadow.pixels()[k]);
   }
   Image<std::uint8_t> light(heights.width, heights.height);
   for (std::size_t k = 0; k < lit.pixels().size(); ++k)
-    light.pixels()[k] = static_cast<std::uint8_t>((lit.pixels()[k] * 255 + kPoints / 2) / kPoints);
+    light.pixels()[k] = part_of_suns(lit.pixels()[k], static_cast<std::uint32_t>(points.size()));
   return light;
 }
 

@@ -18,6 +18,7 @@
 #include <optional>
 #include <string_view>
 
+#include <rastrum/core/config.hpp>
 #include <rastrum/core/image.hpp>
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/terrain/terrain.hpp>
@@ -49,6 +50,11 @@ struct ShadowOptions {
 /// Cost: 16 × sharp_shadows.
 [[nodiscard]] Image<std::uint8_t> soft_light(ImageView<const float> heights, const Sun& sun,
                                              double radius_deg, const ShadowOptions& options = {});
+/// `seen` of so many points, as that mean.
+[[nodiscard]] RASTRUM_HD constexpr std::uint8_t part_of_suns(std::uint32_t seen,
+                                                             std::uint32_t points) {
+  return static_cast<std::uint8_t>((seen * 255 + points / 2) / points);
+}
 
 /// The march of paper 3 (6.2, listing 6.4): samples k = 1 … steps − 1 along the ray.
 struct March {

@@ -75,6 +75,24 @@ TEST_F(CudaShadows, FlatMapsHolesAndNightAreAsDefined) {
   EXPECT_THROW((void)sharp_shadows(flat.view(), {NAN, 40}, {Tiling::repeat, Device::cuda}), Error);
 }
 
+TEST_F(CudaShadows, SoftOnesAreTheMeansOfTheDefinitions) {
+  std::mt19937 random(33);
+  std::size_t partial = 0;
+  for (int i = 0; i < 12; ++i) {
+    HeightMap map = test::random_map(40 + 9 * i, 57, random, 0.4);
+    for (float& h : map.heights.pixels()) h = h / 6 - 20;
+    if (i % 3 == 1) map.heights.pixels()[static_cast<std::size_t>(70 * i)] = NAN;
+    // From a disc that is cut by the horizon to one about the zenith.
+    const Sun sun{31.0 * i, 0.1 + i * 8.1};
+    const Tiling tiling = static_cast<Tiling>(i % 3);
+    const auto expected = soft_light(map.heights.view(), sun, 3, {tiling, Device::serial});
+    const auto got = soft_light(map.heights.view(), sun, 3, {tiling, Device::cuda});
+    EXPECT_TRUE(std::ranges::equal(expected.pixels(), got.pixels())) << "case " << i;
+    for (const std::uint8_t v : got.pixels()) partial += v > 0 && v < 255 ? 1 : 0;
+  }
+  EXPECT_GT(partial, 3000U);
+}
+
 TEST_F(CudaShadows, CountsOfHiddenSamplesAreTheDefinitions) {
   std::mt19937 random(32);
   std::uint64_t hidden = 0;

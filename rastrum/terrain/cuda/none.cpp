@@ -17,6 +17,9 @@ std::unique_ptr<DeviceRenderer> make_device_renderer() {
 Image<std::uint8_t> sharp_shadows_on_device(ImageView<const float>, const Sun&, Tiling) {
   refuse();
 }
+Image<std::uint8_t> light_of_suns_on_device(ImageView<const float>, std::span<const Sun>, Tiling) {
+  refuse();
+}
 Image<std::uint16_t> hidden_samples_on_device(ImageView<const float>, const Sun&, const March&,
                                               Tiling) {
   refuse();

@@ -1,4 +1,4 @@
-// sharp_shadows and hidden_samples of maps that lie on the host, on a CUDA device.
+// sharp_shadows, soft_light and hidden_samples of maps that lie on the host, on a CUDA device.
 #include <rastrum/terrain/cuda/device.hpp>
 #include <rastrum/terrain/cuda/shadows.cuh>
 
@@ -30,6 +30,14 @@ Image<std::uint8_t> sharp_shadows_on_device(ImageView<const float> heights, cons
   return on_device<std::uint8_t>(heights,
                                  [&](parallel::Cuda& exec, const ImageView<const float>& map) {
                                    return sharp_shadows(exec, map, sun, tiling);
+                                 });
+}
+
+Image<std::uint8_t> light_of_suns_on_device(ImageView<const float> heights,
+                                            std::span<const Sun> suns, Tiling tiling) {
+  return on_device<std::uint8_t>(heights,
+                                 [&](parallel::Cuda& exec, const ImageView<const float>& map) {
+                                   return light_of_suns(exec, map, suns, tiling);
                                  });
 }
 

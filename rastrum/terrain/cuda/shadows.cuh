@@ -18,12 +18,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include <rastrum/parallel/cuda/reduce.cuh>
 #include <rastrum/terrain/cuda/map.cuh>
 #include <rastrum/terrain/shadow_kernels.hpp>
 #include <rastrum/terrain/shadow_ray.hpp>
+#include <rastrum/terrain/shadows.hpp>
 
 namespace rastrum::terrain {
 namespace cuda_detail {
@@ -55,6 +57,20 @@ struct IsNoHole {
 };
 struct IsLit {
   RASTRUM_HD std::uint8_t operator()(std::size_t) const { return 0; }
+};
+
+/// How many suns are seen, by one more or not.
+struct AddLit {
+  const std::uint8_t* lit;
+  const std::uint8_t* dark;
+  RASTRUM_HD std::uint8_t operator()(std::size_t i) const {
+    return static_cast<std::uint8_t>(lit[i] + 1 - dark[i]);
+  }
+};
+struct PartOfSuns {
+  const std::uint8_t* lit;
+  std::uint32_t suns;
+  RASTRUM_HD std::uint8_t operator()(std::size_t i) const { return part_of_suns(lit[i], suns); }
 };
 
 struct IsInShadow {
@@ -112,37 +128,78 @@ inline constexpr bool kAnyOrder<float, terrain::cuda_detail::Lower> = true;  // 
 
 namespace rastrum::terrain {
 
+/// A map with what lets rays skip parts of it, for any number of suns. Takes 4/3 of the map's
+/// bytes.
+class ShadowMap {
+ public:
+  /// `heights`, on the device, must outlive it. Waits.
+  ShadowMap(parallel::Cuda& exec, ImageView<const float> heights, Tiling tiling)
+      : levels_(heights), tiling_(tiling), width_(heights.width), height_(heights.height) {
+    using namespace cuda_detail;
+    levels_.append(exec, 1, WithoutHole{heights});
+    map_ = {levels_.last().data,
+            static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)};
+    while (!levels_.is_one_cell()) levels_.append(exec, 2, HighestCell{levels_.last(), 2});
+    levels_.finish(exec);
+    highest_ = parallel::to_host(exec, std::span(levels_.last().data, 1))[0];
+    lowest_ = parallel::reduce(exec, parallel::Computed(map_.size(), HeightOrNone{map_}),
+                               std::numeric_limits<float>::infinity(), Lower{});
+  }
+  [[nodiscard]] std::size_t cells() const { return map_.size(); }
+
+  /// sharp_shadows, row by row without gaps. Waits.
+  void sharp(parallel::Cuda& exec, const Sun& sun,
+             parallel::DeviceBuffer<std::uint8_t>& shadow) const {
+    using namespace cuda_detail;
+    const double relief = static_cast<double>(highest_) - static_cast<double>(lowest_);
+    std::vector<RayStep> steps;
+    if (relief > 0 && sun.elevation_deg > 0) steps = ray_steps(sun_ray(sun, relief), relief);
+    if (lowest_ <= highest_ && !(sun.elevation_deg > 0)) {
+      parallel::tabulate(exec, shadow, IsNoHole{map_});
+    } else if (steps.empty()) {
+      parallel::tabulate(exec, shadow, IsLit{});
+    } else {
+      const auto on_device = parallel::upload(exec, steps);
+      const IsInShadow dark{
+          {levels_.list(1), width_, height_, 0}, tiling_, {on_device.data(), on_device.size()}};
+      parallel::tabulate(exec, shadow, CellOfIndex<IsInShadow>{dark, width_});
+    }
+    exec.wait();
+  }
+
+ private:
+  DeviceLevels<float> levels_;
+  Tiling tiling_;
+  int width_, height_;
+  std::span<const float> map_;
+  float highest_ = 0, lowest_ = 0;
+};
+
 /// sharp_shadows of a map on the device, row by row without gaps.
 [[nodiscard]] inline parallel::DeviceBuffer<std::uint8_t> sharp_shadows(
     parallel::Cuda& exec, ImageView<const float> heights, const Sun& sun, Tiling tiling) {
-  using namespace cuda_detail;
-  const std::size_t cells =
-      static_cast<std::size_t>(heights.width) * static_cast<std::size_t>(heights.height);
-  DeviceLevels<float> levels(heights);
-  levels.append(exec, 1, WithoutHole{heights});
-  const std::span<const float> map(levels.last().data, cells);
-  while (!levels.is_one_cell()) levels.append(exec, 2, HighestCell{levels.last(), 2});
-  levels.finish(exec);
-  auto shadow = parallel::make_buffer<std::uint8_t>(exec, cells);
-  const float highest = parallel::to_host(exec, std::span(levels.last().data, 1))[0];
-  const float lowest = parallel::reduce(exec, parallel::Computed(cells, HeightOrNone{map}),
-                                        std::numeric_limits<float>::infinity(), Lower{});
-  const double relief = static_cast<double>(highest) - static_cast<double>(lowest);
-  std::vector<RayStep> steps;
-  if (relief > 0 && sun.elevation_deg > 0) steps = ray_steps(sun_ray(sun, relief), relief);
-  if (lowest <= highest && !(sun.elevation_deg > 0)) {
-    parallel::tabulate(exec, shadow, IsNoHole{map});
-  } else if (steps.empty()) {
-    parallel::tabulate(exec, shadow, IsLit{});
-  } else {
-    const auto on_device = parallel::upload(exec, steps);
-    const IsInShadow dark{{levels.list(1), heights.width, heights.height, 0},
-                          tiling,
-                          {on_device.data(), on_device.size()}};
-    parallel::tabulate(exec, shadow, CellOfIndex<IsInShadow>{dark, heights.width});
-  }
-  exec.wait();
+  const ShadowMap map(exec, heights, tiling);
+  auto shadow = parallel::make_buffer<std::uint8_t>(exec, map.cells());
+  map.sharp(exec, sun, shadow);
   return shadow;
+}
+
+/// How much of 255 is left by as many suns of one brightness, fewer than 256.
+[[nodiscard]] inline parallel::DeviceBuffer<std::uint8_t> light_of_suns(
+    parallel::Cuda& exec, ImageView<const float> heights, std::span<const Sun> suns,
+    Tiling tiling) {
+  const ShadowMap map(exec, heights, tiling);
+  auto shadow = parallel::make_buffer<std::uint8_t>(exec, map.cells());
+  auto light = parallel::make_buffer<std::uint8_t>(exec, map.cells());
+  parallel::tabulate(exec, light, cuda_detail::IsLit{});
+  for (const Sun& sun : suns) {
+    map.sharp(exec, sun, shadow);
+    parallel::tabulate(exec, light, cuda_detail::AddLit{light.data(), shadow.data()});
+  }
+  parallel::tabulate(
+      exec, light, cuda_detail::PartOfSuns{light.data(), static_cast<std::uint32_t>(suns.size())});
+  exec.wait();
+  return light;
 }
 
 /// hidden_samples of a map on the device, row by row without gaps.
