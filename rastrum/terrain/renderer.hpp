@@ -12,7 +12,8 @@ namespace rastrum::terrain {
 
 /// Draws frames with one set of options; keeps threads, scratch and pyramids between frames, and
 /// with Device::cuda the map that was drawn last in the device's memory. What a device cannot draw,
-/// a caller's function for one, is drawn by the CPU's threads, and TerrainStats::device_why says so.
+/// a caller's function for one, is drawn by the CPU's threads, and TerrainStats::device_why says
+/// so.
 class TerrainRenderer {
  public:
   /// Throws Error{invalid_argument} that names an option out of range, Error{no_device}.
