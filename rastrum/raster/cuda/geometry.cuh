@@ -15,6 +15,10 @@
 #include <rastrum/raster/geometry.hpp>
 #include <rastrum/raster/transform_source.hpp>
 
+/// Of functions that many kernels need and that are large: a call, where nvcc would compile them,
+/// for minutes, in each kernel.
+#define RASTRUM_HD_CALL RASTRUM_HD inline __attribute__((noinline))
+
 namespace rastrum::raster {
 
 /// The vertex stage of a draw. Spans of device memory.

@@ -30,8 +30,7 @@ struct MaterialOnDevice {
 
   RASTRUM_HD Vec4 operator()(std::uint64_t word, int x, int y, Vec2 from_centre = {0, 0}) const {
     const std::uint64_t id = id_of_word(word);
-    const float alpha =
-        blends ? alpha_at(scene, lit.geometry, id, x, y, from_centre, opacity) : opacity;
+    const float alpha = blends ? alpha_of(id, x, y, from_centre) : opacity;
     if (!(alpha > 0)) return {};
     const Vec3 c = shades ? color(id, x, y, from_centre) : lit.color(word, x, y, from_centre);
     if (alpha == 1) return {c.x, c.y, c.z, 1};
@@ -39,7 +38,11 @@ struct MaterialOnDevice {
   }
 
  private:
-  RASTRUM_HD Vec3 color(std::uint64_t id, int x, int y, Vec2 from_centre) const {
+  // A GPU has to show whether a copy of this object for the call costs more than it may.
+  RASTRUM_HD_CALL float alpha_of(std::uint64_t id, int x, int y, Vec2 from_centre) const {
+    return alpha_at(scene, lit.geometry, id, x, y, from_centre, opacity);
+  }
+  RASTRUM_HD_CALL Vec3 color(std::uint64_t id, int x, int y, Vec2 from_centre) const {
     const MaterialTriangle t(scene, lit.geometry, lit.geometry.draw_of(id), id);
     return shade_material(scene, t, MaterialPoint(t.planes, x, y, from_centre), linear);
   }
@@ -63,8 +66,11 @@ struct TestOnDevice {
       if (depth > 0 && !(std::bit_cast<float>(static_cast<std::uint32_t>(word >> kIdBits)) > depth))
         return false;
     }
-    if (!has_masks) return true;
-    const std::uint64_t id = id_of_word(word);
+    return !has_masks || passes_mask_of(id_of_word(word), x, y);
+  }
+
+ private:
+  RASTRUM_HD_CALL bool passes_mask_of(std::uint64_t id, int x, int y) const {
     const Draw& draw = geometry.draw_of(id);
     const auto p = static_cast<std::size_t>(id - draw.first_id);
     std::uint32_t tested = flags[geometry.number_of(draw)];

@@ -24,10 +24,10 @@ struct ShadingPlace {
   Vec2 from_centre;    ///< px
 };
 
-/// A call, not inline: it holds the clipper, and nvcc took minutes for kernels that had it several
-/// times.
-[[nodiscard]] __attribute__((noinline)) RASTRUM_HD inline ShadingPlace shading_place(
-    const DeviceGeometry& geometry, const SamplePattern& samples, std::uint64_t id, int x, int y) {
+/// It holds the clipper.
+[[nodiscard]] RASTRUM_HD_CALL ShadingPlace shading_place(const DeviceGeometry& geometry,
+                                                         const SamplePattern& samples,
+                                                         std::uint64_t id, int x, int y) {
   const Draw& draw = geometry.draw_of(id);
   ShadingPlace place{kIdMask - id, {0, 0}};
   for (int s = -1; s < samples.count; ++s) {
