@@ -1,5 +1,5 @@
-// The clipper's code: of clip.cpp for the host, and inline for a device, whose functions are of one
-// translation unit.
+// The clipper's code: of clip.cpp for the host, and in each translation unit for a device, where few
+// primitives need it, so that it stays a call there too.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include <rastrum/raster/clip.hpp>
 
 #if defined(__CUDACC__)
-#define RASTRUM_CLIP RASTRUM_HD inline
+#define RASTRUM_CLIP RASTRUM_HD inline __attribute__((noinline))
 #else
 #define RASTRUM_CLIP
 #endif

@@ -16,7 +16,7 @@
 #include <rastrum/raster/transform_source.hpp>
 
 /// Of functions that many kernels need and that are large: a call, where nvcc would compile them,
-/// for minutes, in each kernel.
+/// for minutes, in each kernel. A GPU has to show what the calls cost.
 #define RASTRUM_HD_CALL RASTRUM_HD inline __attribute__((noinline))
 
 namespace rastrum::raster {

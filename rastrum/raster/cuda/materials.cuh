@@ -38,7 +38,6 @@ struct MaterialOnDevice {
   }
 
  private:
-  // A GPU has to show whether a copy of this object for the call costs more than it may.
   RASTRUM_HD_CALL float alpha_of(std::uint64_t id, int x, int y, Vec2 from_centre) const {
     return alpha_at(scene, lit.geometry, id, x, y, from_centre, opacity);
   }

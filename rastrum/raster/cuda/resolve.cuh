@@ -54,7 +54,7 @@ struct LitOnDevice {
     if (opacity == 1) return {c.x, c.y, c.z, 1};
     return {c.x * opacity, c.y * opacity, c.z * opacity, opacity};
   }
-  RASTRUM_HD Vec3 color(std::uint64_t word, int x, int y, Vec2 from_centre) const {
+  RASTRUM_HD_CALL Vec3 color(std::uint64_t word, int x, int y, Vec2 from_centre) const {
     if (model == LitModel::id) return id_color(id_of_word(word));
     LitTriangle t;
     fetch_triangle(scene, geometry, word & kIdMask, model != LitModel::flat, t);
