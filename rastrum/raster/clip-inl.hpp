@@ -1,5 +1,5 @@
-// The clipper's code: of clip.cpp for the host, and in each translation unit for a device, where few
-// primitives need it, so that it stays a call there too.
+// The clipper's code: of clip.cpp for the host, and in each translation unit for a device, where
+// few primitives need it, so that it stays a call there too.
 #pragma once
 
 #include <algorithm>
