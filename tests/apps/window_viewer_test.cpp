@@ -103,7 +103,7 @@ class ViewerTest : public Program {
     options.width = 64;
     options.height = 32;
     options.screenshots = cli::NumberedName("", path("shot_%02d.png").string());
-    viewer = std::make_unique<Viewer>(std::move(owned), options, [] {});
+    viewer = std::make_unique<Viewer>(std::move(owned), options);
   }
   void TearDown() override {
     viewer.reset();
@@ -299,7 +299,7 @@ class MeshViewerTest : public Program {
     ViewerOptions options;
     options.width = 120;
     options.height = 90;
-    Viewer viewer(std::move(subject), options, [] {});
+    Viewer viewer(std::move(subject), options);
     Replay replay(read_script(path("script.json"), keys), viewer);
     while (!replay.finished()) replay.step();
     title = viewer.subject().title();

@@ -17,8 +17,10 @@
 namespace rastrum::cli::window {
 namespace {
 
-constexpr int kIdle_ms = 100;       ///< between looks at the clock where nothing moves
-constexpr int kFrame_ms = 8;        ///< where something does
+constexpr int kIdle_ms = 100;  ///< between looks at the clock where nothing moves
+/// Where something does. The thread that draws does not wake the window: SDL would send the window
+/// a message for it, which may come when the window is gone, and X ends the program for that.
+constexpr int kFrame_ms = 2;
 constexpr double kLongest_s = 0.1;  ///< a step of motion, so that a pause is not a leap
 constexpr int kImguiFrames = 3;     ///< until ImGui has settled after an event
 
@@ -43,7 +45,6 @@ class Screen {
     // another one.
     renderer_ = SDL_CreateRenderer(window_, -1, SDL_RENDERER_SOFTWARE);
     if (renderer_ == nullptr) undo_and_fail("the window cannot be drawn to");
-    wake_event_ = SDL_RegisterEvents(1);
     SDL_EventState(SDL_DROPFILE, SDL_ENABLE);
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;  // no file where the program happens to run
@@ -66,13 +67,6 @@ class Screen {
     SDL_GetRendererOutputSize(renderer_, &width, &height);
     return {width, height};
   }
-  /// From any thread.
-  void wake() const {
-    SDL_Event event{};
-    event.type = wake_event_;
-    SDL_PushEvent(&event);
-  }
-  [[nodiscard]] bool is_wake(const SDL_Event& event) const { return event.type == wake_event_; }
 
   /// The picture over the whole window, then ImGui's lists.
   void present(const Drawn* picture, std::uint64_t serial) {
@@ -129,7 +123,6 @@ class Screen {
   SDL_Texture* texture_ = nullptr;
   int width_ = 0, height_ = 0;
   std::uint64_t shown_ = 0;
-  Uint32 wake_event_ = 0;
   std::optional<ImguiFonts> fonts_;
 };
 
@@ -153,7 +146,7 @@ class Shell {
   Shell(std::unique_ptr<Subject> subject, const ViewerOptions& viewer, const ShellOptions& options,
         const Controls& controls)
       : screen_(subject->title(), viewer.width, viewer.height),
-        viewer_(std::move(subject), viewer, [this] { screen_.wake(); }),
+        viewer_(std::move(subject), viewer),
         controls_(controls) {
     if (options.script) replay_.emplace(*options.script, viewer_);
   }
@@ -190,7 +183,7 @@ class Shell {
     bool any = false;
     for (bool more = SDL_WaitEventTimeout(&event, timeout_ms) == 1; more;
          more = SDL_PollEvent(&event) == 1) {
-      any = any || !screen_.is_wake(event);
+      any = true;
       take(event);
     }
     return any;

@@ -18,8 +18,7 @@ struct ShellOptions {
 /// Draws the controls of a subject with ImGui; called inside of the panel's window.
 using Controls = std::function<void()>;
 
-/// Shows the window until it is closed. `make`: the viewer, told how to wake the window.
-/// Throws Error{no_device} where there is no display.
+/// Shows the window until it is closed. Throws Error{no_device} where there is no display.
 void run_shell(std::unique_ptr<Subject> subject, const ViewerOptions& viewer,
                const ShellOptions& options, const Controls& controls);
 

@@ -28,11 +28,8 @@ int scaled(int size, std::size_t step) {
 
 }  // namespace
 
-Viewer::Viewer(std::unique_ptr<Subject> subject, ViewerOptions options, std::function<void()> wake)
-    : subject_(std::move(subject)),
-      options_(std::move(options)),
-      resolution_(options_.target_ms),
-      worker_(std::move(wake)) {
+Viewer::Viewer(std::unique_ptr<Subject> subject, ViewerOptions options)
+    : subject_(std::move(subject)), options_(std::move(options)), resolution_(options_.target_ms) {
   subject_->resize(options_.width, options_.height);
 }
 

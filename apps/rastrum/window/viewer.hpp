@@ -29,8 +29,7 @@ struct ViewerOptions {
 
 class Viewer {
  public:
-  /// `wake`: called on another thread when there is something for update().
-  Viewer(std::unique_ptr<Subject> subject, ViewerOptions options, std::function<void()> wake);
+  Viewer(std::unique_ptr<Subject> subject, ViewerOptions options);
   /// Gives up the picture that is being drawn.
   ~Viewer();
 

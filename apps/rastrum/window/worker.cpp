@@ -5,8 +5,6 @@
 
 namespace rastrum::cli::window {
 
-Worker::Worker(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { run(); }) {}
-
 Worker::~Worker() {
   {
     const std::lock_guard lock(mutex_);
@@ -32,7 +30,6 @@ void Worker::run() {
       done_ = std::move(done);
     }
     changed_.notify_all();
-    if (wake_) wake_();
   }
 }
 

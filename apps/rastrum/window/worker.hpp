@@ -15,8 +15,7 @@ class Worker {
   using Done = std::function<void()>;
   using Job = std::function<Done()>;
 
-  /// `wake` is called on the worker's thread when a job has ended.
-  explicit Worker(std::function<void()> wake);
+  Worker() : thread_([this] { run(); }) {}
   /// Waits for a job that runs, and drops what it leaves.
   ~Worker();
   Worker(const Worker&) = delete;
@@ -34,7 +33,6 @@ class Worker {
  private:
   void run();
 
-  std::function<void()> wake_;
   bool busy_ = false;  ///< of the window's thread alone
   std::mutex mutex_;
   std::condition_variable changed_;
