@@ -57,7 +57,7 @@ class CudaMaterials : public testing::Test {
  protected:
   void SetUp() override {
     const parallel::CudaStatus status = parallel::cuda_status();
-    if (!status.usable) GTEST_SKIP() << status.why_not;
+    if (!status.usable) GTEST_SKIP() << "no device: " << status.why_not;
   }
 };
 
