@@ -86,7 +86,7 @@ struct Rows {
   void put(std::size_t i, const Pair<K, V>& pair) const { pairs[i] = pair; }
   void put_line(std::size_t i, const Pair<K, V>* line, std::size_t n) const {
     if (n == kLine)
-      std::copy_n(line, kLine, pairs + i);  // of known length: no call
+      std::copy_n(line, kLine, pairs + i);  // mostly
     else
       std::copy_n(line, n, pairs + i);
   }

@@ -186,10 +186,11 @@ HWY_INLINE void load_words(const Piece* const (&pieces)[kLanes], int part, I (&o
 #endif
 }
 
-/// Vertices of kLanes triangles and the first and last samples of their boxes.
+/// Vertices of kLanes triangles, the first and last samples of their boxes, and their depths.
 struct Triangles {
   I x[3], y[3];
   I x0, y0, x1, y1;
+  F z0, zx;
 };
 
 HWY_INLINE Triangles load_triangles(const Piece* const (&pieces)[kLanes]) {
@@ -197,7 +198,8 @@ HWY_INLINE Triangles load_triangles(const Piece* const (&pieces)[kLanes]) {
   I first[4], second[4];
   load_words(pieces, 0, first);
   load_words(pieces, 1, second);
-  Triangles t{{first[0], first[1], first[2]}, {first[3], second[0], second[1]}, {}, {}, {}, {}};
+  Triangles t{{first[0], first[1], first[2]}, {first[3], second[0], second[1]}, {}, {}, {}, {},
+              hn::BitCast(F32{}, second[2]),  hn::BitCast(F32{}, second[3])};
   const I before = hn::Set(d, kHalfPixel - 1), half = hn::Set(d, kHalfPixel);
   const auto least = [](const I(&v)[3]) HWY_ATTR { return hn::Min(v[0], hn::Min(v[1], v[2])); };
   const auto most = [](const I(&v)[3]) HWY_ATTR { return hn::Max(v[0], hn::Max(v[1], v[2])); };
@@ -208,8 +210,10 @@ HWY_INLINE Triangles load_triangles(const Piece* const (&pieces)[kLanes]) {
   return t;
 }
 
-void bins(const Piece* pieces, std::size_t n, Rect view, std::uint32_t* out) noexcept {
+void bins(const Piece* pieces, std::size_t n, const BinNumbers& numbers,
+          std::uint32_t* out) noexcept {
   const I32 d;
+  const Rect view = numbers.view;
   const int columns = (view.x1 - view.x0 + kBinSize - 1) / kBinSize;
   const auto bin_of = [&](I sample, int first) HWY_ATTR {
     static_assert(kBinSize == 1 << 6);
@@ -228,9 +232,10 @@ void bins(const Piece* pieces, std::size_t n, Rect view, std::uint32_t* out) noe
     const I bin = hn::Add(hn::Mul(row, hn::Set(d, columns)), column);
     HWY_ALIGN std::int32_t found[kLanes];
     hn::Store(hn::IfThenElse(hn::AndNot(empty, one), bin, hn::Set(d, -1)), d, found);
-    static_assert(kManyBins == static_cast<std::uint32_t>(-1));
     for (std::size_t k = 0; k < count; ++k)
-      out[i + k] = is_triangle(*lanes[k]) ? static_cast<std::uint32_t>(found[k]) : kManyBins;
+      out[i + k] = is_triangle(*lanes[k]) && found[k] >= 0
+                       ? numbers.of(*lanes[k], static_cast<std::uint32_t>(found[k]))
+                       : kManyBins;
   }
 }
 
@@ -295,11 +300,11 @@ HWY_INLINE void cover_rows(const I (&base)[3], const I (&a)[3], const I (&b)[3],
 /// edge's function at such a sample is twice the area of a triangle in that square, |E| ≤ s², so
 /// its products fit int32, and ⌊(E − 1) / 256⌋ ≥ −20,737 and its steps fit int16; sums on the way
 /// there may wrap, which is undone when they arrive.
-HWY_INLINE void cover_small(const Piece* const (&pieces)[kLanes], SmallPieces& out) {
+HWY_INLINE void cover_small(const Triangles& t, SmallPieces& out) {
   const I32 d;
   const I zero = hn::Zero(d);
-  const Triangles t = load_triangles(pieces);
-  const auto& [x, y, x0, y0, x1, y1] = t;
+  const auto &x = t.x, &y = t.y;
+  const I x0 = t.x0, y0 = t.y0, x1 = t.x1, y1 = t.y1;
   const I last_column = hn::Sub(x1, x0), last_row = hn::Sub(y1, y0);
   const I half_pixel = hn::Set(d, kHalfPixel);
   const I size = hn::Set(d, kBlockSize);
@@ -403,18 +408,79 @@ HWY_NOINLINE std::size_t cut_blocks(Rect bin, Block* blocks, std::size_t n) {
   return kept;
 }
 
-HWY_NOINLINE std::size_t drop_hidden(const Piece& piece, HiddenTest& hidden, Block* blocks,
-                                     std::size_t n) {
-  return static_cast<std::size_t>(
-      std::remove_if(blocks, blocks + n,
-                     [&](const Block& b) { return hidden.hides_block(piece, b.bx, b.by); }) -
-      blocks);
+/// The lowest bound in each square of 2 × 2 blocks of a bin, from its first block on.
+struct SquareBounds {
+  static constexpr std::size_t kPitch = 2 * kBlocksPerBinRow;
+  HWY_ALIGN float lowest[kBlocksPerBinRow * kPitch];
+
+  HWY_INLINE explicit SquareBounds(const DepthBounds& bounds) {
+    const F32 d;
+    for (std::size_t row = 0; row < kBlocksPerBinRow; ++row) {
+      float* const out = lowest + row * kPitch;
+      const float* const upper = bounds.block + row * kBlocksPerBinRow;
+      const float* const lower = row + 1 < kBlocksPerBinRow ? upper + kBlocksPerBinRow : upper;
+      for (std::size_t i = 0; i < kBlocksPerBinRow; i += kLanes)
+        hn::Store(hn::Min(hn::LoadU(d, upper + i), hn::LoadU(d, lower + i)), d, out + i);
+      out[kBlocksPerBinRow] = out[kBlocksPerBinRow - 1];
+      for (std::size_t i = 0; i < kBlocksPerBinRow; i += kLanes)
+        hn::Store(hn::Min(hn::Load(d, out + i), hn::LoadU(d, out + i + 1)), d, out + i);
+    }
+  }
+};
+
+/// Lanes of triangles that no sample of `bin` can show: HiddenTest::hides_piece in lanes, by the
+/// bounds of the blocks that the box touches, if they are 4 × 4 at most.
+HWY_INLINE std::uint32_t hidden_lanes(const Piece* const (&pieces)[kLanes], const Triangles& t,
+                                      Rect bin, const SquareBounds& bounds) {
+  constexpr float kPxPerSubpixel = 1.0F / kSubpixels;
+  const F32 d;
+  const I32 di;
+  I third[4];
+  load_words(pieces, 2, third);
+  const F zy = hn::BitCast(d, third[0]);
+  const auto inside = [&](I v, int begin, int end) HWY_ATTR {
+    return hn::Min(hn::Max(v, hn::Set(di, begin)), hn::Set(di, end - 1));
+  };
+  const I x0 = inside(t.x0, bin.x0, bin.x1), x1 = inside(t.x1, bin.x0, bin.x1);
+  const I y0 = inside(t.y0, bin.y0, bin.y1), y1 = inside(t.y1, bin.y0, bin.y1);
+  // highest_depth, not clamped.
+  const auto farther = [&](F slope, I first, I last, I origin) HWY_ATTR {
+    const auto rises = hn::RebindMask(di, hn::Gt(slope, hn::Zero(d)));
+    const F px = hn::Add(hn::ConvertTo(d, hn::IfThenElse(rises, last, first)), hn::Set(d, 0.5F));
+    return hn::Mul(slope,
+                   hn::Sub(px, hn::Mul(hn::ConvertTo(d, origin), hn::Set(d, kPxPerSubpixel))));
+  };
+  const F depth =
+      hn::Add(hn::Add(t.z0, farther(t.zx, x0, x1, t.x[0])), farther(zy, y0, y1, t.y[0]));
+
+  const I column = hn::ShiftRight<3>(hn::Sub(x0, hn::Set(di, bin.x0)));
+  const I last_column = hn::ShiftRight<3>(hn::Sub(x1, hn::Set(di, bin.x0)));
+  const I row = hn::ShiftRight<3>(hn::Sub(y0, hn::Set(di, bin.y0)));
+  const I last_row = hn::ShiftRight<3>(hn::Sub(y1, hn::Set(di, bin.y0)));
+  const I one = hn::Set(di, 1), four = hn::Set(di, 4);
+  const I right = hn::Max(hn::Sub(last_column, one), column);
+  const I down = hn::Max(hn::Sub(last_row, one), row);
+  const auto lowest = [&](I r, I c) HWY_ATTR {
+    static_assert(SquareBounds::kPitch == 16);
+    return hn::GatherIndex(d, bounds.lowest, hn::Add(hn::ShiftLeft<4>(r), c));
+  };
+  const F bound = hn::Min(hn::Min(lowest(row, column), lowest(row, right)),
+                          hn::Min(lowest(down, column), lowest(down, right)));
+  const auto few =
+      hn::And(hn::Lt(hn::Sub(last_column, column), four), hn::Lt(hn::Sub(last_row, row), four));
+  const auto triangle = hn::Eq(
+      hn::And(third[1], hn::Set(di, static_cast<std::int32_t>(kLine | kPoint))), hn::Zero(di));
+  const auto is_finite = [&](F v) HWY_ATTR { return hn::Eq(hn::Sub(v, v), hn::Zero(d)); };
+  const auto below = hn::And(hn::Gt(bound, hn::Zero(d)), hn::Lt(depth, bound));
+  return lane_bits(hn::And(few, triangle)) &
+         lane_bits(hn::RebindMask(di, hn::And(below, hn::And(is_finite(t.zx), is_finite(zy)))));
 }
 
 std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
                   std::size_t capacity, DepthBounds* bounds) noexcept {
   const bool cut = bin.x1 % kBlockSize != 0 || bin.y1 % kBlockSize != 0;
   const bool hides = bounds != nullptr && knows_depths(*bounds);
+  const SquareBounds squares(hides ? *bounds : DepthBounds{});
   HiddenTest hidden(bounds, bin);
   SmallPieces small;
   std::size_t n = 0;
@@ -426,9 +492,23 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
       if (cursor + kLanes + i < in.count)
         __builtin_prefetch(in.pieces + in.list[cursor + kLanes + i].piece);
     }
-    cover_small(pieces, small);
+    const Triangles t = load_triangles(pieces);
+    std::uint32_t dropped = 0;
+    if (hides) {
+      dropped = hidden_lanes(pieces, t, bin, squares) & ((1U << count) - 1);
+      if (dropped == (1U << count) - 1) {
+        bounds->hidden_pieces += count;
+        cursor += count;
+        continue;
+      }
+    }
+    cover_small(t, small);
     for (std::size_t i = 0; i < count; ++i, ++cursor) {
       if (n + kBlocksPerBin > capacity) return n;
+      if ((dropped >> i & 1) != 0) {
+        ++bounds->hidden_pieces;
+        continue;
+      }
       const Piece& piece = *pieces[i];
       const std::uint32_t index = in.list[cursor].piece;
       if (!is_triangle(piece)) {
@@ -436,11 +516,9 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
       } else if ((small.lanes >> i & 1) == 0) {
         n += cover_large(piece, index, bin, hidden, out + n);
       } else {
-        if (hides && hidden.hides_piece(piece, sample_bounds(piece.x, piece.y, bin))) continue;
-        std::size_t written =
+        const std::size_t written =
             split_small(small.mask(i), small.x0[i], small.y0[i], index, bin, out + n);
-        if (cut) written = cut_blocks(bin, out + n, written);
-        n += hides ? drop_hidden(piece, hidden, out + n, written) : written;
+        n += cut ? cut_blocks(bin, out + n, written) : written;
       }
     }
   }

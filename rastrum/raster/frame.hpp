@@ -78,6 +78,11 @@ class Emitter {
   void written(std::size_t n) { count_ += n; }
   /// What the tile hides by now; null where everything is to be enumerated.
   [[nodiscard]] DepthBounds* bounds() { return region_.bounds(); }
+  /// Lets it know all that has been drawn so far.
+  void find_bounds() {
+    flush();
+    region_.find_bounds();
+  }
   /// Whether the chunk is enumerated for the first time.
   [[nodiscard]] bool first_pass() const { return first_pass_; }
   /// Fragments of micro triangles, whose words are known (Visibility::takes_fragments).

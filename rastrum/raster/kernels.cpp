@@ -43,7 +43,7 @@ SetupOutput setup_scalar(const SetupInput& in, Piece* pieces, BinFragment*,
   return out;
 }
 
-void bins_scalar(const Piece*, std::size_t n, Rect, std::uint32_t* bins) noexcept {
+void bins_scalar(const Piece*, std::size_t n, const BinNumbers&, std::uint32_t* bins) noexcept {
   std::fill_n(bins, n, kManyBins);
 }
 

@@ -43,7 +43,8 @@ struct SetupOutput {
   bool index_in_range = true;   ///< false: the batch was abandoned
 };
 
-/// A (bin, piece) pair.
+/// A (bin, piece) pair. Coverages that draw what faces away after the rest number the bins twice
+/// (BinNumbers).
 struct PieceInBin {
   std::uint32_t bin, piece;
 };
@@ -61,6 +62,17 @@ inline constexpr int kBlocksPerBinRow = kBinSize / kBlockSize;
 inline constexpr int kBlocksPerBin = kBlocksPerBinRow * kBlocksPerBinRow;
 
 inline constexpr std::uint32_t kManyBins = 0xFFFFFFFF;
+
+/// The bins of a view are numbered row by row; `view` begins at a corner of a bin. Pieces with
+/// kFacesAway are in lists of their own, `away` numbers further; 0: they are not.
+struct BinNumbers {
+  Rect view;
+  std::uint32_t away = 0;
+
+  [[nodiscard]] std::uint32_t of(const Piece& piece, std::uint32_t bin) const {
+    return bin + ((piece.flags & kFacesAway) != 0 ? away : 0);
+  }
+};
 
 /// Where in its bin a fragment lies, px.
 RASTRUM_HD inline int column_in_bin(const BinFragment& f) {
@@ -127,9 +139,10 @@ struct Kernels {
   void (*store_blended)(const BlockColors& colors, std::uint64_t covered, const Backdrop& backdrop,
                         Rgba8* out, std::ptrdiff_t stride) noexcept;
 
-  /// The bin of `view` (row by row, from a corner of a bin on) that holds the boxes of pieces [0,
-  /// n), or kManyBins where that has to be looked at: a box in several or in none, a line, a point.
-  void (*bins)(const Piece* pieces, std::size_t n, Rect view, std::uint32_t* bins) noexcept;
+  /// The bin that holds the box of each of n pieces, or kManyBins where that has to be looked at: a
+  /// box in several or in none, a line, a point.
+  void (*bins)(const Piece* pieces, std::size_t n, const BinNumbers& numbers,
+               std::uint32_t* bins) noexcept;
 };
 
 /// The best table at or below `isa` that was compiled for this architecture.

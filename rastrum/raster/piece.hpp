@@ -28,7 +28,7 @@ RASTRUM_HD constexpr std::uint64_t id_of_word(std::uint64_t word) {
 struct alignas(16) Piece {
   std::int32_t x[3], y[3];  ///< n.8, inside the guard band, but for what is said to be in pixels
   float z0, zx, zy;         ///< depth at vertex 0 and its change per px
-  std::uint32_t flags;      ///< kTested, kTranslucent, kLine or kPoint, the width of a line
+  std::uint32_t flags;      ///< kTested, kTranslucent, kFacesAway, kLine or kPoint, a line's width
   std::uint64_t low;        ///< the word's low part: kIdMask − id
 };
 static_assert(sizeof(Piece) == 48);
@@ -40,6 +40,9 @@ inline constexpr std::uint32_t kLine = 2, kPoint = 4;
 inline constexpr int kLineWidthShift = 16;
 /// Fragments of this piece are blended: alpha is the shader's to say.
 inline constexpr std::uint32_t kTranslucent = 8;
+/// A triangle that was wound clockwise on the screen: where surfaces are closed, one of those that
+/// others hide.
+inline constexpr std::uint32_t kFacesAway = 16;
 
 RASTRUM_HD inline bool is_triangle(const Piece& p) {
   return (p.flags & (kLine | kPoint)) == 0;

@@ -59,7 +59,7 @@ RASTRUM_HD inline SetupResult make_piece(const ProjectedVertex& a, const Project
   piece.z0 = a.depth;
   piece.zx = static_cast<float>((dz1 * dy2 - dz2 * dy1) / det * kSubpixels);
   piece.zy = static_cast<float>((dz2 * dx1 - dz1 * dx2) / det * kSubpixels);
-  piece.flags = flags;
+  piece.flags = flags | (area > 0 ? kFacesAway : 0);
   piece.low = kIdMask - id;
   return SetupResult::drawn;
 }

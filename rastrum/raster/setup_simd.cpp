@@ -337,6 +337,7 @@ HWY_INLINE void make_pieces(const SetupInput& in, Waiting& waiting, std::uint32_
   }
   // |det| ≥ 1, so its sign survives the rounding to float32.
   const auto keep = hn::RebindMask(di, hn::Gt(hn::LoadU(df, sign), hn::Zero(df)));
+  const std::uint32_t facing_away = lane_bits(keep);
   const I sx = hn::IfThenElse(keep, b.x, c.x), sy = hn::IfThenElse(keep, b.y, c.y);
   const I tx = hn::IfThenElse(keep, c.x, b.x), ty = hn::IfThenElse(keep, c.y, b.y);
   HWY_ALIGN std::int32_t first[kLanes * 4], second[kLanes * 4];
@@ -350,7 +351,7 @@ HWY_INLINE void make_pieces(const SetupInput& in, Waiting& waiting, std::uint32_
     hn::Store(hn::Load(d128, first + i * 4), d128, words);
     hn::Store(hn::Load(d128, second + i * 4), d128, words + 4);
     piece.zy = zy[i];
-    piece.flags = in.flags;
+    piece.flags = in.flags | ((facing_away >> i & 1) * kFacesAway);
     piece.low = kIdMask - (in.first_id + in.first + waiting.triangle[i]);
     if (waiting.micro[i] == 0) {
       ++out.pieces;

@@ -18,7 +18,7 @@ namespace {
 /// Triangles of a group: few enough that what a thread collects stays in its L2 cache …
 constexpr std::uint64_t kMinGroup = 4096;
 /// … and that the groups' tables of bins together stay small.
-constexpr std::uint64_t kMaxBinTables = std::uint64_t{1} << 18;
+constexpr std::uint64_t kMaxBinTables = std::uint64_t{1} << 19;
 
 /// Calls use(bin, run) for runs of entries of the same bin. Neighbours mostly share one, and a
 /// counter that is raised for each of them would be waited for each time.
@@ -110,6 +110,29 @@ constexpr std::size_t kSparseBin = 1 << 16, kDenseBin = 1 << 19;
 /// What a region of layers keeps of a piece in a block: 24 bytes twice and a key.
 constexpr std::uint64_t kRecordBytes = 56;
 
+/// The lists of a view: one a bin, or two, so that what faces away is drawn after the rest of the
+/// bin. Where surfaces are closed, half of their pieces face away and nearly all of those are
+/// hidden; hierarchical Z then drops them before it covers them. The order changes no pixel.
+struct Lists {
+  TileGrid bins;
+  bool two = false;
+
+  Lists(const Frame& frame, const TileGrid& grid)
+      : bins(grid),
+        two(frame.request.hierarchical_z && frame.visibility.hides &&
+            frame.request.targets.overdraw.empty()) {}
+
+  [[nodiscard]] std::size_t count() const { return bins.count() * (two ? 2 : 1); }
+  /// That of the pieces of bin `b` that face away; all are where `two` is not set.
+  [[nodiscard]] std::size_t away(std::size_t b) const { return bins.count() + b; }
+  [[nodiscard]] BinNumbers numbers() const {
+    return {bins.view, two ? static_cast<std::uint32_t>(bins.count()) : 0};
+  }
+};
+
+/// Fewer pieces that face away do not pay for a look at what hides them.
+constexpr std::size_t kWorthALook = 16;
+
 /// What became of the triangles [first, last) of the frame.
 struct Group {
   explicit Group(MemoryAccount& memory) : pieces(memory), by_bin(memory), fragments(memory) {}
@@ -119,8 +142,9 @@ struct Group {
   BinLists<PieceInBin> by_bin;
   BinLists<BinFragment> fragments;
 
-  [[nodiscard]] bool is_empty(std::size_t bin) const {
-    return by_bin.bin(bin).empty() && fragments.bin(bin).empty();
+  [[nodiscard]] bool is_empty(const Lists& lists, std::size_t bin) const {
+    return by_bin.bin(bin).empty() && fragments.bin(bin).empty() &&
+           (!lists.two || by_bin.bin(lists.away(bin)).empty());
   }
 };
 
@@ -135,8 +159,9 @@ struct GroupScratch final : MicroSink {
   int column = 0, row = 0;  ///< the view's first bin
   int columns = 0, rows = 0;
 
-  void restart(const Frame& frame, const TileGrid& bins) {
-    pairs.restart(bins.count());
+  void restart(const Frame& frame, const Lists& lists) {
+    const TileGrid& bins = lists.bins;
+    pairs.restart(lists.count());
     micro.restart(bins.count());
     whole = bins.count() == TileGrid{{0, 0, frame.request.width, frame.request.height}}.count();
     image_columns = (frame.request.width + kBinSize - 1) / kBinSize;
@@ -166,9 +191,10 @@ struct GroupScratch final : MicroSink {
 };
 
 /// Adds the pairs of a piece with the bins of its box that it may touch.
-void bin_piece(const Piece& piece, std::uint32_t index, const TileGrid& bins,
+void bin_piece(const Piece& piece, std::uint32_t index, const Lists& lists,
                Collected<PieceInBin>& pairs) {
-  const Rect view = bins.view;
+  const BinNumbers numbers = lists.numbers();
+  const Rect view = numbers.view;
   const Rect box = piece_bounds(piece, view);
   if (box.empty()) return;
   const int bx0 = box.x0 / kBinSize, by0 = box.y0 / kBinSize;
@@ -185,7 +211,8 @@ void bin_piece(const Piece& piece, std::uint32_t index, const TileGrid& bins,
       const int x0 = bx * kBinSize, y0 = by * kBinSize;
       if (asks && !may_touch(edges, {x0, y0, x0 + kBinSize, y0 + kBinSize})) continue;
       const int row = by - view.y0 / kBinSize, column = bx - view.x0 / kBinSize;
-      out[n++] = {static_cast<std::uint32_t>(row * bins.columns() + column), index};
+      const auto bin = static_cast<std::uint32_t>(row * lists.bins.columns() + column);
+      out[n++] = {numbers.of(piece, bin), index};
     }
   pairs.added(n);
 }
@@ -193,20 +220,21 @@ void bin_piece(const Piece& piece, std::uint32_t index, const TileGrid& bins,
 /// Adds the pairs of pieces [first, …) with the bins of `view` until all are there, or as many as
 /// `most` after a piece. Returns the first piece that was left.
 std::uint32_t bin_pieces(const Kernels& kernel, std::span<const Piece> pieces, std::uint32_t first,
-                         std::size_t most, const TileGrid& bins, Collected<PieceInBin>& pairs) {
+                         std::size_t most, const Lists& lists, Collected<PieceInBin>& pairs) {
+  const BinNumbers numbers = lists.numbers();
   std::uint32_t bin[64];
   std::uint32_t index = first;
   while (index < pieces.size() && pairs.entries().size() < most) {
     auto n = static_cast<std::uint32_t>(
         std::min({std::size(bin), pieces.size() - index, most - pairs.entries().size()}));
-    kernel.bins(pieces.data() + index, n, bins.view, bin);
+    kernel.bins(pieces.data() + index, n, numbers, bin);
     for (std::uint32_t i = 0; i < n;) {
       PieceInBin* const out = pairs.room(n - i);
       std::uint32_t k = 0;
       for (; i < n && bin[i] != kManyBins; ++i) out[k++] = {bin[i], index + i};
       pairs.added(k);
       if (i < n) {
-        bin_piece(pieces[index + i], index + i, bins, pairs);
+        bin_piece(pieces[index + i], index + i, lists, pairs);
         ++i;
       }
       // A piece that touched many bins may have left no room for those after it.
@@ -225,36 +253,36 @@ class Grouped final : public Coverage {
   explicit Grouped(MemoryAccount& memory) : memory_(memory) {}
 
   void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
-    const TileGrid bins{frame.view, kBinSize, frame.request.tuning.order};
+    const Lists lists(frame, {frame.view, kBinSize, frame.request.tuning.order});
     if (frame.view_bytes != 0) groups_.clear();  // what other views needed
-    const auto set_up = set_up_groups(frame, bins, first, last);
+    const auto set_up = set_up_groups(frame, lists, first, last);
     frame.watch.lap(frame.stats, "setup and bin");
     frame.fits = set_up.has_value();
     if (!set_up) return;
     const std::span<Group> groups = *set_up;
     if (frame.visibility.keeps_layers) {
-      draw_layers(frame, bins, groups);
+      draw_layers(frame, lists, groups);
       return;
     }
-    draw_bins(frame, bins, groups);
+    draw_bins(frame, lists, groups);
     while (std::any_of(groups.begin(), groups.end(),
                        [](const Group& g) { return g.binned < g.pieces.count; })) {
-      bin_more(frame, bins, groups);
+      bin_more(frame, lists, groups);
       frame.watch.lap(frame.stats, "setup and bin");
-      draw_bins(frame, bins, groups);
+      draw_bins(frame, lists, groups);
     }
   }
 
  private:
   /// Fills groups with pieces and fragments, and with pairs as far as there is room for them.
   /// Nothing: they take more than Frame::view_bytes.
-  std::optional<std::span<Group>> set_up_groups(Frame& frame, const TileGrid& bins,
+  std::optional<std::span<Group>> set_up_groups(Frame& frame, const Lists& lists,
                                                 std::uint64_t first, std::uint64_t last);
   /// Replaces pairs and fragments by the next pairs.
-  void bin_more(Frame& frame, const TileGrid& bins, std::span<Group> groups);
-  void draw_bins(Frame& frame, const TileGrid& bins, std::span<const Group> groups);
+  void bin_more(Frame& frame, const Lists& lists, std::span<Group> groups);
+  void draw_bins(Frame& frame, const Lists& lists, std::span<const Group> groups);
   /// The same for a visibility that keeps layers: dense bins are cut.
-  void draw_layers(Frame& frame, const TileGrid& bins, std::span<const Group> groups);
+  void draw_layers(Frame& frame, const Lists& lists, std::span<const Group> groups);
 
   MemoryAccount& memory_;
   std::vector<Group> groups_;
@@ -277,10 +305,10 @@ void keep_in_view(Pieces& pieces, Rect view) {
   pieces.count = kept;
 }
 
-std::optional<std::span<Group>> Grouped::set_up_groups(Frame& frame, const TileGrid& bins,
+std::optional<std::span<Group>> Grouped::set_up_groups(Frame& frame, const Lists& lists,
                                                        std::uint64_t first, std::uint64_t last) {
-  const std::size_t bin_count = bins.count();
-  const std::uint64_t most_groups = std::max<std::uint64_t>(kMaxBinTables / bin_count, 1);
+  const std::size_t bin_count = lists.bins.count(), list_count = lists.count();
+  const std::uint64_t most_groups = std::max<std::uint64_t>(kMaxBinTables / (2 * bin_count), 1);
   const std::uint64_t group_size =
       std::max(kMinGroup, (last - first + most_groups - 1) / most_groups);
   const auto group_count = static_cast<std::size_t>((last - first + group_size - 1) / group_size);
@@ -296,7 +324,7 @@ std::optional<std::span<Group>> Grouped::set_up_groups(Frame& frame, const TileG
     Pieces& pieces = limited ? scratch.pieces : group.pieces;
     pieces.count = 0;
     pieces.triangles = {};
-    scratch.restart(frame, bins);
+    scratch.restart(frame, lists);
     const std::uint64_t begin = first + g * group_size;
     if (!set_up(frame, begin, std::min(begin + group_size, last), pieces,
                 frame.visibility.takes_fragments ? &scratch : nullptr)) {
@@ -304,18 +332,19 @@ std::optional<std::span<Group>> Grouped::set_up_groups(Frame& frame, const TileG
       return;
     }
     if (limited) keep_in_view(pieces, frame.view);
-    group.binned = bin_pieces(frame.kernel, pieces.span(), 0, most, bins, scratch.pairs);
+    group.binned = bin_pieces(frame.kernel, pieces.span(), 0, most, lists, scratch.pairs);
     const std::size_t n = scratch.pairs.entries().size(), m = scratch.micro.entries().size();
     if (limited) {
       const std::uint64_t own = pieces.count * sizeof(Piece) + n * sizeof(PieceInBin) +
-                                m * sizeof(BinFragment) + 2 * bin_count * sizeof(std::uint32_t);
+                                m * sizeof(BinFragment) +
+                                (list_count + bin_count) * sizeof(std::uint32_t);
       if (bytes.fetch_add(own, std::memory_order_relaxed) + own > frame.view_bytes) return;
       group.pieces.data.reserve(pieces.count);
       std::copy_n(pieces.data.data(), pieces.count, group.pieces.data.data());
       group.pieces.count = pieces.count;
       group.pieces.triangles = pieces.triangles;
     }
-    group.by_bin.sort(scratch.pairs, bin_count);
+    group.by_bin.sort(scratch.pairs, list_count);
     group.fragments.sort(scratch.micro, bin_count);
     pairs.fetch_add(n, std::memory_order_relaxed);
     micro_fragments.fetch_add(m, std::memory_order_relaxed);
@@ -331,17 +360,17 @@ std::optional<std::span<Group>> Grouped::set_up_groups(Frame& frame, const TileG
   return std::span<Group>{groups_.data(), group_count};
 }
 
-void Grouped::bin_more(Frame& frame, const TileGrid& bins, std::span<Group> groups) {
-  const std::size_t bin_count = bins.count(), most = most_pairs(frame, groups.size());
+void Grouped::bin_more(Frame& frame, const Lists& lists, std::span<Group> groups) {
+  const std::size_t most = most_pairs(frame, groups.size());
   std::atomic<std::uint64_t> pairs = 0;
   parallel::for_each_index(frame.exec, groups.size(), [&](std::size_t g) {
     Group& group = groups[g];
     GroupScratch& scratch = fillers_.local();
-    scratch.restart(frame, bins);
+    scratch.restart(frame, lists);
     group.binned =
-        bin_pieces(frame.kernel, group.pieces.span(), group.binned, most, bins, scratch.pairs);
-    group.by_bin.sort(scratch.pairs, bin_count);
-    group.fragments.sort(scratch.micro, bin_count);
+        bin_pieces(frame.kernel, group.pieces.span(), group.binned, most, lists, scratch.pairs);
+    group.by_bin.sort(scratch.pairs, lists.count());
+    group.fragments.sort(scratch.micro, lists.bins.count());
     pairs.fetch_add(scratch.pairs.entries().size(), std::memory_order_relaxed);
   });
   frame.count("bins", pairs);
@@ -363,35 +392,46 @@ void emit_fragments(std::span<const BinFragment> fragments, Rect bin, Rect rect,
   if (n != 0) emitter.fragments(bin, {inside, n});
 }
 
-/// Enumerates what groups have in a bin, or in the part `rect` of it.
-void enumerate_bin(Frame& frame, std::span<const Group> groups, std::size_t bin, Rect whole,
-                   Rect rect, Emitter& emitter) {
-  for (const Group& group : groups) {
-    emit_fragments(group.fragments.bin(bin), whole, rect, emitter);
-    const std::span<const PieceInBin> list = group.by_bin.bin(bin);
-    if (list.empty()) continue;
-    const PieceList pieces{group.pieces.data.data(), list.data(), list.size()};
-    emitter.use(pieces.pieces);
-    for (std::size_t cursor = 0; cursor < pieces.count;) {
-      const std::span<Block> room = emitter.room();
-      emitter.written(
-          frame.kernel.cover(pieces, cursor, rect, room.data(), room.size(), emitter.bounds()));
-    }
-    // Groups number their pieces from 0 each.
-    emitter.flush();
+/// Enumerates the pieces of a list, as far as they touch `rect`.
+void enumerate_pieces(Frame& frame, const Group& group, std::size_t list_number, Rect rect,
+                      Emitter& emitter) {
+  const std::span<const PieceInBin> list = group.by_bin.bin(list_number);
+  if (list.empty()) return;
+  const PieceList pieces{group.pieces.data.data(), list.data(), list.size()};
+  emitter.use(pieces.pieces);
+  for (std::size_t cursor = 0; cursor < pieces.count;) {
+    const std::span<Block> room = emitter.room();
+    emitter.written(
+        frame.kernel.cover(pieces, cursor, rect, room.data(), room.size(), emitter.bounds()));
   }
+  // Groups number their pieces from 0 each.
+  emitter.flush();
 }
 
-void Grouped::draw_bins(Frame& frame, const TileGrid& bins, std::span<const Group> groups) {
+/// Enumerates what groups have in a bin, or in the part `rect` of it.
+void enumerate_bin(Frame& frame, const Lists& lists, std::span<const Group> groups, std::size_t bin,
+                   Rect rect, Emitter& emitter) {
+  const Rect whole = lists.bins.rect(bin);
+  std::size_t away = 0;
+  for (const Group& group : groups) {
+    emit_fragments(group.fragments.bin(bin), whole, rect, emitter);
+    enumerate_pieces(frame, group, bin, rect, emitter);
+    if (lists.two) away += group.by_bin.bin(lists.away(bin)).size();
+  }
+  if (away == 0) return;
+  if (away >= kWorthALook) emitter.find_bounds();
+  for (const Group& group : groups) enumerate_pieces(frame, group, lists.away(bin), rect, emitter);
+}
+
+void Grouped::draw_bins(Frame& frame, const Lists& lists, std::span<const Group> groups) {
   draw_tiles(
-      frame, bins,
+      frame, lists.bins,
       [&](std::size_t bin) {
         return std::all_of(groups.begin(), groups.end(),
-                           [&](const Group& g) { return g.is_empty(bin); });
+                           [&](const Group& g) { return g.is_empty(lists, bin); });
       },
       [&](std::size_t bin, Emitter& emitter) {
-        const Rect rect = bins.rect(bin);
-        enumerate_bin(frame, groups, bin, rect, rect, emitter);
+        enumerate_bin(frame, lists, groups, bin, lists.bins.rect(bin), emitter);
       });
   frame.watch.lap(frame.stats, frame.has_surface() ? "draw" : "draw and shade");
 }
@@ -422,7 +462,8 @@ void cut_bin(std::size_t bin, Rect rect, std::size_t entries, std::uint64_t most
           {bin, entries, {x, y, std::min(x + side, rect.x1), std::min(y + side, rect.y1)}, side});
 }
 
-void Grouped::draw_layers(Frame& frame, const TileGrid& bins, std::span<const Group> groups) {
+void Grouped::draw_layers(Frame& frame, const Lists& lists, std::span<const Group> groups) {
+  const TileGrid& bins = lists.bins;
   const std::uint64_t most_bytes = frame.context(nullptr).fragment_bytes / 2;
   std::vector<Part> parts;
   for (std::size_t position = 0; position < bins.count(); ++position) {
@@ -437,7 +478,7 @@ void Grouped::draw_layers(Frame& frame, const TileGrid& bins, std::span<const Gr
   });
   const auto draw = [&](const Part& part) {
     draw_tile(frame, part.rect, part.side_px, part.entries == 0, [&](Emitter& emitter) {
-      enumerate_bin(frame, groups, part.bin, bins.rect(part.bin), part.rect, emitter);
+      enumerate_bin(frame, lists, groups, part.bin, part.rect, emitter);
     });
   };
   parallel::for_each_index(frame.exec, static_cast<std::size_t>(alone - parts.begin()),

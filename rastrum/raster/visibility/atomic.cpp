@@ -57,6 +57,12 @@ class OwnedAtomicRegion final : public AtomicRegion {
   }
 
   DepthBounds* bounds() override { return is_bounded_ ? &bounds_ : nullptr; }
+  void find_bounds() override {
+    if (!is_bounded_) return;
+    for (int i = 0; i < kBlocksPerBin; ++i)
+      if (bounds_.block[i] < 1) look(i);
+    find_least();
+  }
 
   void collect(Counters& counters) override {
     add_counter(counters, "hidden pieces", std::exchange(bounds_.hidden_pieces, 0));
@@ -101,12 +107,21 @@ class OwnedAtomicRegion final : public AtomicRegion {
         continue;
       }
       if (++unseen_[i] < kLook) continue;
-      unseen_[i] = 0;
-      const std::uint64_t lowest = kernel_->lowest(surface_.block(b.bx, b.by));
-      bound = std::max(bound, std::bit_cast<float>(static_cast<std::uint32_t>(lowest >> kIdBits)));
+      look(i);
       any = true;
     }
-    if (any) bounds_.bin = *std::min_element(bounds_.block, bounds_.block + kBlocksPerBin);
+    if (any) find_least();
+  }
+
+  void look(int i) {
+    unseen_[i] = 0;
+    const std::uint64_t lowest = kernel_->lowest(
+        surface_.block(surface_.bx0 + i % kBlocksPerBinRow, surface_.by0 + i / kBlocksPerBinRow));
+    bounds_.block[i] = std::max(
+        bounds_.block[i], std::bit_cast<float>(static_cast<std::uint32_t>(lowest >> kIdBits)));
+  }
+  void find_least() {
+    bounds_.bin = *std::min_element(bounds_.block, bounds_.block + kBlocksPerBin);
   }
 
   DepthBounds bounds_;

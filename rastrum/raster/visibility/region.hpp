@@ -61,6 +61,8 @@ class Region {
   /// What is hidden in the bin of an owned region, for coverages that ask before they enumerate;
   /// null where the method does not know.
   virtual DepthBounds* bounds() { return nullptr; }
+  /// Finds them as they are now. Costs a look at all words: for where much may be hidden.
+  virtual void find_bounds() {}
 
   /// Fragments whose word is known already, of a bin that the region is; only for methods that
   /// `takes_fragments`.
@@ -87,6 +89,7 @@ struct Visibility {
   /// Needs every fragment of a tile at once, from a coverage whose threads own tiles: triangles
   /// cannot be drawn in batches or turns.
   bool keeps_layers = false;
+  bool hides = false;  ///< owned regions have bounds(), where FrameRequest::hierarchical_z
 };
 
 /// All methods; the first is the default.

@@ -14,7 +14,7 @@ namespace rastrum::raster {
 std::span<const Visibility> visibilities() noexcept {
   static constexpr std::array kTable{
       Visibility{"atomic", "64-bit maximum of depth and id, shading deferred", false, true, 8,
-                 make_atomic},
+                 make_atomic, false, true},
       Visibility{"search",
                  "maximum of the depth, then a second pass for the smallest id that has it", false,
                  true, 12, make_search},
