@@ -305,17 +305,14 @@ struct Waiting {
   }
 };
 
-/// Sets up the first `n` ≤ kLanes waiting triangles.
-HWY_INLINE void make_pieces(const SetupInput& in, Waiting& waiting, std::uint32_t n, Piece* pieces,
-                            BinFragment* fragments, SetupOutput& out) {
-  std::uint32_t index[3][kLanes];
-  for (std::size_t c = 0; c < 3; ++c)
-    for (std::size_t i = 0; i < kLanes; ++i) index[c][i] = waiting.index[c][i < n ? i : 0];
+/// Sets up the triangles of `lanes`, which may cover a sample, in order. `triangle` and `micro` are
+/// by lane.
+HWY_INLINE void make_pieces(const SetupInput& in, const Corners& a, const Corners& b,
+                            const Corners& c, std::uint32_t lanes, const std::uint32_t* triangle,
+                            const std::uint32_t* micro, Piece* pieces, BinFragment* fragments,
+                            SetupOutput& out) {
   const F32 df;
   const I32 di;
-  const Corners a = load_corners(in.vertices, index[0]);
-  const Corners b = load_corners(in.vertices, index[1]);
-  const Corners c = load_corners(in.vertices, index[2]);
   const I dx1 = hn::Sub(b.x, a.x), dy1 = hn::Sub(b.y, a.y);
   const I dx2 = hn::Sub(c.x, a.x), dy2 = hn::Sub(c.y, a.y);
   HWY_ALIGN float zx[kLanes], zy[kLanes], sign[kLanes];
@@ -345,23 +342,39 @@ HWY_INLINE void make_pieces(const SetupInput& in, Waiting& waiting, std::uint32_
   hn::StoreInterleaved4(sy, ty, hn::BitCast(di, a.depth), hn::BitCast(di, hn::LoadU(df, zx)), di,
                         second);
   const I128 d128;
-  for (std::uint32_t i = 0; i < n; ++i) {
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(lanes));
     Piece& piece = pieces[out.pieces];
     auto* words = reinterpret_cast<std::int32_t*>(&piece);
     hn::Store(hn::Load(d128, first + i * 4), d128, words);
     hn::Store(hn::Load(d128, second + i * 4), d128, words + 4);
     piece.zy = zy[i];
     piece.flags = in.flags | ((facing_away >> i & 1) * kFacesAway);
-    piece.low = kIdMask - (in.first_id + in.first + waiting.triangle[i]);
-    if (waiting.micro[i] == 0) {
+    piece.low = kIdMask - (in.first_id + in.first + triangle[i]);
+    if (micro[i] == 0) {
       ++out.pieces;
       continue;
     }
     ++out.micro;
-    out.fragments += write_fragments(piece, waiting.micro[i], in, fragments + out.fragments);
+    out.fragments += write_fragments(piece, micro[i], in, fragments + out.fragments);
   }
+}
+
+/// Sets up the first `n` ≤ kLanes waiting triangles.
+HWY_INLINE void make_pieces(const SetupInput& in, Waiting& waiting, std::uint32_t n, Piece* pieces,
+                            BinFragment* fragments, SetupOutput& out) {
+  std::uint32_t index[3][kLanes];
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < kLanes; ++i) index[c][i] = waiting.index[c][i < n ? i : 0];
+  const Corners a = load_corners(in.vertices, index[0]);
+  const Corners b = load_corners(in.vertices, index[1]);
+  const Corners c = load_corners(in.vertices, index[2]);
+  make_pieces(in, a, b, c, (1U << n) - 1, waiting.triangle, waiting.micro, pieces, fragments, out);
   waiting.drop(n);
 }
+
+/// So many of kLanes that to set them up at once is cheaper than to gather them again with others.
+constexpr std::uint32_t kDense = kLanes - kLanes / 4;
 
 SetupOutput setup(const SetupInput& in, Piece* pieces, BinFragment* fragments,
                   std::uint32_t* slow) noexcept {
@@ -381,6 +394,13 @@ SetupOutput setup(const SetupInput& in, Piece* pieces, BinFragment* fragments,
     for (std::uint32_t rest = classes.slow; rest != 0; rest &= rest - 1)
       slow[result.slow++] = i + static_cast<std::uint32_t>(std::countr_zero(rest));
     result.micro += static_cast<std::uint32_t>(std::popcount(classes.none));
+    if (static_cast<std::uint32_t>(std::popcount(classes.drawn)) >= kDense) {
+      if (waiting.count != 0) make_pieces(in, waiting, waiting.count, pieces, fragments, result);
+      std::uint32_t triangle[kLanes];
+      for (std::uint32_t lane = 0; lane < kLanes; ++lane) triangle[lane] = i + lane;
+      make_pieces(in, a, b, c, classes.drawn, triangle, classes.micro, pieces, fragments, result);
+      continue;
+    }
     for (std::uint32_t rest = classes.drawn; rest != 0; rest &= rest - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
       waiting.add(index, lane, i + lane, classes.micro[lane]);
