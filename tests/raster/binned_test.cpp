@@ -62,13 +62,6 @@ RenderOptions binned(int width, int height, Schedule schedule, int threads) {
   return o;
 }
 
-std::uint64_t counter(const FrameStats& stats, std::string_view name) {
-  for (const auto& [n, value] : stats.counters)
-    if (n == name) return value;
-  ADD_FAILURE() << "no counter is called " << name;
-  return 0;
-}
-
 const raster::CoverageRow& binned_row() {
   return *std::ranges::find(raster::coverages(), std::string_view("binned"),
                             &raster::CoverageRow::name);

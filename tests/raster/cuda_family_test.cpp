@@ -10,10 +10,10 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/core/error.hpp>
-#include <rastrum/parallel/cuda/status.hpp>
 #include <rastrum/raster/program.hpp>
 #include <rastrum/render/render.hpp>
 
+#include "tests/support/cuda_test.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
@@ -24,18 +24,8 @@
 namespace rastrum::test {
 namespace {
 
-RenderOptions options(int width, int height, Device device) {
-  RenderOptions o;
-  o.width = width;
-  o.height = height;
-  o.device = device;
-  o.threads = 2;
-  o.isa = Isa::scalar;
-  o.background = {0.2F, 0.3F, 0.4F, 0.5F};
-  return o;
-}
 RenderOptions options(int width, int height, Device device, const TablePoint& point) {
-  RenderOptions o = options(width, height, device);
+  RenderOptions o = device_options(width, height, device);
   o.rasterizer = point.rasterizer;
   o.visibility = point.visibility;
   return o;
@@ -52,13 +42,6 @@ testing::AssertionResult same_frame(const Frame& a, const Frame& b) {
   if (auto r = same_counts(a.stats, b.stats); !r) return r;
   if (auto r = same_picture(a, b, 0); !r) return r;
   return counts_add_up(a);
-}
-
-std::uint64_t counter(const FrameStats& stats, std::string_view name) {
-  for (const auto& [key, value] : stats.counters)
-    if (key == name) return value;
-  ADD_FAILURE() << "no counter " << name;
-  return 0;
 }
 
 /// The counters of both that say the same of them. Tables of `hashed` are the host's where a frame
@@ -90,19 +73,13 @@ void expect_same_work(const FrameStats& device, const FrameStats& host, const Ta
   EXPECT_GT(compared, 1);
 }
 
-class CudaTable : public testing::TestWithParam<TablePoint> {
- protected:
-  void SetUp() override {
-    const parallel::CudaStatus status = parallel::cuda_status();
-    if (!status.usable) GTEST_SKIP() << "no device: " << status.why_not;
-  }
-};
+class CudaTable : public CudaTest, public testing::WithParamInterface<TablePoint> {};
 
 TEST_P(CudaTable, EqualsSerialAndDoesTheHostsWork) {
   constexpr int kSizes[][2] = {{64, 64}, {37, 53}, {1, 1}, {128, 96}};
   const int scenes = std::max(count_from_environment("RASTRUM_TABLE_SCENES", 120) / 20, 1);
   for (const auto& [width, height] : kSizes) {
-    Renderer serial(options(width, height, Device::serial));
+    Renderer serial(device_options(width, height, Device::serial));
     Renderer host(options(width, height, Device::threads, GetParam()));
     Renderer cuda(options(width, height, Device::cuda, GetParam()));
     for (int i = 0; i < scenes; ++i) {
@@ -142,7 +119,7 @@ TEST_P(CudaTable, NothingFailsForSize) {
   const Scene scene = soup(kTriangles, kWidth, kHeight);
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kWidth, kHeight);
-  Renderer serial(options(kWidth, kHeight, Device::serial));
+  Renderer serial(device_options(kWidth, kHeight, Device::serial));
   const Frame expected = draw(serial, binding.view(), camera);
   RenderOptions o = options(kWidth, kHeight, Device::cuda, GetParam());
   Renderer free(o);
@@ -172,7 +149,7 @@ TEST_P(CudaTable, NothingFailsForSize) {
 // Points, lines and triangles over one vertex function, some behind the eye, wide, biased.
 TEST_P(CudaTable, DrawsAllTopologies) {
   constexpr int kWidth = 90, kHeight = 61;
-  Renderer serial(options(kWidth, kHeight, Device::serial));
+  Renderer serial(device_options(kWidth, kHeight, Device::serial));
   Renderer cuda(options(kWidth, kHeight, Device::cuda, GetParam()));
   constexpr raster::Topology kTopologies[] = {raster::Topology::points, raster::Topology::lines,
                                               raster::Topology::triangles};
@@ -221,7 +198,7 @@ TEST_P(CudaRows, TuningsAreTheHosts) {
   const Scene scene = soup(1500, kWidth, kHeight);
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kWidth, kHeight);
-  Renderer serial(options(kWidth, kHeight, Device::serial));
+  Renderer serial(device_options(kWidth, kHeight, Device::serial));
   const Frame expected = draw(serial, binding.view(), camera);
   const bool binned = GetParam().rasterizer == "binned";
   raster::Tuning tunings[4];
@@ -293,7 +270,7 @@ TEST_P(CudaChoice, SaysWhatItTook) {
     Renderer renderer(o);
     return draw(renderer, binding.view(), pixel_camera(64, 64)).stats;
   };
-  const FrameStats by_size = stats_of(options(64, 64, Device::cuda));
+  const FrameStats by_size = stats_of(device_options(64, 64, Device::cuda));
   EXPECT_EQ(by_size.rasterizer, "by-size");
   EXPECT_TRUE(has(by_size.why, "cuda has by-size"));
   const FrameStats hybrid = stats_of(options(64, 64, Device::cuda, {"auto", "hashed"}));
@@ -315,7 +292,7 @@ TEST_P(CudaChoice, LayersCombineWithTheRows) {
   const Scene scene = soup(150, kSize, kSize);
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kSize, kSize);
-  RenderOptions o = options(kSize, kSize, Device::threads);
+  RenderOptions o = device_options(kSize, kSize, Device::threads);
   o.opacity = 0.5F;
   Renderer threads(o);
   const LayerPicture expected = take(threads, binding.view(), camera);

@@ -9,10 +9,10 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/parallel/cuda/status.hpp>
 #include <rastrum/raster/program.hpp>
 #include <rastrum/render/render.hpp>
 
+#include "tests/support/cuda_test.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/materials.hpp"
@@ -24,14 +24,8 @@ namespace {
 constexpr int kWidth = 107, kHeight = 91;
 
 RenderOptions options(Device device, Shader shader = Shader::material) {
-  RenderOptions o;
-  o.width = kWidth;
-  o.height = kHeight;
-  o.device = device;
+  RenderOptions o = device_options(kWidth, kHeight, device);
   o.shader = shader;
-  o.threads = 2;
-  o.isa = Isa::scalar;
-  o.background = {0.2F, 0.3F, 0.4F, 0.5F};
   return o;
 }
 
@@ -42,24 +36,11 @@ Camera near_camera() {
   return camera;
 }
 
-std::uint64_t counter(const FrameStats& stats, std::string_view name) {
-  for (const auto& [key, value] : stats.counters)
-    if (key == name) return value;
-  ADD_FAILURE() << "no counter " << name;
-  return 0;
-}
-
 bool same_colors(const Image<Vec4>& a, const Image<Vec4>& b) {
   return std::memcmp(a.pixels().data(), b.pixels().data(), a.pixels().size_bytes()) == 0;
 }
 
-class CudaMaterials : public testing::Test {
- protected:
-  void SetUp() override {
-    const parallel::CudaStatus status = parallel::cuda_status();
-    if (!status.usable) GTEST_SKIP() << "no device: " << status.why_not;
-  }
-};
+using CudaMaterials = CudaTest;
 
 // All textures, normal maps, masks and vertex colours, opaque; in one band and in several.
 TEST_F(CudaMaterials, EqualSerial) {

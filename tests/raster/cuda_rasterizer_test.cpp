@@ -10,10 +10,10 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/core/error.hpp>
-#include <rastrum/parallel/cuda/status.hpp>
 #include <rastrum/raster/program.hpp>
 #include <rastrum/render/render.hpp>
 
+#include "tests/support/cuda_test.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/random.hpp"
@@ -21,29 +21,6 @@
 
 namespace rastrum::test {
 namespace {
-
-RenderOptions options(int width, int height, Device device) {
-  RenderOptions o;
-  o.width = width;
-  o.height = height;
-  o.device = device;
-  o.threads = 2;
-  o.isa = Isa::scalar;
-  o.background = {0.2F, 0.3F, 0.4F, 0.5F};
-  return o;
-}
-
-void skip_without_device() {
-  const parallel::CudaStatus status = parallel::cuda_status();
-  if (!status.usable) GTEST_SKIP() << "no device: " << status.why_not;
-}
-
-std::uint64_t counter(const FrameStats& stats, std::string_view name) {
-  for (const auto& [key, value] : stats.counters)
-    if (key == name) return value;
-  ADD_FAILURE() << "no counter " << name;
-  return 0;
-}
 
 testing::AssertionResult same_frame(const Frame& a, const Frame& b) {
   if (auto r = same_surfaces(a, b); !r) return r;
@@ -60,18 +37,12 @@ struct Variant {
   Shader shader;
   Cull cull;
 };
-class CudaFamily : public testing::TestWithParam<Variant> {
- protected:
-  void SetUp() override { skip_without_device(); }
-};
-class CudaRasterizer : public testing::Test {
- protected:
-  void SetUp() override { skip_without_device(); }
-};
+class CudaFamily : public CudaTest, public testing::WithParamInterface<Variant> {};
+using CudaRasterizer = CudaTest;
 
 TEST_P(CudaFamily, EqualsSerial) {
   const Variant v = GetParam();
-  RenderOptions on_serial = options(v.width, v.height, Device::serial);
+  RenderOptions on_serial = device_options(v.width, v.height, Device::serial);
   on_serial.shader = v.shader;
   on_serial.cull = v.cull;
   RenderOptions on_cuda = on_serial;
@@ -124,7 +95,7 @@ TEST_F(CudaRasterizer, SizesAndCutsChangeNothing) {
   const Scene scene = soup(kTriangles, kWidth, kHeight);
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kWidth, kHeight);
-  Renderer serial(options(kWidth, kHeight, Device::serial));
+  Renderer serial(device_options(kWidth, kHeight, Device::serial));
   const Frame expected = draw(serial, binding.view(), camera);
   struct Cut {
     int small_px, large_px;
@@ -133,7 +104,7 @@ TEST_F(CudaRasterizer, SizesAndCutsChangeNothing) {
   std::vector<FrameStats> stats;
   for (const Cut cut : {Cut{0, 0, 0}, Cut{1, 1 << 30, 0}, Cut{1, 2, 0}, Cut{4000, 0, 0},
                         Cut{0, 0, 3000000}, Cut{1, 500, 3000000}}) {
-    RenderOptions o = options(kWidth, kHeight, Device::cuda);
+    RenderOptions o = device_options(kWidth, kHeight, Device::cuda);
     o.tuning.small_px = cut.small_px;
     o.tuning.large_px = cut.large_px;
     o.memory_limit = cut.limit;
@@ -161,7 +132,7 @@ TEST_F(CudaRasterizer, SizesAndCutsChangeNothing) {
 }
 
 TEST_F(CudaRasterizer, RefusesALimitThatHoldsNoBand) {
-  RenderOptions o = options(4000, 100, Device::cuda);
+  RenderOptions o = device_options(4000, 100, Device::cuda);
   o.memory_limit = 1 << 20;
   Renderer cuda(o);
   const Scene scene = soup(10, 64, 64);
@@ -176,7 +147,7 @@ TEST_F(CudaRasterizer, RefusesALimitThatHoldsNoBand) {
 }
 
 TEST_F(CudaRasterizer, FramesAfterTheFirstHoldNoMore) {
-  Renderer cuda(options(200, 150, Device::cuda));
+  Renderer cuda(device_options(200, 150, Device::cuda));
   const Scene scene = soup(5000, 200, 150);
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(200, 150);
@@ -186,7 +157,7 @@ TEST_F(CudaRasterizer, FramesAfterTheFirstHoldNoMore) {
 }
 
 TEST_F(CudaRasterizer, NamesAnIndexOutOfRange) {
-  Renderer cuda(options(64, 64, Device::cuda));
+  Renderer cuda(device_options(64, 64, Device::cuda));
   Scene scene = soup(2, 64, 64);
   scene.meshes[0].indices = {0, 1, 2, 3, 4, 6};
   try {
@@ -200,7 +171,7 @@ TEST_F(CudaRasterizer, NamesAnIndexOutOfRange) {
 }
 
 TEST_F(CudaRasterizer, SaysWhatItLeavesToTheCpu) {
-  RenderOptions o = options(64, 64, Device::cuda);
+  RenderOptions o = device_options(64, 64, Device::cuda);
   o.opacity = 0.5F;
   Renderer cuda(o);
   o.device = Device::serial;
@@ -214,7 +185,7 @@ TEST_F(CudaRasterizer, SaysWhatItLeavesToTheCpu) {
 }
 
 TEST_F(CudaRasterizer, IsTakenByAutoUnlessTheCpusIsAskedFor) {
-  RenderOptions o = options(64, 64, Device::automatic);
+  RenderOptions o = device_options(64, 64, Device::automatic);
   EXPECT_EQ(Renderer(o).options().device, Device::cuda);
   o.rasterizer = "tiled";
   EXPECT_EQ(Renderer(o).options().device, Device::threads);
@@ -227,7 +198,7 @@ TEST_F(CudaRasterizer, IsTakenByAutoUnlessTheCpusIsAskedFor) {
 }
 
 TEST_F(CudaRasterizer, AutoLeavesToTheThreadsWhatTheyDrawSooner) {
-  RenderOptions o = options(64, 64, Device::automatic);
+  RenderOptions o = device_options(64, 64, Device::automatic);
   o.threads = 1;
   const Scene small = soup(200, 64, 64), large = soup(100000, 64, 64);
   const SceneBinding few(small), many(large);
@@ -264,7 +235,7 @@ TEST_F(CudaRasterizer, InPlaceNothingIsCopied) {
   }
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kWidth, kHeight);
-  RenderOptions o = options(kWidth, kHeight, Device::serial);
+  RenderOptions o = device_options(kWidth, kHeight, Device::serial);
   Renderer serial(o);
   Frame expected = draw(serial, binding.view(), camera);
   Frame frame = draw(serial, SceneBinding(soup(1, 8, 8)).view(), camera);
@@ -346,8 +317,8 @@ struct Mix {
 
 TEST_F(CudaRasterizer, DrawsOfAllTopologiesEqualSerial) {
   constexpr int kWidth = 130, kHeight = 91;
-  Renderer serial(options(kWidth, kHeight, Device::serial));
-  Renderer cuda(options(kWidth, kHeight, Device::cuda));
+  Renderer serial(device_options(kWidth, kHeight, Device::serial));
+  Renderer cuda(device_options(kWidth, kHeight, Device::cuda));
   FrameStats::Triangles seen;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     Random random(seed);
@@ -374,7 +345,7 @@ TEST_F(CudaRasterizer, DrawsOfAllTopologiesEqualSerial) {
 // is the host's.
 TEST_F(CudaRasterizer, SamplesOfAllTopologiesEqualSerial) {
   constexpr int kWidth = 83, kHeight = 61;
-  RenderOptions o = options(kWidth, kHeight, Device::serial);
+  RenderOptions o = device_options(kWidth, kHeight, Device::serial);
   o.samples = 4;
   Renderer serial(o);
   o.device = Device::cuda;
@@ -413,7 +384,7 @@ TEST_F(CudaRasterizer, PassesEqualOneDraw) {
   const Scene scene = soup(3000, kWidth, kHeight);
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kWidth, kHeight);
-  RenderOptions o = options(kWidth, kHeight, Device::cuda);
+  RenderOptions o = device_options(kWidth, kHeight, Device::cuda);
   Renderer cuda(o);
   const Frame once = draw(cuda, binding.view(), camera);
   Frame f;

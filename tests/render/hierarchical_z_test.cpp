@@ -9,6 +9,7 @@
 
 #include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
+#include "tests/support/frame.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -35,12 +36,6 @@ Surfaces surfaces(Renderer& renderer, const SceneView& scene, const Camera& came
 void expect_equal(const Surfaces& a, const Surfaces& b) {
   EXPECT_TRUE(std::ranges::equal(a.ids.pixels(), b.ids.pixels()));
   EXPECT_TRUE(std::ranges::equal(a.depth.pixels(), b.depth.pixels()));
-}
-
-std::uint64_t counter(const FrameStats& stats, const std::string& name) {
-  for (const auto& [n, value] : stats.counters)
-    if (n == name) return value;
-  return 0;
 }
 
 RenderOptions options(int width, int height, Device device) {

@@ -159,4 +159,11 @@ AssertionResult counts_add_up(const Frame& f) {
   return AssertionSuccess();
 }
 
+std::uint64_t counter(const FrameStats& stats, std::string_view name) {
+  for (const auto& [key, value] : stats.counters)
+    if (key == name) return value;
+  ADD_FAILURE() << "no counter is called " << name;
+  return 0;
+}
+
 }  // namespace rastrum::test

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
@@ -35,5 +36,7 @@ struct Frame {
 /// The counters of the two frames, and within each that they add up.
 [[nodiscard]] testing::AssertionResult same_counts(const FrameStats& a, const FrameStats& b);
 [[nodiscard]] testing::AssertionResult counts_add_up(const Frame& frame);
+/// The counter of that name; a frame without it fails the test.
+[[nodiscard]] std::uint64_t counter(const FrameStats& stats, std::string_view name);
 
 }  // namespace rastrum::test

@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/parallel/cuda/status.hpp>
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
+#include "tests/support/cuda_test.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/scenes.hpp"
@@ -17,24 +17,12 @@ namespace rastrum::test {
 namespace {
 
 RenderOptions options(int width, int height, Device device) {
-  RenderOptions o;
-  o.width = width;
-  o.height = height;
-  o.device = device;
-  o.threads = 2;
-  o.isa = Isa::scalar;
-  o.background = {0.2F, 0.3F, 0.4F, 0.5F};
+  RenderOptions o = device_options(width, height, device);
   o.opacity = 0.4F;
   return o;
 }
 
-class CudaLayeredFrame : public testing::Test {
- protected:
-  void SetUp() override {
-    const parallel::CudaStatus status = parallel::cuda_status();
-    if (!status.usable) GTEST_SKIP() << "no device: " << status.why_not;
-  }
-};
+using CudaLayeredFrame = CudaTest;
 
 TEST_F(CudaLayeredFrame, EqualsTheThreads) {
   struct Way {

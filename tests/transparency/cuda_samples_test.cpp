@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/parallel/cuda/status.hpp>
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
+#include "tests/support/cuda_test.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/layer_picture.hpp"
@@ -20,14 +20,8 @@ namespace rastrum::test {
 namespace {
 
 RenderOptions options(int width, int height, int samples, Device device) {
-  RenderOptions o;
-  o.width = width;
-  o.height = height;
+  RenderOptions o = device_options(width, height, device);
   o.samples = samples;
-  o.device = device;
-  o.threads = 2;
-  o.isa = Isa::scalar;
-  o.background = {0.2F, 0.3F, 0.4F, 0.5F};
   return o;
 }
 
@@ -35,13 +29,7 @@ int scene_count() {
   return std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 500, kSceneKinds);
 }
 
-class CudaSamples : public testing::Test {
- protected:
-  void SetUp() override {
-    const parallel::CudaStatus status = parallel::cuda_status();
-    if (!status.usable) GTEST_SKIP() << "no device: " << status.why_not;
-  }
-};
+using CudaSamples = CudaTest;
 
 class CudaSampled : public CudaSamples, public testing::WithParamInterface<int> {};
 

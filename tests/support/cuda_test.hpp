@@ -1,0 +1,33 @@
+// Tests of what --device cuda draws, through the façade: on a GPU, or on the CPU where the program
+// has the code for the device compiled for it (tests/CMakeLists.txt).
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <rastrum/parallel/cuda/status.hpp>
+#include <rastrum/render/render.hpp>
+
+namespace rastrum::test {
+
+/// Skipped without a device, with words that tests/cuda/CMakeLists.txt looks for.
+class CudaTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const parallel::CudaStatus status = parallel::cuda_status();
+    if (!status.usable) GTEST_SKIP() << "no device: " << status.why_not;
+  }
+};
+
+/// A frame whose bits do not depend on the device.
+inline RenderOptions device_options(int width, int height, Device device) {
+  RenderOptions o;
+  o.width = width;
+  o.height = height;
+  o.device = device;
+  o.threads = 2;
+  o.isa = Isa::scalar;
+  o.background = {0.2F, 0.3F, 0.4F, 0.5F};
+  return o;
+}
+
+}  // namespace rastrum::test
