@@ -59,15 +59,13 @@ bool PackedFragments::collect(std::span<const Record> records, std::span<const M
   last_low_ = kIdMask;
   first_.reserve(most / 64 + 1);
   std::fill_n(first_.data(), most / 64 + 1, 0U);
-  auto m = micro.begin();
+  std::size_t m = 0;
   for (const Record& r : records) {
-    for (; m != micro.end() && (m->word & kIdMask) > r.piece->low; ++m)
-      if (!add(*m, grid)) return false;
-    if (!add(r, grid)) return false;
+    const std::size_t begin = m;
+    while (m < micro.size() && (micro[m].word & kIdMask) > r.piece->low) ++m;
+    if (!add(micro.subspan(begin, m - begin), grid) || !add(r, grid)) return false;
   }
-  for (; m != micro.end(); ++m)
-    if (!add(*m, grid)) return false;
-  return deal(grid);
+  return add(micro.subspan(m), grid) && deal(grid);
 }
 
 bool PackedFragments::add(const Record& record, const BlockGrid& grid) {
@@ -80,13 +78,26 @@ bool PackedFragments::add(const Record& record, const BlockGrid& grid) {
   return append(n, opaque_[block]);
 }
 
-bool PackedFragments::add(const MicroRecord& fragment, const BlockGrid& grid) {
-  const std::uint32_t block = fragment.block - grid.first;
-  words_[count_] = fragment.word;
-  pixels_[count_] =
-      static_cast<std::uint16_t>(first_pixel_[block] + fragment.pixel / kBlockSize * kPackedPitch +
-                                 fragment.pixel % kBlockSize);
-  return append(1, opaque_[block]);
+bool PackedFragments::add(std::span<const MicroRecord> fragments, const BlockGrid& grid) {
+  std::uint64_t* const words = words_.data();
+  std::uint16_t* const pixels = pixels_.data();
+  std::uint64_t last_low = last_low_;
+  std::size_t n = count_;
+  for (const MicroRecord& f : fragments) {
+    const std::uint64_t low = f.word & kIdMask;
+    if (low > last_low) return false;
+    if (low != last_low) first_[n / 64] |= std::uint64_t{1} << n % 64;
+    last_low = low;
+    const std::uint32_t block = f.block - grid.first;
+    words[n] = f.word;
+    pixels[n] = static_cast<std::uint16_t>(
+        first_pixel_[block] + f.pixel / kBlockSize * kPackedPitch + f.pixel % kBlockSize);
+    const std::uint64_t* const opaque = opaque_[block];
+    n += opaque == nullptr || f.word > opaque[f.pixel];
+  }
+  last_low_ = last_low;
+  count_ = n;
+  return true;
 }
 
 /// Takes the n fragments of one triangle in one block that were written behind the others.

@@ -69,7 +69,7 @@ class PackedFragments {
   static constexpr int kRows = kPackedPitch * kPackedPitch / 8;
 
   bool add(const Record& record, const BlockGrid& grid);
-  bool add(const MicroRecord& fragment, const BlockGrid& grid);
+  bool add(std::span<const MicroRecord> fragments, const BlockGrid& grid);
   bool append(std::size_t n, const std::uint64_t* opaque);
   bool deal(const BlockGrid& grid);
   /// Shades those that `wanted_` has.

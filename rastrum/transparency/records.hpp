@@ -39,6 +39,12 @@ class ByBlock {
     records_.grow(count_ + 1, count_);
     records_[count_++] = record;
   }
+  /// Room for n more; say with `added` how many were written.
+  [[nodiscard]] T* room(std::size_t n) {
+    records_.grow(count_ + n, count_);
+    return records_.data() + count_;
+  }
+  void added(std::size_t n) { count_ += n; }
   [[nodiscard]] std::size_t size() const { return count_; }
   [[nodiscard]] std::span<const T> in_order() const { return {records_.data(), count_}; }
   /// Counting sort.
