@@ -105,8 +105,12 @@ TEST_P(LayeredMeshes, EqualTheOracle) {
 
 INSTANTIATE_TEST_SUITE_P(Shared, LayeredMeshes, testing::ValuesIn(kRealMeshes), name_of_file);
 
+// With RASTRUM_FULL=1 paper 4's, of 2.88 million triangles.
 TEST(LayeredShapes, HairballEqualsTheOracle) {
-  expect_exact(in_colors(single(shapes::hairball(3000, 48, 0.02F)), 0.1F), 60);
+  if (count_from_environment("RASTRUM_FULL", 0) == 0)
+    expect_exact(in_colors(single(shapes::hairball(3000, 48, 0.02F)), 0.1F), 60);
+  else
+    expect_exact(in_colors(single(shapes::hairball()), 0.1F), 30);
 }
 
 }  // namespace
