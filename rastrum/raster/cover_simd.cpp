@@ -413,7 +413,7 @@ struct SquareBounds {
   static constexpr std::size_t kPitch = 2 * kBlocksPerBinRow;
   HWY_ALIGN float lowest[kBlocksPerBinRow * kPitch];
 
-  HWY_INLINE explicit SquareBounds(const DepthBounds& bounds) {
+  HWY_INLINE void find(const DepthBounds& bounds) {
     const F32 d;
     for (std::size_t row = 0; row < kBlocksPerBinRow; ++row) {
       float* const out = lowest + row * kPitch;
@@ -480,7 +480,8 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
                   std::size_t capacity, DepthBounds* bounds) noexcept {
   const bool cut = bin.x1 % kBlockSize != 0 || bin.y1 % kBlockSize != 0;
   const bool hides = bounds != nullptr && knows_depths(*bounds);
-  const SquareBounds squares(hides ? *bounds : DepthBounds{});
+  SquareBounds squares;
+  if (hides) squares.find(*bounds);
   HiddenTest hidden(bounds, bin);
   SmallPieces small;
   std::size_t n = 0;
