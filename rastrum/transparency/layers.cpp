@@ -119,14 +119,14 @@ class LayersRegion final : public raster::Region {
       std::size_t end = i;
       while (end < fragments.size() && is_opaque(fragments[end])) ++end;
       if (end > i) opaque_->fragments(fragments.subspan(i, end - i));
-      MicroRecord* const out = micro_.room(fragments.size() - end);
-      std::size_t n = 0;
-      for (; end < fragments.size() && !is_opaque(fragments[end]); ++end) {
-        const BinFragment& f = fragments[end];
+      i = end;
+      while (end < fragments.size() && !is_opaque(fragments[end])) ++end;
+      MicroRecord* out = micro_.room(end - i);
+      for (const BinFragment& f : fragments.subspan(i, end - i)) {
         const std::uint32_t block = f.pixel / 64 % (kBlocks * kBlocks);
-        out[n++] = {f.word, block / kBlocks * columns + block % kBlocks - first, f.pixel % 64};
+        *out++ = {f.word, block / kBlocks * columns + block % kBlocks - first, f.pixel % 64};
       }
-      micro_.added(n);
+      micro_.added(end - i);
       i = end;
     }
   }

@@ -172,7 +172,7 @@ TEST(Setup, FragmentsOfTranslucentTrianglesSayThatTheyAre) {
     ASSERT_EQ(opaque.out.pieces, translucent.out.pieces) << name(isa);
     EXPECT_EQ(opaque.out.fragments != 0, isa != Isa::scalar) << name(isa);
     for (std::size_t i = 0; i < opaque.out.pieces; ++i)
-      ASSERT_EQ(translucent.pieces[i].flags, raster::kTranslucent);
+      ASSERT_EQ(translucent.pieces[i].flags, opaque.pieces[i].flags | raster::kTranslucent);
     for (std::size_t i = 0; i < opaque.out.fragments; ++i) {
       const raster::BinFragment& a = opaque.fragments[i];
       const raster::BinFragment& b = translucent.fragments[i];

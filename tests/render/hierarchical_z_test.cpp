@@ -112,7 +112,8 @@ TEST(HierarchicalZ, RejectsWhatIsHiddenAndNothingElse) {
   }
 }
 
-// The share of its fragments that a threaded frame looked at; it must equal the serial one.
+// The share of its fragments that a threaded frame looked at; its picture must equal the serial
+// one.
 double share_drawn(Mesh mesh, Isa isa) {
   constexpr int kSize = 256;
   const Scene scene = single(std::move(mesh));

@@ -123,7 +123,7 @@ struct Lists {
             frame.request.targets.overdraw.empty()) {}
 
   [[nodiscard]] std::size_t count() const { return bins.count() * (two ? 2 : 1); }
-  /// That of the pieces of bin `b` that face away; all are where `two` is not set.
+  /// That of the pieces of bin `b` that face away, where there are two.
   [[nodiscard]] std::size_t away(std::size_t b) const { return bins.count() + b; }
   [[nodiscard]] BinNumbers numbers() const {
     return {bins.view, two ? static_cast<std::uint32_t>(bins.count()) : 0};

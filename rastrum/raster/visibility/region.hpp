@@ -89,7 +89,7 @@ struct Visibility {
   /// Needs every fragment of a tile at once, from a coverage whose threads own tiles: triangles
   /// cannot be drawn in batches or turns.
   bool keeps_layers = false;
-  bool hides = false;  ///< owned regions have bounds(), where FrameRequest::hierarchical_z
+  bool hides = false;  ///< owned regions have bounds(), and pieces may come in any order
 };
 
 /// All methods; the first is the default.
