@@ -60,7 +60,8 @@ void add_output_options(CLI::App& app, RenderArguments& a) {
   add(app, "--ids", "FILE", ".npy: int64, triangle in order of submission, -1 where nothing is",
       [&a](const std::string& s) { a.ids = parse_output("--ids", s, {Format::npy}); })
       ->group(group);
-  add(app, "--heatmap", "FILE", ".png: fragments at each pixel as colours; legend on stderr",
+  add(app, "--heatmap", "FILE",
+      ".png: fragments at each pixel, hidden ones too, as colours; legend on stderr",
       [&a](const std::string& s) { a.heatmap = parse_output("--heatmap", s, {Format::png}); })
       ->group(group);
   add(app, "--show-errors", "FILE",

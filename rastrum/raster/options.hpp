@@ -96,7 +96,9 @@ struct FrameStats {
     std::uint64_t clipped = 0;  ///< cut by the near plane or the guard band
     std::uint64_t drawn = 0;    ///< input − dropped − culled, before any early rejection
   } triangles;
-  std::uint64_t fragments = 0;       ///< samples covered, over all triangles that were enumerated
+  /// Samples covered, over all triangles that were enumerated: where hierarchical Z hides pieces
+  /// before their samples are looked for, fewer than Targets::overdraw sums up to.
+  std::uint64_t fragments = 0;
   std::uint64_t pixels_covered = 0;  ///< pixels that hold a surface at the end
   std::uint64_t peak_bytes = 0;      ///< scratch, beyond the caller's mesh and images
   std::vector<StageTime> stages;     ///< one after the other; they add up to the frame
