@@ -33,6 +33,7 @@
 #include <rastrum/render/render.hpp>
 
 #include "tests/io/files.hpp"
+#include "tests/support/directories.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define RASTRUM_TEST_SANITIZED 1

@@ -1,4 +1,4 @@
-// Files of the tests' own, and where the shared data lie.
+// Files of the tests' own.
 #pragma once
 
 #include <unistd.h>
@@ -13,11 +13,6 @@
 #include <gtest/gtest.h>
 
 namespace rastrum::test {
-
-inline std::filesystem::path shared_dir() {
-  const char* const asked = std::getenv("RASTRUM_SHARED");
-  return asked != nullptr ? asked : RASTRUM_SHARED_DIR;
-}
 
 /// A folder that is removed with all that is in it.
 class TempFolder {

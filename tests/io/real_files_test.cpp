@@ -10,6 +10,7 @@
 #include <rastrum/io/io.hpp>
 
 #include "tests/io/files.hpp"
+#include "tests/support/directories.hpp"
 
 namespace rastrum {
 namespace {

@@ -13,6 +13,7 @@
 #include <rastrum/raster/shaders/texture.hpp>
 #include <rastrum/render/render.hpp>
 
+#include "tests/support/directories.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"

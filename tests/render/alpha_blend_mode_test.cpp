@@ -12,7 +12,7 @@
 #include <rastrum/io/io.hpp>
 #include <rastrum/render/render.hpp>
 
-#include "tests/support/environment.hpp"
+#include "tests/support/directories.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/materials.hpp"
 

@@ -9,6 +9,7 @@
 #include <rastrum/io/io.hpp>
 #include <rastrum/render/render.hpp>
 
+#include "tests/support/directories.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"

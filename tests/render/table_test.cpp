@@ -12,6 +12,7 @@
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
+#include "tests/support/directories.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"

@@ -1,8 +1,8 @@
 // What a test takes from its surroundings: counts from the environment, threads beyond the cores.
 #pragma once
 
+#include <cstddef>
 #include <cstdlib>
-#include <filesystem>
 #include <string>
 
 #include <tbb/global_control.h>
@@ -25,11 +25,5 @@ class ThreadsBeyondCores {
  private:
   tbb::global_control control_;
 };
-
-/// Where real data lie, beside the checkout; may be absent.
-inline std::filesystem::path shared_data(const std::string& name) {
-  const char* const asked = std::getenv("RASTRUM_SHARED");
-  return std::filesystem::path(asked != nullptr ? asked : RASTRUM_SHARED_DIR) / "data" / name;
-}
 
 }  // namespace rastrum::test

@@ -7,6 +7,8 @@
 
 #include <rastrum/io/io.hpp>
 
+#include "tests/support/directories.hpp"
+
 namespace rastrum::test {
 namespace {
 
@@ -33,8 +35,8 @@ Image<Rgba8> difference(const Image<Rgba8>& a, const Image<Rgba8>& b) {
 }  // namespace
 
 testing::AssertionResult matches_golden(const std::string& name, const Image<Rgba8>& actual) {
-  const fs::path golden = fs::path(RASTRUM_GOLDEN_DIR) / (name + ".png");
-  const fs::path failures = RASTRUM_GOLDEN_FAILURES_DIR;
+  const fs::path golden = golden_dir() / (name + ".png");
+  const fs::path failures = golden_failures_dir();
   const auto failed = [&](const char* kind) { return failures / (name + "." + kind + ".png"); };
   for (const char* kind : {"expected", "actual", "diff"}) {
     std::error_code absent;

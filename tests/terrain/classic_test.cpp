@@ -19,7 +19,7 @@
 #include <rastrum/terrain/ceiling.hpp>
 #include <rastrum/terrain/renderer.hpp>
 
-#include "tests/support/environment.hpp"
+#include "tests/support/directories.hpp"
 #include "tests/terrain/maps.hpp"
 
 namespace rastrum::terrain {

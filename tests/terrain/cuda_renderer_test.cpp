@@ -14,7 +14,7 @@
 #include <rastrum/terrain/functions.hpp>
 #include <rastrum/terrain/renderer.hpp>
 
-#include "tests/support/environment.hpp"
+#include "tests/support/directories.hpp"
 #include "tests/terrain/cuda_device.hpp"
 #include "tests/terrain/maps.hpp"
 

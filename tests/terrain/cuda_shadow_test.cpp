@@ -13,7 +13,7 @@
 #include <rastrum/terrain/light.hpp>
 #include <rastrum/terrain/shadows.hpp>
 
-#include "tests/support/environment.hpp"
+#include "tests/support/directories.hpp"
 #include "tests/terrain/cuda_device.hpp"
 #include "tests/terrain/maps.hpp"
 

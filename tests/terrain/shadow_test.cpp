@@ -11,6 +11,7 @@
 #include <rastrum/io/height_map.hpp>
 #include <rastrum/terrain/shadows.hpp>
 
+#include "tests/support/directories.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/random.hpp"
 

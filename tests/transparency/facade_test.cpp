@@ -23,6 +23,7 @@
 #include <rastrum/raster/transform_source.hpp>
 #include <rastrum/render/render.hpp>
 
+#include "tests/support/directories.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_scenes.hpp"

@@ -14,6 +14,7 @@
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
+#include "tests/support/directories.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_program.hpp"
