@@ -68,8 +68,8 @@ void add_output_options(CLI::App& app, RenderArguments& a) {
       })
       ->group(group);
   add(app, "--depth-unit", "NAME",
-      "of --depth; world: distance along the view axis in the scene's units, inf where nothing is; "
-      "reversed",
+      "of --depth: reversed, or world: the distance along the view axis in the scene's units, inf "
+      "where nothing is (reversed)",
       [&a](const std::string& s) {
         a.depth_unit = choose<DepthUnit>(
             "--depth-unit", s, {{"world", DepthUnit::world}, {"reversed", DepthUnit::reversed}});
@@ -91,7 +91,8 @@ void add_output_options(CLI::App& app, RenderArguments& a) {
       "sort a pixel that its filter could not hold",
       [&a](const std::string& s) { a.errors = parse_output("--show-errors", s, {Format::png}); })
       ->group(group);
-  add(app, "--stats", "FILE", ".json or - (standard output): counts, memory and times",
+  add(app, "--stats", "FILE",
+      ".json or - (standard output): counts, memory, times, ids of the inputs, cameras",
       [&a](const std::string& s) {
         a.stats = s == "-" ? Output{"--stats", s, Format::json}
                            : parse_output("--stats", s, {Format::json});

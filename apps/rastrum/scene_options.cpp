@@ -143,8 +143,11 @@ void add_camera_options(CLI::App& app, SceneArguments& a) {
       "sphere: a ball around it does (tight)",
       [&a, &v](const std::string& s) {
         a.fit = true;
-        if (!s.empty())
-          v.fit = choose<Fit>("--fit", s, {{"tight", Fit::tight}, {"sphere", Fit::sphere}});
+        if (s.empty()) return;
+        if (s != "tight" && s != "sphere")
+          throw UsageError("--fit", "expected tight or sphere, got '" + s +
+                                        "'; an INPUT stands before --fit, not behind it");
+        v.fit = s == "sphere" ? Fit::sphere : Fit::tight;
       })
       ->expected(0, 1)
       ->group(group);

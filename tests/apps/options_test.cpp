@@ -90,6 +90,15 @@ TEST_F(Options, OrthographicFit) {
   expect({"--orthographic", "fit", "--fit"}, tight);
 }
 
+TEST_F(Options, FitDoesNotSwallowAnInputInSilence) {
+  const Outcome r = run({"render", "--fit", "builtin:boxes", "-o", "p.png"});
+  EXPECT_EQ(r.status, 2);
+  EXPECT_NE(
+      r.err.find("--fit: expected tight or sphere, got 'builtin:boxes'; an INPUT stands before"),
+      std::string::npos)
+      << r.err;
+}
+
 TEST_F(Options, FitOfTheSphereIsWhatItWas) {
   const Scene scene = boxes();
   const SceneBinding binding(scene);

@@ -143,6 +143,19 @@ TEST_F(TerrainObjectsProgram, OptionsOfMeshesAreThoseOfRender) {
   expect(drawn(&higher, how), "classic");
 }
 
+TEST_F(TerrainObjectsProgram, AMeshTakesTheLookOfAnInput) {
+  const std::string place = std::string(kBox) + "@x=20.5,y=30.25,scale=8";
+  must(with({"--mesh", place, "--opacity", "0.4"}));
+  const Image<Rgba8> all = png("p.png");
+  must(with({"--mesh", place + ",opacity=0.4"}));
+  EXPECT_TRUE(same_pixels(png("p.png"), all));
+  // A look is no place.
+  must(with({"--mesh", std::string(kBox) + ",x=28,y=22,z=30,scale=7", "--opacity", "0.4"}));
+  const Image<Rgba8> own = png("p.png");
+  must(with({"--mesh", std::string(kBox) + ",x=28,y=22,z=30,scale=7@opacity=0.4"}));
+  EXPECT_TRUE(same_pixels(png("p.png"), own));
+}
+
 TEST_F(TerrainObjectsProgram, SpritesAndMeshesInCommandOrder) {
   Scene scene = sprite(Image<Rgba8>(sprite_));
   scene.instances[0].object_to_world = at(25, static_cast<double>(map_.heights(25, 40)), 40, 12);
@@ -191,7 +204,8 @@ TEST_F(TerrainObjectsProgram, RefusesWhatCannotStand) {
   refuse(2, "off the map, which has 60x60 cells", {"--mesh", std::string(kBox) + "@x=60,y=1"});
   refuse(2, "off the map", {"--sprite", "tree.png@x=1,y=-0.5"});
   refuse(2, "--mesh: x and y are missing", {"--mesh", std::string(kBox) + "@x=1"});
-  refuse(2, "expected x, y, height, scale and turn after @, got 'size=2'",
+  refuse(2,
+         "expected x, y, height, scale, turn, rx, ry, rz, color and opacity after @, got 'size=2'",
          {"--mesh", std::string(kBox) + "@x=1,y=1,size=2"});
   refuse(2, "--mesh scale: expected a number, got 'big'",
          {"--mesh", std::string(kBox) + "@x=1,y=1,scale=big"});
