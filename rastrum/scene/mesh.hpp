@@ -37,7 +37,15 @@ struct MeshView {
   [[nodiscard]] std::size_t triangle_count() const {
     return (indices.empty() ? positions.size() : indices.size()) / 3;
   }
+  /// The position of corner 3t + c, c of triangle t.
+  [[nodiscard]] std::uint32_t vertex(std::size_t corner) const {
+    return indices.empty() ? static_cast<std::uint32_t>(corner) : indices[corner];
+  }
 };
+
+/// Throws Error{invalid_argument} that names the first of the triangles' indices that is no
+/// position's. O(indices).
+void check_indices(const MeshView& mesh);
 
 template <class T>
 struct Attribute {

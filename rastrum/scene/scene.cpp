@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <string>
 #include <utility>
 
 #include <rastrum/core/error.hpp>
@@ -38,13 +39,9 @@ void for_each_vertex_in_use(const SceneView& scene, F&& f) {
       for (const Vec3 p : mesh.positions.first(mesh.triangle_count() * 3)) visit(p);
       continue;
     }
+    check_indices(mesh);
     std::vector<bool> used(mesh.positions.size());
-    for (const std::uint32_t i : mesh.indices) {
-      if (i >= used.size())
-        throw Error(Errc::invalid_argument, "mesh: index " + std::to_string(i) + " but only " +
-                                                std::to_string(used.size()) + " vertices");
-      used[i] = true;
-    }
+    for (const std::uint32_t i : mesh.indices) used[i] = true;
     for (std::size_t i = 0; i < used.size(); ++i)
       if (used[i]) visit(mesh.positions[i]);
   }
@@ -70,6 +67,15 @@ Vec3 narrow(Vec3d p) {
 }
 
 }  // namespace
+
+void check_indices(const MeshView& mesh) {
+  for (std::size_t c = 0; c < mesh.indices.size(); ++c)
+    if (mesh.indices[c] >= mesh.positions.size())
+      throw Error(Errc::invalid_argument,
+                  "mesh: corner " + std::to_string(c % 3) + " of triangle " +
+                      std::to_string(c / 3) + " is vertex " + std::to_string(mesh.indices[c]) +
+                      ", but there are only " + std::to_string(mesh.positions.size()));
+}
 
 void Scene::append(Scene other) {
   const auto mesh_offset = static_cast<std::uint32_t>(meshes.size());
@@ -143,9 +149,14 @@ Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
 
 std::vector<Vec3> vertex_normals(std::span<const Vec3> positions,
                                  std::span<const std::uint32_t> indices) {
+  MeshView mesh;
+  mesh.positions = positions;
+  mesh.indices = indices;
+  check_indices(mesh);
   std::vector<Vec3d> sums(positions.size());
-  for (std::size_t t = 0; t + 2 < indices.size(); t += 3) {
-    const std::uint32_t corner[3] = {indices[t], indices[t + 1], indices[t + 2]};
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const std::uint32_t corner[3] = {mesh.vertex(3 * t), mesh.vertex(3 * t + 1),
+                                     mesh.vertex(3 * t + 2)};
     const Vec3 a = positions[corner[0]];
     const Vec3d e1 = {double{positions[corner[1]].x} - a.x, double{positions[corner[1]].y} - a.y,
                       double{positions[corner[1]].z} - a.z};

@@ -76,7 +76,9 @@ struct Bounds {
 [[nodiscard]] Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic);
 
 /// Area-weighted vertex normals: at each position index the normalized sum of the cross products of
-/// its triangles' edges. `positions.size()` values; (0, 0, 0) where no triangle touches.
+/// its triangles' edges. `positions.size()` values; (0, 0, 0) where no triangle touches. `indices`
+/// as MeshView's: empty, they are the positions in order, and each triangle has its own normal.
+/// Throws Error{invalid_argument} for an index out of range. O(positions + indices).
 [[nodiscard]] std::vector<Vec3> vertex_normals(std::span<const Vec3> positions,
                                                std::span<const std::uint32_t> indices);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -164,6 +165,32 @@ TEST(VertexNormals, IgnoreNonFiniteTrianglesAndZeroArea) {
   expect_vec(n[1], {0, 0, 1});
   expect_vec(n[3], {0, 0, 0});
   expect_vec(n[4], {0, 0, 0});
+}
+
+TEST(VertexNormals, WithoutIndicesPositionsAreInOrder) {
+  // Two whole triangles and the begin of a third.
+  const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5},
+                                       {5, 6, 5}, {5, 5, 6}, {7, 7, 7}};
+  const std::vector<Vec3> n = vertex_normals(positions, {});
+  ASSERT_EQ(n.size(), positions.size());
+  for (std::size_t i = 0; i < 3; ++i) expect_vec(n[i], {0, 0, 1});
+  for (std::size_t i = 3; i < 6; ++i) expect_vec(n[i], {1, 0, 0});
+  expect_vec(n[6], {0, 0, 0});
+}
+
+TEST(VertexNormals, RefuseIndicesOutOfRange) {
+  const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  for (const std::uint32_t far : {3U, 4'000'000'000U}) {
+    const std::vector<std::uint32_t> indices = {0, 1, 2, 0, 2, far};
+    try {
+      static_cast<void>(vertex_normals(positions, indices));
+      ADD_FAILURE() << "index " << far << " was taken";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::invalid_argument);
+      EXPECT_EQ(std::string(e.what()), "mesh: corner 2 of triangle 1 is vertex " +
+                                           std::to_string(far) + ", but there are only 3");
+    }
+  }
 }
 
 TEST(VertexNormals, OfASpherePointOutward) {
