@@ -66,6 +66,14 @@ Vec3 narrow(Vec3d p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
+const Mesh& mesh_of(const Scene& scene, const Instance& instance) {
+  if (instance.mesh >= scene.meshes.size())
+    throw Error(Errc::invalid_argument,
+                "scene: an instance is of mesh " + std::to_string(instance.mesh) +
+                    ", but there are only " + std::to_string(scene.meshes.size()));
+  return scene.meshes[instance.mesh];
+}
+
 }  // namespace
 
 void check_indices(const MeshView& mesh) {
@@ -109,14 +117,14 @@ void Scene::append(Scene other) {
 
 std::uint64_t Scene::triangle_count() const {
   std::uint64_t n = 0;
-  for (const Instance& i : instances) n += meshes[i.mesh].triangle_count();
+  for (const Instance& i : instances) n += mesh_of(*this, i).triangle_count();
   return n;
 }
 
 SceneBinding::SceneBinding(const Scene& scene) {
   instances_.reserve(scene.instances.size());
   for (const Instance& i : scene.instances)
-    instances_.push_back({scene.meshes[i.mesh].view(), i.object_to_world});
+    instances_.push_back({mesh_of(scene, i).view(), i.object_to_world});
   view_ = {instances_, scene.materials, scene.textures};
 }
 
@@ -126,6 +134,7 @@ Bounds bounds(const SceneView& scene) {
 }
 
 Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
+  check_fov(fov_rad);
   const BoundsD b = bounds_float64(scene);
   const Vec3d centre = {(b.min.x + b.max.x) / 2, (b.min.y + b.max.y) / 2, (b.min.z + b.max.z) / 2};
   double r = 0;

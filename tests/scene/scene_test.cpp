@@ -127,6 +127,21 @@ TEST(FitCamera, RadiusZeroCountsAsOne) {
   }
 }
 
+TEST(FitCamera, RefusesFieldsOfViewThatAreNone) {
+  const Scene scene = scene_of(shapes::boxes(1));
+  const SceneBinding binding(scene);
+  for (const float fov : {0.0F, -1.0F, 3.14159274F, 4.0F, kNan, kInfinity})
+    for (const bool orthographic : {false, true}) {
+      try {
+        static_cast<void>(fit_camera(binding.view(), fov, orthographic));
+        ADD_FAILURE() << "a field of view of " << fov << " was taken";
+      } catch (const Error& e) {
+        EXPECT_EQ(e.code(), Errc::invalid_argument);
+        EXPECT_NE(std::string(e.what()).find("field of view"), std::string::npos) << e.what();
+      }
+    }
+}
+
 TEST(FitCamera, SeesTheWholeScene) {
   const Scene scene = scene_of(shapes::teapot(8));
   const SceneBinding binding(scene);
@@ -217,6 +232,18 @@ Scene marked_scene(float mark, std::size_t materials, std::size_t textures) {
   s.warnings = {std::to_string(mark)};
   s.cameras.resize(1);
   return s;
+}
+
+TEST(Scene, AnInstanceOfNoMeshIsRefused) {
+  Scene scene = scene_of(shapes::boxes(1));
+  scene.instances.push_back({7, Mat4d::identity()});
+  EXPECT_THROW(static_cast<void>(scene.triangle_count()), Error);
+  try {
+    const SceneBinding binding(scene);
+    ADD_FAILURE() << "mesh 7 of 1 was taken";
+  } catch (const Error& e) {
+    EXPECT_EQ(std::string(e.what()), "scene: an instance is of mesh 7, but there are only 1");
+  }
 }
 
 TEST(SceneAppend, ShiftsIndices) {
