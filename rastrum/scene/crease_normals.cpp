@@ -118,25 +118,21 @@ Attribute<Vec3> crease_normals(std::span<const Vec3> positions,
                 "crease_normals: the angle must lie in 0 to 180 degrees, not " +
                     std::to_string(crease_deg));
   const double cosine = sin_cos_degrees(crease_deg).cos;
-  const std::size_t triangles = (indices.empty() ? positions.size() : indices.size()) / 3;
-  const auto vertex = [&](std::size_t corner) {
-    return indices.empty() ? static_cast<std::uint32_t>(corner) : indices[corner];
-  };
-  for (const std::uint32_t i : indices)
-    if (i >= positions.size())
-      throw Error(Errc::invalid_argument, "crease_normals: index " + std::to_string(i) +
-                                              " but only " + std::to_string(positions.size()) +
-                                              " positions");
+  MeshView mesh;
+  mesh.positions = positions;
+  mesh.indices = indices;
+  check_indices(mesh);
+  const std::size_t triangles = mesh.triangle_count();
 
   const Points points = weld(positions);
-  const auto point = [&](std::size_t corner) { return points.of_vertex[vertex(corner)]; };
+  const auto point = [&](std::size_t corner) { return points.of_vertex[mesh.vertex(corner)]; };
   std::vector<Face> faces(triangles);
   // The corners at point p, in the order of triangles: corners[begin[p]] to corners[begin[p + 1]].
   std::vector<std::size_t> begin(points.count + 1);
   for (std::size_t t = 0; t < triangles; ++t) {
     Face& f = faces[t];
-    f.normal = area_vector(positions[vertex(3 * t)], positions[vertex(3 * t + 1)],
-                           positions[vertex(3 * t + 2)]);
+    f.normal = area_vector(positions[mesh.vertex(3 * t)], positions[mesh.vertex(3 * t + 1)],
+                           positions[mesh.vertex(3 * t + 2)]);
     f.length = std::sqrt(dot(f.normal, f.normal));
     if (!std::isfinite(f.length)) f.length = 0;
     if (f.length > 0)

@@ -173,18 +173,14 @@ double middle(const Touch& touch, double back, double t_picture, const Touched& 
   return lower <= upper ? std::clamp(touched.tip_across(), lower, upper) : in_picture.tip_across();
 }
 
-void require(bool ok, const char* what) {
-  if (!ok) throw Error(Errc::invalid_argument, what);
-}
-
 Vec3 narrow(Vec3d p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
 Camera fit(const SceneView& scene, const Camera& view, int width, int height, bool turns) {
-  require(width >= 1 && height >= 1, "fit: the picture must have at least a pixel");
-  require(view.orthographic || (view.fov_rad > 0 && view.fov_rad < 3.14159F),
-          "fit: the field of view must lie between 0 and 180 degrees");
+  if (width < 1 || height < 1)
+    throw Error(Errc::invalid_argument, "fit: the picture must have at least a pixel");
+  if (!view.orthographic) check_fov(view.fov_rad);
   const VerticesInUse vertices(scene);
   Vec3d low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
   vertices.for_each([&](const Vec3d& p) {

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <cmath>
-#include <string>
 #include <vector>
 
-#include <rastrum/core/error.hpp>
 #include <rastrum/scene/scene.hpp>
 
 namespace rastrum {
@@ -58,13 +56,9 @@ class VerticesInUse {
   static std::vector<bool> used_of(const MeshView& mesh) {
     std::vector<bool> used;
     if (mesh.indices.empty()) return used;
+    check_indices(mesh);
     used.resize(mesh.positions.size());
-    for (const std::uint32_t i : mesh.indices) {
-      if (i >= used.size())
-        throw Error(Errc::invalid_argument, "mesh: index " + std::to_string(i) + " but only " +
-                                                std::to_string(used.size()) + " vertices");
-      used[i] = true;
-    }
+    for (const std::uint32_t i : mesh.indices) used[i] = true;
     return used;
   }
 
