@@ -43,7 +43,7 @@ struct RenderArguments : SceneArguments {
   Output color, depth, ids, heatmap, errors, trace, stats;
 };
 
-void add_output_options(CLI::App& app, RenderArguments& a) {
+void add_output_options(Parser& app, RenderArguments& a) {
   const char* group = "Outputs";
   add(app, "-o,--output", "FILE",
       ".png: 8 bit, straight alpha; .exr, .npy: float32, premultiplied; with --path also .mp4, "
@@ -82,7 +82,7 @@ void add_output_options(CLI::App& app, RenderArguments& a) {
       ->group(group);
 }
 
-void add_path_options(CLI::App& app, RenderArguments& a) {
+void add_path_options(Parser& app, RenderArguments& a) {
   const char* group = "Camera path";
   add(app, "--path", "FILE",
       "draw a picture for each moment of a camera path (docs/window.md): -o 'frame_%04d.png' or, "
@@ -96,7 +96,7 @@ void add_path_options(CLI::App& app, RenderArguments& a) {
   })->group(group);
 }
 
-void add_frames_option(CLI::App& app, RenderArguments& a) {
+void add_frames_option(Parser& app, RenderArguments& a) {
   add(app, "--frames", "N", "render N times; --stats gives median, minimum and maximum (1)",
       [&a](const std::string& s) {
         a.frames = parse_integer("--frames", s, 1, 1000000);
@@ -309,9 +309,9 @@ int run(RenderArguments& a) {
 
 }  // namespace
 
-Command add_render_command(CLI::App& app) {
+Command add_render_command(Parser& app) {
   auto arguments = std::make_shared<RenderArguments>();
-  CLI::App& render = *app.add_subcommand("render", "Draw meshes and shapes into an image file");
+  Parser render = app.add_subcommand("render", "Draw meshes and shapes into an image file");
   add_input_option(render, *arguments)->required();
   add_output_options(render, *arguments);
   add_picture_options(render, *arguments);
@@ -335,7 +335,7 @@ Command add_render_command(CLI::App& app) {
       "  rastrum render dragon.ply --frames 20 --stats - --trace frames.json --heatmap heat.png\n"
       "  rastrum render dragon.ply --path flight.json --fps 60 -o 'frame_%04d.png'";
   render.footer(footer);
-  return {&render, [arguments] { return run(*arguments); }};
+  return {render, [arguments] { return run(*arguments); }};
 }
 
 }  // namespace rastrum::cli

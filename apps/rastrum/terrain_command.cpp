@@ -44,7 +44,7 @@ struct TerrainArguments : TerrainSceneArguments {
   Output color, depth, stats;
 };
 
-void add_outputs(CLI::App& app, TerrainArguments& a) {
+void add_outputs(Parser& app, TerrainArguments& a) {
   const char* group = "Outputs";
   add(app, "-o,--output", "FILE", ".png: 8 bit; with --path also .mp4", [&a](const std::string& s) {
     a.color = parse_output("-o", s, {Format::png, Format::mp4});
@@ -63,7 +63,7 @@ void add_outputs(CLI::App& app, TerrainArguments& a) {
   app.add_flag("--quiet", a.quiet, "print errors alone")->group(group);
 }
 
-void add_path(CLI::App& app, TerrainArguments& a) {
+void add_path(Parser& app, TerrainArguments& a) {
   const char* group = "Camera path";
   add(app, "--path", "FILE",
       "draw a picture for each moment of a camera path (docs/window.md): -o 'frame_%04d.png' or, "
@@ -76,7 +76,7 @@ void add_path(CLI::App& app, TerrainArguments& a) {
   })->group(group);
 }
 
-void add_frames(CLI::App& app, TerrainArguments& a) {
+void add_frames(Parser& app, TerrainArguments& a) {
   add(app, "--frames", "N", "render N times; --stats gives median, minimum and maximum (1)",
       [&a](const std::string& s) { a.frames = parse_integer("--frames", s, 1, 1000000); })
       ->group("Machine");
@@ -284,10 +284,10 @@ int run(TerrainArguments& a) {
 
 }  // namespace
 
-Command add_terrain_command(CLI::App& app) {
+Command add_terrain_command(Parser& app) {
   auto arguments = std::make_shared<TerrainArguments>();
-  CLI::App& command =
-      *app.add_subcommand("terrain", "Fly over a height map or a function (Voxel Space)");
+  Parser command =
+      app.add_subcommand("terrain", "Fly over a height map or a function (Voxel Space)");
   add_terrain_inputs(command, *arguments);
   add_outputs(command, *arguments);
   add_terrain_camera(command, *arguments);
@@ -318,7 +318,7 @@ Command add_terrain_command(CLI::App& app) {
       "  rastrum terrain --height D1.png --mesh 'tower.obj@x=510,y=640,scale=3' --opacity 0.5 \\\n"
       "      --sprite 'tree.png@x=500,y=700,size=9' -o inhabited.png";
   command.footer(footer);
-  return {&command, [arguments] { return run(*arguments); }};
+  return {command, [arguments] { return run(*arguments); }};
 }
 
 }  // namespace rastrum::cli

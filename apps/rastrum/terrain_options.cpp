@@ -52,7 +52,7 @@ terrain::Fog parse_fog(const std::string& text) {
 
 }  // namespace
 
-void add_terrain_inputs(CLI::App& app, TerrainSceneArguments& a) {
+void add_terrain_inputs(Parser& app, TerrainSceneArguments& a) {
   const char* group = "Terrain";
   add(app, "--height", "FILE",
       "heights: .png (8 or 16 bit, grey), .raw .bin .r16 (uint16), .npy, .dem (USGS), .tif .tiff",
@@ -89,7 +89,7 @@ void add_terrain_inputs(CLI::App& app, TerrainSceneArguments& a) {
       ->group(group);
 }
 
-void add_terrain_camera(CLI::App& app, TerrainSceneArguments& a) {
+void add_terrain_camera(Parser& app, TerrainSceneArguments& a) {
   const char* group = "Camera";
   add(app, "--position", "X,Y", "cells, x east and y south (half the width, 0.78 of the height)",
       [&a](const std::string& s) {
@@ -116,7 +116,7 @@ void add_terrain_camera(CLI::App& app, TerrainSceneArguments& a) {
       ->group(group);
 }
 
-void add_terrain_picture(CLI::App& app, TerrainSceneArguments& a) {
+void add_terrain_picture(Parser& app, TerrainSceneArguments& a) {
   const char* group = "Picture";
   terrain::TerrainOptions& o = a.options;
   add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)", [&o](const std::string& s) {
@@ -164,7 +164,7 @@ void add_terrain_picture(CLI::App& app, TerrainSceneArguments& a) {
       ->group(group);
 }
 
-void add_terrain_light(CLI::App& app, TerrainSceneArguments& a) {
+void add_terrain_light(Parser& app, TerrainSceneArguments& a) {
   const char* group = "Light";
   add(app, "--sun", "AZIMUTH,ELEVATION",
       "degrees, clockwise from north and above the horizon (315,35)",
@@ -196,7 +196,7 @@ void add_terrain_light(CLI::App& app, TerrainSceneArguments& a) {
       ->group(group);
 }
 
-void add_terrain_machine(CLI::App& app, TerrainSceneArguments& a) {
+void add_terrain_machine(Parser& app, TerrainSceneArguments& a) {
   const char* group = "Machine";
   terrain::TerrainOptions& o = a.options;
   add(app, "--method", "NAME", "fast; words: paper 3's scans, the same picture (fast)",

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include <CLI/CLI.hpp>
+#include <apps/command_line/parser.hpp>
 
 #include <rastrum/terrain/light.hpp>
 #include <rastrum/terrain/options.hpp>
@@ -23,11 +23,11 @@ struct TerrainSceneArguments {
 };
 
 /// Each adds a group of options to `app`; parsing fills `a`, which must outlive it.
-void add_terrain_inputs(CLI::App& app, TerrainSceneArguments& a);
-void add_terrain_camera(CLI::App& app, TerrainSceneArguments& a);
-void add_terrain_picture(CLI::App& app, TerrainSceneArguments& a);
-void add_terrain_light(CLI::App& app, TerrainSceneArguments& a);
-void add_terrain_machine(CLI::App& app, TerrainSceneArguments& a);
+void add_terrain_inputs(Parser& app, TerrainSceneArguments& a);
+void add_terrain_camera(Parser& app, TerrainSceneArguments& a);
+void add_terrain_picture(Parser& app, TerrainSceneArguments& a);
+void add_terrain_light(Parser& app, TerrainSceneArguments& a);
+void add_terrain_machine(Parser& app, TerrainSceneArguments& a);
 
 /// Where one stands who did not say: over the south of the map, looking down on all of it.
 [[nodiscard]] terrain::TerrainCamera camera_of(const TerrainSceneArguments& a,

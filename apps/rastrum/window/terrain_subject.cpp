@@ -224,7 +224,7 @@ Worker::Job TerrainSubject::open(const std::filesystem::path& file) {
 }
 
 void TerrainSubject::set_options(const std::string& options) {
-  CLI::App app;
+  Parser app;
   TerrainSceneArguments changed;
   const TerrainPose& pose = control_.pose();
   changed.options = settings_.options;
@@ -236,8 +236,8 @@ void TerrainSubject::set_options(const std::string& options) {
   add_terrain_light(app, changed);
   add_terrain_machine(app, changed);
   try {
-    app.parse(options);
-  } catch (const CLI::ParseError& e) {
+    if (!app.parse(options)) return;  // --help
+  } catch (const UsageError& e) {
     throw Error(Errc::invalid_argument, options + ": " + e.what());
   }
   TerrainPose now = pose;
