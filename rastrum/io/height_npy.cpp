@@ -20,9 +20,9 @@ struct Layout {
   std::size_t rows = 0, columns = 0;
 };
 
-class Reader {
+class NpyReader {
  public:
-  Reader(std::span<const std::byte> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+  NpyReader(std::span<const std::byte> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
   [[nodiscard]] HeightGrid read() {
     const Layout layout = header();
@@ -155,7 +155,7 @@ class Reader {
 }  // namespace
 
 HeightGrid decode_height_npy(std::span<const std::byte> bytes, const std::string& name) {
-  return Reader(bytes, name).read();
+  return NpyReader(bytes, name).read();
 }
 
 }  // namespace rastrum::io
