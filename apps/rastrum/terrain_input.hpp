@@ -7,6 +7,7 @@
 #include <string>
 
 #include <rastrum/io/height_map.hpp>
+#include <rastrum/terrain/expression.hpp>
 #include <rastrum/terrain/functions.hpp>
 #include <rastrum/terrain/light.hpp>
 #include <rastrum/terrain/terrain.hpp>

@@ -9,6 +9,7 @@
 #include <rastrum/io/io.hpp>
 #include <rastrum/parallel/cuda/status.hpp>
 #include <rastrum/terrain/color_map.hpp>
+#include <rastrum/terrain/expression.hpp>
 #include <rastrum/terrain/functions.hpp>
 #include <rastrum/terrain/light.hpp>
 #include <rastrum/terrain/renderer.hpp>
