@@ -31,12 +31,12 @@ int main(int argc, char** argv) {
     rastrum::Renderer renderer(options);
     rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
     rastrum::Targets targets;
-    targets.color8 = image.view();
+    targets.color8 = image;
     const rastrum::FrameStats stats = renderer.render(binding.view(), camera, targets);
     std::printf("%llu triangles, %llu pixels covered, %.2f ms\n",
                 static_cast<unsigned long long>(stats.triangles.input),
                 static_cast<unsigned long long>(stats.pixels_covered), stats.frame_ms);
-    rastrum::io::write_png(argv[2], image.view());
+    rastrum::io::write_png(argv[2], image);
   } catch (const rastrum::Error& e) {
     std::fprintf(stderr, "%s\n", e.what());
     return 1;

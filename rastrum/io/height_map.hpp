@@ -12,7 +12,7 @@ namespace rastrum::io {
 
 /// Row 0 is at the top (north), columns go east.
 struct HeightGrid {
-  Image<float> heights;  ///< as the file has them, voids NaN
+  Image<float> heights{};  ///< as the file has them, voids NaN
   /// Units of `heights` that are as long as one cell is wide. Multiplying by 1 / units_per_cell
   /// gives the terrain its true proportions (DEM, GeoTIFF), or 16-bit values the range of 8-bit
   /// ones (257), which is that of the classic maps.

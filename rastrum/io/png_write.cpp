@@ -62,6 +62,7 @@ bool write_rows(PngWriter* state, ImageView<const Rgba8> image) {
 void write_png(const std::filesystem::path& file, ImageView<const Rgba8> image) {
   if (image.empty() || image.width < 1 || image.height < 1)
     throw Error(Errc::invalid_argument, file.string() + ": an empty image cannot be written");
+  check_stride(image, file.string());
   AtomicFile out(file);
   {
     PngWriter state;

@@ -2,6 +2,9 @@
 
 #include <hwy/detect_targets.h>
 
+#include <algorithm>
+
+#include <rastrum/core/enum.hpp>
 #include <rastrum/core/error.hpp>
 #include <rastrum/parallel/cuda/status.hpp>
 
@@ -22,6 +25,7 @@ std::string_view name(Device device) {
 }
 
 DeviceChoice choose_device(Device wanted, bool draws_on_cuda) {
+  check_enum(wanted, Device::automatic, "device");
   if (wanted == Device::serial || wanted == Device::threads) return {wanted, ""};
   const parallel::CudaStatus status = parallel::cuda_status();
   std::string why_not = status.why_not;
@@ -76,6 +80,16 @@ std::vector<Isa> available_isas() {
   isas.push_back(Isa::neon);
 #endif
   return isas;
+}
+
+Isa choose_isa(std::optional<Isa> wanted) {
+  const std::vector<Isa> isas = available_isas();
+  if (!wanted) return isas.back();
+  check_enum(*wanted, Isa::neon, "isa");
+  if (std::ranges::find(isas, *wanted) == isas.end())
+    throw Error(Errc::no_device,
+                "this machine cannot run " + std::string(name(*wanted)) + " instructions");
+  return *wanted;
 }
 
 }  // namespace rastrum

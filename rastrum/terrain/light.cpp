@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include <rastrum/core/enum.hpp>
 #include <rastrum/core/error.hpp>
 #include <rastrum/terrain/color_map.hpp>
 #include <rastrum/terrain/function_light.hpp>
@@ -15,6 +16,7 @@ namespace rastrum::terrain {
 namespace {
 
 void check(const Light& light) {
+  check_enum(light.shadows, Shadows::soft, "the kind of shadows");
   if (!(light.ambient >= 0 && light.ambient <= 1))
     throw Error(Errc::invalid_argument, "the ambient light must lie in 0 to 1");
 }

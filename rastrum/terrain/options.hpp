@@ -44,9 +44,9 @@ enum class Projection : std::uint8_t {
 
 /// Colours fade to `color` by 1 − exp(−density · (distance − start)); density 0 is none.
 struct Fog {
-  double density = 0;          ///< per cell
-  double start = 0;            ///< cells
-  std::optional<Rgba8> color;  ///< none: the sky's
+  double density = 0;            ///< per cell
+  double start = 0;              ///< cells
+  std::optional<Rgba8> color{};  ///< none: the sky's
 
   bool operator==(const Fog&) const = default;
 };
@@ -69,15 +69,15 @@ struct TerrainOptions {
   Tiling tiling = Tiling::repeat;
   Projection projection = Projection::planar;
   Rgba8 sky = kSky;
-  Fog fog;
+  Fog fog{};
   /// The camera is lifted to this much above the ground under it before a frame; none: it stays
   /// where it is, under the ground too. `classic` always takes 10.
-  std::optional<double> ground_clearance;
+  std::optional<double> ground_clearance{};
 
   Method method = Method::fast;
   Device device = Device::threads;
-  int threads = 0;         ///< 0: all
-  std::optional<Isa> isa;  ///< none: the best this machine has
+  int threads = 0;           ///< 0: all
+  std::optional<Isa> isa{};  ///< none: the best this machine has
 };
 
 /// Images to fill; an empty view is not computed. All must have the frame's size.

@@ -5,6 +5,8 @@
 #include <limits>
 #include <string>
 
+#include <rastrum/core/enum.hpp>
+
 namespace rastrum::terrain {
 namespace {
 
@@ -43,6 +45,10 @@ void check(const TerrainOptions& o) {
   require(o.width >= 1 && o.height >= 1 && o.width <= kMaxImageSize && o.height <= kMaxImageSize,
           "terrain: the size " + std::to_string(o.width) + "x" + std::to_string(o.height) +
               " is outside 1x1 to 32768x32768");
+  check_enum(o.filter, Filter::mip, "terrain: the filter");
+  check_enum(o.tiling, Tiling::clamp, "terrain: the tiling");
+  check_enum(o.projection, Projection::cylindrical, "terrain: the projection");
+  check_enum(o.method, Method::words, "terrain: the method");
   require(o.distance >= 0 && o.distance <= kMaxDistance,
           "terrain: the distance must lie between 0 and 8e6 cells");
   const bool planar = o.projection == Projection::planar;
