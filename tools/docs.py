@@ -8,7 +8,7 @@ Every ```sh block of a page is run, in order, in an empty folder of the page's o
 command leaves there is the page's picture of the same file name (images/NAME.png), and must be equal
 to it within 1/255 a channel; every picture of a page is drawn by its commands. Files that nobody has
 (dragon.ply, alps.png, ...) are the stand-ins of docs_files.py under those names; what starts programs
-elsewhere (srun, docker, ssh) is one that starts them here. What cannot be run is no ```sh block.
+elsewhere (sbatch, docker, ssh) is one that starts them here. What cannot be run is no ```sh block.
 `accept` makes the drawn pictures the pages'. `links` sees that files which pages name are there, and
 that no picture is left over. DIR is where the program was built (build/release).
 """
@@ -80,6 +80,12 @@ said="$(SDL_VIDEODRIVER=dummy {program} "$@" "${{script[@]}}" 2>&1)" && exit
 [[ "$1" != build ]] || exit 0
 while (($#)) && [[ "$1" != rastrum ]]; do shift; done
 exec "$@"
+""")
+    put_script(tools / "sbatch", """
+array="$(grep -o -- '--array=[0-9-]*' "$1")" array="${array#*=}"
+for ((i = ${array%-*}; i <= ${array#*-}; ++i)); do
+  SLURM_ARRAY_TASK_ID=$i SLURM_CPUS_PER_TASK=2 bash -eu "$1"
+done
 """)
     # `./dev` would build; its demo is the same, other commands must be there.
     put_script(folder / "dev", f"""set -e

@@ -129,7 +129,8 @@ def npy(n=96):
 
 FILES = {
     "dragon.ply": ply, "bunny.stl": stl, "lamp.obj": obj, "room.gltf": gltf, "engine.glb": glb,
-    "hair.ply": ply, "scene.glb": glb, "alps.png": heights, "alps.jpg": colors, "valley.npy": npy,
+    "hair.ply": ply, "shell.ply": ply, "core.stl": stl, "scene.glb": glb, "alps.png": heights,
+    "alps.jpg": colors, "valley.npy": npy,
 }
 
 
