@@ -145,7 +145,7 @@ TerrainObjects::TerrainObjects(const TerrainObjectArguments& a,
     if (object.is_sprite)
       scene_.append(sprite(io::read_image(object.input)));
     else
-      scene_.append(load_inputs({object.input}, a.scene.normals, timeline, progress));
+      scene_.append(load_inputs({object.input}, a.scene.normals, timeline, progress).scene);
     parts_.push_back({object, first, scene_.instances.size()});
     if (object.is_sprite) facing_.push_back(first);
   }

@@ -61,6 +61,7 @@ class DemReader {
                                    : ground == 0 ? 6378137.0  // radians
                                                  : 1.0);
     grid.units_per_cell = cell / metres;
+    grid.scale_known = true;
     return grid;
   }
 

@@ -124,7 +124,7 @@ class NpyReader {
     const bool swap =
         layout.type[0] == '<' || big ? big != (std::endian::native == std::endian::big) : false;
     HeightGrid grid{Image<float>(static_cast<int>(layout.columns), static_cast<int>(layout.rows)),
-                    1};
+                    1, sizeof(T) == 1};
     const std::byte* at = bytes_.data() + data_;
     for (std::size_t i = 0; i < count; ++i, at += sizeof(T)) {
       std::array<std::byte, sizeof(T)> raw;

@@ -35,6 +35,7 @@ void write_npy(const std::filesystem::path& file, ImageView<const Vec4> image);
 void write_exr(const std::filesystem::path& file, ImageView<const float> image);
 void write_npy(const std::filesystem::path& file, ImageView<const float> image);
 void write_npy(const std::filesystem::path& file, ImageView<const std::int64_t> image);
+void write_npy(const std::filesystem::path& file, ImageView<const std::int32_t> image);
 
 /// Binary little-endian PLY with positions, faces, and the normals, texture coordinates and colours
 /// that share the positions' indices (those with indices of their own are left out). Throws

@@ -53,4 +53,8 @@ void write_npy(const std::filesystem::path& file, ImageView<const std::int64_t> 
   write(file, image, "i8", "");
 }
 
+void write_npy(const std::filesystem::path& file, ImageView<const std::int32_t> image) {
+  write(file, image, "i4", "");
+}
+
 }  // namespace rastrum::io

@@ -135,7 +135,7 @@ HeightGrid decode_height_png(Bytes bytes, const std::string& name) {
   open(state, bytes, name);
   const bool wide = png_get_bit_depth(state.png, state.info) == 16;
   const Image<Rgba16> pixels = read_pixels<Rgba16>(state, name);
-  HeightGrid grid{Image<float>(pixels.width(), pixels.height()), wide ? 257.0 : 1.0};
+  HeightGrid grid{Image<float>(pixels.width(), pixels.height()), wide ? 257.0 : 1.0, !wide};
   for (int y = 0; y < pixels.height(); ++y)
     for (int x = 0; x < pixels.width(); ++x) {
       const Rgba16 p = pixels(x, y);

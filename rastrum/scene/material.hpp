@@ -45,6 +45,9 @@ struct Material {
   float alpha_cutoff = 0.5F;  ///< mask: a fragment with alpha < cutoff is discarded
   bool double_sided = false;
   bool unlit = false;  ///< KHR_materials_unlit
+  /// Of every surface that has this material, in [0, 1]: RenderOptions::opacity for a part of the
+  /// scene. The two are multiplied.
+  float opacity = 1;
 };
 
 }  // namespace rastrum

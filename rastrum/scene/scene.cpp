@@ -7,44 +7,15 @@
 #include <utility>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/scene/vertices_in_use.hpp>
 
 namespace rastrum {
 namespace {
 
-struct Vec3d {
-  double x = 0, y = 0, z = 0;
-};
-
-Vec3d transform(const Mat4d& m, Vec3 p) {
-  const auto row = [&](int i) {
-    return m.m[i][0] * p.x + m.m[i][1] * p.y + m.m[i][2] * p.z + m.m[i][3];
-  };
-  return {row(0), row(1), row(2)};
-}
+using Vec3d = VerticesInUse::Point;
 
 bool is_finite(Vec3d p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
-/// Calls f(world position) once for each finite vertex in use.
-template <class F>
-void for_each_vertex_in_use(const SceneView& scene, F&& f) {
-  for (const InstanceView& instance : scene.instances) {
-    const MeshView& mesh = instance.mesh;
-    const auto visit = [&](Vec3 p) {
-      const Vec3d q = transform(instance.object_to_world, p);
-      if (is_finite(q)) f(q);
-    };
-    if (mesh.indices.empty()) {
-      for (const Vec3 p : mesh.positions.first(mesh.triangle_count() * 3)) visit(p);
-      continue;
-    }
-    check_indices(mesh);
-    std::vector<bool> used(mesh.positions.size());
-    for (const std::uint32_t i : mesh.indices) used[i] = true;
-    for (std::size_t i = 0; i < used.size(); ++i)
-      if (used[i]) visit(mesh.positions[i]);
-  }
 }
 
 struct BoundsD {
@@ -52,9 +23,9 @@ struct BoundsD {
   std::uint64_t count = 0;
 };
 
-BoundsD bounds_float64(const SceneView& scene) {
+BoundsD bounds_float64(const VerticesInUse& vertices) {
   BoundsD b;
-  for_each_vertex_in_use(scene, [&](Vec3d p) {
+  vertices.for_each([&](Vec3d p) {
     if (b.count++ == 0) b.min = b.max = p;
     b.min = {std::min(b.min.x, p.x), std::min(b.min.y, p.y), std::min(b.min.z, p.z)};
     b.max = {std::max(b.max.x, p.x), std::max(b.max.y, p.y), std::max(b.max.z, p.z)};
@@ -129,16 +100,17 @@ SceneBinding::SceneBinding(const Scene& scene) {
 }
 
 Bounds bounds(const SceneView& scene) {
-  const BoundsD b = bounds_float64(scene);
+  const BoundsD b = bounds_float64(VerticesInUse(scene));
   return {narrow(b.min), narrow(b.max), b.count};
 }
 
 Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
   check_fov(fov_rad);
-  const BoundsD b = bounds_float64(scene);
+  const VerticesInUse vertices(scene);
+  const BoundsD b = bounds_float64(vertices);
   const Vec3d centre = {(b.min.x + b.max.x) / 2, (b.min.y + b.max.y) / 2, (b.min.z + b.max.z) / 2};
   double r = 0;
-  for_each_vertex_in_use(scene, [&](Vec3d p) {
+  vertices.for_each([&](Vec3d p) {
     r = std::max(r, std::hypot(p.x - centre.x, p.y - centre.y, p.z - centre.z));
   });
   if (r == 0) r = 1;

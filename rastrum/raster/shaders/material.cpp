@@ -73,8 +73,8 @@ MaterialScene::MaterialScene(const SceneView& scene, const Camera& camera, int w
   }
   const auto bind = [&](const Material& m) {
     materials.push_back({m.base_color, m.metallic, m.roughness, m.normal_scale,
-                         m.occlusion_strength, m.emissive, m.alpha_mode, m.alpha_cutoff, m.unlit,
-                         textures.find(m.base_color_texture, TexelUse::color),
+                         m.occlusion_strength, m.emissive, m.alpha_mode, m.alpha_cutoff, m.opacity,
+                         m.unlit, textures.find(m.base_color_texture, TexelUse::color),
                          textures.find(m.metallic_roughness_texture, TexelUse::data),
                          textures.find(m.normal_texture, TexelUse::data),
                          textures.find(m.occlusion_texture, TexelUse::data),
@@ -98,6 +98,10 @@ void check_materials(const SceneView& scene) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     check_enum(scene.materials[i].alpha_mode, AlphaMode::blend,
                "material " + std::to_string(i) + ": its alpha mode");
+    if (const float o = scene.materials[i].opacity; !(o >= 0 && o <= 1))
+      throw Error(Errc::invalid_argument, "material " + std::to_string(i) +
+                                              ": the opacity must lie in [0, 1], not " +
+                                              std::to_string(o));
     for (const TextureReference& r : references(scene.materials[i]))
       if (r.texture != kNoTexture &&
           (r.texture < 0 || static_cast<std::size_t>(r.texture) >= textures))
