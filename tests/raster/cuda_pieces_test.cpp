@@ -93,50 +93,6 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
   }
 }
 
-// The variant whose tiles lie in shared memory: pieces that are cut by the view, bands, few pairs.
-TEST(CudaOwnedTiles, DrawTheBitsOfThePlainOnes) {
-  constexpr int kWidth = 300, kHeight = 200;
-  Random random(9);
-  std::vector<Vec3> positions;
-  for (int c = 0; c < 600 * 3; ++c)
-    positions.push_back(at_pixel(random.real(-100, kWidth + 100), random.real(-100, kHeight + 100),
-                                 random.real(0.1, 0.9), kWidth, kHeight));
-  raster::DeviceDraw d;
-  d.draw.vertex_count = positions.size();
-  d.draw.primitive_count = positions.size() / 3;
-  d.vertices.positions = positions;
-  d.vertices.object_to_clip = world_to_clip(pixel_camera(kWidth, kHeight), kWidth, kHeight);
-  parallel::Cuda exec;
-  const raster::DeviceScene<parallel::Cuda> scene(exec, {&d, 1}, kWidth, kHeight);
-  auto plan = raster::DevicePlan::of(0, kWidth, kHeight, scene.primitives(), 0, 0);
-  raster::DeviceSizes sizes;
-  for (const raster::Rect view : {raster::Rect{0, 0, kWidth, kHeight}, {0, 64, kWidth, 128}}) {
-    const auto draw = [&](bool owned, int samples) {
-      sizes.owned_tiles = owned;
-      const std::size_t plane = raster::block_count(view) * 64;
-      std::vector<std::uint64_t> words(plane * static_cast<std::size_t>(samples));
-      const raster::DeviceSurface surface{
-          view,
-          {0, view.y0 / 8, raster::block_columns(view), words.data(), nullptr},
-          nullptr,
-          plane,
-          raster::SamplePattern::of(samples)};
-      const raster::DeviceCounts counts = raster::draw_surface(exec, scene, surface, plan, sizes);
-      return std::pair(words, counts.fragments);
-    };
-    for (const std::uint64_t written : {scene.primitives(), std::uint64_t{17}}) {
-      plan.written = written;
-      for (const int samples : {1, 4}) {
-        if (samples > 1 && written == 17) continue;
-        const auto plain = draw(false, samples), owned = draw(true, samples);
-        EXPECT_TRUE(plain.first == owned.first);
-        EXPECT_EQ(plain.second, owned.second);
-        EXPECT_GT(owned.second, 100000U * static_cast<unsigned>(samples));
-      }
-    }
-  }
-}
-
 // Flagged pieces are left out of the words, in all three sizes, and kept for who draws them.
 TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
   constexpr int kSize = 256;
