@@ -17,7 +17,32 @@
 namespace rastrum::test {
 namespace {
 
-// For who wants pieces as an array, from arrays that are on the device already.
+struct KeepsAll {
+  bool operator()(const raster::Piece&) const { return true; }
+};
+struct KeepsFlagged {
+  std::uint32_t any;
+  bool operator()(const raster::Piece& piece) const { return (piece.flags & any) != 0; }
+};
+
+struct MadePieces {
+  std::vector<raster::Piece> pieces;  ///< in order of submission
+  raster::Outcomes sum;
+};
+/// The pieces of all primitives that keep(piece) holds for, counted and written as the listings do.
+template <class Keep>
+MadePieces make_pieces(parallel::Cuda& exec, const raster::DeviceScene<parallel::Cuda>& scene,
+                       Keep keep, const raster::SamplePattern& samples = {}) {
+  const auto n = static_cast<std::size_t>(scene.primitives());
+  const raster::Assembly assembly{scene.geometry(), 0, samples};
+  auto outcomes = parallel::make_buffer<raster::Outcome>(exec, n);
+  parallel::tabulate(exec, outcomes, raster::cuda_detail::CountPieces<Keep>{assembly, keep});
+  const auto pieces = raster::write_pieces(exec, assembly, parallel::counting(n), outcomes, keep);
+  return {parallel::to_host(exec, pieces),
+          parallel::reduce(exec, outcomes, raster::Outcomes{}, raster::AddOutcomes{})};
+}
+
+// From arrays that are on the device already.
 TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
   constexpr int kWidth = 200, kHeight = 120;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
@@ -60,13 +85,13 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
             }
             sum = raster::AddOutcomes{}(sum, raster::Outcomes(o));
           }
-        const auto made = raster::make_pieces(exec, scene, 0, total, raster::KeepsAll{}, pattern);
+        const auto made = make_pieces(exec, scene, KeepsAll{}, pattern);
         EXPECT_EQ(made.sum.culled, sum.culled);
         EXPECT_EQ(made.sum.clipped, sum.clipped);
         EXPECT_EQ(made.sum.dropped, sum.dropped);
         for (std::size_t s = 0; s < expected.size(); ++s) {
           std::vector<raster::Piece> seen;
-          for (const raster::Piece& piece : parallel::to_host(exec, made.pieces)) {
+          for (const raster::Piece& piece : made.pieces) {
             const raster::Piece p = raster::moved(piece, pattern.at[s]);
             if (!raster::piece_bounds(p, {0, 0, kWidth, kHeight}).empty()) seen.push_back(p);
           }
@@ -130,15 +155,12 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
   EXPECT_NE(kept, all);
 
   const raster::DeviceScene<parallel::Cuda> scene(exec, draws, kSize, kSize);
-  const auto flagged = raster::make_pieces(exec, scene, 0, scene.primitives(),
-                                           raster::KeepsFlagged{raster::kTranslucent});
+  const MadePieces made = make_pieces(exec, scene, KeepsAll{});
+  const MadePieces flagged = make_pieces(exec, scene, KeepsFlagged{raster::kTranslucent});
   std::vector<std::uint64_t> expected, ids;
-  for (const raster::Piece& p : parallel::to_host(
-           exec,
-           raster::make_pieces(exec, scene, 0, scene.primitives(), raster::KeepsAll{}).pieces))
+  for (const raster::Piece& p : made.pieces)
     if ((p.flags & raster::kTranslucent) != 0) expected.push_back(raster::id_of_word(p.low));
-  for (const raster::Piece& p : parallel::to_host(exec, flagged.pieces))
-    ids.push_back(raster::id_of_word(p.low));
+  for (const raster::Piece& p : flagged.pieces) ids.push_back(raster::id_of_word(p.low));
   EXPECT_EQ(ids, expected);
   EXPECT_GT(ids.size(), 150U);
 }
