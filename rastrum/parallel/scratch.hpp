@@ -2,8 +2,8 @@
 // the loop, so that what grew in one frame is there in the next.
 //
 // Work O(n), span O(log n) beside the bodies'. At most one T per thread that ever took part.
-// Source: DESIGN section 5, "work that wants a team with scratch memory": a worker thread with its
-// T here, a block of threads with shared memory on a device.
+// A worker thread with its T is here what a block of threads with shared memory is on a device
+// (for_each_team, cuda/exec.cuh).
 #pragma once
 
 #include <cstddef>

@@ -22,7 +22,8 @@ enum class Shadows : std::uint8_t {
 struct Light {
   Sun sun{};
   Shadows shadows = Shadows::none;
-  /// Slopes get hill_shade. For colours that are painted without light; satellite pictures have it.
+  /// Slopes get ToSun::shade. For colours that are painted without light; satellite pictures have
+  /// it.
   bool hill_shading = false;
   float ambient = 0.45F;           ///< of a colour, where no sun is; [0, 1]
   double sun_radius_deg = 0.2666;  ///< of soft shadows

@@ -45,6 +45,9 @@ TEST(ColorsByHeight, SpanTheRangeAndLeaveHolesBlack) {
 
 TEST(HillShade, IsTheCosineToTheSun) {
   const float s45 = static_cast<float>(std::numbers::sqrt2 / 2);
+  const auto hill_shade = [](float dx, float dy, const Sun& sun, float ambient) {
+    return ToSun::of(sun).shade(dx, dy, ambient);
+  };
   EXPECT_NEAR(hill_shade(0, 0, {0, 90}, 0.2F), 1, 1e-6);
   EXPECT_NEAR(hill_shade(0, 0, {0, 45}, 0), s45, 1e-6);
   // Falls to the east by 1 a cell: faces an eastern sun at 45°, and turns from a western one.

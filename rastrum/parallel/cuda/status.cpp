@@ -53,7 +53,6 @@ CudaStatus cuda_status() {
   }
   status.name = properties.name;
   status.free_bytes = free;
-  status.total_bytes = total;
   if (properties.major < 8)
     status.why_not = std::string("the ")
                          .append(properties.name)
