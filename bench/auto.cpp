@@ -97,8 +97,8 @@ int run_auto(std::span<const std::string_view> arguments) {
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
   if (options.quick) {
-    if (parser.app().count("--sizes") == 0) selection.set_sizes({{256, 256}});
-    if (parser.app().count("--scenes") == 0) selection.set_scenes({procedural_scenes().front()});
+    if (!parser.given("--sizes")) selection.set_sizes({{256, 256}});
+    if (!parser.given("--scenes")) selection.set_scenes({procedural_scenes().front()});
   }
   selection.resolve();
 

@@ -42,9 +42,7 @@ int run_hashed(std::span<const std::string_view> arguments) {
   int size = 512;
   OptionParser parser("hashed", "Hashed against sorted visibility over depth complexity 1 to 64.");
   options.add_to(parser, false);
-  parser.app()
-      .add_option("--size", size, "edge of the picture in px (512)")
-      ->check(CLI::Range(8, 8192));
+  parser.add_option("--size", size, "edge of the picture in px (512)")->range(8, 8192);
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
   size = options.size(size);
@@ -117,9 +115,7 @@ int run_hiz(std::span<const std::string_view> arguments) {
   int size = 1024;
   OptionParser parser("hiz", "The gain of hierarchical Z on depth complexity 1, 4, 16 and 64.");
   options.add_to(parser, false);
-  parser.app()
-      .add_option("--size", size, "edge of the picture in px (1024)")
-      ->check(CLI::Range(8, 8192));
+  parser.add_option("--size", size, "edge of the picture in px (1024)")->range(8, 8192);
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
   size = options.size(size);

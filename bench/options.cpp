@@ -1,24 +1,18 @@
 #include "options.hpp"
 
-#include <utility>
-#include <vector>
+#include <cstdio>
 
 namespace rastrum::bench {
 
-OptionParser::OptionParser(const std::string& name, const std::string& description)
-    : app_(description, "rastrum bench " + name) {}
-
-OptionParser::~OptionParser() = default;
-
 std::optional<int> OptionParser::parse(std::span<const std::string_view> options) {
-  // CLI11 takes the arguments as a stack.
-  std::vector<std::string> reversed(options.rbegin(), options.rend());
   try {
-    app_.parse(std::move(reversed));
-  } catch (const CLI::ParseError& e) {
-    return app_.exit(e) == 0 ? 0 : 2;
+    if (Parser::parse(options)) return std::nullopt;
+    return 0;
+  } catch (const cli::UsageError& e) {
+    std::fprintf(stderr, "rastrum bench: error: %s\nRun it with --help for more information.\n",
+                 e.what());
+    return 2;
   }
-  return std::nullopt;
 }
 
 }  // namespace rastrum::bench

@@ -110,7 +110,7 @@ int run_paper5_table3(std::span<const std::string_view> arguments) {
   OptionParser parser("paper5-table3",
                       "Paper 5, table 3 and figure 3: Landshark by the number of threads.");
   options.add_to(parser);
-  parser.app().add_option("--scale", scale, "of the picture (1)")->check(CLI::Range(1, 128));
+  parser.add_option("--scale", scale, "of the picture (1)")->range(1, 128);
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
   Document document{"paper5-table3", "Paper 5, table 3 and figure 3: threads"};

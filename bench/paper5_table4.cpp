@@ -177,16 +177,15 @@ int run_paper5_table4(std::span<const std::string_view> arguments) {
                       "does not fit.");
   options.add_to(parser);
   options.add_device(parser);
-  CLI::App& app = parser.app();
-  app.add_option("--memory-limit", limits.memory, "scratch of a frame in bytes (2 GiB)")
-      ->transform(CLI::AsSizeValue(false));
-  app.add_option("--image-memory", limits.images, "words and pictures held at once (6 GiB)")
-      ->transform(CLI::AsSizeValue(false));
-  app.add_option("--part", limits.part_triangles, "triangles of a mesh in memory (32 Mi)")
-      ->check(CLI::Range(std::uint64_t{1000}, std::uint64_t{1} << 32));
-  app.add_option("--seconds", limits.seconds, "a frame is stopped after (120)");
-  app.add_option("--subdivisions", limits.subdivisions, "at most (6)")->check(CLI::Range(0, 6));
-  app.add_option("--scale", limits.scale, "at most (128)")->check(CLI::Range(1, 128));
+  parser.add_option("--memory-limit", limits.memory, "scratch of a frame in bytes (2 GiB)")
+      ->as_size();
+  parser.add_option("--image-memory", limits.images, "words and pictures held at once (6 GiB)")
+      ->as_size();
+  parser.add_option("--part", limits.part_triangles, "triangles of a mesh in memory (32 Mi)")
+      ->range(std::uint64_t{1000}, std::uint64_t{1} << 32);
+  parser.add_option("--seconds", limits.seconds, "a frame is stopped after (120)");
+  parser.add_option("--subdivisions", limits.subdivisions, "at most (6)")->range(0, 6);
+  parser.add_option("--scale", limits.scale, "at most (128)")->range(1, 128);
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
   if (options.quick) {

@@ -278,15 +278,13 @@ nlohmann::json bench_reduce_by_index(Threads& exec, const Options& options) {
 int run_words(std::span<const std::string_view> args) {
   Options options;
   OptionParser parser("words", "the data-parallel words beside what one would use instead");
-  parser.app().add_option("--rounds", options.rounds, "rounds (9)")->check(CLI::Range(1, 1000));
-  parser.app().add_option("--threads", options.threads, "threads (2)")->check(CLI::Range(1, 1024));
-  parser.app()
-      .add_option("--elements", options.elements, "elements that expand_masked tests (1000000)")
-      ->check(CLI::Range(256, 1 << 30));
-  parser.app()
-      .add_option("--pairs", options.pairs, "pairs to sort, words to reduce (10000000)")
-      ->check(CLI::Range(1, 1 << 30));
-  parser.app().add_option("--json", options.json, "write the figures to FILE")->type_name("FILE");
+  parser.add_option("--rounds", options.rounds, "rounds (9)")->range(1, 1000);
+  parser.add_option("--threads", options.threads, "threads (2)")->range(1, 1024);
+  parser.add_option("--elements", options.elements, "elements that expand_masked tests (1000000)")
+      ->range(256, 1 << 30);
+  parser.add_option("--pairs", options.pairs, "pairs to sort, words to reduce (10000000)")
+      ->range(1, 1 << 30);
+  parser.add_option("--json", options.json, "write the figures to FILE")->type_name("FILE");
   if (const auto status = parser.parse(args)) return *status;
 
   std::printf("%s\n", machine_text().c_str());

@@ -1,20 +1,14 @@
 // Values of options: text to numbers, and the error for a command line that cannot be meant.
 #pragma once
 
-#include <stdexcept>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
+#include <apps/command_line/parser.hpp>
 #include <rastrum/core/vec.hpp>
 
 namespace rastrum::cli {
-
-/// A command line that cannot be meant (exit status 2). The message begins with the option.
-class UsageError : public std::runtime_error {
- public:
-  UsageError(std::string_view option, const std::string& problem)
-      : std::runtime_error(std::string(option) + ": " + problem) {}
-};
 
 /// Each throws UsageError that names `option` and shows what is wanted.
 [[nodiscard]] double parse_number(std::string_view option, std::string_view text);  ///< finite

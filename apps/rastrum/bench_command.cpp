@@ -1,24 +1,41 @@
-// `rastrum bench NAME…`: hands the command line on to bench/, which has options of its own.
+// `rastrum bench NAME…`: hands the command line on to the program `rastrum-bench`, which has
+// options of its own and lies beside this one.
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include <bench/bench.hpp>
+#include <rastrum/core/error.hpp>
 
 #include "commands.hpp"
 
 namespace rastrum::cli {
+namespace {
 
-Command add_bench_command(CLI::App& app) {
-  CLI::App* bench =
+/// Becomes that program; returns only by an exception.
+int run(const std::vector<std::string>& arguments) {
+  std::error_code unknown;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", unknown);
+  const std::string program = (self.parent_path() / "rastrum-bench").string();
+  std::vector<char*> argv{const_cast<char*>(program.c_str())};
+  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+  argv.push_back(nullptr);
+  ::execv(program.c_str(), argv.data());
+  throw Error(Errc::unsupported, "the benchmarks are a program of their own, and " + program +
+                                     " cannot be started (" + std::strerror(errno) +
+                                     "): build the target rastrum_bench_program");
+}
+
+}  // namespace
+
+Command add_bench_command(Parser& app) {
+  Parser bench =
       app.add_subcommand("bench", "Measure Rastrum beside its peers; --help lists the benchmarks");
-  bench->set_help_flag();
-  bench->prefix_command();
-  return {bench, [bench] {
-            const std::vector<std::string> given = bench->remaining();
-            const std::vector<std::string_view> args(given.begin(), given.end());
-            return bench::run(args);
-          }};
+  bench.leave_rest();
+  return {bench, [bench] { return run(bench.rest()); }};
 }
 
 }  // namespace rastrum::cli

@@ -11,9 +11,9 @@
 
 namespace rastrum::cli {
 
-Command add_info_command(CLI::App& app) {
+Command add_info_command(Parser& app) {
   auto inputs = std::make_shared<std::vector<std::string>>();
-  CLI::App& info = *app.add_subcommand("info", "Print what files hold");
+  Parser info = app.add_subcommand("info", "Print what files hold");
   info.add_option("INPUT", *inputs, "files and builtin:SHAPE[?name=value,...]")
       ->required()
       ->type_name("");
@@ -21,7 +21,7 @@ Command add_info_command(CLI::App& app) {
       "Examples:\n"
       "  rastrum info scene.glb\n"
       "  rastrum info *.stl builtin:teapot");
-  return {&info, [inputs] {
+  return {info, [inputs] {
             for (const std::string& input : *inputs)
               std::printf("%s\n%s", input.c_str(), io::describe(load_input(input)).c_str());
             return 0;

@@ -4,10 +4,11 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
 #include <string_view>
 #include <vector>
 
-#include <CLI/CLI.hpp>
+#include <apps/command_line/parser.hpp>
 
 #include <rastrum/core/error.hpp>
 
@@ -23,20 +24,19 @@ int report(const char* what, int status) {
   return status;
 }
 
-int report_usage(const char* what, const CLI::App& app) {
+int report_usage(const char* what, const rastrum::cli::Parser& app) {
   report(what, kUsageError);
-  const auto given = app.get_subcommands();
-  std::fprintf(stderr, "See rastrum%s%s --help.\n", given.empty() ? "" : " ",
-               given.empty() ? "" : given.front()->get_name().c_str());
+  const std::string given = app.given_subcommand();
+  std::fprintf(stderr, "See rastrum%s%s --help.\n", given.empty() ? "" : " ", given.c_str());
   return kUsageError;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Rastrum draws triangle meshes and terrains in software.", "rastrum"};
-  app.set_version_flag("--version", "rastrum " RASTRUM_VERSION);
-  app.require_subcommand(1);
+  rastrum::cli::Parser app("rastrum", "Rastrum draws triangle meshes and terrains in software.");
+  app.version("rastrum " RASTRUM_VERSION);
+  app.require_subcommand();
   app.footer(
       "Examples:\n"
       "  rastrum render bunny.obj -o bunny.png\n"
@@ -50,27 +50,19 @@ int main(int argc, char** argv) {
         rastrum::cli::add_render_command(app), rastrum::cli::add_terrain_command(app),
         rastrum::cli::add_view_command(app),   rastrum::cli::add_view_terrain_command(app),
         rastrum::cli::add_info_command(app),   rastrum::cli::add_make_command(app),
-#ifdef RASTRUM_HAS_BENCH
         rastrum::cli::add_bench_command(app),
-#endif
     };
     // The options of meshes and of terrains share names, so each has a parser of its own.
-    std::vector<const char*> args(argv, argv + argc);
-    const auto terrain = std::find_if(args.begin(), args.end(), [](const char* arg) {
-      return std::string_view(arg) == "--terrain";
-    });
-    if (args.size() > 2 && std::string_view(args[1]) == "view" && terrain != args.end()) {
+    std::vector<std::string_view> args(argv + 1, argv + argc);
+    const auto terrain = std::ranges::find(args, "--terrain");
+    if (!args.empty() && args[0] == "view" && terrain != args.end()) {
       args.erase(terrain);
-      args[1] = "view-terrain";
+      args[0] = "view-terrain";
     }
-    app.parse(static_cast<int>(args.size()), args.data());
+    if (!app.parse(args)) return 0;
     for (const rastrum::cli::Command& command : commands)
-      if (command.parser->parsed()) return command.run();
+      if (command.parser.parsed()) return command.run();
     return 0;
-  } catch (const CLI::Success& e) {  // --help, --version
-    return app.exit(e);
-  } catch (const CLI::ParseError& e) {
-    return report_usage(e.what(), app);
   } catch (const rastrum::cli::UsageError& e) {
     return report_usage(e.what(), app);
   } catch (const rastrum::Error& e) {

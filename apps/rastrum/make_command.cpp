@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "flatten.hpp"
 #include "inputs.hpp"
+#include "option.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 
@@ -55,30 +56,22 @@ int run(const MakeArguments& a) {
 
 }  // namespace
 
-Command add_make_command(CLI::App& app) {
+Command add_make_command(Parser& app) {
   auto arguments = std::make_shared<MakeArguments>();
-  CLI::App& make = *app.add_subcommand("make", "Write a shape, or a file's mesh, as binary PLY");
+  Parser make = app.add_subcommand("make", "Write a shape, or a file's mesh, as binary PLY");
   make.add_option(
           "SHAPE", arguments->input,
           "SHAPE[?name=value,...] of the list below, or a file; @x=X,y=Y,z=Z,scale=S,rx=DEG,... "
           "places it")
       ->required()
       ->type_name("");
-  make.add_option_function<std::string>(
-          "-o,--output",
-          [arguments](const std::string& s) {
-            arguments->output = parse_output("-o", s, {Format::ply});
-          },
-          "the .ply file")
-      ->required()
-      ->type_name("FILE");
-  make.add_option_function<std::string>(
-          "--subdivide",
-          [arguments](const std::string& s) {
-            arguments->subdivide = parse_integer("--subdivide", s, 0, kMaxSubdivisions);
-          },
-          "split every triangle in 4, K times (0)")
-      ->type_name("K");
+  add(make, "-o,--output", "FILE", "the .ply file", [arguments](const std::string& s) {
+    arguments->output = parse_output("-o", s, {Format::ply});
+  })->required();
+  add(make, "--subdivide", "K", "split every triangle in 4, K times (0)",
+      [arguments](const std::string& s) {
+        arguments->subdivide = parse_integer("--subdivide", s, 0, kMaxSubdivisions);
+      });
   make.add_flag("--quiet", arguments->quiet, "print errors alone");
   std::string footer = "Shapes and their defaults:\n";
   for (const shapes::ShapeInfo& shape : shapes::catalogue())
@@ -89,7 +82,7 @@ Command add_make_command(CLI::App& app) {
       "  rastrum make 'torus_knot?p=3,q=5' -o knot.ply\n"
       "  rastrum make bunny.obj --subdivide 2 -o bunny16.ply";
   make.footer(footer);
-  return {&make, [arguments] { return run(*arguments); }};
+  return {make, [arguments] { return run(*arguments); }};
 }
 
 }  // namespace rastrum::cli

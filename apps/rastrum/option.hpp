@@ -1,30 +1,19 @@
 // How the commands declare options whose text they turn into a value themselves.
 #pragma once
 
-#include <initializer_list>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
 
-#include <CLI/CLI.hpp>
+#include <apps/command_line/choose.hpp>
+#include <apps/command_line/parser.hpp>
 
 #include <rastrum/parallel/device.hpp>
 
 #include "arguments.hpp"
 
 namespace rastrum::cli {
-
-/// One of a few words. Throws UsageError that lists them.
-template <class T>
-T choose(std::string_view option, const std::string& text,
-         std::initializer_list<std::pair<const char*, T>> choices) {
-  std::string known;
-  for (const auto& [word, value] : choices) {
-    if (text == word) return value;
-    known.append(known.empty() ? "" : ", ").append(word);
-  }
-  throw UsageError(option, "expected one of " + known + ", got '" + text + "'");
-}
 
 inline Isa parse_isa(const std::string& text) {
   return choose<Isa>("--isa", text,
@@ -51,13 +40,9 @@ inline std::string isa_words() {
 }
 
 /// An option whose text `parse` turns into a value; what it throws names the option.
-template <class F>
-CLI::Option* add(CLI::App& app, const char* names, const char* type, const std::string& help,
-                 F parse) {
-  return app
-      .add_option_function<std::string>(
-          names, [parse](const std::string& s) { parse(s); }, help)
-      ->type_name(type);
+inline Option add(Parser& app, const char* names, const char* type, const std::string& help,
+                  std::function<void(const std::string&)> parse) {
+  return app.add(names, type, help, std::move(parse));
 }
 
 }  // namespace rastrum::cli

@@ -53,7 +53,7 @@ struct RenderArguments : SceneArguments {
   [[nodiscard]] bool is_sequence() const { return !path.empty() || turntable != 0; }
 };
 
-void add_output_options(CLI::App& app, RenderArguments& a) {
+void add_output_options(Parser& app, RenderArguments& a) {
   const char* group = "Outputs";
   add(app, "-o,--output", "FILE",
       ".png: 8 bit, straight alpha; .exr, .npy: float32, premultiplied; with --path or --turntable "
@@ -105,7 +105,7 @@ void add_output_options(CLI::App& app, RenderArguments& a) {
       ->group(group);
 }
 
-void add_path_options(CLI::App& app, RenderArguments& a) {
+void add_path_options(Parser& app, RenderArguments& a) {
   const char* group = "Many pictures";
   add(app, "--turntable", "N",
       "N pictures of a full turn about the camera's target: -o 'turn_%03d.png' or, through ffmpeg, "
@@ -126,7 +126,7 @@ void add_path_options(CLI::App& app, RenderArguments& a) {
       ->group(group);
 }
 
-void add_frames_option(CLI::App& app, RenderArguments& a) {
+void add_frames_option(Parser& app, RenderArguments& a) {
   add(app, "--frames", "N", "render N times; --stats gives median, minimum and maximum (1)",
       [&a](const std::string& s) {
         a.frames = parse_integer("--frames", s, 1, 1000000);
@@ -382,9 +382,9 @@ int run(RenderArguments& a) {
 
 }  // namespace
 
-Command add_render_command(CLI::App& app) {
+Command add_render_command(Parser& app) {
   auto arguments = std::make_shared<RenderArguments>();
-  CLI::App& render = *app.add_subcommand("render", "Draw meshes and shapes into an image file");
+  Parser render = app.add_subcommand("render", "Draw meshes and shapes into an image file");
   add_input_option(render, *arguments)->required();
   add_output_options(render, *arguments);
   add_picture_options(render, *arguments);
@@ -411,7 +411,7 @@ Command add_render_command(CLI::App& app) {
       "  rastrum render dragon.ply --turntable 120 -o dragon.mp4\n"
       "  rastrum render a.stl b.stl --depth d.npy --depth-unit world --objects o.npy";
   render.footer(footer);
-  return {&render, [arguments] { return run(*arguments); }};
+  return {render, [arguments] { return run(*arguments); }};
 }
 
 }  // namespace rastrum::cli

@@ -34,7 +34,7 @@ Shader parse_shader(const std::string& text) {
 
 }  // namespace
 
-CLI::Option* add_input_option(CLI::App& app, SceneArguments& a) {
+Option add_input_option(Parser& app, SceneArguments& a) {
   return app
       .add_option(
           "INPUT", a.inputs,
@@ -44,7 +44,7 @@ CLI::Option* add_input_option(CLI::App& app, SceneArguments& a) {
       ->type_name("");
 }
 
-void add_shading_options(CLI::App& app, SceneArguments& a, const char* group) {
+void add_shading_options(Parser& app, SceneArguments& a, const char* group) {
   std::string shaders;
   for (const std::string_view shader : shader_names())
     shaders.append(shaders.empty() ? "" : ", ").append(shader);
@@ -84,7 +84,7 @@ void add_shading_options(CLI::App& app, SceneArguments& a, const char* group) {
       ->group(group);
 }
 
-void add_picture_options(CLI::App& app, SceneArguments& a) {
+void add_picture_options(Parser& app, SceneArguments& a) {
   const char* group = "Picture";
   add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)", [&a](const std::string& s) {
     const Size size = parse_size("--size", s);
@@ -97,7 +97,7 @@ void add_picture_options(CLI::App& app, SceneArguments& a) {
   })->group(group);
 }
 
-void add_blending_options(CLI::App& app, SceneArguments& a, const char* group) {
+void add_blending_options(Parser& app, SceneArguments& a, const char* group) {
   add(app, "--opacity", "A",
       "of every surface, 0 to 1: opaque and masked materials get alpha A, what blends alpha * A "
       "(1)",
@@ -123,7 +123,7 @@ void add_blending_options(CLI::App& app, SceneArguments& a, const char* group) {
       ->group(group);
 }
 
-void add_transparency_options(CLI::App& app, SceneArguments& a) {
+void add_transparency_options(Parser& app, SceneArguments& a) {
   const char* group = "Transparency and samples";
   add_blending_options(app, a, group);
   add(app, "--samples", "N",
@@ -135,7 +135,7 @@ void add_transparency_options(CLI::App& app, SceneArguments& a) {
       ->group(group);
 }
 
-void add_camera_options(CLI::App& app, SceneArguments& a) {
+void add_camera_options(Parser& app, SceneArguments& a) {
   const char* group = "Camera (what is not given is taken from --fit)";
   ViewOptions& v = a.view;
   add(app, "--fit", "[NAME]",
@@ -184,7 +184,7 @@ void add_camera_options(CLI::App& app, SceneArguments& a) {
       ->group(group);
 }
 
-void add_rasterizer_options(CLI::App& app, SceneArguments& a, const char* group) {
+void add_rasterizer_options(Parser& app, SceneArguments& a, const char* group) {
   add(app, "--rasterizer", "NAME", names_of(rasterizers()) + " (auto)", [&a](const std::string& s) {
     a.render.rasterizer = check_axis("--rasterizer", rasterizers(), s);
   })->group(group);
@@ -200,7 +200,7 @@ void add_rasterizer_options(CLI::App& app, SceneArguments& a, const char* group)
       ->group(group);
 }
 
-void add_machine_options(CLI::App& app, SceneArguments& a) {
+void add_machine_options(Parser& app, SceneArguments& a) {
   const char* group = kMachineGroup;
   add_rasterizer_options(app, a, group);
   add(app, "--device", "NAME", "serial, threads, cuda, auto (threads)", [&a](const std::string& s) {

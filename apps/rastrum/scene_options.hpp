@@ -23,16 +23,16 @@ struct SceneArguments {
 };
 
 /// Adds INPUT and the groups of options to `app`; parsing fills `a`, which must outlive it.
-CLI::Option* add_input_option(CLI::App& app, SceneArguments& a);
-void add_picture_options(CLI::App& app, SceneArguments& a);
-void add_transparency_options(CLI::App& app, SceneArguments& a);
-void add_camera_options(CLI::App& app, SceneArguments& a);
-void add_machine_options(CLI::App& app, SceneArguments& a);
+Option add_input_option(Parser& app, SceneArguments& a);
+void add_picture_options(Parser& app, SceneArguments& a);
+void add_transparency_options(Parser& app, SceneArguments& a);
+void add_camera_options(Parser& app, SceneArguments& a);
+void add_machine_options(Parser& app, SceneArguments& a);
 inline constexpr const char* kMachineGroup = "Machine";
 /// Parts of these, for pictures that something else begins and the scene is drawn into.
-void add_shading_options(CLI::App& app, SceneArguments& a, const char* group);
-void add_blending_options(CLI::App& app, SceneArguments& a, const char* group);
-void add_rasterizer_options(CLI::App& app, SceneArguments& a, const char* group);
+void add_shading_options(Parser& app, SceneArguments& a, const char* group);
+void add_blending_options(Parser& app, SceneArguments& a, const char* group);
+void add_rasterizer_options(Parser& app, SceneArguments& a, const char* group);
 
 /// The shapes of INPUT and their defaults, for the end of --help.
 [[nodiscard]] std::string shapes_help();

@@ -44,7 +44,7 @@ struct TerrainArguments : TerrainSceneArguments {
   Output color, depth, stats;
 };
 
-void add_outputs(CLI::App& app, TerrainArguments& a) {
+void add_outputs(Parser& app, TerrainArguments& a) {
   const char* group = "Outputs";
   add(app, "-o,--output", "FILE", ".png: 8 bit; with --path also .mp4", [&a](const std::string& s) {
     a.color = parse_output("-o", s, {Format::png, Format::mp4});
@@ -63,7 +63,7 @@ void add_outputs(CLI::App& app, TerrainArguments& a) {
   app.add_flag("--quiet", a.quiet, "print errors alone")->group(group);
 }
 
-void add_path(CLI::App& app, TerrainArguments& a) {
+void add_path(Parser& app, TerrainArguments& a) {
   const char* group = "Camera path";
   add(app, "--path", "FILE",
       "draw a picture for each moment of a camera path (docs/window.md): -o 'frame_%04d.png' or, "
@@ -76,7 +76,7 @@ void add_path(CLI::App& app, TerrainArguments& a) {
   })->group(group);
 }
 
-void add_frames(CLI::App& app, TerrainArguments& a) {
+void add_frames(Parser& app, TerrainArguments& a) {
   add(app, "--frames", "N", "render N times; --stats gives median, minimum and maximum (1)",
       [&a](const std::string& s) { a.frames = parse_integer("--frames", s, 1, 1000000); })
       ->group("Machine");
@@ -235,7 +235,8 @@ int run_path(const TerrainArguments& a, const Stage& stage, const terrain::Terra
 
 int run(TerrainArguments& a) {
   check(a);
-  if (!a.options.classic) a.options.sky = terrain::sky_in(a.options.sky, a.light.sun);
+  settle(a);
+  a.options.sky = sky_of(a.options, a.light.sun, a.sky_dims || a.dim_sky);
   Timeline timeline;
   Progress progress(a.quiet);
   // Refuses what cannot be drawn before a large file is read.
@@ -246,10 +247,13 @@ int run(TerrainArguments& a) {
   if (!a.objects.objects.empty()) objects.emplace(a.objects, a.options, timeline, progress);
   progress.show("loading");
   const LoadedTerrain source(a.input);
+  if (!a.quiet && !source.scale_note().empty()) {
+    progress.clear();
+    note(source.scale_note());
+  }
   const double load_ms = timeline.now_ms();
   progress.show("lighting");
-  const terrain::Terrain terrain =
-      source.lit(a.light, {a.options.tiling, a.options.device, a.options.threads, a.options.isa});
+  const terrain::Terrain terrain = source.lit(a.light, a.options);
   if (objects) {
     objects->place(terrain);
     if (!a.quiet && !objects->warnings().empty()) {
@@ -284,10 +288,10 @@ int run(TerrainArguments& a) {
 
 }  // namespace
 
-Command add_terrain_command(CLI::App& app) {
+Command add_terrain_command(Parser& app) {
   auto arguments = std::make_shared<TerrainArguments>();
-  CLI::App& command =
-      *app.add_subcommand("terrain", "Fly over a height map or a function (Voxel Space)");
+  Parser command =
+      app.add_subcommand("terrain", "Fly over a height map or a function (Voxel Space)");
   add_terrain_inputs(command, *arguments);
   add_outputs(command, *arguments);
   add_terrain_camera(command, *arguments);
@@ -318,7 +322,7 @@ Command add_terrain_command(CLI::App& app) {
       "  rastrum terrain --height D1.png --mesh 'tower.obj@x=510,y=640,scale=3' --opacity 0.5 \\\n"
       "      --sprite 'tree.png@x=500,y=700,size=9' -o inhabited.png";
   command.footer(footer);
-  return {&command, [arguments] { return run(*arguments); }};
+  return {command, [arguments] { return run(*arguments); }};
 }
 
 }  // namespace rastrum::cli

@@ -109,21 +109,15 @@ double ground_under(const TerrainObject& object, const terrain::Terrain& terrain
 
 }  // namespace
 
-void add_terrain_objects(CLI::App& app, TerrainObjectArguments& a) {
+void add_terrain_objects(Parser& app, TerrainObjectArguments& a) {
   const char* group = "Meshes and sprites";
   // Each use of the option is an object.
   const auto add_object = [&](const char* name, const char* type, const char* help,
                               bool is_sprite) {
-    app.add_option_function<std::vector<std::string>>(
-           name,
-           [&a, name, is_sprite](const std::vector<std::string>& texts) {
-             for (const std::string& text : texts)
-               a.objects.push_back(parse_object(name, text, is_sprite));
-           },
-           help)
-        ->type_name(type)
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+    app.add_repeated(name, type, help,
+                     [&a, name, is_sprite](const std::string& text) {
+                       a.objects.push_back(parse_object(name, text, is_sprite));
+                     })
         ->group(group);
   };
   add_object(

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
+#include <apps/command_line/parser.hpp>
 
 #include <rastrum/render/scene_on_terrain.hpp>
 #include <rastrum/terrain/renderer.hpp>
@@ -38,7 +38,7 @@ struct TerrainObjectArguments {
 };
 
 /// Adds --mesh, --sprite and the options of how they are drawn; parsing fills `a`.
-void add_terrain_objects(CLI::App& app, TerrainObjectArguments& a);
+void add_terrain_objects(Parser& app, TerrainObjectArguments& a);
 /// What the parser cannot see by itself. Throws UsageError.
 void check_terrain_objects(const TerrainObjectArguments& a, const terrain::TerrainOptions& options);
 

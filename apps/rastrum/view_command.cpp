@@ -28,6 +28,7 @@ struct WindowArguments {
 };
 struct ViewArguments : SceneArguments {
   WindowArguments window;
+  bool terrain = false;  ///< for --help alone
 };
 struct ViewTerrainArguments : TerrainSceneArguments {
   std::vector<std::string> maps;
@@ -82,6 +83,7 @@ std::vector<TerrainInput> maps_of(const ViewTerrainArguments& a) {
 }
 
 int run(ViewTerrainArguments& a) {
+  settle(a);
   auto subject = std::make_unique<window::TerrainSubject>(a, maps_of(a));
   window::TerrainSubject& terrain = *subject;
   return show(std::move(subject), a.window, a.options.width, a.options.height,
@@ -99,7 +101,7 @@ int run(Arguments&) {
 
 #endif
 
-void add_window_options(CLI::App& app, WindowArguments& a) {
+void add_window_options(Parser& app, WindowArguments& a) {
   const char* group = "Window";
   add(app, "--script", "FILE", "replay a camera path or a list of events (docs/window.md)",
       [&a](const std::string& s) { a.script = s; })
@@ -133,16 +135,15 @@ std::string keys_help(std::span<const window::KeyHelp> camera,
 
 }  // namespace
 
-Command add_view_command(CLI::App& app) {
+Command add_view_command(Parser& app) {
   auto arguments = std::make_shared<ViewArguments>();
   ViewArguments& a = *arguments;
   a.render.background = parse_color("--background", "#20242c");
-  CLI::App& view = *app.add_subcommand(
+  Parser view = app.add_subcommand(
       "view", "Look at meshes in a window, or fly over a terrain with --terrain");
   add_input_option(view, a)->required();
-  // For --help alone: main takes the command line of a terrain to view-terrain.
-  view.add_flag_callback(
-      "--terrain", [] {}, "fly over a terrain; see rastrum view --terrain --help");
+  // main takes the command line of a terrain to view-terrain.
+  view.add_flag("--terrain", a.terrain, "fly over a terrain; see rastrum view --terrain --help");
   add_window_options(view, a.window);
   add_picture_options(view, a);
   add_transparency_options(view, a);
@@ -156,14 +157,14 @@ Command add_view_command(CLI::App& app) {
               "  rastrum view engine.glb --opacity 0.3 --samples 4\n"
               "  rastrum view builtin:teapot --script flight.json\n"
               "  rastrum view --terrain --height alps.png --color alps.jpg --shadows sharp");
-  return {&view, [arguments] { return run(*arguments); }};
+  return {view, [arguments] { return run(*arguments); }};
 }
 
-Command add_view_terrain_command(CLI::App& app) {
+Command add_view_terrain_command(Parser& app) {
   auto arguments = std::make_shared<ViewTerrainArguments>();
   ViewTerrainArguments& a = *arguments;
-  CLI::App& view =
-      *app.add_subcommand("view-terrain", "Fly over a terrain; also view --terrain")->group("");
+  Parser view = app.add_subcommand("view-terrain", "Fly over a terrain; also view --terrain");
+  view.group("");
   view.add_option("MAP", a.maps, "further height maps, for the key F1")->type_name("");
   add_window_options(view, a.window);
   add_terrain_inputs(view, a);
@@ -176,7 +177,7 @@ Command add_view_terrain_command(CLI::App& app) {
               "\nExamples:\n"
               "  rastrum view --terrain --height alps.png --color alps.jpg --shadows sharp\n"
               "  rastrum view --terrain one.dem two.tif --function noise");
-  return {&view, [arguments] { return run(*arguments); }};
+  return {view, [arguments] { return run(*arguments); }};
 }
 
 }  // namespace rastrum::cli

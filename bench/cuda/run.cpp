@@ -201,7 +201,7 @@ int run_cuda(std::span<const std::string_view> arguments) {
   const std::string rounds = std::to_string(options.rounds);
   const std::string threads = std::to_string(options.threads);
   std::vector<std::string_view> shared{"--device", "cuda", "--threads", threads};
-  if (parser.app().count("--rounds") != 0) shared.insert(shared.end(), {"--rounds", rounds});
+  if (parser.given("--rounds")) shared.insert(shared.end(), {"--rounds", rounds});
   if (!options.out.empty()) shared.insert(shared.end(), {"--out", options.out});
   if (options.quick) shared.emplace_back("--quick");
   // What takes longest comes last.

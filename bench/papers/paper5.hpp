@@ -79,7 +79,5 @@ inline constexpr std::array kTable4{
     PublishedRow<7>{"", "64", {{{13}, {12}, {14}, {7}, {8}, {11}, {4}}}},
     PublishedRow<7>{"", "128", {{{3}, {4}, {4}, {3}, {3}, {2}, {}}}},
 };
-/// Section 5.3.2: bytes of an array of the paper's for each fragment.
-inline constexpr int kBytesPerFragment = 51;
 
 }  // namespace rastrum::bench::paper5

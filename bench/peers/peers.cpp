@@ -219,19 +219,15 @@ int run_peers(std::span<const std::string_view> arguments) {
   Selection selection(peer_scenes(), {{1024, 1024}, {1920, 1080}, {4096, 4096}});
   OptionParser parser("peers", "Frames of Rastrum, llvmpipe and Embree, interleaved, `phong`.");
   selection.add_to(parser);
-  parser.app()
-      .add_option("--rounds", options.rounds, "rounds of A B C … (9)")
-      ->check(CLI::Range(1, 1000));
-  parser.app()
-      .add_option("--threads", options.threads, "threads of each contender (2)")
-      ->check(CLI::Range(1, 1024));
-  parser.app().add_option("--rasterizer", options.rasterizer, "Rastrum's rasterizer (auto)");
-  parser.app().add_flag("--quick", options.quick, "3 rounds, 1024x1024 unless told otherwise");
-  parser.app().add_option("--json", options.json, "write all samples to FILE")->type_name("FILE");
+  parser.add_option("--rounds", options.rounds, "rounds of A B C … (9)")->range(1, 1000);
+  parser.add_option("--threads", options.threads, "threads of each contender (2)")->range(1, 1024);
+  parser.add_option("--rasterizer", options.rasterizer, "Rastrum's rasterizer (auto)");
+  parser.add_flag("--quick", options.quick, "3 rounds, 1024x1024 unless told otherwise");
+  parser.add_option("--json", options.json, "write all samples to FILE")->type_name("FILE");
   if (const auto status = parser.parse(arguments)) return *status;
   if (options.quick) {
-    if (parser.app().count("--rounds") == 0) options.rounds = 3;
-    if (parser.app().count("--sizes") == 0) selection.set_sizes({{1024, 1024}});
+    if (!parser.given("--rounds")) options.rounds = 3;
+    if (!parser.given("--sizes")) selection.set_sizes({{1024, 1024}});
   }
   selection.resolve();
 

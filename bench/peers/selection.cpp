@@ -30,12 +30,10 @@ void Selection::add_to(OptionParser& parser) {
     known += (known.empty() ? "" : ",") + std::string(scene.name);
   std::string sizes;
   for (const Size size : sizes_) sizes += (sizes.empty() ? "" : ",") + size_text(size);
-  parser.app()
-      .add_option("--scenes", scene_names_, "scenes, by comma (" + known + ")")
+  parser.add_option("--scenes", scene_names_, "scenes, by comma (" + known + ")")
       ->delimiter(',')
       ->type_name("NAMES");
-  parser.app()
-      .add_option("--sizes", size_names_, "image sizes, by comma (" + sizes + ")")
+  parser.add_option("--sizes", size_names_, "image sizes, by comma (" + sizes + ")")
       ->delimiter(',')
       ->type_name("WxH");
 }

@@ -1,32 +1,33 @@
 #include "options.hpp"
 
-#include <map>
-
+#include <apps/command_line/choose.hpp>
 #include <rastrum/parallel/cuda/status.hpp>
 #include <rastrum/raster/cuda/rasterizer.hpp>
 
 namespace rastrum::bench {
 
 void TableOptions::add_to(OptionParser& parser, bool takes_mesh) {
-  CLI::App& app = parser.app();
   if (takes_mesh)
-    app.add_option("--mesh", mesh,
-                   "a mesh for all columns, brought to each column's number of triangles "
-                   "(generated balls)")
+    parser
+        .add_option("--mesh", mesh,
+                    "a mesh for all columns, brought to each column's number of triangles "
+                    "(generated balls)")
         ->type_name("FILE");
-  app.add_option("--out", out, "write NAME.md, NAME.json and NAME.svg into FOLDER")
+  parser.add_option("--out", out, "write NAME.md, NAME.json and NAME.svg into FOLDER")
       ->type_name("FOLDER");
-  app.add_option("--rounds", rounds, "rounds of A B C … (9)")->check(CLI::Range(1, 1000));
-  app.add_option("--threads", threads, "threads (all)")->check(CLI::Range(1, 1024));
-  app.add_flag("--quick", quick,
-               "a smoke test: 1 round, pictures of an eighth of the edge, a 32nd of the triangles");
+  parser.add_option("--rounds", rounds, "rounds of A B C … (9)")->range(1, 1000);
+  parser.add_option("--threads", threads, "threads (all)")->range(1, 1024);
+  parser.add_flag(
+      "--quick", quick,
+      "a smoke test: 1 round, pictures of an eighth of the edge, a 32nd of the triangles");
 }
 
 void TableOptions::add_device(OptionParser& parser) {
-  parser.app()
-      .add_option("--device", device, "cuda: a GPU's figures beside those of the threads (threads)")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Device>{{"threads", Device::threads}, {"cuda", Device::cuda}}));
+  parser.add("--device", "NAME", "cuda: a GPU's figures beside those of the threads (threads)",
+             [this](const std::string& s) {
+               device = cli::choose<Device>("--device", s,
+                                            {{"threads", Device::threads}, {"cuda", Device::cuda}});
+             });
 }
 
 void TableOptions::resolve() {

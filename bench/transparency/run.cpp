@@ -37,18 +37,15 @@ int run_transparency(std::span<const std::string_view> arguments) {
   options.add_to(parser, false);
   options.add_device(parser);
   selection.add_to(parser);
-  parser.app()
-      .add_option("--opacity", opacity, "of every surface (0.5)")
-      ->check(CLI::Range(0.01, 0.99));
-  parser.app()
-      .add_option("--patience", patience_s, "seconds after which peeling is stopped (20)")
-      ->check(CLI::Range(0.0, 3600.0));
+  parser.add_option("--opacity", opacity, "of every surface (0.5)")->range(0.01, 0.99);
+  parser.add_option("--patience", patience_s, "seconds after which peeling is stopped (20)")
+      ->range(0.0, 3600.0);
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
   if (options.quick) {
-    if (parser.app().count("--sizes") == 0) selection.set_sizes({{128, 128}});
-    if (parser.app().count("--scenes") == 0) selection.set_scenes({scene_by_name("boxes")});
-    if (parser.app().count("--patience") == 0) patience_s = 2;
+    if (!parser.given("--sizes")) selection.set_sizes({{128, 128}});
+    if (!parser.given("--scenes")) selection.set_scenes({scene_by_name("boxes")});
+    if (!parser.given("--patience")) patience_s = 2;
   }
   selection.resolve();
 

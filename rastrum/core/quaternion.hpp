@@ -21,10 +21,6 @@ constexpr Quaternion operator*(const Quaternion& a, const Quaternion& b) {
       a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
       a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
 }
-/// The inverse of a unit quaternion.
-constexpr Quaternion conjugate(const Quaternion& q) {
-  return {q.w, -q.x, -q.y, -q.z};
-}
 constexpr double dot(const Quaternion& a, const Quaternion& b) {
   return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
 }

@@ -5,8 +5,12 @@
 // between bodies are still found.
 #include <rastrum/parallel/exec.hpp>
 
+#include <optional>
+
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <rastrum/parallel/stop.hpp>
 
@@ -58,6 +62,25 @@ class AroundLoop {
 
 }  // namespace
 
+struct Threads::Scheduler {
+  explicit Scheduler(int count) : arena(count > 0 ? count : tbb::task_arena::automatic) {
+    if (count > tbb::this_task_arena::max_concurrency())
+      more_than_cores.emplace(tbb::global_control::max_allowed_parallelism,
+                              static_cast<std::size_t>(count));
+    arena.initialize();
+  }
+  std::optional<tbb::global_control> more_than_cores;
+  tbb::task_arena arena;
+};
+
+Threads::Threads(int count, MemoryAccount* account)
+    : scheduler_(std::make_unique<Scheduler>(count)), memory_(std::make_shared<Arena>(account)) {}
+Threads::~Threads() = default;
+
+int Threads::concurrency() const {
+  return scheduler_->arena.max_concurrency();
+}
+
 void Threads::for_each_range(std::size_t n, std::size_t grain,
                              void (*body)(void* data, std::size_t begin, std::size_t end),
                              void* data) {
@@ -66,7 +89,7 @@ void Threads::for_each_range(std::size_t n, std::size_t grain,
   {
     HandOver fork, join;
     const AroundLoop around(fork, join);
-    arena_.execute([&] {
+    scheduler_->arena.execute([&] {
       tbb::parallel_for(
           tbb::blocked_range<std::size_t>(0, n, grain),
           [&](const tbb::blocked_range<std::size_t>& range) {

@@ -4,12 +4,8 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <type_traits>
 #include <utility>
-
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
 #include <rastrum/parallel/arena.hpp>
 
@@ -36,15 +32,9 @@ class Threads {
  public:
   /// `count` threads, the caller's included; 0 takes what the machine has.
   /// More threads than cores are had as well: oneTBB would cap them. Memory as in Serial.
-  explicit Threads(int count = 0, MemoryAccount* account = nullptr)
-      : arena_(count > 0 ? count : tbb::task_arena::automatic),
-        memory_(std::make_shared<Arena>(account)) {
-    if (count > tbb::this_task_arena::max_concurrency())
-      more_than_cores_.emplace(tbb::global_control::max_allowed_parallelism,
-                               static_cast<std::size_t>(count));
-    arena_.initialize();
-  }
-  [[nodiscard]] int concurrency() const { return arena_.max_concurrency(); }
+  explicit Threads(int count = 0, MemoryAccount* account = nullptr);
+  ~Threads();
+  [[nodiscard]] int concurrency() const;
   [[nodiscard]] const std::shared_ptr<Arena>& memory() const { return memory_; }
 
   /// Calls body(data, begin, end) for ranges that make up [0, n), of at most `grain` indices each;
@@ -53,8 +43,8 @@ class Threads {
                       void (*body)(void* data, std::size_t begin, std::size_t end), void* data);
 
  private:
-  std::optional<tbb::global_control> more_than_cores_;
-  tbb::task_arena arena_;
+  struct Scheduler;  // oneTBB's headers, twice what most sources parse else, stay in exec.cpp
+  std::unique_ptr<Scheduler> scheduler_;
   std::shared_ptr<Arena> memory_;
 };
 

@@ -4,12 +4,10 @@
 // Work O(n + total), span O(kBlock + log n): the threads cut the result, not the segments
 // (expand_each.hpp), so one huge segment and millions of small ones are divided alike. Paper 5
 // fills the gaps with a maximum scan instead. Allocates the result and, with threads, 8 bytes per
-// segment. Source: paper 1, section 2.2.2; `owners` is the expand of paper 5, appendix A,
-// algorithm 1.
+// segment. Source: paper 1, section 2.2.2; paper 5, appendix A, algorithm 1.
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <type_traits>
 #include <utility>
 
@@ -45,14 +43,6 @@ template <Readable In, class Size, class Get>
     chunk.each([&](const auto& element, std::size_t j) { out[k++] = get(element, j); });
   });
   return out;
-}
-
-/// Each index i of `counts`, counts[i] times: to which segment the elements of an expansion belong.
-template <class Exec, Readable Counts>
-[[nodiscard]] Buffer<std::uint32_t> owners(Exec& exec, const Counts& counts) {
-  return expand(
-      exec, counting<std::uint32_t>(std::size(counts)), [&](std::uint32_t i) { return counts[i]; },
-      [](std::uint32_t i, std::size_t) { return i; });
 }
 
 }  // namespace rastrum::parallel

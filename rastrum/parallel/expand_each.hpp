@@ -186,10 +186,4 @@ void expand_each(Exec& exec, const Expansion& expansion, const In& in, F&& f) {
   });
 }
 
-/// The same for an expansion that is walked once.
-template <class Exec, Readable In, class Size, class F>
-void expand_each(Exec& exec, const In& in, Size&& size, F&& f) {
-  expand_each(exec, Expansion(exec, in, size), in, f);
-}
-
 }  // namespace rastrum::parallel

@@ -2,7 +2,7 @@
 // without ever writing them: get(in[i], j) for those j in [0, size(in[i])) with holds(in[i], j).
 //
 // A first pass records the predicate in bit masks, whose ranks say how much there is to write; a
-// second one walks their bits (expand_masked_each.hpp, also for segments longer than a mask).
+// second one walks their bits (masked_expansion.hpp, also for segments longer than a mask).
 //
 // Work O(n + Σ size + result), span O(kBlock + log n). Allocates the result and, with threads, 8
 // bytes per segment, kBits / 8 per mask and 8 for every 4096 elements.
@@ -13,7 +13,7 @@
 #include <cstddef>
 
 #include <rastrum/parallel/expand.hpp>
-#include <rastrum/parallel/expand_masked_each.hpp>
+#include <rastrum/parallel/masked_expansion.hpp>
 #include <rastrum/parallel/range.hpp>
 
 namespace rastrum::parallel {

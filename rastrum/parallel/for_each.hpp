@@ -1,7 +1,7 @@
 // for_each: f(range[i]) for all elements, for what f does to them.
 //
-// Work O(n), span O(kBlock + log n). Allocates nothing. Source: DESIGN section 5; for the indices
-// themselves see for_each_index (exec.hpp).
+// Work O(n), span O(kBlock + log n). Allocates nothing. For the indices themselves see
+// for_each_index (exec.hpp).
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // What words read and write: anything with a size and an operator[]. Vectors, arrays and spans are
 // ranges; so are the small ones below, which are computed where they are read (paper 5, appendix A:
-// counting, permute, constant, discard), so that no word needs a second form for them.
+// counting, permute, constant), so that no word needs a second form for them.
 #pragma once
 
 #include <concepts>
@@ -101,23 +101,6 @@ template <Readable Source, Readable Map>
   return Computed(std::size(map), range_detail::ReadThrough<Source, Map>{source, map});
 }
 
-/// Takes n values and keeps none.
-class Discard {
- public:
-  struct Nowhere {
-    template <class T>
-    RASTRUM_HD constexpr const Nowhere& operator=(const T&) const {
-      return *this;
-    }
-  };
-  RASTRUM_HD constexpr explicit Discard(std::size_t n) : n_(n) {}
-  [[nodiscard]] RASTRUM_HD constexpr std::size_t size() const { return n_; }
-  [[nodiscard]] RASTRUM_HD constexpr Nowhere operator[](std::size_t) const { return {}; }
-
- private:
-  std::size_t n_;
-};
-
 /// What has no data() is read where it lies.
 template <class R>
 struct Referred {
@@ -131,7 +114,7 @@ struct Referred {
 template <class R>
 [[nodiscard]] constexpr auto view_of(R&& range) {
   using Plain = std::remove_cvref_t<R>;
-  if constexpr (range_detail::kIsView<Plain> || std::same_as<Plain, Discard>)
+  if constexpr (range_detail::kIsView<Plain>)
     return Plain(range);
   else if constexpr (requires { std::data(range); })
     return std::span(std::data(range), std::size(range));

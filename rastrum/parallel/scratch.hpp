@@ -2,41 +2,77 @@
 // the loop, so that what grew in one frame is there in the next.
 //
 // Work O(n), span O(log n) beside the bodies'. At most one T per thread that ever took part.
-// Source: DESIGN section 5, "work that wants a team with scratch memory": a worker thread with its
-// T here, a block of threads with shared memory on a device.
+// A worker thread with its T is here what a block of threads with shared memory is on a device
+// (for_each_team, cuda/exec.cuh).
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <memory>
+#include <type_traits>
 #include <utility>
-
-#include <tbb/enumerable_thread_specific.h>
 
 #include <rastrum/parallel/exec.hpp>
 
 namespace rastrum::parallel {
+
+/// A pointer for each thread that asks, null at first.
+class ThreadSlots {
+ public:
+  ThreadSlots();
+  ThreadSlots(ThreadSlots&&) noexcept;
+  ThreadSlots& operator=(ThreadSlots&&) noexcept;
+  ~ThreadSlots();
+  [[nodiscard]] void*& local();
+  /// f(slot, data) for all that are not null; not while a loop runs.
+  void for_each(void (*f)(void* slot, void* data), void* data);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 /// A T for each thread that asks, made when it first does and kept until the pool ends.
 template <class T>
 class ScratchPool {
  public:
   /// Each T is T{}.
-  ScratchPool() = default;
+  ScratchPool() : ScratchPool([] { return T{}; }) {}
   /// Each T is make(), which is copied and may be called by several threads at once.
   template <class Make>
-  explicit ScratchPool(Make make) : of_threads_(std::move(make)) {}
+  requires(!std::is_same_v<Make, ScratchPool>) explicit ScratchPool(Make make)
+      : make_([make] { return new T(make()); }) {}
+  ScratchPool(ScratchPool&&) noexcept = default;
+  ScratchPool& operator=(ScratchPool&& other) noexcept {
+    std::swap(make_, other.make_);
+    std::swap(slots_, other.slots_);
+    return *this;
+  }
+  ~ScratchPool() {
+    slots_.for_each([](void* slot, void*) { delete static_cast<T*>(slot); }, nullptr);
+  }
 
   /// The calling thread's T. Keep no reference across a loop on the same backend: a thread that
   /// waits for it may run another body of the outer loop, which has the same T.
-  [[nodiscard]] T& local() { return of_threads_.local(); }
+  [[nodiscard]] T& local() {
+    void*& slot = slots_.local();
+    if (slot == nullptr) slot = make_();
+    return *static_cast<T*>(slot);
+  }
 
   /// Calls f(T&) for all that were made, in no particular order; not while a loop runs.
   template <class F>
   void for_each(F&& f) {
-    for (T& scratch : of_threads_) f(scratch);
+    slots_.for_each(
+        [](void* slot, void* data) {
+          (*static_cast<std::remove_reference_t<F>*>(data))(*static_cast<T*>(slot));
+        },
+        &f);
   }
 
  private:
-  tbb::enumerable_thread_specific<T> of_threads_;
+  std::function<T*()> make_;
+  ThreadSlots slots_;
 };
 
 /// Calls f(i, scratch) for i in [0, n); no other body has `scratch` meanwhile. What it holds at the

@@ -1,4 +1,4 @@
-// segmented_scan and segmented_reduce: a scan or a reduction of each segment by itself.
+// segmented_scan: a scan of each segment by itself.
 //
 // Segments are given by where they begin: segment s is [first[s], first[s + 1]), the last one ends
 // at n. Futhark's library takes flags instead, which cannot say that a segment is empty; and first
@@ -7,7 +7,7 @@
 // segment is cut where blocks of kBlock elements begin, the pieces are folded from the left, and so
 // are their results, whatever the backend and the number of threads.
 // Work O(n + segments + n / kBlock · log segments), span O(kBlock + n / kBlock), however long one
-// segment is. Allocates the result of segmented_reduce, and one T per block.
+// segment is. Allocates one T per block.
 // Source: Futhark's segmented library (paper 1, section 2.2.2); Blelloch, 1990.
 #pragma once
 
@@ -20,7 +20,6 @@
 #include <rastrum/parallel/blocks.hpp>
 #include <rastrum/parallel/range.hpp>
 #include <rastrum/parallel/reduce.hpp>
-#include <rastrum/parallel/tabulate.hpp>
 
 namespace rastrum::parallel {
 namespace segmented_detail {
@@ -103,52 +102,6 @@ struct ScanRuns {
   }
 };
 
-/// A block's first piece, where it continues a segment of the block before it.
-template <class T>
-struct Carried {
-  T piece;
-  std::size_t segment;
-};
-
-template <class T, class First, class In, class Op>
-struct ReduceRuns {
-  First first;
-  In in;
-  std::span<T> out;
-  std::span<Carried<T>> carried;
-  Op op;
-  RASTRUM_HD void operator()(std::size_t block, std::size_t begin, std::size_t end) const {
-    Op plus = op;
-    carried[block].segment = std::size(first);
-    for_each_run(first, begin, end, [&](std::size_t s, std::size_t run, std::size_t stop) {
-      const T piece = fold_block<T>(in, run, stop, plus);
-      if (begins_at(first, s, run))
-        out[s] = piece;
-      else
-        carried[block] = {piece, s};
-    });
-  }
-};
-
-/// Puts the pieces to their segments, in order. By one thread.
-template <class T, class Op>
-struct AddCarried {
-  std::span<T> out;
-  std::span<const Carried<T>> carried;
-  Op op;
-  RASTRUM_HD void operator()(std::size_t) const {
-    Op plus = op;
-    for (const Carried<T>& c : carried)
-      if (c.segment < out.size()) out[c.segment] = static_cast<T>(plus(out[c.segment], c.piece));
-  }
-};
-
-template <class T>
-struct Always {
-  T value;
-  RASTRUM_HD T operator()(std::size_t) const { return value; }
-};
-
 template <class T, class Exec, class First, class In, class Out, class Op>
 void scan_in_blocks(Exec& exec, First first, In in, Out out, Op op) {
   const std::size_t n = std::size(in);
@@ -159,19 +112,6 @@ void scan_in_blocks(Exec& exec, First first, In in, Out out, Op op) {
   for_each_block(exec, n, SumLastRun<T, First, In, Op>{first, in, last_view, closed_view, op});
   for_each_index(exec, 1, CarryAcrossBlocks<T, Op>{last_view, closed_view, op});
   for_each_block(exec, n, ScanRuns<T, First, In, Out, Op>{first, in, out, last_view, op});
-}
-
-template <class Exec, class First, class In, class T, class Op>
-[[nodiscard]] auto reduce_in_blocks(Exec& exec, First first, In in, T neutral, Op op) {
-  const std::size_t n = std::size(in);
-  auto out = make_buffer<T>(exec, std::size(first));
-  auto carried = make_buffer<Carried<T>>(exec, block_count(n));
-  const auto out_view = view_of(out);
-  const auto carried_view = view_of(carried);
-  tabulate(exec, out, Always<T>{neutral});
-  for_each_block(exec, n, ReduceRuns<T, First, In, Op>{first, in, out_view, carried_view, op});
-  for_each_index(exec, 1, AddCarried<T, Op>{out_view, carried_view, op});
-  return out;
 }
 
 }  // namespace segmented_detail
@@ -185,16 +125,6 @@ void segmented_scan(Exec& exec, const First& first, const In& in, Out&& out, Op 
   assert(std::size(in) == std::size(out));
   assert(std::size(in) == 0 || (std::size(first) > 0 && begins_at(first, 0, 0)));
   scan_in_blocks<T>(exec, view_of(first), view_of(in), view_of(out), op);
-}
-
-/// One value per segment: in[first[s]] op … , `neutral` where the segment is empty. `first` as
-/// above. Computes in the type of `neutral`.
-template <class Exec, Readable First, Readable In, class T, class Op = std::plus<>>
-[[nodiscard]] Buffer<T> segmented_reduce(Exec& exec, const First& first, const In& in, T neutral,
-                                         Op op = {}) {
-  using namespace segmented_detail;
-  assert(std::size(in) == 0 || (std::size(first) > 0 && begins_at(first, 0, 0)));
-  return reduce_in_blocks(exec, view_of(first), view_of(in), neutral, op);
 }
 
 }  // namespace rastrum::parallel

@@ -9,12 +9,10 @@
 #include <rastrum/parallel/expand.hpp>
 #include <rastrum/parallel/expand_each.hpp>
 #include <rastrum/parallel/expand_masked.hpp>
-#include <rastrum/parallel/expand_masked_each.hpp>
 #include <rastrum/parallel/filter.hpp>
 #include <rastrum/parallel/for_each.hpp>
-#include <rastrum/parallel/gather.hpp>
-#include <rastrum/parallel/index_in_group.hpp>
 #include <rastrum/parallel/mask.hpp>
+#include <rastrum/parallel/masked_expansion.hpp>
 #include <rastrum/parallel/partition.hpp>
 #include <rastrum/parallel/range.hpp>
 #include <rastrum/parallel/reduce.hpp>
@@ -28,8 +26,6 @@
 #include <rastrum/parallel/selection.hpp>
 #include <rastrum/parallel/sort_by_key.hpp>
 #include <rastrum/parallel/tabulate.hpp>
-#include <rastrum/parallel/team.hpp>
 #include <rastrum/parallel/transform.hpp>
 #include <rastrum/parallel/transpose.hpp>
-#include <rastrum/parallel/unique.hpp>
 #include <rastrum/parallel/work_queue.hpp>

@@ -8,7 +8,7 @@
 
 namespace rastrum::raster {
 
-/// Visibility words (DESIGN section 2): bits(depth) << 33 | (2^33 − 1 − id). 0 is empty, the
+/// Visibility words (docs/conventions.md): bits(depth) << 33 | (2^33 − 1 − id). 0 is empty, the
 /// maximum wins, and at equal depth the smallest id has the largest word.
 inline constexpr int kIdBits = 33;
 inline constexpr std::uint64_t kIdMask = (std::uint64_t{1} << kIdBits) - 1;

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
+#include <rastrum/scene/mesh.hpp>
 #include <rastrum/scene/scene.hpp>
 
 namespace rastrum {

@@ -37,10 +37,6 @@ Image<Rgba8> colors_by_height(ImageView<const float> heights) {
   return colors;
 }
 
-float hill_shade(float dx, float dy, const Sun& sun, float ambient) {
-  return ToSun::of(sun).shade(dx, dy, ambient);
-}
-
 Image<float> hill_shading(ImageView<const float> heights, const Sun& sun, float ambient,
                           Tiling tiling) {
   check_stride(heights, "the height map");

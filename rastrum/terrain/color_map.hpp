@@ -34,23 +34,21 @@ namespace rastrum::terrain {
 /// height_color of each height between the lowest and the highest; holes are black.
 [[nodiscard]] Image<Rgba8> colors_by_height(ImageView<const float> heights);
 
-/// What a slope shows of the sun's light: ambient + (1 − ambient) · max(0, cosine between the
-/// normal and the sun). `dx`, `dy`: change of the height over a cell to the east and to the south.
-[[nodiscard]] float hill_shade(float dx, float dy, const Sun& sun, float ambient);
-
 /// The unit vector to the sun: east, south, up.
 struct ToSun {
   float x = 0, y = 0, z = 1;
   static ToSun of(const Sun& sun);
-  /// hill_shade, for many slopes.
+  /// What a slope shows of the sun's light: ambient + (1 − ambient) · max(0, cosine between the
+  /// normal and the sun). `dx`, `dy`: change of the height over a cell to the east and to the
+  /// south.
   [[nodiscard]] RASTRUM_HD float shade(float dx, float dy, float ambient) const {
     const float cosine = (z - dx * x - dy * y) / std::sqrt(1 + dx * dx + dy * dy);
     return ambient + (1 - ambient) * (cosine > 0 ? cosine : 0);
   }
 };
 
-/// hill_shade of each cell, by central differences within the tiled map; holes next to a cell count
-/// as its own height.
+/// ToSun::shade of each cell, by central differences within the tiled map; holes next to a cell
+/// count as its own height.
 [[nodiscard]] Image<float> hill_shading(ImageView<const float> heights, const Sun& sun,
                                         float ambient, Tiling tiling);
 

@@ -40,7 +40,6 @@ class Pyramid {
     return heights_ == terrain.heights() && colors_ == terrain.colors() && whole_ == whole;
   }
   [[nodiscard]] int height_levels() const { return static_cast<int>(height_views_.size()); }
-  [[nodiscard]] int color_levels() const { return static_cast<int>(color_views_.size()); }
   [[nodiscard]] const ImageView<const float>& heights(int level) const {
     return height_views_[static_cast<std::size_t>(level)];
   }

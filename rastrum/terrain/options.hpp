@@ -63,7 +63,10 @@ struct TerrainOptions {
   double fov_rad = std::numbers::pi / 2;  ///< across; below π for planar, up to 2π for cylindrical
   /// Rows that a height of 1 takes at distance 1; 0: as many as columns in the picture's middle.
   double scale_px = 0;
-  /// Distances are 1, 1 + step, … with steps that grow by `dz` each.
+  /// Distances are 1, 1 + step, … with steps that grow by `dz` each. Step 0 leaves them to the
+  /// filter: `bilinear`, which has something to show within a cell, takes steps as long as a pixel
+  /// is high at their distance (a share of it, so that `dz` is not used); the others take 1 and
+  /// `dz`.
   double step = 1, dz = 0.005;
   Filter filter = Filter::none;
   Tiling tiling = Tiling::repeat;

@@ -23,6 +23,8 @@ class TerrainObjectsProgram : public ProgramOnHills {
   void SetUp() override {
     ProgramOnHills::SetUp();
     options_.distance = 120;
+    options_.filter = terrain::Filter::none;  // objects stand on cells
+    options_.step = 1;
     camera_ = {30, 58, 40, 0, 10, 0};
     sprite_ = Image<Rgba8>(4, 8);
     for (int y = 0; y < 8; ++y)
@@ -36,7 +38,11 @@ class TerrainObjectsProgram : public ProgramOnHills {
     std::vector<std::string> args{"terrain", "--height",   "h.png",      "--color",    "c.png",
                                   "--size",  "96x64",      "--altitude", "40",         "--horizon",
                                   "10",      "--position", "30,58",      "--distance", "120"};
-    if (std::ranges::find(extra, "-o") == extra.end()) args.insert(args.end(), {"-o", "p.png"});
+    const auto says = [&](const char* option) {
+      return std::ranges::find(extra, option) != extra.end();
+    };
+    if (!says("-o")) args.insert(args.end(), {"-o", "p.png"});
+    if (!says("--filter") && !says("--classic")) args.insert(args.end(), {"--filter", "none"});
     args.insert(args.end(), extra.begin(), extra.end());
     return args;
   }
@@ -105,6 +111,7 @@ TEST_F(TerrainObjectsProgram, AMeshStandsOnTheGround) {
 
 TEST_F(TerrainObjectsProgram, ASurfaceBetweenCellsIsTheGroundOfTheBilinearFilter) {
   options_.filter = terrain::Filter::bilinear;
+  options_.step = 0;
   const auto h = [&](int x, int y) { return static_cast<double>(map_.heights(x, y)); };
   // (20.75, 30.25) lies a quarter past the centre of cell 20 and a quarter before that of row 30.
   const double above = 0.75 * h(20, 29) + 0.25 * h(21, 29),

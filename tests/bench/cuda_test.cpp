@@ -25,7 +25,7 @@ CudaStatus cuda_status() {
   CudaStatus status;
   status.usable = true;
   status.name = "CPU in the place of a GPU";
-  status.free_bytes = status.total_bytes = std::uint64_t{1} << 36;
+  status.free_bytes = std::uint64_t{1} << 36;
   return status;
 }
 

@@ -64,15 +64,12 @@ class OnDevice {
         opaque_(parallel::to_device(exec, f.opaque)) {}
 
   transparency::DeviceLayerCounts blend(const TransparencyOptions& options,
-                                        const transparency::DeviceLayerTuning& tuning,
-                                        bool by_warps = false) {
+                                        const transparency::DeviceLayerTuning& tuning) {
     using parallel::view_of;
     const transparency::DeviceLayers layers{view_, view_of(std::as_const(pieces_)), view_of(words_),
                                             view_of(colors_)};
     const PaintFragment shade{view_of(std::as_const(paint_)), view_of(std::as_const(opaque_)),
                               by_pixel_};
-    if (by_warps)
-      return transparency::blend_layers<true>(exec_, layers, options, shade, IsNoHole{}, tuning);
     return transparency::blend_layers(exec_, layers, options, shade, IsNoHole{}, tuning);
   }
   void fetch(LayersFrame& out) {
@@ -116,9 +113,7 @@ class OnDevice {
 struct TeamScratch {
   std::uint32_t keys[64], places[64], sums[65];
 };
-template <bool by_warps>
 struct TeamWords {
-  static constexpr bool kWantsWarps = by_warps;
   std::span<const std::uint32_t> in;
   std::span<std::uint32_t> sorted, places, sums;
   template <class Team>
@@ -128,10 +123,7 @@ struct TeamWords {
       s.keys[i] = s.sums[i] = in[i];
       s.places[i] = static_cast<std::uint32_t>(i);
     }
-    if constexpr (kWantsWarps)
-      parallel::team_sort_by_warps(s.keys, s.places, n, team);
-    else
-      parallel::team_sort(s.keys, s.places, n, team);
+    parallel::team_sort(s.keys, s.places, n, team);
     parallel::team_prefix_sums(s.sums, n, team);
     for (std::size_t i = team.rank(); i < n; i += team.size()) {
       sorted[i] = s.keys[i];
@@ -146,13 +138,13 @@ struct TeamWords {
 transparency::DeviceLayerCounts blend_on_device(LayersFrame& frame,
                                                 const TransparencyOptions& options,
                                                 const transparency::DeviceLayerTuning& tuning,
-                                                int band_rows, bool by_warps) {
+                                                int band_rows) {
   parallel::Cuda exec;
   transparency::DeviceLayerCounts sum;
   const int rows = band_rows == 0 ? frame.height : band_rows;
   for (int y = 0; y < frame.height; y += rows) {
     OnDevice band(exec, frame, y, std::min(y + rows, frame.height));
-    const transparency::DeviceLayerCounts c = band.blend(options, tuning, by_warps);
+    const transparency::DeviceLayerCounts c = band.blend(options, tuning);
     band.fetch(frame);
     sum.fragments += c.fragments;
     sum.deepest = std::max(sum.deepest, c.deepest);
@@ -175,10 +167,7 @@ std::uint64_t growth_of_a_second_frame(const LayersFrame& frame) {
   return exec.memory()->held() - held;
 }
 
-namespace {
-
-template <bool by_warps>
-TeamResult team_words_by(const std::vector<std::uint32_t>& values) {
+TeamResult team_words(const std::vector<std::uint32_t>& values) {
   parallel::Cuda exec;
   const auto in = parallel::to_device(exec, values);
   auto sorted = parallel::make_buffer<std::uint32_t>(exec, values.size());
@@ -186,16 +175,10 @@ TeamResult team_words_by(const std::vector<std::uint32_t>& values) {
   auto sums = parallel::make_buffer<std::uint32_t>(exec, values.size() + 1);
   parallel::for_each_team<TeamScratch, 64>(
       exec, 1,
-      TeamWords<by_warps>{parallel::view_of(in), parallel::view_of(sorted),
-                          parallel::view_of(places), parallel::view_of(sums)});
+      TeamWords{parallel::view_of(in), parallel::view_of(sorted), parallel::view_of(places),
+                parallel::view_of(sums)});
   return {parallel::to_host(exec, sorted), parallel::to_host(exec, places),
           parallel::to_host(exec, sums)};
-}
-
-}  // namespace
-
-TeamResult team_words(const std::vector<std::uint32_t>& values, bool by_warps) {
-  return by_warps ? team_words_by<true>(values) : team_words_by<false>(values);
 }
 
 }  // namespace rastrum::test

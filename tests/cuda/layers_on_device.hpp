@@ -23,12 +23,11 @@ struct LayersFrame {
 };
 
 /// Changes words and colours, which are rows of pixels here, as blend_layers does: in bands of
-/// `band_rows` rows, whole blocks; 0: at once. Counts are those of all bands. `by_warps`: how
-/// blocks are sorted.
+/// `band_rows` rows, whole blocks; 0: at once. Counts are those of all bands.
 transparency::DeviceLayerCounts blend_on_device(LayersFrame& frame,
                                                 const TransparencyOptions& options,
                                                 const transparency::DeviceLayerTuning& tuning,
-                                                int band_rows = 0, bool by_warps = false);
+                                                int band_rows = 0);
 /// Two frames alike, one after the other: by how many bytes the second made the device's memory
 /// grow.
 std::uint64_t growth_of_a_second_frame(const LayersFrame& frame);
@@ -38,6 +37,6 @@ std::uint64_t growth_of_a_second_frame(const LayersFrame& frame);
 struct TeamResult {
   std::vector<std::uint32_t> sorted, places, sums;
 };
-TeamResult team_words(const std::vector<std::uint32_t>& values, bool by_warps);
+TeamResult team_words(const std::vector<std::uint32_t>& values);
 
 }  // namespace rastrum::test

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <rastrum/parallel/words.hpp>
 #if defined(RASTRUM_TEST_DEVICE_WORDS)
@@ -37,8 +36,6 @@ std::vector<T> as_vector(const DeviceBuffer<T>& buffer) {
 /// Calls f(backend) for serial and for 1, 2 and 8 threads.
 template <class F>
 void on_every_backend(F&& f) {
-  // Without it oneTBB starts no more threads than there are cores, and 8 would be tested nowhere.
-  const tbb::global_control eight(tbb::global_control::max_allowed_parallelism, 8);
   {
     SCOPED_TRACE("serial");
     Serial exec;

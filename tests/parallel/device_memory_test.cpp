@@ -1,41 +1,10 @@
-// What the device's backend has of its own: a queue that is worked off in passes, memory that is
-// pooled, and sums that wait for who asks.
+// What the device's backend has of its own: memory that is pooled, and sums that wait for who asks.
 #include <algorithm>
-#include <numeric>
 
 #include <tests/parallel/backends.hpp>
 
 namespace rastrum::parallel::test {
 namespace {
-
-// A binary tree, grown by the work itself, whose levels are the passes.
-TEST(PassQueue, WorkThatMakesWorkIsAllDoneInOrder) {
-  constexpr std::size_t kNodes = 100000;
-  Cuda exec;
-  const std::vector<std::size_t> roots = {1};
-  PassQueue<std::size_t> queue(exec, roots);
-  std::vector<std::size_t> visited;
-  const auto children = [](std::size_t node) {
-    return std::size_t{2 * node <= kNodes} + std::size_t{2 * node + 1 <= kNodes};
-  };
-  const std::size_t passes =
-      queue.work_off(children, [&](std::size_t node, std::span<std::size_t> next) {
-        visited.push_back(node);
-        EXPECT_EQ(next.size(), children(node));
-        for (std::size_t c = 0; c < next.size(); ++c) next[c] = 2 * node + c;
-      });
-  std::vector<std::size_t> expected(kNodes);
-  std::iota(expected.begin(), expected.end(), std::size_t{1});
-  EXPECT_EQ(visited, expected);
-  EXPECT_EQ(passes, 17U);
-  EXPECT_EQ(queue.size(), 0U);
-}
-
-TEST(PassQueue, NothingToDoEndsAtOnce) {
-  Cuda exec;
-  PassQueue<int> queue(exec, {});
-  EXPECT_EQ(queue.work_off([](int) { return 1; }, [](int, std::span<int>) { FAIL(); }), 0U);
-}
 
 TEST(DeviceMemory, FramesAfterTheFirstAskForNothing) {
   MemoryAccount account;

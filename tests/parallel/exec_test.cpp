@@ -1,5 +1,6 @@
 // The backends' loop: every index once, results visible to the caller afterwards, errors passed on.
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <numeric>
 #include <stdexcept>
@@ -12,7 +13,6 @@
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/stop.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/stop_trigger.hpp"
 
 namespace rastrum::parallel {
@@ -37,6 +37,22 @@ TEST_P(ThreadCounts, EachIndexOnce) {
   Threads exec(GetParam());
   EXPECT_EQ(exec.concurrency(), GetParam());
   for (const std::size_t n : {0U, 1U, 7U, 100000U}) expect_each_index_once(exec, n);
+}
+
+// Also where there are fewer cores: each waits in its body until all others are in theirs. Again
+// and again, for oneTBB remembers what it was told.
+TEST_P(ThreadCounts, AreThatManyThreads) {
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    Threads exec(GetParam());
+    std::atomic<int> here = 0;
+    const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    for_each_index(exec, static_cast<std::size_t>(GetParam()), [&](std::size_t) {
+      ++here;
+      while (here < GetParam() && std::chrono::steady_clock::now() < patience)
+        std::this_thread::yield();
+      EXPECT_EQ(here, GetParam());
+    });
+  }
 }
 
 // One loop after the other over the same memory, written by other threads each time: what a frame's
@@ -94,7 +110,6 @@ TEST_P(ThreadCounts, AStoppedLoopLeavesOutWhatHasNotBegun) {
 
 // Asked by a worker where there is one: the caller has the token in force anyway.
 TEST_P(ThreadCounts, BodiesAndTheirLoopsSeeTheStop) {
-  const test::ThreadsBeyondCores eight(8);
   Threads exec(GetParam());
   std::stop_source source;
   const std::stop_token token = source.get_token();

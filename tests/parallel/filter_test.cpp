@@ -26,23 +26,6 @@ TEST(Filter, KeepsWhatHoldsInOrder) {
   }
 }
 
-TEST(Unique, KeepsTheFirstOfEachRun) {
-  for (const std::size_t n : kSizes)
-    for (const std::uint32_t limit : {1U, 2U, 1000U}) {
-      const auto in = random_values<std::uint32_t>(n, limit);
-      auto expected = in;
-      expected.erase(std::unique(expected.begin(), expected.end()), expected.end());
-      // Of elements that are equal only to the given function the first stays.
-      const auto same = [](std::uint32_t a, std::uint32_t b) { return a / 2 == b / 2; };
-      auto halves = in;
-      halves.erase(std::unique(halves.begin(), halves.end(), same), halves.end());
-      on_every_backend([&](auto& exec) {
-        EXPECT_EQ(as_vector(unique(exec, in)), expected);
-        EXPECT_EQ(as_vector(unique(exec, in, same)), halves);
-      });
-    }
-}
-
 TEST(Partition, PutsWhatHoldsFirstBothInOrder) {
   for (const std::size_t n : kSizes) {
     // The low digits tell equal elements apart, so that the order is seen.

@@ -1,4 +1,5 @@
-// for_each_team: every body once by each member, scratch of its own, and a sync that is one.
+// for_each_team of a device: every body once by each member, scratch of its own, and a sync that is
+// one.
 #include <numeric>
 
 #include <tests/parallel/backends.hpp>
@@ -42,11 +43,10 @@ TEST(Team, MembersWorkTogetherOnEachBodyOnce) {
       std::partial_sum(in.begin() + static_cast<std::ptrdiff_t>(i * kValues),
                        in.begin() + static_cast<std::ptrdiff_t>((i + 1) * kValues),
                        expected.begin() + static_cast<std::ptrdiff_t>(i * kValues));
-    on_every_backend([&](auto& exec) {
-      std::vector<std::uint32_t> out(in.size(), 0);
-      for_each_team<Shared>(exec, n, PrefixSum{in.data(), out.data()});
-      EXPECT_EQ(out, expected);
-    });
+    Cuda exec;
+    std::vector<std::uint32_t> out(in.size(), 0);
+    for_each_team<Shared>(exec, n, PrefixSum{in.data(), out.data()});
+    EXPECT_EQ(out, expected);
   }
 }
 

@@ -285,7 +285,6 @@ struct Case {
 };
 
 TEST(Binned, EnumeratesEachCoveredSampleOnceAndCountsItsWork) {
-  const ThreadsBeyondCores eight(8);
   constexpr int kWidth = 200, kHeight = 150;
   std::vector<Case> cases;
   for (const Schedule schedule : kSchedules)
@@ -339,7 +338,6 @@ TEST(Binned, EnumeratesEachCoveredSampleOnceAndCountsItsWork) {
 }
 
 TEST(Binned, DrawsWhatCrossesTheNearPlaneAndTheGuardBand) {
-  const ThreadsBeyondCores eight(8);
   constexpr int kWidth = 640, kHeight = 480;
   Camera camera;
   camera.eye = {0, 0, 0};
@@ -370,7 +368,6 @@ TEST(Binned, DrawsWhatCrossesTheNearPlaneAndTheGuardBand) {
 }
 
 TEST(Binned, QueuesGrow) {
-  const ThreadsBeyondCores eight(8);
   constexpr int kSize = 512;
   // Slivers whose boxes touch four bins and more; together far beyond what a round holds.
   const int count = count_from_environment("RASTRUM_FAMILY_SCENES", 10000) * 10;
@@ -406,7 +403,6 @@ TEST(Binned, QueuesGrow) {
 }
 
 TEST(Binned, DrawsInRoundsWhereMemoryIsShort) {
-  const ThreadsBeyondCores eight(8);
   constexpr int kSize = 512;
   constexpr std::uint64_t kLimit = std::uint64_t{24} << 20;
   const Scene scene = sized_triangles(3000, 30000, 80000, kSize, kSize, 4);
@@ -517,7 +513,6 @@ class Again final : public raster::Region {
 };
 
 TEST(Binned, EveryPassSeesTheSameChunks) {
-  const ThreadsBeyondCores eight(8);
   constexpr int kSize = 512;
   raster::Visibility again;
   again.name = "again";

@@ -18,7 +18,6 @@
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/pieces.hpp"
@@ -74,7 +73,6 @@ const Row kRows[] = {
 class EverySample : public testing::TestWithParam<Row> {};
 
 TEST_P(EverySample, IsEnumeratedOnce) {
-  const ThreadsBeyondCores eight(8);
   const Row& row = GetParam();
   int n = 0;
   for (const auto& [width, height] : kImageSizes) {
@@ -121,7 +119,6 @@ Scene triangles(int count, int width, int height, std::uint64_t seed) {
 
 // Bands, batches of triangles and turns of what they expand to: each limit cuts differently.
 TEST_P(EverySample, IsEnumeratedOnceUnderALimit) {
-  const ThreadsBeyondCores eight(8);
   constexpr int kWidth = 700, kHeight = 500;
   const Scene scene = triangles(20000, kWidth, kHeight, 7);
   const SceneBinding binding(scene);

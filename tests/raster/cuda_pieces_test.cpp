@@ -17,7 +17,32 @@
 namespace rastrum::test {
 namespace {
 
-// For who wants pieces as an array, from arrays that are on the device already.
+struct KeepsAll {
+  bool operator()(const raster::Piece&) const { return true; }
+};
+struct KeepsFlagged {
+  std::uint32_t any;
+  bool operator()(const raster::Piece& piece) const { return (piece.flags & any) != 0; }
+};
+
+struct MadePieces {
+  std::vector<raster::Piece> pieces;  ///< in order of submission
+  raster::Outcomes sum;
+};
+/// The pieces of all primitives that keep(piece) holds for, counted and written as the listings do.
+template <class Keep>
+MadePieces make_pieces(parallel::Cuda& exec, const raster::DeviceScene<parallel::Cuda>& scene,
+                       Keep keep, const raster::SamplePattern& samples = {}) {
+  const auto n = static_cast<std::size_t>(scene.primitives());
+  const raster::Assembly assembly{scene.geometry(), 0, samples};
+  auto outcomes = parallel::make_buffer<raster::Outcome>(exec, n);
+  parallel::tabulate(exec, outcomes, raster::cuda_detail::CountPieces<Keep>{assembly, keep});
+  const auto pieces = raster::write_pieces(exec, assembly, parallel::counting(n), outcomes, keep);
+  return {parallel::to_host(exec, pieces),
+          parallel::reduce(exec, outcomes, raster::Outcomes{}, raster::AddOutcomes{})};
+}
+
+// From arrays that are on the device already.
 TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
   constexpr int kWidth = 200, kHeight = 120;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
@@ -60,13 +85,13 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
             }
             sum = raster::AddOutcomes{}(sum, raster::Outcomes(o));
           }
-        const auto made = raster::make_pieces(exec, scene, 0, total, raster::KeepsAll{}, pattern);
+        const auto made = make_pieces(exec, scene, KeepsAll{}, pattern);
         EXPECT_EQ(made.sum.culled, sum.culled);
         EXPECT_EQ(made.sum.clipped, sum.clipped);
         EXPECT_EQ(made.sum.dropped, sum.dropped);
         for (std::size_t s = 0; s < expected.size(); ++s) {
           std::vector<raster::Piece> seen;
-          for (const raster::Piece& piece : parallel::to_host(exec, made.pieces)) {
+          for (const raster::Piece& piece : made.pieces) {
             const raster::Piece p = raster::moved(piece, pattern.at[s]);
             if (!raster::piece_bounds(p, {0, 0, kWidth, kHeight}).empty()) seen.push_back(p);
           }
@@ -88,50 +113,6 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
                 0);
           }
         }
-      }
-    }
-  }
-}
-
-// The variant whose tiles lie in shared memory: pieces that are cut by the view, bands, few pairs.
-TEST(CudaOwnedTiles, DrawTheBitsOfThePlainOnes) {
-  constexpr int kWidth = 300, kHeight = 200;
-  Random random(9);
-  std::vector<Vec3> positions;
-  for (int c = 0; c < 600 * 3; ++c)
-    positions.push_back(at_pixel(random.real(-100, kWidth + 100), random.real(-100, kHeight + 100),
-                                 random.real(0.1, 0.9), kWidth, kHeight));
-  raster::DeviceDraw d;
-  d.draw.vertex_count = positions.size();
-  d.draw.primitive_count = positions.size() / 3;
-  d.vertices.positions = positions;
-  d.vertices.object_to_clip = world_to_clip(pixel_camera(kWidth, kHeight), kWidth, kHeight);
-  parallel::Cuda exec;
-  const raster::DeviceScene<parallel::Cuda> scene(exec, {&d, 1}, kWidth, kHeight);
-  auto plan = raster::DevicePlan::of(0, kWidth, kHeight, scene.primitives(), 0, 0);
-  raster::DeviceSizes sizes;
-  for (const raster::Rect view : {raster::Rect{0, 0, kWidth, kHeight}, {0, 64, kWidth, 128}}) {
-    const auto draw = [&](bool owned, int samples) {
-      sizes.owned_tiles = owned;
-      const std::size_t plane = raster::block_count(view) * 64;
-      std::vector<std::uint64_t> words(plane * static_cast<std::size_t>(samples));
-      const raster::DeviceSurface surface{
-          view,
-          {0, view.y0 / 8, raster::block_columns(view), words.data(), nullptr},
-          nullptr,
-          plane,
-          raster::SamplePattern::of(samples)};
-      const raster::DeviceCounts counts = raster::draw_surface(exec, scene, surface, plan, sizes);
-      return std::pair(words, counts.fragments);
-    };
-    for (const std::uint64_t written : {scene.primitives(), std::uint64_t{17}}) {
-      plan.written = written;
-      for (const int samples : {1, 4}) {
-        if (samples > 1 && written == 17) continue;
-        const auto plain = draw(false, samples), owned = draw(true, samples);
-        EXPECT_TRUE(plain.first == owned.first);
-        EXPECT_EQ(plain.second, owned.second);
-        EXPECT_GT(owned.second, 100000U * static_cast<unsigned>(samples));
       }
     }
   }
@@ -174,15 +155,12 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
   EXPECT_NE(kept, all);
 
   const raster::DeviceScene<parallel::Cuda> scene(exec, draws, kSize, kSize);
-  const auto flagged = raster::make_pieces(exec, scene, 0, scene.primitives(),
-                                           raster::KeepsFlagged{raster::kTranslucent});
+  const MadePieces made = make_pieces(exec, scene, KeepsAll{});
+  const MadePieces flagged = make_pieces(exec, scene, KeepsFlagged{raster::kTranslucent});
   std::vector<std::uint64_t> expected, ids;
-  for (const raster::Piece& p : parallel::to_host(
-           exec,
-           raster::make_pieces(exec, scene, 0, scene.primitives(), raster::KeepsAll{}).pieces))
+  for (const raster::Piece& p : made.pieces)
     if ((p.flags & raster::kTranslucent) != 0) expected.push_back(raster::id_of_word(p.low));
-  for (const raster::Piece& p : parallel::to_host(exec, flagged.pieces))
-    ids.push_back(raster::id_of_word(p.low));
+  for (const raster::Piece& p : flagged.pieces) ids.push_back(raster::id_of_word(p.low));
   EXPECT_EQ(ids, expected);
   EXPECT_GT(ids.size(), 150U);
 }

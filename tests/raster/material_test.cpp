@@ -14,7 +14,6 @@
 #include <rastrum/render/render.hpp>
 
 #include "tests/support/directories.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/materials.hpp"
@@ -505,7 +504,6 @@ TEST(Material, IndicesOutOfRangeAreNamed) {
 }
 
 TEST(Material, TheSameBitsEverywhere) {
-  const ThreadsBeyondCores eight(8);
   const Scene scene = everything();
   Camera camera;
   camera.eye = {0.2F, 0.1F, 1.1F};

@@ -16,7 +16,6 @@
 #include <rastrum/raster/setup.hpp>
 #include <rastrum/raster/visibility/region.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/random.hpp"
 
 namespace rastrum::test {
@@ -317,7 +316,6 @@ class Methods : public testing::TestWithParam<std::string> {
 constexpr int kLayers[] = {0, 1, 2, 5, 16, 64};
 
 TEST_P(Methods, KeepTheMaximumOfEachPixel) {
-  const ThreadsBeyondCores eight(8);
   std::uint64_t seed = 0;
   for (const Isa isa : {Isa::scalar, available_isas().back()})
     for (const int threads : {1, 2, 8}) {
@@ -336,7 +334,6 @@ TEST_P(Methods, KeepTheMaximumOfEachPixel) {
 
 // As few fragments as can be: tables and sorts have least sizes of their own.
 TEST_P(Methods, KeepTheMaximumOfAFewFragments) {
-  const ThreadsBeyondCores eight(8);
   Resolver resolver(method_, available_isas().back(), 2);
   for (std::uint64_t seed = 1000; seed < 1200; ++seed) {
     Case c = generate(seed, 1, 1);
@@ -351,7 +348,6 @@ TEST_P(Methods, KeepTheMaximumOfAFewFragments) {
 
 // However little memory fragments may take.
 TEST_P(Methods, KeepTheMaximumWithinABudget) {
-  const ThreadsBeyondCores eight(8);
   Resolver resolver(method_, available_isas().back(), 8);
   std::uint64_t seed = 100;
   for (const std::uint64_t bytes :
@@ -366,7 +362,6 @@ TEST_P(Methods, KeepTheMaximumWithinABudget) {
 }
 
 TEST_P(Methods, CountTheSameWithEveryNumberOfThreads) {
-  const ThreadsBeyondCores eight(8);
   const Case c = generate(7, 16, 200);
   const auto expected = Resolver(method_, Isa::scalar, 1).shared(c, 0).counters;
   for (const int threads : {2, 8})

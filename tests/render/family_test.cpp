@@ -36,7 +36,6 @@ constexpr Variant kVariants[] = {
 class Family : public testing::TestWithParam<Variant> {};
 
 TEST_P(Family, EqualsSerialAndTheOracle) {
-  const ThreadsBeyondCores eight(8);
   const Variant setup = GetParam();
   RenderOptions base;
   base.width = setup.width;

@@ -10,7 +10,6 @@
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/random.hpp"
@@ -56,7 +55,6 @@ Scene masked_scene(std::uint64_t seed) {
 class Materials : public testing::TestWithParam<float> {};
 
 TEST_P(Materials, EqualOverTheFamily) {
-  const ThreadsBeyondCores eight(8);
   RenderOptions base;
   base.width = 131;
   base.height = 99;

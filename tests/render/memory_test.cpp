@@ -109,7 +109,6 @@ RenderOptions options(const TablePoint& point, int width, int height, int thread
 class MemoryLimit : public testing::TestWithParam<TablePoint> {};
 
 TEST_P(MemoryLimit, IsKeptAndChangesNoPixel) {
-  const ThreadsBeyondCores eight(8);
   for (const Load& load : loads()) {
     const Scene scene = single(load.mesh);
     const SceneBinding binding(scene);

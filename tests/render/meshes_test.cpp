@@ -10,7 +10,6 @@
 #include <rastrum/render/render.hpp>
 
 #include "tests/support/directories.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/pieces.hpp"
@@ -26,7 +25,6 @@ TEST_P(Meshes, EqualOverTheFamilyAndTheOracle) {
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
   const Scene scene = io::read_scene(file);
   const SceneBinding binding(scene);
-  const ThreadsBeyondCores eight(8);
   RenderOptions base;
   base.width = 203;
   base.height = 149;

@@ -18,7 +18,6 @@
 #include <rastrum/terrain/matrix.hpp>
 #include <rastrum/terrain/renderer.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/materials.hpp"
 
 namespace rastrum::test {
@@ -328,7 +327,6 @@ Scene cloud() {
 }
 
 TEST(OnTerrain, IsTheSameOnEveryDeviceByEveryMethodAndInLittleMemory) {
-  const ThreadsBeyondCores eight(8);
   const Terrain ground = hills();
   const TerrainOptions options = terrain_options();
   const Picture before(ground, options, views()[1].camera);

@@ -13,7 +13,6 @@
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/scenes.hpp"
@@ -75,7 +74,6 @@ Frame draw_in_passes(Renderer& renderer, const Scene& scene, const Camera& camer
 }
 
 TEST_P(Passes, EqualOneDraw) {
-  const ThreadsBeyondCores eight(8);
   for (const char* spec : {"soup?count=3000", "boxes"}) {
     const Scene scene = single(indexed(shapes::from_spec(spec)));
     const SceneBinding binding(scene);
@@ -110,7 +108,6 @@ class Sieve final : public raster::FragmentTest {
 };
 
 TEST_P(Passes, AllTestFragments) {
-  const ThreadsBeyondCores eight(8);
   const Mesh mesh = indexed(shapes::soup(2000, 0.01F, 0.5F));
   class Corners final : public raster::VertexSource {
    public:

@@ -15,7 +15,6 @@
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/scenes.hpp"
@@ -129,7 +128,6 @@ RenderOptions options(int threads) {
 class Stop : public testing::TestWithParam<TablePoint> {};
 
 TEST_P(Stop, EndsSoonAndLeavesNothing) {
-  const ThreadsBeyondCores four(4);
   RenderOptions o = options(4);
   o.rasterizer = GetParam().rasterizer;
   o.visibility = GetParam().visibility;
@@ -141,7 +139,6 @@ INSTANTIATE_TEST_SUITE_P(Points, Stop, testing::ValuesIn(table_points()),
                          [](const auto& p) { return test_name(p.param); });
 
 TEST(StopLayers, EndSoonAndLeaveNothing) {
-  const ThreadsBeyondCores four(4);
   for (const int threads : {1, 4})
     for (const Transparency method : {Transparency::exact, Transparency::filter}) {
       SCOPED_TRACE(std::to_string(threads) + " threads, method " +

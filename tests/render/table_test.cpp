@@ -47,7 +47,6 @@ class Table : public testing::TestWithParam<TablePoint> {
 };
 
 TEST_P(Table, EqualsSerialOnGeneratedScenes) {
-  const ThreadsBeyondCores eight(8);
   const int scenes = count_from_environment("RASTRUM_TABLE_SCENES", 120);
   constexpr int kSizes[][2] = {{64, 64}, {37, 53}, {128, 96}, {1, 1}, {100, 20}};
   int failures = 0;
@@ -76,7 +75,6 @@ TEST_P(Table, EqualsSerialOnGeneratedScenes) {
 }
 
 TEST_P(Table, EqualsSerialOnMeshes) {
-  const ThreadsBeyondCores eight(8);
   for (const char* spec : {"torus_knot", "soup?count=4000", "boxes"}) {
     const Scene scene = single(shapes::from_spec(spec));
     const SceneBinding binding(scene);
@@ -100,7 +98,6 @@ TEST_P(Table, EqualsSerialOnMeshes) {
 
 // Two runs of anything give the same bytes, colours included.
 TEST_P(Table, IsTheSameAtEveryRun) {
-  const ThreadsBeyondCores eight(8);
   const GeneratedScene g = generate(12345, 128, 96);
   const SceneBinding binding(g.scene);
   Renderer renderer(point(128, 96, 2));

@@ -227,7 +227,6 @@ TEST(Topologies, MixesEqualTheOracle) {
 class TopologyTable : public testing::TestWithParam<TablePoint> {};
 
 TEST_P(TopologyTable, MixesEqualSerial) {
-  const ThreadsBeyondCores eight(8);
   constexpr int kWidth = 130, kHeight = 91;
   Renderer reference(serial(kWidth, kHeight));
   std::vector<Renderer> renderers;
@@ -271,7 +270,6 @@ INSTANTIATE_TEST_SUITE_P(Points, TopologyTable, testing::ValuesIn(table_points()
 // Translucent points, lines and triangles among opaque ones; with several samples points and lines
 // are at all samples of their pixels.
 TEST(Topologies, LayersOfMixesEqualSerial) {
-  const ThreadsBeyondCores eight(8);
   constexpr int kWidth = 61, kHeight = 47;
   const auto mixes =
       static_cast<std::uint64_t>(count_from_environment("RASTRUM_TABLE_SCENES", 120) / 4);

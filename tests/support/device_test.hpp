@@ -7,8 +7,6 @@
 
 #include <rastrum/render/render.hpp>
 
-#include "tests/support/environment.hpp"
-
 namespace rastrum::test {
 
 class DeviceTest : public testing::TestWithParam<Device> {
@@ -21,7 +19,6 @@ class DeviceTest : public testing::TestWithParam<Device> {
     o.threads = 4;
     return o;
   }
-  ThreadsBeyondCores threads_{4};
 };
 
 inline std::string device_name(const testing::TestParamInfo<Device>& p) {

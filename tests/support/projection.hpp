@@ -1,4 +1,4 @@
-// The vertex rules of DESIGN section 2 written a second time, for the tests alone: float32, one
+// The vertex rules of docs/conventions.md written a second time, for the tests alone: float32, one
 // order, no contraction. Of the library it uses only the types and `world_to_clip`.
 #pragma once
 

@@ -12,7 +12,7 @@ CudaStatus cuda_status() {
   CudaStatus status;
   status.usable = true;
   status.name = "CPU in the place of a GPU";
-  status.free_bytes = status.total_bytes = free_bytes;
+  status.free_bytes = free_bytes;
   return status;
 }
 }  // namespace parallel

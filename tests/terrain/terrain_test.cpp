@@ -520,6 +520,55 @@ TEST(OddInput, FlatGroundFillsTheRowsBelowTheHorizon) {
   }
 }
 
+/// Near slopes are no stripes: each row below the horizon has ground of its own, within a pixel of
+/// where its ray meets the plane. Steps of a cell leave dozens of rows the ground of one.
+TEST(Steps, ArePixelsHighWithTheBilinearFilter) {
+  const Terrain flat(HeightMap{Image<float>(4, 4), {}});
+  for (const double fov : {0.4, kPi / 2, 2.2})
+    for (const double altitude : {2.0, 20.0, 300.0}) {
+      TerrainOptions options = size(64, 240);
+      options.filter = Filter::bilinear;
+      options.step = 0;
+      options.fov_rad = fov;
+      options.distance = 1e5;
+      const Picture picture(flat, {.altitude = altitude, .horizon_px = 40}, options);
+      const double scale = terrain::scale_px(options);
+      int distinct = 0, seen = 0;
+      for (int y = 60; y < 240; ++y) {
+        const double z = altitude * scale / (y + 0.5 - 40);
+        if (z < 2) break;  // the first sample lies at 1
+        EXPECT_NEAR(altitude * scale / picture.depth(7, y) + 40, y + 0.5, 1.01)
+            << fov << " " << altitude << " row " << y;
+        ++seen;
+        distinct += picture.depth(7, y) != picture.depth(7, y - 1);
+      }
+      EXPECT_EQ(distinct, seen) << fov << " " << altitude;
+    }
+}
+
+TEST(Steps, OfOtherFiltersAreCellsWhereTheyAreLeftOpen) {
+  const Terrain flat(HeightMap{Image<float>(4, 4), {}});
+  for (const Filter filter : {Filter::none, Filter::mip}) {
+    TerrainOptions options = size(64, 40);
+    options.filter = filter;
+    const auto own = set_up(options, {}, flat).slices;
+    options.step = 0;
+    const auto open = set_up(options, {}, flat).slices;
+    ASSERT_EQ(open.size(), own.size());
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      EXPECT_EQ(open[k].z, own[k].z);
+      EXPECT_EQ(open[k].level, own[k].level);
+    }
+  }
+  TerrainOptions narrow = size(32768, 40);
+  narrow.filter = Filter::bilinear;
+  narrow.step = 0;
+  narrow.fov_rad = 1e-4;
+  narrow.distance = 8e6;
+  EXPECT_LT(slice_count(narrow), 270e3) << "the narrowest view has an end";
+  EXPECT_NEAR(slice_count(narrow), std::log(8e6) * 0x1p14, 50);
+}
+
 TEST(OddInput, HolesLetThroughWhatLiesBehind) {
   HeightMap map{Image<float>(64, 64), {}};
   for (int y = 0; y < 64; ++y)

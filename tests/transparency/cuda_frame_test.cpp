@@ -9,7 +9,6 @@
 #include <rastrum/scene/shapes/shapes.hpp>
 
 #include "tests/support/cuda_test.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -146,7 +146,6 @@ struct Way {
   const char* name;
   DeviceLayerTuning tuning;
   int band_rows = 0;
-  bool by_warps = false;
 };
 /// Each tier alone, all of them at once, budgets that take many turns, and bands.
 const Way kWays[] = {
@@ -157,8 +156,6 @@ const Way kWays[] = {
     {"4 KiB", {3, 9, 4096}},
     {"no bytes", {256, 2048, 1}},
     {"bands", {3, 9, 4096}, 16},
-    {"sorted by warps", {}, 0, true},
-    {"high density sorted by warps", {0, 2048, 0}, 0, true},
 };
 const int kSizes[][2] = {{1, 1}, {17, 5}, {37, 53}, {64, 64}, {100, 20}};
 
@@ -181,8 +178,7 @@ TEST_F(CudaLayers, EqualTheHostInEveryTierAndBudget) {
       const LayersFrame start = frame_of(scene, program, width, height);
       for (const Way& way : kWays) {
         LayersFrame f = start;
-        const DeviceLayerCounts counts =
-            blend_on_device(f, {}, way.tuning, way.band_rows, way.by_warps);
+        const DeviceLayerCounts counts = blend_on_device(f, {}, way.tuning, way.band_rows);
         ASSERT_TRUE(equals_host(f, host)) << way.name;
         if (host.stats.rasterizer != "reference" && host.stats.visibility == "layers") {
           ++counted;
@@ -227,7 +223,7 @@ TEST_F(CudaLayers, UnsortedAndThresholdsEqualTheHost) {
       const LayersFrame start = frame_of(scene, program, width, height);
       for (const Way& way : kWays) {
         LayersFrame f = start;
-        static_cast<void>(blend_on_device(f, method, way.tuning, way.band_rows, way.by_warps));
+        static_cast<void>(blend_on_device(f, method, way.tuning, way.band_rows));
         ASSERT_TRUE(equals_host(f, host)) << way.name << ", threshold " << method.alpha_threshold;
       }
     }
@@ -310,14 +306,12 @@ TEST_F(CudaLayers, WhatADeviceDoesNotHaveIsRefused) {
 
 TEST_F(CudaLayers, TeamsSortAndSumUp) {
   Random r(1);
-  for (std::size_t k = 0; k <= 2 * 64; ++k) {
-    const std::size_t n = k / 2;
-    const bool by_warps = k % 2 != 0;
-    SCOPED_TRACE(std::to_string(n).append(by_warps ? ", by warps" : ""));
+  for (std::size_t n = 0; n <= 64; ++n) {
+    SCOPED_TRACE(n);
     std::vector<std::uint32_t> values(n);
     for (std::uint32_t& v : values)
       v = r.chance(0.1) ? 0xFFFFFFFFU : static_cast<std::uint32_t>(r.integer(0, 40));
-    const TeamResult got = team_words(values, by_warps);
+    const TeamResult got = team_words(values);
     std::vector<std::uint32_t> sorted = values, sums(n + 1, 0);
     std::ranges::sort(sorted);
     EXPECT_EQ(got.sorted, sorted);

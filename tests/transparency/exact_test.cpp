@@ -89,10 +89,7 @@ int scene_count() {
   return all < 10000 ? 2 + kLayerKinds / sizes : std::max(all / 10 / sizes, kLayerKinds);
 }
 
-class Exact : public testing::TestWithParam<Size> {
- protected:
-  ThreadsBeyondCores eight_{8};
-};
+class Exact : public testing::TestWithParam<Size> {};
 
 /// Each size has scenes of its own.
 std::uint64_t seed_of(const Size& size, int i) {
@@ -262,7 +259,6 @@ INSTANTIATE_TEST_SUITE_P(Sizes, Exact, testing::ValuesIn(kSizes), [](const auto&
 
 // Bins that hold thousands of triangles are drawn in parts, also where those cover few samples.
 TEST(ExactBins, DenseOnesEqualTheOracle) {
-  const ThreadsBeyondCores eight(8);
   const Size size{100, 70, {0.5F, 0.5F, 0.5F, 1}};
   LayerScene scene;
   scene.mesh = shapes::soup(20000, 0.01F, 0.3F);

@@ -185,7 +185,6 @@ LayerImage oracle_of(const SceneView& scene, const Camera& camera, const RenderO
 /// 8-bit colours within 1/255 on every instruction set, the same bits over threads and tiles.
 /// `with_floats`: the float32 target too, on the scalar path, whose shading is the oracle's.
 void expect_exact(const SceneView& scene, const Camera& camera, RenderOptions o, bool with_floats) {
-  const ThreadsBeyondCores eight(8);
   const LayerImage oracle = oracle_of(scene, camera, o);
   EXPECT_GE(oracle.most_layers(), 1U);
   for (const Isa isa : available_isas()) {
@@ -224,7 +223,6 @@ Scene facade_scene(const LayerScene& layers) {
 
 // Alpha = opacity, and for blended materials · vertex alpha; colours are the shader's · alpha.
 TEST(Facade, GeneratedScenesEqualTheOracle) {
-  const ThreadsBeyondCores eight(8);
   constexpr int kWidth = 61, kHeight = 47;
   const int scenes =
       std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 100, 2 * kLayerKinds);

@@ -51,7 +51,6 @@ std::string title(int i, const LayerScene& scene) {
 }
 
 TEST(Unsorted, EqualsTheOracleThatBlendsAsSubmitted) {
-  const ThreadsBeyondCores eight(8);
   RenderOptions o = options(Transparency::unsorted);
   std::vector<Renderer> renderers;
   for (const Isa isa : available_isas())
@@ -137,7 +136,6 @@ TEST(Filter, IsRightWhereItMarksNothing) {
 // The marks are the same whoever draws. The picture has more than one bin, else one thread draws
 // it.
 TEST(Filter, MarksDoNotDependOnThreads) {
-  const ThreadsBeyondCores eight(8);
   constexpr int kWide = 200, kHigh = 150;
   for (const char* const rasterizer : {"grouped", "tiled"}) {
     RenderOptions o = options(Transparency::filter, 1);

@@ -59,7 +59,6 @@ LayerScene in_colors(const Scene& scene, float alpha) {
 }
 
 void expect_exact(LayerScene scene, std::uint32_t least_depth) {
-  const ThreadsBeyondCores eight(8);
   const Scene whole = single(scene.mesh);
   const SceneBinding binding(whole);
   const Camera cameras[] = {fit_camera(binding.view(), 1.0472F, false),

@@ -49,7 +49,6 @@ std::optional<LayerPicture> take_within(Renderer& renderer, LayerProgram& progra
 }
 
 TEST(Limits, TenThousandLayers) {
-  const ThreadsBeyondCores eight(8);
   constexpr int kSize = 64;
   const int layers = std::clamp(count_from_environment("RASTRUM_FAMILY_SCENES", 10000), 100, 10000);
   const LayerScene scene = layer_stack(11, layers, 4.0 / layers, kSize, kSize);
@@ -93,7 +92,6 @@ LayerScene many_triangles(int count) {
 
 // Less memory than the frame would take, and generated scenes in little.
 TEST(Limits, LittleMemoryChangesNoPixel) {
-  const ThreadsBeyondCores eight(8);
   constexpr int kSize = 160;
   constexpr std::uint64_t kLimit = 5 * kMebi;
   Renderer free(options(kSize, 0, 2, "auto"));

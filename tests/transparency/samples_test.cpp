@@ -59,7 +59,6 @@ class Samples : public testing::TestWithParam<int> {
   }
 
   void expect_exact(Surfaces surfaces) {
-    const ThreadsBeyondCores eight(8);
     const int samples = GetParam();
     const int scenes =
         std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 250, kLayerKinds);

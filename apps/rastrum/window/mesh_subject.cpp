@@ -240,15 +240,15 @@ Worker::Job MeshSubject::open(const std::filesystem::path& file) {
 }
 
 void MeshSubject::set_options(const std::string& options) {
-  CLI::App app;
+  Parser app;
   SceneArguments changed;
   changed.render = settings_.render;
   add_picture_options(app, changed);
   add_transparency_options(app, changed);
   add_machine_options(app, changed);
   try {
-    app.parse(options);
-  } catch (const CLI::ParseError& e) {
+    if (!app.parse(options)) return;  // --help
+  } catch (const UsageError& e) {
     throw Error(Errc::invalid_argument, options + ": " + e.what());
   }
   Settings s = settings_;

@@ -1,5 +1,5 @@
-// reduce_by_key, segmented_scan and segmented_reduce on a device; see reduce_by_key.hpp and
-// segmented.hpp for what they compute.
+// reduce_by_key and segmented_scan on a device; see reduce_by_key.hpp and segmented.hpp for what
+// they compute.
 //
 // Where any order (or grouping, for the scan) gives the same bits by Thrust, a segment being known
 // by its number, which is found by binary search: work O(n · log segments), span O(log n). Else the
@@ -83,25 +83,6 @@ void segmented_scan(Cuda& exec, const First& first, const In& in, Out&& out, Op 
         cuda_detail::values_as<T>(view), to.data(), std::equal_to<>{}, op);
   } else {
     segmented_detail::scan_in_blocks<T>(exec, begins, view, to, op);
-  }
-}
-
-template <Readable First, Readable In, class T, class Op = std::plus<>>
-[[nodiscard]] DeviceBuffer<T> segmented_reduce(Cuda& exec, const First& first, const In& in,
-                                               T neutral, Op op = {}) {
-  auto begins = device_view(first);
-  auto view = device_view(in);
-  if constexpr (kAnyOrder<T, Op>) {
-    auto out = make_buffer<T>(exec, std::size(first));
-    tabulate(exec, out, segmented_detail::Always<T>{neutral});
-    if (std::size(in) == 0) return out;
-    const Computed segment(std::size(in), cuda_detail::SegmentOf<decltype(begins)>{begins});
-    const auto sums = reduce_by_key(
-        exec, segment, Computed(std::size(in), cuda_detail::ReadAs<T, decltype(view)>{view}), op);
-    scatter(exec, sums.values, sums.keys, out);
-    return out;
-  } else {
-    return segmented_detail::reduce_in_blocks(exec, begins, view, neutral, op);
   }
 }
 

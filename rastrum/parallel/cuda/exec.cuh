@@ -89,10 +89,7 @@ void for_each_index(Cuda& exec, std::size_t n, F f) {
 /// Calls f(i, T& scratch, team) for i in [0, n) by all members of a team together: a block of
 /// kThreads threads, with `scratch` in shared memory, uninitialized and theirs alone. A member has
 /// team.rank() < team.size() and meets the others at team.sync(), which all must reach. A body is
-/// right for any size of team: shares of work are strides of it. A body with a member kWantsWarps =
-/// true gets whole warps, Team::kWarp members with ranks in a row, and team.shuffle_xor(value,
-/// lanes), the value of the member with rank ^ lanes, lanes < kWarp, to which all members of the
-/// team come.
+/// right for any size of team: shares of work are strides of it.
 template <class T, int kThreads = 128, class F>
 void for_each_team(Cuda& exec, std::size_t n, F&& f) {
   static_assert(std::is_trivially_default_constructible_v<T>);

@@ -1,5 +1,5 @@
-// expand, owners, expand_masked and their walks on a device; see expand_each.hpp and
-// expand_masked_each.hpp for what they compute, whose code this is: a thread takes a chunk.
+// expand, expand_masked and their walks on a device; see expand_each.hpp and
+// masked_expansion.hpp for what they compute, whose code this is: a thread takes a chunk.
 //
 // So where the caller does not say how large a chunk is, it is one result, which its thread finds
 // by binary search (of neighbours the same way, in the cache), and neighbours write side by side. A
@@ -59,16 +59,6 @@ struct WriteEach {
     chunk.each([&](const auto& element, std::size_t j) { out[k++] = get(element, j); });
   }
 };
-template <class Counts>
-struct CountOf {
-  Counts counts;
-  RASTRUM_HD std::size_t operator()(std::uint32_t i) const {
-    return static_cast<std::size_t>(counts[i]);
-  }
-};
-struct FirstOfBoth {
-  RASTRUM_HD std::uint32_t operator()(std::uint32_t i, std::size_t) const { return i; }
-};
 
 }  // namespace cuda_detail
 
@@ -97,20 +87,6 @@ template <Readable In, class F>
 void expand_each(Cuda& exec, const DeviceExpansion& expansion, const In& in, F&& f) {
   expand_chunks(exec, expansion, in, cuda_detail::CallWithEach<std::decay_t<F>>{f});
 }
-template <Readable In, class Size, class F>
-void expand_each(Cuda& exec, const In& in, Size&& size, F&& f) {
-  expand_each(exec, make_expansion(exec, in, size), in, f);
-}
-template <int kBits, Readable In, class F>
-void expand_masked_each(Cuda& exec, const DeviceMaskedExpansion<kBits>& expansion, const In& in,
-                        F&& f) {
-  expand_chunks(exec, expansion, in, cuda_detail::CallWithEach<std::decay_t<F>>{f});
-}
-template <int kBits = 64, Readable In, class Size, class Holds, class F>
-void expand_masked_each(Cuda& exec, const In& in, Size&& size, Holds&& holds, F&& f) {
-  expand_masked_each(exec, make_masked_expansion<kBits>(exec, in, size, holds), in, f);
-}
-
 template <Readable In, class Size, class Get>
 [[nodiscard]] DeviceBuffer<expanded_t<In, Get>> expand(Cuda& exec, const In& in, Size&& size,
                                                        Get&& get) {
@@ -129,13 +105,6 @@ template <int kBits = 64, Readable In, class Size, class Holds, class Get>
   auto out = make_buffer<T>(exec, expansion.size());
   expand_chunks(exec, expansion, in, cuda_detail::WriteEach<std::decay_t<Get>, T>{get, out.data()});
   return out;
-}
-
-template <Readable Counts>
-[[nodiscard]] DeviceBuffer<std::uint32_t> owners(Cuda& exec, const Counts& counts) {
-  return expand(exec, counting<std::uint32_t>(std::size(counts)),
-                cuda_detail::CountOf<decltype(device_view(counts))>{device_view(counts)},
-                cuda_detail::FirstOfBoth{});
 }
 
 }  // namespace rastrum::parallel

@@ -1,4 +1,4 @@
-// filter, partition and unique on a device; see filter.hpp, partition.hpp and unique.hpp.
+// filter and partition on a device; see filter.hpp and partition.hpp.
 //
 // The predicate is asked once per element and kept as a byte; the bytes are counted, so that the
 // result has its size when it is allocated (waits), and Thrust's copy_if or stable_partition_copy
@@ -7,7 +7,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <type_traits>
 
 #include <thrust/copy.h>
@@ -41,14 +40,6 @@ template <class View, class Predicate>
   out.count = reduce(exec, out.flags, std::size_t{0});
   return out;
 }
-
-/// Whether i begins a run.
-template <class In, class Equal>
-struct IsFirst {
-  In in;
-  Equal equal;
-  RASTRUM_HD bool operator()(std::size_t i) const { return i == 0 || !equal(in[i - 1], in[i]); }
-};
 
 }  // namespace cuda_detail
 
@@ -84,16 +75,6 @@ template <Readable In, class Predicate>
                                 values + static_cast<std::ptrdiff_t>(std::size(in)),
                                 flagged.flags.data(), out.elements.data(),
                                 out.elements.data() + flagged.count, cuda_detail::IsSet{});
-  return out;
-}
-
-template <Readable In, class Equal = std::equal_to<>>
-[[nodiscard]] DeviceBuffer<element_t<In>> unique(Cuda& exec, const In& in, Equal equal = {}) {
-  auto view = device_view(in);
-  const auto heads = filter(exec, counting(std::size(in)),
-                            cuda_detail::IsFirst<decltype(view), Equal>{view, equal});
-  auto out = make_buffer<element_t<In>>(exec, heads.size());
-  gather(exec, in, heads, out);
   return out;
 }
 

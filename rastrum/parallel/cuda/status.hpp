@@ -11,7 +11,7 @@ struct CudaStatus {
   /// Where it is not: what is missing and what to do about it, as the end of a sentence.
   std::string why_not;
   std::string name;  ///< of the current device
-  std::uint64_t free_bytes = 0, total_bytes = 0;
+  std::uint64_t free_bytes = 0;
 };
 
 /// Asks the driver, and makes its context, which takes some tenths of a second the first time.

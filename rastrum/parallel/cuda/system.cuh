@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <string>
 #include <type_traits>
 
@@ -36,12 +35,6 @@
 
 namespace rastrum::parallel::cuda_system {
 inline namespace RASTRUM_DEVICE_SYSTEM {
-
-/// Whether a body of for_each_team says that its members shuffle.
-template <class F>
-inline constexpr bool kWantsWarps = requires {
-  requires F::kWantsWarps;
-};
 
 #if THRUST_DEVICE_SYSTEM == THRUST_DEVICE_SYSTEM_CUDA
 
@@ -106,9 +99,8 @@ template <class K, class V, class Allocate>
   return key_rooms.selector;
 }
 
-/// How many members a team of for_each_team has, for arrays of what each keeps to itself;
-/// `kWarps`: of a body that asks for whole warps.
-template <int kThreads, bool kWarps = false>
+/// How many members a team of for_each_team has, for arrays of what each keeps to itself.
+template <int kThreads>
 inline constexpr std::size_t kTeamMembers = kThreads;
 
 /// A block of threads.
@@ -117,11 +109,6 @@ class Team {
   [[nodiscard]] __device__ std::size_t rank() const { return threadIdx.x; }
   [[nodiscard]] __device__ std::size_t size() const { return blockDim.x; }
   __device__ void sync() const { __syncthreads(); }
-  static constexpr std::size_t kWarp = 32;
-  template <class T>
-  [[nodiscard]] __device__ T shuffle_xor(T value, std::size_t lanes) const {
-    return static_cast<T>(__shfl_xor_sync(0xFFFFFFFFU, value, static_cast<int>(lanes)));
-  }
 };
 
 #if defined(__CUDACC__)
@@ -130,7 +117,6 @@ __global__ void team_kernel(std::size_t n, F f) {
   __shared__ alignas(T) unsigned char room[sizeof(T)];
   T& scratch = *reinterpret_cast<T*>(room);
   const Team team;
-  static_assert(!kWantsWarps<F> || std::size_t{kThreads} % Team::kWarp == 0);
   for (std::size_t i = blockIdx.x; i < n; i += gridDim.x) {
     f(i, scratch, team);
     team.sync();
@@ -198,11 +184,9 @@ template <class K, class V, class Allocate>
   return 1;
 }
 
-/// Few and odd: shares that are not a whole number show. Or two small warps.
-template <int kThreads, bool kWarps = false>
-inline constexpr std::size_t kTeamMembers = kWarps         ? 8
-                                            : kThreads < 3 ? kThreads
-                                                           : 3;
+/// Few and odd: shares that are not a whole number show.
+template <int kThreads>
+inline constexpr std::size_t kTeamMembers = kThreads < 3 ? kThreads : 3;
 
 /// A member of a team of coroutines.
 template <class Host>
@@ -212,12 +196,6 @@ class Team {
   [[nodiscard]] std::size_t rank() const { return rank_; }
   [[nodiscard]] std::size_t size() const { return size_; }
   void sync() const { host_->sync(rank_); }
-  static constexpr std::size_t kWarp = 4;
-  template <class T>
-  [[nodiscard]] T shuffle_xor(T value, std::size_t lanes) const {
-    static_assert(std::is_integral_v<T>);
-    return static_cast<T>(host_->value_of(rank_, rank_ ^ lanes, std::uint64_t{value}));
-  }
 
  private:
   std::size_t rank_, size_;
@@ -226,7 +204,7 @@ class Team {
 
 template <class T, int kThreads, class F>
 void launch_teams(Stream, std::size_t n, F f) {
-  constexpr std::size_t kMembers = kTeamMembers<kThreads, kWantsWarps<F>>;
+  constexpr std::size_t kMembers = kTeamMembers<kThreads>;
   if (n == 0) return;
   T scratch;
   const auto body = [&](std::size_t rank, auto& host) {

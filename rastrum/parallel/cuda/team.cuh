@@ -2,7 +2,6 @@
 // atomics of words that several of them change. For bodies of for_each_team; every member calls
 // them.
 //
-// team_sort_by_warps is a variant of team_sort; which is faster is to be measured on a GPU.
 // Sources: Batcher, "Sorting networks and their applications", 1968 (bitonic); Blelloch, "Prefix
 // sums and their applications", 1990 (two sweeps over a tree). Both are in place and right for a
 // team of any size: an element's value never waits in a register for a sync.
@@ -62,32 +61,6 @@ RASTRUM_HD void bitonic_step(K* keys, V* values, std::size_t room, std::size_t r
   }
   team.sync();
 }
-/// The steps of runs [first_run, last_run] within a warp's pairs, a pair a member, in registers.
-/// Warps that have no pairs left shuffle along.
-template <class K, class V, class Team>
-RASTRUM_HD void bitonic_in_warps(K* keys, V* values, std::size_t room, std::size_t first_run,
-                                 std::size_t last_run, const Team& team) {
-  for (std::size_t base = 0; base < room; base += team.size()) {
-    const std::size_t i = base + team.rank();
-    K key = i < room ? keys[i] : K{};
-    V value = i < room ? values[i] : V{};
-    for (std::size_t run = first_run; run <= last_run; run *= 2)
-      for (std::size_t step = (run < Team::kWarp ? run : Team::kWarp) / 2; step > 0; step /= 2) {
-        const K other = team.shuffle_xor(key, step);
-        const V others = team.shuffle_xor(value, step);
-        const bool lower = (i & step) == 0, rising = (i & run) == 0;
-        if (lower == rising ? other < key : key < other) {
-          key = other;
-          value = others;
-        }
-      }
-    if (i < room) {
-      keys[i] = key;
-      values[i] = value;
-    }
-  }
-  team.sync();
-}
 
 }  // namespace team_detail
 
@@ -101,21 +74,6 @@ RASTRUM_HD void team_sort(K* keys, V* values, std::size_t n, const Team& team) {
   for (std::size_t run = 2; run <= room; run *= 2)
     for (std::size_t step = run / 2; step > 0; step /= 2)
       team_detail::bitonic_step(keys, values, room, run, step, team);
-}
-
-/// The same, where exchanges within a warp go through registers: of 2,048 pairs, 45 of the 66 steps
-/// (paper 4, stage 3, phase 2, sorts by shuffles). Overwrites team_room(n) pairs, Team::kWarp at
-/// least. For bodies that want warps; integers.
-template <class K, class V, class Team>
-RASTRUM_HD void team_sort_by_warps(K* keys, V* values, std::size_t n, const Team& team) {
-  const std::size_t room = team_room(n < Team::kWarp ? Team::kWarp : n);
-  team_detail::fill_room(keys, values, n, room, team);
-  team_detail::bitonic_in_warps(keys, values, room, 2, Team::kWarp, team);
-  for (std::size_t run = 2 * Team::kWarp; run <= room; run *= 2) {
-    for (std::size_t step = run / 2; step >= Team::kWarp; step /= 2)
-      team_detail::bitonic_step(keys, values, room, run, step, team);
-    team_detail::bitonic_in_warps(keys, values, room, run, run, team);
-  }
 }
 
 /// values[i] becomes the sum of the first i values, for i ≤ n: the last is the sum of all.

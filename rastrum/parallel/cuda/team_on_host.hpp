@@ -9,7 +9,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <vector>
@@ -25,14 +24,6 @@ class TeamOnHost {
   static void run(const Body& body) { TeamOnHost(body).run_all(); }
 
   void sync(std::size_t rank) { swapcontext(&members_[rank].context, &caller_); }
-  /// What member `other` gives for `value`. All members call it.
-  [[nodiscard]] std::uint64_t value_of(std::size_t rank, std::size_t other, std::uint64_t value) {
-    given_[rank] = value;
-    sync(rank);
-    const std::uint64_t out = given_[other];
-    sync(rank);
-    return out;
-  }
 
  private:
   static constexpr std::size_t kStackBytes = std::size_t{1} << 18;
@@ -76,7 +67,6 @@ class TeamOnHost {
   static inline thread_local TeamOnHost* current_ = nullptr;
   const Body* body_;
   std::array<Member, kMembers> members_;
-  std::array<std::uint64_t, kMembers> given_{};
   ucontext_t caller_;
   std::size_t starting_ = 0;
 };

@@ -1,6 +1,6 @@
-// All the data-parallel words on a CUDA device. Beside those of words.hpp that are loops of threads
-// with a state of their own: for_each_with_scratch is for_each_team (exec.cuh) here, WorkQueue is
-// PassQueue.
+// All the data-parallel words on a CUDA device, but for those of words.hpp that are loops of
+// threads with a state of their own: for_each_with_scratch is for_each_team (exec.cuh) here, and
+// there is no WorkQueue.
 #pragma once
 
 #include <rastrum/parallel/cuda/buffer.cuh>
@@ -9,7 +9,6 @@
 #include <rastrum/parallel/cuda/exec.cuh>
 #include <rastrum/parallel/cuda/expand.cuh>
 #include <rastrum/parallel/cuda/order.cuh>
-#include <rastrum/parallel/cuda/pass_queue.cuh>
 #include <rastrum/parallel/cuda/reduce.cuh>
 #include <rastrum/parallel/cuda/reduce_by_index.cuh>
 #include <rastrum/parallel/cuda/select.cuh>

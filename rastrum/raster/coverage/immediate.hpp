@@ -8,7 +8,7 @@
 
 #include <rastrum/parallel/arena.hpp>
 #include <rastrum/parallel/expand_each.hpp>
-#include <rastrum/parallel/expand_masked_each.hpp>
+#include <rastrum/parallel/masked_expansion.hpp>
 #include <rastrum/parallel/partition.hpp>
 #include <rastrum/raster/frame.hpp>
 

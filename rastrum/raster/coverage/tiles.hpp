@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include <rastrum/core/error.hpp>
-#include <rastrum/parallel/expand_masked_each.hpp>
+#include <rastrum/parallel/masked_expansion.hpp>
 #include <rastrum/raster/coverage/bins.hpp>
 #include <rastrum/raster/coverage/coverage.hpp>
 #include <rastrum/raster/coverage/expand_in_turns.hpp>

@@ -1,15 +1,13 @@
 // From primitives to pieces on a device: assemble_primitive (assemble.hpp), clipper included, by a
-// thread a primitive, in order of submission: counted, scanned, written.
-//
-// make_pieces writes all pieces of a range of primitives, for who wants them as an array (exact
-// transparency); the rasterizer (rasterizer.cuh) draws the small ones where they are made and has
-// the others written.
+// thread a primitive, in order of submission: counted, scanned, written. Who counts also says which
+// pieces are to be written: the rasterizer (rasterizer.cuh) draws the small ones where they are
+// made.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
+#include <string>
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
@@ -152,38 +150,6 @@ inline void check_valid(const Outcomes& sum) {
     throw Error(Errc::invalid_argument,
                 std::to_string(sum.invalid)
                     .append(" primitives have an index or a face material that is out of range"));
-}
-
-template <class Buffer>
-struct MadePieces {
-  Buffer pieces;  ///< in order of submission
-  Outcomes sum;
-};
-
-/// Which pieces make_pieces keeps: all, or those that have a flag of `any`.
-struct KeepsAll {
-  RASTRUM_HD bool operator()(const Piece&) const { return true; }
-};
-struct KeepsFlagged {
-  std::uint32_t any;
-  RASTRUM_HD bool operator()(const Piece& piece) const { return (piece.flags & any) != 0; }
-};
-
-/// The pieces of primitives [first, last) of `scene` that keep(piece) holds for, as Assembly has
-/// them, and what became of the primitives. Throws as check_valid, and
-/// Error{out_of_memory}. Work O(primitives), with a scan. Memory: 48 B a piece, 14 B a primitive
-/// while it works. Waits.
-template <class Exec, class Keep>
-[[nodiscard]] auto make_pieces(Exec& exec, const DeviceScene<Exec>& scene, std::uint64_t first,
-                               std::uint64_t last, Keep keep, const SamplePattern& samples = {}) {
-  const auto n = static_cast<std::size_t>(last - first);
-  const Assembly assembly{scene.geometry(), first, samples};
-  auto outcomes = parallel::make_buffer<Outcome>(exec, n);
-  parallel::tabulate(exec, outcomes, cuda_detail::CountPieces<Keep>{assembly, keep});
-  const Outcomes sum = parallel::reduce(exec, outcomes, Outcomes{}, AddOutcomes{});
-  check_valid(sum);
-  auto pieces = write_pieces(exec, assembly, parallel::counting(n), outcomes, keep);
-  return MadePieces<decltype(pieces)>{std::move(pieces), sum};
 }
 
 }  // namespace rastrum::raster

@@ -23,7 +23,6 @@
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/parallel/stop.hpp>
 #include <rastrum/raster/cuda/cover.cuh>
-#include <rastrum/raster/cuda/owned_tiles.cuh>
 #include <rastrum/raster/cuda/pieces.cuh>
 #include <rastrum/raster/stopwatch.hpp>
 
@@ -32,7 +31,6 @@ namespace rastrum::raster {
 /// Boxes in px² from which on a piece is for a warp, and for blocks of threads.
 struct DeviceSizes {
   std::uint64_t small_px = 128, large_px = 4000;
-  bool owned_tiles = false;  ///< large pieces by owned_tiles.cuh, where no overdraw is counted
 
   /// Asked for by a caller; 0: as above. A small piece's fragments are counted in 16 bits, at all
   /// samples.
@@ -49,10 +47,10 @@ struct DeviceSizes {
 /// How a frame is cut so that its scratch on the device stays below a limit.
 struct DevicePlan {
   bool project_first = true;
-  int band_rows = 0;          ///< whole tiles
-  std::uint64_t batch = 0;    ///< primitives that are set up at once
-  std::uint64_t written = 0;  ///< of those with larger pieces, whose pieces are there at once
-  std::uint64_t pairs = ~std::uint64_t{0};  ///< of large pieces and tiles, where these are sorted
+  int band_rows = 0;             ///< whole tiles
+  std::uint64_t batch = 0;       ///< primitives that are set up at once
+  std::uint64_t written = 0;     ///< of those with larger pieces, whose pieces are there at once
+  std::uint64_t turn_bytes = 0;  ///< of blocks and what makes them (family/turns.cuh), 0: any
 
   /// `limit`: bytes, 0 for any. `pixel_bytes`: what is kept of a pixel beside its word. Throws
   /// Error{out_of_memory} where not even the least band fits.
@@ -84,7 +82,7 @@ struct DevicePlan {
         band_share / least_band * kDeviceTile, static_cast<std::uint64_t>(p.band_rows)));
     p.batch = std::min(p.batch, share / kSetUpBytes);
     p.written = std::min(p.written, share / 2 / kWrittenBytes);
-    p.pairs = share / 2 / kOwnedPairBytes;
+    p.turn_bytes = share / 2;
     return p;
   }
 };
@@ -223,13 +221,9 @@ template <class Exec>
           cuda_detail::DrawMiddle{drawn, surface, sizes.large_px, fragments.data()});
       const auto tiles =
           parallel::make_expansion(exec, drawn, cuda_detail::CountTiles{surface, sizes.large_px});
-      if (sizes.owned_tiles && surface.overdraw == nullptr && tiles.size() <= plan.pairs)
-        draw_owned_tiles(exec, drawn, tiles, surface, fragments.data());
-      else
-        parallel::for_each_team<TeamMasks, 128>(
-            exec, tiles.size(),
-            cuda_detail::DrawTile<decltype(tiles.view())>{drawn, surface, tiles.view(),
-                                                          fragments.data()});
+      parallel::for_each_team<TeamMasks, 128>(exec, tiles.size(),
+                                              cuda_detail::DrawTile<decltype(tiles.view())>{
+                                                  drawn, surface, tiles.view(), fragments.data()});
       counts.larger_pieces += drawn.size();
       counts.tiles += tiles.size();
     }

@@ -19,6 +19,7 @@
 #include <rastrum/raster/shaders/srgb_lanes-inl.hpp>
 #include <rastrum/raster/shaders/texture_lanes-inl.hpp>
 
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster {
 namespace HWY_NAMESPACE {
@@ -507,6 +508,7 @@ constexpr MaterialKernels kTable{shade, alpha_test, alpha, premultiply};
 }  // namespace HWY_NAMESPACE
 }  // namespace rastrum::raster
 HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
 
 #if HWY_ONCE
 namespace rastrum::raster {
@@ -527,8 +529,12 @@ const MaterialKernels& material_kernels(Isa isa) noexcept {
     case Isa::avx512:
       return N_AVX3::kTable;
 #endif
+#if HWY_TARGETS & HWY_NEON
+    case Isa::neon:
+      return N_NEON::kTable;
+#endif
     default:
-      return HWY_STATIC_DISPATCH(kTable);
+      return scalar_material_kernels();
   }
 }
 

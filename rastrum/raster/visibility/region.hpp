@@ -1,6 +1,6 @@
-// The second axis of the family: how the many fragments of a pixel become one (DESIGN section 3).
-// A visibility method resolves what a coverage enumerates: 8 × 8 blocks of pieces with their masks,
-// a few hundred a call. It sees a region of the screen, which one thread owns (a tile: plain
+// The second axis of the family (docs/architecture.md): how the many fragments of a pixel become
+// one. A visibility method resolves what a coverage enumerates: 8 × 8 blocks of pieces with their
+// masks, a few hundred a call. It sees a region of the screen, which one thread owns (a tile: plain
 // maxima, words that stay in cache) or all share (a frame: atomics and locks).
 #pragma once
 

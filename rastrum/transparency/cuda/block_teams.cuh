@@ -12,8 +12,8 @@
 //
 // Where it deviates: a team owns a block, not a bin of 16 of them, because records carry their
 // masks from binning and need no second division; so a team is small, many are in flight, and low
-// and high density are two sizes of one kernel. Sorting goes through shared memory, or within warps
-// by shuffles, as the paper's does.
+// and high density are two sizes of one kernel. Sorting goes through shared memory, not within
+// warps by shuffles, as the paper's does.
 #pragma once
 
 #include <cstddef>
@@ -58,20 +58,14 @@ RASTRUM_HD inline void count_layers(std::uint64_t* counters, std::uint64_t fragm
 /// without spills, a thread takes 76 registers with a trivial shader, so that 13 teams of low
 /// density fit a multiprocessor, and 167 with the lit shaders, 6 teams. Neither was measured on a
 /// GPU.
-template <bool sort_by_warps>
 struct LowDensity {
   static constexpr std::size_t kRecords = 256, kSegment = 128;
   static constexpr int kThreads = 64;
-  static constexpr bool kSortByWarps = sort_by_warps;
 };
-template <bool sort_by_warps>
 struct HighDensity {
   static constexpr std::size_t kRecords = 2048, kSegment = 256;
   static constexpr int kThreads = 256;
-  static constexpr bool kSortByWarps = sort_by_warps;
 };
-/// How records are sorted where nobody asks: not by shuffles, until a GPU has measured both.
-inline constexpr bool kSortByWarps = false;
 
 template <class Density, std::size_t samples>
 struct BlockScratch {
@@ -93,11 +87,9 @@ struct BlendBlock {
   static constexpr int kSamples = Frame::kSamples;
   using Scratch = BlockScratch<Density, std::size_t{kSamples}>;
   static_assert(sizeof(Scratch) <= 48 * 1024);
-  static constexpr bool kWantsWarps = Density::kSortByWarps;
   static constexpr int kThreads =
       Density::kThreads < 64 * kSamples ? 64 * kSamples : Density::kThreads;
-  static constexpr std::size_t kMembers =
-      parallel::cuda_system::kTeamMembers<kThreads, kWantsWarps>;
+  static constexpr std::size_t kMembers = parallel::cuda_system::kTeamMembers<kThreads>;
   /// Places that a member keeps to itself: one, where there are threads enough. Place 64 · s + p is
   /// sample s of pixel p.
   static constexpr std::size_t kShare = (Scratch::kPlaces + kMembers - 1) / kMembers;
@@ -179,8 +171,6 @@ struct BlendBlock {
   RASTRUM_HD static void sort(Scratch& s, std::size_t n, const Team& team) {
     if (n <= Pixel::kAnyOrder)
       team.sync();
-    else if constexpr (Density::kSortByWarps)
-      parallel::team_sort_by_warps(s.keys, s.order, n, team);
     else
       parallel::team_sort(s.keys, s.order, n, team);
   }

@@ -159,11 +159,8 @@ struct HasRecords {
 };
 
 /// The stages of one frame with one way of blending.
-template <bool sort_by_warps, class Pixel, class Frame>
+template <class Pixel, class Frame>
 class LayerListing {
-  using Low = LowDensity<sort_by_warps>;
-  using High = HighDensity<sort_by_warps>;
-
  public:
   /// Planes of words and colours are `plane` elements apart, one for each of `samples`.
   LayerListing(parallel::Cuda& exec, const Frame& frame, const raster::SamplePattern& samples,
@@ -179,9 +176,9 @@ class LayerListing {
     // Half for records; a fragment has a key and an owner, twice while they are sorted.
     most_records_ = std::max<std::uint64_t>(bytes / 2 / sizeof(raster::Block), 1);
     most_fragments_ = std::max<std::uint64_t>(bytes / 2 / 24, 1);
-    tuning_.low_records = std::min(tuning_.low_records, Low::kRecords);
+    tuning_.low_records = std::min(tuning_.low_records, LowDensity::kRecords);
     tuning_.high_records =
-        std::max(std::min(tuning_.high_records, High::kRecords), tuning_.low_records);
+        std::max(std::min(tuning_.high_records, HighDensity::kRecords), tuning_.low_records);
   }
 
   [[nodiscard]] DeviceLayerCounts operator()() {
@@ -245,8 +242,8 @@ class LayerListing {
         blocks_with(turn, records.first, high, std::numeric_limits<std::uint64_t>::max());
     for (int first = 0; first < samples_.count; first += Frame::kSamples) {
       const Frame frame = frame_.from_sample(samples_, first, plane_);
-      blend_teams<Low>(frame, records, parallel::view_of(low_blocks), counters);
-      blend_teams<High>(frame, records, parallel::view_of(high_blocks), counters);
+      blend_teams<LowDensity>(frame, records, parallel::view_of(low_blocks), counters);
+      blend_teams<HighDensity>(frame, records, parallel::view_of(high_blocks), counters);
       for (int s = 0; s < Frame::kSamples; ++s)
         blend_deep<Pixel>(exec_, frame, records, parallel::view_of(deep_blocks), s, most_fragments_,
                           counters);
@@ -280,7 +277,7 @@ class LayerListing {
 };
 
 /// Both functions below: frames of one sample and of several.
-template <bool sort_by_warps, class Frame>
+template <class Frame>
 DeviceLayerCounts blend(parallel::Cuda& exec, const DeviceLayers& layers, const Frame& frame,
                         const raster::SamplePattern& samples, std::size_t plane,
                         Transparency method, const DeviceLayerTuning& tuning) {
@@ -294,10 +291,8 @@ DeviceLayerCounts blend(parallel::Cuda& exec, const DeviceLayers& layers, const 
   assert(layers.words.size() >= frame.columns() * frame.rows() * 64 &&
          layers.colors.size() == layers.words.size());
   if (method == Transparency::unsorted)
-    return LayerListing<sort_by_warps, AsSubmittedPixel, Frame>(exec, frame, samples, plane,
-                                                                tuning)();
-  return LayerListing<sort_by_warps, FrontToBackPixel, Frame>(exec, frame, samples, plane,
-                                                              tuning)();
+    return LayerListing<AsSubmittedPixel, Frame>(exec, frame, samples, plane, tuning)();
+  return LayerListing<FrontToBackPixel, Frame>(exec, frame, samples, plane, tuning)();
 }
 
 }  // namespace cuda
@@ -307,12 +302,11 @@ DeviceLayerCounts blend(parallel::Cuda& exec, const DeviceLayers& layers, const 
 /// `shade`: (word, x, y) → premultiplied Vec4, the colour of a fragment at a pixel's centre; the
 /// word has its depth and id (piece.hpp). `test`: (word, x, y) → bool, for pieces with kTested.
 /// Both are copied into kernels, are called any number of times, and must be pure.
-/// `sort_by_warps`: blocks in shared memory are sorted by shuffles (team_sort_by_warps).
 /// Waits for sizes and, at the end, for its counts. Memory: 8 bytes a piece, 20 a block, and what
 /// `tuning.bytes` says. Work O(blocks of boxes + fragments · log of a block's records) where the
 /// filter orders nearly all.
 /// Throws Error{invalid_argument} for other methods or more than 2³² pieces, Error{out_of_memory}.
-template <bool sort_by_warps = cuda::kSortByWarps, class Shade, class Test = cuda::KeepAll>
+template <class Shade, class Test = cuda::KeepAll>
 DeviceLayerCounts blend_layers(parallel::Cuda& exec, const DeviceLayers& layers,
                                const TransparencyOptions& options, const Shade& shade,
                                const Test& test = {}, const DeviceLayerTuning& tuning = {}) {
@@ -324,7 +318,7 @@ DeviceLayerCounts blend_layers(parallel::Cuda& exec, const DeviceLayers& layers,
                     1 - options.alpha_threshold,
                     shade,
                     test};
-  return cuda::blend<sort_by_warps>(exec, layers, frame, {}, 0, options.method, tuning);
+  return cuda::blend(exec, layers, frame, {}, 0, options.method, tuning);
 }
 
 /// The same at each of several samples, which have their own planes of words and colours. `shade`
@@ -332,7 +326,7 @@ DeviceLayerCounts blend_layers(parallel::Cuda& exec, const DeviceLayers& layers,
 /// primitive has in a pixel, by the word of any of its samples, so they may read its id alone.
 /// Records are found once for all samples, ordered and shaded once for four. Work: that of one,
 /// times the samples.
-template <bool sort_by_warps = cuda::kSortByWarps, class Shade, class Test = cuda::KeepAll>
+template <class Shade, class Test = cuda::KeepAll>
 DeviceLayerCounts blend_sampled_layers(parallel::Cuda& exec, const DeviceSampledLayers& layers,
                                        const TransparencyOptions& options, const Shade& shade,
                                        const Test& test = {},
@@ -342,8 +336,7 @@ DeviceLayerCounts blend_sampled_layers(parallel::Cuda& exec, const DeviceSampled
                      1 - options.alpha_threshold, shade, test},
                     {},
                     0};
-  return cuda::blend<sort_by_warps>(exec, layers, frame, layers.samples, layers.plane,
-                                    options.method, tuning);
+  return cuda::blend(exec, layers, frame, layers.samples, layers.plane, options.method, tuning);
 }
 
 }  // namespace rastrum::transparency

@@ -49,9 +49,7 @@ DeviceCounts draw_surface(Exec& exec, const DeviceScene<Exec>& scene, const Devi
                           const DevicePlan& plan, const Point<Exec>& point, const Tuning& tuning,
                           std::uint32_t skip, const Shading& shading, Counters& counters) {
   using parallel::view_of;
-  // Of the three shares of a plan by-size sorts pairs in a half of one, which is free here.
-  const std::uint64_t bytes = plan.pairs == DevicePlan{}.pairs ? 0 : plan.pairs * kOwnedPairBytes;
-  FamilyFrame<Exec> frame(exec, surface, tuning, shading, bytes);
+  FamilyFrame<Exec> frame(exec, surface, tuning, shading, plan.turn_bytes);
   const auto visibility = point.visibility->make(frame);
   frame.visibility = visibility.get();
   const IsDrawnIn keep{surface.view, skip};

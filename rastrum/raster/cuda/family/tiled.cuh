@@ -3,7 +3,7 @@
 //
 // Deviation: nobody owns a tile here, for a turn's blocks lie in memory whatever visibility comes
 // next. What the sort is for on a device is that threads beside each other draw the same tile, and
-// find its words in the cache; who owns tiles in shared memory is ../owned_tiles.cuh.
+// find its words in the cache.
 #pragma once
 
 #include <bit>

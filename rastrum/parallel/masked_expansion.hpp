@@ -1,8 +1,8 @@
-// expand_masked_each: an expand_masked that is walked instead of written; for the chunks see
-// expand_each. The predicate is asked once per element and remembered as a bit. So the results are
-// counted before the first walk, chunks hold equal numbers of them however unevenly they lie, and
-// the results of chunk c are those from c · per_chunk on: a sink that writes one thing per result
-// needs no counting walk.
+// A masked expansion: an expand_masked that is walked, a chunk at a time, instead of written; for
+// the chunks see expand_each. The predicate is asked once per element and remembered as a bit. So
+// the results are counted before the first walk, chunks hold equal numbers of them however unevenly
+// they lie, and the results of chunk c are those from c · per_chunk on: a sink that writes one
+// thing per result needs no counting walk.
 //
 // Segments of any length: an expansion cuts them into masks of kBits, another one, of the masks'
 // ranks, is found again by select (paper 1 has one mask per segment, which bounds it).
@@ -176,20 +176,6 @@ void expand_chunks(Exec& exec, const MaskedExpansion<kBits>& expansion, const In
   assert(std::size(in) == expansion.segments());
   for_each_index(exec, expansion.chunks(),
                  [&](std::size_t c) { f(MaskedChunk<kBits, In>(expansion, in, c)); });
-}
-
-/// Calls f(chunk, in[i], j) for each result, in order within a chunk.
-template <class Exec, int kBits, Readable In, class F>
-void expand_masked_each(Exec& exec, const MaskedExpansion<kBits>& expansion, const In& in, F&& f) {
-  expand_chunks(exec, expansion, in, [&](const MaskedChunk<kBits, In>& chunk) {
-    chunk.each([&, c = chunk.index()](const auto& element, std::size_t j) { f(c, element, j); });
-  });
-}
-
-/// The same for an expansion that is walked once.
-template <int kBits = 64, class Exec, Readable In, class Size, class Holds, class F>
-void expand_masked_each(Exec& exec, const In& in, Size&& size, Holds&& holds, F&& f) {
-  expand_masked_each(exec, MaskedExpansion<kBits>(exec, in, size, holds), in, f);
 }
 
 }  // namespace rastrum::parallel

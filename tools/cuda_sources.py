@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+"""Says whether what nvcc compiles has changed since it was last compiled.
+
+usage: cuda_sources.py changed|record ROOT
+
+All .cu files of the project and what they include, comments left out, have one digest.
+`record` writes it into tests/cuda/compiled.txt, after nvcc has compiled them (`./dev cuda` does
+both); `changed` prints a line and exits with 1 where the digest is another one now. So CI compiles
+for devices, which takes minutes, just where a change asks for it.
+"""
+import hashlib
+import pathlib
+import re
+import sys
+
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.MULTILINE)
+COMMENT = re.compile(r"//[^\n]*")
+FOLDERS = ("rastrum", "bench", "tests")
+RECORD = pathlib.Path("tests/cuda/compiled.txt")
+
+
+def sources(root):
+    """The .cu files and every file of the project that they include, directly or not."""
+    waiting = [file for folder in FOLDERS for file in (root / folder).rglob("*.cu")]
+    found = set()
+    while waiting:
+        file = waiting.pop().resolve()
+        if file in found:
+            continue
+        found.add(file)
+        for name in INCLUDE.findall(file.read_text(encoding="utf-8")):
+            waiting += [p for p in (file.parent / name, root / name) if p.is_file()]
+    return sorted(found | {(root / "cmake/RastrumCuda.cmake").resolve()})
+
+
+def digest(root):
+    """Hexadecimal SHA-256 of the sources' names and texts."""
+    total = hashlib.sha256()
+    for file in sources(root):
+        text = COMMENT.sub("", file.read_text(encoding="utf-8"))
+        lines = [line.strip() for line in text.splitlines() if line.strip()]
+        total.update(f"{file.relative_to(root.resolve())}\n".encode())
+        total.update("\n".join(lines).encode())
+    return total.hexdigest()
+
+
+def main(arguments):
+    if len(arguments) != 2 or arguments[0] not in ("changed", "record"):
+        print(__doc__.split("\n\n")[1], file=sys.stderr)
+        return 2
+    root = pathlib.Path(arguments[1])
+    now = digest(root)
+    if arguments[0] == "record":
+        (root / RECORD).write_text(now + "\n", encoding="utf-8")
+        return 0
+    known = (root / RECORD).read_text(encoding="utf-8").strip() if (root / RECORD).is_file() else ""
+    if known == now:
+        print("what nvcc compiles is what it last compiled")
+        return 0
+    print("what nvcc compiles has changed since it was last compiled (`./dev cuda` compiles it)")
+    return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
