@@ -25,7 +25,6 @@ int main(int argc, char** argv) {
     rastrum::RenderOptions options;
     options.width = 1280;
     options.height = 720;
-    if (!scene.materials.empty()) options.shader = rastrum::Shader::material;
 
     // A Renderer keeps its threads and memory, for the frames after the first.
     rastrum::Renderer renderer(options);

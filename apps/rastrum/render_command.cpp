@@ -267,7 +267,7 @@ int run(RenderArguments& a) {
   Timeline timeline;
   Progress progress(a.quiet);
   // Refuses what this machine or build cannot do before a large file is read.
-  auto renderer = std::make_unique<Renderer>(a.render);
+  Renderer renderer(a.render);
 
   const double load_begin = timeline.now_ms();
   const Scene scene = load_inputs(a.inputs, a.normals, timeline, progress);
@@ -276,20 +276,16 @@ int run(RenderArguments& a) {
     progress.clear();
     for (const std::string& w : scene.warnings) warn(w);
   }
-  if (!a.shader_given && !scene.materials.empty()) {
-    a.render.shader = Shader::material;
-    renderer = std::make_unique<Renderer>(a.render);
-  }
   if (!a.quiet && a.render.transparency.method == Transparency::none) report_blended(scene);
   const SceneBinding binding(scene);
   const Camera camera = choose_camera(a.view, scene, binding.view());
 
   if (!a.path.empty())
-    return run_path(a, *renderer, binding.view(), camera, load_ms, timeline, progress);
+    return run_path(a, renderer, binding.view(), camera, load_ms, timeline, progress);
   const bool timed = a.frames_given || a.stats || a.trace;
   Pictures pictures;
   const std::vector<FrameStats> frames =
-      render_frames(*renderer, binding.view(), camera, wanted_of(a), timed, a.frames, pictures,
+      render_frames(renderer, binding.view(), camera, wanted_of(a), timed, a.frames, pictures,
                     timeline, progress);
   const FrameStats& median = frames[median_frame(frames)];
   progress.clear();
@@ -297,7 +293,7 @@ int run(RenderArguments& a) {
 
   write_images(a, pictures, timeline, progress);
   progress.clear();
-  if (a.stats) write_json(a.stats.file, stats_json(frames, renderer->options(), load_ms));
+  if (a.stats) write_json(a.stats.file, stats_json(frames, renderer.options(), load_ms));
   if (a.trace) write_trace(a.trace.file, timeline);
   if (!a.quiet && a.color)
     std::fprintf(stderr, "%s: %dx%d, %lu triangles, %.1f ms%s\n", a.color.file.c_str(),

@@ -47,11 +47,9 @@ void add_shading_options(CLI::App& app, SceneArguments& a, const char* group) {
   std::string shaders;
   for (const std::string_view shader : shader_names())
     shaders.append(shaders.empty() ? "" : ", ").append(shader);
-  add(app, "--shader", "NAME", shaders + " (material where a file has materials, else phong)",
-      [&a](const std::string& s) {
-        a.render.shader = parse_shader(s);
-        a.shader_given = true;
-      })
+  add(app, "--shader", "NAME",
+      shaders + "; auto: material where a file has materials, else phong (auto)",
+      [&a](const std::string& s) { a.render.shader = parse_shader(s); })
       ->group(group);
   add(app, "--normals", "NAME",
       "file: the file's, else vertex; vertex: area-weighted means; face (file)",

@@ -15,7 +15,6 @@ namespace rastrum::cli {
 struct SceneArguments {
   std::vector<std::string> inputs;
   RenderOptions render;
-  bool shader_given = false;
   Normals normals = Normals::file;
   ViewOptions view;
   bool fit = false;

@@ -162,7 +162,6 @@ TerrainObjects::TerrainObjects(const TerrainObjectArguments& a,
   render.device = options.device == Device::serial ? Device::serial : Device::threads;
   render.threads = options.threads;
   render.isa = options.isa;
-  if (!a.scene.shader_given && !scene_.materials.empty()) render.shader = Shader::material;
   painter_.emplace(std::move(render));
 }
 

@@ -113,8 +113,6 @@ MeshSubject::~MeshSubject() = default;
 void MeshSubject::show(SceneArguments arguments, std::shared_ptr<const LoadedScene> scene) {
   const ViewOptions& v = arguments.view;
   const Camera camera = choose_camera(v, scene->scene, scene->binding.view());
-  if (!arguments.shader_given)
-    settings_.render.shader = scene->scene.materials.empty() ? Shader::phong : Shader::material;
   arguments_ = std::move(arguments);
   scene_ = std::move(scene);
   base_version_ = version() + 1;
@@ -154,8 +152,9 @@ void MeshSubject::change(char key, bool back) {
     case 'm': {
       std::vector<std::string> names;
       for (const std::string_view n : shader_names()) names.emplace_back(n);
-      r.shader = shader_from_name(next(names, std::string(name(r.shader)), back));
-      arguments_.shader_given = true;
+      // From the one that is seen.
+      const Shader now = shader_for(r.shader, scene_->binding.view());
+      r.shader = shader_from_name(next(names, std::string(name(now)), back));
       break;
     }
     case 'n':
@@ -230,11 +229,7 @@ Worker::Job MeshSubject::open(const std::filesystem::path& file) {
   arguments.view.orthographic_height.reset();
   return [this, arguments]() -> Worker::Done {
     auto scene = load_scene(arguments);
-    return [this, arguments, scene] {
-      SceneArguments now = arguments;
-      now.shader_given = arguments_.shader_given;
-      show(std::move(now), scene);
-    };
+    return [this, arguments, scene] { show(arguments, scene); };
   };
 }
 
@@ -252,7 +247,6 @@ void MeshSubject::set_options(const std::string& options) {
   }
   Settings s = settings_;
   s.render = changed.render;
-  arguments_.shader_given = arguments_.shader_given || changed.shader_given;
   set(std::move(s));
 }
 
