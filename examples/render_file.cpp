@@ -27,7 +27,6 @@ int main(int argc, char** argv) {
     const rastrum::Camera along_z;  // looks along −z, 60° wide
     const rastrum::Camera camera =
         rastrum::fit_picture(binding.view(), along_z, options.width, options.height);
-    if (!scene.materials.empty()) options.shader = rastrum::Shader::material;
 
     // A Renderer keeps its threads and memory, for the frames after the first.
     rastrum::Renderer renderer(options);

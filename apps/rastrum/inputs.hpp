@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <rastrum/core/image.hpp>
+#include <rastrum/render/render.hpp>
 #include <rastrum/scene/scene.hpp>
 
 namespace rastrum::cli {
@@ -37,6 +38,13 @@ struct Inputs {
   std::vector<InputPart> parts;  ///< in command order; their ids follow each other
   bool has_materials = false;    ///< of files: a colour given by hand is none
 };
+
+/// What `auto` is: `material` for the materials of a file, else `phong`. The library's own choice
+/// would take a colour given by hand for a material.
+[[nodiscard]] inline Shader shader_of(Shader asked, bool has_materials) {
+  if (asked != Shader::automatic) return asked;
+  return has_materials ? Shader::material : Shader::phong;
+}
 
 /// What an INPUT says (input_spec.hpp), placed and painted. Throws UsageError for a builtin that
 /// does not exist, Error for a file that cannot be read.

@@ -343,12 +343,13 @@ int run(RenderArguments& a) {
     progress.clear();
     for (const std::string& w : scene.warnings) warn(w);
   }
-  if (!a.shader_given && inputs.has_materials) {
-    a.render.shader = Shader::material;
-    renderer = std::make_unique<Renderer>(a.render);
-  }
   if (!a.quiet && a.render.transparency.method == Transparency::none) report_blended(scene);
   const SceneBinding binding(scene);
+  if (const Shader taken = shader_of(a.render.shader, inputs.has_materials);
+      taken != shader_for(a.render.shader, binding.view())) {
+    a.render.shader = taken;
+    renderer = std::make_unique<Renderer>(a.render);
+  }
   a.view.turns = a.turntable != 0;
   const Camera camera =
       choose_camera(a.view, scene, binding.view(), {a.render.width, a.render.height});

@@ -48,11 +48,9 @@ void add_shading_options(Parser& app, SceneArguments& a, const char* group) {
   std::string shaders;
   for (const std::string_view shader : shader_names())
     shaders.append(shaders.empty() ? "" : ", ").append(shader);
-  add(app, "--shader", "NAME", shaders + " (material where a file has materials, else phong)",
-      [&a](const std::string& s) {
-        a.render.shader = parse_shader(s);
-        a.shader_given = true;
-      })
+  add(app, "--shader", "NAME",
+      shaders + "; auto: material where a file has materials, else phong (auto)",
+      [&a](const std::string& s) { a.render.shader = parse_shader(s); })
       ->group(group);
   add(app, "--normals", "NAME",
       "file: the file's, else crease; crease: smooth but for sharp edges; vertex: area-weighted "

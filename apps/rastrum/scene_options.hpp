@@ -15,7 +15,6 @@ namespace rastrum::cli {
 struct SceneArguments {
   std::vector<std::string> inputs;
   RenderOptions render;
-  bool shader_given = false;
   NormalOptions normals;
   bool crease_given = false;
   ViewOptions view;

@@ -52,6 +52,7 @@ nlohmann::ordered_json stats_json(std::span<const FrameStats> frames, const Rend
           {"rasterizer", median.rasterizer},
           {"visibility", median.visibility},
           {"why", median.why},
+          {"shader", median.shader},
           {"size", {options.width, options.height}},
           {"triangles",
            {{"input", t.input},

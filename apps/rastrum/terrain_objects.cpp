@@ -173,7 +173,7 @@ TerrainObjects::TerrainObjects(const TerrainObjectArguments& a,
   render.device = options.device == Device::serial ? Device::serial : Device::threads;
   render.threads = options.threads;
   render.isa = options.isa;
-  if (!a.scene.shader_given && has_materials) render.shader = Shader::material;
+  render.shader = shader_of(render.shader, has_materials);
   painter_.emplace(std::move(render));
 }
 

@@ -1,4 +1,6 @@
 // Stopping work that nobody waits for any more, such as the picture of a camera that has moved on.
+// Renderer, TerrainRenderer and SceneOnTerrain take a token for each frame; a scope serves what
+// calls them deep down.
 // A token is in force for the thread that made a StopScope, and for the loops that it begins there,
 // nested ones too: the loop is the one place where work is handed out, so that no word and no stage
 // needs a parameter for it, and nothing is paid where there is no scope.
@@ -25,8 +27,9 @@ class Stopped final : public std::exception {
 /// out. Whatever is between two loops runs to its end. Scopes nest; the inner one counts.
 class StopScope {
  public:
-  /// `token` must outlive the scope.
-  explicit StopScope(const std::stop_token& token) noexcept : StopScope(&token) {}
+  /// `token` must outlive the scope; one that nobody can stop leaves the scope around it in force.
+  explicit StopScope(const std::stop_token& token) noexcept
+      : StopScope(token.stop_possible() ? &token : current()) {}
   /// The same scope on another thread, or none.
   explicit StopScope(const std::stop_token* token) noexcept;
   ~StopScope();

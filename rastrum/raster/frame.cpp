@@ -83,9 +83,8 @@ void Emitter::fragments(Rect bin, std::span<const BinFragment> fragments) {
 }
 
 void* Frame::shader_scratch(Worker& worker) const {
-  if (request.shader != nullptr && std::exchange(worker.shader_of, number) != number)
-    std::memset(worker.shader, 0, request.shader->scratch_bytes());
-  return worker.shader;
+  if (std::exchange(worker.shader_of, number) != number) worker.shader.begin(request.shader);
+  return worker.shader.data();
 }
 
 void Frame::shade(const SurfaceView& from, Rect rect, Worker& worker) {

@@ -33,7 +33,7 @@ struct Worker {
   explicit Worker(MemoryAccount& memory) : words(memory), colors(memory) {}
 
   alignas(64) Block blocks[kBlockCapacity];
-  alignas(64) std::byte shader[kMaxShaderScratch];
+  ShaderScratch shader;
   std::uint64_t shader_of = 0;  ///< number of the frame for which it was zeroed
   Buffer<std::uint64_t> words;  ///< of a tile
   Buffer<BlockColors> colors;   ///< of a tile, where visibility shades

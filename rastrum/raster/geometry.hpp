@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
+#include <vector>
 
 #include <rastrum/core/config.hpp>
 #include <rastrum/core/image.hpp>
@@ -46,13 +48,16 @@ enum class Winding : std::uint8_t { counter_clockwise, clockwise, either };
 /// Wider lines and larger points are refused.
 inline constexpr float kMaxLineWidth = 4096, kMaxPointSize = 4096;
 
+class BlockShader;
+class FragmentTest;
+
 /// Points, lines or triangles over one vertex source. Ids count primitives through the draws of a
 /// frame in order.
 struct Draw {
-  const VertexSource* source = nullptr;
+  const VertexSource* source = nullptr;  ///< must be set
   std::size_t vertex_count = 0;
-  std::span<const std::uint32_t> indices{};  ///< empty: vertices in order
-  std::uint64_t primitive_count = 0;
+  std::span<const std::uint32_t> indices{};///< empty: vertices in order
+  std::uint64_t primitive_count = 0;       ///< at most those that the indices or vertices make up
   Topology topology = Topology::triangles;
   std::uint32_t flags = 0;  ///< of its pieces
   /// Flags by material, so that a mesh of several needs no draw for each: triangle t has those of
@@ -66,10 +71,16 @@ struct Draw {
   /// for all topologies and in units of reversed depth (more is nearer): depth_bias +
   /// depth_bias_slope · max(|zx|, |zy|), the change of depth per px.
   float depth_bias = 0, depth_bias_slope = 0;
+  /// What shades it and, where `flags` has kTested, tests its fragments; null: what Renderer::draw
+  /// is given. Program::draw sets both. A built-in shader (shaders/lit.hpp, shaders/material.hpp)
+  /// takes its draws for the instances of its scene, in order, whatever stands between them.
+  const BlockShader* shader = nullptr;
+  const FragmentTest* test = nullptr;
 
   // Filled by the pipeline.
   std::uint64_t first_id = 0;
   std::size_t first_vertex = 0;  ///< of this draw in FrameGeometry::projected
+  std::size_t number = 0;        ///< among the draws of its shader
 
   [[nodiscard]] RASTRUM_HD std::uint32_t vertex(std::uint64_t primitive, int corner) const {
     const std::size_t i = static_cast<std::size_t>(primitive) * static_cast<std::size_t>(topology) +
@@ -159,9 +170,6 @@ struct VisibleBlock {
 /// How many outputs a shader may have beside its colour.
 inline constexpr std::size_t kMaxExtraTargets = 7;
 
-/// Bytes that a shader may ask for, so that they can be set aside for each thread.
-inline constexpr std::size_t kMaxShaderScratch = 65536;
-
 /// Shades the visible surface of a block. Thread-safe.
 class BlockShader {
  public:
@@ -174,11 +182,28 @@ class BlockShader {
   virtual void prefetch(const FrameGeometry& /*frame*/, std::uint64_t /*id*/) const noexcept {}
   /// The alpha of all fragments, where it is one and known before they are shaded.
   [[nodiscard]] virtual std::optional<float> alpha() const noexcept { return std::nullopt; }
-  /// How many bytes of VisibleBlock::scratch the shader uses, at most kMaxShaderScratch; 64-byte
-  /// aligned, kept from block to block of a frame.
+  /// How many bytes of VisibleBlock::scratch the shader uses, for each thread; 64-byte aligned,
+  /// kept from block to block of a frame.
   [[nodiscard]] virtual std::size_t scratch_bytes() const noexcept { return 0; }
   /// How many VisibleBlock::extra it sets (Targets::extra), at most kMaxExtraTargets.
   [[nodiscard]] virtual std::size_t extra_count() const noexcept { return 0; }
+};
+
+/// A thread's VisibleBlock::scratch.
+class ShaderScratch {
+ public:
+  /// As many bytes as `shader` (null: none) asks for, zeroed.
+  void begin(const BlockShader* shader) {
+    lines_.assign(
+        shader == nullptr ? 0 : (shader->scratch_bytes() + sizeof(Line) - 1) / sizeof(Line), {});
+  }
+  [[nodiscard]] void* data() { return lines_.data(); }
+
+ private:
+  struct alignas(64) Line {
+    std::byte bytes[64];
+  };
+  std::vector<Line> lines_;
 };
 
 /// One frame, as the façade hands it to a rasterizer.
@@ -186,6 +211,7 @@ struct FrameRequest {
   int width = 0, height = 0;
   Isa isa = Isa::scalar;
   std::span<Draw> draws;
+  std::string_view draw_noun = "draw";  ///< what messages call one: a scene's are instances
   const FragmentTest* test = nullptr;   ///< null: no piece is tested
   const BlockShader* shader = nullptr;  ///< may be null where no colour is asked for
   Vec4 background{};                    ///< display values, straight alpha

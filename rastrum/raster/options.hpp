@@ -59,6 +59,12 @@ struct Tuning {
 }  // namespace raster
 
 /// Images to fill; an empty view is not computed. All must have the frame's size.
+///
+/// With several samples a pixel the colours are the mean over them. `depth`, `ids` and `words` are
+/// those of the largest word of any sample: of the nearest surface that some sample sees, with its
+/// depth there, even where it covers no other. `extra` is what the shader returns for that surface
+/// at the pixel's centre, where a varying is carried on beyond the surface's edge if it does not
+/// cover the centre. `overdraw` counts samples; `errors` has 255 where some sample has one.
 struct Targets {
   ImageView<Rgba8> color8{};            ///< straight alpha
   ImageView<Vec4> color{};              ///< premultiplied float32
@@ -105,7 +111,8 @@ struct FrameStats {
   double frame_ms = 0;
   Isa isa = Isa::scalar;
   std::string rasterizer, visibility;
-  std::string why;  ///< why `auto` took them
+  std::string why;     ///< why `auto` took them
+  std::string shader;  ///< the built-in one, as named on the command line; empty: a caller's own
   Device device = Device::threads;
   std::string device_why;  ///< why Device::automatic took it, or why not Device::cuda
   /// The work that is particular to the rasterizer: rows, bins, tile pairs, …

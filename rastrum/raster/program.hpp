@@ -6,7 +6,10 @@
 //       [&](std::uint32_t i) { return raster::VertexOutput<Varying>{clip(i), {color(i)}}; },
 //       [&](const Varying& v, const raster::Fragment&) { return Vec4{v.color.x, …, 1}; });
 //   raster::Draw draw = program.draw(vertex_count, indices);
-//   renderer.draw({&draw, 1}, program, program.test(), targets);
+//   renderer.draw({&draw, 1}, targets);
+//
+// A frame may have draws of several programs. A caller's BlockShader that is to shade the draws of
+// a program instead (one that wraps it, say) goes into Draw::shader.
 //
 // Shading is deferred: the vertex function runs once a vertex for positions, and again for the
 // corners of each triangle that is seen in a block, so that no varying is stored. All functions are
@@ -50,7 +53,7 @@ struct KeepAll {};
 /// Vertex: VertexOutput<V>(std::uint32_t index). Shade: Vec4(const V&, const Fragment&), the
 /// premultiplied display value, or a std::array or tuple of Vec4, of which those after the first go
 /// to Targets::extra. Discard: bool(const V&, const Fragment&), true for a hole.
-/// A program is the vertex source of its draws and the shader of the frame.
+/// A program is the vertex source, the shader and the fragment test of its draws.
 template <class Vertex, class Shade, class Discard = KeepAll>
 class Program final : public VertexSource, public BlockShader {
  public:
@@ -75,10 +78,12 @@ class Program final : public VertexSource, public BlockShader {
     d.topology = topology;
     d.primitive_count =
         (indices.empty() ? vertex_count : indices.size()) / static_cast<std::size_t>(topology);
+    d.shader = this;
+    d.test = test();
     if constexpr (kDiscards) d.flags = kTested;
     return d;
   }
-  /// For Renderer::draw; null where the program discards nothing.
+  /// Null where the program discards nothing.
   [[nodiscard]] const FragmentTest* test() const {
     if constexpr (kDiscards)
       return &test_;

@@ -181,7 +181,7 @@ FrameStats Rasterizer::render(FrameRequest& request) {
   stats.rasterizer = row_.name;
   stats.visibility = visibility_.name;
   stats.isa = request.isa;
-  const Totals totals = number_draws(request.draws, request.targets.first_id);
+  const Totals totals = number_draws(request.draws, request.targets.first_id, request.draw_noun);
   const Plan cut = plan(request, totals.primitives, totals.vertices);
 
   FrameGeometry geometry{request.width, request.height, Viewport::of(request.width, request.height),

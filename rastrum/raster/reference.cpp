@@ -43,8 +43,9 @@ FrameStats render_reference(FrameRequest& request, MemoryAccount& memory) {
   FrameStats stats;
   stats.rasterizer = "reference";
   stats.visibility = "atomic";
-  const Totals totals = number_draws(request.draws);
-  check_indices(request.draws);
+  const Targets& targets = request.targets;
+  const Totals totals = number_draws(request.draws, targets.first_id, request.draw_noun);
+  check_indices(request.draws, request.draw_noun);
 
   FrameGeometry frame{request.width, request.height, Viewport::of(request.width, request.height),
                       request.draws, nullptr};
@@ -60,14 +61,16 @@ FrameStats render_reference(FrameRequest& request, MemoryAccount& memory) {
       static_cast<std::size_t>(request.width) * static_cast<std::size_t>(request.height);
   Buffer<std::uint64_t> buffer(memory);
   buffer.reserve(pixels);
-  std::fill_n(buffer.data(), pixels, 0);
   const ImageView<std::uint64_t> words{buffer.data(), request.width, request.height, request.width};
-  if (!request.targets.overdraw.empty())
-    for (int y = 0; y < request.height; ++y)
-      std::fill_n(request.targets.overdraw.row(y), request.width, 0U);
-  if (!request.targets.errors.empty())
-    for (int y = 0; y < request.height; ++y)
-      std::fill_n(request.targets.errors.row(y), request.width, std::uint8_t{0});
+  for (int y = 0; y < request.height; ++y) {
+    if (targets.load)
+      std::copy_n(targets.words.row(y), request.width, words.row(y));
+    else
+      std::fill_n(words.row(y), request.width, std::uint64_t{0});
+    if (!targets.overdraw.empty() && !targets.load)
+      std::fill_n(targets.overdraw.row(y), request.width, 0U);
+    if (!targets.errors.empty()) std::fill_n(targets.errors.row(y), request.width, std::uint8_t{0});
+  }
   stats.triangles.input = totals.primitives;
   for (const Draw& draw : request.draws)
     for (std::uint64_t t = 0; t < draw.primitive_count; ++t) {
@@ -82,7 +85,8 @@ FrameStats render_reference(FrameRequest& request, MemoryAccount& memory) {
   stats.triangles.drawn = stats.triangles.input - stats.triangles.dropped - stats.triangles.culled;
   watch.lap(stats, "rasterize");
 
-  alignas(64) std::byte scratch[kMaxShaderScratch] = {};
+  ShaderScratch scratch;
+  scratch.begin(request.shader);
   const Backdrop backdrop = backdrop_of(request);
   for (int y0 = 0; y0 < request.height; y0 += kBlockSize) {
     parallel::throw_if_stopped();
@@ -92,7 +96,7 @@ FrameStats render_reference(FrameRequest& request, MemoryAccount& memory) {
         for (int x = x0; x < std::min(x0 + kBlockSize, request.width); ++x)
           block[(y - y0) * kBlockSize + (x - x0)] = words(x, y);
       stats.pixels_covered += static_cast<std::uint64_t>(
-          resolve_block(request, frame, backdrop, block, x0, y0, scratch));
+          resolve_block(request, frame, backdrop, block, x0, y0, scratch.data()));
     }
   }
   watch.lap(stats, "shade");

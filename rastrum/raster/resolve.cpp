@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <string>
+#include <unordered_map>
 
 #include <rastrum/core/enum.hpp>
 #include <rastrum/core/error.hpp>
@@ -142,28 +143,43 @@ std::uint64_t of_this_pass(const std::uint64_t* words, std::uint64_t covered,
   return mask;
 }
 
-void check_draw(const Draw& draw) {
-  const auto require = [](bool ok, const char* what) {
-    if (!ok) throw Error(Errc::invalid_argument, what);
+[[noreturn]] void refuse(std::string_view noun, std::size_t number, const std::string& problem) {
+  throw Error(
+      Errc::invalid_argument,
+      std::string(noun).append(" ").append(std::to_string(number)).append(": ").append(problem));
+}
+
+void check_draw(const Draw& draw, std::string_view noun, std::size_t number) {
+  const auto require = [&](bool ok, const char* what) {
+    if (!ok) refuse(noun, number, what);
   };
-  require(draw.topology >= Topology::points,
-          "a draw's topology is 0, which is no value of its enum");
-  check_enum(draw.topology, Topology::triangles, "a draw's topology");
-  check_enum(draw.cull, Cull::front, "a draw's cull");
-  check_enum(draw.winding, Winding::either, "a draw's winding");
+  require(draw.source != nullptr, "its source is null; set it to what projects its vertices");
+  require(draw.topology >= Topology::points, "its topology is 0, which is no value of its enum");
+  const std::string name = std::string(noun).append(" ").append(std::to_string(number));
+  check_enum(draw.topology, Topology::triangles, name + ": its topology");
+  check_enum(draw.cull, Cull::front, name + ": its cull");
+  check_enum(draw.winding, Winding::either, name + ": its winding");
+  const bool indexed = !draw.indices.empty();
+  const std::size_t corners = indexed ? draw.indices.size() : draw.vertex_count;
+  const std::uint64_t most = corners / static_cast<std::size_t>(draw.topology);
+  if (draw.primitive_count > most)
+    refuse(noun, number,
+           "primitive_count is " + std::to_string(draw.primitive_count) + ", but its " +
+               std::to_string(corners) + (indexed ? " indices" : " vertices") + " make up " +
+               std::to_string(most));
   // Written so that a NaN fails.
   require(draw.line_width > 0 && draw.line_width <= kMaxLineWidth,
-          "a draw's line width must be > 0 and at most 4096 px");
+          "the line width must be > 0 and at most 4096 px");
   require(draw.point_size > 0 && draw.point_size <= kMaxPointSize,
-          "a draw's point size must be > 0 and at most 4096 px");
+          "the point size must be > 0 and at most 4096 px");
   require(std::isfinite(draw.depth_bias) && std::isfinite(draw.depth_bias_slope),
-          "a draw's depth bias must be finite");
+          "the depth bias must be finite");
   if (draw.material_flags.empty()) return;
   require(draw.face_materials.size() >= draw.primitive_count,
-          "a draw with flags by material has fewer face materials than primitives");
+          "it has flags by material, but fewer face materials than primitives");
   require(std::all_of(draw.face_materials.begin(), draw.face_materials.end(),
                       [&](std::uint32_t m) { return m < draw.material_flags.size(); }),
-          "a draw's face material is out of range");
+          "a face material is out of range");
 }
 
 }  // namespace
@@ -230,12 +246,15 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
   }
 }
 
-Totals number_draws(std::span<Draw> draws, std::uint64_t first_id) {
+Totals number_draws(std::span<Draw> draws, std::uint64_t first_id, std::string_view noun) {
   Totals totals;
-  for (Draw& draw : draws) {
-    check_draw(draw);
+  std::unordered_map<const BlockShader*, std::size_t> of_shader;
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    Draw& draw = draws[i];
+    check_draw(draw, noun, i);
     draw.first_id = first_id + totals.primitives;
     draw.first_vertex = totals.vertices;
+    draw.number = of_shader[draw.shader]++;
     totals.primitives += draw.primitive_count;
     totals.vertices += draw.vertex_count;
   }
@@ -246,14 +265,13 @@ Totals number_draws(std::span<Draw> draws, std::uint64_t first_id) {
   return totals;
 }
 
-void check_indices(std::span<const Draw> draws) {
+void check_indices(std::span<const Draw> draws, std::string_view noun) {
   for (std::size_t i = 0; i < draws.size(); ++i)
     for (const std::uint32_t index : draws[i].indices)
       if (index >= draws[i].vertex_count)
-        throw Error(Errc::invalid_argument,
-                    "instance " + std::to_string(i) + ": index " + std::to_string(index) +
-                        " is out of range, the mesh has " + std::to_string(draws[i].vertex_count) +
-                        " vertices");
+        refuse(noun, i,
+               "index " + std::to_string(index) + " is out of range, there are " +
+                   std::to_string(draws[i].vertex_count) + " vertices");
 }
 
 }  // namespace rastrum::raster

@@ -2,6 +2,8 @@
 // output exist once.
 #pragma once
 
+#include <string_view>
+
 #include <rastrum/raster/geometry.hpp>
 #include <rastrum/raster/surface.hpp>
 
@@ -24,17 +26,19 @@ void load_words(const Targets& targets, Rect rect, const SurfaceView& surface) n
 /// The same for a rectangle in which this pass has no surface.
 void resolve_empty(const FrameRequest& request, Rect rect) noexcept;
 
-/// Numbers the primitives (from `first_id`) and vertices of the draws and returns the totals.
-/// Throws Error{invalid_argument} if there are more primitives than ids, and for a line width,
-/// point size, depth bias or face material out of range. O(draws), and O(primitives) of those with
-/// flags by material.
+/// Numbers the primitives (from `first_id`) and vertices of the draws and, of each shader, the
+/// draws themselves; returns the totals. Throws Error{invalid_argument} that names the draw (by
+/// `noun` and number) if there are more primitives than ids, without a source, and for a number of
+/// primitives, topology, line width, point size, depth bias or face material out of range.
+/// O(draws), and O(primitives) of those with flags by material.
 struct Totals {
   std::uint64_t primitives = 0;
   std::size_t vertices = 0;
 };
-[[nodiscard]] Totals number_draws(std::span<Draw> draws, std::uint64_t first_id = 0);
+[[nodiscard]] Totals number_draws(std::span<Draw> draws, std::uint64_t first_id = 0,
+                                  std::string_view noun = "draw");
 
 /// Throws Error{invalid_argument} naming the first index that is out of range, if there is one.
-void check_indices(std::span<const Draw> draws);
+void check_indices(std::span<const Draw> draws, std::string_view noun);
 
 }  // namespace rastrum::raster

@@ -18,8 +18,8 @@
 namespace rastrum {
 namespace {
 
-constexpr std::array<std::string_view, 8> kShaderNames{"flat",    "depth", "normal",   "id",
-                                                       "lambert", "phong", "material", "wireframe"};
+constexpr std::array<std::string_view, 9> kShaderNames{
+    "auto", "flat", "depth", "normal", "id", "lambert", "phong", "material", "wireframe"};
 
 }  // namespace
 
@@ -29,6 +29,11 @@ std::vector<std::string_view> shader_names() {
 
 std::string_view name(Shader shader) {
   return kShaderNames.at(static_cast<std::size_t>(shader));
+}
+
+Shader shader_for(Shader shader, const SceneView& scene) {
+  if (shader != Shader::automatic) return shader;
+  return scene.materials.empty() ? Shader::phong : Shader::material;
 }
 
 Shader shader_from_name(std::string_view wanted) {

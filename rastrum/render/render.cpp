@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <mutex>
 #include <string>
 #include <utility>
 
 #include <rastrum/core/enum.hpp>
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
+#include <rastrum/parallel/turn.hpp>
 #include <rastrum/raster/cuda/rasterizer.hpp>
 #include <rastrum/raster/interpolate.hpp>
+#include <rastrum/raster/mixed_draws.hpp>
 #include <rastrum/raster/over_picture.hpp>
 #include <rastrum/raster/shaders/alpha.hpp>
 #include <rastrum/raster/shaders/lit.hpp>
@@ -151,15 +154,15 @@ void check_options(const RenderOptions& o) {
 }
 
 /// What of a frame in a device's memory the host would have to read or write.
-void check_in_place(const SceneView& scene, const Targets& targets, const RenderOptions& o) {
+void check_in_place(const SceneView& scene, const Targets& targets, Shader shader,
+                    const RenderOptions& o) {
   const auto require = [](bool ok, const char* what) {
     if (!ok)
       throw Error(Errc::unsupported,
                   std::string("arrays in the device's memory (in_place): ").append(what));
   };
-  require(
-      o.shader != Shader::depth && o.shader != Shader::material && o.shader != Shader::wireframe,
-      "the shaders depth, material and wireframe need them in the host's");
+  require(shader != Shader::depth && shader != Shader::material && shader != Shader::wireframe,
+          "the shaders depth, material and wireframe need them in the host's");
   require(scene.materials.empty(), "materials need them in the host's");
   require(o.opacity == 1 && o.samples == 1, "surfaces must be opaque, with one sample a pixel");
   require(targets.overdraw.empty() && targets.errors.empty() && targets.extra.empty() &&
@@ -181,6 +184,14 @@ void check_over(const Targets& targets, const RenderOptions& o) {
 struct Renderer::Impl {
   explicit Impl(RenderOptions o) : options(std::move(o)) {}
 
+  FrameStats render(const SceneView& scene, const Camera& camera, const Targets& targets);
+  FrameStats draw_depth(std::span<raster::Draw> draws, const raster::FragmentTest* test,
+                        const Targets& targets);
+  FrameStats draw(std::span<raster::Draw> draws, const raster::BlockShader* shader,
+                  const raster::FragmentTest* test, const Targets& targets,
+                  std::string_view noun = "draw", bool linear_light = false);
+
+  std::mutex one_at_a_time;
   RenderOptions options;
   std::string device_why;
   Isa isa = Isa::scalar;
@@ -222,11 +233,32 @@ const RenderOptions& Renderer::options() const {
   return impl_->options;
 }
 
-FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const Targets& targets) {
-  const RenderOptions& o = impl_->options;
+FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const Targets& targets,
+                            std::stop_token stop) {
+  const parallel::Turn turn(impl_->one_at_a_time, stop);
+  return impl_->render(scene, camera, targets);
+}
+
+FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::BlockShader& shader,
+                          const raster::FragmentTest* test, const Targets& targets,
+                          std::stop_token stop) {
+  const parallel::Turn turn(impl_->one_at_a_time, stop);
+  return impl_->draw(draws, &shader, test, targets);
+}
+
+FrameStats Renderer::draw(std::span<raster::Draw> draws, const Targets& targets,
+                          std::stop_token stop) {
+  const parallel::Turn turn(impl_->one_at_a_time, stop);
+  return impl_->draw(draws, nullptr, nullptr, targets);
+}
+
+FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera,
+                                  const Targets& targets) {
+  const RenderOptions& o = options;
+  const Shader taken = shader_for(o.shader, scene);
   const bool in_place = o.in_place && o.device == Device::cuda;
   if (in_place)
-    check_in_place(scene, targets, o);
+    check_in_place(scene, targets, taken, o);
   else
     check_attributes(scene);
   raster::check_materials(scene);
@@ -235,7 +267,7 @@ FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const 
   sources.reserve(scene.instances.size());
   std::vector<raster::Draw> draws;
   draws.reserve(scene.instances.size());
-  const bool blends = o.transparency.method != Transparency::none && o.shader != Shader::depth;
+  const bool blends = o.transparency.method != Transparency::none && taken != Shader::depth;
   const bool all_translucent = blends && o.opacity < 1;
   const std::vector<std::uint32_t> material_flags = raster::material_flags(scene.materials, blends);
   std::uint32_t any_flags = 0;  // of materials and vertex colours
@@ -246,10 +278,10 @@ FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const 
     draw.vertex_count = instance.mesh.positions.size();
     draw.indices = instance.mesh.indices;
     draw.primitive_count = instance.mesh.triangle_count();
-    draw.cull = material_cull(instance, scene.materials, o.shader);
+    draw.cull = material_cull(instance, scene.materials, taken);
     std::uint32_t flags = raster::set_material_flags(draw, instance.mesh, material_flags);
     if (blends && scene.materials.empty() && !in_place &&
-        raster::has_vertex_alpha(instance.mesh, impl_->threads.get())) {
+        raster::has_vertex_alpha(instance.mesh, threads.get())) {
       draw.flags |= raster::kTranslucent;
       flags |= raster::kTranslucent;
     }
@@ -259,16 +291,20 @@ FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const 
   const bool any_mask = (any_flags & raster::kTested) != 0;
   const bool any_blend = (any_flags & raster::kTranslucent) != 0;
   const bool is_translucent = all_translucent || any_blend;
-  const bool shades_materials = o.shader == Shader::material;
+  const bool shades_materials = taken == Shader::material;
   std::optional<raster::MaterialScene> materials;
   std::unique_ptr<raster::FragmentTest> test;
   if (shades_materials || any_mask || any_blend) {
-    impl_->textures.update(scene.textures, raster::texture_uses(scene, shades_materials, any_blend),
-                           impl_->threads.get());
-    materials.emplace(scene, camera, o.width, o.height, impl_->textures);
+    textures.update(scene.textures, raster::texture_uses(scene, shades_materials, any_blend),
+                    threads.get());
+    materials.emplace(scene, camera, o.width, o.height, textures);
   }
-  if (any_mask) test = raster::make_alpha_test(*materials, impl_->isa);
-  if (o.shader == Shader::depth) return draw_depth(draws, test.get(), targets);
+  if (any_mask) test = raster::make_alpha_test(*materials, isa);
+  const auto named = [&](FrameStats stats) {
+    stats.shader = name(taken);
+    return stats;
+  };
+  if (taken == Shader::depth) return named(draw_depth(draws, test.get(), targets));
   const bool linear = is_translucent && shades_materials;
   std::optional<raster::LitScene> lit;
   std::unique_ptr<raster::BlockShader> shader;
@@ -276,18 +312,19 @@ FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const 
     shader = raster::make_material_shader(*materials, linear);
   } else {
     lit.emplace(scene, camera, o.width, o.height);
-    shader = raster::make_lit_shader(lit_model(o.shader), *lit);
+    shader = raster::make_lit_shader(lit_model(taken), *lit);
   }
-  if (!is_translucent) return draw_in(linear, draws, *shader, test.get(), targets);
-  const auto blended =
-      raster::make_alpha_shader(*shader, any_blend ? &*materials : nullptr, o.opacity);
-  return draw_in(linear, draws, *blended, test.get(), targets);
+  std::unique_ptr<raster::BlockShader> blended;
+  if (is_translucent)
+    blended = raster::make_alpha_shader(*shader, any_blend ? &*materials : nullptr, o.opacity);
+  return named(
+      draw(draws, blended ? blended.get() : shader.get(), test.get(), targets, "instance", linear));
 }
 
 /// Grey by depth needs the range of depths in the picture, so it is a pass after the frame.
-FrameStats Renderer::draw_depth(std::span<raster::Draw> draws, const raster::FragmentTest* test,
-                                const Targets& targets) {
-  const RenderOptions& o = impl_->options;
+FrameStats Renderer::Impl::draw_depth(std::span<raster::Draw> draws,
+                                      const raster::FragmentTest* test, const Targets& targets) {
+  const RenderOptions& o = options;
   if (targets.over)
     throw Error(Errc::invalid_argument,
                 "the depth shader stretches the depths of a whole picture and cannot draw over "
@@ -303,7 +340,7 @@ FrameStats Renderer::draw_depth(std::span<raster::Draw> draws, const raster::Fra
   }
   const raster::FragmentShader unused(
       [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
-  FrameStats stats = draw(draws, unused, test, first);
+  FrameStats stats = draw(draws, &unused, test, first, "instance");
   const auto begin = std::chrono::steady_clock::now();
   stretch_depth(first.depth, o.background, targets);
   const double ms =
@@ -313,20 +350,20 @@ FrameStats Renderer::draw_depth(std::span<raster::Draw> draws, const raster::Fra
   return stats;
 }
 
-FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::BlockShader& shader,
-                          const raster::FragmentTest* test, const Targets& targets) {
-  return draw_in(false, draws, shader, test, targets);
-}
-
-FrameStats Renderer::draw_in(bool linear_light, std::span<raster::Draw> draws,
-                             const raster::BlockShader& shader, const raster::FragmentTest* test,
-                             const Targets& targets) {
-  const RenderOptions& o = impl_->options;
+FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::BlockShader* shader,
+                                const raster::FragmentTest* test, const Targets& targets,
+                                std::string_view noun, bool linear_light) {
+  const RenderOptions& o = options;
   check_targets(targets, o);
-  if (targets.extra.size() > shader.extra_count())
-    throw Error(Errc::invalid_argument,
-                std::to_string(targets.extra.size()) + " extra targets, but the shader has " +
-                    std::to_string(shader.extra_count()) + " outputs beside its colour");
+  raster::MixedDraws mixed(draws, shader, test);
+  draws = mixed.draws();
+  shader = mixed.shader();
+  test = mixed.test();
+  if (const std::size_t outputs = shader == nullptr ? 0 : shader->extra_count();
+      targets.extra.size() > outputs)
+    throw Error(Errc::invalid_argument, std::to_string(targets.extra.size()) +
+                                            " extra targets, but the shader has " +
+                                            std::to_string(outputs) + " outputs beside its colour");
   if (targets.load && targets.words.empty())
     throw Error(Errc::invalid_argument,
                 "a pass that loads needs the visibility words of the passes before");
@@ -345,25 +382,26 @@ FrameStats Renderer::draw_in(bool linear_light, std::span<raster::Draw> draws,
   request.height = o.height;
   if (o.cull != Cull::none)
     for (raster::Draw& d : draws) d.cull = o.cull;
-  request.isa = impl_->isa;
+  request.isa = isa;
   request.draws = draws;
+  request.draw_noun = noun;
   request.test = test;
-  request.shader = &shader;
+  request.shader = shader;
   request.background = o.background;
   request.targets = targets;
   request.tuning = o.tuning;
   request.in_place = o.in_place && o.device == Device::cuda;
-  request.texture_bytes = impl_->textures.bytes();
+  request.texture_bytes = textures.bytes();
   request.hierarchical_z = o.hierarchical_z;
   request.transparency = o.transparency;
   request.samples = o.samples;
   request.linear_light = linear_light;
-  impl_->memory.restart_peak();
-  FrameStats stats = impl_->draw_frame(request);
-  stats.peak_bytes = impl_->memory.peak();
+  memory.restart_peak();
+  FrameStats stats = draw_frame(request);
+  stats.peak_bytes = memory.peak();
   // A frame that the device leaves to the CPU says so itself.
   if (o.device != Device::cuda) stats.device = o.device;
-  if (stats.device_why.empty()) stats.device_why = impl_->device_why;
+  if (stats.device_why.empty()) stats.device_why = device_why;
   return stats;
 }
 

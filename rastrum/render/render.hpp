@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,7 +18,11 @@
 
 namespace rastrum {
 
+/// The base colour of `flat`, `lambert`, `phong` and `wireframe` is the mesh's colours, (0.8, 0.7,
+/// 0.6) where it has none; with materials the base colour factor as a display value, times the
+/// mesh's colours where there are some. Textures are `material`'s.
 enum class Shader : std::uint8_t {
+  automatic,  ///< `material` for a scene with materials, else `phong`
   flat,       ///< base colour, unlit
   depth,      ///< grey: nearest white, farthest of the picture black; whatever the opacity
   normal,     ///< (n + 1) / 2 of the world-space unit normal
@@ -32,6 +37,8 @@ enum class Shader : std::uint8_t {
 /// Throws Error{invalid_argument} that lists the names.
 [[nodiscard]] Shader shader_from_name(std::string_view name);
 [[nodiscard]] std::string_view name(Shader shader);
+/// What `shader` is for `scene`: itself, or what `automatic` takes.
+[[nodiscard]] Shader shader_for(Shader shader, const SceneView& scene);
 
 /// A named way to find what triangles cover (`--rasterizer`) or to resolve the fragments of a pixel
 /// (`--visibility`): the two axes of the family's table.
@@ -59,8 +66,8 @@ struct RenderOptions {
   /// For opaque scenes without materials, by a shader of the device; Renderer::render says what
   /// not.
   bool in_place = false;
-  std::optional<Isa> isa{};  ///< none: the best this machine has
-  Shader shader = Shader::phong;
+  std::optional<Isa> isa{};           ///< none: the best this machine has
+  Shader shader = Shader::automatic;  ///< FrameStats::shader says what was taken
   /// none: all faces, but with Shader::material the back of single-sided materials is left out.
   Cull cull = Cull::none;
   Vec4 background{0, 0, 0, 0};  ///< display values, straight alpha
@@ -73,6 +80,15 @@ struct RenderOptions {
 };
 
 /// Renders frames with one set of options; keeps threads and scratch between frames.
+///
+/// Threads: render() and draw() may be called by several at once; each call is a frame of its own,
+/// one after the other (a renderer for each thread draws them at the same time). Not from within a
+/// frame, by a caller's own vertex, shading or test function: that waits for itself. What a frame
+/// reads and fills is the caller's to keep still meanwhile.
+///
+/// Stopping: a frame whose `stop` is asked to stop, by any thread, throws parallel::Stopped
+/// (parallel/stop.hpp) after a bounded amount of work; one that waits for its turn throws when that
+/// comes. Its targets then hold parts of the picture; the renderer is as good as before.
 class Renderer {
  public:
   /// Throws Error{invalid_argument} for a size, name, number or enum's value out of range and a
@@ -89,24 +105,26 @@ class Renderer {
   /// Cost: O(vertices + triangles + covered samples). Throws Error{invalid_argument} naming an
   /// instance whose index is out of range, or a target of another size or whose rows overlap,
   /// Error{out_of_memory} with what was asked for, Error{unsupported} for what
-  /// RenderOptions::in_place has not.
-  FrameStats render(const SceneView& scene, const Camera& camera, const Targets& targets);
+  /// RenderOptions::in_place has not, parallel::Stopped (above).
+  FrameStats render(const SceneView& scene, const Camera& camera, const Targets& targets,
+                    std::stop_token stop = {});
 
   /// The programmable form: draws of any vertex source with any shader (raster/program.hpp makes
-  /// both from a caller's functions) and, where `test` is not null, a fragment test for the draws
-  /// that ask for it. Draws whose flags have raster::kTranslucent are blended by the alpha that the
-  /// shader returns; opacity is the shader's business here.
+  /// both from a caller's functions) and a fragment test for the draws that ask for it: each by its
+  /// own (Draw::shader, Draw::test), where it has none by `shader` and `test` (null: none). So
+  /// programs and built-in shaders meet in one frame, with layers, samples and extra targets too;
+  /// outputs that a draw's shader does not have are 0. Draws whose flags have raster::kTranslucent
+  /// are blended by the alpha that the shader returns; opacity is the shader's business here.
+  /// Throws as render(), Error{invalid_argument} naming the draw.
   FrameStats draw(std::span<raster::Draw> draws, const raster::BlockShader& shader,
-                  const raster::FragmentTest* test, const Targets& targets);
+                  const raster::FragmentTest* test, const Targets& targets,
+                  std::stop_token stop = {});
+  /// The same where each draw has a shader of its own, as those of a Program have.
+  FrameStats draw(std::span<raster::Draw> draws, const Targets& targets, std::stop_token stop = {});
 
   [[nodiscard]] const RenderOptions& options() const;
 
  private:
-  FrameStats draw_depth(std::span<raster::Draw> draws, const raster::FragmentTest* test,
-                        const Targets& targets);
-  FrameStats draw_in(bool linear_light, std::span<raster::Draw> draws,
-                     const raster::BlockShader& shader, const raster::FragmentTest* test,
-                     const Targets& targets);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -5,6 +5,7 @@
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/core/quaternion.hpp>
+#include <rastrum/parallel/turn.hpp>
 #include <rastrum/terrain/matrix.hpp>
 
 namespace rastrum {
@@ -27,7 +28,8 @@ void SceneOnTerrain::for_each_row(const Row& row) {
 
 FrameStats SceneOnTerrain::draw(const TerrainScene& given, const terrain::TerrainOptions& options,
                                 const terrain::TerrainCamera& camera,
-                                const terrain::TerrainTargets& picture) {
+                                const terrain::TerrainTargets& picture, std::stop_token stop) {
+  const parallel::Turn turn(*one_at_a_time_, stop);
   const int width = depth_.width(), height = depth_.height();
   if (options.width != width || options.height != height)
     throw Error(Errc::invalid_argument,

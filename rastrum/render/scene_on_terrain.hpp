@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include <rastrum/parallel/exec.hpp>
@@ -22,7 +24,7 @@ struct TerrainScene {
   std::span<const std::size_t> facing{};
 };
 
-/// Keeps threads and scratch between frames.
+/// Keeps threads and scratch between frames. Threads and stopping: as Renderer.
 class SceneOnTerrain {
  public:
   /// What is nearer than this, in cells along the view, is cut off.
@@ -40,12 +42,14 @@ class SceneOnTerrain {
   /// their matrix (terrain/matrix.hpp). Throws Error{invalid_argument} for the cylindrical
   /// projection, Shader::depth, an index of `facing` out of range; else as Renderer::render.
   FrameStats draw(const TerrainScene& scene, const terrain::TerrainOptions& options,
-                  const terrain::TerrainCamera& camera, const terrain::TerrainTargets& picture);
+                  const terrain::TerrainCamera& camera, const terrain::TerrainTargets& picture,
+                  std::stop_token stop = {});
 
  private:
   template <class Row>
   void for_each_row(const Row& row);
 
+  std::unique_ptr<std::mutex> one_at_a_time_ = std::make_unique<std::mutex>();
   Renderer renderer_;
   std::unique_ptr<parallel::Threads> threads_;  ///< null: serial
   Image<float> depth_;                          ///< reversed

@@ -2,11 +2,13 @@
 
 #include <chrono>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include <rastrum/parallel/cuda/status.hpp>
+#include <rastrum/parallel/turn.hpp>
 #include <rastrum/terrain/blocks.hpp>
 #include <rastrum/terrain/cuda/device.hpp>
 #include <rastrum/terrain/device_work.hpp>
@@ -60,6 +62,7 @@ struct TerrainRenderer::Impl {
   Counts draw_rolled(const Terrain& terrain, const TerrainCamera& camera,
                      const TerrainTargets& targets, TerrainStats& stats, Stopwatch& stopwatch);
 
+  std::mutex one_at_a_time;
   TerrainOptions options;
   Isa isa;
   Device asked;
@@ -207,7 +210,8 @@ const TerrainOptions& TerrainRenderer::options() const {
 }
 
 TerrainStats TerrainRenderer::render(const Terrain& terrain, const TerrainCamera& given,
-                                     const TerrainTargets& targets) {
+                                     const TerrainTargets& targets, std::stop_token stop) {
+  const parallel::Turn turn(impl_->one_at_a_time, stop);
   const TerrainOptions& options = impl_->options;
   check(given);
   if (options.classic && given.roll_rad != 0)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <stop_token>
 
 #include <rastrum/core/mat.hpp>
 #include <rastrum/terrain/options.hpp>
@@ -14,6 +15,9 @@ namespace rastrum::terrain {
 /// with Device::cuda the map that was drawn last in the device's memory. What a device cannot draw,
 /// a caller's function for one, is drawn by the CPU's threads, and TerrainStats::device_why says
 /// so.
+///
+/// Threads and stopping: as Renderer (render/render.hpp). Calls from several threads are drawn one
+/// after the other; a frame whose `stop` is asked to stop throws parallel::Stopped.
 class TerrainRenderer {
  public:
   /// Throws Error{invalid_argument} that names an option out of range, Error{no_device}.
@@ -28,7 +32,7 @@ class TerrainRenderer {
   /// not finite or farther than 1e12 cells away, or targets of another size;
   /// Error{out_of_memory} for a map that is too large for the CUDA device that was asked for.
   TerrainStats render(const Terrain& terrain, const TerrainCamera& camera,
-                      const TerrainTargets& targets);
+                      const TerrainTargets& targets, std::stop_token stop = {});
 
   [[nodiscard]] const TerrainOptions& options() const;
 

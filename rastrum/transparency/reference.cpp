@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/parallel/stop.hpp>
 #include <rastrum/raster/assemble.hpp>
 #include <rastrum/raster/coverage.hpp>
 #include <rastrum/raster/resolve.hpp>
@@ -54,7 +55,7 @@ struct Scene {
   raster::FrameRequest& request;
   const raster::FrameGeometry& frame;
   std::vector<Pixel> pixels;
-  alignas(64) std::byte scratch[raster::kMaxShaderScratch] = {};
+  raster::ShaderScratch scratch;
 
   void add(const raster::Draw& draw, std::uint64_t primitive, FrameStats& stats);
   /// Whether the fragment passes the test.
@@ -134,7 +135,7 @@ Vec4 Scene::shade(int x, int y, const Fragment& f) {
   points.dx[i] = f.dx;
   points.dy[i] = f.dy;
   raster::VisibleBlock visible{words, block.mask, block.bx * kBlockSize, block.by * kBlockSize,
-                               scratch};
+                               scratch.data()};
   visible.points = &points;
   BlockColors colors;
   const bool opaque = request.shader->shade(frame, visible, Isa::scalar, colors);
@@ -196,8 +197,9 @@ FrameStats render_reference(raster::FrameRequest& request, MemoryAccount& memory
   FrameStats stats;
   stats.rasterizer = "reference";
   stats.visibility = "layers";
-  const raster::Totals totals = raster::number_draws(request.draws);
-  raster::check_indices(request.draws);
+  const raster::Totals totals =
+      raster::number_draws(request.draws, request.targets.first_id, request.draw_noun);
+  raster::check_indices(request.draws, request.draw_noun);
   raster::FrameGeometry frame{request.width, request.height,
                               raster::Viewport::of(request.width, request.height), request.draws,
                               nullptr};
@@ -214,27 +216,33 @@ FrameStats render_reference(raster::FrameRequest& request, MemoryAccount& memory
     if (!request.targets.overdraw.empty())
       std::fill_n(request.targets.overdraw.row(y), request.width, 0U);
   }
-  Scene scene{request, frame, {}};
+  Scene scene{request, frame, {}, {}};
+  scene.scratch.begin(request.shader);
   scene.pixels.resize(static_cast<std::size_t>(request.width) *
                       static_cast<std::size_t>(request.height));
   stats.triangles.input = totals.primitives;
   for (const raster::Draw& draw : request.draws)
-    for (std::uint64_t p = 0; p < draw.primitive_count; ++p) scene.add(draw, p, stats);
+    for (std::uint64_t p = 0; p < draw.primitive_count; ++p) {
+      parallel::throw_if_stopped();
+      scene.add(draw, p, stats);
+    }
   stats.triangles.drawn = stats.triangles.input - stats.triangles.dropped - stats.triangles.culled;
   watch.lap(stats, "rasterize");
 
   const std::unique_ptr<LayerBlend> blend = make_blend(request.transparency, Isa::scalar);
   const raster::Backdrop backdrop = raster::backdrop_of(request);
-  for (int y0 = 0; y0 < request.height; y0 += kBlockSize)
+  for (int y0 = 0; y0 < request.height; y0 += kBlockSize) {
+    parallel::throw_if_stopped();
     for (int x0 = 0; x0 < request.width; x0 += kBlockSize) {
       alignas(64) std::uint64_t words[64] = {};
       BlockColors colors = {};
       for (int y = y0; y < std::min(y0 + kBlockSize, request.height); ++y)
         for (int x = x0; x < std::min(x0 + kBlockSize, request.width); ++x)
           words[(y - y0) * kBlockSize + (x - x0)] = scene.resolve(x, y, *blend, colors);
-      stats.pixels_covered += static_cast<std::uint64_t>(
-          raster::resolve_block(request, frame, backdrop, words, x0, y0, scene.scratch, &colors));
+      stats.pixels_covered += static_cast<std::uint64_t>(raster::resolve_block(
+          request, frame, backdrop, words, x0, y0, scene.scratch.data(), &colors));
     }
+  }
   watch.lap(stats, "shade");
   return stats;
 }

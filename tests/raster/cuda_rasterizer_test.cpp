@@ -16,6 +16,7 @@
 #include "tests/support/cuda_test.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/passes.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -380,33 +381,13 @@ TEST_F(CudaRasterizer, SamplesOfAllTopologiesEqualSerial) {
 }
 
 TEST_F(CudaRasterizer, PassesEqualOneDraw) {
-  constexpr int kWidth = 150, kHeight = 200;
-  const Scene scene = soup(3000, kWidth, kHeight);
-  const SceneBinding binding(scene);
-  const Camera camera = pixel_camera(kWidth, kHeight);
-  RenderOptions o = device_options(kWidth, kHeight, Device::cuda);
-  Renderer cuda(o);
-  const Frame once = draw(cuda, binding.view(), camera);
-  Frame f;
-  f.color8 = Image<Rgba8>(kWidth, kHeight);
-  f.color = Image<Vec4>(kWidth, kHeight);
-  f.depth = Image<float>(kWidth, kHeight);
-  f.ids = Image<std::int64_t>(kWidth, kHeight);
-  f.overdraw = Image<std::uint32_t>(kWidth, kHeight);
-  Image<std::uint64_t> words(kWidth, kHeight);
-  Targets targets{f.color8.view(), f.color.view(), f.depth.view(), f.ids.view(), f.overdraw.view()};
-  targets.words = words.view();
-  const InstanceView whole = binding.view().instances[0];
-  for (const auto& [first, last] : {std::pair{0U, 700U}, {700U, 3000U}}) {
-    InstanceView part = whole;
-    part.mesh.positions = whole.mesh.positions.subspan(first * 3, (last - first) * 3);
-    targets.load = first != 0;
-    targets.first_id = first;
-    const FrameStats stats = cuda.render({{&part, 1}, {}, {}}, camera, targets);
-    EXPECT_NE(stats.why.find("shaded on the device"), std::string::npos) << stats.why;
+  for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{3} << 20}) {
+    RenderOptions o = device_options(150, 200, Device::cuda);
+    o.memory_limit = limit;
+    Renderer cuda(o);
+    for (const char* shape : {"soup?count=3000", "boxes"})
+      EXPECT_TRUE(passes_equal_one_draw(cuda, shape)) << limit;
   }
-  EXPECT_TRUE(same_surfaces(f, once));
-  EXPECT_TRUE(same_picture(f, once, 0));
 }
 
 }  // namespace

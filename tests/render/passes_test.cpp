@@ -1,6 +1,6 @@
-// A picture drawn in several passes (Targets::load) is the picture drawn at once, and a fragment
-// test is applied in every pass that a method makes over the fragments: for every point of the
-// coverage × visibility table.
+// A picture drawn in several passes is the picture drawn at once, and a fragment test is applied in
+// every pass that a method makes over the fragments: for the serial device and every point of the
+// coverage × visibility table. cuda_rasterizer_test has the passes of a device.
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -15,6 +15,7 @@
 
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/passes.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
@@ -33,64 +34,49 @@ RenderOptions options(const TablePoint& point, int threads) {
   return o;
 }
 
-/// With an index for each corner, whatever the mesh has.
-Mesh indexed(Mesh mesh) {
-  if (mesh.indices.empty())
-    for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) mesh.indices.push_back(i);
-  return mesh;
-}
-
 class Passes : public testing::TestWithParam<TablePoint> {};
 
-/// Draws the mesh in `passes` parts of unequal size, each onto the ones before.
-Frame draw_in_passes(Renderer& renderer, const Scene& scene, const Camera& camera,
-                     std::size_t passes) {
-  const SceneBinding binding(scene);
-  const InstanceView whole = binding.view().instances[0];
-  Frame f;
-  f.color8 = Image<Rgba8>(kWidth, kHeight);
-  f.color = Image<Vec4>(kWidth, kHeight);
-  f.depth = Image<float>(kWidth, kHeight);
-  f.ids = Image<std::int64_t>(kWidth, kHeight);
-  f.overdraw = Image<std::uint32_t>(kWidth, kHeight);
-  Image<std::uint64_t> words(kWidth, kHeight);
-  Targets targets{f.color8.view(), f.color.view(), f.depth.view(), f.ids.view(), f.overdraw.view()};
-  targets.words = words.view();
-  const std::size_t triangles = whole.mesh.triangle_count();
-  std::size_t first = 0;
-  for (std::size_t pass = 0; pass < passes; ++pass) {
-    const std::size_t last = triangles * (pass + 1) * (pass + 1) / (passes * passes);
-    InstanceView part = whole;
-    part.mesh.indices = whole.mesh.indices.subspan(first * 3, (last - first) * 3);
-    if (std::span<const std::uint32_t>& normals = part.mesh.normals.indices; !normals.empty())
-      normals = normals.subspan(first * 3, (last - first) * 3);
-    targets.load = pass != 0;
-    targets.first_id = first;
-    renderer.render({{&part, 1}, binding.view().materials, binding.view().textures}, camera,
-                    targets);
-    first = last;
-  }
-  return f;
+TEST_P(Passes, EqualOneDraw) {
+  for (const int threads : {1, 8})
+    for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{6} << 20}) {
+      RenderOptions o = options(GetParam(), threads);
+      o.memory_limit = limit;
+      Renderer renderer(o);
+      for (const char* shape : {"soup?count=3000", "boxes"})
+        ASSERT_TRUE(passes_equal_one_draw(renderer, shape));
+    }
 }
 
-TEST_P(Passes, EqualOneDraw) {
-  for (const char* spec : {"soup?count=3000", "boxes"}) {
-    const Scene scene = single(indexed(shapes::from_spec(spec)));
-    const SceneBinding binding(scene);
-    const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-    for (const int threads : {1, 8})
-      for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{6} << 20}) {
-        RenderOptions o = options(GetParam(), threads);
-        o.memory_limit = limit;
-        Renderer renderer(o);
-        const Frame once = draw(renderer, binding.view(), camera);
-        ASSERT_GT(once.stats.pixels_covered, 1000U);
-        for (const std::size_t passes : {std::size_t{2}, std::size_t{5}}) {
-          const Frame frame = draw_in_passes(renderer, scene, camera, passes);
-          ASSERT_TRUE(same_surfaces(frame, once)) << spec << " in " << passes;
-          ASSERT_TRUE(same_picture(frame, once, 0)) << spec << " in " << passes;
-        }
-      }
+TEST(PassesOfSerial, EqualOneDraw) {
+  RenderOptions o = options({"auto", "auto"}, 1);
+  o.device = Device::serial;
+  Renderer renderer(o);
+  for (const char* shape : {"soup?count=3000", "boxes"})
+    EXPECT_TRUE(passes_equal_one_draw(renderer, shape));
+}
+
+// With layers there are no words to go on from, but ids count from the first one, too.
+TEST(PassesOfLayers, CountIdsFromTheFirst) {
+  const Scene scene = single(shapes::soup(300, 0.1F, 0.5F));
+  const SceneBinding binding(scene);
+  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+  for (const Device device : {Device::serial, Device::threads}) {
+    RenderOptions o = options({"auto", "auto"}, 2);
+    o.device = device;
+    o.opacity = 0.5F;
+    Renderer renderer(o);
+    Image<std::int64_t> ids[2];
+    for (int i = 0; i < 2; ++i) {
+      ids[i] = Image<std::int64_t>(kWidth, kHeight);
+      Targets targets;
+      targets.ids = ids[i].view();
+      targets.first_id = i == 0 ? 0 : 1000;
+      static_cast<void>(renderer.render(binding.view(), camera, targets));
+    }
+    for (std::size_t i = 0; i < ids[0].pixels().size(); ++i) {
+      const std::int64_t id = ids[0].pixels()[i];
+      ASSERT_EQ(ids[1].pixels()[i], id < 0 ? -1 : id + 1000) << i;
+    }
   }
 }
 
@@ -108,7 +94,10 @@ class Sieve final : public raster::FragmentTest {
 };
 
 TEST_P(Passes, AllTestFragments) {
-  const Mesh mesh = indexed(shapes::soup(2000, 0.01F, 0.5F));
+  Mesh mesh = shapes::soup(2000, 0.01F, 0.5F);
+  for (std::uint32_t i = 0;
+       i < mesh.positions.size() && mesh.indices.size() < mesh.positions.size(); ++i)
+    mesh.indices.push_back(i);
   class Corners final : public raster::VertexSource {
    public:
     explicit Corners(const Mesh& m) : mesh_(m) {}

@@ -13,7 +13,9 @@
 #include <rastrum/parallel/stop.hpp>
 #include <rastrum/raster/frame.hpp>
 #include <rastrum/render/render.hpp>
+#include <rastrum/render/scene_on_terrain.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/terrain/renderer.hpp>
 
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
@@ -150,19 +152,91 @@ TEST(StopLayers, EndSoonAndLeaveNothing) {
 }
 
 TEST(StopReference, EndsSoon) {
-  RenderOptions o;
-  o.width = o.height = 64;
-  o.device = Device::serial;
-  Renderer renderer(o);
-  const Scene scene = single(shapes::from_spec("boxes"));
-  const SceneBinding binding(scene);
+  for (const float opacity : {1.0F, 0.5F}) {
+    RenderOptions o;
+    o.width = o.height = 64;
+    o.device = Device::serial;
+    o.opacity = opacity;
+    Renderer renderer(o);
+    const Scene scene = single(shapes::from_spec("boxes"));
+    const SceneBinding binding(scene);
+    std::stop_source source;
+    const std::stop_token token = source.get_token();
+    const parallel::StopScope scope(token);
+    const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+    EXPECT_NO_THROW(static_cast<void>(draw(renderer, binding.view(), camera)));
+    source.request_stop();
+    EXPECT_THROW(static_cast<void>(draw(renderer, binding.view(), camera)), parallel::Stopped);
+  }
+}
+
+// What stops a frame from outside: a token that it is given, asked in the middle of it.
+TEST(StopToken, EndsAFrameAndLeavesTheRenderer) {
+  for (const bool translucent : {false, true})
+    for (const Device device : {Device::serial, Device::threads}) {
+      SCOPED_TRACE(std::string(name(device)) + (translucent ? ", translucent" : ""));
+      RenderOptions o = options(4);
+      o.device = device;
+      if (device == Device::serial) o.width = o.height = 64;  // the reference of layers is slow
+      Counted counted;
+      Counted::Triggers whole;
+      Renderer renderer(o);
+      const Frame expected = frame(renderer, counted, whole, translucent);
+      const std::int64_t calls = whole.test.calls();
+      Counted::Triggers triggers;
+      std::destroy_at(&triggers.test);
+      std::construct_at(&triggers.test, calls / 3);
+      counted.use(triggers);
+      raster::Draw d = counted.draw(translucent);
+      Image<Rgba8> color(o.width, o.height);
+      Targets targets;
+      targets.color8 = color.view();
+      EXPECT_THROW(renderer.draw({&d, 1}, counted, &counted, targets, triggers.test.token()),
+                   parallel::Stopped);
+      // A fragment at a time, and a triangle has at most all pixels.
+      EXPECT_LE(triggers.test.after(),
+                device == Device::serial ? o.width * o.height : kCapacity * o.threads);
+      Counted::Triggers again;
+      const Frame actual = frame(renderer, counted, again, translucent);
+      EXPECT_TRUE(same_surfaces(actual, expected));
+      EXPECT_TRUE(same_picture(actual, expected, 0));
+    }
+}
+
+TEST(StopToken, IsTakenByAllThatDrawFrames) {
   std::stop_source source;
   const std::stop_token token = source.get_token();
-  const parallel::StopScope scope(token);
+  constexpr int kSide = 48;
+  const Scene scene = single(shapes::from_spec("boxes"));
+  const SceneBinding binding(scene);
   const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-  EXPECT_NO_THROW(static_cast<void>(draw(renderer, binding.view(), camera)));
+  Image<Rgba8> color(kSide, kSide);
+  Image<float> depth(kSide, kSide);
+  RenderOptions o;
+  o.width = o.height = kSide;
+  Renderer renderer(o);
+  Targets targets;
+  targets.color8 = color.view();
+  const terrain::Terrain ground = terrain::Terrain::of([](double, double) { return 1.0F; },
+                                                       [](double, double) {
+                                                         return Rgba8{1, 2, 3, 255};
+                                                       });
+  terrain::TerrainOptions how;
+  how.width = how.height = kSide;
+  terrain::TerrainRenderer terrain(how);
+  SceneOnTerrain on_terrain(o);
+  const terrain::TerrainTargets picture{color.view(), depth.view()};
+  const auto draw_all = [&](const auto& expect) {
+    expect([&] { renderer.render(binding.view(), camera, targets, token); });
+    expect([&] { terrain.render(ground, {}, picture, token); });
+    expect([&] { on_terrain.draw({binding.view(), {}}, how, {}, picture, token); });
+  };
+  draw_all([](const auto& frame) { EXPECT_NO_THROW(frame()); });
   source.request_stop();
-  EXPECT_THROW(static_cast<void>(draw(renderer, binding.view(), camera)), parallel::Stopped);
+  draw_all([](const auto& frame) { EXPECT_THROW(frame(), parallel::Stopped); });
+  // A frame without a token heeds the scope around it, as before.
+  const parallel::StopScope scope(token);
+  EXPECT_THROW(renderer.render(binding.view(), camera, targets), parallel::Stopped);
 }
 
 }  // namespace

@@ -65,6 +65,7 @@ class Fragments {
                        : raster::make_lit_shader(raster::LitModel::phong, lit_scene_);
     shader_ =
         raster::make_alpha_shader(*inner_, blends ? material_scene_.get() : nullptr, o.opacity);
+    scratch_.begin(shader_.get());
     if (masks) test_ = raster::make_alpha_test(*material_scene_, Isa::scalar);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
       const MeshView& mesh = scene.instances[i].mesh;
@@ -86,7 +87,7 @@ class Fragments {
     const At at(p);
     alignas(64) std::uint64_t words[64] = {};
     words[at.bit] = visibility_word(0.5F, id);
-    raster::VisibleBlock block{words, at.mask, at.x0, at.y0, scratch_};
+    raster::VisibleBlock block{words, at.mask, at.x0, at.y0, scratch_.data()};
     block.points = &at.points;
     raster::BlockColors colors;
     if (shader_->shade(frame_, block, Isa::scalar, colors)) colors.a[at.bit] = 1;
@@ -128,7 +129,7 @@ class Fragments {
   std::unique_ptr<raster::FragmentTest> test_;
   std::vector<AlphaMode> modes_;
   bool all_translucent_ = false;
-  alignas(64) std::byte scratch_[raster::kMaxShaderScratch] = {};
+  raster::ShaderScratch scratch_;
 };
 
 /// What the `material` shader leaves out: backs of single-sided materials.

@@ -1,6 +1,8 @@
 // Several samples a pixel: each equals a sort of its own fragments, a triangle has one colour in a
 // pixel, and the pixel is the mean. For translucent, opaque and mixed surfaces.
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,12 +12,15 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/raster/program.hpp>
+#include <rastrum/raster/samples.hpp>
 #include <rastrum/render/render.hpp>
 
 #include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_program.hpp"
 #include "tests/support/layer_scenes.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
 namespace {
@@ -153,6 +158,102 @@ TEST_P(Serial, EqualsTheOracleAndThreads) {
 
 INSTANTIATE_TEST_SUITE_P(Standard, Serial, testing::Values(1, 4, 8, 16),
                          [](const auto& p) { return std::to_string(p.param); });
+
+/// What the other targets hold (raster/options.hpp): of the sample with the largest word. A frame
+/// with one sample, of the scene moved so that sample lies at the pixels' centres, has its word.
+TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
+  constexpr int kSide = 64;
+  const Camera camera = pixel_camera(kSide, kSide);
+  const Mat4 to_clip(world_to_clip(camera, kSide, kSide));
+  // Two tilted triangles that pass through each other, and slivers between the pixels' centres.
+  std::vector<Vec3> corners{
+      at_pixel(3, 5, 0.2, kSide, kSide),   at_pixel(60, 9, 0.9, kSide, kSide),
+      at_pixel(20, 61, 0.5, kSide, kSide), at_pixel(5, 50, 0.9, kSide, kSide),
+      at_pixel(62, 55, 0.3, kSide, kSide), at_pixel(30, 2, 0.4, kSide, kSide)};
+  // On the raster of snapping, so that nothing but the sample moves them.
+  for (int i = 0; i < 5; ++i)
+    for (const Vec2 p : {Vec2{40.5625F, 8}, {40.9375F, 8}, {40.75F, 60}})
+      corners.push_back(at_pixel(double{p.x} + 5 * i, double{p.y}, 0.95, kSide, kSide));
+  const auto moved = [&](raster::SampleOffset by) {
+    std::vector<Vec3> all = corners;
+    const Vec3 from = at_pixel(0, 0, 0, kSide, kSide);
+    const Vec3 to = at_pixel(-by.x / 256.0, -by.y / 256.0, 0, kSide, kSide);
+    for (Vec3& p : all) p = p + (to - from);
+    return all;
+  };
+  struct Place {
+    float x = 0;
+    Place operator+(const Place& o) const { return {x + o.x}; }
+    Place operator*(float s) const { return {x * s}; }
+  };
+  struct Pictures {
+    Image<float> depth{kSide, kSide};
+    Image<std::int64_t> ids{kSide, kSide};
+    Image<std::uint64_t> words{kSide, kSide};
+    Image<std::uint32_t> overdraw{kSide, kSide};
+    Image<Vec4> extra{kSide, kSide};
+  };
+  const auto draw = [&](Device device, int samples, const std::vector<Vec3>& positions) {
+    const raster::Program program(
+        [&](std::uint32_t i) {
+          return raster::VertexOutput<Place>{transform_point(to_clip, positions[i]),
+                                             {positions[i].x + kSide / 2.0F}};
+        },
+        [](const Place& p, const raster::Fragment& f) {
+          return std::array{Vec4{1, 1, 1, 1}, Vec4{p.x, f.depth, static_cast<float>(f.id), 1}};
+        });
+    RenderOptions o = options({kSide, kSide}, samples);
+    o.device = device;
+    raster::Draw d = program.draw(positions.size());
+    Pictures p;
+    const std::array extra{p.extra.view()};
+    Targets targets;
+    targets.depth = p.depth.view();
+    targets.ids = p.ids.view();
+    targets.words = p.words.view();
+    targets.overdraw = p.overdraw.view();
+    targets.extra = extra;
+    Renderer(o).draw({&d, 1}, targets);
+    return p;
+  };
+  for (const Device device : {Device::serial, Device::threads}) {
+    const Pictures got = draw(device, GetParam(), corners);
+    Image<std::uint64_t> nearest(kSide, kSide);
+    Image<std::uint32_t> overdraw(kSide, kSide);
+    for (const raster::SampleOffset offset : raster::sample_offsets(GetParam())) {
+      const Pictures one = draw(Device::serial, 1, moved(offset));
+      for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x) {
+          nearest(x, y) = std::max(nearest(x, y), one.words(x, y));
+          overdraw(x, y) += one.overdraw(x, y);
+        }
+    }
+    const Pictures at_centres = draw(Device::serial, 1, corners);
+    int beyond = 0;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        SCOPED_TRACE(std::to_string(x) + ", " + std::to_string(y));
+        const std::uint64_t word = got.words(x, y);
+        ASSERT_EQ(word, nearest(x, y));
+        ASSERT_EQ(got.overdraw(x, y), overdraw(x, y));
+        ASSERT_EQ(got.ids(x, y),
+                  word == 0 ? -1 : static_cast<std::int64_t>(raster::id_of_word(word)));
+        const float depth =
+            std::bit_cast<float>(static_cast<std::uint32_t>(word >> raster::kIdBits));
+        ASSERT_EQ(got.depth(x, y), depth);
+        const Vec4 extra = got.extra(x, y);
+        if (word == 0) {
+          ASSERT_EQ(extra.w, 0);
+          continue;
+        }
+        ASSERT_NEAR(extra.x, static_cast<float>(x) + 0.5F, 1e-3F);  // the pixel's centre
+        ASSERT_EQ(extra.y, depth);
+        ASSERT_EQ(extra.z, static_cast<float>(got.ids(x, y)));
+        beyond += at_centres.ids(x, y) != got.ids(x, y);
+      }
+    EXPECT_GT(beyond, 50);  // pixels where another surface, or none, is at the centre
+  }
+}
 
 }  // namespace
 }  // namespace rastrum::test

@@ -114,8 +114,6 @@ void MeshSubject::show(SceneArguments arguments, std::shared_ptr<const LoadedSce
   const ViewOptions& v = arguments.view;
   const Camera camera = choose_camera(v, scene->scene, scene->binding.view(),
                                       {arguments.render.width, arguments.render.height});
-  if (!arguments.shader_given)
-    settings_.render.shader = scene->has_materials ? Shader::material : Shader::phong;
   arguments_ = std::move(arguments);
   scene_ = std::move(scene);
   base_version_ = version() + 1;
@@ -155,8 +153,9 @@ void MeshSubject::change(char key, bool back) {
     case 'm': {
       std::vector<std::string> names;
       for (const std::string_view n : shader_names()) names.emplace_back(n);
-      r.shader = shader_from_name(next(names, std::string(name(r.shader)), back));
-      arguments_.shader_given = true;
+      // From the one that is seen.
+      const Shader now = shader_of(r.shader, scene_->has_materials);
+      r.shader = shader_from_name(next(names, std::string(name(now)), back));
       break;
     }
     case 'n':
@@ -194,6 +193,7 @@ std::function<Drawn()> MeshSubject::draw(int width, int height) {
   RenderOptions options = settings_.render;
   options.width = width;
   options.height = height;
+  options.shader = shader_of(options.shader, scene_->has_materials);
   return [options, heat_map = settings_.heat_map, version = settings_version_, scene = scene_,
           camera = control_.camera(), renderers = renderers_]() -> Drawn {
     Renderer& renderer = renderers->get(options, version);
@@ -231,11 +231,7 @@ Worker::Job MeshSubject::open(const std::filesystem::path& file) {
   arguments.view.orthographic_height.reset();
   return [this, arguments]() -> Worker::Done {
     auto scene = load_scene(arguments);
-    return [this, arguments, scene] {
-      SceneArguments now = arguments;
-      now.shader_given = arguments_.shader_given;
-      show(std::move(now), scene);
-    };
+    return [this, arguments, scene] { show(arguments, scene); };
   };
 }
 
@@ -253,7 +249,6 @@ void MeshSubject::set_options(const std::string& options) {
   }
   Settings s = settings_;
   s.render = changed.render;
-  arguments_.shader_given = arguments_.shader_given || changed.shader_given;
   set(std::move(s));
 }
 

@@ -349,7 +349,7 @@ std::optional<std::span<Group>> Grouped::set_up_groups(Frame& frame, const Lists
     pairs.fetch_add(n, std::memory_order_relaxed);
     micro_fragments.fetch_add(m, std::memory_order_relaxed);
   });
-  if (!in_range) check_indices(frame.request.draws);
+  if (!in_range) check_indices(frame.request.draws, frame.request.draw_noun);
   if (limited && bytes > frame.view_bytes) {
     groups_.clear();
     return std::nullopt;

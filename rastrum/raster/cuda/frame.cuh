@@ -75,12 +75,13 @@ class DeviceRasterizer final : public CudaRasterizer {
     stats.visibility = family_ ? family_->visibility->name : "atomic";
     stats.isa = request.isa;
     stats.device = Device::cuda;
-    const Totals totals = number_draws(request.draws, request.targets.first_id);
+    const Totals totals = number_draws(request.draws, request.targets.first_id, request.draw_noun);
     try {
       draw_frame(request, totals, stats, watch);
     } catch (const Error& error) {
       // Which index was out of range is for the host to find.
-      if (error.code() == Errc::invalid_argument && !request.in_place) check_indices(request.draws);
+      if (error.code() == Errc::invalid_argument && !request.in_place)
+        check_indices(request.draws, request.draw_noun);
       throw;
     }
     stats.triangles.input = totals.primitives;
@@ -142,7 +143,11 @@ class DeviceRasterizer final : public CudaRasterizer {
     FrameGeometry geometry{
         request.width, request.height, Viewport::of(request.width, request.height),
         request.draws, nullptr,        request.isa};
-    parallel::ScratchPool<ShaderScratch> shaders;
+    parallel::ScratchPool<ShaderScratch> shaders{[&request] {
+      ShaderScratch scratch;
+      scratch.begin(request.shader);
+      return scratch;
+    }};
     std::uint64_t bands = 0;
     DeviceCounts counts;
     Counters own;
@@ -245,9 +250,6 @@ class DeviceRasterizer final : public CudaRasterizer {
     };
   }
 
-  struct ShaderScratch {
-    alignas(64) std::byte bytes[kMaxShaderScratch] = {};
-  };
   using Words = decltype(parallel::make_buffer<std::uint64_t>(std::declval<Exec&>(), 0));
   using Counts = decltype(parallel::make_buffer<std::uint32_t>(std::declval<Exec&>(), 0));
 
@@ -407,7 +409,7 @@ class DeviceRasterizer final : public CudaRasterizer {
       for (int bx = 0; bx < surface.columns; ++bx)
         here += static_cast<std::uint64_t>(resolve_block(request, geometry, backdrop,
                                                          surface.block(bx, by), bx * kBlockSize,
-                                                         by * kBlockSize, shaders.local().bytes));
+                                                         by * kBlockSize, shaders.local().data()));
       covered.fetch_add(here, std::memory_order_relaxed);
     });
     return covered;

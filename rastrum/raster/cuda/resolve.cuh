@@ -218,6 +218,7 @@ class LitUpload {
       if (wants_normals && mesh.normals.empty()) mesh.positions = uploads(mesh.positions);
       move(mesh.normals, wants_normals);
       move(mesh.colors, form.scene->colored);
+      if (!form.scene->materials.empty()) mesh.face_materials = uploads(mesh.face_materials);
       // The façade has checked what it could read.
       if (uploads.in_place()) {
         check_attribute(exec, mesh.normals, mesh, "normals");
@@ -226,7 +227,10 @@ class LitUpload {
       draws.push_back(draw);
     }
     draws_ = parallel::to_device(exec, draws);
-    view_ = {{draws_.data(), draws_.size()}, form.scene->rays, form.scene->colored};
+    view_ = {{draws_.data(), draws_.size()},
+             form.scene->rays,
+             form.scene->colored,
+             uploads(std::span(form.scene->materials))};
   }
   [[nodiscard]] const LitView& view() const { return view_; }
 

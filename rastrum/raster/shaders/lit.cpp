@@ -7,12 +7,15 @@
 #include <rastrum/raster/interpolate.hpp>
 #include <rastrum/raster/shaders/lit_constants.hpp>
 #include <rastrum/raster/shaders/lit_scalar.hpp>
+#include <rastrum/raster/shaders/srgb.hpp>
 
 namespace rastrum::raster {
 namespace {
 
-Vec3 base_color(const MeshView& mesh, const Fragment& f) {
-  if (mesh.colors.empty()) return kDefaultBase;
+Vec3 base_color(const LitView& scene, const LitDraw& draw, const Fragment& f) {
+  const Vec3 base = scene.base_color(draw, f.triangle);
+  const MeshView& mesh = draw.mesh;
+  if (mesh.colors.empty()) return base;
   Vec3 sum;
   for (int c = 0; c < 3; ++c) {
     const std::size_t i = mesh.colors.indices.empty()
@@ -21,7 +24,12 @@ Vec3 base_color(const MeshView& mesh, const Fragment& f) {
     const Vec4 v = mesh.colors.values[i];
     sum = sum + Vec3{v.x, v.y, v.z} * static_cast<float>(f.weights.b[c]);
   }
-  return sum;
+  return {base.x * sum.x, base.y * sum.y, base.z * sum.z};
+}
+
+/// Of a linear factor. 1, from which the curve is 3e-5 away, stays 1: white changes no colour.
+float display_value(float linear) {
+  return linear >= 1 ? 1.0F : srgb_from_linear(linear);
 }
 
 Vec4 opaque(Vec3 c) {
@@ -48,7 +56,7 @@ class LitShader final : public BlockShader {
              BlockColors& colors) const noexcept override {
     if (model_ == LitModel::id || model_ == LitModel::wireframe) {
       const FragmentShader scalar(
-          [this](const FrameGeometry&, const Fragment& f) { return color(f); });
+          [this](const FrameGeometry& g, const Fragment& f) { return color(g, f); });
       return scalar.shade(frame, block, isa, colors);
     }
     if (isa != Isa::scalar && shade_lit_simd(isa, model_, scene_, frame, block, colors))
@@ -68,17 +76,18 @@ class LitShader final : public BlockShader {
   [[nodiscard]] LitForm form() const { return {model_, &scene_}; }
 
  private:
-  [[nodiscard]] Vec4 color(const Fragment& f) const {
+  [[nodiscard]] Vec4 color(const FrameGeometry& frame, const Fragment& f) const {
     if (model_ == LitModel::id) return opaque(id_color(f.id));
     const float line = wire(f);
-    return opaque(base_color(scene_.draws[f.draw].mesh, f) * (1 - line) + kWireColor * line);
+    const LitDraw& draw = scene_.draws[frame.draws[f.draw].number];
+    return opaque(base_color(scene_.view(), draw, f) * (1 - line) + kWireColor * line);
   }
 
   void shade_scalar(const FrameGeometry& frame, const VisibleBlock& block,
                     BlockColors& colors) const {
     KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
     const bool wants_normals = model_ != LitModel::flat;
-    const LitView view{scene_.draws, scene_.rays, scene_.colored};
+    const LitView view = scene_.view();
     for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
       const int x = block.x0 + i % kBlockSize, y = block.y0 + i / kBlockSize;
@@ -166,6 +175,11 @@ LitScene::LitScene(const SceneView& scene, const Camera& camera, int width, int 
                     m[0][2] == 0 && m[1][0] == 0 && m[1][2] == 0 && m[2][0] == 0 && m[2][1] == 0;
     colored |= !draw.mesh.colors.empty();
   }
+  colored |= !scene.materials.empty();
+  materials.reserve(scene.materials.size());
+  for (const Material& m : scene.materials)
+    materials.push_back({display_value(m.base_color.x), display_value(m.base_color.y),
+                         display_value(m.base_color.z)});
 }
 
 std::unique_ptr<BlockShader> make_lit_shader(LitModel model, const LitScene& scene) {

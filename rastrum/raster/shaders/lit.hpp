@@ -1,7 +1,9 @@
 // The plain shaders: flat, normal, id, lambert, phong, wireframe. They write display values
 // as they are. The lighting is fixed, so that other renderers can be compared with it:
 //   base · (0.1 + 0.8 max(n·l, 0)) + 0.3 max(n·h, 0)³²,  l = (0.4, 0.6, 1) / |…| in world space,
-// base = the mesh's colours, (0.8, 0.7, 0.6) where it has none; n turned to face the viewer.
+// base = the mesh's colours, (0.8, 0.7, 0.6) where it has none; of a scene with materials the
+// material's base colour factor as a display value, times the mesh's colours where there are some
+// (textures are the material shader's); n turned to face the viewer.
 #pragma once
 
 #include <memory>
@@ -39,18 +41,26 @@ struct ViewRays {
   static ViewRays of(const Camera& camera, int width, int height);
 };
 
-struct LitScene {
-  std::vector<LitDraw> draws;
-  ViewRays rays;
-  bool colored = false;  ///< some draw has colours of its own
-  LitScene(const SceneView& scene, const Camera& camera, int width, int height);
-};
-
 /// What the scalar form reads, of the host's memory or a device's (lit_scalar.hpp).
 struct LitView {
   std::span<const LitDraw> draws;
   ViewRays rays;
   bool colored = false;
+  std::span<const Vec3> materials;
+
+  /// What the mesh's colours at the corners of triangle `t` are multiplied by, or stand for where
+  /// it has none.
+  [[nodiscard]] RASTRUM_HD Vec3 base_color(const LitDraw& draw, std::uint64_t t) const;
+};
+
+struct LitScene {
+  std::vector<LitDraw> draws;
+  ViewRays rays;
+  bool colored = false;         ///< some draw has colours of its own, or a material's
+  std::vector<Vec3> materials;  ///< the base colour of each, a display value
+
+  LitScene(const SceneView& scene, const Camera& camera, int width, int height);
+  [[nodiscard]] LitView view() const { return {draws, rays, colored, materials}; }
 };
 
 /// `scene` must outlive the shader.

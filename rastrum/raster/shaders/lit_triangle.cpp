@@ -3,13 +3,13 @@
 namespace rastrum::raster {
 void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t low,
                     bool wants_normals, LitTriangle& out) {
-  fetch_triangle(LitView{scene.draws, scene.rays, scene.colored}, frame, low, wants_normals, out);
+  fetch_triangle(scene.view(), frame, low, wants_normals, out);
 }
 
 void prefetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t id,
                        bool wants_normals) noexcept {
   const Draw& draw = frame.draw_of(id);
-  const MeshView& mesh = scene.draws[static_cast<std::size_t>(&draw - frame.draws.data())].mesh;
+  const MeshView& mesh = scene.draws[draw.number].mesh;
   for (int c = 0; c < 3; ++c) {
     const std::uint32_t v = draw.vertex(id - draw.first_id, c);
     if (frame.projected != nullptr) __builtin_prefetch(frame.projected + draw.first_vertex + v);

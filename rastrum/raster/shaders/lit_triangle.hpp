@@ -28,6 +28,13 @@ struct LitTriangle {
   WeightPlanes planes;
 };
 
+RASTRUM_HD inline Vec3 LitView::base_color(const LitDraw& draw, std::uint64_t t) const {
+  constexpr Vec3 default_base = kDefaultBase;  // a device has no address of the namespace's
+  const MeshView& mesh = draw.mesh;
+  if (materials.empty()) return mesh.colors.values.empty() ? default_base : Vec3{1, 1, 1};
+  return materials[mesh.face_materials.empty() ? mesh.material : mesh.face_materials[t]];
+}
+
 namespace lit_detail {
 
 /// Up to this ratio of squared longest edge to twice the area float32 weights are as good as 1e-5.
@@ -83,7 +90,7 @@ RASTRUM_HD void fetch_triangle(const LitView& scene, const Geometry& frame, std:
   out.low = low;
   const std::uint64_t id = kIdMask - low;
   const Draw& draw = frame.draw_of(id);
-  const LitDraw& lit = scene.draws[static_cast<std::size_t>(&draw - frame.draws.data())];
+  const LitDraw& lit = scene.draws[draw.number];
   const std::uint64_t t = id - draw.first_id;
   const std::uint32_t vertex[3] = {draw.vertex(t, 0), draw.vertex(t, 1), draw.vertex(t, 2)};
   lit_detail::fetch_weights(frame, draw, t, vertex, out);
@@ -94,13 +101,13 @@ RASTRUM_HD void fetch_triangle(const LitView& scene, const Geometry& frame, std:
       for (Vec3& n : out.normal) n = lit.to_world(n);
   }
   if (!scene.colored) return;
+  const Vec3 base = scene.base_color(lit, t);
   for (std::size_t c = 0; c < 3; ++c) {
-    constexpr Vec3 default_base = kDefaultBase;
-    out.color[c] = default_base;
+    out.color[c] = base;
     if (mesh.colors.values.empty()) continue;
     const std::size_t i = mesh.colors.indices.empty() ? vertex[c] : mesh.colors.indices[t * 3 + c];
     const Vec4 color = mesh.colors.values[i];
-    out.color[c] = {color.x, color.y, color.z};
+    out.color[c] = {base.x * color.x, base.y * color.y, base.z * color.z};
   }
 }
 
@@ -124,6 +131,5 @@ struct KeptTriangles {
     return t;
   }
 };
-static_assert(sizeof(KeptTriangles) <= kMaxShaderScratch);
 
 }  // namespace rastrum::raster

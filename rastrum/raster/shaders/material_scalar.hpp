@@ -243,7 +243,7 @@ template <class Geometry>
 [[nodiscard]] RASTRUM_HD bool passes_mask(const MaterialView& scene, const Geometry& frame,
                                           std::uint64_t id, int x, int y, Vec2 from_centre) {
   const Draw& draw = frame.draw_of(id);
-  const MaterialDraw& of = scene.draws[static_cast<std::size_t>(&draw - frame.draws.data())];
+  const MaterialDraw& of = scene.draws[draw.number];
   const BoundMaterial& m = scene.material_of(of, id - draw.first_id);
   if (m.alpha_mode != AlphaMode::mask) return true;
   const MaterialTriangle t(scene, frame, draw, id);
@@ -257,7 +257,7 @@ template <class Geometry>
                                         std::uint64_t id, int x, int y, Vec2 from_centre,
                                         float opacity) {
   const Draw& draw = frame.draw_of(id);
-  const MaterialDraw& of = scene.draws[static_cast<std::size_t>(&draw - frame.draws.data())];
+  const MaterialDraw& of = scene.draws[draw.number];
   const BoundMaterial& m = scene.material_of(of, id - draw.first_id);
   opacity *= m.opacity;
   if (m.alpha_mode != AlphaMode::blend) return clamped_alpha(opacity);

@@ -448,7 +448,7 @@ HWY_INLINE void own_alpha(const MaterialTriangle& t, const BoundMaterial& materi
 std::uint64_t alpha_test(const MaterialView& scene, const FrameGeometry& frame, std::uint64_t id,
                          std::uint64_t mask, int x0, int y0, const ShadingPoints* points) noexcept {
   const Draw& draw = frame.draw_of(id);
-  const MaterialDraw& of = scene.draws[static_cast<std::size_t>(&draw - frame.draws.data())];
+  const MaterialDraw& of = scene.draws[draw.number];
   const BoundMaterial& material = scene.material_of(of, id - draw.first_id);
   if (mask == 0 || material.alpha_mode != AlphaMode::mask) return mask;
   const MaterialTriangle t(scene, frame, draw, id);
@@ -476,7 +476,7 @@ AlphaMasks alpha(const MaterialView& scene, const FrameGeometry& frame, const Vi
     left &= ~mask;
     const std::uint64_t id = id_of_word(low);
     if (draw == nullptr || id - draw->first_id >= draw->primitive_count) draw = &frame.draw_of(id);
-    const MaterialDraw& of = scene.draws[static_cast<std::size_t>(draw - frame.draws.data())];
+    const MaterialDraw& of = scene.draws[draw->number];
     const BoundMaterial& material = scene.material_of(of, id - draw->first_id);
     const bool blends = material.alpha_mode == AlphaMode::blend;
     const float opacity = frame_opacity * material.opacity;

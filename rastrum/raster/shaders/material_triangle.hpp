@@ -30,7 +30,7 @@ struct MaterialTriangle {
   template <class Geometry>
   RASTRUM_HD MaterialTriangle(const MaterialView& scene, const Geometry& frame, const Draw& d,
                               std::uint64_t id)
-      : draw(scene.draws[static_cast<std::size_t>(&d - frame.draws.data())]),
+      : draw(scene.draws[d.number]),
         index(id - d.first_id),
         vertex{d.vertex(index, 0), d.vertex(index, 1), d.vertex(index, 2)},
         planes(weight_planes(frame, d, index)) {}

@@ -26,9 +26,9 @@ class BlockLock {
   std::atomic_ref<std::uint8_t> held_;
 };
 
-/// A thread's: what the shader keeps from block to block, zeroed for each use of the region.
-struct ShaderScratch {
-  alignas(64) std::byte bytes[kMaxShaderScratch];
+/// A thread's, zeroed for each use of the region.
+struct ScratchOfUse {
+  ShaderScratch shader;
   std::uint64_t zeroed_for = 0;
 };
 
@@ -86,10 +86,9 @@ class TupleRegion final : public Region {
  private:
   void* shader_scratch() {
     if (shader_ == nullptr) return nullptr;
-    ShaderScratch& scratch = scratch_.local();
-    if (std::exchange(scratch.zeroed_for, use_) != use_)
-      std::memset(scratch.bytes, 0, shader_->scratch_bytes());
-    return scratch.bytes;
+    ScratchOfUse& scratch = scratch_.local();
+    if (std::exchange(scratch.zeroed_for, use_) != use_) scratch.shader.begin(shader_);
+    return scratch.shader.data();
   }
 
   void take_greater(const Block& b, const std::uint64_t* words, const BlockColors& colors) {
@@ -109,7 +108,7 @@ class TupleRegion final : public Region {
   SurfaceView surface_;
   PixelNumbers pixels_;
   Buffer<std::uint8_t> locks_;
-  parallel::ScratchPool<ShaderScratch> scratch_;
+  parallel::ScratchPool<ScratchOfUse> scratch_;
   std::uint64_t use_ = 0;
   std::size_t chunks_ = 0;
   bool done_ = false;

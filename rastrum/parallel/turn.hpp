@@ -1,0 +1,26 @@
+// Objects that work for one caller at a time, but may be called by several threads at once: the
+// renderers, whose threads and scratch are for one frame.
+#pragma once
+
+#include <mutex>
+#include <stop_token>
+
+#include <rastrum/parallel/stop.hpp>
+
+namespace rastrum::parallel {
+
+/// While it lives, the calling thread has its turn, and its work heeds `stop`.
+class Turn {
+ public:
+  /// Waits for the turn. Both must outlive it. Throws Stopped where `stop` has been asked by then.
+  Turn(std::mutex& one_at_a_time, const std::stop_token& stop)
+      : lock_(one_at_a_time), scope_(stop) {
+    throw_if_stopped();
+  }
+
+ private:
+  std::lock_guard<std::mutex> lock_;
+  StopScope scope_;
+};
+
+}  // namespace rastrum::parallel

@@ -1,0 +1,146 @@
+// Several threads in one Renderer, TerrainRenderer or SceneOnTerrain: each call is a frame of its
+// own, and its picture that of a renderer that nobody else uses.
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/render/render.hpp>
+#include <rastrum/render/scene_on_terrain.hpp>
+#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/terrain/renderer.hpp>
+
+#include "tests/support/frame.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+constexpr int kCallers = 4, kFrames = 6;
+
+/// Calls f(caller, frame) on kCallers threads at once, kFrames times each.
+template <class F>
+void from_all_callers(const F& f) {
+  std::vector<std::thread> callers;
+  for (int caller = 0; caller < kCallers; ++caller)
+    callers.emplace_back([&f, caller] {
+      for (int frame = 0; frame < kFrames; ++frame) f(caller, frame);
+    });
+  for (std::thread& t : callers) t.join();
+}
+
+template <class T>
+bool same(const Image<T>& a, const Image<T>& b) {
+  return std::ranges::equal(a.pixels(), b.pixels());
+}
+
+TEST(OneRenderer, DrawsForSeveralThreads) {
+  // Of different sizes, so that scratch is grown; the last is translucent.
+  std::vector<Scene> scenes{single(shapes::sphere(8, 16)), single(shapes::teapot(8)),
+                            single(shapes::soup(3000, 0.02F, 0.4F)), single(shapes::boxes(4))};
+  scenes.back().meshes[0].colors.values.assign(scenes.back().meshes[0].positions.size(),
+                                               {0.2F, 0.5F, 1, 0.5F});
+  for (const Device device : {Device::threads, Device::serial}) {
+    RenderOptions o;
+    o.width = 120;
+    o.height = 90;
+    o.device = device;
+    o.threads = 2;
+    std::vector<Frame> alone;
+    for (const Scene& scene : scenes)
+      alone.push_back(draw(o, scene, fit_camera(SceneBinding(scene).view(), 1, false)));
+    Renderer renderer(o);
+    from_all_callers([&](int caller, int frame) {
+      const auto which = static_cast<std::size_t>(caller + frame) % scenes.size();
+      const SceneBinding binding(scenes[which]);
+      const Frame f = draw(renderer, binding.view(), fit_camera(binding.view(), 1, false));
+      EXPECT_TRUE(same_surfaces(f, alone[which])) << which;
+      EXPECT_TRUE(same_picture(f, alone[which], 0)) << which;
+      EXPECT_TRUE(same_counts(f.stats, alone[which].stats)) << which;
+    });
+  }
+}
+
+constexpr int kSide = 96;
+
+terrain::Terrain hills(double steepness) {
+  constexpr int kMap = 512;
+  terrain::HeightMap map{Image<float>(kMap, kMap), Image<Rgba8>(kMap, kMap)};
+  for (int y = 0; y < kMap; ++y)
+    for (int x = 0; x < kMap; ++x) {
+      map.heights(x, y) = static_cast<float>(
+          std::floor(30 + 30 * std::sin(x * 0.1 * steepness) * std::cos(y * 0.14)));
+      map.colors(x, y) = {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), 60, 255};
+    }
+  return terrain::Terrain(std::move(map));
+}
+
+terrain::TerrainOptions terrain_options() {
+  terrain::TerrainOptions o;
+  o.width = o.height = kSide;
+  o.distance = 200;
+  o.threads = 2;
+  return o;
+}
+constexpr terrain::TerrainCamera kCamera{.x = 50, .y = 90, .altitude = 80, .horizon_px = 30};
+
+struct Ground {
+  Image<Rgba8> color{kSide, kSide};
+  Image<float> depth{kSide, kSide};
+  [[nodiscard]] terrain::TerrainTargets targets() { return {color.view(), depth.view()}; }
+};
+
+TEST(OneTerrainRenderer, DrawsForSeveralThreads) {
+  // Two maps, each of which takes the place of the other's pyramid.
+  const terrain::Terrain maps[] = {hills(1), hills(3)};
+  Ground alone[2];
+  for (int i = 0; i < 2; ++i)
+    terrain::TerrainRenderer(terrain_options()).render(maps[i], kCamera, alone[i].targets());
+  EXPECT_FALSE(same(alone[0].color, alone[1].color));
+  terrain::TerrainRenderer renderer(terrain_options());
+  from_all_callers([&](int caller, int frame) {
+    const int which = (caller + frame) % 2;
+    Ground ground;
+    renderer.render(maps[which], kCamera, ground.targets());
+    EXPECT_TRUE(same(ground.color, alone[which].color));
+    EXPECT_TRUE(same(ground.depth, alone[which].depth));
+  });
+}
+
+TEST(OneSceneOnTerrain, DrawsForSeveralThreads) {
+  Ground bare;
+  terrain::TerrainRenderer(terrain_options()).render(hills(1), kCamera, bare.targets());
+  RenderOptions o;
+  o.width = o.height = kSide;
+  o.threads = 2;
+  std::vector<Scene> scenes{single(shapes::sphere(8, 16)), single(shapes::boxes(4))};
+  for (Scene& scene : scenes)
+    for (int i = 0; i < 3; ++i) {
+      scene.instances[0].object_to_world.m[i][i] = 15;
+      scene.instances[0].object_to_world.m[i][3] = i == 0 ? 50 : i == 1 ? 70 : 50;
+    }
+  const auto add = [&](SceneOnTerrain& painter, std::size_t which) {
+    Ground ground = bare;
+    const SceneBinding binding(scenes[which]);
+    painter.draw({binding.view(), {}}, terrain_options(), kCamera, ground.targets());
+    return ground;
+  };
+  std::vector<Ground> alone;
+  for (std::size_t i = 0; i < 2; ++i) {
+    SceneOnTerrain painter(o);
+    alone.push_back(add(painter, i));
+    EXPECT_FALSE(same(alone[i].color, bare.color));
+  }
+  SceneOnTerrain painter(o);
+  from_all_callers([&](int caller, int frame) {
+    const auto which = static_cast<std::size_t>(caller + frame) % 2;
+    const Ground ground = add(painter, which);
+    EXPECT_TRUE(same(ground.color, alone[which].color));
+    EXPECT_TRUE(same(ground.depth, alone[which].depth));
+  });
+}
+
+}  // namespace
+}  // namespace rastrum::test

@@ -1,0 +1,92 @@
+#include "tests/support/passes.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+
+#include <rastrum/scene/shapes/shapes.hpp>
+
+#include "tests/support/frame.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+using testing::AssertionFailure;
+using testing::AssertionResult;
+
+/// With an index for each corner, whatever the mesh has.
+Mesh indexed(Mesh mesh) {
+  if (mesh.indices.empty())
+    for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) mesh.indices.push_back(i);
+  return mesh;
+}
+
+struct Passes {
+  Frame frame;
+  Image<std::uint64_t> words;
+};
+
+enum class By { load, over };
+
+Passes draw_in_passes(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                      std::size_t passes, By by) {
+  const int w = renderer.options().width, h = renderer.options().height;
+  Passes p{{Image<Rgba8>(w, h),
+            Image<Vec4>(w, h),
+            Image<float>(w, h),
+            Image<std::int64_t>(w, h),
+            Image<std::uint32_t>(w, h),
+            {}},
+           Image<std::uint64_t>(w, h)};
+  std::ranges::fill(p.words.pixels(), ~std::uint64_t{0});
+  Targets targets{p.frame.color8.view(), p.frame.color.view(), p.frame.depth.view(),
+                  p.frame.ids.view(), p.frame.overdraw.view()};
+  targets.words = p.words.view();
+  const InstanceView& whole = scene.instances[0];
+  const std::size_t triangles = whole.mesh.triangle_count();
+  std::size_t first = 0;
+  for (std::size_t pass = 0; pass < passes; ++pass) {
+    const std::size_t last = triangles * (pass + 1) * (pass + 1) / (passes * passes);
+    InstanceView part = whole;
+    part.mesh.indices = whole.mesh.indices.subspan(first * 3, (last - first) * 3);
+    if (std::span<const std::uint32_t>& normals = part.mesh.normals.indices; !normals.empty())
+      normals = normals.subspan(first * 3, (last - first) * 3);
+    targets.load = pass != 0 && by == By::load;
+    targets.over = pass != 0 && by == By::over;
+    targets.first_id = first;
+    p.frame.stats = renderer.render({{&part, 1}, scene.materials, scene.textures}, camera, targets);
+    first = last;
+  }
+  return p;
+}
+
+}  // namespace
+
+AssertionResult passes_equal_one_draw(Renderer& renderer, std::string_view shape) {
+  const Scene scene = single(indexed(shapes::from_spec(std::string(shape))));
+  const SceneBinding binding(scene);
+  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+  const Passes once = draw_in_passes(renderer, binding.view(), camera, 1, By::load);
+  if (once.frame.stats.pixels_covered < 1000) return AssertionFailure() << "hardly anything seen";
+  for (const By by : {By::load, By::over})
+    for (const std::size_t passes : {std::size_t{2}, std::size_t{5}}) {
+      Passes p = draw_in_passes(renderer, binding.view(), camera, passes, by);
+      const auto failed = [&](AssertionResult why) {
+        return why << ", " << shape << " in " << passes << " passes by "
+                   << (by == By::load ? "load" : "over");
+      };
+      // Over a picture overdraw is the pass's own.
+      if (by == By::over)
+        std::ranges::copy(once.frame.overdraw.pixels(), p.frame.overdraw.pixels().begin());
+      if (AssertionResult r = same_surfaces(p.frame, once.frame); !r) return failed(r);
+      if (AssertionResult r = same_picture(p.frame, once.frame, 0); !r) return failed(r);
+      if (!std::ranges::equal(p.words.pixels(), once.words.pixels()))
+        return failed(AssertionFailure() << "words differ");
+    }
+  return testing::AssertionSuccess();
+}
+
+}  // namespace rastrum::test

@@ -1,0 +1,18 @@
+// A picture drawn in several passes is the picture drawn at once, for whatever draws.
+#pragma once
+
+#include <string_view>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/render/render.hpp>
+
+namespace rastrum::test {
+
+/// Draws a built-in shape at once, then in passes of unequal size, each onto the ones before: by
+/// their visibility words (Targets::load), and by their depth (Targets::over). With ids that count
+/// on (Targets::first_id) all images are the same bits, the words too.
+[[nodiscard]] testing::AssertionResult passes_equal_one_draw(Renderer& renderer,
+                                                             std::string_view shape);
+
+}  // namespace rastrum::test
