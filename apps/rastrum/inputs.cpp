@@ -1,9 +1,13 @@
 #include "inputs.hpp"
 
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <utility>
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/io/io.hpp>
+#include <rastrum/io/mapped_file.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
 #include "arguments.hpp"
@@ -12,6 +16,8 @@
 
 namespace rastrum::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::string_view kBuiltin = "builtin:";
 
@@ -79,18 +85,51 @@ void choose_normals(Mesh& mesh, Normals normals) {
     mesh.normals.values = vertex_normals(mesh.positions, mesh.indices);
 }
 
+bool says_its_format(const std::string& input) {
+  const std::string extension = fs::path(input).extension().string();
+  return std::ranges::any_of(io::scene_formats(), [&](std::string_view format) {
+    return std::ranges::equal(extension, "." + std::string(format), {},
+                              [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  });
+}
+
+bool is_stdin(const std::string& input) {
+  return input == "-" || input == "/dev/stdin";
+}
+
+/// Whether the input is a pipe, or has to be taken for one: nothing but `format` says what it is.
+bool is_unnamed(const std::string& input, std::string_view format) {
+  std::error_code ignored;
+  if (input.starts_with(kBuiltin) || says_its_format(input) || fs::is_directory(input, ignored))
+    return false;
+  return is_stdin(input) || !format.empty() || fs::is_fifo(input, ignored);
+}
+
 }  // namespace
 
-Scene load_input(const std::string& input) {
-  return input.starts_with(kBuiltin) ? make_builtin(input) : io::read_scene(input);
+void check_inputs(const std::vector<std::string>& inputs, std::string_view format) {
+  if (std::ranges::count_if(inputs, is_stdin) > 1)
+    throw UsageError("INPUT", "standard input can be read once, and is asked for twice");
+  for (const std::string& input : inputs)
+    if (format.empty() && is_unnamed(input, format))
+      throw UsageError(is_stdin(input) ? "standard input" : input,
+                       "the name of a pipe does not say what it holds: say it, as in --format ply");
+}
+
+Scene load_input(const std::string& input, std::string_view format) {
+  if (input.starts_with(kBuiltin)) return make_builtin(input);
+  if (!is_unnamed(input, format)) return io::read_scene(input);
+  check_inputs({input}, format);  // before it is opened, which would wait for who writes to it
+  const io::MappedFile file(is_stdin(input) ? "/dev/stdin" : input);
+  return io::decode_scene(file.bytes(), format, is_stdin(input) ? "standard input" : input);
 }
 
 Scene load_inputs(const std::vector<std::string>& inputs, Normals normals, Timeline& timeline,
-                  Progress& progress) {
+                  Progress& progress, std::string_view format) {
   Scene scene;
   for (const std::string& input : inputs) {
     progress.show("loading " + input);
-    timeline.measure("load " + input, "load", [&] { scene.append(load_input(input)); });
+    timeline.measure("load " + input, "load", [&] { scene.append(load_input(input, format)); });
   }
   progress.show("computing normals");
   timeline.measure("normals", "load", [&] {

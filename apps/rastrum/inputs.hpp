@@ -19,12 +19,17 @@ enum class Normals {
 };
 
 /// A file, or `builtin:SHAPE[?name=value,…]` where x, y, z and scale place the shape and the rest
-/// is the shape's own; `&` separates as well as a comma. Throws UsageError for a builtin that does
-/// not exist, Error for a file that cannot be read.
-[[nodiscard]] Scene load_input(const std::string& input);
+/// is the shape's own; `&` separates as well as a comma. `-` is standard input. `format`: what an
+/// input is whose name does not say (a name of io::scene_formats, or empty). Throws UsageError for
+/// a builtin that does not exist, Error for a file that cannot be read.
+[[nodiscard]] Scene load_input(const std::string& input, std::string_view format = {});
+
+/// Throws UsageError for a pipe without a format, and where standard input is asked for twice.
+void check_inputs(const std::vector<std::string>& inputs, std::string_view format);
 
 /// All inputs, appended in order, with their normals. Each is an event of `timeline`.
 [[nodiscard]] Scene load_inputs(const std::vector<std::string>& inputs, Normals normals,
-                                Timeline& timeline, Progress& progress);
+                                Timeline& timeline, Progress& progress,
+                                std::string_view format = {});
 
 }  // namespace rastrum::cli

@@ -13,6 +13,7 @@
 #include "inputs.hpp"
 #include "output.hpp"
 #include "progress.hpp"
+#include "scene_options.hpp"
 
 namespace rastrum::cli {
 namespace {
@@ -21,7 +22,7 @@ namespace {
 constexpr int kMaxSubdivisions = 12;
 
 struct MakeArguments {
-  std::string input;
+  std::string input, format;
   Output output;
   int subdivide = 0;
   bool quiet = false;
@@ -32,23 +33,27 @@ bool is_shape(const std::string& input) {
   const std::string name = input.substr(0, input.find('?'));
   for (const shapes::ShapeInfo& shape : shapes::catalogue())
     if (shape.name == name) return true;
-  return name.find_first_of("./:") == std::string::npos;
+  return name != "-" && name.find_first_of("./:") == std::string::npos;
 }
 
 int run(const MakeArguments& a) {
+  const std::string input = is_shape(a.input) ? "builtin:" + a.input : a.input;
+  check_inputs({input}, a.format);
   const Output* const outputs[] = {&a.output};
   check_outputs(outputs);
   Progress progress(a.quiet);
   progress.show("making " + a.input);
-  Scene scene = load_input(is_shape(a.input) ? "builtin:" + a.input : a.input);
+  Scene scene = load_input(input, a.format);
   Flattened flat = flatten(std::move(scene));
   if (a.subdivide > 0) flat.mesh = shapes::subdivide(flat.mesh, a.subdivide);
   progress.clear();
   if (!a.quiet)
     for (const std::string& w : flat.warnings) warn(w);
-  io::write_ply(a.output.file, flat.mesh);
+  OutputFiles files;
+  io::write_ply(files.begin(a.output), flat.mesh);
+  files.commit();
   if (!a.quiet)
-    std::fprintf(stderr, "%s: %zu vertices, %zu triangles\n", a.output.file.c_str(),
+    std::fprintf(stderr, "%s: %zu vertices, %zu triangles\n", a.output.name().c_str(),
                  flat.mesh.positions.size(), flat.mesh.triangle_count());
   return 0;
 }
@@ -60,15 +65,17 @@ Command add_make_command(CLI::App& app) {
   CLI::App& make = *app.add_subcommand("make", "Write a shape, or a file's mesh, as binary PLY");
   make.add_option(
           "SHAPE", arguments->input,
-          "SHAPE[?name=value,...] of the list below (x, y, z and scale place it), or a file")
+          "SHAPE[?name=value,...] of the list below (x, y, z and scale place it), or a file; - is "
+          "standard input")
       ->required()
       ->type_name("");
+  add_format_option(make, arguments->format);
   make.add_option_function<std::string>(
           "-o,--output",
           [arguments](const std::string& s) {
             arguments->output = parse_output("-o", s, {Format::ply});
           },
-          "the .ply file")
+          "the .ply file; - is standard output")
       ->required()
       ->type_name("FILE");
   make.add_option_function<std::string>(

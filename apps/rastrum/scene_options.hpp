@@ -14,6 +14,7 @@ namespace rastrum::cli {
 
 struct SceneArguments {
   std::vector<std::string> inputs;
+  std::string format;  ///< of inputs whose names do not say
   RenderOptions render;
   bool shader_given = false;
   Normals normals = Normals::file;
@@ -21,7 +22,10 @@ struct SceneArguments {
   bool fit = false;
 };
 
-/// Adds INPUT and the groups of options to `app`; parsing fills `a`, which must outlive it.
+/// Adds --format, for a command that reads meshes.
+void add_format_option(CLI::App& app, std::string& format);
+/// Adds INPUT, --format and the groups of options to `app`; parsing fills `a`, which must outlive
+/// it.
 CLI::Option* add_input_option(CLI::App& app, SceneArguments& a);
 void add_picture_options(CLI::App& app, SceneArguments& a);
 void add_transparency_options(CLI::App& app, SceneArguments& a);

@@ -50,7 +50,7 @@ class Buffer {
 
 }  // namespace
 
-void write_ply(const std::filesystem::path& file, const Mesh& mesh) {
+void write_ply(AtomicFile& out, const Mesh& mesh) {
   const std::size_t vertices = mesh.positions.size();
   const std::size_t faces = mesh.triangle_count();
   const auto shared = [&](const auto& attribute) {
@@ -61,7 +61,7 @@ void write_ply(const std::filesystem::path& file, const Mesh& mesh) {
   const bool bytes = colors && fit_bytes(mesh.colors.values);
   for (const std::uint32_t i : mesh.indices)
     if (i >= vertices)
-      throw Error(Errc::invalid_argument, file.string() + ": the mesh refers to vertex " +
+      throw Error(Errc::invalid_argument, out.name().string() + ": the mesh refers to vertex " +
                                               std::to_string(i) + " of " +
                                               std::to_string(vertices));
 
@@ -76,7 +76,6 @@ void write_ply(const std::filesystem::path& file, const Mesh& mesh) {
   header += "element face " + std::to_string(faces) +
             "\nproperty list uchar uint vertex_indices\nend_header\n";
 
-  AtomicFile out(file);
   Buffer buffer(out);
   buffer.put(header.data(), header.size());
   for (std::size_t i = 0; i < vertices; ++i) {
@@ -107,7 +106,6 @@ void write_ply(const std::filesystem::path& file, const Mesh& mesh) {
     buffer.put(face, sizeof face);
   }
   buffer.flush();
-  out.commit();
 }
 
 }  // namespace rastrum::io

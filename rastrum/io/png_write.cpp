@@ -59,16 +59,12 @@ bool write_rows(State* state, ImageView<const Rgba8> image) {
 
 }  // namespace
 
-void write_png(const std::filesystem::path& file, ImageView<const Rgba8> image) {
+void write_png(AtomicFile& out, ImageView<const Rgba8> image) {
   if (image.empty() || image.width < 1 || image.height < 1)
-    throw Error(Errc::invalid_argument, file.string() + ": an empty image cannot be written");
-  AtomicFile out(file);
-  {
-    State state;
-    state.stream = out.stream();
-    if (!write_rows(&state, image)) out.fail(state.message);
-  }
-  out.commit();
+    throw Error(Errc::invalid_argument, out.name().string() + ": an empty image cannot be written");
+  State state;
+  state.stream = out.stream();
+  if (!write_rows(&state, image)) out.fail(state.message);
 }
 
 }  // namespace rastrum::io
