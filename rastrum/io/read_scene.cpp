@@ -79,8 +79,8 @@ Scene parse(const Reader& reader, Bytes bytes, const std::filesystem::path& name
     Scene scene = reader.parse(bytes, name);
     if (scene.triangle_count() == 0)
       if (const std::string hint = wrong_name(bytes, reader); !hint.empty())
-        scene.warnings.push_back(name.string() + ": no triangles as " + reader.extension + "; " +
-                                 hint);
+        // What the wrong reader found odd besides is no news.
+        scene.warnings = {name.string() + ": no triangles as " + reader.extension + "; " + hint};
     return scene;
   } catch (const std::bad_alloc&) {
     fail_memory(name.string(), bytes.size());

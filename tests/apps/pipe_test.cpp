@@ -1,5 +1,6 @@
 // Standard output and input as files: what comes out of a pipe is what the file would hold.
 #include <array>
+#include <cstdlib>
 
 #include "program.hpp"
 
@@ -91,6 +92,15 @@ TEST_F(Pipes, AreRefusedWhereTheyCannotBeMeant) {
   refused("render builtin:sphere -o p.png --output-format npy", "-o: the name of p.png says .png");
   refused("render builtin:sphere --depth d.npy --output-format npy", "--output-format: is for -o");
   EXPECT_TRUE(files().empty());
+}
+
+TEST_F(Pipes, ATerminalIsNotShownBytes) {
+  if (std::system("command -v script >/dev/null") != 0)
+    GTEST_SKIP() << "script is missing (Debian: bsdutils)";
+  const Outcome r = shell("script -qec '\"$RASTRUM\" make sphere -o -' /dev/null </dev/null 2>&1");
+  EXPECT_EQ(r.status, 2) << r.out;
+  EXPECT_NE(r.out.find("-o: standard output is a terminal"), std::string::npos) << r.out;
+  EXPECT_EQ(r.out.find("element vertex"), std::string::npos);
 }
 
 TEST_F(Pipes, AnErrorSendsNothing) {
