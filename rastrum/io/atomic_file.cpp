@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kSuffix = ".rastrum-tmp";
 
-/// The temporaries of this process. A name is here before its file is, and until it is gone.
+/// The temporaries of this process. Whoever makes, renames or removes one holds the mutex.
 struct Live {
   std::mutex mutex;
   std::set<std::string> names;
