@@ -179,7 +179,8 @@ Emptiness why_empty(const FrameStats& frame, const RenderOptions& options, const
     return {"there are no triangles to draw", "`rastrum info` tells what a file holds"};
   if (frame.pixels_covered != 0) return {"--opacity 0 makes all of it transparent", "give more"};
   if (frame.fragments != 0)
-    return {"the alpha of its materials (MASK) cuts all of it out", "--shader depth shows it"};
+    return {"the alpha of its materials (MASK) cuts all of it out",
+            "the file's alphaCutoff and textures decide that, --heatmap shows where it is"};
 
   const std::array<std::uint64_t, kFates> counts = census(options, scene, camera);
   std::vector<Fate> order;

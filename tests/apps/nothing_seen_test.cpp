@@ -34,6 +34,20 @@ class NothingSeen : public Program {
     args.insert(args.end(), options.begin(), options.end());
     return args;
   }
+  /// A triangle as write_triangle's with a material.
+  void write_gltf(const std::string& material) const {
+    write("s.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+    "nodes":[{"mesh":0}],"materials":[)" +
+                        material +
+                        R"(],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",
+                  "min":[0,0,0],"max":[1,1,0]}],
+    "bufferViews":[{"buffer":0,"byteLength":36}],
+    "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,)"
+                        "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"
+                        R"("}]})");
+  }
   /// Counter-clockwise as seen from +z.
   void write_triangle() const { write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"); }
 };
@@ -66,18 +80,21 @@ TEST_F(NothingSeen, Culled) {
 }
 
 TEST_F(NothingSeen, OfASingleSidedMaterial) {
-  write("s.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
-    "nodes":[{"mesh":0}],"materials":[{}],
-    "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
-    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",
-                  "min":[0,0,0],"max":[1,1,0]}],
-    "bufferViews":[{"buffer":0,"byteLength":36}],
-    "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,)"
-                  "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"
-                  R"("}]})");
+  write_gltf("{}");
   expect({"s.gltf"}, {"--eye", "0,0,-3"},
          "the one triangle shows the back of a single-sided material", "--shader phong",
          {"--eye", "0,0,-3", "--shader", "phong"});
+}
+
+TEST_F(NothingSeen, CutOutByItsMaterial) {
+  write_gltf(R"({"alphaMode":"MASK","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.25]}})");
+  const std::string said = must(command({"s.gltf"}, {"--heatmap", "h.png"}));
+  EXPECT_NE(said.find("nothing is seen: the alpha of its materials (MASK) cuts all of it out; "),
+            std::string::npos)
+      << said;
+  EXPECT_NE(said.find("--heatmap shows where it is"), std::string::npos) << said;
+  const Image<Rgba8> heat = png("h.png");
+  EXPECT_TRUE(std::ranges::any_of(heat.pixels(), [](Rgba8 p) { return p.r != 0; }));
 }
 
 TEST_F(NothingSeen, EdgeOn) {
