@@ -5,6 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "suggest.hpp"
+
 namespace rastrum::cli {
 
 const Option& Option::group(const std::string& name) const {
@@ -105,6 +107,28 @@ Option Parser::add_flag(const std::string& names, bool& value, const std::string
 
 namespace {
 
+/// The names of options, as in --size, of `app` and of its commands that were given.
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  for (const CLI::App* command : app.get_subcommands())
+    for (std::string& name : option_names(*command)) names.push_back(std::move(name));
+  return names;
+}
+
+/// For arguments that nothing takes: the first option that is none, and what may have been meant.
+std::string not_taken(const CLI::ExtrasError& error, const CLI::App& app) {
+  const std::vector<std::string> names = option_names(app);
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  for (const std::string& rest : app.remaining(true)) {
+    const std::string_view name = std::string_view(rest).substr(0, rest.find('='));
+    if (name.starts_with("--"))
+      return "there is no option " + std::string(name) + did_you_mean(name, known);
+  }
+  return error.what();
+}
+
 /// `parse`, with CLI11's errors as ours.
 template <class F>
 bool parse_as_ours(CLI::App& app, F parse) {
@@ -113,6 +137,8 @@ bool parse_as_ours(CLI::App& app, F parse) {
   } catch (const CLI::Success& e) {
     app.exit(e);
     return false;
+  } catch (const CLI::ExtrasError& e) {
+    throw UsageError(not_taken(e, app));
   } catch (const CLI::ParseError& e) {
     throw UsageError(e.what());
   }
@@ -143,12 +169,6 @@ std::vector<std::string> Parser::subcommands() const {
   std::vector<std::string> names;
   for (const CLI::App* command : std::as_const(*app_).get_subcommands({}))
     if (!command->get_group().empty()) names.push_back(command->get_name());
-  return names;
-}
-std::vector<std::string> Parser::option_names() const {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : std::as_const(*app_).get_options())
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   return names;
 }
 

@@ -82,11 +82,10 @@ class Parser {
   [[nodiscard]] bool parse(std::span<const std::string_view> arguments);
   /// One line of text, options parted by spaces and quoted as in a shell.
   [[nodiscard]] bool parse(const std::string& line);
-  [[nodiscard]] bool parsed() const;                            ///< this command was given
-  [[nodiscard]] bool given(const std::string& name) const;      ///< this option was
-  [[nodiscard]] std::string given_subcommand() const;           ///< "": none
-  [[nodiscard]] std::vector<std::string> subcommands() const;   ///< those that --help lists
-  [[nodiscard]] std::vector<std::string> option_names() const;  ///< as in --size, without INPUT
+  [[nodiscard]] bool parsed() const;                           ///< this command was given
+  [[nodiscard]] bool given(const std::string& name) const;     ///< this option was
+  [[nodiscard]] std::string given_subcommand() const;          ///< "": none
+  [[nodiscard]] std::vector<std::string> subcommands() const;  ///< those that --help lists
 
  private:
   explicit Parser(std::shared_ptr<CLI::App> app) : app_(std::move(app)) {}

@@ -71,19 +71,4 @@ Size parse_size(std::string_view option, std::string_view text) {
   return size;
 }
 
-Vec4 parse_color(std::string_view option, std::string_view text) {
-  unsigned channel[4] = {0, 0, 0, 255};
-  const bool has_alpha = text.size() == 9;
-  bool ok = (text.size() == 7 || has_alpha) && text[0] == '#';
-  for (std::size_t i = 0; ok && i < (has_alpha ? 4U : 3U); ++i) {
-    const std::string_view digits = text.substr(1 + 2 * i, 2);
-    const auto [end, error] =
-        std::from_chars(digits.data(), digits.data() + digits.size(), channel[i], 16);
-    ok = error == std::errc{} && end == digits.data() + digits.size();
-  }
-  if (!ok) refuse(option, text, "a colour #rrggbb or #rrggbbaa");
-  const auto value = [&](int i) { return static_cast<float>(channel[i]) / 255.0F; };
-  return {value(0), value(1), value(2), value(3)};
-}
-
 }  // namespace rastrum::cli

@@ -21,7 +21,8 @@ struct Size {
 [[nodiscard]] std::uint64_t parse_bytes(std::string_view option,
                                         std::string_view text);  ///< N, NK, NM or NG, from 1
 [[nodiscard]] Size parse_size(std::string_view option, std::string_view text);  ///< WxH
-/// '#rrggbb' or '#rrggbbaa', display values in [0, 1], straight alpha.
+/// '#rrggbb', '#rrggbbaa', '#rgb' or '#rgba', also without the #, or a name of CSS's, in any case:
+/// display values in [0, 1], straight alpha.
 [[nodiscard]] Vec4 parse_color(std::string_view option, std::string_view text);
 
 }  // namespace rastrum::cli

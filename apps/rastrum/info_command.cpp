@@ -8,24 +8,38 @@
 
 #include "commands.hpp"
 #include "inputs.hpp"
+#include "scene_options.hpp"
 
 namespace rastrum::cli {
+namespace {
+
+struct InfoArguments {
+  std::vector<std::string> inputs;
+  std::string format;
+};
+
+int run(const InfoArguments& a) {
+  check_inputs(a.inputs, a.format);
+  for (const std::string& input : a.inputs)
+    std::printf("%s\n%s", input.c_str(), io::describe(load_input(input, a.format)).c_str());
+  return 0;
+}
+
+}  // namespace
 
 Command add_info_command(Parser& app) {
-  auto inputs = std::make_shared<std::vector<std::string>>();
+  auto arguments = std::make_shared<InfoArguments>();
   Parser info = app.add_subcommand("info", "Print what files hold");
-  info.add_option("INPUT", *inputs, "files and builtin:SHAPE[?name=value,...]")
+  info.add_option("INPUT", arguments->inputs,
+                  "files and builtin:SHAPE[?name=value,...]; - is standard input")
       ->required()
       ->type_name("");
+  add_format_option(info, arguments->format);
   info.footer(
       "Examples:\n"
       "  rastrum info scene.glb\n"
       "  rastrum info *.stl builtin:teapot");
-  return {info, [inputs] {
-            for (const std::string& input : *inputs)
-              std::printf("%s\n%s", input.c_str(), io::describe(load_input(input)).c_str());
-            return 0;
-          }};
+  return {info, [arguments] { return run(*arguments); }};
 }
 
 }  // namespace rastrum::cli

@@ -1,11 +1,14 @@
 #include "inputs.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/io/io.hpp>
+#include <rastrum/io/mapped_file.hpp>
 #include <rastrum/raster/shaders/srgb.hpp>
 #include <rastrum/scene/crease_normals.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
@@ -17,6 +20,8 @@
 
 namespace rastrum::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// The colour of surfaces without one (docs/conventions.md, phong), 0.8, 0.7, 0.6 as linear light.
 constexpr Vec4 kPlain{0.60382734F, 0.44798842F, 0.31854678F, 1};
@@ -74,17 +79,45 @@ void paint(Scene& scene, const Look& look) {
   }
 }
 
+bool says_its_format(const std::string& input) {
+  const std::string extension = fs::path(input).extension().string();
+  return std::ranges::any_of(io::scene_formats(), [&](std::string_view format) {
+    return std::ranges::equal(extension, "." + std::string(format), {},
+                              [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  });
+}
+
+bool is_stdin(const std::string& input) {
+  return input == "-" || input == "/dev/stdin";
+}
+
+/// Whether the input is a pipe, or has to be taken for one: nothing but `format` says what it is.
+bool is_unnamed(const std::string& input, std::string_view format) {
+  std::error_code ignored;
+  if (input.starts_with(kBuiltin) || says_its_format(input) || fs::is_directory(input, ignored))
+    return false;
+  return is_stdin(input) || !format.empty() || fs::is_fifo(input, ignored);
+}
+
 struct Loaded {
   Scene scene;
   bool has_materials = false;  ///< of the file
 };
 
-Loaded load(const std::string& input) {
+/// A file or a pipe.
+Scene read(const std::string& source, std::string_view format) {
+  if (!is_unnamed(source, format)) return io::read_scene(source);
+  check_inputs({source}, format);  // before it is opened, which would wait for who writes to it
+  const io::MappedFile file(is_stdin(source) ? "/dev/stdin" : source);
+  return io::decode_scene(file.bytes(), format, is_stdin(source) ? "standard input" : source);
+}
+
+Loaded load(const std::string& input, std::string_view format) {
   const InputSpec spec = parse_input(input);
   Loaded loaded;
   Scene& scene = loaded.scene;
   scene = spec.source.starts_with(kBuiltin) ? make_builtin(input, spec.source)
-                                            : io::read_scene(spec.source);
+                                            : read(spec.source, format);
   loaded.has_materials = !scene.materials.empty();
   if (spec.placement != Placement{})
     for (Instance& instance : scene.instances)
@@ -107,19 +140,32 @@ void choose_normals(Mesh& mesh, const NormalOptions& options) {
 
 }  // namespace
 
-Scene load_input(const std::string& input) {
-  return load(input).scene;
+void check_inputs(const std::vector<std::string>& inputs, std::string_view format) {
+  std::size_t from_stdin = 0;
+  for (const std::string& input : inputs) {
+    const std::string source = parse_input(input).source;
+    if (is_stdin(source)) ++from_stdin;
+    if (format.empty() && is_unnamed(source, format))
+      throw UsageError(is_stdin(source) ? "standard input" : source,
+                       "the name of a pipe does not say what it holds: say it, as in --format ply");
+  }
+  if (from_stdin > 1)
+    throw UsageError("INPUT", "standard input can be read once, and is asked for twice");
+}
+
+Scene load_input(const std::string& input, std::string_view format) {
+  return load(input, format).scene;
 }
 
 Inputs load_inputs(const std::vector<std::string>& inputs, const NormalOptions& normals,
-                   Timeline& timeline, Progress& progress) {
+                   Timeline& timeline, Progress& progress, std::string_view format) {
   Inputs all;
   std::vector<Scene> scenes;
   bool any_look = false;
   for (const std::string& input : inputs) {
     progress.show("loading " + input);
     timeline.measure("load " + input, "load", [&] {
-      Loaded loaded = load(input);
+      Loaded loaded = load(input, format);
       all.has_materials |= loaded.has_materials;
       any_look |= !loaded.has_materials && !loaded.scene.materials.empty();
       scenes.push_back(std::move(loaded.scene));

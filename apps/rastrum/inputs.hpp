@@ -46,14 +46,18 @@ struct Inputs {
   return has_materials ? Shader::material : Shader::phong;
 }
 
-/// What an INPUT says (input_spec.hpp), placed and painted. Throws UsageError for a builtin that
-/// does not exist, Error for a file that cannot be read.
-[[nodiscard]] Scene load_input(const std::string& input);
+/// What an INPUT says (input_spec.hpp), placed and painted; `-` is standard input. `format`: what
+/// an input is whose name does not say (a name of io::scene_formats, or empty). Throws UsageError
+/// for a builtin that does not exist, Error for a file that cannot be read.
+[[nodiscard]] Scene load_input(const std::string& input, std::string_view format = {});
+
+/// Throws UsageError for a pipe without a format, and where standard input is asked for twice.
+void check_inputs(const std::vector<std::string>& inputs, std::string_view format);
 
 /// All inputs, appended in order, with their normals. Each is an event of `timeline`.
 [[nodiscard]] Inputs load_inputs(const std::vector<std::string>& inputs,
                                  const NormalOptions& normals, Timeline& timeline,
-                                 Progress& progress);
+                                 Progress& progress, std::string_view format = {});
 
 /// The number of the input that each pixel shows, −1 where `ids` is: a search among the parts.
 [[nodiscard]] Image<std::int32_t> inputs_of_ids(ImageView<const std::int64_t> ids,

@@ -1,13 +1,16 @@
-// JSON to a file, whole or not at all, or to standard output.
+// JSON to a file, whole or not at all.
 #pragma once
 
 #include <filesystem>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <rastrum/io/atomic_file.hpp>
+
 namespace rastrum::cli {
 
-/// `file` "-" is standard output. Throws Error{io} naming the file.
+/// Both throw Error{io} naming the file; the first leaves the commit to the caller.
+void write_json(io::AtomicFile& file, const nlohmann::ordered_json& value);
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& value);
 
 }  // namespace rastrum::cli

@@ -1,25 +1,32 @@
 // The program `rastrum`: parses the command line, runs one subcommand, turns exceptions into one
-// line on stderr. Exit status: 0 done, 1 the outside world (files, devices, memory), 2 usage.
+// line on stderr. Exit status: 0 done, 1 the outside world (files, devices, memory), 2 usage, and
+// by a signal (Ctrl-C, a pipe whose reader has gone) that signal.
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <filesystem>
 #include <new>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <apps/command_line/parser.hpp>
-
+#include <apps/command_line/suggest.hpp>
 #include <rastrum/core/error.hpp>
 
 #include "arguments.hpp"
 #include "commands.hpp"
+#include "signals.hpp"
 
 namespace {
 
 constexpr int kWorldError = 1, kUsageError = 2;
 
 int report(const char* what, int status) {
+  rastrum::cli::leave_it_to_the_signal();
   std::fprintf(stderr, "rastrum: error: %s\n", what);
   return status;
 }
@@ -31,9 +38,31 @@ int report_usage(const char* what, const rastrum::cli::Parser& app) {
   return kUsageError;
 }
 
+/// For a word that is no command: a mistyped one, or the file that was to be drawn.
+std::string not_a_command(std::string_view given, std::span<const std::string_view> commands) {
+  const std::string word(given);
+  std::string known;
+  for (const std::string_view c : commands) known.append(known.empty() ? "" : ", ").append(c);
+  std::error_code ignored;
+  if (std::filesystem::exists(word, ignored))
+    return "'" + word + "' is a file, not a command: `rastrum render " + word +
+           " -o picture.png` draws it";
+  const std::string meant = rastrum::cli::did_you_mean(word, commands);
+  return "there is no command '" + word + "'" + (meant.empty() ? "; there are " + known : meant);
+}
+
+/// What was printed has arrived, or the reason is an error.
+int flushed(int status) {
+  const bool ok = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  const std::string why = std::strerror(errno);
+  rastrum::cli::leave_it_to_the_signal();
+  return ok ? status : report(("standard output: cannot be written: " + why).c_str(), kWorldError);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  rastrum::cli::end_cleanly_on_signals();
   rastrum::cli::Parser app("rastrum", "Rastrum draws triangle meshes and terrains in software.");
   app.version("rastrum " RASTRUM_VERSION);
   app.require_subcommand();
@@ -59,9 +88,14 @@ int main(int argc, char** argv) {
       args.erase(terrain);
       args[0] = "view-terrain";
     }
-    if (!app.parse(args)) return 0;
+    const std::vector<std::string> names = app.subcommands();
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    if (!args.empty() && !args[0].starts_with('-') && args[0] != "view-terrain" &&
+        std::ranges::find(known, args[0]) == known.end())
+      return report_usage(not_a_command(args[0], known).c_str(), app);
+    if (!app.parse(args)) return flushed(0);
     for (const rastrum::cli::Command& command : commands)
-      if (command.parser.parsed()) return command.run();
+      if (command.parser.parsed()) return flushed(command.run());
     return 0;
   } catch (const rastrum::cli::UsageError& e) {
     return report_usage(e.what(), app);

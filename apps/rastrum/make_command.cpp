@@ -14,6 +14,7 @@
 #include "option.hpp"
 #include "output.hpp"
 #include "progress.hpp"
+#include "scene_options.hpp"
 
 namespace rastrum::cli {
 namespace {
@@ -22,7 +23,7 @@ namespace {
 constexpr int kMaxSubdivisions = 12;
 
 struct MakeArguments {
-  std::string input;
+  std::string input, format;
   Output output;
   int subdivide = 0;
   bool quiet = false;
@@ -33,23 +34,29 @@ bool is_shape(const std::string& input) {
   const std::string name = input.substr(0, input.find_first_of("?@"));
   for (const shapes::ShapeInfo& shape : shapes::catalogue())
     if (shape.name == name) return true;
-  return input.substr(0, input.find('?')).find_first_of("./:") == std::string::npos;
+  const std::string plain = input.substr(0, input.find('?'));
+  return plain != "-" && !plain.starts_with("-@") &&
+         plain.find_first_of("./:") == std::string::npos;
 }
 
 int run(const MakeArguments& a) {
+  const std::string input = is_shape(a.input) ? "builtin:" + a.input : a.input;
+  check_inputs({input}, a.format);
   const Output* const outputs[] = {&a.output};
   check_outputs(outputs);
   Progress progress(a.quiet);
   progress.show("making " + a.input);
-  Scene scene = load_input(is_shape(a.input) ? "builtin:" + a.input : a.input);
+  Scene scene = load_input(input, a.format);
   Flattened flat = flatten(std::move(scene));
   if (a.subdivide > 0) flat.mesh = shapes::subdivide(flat.mesh, a.subdivide);
   progress.clear();
   if (!a.quiet)
     for (const std::string& w : flat.warnings) warn(w);
-  io::write_ply(a.output.file, flat.mesh);
+  OutputFiles files;
+  io::write_ply(files.begin(a.output), flat.mesh);
+  files.commit();
   if (!a.quiet)
-    std::fprintf(stderr, "%s: %zu vertices, %zu triangles\n", a.output.file.c_str(),
+    std::fprintf(stderr, "%s: %zu vertices, %zu triangles\n", a.output.name().c_str(),
                  flat.mesh.positions.size(), flat.mesh.triangle_count());
   return 0;
 }
@@ -62,12 +69,15 @@ Command add_make_command(Parser& app) {
   make.add_option(
           "SHAPE", arguments->input,
           "SHAPE[?name=value,...] of the list below, or a file; @x=X,y=Y,z=Z,scale=S,rx=DEG,... "
-          "places it")
+          "places it; - is standard input")
       ->required()
       ->type_name("");
-  add(make, "-o,--output", "FILE", "the .ply file", [arguments](const std::string& s) {
-    arguments->output = parse_output("-o", s, {Format::ply});
-  })->required();
+  add_format_option(make, arguments->format);
+  add(make, "-o,--output", "FILE", "the .ply file; - is standard output",
+      [arguments](const std::string& s) {
+        arguments->output = parse_output("-o", s, {Format::ply});
+      })
+      ->required();
   add(make, "--subdivide", "K", "split every triangle in 4, K times (0)",
       [arguments](const std::string& s) {
         arguments->subdivide = parse_integer("--subdivide", s, 0, kMaxSubdivisions);

@@ -64,13 +64,13 @@ class IgnorePipeSignal {
 }  // namespace
 
 struct Mp4Writer::Impl {
-  io::AtomicFile file;
+  io::AtomicFile& file;
   std::FILE* said = std::tmpfile();  ///< what ffmpeg writes to its stderr
   pid_t child = -1;
   int pipe = -1;
   std::vector<std::uint8_t> row;
 
-  explicit Impl(const fs::path& path) : file(path) {}
+  explicit Impl(io::AtomicFile& f) : file(f) {}
   ~Impl() {
     // Still open: the video is not wanted, whatever ffmpeg makes of it.
     if (pipe >= 0) ::close(pipe);
@@ -93,12 +93,14 @@ void Mp4Writer::Impl::start(const std::string& program, const std::vector<std::s
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
+  const int output = ::fileno(file.stream());
   int ends[2];
   if (said == nullptr || ::pipe2(ends, O_CLOEXEC) != 0) file.fail(std::strerror(errno));
   child = ::fork();
   if (child == 0) {
     // Between fork and exec only calls that are safe with threads about.
-    if (::dup2(ends[0], 0) < 0 || ::dup2(::fileno(said), 2) < 0) ::_exit(127);
+    if (::dup2(ends[0], 0) < 0 || ::dup2(::fileno(said), 2) < 0 || ::fcntl(output, F_SETFD, 0) != 0)
+      ::_exit(127);
     ::execv(program.c_str(), argv.data());
     ::_exit(127);
   }
@@ -143,50 +145,23 @@ void Mp4Writer::check(int width, int height) {
                                             std::to_string(width) + "x" + std::to_string(height));
 }
 
-Mp4Writer::Mp4Writer(const fs::path& file, int width, int height, double fps) {
+Mp4Writer::Mp4Writer(io::AtomicFile& file, int width, int height, double fps) {
   check(width, height);
   impl_ = std::make_unique<Impl>(file);
   impl_->row.resize(static_cast<std::size_t>(width) * 3);
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
   // The colours are sRGB's, whose primaries are BT.709's: said, so that players do not guess by
   // size.
-  impl_->start(find_ffmpeg(), {"-hide_banner",
-                               "-loglevel",
-                               "error",
-                               "-nostdin",
-                               "-y",
-                               "-f",
-                               "rawvideo",
-                               "-pixel_format",
-                               "rgb24",
-                               "-video_size",
-                               size,
-                               "-framerate",
-                               shortest(fps),
-                               "-i",
-                               "pipe:0",
-                               "-an",
-                               "-vf",
-                               "scale=out_color_matrix=bt709:out_range=tv",
-                               "-c:v",
-                               "libx264",
-                               "-crf",
-                               "16",
-                               "-pix_fmt",
-                               "yuv420p",
-                               "-colorspace",
-                               "bt709",
-                               "-color_primaries",
-                               "bt709",
-                               "-color_trc",
-                               "iec61966-2-1",
-                               "-color_range",
-                               "tv",
-                               "-movflags",
-                               "+faststart",
-                               "-f",
-                               "mp4",
-                               "file:" + impl_->file.temporary().string()});
+  impl_->start(
+      find_ffmpeg(),
+      {"-hide_banner", "-loglevel", "error", "-nostdin", "-y", "-f", "rawvideo", "-pixel_format",
+       "rgb24", "-video_size", size, "-framerate", shortest(fps), "-i", "pipe:0", "-an", "-vf",
+       "scale=out_color_matrix=bt709:out_range=tv", "-c:v", "libx264", "-crf", "16", "-pix_fmt",
+       "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "iec61966-2-1",
+       "-color_range", "tv", "-movflags", "+faststart", "-f", "mp4",
+       // The open file, not its name: where the program is ended before
+       // ffmpeg has begun, no file comes to be after all.
+       "file:/dev/fd/" + std::to_string(::fileno(file.stream()))});
 }
 
 Mp4Writer::~Mp4Writer() = default;
@@ -210,7 +185,6 @@ void Mp4Writer::add(ImageView<const Rgba8> picture) {
 
 void Mp4Writer::finish() {
   impl_->wait(nullptr);
-  impl_->file.commit();
 }
 
 }  // namespace rastrum::cli

@@ -1,20 +1,22 @@
 // An MP4 made by ffmpeg, which gets the pictures through a pipe.
 #pragma once
 
-#include <filesystem>
 #include <memory>
 
 #include <rastrum/core/image.hpp>
+#include <rastrum/io/atomic_file.hpp>
 
 namespace rastrum::cli {
 
-/// Whole or absent, as the other outputs: ffmpeg writes a temporary file, finish() renames it.
+/// Whole or absent, as the other outputs: ffmpeg writes into a file that the caller has begun, and
+/// commits after finish().
 class Mp4Writer {
  public:
   /// H.264, 4:2:0, so width and height must be even. Throws Error{not_found} where no ffmpeg is in
   /// PATH, Error{invalid_argument} for an odd size, Error{io} where `file` cannot be written.
-  Mp4Writer(const std::filesystem::path& file, int width, int height, double fps);
-  /// Without finish(): ends ffmpeg and removes the temporary.
+  /// `file` must outlive this.
+  Mp4Writer(io::AtomicFile& file, int width, int height, double fps);
+  /// Without finish(): ends ffmpeg.
   ~Mp4Writer();
   Mp4Writer(const Mp4Writer&) = delete;
   Mp4Writer& operator=(const Mp4Writer&) = delete;

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
+#include <vector>
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/io/io.hpp>
@@ -49,6 +50,14 @@ fs::path resolved(const fs::path& file) {
   return error ? absolute.lexically_normal() : canonical;
 }
 
+void check_standard_output(const Output& output) {
+  if (output.format != Format::json && ::isatty(STDOUT_FILENO) != 0)
+    throw UsageError(output.option,
+                     "standard output is a terminal, which cannot show the bytes of a " +
+                         std::string(extension(output.format)) +
+                         " file: send them on, as in `rastrum … | program`, or name a file");
+}
+
 void check_directory(const Output& output) {
   const auto fail = [&](const std::string& why) {
     throw Error(Errc::io,
@@ -64,19 +73,35 @@ void check_directory(const Output& output) {
       fs::exists(output.file, ignored) && !fs::is_regular_file(output.file, ignored);
   if (!special && ::access(parent.c_str(), W_OK) != 0)
     fail(parent.string() + ": " + std::strerror(errno));
+  io::remove_abandoned(parent);
 }
 
 }  // namespace
 
+std::string Output::name() const {
+  return to_stdout() ? "standard output" : file.string();
+}
+
 Output parse_output(std::string_view option, const std::string& file,
-                    std::initializer_list<Format> formats) {
+                    std::initializer_list<Format> formats, std::optional<Format> format) {
+  if (file == "-" || file == "/dev/stdout")
+    return {std::string(option), "-", format.value_or(*formats.begin())};
   const fs::path path(file);
   const std::string given = lower(path.extension().string());
   std::string known;
-  for (const Format format : formats) {
-    if (given == extension(format)) return {std::string(option), path, format};
-    known.append(known.empty() ? "" : ", ").append(extension(format));
+  for (const Format f : formats) {
+    if (given == extension(f)) {
+      if (format && *format != f)
+        throw UsageError(option, "the name of " + file + " says " + given + ", the option " +
+                                     extension(*format) + ": leave the option out");
+      return {std::string(option), path, f};
+    }
+    if (f == Format::mp4)
+      known.append(" (with --path also .mp4)");
+    else
+      known.append(known.empty() ? "" : ", ").append(extension(f));
   }
+  if (format && !file.empty()) return {std::string(option), path, *format};
   throw UsageError(option, "the name of the file must end in " + known + ", got '" + file + "'");
 }
 
@@ -85,26 +110,43 @@ void check_outputs(std::span<const Output* const> outputs) {
     if (!*outputs[i]) continue;
     for (std::size_t j = 0; j < i; ++j)
       if (*outputs[j] && resolved(outputs[i]->file) == resolved(outputs[j]->file))
-        throw UsageError(outputs[i]->option, outputs[i]->file.string() + " is also the file of " +
-                                                 outputs[j]->option + "; give each its own");
-    check_directory(*outputs[i]);
+        throw UsageError(outputs[i]->option, outputs[i]->name() + " is also what " +
+                                                 outputs[j]->option +
+                                                 " is written to; give each its own");
+    if (outputs[i]->to_stdout())
+      check_standard_output(*outputs[i]);
+    else
+      check_directory(*outputs[i]);
   }
 }
 
-void write_color(const Output& output, ImageView<const Rgba8> color8, ImageView<const Vec4> color) {
-  if (output.format == Format::png)
-    io::write_png(output.file, color8);
-  else if (output.format == Format::exr)
-    io::write_exr(output.file, color);
-  else
-    io::write_npy(output.file, color);
+io::AtomicFile& OutputFiles::begin(const Output& output) {
+  return output.to_stdout() ? files_.emplace_back(io::StandardOutput{})
+                            : files_.emplace_back(output.file);
 }
 
-void write_depth(const Output& output, ImageView<const float> depth) {
-  if (output.format == Format::exr)
-    io::write_exr(output.file, depth);
+void OutputFiles::commit() {
+  std::vector<io::AtomicFile*> all;
+  for (io::AtomicFile& file : files_) all.push_back(&file);
+  io::AtomicFile::commit(all);
+  files_.clear();
+}
+
+void write_color(io::AtomicFile& file, Format format, ImageView<const Rgba8> color8,
+                 ImageView<const Vec4> color) {
+  if (format == Format::png)
+    io::write_png(file, color8);
+  else if (format == Format::exr)
+    io::write_exr(file, color);
   else
-    io::write_npy(output.file, depth);
+    io::write_npy(file, color);
+}
+
+void write_depth(io::AtomicFile& file, Format format, ImageView<const float> depth) {
+  if (format == Format::exr)
+    io::write_exr(file, depth);
+  else
+    io::write_npy(file, depth);
 }
 
 }  // namespace rastrum::cli

@@ -1,13 +1,16 @@
-// Files that are written: checked before any work is done, format by extension.
+// Files that are written: checked before any work is done, format by extension, all or none.
 #pragma once
 
 #include <filesystem>
 #include <initializer_list>
+#include <list>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include <rastrum/core/image.hpp>
+#include <rastrum/io/atomic_file.hpp>
 
 namespace rastrum::cli {
 
@@ -20,17 +23,36 @@ struct Output {
   Format format = Format::png;
 
   explicit operator bool() const { return !file.empty(); }
+  [[nodiscard]] bool to_stdout() const { return file == "-"; }
+  /// For messages.
+  [[nodiscard]] std::string name() const;
 };
 
-/// The format by extension, any case. Throws UsageError unless it is one of `formats`.
+/// The format by extension, any case. Where the name does not say it is `format`, if given; "-" or
+/// /dev/stdout is standard output, otherwise in the first of `formats`.
+/// Throws UsageError unless it is one of `formats`, or where name and `format` contradict.
 [[nodiscard]] Output parse_output(std::string_view option, const std::string& file,
-                                  std::initializer_list<Format> formats);
+                                  std::initializer_list<Format> formats,
+                                  std::optional<Format> format = {});
 
-/// Throws UsageError where two options name one file, Error{io} where a directory is missing or
-/// not writable: an hour of work should not end with that. Outputs not asked for are ignored.
+/// Throws UsageError where two options name one file or a picture would go to a terminal, Error{io}
+/// where a directory is missing or not writable: an hour of work should not end with that. Outputs
+/// not asked for are ignored. What killed programs have left in those directories is removed.
 void check_outputs(std::span<const Output* const> outputs);
 
-void write_color(const Output& output, ImageView<const Rgba8> color8, ImageView<const Vec4> color);
-void write_depth(const Output& output, ImageView<const float> depth);
+/// The files of one picture, or of one run: none is seen before commit(), then all are.
+class OutputFiles {
+ public:
+  /// A file to write to. Requires that `output` is asked for. Throws Error{io}.
+  [[nodiscard]] io::AtomicFile& begin(const Output& output);
+  void commit();
+
+ private:
+  std::list<io::AtomicFile> files_;
+};
+
+void write_color(io::AtomicFile& file, Format format, ImageView<const Rgba8> color8,
+                 ImageView<const Vec4> color);
+void write_depth(io::AtomicFile& file, Format format, ImageView<const float> depth);
 
 }  // namespace rastrum::cli

@@ -22,6 +22,7 @@
 #include "json_fields.hpp"
 #include "json_file.hpp"
 #include "mp4.hpp"
+#include "nothing_seen.hpp"
 #include "numbered.hpp"
 #include "output.hpp"
 #include "progress.hpp"
@@ -47,6 +48,8 @@ struct RenderArguments : SceneArguments {
   int frames = 1;
   bool quiet = false;
   std::optional<DepthUnit> depth_unit;
+  std::optional<std::string> color_file;  ///< what -o says; with color_format it makes `color`
+  std::optional<Format> color_format;
   Output color, depth, ids, objects, heatmap, errors, trace, stats;
 
   /// Whether one run draws many pictures.
@@ -57,9 +60,14 @@ void add_output_options(Parser& app, RenderArguments& a) {
   const char* group = "Outputs";
   add(app, "-o,--output", "FILE",
       ".png: 8 bit, straight alpha; .exr, .npy: float32, premultiplied; with --path or --turntable "
-      "also .mp4, over black",
+      "also .mp4, over black; - is standard output, here and below",
+      [&a](const std::string& s) { a.color_file = s; })
+      ->group(group);
+  add(app, "--output-format", "NAME", "png, exr, npy: of -o, where its name does not say (png)",
       [&a](const std::string& s) {
-        a.color = parse_output("-o", s, {Format::png, Format::exr, Format::npy, Format::mp4});
+        a.color_format =
+            choose<Format>("--output-format", s,
+                           {{"png", Format::png}, {"exr", Format::exr}, {"npy", Format::npy}});
       })
       ->group(group);
   add(app, "--depth", "FILE", ".npy or .exr: float32, 1 near, 0 far and where nothing is",
@@ -91,12 +99,8 @@ void add_output_options(Parser& app, RenderArguments& a) {
       "sort a pixel that its filter could not hold",
       [&a](const std::string& s) { a.errors = parse_output("--show-errors", s, {Format::png}); })
       ->group(group);
-  add(app, "--stats", "FILE",
-      ".json or - (standard output): counts, memory, times, ids of the inputs, cameras",
-      [&a](const std::string& s) {
-        a.stats = s == "-" ? Output{"--stats", s, Format::json}
-                           : parse_output("--stats", s, {Format::json});
-      })
+  add(app, "--stats", "FILE", ".json: counts, memory, times, ids of the inputs, cameras",
+      [&a](const std::string& s) { a.stats = parse_output("--stats", s, {Format::json}); })
       ->group(group);
   add(app, "--trace", "FILE", ".json: stages for chrome://tracing or ui.perfetto.dev",
       [&a](const std::string& s) { a.trace = parse_output("--trace", s, {Format::json}); })
@@ -164,7 +168,12 @@ void check_sequence(const RenderArguments& a) {
 }
 
 /// What the parser cannot see by itself, before anything is read.
-void check(const RenderArguments& a) {
+void check(RenderArguments& a) {
+  if (a.color_file)
+    a.color = parse_output("-o", *a.color_file,
+                           {Format::png, Format::exr, Format::npy, Format::mp4}, a.color_format);
+  else if (a.color_format)
+    throw UsageError("--output-format", "is for -o");
   if (!a.color && !a.depth && !a.ids && !a.objects && !a.heatmap && !a.errors && !a.stats &&
       !a.trace)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
@@ -176,11 +185,8 @@ void check(const RenderArguments& a) {
                      "an .mp4 is drawn along a camera path or of a full turn: give --path or "
                      "--turntable");
   if (a.is_sequence()) check_sequence(a);
-  const bool stats_to_file = a.stats && a.stats.file != "-";
-  const Output none;
-  const Output* const outputs[] = {
-      &a.color,   &a.depth,  &a.ids,   &a.objects,
-      &a.heatmap, &a.errors, &a.trace, stats_to_file ? &a.stats : &none};
+  const Output* const outputs[] = {&a.color,   &a.depth,  &a.ids,   &a.objects,
+                                   &a.heatmap, &a.errors, &a.trace, &a.stats};
   check_outputs(outputs);
 }
 
@@ -194,19 +200,19 @@ void report_blended(const Scene& scene) {
 }
 
 void report_missing(const FrameStats& frame) {
-  if (frame.triangles.input == 0) warn("there are no triangles to draw");
   if (frame.triangles.dropped != 0)
     warn(std::to_string(frame.triangles.dropped) + " of " + std::to_string(frame.triangles.input) +
          " triangles have a NaN or infinite vertex and are not drawn");
 }
 
-void write_error_picture(const RenderArguments& a, const Pictures& p, Progress& progress) {
+void write_error_picture(const RenderArguments& a, const Pictures& p, io::AtomicFile& file,
+                         Progress& progress) {
   const ErrorPicture picture = make_error_picture(p.color8.view(), p.errors.view());
-  io::write_png(a.errors.file, picture.image.view());
+  io::write_png(file, picture.image.view());
   progress.clear();
   if (a.quiet) return;
   const bool repaired = a.render.transparency.method == Transparency::exact;
-  std::fprintf(stderr, "%s: %lu of %lu pixels are red: %s\n", a.errors.file.c_str(),
+  std::fprintf(stderr, "%s: %lu of %lu pixels are red: %s\n", a.errors.name().c_str(),
                static_cast<unsigned long>(picture.wrong),
                static_cast<unsigned long>(p.errors.pixels().size()),
                repaired ? "the filter could not hold them, and they were sorted"
@@ -222,27 +228,32 @@ Image<float> distances(ImageView<const float> depth, const Camera& camera) {
   return distance;
 }
 
+/// Into `files`, which the caller commits.
 void write_images(const RenderArguments& a, const Pictures& p, const Camera& camera,
-                  const Inputs& inputs, Timeline& timeline, Progress& progress) {
+                  const Inputs& inputs, OutputFiles& files, Timeline& timeline,
+                  Progress& progress) {
   const auto write = [&](const Output& output, auto&& writer) {
     if (!output) return;
-    progress.show("writing " + output.file.string());
-    timeline.measure("write " + output.file.string(), "write", writer);
+    progress.show("writing " + output.name());
+    timeline.measure("write " + output.name(), "write", [&] { writer(files.begin(output)); });
   };
   if (a.color.format != Format::mp4)
-    write(a.color, [&] { write_color(a.color, p.color8.view(), p.color.view()); });
-  write(a.depth, [&] {
+    write(a.color, [&](io::AtomicFile& file) {
+      write_color(file, a.color.format, p.color8.view(), p.color.view());
+    });
+  write(a.depth, [&](io::AtomicFile& file) {
     if (a.depth_unit == DepthUnit::world)
-      write_depth(a.depth, distances(p.depth.view(), camera).view());
+      write_depth(file, a.depth.format, distances(p.depth.view(), camera).view());
     else
-      write_depth(a.depth, p.depth.view());
+      write_depth(file, a.depth.format, p.depth.view());
   });
-  write(a.ids, [&] { io::write_npy(a.ids.file, p.ids.view()); });
-  write(a.objects,
-        [&] { io::write_npy(a.objects.file, inputs_of_ids(p.ids.view(), inputs.parts).view()); });
-  write(a.heatmap, [&] {
+  write(a.ids, [&](io::AtomicFile& file) { io::write_npy(file, p.ids.view()); });
+  write(a.objects, [&](io::AtomicFile& file) {
+    io::write_npy(file, inputs_of_ids(p.ids.view(), inputs.parts).view());
+  });
+  write(a.heatmap, [&](io::AtomicFile& file) {
     const Heatmap heatmap = make_heatmap(p.overdraw.view());
-    io::write_png(a.heatmap.file, heatmap.image.view());
+    io::write_png(file, heatmap.image.view());
     progress.clear();
     if (!a.quiet)
       std::fprintf(stderr,
@@ -251,7 +262,7 @@ void write_images(const RenderArguments& a, const Pictures& p, const Camera& cam
                    static_cast<unsigned long>(heatmap.max),
                    static_cast<unsigned long>(heatmap.sum));
   });
-  write(a.errors, [&] { write_error_picture(a, p, progress); });
+  write(a.errors, [&](io::AtomicFile& file) { write_error_picture(a, p, file, progress); });
 }
 
 Wanted wanted_of(const RenderArguments& a) {
@@ -294,16 +305,29 @@ nlohmann::ordered_json describe(const std::vector<FrameStats>& frames, const Ren
   return stats;
 }
 
+/// The outputs that are of the whole run; then all of `files` can be seen.
+void finish(const RenderArguments& a, const std::vector<FrameStats>& frames,
+            const Renderer& renderer, double load_ms, const Inputs& inputs,
+            const std::vector<Camera>& cameras, const Timeline& timeline, OutputFiles& files) {
+  if (a.stats)
+    write_json(files.begin(a.stats), describe(frames, renderer, load_ms, inputs, cameras));
+  if (a.trace) write_trace(files.begin(a.trace), timeline);
+  files.commit();
+}
+
 int run_sequence(const RenderArguments& a, Renderer& renderer, const Sequence& sequence,
                  const Inputs& inputs, double load_ms, Timeline& timeline, Progress& progress) {
   static_cast<void>(with_numbers(a, 0, sequence.count));
+  OutputFiles of_the_run;  // each picture's own files are seen as soon as it is drawn
   std::unique_ptr<Mp4Writer> video;
   if (a.color && a.color.format == Format::mp4)
-    video = std::make_unique<Mp4Writer>(a.color.file, a.render.width, a.render.height, a.fps);
+    video = std::make_unique<Mp4Writer>(of_the_run.begin(a.color), a.render.width, a.render.height,
+                                        a.fps);
 
   Pictures pictures;
   std::vector<FrameStats> frames;
   std::vector<Camera> cameras;
+  std::size_t empty = 0, first_empty = 0;
   for (std::size_t i = 0; i < sequence.count; ++i) {
     progress.show("picture " + std::to_string(i + 1) + " of " + std::to_string(sequence.count));
     const auto [scene, camera] = sequence.shot(i);
@@ -311,18 +335,29 @@ int run_sequence(const RenderArguments& a, Renderer& renderer, const Sequence& s
                                      timeline, progress);
     frames.push_back(stats.front());
     cameras.push_back(camera);
-    write_images(with_numbers(a, i, sequence.count), pictures, camera, inputs, timeline, progress);
+    if (is_empty(stats.front(), renderer.options()) && empty++ == 0) first_empty = i;
+    OutputFiles files;
+    write_images(with_numbers(a, i, sequence.count), pictures, camera, inputs, files, timeline,
+                 progress);
+    files.commit();
     if (video) video->add(pictures.color8.view());
   }
   if (video) video->finish();
   progress.clear();
   const FrameStats& median = frames[median_frame(frames)];
-  if (!a.quiet) report_missing(median);
-  if (a.stats) write_json(a.stats.file, describe(frames, renderer, load_ms, inputs, cameras));
-  if (a.trace) write_trace(a.trace.file, timeline);
+  if (!a.quiet) {
+    report_missing(median);
+    if (empty != 0) {
+      const auto [scene, camera] = sequence.shot(first_empty);
+      warn("nothing is seen in " + std::to_string(empty) + " of " + std::to_string(sequence.count) +
+           " pictures; in number " + std::to_string(first_empty) + ", the first of them, " +
+           why_empty(frames[first_empty], renderer.options(), scene, camera).reason);
+    }
+  }
+  finish(a, frames, renderer, load_ms, inputs, cameras, timeline, of_the_run);
   if (!a.quiet && a.color)
     std::fprintf(stderr, "%s: %lu pictures of %dx%d, %lu triangles, %.1f ms a picture\n",
-                 a.color.file.c_str(), static_cast<unsigned long>(sequence.count), a.render.width,
+                 a.color.name().c_str(), static_cast<unsigned long>(sequence.count), a.render.width,
                  a.render.height, static_cast<unsigned long>(median.triangles.input),
                  median.frame_ms);
   return 0;
@@ -336,7 +371,7 @@ int run(RenderArguments& a) {
   auto renderer = std::make_unique<Renderer>(a.render);
 
   const double load_begin = timeline.now_ms();
-  const Inputs inputs = load_inputs(a.inputs, a.normals, timeline, progress);
+  const Inputs inputs = load_inputs(a.inputs, a.normals, timeline, progress, a.format);
   const Scene& scene = inputs.scene;
   const double load_ms = timeline.now_ms() - load_begin;
   if (!a.quiet && !scene.warnings.empty()) {
@@ -367,14 +402,20 @@ int run(RenderArguments& a) {
                     timeline, progress);
   const FrameStats& median = frames[median_frame(frames)];
   progress.clear();
-  if (!a.quiet) report_missing(median);
+  if (!a.quiet) {
+    report_missing(median);
+    if (is_empty(median, a.render)) {
+      const Emptiness why = why_empty(median, a.render, binding.view(), camera);
+      warn("nothing is seen: " + why.reason + "; " + why.remedy);
+    }
+  }
 
-  write_images(a, pictures, camera, inputs, timeline, progress);
+  OutputFiles files;
+  write_images(a, pictures, camera, inputs, files, timeline, progress);
   progress.clear();
-  if (a.stats) write_json(a.stats.file, describe(frames, *renderer, load_ms, inputs, {camera}));
-  if (a.trace) write_trace(a.trace.file, timeline);
+  finish(a, frames, *renderer, load_ms, inputs, {camera}, timeline, files);
   if (!a.quiet && a.color)
-    std::fprintf(stderr, "%s: %dx%d, %lu triangles, %.1f ms%s\n", a.color.file.c_str(),
+    std::fprintf(stderr, "%s: %dx%d, %lu triangles, %.1f ms%s\n", a.color.name().c_str(),
                  a.render.width, a.render.height,
                  static_cast<unsigned long>(median.triangles.input), median.frame_ms,
                  timed ? " a frame" : "");
@@ -410,7 +451,8 @@ Command add_render_command(Parser& app) {
       "  rastrum render dragon.ply --path flight.json --fps 60 -o 'frame_%04d.png'\n"
       "  rastrum render shell.ply@opacity=0.3,color=#88aaff core.stl@z=0.2,rx=90 -o glass.png\n"
       "  rastrum render dragon.ply --turntable 120 -o dragon.mp4\n"
-      "  rastrum render a.stl b.stl --depth d.npy --depth-unit world --objects o.npy";
+      "  rastrum render a.stl b.stl --depth d.npy --depth-unit world --objects o.npy\n"
+      "  rastrum make sphere -o - | rastrum render - --format ply -o - | display";
   render.footer(footer);
   return {render, [arguments] { return run(*arguments); }};
 }

@@ -1,8 +1,10 @@
 #include "scene_options.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/io/io.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
 #include "transparency.hpp"
@@ -35,13 +37,28 @@ Shader parse_shader(const std::string& text) {
 }  // namespace
 
 Option add_input_option(Parser& app, SceneArguments& a) {
+  add_format_option(app, a.format);
   return app
       .add_option(
           "INPUT", a.inputs,
           "files (.obj .ply .stl .off .gltf .glb) and builtin:SHAPE[?name=value,...], drawn "
           "as one scene in this order; INPUT@x=X,y=Y,z=Z,scale=S,rx=DEG,ry=DEG,rz=DEG,"
-          "color=#RRGGBB,opacity=A places and paints one")
+          "color=#RRGGBB,opacity=A places and paints one; - is standard input")
       ->type_name("");
+}
+
+void add_format_option(Parser& app, std::string& format) {
+  std::string known;
+  for (const std::string_view name : io::scene_formats())
+    known.append(known.empty() ? "" : ", ").append(name);
+  add(app, "--format", "NAME", known + ": of inputs whose names do not say, such as -",
+      [&format, known](const std::string& s) {
+        const std::vector<std::string_view> names = io::scene_formats();
+        if (std::ranges::find(names, s) == names.end())
+          throw UsageError("--format", "expected one of " + known + ", got '" + s + "'");
+        format = s;
+      })
+      ->group("Inputs");
 }
 
 void add_shading_options(Parser& app, SceneArguments& a, const char* group) {
@@ -90,9 +107,9 @@ void add_picture_options(Parser& app, SceneArguments& a) {
     a.render.height = size.height;
   })->group(group);
   add_shading_options(app, a, group);
-  add(app, "--background", "#RRGGBB[AA]", "(#00000000, transparent)", [&a](const std::string& s) {
-    a.render.background = parse_color("--background", s);
-  })->group(group);
+  add(app, "--background", "COLOUR", "#rrggbb[aa], #rgb[a] or a name of CSS's (transparent)",
+      [&a](const std::string& s) { a.render.background = parse_color("--background", s); })
+      ->group(group);
 }
 
 void add_blending_options(Parser& app, SceneArguments& a, const char* group) {
@@ -221,9 +238,13 @@ std::string shapes_help() {
 }
 
 void check_scene_arguments(const SceneArguments& a) {
+  check_inputs(a.inputs, a.format);
   const ViewOptions& v = a.view;
-  if (a.fit && (v.eye || v.target || v.file_camera))
-    throw UsageError("--fit", "leaves no room for --eye, --target or --camera");
+  if (a.fit && (v.eye || v.target || v.file_camera)) {
+    const std::string other = v.eye ? "--eye" : v.target ? "--target" : "--camera";
+    throw UsageError("--fit", "puts the camera where it sees everything, " + other +
+                                  " where you say: leave one of them out");
+  }
   if (a.crease_given && (a.normals.kind == Normals::vertex || a.normals.kind == Normals::face))
     throw UsageError("--crease", "is for --normals file and crease");
   if (v.file_camera && v.orthographic)

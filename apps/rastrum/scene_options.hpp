@@ -14,6 +14,7 @@ namespace rastrum::cli {
 
 struct SceneArguments {
   std::vector<std::string> inputs;
+  std::string format;  ///< of inputs whose names do not say
   RenderOptions render;
   NormalOptions normals;
   bool crease_given = false;
@@ -21,7 +22,10 @@ struct SceneArguments {
   bool fit = false;
 };
 
-/// Adds INPUT and the groups of options to `app`; parsing fills `a`, which must outlive it.
+/// Adds --format, for a command that reads meshes.
+void add_format_option(Parser& app, std::string& format);
+/// Adds INPUT, --format and the groups of options to `app`; parsing fills `a`, which must outlive
+/// it.
 Option add_input_option(Parser& app, SceneArguments& a);
 void add_picture_options(Parser& app, SceneArguments& a);
 void add_transparency_options(Parser& app, SceneArguments& a);

@@ -46,20 +46,20 @@ struct TerrainArguments : TerrainSceneArguments {
 
 void add_outputs(Parser& app, TerrainArguments& a) {
   const char* group = "Outputs";
-  add(app, "-o,--output", "FILE", ".png: 8 bit; with --path also .mp4", [&a](const std::string& s) {
-    a.color = parse_output("-o", s, {Format::png, Format::mp4});
-  })->group(group);
+  add(app, "-o,--output", "FILE",
+      ".png: 8 bit; with --path also .mp4; - is standard output, here and below",
+      [&a](const std::string& s) {
+        a.color = parse_output("-o", s, {Format::png, Format::mp4});
+      })
+      ->group(group);
   add(app, "--depth", "FILE", ".npy or .exr: float32, cells along the view, inf where the sky is",
       [&a](const std::string& s) {
         a.depth = parse_output("--depth", s, {Format::npy, Format::exr});
       })
       ->group(group);
-  add(app, "--stats", "FILE", ".json or - (standard output): counts, memory and times",
-      [&a](const std::string& s) {
-        a.stats = s == "-" ? Output{"--stats", s, Format::json}
-                           : parse_output("--stats", s, {Format::json});
-      })
-      ->group(group);
+  add(app, "--stats", "FILE", ".json: counts, memory and times", [&a](const std::string& s) {
+    a.stats = parse_output("--stats", s, {Format::json});
+  })->group(group);
   app.add_flag("--quiet", a.quiet, "print errors alone")->group(group);
 }
 
@@ -103,9 +103,7 @@ void check(const TerrainArguments& a) {
     throw UsageError("-o", "an .mp4 is drawn along a camera path: give --path");
   if (!a.path.empty()) check_path(a);
   check_terrain_objects(a.objects, a.options);
-  const bool stats_to_file = a.stats && a.stats.file != "-";
-  const Output none;
-  const Output* const outputs[] = {&a.color, &a.depth, stats_to_file ? &a.stats : &none};
+  const Output* const outputs[] = {&a.color, &a.depth, &a.stats};
   check_outputs(outputs);
 }
 
@@ -183,19 +181,22 @@ struct Pictures {
     return stats;
   }
   /// Requires draw() of the same frame, which leaves the depth where there are objects.
-  void write_depth(const Stage& stage, const terrain::TerrainCamera& camera, const Output& output) {
+  void write_depth(const Stage& stage, const terrain::TerrainCamera& camera, const Output& output,
+                   OutputFiles& files) {
     if (stage.objects == nullptr)
       stage.renderer.render(stage.terrain, camera, {.depth = depth.view()});
-    cli::write_depth(output, depth.view());
+    cli::write_depth(files.begin(output), output.format, depth.view());
   }
 };
 
-void write_stats(const TerrainArguments& a, const Stage& stage, std::vector<TerrainStats> frames) {
+/// The output that is of the whole run.
+void write_stats(const TerrainArguments& a, const Stage& stage, std::vector<TerrainStats> frames,
+                 OutputFiles& files) {
   if (!a.stats) return;
   nlohmann::ordered_json json =
       stats_json(std::move(frames), a, stage.source, stage.load_ms, stage.light_ms);
   if (stage.objects != nullptr) json["objects"] = {{"triangles", stage.objects->triangles()}};
-  write_json(a.stats.file, json);
+  write_json(files.begin(a.stats), json);
 }
 
 int run_path(const TerrainArguments& a, const Stage& stage, const terrain::TerrainCamera& base,
@@ -208,9 +209,11 @@ int run_path(const TerrainArguments& a, const Stage& stage, const terrain::Terra
   // Names are refused before anything is drawn.
   for (const Output* const output : {&a.color, &a.depth})
     static_cast<void>(numbered(*output, 0, count));
+  OutputFiles of_the_run;  // each picture's own files are seen as soon as it is drawn
   std::unique_ptr<Mp4Writer> video;
   if (a.color && a.color.format == Format::mp4)
-    video = std::make_unique<Mp4Writer>(a.color.file, a.options.width, a.options.height, fps);
+    video = std::make_unique<Mp4Writer>(of_the_run.begin(a.color), a.options.width,
+                                        a.options.height, fps);
 
   Pictures pictures(stage, static_cast<bool>(a.depth));
   std::vector<TerrainStats> frames;
@@ -218,17 +221,20 @@ int run_path(const TerrainArguments& a, const Stage& stage, const terrain::Terra
     progress.show("picture " + std::to_string(i + 1) + " of " + std::to_string(count));
     const terrain::TerrainCamera camera = path.at(times[i]);
     frames.push_back(pictures.draw(stage, camera));
+    OutputFiles files;
     if (video)
       video->add(pictures.color.view());
     else if (a.color)
-      io::write_png(numbered(a.color, i, count).file, pictures.color.view());
-    if (a.depth) pictures.write_depth(stage, camera, numbered(a.depth, i, count));
+      io::write_png(files.begin(numbered(a.color, i, count)), pictures.color.view());
+    if (a.depth) pictures.write_depth(stage, camera, numbered(a.depth, i, count), files);
+    files.commit();
   }
   if (video) video->finish();
   progress.clear();
-  write_stats(a, stage, std::move(frames));
+  write_stats(a, stage, std::move(frames), of_the_run);
+  of_the_run.commit();
   if (!a.quiet && a.color)
-    std::fprintf(stderr, "%s: %lu pictures of %dx%d\n", a.color.file.c_str(),
+    std::fprintf(stderr, "%s: %lu pictures of %dx%d\n", a.color.name().c_str(),
                  static_cast<unsigned long>(count), a.options.width, a.options.height);
   return 0;
 }
@@ -274,14 +280,16 @@ int run(TerrainArguments& a) {
     progress.show("rendering frame " + std::to_string(i + 1) + " of " + std::to_string(count));
     frames.push_back(pictures.draw(stage, camera));
   }
-  if (a.color) io::write_png(a.color.file, pictures.color.view());
-  if (a.depth) pictures.write_depth(stage, camera, a.depth);
+  OutputFiles files;
+  if (a.color) io::write_png(files.begin(a.color), pictures.color.view());
+  if (a.depth) pictures.write_depth(stage, camera, a.depth, files);
   progress.clear();
   const auto fastest = std::ranges::min(frames, {}, &TerrainStats::frame_ms).frame_ms;
-  write_stats(a, stage, std::move(frames));
+  write_stats(a, stage, std::move(frames), files);
+  files.commit();
   if (!a.quiet && a.color)
-    std::fprintf(stderr, "%s: %dx%d, map %dx%d, %.1f ms%s\n", a.color.file.c_str(), a.options.width,
-                 a.options.height, source.width(), source.height(), fastest,
+    std::fprintf(stderr, "%s: %dx%d, map %dx%d, %.1f ms%s\n", a.color.name().c_str(),
+                 a.options.width, a.options.height, source.width(), source.height(), fastest,
                  count > 1 ? " the fastest frame" : "");
   return 0;
 }

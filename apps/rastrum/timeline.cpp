@@ -12,7 +12,7 @@ void Timeline::add_frame(std::string name, double begin_ms, const FrameStats& fr
     add({stage.name, "stage", begin_ms + stage.begin_ms, begin_ms + stage.end_ms});
 }
 
-void write_trace(const std::filesystem::path& file, const Timeline& timeline) {
+void write_trace(io::AtomicFile& file, const Timeline& timeline) {
   constexpr double kMicrosecondsPerMs = 1000;
   nlohmann::ordered_json events = nlohmann::ordered_json::array();
   events.push_back(

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <chrono>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <rastrum/io/atomic_file.hpp>
 #include <rastrum/raster/options.hpp>
 
 namespace rastrum::cli {
@@ -44,6 +44,6 @@ class Timeline {
 
 /// The Trace Event Format of Chrome's about:tracing and of Perfetto: "complete" events (ph X) in
 /// µs. Throws Error{io}.
-void write_trace(const std::filesystem::path& file, const Timeline& timeline);
+void write_trace(io::AtomicFile& file, const Timeline& timeline);
 
 }  // namespace rastrum::cli

@@ -54,6 +54,7 @@ int show(std::unique_ptr<window::Subject> subject, WindowArguments& a, int width
 
 int run(ViewArguments& a) {
   check_scene_arguments(a);
+  const window::Display display;  // before a large file is read
   auto subject = std::make_unique<window::MeshSubject>(a, window::load_scene(a));
   window::MeshSubject& meshes = *subject;
   return show(std::move(subject), a.window, a.render.width, a.render.height,
@@ -84,7 +85,9 @@ std::vector<TerrainInput> maps_of(const ViewTerrainArguments& a) {
 
 int run(ViewTerrainArguments& a) {
   settle(a);
-  auto subject = std::make_unique<window::TerrainSubject>(a, maps_of(a));
+  std::vector<TerrainInput> maps = maps_of(a);
+  const window::Display display;  // before a large file is read
+  auto subject = std::make_unique<window::TerrainSubject>(a, std::move(maps));
   window::TerrainSubject& terrain = *subject;
   return show(std::move(subject), a.window, a.options.width, a.options.height,
               [&terrain] { window::draw_terrain_controls(terrain); });

@@ -1,11 +1,15 @@
 #include <rastrum/io/atomic_file.hpp>
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <string>
 #include <system_error>
 
@@ -13,68 +17,189 @@
 
 namespace rastrum::io {
 namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kSuffix = ".rastrum-tmp";
+
+/// The temporaries of this process. Whoever makes, renames or removes one holds the mutex.
+struct Live {
+  std::mutex mutex;
+  std::set<std::string> names;
+};
+Live& live() {
+  static Live* const all = new Live;  // never destroyed: a thread may still write at the end
+  return *all;
+}
+
+void forget(const fs::path& temporary) {
+  Live& all = live();
+  const std::scoped_lock lock(all.mutex);
+  ::unlink(temporary.c_str());
+  all.names.erase(temporary.string());
+}
+
+/// Whether the file of `fd` is ours from now on. False: it has been taken for one that was left.
+bool keep(int fd) {
+  if (::flock(fd, LOCK_EX | LOCK_NB) != 0) return errno != EWOULDBLOCK;
+  struct stat info {};
+  return ::fstat(fd, &info) == 0 && info.st_nlink > 0;
+}
+
+}  // namespace
 
 AtomicFile::AtomicFile(const fs::path& file) : asked_(file), target_(file) {
   std::error_code ignored;
+  const fs::file_status status = fs::status(file, ignored);
+  if (fs::is_directory(status)) fail("it is a directory");
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    const int fd = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+    if (fd < 0) fail(std::strerror(errno));
+    if (::lseek(fd, 0, SEEK_CUR) < 0) {
+      spool(fd);
+      return;
+    }
+    stream_ = ::fdopen(fd, "wb");
+    if (stream_ != nullptr) return;
+    const int error = errno;
+    ::close(fd);
+    fail(std::strerror(error));
+  }
   if (fs::is_symlink(file, ignored)) {
     const fs::path followed = fs::weakly_canonical(file, ignored);
     if (!ignored) target_ = followed;
   }
-  const fs::file_status status = fs::status(target_, ignored);
-  if (fs::is_directory(status)) fail("it is a directory");
-  const bool direct = fs::exists(status) && !fs::is_regular_file(status);
-  int fd = -1;
-  if (direct) {
-    temporary_ = target_;
-    fd = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
-  } else {
-    // Two writers of one name, in this process or another, must not meet in one temporary.
-    static std::atomic<unsigned> serial{0};
-    temporary_ = target_;
-    std::string hidden = target_.filename().string();
-    hidden.insert(0, 1, '.');
-    hidden.append(".").append(std::to_string(::getpid()));
-    hidden.append(".").append(std::to_string(serial++)).append(".tmp");
-    temporary_.replace_filename(hidden);
-    fd = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  }
+  open_temporary();
+}
+
+AtomicFile::AtomicFile(StandardOutput) : asked_("standard output") {
+  const int fd = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
   if (fd < 0) fail(std::strerror(errno));
-  stream_ = ::fdopen(fd, "wb");
-  if (stream_ == nullptr) {
-    const int error = errno;
-    ::close(fd);
-    if (temporary_ != target_) fs::remove(temporary_, ignored);
-    fail(std::strerror(error));
+  spool(fd);
+}
+
+void AtomicFile::open_temporary() {
+  // Two writers of one name, in this process or another, must not meet in one temporary; another
+  // may have our number, as the first process of every container has.
+  static std::atomic<unsigned> serial{0};
+  constexpr int kTries = 100;
+  constexpr std::size_t kLongest = 200;  // bytes, so that there is room for the rest
+  std::string begin(".");
+  begin.append(target_.filename().string(), 0, kLongest).append(".");
+  begin.append(std::to_string(::getpid())).append(".");
+  int error = EEXIST;
+  for (int i = 0; i < kTries && error == EEXIST; ++i) {
+    fs::path name = target_;
+    name.replace_filename(begin + std::to_string(serial++) + kSuffix);
+    Live& all = live();
+    const std::scoped_lock lock(all.mutex);
+    const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    error = fd < 0 ? errno : 0;
+    if (fd < 0) continue;
+    if (!keep(fd)) {
+      ::close(fd);
+      error = EEXIST;
+      continue;
+    }
+    lock_ = ::fcntl(fd, F_DUPFD_CLOEXEC, 0);
+    stream_ = ::fdopen(fd, "wb");
+    if (lock_ >= 0 && stream_ != nullptr) {
+      all.names.insert(name.string());
+      temporary_ = name;
+      return;
+    }
+    error = errno;
+    if (stream_ == nullptr) ::close(fd);
+    ::unlink(name.c_str());
   }
+  if (stream_ != nullptr) std::fclose(stream_);
+  if (lock_ >= 0) ::close(lock_);
+  fail(std::strerror(error));
+}
+
+void AtomicFile::spool(int fd) {
+  sent_ = fd;
+  stream_ = std::tmpfile();
+  if (stream_ != nullptr) return;
+  const int error = errno;
+  ::close(fd);
+  fail((std::string("no temporary file for it: ") + std::strerror(error)).c_str());
 }
 
 AtomicFile::~AtomicFile() {
-  if (stream_ == nullptr) return;
-  std::fclose(stream_);
-  std::error_code ignored;
-  if (temporary_ != target_) fs::remove(temporary_, ignored);
+  if (stream_ != nullptr) std::fclose(stream_);
+  if (!temporary_.empty()) forget(temporary_);
+  if (lock_ >= 0) ::close(lock_);
+  if (sent_ >= 0) ::close(sent_);
 }
 
 void AtomicFile::write(const void* data, std::size_t size) {
   if (std::fwrite(data, 1, size, stream_) != size) fail(std::strerror(errno));
 }
 
-void AtomicFile::commit() {
+void AtomicFile::finish() {
   if (std::fflush(stream_) != 0 || std::ferror(stream_) != 0) fail(std::strerror(errno));
+  if (sent_ >= 0) return;
   std::FILE* const stream = stream_;
   stream_ = nullptr;
-  std::error_code error;
-  const bool closed = std::fclose(stream) == 0;
-  const int close_error = errno;
-  if (closed && temporary_ != target_) fs::rename(temporary_, target_, error);
-  if (closed && !error) return;
-  std::error_code ignored;
-  if (temporary_ != target_) fs::remove(temporary_, ignored);
-  fail(closed ? error.message().c_str() : std::strerror(close_error));
+  if (std::fclose(stream) != 0) fail(std::strerror(errno));
+}
+
+void AtomicFile::send() {
+  constexpr std::size_t kChunk = std::size_t{1} << 16;
+  char bytes[kChunk];
+  std::rewind(stream_);
+  while (const std::size_t n = std::fread(bytes, 1, kChunk, stream_))
+    for (std::size_t done = 0; done < n;) {
+      const ssize_t now = ::write(sent_, bytes + done, n - done);
+      if (now < 0 && errno == EINTR) continue;
+      if (now < 0) fail(std::strerror(errno));
+      done += static_cast<std::size_t>(now);
+    }
+  if (std::ferror(stream_) != 0) fail(std::strerror(errno));
+  const int fd = sent_;
+  sent_ = -1;
+  if (::close(fd) != 0) fail(std::strerror(errno));
+}
+
+void AtomicFile::commit() {
+  AtomicFile* const self = this;
+  commit({&self, 1});
+}
+
+void AtomicFile::commit(std::span<AtomicFile* const> files) {
+  for (AtomicFile* const f : files) f->finish();
+  for (AtomicFile* const f : files)
+    if (f->sent_ >= 0) f->send();
+  Live& all = live();
+  const std::scoped_lock lock(all.mutex);
+  for (AtomicFile* const f : files) {
+    if (f->temporary_.empty()) continue;
+    if (::rename(f->temporary_.c_str(), f->target_.c_str()) != 0) f->fail(std::strerror(errno));
+    all.names.erase(f->temporary_.string());
+    f->temporary_.clear();
+  }
 }
 
 void AtomicFile::fail(const char* what) const {
   throw Error(Errc::io, asked_.string() + ": cannot be written: " + what);
+}
+
+void abandon_files() noexcept {
+  Live& all = live();
+  all.mutex.lock();  // and never unlocked: see the header
+  for (const std::string& name : all.names) ::unlink(name.c_str());
+}
+
+void remove_abandoned(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    const std::string name = at->path().filename().string();
+    if (!name.starts_with('.') || !name.ends_with(kSuffix)) continue;
+    const int fd = ::open(at->path().c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (fd < 0) continue;
+    if (::flock(fd, LOCK_EX | LOCK_NB) == 0) ::unlink(at->path().c_str());
+    ::close(fd);
+  }
 }
 
 }  // namespace rastrum::io

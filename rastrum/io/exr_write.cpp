@@ -40,13 +40,11 @@ class Stream final : public Imf::OStream {
 
 /// `names`: a channel for each float of a pixel, in order.
 template <class T, std::size_t N>
-void write(const std::filesystem::path& file, ImageView<const T> image,
-           const char* const (&names)[N]) {
+void write(AtomicFile& out, ImageView<const T> image, const char* const (&names)[N]) {
   static_assert(sizeof(T) == N * sizeof(float));
   if (image.empty() || image.width < 1 || image.height < 1)
-    throw Error(Errc::invalid_argument, file.string() + ": an empty image cannot be written");
-  check_stride(image, file.string());
-  AtomicFile out(file);
+    throw Error(Errc::invalid_argument, out.name().string() + ": an empty image cannot be written");
+  check_stride(image, out.name().string());
   try {
     // ZIPS compresses row by row, without loss.
     Imf::Header header(image.width, image.height);
@@ -60,7 +58,7 @@ void write(const std::filesystem::path& file, ImageView<const T> image,
       frame.insert(names[c],
                    Imf::Slice(Imf::FLOAT, base + c * sizeof(float), sizeof(T), row_bytes));
     }
-    Stream stream(out, file.string());
+    Stream stream(out, out.name().string());
     Imf::OutputFile exr(stream, header);
     exr.setFrameBuffer(frame);
     exr.writePixels(image.height);
@@ -69,17 +67,16 @@ void write(const std::filesystem::path& file, ImageView<const T> image,
   } catch (const std::exception& e) {
     out.fail(e.what());
   }
-  out.commit();
 }
 
 }  // namespace
 
-void write_exr(const std::filesystem::path& file, ImageView<const Vec4> image) {
-  write(file, image, {"R", "G", "B", "A"});
+void write_exr(AtomicFile& out, ImageView<const Vec4> image) {
+  write(out, image, {"R", "G", "B", "A"});
 }
 
-void write_exr(const std::filesystem::path& file, ImageView<const float> image) {
-  write(file, image, {"Z"});
+void write_exr(AtomicFile& out, ImageView<const float> image) {
+  write(out, image, {"Z"});
 }
 
 #else
@@ -93,12 +90,12 @@ namespace {
 
 }  // namespace
 
-void write_exr(const std::filesystem::path& file, ImageView<const Vec4>) {
-  fail(file);
+void write_exr(AtomicFile& out, ImageView<const Vec4>) {
+  fail(out.name());
 }
 
-void write_exr(const std::filesystem::path& file, ImageView<const float>) {
-  fail(file);
+void write_exr(AtomicFile& out, ImageView<const float>) {
+  fail(out.name());
 }
 #endif
 

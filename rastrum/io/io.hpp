@@ -7,17 +7,28 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <rastrum/core/image.hpp>
 #include <rastrum/scene/scene.hpp>
 
 namespace rastrum::io {
 
+class AtomicFile;
+
 /// Reads .obj (with .mtl), .ply, .stl, .off, .gltf or .glb (by extension, any case).
 /// Vertices with non-finite coordinates are kept (the renderer drops and counts their triangles);
 /// degenerate triangles keep their numbers. Normals are the file's or none.
 /// Throws Error{not_found | bad_format | unsupported | io} naming the file and the place in it.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& file);
+
+/// The same from memory. `format`: obj, ply, stl, off, gltf or glb, as an extension has it, with or
+/// without its dot. `name` appears in errors, and textures and the like are looked for beside it.
+[[nodiscard]] Scene decode_scene(std::span<const std::byte> bytes, std::string_view format,
+                                 const std::filesystem::path& name);
+/// The formats of read_scene, without dots.
+[[nodiscard]] std::vector<std::string_view> scene_formats();
 
 /// Decodes a PNG or JPEG (by its first bytes), from a file or from memory; `name` appears in
 /// errors.
@@ -41,5 +52,16 @@ void write_npy(const std::filesystem::path& file, ImageView<const std::int32_t> 
 /// that share the positions' indices (those with indices of their own are left out). Throws
 /// Error{invalid_argument} for an index out of range or fewer values than positions.
 void write_ply(const std::filesystem::path& file, const Mesh& mesh);
+
+/// The same into a file that the caller has begun and commits: together with others, or to standard
+/// output (atomic_file.hpp).
+void write_png(AtomicFile& out, ImageView<const Rgba8> image);
+void write_exr(AtomicFile& out, ImageView<const Vec4> image);
+void write_npy(AtomicFile& out, ImageView<const Vec4> image);
+void write_exr(AtomicFile& out, ImageView<const float> image);
+void write_npy(AtomicFile& out, ImageView<const float> image);
+void write_npy(AtomicFile& out, ImageView<const std::int64_t> image);
+void write_npy(AtomicFile& out, ImageView<const std::int32_t> image);
+void write_ply(AtomicFile& out, const Mesh& mesh);
 
 }  // namespace rastrum::io

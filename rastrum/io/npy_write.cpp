@@ -10,11 +10,10 @@ namespace rastrum::io {
 namespace {
 
 template <class T>
-void write(const std::filesystem::path& file, ImageView<const T> image, const char* type,
-           const char* inner) {
+void write(AtomicFile& out, ImageView<const T> image, const char* type, const char* inner) {
   if (image.empty() || image.width < 1 || image.height < 1)
-    throw Error(Errc::invalid_argument, file.string() + ": an empty image cannot be written");
-  check_stride(image, file.string());
+    throw Error(Errc::invalid_argument, out.name().string() + ": an empty image cannot be written");
+  check_stride(image, out.name().string());
   std::string header = std::string("{'descr': '") +
                        (std::endian::native == std::endian::little ? '<' : '>') + type +
                        "', 'fortran_order': False, 'shape': (" + std::to_string(image.height) +
@@ -31,30 +30,28 @@ void write(const std::filesystem::path& file, ImageView<const T> image, const ch
                                 0,
                                 static_cast<char>(header.size() & 0xFF),
                                 static_cast<char>(header.size() >> 8)};
-  AtomicFile out(file);
   out.write(prefix, sizeof prefix);
   out.write(header.data(), header.size());
   for (int y = 0; y < image.height; ++y)
     out.write(image.row(y), static_cast<std::size_t>(image.width) * sizeof(T));
-  out.commit();
 }
 
 }  // namespace
 
-void write_npy(const std::filesystem::path& file, ImageView<const Vec4> image) {
-  write(file, image, "f4", ", 4");
+void write_npy(AtomicFile& out, ImageView<const Vec4> image) {
+  write(out, image, "f4", ", 4");
 }
 
-void write_npy(const std::filesystem::path& file, ImageView<const float> image) {
-  write(file, image, "f4", "");
+void write_npy(AtomicFile& out, ImageView<const float> image) {
+  write(out, image, "f4", "");
 }
 
-void write_npy(const std::filesystem::path& file, ImageView<const std::int64_t> image) {
-  write(file, image, "i8", "");
+void write_npy(AtomicFile& out, ImageView<const std::int64_t> image) {
+  write(out, image, "i8", "");
 }
 
-void write_npy(const std::filesystem::path& file, ImageView<const std::int32_t> image) {
-  write(file, image, "i4", "");
+void write_npy(AtomicFile& out, ImageView<const std::int32_t> image) {
+  write(out, image, "i4", "");
 }
 
 }  // namespace rastrum::io

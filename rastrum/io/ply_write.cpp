@@ -50,14 +50,14 @@ class Buffer {
 
 }  // namespace
 
-void write_ply(const std::filesystem::path& file, const Mesh& mesh) {
+void write_ply(AtomicFile& out, const Mesh& mesh) {
   const std::size_t vertices = mesh.positions.size();
   const MeshView view = mesh.view();
   const std::size_t faces = view.triangle_count();
   const auto shared = [&](const auto& attribute, const char* what) {
     if (attribute.empty() || !attribute.indices.empty() || vertices == 0) return false;
     if (attribute.values.size() < vertices)
-      throw Error(Errc::invalid_argument, file.string() + ": the mesh has " +
+      throw Error(Errc::invalid_argument, out.name().string() + ": the mesh has " +
                                               std::to_string(vertices) + " positions, but " + what +
                                               " for only " +
                                               std::to_string(attribute.values.size()));
@@ -69,7 +69,7 @@ void write_ply(const std::filesystem::path& file, const Mesh& mesh) {
   const bool bytes = colors && fit_bytes(mesh.colors.values);
   for (const std::uint32_t i : mesh.indices)
     if (i >= vertices)
-      throw Error(Errc::invalid_argument, file.string() + ": the mesh refers to vertex " +
+      throw Error(Errc::invalid_argument, out.name().string() + ": the mesh refers to vertex " +
                                               std::to_string(i) + " of " +
                                               std::to_string(vertices));
 
@@ -84,7 +84,6 @@ void write_ply(const std::filesystem::path& file, const Mesh& mesh) {
   header += "element face " + std::to_string(faces) +
             "\nproperty list uchar uint vertex_indices\nend_header\n";
 
-  AtomicFile out(file);
   Buffer buffer(out);
   buffer.put(header.data(), header.size());
   for (std::size_t i = 0; i < vertices; ++i) {
@@ -114,7 +113,6 @@ void write_ply(const std::filesystem::path& file, const Mesh& mesh) {
     buffer.put(face, sizeof face);
   }
   buffer.flush();
-  out.commit();
 }
 
 }  // namespace rastrum::io

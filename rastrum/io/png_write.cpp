@@ -59,17 +59,13 @@ bool write_rows(PngWriter* state, ImageView<const Rgba8> image) {
 
 }  // namespace
 
-void write_png(const std::filesystem::path& file, ImageView<const Rgba8> image) {
+void write_png(AtomicFile& out, ImageView<const Rgba8> image) {
   if (image.empty() || image.width < 1 || image.height < 1)
-    throw Error(Errc::invalid_argument, file.string() + ": an empty image cannot be written");
-  check_stride(image, file.string());
-  AtomicFile out(file);
-  {
-    PngWriter state;
-    state.stream = out.stream();
-    if (!write_rows(&state, image)) out.fail(state.message);
-  }
-  out.commit();
+    throw Error(Errc::invalid_argument, out.name().string() + ": an empty image cannot be written");
+  check_stride(image, out.name().string());
+  PngWriter state;
+  state.stream = out.stream();
+  if (!write_rows(&state, image)) out.fail(state.message);
 }
 
 }  // namespace rastrum::io

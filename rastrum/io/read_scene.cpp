@@ -1,10 +1,14 @@
 // The doors of io.hpp: which reader for which file.
 #include <rastrum/io/io.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cstring>
 #include <new>
+#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
@@ -32,6 +36,82 @@ std::string lower(std::string s) {
                                        std::to_string(bytes) + " bytes in the file)");
 }
 
+/// `extension`: with its dot, any case.
+const Reader& reader_of(const std::string& extension, const std::filesystem::path& name) {
+  std::string known;
+  for (const Reader& r : kReaders) {
+    if (lower(extension) == r.extension) return r;
+    known.append(known.empty() ? "" : ", ").append(r.extension);
+  }
+  throw Error(Errc::unsupported,
+              name.string() + ": is no kind of mesh file that is read here (" + known + ")");
+}
+
+/// The format that the first bytes, or for a binary STL the size, are of; empty: they do not say.
+std::string_view begins_as(Bytes bytes) {
+  constexpr std::size_t kStlHeader = 80, kStlTriangle = 50;
+  const std::string_view text = as_text(bytes);
+  for (const auto& [begin, extension] :
+       {std::pair<std::string_view, std::string_view>{"ply\n", ".ply"},
+        {"ply\r", ".ply"},
+        {"OFF", ".off"},
+        {"glTF", ".glb"}})
+    if (text.starts_with(begin)) return extension;
+  if (text.size() >= kStlHeader + 4) {
+    std::uint32_t count = 0;
+    std::memcpy(&count, text.data() + kStlHeader, 4);
+    if (text.size() == kStlHeader + 4 + kStlTriangle * std::uint64_t{count}) return ".stl";
+  }
+  if (text.starts_with("solid")) return ".stl";
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && text[first] == '{' ? ".gltf" : "";
+}
+
+/// For what a file with a wrong name leads to; empty where nothing is known.
+std::string wrong_name(Bytes bytes, const Reader& reader) {
+  const std::string_view is = begins_as(bytes);
+  if (is.empty() || reader_of(std::string(is), {}).parse == reader.parse) return {};
+  return "it begins as a " + std::string(is) + " file does: give it that name";
+}
+
+Scene parse(const Reader& reader, Bytes bytes, const std::filesystem::path& name) {
+  try {
+    Scene scene = reader.parse(bytes, name);
+    if (scene.triangle_count() == 0)
+      if (const std::string hint = wrong_name(bytes, reader); !hint.empty())
+        // What the wrong reader found odd besides is no news.
+        scene.warnings = {name.string() + ": no triangles as " + reader.extension + "; " + hint};
+    return scene;
+  } catch (const std::bad_alloc&) {
+    fail_memory(name.string(), bytes.size());
+  } catch (const Error& e) {
+    const std::string hint = wrong_name(bytes, reader);
+    if (e.code() != Errc::bad_format || hint.empty()) throw;
+    throw Error(e.code(), std::string(e.what()) + "; " + hint);
+  }
+}
+
+/// What to give instead: the files in it that are read here.
+[[noreturn]] void fail_folder(const std::filesystem::path& folder) {
+  namespace fs = std::filesystem;
+  std::set<fs::path> meshes;
+  std::error_code error;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+    if (std::ranges::any_of(kReaders, [&](const Reader& r) {
+          return lower(at->path().extension().string()) == r.extension;
+        }))
+      meshes.insert(at->path());
+  std::string what = folder.string() + ": is a folder; ";
+  if (meshes.empty())
+    what += "no mesh file lies in it";
+  else if (meshes.size() == 1)
+    what += "give the file in it, " + meshes.begin()->string();
+  else
+    what += "give files in it, such as " + meshes.begin()->string() + " (of " +
+            std::to_string(meshes.size()) + ")";
+  throw Error(Errc::io, what);
+}
+
 }  // namespace
 
 Scene scene_of(Mesh mesh) {
@@ -43,20 +123,25 @@ Scene scene_of(Mesh mesh) {
   return scene;
 }
 
+Scene decode_scene(std::span<const std::byte> bytes, std::string_view format,
+                   const std::filesystem::path& name) {
+  std::string extension(format);
+  if (!extension.starts_with('.')) extension.insert(0, 1, '.');
+  return parse(reader_of(extension, name), bytes, name);
+}
+
+std::vector<std::string_view> scene_formats() {
+  std::vector<std::string_view> names;
+  for (const Reader& r : kReaders) names.emplace_back(r.extension + 1);
+  return names;
+}
+
 Scene read_scene(const std::filesystem::path& file) {
-  const std::string extension = lower(file.extension().string());
-  for (const Reader& r : kReaders) {
-    if (extension != r.extension) continue;
-    const MappedFile mapped(file);
-    try {
-      return r.parse(mapped.bytes(), file);
-    } catch (const std::bad_alloc&) {
-      fail_memory(file.string(), mapped.bytes().size());
-    }
-  }
-  throw Error(Errc::unsupported, file.string() +
-                                     ": is no kind of mesh file that is read here (.obj, .ply, "
-                                     ".stl, .off, .gltf, .glb)");
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) fail_folder(file);
+  const Reader& reader = reader_of(file.extension().string(), file);
+  const MappedFile mapped(file);
+  return parse(reader, mapped.bytes(), file);
 }
 
 Image<Rgba8> decode_image(std::span<const std::byte> bytes, const std::string& name) {

@@ -51,6 +51,16 @@ TEST_F(Failure, DiskFullLeavesTheOldFile) {
   }
 }
 
+TEST_F(Failure, OfOneOutputLeavesNoneOfThem) {
+  // The picture fits, what comes after it does not.
+  const Outcome r = run({"render", "builtin:sphere", "--size", "64x64", "-o", "p.png", "--ids",
+                         "i.npy", "--stats", "s.json"},
+                        {.file_bytes = 20000});
+  EXPECT_EQ(r.status, 1) << r.err;
+  EXPECT_NE(r.err.find("i.npy"), std::string::npos) << r.err;
+  EXPECT_EQ(files(), Args{});
+}
+
 TEST_F(Failure, DeviceFull) {
   for (const auto& [file, output] : outputs()) {
     std::filesystem::create_symlink("/dev/full", path(file));

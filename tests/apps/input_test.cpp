@@ -130,7 +130,9 @@ TEST_F(Inputs, AnEmptySceneIsDrawnAndSaid) {
   write("e.obj", "v 0 0 0\n");
   const std::string said =
       must({"render", "e.obj", "-o", "p.png", "--size", "8x8", "--background", "#010203"});
-  EXPECT_NE(said.find("warning: there are no triangles to draw"), std::string::npos) << said;
+  EXPECT_NE(said.find("warning: nothing is seen: there are no triangles to draw"),
+            std::string::npos)
+      << said;
   EXPECT_EQ(png("p.png")(3, 3), (Rgba8{1, 2, 3, 255}));
 }
 

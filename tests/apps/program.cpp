@@ -31,11 +31,11 @@ std::string slurp(const fs::path& file) {
   return text.str();
 }
 
-/// In the child: becomes the program, or ends with 127.
-[[noreturn]] void become_program(const std::vector<std::string>& args, Limits limits,
-                                 const fs::path& folder, const fs::path& out, const fs::path& err) {
-  std::vector<char*> argv{const_cast<char*>(RASTRUM_PROGRAM)};
-  for (const std::string& a : args) argv.push_back(const_cast<char*>(a.c_str()));
+/// In the child: becomes the command, or ends with 127.
+[[noreturn]] void become(const std::vector<std::string>& command, Limits limits,
+                         const fs::path& folder, const fs::path& out, const fs::path& err) {
+  std::vector<char*> argv;
+  for (const std::string& a : command) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
   if (::chdir(folder.c_str()) != 0) ::_exit(127);
   const int o = limits.stdout_full ? ::open("/dev/full", O_WRONLY)
@@ -48,7 +48,7 @@ std::string slurp(const fs::path& file) {
     const rlimit limit{bytes, bytes};
     ::setrlimit(RLIMIT_FSIZE, &limit);
   }
-  ::execv(RASTRUM_PROGRAM, argv.data());
+  ::execv(argv[0], argv.data());
   ::_exit(127);
 }
 
@@ -64,18 +64,40 @@ void Program::TearDown() {
   fs::remove_all(folder_);
 }
 
-Outcome Program::run(const std::vector<std::string>& args, Limits limits) const {
-  // Beside the folder, so that the folder holds the program's own files alone.
-  const fs::path out = folder_.string() + ".out", err = folder_.string() + ".err";
+pid_t Program::start(const std::vector<std::string>& command, Limits limits) const {
   const pid_t child = ::fork();
-  if (child == 0) become_program(args, limits, folder_, out, err);
+  // Beside the folder, so that the folder holds the program's own files alone.
+  if (child == 0)
+    become(command, limits, folder_, folder_.string() + ".out", folder_.string() + ".err");
+  return child;
+}
+
+pid_t Program::start(const std::vector<std::string>& args) const {
+  std::vector<std::string> command{RASTRUM_PROGRAM};
+  command.insert(command.end(), args.begin(), args.end());
+  return start(command, Limits{});
+}
+
+Outcome Program::wait(pid_t program) const {
   int status = 0;
-  if (child < 0 || ::waitpid(child, &status, 0) != child) return {};
+  if (program < 0 || ::waitpid(program, &status, 0) != program) return {};
+  const fs::path out = folder_.string() + ".out", err = folder_.string() + ".err";
   Outcome r{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), slurp(out),
             slurp(err)};
   fs::remove(out);
   fs::remove(err);
   return r;
+}
+
+Outcome Program::run(const std::vector<std::string>& args, Limits limits) const {
+  std::vector<std::string> command{RASTRUM_PROGRAM};
+  command.insert(command.end(), args.begin(), args.end());
+  return wait(start(command, limits));
+}
+
+Outcome Program::shell(const std::string& script) const {
+  ::setenv("RASTRUM", RASTRUM_PROGRAM, 1);
+  return wait(start({"/bin/sh", "-c", script}, Limits{}));
 }
 
 std::string Program::must(const std::vector<std::string>& args) const {

@@ -1,6 +1,8 @@
 // Runs the built program in a directory of the test's own, and reads back what it wrote.
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -34,6 +36,11 @@ class Program : public testing::Test {
 
   /// Runs `rastrum args…` with the test's directory as the current one.
   [[nodiscard]] Outcome run(const std::vector<std::string>& args, Limits limits = {}) const;
+  /// Runs a script of sh's in that directory, in which $RASTRUM is the program.
+  [[nodiscard]] Outcome shell(const std::string& script) const;
+  /// Begins `rastrum args…`; wait() gives its outcome, as run() does.
+  [[nodiscard]] pid_t start(const std::vector<std::string>& args) const;
+  [[nodiscard]] Outcome wait(pid_t program) const;
   /// The same, which must succeed; returns what it said on stderr.
   std::string must(const std::vector<std::string>& args) const;
 
@@ -60,6 +67,7 @@ class Program : public testing::Test {
                                                     const std::vector<std::string>& channels) const;
 
  private:
+  [[nodiscard]] pid_t start(const std::vector<std::string>& command, Limits limits) const;
   std::filesystem::path folder_;
 };
 

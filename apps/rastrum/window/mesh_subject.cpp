@@ -70,7 +70,8 @@ std::vector<std::string> axis_names(const std::vector<AxisInfo>& axis) {
 std::shared_ptr<const LoadedScene> load_scene(const SceneArguments& a) {
   Timeline timeline;
   Progress progress(true);
-  return std::make_shared<const LoadedScene>(load_inputs(a.inputs, a.normals, timeline, progress));
+  return std::make_shared<const LoadedScene>(
+      load_inputs(a.inputs, a.normals, timeline, progress, a.format));
 }
 
 /// A renderer for the size of moving pictures and one for full ones, so that going from one to the

@@ -28,16 +28,15 @@ constexpr int kImguiFrames = 3;     ///< until ImGui has settled after an event
   throw Error(Errc::no_device, std::string(what) + ": " + SDL_GetError());
 }
 
-/// SDL, ImGui, the window and what belongs to it, undone in reverse.
+/// Whether somebody may look at what this driver of SDL draws.
+bool is_visible(const std::string& driver) {
+  return driver != "offscreen" && driver != "dummy" && driver != "evdev";
+}
+
+/// ImGui, the window and what belongs to it, undone in reverse.
 class Screen {
  public:
   Screen(const std::string& what, int width, int height) {
-    SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
-    // A software renderer would go through OpenGL to the screen, which users need not have.
-    SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
-    SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // Ctrl-C in the terminal ends the program
-    if (SDL_Init(SDL_INIT_VIDEO) != 0)
-      fail("there is no display to open a window on (`rastrum render` draws into files)");
     window_ = SDL_CreateWindow(title_of(what).c_str(), SDL_WINDOWPOS_UNDEFINED,
                                SDL_WINDOWPOS_UNDEFINED, width, height, SDL_WINDOW_RESIZABLE);
     if (window_ == nullptr) undo_and_fail("the window cannot be opened");
@@ -110,7 +109,6 @@ class Screen {
     if (texture_ != nullptr) SDL_DestroyTexture(texture_);
     if (renderer_ != nullptr) SDL_DestroyRenderer(renderer_);
     if (window_ != nullptr) SDL_DestroyWindow(window_);
-    SDL_Quit();
   }
   [[noreturn]] void undo_and_fail(const char* what) {
     const std::string why = SDL_GetError();
@@ -307,6 +305,27 @@ class Shell {
 };
 
 }  // namespace
+
+Display::Display() {
+  SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
+  // A software renderer would go through OpenGL to the screen, which users need not have.
+  SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
+  SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // Ctrl-C in the terminal ends the program
+  const char* const asked = SDL_getenv("SDL_VIDEODRIVER");
+  const bool begun = SDL_Init(SDL_INIT_VIDEO) == 0;
+  if (begun && (asked != nullptr || is_visible(SDL_GetCurrentVideoDriver()))) return;
+  std::string why = begun ? "DISPLAY and WAYLAND_DISPLAY lead to none" : SDL_GetError();
+  SDL_Quit();
+  throw Error(
+      Errc::no_device,
+      "there is no display to open a window on (" + why +
+          "): `rastrum render` and `rastrum terrain` draw the same into files, and `ssh -X` "
+          "brings the window to where you sit");
+}
+
+Display::~Display() {
+  SDL_Quit();
+}
 
 void run_shell(std::unique_ptr<Subject> subject, const ViewerOptions& viewer,
                const ShellOptions& options, const Controls& controls) {

@@ -1,0 +1,205 @@
+// The statistics count what was culled, not why: so the triangles are looked at once more, one by
+// one, with the camera's planes. That takes no more than the frame did, and only where it was
+// empty.
+#include "nothing_seen.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include <rastrum/raster/clip.hpp>
+
+namespace rastrum::cli {
+namespace {
+
+using raster::Vec4d;
+
+enum Fate : std::size_t {
+  not_finite,
+  no_area,
+  behind,
+  before_near,
+  outside,
+  culled,
+  single_sided,
+  edge_on,
+  small,
+  between,
+  kFates,
+};
+
+struct Words {
+  const char *one, *all;  ///< as in "one lies", "all lie"
+  const char* remedy;
+};
+constexpr Words kWords[kFates] = {
+    {"has a NaN or infinite vertex", "have a NaN or infinite vertex", "the file is damaged"},
+    {"has no area", "have no area", "`rastrum info` tells what a file holds"},
+    {"lies behind the camera", "lie behind the camera",
+     "--fit in the place of --eye, --target and --camera shows all of it"},
+    {"lies in front of the near plane", "lie in front of the near plane",
+     "leave out --near, or give a smaller one"},
+    {"lies outside of the view", "lie outside of the view",
+     "--fit in the place of --eye, --target and --camera shows all of it"},
+    {"faces the side that --cull leaves out", "face the side that --cull leaves out",
+     "--cull none shows them"},
+    {"shows the back of a single-sided material", "show the back of a single-sided material",
+     "--shader phong shows them, or an --eye on the other side"},
+    {"is seen edge-on", "are seen edge-on", ""},
+    {"is smaller than a pixel", "are smaller than a pixel",
+     "bring --eye nearer, use --fit, or give a larger --size"},
+    {"falls between the pixels' centres", "fall between the pixels' centres",
+     "give a larger --size, or --samples 16"},
+};
+
+Vec4d to_clip(const Mat4d& m, Vec3 p) {
+  const auto row = [&](int i) {
+    return m.m[i][0] * p.x + m.m[i][1] * p.y + m.m[i][2] * p.z + m.m[i][3];
+  };
+  return {row(0), row(1), row(2), row(3)};
+}
+
+bool has_area(const Vec3 (&p)[3]) {
+  const double a[3] = {double{p[1].x} - p[0].x, double{p[1].y} - p[0].y, double{p[1].z} - p[0].z};
+  const double b[3] = {double{p[2].x} - p[0].x, double{p[2].y} - p[0].y, double{p[2].z} - p[0].z};
+  return a[1] * b[2] != a[2] * b[1] || a[2] * b[0] != a[0] * b[2] || a[0] * b[1] != a[1] * b[0];
+}
+
+/// Triangles of one instance, seen by one camera.
+struct Eye {
+  Mat4d object_to_clip;
+  double width, height;
+  bool is_perspective;
+  Cull cull;           ///< --cull
+  Cull material_cull;  ///< of a single-sided material
+
+  [[nodiscard]] Fate fate(const Vec3 (&p)[3]) const {
+    Vec4d c[3];
+    for (int i = 0; i < 3; ++i) {
+      c[i] = to_clip(object_to_clip, p[i]);
+      if (!std::isfinite(c[i].x + c[i].y + c[i].z + c[i].w)) return not_finite;
+    }
+    if (!has_area(p)) return no_area;
+    const auto all = [&](auto&& is) { return is(c[0]) && is(c[1]) && is(c[2]); };
+    if (is_perspective && all([](const Vec4d& v) { return v.w <= 0; })) return behind;
+    if (all([](const Vec4d& v) { return v.x < -v.w; }) ||
+        all([](const Vec4d& v) { return v.x > v.w; }) ||
+        all([](const Vec4d& v) { return v.y < -v.w; }) ||
+        all([](const Vec4d& v) { return v.y > v.w; }))
+      return outside;
+    if (all([](const Vec4d& v) { return v.z > v.w; })) return before_near;
+    const double facing = raster::orientation(c);
+    const auto leaves_out = [&](Cull side) {
+      return (side == Cull::back && facing < 0) || (side == Cull::front && facing > 0);
+    };
+    if (cull != Cull::none ? leaves_out(cull) : leaves_out(material_cull))
+      return cull != Cull::none ? culled : single_sided;
+    // Cut by the near plane, and what is left is not in the view.
+    if (!all([](const Vec4d& v) { return v.w > 0 && v.z <= v.w; })) return outside;
+    return fate_on_screen(c);
+  }
+
+ private:
+  [[nodiscard]] Fate fate_on_screen(const Vec4d (&c)[3]) const {
+    double x[3], y[3];
+    for (int i = 0; i < 3; ++i) {
+      x[i] = (c[i].x / c[i].w + 1) / 2 * width;
+      y[i] = (1 - c[i].y / c[i].w) / 2 * height;
+    }
+    const auto [left, right] = std::minmax({x[0], x[1], x[2]});
+    const auto [top, bottom] = std::minmax({y[0], y[1], y[2]});
+    const double wide = right - left, high = bottom - top;
+    if (right < 0 || left > width || bottom < 0 || top > height) return outside;
+    if (wide < 1 && high < 1) return small;
+    // Less than a hundredth of a pixel across, all along: no size of the picture would show it.
+    constexpr double kEdge = 0.01;
+    const double twice_area =
+        std::abs((x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]));
+    return twice_area < kEdge * std::max(wide, high) ? edge_on : between;
+  }
+};
+
+Cull cull_of_material(const SceneView& scene, const InstanceView& instance, Shader shader) {
+  if (shader != Shader::material || scene.materials.empty() ||
+      !instance.mesh.face_materials.empty() || scene.materials[instance.mesh.material].double_sided)
+    return Cull::none;
+  const auto& m = instance.object_to_world.m;
+  const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  return determinant < 0 ? Cull::front : Cull::back;
+}
+
+std::array<std::uint64_t, kFates> census(const RenderOptions& options, const SceneView& scene,
+                                         const Camera& camera) {
+  std::array<std::uint64_t, kFates> counts{};
+  const Mat4d world_to_view = world_to_clip(camera, options.width, options.height);
+  for (const InstanceView& instance : scene.instances) {
+    const MeshView& mesh = instance.mesh;
+    const Eye eye{world_to_view * instance.object_to_world,
+                  static_cast<double>(options.width),
+                  static_cast<double>(options.height),
+                  !camera.orthographic,
+                  options.cull,
+                  cull_of_material(scene, instance, options.shader)};
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+      const auto corner = [&](std::size_t k) {
+        const std::size_t c = 3 * t + k;
+        return mesh.positions[mesh.indices.empty() ? c : mesh.indices[c]];
+      };
+      ++counts[eye.fate({corner(0), corner(1), corner(2)})];
+    }
+  }
+  return counts;
+}
+
+/// A place from which what is seen edge-on is not.
+std::string look_from_elsewhere(const SceneView& scene) {
+  const Bounds box = bounds(scene);
+  const Vec3 centre = (box.min + box.max) * 0.5F;
+  const float r = length(box.max - box.min);
+  char text[120];
+  std::snprintf(text, sizeof text, "look from elsewhere, as with --eye %.4g,%.4g,%.4g",
+                double{centre.x + 0.4F * r}, double{centre.y + 0.6F * r},
+                double{centre.z + 0.8F * r});
+  return text;
+}
+
+}  // namespace
+
+bool is_empty(const FrameStats& frame, const RenderOptions& options) {
+  return frame.pixels_covered == 0 || (options.opacity == 0 && options.shader != Shader::depth);
+}
+
+Emptiness why_empty(const FrameStats& frame, const RenderOptions& options, const SceneView& scene,
+                    const Camera& camera) {
+  if (frame.triangles.input == 0)
+    return {"there are no triangles to draw", "`rastrum info` tells what a file holds"};
+  if (frame.pixels_covered != 0) return {"--opacity 0 makes all of it transparent", "give more"};
+  if (frame.fragments != 0)
+    return {"the alpha of its materials (MASK) cuts all of it out",
+            "the file's alphaCutoff and textures decide that, --heatmap shows where it is"};
+
+  const std::array<std::uint64_t, kFates> counts = census(options, scene, camera);
+  std::vector<Fate> order;
+  for (std::size_t f = 0; f < kFates; ++f)
+    if (counts[f] != 0) order.push_back(static_cast<Fate>(f));
+  std::ranges::stable_sort(order, std::ranges::greater{}, [&](Fate f) { return counts[f]; });
+  const std::uint64_t input = frame.triangles.input;
+  Emptiness why;
+  if (order.size() == 1 && input == 1)
+    why.reason = std::string("the one triangle ") + kWords[order[0]].one;
+  else if (order.size() == 1)
+    why.reason = "all " + std::to_string(input) + " triangles " + kWords[order[0]].all;
+  else
+    why.reason = "of " + std::to_string(input) + " triangles";
+  for (std::size_t i = 0; order.size() > 1 && i < order.size(); ++i)
+    why.reason += (i == 0 ? " " : ", ") + std::to_string(counts[order[i]]) + " " +
+                  (counts[order[i]] == 1 ? kWords[order[i]].one : kWords[order[i]].all);
+  why.remedy = order[0] == edge_on ? look_from_elsewhere(scene) : kWords[order[0]].remedy;
+  return why;
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,23 @@
+// Why a picture is empty, for the person who waited for it.
+#pragma once
+
+#include <string>
+
+#include <rastrum/render/render.hpp>
+
+namespace rastrum::cli {
+
+/// Whether nothing but the background can be seen.
+[[nodiscard]] bool is_empty(const FrameStats& frame, const RenderOptions& options);
+
+struct Emptiness {
+  std::string reason;  ///< what became of the triangles
+  std::string remedy;  ///< which option would show them
+};
+
+/// What became of the triangles of an empty picture: behind the camera, outside of its view,
+/// culled, seen edge-on, too small, … Requires is_empty(). Cost: O(triangles), in float64.
+[[nodiscard]] Emptiness why_empty(const FrameStats& frame, const RenderOptions& options,
+                                  const SceneView& scene, const Camera& camera);
+
+}  // namespace rastrum::cli

@@ -1,0 +1,59 @@
+// Little may be called in a signal's handler, and locks not at all. So the handler only wakes a
+// thread, which may do anything.
+#include "signals.hpp"
+
+#include <semaphore.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <thread>
+
+#include <rastrum/io/atomic_file.hpp>
+
+namespace rastrum::cli {
+namespace {
+
+std::atomic<int> came{0};
+static_assert(std::atomic<int>::is_always_lock_free);
+sem_t arrived;
+
+void on_signal(int number) {
+  const int error = errno;
+  int none = 0;
+  if (came.compare_exchange_strong(none, number)) ::sem_post(&arrived);
+  errno = error;
+}
+
+void wait_and_end() {
+  while (::sem_wait(&arrived) != 0) {
+  }
+  io::abandon_files();
+  struct sigaction as_ever = {};
+  as_ever.sa_handler = SIG_DFL;
+  ::sigaction(came, &as_ever, nullptr);
+  ::raise(came);
+}
+
+}  // namespace
+
+void end_cleanly_on_signals() {
+  ::sem_init(&arrived, 0, 0);
+  std::thread(wait_and_end).detach();
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
+    struct sigaction action = {};
+    ::sigaction(number, nullptr, &action);
+    if (action.sa_handler == SIG_IGN) continue;
+    action = {};
+    action.sa_handler = on_signal;
+    action.sa_flags = SA_RESTART;
+    ::sigaction(number, &action, nullptr);
+  }
+}
+
+void leave_it_to_the_signal() {
+  while (came != 0) ::pause();
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,17 @@
+// How the program ends by a signal: nothing half written stays behind, and the shell sees which
+// signal it was.
+#pragma once
+
+namespace rastrum::cli {
+
+/// From now on SIGINT, SIGTERM, SIGHUP and SIGPIPE (a pipe whose reader has gone) remove the
+/// temporaries of all outputs and then end the program as they would have without this, so that its
+/// exit status is 128 + signal in a shell. Those that whoever started the program had ignored, as
+/// nohup does, stay ignored. Call it once, before anything is written.
+void end_cleanly_on_signals();
+
+/// Does not return where such a signal has come: what fails then fails because of it (ffmpeg gets
+/// Ctrl-C, too), and is no news.
+void leave_it_to_the_signal();
+
+}  // namespace rastrum::cli

@@ -1,0 +1,49 @@
+// The writers of io.hpp that take a name: begun, written and committed alone.
+#include <rastrum/io/atomic_file.hpp>
+#include <rastrum/io/io.hpp>
+
+namespace rastrum::io {
+namespace {
+
+template <class Write>
+void write_whole(const std::filesystem::path& file, Write write) {
+  AtomicFile out(file);
+  write(out);
+  out.commit();
+}
+
+}  // namespace
+
+void write_png(const std::filesystem::path& file, ImageView<const Rgba8> image) {
+  write_whole(file, [&](AtomicFile& out) { write_png(out, image); });
+}
+
+void write_exr(const std::filesystem::path& file, ImageView<const Vec4> image) {
+  write_whole(file, [&](AtomicFile& out) { write_exr(out, image); });
+}
+
+void write_exr(const std::filesystem::path& file, ImageView<const float> image) {
+  write_whole(file, [&](AtomicFile& out) { write_exr(out, image); });
+}
+
+void write_npy(const std::filesystem::path& file, ImageView<const Vec4> image) {
+  write_whole(file, [&](AtomicFile& out) { write_npy(out, image); });
+}
+
+void write_npy(const std::filesystem::path& file, ImageView<const float> image) {
+  write_whole(file, [&](AtomicFile& out) { write_npy(out, image); });
+}
+
+void write_npy(const std::filesystem::path& file, ImageView<const std::int64_t> image) {
+  write_whole(file, [&](AtomicFile& out) { write_npy(out, image); });
+}
+
+void write_npy(const std::filesystem::path& file, ImageView<const std::int32_t> image) {
+  write_whole(file, [&](AtomicFile& out) { write_npy(out, image); });
+}
+
+void write_ply(const std::filesystem::path& file, const Mesh& mesh) {
+  write_whole(file, [&](AtomicFile& out) { write_ply(out, mesh); });
+}
+
+}  // namespace rastrum::io

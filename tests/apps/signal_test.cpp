@@ -1,0 +1,121 @@
+// Ended in the middle of its work the program leaves nothing half written, and the shell sees which
+// signal it was. Nothing here waits for a time to pass: an output that is a pipe without a reader
+// holds the program where the other outputs are written and not yet seen.
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+#include "program.hpp"
+
+namespace rastrum::test {
+namespace {
+
+using Args = std::vector<std::string>;
+
+class Signals : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    make_pipe("held.npy");
+  }
+  void make_pipe(const std::string& name) const {
+    ASSERT_EQ(::mkfifo(path(name).c_str(), 0666), 0);
+  }
+  /// The picture is written, the pipe not opened.
+  [[nodiscard]] pid_t start_held() const {
+    return start({"render", "builtin:sphere", "--size", "64x64", "-o", "p.png", "--depth", "d.npy",
+                  "--ids", "held.npy"});
+  }
+  /// Waits until so many files are there, its pipe among them. False: it has ended, or nothing
+  /// comes any more; then it is killed.
+  [[nodiscard]] bool comes_to(std::size_t count, pid_t program) const {
+    constexpr std::chrono::seconds kPatience{100};
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    siginfo_t info{};
+    while (files().size() < count && info.si_pid == 0 && std::chrono::steady_clock::now() < end) {
+      ::waitid(P_PID, static_cast<id_t>(program), &info, WEXITED | WNOHANG | WNOWAIT);
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    if (files().size() >= count) return true;
+    ::kill(program, SIGKILL);
+    return false;
+  }
+};
+
+TEST_F(Signals, LeaveNoTemporaryAndAreSeenByTheShell) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    const pid_t program = start_held();
+    ASSERT_TRUE(comes_to(3, program)) << wait(program).err;
+    ::kill(program, number);
+    const Outcome r = wait(program);
+    EXPECT_EQ(r.status, 128 + number);
+    EXPECT_EQ(r.err, "");
+    EXPECT_EQ(files(), Args{"held.npy"}) << number;
+  }
+}
+
+TEST_F(Signals, LeaveTheOldFileAsItWas) {
+  write("p.png", "old");
+  const pid_t program = start_held();
+  ASSERT_TRUE(comes_to(4, program)) << wait(program).err;
+  ::kill(program, SIGTERM);
+  EXPECT_EQ(wait(program).status, 128 + SIGTERM);
+  EXPECT_EQ(files(), (Args{"held.npy", "p.png"}));
+  EXPECT_EQ(read("p.png"), "old");
+}
+
+TEST_F(Signals, LeaveNoVideo) {
+  if (std::system("command -v ffmpeg >/dev/null") != 0)
+    GTEST_SKIP() << "ffmpeg is missing (Debian: ffmpeg)";
+  std::filesystem::remove(path("held.npy"));
+  make_pipe("d0.npy");
+  write("p.json", R"({"keys":[{"time":0,"eye":[0,0,4],"target":[0,0,0]},
+                              {"time":1,"eye":[0,1,4],"target":[0,0,0]}]})");
+  const pid_t program = start({"render", "builtin:sphere", "--size", "64x64", "--path", "p.json",
+                               "-o", "v.mp4", "--depth", "d%d.npy"});
+  ASSERT_TRUE(comes_to(3, program)) << wait(program).err;
+  ::kill(program, SIGTERM);
+  EXPECT_EQ(wait(program).status, 128 + SIGTERM);
+  EXPECT_EQ(files(), (Args{"d0.npy", "p.json"}));
+}
+
+TEST_F(Signals, WhatWasIgnoredStaysIgnored) {
+  // As nohup does.
+  const Outcome r = shell(
+      "trap '' HUP; $RASTRUM render builtin:sphere --size 64x64 -o p.png --ids held.npy & "
+      "while [ $(ls -A | wc -l) -lt 2 ]; do :; done; kill -HUP $!; cat held.npy >/dev/null; "
+      "wait $!");
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_EQ(files(), (Args{"held.npy", "p.png"}));
+}
+
+TEST_F(Signals, WhatKillLeftIsRemovedByTheNextRun) {
+  const pid_t killed = start_held();
+  ASSERT_TRUE(comes_to(3, killed)) << wait(killed).err;
+  ::kill(killed, SIGKILL);
+  EXPECT_EQ(wait(killed).status, 128 + SIGKILL);
+  EXPECT_GE(files().size(), 3U) << "nobody can clean up after SIGKILL";
+  must({"render", "builtin:sphere", "--size", "8x8", "-o", "other.png"});
+  EXPECT_EQ(files(), (Args{"held.npy", "other.png"}));
+}
+
+TEST_F(Signals, WhatALivingRunWritesIsLeftToIt) {
+  const pid_t living = start_held();
+  ASSERT_TRUE(comes_to(3, living)) << wait(living).err;
+  const std::size_t before = files().size();
+  EXPECT_EQ(shell("$RASTRUM render builtin:sphere --size 8x8 -o other.png --quiet").status, 0);
+  EXPECT_EQ(files().size(), before + 1);
+  std::ifstream(path("held.npy")).ignore(1 << 20);
+  int status = -1;
+  ASSERT_EQ(::waitpid(living, &status, 0), living);
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(files(), (Args{"d.npy", "held.npy", "other.png", "p.png"}));
+}
+
+}  // namespace
+}  // namespace rastrum::test
