@@ -5,30 +5,25 @@ include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Rastrum)
 
 # A static library leaves its own libraries to whoever links it, so the package must find them too:
-# one find_dependency for each imported target that the library links, the private ones included.
-function(rastrum_dependencies out)
+# one find_dependency for each imported target that `target` links, the private ones included.
+function(rastrum_dependencies target out)
   set(package_TBB "TBB")
-  set(package_hwy "hwy CONFIG")
   set(package_PNG "PNG")
   set(package_muparser "muparser CONFIG")
   set(package_JPEG "JPEG")
-  set(package_ZLIB "ZLIB")
   set(package_OpenEXR "OpenEXR CONFIG")
-  set(package_Imath "Imath CONFIG")
   set(package_tinyobjloader "tinyobjloader CONFIG")
-  set(package_TinyGLTF "TinyGLTF CONFIG")
   set(package_nlohmann_json "nlohmann_json CONFIG")
-  set(package_Threads "Threads")
   set(package_CUDA "CUDAToolkit")
 
-  get_target_property(links rastrum LINK_LIBRARIES)
+  get_target_property(links ${target} LINK_LIBRARIES)
   set(calls "")
   foreach(link IN LISTS links)
     # "::@(…)" marks the folder whose CMakeLists.txt linked the library that follows.
-    if(link MATCHES "BUILD_INTERFACE|^::@")
+    if(link MATCHES "BUILD_INTERFACE|^::@" OR link STREQUAL "rastrum")
       continue()
     elseif(NOT link MATCHES "^([A-Za-z_]+)::")
-      message(FATAL_ERROR "rastrum links '${link}', which is no imported target: an installed "
+      message(FATAL_ERROR "${target} links '${link}', which is no imported target: an installed "
         "package could not find it elsewhere")
     elseif(NOT DEFINED package_${CMAKE_MATCH_1})
       message(FATAL_ERROR "say in cmake/RastrumInstall.cmake which package has '${link}'")
@@ -40,7 +35,8 @@ function(rastrum_dependencies out)
   set(${out} "${calls}" PARENT_SCOPE)
 endfunction()
 
-rastrum_dependencies(RASTRUM_FIND_DEPENDENCIES)
+rastrum_dependencies(rastrum RASTRUM_FIND_DEPENDENCIES)
+rastrum_dependencies(rastrum_io RASTRUM_FIND_IO_DEPENDENCIES)
 configure_package_config_file(cmake/RastrumConfig.cmake.in
   ${PROJECT_BINARY_DIR}/cmake/RastrumConfig.cmake INSTALL_DESTINATION ${package_dir})
 # Before 1.0 a minor version may change the interface.
@@ -50,7 +46,10 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/RastrumConfigVersio
 install(DIRECTORY rastrum DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} 
   FILES_MATCHING PATTERN "*.hpp" PATTERN "*.cuh")
 install(TARGETS rastrum EXPORT RastrumTargets)
-install(EXPORT RastrumTargets NAMESPACE Rastrum:: DESTINATION ${package_dir})
+install(TARGETS rastrum_io EXPORT RastrumIoTargets)
+foreach(part Targets IoTargets)
+  install(EXPORT Rastrum${part} NAMESPACE Rastrum:: DESTINATION ${package_dir})
+endforeach()
 install(FILES
   ${PROJECT_BINARY_DIR}/cmake/RastrumConfig.cmake
   ${PROJECT_BINARY_DIR}/cmake/RastrumConfigVersion.cmake

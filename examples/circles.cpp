@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <utility>
 #include <vector>
 
 #include <rastrum/core/image.hpp>
@@ -52,6 +51,6 @@ int main() {
                      : rastrum::Rgba8{shade, static_cast<std::uint8_t>(90 + shade / 3),
                                       static_cast<std::uint8_t>(200 - shade / 2), 255};
   });
-  rastrum::io::write_png("circles.png", std::as_const(image).view());
+  rastrum::io::write_png("circles.png", image);
   std::puts("circles.png");
 }

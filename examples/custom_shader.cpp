@@ -52,8 +52,8 @@ int main() {
   rastrum::raster::Draw draw = program.draw(kColumns * kRows, indices);
   rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
   rastrum::Targets targets;
-  targets.color8 = image.view();
+  targets.color8 = image;
   rastrum::Renderer(options).draw({&draw, 1}, program, program.test(), targets);
-  rastrum::io::write_png("custom_shader.png", std::as_const(image).view());
+  rastrum::io::write_png("custom_shader.png", image);
   std::puts("custom_shader.png");
 }

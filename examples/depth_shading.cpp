@@ -2,7 +2,6 @@
 // the model, so that its depths span [0, 1]. A second target gets the depth itself.
 #include <array>
 #include <cstdio>
-#include <utility>
 
 #include <rastrum/io/io.hpp>
 #include <rastrum/raster/program.hpp>
@@ -38,9 +37,9 @@ int main() {
   rastrum::Image<Vec4> depth(options.width, options.height);
   const std::array extra{depth.view()};
   rastrum::Targets targets;
-  targets.color8 = image.view();
+  targets.color8 = image;
   targets.extra = extra;
   rastrum::Renderer(options).draw({&draw, 1}, program, program.test(), targets);
-  rastrum::io::write_png("depth_shading.png", std::as_const(image).view());
+  rastrum::io::write_png("depth_shading.png", image);
   std::printf("depth_shading.png: the middle has depth %.4f\n", depth(240, 180).x);
 }

@@ -1,7 +1,6 @@
 // A random colour for each triangle, from its id alone: the shader needs no attribute at all.
 // Turned by a quaternion half way between two poses.
 #include <cstdio>
-#include <utility>
 
 #include <rastrum/core/quaternion.hpp>
 #include <rastrum/io/io.hpp>
@@ -39,8 +38,8 @@ int main() {
   rastrum::raster::Draw draw = program.draw(mesh.positions.size(), mesh.indices);
   rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
   rastrum::Targets targets;
-  targets.color8 = image.view();
+  targets.color8 = image;
   rastrum::Renderer(options).draw({&draw, 1}, program, program.test(), targets);
-  rastrum::io::write_png("flat_colors.png", std::as_const(image).view());
+  rastrum::io::write_png("flat_colors.png", image);
   std::puts("flat_colors.png");
 }

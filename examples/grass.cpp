@@ -21,7 +21,7 @@ int main() {
   rastrum::Renderer renderer(options);
   rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
   rastrum::Image<std::uint64_t> words(options.width, options.height);
-  rastrum::Targets targets{.color8 = image.view(), .words = words.view()};
+  rastrum::Targets targets{.color8 = image, .words = words};
   const auto pass = [&](const auto& program, Draw draw) {
     renderer.draw({&draw, 1}, program, program.test(), targets);
     targets.load = true;
@@ -56,5 +56,5 @@ int main() {
     return Vec4{0.5F * g, g, 0.15F * g, 1};
   });
   pass(grass, grass.draw(std::size_t{3} * 30000));
-  rastrum::io::write_png("grass.png", image.view());
+  rastrum::io::write_png("grass.png", image);
 }

@@ -2,7 +2,6 @@
 // makes round.
 #include <cmath>
 #include <cstdio>
-#include <utility>
 #include <vector>
 
 #include <rastrum/io/io.hpp>
@@ -53,8 +52,8 @@ int main() {
   draws[1].point_size = 11;
   rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
   rastrum::Targets targets;
-  targets.color8 = image.view();
+  targets.color8 = image;
   rastrum::Renderer(options).draw(draws, program, program.test(), targets);
-  rastrum::io::write_png("points.png", std::as_const(image).view());
+  rastrum::io::write_png("points.png", image);
   std::puts("points.png");
 }

@@ -47,9 +47,9 @@ int main() {
     rastrum::SceneView scene;
     scene.instances = {&instance, 1};
     const rastrum::FrameStats stats =
-        renderer.render(scene, camera, {image.view(), {}, depth.view(), ids.view(), {}});
+        renderer.render(scene, camera, {.color8 = image, .depth = depth, .ids = ids});
     std::printf("frame %d: %.2f ms; in the middle triangle %lld at depth %.5f\n", frame,
                 stats.frame_ms, static_cast<long long>(ids(256, 256)), depth(256, 256));
-    rastrum::io::write_png("wave" + std::to_string(frame) + ".png", image.view());
+    rastrum::io::write_png("wave" + std::to_string(frame) + ".png", image);
   }
 }

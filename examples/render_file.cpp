@@ -4,6 +4,8 @@
 
 #include <rastrum/io/io.hpp>
 #include <rastrum/render/render.hpp>
+#include <rastrum/scene/crease_normals.hpp>
+#include <rastrum/scene/fit.hpp>
 
 int main(int argc, char** argv) {
   if (argc != 3) {
@@ -13,30 +15,30 @@ int main(int argc, char** argv) {
   try {
     rastrum::Scene scene = rastrum::io::read_scene(argv[1]);
     for (const std::string& w : scene.warnings) std::fprintf(stderr, "warning: %s\n", w.c_str());
-    // Without normals a mesh is drawn faceted; smooth ones are one call.
+    // Without normals a mesh is drawn faceted; smooth ones, but for edges beyond 40°, are one call.
     for (rastrum::Mesh& mesh : scene.meshes)
-      if (mesh.normals.empty() && !mesh.indices.empty())
-        mesh.normals.values = rastrum::vertex_normals(mesh.positions, mesh.indices);
-
-    const rastrum::SceneBinding binding(scene);
-    const float fov_rad = 1.04719755F;  // 60°
-    const rastrum::Camera camera = rastrum::fit_camera(binding.view(), fov_rad, false);
+      if (mesh.normals.empty())
+        mesh.normals = rastrum::crease_normals(mesh.positions, mesh.indices, 40);
 
     rastrum::RenderOptions options;
     options.width = 1280;
     options.height = 720;
+    const rastrum::SceneBinding binding(scene);
+    const rastrum::Camera along_z;  // looks along −z, 60° wide
+    const rastrum::Camera camera =
+        rastrum::fit_picture(binding.view(), along_z, options.width, options.height);
     if (!scene.materials.empty()) options.shader = rastrum::Shader::material;
 
     // A Renderer keeps its threads and memory, for the frames after the first.
     rastrum::Renderer renderer(options);
     rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
     rastrum::Targets targets;
-    targets.color8 = image.view();
+    targets.color8 = image;
     const rastrum::FrameStats stats = renderer.render(binding.view(), camera, targets);
     std::printf("%llu triangles, %llu pixels covered, %.2f ms\n",
                 static_cast<unsigned long long>(stats.triangles.input),
                 static_cast<unsigned long long>(stats.pixels_covered), stats.frame_ms);
-    rastrum::io::write_png(argv[2], image.view());
+    rastrum::io::write_png(argv[2], image);
   } catch (const rastrum::Error& e) {
     std::fprintf(stderr, "%s\n", e.what());
     return 1;

@@ -1,7 +1,6 @@
 // The first example of paper 1: one triangle whose corners are red, green and blue. Varyings are
 // any type with + and * float; here a Vec3.
 #include <cstdio>
-#include <utility>
 
 #include <rastrum/io/io.hpp>
 #include <rastrum/raster/program.hpp>
@@ -27,8 +26,8 @@ int main() {
   options.background = {0.1F, 0.1F, 0.12F, 1};
   rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
   rastrum::Targets targets;
-  targets.color8 = image.view();
+  targets.color8 = image;
   rastrum::Renderer(options).draw({&draw, 1}, program, program.test(), targets);
-  rastrum::io::write_png("rgb_triangle.png", std::as_const(image).view());
+  rastrum::io::write_png("rgb_triangle.png", image);
   std::puts("rgb_triangle.png");
 }

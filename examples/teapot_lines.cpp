@@ -1,7 +1,6 @@
 // A teapot with its wireframe and its normals: triangles and lines of one program in one frame. The
 // surface is moved back by a little more than its own slope, so that the edges on it are seen.
 #include <cstdio>
-#include <utility>
 #include <vector>
 
 #include <rastrum/io/io.hpp>
@@ -48,8 +47,8 @@ int main() {
   draws[0].depth_bias = -1e-6F;
   rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
   rastrum::Targets targets;
-  targets.color8 = image.view();
+  targets.color8 = image;
   rastrum::Renderer(options).draw(draws, program, program.test(), targets);
-  rastrum::io::write_png("teapot_lines.png", std::as_const(image).view());
+  rastrum::io::write_png("teapot_lines.png", image);
   std::puts("teapot_lines.png");
 }

@@ -1,7 +1,6 @@
 // The edges of a mesh as lines, each drawn once, brighter where they are near.
 #include <algorithm>
 #include <cstdio>
-#include <utility>
 #include <vector>
 
 #include <rastrum/io/io.hpp>
@@ -36,10 +35,10 @@ int main() {
       program.draw(knot.positions.size(), edges, rastrum::raster::Topology::lines);
   rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
   rastrum::Targets targets;
-  targets.color8 = image.view();
+  targets.color8 = image;
   const rastrum::FrameStats stats =
       rastrum::Renderer(options).draw({&draw, 1}, program, program.test(), targets);
-  rastrum::io::write_png("wireframe.png", std::as_const(image).view());
+  rastrum::io::write_png("wireframe.png", image);
   std::printf("wireframe.png: %llu lines\n",
               static_cast<unsigned long long>(stats.triangles.input));
 }

@@ -152,24 +152,27 @@ CameraPath read_camera_path(const std::filesystem::path& file, const Camera& bas
   return {std::move(keys), interpolation};
 }
 
+nlohmann::ordered_json camera_json(const Camera& c, bool planes) {
+  const auto vec = [](Vec3 v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
+  nlohmann::ordered_json entry{{"eye", vec(c.eye)}, {"target", vec(c.target)}, {"up", vec(c.up)}};
+  if (c.orthographic)
+    entry["orthographic"] = c.orthographic_height;
+  else
+    entry["fov"] = c.fov_rad / kDegree;
+  if (!planes) return entry;
+  entry["near"] = c.near_plane;
+  if (std::isinf(c.far_plane))
+    entry["far"] = "inf";
+  else
+    entry["far"] = c.far_plane;
+  return entry;
+}
+
 void write_camera_path(const std::filesystem::path& file, std::span<const PathKey> keys) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  const auto vec = [](Vec3 v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
   for (const PathKey& key : keys) {
-    const Camera& c = key.camera;
-    nlohmann::ordered_json entry{
-        {"time", key.time_s}, {"eye", vec(c.eye)}, {"target", vec(c.target)}, {"up", vec(c.up)}};
-    if (c.orthographic)
-      entry["orthographic"] = c.orthographic_height;
-    else
-      entry["fov"] = c.fov_rad / kDegree;
-    if (key.has_planes) {
-      entry["near"] = c.near_plane;
-      if (std::isinf(c.far_plane))
-        entry["far"] = "inf";
-      else
-        entry["far"] = c.far_plane;
-    }
+    nlohmann::ordered_json entry{{"time", key.time_s}};
+    entry.update(camera_json(key.camera, key.has_planes));
     list.push_back(std::move(entry));
   }
   write_json(file, {{"keys", std::move(list)}});

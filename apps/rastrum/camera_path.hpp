@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <rastrum/scene/camera.hpp>
 
 #include "key_curve.hpp"
@@ -37,6 +39,9 @@ class CameraPath {
   std::vector<PathKey> keys_;
   std::vector<KeyCurve> curves_;
 };
+
+/// What a key says of its camera; with `planes` near and far, too.
+[[nodiscard]] nlohmann::ordered_json camera_json(const Camera& camera, bool planes);
 
 /// `base`: what the first key leaves out; a later key takes it from the key before.
 /// Throws Error{not_found, io, bad_format} naming the file and the key.

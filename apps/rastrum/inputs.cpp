@@ -1,102 +1,164 @@
 #include "inputs.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/io/io.hpp>
+#include <rastrum/raster/shaders/srgb.hpp>
+#include <rastrum/scene/crease_normals.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
 #include "arguments.hpp"
+#include "input_spec.hpp"
 #include "progress.hpp"
 #include "timeline.hpp"
 
 namespace rastrum::cli {
 namespace {
 
-constexpr std::string_view kBuiltin = "builtin:";
+/// The colour of surfaces without one (docs/conventions.md, phong), 0.8, 0.7, 0.6 as linear light.
+constexpr Vec4 kPlain{0.60382734F, 0.44798842F, 0.31854678F, 1};
 
-/// Where a builtin stands: scaled about its origin, then moved.
-struct Placement {
-  double x = 0, y = 0, z = 0, scale = 1;
-
-  /// Whether `key` is one of the placement's names.
-  bool set(const std::string& input, std::string_view key, std::string_view value) {
-    for (const auto& [name, field] :
-         {std::pair{"x", &x}, std::pair{"y", &y}, std::pair{"z", &z}, std::pair{"scale", &scale}}) {
-      if (key != name) continue;
-      *field = parse_number(input + ": " + name, value);
-      if (scale == 0) throw UsageError(input, "scale must not be 0");
-      return true;
-    }
-    return false;
-  }
-  [[nodiscard]] Mat4d matrix() const {
-    Mat4d m = Mat4d::identity();
-    for (int i = 0; i < 3; ++i) m.m[i][i] = scale;
-    m.m[0][3] = x;
-    m.m[1][3] = y;
-    m.m[2][3] = z;
-    return m;
-  }
-};
-
-Scene make_builtin(const std::string& input) {
-  const std::string_view spec = std::string_view(input).substr(kBuiltin.size());
-  const std::size_t question = spec.find('?');
-  std::string shape(spec.substr(0, question));
-  Placement placement;
-  char separator = '?';
-  for (std::size_t begin = question; begin < spec.size();) {
-    const std::size_t end = spec.find_first_of("&,", ++begin);
-    const std::string_view item = spec.substr(begin, end - begin);
-    begin = end;
-    const std::size_t equals = item.find('=');
-    if (equals != std::string_view::npos &&
-        placement.set(input, item.substr(0, equals), item.substr(equals + 1)))
-      continue;
-    shape += std::exchange(separator, '&');
-    shape += item;
-  }
+Scene make_builtin(const std::string& input, const std::string& source) {
+  const std::string spec = source.substr(kBuiltin.size());
   Scene scene;
   try {
-    scene.meshes.push_back(shapes::from_spec(shape));
+    scene.meshes.push_back(shapes::from_spec(spec));
   } catch (const Error& e) {
     if (e.code() == Errc::invalid_argument) throw UsageError(input, e.what());
     throw;
   }
-  if (scene.meshes[0].name.empty()) scene.meshes[0].name = spec.substr(0, question);
-  scene.instances.push_back({0, placement.matrix()});
+  if (scene.meshes[0].name.empty()) scene.meshes[0].name = spec.substr(0, spec.find('?'));
+  scene.instances.emplace_back();
   return scene;
+}
+
+Vec4 linear(Vec4 display) {
+  const auto channel = [](float c) {
+    return raster::decode_tables().srgb[static_cast<std::size_t>(std::lround(c * 255))];
+  };
+  return {channel(display.x), channel(display.y), channel(display.z), 1};
+}
+
+/// Gives a scene without materials one for all, which looks as if there were none.
+void add_plain_material(Scene& scene) {
+  Material& m = scene.materials.emplace_back();
+  m.name = "plain";
+  m.base_color = kPlain;
+  m.metallic = 0;
+  m.double_sided = true;
+  for (const Mesh& mesh : scene.meshes)
+    if (!mesh.colors.empty()) {
+      // Vertex colours stand for themselves, and their alpha counts.
+      m.base_color = {1, 1, 1, 1};
+      m.alpha_mode = AlphaMode::blend;
+    }
+}
+
+/// A colour takes the place of the base colours, their textures and the vertex colours.
+void paint(Scene& scene, const Look& look) {
+  if (look.color)
+    for (Mesh& mesh : scene.meshes) mesh.colors = {};
+  if (scene.materials.empty()) add_plain_material(scene);
+  double opacity = look.opacity;
+  if (look.color) opacity *= double{look.color->w};
+  for (Material& m : scene.materials) {
+    if (look.color) {
+      const Vec4 base = linear(*look.color);
+      m.base_color = {base.x, base.y, base.z, m.base_color.w};
+      m.base_color_texture = kNoTexture;
+    }
+    m.opacity = static_cast<float>(opacity);
+  }
+}
+
+struct Loaded {
+  Scene scene;
+  bool has_materials = false;  ///< of the file
+};
+
+Loaded load(const std::string& input) {
+  const InputSpec spec = parse_input(input);
+  Loaded loaded;
+  Scene& scene = loaded.scene;
+  scene = spec.source.starts_with(kBuiltin) ? make_builtin(input, spec.source)
+                                            : io::read_scene(spec.source);
+  loaded.has_materials = !scene.materials.empty();
+  if (spec.placement != Placement{})
+    for (Instance& instance : scene.instances)
+      instance.object_to_world = spec.placement.matrix() * instance.object_to_world;
+  if (spec.look.given()) paint(scene, spec.look);
+  return loaded;
 }
 
 /// Unindexed corners share nothing, so their vertex normals are the face normals that the renderer
 /// takes anyway.
-void choose_normals(Mesh& mesh, Normals normals) {
-  const bool keep = normals == Normals::file && !mesh.normals.empty();
-  if (keep) return;
+void choose_normals(Mesh& mesh, const NormalOptions& options) {
+  if (options.kind == Normals::file && !mesh.normals.empty()) return;
   mesh.normals = {};
-  if (normals != Normals::face && !mesh.indices.empty())
+  if (options.kind == Normals::face) return;
+  if (options.kind != Normals::vertex && options.crease_deg < 180)
+    mesh.normals = crease_normals(mesh.positions, mesh.indices, options.crease_deg);
+  else if (!mesh.indices.empty())
     mesh.normals.values = vertex_normals(mesh.positions, mesh.indices);
 }
 
 }  // namespace
 
 Scene load_input(const std::string& input) {
-  return input.starts_with(kBuiltin) ? make_builtin(input) : io::read_scene(input);
+  return load(input).scene;
 }
 
-Scene load_inputs(const std::vector<std::string>& inputs, Normals normals, Timeline& timeline,
-                  Progress& progress) {
-  Scene scene;
+Inputs load_inputs(const std::vector<std::string>& inputs, const NormalOptions& normals,
+                   Timeline& timeline, Progress& progress) {
+  Inputs all;
+  std::vector<Scene> scenes;
+  bool any_look = false;
   for (const std::string& input : inputs) {
     progress.show("loading " + input);
-    timeline.measure("load " + input, "load", [&] { scene.append(load_input(input)); });
+    timeline.measure("load " + input, "load", [&] {
+      Loaded loaded = load(input);
+      all.has_materials |= loaded.has_materials;
+      any_look |= !loaded.has_materials && !loaded.scene.materials.empty();
+      scenes.push_back(std::move(loaded.scene));
+    });
+  }
+  std::uint64_t first_id = 0;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    // Beside an input that was painted the others look as they did.
+    if (any_look && !all.has_materials && scenes[i].materials.empty())
+      add_plain_material(scenes[i]);
+    const std::uint64_t triangles = scenes[i].triangle_count();
+    all.parts.push_back({inputs[i], first_id, triangles});
+    first_id += triangles;
+    all.scene.append(std::move(scenes[i]));
   }
   progress.show("computing normals");
   timeline.measure("normals", "load", [&] {
-    for (Mesh& mesh : scene.meshes) choose_normals(mesh, normals);
+    for (Mesh& mesh : all.scene.meshes) choose_normals(mesh, normals);
   });
-  return scene;
+  return all;
+}
+
+Image<std::int32_t> inputs_of_ids(ImageView<const std::int64_t> ids,
+                                  std::span<const InputPart> parts) {
+  Image<std::int32_t> inputs(ids.width, ids.height);
+  for (int y = 0; y < ids.height; ++y)
+    for (int x = 0; x < ids.width; ++x) {
+      if (ids(x, y) < 0) {
+        inputs(x, y) = -1;
+        continue;
+      }
+      const auto id = static_cast<std::uint64_t>(ids(x, y));
+      // The last part that begins at or before it: empty ones begin where the next does.
+      const auto after = std::upper_bound(
+          parts.begin(), parts.end(), id,
+          [](std::uint64_t value, const InputPart& part) { return value < part.first_id; });
+      inputs(x, y) = static_cast<std::int32_t>(after - parts.begin()) - 1;
+    }
+  return inputs;
 }
 
 }  // namespace rastrum::cli

@@ -1,10 +1,12 @@
 // INPUT…: files and builtin shapes, as one scene in command order.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include <rastrum/core/image.hpp>
 #include <rastrum/scene/scene.hpp>
 
 namespace rastrum::cli {
@@ -13,18 +15,40 @@ class Progress;
 class Timeline;
 
 enum class Normals {
-  file,    ///< the file's, computed where it has none
-  vertex,  ///< area-weighted, always computed
+  file,    ///< the file's, made with creases where it has none
+  crease,  ///< smooth but for edges sharper than the crease angle, always made
+  vertex,  ///< area-weighted, always made
   face,    ///< one a triangle
 };
 
-/// A file, or `builtin:SHAPE[?name=value,…]` where x, y, z and scale place the shape and the rest
-/// is the shape's own; `&` separates as well as a comma. Throws UsageError for a builtin that does
-/// not exist, Error for a file that cannot be read.
+struct NormalOptions {
+  Normals kind = Normals::file;
+  double crease_deg = 40;  ///< 180: as Normals::vertex
+};
+
+/// An input's part of the scene.
+struct InputPart {
+  std::string name;  ///< as it was given
+  std::uint64_t first_id = 0, triangles = 0;
+};
+
+struct Inputs {
+  Scene scene;
+  std::vector<InputPart> parts;  ///< in command order; their ids follow each other
+  bool has_materials = false;    ///< of files: a colour given by hand is none
+};
+
+/// What an INPUT says (input_spec.hpp), placed and painted. Throws UsageError for a builtin that
+/// does not exist, Error for a file that cannot be read.
 [[nodiscard]] Scene load_input(const std::string& input);
 
 /// All inputs, appended in order, with their normals. Each is an event of `timeline`.
-[[nodiscard]] Scene load_inputs(const std::vector<std::string>& inputs, Normals normals,
-                                Timeline& timeline, Progress& progress);
+[[nodiscard]] Inputs load_inputs(const std::vector<std::string>& inputs,
+                                 const NormalOptions& normals, Timeline& timeline,
+                                 Progress& progress);
+
+/// The number of the input that each pixel shows, −1 where `ids` is: a search among the parts.
+[[nodiscard]] Image<std::int32_t> inputs_of_ids(ImageView<const std::int64_t> ids,
+                                                std::span<const InputPart> parts);
 
 }  // namespace rastrum::cli

@@ -30,10 +30,10 @@ struct MakeArguments {
 
 /// A name of the catalogue is a shape; anything else that looks like a path is a file.
 bool is_shape(const std::string& input) {
-  const std::string name = input.substr(0, input.find('?'));
+  const std::string name = input.substr(0, input.find_first_of("?@"));
   for (const shapes::ShapeInfo& shape : shapes::catalogue())
     if (shape.name == name) return true;
-  return name.find_first_of("./:") == std::string::npos;
+  return input.substr(0, input.find('?')).find_first_of("./:") == std::string::npos;
 }
 
 int run(const MakeArguments& a) {
@@ -61,7 +61,8 @@ Command add_make_command(Parser& app) {
   Parser make = app.add_subcommand("make", "Write a shape, or a file's mesh, as binary PLY");
   make.add_option(
           "SHAPE", arguments->input,
-          "SHAPE[?name=value,...] of the list below (x, y, z and scale place it), or a file")
+          "SHAPE[?name=value,...] of the list below, or a file; @x=X,y=Y,z=Z,scale=S,rx=DEG,... "
+          "places it")
       ->required()
       ->type_name("");
   add(make, "-o,--output", "FILE", "the .ply file", [arguments](const std::string& s) {

@@ -27,5 +27,8 @@ void Progress::clear() {
 void warn(const std::string& what) {
   std::fprintf(stderr, "warning: %s\n", what.c_str());
 }
+void note(const std::string& what) {
+  std::fprintf(stderr, "note: %s\n", what.c_str());
+}
 
 }  // namespace rastrum::cli

@@ -27,5 +27,7 @@ class Progress {
 
 /// Writes `warning: …` to stderr.
 void warn(const std::string& what);
+/// The same of what is no fault: a choice that was made.
+void note(const std::string& what);
 
 }  // namespace rastrum::cli

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 
 #include <rastrum/io/io.hpp>
 #include <rastrum/render/render.hpp>
+#include <rastrum/scene/view_distance.hpp>
 
 #include "arguments.hpp"
 #include "camera_path.hpp"
@@ -25,6 +27,7 @@
 #include "progress.hpp"
 #include "render_job.hpp"
 #include "scene_options.hpp"
+#include "sequence.hpp"
 #include "stats_json.hpp"
 #include "timeline.hpp"
 #include "transparency.hpp"
@@ -33,21 +36,28 @@
 namespace rastrum::cli {
 namespace {
 
+enum class DepthUnit { reversed, world };
+
 struct RenderArguments : SceneArguments {
   std::filesystem::path path;
+  int turntable = 0;  ///< pictures of a full turn; 0: it does not turn
   double fps = 30;
   bool fps_given = false;
   bool frames_given = false;
   int frames = 1;
   bool quiet = false;
-  Output color, depth, ids, heatmap, errors, trace, stats;
+  std::optional<DepthUnit> depth_unit;
+  Output color, depth, ids, objects, heatmap, errors, trace, stats;
+
+  /// Whether one run draws many pictures.
+  [[nodiscard]] bool is_sequence() const { return !path.empty() || turntable != 0; }
 };
 
 void add_output_options(Parser& app, RenderArguments& a) {
   const char* group = "Outputs";
   add(app, "-o,--output", "FILE",
-      ".png: 8 bit, straight alpha; .exr, .npy: float32, premultiplied; with --path also .mp4, "
-      "over black",
+      ".png: 8 bit, straight alpha; .exr, .npy: float32, premultiplied; with --path or --turntable "
+      "also .mp4, over black",
       [&a](const std::string& s) {
         a.color = parse_output("-o", s, {Format::png, Format::exr, Format::npy, Format::mp4});
       })
@@ -57,8 +67,20 @@ void add_output_options(Parser& app, RenderArguments& a) {
         a.depth = parse_output("--depth", s, {Format::npy, Format::exr});
       })
       ->group(group);
+  add(app, "--depth-unit", "NAME",
+      "of --depth: reversed, or world: the distance along the view axis in the scene's units, inf "
+      "where nothing is (reversed)",
+      [&a](const std::string& s) {
+        a.depth_unit = choose<DepthUnit>(
+            "--depth-unit", s, {{"world", DepthUnit::world}, {"reversed", DepthUnit::reversed}});
+      })
+      ->group(group);
   add(app, "--ids", "FILE", ".npy: int64, triangle in order of submission, -1 where nothing is",
       [&a](const std::string& s) { a.ids = parse_output("--ids", s, {Format::npy}); })
+      ->group(group);
+  add(app, "--objects", "FILE",
+      ".npy: int32, which INPUT is seen, from 0 in command order, -1 where nothing is",
+      [&a](const std::string& s) { a.objects = parse_output("--objects", s, {Format::npy}); })
       ->group(group);
   add(app, "--heatmap", "FILE",
       ".png: fragments at each pixel, hidden ones too, as colours; legend on stderr",
@@ -69,7 +91,8 @@ void add_output_options(Parser& app, RenderArguments& a) {
       "sort a pixel that its filter could not hold",
       [&a](const std::string& s) { a.errors = parse_output("--show-errors", s, {Format::png}); })
       ->group(group);
-  add(app, "--stats", "FILE", ".json or - (standard output): counts, memory and times",
+  add(app, "--stats", "FILE",
+      ".json or - (standard output): counts, memory, times, ids of the inputs, cameras",
       [&a](const std::string& s) {
         a.stats = s == "-" ? Output{"--stats", s, Format::json}
                            : parse_output("--stats", s, {Format::json});
@@ -83,17 +106,24 @@ void add_output_options(Parser& app, RenderArguments& a) {
 }
 
 void add_path_options(Parser& app, RenderArguments& a) {
-  const char* group = "Camera path";
+  const char* group = "Many pictures";
+  add(app, "--turntable", "N",
+      "N pictures of a full turn about the camera's target: -o 'turn_%03d.png' or, through ffmpeg, "
+      "-o turn.mp4",
+      [&a](const std::string& s) { a.turntable = parse_integer("--turntable", s, 1, 1000000); })
+      ->group(group);
   add(app, "--path", "FILE",
       "draw a picture for each moment of a camera path (docs/window.md): -o 'frame_%04d.png' or, "
       "through ffmpeg, -o flight.mp4",
       [&a](const std::string& s) { a.path = s; })
       ->group(group);
-  add(app, "--fps", "N", "pictures a second of the path (30)", [&a](const std::string& s) {
-    a.fps = parse_number("--fps", s);
-    a.fps_given = true;
-    if (!(a.fps > 0 && a.fps <= 1000)) throw UsageError("--fps", "must lie in 0 to 1000");
-  })->group(group);
+  add(app, "--fps", "N", "pictures a second of the path or the film (30)",
+      [&a](const std::string& s) {
+        a.fps = parse_number("--fps", s);
+        a.fps_given = true;
+        if (!(a.fps > 0 && a.fps <= 1000)) throw UsageError("--fps", "must lie in 0 to 1000");
+      })
+      ->group(group);
 }
 
 void add_frames_option(Parser& app, RenderArguments& a) {
@@ -105,15 +135,22 @@ void add_frames_option(Parser& app, RenderArguments& a) {
       ->group(kMachineGroup);
 }
 
-/// The outputs that hold one picture, so that a path needs a numbered name for each.
-std::array<Output RenderArguments::*, 5> picture_outputs() {
-  return {&RenderArguments::color, &RenderArguments::depth, &RenderArguments::ids,
-          &RenderArguments::heatmap, &RenderArguments::errors};
+/// The outputs that hold one picture, so that a sequence needs a numbered name for each.
+std::array<Output RenderArguments::*, 6> picture_outputs() {
+  return {&RenderArguments::color,   &RenderArguments::depth,   &RenderArguments::ids,
+          &RenderArguments::objects, &RenderArguments::heatmap, &RenderArguments::errors};
 }
 
-void check_path(const RenderArguments& a) {
+void check_sequence(const RenderArguments& a) {
+  const char* option = a.path.empty() ? "--turntable" : "--path";
   if (a.frames_given)
-    throw UsageError("--frames", "leaves no room for --path: both say how many frames are drawn");
+    throw UsageError("--frames", std::string("leaves no room for ") + option +
+                                     ": both say how many frames are drawn");
+  if (!a.path.empty() && a.turntable != 0)
+    throw UsageError("--turntable", "leaves no room for --path: both move the camera");
+  if (a.turntable != 0 && a.view.file_camera)
+    throw UsageError("--turntable",
+                     "the camera of a file has no target to turn about: give --eye and --target");
   for (const auto member : picture_outputs()) {
     const Output& output = a.*member;
     if (!output) continue;
@@ -122,27 +159,28 @@ void check_path(const RenderArguments& a) {
     else
       static_cast<void>(NumberedName(output.option, output.file.string()));
   }
-  static_cast<void>(read_json(a.path));  // a spoilt file is refused before a large scene is read
+  if (!a.path.empty())
+    static_cast<void>(read_json(a.path));  // a spoilt file is refused before a large scene is read
 }
 
 /// What the parser cannot see by itself, before anything is read.
 void check(const RenderArguments& a) {
-  if (!a.color && !a.depth && !a.ids && !a.heatmap && !a.errors && !a.stats && !a.trace)
+  if (!a.color && !a.depth && !a.ids && !a.objects && !a.heatmap && !a.errors && !a.stats &&
+      !a.trace)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
   check_scene_arguments(a);
-  if (a.path.empty() && a.fps_given) throw UsageError("--fps", "is for --path");
-  if (a.path.empty() && a.color && a.color.format == Format::mp4)
-    throw UsageError("-o", "an .mp4 is drawn along a camera path: give --path");
-  if (!a.path.empty()) check_path(a);
+  if (a.depth_unit && !a.depth) throw UsageError("--depth-unit", "is for --depth");
+  if (!a.is_sequence() && a.fps_given) throw UsageError("--fps", "is for --path and --turntable");
+  if (!a.is_sequence() && a.color && a.color.format == Format::mp4)
+    throw UsageError("-o",
+                     "an .mp4 is drawn along a camera path or of a full turn: give --path or "
+                     "--turntable");
+  if (a.is_sequence()) check_sequence(a);
   const bool stats_to_file = a.stats && a.stats.file != "-";
   const Output none;
-  const Output* const outputs[] = {&a.color,
-                                   &a.depth,
-                                   &a.ids,
-                                   &a.heatmap,
-                                   &a.errors,
-                                   &a.trace,
-                                   stats_to_file ? &a.stats : &none};
+  const Output* const outputs[] = {
+      &a.color,   &a.depth,  &a.ids,   &a.objects,
+      &a.heatmap, &a.errors, &a.trace, stats_to_file ? &a.stats : &none};
   check_outputs(outputs);
 }
 
@@ -175,8 +213,17 @@ void write_error_picture(const RenderArguments& a, const Pictures& p, Progress& 
                         : "blended in a wrong order");
 }
 
-void write_images(const RenderArguments& a, const Pictures& p, Timeline& timeline,
-                  Progress& progress) {
+/// `depth` in the scene's units.
+Image<float> distances(ImageView<const float> depth, const Camera& camera) {
+  Image<float> distance(depth.width, depth.height);
+  for (int y = 0; y < depth.height; ++y)
+    for (int x = 0; x < depth.width; ++x)
+      distance(x, y) = static_cast<float>(view_distance(camera, depth(x, y)));
+  return distance;
+}
+
+void write_images(const RenderArguments& a, const Pictures& p, const Camera& camera,
+                  const Inputs& inputs, Timeline& timeline, Progress& progress) {
   const auto write = [&](const Output& output, auto&& writer) {
     if (!output) return;
     progress.show("writing " + output.file.string());
@@ -184,8 +231,15 @@ void write_images(const RenderArguments& a, const Pictures& p, Timeline& timelin
   };
   if (a.color.format != Format::mp4)
     write(a.color, [&] { write_color(a.color, p.color8.view(), p.color.view()); });
-  write(a.depth, [&] { write_depth(a.depth, p.depth.view()); });
+  write(a.depth, [&] {
+    if (a.depth_unit == DepthUnit::world)
+      write_depth(a.depth, distances(p.depth.view(), camera).view());
+    else
+      write_depth(a.depth, p.depth.view());
+  });
   write(a.ids, [&] { io::write_npy(a.ids.file, p.ids.view()); });
+  write(a.objects,
+        [&] { io::write_npy(a.objects.file, inputs_of_ids(p.ids.view(), inputs.parts).view()); });
   write(a.heatmap, [&] {
     const Heatmap heatmap = make_heatmap(p.overdraw.view());
     io::write_png(a.heatmap.file, heatmap.image.view());
@@ -205,7 +259,7 @@ Wanted wanted_of(const RenderArguments& a) {
   return {.color8 = (a.color && !floats) || a.errors,
           .color = a.color && floats,
           .depth = static_cast<bool>(a.depth),
-          .ids = static_cast<bool>(a.ids),
+          .ids = a.ids || a.objects,
           .overdraw = static_cast<bool>(a.heatmap),
           .errors = static_cast<bool>(a.errors)};
 }
@@ -218,7 +272,7 @@ RenderArguments with_numbers(const RenderArguments& a, std::size_t number, std::
     if (!output || output.format == Format::mp4) continue;
     const NumberedName name(output.option, output.file.string());
     if (!name.has_number() && count > 1)
-      throw UsageError(output.option, "the path has " + std::to_string(count) +
+      throw UsageError(output.option, "there are " + std::to_string(count) +
                                           " pictures: number them, as in frame_%04d" +
                                           output.file.extension().string());
     output.file = name.at(number);
@@ -226,37 +280,49 @@ RenderArguments with_numbers(const RenderArguments& a, std::size_t number, std::
   return numbered;
 }
 
-int run_path(const RenderArguments& a, Renderer& renderer, const SceneView& scene,
-             const Camera& base, double load_ms, Timeline& timeline, Progress& progress) {
-  const CameraPath path = read_camera_path(a.path, base);
-  const std::vector<double> times = frame_times(path.first_s(), path.last_s(), a.fps);
-  const BoundingSphere sphere = bounding_sphere(scene);
-  static_cast<void>(with_numbers(a, 0, times.size()));
+/// What --stats says: the frames, what was drawn and from where, a camera for each picture.
+nlohmann::ordered_json describe(const std::vector<FrameStats>& frames, const Renderer& renderer,
+                                double load_ms, const Inputs& inputs,
+                                const std::vector<Camera>& cameras) {
+  nlohmann::ordered_json stats = stats_json(frames, renderer.options(), load_ms);
+  nlohmann::ordered_json& parts = stats["inputs"] = nlohmann::ordered_json::array();
+  for (const InputPart& part : inputs.parts)
+    parts.push_back(
+        {{"name", part.name}, {"first_id", part.first_id}, {"triangles", part.triangles}});
+  nlohmann::ordered_json& list = stats["cameras"] = nlohmann::ordered_json::array();
+  for (const Camera& camera : cameras) list.push_back(camera_json(camera, true));
+  return stats;
+}
+
+int run_sequence(const RenderArguments& a, Renderer& renderer, const Sequence& sequence,
+                 const Inputs& inputs, double load_ms, Timeline& timeline, Progress& progress) {
+  static_cast<void>(with_numbers(a, 0, sequence.count));
   std::unique_ptr<Mp4Writer> video;
   if (a.color && a.color.format == Format::mp4)
     video = std::make_unique<Mp4Writer>(a.color.file, a.render.width, a.render.height, a.fps);
 
   Pictures pictures;
   std::vector<FrameStats> frames;
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    progress.show("picture " + std::to_string(i + 1) + " of " + std::to_string(times.size()));
-    Camera camera = path.at(times[i]);
-    if (!path.has_planes() && !a.view.near_plane) place_planes(camera, sphere);
+  std::vector<Camera> cameras;
+  for (std::size_t i = 0; i < sequence.count; ++i) {
+    progress.show("picture " + std::to_string(i + 1) + " of " + std::to_string(sequence.count));
+    const auto [scene, camera] = sequence.shot(i);
     const auto stats = render_frames(renderer, scene, camera, wanted_of(a), false, 1, pictures,
                                      timeline, progress);
     frames.push_back(stats.front());
-    write_images(with_numbers(a, i, times.size()), pictures, timeline, progress);
+    cameras.push_back(camera);
+    write_images(with_numbers(a, i, sequence.count), pictures, camera, inputs, timeline, progress);
     if (video) video->add(pictures.color8.view());
   }
   if (video) video->finish();
   progress.clear();
   const FrameStats& median = frames[median_frame(frames)];
   if (!a.quiet) report_missing(median);
-  if (a.stats) write_json(a.stats.file, stats_json(frames, renderer.options(), load_ms));
+  if (a.stats) write_json(a.stats.file, describe(frames, renderer, load_ms, inputs, cameras));
   if (a.trace) write_trace(a.trace.file, timeline);
   if (!a.quiet && a.color)
     std::fprintf(stderr, "%s: %lu pictures of %dx%d, %lu triangles, %.1f ms a picture\n",
-                 a.color.file.c_str(), static_cast<unsigned long>(times.size()), a.render.width,
+                 a.color.file.c_str(), static_cast<unsigned long>(sequence.count), a.render.width,
                  a.render.height, static_cast<unsigned long>(median.triangles.input),
                  median.frame_ms);
   return 0;
@@ -270,22 +336,29 @@ int run(RenderArguments& a) {
   auto renderer = std::make_unique<Renderer>(a.render);
 
   const double load_begin = timeline.now_ms();
-  const Scene scene = load_inputs(a.inputs, a.normals, timeline, progress);
+  const Inputs inputs = load_inputs(a.inputs, a.normals, timeline, progress);
+  const Scene& scene = inputs.scene;
   const double load_ms = timeline.now_ms() - load_begin;
   if (!a.quiet && !scene.warnings.empty()) {
     progress.clear();
     for (const std::string& w : scene.warnings) warn(w);
   }
-  if (!a.shader_given && !scene.materials.empty()) {
+  if (!a.shader_given && inputs.has_materials) {
     a.render.shader = Shader::material;
     renderer = std::make_unique<Renderer>(a.render);
   }
   if (!a.quiet && a.render.transparency.method == Transparency::none) report_blended(scene);
   const SceneBinding binding(scene);
-  const Camera camera = choose_camera(a.view, scene, binding.view());
+  a.view.turns = a.turntable != 0;
+  const Camera camera =
+      choose_camera(a.view, scene, binding.view(), {a.render.width, a.render.height});
 
-  if (!a.path.empty())
-    return run_path(a, *renderer, binding.view(), camera, load_ms, timeline, progress);
+  if (a.is_sequence())
+    return run_sequence(a, *renderer,
+                        a.turntable != 0
+                            ? on_turntable(a.turntable, binding.view(), a.view, camera)
+                            : along_path(a.path, a.fps, binding.view(), a.view, camera),
+                        inputs, load_ms, timeline, progress);
   const bool timed = a.frames_given || a.stats || a.trace;
   Pictures pictures;
   const std::vector<FrameStats> frames =
@@ -295,9 +368,9 @@ int run(RenderArguments& a) {
   progress.clear();
   if (!a.quiet) report_missing(median);
 
-  write_images(a, pictures, timeline, progress);
+  write_images(a, pictures, camera, inputs, timeline, progress);
   progress.clear();
-  if (a.stats) write_json(a.stats.file, stats_json(frames, renderer->options(), load_ms));
+  if (a.stats) write_json(a.stats.file, describe(frames, *renderer, load_ms, inputs, {camera}));
   if (a.trace) write_trace(a.trace.file, timeline);
   if (!a.quiet && a.color)
     std::fprintf(stderr, "%s: %dx%d, %lu triangles, %.1f ms%s\n", a.color.file.c_str(),
@@ -333,7 +406,10 @@ Command add_render_command(Parser& app) {
       "  rastrum render engine.glb --opacity 0.3 --samples 4 -o see_through.png\n"
       "  rastrum render hair.ply --opacity 0.5 --transparency filter:3 --show-errors wrong.png\n"
       "  rastrum render dragon.ply --frames 20 --stats - --trace frames.json --heatmap heat.png\n"
-      "  rastrum render dragon.ply --path flight.json --fps 60 -o 'frame_%04d.png'";
+      "  rastrum render dragon.ply --path flight.json --fps 60 -o 'frame_%04d.png'\n"
+      "  rastrum render shell.ply@opacity=0.3,color=#88aaff core.stl@z=0.2,rx=90 -o glass.png\n"
+      "  rastrum render dragon.ply --turntable 120 -o dragon.mp4\n"
+      "  rastrum render a.stl b.stl --depth d.npy --depth-unit world --objects o.npy";
   render.footer(footer);
   return {render, [arguments] { return run(*arguments); }};
 }

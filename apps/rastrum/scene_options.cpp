@@ -39,7 +39,8 @@ Option add_input_option(Parser& app, SceneArguments& a) {
       .add_option(
           "INPUT", a.inputs,
           "files (.obj .ply .stl .off .gltf .glb) and builtin:SHAPE[?name=value,...], drawn "
-          "as one scene in this order; x, y, z and scale place a shape")
+          "as one scene in this order; INPUT@x=X,y=Y,z=Z,scale=S,rx=DEG,ry=DEG,rz=DEG,"
+          "color=#RRGGBB,opacity=A places and paints one")
       ->type_name("");
 }
 
@@ -54,11 +55,23 @@ void add_shading_options(Parser& app, SceneArguments& a, const char* group) {
       })
       ->group(group);
   add(app, "--normals", "NAME",
-      "file: the file's, else vertex; vertex: area-weighted means; face (file)",
+      "file: the file's, else crease; crease: smooth but for sharp edges; vertex: area-weighted "
+      "means, smooth everywhere; face (file)",
       [&a](const std::string& s) {
-        a.normals = choose<Normals>(
-            "--normals", s,
-            {{"file", Normals::file}, {"vertex", Normals::vertex}, {"face", Normals::face}});
+        a.normals.kind = choose<Normals>("--normals", s,
+                                         {{"file", Normals::file},
+                                          {"crease", Normals::crease},
+                                          {"vertex", Normals::vertex},
+                                          {"face", Normals::face}});
+      })
+      ->group(group);
+  add(app, "--crease", "DEG",
+      "an edge stays sharp where its faces meet at more than this angle; 180: none does (40)",
+      [&a](const std::string& s) {
+        a.normals.crease_deg = parse_number("--crease", s);
+        a.crease_given = true;
+        if (!(a.normals.crease_deg >= 0 && a.normals.crease_deg <= 180))
+          throw UsageError("--crease", "must lie in 0 to 180 degrees, got '" + s + "'");
       })
       ->group(group);
   add(app, "--cull", "NAME",
@@ -125,7 +138,19 @@ void add_transparency_options(Parser& app, SceneArguments& a) {
 void add_camera_options(Parser& app, SceneArguments& a) {
   const char* group = "Camera (what is not given is taken from --fit)";
   ViewOptions& v = a.view;
-  app.add_flag("--fit", a.fit, "look along -z at all that is there (the default)")->group(group);
+  add(app, "--fit", "[NAME]",
+      "look along -z at all that is there, the default; tight: the scene fills the picture; "
+      "sphere: a ball around it does (tight)",
+      [&a, &v](const std::string& s) {
+        a.fit = true;
+        if (s.empty()) return;
+        if (s != "tight" && s != "sphere")
+          throw UsageError("--fit", "expected tight or sphere, got '" + s +
+                                        "'; an INPUT stands before --fit, not behind it");
+        v.fit = s == "sphere" ? Fit::sphere : Fit::tight;
+      })
+      ->expected(0, 1)
+      ->group(group);
   add(app, "--camera", "N", "the N-th camera of the files, from 0", [&v](const std::string& s) {
     v.file_camera = parse_integer("--camera", s, 0, std::numeric_limits<int>::max());
   })->group(group);
@@ -201,6 +226,8 @@ void check_scene_arguments(const SceneArguments& a) {
   const ViewOptions& v = a.view;
   if (a.fit && (v.eye || v.target || v.file_camera))
     throw UsageError("--fit", "leaves no room for --eye, --target or --camera");
+  if (a.crease_given && (a.normals.kind == Normals::vertex || a.normals.kind == Normals::face))
+    throw UsageError("--crease", "is for --normals file and crease");
   if (v.file_camera && v.orthographic)
     throw UsageError("--orthographic", "the camera of a file has a projection of its own");
   check_view(v);

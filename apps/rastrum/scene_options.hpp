@@ -16,7 +16,8 @@ struct SceneArguments {
   std::vector<std::string> inputs;
   RenderOptions render;
   bool shader_given = false;
-  Normals normals = Normals::file;
+  NormalOptions normals;
+  bool crease_given = false;
   ViewOptions view;
   bool fit = false;
 };

@@ -235,7 +235,8 @@ int run_path(const TerrainArguments& a, const Stage& stage, const terrain::Terra
 
 int run(TerrainArguments& a) {
   check(a);
-  if (!a.options.classic) a.options.sky = terrain::sky_in(a.options.sky, a.light.sun);
+  settle(a);
+  a.options.sky = sky_of(a.options, a.light.sun, a.sky_dims || a.dim_sky);
   Timeline timeline;
   Progress progress(a.quiet);
   // Refuses what cannot be drawn before a large file is read.
@@ -246,10 +247,13 @@ int run(TerrainArguments& a) {
   if (!a.objects.objects.empty()) objects.emplace(a.objects, a.options, timeline, progress);
   progress.show("loading");
   const LoadedTerrain source(a.input);
+  if (!a.quiet && !source.scale_note().empty()) {
+    progress.clear();
+    note(source.scale_note());
+  }
   const double load_ms = timeline.now_ms();
   progress.show("lighting");
-  const terrain::Terrain terrain =
-      source.lit(a.light, {a.options.tiling, a.options.device, a.options.threads, a.options.isa});
+  const terrain::Terrain terrain = source.lit(a.light, a.options);
   if (objects) {
     objects->place(terrain);
     if (!a.quiet && !objects->warnings().empty()) {

@@ -1,8 +1,11 @@
 #include "terrain_input.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <string>
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/io/io.hpp>
@@ -10,6 +13,34 @@
 #include "arguments.hpp"
 
 namespace rastrum::cli {
+namespace {
+
+/// The part of a map's shorter side that its relief is made to take where the file has no scale:
+/// what is natural lies between a fifth (a volcano at 30 m a cell) and a fiftieth.
+constexpr double kReliefOfSide = 1.0 / 12;
+
+std::string digits(double value, int n) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, n);
+  return {text, end.ptr};
+}
+
+struct Relief {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+};
+
+/// The range of what is a number.
+Relief relief_of(const Image<float>& heights) {
+  Relief r;
+  for (const float h : heights.pixels()) {
+    if (!std::isfinite(h)) continue;
+    r.low = std::min(r.low, static_cast<double>(h));
+    r.high = std::max(r.high, static_cast<double>(h));
+  }
+  return r;
+}
+
+}  // namespace
 
 LoadedTerrain::LoadedTerrain(const TerrainInput& input) {
   if (input.height.has_value() == !input.function.empty())
@@ -37,35 +68,43 @@ LoadedTerrain::LoadedTerrain(const TerrainInput& input) {
     return;
   }
   io::HeightGrid grid = io::read_heights(*input.height, input.raw_size);
-  const auto scale = static_cast<float>(input.height_scale.value_or(1 / grid.units_per_cell));
-  low_ = std::numeric_limits<double>::infinity();
-  high_ = -low_;
+  std::optional<double> scale = input.height_scale;
+  if (!scale && !grid.scale_known && !input.classic_scale) {
+    const Relief file = relief_of(grid.heights);
+    if (file.high > file.low) {
+      const int side = std::min(grid.heights.width(), grid.heights.height());
+      const std::string chosen = digits(kReliefOfSide * side / (file.high - file.low), 2);
+      scale = std::strtod(chosen.c_str(), nullptr);
+      scale_note_ = input.height->string() + ": does not say how long a cell is; its heights of " +
+                    digits(file.low, 6) + " to " + digits(file.high, 6) +
+                    " are drawn with --height-scale " + chosen +
+                    ", a twelfth of the map's side (more is steeper)";
+    }
+  }
   for (float& h : grid.heights.pixels()) {
     // Division by 257 makes whole numbers of 8-bit heights in 16 bits; multiplication need not.
-    h = input.height_scale ? h * scale
-                           : static_cast<float>(static_cast<double>(h) / grid.units_per_cell);
-    if (!std::isfinite(h)) {
-      h = std::numeric_limits<float>::quiet_NaN();
-      continue;
-    }
-    low_ = std::min(low_, static_cast<double>(h));
-    high_ = std::max(high_, static_cast<double>(h));
+    h = scale ? h * static_cast<float>(*scale)
+              : static_cast<float>(static_cast<double>(h) / grid.units_per_cell);
+    if (!std::isfinite(h)) h = std::numeric_limits<float>::quiet_NaN();
   }
+  const Relief cells = relief_of(grid.heights);
+  low_ = cells.low;
+  high_ = cells.high;
   if (!(low_ <= high_))
     throw Error(Errc::unsupported, input.height->string() + ": has no height that is a number");
   map_.heights = std::move(grid.heights);
   if (input.color) map_.colors = io::read_image(*input.color);
 }
 
-terrain::Terrain LoadedTerrain::lit(terrain::Light light,
-                                    const terrain::ShadowOptions& options) const {
+terrain::Terrain LoadedTerrain::lit(terrain::Light light, const terrain::TerrainOptions& o) const {
   light.hill_shading = map_.colors.empty();
+  light.smooth = o.filter == terrain::Filter::bilinear;
   if (!is_map()) return terrain::function_terrain(function_, low_, high_, light);
   terrain::HeightMap map{map_.heights, {}};
   if (light.shadows == terrain::Shadows::none && !light.hill_shading)
     map.colors = map_.colors;
   else
-    map.colors = terrain::lit_colors(map_, light, options);
+    map.colors = terrain::lit_colors(map_, light, {o.tiling, o.device, o.threads, o.isa});
   return terrain::Terrain(std::move(map));
 }
 

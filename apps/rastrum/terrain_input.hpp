@@ -7,8 +7,10 @@
 #include <string>
 
 #include <rastrum/io/height_map.hpp>
+#include <rastrum/terrain/expression.hpp>
 #include <rastrum/terrain/functions.hpp>
 #include <rastrum/terrain/light.hpp>
+#include <rastrum/terrain/options.hpp>
 #include <rastrum/terrain/terrain.hpp>
 
 namespace rastrum::cli {
@@ -16,8 +18,11 @@ namespace rastrum::cli {
 struct TerrainInput {
   std::optional<std::filesystem::path> height, color;
   io::RawSize raw_size;                ///< of raw heights
-  std::optional<double> height_scale;  ///< none: the file's own (1/257 for 16 bit, 1/cell for DEM)
-  std::string function;                ///< a name or an expression, where there is no file
+  std::optional<double> height_scale;  ///< none: the file's own, or one that suits its heights
+  /// What the original program takes a unit for where the file does not say, instead of one that
+  /// suits: 1/257 of a cell of 16 bits, else a cell.
+  bool classic_scale = false;
+  std::string function;  ///< a name or an expression, where there is no file
 };
 
 /// Read once, lit as often as the sun moves.
@@ -29,7 +34,7 @@ class LoadedTerrain {
 
   /// What is drawn. Where there are no colours, they are by height and slopes are shaded.
   [[nodiscard]] terrain::Terrain lit(terrain::Light light,
-                                     const terrain::ShadowOptions& options) const;
+                                     const terrain::TerrainOptions& options) const;
 
   [[nodiscard]] bool is_map() const { return !map_.heights.empty(); }
   [[nodiscard]] int width() const { return is_map() ? map_.heights.width() : 1024; }
@@ -37,11 +42,14 @@ class LoadedTerrain {
   /// The range of the heights, in cells; of functions as far as it is known.
   [[nodiscard]] double lowest() const { return low_; }
   [[nodiscard]] double highest() const { return high_; }
+  /// What was chosen for want of a scale in the file, a line to show; empty: nothing was.
+  [[nodiscard]] const std::string& scale_note() const { return scale_note_; }
 
  private:
   terrain::HeightMap map_;
   terrain::HeightFunction function_;
   double low_ = 0, high_ = 0;
+  std::string scale_note_;
 };
 
 }  // namespace rastrum::cli

@@ -31,7 +31,8 @@ TerrainObject parse_object(const char* option, const std::string& text, bool is_
   }
   object.input = text.substr(0, at);
   Standing standing;
-  bool has_x = false, has_y = false;
+  std::string look;  // what the input takes itself (input_spec.hpp)
+  bool has_x = false, has_y = false, stands = false;
   for (std::size_t begin = at; begin < text.size();) {
     const std::size_t end = std::min(text.find(',', ++begin), text.size());
     const std::string item = text.substr(begin, end - begin);
@@ -42,6 +43,12 @@ TerrainObject parse_object(const char* option, const std::string& text, bool is_
       return parse_number(std::string(option).append(" ").append(name),
                           std::string_view(item).substr(std::min(equals + 1, item.size())));
     };
+    constexpr std::string_view kLooks[] = {"rx", "ry", "rz", "color", "opacity"};
+    if (!is_sprite && std::ranges::find(kLooks, name) != std::end(kLooks)) {
+      look.append(look.empty() ? "@" : ",").append(item);
+      continue;
+    }
+    stands = true;
     if (name == "x") {
       standing.x = value();
       has_x = true;
@@ -59,10 +66,13 @@ TerrainObject parse_object(const char* option, const std::string& text, bool is_
     } else {
       throw UsageError(option, "expected " +
                                    std::string(is_sprite ? "x, y, height and size"
-                                                         : "x, y, height, scale and turn") +
+                                                         : "x, y, height, scale, turn, rx, ry, "
+                                                           "rz, color and opacity") +
                                    " after @, got '" + item + "'");
     }
   }
+  object.input += look;
+  if (!stands) return object;
   if (!has_x || !has_y) throw UsageError(option, "x and y are missing in '" + text + "'");
   object.standing = standing;
   return object;
@@ -110,11 +120,13 @@ void add_terrain_objects(Parser& app, TerrainObjectArguments& a) {
                      })
         ->group(group);
   };
-  add_object("--mesh", "INPUT[@x=X,y=Y,...]",
-             "a file or builtin:SHAPE as `render` takes them, +y up, at cell X, Y; height=H of its "
-             "lowest point (the ground's), scale=S (1), turn=DEG counter-clockwise (0). Without @ "
-             "its x, y and z are the terrain's x, height and y. Can be repeated",
-             false);
+  add_object(
+      "--mesh", "INPUT[@x=X,y=Y,...]",
+      "a file or builtin:SHAPE as `render` takes them, +y up, at cell X, Y; height=H of its "
+      "lowest point (the ground's), scale=S (1), turn=DEG counter-clockwise (0); rx, ry, rz, "
+      "color and opacity as `render` has them. Without a place its x, y and z are the "
+      "terrain's x, height and y. Can be repeated",
+      false);
   add_object(
       "--sprite", "FILE@x=X,y=Y,...",
       "a .png or .jpg that faces the camera, blended by its alpha, at cell X, Y; height=H of "
@@ -139,13 +151,18 @@ TerrainObjects::TerrainObjects(const TerrainObjectArguments& a,
                                const terrain::TerrainOptions& options, Timeline& timeline,
                                Progress& progress)
     : options_(options) {
+  bool has_materials = false;  // of files: what is painted by hand keeps the plain shader
   for (const TerrainObject& object : a.objects) {
     const std::size_t first = scene_.instances.size();
     progress.show("loading " + object.input);
-    if (object.is_sprite)
+    if (object.is_sprite) {
       scene_.append(sprite(io::read_image(object.input)));
-    else
-      scene_.append(load_inputs({object.input}, a.scene.normals, timeline, progress));
+      has_materials = true;
+    } else {
+      Inputs inputs = load_inputs({object.input}, a.scene.normals, timeline, progress);
+      has_materials |= inputs.has_materials;
+      scene_.append(std::move(inputs.scene));
+    }
     parts_.push_back({object, first, scene_.instances.size()});
     if (object.is_sprite) facing_.push_back(first);
   }
@@ -156,7 +173,7 @@ TerrainObjects::TerrainObjects(const TerrainObjectArguments& a,
   render.device = options.device == Device::serial ? Device::serial : Device::threads;
   render.threads = options.threads;
   render.isa = options.isa;
-  if (!a.scene.shader_given && !scene_.materials.empty()) render.shader = Shader::material;
+  if (!a.scene.shader_given && has_materials) render.shader = Shader::material;
   painter_.emplace(std::move(render));
 }
 

@@ -76,7 +76,8 @@ void add_terrain_inputs(Parser& app, TerrainSceneArguments& a) {
       })
       ->group(group);
   add(app, "--height-scale", "S",
-      "cells that a unit of the file is high (1; 16 bit: 1/257; .dem, .tif: 1 / cell size)",
+      "cells that a unit of the file is high (8 bit: 1; .dem, .tif: 1 / cell size; else the relief "
+      "is a twelfth of the map's side; --classic: 1, of 16 bit 1/257)",
       [&a](const std::string& s) { a.input.height_scale = parse_number("--height-scale", s); })
       ->group(group);
   add(app, "--tile", "NAME", "beyond the map's edge: repeat, mirror, clamp (repeat)",
@@ -134,15 +135,29 @@ void add_terrain_picture(Parser& app, TerrainSceneArguments& a) {
       "rows that a height of 1 takes at distance 1 (as columns in the middle)",
       [&o](const std::string& s) { o.scale_px = parse_number("--scale", s); })
       ->group(group);
-  add(app, "--dz", "G", "steps along the view grow by this, from 1 (0.005)",
-      [&o](const std::string& s) { o.dz = parse_number("--dz", s); })
+  add(app, "--step", "S",
+      "cells from the first sample along the view to the next; smaller is finer near the camera "
+      "(bilinear: as long as a pixel is high at each; else 1)",
+      [&o](const std::string& s) {
+        o.step = parse_number("--step", s);
+        if (!(o.step > 0)) throw UsageError("--step", "must be greater than 0, got '" + s + "'");
+      })
       ->group(group);
-  add(app, "--filter", "NAME", "none, bilinear, mip (none)", [&o](const std::string& s) {
-    o.filter = choose<terrain::Filter>("--filter", s,
-                                       {{"none", terrain::Filter::none},
-                                        {"bilinear", terrain::Filter::bilinear},
-                                        {"mip", terrain::Filter::mip}});
-  })->group(group);
+  add(app, "--dz", "G", "each further step is longer by this (with a --step of 1: 0.005)",
+      [&o](const std::string& s) {
+        o.dz = parse_number("--dz", s);
+        if (o.step == 0) o.step = 1;
+      })
+      ->group(group);
+  add(app, "--filter", "NAME", "none, bilinear, mip (bilinear; --classic: none)",
+      [&a](const std::string& s) {
+        a.filter_given = true;
+        a.options.filter = choose<terrain::Filter>("--filter", s,
+                                                   {{"none", terrain::Filter::none},
+                                                    {"bilinear", terrain::Filter::bilinear},
+                                                    {"mip", terrain::Filter::mip}});
+      })
+      ->group(group);
   add(app, "--projection", "NAME",
       "planar, or cylindrical: nothing is stretched at wide angles, up to 360 (planar)",
       [&o](const std::string& s) {
@@ -152,9 +167,13 @@ void add_terrain_picture(Parser& app, TerrainSceneArguments& a) {
                                          {"cylindrical", terrain::Projection::cylindrical}});
       })
       ->group(group);
-  add(app, "--sky", "#RRGGBB", "with the sun high; it dims with a sun below 30 degrees (#9090e0)",
-      [&o](const std::string& s) { o.sky = parse_rgb("--sky", s); })
+  add(app, "--sky", "#RRGGBB", "(#9090e0, which dims with a sun below 30 degrees)",
+      [&a](const std::string& s) {
+        a.options.sky = parse_rgb("--sky", s);
+        a.sky_dims = false;
+      })
       ->group(group);
+  app.add_flag("--dim-sky", a.dim_sky, "dim the colour of --sky with a low sun, too")->group(group);
   add(app, "--fog", "DENSITY[,START[,#RRGGBB]]",
       "per cell, from START cells on, to this colour (none; 0; the sky's)",
       [&o](const std::string& s) { o.fog = parse_fog(s); })
@@ -214,6 +233,17 @@ void add_terrain_machine(Parser& app, TerrainSceneArguments& a) {
   add(app, "--isa", "NAME", "instruction set; this machine has " + isa_words() + " (the last)",
       [&o](const std::string& s) { o.isa = parse_isa(s); })
       ->group(group);
+}
+
+void settle(TerrainSceneArguments& a) {
+  if (!a.options.classic) return;
+  if (a.dim_sky) throw UsageError("--dim-sky", "the sky of the original program has one colour");
+  if (!a.filter_given) a.options.filter = terrain::Filter::none;
+  a.input.classic_scale = true;
+}
+
+Rgba8 sky_of(const terrain::TerrainOptions& options, const terrain::Sun& sun, bool dims) {
+  return dims && !options.classic ? terrain::sky_in(options.sky, sun) : options.sky;
 }
 
 terrain::TerrainCamera camera_of(const TerrainSceneArguments& a, const LoadedTerrain& source) {

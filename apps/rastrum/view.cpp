@@ -5,6 +5,8 @@
 #include <numbers>
 #include <string>
 
+#include <rastrum/scene/fit.hpp>
+
 #include "arguments.hpp"
 
 namespace rastrum::cli {
@@ -23,6 +25,18 @@ Camera file_camera(const Scene& scene, int index) {
                                std::to_string(scene.cameras.size() - 1) + ", not " +
                                std::to_string(index));
   return scene.cameras[static_cast<std::size_t>(index)];
+}
+
+/// The camera that nobody placed: along −z.
+Camera fitted_camera(const ViewOptions& o, const SceneView& view, float fov_rad, Size picture) {
+  Camera along;
+  along.up = o.up.value_or(along.up);
+  along.fov_rad = fov_rad;
+  along.orthographic = o.orthographic;
+  const bool has_up = length(cross(along.up, along.target - along.eye)) > 0;  // else told below
+  if (o.fit == Fit::sphere || o.eye || o.target || !has_up)
+    return fit_camera(view, fov_rad, o.orthographic);
+  return (o.turns ? fit_turntable : fit_picture)(view, along, picture.width, picture.height);
 }
 
 }  // namespace
@@ -53,13 +67,14 @@ void check_view(const ViewOptions& o) {
     throw UsageError("--orthographic", "the height must be greater than 0");
 }
 
-Camera choose_camera(const ViewOptions& o, const Scene& scene, const SceneView& view) {
+Camera choose_camera(const ViewOptions& o, const Scene& scene, const SceneView& view,
+                     Size picture) {
   Camera camera;
   if (o.file_camera) {
     camera = file_camera(scene, *o.file_camera);
   } else {
     const double fov_rad = o.fov_deg.value_or(60) * std::numbers::pi / 180;
-    camera = fit_camera(view, static_cast<float>(fov_rad), o.orthographic);
+    camera = fitted_camera(o, view, static_cast<float>(fov_rad), picture);
     if (o.eye) {
       camera.eye = *o.eye;
       place_planes(camera, bounding_sphere(view));

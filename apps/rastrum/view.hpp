@@ -5,10 +5,20 @@
 
 #include <rastrum/scene/scene.hpp>
 
+#include "arguments.hpp"
+
 namespace rastrum::cli {
 
-/// What was given; the rest is taken from the fit camera, or from the file's with `camera`.
+enum class Fit {
+  tight,   ///< the scene fills the picture (fit_picture)
+  sphere,  ///< a ball around it does (fit_camera): the same camera for any shape of picture
+};
+
+/// What was given; the rest is taken from the fit camera, or from the file's with `camera`. With an
+/// eye or a target of one's own the rest is that of the sphere.
 struct ViewOptions {
+  Fit fit = Fit::tight;
+  bool turns = false;  ///< the scene turns: the tight fit is of all that it sweeps over
   std::optional<int> file_camera;
   std::optional<Vec3> eye, target, up;
   std::optional<double> fov_deg, near_plane, far_plane;
@@ -31,8 +41,9 @@ void place_planes(Camera& camera, const BoundingSphere& scene);
 void check_view(const ViewOptions& options);
 
 /// The near plane of a camera of one's own is as far from the box as the fit camera's would be.
-/// Throws UsageError where the file has no such camera or the parts do not fit each other.
+/// `picture`: its size, which the tight fit fills. Throws UsageError where the file has no such
+/// camera or the parts do not fit each other.
 [[nodiscard]] Camera choose_camera(const ViewOptions& options, const Scene& scene,
-                                   const SceneView& view);
+                                   const SceneView& view, Size picture);
 
 }  // namespace rastrum::cli

@@ -83,6 +83,7 @@ std::vector<TerrainInput> maps_of(const ViewTerrainArguments& a) {
 }
 
 int run(ViewTerrainArguments& a) {
+  settle(a);
   auto subject = std::make_unique<window::TerrainSubject>(a, maps_of(a));
   window::TerrainSubject& terrain = *subject;
   return show(std::move(subject), a.window, a.options.width, a.options.height,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <concepts>
 
 #include <rastrum/core/config.hpp>
 
@@ -25,8 +26,20 @@ RASTRUM_HD constexpr Vec2 operator+(Vec2 a, Vec2 b) {
 RASTRUM_HD constexpr Vec2 operator-(Vec2 a, Vec2 b) {
   return {a.x - b.x, a.y - b.y};
 }
+RASTRUM_HD constexpr Vec2 operator-(Vec2 a) {
+  return {-a.x, -a.y};
+}
 RASTRUM_HD constexpr Vec2 operator*(Vec2 a, float s) {
   return {a.x * s, a.y * s};
+}
+RASTRUM_HD constexpr Vec2 operator*(Vec2 a, Vec2 b) {
+  return {a.x * b.x, a.y * b.y};
+}
+RASTRUM_HD constexpr Vec2 operator/(Vec2 a, float s) {
+  return {a.x / s, a.y / s};
+}
+RASTRUM_HD constexpr bool operator==(Vec2 a, Vec2 b) {
+  return a.x == b.x && a.y == b.y;
 }
 
 RASTRUM_HD constexpr Vec3 operator+(Vec3 a, Vec3 b) {
@@ -44,6 +57,9 @@ RASTRUM_HD constexpr Vec3 operator*(Vec3 a, float s) {
 RASTRUM_HD constexpr Vec3 operator*(Vec3 a, Vec3 b) {
   return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
+RASTRUM_HD constexpr Vec3 operator/(Vec3 a, float s) {
+  return {a.x / s, a.y / s, a.z / s};
+}
 RASTRUM_HD constexpr bool operator==(Vec3 a, Vec3 b) {
   return a.x == b.x && a.y == b.y && a.z == b.z;
 }
@@ -54,11 +70,49 @@ RASTRUM_HD constexpr Vec4 operator+(Vec4 a, Vec4 b) {
 RASTRUM_HD constexpr Vec4 operator-(Vec4 a, Vec4 b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w};
 }
+RASTRUM_HD constexpr Vec4 operator-(Vec4 a) {
+  return {-a.x, -a.y, -a.z, -a.w};
+}
 RASTRUM_HD constexpr Vec4 operator*(Vec4 a, float s) {
   return {a.x * s, a.y * s, a.z * s, a.w * s};
 }
 RASTRUM_HD constexpr Vec4 operator*(Vec4 a, Vec4 b) {
   return {a.x * b.x, a.y * b.y, a.z * b.z, a.w * b.w};
+}
+RASTRUM_HD constexpr Vec4 operator/(Vec4 a, float s) {
+  return {a.x / s, a.y / s, a.z / s, a.w / s};
+}
+RASTRUM_HD constexpr bool operator==(Vec4 a, Vec4 b) {
+  return a.x == b.x && a.y == b.y && a.z == b.z && a.w == b.w;
+}
+
+// What follows from these, once for all.
+template <class V>
+concept Vector = std::same_as<V, Vec2> || std::same_as<V, Vec3> || std::same_as<V, Vec4>;
+
+template <Vector V>
+RASTRUM_HD constexpr V operator*(float s, V a) {
+  return a * s;
+}
+template <Vector V>
+RASTRUM_HD constexpr V& operator+=(V& a, V b) {
+  return a = a + b;
+}
+template <Vector V>
+RASTRUM_HD constexpr V& operator-=(V& a, V b) {
+  return a = a - b;
+}
+template <Vector V>
+RASTRUM_HD constexpr V& operator*=(V& a, V b) {
+  return a = a * b;
+}
+template <Vector V>
+RASTRUM_HD constexpr V& operator*=(V& a, float s) {
+  return a = a * s;
+}
+template <Vector V>
+RASTRUM_HD constexpr V& operator/=(V& a, float s) {
+  return a = a / s;
 }
 
 RASTRUM_HD constexpr float dot(Vec3 a, Vec3 b) {

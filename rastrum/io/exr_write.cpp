@@ -45,6 +45,7 @@ void write(const std::filesystem::path& file, ImageView<const T> image,
   static_assert(sizeof(T) == N * sizeof(float));
   if (image.empty() || image.width < 1 || image.height < 1)
     throw Error(Errc::invalid_argument, file.string() + ": an empty image cannot be written");
+  check_stride(image, file.string());
   AtomicFile out(file);
   try {
     // ZIPS compresses row by row, without loss.

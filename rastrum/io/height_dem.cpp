@@ -29,9 +29,9 @@ struct Profile {
   std::size_t count = 0;
 };
 
-class Reader {
+class DemReader {
  public:
-  Reader(std::span<const std::byte> bytes, const std::string& name)
+  DemReader(std::span<const std::byte> bytes, const std::string& name)
       : text_(as_text(bytes)), name_(name) {
     // Some files end each block with a line end.
     while (kBlock + line_end_ < text_.size() && line_end_ < 2 &&
@@ -61,6 +61,7 @@ class Reader {
                                    : ground == 0 ? 6378137.0  // radians
                                                  : 1.0);
     grid.units_per_cell = cell / metres;
+    grid.scale_known = true;
     return grid;
   }
 
@@ -178,7 +179,7 @@ class Reader {
 }  // namespace
 
 HeightGrid decode_height_dem(std::span<const std::byte> bytes, const std::string& name) {
-  return Reader(bytes, name).read();
+  return DemReader(bytes, name).read();
 }
 
 }  // namespace rastrum::io

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include <rastrum/io/mapped_file.hpp>
 #endif
@@ -96,12 +97,12 @@ class Quiet {
   const Gdal& gdal_;
 };
 
-/// Metres along a row of pixels; 1 where the file does not say.
-double cell_metres(const Gdal& gdal, GDALDatasetH data) {
+/// Metres along a row of pixels; none where the file does not say.
+std::optional<double> cell_metres(const Gdal& gdal, GDALDatasetH data) {
   double t[6];
-  if (gdal.geo_transform(data, t) != CE_None) return 1;
+  if (gdal.geo_transform(data, t) != CE_None) return std::nullopt;
   const double step = std::hypot(t[1], t[4]);
-  if (!std::isfinite(step) || !(step > 0)) return 1;
+  if (!std::isfinite(step) || !(step > 0)) return std::nullopt;
   constexpr double kMetresPerDegree = 111320;
   const OGRSpatialReferenceH where = gdal.spatial_ref(data);
   if (where != nullptr && gdal.is_geographic(where) != 0) return step * kMetresPerDegree;
@@ -129,7 +130,8 @@ HeightGrid read_height_gdal(const std::filesystem::path& file) {
     throw Error(Errc::unsupported, file.string() + ": its size " + std::to_string(width) + "x" +
                                        std::to_string(height) + " is above 32768x32768");
   const GDALRasterBandH band = gdal.band(data.get(), 1);
-  HeightGrid grid{Image<float>(width, height), cell_metres(gdal, data.get())};
+  const std::optional<double> metres = cell_metres(gdal, data.get());
+  HeightGrid grid{Image<float>(width, height), metres.value_or(1), metres.has_value()};
   if (gdal.raster_io(band, GF_Read, 0, 0, width, height, grid.heights.pixels().data(), width,
                      height, GDT_Float32, 0, 0) != CE_None)
     fail("its heights cannot be read");

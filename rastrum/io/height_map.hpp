@@ -12,11 +12,14 @@ namespace rastrum::io {
 
 /// Row 0 is at the top (north), columns go east.
 struct HeightGrid {
-  Image<float> heights;  ///< as the file has them, voids NaN
+  Image<float> heights{};  ///< as the file has them, voids NaN
   /// Units of `heights` that are as long as one cell is wide. Multiplying by 1 / units_per_cell
   /// gives the terrain its true proportions (DEM, GeoTIFF), or 16-bit values the range of 8-bit
   /// ones (257), which is that of the classic maps.
   double units_per_cell = 1;
+  /// Whether the file says how long a cell is (DEM, GeoTIFF), or is of 8 bits, where a unit has
+  /// been a cell since Voxel Space; else `units_per_cell` is a guess.
+  bool scale_known = false;
 };
 
 /// The size of a raw file, which does not say it; 0: square.

@@ -20,9 +20,9 @@ struct Layout {
   std::size_t rows = 0, columns = 0;
 };
 
-class Reader {
+class NpyReader {
  public:
-  Reader(std::span<const std::byte> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+  NpyReader(std::span<const std::byte> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
   [[nodiscard]] HeightGrid read() {
     const Layout layout = header();
@@ -124,7 +124,7 @@ class Reader {
     const bool swap =
         layout.type[0] == '<' || big ? big != (std::endian::native == std::endian::big) : false;
     HeightGrid grid{Image<float>(static_cast<int>(layout.columns), static_cast<int>(layout.rows)),
-                    1};
+                    1, sizeof(T) == 1};
     const std::byte* at = bytes_.data() + data_;
     for (std::size_t i = 0; i < count; ++i, at += sizeof(T)) {
       std::array<std::byte, sizeof(T)> raw;
@@ -155,7 +155,7 @@ class Reader {
 }  // namespace
 
 HeightGrid decode_height_npy(std::span<const std::byte> bytes, const std::string& name) {
-  return Reader(bytes, name).read();
+  return NpyReader(bytes, name).read();
 }
 
 }  // namespace rastrum::io

@@ -25,7 +25,8 @@ namespace rastrum::io {
 [[nodiscard]] Image<Rgba8> decode_image(std::span<const std::byte> bytes, const std::string& name);
 
 /// Writers write to a temporary name beside `file` and rename it, so that a file is whole or
-/// absent. Throws Error{io} naming the file.
+/// absent. Throws Error{io} naming the file, Error{invalid_argument} for an empty image or rows
+/// that overlap.
 void write_png(const std::filesystem::path& file, ImageView<const Rgba8> image);
 /// float32 RGBA, premultiplied: an RGBA EXR (32 bit), or NPY of shape (H, W, 4).
 void write_exr(const std::filesystem::path& file, ImageView<const Vec4> image);
@@ -34,9 +35,11 @@ void write_npy(const std::filesystem::path& file, ImageView<const Vec4> image);
 void write_exr(const std::filesystem::path& file, ImageView<const float> image);
 void write_npy(const std::filesystem::path& file, ImageView<const float> image);
 void write_npy(const std::filesystem::path& file, ImageView<const std::int64_t> image);
+void write_npy(const std::filesystem::path& file, ImageView<const std::int32_t> image);
 
 /// Binary little-endian PLY with positions, faces, and the normals, texture coordinates and colours
-/// that share the positions' indices.
+/// that share the positions' indices (those with indices of their own are left out). Throws
+/// Error{invalid_argument} for an index out of range or fewer values than positions.
 void write_ply(const std::filesystem::path& file, const Mesh& mesh);
 
 }  // namespace rastrum::io

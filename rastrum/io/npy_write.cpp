@@ -14,6 +14,7 @@ void write(const std::filesystem::path& file, ImageView<const T> image, const ch
            const char* inner) {
   if (image.empty() || image.width < 1 || image.height < 1)
     throw Error(Errc::invalid_argument, file.string() + ": an empty image cannot be written");
+  check_stride(image, file.string());
   std::string header = std::string("{'descr': '") +
                        (std::endian::native == std::endian::little ? '<' : '>') + type +
                        "', 'fortran_order': False, 'shape': (" + std::to_string(image.height) +
@@ -50,6 +51,10 @@ void write_npy(const std::filesystem::path& file, ImageView<const float> image) 
 
 void write_npy(const std::filesystem::path& file, ImageView<const std::int64_t> image) {
   write(file, image, "i8", "");
+}
+
+void write_npy(const std::filesystem::path& file, ImageView<const std::int32_t> image) {
+  write(file, image, "i4", "");
 }
 
 }  // namespace rastrum::io

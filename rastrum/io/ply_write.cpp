@@ -52,12 +52,20 @@ class Buffer {
 
 void write_ply(const std::filesystem::path& file, const Mesh& mesh) {
   const std::size_t vertices = mesh.positions.size();
-  const std::size_t faces = mesh.triangle_count();
-  const auto shared = [&](const auto& attribute) {
-    return attribute.indices.empty() && attribute.values.size() >= vertices && vertices != 0;
+  const MeshView view = mesh.view();
+  const std::size_t faces = view.triangle_count();
+  const auto shared = [&](const auto& attribute, const char* what) {
+    if (attribute.empty() || !attribute.indices.empty() || vertices == 0) return false;
+    if (attribute.values.size() < vertices)
+      throw Error(Errc::invalid_argument, file.string() + ": the mesh has " +
+                                              std::to_string(vertices) + " positions, but " + what +
+                                              " for only " +
+                                              std::to_string(attribute.values.size()));
+    return true;
   };
-  const bool normals = shared(mesh.normals), texcoords = shared(mesh.texcoords),
-             colors = shared(mesh.colors);
+  const bool normals = shared(mesh.normals, "normals"),
+             texcoords = shared(mesh.texcoords, "texture coordinates"),
+             colors = shared(mesh.colors, "colours");
   const bool bytes = colors && fit_bytes(mesh.colors.values);
   for (const std::uint32_t i : mesh.indices)
     if (i >= vertices)
@@ -100,8 +108,7 @@ void write_ply(const std::filesystem::path& file, const Mesh& mesh) {
   for (std::size_t t = 0; t < faces; ++t) {
     std::byte face[13] = {std::byte{3}};
     for (std::size_t c = 0; c < 3; ++c) {
-      const auto i =
-          mesh.indices.empty() ? static_cast<std::uint32_t>(3 * t + c) : mesh.indices[3 * t + c];
+      const std::uint32_t i = view.vertex(3 * t + c);
       std::memcpy(face + 1 + 4 * c, &i, 4);
     }
     buffer.put(face, sizeof face);

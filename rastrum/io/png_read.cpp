@@ -20,7 +20,7 @@
 namespace rastrum::io {
 namespace {
 
-struct State {
+struct PngReader {
   png_structp png = nullptr;
   png_infop info = nullptr;
   const std::byte* at = nullptr;
@@ -30,11 +30,11 @@ struct State {
   std::size_t raw_bytes = 0;  ///< filtered rows as compressed in the file
   std::jmp_buf jump;
 
-  ~State() { png_destroy_read_struct(&png, &info, nullptr); }
+  ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
 };
 
 void on_error(png_structp png, png_const_charp message) {
-  auto* state = static_cast<State*>(png_get_error_ptr(png));
+  auto* state = static_cast<PngReader*>(png_get_error_ptr(png));
   std::snprintf(state->message, sizeof state->message, "%s", message);
   std::longjmp(state->jump, 1);
 }
@@ -42,14 +42,14 @@ void on_error(png_structp png, png_const_charp message) {
 void on_warning(png_structp, png_const_charp) {}
 
 void on_read(png_structp png, png_bytep to, png_size_t n) {
-  auto* state = static_cast<State*>(png_get_io_ptr(png));
+  auto* state = static_cast<PngReader*>(png_get_io_ptr(png));
   if (n > state->left) png_error(png, "the file ends too early");
   std::memcpy(to, state->at, n);
   state->at += n;
   state->left -= n;
 }
 
-bool read_header(State* state) {
+bool read_header(PngReader* state) {
   if (setjmp(state->jump) != 0) return false;
   state->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, state, on_error, on_warning);
   if (state->png == nullptr) return false;
@@ -69,7 +69,7 @@ bool read_header(State* state) {
 }
 
 /// Rows of RGBA, of `channel_bytes` (1 or 2, in this machine's order) each.
-bool read_rows(State* state, png_bytepp rows, std::size_t channel_bytes) {
+bool read_rows(PngReader* state, png_bytepp rows, std::size_t channel_bytes) {
   if (setjmp(state->jump) != 0) return false;
   png_structp png = state->png;
   if (channel_bytes == 1) {
@@ -95,7 +95,7 @@ bool read_rows(State* state, png_bytepp rows, std::size_t channel_bytes) {
 }
 
 /// Reads the header of what is a PNG of a size that its bytes can fill.
-void open(State& state, Bytes bytes, const std::string& name) {
+void open(PngReader& state, Bytes bytes, const std::string& name) {
   // Apple's own variant: no zlib header, BGRA, premultiplied.
   if (bytes.size() >= 16 && as_text(bytes).substr(12, 4) == "CgBI")
     throw Error(Errc::unsupported,
@@ -110,7 +110,7 @@ void open(State& state, Bytes bytes, const std::string& name) {
 }
 
 template <class Pixel>
-Image<Pixel> read_pixels(State& state, const std::string& name) {
+Image<Pixel> read_pixels(PngReader& state, const std::string& name) {
   Image<Pixel> image(static_cast<int>(state.width), static_cast<int>(state.height));
   std::vector<png_bytep> rows(state.height);
   for (std::size_t y = 0; y < rows.size(); ++y)
@@ -122,7 +122,7 @@ Image<Pixel> read_pixels(State& state, const std::string& name) {
 }  // namespace
 
 Image<Rgba8> decode_png(Bytes bytes, const std::string& name) {
-  State state;
+  PngReader state;
   open(state, bytes, name);
   return read_pixels<Rgba8>(state, name);
 }
@@ -131,11 +131,11 @@ HeightGrid decode_height_png(Bytes bytes, const std::string& name) {
   struct Rgba16 {
     std::uint16_t r = 0, g = 0, b = 0, a = 0;
   };
-  State state;
+  PngReader state;
   open(state, bytes, name);
   const bool wide = png_get_bit_depth(state.png, state.info) == 16;
   const Image<Rgba16> pixels = read_pixels<Rgba16>(state, name);
-  HeightGrid grid{Image<float>(pixels.width(), pixels.height()), wide ? 257.0 : 1.0};
+  HeightGrid grid{Image<float>(pixels.width(), pixels.height()), wide ? 257.0 : 1.0, !wide};
   for (int y = 0; y < pixels.height(); ++y)
     for (int x = 0; x < pixels.width(); ++x) {
       const Rgba16 p = pixels(x, y);

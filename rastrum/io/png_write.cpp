@@ -17,18 +17,18 @@ namespace {
 /// by half.
 constexpr int kLevel = 1;
 
-struct State {
+struct PngWriter {
   png_structp png = nullptr;
   png_infop info = nullptr;
   std::FILE* stream = nullptr;
   char message[200] = "";
   std::jmp_buf jump;
 
-  ~State() { png_destroy_write_struct(&png, &info); }
+  ~PngWriter() { png_destroy_write_struct(&png, &info); }
 };
 
 void on_error(png_structp png, png_const_charp message) {
-  auto* state = static_cast<State*>(png_get_error_ptr(png));
+  auto* state = static_cast<PngWriter*>(png_get_error_ptr(png));
   std::snprintf(state->message, sizeof state->message, "%s", message);
   std::longjmp(state->jump, 1);
 }
@@ -36,7 +36,7 @@ void on_error(png_structp png, png_const_charp message) {
 void on_warning(png_structp, png_const_charp) {}
 
 /// Holds no object with a destructor: libpng leaves by longjmp.
-bool write_rows(State* state, ImageView<const Rgba8> image) {
+bool write_rows(PngWriter* state, ImageView<const Rgba8> image) {
   if (setjmp(state->jump) != 0) return false;
   state->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, state, on_error, on_warning);
   if (state->png == nullptr) return false;
@@ -62,9 +62,10 @@ bool write_rows(State* state, ImageView<const Rgba8> image) {
 void write_png(const std::filesystem::path& file, ImageView<const Rgba8> image) {
   if (image.empty() || image.width < 1 || image.height < 1)
     throw Error(Errc::invalid_argument, file.string() + ": an empty image cannot be written");
+  check_stride(image, file.string());
   AtomicFile out(file);
   {
-    State state;
+    PngWriter state;
     state.stream = out.stream();
     if (!write_rows(&state, image)) out.fail(state.message);
   }

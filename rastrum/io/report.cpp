@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <rastrum/core/enum.hpp>
+
 namespace rastrum::io {
 namespace {
 
@@ -47,10 +49,10 @@ struct Faults {
 Faults faults(const Mesh& mesh) {
   Faults f;
   const MeshView v = mesh.view();
+  check_indices(v);
   for (std::size_t t = 0; t < v.triangle_count(); ++t) {
     Vec3 p[3];
-    for (std::size_t c = 0; c < 3; ++c)
-      p[c] = v.positions[v.indices.empty() ? 3 * t + c : v.indices[3 * t + c]];
+    for (std::size_t c = 0; c < 3; ++c) p[c] = v.positions[v.vertex(3 * t + c)];
     if (!is_finite(p[0]) || !is_finite(p[1]) || !is_finite(p[2])) {
       ++f.not_finite;
       continue;
@@ -94,6 +96,8 @@ void describe_materials(const Scene& scene, std::string& text) {
       break;
     }
     const Material& m = scene.materials[i];
+    check_enum(m.alpha_mode, AlphaMode::blend,
+               "material " + std::to_string(i) + ": its alpha mode");
     text += "  material " + std::to_string(i) + " " + named(m.name) + ": " +
             format("base colour (%.3g, %.3g, %.3g, %.3g), metallic %.3g, roughness %.3g, %s",
                    static_cast<double>(m.base_color.x), static_cast<double>(m.base_color.y),
@@ -136,6 +140,7 @@ void describe_cameras(const Scene& scene, std::string& text) {
 }  // namespace
 
 std::string describe(const Scene& scene) {
+  const SceneBinding binding(scene);  // which checks that instances have meshes
   std::vector<Faults> by_mesh;
   for (const Mesh& m : scene.meshes) by_mesh.push_back(faults(m));
   Faults all;
@@ -149,7 +154,6 @@ std::string describe(const Scene& scene) {
                      counted(scene.materials.size(), "material") + ", " +
                      counted(scene.textures.size(), "texture") + ", " +
                      counted(scene.cameras.size(), "camera") + '\n';
-  const SceneBinding binding(scene);
   const Bounds b = bounds(binding.view());
   if (b.vertices_in_use == 0)
     text += "  bounds: none\n";

@@ -10,6 +10,7 @@ namespace rastrum::io {
 /// A text of several lines: meshes with their vertices and triangles, instances, bounds, materials,
 /// textures, cameras; how many triangles have a vertex that is not finite (the renderer drops them)
 /// or no area; the warnings. O(triangles of all instances).
+/// Throws Error{invalid_argument} for an index out of range.
 [[nodiscard]] std::string describe(const Scene& scene);
 
 }  // namespace rastrum::io

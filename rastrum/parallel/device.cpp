@@ -1,7 +1,10 @@
 #include <rastrum/parallel/device.hpp>
 
-#include <hwy/targets.h>
+#include <hwy/detect_targets.h>
 
+#include <algorithm>
+
+#include <rastrum/core/enum.hpp>
 #include <rastrum/core/error.hpp>
 #include <rastrum/parallel/cuda/status.hpp>
 
@@ -22,6 +25,7 @@ std::string_view name(Device device) {
 }
 
 DeviceChoice choose_device(Device wanted, bool draws_on_cuda) {
+  check_enum(wanted, Device::automatic, "device");
   if (wanted == Device::serial || wanted == Device::threads) return {wanted, ""};
   const parallel::CudaStatus status = parallel::cuda_status();
   std::string why_not = status.why_not;
@@ -58,19 +62,34 @@ std::string_view name(Isa isa) {
 
 std::vector<Isa> available_isas() {
   std::vector<Isa> isas{Isa::scalar};
-  // Asked once: in a virtual machine that takes 30 µs.
-  static const std::int64_t supported = hwy::SupportedTargets();
-  const auto add = [&](std::int64_t target, Isa isa) {
-    if ((supported & target) != 0) isas.push_back(isa);
-  };
 #if HWY_ARCH_X86
-  add(HWY_SSE4, Isa::sse4);
-  add(HWY_AVX2, Isa::avx2);
-  add(HWY_AVX3, Isa::avx512);
+  // What Highway's targets of these names use, as the compiler's runtime knows it; every processor
+  // with AVX2, BMI2 and FMA has LZCNT and F16C, which compilers cannot all be asked for.
+  __builtin_cpu_init();
+  const bool sse4 = __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("ssse3") &&
+                    __builtin_cpu_supports("aes") && __builtin_cpu_supports("pclmul");
+  const bool avx2 = sse4 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
+                    __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma");
+  const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") &&
+                      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
+                      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd");
+  if (sse4) isas.push_back(Isa::sse4);
+  if (avx2) isas.push_back(Isa::avx2);
+  if (avx512) isas.push_back(Isa::avx512);
 #elif HWY_ARCH_ARM
-  add(HWY_NEON, Isa::neon);
+  isas.push_back(Isa::neon);
 #endif
   return isas;
+}
+
+Isa choose_isa(std::optional<Isa> wanted) {
+  const std::vector<Isa> isas = available_isas();
+  if (!wanted) return isas.back();
+  check_enum(*wanted, Isa::neon, "isa");
+  if (std::ranges::find(isas, *wanted) == isas.end())
+    throw Error(Errc::no_device,
+                "this machine cannot run " + std::string(name(*wanted)) + " instructions");
+  return *wanted;
 }
 
 }  // namespace rastrum

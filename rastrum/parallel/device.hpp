@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,7 +19,8 @@ struct DeviceChoice {
   std::string why;  ///< what `automatic` went by; empty where a device was asked for
 };
 /// For a renderer that draws on a CUDA device, or does not (`draws_on_cuda`). Throws
-/// Error{no_device} with what to do where `cuda` is asked for and cannot be had.
+/// Error{no_device} with what to do where `cuda` is asked for and cannot be had,
+/// Error{invalid_argument} for a value that is no device.
 [[nodiscard]] DeviceChoice choose_device(Device wanted, bool draws_on_cuda);
 
 /// Instruction sets that the SIMD leaves are compiled for. `scalar` is plain C++.
@@ -26,5 +28,8 @@ enum class Isa : std::uint8_t { scalar, sse4, avx2, avx512, neon };
 [[nodiscard]] std::string_view name(Isa isa);
 /// Those that this machine can run, slowest first; always begins with `scalar`.
 [[nodiscard]] std::vector<Isa> available_isas();
+/// `wanted`, or the best of available_isas(). Throws Error{no_device} where this machine cannot run
+/// it.
+[[nodiscard]] Isa choose_isa(std::optional<Isa> wanted);
 
 }  // namespace rastrum

@@ -51,13 +51,13 @@ inline constexpr float kMaxLineWidth = 4096, kMaxPointSize = 4096;
 struct Draw {
   const VertexSource* source = nullptr;
   std::size_t vertex_count = 0;
-  std::span<const std::uint32_t> indices;  ///< empty: vertices in order
+  std::span<const std::uint32_t> indices{};  ///< empty: vertices in order
   std::uint64_t primitive_count = 0;
   Topology topology = Topology::triangles;
   std::uint32_t flags = 0;  ///< of its pieces
   /// Flags by material, so that a mesh of several needs no draw for each: triangle t has those of
   /// material_flags[face_materials[t]] too. Both or none.
-  std::span<const std::uint32_t> face_materials, material_flags;
+  std::span<const std::uint32_t> face_materials{}, material_flags{};
   Cull cull = Cull::none;  ///< which faces of triangles are left out
   Winding winding = Winding::counter_clockwise;
   float line_width = 1;  ///< px across the minor axis, rounded to a whole number of at least 1

@@ -32,14 +32,15 @@ namespace rastrum::raster {
 
 /// What can be interpolated: Σ varyingᵢ · weightᵢ, in the caller's own arithmetic.
 template <class V>
-concept Varying = std::copyable<V> && requires(const V& v, float s) {
+concept Varying = std::copyable<V> && requires(const V& v, float weight) {
   { v + v } -> std::convertible_to<V>;
-  { v* s } -> std::convertible_to<V>;
+  { v* weight } -> std::convertible_to<V>;
 };
 
-template <Varying V>
+/// `V`: a Varying, which Program sees to.
+template <class V>
 struct VertexOutput {
-  Vec4 clip;  ///< reversed depth: z = w at the near plane, 0 at the far one (world_to_clip's)
+  Vec4 clip{};  ///< reversed depth: z = w at the near plane, 0 at the far one (world_to_clip's)
   V varying;
 };
 
@@ -54,7 +55,9 @@ template <class Vertex, class Shade, class Discard = KeepAll>
 class Program final : public VertexSource, public BlockShader {
  public:
   using VaryingType = decltype(std::declval<const Vertex&>()(std::uint32_t{}).varying);
-  static_assert(Varying<VaryingType>, "a varying needs V + V and V * float");
+  static_assert(Varying<VaryingType>,
+                "a varying V is interpolated: give it `V operator+(const V&) const` and "
+                "`V operator*(float) const`");
 
   Program(Vertex vertex, Shade shade, Discard discard = {})
       : vertex_(std::move(vertex)), shade_(std::move(shade)), test_(*this, std::move(discard)) {}
@@ -188,11 +191,14 @@ class Program final : public VertexSource, public BlockShader {
     };
     const VaryingType v0 = varying(0);
     if (draw.topology == Topology::points) return each([&](const auto&) { return v0; });
-    const VaryingType v1 = varying(1);
-    if (draw.topology == Topology::lines)
-      return each([&](const auto& b) { return v0 * b[0] + v1 * b[1]; });
-    const VaryingType v2 = varying(2);
-    each([&](const auto& b) { return v0 * b[0] + v1 * b[1] + v2 * b[2]; });
+    // What is no Varying has had its sentence; a page about operators would hide it.
+    if constexpr (Varying<VaryingType>) {
+      const VaryingType v1 = varying(1);
+      if (draw.topology == Topology::lines)
+        return each([&](const auto& b) { return v0 * b[0] + v1 * b[1]; });
+      const VaryingType v2 = varying(2);
+      each([&](const auto& b) { return v0 * b[0] + v1 * b[1] + v2 * b[2]; });
+    }
   }
 
   Vertex vertex_;

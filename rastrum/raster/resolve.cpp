@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include <rastrum/core/enum.hpp>
 #include <rastrum/core/error.hpp>
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/kernels.hpp>
@@ -145,6 +146,11 @@ void check_draw(const Draw& draw) {
   const auto require = [](bool ok, const char* what) {
     if (!ok) throw Error(Errc::invalid_argument, what);
   };
+  require(draw.topology >= Topology::points,
+          "a draw's topology is 0, which is no value of its enum");
+  check_enum(draw.topology, Topology::triangles, "a draw's topology");
+  check_enum(draw.cull, Cull::front, "a draw's cull");
+  check_enum(draw.winding, Winding::either, "a draw's winding");
   // Written so that a NaN fails.
   require(draw.line_width > 0 && draw.line_width <= kMaxLineWidth,
           "a draw's line width must be > 0 and at most 4096 px");

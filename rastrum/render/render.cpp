@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <string>
 #include <utility>
 
+#include <rastrum/core/enum.hpp>
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/cuda/rasterizer.hpp>
@@ -52,10 +54,21 @@ void check_attributes(const SceneView& scene) {
 
 template <class T>
 void check_target(const ImageView<T>& view, const RenderOptions& options, const char* what) {
-  if (!view.empty() && (view.width != options.width || view.height != options.height))
-    throw Error(Errc::invalid_argument,
-                std::string("the ") + what + " target is " + std::to_string(view.width) + "x" +
-                    std::to_string(view.height) + ", the frame is not of that size");
+  check_size(view, options.width, options.height, std::string("the ").append(what) + " target");
+}
+
+void check_targets(const Targets& targets, const RenderOptions& o) {
+  check_target(targets.color8, o, "color8");
+  check_target(targets.color, o, "color");
+  check_target(targets.depth, o, "depth");
+  check_target(targets.ids, o, "ids");
+  check_target(targets.overdraw, o, "overdraw");
+  check_target(targets.words, o, "words");
+  check_target(targets.errors, o, "errors");
+  for (const ImageView<Vec4>& extra : targets.extra) {
+    if (extra.empty()) throw Error(Errc::invalid_argument, "an extra target is empty");
+    check_target(extra, o, "extra");
+  }
 }
 
 raster::LitModel lit_model(Shader shader) {
@@ -114,10 +127,19 @@ Cull material_cull(const InstanceView& instance, std::span<const Material> mater
   return determinant < 0 ? Cull::front : Cull::back;
 }
 
-void check_transparency(const RenderOptions& o) {
+void check_options(const RenderOptions& o) {
   const auto require = [](bool ok, const char* what) {
     if (!ok) throw Error(Errc::invalid_argument, what);
   };
+  check_enum(o.shader, Shader::wireframe, "the shader");
+  check_enum(o.cull, Cull::front, "cull");
+  check_enum(o.transparency.method, Transparency::none, "the method of transparency");
+  check_enum(o.tuning.schedule, raster::Schedule::persistent, "the schedule");
+  check_enum(o.tuning.order, raster::BlockOrder::morton, "the order of blocks");
+  check_enum(o.tuning.small_path, raster::SmallPath::rows, "the path of small triangles");
+  const Vec4 b = o.background;
+  require(std::isfinite(b.x) && std::isfinite(b.y) && std::isfinite(b.z) && std::isfinite(b.w),
+          "the background must be four finite numbers");
   // Written so that a NaN fails.
   require(o.opacity >= 0 && o.opacity <= 1, "opacity must lie in [0, 1]");
   require(o.transparency.filter >= 1 && o.transparency.filter <= 64,
@@ -176,18 +198,14 @@ Renderer::Renderer(RenderOptions options) : impl_(std::make_unique<Impl>(std::mo
                                             " is outside 1x1 to 32768x32768");
   if (o.threads < 0 || o.threads > 4096)
     throw Error(Errc::invalid_argument, "threads must lie between 0 (all) and 4096");
-  check_transparency(o);
+  check_options(o);
   DeviceChoice choice = choose_device(o.device, raster::draws_on_cuda());
   if (o.device == Device::automatic && choice.device == Device::cuda &&
       (o.rasterizer != "auto" || o.visibility != "auto"))
     choice = {Device::threads, "a rasterizer or a visibility of the CPU was asked for"};
   impl_->options.device = choice.device;
   impl_->device_why = std::move(choice.why);
-  const std::vector<Isa> isas = available_isas();
-  impl_->isa = o.isa.value_or(isas.back());
-  if (std::find(isas.begin(), isas.end(), impl_->isa) == isas.end())
-    throw Error(Errc::no_device,
-                "this machine cannot run " + std::string(name(impl_->isa)) + " instructions");
+  impl_->isa = choose_isa(o.isa);
   // The reference is plain C++ on one thread, whatever else the machine could do.
   if (o.device != Device::serial && o.rasterizer != "reference")
     impl_->threads = std::make_unique<parallel::Threads>(o.threads, &impl_->memory);
@@ -274,6 +292,7 @@ FrameStats Renderer::draw_depth(std::span<raster::Draw> draws, const raster::Fra
     throw Error(Errc::invalid_argument,
                 "the depth shader stretches the depths of a whole picture and cannot draw over "
                 "one; take another shader");
+  check_targets(targets, o);
   Image<float> depth;
   Targets first = targets;
   first.color8 = {};
@@ -303,17 +322,7 @@ FrameStats Renderer::draw_in(bool linear_light, std::span<raster::Draw> draws,
                              const raster::BlockShader& shader, const raster::FragmentTest* test,
                              const Targets& targets) {
   const RenderOptions& o = impl_->options;
-  check_target(targets.color8, o, "color8");
-  check_target(targets.color, o, "color");
-  check_target(targets.depth, o, "depth");
-  check_target(targets.ids, o, "ids");
-  check_target(targets.overdraw, o, "overdraw");
-  check_target(targets.words, o, "words");
-  check_target(targets.errors, o, "errors");
-  for (const ImageView<Vec4>& extra : targets.extra) {
-    if (extra.empty()) throw Error(Errc::invalid_argument, "an extra target is empty");
-    check_target(extra, o, "extra");
-  }
+  check_targets(targets, o);
   if (targets.extra.size() > shader.extra_count())
     throw Error(Errc::invalid_argument,
                 std::to_string(targets.extra.size()) + " extra targets, but the shader has " +

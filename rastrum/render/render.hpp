@@ -47,7 +47,7 @@ struct RenderOptions {
   int width = 1280, height = 720;
   std::string rasterizer = "auto";
   std::string visibility = "auto";
-  raster::Tuning tuning;           ///< of the rasterizer
+  raster::Tuning tuning{};         ///< of the rasterizer
   std::uint64_t memory_limit = 0;  ///< bytes of scratch beyond the mesh and the images; 0: none
   bool hierarchical_z = true;      ///< where the rasterizer has it; changes no pixel
   /// options() of a Renderer has what `automatic` took. With a GPU there, each frame that the
@@ -59,7 +59,7 @@ struct RenderOptions {
   /// For opaque scenes without materials, by a shader of the device; Renderer::render says what
   /// not.
   bool in_place = false;
-  std::optional<Isa> isa;  ///< none: the best this machine has
+  std::optional<Isa> isa{};  ///< none: the best this machine has
   Shader shader = Shader::phong;
   /// none: all faces, but with Shader::material the back of single-sided materials is left out.
   Cull cull = Cull::none;
@@ -68,14 +68,15 @@ struct RenderOptions {
   /// are not cut out, and with AlphaMode::blend (or vertex alpha without any material) it
   /// multiplies alpha.
   float opacity = 1;
-  TransparencyOptions transparency;
+  TransparencyOptions transparency{};
   int samples = 1;  ///< a pixel: 1, 4, 8 or 16, at D3D11's standard positions
 };
 
 /// Renders frames with one set of options; keeps threads and scratch between frames.
 class Renderer {
  public:
-  /// Throws Error{invalid_argument} for a size, name or number out of range, Error{no_device}.
+  /// Throws Error{invalid_argument} for a size, name, number or enum's value out of range and a
+  /// background that is not finite, Error{no_device}.
   explicit Renderer(RenderOptions options);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
@@ -86,8 +87,9 @@ class Renderer {
   /// are those of the nearest surface, whatever its alpha.
   /// Meshes without normals are shaded with face normals (see vertex_normals for smooth ones).
   /// Cost: O(vertices + triangles + covered samples). Throws Error{invalid_argument} naming an
-  /// instance whose index is out of range, Error{out_of_memory} with what was asked for,
-  /// Error{unsupported} for what RenderOptions::in_place has not.
+  /// instance whose index is out of range, or a target of another size or whose rows overlap,
+  /// Error{out_of_memory} with what was asked for, Error{unsupported} for what
+  /// RenderOptions::in_place has not.
   FrameStats render(const SceneView& scene, const Camera& camera, const Targets& targets);
 
   /// The programmable form: draws of any vertex source with any shader (raster/program.hpp makes

@@ -29,11 +29,17 @@ FrameStats SceneOnTerrain::draw(const TerrainScene& given, const terrain::Terrai
                                 const terrain::TerrainCamera& camera,
                                 const terrain::TerrainTargets& picture) {
   const int width = depth_.width(), height = depth_.height();
-  if (picture.depth.empty() || picture.depth.width != width || picture.depth.height != height ||
-      options.width != width || options.height != height)
+  if (options.width != width || options.height != height)
     throw Error(Errc::invalid_argument,
-                std::string("to stand on a terrain, its depth is needed, ")
-                    .append(std::to_string(width) + "x" + std::to_string(height)));
+                "what stands on a terrain is drawn at " + std::to_string(width) + "x" +
+                    std::to_string(height) + ", the terrain at " + std::to_string(options.width) +
+                    "x" + std::to_string(options.height) +
+                    "; give RenderOptions and TerrainOptions the same size");
+  if (picture.depth.empty())
+    throw Error(Errc::invalid_argument,
+                "to stand on a terrain its depth is needed: draw both with TerrainTargets::depth");
+  check_size(picture.depth, width, height, "the depth target");
+  check_size(picture.color8, width, height, "the color8 target");
   Camera view;
   view.matrix = terrain::world_to_clip(options, camera, kNear);
 

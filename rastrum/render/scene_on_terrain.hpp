@@ -16,10 +16,10 @@ namespace rastrum {
 /// What stands on a terrain. Its world is (x, height, y): x east and y south in cells of the map,
 /// which is Rastrum's world with +y up and the map's rows along +z.
 struct TerrainScene {
-  SceneView scene;
+  SceneView scene{};
   /// Indices of instances that turn about their own +y until their +z looks at the picture's plane:
   /// billboards.
-  std::span<const std::size_t> facing;
+  std::span<const std::size_t> facing{};
 };
 
 /// Keeps threads and scratch between frames.

@@ -53,8 +53,7 @@ Mat4d camera_to_clip(const Camera& c, int width, int height) {
     return p;
   }
   require(n > 0, "camera: near must be > 0 for a perspective camera");
-  require(c.fov_rad > 0 && c.fov_rad < 3.14159F,
-          "camera: the field of view must lie between 0 and 180 degrees");
+  check_fov(c.fov_rad);
   const double cot = 1 / std::tan(static_cast<double>(c.fov_rad) / 2);
   p.m[0][0] = cot * sx;
   p.m[1][1] = cot * sy;
@@ -66,6 +65,12 @@ Mat4d camera_to_clip(const Camera& c, int width, int height) {
 }
 
 }  // namespace
+
+void check_fov(float fov_rad) {
+  // Written so that a NaN fails.
+  require(fov_rad > 0 && fov_rad < 3.14159F,
+          "camera: the field of view must lie between 0 and 180 degrees");
+}
 
 Mat4d world_to_camera(const Camera& c) {
   const Vec3d eye = widen(c.eye);

@@ -27,6 +27,9 @@ struct Camera {
 /// Throws Error{invalid_argument} that names the parameter which is out of range.
 [[nodiscard]] Mat4d world_to_clip(const Camera& camera, int width, int height);
 
+/// Throws Error{invalid_argument} unless 0 < fov_rad < π.
+void check_fov(float fov_rad);
+
 /// World to camera space, a rigid motion.
 [[nodiscard]] Mat4d world_to_camera(const Camera& camera);
 

@@ -24,12 +24,9 @@ void add_line(std::vector<Vec3>& lines, Vec3 from, Vec3 normal, float length) {
 
 std::vector<std::uint32_t> edge_indices(const MeshView& mesh) {
   const std::size_t corners = mesh.triangle_count() * 3;
-  const auto index = [&](std::size_t corner) {
-    return mesh.indices.empty() ? static_cast<std::uint32_t>(corner) : mesh.indices[corner];
-  };
   std::vector<Edge> edges(corners);
   for (std::size_t c = 0; c < corners; ++c) {
-    const std::uint64_t a = index(c), b = index(c % 3 == 2 ? c - 2 : c + 1);
+    const std::uint64_t a = mesh.vertex(c), b = mesh.vertex(c % 3 == 2 ? c - 2 : c + 1);
     edges[c] = {std::min(a, b) << 32 | std::max(a, b), c};
   }
   std::ranges::sort(edges, [](const Edge& a, const Edge& b) {
@@ -61,9 +58,7 @@ std::vector<Vec3> normal_lines(const MeshView& mesh, float length) {
       add_line(lines, mesh.positions[i], at(mesh.normals.values, i), length);
     return lines;
   }
-  const auto position = [&](std::size_t corner) {
-    return at(mesh.positions, mesh.indices.empty() ? corner : mesh.indices[corner]);
-  };
+  const auto position = [&](std::size_t corner) { return at(mesh.positions, mesh.vertex(corner)); };
   for (std::size_t c = 0; c < mesh.triangle_count() * 3; c += 3) {
     const Vec3 p[3] = {position(c), position(c + 1), position(c + 2)};
     if (mesh.normals.empty()) {

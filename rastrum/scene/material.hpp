@@ -17,8 +17,8 @@ enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 /// A decoded picture as its file has it: 8 bit, straight alpha, row 0 at the top. Whether it holds
 /// sRGB (base colour, emissive) or linear data (the others) is the use's business.
 struct Texture {
-  std::string name;
-  Image<Rgba8> image;
+  std::string name{};
+  Image<Rgba8> image{};
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   Filter mag = Filter::linear, min = Filter::linear;
   bool mipmaps = true;
@@ -28,7 +28,7 @@ inline constexpr std::int32_t kNoTexture = -1;
 
 /// Factors are linear. A texture index refers to Scene::textures.
 struct Material {
-  std::string name;
+  std::string name{};
   Vec4 base_color{1, 1, 1, 1};
   std::int32_t base_color_texture = kNoTexture;
   float metallic = 1, roughness = 1;
@@ -45,6 +45,9 @@ struct Material {
   float alpha_cutoff = 0.5F;  ///< mask: a fragment with alpha < cutoff is discarded
   bool double_sided = false;
   bool unlit = false;  ///< KHR_materials_unlit
+  /// Of every surface that has this material, in [0, 1]: RenderOptions::opacity for a part of the
+  /// scene. The two are multiplied.
+  float opacity = 1;
 };
 
 }  // namespace rastrum

@@ -17,8 +17,8 @@ namespace rastrum {
 /// share the positions' numbering (glTF, PLY) or have its own (OBJ).
 template <class T>
 struct AttributeView {
-  std::span<const T> values;
-  std::span<const std::uint32_t> indices;
+  std::span<const T> values{};
+  std::span<const std::uint32_t> indices{};
 
   [[nodiscard]] bool empty() const { return values.empty(); }
 };
@@ -26,23 +26,31 @@ struct AttributeView {
 /// A triangle mesh over the caller's arrays; nothing is copied, so they must outlive the render.
 /// Counter-clockwise is front. Every index must be < its array's size; the render checks this.
 struct MeshView {
-  std::span<const Vec3> positions;         ///< object space
-  std::span<const std::uint32_t> indices;  ///< 3 per triangle; empty: positions in order
-  AttributeView<Vec3> normals;             ///< need not be unit length; empty: face normals
-  AttributeView<Vec2> texcoords;           ///< (0, 0) is the top left of a texture, as in glTF
-  AttributeView<Vec4> colors;              ///< linear, straight alpha; multiplies the base colour
-  std::span<const std::uint32_t> face_materials;  ///< one per triangle; empty: `material` for all
-  std::uint32_t material = 0;                     ///< index into Scene::materials
+  std::span<const Vec3> positions{};         ///< object space
+  std::span<const std::uint32_t> indices{};  ///< 3 per triangle; empty: positions in order
+  AttributeView<Vec3> normals{};             ///< need not be unit length; empty: face normals
+  AttributeView<Vec2> texcoords{};           ///< (0, 0) is the top left of a texture, as in glTF
+  AttributeView<Vec4> colors{};              ///< linear, straight alpha; multiplies the base colour
+  std::span<const std::uint32_t> face_materials{};  ///< one per triangle; empty: `material` for all
+  std::uint32_t material = 0;                       ///< index into Scene::materials
 
   [[nodiscard]] std::size_t triangle_count() const {
     return (indices.empty() ? positions.size() : indices.size()) / 3;
   }
+  /// The position of corner 3t + c, c of triangle t.
+  [[nodiscard]] std::uint32_t vertex(std::size_t corner) const {
+    return indices.empty() ? static_cast<std::uint32_t>(corner) : indices[corner];
+  }
 };
+
+/// Throws Error{invalid_argument} that names the first of the triangles' indices that is no
+/// position's. O(indices).
+void check_indices(const MeshView& mesh);
 
 template <class T>
 struct Attribute {
-  std::vector<T> values;
-  std::vector<std::uint32_t> indices;  ///< empty: the positions' indices
+  std::vector<T> values{};
+  std::vector<std::uint32_t> indices{};  ///< empty: the positions' indices
 
   [[nodiscard]] bool empty() const { return values.empty(); }
   [[nodiscard]] AttributeView<T> view() const { return {values, indices}; }
@@ -50,13 +58,13 @@ struct Attribute {
 
 /// A mesh that owns its arrays; the meaning of each is MeshView's.
 struct Mesh {
-  std::string name;
-  std::vector<Vec3> positions;
-  std::vector<std::uint32_t> indices;
-  Attribute<Vec3> normals;
-  Attribute<Vec2> texcoords;
-  Attribute<Vec4> colors;
-  std::vector<std::uint32_t> face_materials;
+  std::string name{};
+  std::vector<Vec3> positions{};
+  std::vector<std::uint32_t> indices{};
+  Attribute<Vec3> normals{};
+  Attribute<Vec2> texcoords{};
+  Attribute<Vec4> colors{};
+  std::vector<std::uint32_t> face_materials{};
   std::uint32_t material = 0;
 
   [[nodiscard]] MeshView view() const {

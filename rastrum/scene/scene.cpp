@@ -3,51 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <string>
 #include <utility>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/scene/vertices_in_use.hpp>
 
 namespace rastrum {
 namespace {
 
-struct Vec3d {
-  double x = 0, y = 0, z = 0;
-};
-
-Vec3d transform(const Mat4d& m, Vec3 p) {
-  const auto row = [&](int i) {
-    return m.m[i][0] * p.x + m.m[i][1] * p.y + m.m[i][2] * p.z + m.m[i][3];
-  };
-  return {row(0), row(1), row(2)};
-}
+using Vec3d = VerticesInUse::Point;
 
 bool is_finite(Vec3d p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
-/// Calls f(world position) once for each finite vertex in use.
-template <class F>
-void for_each_vertex_in_use(const SceneView& scene, F&& f) {
-  for (const InstanceView& instance : scene.instances) {
-    const MeshView& mesh = instance.mesh;
-    const auto visit = [&](Vec3 p) {
-      const Vec3d q = transform(instance.object_to_world, p);
-      if (is_finite(q)) f(q);
-    };
-    if (mesh.indices.empty()) {
-      for (const Vec3 p : mesh.positions.first(mesh.triangle_count() * 3)) visit(p);
-      continue;
-    }
-    std::vector<bool> used(mesh.positions.size());
-    for (const std::uint32_t i : mesh.indices) {
-      if (i >= used.size())
-        throw Error(Errc::invalid_argument, "mesh: index " + std::to_string(i) + " but only " +
-                                                std::to_string(used.size()) + " vertices");
-      used[i] = true;
-    }
-    for (std::size_t i = 0; i < used.size(); ++i)
-      if (used[i]) visit(mesh.positions[i]);
-  }
 }
 
 struct BoundsD {
@@ -55,9 +23,9 @@ struct BoundsD {
   std::uint64_t count = 0;
 };
 
-BoundsD bounds_float64(const SceneView& scene) {
+BoundsD bounds_float64(const VerticesInUse& vertices) {
   BoundsD b;
-  for_each_vertex_in_use(scene, [&](Vec3d p) {
+  vertices.for_each([&](Vec3d p) {
     if (b.count++ == 0) b.min = b.max = p;
     b.min = {std::min(b.min.x, p.x), std::min(b.min.y, p.y), std::min(b.min.z, p.z)};
     b.max = {std::max(b.max.x, p.x), std::max(b.max.y, p.y), std::max(b.max.z, p.z)};
@@ -69,7 +37,24 @@ Vec3 narrow(Vec3d p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
+const Mesh& mesh_of(const Scene& scene, const Instance& instance) {
+  if (instance.mesh >= scene.meshes.size())
+    throw Error(Errc::invalid_argument,
+                "scene: an instance is of mesh " + std::to_string(instance.mesh) +
+                    ", but there are only " + std::to_string(scene.meshes.size()));
+  return scene.meshes[instance.mesh];
+}
+
 }  // namespace
+
+void check_indices(const MeshView& mesh) {
+  for (std::size_t c = 0; c < mesh.indices.size(); ++c)
+    if (mesh.indices[c] >= mesh.positions.size())
+      throw Error(Errc::invalid_argument,
+                  "mesh: corner " + std::to_string(c % 3) + " of triangle " +
+                      std::to_string(c / 3) + " is vertex " + std::to_string(mesh.indices[c]) +
+                      ", but there are only " + std::to_string(mesh.positions.size()));
+}
 
 void Scene::append(Scene other) {
   const auto mesh_offset = static_cast<std::uint32_t>(meshes.size());
@@ -103,27 +88,29 @@ void Scene::append(Scene other) {
 
 std::uint64_t Scene::triangle_count() const {
   std::uint64_t n = 0;
-  for (const Instance& i : instances) n += meshes[i.mesh].triangle_count();
+  for (const Instance& i : instances) n += mesh_of(*this, i).triangle_count();
   return n;
 }
 
 SceneBinding::SceneBinding(const Scene& scene) {
   instances_.reserve(scene.instances.size());
   for (const Instance& i : scene.instances)
-    instances_.push_back({scene.meshes[i.mesh].view(), i.object_to_world});
+    instances_.push_back({mesh_of(scene, i).view(), i.object_to_world});
   view_ = {instances_, scene.materials, scene.textures};
 }
 
 Bounds bounds(const SceneView& scene) {
-  const BoundsD b = bounds_float64(scene);
+  const BoundsD b = bounds_float64(VerticesInUse(scene));
   return {narrow(b.min), narrow(b.max), b.count};
 }
 
 Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
-  const BoundsD b = bounds_float64(scene);
+  check_fov(fov_rad);
+  const VerticesInUse vertices(scene);
+  const BoundsD b = bounds_float64(vertices);
   const Vec3d centre = {(b.min.x + b.max.x) / 2, (b.min.y + b.max.y) / 2, (b.min.z + b.max.z) / 2};
   double r = 0;
-  for_each_vertex_in_use(scene, [&](Vec3d p) {
+  vertices.for_each([&](Vec3d p) {
     r = std::max(r, std::hypot(p.x - centre.x, p.y - centre.y, p.z - centre.z));
   });
   if (r == 0) r = 1;
@@ -143,9 +130,14 @@ Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
 
 std::vector<Vec3> vertex_normals(std::span<const Vec3> positions,
                                  std::span<const std::uint32_t> indices) {
+  MeshView mesh;
+  mesh.positions = positions;
+  mesh.indices = indices;
+  check_indices(mesh);
   std::vector<Vec3d> sums(positions.size());
-  for (std::size_t t = 0; t + 2 < indices.size(); t += 3) {
-    const std::uint32_t corner[3] = {indices[t], indices[t + 1], indices[t + 2]};
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const std::uint32_t corner[3] = {mesh.vertex(3 * t), mesh.vertex(3 * t + 1),
+                                     mesh.vertex(3 * t + 2)};
     const Vec3 a = positions[corner[0]];
     const Vec3d e1 = {double{positions[corner[1]].x} - a.x, double{positions[corner[1]].y} - a.y,
                       double{positions[corner[1]].z} - a.z};

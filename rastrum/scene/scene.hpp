@@ -17,15 +17,15 @@ namespace rastrum {
 
 /// A mesh placed in the world. Triangle ids count through the instances in order.
 struct InstanceView {
-  MeshView mesh;
+  MeshView mesh{};
   Mat4d object_to_world = Mat4d::identity();
 };
 
 /// Spans over the caller's arrays. An empty `materials` means one default material.
 struct SceneView {
-  std::span<const InstanceView> instances;
-  std::span<const Material> materials;
-  std::span<const Texture> textures;
+  std::span<const InstanceView> instances{};
+  std::span<const Material> materials{};
+  std::span<const Texture> textures{};
 };
 
 struct Instance {
@@ -35,16 +35,17 @@ struct Instance {
 
 /// What readers return: meshes, instances in order of submission, materials, textures, cameras.
 struct Scene {
-  std::vector<Mesh> meshes;
-  std::vector<Instance> instances;
-  std::vector<Material> materials;  ///< empty: the file has none
-  std::vector<Texture> textures;
-  std::vector<Camera> cameras;
+  std::vector<Mesh> meshes{};
+  std::vector<Instance> instances{};
+  std::vector<Material> materials{};  ///< empty: the file has none
+  std::vector<Texture> textures{};
+  std::vector<Camera> cameras{};
   /// What a reader left out or found odd, a sentence each; nothing is lost silently.
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings{};
 
   /// Appends `other` behind this scene: indices into meshes, materials and textures are shifted.
   void append(Scene other);
+  /// Throws Error{invalid_argument} where an instance is of no mesh.
   [[nodiscard]] std::uint64_t triangle_count() const;
 };
 
@@ -52,6 +53,7 @@ struct Scene {
 /// outlive it.
 class SceneBinding {
  public:
+  /// Throws Error{invalid_argument} where an instance is of no mesh.
   explicit SceneBinding(const Scene& scene);
   [[nodiscard]] SceneView view() const { return view_; }
 
@@ -67,16 +69,20 @@ struct Bounds {
 };
 
 /// Bounds, in world space, of the finite vertices that triangles use. O(vertices + triangles).
+/// Throws Error{invalid_argument} for an index out of range, as fit_camera.
 [[nodiscard]] Bounds bounds(const SceneView& scene);
 
 /// The default camera (`--fit`): centre = centre of the bounding box of the vertices in use,
 /// r = distance of the farthest of them from it (0 counts as 1), eye = centre + (0, 0, d) with
 /// d = r / sin(fov/2), looking along −z, +y up, near = max(d − 1.001 r, d / 1000), far infinite;
-/// orthographic: height 2 r, far = d + 1.001 r.
+/// orthographic: height 2 r, far = d + 1.001 r. Throws Error{invalid_argument} unless
+/// 0 < fov_rad < π, of an orthographic camera, too.
 [[nodiscard]] Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic);
 
 /// Area-weighted vertex normals: at each position index the normalized sum of the cross products of
-/// its triangles' edges. `positions.size()` values; (0, 0, 0) where no triangle touches.
+/// its triangles' edges. `positions.size()` values; (0, 0, 0) where no triangle touches. `indices`
+/// as MeshView's: empty, they are the positions in order, and each triangle has its own normal.
+/// Throws Error{invalid_argument} for an index out of range. O(positions + indices).
 [[nodiscard]] std::vector<Vec3> vertex_normals(std::span<const Vec3> positions,
                                                std::span<const std::uint32_t> indices);
 

@@ -17,6 +17,7 @@ ToSun ToSun::of(const Sun& sun) {
 }
 
 Image<Rgba8> colors_by_height(ImageView<const float> heights) {
+  check_stride(heights, "the height map");
   float low = std::numeric_limits<float>::infinity(), high = -low;
   for (int y = 0; y < heights.height; ++y)
     for (int x = 0; x < heights.width; ++x)
@@ -38,6 +39,7 @@ Image<Rgba8> colors_by_height(ImageView<const float> heights) {
 
 Image<float> hill_shading(ImageView<const float> heights, const Sun& sun, float ambient,
                           Tiling tiling) {
+  check_stride(heights, "the height map");
   const ToSun to = ToSun::of(sun);
   Image<float> light(heights.width, heights.height);
   const auto at = [&](std::int64_t x, std::int64_t y, float own) {

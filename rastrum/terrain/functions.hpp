@@ -1,7 +1,6 @@
-// Terrains that are functions of the plane: named ones, and expressions.
+// Terrains that are functions of the plane, by name; expression.hpp has those of a text.
 #pragma once
 
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -20,11 +19,6 @@ struct FunctionInfo {
 
 /// Throws Error{not_found} that lists the names.
 [[nodiscard]] HeightFunction named_function(std::string_view name);
-
-/// A formula of x and y in the language of muParser, such as `40*sin(x/30)*cos(y/50)`.
-/// Throws Error{invalid_argument} with the place of the mistake, Error{unsupported} where the
-/// library was built without muParser.
-[[nodiscard]] HeightFunction expression_function(const std::string& expression);
 
 /// The least and the greatest finite height on a grid of 128² points over [0, 1024)², for the
 /// colours of expressions; (0, 1) where there is none.

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include <rastrum/core/enum.hpp>
 #include <rastrum/core/error.hpp>
 #include <rastrum/terrain/color_map.hpp>
 #include <rastrum/terrain/function_light.hpp>
@@ -15,6 +16,7 @@ namespace rastrum::terrain {
 namespace {
 
 void check(const Light& light) {
+  check_enum(light.shadows, Shadows::soft, "the kind of shadows");
   if (!(light.ambient >= 0 && light.ambient <= 1))
     throw Error(Errc::invalid_argument, "the ambient light must lie in 0 to 1");
 }
@@ -44,6 +46,50 @@ Image<float> light_of(const HeightMap& map, bool shade, const Light& light,
     }
   }
   return factor;
+}
+
+/// What a cell of a scaled image is made of along one axis: cells `a` and `b`, `share` of `b`.
+struct Tap {
+  int a = 0, b = 0;
+  float share = 0;
+};
+
+/// The cells of an axis that is scaled from `from` to `to` cells: the cell that each lies in, or
+/// what lies between centres.
+std::vector<Tap> scaled_taps(int from, int to, bool smooth, Tiling tiling) {
+  std::vector<Tap> taps(static_cast<std::size_t>(to));
+  for (std::int64_t i = 0; i < to; ++i) {
+    Tap& tap = taps[static_cast<std::size_t>(i)];
+    // The centre in cells of `from`, less one half, times 2 · to: exact, so that equal sizes stay.
+    const std::int64_t at = (2 * i + 1) * from - to, unit = std::int64_t{2} * to;
+    const std::int64_t below = (at + unit) / unit - 1;  // at > −unit: the floor
+    if (smooth) {
+      tap = {static_cast<int>(tiled(below, from, tiling)),
+             static_cast<int>(tiled(below + 1, from, tiling)),
+             static_cast<float>(at - below * unit) / static_cast<float>(unit)};
+    } else {
+      tap.a = tap.b = static_cast<int>(i * from / to);
+    }
+  }
+  return taps;
+}
+
+float mix(float a, float b, float share) {
+  return a + share * (b - a);
+}
+Rgba8 mix(Rgba8 a, Rgba8 b, float share) {
+  const auto channel = [share](std::uint8_t u, std::uint8_t v) {
+    return static_cast<std::uint8_t>(mix(static_cast<float>(u), static_cast<float>(v), share) +
+                                     0.5F);
+  };
+  return {channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b), channel(a.a, b.a)};
+}
+
+template <class T>
+T between(const Image<T>& image, const Tap& x, const Tap& y) {
+  if (x.share == 0 && y.share == 0) return image(x.a, y.a);
+  return mix(mix(image(x.a, y.a), image(x.b, y.a), x.share),
+             mix(image(x.a, y.b), image(x.b, y.b), x.share), y.share);
 }
 
 class LitFunction final : public Surface {
@@ -134,14 +180,21 @@ Image<Rgba8> lit_colors(const HeightMap& map, const Light& light, const ShadowOp
   const Image<Rgba8>& colors = map.colors.empty() ? by_height : map.colors;
   Image<Rgba8> out(std::max(colors.width(), factor.width()),
                    std::max(colors.height(), factor.height()));
-  const auto scaled = [](int i, int from, int to) {
-    return static_cast<int>(std::int64_t{i} * to / from);
+  const auto taps = [&](int from, int to) {
+    return scaled_taps(from, to, light.smooth, options.tiling);
   };
-  for (int y = 0; y < out.height(); ++y)
-    for (int x = 0; x < out.width(); ++x)
-      out(x, y) = lit(
-          colors(scaled(x, out.width(), colors.width()), scaled(y, out.height(), colors.height())),
-          factor(scaled(x, out.width(), factor.width()), scaled(y, out.height(), factor.height())));
+  const std::vector<Tap> color_x = taps(colors.width(), out.width()),
+                         color_y = taps(colors.height(), out.height()),
+                         light_x = taps(factor.width(), out.width()),
+                         light_y = taps(factor.height(), out.height());
+  for (int y = 0; y < out.height(); ++y) {
+    const auto row = static_cast<std::size_t>(y);
+    for (int x = 0; x < out.width(); ++x) {
+      const auto column = static_cast<std::size_t>(x);
+      out(x, y) = lit(between(colors, color_x[column], color_y[row]),
+                      between(factor, light_x[column], light_y[row]));
+    }
+  }
   return out;
 }
 

@@ -28,6 +28,10 @@ struct Light {
   float ambient = 0.45F;           ///< of a colour, where no sun is; [0, 1]
   double sun_radius_deg = 0.2666;  ///< of soft shadows
   March march{};                   ///< of accumulated ones
+  /// Where colours and heights differ in size the coarser ones are read between the centres of
+  /// their cells, as Filter::bilinear reads heights; else each cell has one light, each texel one
+  /// colour.
+  bool smooth = false;
 };
 
 /// The sky in the light of the sun, as FutSpace's dims with it (paper 3's program; the paper gives
@@ -35,8 +39,8 @@ struct Light {
 /// linearly to a sixteenth at −6°, the end of civil twilight, and staying so.
 [[nodiscard]] Rgba8 sky_in(Rgba8 by_day, const Sun& sun) noexcept;
 
-/// The colours of a map in this light, opaque. Colours of another size than the heights are kept
-/// where they are finer and repeated where they are coarser. Empty ones are colors_by_height.
+/// The colours of a map in this light, opaque, as fine as the finer of heights and colours; the
+/// others are repeated, or `smooth`. Empty colours are colors_by_height.
 /// Cost: the shadows', and O(cells). Throws Error{invalid_argument} for what no light can be.
 [[nodiscard]] Image<Rgba8> lit_colors(const HeightMap& map, const Light& light,
                                       const ShadowOptions& options = {});

@@ -44,9 +44,9 @@ enum class Projection : std::uint8_t {
 
 /// Colours fade to `color` by 1 − exp(−density · (distance − start)); density 0 is none.
 struct Fog {
-  double density = 0;          ///< per cell
-  double start = 0;            ///< cells
-  std::optional<Rgba8> color;  ///< none: the sky's
+  double density = 0;            ///< per cell
+  double start = 0;              ///< cells
+  std::optional<Rgba8> color{};  ///< none: the sky's
 
   bool operator==(const Fog&) const = default;
 };
@@ -63,21 +63,24 @@ struct TerrainOptions {
   double fov_rad = std::numbers::pi / 2;  ///< across; below π for planar, up to 2π for cylindrical
   /// Rows that a height of 1 takes at distance 1; 0: as many as columns in the picture's middle.
   double scale_px = 0;
-  /// Distances are 1, 1 + step, … with steps that grow by `dz` each.
+  /// Distances are 1, 1 + step, … with steps that grow by `dz` each. Step 0 leaves them to the
+  /// filter: `bilinear`, which has something to show within a cell, takes steps as long as a pixel
+  /// is high at their distance (a share of it, so that `dz` is not used); the others take 1 and
+  /// `dz`.
   double step = 1, dz = 0.005;
   Filter filter = Filter::none;
   Tiling tiling = Tiling::repeat;
   Projection projection = Projection::planar;
   Rgba8 sky = kSky;
-  Fog fog;
+  Fog fog{};
   /// The camera is lifted to this much above the ground under it before a frame; none: it stays
   /// where it is, under the ground too. `classic` always takes 10.
-  std::optional<double> ground_clearance;
+  std::optional<double> ground_clearance{};
 
   Method method = Method::fast;
   Device device = Device::threads;
-  int threads = 0;         ///< 0: all
-  std::optional<Isa> isa;  ///< none: the best this machine has
+  int threads = 0;           ///< 0: all
+  std::optional<Isa> isa{};  ///< none: the best this machine has
 };
 
 /// Images to fill; an empty view is not computed. All must have the frame's size.

@@ -38,7 +38,7 @@ class Stopwatch {
 struct TerrainRenderer::Impl {
   explicit Impl(TerrainOptions given)
       : options(std::move(given)),
-        isa(options.isa.value_or(available_isas().back())),
+        isa(choose_isa(options.isa)),
         asked(options.device),
         pool(memory),
         serial(&memory) {
@@ -213,13 +213,8 @@ TerrainStats TerrainRenderer::render(const Terrain& terrain, const TerrainCamera
   if (options.classic && given.roll_rad != 0)
     throw Error(Errc::invalid_argument,
                 "terrain: the classic picture knows no roll; leave one of them out");
-  const auto fits = [&](const auto& view) {
-    return view.empty() || (view.width == options.width && view.height == options.height);
-  };
-  if (!fits(targets.color8) || !fits(targets.depth))
-    throw Error(Errc::invalid_argument,
-                std::string("terrain: the targets are not ")
-                    .append(std::to_string(options.width) + "x" + std::to_string(options.height)));
+  check_size(targets.color8, options.width, options.height, "terrain: the color8 target");
+  check_size(targets.depth, options.width, options.height, "terrain: the depth target");
   TerrainStats stats;
   Stopwatch stopwatch(stats);
   stats.camera = given;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <string>
 
+#include <rastrum/core/enum.hpp>
+
 namespace rastrum::terrain {
 namespace {
 
@@ -13,6 +15,9 @@ constexpr double kMaxDistance = 8e6;
 /// Offsets from the camera stay exact as integers in float32 up to here.
 constexpr double kMaxExtent = 0x1p23;
 constexpr double kFarAway = 1e12;
+/// Steps that are a share of the distance are not shorter than this one, so that the narrowest view
+/// has 260,000 slices at most.
+constexpr double kLeastShare = 0x1p-14;
 
 void require(bool good, const std::string& message) {
   if (!good) throw Error(Errc::invalid_argument, message);
@@ -23,16 +28,33 @@ double half_width(const TerrainOptions& o) {
   return o.projection == Projection::planar ? std::tan(o.fov_rad / 2) : o.fov_rad / 2;
 }
 
+/// The share of its distance that a step is long: what a pixel is high there, and no more than
+/// leaves each row below the horizon a sample of flat ground (a step takes step / z of the rows
+/// between its ground and the horizon). 0: steps of a length of their own.
+double step_share(const TerrainOptions& o) {
+  const bool own = o.classic || o.step != 0 || o.filter != Filter::bilinear;
+  return own ? 0 : std::max(1 / std::max<double>(scale_px(o), o.height), kLeastShare);
+}
+
+double first_step(const TerrainOptions& o) {
+  return o.step == 0 ? 1 : o.step;
+}
+
 double distance_of(const TerrainOptions& o, double k) {
-  return 1 + k * o.step + o.dz * (k * (k + 1) / 2);
+  return 1 + k * first_step(o) + o.dz * (k * (k + 1) / 2);
 }
 
 }  // namespace
 
 double slice_count(const TerrainOptions& o) {
   if (o.distance <= 1) return 0;
+  if (const double share = step_share(o); share > 0) {
+    double n = 0;
+    for (double z = 1; z < o.distance; z += z * share) ++n;
+    return n;
+  }
   // The root of distance_of(k) = distance, then the last steps by the formula itself.
-  const double b = o.step + o.dz / 2, reach = o.distance - 1;
+  const double b = first_step(o) + o.dz / 2, reach = o.distance - 1;
   double k = std::floor(2 * reach / (b + std::sqrt(b * b + 2 * o.dz * reach)));
   while (k > 0 && distance_of(o, k - 1) >= o.distance) --k;
   while (distance_of(o, k) < o.distance) ++k;
@@ -43,6 +65,10 @@ void check(const TerrainOptions& o) {
   require(o.width >= 1 && o.height >= 1 && o.width <= kMaxImageSize && o.height <= kMaxImageSize,
           "terrain: the size " + std::to_string(o.width) + "x" + std::to_string(o.height) +
               " is outside 1x1 to 32768x32768");
+  check_enum(o.filter, Filter::mip, "terrain: the filter");
+  check_enum(o.tiling, Tiling::clamp, "terrain: the tiling");
+  check_enum(o.projection, Projection::cylindrical, "terrain: the projection");
+  check_enum(o.method, Method::words, "terrain: the method");
   require(o.distance >= 0 && o.distance <= kMaxDistance,
           "terrain: the distance must lie between 0 and 8e6 cells");
   const bool planar = o.projection == Projection::planar;
@@ -51,7 +77,8 @@ void check(const TerrainOptions& o) {
                    "cylindrical projection goes up to 360)"
                  : "terrain: a cylindrical view must be wider than 0 and at most 360 degrees");
   require(o.scale_px >= 0 && o.scale_px <= 1e7, "terrain: the scale must lie between 0 and 1e7");
-  require(o.step > 0 && o.step <= 1e7, "terrain: the step must be above 0 and at most 1e7");
+  require(o.step >= 0 && o.step <= 1e7,
+          "terrain: the step must lie between 0 (chosen by the filter) and 1e7");
   require(o.dz >= 0 && o.dz <= 1e7, "terrain: dz must lie between 0 and 1e7");
   require(o.fog.density >= 0 && std::isfinite(o.fog.density),
           "terrain: the fog's density must be a number, at least 0");
@@ -62,7 +89,7 @@ void check(const TerrainOptions& o) {
   require(o.threads >= 0, "terrain: the number of threads must be at least 0 (all)");
   if (o.classic) {
     const TerrainOptions d;
-    require(o.fov_rad == d.fov_rad && o.scale_px == d.scale_px && o.step == d.step &&
+    require(o.fov_rad == d.fov_rad && o.scale_px == d.scale_px && first_step(o) == d.step &&
                 o.dz == d.dz && o.projection == d.projection && o.filter == d.filter &&
                 !o.ground_clearance,
             "terrain: the classic picture has its own field of view, scale, steps, projection, "
@@ -141,14 +168,17 @@ Setup set_up(const TerrainOptions& o, const TerrainCamera& camera, const Extent&
 
   const auto n = static_cast<std::size_t>(slice_count(o));
   const double scale = scale_px(o), spacing = 2 * half / o.width;
+  const double share = step_share(o);
+  double along = 1;  // in steps that are a share of it
   s.slices.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
     Slice& slice = s.slices[k];
-    const double z = distance_of(o, static_cast<double>(k));
+    const double z = share > 0 ? along : distance_of(o, static_cast<double>(k));
+    along += along * share;
     slice.z = static_cast<float>(z);
     slice.rows = static_cast<float>(scale / z);
     if (o.filter == Filter::mip) {
-      const double step = o.step + o.dz * static_cast<double>(k);
+      const double step = first_step(o) + o.dz * static_cast<double>(k);
       slice.level = std::max(0, std::ilogb(std::max(step, z * spacing)));
     }
     if (o.fog.density > 0) {

@@ -85,12 +85,7 @@ void on_cpu(const ShadowOptions& options, F&& f) {
 
 /// The instruction set of the options; `serial` is plain C++.
 Isa isa_of(const ShadowOptions& options) {
-  if (options.device == Device::serial) return Isa::scalar;
-  const std::vector<Isa> available = available_isas();
-  const Isa isa = options.isa.value_or(available.back());
-  if (std::ranges::find(available, isa) == available.end())
-    throw Error(Errc::invalid_argument, "this machine has no " + std::string(name(isa)));
-  return isa;
+  return options.device == Device::serial ? Isa::scalar : choose_isa(options.isa);
 }
 
 /// ShadowKernels::tile_ranges in plain C++.
@@ -194,6 +189,7 @@ std::vector<RayStep> ray_steps(const SunRay& ray, double relief) {
 
 Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun,
                                   const ShadowOptions& options) {
+  check_stride(heights, "the height map");
   check(sun);
   if (const auto dark =
           on_cuda(options, [&] { return sharp_shadows_on_device(heights, sun, options.tiling); }))
@@ -266,6 +262,7 @@ std::vector<Sun> points_of_disc(const Sun& sun, double radius_deg) {
 
 Image<std::uint8_t> soft_light(ImageView<const float> heights, const Sun& sun, double radius_deg,
                                const ShadowOptions& options) {
+  check_stride(heights, "the height map");
   check(sun);
   if (!(radius_deg >= 0 && radius_deg <= 45))
     throw Error(Errc::invalid_argument, "the sun's radius must lie in 0 to 45 degrees");
@@ -305,6 +302,7 @@ std::vector<MarchSample> march_samples(const Sun& sun, const March& march) {
 
 Image<std::uint16_t> hidden_samples(ImageView<const float> heights, const Sun& sun,
                                     const March& march, const ShadowOptions& options) {
+  check_stride(heights, "the height map");
   const std::vector<MarchSample> samples = march_samples(sun, march);
   if (const auto hidden = on_cuda(
           options, [&] { return hidden_samples_on_device(heights, sun, march, options.tiling); }))

@@ -32,8 +32,8 @@ enum class Tiling : std::uint8_t { repeat, mirror, clamp };
 }
 
 struct HeightMap {
-  Image<float> heights;  ///< in cells; NaN is a hole, through which one sees what lies behind
-  Image<Rgba8> colors;   ///< of any size, stretched over the map; empty: grey by height
+  Image<float> heights{};  ///< in cells; NaN is a hole, through which one sees what lies behind
+  Image<Rgba8> colors{};   ///< of any size, stretched over the map; empty: grey by height
 };
 
 /// A terrain without cells. Both are called from several threads at once, for the samples of a row

@@ -19,6 +19,8 @@ class ProgramOnHills : public Program {
     Program::SetUp();
     options_.width = kWidth;
     options_.height = kHeight;
+    options_.filter = terrain::Filter::bilinear;
+    options_.step = 0;
     map_.heights = Image<float>(kMap, kMap);
     map_.colors = Image<Rgba8>(kMap, kMap);
     Image<Rgba8> grey(kMap, kMap);

@@ -54,7 +54,7 @@ TEST_F(Inputs, BuiltinsStandWhereTheyArePlaced) {
   RenderOptions options;
   options.width = 90;
   options.height = 60;
-  const Drawn expected = draw(scene, fit(scene), options);
+  const Drawn expected = draw(scene, fit(scene, options), options);
   for (const char* sphere : {"builtin:sphere?rings=8,segments=12,x=2.5,y=-1,z=0.125,scale=0.75",
                              "builtin:sphere?scale=0.75&x=2.5&rings=8&y=-1&segments=12&z=0.125"}) {
     must({"render", "builtin:boxes?count=1", sphere, "-o", "p.png", "--ids", "i.npy", "--size",
@@ -109,7 +109,8 @@ TEST_F(Inputs, CameraOfAFileIsUsedOnlyWhenAskedFor) {
   };
   EXPECT_TRUE(
       std::ranges::equal(render({"--camera", "1"}), draw(scene, camera, options).depth.pixels()));
-  EXPECT_TRUE(std::ranges::equal(render({}), draw(scene, fit(scene), options).depth.pixels()));
+  EXPECT_TRUE(
+      std::ranges::equal(render({}), draw(scene, fit(scene, options), options).depth.pixels()));
   camera.near_plane = 1;
   EXPECT_TRUE(std::ranges::equal(render({"--camera", "1", "--near", "1"}),
                                  draw(scene, camera, options).depth.pixels()));

@@ -5,6 +5,8 @@
 #include <limits>
 
 #include <rastrum/parallel/cuda/status.hpp>
+#include <rastrum/scene/crease_normals.hpp>
+#include <rastrum/scene/fit.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
 #include "program.hpp"
@@ -40,10 +42,10 @@ class Options : public Program {
 };
 
 TEST_F(Options, DefaultsAreTheFitCameraAndPhong) {
-  expect({}, fit(boxes()));
-  expect({"--fit", "--shader", "phong", "--device", "threads", "--rasterizer", "auto", "--cull",
-          "none", "--background", "#00000000", "--normals", "file"},
-         fit(boxes()));
+  expect({}, fit(boxes(), render_));
+  expect({"--fit", "tight", "--shader", "phong", "--device", "threads", "--rasterizer", "auto",
+          "--cull", "none", "--background", "#00000000", "--normals", "file"},
+         fit(boxes(), render_));
 }
 
 TEST_F(Options, DefaultSize) {
@@ -81,19 +83,40 @@ TEST_F(Options, CameraOfOnesOwn) {
 
 TEST_F(Options, OrthographicFit) {
   const Scene scene = boxes();
-  expect({"--orthographic", "fit"}, fit_camera(SceneBinding(scene).view(), 1.04719755F, true));
+  Camera view;
+  view.orthographic = true;
+  const Camera tight = fit_picture(SceneBinding(scene).view(), view, kWidth, kHeight);
+  expect({"--orthographic", "fit"}, tight);
+  expect({"--orthographic", "fit", "--fit"}, tight);
+}
+
+TEST_F(Options, FitDoesNotSwallowAnInputInSilence) {
+  const Outcome r = run({"render", "--fit", "builtin:boxes", "-o", "p.png"});
+  EXPECT_EQ(r.status, 2);
+  EXPECT_NE(
+      r.err.find("--fit: expected tight or sphere, got 'builtin:boxes'; an INPUT stands before"),
+      std::string::npos)
+      << r.err;
+}
+
+TEST_F(Options, FitOfTheSphereIsWhatItWas) {
+  const Scene scene = boxes();
+  const SceneBinding binding(scene);
+  expect({"--fit", "sphere"}, fit_camera(binding.view(), 1.04719755F, false));
+  expect({"--fit", "sphere", "--orthographic", "fit"},
+         fit_camera(binding.view(), 1.04719755F, true));
 }
 
 TEST_F(Options, Shaders) {
   for (const std::string_view shader : shader_names()) {
     render_.shader = shader_from_name(shader);
-    expect({"--shader", std::string(shader)}, fit(boxes()));
+    expect({"--shader", std::string(shader)}, fit(boxes(), render_));
   }
 }
 
 TEST_F(Options, Background) {
   render_.background = {0, 0.2F, 1, 128 / 255.0F};
-  expect({"--background", "#0033ff80"}, fit(boxes()));
+  expect({"--background", "#0033ff80"}, fit(boxes(), render_));
   EXPECT_EQ(png("p.png")(0, 0), (Rgba8{0, 51, 255, 128}));
 }
 
@@ -121,7 +144,8 @@ TEST_F(Options, Normals) {
   const auto check = [&](const std::string& choice, const Mesh& expected) {
     must({"render", "s.ply", "-o", "p.png", "--size", "72x56", "--normals", choice});
     const Scene scene = scene_of(expected);
-    EXPECT_TRUE(same_pixels(png("p.png"), draw(scene, fit(scene), render_).color8)) << choice;
+    EXPECT_TRUE(same_pixels(png("p.png"), draw(scene, fit(scene, render_), render_).color8))
+        << choice;
     return png("p.png");
   };
   const Image<Rgba8> file = check("file", mesh);
@@ -135,15 +159,31 @@ TEST_F(Options, Normals) {
 }
 
 TEST_F(Options, NormalsWhereTheFileHasNone) {
+  // A quad bent by 60° along its diagonal: sharp by default.
   write("t.obj", "v 0 0 0\nv 1 0 0.5\nv 0 1 0.5\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
-  for (const char* choice : {"file", "vertex"})
-    must({"render", "t.obj", "-o", std::string(choice) + ".png", "--size", "40x40", "--normals",
-          choice});
-  must({"render", "t.obj", "-o", "face.png", "--size", "40x40", "--normals", "face"});
-  must({"render", "t.obj", "-o", "default.png", "--size", "40x40"});
-  EXPECT_TRUE(same_pixels(png("file.png"), png("vertex.png")));
-  EXPECT_TRUE(same_pixels(png("default.png"), png("vertex.png")));
-  EXPECT_FALSE(same_pixels(png("face.png"), png("vertex.png")));
+  const auto drawn = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> args{"render", "t.obj", "-o", "p.png", "--size", "40x40"};
+    args.insert(args.end(), options.begin(), options.end());
+    must(args);
+    return png("p.png");
+  };
+  const Image<Rgba8> vertex = drawn({"--normals", "vertex"}), face = drawn({"--normals", "face"});
+  EXPECT_FALSE(same_pixels(face, vertex));
+  EXPECT_TRUE(same_pixels(drawn({}), face));
+  EXPECT_TRUE(same_pixels(drawn({"--normals", "file"}), face));
+  EXPECT_TRUE(same_pixels(drawn({"--normals", "crease", "--crease", "10"}), face));
+  EXPECT_TRUE(same_pixels(drawn({"--crease", "180"}), vertex)) << "the smooth ones";
+  EXPECT_TRUE(same_pixels(drawn({"--normals", "crease", "--crease", "120"}), vertex));
+}
+
+TEST_F(Options, NormalsWithCreasesReplaceTheFilesWhereAskedFor) {
+  Mesh mesh = shapes::sphere(5, 7);
+  must({"make", "sphere?rings=5,segments=7", "-o", "s.ply"});
+  must({"render", "s.ply", "-o", "p.png", "--size", "72x56", "--normals", "crease", "--crease",
+        "50"});
+  mesh.normals = crease_normals(mesh.positions, mesh.indices, 50);
+  const Scene scene = scene_of(mesh);
+  EXPECT_TRUE(same_pixels(png("p.png"), draw(scene, fit(scene, render_), render_).color8));
 }
 
 TEST_F(Options, MachineChoicesReachTheStatisticsAndLeaveThePictureAlone) {

@@ -23,7 +23,7 @@ class Output : public Program {
     options.height = 64;
     options.background = {0.2F, 0.4F, 0.8F, 128 / 255.0F};
     const Scene scene = scene_of(shapes::teapot(4));
-    return draw(scene, fit(scene), options);
+    return draw(scene, fit(scene, options), options);
   }
 };
 

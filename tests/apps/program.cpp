@@ -18,6 +18,7 @@
 #endif
 
 #include <rastrum/io/io.hpp>
+#include <rastrum/scene/fit.hpp>
 
 namespace rastrum::test {
 namespace fs = std::filesystem;
@@ -162,8 +163,8 @@ Scene scene_of(Mesh mesh) {
   return scene;
 }
 
-Camera fit(const Scene& scene) {
-  return fit_camera(SceneBinding(scene).view(), 1.04719755F, false);
+Camera fit(const Scene& scene, const RenderOptions& options) {
+  return fit_picture(SceneBinding(scene).view(), {}, options.width, options.height);
 }
 
 }  // namespace rastrum::test

@@ -75,7 +75,8 @@ struct Drawn {
 
 /// One mesh at the origin.
 [[nodiscard]] Scene scene_of(Mesh mesh);
-[[nodiscard]] Camera fit(const Scene& scene);
+/// The default camera.
+[[nodiscard]] Camera fit(const Scene& scene, const RenderOptions& options);
 
 inline bool same_pixels(const Image<Rgba8>& a, const Image<Rgba8>& b) {
   return a.width() == b.width() && a.height() == b.height() &&

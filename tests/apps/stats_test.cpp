@@ -32,10 +32,11 @@ TEST_F(Stats, SchemaAndSums) {
   must({"render", "t.obj", "--eye", "0,0,4", "--target", "0,0,0", "--size", "60x40", "--frames",
         "5", "--stats", "s.json", "--ids", "i.npy"});
   const Json s = json("s.json");
-  EXPECT_EQ(keys(s), (std::vector<std::string>{
-                         "version", "device", "device_why", "threads", "isa", "rasterizer",
-                         "visibility", "why", "size", "triangles", "fragments", "pixels_covered",
-                         "counters", "peak_bytes", "load_ms", "stages_ms", "frame_ms"}));
+  EXPECT_EQ(keys(s),
+            (std::vector<std::string>{"version", "device", "device_why", "threads", "isa",
+                                      "rasterizer", "visibility", "why", "size", "triangles",
+                                      "fragments", "pixels_covered", "counters", "peak_bytes",
+                                      "load_ms", "stages_ms", "frame_ms", "inputs", "cameras"}));
   EXPECT_EQ(s["version"], RASTRUM_VERSION);
   EXPECT_EQ(s["size"], Json::array({60, 40}));
   const Json& t = s["triangles"];

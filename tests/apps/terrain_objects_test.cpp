@@ -23,6 +23,8 @@ class TerrainObjectsProgram : public ProgramOnHills {
   void SetUp() override {
     ProgramOnHills::SetUp();
     options_.distance = 120;
+    options_.filter = terrain::Filter::none;  // objects stand on cells
+    options_.step = 1;
     camera_ = {30, 58, 40, 0, 10, 0};
     sprite_ = Image<Rgba8>(4, 8);
     for (int y = 0; y < 8; ++y)
@@ -36,7 +38,11 @@ class TerrainObjectsProgram : public ProgramOnHills {
     std::vector<std::string> args{"terrain", "--height",   "h.png",      "--color",    "c.png",
                                   "--size",  "96x64",      "--altitude", "40",         "--horizon",
                                   "10",      "--position", "30,58",      "--distance", "120"};
-    if (std::ranges::find(extra, "-o") == extra.end()) args.insert(args.end(), {"-o", "p.png"});
+    const auto says = [&](const char* option) {
+      return std::ranges::find(extra, option) != extra.end();
+    };
+    if (!says("-o")) args.insert(args.end(), {"-o", "p.png"});
+    if (!says("--filter") && !says("--classic")) args.insert(args.end(), {"--filter", "none"});
     args.insert(args.end(), extra.begin(), extra.end());
     return args;
   }
@@ -105,6 +111,7 @@ TEST_F(TerrainObjectsProgram, AMeshStandsOnTheGround) {
 
 TEST_F(TerrainObjectsProgram, ASurfaceBetweenCellsIsTheGroundOfTheBilinearFilter) {
   options_.filter = terrain::Filter::bilinear;
+  options_.step = 0;
   const auto h = [&](int x, int y) { return static_cast<double>(map_.heights(x, y)); };
   // (20.75, 30.25) lies a quarter past the centre of cell 20 and a quarter before that of row 30.
   const double above = 0.75 * h(20, 29) + 0.25 * h(21, 29),
@@ -141,6 +148,19 @@ TEST_F(TerrainObjectsProgram, OptionsOfMeshesAreThoseOfRender) {
   must(with({"--classic", "--mesh", std::string(kBox) + "@x=24,y=30,scale=9,height=32", "--shader",
              "normal", "--opacity", "0.4", "--cull", "back"}));
   expect(drawn(&higher, how), "classic");
+}
+
+TEST_F(TerrainObjectsProgram, AMeshTakesTheLookOfAnInput) {
+  const std::string place = std::string(kBox) + "@x=20.5,y=30.25,scale=8";
+  must(with({"--mesh", place, "--opacity", "0.4"}));
+  const Image<Rgba8> all = png("p.png");
+  must(with({"--mesh", place + ",opacity=0.4"}));
+  EXPECT_TRUE(same_pixels(png("p.png"), all));
+  // A look is no place.
+  must(with({"--mesh", std::string(kBox) + ",x=28,y=22,z=30,scale=7", "--opacity", "0.4"}));
+  const Image<Rgba8> own = png("p.png");
+  must(with({"--mesh", std::string(kBox) + ",x=28,y=22,z=30,scale=7@opacity=0.4"}));
+  EXPECT_TRUE(same_pixels(png("p.png"), own));
 }
 
 TEST_F(TerrainObjectsProgram, SpritesAndMeshesInCommandOrder) {
@@ -191,7 +211,8 @@ TEST_F(TerrainObjectsProgram, RefusesWhatCannotStand) {
   refuse(2, "off the map, which has 60x60 cells", {"--mesh", std::string(kBox) + "@x=60,y=1"});
   refuse(2, "off the map", {"--sprite", "tree.png@x=1,y=-0.5"});
   refuse(2, "--mesh: x and y are missing", {"--mesh", std::string(kBox) + "@x=1"});
-  refuse(2, "expected x, y, height, scale and turn after @, got 'size=2'",
+  refuse(2,
+         "expected x, y, height, scale, turn, rx, ry, rz, color and opacity after @, got 'size=2'",
          {"--mesh", std::string(kBox) + "@x=1,y=1,size=2"});
   refuse(2, "--mesh scale: expected a number, got 'big'",
          {"--mesh", std::string(kBox) + "@x=1,y=1,scale=big"});

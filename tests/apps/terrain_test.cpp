@@ -9,6 +9,7 @@
 #include <rastrum/io/io.hpp>
 #include <rastrum/parallel/cuda/status.hpp>
 #include <rastrum/terrain/color_map.hpp>
+#include <rastrum/terrain/expression.hpp>
 #include <rastrum/terrain/functions.hpp>
 #include <rastrum/terrain/light.hpp>
 #include <rastrum/terrain/renderer.hpp>
@@ -87,6 +88,7 @@ TEST_F(TerrainProgram, Picture) {
   options_.distance = 250;
   options_.fov_rad = 60 * kRadians;
   options_.scale_px = 70;
+  options_.step = 1;
   options_.dz = 0.01;
   options_.sky = {1, 2, 3, 255};
   options_.fog = {0.01, 20, Rgba8{255, 128, 0, 255}};
@@ -104,7 +106,7 @@ TEST_F(TerrainProgram, FiltersTilesProjectionMachine) {
     options_.filter = filter;
     expect({"--filter", word});
   }
-  options_.filter = TerrainFilter::none;
+  options_.filter = TerrainFilter::bilinear;
   for (const auto& [word, tiling] :
        {std::pair("repeat", Tiling::repeat), std::pair("mirror", Tiling::mirror),
         std::pair("clamp", Tiling::clamp)}) {
@@ -117,8 +119,26 @@ TEST_F(TerrainProgram, FiltersTilesProjectionMachine) {
           "--method", "words"});
 }
 
+// An own step or growth means both; the filters that show cells take steps of a cell.
+TEST_F(TerrainProgram, Steps) {
+  options_.step = 0.25;
+  expect({"--step", "0.25"});
+  options_.dz = 0.02;
+  expect({"--step", "0.25", "--dz", "0.02"});
+  expect({"--dz", "0.02", "--step", "0.25"});
+  options_.step = 1;
+  expect({"--dz", "0.02"});
+  options_.dz = 0.005;
+  for (const auto& [word, filter] :
+       {std::pair("none", TerrainFilter::none), std::pair("mip", TerrainFilter::mip)}) {
+    options_.filter = filter;
+    expect({"--filter", word});
+  }
+}
+
 TEST_F(TerrainProgram, Classic) {
   options_.classic = true;
+  options_.filter = TerrainFilter::none;
   expect({"--classic"});
   camera_.altitude = 78;
   camera_.horizon_px = 100;
@@ -145,14 +165,46 @@ TEST_F(TerrainProgram, LightAndShadows) {
 
 TEST_F(TerrainProgram, TheSkyDimsWithTheSunButNotTheOriginals) {
   options_.sky = {80, 160, 255, 255};
-  expect({"--sky", "#50a0ff", "--sun", "315,30"});
+  expect({"--sky", "#50a0ff", "--dim-sky", "--sun", "315,30"});
   options_.sky = {43, 85, 135, 255};  // half way to a sixteenth: 17/32
-  expect({"--sky", "#50a0ff", "--sun", "315,12"});
+  expect({"--sky", "#50a0ff", "--dim-sky", "--sun", "315,12"});
+  expect({"--dim-sky", "--sky", "#50a0ff", "--sun", "315,12"});
   options_.sky = {5, 10, 16, 255};
-  expect({"--sky", "#50a0ff", "--sun", "315,-6"});
-  options_.sky = {80, 160, 255, 255};
+  expect({"--sky", "#50a0ff", "--dim-sky", "--sun", "315,-6"});
+  options_.sky = kSky;
+  expect({"--sun", "315,30"});
+  options_.sky = sky_in(kSky, {315, 12});
+  expect({"--sun", "315,12"});
+  options_.sky = kSky;
   options_.classic = true;
-  expect({"--classic", "--sky", "#50a0ff", "--sun", "315,-6"});
+  options_.filter = TerrainFilter::none;
+  expect({"--classic", "--sun", "315,-6"});
+}
+
+TEST_F(TerrainProgram, ASkyOfOnesOwnStaysUnderALowSun) {
+  options_.sky = {255, 176, 112, 255};
+  for (const char* sun : {"270,6", "270,-6", "270,60"}) expect({"--sky", "#ffb070", "--sun", sun});
+  EXPECT_EQ(png("p.png")(0, 0), options_.sky);
+}
+
+// Cells twice as long as texels: without the light between them shadows would be blocks.
+TEST_F(TerrainProgram, LightIsSmoothUnderFinerColours) {
+  Image<Rgba8> fine(2 * kMap, 2 * kMap);
+  for (Rgba8& c : fine.pixels()) c = {240, 240, 240, 255};
+  io::write_png(path("c.png"), fine.view());
+  map_.colors = std::move(fine);
+  const Light light{.sun = {250, 25}, .shadows = Shadows::soft, .sun_radius_deg = 4};
+  Light smooth = light;
+  smooth.smooth = true;
+  options_.sky = sky_in(kSky, light.sun);
+  const std::vector<std::string> args{"--sun", "250,25", "--shadows", "soft", "--sun-radius", "4"};
+  expect(args, {map_.heights, lit_colors(map_, smooth)});
+  const Image<Rgba8> shown = png("p.png");
+  options_.filter = TerrainFilter::none;
+  std::vector<std::string> cells = args;
+  cells.insert(cells.end(), {"--filter", "none"});
+  expect(cells, {map_.heights, lit_colors(map_, light)});
+  EXPECT_FALSE(same_pixels(png("p.png"), shown));
 }
 
 TEST_F(TerrainProgram, WithoutColours) {
@@ -197,12 +249,42 @@ TEST_F(TerrainProgram, RawHeightsOfASizeAndScale) {
   write("h.raw", raw);
   std::vector<std::string> args = base();
   args[2] = "h.raw";
-  must(args);
-  EXPECT_TRUE(same_pixels(png("p.png"), drawn(map_))) << "16 bits have the range of 8";
-  for (float& h : map_.heights.pixels()) h *= 257 * 0.5F;
-  for (const char* e : {"--height-size", "60x60", "--height-scale", "0.5"}) args.push_back(e);
-  must(args);
-  EXPECT_TRUE(same_pixels(png("p.png"), drawn(map_)));
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = args;
+    all.insert(all.end(), more.begin(), more.end());
+    return must(all);
+  };
+  const Image<float> bytes = map_.heights;
+  const auto expect_scale = [&](float scale, const char* what) {
+    for (std::size_t i = 0; i < bytes.pixels().size(); ++i)
+      map_.heights.pixels()[i] = bytes.pixels()[i] * 257 * scale;
+    EXPECT_TRUE(same_pixels(png("p.png"), drawn(map_))) << what;
+  };
+  // 257 to 7710, on 60 cells: a twelfth of them is 5, and 5/7453 is 0.00067 to two digits.
+  const std::string said = with({});
+  expect_scale(0.00067F, "a relief of a twelfth");
+  for (const char* part : {"note: h.raw: ", "257 to 7710", "--height-scale 0.00067"})
+    EXPECT_NE(said.find(part), std::string::npos) << said;
+  EXPECT_EQ(with({"--quiet"}), "");
+  expect_scale(0.00067F, "quietly");
+  EXPECT_EQ(with({"--height-scale", "0.00067"}).find("note"), std::string::npos);
+  expect_scale(0.00067F, "what was said, given");
+  with({"--height-size", "60x60", "--height-scale", "0.5"});
+  expect_scale(0.5F, "one's own");
+  EXPECT_EQ(with({"--classic"}).find("note"), std::string::npos);
+  options_.classic = true;
+  options_.filter = TerrainFilter::none;
+  map_.heights = bytes;
+  EXPECT_TRUE(same_pixels(png("p.png"), drawn(map_))) << "--classic: 16 bits have the range of 8";
+}
+
+TEST_F(TerrainProgram, ScalesThatAFileKnowsAreItsOwn) {
+  EXPECT_EQ(must(base()).find("note"), std::string::npos) << "8 bits: a unit a cell";
+  // All heights are equal: there is nothing to choose.
+  write("flat.raw", std::string(2 * 16 * 16, '\x10'));
+  std::vector<std::string> args = base();
+  args[2] = "flat.raw";
+  EXPECT_EQ(must(args).find("note"), std::string::npos);
 }
 
 TEST_F(TerrainProgram, DepthAndStats) {
@@ -318,6 +400,12 @@ TEST_F(TerrainProgram, RefusesWhatItCannotDraw) {
   refuse(1, "there are cosines", {"--function", "hills", "-o", "p.png"});
   if (!parallel::cuda_status().usable)
     refuse(1, "CUDA", {"--height", "h.png", "--device", "cuda", "-o", "p.png"});
+  refuse(2, "--step: must be greater than 0", {"--height", "h.png", "-o", "p.png", "--step", "0"});
+  refuse(1, "leave them or the classic option out",
+         {"--height", "h.png", "-o", "p.png", "--classic", "--step", "0.5"});
+  refuse(1, "leave them or the classic option out",
+         {"--height", "h.png", "-o", "p.png", "--filter", "bilinear", "--classic"});
+  refuse(2, "--dim-sky:", {"--height", "h.png", "-o", "p.png", "--classic", "--dim-sky"});
   write("bad.dem", "no dem");
   refuse(1, "bad.dem", {"--height", "bad.dem", "-o", "p.png"});
 }

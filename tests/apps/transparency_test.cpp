@@ -19,7 +19,7 @@ class TransparencyOption : public Program {
   /// The program's picture with these options is the library's with `render_`.
   Image<Rgba8> expect(std::vector<std::string> options) const {
     const Scene scene = scene_of(shapes::boxes(3));
-    const Image<Rgba8> expected = draw(scene, fit(scene), render_).color8;
+    const Image<Rgba8> expected = draw(scene, fit(scene, render_), render_).color8;
     std::string line;
     for (const std::string& o : options) line += " " + o;
     options.insert(options.begin(), {"render", "builtin:boxes?count=3", "-o", "p.png", "--size",

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <rastrum/scene/fit.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
 #include "arguments.hpp"
@@ -21,11 +22,35 @@ Scene box_scene() {
 }
 
 Camera choose(const cli::ViewOptions& options, const Scene& scene = box_scene()) {
-  return cli::choose_camera(options, scene, SceneBinding(scene).view());
+  return cli::choose_camera(options, scene, SceneBinding(scene).view(), {160, 90});
+}
+cli::ViewOptions sphere() {
+  cli::ViewOptions o;
+  o.fit = cli::Fit::sphere;
+  return o;
 }
 
-TEST(ChooseCamera, NothingGivenIsTheFit) {
-  const Camera c = choose({});
+TEST(ChooseCamera, NothingGivenFillsThePicture) {
+  const Scene scene = box_scene();
+  const SceneBinding binding(scene);
+  const auto same = [](const Camera& a, const Camera& b) {
+    return a.eye == b.eye && a.target == b.target && a.near_plane == b.near_plane;
+  };
+  EXPECT_TRUE(same(choose({}), fit_picture(binding.view(), {}, 160, 90)));
+  cli::ViewOptions o;
+  o.turns = true;
+  EXPECT_TRUE(same(choose(o), fit_turntable(binding.view(), {}, 160, 90)));
+  o = {};
+  o.up = Vec3{1, 1, 0};
+  Camera up;
+  up.up = {1, 1, 0};
+  EXPECT_TRUE(same(choose(o), fit_picture(binding.view(), up, 160, 90)));
+  o.up = Vec3{0, 0, 1};
+  EXPECT_THROW((void)choose(o), cli::UsageError);
+}
+
+TEST(ChooseCamera, TheSphereIsTheFitOfBefore) {
+  const Camera c = choose(sphere());
   EXPECT_EQ(c.target, (Vec3{1, 2, 2}));
   EXPECT_NEAR(c.eye.z, 2 + 3 / std::sin(std::acos(-1.0) / 6), 1e-5);
   EXPECT_TRUE(std::isinf(c.far_plane));
@@ -53,7 +78,7 @@ TEST(ChooseCamera, EyeInsideHasANearPlaneAboveZero) {
 TEST(ChooseCamera, TargetAloneKeepsTheEye) {
   cli::ViewOptions o;
   o.target = Vec3{0, 0, 0};
-  const Camera fit = choose({}), c = choose(o);
+  const Camera fit = choose(sphere()), c = choose(o);
   EXPECT_EQ(c.eye, fit.eye);
   EXPECT_EQ(c.near_plane, fit.near_plane);
   EXPECT_EQ(c.target, (Vec3{0, 0, 0}));
@@ -71,7 +96,7 @@ TEST(ChooseCamera, OrthographicHasAFarPlaneBehindTheScene) {
 }
 
 TEST(ChooseCamera, FovMovesTheFitCamera) {
-  cli::ViewOptions o;
+  cli::ViewOptions o = sphere();
   o.fov_deg = 90;
   const Camera c = choose(o);
   EXPECT_NEAR(c.fov_rad, std::acos(-1.0) / 2, 1e-6);

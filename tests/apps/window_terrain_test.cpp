@@ -287,11 +287,26 @@ TEST_F(TerrainInWindow, KeysChangeOptionsBothWays) {
     subject->handle(back);
   };
   const Image<Rgba8> home = shown();
-  shows("b", {"--filter", "bilinear"});
+  shows("b", {"--filter", "mip"});
   shows("c", {"--shadows", "accumulated"});
   shows("g", {"--fog", "0.002"});
   shows("t", {"--tile", "mirror"});
   EXPECT_TRUE(same_pixels(shown(), home));
+  subject->set_options("--sky #ffb070 --sun 270,6");
+  EXPECT_TRUE(
+      same_pixels(shown(), rendered({"--height", "h.png", "--sky", "#ffb070", "--sun", "270,6"})));
+  subject->set_options("--dim-sky --step 0.5");
+  EXPECT_TRUE(same_pixels(shown(), rendered({"--height", "h.png", "--sky", "#ffb070", "--sun",
+                                             "270,6", "--dim-sky", "--step", "0.5"})));
+}
+
+TEST_F(TerrainInWindow, TheOriginalHasNoFilter) {
+  subject->set_options("--classic");
+  EXPECT_TRUE(same_pixels(shown(), rendered({"--height", "h.png", "--classic"})));
+}
+
+TEST_F(TerrainInWindow, PaperThreesScansShowTheSame) {
+  const Image<Rgba8> home = shown();
   subject->handle(key("v"));
   EXPECT_EQ(subject->settings().options.method, terrain::Method::words);
   EXPECT_TRUE(same_pixels(shown(), home)) << "the same picture by paper 3's scans";

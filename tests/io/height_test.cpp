@@ -124,6 +124,7 @@ TEST(HeightRaw, SquareOrOfTheGivenSize) {
   EXPECT_EQ(square.heights.width(), 4);
   EXPECT_EQ(square.heights(1, 2), 256 + 9);
   EXPECT_EQ(square.units_per_cell, 257);
+  EXPECT_FALSE(square.scale_known);
   const HeightGrid wide = io::decode_height_raw(bytes_of(file), "in.put", {8, 2});
   EXPECT_EQ(wide.heights.width(), 8);
   EXPECT_EQ(wide.heights(1, 1), 256 + 9);
@@ -187,6 +188,7 @@ TEST(HeightPng, SixteenBitsAreKept) {
   const float expected[6] = {0, 1, 256, 65535, 4660, 300};
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(g.heights.pixels()[i], expected[i]);
   EXPECT_EQ(g.units_per_cell, 257);
+  EXPECT_FALSE(g.scale_known);
   for (std::size_t n = 0; n < file.size(); ++n)
     expect_refused(Errc::bad_format, "PNG", [&] {
       const std::string cut = file.substr(0, n);
@@ -205,6 +207,7 @@ TEST(HeightPng, EightBitsAsTheyAreAndNoColours) {
   const HeightGrid g = io::read_heights(folder.path("h.png"));
   for (int x = 0; x < 256; ++x) EXPECT_EQ(g.heights(x, 0), static_cast<float>(x));
   EXPECT_EQ(g.units_per_cell, 1);
+  EXPECT_TRUE(g.scale_known);
   image(7, 0).g = 8;
   io::write_png(folder.path("c.png"), image.view());
   const std::string file = test::slurp(folder.path("c.png"));
@@ -328,6 +331,7 @@ TEST(HeightDem, TheRealMap) {
   const HeightGrid g = io::read_heights(file);
   EXPECT_EQ(g.heights.width(), 327);  // its A record
   EXPECT_NEAR(g.units_per_cell, 30, 1e-12);
+  EXPECT_TRUE(g.scale_known);
   float least = INFINITY, most = -INFINITY;
   for (const float h : g.heights.pixels()) {
     if (std::isnan(h)) continue;
@@ -389,6 +393,7 @@ TEST(HeightGdal, ReadsGeoTiff) {
   EXPECT_EQ(g.heights(0, 1), 4.5F);
   EXPECT_EQ(g.heights(2, 1), 1e6F);
   EXPECT_EQ(g.units_per_cell, 10);
+  EXPECT_TRUE(g.scale_known);
   for (const std::size_t n : {3U, 20U, 100U, 200U}) {
     const auto cut = folder.write("cut.tif", file.substr(0, n));
     try {

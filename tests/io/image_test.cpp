@@ -152,6 +152,41 @@ TEST(Exr, WritesChannelsOrSaysWhatIsMissing) {
   EXPECT_EQ(files_in(folder.path("")), 1U);
 }
 
+TEST(Writers, TakeImagesUpsideDownAndRefuseRowsThatOverlap) {
+  const test::TempFolder folder;
+  Image<Vec4> image(3, 2), turned(3, 2);
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 3; ++x)
+      image(x, y) = turned(x, 1 - y) = {static_cast<float>(x), static_cast<float>(y), 0.5F, 1};
+  const ImageView<const Vec4> from_below{&turned(0, 1), 3, 2, -3},
+      overlapping{&image(0, 0), 3, 2, 0};
+  io::write_npy(folder.path("a.npy"), image);
+  io::write_npy(folder.path("b.npy"), from_below);
+  EXPECT_EQ(test::slurp(folder.path("a.npy")), test::slurp(folder.path("b.npy")));
+  const auto refuses = [&](auto&& write) {
+    try {
+      write();
+    } catch (const Error& e) {
+      return e.code() == Errc::unsupported ||
+             std::string(e.what()).find("rows of 3 pixels overlap") != std::string::npos;
+    }
+    return false;
+  };
+  EXPECT_TRUE(refuses([&] { io::write_npy(folder.path("c.npy"), overlapping); }));
+  EXPECT_TRUE(refuses([&] { io::write_exr(folder.path("c.exr"), overlapping); }));
+  const Image<Rgba8> pixels(3, 2);
+  const ImageView<const Rgba8> rows{&pixels(0, 0), 3, 2, 0};
+  EXPECT_TRUE(refuses([&] { io::write_png(folder.path("c.png"), rows); }));
+  EXPECT_EQ(files_in(folder.path("")), 2U);
+  try {
+    io::write_exr(folder.path("a.exr"), image);
+    io::write_exr(folder.path("b.exr"), from_below);
+    EXPECT_EQ(test::slurp(folder.path("a.exr")), test::slurp(folder.path("b.exr")));
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::unsupported) << e.what();
+  }
+}
+
 TEST(Writers, ReplaceTheOldFileAndFollowLinks) {
   const test::TempFolder folder;
   folder.write("real.npy", "old");
@@ -208,6 +243,9 @@ TEST(WritePly, RoundTripsWhatSharesThePositions) {
       EXPECT_EQ(back.colors.values[i].w, m.colors.values[i].w);
     }
   }
+  Mesh few = m;
+  few.normals.values.resize(3);
+  EXPECT_THROW(io::write_ply(folder.path("b.ply"), few), Error) << "normals lost without a word";
   m.indices = {0, 1, 4};
   EXPECT_THROW(io::write_ply(folder.path("b.ply"), m), Error);
 }

@@ -122,6 +122,7 @@ TEST_F(CudaMaterials, LayersEqualTheThreads) {
   scene.materials[0].alpha_mode = AlphaMode::blend;
   scene.materials[0].alpha_texture = 1;
   scene.materials[2].alpha_mode = AlphaMode::blend;
+  scene.materials[3].opacity = 0.7F;  // a mask
   const SceneBinding binding(scene);
   std::uint64_t blended = 0;
   for (const Way& way : {Way{Shader::material, Transparency::exact, 1},

@@ -480,6 +480,7 @@ TEST(OnTerrain, RefusesWhatCannotBeComposed) {
   const Scene box = placed(shapes::boxes(1, 1), at(100, 30, 120, 50));
   const SceneBinding binding(box);
   Image<Rgba8> color(kWidth, kHeight);
+  Image<Rgba8> small_color(8, 8);
   Image<float> depth(kWidth, kHeight), small(8, 8);
   const terrain::TerrainTargets targets{color.view(), depth.view()};
   const auto message = [&](const TerrainOptions& options, const RenderOptions& how,
@@ -504,9 +505,20 @@ TEST(OnTerrain, RefusesWhatCannotBeComposed) {
   samples.samples = 4;
   EXPECT_NE(message(good, samples, targets).find("one sample"), std::string::npos);
   EXPECT_NE(message(good, render_options(), targets, {1}).find("the number 1"), std::string::npos);
-  EXPECT_NE(message(good, render_options(), {color.view(), {}}).find("240x160"), std::string::npos);
-  EXPECT_NE(message(good, render_options(), {color.view(), small.view()}).find("240x160"),
+  EXPECT_NE(message(good, render_options(), {color, {}}).find("its depth is needed"),
             std::string::npos);
+  EXPECT_EQ(message(good, render_options(), {color, small}),
+            "the depth target is 8x8 and must be 240x160, as the frame is");
+  EXPECT_EQ(message(good, render_options(), {small_color, depth}),
+            "the color8 target is 8x8 and must be 240x160, as the frame is");
+  EXPECT_NE(message(good, render_options(), {color, {&depth(0, 0), kWidth, kHeight, 0}})
+                .find("the depth target: rows of 240 pixels overlap"),
+            std::string::npos);
+  RenderOptions large = render_options();
+  large.width = 320;
+  EXPECT_EQ(message(good, large, targets),
+            "what stands on a terrain is drawn at 320x160, the terrain at 240x160; give "
+            "RenderOptions and TerrainOptions the same size");
 }
 
 TEST(Sprite, IsAsHighAsOneAndNeedsAPicture) {

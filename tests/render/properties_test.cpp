@@ -427,6 +427,46 @@ TEST_P(Properties, TargetsWithAStrideKeepWhatLiesBesideThem) {
   }
 }
 
+// A negative stride turns the rows round (OpenGL's order) and nothing else.
+TEST_P(Properties, TargetsMayLieUpsideDown) {
+  constexpr int kW = 61, kH = 45;
+  for (const bool deep : {false, true}) {
+    RenderOptions o = options(kW, kH);
+    if (deep) o.opacity = 0.5F;
+    Renderer renderer(o);
+    for (std::uint64_t seed = 0; seed < 24; ++seed) {
+      const GeneratedScene g = generate(seed, kW, kH);
+      SCOPED_TRACE(std::to_string(seed) + " " + g.kind);
+      const SceneBinding binding(g.scene);
+      const Frame upright = draw(renderer, binding.view(), g.camera);
+      Image<std::uint64_t> words(kW, kH), turned_words(kW, kH);
+      Frame turned{Image<Rgba8>(kW, kH),        Image<Vec4>(kW, kH),          Image<float>(kW, kH),
+                   Image<std::int64_t>(kW, kH), Image<std::uint32_t>(kW, kH), {}};
+      const auto from_below = [&](auto& image) {
+        return decltype(image.view()){&image(0, kH - 1), kW, kH, -kW};
+      };
+      Targets targets;
+      targets.words = words;
+      renderer.render(binding.view(), g.camera, targets);
+      targets = {from_below(turned.color8), from_below(turned.color), from_below(turned.depth),
+                 from_below(turned.ids), from_below(turned.overdraw)};
+      targets.words = from_below(turned_words);
+      renderer.render(binding.view(), g.camera, targets);
+      for (int y = 0; y < kH; ++y) {
+        for (int x = 0; x < kW; ++x) {
+          const int below = kH - 1 - y;
+          ASSERT_EQ(turned.color8(x, below), upright.color8(x, y)) << x << "," << y;
+          ASSERT_TRUE(turned.color(x, below) == upright.color(x, y)) << x << "," << y;
+          ASSERT_EQ(turned.depth(x, below), upright.depth(x, y)) << x << "," << y;
+          ASSERT_EQ(turned.ids(x, below), upright.ids(x, y)) << x << "," << y;
+          ASSERT_EQ(turned.overdraw(x, below), upright.overdraw(x, y)) << x << "," << y;
+          ASSERT_EQ(turned_words(x, below), words(x, y)) << x << "," << y;
+        }
+      }
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Devices, Properties, testing::Values(Device::serial, Device::threads),
                          device_name);
 

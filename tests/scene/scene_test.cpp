@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -126,6 +127,21 @@ TEST(FitCamera, RadiusZeroCountsAsOne) {
   }
 }
 
+TEST(FitCamera, RefusesFieldsOfViewThatAreNone) {
+  const Scene scene = scene_of(shapes::boxes(1));
+  const SceneBinding binding(scene);
+  for (const float fov : {0.0F, -1.0F, 3.14159274F, 4.0F, kNan, kInfinity})
+    for (const bool orthographic : {false, true}) {
+      try {
+        static_cast<void>(fit_camera(binding.view(), fov, orthographic));
+        ADD_FAILURE() << "a field of view of " << fov << " was taken";
+      } catch (const Error& e) {
+        EXPECT_EQ(e.code(), Errc::invalid_argument);
+        EXPECT_NE(std::string(e.what()).find("field of view"), std::string::npos) << e.what();
+      }
+    }
+}
+
 TEST(FitCamera, SeesTheWholeScene) {
   const Scene scene = scene_of(shapes::teapot(8));
   const SceneBinding binding(scene);
@@ -166,6 +182,32 @@ TEST(VertexNormals, IgnoreNonFiniteTrianglesAndZeroArea) {
   expect_vec(n[4], {0, 0, 0});
 }
 
+TEST(VertexNormals, WithoutIndicesPositionsAreInOrder) {
+  // Two whole triangles and the begin of a third.
+  const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5},
+                                       {5, 6, 5}, {5, 5, 6}, {7, 7, 7}};
+  const std::vector<Vec3> n = vertex_normals(positions, {});
+  ASSERT_EQ(n.size(), positions.size());
+  for (std::size_t i = 0; i < 3; ++i) expect_vec(n[i], {0, 0, 1});
+  for (std::size_t i = 3; i < 6; ++i) expect_vec(n[i], {1, 0, 0});
+  expect_vec(n[6], {0, 0, 0});
+}
+
+TEST(VertexNormals, RefuseIndicesOutOfRange) {
+  const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  for (const std::uint32_t far : {3U, 4'000'000'000U}) {
+    const std::vector<std::uint32_t> indices = {0, 1, 2, 0, 2, far};
+    try {
+      static_cast<void>(vertex_normals(positions, indices));
+      ADD_FAILURE() << "index " << far << " was taken";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::invalid_argument);
+      EXPECT_EQ(std::string(e.what()), "mesh: corner 2 of triangle 1 is vertex " +
+                                           std::to_string(far) + ", but there are only 3");
+    }
+  }
+}
+
 TEST(VertexNormals, OfASpherePointOutward) {
   const Mesh mesh = shapes::sphere(40, 80);
   const std::vector<Vec3> n = vertex_normals(mesh.positions, mesh.indices);
@@ -190,6 +232,18 @@ Scene marked_scene(float mark, std::size_t materials, std::size_t textures) {
   s.warnings = {std::to_string(mark)};
   s.cameras.resize(1);
   return s;
+}
+
+TEST(Scene, AnInstanceOfNoMeshIsRefused) {
+  Scene scene = scene_of(shapes::boxes(1));
+  scene.instances.push_back({7, Mat4d::identity()});
+  EXPECT_THROW(static_cast<void>(scene.triangle_count()), Error);
+  try {
+    const SceneBinding binding(scene);
+    ADD_FAILURE() << "mesh 7 of 1 was taken";
+  } catch (const Error& e) {
+    EXPECT_EQ(std::string(e.what()), "scene: an instance is of mesh 7, but there are only 1");
+  }
 }
 
 TEST(SceneAppend, ShiftsIndices) {

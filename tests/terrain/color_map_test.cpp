@@ -103,5 +103,42 @@ TEST(LitColors, ColoursOfAnotherSizeAreScaled) {
   EXPECT_THROW((void)lit_colors(map, {.ambient = 2}, {}), Error);
 }
 
+// A ramp from centre to centre: 0 and 240 on two cells, on eight 30 further each, and round the
+// edge.
+TEST(LitColors, SmoothOnesLieBetweenCentres) {
+  HeightMap map{Image<float>(8, 1), Image<Rgba8>(2, 1)};
+  map.colors(1, 0) = {240, 0, 120, 255};
+  const auto red = [&](Tiling tiling) {
+    const Image<Rgba8> lit = lit_colors(map, {.smooth = true}, {tiling});
+    std::vector<int> row;
+    for (int x = 0; x < lit.width(); ++x) {
+      row.push_back(lit(x, 0).r);
+      EXPECT_EQ(lit(x, 0).b, (row.back() + 1) / 2) << x;
+    }
+    return row;
+  };
+  EXPECT_EQ(red(Tiling::clamp), (std::vector<int>{0, 0, 30, 90, 150, 210, 240, 240}));
+  EXPECT_EQ(red(Tiling::repeat), (std::vector<int>{90, 30, 30, 90, 150, 210, 210, 150}));
+  // The light, too: cells of one map under colours four times as fine.
+  HeightMap fine = post();
+  const ShadowOptions clamped{Tiling::clamp};
+  Light light{.sun = {90, 45}, .shadows = Shadows::sharp, .ambient = 0.5F};
+  const Image<Rgba8> cells = lit_colors(fine, light, clamped);
+  fine.colors = Image<Rgba8>(256, 128);
+  for (Rgba8& c : fine.colors.pixels()) c = {200, 100, 50, 255};
+  light.smooth = true;
+  const Image<Rgba8> smooth = lit_colors(fine, light, clamped);
+  // The shadow ends at 40, half way between the centres 39.5 and 40.5: texels 158 to 161.
+  for (const auto& [x, r] :
+       {std::pair(157, 200), {158, 188}, {159, 163}, {160, 138}, {161, 113}, {162, 100}})
+    EXPECT_NEAR(smooth(x, 66).r, r, 13) << x;
+  EXPECT_GT(smooth(159, 66).r, smooth(160, 66).r);
+  light.smooth = true;
+  fine.colors = Image<Rgba8>(64, 32);
+  for (Rgba8& c : fine.colors.pixels()) c = {200, 100, 50, 255};
+  const Image<Rgba8> same = lit_colors(fine, light, clamped);
+  for (int x = 0; x < 64; ++x) EXPECT_EQ(same(x, 16), cells(x, 16)) << "equal sizes stay: " << x;
+}
+
 }  // namespace
 }  // namespace rastrum::terrain

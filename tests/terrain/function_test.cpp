@@ -9,6 +9,7 @@
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/terrain/color_map.hpp>
+#include <rastrum/terrain/expression.hpp>
 #include <rastrum/terrain/functions.hpp>
 
 #include "tests/support/random.hpp"

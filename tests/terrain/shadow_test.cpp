@@ -288,6 +288,25 @@ TEST(SharpShadows, RefusesSunsThatAreNone) {
 
 // --- Accumulated
 
+TEST(SharpShadows, ReadMapsUpsideDownAndRefuseRowsThatOverlap) {
+  Image<float> map(5, 4), turned(5, 4);
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 5; ++x)
+      map(x, y) = turned(x, 3 - y) = static_cast<float>((x * 7 + y * 5) % 4);
+  const Sun sun{.azimuth_deg = 200, .elevation_deg = 30};
+  const ImageView<const float> from_below{&turned(0, 3), 5, 4, -5},
+      overlapping{&map(0, 0), 5, 4, 0};
+  const auto equal = [](const auto& a, const auto& b) {
+    return std::ranges::equal(a.pixels(), b.pixels());
+  };
+  EXPECT_TRUE(equal(sharp_shadows(map, sun), sharp_shadows(from_below, sun)));
+  EXPECT_TRUE(equal(soft_light(map, sun, 0.3), soft_light(from_below, sun, 0.3)));
+  EXPECT_TRUE(equal(hidden_samples(map, sun), hidden_samples(from_below, sun)));
+  EXPECT_THROW(static_cast<void>(sharp_shadows(overlapping, sun)), Error);
+  EXPECT_THROW(static_cast<void>(soft_light(overlapping, sun, 0.3)), Error);
+  EXPECT_THROW(static_cast<void>(hidden_samples(overlapping, sun)), Error);
+}
+
 TEST(HiddenSamples, EqualThePapersLoop) {
   Random random(2);
   for (int scene = 0; scene < 60; ++scene) {

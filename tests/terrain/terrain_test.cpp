@@ -1,6 +1,7 @@
 // What a terrain answers at a point, the operators of the words, the options beyond the original:
 // filters, projections, roll, fog, the matrix; and odd input.
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
 #include <string>
@@ -519,6 +520,55 @@ TEST(OddInput, FlatGroundFillsTheRowsBelowTheHorizon) {
   }
 }
 
+/// Near slopes are no stripes: each row below the horizon has ground of its own, within a pixel of
+/// where its ray meets the plane. Steps of a cell leave dozens of rows the ground of one.
+TEST(Steps, ArePixelsHighWithTheBilinearFilter) {
+  const Terrain flat(HeightMap{Image<float>(4, 4), {}});
+  for (const double fov : {0.4, kPi / 2, 2.2})
+    for (const double altitude : {2.0, 20.0, 300.0}) {
+      TerrainOptions options = size(64, 240);
+      options.filter = Filter::bilinear;
+      options.step = 0;
+      options.fov_rad = fov;
+      options.distance = 1e5;
+      const Picture picture(flat, {.altitude = altitude, .horizon_px = 40}, options);
+      const double scale = terrain::scale_px(options);
+      int distinct = 0, seen = 0;
+      for (int y = 60; y < 240; ++y) {
+        const double z = altitude * scale / (y + 0.5 - 40);
+        if (z < 2) break;  // the first sample lies at 1
+        EXPECT_NEAR(altitude * scale / picture.depth(7, y) + 40, y + 0.5, 1.01)
+            << fov << " " << altitude << " row " << y;
+        ++seen;
+        distinct += picture.depth(7, y) != picture.depth(7, y - 1);
+      }
+      EXPECT_EQ(distinct, seen) << fov << " " << altitude;
+    }
+}
+
+TEST(Steps, OfOtherFiltersAreCellsWhereTheyAreLeftOpen) {
+  const Terrain flat(HeightMap{Image<float>(4, 4), {}});
+  for (const Filter filter : {Filter::none, Filter::mip}) {
+    TerrainOptions options = size(64, 40);
+    options.filter = filter;
+    const auto own = set_up(options, {}, flat).slices;
+    options.step = 0;
+    const auto open = set_up(options, {}, flat).slices;
+    ASSERT_EQ(open.size(), own.size());
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      EXPECT_EQ(open[k].z, own[k].z);
+      EXPECT_EQ(open[k].level, own[k].level);
+    }
+  }
+  TerrainOptions narrow = size(32768, 40);
+  narrow.filter = Filter::bilinear;
+  narrow.step = 0;
+  narrow.fov_rad = 1e-4;
+  narrow.distance = 8e6;
+  EXPECT_LT(slice_count(narrow), 270e3) << "the narrowest view has an end";
+  EXPECT_NEAR(slice_count(narrow), std::log(8e6) * 0x1p14, 50);
+}
+
 TEST(OddInput, HolesLetThroughWhatLiesBehind) {
   HeightMap map{Image<float>(64, 64), {}};
   for (int y = 0; y < 64; ++y)
@@ -591,6 +641,61 @@ TEST(OddInput, IsRefusedWithTheOptionsName) {
   options.device = Device::cuda;
   EXPECT_NE(message_of(options).find("CUDA"), std::string::npos);
   EXPECT_THROW(Terrain(HeightMap{}), Error);
+}
+
+TEST(OddInput, EnumsWithoutAValueAreRefused) {
+  const auto expect = [](const char* part, const std::function<void(TerrainOptions&)>& change) {
+    TerrainOptions options = size(8, 8);
+    change(options);
+    const std::string message = message_of(options);
+    EXPECT_NE(message.find(part), std::string::npos) << part << ": '" << message << "'";
+  };
+  expect("filter is 200", [](TerrainOptions& o) { o.filter = static_cast<Filter>(200); });
+  expect("tiling is 200", [](TerrainOptions& o) { o.tiling = static_cast<Tiling>(200); });
+  expect("projection is 200",
+         [](TerrainOptions& o) { o.projection = static_cast<Projection>(200); });
+  expect("method is 200", [](TerrainOptions& o) { o.method = static_cast<Method>(200); });
+  expect("device is 200", [](TerrainOptions& o) { o.device = static_cast<Device>(200); });
+  expect("isa is 200", [](TerrainOptions& o) { o.isa = static_cast<Isa>(200); });
+}
+
+TEST(Targets, AreOfTheFramesSizeAndMayLieUpsideDown) {
+  std::mt19937 random(11);
+  const Terrain terrain(test::random_map(40, 40, random));
+  const TerrainCamera camera{.altitude = 300, .horizon_px = 5};
+  for (const Device device : {Device::serial, Device::threads}) {
+    for (const double roll : {0.0, 0.3}) {
+      TerrainOptions options = size(61, 40);
+      options.device = device;
+      TerrainCamera rolled = camera;
+      rolled.roll_rad = roll;
+      const Picture upright(terrain, rolled, options);
+      Image<Rgba8> colors(61, 40);
+      Image<float> depth(61, 40);
+      TerrainRenderer renderer(options);
+      renderer.render(terrain, rolled,
+                      {{&colors(0, 39), 61, 40, -61}, {&depth(0, 39), 61, 40, -61}});
+      for (int y = 0; y < 40; ++y)
+        for (int x = 0; x < 61; ++x) {
+          ASSERT_EQ(colors(x, 39 - y), upright.colors(x, y)) << x << "," << y;
+          ASSERT_EQ(depth(x, 39 - y), upright.depth(x, y)) << x << "," << y;
+        }
+      const auto message = [&](const TerrainTargets& targets) -> std::string {
+        try {
+          renderer.render(terrain, rolled, targets);
+        } catch (const Error& e) {
+          return e.what();
+        }
+        return "";
+      };
+      Image<float> small(8, 8);
+      EXPECT_EQ(message({{}, small}),
+                "terrain: the depth target is 8x8 and must be 61x40, as the frame is");
+      EXPECT_NE(message({{&colors(0, 0), 61, 40, 0}, {}})
+                    .find("terrain: the color8 target: rows of 61 pixels overlap"),
+                std::string::npos);
+    }
+  }
 }
 
 TEST(OddInput, LargeMaps) {

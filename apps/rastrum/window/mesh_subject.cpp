@@ -112,9 +112,10 @@ MeshSubject::~MeshSubject() = default;
 
 void MeshSubject::show(SceneArguments arguments, std::shared_ptr<const LoadedScene> scene) {
   const ViewOptions& v = arguments.view;
-  const Camera camera = choose_camera(v, scene->scene, scene->binding.view());
+  const Camera camera = choose_camera(v, scene->scene, scene->binding.view(),
+                                      {arguments.render.width, arguments.render.height});
   if (!arguments.shader_given)
-    settings_.render.shader = scene->scene.materials.empty() ? Shader::phong : Shader::material;
+    settings_.render.shader = scene->has_materials ? Shader::material : Shader::phong;
   arguments_ = std::move(arguments);
   scene_ = std::move(scene);
   base_version_ = version() + 1;

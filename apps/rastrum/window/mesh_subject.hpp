@@ -15,12 +15,16 @@ namespace rastrum::cli::window {
 
 /// A scene with what is known about it; stays where it is, since the binding points into it.
 struct LoadedScene {
-  explicit LoadedScene(Scene s)
-      : scene(std::move(s)), binding(scene), sphere(bounding_sphere(binding.view())) {}
+  explicit LoadedScene(Inputs inputs)
+      : scene(std::move(inputs.scene)),
+        has_materials(inputs.has_materials),
+        binding(scene),
+        sphere(bounding_sphere(binding.view())) {}
   LoadedScene(const LoadedScene&) = delete;
   LoadedScene& operator=(const LoadedScene&) = delete;
 
   Scene scene;
+  bool has_materials;  ///< of files
   SceneBinding binding;
   BoundingSphere sphere;
 };

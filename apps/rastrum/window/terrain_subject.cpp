@@ -9,6 +9,8 @@
 
 #include <rastrum/core/error.hpp>
 
+#include "progress.hpp"
+
 namespace rastrum::cli::window {
 namespace {
 
@@ -20,9 +22,10 @@ constexpr KeyHelp kKeys[] = {
     {"t", "next tiling"}};
 
 /// What a lit terrain depends on beside its map.
-auto light_key(const terrain::Light& l, terrain::Tiling tiling) {
+auto light_key(const terrain::Light& l, const TerrainOptions& o) {
   return std::make_tuple(l.sun.azimuth_deg, l.sun.elevation_deg, l.shadows, l.hill_shading,
-                         l.ambient, l.sun_radius_deg, l.march.distance, l.march.steps, tiling);
+                         l.ambient, l.sun_radius_deg, l.march.distance, l.march.steps, o.tiling,
+                         o.filter == terrain::Filter::bilinear);
 }
 
 template <class T>
@@ -47,6 +50,7 @@ class TerrainSubject::Stage {
     if (!source_ || name != name_) {
       lit_.reset();
       source_ = std::make_unique<LoadedTerrain>(input);
+      if (!source_->scale_note().empty()) note(source_->scale_note());
       name_ = name;
     }
     return *source_;
@@ -57,9 +61,9 @@ class TerrainSubject::Stage {
     name_ = name_of(input);
   }
   const terrain::Terrain& lit(const terrain::Light& light, const TerrainOptions& o) {
-    const auto key = light_key(light, o.tiling);
+    const auto key = light_key(light, o);
     if (!lit_ || key != key_) {
-      lit_.emplace(source_->lit(light, {o.tiling, o.device, o.threads, o.isa}));
+      lit_.emplace(source_->lit(light, o));
       key_ = key;
     }
     return *lit_;
@@ -96,7 +100,7 @@ class TerrainSubject::Stage {
 TerrainSubject::TerrainSubject(const TerrainSceneArguments& arguments,
                                std::vector<TerrainInput> maps)
     : maps_(std::move(maps)),
-      settings_{arguments.options, arguments.light},
+      settings_{arguments.options, arguments.light, arguments.sky_dims || arguments.dim_sky},
       control_(TerrainPose{}),
       width_(arguments.options.width),
       height_(arguments.options.height),
@@ -172,10 +176,11 @@ std::function<Drawn()> TerrainSubject::draw(int width, int height) {
   terrain::TerrainCamera camera = pose.camera;
   light.sun = pose.sun;
   o.distance = pose.distance;
-  if (!o.classic) {
+  o.sky = sky_of(o, light.sun, settings_.sky_dims);
+  if (o.classic)
+    o.filter = terrain::Filter::none;
+  else
     o.fov_rad = pose.fov_rad;
-    o.sky = terrain::sky_in(o.sky, light.sun);
-  }
   // Fewer pixels see the same: what is given in pixels shrinks with them. The original program's
   // scale is fixed, so it is always drawn in full.
   if (o.classic) {
@@ -231,6 +236,7 @@ void TerrainSubject::set_options(const std::string& options) {
   changed.options.distance = pose.distance;
   changed.options.fov_rad = pose.fov_rad;
   changed.light = settings_.light;
+  changed.sky_dims = settings_.sky_dims;
   changed.light.sun = pose.sun;
   add_terrain_picture(app, changed);
   add_terrain_light(app, changed);
@@ -245,7 +251,7 @@ void TerrainSubject::set_options(const std::string& options) {
   now.fov_rad = changed.options.fov_rad;
   now.sun = changed.light.sun;
   control_.place(now);
-  set({changed.options, changed.light});
+  set({changed.options, changed.light, changed.sky_dims || changed.dim_sky});
 }
 
 void TerrainSubject::write_camera(const std::filesystem::path& file) const {

@@ -19,6 +19,7 @@ class TerrainSubject final : public Subject {
   struct Settings {
     terrain::TerrainOptions options;
     terrain::Light light;
+    bool sky_dims = true;
   };
 
   /// `maps`: what F1 goes through, at least one; the first is read here. `arguments.input` is not

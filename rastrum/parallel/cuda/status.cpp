@@ -67,8 +67,7 @@ CudaStatus cuda_status() {
 CudaStatus cuda_status() {
   CudaStatus status;
   status.why_not =
-      "this program was built without CUDA; build it where nvcc (12.4 or newer) is on the PATH, or "
-      "with -DRASTRUM_CUDA=ON to hear what is missing";
+      "this program was built without CUDA; build it with -DRASTRUM_CUDA=ON (nvcc 12.4 or newer)";
   return status;
 }
 #endif

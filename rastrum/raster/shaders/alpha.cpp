@@ -76,10 +76,11 @@ class AlphaShader final : public BlockShader {
 std::vector<std::uint32_t> material_flags(std::span<const Material> materials, bool blends) {
   std::vector<std::uint32_t> flags;
   flags.reserve(materials.size());
-  for (const Material& m : materials)
-    flags.push_back(m.alpha_mode == AlphaMode::mask              ? kTested
-                    : m.alpha_mode == AlphaMode::blend && blends ? kTranslucent
-                                                                 : 0U);
+  for (const Material& m : materials) {
+    const bool translucent = blends && (m.alpha_mode == AlphaMode::blend || m.opacity < 1);
+    flags.push_back((m.alpha_mode == AlphaMode::mask ? kTested : 0U) |
+                    (translucent ? kTranslucent : 0U));
+  }
   return flags;
 }
 

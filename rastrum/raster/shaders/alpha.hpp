@@ -5,6 +5,7 @@
 //   AlphaMode::mask     own alpha below the cutoff: a hole (a fragment test); else alpha = opacity
 //   AlphaMode::blend    alpha = opacity · own alpha, in [0, 1], NaN 0
 //
+// The opacity is the frame's times the material's.
 // Scenes without materials have one of AlphaMode::blend, so that vertex colours say it.
 #pragma once
 
@@ -20,7 +21,7 @@
 namespace rastrum::raster {
 
 /// The flags of triangles by material: kTested for AlphaMode::mask and, with `blends`, kTranslucent
-/// for AlphaMode::blend.
+/// for AlphaMode::blend and an opacity below 1.
 [[nodiscard]] std::vector<std::uint32_t> material_flags(std::span<const Material> materials,
                                                         bool blends);
 
@@ -38,7 +39,7 @@ std::uint32_t set_material_flags(Draw& draw, const MeshView& mesh,
 [[nodiscard]] std::unique_ptr<FragmentTest> make_alpha_test(const MaterialScene& scene, Isa isa);
 
 /// The colours of `inner`, multiplied by alpha; what has none is not shaded. `blending` may be null
-/// where no triangle has AlphaMode::blend; else its textures must hold those of such materials.
+/// where no material is translucent; else its textures must hold those of such materials.
 /// Both must outlive the shader, which has no further outputs.
 [[nodiscard]] std::unique_ptr<BlockShader> make_alpha_shader(const BlockShader& inner,
                                                              const MaterialScene* blending,

@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 
+#include <rastrum/core/enum.hpp>
 #include <rastrum/core/error.hpp>
 #include <rastrum/raster/shaders/material_kernels.hpp>
 
@@ -72,8 +73,8 @@ MaterialScene::MaterialScene(const SceneView& scene, const Camera& camera, int w
   }
   const auto bind = [&](const Material& m) {
     materials.push_back({m.base_color, m.metallic, m.roughness, m.normal_scale,
-                         m.occlusion_strength, m.emissive, m.alpha_mode, m.alpha_cutoff, m.unlit,
-                         textures.find(m.base_color_texture, TexelUse::color),
+                         m.occlusion_strength, m.emissive, m.alpha_mode, m.alpha_cutoff, m.opacity,
+                         m.unlit, textures.find(m.base_color_texture, TexelUse::color),
                          textures.find(m.metallic_roughness_texture, TexelUse::data),
                          textures.find(m.normal_texture, TexelUse::data),
                          textures.find(m.occlusion_texture, TexelUse::data),
@@ -86,13 +87,28 @@ MaterialScene::MaterialScene(const SceneView& scene, const Camera& camera, int w
 
 void check_materials(const SceneView& scene) {
   const std::size_t textures = scene.textures.size();
-  for (std::size_t i = 0; i < scene.materials.size(); ++i)
+  for (std::size_t i = 0; i < textures; ++i) {
+    const Texture& t = scene.textures[i];
+    const std::string name = "texture " + std::to_string(i);
+    for (const Wrap wrap : {t.wrap_u, t.wrap_v})
+      check_enum(wrap, Wrap::clamp_to_edge, name + ": its wrapping");
+    for (const Filter filter : {t.mag, t.min})
+      check_enum(filter, Filter::linear, name + ": its filter");
+  }
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    check_enum(scene.materials[i].alpha_mode, AlphaMode::blend,
+               "material " + std::to_string(i) + ": its alpha mode");
+    if (const float o = scene.materials[i].opacity; !(o >= 0 && o <= 1))
+      throw Error(Errc::invalid_argument, "material " + std::to_string(i) +
+                                              ": the opacity must lie in [0, 1], not " +
+                                              std::to_string(o));
     for (const TextureReference& r : references(scene.materials[i]))
       if (r.texture != kNoTexture &&
           (r.texture < 0 || static_cast<std::size_t>(r.texture) >= textures))
         throw Error(Errc::invalid_argument,
                     "material " + std::to_string(i) + ": texture " + std::to_string(r.texture) +
                         " is out of range, there are " + std::to_string(textures));
+  }
   if (scene.materials.empty()) return;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const MeshView& mesh = scene.instances[i].mesh;

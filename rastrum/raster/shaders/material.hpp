@@ -45,6 +45,7 @@ struct BoundMaterial {
   Vec3 emission;
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5F;
+  float opacity = 1;
   bool unlit = false;
   const MipChain* base_color = nullptr;
   const MipChain* metallic_roughness = nullptr;

@@ -259,6 +259,7 @@ template <class Geometry>
   const Draw& draw = frame.draw_of(id);
   const MaterialDraw& of = scene.draws[static_cast<std::size_t>(&draw - frame.draws.data())];
   const BoundMaterial& m = scene.material_of(of, id - draw.first_id);
+  opacity *= m.opacity;
   if (m.alpha_mode != AlphaMode::blend) return clamped_alpha(opacity);
   if (has_constant_alpha(of, m)) return clamped_alpha(opacity * m.base.w);
   const MaterialTriangle t(scene, frame, draw, id);

@@ -461,7 +461,7 @@ std::uint64_t alpha_test(const MaterialView& scene, const FrameGeometry& frame, 
 }
 
 AlphaMasks alpha(const MaterialView& scene, const FrameGeometry& frame, const VisibleBlock& block,
-                 float opacity, float* out) noexcept {
+                 float frame_opacity, float* out) noexcept {
   AlphaMasks masks;
   const auto set = [&](int i, float a) {
     out[i] = a;
@@ -479,6 +479,7 @@ AlphaMasks alpha(const MaterialView& scene, const FrameGeometry& frame, const Vi
     const MaterialDraw& of = scene.draws[static_cast<std::size_t>(draw - frame.draws.data())];
     const BoundMaterial& material = scene.material_of(of, id - draw->first_id);
     const bool blends = material.alpha_mode == AlphaMode::blend;
+    const float opacity = frame_opacity * material.opacity;
     if (!blends || has_constant_alpha(of, material)) {
       const float a = clamped_alpha(blends ? opacity * material.base.w : opacity);
       for (std::uint64_t m = mask; m != 0; m &= m - 1) set(std::countr_zero(m), a);

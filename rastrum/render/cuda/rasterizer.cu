@@ -1,7 +1,7 @@
-// The rasterizer of a CUDA device with what blends its layers, instantiated. Tests compile this
-// file as C++, for the CPU.
+// The rasterizer of a CUDA device with what blends its layers (layers.cu), instantiated. Tests
+// compile this file as C++, for the CPU.
 #include <rastrum/raster/cuda/frame.cuh>
-#include <rastrum/transparency/cuda/scene_layers.cuh>
+#include <rastrum/render/cuda/layers.cuh>
 
 namespace rastrum::raster {
 

@@ -45,11 +45,7 @@ class SceneLayers {
   void blend(Exec& exec, const raster::DeviceScene<Exec>& scene,
              const raster::DeviceSurface& surface, std::span<Vec4> colors,
              const TransparencyOptions& options, const Shade& shade, const Test& test,
-             std::uint64_t batch, std::uint64_t bytes) {
-    blend_rows(
-        Band<Exec, Shade, Test>{exec, scene, surface, colors, options, shade, test, batch, bytes},
-        surface.view);
-  }
+             std::uint64_t batch, std::uint64_t bytes);
   void count(FrameStats& stats) const {
     stats.visibility = "layers";
     stats.fragments += counts_.fragments;
@@ -146,5 +142,16 @@ class SceneLayers {
 
   DeviceLayerCounts counts_;
 };
+
+// Out of the class, so that it is not inline and one source can instantiate it for others.
+template <class Exec, class Shade, class Test>
+void SceneLayers::blend(Exec& exec, const raster::DeviceScene<Exec>& scene,
+                        const raster::DeviceSurface& surface, std::span<Vec4> colors,
+                        const TransparencyOptions& options, const Shade& shade, const Test& test,
+                        std::uint64_t batch, std::uint64_t bytes) {
+  blend_rows(
+      Band<Exec, Shade, Test>{exec, scene, surface, colors, options, shade, test, batch, bytes},
+      surface.view);
+}
 
 }  // namespace rastrum::transparency

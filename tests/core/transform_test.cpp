@@ -1,10 +1,11 @@
-// Quaternions against their definitions.
+// Transforms and quaternions against their definitions.
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
 #include <rastrum/core/quaternion.hpp>
+#include <rastrum/core/transform.hpp>
 
 #include "tests/support/random.hpp"
 
@@ -61,6 +62,40 @@ double determinant(const Mat4d& m) {
   return dot(cross(plus(x, o, -1), plus(y, o, -1)), plus(z, o, -1));
 }
 
+TEST(Transform, TranslatesAndScales) {
+  expect_near(translation({1, -2, 3}) * P{5, 7, 9}, {6, 5, 12});
+  expect_near(scaling({2, -3, 0.5F}) * P{5, 7, 8}, {10, -21, 4});
+  // The right factor acts first.
+  expect_near(translation({1, 0, 0}) * scaling({2, 2, 2}) * P{1, 1, 1}, {3, 2, 2});
+}
+
+TEST(Transform, ReflectionIsTheMirrorImage) {
+  Random r(1);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 n = random_vec(r);
+    const P p = wide(random_vec(r));
+    const double offset = r.real(-1, 1);
+    const Mat4d m = reflection(n, offset);
+    const P q = m * p, normal = wide(n);
+    // The middle lies in the plane and the way is along the normal.
+    EXPECT_NEAR(dot(times(plus(p, q), 0.5), normal), offset * dot(normal, normal), 1e-9);
+    expect_near(cross(plus(q, p, -1), normal), {0, 0, 0}, 1e-9);
+    expect_near(m * q, p, 1e-9);
+    EXPECT_NEAR(determinant(m), -1, 1e-9);
+  }
+}
+
+TEST(Transform, ShearSlidesPlanes) {
+  Random r(2);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 n = random_vec(r), along = random_vec(r);
+    const P p = wide(random_vec(r)), a = wide(along), normal = wide(n);
+    expect_near(shear(along, n) * p, plus(p, a, dot(normal, p)), 1e-9);
+  }
+  EXPECT_NEAR(determinant(shear({0.7F, 0, -0.3F}, {0, 1, 0})), 1, 1e-12);
+  expect_near(shear({0.5F, 0, 0}, {0, 1, 0}) * P{1, 2, 3}, {2, 2, 3});
+}
+
 TEST(Quaternion, RotatesAsRodriguesSays) {
   Random r(3);
   for (int i = 0; i < 500; ++i) {
@@ -83,6 +118,7 @@ TEST(Quaternion, TheProductIsFirstTheRightOne) {
     const Quaternion b = rotation_about(random_vec(r), r.real(-3, 3));
     const P p = wide(random_vec(r));
     expect_near(rotation(a * b) * p, rotation(a) * (rotation(b) * p));
+    expect_near(rotation(conjugate(a)) * (rotation(a) * p), p);
   }
   const Quaternion q = normalize({3, 0, 4, 0});
   EXPECT_NEAR(q.w, 0.6, 1e-15);

@@ -1,0 +1,118 @@
+#include "input_spec.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include <rastrum/core/angle.hpp>
+
+#include "arguments.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+constexpr const char* kKeys = "x, y, z, scale, rx, ry, rz, color and opacity";
+
+bool exists(const std::string& file) {
+  std::error_code ignored;
+  return std::filesystem::exists(file, ignored);
+}
+
+/// Rows of the rotation about `axis`, counter-clockwise as seen from its end.
+Mat4d rotation(int axis, double degrees) {
+  const SinCos a = sin_cos_degrees(degrees);
+  Mat4d m = Mat4d::identity();
+  const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+  m.m[i][i] = m.m[j][j] = a.cos;
+  m.m[i][j] = -a.sin;
+  m.m[j][i] = a.sin;
+  return m;
+}
+
+/// Whether `name` is one of the keys; sets what it stands for.
+bool set(InputSpec& spec, const std::string& input, std::string_view name, std::string_view value) {
+  const std::string option = std::string(input).append(": ").append(name);
+  Placement& p = spec.placement;
+  for (const auto& [key, field] : {std::pair{"x", &p.x},
+                                   {"y", &p.y},
+                                   {"z", &p.z},
+                                   {"scale", &p.scale},
+                                   {"rx", &p.rx_deg},
+                                   {"ry", &p.ry_deg},
+                                   {"rz", &p.rz_deg},
+                                   {"opacity", &spec.look.opacity}}) {
+    if (name != key) continue;
+    *field = parse_number(option, value);
+    if (p.scale == 0) throw UsageError(input, "scale must not be 0");
+    if (!(spec.look.opacity >= 0 && spec.look.opacity <= 1))
+      throw UsageError(input, "opacity must lie in 0 to 1");
+    return true;
+  }
+  if (name != "color") return false;
+  spec.look.color = parse_color(option, value);
+  return true;
+}
+
+/// Takes the keys out of the list `items`; calls other(item) for what is none.
+template <class F>
+void take_keys(InputSpec& spec, const std::string& input, std::string_view items,
+               const char* separators, const F& other) {
+  for (std::size_t begin = 0; begin <= items.size();) {
+    const std::size_t end = std::min(items.find_first_of(separators, begin), items.size());
+    const std::string_view item = items.substr(begin, end - begin);
+    begin = end + 1;
+    const std::size_t equals = item.find('=');
+    if (equals == std::string_view::npos ||
+        !set(spec, input, item.substr(0, equals), item.substr(equals + 1)))
+      other(item);
+  }
+}
+
+/// SHAPE[?name=value,…] without the keys, which the shape does not know.
+void take_keys_of_builtin(InputSpec& spec, const std::string& input) {
+  const std::size_t question = spec.source.find('?');
+  if (question == std::string::npos) return;
+  const std::string items = spec.source.substr(question + 1);
+  spec.source.resize(question);
+  char separator = '?';
+  take_keys(spec, input, items, "&,", [&](std::string_view item) {
+    spec.source += std::exchange(separator, '&');
+    spec.source += item;
+  });
+}
+
+}  // namespace
+
+Mat4d Placement::matrix() const {
+  Mat4d m = rotation(2, rz_deg) * rotation(1, ry_deg) * rotation(0, rx_deg);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) m.m[i][j] *= scale;
+  m.m[0][3] = x;
+  m.m[1][3] = y;
+  m.m[2][3] = z;
+  return m;
+}
+
+InputSpec parse_input(const std::string& text) {
+  InputSpec spec{text, {}, {}};
+  const bool builtin = text.starts_with(kBuiltin);
+  if (!builtin && exists(text)) return spec;
+  const std::size_t at = text.rfind('@');
+  if (at != std::string::npos) {
+    const std::string before = text.substr(0, at);
+    const std::string items = text.substr(at + 1);
+    // A name with an @ that does not exist is reported as it is written.
+    if (builtin || exists(before) || items.find('=') != std::string::npos) {
+      spec.source = before;
+      take_keys(spec, text, items, ",", [&](std::string_view item) {
+        throw UsageError(text, std::string("expected ") + kKeys + " as name=value after @, got '" +
+                                   std::string(item) + "'");
+      });
+    }
+  }
+  if (builtin) take_keys_of_builtin(spec, text);
+  return spec;
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,36 @@
+// Many pictures of one scene: along a camera path, or of a full turn.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+
+#include <rastrum/scene/scene.hpp>
+
+#include "view.hpp"
+
+namespace rastrum::cli {
+
+struct Sequence {
+  struct Shot {
+    SceneView scene;
+    Camera camera;
+  };
+  std::size_t count = 0;
+  std::function<Shot(std::size_t)> shot;  ///< its scene lasts until the next call
+};
+
+/// Pictures at 1/`fps` along the path of `file`; `options` say whether the near plane was given,
+/// `base` is what the first key leaves out. `scene` must outlive it. Throws as read_camera_path.
+[[nodiscard]] Sequence along_path(const std::filesystem::path& file, double fps,
+                                  const SceneView& scene, const ViewOptions& options,
+                                  const Camera& base);
+
+/// `count` pictures of a full turn. The scene turns before the camera and its light, about the axis
+/// through the camera's target along its up, counter-clockwise as seen from above; the first
+/// picture is of the scene as it is. All have one camera, planes included, so that depths can be
+/// compared. `scene` must outlive it.
+[[nodiscard]] Sequence on_turntable(int count, const SceneView& scene, const ViewOptions& options,
+                                    Camera camera);
+
+}  // namespace rastrum::cli

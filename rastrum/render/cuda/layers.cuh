@@ -1,0 +1,22 @@
+// The layers of each pair of shader and test that raster::DeviceShading has, instantiated by
+// layers.cu: nvcc takes as long for them as for the rest of a frame.
+#pragma once
+
+#include <rastrum/parallel/cuda/words.cuh>
+#include <rastrum/raster/cuda/samples.cuh>
+#include <rastrum/raster/cuda/shading.cuh>
+#include <rastrum/transparency/cuda/scene_layers.cuh>
+
+#define RASTRUM_BLEND(Shade, Test)                                                              \
+  template void SceneLayers::blend(parallel::Cuda&, const raster::DeviceScene<parallel::Cuda>&, \
+                                   const raster::DeviceSurface&, std::span<Vec4>,               \
+                                   const TransparencyOptions&, const Shade&, const Test&,       \
+                                   std::uint64_t, std::uint64_t)
+
+namespace rastrum::transparency {
+
+extern RASTRUM_BLEND(raster::LitOnDevice, raster::KeepsFragments);
+extern RASTRUM_BLEND(raster::MaterialOnDevice, raster::TestOnDevice);
+extern RASTRUM_BLEND(raster::ShadedOnce<raster::LitOnDevice>, raster::KeepsFragments);
+
+}  // namespace rastrum::transparency

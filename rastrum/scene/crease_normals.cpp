@@ -1,0 +1,187 @@
+#include <rastrum/scene/crease_normals.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <rastrum/core/angle.hpp>
+#include <rastrum/core/error.hpp>
+
+namespace rastrum {
+namespace {
+
+struct Vec3d {
+  double x = 0, y = 0, z = 0;
+};
+
+double dot(const Vec3d& a, const Vec3d& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/// The cross product of two edges: twice the area long.
+Vec3d area_vector(Vec3 a, Vec3 b, Vec3 c) {
+  const Vec3d e1 = {double{b.x} - a.x, double{b.y} - a.y, double{b.z} - a.z};
+  const Vec3d e2 = {double{c.x} - a.x, double{c.y} - a.y, double{c.z} - a.z};
+  return {e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x};
+}
+
+struct Face {
+  Vec3d normal;
+  double length = 0;  ///< 0: takes no part
+};
+
+/// A number for each vertex, the same for equal positions, counted from 0 as they first come.
+struct Points {
+  std::vector<std::uint32_t> of_vertex;
+  std::size_t count = 0;
+};
+
+Points weld(std::span<const Vec3> positions) {
+  // -0 equals 0 and has other bits; adding 0 makes them one.
+  const auto key = [&](std::uint32_t vertex) {
+    const Vec3 p = positions[vertex];
+    return std::bit_cast<std::array<std::uint32_t, 3>>(Vec3{p.x + 0.0F, p.y + 0.0F, p.z + 0.0F});
+  };
+  constexpr std::uint32_t kEmpty = ~0U;
+  std::vector<std::uint32_t> slots(std::bit_ceil(positions.size() * 2 + 2), kEmpty);
+  Points points;
+  points.of_vertex.resize(positions.size());
+  for (std::uint32_t v = 0; v < positions.size(); ++v) {
+    const auto k = key(v);
+    std::uint64_t h = (std::uint64_t{k[0]} << 32 | k[1]) * 0x9E3779B97F4A7C15ULL;
+    h = (h ^ h >> 32 ^ k[2]) * 0xD6E8FEB86659FD93ULL;
+    std::size_t at = static_cast<std::size_t>(h ^ h >> 32) & (slots.size() - 1);
+    while (slots[at] != kEmpty && key(slots[at]) != k) at = (at + 1) & (slots.size() - 1);
+    if (slots[at] == kEmpty) {
+      slots[at] = v;
+      points.of_vertex[v] = static_cast<std::uint32_t>(points.count++);
+    } else {
+      points.of_vertex[v] = points.of_vertex[slots[at]];
+    }
+  }
+  return points;
+}
+
+/// The groups of the triangles around one point; its memory is kept from point to point.
+class Groups {
+ public:
+  void begin(std::size_t faces) {
+    spokes_.clear();
+    parent_.resize(faces);
+    for (std::uint32_t i = 0; i < faces; ++i) parent_[i] = i;
+  }
+  /// Face `face` of the point has an edge from it to `end`.
+  void add_edge(std::uint32_t face, std::uint32_t end) { spokes_.push_back({end, face}); }
+
+  /// Joins what `smooth(face, face)` says of two that share an edge.
+  template <class Smooth>
+  void join(const Smooth& smooth) {
+    std::sort(spokes_.begin(), spokes_.end());
+    for (std::size_t i = 1; i < spokes_.size(); ++i) {
+      const Spoke &a = spokes_[i - 1], &b = spokes_[i];
+      if (a.end != b.end || !smooth(a.face, b.face)) continue;
+      const std::uint32_t first = first_of(a.face), second = first_of(b.face);
+      parent_[std::max(first, second)] = std::min(first, second);
+    }
+  }
+  /// The first face of the group of `face`.
+  std::uint32_t first_of(std::uint32_t face) {
+    while (parent_[face] != face) face = parent_[face] = parent_[parent_[face]];
+    return face;
+  }
+
+ private:
+  struct Spoke {
+    std::uint32_t end, face;
+    auto operator<=>(const Spoke&) const = default;
+  };
+  std::vector<Spoke> spokes_;
+  std::vector<std::uint32_t> parent_;
+};
+
+Vec3 unit(const Vec3d& sum) {
+  const double l = std::sqrt(dot(sum, sum));
+  if (!(l > 0) || !std::isfinite(l)) return {};
+  return {static_cast<float>(sum.x / l), static_cast<float>(sum.y / l),
+          static_cast<float>(sum.z / l)};
+}
+
+}  // namespace
+
+Attribute<Vec3> crease_normals(std::span<const Vec3> positions,
+                               std::span<const std::uint32_t> indices, double crease_deg) {
+  if (!(crease_deg >= 0 && crease_deg <= 180))
+    throw Error(Errc::invalid_argument,
+                "crease_normals: the angle must lie in 0 to 180 degrees, not " +
+                    std::to_string(crease_deg));
+  const double cosine = sin_cos_degrees(crease_deg).cos;
+  MeshView mesh;
+  mesh.positions = positions;
+  mesh.indices = indices;
+  check_indices(mesh);
+  const std::size_t triangles = mesh.triangle_count();
+
+  const Points points = weld(positions);
+  const auto point = [&](std::size_t corner) { return points.of_vertex[mesh.vertex(corner)]; };
+  std::vector<Face> faces(triangles);
+  // The corners at point p, in the order of triangles: corners[begin[p]] to corners[begin[p + 1]].
+  std::vector<std::size_t> begin(points.count + 1);
+  for (std::size_t t = 0; t < triangles; ++t) {
+    Face& f = faces[t];
+    f.normal = area_vector(positions[mesh.vertex(3 * t)], positions[mesh.vertex(3 * t + 1)],
+                           positions[mesh.vertex(3 * t + 2)]);
+    f.length = std::sqrt(dot(f.normal, f.normal));
+    if (!std::isfinite(f.length)) f.length = 0;
+    if (f.length > 0)
+      for (std::size_t c = 0; c < 3; ++c) ++begin[point(3 * t + c) + 1];
+  }
+  for (std::size_t p = 0; p < points.count; ++p) begin[p + 1] += begin[p];
+  std::vector<std::uint64_t> corners(begin.back());
+  {
+    std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+    for (std::size_t t = 0; t < triangles; ++t)
+      if (faces[t].length > 0)
+        for (std::size_t c = 0; c < 3; ++c) corners[next[point(3 * t + c)]++] = 3 * t + c;
+  }
+
+  Attribute<Vec3> normals;
+  normals.values.emplace_back();  // of corners that have no group
+  normals.indices.resize(3 * triangles);
+  Groups groups;
+  std::vector<Vec3d> sums;
+  std::vector<std::uint32_t> value;
+  for (std::size_t p = 0; p < points.count; ++p) {
+    const std::span<const std::uint64_t> around(corners.data() + begin[p], begin[p + 1] - begin[p]);
+    const auto face = [&](std::size_t i) -> const Face& { return faces[around[i] / 3]; };
+    groups.begin(around.size());
+    for (std::uint32_t i = 0; i < around.size(); ++i) {
+      const std::uint64_t t = around[i] / 3, c = around[i] % 3;
+      groups.add_edge(i, point(3 * t + (c + 1) % 3));
+      groups.add_edge(i, point(3 * t + (c + 2) % 3));
+    }
+    groups.join([&](std::uint32_t a, std::uint32_t b) {
+      return dot(face(a).normal, face(b).normal) >= cosine * (face(a).length * face(b).length);
+    });
+    sums.assign(around.size(), {});
+    for (std::uint32_t i = 0; i < around.size(); ++i) {
+      Vec3d& sum = sums[groups.first_of(i)];
+      const Vec3d& n = face(i).normal;
+      sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z};
+    }
+    value.resize(around.size());
+    for (std::uint32_t i = 0; i < around.size(); ++i) {
+      const std::uint32_t first = groups.first_of(i);
+      if (first == i) {
+        value[i] = static_cast<std::uint32_t>(normals.values.size());
+        normals.values.push_back(unit(sums[i]));
+      }
+      normals.indices[around[i]] = value[first];
+    }
+  }
+  return normals;
+}
+
+}  // namespace rastrum

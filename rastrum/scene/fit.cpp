@@ -1,0 +1,254 @@
+// The scene is looked at in the camera's axes, relative to the centre of its box: x to the right, y
+// up, z back towards the eye. A frustum's side of slope t touches first what has the largest
+// x + t z: its eye must have x_e + t z_e at least as large. Two such sides leave a wedge of eyes,
+// and its tip is the nearest of them (as in the "zoom to fit" of viewers; Blender's Frame
+// Selected).
+#include <rastrum/scene/fit.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <rastrum/core/angle.hpp>
+#include <rastrum/core/error.hpp>
+#include <rastrum/scene/vertices_in_use.hpp>
+
+namespace rastrum {
+namespace {
+
+using Vec3d = VerticesInUse::Point;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// The least distance of the eye from the nearest vertex, in r.
+constexpr double kNearest = 1 / 20.0;
+constexpr double kNearPlane = 0.99, kPlaneMargin = 0.01;
+
+/// A point of the scene as one side of the picture sees it.
+struct Flat {
+  double across = 0, back = 0;
+};
+
+/// What the two planes of slope t first touch.
+struct Touched {
+  Flat high, low;
+  double most = -kInfinity, least = -kInfinity;  ///< of across + t back, and of −across + t back
+
+  void add(double across, double back, double t) {
+    if (const double v = across + t * back; v > most) {
+      most = v;
+      high = {across, back};
+    }
+    if (const double v = -across + t * back; v > least) {
+      least = v;
+      low = {across, back};
+    }
+  }
+  [[nodiscard]] bool empty() const { return most == -kInfinity; }
+  /// Where the wedge between the planes has its tip.
+  [[nodiscard]] double tip_across() const { return (most - least) / 2; }
+  [[nodiscard]] double tip_back(double t) const { return (most + least) / (2 * t); }
+};
+
+/// The scene in the camera's axes, still or swept about an axis through the origin.
+class Outline {
+ public:
+  Outline(const VerticesInUse& vertices, const Mat4d& to_camera, Vec3d centre, bool turns, Vec3 up)
+      : vertices_(vertices), to_camera_(to_camera), centre_(centre), turns_(turns) {
+    const Vec3d a = turned({up.x, up.y, up.z});
+    const double l = std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
+    axis_y_ = a.y / l;  // its x is 0: up is what makes the camera's x
+    axis_z_ = a.z / l;
+  }
+
+  [[nodiscard]] double axis_y() const { return axis_y_; }
+  [[nodiscard]] double axis_z() const { return axis_z_; }
+  [[nodiscard]] Vec3d to_world(Vec3d p) const {
+    const auto& m = to_camera_.m;
+    return {centre_.x + (m[0][0] * p.x + m[1][0] * p.y + m[2][0] * p.z),
+            centre_.y + (m[0][1] * p.x + m[1][1] * p.y + m[2][1] * p.z),
+            centre_.z + (m[0][2] * p.x + m[1][2] * p.y + m[2][2] * p.z)};
+  }
+  /// How far back from the centre a point of the world lies.
+  [[nodiscard]] double back_of(Vec3 world) const {
+    return turned({world.x - centre_.x, world.y - centre_.y, world.z - centre_.z}).z;
+  }
+
+  [[nodiscard]] Touched horizontal(double t) const {
+    Touched touched;
+    if (!turns_) {
+      each([&](const Vec3d& p) { touched.add(p.x, p.z, t); });
+    } else {
+      // A vertex goes round a circle of radius ρ: ρ (cos θ, axis_y sin θ) across and back.
+      const double k = 1 / std::sqrt(1 + t * t * axis_y_ * axis_y_);
+      each_circle([&](double along, double radius) {
+        const double back = along * axis_z_ + radius * axis_y_ * axis_y_ * t * k;
+        touched.add(radius * k, back, t);
+        touched.add(-radius * k, back, t);
+      });
+    }
+    return touched;
+  }
+  [[nodiscard]] Touched vertical(double t) const {
+    Touched touched;
+    if (!turns_) {
+      each([&](const Vec3d& p) { touched.add(p.y, p.z, t); });
+    } else {
+      // The view axis and the axis of turning span this plane, so the circle is a line in it.
+      each_circle([&](double along, double radius) {
+        for (const double r : {radius, -radius})
+          touched.add(along * axis_y_ - r * axis_z_, along * axis_z_ + r * axis_y_, t);
+      });
+    }
+    return touched;
+  }
+  /// The nearest and the farthest, back from the centre; 0 of nothing.
+  struct Depths {
+    double nearest = -kInfinity, farthest = kInfinity;
+  };
+  [[nodiscard]] Depths depths() const {
+    Depths d;
+    const auto add = [&](double back) {
+      d.nearest = std::max(d.nearest, back);
+      d.farthest = std::min(d.farthest, back);
+    };
+    if (!turns_)
+      each([&](const Vec3d& p) { add(p.z); });
+    else
+      each_circle([&](double along, double radius) {
+        add(along * axis_z_ + radius * axis_y_);
+        add(along * axis_z_ - radius * axis_y_);
+      });
+    return d.nearest < d.farthest ? Depths{0, 0} : d;
+  }
+
+ private:
+  [[nodiscard]] Vec3d turned(Vec3d d) const {
+    const auto row = [&](int i) {
+      const auto& m = to_camera_.m[i];
+      return m[0] * d.x + m[1] * d.y + m[2] * d.z;
+    };
+    return {row(0), row(1), row(2)};
+  }
+  template <class F>
+  void each(const F& f) const {
+    vertices_.for_each([&](const Vec3d& p) {
+      f(turned({p.x - centre_.x, p.y - centre_.y, p.z - centre_.z}));
+    });
+  }
+  template <class F>
+  void each_circle(const F& f) const {
+    each([&](const Vec3d& p) {
+      const double along = p.y * axis_y_ + p.z * axis_z_;
+      const double off = p.z * axis_y_ - p.y * axis_z_;
+      f(along, std::sqrt(p.x * p.x + off * off));
+    });
+  }
+
+  const VerticesInUse& vertices_;
+  Mat4d to_camera_;
+  Vec3d centre_;
+  bool turns_;
+  double axis_y_ = 1, axis_z_ = 0;
+};
+
+/// Where the eye, `back` from the centre, has equal margins on both sides: the least slope t whose
+/// wedge has its tip no farther back, by Newton's method from 0, which from that side never goes
+/// too far and ends as soon as it has the two vertices that count.
+template <class Touch>
+double middle(const Touch& touch, double back, double t_picture, const Touched& in_picture) {
+  constexpr int kMost = 16;
+  double t = 0;
+  Touched touched = touch(t);
+  for (int i = 0; i < kMost; ++i) {
+    const double next = (touched.high.across - touched.low.across) /
+                        (2 * back - touched.high.back - touched.low.back);
+    if (!(next > t)) break;
+    t = next;
+    touched = touch(t);
+  }
+  // Inside of the picture in any case.
+  const double lower = in_picture.most - t_picture * back;
+  const double upper = t_picture * back - in_picture.least;
+  return lower <= upper ? std::clamp(touched.tip_across(), lower, upper) : in_picture.tip_across();
+}
+
+Vec3 narrow(Vec3d p) {
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
+
+Camera fit(const SceneView& scene, const Camera& view, int width, int height, bool turns) {
+  if (width < 1 || height < 1)
+    throw Error(Errc::invalid_argument, "fit: the picture must have at least a pixel");
+  if (!view.orthographic) check_fov(view.fov_rad);
+  const VerticesInUse vertices(scene);
+  Vec3d low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
+  vertices.for_each([&](const Vec3d& p) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  });
+  if (!(low.x <= high.x)) low = high = {};
+  const Vec3d half{(high.x - low.x) / 2, (high.y - low.y) / 2, (high.z - low.z) / 2};
+  double r = std::sqrt(half.x * half.x + half.y * half.y + half.z * half.z);
+  if (!(r > 0)) r = 1;
+  const Outline outline(vertices, world_to_camera(view),
+                        {low.x + half.x, low.y + half.y, low.z + half.z}, turns, view.up);
+  const Outline::Depths depths = outline.depths();
+  const double smaller = std::min(width, height);
+  const double aspect_x = width / smaller, aspect_y = height / smaller;
+
+  Vec3d eye;
+  double ortho_height = 0;
+  if (view.orthographic) {
+    const Touched x = outline.horizontal(0), y = outline.vertical(0);
+    if (!x.empty()) {
+      eye = {x.tip_across(), y.tip_across(), 0};
+      ortho_height = std::max((x.most + x.least) / aspect_x, (y.most + y.least) / aspect_y);
+    }
+    ortho_height = ortho_height > 0 ? ortho_height / kFitFill : 2 * r;
+    eye.z = depths.nearest + r;
+  } else {
+    const double t = tan_half(double{view.fov_rad}) * kFitFill;
+    const double t_x = t * aspect_x, t_y = t * aspect_y;
+    const Touched x = outline.horizontal(t_x), y = outline.vertical(t_y);
+    eye.z = depths.nearest + kNearest * r;
+    if (!x.empty()) {
+      eye.z = std::max({eye.z, x.tip_back(t_x), y.tip_back(t_y)});
+      eye.x = middle([&](double s) { return outline.horizontal(s); }, eye.z, t_x, x);
+      eye.y = middle([&](double s) { return outline.vertical(s); }, eye.z, t_y, y);
+    }
+  }
+  if (turns) eye.x = 0;  // the same, but for rounding
+
+  Camera camera = view;
+  camera.matrix.reset();
+  camera.eye = narrow(outline.to_world(eye));
+  // Where the view axis meets the axis of turning, which is as far as the centre where they stand
+  // at right angles.
+  const double target_back = turns ? eye.y * outline.axis_z() / outline.axis_y() : 0;
+  camera.target = narrow(outline.to_world({eye.x, eye.y, target_back}));
+  // From the eye as it is after rounding.
+  const double back = outline.back_of(camera.eye);
+  if (view.orthographic) {
+    camera.orthographic_height = static_cast<float>(ortho_height);
+    camera.near_plane = static_cast<float>(back - depths.nearest - kPlaneMargin * r);
+    camera.far_plane = static_cast<float>(back - depths.farthest + kPlaneMargin * r);
+  } else {
+    camera.near_plane =
+        static_cast<float>(std::max(kNearPlane * (back - depths.nearest), kNearest * r / 100));
+    camera.far_plane = std::numeric_limits<float>::infinity();
+  }
+  return camera;
+}
+
+}  // namespace
+
+Camera fit_picture(const SceneView& scene, const Camera& view, int width, int height) {
+  return fit(scene, view, width, height, false);
+}
+
+Camera fit_turntable(const SceneView& scene, const Camera& view, int width, int height) {
+  return fit(scene, view, width, height, true);
+}
+
+}  // namespace rastrum

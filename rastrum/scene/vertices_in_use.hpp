@@ -1,0 +1,73 @@
+// The vertices that triangles use, in world space: what a fit looks at, more than once.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <rastrum/scene/mesh.hpp>
+#include <rastrum/scene/scene.hpp>
+
+namespace rastrum {
+
+class VerticesInUse {
+ public:
+  struct Point {
+    double x = 0, y = 0, z = 0;
+  };
+
+  /// `scene` must outlive it. Throws Error{invalid_argument} for an index out of range.
+  explicit VerticesInUse(const SceneView& scene) : scene_(scene) {
+    // Instances of one mesh often follow each other.
+    const MeshView* last = nullptr;
+    for (const InstanceView& instance : scene.instances) {
+      const MeshView& mesh = instance.mesh;
+      const bool same = last != nullptr && mesh.indices.data() == last->indices.data() &&
+                        mesh.indices.size() == last->indices.size() &&
+                        mesh.positions.size() == last->positions.size();
+      if (!same) used_.push_back(used_of(mesh));
+      used_by_.push_back(used_.size() - 1);
+      last = &mesh;
+    }
+  }
+
+  /// Calls f(Point) for each finite vertex in use, once an instance, in their order.
+  template <class F>
+  void for_each(F&& f) const {
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+      const MeshView& mesh = scene_.instances[i].mesh;
+      const Mat4d& m = scene_.instances[i].object_to_world;
+      const auto visit = [&](Vec3 p) {
+        const auto row = [&](int r) {
+          return m.m[r][0] * p.x + m.m[r][1] * p.y + m.m[r][2] * p.z + m.m[r][3];
+        };
+        const Point q{row(0), row(1), row(2)};
+        if (std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z)) f(q);
+      };
+      if (mesh.indices.empty()) {
+        for (const Vec3 p : mesh.positions.first(mesh.triangle_count() * 3)) visit(p);
+        continue;
+      }
+      const std::vector<bool>& used = used_[used_by_[i]];
+      for (std::size_t v = 0; v < used.size(); ++v)
+        if (used[v]) visit(mesh.positions[v]);
+    }
+  }
+
+ private:
+  static std::vector<bool> used_of(const MeshView& mesh) {
+    std::vector<bool> used;
+    if (mesh.indices.empty()) return used;
+    check_indices(mesh);
+    used.resize(mesh.positions.size());
+    for (const std::uint32_t i : mesh.indices) used[i] = true;
+    return used;
+  }
+
+  const SceneView scene_;
+  std::vector<std::vector<bool>> used_;
+  std::vector<std::size_t> used_by_;  ///< an instance's
+};
+
+}  // namespace rastrum

@@ -1,0 +1,143 @@
+// --turntable, and what of a camera stands in --stats and --depth-unit.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "program.hpp"
+
+namespace rastrum::test {
+namespace {
+
+class Sequences : public Program {};
+
+TEST_F(Sequences, ATurntableTurnsTheSceneAndKeepsItsSize) {
+  // A flag beside the axis: seen from −z it is on the other side, at quarters it is edge on.
+  write("f.obj", "v 1 -1 0\nv 3 -1 0\nv 3 1 0\nv 1 1 0\nf 1 2 3 4\nv -3 0 0\nv -3 0 0\nf 5 6 6\n");
+  const std::string said = must({"render", "f.obj", "--turntable", "4", "-o", "t%02d.png", "--ids",
+                                 "i%02d.npy", "--stats", "s.json", "--size", "120x60"});
+  EXPECT_NE(said.find("t%02d.png: 4 pictures of 120x60"), std::string::npos) << said;
+  const auto columns = [&](const std::string& name) {
+    const auto ids = npy(name).values<std::int64_t>();
+    std::pair<int, int> range{120, -1};
+    for (int i = 0; i < 120 * 60; ++i)
+      if (ids[static_cast<std::size_t>(i)] >= 0)
+        range = {std::min(range.first, i % 120), std::max(range.second, i % 120)};
+    return range;
+  };
+  const auto right = columns("i00.npy"), left = columns("i02.npy");
+  EXPECT_GT(right.first, 60);
+  EXPECT_LT(left.second, 60);
+  EXPECT_NEAR(right.first, 119 - left.second, 1);
+  EXPECT_NEAR(right.second, 119 - left.first, 1);
+  EXPECT_EQ(columns("i01.npy").second, -1) << "edge on";
+  // Of the size that one fit for all angles gives, and from one place.
+  const auto cameras = json("s.json")["cameras"];
+  ASSERT_EQ(cameras.size(), 4U);
+  for (const auto& c : cameras) EXPECT_EQ(c, cameras[0]);
+  EXPECT_EQ(json("s.json")["frame_ms"]["frames"], 4);
+}
+
+TEST_F(Sequences, TheFirstPictureOfATurntableIsThePlainOne) {
+  for (const std::vector<std::string>& camera :
+       {std::vector<std::string>{"--fit", "sphere"},
+        {"--eye", "1,2,6", "--target", "0.2,0.1,0", "--up", "0.1,1,0", "--near", "1"}}) {
+    std::vector<std::string> args{"render", "builtin:teapot?n=3", "--size", "64x48"};
+    args.insert(args.end(), camera.begin(), camera.end());
+    std::vector<std::string> turned = args;
+    args.insert(args.end(), {"-o", "p.png"});
+    turned.insert(turned.end(), {"-o", "t%d.png", "--turntable", "3"});
+    must(args);
+    must(turned);
+    EXPECT_TRUE(same_pixels(png("t0.png"), png("p.png")));
+    EXPECT_FALSE(same_pixels(png("t1.png"), png("p.png")));
+  }
+}
+
+TEST_F(Sequences, ATurntableOfAnOwnCameraCutsNothingOff) {
+  // The scene stands off its target: its near plane must serve when it comes to the front.
+  must({"render", "builtin:sphere?x=3", "--eye", "0,0,9", "--target", "0,0,0", "--turntable", "8",
+        "--ids", "i%d.npy", "--stats", "s.json", "--size", "64x64"});
+  const auto cameras = json("s.json")["cameras"];
+  EXPECT_LE(cameras[0]["near"].get<double>(), 5);
+  for (int i = 0; i < 8; ++i) {
+    const auto ids = npy("i" + std::to_string(i) + ".npy").values<std::int64_t>();
+    EXPECT_GT(std::ranges::count_if(ids, [](auto id) { return id >= 0; }), 50) << i;
+  }
+}
+
+TEST_F(Sequences, ATurntableAsAFilm) {
+  if (std::system("ffmpeg -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no ffmpeg";
+  must({"render", "builtin:teapot?n=3", "--turntable", "5", "--fps", "10", "-o", "t.mp4", "--size",
+        "64x48"});
+  EXPECT_EQ(files(), std::vector<std::string>{"t.mp4"});
+  EXPECT_GT(read("t.mp4").size(), 500U);
+}
+
+TEST_F(Sequences, RefuseWhatCannotBeMeant) {
+  const auto refused = [&](const std::vector<std::string>& extra, const std::string& words) {
+    std::vector<std::string> args{"render", "builtin:boxes", "--turntable", "4"};
+    args.insert(args.end(), extra.begin(), extra.end());
+    const Outcome r = run(args);
+    EXPECT_EQ(r.status, 2) << words;
+    EXPECT_NE(r.err.find(words), std::string::npos) << r.err;
+    EXPECT_TRUE(files().empty());
+  };
+  refused({"-o", "t.png"}, "-o: there are 4 pictures: number them, as in frame_%04d.png");
+  refused({"-o", "t%d.png", "--frames", "3"}, "--frames: leaves no room for --turntable");
+  refused({"-o", "t%d.png", "--path", "p.json"}, "--turntable: leaves no room for --path");
+  refused({"-o", "t%d.png", "--camera", "0"}, "--turntable: the camera of a file has no target");
+  refused({"-o", "t%d.png", "--turntable", "0"}, "--turntable");
+  const Outcome fps = run({"render", "builtin:boxes", "-o", "p.png", "--fps", "3"});
+  EXPECT_NE(fps.err.find("--fps: is for --path and --turntable"), std::string::npos) << fps.err;
+}
+
+class DepthUnit : public Program {
+ protected:
+  /// A wall at z = 2 in the middle of the picture, seen from z = 12.
+  void SetUp() override {
+    Program::SetUp();
+    write("w.obj", "v -1 -1 2\nv 1 -1 2\nv 1 1 2\nv -1 1 2\nf 1 2 3 4\n");
+  }
+  [[nodiscard]] std::vector<float> depths(const std::vector<std::string>& extra) const {
+    std::vector<std::string> args{"render", "w.obj",  "--eye", "0,0,12",  "--target",
+                                  "0,0,0",  "--size", "31x31", "--depth", "d.npy"};
+    args.insert(args.end(), extra.begin(), extra.end());
+    must(args);
+    return npy("d.npy").values<float>();
+  }
+};
+
+TEST_F(DepthUnit, WorldIsTheDistanceAlongTheViewAxis) {
+  constexpr std::size_t kMiddle = 15 * 31 + 15;
+  for (const std::vector<std::string>& camera :
+       {std::vector<std::string>{},
+        {"--near", "0.5"},
+        {"--near", "2", "--far", "30"},
+        {"--orthographic", "6"},
+        {"--orthographic", "6", "--near", "-5", "--far", "500"}}) {
+    std::vector<std::string> world = camera;
+    world.insert(world.end(), {"--depth-unit", "world"});
+    const std::vector<float> d = depths(world);
+    EXPECT_NEAR(d[kMiddle], 10, 2e-4);
+    EXPECT_TRUE(std::isinf(d[0]) && d[0] > 0) << "where nothing is";
+    for (const float z : d) EXPECT_TRUE(std::isinf(z) || std::abs(z - 10) < 2e-4F) << z;
+  }
+}
+
+TEST_F(DepthUnit, ReversedIsWhatItWasAndStatsHaveTheFormula) {
+  const std::vector<float> plain = depths({"--stats", "s.json"});
+  EXPECT_EQ(depths({"--depth-unit", "reversed"}), plain);
+  const auto camera = json("s.json")["cameras"][0];
+  EXPECT_EQ(camera["far"], "inf");
+  EXPECT_NEAR(camera["near"].get<double>() / static_cast<double>(plain[15 * 31 + 15]), 10, 1e-4);
+  EXPECT_EQ(camera["eye"], (nlohmann::ordered_json{0, 0, 12}));
+}
+
+TEST_F(DepthUnit, BelongsToDepth) {
+  const Outcome r = run({"render", "w.obj", "-o", "p.png", "--depth-unit", "world"});
+  EXPECT_EQ(r.status, 2);
+  EXPECT_NE(r.err.find("--depth-unit: is for --depth"), std::string::npos) << r.err;
+}
+
+}  // namespace
+}  // namespace rastrum::test

@@ -1,0 +1,97 @@
+// What callers fill in can be written with designated initializers, each field alone, and no
+// compiler warns of the others (GCC's -Wmissing-field-initializers does of fields that have no
+// initializer of their own, even where they are a span or a string). compile_test.cmake compiles
+// this with -Wall -Wextra -Wpedantic -Werror.
+#include <cstdint>
+#include <vector>
+
+#include <rastrum/io/height_map.hpp>
+#include <rastrum/io/io.hpp>
+#include <rastrum/raster/program.hpp>
+#include <rastrum/render/render.hpp>
+#include <rastrum/render/scene_on_terrain.hpp>
+#include <rastrum/scene/scene.hpp>
+#include <rastrum/terrain/light.hpp>
+#include <rastrum/terrain/renderer.hpp>
+
+namespace {
+using namespace rastrum;
+
+void use(const auto&...) {}
+
+struct Shade {
+  float value = 0;
+  Shade operator+(const Shade& o) const { return {value + o.value}; }
+  Shade operator*(float s) const { return {value * s}; }
+};
+
+void images() {
+  std::uint8_t gray[6] = {};
+  const ImageView<std::uint8_t> view{.data = gray, .width = 3, .height = 2};
+  static_assert(ImageView<float>{.data = nullptr, .width = 3}.stride == 3);
+  const Targets targets{.color8 = {}, .over = true};
+  const Targets depth{.depth = {.data = nullptr, .width = 1, .height = 1}};
+  use(view, targets, depth);
+  const Rgba8 red{.r = 255};
+  const Vec3 up{.y = 1};
+  use(red, up);
+}
+
+void scenes(const std::vector<Vec3>& positions, const std::vector<std::uint32_t>& indices) {
+  const MeshView soup{.positions = positions};
+  const MeshView mesh{.positions = positions, .indices = indices};
+  const MeshView one_material{.positions = positions, .material = 1};
+  const AttributeView<Vec3> normals{.values = positions};
+  const InstanceView instance{.mesh = soup};
+  const InstanceView placed{.object_to_world = Mat4d::identity()};
+  const SceneView scene{.instances = {&instance, 1}};
+  const SceneView with_textures{.textures = {}};
+  const Attribute<Vec2> texcoords{.values = {{0, 0}}};
+  const Mesh owned{.name = "one", .positions = positions};
+  const Instance number{.mesh = 1};
+  const Scene file{.meshes = {owned}, .instances = {number}};
+  const Material glass{.alpha_mode = AlphaMode::blend};
+  const Material named{.name = "glass", .base_color = {1, 1, 1, 0.5F}};
+  const Texture texture{.wrap_u = Wrap::clamp_to_edge};
+  const Camera camera{.eye = {0, 0, 3}};
+  const Camera parallel{.orthographic = true, .far_plane = 10};
+  use(mesh, one_material, normals, placed, scene, with_textures, texcoords, file, glass, named,
+      texture, camera, parallel);
+}
+
+void renders(const std::vector<std::uint32_t>& indices) {
+  const RenderOptions size{.width = 64, .height = 64};
+  const RenderOptions shader{.shader = Shader::flat, .samples = 4};
+  const RenderOptions named{.rasterizer = "binned", .tuning = {.bin_px = 64}};
+  const RenderOptions filtered{.transparency = {.method = Transparency::filter}};
+  const raster::Draw draw{.vertex_count = 3, .primitive_count = 1};
+  const raster::Draw indexed{.indices = indices, .topology = raster::Topology::lines};
+  const raster::VertexOutput<Shade> vertex{.clip = {0, 0, 0, 1}, .varying = {1}};
+  const TerrainScene standing{.facing = {}};
+  const TerrainScene scene{.scene = {}};
+  use(size, shader, named, filtered, draw, indexed, vertex, standing, scene);
+}
+
+void terrains() {
+  using namespace terrain;
+  const TerrainOptions size{.width = 64, .height = 64};
+  const TerrainOptions fog{.fog = {.density = 0.1}, .ground_clearance = 2};
+  const TerrainOptions mip{.filter = terrain::Filter::mip};
+  const TerrainCamera camera{.x = 1, .y = 2};
+  const TerrainTargets targets{.depth = {}};
+  const HeightMap map{.heights = Image<float>(1, 1)};
+  const Light light{.sun = {.azimuth_deg = 90}, .shadows = Shadows::soft};
+  const ShadowOptions shadows{.threads = 1};
+  const March march{.steps = 16};
+  const io::HeightGrid grid{.units_per_cell = 257};
+  const io::RawSize raw{.width = 5};
+  use(size, fog, mip, camera, targets, map, light, shadows, march, grid, raw);
+}
+}  // namespace
+
+int main() {
+  images();
+  scenes({}, {});
+  renders({});
+  terrains();
+}

@@ -1,0 +1,23 @@
+// A mistake that every first shader makes: its varying cannot be added and scaled. The compilers
+// are to say so, once, and not what follows from it (compile_test.cmake).
+#include <rastrum/raster/program.hpp>
+
+namespace {
+struct Shade {
+  float value = 0;
+};
+}  // namespace
+
+int main() {
+  using namespace rastrum;
+  raster::Program program(
+      [](std::uint32_t) {
+        return raster::VertexOutput<Shade>{{0, 0, 0, 1}, {1}};
+      },
+      [](const Shade& s, const raster::Fragment&) {
+        return Vec4{s.value, s.value, s.value, 1};
+      },
+      [](const Shade& s, const raster::Fragment&) { return s.value > 0; });
+  const raster::Draw draw = program.draw(3);
+  return static_cast<int>(draw.primitive_count);
+}

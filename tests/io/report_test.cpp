@@ -1,0 +1,40 @@
+#include <rastrum/io/report.hpp>
+
+#include <functional>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/error.hpp>
+
+namespace rastrum::test {
+namespace {
+
+// A scene that no reader made: what it refers to need not be there.
+TEST(Describe, RefusesIndicesOutOfRange) {
+  Scene good;
+  good.meshes.resize(2);
+  good.meshes[1].positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  good.meshes[1].indices = {0, 1, 2};
+  good.instances.resize(1);  // of the mesh without triangles: the other one is read all the same
+  good.materials.resize(1);
+  EXPECT_NE(io::describe(good).find("mesh 1"), std::string::npos);
+  const auto expect = [&](const char* part, const std::function<void(Scene&)>& change) {
+    Scene scene = good;
+    change(scene);
+    try {
+      static_cast<void>(io::describe(scene));
+      ADD_FAILURE() << "no error about " << part;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::invalid_argument);
+      EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
+    }
+  };
+  expect("is vertex 4000000000", [](Scene& s) { s.meshes[1].indices[1] = 4'000'000'000; });
+  expect("an instance is of mesh 9", [](Scene& s) { s.instances[0].mesh = 9; });
+  expect("alpha mode is 200",
+         [](Scene& s) { s.materials[0].alpha_mode = static_cast<AlphaMode>(200); });
+}
+
+}  // namespace
+}  // namespace rastrum::test

@@ -1,0 +1,199 @@
+#!/usr/bin/env python3
+"""Runs what README.md and docs/*.md tell people to type, and compares the pictures beside it.
+
+usage: docs.py check|accept [--build DIR] [PAGE...]
+       docs.py links
+
+Every ```sh block of a page is run, in order, in an empty folder of the page's own. A picture that a
+command leaves there is the page's picture of the same file name (images/NAME.png), and must be equal
+to it within 1/255 a channel; every picture of a page is drawn by its commands. Files that nobody has
+(dragon.ply, alps.png, ...) are the stand-ins of docs_files.py under those names; what starts programs
+elsewhere (sbatch, docker, ssh) is one that starts them here. What cannot be run is no ```sh block.
+`accept` makes the drawn pictures the pages'. `links` sees that files which pages name are there, and
+that no picture is left over. DIR is where the program was built (build/release).
+"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import docs_files
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+IMAGES = ROOT / "docs" / "images"
+TIMEOUT_S = 240
+TOLERANCE = 1  # of 255, between instruction sets (docs/conventions.md)
+TOLERANCE_MAGNIFIED = 16  # of *_difference.png, which shows the differences of two pictures times 8
+
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)#\s]+)[^)]*\)")
+PICTURE = re.compile(r"!\[[^\]]*\]\((?:docs/)?images/([^)]+)\)")
+TYPED = re.compile(r"(?: {4,}|\t)(?:\$ )?(?:\./dev|rastrum) ")
+
+
+def pages():
+    return ["README.md"] + sorted(f"docs/{p.name}" for p in (ROOT / "docs").glob("*.md"))
+
+
+def split(text):
+    """([(line, block)] of the page's ```sh, [line] of commands that stand elsewhere)."""
+    blocks, stray = [], []
+    language = None
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.startswith("```"):
+            if language is None:
+                language = line[3:].strip()
+                if language == "sh":
+                    blocks.append((number + 1, []))
+            else:
+                language = None
+        elif language == "sh":
+            blocks[-1][1].append(line)
+        elif language is None and TYPED.match(line):
+            stray.append(number)
+    return [(number, "\n".join(lines)) for number, lines in blocks], stray
+
+
+def put_script(file, text):
+    file.write_text("#!/usr/bin/env bash\n" + text, encoding="utf-8")
+    file.chmod(0o755)
+
+
+def furnish(folder, build, text):
+    """What a page's commands find: the program, `./dev`, launchers, built programs, stand-ins."""
+    tools = folder / ".tools"
+    tools.mkdir()
+    program = build / "apps" / "rastrum" / "rastrum"
+    (tools / "quit.json").write_text('{"events": [{"time": 0.1, "quit": true}]}', encoding="utf-8")
+    # A window that nobody sees, and that closes by itself; or none, where none was built in.
+    put_script(tools / "rastrum", f"""
+[[ "$1" == view ]] || exec {program} "$@"
+script=(--script {tools}/quit.json)
+[[ " $* " != *" --script "* ]] || script=()
+said="$(SDL_VIDEODRIVER=dummy {program} "$@" "${{script[@]}}" 2>&1)" && exit
+[[ "$said" == *"built without a window"* ]] || {{ echo "$said" >&2; exit 1; }}
+""")
+    for launcher in ("srun", "docker", "ssh", "xvfb-run"):
+        put_script(tools / launcher, """
+[[ "$1" != build ]] || exit 0
+while (($#)) && [[ "$1" != rastrum ]]; do shift; done
+exec "$@"
+""")
+    put_script(tools / "sbatch", """
+array="$(grep -o -- '--array=[0-9-]*' "$1")" array="${array#*=}"
+for ((i = ${array%-*}; i <= ${array#*-}; ++i)); do
+  SLURM_ARRAY_TASK_ID=$i SLURM_CPUS_PER_TASK=2 bash -eu "$1"
+done
+""")
+    # `./dev` would build; its demo is the same, other commands must be there.
+    put_script(folder / "dev", f"""set -e
+program=rastrum
+case "$1" in
+  run) mkdir -p out
+       if (($# > 1)); then rastrum render "${{@:2}}" -o out/render.png; exit; fi
+       eval "$(sed -n '/^demo() {{/,/^}}/p' {ROOT}/dev)"; demo ;;
+  *) grep -q "^cmd_$1() {{" {ROOT}/dev ;;
+esac
+""")
+    (folder / "build").mkdir()
+    (folder / "build" / "release").symlink_to(build)
+    docs_files.put(folder, text)
+    return tools
+
+
+def run(folder, tools, block):
+    """What is wrong, or ''."""
+    place = 'trap \'echo "failed: $BASH_COMMAND" >&2\' ERR\n'
+    environment = dict(os.environ, PATH=f"{tools}:{os.environ['PATH']}")
+    try:
+        done = subprocess.run(["bash", "-eEuo", "pipefail", "-c", place + block], cwd=folder,
+                              env=environment, stdin=subprocess.DEVNULL, capture_output=True,
+                              timeout=TIMEOUT_S)
+    except subprocess.TimeoutExpired:
+        return f"runs for more than {TIMEOUT_S} s"
+    return "" if done.returncode == 0 else done.stderr.decode(errors="replace").strip()
+
+
+def difference(build, drawn, shown):
+    """The largest difference of a channel; None where they cannot be compared."""
+    if drawn.read_bytes() == shown.read_bytes():
+        return 0
+    tool = build / "tests" / "docs" / "picture_difference"
+    done = subprocess.run([tool, drawn, shown], capture_output=True, text=True)
+    return int(done.stdout) if done.returncode == 0 else None
+
+
+def check_pictures(folder, build, page, text, accept):
+    drawn = {}
+    for file in sorted(folder.rglob("*.png")):
+        drawn.setdefault(file.name, file)
+    wrong = []
+    for name in dict.fromkeys(PICTURE.findall(text)):
+        shown = IMAGES / name
+        if name not in drawn:
+            wrong.append(f"{page}: no command of the page draws {name}")
+            continue
+        much = difference(build, drawn[name], shown) if shown.exists() else None
+        if much is not None and much <= (TOLERANCE_MAGNIFIED if "_difference" in name else TOLERANCE):
+            continue
+        if accept:
+            shutil.copyfile(drawn[name], shown)
+            print(f"accepted {shown.relative_to(ROOT)}")
+        else:
+            how = "is not there or of another size" if much is None else f"differs by {much}/255"
+            wrong.append(f"{page}: {name} {how}; look at what is drawn, then ./dev docs accept")
+    return wrong
+
+
+def check(page, build, accept):
+    """What is wrong with a page, a list of messages."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    blocks, stray = split(text)
+    wrong = [f"{page}:{line}: a command outside of a ```sh block is never run" for line in stray]
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary)
+        tools = furnish(folder, build, "\n".join(block for _, block in blocks))
+        for line, block in blocks:
+            if problem := run(folder, tools, block):
+                wrong.append(f"{page}:{line}: the block does not run:\n{problem}")
+        return wrong + check_pictures(folder, build, page, text, accept)
+
+
+def check_links():
+    wrong, linked = [], set()
+    for page in pages():
+        folder = (ROOT / page).parent
+        text = re.sub(r"^```.*?^```", "", (ROOT / page).read_text(encoding="utf-8"),
+                      flags=re.MULTILINE | re.DOTALL)
+        for target in LINK.findall(text):
+            if "://" in target:
+                continue
+            linked.add((folder / target).resolve())
+            if not (folder / target).exists():
+                wrong.append(f"{page}: {target} is not there")
+    wrong += [f"{image.relative_to(ROOT)}: no page shows it"
+              for image in sorted(IMAGES.iterdir()) if image.resolve() not in linked]
+    return wrong
+
+
+def main(arguments):
+    build = ROOT / "build" / "release"
+    if "--build" in arguments:
+        at = arguments.index("--build")
+        build = pathlib.Path(arguments[at + 1]).resolve()
+        del arguments[at:at + 2]
+    if not arguments or arguments[0] not in ("check", "accept", "links"):
+        print(__doc__, file=sys.stderr)
+        return 2
+    command, *named = arguments
+    wrong = check_links() if command == "links" else [
+        message for page in named or pages() for message in check(page, build, command == "accept")]
+    for message in wrong:
+        print(message, file=sys.stderr)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
