@@ -63,8 +63,8 @@ struct Tuning {
 /// With several samples a pixel the colours are the mean over them. `depth`, `ids` and `words` are
 /// those of the largest word of any sample: of the nearest surface that some sample sees, with its
 /// depth there, even where it covers no other. `extra` is what the shader returns for that surface
-/// at the pixel's centre, where a varying is carried on beyond the surface's edge if it does not
-/// cover the centre. `overdraw` counts samples; `errors` has 255 where some sample has one.
+/// at the pixel's centre; where it does not cover the centre, for weights of its corners that are
+/// cut to [0, 1] there. `overdraw` counts samples; `errors` has 255 where some sample has one.
 struct Targets {
   ImageView<Rgba8> color8{};            ///< straight alpha
   ImageView<Vec4> color{};              ///< premultiplied float32

@@ -2,6 +2,7 @@
 // own, and its picture that of a renderer that nobody else uses.
 #include <algorithm>
 #include <cmath>
+#include <latch>
 #include <thread>
 #include <vector>
 
@@ -23,9 +24,11 @@ constexpr int kCallers = 4, kFrames = 6;
 /// Calls f(caller, frame) on kCallers threads at once, kFrames times each.
 template <class F>
 void from_all_callers(const F& f) {
+  std::latch all_there(kCallers);
   std::vector<std::thread> callers;
   for (int caller = 0; caller < kCallers; ++caller)
-    callers.emplace_back([&f, caller] {
+    callers.emplace_back([&, caller] {
+      all_there.arrive_and_wait();
       for (int frame = 0; frame < kFrames; ++frame) f(caller, frame);
     });
   for (std::thread& t : callers) t.join();
@@ -66,7 +69,7 @@ TEST(OneRenderer, DrawsForSeveralThreads) {
 constexpr int kSide = 96;
 
 terrain::Terrain hills(double steepness) {
-  constexpr int kMap = 512;
+  constexpr int kMap = 1024;
   terrain::HeightMap map{Image<float>(kMap, kMap), Image<Rgba8>(kMap, kMap)};
   for (int y = 0; y < kMap; ++y)
     for (int x = 0; x < kMap; ++x) {
@@ -82,6 +85,7 @@ terrain::TerrainOptions terrain_options() {
   o.width = o.height = kSide;
   o.distance = 200;
   o.threads = 2;
+  o.filter = terrain::Filter::mip;  // each map has a pyramid, which takes a while to make
   return o;
 }
 constexpr terrain::TerrainCamera kCamera{.x = 50, .y = 90, .altitude = 80, .horizon_px = 30};
