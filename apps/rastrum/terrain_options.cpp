@@ -34,17 +34,19 @@ Rgba8 parse_rgb(const char* option, const std::string& text) {
   return {channel(c.x), channel(c.y), channel(c.z), 255};
 }
 
-/// DENSITY[,START[,#RRGGBB]]
+/// DENSITY[,START][,COLOUR]: what comes third, or does not begin as a number does, is a colour.
 terrain::Fog parse_fog(const std::string& text) {
   terrain::Fog fog;
   std::string rest = text;
-  if (const std::size_t hash = rest.find(",#"); hash != std::string::npos) {
-    fog.color = parse_rgb("--fog", rest.substr(hash + 1));
-    rest.resize(hash);
+  const std::size_t last = rest.rfind(','), first = rest.find(',');
+  if (last != std::string::npos &&
+      (first != last || rest.find_first_of("0123456789.+-", last) != last + 1)) {
+    fog.color = parse_rgb("--fog", rest.substr(last + 1));
+    rest.resize(last);
   }
   const bool has_start = rest.find(',') != std::string::npos;
   const std::vector<double> v =
-      parse_numbers("--fog", rest, has_start ? 2 : 1, "DENSITY[,START[,#rrggbb]]");
+      parse_numbers("--fog", rest, has_start ? 2 : 1, "DENSITY[,START][,COLOUR]");
   fog.density = v[0];
   if (has_start) fog.start = v[1];
   return fog;
@@ -167,14 +169,14 @@ void add_terrain_picture(Parser& app, TerrainSceneArguments& a) {
                                          {"cylindrical", terrain::Projection::cylindrical}});
       })
       ->group(group);
-  add(app, "--sky", "#RRGGBB", "(#9090e0, which dims with a sun below 30 degrees)",
+  add(app, "--sky", "COLOUR", "(#9090e0, which dims with a sun below 30 degrees)",
       [&a](const std::string& s) {
         a.options.sky = parse_rgb("--sky", s);
         a.sky_dims = false;
       })
       ->group(group);
   app.add_flag("--dim-sky", a.dim_sky, "dim the colour of --sky with a low sun, too")->group(group);
-  add(app, "--fog", "DENSITY[,START[,#RRGGBB]]",
+  add(app, "--fog", "DENSITY[,START][,COLOUR]",
       "per cell, from START cells on, to this colour (none; 0; the sky's)",
       [&o](const std::string& s) { o.fog = parse_fog(s); })
       ->group(group);

@@ -94,6 +94,11 @@ TEST_F(TerrainProgram, Picture) {
   options_.fog = {0.01, 20, Rgba8{255, 128, 0, 255}};
   expect({"--distance", "250", "--fov", "60", "--scale", "70", "--dz", "0.01", "--sky", "#010203",
           "--fog", "0.01,20,#ff8000"});
+  expect({"--distance", "250", "--fov", "60", "--scale", "70", "--dz", "0.01", "--sky", "010203",
+          "--fog", "0.01,20,ff8000"});
+  options_.fog = {0.01, 0, Rgba8{255, 255, 255, 255}};
+  expect({"--distance", "250", "--fov", "60", "--scale", "70", "--dz", "0.01", "--sky", "#010203",
+          "--fog", "0.01,white"});
   options_.fog = {0.02, 0, {}};
   expect({"--distance", "250", "--fov", "60", "--scale", "70", "--dz", "0.01", "--sky", "#010203",
           "--fog", "0.02"});
@@ -394,6 +399,8 @@ TEST_F(TerrainProgram, RefusesWhatItCannotDraw) {
   refuse(2, "--sun:", {"--height", "h.png", "--sun", "10,20,30", "-o", "p.png"});
   refuse(2, "--position:", {"--height", "h.png", "--position", "1,", "-o", "p.png"});
   refuse(2, "--fog:", {"--height", "h.png", "--fog", "1,2,3", "-o", "p.png"});
+  refuse(2, "--fog:", {"--height", "h.png", "--fog", "1,2,3,white", "-o", "p.png"});
+  refuse(2, "--fog:", {"--height", "h.png", "--fog", "white", "-o", "p.png"});
   refuse(2, "-o:", {"--height", "h.png", "-o", "p.jpg"});
   refuse(1, "gone.png", {"--height", "gone.png", "-o", "p.png"});
   refuse(1, "c.png: its pixel", {"--height", "c.png", "-o", "p.png"});
