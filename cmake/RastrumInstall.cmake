@@ -59,5 +59,5 @@ if(TARGET rastrum_program)
   install(TARGETS rastrum_program)
 endif()
 if(TARGET rastrum_bench_program)
-  install(TARGETS rastrum_bench_program)
+  install(TARGETS rastrum_bench_program OPTIONAL)  # `./dev run` builds the program alone
 endif()
