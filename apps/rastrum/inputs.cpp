@@ -23,8 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The colour of surfaces without one (docs/conventions.md, phong), 0.8, 0.7, 0.6 as linear light.
-constexpr Vec4 kPlain{0.60382734F, 0.44798842F, 0.31854678F, 1};
+/// The colour of surfaces without one (docs/conventions.md, phong): linear light that
+/// srgb_from_linear turns into 0.8, 0.7, 0.6 to an ulp, so that plain shaders draw what they did.
+constexpr Vec4 kPlain{0.603780866F, 0.447983563F, 0.318572849F, 1};
 
 Scene make_builtin(const std::string& input, const std::string& source) {
   const std::string spec = source.substr(kBuiltin.size());

@@ -123,17 +123,23 @@ TEST_F(PlacedInputs, OpacityIsOfOneInput) {
 }
 
 TEST_F(PlacedInputs, ColorIsOfOneInput) {
-  const Image<Rgba8> p = drawn({"builtin:sphere?x=-1.5,color=#ff0000",
-                                "builtin:sphere@x=1.5,color=#0000ff", "--shader", "material"});
-  int red = 0, blue = 0;
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 96; ++x) {
-      red += x < 48 && p(x, y).r > 2 * p(x, y).b;
-      blue += x >= 48 && p(x, y).b > 2 * p(x, y).r;
-      EXPECT_FALSE(x < 46 && p(x, y).b > p(x, y).r);
-    }
-  EXPECT_GT(red, 300);
-  EXPECT_GT(blue, 300);
+  for (const std::string shader : {"auto", "flat", "phong", "material"}) {
+    SCOPED_TRACE(shader);
+    const Image<Rgba8> p = drawn({"builtin:sphere?x=-1.5,color=#ff0000",
+                                  "builtin:sphere@x=1.5,color=#0000ff", "--shader", shader});
+    int red = 0, blue = 0;
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 96; ++x) {
+        red += x < 48 && p(x, y).r > 2 * p(x, y).b;
+        blue += x >= 48 && p(x, y).b > 2 * p(x, y).r;
+        EXPECT_FALSE(x < 46 && p(x, y).b > p(x, y).r);
+      }
+    EXPECT_GT(red, 300);
+    EXPECT_GT(blue, 300);
+  }
+  // What was asked for is what is seen.
+  EXPECT_EQ(drawn({"builtin:sphere@color=#88aaff", "--shader", "flat"})(48, 32),
+            (Rgba8{0x88, 0xaa, 0xff, 255}));
 }
 
 TEST_F(PlacedInputs, ColorTakesThePlaceOfTheFiles) {
