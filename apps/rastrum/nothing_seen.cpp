@@ -143,7 +143,7 @@ std::array<std::uint64_t, kFates> census(const RenderOptions& options, const Sce
                   static_cast<double>(options.height),
                   !camera.orthographic,
                   options.cull,
-                  cull_of_material(scene, instance, options.shader)};
+                  cull_of_material(scene, instance, shader_for(options.shader, scene))};
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
       const auto corner = [&](std::size_t k) {
         const std::size_t c = 3 * t + k;

@@ -153,12 +153,12 @@ void check_draw(const Draw& draw, std::string_view noun, std::size_t number) {
   const auto require = [&](bool ok, const char* what) {
     if (!ok) refuse(noun, number, what);
   };
-  require(draw.source != nullptr, "its source is null; set it to what projects its vertices");
   require(draw.topology >= Topology::points, "its topology is 0, which is no value of its enum");
   const std::string name = std::string(noun).append(" ").append(std::to_string(number));
   check_enum(draw.topology, Topology::triangles, name + ": its topology");
   check_enum(draw.cull, Cull::front, name + ": its cull");
   check_enum(draw.winding, Winding::either, name + ": its winding");
+  require(draw.source != nullptr, "its source is null; set it to what projects its vertices");
   const bool indexed = !draw.indices.empty();
   const std::size_t corners = indexed ? draw.indices.size() : draw.vertex_count;
   const std::uint64_t most = corners / static_cast<std::size_t>(draw.topology);
