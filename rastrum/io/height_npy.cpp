@@ -22,7 +22,8 @@ struct Layout {
 
 class NpyReader {
  public:
-  NpyReader(std::span<const std::byte> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+  NpyReader(std::span<const std::byte> bytes, const std::string& name)
+      : bytes_(bytes), name_(name) {}
 
   [[nodiscard]] HeightGrid read() {
     const Layout layout = header();

@@ -56,8 +56,8 @@ class FragmentTest;
 struct Draw {
   const VertexSource* source = nullptr;  ///< must be set
   std::size_t vertex_count = 0;
-  std::span<const std::uint32_t> indices{};///< empty: vertices in order
-  std::uint64_t primitive_count = 0;       ///< at most those that the indices or vertices make up
+  std::span<const std::uint32_t> indices{};  ///< empty: vertices in order
+  std::uint64_t primitive_count = 0;         ///< at most those that the indices or vertices make up
   Topology topology = Topology::triangles;
   std::uint32_t flags = 0;  ///< of its pieces
   /// Flags by material, so that a mesh of several needs no draw for each: triangle t has those of

@@ -33,11 +33,11 @@ TEST_F(Stats, SchemaAndSums) {
         "5", "--stats", "s.json", "--ids", "i.npy"});
   const Json s = json("s.json");
   EXPECT_EQ(keys(s),
-            (std::vector<std::string>{"version", "device", "device_why", "threads", "isa",
-                                      "rasterizer", "visibility", "why", "shader", "size",
-                                      "triangles", "fragments", "pixels_covered", "counters",
-                                      "peak_bytes", "load_ms", "stages_ms", "frame_ms", "inputs",
-                                      "cameras"}));
+            (std::vector<std::string>{
+                "version",        "device",   "device_why", "threads", "isa",       "rasterizer",
+                "visibility",     "why",      "shader",     "size",    "triangles", "fragments",
+                "pixels_covered", "counters", "peak_bytes", "load_ms", "stages_ms", "frame_ms",
+                "inputs",         "cameras"}));
   EXPECT_EQ(s["version"], RASTRUM_VERSION);
   EXPECT_EQ(s["size"], Json::array({60, 40}));
   const Json& t = s["triangles"];
