@@ -27,18 +27,19 @@ struct PngWriter {
   ~PngWriter() { png_destroy_write_struct(&png, &info); }
 };
 
-void on_error(png_structp png, png_const_charp message) {
+void on_write_error(png_structp png, png_const_charp message) {
   auto* state = static_cast<PngWriter*>(png_get_error_ptr(png));
   std::snprintf(state->message, sizeof state->message, "%s", message);
   std::longjmp(state->jump, 1);
 }
 
-void on_warning(png_structp, png_const_charp) {}
+void on_write_warning(png_structp, png_const_charp) {}
 
 /// Holds no object with a destructor: libpng leaves by longjmp.
 bool write_rows(PngWriter* state, ImageView<const Rgba8> image) {
   if (setjmp(state->jump) != 0) return false;
-  state->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, state, on_error, on_warning);
+  state->png =
+      png_create_write_struct(PNG_LIBPNG_VER_STRING, state, on_write_error, on_write_warning);
   if (state->png == nullptr) return false;
   state->info = png_create_info_struct(state->png);
   if (state->info == nullptr) return false;

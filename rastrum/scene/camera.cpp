@@ -5,25 +5,13 @@
 #include <string>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/core/vec3d.hpp>
 
 namespace rastrum {
 namespace {
 
-struct Vec3d {
-  double x, y, z;
-};
-
-Vec3d widen(Vec3 a) {
-  return {a.x, a.y, a.z};
-}
-double dot(Vec3d a, Vec3d b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-Vec3d cross(Vec3d a, Vec3d b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-Vec3d unit(Vec3d a, const char* what) {
+/// Throws Error{invalid_argument} with `what` where there is none.
+Vec3d direction(Vec3d a, const char* what) {
   const double l = std::sqrt(dot(a, a));
   if (!(l > 0) || !std::isfinite(l)) throw Error(Errc::invalid_argument, what);
   return {a.x / l, a.y / l, a.z / l};
@@ -75,10 +63,11 @@ void check_fov(float fov_rad) {
 Mat4d world_to_camera(const Camera& c) {
   const Vec3d eye = widen(c.eye);
   const Vec3d target = widen(c.target);
-  const Vec3d back = unit({eye.x - target.x, eye.y - target.y, eye.z - target.z},
-                          "camera: eye and target must be finite and differ");
-  const Vec3d right = unit(cross(widen(c.up), back),
-                           "camera: up must be finite, not zero and not along the view direction");
+  const Vec3d back = direction({eye.x - target.x, eye.y - target.y, eye.z - target.z},
+                               "camera: eye and target must be finite and differ");
+  const Vec3d right =
+      direction(cross(widen(c.up), back),
+                "camera: up must be finite, not zero and not along the view direction");
   const Vec3d up = cross(back, right);
   Mat4d v = Mat4d::identity();
   const Vec3d axes[3] = {right, up, back};

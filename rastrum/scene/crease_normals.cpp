@@ -9,17 +9,10 @@
 
 #include <rastrum/core/angle.hpp>
 #include <rastrum/core/error.hpp>
+#include <rastrum/core/vec3d.hpp>
 
 namespace rastrum {
 namespace {
-
-struct Vec3d {
-  double x = 0, y = 0, z = 0;
-};
-
-double dot(const Vec3d& a, const Vec3d& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 
 /// The cross product of two edges: twice the area long.
 Vec3d area_vector(Vec3 a, Vec3 b, Vec3 c) {
@@ -102,7 +95,7 @@ class Groups {
   std::vector<std::uint32_t> parent_;
 };
 
-Vec3 unit(const Vec3d& sum) {
+Vec3 normal_of(const Vec3d& sum) {
   const double l = std::sqrt(dot(sum, sum));
   if (!(l > 0) || !std::isfinite(l)) return {};
   return {static_cast<float>(sum.x / l), static_cast<float>(sum.y / l),
@@ -176,7 +169,7 @@ Attribute<Vec3> crease_normals(std::span<const Vec3> positions,
       const std::uint32_t first = groups.first_of(i);
       if (first == i) {
         value[i] = static_cast<std::uint32_t>(normals.values.size());
-        normals.values.push_back(unit(sums[i]));
+        normals.values.push_back(normal_of(sums[i]));
       }
       normals.indices[around[i]] = value[first];
     }

@@ -17,8 +17,6 @@
 namespace rastrum {
 namespace {
 
-using Vec3d = VerticesInUse::Point;
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// The least distance of the eye from the nearest vertex, in r.
 constexpr double kNearest = 1 / 20.0;
@@ -173,10 +171,6 @@ double middle(const Touch& touch, double back, double t_picture, const Touched& 
   return lower <= upper ? std::clamp(touched.tip_across(), lower, upper) : in_picture.tip_across();
 }
 
-Vec3 narrow(Vec3d p) {
-  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-}
-
 Camera fit(const SceneView& scene, const Camera& view, int width, int height, bool turns) {
   if (width < 1 || height < 1)
     throw Error(Errc::invalid_argument, "fit: the picture must have at least a pixel");
@@ -222,11 +216,11 @@ Camera fit(const SceneView& scene, const Camera& view, int width, int height, bo
 
   Camera camera = view;
   camera.matrix.reset();
-  camera.eye = narrow(outline.to_world(eye));
+  camera.eye = Vec3(outline.to_world(eye));
   // Where the view axis meets the axis of turning, which is as far as the centre where they stand
   // at right angles.
   const double target_back = turns ? eye.y * outline.axis_z() / outline.axis_y() : 0;
-  camera.target = narrow(outline.to_world({eye.x, eye.y, target_back}));
+  camera.target = Vec3(outline.to_world({eye.x, eye.y, target_back}));
   // From the eye as it is after rounding.
   const double back = outline.back_of(camera.eye);
   if (view.orthographic) {

@@ -12,8 +12,6 @@
 namespace rastrum {
 namespace {
 
-using Vec3d = VerticesInUse::Point;
-
 bool is_finite(Vec3d p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
@@ -31,10 +29,6 @@ BoundsD bounds_float64(const VerticesInUse& vertices) {
     b.max = {std::max(b.max.x, p.x), std::max(b.max.y, p.y), std::max(b.max.z, p.z)};
   });
   return b;
-}
-
-Vec3 narrow(Vec3d p) {
-  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
 const Mesh& mesh_of(const Scene& scene, const Instance& instance) {
@@ -101,7 +95,7 @@ SceneBinding::SceneBinding(const Scene& scene) {
 
 Bounds bounds(const SceneView& scene) {
   const BoundsD b = bounds_float64(VerticesInUse(scene));
-  return {narrow(b.min), narrow(b.max), b.count};
+  return {Vec3(b.min), Vec3(b.max), b.count};
 }
 
 Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
@@ -118,8 +112,8 @@ Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
   Camera camera;
   camera.fov_rad = fov_rad;
   camera.orthographic = orthographic;
-  camera.target = narrow(centre);
-  camera.eye = narrow({centre.x, centre.y, centre.z + distance});
+  camera.target = Vec3(centre);
+  camera.eye = Vec3({centre.x, centre.y, centre.z + distance});
   camera.near_plane = static_cast<float>(std::max(distance - 1.001 * r, distance / 1000));
   if (orthographic) {
     camera.orthographic_height = static_cast<float>(2 * r);
@@ -155,8 +149,7 @@ std::vector<Vec3> vertex_normals(std::span<const Vec3> positions,
   std::vector<Vec3> normals(positions.size());
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const double l = std::hypot(sums[i].x, sums[i].y, sums[i].z);
-    if (l > 0 && std::isfinite(l))
-      normals[i] = narrow({sums[i].x / l, sums[i].y / l, sums[i].z / l});
+    if (l > 0 && std::isfinite(l)) normals[i] = Vec3({sums[i].x / l, sums[i].y / l, sums[i].z / l});
   }
   return normals;
 }

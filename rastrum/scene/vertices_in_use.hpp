@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <rastrum/core/vec3d.hpp>
 #include <rastrum/scene/mesh.hpp>
 #include <rastrum/scene/scene.hpp>
 
@@ -13,10 +14,6 @@ namespace rastrum {
 
 class VerticesInUse {
  public:
-  struct Point {
-    double x = 0, y = 0, z = 0;
-  };
-
   /// `scene` must outlive it. Throws Error{invalid_argument} for an index out of range.
   explicit VerticesInUse(const SceneView& scene) : scene_(scene) {
     // Instances of one mesh often follow each other.
@@ -32,7 +29,7 @@ class VerticesInUse {
     }
   }
 
-  /// Calls f(Point) for each finite vertex in use, once an instance, in their order.
+  /// Calls f(Vec3d) for each finite vertex in use, once an instance, in their order.
   template <class F>
   void for_each(F&& f) const {
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
@@ -42,7 +39,7 @@ class VerticesInUse {
         const auto row = [&](int r) {
           return m.m[r][0] * p.x + m.m[r][1] * p.y + m.m[r][2] * p.z + m.m[r][3];
         };
-        const Point q{row(0), row(1), row(2)};
+        const Vec3d q{row(0), row(1), row(2)};
         if (std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z)) f(q);
       };
       if (mesh.indices.empty()) {

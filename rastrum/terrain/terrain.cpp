@@ -10,11 +10,9 @@
 namespace rastrum::terrain {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 /// Grey from the lowest height to the highest; holes are never seen.
 Image<Rgba8> grey_of(const Image<float>& heights, float highest) {
-  float lowest = kInfinity;
+  float lowest = std::numeric_limits<float>::infinity();
   for (const float h : heights.pixels())
     if (h < lowest) lowest = h;
   Image<Rgba8> grey(heights.width(), heights.height());
@@ -29,7 +27,7 @@ Image<Rgba8> grey_of(const Image<float>& heights, float highest) {
 
 }  // namespace
 
-Terrain::Terrain(HeightMap map) : highest_(-kInfinity) {
+Terrain::Terrain(HeightMap map) : highest_(-std::numeric_limits<float>::infinity()) {
   if (map.heights.empty())
     throw Error(Errc::invalid_argument, "the height map has no cell; give it at least one");
   for (const float h : map.heights.pixels())
@@ -40,7 +38,7 @@ Terrain::Terrain(HeightMap map) : highest_(-kInfinity) {
 }
 
 Terrain::Terrain(std::shared_ptr<const Surface> surface)
-    : surface_(std::move(surface)), highest_(kInfinity) {
+    : surface_(std::move(surface)), highest_(std::numeric_limits<float>::infinity()) {
   if (surface_ == nullptr) throw Error(Errc::invalid_argument, "the terrain has no surface");
 }
 

@@ -14,7 +14,7 @@
 #include <rastrum/scene/shapes/marching_cubes_table.hpp>
 #include <rastrum/scene/shapes/require.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
-#include <rastrum/scene/shapes/vec3d.hpp>
+#include <rastrum/core/vec3d.hpp>
 
 namespace rastrum::shapes {
 namespace {

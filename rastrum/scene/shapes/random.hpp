@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include <rastrum/scene/shapes/vec3d.hpp>
+#include <rastrum/core/vec3d.hpp>
 
 namespace rastrum::shapes {
 

@@ -11,7 +11,7 @@
 #include <array>
 #include <cstddef>
 
-#include <rastrum/scene/shapes/vec3d.hpp>
+#include <rastrum/core/vec3d.hpp>
 
 namespace rastrum::shapes {
 

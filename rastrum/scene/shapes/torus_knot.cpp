@@ -11,7 +11,7 @@
 #include <rastrum/core/error.hpp>
 #include <rastrum/scene/shapes/require.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
-#include <rastrum/scene/shapes/vec3d.hpp>
+#include <rastrum/core/vec3d.hpp>
 
 namespace rastrum::shapes {
 namespace {

@@ -1,12 +1,12 @@
-// float64 vectors of the procedural shapes: they compute in double and round to float32 once, so
-// that points reached along two ways (a seam, a shared patch edge) get the same bits.
+// float64 vectors: what is computed in double and rounded to float32 once, so that points reached
+// along two ways (a seam of a shape, an edge of two patches) get the same bits.
 #pragma once
 
 #include <cmath>
 
 #include <rastrum/core/vec.hpp>
 
-namespace rastrum::shapes {
+namespace rastrum {
 
 struct Vec3d {
   double x = 0, y = 0, z = 0;
@@ -16,6 +16,9 @@ struct Vec3d {
   }
 };
 
+constexpr Vec3d widen(Vec3 a) {
+  return {a.x, a.y, a.z};
+}
 constexpr Vec3d operator+(Vec3d a, Vec3d b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
@@ -39,4 +42,4 @@ inline Vec3d unit(Vec3d a) {
   return a * (1 / length(a));
 }
 
-}  // namespace rastrum::shapes
+}  // namespace rastrum
