@@ -113,7 +113,7 @@ Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
   camera.fov_rad = fov_rad;
   camera.orthographic = orthographic;
   camera.target = Vec3(centre);
-  camera.eye = Vec3({centre.x, centre.y, centre.z + distance});
+  camera.eye = Vec3(Vec3d{centre.x, centre.y, centre.z + distance});
   camera.near_plane = static_cast<float>(std::max(distance - 1.001 * r, distance / 1000));
   if (orthographic) {
     camera.orthographic_height = static_cast<float>(2 * r);
@@ -149,7 +149,8 @@ std::vector<Vec3> vertex_normals(std::span<const Vec3> positions,
   std::vector<Vec3> normals(positions.size());
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const double l = std::hypot(sums[i].x, sums[i].y, sums[i].z);
-    if (l > 0 && std::isfinite(l)) normals[i] = Vec3({sums[i].x / l, sums[i].y / l, sums[i].z / l});
+    if (l > 0 && std::isfinite(l))
+      normals[i] = Vec3(Vec3d{sums[i].x / l, sums[i].y / l, sums[i].z / l});
   }
   return normals;
 }
