@@ -10,11 +10,11 @@
 #include <numbers>
 #include <vector>
 
+#include <rastrum/core/vec3d.hpp>
 #include <rastrum/parallel/words.hpp>
 #include <rastrum/scene/shapes/marching_cubes_table.hpp>
 #include <rastrum/scene/shapes/require.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
-#include <rastrum/core/vec3d.hpp>
 
 namespace rastrum::shapes {
 namespace {

@@ -9,9 +9,9 @@
 #include <string>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/core/vec3d.hpp>
 #include <rastrum/scene/shapes/require.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
-#include <rastrum/core/vec3d.hpp>
 
 namespace rastrum::shapes {
 namespace {
