@@ -121,21 +121,11 @@ struct Eye {
   }
 };
 
-Cull cull_of_material(const SceneView& scene, const InstanceView& instance, Shader shader) {
-  if (shader != Shader::material || scene.materials.empty() ||
-      !instance.mesh.face_materials.empty() || scene.materials[instance.mesh.material].double_sided)
-    return Cull::none;
-  const auto& m = instance.object_to_world.m;
-  const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-  return determinant < 0 ? Cull::front : Cull::back;
-}
-
 std::array<std::uint64_t, kFates> census(const RenderOptions& options, const SceneView& scene,
                                          const Camera& camera) {
   std::array<std::uint64_t, kFates> counts{};
   const Mat4d world_to_view = world_to_clip(camera, options.width, options.height);
+  const Shader shader = shader_for(options.shader, scene);
   for (const InstanceView& instance : scene.instances) {
     const MeshView& mesh = instance.mesh;
     const Eye eye{world_to_view * instance.object_to_world,
@@ -143,7 +133,7 @@ std::array<std::uint64_t, kFates> census(const RenderOptions& options, const Sce
                   static_cast<double>(options.height),
                   !camera.orthographic,
                   options.cull,
-                  cull_of_material(scene, instance, shader_for(options.shader, scene))};
+                  material_cull(instance, scene.materials, shader)};
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
       const auto corner = [&](std::size_t k) {
         const std::size_t c = 3 * t + k;

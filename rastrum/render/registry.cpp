@@ -36,6 +36,18 @@ Shader shader_for(Shader shader, const SceneView& scene) {
   return scene.materials.empty() ? Shader::phong : Shader::material;
 }
 
+Cull material_cull(const InstanceView& instance, std::span<const Material> materials,
+                   Shader shader) {
+  if (shader != Shader::material || materials.empty() || !instance.mesh.face_materials.empty() ||
+      materials[instance.mesh.material].double_sided)
+    return Cull::none;
+  const auto& m = instance.object_to_world.m;
+  const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  return determinant < 0 ? Cull::front : Cull::back;
+}
+
 Shader shader_from_name(std::string_view wanted) {
   std::string known;
   for (std::size_t i = 0; i < kShaderNames.size(); ++i) {

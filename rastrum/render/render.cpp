@@ -116,20 +116,6 @@ void stretch_depth(ImageView<float> depth, Vec4 background, const Targets& targe
     }
 }
 
-/// glTF: the back faces of a single-sided material are not seen; a mirroring transform turns them.
-/// Meshes whose faces have materials of their own come from formats without that notion.
-Cull material_cull(const InstanceView& instance, std::span<const Material> materials,
-                   Shader shader) {
-  if (shader != Shader::material || materials.empty() || !instance.mesh.face_materials.empty() ||
-      materials[instance.mesh.material].double_sided)
-    return Cull::none;
-  const auto& m = instance.object_to_world.m;
-  const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-  return determinant < 0 ? Cull::front : Cull::back;
-}
-
 void check_options(const RenderOptions& o) {
   const auto require = [](bool ok, const char* what) {
     if (!ok) throw Error(Errc::invalid_argument, what);

@@ -39,6 +39,11 @@ enum class Shader : std::uint8_t {
 [[nodiscard]] std::string_view name(Shader shader);
 /// What `shader` is for `scene`: itself, or what `automatic` takes.
 [[nodiscard]] Shader shader_for(Shader shader, const SceneView& scene);
+/// What `shader` leaves out of an instance, whatever RenderOptions::cull. glTF: with `material` the
+/// back faces of a single-sided material are not seen; a mirroring transform turns them. Meshes
+/// whose faces have materials of their own come from formats without that notion.
+[[nodiscard]] Cull material_cull(const InstanceView& instance, std::span<const Material> materials,
+                                 Shader shader);
 
 /// A named way to find what triangles cover (`--rasterizer`) or to resolve the fragments of a pixel
 /// (`--visibility`): the two axes of the family's table.
