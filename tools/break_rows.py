@@ -148,7 +148,7 @@ BREAKS = (
           "slices_.add(exec_, first + i, key);", "slices_.add(exec_, first, key);",
           OWNING, ("sorted",), why="coverages with tiles"),
     Break("sorted, shared", "visibility/sorted.cpp",
-          "keys_[to] = static_cast<Key>(first + i);", "keys_[to] = static_cast<Key>(first);",
+          "sort_keys_[to] = static_cast<SortKey>(first + i);", "sort_keys_[to] = static_cast<SortKey>(first);",
           SHARING, ("sorted",), why="coverages without tiles; hybrid for small triangles"),
     Break("sorted, micro triangles", "visibility/sorted.cpp",
           "slices_.add(exec_, pixels_.pixel(f), f.key);",
