@@ -228,7 +228,7 @@ LayerCounts SampledBlock::blend_sample(std::uint32_t sample, BlockColors& out) {
   return counts;
 }
 
-LayerCounts SampledBlock::resolve(const raster::RegionContext& context,
+LayerCounts SampledBlock::resolve(const raster::BinContext& context,
                                   const raster::BlockShader* shader, LayerBlend& blend,
                                   std::span<Record> records, int bx, int by, std::size_t filter,
                                   std::size_t planes, bool repair, std::uint64_t* keys,
