@@ -11,7 +11,6 @@
 #include <string_view>
 
 #include <rastrum/raster/cuda/pieces.cuh>
-#include <rastrum/raster/cuda/rasterizer.cuh>
 #include <rastrum/raster/cuda/samples.cuh>
 #include <rastrum/transparency/cuda/device_layers.cuh>
 
