@@ -29,7 +29,7 @@ struct IsLayerIn {
 
 }  // namespace cuda
 
-/// What a device's frame does with translucent pieces; the hook of raster::DeviceRasterizer.
+/// What a device's frame (render/cuda/frame.cuh) does with translucent pieces.
 class SceneLayers {
  public:
   [[nodiscard]] static std::string_view why_not(const raster::FrameRequest& request) {
