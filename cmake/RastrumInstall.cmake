@@ -14,7 +14,6 @@ function(rastrum_dependencies target out)
   set(package_OpenEXR "OpenEXR CONFIG")
   set(package_tinyobjloader "tinyobjloader CONFIG")
   set(package_nlohmann_json "nlohmann_json CONFIG")
-  set(package_CUDA "CUDAToolkit")
 
   get_target_property(links ${target} LINK_LIBRARIES)
   set(calls "")
@@ -47,6 +46,13 @@ install(DIRECTORY rastrum DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.hpp" PATTERN "*.cuh")
 install(TARGETS rastrum EXPORT RastrumTargets)
 install(TARGETS rastrum_io EXPORT RastrumIoTargets)
+# Programs look for the library of device code by its name (parallel/cuda/library.hpp): those that
+# are installed here, and those that link the package, wherever that lies.
+if(TARGET rastrum_cuda)
+  install(TARGETS rastrum_cuda EXPORT RastrumTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  target_link_options(rastrum INTERFACE
+    $<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/${CMAKE_INSTALL_LIBDIR}>)
+endif()
 foreach(part Targets IoTargets)
   install(EXPORT Rastrum${part} NAMESPACE Rastrum:: DESTINATION ${package_dir})
 endforeach()

@@ -2,7 +2,6 @@
 
 #include <apps/command_line/choose.hpp>
 #include <rastrum/parallel/cuda/status.hpp>
-#include <rastrum/raster/cuda/rasterizer.hpp>
 
 namespace rastrum::bench {
 
@@ -33,7 +32,7 @@ void TableOptions::add_device(OptionParser& parser) {
 void TableOptions::resolve() {
   if (threads == 0) threads = cores();
   if (quick) rounds = 1;
-  static_cast<void>(choose_device(device, raster::draws_on_cuda()));
+  static_cast<void>(choose_device(device));
   if (on_cuda()) gpu = parallel::cuda_status().name;
 }
 

@@ -18,10 +18,9 @@ struct DeviceChoice {
   Device device;    ///< not `automatic`
   std::string why;  ///< what `automatic` went by; empty where a device was asked for
 };
-/// For a renderer that draws on a CUDA device, or does not (`draws_on_cuda`). Throws
-/// Error{no_device} with what to do where `cuda` is asked for and cannot be had,
-/// Error{invalid_argument} for a value that is no device.
-[[nodiscard]] DeviceChoice choose_device(Device wanted, bool draws_on_cuda);
+/// What there is of what is wanted. Throws Error{no_device} with what to do where `cuda` is asked
+/// for and cannot be had, Error{invalid_argument} for a value that is no device.
+[[nodiscard]] DeviceChoice choose_device(Device wanted);
 
 /// Instruction sets that the SIMD leaves are compiled for. `scalar` is plain C++.
 enum class Isa : std::uint8_t { scalar, sse4, avx2, avx512, neon };

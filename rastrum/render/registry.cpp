@@ -8,12 +8,13 @@
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/family/blend/approximations.hpp>
+#include <rastrum/family/cuda/rasterizer.hpp>
 #include <rastrum/family/row.hpp>
 #include <rastrum/family/visibility/layers.hpp>
-#include <rastrum/raster/cuda/rasterizer.hpp>
 #include <rastrum/raster/frame/driver.hpp>
 #include <rastrum/raster/frame/fast_path.hpp>
 #include <rastrum/raster/frame/reference.hpp>
+#include <rastrum/render/cuda/rasterizer.hpp>
 #include <rastrum/render/device_work.hpp>
 #include <rastrum/render/registry.hpp>
 #include <rastrum/transparency/layered_path.hpp>
@@ -161,8 +162,7 @@ DrawFrame make_reference(const RenderOptions& options, MemoryAccount& memory) {
 constexpr std::string_view kBySize = "by-size";
 
 /// Why the device leaves a frame to the CPU; empty where it draws it.
-std::string why_not_on_cuda(const raster::CudaRasterizer& device,
-                            const raster::FrameRequest& request) {
+std::string why_not_on_cuda(const CudaRasterizer& device, const raster::FrameRequest& request) {
   if (std::string why = device.why_no_test(request); !why.empty()) return why;
   return needs_layers(request) ? device.why_no_layers(request) : std::string();
 }
@@ -214,8 +214,11 @@ DrawFrame make_on_cuda(const RenderOptions& options, MemoryAccount& memory,
       [device =
            chosen.is_the_cpus
                ? nullptr
-               : std::shared_ptr<raster::CudaRasterizer>(raster::make_cuda_rasterizer(
-                     chosen.coverage, chosen.visibility, options.memory_limit, memory, threads)),
+               : std::shared_ptr<CudaRasterizer>(
+                     chosen.coverage.empty()
+                         ? make_cuda_rasterizer(options.memory_limit, memory, threads)
+                         : family::make_cuda_rasterizer(chosen.coverage, chosen.visibility,
+                                                        options.memory_limit, memory, threads)),
        host = DrawFrame(), on_threads, why = chosen.why, &memory, &threads,
        there = DeviceChoice{Device::cuda, automatic_why}](raster::FrameRequest& request) mutable {
         if (needs_layers(request) && on_threads.visibility != "auto") refuse_visibility();

@@ -11,7 +11,6 @@
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/turn.hpp>
-#include <rastrum/raster/cuda/rasterizer.hpp>
 #include <rastrum/raster/draws/mixed_draws.hpp>
 #include <rastrum/raster/shade/alpha.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
@@ -194,7 +193,7 @@ Renderer::Renderer(RenderOptions options) : impl_(std::make_unique<Impl>(std::mo
   if (o.threads < 0 || o.threads > 4096)
     throw Error(Errc::invalid_argument, "threads must lie between 0 (all) and 4096");
   check_options(o);
-  DeviceChoice choice = choose_device(o.device, raster::draws_on_cuda());
+  DeviceChoice choice = choose_device(o.device);
   if (o.device == Device::automatic && choice.device == Device::cuda &&
       (o.rasterizer != "auto" || o.visibility != "auto"))
     choice = {Device::threads, "a rasterizer or a visibility of the CPU was asked for"};

@@ -102,7 +102,7 @@ void check(const TerrainOptions& o) {
             std::to_string(extent) + " cells away in " + std::to_string(slice_count(o)) +
             " steps, and 2^23 and 2^24 are the limits; choose a smaller distance or larger steps");
   }
-  static_cast<void>(choose_device(o.device, true));
+  static_cast<void>(choose_device(o.device));
 }
 
 void check(const TerrainCamera& c) {
