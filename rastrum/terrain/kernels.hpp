@@ -52,7 +52,7 @@ struct MapSize {
 };
 
 struct Kernels {
-  /// Heights and cells of columns [0, n) on a slice. No cells with Filter::bilinear.
+  /// Heights and cells of columns [0, n) on a slice. No cells with MapFilter::bilinear.
   void (*heights)(const Samples& samples, const Slice& slice, std::size_t n,
                   ColumnBlock& block) noexcept;
 

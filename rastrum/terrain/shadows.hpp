@@ -1,7 +1,7 @@
 // Where the sun does not reach a height map.
 //
 // The surface. A map is made of columns: cell (i, j) is the square [i, i + 1) × [j, j + 1), flat at
-// its height (as Filter::none draws it), tiled beyond the map's edge. A cell is judged at the
+// its height (as MapFilter::none draws it), tiled beyond the map's edge. A cell is judged at the
 // middle of its top. From there a ray goes to the sun; the cell is in shadow where the ray runs
 // through another cell below that cell's top. The ray climbs, so it is lowest where it enters:
 //

@@ -123,7 +123,7 @@ TEST(Refusals, EnumsOfMaterialsAndTextures) {
   bad.textures[0].wrap_v = no_value<Wrap>();
   EXPECT_NE(message(bad).find("texture 0: its wrapping is 200"), std::string::npos);
   bad = scene;
-  bad.textures[0].min = no_value<Filter>();
+  bad.textures[0].min = no_value<TextureFilter>();
   EXPECT_NE(message(bad).find("texture 0: its filter is 200"), std::string::npos);
 }
 

@@ -65,7 +65,7 @@ class CudaRenderer final : public DeviceRenderer {
   Counts draw(const Terrain& terrain, const TerrainOptions& options, const TerrainCamera& camera,
               const Roll* roll, const TerrainTargets& targets,
               const std::function<void(const char* stage)>& lap) override {
-    if (terrain.is_map()) keep(terrain, options.filter == Filter::mip);
+    if (terrain.is_map()) keep(terrain, options.filter == MapFilter::mip);
     lap("map");
     const int width = options.width, height = options.height;
     const TerrainTargets on_device{colors_.sized(exec_, targets.color8, width, height),
