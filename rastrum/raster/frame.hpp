@@ -34,9 +34,9 @@ struct Worker {
 
   alignas(64) Block blocks[kBlockCapacity];
   ShaderScratch shader;
-  std::uint64_t shader_of = 0;  ///< number of the frame for which it was zeroed
-  Buffer<std::uint64_t> words;  ///< of a tile
-  Buffer<BlockColors> colors;   ///< of a tile, where visibility shades
+  std::uint64_t shader_of = 0;         ///< number of the frame for which it was zeroed
+  ScratchBuffer<std::uint64_t> words;  ///< of a tile
+  ScratchBuffer<BlockColors> colors;   ///< of a tile, where visibility shades
   std::unique_ptr<Region> region;
 };
 

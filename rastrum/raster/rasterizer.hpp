@@ -38,9 +38,9 @@ class Rasterizer {
   parallel::Threads& threads_;
   std::unique_ptr<Coverage> coverage_;
   FrameScratch scratch_;
-  Buffer<ProjectedVertex> projected_;
-  Buffer<std::uint64_t> words_;
-  Buffer<BlockColors> colors_;
+  ScratchBuffer<ProjectedVertex> projected_;
+  ScratchBuffer<std::uint64_t> words_;
+  ScratchBuffer<BlockColors> colors_;
 };
 
 }  // namespace rastrum::raster

@@ -49,7 +49,7 @@ FrameStats render_reference(FrameRequest& request, MemoryAccount& memory) {
 
   FrameGeometry frame{request.width, request.height, Viewport::of(request.width, request.height),
                       request.draws, nullptr};
-  Buffer<ProjectedVertex> projected(memory);
+  ScratchBuffer<ProjectedVertex> projected(memory);
   projected.reserve(totals.vertices);
   for (const Draw& draw : request.draws)
     draw.source->project(0, draw.vertex_count, frame.viewport, Isa::scalar,
@@ -59,7 +59,7 @@ FrameStats render_reference(FrameRequest& request, MemoryAccount& memory) {
 
   const std::size_t pixels =
       static_cast<std::size_t>(request.width) * static_cast<std::size_t>(request.height);
-  Buffer<std::uint64_t> buffer(memory);
+  ScratchBuffer<std::uint64_t> buffer(memory);
   buffer.reserve(pixels);
   const ImageView<std::uint64_t> words{buffer.data(), request.width, request.height, request.width};
   for (int y = 0; y < request.height; ++y) {

@@ -16,7 +16,7 @@ namespace rastrum::raster {
 struct Pieces {
   explicit Pieces(MemoryAccount& memory) : data(memory) {}
 
-  Buffer<Piece> data;
+  ScratchBuffer<Piece> data;
   std::uint32_t count = 0;
   FrameStats::Triangles triangles;
 
@@ -48,7 +48,7 @@ class PieceArray {
 
  private:
   MemoryAccount& memory_;
-  Buffer<Piece> pieces_;
+  ScratchBuffer<Piece> pieces_;
   std::vector<Pieces> groups_;
 };
 

@@ -203,7 +203,7 @@ FrameStats render_reference(raster::FrameRequest& request, MemoryAccount& memory
   raster::FrameGeometry frame{request.width, request.height,
                               raster::Viewport::of(request.width, request.height), request.draws,
                               nullptr};
-  Buffer<raster::ProjectedVertex> projected(memory);
+  ScratchBuffer<raster::ProjectedVertex> projected(memory);
   projected.reserve(totals.vertices);
   for (const raster::Draw& draw : request.draws)
     draw.source->project(0, draw.vertex_count, frame.viewport, Isa::scalar,

@@ -64,8 +64,8 @@ class Collected {
   }
 
  private:
-  Buffer<Entry> entries_;
-  Buffer<std::uint32_t> next_;
+  ScratchBuffer<Entry> entries_;
+  ScratchBuffer<std::uint32_t> next_;
   std::size_t count_ = 0;
 };
 
@@ -98,8 +98,8 @@ class BinLists {
   }
 
  private:
-  Buffer<Entry> sorted_;
-  Buffer<std::uint32_t> begin_;
+  ScratchBuffer<Entry> sorted_;
+  ScratchBuffer<std::uint32_t> begin_;
 };
 
 /// Bins of layers with more entries are cut to 32², and those with even more to 16² px (paper 4's

@@ -421,8 +421,8 @@ class DeviceRasterizer final : public CudaRasterizer {
   parallel::Threads& threads_;
   Exec exec_;
   DeviceTextures<Exec> textures_;
-  Buffer<std::uint64_t> words_;     ///< of the host, in the device's places
-  Buffer<std::uint32_t> overdraw_;  ///< alike
+  ScratchBuffer<std::uint64_t> words_;     ///< of the host, in the device's places
+  ScratchBuffer<std::uint32_t> overdraw_;  ///< alike
 };
 
 }  // namespace rastrum::raster

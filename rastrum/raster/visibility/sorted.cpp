@@ -76,8 +76,8 @@ class SliceBySlice {
   }
 
  private:
-  Buffer<std::uint32_t> keys_;
-  Buffer<std::uint64_t> words_;
+  ScratchBuffer<std::uint32_t> keys_;
+  ScratchBuffer<std::uint64_t> words_;
   PixelNumbers pixels_;
   std::size_t slice_ = 0, count_ = 0;
   int bits_ = 0;
@@ -172,7 +172,7 @@ class Bands {
     return (pixels.block_count() + (std::size_t{1} << shift) - 1) >> shift;
   }
 
-  Buffer<std::uint64_t> cursors_, begin_;
+  ScratchBuffer<std::uint64_t> cursors_, begin_;
   std::size_t bands_ = 0, lanes_ = 1;
   int block_shift_ = 0;
 };
@@ -310,8 +310,8 @@ class SharedSortedRegion final : public Region {
 
   Bands bands_;
   ChunkCounts chunk_counts_;
-  Buffer<Key> keys_;
-  Buffer<std::uint64_t> words_;
+  ScratchBuffer<Key> keys_;
+  ScratchBuffer<std::uint64_t> words_;
   SliceBySlice slices_;
   parallel::ScratchPool<parallel::Serial> serial_;
   parallel::Threads* exec_ = nullptr;
