@@ -180,7 +180,7 @@ FrameStats Rasterizer::render(FrameRequest& request) {
   FrameStats stats;
   stats.rasterizer = row_.name;
   stats.visibility = visibility_.name;
-  stats.isa = request.isa;
+  stats.isa = choose_isa(request.isa);
   const Totals totals = number_draws(request.draws, request.targets.first_id, request.draw_noun);
   const Plan cut = plan(request, totals.primitives, totals.vertices);
 

@@ -28,7 +28,8 @@ std::vector<std::string_view> shader_names() {
 }
 
 std::string_view name(Shader shader) {
-  return kShaderNames.at(static_cast<std::size_t>(shader));
+  check_enum(shader, Shader::wireframe, "the shader");
+  return kShaderNames[static_cast<std::size_t>(shader)];
 }
 
 Shader shader_for(Shader shader, const SceneView& scene) {

@@ -41,7 +41,7 @@ struct ShadowOptions {
 /// Cost: two lines of a sweep a cell and column of the map, further columns where the longest
 /// shadow reaches beyond the map's edge, and a traversal of the few cells that the sweep cannot
 /// decide (shadow_sweep.hpp). Throws Error{invalid_argument} for a sun that is not finite or above
-/// 90°.
+/// 90°, Error{no_device}.
 [[nodiscard]] Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun,
                                                 const ShadowOptions& options = {});
 

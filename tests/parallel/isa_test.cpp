@@ -2,11 +2,14 @@
 // question.
 #include <algorithm>
 #include <cstdint>
+#include <string>
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
+#include <rastrum/core/error.hpp>
 #include <rastrum/parallel/device.hpp>
+#include <tests/support/isa.hpp>
 
 namespace rastrum {
 namespace {
@@ -23,6 +26,20 @@ TEST(Isa, AvailableOnesAreHighways) {
 #elif HWY_ARCH_ARM
   EXPECT_EQ(has(Isa::neon), (known & HWY_NEON) != 0);
 #endif
+}
+
+TEST(Isa, OneThatIsNotThereIsRefused) {
+  for (const Isa isa : available_isas()) EXPECT_EQ(choose_isa(isa), isa);
+  EXPECT_EQ(choose_isa({}), available_isas().back());
+  try {
+    static_cast<void>(choose_isa(test::missing_isa()));
+    ADD_FAILURE();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::no_device);
+    const std::string said = e.what();
+    EXPECT_EQ(said.find("--isa " + std::string(name(test::missing_isa())) + ": "), 0U) << said;
+    EXPECT_NE(said.find("has only scalar"), std::string::npos) << said;
+  }
 }
 
 }  // namespace

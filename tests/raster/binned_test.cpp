@@ -30,6 +30,7 @@
 
 #include "tests/support/environment.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/isa.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
@@ -556,6 +557,19 @@ TEST(Binned, EveryPassSeesTheSameChunks) {
           EXPECT_GT(Again::blocks_seen, 10000U);
         }
       }
+}
+
+// Here and not through the facade, which refuses it before a frame is asked for.
+TEST(Rasterizer, RefusesInstructionSetsThatAreNotThere) {
+  MemoryAccount memory;
+  parallel::Threads exec(1, &memory);
+  raster::Rasterizer rasterizer(binned_row(), raster::visibilities().front(), {}, 0, memory, exec);
+  raster::FrameRequest request;
+  request.width = request.height = 8;
+  request.isa = missing_isa();
+  EXPECT_THROW(static_cast<void>(rasterizer.render(request)), Error);
+  request.isa = available_isas().back();
+  EXPECT_EQ(rasterizer.render(request).isa, request.isa);
 }
 
 TEST(Binned, SendsLinesAndPointsThroughItsQueues) {

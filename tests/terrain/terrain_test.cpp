@@ -16,6 +16,7 @@
 #include <rastrum/terrain/setup.hpp>
 #include <rastrum/terrain/words.hpp>
 
+#include "tests/support/isa.hpp"
 #include "tests/terrain/maps.hpp"
 
 namespace rastrum::terrain {
@@ -641,6 +642,15 @@ TEST(OddInput, IsRefusedWithTheOptionsName) {
   options.device = Device::cuda;
   EXPECT_NE(message_of(options).find("CUDA"), std::string::npos);
   EXPECT_THROW(Terrain(HeightMap{}), Error);
+}
+
+TEST(OddInput, InstructionSetsThatAreNotThereAreRefused) {
+  for (const Device device : {Device::serial, Device::threads}) {
+    TerrainOptions options = size(8, 8);
+    options.device = device;
+    options.isa = test::missing_isa();
+    EXPECT_NE(message_of(options).find("--isa"), std::string::npos);
+  }
 }
 
 TEST(OddInput, EnumsWithoutAValueAreRefused) {

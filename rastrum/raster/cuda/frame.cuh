@@ -73,7 +73,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     FrameStats stats;
     stats.rasterizer = family_ ? family_->coverage->name : "by-size";
     stats.visibility = family_ ? family_->visibility->name : "atomic";
-    stats.isa = request.isa;
+    stats.isa = choose_isa(request.isa);
     stats.device = Device::cuda;
     const Totals totals = number_draws(request.draws, request.targets.first_id, request.draw_noun);
     try {
