@@ -8,7 +8,7 @@
 
 #include <bench/cuda/in_place.hpp>
 #include <rastrum/core/image.hpp>
-#include <rastrum/raster/transform_source.hpp>
+#include <rastrum/raster/draws/transform_source.hpp>
 
 #include "attempt.hpp"
 
@@ -17,16 +17,16 @@ namespace {
 
 using raster::BlockColors, raster::FrameGeometry, raster::VisibleBlock;
 
-/// A colour of a word alone: no attribute is fetched, so that frames show what coverage and
+/// A colour of a key alone: no attribute is fetched, so that frames show what coverage and
 /// visibility cost.
 template <class Color>
-class WordShader final : public raster::BlockShader {
+class KeyShader final : public raster::BlockShader {
  public:
-  explicit WordShader(Color color) : color_(color) {}
+  explicit KeyShader(Color color) : color_(color) {}
   bool shade(const FrameGeometry&, const VisibleBlock& block, Isa,
              BlockColors& colors) const noexcept override {
     for (int i = 0; i < 64; ++i) {
-      const Vec3 c = color_(block.words[i]);
+      const Vec3 c = color_(block.keys[i]);
       colors.r[i] = c.x;
       colors.g[i] = c.y;
       colors.b[i] = c.z;
@@ -39,8 +39,8 @@ class WordShader final : public raster::BlockShader {
 };
 
 const raster::BlockShader& depth_cubed() {
-  static const WordShader shader([](std::uint64_t word) {
-    const auto d = std::bit_cast<float>(static_cast<std::uint32_t>(word >> raster::kIdBits));
+  static const KeyShader shader([](std::uint64_t key) {
+    const auto d = std::bit_cast<float>(static_cast<std::uint32_t>(key >> raster::kIdBits));
     const float grey = d * d * d;
     return Vec3{grey, grey, grey};
   });
@@ -114,7 +114,7 @@ class TriangleColors final : public raster::BlockShader {
   bool shade(const FrameGeometry&, const VisibleBlock& block, Isa,
              BlockColors& colors) const noexcept override {
     for (int i = 0; i < 64; ++i) {
-      const auto id = static_cast<std::uint32_t>(raster::id_of_word(block.words[i]));
+      const auto id = static_cast<std::uint32_t>(raster::id_of_key(block.keys[i]));
       const std::uint32_t h = id * 0x9e3779b1U;
       colors.r[i] = channel(h >> 24);
       colors.g[i] = channel(h >> 16 & 255U);
@@ -146,9 +146,9 @@ std::uint64_t Result::counter(std::string_view counter_name) const {
   return 0;
 }
 
-std::uint64_t hash_of(std::span<const std::uint64_t> words) {
+std::uint64_t hash_of(std::span<const std::uint64_t> keys) {
   std::uint64_t h = kHashBegin;
-  for (const std::uint64_t word : words) h = fold(h, word);
+  for (const std::uint64_t key : keys) h = fold(h, key);
   return h;
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <rastrum/core/error.hpp>
-#include <rastrum/raster/geometry.hpp>
+#include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/camera.hpp>
 #include <rastrum/scene/mesh.hpp>

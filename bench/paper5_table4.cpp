@@ -1,6 +1,6 @@
 // `rastrum bench paper5-table4`: paper 5, table 4 — Bunny subdivided 0 to 6 times at 1 to 128 ×
 // image scale. Subdivided 6 times it has 460 million triangles; the paper's program failed there at
-// scale 128. What does not fit is made part by part and drawn in passes that load the words which
+// scale 128. What does not fit is made part by part and drawn in passes that load the keys which
 // the ones before have left (Targets::load); the picture is the same.
 #include <algorithm>
 #include <chrono>
@@ -34,7 +34,7 @@ constexpr int kMatchScale = 10;
 
 struct Limits {
   std::uint64_t memory = std::uint64_t{2} << 30;           ///< scratch of a frame, bytes
-  std::uint64_t images = std::uint64_t{6} << 30;           ///< words and pictures held at once
+  std::uint64_t images = std::uint64_t{6} << 30;           ///< keys and pictures held at once
   std::uint64_t part_triangles = std::uint64_t{32} << 20;  ///< of a mesh in memory
   double seconds = 120;                                    ///< of a frame
   int subdivisions = 6, scale = 128;
@@ -44,12 +44,12 @@ struct Limits {
 struct Cell {
   std::size_t row = 0;
   Subject subject;  ///< but for the mesh
-  Image<std::uint64_t> words;
+  Image<std::uint64_t> keys;
   Image<Rgba8> picture;
   double ms = 0;
   std::vector<double> samples_ms = {};
   std::uint64_t scratch = 0;
-  std::uint64_t hash = 0;    ///< of the words in the end
+  std::uint64_t hash = 0;    ///< of the keys in the end
   std::string stopped = {};  ///< why; empty: whole
 };
 
@@ -69,7 +69,7 @@ void draw_pass(Cell& cell, const Mesh& part, std::uint64_t first_id, const Rende
   subject.mesh = part.view();
   Targets targets;
   targets.color8 = cell.picture.view();
-  targets.words = cell.words.view();
+  targets.keys = cell.keys.view();
   targets.load = first_id > 0;
   targets.first_id = first_id;
   const auto begin = std::chrono::steady_clock::now();
@@ -92,7 +92,7 @@ void stream(std::vector<Cell>& cells, const Mesh& base, int times, std::size_t p
       const Subject& s = cells[end].subject;
       held += image_bytes(s.width, s.height);
       if (held > limits.images && end > begin) break;
-      cells[end].words = Image<std::uint64_t>(s.width, s.height);
+      cells[end].keys = Image<std::uint64_t>(s.width, s.height);
       cells[end].picture = Image<Rgba8>(s.width, s.height);
     }
     std::uint64_t first_id = 0;
@@ -114,8 +114,8 @@ void stream(std::vector<Cell>& cells, const Mesh& base, int times, std::size_t p
     }
     for (std::size_t i = begin; i < end; ++i) {
       cells[i].samples_ms = {cells[i].ms};
-      cells[i].hash = hash_of(cells[i].words.pixels());
-      cells[i].words = {};
+      cells[i].hash = hash_of(cells[i].keys.pixels());
+      cells[i].keys = {};
       cells[i].picture = {};
     }
     begin = end;
@@ -140,7 +140,7 @@ void draw_in_place(std::vector<Cell>& cells, const Mesh& base, int times, std::s
       options.height = cell.subject.height;
       InPlace frame(options, cell.subject.camera);
       FrameStats stats;
-      cell.hash = hash_of(frame.words(meshes, stats).pixels());
+      cell.hash = hash_of(frame.keys(meshes, stats).pixels());
       cell.scratch = stats.peak_bytes;
       const Contender contender{"", [&] { static_cast<void>(frame.draw(meshes)); }};
       cell.samples_ms = measure_interleaved({&contender, 1}, plan)[0].samples_ms;
@@ -179,7 +179,7 @@ int run_paper5_table4(std::span<const std::string_view> arguments) {
   options.add_device(parser);
   parser.add_option("--memory-limit", limits.memory, "scratch of a frame in bytes (2 GiB)")
       ->as_size();
-  parser.add_option("--image-memory", limits.images, "words and pictures held at once (6 GiB)")
+  parser.add_option("--image-memory", limits.images, "keys and pictures held at once (6 GiB)")
       ->as_size();
   parser.add_option("--part", limits.part_triangles, "triangles of a mesh in memory (32 Mi)")
       ->range(std::uint64_t{1000}, std::uint64_t{1} << 32);
@@ -209,7 +209,7 @@ int run_paper5_table4(std::span<const std::string_view> arguments) {
       "part, each part is one pass into the picture, and only the passes are timed, once. The "
       "threads' scratch is limited to " +
       significant(static_cast<double>(limits.memory) / 1e9) +
-      " GB; the picture and its words (12 bytes a pixel) are the caller's. A whole frame of both "
+      " GB; the picture and its keys (12 bytes a pixel) are the caller's. A whole frame of both "
       "choices has the same ids in every cell.");
 
   std::vector<Entrant> entrants{entrant(options, "scanline", "sorted"), entrant(options, "auto")};
@@ -261,7 +261,7 @@ int run_paper5_table4(std::span<const std::string_view> arguments) {
       } else if (image_bytes(subject.width, subject.height) > limits.images) {
         for (Comparison& c : tables)
           c.rows[r].ours[times].not_run =
-              "words and picture take " +
+              "keys and picture take " +
               significant(static_cast<double>(image_bytes(subject.width, subject.height)) / 1e9) +
               " GB";
       } else {

@@ -9,7 +9,7 @@
 #include <rastrum/core/image.hpp>
 #include <rastrum/io/io.hpp>
 #include <rastrum/parallel/reduce_by_index.hpp>
-#include <rastrum/raster/field.hpp>
+#include <rastrum/raster/draws/field.hpp>
 
 struct Circle {
   float x, y, radius;  // px

@@ -4,7 +4,7 @@
 
 #include <rastrum/core/quaternion.hpp>
 #include <rastrum/io/io.hpp>
-#include <rastrum/raster/program.hpp>
+#include <rastrum/raster/draws/program.hpp>
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 

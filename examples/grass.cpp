@@ -1,9 +1,9 @@
 // Several meshes and several passes: a hill, a teapot, a ball and blades of grass. A later pass
-// loads the visibility words of those before, so that the nearer wins.
+// loads the visibility keys of those before, so that the nearer wins.
 #include <algorithm>
 
 #include <rastrum/io/io.hpp>
-#include <rastrum/raster/program.hpp>
+#include <rastrum/raster/draws/program.hpp>
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
@@ -20,8 +20,8 @@ int main() {
   const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, options.width, options.height));
   rastrum::Renderer renderer(options);
   rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
-  rastrum::Image<std::uint64_t> words(options.width, options.height);
-  rastrum::Targets targets{.color8 = image, .words = words};
+  rastrum::Image<std::uint64_t> keys(options.width, options.height);
+  rastrum::Targets targets{.color8 = image, .keys = keys};
   const auto pass = [&](const auto& program, Draw draw) {
     renderer.draw({&draw, 1}, program, program.test(), targets);
     targets.load = true;

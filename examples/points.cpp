@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <rastrum/io/io.hpp>
-#include <rastrum/raster/program.hpp>
+#include <rastrum/raster/draws/program.hpp>
 #include <rastrum/render/render.hpp>
 
 using rastrum::Vec3, rastrum::Vec4;

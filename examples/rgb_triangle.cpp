@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include <rastrum/io/io.hpp>
-#include <rastrum/raster/program.hpp>
+#include <rastrum/raster/draws/program.hpp>
 #include <rastrum/render/render.hpp>
 
 using rastrum::Vec3, rastrum::Vec4;

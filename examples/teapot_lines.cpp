@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <rastrum/io/io.hpp>
-#include <rastrum/raster/program.hpp>
+#include <rastrum/raster/draws/program.hpp>
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/line_art.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>

@@ -9,7 +9,7 @@
 #include <rastrum/core/error.hpp>
 #include <rastrum/io/io.hpp>
 #include <rastrum/io/mapped_file.hpp>
-#include <rastrum/raster/shaders/srgb.hpp>
+#include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/scene/crease_normals.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 

@@ -33,7 +33,7 @@ inline Device parse_device(const std::string& text) {
 }
 
 /// The instruction sets of this machine, for help texts.
-inline std::string isa_words() {
+inline std::string isa_names() {
   std::string isas;
   for (const Isa isa : available_isas()) isas.append(isas.empty() ? "" : ", ").append(name(isa));
   return isas;

@@ -124,7 +124,7 @@ void add_blending_options(Parser& app, SceneArguments& a, const char* group) {
       })
       ->group(group);
   add(app, "--transparency", "NAME",
-      transparency_words() +
+      transparency_list() +
           "; filter:K orders by blocks and K fragments a pixel, without repair; none draws what is "
           "translucent opaque (exact)",
       [&a](const std::string& s) { parse_transparency(s, a.render.transparency); })
@@ -224,7 +224,7 @@ void add_machine_options(Parser& app, SceneArguments& a) {
   add(app, "--threads", "N", "(all)", [&a](const std::string& s) {
     a.render.threads = parse_integer("--threads", s, 1, 4096);
   })->group(group);
-  add(app, "--isa", "NAME", "instruction set; this machine has " + isa_words() + " (the last)",
+  add(app, "--isa", "NAME", "instruction set; this machine has " + isa_names() + " (the last)",
       [&a](const std::string& s) { a.render.isa = parse_isa(s); })
       ->group(group);
 }

@@ -232,7 +232,7 @@ void add_terrain_machine(Parser& app, TerrainSceneArguments& a) {
   add(app, "--threads", "N", "(all)", [&o](const std::string& s) {
     o.threads = parse_integer("--threads", s, 1, 4096);
   })->group(group);
-  add(app, "--isa", "NAME", "instruction set; this machine has " + isa_words() + " (the last)",
+  add(app, "--isa", "NAME", "instruction set; this machine has " + isa_names() + " (the last)",
       [&o](const std::string& s) { o.isa = parse_isa(s); })
       ->group(group);
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <rastrum/io/atomic_file.hpp>
-#include <rastrum/raster/options.hpp>
+#include <rastrum/raster/frame/options.hpp>
 
 namespace rastrum::cli {
 

@@ -18,7 +18,7 @@ constexpr std::pair<std::string_view, Transparency> kWords[] = {
 
 }  // namespace
 
-std::string transparency_words() {
+std::string transparency_list() {
   std::string words;
   for (const auto& [word, method] : kWords) {
     words.append(words.empty() ? "" : ", ").append(word);
@@ -44,7 +44,7 @@ void parse_transparency(const std::string& text, TransparencyOptions& options) {
     }
   if (!text.starts_with(kFilter))
     throw UsageError("--transparency",
-                     "expected one of " + transparency_words() + ", got '" + text + "'");
+                     "expected one of " + transparency_list() + ", got '" + text + "'");
   options.method = Transparency::filter;
   options.filter =
       parse_integer("--transparency", std::string_view(text).substr(kFilter.size()), 1, 64);

@@ -1,19 +1,19 @@
-// The words of --transparency, and the picture of --show-errors.
+// The names of --transparency, and the picture of --show-errors.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include <rastrum/core/image.hpp>
-#include <rastrum/raster/options.hpp>
+#include <rastrum/raster/frame/options.hpp>
 
 namespace rastrum::cli {
 
 /// A name of Transparency, or filter:K with K from 1 to 64, into `options`. Throws UsageError that
 /// lists them.
 void parse_transparency(const std::string& text, TransparencyOptions& options);
-/// The words that parse_transparency knows.
-[[nodiscard]] std::string transparency_words();
+/// The names that parse_transparency knows.
+[[nodiscard]] std::string transparency_list();
 
 /// A word for each value of Transparency, in its order; the filter without its number.
 [[nodiscard]] std::vector<std::string> transparency_names();

@@ -55,8 +55,8 @@ Image<T> InPlace::drawn(const MeshesInPlace& meshes, ImageView<T> Targets::*targ
   return image;
 }
 
-Image<std::uint64_t> InPlace::words(const MeshesInPlace& meshes, FrameStats& stats) {
-  return drawn(meshes, &Targets::words, stats);
+Image<std::uint64_t> InPlace::keys(const MeshesInPlace& meshes, FrameStats& stats) {
+  return drawn(meshes, &Targets::keys, stats);
 }
 Image<std::int64_t> InPlace::ids(const MeshesInPlace& meshes, FrameStats& stats) {
   return drawn(meshes, &Targets::ids, stats);

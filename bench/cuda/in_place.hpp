@@ -36,8 +36,8 @@ class InPlace {
 
   /// A frame that ends in 8-bit colours.
   FrameStats draw(const MeshesInPlace& meshes);
-  /// A frame that ends in visibility words, or in ids.
-  [[nodiscard]] Image<std::uint64_t> words(const MeshesInPlace& meshes, FrameStats& stats);
+  /// A frame that ends in visibility keys, or in ids.
+  [[nodiscard]] Image<std::uint64_t> keys(const MeshesInPlace& meshes, FrameStats& stats);
   [[nodiscard]] Image<std::int64_t> ids(const MeshesInPlace& meshes, FrameStats& stats);
 
  private:

@@ -9,7 +9,7 @@ namespace {
 // 4096² (pixels) to 4.4 million (primitives), but for a soup of a million large ones, whose samples
 // nobody knows before.
 constexpr double kHostPrimitive_ns = 50, kHostPixel_ns = 4;
-// Of an A100, guessed: a billion triangles a second; some 30 bytes a pixel of words, colours and
+// Of an A100, guessed: a billion triangles a second; some 30 bytes a pixel of keys, colours and
 // what is read again, at 1.5 TB/s.
 constexpr double kDevicePrimitive_ns = 1, kDevicePixel_ns = 0.02;
 /// Of a frame in one band: scans, sizes that come back, shading.
@@ -36,7 +36,7 @@ FrameWork device_work(const raster::FrameRequest& request) {
       static_cast<std::uint64_t>(request.width) * static_cast<std::uint64_t>(request.height);
   work.bytes += pixels * (bytes_a_pixel(t.color8) + bytes_a_pixel(t.color) +
                           bytes_a_pixel(t.depth) + bytes_a_pixel(t.ids) +
-                          bytes_a_pixel(t.overdraw) + bytes_a_pixel(t.words) * (t.load ? 2 : 1));
+                          bytes_a_pixel(t.overdraw) + bytes_a_pixel(t.keys) * (t.load ? 2 : 1));
   work.what.append(std::to_string(primitives))
       .append(" primitives at ")
       .append(std::to_string(request.width))

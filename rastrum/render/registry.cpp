@@ -8,8 +8,8 @@
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/raster/cuda/rasterizer.hpp>
-#include <rastrum/raster/rasterizer.hpp>
-#include <rastrum/raster/reference.hpp>
+#include <rastrum/raster/frame/rasterizer.hpp>
+#include <rastrum/raster/frame/reference.hpp>
 #include <rastrum/render/device_work.hpp>
 #include <rastrum/render/registry.hpp>
 #include <rastrum/transparency/layers.hpp>
@@ -86,18 +86,18 @@ std::string why(const RenderOptions& options, bool layers) {
   if (options.rasterizer == "auto")
     text.append("auto takes ")
         .append(raster::coverages().front().name)
-        .append(": threads own bins, whose words stay in cache and which skip what is hidden");
+        .append(": threads own bins, whose keys stay in cache and which skip what is hidden");
   if (layers)
     text.append(text.empty() ? "" : "; ")
         .append("layers, because something is translucent or pixels have several samples");
   else if (options.visibility == "auto")
     text.append(text.empty() ? "auto takes " : "; ")
         .append(raster::visibilities().front().name)
-        .append(": a plain maximum where a thread owns the words, and shading once a pixel");
+        .append(": a plain maximum where a thread owns the keys, and shading once a pixel");
   return text.empty() ? "as asked for" : text;
 }
 
-/// Whether words are not enough: something is translucent, or pixels have several samples.
+/// Whether keys are not enough: something is translucent, or pixels have several samples.
 bool needs_layers(const raster::FrameRequest& request) {
   return request.samples > 1 || blends(request.draws, request.transparency);
 }
@@ -267,7 +267,7 @@ DrawFrame make_rasterizer(const RenderOptions& options, MemoryAccount& memory,
   };
   const bool is_asked_for = options.visibility != "auto";
   return [rasterizer = make(visibility), layered = std::shared_ptr<raster::Rasterizer>(), make,
-          &coverage, is_asked_for, why_words = why(options, false),
+          &coverage, is_asked_for, why_keys = why(options, false),
           why_layers = why(options, true)](raster::FrameRequest& request) mutable {
     const bool layers = needs_layers(request);
     if (layers) {
@@ -275,7 +275,7 @@ DrawFrame make_rasterizer(const RenderOptions& options, MemoryAccount& memory,
       if (!layered) layered = make(transparency::layers());
     }
     FrameStats stats = (layers ? layered : rasterizer)->render(request);
-    stats.why = layers ? why_layers : why_words;
+    stats.why = layers ? why_layers : why_keys;
     return stats;
   };
 }

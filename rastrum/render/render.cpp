@@ -12,14 +12,14 @@
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/turn.hpp>
 #include <rastrum/raster/cuda/rasterizer.hpp>
-#include <rastrum/raster/interpolate.hpp>
-#include <rastrum/raster/mixed_draws.hpp>
-#include <rastrum/raster/over_picture.hpp>
-#include <rastrum/raster/shaders/alpha.hpp>
-#include <rastrum/raster/shaders/lit.hpp>
-#include <rastrum/raster/shaders/material.hpp>
-#include <rastrum/raster/shaders/texture.hpp>
-#include <rastrum/raster/transform_source.hpp>
+#include <rastrum/raster/draws/mixed_draws.hpp>
+#include <rastrum/raster/draws/over_picture.hpp>
+#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/shade/alpha.hpp>
+#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/shade/lit.hpp>
+#include <rastrum/raster/shade/material.hpp>
+#include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/render/registry.hpp>
 
 namespace rastrum {
@@ -66,7 +66,7 @@ void check_targets(const Targets& targets, const RenderOptions& o) {
   check_target(targets.depth, o, "depth");
   check_target(targets.ids, o, "ids");
   check_target(targets.overdraw, o, "overdraw");
-  check_target(targets.words, o, "words");
+  check_target(targets.keys, o, "keys");
   check_target(targets.errors, o, "errors");
   for (const ImageView<Vec4>& extra : targets.extra) {
     if (extra.empty()) throw Error(Errc::invalid_argument, "an extra target is empty");
@@ -153,7 +153,7 @@ void check_in_place(const SceneView& scene, const Targets& targets, Shader shade
   require(o.opacity == 1 && o.samples == 1, "surfaces must be opaque, with one sample a pixel");
   require(targets.overdraw.empty() && targets.errors.empty() && targets.extra.empty() &&
               !targets.load && !targets.over,
-          "of the targets there are color8, color, depth, ids and words, in one pass");
+          "of the targets there are color8, color, depth, ids and keys, in one pass");
 }
 
 void check_over(const Targets& targets, const RenderOptions& o) {
@@ -161,7 +161,7 @@ void check_over(const Targets& targets, const RenderOptions& o) {
     if (!ok) throw Error(Errc::invalid_argument, what);
   };
   require(!targets.depth.empty(), "to draw over a picture its depth is needed");
-  require(!targets.load, "a pass that loads words knows what it draws over by them");
+  require(!targets.load, "a pass that loads keys knows what it draws over by them");
   require(o.samples == 1, "a picture that is drawn over has one sample a pixel");
 }
 
@@ -350,9 +350,9 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Blo
     throw Error(Errc::invalid_argument, std::to_string(targets.extra.size()) +
                                             " extra targets, but the shader has " +
                                             std::to_string(outputs) + " outputs beside its colour");
-  if (targets.load && targets.words.empty())
+  if (targets.load && targets.keys.empty())
     throw Error(Errc::invalid_argument,
-                "a pass that loads needs the visibility words of the passes before");
+                "a pass that loads needs the visibility keys of the passes before");
   if (targets.load && (blends(draws, o.transparency) || o.samples > 1))
     throw Error(Errc::invalid_argument,
                 "a pass that loads can neither blend translucent surfaces over what the passes "

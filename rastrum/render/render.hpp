@@ -12,8 +12,8 @@
 
 #include <rastrum/core/image.hpp>
 #include <rastrum/parallel/device.hpp>
-#include <rastrum/raster/geometry.hpp>
-#include <rastrum/raster/options.hpp>
+#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/frame/options.hpp>
 #include <rastrum/scene/scene.hpp>
 
 namespace rastrum {
@@ -105,7 +105,7 @@ class Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   /// Draws `scene` seen by `camera` into `targets`. What is translucent (RenderOptions::opacity,
-  /// AlphaMode::blend, vertex alpha) is blended unless transparency is `none`; ids, depth and words
+  /// AlphaMode::blend, vertex alpha) is blended unless transparency is `none`; ids, depth and keys
   /// are those of the nearest surface, whatever its alpha.
   /// Meshes without normals are shaded with face normals (see vertex_normals for smooth ones).
   /// Cost: O(vertices + triangles + covered samples). Throws Error{invalid_argument} naming an
@@ -115,13 +115,13 @@ class Renderer {
   FrameStats render(const SceneView& scene, const Camera& camera, const Targets& targets,
                     std::stop_token stop = {});
 
-  /// The programmable form: draws of any vertex source with any shader (raster/program.hpp makes
-  /// both from a caller's functions) and a fragment test for the draws that ask for it: each by its
-  /// own (Draw::shader, Draw::test), where it has none by `shader` and `test` (null: none). So
-  /// programs and built-in shaders meet in one frame, with layers, samples and extra targets too;
-  /// outputs that a draw's shader does not have are 0. Draws whose flags have raster::kTranslucent
-  /// are blended by the alpha that the shader returns; opacity is the shader's business here.
-  /// Throws as render(), Error{invalid_argument} naming the draw.
+  /// The programmable form: draws of any vertex source with any shader (raster/draws/program.hpp
+  /// makes both from a caller's functions) and a fragment test for the draws that ask for it: each
+  /// by its own (Draw::shader, Draw::test), where it has none by `shader` and `test` (null: none).
+  /// So programs and built-in shaders meet in one frame, with layers, samples and extra targets
+  /// too; outputs that a draw's shader does not have are 0. Draws whose flags have
+  /// raster::kTranslucent are blended by the alpha that the shader returns; opacity is the shader's
+  /// business here. Throws as render(), Error{invalid_argument} naming the draw.
   FrameStats draw(std::span<raster::Draw> draws, const raster::BlockShader& shader,
                   const raster::FragmentTest* test, const Targets& targets,
                   std::stop_token stop = {});

@@ -1,4 +1,4 @@
-// Lines from meshes, to be drawn with Topology::lines (raster/geometry.hpp): wireframes and
+// Lines from meshes, to be drawn with Topology::lines (raster/draws/geometry.hpp): wireframes and
 // normals, as in paper 1 (render_wireframe, render_normals; section C.1.5). Each edge is here once,
 // however many triangles share it.
 #pragma once

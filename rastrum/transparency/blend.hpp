@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <memory>
 
-#include <rastrum/raster/color.hpp>
-#include <rastrum/raster/options.hpp>
+#include <rastrum/raster/frame/options.hpp>
+#include <rastrum/raster/shade/color.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>
 
@@ -14,7 +14,7 @@ namespace rastrum::transparency {
 
 /// A plane of fragments: at most one a pixel. Pixels outside of `mask` hold anything.
 struct Layer {
-  const std::uint64_t* words;
+  const std::uint64_t* keys;
   std::uint64_t mask;
   const raster::BlockColors& colors;  ///< premultiplied
 };

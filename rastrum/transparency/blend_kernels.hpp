@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include <rastrum/raster/color.hpp>
-#include <rastrum/raster/options.hpp>
+#include <rastrum/raster/frame/options.hpp>
+#include <rastrum/raster/shade/color.hpp>
 
 namespace rastrum::transparency {
 

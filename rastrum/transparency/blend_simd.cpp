@@ -8,7 +8,7 @@
 
 #include <bit>
 
-#include <rastrum/raster/lanes-inl.hpp>
+#include <rastrum/raster/kernels/lanes-inl.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
 #include <rastrum/transparency/over.hpp>
 

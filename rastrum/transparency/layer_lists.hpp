@@ -5,7 +5,7 @@
 // depth filter: what lies farther back has left the filter and is blended already. Where that was
 // too early the paper leaves the pixel wrong; here the pixel is noted, and its list can be sorted.
 //
-// The lists are kept as planes: plane k has the k-th word of every pixel, so that a plane is shaded
+// The lists are kept as planes: plane k has the k-th key of every pixel, so that a plane is shaded
 // like a visible surface, and blended, in vectors of pixels. The paper keeps no lists but blends
 // what falls out of the filter; so do planes, only later.
 //
@@ -20,16 +20,16 @@
 #include <type_traits>
 
 #include <rastrum/core/memory.hpp>
-#include <rastrum/raster/piece.hpp>
+#include <rastrum/raster/setup/piece.hpp>
 
 namespace rastrum::transparency {
 
 enum class LayerOrder : std::uint8_t {
-  depth,      ///< nearest first, the first submitted first at equal depths: falling words
+  depth,      ///< nearest first, the first submitted first at equal depths: falling keys
   submission  ///< rising ids
 };
 
-/// `Owner`: what is kept beside each word, or NoOwner.
+/// `Owner`: what is kept beside each key, or NoOwner.
 struct NoOwner {};
 template <class Owner = NoOwner>
 class LayerLists {
@@ -59,9 +59,9 @@ class LayerLists {
   }
 
   /// Adds a fragment of pixel i. O(filter), O(log capacity) amortized where its list is full.
-  void insert(int i, std::uint64_t word, Owner owner = {}) {
+  void insert(int i, std::uint64_t key, Owner owner = {}) {
     const std::uint64_t bit = std::uint64_t{1} << i;
-    const std::uint64_t own = key(word);
+    const std::uint64_t own = sort_key(key);
     if (own >= before_[i]) return;
     if (own < cutoff_[i]) {
       left_ |= bit;
@@ -69,7 +69,7 @@ class LayerLists {
     }
     if (counts_[i] == room_ && !grow()) {
       halve(i);
-      insert(i, word, owner);
+      insert(i, key, owner);
       return;
     }
     const std::size_t n = counts_[i]++;
@@ -78,13 +78,13 @@ class LayerLists {
     [[maybe_unused]] Owner* const owners = kOwned ? owners_.data() + i : nullptr;
     const std::size_t first = n > filter_ ? n - filter_ : 0;
     std::size_t k = n;
-    for (; k > first && key(column[(k - 1) * 64]) < own; --k) {
+    for (; k > first && sort_key(column[(k - 1) * 64]) < own; --k) {
       column[k * 64] = column[(k - 1) * 64];
       if constexpr (kOwned) owners[k * 64] = owners[(k - 1) * 64];
     }
-    column[k * 64] = word;
+    column[k * 64] = key;
     if constexpr (kOwned) owners[k * 64] = owner;
-    if (k == first && first > 0 && key(column[(k - 1) * 64]) < own) misplaced_ |= bit;
+    if (k == first && first > 0 && sort_key(column[(k - 1) * 64]) < own) misplaced_ |= bit;
   }
 
   /// Sorts the lists of misplaced fragments.
@@ -94,7 +94,7 @@ class LayerLists {
 
   /// Planes that any pixel has.
   [[nodiscard]] std::size_t depth() const { return *std::max_element(counts_, counts_ + 64); }
-  /// 64 words; those outside of `mask` are of no fragment. 64-byte aligned.
+  /// 64 keys; those outside of `mask` are of no fragment. 64-byte aligned.
   [[nodiscard]] const std::uint64_t* plane(std::size_t k) const { return planes_.data() + k * 64; }
   /// 64 owners, likewise.
   [[nodiscard]] const Owner* owners(std::size_t k) const { return owners_.data() + k * 64; }
@@ -103,7 +103,7 @@ class LayerLists {
   [[nodiscard]] std::uint64_t misplaced() const { return misplaced_; }
 
  private:
-  [[nodiscard]] std::uint64_t key(std::uint64_t word) const { return word & order_mask_; }
+  [[nodiscard]] std::uint64_t sort_key(std::uint64_t key) const { return key & order_mask_; }
 
   void clear() {
     std::fill_n(counts_, 64, 0U);
@@ -125,7 +125,7 @@ class LayerLists {
     const std::uint64_t bit = std::uint64_t{1} << i;
     sort_column(i);
     const std::size_t kept = counts_[i] / 2;
-    cutoff_[i] = key(plane(kept - 1)[i]);
+    cutoff_[i] = sort_key(plane(kept - 1)[i]);
     for (std::size_t k = kept; k < counts_[i]; ++k) masks_[k] &= ~bit;
     counts_[i] = static_cast<std::uint32_t>(kept);
     left_ |= bit;
@@ -135,20 +135,21 @@ class LayerLists {
     const auto place = [i](std::size_t k) { return k * 64 + static_cast<std::size_t>(i); };
     column_.reserve(n);
     for (std::size_t k = 0; k < n; ++k) {
-      column_[k].word = planes_[place(k)];
+      column_[k].key = planes_[place(k)];
       if constexpr (kOwned) column_[k].owner = owners_[place(k)];
     }
-    std::stable_sort(column_.data(), column_.data() + n,
-                     [this](const Entry& a, const Entry& b) { return key(a.word) > key(b.word); });
+    std::stable_sort(column_.data(), column_.data() + n, [this](const Entry& a, const Entry& b) {
+      return sort_key(a.key) > sort_key(b.key);
+    });
     for (std::size_t k = 0; k < n; ++k) {
-      planes_[place(k)] = column_[k].word;
+      planes_[place(k)] = column_[k].key;
       if constexpr (kOwned) owners_[place(k)] = column_[k].owner;
     }
   }
 
   static constexpr bool kOwned = !std::is_same_v<Owner, NoOwner>;
   struct Entry {
-    std::uint64_t word;
+    std::uint64_t key;
     [[no_unique_address]] Owner owner;
   };
 
@@ -158,8 +159,8 @@ class LayerLists {
   std::size_t allocated_ = 0, capacity_ = 0, room_ = 0, filter_ = 0;
   std::uint64_t order_mask_ = 0;
   std::uint32_t counts_[64] = {};
-  std::uint64_t before_[64] = {};  ///< keys from here on are in earlier windows, 0: all are
-  std::uint64_t cutoff_[64] = {};  ///< keys below are left to the next window
+  std::uint64_t before_[64] = {};  ///< sort_keys from here on are in earlier windows, 0: all are
+  std::uint64_t cutoff_[64] = {};  ///< sort_keys below are left to the next window
   std::uint64_t left_ = 0, misplaced_ = 0;
 };
 

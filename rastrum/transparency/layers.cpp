@@ -15,8 +15,8 @@
 
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/parallel/stop.hpp>
-#include <rastrum/raster/resolve.hpp>
-#include <rastrum/raster/setup.hpp>
+#include <rastrum/raster/resolve/resolve.hpp>
+#include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/raster/visibility/atomic.hpp>
 #include <rastrum/transparency/blend.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
@@ -42,7 +42,7 @@ constexpr std::uint64_t kFewSamples = 4 * 64;
 /// Layers at once: 16 MiB a thread.
 constexpr std::size_t kMostPlanes = std::size_t{1} << 15;
 constexpr std::size_t kLeastPlanes = 64;
-/// A word and an owner for each pixel, and the mask.
+/// A key and an owner for each pixel, and the mask.
 constexpr std::uint64_t kPlaneBytes = 64 * 12 + 8;
 
 class LayersRegion final : public raster::Region {
@@ -91,7 +91,7 @@ class LayersRegion final : public raster::Region {
 
   void blocks(std::size_t chunk, const Piece* pieces, std::span<const Block> blocks) override {
     for (std::size_t i = 0; i < blocks.size();) {
-      // With several samples a pixel the words of the surface are not enough for opaque ones.
+      // With several samples a pixel the keys of the surface are not enough for opaque ones.
       const auto is_opaque = [&](const Block& b) {
         return samples_ == 1 && (pieces[b.piece].flags & raster::kTranslucent) == 0;
       };
@@ -124,7 +124,7 @@ class LayersRegion final : public raster::Region {
       MicroRecord* out = micro_.room(end - i);
       for (const BinFragment& f : fragments.subspan(i, end - i)) {
         const std::uint32_t block = f.pixel / 64 % (kBlocks * kBlocks);
-        *out++ = {f.word, block / kBlocks * columns + block % kBlocks - first, f.pixel % 64};
+        *out++ = {f.key, block / kBlocks * columns + block % kBlocks - first, f.pixel % 64};
       }
       micro_.added(end - i);
       i = end;
@@ -180,17 +180,17 @@ class LayersRegion final : public raster::Region {
     if (shader_ != nullptr) packed_.shade(context_, *shader_, blend_->opaque_at());
     for (int by = grid.by; by < grid.by + grid.rows; ++by)
       for (int bx = grid.bx; bx < grid.bx + grid.columns; ++bx) {
-        std::uint64_t* const words = surface_.block(bx, by);
+        std::uint64_t* const keys = surface_.block(bx, by);
         BlockColors& out = *surface_.colors_of(bx, by);
         const bool any = packed_.any(bx, by);
-        shade_opaque(words, bx, by, any ? behind_ : out);
+        shade_opaque(keys, bx, by, any ? behind_ : out);
         if (!any) continue;
         if (shader_ != nullptr) {
           blend_->begin(behind_);
           packed_.blend(bx, by, *blend_);
           blend_->finish(out);
         }
-        packed_.raise(bx, by, words);
+        packed_.raise(bx, by, keys);
       }
     LayerCounts counts;
     counts.fragments = packed_.fragments();
@@ -201,17 +201,17 @@ class LayersRegion final : public raster::Region {
 
   void resolve_block(int bx, int by, std::span<Record> records,
                      std::span<const MicroRecord> micro) {
-    std::uint64_t* const words = surface_.block(bx, by);
+    std::uint64_t* const keys = surface_.block(bx, by);
     BlockColors& out = *surface_.colors_of(bx, by);
     if (samples_ > 1) {
       note(bx, by,
            sampled_.resolve(context_, shader_, *blend_, records, bx, by, filter(), planes_,
-                            made_for_.method != Transparency::filter, words, out));
+                            made_for_.method != Transparency::filter, keys, out));
       return;
     }
     if (resolve_packed({bx, by, 1, 1, block_number(bx, by)}, records, micro)) return;
     BlockColors& behind = records.empty() && micro.empty() ? out : behind_;
-    shade_opaque(words, bx, by, behind);
+    shade_opaque(keys, bx, by, behind);
     if (&behind == &out) return;
 
     const LayerOrder order = blend_->order();
@@ -219,14 +219,14 @@ class LayersRegion final : public raster::Region {
     const bool sorted = order == LayerOrder::depth && made_for_.method != Transparency::filter;
     LayerCounts counts;
     std::uint64_t nearest[64];
-    std::copy_n(words, 64, nearest);
+    std::copy_n(keys, 64, nearest);
     blend_->begin(behind);
     for (int pass = 0; pass < blend_->passes(); ++pass) {
       blend_->begin_pass(pass);
       lists_.restart(order, filter(), planes_);
       std::uint64_t finished = 0;
       do {
-        fill_lists(words, records, micro, bx, by);
+        fill_lists(keys, records, micro, bx, by);
         if (made_for_.method != Transparency::filter) lists_.sort();
         const std::size_t depth = lists_.depth();
         for (std::size_t k = 0; k < depth; ++k) {
@@ -246,7 +246,7 @@ class LayersRegion final : public raster::Region {
     }
     note(bx, by, counts);
     blend_->finish(out);
-    std::copy_n(nearest, 64, words);
+    std::copy_n(nearest, 64, keys);
   }
 
   [[nodiscard]] std::size_t filter() const {
@@ -254,21 +254,21 @@ class LayersRegion final : public raster::Region {
     return kExactFilter;
   }
 
-  void fill_lists(const std::uint64_t* words, std::span<const Record> records,
+  void fill_lists(const std::uint64_t* keys, std::span<const Record> records,
                   std::span<const MicroRecord> micro, int bx, int by) {
     alignas(64) std::uint64_t piece_words[64];
     for (std::size_t k = 0; k < records.size(); ++k) {
       const Record& r = records[order_[k] & 0xFFFFFFFFU];
-      context_.kernel->words(
+      context_.kernel->keys(
           *r.piece, {0, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), r.mask},
           piece_words);
       for (std::uint64_t m = r.mask; m != 0; m &= m - 1) {
         const int i = std::countr_zero(m);
-        if (piece_words[i] > words[i]) lists_.insert(i, piece_words[i]);
+        if (piece_words[i] > keys[i]) lists_.insert(i, piece_words[i]);
       }
     }
     for (const MicroRecord& f : micro)
-      if (f.word > words[f.pixel]) lists_.insert(static_cast<int>(f.pixel), f.word);
+      if (f.key > keys[f.pixel]) lists_.insert(static_cast<int>(f.pixel), f.key);
   }
 
   /// The filter's errors are those of sorted pieces.
@@ -293,30 +293,30 @@ class LayersRegion final : public raster::Region {
     if (sort) std::sort(order_.data(), order_.data() + records.size());
   }
 
-  static void raise(std::uint64_t* nearest, const std::uint64_t* words, std::uint64_t mask) {
+  static void raise(std::uint64_t* nearest, const std::uint64_t* keys, std::uint64_t mask) {
     for (std::uint64_t m = mask; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
-      nearest[i] = std::max(nearest[i], words[i]);
+      nearest[i] = std::max(nearest[i], keys[i]);
     }
   }
 
-  const BlockColors& shade(const std::uint64_t* words, std::uint64_t mask, int bx, int by) {
+  const BlockColors& shade(const std::uint64_t* keys, std::uint64_t mask, int bx, int by) {
     if (shader_ != nullptr &&
         shader_->shade(*context_.frame,
-                       {words, mask, bx * kBlockSize, by * kBlockSize, context_.shader_scratch},
+                       {keys, mask, bx * kBlockSize, by * kBlockSize, context_.shader_scratch},
                        context_.request->isa, colors_))
       std::fill_n(colors_.a, 64, 1.0F);
     return colors_;
   }
 
   /// The opaque surface, and nothing where there is none.
-  void shade_opaque(const std::uint64_t* words, int bx, int by, BlockColors& out) {
+  void shade_opaque(const std::uint64_t* keys, int bx, int by, BlockColors& out) {
     const std::uint64_t covered =
-        context_.kernel->covered(words) &
+        context_.kernel->covered(keys) &
         raster::samples_inside({0, 0, context_.request->width, context_.request->height}, bx, by);
     if (covered != ~std::uint64_t{0}) out = {};
     if (covered == 0 || shader_ == nullptr) return;
-    const BlockColors& colors = shade(words, covered, bx, by);
+    const BlockColors& colors = shade(keys, covered, bx, by);
     for (std::uint64_t m = covered; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
       out.set(i, {colors.r[i], colors.g[i], colors.b[i], colors.a[i]});

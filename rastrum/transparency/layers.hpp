@@ -8,7 +8,7 @@ namespace rastrum::transparency {
 
 /// Records the blocks of translucent pieces and draws opaque ones as `atomic` does; at the end of a
 /// region it blends, block by block, by FrameRequest::transparency. Only for regions that one
-/// thread owns. The words become those of the nearest surface, translucent or not.
+/// thread owns. The keys become those of the nearest surface, translucent or not.
 ///
 /// Counters: "translucent fragments" that opaque surfaces do not hide, "layer blocks" (a piece's
 /// part of an 8 × 8 block), "deepest" (most fragments of a pixel), "windows" (walks over a block's

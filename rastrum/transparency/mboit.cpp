@@ -15,7 +15,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <rastrum/raster/piece.hpp>
+#include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/transparency/approximations.hpp>
 
 namespace rastrum::transparency {
@@ -115,7 +115,7 @@ class MomentBased final : public LayerBlend {
   std::uint64_t layer(const Layer& l) override {
     for (std::uint64_t m = l.mask; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
-      const double d = depth(l.words[i]);
+      const double d = depth(l.keys[i]);
       if (pass_ == 0) {
         nearest_ = std::max(nearest_, d);
         farthest_ = std::min(farthest_, d);
@@ -151,8 +151,8 @@ class MomentBased final : public LayerBlend {
  private:
   using Moments = std::array<double, 2 * n + 1>;
 
-  static double depth(std::uint64_t word) {
-    const auto d = std::bit_cast<float>(static_cast<std::uint32_t>(word >> raster::kIdBits));
+  static double depth(std::uint64_t key) {
+    const auto d = std::bit_cast<float>(static_cast<std::uint32_t>(key >> raster::kIdBits));
     return std::max(static_cast<double>(d), 1e-30);
   }
   /// −1 near, 1 far.

@@ -14,7 +14,7 @@ constexpr int kLayers = 4;
 
 /// Premultiplied colour, and how much is seen through it.
 struct Blended {
-  std::uint64_t word = 0;
+  std::uint64_t key = 0;
   float r = 0, g = 0, b = 0, through = 1;
 
   void put_before(const Blended& o) {
@@ -36,10 +36,10 @@ class MultiLayer final : public LayerBlend {
     for (std::uint64_t m = l.mask; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
       Blended(&kept)[kLayers] = pixels_[i];
-      Blended fragment{l.words[i], l.colors.r[i], l.colors.g[i], l.colors.b[i], 1 - l.colors.a[i]};
-      // What is not taken goes on to the next place; empty ones have word 0.
+      Blended fragment{l.keys[i], l.colors.r[i], l.colors.g[i], l.colors.b[i], 1 - l.colors.a[i]};
+      // What is not taken goes on to the next place; empty ones have key 0.
       for (Blended& place : kept)
-        if (fragment.word > place.word) std::swap(fragment, place);
+        if (fragment.key > place.key) std::swap(fragment, place);
       kept[kLayers - 1].put_before(fragment);
     }
     return 0;

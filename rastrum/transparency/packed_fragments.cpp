@@ -12,10 +12,10 @@ using raster::BlockColors;
 using raster::kBlockSize;
 using raster::kIdMask;
 
-/// As many as a list's length allows, with their keys: 64 k fragments were a little faster than
-/// half of them.
+/// As many as a list's length allows, with their sort_keys: 64 k fragments were a little faster
+/// than half of them.
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 22;
-/// Word, pixel, colour, and what is kept a bit a fragment.
+/// Key, pixel, colour, and what is kept a bit a fragment.
 constexpr std::uint64_t kFragmentBytes = 8 + 2 + sizeof(Vec4) + 1;
 /// A pixel's list is of 16-bit length.
 constexpr std::size_t kMostFragments = 65535;
@@ -45,14 +45,14 @@ bool PackedFragments::collect(std::span<const Record> records, std::span<const M
   for (const Record& r : records) most += static_cast<std::size_t>(parallel::popcount(r.mask));
   if (most > kMostFragments || most * kFragmentBytes > most_bytes_) return false;
   // Shaders take 64 at a time.
-  words_.reserve(most + kPackSlack + 64);
+  keys_.reserve(most + kPackSlack + 64);
   pixels_.reserve(most + kPackSlack + 64);
   for (int y = 0; y < grid.rows; ++y)
     for (int x = 0; x < grid.columns; ++x) {
-      const std::uint64_t* const words = opaque.block(grid.bx + x, grid.by + y);
-      const bool any = std::any_of(words, words + 64, [](std::uint64_t w) { return w != 0; });
+      const std::uint64_t* const keys = opaque.block(grid.bx + x, grid.by + y);
+      const bool any = std::any_of(keys, keys + 64, [](std::uint64_t w) { return w != 0; });
       const int block = y * grid.columns + x;
-      opaque_[block] = any ? words : nullptr;
+      opaque_[block] = any ? keys : nullptr;
       first_pixel_[block] = static_cast<std::uint16_t>((y * kPackedPitch + x) * kBlockSize);
     }
   count_ = 0;
@@ -62,7 +62,7 @@ bool PackedFragments::collect(std::span<const Record> records, std::span<const M
   std::size_t m = 0;
   for (const Record& r : records) {
     const std::size_t begin = m;
-    while (m < micro.size() && (micro[m].word & kIdMask) > r.piece->low) ++m;
+    while (m < micro.size() && (micro[m].key & kIdMask) > r.piece->low) ++m;
     if (!add(micro.subspan(begin, m - begin), grid) || !add(r, grid)) return false;
   }
   return add(micro.subspan(m), grid) && deal(grid);
@@ -74,26 +74,26 @@ bool PackedFragments::add(const Record& record, const BlockGrid& grid) {
   const std::size_t n =
       kernel_->pack(*record.piece, record.mask, grid.bx * kBlockSize + first % kPackedPitch,
                     grid.by * kBlockSize + first / kPackedPitch, static_cast<std::uint32_t>(first),
-                    words_.data() + count_, pixels_.data() + count_);
+                    keys_.data() + count_, pixels_.data() + count_);
   return append(n, opaque_[block]);
 }
 
 bool PackedFragments::add(std::span<const MicroRecord> fragments, const BlockGrid& grid) {
-  std::uint64_t* const words = words_.data();
+  std::uint64_t* const keys = keys_.data();
   std::uint16_t* const pixels = pixels_.data();
   std::uint64_t last_low = last_low_;
   std::size_t n = count_;
   for (const MicroRecord& f : fragments) {
-    const std::uint64_t low = f.word & kIdMask;
+    const std::uint64_t low = f.key & kIdMask;
     if (low > last_low) return false;
     if (low != last_low) first_[n / 64] |= std::uint64_t{1} << n % 64;
     last_low = low;
     const std::uint32_t block = f.block - grid.first;
-    words[n] = f.word;
+    keys[n] = f.key;
     pixels[n] = static_cast<std::uint16_t>(
         first_pixel_[block] + f.pixel / kBlockSize * kPackedPitch + f.pixel % kBlockSize);
     const std::uint64_t* const opaque = opaque_[block];
-    n += opaque == nullptr || f.word > opaque[f.pixel];
+    n += opaque == nullptr || f.key > opaque[f.pixel];
   }
   last_low_ = last_low;
   count_ = n;
@@ -102,7 +102,7 @@ bool PackedFragments::add(std::span<const MicroRecord> fragments, const BlockGri
 
 /// Takes the n fragments of one triangle in one block that were written behind the others.
 bool PackedFragments::append(std::size_t n, const std::uint64_t* opaque) {
-  const std::uint64_t low = words_[count_] & kIdMask;
+  const std::uint64_t low = keys_[count_] & kIdMask;
   if (low > last_low_) return false;
   if (low != last_low_) first_[count_ / 64] |= std::uint64_t{1} << count_ % 64;
   last_low_ = low;
@@ -112,15 +112,15 @@ bool PackedFragments::append(std::size_t n, const std::uint64_t* opaque) {
   }
   for (std::size_t end = count_ + n, f = count_; f < end; ++f) {
     const std::size_t pixel = pixels_[f];
-    words_[count_] = words_[f];
+    keys_[count_] = keys_[f];
     pixels_[count_] = pixels_[f];
     count_ +=
-        words_[f] > opaque[pixel / kPackedPitch % kBlockSize * kBlockSize + pixel % kBlockSize];
+        keys_[f] > opaque[pixel / kPackedPitch % kBlockSize * kBlockSize + pixel % kBlockSize];
   }
   return true;
 }
 
-/// Deals the fragments' keys to their pixels.
+/// Deals the fragments' sort_keys to their pixels.
 bool PackedFragments::deal(const BlockGrid& grid) {
   grid_ = grid;
   sorted_ = false;
@@ -137,13 +137,13 @@ bool PackedFragments::deal(const BlockGrid& grid) {
       deepest_ = std::max<std::size_t>(deepest_, layers);
     }
   if (count_ * kFragmentBytes + end * sizeof(std::uint64_t) > most_bytes_) return false;
-  keys_.reserve(end);
-  std::fill_n(keys_.data(), end, 0U);
+  sort_keys_.reserve(end);
+  std::fill_n(sort_keys_.data(), end, 0U);
   // The last comes first, so that counts turn into places.
   for (std::size_t f = count_; f-- > 0;) {
     const std::size_t pixel = pixels_[f];
     const std::size_t k = --left_[pixel];
-    keys_[rows_[pixel / 8].begin + k * 8 + pixel % 8] = packed_key(words_[f], f);
+    sort_keys_[rows_[pixel / 8].begin + k * 8 + pixel % 8] = packed_sort_key(keys_[f], f);
   }
   return true;
 }
@@ -153,7 +153,7 @@ void PackedFragments::sort() {
   for (int y = 0; y < grid_.rows * kBlockSize; ++y)
     for (int x = 0; x < grid_.columns; ++x)
       if (const Row& r = rows_[y * (kPackedPitch / 8) + x]; r.layers > 1)
-        kernel_->sort(keys_.data() + r.begin, r.layers);
+        kernel_->sort(sort_keys_.data() + r.begin, r.layers);
 }
 
 void PackedFragments::shade(const raster::RegionContext& context, const raster::BlockShader& shader,
@@ -184,11 +184,11 @@ void PackedFragments::shade_wanted(const raster::RegionContext& context,
     if (b + 1 < blocks)
       for (std::uint64_t m = wanted_[b + 1] & first_[b + 1]; m != 0; m &= m - 1) {
         const std::size_t number = (b + 1) * 64 + static_cast<std::size_t>(std::countr_zero(m));
-        shader.prefetch(*context.frame, raster::id_of_word(words_[number]));
+        shader.prefetch(*context.frame, raster::id_of_key(keys_[number]));
       }
     if (wanted_[b] == 0) continue;
     kernel_->points(pixels_.data() + b * 64, points_);
-    raster::VisibleBlock block{words_.data() + b * 64, wanted_[b], grid_.bx * kBlockSize,
+    raster::VisibleBlock block{keys_.data() + b * 64, wanted_[b], grid_.bx * kBlockSize,
                                grid_.by * kBlockSize, context.shader_scratch};
     block.points = &points_;
     if (shader.shade(*context.frame, block, context.request->isa, plane_))
@@ -211,9 +211,9 @@ void PackedFragments::leave_out_behind(std::uint32_t most) {
     for (int x = 0; x < grid_.columns; ++x) {
       const Row& r = rows_[y * (kPackedPitch / 8) + x];
       for (std::size_t k = std::size_t{most} * 8; k < std::size_t{r.layers} * 8; ++k) {
-        const std::uint64_t key = keys_[r.begin + k];
-        if (key == 0) continue;
-        const std::size_t number = number_of_key(key);
+        const std::uint64_t sort_key = sort_keys_[r.begin + k];
+        if (sort_key == 0) continue;
+        const std::size_t number = number_of_sort_key(sort_key);
         wanted_[number / 64] &= ~(std::uint64_t{1} << number % 64);
       }
     }
@@ -232,13 +232,14 @@ void PackedFragments::shade_by_turns(const raster::RegionContext& context,
       for (int x = 0; x < grid_.columns * kBlockSize; ++x) {
         const Row& r = rows_[(y * kPackedPitch + x) / 8];
         if (r.layers <= end) continue;
-        const std::uint64_t* const keys = keys_.data() + r.begin + x % 8;
+        const std::uint64_t* const sort_keys = sort_keys_.data() + r.begin + x % 8;
         float& through = through_[y * kPackedPitch + x];
-        for (std::size_t k = begin; k < end && keys[k * 8] != 0 && !(through <= opaque_at); ++k)
-          through *= 1 - colors_[color_of_key(keys[k * 8])].w;
+        for (std::size_t k = begin; k < end && sort_keys[k * 8] != 0 && !(through <= opaque_at);
+             ++k)
+          through *= 1 - colors_[color_of_sort_key(sort_keys[k * 8])].w;
         if (through <= opaque_at) continue;
-        for (std::size_t k = end; k < std::min(r.layers, 2 * end) && keys[k * 8] != 0; ++k) {
-          const std::size_t number = number_of_key(keys[k * 8]);
+        for (std::size_t k = end; k < std::min(r.layers, 2 * end) && sort_keys[k * 8] != 0; ++k) {
+          const std::size_t number = number_of_sort_key(sort_keys[k * 8]);
           wanted_[number / 64] |= std::uint64_t{1} << number % 64;
           any = true;
         }
@@ -254,18 +255,18 @@ bool PackedFragments::any(int bx, int by) const {
   return false;
 }
 
-void PackedFragments::raise(int bx, int by, std::uint64_t* words) const {
+void PackedFragments::raise(int bx, int by, std::uint64_t* keys) const {
   for (int y = 0; y < kBlockSize; ++y) {
     const Row& r = row(bx, by, y);
     for (std::size_t x = 0; x < 8; ++x) {
-      const std::uint64_t* const column = keys_.data() + r.begin + x;
+      const std::uint64_t* const column = sort_keys_.data() + r.begin + x;
       std::uint64_t nearest = 0;
       // Sorted, the first is.
       for (std::size_t k = 0; k < (sorted_ ? std::min(r.layers, 1U) : r.layers); ++k)
         nearest = std::max(nearest, column[k * 8]);
       if (nearest == 0) continue;
-      std::uint64_t& word = words[static_cast<std::size_t>(y) * 8 + x];
-      word = std::max(word, words_[number_of_key(nearest)]);
+      std::uint64_t& key = keys[static_cast<std::size_t>(y) * 8 + x];
+      key = std::max(key, keys_[number_of_sort_key(nearest)]);
     }
   }
 }
@@ -275,7 +276,7 @@ void PackedFragments::blend(int bx, int by, LayerBlend& blend) {
     blend.begin_pass(pass);
     for (int y = 0; y < kBlockSize; ++y) {
       const Row& r = row(bx, by, y);
-      const PackedRow packed{keys_.data() + r.begin, r.layers, colors_.data()};
+      const PackedRow packed{sort_keys_.data() + r.begin, r.layers, colors_.data()};
       if (!blend.row(packed, static_cast<std::size_t>(y) * 8)) {
         blend_planes(bx, by, blend);
         break;
@@ -293,17 +294,17 @@ void PackedFragments::blend_planes(int bx, int by, LayerBlend& blend) {
     for (int y = 0; y < kBlockSize; ++y) {
       const Row& r = row(bx, by, y);
       if (k >= r.layers) continue;
-      const std::uint64_t* const keys = keys_.data() + r.begin + std::size_t{k} * 8;
+      const std::uint64_t* const sort_keys = sort_keys_.data() + r.begin + std::size_t{k} * 8;
       const auto first = static_cast<std::size_t>(y) * 8;
-      kernel_->gather({keys, 1, colors_.data()}, first, plane_);
+      kernel_->gather({sort_keys, 1, colors_.data()}, first, plane_);
       for (std::size_t x = 0; x < 8; ++x) {
-        if (keys[x] == 0) continue;
+        if (sort_keys[x] == 0) continue;
         mask |= std::uint64_t{1} << (first + x);
-        plane_words_[first + x] = words_[number_of_key(keys[x])];
+        plane_keys_[first + x] = keys_[number_of_sort_key(sort_keys[x])];
       }
     }
     mask &= ~finished;
-    if (mask != 0) finished |= blend.layer({plane_words_, mask, plane_});
+    if (mask != 0) finished |= blend.layer({plane_keys_, mask, plane_});
   }
 }
 

@@ -29,18 +29,18 @@ struct BlockGrid {
 class PackedFragments {
  public:
   explicit PackedFragments(MemoryAccount& memory)
-      : words_(memory),
+      : keys_(memory),
         pixels_(memory),
         colors_(memory),
-        keys_(memory),
+        sort_keys_(memory),
         first_(memory),
         wanted_(memory) {}
 
-  /// Begins a region. `bytes`: what its fragments may take with their keys, 0 for the default of 4
-  /// MiB.
+  /// Begins a region. `bytes`: what its fragments may take with their sort_keys, 0 for the default
+  /// of 4 MiB.
   void begin(Isa isa, std::uint64_t bytes);
 
-  /// Collects the fragments that lie before the words of `opaque`. Returns false and collects
+  /// Collects the fragments that lie before the keys of `opaque`. Returns false and collects
   /// nothing if there are too many for the memory, or if they do not come in the order of ids.
   bool collect(std::span<const Record> records, std::span<const MicroRecord> micro,
                const BlockGrid& grid, const raster::SurfaceView& opaque);
@@ -52,8 +52,8 @@ class PackedFragments {
              float opaque_at);
   /// Whether the block has any of them.
   [[nodiscard]] bool any(int bx, int by) const;
-  /// Raises the words of a block to those of the nearest fragments.
-  void raise(int bx, int by, std::uint64_t* words) const;
+  /// Raises the keys of a block to those of the nearest fragments.
+  void raise(int bx, int by, std::uint64_t* keys) const;
   /// Blends the layers of a block, which were shaded and are in the order that `blend` wants.
   void blend(int bx, int by, LayerBlend& blend);
 
@@ -62,7 +62,7 @@ class PackedFragments {
   [[nodiscard]] std::size_t deepest() const { return deepest_; }
 
  private:
-  /// Eight pixels of a row and their keys, `layers` times 8, from keys_[begin] on.
+  /// Eight pixels of a row and their sort_keys, `layers` times 8, from sort_keys_[begin] on.
   struct Row {
     std::uint32_t begin, layers;
   };
@@ -93,14 +93,14 @@ class PackedFragments {
       kPackedPitch / raster::kBlockSize * (kPackedPitch / raster::kBlockSize);
   const std::uint64_t* opaque_[kBlocks] = {};  ///< by block of the grid; null: none
   std::uint16_t first_pixel_[kBlocks] = {};
-  std::uint64_t last_low_ = 0;  ///< of the words; ids rise as these fall
+  std::uint64_t last_low_ = 0;  ///< of the keys; ids rise as these fall
   bool sorted_ = false;
 
-  ScratchBuffer<std::uint64_t> words_;
+  ScratchBuffer<std::uint64_t> keys_;
   ScratchBuffer<std::uint16_t> pixels_;
   std::size_t count_ = 0;
   ScratchBuffer<Vec4> colors_;  ///< by number + 1
-  ScratchBuffer<std::uint64_t> keys_;
+  ScratchBuffer<std::uint64_t> sort_keys_;
   ScratchBuffer<std::uint64_t> first_,
       wanted_;  ///< a bit a fragment: first of a triangle; to be shaded
   std::size_t deepest_ = 0;
@@ -109,7 +109,7 @@ class PackedFragments {
   float through_[kPackedPitch * kPackedPitch];                   ///< by turns: seen through a pixel
   raster::ShadingPoints points_;
   raster::BlockColors plane_;
-  alignas(64) std::uint64_t plane_words_[64];
+  alignas(64) std::uint64_t plane_keys_[64];
 };
 
 }  // namespace rastrum::transparency

@@ -6,10 +6,10 @@
 #include <cstdint>
 
 #include <rastrum/core/vec.hpp>
-#include <rastrum/raster/color.hpp>
-#include <rastrum/raster/options.hpp>
-#include <rastrum/raster/piece.hpp>
-#include <rastrum/raster/samples.hpp>
+#include <rastrum/raster/draws/samples.hpp>
+#include <rastrum/raster/frame/options.hpp>
+#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/shade/color.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
 
 namespace rastrum::transparency {
@@ -20,44 +20,46 @@ inline constexpr int kPackedPitch = 64;
 /// Kernels may write this many elements beyond what they return.
 inline constexpr std::size_t kPackSlack = 8;
 
-/// A key is a fragment's depth and, in the place of an id, its number: keys of a pixel compare as
-/// words do where numbers rise with ids. 0: none.
-constexpr std::uint64_t packed_key(std::uint64_t word, std::size_t number) {
-  return (word & ~raster::kIdMask) | (raster::kIdMask - number);
+/// A sort_key is a fragment's depth and, in the place of an id, its number: sort_keys of a pixel
+/// compare as keys do where numbers rise with ids. 0: none.
+constexpr std::uint64_t packed_sort_key(std::uint64_t key, std::size_t number) {
+  return (key & ~raster::kIdMask) | (raster::kIdMask - number);
 }
-constexpr std::size_t number_of_key(std::uint64_t key) {
-  return static_cast<std::size_t>(raster::kIdMask - (key & raster::kIdMask));
+constexpr std::size_t number_of_sort_key(std::uint64_t sort_key) {
+  return static_cast<std::size_t>(raster::kIdMask - (sort_key & raster::kIdMask));
 }
 
-/// The fragments of 8 pixels: `layers` rows of 8 keys, and the colours of all fragments by number,
-/// beginning with colors[1]; colors[0] is 0.
+/// The fragments of 8 pixels: `layers` rows of 8 sort_keys, and the colours of all fragments by
+/// number, beginning with colors[1]; colors[0] is 0.
 struct PackedRow {
-  const std::uint64_t* keys;
+  const std::uint64_t* sort_keys;
   std::size_t layers;
   const Vec4* colors;
 };
 
-/// The place of a key's colour: without a branch, as 0 is that of no key.
-constexpr std::uint32_t color_of_key(std::uint64_t key) {
-  return 0U - static_cast<std::uint32_t>(key);
+/// The place of a sort_key's colour: without a branch, as 0 is that of no sort_key.
+constexpr std::uint32_t color_of_sort_key(std::uint64_t sort_key) {
+  return 0U - static_cast<std::uint32_t>(sort_key);
 }
 
 struct PackedKernels {
   /// The fragments of `piece` at the samples of `mask` in the block at pixel (x, y), whose first
-  /// pixel has the number `first`: words and pixels. Returns how many.
+  /// pixel has the number `first`: keys and pixels. Returns how many.
   std::size_t (*pack)(const raster::Piece& piece, std::uint64_t mask, int x, int y,
-                      std::uint32_t first, std::uint64_t* words, std::uint16_t* pixels) noexcept;
+                      std::uint32_t first, std::uint64_t* keys, std::uint16_t* pixels) noexcept;
 
   /// Where 64 fragments are, for a shader that takes element i to be at row i / 8, column i % 8.
   void (*points)(const std::uint16_t* pixels, raster::ShadingPoints& points) noexcept;
 
-  /// Sorts the keys of 8 pixels, each pixel's largest first: `keys` is `layers` rows of 8.
-  void (*sort)(std::uint64_t* keys, std::size_t layers) noexcept;
+  /// Sorts the sort_keys of 8 pixels, each pixel's largest first: `sort_keys` is `layers` rows
+  /// of 8.
+  void (*sort)(std::uint64_t* sort_keys, std::size_t layers) noexcept;
 
   /// 64 colours, one after the other.
   void (*interleave)(const raster::BlockColors& colors, Vec4* out) noexcept;
 
-  /// The colours of the first 8 keys of `row`: elements `first` … of `out`, 0 where there is none.
+  /// The colours of the first 8 sort_keys of `row`: elements `first` … of `out`, 0 where there is
+  /// none.
   void (*gather)(const PackedRow& row, std::size_t first, raster::BlockColors& out) noexcept;
 
   /// All layers of a row one behind the other, as BlendKernels::behind has it: elements `first` … .

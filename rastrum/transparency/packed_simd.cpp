@@ -1,8 +1,8 @@
 // Packed fragments in vectors with Highway, compiled once per instruction set.
 //
-// Keys are sorted by networks, a vector of pixels at once: lists are short, what their order is
-// cannot be predicted, and a network has no branches. Up to 8 keys it runs in registers; beyond
-// that it is Batcher's merge exchange (Knuth, TAOCP 3, 5.2.2 M), O(n log² n) for any n.
+// SortKeys are sorted by networks, a vector of pixels at once: lists are short, what their order is
+// cannot be predicted, and a network has no branches. Up to 8 sort_keys it runs in registers;
+// beyond that it is Batcher's merge exchange (Knuth, TAOCP 3, 5.2.2 M), O(n log² n) for any n.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/transparency/packed_simd.cpp"
@@ -14,8 +14,8 @@
 #include <type_traits>
 
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/raster/lanes-inl.hpp>
-#include <rastrum/raster/setup.hpp>
+#include <rastrum/raster/kernels/lanes-inl.hpp>
+#include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
@@ -32,7 +32,7 @@ HWY_INLINE F to_float(I v) {
 }
 
 std::size_t pack(const raster::Piece& p, std::uint64_t mask, int x, int y, std::uint32_t first,
-                 std::uint64_t* words, std::uint16_t* pixels) noexcept {
+                 std::uint64_t* keys, std::uint16_t* pixels) noexcept {
   constexpr float kPxPerSubpixel = 1.0F / raster::kSubpixels;
   const F32 d;
   const auto count = static_cast<std::size_t>(parallel::popcount(mask));
@@ -61,8 +61,8 @@ std::size_t pack(const raster::Piece& p, std::uint64_t mask, int x, int y, std::
     const F dx = hn::Sub(hn::Add(to_float(column), first_x), x0);
     const F dy = hn::Sub(hn::Add(to_float(row), first_y), y0);
     const F depth = hn::Add(hn::Add(z0, hn::Mul(zx, dx)), hn::Mul(zy, dy));
-    for_each_half(depth, p.low, [&](std::size_t half, const auto word) HWY_ATTR {
-      hn::StoreU(word, U64{}, words + n + half * kLanes64);
+    for_each_half(depth, p.low, [&](std::size_t half, const auto key) HWY_ATTR {
+      hn::StoreU(key, U64{}, keys + n + half * kLanes64);
     });
     const I pixel = hn::Add(base, hn::Or(hn::ShiftLeft<6>(row), column));
     hn::StoreU(hn::DemoteTo(d16, pixel), d16, pixels + n);
@@ -83,32 +83,32 @@ void points(const std::uint16_t* pixels, raster::ShadingPoints& points) noexcept
   }
 }
 
-using Keys = hn::Vec<I64>;
+using SortKeys = hn::Vec<I64>;
 
-/// Keys stay below 2^63, so they compare as signed numbers do, which AVX2 has.
-HWY_INLINE void larger_first(Keys& a, Keys& b) {
+/// SortKeys stay below 2^63, so they compare as signed numbers do, which AVX2 has.
+HWY_INLINE void larger_first(SortKeys& a, SortKeys& b) {
   const auto swaps = hn::Gt(b, a);
-  const Keys larger = hn::IfThenElse(swaps, b, a);
+  const SortKeys larger = hn::IfThenElse(swaps, b, a);
   b = hn::IfThenElse(swaps, a, b);
   a = larger;
 }
 
-HWY_INLINE Keys load_keys(const std::int64_t* column, std::size_t k) {
+HWY_INLINE SortKeys load_sort_keys(const std::int64_t* column, std::size_t k) {
   return hn::Load(I64{}, column + k * 8);
 }
-HWY_INLINE void store_keys(Keys v, std::int64_t* column, std::size_t k) {
+HWY_INLINE void store_sort_keys(SortKeys v, std::int64_t* column, std::size_t k) {
   hn::Store(v, I64{}, column + k * 8);
 }
 
 void sort_2(std::int64_t* column) {
-  Keys a = load_keys(column, 0), b = load_keys(column, 1);
+  SortKeys a = load_sort_keys(column, 0), b = load_sort_keys(column, 1);
   larger_first(a, b);
-  store_keys(a, column, 0);
-  store_keys(b, column, 1);
+  store_sort_keys(a, column, 0);
+  store_sort_keys(b, column, 1);
 }
 
 /// 5 exchanges.
-HWY_INLINE void network_4(Keys& a, Keys& b, Keys& c, Keys& d) {
+HWY_INLINE void network_4(SortKeys& a, SortKeys& b, SortKeys& c, SortKeys& d) {
   larger_first(a, b);
   larger_first(c, d);
   larger_first(a, c);
@@ -117,21 +117,22 @@ HWY_INLINE void network_4(Keys& a, Keys& b, Keys& c, Keys& d) {
 }
 
 void sort_4(std::int64_t* column, std::size_t n) {
-  Keys a = load_keys(column, 0), b = load_keys(column, 1), c = load_keys(column, 2);
-  Keys d = n > 3 ? load_keys(column, 3) : hn::Zero(I64{});
+  SortKeys a = load_sort_keys(column, 0), b = load_sort_keys(column, 1),
+           c = load_sort_keys(column, 2);
+  SortKeys d = n > 3 ? load_sort_keys(column, 3) : hn::Zero(I64{});
   network_4(a, b, c, d);
-  store_keys(a, column, 0);
-  store_keys(b, column, 1);
-  store_keys(c, column, 2);
-  if (n > 3) store_keys(d, column, 3);
+  store_sort_keys(a, column, 0);
+  store_sort_keys(b, column, 1);
+  store_sort_keys(c, column, 2);
+  if (n > 3) store_sort_keys(d, column, 3);
 }
 
 /// Two networks of 4, merged: 19 exchanges.
 void sort_8(std::int64_t* column, std::size_t n) {
   const auto load = [&](std::size_t k)
-                        HWY_ATTR { return k < n ? load_keys(column, k) : hn::Zero(I64{}); };
-  Keys a = load(0), b = load(1), c = load(2), d = load(3);
-  Keys e = load(4), f = load(5), g = load(6), h = load(7);
+                        HWY_ATTR { return k < n ? load_sort_keys(column, k) : hn::Zero(I64{}); };
+  SortKeys a = load(0), b = load(1), c = load(2), d = load(3);
+  SortKeys e = load(4), f = load(5), g = load(6), h = load(7);
   network_4(a, b, c, d);
   network_4(e, f, g, h);
   larger_first(a, e);
@@ -143,8 +144,8 @@ void sort_8(std::int64_t* column, std::size_t n) {
   larger_first(b, c);
   larger_first(d, e);
   larger_first(f, g);
-  const Keys sorted[8] = {a, b, c, d, e, f, g, h};
-  for (std::size_t k = 0; k < n; ++k) store_keys(sorted[k], column, k);
+  const SortKeys sorted[8] = {a, b, c, d, e, f, g, h};
+  for (std::size_t k = 0; k < n; ++k) store_sort_keys(sorted[k], column, k);
 }
 
 void merge_exchange(std::int64_t* column, std::size_t n) {
@@ -154,10 +155,10 @@ void merge_exchange(std::int64_t* column, std::size_t n) {
     for (;;) {
       for (std::size_t run = r; run < n - d; run += 2 * p)
         for (std::size_t i = run; i < std::min(run + p, n - d); ++i) {
-          Keys a = load_keys(column, i), b = load_keys(column, i + d);
+          SortKeys a = load_sort_keys(column, i), b = load_sort_keys(column, i + d);
           larger_first(a, b);
-          store_keys(a, column, i);
-          store_keys(b, column, i + d);
+          store_sort_keys(a, column, i);
+          store_sort_keys(b, column, i + d);
         }
       if (q == p) break;
       d = q - p;
@@ -167,9 +168,9 @@ void merge_exchange(std::int64_t* column, std::size_t n) {
   }
 }
 
-void sort(std::uint64_t* keys, std::size_t layers) noexcept {
+void sort(std::uint64_t* sort_keys, std::size_t layers) noexcept {
   for (std::size_t i = 0; i < 8; i += kLanes64) {
-    auto* const column = reinterpret_cast<std::int64_t*>(keys + i);
+    auto* const column = reinterpret_cast<std::int64_t*>(sort_keys + i);
     if (layers == 2)
       sort_2(column);
     else if (layers <= 4)
@@ -193,14 +194,14 @@ struct Colors {
 };
 
 /// Loads and a transposition, for they take a fifth of the time of four gathers (Zen 3).
-HWY_INLINE Colors load_colors(const std::uint64_t* keys, const Vec4* colors) {
+HWY_INLINE Colors load_colors(const std::uint64_t* sort_keys, const Vec4* colors) {
   const F32 d;
   const hn::RepartitionToWide<U32> wide;
   const auto color = [&](std::size_t i) HWY_ATTR {
-    const float* const at = &colors[color_of_key(keys[i])].x;
+    const float* const at = &colors[color_of_sort_key(sort_keys[i])].x;
 #if HWY_MAX_BYTES >= 32
     const hn::Half<F32> half;
-    return hn::Combine(d, hn::LoadU(half, &colors[color_of_key(keys[i + 4])].x),
+    return hn::Combine(d, hn::LoadU(half, &colors[color_of_sort_key(sort_keys[i + 4])].x),
                        hn::LoadU(half, at));
 #else
     return hn::LoadU(d, at);
@@ -220,7 +221,7 @@ HWY_INLINE Colors load_colors(const std::uint64_t* keys, const Vec4* colors) {
 void gather(const PackedRow& row, std::size_t first, raster::BlockColors& out) noexcept {
   const F32 d;
   for (std::size_t part = 0; part < 8; part += kLanes) {
-    const Colors c = load_colors(row.keys + part, row.colors);
+    const Colors c = load_colors(row.sort_keys + part, row.colors);
     hn::Store(c.r, d, out.r + first + part);
     hn::Store(c.g, d, out.g + first + part);
     hn::Store(c.b, d, out.b + first + part);
@@ -237,7 +238,7 @@ HWY_INLINE void behind_rows(const PackedRow& row, std::size_t first, float opaqu
     F r = hn::Load(d, seen.r + i), g = hn::Load(d, seen.g + i), b = hn::Load(d, seen.b + i);
     F a = hn::Load(d, seen.a + i), through = hn::Load(d, seen.through + i);
     for (std::size_t k = 0; k < row.layers; ++k) {
-      Colors c = load_colors(row.keys + k * 8 + part, row.colors);
+      Colors c = load_colors(row.sort_keys + k * 8 + part, row.colors);
       if constexpr (kStops) {
         // What a finished pixel hides may never have been shaded.
         const auto finished = hn::Le(through, hn::Set(d, opaque_at));
@@ -274,7 +275,7 @@ void before(const PackedRow& row, std::size_t first, raster::BlockColors& colors
     F r = hn::Load(d, colors.r + i), g = hn::Load(d, colors.g + i), b = hn::Load(d, colors.b + i);
     F a = hn::Load(d, colors.a + i);
     for (std::size_t k = 0; k < row.layers; ++k) {
-      const Colors c = load_colors(row.keys + k * 8 + part, row.colors);
+      const Colors c = load_colors(row.sort_keys + k * 8 + part, row.colors);
       const F rest = hn::Sub(one, c.a);
       r = hn::Add(c.r, hn::Mul(rest, r));
       g = hn::Add(c.g, hn::Mul(rest, g));
@@ -301,12 +302,12 @@ namespace rastrum::transparency {
 namespace {
 
 std::size_t pack_scalar(const raster::Piece& piece, std::uint64_t mask, int x, int y,
-                        std::uint32_t first, std::uint64_t* words, std::uint16_t* pixels) noexcept {
+                        std::uint32_t first, std::uint64_t* keys, std::uint16_t* pixels) noexcept {
   std::size_t n = 0;
   for (; mask != 0; mask &= mask - 1, ++n) {
     const int i = std::countr_zero(mask);
     const int column = i % raster::kBlockSize, row = i / raster::kBlockSize;
-    words[n] = raster::make_word(raster::depth_at(piece, x + column, y + row), piece.low);
+    keys[n] = raster::make_key(raster::depth_at(piece, x + column, y + row), piece.low);
     pixels[n] =
         static_cast<std::uint16_t>(first + static_cast<std::uint32_t>(row * kPackedPitch + column));
   }
@@ -321,13 +322,14 @@ void points_scalar(const std::uint16_t* pixels, raster::ShadingPoints& points) n
   }
 }
 
-void sort_scalar(std::uint64_t* keys, std::size_t layers) noexcept {
+void sort_scalar(std::uint64_t* sort_keys, std::size_t layers) noexcept {
   for (std::size_t i = 0; i < 8; ++i)
     for (std::size_t n = 1; n < layers; ++n) {
-      const std::uint64_t key = keys[n * 8 + i];
+      const std::uint64_t sort_key = sort_keys[n * 8 + i];
       std::size_t k = n;
-      for (; k > 0 && keys[(k - 1) * 8 + i] < key; --k) keys[k * 8 + i] = keys[(k - 1) * 8 + i];
-      keys[k * 8 + i] = key;
+      for (; k > 0 && sort_keys[(k - 1) * 8 + i] < sort_key; --k)
+        sort_keys[k * 8 + i] = sort_keys[(k - 1) * 8 + i];
+      sort_keys[k * 8 + i] = sort_key;
     }
 }
 
@@ -337,7 +339,7 @@ void interleave_scalar(const raster::BlockColors& colors, Vec4* out) noexcept {
 }
 
 const Vec4& color_at(const PackedRow& row, std::size_t k) {
-  return row.colors[color_of_key(row.keys[k])];
+  return row.colors[color_of_sort_key(row.sort_keys[k])];
 }
 
 void gather_scalar(const PackedRow& row, std::size_t first, raster::BlockColors& out) noexcept {

@@ -10,7 +10,7 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/raster/piece.hpp>
+#include <rastrum/raster/setup/piece.hpp>
 
 namespace rastrum::transparency {
 
@@ -23,7 +23,7 @@ struct Record {
 
 /// A fragment of a micro triangle.
 struct MicroRecord {
-  std::uint64_t word;
+  std::uint64_t key;
   std::uint32_t block;
   std::uint32_t pixel;  ///< 8 · row + column
 };
@@ -66,7 +66,7 @@ class ByBlock {
   std::size_t count_ = 0;
 };
 
-/// Depth of a piece at the mean of the samples of block (bx, by): the first key of the sort.
+/// Depth of a piece at the mean of the samples of block (bx, by): the first sort_key of the sort.
 [[nodiscard]] RASTRUM_HD inline float centroid_depth(const raster::Piece& piece, std::uint64_t mask,
                                                      int bx, int by) {
   const auto count = [&](std::uint64_t of) {
@@ -85,7 +85,7 @@ class ByBlock {
   return piece.z0 + piece.zx * dx + piece.zy * dy;
 }
 
-/// The high half of a key that sorts the nearest first.
+/// The high half of a sort_key that sorts the nearest first.
 [[nodiscard]] RASTRUM_HD inline std::uint64_t near_first(const raster::Piece& piece,
                                                          std::uint64_t mask, int bx, int by) {
   const float depth = centroid_depth(piece, mask, bx, by);

@@ -7,10 +7,10 @@
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/parallel/stop.hpp>
-#include <rastrum/raster/assemble.hpp>
-#include <rastrum/raster/coverage.hpp>
-#include <rastrum/raster/resolve.hpp>
-#include <rastrum/raster/stopwatch.hpp>
+#include <rastrum/raster/assemble/assemble.hpp>
+#include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/frame/stopwatch.hpp>
+#include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/transparency/blend.hpp>
 
 namespace rastrum::transparency {
@@ -20,27 +20,27 @@ using raster::BlockColors;
 using raster::kBlockSize;
 using raster::Piece;
 
-/// A triangle in a pixel: its word at each sample that it covers, and where it is shaded.
+/// A triangle in a pixel: its key at each sample that it covers, and where it is shaded.
 struct Fragment {
-  std::uint64_t words[raster::kMaxSamples] = {};  ///< 0: not covered
-  std::uint64_t shaded_word = 0;                  ///< where it is shaded
-  float dx = 0, dy = 0;                           ///< of that place, px from the centre
+  std::uint64_t keys[raster::kMaxSamples] = {};  ///< 0: not covered
+  std::uint64_t shaded_key = 0;                  ///< where it is shaded
+  float dx = 0, dy = 0;                          ///< of that place, px from the centre
   bool translucent = false;
   Vec4 color;
 };
 
 using Pixel = std::vector<Fragment>;
 
-/// The words of a primitive at one sample, by pixel.
-void add_words(const raster::FrameRequest& request, const Piece& piece,
-               std::map<std::pair<int, int>, Fragment>& pixels, int sample) {
+/// The keys of a primitive at one sample, by pixel.
+void add_keys(const raster::FrameRequest& request, const Piece& piece,
+              std::map<std::pair<int, int>, Fragment>& pixels, int sample) {
   const raster::Rect box = raster::piece_bounds(piece, {0, 0, request.width, request.height});
   for (int y = box.y0; y < box.y1; ++y) {
     const raster::Span span = raster::row_span(piece, y, box.x0, box.x1);
     for (int x = span.begin; x < span.end; ++x) {
       Fragment& f = pixels[{y, x}];
-      const std::uint64_t word = raster::make_word(raster::depth_at(piece, x, y), piece.low);
-      (sample < 0 ? f.shaded_word : f.words[sample]) = word;
+      const std::uint64_t key = raster::make_key(raster::depth_at(piece, x, y), piece.low);
+      (sample < 0 ? f.shaded_key : f.keys[sample]) = key;
     }
   }
 }
@@ -73,8 +73,8 @@ bool Scene::keeps(const raster::Draw& draw, std::uint64_t primitive, int x, int 
   points.dx[i] = f.dx;
   points.dy[i] = f.dy;
   Piece piece{};
-  piece.low = f.shaded_word & raster::kIdMask;
-  piece.z0 = std::bit_cast<float>(static_cast<std::uint32_t>(f.shaded_word >> raster::kIdBits));
+  piece.low = f.shaded_key & raster::kIdMask;
+  piece.z0 = std::bit_cast<float>(static_cast<std::uint32_t>(f.shaded_key >> raster::kIdBits));
   return request.test->test(frame, piece, block, &points) != 0;
 }
 
@@ -85,7 +85,7 @@ void Scene::add(const raster::Draw& draw, std::uint64_t primitive, FrameStats& s
   for (std::size_t s = 0; s < offsets.size(); ++s) {
     const raster::Fate here = raster::assemble_primitive(
         frame, draw, primitive,
-        [&](const Piece& p) { add_words(request, p, covered, static_cast<int>(s)); },
+        [&](const Piece& p) { add_keys(request, p, covered, static_cast<int>(s)); },
         static_cast<std::uint32_t>(s), offsets[s]);
     if (here != raster::Fate::culled) fate = here;
   }
@@ -95,24 +95,24 @@ void Scene::add(const raster::Draw& draw, std::uint64_t primitive, FrameStats& s
   // Shaded at the centre where the triangle covers it, else at the first sample that it covers.
   std::map<std::pair<int, int>, Fragment> centres;
   (void)raster::assemble_primitive(frame, draw, primitive,
-                                   [&](const Piece& p) { add_words(request, p, centres, -1); });
+                                   [&](const Piece& p) { add_keys(request, p, centres, -1); });
   for (auto& [place, fragment] : covered) {
     const auto [y, x] = place;
     const auto centre = centres.find(place);
     if (centre != centres.end()) {
-      fragment.shaded_word = centre->second.shaded_word;
+      fragment.shaded_key = centre->second.shaded_key;
     } else {
       const auto first =
-          static_cast<std::size_t>(std::find_if(fragment.words, fragment.words + offsets.size(),
+          static_cast<std::size_t>(std::find_if(fragment.keys, fragment.keys + offsets.size(),
                                                 [](std::uint64_t w) { return w != 0; }) -
-                                   fragment.words);
+                                   fragment.keys);
       constexpr float kPx = 1.0F / raster::kSubpixels;
-      fragment.shaded_word = fragment.words[first];
+      fragment.shaded_key = fragment.keys[first];
       fragment.dx = static_cast<float>(offsets[first].x) * kPx;
       fragment.dy = static_cast<float>(offsets[first].y) * kPx;
     }
     const auto samples = static_cast<std::uint32_t>(
-        std::ranges::count_if(fragment.words, [](std::uint64_t word) { return word != 0; }));
+        std::ranges::count_if(fragment.keys, [](std::uint64_t key) { return key != 0; }));
     stats.fragments += samples;
     if (!request.targets.overdraw.empty()) request.targets.overdraw(x, y) += samples;
     if (!keeps(draw, primitive, x, y, fragment)) continue;
@@ -127,14 +127,14 @@ void Scene::add(const raster::Draw& draw, std::uint64_t primitive, FrameStats& s
 
 Vec4 Scene::shade(int x, int y, const Fragment& f) {
   if (request.shader == nullptr) return {};
-  alignas(64) std::uint64_t words[64] = {};
+  alignas(64) std::uint64_t keys[64] = {};
   raster::ShadingPoints points{};
   const raster::Block block = block_of(x, y);
   const int i = std::countr_zero(block.mask);
-  words[i] = f.shaded_word;
+  keys[i] = f.shaded_key;
   points.dx[i] = f.dx;
   points.dy[i] = f.dy;
-  raster::VisibleBlock visible{words, block.mask, block.bx * kBlockSize, block.by * kBlockSize,
+  raster::VisibleBlock visible{keys, block.mask, block.bx * kBlockSize, block.by * kBlockSize,
                                scratch.data()};
   visible.points = &points;
   BlockColors colors;
@@ -142,7 +142,7 @@ Vec4 Scene::shade(int x, int y, const Fragment& f) {
   return {colors.r[i], colors.g[i], colors.b[i], opaque ? 1.0F : colors.a[i]};
 }
 
-/// The pixel's colour, in its place of `colors`; returns its word.
+/// The pixel's colour, in its place of `colors`; returns its key.
 std::uint64_t Scene::resolve(int x, int y, LayerBlend& blend, BlockColors& colors) {
   const Pixel& fragments =
       pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(request.width) +
@@ -154,33 +154,33 @@ std::uint64_t Scene::resolve(int x, int y, LayerBlend& blend, BlockColors& color
   for (int s = 0; s < samples; ++s) {
     const Fragment* surface = nullptr;
     for (const Fragment& f : fragments)
-      if (!f.translucent && f.words[s] > (surface == nullptr ? 0 : surface->words[s])) surface = &f;
-    const std::uint64_t opaque = surface == nullptr ? 0 : surface->words[s];
+      if (!f.translucent && f.keys[s] > (surface == nullptr ? 0 : surface->keys[s])) surface = &f;
+    const std::uint64_t opaque = surface == nullptr ? 0 : surface->keys[s];
     std::vector<const Fragment*> layers;
     for (const Fragment& f : fragments)
-      if (f.translucent && f.words[s] > opaque) layers.push_back(&f);
-    const std::uint64_t key =
+      if (f.translucent && f.keys[s] > opaque) layers.push_back(&f);
+    const std::uint64_t sort_key =
         blend.order() == LayerOrder::depth ? ~std::uint64_t{0} : raster::kIdMask;
     std::ranges::stable_sort(layers, [&](const Fragment* a, const Fragment* b) {
-      return (a->words[s] & key) > (b->words[s] & key);
+      return (a->keys[s] & sort_key) > (b->keys[s] & sort_key);
     });
     BlockColors behind = {}, layer = {}, out;
     if (surface != nullptr) behind.set(i, surface->color);
     blend.begin(behind);
-    alignas(64) std::uint64_t words[64] = {};
+    alignas(64) std::uint64_t keys[64] = {};
     for (int pass = 0; pass < blend.passes(); ++pass) {
       blend.begin_pass(pass);
       for (const Fragment* f : layers) {
-        words[i] = f->words[s];
+        keys[i] = f->keys[s];
         layer.set(i, f->color);
         const std::uint64_t bit = std::uint64_t{1} << i;
-        if ((blend.layer({words, bit, layer}) & bit) != 0) break;
+        if ((blend.layer({keys, bit, layer}) & bit) != 0) break;
       }
     }
     blend.finish(out);
     sum = sum + Vec4{out.r[i], out.g[i], out.b[i], out.a[i]};
     nearest = std::max(nearest, opaque);
-    for (const Fragment* f : layers) nearest = std::max(nearest, f->words[s]);
+    for (const Fragment* f : layers) nearest = std::max(nearest, f->keys[s]);
   }
   colors.set(i, samples == 1 ? sum : sum * (1.0F / static_cast<float>(samples)));
   return nearest;
@@ -234,13 +234,13 @@ FrameStats render_reference(raster::FrameRequest& request, MemoryAccount& memory
   for (int y0 = 0; y0 < request.height; y0 += kBlockSize) {
     parallel::throw_if_stopped();
     for (int x0 = 0; x0 < request.width; x0 += kBlockSize) {
-      alignas(64) std::uint64_t words[64] = {};
+      alignas(64) std::uint64_t keys[64] = {};
       BlockColors colors = {};
       for (int y = y0; y < std::min(y0 + kBlockSize, request.height); ++y)
         for (int x = x0; x < std::min(x0 + kBlockSize, request.width); ++x)
-          words[(y - y0) * kBlockSize + (x - x0)] = scene.resolve(x, y, *blend, colors);
+          keys[(y - y0) * kBlockSize + (x - x0)] = scene.resolve(x, y, *blend, colors);
       stats.pixels_covered += static_cast<std::uint64_t>(raster::resolve_block(
-          request, frame, backdrop, words, x0, y0, scene.scratch.data(), &colors));
+          request, frame, backdrop, keys, x0, y0, scene.scratch.data(), &colors));
     }
   }
   watch.lap(stats, "shade");

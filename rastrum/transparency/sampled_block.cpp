@@ -4,7 +4,7 @@
 #include <bit>
 
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/raster/resolve.hpp>
+#include <rastrum/raster/resolve/resolve.hpp>
 
 namespace rastrum::transparency {
 
@@ -14,16 +14,16 @@ using raster::Piece;
 
 template <class F>
 void SampledBlock::for_each_record(const Triangle& t, std::optional<std::uint32_t> only, F&& f) {
-  alignas(64) std::uint64_t words[64];
+  alignas(64) std::uint64_t keys[64];
   for (std::uint32_t r = t.first; r < t.end; ++r) {
     const Record& record = records_[r];
     const auto sample = static_cast<std::uint32_t>(raster::sample_of(*record.piece));
     const std::uint64_t mask = record.mask & t.kept;
     if (mask == 0 || sample != only.value_or(sample)) continue;
-    context_->kernel->words(
+    context_->kernel->keys(
         *record.piece, {0, static_cast<std::uint16_t>(bx_), static_cast<std::uint16_t>(by_), mask},
-        words);
-    f(sample, mask, static_cast<const std::uint64_t*>(words));
+        keys);
+    f(sample, mask, static_cast<const std::uint64_t*>(keys));
   }
 }
 
@@ -60,7 +60,7 @@ void SampledBlock::find_points(const Triangle& t, Shaded& out) {
   out.mask = 0;
   for (std::uint32_t r = t.first; r < t.end; ++r) out.mask |= records_[r].mask;
   std::uint64_t left = out.mask;
-  alignas(64) std::uint64_t words[64];
+  alignas(64) std::uint64_t keys[64];
   // At the centres: by the pieces that the triangle was clipped to, mostly one, moved back.
   Piece last{};
   for (std::uint32_t r = t.first; r < t.end && left != 0; ++r) {
@@ -72,10 +72,10 @@ void SampledBlock::find_points(const Triangle& t, Shaded& out) {
     raster::Block block{0, static_cast<std::uint16_t>(bx_), static_cast<std::uint16_t>(by_), 0};
     context_->kernel->masks(&at_centre, &block, 1);
     block.mask &= left;
-    if (block.mask != 0) context_->kernel->words(at_centre, block, words);
+    if (block.mask != 0) context_->kernel->keys(at_centre, block, keys);
     for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
-      out.words[i] = words[i];
+      out.keys[i] = keys[i];
       out.points.dx[i] = out.points.dy[i] = 0;
     }
     left &= ~block.mask;
@@ -84,13 +84,13 @@ void SampledBlock::find_points(const Triangle& t, Shaded& out) {
     const std::uint64_t mask = records_[r].mask & left;
     if (mask == 0) continue;
     const Piece& piece = *records_[r].piece;
-    context_->kernel->words(
-        piece, {0, static_cast<std::uint16_t>(bx_), static_cast<std::uint16_t>(by_), mask}, words);
+    context_->kernel->keys(
+        piece, {0, static_cast<std::uint16_t>(bx_), static_cast<std::uint16_t>(by_), mask}, keys);
     const auto offset = offsets[static_cast<std::size_t>(raster::sample_of(piece))];
     constexpr float kPx = 1.0F / raster::kSubpixels;
     for (std::uint64_t m = mask; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
-      out.words[i] = words[i];
+      out.keys[i] = keys[i];
       out.points.dx[i] = static_cast<float>(offset.x) * kPx;
       out.points.dy[i] = static_cast<float>(offset.y) * kPx;
     }
@@ -106,11 +106,11 @@ void SampledBlock::raise_opaque() {
   }
   for (std::uint32_t t = 0; t < triangle_count_; ++t) {
     if (is_translucent(triangles_[t])) continue;
-    for_each_record(triangles_[t], {}, [&](std::uint32_t s, std::uint64_t mask, const auto* words) {
+    for_each_record(triangles_[t], {}, [&](std::uint32_t s, std::uint64_t mask, const auto* keys) {
       for (std::uint64_t m = mask; m != 0; m &= m - 1) {
         const int i = std::countr_zero(m);
-        if (words[i] <= opaque_[s][i]) continue;
-        opaque_[s][i] = words[i];
+        if (keys[i] <= opaque_[s][i]) continue;
+        opaque_[s][i] = keys[i];
         owner_[s][i] = t;
       }
     });
@@ -121,10 +121,10 @@ void SampledBlock::find_shown() {
   for (std::uint32_t k = 0; k < triangle_count_; ++k) {
     Triangle& t = triangles_[k];
     const bool translucent = is_translucent(t);
-    for_each_record(t, {}, [&](std::uint32_t s, std::uint64_t mask, const auto* words) {
+    for_each_record(t, {}, [&](std::uint32_t s, std::uint64_t mask, const auto* keys) {
       for (std::uint64_t m = mask; m != 0; m &= m - 1) {
         const int i = std::countr_zero(m);
-        const bool shows = translucent ? words[i] > opaque_[s][i] : owner_[s][i] == k;
+        const bool shows = translucent ? keys[i] > opaque_[s][i] : owner_[s][i] == k;
         t.shown |= std::uint64_t{shows} << i;
       }
     });
@@ -146,7 +146,7 @@ void SampledBlock::shade() {
     if ((plane.mask & t.shown) != 0) flush(plane);
     for (std::uint64_t m = t.shown; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
-      plane.words[i] = own.words[i];
+      plane.keys[i] = own.keys[i];
       plane.points.dx[i] = own.points.dx[i];
       plane.points.dy[i] = own.points.dy[i];
     }
@@ -160,7 +160,7 @@ void SampledBlock::flush(Shaded& plane) {
   if (plane.mask == 0) return;
   BlockColors shaded;
   if (shader_ != nullptr) {
-    raster::VisibleBlock block{plane.words, plane.mask, bx_ * kBlockSize, by_ * kBlockSize,
+    raster::VisibleBlock block{plane.keys, plane.mask, bx_ * kBlockSize, by_ * kBlockSize,
                                context_->shader_scratch};
     block.points = &plane.points;
     if (shader_->shade(*context_->frame, block, context_->request->isa, shaded))
@@ -199,10 +199,10 @@ LayerCounts SampledBlock::blend_sample(std::uint32_t sample, BlockColors& out) {
         const auto k = static_cast<std::uint32_t>(order_[n]);
         if (!is_translucent(triangles_[k])) continue;
         for_each_record(triangles_[k], sample,
-                        [&](std::uint32_t, std::uint64_t mask, const auto* words) {
+                        [&](std::uint32_t, std::uint64_t mask, const auto* keys) {
                           for (std::uint64_t m = mask; m != 0; m &= m - 1) {
                             const int i = std::countr_zero(m);
-                            if (words[i] > opaque_[sample][i]) lists_.insert(i, words[i], k);
+                            if (keys[i] > opaque_[sample][i]) lists_.insert(i, keys[i], k);
                           }
                         });
       }
@@ -231,7 +231,7 @@ LayerCounts SampledBlock::blend_sample(std::uint32_t sample, BlockColors& out) {
 LayerCounts SampledBlock::resolve(const raster::RegionContext& context,
                                   const raster::BlockShader* shader, LayerBlend& blend,
                                   std::span<Record> records, int bx, int by, std::size_t filter,
-                                  std::size_t planes, bool repair, std::uint64_t* words,
+                                  std::size_t planes, bool repair, std::uint64_t* keys,
                                   BlockColors& out) {
   context_ = &context;
   shader_ = shader;
@@ -266,7 +266,7 @@ LayerCounts SampledBlock::resolve(const raster::RegionContext& context,
   const float share = 1.0F / static_cast<float>(samples);
   for (int i = 0; i < 64; ++i)
     out.set(i, {sum.r[i] * share, sum.g[i] * share, sum.b[i] * share, sum.a[i] * share});
-  std::copy_n(nearest_, 64, words);
+  std::copy_n(nearest_, 64, keys);
   return counts;
 }
 

@@ -1,8 +1,8 @@
 // A block with several samples a pixel (anti-aliasing, which paper 4 leaves as future work): the
-// records are of pieces moved to each sample (raster/samples.hpp). Every sample has its own order
-// of fragments and its own opaque surface; colour and fragment test are a triangle's in a pixel,
-// found once, at the pixel's centre if the triangle covers it, else at the first sample that it
-// covers.
+// records are of pieces moved to each sample (raster/draws/samples.hpp). Every sample has its own
+// order of fragments and its own opaque surface; colour and fragment test are a triangle's in a
+// pixel, found once, at the pixel's centre if the triangle covers it, else at the first sample that
+// it covers.
 #pragma once
 
 #include <algorithm>
@@ -37,13 +37,13 @@ class SampledBlock {
   explicit SampledBlock(MemoryAccount& memory)
       : triangles_(memory), order_(memory), colors_(memory), lists_(memory) {}
 
-  /// Sets the block's colours (the mean over the samples, premultiplied) and words (the largest).
+  /// Sets the block's colours (the mean over the samples, premultiplied) and keys (the largest).
   /// `records`: of opaque and translucent pieces; they are reordered. `filter` and `planes` as
   /// LayerLists::restart has them; `repair`: sort what the filter misplaced.
   /// Memory: 16 bytes a fragment that is shaded, 12 bytes a pixel and layer.
   LayerCounts resolve(const raster::RegionContext& context, const raster::BlockShader* shader,
                       LayerBlend& blend, std::span<Record> records, int bx, int by,
-                      std::size_t filter, std::size_t planes, bool repair, std::uint64_t* words,
+                      std::size_t filter, std::size_t planes, bool repair, std::uint64_t* keys,
                       raster::BlockColors& out);
 
  private:
@@ -56,9 +56,9 @@ class SampledBlock {
     std::uint64_t shown;  ///< pixels where a sample may see it
     std::uint32_t color;  ///< of the first pixel of `shown` in colors_
   };
-  /// Where a triangle is shaded: words and points of its pixels.
+  /// Where a triangle is shaded: keys and points of its pixels.
   struct Shaded {
-    alignas(64) std::uint64_t words[64];
+    alignas(64) std::uint64_t keys[64];
     raster::ShadingPoints points;
     std::uint64_t mask = 0;
   };
@@ -77,7 +77,7 @@ class SampledBlock {
     return context_->request->transparency.method != Transparency::none &&
            (records_[t.first].piece->flags & raster::kTranslucent) != 0;
   }
-  /// Calls f(sample, mask, words) for the records of a triangle, of one sample or all.
+  /// Calls f(sample, mask, keys) for the records of a triangle, of one sample or all.
   template <class F>
   void for_each_record(const Triangle& t, std::optional<std::uint32_t> only, F&& f);
 
@@ -98,7 +98,7 @@ class SampledBlock {
   std::vector<std::uint32_t> plane_triangles_;  ///< whose fragments wait to be shaded
   LayerLists<std::uint32_t> lists_;             ///< owner: the triangle
   std::uint64_t opaque_[raster::kMaxSamples][64];
-  std::uint32_t owner_[raster::kMaxSamples][64];  ///< of the opaque word
+  std::uint32_t owner_[raster::kMaxSamples][64];  ///< of the opaque key
   std::uint64_t nearest_[64];
 };
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <bit>
 
-#include <rastrum/raster/piece.hpp>
+#include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/transparency/approximations.hpp>
 
 namespace rastrum::transparency {
@@ -25,7 +25,7 @@ class WeightedBlended final : public LayerBlend {
       const int i = std::countr_zero(m);
       const float alpha = l.colors.a[i];
       const float d =
-          std::bit_cast<float>(static_cast<std::uint32_t>(l.words[i] >> raster::kIdBits));
+          std::bit_cast<float>(static_cast<std::uint32_t>(l.keys[i] >> raster::kIdBits));
       const float weight = alpha * std::max(0.01F, 3000 * (d * d * d));
       sum_.r[i] += weight * l.colors.r[i];
       sum_.g[i] += weight * l.colors.g[i];

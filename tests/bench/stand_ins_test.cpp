@@ -77,26 +77,26 @@ TEST(StandIns, PassesOverPartsAreTheWholePicture) {
   options.width = 90;
   options.height = 70;
   options.threads = 2;
-  Image<std::uint64_t> words(90, 70), passes(90, 70);
+  Image<std::uint64_t> keys(90, 70), passes(90, 70);
   Image<Rgba8> color(90, 70), passes_color(90, 70);
   const auto pass = [&](const Mesh& mesh, Image<std::uint64_t>& to, Image<Rgba8>& to_color,
                         std::uint64_t first_id) {
     Targets targets;
-    targets.words = to.view();
+    targets.keys = to.view();
     targets.color8 = to_color.view();
     targets.load = first_id > 0;
     targets.first_id = first_id;
     Renderer renderer(options);
     draw(renderer, {mesh.view(), whole_view(base), 90, 70, &triangle_colors()}, targets);
   };
-  pass(whole, words, color, 0);
+  pass(whole, keys, color, 0);
   std::uint64_t first_id = 0;
   for (std::size_t k = 0; k < 5; ++k) {
     const Mesh part = subdivided_part(base, 1, k, 5);
     pass(part, passes, passes_color, first_id);
     first_id += part.triangle_count();
   }
-  EXPECT_TRUE(std::ranges::equal(words.pixels(), passes.pixels()));
+  EXPECT_TRUE(std::ranges::equal(keys.pixels(), passes.pixels()));
   EXPECT_TRUE(std::ranges::equal(color.pixels(), passes_color.pixels()));
 }
 

@@ -7,7 +7,7 @@
 
 #include <rastrum/io/height_map.hpp>
 #include <rastrum/io/io.hpp>
-#include <rastrum/raster/program.hpp>
+#include <rastrum/raster/draws/program.hpp>
 #include <rastrum/render/render.hpp>
 #include <rastrum/render/scene_on_terrain.hpp>
 #include <rastrum/scene/scene.hpp>

@@ -1,6 +1,6 @@
 // A mistake that every first shader makes: its varying cannot be added and scaled. The compilers
 // are to say so, once, and not what follows from it (compile_test.cmake).
-#include <rastrum/raster/program.hpp>
+#include <rastrum/raster/draws/program.hpp>
 
 namespace {
 struct Shade {

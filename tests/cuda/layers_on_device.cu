@@ -26,8 +26,8 @@ struct PaintFragment {
   std::span<const std::uint8_t> opaque;
   bool by_pixel;
 
-  RASTRUM_HD Vec4 operator()(std::uint64_t word, int x, int y) const {
-    const std::uint64_t id = raster::id_of_word(word);
+  RASTRUM_HD Vec4 operator()(std::uint64_t key, int x, int y) const {
+    const std::uint64_t id = raster::id_of_key(key);
     const Vec4 c = paint[id];
     if (!by_pixel) return c;
     const std::uint64_t h =
@@ -41,8 +41,8 @@ struct PaintFragment {
 };
 /// LayerScene::is_hole, of scenes that have them.
 struct IsNoHole {
-  RASTRUM_HD bool operator()(std::uint64_t word, int x, int y) const {
-    const std::uint64_t id = raster::id_of_word(word);
+  RASTRUM_HD bool operator()(std::uint64_t key, int x, int y) const {
+    const std::uint64_t id = raster::id_of_key(key);
     return id % 2 != 0 ||
            mix(id << 32 ^ static_cast<std::uint64_t>(x) << 16 ^ static_cast<std::uint64_t>(y)) %
                    3 !=
@@ -58,7 +58,7 @@ class OnDevice {
         view_{0, y0, f.width, y1},
         by_pixel_(f.by_pixel),
         pieces_(parallel::to_device(exec, f.pieces)),
-        words_(parallel::to_device(exec, in_blocks(f.words))),
+        keys_(parallel::to_device(exec, in_blocks(f.keys))),
         colors_(parallel::to_device(exec, in_blocks(f.colors))),
         paint_(parallel::to_device(exec, f.paint)),
         opaque_(parallel::to_device(exec, f.opaque)) {}
@@ -66,17 +66,17 @@ class OnDevice {
   transparency::DeviceLayerCounts blend(const TransparencyOptions& options,
                                         const transparency::DeviceLayerTuning& tuning) {
     using parallel::view_of;
-    const transparency::DeviceLayers layers{view_, view_of(std::as_const(pieces_)), view_of(words_),
+    const transparency::DeviceLayers layers{view_, view_of(std::as_const(pieces_)), view_of(keys_),
                                             view_of(colors_)};
     const PaintFragment shade{view_of(std::as_const(paint_)), view_of(std::as_const(opaque_)),
                               by_pixel_};
     return transparency::blend_layers(exec_, layers, options, shade, IsNoHole{}, tuning);
   }
   void fetch(LayersFrame& out) {
-    const auto words = parallel::to_host(exec_, words_);
+    const auto keys = parallel::to_host(exec_, keys_);
     const auto colors = parallel::to_host(exec_, colors_);
     each_pixel([&](std::size_t pixel, std::size_t element) {
-      out.words[pixel] = words[element];
+      out.keys[pixel] = keys[element];
       out.colors[pixel] = colors[element];
     });
   }
@@ -105,7 +105,7 @@ class OnDevice {
   const raster::Rect view_;
   const bool by_pixel_;
   parallel::DeviceBuffer<raster::Piece> pieces_;
-  parallel::DeviceBuffer<std::uint64_t> words_;
+  parallel::DeviceBuffer<std::uint64_t> keys_;
   parallel::DeviceBuffer<Vec4> colors_, paint_;
   parallel::DeviceBuffer<std::uint8_t> opaque_;
 };
@@ -113,7 +113,7 @@ class OnDevice {
 struct TeamScratch {
   std::uint32_t keys[64], places[64], sums[65];
 };
-struct TeamWords {
+struct TeamKeys {
   std::span<const std::uint32_t> in;
   std::span<std::uint32_t> sorted, places, sums;
   template <class Team>
@@ -167,7 +167,7 @@ std::uint64_t growth_of_a_second_frame(const LayersFrame& frame) {
   return exec.memory()->held() - held;
 }
 
-TeamResult team_words(const std::vector<std::uint32_t>& values) {
+TeamResult team_keys(const std::vector<std::uint32_t>& values) {
   parallel::Cuda exec;
   const auto in = parallel::to_device(exec, values);
   auto sorted = parallel::make_buffer<std::uint32_t>(exec, values.size());
@@ -175,8 +175,8 @@ TeamResult team_words(const std::vector<std::uint32_t>& values) {
   auto sums = parallel::make_buffer<std::uint32_t>(exec, values.size() + 1);
   parallel::for_each_team<TeamScratch, 64>(
       exec, 1,
-      TeamWords{parallel::view_of(in), parallel::view_of(sorted), parallel::view_of(places),
-                parallel::view_of(sums)});
+      TeamKeys{parallel::view_of(in), parallel::view_of(sorted), parallel::view_of(places),
+               parallel::view_of(sums)});
   return {parallel::to_host(exec, sorted), parallel::to_host(exec, places),
           parallel::to_host(exec, sums)};
 }

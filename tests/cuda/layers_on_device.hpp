@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <rastrum/core/vec.hpp>
-#include <rastrum/raster/piece.hpp>
+#include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/transparency/cuda/device_layers.hpp>
 
 namespace rastrum::test {
@@ -15,14 +15,14 @@ namespace rastrum::test {
 struct LayersFrame {
   int width = 0, height = 0;
   std::vector<raster::Piece> pieces;
-  std::vector<std::uint64_t> words;
+  std::vector<std::uint64_t> keys;
   std::vector<Vec4> colors;
   std::vector<Vec4> paint;           ///< by id
   std::vector<std::uint8_t> opaque;  ///< by id
   bool by_pixel = false;             ///< Paint::pixel; else Paint::triangle
 };
 
-/// Changes words and colours, which are rows of pixels here, as blend_layers does: in bands of
+/// Changes keys and colours, which are rows of pixels here, as blend_layers does: in bands of
 /// `band_rows` rows, whole blocks; 0: at once. Counts are those of all bands.
 transparency::DeviceLayerCounts blend_on_device(LayersFrame& frame,
                                                 const TransparencyOptions& options,
@@ -32,11 +32,11 @@ transparency::DeviceLayerCounts blend_on_device(LayersFrame& frame,
 /// grow.
 std::uint64_t growth_of_a_second_frame(const LayersFrame& frame);
 
-/// Sorts pairs, and sums up, in a team's memory: what the words of team.cuh make of `values`, at
+/// Sorts pairs, and sums up, in a team's memory: what the keys of team.cuh make of `values`, at
 /// most 64.
 struct TeamResult {
   std::vector<std::uint32_t> sorted, places, sums;
 };
-TeamResult team_words(const std::vector<std::uint32_t>& values);
+TeamResult team_keys(const std::vector<std::uint32_t>& values);
 
 }  // namespace rastrum::test

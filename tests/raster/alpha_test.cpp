@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/core/error.hpp>
-#include <rastrum/raster/kernels.hpp>
-#include <rastrum/raster/program.hpp>
-#include <rastrum/raster/transform_source.hpp>
+#include <rastrum/raster/draws/program.hpp>
+#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/render/render.hpp>
 
 #include "tests/support/family.hpp"
@@ -366,9 +366,9 @@ TEST(Alpha, WhatKeepsNoTilesRefusesTranslucentScenesAlone) {
 TEST(Alpha, PassesThatLoadDoNotBlend) {
   const Scene scene = quad_scene();
   const SceneBinding binding(scene);
-  Image<std::uint64_t> words(kSize, kSize);
+  Image<std::uint64_t> keys(kSize, kSize);
   Targets targets;
-  targets.words = words.view();
+  targets.keys = keys.view();
   Renderer renderer(options(Shader::flat, 0.5F));
   EXPECT_NO_THROW(renderer.render(binding.view(), pixel_camera(kSize, kSize), targets));
   targets.load = true;

@@ -20,12 +20,12 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/raster/assemble/points_and_lines.hpp>
 #include <rastrum/raster/coverage/tile_mask.hpp>
-#include <rastrum/raster/points_and_lines.hpp>
-#include <rastrum/raster/rasterizer.hpp>
-#include <rastrum/raster/reference.hpp>
-#include <rastrum/raster/setup.hpp>
-#include <rastrum/raster/transform_source.hpp>
+#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/frame/rasterizer.hpp>
+#include <rastrum/raster/frame/reference.hpp>
+#include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/render/render.hpp>
 
 #include "tests/support/environment.hpp"
@@ -396,7 +396,7 @@ TEST(Binned, QueuesGrow) {
       EXPECT_TRUE(same_surfaces(frame, expected));
       expect_counters(frame.stats, work);
       // Entries take at most 48 bytes, and not all are held at once: what else there is are the
-      // pieces (twice), the vertices and the words.
+      // pieces (twice), the vertices and the keys.
       const auto triangles = static_cast<std::uint64_t>(count);
       EXPECT_LT(frame.stats.peak_bytes, triangles * (2 * 48 + 3 * 16) * 3 / 2 + kSize * kSize * 8 +
                                             (std::uint64_t{12} << 20));

@@ -1,6 +1,6 @@
 // The clipper by itself: against a rasterizer in homogeneous coordinates that never clips (Olano
 // and Greer, "Triangle scan conversion using 2D homogeneous coordinates", 1997), in long double.
-#include <rastrum/raster/clip.hpp>
+#include <rastrum/raster/assemble/clip.hpp>
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/core/error.hpp>
-#include <rastrum/raster/order.hpp>
+#include <rastrum/raster/bin/order.hpp>
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/raster/program.hpp>
+#include <rastrum/raster/draws/program.hpp>
 #include <rastrum/render/render.hpp>
 
 #include "tests/support/cuda_test.hpp"

@@ -8,8 +8,8 @@
 
 #include <rastrum/raster/cuda/pieces.cuh>
 #include <rastrum/raster/cuda/rasterizer.cuh>
-#include <rastrum/raster/resolve.hpp>
-#include <rastrum/raster/samples.hpp>
+#include <rastrum/raster/draws/samples.hpp>
+#include <rastrum/raster/resolve/resolve.hpp>
 
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
@@ -118,7 +118,7 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
   }
 }
 
-// Flagged pieces are left out of the words, in all three sizes, and kept for who draws them.
+// Flagged pieces are left out of the keys, in all three sizes, and kept for who draws them.
 TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
   constexpr int kSize = 256;
   Random random(5);
@@ -141,17 +141,17 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
   }
   draws[1].draw.flags = raster::kTranslucent;
   parallel::Cuda exec;
-  const auto words_of = [&](std::span<const raster::DeviceDraw> drawn, std::uint32_t skip) {
+  const auto keys_of = [&](std::span<const raster::DeviceDraw> drawn, std::uint32_t skip) {
     const raster::DeviceScene<parallel::Cuda> scene(exec, drawn, kSize, kSize);
-    std::vector<std::uint64_t> words(kSize * kSize);
+    std::vector<std::uint64_t> keys(kSize * kSize);
     const raster::Rect view{0, 0, kSize, kSize};
-    const raster::DeviceSurface surface{view, {0, 0, kSize / 8, words.data(), nullptr}};
+    const raster::DeviceSurface surface{view, {0, 0, kSize / 8, keys.data(), nullptr}};
     const auto plan = raster::DevicePlan::of(0, kSize, kSize, scene.primitives(), 0, 0);
     EXPECT_GT(raster::draw_surface(exec, scene, surface, plan, {}, skip).tiles, 0U);
-    return words;
+    return keys;
   };
-  const auto all = words_of(draws, 0), kept = words_of(draws, raster::kTranslucent);
-  EXPECT_EQ(kept, words_of({draws, 1}, 0));
+  const auto all = keys_of(draws, 0), kept = keys_of(draws, raster::kTranslucent);
+  EXPECT_EQ(kept, keys_of({draws, 1}, 0));
   EXPECT_NE(kept, all);
 
   const raster::DeviceScene<parallel::Cuda> scene(exec, draws, kSize, kSize);
@@ -159,8 +159,8 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
   const MadePieces flagged = make_pieces(exec, scene, KeepsFlagged{raster::kTranslucent});
   std::vector<std::uint64_t> expected, ids;
   for (const raster::Piece& p : made.pieces)
-    if ((p.flags & raster::kTranslucent) != 0) expected.push_back(raster::id_of_word(p.low));
-  for (const raster::Piece& p : flagged.pieces) ids.push_back(raster::id_of_word(p.low));
+    if ((p.flags & raster::kTranslucent) != 0) expected.push_back(raster::id_of_key(p.low));
+  for (const raster::Piece& p : flagged.pieces) ids.push_back(raster::id_of_key(p.low));
   EXPECT_EQ(ids, expected);
   EXPECT_GT(ids.size(), 150U);
 }

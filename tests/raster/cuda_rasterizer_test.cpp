@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/core/error.hpp>
-#include <rastrum/raster/program.hpp>
+#include <rastrum/raster/draws/program.hpp>
 #include <rastrum/render/render.hpp>
 
 #include "tests/support/cuda_test.hpp"

@@ -11,9 +11,9 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/raster/program.hpp>
-#include <rastrum/raster/shaders/lit.hpp>
-#include <rastrum/raster/transform_source.hpp>
+#include <rastrum/raster/draws/program.hpp>
+#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 

@@ -1,5 +1,5 @@
 // Fields with a sign against brute force: all pixels × all fields.
-#include <rastrum/raster/field.hpp>
+#include <rastrum/raster/draws/field.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/core/error.hpp>
-#include <rastrum/raster/kernels.hpp>
-#include <rastrum/raster/program.hpp>
-#include <rastrum/raster/transform_source.hpp>
+#include <rastrum/raster/draws/program.hpp>
+#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/render/render.hpp>
 
 #include "tests/support/family.hpp"
@@ -178,7 +178,7 @@ TEST(Setup, FragmentsOfTranslucentTrianglesSayThatTheyAre) {
       const raster::BinFragment& b = translucent.fragments[i];
       ASSERT_LT(a.pixel, raster::kTranslucentFragment);
       ASSERT_EQ(b.pixel, a.pixel | raster::kTranslucentFragment);
-      ASSERT_EQ(b.word, a.word);
+      ASSERT_EQ(b.key, a.key);
       ASSERT_EQ(b.bin, a.bin);
     }
   }

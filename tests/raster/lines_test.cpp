@@ -12,8 +12,8 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/raster/clip.hpp>
-#include <rastrum/raster/points_and_lines.hpp>
+#include <rastrum/raster/assemble/clip.hpp>
+#include <rastrum/raster/assemble/points_and_lines.hpp>
 
 #include "tests/support/environment.hpp"
 #include "tests/support/oracle.hpp"

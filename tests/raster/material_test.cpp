@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/io/io.hpp>
-#include <rastrum/raster/shaders/srgb.hpp>
-#include <rastrum/raster/shaders/texture.hpp>
+#include <rastrum/raster/shade/srgb.hpp>
+#include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/render/render.hpp>
 
 #include "tests/support/directories.hpp"

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/raster/shaders/srgb.hpp>
+#include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/raster/program.hpp>
+#include <rastrum/raster/draws/program.hpp>
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 

@@ -1,6 +1,6 @@
 // Every method of visibility against a plain maximum at each pixel, on generated blocks: one thread
 // that owns the region and many that share it, few and many layers, equal depths, depth 0, begun on
-// a surface that holds words already, and some of them as finished fragments. And each method's
+// a surface that holds keys already, and some of them as finished fragments. And each method's
 // counters, exactly.
 #include <algorithm>
 #include <bit>
@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/core/memory.hpp>
-#include <rastrum/raster/setup.hpp>
+#include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/raster/visibility/region.hpp>
 
 #include "tests/support/random.hpp"
@@ -27,7 +27,7 @@ constexpr int kWidth = 100, kHeight = 75;
 constexpr Rect kImage{0, 0, kWidth, kHeight};
 
 /// A colour that tells pixels and ids from each other.
-class ByWord final : public BlockShader {
+class ByKey final : public BlockShader {
  public:
   bool shade(const FrameGeometry&, const VisibleBlock& block, Isa,
              BlockColors& colors) const noexcept override {
@@ -38,7 +38,7 @@ class ByWord final : public BlockShader {
     kept[2] = case_number;
     for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
-      colors.set(i, color(block.words[i], block.x0 + i % kBlockSize, block.y0 + i / kBlockSize));
+      colors.set(i, color(block.keys[i], block.x0 + i % kBlockSize, block.y0 + i / kBlockSize));
     }
     ++kept[1];
     return false;
@@ -46,22 +46,22 @@ class ByWord final : public BlockShader {
   [[nodiscard]] std::size_t scratch_bytes() const noexcept override { return 24; }
 
   std::uint64_t case_number = 0;
-  static Vec4 color(std::uint64_t word, int x, int y) {
-    return {static_cast<float>(word & 1023), static_cast<float>(word >> 50), static_cast<float>(x),
+  static Vec4 color(std::uint64_t key, int x, int y) {
+    return {static_cast<float>(key & 1023), static_cast<float>(key >> 50), static_cast<float>(x),
             static_cast<float>(y)};
   }
 };
 
 struct Fragment {
   int x, y;
-  std::uint64_t word;
+  std::uint64_t key;
 };
 
 /// Pieces, and blocks of them with random masks in chunks.
 struct Case {
   std::vector<Piece> pieces;
   std::vector<std::vector<Block>> chunks;
-  std::vector<std::uint64_t> before;  ///< words that the surface begins with, pixel by pixel
+  std::vector<std::uint64_t> before;  ///< keys that the surface begins with, pixel by pixel
   std::uint64_t fragments = 0;
 
   template <class F>
@@ -72,16 +72,16 @@ struct Case {
           const int i = std::countr_zero(m);
           const int x = b.bx * kBlockSize + i % kBlockSize, y = b.by * kBlockSize + i / kBlockSize;
           const Piece& p = pieces[b.piece];
-          f(Fragment{x, y, make_word(depth_at(p, x, y), p.low)});
+          f(Fragment{x, y, make_key(depth_at(p, x, y), p.low)});
         }
   }
   [[nodiscard]] std::vector<std::uint64_t> maxima() const {
-    std::vector<std::uint64_t> words = before;
+    std::vector<std::uint64_t> keys = before;
     for_each_fragment([&](const Fragment& f) {
-      std::uint64_t& word = words[static_cast<std::size_t>(f.y * kWidth + f.x)];
-      word = std::max(word, f.word);
+      std::uint64_t& key = keys[static_cast<std::size_t>(f.y * kWidth + f.x)];
+      key = std::max(key, f.key);
     });
-    return words;
+    return keys;
   }
 };
 
@@ -132,15 +132,15 @@ Case generate(std::uint64_t seed, int layers, std::size_t chunk_count) {
       }
   c.before.resize(std::size_t{kWidth} * kHeight);
   if (on_surface)
-    for (std::uint64_t& word : c.before)
+    for (std::uint64_t& key : c.before)
       if (random.chance(0.5))
-        word = make_word(random.chance(0.3) ? 0.5F : static_cast<float>(random.real(0, 1)),
-                         kIdMask - static_cast<std::uint64_t>(random.integer(0, 2000)));
+        key = make_key(random.chance(0.3) ? 0.5F : static_cast<float>(random.real(0, 1)),
+                       kIdMask - static_cast<std::uint64_t>(random.integer(0, 2000)));
   return c;
 }
 
 struct Resolved {
-  std::vector<std::uint64_t> words;  ///< pixel by pixel
+  std::vector<std::uint64_t> keys;  ///< pixel by pixel
   std::vector<Vec4> colors;
   std::map<std::string, std::uint64_t> counters;
 };
@@ -171,7 +171,7 @@ class Resolver {
     return read(surface, *shared_);
   }
 
-  /// Bins one after the other; every second one has its words in memory of its own. Where the
+  /// Bins one after the other; every second one has its keys in memory of its own. Where the
   /// method takes finished fragments every third block is handed over as such.
   Resolved owned(const Case& c, std::uint64_t fragment_bytes) {
     const SurfaceView surface = whole(c);
@@ -194,11 +194,11 @@ class Resolver {
         const SurfaceView part = surface.part(x / kBlockSize, y / kBlockSize);
         SurfaceView local = part;
         local.columns = kBlocksPerBinRow;
-        alignas(64) std::uint64_t words[kBinSize * kBinSize];
+        alignas(64) std::uint64_t keys[kBinSize * kBinSize];
         std::vector<BlockColors> colors(kBlocksPerBin);
         const bool is_local = x == 0;
         if (is_local) {
-          local.words = words;
+          local.keys = keys;
           local.colors = colors.data();
           copy(bin, part, local);
         }
@@ -230,7 +230,7 @@ class Resolver {
     for (std::uint64_t m = b.mask; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
       const int x = b.bx * kBlockSize + i % kBlockSize, y = b.by * kBlockSize + i / kBlockSize;
-      to.push_back({make_word(depth_at(piece, x, y), piece.low), 0,
+      to.push_back({make_key(depth_at(piece, x, y), piece.low), 0,
                     static_cast<std::uint32_t>(64 * block + i)});
     }
   }
@@ -245,9 +245,9 @@ class Resolver {
 
   SurfaceView whole(const Case& c) {
     ++shader_.case_number;
-    words_.assign(block_count(kImage) * 64, 0);
+    keys_.assign(block_count(kImage) * 64, 0);
     colors_.assign(block_count(kImage), BlockColors{});
-    const SurfaceView surface{0, 0, block_columns(kImage), words_.data(), colors_.data()};
+    const SurfaceView surface{0, 0, block_columns(kImage), keys_.data(), colors_.data()};
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x)
         surface.block(x / kBlockSize,
@@ -262,7 +262,7 @@ class Resolver {
       for (int x = 0; x < kWidth; ++x) {
         const int bx = x / kBlockSize, by = y / kBlockSize;
         const int i = y % kBlockSize * kBlockSize + x % kBlockSize;
-        r.words.push_back(surface.block(bx, by)[i]);
+        r.keys.push_back(surface.block(bx, by)[i]);
         const BlockColors& colors = *surface.colors_of(bx, by);
         r.colors.push_back({colors.r[i], colors.g[i], colors.b[i], colors.a[i]});
       }
@@ -278,10 +278,10 @@ class Resolver {
   bool takes_fragments_;
   FrameRequest request_;
   FrameGeometry frame_;
-  ByWord shader_;
+  ByKey shader_;
   std::vector<Vec4> color_ = std::vector<Vec4>(std::size_t{kWidth} * kHeight);
-  // Kernels load words aligned.
-  std::vector<std::uint64_t, parallel::ArenaAllocator<std::uint64_t>> words_{
+  // Kernels load keys aligned.
+  std::vector<std::uint64_t, parallel::ArenaAllocator<std::uint64_t>> keys_{
       parallel::ArenaAllocator<std::uint64_t>(std::make_shared<parallel::Arena>())};
   std::vector<BlockColors> colors_;
   std::unique_ptr<Region> shared_, owned_;
@@ -298,13 +298,13 @@ class Methods : public testing::TestWithParam<std::string> {
   const Visibility& method_ = method(GetParam());
 
   void expect(const Case& c, const Resolved& r) const {
-    ASSERT_EQ(r.words, c.maxima());
+    ASSERT_EQ(r.keys, c.maxima());
     if (!method_.shades) return;
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {
         const auto i = static_cast<std::size_t>(y * kWidth + x);
         // What was there before has no colour here.
-        const Vec4 expected = r.words[i] == c.before[i] ? Vec4{} : ByWord::color(r.words[i], x, y);
+        const Vec4 expected = r.keys[i] == c.before[i] ? Vec4{} : ByKey::color(r.keys[i], x, y);
         ASSERT_EQ(r.colors[i].x, expected.x);
         ASSERT_EQ(r.colors[i].y, expected.y);
         ASSERT_EQ(r.colors[i].z, expected.z);
@@ -391,7 +391,7 @@ TEST_P(Counted, SearchComparesEveryFragmentOnceMore) {
   const std::vector<std::uint64_t> maxima = case_.maxima();
   std::uint64_t matches = 0;
   case_.for_each_fragment([&](const Fragment& f) {
-    matches += f.word >> kIdBits == maxima[static_cast<std::size_t>(f.y * kWidth + f.x)] >> kIdBits;
+    matches += f.key >> kIdBits == maxima[static_cast<std::size_t>(f.y * kWidth + f.x)] >> kIdBits;
   });
   for (const Sharing sharing : {Sharing::owned, Sharing::shared})
     EXPECT_EQ(resolve("search", sharing).counters,

@@ -34,8 +34,8 @@ TEST(DeviceWork, CountsArraysAndTargets) {
   constexpr std::uint64_t kArrays = 500 * 24 + 3000 * 4, kPixels = 64 * 32;
   EXPECT_EQ(device_work(r.request).bytes, kArrays + kPixels * 4);
   EXPECT_EQ(device_work(r.request).what, "1000 primitives at 64x32");
-  Image<std::uint64_t> words(64, 32);
-  r.request.targets.words = words.view();
+  Image<std::uint64_t> keys(64, 32);
+  r.request.targets.keys = keys.view();
   EXPECT_EQ(device_work(r.request).bytes, kArrays + kPixels * (4 + 8));
   r.request.targets.load = true;
   EXPECT_EQ(device_work(r.request).bytes, kArrays + kPixels * (4 + 16));

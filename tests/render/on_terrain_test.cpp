@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/raster/interpolate.hpp>
-#include <rastrum/raster/transform_source.hpp>
+#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/render/scene_on_terrain.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 #include <rastrum/scene/sprite.hpp>

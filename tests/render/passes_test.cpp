@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
@@ -55,7 +55,7 @@ TEST(PassesOfSerial, EqualOneDraw) {
     EXPECT_TRUE(passes_equal_one_draw(renderer, shape));
 }
 
-// With layers there are no words to go on from, but ids count from the first one, too.
+// With layers there are no keys to go on from, but ids count from the first one, too.
 TEST(PassesOfLayers, CountIdsFromTheFirst) {
   const Scene scene = single(shapes::soup(300, 0.1F, 0.5F));
   const SceneBinding binding(scene);
@@ -123,7 +123,7 @@ TEST_P(Passes, AllTestFragments) {
     bool shade(const raster::FrameGeometry&, const raster::VisibleBlock& block, Isa,
                raster::BlockColors& colors) const noexcept override {
       for (int i = 0; i < 64; ++i)
-        colors.set(i, {static_cast<float>(block.words[i] & 255) / 255, 1, 0, 1});
+        colors.set(i, {static_cast<float>(block.keys[i] & 255) / 255, 1, 0, 1});
       return true;
     }
   };

@@ -439,18 +439,18 @@ TEST_P(Properties, TargetsMayLieUpsideDown) {
       SCOPED_TRACE(std::to_string(seed) + " " + g.kind);
       const SceneBinding binding(g.scene);
       const Frame upright = draw(renderer, binding.view(), g.camera);
-      Image<std::uint64_t> words(kW, kH), turned_words(kW, kH);
+      Image<std::uint64_t> keys(kW, kH), turned_keys(kW, kH);
       Frame turned{Image<Rgba8>(kW, kH),        Image<Vec4>(kW, kH),          Image<float>(kW, kH),
                    Image<std::int64_t>(kW, kH), Image<std::uint32_t>(kW, kH), {}};
       const auto from_below = [&](auto& image) {
         return decltype(image.view()){&image(0, kH - 1), kW, kH, -kW};
       };
       Targets targets;
-      targets.words = words;
+      targets.keys = keys;
       renderer.render(binding.view(), g.camera, targets);
       targets = {from_below(turned.color8), from_below(turned.color), from_below(turned.depth),
                  from_below(turned.ids), from_below(turned.overdraw)};
-      targets.words = from_below(turned_words);
+      targets.keys = from_below(turned_keys);
       renderer.render(binding.view(), g.camera, targets);
       for (int y = 0; y < kH; ++y) {
         for (int x = 0; x < kW; ++x) {
@@ -460,7 +460,7 @@ TEST_P(Properties, TargetsMayLieUpsideDown) {
           ASSERT_EQ(turned.depth(x, below), upright.depth(x, y)) << x << "," << y;
           ASSERT_EQ(turned.ids(x, below), upright.ids(x, y)) << x << "," << y;
           ASSERT_EQ(turned.overdraw(x, below), upright.overdraw(x, y)) << x << "," << y;
-          ASSERT_EQ(turned_words(x, below), words(x, y)) << x << "," << y;
+          ASSERT_EQ(turned_keys(x, below), keys(x, y)) << x << "," << y;
         }
       }
     }

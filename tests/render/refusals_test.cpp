@@ -186,7 +186,7 @@ TEST(Refusals, TargetsWhoseRowsOverlap) {
   expect_strides(&Targets::depth, "depth");
   expect_strides(&Targets::ids, "ids");
   expect_strides(&Targets::overdraw, "overdraw");
-  expect_strides(&Targets::words, "words");
+  expect_strides(&Targets::keys, "keys");
   expect_strides(&Targets::errors, "errors");
 }
 

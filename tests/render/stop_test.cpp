@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/parallel/stop.hpp>
-#include <rastrum/raster/frame.hpp>
+#include <rastrum/raster/frame/frame.hpp>
 #include <rastrum/render/render.hpp>
 #include <rastrum/render/scene_on_terrain.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
@@ -68,7 +68,7 @@ class Counted final : public raster::VertexSource,
              raster::BlockColors& colors) const noexcept override {
     triggers_->shade.call();
     for (int i = 0; i < 64; ++i)
-      colors.set(i, {static_cast<float>(block.words[i] & 255) / 512, 0.25F, 0, 0.5F});
+      colors.set(i, {static_cast<float>(block.keys[i] & 255) / 512, 0.25F, 0, 0.5F});
     return false;
   }
 

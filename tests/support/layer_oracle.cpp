@@ -31,13 +31,13 @@ constexpr std::array<SamplePosition, 16> kSixteen{{{1, 1},
                                                    {-7, -8}}};
 
 struct Fragment {
-  std::uint64_t word;
+  std::uint64_t key;
   bool opaque;
   Rgba64 color;
 };
 
-float depth_of(std::uint64_t word) {
-  return std::bit_cast<float>(static_cast<std::uint32_t>(word >> 33));
+float depth_of(std::uint64_t key) {
+  return std::bit_cast<float>(static_cast<std::uint32_t>(key >> 33));
 }
 
 constexpr std::uint64_t kLow = (std::uint64_t{1} << 33) - 1;
@@ -50,16 +50,16 @@ void put_behind(Rgba64& front, const Rgba64& c) {
   front.a += left * c.a;
 }
 
-/// Sorts the fragments of one sample by their words and leaves out what the nearest opaque one
+/// Sorts the fragments of one sample by their keys and leaves out what the nearest opaque one
 /// hides. Returns whether equal depths had a say in that.
 bool keep_visible(std::vector<Fragment>& f) {
   std::stable_sort(f.begin(), f.end(),
-                   [](const Fragment& a, const Fragment& b) { return a.word > b.word; });
+                   [](const Fragment& a, const Fragment& b) { return a.key > b.key; });
   const auto opaque = std::find_if(f.begin(), f.end(), [](const Fragment& x) { return x.opaque; });
   const auto end = opaque == f.end() ? opaque : opaque + 1;
   bool tied = false;
   for (auto k = f.begin(); k != end && k + 1 != f.end(); ++k)
-    tied |= depth_of(k->word) == depth_of((k + 1)->word);
+    tied |= depth_of(k->key) == depth_of((k + 1)->key);
   f.erase(end, f.end());
   return tied;
 }
@@ -68,7 +68,7 @@ bool keep_visible(std::vector<Fragment>& f) {
 void order_by_submission(std::vector<Fragment>& f) {
   std::stable_sort(f.begin(), f.end(), [](const Fragment& a, const Fragment& b) {
     if (a.opaque != b.opaque) return b.opaque;
-    return (a.word & kLow) < (b.word & kLow);
+    return (a.key & kLow) < (b.key & kLow);
   });
 }
 
@@ -116,7 +116,7 @@ class Row {
       if ((covered >> s & 1) == 0) continue;
       const ShadePoint p = place(positions_[s]);
       at(x, s).push_back(
-          {visibility_word(depth_at_sample(t, p.x_fx8, p.y_fx8), t.id), opaque, color});
+          {visibility_key(depth_at_sample(t, p.x_fx8, p.y_fx8), t.id), opaque, color});
     }
   }
 
@@ -129,7 +129,7 @@ class Row {
       std::uint64_t nearest = 0;
       for (std::size_t s = 0; s < positions_.size(); ++s) {
         std::vector<Fragment>& f = at(x, s);
-        for (const Fragment& each : f) nearest = std::max(nearest, each.word);
+        for (const Fragment& each : f) nearest = std::max(nearest, each.key);
         if (keep_visible(f)) image.tied[i] = 1;
         if (order == LayerOrder::submission) order_by_submission(f);
         Rgba64 pixel;

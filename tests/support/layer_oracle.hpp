@@ -1,4 +1,4 @@
-// The oracle of transparency: at every sample all fragments of all triangles, sorted by their words
+// The oracle of transparency: at every sample all fragments of all triangles, sorted by their keys
 // and blended in float64. It includes nothing of the library, so that an agreement of the two is
 // evidence. Plain on purpose.
 #pragma once
@@ -45,7 +45,7 @@ struct LayerInput {
 };
 
 enum class LayerOrder {
-  depth,       ///< larger words in front: nearer, then submitted first
+  depth,       ///< larger keys in front: nearer, then submitted first
   submission,  ///< what was submitted later in front; what opaque surfaces hide is left out
 };
 
@@ -53,7 +53,7 @@ enum class LayerOrder {
 struct LayerImage {
   int width = 0, height = 0;
   std::vector<Rgba64> color;  ///< over the background, averaged over the samples
-  /// The largest word over the samples, of any surface; −1 and 0 where nothing is.
+  /// The largest key over the samples, of any surface; −1 and 0 where nothing is.
   std::vector<std::int64_t> ids;
   std::vector<float> depth;
   /// Translucent fragments that no opaque one hides, at the sample that has most.

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include <rastrum/raster/program.hpp>
+#include <rastrum/raster/draws/program.hpp>
 
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/projection.hpp"

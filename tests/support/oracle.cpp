@@ -149,7 +149,7 @@ float depth_at(const Plane& plane, std::int64_t x_fx8, std::int64_t y_fx8) {
 
 }  // namespace
 
-std::uint64_t visibility_word(float depth, std::int64_t id) {
+std::uint64_t visibility_key(float depth, std::int64_t id) {
   const std::uint64_t bits = std::bit_cast<std::uint32_t>(depth);
   return bits << 33 | ((std::uint64_t{1} << 33) - 1 - static_cast<std::uint64_t>(id));
 }
@@ -245,7 +245,7 @@ Reach reach(const SnappedPoint& p) {
 
 OracleImage brute_force(int width, int height, std::span<const SnappedPrimitive> primitives) {
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  std::vector<std::uint64_t> words(pixels, 0);
+  std::vector<std::uint64_t> keys(pixels, 0);
   OracleImage image{width, height, {}, {}, std::vector<std::uint32_t>(pixels, 0)};
   for (const SnappedPrimitive& p : primitives)
     std::visit(
@@ -271,17 +271,17 @@ OracleImage brute_force(int width, int height, std::span<const SnappedPrimitive>
               const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                                     static_cast<std::size_t>(x);
               ++image.overdraw[i];
-              words[i] = std::max(words[i], visibility_word(depth_at(p, x, y), shape.id));
+              keys[i] = std::max(keys[i], visibility_key(depth_at(p, x, y), shape.id));
             }
         },
         p.shape);
   image.ids.resize(pixels);
   image.depth.resize(pixels);
   for (std::size_t i = 0; i < pixels; ++i) {
-    const std::uint64_t low = words[i] & ((std::uint64_t{1} << 33) - 1);
+    const std::uint64_t low = keys[i] & ((std::uint64_t{1} << 33) - 1);
     image.ids[i] =
-        words[i] == 0 ? -1 : static_cast<std::int64_t>((std::uint64_t{1} << 33) - 1 - low);
-    image.depth[i] = std::bit_cast<float>(static_cast<std::uint32_t>(words[i] >> 33));
+        keys[i] == 0 ? -1 : static_cast<std::int64_t>((std::uint64_t{1} << 33) - 1 - low);
+    image.depth[i] = std::bit_cast<float>(static_cast<std::uint32_t>(keys[i] >> 33));
   }
   return image;
 }

@@ -68,7 +68,7 @@ struct OracleImage {
                                     std::int64_t y_fx8);
 
 /// bits(depth) << 33 | (2³³ − 1 − id): the larger one is in front.
-[[nodiscard]] std::uint64_t visibility_word(float depth, std::int64_t id);
+[[nodiscard]] std::uint64_t visibility_key(float depth, std::int64_t id);
 
 /// Whether a line produces the fragment of pixel (px, py): OpenGL's diamond-exit rule (4.6, 14.5.1)
 /// as it is written, with y down and both ends moved by −(ε, ε²) for an infinitesimal ε. A wide

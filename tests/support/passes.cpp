@@ -26,7 +26,7 @@ Mesh indexed(Mesh mesh) {
 
 struct Passes {
   Frame frame;
-  Image<std::uint64_t> words;
+  Image<std::uint64_t> keys;
 };
 
 enum class By { load, over };
@@ -41,10 +41,10 @@ Passes draw_in_passes(Renderer& renderer, const SceneView& scene, const Camera& 
             Image<std::uint32_t>(w, h),
             {}},
            Image<std::uint64_t>(w, h)};
-  std::ranges::fill(p.words.pixels(), ~std::uint64_t{0});
+  std::ranges::fill(p.keys.pixels(), ~std::uint64_t{0});
   Targets targets{p.frame.color8.view(), p.frame.color.view(), p.frame.depth.view(),
                   p.frame.ids.view(), p.frame.overdraw.view()};
-  targets.words = p.words.view();
+  targets.keys = p.keys.view();
   const InstanceView& whole = scene.instances[0];
   const std::size_t triangles = whole.mesh.triangle_count();
   std::size_t first = 0;
@@ -83,8 +83,8 @@ AssertionResult passes_equal_one_draw(Renderer& renderer, std::string_view shape
         std::ranges::copy(once.frame.overdraw.pixels(), p.frame.overdraw.pixels().begin());
       if (AssertionResult r = same_surfaces(p.frame, once.frame); !r) return failed(r);
       if (AssertionResult r = same_picture(p.frame, once.frame, 0); !r) return failed(r);
-      if (!std::ranges::equal(p.words.pixels(), once.words.pixels()))
-        return failed(AssertionFailure() << "words differ");
+      if (!std::ranges::equal(p.keys.pixels(), once.keys.pixels()))
+        return failed(AssertionFailure() << "keys differ");
     }
   return testing::AssertionSuccess();
 }

@@ -49,11 +49,11 @@ class CheckIncludes(unittest.TestCase):
         self.assert_caught("rastrum/core/bad.hpp:2", "core may not include scene")
 
     def test_io_does_not_draw(self):
-        self.write("rastrum/io/bad.cpp", "#include <rastrum/raster/setup.hpp>\n")
+        self.write("rastrum/io/bad.cpp", "#include <rastrum/raster/setup/make_piece.hpp>\n")
         self.assert_caught("rastrum/io/bad.cpp:1", "io may not include raster")
 
     def test_rooms_are_apart(self):
-        self.write("rastrum/terrain/bad.cpp", "#include <rastrum/raster/setup.hpp>\n")
+        self.write("rastrum/terrain/bad.cpp", "#include <rastrum/raster/setup/make_piece.hpp>\n")
         self.assert_caught("rastrum/terrain/bad.cpp:1", "terrain may not include raster")
 
     def test_subfolders_belong_to_their_floor(self):

@@ -23,14 +23,14 @@ using transparency::LayerOrder;
 
 constexpr std::size_t kMany = 1 << 15;
 
-std::uint64_t word(float depth, std::uint64_t id) {
+std::uint64_t key(float depth, std::uint64_t id) {
   return std::uint64_t{std::bit_cast<std::uint32_t>(depth)} << raster::kIdBits |
          (raster::kIdMask - id);
 }
 
 struct Arrival {
   int pixel;
-  std::uint64_t word;
+  std::uint64_t key;
 };
 
 std::vector<Arrival> arrivals(std::uint64_t seed, int count, int pixels) {
@@ -39,18 +39,18 @@ std::vector<Arrival> arrivals(std::uint64_t seed, int count, int pixels) {
   for (int i = 0; i < count; ++i) {
     // Few depths, so that many are equal.
     const auto depth = static_cast<float>(random.integer(0, 40)) / 64;
-    all.push_back({random.integer(0, pixels - 1), word(depth, static_cast<std::uint64_t>(i))});
+    all.push_back({random.integer(0, pixels - 1), key(depth, static_cast<std::uint64_t>(i))});
   }
   return all;
 }
 
-/// The words of each pixel in the order of the lists, over all windows.
+/// The keys of each pixel in the order of the lists, over all windows.
 std::vector<std::vector<std::uint64_t>> drain(LayerLists<>& lists, const std::vector<Arrival>& all,
                                               bool sort, int& windows) {
   std::vector<std::vector<std::uint64_t>> pixels(64);
   windows = 0;
   do {
-    for (const Arrival& a : all) lists.insert(a.pixel, a.word);
+    for (const Arrival& a : all) lists.insert(a.pixel, a.key);
     if (sort) lists.sort();
     for (std::size_t k = 0; k < lists.depth(); ++k)
       for (std::uint64_t m = lists.mask(k); m != 0; m &= m - 1) {
@@ -64,7 +64,7 @@ std::vector<std::vector<std::uint64_t>> drain(LayerLists<>& lists, const std::ve
 
 std::vector<std::vector<std::uint64_t>> sorted(const std::vector<Arrival>& all) {
   std::vector<std::vector<std::uint64_t>> pixels(64);
-  for (const Arrival& a : all) pixels[static_cast<std::size_t>(a.pixel)].push_back(a.word);
+  for (const Arrival& a : all) pixels[static_cast<std::size_t>(a.pixel)].push_back(a.key);
   for (auto& p : pixels) std::ranges::sort(p, std::greater<>());
   return pixels;
 }
@@ -92,7 +92,7 @@ TEST(LayerLists, OrderBySubmission) {
   LayerLists<> lists(account);
   std::vector<Arrival> all = arrivals(5, 2000, 64);
   std::vector<std::vector<std::uint64_t>> expected(64);
-  for (const Arrival& a : all) expected[static_cast<std::size_t>(a.pixel)].push_back(a.word);
+  for (const Arrival& a : all) expected[static_cast<std::size_t>(a.pixel)].push_back(a.key);
   std::ranges::reverse(all);
   lists.restart(LayerOrder::submission, 8, kMany);
   int windows = 0;
@@ -104,32 +104,32 @@ TEST(LayerLists, OrderBySubmission) {
 TEST(LayerLists, AFilterOvertakesSoManyAndNotesTheOthers) {
   MemoryAccount account;
   LayerLists<> lists(account);
-  const std::vector<Arrival> all{{0, word(0.5F, 0)},  {0, word(0.4F, 1)}, {0, word(0.3F, 2)},
-                                 {0, word(0.45F, 3)}, {1, word(0.5F, 0)}, {1, word(0.6F, 1)}};
+  const std::vector<Arrival> all{{0, key(0.5F, 0)},  {0, key(0.4F, 1)}, {0, key(0.3F, 2)},
+                                 {0, key(0.45F, 3)}, {1, key(0.5F, 0)}, {1, key(0.6F, 1)}};
   lists.restart(LayerOrder::depth, 1, kMany);
   int windows = 0;
   const auto pixels = drain(lists, all, false, windows);
-  EXPECT_EQ(pixels[0], (std::vector{all[0].word, all[1].word, all[3].word, all[2].word}));
-  EXPECT_EQ(pixels[1], (std::vector{all[5].word, all[4].word}));
+  EXPECT_EQ(pixels[0], (std::vector{all[0].key, all[1].key, all[3].key, all[2].key}));
+  EXPECT_EQ(pixels[1], (std::vector{all[5].key, all[4].key}));
   EXPECT_EQ(lists.misplaced(), 1U);
   lists.restart(LayerOrder::depth, 2, kMany);
   EXPECT_EQ(drain(lists, all, false, windows), sorted(all));
   EXPECT_EQ(lists.misplaced(), 0U);
 }
 
-TEST(LayerLists, OwnersStayWithTheirWords) {
+TEST(LayerLists, OwnersStayWithTheirKeys) {
   MemoryAccount account;
   LayerLists<std::uint32_t> lists(account);
   const auto all = arrivals(9, 3000, 5);
   for (const std::size_t capacity : {std::size_t{16}, kMany}) {
     lists.restart(LayerOrder::depth, 4, capacity);
     do {
-      for (std::uint32_t i = 0; i < all.size(); ++i) lists.insert(all[i].pixel, all[i].word, i);
+      for (std::uint32_t i = 0; i < all.size(); ++i) lists.insert(all[i].pixel, all[i].key, i);
       lists.sort();
       for (std::size_t k = 0; k < lists.depth(); ++k)
         for (std::uint64_t m = lists.mask(k); m != 0; m &= m - 1) {
           const int i = std::countr_zero(m);
-          ASSERT_EQ(all[lists.owners(k)[i]].word, lists.plane(k)[i]);
+          ASSERT_EQ(all[lists.owners(k)[i]].key, lists.plane(k)[i]);
         }
     } while (lists.next_window());
   }
@@ -138,7 +138,7 @@ TEST(LayerLists, OwnersStayWithTheirWords) {
 /// `count` layers over all pixels, nearest first, with colours and alpha from a seed.
 struct Stack {
   std::vector<BlockColors> colors;
-  std::vector<std::vector<std::uint64_t>> words;
+  std::vector<std::vector<std::uint64_t>> keys;
   BlockColors behind;
 
   Stack(std::uint64_t seed, int count, bool shuffled) {
@@ -148,13 +148,13 @@ struct Stack {
     for (int k = 0; k < count; ++k) {
       const int place = shuffled ? (k * 7 + 3) % count : k;
       BlockColors& c = colors.emplace_back();
-      auto& w = words.emplace_back(64);
+      auto& w = keys.emplace_back(64);
       for (int i = 0; i < 64; ++i) {
         const float a = 0.1F + 0.8F * channel();
         c.set(i, {a * channel(), a * channel(), a * channel(), a});
         w[static_cast<std::size_t>(i)] =
-            word(0.9F - 0.8F * static_cast<float>(place) / static_cast<float>(count),
-                 static_cast<std::uint64_t>(k));
+            key(0.9F - 0.8F * static_cast<float>(place) / static_cast<float>(count),
+                static_cast<std::uint64_t>(k));
       }
     }
   }
@@ -175,10 +175,9 @@ BlockColors blended(const Stack& stack, Transparency method, Isa isa = Isa::scal
       for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
       if (blend->order() == LayerOrder::depth)
         std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
-          return stack.words[a][0] > stack.words[b][0];
+          return stack.keys[a][0] > stack.keys[b][0];
         });
-      for (const std::size_t k : order)
-        blend->layer({stack.words[k].data(), mask, stack.colors[k]});
+      for (const std::size_t k : order) blend->layer({stack.keys[k].data(), mask, stack.colors[k]});
     }
     blend->finish(out);
   }
@@ -213,8 +212,8 @@ TEST(Blend, FinishedPixelsAreThoseThatNothingChanges) {
       blend->begin(behind);
       BlockColors colors = {};
       for (int i = 0; i < 64; ++i) colors.set(i, {0, 0, 0, static_cast<float>(i) / 63});
-      const std::vector<std::uint64_t> words(64, word(0.5F, 1));
-      const std::uint64_t finished = blend->layer({words.data(), ~std::uint64_t{0}, colors});
+      const std::vector<std::uint64_t> keys(64, key(0.5F, 1));
+      const std::uint64_t finished = blend->layer({keys.data(), ~std::uint64_t{0}, colors});
       for (int i = 0; i < 64; ++i)
         EXPECT_EQ(finished >> i & 1, colors.a[i] >= threshold) << i << ", " << name(isa);
     }
@@ -237,7 +236,7 @@ TEST(Approximations, MultiLayerBlendingIsExactForFourLayersInAnyOrder) {
               1e-6F);
     // With three layers kept the last but one would come behind what it hides.
     Stack five(seed, 5, false);
-    std::swap(five.words[3], five.words[4]);
+    std::swap(five.keys[3], five.keys[4]);
     EXPECT_LT(difference(blended(five, Transparency::mlab4), blended(five, Transparency::exact)),
               1e-6F);
     const Stack twelve(seed, 12, true);
@@ -252,7 +251,7 @@ TEST(Approximations, MultiLayerBlendingIsExactForFourLayersInAnyOrder) {
 TEST(Approximations, MomentsTellTwoLayersApart) {
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     const Stack two(seed, 2, true);
-    const std::size_t first = two.words[0][0] > two.words[1][0] ? 0 : 1;
+    const std::size_t first = two.keys[0][0] > two.keys[1][0] ? 0 : 1;
     const BlockColors &near = two.colors[first], &far = two.colors[1 - first];
     for (const Transparency method : {Transparency::mboit4, Transparency::mboit6}) {
       const BlockColors actual = blended(two, method);

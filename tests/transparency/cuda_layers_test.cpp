@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/core/error.hpp>
-#include <rastrum/raster/assemble.hpp>
-#include <rastrum/raster/coverage.hpp>
-#include <rastrum/raster/frame.hpp>
+#include <rastrum/raster/assemble/assemble.hpp>
+#include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/frame/frame.hpp>
 #include <rastrum/render/render.hpp>
 #include <rastrum/transparency/cuda/device_layers.hpp>
 
@@ -43,7 +43,7 @@ LayersFrame frame_of(const LayerScene& scene, LayerProgram& program, int width, 
   f.opaque = scene.opaque;
   f.by_pixel = scene.paint == Paint::pixel;
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  f.words.assign(pixels, 0);
+  f.keys.assign(pixels, 0);
   f.colors.assign(pixels, {});
   const std::span<raster::Draw> draws = program.draws();
   const raster::Totals totals = raster::number_draws(draws);
@@ -69,9 +69,9 @@ LayersFrame frame_of(const LayerScene& scene, LayerProgram& program, int width, 
         if (scene.is_hole(id, x, y)) continue;
         const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                               static_cast<std::size_t>(x);
-        const std::uint64_t word = raster::make_word(raster::depth_at(piece, x, y), piece.low);
-        if (word <= f.words[i]) continue;
-        f.words[i] = word;
+        const std::uint64_t key = raster::make_key(raster::depth_at(piece, x, y), piece.low);
+        if (key <= f.keys[i]) continue;
+        f.keys[i] = key;
         f.colors[i] =
             f.by_pixel ? scene.pixel_color(id, x, y) : scene.colors[static_cast<std::size_t>(id)];
       }
@@ -95,9 +95,9 @@ std::string show(Vec4 c) {
 
 testing::AssertionResult equals_host(const LayersFrame& f, const LayerPicture& host) {
   const auto bits = [](float v) { return std::bit_cast<std::uint32_t>(v); };
-  for (std::size_t i = 0; i < f.words.size(); ++i) {
-    const std::uint64_t word = f.words[i];
-    const std::int64_t id = word == 0 ? -1 : static_cast<std::int64_t>(raster::id_of_word(word));
+  for (std::size_t i = 0; i < f.keys.size(); ++i) {
+    const std::uint64_t key = f.keys[i];
+    const std::int64_t id = key == 0 ? -1 : static_cast<std::int64_t>(raster::id_of_key(key));
     const auto place = [&] {
       return std::string(" at (")
           .append(std::to_string(i % static_cast<std::size_t>(f.width)))
@@ -108,7 +108,7 @@ testing::AssertionResult equals_host(const LayersFrame& f, const LayerPicture& h
     if (id != host.ids.pixels()[i])
       return testing::AssertionFailure()
              << "id " << id << " and the host's " << host.ids.pixels()[i] << place();
-    if (static_cast<std::uint32_t>(word >> raster::kIdBits) != bits(host.depth.pixels()[i]))
+    if (static_cast<std::uint32_t>(key >> raster::kIdBits) != bits(host.depth.pixels()[i]))
       return testing::AssertionFailure() << "depth" << place();
     const Vec4 a = f.colors[i], b = host.color.pixels()[i];
     if (bits(a.x) != bits(b.x) || bits(a.y) != bits(b.y) || bits(a.z) != bits(b.z) ||
@@ -266,7 +266,7 @@ TEST_F(CudaLayers, OrderOfPiecesDoesNotMatter) {
       LayersFrame x = a, y = b;
       const DeviceLayerCounts one = blend_on_device(x, options, {4, 64, 0});
       const DeviceLayerCounts other = blend_on_device(y, options, {4, 64, 0});
-      EXPECT_EQ(x.words, y.words);
+      EXPECT_EQ(x.keys, y.keys);
       EXPECT_EQ(one.fragments, other.fragments);
       EXPECT_EQ(one.records, other.records);
       for (std::size_t p = 0; p < x.colors.size(); ++p)
@@ -286,7 +286,7 @@ TEST_F(CudaLayers, ASteadyFrameAllocatesNothing) {
 TEST_F(CudaLayers, WhatADeviceDoesNotHaveIsRefused) {
   LayersFrame f;
   f.width = f.height = 8;
-  f.words.resize(64);
+  f.keys.resize(64);
   f.colors.resize(64);
   TransparencyOptions options;
   EXPECT_EQ(transparency::why_not_on_a_device(options.method), "");
@@ -311,13 +311,13 @@ TEST_F(CudaLayers, TeamsSortAndSumUp) {
     std::vector<std::uint32_t> values(n);
     for (std::uint32_t& v : values)
       v = r.chance(0.1) ? 0xFFFFFFFFU : static_cast<std::uint32_t>(r.integer(0, 40));
-    const TeamResult got = team_words(values);
+    const TeamResult got = team_keys(values);
     std::vector<std::uint32_t> sorted = values, sums(n + 1, 0);
     std::ranges::sort(sorted);
     EXPECT_EQ(got.sorted, sorted);
     std::partial_sum(values.begin(), values.end(), sums.begin() + 1);
     EXPECT_EQ(got.sums, sums);
-    // Values go with their keys; equal keys may change places.
+    // Values go with their sort_keys; equal sort_keys may change places.
     for (std::size_t i = 0; i < n; ++i) {
       if (sorted[i] == 0xFFFFFFFFU) continue;
       ASSERT_LT(got.places[i], n);

@@ -1,5 +1,5 @@
 // Exact transparency is exact: in every pixel of every scene it equals a sort of all fragments by
-// the visibility word, blended in float64; and it is the same bits over threads, rasterizers and
+// the visibility key, blended in float64; and it is the same bits over threads, rasterizers and
 // tile sizes, and in whatever order (up to ties) the triangles came.
 #include <algorithm>
 #include <cstdint>

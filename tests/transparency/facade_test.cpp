@@ -14,13 +14,13 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/io/io.hpp>
-#include <rastrum/raster/interpolate.hpp>
-#include <rastrum/raster/resolve.hpp>
-#include <rastrum/raster/shaders/alpha.hpp>
-#include <rastrum/raster/shaders/lit.hpp>
-#include <rastrum/raster/shaders/material.hpp>
-#include <rastrum/raster/shaders/texture.hpp>
-#include <rastrum/raster/transform_source.hpp>
+#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/resolve/resolve.hpp>
+#include <rastrum/raster/shade/alpha.hpp>
+#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/shade/lit.hpp>
+#include <rastrum/raster/shade/material.hpp>
+#include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/render/render.hpp>
 
 #include "tests/support/directories.hpp"
@@ -85,9 +85,9 @@ class Fragments {
   }
   [[nodiscard]] Rgba64 color(std::int64_t id, const ShadePoint& p) {
     const At at(p);
-    alignas(64) std::uint64_t words[64] = {};
-    words[at.bit] = visibility_word(0.5F, id);
-    raster::VisibleBlock block{words, at.mask, at.x0, at.y0, scratch_.data()};
+    alignas(64) std::uint64_t keys[64] = {};
+    keys[at.bit] = visibility_key(0.5F, id);
+    raster::VisibleBlock block{keys, at.mask, at.x0, at.y0, scratch_.data()};
     block.points = &at.points;
     raster::BlockColors colors;
     if (shader_->shade(frame_, block, Isa::scalar, colors)) colors.a[at.bit] = 1;

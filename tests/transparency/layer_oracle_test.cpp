@@ -96,7 +96,7 @@ TEST(LayerOracle, FirstSubmittedIsInFrontAtEqualDepth) {
   EXPECT_EQ(image.tied[0], 1);
 }
 
-TEST(LayerOracle, OpaqueSurfacesHideWhatHasASmallerWord) {
+TEST(LayerOracle, OpaqueSurfacesHideWhatHasASmallerKey) {
   // 1 and 3 lie in the opaque 2's plane: 1 was submitted before it and survives.
   Case c{{}, {kRed, kGreen, kBlue, kGreen, kRed}, {2}, {1, 1, 1, 1}};
   c.add(flat(0, 0.25F)).add(flat(1, 0.5F)).add(flat(2, 0.5F)).add(flat(3, 0.5F));

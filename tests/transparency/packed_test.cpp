@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/raster/kernels.hpp>
+#include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>
 
@@ -22,7 +22,7 @@ using raster::BlockColors;
 using transparency::kPackedPitch;
 using transparency::kPackSlack;
 using transparency::packed_kernels;
-using transparency::packed_key;
+using transparency::packed_sort_key;
 using transparency::PackedRow;
 using transparency::Seen;
 
@@ -39,9 +39,9 @@ raster::Piece piece(Random& random) {
   return p;
 }
 
-TEST_P(Packed, HasTheWordsOfTheBlock) {
+TEST_P(Packed, HasTheKeysOfTheBlock) {
   Random random(1);
-  std::vector<std::uint64_t> words(64 + kPackSlack);
+  std::vector<std::uint64_t> keys(64 + kPackSlack);
   std::vector<std::uint16_t> pixels(64 + kPackSlack);
   alignas(64) std::uint64_t expected[64];
   for (int i = 0; i < 2000; ++i) {
@@ -53,14 +53,14 @@ TEST_P(Packed, HasTheWordsOfTheBlock) {
     const int bx = random.integer(0, 7), by = random.integer(0, 7);
     const raster::Block block{0, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by),
                               mask};
-    raster::kernels(Isa::scalar).words(p, block, expected);
+    raster::kernels(Isa::scalar).keys(p, block, expected);
     const auto first = static_cast<std::uint32_t>((by * kPackedPitch + bx) * 8);
-    const std::size_t n = packed_kernels(GetParam())
-                              .pack(p, mask, bx * 8, by * 8, first, words.data(), pixels.data());
+    const std::size_t n =
+        packed_kernels(GetParam()).pack(p, mask, bx * 8, by * 8, first, keys.data(), pixels.data());
     ASSERT_EQ(n, static_cast<std::size_t>(parallel::popcount(mask)));
     for (std::size_t f = 0; f < n; ++f, mask &= mask - 1) {
       const int sample = std::countr_zero(mask);
-      ASSERT_EQ(words[f], expected[sample]);
+      ASSERT_EQ(keys[f], expected[sample]);
       ASSERT_EQ(pixels[f], (by * 8 + sample / 8) * kPackedPitch + bx * 8 + sample % 8);
     }
   }
@@ -79,9 +79,9 @@ TEST_P(Packed, PointsLieAtTheirPixels) {
   }
 }
 
-/// Rows of 8 keys: pixel i has `counts[i]`, then zeros.
+/// Rows of 8 sort_keys: pixel i has `counts[i]`, then zeros.
 std::vector<std::uint64_t> row_of(Random& random, std::size_t layers, std::size_t& numbers) {
-  std::vector<std::uint64_t> keys(layers * 8, 0);
+  std::vector<std::uint64_t> sort_keys(layers * 8, 0);
   numbers = 0;
   for (std::size_t i = 0; i < 8; ++i) {
     const auto count =
@@ -89,11 +89,11 @@ std::vector<std::uint64_t> row_of(Random& random, std::size_t layers, std::size_
     for (std::size_t k = 0; k < count; ++k) {
       // Few depths, so that many are equal and the numbers decide.
       const auto depth = static_cast<float>(random.integer(0, 9)) / 8;
-      keys[k * 8 + i] = packed_key(
+      sort_keys[k * 8 + i] = packed_sort_key(
           std::uint64_t{std::bit_cast<std::uint32_t>(depth)} << raster::kIdBits, numbers++);
     }
   }
-  return keys;
+  return sort_keys;
 }
 
 TEST_P(Packed, SortsEveryPixel) {
@@ -122,9 +122,9 @@ TEST_P(Packed, BlendsAsPlanesDo) {
   const transparency::BlendKernels& planes = transparency::blend_kernels(Isa::scalar);
   for (std::size_t layers = 0; layers < 12; ++layers) {
     std::size_t numbers = 0;
-    const std::vector<std::uint64_t> keys = row_of(random, layers, numbers);
+    const std::vector<std::uint64_t> sort_keys = row_of(random, layers, numbers);
     alignas(64) std::uint64_t aligned[12 * 8];
-    std::copy(keys.begin(), keys.end(), aligned);
+    std::copy(sort_keys.begin(), sort_keys.end(), aligned);
     std::vector<BlockColors> shaded(numbers / 64 + 1);
     std::vector<Vec4> colors(1 + shaded.size() * 64);
     const auto number = [&](float low) { return static_cast<float>(random.real(low, 1)); };
@@ -151,12 +151,12 @@ TEST_P(Packed, BlendsAsPlanesDo) {
         std::uint64_t mask = 0;
         packed_kernels(GetParam()).gather({aligned + k * 8, 1, colors.data()}, first, gathered);
         for (std::size_t i = 0; i < 8; ++i) {
-          const std::uint64_t key = aligned[k * 8 + i];
-          if (key == 0) {
+          const std::uint64_t sort_key = aligned[k * 8 + i];
+          if (sort_key == 0) {
             EXPECT_EQ(gathered.a[first + i], 0.0F);
             continue;
           }
-          const std::size_t f = transparency::number_of_key(key);
+          const std::size_t f = transparency::number_of_sort_key(sort_key);
           const BlockColors& from = shaded[f / 64];
           plane.set(static_cast<int>(first + i),
                     {from.r[f % 64], from.g[f % 64], from.b[f % 64], from.a[f % 64]});

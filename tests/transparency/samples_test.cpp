@@ -12,8 +12,8 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/core/error.hpp>
-#include <rastrum/raster/program.hpp>
-#include <rastrum/raster/samples.hpp>
+#include <rastrum/raster/draws/program.hpp>
+#include <rastrum/raster/draws/samples.hpp>
 #include <rastrum/render/render.hpp>
 
 #include "tests/support/environment.hpp"
@@ -159,8 +159,9 @@ TEST_P(Serial, EqualsTheOracleAndThreads) {
 INSTANTIATE_TEST_SUITE_P(Standard, Serial, testing::Values(1, 4, 8, 16),
                          [](const auto& p) { return std::to_string(p.param); });
 
-/// What the other targets hold (raster/options.hpp): of the sample with the largest word. A frame
-/// with one sample, of the scene moved so that sample lies at the pixels' centres, has its word.
+/// What the other targets hold (raster/frame/options.hpp): of the sample with the largest key. A
+/// frame with one sample, of the scene moved so that sample lies at the pixels' centres, has its
+/// key.
 TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
   constexpr int kSide = 64;
   const Camera camera = pixel_camera(kSide, kSide);
@@ -189,7 +190,7 @@ TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
   struct Pictures {
     Image<float> depth{kSide, kSide};
     Image<std::int64_t> ids{kSide, kSide};
-    Image<std::uint64_t> words{kSide, kSide};
+    Image<std::uint64_t> keys{kSide, kSide};
     Image<std::uint32_t> overdraw{kSide, kSide};
     Image<Vec4> extra{kSide, kSide};
   };
@@ -210,7 +211,7 @@ TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
     Targets targets;
     targets.depth = p.depth.view();
     targets.ids = p.ids.view();
-    targets.words = p.words.view();
+    targets.keys = p.keys.view();
     targets.overdraw = p.overdraw.view();
     targets.extra = extra;
     Renderer(o).draw({&d, 1}, targets);
@@ -224,7 +225,7 @@ TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
       const Pictures one = draw(Device::serial, 1, moved(offset));
       for (int y = 0; y < kSide; ++y)
         for (int x = 0; x < kSide; ++x) {
-          nearest(x, y) = std::max(nearest(x, y), one.words(x, y));
+          nearest(x, y) = std::max(nearest(x, y), one.keys(x, y));
           overdraw(x, y) += one.overdraw(x, y);
         }
     }
@@ -233,16 +234,15 @@ TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
     for (int y = 0; y < kSide; ++y)
       for (int x = 0; x < kSide; ++x) {
         SCOPED_TRACE(std::to_string(x) + ", " + std::to_string(y));
-        const std::uint64_t word = got.words(x, y);
-        ASSERT_EQ(word, nearest(x, y));
+        const std::uint64_t key = got.keys(x, y);
+        ASSERT_EQ(key, nearest(x, y));
         ASSERT_EQ(got.overdraw(x, y), overdraw(x, y));
-        ASSERT_EQ(got.ids(x, y),
-                  word == 0 ? -1 : static_cast<std::int64_t>(raster::id_of_word(word)));
+        ASSERT_EQ(got.ids(x, y), key == 0 ? -1 : static_cast<std::int64_t>(raster::id_of_key(key)));
         const float depth =
-            std::bit_cast<float>(static_cast<std::uint32_t>(word >> raster::kIdBits));
+            std::bit_cast<float>(static_cast<std::uint32_t>(key >> raster::kIdBits));
         ASSERT_EQ(got.depth(x, y), depth);
         const Vec4 extra = got.extra(x, y);
-        if (word == 0) {
+        if (key == 0) {
           ASSERT_EQ(extra.w, 0);
           continue;
         }

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <rastrum/core/image.hpp>
-#include <rastrum/raster/options.hpp>
+#include <rastrum/raster/frame/options.hpp>
 
 #include "event.hpp"
 #include "worker.hpp"

@@ -14,10 +14,10 @@
 #include <rastrum/parallel/expand_each.hpp>
 #include <rastrum/parallel/stop.hpp>
 #include <rastrum/parallel/work_queue.hpp>
+#include <rastrum/raster/bin/order.hpp>
 #include <rastrum/raster/coverage/boxes.hpp>
 #include <rastrum/raster/coverage/tile_mask.hpp>
-#include <rastrum/raster/order.hpp>
-#include <rastrum/raster/set_up.hpp>
+#include <rastrum/raster/setup/set_up.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -131,7 +131,7 @@ class Binned final : public Coverage {
     }
 
     // Each batch's place in the queue. A round's entries are those of a run of whole batches; those
-    // of a single one, at most 32 a bin, take less than the view's words.
+    // of a single one, at most 32 a bin, take less than the view's keys.
     constexpr std::size_t kEntryBytes = sizeof(Entry<Mask>) + sizeof(std::size_t);
     const std::size_t most =
         frame.expansion_bytes == 0

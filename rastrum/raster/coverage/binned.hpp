@@ -12,7 +12,7 @@
 // the paper's takes batches of bins, which are uneven where masks are. The queues are as large as
 // they need be; where a memory limit leaves less room, or beyond a million entries, the batches are
 // drawn in rounds, each complete in itself: nothing overflows, nothing is lost. Persistent workers
-// draw into the words of the frame, not into a copy of their bin: small triangles lie there too.
+// draw into the keys of the frame, not into a copy of their bin: small triangles lie there too.
 // Setup is the family's and comes first; pieces of clipped triangles are batched like others.
 #pragma once
 

@@ -8,8 +8,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <rastrum/raster/coverage.hpp>
-#include <rastrum/raster/tile_grid.hpp>
+#include <rastrum/raster/bin/tile_grid.hpp>
+#include <rastrum/raster/cover/rules.hpp>
 
 namespace rastrum::raster {
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <string_view>
 
-#include <rastrum/raster/frame.hpp>
+#include <rastrum/raster/frame/frame.hpp>
 
 namespace rastrum::raster {
 

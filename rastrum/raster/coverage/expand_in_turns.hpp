@@ -11,7 +11,7 @@
 #include <utility>
 
 #include <rastrum/parallel/expand.hpp>
-#include <rastrum/raster/frame.hpp>
+#include <rastrum/raster/frame/frame.hpp>
 
 namespace rastrum::raster {
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include <rastrum/core/error.hpp>
-#include <rastrum/raster/coverage.hpp>
-#include <rastrum/raster/resolve.hpp>
-#include <rastrum/raster/set_up.hpp>
+#include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/resolve/resolve.hpp>
+#include <rastrum/raster/setup/set_up.hpp>
 
 namespace rastrum::raster {
 namespace {

@@ -3,7 +3,7 @@
 #include <rastrum/raster/coverage/immediate.hpp>
 #include <rastrum/raster/coverage/scanline.hpp>
 #include <rastrum/raster/coverage/sorted_tiles.hpp>
-#include <rastrum/raster/set_up.hpp>
+#include <rastrum/raster/setup/set_up.hpp>
 
 namespace rastrum::raster {
 namespace {

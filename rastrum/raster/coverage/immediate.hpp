@@ -10,7 +10,7 @@
 #include <rastrum/parallel/expand_each.hpp>
 #include <rastrum/parallel/masked_expansion.hpp>
 #include <rastrum/parallel/partition.hpp>
-#include <rastrum/raster/frame.hpp>
+#include <rastrum/raster/frame/frame.hpp>
 
 namespace rastrum::raster {
 

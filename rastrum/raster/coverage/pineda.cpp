@@ -2,7 +2,7 @@
 
 #include <rastrum/raster/coverage/immediate.hpp>
 #include <rastrum/raster/coverage/tiles.hpp>
-#include <rastrum/raster/set_up.hpp>
+#include <rastrum/raster/setup/set_up.hpp>
 
 namespace rastrum::raster {
 namespace {

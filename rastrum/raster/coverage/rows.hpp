@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <rastrum/raster/coverage.hpp>
-#include <rastrum/raster/piece.hpp>
+#include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/setup/piece.hpp>
 
 namespace rastrum::raster {
 

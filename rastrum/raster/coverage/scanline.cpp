@@ -3,7 +3,7 @@
 #include <rastrum/raster/coverage/expand_in_turns.hpp>
 #include <rastrum/raster/coverage/immediate.hpp>
 #include <rastrum/raster/coverage/rows.hpp>
-#include <rastrum/raster/set_up.hpp>
+#include <rastrum/raster/setup/set_up.hpp>
 
 namespace rastrum::raster {
 namespace {

@@ -66,7 +66,7 @@ TileSegments sort_by_tile(Frame& frame, const Tiles<kBin, kTile>& tiles, const B
   return {frame.exec, std::move(ids), std::move(pieces), tiles.tiles.count()};
 }
 
-/// Draws pieces tile by tile. Words are kept in blocks, so the four tiles of 4 px in a block have
+/// Draws pieces tile by tile. Keys are kept in blocks, so the four tiles of 4 px in a block have
 /// one owner.
 template <int kBin, int kTile>
 void draw_sorted_tiles(Frame& frame, const Piece* pieces, std::span<const std::uint32_t> which) {

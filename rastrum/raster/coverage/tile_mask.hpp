@@ -11,9 +11,9 @@
 #include <cstdint>
 
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/coverage/bins.hpp>
-#include <rastrum/raster/piece.hpp>
+#include <rastrum/raster/setup/piece.hpp>
 
 namespace rastrum::raster {
 

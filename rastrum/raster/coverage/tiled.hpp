@@ -1,8 +1,8 @@
 // tiled: every triangle is expanded to bins and tiles, the (tile, triangle) pairs are sorted by
-// tile, and who draws a tile owns its words, which never leave the cache before they are shaded
+// tile, and who draws a tile owns its keys, which never leave the cache before they are shaded
 // (paper 1, section 3.3 and `triangle_tiled_pineda.fut`; sort-middle after Molnar et al., 1994).
 //
-// Deviation. A tile's words are shaded where they are, which the paper recommends and does not do:
+// Deviation. A tile's keys are shaded where they are, which the paper recommends and does not do:
 // there is no buffer of the whole frame. The fast relative of this listing is `grouped`.
 #pragma once
 

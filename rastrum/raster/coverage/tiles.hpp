@@ -14,8 +14,8 @@
 #include <rastrum/raster/coverage/bins.hpp>
 #include <rastrum/raster/coverage/coverage.hpp>
 #include <rastrum/raster/coverage/expand_in_turns.hpp>
-#include <rastrum/raster/frame.hpp>
-#include <rastrum/raster/options.hpp>
+#include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/frame/options.hpp>
 
 namespace rastrum::raster {
 

@@ -1,8 +1,8 @@
 // Coverage on a device, by size: a thread, a warp or a block of threads finds the samples of a
-// piece by the one cover_8x8 and puts their words by atomic maximum.
+// piece by the one cover_8x8 and puts their keys by atomic maximum.
 //
 // A team finds the masks of many blocks first, a block of the screen a member, and shares them:
-// then neighbours write neighbouring words. Source of the three sizes: paper 1's hybrid,
+// then neighbours write neighbouring keys. Source of the three sizes: paper 1's hybrid,
 // section 3.4, and paper 2's queue of large triangles.
 #pragma once
 
@@ -11,38 +11,38 @@
 
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/parallel/reduce_by_index.hpp>
-#include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cuda/sample_pattern.hpp>
-#include <rastrum/raster/setup.hpp>
-#include <rastrum/raster/surface.hpp>
+#include <rastrum/raster/resolve/surface.hpp>
+#include <rastrum/raster/setup/make_piece.hpp>
 
 namespace rastrum::raster {
 
 /// Across a tile of large triangles, px.
 inline constexpr int kDeviceTile = 64;
 
-/// Where words go. Memory of the device. With several samples a pixel each has a plane of words,
+/// Where keys go. Memory of the device. With several samples a pixel each has a plane of keys,
 /// and pieces are those of the pixels' centres, moved before they are drawn (samples.hpp).
 struct DeviceSurface {
   Rect view;                          ///< what is drawn; begins with a tile's first pixel
-  SurfaceView words;                  ///< its blocks
-  std::uint32_t* overdraw = nullptr;  ///< fragments of each pixel, in the places of the words; null
-  std::size_t plane = 0;              ///< from a sample's words to the next one's
+  SurfaceView keys;                   ///< its blocks
+  std::uint32_t* overdraw = nullptr;  ///< fragments of each pixel, in the places of the keys; null
+  std::size_t plane = 0;              ///< from a sample's keys to the next one's
   SamplePattern samples{};
 
-  /// The word of `piece` at element i of block (bx, by).
-  [[nodiscard]] RASTRUM_HD static std::uint64_t word(const Piece& piece, int bx, int by, int i) {
+  /// The key of `piece` at element i of block (bx, by).
+  [[nodiscard]] RASTRUM_HD static std::uint64_t key(const Piece& piece, int bx, int by, int i) {
     const int x = bx * kBlockSize + i % kBlockSize, y = by * kBlockSize + i / kBlockSize;
-    return make_word(depth_at(piece, x, y), piece.low);
+    return make_key(depth_at(piece, x, y), piece.low);
   }
   /// A fragment of `piece` there, which is as that sample sees it.
   RASTRUM_HD void put(const Piece& piece, int bx, int by, int i, int sample = 0) const {
-    const std::size_t at = words.index(bx, by) * 64 + static_cast<std::size_t>(i);
-    parallel::atomic_maximum(plane_of(sample)[at], word(piece, bx, by, i));
+    const std::size_t at = keys.index(bx, by) * 64 + static_cast<std::size_t>(i);
+    parallel::atomic_maximum(plane_of(sample)[at], key(piece, bx, by, i));
     if (overdraw != nullptr) parallel::atomic_add(overdraw[at], 1U);
   }
   [[nodiscard]] RASTRUM_HD std::uint64_t* plane_of(int sample) const {
-    return words.words + static_cast<std::size_t>(sample) * plane;
+    return keys.keys + static_cast<std::size_t>(sample) * plane;
   }
   [[nodiscard]] RASTRUM_HD Rect bounds(const Piece& piece) const {
     return sampled_bounds(piece, view, samples);

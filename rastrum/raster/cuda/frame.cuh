@@ -1,7 +1,7 @@
-// A frame of the façade on a device: the host's arrays over, bands of words drawn (rasterizer.cuh,
+// A frame of the façade on a device: the host's arrays over, bands of keys drawn (rasterizer.cuh,
 // or family/family.cuh where a point of the table is asked for), and each band resolved, there
 // (resolve.cuh) or, where a target or the shader has no device form (shading.cuh), by the host's
-// resolve_block on the words that come back.
+// resolve_block on the keys that come back.
 #pragma once
 
 #include <algorithm>
@@ -28,8 +28,8 @@
 #include <rastrum/raster/cuda/shading.cuh>
 #include <rastrum/raster/cuda/tested.cuh>
 #include <rastrum/raster/cuda/upload.cuh>
-#include <rastrum/raster/resolve.hpp>
-#include <rastrum/raster/stopwatch.hpp>
+#include <rastrum/raster/frame/stopwatch.hpp>
+#include <rastrum/raster/resolve/resolve.hpp>
 
 namespace rastrum::raster {
 
@@ -45,7 +45,7 @@ class DeviceRasterizer final : public CudaRasterizer {
         threads_(threads),
         exec_(&memory),
         textures_(exec_),
-        words_(memory),
+        keys_(memory),
         overdraw_(memory) {
     if (!coverage.empty()) family_ = family::point_of<Exec>(coverage, visibility);
   }
@@ -154,22 +154,22 @@ class DeviceRasterizer final : public CudaRasterizer {
     for (int y = 0; y < request.height; y += plan.band_rows, ++bands) {
       const Rect view{0, y, request.width, std::min(y + plan.band_rows, request.height)};
       const std::size_t blocks = block_count(view);
-      auto words = parallel::make_buffer<std::uint64_t>(exec_, planes * blocks * 64);
+      auto keys = parallel::make_buffer<std::uint64_t>(exec_, planes * blocks * 64);
       auto overdraw =
           parallel::make_buffer<std::uint32_t>(exec_, counts_overdraw ? blocks * 64 : 0);
       DeviceSurface surface{view,
-                            {0, y / kBlockSize, block_columns(view), words.data(), nullptr},
+                            {0, y / kBlockSize, block_columns(view), keys.data(), nullptr},
                             overdraw.data(),
                             blocks * 64,
                             samples};
-      begin(request, view, words, overdraw);
+      begin(request, view, keys, overdraw);
       Images images(exec_, request, view, resolves);
       const TestOnDevice test = look.test(scene.geometry(), images.depth_behind(request), view.y0);
-      auto colors = parallel::make_buffer<Vec4>(exec_, in_colors || shades_all ? words.size() : 0);
+      auto colors = parallel::make_buffer<Vec4>(exec_, in_colors || shades_all ? keys.size() : 0);
       family::Shading shading;
       if (shades_all)
         look.with(scene.geometry(), test, [&](const auto& shade, const auto&) {
-          shading = {shade_fragments(surface.words, shade), parallel::view_of(colors)};
+          shading = {shade_fragments(surface.keys, shade), parallel::view_of(colors)};
         });
       const std::uint32_t skip = layered ? kTranslucent : 0;
       const std::uint32_t untested = skip | (look.has_test() ? kTested : 0);
@@ -196,7 +196,7 @@ class DeviceRasterizer final : public CudaRasterizer {
           // Tested pieces are drawn after the others, without colours.
           if (planes == 1 && (shades_all ? look.has_test() : layered))
             parallel::tabulate(exec_, colors,
-                               cuda_detail::ColorOfElement<Shade>{surface.words, shade});
+                               cuda_detail::ColorOfElement<Shade>{surface.keys, shade});
           if constexpr (std::is_same_v<Shade, LitOnDevice>) {
             if (planes > 1) {
               const ShadedOnce<Shade> once{scene.geometry(), samples, shade};
@@ -217,7 +217,7 @@ class DeviceRasterizer final : public CudaRasterizer {
               resolve_on_device(request, ColorsOfSurface{surface, colors.data()}, surface, images);
         });
       else
-        stats.pixels_covered += resolve_on_host(request, geometry, view, words, shaders);
+        stats.pixels_covered += resolve_on_host(request, geometry, view, keys, shaders);
       watch.lap(stats, "shade");
     }
     stats.triangles.dropped = counts.sum.dropped;
@@ -242,15 +242,14 @@ class DeviceRasterizer final : public CudaRasterizer {
 
   /// family::Shading::shade; must not outlive the arrays of `shade`.
   template <class Shade>
-  [[nodiscard]] auto shade_fragments(const SurfaceView& words, const Shade& shade) {
-    return [this, words, shade](std::span<const std::uint32_t> element,
-                                std::span<const std::uint64_t> word, std::span<Vec4> colors) {
-      parallel::tabulate(exec_, colors,
-                         family::ColorOfFragment<Shade>{words, element, word, shade});
+  [[nodiscard]] auto shade_fragments(const SurfaceView& keys, const Shade& shade) {
+    return [this, keys, shade](std::span<const std::uint32_t> element,
+                               std::span<const std::uint64_t> key, std::span<Vec4> colors) {
+      parallel::tabulate(exec_, colors, family::ColorOfFragment<Shade>{keys, element, key, shade});
     };
   }
 
-  using Words = decltype(parallel::make_buffer<std::uint64_t>(std::declval<Exec&>(), 0));
+  using Keys = decltype(parallel::make_buffer<std::uint64_t>(std::declval<Exec&>(), 0));
   using Counts = decltype(parallel::make_buffer<std::uint32_t>(std::declval<Exec&>(), 0));
 
   /// Calls f(block row) by all threads.
@@ -260,19 +259,19 @@ class DeviceRasterizer final : public CudaRasterizer {
                              [&](std::size_t r) { f(view.y0 / kBlockSize + static_cast<int>(r)); });
   }
   [[nodiscard]] SurfaceView host_surface(Rect view) {
-    words_.reserve(block_count(view) * 64);
-    return {0, view.y0 / kBlockSize, block_columns(view), words_.data(), nullptr};
+    keys_.reserve(block_count(view) * 64);
+    return {0, view.y0 / kBlockSize, block_columns(view), keys_.data(), nullptr};
   }
 
-  /// Nothing, or the words of the passes before.
-  void begin(const FrameRequest& request, Rect view, Words& words, Counts& overdraw) {
+  /// Nothing, or the keys of the passes before.
+  void begin(const FrameRequest& request, Rect view, Keys& keys, Counts& overdraw) {
     if (request.targets.load) {
-      load_words(request.targets, view, host_surface(view));
-      parallel::cuda_system::copy(exec_.stream(), words.data(), words_.data(),
-                                  words.size() * sizeof(std::uint64_t));
+      load_keys(request.targets, view, host_surface(view));
+      parallel::cuda_system::copy(exec_.stream(), keys.data(), keys_.data(),
+                                  keys.size() * sizeof(std::uint64_t));
       exec_.wait();
     } else {
-      parallel::tabulate(exec_, words, parallel::range_detail::SameValue<std::uint64_t>{0});
+      parallel::tabulate(exec_, keys, parallel::range_detail::SameValue<std::uint64_t>{0});
     }
     parallel::tabulate(exec_, overdraw, parallel::range_detail::SameValue<std::uint32_t>{0});
   }
@@ -350,7 +349,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     Band<Vec4> color;
     Band<float> depth;
     Band<std::int64_t> ids;
-    Band<std::uint64_t> words;
+    Band<std::uint64_t> keys;
 
     /// `resolves`: they are wanted; else but what tests read.
     Images(Exec& exec, const FrameRequest& request, Rect view, bool resolves)
@@ -358,7 +357,7 @@ class DeviceRasterizer final : public CudaRasterizer {
           color(of(exec, request, request.targets.color, view, resolves)),
           depth(of(exec, request, request.targets.depth, view, resolves || request.targets.over)),
           ids(of(exec, request, request.targets.ids, view, resolves)),
-          words(of(exec, request, request.targets.words, view, resolves)) {}
+          keys(of(exec, request, request.targets.keys, view, resolves)) {}
 
     [[nodiscard]] ImageView<const float> depth_behind(const FrameRequest& request) {
       if (!request.targets.over) return {};
@@ -381,26 +380,26 @@ class DeviceRasterizer final : public CudaRasterizer {
                                                 const DeviceSurface& surface, Images& images) {
     const DeviceTargets targets{images.color8.on_device(), images.color.on_device(),
                                 images.depth.on_device(), images.ids.on_device(),
-                                images.words.on_device()};
+                                images.keys.on_device()};
     const std::uint64_t covered =
         resolve_surface(exec_, surface, targets, shade, ResolveRules::of(request));
     images.color8.store();
     images.color.store();
     images.depth.store();
     images.ids.store();
-    images.words.store();
+    images.keys.store();
     exec_.wait();
     return covered;
   }
 
-  /// All targets, from words that come back. Returns how many pixels hold a surface.
+  /// All targets, from keys that come back. Returns how many pixels hold a surface.
   [[nodiscard]] std::uint64_t resolve_on_host(const FrameRequest& request,
                                               const FrameGeometry& geometry, Rect view,
-                                              const Words& words,
+                                              const Keys& keys,
                                               parallel::ScratchPool<ShaderScratch>& shaders) {
     const SurfaceView surface = host_surface(view);
-    parallel::cuda_system::copy(exec_.stream(), words_.data(), words.data(),
-                                words.size() * sizeof(std::uint64_t));
+    parallel::cuda_system::copy(exec_.stream(), keys_.data(), keys.data(),
+                                keys.size() * sizeof(std::uint64_t));
     exec_.wait();
     const Backdrop backdrop = backdrop_of(request);
     std::atomic<std::uint64_t> covered = 0;
@@ -421,7 +420,7 @@ class DeviceRasterizer final : public CudaRasterizer {
   parallel::Threads& threads_;
   Exec exec_;
   DeviceTextures<Exec> textures_;
-  ScratchBuffer<std::uint64_t> words_;     ///< of the host, in the device's places
+  ScratchBuffer<std::uint64_t> keys_;      ///< of the host, in the device's places
   ScratchBuffer<std::uint32_t> overdraw_;  ///< alike
 };
 

@@ -12,8 +12,8 @@
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
-#include <rastrum/raster/geometry.hpp>
-#include <rastrum/raster/transform_source.hpp>
+#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/draws/transform_source.hpp>
 
 /// Of functions that many kernels need and that are large: a call, where nvcc would compile them,
 /// for minutes, in each kernel. A GPU has to show what the calls cost.

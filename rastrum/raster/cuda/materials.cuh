@@ -14,7 +14,7 @@
 #include <rastrum/raster/cuda/geometry.cuh>
 #include <rastrum/raster/cuda/resolve.cuh>
 #include <rastrum/raster/cuda/upload.cuh>
-#include <rastrum/raster/shaders/material_scalar.hpp>
+#include <rastrum/raster/shade/material_scalar.hpp>
 
 namespace rastrum::raster {
 
@@ -28,11 +28,11 @@ struct MaterialOnDevice {
   bool blends = false;  ///< alpha is theirs, too
   bool linear = false;  ///< colours are linear light
 
-  RASTRUM_HD Vec4 operator()(std::uint64_t word, int x, int y, Vec2 from_centre = {0, 0}) const {
-    const std::uint64_t id = id_of_word(word);
+  RASTRUM_HD Vec4 operator()(std::uint64_t key, int x, int y, Vec2 from_centre = {0, 0}) const {
+    const std::uint64_t id = id_of_key(key);
     const float alpha = blends ? alpha_of(id, x, y, from_centre) : opacity;
     if (!(alpha > 0)) return {};
-    const Vec3 c = shades ? color(id, x, y, from_centre) : lit.color(word, x, y, from_centre);
+    const Vec3 c = shades ? color(id, x, y, from_centre) : lit.color(key, x, y, from_centre);
     if (alpha == 1) return {c.x, c.y, c.z, 1};
     return {c.x * alpha, c.y * alpha, c.z * alpha, alpha};
   }
@@ -58,14 +58,14 @@ struct TestOnDevice {
   int y0 = 0;
 
   /// Whether the fragment is kept.
-  RASTRUM_HD bool operator()(std::uint64_t word, int x, int y) const {
+  RASTRUM_HD bool operator()(std::uint64_t key, int x, int y) const {
     if (behind.data != nullptr) {
       const float depth = behind.data[(y - y0) * behind.stride + x];
       // What has depth 0 is drawn where nothing is.
-      if (depth > 0 && !(std::bit_cast<float>(static_cast<std::uint32_t>(word >> kIdBits)) > depth))
+      if (depth > 0 && !(std::bit_cast<float>(static_cast<std::uint32_t>(key >> kIdBits)) > depth))
         return false;
     }
-    return !has_masks || passes_mask_of(id_of_word(word), x, y);
+    return !has_masks || passes_mask_of(id_of_key(key), x, y);
   }
 
  private:

@@ -11,8 +11,8 @@
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
-#include <rastrum/raster/assemble.hpp>
-#include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/assemble/assemble.hpp>
+#include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cuda/geometry.cuh>
 #include <rastrum/raster/cuda/sample_pattern.hpp>
 

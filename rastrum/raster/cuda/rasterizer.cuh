@@ -1,4 +1,4 @@
-// The rasterizer of a device: a listing of words, for any backend that has DeviceBuffers.
+// The rasterizer of a device: a listing of keys, for any backend that has DeviceBuffers.
 //
 //   project            a thread a vertex                                           geometry.cuh
 //   set up, and draw   a thread a primitive: small pieces (a box up to small_px)   pieces.cuh,
@@ -6,9 +6,9 @@
 //   write the others   scan, then a thread a primitive that has some
 //   draw them          a warp a piece of the middle; a block of threads for each
 //                      64 × 64 tile of a large one (a box from large_px on)
-//   resolve            the caller's: a band of words is ready
+//   resolve            the caller's: a band of keys is ready
 //
-// Order does not matter to a maximum of words, so neither the sizes nor the cut into bands of rows
+// Order does not matter to a maximum of keys, so neither the sizes nor the cut into bands of rows
 // and batches of primitives, which a memory limit asks for, change a bit. Culling of boxes that
 // miss every sample is setup's (make_piece). Sources: paper 1, hybrid; paper 2; decision 0014.
 #pragma once
@@ -24,7 +24,7 @@
 #include <rastrum/parallel/stop.hpp>
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/pieces.cuh>
-#include <rastrum/raster/stopwatch.hpp>
+#include <rastrum/raster/frame/stopwatch.hpp>
 
 namespace rastrum::raster {
 
@@ -52,7 +52,7 @@ struct DevicePlan {
   std::uint64_t written = 0;     ///< of those with larger pieces, whose pieces are there at once
   std::uint64_t turn_bytes = 0;  ///< of blocks and what makes them (family/turns.cuh), 0: any
 
-  /// `limit`: bytes, 0 for any. `pixel_bytes`: what is kept of a pixel beside its word. Throws
+  /// `limit`: bytes, 0 for any. `pixel_bytes`: what is kept of a pixel beside its key. Throws
   /// Error{out_of_memory} where not even the least band fits.
   static DevicePlan of(std::uint64_t limit, int width, int height, std::uint64_t primitives,
                        std::uint64_t vertices, std::uint64_t pixel_bytes) {
@@ -181,7 +181,7 @@ struct DeviceCounts {
   std::uint64_t larger_pieces = 0, tiles = 0, batches = 0;
 };
 
-/// Draws all primitives of `scene` onto the words of `surface`, which hold what was drawn before,
+/// Draws all primitives of `scene` onto the keys of `surface`, which hold what was drawn before,
 /// or 0; pieces that have a flag of `skip` are left to others, though what became of them is
 /// counted. Throws as check_valid, Error{out_of_memory}, and parallel::Stopped between batches.
 /// Waits.

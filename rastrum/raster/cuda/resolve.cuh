@@ -1,5 +1,5 @@
-// From words to images on a device: a thread a pixel. Depth, ids and words of any frame; colours by
-// a shader that is a functor, (word, x, y) to a premultiplied Vec4: LitOnDevice has the lit shaders
+// From keys to images on a device: a thread a pixel. Depth, ids and keys of any frame; colours by
+// a shader that is a functor, (key, x, y) to a premultiplied Vec4: LitOnDevice has the lit shaders
 // but `wireframe`, by their scalar form, so their bits; materials.cuh has `material`. The rules are
 // those of the host's resolve_block.
 #pragma once
@@ -13,12 +13,12 @@
 
 #include <rastrum/core/image.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
-#include <rastrum/raster/color.hpp>
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/geometry.cuh>
 #include <rastrum/raster/cuda/upload.cuh>
-#include <rastrum/raster/resolve.hpp>
-#include <rastrum/raster/shaders/lit_scalar.hpp>
+#include <rastrum/raster/resolve/resolve.hpp>
+#include <rastrum/raster/shade/color.hpp>
+#include <rastrum/raster/shade/lit_scalar.hpp>
 
 namespace rastrum::raster {
 
@@ -29,13 +29,13 @@ struct DeviceTargets {
   ImageView<Vec4> color{};
   ImageView<float> depth{};
   ImageView<std::int64_t> ids{};
-  ImageView<std::uint64_t> words{};
+  ImageView<std::uint64_t> keys{};
 
   /// Bytes of a pixel of those that are wanted of `t`.
   static std::uint64_t bytes_of(const Targets& t) {
     return (t.color8.empty() ? 0 : sizeof(Rgba8)) + (t.color.empty() ? 0 : sizeof(Vec4)) +
            (t.depth.empty() ? 0 : sizeof(float)) + (t.ids.empty() ? 0 : sizeof(std::int64_t)) +
-           (t.words.empty() ? 0 : sizeof(std::uint64_t));
+           (t.keys.empty() ? 0 : sizeof(std::uint64_t));
   }
 };
 
@@ -48,16 +48,16 @@ struct LitOnDevice {
   float opacity = 1;
 
   static bool has(LitModel model) { return model != LitModel::wireframe; }
-  RASTRUM_HD Vec4 operator()(std::uint64_t word, int x, int y, Vec2 from_centre = {0, 0}) const {
+  RASTRUM_HD Vec4 operator()(std::uint64_t key, int x, int y, Vec2 from_centre = {0, 0}) const {
     if (!(opacity > 0)) return {};
-    const Vec3 c = color(word, x, y, from_centre);
+    const Vec3 c = color(key, x, y, from_centre);
     if (opacity == 1) return {c.x, c.y, c.z, 1};
     return {c.x * opacity, c.y * opacity, c.z * opacity, opacity};
   }
-  RASTRUM_HD_CALL Vec3 color(std::uint64_t word, int x, int y, Vec2 from_centre) const {
-    if (model == LitModel::id) return id_color(id_of_word(word));
+  RASTRUM_HD_CALL Vec3 color(std::uint64_t key, int x, int y, Vec2 from_centre) const {
+    if (model == LitModel::id) return id_color(id_of_key(key));
     LitTriangle t;
-    fetch_triangle(scene, geometry, word & kIdMask, model != LitModel::flat, t);
+    fetch_triangle(scene, geometry, key & kIdMask, model != LitModel::flat, t);
     return shade_lit(model, scene, t, x, y, from_centre);
   }
 };
@@ -79,20 +79,20 @@ struct ResolveRules {
     return {backdrop_of(request), premultiplied_from_straight(request.background),
             request.targets.over, request.targets.load, request.targets.first_id};
   }
-  /// Whether the pixel of a word holds a surface of this pass.
-  [[nodiscard]] RASTRUM_HD bool covers(std::uint64_t word) const {
-    return word != 0 && (!load || id_of_word(word) >= first_id);
+  /// Whether the pixel of a key holds a surface of this pass.
+  [[nodiscard]] RASTRUM_HD bool covers(std::uint64_t key) const {
+    return key != 0 && (!load || id_of_key(key) >= first_id);
   }
   /// Whether pixels that hold none keep what they have.
   [[nodiscard]] RASTRUM_HD bool keeps() const { return over || load; }
 };
 
-/// Colours that lie in the places of the words of a surface.
+/// Colours that lie in the places of the keys of a surface.
 struct ColorsOfSurface {
   DeviceSurface surface;
   const Vec4* colors;
   RASTRUM_HD Vec4 operator()(std::uint64_t, int x, int y) const {
-    return colors[surface.words.index(x / kBlockSize, y / kBlockSize) * 64 +
+    return colors[surface.keys.index(x / kBlockSize, y / kBlockSize) * 64 +
                   static_cast<std::size_t>(y % kBlockSize * kBlockSize + x % kBlockSize)];
   }
 };
@@ -102,16 +102,16 @@ namespace cuda_detail {
 /// The colour of element i of a surface, 0 where nothing is.
 template <class Shade>
 struct ColorOfElement {
-  SurfaceView words;
+  SurfaceView keys;
   Shade shade;
   RASTRUM_HD Vec4 operator()(std::size_t i) const {
-    const std::uint64_t word = words.words[i];
-    if (word == 0) return {};
-    const auto columns = static_cast<std::size_t>(words.columns);
-    const int bx = words.bx0 + static_cast<int>(i / 64 % columns);
-    const int by = words.by0 + static_cast<int>(i / 64 / columns);
+    const std::uint64_t key = keys.keys[i];
+    if (key == 0) return {};
+    const auto columns = static_cast<std::size_t>(keys.columns);
+    const int bx = keys.bx0 + static_cast<int>(i / 64 % columns);
+    const int by = keys.by0 + static_cast<int>(i / 64 / columns);
     const int e = static_cast<int>(i % 64);
-    return shade(word, bx * kBlockSize + e % kBlockSize, by * kBlockSize + e / kBlockSize);
+    return shade(key, bx * kBlockSize + e % kBlockSize, by * kBlockSize + e / kBlockSize);
   }
 };
 
@@ -126,15 +126,15 @@ struct ResolvePixel {
     const Rect view = surface.view;
     const auto width = static_cast<std::size_t>(view.x1 - view.x0);
     const int x = view.x0 + static_cast<int>(i % width), y = view.y0 + static_cast<int>(i / width);
-    const std::uint64_t word = surface.words.block(
+    const std::uint64_t key = surface.keys.block(
         x / kBlockSize, y / kBlockSize)[y % kBlockSize * kBlockSize + x % kBlockSize];
     const auto put = [&](const auto& image, const auto& value) {
       if (image.data != nullptr) image.data[(y - view.y0) * image.stride + (x - view.x0)] = value;
     };
-    const bool covered = rules.covers(word);
+    const bool covered = rules.covers(key);
     if (!covered && rules.keeps()) return 0;
     if (covered && (targets.color8.data != nullptr || targets.color.data != nullptr)) {
-      const Vec4 front = shade(word, x, y);
+      const Vec4 front = shade(key, x, y);
       const auto at = [&](const auto& image) {
         return image.data[(y - view.y0) * image.stride + (x - view.x0)];
       };
@@ -151,16 +151,16 @@ struct ResolvePixel {
       put(targets.color8, rules.backdrop.empty);
       put(targets.color, rules.background);
     }
-    put(targets.depth, std::bit_cast<float>(static_cast<std::uint32_t>(word >> kIdBits)));
-    put(targets.ids, word == 0 ? std::int64_t{-1} : static_cast<std::int64_t>(id_of_word(word)));
-    put(targets.words, word);
+    put(targets.depth, std::bit_cast<float>(static_cast<std::uint32_t>(key >> kIdBits)));
+    put(targets.ids, key == 0 ? std::int64_t{-1} : static_cast<std::int64_t>(id_of_key(key)));
+    put(targets.keys, key);
     return covered ? 1 : 0;
   }
 };
 
 }  // namespace cuda_detail
 
-/// Fills `targets` from the words of `surface`; where `rules` keep or are over something, they hold
+/// Fills `targets` from the keys of `surface`; where `rules` keep or are over something, they hold
 /// it. Returns how many pixels hold a surface. Work O(pixels). Waits.
 template <class Exec, class Shade>
 [[nodiscard]] std::uint64_t resolve_surface(Exec& exec, const DeviceSurface& surface,

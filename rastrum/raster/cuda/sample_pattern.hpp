@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <span>
 
-#include <rastrum/raster/coverage.hpp>
-#include <rastrum/raster/samples.hpp>
+#include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/draws/samples.hpp>
 
 namespace rastrum::raster {
 

@@ -1,8 +1,8 @@
-// Several samples a pixel on a device: the surface has a plane of words for each sample
+// Several samples a pixel on a device: the surface has a plane of keys for each sample
 // (cover.cuh); here they become colours, a plane each, and in the end one picture.
 //
 // A triangle has one colour in a pixel, as on the host: that of the pixel's centre if the triangle
-// covers it, else of the first sample that it covers. A word does not say which that is, so the
+// covers it, else of the first sample that it covers. A key does not say which that is, so the
 // triangle is assembled again: a thread that shades fetches its vertices anyhow. The opaque surface
 // is shaded once a triangle and pixel, layers once for four samples.
 #pragma once
@@ -12,7 +12,7 @@
 #include <span>
 
 #include <rastrum/parallel/cuda/words.cuh>
-#include <rastrum/raster/assemble.hpp>
+#include <rastrum/raster/assemble/assemble.hpp>
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/geometry.cuh>
 
@@ -20,8 +20,8 @@ namespace rastrum::raster {
 
 /// Where a primitive is shaded in a pixel of which it covers a sample.
 struct ShadingPlace {
-  std::uint64_t word;  ///< there
-  Vec2 from_centre;    ///< px
+  std::uint64_t key;  ///< there
+  Vec2 from_centre;   ///< px
 };
 
 /// It holds the clipper.
@@ -36,7 +36,7 @@ struct ShadingPlace {
     const auto look = [&](const Piece& piece) {
       if (!covers_centre(edges_of(piece), x, y)) return;
       constexpr float kPx = 1.0F / kSubpixels;
-      place = {make_word(depth_at(piece, x, y), piece.low),
+      place = {make_key(depth_at(piece, x, y), piece.low),
                {static_cast<float>(at.x) * kPx, static_cast<float>(at.y) * kPx}};
       found = true;
     };
@@ -46,25 +46,25 @@ struct ShadingPlace {
   return place;
 }
 
-/// Of a shader that takes a place, (word, x, y, from_centre), one that is asked at any sample:
-/// (word, x, y), where the word says no more than which primitive.
+/// Of a shader that takes a place, (key, x, y, from_centre), one that is asked at any sample:
+/// (key, x, y), where the key says no more than which primitive.
 template <class Shade>
 struct ShadedOnce {
   DeviceGeometry geometry;
   SamplePattern samples;
   Shade shade;
-  RASTRUM_HD Vec4 operator()(std::uint64_t word, int x, int y) const {
-    const ShadingPlace place = shading_place(geometry, samples, id_of_word(word), x, y);
-    return shade(place.word, x, y, place.from_centre);
+  RASTRUM_HD Vec4 operator()(std::uint64_t key, int x, int y) const {
+    const ShadingPlace place = shading_place(geometry, samples, id_of_key(key), x, y);
+    return shade(place.key, x, y, place.from_centre);
   }
   /// The same for who has one of the primitive's pieces, as it lies at the pixels' centres: most
   /// cover them.
-  RASTRUM_HD Vec4 operator()(const Piece& piece, std::uint64_t word, int x, int y) const {
+  RASTRUM_HD Vec4 operator()(const Piece& piece, std::uint64_t key, int x, int y) const {
     const ShadingPlace place =
         covers_centre(edges_of(piece), x, y)
-            ? ShadingPlace{make_word(depth_at(piece, x, y), piece.low), {0, 0}}
-            : shading_place(geometry, samples, id_of_word(word), x, y);
-    return shade(place.word, x, y, place.from_centre);
+            ? ShadingPlace{make_key(depth_at(piece, x, y), piece.low), {0, 0}}
+            : shading_place(geometry, samples, id_of_key(key), x, y);
+    return shade(place.key, x, y, place.from_centre);
   }
 };
 
@@ -82,22 +82,22 @@ struct ShadeSamples {
   Vec4* colors;
   Shade shade;
   RASTRUM_HD void operator()(std::size_t i) const {
-    const auto columns = static_cast<std::size_t>(surface.words.columns);
-    const int x = (surface.words.bx0 + static_cast<int>(i / 64 % columns)) * kBlockSize +
+    const auto columns = static_cast<std::size_t>(surface.keys.columns);
+    const int x = (surface.keys.bx0 + static_cast<int>(i / 64 % columns)) * kBlockSize +
                   static_cast<int>(i % kBlockSize);
-    const int y = (surface.words.by0 + static_cast<int>(i / 64 / columns)) * kBlockSize +
+    const int y = (surface.keys.by0 + static_cast<int>(i / 64 / columns)) * kBlockSize +
                   static_cast<int>(i % 64 / kBlockSize);
     for (int s = 0; s < surface.samples.count; ++s) {
-      const std::uint64_t word = surface.plane_of(s)[i];
+      const std::uint64_t key = surface.plane_of(s)[i];
       Vec4& color = colors[static_cast<std::size_t>(s) * surface.plane + i];
       int same = 0;
-      while (same < s && ((surface.plane_of(same)[i] ^ word) & kIdMask) != 0) ++same;
-      if (word == 0)
+      while (same < s && ((surface.plane_of(same)[i] ^ key) & kIdMask) != 0) ++same;
+      if (key == 0)
         color = {};
       else if (same < s)
         color = colors[static_cast<std::size_t>(same) * surface.plane + i];
       else
-        color = shade(word, x, y);
+        color = shade(key, x, y);
     }
   }
 };
@@ -109,8 +109,8 @@ struct MeanOfSamples {
     Vec4 sum{0, 0, 0, 0};
     std::uint64_t nearest = 0;
     for (int s = 0; s < surface.samples.count; ++s) {
-      const std::uint64_t word = surface.plane_of(s)[i];
-      nearest = word > nearest ? word : nearest;
+      const std::uint64_t key = surface.plane_of(s)[i];
+      nearest = key > nearest ? key : nearest;
       sum = sum + colors[static_cast<std::size_t>(s) * surface.plane + i];
     }
     surface.plane_of(0)[i] = nearest;
@@ -120,7 +120,7 @@ struct MeanOfSamples {
 
 }  // namespace cuda_detail
 
-/// The colours of an opaque surface, in planes as its words. `shade`: (word, x, y) → premultiplied
+/// The colours of an opaque surface, in planes as its keys. `shade`: (key, x, y) → premultiplied
 /// Vec4 of a primitive in a pixel (ShadedOnce). Work O(pixels · samples), each primitive of a pixel
 /// shaded once.
 template <class Exec, class Shade>
@@ -130,7 +130,7 @@ void shade_samples(Exec& exec, const DeviceSurface& surface, std::span<Vec4> col
                            cuda_detail::ShadeSamples<Shade>{surface, colors.data(), shade});
 }
 
-/// Makes the first plane the picture: the largest word of a pixel's samples and their mean colour.
+/// Makes the first plane the picture: the largest key of a pixel's samples and their mean colour.
 template <class Exec>
 void mean_of_samples(Exec& exec, const DeviceSurface& surface, std::span<Vec4> colors) {
   parallel::for_each_index(exec, surface.plane, cuda_detail::MeanOfSamples{surface, colors.data()});

@@ -13,10 +13,10 @@
 #include <rastrum/raster/cuda/materials.cuh>
 #include <rastrum/raster/cuda/resolve.cuh>
 #include <rastrum/raster/cuda/upload.cuh>
-#include <rastrum/raster/over_picture.hpp>
-#include <rastrum/raster/shaders/alpha.hpp>
-#include <rastrum/raster/shaders/lit.hpp>
-#include <rastrum/raster/shaders/material.hpp>
+#include <rastrum/raster/draws/over_picture.hpp>
+#include <rastrum/raster/shade/alpha.hpp>
+#include <rastrum/raster/shade/lit.hpp>
+#include <rastrum/raster/shade/material.hpp>
 
 namespace rastrum::raster {
 
@@ -128,7 +128,7 @@ class DeviceShading {
             y0};
   }
 
-  /// Calls f(shade, test) with functors (word, x, y): to a premultiplied colour, and to whether the
+  /// Calls f(shade, test) with functors (key, x, y): to a premultiplied colour, and to whether the
   /// fragment is there.
   template <class F>
   void with(const DeviceGeometry& geometry, const TestOnDevice& test, F&& f) const {

@@ -1,7 +1,7 @@
 // Pieces with a fragment test on a device: a thread for each 8 × 8 block that a piece's box
-// touches, whatever the piece's size, puts the words of the fragments that the test keeps. What
-// lies behind the word that is there already is not asked for. Order does not matter to a maximum
-// of words.
+// touches, whatever the piece's size, puts the keys of the fragments that the test keeps. What
+// lies behind the key that is there already is not asked for. Order does not matter to a maximum
+// of keys.
 #pragma once
 
 #include <algorithm>
@@ -49,20 +49,20 @@ struct DrawTested {
     parallel::atomic_add(*fragments, static_cast<std::uint64_t>(parallel::popcount(mask)));
     for (std::uint64_t m = mask; m != 0; m &= m - 1) {
       const int i = parallel::lowest_bit(m);
-      const std::size_t at = surface.words.index(bx, by) * 64 + static_cast<std::size_t>(i);
+      const std::size_t at = surface.keys.index(bx, by) * 64 + static_cast<std::size_t>(i);
       if (surface.overdraw != nullptr) parallel::atomic_add(surface.overdraw[at], 1U);
-      const std::uint64_t word = DeviceSurface::word(piece, bx, by, i);
-      if (word > surface.words.words[at] &&
-          test(word, bx * kBlockSize + i % kBlockSize, by * kBlockSize + i / kBlockSize))
-        parallel::atomic_maximum(surface.words.words[at], word);
+      const std::uint64_t key = DeviceSurface::key(piece, bx, by, i);
+      if (key > surface.keys.keys[at] &&
+          test(key, bx * kBlockSize + i % kBlockSize, by * kBlockSize + i / kBlockSize))
+        parallel::atomic_maximum(surface.keys.keys[at], key);
     }
   }
 };
 
 }  // namespace cuda_detail
 
-/// Draws the pieces of `scene` that have kTested, and no flag of `skip`, onto the words of
-/// `surface`, where test(word, x, y) holds. Returns the number of fragments before the test. What
+/// Draws the pieces of `scene` that have kTested, and no flag of `skip`, onto the keys of
+/// `surface`, where test(key, x, y) holds. Returns the number of fragments before the test. What
 /// became of the primitives is draw_surface's to count, and to check. Memory as of draw_surface.
 /// Work O(primitives + blocks of boxes + fragments). Waits.
 template <class Exec, class Test>

@@ -14,8 +14,8 @@
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/cuda/geometry.cuh>
-#include <rastrum/raster/geometry.hpp>
-#include <rastrum/raster/transform_source.hpp>
+#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/draws/transform_source.hpp>
 
 namespace rastrum::raster {
 

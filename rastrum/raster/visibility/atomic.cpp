@@ -4,7 +4,7 @@
 #include <bit>
 #include <utility>
 
-#include <rastrum/raster/setup.hpp>
+#include <rastrum/raster/setup/make_piece.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -32,7 +32,7 @@ class AtomicRegion : public Region {
   bool done_ = false;
 };
 
-/// Keeps depth bounds beside the words, where the region is a bin (hierarchical Z).
+/// Keeps depth bounds beside the keys, where the region is a bin (hierarchical Z).
 class OwnedAtomicRegion final : public AtomicRegion {
  public:
   void begin(const RegionContext& context, const SurfaceView& surface, Rect rect,
@@ -72,7 +72,7 @@ class OwnedAtomicRegion final : public AtomicRegion {
   void fragments(std::span<const BinFragment> fragments) override {
     if (surface_.columns == kBlocksPerBinRow) {
       for (const BinFragment& f : fragments)
-        surface_.words[f.pixel] = std::max(surface_.words[f.pixel], f.word);
+        surface_.keys[f.pixel] = std::max(surface_.keys[f.pixel], f.key);
       return;
     }
     for (const BinFragment& f : fragments) {
@@ -80,14 +80,14 @@ class OwnedAtomicRegion final : public AtomicRegion {
       // The region may be a part of the bin that the fragments count from.
       const int bx0 = surface_.bx0 / kBlocksPerBinRow * kBlocksPerBinRow;
       const int by0 = surface_.by0 / kBlocksPerBinRow * kBlocksPerBinRow;
-      std::uint64_t& word = surface_.block(bx0 + block % kBlocksPerBinRow,
-                                           by0 + block / kBlocksPerBinRow)[f.pixel % 64];
-      word = std::max(word, f.word);
+      std::uint64_t& key = surface_.block(bx0 + block % kBlocksPerBinRow,
+                                          by0 + block / kBlocksPerBinRow)[f.pixel % 64];
+      key = std::max(key, f.key);
     }
   }
 
  private:
-  /// After so many pieces that cover a block in part its words are looked at: one such look costs
+  /// After so many pieces that cover a block in part its keys are looked at: one such look costs
   /// about as much as drawing a dozen samples, and where a surface of small triangles covers a
   /// pixel once or twice there is nothing to find. (Counting their samples instead cost 3 % of a
   /// frame.)
@@ -132,13 +132,13 @@ class OwnedAtomicRegion final : public AtomicRegion {
 class SharedAtomicRegion final : public AtomicRegion {
  public:
   void blocks(std::size_t, const Piece* pieces, std::span<const Block> blocks) override {
-    alignas(64) std::uint64_t words[64];
+    alignas(64) std::uint64_t keys[64];
     for (const Block& b : blocks) {
-      kernel_->words(pieces[b.piece], b, words);
+      kernel_->keys(pieces[b.piece], b, keys);
       std::uint64_t* const out = surface_.block(b.bx, b.by);
       for (std::uint64_t m = b.mask; m != 0; m &= m - 1) {
         const int i = std::countr_zero(m);
-        raise_atomically(out[i], words[i]);
+        raise_atomically(out[i], keys[i]);
       }
     }
   }

@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/raster/setup.hpp>
+#include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/raster/visibility/atomic.hpp>
 #include <rastrum/raster/visibility/region.hpp>
 
@@ -33,7 +33,7 @@ void raise(T& value, T candidate) {
 /// much as about six.
 inline constexpr int kFewSamples = 6;
 
-/// Calls f(sample, word) for the covered samples of a block.
+/// Calls f(sample, key) for the covered samples of a block.
 template <class F>
 void for_each_fragment(const Kernels& kernel, const Piece& piece, const Block& block, const F& f) {
   if (parallel::popcount(block.mask) <= kFewSamples) {
@@ -41,20 +41,20 @@ void for_each_fragment(const Kernels& kernel, const Piece& piece, const Block& b
       const int i = std::countr_zero(m);
       const float depth = depth_at(piece, block.bx * kBlockSize + i % kBlockSize,
                                    block.by * kBlockSize + i / kBlockSize);
-      f(static_cast<std::uint32_t>(i), make_word(depth, piece.low));
+      f(static_cast<std::uint32_t>(i), make_key(depth, piece.low));
     }
     return;
   }
-  alignas(64) std::uint64_t words[64];
-  kernel.words(piece, block, words);
+  alignas(64) std::uint64_t keys[64];
+  kernel.keys(piece, block, keys);
   for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    f(static_cast<std::uint32_t>(i), words[i]);
+    f(static_cast<std::uint32_t>(i), keys[i]);
   }
 }
 
 /// The pixels of a rectangle of blocks as numbers without gaps: 64 · block + sample, whatever the
-/// stride of the surface that holds their words.
+/// stride of the surface that holds their keys.
 class PixelNumbers {
  public:
   PixelNumbers() = default;
@@ -73,9 +73,9 @@ class PixelNumbers {
     return block(surface_.bx0 + b % kBlocksPerBinRow, surface_.by0 + b / kBlocksPerBinRow) * 64 +
            f.pixel % 64;
   }
-  /// The 64 words of a block.
-  [[nodiscard]] std::uint64_t* words(std::uint32_t block) const {
-    if (columns_ == surface_.columns) return surface_.words + std::size_t{block} * 64;
+  /// The 64 keys of a block.
+  [[nodiscard]] std::uint64_t* keys(std::uint32_t block) const {
+    if (columns_ == surface_.columns) return surface_.keys + std::size_t{block} * 64;
     const auto b = static_cast<int>(block);
     return surface_.block(surface_.bx0 + b % columns_, surface_.by0 + b / columns_);
   }

@@ -22,7 +22,7 @@ struct HashSlots {
   /// and at complexity 8 1.37, 1.42 and 1.21: blocks that are covered whole seldom meet, so that
   /// memory decides until tables are nearly full.
   static constexpr std::uint64_t kLoadNumerator = 7, kLoadDenominator = 10;
-  /// Of a slot: a pixel and a word.
+  /// Of a slot: a pixel and a key.
   static constexpr std::uint64_t kBytes = sizeof(std::uint32_t) + sizeof(std::uint64_t);
 
   std::uint64_t count;  ///< a multiple of 64

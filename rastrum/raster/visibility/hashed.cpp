@@ -9,11 +9,11 @@
 namespace rastrum::raster {
 namespace {
 
-/// From pixels to words. Empty between uses.
+/// From pixels to keys. Empty between uses.
 template <Sharing kSharing>
 class Table {
  public:
-  explicit Table(MemoryAccount& memory) : pixels_(memory), words_(memory) {}
+  explicit Table(MemoryAccount& memory) : pixels_(memory), keys_(memory) {}
 
   /// The most entries that fit into `bytes`, at least some blocks' worth.
   static std::uint64_t entries_for(std::uint64_t bytes) {
@@ -29,10 +29,10 @@ class Table {
     slots_used_ += slots_;
     if (slots_ <= pixels_.capacity()) return;
     pixels_.reserve(slots_);
-    words_.reserve(slots_);
+    keys_.reserve(slots_);
     for_runs(exec, [&](std::size_t begin, std::size_t end) {
       std::fill(pixels_.data() + begin, pixels_.data() + end, kNoPixel);
-      std::fill(words_.data() + begin, words_.data() + end, std::uint64_t{0});
+      std::fill(keys_.data() + begin, keys_.data() + end, std::uint64_t{0});
     });
   }
 
@@ -40,9 +40,9 @@ class Table {
   [[nodiscard]] std::uint64_t home(std::uint32_t block) const {
     return HashSlots{slots_}.home(block);
   }
-  /// Raises the word of a pixel; there must be room. Returns the slots looked at where the pixel is
+  /// Raises the key of a pixel; there must be room. Returns the slots looked at where the pixel is
   /// new, else 0: their sum does not depend on the order in which pixels come.
-  std::uint64_t raise(std::uint64_t home, std::uint32_t pixel, std::uint64_t word) {
+  std::uint64_t raise(std::uint64_t home, std::uint32_t pixel, std::uint64_t key) {
     std::uint64_t slot = home + pixel % 64;
     std::uint64_t probes = 1;
     Slot found;
@@ -50,12 +50,12 @@ class Table {
       slot = HashSlots{slots_}.next(slot);
       ++probes;
     }
-    raster::raise<kSharing>(words_[slot], word);
+    raster::raise<kSharing>(keys_[slot], key);
     return found == Slot::taken ? probes : 0;
   }
   [[nodiscard]] std::uint64_t entries() const { return entries_; }
 
-  /// Raises the surface to the words and empties the table.
+  /// Raises the surface to the keys and empties the table.
   void scatter(const PixelNumbers& surface, parallel::Threads* exec) {
     std::atomic<std::uint64_t> found = 0;
     for_runs(exec, [&](std::size_t begin, std::size_t end) {
@@ -63,9 +63,9 @@ class Table {
       for (std::size_t slot = begin; slot < end; ++slot) {
         const std::uint32_t pixel = pixels_[slot];
         if (pixel == kNoPixel) continue;
-        raster::raise<Sharing::owned>(surface.words(pixel / 64)[pixel % 64], words_[slot]);
+        raster::raise<Sharing::owned>(surface.keys(pixel / 64)[pixel % 64], keys_[slot]);
         pixels_[slot] = kNoPixel;
-        words_[slot] = 0;
+        keys_[slot] = 0;
         ++n;
       }
       found.fetch_add(n, std::memory_order_relaxed);
@@ -109,7 +109,7 @@ class Table {
   }
 
   ScratchBuffer<std::uint32_t> pixels_;
-  ScratchBuffer<std::uint64_t> words_;
+  ScratchBuffer<std::uint64_t> keys_;
   std::uint64_t slots_ = 0;
   std::uint64_t entries_ = 0;  ///< now, where a thread owns the table
   std::uint64_t slots_used_ = 0, entries_found_ = 0;
@@ -131,8 +131,8 @@ class FillAndEmpty {
     if (most_ < pixels_.pixel_count() && table_.entries() + 64 > most_) flush();
   }
   [[nodiscard]] std::uint64_t home(std::uint32_t block) const { return table_.home(block); }
-  void raise(std::uint64_t home, std::uint32_t pixel, std::uint64_t word) {
-    probes_ += table_.raise(home, pixel, word);
+  void raise(std::uint64_t home, std::uint32_t pixel, std::uint64_t key) {
+    probes_ += table_.raise(home, pixel, key);
     ++hashed_;
   }
   void blocks(const Kernels& kernel, const Piece* pieces, std::span<const Block> blocks) {
@@ -140,8 +140,8 @@ class FillAndEmpty {
       make_room();
       const std::uint32_t block = pixels_.block(b.bx, b.by);
       const std::uint64_t home = table_.home(block);
-      for_each_fragment(kernel, pieces[b.piece], b, [&](std::uint32_t i, std::uint64_t word) {
-        raise(home, block * 64 + i, word);
+      for_each_fragment(kernel, pieces[b.piece], b, [&](std::uint32_t i, std::uint64_t key) {
+        raise(home, block * 64 + i, key);
       });
     }
   }
@@ -184,7 +184,7 @@ class OwnedHashedRegion final : public Region {
     for (const BinFragment& f : fragments) {
       table_.make_room();
       const std::uint32_t pixel = pixels_.pixel(f);
-      table_.raise(table_.home(pixel / 64), pixel, f.word);
+      table_.raise(table_.home(pixel / 64), pixel, f.key);
     }
   }
   void collect(Counters& counters) override { table_.collect(counters); }
@@ -249,8 +249,8 @@ class SharedHashedRegion final : public Region {
     for (const Block& b : blocks) {
       const std::uint32_t block = pixels_.block(b.bx, b.by);
       const std::uint64_t home = table_.home(block);
-      for_each_fragment(*kernel_, pieces[b.piece], b, [&](std::uint32_t i, std::uint64_t word) {
-        probes += table_.raise(home, block * 64 + i, word);
+      for_each_fragment(*kernel_, pieces[b.piece], b, [&](std::uint32_t i, std::uint64_t key) {
+        probes += table_.raise(home, block * 64 + i, key);
       });
     }
     probes_.fetch_add(probes, std::memory_order_relaxed);

@@ -1,11 +1,11 @@
-// hashed: instead of sorting fragments, a hash table from pixels to words whose words are raised;
+// hashed: instead of sorting fragments, a hash table from pixels to keys whose keys are raised;
 // then its entries are compacted and scattered (what paper 5 names as future work, its section 6).
 //
 // Open addressing. The counting pass bounds the pixels, so the table never grows: it has
 // min(fragments, pixels) / load factor slots. Blocks are hashed, and the 64 samples of a block have
 // 64 slots in a row; a collision goes on to the next block's slots and the next sample, so that
 // blocks with few samples fill what others leave. Where threads share the table a slot is taken by
-// a compare-and-swap of its pixel and its word raised by an atomic maximum.
+// a compare-and-swap of its pixel and its key raised by an atomic maximum.
 #pragma once
 
 #include <memory>

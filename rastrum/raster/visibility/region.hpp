@@ -1,7 +1,7 @@
 // The second axis of the family (docs/architecture.md): how the many fragments of a pixel become
 // one. A visibility method resolves what a coverage enumerates: 8 × 8 blocks of pieces with their
 // masks, a few hundred a call. It sees a region of the screen, which one thread owns (a tile: plain
-// maxima, words that stay in cache) or all share (a frame: atomics and locks).
+// maxima, keys that stay in cache) or all share (a frame: atomics and locks).
 #pragma once
 
 #include <cstddef>
@@ -15,9 +15,9 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
-#include <rastrum/raster/geometry.hpp>
-#include <rastrum/raster/kernels.hpp>
-#include <rastrum/raster/surface.hpp>
+#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/kernels/kernels.hpp>
+#include <rastrum/raster/resolve/surface.hpp>
 
 namespace rastrum::raster {
 
@@ -44,7 +44,7 @@ class Region {
  public:
   virtual ~Region() = default;
 
-  /// `surface` holds what was drawn before and is raised: words, and colours if the method shades.
+  /// `surface` holds what was drawn before and is raised: keys, and colours if the method shades.
   virtual void begin(const RegionContext& context, const SurfaceView& surface, Rect rect,
                      std::size_t chunks) = 0;
 
@@ -61,10 +61,10 @@ class Region {
   /// What is hidden in the bin of an owned region, for coverages that ask before they enumerate;
   /// null where the method does not know.
   virtual DepthBounds* bounds() { return nullptr; }
-  /// Finds them as they are now. Costs a look at all words: for where much may be hidden.
+  /// Finds them as they are now. Costs a look at all keys: for where much may be hidden.
   virtual void find_bounds() {}
 
-  /// Fragments whose word is known already, of a bin that the region is; only for methods that
+  /// Fragments whose key is known already, of a bin that the region is; only for methods that
   /// `takes_fragments`.
   virtual void fragments(std::span<const BinFragment>) {}
 
@@ -81,8 +81,8 @@ enum class Sharing : std::uint8_t {
 struct Visibility {
   std::string_view name, description;
   bool shades = false;           ///< fills SurfaceView::colors
-  bool takes_fragments = false;  ///< can be handed finished words of micro triangles
-  /// Bytes of surface a pixel: words, and what the method keeps beside them for a shared region; 0
+  bool takes_fragments = false;  ///< can be handed finished keys of micro triangles
+  /// Bytes of surface a pixel: keys, and what the method keeps beside them for a shared region; 0
   /// where only tiles have surfaces.
   int surface_bytes = 8;
   std::unique_ptr<Region> (*make)(Sharing, MemoryAccount&) = nullptr;

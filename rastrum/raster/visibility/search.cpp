@@ -7,10 +7,10 @@
 namespace rastrum::raster {
 namespace {
 
-/// 0 for a surface at depth 0 and for none alike: the second pass, which writes whole words, tells
+/// 0 for a surface at depth 0 and for none alike: the second pass, which writes whole keys, tells
 /// them apart.
-std::uint32_t depth_of_word(std::uint64_t word) {
-  return static_cast<std::uint32_t>(word >> kIdBits);
+std::uint32_t depth_of_key(std::uint64_t key) {
+  return static_cast<std::uint32_t>(key >> kIdBits);
 }
 
 template <Sharing kSharing>
@@ -26,8 +26,8 @@ class SearchRegion final : public Region {
     step_ = Step::begun;
     depth_.reserve(pixels_.pixel_count());
     const auto load = [&](std::size_t block) {
-      const std::uint64_t* const words = pixels_.words(static_cast<std::uint32_t>(block));
-      std::transform(words, words + 64, depth_.data() + block * 64, depth_of_word);
+      const std::uint64_t* const keys = pixels_.keys(static_cast<std::uint32_t>(block));
+      std::transform(keys, keys + 64, depth_.data() + block * 64, depth_of_key);
     };
     if (context.exec != nullptr)
       parallel::for_each_index(*context.exec, pixels_.block_count(), load, 64);
@@ -47,14 +47,14 @@ class SearchRegion final : public Region {
       const std::uint32_t block = pixels_.block(b.bx, b.by);
       std::uint32_t* const depth = depth_.data() + std::size_t{block} * 64;
       if (step_ == Step::maximum) {
-        for_each_fragment(*kernel_, pieces[b.piece], b, [&](std::uint32_t i, std::uint64_t word) {
-          raise<kSharing>(depth[i], depth_of_word(word));
+        for_each_fragment(*kernel_, pieces[b.piece], b, [&](std::uint32_t i, std::uint64_t key) {
+          raise<kSharing>(depth[i], depth_of_key(key));
         });
       } else {
-        std::uint64_t* const words = pixels_.words(block);
-        for_each_fragment(*kernel_, pieces[b.piece], b, [&](std::uint32_t i, std::uint64_t word) {
-          if (depth[i] != depth_of_word(word)) return;
-          raise<kSharing>(words[i], word);
+        std::uint64_t* const keys = pixels_.keys(block);
+        for_each_fragment(*kernel_, pieces[b.piece], b, [&](std::uint32_t i, std::uint64_t key) {
+          if (depth[i] != depth_of_key(key)) return;
+          raise<kSharing>(keys[i], key);
           ++matches;
         });
       }
@@ -67,9 +67,9 @@ class SearchRegion final : public Region {
     for (const BinFragment& f : fragments) {
       const std::uint32_t pixel = pixels_.pixel(f);
       if (step_ == Step::maximum) {
-        raise<kSharing>(depth_[pixel], depth_of_word(f.word));
-      } else if (depth_[pixel] == depth_of_word(f.word)) {
-        raise<kSharing>(pixels_.words(pixel / 64)[pixel % 64], f.word);
+        raise<kSharing>(depth_[pixel], depth_of_key(f.key));
+      } else if (depth_[pixel] == depth_of_key(f.key)) {
+        raise<kSharing>(pixels_.keys(pixel / 64)[pixel % 64], f.key);
         ++matches;
       }
     }

@@ -33,39 +33,40 @@ int bits_for(std::size_t n) {
 
 /// Sorts fragments by pixel and raises the surface to the maximum of each pixel. No other thread
 /// has these pixels.
-template <class Key>
-void resolve(parallel::Serial& exec, std::span<Key> keys, std::span<std::uint64_t> words, int bits,
-             const PixelNumbers& pixels, std::uint32_t first_block) {
-  parallel::sort_by_key(exec, keys, words, bits);
-  for (std::size_t i = 0; i < keys.size();) {
-    const Key key = keys[i];
-    std::uint64_t maximum = words[i];
-    for (++i; i < keys.size() && keys[i] == key; ++i) maximum = std::max(maximum, words[i]);
-    raise<Sharing::owned>(pixels.words(first_block + key / 64)[key % 64], maximum);
+template <class SortKey>
+void resolve(parallel::Serial& exec, std::span<SortKey> sort_keys, std::span<std::uint64_t> keys,
+             int bits, const PixelNumbers& pixels, std::uint32_t first_block) {
+  parallel::sort_by_key(exec, sort_keys, keys, bits);
+  for (std::size_t i = 0; i < sort_keys.size();) {
+    const SortKey sort_key = sort_keys[i];
+    std::uint64_t maximum = keys[i];
+    for (++i; i < sort_keys.size() && sort_keys[i] == sort_key; ++i)
+      maximum = std::max(maximum, keys[i]);
+    raise<Sharing::owned>(pixels.keys(first_block + sort_key / 64)[sort_key % 64], maximum);
   }
 }
 
 /// Takes fragments as they come and resolves them whenever a slice is full.
 class SliceBySlice {
  public:
-  explicit SliceBySlice(MemoryAccount& memory) : keys_(memory), words_(memory) {}
+  explicit SliceBySlice(MemoryAccount& memory) : sort_keys_(memory), keys_(memory) {}
 
   void restart(const PixelNumbers& pixels, std::size_t slice) {
     pixels_ = pixels;
     bits_ = bits_for(pixels.pixel_count());
     slice_ = slice;
+    sort_keys_.reserve(slice);
     keys_.reserve(slice);
-    words_.reserve(slice);
   }
-  void add(parallel::Serial& exec, std::uint32_t pixel, std::uint64_t word) {
-    keys_[count_] = pixel;
-    words_[count_++] = word;
+  void add(parallel::Serial& exec, std::uint32_t pixel, std::uint64_t key) {
+    sort_keys_[count_] = pixel;
+    keys_[count_++] = key;
     if (count_ == slice_) flush(exec);
   }
   void flush(parallel::Serial& exec) {
     if (count_ == 0) return;
-    resolve<std::uint32_t>(exec, {keys_.data(), count_}, {words_.data(), count_}, bits_, pixels_,
-                           0);
+    resolve<std::uint32_t>(exec, {sort_keys_.data(), count_}, {keys_.data(), count_}, bits_,
+                           pixels_, 0);
     materialized_ += count_;
     ++sorts_;
     count_ = 0;
@@ -76,8 +77,8 @@ class SliceBySlice {
   }
 
  private:
-  ScratchBuffer<std::uint32_t> keys_;
-  ScratchBuffer<std::uint64_t> words_;
+  ScratchBuffer<std::uint32_t> sort_keys_;
+  ScratchBuffer<std::uint64_t> keys_;
   PixelNumbers pixels_;
   std::size_t slice_ = 0, count_ = 0;
   int bits_ = 0;
@@ -103,13 +104,13 @@ class OwnedSortedRegion final : public Region {
   void blocks(std::size_t, const Piece* pieces, std::span<const Block> blocks) override {
     for (const Block& b : blocks) {
       const std::uint32_t first = pixels_.block(b.bx, b.by) * 64;
-      for_each_fragment(*kernel_, pieces[b.piece], b, [&](std::uint32_t i, std::uint64_t word) {
-        slices_.add(exec_, first + i, word);
+      for_each_fragment(*kernel_, pieces[b.piece], b, [&](std::uint32_t i, std::uint64_t key) {
+        slices_.add(exec_, first + i, key);
       });
     }
   }
   void fragments(std::span<const BinFragment> fragments) override {
-    for (const BinFragment& f : fragments) slices_.add(exec_, pixels_.pixel(f), f.word);
+    for (const BinFragment& f : fragments) slices_.add(exec_, pixels_.pixel(f), f.key);
   }
   void collect(Counters& counters) override { slices_.collect(counters); }
 
@@ -182,8 +183,8 @@ class SharedSortedRegion final : public Region {
   explicit SharedSortedRegion(MemoryAccount& memory)
       : bands_(memory),
         chunk_counts_(memory),
+        sort_keys_(memory),
         keys_(memory),
-        words_(memory),
         slices_(memory),
         serial_([&memory] { return parallel::Serial(&memory); }) {}
 
@@ -200,7 +201,7 @@ class SharedSortedRegion final : public Region {
     most_ = context.fragment_bytes == 0
                 ? ~std::uint64_t{0}
                 : std::max<std::uint64_t>(
-                      context.fragment_bytes / 2 / (sizeof(Key) + sizeof(std::uint64_t)), 64);
+                      context.fragment_bytes / 2 / (sizeof(SortKey) + sizeof(std::uint64_t)), 64);
     slice_ =
         slice_for(context.fragment_bytes / 2 / static_cast<std::uint64_t>(exec_->concurrency()));
     step_ = Step::begun;
@@ -245,9 +246,9 @@ class SharedSortedRegion final : public Region {
           const std::uint32_t first = bands_.pixel_in_band(block);
           std::uint64_t to =
               bands_.take(lane, block, static_cast<std::uint64_t>(parallel::popcount(b.mask)));
-          for_each_fragment(*kernel_, pieces[b.piece], b, [&](std::uint32_t i, std::uint64_t word) {
-            keys_[to] = static_cast<Key>(first + i);
-            words_[to++] = word;
+          for_each_fragment(*kernel_, pieces[b.piece], b, [&](std::uint32_t i, std::uint64_t key) {
+            sort_keys_[to] = static_cast<SortKey>(first + i);
+            keys_[to++] = key;
           });
         }
         break;
@@ -255,8 +256,8 @@ class SharedSortedRegion final : public Region {
         parallel::Serial& serial = serial_.local();
         for (const Block& b : blocks) {
           const std::uint32_t first = pixels_.block(b.bx, b.by) * 64;
-          for_each_fragment(*kernel_, pieces[b.piece], b, [&](std::uint32_t i, std::uint64_t word) {
-            slices_.add(serial, first + i, word);
+          for_each_fragment(*kernel_, pieces[b.piece], b, [&](std::uint32_t i, std::uint64_t key) {
+            slices_.add(serial, first + i, key);
           });
         }
     }
@@ -269,7 +270,7 @@ class SharedSortedRegion final : public Region {
   }
 
  private:
-  using Key = std::uint16_t;
+  using SortKey = std::uint16_t;
   enum class Step { begun, counting_all, counting, writing, streaming };
 
   Pass count(ChunkCounts::Run run, Step step) {
@@ -280,8 +281,8 @@ class SharedSortedRegion final : public Region {
   }
   Pass write() {
     bands_.place(*exec_);
+    sort_keys_.reserve(run_.fragments);
     keys_.reserve(run_.fragments);
-    words_.reserve(run_.fragments);
     step_ = Step::writing;
     return run_.chunks;
   }
@@ -299,8 +300,8 @@ class SharedSortedRegion final : public Region {
     parallel::for_each_index(*exec_, bands_.count(), [&](std::size_t band) {
       for (std::uint64_t at = begins[band]; at < begins[band + 1];) {
         const std::uint64_t n = std::min<std::uint64_t>(slice_, begins[band + 1] - at);
-        resolve<Key>(serial_.local(), {keys_.data() + at, n}, {words_.data() + at, n},
-                     bands_.pixel_bits(), pixels_, bands_.first_block(band));
+        resolve<SortKey>(serial_.local(), {sort_keys_.data() + at, n}, {keys_.data() + at, n},
+                         bands_.pixel_bits(), pixels_, bands_.first_block(band));
         sorts_.fetch_add(1, std::memory_order_relaxed);
         at += n;
       }
@@ -310,8 +311,8 @@ class SharedSortedRegion final : public Region {
 
   Bands bands_;
   ChunkCounts chunk_counts_;
-  ScratchBuffer<Key> keys_;
-  ScratchBuffer<std::uint64_t> words_;
+  ScratchBuffer<SortKey> sort_keys_;
+  ScratchBuffer<std::uint64_t> keys_;
   SliceBySlice slices_;
   parallel::ScratchPool<parallel::Serial> serial_;
   parallel::Threads* exec_ = nullptr;

@@ -1,4 +1,4 @@
-// sorted: count, scan, write (pixel, word), sort by pixel, maximum of each pixel's segment, scatter
+// sorted: count, scan, write (pixel, key), sort by pixel, maximum of each pixel's segment, scatter
 // (paper 5, sections 3.1 to 3.4): no atomic operation on a pixel.
 //
 // Deviations. The paper sorts an index over all fragments by a comparator and gathers depth and

@@ -18,12 +18,12 @@ std::span<const Visibility> visibilities() noexcept {
       Visibility{"search",
                  "maximum of the depth, then a second pass for the smallest id that has it", false,
                  true, 12, make_search},
-      Visibility{"tuple", "word and colour under a lock, every fragment shaded at once", true,
-                 false, 25, make_tuple_region},
+      Visibility{"tuple", "key and colour under a lock, every fragment shaded at once", true, false,
+                 25, make_tuple_region},
       Visibility{"sorted", "fragments written, sorted by pixel, the maximum of each segment kept",
                  false, true, 8, make_sorted},
-      Visibility{"hashed", "a hash table from pixels to words, compacted and scattered", false,
-                 true, 8, make_hashed},
+      Visibility{"hashed", "a hash table from pixels to keys, compacted and scattered", false, true,
+                 8, make_hashed},
   };
   return kTable;
 }

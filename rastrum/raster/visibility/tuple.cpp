@@ -59,21 +59,21 @@ class TupleRegion final : public Region {
   }
 
   void blocks(std::size_t, const Piece* pieces, std::span<const Block> blocks) override {
-    alignas(64) std::uint64_t words[64] = {};
+    alignas(64) std::uint64_t keys[64] = {};
     BlockColors colors;
     void* const scratch = shader_scratch();
     for (const Block& b : blocks) {
-      context_.kernel->words(pieces[b.piece], b, words);
+      context_.kernel->keys(pieces[b.piece], b, keys);
       if (shader_ != nullptr) {
-        const VisibleBlock visible{words, b.mask, b.bx * kBlockSize, b.by * kBlockSize, scratch};
+        const VisibleBlock visible{keys, b.mask, b.bx * kBlockSize, b.by * kBlockSize, scratch};
         if (shader_->shade(*context_.frame, visible, context_.request->isa, colors))
           std::fill_n(colors.a, 64, 1.0F);
       }
       if constexpr (kSharing == Sharing::shared) {
         const BlockLock lock(locks_[pixels_.block(b.bx, b.by)]);
-        take_greater(b, words, colors);
+        take_greater(b, keys, colors);
       } else {
-        take_greater(b, words, colors);
+        take_greater(b, keys, colors);
       }
     }
     if (shader_ != nullptr) shaded_.fetch_add(count_fragments(blocks), std::memory_order_relaxed);
@@ -91,13 +91,13 @@ class TupleRegion final : public Region {
     return scratch.shader.data();
   }
 
-  void take_greater(const Block& b, const std::uint64_t* words, const BlockColors& colors) {
+  void take_greater(const Block& b, const std::uint64_t* keys, const BlockColors& colors) {
     std::uint64_t* const out = surface_.block(b.bx, b.by);
     BlockColors* const out_colors = shader_ == nullptr ? nullptr : surface_.colors_of(b.bx, b.by);
     for (std::uint64_t m = b.mask; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
-      if (words[i] <= out[i]) continue;
-      out[i] = words[i];
+      if (keys[i] <= out[i]) continue;
+      out[i] = keys[i];
       if (out_colors != nullptr)
         out_colors->set(i, {colors.r[i], colors.g[i], colors.b[i], colors.a[i]});
     }

@@ -72,10 +72,10 @@ struct BlockScratch {
   static constexpr std::size_t kSegmentWords = Density::kSegment / 64;
   static constexpr std::size_t kPlaces = 64 * samples;  ///< the pixels of each sample
 
-  std::uint64_t keys[Density::kRecords];
-  std::uint16_t order[Density::kRecords];           ///< of the records, as sorted
-  std::uint32_t first[Density::kRecords + 1];       ///< sample of each sorted record
-  std::uint64_t words[samples][Density::kSegment];  ///< of its samples, 0: not there; colours
+  std::uint64_t sort_keys[Density::kRecords];
+  std::uint16_t order[Density::kRecords];          ///< of the records, as sorted
+  std::uint32_t first[Density::kRecords + 1];      ///< sample of each sorted record
+  std::uint64_t keys[samples][Density::kSegment];  ///< of its samples, 0: not there; colours
   float r[Density::kSegment], g[Density::kSegment], b[Density::kSegment], a[Density::kSegment];
   std::uint64_t takers[64][kSegmentWords];  ///< which samples of the segment a pixel has
   std::uint64_t opaque[kPlaces], limit[kPlaces];
@@ -152,11 +152,11 @@ struct BlendBlock {
   RASTRUM_HD void prepare(std::size_t b, std::span<const raster::Block> mine, Scratch& s,
                           const Team& team) const {
     for (std::size_t k = team.rank(); k < mine.size(); k += team.size()) {
-      s.keys[k] = Pixel::record_key(frame.pieces[mine[k].piece], mine[k]);
+      s.sort_keys[k] = Pixel::record_sort_key(frame.pieces[mine[k].piece], mine[k]);
       s.order[k] = static_cast<std::uint16_t>(k);
     }
     each_own(team, [&](std::size_t, std::size_t q) {
-      s.opaque[q] = s.limit[q] = frame.word_of(sample_of(q), b * 64 + q % 64);
+      s.opaque[q] = s.limit[q] = frame.key_of(sample_of(q), b * 64 + q % 64);
       s.layers[q] = 0;
       clear_takers(q, s);
     });
@@ -172,7 +172,7 @@ struct BlendBlock {
     if (n <= Pixel::kAnyOrder)
       team.sync();
     else
-      parallel::team_sort(s.keys, s.order, n, team);
+      parallel::team_sort(s.sort_keys, s.order, n, team);
   }
 
   /// Samples [begin, begin + n) of the sorted records.
@@ -190,14 +190,14 @@ struct BlendBlock {
       std::uint64_t seen = 0;
       for (int sample = 0; sample < kSamples; ++sample) {
         const std::size_t q = static_cast<std::size_t>(sample) * 64 + p;
-        std::uint64_t& word = s.words[sample][i];
-        word = frame.word(piece, x, y, sample);
-        if (word > s.opaque[q]) parallel::atomic_add(s.layers[q], 1U);
-        // A limit is never below the opaque word.
-        if (word <= s.limit[q])
-          word = 0;
+        std::uint64_t& key = s.keys[sample][i];
+        key = frame.key(piece, x, y, sample);
+        if (key > s.opaque[q]) parallel::atomic_add(s.layers[q], 1U);
+        // A limit is never below the opaque key.
+        if (key <= s.limit[q])
+          key = 0;
         else
-          seen = word;
+          seen = key;
       }
       if (seen == 0) continue;
       const Vec4 color = frame.color(piece, seen, x, y);
@@ -213,9 +213,9 @@ struct BlendBlock {
     for (std::size_t w = 0; w < Scratch::kSegmentWords; ++w)
       for (std::uint64_t bits = s.takers[q % 64][w]; bits != 0; bits &= bits - 1) {
         const std::size_t i = w * 64 + static_cast<std::size_t>(parallel::lowest_bit(bits));
-        const std::uint64_t word = s.words[q / 64][i];
-        if (word == 0) continue;
-        pixel.take({word, {s.r[i], s.g[i], s.b[i], s.a[i]}}, frame.opaque_at);
+        const std::uint64_t key = s.keys[q / 64][i];
+        if (key == 0) continue;
+        pixel.take({key, {s.r[i], s.g[i], s.b[i], s.a[i]}}, frame.opaque_at);
       }
     s.limit[q] = pixel.limit(s.opaque[q]);
   }
@@ -224,7 +224,7 @@ struct BlendBlock {
                          std::span<const raster::Block> mine, Scratch& s) const {
     const std::size_t p = q % 64;
     const int sample = sample_of(q);
-    std::uint64_t& out = frame.word_of(sample, b * 64 + p);
+    std::uint64_t& out = frame.key_of(sample, b * 64 + p);
     Vec4& color = frame.color_of(sample, b * 64 + p);
     pixel.end(frame.opaque_at);
     if (!pixel.misplaced()) {
@@ -238,14 +238,13 @@ struct BlendBlock {
       for (std::size_t k = 0; k < mine.size(); ++k) {
         const raster::Block& record = mine[s.order[k]];
         if ((record.mask >> p & 1) == 0) continue;
-        const std::uint64_t word = frame.word(frame.pieces[record.piece], x, y, sample);
-        if (word > s.opaque[q]) f(word);
+        const std::uint64_t key = frame.key(frame.pieces[record.piece], x, y, sample);
+        if (key > s.opaque[q]) f(key);
       }
     };
     std::uint64_t nearest = 0;
     const SeenPixel seen = blend_in_windows(
-        walk, [&](std::uint64_t word) { return frame.shade(word, x, y); }, frame.opaque_at,
-        nearest);
+        walk, [&](std::uint64_t key) { return frame.shade(key, x, y); }, frame.opaque_at, nearest);
     color = over(seen, color);
     out = nearest;
   }

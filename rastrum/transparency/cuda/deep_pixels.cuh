@@ -1,8 +1,8 @@
 // Blocks with more records than shared memory holds: their fragments are written to the memory of
-// the device, pixel behind pixel, sorted by (pixel, word) and blended, a thread a pixel. The tier
+// the device, pixel behind pixel, sorted by (pixel, key) and blended, a thread a pixel. The tier
 // that has no limit, which paper 4 lacks (its high rasterizer paints such bins red).
 //
-// The sort is two stable ones (sort_by_key), as a word has no bits left for a pixel. Pixels go in
+// The sort is two stable ones (sort_by_key), as a key has no bits left for a pixel. Pixels go in
 // turns, so that what is sorted keeps to a budget; one pixel at least goes at a time, which takes
 // 24 bytes for each of its layers, less than the pieces themselves.
 #pragma once
@@ -28,16 +28,16 @@ struct DeepPixels {
   int sample;  ///< of those that the frame has at once
 
   RASTRUM_HD std::size_t place(std::size_t q) const { return blocks[q / 64] * 64 + q % 64; }
-  /// Calls f(word) for the fragments before the opaque surface, as their records come.
+  /// Calls f(key) for the fragments before the opaque surface, as their records come.
   template <class F>
-  RASTRUM_HD void each_word(std::size_t q, const F& f) const {
+  RASTRUM_HD void each_key(std::size_t q, const F& f) const {
     const std::size_t b = blocks[q / 64], p = q % 64;
-    const std::uint64_t opaque = frame.word_of(sample, place(q));
+    const std::uint64_t opaque = frame.key_of(sample, place(q));
     const int x = frame.x_of(b, p), y = frame.y_of(b, p);
     for (const raster::Block& record : records.of(b)) {
       if ((record.mask >> p & 1) == 0) continue;
-      const std::uint64_t word = frame.word(frame.pieces[record.piece], x, y, sample);
-      if (word > opaque) f(word);
+      const std::uint64_t key = frame.key(frame.pieces[record.piece], x, y, sample);
+      if (key > opaque) f(key);
     }
   }
 };
@@ -49,7 +49,7 @@ struct CountDeep {
   /// Behind the last pixel 0, in whose place the scan puts the sum.
   RASTRUM_HD std::uint64_t operator()(std::size_t q) const {
     std::uint64_t n = 0;
-    if (q < count) pixels.each_word(q, [&](std::uint64_t) { ++n; });
+    if (q < count) pixels.each_key(q, [&](std::uint64_t) { ++n; });
     return n;
   }
 };
@@ -59,12 +59,12 @@ struct WriteDeep {
   DeepPixels<Frame> pixels;
   std::span<const std::uint64_t> first;
   std::size_t begin;  ///< pixels from here on
-  std::uint64_t* keys;
+  std::uint64_t* sort_keys;
   std::uint32_t* owners;
   RASTRUM_HD void operator()(std::size_t i) const {
     std::uint64_t at = first[begin + i] - first[begin];
-    pixels.each_word(begin + i, [&](std::uint64_t word) {
-      keys[at] = Pixel::fragment_key(word);
+    pixels.each_key(begin + i, [&](std::uint64_t key) {
+      sort_keys[at] = Pixel::fragment_sort_key(key);
       owners[at++] = static_cast<std::uint32_t>(i);
     });
   }
@@ -76,7 +76,7 @@ struct BlendDeep {
   DeepPixels<Frame> pixels;
   std::span<const std::uint64_t> first;
   std::size_t begin;
-  const std::uint64_t* keys;
+  const std::uint64_t* sort_keys;
   std::uint64_t* counters;
   RASTRUM_HD void operator()(std::size_t i) const {
     const std::size_t q = begin + i;
@@ -85,18 +85,18 @@ struct BlendDeep {
     const Frame& frame = pixels.frame;
     const std::size_t at = pixels.place(q), b = pixels.blocks[q / 64];
     const int x = frame.x_of(b, q % 64), y = frame.y_of(b, q % 64);
-    const std::uint64_t* const mine = keys + (first[q] - first[begin]);
+    const std::uint64_t* const mine = sort_keys + (first[q] - first[begin]);
     Pixel pixel;
     Vec4& color = frame.color_of(pixels.sample, at);
     pixel.begin(color);
     for (std::uint64_t k = 0; k < n; ++k) {
-      const std::uint64_t word = Pixel::word_of_key(mine[k]);
-      if (word <= pixel.limit(0)) break;
-      pixel.take({word, frame.shade(word, x, y)}, frame.opaque_at);
+      const std::uint64_t key = Pixel::key_of_sort_key(mine[k]);
+      if (key <= pixel.limit(0)) break;
+      pixel.take({key, frame.shade(key, x, y)}, frame.opaque_at);
     }
     pixel.end(frame.opaque_at);
     color = pixel.color(color);
-    frame.word_of(pixels.sample, at) = pixel.nearest();
+    frame.key_of(pixels.sample, at) = pixel.nearest();
     count_layers(counters, n, n, 0);
   }
 };
@@ -115,15 +115,16 @@ void blend_deep(parallel::Cuda& exec, const Frame& frame, const RecordView& reco
   const std::uint64_t all = parallel::exclusive_scan(exec, first, first, std::uint64_t{0});
   const auto places = parallel::view_of(std::as_const(first));
   for (Turn turn; next_turn(exec, places, all, most, turn);) {
-    auto keys = parallel::make_buffer<std::uint64_t>(exec, turn.items);
+    auto sort_keys = parallel::make_buffer<std::uint64_t>(exec, turn.items);
     auto owners = parallel::make_buffer<std::uint32_t>(exec, turn.items);
     const std::size_t n = turn.end - turn.begin;
     parallel::for_each_index(
-        exec, n, WriteDeep<Pixel, Frame>{pixels, places, turn.begin, keys.data(), owners.data()});
-    parallel::sort_by_key(exec, keys, owners);
-    parallel::sort_by_key(exec, owners, keys, static_cast<int>(std::bit_width(n - 1)));
+        exec, n,
+        WriteDeep<Pixel, Frame>{pixels, places, turn.begin, sort_keys.data(), owners.data()});
+    parallel::sort_by_key(exec, sort_keys, owners);
+    parallel::sort_by_key(exec, owners, sort_keys, static_cast<int>(std::bit_width(n - 1)));
     parallel::for_each_index(
-        exec, n, BlendDeep<Pixel, Frame>{pixels, places, turn.begin, keys.data(), counters});
+        exec, n, BlendDeep<Pixel, Frame>{pixels, places, turn.begin, sort_keys.data(), counters});
   }
 }
 

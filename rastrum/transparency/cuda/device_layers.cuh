@@ -10,7 +10,7 @@
 // subgroup; no density has a limit; and what the filter cannot order is put right. The order of
 // layers and the colours are those of the host's scalar path, bit for bit, in whatever order the
 // records were written, as nothing but counts depends on it. Unsorted blending takes the same way
-// with another key: a device without a rasterizer's order in hardware must sort for that, too.
+// with another sort_key: a device without a rasterizer's order in hardware must sort for that, too.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 
 #include <rastrum/parallel/cuda/expand.cuh>
 #include <rastrum/parallel/cuda/select.cuh>
-#include <rastrum/raster/coverage.hpp>
+#include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cuda/sample_pattern.hpp>
 #include <rastrum/transparency/cuda/block_teams.cuh>
 #include <rastrum/transparency/cuda/deep_pixels.cuh>
@@ -38,11 +38,11 @@ namespace rastrum::transparency {
 struct DeviceLayers {
   raster::Rect view;                      ///< px; begins with a block's first pixel
   std::span<const raster::Piece> pieces;  ///< those with kTranslucent are blended, others left out
-  std::span<std::uint64_t> words;         ///< of the opaque surface; raised to the nearest layer's
+  std::span<std::uint64_t> keys;          ///< of the opaque surface; raised to the nearest layer's
   std::span<Vec4> colors;  ///< premultiplied: the opaque surface, 0 where none is; then the picture
 };
 
-/// The same with several samples: words and colours are planes, `plane` elements apart, and pieces
+/// The same with several samples: keys and colours are planes, `plane` elements apart, and pieces
 /// those of the pixels' centres (raster/cuda/pieces.cuh).
 struct DeviceSampledLayers : DeviceLayers {
   raster::SamplePattern samples;
@@ -51,11 +51,11 @@ struct DeviceSampledLayers : DeviceLayers {
 
 namespace cuda {
 
-/// The smallest word of a block at any sample: what lies behind it is hidden in all of it.
+/// The smallest key of a block at any sample: what lies behind it is hidden in all of it.
 struct FarthestOfBlock {
   raster::Rect view;
   std::size_t columns;
-  const std::uint64_t* words;
+  const std::uint64_t* keys;
   std::size_t plane;
   int samples;
   RASTRUM_HD std::uint64_t operator()(std::size_t b) const {
@@ -64,9 +64,9 @@ struct FarthestOfBlock {
     std::uint64_t farthest = ~std::uint64_t{0};
     for (int s = 0; s < samples; ++s)
       for (std::uint64_t m = raster::samples_inside(view, bx, by); m != 0; m &= m - 1) {
-        const std::uint64_t word = words[static_cast<std::size_t>(s) * plane + b * 64 +
-                                         static_cast<std::size_t>(parallel::lowest_bit(m))];
-        if (word < farthest) farthest = word;
+        const std::uint64_t key = keys[static_cast<std::size_t>(s) * plane + b * 64 +
+                                       static_cast<std::size_t>(parallel::lowest_bit(m))];
+        if (key < farthest) farthest = key;
       }
     return farthest;
   }
@@ -109,7 +109,7 @@ struct BlocksOfPiece {
       const raster::Edges edges = raster::edges_of(p);
       if (!raster::may_touch(edges, px)) continue;
       if (raster::has_depth_bounds(p) &&
-          raster::make_word(raster::highest_depth(p, px), p.low) <= farthest[number(out)])
+          raster::make_key(raster::highest_depth(p, px), p.low) <= farthest[number(out)])
         continue;
       out.mask |= raster::cover_8x8(edges, bx, by);
     }
@@ -162,7 +162,7 @@ struct HasRecords {
 template <class Pixel, class Frame>
 class LayerListing {
  public:
-  /// Planes of words and colours are `plane` elements apart, one for each of `samples`.
+  /// Planes of keys and colours are `plane` elements apart, one for each of `samples`.
   LayerListing(parallel::Cuda& exec, const Frame& frame, const raster::SamplePattern& samples,
                std::size_t plane, const DeviceLayerTuning& tuning)
       : exec_(exec),
@@ -173,7 +173,7 @@ class LayerListing {
         blocks_(frame.columns() * frame.rows()) {
     constexpr std::uint64_t kDefaultBytes = std::uint64_t{1} << 29;
     const std::uint64_t bytes = tuning.bytes == 0 ? kDefaultBytes : tuning.bytes;
-    // Half for records; a fragment has a key and an owner, twice while they are sorted.
+    // Half for records; a fragment has a sort_key and an owner, twice while they are sorted.
     most_records_ = std::max<std::uint64_t>(bytes / 2 / sizeof(raster::Block), 1);
     most_fragments_ = std::max<std::uint64_t>(bytes / 2 / 24, 1);
     tuning_.low_records = std::min(tuning_.low_records, LowDensity::kRecords);
@@ -190,7 +190,7 @@ class LayerListing {
     auto farthest = parallel::make_buffer<std::uint64_t>(exec_, blocks_);
     parallel::tabulate(
         exec_, farthest,
-        FarthestOfBlock{frame_.view, frame_.columns(), frame_.words, plane_, samples_.count});
+        FarthestOfBlock{frame_.view, frame_.columns(), frame_.keys, plane_, samples_.count});
 
     const auto pieces = parallel::counting<std::uint32_t>(frame_.pieces.size());
     BlocksOfPiece boxes{frame_.pieces,
@@ -288,8 +288,8 @@ DeviceLayerCounts blend(parallel::Cuda& exec, const DeviceLayers& layers, const 
   if (layers.pieces.size() > std::numeric_limits<std::uint32_t>::max())
     throw Error(Errc::invalid_argument,
                 "a device blends at most 2^32 - 1 pieces at a time; draw the picture in bands");
-  assert(layers.words.size() >= frame.columns() * frame.rows() * 64 &&
-         layers.colors.size() == layers.words.size());
+  assert(layers.keys.size() >= frame.columns() * frame.rows() * 64 &&
+         layers.colors.size() == layers.keys.size());
   if (method == Transparency::unsorted)
     return LayerListing<AsSubmittedPixel, Frame>(exec, frame, samples, plane, tuning)();
   return LayerListing<FrontToBackPixel, Frame>(exec, frame, samples, plane, tuning)();
@@ -299,8 +299,8 @@ DeviceLayerCounts blend(parallel::Cuda& exec, const DeviceLayers& layers, const 
 
 /// Blends the translucent pieces of `layers` over its opaque surface.
 /// `options`: exact or unsorted (why_not_on_a_device), and the alpha threshold.
-/// `shade`: (word, x, y) → premultiplied Vec4, the colour of a fragment at a pixel's centre; the
-/// word has its depth and id (piece.hpp). `test`: (word, x, y) → bool, for pieces with kTested.
+/// `shade`: (key, x, y) → premultiplied Vec4, the colour of a fragment at a pixel's centre; the
+/// key has its depth and id (piece.hpp). `test`: (key, x, y) → bool, for pieces with kTested.
 /// Both are copied into kernels, are called any number of times, and must be pure.
 /// Waits for sizes and, at the end, for its counts. Memory: 8 bytes a piece, 20 a block, and what
 /// `tuning.bytes` says. Work O(blocks of boxes + fragments · log of a block's records) where the
@@ -313,7 +313,7 @@ DeviceLayerCounts blend_layers(parallel::Cuda& exec, const DeviceLayers& layers,
   using Frame = cuda::FrameView<Shade, Test>;
   const Frame frame{layers.view,
                     layers.pieces,
-                    layers.words.data(),
+                    layers.keys.data(),
                     layers.colors.data(),
                     1 - options.alpha_threshold,
                     shade,
@@ -321,9 +321,9 @@ DeviceLayerCounts blend_layers(parallel::Cuda& exec, const DeviceLayers& layers,
   return cuda::blend(exec, layers, frame, {}, 0, options.method, tuning);
 }
 
-/// The same at each of several samples, which have their own planes of words and colours. `shade`
+/// The same at each of several samples, which have their own planes of keys and colours. `shade`
 /// (a raster::ShadedOnce, or alike) and `test` are asked for the one colour and answer that a
-/// primitive has in a pixel, by the word of any of its samples, so they may read its id alone.
+/// primitive has in a pixel, by the key of any of its samples, so they may read its id alone.
 /// Records are found once for all samples, ordered and shaded once for four. Work: that of one,
 /// times the samples.
 template <class Shade, class Test = cuda::KeepAll>
@@ -332,7 +332,7 @@ DeviceLayerCounts blend_sampled_layers(parallel::Cuda& exec, const DeviceSampled
                                        const Test& test = {},
                                        const DeviceLayerTuning& tuning = {}) {
   using Frame = cuda::SampledView<Shade, Test>;
-  const Frame frame{{layers.view, layers.pieces, layers.words.data(), layers.colors.data(),
+  const Frame frame{{layers.view, layers.pieces, layers.keys.data(), layers.colors.data(),
                      1 - options.alpha_threshold, shade, test},
                     {},
                     0};

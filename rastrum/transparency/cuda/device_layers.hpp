@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include <rastrum/raster/options.hpp>
+#include <rastrum/raster/frame/options.hpp>
 
 namespace rastrum::transparency {
 

@@ -13,8 +13,8 @@
 
 #include <rastrum/core/vec.hpp>
 #include <rastrum/raster/cuda/sample_pattern.hpp>
-#include <rastrum/raster/piece.hpp>
-#include <rastrum/raster/setup.hpp>
+#include <rastrum/raster/setup/make_piece.hpp>
+#include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/transparency/over.hpp>
 #include <rastrum/transparency/records.hpp>
 
@@ -31,11 +31,11 @@ template <class Shade, class Test>
 struct FrameView {
   raster::Rect view;  ///< begins with a block's first pixel
   std::span<const raster::Piece> pieces;
-  std::uint64_t* words;  ///< of the opaque surface; become those of the nearest fragment
-  Vec4* colors;          ///< of the opaque surface, premultiplied; become the picture's
-  float opaque_at;       ///< a pixel is finished where no more is seen through its layers
-  Shade shade;           ///< (word, x, y) → premultiplied colour
-  Test test;             ///< (word, x, y) → whether a fragment of a piece with kTested is there
+  std::uint64_t* keys;  ///< of the opaque surface; become those of the nearest fragment
+  Vec4* colors;         ///< of the opaque surface, premultiplied; become the picture's
+  float opaque_at;      ///< a pixel is finished where no more is seen through its layers
+  Shade shade;          ///< (key, x, y) → premultiplied colour
+  Test test;            ///< (key, x, y) → whether a fragment of a piece with kTested is there
 
   RASTRUM_HD std::size_t columns() const {
     return static_cast<std::size_t>((view.x1 - view.x0 + raster::kBlockSize - 1) /
@@ -57,21 +57,21 @@ struct FrameView {
   [[nodiscard]] FrameView from_sample(const raster::SamplePattern&, int, std::size_t) const {
     return *this;
   }
-  /// Of a sample of those, the word and the colour of element `at`.
-  RASTRUM_HD std::uint64_t& word_of(int, std::size_t at) const { return words[at]; }
+  /// Of a sample of those, the key and the colour of element `at`.
+  RASTRUM_HD std::uint64_t& key_of(int, std::size_t at) const { return keys[at]; }
   RASTRUM_HD Vec4& color_of(int, std::size_t at) const { return colors[at]; }
-  /// The word of a fragment; 0 where there is none or the test leaves it out.
-  RASTRUM_HD std::uint64_t word(const raster::Piece& piece, int x, int y, int = 0) const {
-    const std::uint64_t w = raster::make_word(raster::depth_at(piece, x, y), piece.low);
+  /// The key of a fragment; 0 where there is none or the test leaves it out.
+  RASTRUM_HD std::uint64_t key(const raster::Piece& piece, int x, int y, int = 0) const {
+    const std::uint64_t w = raster::make_key(raster::depth_at(piece, x, y), piece.low);
     return (piece.flags & raster::kTested) != 0 && !test(w, x, y) ? 0 : w;
   }
-  /// The colour of a piece in a pixel; `word` is its word there, of any sample.
-  RASTRUM_HD Vec4 color(const raster::Piece&, std::uint64_t word, int x, int y) const {
-    return shade(word, x, y);
+  /// The colour of a piece in a pixel; `key` is its key there, of any sample.
+  RASTRUM_HD Vec4 color(const raster::Piece&, std::uint64_t key, int x, int y) const {
+    return shade(key, x, y);
   }
 };
 
-/// Four of the samples of a frame, whose words and colours are planes. The pieces are those of the
+/// Four of the samples of a frame, whose keys and colours are planes. The pieces are those of the
 /// pixels' centres, and records have the pixels of which they cover any sample, so a fragment may
 /// be none; `shade` and `test` are asked for a piece in a pixel, and say the same for all of its
 /// samples, so four samples ask once.
@@ -79,37 +79,37 @@ template <class Shade, class Test>
 struct SampledView : FrameView<Shade, Test> {
   static constexpr int kSamples = 4;
   raster::SampleOffset at[kSamples] = {};
-  std::size_t plane = 0;  ///< from a sample's words and colours to the next one's
+  std::size_t plane = 0;  ///< from a sample's keys and colours to the next one's
 
   /// Of a frame of the first samples the one from sample `first` on.
   [[nodiscard]] SampledView from_sample(const raster::SamplePattern& samples, int first,
                                         std::size_t plane_size) const {
     SampledView v = *this;
-    v.words += static_cast<std::size_t>(first) * plane_size;
+    v.keys += static_cast<std::size_t>(first) * plane_size;
     v.colors += static_cast<std::size_t>(first) * plane_size;
     v.plane = plane_size;
     for (int s = 0; s < kSamples; ++s) v.at[s] = samples.at[first + s];
     return v;
   }
-  RASTRUM_HD std::uint64_t& word_of(int s, std::size_t i) const {
-    return this->words[static_cast<std::size_t>(s) * plane + i];
+  RASTRUM_HD std::uint64_t& key_of(int s, std::size_t i) const {
+    return this->keys[static_cast<std::size_t>(s) * plane + i];
   }
   RASTRUM_HD Vec4& color_of(int s, std::size_t i) const {
     return this->colors[static_cast<std::size_t>(s) * plane + i];
   }
-  RASTRUM_HD Vec4 color(const raster::Piece& piece, std::uint64_t word, int x, int y) const {
-    return this->shade(piece, word, x, y);
+  RASTRUM_HD Vec4 color(const raster::Piece& piece, std::uint64_t key, int x, int y) const {
+    return this->shade(piece, key, x, y);
   }
-  RASTRUM_HD std::uint64_t word(const raster::Piece& piece, int x, int y, int s) const {
+  RASTRUM_HD std::uint64_t key(const raster::Piece& piece, int x, int y, int s) const {
     const raster::Piece seen = raster::moved(piece, at[s]);
     if (!raster::covers_centre(raster::edges_of(seen), x, y)) return 0;
-    return FrameView<Shade, Test>::word(seen, x, y);
+    return FrameView<Shade, Test>::key(seen, x, y);
   }
 };
 
 /// A fragment between its shading and its blending.
 struct Sample {
-  std::uint64_t word = 0;  ///< 0: none
+  std::uint64_t key = 0;  ///< 0: none
   Vec4 color{};
 };
 
@@ -123,25 +123,26 @@ class FrontToBackPixel {
   /// So few records may come in any order.
   static constexpr std::size_t kAnyOrder = kHeld + 1;
 
-  /// The key by which records are sorted; ascending is the order in which fragments should come.
-  /// The piece's number makes it one order, whoever wrote the records.
-  static RASTRUM_HD std::uint64_t record_key(const raster::Piece& piece, const raster::Block& b) {
+  /// The sort_key by which records are sorted; ascending is the order in which fragments should
+  /// come. The piece's number makes it one order, whoever wrote the records.
+  static RASTRUM_HD std::uint64_t record_sort_key(const raster::Piece& piece,
+                                                  const raster::Block& b) {
     return near_first(piece, b.mask, b.bx, b.by) | b.piece;
   }
   /// The same for fragments, and back.
-  static RASTRUM_HD std::uint64_t fragment_key(std::uint64_t word) { return ~word; }
-  static RASTRUM_HD std::uint64_t word_of_key(std::uint64_t key) { return ~key; }
+  static RASTRUM_HD std::uint64_t fragment_sort_key(std::uint64_t key) { return ~key; }
+  static RASTRUM_HD std::uint64_t key_of_sort_key(std::uint64_t sort_key) { return ~sort_key; }
 
   RASTRUM_HD void begin(Vec4 /*behind*/) { *this = FrontToBackPixel(); }
 
   RASTRUM_HD void take(Sample sample, float opaque_at) {
     for (std::size_t k = 0; k < kHeld; ++k)
-      if (sample.word > held_[k].word) {
+      if (sample.key > held_[k].key) {
         const Sample other = held_[k];
         held_[k] = sample;
         sample = other;
       }
-    if (sample.word == 0) return;
+    if (sample.key == 0) return;
     leave(held_[0], opaque_at);
     for (std::size_t k = 1; k < kHeld; ++k) held_[k - 1] = held_[k];
     held_[kHeld - 1] = sample;
@@ -149,9 +150,9 @@ class FrontToBackPixel {
   /// No more will come.
   RASTRUM_HD void end(float opaque_at) {
     for (std::size_t k = 0; k < kHeld; ++k)
-      if (held_[k].word != 0) leave(held_[k], opaque_at);
+      if (held_[k].key != 0) leave(held_[k], opaque_at);
   }
-  /// Only fragments with larger words change anything; `opaque` is the surface's. What is farther
+  /// Only fragments with larger keys change anything; `opaque` is the surface's. What is farther
   /// than a finished pixel's last layer is hidden, what is nearer should have come before it.
   [[nodiscard]] RASTRUM_HD std::uint64_t limit(std::uint64_t opaque) const {
     return misplaced_ ? ~std::uint64_t{0} : finished_ ? last_ : opaque;
@@ -162,9 +163,9 @@ class FrontToBackPixel {
 
  private:
   RASTRUM_HD void leave(const Sample& sample, float opaque_at) {
-    if (sample.word > last_) misplaced_ = true;
-    last_ = sample.word;
-    if (nearest_ == 0) nearest_ = sample.word;
+    if (sample.key > last_) misplaced_ = true;
+    last_ = sample.key;
+    if (nearest_ == 0) nearest_ = sample.key;
     if (finished_) return;
     add_behind(seen_, sample.color);
     finished_ = seen_.through <= opaque_at;
@@ -182,17 +183,18 @@ class FrontToBackPixel {
 class AsSubmittedPixel {
  public:
   static constexpr std::size_t kAnyOrder = 1;
-  static RASTRUM_HD std::uint64_t record_key(const raster::Piece& piece, const raster::Block&) {
+  static RASTRUM_HD std::uint64_t record_sort_key(const raster::Piece& piece,
+                                                  const raster::Block&) {
     return raster::kIdMask - piece.low;
   }
   // The depth's sign is never set, so an id before it leaves room for all of it.
-  static RASTRUM_HD std::uint64_t fragment_key(std::uint64_t word) {
-    return raster::id_of_word(word) << (64 - raster::kIdBits) | word >> raster::kIdBits;
+  static RASTRUM_HD std::uint64_t fragment_sort_key(std::uint64_t key) {
+    return raster::id_of_key(key) << (64 - raster::kIdBits) | key >> raster::kIdBits;
   }
-  static RASTRUM_HD std::uint64_t word_of_key(std::uint64_t key) {
+  static RASTRUM_HD std::uint64_t key_of_sort_key(std::uint64_t sort_key) {
     constexpr int kDepthBits = 64 - raster::kIdBits;
-    return (key & ((std::uint64_t{1} << kDepthBits) - 1)) << raster::kIdBits |
-           (raster::kIdMask - (key >> kDepthBits));
+    return (sort_key & ((std::uint64_t{1} << kDepthBits) - 1)) << raster::kIdBits |
+           (raster::kIdMask - (sort_key >> kDepthBits));
   }
 
   RASTRUM_HD void begin(Vec4 behind) {
@@ -201,7 +203,7 @@ class AsSubmittedPixel {
   }
   RASTRUM_HD void take(Sample sample, float) {
     color_ = before(sample.color, color_);
-    if (sample.word > nearest_) nearest_ = sample.word;
+    if (sample.key > nearest_) nearest_ = sample.key;
   }
   RASTRUM_HD void end(float) {}
   [[nodiscard]] RASTRUM_HD std::uint64_t limit(std::uint64_t opaque) const { return opaque; }
@@ -216,17 +218,17 @@ class AsSubmittedPixel {
 
 /// Blends a pixel front to back in any number of walks over its fragments, each of which finds the
 /// nearest kWindow behind those of the walk before: exact without memory, O(n² / kWindow).
-/// walk(f) calls f(word) for the fragments, in the same order each time; shade(word) → colour.
-/// nearest: of all words.
-template <class Walk, class ShadeWord>
-RASTRUM_HD SeenPixel blend_in_windows(const Walk& walk, const ShadeWord& shade, float opaque_at,
+/// walk(f) calls f(key) for the fragments, in the same order each time; shade(key) → colour.
+/// nearest: of all keys.
+template <class Walk, class ShadeKey>
+RASTRUM_HD SeenPixel blend_in_windows(const Walk& walk, const ShadeKey& shade, float opaque_at,
                                       std::uint64_t& nearest) {
   constexpr std::size_t kWindow = 8;
   struct Place {
-    std::uint64_t word = 0;
-    std::uint32_t number = 0;  ///< in the walk: equal words are several fragments
+    std::uint64_t key = 0;
+    std::uint32_t number = 0;  ///< in the walk: equal keys are several fragments
     RASTRUM_HD bool before(const Place& o) const {
-      return word > o.word || (word == o.word && number < o.number);
+      return key > o.key || (key == o.key && number < o.number);
     }
   };
   SeenPixel seen;
@@ -236,20 +238,20 @@ RASTRUM_HD SeenPixel blend_in_windows(const Walk& walk, const ShadeWord& shade, 
     Place window[kWindow];
     std::uint32_t number = 0;
     bool more = false;
-    walk([&](std::uint64_t word) {
-      Place place{word, number++};
+    walk([&](std::uint64_t key) {
+      Place place{key, number++};
       if (any && !last.before(place)) return;
       for (std::size_t k = 0; k < kWindow; ++k)
-        if (place.word != 0 && (window[k].word == 0 || place.before(window[k]))) {
+        if (place.key != 0 && (window[k].key == 0 || place.before(window[k]))) {
           const Place other = window[k];
           window[k] = place;
           place = other;
         }
-      more = more || place.word != 0;
+      more = more || place.key != 0;
     });
-    if (!any) nearest = window[0].word;
-    for (std::size_t k = 0; k < kWindow && window[k].word != 0; ++k) {
-      add_behind(seen, shade(window[k].word));
+    if (!any) nearest = window[0].key;
+    for (std::size_t k = 0; k < kWindow && window[k].key != 0; ++k) {
+      add_behind(seen, shade(window[k].key));
       if (seen.through <= opaque_at) return seen;
     }
     if (!more) return seen;

@@ -37,7 +37,7 @@ class SceneLayers {
     return why_not_on_a_device(request.transparency.method);
   }
 
-  /// Blends the translucent pieces of `scene` over `colors`, in the places of the words of
+  /// Blends the translucent pieces of `scene` over `colors`, in the places of the keys of
   /// `surface`, all its planes, and raises those. `shade` and `test` as of blend_layers, `shade` a
   /// raster::ShadedOnce where there are several samples. `batch`: primitives that are set up
   /// at once; `bytes`: what pieces, and again what their records, may take, 0: any. Waits.
@@ -115,14 +115,14 @@ class SceneLayers {
       at += places.size();
     });
     const std::size_t first =
-        band.surface.words.index(view.x0 / raster::kBlockSize, view.y0 / raster::kBlockSize) * 64;
+        band.surface.keys.index(view.x0 / raster::kBlockSize, view.y0 / raster::kBlockSize) * 64;
     const auto before = static_cast<std::size_t>(band.surface.samples.count - 1);
     const std::size_t size = before * band.surface.plane + raster::block_count(view) * 64;
     DeviceLayerTuning tuning;
     tuning.bytes = band.bytes;
     const DeviceLayers layers{view,
                               view_of(std::as_const(pieces)),
-                              {band.surface.words.words + first, size},
+                              {band.surface.keys.keys + first, size},
                               band.colors.subspan(first, size)};
     DeviceLayerCounts c;
     if constexpr (raster::kIsShadedOnce<Shade>)

@@ -1,4 +1,4 @@
-// atomic on a device: the 64-bit maximum of words (paper 1, section 3.2.1), a thread a sample.
+// atomic on a device: the 64-bit maximum of keys (paper 1, section 3.2.1), a thread a sample.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace rastrum::raster::family {
 
-struct RaiseWord {
+struct RaiseKey {
   const Piece* pieces;
-  SurfaceView words;
+  SurfaceView keys;
   RASTRUM_HD void operator()(const Block& b, int i) const {
-    const Fragment f = fragment_at(pieces, words, b, i);
-    parallel::atomic_maximum(words.words[f.element], f.word);
+    const Fragment f = fragment_at(pieces, keys, b, i);
+    parallel::atomic_maximum(keys.keys[f.element], f.key);
   }
 };
 
@@ -24,7 +24,7 @@ class AtomicOnDevice final : public DeviceVisibility<Exec> {
   explicit AtomicOnDevice(FamilyFrame<Exec>&) {}
   void resolve(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
                std::span<const Block> blocks, std::uint64_t) override {
-    for_each_sample(frame.exec, blocks, RaiseWord{pieces.data(), frame.surface.words});
+    for_each_sample(frame.exec, blocks, RaiseKey{pieces.data(), frame.surface.keys});
   }
 };
 

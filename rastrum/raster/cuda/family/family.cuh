@@ -23,7 +23,7 @@ struct CoverageOnDevice {
 template <class Exec>
 struct VisibilityOnDevice {
   std::string_view name;
-  std::uint64_t pixel_bytes = 0;  ///< of a band, beside its words
+  std::uint64_t pixel_bytes = 0;  ///< of a band, beside its keys
   bool shades = false;            ///< sets Shading::colors
   std::unique_ptr<DeviceVisibility<Exec>> (*make)(FamilyFrame<Exec>&) = nullptr;
 };
@@ -55,17 +55,17 @@ template <class Exec>
 /// What Shading::shade is made of: `shade` as resolve_surface takes it.
 template <class Shade>
 struct ColorOfFragment {
-  SurfaceView words;
+  SurfaceView keys;
   std::span<const std::uint32_t> element;
-  std::span<const std::uint64_t> word;
+  std::span<const std::uint64_t> key;
   Shade shade;
   RASTRUM_HD Vec4 operator()(std::size_t k) const {
-    const auto columns = static_cast<std::size_t>(words.columns);
+    const auto columns = static_cast<std::size_t>(keys.columns);
     const std::size_t block = element[k] / 64;
     const int i = static_cast<int>(element[k] % 64);
-    const int bx = words.bx0 + static_cast<int>(block % columns);
-    const int by = words.by0 + static_cast<int>(block / columns);
-    return shade(word[k], bx * kBlockSize + i % kBlockSize, by * kBlockSize + i / kBlockSize);
+    const int bx = keys.bx0 + static_cast<int>(block % columns);
+    const int by = keys.by0 + static_cast<int>(block / columns);
+    return shade(key[k], bx * kBlockSize + i % kBlockSize, by * kBlockSize + i / kBlockSize);
   }
 };
 

@@ -13,16 +13,16 @@
 
 namespace rastrum::raster::family {
 
-/// By its element among the words of a surface.
+/// By its element among the keys of a surface.
 struct Fragment {
   std::uint32_t element;
-  std::uint64_t word;
+  std::uint64_t key;
 };
 
-[[nodiscard]] RASTRUM_HD inline Fragment fragment_at(const Piece* pieces, const SurfaceView& words,
+[[nodiscard]] RASTRUM_HD inline Fragment fragment_at(const Piece* pieces, const SurfaceView& keys,
                                                      const Block& b, int i) {
-  return {static_cast<std::uint32_t>(words.index(b.bx, b.by) * 64 + static_cast<std::size_t>(i)),
-          DeviceSurface::word(pieces[b.piece], b.bx, b.by, i)};
+  return {static_cast<std::uint32_t>(keys.index(b.bx, b.by) * 64 + static_cast<std::size_t>(i)),
+          DeviceSurface::key(pieces[b.piece], b.bx, b.by, i)};
 }
 
 /// Fragment k of the blocks that `plan` expands.
@@ -31,11 +31,11 @@ struct FragmentAt {
   Plan plan;
   std::span<const Block> blocks;
   const Piece* pieces;
-  SurfaceView words;
+  SurfaceView keys;
   RASTRUM_HD Fragment operator()(std::size_t k) const {
     const std::size_t b = plan.segment_of(k);
     const int j = static_cast<int>(k - plan.first(b));
-    return fragment_at(pieces, words, blocks[b], parallel::select_bit<64>(blocks[b].mask, j));
+    return fragment_at(pieces, keys, blocks[b], parallel::select_bit<64>(blocks[b].mask, j));
   }
 };
 
@@ -44,11 +44,11 @@ struct WriteFragment {
   At at;
   std::size_t first;
   std::uint32_t* element;
-  std::uint64_t* word;
+  std::uint64_t* key;
   RASTRUM_HD void operator()(std::size_t k) const {
     const Fragment f = at(first + k);
     element[k] = f.element;
-    word[k] = f.word;
+    key[k] = f.key;
   }
 };
 
@@ -59,11 +59,11 @@ void each_part_of_fragments(FamilyFrame<Exec>& frame, std::span<const Piece> pie
                             std::span<const Block> blocks, std::size_t most, F&& f) {
   const auto places = parallel::make_expansion(frame.exec, blocks, FragmentCount{});
   const FragmentAt<decltype(places.view())> at{places.view(), blocks, pieces.data(),
-                                               frame.surface.words};
+                                               frame.surface.keys};
   each_turn(places.size(), most, [&](std::size_t begin, std::size_t end) { f(at, begin, end); });
 }
 
-/// Calls f(elements, words) with the fragments in memory, buffers that are f's to change; each may
+/// Calls f(elements, keys) with the fragments in memory, buffers that are f's to change; each may
 /// take `fragment_bytes`.
 template <class Exec, class F>
 void each_written_part(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
@@ -72,11 +72,11 @@ void each_written_part(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
       frame, pieces, blocks, frame.most_fragments(fragment_bytes),
       [&](const auto& at, std::size_t begin, std::size_t end) {
         auto element = parallel::make_buffer<std::uint32_t>(frame.exec, end - begin);
-        auto word = parallel::make_buffer<std::uint64_t>(frame.exec, end - begin);
+        auto key = parallel::make_buffer<std::uint64_t>(frame.exec, end - begin);
         parallel::for_each_index(frame.exec, end - begin,
                                  WriteFragment<std::remove_cvref_t<decltype(at)>>{
-                                     at, begin, element.data(), word.data()});
-        f(element, word);
+                                     at, begin, element.data(), key.data()});
+        f(element, key);
       });
 }
 

@@ -2,7 +2,7 @@
 // coverage enumerates the blocks of pieces and a visibility resolves them, and neither knows the
 // other; what passes between them is an array of blocks in the device's memory, a turn at a time.
 //
-// Each turn is resolved for itself onto the words, which only rise: so turns, like bands and
+// Each turn is resolved for itself onto the keys, which only rise: so turns, like bands and
 // batches, change no bit, and nothing is enumerated twice. Beside the functors, which are the
 // host's, this is the device's own listing; the fast rasterizer of a device is by-size
 // (../rasterizer.cuh), which never writes a block.
@@ -20,18 +20,18 @@
 #include <rastrum/core/vec.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/raster/cuda/cover.cuh>
-#include <rastrum/raster/options.hpp>
+#include <rastrum/raster/frame/options.hpp>
 #include <rastrum/raster/visibility/region.hpp>
 
 namespace rastrum::raster::family {
 
-/// Colours for who shades every fragment: shade(elements, words, colors) sets the colour of each
-/// fragment, given by its element of the surface and its word. Spans of the device's.
+/// Colours for who shades every fragment: shade(elements, keys, colors) sets the colour of each
+/// fragment, given by its element of the surface and its key. Spans of the device's.
 struct Shading {
   std::function<void(std::span<const std::uint32_t>, std::span<const std::uint64_t>,
                      std::span<Vec4>)>
       shade;               ///< null: no colours are wanted
-  std::span<Vec4> colors;  ///< of the surface, in the places of its words; set where those rise
+  std::span<Vec4> colors;  ///< of the surface, in the places of its keys; set where those rise
 };
 
 /// Bytes of a block of a turn, with its place among the fragments.
@@ -59,17 +59,17 @@ struct CallWithSample {
     if ((block.mask >> (k % 64) & 1) != 0) f(block, static_cast<int>(k % 64));
   }
 };
-/// In any order; neighbouring threads have neighbouring words.
+/// In any order; neighbouring threads have neighbouring keys.
 template <class Exec, class F>
 void for_each_sample(Exec& exec, std::span<const Block> blocks, const F& f) {
   parallel::for_each_index(exec, blocks.size() * 64, CallWithSample<F>{blocks, f});
 }
 
 struct CountOverdraw {
-  SurfaceView words;
+  SurfaceView keys;
   std::uint32_t* overdraw;
   RASTRUM_HD void operator()(const Block& b, int i) const {
-    parallel::atomic_add(overdraw[words.index(b.bx, b.by) * 64 + static_cast<std::size_t>(i)], 1U);
+    parallel::atomic_add(overdraw[keys.index(b.bx, b.by) * 64 + static_cast<std::size_t>(i)], 1U);
   }
 };
 
@@ -81,7 +81,7 @@ template <class Exec>
 class DeviceVisibility {
  public:
   virtual ~DeviceVisibility() = default;
-  /// Raises the words of the frame's surface to those of the covered samples of `blocks`, which are
+  /// Raises the keys of the frame's surface to those of the covered samples of `blocks`, which are
   /// `fragments` together, at least one. Masks may be empty; none reaches outside of the view.
   virtual void resolve(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
                        std::span<const Block> blocks, std::uint64_t fragments) = 0;
@@ -126,7 +126,7 @@ class FamilyFrame {
     if (n == 0) return;
     fragments += n;
     if (surface.overdraw != nullptr)
-      for_each_sample(exec, blocks, CountOverdraw{surface.words, surface.overdraw});
+      for_each_sample(exec, blocks, CountOverdraw{surface.keys, surface.overdraw});
     visibility->resolve(*this, pieces, blocks, n);
   }
 

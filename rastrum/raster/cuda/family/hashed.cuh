@@ -1,5 +1,5 @@
-// hashed on a device: a table from pixels to words, whose slots are taken by compare-and-swap and
-// whose words are raised by atomic maximum; then its entries raise the surface (what paper 5 names
+// hashed on a device: a table from pixels to keys, whose slots are taken by compare-and-swap and
+// whose keys are raised by atomic maximum; then its entries raise the surface (what paper 5 names
 // as future work, its section 6). A table is as large as the fragments of its part, which are
 // counted, and the pixels allow, so it is never full. The slots are the host's (hash_slots.hpp).
 #pragma once
@@ -33,7 +33,7 @@ struct Insert {
   std::size_t first;
   HashSlots slots;
   std::uint32_t* pixel;
-  std::uint64_t* word;
+  std::uint64_t* key;
   std::uint64_t* probes;
   RASTRUM_HD void operator()(std::size_t k) const {
     const Fragment f = at(first + k);
@@ -43,19 +43,19 @@ struct Insert {
       if (held == kNoPixel) parallel::atomic_add(*probes, n);
       if (held == kNoPixel || held == f.element) break;
     }
-    parallel::atomic_maximum(word[slot], f.word);
+    parallel::atomic_maximum(key[slot], f.key);
   }
 };
 
 /// An entry has its pixel for itself.
 struct RaiseToEntry {
   const std::uint32_t* pixel;
-  const std::uint64_t* word;
-  std::uint64_t* words;
+  const std::uint64_t* key;
+  std::uint64_t* keys;
   RASTRUM_HD std::uint32_t operator()(std::size_t slot) const {
     if (pixel[slot] == kNoPixel) return 0;
-    std::uint64_t& held = words[pixel[slot]];
-    if (held < word[slot]) held = word[slot];
+    std::uint64_t& held = keys[pixel[slot]];
+    if (held < key[slot]) held = key[slot];
     return 1;
   }
 };
@@ -85,15 +85,15 @@ class HashedOnDevice final : public DeviceVisibility<Exec> {
           const HashSlots slots = HashSlots::of(std::min(end - begin, frame.pixel_count()));
           const auto n = static_cast<std::size_t>(slots.count);
           auto pixel = parallel::make_buffer<std::uint32_t>(exec, n);
-          auto word = parallel::make_buffer<std::uint64_t>(exec, n);
+          auto key = parallel::make_buffer<std::uint64_t>(exec, n);
           parallel::tabulate(exec, pixel, SameValue<std::uint32_t>{kNoPixel});
-          parallel::tabulate(exec, word, SameValue<std::uint64_t>{0});
+          parallel::tabulate(exec, key, SameValue<std::uint64_t>{0});
           parallel::for_each_index(exec, end - begin,
                                    Insert<std::remove_cvref_t<decltype(at)>>{
-                                       at, begin, slots, pixel.data(), word.data(), probes.data()});
+                                       at, begin, slots, pixel.data(), key.data(), probes.data()});
           auto taken = parallel::make_buffer<std::uint32_t>(exec, n);
           parallel::tabulate(exec, taken,
-                             RaiseToEntry{pixel.data(), word.data(), frame.surface.words.words});
+                             RaiseToEntry{pixel.data(), key.data(), frame.surface.keys.keys});
           frame.count("table slots", slots.count);
           frame.count("table entries", parallel::reduce(exec, taken, std::uint64_t{0}));
         });

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <span>
 
+#include <rastrum/raster/bin/order.hpp>
 #include <rastrum/raster/coverage/boxes.hpp>
 #include <rastrum/raster/cuda/family/frame.cuh>
 #include <rastrum/raster/cuda/family/turns.cuh>
-#include <rastrum/raster/order.hpp>
 
 namespace rastrum::raster::family {
 

@@ -1,7 +1,7 @@
 // sorted on a device: fragments are counted, written, sorted by pixel, and the maximum of each
 // pixel's segment is kept (paper 5, sections 3.1 to 3.4): no atomic operation on a pixel.
 //
-// As in the paper an index is sorted, by radix, and the words are gathered where they are reduced.
+// As in the paper an index is sorted, by radix, and the keys are gathered where they are reduced.
 // What does not fit into the memory is sorted part by part, each raising the surface.
 #pragma once
 
@@ -13,19 +13,19 @@
 
 namespace rastrum::raster::family {
 
-struct WordAt {
-  const std::uint64_t* word;
+struct KeyAt {
+  const std::uint64_t* key;
   const std::uint32_t* which;
-  RASTRUM_HD std::uint64_t operator()(std::size_t k) const { return word[which[k]]; }
+  RASTRUM_HD std::uint64_t operator()(std::size_t k) const { return key[which[k]]; }
 };
 /// A segment has its pixel for itself.
 struct RaiseToMaximum {
   const std::uint32_t* element;
   const std::uint64_t* maximum;
-  std::uint64_t* words;
+  std::uint64_t* keys;
   RASTRUM_HD void operator()(std::size_t k) const {
-    std::uint64_t& word = words[element[k]];
-    if (word < maximum[k]) word = maximum[k];
+    std::uint64_t& key = keys[element[k]];
+    if (key < maximum[k]) key = maximum[k];
   }
 };
 
@@ -37,17 +37,17 @@ class SortedOnDevice final : public DeviceVisibility<Exec> {
   explicit SortedOnDevice(FamilyFrame<Exec>&) {}
   void resolve(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
                std::span<const Block> blocks, std::uint64_t fragments) override {
-    // Its word, its element and index twice while they are sorted, its segment's, and a share of
+    // Its key, its element and index twice while they are sorted, its segment's, and a share of
     // what sorts and reduces.
     constexpr std::uint64_t kFragmentBytes = 8 + 2 * 8 + 12 + 8;
-    each_written_part(frame, pieces, blocks, kFragmentBytes, [&](auto& element, auto& word) {
+    each_written_part(frame, pieces, blocks, kFragmentBytes, [&](auto& element, auto& key) {
       const auto which = sort_by_pixel(frame, element);
       const auto segments = parallel::reduce_by_key(
-          frame.exec, element, parallel::Computed(which.size(), WordAt{word.data(), which.data()}),
+          frame.exec, element, parallel::Computed(which.size(), KeyAt{key.data(), which.data()}),
           parallel::Maximum{});
       parallel::for_each_index(
           frame.exec, segments.keys.size(),
-          RaiseToMaximum{segments.keys.data(), segments.values.data(), frame.surface.words.words});
+          RaiseToMaximum{segments.keys.data(), segments.values.data(), frame.surface.keys.keys});
       frame.count("sorts", 1);
       frame.count("segments", segments.keys.size());
     });

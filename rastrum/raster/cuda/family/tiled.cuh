@@ -3,7 +3,7 @@
 //
 // Deviation: nobody owns a tile here, for a turn's blocks lie in memory whatever visibility comes
 // next. What the sort is for on a device is that threads beside each other draw the same tile, and
-// find its words in the cache.
+// find its keys in the cache.
 #pragma once
 
 #include <bit>

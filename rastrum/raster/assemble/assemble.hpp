@@ -1,0 +1,134 @@
+// From a primitive of a draw to its pieces: the slow, complete path (clipper included), used by the
+// reference rasterizer for every primitive and by the fast ones for what the setup kernel leaves:
+// triangles that need clipping or have a depth bias, lines and points. A device takes it for all
+// (cuda/pieces.cuh), so it is a template on who knows the vertices: FrameGeometry or
+// DeviceGeometry.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include <rastrum/raster/assemble/points_and_lines.hpp>
+#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/setup/make_piece.hpp>
+
+namespace rastrum::raster {
+
+/// Pieces of one primitive: the fan of a polygon.
+inline constexpr int kMaxPieces = kMaxPolygon - 2;
+
+enum class Fate : std::uint8_t { drawn, clipped, culled, dropped };
+
+/// The corners of a primitive before and after projection.
+template <std::size_t n>
+struct PrimitiveCorners {
+  ProjectedVertex projected[n];
+  bool needs_clip = false;
+  Vec4d clip[n];  ///< where one of them needs it
+  bool finite = true;
+
+  template <class Geometry>
+  RASTRUM_HD PrimitiveCorners(const Geometry& frame, const Draw& draw, std::uint64_t primitive) {
+    for (std::size_t i = 0; i < n; ++i) {
+      projected[i] = frame.vertex(draw, draw.vertex(primitive, static_cast<int>(i)));
+      needs_clip |= projected[i].x_fx8 == kNeedsClip;
+    }
+    for (std::size_t i = 0; i < n && needs_clip; ++i) {
+      const Vec4d c = frame.clip_position(draw, draw.vertex(primitive, static_cast<int>(i)));
+      clip[i] = c;
+      finite &=
+          std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z) && std::isfinite(c.w);
+    }
+  }
+};
+
+template <class Geometry, class Emit>
+RASTRUM_HD Fate assemble_triangle(const Geometry& frame, const Draw& draw, std::uint64_t id,
+                                  std::uint32_t flags, const PrimitiveCorners<3>& c,
+                                  SampleOffset at, Emit&& emit) {
+  if (!c.finite) return Fate::dropped;
+  const Rect view{0, 0, frame.width, frame.height};
+  const Cull cull = draw.effective_cull();
+  Piece piece;
+  const auto make = [&](const ProjectedVertex& v0, const ProjectedVertex& v1,
+                        const ProjectedVertex& v2, Cull side) {
+    return make_piece(moved(v0, at), moved(v1, at), moved(v2, at), id, flags, side, view, piece);
+  };
+  if (!c.needs_clip) {
+    const auto& v = c.projected;
+    if (make(v[0], v[1], v[2], cull) == SetupResult::culled) return Fate::culled;
+    emit(piece);
+    return Fate::drawn;
+  }
+  const double facing = orientation(c.clip);
+  if (facing == 0 || (cull == Cull::back && facing < 0) || (cull == Cull::front && facing > 0))
+    return Fate::culled;
+  const ClippedPolygon polygon = clip_triangle(c.clip, c.projected, frame.viewport);
+  // Snapping may turn a sliver of the polygon over; only pieces that face as the triangle does
+  // count.
+  const Cull other_side = facing > 0 ? Cull::back : Cull::front;
+  bool any = false;
+  for (int i = 2; i < polygon.size; ++i)
+    if (make(polygon.vertices[0], polygon.vertices[i - 1], polygon.vertices[i], other_side) ==
+        SetupResult::drawn) {
+      emit(piece);
+      any = true;
+    }
+  return any ? Fate::clipped : Fate::culled;
+}
+
+template <class Geometry, class Emit>
+RASTRUM_HD Fate assemble_line(const Geometry& frame, const Draw& draw, std::uint64_t id,
+                              std::uint32_t flags, PrimitiveCorners<2> c, Emit&& emit) {
+  if (!c.finite) return Fate::dropped;
+  if (c.needs_clip && !clip_line(c.clip, c.projected, frame.viewport)) return Fate::culled;
+  Piece piece;
+  if (make_line(c.projected[0], c.projected[1], id, flags, whole_width(draw.line_width),
+                {0, 0, frame.width, frame.height}, piece) == SetupResult::culled)
+    return Fate::culled;
+  emit(piece);
+  return c.needs_clip ? Fate::clipped : Fate::drawn;
+}
+
+template <class Geometry, class Emit>
+RASTRUM_HD Fate assemble_point(const Geometry& frame, const Draw& draw, std::uint64_t id,
+                               std::uint32_t flags, PrimitiveCorners<1> c, Emit&& emit) {
+  if (!c.finite) return Fate::dropped;
+  if (c.needs_clip && !clip_point(c.clip[0], frame.viewport, c.projected[0])) return Fate::culled;
+  Piece piece;
+  if (make_point(c.projected[0], id, flags, point_size_fx8(draw.point_size),
+                 {0, 0, frame.width, frame.height}, piece) == SetupResult::culled)
+    return Fate::culled;
+  emit(piece);
+  return Fate::drawn;
+}
+
+/// Calls emit(piece) for each piece of primitive `p` of `draw` at sample `sample`, which lies at
+/// `at`; says what became of it (`clipped` ones are drawn too). At most kMaxPieces of a primitive.
+/// Indices must be in range.
+template <class Geometry, class Emit>
+RASTRUM_HD Fate assemble_primitive(const Geometry& frame, const Draw& draw, std::uint64_t p,
+                                   Emit&& emit, std::uint32_t sample = 0, SampleOffset at = {}) {
+  const std::uint64_t id = draw.first_id + p;
+  const std::uint32_t flags = draw.flags_of(p) | sample << kSampleShift;
+  const auto emit_biased = [&](Piece& piece) {
+    add_depth_bias(piece, draw.depth_bias, draw.depth_bias_slope);
+    emit(std::as_const(piece));
+  };
+  switch (draw.topology) {
+    case Topology::points:
+      return assemble_point(frame, draw, id, flags, PrimitiveCorners<1>(frame, draw, p),
+                            emit_biased);
+    case Topology::lines:
+      return assemble_line(frame, draw, id, flags, PrimitiveCorners<2>(frame, draw, p),
+                           emit_biased);
+    case Topology::triangles:
+      break;
+  }
+  return assemble_triangle(frame, draw, id, flags, PrimitiveCorners<3>(frame, draw, p), at,
+                           emit_biased);
+}
+
+}  // namespace rastrum::raster

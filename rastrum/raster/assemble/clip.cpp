@@ -1,0 +1,1 @@
+#include <rastrum/raster/assemble/clip-inl.hpp>

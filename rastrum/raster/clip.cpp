@@ -1,1 +1,0 @@
-#include <rastrum/raster/clip-inl.hpp>

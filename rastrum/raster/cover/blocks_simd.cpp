@@ -1,0 +1,267 @@
+// What is done with the keys of 8 × 8 blocks, with Highway, compiled once per instruction set: the
+// maximum and the way to 8-bit colours. Each repeats the operations of its scalar twin (setup.hpp,
+// color.hpp) in the same order, so it gives the same bits.
+
+// SSSE3 adds nothing over the scalar build that SSE4 does not; AVX3_DL nothing that these kernels
+// use.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "rastrum/raster/cover/blocks_simd.cpp"
+#include <hwy/foreach_target.h>  // must precede highway.h
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+
+#include <rastrum/raster/kernels/kernels_simd.hpp>
+#include <rastrum/raster/kernels/lanes-inl.hpp>
+#include <rastrum/raster/shade/color.hpp>
+#include <rastrum/raster/shade/srgb_lanes-inl.hpp>
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster {
+namespace HWY_NAMESPACE {
+namespace {  // several sources have an N_AVX2
+
+/// The depths of row `row` of a block, column part by part: the depth formula, lane by lane.
+struct DepthRows {
+  F along_x[8 / kLanes];
+  float y0, zy;
+  int first_row;
+
+  HWY_INLINE DepthRows(const Piece& p, const Block& block) {
+    constexpr float kPxPerSubpixel = 1.0F / kSubpixels;
+    const F32 d;
+    const float x0 = static_cast<float>(p.x[0]) * kPxPerSubpixel;
+    y0 = static_cast<float>(p.y[0]) * kPxPerSubpixel;
+    zy = p.zy;
+    first_row = block.by * kBlockSize;
+    for (std::size_t part = 0; part < 8 / kLanes; ++part) {
+      const F column = hn::Iota(
+          d, static_cast<float>(block.bx * kBlockSize) + static_cast<float>(part * kLanes));
+      const F dx = hn::Sub(hn::Add(column, hn::Set(d, 0.5F)), hn::Set(d, x0));
+      along_x[part] = hn::Add(hn::Set(d, p.z0), hn::Mul(hn::Set(d, p.zx), dx));
+    }
+  }
+  HWY_INLINE F at(int row, std::size_t part) const {
+    const float dy = (static_cast<float>(first_row + row) + 0.5F) - y0;
+    return hn::Add(along_x[part], hn::Set(F32{}, zy * dy));
+  }
+};
+
+/// Element m keeps the lanes of the bits of m.
+struct alignas(32) LaneTable {
+  std::int64_t keep[1 << kLanes64][kLanes64];
+};
+constexpr LaneTable kLaneTable = [] {
+  LaneTable table{};
+  for (std::size_t m = 0; m < std::size_t{1} << kLanes64; ++m)
+    for (std::size_t lane = 0; lane < kLanes64; ++lane)
+      table.keep[m][lane] = (m >> lane & 1) != 0 ? -1 : 0;
+  return table;
+}();
+
+/// One bit for every kLanes64 samples: the first, where `mask` has any of them.
+HWY_INLINE std::uint64_t parts_of(std::uint64_t mask) {
+  mask |= mask >> 1;
+  if constexpr (kLanes64 == 4) mask |= mask >> 2;
+  return mask & (kLanes64 == 4 ? 0x1111111111111111U : 0x5555555555555555U);
+}
+
+/// Goes by parts of a row as wide as a vector of keys: most masks have a few samples in each of a
+/// few rows.
+void maximum(const Piece* pieces, const Block* blocks, std::size_t n,
+             const SurfaceView& surface) noexcept {
+  constexpr float kPxPerSubpixel = 1.0F / kSubpixels;
+  const F32 d;
+  const hn::Half<F32> dh;
+  const I64 d64;
+  const F half_px = hn::Set(d, 0.5F);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Block& block = blocks[i];
+    const Piece& p = pieces[block.piece];
+    // The depth formula, lane by lane: its parts by column and by row.
+    HWY_ALIGN float by_column[8], by_row[8];
+    const auto fill = [&](float first_px, std::int32_t origin, float slope, float plus, bool adds,
+                          float* to) HWY_ATTR {
+      for (std::size_t part = 0; part < 8; part += kLanes) {
+        const F px = hn::Add(hn::Iota(d, first_px + static_cast<float>(part)), half_px);
+        const F at = hn::Sub(px, hn::Set(d, static_cast<float>(origin) * kPxPerSubpixel));
+        const F change = hn::Mul(hn::Set(d, slope), at);
+        hn::Store(adds ? hn::Add(hn::Set(d, plus), change) : change, d, to + part);
+      }
+    };
+    fill(static_cast<float>(block.bx * kBlockSize), p.x[0], p.zx, p.z0, true, by_column);
+    fill(static_cast<float>(block.by * kBlockSize), p.y[0], p.zy, 0, false, by_row);
+    const auto low = hn::Set(d64, static_cast<std::int64_t>(p.low));
+    std::uint64_t* out = surface.block(block.bx, block.by);
+    const std::uint64_t mask = block.mask;
+    const auto key_at = [&](int first) HWY_ATTR {
+      auto depth = hn::Add(hn::Load(dh, by_column + first % kBlockSize),
+                           hn::Set(dh, by_row[first / kBlockSize]));
+      depth = hn::IfThenElseZero(hn::Gt(depth, hn::Zero(dh)), depth);
+      depth = hn::Min(depth, hn::Set(dh, 1.0F));
+      const auto high = hn::PromoteTo(d64, hn::BitCast(hn::RebindToSigned<hn::Half<F32>>(), depth));
+      return hn::Or(hn::ShiftLeft<kIdBits>(high), low);
+    };
+    const auto raise = [&](int first, hn::Vec<I64> key) HWY_ATTR {
+      // Keys stay below 2^63, so the signed maximum, which AVX2 has, is the maximum.
+      auto* place = reinterpret_cast<std::int64_t*>(out + first);
+      hn::Store(hn::Max(hn::Load(d64, place), key), d64, place);
+    };
+    if (mask == ~std::uint64_t{0}) {
+      for (int first = 0; first < 64; first += static_cast<int>(kLanes64))
+        raise(first, key_at(first));
+      continue;
+    }
+    for (std::uint64_t rest = parts_of(mask); rest != 0; rest &= rest - 1) {
+      const int first = std::countr_zero(rest);
+      const std::uint64_t bits = mask >> first & ((1U << kLanes64) - 1);
+      raise(first, hn::And(key_at(first), hn::Load(d64, kLaneTable.keep[bits])));
+    }
+  }
+}
+
+void keys(const Piece& piece, const Block& block, std::uint64_t* out) noexcept {
+  const hn::RebindToUnsigned<I64> d64;
+  const DepthRows depths(piece, block);
+  for (std::uint64_t rest = block.mask; rest != 0;) {
+    const int row = std::countr_zero(rest) / 8;
+    rest &= ~(std::uint64_t{255} << (row * 8));
+    for (std::size_t part = 0; part < 8 / kLanes; ++part)
+      for_each_half(depths.at(row, part), piece.low, [&](std::size_t h, const auto key) HWY_ATTR {
+        hn::Store(key, d64, out + static_cast<std::size_t>(row) * 8 + part * kLanes + h * kLanes64);
+      });
+  }
+}
+
+HWY_INLINE hn::Vec<U32> quantize_lanes(F v) {
+  const F32 d;
+  const F low = hn::IfThenElseZero(hn::Gt(v, hn::Zero(d)), v);
+  const F clamped = hn::Min(low, hn::Set(d, 1.0F));
+  return hn::BitCast(U32{}, hn::NearestInt(hn::Mul(clamped, hn::Set(d, 255.0F))));
+}
+
+HWY_INLINE hn::Vec<U32> pack(F r, F g, F b) {
+  const auto red_green = hn::Or(quantize_lanes(r), hn::ShiftLeft<8>(quantize_lanes(g)));
+  return hn::Or(red_green, hn::ShiftLeft<16>(quantize_lanes(b)));
+}
+
+void store_opaque(const BlockColors& colors, std::uint64_t covered, Rgba8 background, Rgba8* out,
+                  std::ptrdiff_t stride) noexcept {
+  const U32 d;
+  const auto behind = hn::Set(d, std::bit_cast<std::uint32_t>(background));
+  for (int row = 0; row < kBlockSize; ++row)
+    for (std::size_t part = 0; part < 8; part += kLanes) {
+      const std::size_t i = static_cast<std::size_t>(row) * 8 + part;
+      const F32 df;
+      const auto rgb =
+          pack(hn::Load(df, colors.r + i), hn::Load(df, colors.g + i), hn::Load(df, colors.b + i));
+      const auto pixel = hn::Or(rgb, hn::Set(d, 0xff000000U));
+      hn::StoreU(hn::IfThenElse(lane_mask(covered >> i), pixel, behind), d,
+                 reinterpret_cast<std::uint32_t*>(out + row * stride + static_cast<int>(part)));
+    }
+}
+
+template <bool kLinear>
+void store_over(const BlockColors& colors, std::uint64_t covered, const Backdrop& backdrop,
+                Rgba8* out, std::ptrdiff_t stride) {
+  const F32 d;
+  const U32 du;
+  const F one = hn::Set(d, 1.0F);
+  const auto empty = hn::Set(du, std::bit_cast<std::uint32_t>(backdrop.empty));
+  for (int row = 0; row < kBlockSize; ++row)
+    for (std::size_t part = 0; part < 8; part += kLanes) {
+      const std::size_t i = static_cast<std::size_t>(row) * 8 + part;
+      const F front = hn::Load(d, colors.a + i), through = hn::Sub(one, front);
+      const auto over = [&](F color, float behind) HWY_ATTR {
+        return hn::Add(color, hn::Mul(hn::Set(d, behind), through));
+      };
+      const F a = over(front, backdrop.color.w);
+      const auto divides = hn::And(hn::Gt(a, hn::Zero(d)), hn::Ne(a, one));
+      const F scale = hn::IfThenElse(divides, hn::Div(one, a), one);
+      const auto straight = [&](const float* channel, float behind) HWY_ATTR {
+        const F c = hn::Mul(over(hn::Load(d, channel + i), behind), scale);
+        if constexpr (kLinear) return srgb_lanes(d, c);
+        return c;
+      };
+      const auto rgb =
+          pack(straight(colors.r, backdrop.color.x), straight(colors.g, backdrop.color.y),
+               straight(colors.b, backdrop.color.z));
+      const auto pixel = hn::Or(rgb, hn::ShiftLeft<24>(quantize_lanes(a)));
+      hn::StoreU(hn::IfThenElse(lane_mask(covered >> i), pixel, empty), du,
+                 reinterpret_cast<std::uint32_t*>(out + row * stride + static_cast<int>(part)));
+    }
+}
+
+void store_blended(const BlockColors& colors, std::uint64_t covered, const Backdrop& backdrop,
+                   Rgba8* out, std::ptrdiff_t stride) noexcept {
+  (backdrop.linear ? store_over<true> : store_over<false>)(colors, covered, backdrop, out, stride);
+}
+
+std::uint64_t lowest(const std::uint64_t* keys) noexcept {
+  // Keys stay below 2^63, so they compare as signed numbers do.
+  const I64 d;
+  const auto* in = reinterpret_cast<const std::int64_t*>(keys);
+  auto least = hn::Load(d, in);
+  for (std::size_t i = kLanes64; i < 64; i += kLanes64) least = hn::Min(least, hn::Load(d, in + i));
+  HWY_ALIGN std::int64_t lanes[kLanes64];
+  hn::Store(least, d, lanes);
+  return static_cast<std::uint64_t>(*std::min_element(lanes, lanes + kLanes64));
+}
+
+std::uint64_t covered(const std::uint64_t* keys) noexcept {
+  const hn::RebindToUnsigned<I64> d;
+  std::uint64_t mask = 0;
+  for (std::size_t i = 0; i < 64; i += kLanes64) {
+    std::uint8_t empty = 0;
+    hn::StoreMaskBits(d, hn::Eq(hn::Load(d, keys + i), hn::Zero(d)), &empty);
+    mask |= static_cast<std::uint64_t>(~empty & ((1U << kLanes64) - 1)) << i;
+  }
+  return mask;
+}
+
+void fill(Kernels& table) {
+  table.keys = keys;
+  table.maximum = maximum;
+  table.lowest = lowest;
+  table.covered = covered;
+  table.store_opaque = store_opaque;
+  table.store_blended = store_blended;
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace rastrum::raster
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+
+#if HWY_ONCE
+namespace rastrum::raster {
+
+bool fill_block_kernels(Isa isa, Kernels& table) noexcept {
+  switch (isa) {
+#if HWY_TARGETS & HWY_SSE4
+    case Isa::sse4:
+      return N_SSE4::fill(table), true;
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    case Isa::avx2:
+      return N_AVX2::fill(table), true;
+#endif
+#if HWY_TARGETS & HWY_AVX3
+    case Isa::avx512:
+      return N_AVX3::fill(table), true;
+#endif
+#if HWY_TARGETS & HWY_NEON
+    case Isa::neon:
+      return N_NEON::fill(table), true;
+#endif
+    default:
+      return false;
+  }
+}
+
+}  // namespace rastrum::raster
+#endif

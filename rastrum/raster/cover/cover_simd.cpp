@@ -1,0 +1,595 @@
+// Coverage with Highway, compiled once per instruction set: the exact edge functions of
+// coverage.hpp, so the same masks. Pieces whose box has at most 8 × 8 samples, nearly all of a fine
+// mesh, are covered a piece a lane and then cut along the blocks; the others a block at a time.
+
+// SSSE3 adds nothing over the scalar build that SSE4 does not; AVX3_DL nothing that these kernels
+// use.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "rastrum/raster/cover/cover_simd.cpp"
+#include <hwy/foreach_target.h>  // must precede highway.h
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include <rastrum/raster/cover/depth_bounds.hpp>
+#include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/kernels/kernels_simd.hpp>
+#include <rastrum/raster/kernels/lanes-inl.hpp>
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster {
+namespace HWY_NAMESPACE {
+namespace {  // several sources have an N_AVX2
+
+/// cover_8x8 from the three edges' values at the block's first sample, clamped to int32.
+HWY_INLINE std::uint64_t cover_block(const std::int32_t (&base)[3], const I (&steps)[3][8 / kLanes],
+                                     const std::int32_t (&b)[3]) {
+  const I32 d;
+  std::uint64_t mask = 0;
+  for (std::size_t part = 0; part < 8 / kLanes; ++part) {
+    I e0 = hn::Add(hn::Set(d, base[0]), steps[0][part]);
+    I e1 = hn::Add(hn::Set(d, base[1]), steps[1][part]);
+    I e2 = hn::Add(hn::Set(d, base[2]), steps[2][part]);
+    const I b0 = hn::Set(d, b[0]), b1 = hn::Set(d, b[1]), b2 = hn::Set(d, b[2]);
+    for (std::size_t row = 0; row < 8; ++row) {
+      // A negative value of any edge sets the sign bit: outside.
+      const I any = hn::Or(hn::Or(e0, e1), e2);
+      std::uint8_t outside = 0;
+      hn::StoreMaskBits(d, hn::Lt(any, hn::Zero(d)), &outside);
+      const std::uint64_t inside = static_cast<std::uint64_t>(~outside) & ((1U << kLanes) - 1);
+      mask |= inside << (row * 8 + part * kLanes);
+      e0 = hn::Add(e0, b0);
+      e1 = hn::Add(e1, b1);
+      e2 = hn::Add(e2, b2);
+    }
+  }
+  return mask;
+}
+
+/// Whether every edge value at the samples of blocks that the piece's box touches fits int32: with
+/// differences up to 2^14 (64 px) and samples up to 8 px outside, |E| < 2 · 2^14 · (2^14 + 2^11) <
+/// 2^30.
+HWY_INLINE bool is_small(const Piece& p) {
+  constexpr int kMost = 1 << 14;
+  return max3(p.x[0], p.x[1], p.x[2]) - min3(p.x[0], p.x[1], p.x[2]) < kMost &&
+         max3(p.y[0], p.y[1], p.y[2]) - min3(p.y[0], p.y[1], p.y[2]) < kMost;
+}
+
+/// The blocks of a small piece: its three edges are set up in the lanes of one vector.
+template <class Hidden, class Add>
+HWY_INLINE void small_cover(const Piece& p, int bx0, int by0, int bx1, int by1,
+                            const Hidden& is_hidden, const Add& add) {
+  const I32 d;
+  const int px = bx0 * (kBlockSize * kSubpixels) + kHalfPixel;
+  const int py = by0 * (kBlockSize * kSubpixels) + kHalfPixel;
+  std::int32_t row_base[3], a[3], b[3];
+  I steps[3][8 / kLanes];
+  for (int i = 0; i < 3; ++i) {
+    const int j = i == 2 ? 0 : i + 1;
+    a[i] = p.y[i] - p.y[j];
+    b[i] = p.x[j] - p.x[i];
+    const std::int32_t not_top_left = (a[i] > 0 || (a[i] == 0 && b[i] > 0)) ? 0 : 1;
+    row_base[i] = (a[i] * (px - p.x[i]) + b[i] * (py - p.y[i]) - not_top_left) >> kSubpixelBits;
+    for (std::size_t part = 0; part < 8 / kLanes; ++part)
+      steps[i][part] =
+          hn::Mul(hn::Set(d, a[i]), hn::Iota(d, static_cast<std::int32_t>(part * kLanes)));
+  }
+  for (int by = by0; by <= by1; ++by) {
+    std::int32_t base[3] = {row_base[0], row_base[1], row_base[2]};
+    for (int bx = bx0; bx <= bx1; ++bx) {
+      if (!is_hidden(bx, by)) add(bx, by, cover_block(base, steps, b));
+      for (int i = 0; i < 3; ++i) base[i] += a[i] * kBlockSize;
+    }
+    for (int i = 0; i < 3; ++i) row_base[i] += b[i] * kBlockSize;
+  }
+}
+
+/// Points and lines, the scalar way; apart, so that triangles do not pay for their code.
+HWY_NOINLINE std::size_t cover_other(const Piece& piece, std::uint32_t index, Rect bin,
+                                     HiddenTest& hidden, Block* out) {
+  const Rect box = piece_bounds(piece, bin);
+  if (box.empty() || hidden.hides_piece(piece, box)) return 0;
+  std::size_t n = 0;
+  cover_blocks(
+      piece, box, bin, [&](int bx, int by) { return hidden.hides_block(piece, bx, by); },
+      [&](int bx, int by, std::uint64_t mask) {
+        out[n++] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
+      });
+  return n;
+}
+
+/// A triangle whose box has more than 8 × 8 samples. Returns how many blocks it writes.
+HWY_NOINLINE std::size_t cover_large(const Piece& piece, std::uint32_t index, Rect bin,
+                                     HiddenTest& hidden, Block* out) {
+  constexpr std::int64_t kClamp = std::int64_t{1} << 30;
+  const I32 d;
+  const bool cut = bin.x1 % kBlockSize != 0 || bin.y1 % kBlockSize != 0;
+  const Rect box = sample_bounds(piece.x, piece.y, bin);
+  if (box.empty() || hidden.hides_piece(piece, box)) return 0;
+  const int bx0 = box.x0 / kBlockSize, by0 = box.y0 / kBlockSize;
+  const int bx1 = (box.x1 - 1) / kBlockSize, by1 = (box.y1 - 1) / kBlockSize;
+  std::size_t n = 0;
+  const auto add = [&](int bx, int by, std::uint64_t mask) HWY_ATTR {
+    if (cut) mask &= samples_inside(bin, bx, by);
+    out[n] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
+    n += mask != 0;
+  };
+  if (is_small(piece)) {
+    small_cover(
+        piece, bx0, by0, bx1, by1,
+        [&](int bx, int by) HWY_ATTR { return hidden.hides_block(piece, bx, by); }, add);
+    return n;
+  }
+  std::int32_t b[3];
+  std::int64_t row_base[3], block_dx[3], block_dy[3], reach[3];
+  I steps[3][8 / kLanes];
+  for (int i = 0; i < 3; ++i) {
+    const Edge e = edge_function(piece, i);
+    b[i] = e.b;
+    row_base[i] =
+        e.base + std::int64_t{e.a} * (bx0 * kBlockSize) + std::int64_t{e.b} * (by0 * kBlockSize);
+    block_dx[i] = std::int64_t{e.a} * kBlockSize;
+    block_dy[i] = std::int64_t{e.b} * kBlockSize;
+    // The largest value in a block, relative to its first sample: below 0 there, no sample is in.
+    reach[i] = 7 * (std::int64_t{std::max(e.a, 0)} + std::max(e.b, 0));
+    for (std::size_t part = 0; part < 8 / kLanes; ++part)
+      steps[i][part] =
+          hn::Mul(hn::Set(d, e.a), hn::Iota(d, static_cast<std::int32_t>(part * kLanes)));
+  }
+  for (int by = by0; by <= by1; ++by) {
+    std::int64_t base[3] = {row_base[0], row_base[1], row_base[2]};
+    for (int bx = bx0; bx <= bx1; ++bx) {
+      if (base[0] + reach[0] >= 0 && base[1] + reach[1] >= 0 && base[2] + reach[2] >= 0 &&
+          !hidden.hides_block(piece, bx, by)) {
+        const std::int32_t clamped[3] = {
+            static_cast<std::int32_t>(std::clamp(base[0], -kClamp, kClamp)),
+            static_cast<std::int32_t>(std::clamp(base[1], -kClamp, kClamp)),
+            static_cast<std::int32_t>(std::clamp(base[2], -kClamp, kClamp))};
+        add(bx, by, cover_block(clamped, steps, b));
+      }
+      for (int i = 0; i < 3; ++i) base[i] += block_dx[i];
+    }
+    for (int i = 0; i < 3; ++i) row_base[i] += block_dy[i];
+  }
+  return n;
+}
+
+/// Numbers [4 part, 4 part + 4) of kLanes pieces as four vectors.
+HWY_INLINE void load_numbers(const Piece* const (&pieces)[kLanes], int part, I (&out)[4]) {
+  const I128 d;
+  const hn::Repartition<std::int64_t, I128> d64;
+  const auto load = [&](std::size_t lane) HWY_ATTR {
+    return hn::Load(d, reinterpret_cast<const std::int32_t*>(pieces[lane]) + part * 4);
+  };
+  const auto transpose = [&](std::size_t lane, hn::Vec<I128>(&to)[4]) HWY_ATTR {
+    const auto v0 = load(lane), v1 = load(lane + 1), v2 = load(lane + 2), v3 = load(lane + 3);
+    const auto low01 = hn::BitCast(d64, hn::InterleaveLower(d, v0, v1));
+    const auto low23 = hn::BitCast(d64, hn::InterleaveLower(d, v2, v3));
+    const auto high01 = hn::BitCast(d64, hn::InterleaveUpper(d, v0, v1));
+    const auto high23 = hn::BitCast(d64, hn::InterleaveUpper(d, v2, v3));
+    to[0] = hn::BitCast(d, hn::InterleaveLower(d64, low01, low23));
+    to[1] = hn::BitCast(d, hn::InterleaveUpper(d64, low01, low23));
+    to[2] = hn::BitCast(d, hn::InterleaveLower(d64, high01, high23));
+    to[3] = hn::BitCast(d, hn::InterleaveUpper(d64, high01, high23));
+  };
+#if HWY_MAX_BYTES >= 32
+  hn::Vec<I128> low[4], high[4];
+  transpose(0, low);
+  transpose(4, high);
+  for (int i = 0; i < 4; ++i) out[i] = hn::Combine(I32{}, high[i], low[i]);
+#else
+  transpose(0, out);
+#endif
+}
+
+/// Vertices of kLanes triangles, the first and last samples of their boxes, and their depths.
+struct Triangles {
+  I x[3], y[3];
+  I x0, y0, x1, y1;
+  F z0, zx;
+};
+
+HWY_INLINE Triangles load_triangles(const Piece* const (&pieces)[kLanes]) {
+  const I32 d;
+  I first[4], second[4];
+  load_numbers(pieces, 0, first);
+  load_numbers(pieces, 1, second);
+  Triangles t{{first[0], first[1], first[2]}, {first[3], second[0], second[1]}, {}, {}, {}, {},
+              hn::BitCast(F32{}, second[2]),  hn::BitCast(F32{}, second[3])};
+  const I before = hn::Set(d, kHalfPixel - 1), half = hn::Set(d, kHalfPixel);
+  const auto least = [](const I(&v)[3]) HWY_ATTR { return hn::Min(v[0], hn::Min(v[1], v[2])); };
+  const auto most = [](const I(&v)[3]) HWY_ATTR { return hn::Max(v[0], hn::Max(v[1], v[2])); };
+  t.x0 = hn::ShiftRight<kSubpixelBits>(hn::Add(least(t.x), before));
+  t.y0 = hn::ShiftRight<kSubpixelBits>(hn::Add(least(t.y), before));
+  t.x1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(most(t.x), half));
+  t.y1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(most(t.y), half));
+  return t;
+}
+
+void bins(const Piece* pieces, std::size_t n, const BinNumbers& numbers,
+          std::uint32_t* out) noexcept {
+  const I32 d;
+  const Rect view = numbers.view;
+  const int columns = (view.x1 - view.x0 + kBinSize - 1) / kBinSize;
+  const auto bin_of = [&](I sample, int first) HWY_ATTR {
+    static_assert(kBinSize == 1 << 6);
+    return hn::ShiftRight<6>(hn::Sub(sample, hn::Set(d, first)));
+  };
+  for (std::size_t i = 0; i < n; i += kLanes) {
+    const Piece* lanes[kLanes];
+    const std::size_t count = std::min(kLanes, n - i);
+    for (std::size_t k = 0; k < kLanes; ++k) lanes[k] = pieces + i + (k < count ? k : 0);
+    const Triangles t = load_triangles(lanes);
+    const I x0 = hn::Max(t.x0, hn::Set(d, view.x0)), x1 = hn::Min(t.x1, hn::Set(d, view.x1 - 1));
+    const I y0 = hn::Max(t.y0, hn::Set(d, view.y0)), y1 = hn::Min(t.y1, hn::Set(d, view.y1 - 1));
+    const I column = bin_of(x0, view.x0), row = bin_of(y0, view.y0);
+    const auto one = hn::And(hn::Eq(column, bin_of(x1, view.x0)), hn::Eq(row, bin_of(y1, view.y0)));
+    const auto empty = hn::Or(hn::Gt(x0, x1), hn::Gt(y0, y1));
+    const I bin = hn::Add(hn::Mul(row, hn::Set(d, columns)), column);
+    HWY_ALIGN std::int32_t found[kLanes];
+    hn::Store(hn::IfThenElse(hn::AndNot(empty, one), bin, hn::Set(d, -1)), d, found);
+    for (std::size_t k = 0; k < count; ++k)
+      out[i + k] = is_triangle(*lanes[k]) && found[k] >= 0
+                       ? numbers.of(*lanes[k], static_cast<std::uint32_t>(found[k]))
+                       : kManyBins;
+  }
+}
+
+/// The pieces of kLanes lanes and their masks.
+struct SmallPieces {
+  HWY_ALIGN std::int32_t x0[kLanes], y0[kLanes];        ///< the first sample of the box
+  HWY_ALIGN std::uint32_t top[kLanes], bottom[kLanes];  ///< rows [0, half) and [half, 2 half)
+  int half = 0;
+  std::uint32_t lanes = 0;  ///< those whose box has at most 8 × 8 samples; others are not set
+
+  /// Bit 8 · row + column, counted from the first sample.
+  [[nodiscard]] std::uint64_t mask(std::size_t lane) const {
+    return top[lane] | std::uint64_t{bottom[lane]} << (kBlockSize * half);
+  }
+};
+
+using U16 = hn::Repartition<std::uint16_t, I32>;
+using I16 = hn::Repartition<std::int16_t, I32>;
+
+/// v in both halves of each lane, as 16 bits.
+HWY_INLINE I twice(I low, I high) {
+  return hn::Or(hn::And(low, hn::Set(I32{}, 0xFFFF)), hn::ShiftLeft<16>(high));
+}
+
+/// Rows [0, half) into `top` and [half, 2 half) into `bottom`, both at once in 16 bits, from the
+/// edges' values at the first sample.
+template <int kColumns>
+HWY_INLINE void cover_rows(const I (&base)[3], const I (&a)[3], const I (&b)[3], int half, I& top,
+                           I& bottom) {
+  const I32 d;
+  const I16 d16;
+  const U16 du16;
+  hn::Vec<I16> value[3], dx[3], dy[3];
+  for (int i = 0; i < 3; ++i) {
+    // Backwards, so that shifting the collected bits left leaves the first column in bit 0.
+    const I last = hn::Add(base[i], hn::Mul(a[i], hn::Set(d, kColumns - 1)));
+    value[i] = hn::BitCast(d16, twice(last, hn::Add(last, hn::Mul(b[i], hn::Set(d, half)))));
+    dx[i] = hn::BitCast(d16, twice(a[i], a[i]));
+    dy[i] = hn::BitCast(d16, twice(b[i], b[i]));
+  }
+  top = bottom = hn::Zero(d);
+  for (int row = 0; row < half; ++row) {
+    auto e0 = value[0], e1 = value[1], e2 = value[2];
+    auto outside = hn::Zero(du16);
+    for (int column = 0; column < kColumns; ++column) {
+      // A negative value of any edge sets the sign bit: outside.
+      const auto any = hn::BitCast(du16, hn::Or(hn::Or(e0, e1), e2));
+      outside = hn::Add(hn::Add(outside, outside), hn::ShiftRight<15>(any));
+      e0 = hn::Sub(e0, dx[0]);
+      e1 = hn::Sub(e1, dx[1]);
+      e2 = hn::Sub(e2, dx[2]);
+    }
+    for (int i = 0; i < 3; ++i) value[i] = hn::Add(value[i], dy[i]);
+    const I inside = hn::BitCast(d, hn::AndNot(outside, hn::Set(du16, (1U << kColumns) - 1)));
+    top = hn::Or(top, hn::ShiftLeftSame(hn::And(inside, hn::Set(d, 0xFF)), row * kBlockSize));
+    bottom = hn::Or(bottom, hn::ShiftLeftSame(hn::ShiftRight<16>(inside), row * kBlockSize));
+  }
+}
+
+/// Covers kLanes pieces, whatever they are. Where the box has at most 8 × 8 samples, vertices and
+/// the 8 × 8 samples from its first one on lie in a square of less than 9 px, s = 2304 / 256 px. An
+/// edge's function at such a sample is twice the area of a triangle in that square, |E| ≤ s², so
+/// its products fit int32, and ⌊(E − 1) / 256⌋ ≥ −20,737 and its steps fit int16; sums on the way
+/// there may wrap, which is undone when they arrive.
+HWY_INLINE void cover_small(const Triangles& t, SmallPieces& out) {
+  const I32 d;
+  const I zero = hn::Zero(d);
+  const auto &x = t.x, &y = t.y;
+  const I x0 = t.x0, y0 = t.y0, x1 = t.x1, y1 = t.y1;
+  const I last_column = hn::Sub(x1, x0), last_row = hn::Sub(y1, y0);
+  const I half_pixel = hn::Set(d, kHalfPixel);
+  const I size = hn::Set(d, kBlockSize);
+  const auto small = hn::And(hn::Lt(last_column, size), hn::Lt(last_row, size));
+  out.lanes = lane_bits(small);
+  if (out.lanes == 0) return;
+
+  const I px = hn::Add(hn::ShiftLeft<kSubpixelBits>(x0), half_pixel);
+  const I py = hn::Add(hn::ShiftLeft<kSubpixelBits>(y0), half_pixel);
+  I base[3], a[3], b[3];
+  for (int i = 0; i < 3; ++i) {
+    const int j = i == 2 ? 0 : i + 1;
+    a[i] = hn::Sub(y[i], y[j]);
+    b[i] = hn::Sub(x[j], x[i]);
+    const auto top_left =
+        hn::Or(hn::Gt(a[i], zero), hn::And(hn::Eq(a[i], zero), hn::Gt(b[i], zero)));
+    const I at = hn::Add(hn::Mul(a[i], hn::Sub(px, x[i])), hn::Mul(b[i], hn::Sub(py, y[i])));
+    base[i] =
+        hn::ShiftRight<kSubpixelBits>(hn::Sub(at, hn::IfThenZeroElse(top_left, hn::Set(d, 1))));
+  }
+  // As many rows and columns as the largest box has.
+  const auto any_beyond = [&](I last, int n) HWY_ATTR {
+    return (lane_bits(hn::Gt(last, hn::Set(d, n - 1))) & out.lanes) != 0;
+  };
+  out.half = any_beyond(last_row, 4) ? 3 + any_beyond(last_row, 6) : 1 + any_beyond(last_row, 2);
+  I top, bottom;
+  if (!any_beyond(last_column, 4))
+    cover_rows<4>(base, a, b, out.half, top, bottom);
+  else if (!any_beyond(last_column, 6))
+    cover_rows<6>(base, a, b, out.half, top, bottom);
+  else
+    cover_rows<8>(base, a, b, out.half, top, bottom);
+  hn::Store(x0, d, out.x0);
+  hn::Store(y0, d, out.y0);
+  hn::Store(hn::BitCast(U32{}, top), U32{}, out.top);
+  hn::Store(hn::BitCast(U32{}, bottom), U32{}, out.bottom);
+}
+
+/// columns(k): all rows, the first 8 − k columns.
+constexpr std::uint64_t columns(int k) {
+  return (std::uint64_t{0xFF} >> k) * 0x0101010101010101U;
+}
+
+/// Cuts the mask of a small piece, counted from sample (x0, y0), along the blocks of `bin`, up to
+/// four. A bin that is drawn in parts has pieces that touch others of them alone. Out of line: it
+/// needs all registers.
+HWY_NOINLINE std::size_t split_small(std::uint64_t mask, int x0, int y0, std::uint32_t index,
+                                     const Rect& bin, Block* out) {
+  static_assert(std::endian::native == std::endian::little);
+  const int bx = x0 >> 3, by = y0 >> 3, sx = x0 & 7, sy = y0 & 7;
+  const std::uint64_t keep = columns(sx);
+  // keep << sx are the columns of this block, so the others of the next one are its complement.
+  std::uint64_t left = (mask & keep) << sx;
+  std::uint64_t right = mask >> (8 - sx) & ~(keep << sx);
+  // Also where no sample of the box lies in `bin`, which may be a part of the one in the list.
+  const auto is_between = [](int v, int begin, int end) {
+    return static_cast<unsigned>(v - begin) < static_cast<unsigned>(end - begin);
+  };
+  left = is_between(bx * kBlockSize, bin.x0, bin.x1) ? left : 0;
+  right = is_between((bx + 1) * kBlockSize, bin.x0, bin.x1) ? right : 0;
+  const std::uint64_t rows = ~std::uint64_t{0} << (8 * sy);
+  const std::uint64_t top = is_between(by * kBlockSize, bin.y0, bin.y1) ? rows : 0;
+  const std::uint64_t bottom = is_between((by + 1) * kBlockSize, bin.y0, bin.y1) ? ~rows : 0;
+  // A Block's first half; sums, so that a negative bx takes from by what bx + 1 gives back.
+  constexpr std::uint64_t kOneX = std::uint64_t{1} << 32, kOneY = std::uint64_t{1} << 48;
+  const std::uint64_t at =
+      index + static_cast<std::uint64_t>(bx) * kOneX + static_cast<std::uint64_t>(by) * kOneY;
+  std::size_t n = 0;
+  const auto add = [&](std::uint64_t place, std::uint64_t part) {
+    const std::uint64_t both[2] = {place, part};
+    std::memcpy(out + n, both, sizeof(Block));
+    n += part != 0;
+  };
+  left = std::rotl(left, 8 * sy);
+  right = std::rotl(right, 8 * sy);
+  add(at, left & top);
+  add(at + kOneX, right & top);
+  add(at + kOneY, left & bottom);
+  add(at + kOneX + kOneY, right & bottom);
+  return n;
+}
+
+/// Whether anything is known of the bin's depths.
+HWY_INLINE bool knows_depths(const DepthBounds& bounds) {
+  const F32 d;
+  F most = hn::Zero(d);
+  for (std::size_t i = 0; i < kBlocksPerBin; i += kLanes)
+    most = hn::Max(most, hn::LoadU(d, bounds.block + i));
+  return !hn::AllTrue(d, hn::Eq(most, hn::Zero(d)));
+}
+
+/// Leaves the samples in `bin`; returns how many blocks still have some.
+HWY_NOINLINE std::size_t cut_blocks(Rect bin, Block* blocks, std::size_t n) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    Block block = blocks[i];
+    block.mask &= samples_inside(bin, block.bx, block.by);
+    blocks[kept] = block;
+    kept += block.mask != 0;
+  }
+  return kept;
+}
+
+/// The lowest bound in each square of 2 × 2 blocks of a bin, from its first block on.
+struct SquareBounds {
+  static constexpr std::size_t kPitch = 2 * kBlocksPerBinRow;
+  HWY_ALIGN float lowest[kBlocksPerBinRow * kPitch];
+
+  HWY_INLINE void find(const DepthBounds& bounds) {
+    const F32 d;
+    for (std::size_t row = 0; row < kBlocksPerBinRow; ++row) {
+      float* const out = lowest + row * kPitch;
+      const float* const upper = bounds.block + row * kBlocksPerBinRow;
+      const float* const lower = row + 1 < kBlocksPerBinRow ? upper + kBlocksPerBinRow : upper;
+      for (std::size_t i = 0; i < kBlocksPerBinRow; i += kLanes)
+        hn::Store(hn::Min(hn::LoadU(d, upper + i), hn::LoadU(d, lower + i)), d, out + i);
+      out[kBlocksPerBinRow] = out[kBlocksPerBinRow - 1];
+      for (std::size_t i = 0; i < kBlocksPerBinRow; i += kLanes)
+        hn::Store(hn::Min(hn::Load(d, out + i), hn::LoadU(d, out + i + 1)), d, out + i);
+    }
+  }
+};
+
+/// Lanes of triangles that no sample of `bin` can show: HiddenTest::hides_piece in lanes, by the
+/// bounds of the blocks that the box touches, if they are 4 × 4 at most.
+HWY_INLINE std::uint32_t hidden_lanes(const Piece* const (&pieces)[kLanes], const Triangles& t,
+                                      Rect bin, const SquareBounds& bounds) {
+  constexpr float kPxPerSubpixel = 1.0F / kSubpixels;
+  const F32 d;
+  const I32 di;
+  I third[4];
+  load_numbers(pieces, 2, third);
+  const F zy = hn::BitCast(d, third[0]);
+  const auto inside = [&](I v, int begin, int end) HWY_ATTR {
+    return hn::Min(hn::Max(v, hn::Set(di, begin)), hn::Set(di, end - 1));
+  };
+  const I x0 = inside(t.x0, bin.x0, bin.x1), x1 = inside(t.x1, bin.x0, bin.x1);
+  const I y0 = inside(t.y0, bin.y0, bin.y1), y1 = inside(t.y1, bin.y0, bin.y1);
+  // highest_depth, not clamped.
+  const auto farther = [&](F slope, I first, I last, I origin) HWY_ATTR {
+    const auto rises = hn::RebindMask(di, hn::Gt(slope, hn::Zero(d)));
+    const F px = hn::Add(hn::ConvertTo(d, hn::IfThenElse(rises, last, first)), hn::Set(d, 0.5F));
+    return hn::Mul(slope,
+                   hn::Sub(px, hn::Mul(hn::ConvertTo(d, origin), hn::Set(d, kPxPerSubpixel))));
+  };
+  const F depth =
+      hn::Add(hn::Add(t.z0, farther(t.zx, x0, x1, t.x[0])), farther(zy, y0, y1, t.y[0]));
+
+  const I column = hn::ShiftRight<3>(hn::Sub(x0, hn::Set(di, bin.x0)));
+  const I last_column = hn::ShiftRight<3>(hn::Sub(x1, hn::Set(di, bin.x0)));
+  const I row = hn::ShiftRight<3>(hn::Sub(y0, hn::Set(di, bin.y0)));
+  const I last_row = hn::ShiftRight<3>(hn::Sub(y1, hn::Set(di, bin.y0)));
+  const I one = hn::Set(di, 1), four = hn::Set(di, 4);
+  const I right = hn::Max(hn::Sub(last_column, one), column);
+  const I down = hn::Max(hn::Sub(last_row, one), row);
+  const auto lowest = [&](I r, I c) HWY_ATTR {
+    static_assert(SquareBounds::kPitch == 16);
+    return hn::GatherIndex(d, bounds.lowest, hn::Add(hn::ShiftLeft<4>(r), c));
+  };
+  const F bound = hn::Min(hn::Min(lowest(row, column), lowest(row, right)),
+                          hn::Min(lowest(down, column), lowest(down, right)));
+  const auto few =
+      hn::And(hn::Lt(hn::Sub(last_column, column), four), hn::Lt(hn::Sub(last_row, row), four));
+  const auto triangle = hn::Eq(
+      hn::And(third[1], hn::Set(di, static_cast<std::int32_t>(kLine | kPoint))), hn::Zero(di));
+  const auto is_finite = [&](F v) HWY_ATTR { return hn::Eq(hn::Sub(v, v), hn::Zero(d)); };
+  const auto below = hn::And(hn::Gt(bound, hn::Zero(d)), hn::Lt(depth, bound));
+  return lane_bits(hn::And(few, triangle)) &
+         lane_bits(hn::RebindMask(di, hn::And(below, hn::And(is_finite(t.zx), is_finite(zy)))));
+}
+
+std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
+                  std::size_t capacity, DepthBounds* bounds) noexcept {
+  const bool cut = bin.x1 % kBlockSize != 0 || bin.y1 % kBlockSize != 0;
+  const bool hides = bounds != nullptr && knows_depths(*bounds);
+  SquareBounds squares;
+  if (hides) squares.find(*bounds);
+  HiddenTest hidden(bounds, bin);
+  SmallPieces small;
+  std::size_t n = 0;
+  while (cursor < in.count) {
+    const Piece* pieces[kLanes];
+    const std::size_t count = std::min(kLanes, in.count - cursor);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      pieces[i] = in.pieces + in.list[cursor + (i < count ? i : 0)].piece;
+      if (cursor + kLanes + i < in.count)
+        __builtin_prefetch(in.pieces + in.list[cursor + kLanes + i].piece);
+    }
+    const Triangles t = load_triangles(pieces);
+    std::uint32_t dropped = 0;
+    if (hides) {
+      dropped = hidden_lanes(pieces, t, bin, squares) & ((1U << count) - 1);
+      if (dropped == (1U << count) - 1) {
+        bounds->hidden_pieces += count;
+        cursor += count;
+        continue;
+      }
+    }
+    cover_small(t, small);
+    for (std::size_t i = 0; i < count; ++i, ++cursor) {
+      if (n + kBlocksPerBin > capacity) return n;
+      if ((dropped >> i & 1) != 0) {
+        ++bounds->hidden_pieces;
+        continue;
+      }
+      const Piece& piece = *pieces[i];
+      const std::uint32_t index = in.list[cursor].piece;
+      if (!is_triangle(piece)) {
+        n += cover_other(piece, index, bin, hidden, out + n);
+      } else if ((small.lanes >> i & 1) == 0) {
+        n += cover_large(piece, index, bin, hidden, out + n);
+      } else {
+        const std::size_t written =
+            split_small(small.mask(i), small.x0[i], small.y0[i], index, bin, out + n);
+        n += cut ? cut_blocks(bin, out + n, written) : written;
+      }
+    }
+  }
+  return n;
+}
+
+void masks(const Piece* pieces, Block* blocks, std::size_t n) noexcept {
+  constexpr std::int64_t kClamp = std::int64_t{1} << 30;
+  const I32 d;
+  for (std::size_t k = 0; k < n; ++k) {
+    Block& block = blocks[k];
+    if (block.mask != 0) continue;
+    if (!is_triangle(pieces[block.piece])) {
+      block.mask = cover_8x8(pieces[block.piece], block.bx, block.by);
+      continue;
+    }
+    std::int32_t base[3], b[3];
+    I steps[3][8 / kLanes];
+    for (int i = 0; i < 3; ++i) {
+      const Edge e = edge_function(pieces[block.piece], i);
+      b[i] = e.b;
+      base[i] = static_cast<std::int32_t>(
+          std::clamp(e.base + std::int64_t{e.a} * (block.bx * kBlockSize) +
+                         std::int64_t{e.b} * (block.by * kBlockSize),
+                     -kClamp, kClamp));
+      for (std::size_t part = 0; part < 8 / kLanes; ++part)
+        steps[i][part] =
+            hn::Mul(hn::Set(d, e.a), hn::Iota(d, static_cast<std::int32_t>(part * kLanes)));
+    }
+    block.mask = cover_block(base, steps, b);
+  }
+}
+
+void fill(Kernels& table) {
+  table.bins = bins;
+  table.cover = cover;
+  table.masks = masks;
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace rastrum::raster
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+
+#if HWY_ONCE
+namespace rastrum::raster {
+
+bool fill_cover_kernels(Isa isa, Kernels& table) noexcept {
+  switch (isa) {
+#if HWY_TARGETS & HWY_SSE4
+    case Isa::sse4:
+      return N_SSE4::fill(table), true;
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    case Isa::avx2:
+      return N_AVX2::fill(table), true;
+#endif
+#if HWY_TARGETS & HWY_AVX3
+    case Isa::avx512:
+      return N_AVX3::fill(table), true;
+#endif
+#if HWY_TARGETS & HWY_NEON
+    case Isa::neon:
+      return N_NEON::fill(table), true;
+#endif
+    default:
+      return false;
+  }
+}
+
+}  // namespace rastrum::raster
+#endif

@@ -1,0 +1,57 @@
+// Where the samples of a pixel lie: Direct3D 11's standard patterns (D3D11 functional
+// specification, section 19.2.4.1).
+//
+// A sample that lies (dx, dy) from its pixel's centre is covered by a triangle, and sees the depth,
+// that the centre is covered by and sees once the triangle is moved by (−dx, −dy): edge functions
+// are integers, and the depth formula reads only the difference of the two. So a picture of S
+// samples a pixel is drawn as S pictures of moved pieces, and nothing but setup knows it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <rastrum/core/config.hpp>
+#include <rastrum/raster/setup/piece.hpp>
+
+namespace rastrum::raster {
+
+inline constexpr int kMaxSamples = 16;
+
+/// From the pixel's centre, n.8, y down.
+struct SampleOffset {
+  std::int32_t x = 0, y = 0;
+};
+
+/// 1, 4, 8 or 16 samples; empty for any other number.
+[[nodiscard]] std::span<const SampleOffset> sample_offsets(int samples) noexcept;
+
+/// Which sample a piece is for: in its flags.
+inline constexpr int kSampleShift = 8;
+RASTRUM_HD constexpr int sample_of(const Piece& p) {
+  return static_cast<int>(p.flags >> kSampleShift & (kMaxSamples - 1));
+}
+
+/// The vertex as it is seen from the samples that lie at `by`.
+RASTRUM_HD inline ProjectedVertex moved(ProjectedVertex v, SampleOffset by) {
+  v.x_fx8 -= by.x;
+  v.y_fx8 -= by.y;
+  return v;
+}
+/// The piece as it is at the samples that lie at `by` (points and lines are the same everywhere).
+RASTRUM_HD inline Piece moved(Piece p, SampleOffset by) {
+  if (!is_triangle(p)) return p;
+  for (int c = 0; c < 3; ++c) {
+    p.x[c] -= by.x;
+    p.y[c] -= by.y;
+  }
+  return p;
+}
+
+/// Where 64 fragments of a block are shaded, px from the centre of the pixel 8 · row + column that
+/// their element stands for: elsewhere in it, in [−0.5, 0.5), or in another pixel of the block,
+/// where fragments are packed without regard to their pixels. Multiples of 1/16.
+struct alignas(64) ShadingPoints {
+  float dx[64], dy[64];
+};
+
+}  // namespace rastrum::raster

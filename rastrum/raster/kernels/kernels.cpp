@@ -1,0 +1,152 @@
+#include <rastrum/raster/kernels/kernels.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include <rastrum/raster/cover/depth_bounds.hpp>
+#include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/kernels/kernels_simd.hpp>
+#include <rastrum/raster/setup/make_piece.hpp>
+
+namespace rastrum::raster {
+namespace {
+
+void project_scalar(const Vec3* positions, std::size_t n, const Mat4& m, Viewport viewport,
+                    ProjectedVertex* out) noexcept {
+  for (std::size_t i = 0; i < n; ++i) out[i] = project(transform_point(m, positions[i]), viewport);
+}
+
+SetupOutput setup_scalar(const SetupInput& in, Piece* pieces, BinFragment*,
+                         std::uint32_t* slow) noexcept {
+  SetupOutput out;
+  for (std::uint32_t i = 0; i < in.count; ++i) {
+    const std::uint64_t t = in.first + i;
+    ProjectedVertex v[3];
+    bool needs_clip = false;
+    for (std::uint64_t c = 0; c < 3; ++c) {
+      const std::uint64_t index = in.indices != nullptr ? in.indices[t * 3 + c] : t * 3 + c;
+      if (index >= in.vertex_count) {
+        out.index_in_range = false;
+        return out;
+      }
+      v[c] = in.vertices[index];
+      needs_clip |= v[c].x_fx8 == kNeedsClip;
+    }
+    if (needs_clip) {
+      slow[out.slow++] = i;
+    } else if (make_piece(v[0], v[1], v[2], in.first_id + t, in.flags, in.cull, in.view,
+                          pieces[out.pieces]) == SetupResult::drawn) {
+      ++out.pieces;
+    }
+  }
+  return out;
+}
+
+void bins_scalar(const Piece*, std::size_t n, const BinNumbers&, std::uint32_t* bins) noexcept {
+  std::fill_n(bins, n, kManyBins);
+}
+
+std::size_t cover_scalar(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
+                         std::size_t capacity, DepthBounds* bounds) noexcept {
+  HiddenTest hidden(bounds, bin);
+  std::size_t n = 0;
+  for (; cursor < in.count && n + kBlocksPerBin <= capacity; ++cursor) {
+    const std::uint32_t index = in.list[cursor].piece;
+    const Piece& piece = in.pieces[index];
+    const Rect box = piece_bounds(piece, bin);
+    if (box.empty() || hidden.hides_piece(piece, box)) continue;
+    cover_blocks(
+        piece, box, bin, [&](int bx, int by) { return hidden.hides_block(piece, bx, by); },
+        [&](int bx, int by, std::uint64_t mask) {
+          out[n++] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
+        });
+  }
+  return n;
+}
+
+void masks_scalar(const Piece* pieces, Block* blocks, std::size_t n) noexcept {
+  for (std::size_t i = 0; i < n; ++i)
+    if (blocks[i].mask == 0)
+      blocks[i].mask = cover_8x8(pieces[blocks[i].piece], blocks[i].bx, blocks[i].by);
+}
+
+void keys_scalar(const Piece& piece, const Block& block, std::uint64_t* keys) noexcept {
+  for (int i = 0; i < 64; ++i)
+    keys[i] = make_key(depth_at(piece, block.bx * kBlockSize + i % kBlockSize,
+                                block.by * kBlockSize + i / kBlockSize),
+                       piece.low);
+}
+
+void maximum_scalar(const Piece* pieces, const Block* blocks, std::size_t n,
+                    const SurfaceView& surface) noexcept {
+  for (std::size_t i = 0; i < n; ++i) {
+    const Block& b = blocks[i];
+    const Piece& piece = pieces[b.piece];
+    std::uint64_t* block = surface.block(b.bx, b.by);
+    for (std::uint64_t m = b.mask; m != 0; m &= m - 1) {
+      const int bit = std::countr_zero(m);
+      const int x = b.bx * kBlockSize + bit % kBlockSize;
+      const int y = b.by * kBlockSize + bit / kBlockSize;
+      const std::uint64_t key = make_key(depth_at(piece, x, y), piece.low);
+      block[bit] = key > block[bit] ? key : block[bit];
+    }
+  }
+}
+
+std::uint64_t lowest_scalar(const std::uint64_t* keys) noexcept {
+  return *std::min_element(keys, keys + 64);
+}
+
+std::uint64_t covered_scalar(const std::uint64_t* keys) noexcept {
+  std::uint64_t mask = 0;
+  for (int i = 0; i < 64; ++i) mask |= std::uint64_t{keys[i] != 0} << i;
+  return mask;
+}
+
+void store_opaque_scalar(const BlockColors& colors, std::uint64_t covered, Rgba8 background,
+                         Rgba8* out, std::ptrdiff_t stride) noexcept {
+  for (int i = 0; i < 64; ++i)
+    out[i / kBlockSize * stride + i % kBlockSize] =
+        (covered >> i & 1) == 0
+            ? background
+            : Rgba8{quantize(colors.r[i]), quantize(colors.g[i]), quantize(colors.b[i]), 255};
+}
+
+void store_blended_scalar(const BlockColors& colors, std::uint64_t covered,
+                          const Backdrop& backdrop, Rgba8* out, std::ptrdiff_t stride) noexcept {
+  for (int i = 0; i < 64; ++i) {
+    Rgba8& pixel = out[i / kBlockSize * stride + i % kBlockSize];
+    const Vec4 c = backdrop.over({colors.r[i], colors.g[i], colors.b[i], colors.a[i]});
+    if ((covered >> i & 1) == 0)
+      pixel = backdrop.empty;
+    else
+      pixel = backdrop.linear ? linear_to_straight_rgba8(c) : to_straight_rgba8(c);
+  }
+}
+
+constexpr std::size_t kIsaCount = static_cast<std::size_t>(Isa::neon) + 1;
+
+constexpr Kernels kScalar{project_scalar,      setup_scalar,         cover_scalar,  masks_scalar,
+                          keys_scalar,         maximum_scalar,       lowest_scalar, covered_scalar,
+                          store_opaque_scalar, store_blended_scalar, bins_scalar};
+
+}  // namespace
+
+const Kernels& kernels(Isa isa) noexcept {
+  static const std::array<Kernels, kIsaCount> tables = [] {
+    std::array<Kernels, kIsaCount> all;
+    all.fill(kScalar);
+    // Only those of this machine: filling a table is compiled for its instruction set, too.
+    for (const Isa available : available_isas()) {
+      Kernels& table = all[static_cast<std::size_t>(available)];
+      fill_setup_kernels(available, table);
+      fill_cover_kernels(available, table);
+      fill_block_kernels(available, table);
+    }
+    return all;
+  }();
+  return tables[static_cast<std::size_t>(isa)];
+}
+
+}  // namespace rastrum::raster

@@ -1,0 +1,151 @@
+// The SIMD leaves of the pipeline: one table of functions per instruction set, chosen once per
+// frame. `Isa::scalar` is the plain C++ of the headers (projection, setup, coverage); every other
+// entry comes from one Highway source and gives the same bits.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include <rastrum/core/mat.hpp>
+#include <rastrum/raster/draws/projection.hpp>
+#include <rastrum/raster/frame/options.hpp>
+#include <rastrum/raster/resolve/surface.hpp>
+#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/shade/color.hpp>
+
+namespace rastrum::raster {
+
+/// Triangles [first, first + count) of a draw.
+struct SetupInput {
+  const std::uint32_t* indices = nullptr;  ///< of the draw; null: vertices in order
+  const ProjectedVertex* vertices = nullptr;
+  std::size_t vertex_count = 0;
+  std::uint64_t first = 0;
+  std::uint32_t count = 0;
+  std::uint64_t first_id = 0;  ///< id of triangle 0 of the draw
+  std::uint32_t flags = 0;
+  Cull cull = Cull::none;
+  Rect view;
+  std::uint32_t bin_columns = 0;  ///< bins in a row of the image
+  bool micro = false;             ///< micro triangles may become fragments
+};
+
+/// At most this many triangles a call; callers provide that many pieces and slow entries, and
+/// kMicroSize² times as many fragments.
+inline constexpr std::uint32_t kSetupBatch = 256;
+
+struct SetupOutput {
+  std::uint32_t pieces = 0;     ///< written
+  std::uint32_t fragments = 0;  ///< written
+  std::uint32_t micro = 0;      ///< drawn as fragments, or covering no sample
+  std::uint32_t slow = 0;       ///< triangles left to the clipper, as offsets from `first`
+  bool index_in_range = true;   ///< false: the batch was abandoned
+};
+
+/// A (bin, piece) pair. Coverages that draw what faces away after the rest number the bins twice
+/// (BinNumbers).
+struct PieceInBin {
+  std::uint32_t bin, piece;
+};
+
+/// The pieces of a bin, by their positions in `pieces`.
+struct PieceList {
+  const Piece* pieces = nullptr;
+  const PieceInBin* list = nullptr;
+  std::size_t count = 0;
+};
+
+/// Bins own their keys: 8 × 8 blocks in rows, 64 keys each.
+inline constexpr int kBinSize = 64;
+inline constexpr int kBlocksPerBinRow = kBinSize / kBlockSize;
+inline constexpr int kBlocksPerBin = kBlocksPerBinRow * kBlocksPerBinRow;
+
+inline constexpr std::uint32_t kManyBins = 0xFFFFFFFF;
+
+/// The bins of a view are numbered row by row; `view` begins at a corner of a bin. Pieces with
+/// kFacesAway are in lists of their own, `away` numbers further; 0: they are not.
+struct BinNumbers {
+  Rect view;
+  std::uint32_t away = 0;
+
+  [[nodiscard]] std::uint32_t of(const Piece& piece, std::uint32_t bin) const {
+    return bin + ((piece.flags & kFacesAway) != 0 ? away : 0);
+  }
+};
+
+/// Where in its bin a fragment lies, px.
+RASTRUM_HD inline int column_in_bin(const BinFragment& f) {
+  const auto pixel = static_cast<int>(f.pixel & ~kTranslucentFragment);
+  return pixel / 64 % kBlocksPerBinRow * kBlockSize + pixel % kBlockSize;
+}
+RASTRUM_HD inline int row_in_bin(const BinFragment& f) {
+  const auto pixel = static_cast<int>(f.pixel & ~kTranslucentFragment);
+  return pixel / 64 / kBlocksPerBinRow * kBlockSize + pixel % 64 / kBlockSize;
+}
+
+/// Hierarchical Z (Greene, "Hierarchical polygon tiling with coverage masks", 1996; papers 1 and 5
+/// name it as missing): what is surely hidden in a bin. A piece or block is left out where its
+/// highest depth is strictly below a bound, so that no pixel changes, ties included.
+struct DepthBounds {
+  float block[kBlocksPerBin] = {};  ///< no sample of the block is farther; 0: nothing is known
+  float bin = 0;                    ///< the lowest of them
+  std::uint64_t hidden_pieces = 0, hidden_blocks = 0;  ///< what was left out
+
+  void restart() {
+    std::fill_n(block, kBlocksPerBin, 0.0F);
+    bin = 0;
+  }
+};
+
+struct Kernels {
+  /// n positions through the matrix, the divide, the viewport and the snapping.
+  void (*project)(const Vec3* positions, std::size_t n, const Mat4& object_to_clip,
+                  Viewport viewport, ProjectedVertex* out) noexcept;
+
+  /// Culls and sets up a batch. With `micro`, a triangle without a fragment test whose box is small
+  /// enough may become fragments instead of a piece, or nothing where it covers no sample.
+  SetupOutput (*setup)(const SetupInput& input, Piece* pieces, BinFragment* fragments,
+                       std::uint32_t* slow) noexcept;
+
+  /// Writes the blocks of `bin` that pieces list[cursor …] cover, with their masks (none empty),
+  /// until the list ends or fewer than kBlocksPerBin places are left; returns how many, moves the
+  /// cursor. `bounds` may be null.
+  std::size_t (*cover)(const PieceList& pieces, std::size_t& cursor, Rect bin, Block* out,
+                       std::size_t capacity, DepthBounds* bounds) noexcept;
+
+  /// Finds the masks of blocks whose mask is 0; they may be empty.
+  void (*masks)(const Piece* pieces, Block* blocks, std::size_t n) noexcept;
+
+  /// The keys that the piece would have in those rows of a block that it covers a sample of,
+  /// covered or not; the other rows are left as they are.
+  void (*keys)(const Piece& piece, const Block& block, std::uint64_t* keys) noexcept;
+
+  /// The atomic sink on keys that the caller owns: maximum at every covered sample.
+  void (*maximum)(const Piece* pieces, const Block* blocks, std::size_t n,
+                  const SurfaceView& surface) noexcept;
+
+  /// The smallest of 64 keys.
+  std::uint64_t (*lowest)(const std::uint64_t* keys) noexcept;
+
+  /// Which of 64 keys are not 0.
+  std::uint64_t (*covered)(const std::uint64_t* keys) noexcept;
+
+  /// A whole block of opaque colours in 8 bits, `background` where nothing is covered.
+  void (*store_opaque)(const BlockColors& colors, std::uint64_t covered, Rgba8 background,
+                       Rgba8* out, std::ptrdiff_t stride) noexcept;
+
+  /// The same for colours that may be translucent.
+  void (*store_blended)(const BlockColors& colors, std::uint64_t covered, const Backdrop& backdrop,
+                        Rgba8* out, std::ptrdiff_t stride) noexcept;
+
+  /// The bin that holds the box of each of n pieces, or kManyBins where that has to be looked at: a
+  /// box in several or in none, a line, a point.
+  void (*bins)(const Piece* pieces, std::size_t n, const BinNumbers& numbers,
+               std::uint32_t* bins) noexcept;
+};
+
+/// The table of `isa`, one of available_isas() (choose_isa); of others, plain C++.
+[[nodiscard]] const Kernels& kernels(Isa isa) noexcept;
+
+}  // namespace rastrum::raster

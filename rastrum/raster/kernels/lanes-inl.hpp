@@ -1,0 +1,104 @@
+// Vector types that the SIMD leaves share, once per instruction set: include it after highway.h,
+// outside of any namespace. A row of a block is 8 samples, so vectors have 4 or 8 lanes.
+
+// Highway compiles a source once per target; this guard lets the header in once per target too.
+#if defined(RASTRUM_RASTER_LANES_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_LANES_INL_HPP_
+#undef RASTRUM_RASTER_LANES_INL_HPP_
+#else
+#define RASTRUM_RASTER_LANES_INL_HPP_
+#endif
+
+#include <cstddef>
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+#include <rastrum/raster/setup/piece.hpp>
+
+// The scalar kernels stand in for Highway's baseline targets.
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster {
+namespace HWY_NAMESPACE {
+namespace {  // each source has its own
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F32 = hn::CappedTag<float, 8>;
+using I32 = hn::RebindToSigned<F32>;
+using U32 = hn::RebindToUnsigned<F32>;
+using F64 = hn::CappedTag<double, 4>;
+using I64 = hn::CappedTag<std::int64_t, 4>;
+using F = hn::Vec<F32>;
+using I = hn::Vec<I32>;
+using D = hn::Vec<F64>;
+constexpr std::size_t kLanes = hn::MaxLanes(F32{});
+constexpr std::size_t kLanes64 = hn::MaxLanes(F64{});
+constexpr std::size_t kHalves = kLanes / kLanes64;
+using I128 = hn::Full128<std::int32_t>;
+
+HWY_INLINE D half_to_double(I v, std::size_t half) {
+  const F64 d;
+#if HWY_MAX_BYTES >= 32
+  const hn::Half<I32> dh;
+  return hn::PromoteTo(d, half == 0 ? hn::LowerHalf(dh, v) : hn::UpperHalf(dh, v));
+#else
+  const hn::Half<I32> dh;
+  return hn::PromoteTo(
+      d, half == 0 ? hn::LowerHalf(dh, v) : hn::LowerHalf(dh, hn::ConcatUpperUpper(I32{}, v, v)));
+#endif
+}
+
+HWY_INLINE D half_to_double(F v, std::size_t half) {
+  const F64 d;
+  const hn::Half<F32> dh;
+#if HWY_MAX_BYTES >= 32
+  return hn::PromoteTo(d, half == 0 ? hn::LowerHalf(dh, v) : hn::UpperHalf(dh, v));
+#else
+  return hn::PromoteTo(
+      d, half == 0 ? hn::LowerHalf(dh, v) : hn::LowerHalf(dh, hn::ConcatUpperUpper(F32{}, v, v)));
+#endif
+}
+
+/// Bit i is lane i of a mask of 32-bit lanes.
+template <class M>
+HWY_INLINE std::uint32_t lane_bits(M mask) {
+  std::uint8_t bits = 0;
+  hn::StoreMaskBits(I32{}, mask, &bits);
+  return bits & ((1U << kLanes) - 1);
+}
+
+/// Lanes of the low bits of `bits`.
+HWY_INLINE hn::Mask<U32> lane_mask(std::uint64_t bits) {
+  // LoadMaskBits reads whole bytes.
+  const std::uint8_t memory[8] = {static_cast<std::uint8_t>(bits & ((1U << kLanes) - 1))};
+  return hn::LoadMaskBits(U32{}, memory);
+}
+
+/// Calls use(h, keys) with the keys that depths, which it clamps, make with a piece's low part:
+/// kHalves vectors.
+template <class Use>
+HWY_INLINE void for_each_half(F depth, std::uint64_t low, const Use& use) {
+  const F32 df;
+  const U32 du;
+  const hn::RebindToUnsigned<I64> du64;
+  const hn::Half<U32> dh;
+  depth = hn::Min(hn::IfThenElseZero(hn::Gt(depth, hn::Zero(df)), depth), hn::Set(df, 1.0F));
+  const auto bits = hn::BitCast(du, depth);
+  for (std::size_t h = 0; h < kHalves; ++h) {
+#if HWY_MAX_BYTES >= 32
+    const auto half = h == 0 ? hn::LowerHalf(dh, bits) : hn::UpperHalf(dh, bits);
+#else
+    const auto half =
+        h == 0 ? hn::LowerHalf(dh, bits) : hn::LowerHalf(dh, hn::ConcatUpperUpper(du, bits, bits));
+#endif
+    use(h, hn::Or(hn::ShiftLeft<kIdBits>(hn::PromoteTo(du64, half)), hn::Set(du64, low)));
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace rastrum::raster
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+#endif  // RASTRUM_RASTER_LANES_INL_HPP_

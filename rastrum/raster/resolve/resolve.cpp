@@ -1,0 +1,277 @@
+#include <rastrum/raster/resolve/resolve.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+#include <unordered_map>
+
+#include <rastrum/core/enum.hpp>
+#include <rastrum/core/error.hpp>
+#include <rastrum/parallel/mask.hpp>
+#include <rastrum/raster/kernels/kernels.hpp>
+#include <rastrum/raster/shade/srgb.hpp>
+
+namespace rastrum::raster {
+namespace {
+
+/// The part of the image that a block covers.
+struct Window {
+  int x0, y0, columns, rows;
+  [[nodiscard]] bool whole() const { return columns == kBlockSize && rows == kBlockSize; }
+};
+
+/// Three powers, where what lies behind is in linear light. `b`: straight, display values.
+Backdrop backdrop_of(Vec4 b, bool linear_light) {
+  Backdrop backdrop = Backdrop::of(b);
+  if (!linear_light) return backdrop;
+  if (b.w != 0)
+    for (float* const channel : {&b.x, &b.y, &b.z})
+      *channel = static_cast<float>(linear_from_srgb(static_cast<double>(*channel)));
+  backdrop.color = premultiplied_from_straight(b);
+  backdrop.linear = true;
+  return backdrop;
+}
+
+Vec4 straight(Vec4 premultiplied) {
+  return straight_from_premultiplied(premultiplied);
+}
+Vec4 straight(Rgba8 c) {
+  return straight_from_rgba8(c);
+}
+
+/// Every case: float targets, pictures that are drawn over, blocks cut by the image's edge, passes
+/// that touch some pixels alone. Pixels that are not in `touched` keep what they have.
+void store_colors(const FrameRequest& request, const BlockColors& colors, std::uint64_t covered,
+                  std::uint64_t touched, const Backdrop& backdrop, const Window& w,
+                  bool wants_8_bit) {
+  const Vec4 background = premultiplied_from_straight(request.background);
+  const bool over = request.targets.over;
+  const auto behind = [&](const auto& target, int x, int y) {
+    return over && !target.empty() ? backdrop_of(straight(target(x, y)), request.linear_light)
+                                   : backdrop;
+  };
+  for (std::uint64_t m = touched; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    const int x = w.x0 + i % kBlockSize, y = w.y0 + i / kBlockSize;
+    Vec4 color = background;
+    Rgba8 color8 = backdrop.empty;
+    if ((covered >> i & 1) != 0) {
+      const Vec4 front{colors.r[i], colors.g[i], colors.b[i], colors.a[i]};
+      color = behind(request.targets.color, x, y).color_over(front);
+      if (wants_8_bit) color8 = behind(request.targets.color8, x, y).color8_over(front);
+    }
+    if (wants_8_bit) request.targets.color8(x, y) = color8;
+    if (!request.targets.color.empty()) request.targets.color(x, y) = color;
+  }
+}
+
+void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
+                    const VisibleBlock& block, std::uint64_t touched, const BlockColors* shaded,
+                    const Backdrop& backdrop, const Window& w) {
+  const Targets& targets = request.targets;
+  bool wants_8_bit = !targets.color8.empty();
+  if (block.covered == 0 && wants_8_bit && !targets.load && !targets.over) {
+    for (int y = 0; y < w.rows; ++y)
+      std::fill_n(targets.color8.row(w.y0 + y) + w.x0, w.columns, backdrop.empty);
+    wants_8_bit = false;
+  }
+  BlockColors own;
+  const BlockColors* colors = shaded;
+  bool opaque = false;
+  if (shaded == nullptr) {
+    colors = &own;
+    if (block.covered != 0) opaque = request.shader->shade(frame, block, request.isa, own);
+  }
+  const Kernels& kernel = kernels(request.isa);
+  const bool stores_block =
+      wants_8_bit && w.whole() && touched == ~std::uint64_t{0} && !targets.over;
+  if (stores_block && opaque && !request.linear_light) {
+    kernel.store_opaque(*colors, block.covered, backdrop.empty, &targets.color8(w.x0, w.y0),
+                        targets.color8.stride);
+    if (targets.color.empty()) return;
+    wants_8_bit = false;
+  }
+  if (opaque) std::fill_n(own.a, 64, 1.0F);
+  if (stores_block && wants_8_bit) {
+    kernel.store_blended(*colors, block.covered, backdrop, &targets.color8(w.x0, w.y0),
+                         targets.color8.stride);
+    wants_8_bit = false;
+  }
+  if (wants_8_bit || !targets.color.empty())
+    store_colors(request, *colors, block.covered, touched, backdrop, w, wants_8_bit);
+}
+
+/// Shades into `colors` and all of Targets::extra, which it stores.
+void shade_extra(const FrameRequest& request, const FrameGeometry& frame, VisibleBlock block,
+                 std::uint64_t touched, const Window& w, BlockColors& colors) {
+  BlockColors extra[kMaxExtraTargets];
+  block.extra = extra;
+  if (block.covered != 0 && request.shader->shade(frame, block, request.isa, colors))
+    std::fill_n(colors.a, 64, 1.0F);
+  for (std::size_t k = 0; k < request.targets.extra.size(); ++k)
+    for (std::uint64_t m = touched; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      const BlockColors& c = extra[k];
+      request.targets.extra[k](w.x0 + i % kBlockSize, w.y0 + i / kBlockSize) =
+          (block.covered >> i & 1) != 0 ? Vec4{c.r[i], c.g[i], c.b[i], c.a[i]} : Vec4{};
+    }
+}
+
+void store_keys(const Targets& targets, const std::uint64_t* keys, std::uint64_t touched,
+                const Window& w) {
+  for (std::uint64_t m = touched; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    const int x = w.x0 + i % kBlockSize, y = w.y0 + i / kBlockSize;
+    const std::uint64_t key = keys[i];
+    if (!targets.depth.empty())
+      targets.depth(x, y) = std::bit_cast<float>(static_cast<std::uint32_t>(key >> kIdBits));
+    if (!targets.ids.empty())
+      targets.ids(x, y) = key == 0 ? -1 : static_cast<std::int64_t>(id_of_key(key));
+    if (!targets.keys.empty()) targets.keys(x, y) = key;
+  }
+}
+
+/// The samples that hold a surface of this pass: ids count on from pass to pass.
+std::uint64_t of_this_pass(const std::uint64_t* keys, std::uint64_t covered,
+                           std::uint64_t first_id) {
+  std::uint64_t mask = 0;
+  for (std::uint64_t m = covered; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    mask |= std::uint64_t{id_of_key(keys[i]) >= first_id} << i;
+  }
+  return mask;
+}
+
+[[noreturn]] void refuse(std::string_view noun, std::size_t number, const std::string& problem) {
+  throw Error(
+      Errc::invalid_argument,
+      std::string(noun).append(" ").append(std::to_string(number)).append(": ").append(problem));
+}
+
+void check_draw(const Draw& draw, std::string_view noun, std::size_t number) {
+  const auto require = [&](bool ok, const char* what) {
+    if (!ok) refuse(noun, number, what);
+  };
+  require(draw.topology >= Topology::points, "its topology is 0, which is no value of its enum");
+  const std::string name = std::string(noun).append(" ").append(std::to_string(number));
+  check_enum(draw.topology, Topology::triangles, name + ": its topology");
+  check_enum(draw.cull, Cull::front, name + ": its cull");
+  check_enum(draw.winding, Winding::either, name + ": its winding");
+  require(draw.source != nullptr, "its source is null; set it to what projects its vertices");
+  const bool indexed = !draw.indices.empty();
+  const std::size_t corners = indexed ? draw.indices.size() : draw.vertex_count;
+  const std::uint64_t most = corners / static_cast<std::size_t>(draw.topology);
+  if (draw.primitive_count > most)
+    refuse(noun, number,
+           "primitive_count is " + std::to_string(draw.primitive_count) + ", but its " +
+               std::to_string(corners) + (indexed ? " indices" : " vertices") + " make up " +
+               std::to_string(most));
+  // Written so that a NaN fails.
+  require(draw.line_width > 0 && draw.line_width <= kMaxLineWidth,
+          "the line width must be > 0 and at most 4096 px");
+  require(draw.point_size > 0 && draw.point_size <= kMaxPointSize,
+          "the point size must be > 0 and at most 4096 px");
+  require(std::isfinite(draw.depth_bias) && std::isfinite(draw.depth_bias_slope),
+          "the depth bias must be finite");
+  if (draw.material_flags.empty()) return;
+  require(draw.face_materials.size() >= draw.primitive_count,
+          "it has flags by material, but fewer face materials than primitives");
+  require(std::all_of(draw.face_materials.begin(), draw.face_materials.end(),
+                      [&](std::uint32_t m) { return m < draw.material_flags.size(); }),
+          "a face material is out of range");
+}
+
+}  // namespace
+
+Backdrop backdrop_of(const FrameRequest& request) {
+  return backdrop_of(request.background, request.linear_light);
+}
+
+int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const Backdrop& backdrop,
+                  const std::uint64_t* keys, int x0, int y0, void* scratch,
+                  const BlockColors* shaded) noexcept {
+  const Targets& targets = request.targets;
+  const Window window{x0, y0, std::min(kBlockSize, request.width - x0),
+                      std::min(kBlockSize, request.height - y0)};
+  std::uint64_t covered = kernels(request.isa).covered(keys);
+  std::uint64_t touched = ~std::uint64_t{0};
+  if (!window.whole())
+    touched =
+        samples_inside({0, 0, request.width, request.height}, x0 / kBlockSize, y0 / kBlockSize);
+  covered &= touched;
+  if (targets.over) touched = covered;
+  if (targets.load) touched = covered = of_this_pass(keys, covered, targets.first_id);
+  const VisibleBlock block{keys, covered, x0, y0, scratch};
+  BlockColors colors;
+  if (!targets.extra.empty()) {
+    shade_extra(request, frame, block, touched, window, colors);
+    if (shaded == nullptr) shaded = &colors;
+  }
+  if (!targets.color8.empty() || !targets.color.empty())
+    resolve_colors(request, frame, block, touched, shaded, backdrop, window);
+  if (!targets.depth.empty() || !targets.ids.empty() || !targets.keys.empty())
+    store_keys(targets, keys, touched, window);
+  return parallel::popcount(covered);
+}
+
+void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface) noexcept {
+  const int bx0 = rect.x0 / kBlockSize, by0 = rect.y0 / kBlockSize;
+  for (int by = by0; by * kBlockSize < rect.y1; ++by) {
+    std::uint64_t* const row = surface.block(bx0, by);
+    std::fill_n(row, static_cast<std::size_t>(block_columns(rect)) * 64, 0);
+    if (!targets.load) continue;
+    for (int y = by * kBlockSize; y < std::min((by + 1) * kBlockSize, rect.y1); ++y)
+      for (int x = rect.x0; x < rect.x1; ++x)
+        row[(x / kBlockSize - bx0) * 64 + y % kBlockSize * kBlockSize + x % kBlockSize] =
+            targets.keys(x, y);
+  }
+}
+
+void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
+  const Targets& targets = request.targets;
+  if (targets.load || targets.over) return;
+  const Vec4 background = premultiplied_from_straight(request.background);
+  const Rgba8 background8 = to_straight_rgba8(background);
+  const auto fill = [&](const auto& target, int y, auto value) {
+    if (!target.empty()) std::fill_n(target.row(y) + rect.x0, rect.x1 - rect.x0, value);
+  };
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    for (const ImageView<Vec4>& extra : targets.extra) fill(extra, y, Vec4{});
+    fill(targets.color8, y, background8);
+    fill(targets.color, y, background);
+    fill(targets.depth, y, 0.0F);
+    fill(targets.ids, y, std::int64_t{-1});
+    fill(targets.keys, y, std::uint64_t{0});
+  }
+}
+
+Totals number_draws(std::span<Draw> draws, std::uint64_t first_id, std::string_view noun) {
+  Totals totals;
+  std::unordered_map<const BlockShader*, std::size_t> of_shader;
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    Draw& draw = draws[i];
+    check_draw(draw, noun, i);
+    draw.first_id = first_id + totals.primitives;
+    draw.first_vertex = totals.vertices;
+    draw.number = of_shader[draw.shader]++;
+    totals.primitives += draw.primitive_count;
+    totals.vertices += draw.vertex_count;
+  }
+  if (totals.primitives > kMaxId || first_id > kMaxId - totals.primitives)
+    throw Error(Errc::invalid_argument,
+                "the scene has " + std::to_string(first_id + totals.primitives) +
+                    " primitives; at most " + std::to_string(kMaxId) + " have an id");
+  return totals;
+}
+
+void check_indices(std::span<const Draw> draws, std::string_view noun) {
+  for (std::size_t i = 0; i < draws.size(); ++i)
+    for (const std::uint32_t index : draws[i].indices)
+      if (index >= draws[i].vertex_count)
+        refuse(noun, i,
+               "index " + std::to_string(index) + " is out of range, there are " +
+                   std::to_string(draws[i].vertex_count) + " vertices");
+}
+
+}  // namespace rastrum::raster

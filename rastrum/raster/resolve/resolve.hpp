@@ -1,0 +1,44 @@
+// From visibility keys to the images a caller asked for. Shared by every rasterizer: shading and
+// output exist once.
+#pragma once
+
+#include <string_view>
+
+#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/resolve/surface.hpp>
+
+namespace rastrum::raster {
+
+/// What a frame's colours are drawn over. Up to three powers: once a frame or tile.
+[[nodiscard]] Backdrop backdrop_of(const FrameRequest& request);
+
+/// Shades one 8 × 8 block (`keys`: 64, 64-byte aligned) and writes its part of every target;
+/// pixels outside the image are left out, and so are those that an earlier pass won
+/// (Targets::load). `scratch` is the shader's (geometry.hpp); `shaded` are the colours where
+/// visibility has shaded already, else null. Returns how many pixels hold a surface of this pass.
+int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const Backdrop& backdrop,
+                  const std::uint64_t* keys, int x0, int y0, void* scratch,
+                  const BlockColors* shaded = nullptr) noexcept;
+
+/// What the blocks of `rect` begin with: nothing, or the keys of the passes before.
+void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface) noexcept;
+
+/// The same for a rectangle in which this pass has no surface.
+void resolve_empty(const FrameRequest& request, Rect rect) noexcept;
+
+/// Numbers the primitives (from `first_id`) and vertices of the draws and, of each shader, the
+/// draws themselves; returns the totals. Throws Error{invalid_argument} that names the draw (by
+/// `noun` and number) if there are more primitives than ids, without a source, and for a number of
+/// primitives, topology, line width, point size, depth bias or face material out of range.
+/// O(draws), and O(primitives) of those with flags by material.
+struct Totals {
+  std::uint64_t primitives = 0;
+  std::size_t vertices = 0;
+};
+[[nodiscard]] Totals number_draws(std::span<Draw> draws, std::uint64_t first_id = 0,
+                                  std::string_view noun = "draw");
+
+/// Throws Error{invalid_argument} naming the first index that is out of range, if there is one.
+void check_indices(std::span<const Draw> draws, std::string_view noun);
+
+}  // namespace rastrum::raster

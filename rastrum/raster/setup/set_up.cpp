@@ -1,0 +1,195 @@
+#include <rastrum/raster/setup/set_up.hpp>
+
+#include <algorithm>
+#include <bitset>
+
+#include <rastrum/raster/assemble/assemble.hpp>
+#include <rastrum/raster/resolve/resolve.hpp>
+
+namespace rastrum::raster {
+namespace {
+
+/// Triangles of a task: what it makes stays in a core's L2 cache.
+constexpr std::uint64_t kGroup = 4096;
+
+/// The corners of a batch, for frames that keep no projected vertices or have several samples a
+/// pixel.
+struct Corners {
+  std::uint32_t indices[kSetupBatch * 3];
+  ProjectedVertex vertices[kSetupBatch * 3];
+  SampleOffset seen_from;
+
+  /// Returns whether all indices are in range.
+  bool load(const FrameGeometry& frame, const Draw& draw, std::uint64_t t, std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; ++i)
+      for (int c = 0; c < 3; ++c) {
+        const std::uint32_t index = draw.vertex(t + i, c);
+        if (index >= draw.vertex_count) return false;
+        indices[i * 3 + static_cast<std::uint32_t>(c)] = index;
+      }
+    seen_from = {};
+    if (frame.projected == nullptr)
+      draw.source->project_indexed({indices, count * 3}, frame.viewport, frame.isa, vertices);
+    else
+      for (std::uint32_t i = 0; i < count * 3; ++i)
+        vertices[i] = frame.projected[draw.first_vertex + indices[i]];
+    return true;
+  }
+  void see_from(SampleOffset at, std::uint32_t count) {
+    const SampleOffset by{at.x - seen_from.x, at.y - seen_from.y};
+    for (std::uint32_t i = 0; i < count * 3; ++i)
+      if (vertices[i].x_fx8 != kNeedsClip) vertices[i] = moved(vertices[i], by);
+    seen_from = at;
+  }
+};
+
+/// Triangles of a batch: those that some sample of a pixel sees, say.
+class TriangleSet {
+ public:
+  void add(std::uint64_t i) { seen_[i] = true; }
+  [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(seen_.count()); }
+
+ private:
+  std::bitset<kSetupBatch> seen_;
+};
+
+/// Leaves primitives [first, first + count) to assemble_primitive, which wants indices in range.
+SetupOutput all_slow(const Draw& draw, std::uint64_t first, std::uint32_t count,
+                     std::uint32_t* slow) {
+  SetupOutput out;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (int corner = 0; corner < static_cast<int>(draw.topology); ++corner)
+      out.index_in_range &= draw.vertex(first + i, corner) < draw.vertex_count;
+    slow[out.slow++] = i;
+  }
+  return out;
+}
+
+/// How many of the `count` primitives from `first` on have the flags of the first.
+std::uint32_t equal_flags(const Draw& draw, std::uint64_t first, std::uint32_t count) {
+  if (draw.material_flags.empty()) return count;
+  std::uint32_t n = 1;
+  while (n < count && draw.flags_of(first + n) == draw.flags_of(first)) ++n;
+  return n;
+}
+
+}  // namespace
+
+bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces& pieces,
+            MicroSink* micro) {
+  const FrameGeometry& geometry = frame.geometry;
+  const Rect image{0, 0, geometry.width, geometry.height};
+  const std::span<const SampleOffset> samples = sample_offsets(frame.request.samples);
+  // Fragments are of one sample a pixel, and the filter's errors are those of sorted pieces.
+  if (samples.size() > 1 || frame.request.transparency.method == Transparency::filter)
+    micro = nullptr;
+  std::uint32_t slow[kSetupBatch];
+  Corners corners;
+
+  for (std::uint64_t id = first; id < last;) {
+    const Draw& draw = geometry.draw_of(id);
+    const std::uint64_t t = id - draw.first_id;
+    const std::uint32_t count = equal_flags(
+        draw, t,
+        static_cast<std::uint32_t>(
+            std::min({std::uint64_t{kSetupBatch}, last - id, draw.primitive_count - t})));
+    SetupInput input;
+    input.first = t;
+    input.count = count;
+    input.first_id = draw.first_id;
+    if (geometry.projected != nullptr && samples.size() == 1) {
+      input.indices = draw.indices.empty() ? nullptr : draw.indices.data();
+      input.vertices = geometry.projected + draw.first_vertex;
+      input.vertex_count = draw.vertex_count;
+    } else if (draw.has_kernel()) {
+      if (!corners.load(geometry, draw, t, count)) return false;
+      input.vertices = corners.vertices;
+      input.vertex_count = std::size_t{count} * 3;
+      input.first = 0;
+      input.first_id = id;
+    }
+    input.cull = draw.effective_cull();
+    input.view = image;
+    input.bin_columns = static_cast<std::uint32_t>((geometry.width + kBinSize - 1) / kBinSize);
+    input.micro = micro != nullptr;
+
+    TriangleSet seen, clipped, dropped;
+    for (std::uint32_t sample = 0; sample < samples.size(); ++sample) {
+      const SampleOffset at = samples[sample];
+      input.flags = draw.flags_of(t) | sample << kSampleShift;
+      // Who draws translucent surfaces opaque knows no such fragments.
+      if (frame.request.transparency.method == Transparency::none) input.flags &= ~kTranslucent;
+      if (samples.size() > 1 && draw.has_kernel()) corners.see_from(at, count);
+      pieces.data.grow(std::size_t{pieces.count} + kSetupBatch, pieces.count);
+      BinFragment* const fragments =
+          micro == nullptr ? nullptr : micro->room(kSetupBatch * kMicroSize * kMicroSize);
+      const SetupOutput out =
+          draw.has_kernel()
+              ? frame.kernel.setup(input, pieces.data.data() + pieces.count, fragments, slow)
+              : all_slow(draw, t, count, slow);
+      if (!out.index_in_range) return false;
+      const std::uint32_t first_piece = pieces.count;
+      pieces.count += out.pieces;
+      if (micro != nullptr) micro->written(out.fragments);
+      std::uint32_t slow_culled = 0;
+      for (std::uint32_t k = 0; k < out.slow; ++k) {
+        const Fate fate = assemble_primitive(
+            geometry, draw, t + slow[k],
+            [&](const Piece& piece) {
+              pieces.data.grow(std::size_t{pieces.count} + 1, pieces.count);
+              pieces.data[pieces.count++] = piece;
+            },
+            sample, at);
+        if (fate == Fate::dropped) dropped.add(slow[k]);
+        if (fate == Fate::clipped) clipped.add(slow[k]);
+        slow_culled += fate == Fate::culled;
+      }
+      if (samples.size() == 1) {
+        pieces.triangles.culled += count - out.pieces - out.micro - out.slow + slow_culled;
+        continue;
+      }
+      for (std::uint32_t k = first_piece; k < pieces.count; ++k)
+        seen.add(kIdMask - pieces.data[k].low - id);
+    }
+    if (samples.size() > 1) pieces.triangles.culled += count - seen.count() - dropped.count();
+    pieces.triangles.dropped += dropped.count();
+    pieces.triangles.clipped += clipped.count();
+    id += count;
+  }
+  return true;
+}
+
+std::span<const Piece> PieceArray::fill(Frame& frame, std::uint64_t first, std::uint64_t last) {
+  const auto group_count = static_cast<std::size_t>((last - first + kGroup - 1) / kGroup);
+  while (groups_.size() < group_count) groups_.emplace_back(memory_);
+  std::atomic<bool> in_range = true;
+  parallel::for_each_index(frame.exec, group_count, [&](std::size_t g) {
+    const std::uint64_t begin = first + g * kGroup;
+    groups_[g].count = 0;
+    groups_[g].triangles = {};
+    if (!set_up(frame, begin, std::min(begin + kGroup, last), groups_[g])) in_range = false;
+  });
+  if (!in_range) check_indices(frame.request.draws, frame.request.draw_noun);
+
+  std::vector<std::size_t> place(group_count);
+  std::size_t total = 0;
+  for (std::size_t g = 0; g < group_count; ++g) {
+    place[g] = total;
+    total += groups_[g].count;
+    count_triangles(frame, groups_[g].triangles);
+  }
+  pieces_.reserve(total);
+  parallel::for_each_index(frame.exec, group_count, [&](std::size_t g) {
+    std::copy_n(groups_[g].data.data(), groups_[g].count, pieces_.data() + place[g]);
+  });
+  return {pieces_.data(), total};
+}
+
+void count_triangles(Frame& frame, const FrameStats::Triangles& triangles) {
+  if (!frame.first_band) return;
+  frame.stats.triangles.dropped += triangles.dropped;
+  frame.stats.triangles.culled += triangles.culled;
+  frame.stats.triangles.clipped += triangles.clipped;
+}
+
+}  // namespace rastrum::raster

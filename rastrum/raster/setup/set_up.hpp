@@ -1,0 +1,58 @@
+// From triangles of a frame to pieces, batch by batch: vertices (projected beforehand or here),
+// the SIMD setup kernel, and the clipper for the few that need it.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/raster/frame/frame.hpp>
+
+namespace rastrum::raster {
+
+/// The pieces of a run of triangles, in submission order except that a batch's clipped triangles
+/// come behind the others.
+struct Pieces {
+  explicit Pieces(MemoryAccount& memory) : data(memory) {}
+
+  ScratchBuffer<Piece> data;
+  std::uint32_t count = 0;
+  FrameStats::Triangles triangles;
+
+  [[nodiscard]] std::span<const Piece> span() const { return {data.data(), count}; }
+};
+
+/// Takes the fragments of micro triangles, a setup batch at a time.
+class MicroSink {
+ public:
+  virtual ~MicroSink() = default;
+  /// Room for `n` fragments; how many of them were written.
+  virtual BinFragment* room(std::size_t n) = 0;
+  virtual void written(std::size_t n) = 0;
+};
+
+/// Sets up triangles [first, last), which may span draws, behind those that `pieces` holds. With
+/// `micro`, micro triangles become its fragments. Returns whether all indices were in range; where
+/// not, the pieces are incomplete.
+[[nodiscard]] bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last,
+                          Pieces& pieces, MicroSink* micro = nullptr);
+
+/// The same with all threads, into one array. Counts the triangles in the frame's statistics.
+/// Memory: twice the pieces. Throws Error{invalid_argument} naming an index that is out of range.
+class PieceArray {
+ public:
+  explicit PieceArray(MemoryAccount& memory) : memory_(memory), pieces_(memory) {}
+  /// Valid until the next call.
+  std::span<const Piece> fill(Frame& frame, std::uint64_t first, std::uint64_t last);
+
+ private:
+  MemoryAccount& memory_;
+  ScratchBuffer<Piece> pieces_;
+  std::vector<Pieces> groups_;
+};
+
+/// Adds what became of the triangles of a group to the frame's statistics, once for all bands.
+void count_triangles(Frame& frame, const FrameStats::Triangles& triangles);
+
+}  // namespace rastrum::raster

@@ -1,0 +1,464 @@
+// Projection and setup with Highway, compiled once per instruction set. Each repeats the operations
+// of its scalar twin (projection.hpp, setup.hpp) in the same order, so it gives the same bits.
+
+// SSSE3 adds nothing over the scalar build that SSE4 does not; AVX3_DL nothing that these kernels
+// use.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "rastrum/raster/setup/setup_simd.cpp"
+#include <hwy/foreach_target.h>  // must precede highway.h
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+#include <rastrum/raster/kernels/kernels_simd.hpp>
+#include <rastrum/raster/kernels/lanes-inl.hpp>
+#include <rastrum/raster/setup/make_piece.hpp>
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster {
+namespace HWY_NAMESPACE {
+namespace {  // several sources have an N_AVX2
+
+HWY_INLINE F row_times(const float (&m)[4], F x, F y, F z) {
+  const F32 d;
+  const F xy = hn::Add(hn::Mul(hn::Set(d, m[0]), x), hn::Mul(hn::Set(d, m[1]), y));
+  return hn::Add(hn::Add(xy, hn::Mul(hn::Set(d, m[2]), z)), hn::Set(d, m[3]));
+}
+
+HWY_INLINE void project_lanes(F x, F y, F z, const Mat4& m, Viewport viewport,
+                              ProjectedVertex* out) {
+  const F32 d;
+  const I32 di;
+  const F cx = row_times(m.m[0], x, y, z);
+  const F cy = row_times(m.m[1], x, y, z);
+  const F cz = row_times(m.m[2], x, y, z);
+  const F cw = row_times(m.m[3], x, y, z);
+  const F inv_w = hn::Div(hn::Set(d, 1.0F), cw);
+  const F hw = hn::Set(d, viewport.half_width);
+  const F hh = hn::Set(d, viewport.half_height);
+  const F px = hn::Add(hn::Mul(hn::Mul(cx, inv_w), hw), hw);
+  const F py = hn::Sub(hh, hn::Mul(hn::Mul(cy, inv_w), hh));
+  const F depth = hn::Mul(cz, inv_w);
+  const F low = hn::Set(d, kGuardMinPx);
+  const F high = hn::Set(d, kGuardMaxPx);
+  auto ok = hn::And(hn::Gt(cw, hn::Zero(d)), hn::Le(cz, cw));
+  ok = hn::And(ok, hn::And(hn::Ge(px, low), hn::Le(px, high)));
+  ok = hn::And(ok, hn::And(hn::Ge(py, low), hn::Le(py, high)));
+  ok = hn::And(ok, hn::Ge(depth, hn::Set(d, std::numeric_limits<float>::lowest())));
+  const F scale = hn::Set(d, static_cast<float>(kSubpixels));
+  const F zero = hn::Zero(d);
+  const I x8 = hn::NearestInt(hn::Mul(hn::IfThenElse(ok, px, zero), scale));
+  const I y8 = hn::NearestInt(hn::Mul(hn::IfThenElse(ok, py, zero), scale));
+  const auto oki = hn::RebindMask(di, ok);
+  hn::StoreInterleaved4(hn::IfThenElse(oki, x8, hn::Set(di, kNeedsClip)), y8,
+                        hn::BitCast(di, hn::IfThenElseZero(ok, depth)),
+                        hn::BitCast(di, hn::IfThenElseZero(ok, inv_w)), di,
+                        reinterpret_cast<std::int32_t*>(out));
+}
+
+void project(const Vec3* positions, std::size_t n, const Mat4& m, Viewport viewport,
+             ProjectedVertex* out) noexcept {
+  const F32 d;
+  F x, y, z;
+  std::size_t i = 0;
+  for (; i + kLanes <= n; i += kLanes) {
+    hn::LoadInterleaved3(d, &positions[i].x, x, y, z);
+    project_lanes(x, y, z, m, viewport, out + i);
+  }
+  if (i == n) return;
+  Vec3 rest[kLanes] = {};
+  ProjectedVertex projected[kLanes];
+  std::copy_n(positions + i, n - i, rest);
+  hn::LoadInterleaved3(d, &rest[0].x, x, y, z);
+  project_lanes(x, y, z, m, viewport, projected);
+  std::copy_n(projected, n - i, out + i);
+}
+
+/// Corner vertices of kLanes triangles, transposed.
+struct Corners {
+  I x, y;
+  F depth;
+};
+
+/// (x, y, depth, ·) of four vertices as three vectors of four.
+HWY_INLINE void transpose4(const ProjectedVertex* v, const std::uint32_t* index, hn::Vec<I128>& x,
+                           hn::Vec<I128>& y, hn::Vec<I128>& depth) {
+  const I128 d;
+  const hn::Repartition<std::int64_t, I128> d64;
+  const auto load = [&](int lane) HWY_ATTR {
+    return hn::LoadU(d, reinterpret_cast<const std::int32_t*>(v + index[lane]));
+  };
+  const auto v0 = load(0), v1 = load(1), v2 = load(2), v3 = load(3);
+  const auto xy01 = hn::BitCast(d64, hn::InterleaveLower(d, v0, v1));
+  const auto xy23 = hn::BitCast(d64, hn::InterleaveLower(d, v2, v3));
+  const auto zw01 = hn::BitCast(d64, hn::InterleaveUpper(d, v0, v1));
+  const auto zw23 = hn::BitCast(d64, hn::InterleaveUpper(d, v2, v3));
+  x = hn::BitCast(d, hn::InterleaveLower(d64, xy01, xy23));
+  y = hn::BitCast(d, hn::InterleaveUpper(d64, xy01, xy23));
+  depth = hn::BitCast(d, hn::InterleaveLower(d64, zw01, zw23));
+}
+
+HWY_INLINE Corners load_corners(const ProjectedVertex* v, const std::uint32_t* index) {
+  const F32 d;
+  hn::Vec<I128> x, y, depth;
+  transpose4(v, index, x, y, depth);
+#if HWY_MAX_BYTES >= 32
+  const I32 di;
+  hn::Vec<I128> x1, y1, depth1;
+  transpose4(v, index + 4, x1, y1, depth1);
+  return {hn::Combine(di, x1, x), hn::Combine(di, y1, y),
+          hn::BitCast(d, hn::Combine(di, depth1, depth))};
+#else
+  return {x, y, hn::BitCast(d, depth)};
+#endif
+}
+
+/// The indices of kLanes triangles by corner, and whether all are in range.
+HWY_INLINE bool load_indices(const SetupInput& in, std::uint32_t offset,
+                             std::uint32_t (&index)[3][kLanes]) {
+  const U32 d;
+  const std::uint64_t t = in.first + offset;
+  if (in.indices == nullptr) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      for (std::size_t c = 0; c < 3; ++c)
+        index[c][lane] = static_cast<std::uint32_t>((t + lane) * 3 + c);
+    return (t + kLanes) * 3 <= in.vertex_count;
+  }
+  hn::Vec<U32> i0, i1, i2;
+  hn::LoadInterleaved3(d, in.indices + t * 3, i0, i1, i2);
+  hn::StoreU(i0, d, index[0]);
+  hn::StoreU(i1, d, index[1]);
+  hn::StoreU(i2, d, index[2]);
+  const auto largest = hn::Max(i0, hn::Max(i1, i2));
+  if (in.vertex_count == 0) return false;
+  const auto last = hn::Set(
+      d, static_cast<std::uint32_t>(std::min<std::size_t>(in.vertex_count - 1, 0xffffffffU)));
+  return hn::AllTrue(d, hn::Eq(hn::Max(largest, last), last));
+}
+
+HWY_INLINE I min3_lanes(I a, I b, I c) {
+  return hn::Min(a, hn::Min(b, c));
+}
+HWY_INLINE I max3_lanes(I a, I b, I c) {
+  return hn::Max(a, hn::Max(b, c));
+}
+
+/// Triangles by lane.
+struct Classes {
+  std::uint32_t drawn = 0;  ///< may cover a sample
+  std::uint32_t none = 0;   ///< micro triangles that would be drawn, but cover no sample
+  std::uint32_t slow = 0;   ///< need the clipper
+  HWY_ALIGN std::uint32_t micro[kLanes] = {};  ///< covered samples of micro triangles, 0 for others
+};
+
+/// Negates v in the lanes where m is −1.
+HWY_INLINE I negate_if(I v, I m) {
+  return hn::Sub(hn::Xor(v, m), m);
+}
+
+/// Coverage of micro triangles, a lane each: the sign bits of the edge functions at kMicroSize²
+/// samples from (x0, y0) on. Boxes of up to 5 px keep every product far inside int32.
+HWY_INLINE I micro_masks(const Corners& a, const Corners& b, const Corners& c, I x0, I y0, I area) {
+  const I32 d;
+  const I zero = hn::Zero(d);
+  const I turned = hn::ShiftRight<31>(area);
+  const I px = hn::Add(hn::ShiftLeft<kSubpixelBits>(x0), hn::Set(d, kHalfPixel));
+  const I py = hn::Add(hn::ShiftLeft<kSubpixelBits>(y0), hn::Set(d, kHalfPixel));
+  I value[3], dx[3], dy[3];
+  const auto edge = [&](int i, const Corners& from, const Corners& to) HWY_ATTR {
+    const I ea = negate_if(hn::Sub(from.y, to.y), turned);
+    const I eb = negate_if(hn::Sub(to.x, from.x), turned);
+    const auto top_left = hn::Or(hn::Gt(ea, zero), hn::And(hn::Eq(ea, zero), hn::Gt(eb, zero)));
+    const I at = hn::Add(hn::Mul(ea, hn::Sub(px, from.x)), hn::Mul(eb, hn::Sub(py, from.y)));
+    value[i] = hn::Sub(at, hn::IfThenZeroElse(top_left, hn::Set(d, 1)));
+    dx[i] = hn::ShiftLeft<kSubpixelBits>(ea);
+    dy[i] = hn::ShiftLeft<kSubpixelBits>(eb);
+  };
+  edge(0, a, b);
+  edge(1, b, c);
+  edge(2, c, a);
+  I outside = zero;
+  // Backwards, so that shifting the collected bits left leaves the first sample in bit 0.
+  for (int i = 0; i < 3; ++i)
+    value[i] = hn::Add(value[i], hn::Mul(hn::Add(dx[i], dy[i]), hn::Set(d, kMicroSize - 1)));
+  for (int row = 0; row < kMicroSize; ++row) {
+    I e0 = value[0], e1 = value[1], e2 = value[2];
+    for (int column = 0; column < kMicroSize; ++column) {
+      const I sign = hn::Or(hn::Or(e0, e1), e2);
+      const I bit = hn::BitCast(d, hn::ShiftRight<31>(hn::BitCast(U32{}, sign)));
+      outside = hn::Or(hn::Add(outside, outside), bit);
+      e0 = hn::Sub(e0, dx[0]);
+      e1 = hn::Sub(e1, dx[1]);
+      e2 = hn::Sub(e2, dx[2]);
+    }
+    for (int i = 0; i < 3; ++i) value[i] = hn::Sub(value[i], dy[i]);
+  }
+  return hn::AndNot(outside, hn::Set(d, 0xFFFF));
+}
+
+HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c,
+                            const SetupInput& in) {
+  const I32 d;
+  Classes classes;
+  const I needs_clip = hn::Set(d, kNeedsClip);
+  const auto clip =
+      hn::Or(hn::Eq(a.x, needs_clip), hn::Or(hn::Eq(b.x, needs_clip), hn::Eq(c.x, needs_clip)));
+  const I before = hn::Set(d, kHalfPixel - 1);
+  const I half = hn::Set(d, kHalfPixel);
+  // First and last sample of the box; inclusive.
+  const I x0 = hn::ShiftRight<kSubpixelBits>(hn::Add(min3_lanes(a.x, b.x, c.x), before));
+  const I y0 = hn::ShiftRight<kSubpixelBits>(hn::Add(min3_lanes(a.y, b.y, c.y), before));
+  const I x1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(max3_lanes(a.x, b.x, c.x), half));
+  const I y1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(max3_lanes(a.y, b.y, c.y), half));
+  const auto empty =
+      hn::Or(hn::Gt(hn::Max(x0, hn::Set(d, in.view.x0)), hn::Min(x1, hn::Set(d, in.view.x1 - 1))),
+             hn::Gt(hn::Max(y0, hn::Set(d, in.view.y0)), hn::Min(y1, hn::Set(d, in.view.y1 - 1))));
+  constexpr std::uint32_t kAll = (1U << kLanes) - 1;
+  classes.slow = lane_bits(clip);
+  const std::uint32_t in_view = kAll & ~(lane_bits(empty) | classes.slow);
+  if (in_view == 0) return classes;
+
+  const I dx1 = hn::Sub(b.x, a.x), dy1 = hn::Sub(b.y, a.y);
+  const I dx2 = hn::Sub(c.x, a.x), dy2 = hn::Sub(c.y, a.y);
+  const I size = hn::Set(d, kMicroSize);
+  const auto small = hn::And(hn::Lt(hn::Sub(x1, x0), size), hn::Lt(hn::Sub(y1, y0), size));
+  const std::uint32_t micro =
+      !in.micro || (in.flags & kTested) != 0 ? 0U : lane_bits(small) & in_view;
+  std::uint32_t culled = 0;
+  if (micro != 0) {
+    const I zero = hn::Zero(d);
+    const I area = hn::Sub(hn::Mul(dx1, dy2), hn::Mul(dx2, dy1));
+    auto out = hn::Eq(area, zero);
+    if (in.cull == Cull::back) out = hn::Or(out, hn::Gt(area, zero));
+    if (in.cull == Cull::front) out = hn::Or(out, hn::Lt(area, zero));
+    culled = lane_bits(out) & micro;
+    const I masks = micro_masks(a, b, c, x0, y0, area);
+    hn::Store(hn::BitCast(U32{}, hn::IfThenElseZero(small, masks)), U32{}, classes.micro);
+    classes.none = lane_bits(hn::Eq(masks, zero)) & micro & ~culled;
+  }
+  if (micro != in_view) {
+    // Twice the area, exact in float64: differences have 25 bits, products 50.
+    std::uint32_t large_culled = 0;
+    for (std::size_t h = 0; h < kHalves; ++h) {
+      const F64 dd;
+      const D area = hn::Sub(hn::Mul(half_to_double(dx1, h), half_to_double(dy2, h)),
+                             hn::Mul(half_to_double(dx2, h), half_to_double(dy1, h)));
+      const D zero = hn::Zero(dd);
+      auto out = hn::Eq(area, zero);
+      if (in.cull == Cull::back) out = hn::Or(out, hn::Gt(area, zero));
+      if (in.cull == Cull::front) out = hn::Or(out, hn::Lt(area, zero));
+      std::uint8_t bits = 0;
+      hn::StoreMaskBits(dd, out, &bits);
+      large_culled |= (bits & ((1U << kLanes64) - 1)) << (h * kLanes64);
+    }
+    culled |= large_culled & ~micro;
+  }
+  classes.drawn = in_view & ~culled & ~classes.none;
+  return classes;
+}
+
+/// The covered samples of a micro triangle as fragments. By value, so that it stays in registers.
+HWY_INLINE std::uint32_t write_fragments(const Piece p, std::uint32_t mask, const SetupInput& in,
+                                         BinFragment* out) {
+  const int first_x = (min3(p.x[0], p.x[1], p.x[2]) + kHalfPixel - 1) >> kSubpixelBits;
+  const int first_y = (min3(p.y[0], p.y[1], p.y[2]) + kHalfPixel - 1) >> kSubpixelBits;
+  const std::uint32_t translucent = (p.flags & kTranslucent) != 0 ? kTranslucentFragment : 0;
+  std::uint32_t n = 0;
+  for (; mask != 0; mask &= mask - 1) {
+    const int sample = std::countr_zero(mask);
+    const int x = first_x + sample % kMicroSize, y = first_y + sample / kMicroSize;
+    if (x < in.view.x0 || x >= in.view.x1 || y < in.view.y0 || y >= in.view.y1) continue;
+    const auto ux = static_cast<std::uint32_t>(x), uy = static_cast<std::uint32_t>(y);
+    out[n++] = {make_key(depth_at(p, x, y), p.low), uy / kBinSize * in.bin_columns + ux / kBinSize,
+                ((uy % kBinSize / kBlockSize * kBlocksPerBinRow + ux % kBinSize / kBlockSize) * 64 +
+                 uy % kBlockSize * kBlockSize + ux % kBlockSize) |
+                    translucent};
+  }
+  return n;
+}
+
+/// Triangles that wait until there are kLanes of them: a third of a closed mesh survives culling.
+struct Waiting {
+  std::uint32_t count = 0;
+  std::uint32_t index[3][2 * kLanes];
+  std::uint32_t triangle[2 * kLanes];
+  std::uint32_t micro[2 * kLanes];
+
+  void add(const std::uint32_t (&corners)[3][kLanes], std::size_t lane, std::uint32_t t,
+           std::uint32_t micro_mask) {
+    for (std::size_t c = 0; c < 3; ++c) index[c][count] = corners[c][lane];
+    triangle[count] = t;
+    micro[count++] = micro_mask;
+  }
+  /// Forgets the first n, which are all or kLanes.
+  void drop(std::uint32_t n) {
+    count -= n;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t c = 0; c < 3; ++c) index[c][i] = index[c][i + n];
+      triangle[i] = triangle[i + n];
+      micro[i] = micro[i + n];
+    }
+  }
+};
+
+/// Sets up the triangles of `lanes`, which may cover a sample, in order. `triangle` and `micro` are
+/// by lane.
+HWY_INLINE void make_pieces(const SetupInput& in, const Corners& a, const Corners& b,
+                            const Corners& c, std::uint32_t lanes, const std::uint32_t* triangle,
+                            const std::uint32_t* micro, Piece* pieces, BinFragment* fragments,
+                            SetupOutput& out) {
+  const F32 df;
+  const I32 di;
+  const I dx1 = hn::Sub(b.x, a.x), dy1 = hn::Sub(b.y, a.y);
+  const I dx2 = hn::Sub(c.x, a.x), dy2 = hn::Sub(c.y, a.y);
+  HWY_ALIGN float zx[kLanes], zy[kLanes], sign[kLanes];
+  for (std::size_t h = 0; h < kHalves; ++h) {
+    const F64 dd;
+    const hn::Half<F32> dh;
+    const D x1 = half_to_double(dx1, h), y1 = half_to_double(dy1, h);
+    const D x2 = half_to_double(dx2, h), y2 = half_to_double(dy2, h);
+    const D z0 = half_to_double(a.depth, h);
+    const D z1 = hn::Sub(half_to_double(b.depth, h), z0);
+    const D z2 = hn::Sub(half_to_double(c.depth, h), z0);
+    const D det = hn::Sub(hn::Mul(x1, y2), hn::Mul(x2, y1));
+    const D scale = hn::Set(dd, static_cast<double>(kSubpixels));
+    const D gx = hn::Mul(hn::Div(hn::Sub(hn::Mul(z1, y2), hn::Mul(z2, y1)), det), scale);
+    const D gy = hn::Mul(hn::Div(hn::Sub(hn::Mul(z2, x1), hn::Mul(z1, x2)), det), scale);
+    hn::StoreU(hn::DemoteTo(dh, gx), dh, zx + h * kLanes64);
+    hn::StoreU(hn::DemoteTo(dh, gy), dh, zy + h * kLanes64);
+    hn::StoreU(hn::DemoteTo(dh, det), dh, sign + h * kLanes64);
+  }
+  // |det| ≥ 1, so its sign survives the rounding to float32.
+  const auto keep = hn::RebindMask(di, hn::Gt(hn::LoadU(df, sign), hn::Zero(df)));
+  const std::uint32_t facing_away = lane_bits(keep);
+  const I sx = hn::IfThenElse(keep, b.x, c.x), sy = hn::IfThenElse(keep, b.y, c.y);
+  const I tx = hn::IfThenElse(keep, c.x, b.x), ty = hn::IfThenElse(keep, c.y, b.y);
+  HWY_ALIGN std::int32_t first[kLanes * 4], second[kLanes * 4];
+  hn::StoreInterleaved4(a.x, sx, tx, a.y, di, first);
+  hn::StoreInterleaved4(sy, ty, hn::BitCast(di, a.depth), hn::BitCast(di, hn::LoadU(df, zx)), di,
+                        second);
+  const I128 d128;
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(lanes));
+    Piece& piece = pieces[out.pieces];
+    auto* parts = reinterpret_cast<std::int32_t*>(&piece);
+    hn::Store(hn::Load(d128, first + i * 4), d128, parts);
+    hn::Store(hn::Load(d128, second + i * 4), d128, parts + 4);
+    piece.zy = zy[i];
+    piece.flags = in.flags | ((facing_away >> i & 1) * kFacesAway);
+    piece.low = kIdMask - (in.first_id + in.first + triangle[i]);
+    if (micro[i] == 0) {
+      ++out.pieces;
+      continue;
+    }
+    ++out.micro;
+    out.fragments += write_fragments(piece, micro[i], in, fragments + out.fragments);
+  }
+}
+
+/// Sets up the first `n` ≤ kLanes waiting triangles.
+HWY_INLINE void make_pieces(const SetupInput& in, Waiting& waiting, std::uint32_t n, Piece* pieces,
+                            BinFragment* fragments, SetupOutput& out) {
+  std::uint32_t index[3][kLanes];
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < kLanes; ++i) index[c][i] = waiting.index[c][i < n ? i : 0];
+  const Corners a = load_corners(in.vertices, index[0]);
+  const Corners b = load_corners(in.vertices, index[1]);
+  const Corners c = load_corners(in.vertices, index[2]);
+  make_pieces(in, a, b, c, (1U << n) - 1, waiting.triangle, waiting.micro, pieces, fragments, out);
+  waiting.drop(n);
+}
+
+/// So many of kLanes that to set them up at once is cheaper than to gather them again with others.
+constexpr std::uint32_t kDense = kLanes - kLanes / 4;
+
+SetupOutput setup(const SetupInput& in, Piece* pieces, BinFragment* fragments,
+                  std::uint32_t* slow) noexcept {
+  SetupOutput result;
+  Waiting waiting;
+  std::uint32_t index[3][kLanes];
+  std::uint32_t i = 0;
+  for (; i + kLanes <= in.count; i += kLanes) {
+    if (!load_indices(in, i, index)) {
+      result.index_in_range = false;
+      return result;
+    }
+    const Corners a = load_corners(in.vertices, index[0]);
+    const Corners b = load_corners(in.vertices, index[1]);
+    const Corners c = load_corners(in.vertices, index[2]);
+    const Classes classes = classify(a, b, c, in);
+    for (std::uint32_t rest = classes.slow; rest != 0; rest &= rest - 1)
+      slow[result.slow++] = i + static_cast<std::uint32_t>(std::countr_zero(rest));
+    result.micro += static_cast<std::uint32_t>(std::popcount(classes.none));
+    if (static_cast<std::uint32_t>(std::popcount(classes.drawn)) >= kDense) {
+      if (waiting.count != 0) make_pieces(in, waiting, waiting.count, pieces, fragments, result);
+      std::uint32_t triangle[kLanes];
+      for (std::uint32_t lane = 0; lane < kLanes; ++lane) triangle[lane] = i + lane;
+      make_pieces(in, a, b, c, classes.drawn, triangle, classes.micro, pieces, fragments, result);
+      continue;
+    }
+    for (std::uint32_t rest = classes.drawn; rest != 0; rest &= rest - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
+      waiting.add(index, lane, i + lane, classes.micro[lane]);
+    }
+    if (waiting.count >= kLanes) make_pieces(in, waiting, kLanes, pieces, fragments, result);
+  }
+  if (waiting.count != 0) make_pieces(in, waiting, waiting.count, pieces, fragments, result);
+  if (i == in.count) return result;
+  // The last few triangles of a draw take the scalar way, which is the same arithmetic.
+  SetupInput rest = in;
+  rest.first += i;
+  rest.count -= i;
+  const SetupOutput tail =
+      kernels(Isa::scalar)
+          .setup(rest, pieces + result.pieces, fragments + result.fragments, slow + result.slow);
+  for (std::uint32_t t = 0; t < tail.slow; ++t) slow[result.slow + t] += i;
+  result.pieces += tail.pieces;
+  result.slow += tail.slow;
+  result.index_in_range = tail.index_in_range;
+  return result;
+}
+
+void fill(Kernels& table) {
+  table.project = project;
+  table.setup = setup;
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace rastrum::raster
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+
+#if HWY_ONCE
+namespace rastrum::raster {
+
+bool fill_setup_kernels(Isa isa, Kernels& table) noexcept {
+  switch (isa) {
+#if HWY_TARGETS & HWY_SSE4
+    case Isa::sse4:
+      return N_SSE4::fill(table), true;
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    case Isa::avx2:
+      return N_AVX2::fill(table), true;
+#endif
+#if HWY_TARGETS & HWY_AVX3
+    case Isa::avx512:
+      return N_AVX3::fill(table), true;
+#endif
+#if HWY_TARGETS & HWY_NEON
+    case Isa::neon:
+      return N_NEON::fill(table), true;
+#endif
+    default:
+      return false;
+  }
+}
+
+}  // namespace rastrum::raster
+#endif

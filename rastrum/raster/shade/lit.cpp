@@ -1,0 +1,194 @@
+#include <rastrum/raster/shade/lit.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/shade/lit_constants.hpp>
+#include <rastrum/raster/shade/lit_scalar.hpp>
+#include <rastrum/raster/shade/srgb.hpp>
+
+namespace rastrum::raster {
+namespace {
+
+Vec3 base_color(const LitView& scene, const LitDraw& draw, const Fragment& f) {
+  const Vec3 base = scene.base_color(draw, f.triangle);
+  const MeshView& mesh = draw.mesh;
+  if (mesh.colors.empty()) return base;
+  Vec3 sum;
+  for (int c = 0; c < 3; ++c) {
+    const std::size_t i = mesh.colors.indices.empty()
+                              ? f.vertex[c]
+                              : mesh.colors.indices[f.triangle * 3 + static_cast<std::size_t>(c)];
+    const Vec4 v = mesh.colors.values[i];
+    sum = sum + Vec3{v.x, v.y, v.z} * static_cast<float>(f.weights.b[c]);
+  }
+  return {base.x * sum.x, base.y * sum.y, base.z * sum.z};
+}
+
+/// Of a linear factor. 1, from which the curve is 3e-5 away, stays 1: white changes no colour.
+float display_value(float linear) {
+  return linear >= 1 ? 1.0F : srgb_from_linear(linear);
+}
+
+Vec4 opaque(Vec3 c) {
+  return {c.x, c.y, c.z, 1};
+}
+
+/// How much of a line about a pixel wide along the triangle's edges covers the sample, in [0, 1].
+float wire(const Fragment& f) {
+  double nearest = 1e9;
+  for (int i = 0; i < 3; ++i) {
+    const WeightPlanes& w = *f.planes;
+    const double b = w.r[i] + w.p[i] * (f.x + 0.5 + static_cast<double>(f.from_centre.x) - w.x0) +
+                     w.q[i] * (f.y + 0.5 + static_cast<double>(f.from_centre.y) - w.y0);
+    nearest = std::min(nearest, std::abs(b) / std::hypot(w.p[i], w.q[i]));
+  }
+  return static_cast<float>(std::clamp(1.0 - nearest, 0.0, 1.0));
+}
+
+class LitShader final : public BlockShader {
+ public:
+  LitShader(LitModel model, const LitScene& scene) : model_(model), scene_(scene) {}
+
+  bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
+             BlockColors& colors) const noexcept override {
+    if (model_ == LitModel::id || model_ == LitModel::wireframe) {
+      const FragmentShader scalar(
+          [this](const FrameGeometry& g, const Fragment& f) { return color(g, f); });
+      return scalar.shade(frame, block, isa, colors);
+    }
+    if (isa != Isa::scalar && shade_lit_simd(isa, model_, scene_, frame, block, colors))
+      return true;
+    shade_scalar(frame, block, colors);
+    return true;
+  }
+
+  void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept override {
+    prefetch_triangle(scene_, frame, id, model_ != LitModel::flat);
+  }
+
+  [[nodiscard]] std::optional<float> alpha() const noexcept override { return 1.0F; }
+  [[nodiscard]] std::size_t scratch_bytes() const noexcept override {
+    return sizeof(KeptTriangles);
+  }
+  [[nodiscard]] LitForm form() const { return {model_, &scene_}; }
+
+ private:
+  [[nodiscard]] Vec4 color(const FrameGeometry& frame, const Fragment& f) const {
+    if (model_ == LitModel::id) return opaque(id_color(f.id));
+    const float line = wire(f);
+    const LitDraw& draw = scene_.draws[frame.draws[f.draw].number];
+    return opaque(base_color(scene_.view(), draw, f) * (1 - line) + kWireColor * line);
+  }
+
+  void shade_scalar(const FrameGeometry& frame, const VisibleBlock& block,
+                    BlockColors& colors) const {
+    KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
+    const bool wants_normals = model_ != LitModel::flat;
+    const LitView view = scene_.view();
+    for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      const int x = block.x0 + i % kBlockSize, y = block.y0 + i / kBlockSize;
+      const LitTriangle& t = kept.find(scene_, frame, block.keys[i] & kIdMask, wants_normals);
+      const Vec2 from_centre =
+          block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
+      colors.set(i, opaque(shade_lit(model_, view, t, x, y, from_centre)));
+    }
+  }
+
+  LitModel model_;
+  const LitScene& scene_;
+};
+
+void normal_matrix(const Mat4d& object_to_world, float (&out)[3][3]) {
+  // The cofactors are the inverse transpose up to the determinant, whose sign and size do not
+  // matter: normals are normalized and turned to the viewer. They also exist where the matrix is
+  // singular.
+  const auto& m = object_to_world.m;
+  double cofactor[3][3];
+  double largest = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+      cofactor[i][j] = m[i1][j1] * m[i2][j2] - m[i1][j2] * m[i2][j1];
+      largest = std::max(largest, std::abs(cofactor[i][j]));
+    }
+  const double determinant =
+      m[0][0] * cofactor[0][0] + m[0][1] * cofactor[0][1] + m[0][2] * cofactor[0][2];
+  const double scale = largest > 0 ? (determinant < 0 ? -1 : 1) / largest : 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) out[i][j] = static_cast<float>(cofactor[i][j] * scale);
+}
+
+/// Of any matrix with a centre of projection: the directions that rows x, y and w take to
+/// (x_ndc, y_ndc, 1), by Cramer's rule.
+ViewRays rays_of(const Mat4d& clip, int width, int height) {
+  struct Row {
+    double x, y, z;
+  };
+  const auto row = [&](int i) { return Row{clip.m[i][0], clip.m[i][1], clip.m[i][2]}; };
+  const auto cross = [](Row a, Row b) {
+    return Row{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  };
+  const Row x = row(0), y = row(1), w = row(3);
+  const Row to_x = cross(y, w), to_y = cross(w, x), to_w = cross(x, y);
+  const double determinant = x.x * to_x.x + x.y * to_x.y + x.z * to_x.z;
+  const auto direction = [&](double across, double up, double ahead) {
+    const auto sum = [&](double a, double b, double c) {
+      return static_cast<float>((across * a + up * b + ahead * c) / determinant);
+    };
+    return Vec3{sum(to_x.x, to_y.x, to_w.x), sum(to_x.y, to_y.y, to_w.y),
+                sum(to_x.z, to_y.z, to_w.z)};
+  };
+  return {direction(-1, 1, 1), direction(2.0 / width, 0, 0), direction(0, -2.0 / height, 0)};
+}
+
+}  // namespace
+
+ViewRays ViewRays::of(const Camera& camera, int width, int height) {
+  if (camera.matrix) return rays_of(*camera.matrix, width, height);
+  const Mat4d v = world_to_camera(camera);
+  const auto axis = [&](int i, double scale) {
+    return Vec3{static_cast<float>(v.m[i][0] * scale), static_cast<float>(v.m[i][1] * scale),
+                static_cast<float>(v.m[i][2] * scale)};
+  };
+  if (camera.orthographic) return {axis(2, -1), {}, {}};
+  const double half = std::tan(static_cast<double>(camera.fov_rad) / 2);
+  const double per_px = 2 * half / std::min(width, height);
+  const Vec3 dx = axis(0, per_px);
+  const Vec3 dy = axis(1, -per_px);
+  const Vec3 corner = axis(2, -1) + axis(0, -per_px * width / 2) + axis(1, per_px * height / 2);
+  return {corner, dx, dy};
+}
+
+LitScene::LitScene(const SceneView& scene, const Camera& camera, int width, int height)
+    : rays(ViewRays::of(camera, width, height)) {
+  draws.reserve(scene.instances.size());
+  for (const InstanceView& instance : scene.instances) {
+    LitDraw& draw = draws.emplace_back();
+    draw.mesh = instance.mesh;
+    normal_matrix(instance.object_to_world, draw.normal_matrix);
+    const auto& m = draw.normal_matrix;
+    draw.identity = m[0][0] == m[1][1] && m[1][1] == m[2][2] && m[0][0] > 0 && m[0][1] == 0 &&
+                    m[0][2] == 0 && m[1][0] == 0 && m[1][2] == 0 && m[2][0] == 0 && m[2][1] == 0;
+    colored |= !draw.mesh.colors.empty();
+  }
+  colored |= !scene.materials.empty();
+  materials.reserve(scene.materials.size());
+  for (const Material& m : scene.materials)
+    materials.push_back({display_value(m.base_color.x), display_value(m.base_color.y),
+                         display_value(m.base_color.z)});
+}
+
+std::unique_ptr<BlockShader> make_lit_shader(LitModel model, const LitScene& scene) {
+  return std::make_unique<LitShader>(model, scene);
+}
+
+std::optional<LitForm> lit_form(const BlockShader& shader) {
+  const auto* const lit = dynamic_cast<const LitShader*>(&shader);
+  return lit != nullptr ? std::optional(lit->form()) : std::nullopt;
+}
+
+}  // namespace rastrum::raster

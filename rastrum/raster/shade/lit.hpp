@@ -1,0 +1,76 @@
+// The plain shaders: flat, normal, id, lambert, phong, wireframe. They write display values
+// as they are. The lighting is fixed, so that other renderers can be compared with it:
+//   base · (0.1 + 0.8 max(n·l, 0)) + 0.3 max(n·h, 0)³²,  l = (0.4, 0.6, 1) / |…| in world space,
+// base = the mesh's colours, (0.8, 0.7, 0.6) where it has none; of a scene with materials the
+// material's base colour factor as a display value, times the mesh's colours where there are some
+// (textures are the material shader's); n turned to face the viewer.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/scene/camera.hpp>
+#include <rastrum/scene/scene.hpp>
+
+namespace rastrum::raster {
+
+enum class LitModel : std::uint8_t { flat, normal, id, lambert, phong, wireframe };
+
+/// What the lit shaders read of one draw.
+struct LitDraw {
+  MeshView mesh;
+  float normal_matrix[3][3];  ///< object to world, inverse transpose
+  bool identity = false;      ///< normal_matrix is a multiple of the identity
+
+  [[nodiscard]] RASTRUM_HD Vec3 to_world(Vec3 n) const {
+    const auto& m = normal_matrix;
+    return {m[0][0] * n.x + m[0][1] * n.y + m[0][2] * n.z,
+            m[1][0] * n.x + m[1][1] * n.y + m[1][2] * n.z,
+            m[2][0] * n.x + m[2][1] * n.y + m[2][2] * n.z};
+  }
+};
+
+/// The direction to the viewer at pixel centre (x, y), not normalized: −(d + x · dx + y · dy).
+/// Exact interpolation of positions gives the same direction, because a position lies on its
+/// pixel's ray.
+struct ViewRays {
+  Vec3 d, dx, dy;
+  static ViewRays of(const Camera& camera, int width, int height);
+};
+
+/// What the scalar form reads, of the host's memory or a device's (lit_scalar.hpp).
+struct LitView {
+  std::span<const LitDraw> draws;
+  ViewRays rays;
+  bool colored = false;
+  std::span<const Vec3> materials;
+
+  /// What the mesh's colours at the corners of triangle `t` are multiplied by, or stand for where
+  /// it has none.
+  [[nodiscard]] RASTRUM_HD Vec3 base_color(const LitDraw& draw, std::uint64_t t) const;
+};
+
+struct LitScene {
+  std::vector<LitDraw> draws;
+  ViewRays rays;
+  bool colored = false;         ///< some draw has colours of its own, or a material's
+  std::vector<Vec3> materials;  ///< the base colour of each, a display value
+
+  LitScene(const SceneView& scene, const Camera& camera, int width, int height);
+  [[nodiscard]] LitView view() const { return {draws, rays, colored, materials}; }
+};
+
+/// `scene` must outlive the shader.
+[[nodiscard]] std::unique_ptr<BlockShader> make_lit_shader(LitModel model, const LitScene& scene);
+
+/// What make_lit_shader was given; none for another shader.
+struct LitForm {
+  LitModel model;
+  const LitScene* scene;
+};
+[[nodiscard]] std::optional<LitForm> lit_form(const BlockShader& shader);
+
+}  // namespace rastrum::raster

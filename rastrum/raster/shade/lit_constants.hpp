@@ -1,0 +1,36 @@
+// The numbers of the lit shaders, once for the scalar and the SIMD form.
+#pragma once
+
+#include <cstdint>
+
+#include <rastrum/core/vec.hpp>
+#include <rastrum/raster/shade/lit.hpp>
+
+namespace rastrum::raster {
+
+inline constexpr Vec3 kDefaultBase{0.8F, 0.7F, 0.6F};
+inline constexpr Vec3 kWireColor{0.1F, 0.1F, 0.12F};
+inline constexpr float kAmbient = 0.1F, kDiffuse = 0.8F, kSpecular = 0.3F;
+/// (0.4, 0.6, 1) / √1.52.
+inline constexpr Vec3 kLight{0.32444284F, 0.48666426F, 0.81110710F};
+
+/// A hash of the id (the finalizer of MurmurHash3) as an 8-bit colour, never black.
+RASTRUM_HD constexpr Vec3 id_color(std::uint64_t id) {
+  auto h = static_cast<std::uint32_t>(id ^ (id >> 32));
+  h ^= h >> 16;
+  h *= 0x85ebca6bU;
+  h ^= h >> 13;
+  h *= 0xc2b2ae35U;
+  h ^= h >> 16;
+  const auto channel = [&](int shift) {
+    return static_cast<float>((h >> shift & 255U) | 32U) * (1.0F / 255.0F);
+  };
+  return {channel(0), channel(8), channel(16)};
+}
+
+/// The SIMD form (lit_simd.cpp); its colours are opaque. Returns false where it has none for
+/// `model`.
+bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
+                    const VisibleBlock& block, BlockColors& colors) noexcept;
+
+}  // namespace rastrum::raster

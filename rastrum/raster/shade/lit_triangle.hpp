@@ -1,0 +1,135 @@
+// What the lit shaders know of a triangle: set up once in float32, kept while a bin is shaded.
+//
+// float32 weights lose about |longest edge|² / |twice the area| ulps to cancellation, so thin and
+// clipped triangles are interpolated in float64 (interpolate.hpp) instead.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/shade/lit.hpp>
+#include <rastrum/raster/shade/lit_constants.hpp>
+#include <rastrum/raster/shade/normals.hpp>
+
+namespace rastrum::raster {
+
+/// A triangle as the rows need it.
+struct LitTriangle {
+  std::uint64_t low;  ///< of the key; 0: none yet
+  bool exact;         ///< interpolate with `planes`
+  float x0, y0;       ///< λ₁ = p1 (x − x0) + q1 (y − y0), λ₂ alike
+  float p1, q1, p2, q2;
+  float inv_w[3];
+  Vec3 normal[3];  ///< world space
+  Vec3 color[3];
+  WeightPlanes planes;
+};
+
+RASTRUM_HD inline Vec3 LitView::base_color(const LitDraw& draw, std::uint64_t t) const {
+  constexpr Vec3 default_base = kDefaultBase;  // a device has no address of the namespace's
+  const MeshView& mesh = draw.mesh;
+  if (materials.empty()) return mesh.colors.values.empty() ? default_base : Vec3{1, 1, 1};
+  return materials[mesh.face_materials.empty() ? mesh.material : mesh.face_materials[t]];
+}
+
+namespace lit_detail {
+
+/// Up to this ratio of squared longest edge to twice the area float32 weights are as good as 1e-5.
+inline constexpr float kThin = 32.0F;
+/// Below this ratio of the corners' 1 / w a far corner's weight drowns in the near one's rounding.
+inline constexpr float kSteep = 1e-4F;
+
+template <class Geometry>
+RASTRUM_HD void fetch_weights(const Geometry& frame, const Draw& draw, std::uint64_t t,
+                              const std::uint32_t (&vertex)[3], LitTriangle& out) {
+  const ProjectedVertex v0 = frame.vertex(draw, vertex[0]), v1 = frame.vertex(draw, vertex[1]),
+                        v2 = frame.vertex(draw, vertex[2]);
+  out.exact = true;
+  if (v0.x_fx8 == kNeedsClip || v1.x_fx8 == kNeedsClip || v2.x_fx8 == kNeedsClip) {
+    out.planes = weight_planes(frame, draw, t);
+    return;
+  }
+  constexpr float kPx = 1.0F / kSubpixels;
+  const float e1x = static_cast<float>(v1.x_fx8 - v0.x_fx8) * kPx;
+  const float e1y = static_cast<float>(v1.y_fx8 - v0.y_fx8) * kPx;
+  const float e2x = static_cast<float>(v2.x_fx8 - v0.x_fx8) * kPx;
+  const float e2y = static_cast<float>(v2.y_fx8 - v0.y_fx8) * kPx;
+  const float det = e1x * e2y - e2x * e1y;
+  const float extent = (e1x * e1x + e1y * e1y) + (e2x * e2x + e2y * e2y);
+  const float smallest = std::min({v0.inv_w, v1.inv_w, v2.inv_w});
+  const float largest = std::max({v0.inv_w, v1.inv_w, v2.inv_w});
+  // Up to 16 px every product of edges is exact, however thin the triangle.
+  const bool thin = extent > 128.0F && !(extent < kThin * std::abs(det));
+  out.exact = thin || !(smallest > kSteep * largest);
+  if (out.exact) {
+    out.planes = weight_planes(frame, draw, t);
+    return;
+  }
+  const float inv_det = 1.0F / det;
+  out.x0 = static_cast<float>(v0.x_fx8) * kPx;
+  out.y0 = static_cast<float>(v0.y_fx8) * kPx;
+  out.p1 = e2y * inv_det;
+  out.q1 = -e2x * inv_det;
+  out.p2 = -e1y * inv_det;
+  out.q2 = e1x * inv_det;
+  // Only ratios count; far away 1 / w is so small that squares of normals would underflow.
+  out.inv_w[0] = v0.inv_w / largest;
+  out.inv_w[1] = v1.inv_w / largest;
+  out.inv_w[2] = v2.inv_w / largest;
+}
+
+}  // namespace lit_detail
+
+/// Sets up the triangle whose keys end in `low`.
+template <class Geometry>
+RASTRUM_HD void fetch_triangle(const LitView& scene, const Geometry& frame, std::uint64_t low,
+                               bool wants_normals, LitTriangle& out) {
+  out.low = low;
+  const std::uint64_t id = kIdMask - low;
+  const Draw& draw = frame.draw_of(id);
+  const LitDraw& lit = scene.draws[draw.number];
+  const std::uint64_t t = id - draw.first_id;
+  const std::uint32_t vertex[3] = {draw.vertex(t, 0), draw.vertex(t, 1), draw.vertex(t, 2)};
+  lit_detail::fetch_weights(frame, draw, t, vertex, out);
+  const MeshView& mesh = lit.mesh;
+  if (wants_normals) {
+    corner_normals(mesh, t, vertex, out.normal);
+    if (!lit.identity)
+      for (Vec3& n : out.normal) n = lit.to_world(n);
+  }
+  if (!scene.colored) return;
+  const Vec3 base = scene.base_color(lit, t);
+  for (std::size_t c = 0; c < 3; ++c) {
+    out.color[c] = base;
+    if (mesh.colors.values.empty()) continue;
+    const std::size_t i = mesh.colors.indices.empty() ? vertex[c] : mesh.colors.indices[t * 3 + c];
+    const Vec4 color = mesh.colors.values[i];
+    out.color[c] = {base.x * color.x, base.y * color.y, base.z * color.z};
+  }
+}
+
+void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t low,
+                    bool wants_normals, LitTriangle& out);
+
+/// Asks the cache for what fetch_triangle reads at random.
+void prefetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t id,
+                       bool wants_normals) noexcept;
+
+/// The triangles of a bin that were seen last, by their ids' low bits: rows and blocks beside
+/// mostly meet the same ones again.
+struct KeptTriangles {
+  static constexpr std::size_t kCount = 256;
+  LitTriangle triangles[kCount];
+
+  const LitTriangle& find(const LitScene& scene, const FrameGeometry& frame, std::uint64_t low,
+                          bool wants_normals) {
+    LitTriangle& t = triangles[low % kCount];
+    if (t.low != low) fetch_triangle(scene, frame, low, wants_normals, t);
+    return t;
+  }
+};
+
+}  // namespace rastrum::raster

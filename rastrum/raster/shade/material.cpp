@@ -1,0 +1,153 @@
+#include <rastrum/raster/shade/material.hpp>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include <rastrum/core/enum.hpp>
+#include <rastrum/core/error.hpp>
+#include <rastrum/raster/shade/material_kernels.hpp>
+
+namespace rastrum::raster {
+namespace {
+
+/// Of scenes without any: what their vertex colours say is translucent.
+const Material kDefaultMaterial = [] {
+  Material m;
+  m.alpha_mode = AlphaMode::blend;
+  return m;
+}();
+
+struct TextureReference {
+  std::int32_t texture;
+  TexelUse use;
+  bool alpha;  ///< alpha comes from it
+};
+
+std::array<TextureReference, 6> references(const Material& m) {
+  return {{{m.base_color_texture, TexelUse::color, true},
+           {m.metallic_roughness_texture, TexelUse::data, false},
+           {m.normal_texture, TexelUse::data, false},
+           {m.occlusion_texture, TexelUse::data, false},
+           {m.emissive_texture, TexelUse::color, false},
+           {m.alpha_texture, TexelUse::data, true}}};
+}
+
+class MaterialShader final : public BlockShader {
+ public:
+  MaterialShader(const MaterialScene& scene, bool linear) : scene_(scene), linear_(linear) {}
+
+  bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
+             BlockColors& colors) const noexcept override {
+    material_kernels(isa).shade(scene_.view(), frame, block, linear_, colors);
+    return true;
+  }
+
+  [[nodiscard]] std::optional<float> alpha() const noexcept override { return 1.0F; }
+  [[nodiscard]] MaterialForm form() const { return {&scene_, linear_}; }
+
+ private:
+  const MaterialScene& scene_;
+  bool linear_;
+};
+
+}  // namespace
+
+MaterialScene::MaterialScene(const SceneView& scene, const Camera& camera, int width, int height,
+                             const TextureSet& textures) {
+  // The normal matrices are those of the lit shaders.
+  const LitScene lit(scene, camera, width, height);
+  rays = lit.rays;
+  draws.resize(lit.draws.size());
+  for (std::size_t d = 0; d < draws.size(); ++d) {
+    draws[d].mesh = lit.draws[d].mesh;
+    if (scene.materials.empty()) {
+      draws[d].mesh.face_materials = {};
+      draws[d].mesh.material = 0;
+    }
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        draws[d].normal_matrix[i][j] = lit.draws[d].normal_matrix[i][j];
+        draws[d].to_world[i][j] = static_cast<float>(scene.instances[d].object_to_world.m[i][j]);
+      }
+  }
+  const auto bind = [&](const Material& m) {
+    materials.push_back({m.base_color, m.metallic, m.roughness, m.normal_scale,
+                         m.occlusion_strength, m.emissive, m.alpha_mode, m.alpha_cutoff, m.opacity,
+                         m.unlit, textures.find(m.base_color_texture, TexelUse::color),
+                         textures.find(m.metallic_roughness_texture, TexelUse::data),
+                         textures.find(m.normal_texture, TexelUse::data),
+                         textures.find(m.occlusion_texture, TexelUse::data),
+                         textures.find(m.emissive_texture, TexelUse::color),
+                         textures.find(m.alpha_texture, TexelUse::data)});
+  };
+  for (const Material& m : scene.materials) bind(m);
+  if (materials.empty()) bind(kDefaultMaterial);
+}
+
+void check_materials(const SceneView& scene) {
+  const std::size_t textures = scene.textures.size();
+  for (std::size_t i = 0; i < textures; ++i) {
+    const Texture& t = scene.textures[i];
+    const std::string name = "texture " + std::to_string(i);
+    for (const Wrap wrap : {t.wrap_u, t.wrap_v})
+      check_enum(wrap, Wrap::clamp_to_edge, name + ": its wrapping");
+    for (const TextureFilter filter : {t.mag, t.min})
+      check_enum(filter, TextureFilter::linear, name + ": its filter");
+  }
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    check_enum(scene.materials[i].alpha_mode, AlphaMode::blend,
+               "material " + std::to_string(i) + ": its alpha mode");
+    if (const float o = scene.materials[i].opacity; !(o >= 0 && o <= 1))
+      throw Error(Errc::invalid_argument, "material " + std::to_string(i) +
+                                              ": the opacity must lie in [0, 1], not " +
+                                              std::to_string(o));
+    for (const TextureReference& r : references(scene.materials[i]))
+      if (r.texture != kNoTexture &&
+          (r.texture < 0 || static_cast<std::size_t>(r.texture) >= textures))
+        throw Error(Errc::invalid_argument,
+                    "material " + std::to_string(i) + ": texture " + std::to_string(r.texture) +
+                        " is out of range, there are " + std::to_string(textures));
+  }
+  if (scene.materials.empty()) return;
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const MeshView& mesh = scene.instances[i].mesh;
+    const auto fail = [&](const std::string& problem) {
+      throw Error(Errc::invalid_argument, "instance " + std::to_string(i) + ": " + problem);
+    };
+    std::uint32_t largest = mesh.material;
+    if (!mesh.face_materials.empty()) {
+      if (mesh.face_materials.size() < mesh.triangle_count())
+        fail("has fewer face materials (" + std::to_string(mesh.face_materials.size()) +
+             ") than triangles (" + std::to_string(mesh.triangle_count()) + ")");
+      largest = 0;
+      for (const std::uint32_t m : mesh.face_materials) largest = std::max(largest, m);
+    }
+    if (largest >= scene.materials.size())
+      fail("material " + std::to_string(largest) + " is out of range, there are " +
+           std::to_string(scene.materials.size()));
+  }
+}
+
+std::vector<std::uint8_t> texture_uses(const SceneView& scene, bool shading, bool blending) {
+  std::vector<std::uint8_t> uses(scene.textures.size());
+  for (const Material& m : scene.materials) {
+    const bool has_alpha =
+        m.alpha_mode == AlphaMode::mask || (m.alpha_mode == AlphaMode::blend && blending);
+    for (const TextureReference& r : references(m))
+      if (r.texture != kNoTexture && (shading || (r.alpha && has_alpha)))
+        uses[static_cast<std::size_t>(r.texture)] |= static_cast<std::uint8_t>(r.use);
+  }
+  return uses;
+}
+
+std::unique_ptr<BlockShader> make_material_shader(const MaterialScene& scene, bool linear) {
+  return std::make_unique<MaterialShader>(scene, linear);
+}
+
+std::optional<MaterialForm> material_form(const BlockShader& shader) {
+  const auto* const material = dynamic_cast<const MaterialShader*>(&shader);
+  return material != nullptr ? std::optional(material->form()) : std::nullopt;
+}
+
+}  // namespace rastrum::raster

@@ -1,0 +1,111 @@
+// glTF 2.0 metallic-roughness materials (Khronos, "glTF 2.0 Specification", appendix B: GGX with
+// Schlick's Fresnel term over a Lambertian base) under fixed lights, so that a picture can be made
+// again anywhere:
+//
+//   light        direction to it (world, normalized here)   radiance (E / π, linear)
+//   key          (0.4, 0.6, 1)                               0.65  white
+//   fill         (−0.8, 0.1, 0.6)                            0.20  white
+//   hemisphere   +y sky 0.30, −y ground 0.12, linear in the y of the direction
+//
+//   colour = key + fill + occlusion · (diffuse · hemi(n) + F(n·v, roughness) · hemi(r)) + emission
+//
+// hemi(d) is the hemisphere's radiance, r the mirrored view direction, and F(c, roughness) =
+// F0 + (max(1 − roughness, F0) − F0) (1 − c)^5 stands in for the integral over the lobe, so that
+// metals are not black. Masking is Hammon's approximation of Smith's height-correlated term (GDC
+// 2017). Roughness is at least 0.045. Normals are turned to the side of the triangle that is seen,
+// with or without double_sided (the façade culls the back of single-sided ones). The tangent frame
+// is that of the texture coordinates: their derivative over a triangle is constant in the world, so
+// none is stored or differenced on the screen.
+//
+// Textures: texel (0, 0) at the top left, centres at half texels, trilinear; the level is log2 of
+// the longer axis of a pixel's footprint, from the analytic derivatives of the weights. The result
+// is written with the sRGB transfer function; where something is translucent, after blending. Alpha
+// is alpha.hpp's business.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/shade/lit.hpp>
+#include <rastrum/raster/shade/texture.hpp>
+#include <rastrum/scene/camera.hpp>
+#include <rastrum/scene/scene.hpp>
+
+namespace rastrum::raster {
+
+/// A material as shaders read it: its numbers, and its textures, null where it has none.
+struct BoundMaterial {
+  Vec4 base;
+  float metallic = 1, roughness = 1;
+  float normal_scale = 1, occlusion_strength = 1;
+  Vec3 emission;
+  AlphaMode alpha_mode = AlphaMode::opaque;
+  float alpha_cutoff = 0.5F;
+  float opacity = 1;
+  bool unlit = false;
+  const MipChain* base_color = nullptr;
+  const MipChain* metallic_roughness = nullptr;
+  const MipChain* normal = nullptr;
+  const MipChain* occlusion = nullptr;
+  const MipChain* emissive = nullptr;
+  const MipChain* alpha = nullptr;
+};
+
+struct MaterialDraw {
+  MeshView mesh;
+  float normal_matrix[3][3];  ///< object to world, inverse transpose
+  float to_world[3][3];       ///< object to world, directions
+};
+
+/// What shaders read of a scene's materials, of the host's memory or a device's.
+struct MaterialView {
+  std::span<const BoundMaterial> materials;
+  std::span<const MaterialDraw> draws;
+  ViewRays rays;
+
+  [[nodiscard]] RASTRUM_HD const BoundMaterial& material_of(const MaterialDraw& draw,
+                                                            std::uint64_t triangle) const {
+    const auto& of_face = draw.mesh.face_materials;
+    return materials[of_face.empty() ? draw.mesh.material : of_face[triangle]];
+  }
+};
+
+/// What the material shader and alpha read of a scene.
+struct MaterialScene {
+  std::vector<BoundMaterial> materials;  ///< at least one
+  std::vector<MaterialDraw> draws;
+  ViewRays rays;
+
+  /// `scene` and `textures` must outlive this.
+  MaterialScene(const SceneView& scene, const Camera& camera, int width, int height,
+                const TextureSet& textures);
+
+  [[nodiscard]] MaterialView view() const { return {materials, draws, rays}; }
+};
+
+/// Throws Error{invalid_argument} naming the material or instance whose index into textures or
+/// materials is out of range. O(triangles with face_materials).
+void check_materials(const SceneView& scene);
+
+/// The uses TextureSet::update wants: all that `materials` read, or, without `shading`, only what
+/// alpha comes from, of masks and, with `blending`, of AlphaMode::blend.
+[[nodiscard]] std::vector<std::uint8_t> texture_uses(const SceneView& scene, bool shading,
+                                                     bool blending);
+
+/// `linear`: leaves the transfer function to FrameRequest::linear_light. `scene` must outlive the
+/// shader.
+[[nodiscard]] std::unique_ptr<BlockShader> make_material_shader(const MaterialScene& scene,
+                                                                bool linear);
+
+/// What make_material_shader was given; none for another shader.
+struct MaterialForm {
+  const MaterialScene* scene;
+  bool linear;
+};
+[[nodiscard]] std::optional<MaterialForm> material_form(const BlockShader& shader);
+
+}  // namespace rastrum::raster

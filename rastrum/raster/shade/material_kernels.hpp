@@ -1,0 +1,39 @@
+// Materials over blocks: in lanes, once for each instruction set (material_simd.cpp), and fragment
+// by fragment (material_scalar.cpp). Operations and their order are the same everywhere, so the
+// bits are too.
+#pragma once
+
+#include <cstdint>
+
+#include <rastrum/raster/shade/material.hpp>
+
+namespace rastrum::raster {
+
+/// Samples with alpha > 0, and those with alpha = 1.
+struct AlphaMasks {
+  std::uint64_t visible = 0, opaque = 0;
+};
+
+struct MaterialKernels {
+  /// Colours of the covered samples, all opaque, as display values or as linear light.
+  void (*shade)(const MaterialView& scene, const FrameGeometry& frame, const VisibleBlock& block,
+                bool linear, BlockColors& colors) noexcept;
+  /// The subset of `mask` (bit 8 · row + column of the block at (x0, y0)) where triangle `id` is
+  /// not cut out. `points` as in VisibleBlock.
+  std::uint64_t (*alpha_test)(const MaterialView& scene, const FrameGeometry& frame,
+                              std::uint64_t id, std::uint64_t mask, int x0, int y0,
+                              const ShadingPoints* points) noexcept;
+  /// The alpha of the covered samples (alpha.hpp), 0 elsewhere: 64 floats, 64-byte aligned.
+  AlphaMasks (*alpha)(const MaterialView& scene, const FrameGeometry& frame,
+                      const VisibleBlock& block, float opacity, float* out) noexcept;
+  /// Multiplies all 64 colours and their alpha; where `alpha` is 0 they become 0, whatever they
+  /// were.
+  void (*premultiply)(const float* alpha, BlockColors& colors) noexcept;
+};
+
+/// Those of Isa::scalar: material_scalar.hpp, fragment by fragment.
+[[nodiscard]] const MaterialKernels& scalar_material_kernels() noexcept;
+
+[[nodiscard]] const MaterialKernels& material_kernels(Isa isa) noexcept;
+
+}  // namespace rastrum::raster

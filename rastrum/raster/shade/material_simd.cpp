@@ -1,0 +1,542 @@
+// Materials in lanes, compiled once per instruction set: plain loops where compilers vectorize
+// them, Highway where they do not (the lights). A block is done in two steps: each triangle's run
+// of fragments fills its part of a surface (interpolation and textures), then the whole block is
+// lit at once.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "rastrum/raster/shade/material_simd.cpp"
+#include <hwy/foreach_target.h>  // must precede highway.h
+#include <hwy/highway.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/shade/material_constants.hpp>
+#include <rastrum/raster/shade/material_kernels.hpp>
+#include <rastrum/raster/shade/material_triangle.hpp>
+#include <rastrum/raster/shade/srgb_lanes-inl.hpp>
+#include <rastrum/raster/shade/texture_lanes-inl.hpp>
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Fragments of one triangle in a block, densely; the last is repeated up to a whole group.
+struct alignas(64) Run {
+  int n = 0, padded = 0;
+  int lane[64];                    ///< 8 · row + column
+  double scale[64];                ///< 1 / Σ weights
+  float weight1[64], weight2[64];  ///< normalized
+  float x[64], y[64];              ///< where they are, px
+
+  Run(std::uint64_t mask, const WeightPlanes& w, int x0, int y0, const ShadingPoints* points) {
+    for (; mask != 0; mask &= mask - 1) lane[n++] = std::countr_zero(mask);
+    for (padded = n; padded % kGroup != 0; ++padded) lane[padded] = lane[n - 1];
+    for (int k = 0; k < padded; k += kGroup)
+      for (int j = k; j < k + kGroup; ++j) {
+        double dx = x0 + lane[j] % kBlockSize + 0.5 - w.x0;
+        double dy = y0 + lane[j] / kBlockSize + 0.5 - w.y0;
+        if (points != nullptr) {
+          dx += static_cast<double>(points->dx[lane[j]]);
+          dy += static_cast<double>(points->dy[lane[j]]);
+        }
+        x[j] = static_cast<float>(x0 + lane[j] % kBlockSize) + 0.5F;
+        y[j] = static_cast<float>(y0 + lane[j] / kBlockSize) + 0.5F;
+        if (points != nullptr) {
+          x[j] += points->dx[lane[j]];
+          y[j] += points->dy[lane[j]];
+        }
+        const double b0 = w.r[0] + w.p[0] * dx + w.q[0] * dy;
+        const double b1 = w.r[1] + w.p[1] * dx + w.q[1] * dy;
+        const double b2 = w.r[2] + w.p[2] * dx + w.q[2] * dy;
+        const double s = 1 / (b0 + b1 + b2);
+        scale[j] = s;
+        weight1[j] = static_cast<float>(b1 * s);
+        weight2[j] = static_cast<float>(b2 * s);
+      }
+  }
+};
+
+/// a0 + w1 (a1 − a0) + w2 (a2 − a0): exact for an attribute that is constant.
+HWY_INLINE void interpolate(const Run& run, float a0, float a1, float a2, float* HWY_RESTRICT out) {
+  const float d1 = a1 - a0, d2 = a2 - a0;
+  for (int k = 0; k < run.padded; k += kGroup)
+    for (int j = k; j < k + kGroup; ++j) out[j] = a0 + (run.weight1[j] * d1 + run.weight2[j] * d2);
+}
+
+HWY_INLINE void interpolate_texcoords(const MaterialTriangle& t, const Run& run, Coordinates& out) {
+  if (t.draw.mesh.texcoords.empty()) {
+    std::memset(&out, 0, sizeof(out));
+    return;
+  }
+  const Vec2 a = t.corner(t.draw.mesh.texcoords, 0);
+  const Vec2 d1 = t.corner(t.draw.mesh.texcoords, 1) - a;
+  const Vec2 d2 = t.corner(t.draw.mesh.texcoords, 2) - a;
+  const WeightPlanes& w = t.planes;
+  const double p = w.p[0] + w.p[1] + w.p[2], q = w.q[0] + w.q[1] + w.q[2];
+  const auto one = [&](float a0, float a1, float a2, float* HWY_RESTRICT value,
+                       float* HWY_RESTRICT dx, float* HWY_RESTRICT dy) HWY_ATTR {
+    // (Σ bᵢ aᵢ / Σ bᵢ)′ = (Σ bᵢ′ aᵢ − value Σ bᵢ′) / Σ bᵢ, all relative to corner 0.
+    const double px = w.p[1] * a1 + w.p[2] * a2, qy = w.q[1] * a1 + w.q[2] * a2;
+    for (int k = 0; k < run.padded; k += kGroup)
+      for (int j = k; j < k + kGroup; ++j) {
+        const float offset = run.weight1[j] * a1 + run.weight2[j] * a2;
+        value[j] = a0 + offset;
+        dx[j] = static_cast<float>((px - offset * p) * run.scale[j]);
+        dy[j] = static_cast<float>((qy - offset * q) * run.scale[j]);
+      }
+  };
+  one(a.x, d1.x, d2.x, out.u, out.u_dx, out.u_dy);
+  one(a.y, d1.y, d2.y, out.v, out.v_dx, out.v_dy);
+}
+
+/// What the lights need to know of 64 fragments.
+struct alignas(64) Surface {
+  enum Channel {
+    kBaseR,
+    kBaseG,
+    kBaseB,
+    kNormalX,
+    kNormalY,
+    kNormalZ,  ///< unit, towards the viewer
+    kMetallic,
+    kRoughness,
+    kOcclusion,
+    kEmissiveR,
+    kEmissiveG,
+    kEmissiveB,
+    kUnlit,  ///< 1: the base colour is the result
+    kChannels
+  };
+  float channel[kChannels][64];
+};
+
+HWY_INLINE void fill(const Run& run, float value, float* out) {
+  for (int k = 0; k < run.padded; ++k) out[k] = value;
+}
+HWY_INLINE void multiply(const Run& run, const float* HWY_RESTRICT factor,
+                         float* HWY_RESTRICT out) {
+  for (int k = 0; k < run.padded; k += kGroup)
+    for (int j = k; j < k + kGroup; ++j) out[j] *= factor[j];
+}
+
+/// Interpolated (or flat) normals, bent by the normal map, turned to the side that is seen.
+HWY_INLINE void fill_normals(const MaterialView& scene, const MaterialTriangle& t,
+                             const BoundMaterial& material, const Run& run, const Coordinates& at,
+                             Surface& out) {
+  const MeshView& mesh = t.draw.mesh;
+  float* HWY_RESTRICT nx = out.channel[Surface::kNormalX];
+  float* HWY_RESTRICT ny = out.channel[Surface::kNormalY];
+  float* HWY_RESTRICT nz = out.channel[Surface::kNormalZ];
+  const Vec3 face = t.face_normal();
+  const ViewRays rays = scene.rays;
+  alignas(64) float side[64];
+  for (int k = 0; k < run.padded; k += kGroup)
+    for (int j = k; j < k + kGroup; ++j)
+      side[j] = is_seen_from_behind(rays, face, run.x[j], run.y[j]) ? -1.0F : 1.0F;
+  if (mesh.normals.empty()) {
+    for (int k = 0; k < run.padded; k += kGroup)
+      for (int j = k; j < k + kGroup; ++j) {
+        nx[j] = face.x * side[j];
+        ny[j] = face.y * side[j];
+        nz[j] = face.z * side[j];
+      }
+  } else {
+    Vec3 n[3];
+    for (int c = 0; c < 3; ++c) n[c] = times(t.draw.normal_matrix, t.corner(mesh.normals, c));
+    interpolate(run, n[0].x, n[1].x, n[2].x, nx);
+    interpolate(run, n[0].y, n[1].y, n[2].y, ny);
+    interpolate(run, n[0].z, n[1].z, n[2].z, nz);
+    for (int k = 0; k < run.padded; k += kGroup)
+      for (int j = k; j < k + kGroup; ++j) {
+        const Vec3 smooth = turned({nx[j], ny[j], nz[j]}, face, side[j]);
+        nx[j] = smooth.x;
+        ny[j] = smooth.y;
+        nz[j] = smooth.z;
+      }
+  }
+  if (material.normal == nullptr) return;
+
+  const TangentFrame frame(t);
+  Texels map;
+  sample(*material.normal, at, run.n, run.padded, map);
+  for (int k = 0; k < run.padded; k += kGroup)
+    for (int j = k; j < k + kGroup; ++j) {
+      // What is a bump on the front is a dent on the back: the tangents turn with the normal.
+      const Vec3 bent = frame.bend({nx[j], ny[j], nz[j]}, map.r[j], map.g[j], map.b[j],
+                                   material.normal_scale * side[j]);
+      nx[j] = bent.x;
+      ny[j] = bent.y;
+      nz[j] = bent.z;
+    }
+}
+
+/// One triangle's part of the surface, densely.
+HWY_INLINE void fill_surface(const MaterialView& scene, const MaterialTriangle& t, const Run& run,
+                             Surface& out) {
+  const BoundMaterial& m = scene.material_of(t.draw, t.index);
+  const MeshView& mesh = t.draw.mesh;
+  float* const r = out.channel[Surface::kBaseR];
+  float* const g = out.channel[Surface::kBaseG];
+  float* const b = out.channel[Surface::kBaseB];
+  float* const metallic = out.channel[Surface::kMetallic];
+  float* const roughness = out.channel[Surface::kRoughness];
+  float* const occlusion = out.channel[Surface::kOcclusion];
+  float* const emissive_r = out.channel[Surface::kEmissiveR];
+  float* const emissive_g = out.channel[Surface::kEmissiveG];
+  float* const emissive_b = out.channel[Surface::kEmissiveB];
+
+  Coordinates at;
+  const bool textured = m.base_color != nullptr || m.metallic_roughness != nullptr ||
+                        m.normal != nullptr || m.occlusion != nullptr || m.emissive != nullptr;
+  if (textured) interpolate_texcoords(t, run, at);
+  Texels texels;
+  const auto look_up = [&](const MipChain& chain)
+                           HWY_ATTR { sample(chain, at, run.n, run.padded, texels); };
+
+  if (mesh.colors.empty()) {
+    fill(run, m.base.x, r);
+    fill(run, m.base.y, g);
+    fill(run, m.base.z, b);
+  } else {
+    Vec4 c[3];
+    for (int i = 0; i < 3; ++i) c[i] = t.corner(mesh.colors, i) * m.base;
+    interpolate(run, c[0].x, c[1].x, c[2].x, r);
+    interpolate(run, c[0].y, c[1].y, c[2].y, g);
+    interpolate(run, c[0].z, c[1].z, c[2].z, b);
+  }
+  if (m.base_color != nullptr) {
+    look_up(*m.base_color);
+    multiply(run, texels.r, r);
+    multiply(run, texels.g, g);
+    multiply(run, texels.b, b);
+  }
+  fill(run, m.unlit ? 1.0F : 0.0F, out.channel[Surface::kUnlit]);
+
+  fill(run, m.metallic, metallic);
+  fill(run, m.roughness, roughness);
+  if (m.metallic_roughness != nullptr) {
+    look_up(*m.metallic_roughness);
+    multiply(run, texels.g, roughness);
+    multiply(run, texels.b, metallic);
+  }
+  fill(run, 1, occlusion);
+  if (m.occlusion != nullptr) {
+    look_up(*m.occlusion);
+    for (int k = 0; k < run.padded; ++k)
+      occlusion[k] = 1 + m.occlusion_strength * (texels.r[k] - 1);
+  }
+  fill(run, m.emission.x, emissive_r);
+  fill(run, m.emission.y, emissive_g);
+  fill(run, m.emission.z, emissive_b);
+  if (m.emissive != nullptr) {
+    look_up(*m.emissive);
+    multiply(run, texels.r, emissive_r);
+    multiply(run, texels.g, emissive_g);
+    multiply(run, texels.b, emissive_b);
+  }
+  fill_normals(scene, t, m, run, at, out);
+}
+
+using Floats = hn::ScalableTag<float>;
+using F = hn::Vec<Floats>;
+constexpr int kLanes = static_cast<int>(hn::MaxLanes(Floats{}));
+
+struct V3 {
+  F x, y, z;
+};
+
+HWY_INLINE F set(float a) {
+  return hn::Set(Floats{}, a);
+}
+HWY_INLINE V3 set(Vec3 a) {
+  return {set(a.x), set(a.y), set(a.z)};
+}
+HWY_INLINE F load(const float* p) {
+  return hn::Load(Floats{}, p);
+}
+HWY_INLINE V3 load(const float* x, const float* y, const float* z) {
+  return {load(x), load(y), load(z)};
+}
+HWY_INLINE void store(V3 a, float* x, float* y, float* z) {
+  hn::Store(a.x, Floats{}, x);
+  hn::Store(a.y, Floats{}, y);
+  hn::Store(a.z, Floats{}, z);
+}
+HWY_INLINE V3 add(V3 a, V3 b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+HWY_INLINE V3 subtract(V3 a, V3 b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+HWY_INLINE V3 scale(V3 a, F s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+HWY_INLINE V3 product(V3 a, V3 b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+HWY_INLINE F dot(V3 a, V3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+HWY_INLINE F reciprocal_length(V3 a) {
+  return set(1) / hn::Sqrt(dot(a, a));
+}
+
+/// NaN becomes the bound.
+HWY_INLINE F at_least(F a, float bound) {
+  return hn::IfThenElse(a > set(bound), a, set(bound));
+}
+HWY_INLINE F at_most(F a, float bound) {
+  return hn::IfThenElse(a < set(bound), a, set(bound));
+}
+HWY_INLINE F clamp01(F a) {
+  return at_most(at_least(a, 0), 1);
+}
+HWY_INLINE F mix(F a, F b, F t) {
+  return a + (b - a) * t;
+}
+HWY_INLINE V3 mix(V3 a, V3 b, F t) {
+  return {mix(a.x, b.x, t), mix(a.y, b.y, t), mix(a.z, b.z, t)};
+}
+
+HWY_INLINE F pow5(F a) {
+  const F a2 = a * a;
+  return a2 * a2 * a;
+}
+
+/// What a shader returns: the display value, or finite linear light.
+HWY_INLINE F written(F linear, bool as_linear) {
+  return as_linear ? at_most(at_least(linear, 0), kMostLight) : srgb_lanes(Floats{}, linear);
+}
+
+struct Reflectance {
+  V3 diffuse, f0;
+  F alpha, alpha2;
+};
+
+/// Light of one direction, reflected towards v; n·l ≤ 0 gives nothing.
+HWY_INLINE V3 reflect(const Reflectance& s, V3 n, V3 v, F nv, Vec3 light, float radiance) {
+  const V3 l = set(light);
+  const V3 sum = add(v, l);
+  const V3 half = scale(sum, set(1) / hn::Sqrt(at_least(dot(sum, sum), 1e-12F)));
+  const F nl = at_least(dot(n, l), 0);
+  const F nh = at_least(dot(n, half), 0);
+  const F vh = at_least(dot(v, half), 0);
+  const F lobe = nh * nh * (s.alpha2 - set(1)) + set(1);
+  const F pi_d = s.alpha2 / (lobe * lobe);
+  const F visibility = set(0.5F) / mix(set(2) * nl * nv, nl + nv, s.alpha);
+  const V3 one = set(Vec3{1, 1, 1});
+  const V3 f = mix(s.f0, one, pow5(clamp01(set(1) - vh)));
+  const V3 diffuse = product(s.diffuse, subtract(one, f));
+  return scale(add(diffuse, scale(f, pi_d * visibility)), nl * set(radiance));
+}
+
+HWY_INLINE V3 hemisphere(V3 diffuse, V3 specular, F normal_y, F mirrored_y) {
+  return add(scale(diffuse, set(kSkyMean) + set(kSkySlope) * normal_y),
+             scale(specular, set(kSkyMean) + set(kSkySlope) * mirrored_y));
+}
+
+/// Lights 64 fragments; what lies outside the covered ones does not matter.
+HWY_INLINE void light(const ViewRays& rays, const Surface& s, int x0, int y0,
+                      const ShadingPoints* points, bool linear, BlockColors& out) {
+  const auto& c = s.channel;
+  for (int i = 0; i < 64; i += kLanes) {
+    F px = load(kSample.x + i) + set(static_cast<float>(x0));
+    F py = load(kSample.y + i) + set(static_cast<float>(y0));
+    if (points != nullptr) {
+      px = px + load(points->dx + i);
+      py = py + load(points->dy + i);
+    }
+    const V3 away = add(add(set(rays.d), scale(set(rays.dx), px)), scale(set(rays.dy), py));
+    const V3 v = scale(away, set(0) - reciprocal_length(away));
+    const V3 n = load(c[Surface::kNormalX] + i, c[Surface::kNormalY] + i, c[Surface::kNormalZ] + i);
+    const V3 base = load(c[Surface::kBaseR] + i, c[Surface::kBaseG] + i, c[Surface::kBaseB] + i);
+    const F metallic = clamp01(load(c[Surface::kMetallic] + i));
+    const F roughness = at_most(at_least(load(c[Surface::kRoughness] + i), kMinRoughness), 1);
+
+    Reflectance surface;
+    surface.diffuse = scale(base, set(1) - metallic);
+    surface.f0 = mix(set(Vec3{kDielectricF0, kDielectricF0, kDielectricF0}), base, metallic);
+    surface.alpha = roughness * roughness;
+    surface.alpha2 = surface.alpha * surface.alpha;
+    const F facing = dot(n, v);
+    const F nv = at_least(facing, 1e-4F);
+    V3 color = add(reflect(surface, n, v, nv, kKeyLight, kKeyRadiance),
+                   reflect(surface, n, v, nv, kFillLight, kFillRadiance));
+
+    const V3 f0 = surface.f0;
+    const F smooth = set(1) - roughness;
+    const V3 rise{at_least(smooth - f0.x, 0), at_least(smooth - f0.y, 0),
+                  at_least(smooth - f0.z, 0)};
+    const V3 f = add(f0, scale(rise, pow5(clamp01(set(1) - nv))));
+    const V3 ambient = hemisphere(surface.diffuse, f, n.y, set(2) * facing * n.y - v.y);
+    color = add(color, scale(ambient, load(c[Surface::kOcclusion] + i)));
+    color = add(color, load(c[Surface::kEmissiveR] + i, c[Surface::kEmissiveG] + i,
+                            c[Surface::kEmissiveB] + i));
+
+    const auto unlit = load(c[Surface::kUnlit] + i) > set(0);
+    store({written(hn::IfThenElse(unlit, base.x, color.x), linear),
+           written(hn::IfThenElse(unlit, base.y, color.y), linear),
+           written(hn::IfThenElse(unlit, base.z, color.z), linear)},
+          out.r + i, out.g + i, out.b + i);
+  }
+}
+
+/// The samples of `left` that see the triangle of `low`.
+HWY_INLINE std::uint64_t samples_of(std::uint64_t low, const std::uint64_t* keys,
+                                    std::uint64_t left) {
+  std::uint64_t mask = 0;
+  for (std::uint64_t m = left; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    mask |= std::uint64_t{(keys[i] & kIdMask) == low} << i;
+  }
+  return mask;
+}
+
+void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleBlock& block,
+           bool linear, BlockColors& colors) noexcept {
+  const std::uint64_t* const keys = block.keys;
+  const int x0 = block.x0, y0 = block.y0;
+  std::uint64_t left = block.covered;
+  Surface surface;
+  if (left != ~std::uint64_t{0}) std::memset(&surface, 0, sizeof(surface));
+  const Draw* draw = nullptr;
+  while (left != 0) {
+    const std::uint64_t low = keys[std::countr_zero(left)] & kIdMask;
+    const std::uint64_t mask = samples_of(low, keys, left);
+    left &= ~mask;
+    const std::uint64_t id = id_of_key(low);
+    if (draw == nullptr || id - draw->first_id >= draw->primitive_count) draw = &frame.draw_of(id);
+    const MaterialTriangle triangle(scene, frame, *draw, id);
+    const Run run(mask, triangle.planes, x0, y0, block.points);
+    if (run.n == 64) {
+      fill_surface(scene, triangle, run, surface);
+      break;
+    }
+    Surface part;
+    fill_surface(scene, triangle, run, part);
+    for (int c = 0; c < Surface::kChannels; ++c)
+      for (int k = 0; k < run.n; ++k) surface.channel[c][run.lane[k]] = part.channel[c][k];
+  }
+  light(scene.rays, surface, x0, y0, block.points, linear, colors);
+}
+
+/// A fragment's own alpha: what a mask tests and what blends.
+HWY_INLINE void own_alpha(const MaterialTriangle& t, const BoundMaterial& material, const Run& run,
+                          float* HWY_RESTRICT alpha) {
+  const float base = material.base.w;
+  if (t.draw.mesh.colors.empty())
+    fill(run, base, alpha);
+  else
+    interpolate(run, t.corner(t.draw.mesh.colors, 0).w * base,
+                t.corner(t.draw.mesh.colors, 1).w * base, t.corner(t.draw.mesh.colors, 2).w * base,
+                alpha);
+  if (material.base_color == nullptr && material.alpha == nullptr) return;
+  Coordinates at;
+  interpolate_texcoords(t, run, at);
+  const auto multiply_alpha = [&](int k, float value) HWY_ATTR { alpha[k] *= value; };
+  if (material.base_color != nullptr)
+    sample<AlphaChannel>(*material.base_color, at, run.n, run.padded, multiply_alpha);
+  if (material.alpha != nullptr)
+    sample<RedChannel>(*material.alpha, at, run.n, run.padded, multiply_alpha);
+}
+
+std::uint64_t alpha_test(const MaterialView& scene, const FrameGeometry& frame, std::uint64_t id,
+                         std::uint64_t mask, int x0, int y0, const ShadingPoints* points) noexcept {
+  const Draw& draw = frame.draw_of(id);
+  const MaterialDraw& of = scene.draws[draw.number];
+  const BoundMaterial& material = scene.material_of(of, id - draw.first_id);
+  if (mask == 0 || material.alpha_mode != AlphaMode::mask) return mask;
+  const MaterialTriangle t(scene, frame, draw, id);
+  const Run run(mask, t.planes, x0, y0, points);
+  alignas(64) float alpha[64];
+  own_alpha(t, material, run, alpha);
+  for (int k = 0; k < run.n; ++k)
+    if (alpha[k] < material.alpha_cutoff) mask &= ~(std::uint64_t{1} << run.lane[k]);
+  return mask;
+}
+
+AlphaMasks alpha(const MaterialView& scene, const FrameGeometry& frame, const VisibleBlock& block,
+                 float frame_opacity, float* out) noexcept {
+  AlphaMasks masks;
+  const auto set = [&](int i, float a) {
+    out[i] = a;
+    masks.visible |= std::uint64_t{a > 0} << i;
+    masks.opaque |= std::uint64_t{a == 1} << i;
+  };
+  std::memset(out, 0, 64 * sizeof(float));
+  const Draw* draw = nullptr;
+  for (std::uint64_t left = block.covered; left != 0;) {
+    const std::uint64_t low = block.keys[std::countr_zero(left)] & kIdMask;
+    const std::uint64_t mask = samples_of(low, block.keys, left);
+    left &= ~mask;
+    const std::uint64_t id = id_of_key(low);
+    if (draw == nullptr || id - draw->first_id >= draw->primitive_count) draw = &frame.draw_of(id);
+    const MaterialDraw& of = scene.draws[draw->number];
+    const BoundMaterial& material = scene.material_of(of, id - draw->first_id);
+    const bool blends = material.alpha_mode == AlphaMode::blend;
+    const float opacity = frame_opacity * material.opacity;
+    if (!blends || has_constant_alpha(of, material)) {
+      const float a = clamped_alpha(blends ? opacity * material.base.w : opacity);
+      for (std::uint64_t m = mask; m != 0; m &= m - 1) set(std::countr_zero(m), a);
+      continue;
+    }
+    const MaterialTriangle t(scene, frame, *draw, id);
+    const Run run(mask, t.planes, block.x0, block.y0, block.points);
+    alignas(64) float own[64];
+    own_alpha(t, material, run, own);
+    for (int k = 0; k < run.n; ++k) set(run.lane[k], clamped_alpha(opacity * own[k]));
+  }
+  return masks;
+}
+
+void premultiply(const float* alpha, BlockColors& colors) noexcept {
+  const Floats d;
+  for (float* const channel : {colors.r, colors.g, colors.b, colors.a})
+    for (int i = 0; i < 64; i += kLanes) {
+      const F a = load(alpha + i);
+      hn::Store(hn::IfThenElseZero(a > set(0), load(channel + i) * a), d, channel + i);
+    }
+}
+
+constexpr MaterialKernels kTable{shade, alpha_test, alpha, premultiply};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace rastrum::raster
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+
+#if HWY_ONCE
+namespace rastrum::raster {
+
+const MaterialKernels& material_kernels(Isa isa) noexcept {
+  switch (isa) {
+    case Isa::scalar:
+      return scalar_material_kernels();
+#if HWY_TARGETS & HWY_SSE4
+    case Isa::sse4:
+      return N_SSE4::kTable;
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    case Isa::avx2:
+      return N_AVX2::kTable;
+#endif
+#if HWY_TARGETS & HWY_AVX3
+    case Isa::avx512:
+      return N_AVX3::kTable;
+#endif
+#if HWY_TARGETS & HWY_NEON
+    case Isa::neon:
+      return N_NEON::kTable;
+#endif
+    default:
+      return scalar_material_kernels();
+  }
+}
+
+}  // namespace rastrum::raster
+#endif

@@ -1,0 +1,115 @@
+// What the material shader and alpha know of a triangle and of a point in it, for the lanes of the
+// host (material_simd.cpp) and for the scalar form (material_scalar.hpp).
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include <rastrum/core/config.hpp>
+#include <rastrum/core/vec.hpp>
+#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/shade/material.hpp>
+
+namespace rastrum::raster {
+
+RASTRUM_HD_LEAF Vec3 times(const float (&m)[3][3], Vec3 v) {
+  return {m[0][0] * v.x + m[0][1] * v.y + m[0][2] * v.z,
+          m[1][0] * v.x + m[1][1] * v.y + m[1][2] * v.z,
+          m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z};
+}
+
+/// A triangle that is being shaded.
+struct MaterialTriangle {
+  const MaterialDraw& draw;
+  std::uint64_t index;  ///< within its draw
+  std::uint32_t vertex[3];
+  WeightPlanes planes;
+
+  /// `d`: that of primitive `id`, one of `frame`.
+  template <class Geometry>
+  RASTRUM_HD MaterialTriangle(const MaterialView& scene, const Geometry& frame, const Draw& d,
+                              std::uint64_t id)
+      : draw(scene.draws[d.number]),
+        index(id - d.first_id),
+        vertex{d.vertex(index, 0), d.vertex(index, 1), d.vertex(index, 2)},
+        planes(weight_planes(frame, d, index)) {}
+
+  template <class T>
+  [[nodiscard]] RASTRUM_HD T corner(const AttributeView<T>& attribute, int c) const {
+    return attribute.values[attribute.indices.empty()
+                                ? vertex[c]
+                                : attribute.indices[index * 3 + static_cast<std::size_t>(c)]];
+  }
+  /// Of the plane, of unit length, in the world; 0 without area.
+  [[nodiscard]] RASTRUM_HD Vec3 face_normal() const {
+    const auto& positions = draw.mesh.positions;
+    const Vec3 p = positions[vertex[0]];
+    return normalize(
+        times(draw.normal_matrix, cross(positions[vertex[1]] - p, positions[vertex[2]] - p)));
+  }
+};
+
+/// Whether a face with this normal is seen from behind at `px`, a point of the image. Each fragment
+/// decides for itself, so that its colour depends on no other.
+RASTRUM_HD_LEAF bool is_seen_from_behind(const ViewRays& rays, Vec3 face, float px, float py) {
+  return dot(face, rays.d + rays.dx * px + rays.dy * py) > 0;
+}
+
+/// An interpolated normal, of unit length and turned to the side of the face that is seen (`side`:
+/// −1 from behind, else 1); where it has no length, the face's.
+RASTRUM_HD_LEAF Vec3 turned(Vec3 n, Vec3 face, float side) {
+  const float square = n.x * n.x + n.y * n.y + n.z * n.z;
+  const float scale = 1 / std::sqrt(square);
+  const bool has = square > 0;
+  const Vec3 seen{face.x * side, face.y * side, face.z * side};
+  const float x = has ? n.x * scale : seen.x;
+  const float y = has ? n.y * scale : seen.y;
+  const float z = has ? n.z * scale : seen.z;
+  const float turn = x * seen.x + y * seen.y + z * seen.z < 0 ? -1.0F : 1.0F;
+  return {x * turn, y * turn, z * turn};
+}
+
+/// The directions in which a texture's picture goes right and up, in the world; (0, 0, 0) where the
+/// coordinates span nothing.
+struct TangentFrame {
+  Vec3 right{}, up{};
+
+  RASTRUM_HD explicit TangentFrame(const MaterialTriangle& t) {
+    const MeshView& mesh = t.draw.mesh;
+    if (mesh.texcoords.values.empty()) return;
+    const Vec3 p = mesh.positions[t.vertex[0]];
+    const Vec3 e1 = times(t.draw.to_world, mesh.positions[t.vertex[1]] - p);
+    const Vec3 e2 = times(t.draw.to_world, mesh.positions[t.vertex[2]] - p);
+    const Vec2 a = t.corner(mesh.texcoords, 0);
+    const Vec2 d1 = t.corner(mesh.texcoords, 1) - a, d2 = t.corner(mesh.texcoords, 2) - a;
+    const float sign = d1.x * d2.y - d2.x * d1.y < 0 ? -1.0F : 1.0F;
+    right = normalize((e1 * d2.y - e2 * d1.y) * sign);
+    up = normalize((e1 * d2.x - e2 * d1.x) * sign);  // −∂P/∂v
+  }
+  /// A normal that is bent by a texel of a normal map.
+  [[nodiscard]] RASTRUM_HD_LEAF Vec3 bend(Vec3 n, float r, float g, float b, float strength) const {
+    const float x = (r * 2 - 1) * strength;
+    const float y = (g * 2 - 1) * strength;
+    const float z = b * 2 - 1;
+    const Vec3 across = right - n * dot(n, right);
+    const Vec3 along = up - n * dot(n, up);
+    const Vec3 bent = n * z + normalize(across) * x + normalize(along) * y;
+    const float square = dot(bent, bent);
+    const float scale = 1 / std::sqrt(square);
+    return square > 0 ? bent * scale : n;
+  }
+};
+
+/// In [0, 1]; NaN becomes 0.
+RASTRUM_HD_LEAF float clamped_alpha(float a) {
+  return a > 0 ? (a < 1 ? a : 1.0F) : 0.0F;
+}
+
+/// Whether all fragments of a triangle have the alpha of its material.
+RASTRUM_HD inline bool has_constant_alpha(const MaterialDraw& draw, const BoundMaterial& material) {
+  return draw.mesh.colors.values.empty() && material.base_color == nullptr &&
+         material.alpha == nullptr;
+}
+
+}  // namespace rastrum::raster
