@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include <rastrum/core/enum.hpp>
 #include <rastrum/core/error.hpp>
 #include <rastrum/raster/cuda/rasterizer.hpp>
 #include <rastrum/raster/frame/rasterizer.hpp>
