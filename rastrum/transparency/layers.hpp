@@ -1,5 +1,5 @@
 // The visibility of transparency: keeps every fragment that may be seen and resolves all of a pixel
-// in order (papers 4 and 5; docs/architecture.md, Layers).
+// in order (papers 4 and 5; docs/layers.md).
 #pragma once
 
 #include <rastrum/raster/visibility/region.hpp>
