@@ -143,21 +143,16 @@ Inputs load_inputs(const std::vector<std::string>& inputs, const NormalOptions& 
                    Timeline& timeline, Progress& progress, std::string_view format) {
   Inputs all;
   std::vector<Scene> scenes;
-  bool any_look = false;
   for (const std::string& input : inputs) {
     progress.show("loading " + input);
     timeline.measure("load " + input, "load", [&] {
       Loaded loaded = load(input, format);
       all.has_materials |= loaded.has_materials;
-      any_look |= !loaded.has_materials && !loaded.scene.materials.empty();
       scenes.push_back(std::move(loaded.scene));
     });
   }
   std::uint64_t first_id = 0;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    // Beside an input that was painted the others look as they did.
-    if (any_look && !all.has_materials && scenes[i].materials.empty())
-      add_plain_material(scenes[i]);
     const std::uint64_t triangles = scenes[i].triangle_count();
     all.parts.push_back({inputs[i], first_id, triangles});
     first_id += triangles;
