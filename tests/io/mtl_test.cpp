@@ -150,7 +150,7 @@ TEST(Mtl, OddBytes) {
   EXPECT_EQ(read("newmtl " + huge).materials.at(0).name, huge);
   const std::string said = warning("newmtl m\nKd " + huge + "\n");
   EXPECT_LT(said.size(), 100U);
-  // All lines wrong, in time that grows with the file and not with its square.
+  // All lines wrong: still one warning.
   std::string wrong = "newmtl m\n";
   for (int i = 0; i < 200000; ++i) wrong += "Kd\n";
   EXPECT_NE(warning(wrong).find("(and 199999 more)"), std::string::npos);
