@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <vector>
 
-#include <rastrum/core/image.hpp>
-#include <rastrum/io/io.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/io.hpp>
 #include <rastrum/parallel/reduce_by_index.hpp>
 #include <rastrum/raster/draws/field.hpp>
 

@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <vector>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
 
 using rastrum::Vec2, rastrum::Vec3, rastrum::Vec4;
 

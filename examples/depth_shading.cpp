@@ -3,10 +3,10 @@
 #include <array>
 #include <cstdio>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 using rastrum::Vec4;
 

@@ -2,11 +2,11 @@
 // Turned by a quaternion half way between two poses.
 #include <cstdio>
 
-#include <rastrum/core/quaternion.hpp>
-#include <rastrum/io/io.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/transform.hpp>
 
 using rastrum::Vec4;
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <span>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 using rastrum::Vec3, rastrum::Vec4;
 

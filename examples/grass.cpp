@@ -2,10 +2,10 @@
 // loads the visibility keys of those before, so that the nearer wins.
 #include <algorithm>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 using rastrum::Vec3, rastrum::Vec4;
 using rastrum::raster::Draw, rastrum::raster::Fragment, rastrum::raster::VertexOutput;

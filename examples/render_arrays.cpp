@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/render.hpp>
 
 int main() {
   const std::uint32_t n = 200;  // quads a side

@@ -2,10 +2,10 @@
 // write.
 #include <cstdio>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/crease_normals.hpp>
-#include <rastrum/scene/fit.hpp>
+#include <rastrum/fit.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/mesh.hpp>
+#include <rastrum/render.hpp>
 
 int main(int argc, char** argv) {
   if (argc != 3) {

@@ -2,9 +2,9 @@
 // any type with + and * float; here a Vec3.
 #include <cstdio>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
 
 using rastrum::Vec3, rastrum::Vec4;
 

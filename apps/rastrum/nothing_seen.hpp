@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 namespace rastrum::cli {
 

@@ -10,9 +10,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/view_distance.hpp>
+#include <rastrum/camera.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/render.hpp>
 
 #include "arguments.hpp"
 #include "camera_path.hpp"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 namespace rastrum::cli {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/io.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "transparency.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 #include "inputs.hpp"
 #include "option.hpp"

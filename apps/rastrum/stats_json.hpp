@@ -6,7 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 namespace rastrum::cli {
 

@@ -11,9 +11,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <rastrum/io/io.hpp>
+#include <rastrum/io.hpp>
 #include <rastrum/parallel/exec.hpp>
-#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/terrain.hpp>
 
 #include "arguments.hpp"
 #include "camera_path.hpp"

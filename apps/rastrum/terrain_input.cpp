@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/io.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
 
 #include "arguments.hpp"
 

@@ -6,12 +6,9 @@
 #include <optional>
 #include <string>
 
-#include <rastrum/io/height_map.hpp>
-#include <rastrum/terrain/expression.hpp>
-#include <rastrum/terrain/functions.hpp>
-#include <rastrum/terrain/light.hpp>
-#include <rastrum/terrain/options.hpp>
-#include <rastrum/terrain/terrain.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/terrain.hpp>
+#include <rastrum/terrain_light.hpp>
 
 namespace rastrum::cli {
 

@@ -5,10 +5,10 @@
 #include <numbers>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/core/quaternion.hpp>
-#include <rastrum/io/io.hpp>
-#include <rastrum/scene/sprite.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/transform.hpp>
 
 #include "arguments.hpp"
 #include "inputs.hpp"

@@ -8,8 +8,8 @@
 
 #include <apps/command_line/parser.hpp>
 
-#include <rastrum/render/scene_on_terrain.hpp>
-#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/on_terrain.hpp>
+#include <rastrum/terrain.hpp>
 
 #include "scene_options.hpp"
 

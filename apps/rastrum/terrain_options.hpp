@@ -6,8 +6,8 @@
 
 #include <apps/command_line/parser.hpp>
 
-#include <rastrum/terrain/light.hpp>
-#include <rastrum/terrain/options.hpp>
+#include <rastrum/terrain.hpp>
+#include <rastrum/terrain_light.hpp>
 
 #include "option.hpp"
 #include "terrain_input.hpp"

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 #include "heatmap.hpp"
 #include "progress.hpp"

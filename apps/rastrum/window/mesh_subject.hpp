@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 #include "camera_path.hpp"
 #include "mesh_control.hpp"

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 #include "progress.hpp"
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/terrain.hpp>
 
 #include "subject.hpp"
 #include "terrain_control.hpp"

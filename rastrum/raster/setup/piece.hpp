@@ -3,7 +3,8 @@
 
 #include <cstdint>
 
-#include <rastrum/core/config.hpp>
+#include <rastrum/config.hpp>
+#include <rastrum/primitives.hpp>
 #include <rastrum/raster/draws/projection.hpp>
 
 namespace rastrum::raster {
@@ -33,13 +34,9 @@ struct alignas(16) Piece {
 };
 static_assert(sizeof(Piece) == 48);
 
-/// Fragments of this piece pass a fragment test (alpha mask, discard) before the maximum.
-inline constexpr std::uint32_t kTested = 1;
-/// What the piece is; neither: a triangle.
+/// Beside kTested and kTranslucent (primitives.hpp). What the piece is; neither: a triangle.
 inline constexpr std::uint32_t kLine = 2, kPoint = 4;
 inline constexpr int kLineWidthShift = 16;
-/// Fragments of this piece are blended: alpha is the shader's to say.
-inline constexpr std::uint32_t kTranslucent = 8;
 /// A triangle that was wound clockwise on the screen: where surfaces are closed, one of those that
 /// others hide.
 inline constexpr std::uint32_t kFacesAway = 16;
