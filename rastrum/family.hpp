@@ -26,6 +26,8 @@ struct Row {
   std::string visibility = "auto";
   raster::Tuning tuning{};     ///< of the rasterizer
   bool hierarchical_z = true;  ///< where the rasterizer has it; changes no pixel
+
+  bool operator==(const Row&) const = default;
 };
 
 /// Everything that a picture depends on but the scene, for who keeps it in one piece: a command

@@ -41,8 +41,8 @@ struct WeightPlanes;
 /// What a fragment function knows about a fragment.
 struct Fragment {
   int x = 0, y = 0;
-  Vec2 from_centre{0, 0};  ///< where in the pixel it is shaded, px
-  float depth = 0;         ///< reversed
+  Vec2 from_centre{0, 0};      ///< where in the pixel it is shaded, px
+  float depth = 0;             ///< reversed
   std::uint64_t id = 0;        ///< primitive in submission order
   std::uint64_t triangle = 0;  ///< or line or point, within its draw
   std::size_t draw = 0;        ///< among the frame's draws
@@ -172,8 +172,7 @@ class Program final : public ProgramStages {
       clip[i] = vertex_(static_cast<std::uint32_t>(first + i)).clip;
   }
 
-  void shade(const FragmentBatch& batch, Vec4* colors,
-             Vec4 (*extra)[64]) const noexcept override {
+  void shade(const FragmentBatch& batch, Vec4* colors, Vec4 (*extra)[64]) const noexcept override {
     for_each(batch, [&](std::size_t i, const VaryingType& v, const Fragment& fragment) {
       const Output output = shade_(v, fragment);
       if constexpr (std::is_convertible_v<Output, Vec4>) {

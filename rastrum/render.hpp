@@ -52,6 +52,8 @@ struct RendererOptions {
   Device device = Device::threads;
   int threads = 0;           ///< 0: all
   std::optional<Isa> isa{};  ///< none: the best this machine has
+
+  bool operator==(const RendererOptions&) const = default;
 };
 
 /// How one frame is to look.
@@ -69,8 +71,8 @@ struct FrameOptions {
   int samples = 1;  ///< a pixel: 1, 4, 8 or 16, at D3D11's standard positions
 };
 
-/// Throws Error{invalid_argument} for a number or an enum's value out of range and a background that
-/// is not finite: what each frame begins with, for who wants to know before.
+/// Throws Error{invalid_argument} for a number or an enum's value out of range and a background
+/// that is not finite: what each frame begins with, for who wants to know before.
 void check(const FrameOptions& options);
 
 namespace raster {

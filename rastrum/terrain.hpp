@@ -182,6 +182,8 @@ struct TerrainRendererOptions {
   Device device = Device::threads;
   int threads = 0;           ///< 0: all
   std::optional<Isa> isa{};  ///< none: the best this machine has
+
+  bool operator==(const TerrainRendererOptions&) const = default;
 };
 
 /// Images to fill; an empty view is not computed. All must have the frame's size.

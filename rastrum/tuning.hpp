@@ -19,6 +19,8 @@ struct Tuning {
   Schedule schedule = Schedule::automatic;   ///< of `binned`
   BlockOrder order = BlockOrder::row_major;  ///< in which tiles are walked
   SmallPath small_path = SmallPath::blocks;  ///< of `hybrid`
+
+  bool operator==(const Tuning&) const = default;
 };
 
 }  // namespace rastrum::raster

@@ -12,6 +12,9 @@
 
 namespace rastrum::cli {
 
+/// Everything that a picture of a terrain depends on but terrain, light and camera.
+struct TerrainLook : terrain::TerrainOptions, terrain::TerrainRendererOptions {};
+
 struct TerrainInput {
   std::optional<std::filesystem::path> height, color;
   io::RawSize raw_size;                ///< of raw heights
@@ -30,8 +33,7 @@ class LoadedTerrain {
   explicit LoadedTerrain(const TerrainInput& input);
 
   /// What is drawn. Where there are no colours, they are by height and slopes are shaded.
-  [[nodiscard]] terrain::Terrain lit(terrain::Light light,
-                                     const terrain::TerrainOptions& options) const;
+  [[nodiscard]] terrain::Terrain lit(terrain::Light light, const TerrainLook& options) const;
 
   [[nodiscard]] bool is_map() const { return !map_.heights.empty(); }
   [[nodiscard]] int width() const { return is_map() ? map_.heights.width() : 1024; }

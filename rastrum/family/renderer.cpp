@@ -210,7 +210,7 @@ Renderer make_renderer(const RendererOptions& options, const Row& row) {
   // The reference is plain C++ on one thread, whatever else the machine could do.
   const bool plain = row.rasterizer == kReference;
   auto make = [row](const DrawerOptions& how, MemoryAccount& memory,
-                           parallel::Threads* threads) -> std::unique_ptr<raster::FrameDrawer> {
+                    parallel::Threads* threads) -> std::unique_ptr<raster::FrameDrawer> {
     if (threads == nullptr) {
       if (row.rasterizer != "auto" && row.rasterizer != kReference)
         throw Error(Errc::invalid_argument,

@@ -66,8 +66,7 @@ class OnDevice final : public raster::FrameDrawer {
     DeviceChoice choice = choose(request);
     if (choice.device == Device::cuda) {
       FrameStats stats = frames_.device->render(request);
-      if (!frames_.why.empty())
-        stats.why = std::string(frames_.why).append("; ").append(stats.why);
+      if (!frames_.why.empty()) stats.why = std::string(frames_.why).append("; ").append(stats.why);
       if (stats.device_why.empty()) stats.device_why = std::move(choice.why);
       return stats;
     }
@@ -146,7 +145,9 @@ std::unique_ptr<raster::FrameDrawer> make_drawer(const DrawerOptions& options,
   };
   if (options.device != Device::cuda) return make_fast();
   return make_device_drawer(
-      {raster::make_cuda_rasterizer({}, {}, options.memory_limit, memory, *threads), {}, {},
+      {raster::make_cuda_rasterizer({}, {}, options.memory_limit, memory, *threads),
+       {},
+       {},
        make_fast},
       options, *threads);
 }

@@ -225,8 +225,9 @@ void Renderer::Impl::make_drawer() {
 }
 
 Renderer::Renderer(RendererOptions options)
-    : Renderer(std::make_unique<Impl>(
-          options, choose_device(options.device, raster::draws_on_cuda()), false, rastrum::make_drawer)) {}
+    : Renderer(std::make_unique<Impl>(options,
+                                      choose_device(options.device, raster::draws_on_cuda()), false,
+                                      rastrum::make_drawer)) {}
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
@@ -242,9 +243,8 @@ Renderer RendererAccess::make(RendererOptions options, DeviceChoice choice, bool
       std::make_unique<Renderer::Impl>(options, std::move(choice), plain, std::move(make)));
 }
 
-FrameStats Renderer::render(const SceneView& scene, const Camera& camera,
-                            const FrameOptions& frame, const Targets& targets,
-                            std::stop_token stop) {
+FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
+                            const Targets& targets, std::stop_token stop) {
   const parallel::Turn turn(impl_->one_at_a_time, stop);
   return impl_->render(scene, camera, {frame, targets});
 }
@@ -257,9 +257,9 @@ FrameStats Renderer::render_in_place(const SceneView& scene, const Camera& camer
 }
 
 FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draws,
-                                const raster::BlockShader* shader,
-                                const raster::FragmentTest* test, const FrameOptions& frame,
-                                const Targets& targets, std::stop_token stop) {
+                                const raster::BlockShader* shader, const raster::FragmentTest* test,
+                                const FrameOptions& frame, const Targets& targets,
+                                std::stop_token stop) {
   Renderer::Impl& impl = *renderer.impl_;
   const parallel::Turn turn(impl.one_at_a_time, stop);
   return impl.draw(draws, shader, test, {frame, targets});
@@ -271,8 +271,7 @@ FrameStats Renderer::draw(std::span<const raster::ProgramDraw> draws, const Fram
   return RendererAccess::draw(*this, own, nullptr, nullptr, frame, targets, std::move(stop));
 }
 
-FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera,
-                                  const Call& call) {
+FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, const Call& call) {
   const FrameOptions& o = call.frame;
   check(o);
   const Shader taken = shader_for(o.shader, scene);

@@ -53,11 +53,11 @@ FrameStats SceneOnTerrain::draw(const TerrainScene& given, const FrameOptions& f
   const parallel::Turn turn(impl_->one_at_a_time, stop);
   const int width = frame.width, height = frame.height;
   if (options.width != width || options.height != height)
-    throw Error(Errc::invalid_argument,
-                "what stands on a terrain is drawn at " + std::to_string(width) + "x" +
-                    std::to_string(height) + ", the terrain at " + std::to_string(options.width) +
-                    "x" + std::to_string(options.height) +
-                    "; give FrameOptions and TerrainOptions the same size");
+    throw Error(Errc::invalid_argument, "what stands on a terrain is drawn at " +
+                                            std::to_string(width) + "x" + std::to_string(height) +
+                                            ", the terrain at " + std::to_string(options.width) +
+                                            "x" + std::to_string(options.height) +
+                                            "; give FrameOptions and TerrainOptions the same size");
   if (picture.depth.empty())
     throw Error(Errc::invalid_argument,
                 "to stand on a terrain its depth is needed: draw both with TerrainTargets::depth");

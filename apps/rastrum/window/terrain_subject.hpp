@@ -17,7 +17,7 @@ class TerrainSubject final : public Subject {
  public:
   /// What the panel changes, beside the pose.
   struct Settings {
-    terrain::TerrainOptions options;
+    TerrainLook options;
     terrain::Light light;
     bool sky_dims = true;
   };

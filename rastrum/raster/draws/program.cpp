@@ -22,8 +22,7 @@ class Batch {
     FragmentLocator locator(frame);
     for (std::uint64_t m = mask; m != 0; m &= m - 1) {
       elements_[count_] = std::countr_zero(m);
-      std::construct_at(fragments_ + count_,
-                        locator.locate(id, x0, y0, elements_[count_], points));
+      std::construct_at(fragments_ + count_, locator.locate(id, x0, y0, elements_[count_], points));
       ++count_;
     }
   }
@@ -102,7 +101,8 @@ struct ProgramStages::Hooks final : VertexSource, BlockShader, FragmentTest {
     for (Fragment& f : fragments) f.depth = depth_at(piece, f.x, f.y);
     std::uint64_t kept = block.mask;
     for (std::uint64_t holes = program.discarded(batch.view()); holes != 0; holes &= holes - 1)
-      kept &= ~(std::uint64_t{1} << batch.element(static_cast<std::size_t>(std::countr_zero(holes))));
+      kept &=
+          ~(std::uint64_t{1} << batch.element(static_cast<std::size_t>(std::countr_zero(holes))));
     return kept;
   }
 
