@@ -8,11 +8,11 @@
 #include <unordered_map>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/io.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/scene.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/scene.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "contest.hpp"
 #include "scenes.hpp"
@@ -204,21 +204,16 @@ Camera whole_view(const Mesh& mesh) {
 FragmentMatch match_fragments(const Mesh& mesh, int width, int height, std::uint64_t fragments,
                               int threads) {
   const Camera fitted = whole_view(mesh);
-  RenderOptions options;
-  options.width = width;
-  options.height = height;
-  options.threads = threads;
-  options.hierarchical_z = false;  // what is hidden counts too
-  Renderer renderer(options);
+  // What is hidden counts too.
+  Renderer renderer = family::make_renderer({.threads = threads}, {.hierarchical_z = false});
   Image<float> depth(width, height);
-  Targets targets;
-  targets.depth = depth.view();
   const Vec3 back = fitted.eye - fitted.target;
   const auto look = [&](double distance) {
     FragmentMatch match{fitted, 0};
     match.camera.eye = fitted.target + back * static_cast<float>(distance);
     match.camera.near_plane = length(back) * 1e-3F;
-    match.found = draw(renderer, {mesh.view(), match.camera, width, height}, targets).fragments;
+    match.found =
+        draw(renderer, {mesh.view(), match.camera, width, height}, {}, {.depth = depth}).fragments;
     return match;
   };
   // Nearer than 0.6 the eye would be inside of a ball.

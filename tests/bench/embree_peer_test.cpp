@@ -7,8 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/render.hpp>
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::bench {
 namespace {

@@ -5,6 +5,8 @@
 
 #include <rastrum/terrain/setup.hpp>
 
+#include "tests/support/painter.hpp"
+
 namespace rastrum::terrain {
 namespace {
 
@@ -12,14 +14,14 @@ Terrain flat(int edge) {
   return Terrain(HeightMap{Image<float>(edge, edge), Image<Rgba8>(edge, edge)});
 }
 
-FrameWork work(const Terrain& map, const TerrainOptions& options) {
+FrameWork work(const Terrain& map, const TerrainLook& options) {
   Image<Rgba8> picture(options.width, options.height);
   return device_work(map, options, {picture.view(), {}});
 }
 
 TEST(TerrainDeviceWork, CountsImagesAndAShareOfTheMap) {
   const Terrain map = flat(64);
-  TerrainOptions options;
+  TerrainLook options;
   options.width = 100;
   options.height = 50;
   options.distance = 200;
@@ -33,7 +35,7 @@ TEST(TerrainDeviceWork, CountsImagesAndAShareOfTheMap) {
 
 TEST(TerrainDeviceWork, PicturesThatComeBackAreTheThreadsAndWordsTheDevices) {
   const Terrain map = flat(256);
-  TerrainOptions options;
+  TerrainLook options;
   options.width = 320;
   options.height = 200;
   const auto worth = [&](int threads) {
