@@ -8,7 +8,7 @@
 
 #include <bench/cuda/in_place.hpp>
 #include <rastrum/image.hpp>
-#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/render/access.hpp>
 
 #include "attempt.hpp"
@@ -163,14 +163,14 @@ FrameStats draw(Renderer& renderer, const Subject& subject, FrameOptions frame,
     return renderer.render({{&instance, 1}, {}, {}}, subject.camera, frame, targets);
   }
   const Mat4d to_clip = world_to_clip(subject.camera, subject.width, subject.height);
-  const raster::TransformSource source(subject.mesh.positions, to_clip);
+  const raster::MatrixVertices source(subject.mesh.positions, to_clip);
   raster::Draw draw;
-  draw.source = &source;
+  draw.source = source;
   draw.vertex_count = subject.mesh.positions.size();
   draw.indices = subject.mesh.indices;
   draw.primitive_count = subject.mesh.triangle_count();
   const raster::BlockShader& shader = subject.shader != nullptr ? *subject.shader : depth_cubed();
-  return RendererAccess::draw(renderer, {&draw, 1}, &shader, nullptr, frame, targets);
+  return RendererAccess::draw(renderer, {&draw, 1}, shader, {}, frame, targets);
 }
 
 Fingerprint fingerprint(const Subject& subject, const Entrant& entrant) {

@@ -13,6 +13,7 @@
 #include <rastrum/family.hpp>
 #include <rastrum/mesh.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/render.hpp>
 
 #include "measure.hpp"
 #include "tables/comparison.hpp"

@@ -16,9 +16,9 @@ struct AxisInfo {
   std::string name, description;
 };
 /// `reference`, the plain one, then those that combine with every visibility.
-[[nodiscard]] const std::vector<AxisInfo>& rasterizers();
+[[nodiscard]] const std::vector<AxisInfo>& rasterizer_axis();
 /// The first is the default.
-[[nodiscard]] const std::vector<AxisInfo>& visibilities();
+[[nodiscard]] const std::vector<AxisInfo>& visibility_axis();
 
 /// A point of the table. On a device there is `by-size`, too, its default.
 struct Row {

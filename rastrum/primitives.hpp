@@ -20,6 +20,9 @@ enum class Winding : std::uint8_t { counter_clockwise, clockwise, either };
 /// taken; fragments are blended: alpha is the shader's to say.
 inline constexpr std::uint32_t kTested = 1, kTranslucent = 8;
 
+/// How many outputs a program may have beside its colour.
+inline constexpr std::size_t kMaxExtraTargets = 7;
+
 /// Wider lines and larger points are refused.
 inline constexpr float kMaxLineWidth = 4096, kMaxPointSize = 4096;
 

@@ -70,12 +70,10 @@ struct VertexOutput {
 /// Discards nothing.
 struct KeepAll {};
 
-/// How many outputs a program may have beside its colour.
-inline constexpr std::size_t kMaxExtraTargets = 7;
-
 struct Draw;
 class BlockShader;
 class FragmentTest;
+class Shading;
 class ProgramStages;
 
 /// Primitives whose vertices and colours are a program's, which must outlive the frame.
@@ -100,6 +98,7 @@ class ProgramStages {
 
   /// As the pipeline's own hooks; the test is null where the program discards nothing.
   operator const BlockShader&() const;
+  operator Shading() const;
   [[nodiscard]] const FragmentTest* test() const;
 
  protected:

@@ -102,9 +102,8 @@ class Renderer {
   /// are those of the nearest surface, whatever its alpha.
   /// Meshes without normals are shaded with face normals (see vertex_normals for smooth ones).
   /// Cost: O(vertices + triangles + covered samples). Throws Error{invalid_argument} as check(), or
-  /// naming an instance whose index is out of
-  /// range, or a target of another size or whose rows overlap, Error{out_of_memory} with what was
-  /// asked for, parallel::Stopped (above).
+  /// naming an instance whose index is out of range, or a target of another size or whose rows
+  /// overlap, Error{out_of_memory} with what was asked for, parallel::Stopped (above).
   FrameStats render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
                     const Targets& targets, std::stop_token stop = {});
 

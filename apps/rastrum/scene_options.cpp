@@ -200,14 +200,14 @@ void add_camera_options(Parser& app, SceneArguments& a) {
 }
 
 void add_rasterizer_options(Parser& app, SceneArguments& a, const char* group) {
-  add(app, "--rasterizer", "NAME", names_of(family::rasterizers()) + " (auto)",
+  add(app, "--rasterizer", "NAME", names_of(family::rasterizer_axis()) + " (auto)",
       [&a](const std::string& s) {
-        a.render.rasterizer = check_axis("--rasterizer", family::rasterizers(), s);
+        a.render.rasterizer = check_axis("--rasterizer", family::rasterizer_axis(), s);
       })
       ->group(group);
-  add(app, "--visibility", "NAME", names_of(family::visibilities()) + " (auto)",
+  add(app, "--visibility", "NAME", names_of(family::visibility_axis()) + " (auto)",
       [&a](const std::string& s) {
-        a.render.visibility = check_axis("--visibility", family::visibilities(), s);
+        a.render.visibility = check_axis("--visibility", family::visibility_axis(), s);
       })
       ->group(group);
   add(app, "--memory-limit", "BYTES",

@@ -7,9 +7,12 @@
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/family.hpp>
-#include <rastrum/raster/frame/rasterizer.hpp>
+#include <rastrum/family/blend/approximations.hpp>
+#include <rastrum/family/row.hpp>
+#include <rastrum/family/visibility/layers.hpp>
+#include <rastrum/raster/frame/fast_path.hpp>
 #include <rastrum/render/access.hpp>
-#include <rastrum/transparency/layers.hpp>
+#include <rastrum/transparency/layered_path.hpp>
 
 namespace rastrum::family {
 namespace {
@@ -32,15 +35,13 @@ const Of& find_row(std::span<const Of> rows, std::string_view wanted, std::strin
                                           .append(known));
 }
 
-const raster::CoverageRow& coverage_of(const Row& row, const char* others) {
-  return row.rasterizer == "auto"
-             ? raster::coverages().front()
-             : find_row(raster::coverages(), row.rasterizer, "rasterizer", others);
+const CoverageRow& coverage_of(const Row& row, const char* others) {
+  return row.rasterizer == "auto" ? coverages().front()
+                                  : find_row(coverages(), row.rasterizer, "rasterizer", others);
 }
-const raster::Visibility& visibility_of(const Row& row) {
-  return row.visibility == "auto"
-             ? raster::visibilities().front()
-             : find_row(raster::visibilities(), row.visibility, "visibility", "auto");
+const Visibility& visibility_of(const Row& row) {
+  return row.visibility == "auto" ? visibilities().front()
+                                  : find_row(visibilities(), row.visibility, "visibility", "auto");
 }
 
 [[noreturn]] void refuse_visibility() {
@@ -50,11 +51,11 @@ const raster::Visibility& visibility_of(const Row& row) {
 }
 
 /// Layers want a thread that owns a tile, and are a visibility themselves.
-void check_layers(const raster::CoverageRow& coverage, bool visibility_is_asked_for) {
+void check_layers(const CoverageRow& coverage, bool visibility_is_asked_for) {
   if (visibility_is_asked_for) refuse_visibility();
   if (coverage.owns_tiles) return;
   std::string owners;
-  for (const raster::CoverageRow& row : raster::coverages())
+  for (const CoverageRow& row : coverages())
     if (row.owns_tiles) owners.append(owners.empty() ? "" : ", ").append(row.name);
   throw Error(
       Errc::invalid_argument,
@@ -64,52 +65,40 @@ void check_layers(const raster::CoverageRow& coverage, bool visibility_is_asked_
           .append(owners));
 }
 
-/// A coverage and a visibility, on the CPU's threads.
-class OnThreads final : public raster::FrameDrawer {
- public:
-  OnThreads(const Row& row, std::uint64_t memory_limit, MemoryAccount& memory,
-            parallel::Threads& threads)
-      : row_(row),
-        coverage_(coverage_of(row, "auto, reference")),
-        memory_limit_(memory_limit),
-        memory_(memory),
-        threads_(threads),
-        opaque_(make(visibility_of(row))) {}
+/// A coverage and a visibility, on the CPU's threads. The renderer's own path is the table's first
+/// point.
+std::unique_ptr<raster::FrameDrawer> make_on_threads(const Row& row, std::uint64_t memory_limit,
+                                                     MemoryAccount& memory,
+                                                     parallel::Threads& threads) {
+  const CoverageRow& coverage = coverage_of(row, "auto, reference");
+  const Visibility& visibility = visibility_of(row);
+  // Refuses tunings that were not compiled.
+  static_cast<void>(coverage.make(row.tuning, memory));
+  const bool is_first = coverage.name == coverages().front().name;
+  const bool is_fast = is_first && visibility.name == visibilities().front().name &&
+                       row.hierarchical_z && row.tuning.order == raster::BlockOrder::row_major;
+  const bool auto_rasterizer = row.rasterizer == "auto", auto_visibility = row.visibility == "auto";
+  return make_drawer_of(
+      {[=, &memory, &coverage, &visibility, tuning = row.tuning] {
+         return is_fast ? raster::make_fast_path(memory)
+                        : make_row(coverage, visibility, tuning, memory);
+       },
+       [=, &memory, &coverage, tuning = row.tuning] {
+         check_layers(coverage, !auto_visibility);
+         return is_first ? transparency::make_layered_path(memory, make_blend)
+                         : make_row(coverage, layers(), tuning, memory);
+       },
+       why(auto_rasterizer, auto_visibility, false), why(auto_rasterizer, auto_visibility, true)},
+      memory_limit, memory, &threads);
+}
 
-  [[nodiscard]] FrameStats draw(raster::FrameRequest& request) override {
-    const bool layers = needs_layers(request), by_auto = row_.visibility == "auto";
-    if (layers) {
-      check_layers(coverage_, !by_auto);
-      if (!layered_) layered_ = make(transparency::layers());
-    }
-    request.tuning = row_.tuning;
-    request.hierarchical_z = row_.hierarchical_z;
-    FrameStats stats = (layers ? layered_ : opaque_)->render(request);
-    stats.why = why(row_.rasterizer == "auto", by_auto, layers);
-    return stats;
-  }
-
- private:
-  [[nodiscard]] std::unique_ptr<raster::Rasterizer> make(const raster::Visibility& visibility) {
-    return std::make_unique<raster::Rasterizer>(coverage_, visibility, row_.tuning, memory_limit_,
-                                                memory_, threads_);
-  }
-
-  Row row_;
-  const raster::CoverageRow& coverage_;
-  std::uint64_t memory_limit_;
-  MemoryAccount& memory_;
-  parallel::Threads& threads_;
-  std::unique_ptr<raster::Rasterizer> opaque_, layered_;
-};
-
-/// Sets what of a frame is the row's for the drawer of a device.
+/// Sets what of a frame is the row's.
 class WithTuning final : public raster::FrameDrawer {
  public:
-  WithTuning(const Row& row, std::unique_ptr<raster::FrameDrawer> drawer)
-      : row_(row), drawer_(std::move(drawer)) {}
+  WithTuning(const Row& row, bool on_device, std::unique_ptr<raster::FrameDrawer> drawer)
+      : row_(row), on_device_(on_device), drawer_(std::move(drawer)) {}
   [[nodiscard]] FrameStats draw(raster::FrameRequest& request) override {
-    if (needs_layers(request) && row_.visibility != "auto") refuse_visibility();
+    if (on_device_ && needs_layers(request) && row_.visibility != "auto") refuse_visibility();
     request.tuning = row_.tuning;
     request.hierarchical_z = row_.hierarchical_z;
     return drawer_->draw(request);
@@ -117,6 +106,7 @@ class WithTuning final : public raster::FrameDrawer {
 
  private:
   Row row_;
+  bool on_device_;
   std::unique_ptr<raster::FrameDrawer> drawer_;
 };
 
@@ -128,8 +118,8 @@ struct OnCuda {
 };
 
 OnCuda choose_on_cuda(const Row& row, MemoryAccount& memory) {
-  const std::string_view atomic = raster::visibilities().front().name;
-  const raster::Visibility& visibility = visibility_of(row);
+  const std::string_view atomic = visibilities().front().name;
+  const Visibility& visibility = visibility_of(row);
   if (row.rasterizer == kBySize && visibility.name != atomic)
     throw Error(Errc::invalid_argument, std::string("by-size draws by '")
                                             .append(atomic)
@@ -141,10 +131,10 @@ OnCuda choose_on_cuda(const Row& row, MemoryAccount& memory) {
     return {};
   if (row.rasterizer == "auto")
     return {"hybrid", visibility.name, "auto takes hybrid, for by-size has no other visibility"};
-  const raster::CoverageRow& coverage = coverage_of(row, "auto, reference, by-size");
+  const CoverageRow& coverage = coverage_of(row, "auto, reference, by-size");
   // Refuses sizes of bins and tiles that the host refuses.
   static_cast<void>(coverage.make(row.tuning, memory));
-  if (coverage.name == raster::coverages().front().name)
+  if (coverage.name == coverages().front().name)
     return {{}, {}, "'grouped' keeps its groups and bins in a core's cache: it is the CPU's", true};
   if (row.tuning.schedule == raster::Schedule::persistent)
     return {{}, {}, "the persistent schedule of 'binned' is the CPU's", true};
@@ -166,9 +156,9 @@ std::unique_ptr<raster::FrameDrawer> make_on_cuda(const Row& row, const DrawerOp
   Row on_threads = row;
   if (row.rasterizer == kBySize) on_threads.rasterizer = "auto";
   frames.make_host = [on_threads, limit = options.memory_limit, &memory, &threads] {
-    return std::make_unique<OnThreads>(on_threads, limit, memory, threads);
+    return make_on_threads(on_threads, limit, memory, threads);
   };
-  return std::make_unique<WithTuning>(row, make_device_drawer(std::move(frames), options, threads));
+  return make_device_drawer(std::move(frames), options, threads);
 }
 
 void check(const raster::Tuning& tuning) {
@@ -179,22 +169,22 @@ void check(const raster::Tuning& tuning) {
 
 }  // namespace
 
-const std::vector<AxisInfo>& rasterizers() {
+const std::vector<AxisInfo>& rasterizer_axis() {
   static const std::vector<AxisInfo> infos = [] {
     std::vector<AxisInfo> list{{std::string(kReference),
                                 "rows of triangles in order into one visibility buffer; one "
                                 "thread, plain C++"}};
-    for (const raster::CoverageRow& row : raster::coverages())
+    for (const CoverageRow& row : coverages())
       list.push_back({std::string(row.name), std::string(row.description)});
     return list;
   }();
   return infos;
 }
 
-const std::vector<AxisInfo>& visibilities() {
+const std::vector<AxisInfo>& visibility_axis() {
   static const std::vector<AxisInfo> infos = [] {
     std::vector<AxisInfo> list;
-    for (const raster::Visibility& row : raster::visibilities())
+    for (const Visibility& row : visibilities())
       list.push_back({std::string(row.name), std::string(row.description)});
     return list;
   }();
@@ -217,10 +207,13 @@ Renderer make_renderer(const RendererOptions& options, const Row& row) {
                     std::string("the rasterizer '")
                         .append(row.rasterizer)
                         .append("' needs --device threads; serial has 'reference'"));
-      return make_drawer(how, memory, threads);
+      return make_reference_drawer(how.memory_limit, memory, make_blend);
     }
-    if (how.device == Device::cuda) return make_on_cuda(row, how, memory, *threads);
-    return std::make_unique<OnThreads>(row, how.memory_limit, memory, *threads);
+    const bool on_device = how.device == Device::cuda;
+    return std::make_unique<WithTuning>(
+        row, on_device,
+        on_device ? make_on_cuda(row, how, memory, *threads)
+                  : make_on_threads(row, how.memory_limit, memory, *threads));
   };
   return RendererAccess::make(options, std::move(choice), plain, std::move(make));
 }

@@ -18,11 +18,11 @@ struct RendererAccess {
   [[nodiscard]] static Renderer make(RendererOptions options, DeviceChoice choice, bool plain,
                                      MakeFrameDrawer make);
 
-  /// Draws of any vertex source, each shaded and tested by its own functions or, where it has none,
-  /// by `shader` and `test` (null: none). So programs and built-in shaders meet in one frame;
+  /// Draws of any vertex stage, each shaded and tested by its own functions or, where it has none,
+  /// by `shading` and `test`. So programs and built-in shaders meet in one frame;
   /// outputs that a draw's shader does not have are 0. Otherwise as Renderer::draw.
   static FrameStats draw(Renderer& renderer, std::span<raster::Draw> draws,
-                         const raster::BlockShader* shader, const raster::FragmentTest* test,
+                         const raster::Shading& shading, const raster::Testing& test,
                          const FrameOptions& frame, const Targets& targets,
                          std::stop_token stop = {});
 };

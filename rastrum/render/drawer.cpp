@@ -5,54 +5,47 @@
 
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/device_estimate.hpp>
-#include <rastrum/raster/frame/rasterizer.hpp>
+#include <rastrum/raster/frame/driver.hpp>
+#include <rastrum/raster/frame/fast_path.hpp>
 #include <rastrum/raster/frame/reference.hpp>
 #include <rastrum/render/device_work.hpp>
-#include <rastrum/transparency/layers.hpp>
+#include <rastrum/transparency/layered_path.hpp>
 #include <rastrum/transparency/reference.hpp>
 
 namespace rastrum {
 namespace {
 
-class Reference final : public raster::FrameDrawer {
+class ByNeed final : public raster::FrameDrawer {
  public:
-  explicit Reference(MemoryAccount& memory) : memory_(memory) {}
-  [[nodiscard]] FrameStats draw(raster::FrameRequest& request) override {
-    return needs_layers(request) ? transparency::render_reference(request, memory_)
-                                 : raster::render_reference(request, memory_);
-  }
-
- private:
-  MemoryAccount& memory_;
-};
-
-/// The one fast path, with exact layers where keys are not enough.
-class Fast final : public raster::FrameDrawer {
- public:
-  Fast(std::uint64_t memory_limit, MemoryAccount& memory, parallel::Threads& threads)
-      : memory_limit_(memory_limit),
+  ByNeed(Methods methods, std::uint64_t memory_limit, MemoryAccount& memory,
+         parallel::Threads* threads)
+      : methods_(std::move(methods)),
+        memory_limit_(memory_limit),
         memory_(memory),
-        threads_(threads),
-        opaque_(make(raster::visibilities().front())) {}
+        threads_(threads) {}
 
   [[nodiscard]] FrameStats draw(raster::FrameRequest& request) override {
     const bool layers = needs_layers(request);
-    if (layers && !layered_) layered_ = make(transparency::layers());
-    FrameStats stats = (layers ? layered_ : opaque_)->render(request);
-    stats.why = why(true, true, layers);
+    std::unique_ptr<raster::FrameDriver>& driver = layers ? layers_ : keys_;
+    if (!driver)
+      driver = std::make_unique<raster::FrameDriver>((layers ? methods_.layers : methods_.keys)(),
+                                                     layers && threads_ == nullptr
+                                                         ? 0  // its lists cannot be cut
+                                                         : memory_limit_,
+                                                     memory_, threads_);
+    FrameStats stats = driver->draw(request);
+    if (const std::string& reason = layers ? methods_.why_layers : methods_.why_keys;
+        !reason.empty())
+      stats.why = reason;
     return stats;
   }
 
  private:
-  [[nodiscard]] std::unique_ptr<raster::Rasterizer> make(const raster::Visibility& visibility) {
-    return std::make_unique<raster::Rasterizer>(raster::coverages().front(), visibility,
-                                                raster::Tuning{}, memory_limit_, memory_, threads_);
-  }
-
+  Methods methods_;
   std::uint64_t memory_limit_;
   MemoryAccount& memory_;
-  parallel::Threads& threads_;
-  std::unique_ptr<raster::Rasterizer> opaque_, layered_;
+  parallel::Threads* threads_;
+  std::unique_ptr<raster::FrameDriver> keys_, layers_;
 };
 
 class OnDevice final : public raster::FrameDrawer {
@@ -117,17 +110,30 @@ bool needs_layers(const raster::FrameRequest& request) {
 std::string why(bool rasterizer, bool visibility, bool layers) {
   std::string text;
   if (rasterizer)
-    text.append("auto takes ")
-        .append(raster::coverages().front().name)
-        .append(": threads own bins, whose keys stay in cache and which skip what is hidden");
+    text =
+        "auto takes grouped: threads own bins, whose keys stay in cache and which skip what is "
+        "hidden";
   if (layers)
     text.append(text.empty() ? "" : "; ")
         .append("layers, because something is translucent or pixels have several samples");
   else if (visibility)
     text.append(text.empty() ? "auto takes " : "; ")
-        .append(raster::visibilities().front().name)
-        .append(": a plain maximum where a thread owns the keys, and shading once a pixel");
+        .append("atomic: a plain maximum where a thread owns the keys, and shading once a pixel");
   return text.empty() ? "as asked for" : text;
+}
+
+std::unique_ptr<raster::FrameDrawer> make_drawer_of(Methods methods, std::uint64_t memory_limit,
+                                                    MemoryAccount& memory,
+                                                    parallel::Threads* threads) {
+  return std::make_unique<ByNeed>(std::move(methods), memory_limit, memory, threads);
+}
+
+std::unique_ptr<raster::FrameDrawer> make_reference_drawer(std::uint64_t memory_limit,
+                                                           MemoryAccount& memory,
+                                                           transparency::MakeBlend make_blend) {
+  return make_drawer_of({raster::make_reference,
+                         [make_blend] { return transparency::make_layered_reference(make_blend); }},
+                        memory_limit, memory, nullptr);
 }
 
 std::unique_ptr<raster::FrameDrawer> make_device_drawer(DeviceFrames frames,
@@ -139,9 +145,14 @@ std::unique_ptr<raster::FrameDrawer> make_device_drawer(DeviceFrames frames,
 std::unique_ptr<raster::FrameDrawer> make_drawer(const DrawerOptions& options,
                                                  MemoryAccount& memory,
                                                  parallel::Threads* threads) {
-  if (threads == nullptr) return std::make_unique<Reference>(memory);
+  if (threads == nullptr)
+    return make_reference_drawer(options.memory_limit, memory, transparency::make_blend);
   const auto make_fast = [&memory, threads, limit = options.memory_limit] {
-    return std::make_unique<Fast>(limit, memory, *threads);
+    return make_drawer_of(
+        {[&memory] { return raster::make_fast_path(memory); },
+         [&memory] { return transparency::make_layered_path(memory, transparency::make_blend); },
+         why(true, true, false), why(true, true, true)},
+        limit, memory, threads);
   };
   if (options.device != Device::cuda) return make_fast();
   return make_device_drawer(

@@ -11,8 +11,9 @@
 #include <rastrum/device.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/cuda/rasterizer.hpp>
-#include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/frame/frame_drawer.hpp>
+#include <rastrum/raster/frame/method.hpp>
+#include <rastrum/transparency/blend.hpp>
 
 namespace rastrum {
 
@@ -42,6 +43,20 @@ using MakeFrameDrawer = std::function<std::unique_ptr<raster::FrameDrawer>(
 /// for all frames: on no row of `rastrum bench auto` another pair was faster by enough to choose by
 /// it (docs/decisions/0010).
 [[nodiscard]] std::string why(bool rasterizer, bool visibility, bool layers);
+
+/// The ways to draw a frame: where keys are enough, and where they are not.
+struct Methods {
+  std::function<std::unique_ptr<raster::Method>()> keys, layers;
+  std::string why_keys{}, why_layers{};  ///< FrameStats::why
+};
+/// Frames by these, each made when a frame first needs it.
+[[nodiscard]] std::unique_ptr<raster::FrameDrawer> make_drawer_of(Methods methods,
+                                                                  std::uint64_t memory_limit,
+                                                                  MemoryAccount& memory,
+                                                                  parallel::Threads* threads);
+/// The serial reference, with exact layers or those of `make_blend`.
+[[nodiscard]] std::unique_ptr<raster::FrameDrawer> make_reference_drawer(
+    std::uint64_t memory_limit, MemoryAccount& memory, transparency::MakeBlend make_blend);
 
 /// Frames on a device.
 struct DeviceFrames {

@@ -204,8 +204,8 @@ TEST_F(Options, MachineChoicesReachTheStatisticsAndLeaveThePictureAlone) {
   EXPECT_EQ(serial["device"], "serial");
   EXPECT_EQ(serial["threads"], 1);
   EXPECT_EQ(npy("i.npy").data, ids);
-  for (const family::AxisInfo& r : family::rasterizers())
-    for (const family::AxisInfo& v : family::visibilities()) {
+  for (const family::AxisInfo& r : family::rasterizer_axis())
+    for (const family::AxisInfo& v : family::visibility_axis()) {
       if (r.name == "reference" && v.name != "atomic") continue;
       const auto s = stats({"--rasterizer", r.name, "--visibility", v.name});
       EXPECT_EQ(s["rasterizer"], r.name);

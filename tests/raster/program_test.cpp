@@ -245,7 +245,7 @@ TEST(Program, SeveralTargetsGetWhatTheShaderReturns) {
   });
   EXPECT_EQ(one.extra_count(), 0U);
   ASSERT_EQ(three.extra_count(), 2U);
-  for (const family::AxisInfo& visibility : family::visibilities()) {
+  for (const family::AxisInfo& visibility : family::visibility_axis()) {
     RenderOptions o = options(Device::threads);
     o.visibility = visibility.name;
     o.background = {0.1F, 0.2F, 0.3F, 0.5F};

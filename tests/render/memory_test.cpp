@@ -197,7 +197,7 @@ TEST_P(SortedMemory, IsAtMost24BytesAFragment) {
 
 std::vector<std::string> coverage_names() {
   std::vector<std::string> names;
-  for (const family::AxisInfo& r : family::rasterizers())
+  for (const family::AxisInfo& r : family::rasterizer_axis())
     if (r.name != "reference") names.push_back(r.name);
   return names;
 }

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/on_terrain.hpp>
-#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/shapes.hpp>
 #include <rastrum/terrain.hpp>
@@ -337,7 +337,7 @@ TEST(OnTerrain, IsTheSameOnEveryDeviceByEveryMethodAndInLittleMemory) {
     Picture reference = before;
     reference.add(scene, options, serial);
     std::vector<RenderOptions> all;
-    for (const family::AxisInfo& rasterizer : family::rasterizers()) {
+    for (const family::AxisInfo& rasterizer : family::rasterizer_axis()) {
       // Layers want tiles of a thread's own.
       if (rasterizer.name == "reference") continue;
       const bool owns = rasterizer.name == "grouped" || rasterizer.name == "tiled";
@@ -347,7 +347,7 @@ TEST(OnTerrain, IsTheSameOnEveryDeviceByEveryMethodAndInLittleMemory) {
       o.threads = 8;
       all.push_back(o);
       if (opacity == 1) {
-        for (const family::AxisInfo& visibility : family::visibilities()) {
+        for (const family::AxisInfo& visibility : family::visibility_axis()) {
           all.push_back(o);
           all.back().visibility = visibility.name;
         }
@@ -383,11 +383,11 @@ TEST(OverPicture, AsksTheTestOfADrawForThatDrawAlone) {
   Camera camera;
   camera.eye = {0, 0, 4};
   const Mat4d to_clip = world_to_clip(camera, kWidth, kHeight);
-  const raster::TransformSource sources[] = {{box.positions, to_clip * at(-0.8, 0, 0, 1)},
-                                             {box.positions, to_clip * at(0.8, 0, 0, 1)}};
+  const raster::MatrixVertices sources[] = {{box.positions, to_clip * at(-0.8, 0, 0, 1)},
+                                            {box.positions, to_clip * at(0.8, 0, 0, 1)}};
   raster::Draw draws[2];
   for (int i = 0; i < 2; ++i) {
-    draws[i].source = &sources[i];
+    draws[i].source = sources[i];
     draws[i].vertex_count = box.positions.size();
     draws[i].indices = box.indices;
     draws[i].primitive_count = box.triangle_count();

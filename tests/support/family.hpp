@@ -46,8 +46,8 @@ struct TablePoint {
 };
 inline std::vector<TablePoint> table_points() {
   std::vector<TablePoint> points;
-  for (const family::AxisInfo& r : family::rasterizers())
-    for (const family::AxisInfo& v : family::visibilities())
+  for (const family::AxisInfo& r : family::rasterizer_axis())
+    for (const family::AxisInfo& v : family::visibility_axis())
       if (r.name != "reference") points.push_back({r.name, v.name});
   return points;
 }

@@ -6,7 +6,8 @@
 #include <utility>
 
 #include <rastrum/family.hpp>
-#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/draws/draw.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/render/access.hpp>
 #include <rastrum/terrain.hpp>
 
@@ -32,16 +33,14 @@ class Painter {
                : renderer_.render(scene, camera, options_, targets, std::move(stop));
   }
   /// Draws with shaders and tests of their own, or these.
-  FrameStats draw(std::span<raster::Draw> draws, const raster::BlockShader& shader,
-                  const raster::FragmentTest* test, const Targets& targets,
-                  std::stop_token stop = {}) {
-    return RendererAccess::draw(renderer_, draws, &shader, test, options_, targets,
+  FrameStats draw(std::span<raster::Draw> draws, const raster::Shading& shading,
+                  const raster::Testing& test, const Targets& targets, std::stop_token stop = {}) {
+    return RendererAccess::draw(renderer_, draws, shading, test, options_, targets,
                                 std::move(stop));
   }
   FrameStats draw(std::span<raster::Draw> draws, const Targets& targets,
                   std::stop_token stop = {}) {
-    return RendererAccess::draw(renderer_, draws, nullptr, nullptr, options_, targets,
-                                std::move(stop));
+    return RendererAccess::draw(renderer_, draws, {}, {}, options_, targets, std::move(stop));
   }
 
   /// With what Device::automatic took.

@@ -71,8 +71,8 @@ void draw_mesh_controls(MeshSubject& subject) {
   MeshSubject::Settings s = subject.settings();
   family::Options& r = s.render;
   bool changed = choose_shader(r.shader);
-  changed |= choose_name("rasterizer", with_auto(family::rasterizers()), r.rasterizer);
-  changed |= choose_name("visibility", with_auto(family::visibilities()), r.visibility);
+  changed |= choose_name("rasterizer", with_auto(family::rasterizer_axis()), r.rasterizer);
+  changed |= choose_name("visibility", with_auto(family::visibility_axis()), r.visibility);
   changed |= ImGui::SliderFloat("opacity", &r.opacity, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp);
   changed |= choose_transparency(r.transparency);
   changed |= choose_samples(r.samples);

@@ -151,10 +151,10 @@ void MeshSubject::change(char key, bool back) {
       break;
     }
     case 'n':
-      r.rasterizer = next(axis_names(family::rasterizers()), r.rasterizer, back);
+      r.rasterizer = next(axis_names(family::rasterizer_axis()), r.rasterizer, back);
       break;
     case 'v':
-      r.visibility = next(axis_names(family::visibilities()), r.visibility, back);
+      r.visibility = next(axis_names(family::visibility_axis()), r.visibility, back);
       break;
     case 't': {
       constexpr int kMethods = static_cast<int>(Transparency::none) + 1;

@@ -28,6 +28,7 @@
 #include <rastrum/raster/cuda/shading.cuh>
 #include <rastrum/raster/cuda/tested.cuh>
 #include <rastrum/raster/cuda/upload.cuh>
+#include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/frame/stopwatch.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 
@@ -51,9 +52,9 @@ class DeviceRasterizer final : public CudaRasterizer {
   }
 
   [[nodiscard]] std::string why_no_test(const FrameRequest& request) const override {
-    return !has_tests(request) || TestForm::of(*request.test)
-               ? std::string()
-               : "a caller's fragment test (discard) is code of the CPU";
+    return has_tests(request) && request.test.own() != nullptr
+               ? "a caller's fragment test (discard) is code of the CPU"
+               : std::string();
   }
   [[nodiscard]] std::string why_no_layers(const FrameRequest& request) const override {
     if (std::string why(Layers::why_not(request)); !why.empty()) return why;
@@ -145,7 +146,7 @@ class DeviceRasterizer final : public CudaRasterizer {
         request.draws, nullptr,        request.isa};
     parallel::ScratchPool<ShaderScratch> shaders{[&request] {
       ShaderScratch scratch;
-      scratch.begin(request.shader);
+      scratch.begin(request.shading.scratch_bytes());
       return scratch;
     }};
     std::uint64_t bands = 0;
@@ -172,7 +173,7 @@ class DeviceRasterizer final : public CudaRasterizer {
           shading = {shade_fragments(surface.keys, shade), parallel::view_of(colors)};
         });
       const std::uint32_t skip = layered ? kTranslucent : 0;
-      const std::uint32_t untested = skip | (look.has_test() ? kTested : 0);
+      const std::uint32_t untested = skip | (look.has_test() ? kMayDrop : 0);
       DeviceCounts band =
           family_ ? draw_surface(exec_, scene, surface, plan, *family_, request.tuning, untested,
                                  shading, own)

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
 
@@ -118,6 +119,9 @@ ProgramStages::~ProgramStages() = default;
 ProgramStages::operator const BlockShader&() const {
   return *hooks_;
 }
+ProgramStages::operator Shading() const {
+  return Shading(static_cast<const BlockShader&>(*hooks_));
+}
 const FragmentTest* ProgramStages::test() const {
   return hooks_->discards ? hooks_.get() : nullptr;
 }
@@ -126,8 +130,8 @@ ProgramDraw::operator Draw() const {
   Draw draw;
   static_cast<Primitives&>(draw) = *this;
   if (program != nullptr) {
-    draw.source = program->hooks_.get();
-    draw.shader = program->hooks_.get();
+    draw.source = static_cast<const VertexSource*>(program->hooks_.get());
+    draw.shading = *program;
     draw.test = program->test();
   }
   return draw;

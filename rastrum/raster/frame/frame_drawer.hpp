@@ -1,7 +1,7 @@
 // What draws the frames of a Renderer.
 #pragma once
 
-#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/frame/request.hpp>
 
 namespace rastrum::raster {
 

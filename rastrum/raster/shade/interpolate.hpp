@@ -15,6 +15,7 @@
 #include <rastrum/raster/assemble/points_and_lines.hpp>
 #include <rastrum/program.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 
 namespace rastrum::raster {
 

@@ -13,7 +13,7 @@
 #include <span>
 
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/raster/coverage/tile_mask.hpp>
+#include <rastrum/family/coverage/tile_mask.hpp>
 #include <rastrum/raster/cuda/family/small.cuh>
 #include <rastrum/raster/cuda/family/tiles.cuh>
 

@@ -21,7 +21,7 @@
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/frame/options.hpp>
-#include <rastrum/raster/visibility/region.hpp>
+#include <rastrum/family/visibility/region.hpp>
 
 namespace rastrum::raster::family {
 

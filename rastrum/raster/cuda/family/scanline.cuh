@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include <rastrum/raster/coverage/rows.hpp>
+#include <rastrum/family/coverage/rows.hpp>
 #include <rastrum/raster/cuda/family/small.cuh>
 
 namespace rastrum::raster::family {

@@ -7,7 +7,7 @@
 #include <span>
 
 #include <rastrum/raster/bin/order.hpp>
-#include <rastrum/raster/coverage/boxes.hpp>
+#include <rastrum/family/coverage/boxes.hpp>
 #include <rastrum/raster/cuda/family/frame.cuh>
 #include <rastrum/raster/cuda/family/turns.cuh>
 

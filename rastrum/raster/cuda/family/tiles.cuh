@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include <rastrum/raster/coverage/bins.hpp>
+#include <rastrum/family/coverage/bins.hpp>
 #include <rastrum/raster/cuda/family/frame.cuh>
 #include <rastrum/raster/cuda/family/turns.cuh>
 
