@@ -29,3 +29,44 @@ find_package(CUDAToolkit QUIET)
 find_path(RASTRUM_CCCL_INCLUDE_DIR cuda/std/version
   HINTS ${CUDAToolkit_INCLUDE_DIRS} /usr/local/cuda/include PATH_SUFFIXES cccl
   DOC "The folder of thrust/, cub/ and cuda/")
+
+# The library of device code (rastrum/cuda): its sources, which tests compile for the CPU too.
+set(RASTRUM_DEVICE_SOURCES
+  cuda/library.cpp
+  family/cuda/family.cu
+  family/cuda/visibilities.cu
+  render/cuda/layers.cu
+  render/cuda/rasterizer.cu
+  terrain/cuda/renderer.cu
+  terrain/cuda/shadows.cu)
+list(TRANSFORM RASTRUM_DEVICE_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/rastrum/)
+
+# It and the program must be of one build: what passes between them are classes. So their version
+# changes with the headers, as they are when this is configured.
+file(GLOB_RECURSE headers LIST_DIRECTORIES NO ${PROJECT_SOURCE_DIR}/rastrum/*.hpp)
+set(digests "")
+foreach(header IN LISTS headers)
+  file(SHA256 ${header} digest)
+  string(APPEND digests ${digest})
+endforeach()
+string(SHA256 digest "${digests}")
+string(SUBSTRING ${digest} 0 12 digest)
+set(RASTRUM_CUDA_LIBRARY_VERSION ${PROJECT_VERSION}-${digest})
+
+# rastrum_device_module(TARGET): a module that programs open by the name of parallel/cuda/library.hpp.
+# Nothing of it is seen but the one function that they look for.
+function(rastrum_device_module target)
+  set_target_properties(${target} PROPERTIES
+    OUTPUT_NAME rastrum_cuda PREFIX lib
+    CXX_VISIBILITY_PRESET hidden CUDA_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  target_link_options(${target} PRIVATE LINKER:--exclude-libs,ALL)
+  target_compile_definitions(${target} PRIVATE
+    RASTRUM_CUDA_LIBRARY_VERSION="${RASTRUM_CUDA_LIBRARY_VERSION}")
+endfunction()
+
+# Programs find the module where it is built, and where it is installed (RastrumInstall.cmake).
+if(RASTRUM_CUDA_FOUND)
+  include(GNUInstallDirs)
+  list(APPEND CMAKE_BUILD_RPATH ${PROJECT_BINARY_DIR}/rastrum/cuda)
+  list(APPEND CMAKE_INSTALL_RPATH $ORIGIN/../${CMAKE_INSTALL_LIBDIR})
+endif()

@@ -16,11 +16,12 @@ import sys
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.MULTILINE)
 COMMENT = re.compile(r"//[^\n]*")
 FOLDERS = ("rastrum", "bench", "tests")
+BUILD = ("cmake/RastrumCuda.cmake", "rastrum/cuda/CMakeLists.txt")
 RECORD = pathlib.Path("tests/cuda/compiled.txt")
 
 
 def sources(root):
-    """The .cu files and every file of the project that they include, directly or not."""
+    """How the .cu files are built, they, and every file of the project that they include, directly or not."""
     waiting = [file for folder in FOLDERS for file in (root / folder).rglob("*.cu")]
     found = set()
     while waiting:
@@ -30,7 +31,7 @@ def sources(root):
         found.add(file)
         for name in INCLUDE.findall(file.read_text(encoding="utf-8")):
             waiting += [p for p in (file.parent / name, root / name) if p.is_file()]
-    return sorted(found | {(root / "cmake/RastrumCuda.cmake").resolve()})
+    return sorted(found | {(root / file).resolve() for file in BUILD})
 
 
 def digest(root):

@@ -3,7 +3,6 @@
 #include <apps/command_line/choose.hpp>
 #include <rastrum/parallel/cuda/status.hpp>
 #include <rastrum/parallel/device.hpp>
-#include <rastrum/raster/cuda/rasterizer.hpp>
 
 namespace rastrum::bench {
 
@@ -34,7 +33,7 @@ void TableOptions::add_device(OptionParser& parser) {
 void TableOptions::resolve() {
   if (threads == 0) threads = cores();
   if (quick) rounds = 1;
-  static_cast<void>(choose_device(device, raster::draws_on_cuda()));
+  static_cast<void>(choose_device(device));
   if (on_cuda()) gpu = parallel::cuda_status().name;
 }
 

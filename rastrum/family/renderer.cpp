@@ -8,6 +8,7 @@
 #include <rastrum/error.hpp>
 #include <rastrum/family.hpp>
 #include <rastrum/family/blend/approximations.hpp>
+#include <rastrum/family/cuda/rasterizer.hpp>
 #include <rastrum/family/row.hpp>
 #include <rastrum/family/visibility/layers.hpp>
 #include <rastrum/raster/frame/fast_path.hpp>
@@ -149,8 +150,10 @@ std::unique_ptr<raster::FrameDrawer> make_on_cuda(const Row& row, const DrawerOp
   if (chosen.is_the_cpus) {
     frames.why_host = std::move(chosen.why);
   } else {
-    frames.device = raster::make_cuda_rasterizer(chosen.coverage, chosen.visibility,
-                                                 options.memory_limit, memory, threads);
+    frames.device = chosen.coverage.empty()
+                        ? rastrum::make_cuda_rasterizer(options.memory_limit, memory, threads)
+                        : make_cuda_rasterizer(chosen.coverage, chosen.visibility,
+                                               options.memory_limit, memory, threads);
     frames.why = std::move(chosen.why);
   }
   Row on_threads = row;
@@ -193,7 +196,7 @@ const std::vector<AxisInfo>& visibility_axis() {
 
 Renderer make_renderer(const RendererOptions& options, const Row& row) {
   check(row.tuning);
-  DeviceChoice choice = choose_device(options.device, raster::draws_on_cuda());
+  DeviceChoice choice = choose_device(options.device);
   if (options.device == Device::automatic && choice.device == Device::cuda &&
       (row.rasterizer != "auto" || row.visibility != "auto"))
     choice = {Device::threads, "a rasterizer or a visibility of the CPU was asked for"};

@@ -24,22 +24,17 @@ std::string_view name(Device device) {
   return "";
 }
 
-DeviceChoice choose_device(Device wanted, bool draws_on_cuda) {
+DeviceChoice choose_device(Device wanted) {
   check_enum(wanted, Device::automatic, "device");
   if (wanted == Device::serial || wanted == Device::threads) return {wanted, ""};
   const parallel::CudaStatus status = parallel::cuda_status();
-  std::string why_not = status.why_not;
-  if (status.usable && !draws_on_cuda)
-    why_not = std::string("there is a ")
-                  .append(status.name)
-                  .append(", and this renderer has no CUDA code yet");
   if (wanted == Device::automatic) {
-    if (why_not.empty()) return {Device::cuda, "there is a " + status.name};
-    return {Device::threads, std::string("no CUDA: ").append(why_not)};
+    if (status.usable) return {Device::cuda, "there is a " + status.name};
+    return {Device::threads, std::string("no CUDA: ").append(status.why_not)};
   }
-  if (!why_not.empty())
+  if (!status.usable)
     throw Error(Errc::no_device, std::string("--device cuda: CUDA cannot be used: ")
-                                     .append(why_not)
+                                     .append(status.why_not)
                                      .append("; or use --device threads"));
   return {Device::cuda, ""};
 }

@@ -12,10 +12,9 @@ struct DeviceChoice {
   Device device;    ///< not `automatic`
   std::string why;  ///< what `automatic` went by; empty where a device was asked for
 };
-/// For a renderer that draws on a CUDA device, or does not (`draws_on_cuda`). Throws
-/// Error{no_device} with what to do where `cuda` is asked for and cannot be had,
-/// Error{invalid_argument} for a value that is no device.
-[[nodiscard]] DeviceChoice choose_device(Device wanted, bool draws_on_cuda);
+/// What there is of what is wanted. Throws Error{no_device} with what to do where `cuda` is asked
+/// for and cannot be had, Error{invalid_argument} for a value that is no device.
+[[nodiscard]] DeviceChoice choose_device(Device wanted);
 
 /// `wanted`, or the best of available_isas(). Throws Error{no_device} where this machine cannot run
 /// it.

@@ -10,7 +10,7 @@
 #include <rastrum/core/memory.hpp>
 #include <rastrum/device.hpp>
 #include <rastrum/parallel/exec.hpp>
-#include <rastrum/raster/cuda/rasterizer.hpp>
+#include <rastrum/render/cuda/rasterizer.hpp>
 #include <rastrum/raster/frame/frame_drawer.hpp>
 #include <rastrum/raster/frame/method.hpp>
 #include <rastrum/transparency/blend.hpp>
@@ -61,7 +61,7 @@ struct Methods {
 /// Frames on a device.
 struct DeviceFrames {
   /// Null: all are the CPU's, as `why_host` says.
-  std::unique_ptr<raster::CudaRasterizer> device;
+  std::unique_ptr<CudaRasterizer> device;
   std::string why_host;
   std::string why;  ///< FrameStats::why of the device's frames begins with it
   /// For frames that the device has no code for, or that are expected to be done sooner there.

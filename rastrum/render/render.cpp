@@ -12,7 +12,6 @@
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/turn.hpp>
 #include <rastrum/program.hpp>
-#include <rastrum/raster/cuda/rasterizer.hpp>
 #include <rastrum/raster/draws/mixed_draws.hpp>
 #include <rastrum/raster/shade/alpha.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
@@ -224,7 +223,7 @@ void Renderer::Impl::make_drawer() {
 
 Renderer::Renderer(RendererOptions options)
     : Renderer(std::make_unique<Impl>(options,
-                                      choose_device(options.device, raster::draws_on_cuda()), false,
+                                      choose_device(options.device), false,
                                       rastrum::make_drawer)) {}
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Renderer::~Renderer() = default;

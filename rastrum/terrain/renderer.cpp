@@ -44,7 +44,7 @@ struct TerrainRenderer::Impl {
         asked(options.device),
         pool(memory),
         serial(&memory) {
-    DeviceChoice choice = choose_device(options.device, true);
+    DeviceChoice choice = choose_device(options.device);
     options.device = choice.device;
     device_why = std::move(choice.why);
     if (options.device == Device::threads) static_cast<void>(threads());

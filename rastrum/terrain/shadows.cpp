@@ -63,7 +63,7 @@ void check(const Sun& sun) {
 /// for `automatic` also because the map is too large.
 template <class F>
 auto on_cuda(const ShadowOptions& options, F&& f) -> std::optional<decltype(f())> {
-  if (choose_device(options.device, true).device != Device::cuda) return std::nullopt;
+  if (choose_device(options.device).device != Device::cuda) return std::nullopt;
   try {
     return f();
   } catch (const Error& e) {

@@ -16,12 +16,18 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/parallel/cuda/status.hpp>
+#include <rastrum/parallel/cuda/driver.hpp>
+#include <rastrum/parallel/cuda/library.hpp>
 
 namespace rastrum::parallel {
+namespace {
 
-// In the place of the library's, which looks for a driver.
-CudaStatus cuda_status() {
+// As in tests/raster/cuda_on_cpu.cpp.
+[[maybe_unused]] const bool is_taken = (set_cuda_library(*rastrum_cuda_library()), true);
+
+}  // namespace
+
+CudaStatus driver_status() {
   CudaStatus status;
   status.usable = true;
   status.name = "CPU in the place of a GPU";

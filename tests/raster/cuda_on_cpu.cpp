@@ -1,10 +1,16 @@
-// What a program says of its device whose code for devices is compiled for the CPU: in the place of
-// the library's, which looks for a driver.
-#include <rastrum/parallel/cuda/status.hpp>
+// A program whose device is the CPU: its code for devices is linked (tests/CMakeLists.txt) and
+// takes the place of the library that is opened, and this is its driver.
+#include <rastrum/parallel/cuda/driver.hpp>
+#include <rastrum/parallel/cuda/library.hpp>
 
 namespace rastrum::parallel {
+namespace {
 
-CudaStatus cuda_status() {
+[[maybe_unused]] const bool is_taken = (set_cuda_library(*rastrum_cuda_library()), true);
+
+}  // namespace
+
+CudaStatus driver_status() {
   CudaStatus status;
   status.usable = true;
   status.name = "CPU that stands for a GPU";

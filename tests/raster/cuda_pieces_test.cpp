@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <rastrum/raster/cuda/by_size.cuh>
 #include <rastrum/raster/cuda/pieces.cuh>
-#include <rastrum/raster/cuda/rasterizer.cuh>
 #include <rastrum/raster/draws/samples.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 
@@ -145,7 +145,11 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
     const raster::Rect view{0, 0, kSize, kSize};
     const raster::DeviceSurface surface{view, {0, 0, kSize / 8, keys.data(), nullptr}};
     const auto plan = raster::DevicePlan::of(0, kSize, kSize, scene.primitives(), 0, 0);
-    EXPECT_GT(raster::draw_surface(exec, scene, surface, plan, {}, skip).tiles, 0U);
+    raster::BySize drawer;
+    EXPECT_GT(drawer.draw(exec, scene, surface, plan, {}, skip, {}).fragments, 0U);
+    FrameStats stats;
+    drawer.end_frame(stats);
+    EXPECT_GT(counter(stats, "tile pairs"), 0U);
     return keys;
   };
   const auto all = keys_of(draws, 0), kept = keys_of(draws, raster::kTranslucent);

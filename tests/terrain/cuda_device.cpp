@@ -1,14 +1,19 @@
-// parallel::cuda_status for a program whose device is the CPU. It stands in for the library's,
-// which would say that there is no GPU; so TerrainRenderer takes the way that it takes on one.
+// A program whose device is the CPU, as tests/raster/cuda_on_cpu.cpp makes it, with as much memory
+// as a test says. So TerrainRenderer takes the way that it takes on a GPU.
 #include "tests/terrain/cuda_device.hpp"
+
+#include <rastrum/parallel/cuda/driver.hpp>
+#include <rastrum/parallel/cuda/library.hpp>
 
 namespace rastrum {
 namespace {
 std::uint64_t free_bytes = 0;
-}
+
+[[maybe_unused]] const bool is_taken = (parallel::set_cuda_library(*rastrum_cuda_library()), true);
+}  // namespace
 
 namespace parallel {
-CudaStatus cuda_status() {
+CudaStatus driver_status() {
   CudaStatus status;
   status.usable = true;
   status.name = "CPU in the place of a GPU";

@@ -20,6 +20,7 @@ class CudaSources(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.root = pathlib.Path(folder.name)
         self.write("cmake/RastrumCuda.cmake", "set(flags --fmad=false)\n")
+        self.write("rastrum/cuda/CMakeLists.txt", "add_library(rastrum_cuda MODULE)\n")
         self.write("rastrum/core/vec.hpp", "struct Vec3;  // three\n")
         self.write("rastrum/core/other.hpp", "struct Other;\n")
         self.write("rastrum/raster/draw.cuh", '#include <rastrum/core/vec.hpp>\n')

@@ -14,8 +14,8 @@ struct CudaStatus {
   std::uint64_t free_bytes = 0;
 };
 
-/// Asks the driver, and makes its context, which takes some tenths of a second the first time.
-/// Throws nothing but std::bad_alloc.
+/// Opens the library of device code (library.hpp) and asks the driver, whose context takes some
+/// tenths of a second the first time. Throws nothing but std::bad_alloc.
 [[nodiscard]] CudaStatus cuda_status();
 
 }  // namespace rastrum::parallel

@@ -1,7 +1,6 @@
 // From primitives to pieces on a device: assemble_primitive (assemble.hpp), clipper included, by a
 // thread a primitive, in order of submission: counted, scanned, written. Who counts also says which
-// pieces are to be written: the rasterizer (rasterizer.cuh) draws the small ones where they are
-// made.
+// pieces are to be written: by_size.cuh draws the small ones where they are made.
 #pragma once
 
 #include <cstddef>
@@ -107,6 +106,11 @@ struct CountPieces {
     out.pieces = pieces;
     return out;
   }
+};
+
+struct HasPieces {
+  std::span<const Outcome> outcomes;
+  RASTRUM_HD bool operator()(std::uint32_t i) const { return outcomes[i].pieces > 0; }
 };
 
 /// The pieces of primitive first + which[k] that keep(piece) holds for, at the places of segment k.

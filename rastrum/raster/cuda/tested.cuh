@@ -15,7 +15,7 @@
 #include <rastrum/parallel/stop.hpp>
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/pieces.cuh>
-#include <rastrum/raster/cuda/rasterizer.cuh>
+#include <rastrum/raster/cuda/plan.cuh>
 
 namespace rastrum::raster {
 namespace cuda_detail {
@@ -63,7 +63,7 @@ struct DrawTested {
 
 /// Draws the pieces of `scene` that have one of kMayDrop, and no flag of `skip`, onto the keys of
 /// `surface`, where test(key, x, y) holds. Returns the number of fragments before the test. What
-/// became of the primitives is draw_surface's to count, and to check. Memory as of draw_surface.
+/// became of the primitives is the SurfaceDrawer's to count, and to check. Memory as of its draw().
 /// Work O(primitives + blocks of boxes + fragments). Waits.
 template <class Exec, class Test>
 [[nodiscard]] std::uint64_t draw_tested(Exec& exec, const DeviceScene<Exec>& scene,

@@ -1,21 +1,28 @@
 // The rasterizer of a CUDA device with what blends its layers (layers.cu), instantiated. Tests
 // compile this file as C++, for the CPU.
-#include <rastrum/raster/cuda/frame.cuh>
-#include <rastrum/render/cuda/layers.cuh>
+#include <utility>
 
-namespace rastrum::raster {
+#include <rastrum/raster/cuda/by_size.cuh>
+#include <rastrum/render/cuda/frame.cuh>
+#include <rastrum/render/cuda/make.cuh>
 
-bool draws_on_cuda() noexcept {
-  return true;
+namespace rastrum {
+namespace {
+
+std::unique_ptr<CudaRasterizer> make_by_size(std::uint64_t memory_limit, MemoryAccount& memory,
+                                             parallel::Threads& threads) {
+  return make_device_rasterizer(std::make_unique<raster::BySize>(), memory_limit, memory, threads);
 }
 
-std::unique_ptr<CudaRasterizer> make_cuda_rasterizer(std::string_view coverage,
-                                                     std::string_view visibility,
-                                                     std::uint64_t memory_limit,
-                                                     MemoryAccount& memory,
-                                                     parallel::Threads& threads) {
-  return std::make_unique<DeviceRasterizer<parallel::Cuda, transparency::SceneLayers>>(
-      coverage, visibility, memory_limit, memory, threads);
+}  // namespace
+
+const CudaRendering kCudaRendering{make_by_size};
+
+std::unique_ptr<CudaRasterizer> make_device_rasterizer(
+    std::unique_ptr<raster::SurfaceDrawer> drawer, std::uint64_t memory_limit,
+    MemoryAccount& memory, parallel::Threads& threads) {
+  return std::make_unique<raster::DeviceRasterizer>(std::move(drawer), memory_limit, memory,
+                                                    threads);
 }
 
-}  // namespace rastrum::raster
+}  // namespace rastrum

@@ -1,13 +1,15 @@
-// What the terrain's host code asks of a CUDA device, without a header of CUDA. renderer.cu has it;
-// none.cpp where there is no compiler for it.
+// What the terrain's host code asks of a CUDA device, without a header of CUDA. renderer.cu and
+// shadows.cu have it, in the library of device code (parallel/cuda/library.hpp).
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <string>
 
+#include <rastrum/parallel/stop.hpp>
 #include <rastrum/terrain/methods.hpp>
 #include <rastrum/terrain/roll.hpp>
 #include <rastrum/terrain/shadows.hpp>
@@ -23,13 +25,36 @@ class DeviceRenderer {
   /// why_not_on_device says nothing; with `roll`, which may be null,
   /// out of the upright one that options and camera are of. Calls `lap` with the name of each stage
   /// that is done. Throws Error{out_of_memory}, Error{no_device}.
-  virtual Counts draw(const Terrain& terrain, const TerrainOptions& options,
-                      const TerrainCamera& camera, const Roll* roll, const TerrainTargets& targets,
-                      const std::function<void(const char* stage)>& lap) = 0;
+  Counts draw(const Terrain& terrain, const TerrainOptions& options, const TerrainCamera& camera,
+              const Roll* roll, const TerrainTargets& targets,
+              const std::function<void(const char* stage)>& lap) {
+    return draw(terrain, options, camera, roll, targets, lap, parallel::StopScope::current());
+  }
   /// Of the device's memory.
   [[nodiscard]] virtual std::uint64_t bytes() const = 0;
+
+ private:
+  /// `stop`: the caller's scope, which another library does not see.
+  virtual Counts draw(const Terrain& terrain, const TerrainOptions& options,
+                      const TerrainCamera& camera, const Roll* roll, const TerrainTargets& targets,
+                      const std::function<void(const char* stage)>& lap,
+                      const std::stop_token* stop) = 0;
 };
 
+/// What the library of device code has for terrains. `stop` as in DeviceRenderer.
+struct CudaTerrain {
+  std::unique_ptr<DeviceRenderer> (*make_renderer)();
+  Image<std::uint8_t> (*sharp_shadows)(ImageView<const float>, const Sun&, Tiling,
+                                       const std::stop_token* stop);
+  Image<std::uint8_t> (*light_of_suns)(ImageView<const float>, std::span<const Sun>, Tiling,
+                                       const std::stop_token* stop);
+  Image<std::uint16_t> (*hidden_samples)(ImageView<const float>, const Sun&, const March&, Tiling,
+                                         const std::stop_token* stop);
+};
+extern const CudaTerrain kCudaTerrain;                               ///< in that library
+[[nodiscard]] std::unique_ptr<DeviceRenderer> make_cuda_renderer();  ///< alike, in renderer.cu
+
+/// Throws Error{no_device}.
 [[nodiscard]] std::unique_ptr<DeviceRenderer> make_device_renderer();
 
 /// Why a device does not draw such a terrain; empty: it does. A map, or a named function in its
@@ -39,7 +64,7 @@ class DeviceRenderer {
 /// The most of a device's memory that draw() takes for such frames, rolled or not.
 [[nodiscard]] std::uint64_t device_bytes(const Terrain& terrain, const TerrainOptions& options);
 
-/// sharp_shadows and hidden_samples of a map on the host; the same bits.
+/// sharp_shadows and hidden_samples of a map on the host; the same bits. Throw Error{no_device}.
 [[nodiscard]] Image<std::uint8_t> sharp_shadows_on_device(ImageView<const float> heights,
                                                           const Sun& sun, Tiling tiling);
 /// soft_light of the points of the sun's disc, fewer than 256; the map is copied once.

@@ -62,9 +62,14 @@ class DevicePicture {
 
 class CudaRenderer final : public DeviceRenderer {
  public:
+  [[nodiscard]] std::uint64_t bytes() const override { return memory_.held(); }
+
+ private:
   Counts draw(const Terrain& terrain, const TerrainOptions& options, const TerrainCamera& camera,
               const Roll* roll, const TerrainTargets& targets,
-              const std::function<void(const char* stage)>& lap) override {
+              const std::function<void(const char* stage)>& lap,
+              const std::stop_token* stop) override {
+    const parallel::StopScope scope(stop);
     if (terrain.is_map()) keep(terrain, options.filter == Filter::mip);
     lap("map");
     const int width = options.width, height = options.height;
@@ -84,9 +89,6 @@ class CudaRenderer final : public DeviceRenderer {
     lap("copy");
     return counts;
   }
-  [[nodiscard]] std::uint64_t bytes() const override { return memory_.held(); }
-
- private:
   void keep(const Terrain& terrain, bool whole) {
     const bool heights = kept_heights_ != terrain.heights();
     const bool colors = kept_colors_ != terrain.colors();
@@ -127,7 +129,7 @@ class CudaRenderer final : public DeviceRenderer {
 
 }  // namespace
 
-std::unique_ptr<DeviceRenderer> make_device_renderer() {
+std::unique_ptr<DeviceRenderer> make_cuda_renderer() {
   return std::make_unique<CudaRenderer>();
 }
 

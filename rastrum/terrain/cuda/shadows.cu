@@ -1,4 +1,5 @@
-// sharp_shadows, soft_light and hidden_samples of maps that lie on the host, on a CUDA device.
+// What the library of device code has for terrains: sharp_shadows, soft_light and hidden_samples of
+// maps that lie on the host, and the maker of renderer.cu.
 #include <rastrum/terrain/cuda/device.hpp>
 #include <rastrum/terrain/cuda/shadows.cuh>
 
@@ -7,7 +8,8 @@ namespace {
 
 /// The result of compute(exec, map on the device), brought back.
 template <class T, class F>
-Image<T> on_device(ImageView<const float> heights, const F& compute) {
+Image<T> on_device(ImageView<const float> heights, const std::stop_token* stop, const F& compute) {
+  const parallel::StopScope scope(stop);
   parallel::Cuda exec;
   const auto width = static_cast<std::size_t>(heights.width);
   auto cells = parallel::make_buffer<float>(exec, width * static_cast<std::size_t>(heights.height));
@@ -23,30 +25,32 @@ Image<T> on_device(ImageView<const float> heights, const F& compute) {
   return out;
 }
 
-}  // namespace
-
-Image<std::uint8_t> sharp_shadows_on_device(ImageView<const float> heights, const Sun& sun,
-                                            Tiling tiling) {
-  return on_device<std::uint8_t>(heights,
+Image<std::uint8_t> sharp(ImageView<const float> heights, const Sun& sun, Tiling tiling,
+                          const std::stop_token* stop) {
+  return on_device<std::uint8_t>(heights, stop,
                                  [&](parallel::Cuda& exec, const ImageView<const float>& map) {
                                    return sharp_shadows(exec, map, sun, tiling);
                                  });
 }
 
-Image<std::uint8_t> light_of_suns_on_device(ImageView<const float> heights,
-                                            std::span<const Sun> suns, Tiling tiling) {
-  return on_device<std::uint8_t>(heights,
+Image<std::uint8_t> of_suns(ImageView<const float> heights, std::span<const Sun> suns,
+                            Tiling tiling, const std::stop_token* stop) {
+  return on_device<std::uint8_t>(heights, stop,
                                  [&](parallel::Cuda& exec, const ImageView<const float>& map) {
                                    return light_of_suns(exec, map, suns, tiling);
                                  });
 }
 
-Image<std::uint16_t> hidden_samples_on_device(ImageView<const float> heights, const Sun& sun,
-                                              const March& march, Tiling tiling) {
-  return on_device<std::uint16_t>(heights,
+Image<std::uint16_t> marched(ImageView<const float> heights, const Sun& sun, const March& march,
+                             Tiling tiling, const std::stop_token* stop) {
+  return on_device<std::uint16_t>(heights, stop,
                                   [&](parallel::Cuda& exec, const ImageView<const float>& map) {
                                     return hidden_samples(exec, map, sun, march, tiling);
                                   });
 }
+
+}  // namespace
+
+const CudaTerrain kCudaTerrain{make_cuda_renderer, sharp, of_suns, marched};
 
 }  // namespace rastrum::terrain

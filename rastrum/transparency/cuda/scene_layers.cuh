@@ -10,8 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include <rastrum/parallel/stop.hpp>
 #include <rastrum/raster/cuda/pieces.cuh>
-#include <rastrum/raster/cuda/rasterizer.cuh>
 #include <rastrum/raster/cuda/samples.cuh>
 #include <rastrum/transparency/cuda/device_layers.cuh>
 
@@ -30,7 +30,7 @@ struct IsLayerIn {
 
 }  // namespace cuda
 
-/// What a device's frame does with translucent pieces; the hook of raster::DeviceRasterizer.
+/// What a device's frame (render/cuda/frame.cuh) does with translucent pieces.
 class SceneLayers {
  public:
   [[nodiscard]] static std::string_view why_not(const raster::FrameRequest& request) {

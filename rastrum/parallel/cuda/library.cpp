@@ -1,0 +1,66 @@
+#include <rastrum/parallel/cuda/library.hpp>
+
+#include <dlfcn.h>
+
+#include <string_view>
+
+#include <rastrum/core/error.hpp>
+
+namespace rastrum::parallel {
+namespace {
+
+/// What takes the file's place (set_cuda_library).
+const CudaLibrary* in_its_place = nullptr;
+
+const OpenedCudaLibrary& opened() {
+  static const OpenedCudaLibrary once = in_its_place != nullptr
+                                            ? OpenedCudaLibrary{in_its_place, {}}
+                                            : open_cuda_library(kCudaLibraryFile);
+  return once;
+}
+
+}  // namespace
+
+OpenedCudaLibrary open_cuda_library(const char* file) {
+  // Its names are its own (RTLD_LOCAL), and none of them is looked for later (RTLD_NOW).
+  void* const handle = ::dlopen(file, RTLD_NOW | RTLD_LOCAL);
+  if (handle == nullptr)
+    return {nullptr, std::string("the library of device code cannot be opened: ")
+                         .append(::dlerror())
+                         .append("; it is built with -DRASTRUM_CUDA=ON (nvcc 12.4 or newer), and "
+                                 "LD_LIBRARY_PATH may name its folder")};
+  const auto table =
+      reinterpret_cast<decltype(&rastrum_cuda_library)>(::dlsym(handle, kCudaLibrarySymbol));
+  if (table == nullptr)
+    return {nullptr, std::string(file).append(" is no library of Rastrum's device code")};
+  const CudaLibrary* const library = table();
+  if (std::string_view(library->version) != RASTRUM_CUDA_LIBRARY_VERSION)
+    return {nullptr, std::string("the library of device code, ")
+                         .append(file)
+                         .append(", is of Rastrum ")
+                         .append(library->version)
+                         .append(", and this program of ")
+                         .append(RASTRUM_CUDA_LIBRARY_VERSION)
+                         .append("; install both from one build")};
+  return {library, {}};
+}
+
+const CudaLibrary& cuda_library() {
+  const OpenedCudaLibrary& there = opened();
+  if (there.library == nullptr) throw Error(Errc::no_device, "CUDA: " + there.why_not);
+  return *there.library;
+}
+
+void set_cuda_library(const CudaLibrary& library) {
+  in_its_place = &library;
+}
+
+CudaStatus cuda_status() {
+  const OpenedCudaLibrary& there = opened();
+  if (there.library != nullptr) return there.library->status();
+  CudaStatus status;
+  status.why_not = there.why_not;
+  return status;
+}
+
+}  // namespace rastrum::parallel

@@ -1,0 +1,63 @@
+// The library of device code, librastrum_cuda.so: all that nvcc compiles of Rastrum, in a file of
+// its own that is opened when somebody asks for a CUDA device. So nobody else carries it, needs a
+// toolkit to link, or notices that there is none. Decision 0026.
+//
+// Each floor has a table of what it asks of a device; their types are the floors' own. The library
+// has a copy of what it calls of Rastrum::rastrum, to itself: what it is to share with its caller
+// (memory accounts, threads, the token that stops a frame) is passed.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <rastrum/parallel/cuda/status.hpp>
+
+namespace rastrum {
+struct CudaRendering;  // render/cuda/rasterizer.hpp
+namespace terrain {
+struct CudaTerrain;  // terrain/cuda/device.hpp
+}
+namespace family {
+struct CudaRows;  // family/cuda/rasterizer.hpp
+}
+}  // namespace rastrum
+
+namespace rastrum::parallel {
+
+struct CudaLibrary {
+  /// The program's own (RASTRUM_CUDA_LIBRARY_VERSION, which changes with every header), or nothing
+  /// else here may be read. First, in all versions.
+  const char* version;
+  CudaStatus (*status)();  ///< what cuda_status() says
+  const CudaRendering* rendering;
+  const terrain::CudaTerrain* terrain;
+  const family::CudaRows* family;
+};
+
+/// The file, which the dynamic loader looks for by its own rules: in the program's RUNPATH, in
+/// LD_LIBRARY_PATH, and where it looks for all libraries. What links Rastrum's targets of CMake has
+/// the right RUNPATH.
+inline constexpr const char* kCudaLibraryFile = "librastrum_cuda.so";
+/// What the file exports: `const CudaLibrary* rastrum_cuda_library()`.
+inline constexpr const char* kCudaLibrarySymbol = "rastrum_cuda_library";
+
+/// A library, or why there is none, as the end of a sentence.
+struct OpenedCudaLibrary {
+  const CudaLibrary* library = nullptr;
+  std::string why_not;
+};
+/// Opens a file of that name; it stays open. Refuses one of another version.
+[[nodiscard]] OpenedCudaLibrary open_cuda_library(const char* file);
+
+/// kCudaLibraryFile, opened by the first call, from any thread. Throws Error{no_device} where there
+/// is none; choose_device has said so before.
+[[nodiscard]] const CudaLibrary& cuda_library();
+
+/// Takes `library` in the place of the file, before anybody asked for it: for a program that links
+/// the code of devices, such as tests that have it compiled for the CPU.
+void set_cuda_library(const CudaLibrary& library);
+
+}  // namespace rastrum::parallel
+
+/// Defined in the library of device code (rastrum/cuda/library.cpp).
+extern "C" const rastrum::parallel::CudaLibrary* rastrum_cuda_library() noexcept;

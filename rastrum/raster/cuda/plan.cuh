@@ -1,0 +1,60 @@
+// How a frame of a device is cut, in bands of rows and batches of primitives, so that its memory
+// stays below a limit.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/raster/assemble/assemble.hpp>
+#include <rastrum/raster/cuda/cover.cuh>
+#include <rastrum/raster/draws/projection.hpp>
+#include <rastrum/raster/setup/piece.hpp>
+
+namespace rastrum::raster {
+
+struct DevicePlan {
+  bool project_first = true;
+  int band_rows = 0;             ///< whole tiles
+  std::uint64_t batch = 0;       ///< primitives that are set up at once
+  std::uint64_t written = 0;     ///< of those with larger pieces, whose pieces are there at once
+  std::uint64_t turn_bytes = 0;  ///< of blocks and what makes them (SurfaceDrawer), 0: any
+
+  /// `limit`: bytes, 0 for any. `pixel_bytes`: what is kept of a pixel beside its key. Throws
+  /// Error{out_of_memory} where not even the least band fits.
+  static DevicePlan of(std::uint64_t limit, int width, int height, std::uint64_t primitives,
+                       std::uint64_t vertices, std::uint64_t pixel_bytes) {
+    constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
+    constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 19;
+    // An outcome, its place and CUB's flags; the pieces of a primitive and their places.
+    constexpr std::uint64_t kSetUpBytes = 24, kWrittenBytes = kMaxPieces * (sizeof(Piece) + 8) + 16;
+    DevicePlan p;
+    p.band_rows = (height + kDeviceTile - 1) / kDeviceTile * kDeviceTile;
+    p.batch = p.written = std::clamp<std::uint64_t>(primitives, 1, kLargestBatch);
+    if (limit == 0) return p;
+    const auto columns = static_cast<std::uint64_t>(block_columns({0, 0, width, 1}));
+    const std::uint64_t least_band =
+        columns * kBlockSize * kDeviceTile * (sizeof(std::uint64_t) + pixel_bytes);
+    const std::uint64_t least = std::max(least_band, kLeastShare) + 3 * kLeastShare;
+    if (limit < least)
+      throw Error(Errc::out_of_memory,
+                  std::string("a memory limit of ")
+                      .append(std::to_string(limit))
+                      .append(" bytes is less than the ")
+                      .append(std::to_string(least))
+                      .append(" that this frame needs at least on the device"));
+    const std::uint64_t band_share = std::max(limit / 4, least_band);
+    const std::uint64_t share = (limit - band_share) / 3;
+    p.project_first = vertices * sizeof(ProjectedVertex) <= share;
+    p.band_rows = static_cast<int>(std::min<std::uint64_t>(
+        band_share / least_band * kDeviceTile, static_cast<std::uint64_t>(p.band_rows)));
+    p.batch = std::min(p.batch, share / kSetUpBytes);
+    p.written = std::min(p.written, share / 2 / kWrittenBytes);
+    p.turn_bytes = share / 2;
+    return p;
+  }
+};
+
+}  // namespace rastrum::raster

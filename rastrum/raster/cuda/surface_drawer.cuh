@@ -1,0 +1,81 @@
+// What draws the pieces of a band onto its keys: the device's own listing (by_size.cuh), or a row
+// of the papers' (family/cuda). The frame around it (render/cuda/frame.cuh) knows no more of them.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+
+#include <rastrum/core/vec.hpp>
+#include <rastrum/parallel/cuda/words.cuh>
+#include <rastrum/raster/cuda/cover.cuh>
+#include <rastrum/raster/cuda/pieces.cuh>
+#include <rastrum/raster/cuda/plan.cuh>
+#include <rastrum/raster/frame/options.hpp>
+
+namespace rastrum::raster {
+
+/// Colours for who shades every fragment: shade(elements, keys, colors) sets the colour of each
+/// fragment, given by its element of the surface and its key. Spans of the device's.
+struct FragmentColors {
+  std::function<void(std::span<const std::uint32_t>, std::span<const std::uint64_t>,
+                     std::span<Vec4>)>
+      shade;               ///< null: no colours are wanted
+  std::span<Vec4> colors;  ///< of the surface, in the places of its keys; set where those rise
+};
+
+/// What FragmentColors::shade is made of: `shade` as resolve_surface takes it.
+template <class Shade>
+struct ColorOfFragment {
+  SurfaceView keys;
+  std::span<const std::uint32_t> element;
+  std::span<const std::uint64_t> key;
+  Shade shade;
+  RASTRUM_HD Vec4 operator()(std::size_t k) const {
+    const auto columns = static_cast<std::size_t>(keys.columns);
+    const std::size_t block = element[k] / 64;
+    const int i = static_cast<int>(element[k] % 64);
+    const int bx = keys.bx0 + static_cast<int>(block % columns);
+    const int by = keys.by0 + static_cast<int>(block / columns);
+    return shade(key[k], bx * kBlockSize + i % kBlockSize, by * kBlockSize + i / kBlockSize);
+  }
+};
+
+/// What became of the primitives of a band, and how many fragments their pieces had.
+struct DeviceCounts {
+  Outcomes sum;
+  std::uint64_t fragments = 0;
+};
+
+/// Keeps counters from band to band of a frame. One frame at a time.
+class SurfaceDrawer {
+ public:
+  /// What a frame has to know before it draws.
+  struct Kind {
+    std::string_view rasterizer, visibility;  ///< names, as FrameStats has them
+    std::string_view why;                     ///< it was taken: the beginning of FrameStats::why
+    std::uint64_t pixel_bytes = 0;            ///< of a band, beside its keys
+    bool shades = false;                      ///< it wants FragmentColors, and sets them
+    bool has_samples = false;                 ///< it draws several samples a pixel
+  };
+
+  virtual ~SurfaceDrawer() = default;
+  [[nodiscard]] virtual Kind kind() const = 0;
+
+  /// Draws all primitives of `scene` onto the keys of `surface`, which hold what was drawn before,
+  /// or 0; pieces that have a flag of `skip` are left to others, though what became of them is
+  /// counted. `colors` as kind().shades says. Throws as check_valid, Error{out_of_memory}, and
+  /// parallel::Stopped between batches. Waits.
+  [[nodiscard]] virtual DeviceCounts draw(parallel::Cuda& exec,
+                                          const DeviceScene<parallel::Cuda>& scene,
+                                          const DeviceSurface& surface, const DevicePlan& plan,
+                                          const Tuning& tuning, std::uint32_t skip,
+                                          const FragmentColors& colors) = 0;
+  /// Counts from 0; a frame may have ended early.
+  virtual void begin_frame() = 0;
+  /// Adds the frame's counters to `stats`.
+  virtual void end_frame(FrameStats& stats) const = 0;
+};
+
+}  // namespace rastrum::raster

@@ -1,0 +1,17 @@
+// Makes the frame of a device (frame.cuh) around what draws its surfaces.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include <rastrum/raster/cuda/surface_drawer.cuh>
+#include <rastrum/render/cuda/rasterizer.hpp>
+
+namespace rastrum {
+
+/// make_cuda_rasterizer, by `drawer`. The one function that who adds a way to draw needs.
+[[nodiscard]] std::unique_ptr<CudaRasterizer> make_device_rasterizer(
+    std::unique_ptr<raster::SurfaceDrawer> drawer, std::uint64_t memory_limit,
+    MemoryAccount& memory, parallel::Threads& threads);
+
+}  // namespace rastrum

@@ -1,0 +1,14 @@
+// The driver of a library of device code whose device is the CPU (library_test.cpp).
+#include <rastrum/parallel/cuda/driver.hpp>
+
+namespace rastrum::parallel {
+
+CudaStatus driver_status() {
+  CudaStatus status;
+  status.usable = true;
+  status.name = "CPU in a library of its own";
+  status.free_bytes = std::uint64_t{1} << 36;
+  return status;
+}
+
+}  // namespace rastrum::parallel
