@@ -160,7 +160,7 @@ FrameStats draw(Renderer& renderer, const Subject& subject, FrameOptions frame,
   frame.height = subject.height;
   if (subject.facade_shader) {
     const InstanceView instance{subject.mesh, Mat4d::identity()};
-    return renderer.render({{&instance, 1}, {}, {}}, subject.camera, frame, targets);
+    return renderer.render({.instances = {&instance, 1}}, subject.camera, frame, targets);
   }
   const Mat4d to_clip = world_to_clip(subject.camera, subject.width, subject.height);
   const raster::MatrixVertices source(subject.mesh.positions, to_clip);

@@ -90,7 +90,7 @@ void append(Mesh& mesh, const Mesh& more) {
 /// side.
 Mesh clustered(const Mesh& mesh, double cells) {
   const InstanceView instance{mesh.view(), Mat4d::identity()};
-  const Bounds box = bounds({{&instance, 1}, {}, {}});
+  const Bounds box = bounds({.instances = {&instance, 1}});
   const Vec3 size = box.max - box.min;
   const double scale = cells / static_cast<double>(std::max({size.x, size.y, size.z, 1e-30F}));
   std::unordered_map<std::uint64_t, std::uint32_t> first;
@@ -198,7 +198,7 @@ Mesh subdivided_part(const Mesh& mesh, int times, std::size_t k, std::size_t n) 
 
 Camera whole_view(const Mesh& mesh) {
   const InstanceView instance{mesh.view(), Mat4d::identity()};
-  return fit_camera({{&instance, 1}, {}, {}}, kFov_rad, false);
+  return fit_camera({.instances = {&instance, 1}}, kFov_rad, false);
 }
 
 FragmentMatch match_fragments(const Mesh& mesh, int width, int height, std::uint64_t fragments,

@@ -185,7 +185,8 @@ void TerrainObjects::place(const terrain::Terrain& terrain) {
       if (!part.object.standing) continue;
       const Standing& s = *part.object.standing;
       const double foot = s.height ? *s.height : ground_under(part.object, terrain, options_);
-      const SceneView alone{whole.instances.subspan(part.first, part.last - part.first), {}, {}};
+      const SceneView alone{.instances =
+                                whole.instances.subspan(part.first, part.last - part.first)};
       const Bounds box = bounds(alone);
       const double lowest = box.vertices_in_use > 0 ? static_cast<double>(box.min.y) : 0;
       const Mat4d m = placement(s, foot - s.scale * lowest);

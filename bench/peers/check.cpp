@@ -13,7 +13,7 @@ struct OneMesh {
   InstanceView instance;
 
   explicit OneMesh(const Mesh& mesh) : instance{mesh.view(), Mat4d::identity()} {}
-  [[nodiscard]] SceneView view() const { return {{&instance, 1}, {}, {}}; }
+  [[nodiscard]] SceneView view() const { return {.instances = {&instance, 1}}; }
 };
 
 }  // namespace

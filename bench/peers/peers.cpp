@@ -125,7 +125,7 @@ nlohmann::json to_json(const Row& row) {
 Row measure_row(const SceneInfo& info, const Mesh& mesh, Size size, Peers& peers,
                 const MachineLimits& machine, const Options& options) {
   const InstanceView instance{mesh.view(), Mat4d::identity()};
-  const SceneView scene{{&instance, 1}, {}, {}};
+  const SceneView scene{.instances = {&instance, 1}};
   const Camera camera = fit_camera(scene, kFov_rad, false);
   Renderer renderer =
       family::make_renderer({.threads = options.threads}, {.rasterizer = options.rasterizer});

@@ -129,7 +129,7 @@ TEST(OneSceneOnTerrain, DrawsForSeveralThreads) {
   const auto add = [&](SceneOnTerrain& painter, std::size_t which) {
     Ground ground = bare;
     const SceneBinding binding(scenes[which]);
-    painter.draw({binding.view(), {}}, o, terrain_options(), kCamera, ground.targets());
+    painter.draw({.scene = binding.view()}, o, terrain_options(), kCamera, ground.targets());
     return ground;
   };
   std::vector<Ground> alone;

@@ -229,7 +229,7 @@ TEST(StopToken, IsTakenByAllThatDrawFrames) {
   const auto draw_all = [&](const auto& expect) {
     expect([&] { renderer.render(binding.view(), camera, targets, token); });
     expect([&] { terrain.render(ground, {}, picture, token); });
-    expect([&] { on_terrain.draw({binding.view(), {}}, o, how, {}, picture, token); });
+    expect([&] { on_terrain.draw({.scene = binding.view()}, o, how, {}, picture, token); });
   };
   draw_all([](const auto& frame) { EXPECT_NO_THROW(frame()); });
   source.request_stop();

@@ -117,7 +117,7 @@ void expect_original(const HeightMap& map, const TerrainCamera& camera, TerrainL
   const Terrain terrain(map);
   const auto compare = [&](const char* name) {
     Image<Rgba8> picture(options.width, options.height);
-    TerrainPainter(options).render(terrain, camera, {picture.view(), {}});
+    TerrainPainter(options).render(terrain, camera, {.color8 = picture.view()});
     EXPECT_EQ(differences(picture, screen), 0U)
         << name << " threads " << options.threads << " camera " << camera.x << ", " << camera.y
         << ", " << camera.altitude << ", " << camera.angle_rad << ", horizon " << camera.horizon_px

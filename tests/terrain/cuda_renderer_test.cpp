@@ -185,7 +185,7 @@ TEST_F(CudaTerrain, TargetsMayHaveGapsOrBeLeftOut) {
   const ImageView<Rgba8> part{wide.view().data + 5, 61, 40, 80};
   renderer.render(terrain, camera, {part, {}});
   Image<float> depth(61, 40);
-  renderer.render(terrain, camera, {{}, depth.view()});
+  renderer.render(terrain, camera, {.depth = depth.view()});
   for (int y = 0; y < 41; ++y)
     for (int x = 0; x < 80; ++x) {
       const bool inside = x >= 5 && x < 66 && y < 40;
@@ -207,17 +207,17 @@ TEST_F(CudaTerrain, AFrameLikeTheOneBeforeAllocatesNothingAndCopiesNoMap) {
   TerrainPainter renderer(options);
   Image<Rgba8> colors(200, 100);
   const TerrainCamera camera{.altitude = 300, .horizon_px = 10};
-  const std::uint64_t bytes = renderer.render(a, camera, {colors.view(), {}}).device_bytes;
+  const std::uint64_t bytes = renderer.render(a, camera, {.color8 = colors.view()}).device_bytes;
   EXPECT_GT(bytes, 8U * 256 * 200);
   EXPECT_LT(bytes, 12U * 256 * 200 + (1U << 18));
   for (int i = 0; i < 3; ++i)
-    EXPECT_EQ(renderer.render(a, camera, {colors.view(), {}}).device_bytes, bytes);
+    EXPECT_EQ(renderer.render(a, camera, {.color8 = colors.view()}).device_bytes, bytes);
   // Another map of that size takes its place; other colours are seen.
   const auto first = colors;
-  EXPECT_LE(renderer.render(b, camera, {colors.view(), {}}).device_bytes, bytes + 256 * 200);
+  EXPECT_LE(renderer.render(b, camera, {.color8 = colors.view()}).device_bytes, bytes + 256 * 200);
   options.device = Device::serial;
   EXPECT_TRUE(std::ranges::equal(colors.pixels(), Picture(b, camera, options).colors.pixels()));
-  renderer.render(a.with_colors(*b.colors()), camera, {colors.view(), {}});
+  renderer.render(a.with_colors(*b.colors()), camera, {.color8 = colors.view()});
   EXPECT_TRUE(std::ranges::equal(
       colors.pixels(), Picture(a.with_colors(*b.colors()), camera, options).colors.pixels()));
   EXPECT_FALSE(std::ranges::equal(colors.pixels(), first.pixels()));
@@ -291,10 +291,10 @@ TEST_F(CudaTerrain, RolledPicturesOfOneKindAreTheReferences) {
   TerrainPainter renderer(options);
   Image<Rgba8> colors(80, 60);
   Image<float> depth(80, 60);
-  const TerrainStats stats = renderer.render(terrain, camera, {colors.view(), {}});
+  const TerrainStats stats = renderer.render(terrain, camera, {.color8 = colors.view()});
   EXPECT_EQ(stats.device, Device::cuda);
   EXPECT_EQ(stats.device_why, "");
-  static_cast<void>(renderer.render(terrain, camera, {{}, depth.view()}));
+  static_cast<void>(renderer.render(terrain, camera, {.depth = depth.view()}));
   EXPECT_TRUE(std::ranges::equal(colors.pixels(), expected.colors.pixels()));
   EXPECT_TRUE(std::ranges::equal(depth.pixels(), expected.depth.pixels()));
 }

@@ -45,7 +45,7 @@ TEST_F(CudaSpans, AreDrawnWhereTheyLie) {
   options.device = Device::serial;
   Image<Rgba8> expected(90, 50);
   const TerrainStats stats =
-      TerrainPainter(options).render(Terrain(map), camera, {expected.view(), {}});
+      TerrainPainter(options).render(Terrain(map), camera, {.color8 = expected.view()});
   EXPECT_EQ(counts.visible, stats.visible);
   EXPECT_TRUE(std::ranges::equal(parallel::to_host(owner, pixels), expected.pixels()));
 

@@ -16,7 +16,7 @@ Terrain flat(int edge) {
 
 FrameWork work(const Terrain& map, const TerrainLook& options) {
   Image<Rgba8> picture(options.width, options.height);
-  return device_work(map, options, {picture.view(), {}});
+  return device_work(map, options, {.color8 = picture.view()});
 }
 
 TEST(TerrainDeviceWork, CountsImagesAndAShareOfTheMap) {
@@ -28,7 +28,7 @@ TEST(TerrainDeviceWork, CountsImagesAndAShareOfTheMap) {
   const std::uint64_t share = 64 * 64 * (4 + 4) / 16;
   EXPECT_EQ(work(map, options).bytes, share + 100 * 50 * 4);
   Image<float> depth(100, 50);
-  EXPECT_EQ(device_work(map, options, {{}, depth.view()}).bytes, share + 100 * 50 * 4);
+  EXPECT_EQ(device_work(map, options, {.depth = depth.view()}).bytes, share + 100 * 50 * 4);
   const auto slices = static_cast<std::uint64_t>(100 * slice_count(options));
   EXPECT_NE(work(map, options).what.find(std::to_string(slices)), std::string::npos);
 }
