@@ -4,7 +4,7 @@
 #include <new>
 #include <string>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 #include "contest.hpp"
 

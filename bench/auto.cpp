@@ -103,8 +103,8 @@ int run_auto(std::span<const std::string_view> arguments) {
   selection.resolve();
 
   std::vector<Entrant> entrants{entrant(options, "auto")};
-  for (const AxisInfo& rasterizer : rasterizers())
-    for (const AxisInfo& visibility : visibilities())
+  for (const family::AxisInfo& rasterizer : family::rasterizer_axis())
+    for (const family::AxisInfo& visibility : family::visibility_axis())
       if (rasterizer.name != "reference")
         entrants.push_back(entrant(options, rasterizer.name, visibility.name));
 

@@ -7,8 +7,9 @@
 #include <optional>
 
 #include <bench/cuda/in_place.hpp>
-#include <rastrum/core/image.hpp>
+#include <rastrum/image.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
+#include <rastrum/render/access.hpp>
 
 #include "attempt.hpp"
 
@@ -60,7 +61,7 @@ std::uint64_t hash_of(const Image<std::int64_t>& ids) {
 
 /// Whether the frame was drawn by what was asked for: an option that a build does not know yet
 /// would otherwise be measured under a false name.
-std::string absent(const RenderOptions& wanted, const FrameStats& stats) {
+std::string absent(const family::Options& wanted, const FrameStats& stats) {
   if (wanted.device == Device::cuda && stats.device != Device::cuda)
     return "left to the CPU: " + stats.device_why;
   const auto differs = [](const std::string& want, const std::string& got) {
@@ -92,7 +93,8 @@ std::vector<std::pair<std::string, double>> medians(
 struct OnDevice {
   MeshesInPlace meshes;
   InPlace frame;
-  OnDevice(const Subject& subject, const RenderOptions& options) : frame(options, subject.camera) {
+  OnDevice(const Subject& subject, const family::Options& options)
+      : frame(options, subject.camera, subject.width, subject.height) {
     meshes.add(subject.mesh);
   }
 };
@@ -152,10 +154,13 @@ std::uint64_t hash_of(std::span<const std::uint64_t> keys) {
   return h;
 }
 
-FrameStats draw(Renderer& renderer, const Subject& subject, const Targets& targets) {
+FrameStats draw(Renderer& renderer, const Subject& subject, FrameOptions frame,
+                const Targets& targets) {
+  frame.width = subject.width;
+  frame.height = subject.height;
   if (subject.facade_shader) {
     const InstanceView instance{subject.mesh, Mat4d::identity()};
-    return renderer.render({{&instance, 1}, {}, {}}, subject.camera, targets);
+    return renderer.render({.instances = {&instance, 1}}, subject.camera, frame, targets);
   }
   const Mat4d to_clip = world_to_clip(subject.camera, subject.width, subject.height);
   const raster::MatrixVertices source(subject.mesh.positions, to_clip);
@@ -165,23 +170,20 @@ FrameStats draw(Renderer& renderer, const Subject& subject, const Targets& targe
   draw.indices = subject.mesh.indices;
   draw.primitive_count = subject.mesh.triangle_count();
   const raster::BlockShader& shader = subject.shader != nullptr ? *subject.shader : depth_cubed();
-  return renderer.draw({&draw, 1}, shader, nullptr, targets);
+  return RendererAccess::draw(renderer, {&draw, 1}, shader, {}, frame, targets);
 }
 
-Fingerprint fingerprint(const Subject& subject, RenderOptions options) {
-  options.width = subject.width;
-  options.height = subject.height;
-  if (options.in_place) {
+Fingerprint fingerprint(const Subject& subject, const Entrant& entrant) {
+  const family::Options& options = entrant.options;
+  if (entrant.in_place) {
     OnDevice there(subject, options);
     FrameStats stats;
     const std::uint64_t hash = hash_of(there.frame.ids(there.meshes, stats));
     return {hash, std::move(stats)};
   }
-  Renderer renderer(options);
+  Renderer renderer = family::make_renderer(options, options);
   Image<std::int64_t> ids(subject.width, subject.height);
-  Targets targets;
-  targets.ids = ids.view();
-  FrameStats stats = draw(renderer, subject, targets);
+  FrameStats stats = draw(renderer, subject, options, {.ids = ids});
   return {hash_of(ids), std::move(stats)};
 }
 
@@ -191,17 +193,15 @@ std::vector<Result> contest(const Subject& subject, std::span<const Entrant> ent
   std::vector<Racer> racers;
   std::optional<std::uint64_t> right;
   for (std::size_t i = 0; i < entrants.size(); ++i) {
-    RenderOptions options = entrants[i].options;
-    options.width = subject.width;
-    options.height = subject.height;
+    const family::Options& options = entrants[i].options;
     Result& result = results[i];
     result.name = entrants[i].name;
     result.not_run = attempt([&]() -> std::string {
-      const Fingerprint print = fingerprint(subject, options);
+      const Fingerprint print = fingerprint(subject, entrants[i]);
       if (std::string why = absent(options, print.stats); !why.empty()) return why;
       if (!right) {
-        RenderOptions plain;
-        plain.threads = options.threads;
+        Entrant plain;
+        plain.options.threads = options.threads;
         right = fingerprint(subject, plain).ids;
       }
       result.wrong = print.ids != *right;
@@ -211,18 +211,17 @@ std::vector<Result> contest(const Subject& subject, std::span<const Entrant> ent
     if (!result.ran()) continue;
     Racer racer{i, nullptr, nullptr, result.stats.frame_ms, {}};
     result.not_run = attempt([&]() -> std::string {
-      if (options.in_place)
+      if (entrants[i].in_place)
         racer.on_device = std::make_unique<OnDevice>(subject, options);
       else
-        racer.renderer = std::make_unique<Renderer>(options);
+        racer.renderer = std::make_unique<Renderer>(family::make_renderer(options, options));
       return "";
     });
     if (result.ran()) racers.push_back(std::move(racer));
   }
 
   Image<Rgba8> picture(subject.width, subject.height);
-  Targets targets;
-  targets.color8 = picture.view();
+  const Targets targets{.color8 = picture};
   double fastest_ms = 1e300;
   for (const Racer& r : racers) fastest_ms = std::min(fastest_ms, r.first_ms);
   std::vector<Contender> contenders;
@@ -233,14 +232,15 @@ std::vector<Result> contest(const Subject& subject, std::span<const Entrant> ent
       r.on_device.reset();
       continue;
     }
-    contenders.push_back({std::to_string(r.index), [&r, &subject, &targets, &results] {
+    contenders.push_back({std::to_string(r.index), [&r, &subject, entrants, &targets, &results] {
                             Result& result = results[r.index];
                             if (!result.ran()) return;
                             result.not_run = attempt([&]() -> std::string {
                               const std::uint64_t peak = result.stats.peak_bytes;
                               result.stats = r.on_device
                                                  ? r.on_device->frame.draw(r.on_device->meshes)
-                                                 : draw(*r.renderer, subject, targets);
+                                                 : draw(*r.renderer, subject,
+                                                        entrants[r.index].options, targets);
                               result.stats.peak_bytes = std::max(peak, result.stats.peak_bytes);
                               add_stages(result.stats, r.stages);
                               return "";

@@ -8,10 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/camera.hpp>
-#include <rastrum/scene/mesh.hpp>
+#include <rastrum/camera.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/family.hpp>
+#include <rastrum/mesh.hpp>
+#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/render.hpp>
 
 #include "measure.hpp"
 #include "tables/comparison.hpp"
@@ -34,8 +36,8 @@ struct Subject {
 
 struct Entrant {
   std::string name;
-  RenderOptions
-      options;  ///< the size is the subject's; in_place: its arrays are copied there before
+  family::Options options;  ///< the size is the subject's
+  bool in_place = false;  ///< arrays and picture in a device's memory, where they are copied before
 };
 
 struct Result {
@@ -52,18 +54,19 @@ struct Result {
   [[nodiscard]] std::uint64_t counter(std::string_view counter_name) const;
 };
 
-/// Draws one frame of `subject`.
-FrameStats draw(Renderer& renderer, const Subject& subject, const Targets& targets);
+/// Draws one frame of `subject`, whose size it has.
+FrameStats draw(Renderer& renderer, const Subject& subject, FrameOptions frame,
+                const Targets& targets);
 
 /// FNV-1a over whole words.
 [[nodiscard]] std::uint64_t hash_of(std::span<const std::uint64_t> words);
 
-/// A hash of the ids of `subject` drawn with `options`, and that frame's statistics.
+/// A hash of the ids of `subject` drawn by `entrant`, and that frame's statistics.
 struct Fingerprint {
   std::uint64_t ids = 0;
   FrameStats stats;
 };
-[[nodiscard]] Fingerprint fingerprint(const Subject& subject, RenderOptions options);
+[[nodiscard]] Fingerprint fingerprint(const Subject& subject, const Entrant& entrant);
 
 /// Why an entrant could not run: "absent" for a name that this build has not, else the message.
 [[nodiscard]] std::string why_not(const Error& e);

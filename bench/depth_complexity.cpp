@@ -132,7 +132,7 @@ int run_hiz(std::span<const std::string_view> arguments) {
   plot.places = {"1", "4", "16", "64"};
   std::vector<std::string> names;
   std::vector<Entrant> entrants;
-  for (const AxisInfo& info : rasterizers()) {
+  for (const family::AxisInfo& info : family::rasterizer_axis()) {
     if (info.name == "reference") continue;
     names.push_back(info.name);
     grid.columns.push_back(info.name);

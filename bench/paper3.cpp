@@ -9,9 +9,9 @@
 #include <random>
 #include <vector>
 
+#include <rastrum/terrain.hpp>
 #include <rastrum/terrain/blocks.hpp>
 #include <rastrum/terrain/methods.hpp>
-#include <rastrum/terrain/renderer.hpp>
 
 #include "cuda/rates.hpp"
 #include "machine.hpp"
@@ -71,18 +71,20 @@ HeightMap hills() {
 struct Entry {
   std::string name;
   std::shared_ptr<TerrainRenderer> renderer;
+  TerrainOptions options;
   std::shared_ptr<Image<Rgba8>> picture;
   TerrainStats stats;
   Timing timing;
 
-  Entry(std::string n, const TerrainOptions& options)
+  Entry(std::string n, const TerrainOptions& o, const TerrainRendererOptions& by)
       : name(std::move(n)),
-        renderer(std::make_shared<TerrainRenderer>(options)),
-        picture(std::make_shared<Image<Rgba8>>(options.width, options.height)) {
+        renderer(std::make_shared<TerrainRenderer>(by)),
+        options(o),
+        picture(std::make_shared<Image<Rgba8>>(o.width, o.height)) {
     timing.name = name;
   }
   void frame(const Terrain& terrain) {
-    stats = renderer->render(terrain, TerrainCamera{}, {picture->view(), {}});
+    stats = renderer->render(terrain, TerrainCamera{}, options, {.color8 = *picture});
   }
 };
 
@@ -112,12 +114,11 @@ std::uint64_t hash_of(const Image<Rgba8>& picture) {
   return hash;
 }
 
-TerrainOptions like_classic(int width, int height, double distance, int threads) {
+TerrainOptions like_classic(int width, int height, double distance) {
   TerrainOptions o;
   o.width = width;
   o.height = height;
   o.distance = distance;
-  o.threads = threads;
   o.scale_px = 240;
   o.ground_clearance = 10;
   return o;
@@ -174,27 +175,27 @@ bool frames(const TableOptions& options, const MachineLimits& device, const Heig
     } catch (const Error& e) {
       why_not = e.what();
     }
-    TerrainOptions fast = like_classic(size.width, size.height, size.distance, threads);
+    TerrainOptions fast = like_classic(size.width, size.height, size.distance);
     TerrainOptions classic;
     classic.classic = true;
     classic.width = size.width;
     classic.height = size.height;
     classic.distance = size.distance;
-    classic.threads = threads;
     TerrainOptions mip = fast, words = fast;
     mip.filter = terrain::MapFilter::mip;
     mip.dz = 0.02;
     words.method = Method::words;
     std::vector<Entry> entries;
-    entries.emplace_back("classic", classic);
-    entries.emplace_back("fast", fast);
-    entries.emplace_back("mip", mip);
-    entries.emplace_back("words", words);
-    if (options.on_cuda())
-      for (TerrainOptions* on_device : {&fast, &words}) {
-        on_device->device = Device::cuda;
-        entries.emplace_back(on_device == &fast ? "fast, cuda" : "words, cuda", *on_device);
-      }
+    const TerrainRendererOptions here{.threads = threads};
+    entries.emplace_back("classic", classic, here);
+    entries.emplace_back("fast", fast, here);
+    entries.emplace_back("mip", mip, here);
+    entries.emplace_back("words", words, here);
+    if (options.on_cuda()) {
+      const TerrainRendererOptions there{.device = Device::cuda, .threads = threads};
+      entries.emplace_back("fast, cuda", fast, there);
+      entries.emplace_back("words, cuda", words, there);
+    }
     entries[0].frame(terrain);
     if (peer && hash_of(*entries[0].picture) != peer->hash()) {
       document.notes.push_back("**" + label +
@@ -261,11 +262,11 @@ bool frames(const TableOptions& options, const MachineLimits& device, const Heig
 /// methods are called as TerrainRenderer calls them, on pixels of our own.
 class WideFrame {
  public:
-  WideFrame(const Terrain& terrain, const TerrainOptions& options)
+  WideFrame(const Terrain& terrain, const TerrainOptions& options, int threads)
       : terrain_(terrain),
         options_(options),
         camera_(above_ground(terrain, {}, options.ground_clearance.value_or(0))),
-        threads_(options.threads, &memory_),
+        threads_(threads, &memory_),
         serial_(&memory_),
         pool_(memory_),
         ceiling_(terrain.heights()),
@@ -276,8 +277,8 @@ class WideFrame {
   void draw(Method method, Device device) {
     const Setup setup = set_up(options_, camera_, terrain_);
     const Samples samples{{setup, MapView(pyramid_, options_, setup)}, terrain_, &ceiling_};
-    const TerrainTargets targets{{pixels_.data(), options_.width, options_.height, options_.width},
-                                 {}};
+    const TerrainTargets targets{
+        .color8 = {pixels_.data(), options_.width, options_.height, options_.width}};
     if (method == Method::fast)
       draw_fast(threads_, available_isas().back(), pool_, samples, targets);
     else if (device == Device::serial)
@@ -310,9 +311,9 @@ constexpr Way kWays[] = {{"words, serial", Method::words, Device::serial},
                          {"fast", Method::fast, Device::threads}};
 
 /// The times of kWays; none where their pictures differ.
-std::vector<Timing> time_ways(const Terrain& terrain, const TerrainOptions& options,
+std::vector<Timing> time_ways(const Terrain& terrain, const TerrainOptions& options, int threads,
                               const Plan& plan) {
-  WideFrame frame(terrain, options);
+  WideFrame frame(terrain, options, threads);
   std::vector<Rgba8> first;
   std::vector<Contender> contenders;
   for (const Way& way : kWays) {
@@ -347,8 +348,8 @@ bool scaling(const TableOptions& options, const HeightMap& map, Document& docume
     for (const int n : paper3::kSizes) {
       const TerrainOptions o =
           like_classic(what == 'm' ? n : paper3::kFixed, what == 'l' ? n : paper3::kFixed,
-                       what == 'd' ? n : paper3::kFixed, options.threads);
-      const std::vector<Timing> timings = time_ways(terrain, o, options.plan());
+                       what == 'd' ? n : paper3::kFixed);
+      const std::vector<Timing> timings = time_ways(terrain, o, options.threads, options.plan());
       if (timings.empty()) {
         document.notes.push_back(std::string("**")
                                      .append(1, what)

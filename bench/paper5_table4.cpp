@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/core/image.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "attempt.hpp"
 #include "contest.hpp"
@@ -60,11 +60,9 @@ std::uint64_t image_bytes(int width, int height) {
 
 /// Draws one part into a cell and adds its time. A renderer a pass, so that the cells do not keep
 /// scratch beside each other; making one is not timed.
-void draw_pass(Cell& cell, const Mesh& part, std::uint64_t first_id, const RenderOptions& base) {
-  RenderOptions options = base;
-  options.width = cell.subject.width;
-  options.height = cell.subject.height;
-  Renderer renderer(options);
+void draw_pass(Cell& cell, const Mesh& part, std::uint64_t first_id,
+               const family::Options& options) {
+  Renderer renderer = family::make_renderer(options, options);
   Subject subject = cell.subject;
   subject.mesh = part.view();
   Targets targets;
@@ -73,7 +71,7 @@ void draw_pass(Cell& cell, const Mesh& part, std::uint64_t first_id, const Rende
   targets.load = first_id > 0;
   targets.first_id = first_id;
   const auto begin = std::chrono::steady_clock::now();
-  const FrameStats stats = draw(renderer, subject, targets);
+  const FrameStats stats = draw(renderer, subject, options, targets);
   if (options.device == Device::cuda && stats.device != Device::cuda)
     throw Error(Errc::unsupported, "left to the CPU: " + stats.device_why);
   cell.ms +=
@@ -135,10 +133,7 @@ void draw_in_place(std::vector<Cell>& cells, const Mesh& base, int times, std::s
     cell.stopped = stopped;
     if (!stopped.empty()) continue;
     cell.stopped = attempt([&]() -> std::string {
-      RenderOptions options = entrant.options;
-      options.width = cell.subject.width;
-      options.height = cell.subject.height;
-      InPlace frame(options, cell.subject.camera);
+      InPlace frame(entrant.options, cell.subject.camera, cell.subject.width, cell.subject.height);
       FrameStats stats;
       cell.hash = hash_of(frame.keys(meshes, stats).pixels());
       cell.scratch = stats.peak_bytes;
@@ -272,7 +267,7 @@ int run_paper5_table4(std::span<const std::string_view> arguments) {
     for (std::size_t e = 0; e < entrants.size(); ++e) {
       std::vector<Cell> run = cells;
       progress("  " + entrants[e].name);
-      if (entrants[e].options.in_place)
+      if (entrants[e].in_place)
         draw_in_place(run, matched.mesh, static_cast<int>(times), parts, entrants[e],
                       options.plan());
       else

@@ -12,7 +12,7 @@
 #include <system_error>
 #include <thread>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 #include "commit.hpp"  // written by the build
 

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <limits>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/io.hpp>
-#include <rastrum/scene/scene.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/scene.hpp>
+#include <rastrum/shapes.hpp>
 
 namespace rastrum::bench {
 namespace {

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include <rastrum/scene/mesh.hpp>
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/mesh.hpp>
+#include <rastrum/scene.hpp>
 
 namespace rastrum::bench {
 

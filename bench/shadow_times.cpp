@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <rastrum/terrain/shadows.hpp>
+#include <rastrum/terrain_light.hpp>
 
 #include "measure.hpp"
 #include "papers/paper3.hpp"

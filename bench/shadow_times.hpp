@@ -2,7 +2,7 @@
 // to 6.9: over columns q of the map and samples d_c) and our exact sharp shadows.
 #pragma once
 
-#include <rastrum/core/image.hpp>
+#include <rastrum/image.hpp>
 
 #include "tables/document.hpp"
 #include "tables/options.hpp"

@@ -8,11 +8,11 @@
 #include <unordered_map>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/io.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/scene.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/scene.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "contest.hpp"
 #include "scenes.hpp"
@@ -90,7 +90,7 @@ void append(Mesh& mesh, const Mesh& more) {
 /// side.
 Mesh clustered(const Mesh& mesh, double cells) {
   const InstanceView instance{mesh.view(), Mat4d::identity()};
-  const Bounds box = bounds({{&instance, 1}, {}, {}});
+  const Bounds box = bounds({.instances = {&instance, 1}});
   const Vec3 size = box.max - box.min;
   const double scale = cells / static_cast<double>(std::max({size.x, size.y, size.z, 1e-30F}));
   std::unordered_map<std::uint64_t, std::uint32_t> first;
@@ -198,27 +198,22 @@ Mesh subdivided_part(const Mesh& mesh, int times, std::size_t k, std::size_t n) 
 
 Camera whole_view(const Mesh& mesh) {
   const InstanceView instance{mesh.view(), Mat4d::identity()};
-  return fit_camera({{&instance, 1}, {}, {}}, kFov_rad, false);
+  return fit_camera({.instances = {&instance, 1}}, kFov_rad, false);
 }
 
 FragmentMatch match_fragments(const Mesh& mesh, int width, int height, std::uint64_t fragments,
                               int threads) {
   const Camera fitted = whole_view(mesh);
-  RenderOptions options;
-  options.width = width;
-  options.height = height;
-  options.threads = threads;
-  options.hierarchical_z = false;  // what is hidden counts too
-  Renderer renderer(options);
+  // What is hidden counts too.
+  Renderer renderer = family::make_renderer({.threads = threads}, {.hierarchical_z = false});
   Image<float> depth(width, height);
-  Targets targets;
-  targets.depth = depth.view();
   const Vec3 back = fitted.eye - fitted.target;
   const auto look = [&](double distance) {
     FragmentMatch match{fitted, 0};
     match.camera.eye = fitted.target + back * static_cast<float>(distance);
     match.camera.near_plane = length(back) * 1e-3F;
-    match.found = draw(renderer, {mesh.view(), match.camera, width, height}, targets).fragments;
+    match.found =
+        draw(renderer, {mesh.view(), match.camera, width, height}, {}, {.depth = depth}).fragments;
     return match;
   };
   // Nearer than 0.6 the eye would be inside of a ball.

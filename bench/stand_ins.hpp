@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string>
 
-#include <rastrum/scene/camera.hpp>
-#include <rastrum/scene/mesh.hpp>
+#include <rastrum/camera.hpp>
+#include <rastrum/mesh.hpp>
 
 namespace rastrum::bench {
 

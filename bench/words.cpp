@@ -17,7 +17,7 @@
 #include <vector>
 
 #include <bench/peers/thrust_peer.hpp>
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/parallel/words.hpp>
 
 #include "measure.hpp"

@@ -1,4 +1,5 @@
-# Installation: headers, library, program, and a package that find_package(Rastrum) finds.
+# Installation: the public headers, libraries, programs, examples, and packages for find_package(Rastrum)
+# and for pkg-config.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -35,16 +36,18 @@ endfunction()
 
 rastrum_dependencies(rastrum RASTRUM_FIND_DEPENDENCIES)
 rastrum_dependencies(rastrum_io RASTRUM_FIND_IO_DEPENDENCIES)
+rastrum_dependencies(rastrum_family RASTRUM_FIND_FAMILY_DEPENDENCIES)
 configure_package_config_file(cmake/RastrumConfig.cmake.in
   ${PROJECT_BINARY_DIR}/cmake/RastrumConfig.cmake INSTALL_DESTINATION ${package_dir})
 # Before 1.0 a minor version may change the interface.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/RastrumConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 
-install(DIRECTORY rastrum DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} 
-  FILES_MATCHING PATTERN "*.hpp" PATTERN "*.cuh")
+file(GLOB public_headers CONFIGURE_DEPENDS rastrum/*.hpp)
+install(FILES ${public_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rastrum)
 install(TARGETS rastrum EXPORT RastrumTargets)
 install(TARGETS rastrum_io EXPORT RastrumIoTargets)
+install(TARGETS rastrum_family EXPORT RastrumFamilyTargets)
 # Programs look for the library of device code by its name (parallel/cuda/library.hpp): those that
 # are installed here, and those that link the package, wherever that lies.
 if(TARGET rastrum_cuda)
@@ -52,9 +55,48 @@ if(TARGET rastrum_cuda)
   target_link_options(rastrum INTERFACE
     $<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/${CMAKE_INSTALL_LIBDIR}>)
 endif()
-foreach(part Targets IoTargets)
+foreach(part Targets IoTargets FamilyTargets)
   install(EXPORT Rastrum${part} NAMESPACE Rastrum:: DESTINATION ${package_dir})
 endforeach()
+
+# How a compiler's command line names the library of an imported target; empty for headers alone.
+function(rastrum_link_flag target out)
+  set(flag_TBB::tbb -ltbb)
+  set(flag_PNG::PNG -lpng)
+  set(flag_JPEG::JPEG -ljpeg)
+  set(flag_OpenEXR::OpenEXR "-lOpenEXR -lIlmThread -lIex -lImath")
+  set(flag_tinyobjloader::tinyobjloader -ltinyobjloader)
+  set(flag_muparser::muparser -lmuparser)
+  set(${out} "${flag_${target}}" PARENT_SCOPE)
+endfunction()
+# pkg-config: rastrum, and what stands on it. Static libraries say all that they link.
+function(rastrum_pkg_config name target description requires)
+  get_target_property(links ${target} LINK_LIBRARIES)
+  set(libraries "")
+  foreach(link IN LISTS links)
+    if(link MATCHES "^[A-Za-z_]+::")
+      list(APPEND libraries ${link})
+    endif()
+  endforeach()
+  set(PC_LIBS "-l${target}")
+  foreach(library IN LISTS libraries)
+    rastrum_link_flag(${library} flag)
+    string(APPEND PC_LIBS " ${flag}")
+  endforeach()
+  file(RELATIVE_PATH PC_UP /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  set(PC_NAME ${name})
+  set(PC_DESCRIPTION "${description}")
+  set(PC_REQUIRES "${requires}")
+  configure_file(cmake/rastrum.pc.in ${PROJECT_BINARY_DIR}/cmake/${name}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/cmake/${name}.pc
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endfunction()
+rastrum_pkg_config(rastrum rastrum "Software rendering: arrays in, arrays out" "")
+rastrum_pkg_config(rastrum-io rastrum_io "Rastrum's files" rastrum)
+rastrum_pkg_config(rastrum-family rastrum_family "The published rasterizers beside Rastrum's own" rastrum)
+
+install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rastrum/examples
+  FILES_MATCHING PATTERN "*.cpp" PATTERN CMakeLists.txt PATTERN inside EXCLUDE)
 install(FILES
   ${PROJECT_BINARY_DIR}/cmake/RastrumConfig.cmake
   ${PROJECT_BINARY_DIR}/cmake/RastrumConfigVersion.cmake

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 using rastrum::Vec3, rastrum::Vec4;
 
@@ -25,14 +25,14 @@ int main() {
   }
   for (const std::uint32_t i : {0U, 1U, 2U, 0U, 2U, 3U}) mesh.indices.push_back(floor + i);
 
-  rastrum::RenderOptions options;
-  options.width = 480;
-  options.height = 360;
-  options.background = {0.62F, 0.75F, 0.9F, 1};
+  rastrum::FrameOptions frame;
+  frame.width = 480;
+  frame.height = 360;
+  frame.background = {0.62F, 0.75F, 0.9F, 1};
   rastrum::Camera camera;
   camera.eye = {2.5F, 3.2F, 6};
   camera.target = {0, 1, 0};
-  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, options.width, options.height));
+  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, frame.width, frame.height));
   const auto vertex = [&](std::uint32_t i) {
     const Vec3 p = mesh.positions[i];
     return rastrum::raster::VertexOutput<Surface>{transform_point(to_clip, p),
@@ -50,10 +50,8 @@ int main() {
     return Vec4{c.x, c.y, c.z, 1};
   };
   const rastrum::raster::Program program(vertex, shade);
-  rastrum::raster::Draw draw = program.draw(mesh.positions.size(), mesh.indices);
-  rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
-  rastrum::Targets targets;
-  targets.color8 = image;
-  rastrum::Renderer(options).draw({&draw, 1}, program, program.test(), targets);
+  rastrum::raster::ProgramDraw draw = program.draw(mesh.positions.size(), mesh.indices);
+  rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
+  rastrum::Renderer().draw({&draw, 1}, frame, {.color8 = image});
   rastrum::io::write_png("checkerboard.png", image);
 }

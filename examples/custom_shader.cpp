@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <vector>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
 
 using rastrum::Vec2, rastrum::Vec3, rastrum::Vec4;
 
@@ -26,11 +26,11 @@ int main() {
       indices.insert(indices.end(),
                      {i, i + kColumns, i + 1, i + 1, i + kColumns, i + kColumns + 1});
 
-  rastrum::RenderOptions options;
-  options.background = {0.93F, 0.95F, 0.98F, 1};
+  rastrum::FrameOptions frame;
+  frame.background = {0.93F, 0.95F, 0.98F, 1};
   rastrum::Camera camera;
   camera.eye = {0.3F, 0.4F, 2.2F};
-  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, options.width, options.height));
+  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, frame.width, frame.height));
 
   const auto vertex = [&](std::uint32_t i) {
     const Vec2 at{static_cast<float>(i % kColumns) / (kColumns - 1),
@@ -49,11 +49,9 @@ int main() {
     return std::hypot(c.at.x - 0.7F, c.at.y - 0.45F) < 0.06F;
   };
   const rastrum::raster::Program program(vertex, shade, is_hole);
-  rastrum::raster::Draw draw = program.draw(kColumns * kRows, indices);
-  rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
-  rastrum::Targets targets;
-  targets.color8 = image;
-  rastrum::Renderer(options).draw({&draw, 1}, program, program.test(), targets);
+  rastrum::raster::ProgramDraw draw = program.draw(kColumns * kRows, indices);
+  rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
+  rastrum::Renderer().draw({&draw, 1}, frame, {.color8 = image});
   rastrum::io::write_png("custom_shader.png", image);
   std::puts("custom_shader.png");
 }

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <vector>
 
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/scene.hpp>
 
 int main() {
   // A tetrahedron in the caller's own arrays; Rastrum borrows them and copies nothing.

@@ -2,25 +2,25 @@
 // Turned by a quaternion half way between two poses.
 #include <cstdio>
 
-#include <rastrum/core/quaternion.hpp>
-#include <rastrum/io/io.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/transform.hpp>
 
 using rastrum::Vec4;
 
 int main() {
   const rastrum::Mesh mesh = rastrum::shapes::sphere(14, 28);
 
-  rastrum::RenderOptions options;
-  options.width = 480;
-  options.height = 360;
-  options.cull = rastrum::Cull::back;
+  rastrum::FrameOptions frame;
+  frame.width = 480;
+  frame.height = 360;
+  frame.cull = rastrum::Cull::back;
   rastrum::Camera camera;
   camera.eye = {0, 0, 2.5F};
   const rastrum::Quaternion upright, tilted = rastrum::rotation_about({1, 0, 1}, 1.6);
-  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, options.width, options.height) *
+  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, frame.width, frame.height) *
                               rastrum::rotation(rastrum::slerp(upright, tilted, 0.5)));
   const auto vertex = [&](std::uint32_t i) {
     return rastrum::raster::VertexOutput<float>{transform_point(to_clip, mesh.positions[i]), 0};
@@ -35,11 +35,9 @@ int main() {
     return Vec4{channel(0), channel(8), channel(16), 1};
   };
   const rastrum::raster::Program program(vertex, shade);
-  rastrum::raster::Draw draw = program.draw(mesh.positions.size(), mesh.indices);
-  rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
-  rastrum::Targets targets;
-  targets.color8 = image;
-  rastrum::Renderer(options).draw({&draw, 1}, program, program.test(), targets);
+  rastrum::raster::ProgramDraw draw = program.draw(mesh.positions.size(), mesh.indices);
+  rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
+  rastrum::Renderer().draw({&draw, 1}, frame, {.color8 = image});
   rastrum::io::write_png("flat_colors.png", image);
   std::puts("flat_colors.png");
 }

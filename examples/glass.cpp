@@ -4,10 +4,10 @@
 #include <cmath>
 #include <span>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 using rastrum::Vec3, rastrum::Vec4;
 
@@ -29,15 +29,15 @@ int main() {
     for (const std::uint32_t i : tube.indices) mesh.indices.push_back(first + i);
   }
 
-  rastrum::RenderOptions options;  // transparency: exact
-  options.width = 480;
-  options.height = 360;
-  options.samples = 8;
-  options.background = {1, 1, 1, 1};
+  rastrum::FrameOptions frame;  // transparency: exact
+  frame.width = 480;
+  frame.height = 360;
+  frame.samples = 8;
+  frame.background = {1, 1, 1, 1};
   rastrum::Camera camera;
   camera.eye = {0, 2.2F, 2.7F};
   camera.target = {0, -0.15F, 0};
-  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, options.width, options.height));
+  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, frame.width, frame.height));
   const auto vertex = [&](std::uint32_t i) {
     const Vec3 p = mesh.positions[i];
     return rastrum::raster::VertexOutput<Surface>{transform_point(to_clip, p),
@@ -52,13 +52,11 @@ int main() {
   };
   const rastrum::raster::Program program(vertex, shade);
   const std::span<const std::uint32_t> indices = mesh.indices;
-  rastrum::raster::Draw draws[] = {
+  rastrum::raster::ProgramDraw draws[] = {
       program.draw(mesh.positions.size(), indices.first(teapot_indices)),
       program.draw(mesh.positions.size(), indices.subspan(teapot_indices))};
   draws[1].flags |= rastrum::raster::kTranslucent;
-  rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
-  rastrum::Targets targets;
-  targets.color8 = image;
-  rastrum::Renderer(options).draw(draws, program, program.test(), targets);
+  rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
+  rastrum::Renderer().draw(draws, frame, {.color8 = image});
   rastrum::io::write_png("glass.png", image);
 }

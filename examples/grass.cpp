@@ -2,28 +2,28 @@
 // loads the visibility keys of those before, so that the nearer wins.
 #include <algorithm>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 using rastrum::Vec3, rastrum::Vec4;
-using rastrum::raster::Draw, rastrum::raster::Fragment, rastrum::raster::VertexOutput;
+using rastrum::raster::ProgramDraw, rastrum::raster::Fragment, rastrum::raster::VertexOutput;
 
 int main() {
-  rastrum::RenderOptions options;
-  options.width = 240;
-  options.height = 180;
-  options.background = {0.6F, 0.78F, 0.95F, 1};
+  rastrum::FrameOptions frame;
+  frame.width = 240;
+  frame.height = 180;
+  frame.background = {0.6F, 0.78F, 0.95F, 1};
   rastrum::Camera camera;
   camera.eye = {0, 2, 6};
-  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, options.width, options.height));
-  rastrum::Renderer renderer(options);
-  rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
-  rastrum::Image<std::uint64_t> keys(options.width, options.height);
+  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, frame.width, frame.height));
+  rastrum::Renderer renderer;
+  rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
+  rastrum::Image<std::uint64_t> keys(frame.width, frame.height);
   rastrum::Targets targets{.color8 = image, .keys = keys};
-  const auto pass = [&](const auto& program, Draw draw) {
-    renderer.draw({&draw, 1}, program, program.test(), targets);
+  const auto pass = [&](const ProgramDraw& draw) {
+    renderer.draw({&draw, 1}, frame, targets);
     targets.load = true;
     targets.first_id += draw.primitive_count;
   };
@@ -37,7 +37,7 @@ int main() {
       const Vec3 c = base * (0.25F + 0.75F * std::max(cosine, 0.0F));
       return Vec4{c.x, c.y, c.z, 1};
     });
-    pass(program, program.draw(mesh.positions.size(), mesh.indices));
+    pass(program.draw(mesh.positions.size(), mesh.indices));
   };
   mesh_pass(rastrum::shapes::sphere(64), {0, -300, 0}, 300, {0.15F, 0.35F, 0.08F});
   mesh_pass(rastrum::shapes::teapot(), {-1, 0, 0.4F}, 0.6F, {0.9F, 0.5F, 0.2F});
@@ -55,6 +55,6 @@ int main() {
   const rastrum::raster::Program grass(blade, [](float g, const Fragment&) {
     return Vec4{0.5F * g, g, 0.15F * g, 1};
   });
-  pass(grass, grass.draw(std::size_t{3} * 30000));
+  pass(grass.draw(std::size_t{3} * 30000));
   rastrum::io::write_png("grass.png", image);
 }

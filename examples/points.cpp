@@ -4,12 +4,12 @@
 #include <cstdio>
 #include <vector>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
 
 using rastrum::Vec3, rastrum::Vec4;
-using rastrum::raster::Draw, rastrum::raster::Fragment, rastrum::raster::Topology;
+using rastrum::raster::ProgramDraw, rastrum::raster::Fragment, rastrum::raster::Topology;
 
 int main() {
   constexpr std::uint32_t kSphere = 3000, kRing = 60;
@@ -27,13 +27,13 @@ int main() {
     positions.push_back({1.3F * std::cos(angle), 0, 1.3F * std::sin(angle)});
   }
 
-  rastrum::RenderOptions options;
-  options.width = 480;
-  options.height = 360;
-  options.background = {0.06F, 0.07F, 0.1F, 1};
+  rastrum::FrameOptions frame;
+  frame.width = 480;
+  frame.height = 360;
+  frame.background = {0.06F, 0.07F, 0.1F, 1};
   rastrum::Camera camera;
   camera.eye = {0, 1.2F, 2.6F};
-  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, options.width, options.height));
+  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, frame.width, frame.height));
   const auto vertex = [&](std::uint32_t i) {
     return rastrum::raster::VertexOutput<Vec3>{transform_point(to_clip, positions[i]),
                                                positions[i]};
@@ -46,14 +46,12 @@ int main() {
     return f.draw == 1 && std::hypot(f.point.x - 0.5F, f.point.y - 0.5F) > 0.5F;
   };
   const rastrum::raster::Program program(vertex, shade, is_corner);
-  Draw draws[] = {program.draw(kSphere, {}, Topology::points),
-                  program.draw(positions.size(), ring, Topology::points)};
+  ProgramDraw draws[] = {program.draw(kSphere, {}, Topology::points),
+                         program.draw(positions.size(), ring, Topology::points)};
   draws[0].point_size = 3;
   draws[1].point_size = 11;
-  rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
-  rastrum::Targets targets;
-  targets.color8 = image;
-  rastrum::Renderer(options).draw(draws, program, program.test(), targets);
+  rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
+  rastrum::Renderer().draw(draws, frame, {.color8 = image});
   rastrum::io::write_png("points.png", image);
   std::puts("points.png");
 }

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/render.hpp>
 
 int main() {
   const std::uint32_t n = 200;  // quads a side
@@ -23,9 +23,9 @@ int main() {
 
   rastrum::Camera camera;
   camera.eye = {0, 1.2F, 2};
-  rastrum::RenderOptions options;
+  rastrum::FrameOptions options;
   options.width = options.height = 512;
-  rastrum::Renderer renderer(options);
+  rastrum::Renderer renderer;
   rastrum::Image<rastrum::Rgba8> image(512, 512);
   rastrum::Image<float> depth(512, 512);
   rastrum::Image<std::int64_t> ids(512, 512);
@@ -47,7 +47,7 @@ int main() {
     rastrum::SceneView scene;
     scene.instances = {&instance, 1};
     const rastrum::FrameStats stats =
-        renderer.render(scene, camera, {.color8 = image, .depth = depth, .ids = ids});
+        renderer.render(scene, camera, options, {.color8 = image, .depth = depth, .ids = ids});
     std::printf("frame %d: %.2f ms; in the middle triangle %lld at depth %.5f\n", frame,
                 stats.frame_ms, static_cast<long long>(ids(256, 256)), depth(256, 256));
     rastrum::io::write_png("wave" + std::to_string(frame) + ".png", image);

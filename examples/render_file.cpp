@@ -2,10 +2,10 @@
 // write.
 #include <cstdio>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/crease_normals.hpp>
-#include <rastrum/scene/fit.hpp>
+#include <rastrum/fit.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/mesh.hpp>
+#include <rastrum/render.hpp>
 
 int main(int argc, char** argv) {
   if (argc != 3) {
@@ -20,20 +20,19 @@ int main(int argc, char** argv) {
       if (mesh.normals.empty())
         mesh.normals = rastrum::crease_normals(mesh.positions, mesh.indices, 40);
 
-    rastrum::RenderOptions options;
-    options.width = 1280;
-    options.height = 720;
+    rastrum::FrameOptions frame;
+    frame.width = 1280;
+    frame.height = 720;
     const rastrum::SceneBinding binding(scene);
     const rastrum::Camera along_z;  // looks along −z, 60° wide
     const rastrum::Camera camera =
-        rastrum::fit_picture(binding.view(), along_z, options.width, options.height);
+        rastrum::fit_picture(binding.view(), along_z, frame.width, frame.height);
 
     // A Renderer keeps its threads and memory, for the frames after the first.
-    rastrum::Renderer renderer(options);
-    rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
-    rastrum::Targets targets;
-    targets.color8 = image;
-    const rastrum::FrameStats stats = renderer.render(binding.view(), camera, targets);
+    rastrum::Renderer renderer;
+    rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
+    const rastrum::FrameStats stats =
+        renderer.render(binding.view(), camera, frame, {.color8 = image});
     std::printf("%llu triangles, %llu pixels covered, %.2f ms\n",
                 static_cast<unsigned long long>(stats.triangles.input),
                 static_cast<unsigned long long>(stats.pixels_covered), stats.frame_ms);

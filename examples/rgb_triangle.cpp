@@ -2,9 +2,9 @@
 // any type with + and * float; here a Vec3.
 #include <cstdio>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
 
 using rastrum::Vec3, rastrum::Vec4;
 
@@ -18,16 +18,14 @@ int main() {
     return Vec4{color.x, color.y, color.z, 1};
   };
   const rastrum::raster::Program program(vertex, shade);
-  rastrum::raster::Draw draw = program.draw(3);
+  rastrum::raster::ProgramDraw draw = program.draw(3);
 
-  rastrum::RenderOptions options;
-  options.width = 480;
-  options.height = 360;
-  options.background = {0.1F, 0.1F, 0.12F, 1};
-  rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
-  rastrum::Targets targets;
-  targets.color8 = image;
-  rastrum::Renderer(options).draw({&draw, 1}, program, program.test(), targets);
+  rastrum::FrameOptions frame;
+  frame.width = 480;
+  frame.height = 360;
+  frame.background = {0.1F, 0.1F, 0.12F, 1};
+  rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
+  rastrum::Renderer().draw({&draw, 1}, frame, {.color8 = image});
   rastrum::io::write_png("rgb_triangle.png", image);
   std::puts("rgb_triangle.png");
 }

@@ -3,11 +3,11 @@
 #include <cstdio>
 #include <vector>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/line_art.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/mesh.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 using rastrum::Vec3, rastrum::Vec4;
 using rastrum::raster::Topology;
@@ -27,11 +27,11 @@ int main() {
   scene.instances.resize(1);
   rastrum::Camera camera = rastrum::fit_camera(rastrum::SceneBinding(scene).view(), 1.0F, false);
   camera.eye = camera.eye + Vec3{0.8F, 1.4F, -0.6F};
-  rastrum::RenderOptions options;
-  options.width = 480;
-  options.height = 360;
-  options.background = {1, 1, 1, 1};
-  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, options.width, options.height));
+  rastrum::FrameOptions frame;
+  frame.width = 480;
+  frame.height = 360;
+  frame.background = {1, 1, 1, 1};
+  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, frame.width, frame.height));
   const auto vertex = [&](std::uint32_t i) {
     return rastrum::raster::VertexOutput<float>{transform_point(to_clip, positions[i]), 0};
   };
@@ -40,15 +40,13 @@ int main() {
     return kColors[f.draw];
   };
   const rastrum::raster::Program program(vertex, shade);
-  rastrum::raster::Draw draws[] = {program.draw(positions.size(), teapot.indices),
-                                   program.draw(positions.size(), edges, Topology::lines),
-                                   program.draw(positions.size(), normals, Topology::lines)};
+  rastrum::raster::ProgramDraw draws[] = {program.draw(positions.size(), teapot.indices),
+                                          program.draw(positions.size(), edges, Topology::lines),
+                                          program.draw(positions.size(), normals, Topology::lines)};
   draws[0].depth_bias_slope = -1;
   draws[0].depth_bias = -1e-6F;
-  rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
-  rastrum::Targets targets;
-  targets.color8 = image;
-  rastrum::Renderer(options).draw(draws, program, program.test(), targets);
+  rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
+  rastrum::Renderer().draw(draws, frame, {.color8 = image});
   rastrum::io::write_png("teapot_lines.png", image);
   std::puts("teapot_lines.png");
 }

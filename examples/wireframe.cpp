@@ -3,11 +3,11 @@
 #include <cstdio>
 #include <vector>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/line_art.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/mesh.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 using rastrum::Vec3, rastrum::Vec4;
 
@@ -15,13 +15,13 @@ int main() {
   const rastrum::Mesh knot = rastrum::shapes::torus_knot(2, 3, 160, 12);
   const std::vector<std::uint32_t> edges = rastrum::edge_indices(knot.view());
 
-  rastrum::RenderOptions options;
-  options.width = 360;
-  options.height = 270;
-  options.background = {0.97F, 0.97F, 0.95F, 1};
+  rastrum::FrameOptions frame;
+  frame.width = 360;
+  frame.height = 270;
+  frame.background = {0.97F, 0.97F, 0.95F, 1};
   rastrum::Camera camera;
   camera.eye = {0, 2.4F, 2.8F};
-  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, options.width, options.height));
+  const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, frame.width, frame.height));
   const auto vertex = [&](std::uint32_t i) {
     const Vec4 clip = transform_point(to_clip, knot.positions[i]);
     return rastrum::raster::VertexOutput<float>{clip, clip.w};  // the distance along the view
@@ -31,13 +31,10 @@ int main() {
     return Vec4{0.05F + 0.85F * fog, 0.2F + 0.7F * fog, 0.35F + 0.55F * fog, 1};
   };
   const rastrum::raster::Program program(vertex, shade);
-  rastrum::raster::Draw draw =
+  rastrum::raster::ProgramDraw draw =
       program.draw(knot.positions.size(), edges, rastrum::raster::Topology::lines);
-  rastrum::Image<rastrum::Rgba8> image(options.width, options.height);
-  rastrum::Targets targets;
-  targets.color8 = image;
-  const rastrum::FrameStats stats =
-      rastrum::Renderer(options).draw({&draw, 1}, program, program.test(), targets);
+  rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
+  const rastrum::FrameStats stats = rastrum::Renderer().draw({&draw, 1}, frame, {.color8 = image});
   rastrum::io::write_png("wireframe.png", image);
   std::printf("wireframe.png: %llu lines\n",
               static_cast<unsigned long long>(stats.triangles.input));

@@ -8,11 +8,9 @@
 #include <span>
 #include <unordered_map>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/height_map.hpp>
-#include <rastrum/io/io.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
 #include <rastrum/io/parse.hpp>
-#include <rastrum/io/report.hpp>
 
 namespace {
 

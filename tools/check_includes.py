@@ -3,8 +3,10 @@
 
 usage: check_includes.py ROOT
 
-The floors and why they lie so are in docs/architecture.md. Two rules: a file of rastrum/ includes
-files of the project as <rastrum/...>, and only from the floors listed for its own.
+The floors and why they lie so are in docs/architecture.md. The rules: a file of rastrum/ includes
+files of the project as <rastrum/...>, and only from the floors listed for its own; a public header
+(rastrum/NAME.hpp), which is installed, includes public and standard headers alone, and belongs to a
+floor; programs and examples include public headers, but for what is listed here with its reason.
 Prints one line per violation; exits with 1 where there are any.
 """
 import pathlib
@@ -26,6 +28,24 @@ MAY_INCLUDE = {
     # The library of device code, opened by its file's name: nothing includes it.
     "cuda": {"core", "parallel", "render", "terrain", "family"},
 }
+# The public headers, rastrum/NAME.hpp, by the floor that has their sources.
+PUBLIC = {
+    "core": {"config", "error", "image", "mat", "transform", "vec"},
+    "parallel": {"device", "stop"},
+    "scene": {"camera", "fit", "mesh", "scene", "shapes"},
+    "raster": {"frame", "primitives", "program", "tuning"},
+    "terrain": {"terrain", "terrain_light"},
+    "io": {"io"},
+    "render": {"on_terrain", "render"},
+    "family": {"family"},
+}
+FLOOR_OF = {f"{name}.hpp": floor for floor, names in PUBLIC.items() for name in names}
+# What users of the library have to do without: why the program has it is in decision 0025.
+PROGRAMS_MAY = {
+    "apps": {"rastrum/core/angle.hpp", "rastrum/io/mapped_file.hpp", "rastrum/parallel/exec.hpp",
+             "rastrum/raster/assemble/clip.hpp", "rastrum/raster/shade/srgb.hpp"},
+    "examples": set(),
+}
 ENDINGS = {".hpp", ".cpp", ".h", ".inl", ".cu", ".cuh"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -46,8 +66,35 @@ def violations_of_line(root, file, floor, line):
             yield f"the library may not include <{path}>"
         return
     target = path.split("/")[1]
+    target = FLOOR_OF.get(target, target)
     if target != floor and target not in MAY_INCLUDE[floor]:
         yield f"{floor} may not include {target} (<{path}>)"
+
+
+def is_public(path):
+    """Whether an include names a public header."""
+    return path.startswith("rastrum/") and path.count("/") == 1
+
+
+def violations_of_public_line(line):
+    """Yields what is wrong with one line of a public header beside its floor."""
+    match = INCLUDE.match(line)
+    if match and not is_public(match.group(2)) and re.search(r"[/.]", match.group(2)):
+        yield f"a public header may not include <{match.group(2)}>, which is not installed"
+
+
+def violations_of_programs(root):
+    """The same as violations() for those who use the library as others do."""
+    for folder, may in PROGRAMS_MAY.items():
+        for file in sorted((root / folder).rglob("*")):
+            if file.suffix not in ENDINGS or "inside" in file.relative_to(root).parts:
+                continue
+            for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
+                match = INCLUDE.match(line)
+                path = match.group(2) if match else ""
+                if path.startswith("rastrum/") and not is_public(path) and path not in may:
+                    yield (f"{file.relative_to(root)}:{number}: <{path}> is no public header "
+                           f"({folder} use the library as others do)")
 
 
 def violations(root):
@@ -56,7 +103,11 @@ def violations(root):
         if file.suffix not in ENDINGS:
             continue
         relative = file.relative_to(root)
-        floor = relative.parts[1]
+        public = len(relative.parts) == 2
+        if public and relative.name not in FLOOR_OF:
+            yield f"{relative}:1: a public header that tools/check_includes.py does not know"
+            continue
+        floor = FLOOR_OF[relative.name] if public else relative.parts[1]
         if floor not in MAY_INCLUDE:
             yield f"{relative}:1: '{floor}' is no floor of rastrum/ (tools/check_includes.py)"
             continue
@@ -64,12 +115,15 @@ def violations(root):
         for number, line in enumerate(text.splitlines(), 1):
             for message in violations_of_line(root, file, floor, line):
                 yield f"{relative}:{number}: {message}"
+            for message in violations_of_public_line(line) if public else ():
+                yield f"{relative}:{number}: {message}"
 
 
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
-    found = list(violations(pathlib.Path(sys.argv[1]).resolve()))
+    root = pathlib.Path(sys.argv[1]).resolve()
+    found = [*violations(root), *violations_of_programs(root)]
     for line in found:
         print(line)
     sys.exit(1 if found else 0)

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <system_error>
 
-#include <rastrum/core/image.hpp>
+#include <rastrum/image.hpp>
 
 namespace rastrum::cli {
 namespace {

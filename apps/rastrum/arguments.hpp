@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include <apps/command_line/parser.hpp>
-#include <rastrum/core/vec.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::cli {
 

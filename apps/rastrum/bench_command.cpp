@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 #include "commands.hpp"
 

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <rastrum/scene/camera.hpp>
+#include <rastrum/camera.hpp>
 
 #include "key_curve.hpp"
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/scene.hpp>
 
 namespace rastrum::cli {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include <rastrum/core/image.hpp>
+#include <rastrum/image.hpp>
 
 namespace rastrum::cli {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <rastrum/io/report.hpp>
+#include <rastrum/io.hpp>
 
 #include "commands.hpp"
 #include "inputs.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/scene.hpp>
 
 namespace rastrum::cli {
 

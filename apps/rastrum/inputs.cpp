@@ -6,12 +6,12 @@
 #include <filesystem>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/io.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
 #include <rastrum/io/mapped_file.hpp>
+#include <rastrum/mesh.hpp>
 #include <rastrum/raster/shade/srgb.hpp>
-#include <rastrum/scene/crease_normals.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "arguments.hpp"
 #include "input_spec.hpp"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <rastrum/core/image.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/scene.hpp>
 
 namespace rastrum::cli {
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::cli {
 

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <rastrum/io/atomic_file.hpp>
+#include <rastrum/io.hpp>
 
 namespace rastrum::cli {
 

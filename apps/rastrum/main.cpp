@@ -15,7 +15,7 @@
 
 #include <apps/command_line/parser.hpp>
 #include <apps/command_line/suggest.hpp>
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 #include "arguments.hpp"
 #include "commands.hpp"

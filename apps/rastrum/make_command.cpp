@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "arguments.hpp"
 #include "commands.hpp"

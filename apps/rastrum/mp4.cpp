@@ -14,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/atomic_file.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
 
 namespace rastrum::cli {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include <rastrum/core/image.hpp>
-#include <rastrum/io/atomic_file.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/io.hpp>
 
 namespace rastrum::cli {
 

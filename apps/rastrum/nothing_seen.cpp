@@ -121,7 +121,7 @@ struct Eye {
   }
 };
 
-std::array<std::uint64_t, kFates> census(const RenderOptions& options, const SceneView& scene,
+std::array<std::uint64_t, kFates> census(const FrameOptions& options, const SceneView& scene,
                                          const Camera& camera) {
   std::array<std::uint64_t, kFates> counts{};
   const Mat4d world_to_view = world_to_clip(camera, options.width, options.height);
@@ -159,11 +159,11 @@ std::string look_from_elsewhere(const SceneView& scene) {
 
 }  // namespace
 
-bool is_empty(const FrameStats& frame, const RenderOptions& options) {
+bool is_empty(const FrameStats& frame, const FrameOptions& options) {
   return frame.pixels_covered == 0 || (options.opacity == 0 && options.shader != Shader::depth);
 }
 
-Emptiness why_empty(const FrameStats& frame, const RenderOptions& options, const SceneView& scene,
+Emptiness why_empty(const FrameStats& frame, const FrameOptions& options, const SceneView& scene,
                     const Camera& camera) {
   if (frame.triangles.input == 0)
     return {"there are no triangles to draw", "`rastrum info` tells what a file holds"};

@@ -3,12 +3,12 @@
 
 #include <string>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 namespace rastrum::cli {
 
 /// Whether nothing but the background can be seen.
-[[nodiscard]] bool is_empty(const FrameStats& frame, const RenderOptions& options);
+[[nodiscard]] bool is_empty(const FrameStats& frame, const FrameOptions& options);
 
 struct Emptiness {
   std::string reason;  ///< what became of the triangles
@@ -17,7 +17,7 @@ struct Emptiness {
 
 /// What became of the triangles of an empty picture: behind the camera, outside of its view,
 /// culled, seen edge-on, too small, … Requires is_empty(). Cost: O(triangles), in float64.
-[[nodiscard]] Emptiness why_empty(const FrameStats& frame, const RenderOptions& options,
+[[nodiscard]] Emptiness why_empty(const FrameStats& frame, const FrameOptions& options,
                                   const SceneView& scene, const Camera& camera);
 
 }  // namespace rastrum::cli

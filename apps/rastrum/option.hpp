@@ -9,7 +9,7 @@
 #include <apps/command_line/choose.hpp>
 #include <apps/command_line/parser.hpp>
 
-#include <rastrum/parallel/device.hpp>
+#include <rastrum/device.hpp>
 
 #include "arguments.hpp"
 

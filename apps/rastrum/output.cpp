@@ -8,8 +8,8 @@
 #include <system_error>
 #include <vector>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/io.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
 
 #include "arguments.hpp"
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
-#include <rastrum/core/image.hpp>
-#include <rastrum/io/atomic_file.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/io.hpp>
 
 namespace rastrum::cli {
 

@@ -10,9 +10,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/view_distance.hpp>
+#include <rastrum/camera.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/render.hpp>
 
 #include "arguments.hpp"
 #include "camera_path.hpp"
@@ -292,10 +292,10 @@ RenderArguments with_numbers(const RenderArguments& a, std::size_t number, std::
 }
 
 /// What --stats says: the frames, what was drawn and from where, a camera for each picture.
-nlohmann::ordered_json describe(const std::vector<FrameStats>& frames, const Renderer& renderer,
+nlohmann::ordered_json describe(const std::vector<FrameStats>& frames, const RenderArguments& a,
                                 double load_ms, const Inputs& inputs,
                                 const std::vector<Camera>& cameras) {
-  nlohmann::ordered_json stats = stats_json(frames, renderer.options(), load_ms);
+  nlohmann::ordered_json stats = stats_json(frames, a.render, load_ms);
   nlohmann::ordered_json& parts = stats["inputs"] = nlohmann::ordered_json::array();
   for (const InputPart& part : inputs.parts)
     parts.push_back(
@@ -306,11 +306,10 @@ nlohmann::ordered_json describe(const std::vector<FrameStats>& frames, const Ren
 }
 
 /// The outputs that are of the whole run; then all of `files` can be seen.
-void finish(const RenderArguments& a, const std::vector<FrameStats>& frames,
-            const Renderer& renderer, double load_ms, const Inputs& inputs,
-            const std::vector<Camera>& cameras, const Timeline& timeline, OutputFiles& files) {
-  if (a.stats)
-    write_json(files.begin(a.stats), describe(frames, renderer, load_ms, inputs, cameras));
+void finish(const RenderArguments& a, const std::vector<FrameStats>& frames, double load_ms,
+            const Inputs& inputs, const std::vector<Camera>& cameras, const Timeline& timeline,
+            OutputFiles& files) {
+  if (a.stats) write_json(files.begin(a.stats), describe(frames, a, load_ms, inputs, cameras));
   if (a.trace) write_trace(files.begin(a.trace), timeline);
   files.commit();
 }
@@ -331,11 +330,11 @@ int run_sequence(const RenderArguments& a, Renderer& renderer, const Sequence& s
   for (std::size_t i = 0; i < sequence.count; ++i) {
     progress.show("picture " + std::to_string(i + 1) + " of " + std::to_string(sequence.count));
     const auto [scene, camera] = sequence.shot(i);
-    const auto stats = render_frames(renderer, scene, camera, wanted_of(a), false, 1, pictures,
-                                     timeline, progress);
+    const auto stats = render_frames(renderer, scene, camera, a.render, wanted_of(a), false, 1,
+                                     pictures, timeline, progress);
     frames.push_back(stats.front());
     cameras.push_back(camera);
-    if (is_empty(stats.front(), renderer.options()) && empty++ == 0) first_empty = i;
+    if (is_empty(stats.front(), a.render) && empty++ == 0) first_empty = i;
     OutputFiles files;
     write_images(with_numbers(a, i, sequence.count), pictures, camera, inputs, files, timeline,
                  progress);
@@ -351,10 +350,10 @@ int run_sequence(const RenderArguments& a, Renderer& renderer, const Sequence& s
       const auto [scene, camera] = sequence.shot(first_empty);
       warn("nothing is seen in " + std::to_string(empty) + " of " + std::to_string(sequence.count) +
            " pictures; in number " + std::to_string(first_empty) + ", the first of them, " +
-           why_empty(frames[first_empty], renderer.options(), scene, camera).reason);
+           why_empty(frames[first_empty], a.render, scene, camera).reason);
     }
   }
-  finish(a, frames, renderer, load_ms, inputs, cameras, timeline, of_the_run);
+  finish(a, frames, load_ms, inputs, cameras, timeline, of_the_run);
   if (!a.quiet && a.color)
     std::fprintf(stderr, "%s: %lu pictures of %dx%d, %lu triangles, %.1f ms a picture\n",
                  a.color.name().c_str(), static_cast<unsigned long>(sequence.count), a.render.width,
@@ -368,7 +367,8 @@ int run(RenderArguments& a) {
   Timeline timeline;
   Progress progress(a.quiet);
   // Refuses what this machine or build cannot do before a large file is read.
-  auto renderer = std::make_unique<Renderer>(a.render);
+  rastrum::check(a.render);
+  Renderer renderer = family::make_renderer(a.render, a.render);
 
   const double load_begin = timeline.now_ms();
   const Inputs inputs = load_inputs(a.inputs, a.normals, timeline, progress, a.format);
@@ -380,17 +380,13 @@ int run(RenderArguments& a) {
   }
   if (!a.quiet && a.render.transparency.method == Transparency::none) report_blended(scene);
   const SceneBinding binding(scene);
-  if (const Shader taken = shader_of(a.render.shader, inputs.has_materials);
-      taken != shader_for(a.render.shader, binding.view())) {
-    a.render.shader = taken;
-    renderer = std::make_unique<Renderer>(a.render);
-  }
+  a.render.shader = shader_of(a.render.shader, inputs.has_materials);
   a.view.turns = a.turntable != 0;
   const Camera camera =
       choose_camera(a.view, scene, binding.view(), {a.render.width, a.render.height});
 
   if (a.is_sequence())
-    return run_sequence(a, *renderer,
+    return run_sequence(a, renderer,
                         a.turntable != 0
                             ? on_turntable(a.turntable, binding.view(), a.view, camera)
                             : along_path(a.path, a.fps, binding.view(), a.view, camera),
@@ -398,8 +394,8 @@ int run(RenderArguments& a) {
   const bool timed = a.frames_given || a.stats || a.trace;
   Pictures pictures;
   const std::vector<FrameStats> frames =
-      render_frames(*renderer, binding.view(), camera, wanted_of(a), timed, a.frames, pictures,
-                    timeline, progress);
+      render_frames(renderer, binding.view(), camera, a.render, wanted_of(a), timed, a.frames,
+                    pictures, timeline, progress);
   const FrameStats& median = frames[median_frame(frames)];
   progress.clear();
   if (!a.quiet) {
@@ -413,7 +409,7 @@ int run(RenderArguments& a) {
   OutputFiles files;
   write_images(a, pictures, camera, inputs, files, timeline, progress);
   progress.clear();
-  finish(a, frames, *renderer, load_ms, inputs, {camera}, timeline, files);
+  finish(a, frames, load_ms, inputs, {camera}, timeline, files);
   if (!a.quiet && a.color)
     std::fprintf(stderr, "%s: %dx%d, %lu triangles, %.1f ms%s\n", a.color.name().c_str(),
                  a.render.width, a.render.height,

@@ -9,7 +9,7 @@ namespace rastrum::cli {
 namespace {
 
 /// Allocates what is wanted and returns the views.
-Targets make_targets(Wanted wanted, const RenderOptions& options, Pictures& pictures) {
+Targets make_targets(Wanted wanted, const FrameOptions& options, Pictures& pictures) {
   Targets targets;
   const auto add = [&](bool want, auto& image, auto& target) {
     if (!want) return;
@@ -29,9 +29,10 @@ Targets make_targets(Wanted wanted, const RenderOptions& options, Pictures& pict
 }  // namespace
 
 FrameStats timed_render(Renderer& renderer, const SceneView& scene, const Camera& camera,
-                        const Targets& targets, Timeline& timeline, const std::string& label) {
+                        const FrameOptions& frame, const Targets& targets, Timeline& timeline,
+                        const std::string& label) {
   const double begin = timeline.now_ms();
-  FrameStats stats = renderer.render(scene, camera, targets);
+  FrameStats stats = renderer.render(scene, camera, frame, targets);
   const double whole = timeline.now_ms() - begin;
   const double before = whole - stats.frame_ms;
   for (StageTime& stage : stats.stages) {
@@ -45,25 +46,27 @@ FrameStats timed_render(Renderer& renderer, const SceneView& scene, const Camera
 }
 
 std::vector<FrameStats> render_frames(Renderer& renderer, const SceneView& scene,
-                                      const Camera& camera, Wanted wanted, bool timed, int frames,
-                                      Pictures& pictures, Timeline& timeline, Progress& progress) {
+                                      const Camera& camera, const FrameOptions& frame,
+                                      Wanted wanted, bool timed, int frames, Pictures& pictures,
+                                      Timeline& timeline, Progress& progress) {
   std::vector<FrameStats> stats;
   if (!timed) {
     progress.show("rendering");
-    const Targets all = make_targets(wanted, renderer.options(), pictures);
-    stats.push_back(timed_render(renderer, scene, camera, all, timeline, "frame"));
+    const Targets all = make_targets(wanted, frame, pictures);
+    stats.push_back(timed_render(renderer, scene, camera, frame, all, timeline, "frame"));
     return stats;
   }
-  const Targets color8 = make_targets({.color8 = true}, renderer.options(), pictures);
+  const Targets color8 = make_targets({.color8 = true}, frame, pictures);
   for (int i = 0; i < frames; ++i) {
     progress.show("rendering frame " + std::to_string(i + 1) + " of " + std::to_string(frames));
-    stats.push_back(
-        timed_render(renderer, scene, camera, color8, timeline, "frame " + std::to_string(i)));
+    stats.push_back(timed_render(renderer, scene, camera, frame, color8, timeline,
+                                 "frame " + std::to_string(i)));
   }
   wanted.color8 = false;
   if (wanted.color || wanted.depth || wanted.ids || wanted.overdraw || wanted.errors) {
-    const Targets others = make_targets(wanted, renderer.options(), pictures);
-    timeline.measure("other images", "images", [&] { renderer.render(scene, camera, others); });
+    const Targets others = make_targets(wanted, frame, pictures);
+    timeline.measure("other images", "images",
+                     [&] { renderer.render(scene, camera, frame, others); });
   }
   return stats;
 }

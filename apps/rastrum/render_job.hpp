@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 namespace rastrum::cli {
 
@@ -27,16 +27,18 @@ struct Pictures {
 /// `frame_ms` and the stages are of the whole call, from the caller's mesh in memory to the
 /// finished image: what the façade does before the rasterizer's own clock is the stage "prepare".
 [[nodiscard]] FrameStats timed_render(Renderer& renderer, const SceneView& scene,
-                                      const Camera& camera, const Targets& targets,
-                                      Timeline& timeline, const std::string& label);
+                                      const Camera& camera, const FrameOptions& frame,
+                                      const Targets& targets, Timeline& timeline,
+                                      const std::string& label);
 
 /// Renders into `pictures` and returns the statistics of each timed frame.
 /// `timed`: `frames` frames fill the 8-bit image alone, whatever the outputs are, so that times
 /// can be compared; then one more pass, untimed, fills the other images if any is wanted.
 /// Otherwise one pass fills everything that is wanted.
 [[nodiscard]] std::vector<FrameStats> render_frames(Renderer& renderer, const SceneView& scene,
-                                                    const Camera& camera, Wanted wanted, bool timed,
-                                                    int frames, Pictures& pictures,
-                                                    Timeline& timeline, Progress& progress);
+                                                    const Camera& camera, const FrameOptions& frame,
+                                                    Wanted wanted, bool timed, int frames,
+                                                    Pictures& pictures, Timeline& timeline,
+                                                    Progress& progress);
 
 }  // namespace rastrum::cli

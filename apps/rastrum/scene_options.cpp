@@ -3,25 +3,25 @@
 #include <algorithm>
 #include <limits>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/io.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "transparency.hpp"
 
 namespace rastrum::cli {
 namespace {
 
-std::string names_of(const std::vector<AxisInfo>& axis) {
+std::string names_of(const std::vector<family::AxisInfo>& axis) {
   std::string names = "auto";
-  for (const AxisInfo& info : axis) names.append(", ").append(info.name);
+  for (const family::AxisInfo& info : axis) names.append(", ").append(info.name);
   return names;
 }
 
-std::string check_axis(const char* option, const std::vector<AxisInfo>& axis,
+std::string check_axis(const char* option, const std::vector<family::AxisInfo>& axis,
                        const std::string& text) {
   if (text == "auto") return text;
-  for (const AxisInfo& info : axis)
+  for (const family::AxisInfo& info : axis)
     if (text == info.name) return text;
   throw UsageError(option, "expected one of " + names_of(axis) + ", got '" + text + "'");
 }
@@ -200,12 +200,14 @@ void add_camera_options(Parser& app, SceneArguments& a) {
 }
 
 void add_rasterizer_options(Parser& app, SceneArguments& a, const char* group) {
-  add(app, "--rasterizer", "NAME", names_of(rasterizers()) + " (auto)", [&a](const std::string& s) {
-    a.render.rasterizer = check_axis("--rasterizer", rasterizers(), s);
-  })->group(group);
-  add(app, "--visibility", "NAME", names_of(visibilities()) + " (auto)",
+  add(app, "--rasterizer", "NAME", names_of(family::rasterizer_axis()) + " (auto)",
       [&a](const std::string& s) {
-        a.render.visibility = check_axis("--visibility", visibilities(), s);
+        a.render.rasterizer = check_axis("--rasterizer", family::rasterizer_axis(), s);
+      })
+      ->group(group);
+  add(app, "--visibility", "NAME", names_of(family::visibility_axis()) + " (auto)",
+      [&a](const std::string& s) {
+        a.render.visibility = check_axis("--visibility", family::visibility_axis(), s);
       })
       ->group(group);
   add(app, "--memory-limit", "BYTES",

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/family.hpp>
 
 #include "inputs.hpp"
 #include "option.hpp"
@@ -15,7 +15,7 @@ namespace rastrum::cli {
 struct SceneArguments {
   std::vector<std::string> inputs;
   std::string format;  ///< of inputs whose names do not say
-  RenderOptions render;
+  family::Options render;
   NormalOptions normals;
   bool crease_given = false;
   ViewOptions view;

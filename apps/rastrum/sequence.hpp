@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <functional>
 
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/scene.hpp>
 
 #include "view.hpp"
 

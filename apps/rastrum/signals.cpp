@@ -10,7 +10,7 @@
 #include <csignal>
 #include <thread>
 
-#include <rastrum/io/atomic_file.hpp>
+#include <rastrum/io.hpp>
 
 namespace rastrum::cli {
 namespace {

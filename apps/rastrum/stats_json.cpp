@@ -20,13 +20,13 @@ std::size_t median_frame(std::span<const FrameStats> frames) {
   return *middle;
 }
 
-int thread_count(const RenderOptions& options, std::string_view rasterizer) {
+int thread_count(const RendererOptions& options, std::string_view rasterizer) {
   if (options.device == Device::serial || rasterizer == "reference") return 1;
   return parallel::Threads(options.threads).concurrency();
 }
 
-nlohmann::ordered_json stats_json(std::span<const FrameStats> frames, const RenderOptions& options,
-                                  double load_ms) {
+nlohmann::ordered_json stats_json(std::span<const FrameStats> frames,
+                                  const family::Options& options, double load_ms) {
   assert(!frames.empty());
   const FrameStats& median = frames[median_frame(frames)];
   const auto by_time = [](const FrameStats& a, const FrameStats& b) {

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/family.hpp>
 
 namespace rastrum::cli {
 
@@ -15,11 +15,11 @@ namespace rastrum::cli {
 [[nodiscard]] std::size_t median_frame(std::span<const FrameStats> frames);
 
 /// Threads that take part in a frame with these options.
-[[nodiscard]] int thread_count(const RenderOptions& options, std::string_view rasterizer);
+[[nodiscard]] int thread_count(const RendererOptions& options, std::string_view rasterizer);
 
 /// The object of the issue: counts are the same in every frame, `stages_ms` are of the median
 /// frame, `peak_bytes` is the largest of all. Requires a frame.
 [[nodiscard]] nlohmann::ordered_json stats_json(std::span<const FrameStats> frames,
-                                                const RenderOptions& options, double load_ms);
+                                                const family::Options& options, double load_ms);
 
 }  // namespace rastrum::cli

@@ -11,9 +11,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <rastrum/io/io.hpp>
+#include <rastrum/io.hpp>
 #include <rastrum/parallel/exec.hpp>
-#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/terrain.hpp>
 
 #include "arguments.hpp"
 #include "camera_path.hpp"
@@ -159,6 +159,7 @@ struct Stage {
   const LoadedTerrain& source;
   const terrain::Terrain& terrain;
   terrain::TerrainRenderer& renderer;
+  const terrain::TerrainOptions& options;
   TerrainObjects* objects;  ///< null: none
   double load_ms, light_ms;
 };
@@ -169,14 +170,14 @@ struct Pictures {
   Image<float> depth;
 
   Pictures(const Stage& stage, bool wants_depth)
-      : color(stage.renderer.options().width, stage.renderer.options().height) {
+      : color(stage.options.width, stage.options.height) {
     if (wants_depth || stage.objects != nullptr)
       depth = Image<float>(color.width(), color.height());
   }
   TerrainStats draw(const Stage& stage, const terrain::TerrainCamera& camera) {
     terrain::TerrainTargets targets{.color8 = color.view()};
     if (stage.objects != nullptr) targets.depth = depth.view();
-    TerrainStats stats = stage.renderer.render(stage.terrain, camera, targets);
+    TerrainStats stats = stage.renderer.render(stage.terrain, camera, stage.options, targets);
     if (stage.objects != nullptr) stage.objects->draw(targets, stats);
     return stats;
   }
@@ -184,7 +185,7 @@ struct Pictures {
   void write_depth(const Stage& stage, const terrain::TerrainCamera& camera, const Output& output,
                    OutputFiles& files) {
     if (stage.objects == nullptr)
-      stage.renderer.render(stage.terrain, camera, {.depth = depth.view()});
+      stage.renderer.render(stage.terrain, camera, stage.options, {.depth = depth.view()});
     cli::write_depth(files.begin(output), output.format, depth.view());
   }
 };
@@ -246,6 +247,7 @@ int run(TerrainArguments& a) {
   Timeline timeline;
   Progress progress(a.quiet);
   // Refuses what cannot be drawn before a large file is read.
+  terrain::check(a.options);
   terrain::TerrainRenderer renderer(a.options);
 
   progress.show("loading");
@@ -267,9 +269,13 @@ int run(TerrainArguments& a) {
       for (const std::string& w : objects->warnings()) warn(w);
     }
   }
-  const Stage stage{source,   terrain,
-                    renderer, objects ? &*objects : nullptr,
-                    load_ms,  timeline.now_ms() - load_ms};
+  const Stage stage{source,
+                    terrain,
+                    renderer,
+                    a.options,
+                    objects ? &*objects : nullptr,
+                    load_ms,
+                    timeline.now_ms() - load_ms};
   const terrain::TerrainCamera camera = camera_of(a, source);
   if (!a.path.empty()) return run_path(a, stage, camera, progress);
 

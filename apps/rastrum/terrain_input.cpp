@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/io.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
 
 #include "arguments.hpp"
 
@@ -96,7 +96,7 @@ LoadedTerrain::LoadedTerrain(const TerrainInput& input) {
   if (input.color) map_.colors = io::read_image(*input.color);
 }
 
-terrain::Terrain LoadedTerrain::lit(terrain::Light light, const terrain::TerrainOptions& o) const {
+terrain::Terrain LoadedTerrain::lit(terrain::Light light, const TerrainLook& o) const {
   light.hill_shading = map_.colors.empty();
   light.smooth = o.filter == terrain::MapFilter::bilinear;
   if (!is_map()) return terrain::function_terrain(function_, low_, high_, light);

@@ -6,14 +6,14 @@
 #include <optional>
 #include <string>
 
-#include <rastrum/io/height_map.hpp>
-#include <rastrum/terrain/expression.hpp>
-#include <rastrum/terrain/functions.hpp>
-#include <rastrum/terrain/light.hpp>
-#include <rastrum/terrain/options.hpp>
-#include <rastrum/terrain/terrain.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/terrain.hpp>
+#include <rastrum/terrain_light.hpp>
 
 namespace rastrum::cli {
+
+/// Everything that a picture of a terrain depends on but terrain, light and camera.
+struct TerrainLook : terrain::TerrainOptions, terrain::TerrainRendererOptions {};
 
 struct TerrainInput {
   std::optional<std::filesystem::path> height, color;
@@ -33,8 +33,7 @@ class LoadedTerrain {
   explicit LoadedTerrain(const TerrainInput& input);
 
   /// What is drawn. Where there are no colours, they are by height and slopes are shaded.
-  [[nodiscard]] terrain::Terrain lit(terrain::Light light,
-                                     const terrain::TerrainOptions& options) const;
+  [[nodiscard]] terrain::Terrain lit(terrain::Light light, const TerrainLook& options) const;
 
   [[nodiscard]] bool is_map() const { return !map_.heights.empty(); }
   [[nodiscard]] int width() const { return is_map() ? map_.heights.width() : 1024; }

@@ -5,10 +5,10 @@
 #include <numbers>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/core/quaternion.hpp>
-#include <rastrum/io/io.hpp>
-#include <rastrum/scene/sprite.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/transform.hpp>
 
 #include "arguments.hpp"
 #include "inputs.hpp"
@@ -147,9 +147,8 @@ void check_terrain_objects(const TerrainObjectArguments& a,
     throw UsageError("--shader", "depth is of a whole picture; on a terrain take another");
 }
 
-TerrainObjects::TerrainObjects(const TerrainObjectArguments& a,
-                               const terrain::TerrainOptions& options, Timeline& timeline,
-                               Progress& progress)
+TerrainObjects::TerrainObjects(const TerrainObjectArguments& a, const TerrainLook& options,
+                               Timeline& timeline, Progress& progress)
     : options_(options) {
   bool has_materials = false;  // of files: what is painted by hand keeps the plain shader
   for (const TerrainObject& object : a.objects) {
@@ -166,7 +165,7 @@ TerrainObjects::TerrainObjects(const TerrainObjectArguments& a,
     parts_.push_back({object, first, scene_.instances.size()});
     if (object.is_sprite) facing_.push_back(first);
   }
-  RenderOptions render = a.scene.render;
+  family::Options render = a.scene.render;
   render.width = options.width;
   render.height = options.height;
   // Their pictures' depth lies with the host, whatever drew the terrain.
@@ -174,7 +173,8 @@ TerrainObjects::TerrainObjects(const TerrainObjectArguments& a,
   render.threads = options.threads;
   render.isa = options.isa;
   render.shader = shader_of(render.shader, has_materials);
-  painter_.emplace(std::move(render));
+  frame_ = render;
+  painter_.emplace(family::make_renderer(render, render));
 }
 
 void TerrainObjects::place(const terrain::Terrain& terrain) {
@@ -185,7 +185,8 @@ void TerrainObjects::place(const terrain::Terrain& terrain) {
       if (!part.object.standing) continue;
       const Standing& s = *part.object.standing;
       const double foot = s.height ? *s.height : ground_under(part.object, terrain, options_);
-      const SceneView alone{whole.instances.subspan(part.first, part.last - part.first), {}, {}};
+      const SceneView alone{.instances =
+                                whole.instances.subspan(part.first, part.last - part.first)};
       const Bounds box = bounds(alone);
       const double lowest = box.vertices_in_use > 0 ? static_cast<double>(box.min.y) : 0;
       const Mat4d m = placement(s, foot - s.scale * lowest);
@@ -198,7 +199,7 @@ void TerrainObjects::place(const terrain::Terrain& terrain) {
 
 void TerrainObjects::draw(const terrain::TerrainTargets& picture, terrain::TerrainStats& stats) {
   const FrameStats drawn =
-      painter_->draw({binding_->view(), facing_}, options_, stats.camera, picture);
+      painter_->draw({binding_->view(), facing_}, frame_, options_, stats.camera, picture);
   stats.stages.push_back({"objects", stats.frame_ms, stats.frame_ms + drawn.frame_ms});
   stats.frame_ms += drawn.frame_ms;
   stats.peak_bytes += drawn.peak_bytes;

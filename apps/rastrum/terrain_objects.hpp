@@ -8,10 +8,11 @@
 
 #include <apps/command_line/parser.hpp>
 
-#include <rastrum/render/scene_on_terrain.hpp>
-#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/on_terrain.hpp>
+#include <rastrum/terrain.hpp>
 
 #include "scene_options.hpp"
+#include "terrain_input.hpp"
 
 namespace rastrum::cli {
 
@@ -46,8 +47,8 @@ void check_terrain_objects(const TerrainObjectArguments& a, const terrain::Terra
 class TerrainObjects {
  public:
   /// Requires an object. Throws Error naming the file.
-  TerrainObjects(const TerrainObjectArguments& a, const terrain::TerrainOptions& options,
-                 Timeline& timeline, Progress& progress);
+  TerrainObjects(const TerrainObjectArguments& a, const TerrainLook& options, Timeline& timeline,
+                 Progress& progress);
 
   /// Throws UsageError for what has no ground: beyond the map, or in a hole of it.
   void place(const terrain::Terrain& terrain);
@@ -68,6 +69,7 @@ class TerrainObjects {
   std::vector<Part> parts_;
   std::vector<std::size_t> facing_;
   std::optional<SceneBinding> binding_;
+  FrameOptions frame_;
   std::optional<SceneOnTerrain> painter_;
 };
 

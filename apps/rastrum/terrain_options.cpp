@@ -219,7 +219,7 @@ void add_terrain_light(Parser& app, TerrainSceneArguments& a) {
 
 void add_terrain_machine(Parser& app, TerrainSceneArguments& a) {
   const char* group = "Machine";
-  terrain::TerrainOptions& o = a.options;
+  TerrainLook& o = a.options;
   add(app, "--method", "NAME", "fast; words: paper 3's scans, the same picture (fast)",
       [&o](const std::string& s) {
         o.method = choose<terrain::Method>(

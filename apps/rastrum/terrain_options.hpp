@@ -6,8 +6,8 @@
 
 #include <apps/command_line/parser.hpp>
 
-#include <rastrum/terrain/light.hpp>
-#include <rastrum/terrain/options.hpp>
+#include <rastrum/terrain.hpp>
+#include <rastrum/terrain_light.hpp>
 
 #include "option.hpp"
 #include "terrain_input.hpp"
@@ -16,7 +16,7 @@ namespace rastrum::cli {
 
 struct TerrainSceneArguments {
   TerrainInput input;
-  terrain::TerrainOptions options;
+  TerrainLook options;
   bool filter_given = false;
   bool sky_dims = true;  ///< with a low sun; one of the caller's own does not
   bool dim_sky = false;  ///< but where that is asked for

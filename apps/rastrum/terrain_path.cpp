@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 #include "json_fields.hpp"
 #include "json_file.hpp"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include <rastrum/terrain/options.hpp>
+#include <rastrum/terrain.hpp>
 
 #include "key_curve.hpp"
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include <rastrum/io/atomic_file.hpp>
-#include <rastrum/raster/frame/options.hpp>
+#include <rastrum/frame.hpp>
+#include <rastrum/io.hpp>
 
 namespace rastrum::cli {
 

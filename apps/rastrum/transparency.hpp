@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <rastrum/core/image.hpp>
-#include <rastrum/raster/frame/options.hpp>
+#include <rastrum/frame.hpp>
+#include <rastrum/image.hpp>
 
 namespace rastrum::cli {
 

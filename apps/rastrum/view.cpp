@@ -5,7 +5,7 @@
 #include <numbers>
 #include <string>
 
-#include <rastrum/scene/fit.hpp>
+#include <rastrum/fit.hpp>
 
 #include "arguments.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/scene.hpp>
 
 #include "arguments.hpp"
 

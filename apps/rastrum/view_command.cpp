@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 #include "commands.hpp"
 #include "scene_options.hpp"

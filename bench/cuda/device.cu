@@ -1,7 +1,7 @@
 // The device's side of the benchmarks. Tests compile this file as C++, for the CPU.
 #include <bench/cuda/device.hpp>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
 
 namespace rastrum::bench {

@@ -5,16 +5,20 @@
 namespace rastrum::bench {
 namespace {
 
-RenderOptions in_place(RenderOptions options) {
+Renderer renderer_there(family::Options options) {
   options.device = Device::cuda;
-  options.in_place = true;
-  return options;
+  return family::make_renderer(options, options);
 }
-std::size_t pixels_of(const RenderOptions& o) {
+FrameOptions of_size(FrameOptions frame, int width, int height) {
+  frame.width = width;
+  frame.height = height;
+  return frame;
+}
+std::size_t pixels_of(const FrameOptions& o) {
   return static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height);
 }
 template <class T>
-ImageView<T> view_of(const DeviceMemory& memory, const RenderOptions& o) {
+ImageView<T> view_of(const DeviceMemory& memory, const FrameOptions& o) {
   return {static_cast<T*>(memory.data()), o.width, o.height, o.width};
 }
 
@@ -29,23 +33,24 @@ void MeshesInPlace::add(const MeshView& mesh) {
   instances_.push_back({there, Mat4d::identity()});
 }
 
-InPlace::InPlace(const RenderOptions& options, const Camera& camera)
-    : renderer_(in_place(options)), camera_(camera), color8_(pixels_of(options) * sizeof(Rgba8)) {}
+InPlace::InPlace(const family::Options& options, const Camera& camera, int width, int height)
+    : renderer_(renderer_there(options)),
+      frame_(of_size(options, width, height)),
+      camera_(camera),
+      color8_(pixels_of(frame_) * sizeof(Rgba8)) {}
 
 FrameStats InPlace::draw(const MeshesInPlace& meshes, const Targets& targets) {
-  return renderer_.render({meshes.instances(), {}, {}}, camera_, targets);
+  return renderer_.render_in_place({.instances = meshes.instances()}, camera_, frame_, targets);
 }
 
 FrameStats InPlace::draw(const MeshesInPlace& meshes) {
-  Targets targets;
-  targets.color8 = view_of<Rgba8>(color8_, renderer_.options());
-  return draw(meshes, targets);
+  return draw(meshes, {.color8 = view_of<Rgba8>(color8_, frame_)});
 }
 
 template <class T>
 Image<T> InPlace::drawn(const MeshesInPlace& meshes, ImageView<T> Targets::*target,
                         FrameStats& stats) {
-  const RenderOptions& o = renderer_.options();
+  const FrameOptions& o = frame_;
   const DeviceMemory memory(pixels_of(o) * sizeof(T));
   Targets targets;
   targets.*target = view_of<T>(memory, o);

@@ -1,14 +1,14 @@
-// Frames of meshes that lie in a device's memory, into pictures there (RenderOptions::in_place):
+// Frames of meshes that lie in a device's memory, into pictures there (Renderer::render_in_place):
 // the frame as a simulation on the device has it, and as the papers time theirs.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include <rastrum/core/image.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/camera.hpp>
-#include <rastrum/scene/mesh.hpp>
+#include <rastrum/camera.hpp>
+#include <rastrum/family.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/mesh.hpp>
 
 #include "device.hpp"
 
@@ -31,8 +31,8 @@ class MeshesInPlace {
 /// A renderer with its picture on the device.
 class InPlace {
  public:
-  /// `options.in_place` and the device are set; the shader must have a form there.
-  InPlace(const RenderOptions& options, const Camera& camera);
+  /// The device is set; the shader must have a form there.
+  InPlace(const family::Options& options, const Camera& camera, int width, int height);
 
   /// A frame that ends in 8-bit colours.
   FrameStats draw(const MeshesInPlace& meshes);
@@ -47,6 +47,7 @@ class InPlace {
                                FrameStats& stats);
 
   Renderer renderer_;
+  FrameOptions frame_;
   Camera camera_;
   DeviceMemory color8_;
 };

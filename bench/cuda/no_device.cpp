@@ -1,6 +1,6 @@
 // The benchmarks without CUDA. choose_device has said so before anybody comes here.
 #include <bench/cuda/device.hpp>
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::bench {
 namespace {

@@ -1,7 +1,7 @@
 // Stands where the Embree peer was not built: its constructor says so.
 #include "embree_peer.hpp"
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::bench {
 

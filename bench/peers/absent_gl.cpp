@@ -1,5 +1,5 @@
 // Stands where the OpenGL peers were not built: their constructors say so.
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 #include "gl_peer.hpp"
 #include "gl_transparency.hpp"

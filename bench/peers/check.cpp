@@ -1,7 +1,7 @@
 // Draws with both and compares; see the header.
 #include "check.hpp"
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 namespace rastrum::bench {
 namespace {
@@ -13,7 +13,7 @@ struct OneMesh {
   InstanceView instance;
 
   explicit OneMesh(const Mesh& mesh) : instance{mesh.view(), Mat4d::identity()} {}
-  [[nodiscard]] SceneView view() const { return {{&instance, 1}, {}, {}}; }
+  [[nodiscard]] SceneView view() const { return {.instances = {&instance, 1}}; }
 };
 
 }  // namespace
@@ -24,18 +24,13 @@ Camera fit(const Mesh& mesh) {
 
 GlCheck check_against(GlPeer& gl, const Mesh& mesh, const Camera& camera, int width, int height,
                       int threads) {
-  RenderOptions options;
-  options.width = width;
-  options.height = height;
-  options.threads = threads;
   Image<Rgba8> colors(width, height);
   Image<std::int64_t> ids(width, height);
   Image<std::uint32_t> counts(width, height);
-  Targets targets;
-  targets.color8 = colors.view();
-  targets.ids = ids.view();
-  targets.overdraw = counts.view();
-  const FrameStats stats = Renderer(options).render(OneMesh(mesh).view(), camera, targets);
+  const FrameStats stats =
+      Renderer({.threads = threads})
+          .render(OneMesh(mesh).view(), camera, {.width = width, .height = height},
+                  {.color8 = colors, .ids = ids, .overdraw = counts});
 
   gl.set_mesh(mesh.view());
   gl.set_view(camera, width, height);

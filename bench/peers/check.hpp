@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include <rastrum/scene/camera.hpp>
-#include <rastrum/scene/mesh.hpp>
+#include <rastrum/camera.hpp>
+#include <rastrum/mesh.hpp>
 
 #include "compare.hpp"
 #include "gl_peer.hpp"

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include <rastrum/core/image.hpp>
-#include <rastrum/scene/camera.hpp>
-#include <rastrum/scene/mesh.hpp>
+#include <rastrum/camera.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/mesh.hpp>
 
 namespace rastrum::bench {
 

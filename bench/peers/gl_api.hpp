@@ -7,7 +7,7 @@
 #include <string>
 #include <type_traits>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::bench {
 

@@ -6,9 +6,9 @@
 
 #include <string>
 
-#include <rastrum/core/mat.hpp>
-#include <rastrum/scene/camera.hpp>
-#include <rastrum/scene/mesh.hpp>
+#include <rastrum/camera.hpp>
+#include <rastrum/mat.hpp>
+#include <rastrum/mesh.hpp>
 
 #include "gl_api.hpp"
 

@@ -7,10 +7,10 @@
 #include <memory>
 #include <string>
 
-#include <rastrum/core/image.hpp>
-#include <rastrum/core/mat.hpp>
-#include <rastrum/scene/camera.hpp>
-#include <rastrum/scene/mesh.hpp>
+#include <rastrum/camera.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/mat.hpp>
+#include <rastrum/mesh.hpp>
 
 namespace rastrum::bench {
 

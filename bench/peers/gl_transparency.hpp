@@ -10,9 +10,9 @@
 #include <string>
 #include <string_view>
 
-#include <rastrum/core/image.hpp>
-#include <rastrum/scene/camera.hpp>
-#include <rastrum/scene/mesh.hpp>
+#include <rastrum/camera.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/mesh.hpp>
 
 namespace rastrum::bench {
 

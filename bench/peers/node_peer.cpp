@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 extern char** environ;
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include <rastrum/terrain/terrain.hpp>
+#include <rastrum/terrain.hpp>
 
 namespace rastrum::bench {
 

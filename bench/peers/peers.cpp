@@ -16,8 +16,8 @@
 #include <bench/registry.hpp>
 #include <bench/report.hpp>
 #include <bench/scenes.hpp>
-#include <rastrum/core/error.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/family.hpp>
 
 #include "compare.hpp"
 #include "embree_peer.hpp"
@@ -125,28 +125,25 @@ nlohmann::json to_json(const Row& row) {
 Row measure_row(const SceneInfo& info, const Mesh& mesh, Size size, Peers& peers,
                 const MachineLimits& machine, const Options& options) {
   const InstanceView instance{mesh.view(), Mat4d::identity()};
-  const SceneView scene{{&instance, 1}, {}, {}};
+  const SceneView scene{.instances = {&instance, 1}};
   const Camera camera = fit_camera(scene, kFov_rad, false);
-  RenderOptions render_options;
-  render_options.width = size.width;
-  render_options.height = size.height;
-  render_options.threads = options.threads;
-  render_options.rasterizer = options.rasterizer;
-  Renderer renderer(render_options);
+  Renderer renderer =
+      family::make_renderer({.threads = options.threads}, {.rasterizer = options.rasterizer});
+  const FrameOptions frame{.width = size.width, .height = size.height};
   Image<Rgba8> ours(size.width, size.height);
-  Targets targets;
-  targets.color8 = ours.view();
+  const Targets targets{.color8 = ours};
 
   Row row;
   row.scene = info.name;
   row.size = size;
-  const FrameStats stats = renderer.render(scene, camera, targets);
+  const FrameStats stats = renderer.render(scene, camera, frame, targets);
   row.peak_bytes = stats.peak_bytes;
   row.work = {mesh.positions.size(), mesh.triangle_count(), stats.fragments, stats.pixels_covered,
               static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height)};
   row.floor = floor_of(row.work, machine);
 
-  std::vector<Contender> contenders{{"rastrum", [&] { renderer.render(scene, camera, targets); }}};
+  std::vector<Contender> contenders{
+      {"rastrum", [&] { renderer.render(scene, camera, frame, targets); }}};
   if (peers.gl) {
     peers.gl->set_view(camera, size.width, size.height);
     peers.gl->draw_phong();

@@ -9,7 +9,7 @@
 #include <bench/registry.hpp>
 #include <bench/report.hpp>
 #include <bench/scenes.hpp>
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 #include "check.hpp"
 #include "selection.hpp"

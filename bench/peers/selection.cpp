@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cstdio>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::bench {
 

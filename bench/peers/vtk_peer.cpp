@@ -13,7 +13,7 @@
 #include <fstream>
 #include <vector>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 extern char** environ;
 

@@ -6,9 +6,9 @@
 #include <memory>
 #include <string>
 
-#include <rastrum/core/image.hpp>
-#include <rastrum/scene/camera.hpp>
-#include <rastrum/scene/mesh.hpp>
+#include <rastrum/camera.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/mesh.hpp>
 
 namespace rastrum::bench {
 

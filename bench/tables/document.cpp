@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include <bench/report.hpp>
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::bench {
 namespace {

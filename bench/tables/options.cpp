@@ -2,6 +2,7 @@
 
 #include <apps/command_line/choose.hpp>
 #include <rastrum/parallel/cuda/status.hpp>
+#include <rastrum/parallel/device.hpp>
 
 namespace rastrum::bench {
 

@@ -50,8 +50,8 @@ struct TableOptions {
                  "here may be compared with it.**"
                : "";
   }
-  [[nodiscard]] RenderOptions render() const {
-    RenderOptions options;
+  [[nodiscard]] family::Options render() const {
+    family::Options options;
     options.threads = threads;
     options.shader = Shader::id;  // where the façade shades: one colour a triangle
     return options;
@@ -76,12 +76,12 @@ struct TableOptions {
                                                           Entrant papers) {
   papers.name.append(", cuda, in place");
   papers.options.device = Device::cuda;
-  papers.options.in_place = true;
+  papers.in_place = true;
   Entrant copied{"cuda", options.render()};
   copied.options.device = Device::cuda;
   Entrant in_place = copied;
   in_place.name = "cuda, in place";
-  in_place.options.in_place = true;
+  in_place.in_place = true;
   return {std::move(papers), std::move(copied), std::move(in_place)};
 }
 

@@ -9,7 +9,8 @@
 #include <bench/papers/paper4.hpp>
 #include <bench/report.hpp>
 #include <bench/stand_ins.hpp>
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/family.hpp>
 
 namespace rastrum::bench {
 namespace {
@@ -67,6 +68,12 @@ class Race {
   std::vector<Lap*> laps_;
 };
 
+/// What draws the frames of a lap of ours, and how they are to look.
+struct Ours {
+  Renderer renderer;
+  FrameOptions frame;
+};
+
 /// One view of one mesh, and what all its frames share.
 class View {
  public:
@@ -79,9 +86,9 @@ class View {
 
   [[nodiscard]] const Camera& camera() const { return camera_; }
 
-  [[nodiscard]] RenderOptions options(const TransparencyOptions& transparency,
-                                      float opacity) const {
-    RenderOptions o;
+  [[nodiscard]] family::Options options(const TransparencyOptions& transparency,
+                                        float opacity) const {
+    family::Options o;
     o.width = size_.width;
     o.height = size_.height;
     o.threads = plan_.threads;
@@ -90,37 +97,32 @@ class View {
     return o;
   }
 
-  FrameStats draw(Renderer& renderer, const Targets& targets) const {
-    return renderer.render({{&instance_, 1}, {}, {}}, camera_, targets);
+  FrameStats draw(Ours& ours, const Targets& targets) const {
+    return ours.renderer.render({.instances = {&instance_, 1}}, camera_, ours.frame, targets);
   }
 
   /// A lap of ours: its float picture and the pixels that are wrong.
-  std::unique_ptr<Renderer> check(Lap& lap, const RenderOptions& o, Image<Vec4>& picture) const {
-    std::unique_ptr<Renderer> renderer;
+  std::unique_ptr<Ours> check(Lap& lap, const family::Options& o, Image<Vec4>& picture) const {
+    std::unique_ptr<Ours> ours;
     attempt(lap, [&] {
-      renderer = std::make_unique<Renderer>(o);
+      ours = std::make_unique<Ours>(Ours{family::make_renderer(o, o), o});
       Image<std::uint8_t> errors(size_.width, size_.height);
-      Targets targets;
-      targets.color = picture.view();
-      targets.errors = errors.view();
-      lap.stats = draw(*renderer, targets);
+      lap.stats = draw(*ours, {.color = picture, .errors = errors});
       // An option that a build does not know yet would be measured under a false name.
       if (lap.stats.fragments != 0 && lap.counter("translucent fragments") == 0)
         throw Error(Errc::unsupported, "absent: nothing was translucent");
       lap.wrong_pixels = static_cast<std::uint64_t>(
           std::ranges::count_if(errors.pixels(), [](std::uint8_t e) { return e != 0; }));
     });
-    if (!lap.not_run.empty()) renderer.reset();
-    return renderer;
+    if (!lap.not_run.empty()) ours.reset();
+    return ours;
   }
 
-  void enter(Race& race, Lap& lap, Renderer* renderer) {
-    if (renderer == nullptr) return;
-    race.enter(lap, [this, &lap, renderer] {
-      Targets targets;
-      targets.color8 = picture8_.view();
+  void enter(Race& race, Lap& lap, Ours* ours) {
+    if (ours == nullptr) return;
+    race.enter(lap, [this, &lap, ours] {
       const std::uint64_t peak = lap.stats.peak_bytes;
-      lap.stats = draw(*renderer, targets);
+      lap.stats = draw(*ours, {.color8 = picture8_});
       lap.stats.peak_bytes = std::max(peak, lap.stats.peak_bytes);
     });
   }
@@ -198,7 +200,7 @@ void measure_peers(Race& race, TransparencyRow& row, const View& view,
 void count_work(TransparencyRow& row, const Mesh& mesh, const View& view,
                 const TransparencyPlan& plan) {
   Lap counted;
-  RenderOptions o = view.options(kTechniques[kExact].options, plan.opacity);
+  family::Options o = view.options(kTechniques[kExact].options, plan.opacity);
   o.rasterizer = "tiled";
   Image<Vec4> unused(row.size.width, row.size.height);
   view.check(counted, o, unused);
@@ -213,16 +215,14 @@ void count_work(TransparencyRow& row, const Mesh& mesh, const View& view,
   if (blocks != 0)
     row.samples_per_block = static_cast<double>(fragments) / static_cast<double>(blocks);
   row.floor = floor_of(row.work, plan.machine);
-  Renderer opaque(view.options(kTechniques[kExact].options, 1));
-  Targets targets;
-  targets.color = unused.view();
-  row.opaque_bytes = view.draw(opaque, targets).peak_bytes;
+  Ours opaque{Renderer({.threads = plan.threads}), view.options(kTechniques[kExact].options, 1)};
+  row.opaque_bytes = view.draw(opaque, {.color = unused}).peak_bytes;
 }
 
 /// The device's pictures against the threads' of the same technique, pixel by pixel.
 void measure_device(Race& race, TransparencyRow& row, View& view,
                     const std::vector<Image<Vec4>>& pictures, const TransparencyPlan& plan,
-                    std::vector<std::unique_ptr<Renderer>>& renderers) {
+                    std::vector<std::unique_ptr<Ours>>& renderers) {
   row.device_floor_ms = floor_of(row.work, plan.device).bytes_ms;
   row.device.resize(kOnDevice.size());
   for (std::size_t i = 0; i < row.device.size(); ++i) {
@@ -231,10 +231,10 @@ void measure_device(Race& race, TransparencyRow& row, View& view,
     lap.name = std::string(technique.name).append(", cuda");
     lap.not_run = row.ours[kOnDevice[i]].not_run;
     if (!lap.not_run.empty()) continue;
-    RenderOptions o = view.options(technique.options, plan.opacity);
+    family::Options o = view.options(technique.options, plan.opacity);
     o.device = Device::cuda;
     Image<Vec4> picture(row.size.width, row.size.height);
-    std::unique_ptr<Renderer> renderer = view.check(lap, o, picture);
+    std::unique_ptr<Ours> renderer = view.check(lap, o, picture);
     if (renderer && lap.stats.device != Device::cuda)
       lap.not_run = "left to the CPU: " + lap.stats.device_why;
     if (lap.not_run.empty()) {
@@ -251,7 +251,7 @@ void measure_device(Race& race, TransparencyRow& row, View& view,
 
 void measure_thresholds(TransparencyRow& row, View& view, const TransparencyPlan& plan) {
   Race race;
-  std::vector<std::unique_ptr<Renderer>> renderers;
+  std::vector<std::unique_ptr<Ours>> renderers;
   Image<Vec4> picture(row.size.width, row.size.height);
   row.thresholds.resize(2 * kThresholdOpacities.size());
   for (std::size_t i = 0; i < row.thresholds.size(); ++i) {
@@ -296,7 +296,7 @@ TransparencyRow measure_transparency(const Mesh& mesh, Size size, TransparencyPe
   count_work(row, mesh, view, plan);
 
   Race race;
-  std::vector<std::unique_ptr<Renderer>> renderers;
+  std::vector<std::unique_ptr<Ours>> renderers;
   std::vector<Image<Vec4>> pictures;
   row.ours.resize(kTechniques.size());
   row.peers.resize(kPeerCount);

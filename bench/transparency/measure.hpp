@@ -15,7 +15,7 @@
 #include <bench/peers/gl_transparency.hpp>
 #include <bench/peers/selection.hpp>
 #include <bench/peers/vtk_peer.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 namespace rastrum::bench {
 

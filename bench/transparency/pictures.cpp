@@ -12,9 +12,9 @@
 #include <bench/peers/selection.hpp>
 #include <bench/registry.hpp>
 #include <bench/report.hpp>
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/io.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "measure.hpp"
 
@@ -40,7 +40,7 @@ class Knots {
 
   [[nodiscard]] Image<Vec4> draw(Size size, const TransparencyOptions& transparency, int samples,
                                  const Camera& camera) const {
-    RenderOptions o;
+    FrameOptions o;
     o.width = size.width;
     o.height = size.height;
     o.shader = Shader::normal;
@@ -49,9 +49,7 @@ class Knots {
     o.transparency = transparency;
     o.samples = samples;
     Image<Vec4> picture(size.width, size.height);
-    Targets targets;
-    targets.color = picture.view();
-    static_cast<void>(Renderer(o).render({instances_, {}, {}}, camera, targets));
+    static_cast<void>(Renderer().render({.instances = instances_}, camera, o, {.color = picture}));
     return picture;
   }
 

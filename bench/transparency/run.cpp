@@ -8,7 +8,7 @@
 #include <bench/registry.hpp>
 #include <bench/report.hpp>
 #include <bench/tables/options.hpp>
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 #include "tables.hpp"
 

@@ -1,4 +1,4 @@
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -11,13 +11,14 @@
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/turn.hpp>
+#include <rastrum/program.hpp>
 #include <rastrum/raster/draws/mixed_draws.hpp>
 #include <rastrum/raster/shade/alpha.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/texture.hpp>
-#include <rastrum/render/registry.hpp>
+#include <rastrum/render/access.hpp>
 
 namespace rastrum {
 namespace {
@@ -53,11 +54,11 @@ void check_attributes(const SceneView& scene) {
 }
 
 template <class T>
-void check_target(const ImageView<T>& view, const RenderOptions& options, const char* what) {
+void check_target(const ImageView<T>& view, const FrameOptions& options, const char* what) {
   check_size(view, options.width, options.height, std::string("the ").append(what) + " target");
 }
 
-void check_targets(const Targets& targets, const RenderOptions& o) {
+void check_targets(const Targets& targets, const FrameOptions& o) {
   check_target(targets.color8, o, "color8");
   check_target(targets.color, o, "color");
   check_target(targets.depth, o, "depth");
@@ -113,32 +114,9 @@ void stretch_depth(ImageView<float> depth, Vec4 background, const Targets& targe
     }
 }
 
-void check_options(const RenderOptions& o) {
-  const auto require = [](bool ok, const char* what) {
-    if (!ok) throw Error(Errc::invalid_argument, what);
-  };
-  check_enum(o.shader, Shader::wireframe, "the shader");
-  check_enum(o.cull, Cull::front, "cull");
-  check_enum(o.transparency.method, Transparency::none, "the method of transparency");
-  check_enum(o.tuning.schedule, raster::Schedule::persistent, "the schedule");
-  check_enum(o.tuning.order, raster::BlockOrder::morton, "the order of blocks");
-  check_enum(o.tuning.small_path, raster::SmallPath::rows, "the path of small triangles");
-  const Vec4 b = o.background;
-  require(std::isfinite(b.x) && std::isfinite(b.y) && std::isfinite(b.z) && std::isfinite(b.w),
-          "the background must be four finite numbers");
-  // Written so that a NaN fails.
-  require(o.opacity >= 0 && o.opacity <= 1, "opacity must lie in [0, 1]");
-  require(o.transparency.filter >= 1 && o.transparency.filter <= 64,
-          "the filter of transparency must hold 1 to 64 samples");
-  require(o.transparency.alpha_threshold > 0 && o.transparency.alpha_threshold <= 1,
-          "the alpha threshold must be > 0 and at most 1");
-  require(o.samples == 1 || o.samples == 4 || o.samples == 8 || o.samples == 16,
-          "samples must be 1, 4, 8 or 16");
-}
-
 /// What of a frame in a device's memory the host would have to read or write.
 void check_in_place(const SceneView& scene, const Targets& targets, Shader shader,
-                    const RenderOptions& o) {
+                    const FrameOptions& o) {
   const auto require = [](bool ok, const char* what) {
     if (!ok)
       throw Error(Errc::unsupported,
@@ -153,7 +131,7 @@ void check_in_place(const SceneView& scene, const Targets& targets, Shader shade
           "of the targets there are color8, color, depth, ids and keys, in one pass");
 }
 
-void check_over(const Targets& targets, const RenderOptions& o) {
+void check_over(const Targets& targets, const FrameOptions& o) {
   const auto require = [](bool ok, const char* what) {
     if (!ok) throw Error(Errc::invalid_argument, what);
   };
@@ -164,84 +142,138 @@ void check_over(const Targets& targets, const RenderOptions& o) {
 
 }  // namespace
 
-struct Renderer::Impl {
-  explicit Impl(RenderOptions o) : options(std::move(o)) {}
+void check(const FrameOptions& o) {
+  const auto require = [](bool ok, const char* what) {
+    if (!ok) throw Error(Errc::invalid_argument, what);
+  };
+  if (o.width < 1 || o.height < 1 || o.width > kMaxImageSize || o.height > kMaxImageSize)
+    throw Error(Errc::invalid_argument, "image size " + std::to_string(o.width) + "x" +
+                                            std::to_string(o.height) +
+                                            " is outside 1x1 to 32768x32768");
+  check_enum(o.shader, Shader::wireframe, "the shader");
+  check_enum(o.cull, Cull::front, "cull");
+  check_enum(o.transparency.method, Transparency::none, "the method of transparency");
+  const Vec4 b = o.background;
+  require(std::isfinite(b.x) && std::isfinite(b.y) && std::isfinite(b.z) && std::isfinite(b.w),
+          "the background must be four finite numbers");
+  // Written so that a NaN fails.
+  require(o.opacity >= 0 && o.opacity <= 1, "opacity must lie in [0, 1]");
+  require(o.transparency.filter >= 1 && o.transparency.filter <= 64,
+          "the filter of transparency must hold 1 to 64 samples");
+  require(o.transparency.alpha_threshold > 0 && o.transparency.alpha_threshold <= 1,
+          "the alpha threshold must be > 0 and at most 1");
+  require(o.samples == 1 || o.samples == 4 || o.samples == 8 || o.samples == 16,
+          "samples must be 1, 4, 8 or 16");
+}
 
-  FrameStats render(const SceneView& scene, const Camera& camera, const Targets& targets);
+struct Renderer::Impl {
+  Impl(RendererOptions given, DeviceChoice choice, bool plain, MakeFrameDrawer maker);
+
+  /// What a caller wants of one frame. `in_place`: its arrays are memory of a GPU.
+  struct Call {
+    const FrameOptions& frame;
+    const Targets& targets;
+    bool in_place = false;
+  };
+  FrameStats render(const SceneView& scene, const Camera& camera, const Call& call);
   FrameStats draw_depth(std::span<raster::Draw> draws, const raster::Testing& test,
-                        const Targets& targets);
+                        const Call& call);
   FrameStats draw(std::span<raster::Draw> draws, const raster::Shading& shading,
-                  const raster::Testing& test, const Targets& targets,
-                  std::string_view noun = "draw", bool linear_light = false);
+                  const raster::Testing& test, const Call& call, std::string_view noun = "draw",
+                  bool linear_light = false);
+
+  void make_drawer();
 
   std::mutex one_at_a_time;
-  RenderOptions options;
+  RendererOptions options;
   std::string device_why;
   Isa isa = Isa::scalar;
   MemoryAccount memory;
   raster::TextureSet textures{memory};
   std::unique_ptr<parallel::Threads> threads;
-  DrawFrame draw_frame;
+  MakeFrameDrawer make;
+  /// What the scratch of the drawer is for. Scratch never shrinks: where memory is limited, frames
+  /// of another kind begin with a new one.
+  struct Kind {
+    int width = 0, height = 0, samples = 0;
+    bool layers = false;
+    bool operator==(const Kind&) const = default;
+  } kind;
+  std::unique_ptr<raster::FrameDrawer> drawer;
 };
 
-Renderer::Renderer(RenderOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {
-  const RenderOptions& o = impl_->options;
-  if (o.width < 1 || o.height < 1 || o.width > kMaxImageSize || o.height > kMaxImageSize)
-    throw Error(Errc::invalid_argument, "image size " + std::to_string(o.width) + "x" +
-                                            std::to_string(o.height) +
-                                            " is outside 1x1 to 32768x32768");
-  if (o.threads < 0 || o.threads > 4096)
+Renderer::Impl::Impl(RendererOptions given, DeviceChoice choice, bool plain, MakeFrameDrawer maker)
+    : options(given), make(std::move(maker)) {
+  if (options.threads < 0 || options.threads > 4096)
     throw Error(Errc::invalid_argument, "threads must lie between 0 (all) and 4096");
-  check_options(o);
-  DeviceChoice choice = choose_device(o.device);
-  if (o.device == Device::automatic && choice.device == Device::cuda &&
-      (o.rasterizer != "auto" || o.visibility != "auto"))
-    choice = {Device::threads, "a rasterizer or a visibility of the CPU was asked for"};
-  impl_->options.device = choice.device;
-  impl_->device_why = std::move(choice.why);
-  impl_->isa = choose_isa(o.isa);
-  // The reference is plain C++ on one thread, whatever else the machine could do.
-  if (o.device != Device::serial && o.rasterizer != "reference")
-    impl_->threads = std::make_unique<parallel::Threads>(o.threads, &impl_->memory);
+  options.device = choice.device;
+  device_why = std::move(choice.why);
+  isa = choose_isa(options.isa);
+  if (options.device != Device::serial && !plain)
+    threads = std::make_unique<parallel::Threads>(options.threads, &memory);
   else
-    impl_->isa = Isa::scalar;
-  impl_->draw_frame = make_rasterizer(o, impl_->memory, impl_->threads.get(), impl_->device_why);
+    isa = Isa::scalar;
+  make_drawer();
 }
 
+void Renderer::Impl::make_drawer() {
+  drawer.reset();
+  drawer = make({options.device, device_why, options.memory_limit}, memory, threads.get());
+}
+
+Renderer::Renderer(RendererOptions options)
+    : Renderer(std::make_unique<Impl>(options,
+                                      choose_device(options.device), false,
+                                      rastrum::make_drawer)) {}
+Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-const RenderOptions& Renderer::options() const {
+const RendererOptions& Renderer::options() const {
   return impl_->options;
 }
 
-FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const Targets& targets,
-                            std::stop_token stop) {
-  const parallel::Turn turn(impl_->one_at_a_time, stop);
-  return impl_->render(scene, camera, targets);
+Renderer RendererAccess::make(RendererOptions options, DeviceChoice choice, bool plain,
+                              MakeFrameDrawer make) {
+  return Renderer(
+      std::make_unique<Renderer::Impl>(options, std::move(choice), plain, std::move(make)));
 }
 
-FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::Shading& shading,
-                          const raster::Testing& test, const Targets& targets,
-                          std::stop_token stop) {
+FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
+                            const Targets& targets, std::stop_token stop) {
   const parallel::Turn turn(impl_->one_at_a_time, stop);
-  return impl_->draw(draws, shading, test, targets);
+  return impl_->render(scene, camera, {frame, targets});
 }
 
-FrameStats Renderer::draw(std::span<raster::Draw> draws, const Targets& targets,
-                          std::stop_token stop) {
+FrameStats Renderer::render_in_place(const SceneView& scene, const Camera& camera,
+                                     const FrameOptions& frame, const Targets& targets,
+                                     std::stop_token stop) {
   const parallel::Turn turn(impl_->one_at_a_time, stop);
-  return impl_->draw(draws, {}, {}, targets);
+  return impl_->render(scene, camera, {frame, targets, impl_->options.device == Device::cuda});
 }
 
-FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera,
-                                  const Targets& targets) {
-  const RenderOptions& o = options;
+FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draws,
+                                const raster::Shading& shading, const raster::Testing& test,
+                                const FrameOptions& frame, const Targets& targets,
+                                std::stop_token stop) {
+  Renderer::Impl& impl = *renderer.impl_;
+  const parallel::Turn turn(impl.one_at_a_time, stop);
+  return impl.draw(draws, shading, test, {frame, targets});
+}
+
+FrameStats Renderer::draw(std::span<const raster::ProgramDraw> draws, const FrameOptions& frame,
+                          const Targets& targets, std::stop_token stop) {
+  std::vector<raster::Draw> own(draws.begin(), draws.end());
+  return RendererAccess::draw(*this, own, {}, {}, frame, targets, std::move(stop));
+}
+
+FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, const Call& call) {
+  const FrameOptions& o = call.frame;
+  check(o);
   const Shader taken = shader_for(o.shader, scene);
-  const bool in_place = o.in_place && o.device == Device::cuda;
-  if (in_place)
-    check_in_place(scene, targets, taken, o);
+  if (call.in_place)
+    check_in_place(scene, call.targets, taken, o);
   else
     check_attributes(scene);
   raster::check_materials(scene);
@@ -261,7 +293,7 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera,
     draw.primitive_count = instance.mesh.triangle_count();
     draw.cull = material_cull(instance, scene.materials, taken);
     std::uint32_t flags = raster::set_material_flags(draw, instance.mesh, material_flags);
-    if (blends && scene.materials.empty() && !in_place &&
+    if (blends && scene.materials.empty() && !call.in_place &&
         raster::has_vertex_alpha(instance.mesh, threads.get())) {
       draw.flags |= raster::kTranslucent;
       flags |= raster::kTranslucent;
@@ -285,7 +317,7 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera,
     stats.shader = name(taken);
     return stats;
   };
-  if (taken == Shader::depth) return named(draw_depth(draws, test, targets));
+  if (taken == Shader::depth) return named(draw_depth(draws, test, call));
   const bool linear = is_translucent && shades_materials;
   std::optional<raster::LitScene> lit;
   raster::Shading shading;
@@ -296,13 +328,14 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera,
     shading = raster::LitShading{lit_model(taken), &*lit};
   }
   if (is_translucent) shading = shading.with_alpha(any_blend ? &*materials : nullptr, o.opacity);
-  return named(draw(draws, shading, test, targets, "instance", linear));
+  return named(draw(draws, shading, test, call, "instance", linear));
 }
 
 /// Grey by depth needs the range of depths in the picture, so it is a pass after the frame.
 FrameStats Renderer::Impl::draw_depth(std::span<raster::Draw> draws, const raster::Testing& test,
-                                      const Targets& targets) {
-  const RenderOptions& o = options;
+                                      const Call& call) {
+  const FrameOptions& o = call.frame;
+  const Targets& targets = call.targets;
   if (targets.over)
     throw Error(Errc::invalid_argument,
                 "the depth shader stretches the depths of a whole picture and cannot draw over "
@@ -318,7 +351,7 @@ FrameStats Renderer::Impl::draw_depth(std::span<raster::Draw> draws, const raste
   }
   const raster::FragmentShader unused(
       [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
-  FrameStats stats = draw(draws, unused, test, first, "instance");
+  FrameStats stats = draw(draws, unused, test, {o, first}, "instance");
   const auto begin = std::chrono::steady_clock::now();
   stretch_depth(first.depth, o.background, targets);
   const double ms =
@@ -329,9 +362,11 @@ FrameStats Renderer::Impl::draw_depth(std::span<raster::Draw> draws, const raste
 }
 
 FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Shading& shading,
-                                const raster::Testing& test, const Targets& targets,
+                                const raster::Testing& test, const Call& call,
                                 std::string_view noun, bool linear_light) {
-  const RenderOptions& o = options;
+  const FrameOptions& o = call.frame;
+  const Targets& targets = call.targets;
+  check(o);
   check_targets(targets, o);
   raster::MixedDraws mixed(draws, shading, test);
   draws = mixed.draws();
@@ -365,27 +400,28 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   request.shading = mixed.shading();
   request.background = o.background;
   request.targets = targets;
-  request.tuning = o.tuning;
-  request.in_place = o.in_place && o.device == Device::cuda;
+  request.in_place = call.in_place;
   request.texture_bytes = textures.bytes();
-  request.hierarchical_z = o.hierarchical_z;
   request.transparency = o.transparency;
   request.samples = o.samples;
   request.linear_light = linear_light;
+  if (const Kind now{o.width, o.height, o.samples, needs_layers(request)}; kind != now) {
+    if (options.memory_limit != 0 && kind != Kind{}) make_drawer();
+    kind = now;
+  }
   memory.restart_peak();
-  FrameStats stats = draw_frame(request);
+  FrameStats stats = drawer->draw(request);
   stats.peak_bytes = memory.peak();
   // A frame that the device leaves to the CPU says so itself.
-  if (o.device != Device::cuda) stats.device = o.device;
+  if (options.device != Device::cuda) stats.device = options.device;
   if (stats.device_why.empty()) stats.device_why = device_why;
   return stats;
 }
 
-Image<Rgba8> render(const SceneView& scene, const Camera& camera, const RenderOptions& options) {
-  Image<Rgba8> image(options.width, options.height);
-  Targets targets;
-  targets.color8 = image.view();
-  Renderer(options).render(scene, camera, targets);
+Image<Rgba8> render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
+                    const RendererOptions& options) {
+  Image<Rgba8> image(frame.width, frame.height);
+  Renderer(options).render(scene, camera, frame, {.color8 = image});
   return image;
 }
 

@@ -1,4 +1,4 @@
-#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/terrain.hpp>
 
 #include <chrono>
 #include <memory>
@@ -38,8 +38,8 @@ class Stopwatch {
 }  // namespace
 
 struct TerrainRenderer::Impl {
-  explicit Impl(TerrainOptions given)
-      : options(std::move(given)),
+  explicit Impl(TerrainRendererOptions given)
+      : options(given),
         isa(choose_isa(options.isa)),
         asked(options.device),
         pool(memory),
@@ -54,16 +54,16 @@ struct TerrainRenderer::Impl {
   [[nodiscard]] parallel::Threads& threads();
   [[nodiscard]] DeviceChoice place(const Terrain& terrain, const TerrainOptions& how,
                                    const TerrainTargets& targets);
-  void prepare(const Terrain& terrain, Device where);
+  void prepare(const Terrain& terrain, const TerrainOptions& how, Device where);
   /// `roll`, which a device heeds: null for an upright picture.
   Counts draw(const Terrain& terrain, const TerrainOptions& how, const TerrainCamera& camera,
               const Roll* roll, const TerrainTargets& targets, TerrainStats& stats,
               Stopwatch& stopwatch);
-  Counts draw_rolled(const Terrain& terrain, const TerrainCamera& camera,
+  Counts draw_rolled(const Terrain& terrain, const TerrainOptions& how, const TerrainCamera& camera,
                      const TerrainTargets& targets, TerrainStats& stats, Stopwatch& stopwatch);
 
   std::mutex one_at_a_time;
-  TerrainOptions options;
+  TerrainRendererOptions options;
   Isa isa;
   Device asked;
   std::string device_why;
@@ -124,11 +124,12 @@ DeviceChoice TerrainRenderer::Impl::place(const Terrain& terrain, const TerrainO
 }
 
 /// What is computed once a map.
-void TerrainRenderer::Impl::prepare(const Terrain& terrain, Device where) {
+void TerrainRenderer::Impl::prepare(const Terrain& terrain, const TerrainOptions& how,
+                                    Device where) {
   if (!terrain.is_map() || where == Device::cuda) return;
   if (where == Device::threads && !(ceiling && ceiling->is_of(terrain)))
     ceiling.emplace(terrain.heights());
-  const bool whole = options.filter == MapFilter::mip;
+  const bool whole = how.filter == MapFilter::mip;
   if (!(pyramid && pyramid->is_of(terrain, whole)))
     pyramid.emplace(terrain.heights(), terrain.colors(), whole);
 }
@@ -161,11 +162,12 @@ Counts TerrainRenderer::Impl::draw(const Terrain& terrain, const TerrainOptions&
                     : draw_reference(samples, targets);
 }
 
-Counts TerrainRenderer::Impl::draw_rolled(const Terrain& terrain, const TerrainCamera& camera,
+Counts TerrainRenderer::Impl::draw_rolled(const Terrain& terrain, const TerrainOptions& how,
+                                          const TerrainCamera& camera,
                                           const TerrainTargets& targets, TerrainStats& stats,
                                           Stopwatch& stopwatch) {
-  const Upright upright = upright_of(options, camera);
-  const Roll roll(camera.roll_rad, options.width, options.height);
+  const Upright upright = upright_of(how, camera);
+  const Roll roll(camera.roll_rad, how.width, how.height);
   if (stats.device == Device::cuda)
     return draw(terrain, upright.options, upright.camera, &roll, targets, stats, stopwatch);
   Image<Rgba8> colors;
@@ -183,12 +185,12 @@ Counts TerrainRenderer::Impl::draw_rolled(const Terrain& terrain, const TerrainC
       draw(terrain, upright.options, upright.camera, nullptr, whole, stats, stopwatch);
   const auto row = [&](std::size_t number) {
     const int y = static_cast<int>(number);
-    for (int x = 0; x < options.width; ++x) {
+    for (int x = 0; x < how.width; ++x) {
       if (!colors.empty()) targets.color8(x, y) = roll(std::as_const(colors).view(), x, y);
       if (!depth.empty()) targets.depth(x, y) = roll(std::as_const(depth).view(), x, y);
     }
   };
-  const auto rows = static_cast<std::size_t>(options.height);
+  const auto rows = static_cast<std::size_t>(how.height);
   if (stats.device == Device::serial)
     parallel::for_each_index(serial, rows, row);
   else
@@ -197,22 +199,25 @@ Counts TerrainRenderer::Impl::draw_rolled(const Terrain& terrain, const TerrainC
   return counts;
 }
 
-TerrainRenderer::TerrainRenderer(TerrainOptions options) {
-  check(options);
-  impl_ = std::make_unique<Impl>(std::move(options));
+TerrainRenderer::TerrainRenderer(TerrainRendererOptions options) {
+  if (options.threads < 0)
+    throw Error(Errc::invalid_argument,
+                "terrain: the number of threads must be at least 0 (all)");
+  impl_ = std::make_unique<Impl>(options);
 }
 TerrainRenderer::~TerrainRenderer() = default;
 TerrainRenderer::TerrainRenderer(TerrainRenderer&&) noexcept = default;
 TerrainRenderer& TerrainRenderer::operator=(TerrainRenderer&&) noexcept = default;
 
-const TerrainOptions& TerrainRenderer::options() const {
+const TerrainRendererOptions& TerrainRenderer::options() const {
   return impl_->options;
 }
 
 TerrainStats TerrainRenderer::render(const Terrain& terrain, const TerrainCamera& given,
-                                     const TerrainTargets& targets, std::stop_token stop) {
+                                     const TerrainOptions& options, const TerrainTargets& targets,
+                                     std::stop_token stop) {
   const parallel::Turn turn(impl_->one_at_a_time, stop);
-  const TerrainOptions& options = impl_->options;
+  check(options);
   check(given);
   if (options.classic && given.roll_rad != 0)
     throw Error(Errc::invalid_argument,
@@ -231,11 +236,11 @@ TerrainStats TerrainRenderer::render(const Terrain& terrain, const TerrainCamera
   const std::optional<double> clearance = options.classic ? 10 : options.ground_clearance;
   if (clearance) stats.camera = above_ground(terrain, given, *clearance, options.tiling);
   impl_->memory.restart_peak();
-  impl_->prepare(terrain, stats.device);
+  impl_->prepare(terrain, options, stats.device);
   stopwatch.lap("prepare");
 
   const Counts counts =
-      rolled ? impl_->draw_rolled(terrain, stats.camera, targets, stats, stopwatch)
+      rolled ? impl_->draw_rolled(terrain, options, stats.camera, targets, stats, stopwatch)
              : impl_->draw(terrain, options, stats.camera, nullptr, targets, stats, stopwatch);
   stats.samples = counts.samples;
   stats.visible = counts.visible;

@@ -86,7 +86,6 @@ void check(const TerrainOptions& o) {
           "terrain: the fog must start at a distance of at least 0");
   require(!o.ground_clearance || std::isfinite(*o.ground_clearance),
           "terrain: the clearance above the ground must be a finite number");
-  require(o.threads >= 0, "terrain: the number of threads must be at least 0 (all)");
   if (o.classic) {
     const TerrainOptions d;
     require(o.fov_rad == d.fov_rad && o.scale_px == d.scale_px && first_step(o) == d.step &&
@@ -102,7 +101,6 @@ void check(const TerrainOptions& o) {
             std::to_string(extent) + " cells away in " + std::to_string(slice_count(o)) +
             " steps, and 2^23 and 2^24 are the limits; choose a smaller distance or larger steps");
   }
-  static_cast<void>(choose_device(o.device));
 }
 
 void check(const TerrainCamera& c) {

@@ -1,5 +1,6 @@
 // The doors of shadows.hpp: plain loops for `serial` and the scalar instruction set, which are the
 // definition; the kernels of shadows_simd.cpp for the others.
+#include <rastrum/parallel/device.hpp>
 #include <rastrum/terrain/shadows.hpp>
 
 #include <algorithm>

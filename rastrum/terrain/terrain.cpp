@@ -5,7 +5,7 @@
 #include <limits>
 
 #include <rastrum/terrain/cell.hpp>
-#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/terrain.hpp>
 
 namespace rastrum::terrain {
 namespace {

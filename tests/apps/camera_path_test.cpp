@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/io.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
 
 #include "arguments.hpp"
 #include "key_curve.hpp"

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstdint>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/terrain.hpp>
 
 #include "program.hpp"
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 
@@ -36,7 +38,7 @@ class ProgramOnHills : public Program {
     io::write_png(path("c.png"), map_.colors.view());
   }
 
-  terrain::TerrainOptions options_;
+  TerrainLook options_;
   terrain::TerrainCamera camera_;
   terrain::HeightMap map_;
 };

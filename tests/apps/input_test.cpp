@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <set>
 
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "inputs.hpp"
 #include "program.hpp"
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 namespace {

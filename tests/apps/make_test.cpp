@@ -1,6 +1,6 @@
 // `rastrum make`: what is written is the shape, in order, where it was placed.
-#include <rastrum/io/io.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "flatten.hpp"
 #include "program.hpp"

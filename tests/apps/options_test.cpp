@@ -4,13 +4,15 @@
 #include <cmath>
 #include <limits>
 
+#include <rastrum/fit.hpp>
+#include <rastrum/mesh.hpp>
 #include <rastrum/parallel/cuda/status.hpp>
-#include <rastrum/scene/crease_normals.hpp>
-#include <rastrum/scene/fit.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "program.hpp"
 #include "tests/support/isa.hpp"
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 namespace {
@@ -203,8 +205,8 @@ TEST_F(Options, MachineChoicesReachTheStatisticsAndLeaveThePictureAlone) {
   EXPECT_EQ(serial["device"], "serial");
   EXPECT_EQ(serial["threads"], 1);
   EXPECT_EQ(npy("i.npy").data, ids);
-  for (const AxisInfo& r : rasterizers())
-    for (const AxisInfo& v : visibilities()) {
+  for (const family::AxisInfo& r : family::rasterizer_axis())
+    for (const family::AxisInfo& v : family::visibility_axis()) {
       if (r.name == "reference" && v.name != "atomic") continue;
       const auto s = stats({"--rasterizer", r.name, "--visibility", v.name});
       EXPECT_EQ(s["rasterizer"], r.name);

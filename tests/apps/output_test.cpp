@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "program.hpp"
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <set>
 
-#include <rastrum/core/transform.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/transform.hpp>
 
 #include "arguments.hpp"
 #include "inputs.hpp"

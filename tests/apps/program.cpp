@@ -17,8 +17,10 @@
 #include <OpenEXR/ImfInputFile.h>
 #endif
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/scene/fit.hpp>
+#include <rastrum/fit.hpp>
+#include <rastrum/io.hpp>
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 namespace fs = std::filesystem;
@@ -172,9 +174,9 @@ Drawn draw(const Scene& scene, const Camera& camera, const RenderOptions& option
           Image<std::int64_t>(options.width, options.height),
           {}};
   const SceneBinding binding(scene);
-  Renderer renderer(options);
+  Painter renderer(options);
   d.stats = renderer.render(binding.view(), camera,
-                            {d.color8.view(), d.color.view(), d.depth.view(), d.ids.view(), {}});
+                            {.color8 = d.color8, .color = d.color, .depth = d.depth, .ids = d.ids});
   return d;
 }
 

@@ -13,8 +13,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <rastrum/core/image.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/render.hpp>
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 

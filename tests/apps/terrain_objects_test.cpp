@@ -5,13 +5,14 @@
 #include <cmath>
 #include <numbers>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/render/scene_on_terrain.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
-#include <rastrum/scene/sprite.hpp>
-#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/on_terrain.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/terrain.hpp>
 
 #include "hills.hpp"
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 namespace {
@@ -57,13 +58,13 @@ class TerrainObjectsProgram : public ProgramOnHills {
     const terrain::Terrain ground(
         terrain::HeightMap{Image<float>(map_.heights), Image<Rgba8>(map_.colors)});
     const terrain::TerrainTargets targets{d.color.view(), d.depth.view()};
-    const terrain::TerrainStats stats =
-        terrain::TerrainRenderer(options_).render(ground, camera_, targets);
+    const terrain::TerrainStats stats = TerrainPainter(options_).render(ground, camera_, targets);
     if (scene == nullptr) return d;
     how.width = kWidth;
     how.height = kHeight;
     const SceneBinding binding(*scene);
-    SceneOnTerrain(how).draw({binding.view(), facing}, options_, stats.camera, targets);
+    SceneOnTerrain(family::make_renderer(how, how))
+        .draw({binding.view(), facing}, how, options_, stats.camera, targets);
     return d;
   }
   [[nodiscard]] static Mat4d at(double x, double up, double y, double scale, double turn_deg = 0) {

@@ -6,16 +6,16 @@
 #include <numbers>
 #include <random>
 
-#include <rastrum/io/io.hpp>
+#include <rastrum/io.hpp>
 #include <rastrum/parallel/cuda/status.hpp>
+#include <rastrum/terrain.hpp>
 #include <rastrum/terrain/color_map.hpp>
-#include <rastrum/terrain/expression.hpp>
-#include <rastrum/terrain/functions.hpp>
-#include <rastrum/terrain/light.hpp>
-#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/terrain_light.hpp>
 
 #include "hills.hpp"
 #include "terrain_path.hpp"
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 namespace {
@@ -37,8 +37,8 @@ class TerrainProgram : public ProgramOnHills {
   }
   [[nodiscard]] Image<Rgba8> drawn(const HeightMap& map) const {
     Image<Rgba8> image(options_.width, options_.height);
-    TerrainRenderer(options_).render(Terrain(HeightMap{map.heights, map.colors}), camera_,
-                                     {.color8 = image.view()});
+    TerrainPainter(options_).render(Terrain(HeightMap{map.heights, map.colors}), camera_,
+                                    {.color8 = image.view()});
     return image;
   }
   /// The program's picture with `extra` options, against the library's of `map`.
@@ -224,8 +224,8 @@ TEST_F(TerrainProgram, WithoutColours) {
 TEST_F(TerrainProgram, Functions) {
   const auto picture = [&](const HeightFunction& f, double low, double high) {
     Image<Rgba8> image(kWidth, kHeight);
-    TerrainRenderer(options_).render(function_terrain(f, low, high, {.hill_shading = true}),
-                                     {512, 800, 90, 0, 16, 0}, {.color8 = image.view()});
+    TerrainPainter(options_).render(function_terrain(f, low, high, {.hill_shading = true}),
+                                    {512, 800, 90, 0, 16, 0}, {.color8 = image.view()});
     return image;
   };
   for (const FunctionInfo& f : named_functions()) {
@@ -299,7 +299,7 @@ TEST_F(TerrainProgram, DepthAndStats) {
   must(args);
   options_.distance = 90;
   Image<float> depth(kWidth, kHeight);
-  const TerrainStats stats = TerrainRenderer(options_).render(
+  const TerrainStats stats = TerrainPainter(options_).render(
       Terrain(HeightMap{map_.heights, map_.colors}), camera_, {.depth = depth.view()});
   const std::vector<float> got = npy("d.npy").values<float>();
   ASSERT_EQ(got.size(), depth.pixels().size());

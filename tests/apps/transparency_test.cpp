@@ -1,10 +1,12 @@
 // --opacity, --transparency, --alpha-threshold, --samples and --show-errors, by their effects.
 #include "transparency.hpp"
 
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "arguments.hpp"
 #include "program.hpp"
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 namespace {

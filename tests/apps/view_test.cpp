@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include <rastrum/scene/fit.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/fit.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "arguments.hpp"
 #include "program.hpp"

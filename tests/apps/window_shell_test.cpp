@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include <rastrum/io/io.hpp>
+#include <rastrum/io.hpp>
 
 #include "program.hpp"
 #include "x_server.hpp"

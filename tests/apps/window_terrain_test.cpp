@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/io.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
 
 #include "program.hpp"
 #include "terrain_path.hpp"

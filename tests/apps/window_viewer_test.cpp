@@ -4,8 +4,8 @@
 #include <chrono>
 #include <thread>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/stop.hpp>
 
 #include "arguments.hpp"
 #include "program.hpp"

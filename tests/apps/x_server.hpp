@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <rastrum/core/image.hpp>
+#include <rastrum/image.hpp>
 
 // Declared here, since X11's own headers make macros of common names.
 struct _XDisplay;

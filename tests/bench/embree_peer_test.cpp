@@ -7,8 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/render.hpp>
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::bench {
 namespace {
@@ -24,7 +26,7 @@ TEST(EmbreePeer, TracesTheSamePicture) {
   const Mesh mesh = load(scene_by_name("torus-knot"));
   embree->set_mesh(mesh.view());
   const InstanceView instance{mesh.view(), Mat4d::identity()};
-  const SceneView scene{{&instance, 1}, {}, {}};
+  const SceneView scene{.instances = {&instance, 1}};
   const Camera camera = fit_camera(scene, 1.04719755F, false);
   // Not a multiple of a packet or a tile.
   RenderOptions options;

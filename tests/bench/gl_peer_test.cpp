@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::bench {
 namespace {

@@ -12,8 +12,10 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/shapes.hpp>
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::bench {
 namespace {
@@ -86,7 +88,7 @@ TEST(StandIns, PassesOverPartsAreTheWholePicture) {
     targets.color8 = to_color.view();
     targets.load = first_id > 0;
     targets.first_id = first_id;
-    Renderer renderer(options);
+    Painter renderer(options);
     draw(renderer, {mesh.view(), whole_view(base), 90, 70, &triangle_colors()}, targets);
   };
   pass(whole, keys, color, 0);
@@ -104,11 +106,10 @@ TEST(StandIns, TheCameraGivesTheAskedNumberOfFragments) {
   const Mesh mesh = ball(2000, 108.0F / 88, 1);
   const FragmentMatch match = match_fragments(mesh, 540, 440, 14207 * 25, 1);
   EXPECT_NEAR(static_cast<double>(match.found), 14207 * 25, 14207 * 25 * 0.01);
-  RenderOptions options;
-  options.threads = 1;
-  options.hierarchical_z = false;
-  EXPECT_EQ(fingerprint({mesh.view(), match.camera, 540, 440}, options).stats.fragments,
-            match.found);
+  Entrant all;
+  all.options.threads = 1;
+  all.options.hierarchical_z = false;
+  EXPECT_EQ(fingerprint({mesh.view(), match.camera, 540, 440}, all).stats.fragments, match.found);
 }
 
 TEST(StandIns, LargeTrianglesHaveTheirSize) {
@@ -144,7 +145,7 @@ TEST(StandIns, SheetsFillThePictureOncePerLayer) {
     Targets targets;
     targets.overdraw = overdraw.view();
     targets.ids = ids.view();
-    Renderer renderer(options);
+    Painter renderer(options);
     draw(renderer, {mesh.view(), window_camera(kWidth, kHeight), kWidth, kHeight}, targets);
     EXPECT_TRUE(std::ranges::all_of(overdraw.pixels(), [](std::uint32_t n) {
       return n == kLayers;

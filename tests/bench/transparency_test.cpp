@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/shapes.hpp>
 
 namespace rastrum::bench {
 namespace {

@@ -5,14 +5,14 @@
 #include <cstdint>
 #include <vector>
 
-#include <rastrum/io/height_map.hpp>
-#include <rastrum/io/io.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/render/scene_on_terrain.hpp>
-#include <rastrum/scene/scene.hpp>
-#include <rastrum/terrain/light.hpp>
-#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/family.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/on_terrain.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/scene.hpp>
+#include <rastrum/terrain.hpp>
+#include <rastrum/terrain_light.hpp>
 
 namespace {
 using namespace rastrum;
@@ -60,20 +60,23 @@ void scenes(const std::vector<Vec3>& positions, const std::vector<std::uint32_t>
 }
 
 void renders(const std::vector<std::uint32_t>& indices) {
-  const RenderOptions size{.width = 64, .height = 64};
-  const RenderOptions shader{.shader = Shader::flat, .samples = 4};
-  const RenderOptions named{.rasterizer = "binned", .tuning = {.bin_px = 64}};
-  const RenderOptions filtered{.transparency = {.method = Transparency::filter}};
-  const raster::Draw draw{.vertex_count = 3, .primitive_count = 1};
-  const raster::Draw indexed{.indices = indices, .topology = raster::Topology::lines};
+  const RendererOptions threads{.threads = 2};
+  const FrameOptions size{.width = 64, .height = 64};
+  const FrameOptions shader{.shader = Shader::flat, .samples = 4};
+  const FrameOptions filtered{.transparency = {.method = Transparency::filter}};
+  const family::Row named{.rasterizer = "binned", .tuning = {.bin_px = 64}};
+  const family::Row without{.hierarchical_z = false};
+  const raster::Primitives draw{.vertex_count = 3, .primitive_count = 1};
+  const raster::Primitives indexed{.indices = indices, .topology = raster::Topology::lines};
   const raster::VertexOutput<Shade> vertex{.clip = {0, 0, 0, 1}, .varying = {1}};
   const TerrainScene standing{.facing = {}};
   const TerrainScene scene{.scene = {}};
-  use(size, shader, named, filtered, draw, indexed, vertex, standing, scene);
+  use(threads, size, shader, filtered, named, without, draw, indexed, vertex, standing, scene);
 }
 
 void terrains() {
   using namespace terrain;
+  const TerrainRendererOptions threads{.threads = 2};
   const TerrainOptions size{.width = 64, .height = 64};
   const TerrainOptions fog{.fog = {.density = 0.1}, .ground_clearance = 2};
   const TerrainOptions mip{.filter = terrain::MapFilter::mip};
@@ -85,7 +88,7 @@ void terrains() {
   const March march{.steps = 16};
   const io::HeightGrid grid{.units_per_cell = 257};
   const io::RawSize raw{.width = 5};
-  use(size, fog, mip, camera, targets, map, light, shadows, march, grid, raw);
+  use(threads, size, fog, mip, camera, targets, map, light, shadows, march, grid, raw);
 }
 }  // namespace
 

@@ -1,6 +1,6 @@
 // A mistake that every first shader makes: its varying cannot be added and scaled. The compilers
 // are to say so, once, and not what follows from it (compile_test.cmake).
-#include <rastrum/raster/draws/program.hpp>
+#include <rastrum/program.hpp>
 
 namespace {
 struct Shade {
@@ -18,6 +18,6 @@ int main() {
         return Vec4{s.value, s.value, s.value, 1};
       },
       [](const Shade& s, const raster::Fragment&) { return s.value > 0; });
-  const raster::Draw draw = program.draw(3);
+  const raster::ProgramDraw draw = program.draw(3);
   return static_cast<int>(draw.primitive_count);
 }

@@ -1,4 +1,4 @@
-#include <rastrum/core/image.hpp>
+#include <rastrum/image.hpp>
 
 #include <string>
 #include <utility>

@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/quaternion.hpp>
-#include <rastrum/core/transform.hpp>
+#include <rastrum/transform.hpp>
 
 #include "tests/support/random.hpp"
 

@@ -1,4 +1,4 @@
-#include <rastrum/core/vec.hpp>
+#include <rastrum/vec.hpp>
 
 #include <gtest/gtest.h>
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <rastrum/core/vec.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/transparency/cuda/device_layers.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::test {
 

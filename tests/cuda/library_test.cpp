@@ -10,14 +10,14 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/parallel/cuda/library.hpp>
-#include <rastrum/parallel/stop.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
-#include <rastrum/terrain/renderer.hpp>
-#include <rastrum/terrain/shadows.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/stop.hpp>
+#include <rastrum/terrain.hpp>
+#include <rastrum/terrain_light.hpp>
 
 #include "tests/support/cuda_test.hpp"
 #include "tests/support/frame.hpp"

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <exception>
 
-#include <rastrum/io/io.hpp>
+#include <rastrum/io.hpp>
 
 int main(int count, char** arguments) {
   using rastrum::Rgba8;

@@ -1,4 +1,5 @@
-# Run by ctest: install, look at what is there, build examples/ against it, run one of them.
+# Run by ctest: install, look at what is there, build the installed examples against it, run one of
+# them; then programs of one library and of several, by CMake and by pkg-config.
 file(REMOVE_RECURSE ${WORK_DIR})
 set(prefix ${WORK_DIR}/prefix)
 set(examples ${WORK_DIR}/examples)
@@ -20,9 +21,23 @@ if(EXISTS ${BUILD_DIR}/apps/rastrum/rastrum)
   endif()
 endif()
 
-# Copied away from the source tree, so that no header can be found beside them.
-file(COPY ${SOURCE_DIR}/examples DESTINATION ${WORK_DIR}/source)
-run(${CMAKE_COMMAND} -S ${WORK_DIR}/source/examples -B ${examples} -G ${GENERATOR}
+# The installed headers are the public ones alone, and each can be included by itself, with warnings
+# as errors, from there.
+file(GLOB public RELATIVE ${SOURCE_DIR}/rastrum ${SOURCE_DIR}/rastrum/*.hpp)
+file(GLOB_RECURSE installed RELATIVE ${prefix}/include/rastrum ${prefix}/include/*)
+list(SORT public)
+list(SORT installed)
+if(NOT public STREQUAL installed)
+  message(FATAL_ERROR "the public headers are\n  ${public}\nand there are installed\n  ${installed}")
+endif()
+foreach(header IN LISTS installed)
+  set(source ${WORK_DIR}/headers/${header}.cpp)
+  file(WRITE ${source} "#include <rastrum/${header}>\n#include <rastrum/${header}>\n")
+  run(${CXX_COMPILER} -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Werror
+    -I${prefix}/include ${source})
+endforeach()
+
+run(${CMAKE_COMMAND} -S ${prefix}/share/rastrum/examples -B ${examples} -G ${GENERATOR}
   -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DCMAKE_BUILD_TYPE=Release)
 run(${CMAKE_COMMAND} --build ${examples})
 
@@ -42,7 +57,7 @@ file(WRITE ${renders}/renders.cpp [[
 #include <cstdio>
 #include <vector>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 int main() {
   const std::vector<rastrum::Vec3> positions{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
@@ -50,9 +65,8 @@ int main() {
   instance.mesh.positions = positions;
   rastrum::SceneView scene;
   scene.instances = {&instance, 1};
-  rastrum::RenderOptions options;
-  options.width = options.height = 64;
-  const auto image = rastrum::render(scene, rastrum::fit_camera(scene, 1.0F, false), options);
+  const auto image = rastrum::render(scene, rastrum::fit_camera(scene, 1.0F, false),
+                                     {.width = 64, .height = 64});
   int covered = 0;
   for (const rastrum::Rgba8 p : image.pixels()) covered += p.a != 0;
   std::printf("%d of %zu pixels\n", covered, image.pixels().size());
@@ -63,7 +77,7 @@ file(WRITE ${renders}/CMakeLists.txt [[
 cmake_minimum_required(VERSION 3.25)
 project(Renders LANGUAGES CXX)
 find_package(Rastrum REQUIRED)
-if(TARGET Rastrum::io OR TARGET PNG::PNG OR TARGET hwy::hwy)
+if(TARGET Rastrum::io OR TARGET Rastrum::family OR TARGET PNG::PNG OR TARGET hwy::hwy)
   message(FATAL_ERROR "find_package(Rastrum) finds more than was asked for")
 endif()
 add_executable(renders renders.cpp)
@@ -80,3 +94,70 @@ list(REMOVE_ITEM libraries libtbb.so libstdc++.so libm.so libgcc_s.so libc.so li
 if(libraries)
   message(FATAL_ERROR "a program that only renders links ${libraries}:\n${output}")
 endif()
+
+# The other components, each found and linked by itself.
+set(parts ${WORK_DIR}/source/parts)
+file(WRITE ${parts}/family.cpp [[
+#include <cstdio>
+
+#include <rastrum/family.hpp>
+
+int main() {
+  rastrum::Renderer renderer = rastrum::family::make_renderer({}, {.rasterizer = "binned"});
+  rastrum::Image<rastrum::Rgba8> image(8, 8);
+  const rastrum::FrameStats stats =
+      renderer.render({}, {}, {.width = 8, .height = 8}, {.color8 = image});
+  std::puts(stats.rasterizer.c_str());
+  return stats.rasterizer == "binned" ? 0 : 1;
+}
+]])
+file(WRITE ${parts}/io.cpp [[
+#include <rastrum/io.hpp>
+
+int main() {
+  return rastrum::io::scene_formats().size() > 4 ? 0 : 1;
+}
+]])
+file(WRITE ${parts}/CMakeLists.txt [[
+cmake_minimum_required(VERSION 3.25)
+project(Parts LANGUAGES CXX)
+find_package(Rastrum REQUIRED COMPONENTS family)
+if(TARGET Rastrum::io OR TARGET PNG::PNG)
+  message(FATAL_ERROR "the component family finds more than was asked for")
+endif()
+add_executable(family family.cpp)
+target_link_libraries(family PRIVATE Rastrum::family)
+find_package(Rastrum REQUIRED COMPONENTS io)
+add_executable(io io.cpp)
+target_link_libraries(io PRIVATE Rastrum::io)
+]])
+run(${CMAKE_COMMAND} -S ${parts} -B ${WORK_DIR}/parts -G ${GENERATOR}
+  -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DCMAKE_BUILD_TYPE=Release)
+run(${CMAKE_COMMAND} --build ${WORK_DIR}/parts)
+run(${WORK_DIR}/parts/family)
+run(${WORK_DIR}/parts/io)
+
+# Without CMake.
+find_program(PKG_CONFIG pkg-config)
+if(NOT PKG_CONFIG)
+  message(STATUS "pkg-config is not there: rastrum.pc was not tried")
+  return()
+endif()
+file(GLOB_RECURSE pc ${prefix}/*/rastrum.pc)
+cmake_path(GET pc PARENT_PATH pc_dir)
+set(ENV{PKG_CONFIG_PATH} ${pc_dir})
+foreach(program rastrum:${renders}/renders.cpp rastrum-family:${parts}/family.cpp
+        rastrum-io:${parts}/io.cpp)
+  string(REGEX MATCH "^([^:]+):(.*)$" match ${program})
+  set(package ${CMAKE_MATCH_1})
+  set(source ${CMAKE_MATCH_2})
+  run(${PKG_CONFIG} --modversion ${package})
+  if(NOT output MATCHES "${VERSION}")
+    message(FATAL_ERROR "${package}.pc says version ${output}")
+  endif()
+  run(${PKG_CONFIG} --cflags --libs ${package})
+  string(STRIP "${output}" flags)
+  separate_arguments(flags UNIX_COMMAND "${flags}")
+  run(${CXX_COMPILER} ${source} -o ${WORK_DIR}/${package} ${flags})
+  run(${WORK_DIR}/${package})
+endforeach()

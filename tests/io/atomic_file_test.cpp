@@ -1,6 +1,6 @@
 // Files that are whole or absent: several at once, beside the leavings of others, and at the end of
 // a process. The program's side of it is tests/apps/signal_test.cpp.
-#include <rastrum/io/atomic_file.hpp>
+#include <rastrum/io.hpp>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -9,8 +9,7 @@
 #include <iterator>
 #include <vector>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/io.hpp>
+#include <rastrum/error.hpp>
 
 #include "tests/io/files.hpp"
 

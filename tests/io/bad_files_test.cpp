@@ -28,12 +28,13 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/io.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/io/files.hpp"
 #include "tests/support/directories.hpp"
+#include "tests/support/painter.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define RASTRUM_TEST_SANITIZED 1
@@ -122,7 +123,7 @@ std::string draw(const Scene& scene) {
     Targets targets;
     targets.ids = ids[i].view();
     targets.color8 = colors[i].view();
-    stats[i] = Renderer(options).render(binding.view(), camera, targets);
+    stats[i] = Painter(options).render(binding.view(), camera, targets);
   }
   if (!std::ranges::equal(ids[0].pixels(), ids[1].pixels())) return "two pictures of it";
   if (stats[0].triangles.input != scene.triangle_count()) return "triangles lost";

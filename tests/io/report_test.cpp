@@ -1,11 +1,11 @@
-#include <rastrum/io/report.hpp>
+#include <rastrum/io.hpp>
 
 #include <functional>
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <tests/parallel/backends.hpp>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::parallel::test {
 namespace {

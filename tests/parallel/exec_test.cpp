@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/parallel/exec.hpp>
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/stop.hpp>
 
 #include "tests/support/stop_trigger.hpp"
 

@@ -10,15 +10,16 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/raster/draws/program.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/program.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/materials.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 
 namespace rastrum::test {
@@ -297,7 +298,7 @@ TEST(Alpha, UsersShadersBlendByTheirOwn) {
     RenderOptions o = options(Shader::flat);
     o.background = {};
     o.rasterizer = rasterizer;
-    Renderer renderer(o);
+    Painter renderer(o);
     const Frame frame = draw(renderer, twice, shader, nullptr);
     for (const Vec4 c : frame.color.pixels()) ASSERT_TRUE(same(c, Vec4{0.375F, 0, 0.75F, 0.75F}));
     // By material, of one triangle alone.
@@ -310,7 +311,7 @@ TEST(Alpha, UsersShadersBlendByTheirOwn) {
     EXPECT_TRUE(same(half.color(4, 20), Vec4{0.375F, 0, 0.75F, 0.75F}));
     // Drawn opaque where nothing shall blend, micro fragments included.
     o.transparency.method = Transparency::none;
-    Renderer none(o);
+    Painter none(o);
     const Frame front = draw(none, twice, shader, nullptr);
     EXPECT_TRUE(same(front.color(5, 5), Vec4{0.25F, 0, 0.5F, 0.5F}));
   }
@@ -346,7 +347,7 @@ TEST(Alpha, OptionsOutOfRangeAreRefused) {
 }
 
 TEST(Alpha, WhatKeepsNoTilesRefusesTranslucentScenesAlone) {
-  for (const AxisInfo& r : rasterizers()) {
+  for (const family::AxisInfo& r : family::rasterizer_axis()) {
     RenderOptions o = options(Shader::flat);
     o.rasterizer = r.name;
     EXPECT_NO_THROW((void)frame_of(o, quad_scene())) << r.name;
@@ -369,7 +370,7 @@ TEST(Alpha, PassesThatLoadDoNotBlend) {
   Image<std::uint64_t> keys(kSize, kSize);
   Targets targets;
   targets.keys = keys.view();
-  Renderer renderer(options(Shader::flat, 0.5F));
+  Painter renderer(options(Shader::flat, 0.5F));
   EXPECT_NO_THROW(renderer.render(binding.view(), pixel_camera(kSize, kSize), targets));
   targets.load = true;
   targets.first_id = 2;

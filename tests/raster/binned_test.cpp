@@ -19,7 +19,7 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/family/coverage/tile_mask.hpp>
 #include <rastrum/family/row.hpp>
 #include <rastrum/raster/assemble/points_and_lines.hpp>
@@ -27,12 +27,13 @@
 #include <rastrum/raster/frame/driver.hpp>
 #include <rastrum/raster/frame/reference.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/environment.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/isa.hpp"
 #include "tests/support/oracle.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
@@ -298,7 +299,7 @@ TEST(Binned, EnumeratesEachCoveredSampleOnceAndCountsItsWork) {
     }
   for (const auto& [bin_px, tile_px] : kSizes)
     for (const Schedule schedule : kSchedules) cases.push_back({schedule, 2, bin_px, tile_px, 100});
-  std::vector<Renderer> renderers;
+  std::vector<Painter> renderers;
   for (const Case& c : cases) {
     RenderOptions o = binned(kWidth, kHeight, c.schedule, c.threads);
     o.tuning.bin_px = c.bin_px;
@@ -306,7 +307,7 @@ TEST(Binned, EnumeratesEachCoveredSampleOnceAndCountsItsWork) {
     o.tuning.large_px = c.large_px;
     renderers.emplace_back(o);
   }
-  Renderer reference(serial(kWidth, kHeight));
+  Painter reference(serial(kWidth, kHeight));
 
   const int scenes =
       std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 100, kSceneKinds);
@@ -392,7 +393,7 @@ TEST(Binned, QueuesGrow) {
     for (const int threads : {1, 8}) {
       const RenderOptions options = binned(kSize, kSize, schedule, threads);
       SCOPED_TRACE(title(options));
-      Renderer renderer(options);
+      Painter renderer(options);
       const Frame frame = draw(renderer, binding.view(), camera);
       EXPECT_TRUE(same_surfaces(frame, expected));
       expect_counters(frame.stats, work);
@@ -639,7 +640,7 @@ TEST(Binned, RefusesATuningThatIsNotCompiled) {
     o.tuning.tile_px = tile_px;
     o.tuning.large_px = large_px;
     try {
-      const Renderer renderer(o);
+      const Painter renderer(o);
       return std::string();
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), Errc::invalid_argument);

@@ -13,13 +13,14 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/raster/bin/order.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/frame.hpp"
 #include "tests/support/oracle.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
@@ -76,7 +77,7 @@ TEST_P(EverySample, IsEnumeratedOnce) {
   const Row& row = GetParam();
   int n = 0;
   for (const auto& [width, height] : kImageSizes) {
-    Renderer reference(serial(width, height));
+    Painter reference(serial(width, height));
     for (const auto& [bin_px, tile_px] : kTileSizes) {
       if (!row.has_tiles && bin_px != 0) continue;
       // The other choices take turns: 3, 4, 2 and 2 of them, and the scene, have periods of 3, 4,
@@ -92,7 +93,7 @@ TEST_P(EverySample, IsEnumeratedOnce) {
         const GeneratedScene g = generate(static_cast<std::uint64_t>(n), width, height);
         const SceneBinding binding(g.scene);
         const Frame expected = draw(reference, binding.view(), g.camera);
-        Renderer renderer(o);
+        Painter renderer(o);
         const Frame actual = draw(renderer, binding.view(), g.camera);
         ASSERT_TRUE(same_surfaces(actual, expected)) << g.kind;
         ASSERT_TRUE(same_counts(actual.stats, expected.stats)) << g.kind;
@@ -133,7 +134,7 @@ TEST_P(EverySample, IsEnumeratedOnceUnderALimit) {
       o.tuning.tile_px = tile_px;
       o.memory_limit = limit;
       SCOPED_TRACE(title(o) + ", " + std::to_string(limit));
-      Renderer renderer(o);
+      Painter renderer(o);
       const Frame actual = draw(renderer, binding.view(), camera);
       ASSERT_TRUE(same_surfaces(actual, expected));
       ASSERT_TRUE(same_counts(actual.stats, expected.stats));
@@ -249,7 +250,7 @@ TEST_P(CountersOf, AreTheWorkOfTheListing) {
         SCOPED_TRACE(title(o) + ", scene " + std::to_string(seed));
         const GeneratedScene g = generate(seed, kWidth, kHeight);
         const SceneBinding binding(g.scene);
-        Renderer renderer(o);
+        Painter renderer(o);
         const Frame frame = draw(renderer, binding.view(), g.camera);
         const Counts expected =
             expected_counts(row.name, pieces_of(binding.view(), g.camera, kWidth, kHeight), o);
@@ -280,7 +281,7 @@ TEST(Tilings, OthersAreRefusedWithAList) {
       o.tuning.bin_px = bin_px;
       o.tuning.tile_px = tile_px;
       try {
-        const Renderer renderer(o);
+        const Painter renderer(o);
         ADD_FAILURE() << title(o);
       } catch (const Error& e) {
         EXPECT_EQ(e.code(), Errc::invalid_argument);
@@ -328,7 +329,7 @@ std::uint64_t tiled_bytes(const char* spec, int size, float smaller) {
   Image<float> depth(size, size);
   Targets targets;
   targets.depth = depth.view();
-  const FrameStats stats = Renderer(o).render(binding.view(), camera, targets);
+  const FrameStats stats = Painter(o).render(binding.view(), camera, targets);
   EXPECT_GT(stats.pixels_covered, 500000U);
   return stats.peak_bytes;
 }

@@ -9,15 +9,16 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/cuda_test.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/layer_picture.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -79,9 +80,9 @@ TEST_P(CudaTable, EqualsSerialAndDoesTheHostsWork) {
   constexpr int kSizes[][2] = {{64, 64}, {37, 53}, {1, 1}, {128, 96}};
   const int scenes = std::max(count_from_environment("RASTRUM_TABLE_SCENES", 120) / 20, 1);
   for (const auto& [width, height] : kSizes) {
-    Renderer serial(device_options(width, height, Device::serial));
-    Renderer host(options(width, height, Device::threads, GetParam()));
-    Renderer cuda(options(width, height, Device::cuda, GetParam()));
+    Painter serial(device_options(width, height, Device::serial));
+    Painter host(options(width, height, Device::threads, GetParam()));
+    Painter cuda(options(width, height, Device::cuda, GetParam()));
     for (int i = 0; i < scenes; ++i) {
       const auto seed = static_cast<std::uint64_t>(width * 1000000 + i);
       const GeneratedScene g = generate(seed, width, height);
@@ -119,15 +120,15 @@ TEST_P(CudaTable, NothingFailsForSize) {
   const Scene scene = soup(kTriangles, kWidth, kHeight);
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kWidth, kHeight);
-  Renderer serial(device_options(kWidth, kHeight, Device::serial));
+  Painter serial(device_options(kWidth, kHeight, Device::serial));
   const Frame expected = draw(serial, binding.view(), camera);
   RenderOptions o = options(kWidth, kHeight, Device::cuda, GetParam());
-  Renderer free(o);
+  Painter free(o);
   const Frame at_once = draw(free, binding.view(), camera);
   EXPECT_TRUE(same_frame(at_once, expected));
   EXPECT_EQ(counter(at_once.stats, "bands"), 1U);
   o.memory_limit = kLimit;
-  Renderer limited(o);
+  Painter limited(o);
   const Frame in_turns = draw(limited, binding.view(), camera);
   EXPECT_TRUE(same_frame(in_turns, expected));
   EXPECT_GT(counter(in_turns.stats, "bands"), 1U);
@@ -149,8 +150,8 @@ TEST_P(CudaTable, NothingFailsForSize) {
 // Points, lines and triangles over one vertex function, some behind the eye, wide, biased.
 TEST_P(CudaTable, DrawsAllTopologies) {
   constexpr int kWidth = 90, kHeight = 61;
-  Renderer serial(device_options(kWidth, kHeight, Device::serial));
-  Renderer cuda(options(kWidth, kHeight, Device::cuda, GetParam()));
+  Painter serial(device_options(kWidth, kHeight, Device::serial));
+  Painter cuda(options(kWidth, kHeight, Device::cuda, GetParam()));
   constexpr raster::Topology kTopologies[] = {raster::Topology::points, raster::Topology::lines,
                                               raster::Topology::triangles};
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
@@ -198,7 +199,7 @@ TEST_P(CudaRows, TuningsAreTheHosts) {
   const Scene scene = soup(1500, kWidth, kHeight);
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kWidth, kHeight);
-  Renderer serial(device_options(kWidth, kHeight, Device::serial));
+  Painter serial(device_options(kWidth, kHeight, Device::serial));
   const Frame expected = draw(serial, binding.view(), camera);
   const bool binned = GetParam().rasterizer == "binned";
   raster::Tuning tunings[4];
@@ -216,9 +217,9 @@ TEST_P(CudaRows, TuningsAreTheHosts) {
   for (const raster::Tuning& tuning : tunings) {
     RenderOptions o = options(kWidth, kHeight, Device::cuda, GetParam());
     o.tuning = tuning;
-    Renderer cuda(o);
+    Painter cuda(o);
     o.device = Device::threads;
-    Renderer host(o);
+    Painter host(o);
     const Frame frame = draw(cuda, binding.view(), camera);
     ASSERT_TRUE(same_frame(frame, expected)) << tuning.bin_px << '/' << tuning.tile_px;
     const Frame on_host = draw(host, binding.view(), camera);
@@ -239,7 +240,7 @@ class CudaChoice : public CudaTable {
  protected:
   static std::string refusal(const RenderOptions& o) {
     try {
-      Renderer renderer(o);
+      Painter renderer(o);
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), Errc::invalid_argument);
       return error.what();
@@ -267,7 +268,7 @@ TEST_P(CudaChoice, SaysWhatItTook) {
   const Scene scene = soup(200, 64, 64);
   const SceneBinding binding(scene);
   const auto stats_of = [&](const RenderOptions& o) {
-    Renderer renderer(o);
+    Painter renderer(o);
     return draw(renderer, binding.view(), pixel_camera(64, 64)).stats;
   };
   const FrameStats by_size = stats_of(device_options(64, 64, Device::cuda));
@@ -294,19 +295,19 @@ TEST_P(CudaChoice, LayersCombineWithTheRows) {
   const Camera camera = pixel_camera(kSize, kSize);
   RenderOptions o = device_options(kSize, kSize, Device::threads);
   o.opacity = 0.5F;
-  Renderer threads(o);
+  Painter threads(o);
   const LayerPicture expected = take(threads, binding.view(), camera);
   o.device = Device::cuda;
   for (const char* rasterizer : {"tiled", "scanline"}) {
     o.rasterizer = rasterizer;
-    Renderer cuda(o);
+    Painter cuda(o);
     const LayerPicture picture = take(cuda, binding.view(), camera);
     EXPECT_EQ(picture.stats.device, Device::cuda) << picture.stats.device_why;
     EXPECT_EQ(picture.stats.rasterizer, rasterizer);
     EXPECT_TRUE(same_bits(picture, expected));
   }
   o.visibility = "sorted";
-  Renderer with_visibility(o);
+  Painter with_visibility(o);
   EXPECT_THROW((void)take(with_visibility, binding.view(), camera), Error);
 }
 

@@ -9,13 +9,14 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/cuda_test.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/materials.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
@@ -49,13 +50,13 @@ TEST_F(CudaMaterials, EqualSerial) {
   const Camera camera = near_camera();
   for (const Shader shader : {Shader::material, Shader::phong, Shader::depth, Shader::wireframe}) {
     SCOPED_TRACE(name(shader));
-    Renderer serial(options(Device::serial, shader));
+    Painter serial(options(Device::serial, shader));
     const Frame expected = draw(serial, binding.view(), camera);
     ASSERT_GT(expected.stats.triangles.clipped, 0U);
     for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{2300000}}) {
       RenderOptions o = options(Device::cuda, shader);
       o.memory_limit = limit;
-      Renderer cuda(o);
+      Painter cuda(o);
       const Frame frame = draw(cuda, binding.view(), camera);
       EXPECT_TRUE(same_surfaces(frame, expected));
       EXPECT_TRUE(same_counts(frame.stats, expected.stats));
@@ -77,14 +78,14 @@ TEST_F(CudaMaterials, EqualSerial) {
 TEST_F(CudaMaterials, TheFamilyEqualsSerial) {
   const Scene scene = everything();
   const SceneBinding binding(scene);
-  Renderer serial(options(Device::serial));
+  Painter serial(options(Device::serial));
   const Frame expected = draw(serial, binding.view(), near_camera());
   for (const auto& [rasterizer, visibility] :
        {std::pair{"scanline", "tuple"}, {"binned", "tuple"}, {"tiled", "sorted"}}) {
     RenderOptions o = options(Device::cuda);
     o.rasterizer = rasterizer;
     o.visibility = visibility;
-    Renderer cuda(o);
+    Painter cuda(o);
     const Frame frame = draw(cuda, binding.view(), near_camera());
     ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
     EXPECT_EQ(frame.stats.visibility, visibility);
@@ -99,7 +100,7 @@ TEST_F(CudaMaterials, TheFamilyEqualsSerial) {
 TEST_F(CudaMaterials, MasksShowWhatLiesBehind) {
   Scene scene = everything();
   for (Material& m : scene.materials) m.alpha_mode = AlphaMode::opaque;
-  Renderer cuda(options(Device::cuda, Shader::id));
+  Painter cuda(options(Device::cuda, Shader::id));
   const Frame whole = draw(cuda, SceneBinding(scene).view(), near_camera());
   scene.materials[1].alpha_mode = scene.materials[3].alpha_mode = AlphaMode::mask;
   const Frame frame = draw(cuda, SceneBinding(scene).view(), near_camera());
@@ -134,9 +135,9 @@ TEST_F(CudaMaterials, LayersEqualTheThreads) {
     RenderOptions o = options(Device::threads, way.shader);
     o.transparency.method = way.method;
     o.opacity = way.opacity;
-    Renderer threads(o);
+    Painter threads(o);
     o.device = Device::cuda;
-    Renderer cuda(o);
+    Painter cuda(o);
     const LayerPicture expected = take(threads, binding.view(), near_camera());
     const LayerPicture frame = take(cuda, binding.view(), near_camera());
     ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
@@ -154,7 +155,7 @@ TEST_F(CudaMaterials, TranslucentVertexColoursEqualTheThreads) {
   scene.meshes[0].face_materials.clear();
   const SceneBinding binding(scene);
   for (const Shader shader : {Shader::material, Shader::flat}) {
-    Renderer threads(options(Device::threads, shader)), cuda(options(Device::cuda, shader));
+    Painter threads(options(Device::threads, shader)), cuda(options(Device::cuda, shader));
     const LayerPicture frame = take(cuda, binding.view(), near_camera());
     EXPECT_TRUE(same_bits(frame, take(threads, binding.view(), near_camera())));
     EXPECT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
@@ -164,7 +165,7 @@ TEST_F(CudaMaterials, TranslucentVertexColoursEqualTheThreads) {
 
 TEST_F(CudaMaterials, TexturesAreCopiedWhenTheyAreNew) {
   Scene scene = everything();
-  Renderer serial(options(Device::serial)), cuda(options(Device::cuda));
+  Painter serial(options(Device::serial)), cuda(options(Device::cuda));
   const auto copied = [&] {
     const SceneBinding binding(scene);
     const Frame frame = draw(cuda, binding.view(), near_camera());
@@ -182,7 +183,7 @@ TEST_F(CudaMaterials, TexturesAreCopiedWhenTheyAreNew) {
 
 /// A picture with `second` drawn over `first`.
 Frame drawn_over(const RenderOptions& o, const SceneView& first, const SceneView& second) {
-  Renderer renderer(o);
+  Painter renderer(o);
   Frame frame = draw(renderer, first, near_camera());
   Targets targets;
   targets.color8 = frame.color8.view();
@@ -246,7 +247,7 @@ TEST_F(CudaMaterials, ACallersDiscardIsTheCPUs) {
       },
       [](const Vec4&, const raster::Fragment& f) { return f.x % 2 == 0; });
   raster::Draw one = program.draw(3);
-  Renderer cuda(options(Device::cuda)), threads(options(Device::threads));
+  Painter cuda(options(Device::cuda)), threads(options(Device::threads));
   const Frame frame = draw(cuda, {&one, 1}, program, program.test());
   EXPECT_EQ(frame.stats.device, Device::threads);
   EXPECT_NE(frame.stats.device_why.find("discard"), std::string::npos) << frame.stats.device_why;

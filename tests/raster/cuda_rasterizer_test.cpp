@@ -9,13 +9,14 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/cuda_test.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/passes.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
@@ -48,7 +49,7 @@ TEST_P(CudaFamily, EqualsSerial) {
   on_serial.cull = v.cull;
   RenderOptions on_cuda = on_serial;
   on_cuda.device = Device::cuda;
-  Renderer serial(on_serial), cuda(on_cuda);
+  Painter serial(on_serial), cuda(on_cuda);
   const int scenes = count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 50;
   for (int i = 0; i < std::max(scenes, kSceneKinds); ++i) {
     const auto seed = static_cast<std::uint64_t>(i + v.width * 1000000);
@@ -96,7 +97,7 @@ TEST_F(CudaRasterizer, SizesAndCutsChangeNothing) {
   const Scene scene = soup(kTriangles, kWidth, kHeight);
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kWidth, kHeight);
-  Renderer serial(device_options(kWidth, kHeight, Device::serial));
+  Painter serial(device_options(kWidth, kHeight, Device::serial));
   const Frame expected = draw(serial, binding.view(), camera);
   struct Cut {
     int small_px, large_px;
@@ -109,7 +110,7 @@ TEST_F(CudaRasterizer, SizesAndCutsChangeNothing) {
     o.tuning.small_px = cut.small_px;
     o.tuning.large_px = cut.large_px;
     o.memory_limit = cut.limit;
-    Renderer cuda(o);
+    Painter cuda(o);
     const Frame frame = draw(cuda, binding.view(), camera);
     ASSERT_TRUE(same_frame(frame, expected))
         << cut.small_px << ' ' << cut.large_px << ' ' << cut.limit;
@@ -135,7 +136,7 @@ TEST_F(CudaRasterizer, SizesAndCutsChangeNothing) {
 TEST_F(CudaRasterizer, RefusesALimitThatHoldsNoBand) {
   RenderOptions o = device_options(4000, 100, Device::cuda);
   o.memory_limit = 1 << 20;
-  Renderer cuda(o);
+  Painter cuda(o);
   const Scene scene = soup(10, 64, 64);
   try {
     (void)draw(cuda, SceneBinding(scene).view(), pixel_camera(64, 64));
@@ -148,7 +149,7 @@ TEST_F(CudaRasterizer, RefusesALimitThatHoldsNoBand) {
 }
 
 TEST_F(CudaRasterizer, FramesAfterTheFirstHoldNoMore) {
-  Renderer cuda(device_options(200, 150, Device::cuda));
+  Painter cuda(device_options(200, 150, Device::cuda));
   const Scene scene = soup(5000, 200, 150);
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(200, 150);
@@ -158,7 +159,7 @@ TEST_F(CudaRasterizer, FramesAfterTheFirstHoldNoMore) {
 }
 
 TEST_F(CudaRasterizer, NamesAnIndexOutOfRange) {
-  Renderer cuda(device_options(64, 64, Device::cuda));
+  Painter cuda(device_options(64, 64, Device::cuda));
   Scene scene = soup(2, 64, 64);
   scene.meshes[0].indices = {0, 1, 2, 3, 4, 6};
   try {
@@ -174,9 +175,9 @@ TEST_F(CudaRasterizer, NamesAnIndexOutOfRange) {
 TEST_F(CudaRasterizer, SaysWhatItLeavesToTheCpu) {
   RenderOptions o = device_options(64, 64, Device::cuda);
   o.opacity = 0.5F;
-  Renderer cuda(o);
+  Painter cuda(o);
   o.device = Device::serial;
-  Renderer serial(o);
+  Painter serial(o);
   const Scene scene = soup(200, 64, 64);
   const SceneBinding binding(scene);
   const Frame frame = draw(cuda, binding.view(), pixel_camera(64, 64));
@@ -187,15 +188,15 @@ TEST_F(CudaRasterizer, SaysWhatItLeavesToTheCpu) {
 
 TEST_F(CudaRasterizer, IsTakenByAutoUnlessTheCpusIsAskedFor) {
   RenderOptions o = device_options(64, 64, Device::automatic);
-  EXPECT_EQ(Renderer(o).options().device, Device::cuda);
+  EXPECT_EQ(Painter(o).options().device, Device::cuda);
   o.rasterizer = "tiled";
-  EXPECT_EQ(Renderer(o).options().device, Device::threads);
+  EXPECT_EQ(Painter(o).options().device, Device::threads);
   o.device = Device::cuda;
-  EXPECT_EQ(Renderer(o).options().device, Device::cuda);
+  EXPECT_EQ(Painter(o).options().device, Device::cuda);
   o.rasterizer = "by-colour";
-  EXPECT_THROW(Renderer{o}, Error);
+  EXPECT_THROW(Painter{o}, Error);
   o.rasterizer = "by-size";
-  EXPECT_EQ(Renderer(o).options().device, Device::cuda);
+  EXPECT_EQ(Painter(o).options().device, Device::cuda);
 }
 
 TEST_F(CudaRasterizer, AutoLeavesToTheThreadsWhatTheyDrawSooner) {
@@ -203,7 +204,7 @@ TEST_F(CudaRasterizer, AutoLeavesToTheThreadsWhatTheyDrawSooner) {
   o.threads = 1;
   const Scene small = soup(200, 64, 64), large = soup(100000, 64, 64);
   const SceneBinding few(small), many(large);
-  Renderer renderer(o);
+  Painter renderer(o);
   const Frame on_threads = draw(renderer, few.view(), pixel_camera(64, 64));
   const Frame on_device = draw(renderer, many.view(), pixel_camera(64, 64));
   EXPECT_EQ(on_threads.stats.device, Device::threads);
@@ -215,7 +216,7 @@ TEST_F(CudaRasterizer, AutoLeavesToTheThreadsWhatTheyDrawSooner) {
             std::string::npos)
       << on_device.stats.device_why;
   o.device = Device::cuda;
-  Renderer asked(o);
+  Painter asked(o);
   const Frame frame = draw(asked, few.view(), pixel_camera(64, 64));
   EXPECT_EQ(frame.stats.device, Device::cuda);
   EXPECT_EQ(frame.stats.device_why, "");
@@ -237,15 +238,15 @@ TEST_F(CudaRasterizer, InPlaceNothingIsCopied) {
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kWidth, kHeight);
   RenderOptions o = device_options(kWidth, kHeight, Device::serial);
-  Renderer serial(o);
+  Painter serial(o);
   Frame expected = draw(serial, binding.view(), camera);
   Frame frame = draw(serial, SceneBinding(soup(1, 8, 8)).view(), camera);
   Targets targets{frame.color8.view(), frame.color.view(), frame.depth.view(), frame.ids.view()};
   o.device = Device::cuda;
-  Renderer copying(o);
+  Painter copying(o);
   const std::uint64_t copied = copying.render(binding.view(), camera, targets).peak_bytes;
   o.in_place = true;
-  Renderer in_place(o);
+  Painter in_place(o);
   const FrameStats stats = in_place.render(binding.view(), camera, targets);
   frame.overdraw = expected.overdraw;
   EXPECT_TRUE(same_surfaces(frame, expected));
@@ -318,8 +319,8 @@ struct Mix {
 
 TEST_F(CudaRasterizer, DrawsOfAllTopologiesEqualSerial) {
   constexpr int kWidth = 130, kHeight = 91;
-  Renderer serial(device_options(kWidth, kHeight, Device::serial));
-  Renderer cuda(device_options(kWidth, kHeight, Device::cuda));
+  Painter serial(device_options(kWidth, kHeight, Device::serial));
+  Painter cuda(device_options(kWidth, kHeight, Device::cuda));
   FrameStats::Triangles seen;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     Random random(seed);
@@ -348,9 +349,9 @@ TEST_F(CudaRasterizer, SamplesOfAllTopologiesEqualSerial) {
   constexpr int kWidth = 83, kHeight = 61;
   RenderOptions o = device_options(kWidth, kHeight, Device::serial);
   o.samples = 4;
-  Renderer serial(o);
+  Painter serial(o);
   o.device = Device::cuda;
-  Renderer cuda(o);
+  Painter cuda(o);
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Random random(seed);
     Mix mix(random, kWidth, kHeight);
@@ -360,7 +361,7 @@ TEST_F(CudaRasterizer, SamplesOfAllTopologiesEqualSerial) {
         },
         [](const Vec4& v, const raster::Fragment&) { return v; });
     mix.make_draws(random, program);
-    const auto take = [&](Renderer& renderer) {
+    const auto take = [&](Painter& renderer) {
       Frame f;
       f.depth = Image<float>(kWidth, kHeight);
       f.ids = Image<std::int64_t>(kWidth, kHeight);
@@ -384,7 +385,7 @@ TEST_F(CudaRasterizer, PassesEqualOneDraw) {
   for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{3} << 20}) {
     RenderOptions o = device_options(150, 200, Device::cuda);
     o.memory_limit = limit;
-    Renderer cuda(o);
+    Painter cuda(o);
     for (const char* shape : {"soup?count=3000", "boxes"})
       EXPECT_TRUE(passes_equal_one_draw(cuda, shape)) << limit;
   }

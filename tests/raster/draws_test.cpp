@@ -11,13 +11,14 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/raster/draws/program.hpp>
+#include <rastrum/program.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/shade/lit.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
@@ -46,7 +47,7 @@ std::string message(std::span<Draw> draws, const raster::BlockShader& shader,
     Image<Rgba8> color(kWidth, kHeight);
     Targets targets;
     targets.color8 = color.view();
-    Renderer(options(device)).draw(draws, shader, nullptr, targets);
+    Painter(options(device)).draw(draws, shader, nullptr, targets);
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), Errc::invalid_argument);
     return e.what();
@@ -162,13 +163,13 @@ WithExtra draw_all(const RenderOptions& o, Draws& draws, const raster::BlockShad
                   w.frame.ids.view(), w.frame.overdraw.view()};
   const std::array extra{w.extra.view()};
   targets.extra = extra;
-  w.frame.stats = Renderer(o).draw(draws, shader, test, targets);
+  w.frame.stats = Painter(o).draw(draws, shader, test, targets);
   return w;
 }
 
 TEST(Draws, AreShadedAndTestedEachByItsProgram) {
   std::vector<RenderOptions> ways{options(Device::serial), options()};
-  for (const AxisInfo& v : visibilities()) {
+  for (const family::AxisInfo& v : family::visibility_axis()) {
     ways.push_back(options());
     ways.back().visibility = v.name;
   }
@@ -234,12 +235,12 @@ TEST(Draws, MayHaveABuiltInShader) {
     // the lower half of the sphere again, before itself
     draws[4].depth_bias = 0.05F;
     draws[4].primitive_count /= 2;
-    Renderer renderer(o);
+    Painter renderer(o);
     const WithExtra mixed = draw_all(o, draws, two.first, two.first.test());
     const Frame lit = draw(renderer, binding.view(), camera);
     RenderOptions normals = o;
     normals.shader = Shader::normal;
-    Renderer of_normals(normals);
+    Painter of_normals(normals);
     const Frame with_normals = draw(of_normals, binding.view(), camera);
     std::array programs{two.first.draw(3), two.second.draw(3)};
     const WithExtra flat = draw_all(o, programs, two.first, two.first.test());

@@ -7,14 +7,15 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/raster/draws/program.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/program.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -90,7 +91,7 @@ TEST_P(FlagsByMaterial, ATestSeesItsMaterialsAlone) {
         for (std::size_t c = 0; c < 3; ++c) rest.positions[t * 3 + c] = {-1000, -1000, 0};
     const raster::MatrixVertices rest_source(rest.positions, rest.to_clip);
     std::vector<raster::Draw> draws{rest.draw(rest_source)};
-    Renderer renderer(options(GetParam()));
+    Painter renderer(options(GetParam()));
     const Frame expected = draw(renderer, draws, white, nullptr);
 
     draws = {mixed.draw(source)};
@@ -120,7 +121,7 @@ TEST(FlagsOfADraw, FaceMaterialsAreChecked) {
   });
   const Mixed mixed(3);
   const raster::MatrixVertices source(mixed.positions, mixed.to_clip);
-  Renderer renderer(options({"auto", "auto"}));
+  Painter renderer(options({"auto", "auto"}));
   std::vector<raster::Draw> draws{mixed.draw(source)};
   const std::vector<std::uint32_t> two_flags{0, 0}, three_flags{0, 0, 0};
   const auto refused = [&](std::span<const std::uint32_t> materials,

@@ -8,15 +8,16 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/io/io.hpp>
+#include <rastrum/io.hpp>
 #include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/raster/shade/texture.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/directories.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/materials.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {

@@ -9,12 +9,13 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/raster/shade/srgb.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/materials.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {

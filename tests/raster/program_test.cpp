@@ -8,9 +8,11 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 namespace {
@@ -88,7 +90,7 @@ void expect_exact(const Corner (&corners)[3], bool clipped) {
     Image<Vec4> color(kWidth, kHeight);
     Targets targets;
     targets.color = color.view();
-    Renderer renderer(options(device));
+    Painter renderer(options(device));
     const FrameStats stats = renderer.draw({&draw, 1}, program, program.test(), targets);
     EXPECT_EQ(stats.triangles.clipped, clipped ? 1U : 0U);
     EXPECT_GT(stats.pixels_covered, 100U);
@@ -160,7 +162,7 @@ void expect_exact_line(const Corner (&corners)[2], bool clipped) {
     Image<Vec4> color(kWidth, kHeight);
     Targets targets;
     targets.color = color.view();
-    Renderer renderer(options(device));
+    Painter renderer(options(device));
     const FrameStats stats = renderer.draw({&draw, 1}, program, program.test(), targets);
     EXPECT_EQ(stats.triangles.clipped, clipped ? 1U : 0U);
     EXPECT_GT(stats.pixels_covered, 150U);
@@ -197,7 +199,7 @@ TEST(Program, APointHasItsVertexsVarying) {
   Targets targets;
   targets.color = color.view();
   const FrameStats stats =
-      Renderer(options(Device::threads)).draw({&draw, 1}, program, program.test(), targets);
+      Painter(options(Device::threads)).draw({&draw, 1}, program, program.test(), targets);
   EXPECT_EQ(stats.pixels_covered, 200U);
   EXPECT_EQ(color(54, 79).x, 0.1F);
   EXPECT_EQ(color(154, 70).x, 0.1F + 0.3F);
@@ -217,7 +219,7 @@ TEST(Program, APointKnowsWhereInItsSquareItIs) {
   Targets targets;
   targets.color = color.view();
   const FrameStats stats =
-      Renderer(options(Device::threads)).draw({&draw, 1}, program, program.test(), targets);
+      Painter(options(Device::threads)).draw({&draw, 1}, program, program.test(), targets);
   ASSERT_EQ(stats.pixels_covered, 64U);
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x) {
@@ -243,11 +245,11 @@ TEST(Program, SeveralTargetsGetWhatTheShaderReturns) {
   });
   EXPECT_EQ(one.extra_count(), 0U);
   ASSERT_EQ(three.extra_count(), 2U);
-  for (const AxisInfo& visibility : visibilities()) {
+  for (const family::AxisInfo& visibility : family::visibility_axis()) {
     RenderOptions o = options(Device::threads);
     o.visibility = visibility.name;
     o.background = {0.1F, 0.2F, 0.3F, 0.5F};
-    Renderer renderer(o);
+    Painter renderer(o);
     Image<Rgba8> alone(kWidth, kHeight), with(kWidth, kHeight);
     Image<float> depth(kWidth, kHeight);
     Image<std::int64_t> ids(kWidth, kHeight);
@@ -316,7 +318,7 @@ TEST(Program, FrontIsWhatTheWindingSays) {
       Targets targets;
       targets.color = color.view();
       const FrameStats stats =
-          Renderer(options(Device::threads)).draw({&draw, 1}, program, nullptr, targets);
+          Painter(options(Device::threads)).draw({&draw, 1}, program, nullptr, targets);
       ASSERT_EQ(stats.triangles.clipped, clipped ? 2U : 0U);
       const bool swapped = winding == raster::Winding::clockwise;
       EXPECT_EQ(color(kWidth / 4, kHeight * 3 / 4).x, swapped ? 0.5F : 1.0F) << clipped;
@@ -353,7 +355,7 @@ TEST(Program, APhongOfOnesOwnIsTheBuiltInOne) {
   for (const Device device : {Device::serial, Device::threads}) {
     RenderOptions o = options(device);
     o.shader = Shader::phong;
-    Renderer renderer(o);
+    Painter renderer(o);
     Image<Rgba8> own(kWidth, kHeight), built_in(kWidth, kHeight);
     Image<std::int64_t> own_ids(kWidth, kHeight), ids(kWidth, kHeight);
     Targets targets;
@@ -407,7 +409,7 @@ TEST(Program, DiscardedFragmentsAreHoles) {
     Targets targets;
     targets.color = color.view();
     targets.ids = ids.view();
-    Renderer renderer(options(device));
+    Painter renderer(options(device));
     (void)renderer.draw({&draw, 1}, program, program.test(), targets);
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {

@@ -9,12 +9,13 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/directories.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/materials.hpp"
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 namespace {

@@ -8,11 +8,12 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -44,7 +45,7 @@ TEST_P(Family, EqualsSerialAndTheOracle) {
   base.cull = setup.cull;
   base.background = {0.2F, 0.3F, 0.4F, 0.5F};
   const std::vector<Relative> family = family_of(base);
-  std::vector<Renderer> renderers;
+  std::vector<Painter> renderers;
   for (const Relative& r : family) renderers.emplace_back(r.options);
 
   const int all = count_from_environment("RASTRUM_FAMILY_SCENES", 10000);

@@ -5,11 +5,12 @@
 
 #include <cmath>
 
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/frame.hpp"
 #include "tests/support/golden.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {

@@ -4,11 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -22,7 +23,7 @@ struct Surfaces {
 };
 
 // Without an overdraw target, which would switch the rejection off.
-Surfaces surfaces(Renderer& renderer, const SceneView& scene, const Camera& camera) {
+Surfaces surfaces(Painter& renderer, const SceneView& scene, const Camera& camera) {
   const RenderOptions& o = renderer.options();
   Surfaces s{Image<float>(o.width, o.height), Image<std::int64_t>(o.width, o.height), {}};
   Targets targets;
@@ -47,11 +48,11 @@ RenderOptions options(int width, int height, Device device) {
 
 TEST(HierarchicalZ, ChangesNoPixelOfGeneratedScenes) {
   constexpr int kW = 150, kH = 97;
-  Renderer serial(options(kW, kH, Device::serial));
+  Painter serial(options(kW, kH, Device::serial));
   for (const Isa isa : available_isas()) {
     RenderOptions o = options(kW, kH, Device::threads);
     o.isa = isa;
-    Renderer renderer(o);
+    Painter renderer(o);
     for (std::uint64_t seed = 0; seed < 300 && !testing::Test::HasFailure(); ++seed) {
       const GeneratedScene g = generate(seed, kW, kH);
       SCOPED_TRACE(std::to_string(seed) + " " + g.kind);
@@ -91,19 +92,19 @@ TEST(HierarchicalZ, RejectsWhatIsHiddenAndNothingElse) {
     const Scene scene = stack(64, cells, kSize, static_cast<std::uint64_t>(cells));
     const SceneBinding binding(scene);
     const Camera camera = pixel_camera(kSize, kSize);
-    Renderer serial(options(kSize, kSize, Device::serial));
+    Painter serial(options(kSize, kSize, Device::serial));
     const Surfaces expected = surfaces(serial, binding.view(), camera);
     for (const Isa isa : available_isas()) {
       SCOPED_TRACE(std::to_string(cells) + " cells, " + std::string(name(isa)));
       RenderOptions o = options(kSize, kSize, Device::threads);
       o.isa = isa;
-      Renderer renderer(o);
+      Painter renderer(o);
       const Surfaces with = surfaces(renderer, binding.view(), camera);
       expect_equal(with, expected);
       EXPECT_GT(counter(with.stats, "hidden pieces") + counter(with.stats, "hidden blocks"), 500U);
       EXPECT_LT(with.stats.fragments, expected.stats.fragments / 2);
       o.hierarchical_z = false;
-      Renderer plain(o);
+      Painter plain(o);
       const Surfaces without = surfaces(plain, binding.view(), camera);
       expect_equal(without, expected);
       EXPECT_EQ(without.stats.fragments, expected.stats.fragments);
@@ -118,11 +119,11 @@ double share_drawn(Mesh mesh, Isa isa) {
   const Scene scene = single(std::move(mesh));
   const SceneBinding binding(scene);
   const Camera camera = fit_camera(binding.view(), 1.0F, false);
-  Renderer serial(options(kSize, kSize, Device::serial));
+  Painter serial(options(kSize, kSize, Device::serial));
   const Surfaces expected = surfaces(serial, binding.view(), camera);
   RenderOptions o = options(kSize, kSize, Device::threads);
   o.isa = isa;
-  Renderer renderer(o);
+  Painter renderer(o);
   const Surfaces drawn = surfaces(renderer, binding.view(), camera);
   expect_equal(drawn, expected);
   return static_cast<double>(drawn.stats.fragments) / static_cast<double>(expected.stats.fragments);

@@ -6,10 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/projection.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
@@ -99,7 +100,7 @@ TEST(Interpolation, WithinOneInHundredThousandOfTheExactValue) {
   for (const Relative& r : family_of(base)) {
     if (r.options.device == Device::threads && r.options.threads != 2) continue;
     SCOPED_TRACE(r.name);
-    Renderer renderer(r.options);
+    Painter renderer(r.options);
     Worst worst;
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
       Random random(seed);

@@ -1,11 +1,12 @@
 // Material::opacity is RenderOptions::opacity for a part of the scene.
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/frame.hpp"
 #include "tests/support/materials.hpp"
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 namespace {
@@ -23,7 +24,7 @@ RenderOptions options(Shader shader, float opacity, Isa isa) {
 
 Frame drawn(const Scene& scene, const RenderOptions& o) {
   const SceneBinding binding(scene);
-  Renderer renderer(o);
+  Painter renderer(o);
   return draw(renderer, binding.view(), fit_camera(binding.view(), 1, false));
 }
 

@@ -7,11 +7,12 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 
 namespace rastrum::test {
@@ -61,7 +62,7 @@ TEST_P(Materials, EqualOverTheFamily) {
   base.shader = Shader::material;
   base.opacity = GetParam();
   base.background = {0.3F, 0.7F, 0.1F, 0.6F};
-  std::vector<Renderer> renderers;
+  std::vector<Painter> renderers;
   const std::vector<Relative> family = family_of(base);
   for (const Relative& r : family) renderers.emplace_back(r.options);
   for (std::uint64_t seed = 0; seed < 12; ++seed) {

@@ -8,13 +8,14 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
@@ -75,7 +76,7 @@ struct Picture {
   Image<std::int64_t> ids;
   FrameStats stats;
 };
-Picture picture(Renderer& renderer, const SceneView& scene) {
+Picture picture(Painter& renderer, const SceneView& scene) {
   const int width = renderer.options().width, height = renderer.options().height;
   Picture p{Image<Rgba8>(width, height),
             Image<float>(width, height),
@@ -112,7 +113,7 @@ TEST_P(MemoryLimit, IsKeptAndChangesNoPixel) {
   for (const Load& load : loads()) {
     const Scene scene = single(load.mesh);
     const SceneBinding binding(scene);
-    Renderer free(options({"auto", "auto"}, load.width, load.height, 2));
+    Painter free(options({"auto", "auto"}, load.width, load.height, 2));
     const Picture expected = picture(free, binding.view());
     ASSERT_GT(expected.stats.pixels_covered, 1000U);
     for (const std::uint64_t limit : load.limits) {
@@ -120,7 +121,7 @@ TEST_P(MemoryLimit, IsKeptAndChangesNoPixel) {
         if (threads == 8 && limit != load.limits.front()) continue;
         RenderOptions o = options(GetParam(), load.width, load.height, threads);
         o.memory_limit = limit;
-        Renderer renderer(o);
+        Painter renderer(o);
         // A second frame has what the first one kept.
         for (int frame = 0; frame < 2; ++frame) {
           const Picture limited = picture(renderer, binding.view());
@@ -144,12 +145,12 @@ TEST_P(MemoryLimit, SaysTheLeastOneWhereItIsTooSmall) {
   const Scene scene = single(load.mesh);
   const SceneBinding binding(scene);
   RenderOptions o = options(GetParam(), load.width, load.height, 2);
-  Renderer free(o);
+  Painter free(o);
   const Picture expected = picture(free, binding.view());
   o.memory_limit = 1000;
   std::uint64_t least = 0;
   try {
-    Renderer renderer(o);
+    Painter renderer(o);
     picture(renderer, binding.view());
     FAIL() << "1000 bytes were enough";
   } catch (const Error& e) {
@@ -159,11 +160,11 @@ TEST_P(MemoryLimit, SaysTheLeastOneWhereItIsTooSmall) {
   }
   o.memory_limit = least - 1;
   {
-    Renderer renderer(o);
+    Painter renderer(o);
     EXPECT_THROW(picture(renderer, binding.view()), Error);
   }
   o.memory_limit = least;
-  Renderer renderer(o);
+  Painter renderer(o);
   const Picture limited = picture(renderer, binding.view());
   EXPECT_TRUE(same(limited, expected));
   EXPECT_LE(limited.stats.peak_bytes, least);
@@ -178,8 +179,8 @@ class SortedMemory : public testing::TestWithParam<std::string> {};
 TEST_P(SortedMemory, IsAtMost24BytesAFragment) {
   const Scene scene = single(layers(40));
   const SceneBinding binding(scene);
-  Renderer atomic(options({GetParam(), "atomic"}, 512, 512, 2));
-  Renderer sorted(options({GetParam(), "sorted"}, 512, 512, 2));
+  Painter atomic(options({GetParam(), "atomic"}, 512, 512, 2));
+  Painter sorted(options({GetParam(), "sorted"}, 512, 512, 2));
   std::uint64_t fragments = 0, beside = 0, with = 0;
   for (int frame = 0; frame < 2; ++frame) {
     const FrameStats a = picture(atomic, binding.view()).stats;
@@ -196,7 +197,7 @@ TEST_P(SortedMemory, IsAtMost24BytesAFragment) {
 
 std::vector<std::string> coverage_names() {
   std::vector<std::string> names;
-  for (const AxisInfo& r : rasterizers())
+  for (const family::AxisInfo& r : family::rasterizer_axis())
     if (r.name != "reference") names.push_back(r.name);
   return names;
 }

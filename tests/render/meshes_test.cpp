@@ -6,12 +6,13 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/directories.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/real_meshes.hpp"
 
@@ -34,7 +35,7 @@ TEST_P(Meshes, EqualOverTheFamilyAndTheOracle) {
                             fit_camera(binding.view(), 1.0472F, true),
                             close_camera(binding.view())};
   for (const Relative& r : family_of(base)) {
-    Renderer renderer(r.options);
+    Painter renderer(r.options);
     for (std::size_t i = 0; i < std::size(cameras); ++i) {
       SCOPED_TRACE(r.name + ", camera " + std::to_string(i));
       const Frame frame = draw(renderer, binding.view(), cameras[i]);

@@ -10,22 +10,21 @@
 
 #include <gtest/gtest.h>
 
+#include <rastrum/on_terrain.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
-#include <rastrum/render/scene_on_terrain.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
-#include <rastrum/scene/sprite.hpp>
-#include <rastrum/terrain/matrix.hpp>
-#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/terrain.hpp>
 
 #include "tests/support/materials.hpp"
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 namespace {
 
 using terrain::Terrain;
 using terrain::TerrainCamera;
-using terrain::TerrainOptions;
+using test::TerrainLook;
 
 constexpr int kWidth = 240, kHeight = 160, kMap = 256;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -42,8 +41,8 @@ Terrain hills() {
   return Terrain(std::move(map));
 }
 
-TerrainOptions terrain_options() {
-  TerrainOptions o;
+TerrainLook terrain_options() {
+  TerrainLook o;
   o.width = kWidth;
   o.height = kHeight;
   o.distance = 400;
@@ -77,16 +76,14 @@ struct Picture {
   Image<float> depth{kWidth, kHeight};
   TerrainCamera camera;  ///< as drawn
 
-  Picture(const Terrain& ground, const TerrainOptions& options, const TerrainCamera& given) {
-    camera = terrain::TerrainRenderer(options)
-                 .render(ground, given, {color.view(), depth.view()})
-                 .camera;
+  Picture(const Terrain& ground, const TerrainLook& options, const TerrainCamera& given) {
+    camera = TerrainPainter(options).render(ground, given, {color.view(), depth.view()}).camera;
   }
-  FrameStats add(const Scene& scene, const TerrainOptions& options, const RenderOptions& how,
+  FrameStats add(const Scene& scene, const TerrainLook& options, const RenderOptions& how,
                  const std::vector<std::size_t>& facing = {}) {
     const SceneBinding binding(scene);
-    return SceneOnTerrain(how).draw({binding.view(), facing}, options, camera,
-                                    {color.view(), depth.view()});
+    return SceneOnTerrain(family::make_renderer(how, how))
+        .draw({binding.view(), facing}, how, options, camera, {.color8 = color, .depth = depth});
   }
 };
 
@@ -95,7 +92,7 @@ struct Alone {
   Image<Rgba8> color{kWidth, kHeight};
   Image<float> depth{kWidth, kHeight};
 
-  Alone(const Scene& scene, const TerrainOptions& options, const TerrainCamera& camera,
+  Alone(const Scene& scene, const TerrainLook& options, const TerrainCamera& camera,
         const RenderOptions& how) {
     Camera view;
     view.matrix = terrain::world_to_clip(options, camera, SceneOnTerrain::kNear);
@@ -103,7 +100,7 @@ struct Alone {
     Targets targets;
     targets.color8 = color.view();
     targets.depth = depth.view();
-    Renderer(how).render(binding.view(), view, targets);
+    Painter(how).render(binding.view(), view, targets);
   }
 };
 
@@ -113,32 +110,31 @@ int difference(Rgba8 a, Rgba8 b) {
 
 struct View {
   const char* name;
-  TerrainOptions options;
+  TerrainLook options;
   TerrainCamera camera;
 };
 /// Over the hills from every side: planar, rolled, looking down, classic; both methods.
 std::vector<View> views() {
-  const TerrainOptions plain = terrain_options();
+  const TerrainLook plain = terrain_options();
   const TerrainCamera south{128, 240, 75, 0, 40, 0};
   std::vector<View> list{{"plain", plain, south}};
   const auto add = [&](const char* name, auto&& change) {
     list.push_back({name, plain, south});
     change(list.back().options, list.back().camera);
   };
-  add("rolled", [](TerrainOptions&, TerrainCamera& c) { c.roll_rad = 0.6; });
-  add("looks down", [](TerrainOptions&, TerrainCamera& c) { c.horizon_px = -30; });
-  add("from the east", [](TerrainOptions& o, TerrainCamera& c) {
+  add("rolled", [](TerrainLook&, TerrainCamera& c) { c.roll_rad = 0.6; });
+  add("looks down", [](TerrainLook&, TerrainCamera& c) { c.horizon_px = -30; });
+  add("from the east", [](TerrainLook& o, TerrainCamera& c) {
     c.x = 250;
     c.y = 90;
     c.angle_rad = 1.4;
     o.fov_rad = 1.1;
   });
-  add("words", [](TerrainOptions& o, TerrainCamera&) { o.method = terrain::Method::words; });
-  add("bilinear",
-      [](TerrainOptions& o, TerrainCamera&) { o.filter = terrain::MapFilter::bilinear; });
-  add("serial", [](TerrainOptions& o, TerrainCamera&) { o.device = Device::serial; });
-  add("classic", [](TerrainOptions& o, TerrainCamera&) { o.classic = true; });
-  add("classic, turned", [](TerrainOptions& o, TerrainCamera& c) {
+  add("words", [](TerrainLook& o, TerrainCamera&) { o.method = terrain::Method::words; });
+  add("bilinear", [](TerrainLook& o, TerrainCamera&) { o.filter = terrain::MapFilter::bilinear; });
+  add("serial", [](TerrainLook& o, TerrainCamera&) { o.device = Device::serial; });
+  add("classic", [](TerrainLook& o, TerrainCamera&) { o.classic = true; });
+  add("classic, turned", [](TerrainLook& o, TerrainCamera& c) {
     o.classic = true;
     c.angle_rad = 0.4;
     c.horizon_px = 20;
@@ -228,7 +224,7 @@ TEST(OnTerrain, SpritesFaceTheCameraAndBlendInLinearLight) {
                                           for (Rgba8& p : c.pixels()) p = {180, 140, 90, 255};
                                           return c;
                                         }()});
-  const TerrainOptions options = terrain_options();
+  const TerrainLook options = terrain_options();
   const double size = 24, away = 60;
   scene.instances[0].object_to_world = at(128, 0, 128, size);
   for (const double angle : {0.0, 0.9, 2.5, -1.57}) {
@@ -282,7 +278,7 @@ TEST(OnTerrain, WhatStandsOnACellIsSeenWhereTheCellIs) {
         if (classic && roll != 0) continue;
         SCOPED_TRACE(std::to_string(classic) + " " + std::to_string(angle) + " " +
                      std::to_string(roll));
-        TerrainOptions options = terrain_options();
+        TerrainLook options = terrain_options();
         options.classic = classic;
         options.step = classic ? options.step : 0.25;
         // Classic's steps are 4 rows long here: the pole stands on its slice 27.
@@ -329,7 +325,7 @@ Scene cloud() {
 
 TEST(OnTerrain, IsTheSameOnEveryDeviceByEveryMethodAndInLittleMemory) {
   const Terrain ground = hills();
-  const TerrainOptions options = terrain_options();
+  const TerrainLook options = terrain_options();
   const Picture before(ground, options, views()[1].camera);
   const Scene scene = cloud();
   for (const float opacity : {1.0F, 0.4F}) {
@@ -341,7 +337,7 @@ TEST(OnTerrain, IsTheSameOnEveryDeviceByEveryMethodAndInLittleMemory) {
     Picture reference = before;
     reference.add(scene, options, serial);
     std::vector<RenderOptions> all;
-    for (const AxisInfo& rasterizer : rasterizers()) {
+    for (const family::AxisInfo& rasterizer : family::rasterizer_axis()) {
       // Layers want tiles of a thread's own.
       if (rasterizer.name == "reference") continue;
       const bool owns = rasterizer.name == "grouped" || rasterizer.name == "tiled";
@@ -351,7 +347,7 @@ TEST(OnTerrain, IsTheSameOnEveryDeviceByEveryMethodAndInLittleMemory) {
       o.threads = 8;
       all.push_back(o);
       if (opacity == 1) {
-        for (const AxisInfo& visibility : visibilities()) {
+        for (const family::AxisInfo& visibility : family::visibility_axis()) {
           all.push_back(o);
           all.back().visibility = visibility.name;
         }
@@ -404,7 +400,7 @@ TEST(OverPicture, AsksTheTestOfADrawForThatDrawAlone) {
   const raster::FragmentShader shader(
       [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
   const Nothing nothing;
-  Renderer(render_options()).draw(draws, shader, &nothing, targets);
+  Painter(render_options()).draw(draws, shader, &nothing, targets);
   std::size_t left = 0, right = 0;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) (x < kWidth / 2 ? left : right) += depth(x, y) > 0;
@@ -446,12 +442,12 @@ TEST(OverPicture, KeepsThePictureWhereDepthsAreEqualAndWhereNothingIs) {
   Targets targets;
   targets.color8 = color.view();
   targets.depth = depth.view();
-  Renderer(render_options(Shader::flat)).render(binding.view(), camera, targets);
+  Painter(render_options(Shader::flat)).render(binding.view(), camera, targets);
   const Image<Rgba8> first = color;
   again = depth;
   // The same surfaces in another colour: all ties.
   targets.over = true;
-  Renderer(render_options(Shader::normal)).render(binding.view(), camera, targets);
+  Painter(render_options(Shader::normal)).render(binding.view(), camera, targets);
   EXPECT_TRUE(std::equal(color.pixels().begin(), color.pixels().end(), first.pixels().begin()));
   // Half of the picture is moved away: there the surfaces win, over a picture of floats as well.
   for (int y = 0; y < kHeight; ++y)
@@ -462,7 +458,7 @@ TEST(OverPicture, KeepsThePictureWhereDepthsAreEqualAndWhereNothingIs) {
   glass.cull = Cull::back;
   targets.color = floats.view();
   targets.color8 = {};
-  Renderer(glass).render(binding.view(), camera, targets);
+  Painter(glass).render(binding.view(), camera, targets);
   std::size_t drawn = 0;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
@@ -484,20 +480,21 @@ TEST(OnTerrain, RefusesWhatCannotBeComposed) {
   Image<Rgba8> small_color(8, 8);
   Image<float> depth(kWidth, kHeight), small(8, 8);
   const terrain::TerrainTargets targets{color.view(), depth.view()};
-  const auto message = [&](const TerrainOptions& options, const RenderOptions& how,
+  const auto message = [&](const TerrainLook& options, const RenderOptions& how,
                            const terrain::TerrainTargets& to,
                            const std::vector<std::size_t>& facing = {}) -> std::string {
     try {
-      SceneOnTerrain(how).draw({binding.view(), facing}, options, {}, to);
+      SceneOnTerrain(family::make_renderer(how, how))
+          .draw({binding.view(), facing}, how, options, {}, to);
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), Errc::invalid_argument);
       return e.what();
     }
     return "";
   };
-  const TerrainOptions good = terrain_options();
+  const TerrainLook good = terrain_options();
   EXPECT_EQ(message(good, render_options(), targets), "");
-  TerrainOptions ring = good;
+  TerrainLook ring = good;
   ring.projection = terrain::Projection::cylindrical;
   EXPECT_NE(message(ring, render_options(), targets).find("cylindrical"), std::string::npos);
   EXPECT_NE(message(good, render_options(Shader::depth), targets).find("depth shader"),
@@ -519,7 +516,7 @@ TEST(OnTerrain, RefusesWhatCannotBeComposed) {
   large.width = 320;
   EXPECT_EQ(message(good, large, targets),
             "what stands on a terrain is drawn at 320x160, the terrain at 240x160; give "
-            "RenderOptions and TerrainOptions the same size");
+            "FrameOptions and TerrainOptions the same size");
 }
 
 TEST(Sprite, IsAsHighAsOneAndNeedsAPicture) {

@@ -8,12 +8,13 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/render/render.hpp>
-#include <rastrum/render/scene_on_terrain.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
-#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/on_terrain.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/terrain.hpp>
 
 #include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
@@ -54,7 +55,7 @@ TEST(OneRenderer, DrawsForSeveralThreads) {
     std::vector<Frame> alone;
     for (const Scene& scene : scenes)
       alone.push_back(draw(o, scene, fit_camera(SceneBinding(scene).view(), 1, false)));
-    Renderer renderer(o);
+    Painter renderer(o);
     from_all_callers([&](int caller, int frame) {
       const auto which = static_cast<std::size_t>(caller + frame) % scenes.size();
       const SceneBinding binding(scenes[which]);
@@ -80,8 +81,8 @@ terrain::Terrain hills(double steepness) {
   return terrain::Terrain(std::move(map));
 }
 
-terrain::TerrainOptions terrain_options() {
-  terrain::TerrainOptions o;
+TerrainLook terrain_options() {
+  TerrainLook o;
   o.width = o.height = kSide;
   o.distance = 200;
   o.threads = 2;
@@ -101,9 +102,9 @@ TEST(OneTerrainRenderer, DrawsForSeveralThreads) {
   const terrain::Terrain maps[] = {hills(1), hills(3)};
   Ground alone[2];
   for (int i = 0; i < 2; ++i)
-    terrain::TerrainRenderer(terrain_options()).render(maps[i], kCamera, alone[i].targets());
+    TerrainPainter(terrain_options()).render(maps[i], kCamera, alone[i].targets());
   EXPECT_FALSE(same(alone[0].color, alone[1].color));
-  terrain::TerrainRenderer renderer(terrain_options());
+  TerrainPainter renderer(terrain_options());
   from_all_callers([&](int caller, int frame) {
     const int which = (caller + frame) % 2;
     Ground ground;
@@ -115,7 +116,7 @@ TEST(OneTerrainRenderer, DrawsForSeveralThreads) {
 
 TEST(OneSceneOnTerrain, DrawsForSeveralThreads) {
   Ground bare;
-  terrain::TerrainRenderer(terrain_options()).render(hills(1), kCamera, bare.targets());
+  TerrainPainter(terrain_options()).render(hills(1), kCamera, bare.targets());
   RenderOptions o;
   o.width = o.height = kSide;
   o.threads = 2;
@@ -128,16 +129,16 @@ TEST(OneSceneOnTerrain, DrawsForSeveralThreads) {
   const auto add = [&](SceneOnTerrain& painter, std::size_t which) {
     Ground ground = bare;
     const SceneBinding binding(scenes[which]);
-    painter.draw({binding.view(), {}}, terrain_options(), kCamera, ground.targets());
+    painter.draw({.scene = binding.view()}, o, terrain_options(), kCamera, ground.targets());
     return ground;
   };
   std::vector<Ground> alone;
   for (std::size_t i = 0; i < 2; ++i) {
-    SceneOnTerrain painter(o);
+    SceneOnTerrain painter(family::make_renderer(o, o));
     alone.push_back(add(painter, i));
     EXPECT_FALSE(same(alone[i].color, bare.color));
   }
-  SceneOnTerrain painter(o);
+  SceneOnTerrain painter(family::make_renderer(o, o));
   from_all_callers([&](int caller, int frame) {
     const auto which = static_cast<std::size_t>(caller + frame) % 2;
     const Ground ground = add(painter, which);

@@ -10,11 +10,12 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/raster/cover/rules.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/passes.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -41,7 +42,7 @@ TEST_P(Passes, EqualOneDraw) {
     for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{6} << 20}) {
       RenderOptions o = options(GetParam(), threads);
       o.memory_limit = limit;
-      Renderer renderer(o);
+      Painter renderer(o);
       for (const char* shape : {"soup?count=3000", "boxes"})
         ASSERT_TRUE(passes_equal_one_draw(renderer, shape));
     }
@@ -50,7 +51,7 @@ TEST_P(Passes, EqualOneDraw) {
 TEST(PassesOfSerial, EqualOneDraw) {
   RenderOptions o = options({"auto", "auto"}, 1);
   o.device = Device::serial;
-  Renderer renderer(o);
+  Painter renderer(o);
   for (const char* shape : {"soup?count=3000", "boxes"})
     EXPECT_TRUE(passes_equal_one_draw(renderer, shape));
 }
@@ -64,7 +65,7 @@ TEST(PassesOfLayers, CountIdsFromTheFirst) {
     RenderOptions o = options({"auto", "auto"}, 2);
     o.device = device;
     o.opacity = 0.5F;
-    Renderer renderer(o);
+    Painter renderer(o);
     Image<std::int64_t> ids[2];
     for (int i = 0; i < 2; ++i) {
       ids[i] = Image<std::int64_t>(kWidth, kHeight);
@@ -142,14 +143,14 @@ TEST_P(Passes, AllTestFragments) {
   RenderOptions serial = options(GetParam(), 1);
   serial.rasterizer = serial.visibility = "auto";
   serial.device = Device::serial;
-  Renderer reference(serial);
+  Painter reference(serial);
   const Sieve sieve;
   const White white;
   const Frame expected = draw(reference, draws, white, &sieve);
   const Frame untested = draw(reference, draws, white, nullptr);
   ASSERT_FALSE(same_surfaces(expected, untested));
   for (const int threads : {1, 2, 8}) {
-    Renderer renderer(options(GetParam(), threads));
+    Painter renderer(options(GetParam(), threads));
     const Frame frame = draw(renderer, draws, white, &sieve);
     ASSERT_TRUE(same_surfaces(frame, expected)) << threads;
     ASSERT_TRUE(same_picture(frame, expected, 0)) << threads;

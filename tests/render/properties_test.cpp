@@ -10,10 +10,11 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/device_test.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -52,7 +53,7 @@ struct Point {
 // The order of triangles decides nothing but the winner among equal depths: the first submitted.
 TEST_P(Properties, PermutingTrianglesChangesOnlyNumbers) {
   constexpr int kW = 64, kH = 48;
-  Renderer renderer(options(kW, kH));
+  Painter renderer(options(kW, kH));
   int ties = 0;
   for (std::uint64_t seed = 0; seed < 320 && !HasFailure(); ++seed) {
     GeneratedScene g = generate(seed, kW, kH);
@@ -99,7 +100,7 @@ TEST_P(Properties, PermutingTrianglesChangesOnlyNumbers) {
 
 TEST_P(Properties, OneMeshEqualsTheSameTrianglesInInstances) {
   constexpr int kW = 80, kH = 60;
-  Renderer renderer(options(kW, kH));
+  Painter renderer(options(kW, kH));
   for (std::uint64_t seed = 0; seed < 64; ++seed) {
     GeneratedScene g = generate(seed, kW, kH);
     g.scene.instances.resize(1);
@@ -270,8 +271,8 @@ TEST_P(Properties, NonFiniteTrianglesAreDroppedAndKeepTheirNumbers) {
 TEST_P(Properties, CullingPartitionsTheUnculledPicture) {
   constexpr int kW = 50, kH = 64;
   RenderOptions o = options(kW, kH);
-  std::array<Renderer, 3> renderers{Renderer(o), Renderer((o.cull = Cull::back, o)),
-                                    Renderer((o.cull = Cull::front, o))};
+  std::array<Painter, 3> renderers{Painter(o), Painter((o.cull = Cull::back, o)),
+                                   Painter((o.cull = Cull::front, o))};
   std::uint64_t fronts = 0, backs = 0;
   for (std::uint64_t seed = 0; seed < 160; ++seed) {
     const GeneratedScene g = generate(seed, kW, kH);
@@ -320,7 +321,7 @@ TEST_P(Properties, IndexOutOfRangeIsAnErrorThatNamesIt) {
   Scene scene;
   scene.meshes = {good, bad};
   scene.instances = {{0, Mat4d::identity()}, {1, Mat4d::identity()}};
-  Renderer renderer(options(64, 64));
+  Painter renderer(options(64, 64));
   try {
     (void)draw(renderer, SceneBinding(scene).view(), pixel_camera(64, 64));
     ADD_FAILURE() << "no error";
@@ -340,7 +341,7 @@ TEST_P(Properties, IndicesWithoutPositionsAreAnError) {
   scene.meshes.emplace_back();
   scene.meshes[0].indices.assign(3 * 64, 5);
   scene.instances = {{0, Mat4d::identity()}};
-  Renderer renderer(options(64, 64));
+  Painter renderer(options(64, 64));
   EXPECT_THROW((void)draw(renderer, SceneBinding(scene).view(), pixel_camera(64, 64)), Error);
 }
 
@@ -381,7 +382,7 @@ TEST_P(Properties, EachTargetAloneEqualsAllTogether) {
   // Hierarchical Z leaves out fragments unless overdraw is counted.
   RenderOptions all_fragments = options(kW, kH);
   all_fragments.hierarchical_z = false;
-  Renderer renderer(all_fragments);
+  Painter renderer(all_fragments);
   for (std::uint64_t seed = 0; seed < 48; ++seed) {
     const GeneratedScene g = generate(seed, kW, kH);
     SCOPED_TRACE(std::to_string(seed) + " " + g.kind);
@@ -410,7 +411,7 @@ TEST_P(Properties, TargetsWithAStrideKeepWhatLiesBesideThem) {
   constexpr int kW = 40, kH = 30, kStride = 53;
   const GeneratedScene g = generate(0, kW, kH);
   const SceneBinding binding(g.scene);
-  Renderer renderer(options(kW, kH));
+  Painter renderer(options(kW, kH));
   const Frame whole = draw(renderer, binding.view(), g.camera);
   std::vector<Rgba8> pixels(kStride * kH, Rgba8{9, 9, 9, 9});
   std::vector<std::int64_t> ids(kStride * kH, -99);
@@ -433,7 +434,7 @@ TEST_P(Properties, TargetsMayLieUpsideDown) {
   for (const bool deep : {false, true}) {
     RenderOptions o = options(kW, kH);
     if (deep) o.opacity = 0.5F;
-    Renderer renderer(o);
+    Painter renderer(o);
     for (std::uint64_t seed = 0; seed < 24; ++seed) {
       const GeneratedScene g = generate(seed, kW, kH);
       SCOPED_TRACE(std::to_string(seed) + " " + g.kind);

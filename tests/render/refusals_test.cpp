@@ -8,10 +8,11 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/isa.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
@@ -40,7 +41,7 @@ std::string message_of(const std::function<void()>& f, Errc code = Errc::invalid
 }
 
 std::string message_of_options(const std::function<void(RenderOptions&)>& change) {
-  return message_of([&] { const Renderer renderer(options_with(change)); });
+  return message_of([&] { const Painter renderer(options_with(change)); });
 }
 
 void expect_refused(const char* part, const std::function<void(RenderOptions&)>& change) {
@@ -99,7 +100,7 @@ TEST(Refusals, BackgroundsThatAreNotFinite) {
 
 std::string message_of_draw(const std::function<void(raster::Draw&)>& change) {
   return message_of([&] {
-    Renderer renderer(options_with());
+    Painter renderer(options_with());
     raster::Draw draw;
     change(draw);
     class Nothing final : public raster::BlockShader {
@@ -133,7 +134,7 @@ TEST(Refusals, EnumsOfMaterialsAndTextures) {
       Image<Rgba8> image(kW, kH);
       Targets targets;
       targets.color8 = image;
-      Renderer(options_with()).render(SceneBinding(changed).view(), Camera{}, targets);
+      Painter(options_with()).render(SceneBinding(changed).view(), Camera{}, targets);
     });
   };
   EXPECT_EQ(message(scene), "");
@@ -155,7 +156,7 @@ std::string message_of_targets(const std::function<void(Targets&)>& fill,
   return message_of([&] {
     Targets targets;
     fill(targets);
-    Renderer(options_with([&](auto& o) {
+    Painter(options_with([&](auto& o) {
       o.shader = shader;
     })).render(SceneBinding(scene).view(), Camera{}, targets);
   });

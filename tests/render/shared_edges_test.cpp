@@ -8,10 +8,11 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/device_test.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -84,7 +85,7 @@ struct Screen {
 
 TEST_P(SharedEdges, FansCoverThemOnce) {
   constexpr int kW = 61, kH = 70;
-  Renderer renderer(options(kW, kH));
+  Painter renderer(options(kW, kH));
   for (std::uint64_t seed = 0; seed < 200 && !HasFailure(); ++seed) {
     SCOPED_TRACE(seed);
     Random r(seed);
@@ -109,7 +110,7 @@ TEST_P(SharedEdges, FansCoverThemOnce) {
 
 TEST_P(SharedEdges, RotatedGridsCoverThemOnce) {
   constexpr int kW = 72, kH = 67;
-  Renderer renderer(options(kW, kH));
+  Painter renderer(options(kW, kH));
   for (std::uint64_t seed = 0; seed < 200 && !HasFailure(); ++seed) {
     SCOPED_TRACE(seed);
     Random r(seed);
@@ -143,7 +144,7 @@ TEST_P(SharedEdges, RotatedGridsCoverThemOnce) {
 // band. The reference is the ray through each sample.
 TEST_P(SharedEdges, ClippedFloorsCoverThemOnce) {
   constexpr int kW = 66, kH = 59;
-  Renderer renderer(options(kW, kH));
+  Painter renderer(options(kW, kH));
   std::uint64_t clipped = 0, fragments = 0;
   for (std::uint64_t seed = 0; seed < 300 && !HasFailure(); ++seed) {
     SCOPED_TRACE(seed);

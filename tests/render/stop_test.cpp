@@ -10,15 +10,16 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/on_terrain.hpp>
 #include <rastrum/raster/frame/frame.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/render/scene_on_terrain.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
-#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/stop.hpp>
+#include <rastrum/terrain.hpp>
 
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/stop_trigger.hpp"
 
@@ -81,7 +82,7 @@ class Counted final : public raster::VertexSource,
   Triggers* triggers_ = nullptr;
 };
 
-Frame frame(Renderer& renderer, Counted& counted, Counted::Triggers& triggers, bool translucent) {
+Frame frame(Painter& renderer, Counted& counted, Counted::Triggers& triggers, bool translucent) {
   counted.use(triggers);
   raster::Draw d = counted.draw(translucent);
   return draw(renderer, {&d, 1}, counted, &counted);
@@ -93,7 +94,7 @@ void expect_bounded(const RenderOptions& o, bool translucent, std::int64_t most_
   const std::int64_t most_tested = kCapacity * o.threads;
   Counted counted;
   Counted::Triggers whole;
-  Renderer fresh(o), renderer(o);
+  Painter fresh(o), renderer(o);
   const Frame expected = frame(fresh, counted, whole, translucent);
   for (StopTrigger Counted::Triggers::*const which :
        {&Counted::Triggers::project, &Counted::Triggers::test, &Counted::Triggers::shade}) {
@@ -157,7 +158,7 @@ TEST(StopReference, EndsSoon) {
     o.width = o.height = 64;
     o.device = Device::serial;
     o.opacity = opacity;
-    Renderer renderer(o);
+    Painter renderer(o);
     const Scene scene = single(shapes::from_spec("boxes"));
     const SceneBinding binding(scene);
     std::stop_source source;
@@ -180,7 +181,7 @@ TEST(StopToken, EndsAFrameAndLeavesTheRenderer) {
       if (device == Device::serial) o.width = o.height = 64;  // the reference of layers is slow
       Counted counted;
       Counted::Triggers whole;
-      Renderer renderer(o);
+      Painter renderer(o);
       const Frame expected = frame(renderer, counted, whole, translucent);
       const std::int64_t calls = whole.test.calls();
       Counted::Triggers triggers;
@@ -214,22 +215,21 @@ TEST(StopToken, IsTakenByAllThatDrawFrames) {
   Image<float> depth(kSide, kSide);
   RenderOptions o;
   o.width = o.height = kSide;
-  Renderer renderer(o);
-  Targets targets;
-  targets.color8 = color.view();
+  Painter renderer(o);
+  const Targets targets{.color8 = color};
   const terrain::Terrain ground = terrain::Terrain::of([](double, double) { return 1.0F; },
                                                        [](double, double) {
                                                          return Rgba8{1, 2, 3, 255};
                                                        });
-  terrain::TerrainOptions how;
+  TerrainLook how;
   how.width = how.height = kSide;
-  terrain::TerrainRenderer terrain(how);
-  SceneOnTerrain on_terrain(o);
-  const terrain::TerrainTargets picture{color.view(), depth.view()};
+  TerrainPainter terrain(how);
+  SceneOnTerrain on_terrain(family::make_renderer(o, o));
+  const terrain::TerrainTargets picture{.color8 = color, .depth = depth};
   const auto draw_all = [&](const auto& expect) {
     expect([&] { renderer.render(binding.view(), camera, targets, token); });
     expect([&] { terrain.render(ground, {}, picture, token); });
-    expect([&] { on_terrain.draw({binding.view(), {}}, how, {}, picture, token); });
+    expect([&] { on_terrain.draw({.scene = binding.view()}, o, how, {}, picture, token); });
   };
   draw_all([](const auto& frame) { EXPECT_NO_THROW(frame()); });
   source.request_stop();

@@ -8,14 +8,15 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/directories.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/real_meshes.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -52,13 +53,13 @@ TEST_P(Table, EqualsSerialOnGeneratedScenes) {
   int failures = 0;
   for (int s = 0; s < static_cast<int>(std::size(kSizes)); ++s) {
     const auto [width, height] = kSizes[s];
-    Renderer reference(serial(width, height));
-    std::vector<Renderer> renderers;
+    Painter reference(serial(width, height));
+    std::vector<Painter> renderers;
     for (int n = 0; n < combinations(); ++n) renderers.emplace_back(point(width, height, n));
     for (int i = 0; i < scenes / static_cast<int>(std::size(kSizes)); ++i) {
       const auto seed = static_cast<std::uint64_t>(s * 1000000 + i);
       const GeneratedScene g = generate(seed, width, height);
-      Renderer& renderer = renderers[static_cast<std::size_t>(i) % renderers.size()];
+      Painter& renderer = renderers[static_cast<std::size_t>(i) % renderers.size()];
       SCOPED_TRACE("scene " + std::to_string(seed) + " (" + g.kind + "), " +
                    std::to_string(renderer.options().threads) + " threads, " +
                    std::string(name(*renderer.options().isa)));
@@ -81,13 +82,13 @@ TEST_P(Table, EqualsSerialOnMeshes) {
     const Camera camera = fit_camera(binding.view(), 1.0472F, false);
     for (const int size : {64, 200, 256}) {
       SCOPED_TRACE(std::string(spec) + " at " + std::to_string(size));
-      Renderer reference(serial(size, size));
+      Painter reference(serial(size, size));
       const Frame expected = draw(reference, binding.view(), camera);
       EXPECT_GT(expected.stats.pixels_covered, 200U);
       // Sanitizers see each number of threads and each instruction set once.
       const int step = count_from_environment("RASTRUM_TABLE_SCENES", 120) < 100 ? 4 : 1;
       for (int n = 0; n < combinations(); n += step) {
-        Renderer renderer(point(size, size, n));
+        Painter renderer(point(size, size, n));
         const Frame actual = draw(renderer, binding.view(), camera);
         ASSERT_TRUE(same_surfaces(actual, expected)) << n;
         ASSERT_TRUE(same_counts(actual.stats, expected.stats)) << n;
@@ -100,7 +101,7 @@ TEST_P(Table, EqualsSerialOnMeshes) {
 TEST_P(Table, IsTheSameAtEveryRun) {
   const GeneratedScene g = generate(12345, 128, 96);
   const SceneBinding binding(g.scene);
-  Renderer renderer(point(128, 96, 2));
+  Painter renderer(point(128, 96, 2));
   const Frame first = draw(renderer, binding.view(), g.camera);
   for (int i = 0; i < 3; ++i) {
     const Frame again = draw(renderer, binding.view(), g.camera);
@@ -121,7 +122,7 @@ Surfaces surfaces(const RenderOptions& options, const SceneView& scene, const Ca
   Targets targets;
   targets.depth = s.depth.view();
   targets.ids = s.ids.view();
-  Renderer(options).render(scene, camera, targets);
+  Painter(options).render(scene, camera, targets);
   return s;
 }
 

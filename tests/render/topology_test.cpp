@@ -9,12 +9,13 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/raster/draws/program.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
 
@@ -193,7 +194,7 @@ TEST(Topologies, MixesEqualTheOracle) {
   std::map<std::size_t, std::uint64_t> visible;  // pixels by kind of primitive
   const int all = count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 10;
   for (const auto& [width, height] : {std::pair{64, 64}, {37, 91}, {130, 70}}) {
-    Renderer renderer(serial(width, height));
+    Painter renderer(serial(width, height));
     for (int i = 0; i < all / 3; ++i) {
       const auto seed = static_cast<std::uint64_t>(i + width * 100000);
       SCOPED_TRACE("mix " + std::to_string(seed));
@@ -228,8 +229,8 @@ class TopologyTable : public testing::TestWithParam<TablePoint> {};
 
 TEST_P(TopologyTable, MixesEqualSerial) {
   constexpr int kWidth = 130, kHeight = 91;
-  Renderer reference(serial(kWidth, kHeight));
-  std::vector<Renderer> renderers;
+  Painter reference(serial(kWidth, kHeight));
+  std::vector<Painter> renderers;
   for (const Isa isa : available_isas())
     for (const int threads : {1, 2, 8}) {
       RenderOptions o = serial(kWidth, kHeight);
@@ -276,9 +277,9 @@ TEST(Topologies, LayersOfMixesEqualSerial) {
   for (const int samples : {1, 4}) {
     RenderOptions options = serial(kWidth, kHeight);
     options.samples = samples;
-    Renderer reference(options);
+    Painter reference(options);
     options.device = Device::threads;
-    std::vector<Renderer> renderers;
+    std::vector<Painter> renderers;
     for (const char* const rasterizer : {"grouped", "tiled"})
       for (const Isa isa : {Isa::scalar, available_isas().back()}) {
         options.rasterizer = rasterizer;
@@ -300,7 +301,7 @@ TEST(Topologies, LayersOfMixesEqualSerial) {
       for (std::size_t d = seed % 2; d < draws.size(); d += 2)
         draws[d].flags = raster::kTranslucent;
       const Frame expected = draw(reference, draws, program, nullptr);
-      for (Renderer& renderer : renderers) {
+      for (Painter& renderer : renderers) {
         const Frame frame = draw(renderer, draws, program, nullptr);
         const std::string what = "mix " + std::to_string(seed) + ", " +
                                  renderer.options().rasterizer + ", " + std::to_string(samples);
@@ -324,7 +325,7 @@ TEST(Topologies, RefusesWidthsSizesAndBiasesOutOfRange) {
     RenderOptions options;
     options.width = options.height = 16;
     options.device = device;
-    Renderer renderer(options);
+    Painter renderer(options);
     const auto refuses = [&](float raster::Draw::*member, float value) {
       raster::Draw d = program.draw(1, {}, Topology::points);
       d.*member = value;

@@ -1,4 +1,4 @@
-#include <rastrum/scene/camera.hpp>
+#include <rastrum/camera.hpp>
 
 #include <cmath>
 #include <functional>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::test {
 namespace {

@@ -1,5 +1,5 @@
 // crease_normals against its definition, written once more without its tables.
-#include <rastrum/scene/crease_normals.hpp>
+#include <rastrum/mesh.hpp>
 
 #include <cmath>
 #include <limits>
@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/scene/scene.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/scene.hpp>
+#include <rastrum/shapes.hpp>
 
 namespace rastrum::test {
 namespace {

@@ -1,6 +1,6 @@
 // fit_picture and fit_turntable against what they promise: all is seen, and nothing could be
 // larger.
-#include <rastrum/scene/fit.hpp>
+#include <rastrum/fit.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/core/angle.hpp>
-#include <rastrum/core/error.hpp>
-#include <rastrum/core/transform.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/transform.hpp>
 
 namespace rastrum::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/scene/shapes/marching_cubes_table.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/shapes.hpp>
 #include <tests/scene/mesh_properties.hpp>
 
 namespace rastrum::test {

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/scene/line_art.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/mesh.hpp>
+#include <rastrum/shapes.hpp>
 
 namespace rastrum::test {
 namespace {

@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include <rastrum/scene/mesh.hpp>
+#include <rastrum/mesh.hpp>
 
 namespace rastrum::test {
 

@@ -1,4 +1,4 @@
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/scene.hpp>
 
 #include <cmath>
 #include <limits>
@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/shapes.hpp>
 
 namespace rastrum::test {
 namespace {

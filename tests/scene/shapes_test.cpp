@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/scene/shapes/teapot_patches.hpp>
+#include <rastrum/shapes.hpp>
 #include <tests/scene/mesh_properties.hpp>
 
 namespace rastrum::test {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/shapes.hpp>
 
 namespace rastrum::test {
 namespace {

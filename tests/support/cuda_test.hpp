@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/parallel/cuda/status.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 

@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 
@@ -44,8 +46,8 @@ struct TablePoint {
 };
 inline std::vector<TablePoint> table_points() {
   std::vector<TablePoint> points;
-  for (const AxisInfo& r : rasterizers())
-    for (const AxisInfo& v : visibilities())
+  for (const family::AxisInfo& r : family::rasterizer_axis())
+    for (const family::AxisInfo& v : family::visibility_axis())
       if (r.name != "reference") points.push_back({r.name, v.name});
   return points;
 }

@@ -1,4 +1,5 @@
 #include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -61,7 +62,7 @@ namespace {
 
 /// Calls render(targets) with images that hold nonsense.
 template <class Render>
-Frame draw_with(Renderer& renderer, Render&& render) {
+Frame draw_with(Painter& renderer, Render&& render) {
   const int w = renderer.options().width, h = renderer.options().height;
   Frame f{Image<Rgba8>(w, h),        Image<Vec4>(w, h),          Image<float>(w, h),
           Image<std::int64_t>(w, h), Image<std::uint32_t>(w, h), {}};
@@ -82,12 +83,12 @@ Frame draw_with(Renderer& renderer, Render&& render) {
 
 }  // namespace
 
-Frame draw(Renderer& renderer, const SceneView& scene, const Camera& camera) {
+Frame draw(Painter& renderer, const SceneView& scene, const Camera& camera) {
   return draw_with(renderer,
                    [&](const Targets& targets) { return renderer.render(scene, camera, targets); });
 }
 
-Frame draw(Renderer& renderer, std::span<raster::Draw> draws, const raster::BlockShader& shader,
+Frame draw(Painter& renderer, std::span<raster::Draw> draws, const raster::BlockShader& shader,
            const raster::FragmentTest* test) {
   return draw_with(renderer, [&](const Targets& targets) {
     return renderer.draw(draws, shader, test, targets);
@@ -95,7 +96,7 @@ Frame draw(Renderer& renderer, std::span<raster::Draw> draws, const raster::Bloc
 }
 
 Frame draw(const RenderOptions& options, const Scene& scene, const Camera& camera) {
-  Renderer renderer(options);
+  Painter renderer(options);
   return draw(renderer, SceneBinding(scene).view(), camera);
 }
 

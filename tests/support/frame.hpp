@@ -7,9 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/oracle.hpp"
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 
@@ -23,8 +24,8 @@ struct Frame {
 };
 
 /// Draws into images that hold nonsense before, so that a pixel which nobody wrote shows.
-[[nodiscard]] Frame draw(Renderer& renderer, const SceneView& scene, const Camera& camera);
-[[nodiscard]] Frame draw(Renderer& renderer, std::span<raster::Draw> draws,
+[[nodiscard]] Frame draw(Painter& renderer, const SceneView& scene, const Camera& camera);
+[[nodiscard]] Frame draw(Painter& renderer, std::span<raster::Draw> draws,
                          const raster::BlockShader& shader, const raster::FragmentTest* test);
 [[nodiscard]] Frame draw(const RenderOptions& options, const Scene& scene, const Camera& camera);
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include <rastrum/io/io.hpp>
+#include <rastrum/io.hpp>
 
 #include "tests/support/directories.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/image.hpp>
+#include <rastrum/image.hpp>
 
 namespace rastrum::test {
 

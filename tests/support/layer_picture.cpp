@@ -1,4 +1,5 @@
 #include "tests/support/layer_picture.hpp"
+#include "tests/support/painter.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +15,7 @@ using testing::AssertionResult;
 using testing::AssertionSuccess;
 
 template <class Render>
-LayerPicture take_with(Renderer& renderer, bool with_overdraw, Render&& render) {
+LayerPicture take_with(Painter& renderer, bool with_overdraw, Render&& render) {
   const int w = renderer.options().width, h = renderer.options().height;
   LayerPicture p{Image<Rgba8>(w, h),
                  Image<Vec4>(w, h),
@@ -79,19 +80,19 @@ std::uint64_t LayerPicture::error_pixels() const {
   return static_cast<std::uint64_t>(std::ranges::count(errors.pixels(), 255));
 }
 
-LayerPicture take(Renderer& renderer, LayerProgram& program, bool with_overdraw) {
+LayerPicture take(Painter& renderer, LayerProgram& program, bool with_overdraw) {
   return take_with(renderer, with_overdraw, [&](const Targets& targets) {
     return renderer.draw(program.draws(), program.shader(), program.test(), targets);
   });
 }
 
-LayerPicture take(Renderer& renderer, LayerProgram& program, const raster::BlockShader& shader) {
+LayerPicture take(Painter& renderer, LayerProgram& program, const raster::BlockShader& shader) {
   return take_with(renderer, false, [&](const Targets& targets) {
     return renderer.draw(program.draws(), shader, program.test(), targets);
   });
 }
 
-LayerPicture take(Renderer& renderer, const SceneView& scene, const Camera& camera,
+LayerPicture take(Painter& renderer, const SceneView& scene, const Camera& camera,
                   bool with_overdraw) {
   return take_with(renderer, with_overdraw,
                    [&](const Targets& targets) { return renderer.render(scene, camera, targets); });

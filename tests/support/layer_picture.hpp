@@ -6,10 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/layer_oracle.hpp"
 #include "tests/support/layer_program.hpp"
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 
@@ -28,12 +29,12 @@ struct LayerPicture {
 };
 
 /// Draws into images that hold nonsense before.
-[[nodiscard]] LayerPicture take(Renderer& renderer, LayerProgram& program,
+[[nodiscard]] LayerPicture take(Painter& renderer, LayerProgram& program,
                                 bool with_overdraw = false);
 /// The program's draws by another shader.
-[[nodiscard]] LayerPicture take(Renderer& renderer, LayerProgram& program,
+[[nodiscard]] LayerPicture take(Painter& renderer, LayerProgram& program,
                                 const raster::BlockShader& shader);
-[[nodiscard]] LayerPicture take(Renderer& renderer, const SceneView& scene, const Camera& camera,
+[[nodiscard]] LayerPicture take(Painter& renderer, const SceneView& scene, const Camera& camera,
                                 bool with_overdraw = false);
 
 /// How far a float32 channel may be from the exact blend of n layers of colours in [0, 1]:

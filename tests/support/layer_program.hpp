@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include <rastrum/raster/draws/program.hpp>
+#include <rastrum/program.hpp>
 
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/projection.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/scene.hpp>
 
 #include "tests/support/layer_oracle.hpp"
 #include "tests/support/pieces.hpp"

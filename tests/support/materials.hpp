@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <utility>
 
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/scene.hpp>
 
 #include "tests/support/scenes.hpp"
 

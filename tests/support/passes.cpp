@@ -1,4 +1,5 @@
 #include "tests/support/passes.hpp"
+#include "tests/support/painter.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -6,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/frame.hpp"
 #include "tests/support/scenes.hpp"
@@ -31,7 +32,7 @@ struct Passes {
 
 enum class By { load, over };
 
-Passes draw_in_passes(Renderer& renderer, const SceneView& scene, const Camera& camera,
+Passes draw_in_passes(Painter& renderer, const SceneView& scene, const Camera& camera,
                       std::size_t passes, By by) {
   const int w = renderer.options().width, h = renderer.options().height;
   Passes p{{Image<Rgba8>(w, h),
@@ -65,7 +66,7 @@ Passes draw_in_passes(Renderer& renderer, const SceneView& scene, const Camera& 
 
 }  // namespace
 
-AssertionResult passes_equal_one_draw(Renderer& renderer, std::string_view shape) {
+AssertionResult passes_equal_one_draw(Painter& renderer, std::string_view shape) {
   const Scene scene = single(indexed(shapes::from_spec(std::string(shape))));
   const SceneBinding binding(scene);
   const Camera camera = fit_camera(binding.view(), 1.0472F, false);

@@ -5,14 +5,16 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 
 /// Draws a built-in shape at once, then in passes of unequal size, each onto the ones before: by
 /// their visibility keys (Targets::load), and by their depth (Targets::over). With ids that count
 /// on (Targets::first_id) all images are the same bits, the keys too.
-[[nodiscard]] testing::AssertionResult passes_equal_one_draw(Renderer& renderer,
+[[nodiscard]] testing::AssertionResult passes_equal_one_draw(Painter& renderer,
                                                              std::string_view shape);
 
 }  // namespace rastrum::test

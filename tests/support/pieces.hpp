@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include <rastrum/frame.hpp>
 #include <rastrum/raster/assemble/clip.hpp>
-#include <rastrum/raster/frame/options.hpp>
 
 #include "tests/support/projection.hpp"
 

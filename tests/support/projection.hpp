@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/scene.hpp>
 
 #include "tests/support/oracle.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/scene.hpp>
 
 namespace rastrum::test {
 

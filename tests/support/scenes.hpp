@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/scene.hpp>
 
 namespace rastrum::test {
 

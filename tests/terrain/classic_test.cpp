@@ -13,13 +13,14 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/io/height_map.hpp>
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/stop.hpp>
+#include <rastrum/terrain.hpp>
 #include <rastrum/terrain/blocks.hpp>
 #include <rastrum/terrain/ceiling.hpp>
-#include <rastrum/terrain/renderer.hpp>
 
 #include "tests/support/directories.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/terrain/maps.hpp"
 
 namespace rastrum::terrain {
@@ -99,8 +100,8 @@ std::size_t differences(const Image<Rgba8>& picture, const std::vector<std::uint
   return different;
 }
 
-TerrainOptions classic(int width, int height, double distance) {
-  TerrainOptions options;
+TerrainLook classic(int width, int height, double distance) {
+  TerrainLook options;
   options.classic = true;
   options.width = width;
   options.height = height;
@@ -109,14 +110,14 @@ TerrainOptions classic(int width, int height, double distance) {
 }
 
 /// Every way to draw it, each compared with the transcription.
-void expect_original(const HeightMap& map, const TerrainCamera& camera, TerrainOptions options,
+void expect_original(const HeightMap& map, const TerrainCamera& camera, TerrainLook options,
                      bool all) {
   const std::vector<std::uint32_t> screen =
       original_frame(original_of(map), camera, options.width, options.height, options.distance);
   const Terrain terrain(map);
   const auto compare = [&](const char* name) {
     Image<Rgba8> picture(options.width, options.height);
-    TerrainRenderer(options).render(terrain, camera, {picture.view(), {}});
+    TerrainPainter(options).render(terrain, camera, {.color8 = picture.view()});
     EXPECT_EQ(differences(picture, screen), 0U)
         << name << " threads " << options.threads << " camera " << camera.x << ", " << camera.y
         << ", " << camera.altitude << ", " << camera.angle_rad << ", horizon " << camera.horizon_px
@@ -196,7 +197,7 @@ TEST(Classic, EqualsTheOriginalOnLargePictures) {
 TEST(Classic, ABlockEndsSoonWhenStopped) {
   std::mt19937 random(6);
   const Terrain terrain(test::random_map(64, 64, random));
-  const TerrainOptions options = classic(200, 100, 300);
+  const TerrainLook options = classic(200, 100, 300);
   const TerrainCamera camera{.altitude = 150, .horizon_px = 20};
   MemoryAccount memory;
   parallel::Threads exec(2, &memory);

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/terrain/color_map.hpp>
-#include <rastrum/terrain/light.hpp>
+#include <rastrum/terrain_light.hpp>
 
 namespace rastrum::terrain {
 namespace {

@@ -9,12 +9,13 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/io/height_map.hpp>
+#include <rastrum/io.hpp>
 #include <rastrum/parallel/cuda/status.hpp>
-#include <rastrum/terrain/functions.hpp>
-#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/terrain.hpp>
+#include <rastrum/terrain_light.hpp>
 
 #include "tests/support/directories.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/terrain/cuda_device.hpp"
 #include "tests/terrain/maps.hpp"
 
@@ -28,9 +29,9 @@ struct Picture {
   Image<float> depth;
   TerrainStats stats;
 
-  Picture(const Terrain& terrain, const TerrainCamera& camera, const TerrainOptions& options)
+  Picture(const Terrain& terrain, const TerrainCamera& camera, const TerrainLook& options)
       : colors(options.width, options.height), depth(options.width, options.height) {
-    TerrainRenderer renderer(options);
+    TerrainPainter renderer(options);
     stats = renderer.render(terrain, camera, {colors.view(), depth.view()});
   }
 };
@@ -48,8 +49,8 @@ void expect_equal(const Picture& expected, const Picture& got, const std::string
 }
 
 /// The device's methods against the serial reference.
-void expect_same_on_device(const Terrain& terrain, const TerrainCamera& camera,
-                           TerrainOptions options, const std::string& what) {
+void expect_same_on_device(const Terrain& terrain, const TerrainCamera& camera, TerrainLook options,
+                           const std::string& what) {
   options.device = Device::serial;
   options.method = Method::fast;
   const Picture expected(terrain, camera, options);
@@ -80,7 +81,7 @@ TEST_F(CudaTerrain, RandomMapsAreTheReferencesBits) {
     if (i % 6 == 1)
       for (int k = 0; k < 20; ++k)
         map.heights.pixels()[random() % map.heights.pixels().size()] = kNaN;
-    TerrainOptions options;
+    TerrainLook options;
     options.width = 1 + static_cast<int>(random() % 150);
     options.height = 1 + static_cast<int>(random() % 90);
     options.distance = between(1, i % 13 == 0 ? 9000 : 400);
@@ -112,7 +113,7 @@ TEST_F(CudaTerrain, ARealMapIsTheReferencesBits) {
   HeightMap map{std::move(grid.heights), {}};
   for (float& h : map.heights.pixels()) h /= static_cast<float>(grid.units_per_cell);
   const Terrain terrain(std::move(map));
-  TerrainOptions options;
+  TerrainLook options;
   options.width = 333;
   options.height = 190;
   options.distance = 1500;
@@ -135,7 +136,7 @@ TEST_F(CudaTerrain, TheClassicPictureIsTheOriginals) {
     HeightMap map = test::random_map(size[0], size[1], random, between(0, 0.5));
     if (i % 5 == 1) map.colors = test::random_map(37, 91, random).colors;
     if (i % 6 == 1) map.heights.pixels()[random() % map.heights.pixels().size()] = kNaN;
-    TerrainOptions options;
+    TerrainLook options;
     options.classic = true;
     options.width = 1 + static_cast<int>(random() % 150);
     options.height = 1 + static_cast<int>(random() % 90);
@@ -157,7 +158,7 @@ TEST_F(CudaTerrain, TheClassicPictureIsTheOriginals) {
 TEST_F(CudaTerrain, LeavesOutWhatIsHidden) {
   std::mt19937 random(3);
   const Terrain hills(test::random_map(1024, 1024, random, 0.1));
-  TerrainOptions options;
+  TerrainLook options;
   options.width = 160;
   options.height = 100;
   options.distance = 2000;
@@ -171,20 +172,20 @@ TEST_F(CudaTerrain, LeavesOutWhatIsHidden) {
 TEST_F(CudaTerrain, TargetsMayHaveGapsOrBeLeftOut) {
   std::mt19937 random(4);
   const Terrain terrain(test::random_map(50, 70, random));
-  TerrainOptions options;
+  TerrainLook options;
   options.width = 61;
   options.height = 40;
   options.device = Device::serial;
   const TerrainCamera camera{.altitude = 300, .horizon_px = 5};
   const Picture expected(terrain, camera, options);
   options.device = Device::cuda;
-  TerrainRenderer renderer(options);
+  TerrainPainter renderer(options);
   Image<Rgba8> wide(80, 41);
   for (Rgba8& p : wide.pixels()) p = {1, 2, 3, 4};
   const ImageView<Rgba8> part{wide.view().data + 5, 61, 40, 80};
   renderer.render(terrain, camera, {part, {}});
   Image<float> depth(61, 40);
-  renderer.render(terrain, camera, {{}, depth.view()});
+  renderer.render(terrain, camera, {.depth = depth.view()});
   for (int y = 0; y < 41; ++y)
     for (int x = 0; x < 80; ++x) {
       const bool inside = x >= 5 && x < 66 && y < 40;
@@ -199,24 +200,24 @@ TEST_F(CudaTerrain, TargetsMayHaveGapsOrBeLeftOut) {
 TEST_F(CudaTerrain, AFrameLikeTheOneBeforeAllocatesNothingAndCopiesNoMap) {
   std::mt19937 random(5);
   const Terrain a(test::random_map(256, 200, random)), b(test::random_map(256, 200, random));
-  TerrainOptions options;
+  TerrainLook options;
   options.width = 200;
   options.height = 100;
   options.device = Device::cuda;
-  TerrainRenderer renderer(options);
+  TerrainPainter renderer(options);
   Image<Rgba8> colors(200, 100);
   const TerrainCamera camera{.altitude = 300, .horizon_px = 10};
-  const std::uint64_t bytes = renderer.render(a, camera, {colors.view(), {}}).device_bytes;
+  const std::uint64_t bytes = renderer.render(a, camera, {.color8 = colors.view()}).device_bytes;
   EXPECT_GT(bytes, 8U * 256 * 200);
   EXPECT_LT(bytes, 12U * 256 * 200 + (1U << 18));
   for (int i = 0; i < 3; ++i)
-    EXPECT_EQ(renderer.render(a, camera, {colors.view(), {}}).device_bytes, bytes);
+    EXPECT_EQ(renderer.render(a, camera, {.color8 = colors.view()}).device_bytes, bytes);
   // Another map of that size takes its place; other colours are seen.
   const auto first = colors;
-  EXPECT_LE(renderer.render(b, camera, {colors.view(), {}}).device_bytes, bytes + 256 * 200);
+  EXPECT_LE(renderer.render(b, camera, {.color8 = colors.view()}).device_bytes, bytes + 256 * 200);
   options.device = Device::serial;
   EXPECT_TRUE(std::ranges::equal(colors.pixels(), Picture(b, camera, options).colors.pixels()));
-  renderer.render(a.with_colors(*b.colors()), camera, {colors.view(), {}});
+  renderer.render(a.with_colors(*b.colors()), camera, {.color8 = colors.view()});
   EXPECT_TRUE(std::ranges::equal(
       colors.pixels(), Picture(a.with_colors(*b.colors()), camera, options).colors.pixels()));
   EXPECT_FALSE(std::ranges::equal(colors.pixels(), first.pixels()));
@@ -232,7 +233,7 @@ TEST_F(CudaTerrain, NamedFunctionsAreTheReferencesBits) {
       light.shadows = shadows;
       light.hill_shading = i % 3 != 0;
       light.march = {60, 70 + i};
-      TerrainOptions options;
+      TerrainLook options;
       options.width = 57 + i;
       options.height = 40;
       options.distance = 300;
@@ -255,7 +256,7 @@ TEST_F(CudaTerrain, NamedFunctionsAreTheReferencesBits) {
 
 TEST_F(CudaTerrain, OtherFunctionsGoToTheCpuAndTheStatisticsSayWhy) {
   const auto why = [](const Terrain& terrain, bool classic) {
-    TerrainOptions options;
+    TerrainLook options;
     options.width = 80;
     options.height = 60;
     options.classic = classic;
@@ -280,20 +281,20 @@ TEST_F(CudaTerrain, OtherFunctionsGoToTheCpuAndTheStatisticsSayWhy) {
 TEST_F(CudaTerrain, RolledPicturesOfOneKindAreTheReferences) {
   std::mt19937 random(9);
   const Terrain terrain(test::random_map(50, 70, random));
-  TerrainOptions options;
+  TerrainLook options;
   options.width = 80;
   options.height = 60;
   const TerrainCamera camera{.altitude = 90, .horizon_px = 20, .roll_rad = 1};
   options.device = Device::serial;
   const Picture expected(terrain, camera, options);
   options.device = Device::cuda;
-  TerrainRenderer renderer(options);
+  TerrainPainter renderer(options);
   Image<Rgba8> colors(80, 60);
   Image<float> depth(80, 60);
-  const TerrainStats stats = renderer.render(terrain, camera, {colors.view(), {}});
+  const TerrainStats stats = renderer.render(terrain, camera, {.color8 = colors.view()});
   EXPECT_EQ(stats.device, Device::cuda);
   EXPECT_EQ(stats.device_why, "");
-  static_cast<void>(renderer.render(terrain, camera, {{}, depth.view()}));
+  static_cast<void>(renderer.render(terrain, camera, {.depth = depth.view()}));
   EXPECT_TRUE(std::ranges::equal(colors.pixels(), expected.colors.pixels()));
   EXPECT_TRUE(std::ranges::equal(depth.pixels(), expected.depth.pixels()));
 }
@@ -301,7 +302,7 @@ TEST_F(CudaTerrain, RolledPicturesOfOneKindAreTheReferences) {
 TEST_F(CudaTerrain, AutoLeavesToTheThreadsWhatTheyDrawSooner) {
   std::mt19937 random(10);
   const Terrain terrain(test::random_map(50, 70, random));
-  TerrainOptions options;
+  TerrainLook options;
   options.width = 80;
   options.height = 60;
   options.threads = 1;
@@ -325,7 +326,7 @@ TEST_F(CudaTerrain, AutoLeavesToTheThreadsWhatTheyDrawSooner) {
 TEST_F(CudaTerrain, AMapThatIsTooLargeIsRefusedByNameAndAutoGoesToTheCpu) {
   std::mt19937 random(6);
   const Terrain terrain(test::random_map(1024, 512, random));
-  TerrainOptions options;
+  TerrainLook options;
   options.width = 80;
   options.height = 60;
   if (!set_free_bytes(std::uint64_t{3} << 20)) GTEST_SKIP() << "a GPU has what it has";

@@ -5,12 +5,14 @@
 
 #include <gtest/gtest.h>
 
+#include <rastrum/terrain.hpp>
 #include <rastrum/terrain/cuda/draw.cuh>
 #include <rastrum/terrain/cuda/shadows.cuh>
-#include <rastrum/terrain/renderer.hpp>
 
 #include "tests/terrain/cuda_device.hpp"
 #include "tests/terrain/maps.hpp"
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::terrain {
 namespace {
@@ -26,7 +28,7 @@ TEST_F(CudaSpans, AreDrawnWhereTheyLie) {
   constexpr int kWidth = 400, kHeight = 300;
   std::mt19937 random(8);
   const HeightMap map = test::random_map(kWidth, kHeight, random, 0.1);
-  TerrainOptions options;
+  TerrainLook options;
   options.width = 90;
   options.height = 50;
   const TerrainCamera camera{.x = 3, .y = 9, .altitude = 250, .horizon_px = 10};
@@ -43,7 +45,7 @@ TEST_F(CudaSpans, AreDrawnWhereTheyLie) {
   options.device = Device::serial;
   Image<Rgba8> expected(90, 50);
   const TerrainStats stats =
-      TerrainRenderer(options).render(Terrain(map), camera, {expected.view(), {}});
+      TerrainPainter(options).render(Terrain(map), camera, {.color8 = expected.view()});
   EXPECT_EQ(counts.visible, stats.visible);
   EXPECT_TRUE(std::ranges::equal(parallel::to_host(owner, pixels), expected.pixels()));
 

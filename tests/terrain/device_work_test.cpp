@@ -5,6 +5,8 @@
 
 #include <rastrum/terrain/setup.hpp>
 
+#include "tests/support/painter.hpp"
+
 namespace rastrum::terrain {
 namespace {
 
@@ -12,28 +14,28 @@ Terrain flat(int edge) {
   return Terrain(HeightMap{Image<float>(edge, edge), Image<Rgba8>(edge, edge)});
 }
 
-FrameWork work(const Terrain& map, const TerrainOptions& options) {
+FrameWork work(const Terrain& map, const TerrainLook& options) {
   Image<Rgba8> picture(options.width, options.height);
-  return device_work(map, options, {picture.view(), {}});
+  return device_work(map, options, {.color8 = picture.view()});
 }
 
 TEST(TerrainDeviceWork, CountsImagesAndAShareOfTheMap) {
   const Terrain map = flat(64);
-  TerrainOptions options;
+  TerrainLook options;
   options.width = 100;
   options.height = 50;
   options.distance = 200;
   const std::uint64_t share = 64 * 64 * (4 + 4) / 16;
   EXPECT_EQ(work(map, options).bytes, share + 100 * 50 * 4);
   Image<float> depth(100, 50);
-  EXPECT_EQ(device_work(map, options, {{}, depth.view()}).bytes, share + 100 * 50 * 4);
+  EXPECT_EQ(device_work(map, options, {.depth = depth.view()}).bytes, share + 100 * 50 * 4);
   const auto slices = static_cast<std::uint64_t>(100 * slice_count(options));
   EXPECT_NE(work(map, options).what.find(std::to_string(slices)), std::string::npos);
 }
 
 TEST(TerrainDeviceWork, PicturesThatComeBackAreTheThreadsAndWordsTheDevices) {
   const Terrain map = flat(256);
-  TerrainOptions options;
+  TerrainLook options;
   options.width = 320;
   options.height = 200;
   const auto worth = [&](int threads) {

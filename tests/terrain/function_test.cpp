@@ -7,10 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/terrain/color_map.hpp>
-#include <rastrum/terrain/expression.hpp>
-#include <rastrum/terrain/functions.hpp>
+#include <rastrum/terrain_light.hpp>
 
 #include "tests/support/random.hpp"
 

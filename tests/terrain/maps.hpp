@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <rastrum/terrain/terrain.hpp>
+#include <rastrum/terrain.hpp>
 
 namespace rastrum::test {
 

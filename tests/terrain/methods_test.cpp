@@ -9,9 +9,10 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/parallel/stop.hpp>
-#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/stop.hpp>
+#include <rastrum/terrain.hpp>
 
+#include "tests/support/painter.hpp"
 #include "tests/support/stop_trigger.hpp"
 #include "tests/terrain/maps.hpp"
 
@@ -23,10 +24,10 @@ struct Picture {
   Image<float> depth;
   std::uint64_t visible = 0;
 
-  Picture(const Terrain& terrain, const TerrainCamera& camera, const TerrainOptions& options)
+  Picture(const Terrain& terrain, const TerrainCamera& camera, const TerrainLook& options)
       : colors(options.width, options.height), depth(options.width, options.height) {
     visible =
-        TerrainRenderer(options).render(terrain, camera, {colors.view(), depth.view()}).visible;
+        TerrainPainter(options).render(terrain, camera, {colors.view(), depth.view()}).visible;
   }
   void expect_equal(const Picture& other, const std::string& what) const {
     std::size_t different = 0;
@@ -40,7 +41,7 @@ struct Picture {
 
 /// The serial reference against everything else.
 void expect_same_everywhere(const Terrain& terrain, const TerrainCamera& camera,
-                            TerrainOptions options, const std::string& what) {
+                            TerrainLook options, const std::string& what) {
   options.device = Device::serial;
   const Picture reference(terrain, camera, options);
   options.method = Method::words;
@@ -73,7 +74,7 @@ TEST(Methods, GiveTheSamePicture) {
       for (int k = 0; k < 20; ++k)
         map.heights.pixels()[random() % map.heights.pixels().size()] =
             std::numeric_limits<float>::quiet_NaN();
-    TerrainOptions options;
+    TerrainLook options;
     options.width = 1 + static_cast<int>(random() % 150);
     options.height = 1 + static_cast<int>(random() % 90);
     options.distance = between(1, 400);
@@ -105,7 +106,7 @@ TEST(Methods, GiveTheSamePictureOfFunctions) {
         return Rgba8{static_cast<std::uint8_t>(std::fmod(std::abs(x), 255)),
                      static_cast<std::uint8_t>(std::fmod(std::abs(y), 255)), 99, 255};
       });
-  TerrainOptions options;
+  TerrainLook options;
   options.width = 133;
   options.height = 70;
   options.distance = 300;
@@ -125,7 +126,7 @@ TEST(Methods, EndSoonWhenStopped) {
       [](double x, double) {
         return Rgba8{static_cast<std::uint8_t>(std::abs(x)), 7, 99, 255};
       });
-  TerrainOptions options;
+  TerrainLook options;
   options.width = 640;
   options.height = 120;
   options.distance = 4000;
@@ -141,7 +142,7 @@ TEST(Methods, EndSoonWhenStopped) {
   const std::int64_t slices = [&] {
     Image<Rgba8> colors(options.width, options.height);
     return static_cast<std::int64_t>(
-        TerrainRenderer(options).render(hills, camera, {.color8 = colors.view()}).slices);
+        TerrainPainter(options).render(hills, camera, {.color8 = colors.view()}).slices);
   }();
   for (const Case& c :
        {Case{Method::fast, Device::threads, 2 * kColumns * kSlices},
@@ -154,7 +155,7 @@ TEST(Methods, EndSoonWhenStopped) {
     options.method = c.method;
     options.device = c.device;
     const Picture expected(hills, camera, options);
-    TerrainRenderer renderer(options);
+    TerrainPainter renderer(options);
     Image<Rgba8> colors(options.width, options.height);
     Image<float> depth(options.width, options.height);
     test::StopTrigger at(10000);

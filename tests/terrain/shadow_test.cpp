@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/height_map.hpp>
-#include <rastrum/terrain/shadows.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/terrain_light.hpp>
 
 #include "tests/support/directories.hpp"
 #include "tests/support/environment.hpp"

@@ -9,15 +9,16 @@
 
 #include <gtest/gtest.h>
 
+#include <rastrum/terrain.hpp>
 #include <rastrum/terrain/ceiling.hpp>
 #include <rastrum/terrain/map_view.hpp>
-#include <rastrum/terrain/matrix.hpp>
-#include <rastrum/terrain/renderer.hpp>
 #include <rastrum/terrain/setup.hpp>
 #include <rastrum/terrain/words.hpp>
 
 #include "tests/support/isa.hpp"
 #include "tests/terrain/maps.hpp"
+
+#include "tests/support/painter.hpp"
 
 namespace rastrum::terrain {
 namespace {
@@ -31,9 +32,9 @@ struct Picture {
   Image<float> depth;
   TerrainStats stats;
 
-  Picture(const Terrain& terrain, const TerrainCamera& camera, const TerrainOptions& options)
+  Picture(const Terrain& terrain, const TerrainCamera& camera, const TerrainLook& options)
       : colors(options.width, options.height), depth(options.width, options.height) {
-    stats = TerrainRenderer(options).render(terrain, camera, {colors.view(), depth.view()});
+    stats = TerrainPainter(options).render(terrain, camera, {colors.view(), depth.view()});
   }
   [[nodiscard]] std::size_t different(const Picture& other) const {
     std::size_t n = 0;
@@ -45,17 +46,17 @@ struct Picture {
   [[nodiscard]] bool is_sky(int x, int y) const { return depth(x, y) == kInfinity; }
 };
 
-TerrainOptions size(int width, int height) {
-  TerrainOptions options;
+TerrainLook size(int width, int height) {
+  TerrainLook options;
   options.width = width;
   options.height = height;
   return options;
 }
 
-std::string message_of(const TerrainOptions& options, const TerrainCamera& camera = {}) {
+std::string message_of(const TerrainLook& options, const TerrainCamera& camera = {}) {
   try {
     const Terrain flat(HeightMap{Image<float>(4, 4), {}});
-    TerrainRenderer(options).render(flat, camera, {});
+    TerrainPainter(options).render(flat, camera, {});
   } catch (const Error& e) {
     return e.what();
   }
@@ -111,7 +112,7 @@ TEST(Bilinear, IsRightAtCentresAndAtWholeCoordinates) {
   const auto heights = std::make_shared<const Image<float>>(map.heights);
   const auto colors = std::make_shared<const Image<Rgba8>>(map.colors);
   const Pyramid pyramid(heights, colors, false);
-  TerrainOptions options;
+  TerrainLook options;
   options.filter = MapFilter::bilinear;
   const MapView view(pyramid, options, terrain::Setup{});
   for (int y = 0; y < 8; ++y)
@@ -152,7 +153,7 @@ TEST(MapView, TilesHeightsAndColoursOfAnotherSizeAsTheTerrainDoes) {
   const Pyramid pyramid(terrain.heights(), terrain.colors(), false);
   std::uniform_real_distribution<float> at(-70, 70);
   for (const Tiling tiling : {Tiling::repeat, Tiling::mirror, Tiling::clamp}) {
-    TerrainOptions options;
+    TerrainLook options;
     options.tiling = tiling;
     const MapView view(pyramid, options, terrain::Setup{});
     for (int i = 0; i < 5000; ++i) {
@@ -171,7 +172,7 @@ TEST(MapView, TilesHeightsAndColoursOfAnotherSizeAsTheTerrainDoes) {
 }
 
 TEST(Mip, TakesTheLevelOfTheStepOrOfTheColumnsWidth) {
-  TerrainOptions options = size(100, 50);  // a column is z / 50 wide
+  TerrainLook options = size(100, 50);  // a column is z / 50 wide
   options.filter = MapFilter::mip;
   options.dz = 0;
   options.distance = 500;
@@ -191,7 +192,7 @@ TEST(Mip, FarTerrainIsTheMeanOfItsColours) {
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x)
       map.colors(x, y) = (x + y) % 2 == 0 ? Rgba8{200, 0, 0, 255} : Rgba8{0, 0, 100, 255};
-  TerrainOptions options = size(80, 60);
+  TerrainLook options = size(80, 60);
   options.distance = 4000;
   const TerrainCamera camera{.altitude = 30, .horizon_px = 10};
   const Picture aliased(Terrain(map), camera, options);
@@ -216,7 +217,7 @@ TEST(Mip, ColoursOfTwiceTheSizeAreReadOneLevelUp) {
                           255};
   const Pyramid pyramid(std::make_shared<const Image<float>>(map.heights),
                         std::make_shared<const Image<Rgba8>>(map.colors), true);
-  TerrainOptions options;
+  TerrainLook options;
   options.filter = MapFilter::mip;
   const MapView view(pyramid, options, terrain::Setup{});
   EXPECT_EQ(view.color_at(0.1F, 0.9F, 0), (Rgba8{20, 20, 0, 255}));
@@ -250,7 +251,7 @@ TEST(Roll, QuarterTurnsAreThePixelsThemselves) {
   std::mt19937 random(7);
   const Terrain terrain(test::random_map(64, 64, random));
   for (const auto projection : {Projection::planar, Projection::cylindrical}) {
-    TerrainOptions options = size(90, 90);
+    TerrainLook options = size(90, 90);
     options.distance = 200;
     options.projection = projection;
     const TerrainCamera level{.x = 3, .y = 5, .altitude = 300, .horizon_px = 30};
@@ -283,7 +284,7 @@ TEST(Roll, AnyAngleShowsWhatTheTurnedRaysMeet) {
       [](double x, double) {
         return Rgba8{static_cast<std::uint8_t>(std::clamp(128 + x, 0.0, 255.0)), 0, 0, 255};
       });
-  TerrainOptions options = size(120, 80);
+  TerrainLook options = size(120, 80);
   options.distance = 60;
   options.dz = 0;
   for (const auto projection : {Projection::planar, Projection::cylindrical})
@@ -308,7 +309,7 @@ TEST(Roll, AnyAngleShowsWhatTheTurnedRaysMeet) {
 
 TEST(Roll, TurnsTheHorizonAboutThePicturesCentre) {
   const Terrain flat(HeightMap{Image<float>(1, 1), {}});
-  TerrainOptions options = size(120, 80);
+  TerrainLook options = size(120, 80);
   options.distance = 1e5;
   options.step = 0.25;
   for (const double roll : {0.0, 0.5, -1.1, 2.0}) {
@@ -328,7 +329,7 @@ TEST(Scale, DrawsASquareAsHighAsWide) {
       [](double, double) {
         return Rgba8{1, 2, 3, 255};
       });
-  TerrainOptions options = size(300, 200);
+  TerrainLook options = size(300, 200);
   options.distance = 50.5;
   options.dz = 0;
   for (const double fov : {0.9, 2.0}) {
@@ -347,7 +348,7 @@ TEST(Clearance, LiftsTheCameraAboveTheGroundUnderItAlone) {
   HeightMap map{Image<float>(4, 4), {}};
   map.heights(1, 2) = 30;
   const Terrain terrain(map);
-  TerrainOptions options = size(4, 4);
+  TerrainLook options = size(4, 4);
   options.ground_clearance = 5;
   const auto altitude = [&](double x, double y, double given) {
     return Picture(terrain, {.x = x, .y = y, .altitude = given}, options).stats.camera.altitude;
@@ -371,7 +372,7 @@ void for_each_top(const Picture& picture, Each&& each) {
 }
 
 /// Each sample that is seen, brought back into the world by hand, falls on its pixel.
-void expect_matrix(const TerrainOptions& options, const TerrainCamera& given) {
+void expect_matrix(const TerrainLook& options, const TerrainCamera& given) {
   std::mt19937 random(8);
   const Terrain terrain(test::random_map(128, 128, random, 0.1));
   const Picture picture(terrain, given, options);
@@ -402,7 +403,7 @@ void expect_matrix(const TerrainOptions& options, const TerrainCamera& given) {
 }
 
 TEST(Matrix, PutsWhatIsSeenOnItsPixel) {
-  TerrainOptions options = size(200, 150);
+  TerrainLook options = size(200, 150);
   options.distance = 300;
   const TerrainCamera camera{
       .x = 40.3, .y = -17.6, .altitude = 290, .angle_rad = 0.7, .horizon_px = 40};
@@ -410,14 +411,14 @@ TEST(Matrix, PutsWhatIsSeenOnItsPixel) {
   options.fov_rad = 2;
   options.scale_px = 77;
   expect_matrix(options, camera);
-  TerrainOptions classic = size(200, 150);
+  TerrainLook classic = size(200, 150);
   classic.classic = true;
   classic.distance = 300;
   expect_matrix(classic, camera);
 }
 
 TEST(Matrix, FollowsTheRollAndRefusesCylinders) {
-  TerrainOptions options = size(120, 80);
+  TerrainLook options = size(120, 80);
   TerrainCamera camera{.altitude = 50, .horizon_px = 10, .roll_rad = kPi / 2};
   TerrainCamera level = camera;
   level.roll_rad = 0;
@@ -448,7 +449,7 @@ TEST(Cylinder, StretchesNothing) {
       [](double x, double) {
         return Rgba8{static_cast<std::uint8_t>(x > 0 ? 200 : 100), 2, 3, 255};
       });
-  TerrainOptions options = size(720, 200);
+  TerrainLook options = size(720, 200);
   options.projection = Projection::cylindrical;
   options.fov_rad = 2 * kPi;
   options.distance = 70;
@@ -472,7 +473,7 @@ TEST(Cylinder, StretchesNothing) {
 
 TEST(Fog, EndsInItsColour) {
   const Terrain flat(HeightMap{Image<float>(1, 1), {}});
-  TerrainOptions options = size(4, 300);
+  TerrainLook options = size(4, 300);
   options.distance = 3000;
   options.fog = {0.01, 0, Rgba8{9, 99, 199, 255}};
   options.scale_px = 240;
@@ -490,7 +491,7 @@ TEST(Fog, IsTheShareOfTheRulesBeyondItsStart) {
   map.colors(0, 0) = {255, 100, 0, 255};
   const Terrain flat(map);
   for (const double start : {0.0, 60.0}) {
-    TerrainOptions options = size(3, 200);
+    TerrainLook options = size(3, 200);
     options.fog = {0.01, start, Rgba8{0, 200, 255, 255}};
     options.scale_px = 100;
     const Picture picture(flat, {.altitude = 30, .horizon_px = 20}, options);
@@ -511,7 +512,7 @@ TEST(OddInput, FlatGroundFillsTheRowsBelowTheHorizon) {
   for (const float height : {0.0F, -500.0F, 1e6F}) {
     HeightMap map{Image<float>(5, 3), {}};
     for (float& h : map.heights.pixels()) h = height;
-    TerrainOptions options = size(40, 60);
+    TerrainLook options = size(40, 60);
     options.distance = 1e5;
     options.step = 0.25;
     const Picture picture(Terrain(std::move(map)),
@@ -527,7 +528,7 @@ TEST(Steps, ArePixelsHighWithTheBilinearFilter) {
   const Terrain flat(HeightMap{Image<float>(4, 4), {}});
   for (const double fov : {0.4, kPi / 2, 2.2})
     for (const double altitude : {2.0, 20.0, 300.0}) {
-      TerrainOptions options = size(64, 240);
+      TerrainLook options = size(64, 240);
       options.filter = MapFilter::bilinear;
       options.step = 0;
       options.fov_rad = fov;
@@ -550,7 +551,7 @@ TEST(Steps, ArePixelsHighWithTheBilinearFilter) {
 TEST(Steps, OfOtherFiltersAreCellsWhereTheyAreLeftOpen) {
   const Terrain flat(HeightMap{Image<float>(4, 4), {}});
   for (const MapFilter filter : {MapFilter::none, MapFilter::mip}) {
-    TerrainOptions options = size(64, 40);
+    TerrainLook options = size(64, 40);
     options.filter = filter;
     const auto own = set_up(options, {}, flat).slices;
     options.step = 0;
@@ -561,7 +562,7 @@ TEST(Steps, OfOtherFiltersAreCellsWhereTheyAreLeftOpen) {
       EXPECT_EQ(open[k].level, own[k].level);
     }
   }
-  TerrainOptions narrow = size(32768, 40);
+  TerrainLook narrow = size(32768, 40);
   narrow.filter = MapFilter::bilinear;
   narrow.step = 0;
   narrow.fov_rad = 1e-4;
@@ -575,7 +576,7 @@ TEST(OddInput, HolesLetThroughWhatLiesBehind) {
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x)
       map.heights(x, y) = y == 20 ? 100.0F : y < 60 && y > 30 ? kNaN : 0.0F;
-  TerrainOptions options = size(32, 100);
+  TerrainLook options = size(32, 100);
   options.tiling = Tiling::clamp;
   const TerrainCamera camera{.x = 32, .y = 62, .altitude = 10, .horizon_px = 50};
   const Picture picture(Terrain(map), camera, options);
@@ -588,7 +589,7 @@ TEST(OddInput, HolesLetThroughWhatLiesBehind) {
 
 TEST(OddInput, UnderTheGroundOneSeesOnlyGround) {
   const Terrain flat(HeightMap{Image<float>(8, 8), {}});
-  TerrainOptions options = size(16, 16);
+  TerrainLook options = size(16, 16);
   const Picture under(flat, {.altitude = -20, .horizon_px = 8}, options);
   for (const float depth : under.depth.pixels()) EXPECT_EQ(depth, 1);
   options.ground_clearance = 10;
@@ -600,7 +601,7 @@ TEST(OddInput, UnderTheGroundOneSeesOnlyGround) {
 TEST(OddInput, HighAndFarCamerasAndLongViews) {
   std::mt19937 random(9);
   const Terrain terrain(test::random_map(48, 80, random));
-  TerrainOptions options = size(64, 64);
+  TerrainLook options = size(64, 64);
   options.distance = 1e6;
   options.dz = 0.01;
   const Picture high(terrain, {.altitude = 1e6, .horizon_px = 0}, options);
@@ -615,7 +616,7 @@ TEST(OddInput, HighAndFarCamerasAndLongViews) {
 }
 
 TEST(OddInput, IsRefusedWithTheOptionsName) {
-  TerrainOptions options = size(8, 8);
+  TerrainLook options = size(8, 8);
   EXPECT_EQ(message_of(options), "");
   options.width = 0;
   EXPECT_NE(message_of(options).find("size 0x8"), std::string::npos);
@@ -654,19 +655,18 @@ TEST(OddInput, InstructionSetsThatAreNotThereAreRefused) {
 }
 
 TEST(OddInput, EnumsWithoutAValueAreRefused) {
-  const auto expect = [](const char* part, const std::function<void(TerrainOptions&)>& change) {
-    TerrainOptions options = size(8, 8);
+  const auto expect = [](const char* part, const std::function<void(TerrainLook&)>& change) {
+    TerrainLook options = size(8, 8);
     change(options);
     const std::string message = message_of(options);
     EXPECT_NE(message.find(part), std::string::npos) << part << ": '" << message << "'";
   };
-  expect("filter is 200", [](TerrainOptions& o) { o.filter = static_cast<MapFilter>(200); });
-  expect("tiling is 200", [](TerrainOptions& o) { o.tiling = static_cast<Tiling>(200); });
-  expect("projection is 200",
-         [](TerrainOptions& o) { o.projection = static_cast<Projection>(200); });
-  expect("method is 200", [](TerrainOptions& o) { o.method = static_cast<Method>(200); });
-  expect("device is 200", [](TerrainOptions& o) { o.device = static_cast<Device>(200); });
-  expect("isa is 200", [](TerrainOptions& o) { o.isa = static_cast<Isa>(200); });
+  expect("filter is 200", [](TerrainLook& o) { o.filter = static_cast<MapFilter>(200); });
+  expect("tiling is 200", [](TerrainLook& o) { o.tiling = static_cast<Tiling>(200); });
+  expect("projection is 200", [](TerrainLook& o) { o.projection = static_cast<Projection>(200); });
+  expect("method is 200", [](TerrainLook& o) { o.method = static_cast<Method>(200); });
+  expect("device is 200", [](TerrainLook& o) { o.device = static_cast<Device>(200); });
+  expect("isa is 200", [](TerrainLook& o) { o.isa = static_cast<Isa>(200); });
 }
 
 TEST(Targets, AreOfTheFramesSizeAndMayLieUpsideDown) {
@@ -675,14 +675,14 @@ TEST(Targets, AreOfTheFramesSizeAndMayLieUpsideDown) {
   const TerrainCamera camera{.altitude = 300, .horizon_px = 5};
   for (const Device device : {Device::serial, Device::threads}) {
     for (const double roll : {0.0, 0.3}) {
-      TerrainOptions options = size(61, 40);
+      TerrainLook options = size(61, 40);
       options.device = device;
       TerrainCamera rolled = camera;
       rolled.roll_rad = roll;
       const Picture upright(terrain, rolled, options);
       Image<Rgba8> colors(61, 40);
       Image<float> depth(61, 40);
-      TerrainRenderer renderer(options);
+      TerrainPainter renderer(options);
       renderer.render(terrain, rolled,
                       {{&colors(0, 39), 61, 40, -61}, {&depth(0, 39), 61, 40, -61}});
       for (int y = 0; y < 40; ++y)
@@ -714,7 +714,7 @@ TEST(OddInput, LargeMaps) {
   map.heights(16383, 16380) = 1000;
   map.colors(0, 0) = {1, 2, 3, 255};
   const Terrain terrain(std::move(map));
-  TerrainOptions options = size(64, 48);
+  TerrainLook options = size(64, 48);
   options.distance = 100;
   const Picture picture(terrain, {.x = 16383.5, .y = 16400.5, .altitude = 20, .horizon_px = 24},
                         options);

@@ -69,6 +69,27 @@ class CheckIncludes(unittest.TestCase):
         self.write("rastrum/render/bad.cpp", "#include <apps/rastrum/options.hpp>\n")
         self.assert_caught("rastrum/render/bad.cpp:1", "may not include <apps/rastrum/options.hpp>")
 
+    def test_public_headers_belong_to_floors(self):
+        self.write("rastrum/vec.hpp", "#include <cmath>\n#include <rastrum/config.hpp>\n")
+        self.write("rastrum/scene/a.hpp", "#include <rastrum/vec.hpp>\n")
+        self.write("apps/rastrum/main.cpp", "#include <rastrum/render.hpp>\n")
+        self.assertEqual(check(self.root), (0, ""))
+        self.write("rastrum/scene/bad.hpp", "#include <rastrum/render.hpp>\n")
+        self.assert_caught("rastrum/scene/bad.hpp:1", "scene may not include render")
+
+    def test_public_headers_include_what_is_installed(self):
+        for bad in ("rastrum/core/vec.hpp", "tbb/task.h"):
+            self.write("rastrum/vec.hpp", f"#include <cmath>\n#include <{bad}>\n")
+            self.assert_caught("rastrum/vec.hpp:2", f"may not include <{bad}>")
+
+    def test_unknown_public_header(self):
+        self.write("rastrum/more.hpp", "")
+        self.assert_caught("rastrum/more.hpp:1", "does not know")
+
+    def test_programs_include_public_headers(self):
+        self.write("examples/bad.cpp", "#include <rastrum/raster/frame/driver.hpp>\n")
+        self.assert_caught("examples/bad.cpp:1", "no public header")
+
     def test_unknown_floor(self):
         self.write("rastrum/utils/a.hpp", "")
         self.assert_caught("rastrum/utils/a.hpp", "is no floor")

@@ -5,11 +5,12 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/cuda_test.hpp"
 #include "tests/support/layer_picture.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
@@ -42,7 +43,7 @@ TEST_F(CudaLayeredFrame, EqualsTheThreads) {
     o.opacity = way.opacity;
     RenderOptions on_cuda = o;
     on_cuda.device = Device::cuda;
-    Renderer threads(o), cuda(on_cuda);
+    Painter threads(o), cuda(on_cuda);
     for (int i = 0; i < 2 * kSceneKinds; ++i) {
       const GeneratedScene g = generate(static_cast<std::uint64_t>(i), way.width, way.height);
       SCOPED_TRACE(std::to_string(i).append(", ").append(g.kind));
@@ -70,11 +71,11 @@ TEST_F(CudaLayeredFrame, AMemoryLimitChangesNothing) {
   RenderOptions o = options(128, 200, Device::cuda);
   o.shader = Shader::flat;
   const SceneBinding binding(scene);
-  Renderer free(o);
+  Painter free(o);
   const LayerPicture expected = take(free, binding.view(), camera);
   EXPECT_EQ(expected.counter("turns"), 1U);
   o.memory_limit = std::uint64_t{3} << 20;
-  Renderer limited(o);
+  Painter limited(o);
   const LayerPicture frame = take(limited, binding.view(), camera);
   EXPECT_TRUE(same_bits(frame, expected));
   EXPECT_GT(frame.counter("turns"), frame.counter("bands"));
@@ -84,7 +85,7 @@ TEST_F(CudaLayeredFrame, AMemoryLimitChangesNothing) {
   EXPECT_EQ(frame.counter("translucent fragments"), expected.counter("translucent fragments"));
   o.memory_limit = 0;
   o.device = Device::threads;
-  Renderer threads(o);
+  Painter threads(o);
   EXPECT_TRUE(same_bits(take(threads, binding.view(), camera), expected));
 }
 
@@ -97,7 +98,7 @@ TEST_F(CudaLayeredFrame, TheRestIsTheCPUs) {
   const auto why = [&](const RenderOptions& o) {
     RenderOptions on_threads = o;
     on_threads.device = Device::threads;
-    Renderer cuda(o), threads(on_threads);
+    Painter cuda(o), threads(on_threads);
     const LayerPicture frame = take(cuda, binding.view(), camera);
     EXPECT_TRUE(same_bits(frame, take(threads, binding.view(), camera)));
     EXPECT_EQ(frame.stats.device, Device::threads);

@@ -10,11 +10,11 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/raster/assemble/assemble.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/frame/frame.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 #include <rastrum/transparency/cuda/device_layers.hpp>
 
 #include "tests/cuda/layers_on_device.hpp"
@@ -22,6 +22,7 @@
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_program.hpp"
 #include "tests/support/layer_scenes.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 
 #if !defined(RASTRUM_TEST_DEVICE_WORDS)
@@ -173,7 +174,7 @@ TEST_F(CudaLayers, EqualTheHostInEveryTierAndBudget) {
       const LayerScene scene = scene_of(seed, width, height, 100000);
       SCOPED_TRACE("scene " + std::to_string(seed) + " (" + scene.kind + ")");
       LayerProgram program(scene, width, height);
-      Renderer renderer(host_options(width, height, i % 4 == 0 ? Device::serial : Device::threads));
+      Painter renderer(host_options(width, height, i % 4 == 0 ? Device::serial : Device::threads));
       const LayerPicture host = take(renderer, program);
       const LayersFrame start = frame_of(scene, program, width, height);
       for (const Way& way : kWays) {
@@ -218,7 +219,7 @@ TEST_F(CudaLayers, UnsortedAndThresholdsEqualTheHost) {
       const LayerScene scene = scene_of(static_cast<std::uint64_t>(i), width, height, 30000);
       SCOPED_TRACE(scene.kind);
       LayerProgram program(scene, width, height);
-      Renderer renderer(host_options(width, height, Device::serial, method));
+      Painter renderer(host_options(width, height, Device::serial, method));
       const LayerPicture host = take(renderer, program);
       const LayersFrame start = frame_of(scene, program, width, height);
       for (const Way& way : kWays) {
@@ -235,7 +236,7 @@ TEST_F(CudaLayers, DeepStacksGoThroughTheDevicesMemory) {
   const int size = 16;
   const LayerScene scene = layer_stack(5, 2000, 0.01, size, size);
   LayerProgram program(scene, size, size);
-  Renderer renderer(host_options(size, size, Device::threads));
+  Painter renderer(host_options(size, size, Device::threads));
   const LayerPicture host = take(renderer, program);
   for (const std::uint64_t bytes : {std::uint64_t{0}, std::uint64_t{1} << 16}) {
     LayersFrame f = frame_of(scene, program, size, size);

@@ -7,13 +7,14 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/cuda_test.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/layer_picture.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
@@ -49,9 +50,9 @@ TEST_P(CudaSampled, OpaqueSurfacesEqualSerial) {
     RenderOptions o = options(way.width, way.height, GetParam(), Device::serial);
     o.shader = way.shader;
     o.cull = way.cull;
-    Renderer serial(o);
+    Painter serial(o);
     o.device = Device::cuda;
-    Renderer cuda(o);
+    Painter cuda(o);
     for (int i = 0; i < scene_count(); ++i) {
       const GeneratedScene g = generate(static_cast<std::uint64_t>(i), way.width, way.height);
       SCOPED_TRACE(std::to_string(i).append(", ").append(g.kind));
@@ -83,11 +84,11 @@ TEST_P(CudaSampled, LayersEqualSerial) {
     o.opacity = way.opacity;
     o.transparency.method = way.method;
     o.transparency.alpha_threshold = way.alpha_threshold;
-    Renderer serial(o);
+    Painter serial(o);
     o.device = Device::threads;
-    Renderer threads(o);
+    Painter threads(o);
     o.device = Device::cuda;
-    Renderer cuda(o);
+    Painter cuda(o);
     for (int i = 0; i < scene_count(); ++i) {
       const GeneratedScene g = generate(static_cast<std::uint64_t>(i), way.width, way.height);
       SCOPED_TRACE(std::to_string(i).append(", ").append(g.kind));
@@ -123,7 +124,7 @@ TEST_P(CudaSampled, SizesAndMemoryChangeNothing) {
     RenderOptions o = options(kWidth, kHeight, GetParam(), Device::threads);
     o.shader = Shader::flat;
     o.opacity = opacity;
-    Renderer threads(o);
+    Painter threads(o);
     const LayerPicture expected = take(threads, binding.view(), camera);
     o.device = Device::cuda;
     struct Cut {
@@ -134,7 +135,7 @@ TEST_P(CudaSampled, SizesAndMemoryChangeNothing) {
       o.tuning.small_px = cut.small_px;
       o.tuning.large_px = cut.large_px;
       o.memory_limit = cut.limit;
-      Renderer cuda(o);
+      Painter cuda(o);
       const LayerPicture frame = take(cuda, binding.view(), camera);
       ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
       EXPECT_TRUE(same_bits(frame, expected)) << cut.small_px << ", " << cut.limit;
@@ -158,12 +159,12 @@ TEST_F(CudaSamples, PartsOfABandEqualTheWhole) {
   RenderOptions o = options(100, 100, 4, Device::cuda);
   o.shader = Shader::flat;
   o.opacity = 0.4F;
-  Renderer free(o);
+  Painter free(o);
   o.memory_limit = 3000000;
-  Renderer limited(o);
+  Painter limited(o);
   o.memory_limit = 0;
   o.device = Device::threads;
-  Renderer threads(o);
+  Painter threads(o);
   const LayerPicture expected = take(threads, binding.view(), camera);
   const LayerPicture whole = take(free, binding.view(), camera);
   const LayerPicture frame = take(limited, binding.view(), camera);
@@ -184,9 +185,9 @@ TEST_F(CudaSamples, DeepBlocksEqualTheThreads) {
   RenderOptions o = options(28, 20, 4, Device::cuda);
   o.shader = Shader::flat;
   o.opacity = 0.1F;
-  Renderer cuda(o);
+  Painter cuda(o);
   o.device = Device::threads;
-  Renderer threads(o);
+  Painter threads(o);
   const LayerPicture frame = take(cuda, binding.view(), camera);
   const LayerPicture expected = take(threads, binding.view(), camera);
   EXPECT_TRUE(same_bits(frame, expected));

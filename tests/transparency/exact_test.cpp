@@ -13,14 +13,15 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_program.hpp"
 #include "tests/support/layer_scenes.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 
 namespace rastrum::test {
@@ -98,11 +99,11 @@ std::uint64_t seed_of(const Size& size, int i) {
 
 TEST_P(Exact, EqualsTheOracleEverywhere) {
   const Size size = GetParam();
-  std::vector<std::vector<std::pair<std::string, Renderer>>> by_isa;
+  std::vector<std::vector<std::pair<std::string, Painter>>> by_isa;
   for (const Isa isa : available_isas()) {
     auto& family = by_isa.emplace_back();
     for (const Relative& r : relatives(options(size), isa))
-      family.emplace_back(r.name, Renderer(r.options));
+      family.emplace_back(r.name, Painter(r.options));
   }
   int failures = 0;
   std::uint32_t most_layers = 0;
@@ -162,7 +163,7 @@ TEST_P(Exact, EqualsTheOracleEverywhere) {
 // The surfaces of a translucent picture are those of the opaque one.
 TEST_P(Exact, IdsAndDepthAreThoseOfOpaqueSurfaces) {
   const Size size = GetParam();
-  Renderer renderer(options(size));
+  Painter renderer(options(size));
   for (int i = 0; i < 4 * kLayerKinds; ++i) {
     LayerScene scene = generate_layers(seed_of(size, i), size.width, size.height);
     SCOPED_TRACE(scene.kind);
@@ -194,7 +195,7 @@ LayerScene reordered(const LayerScene& scene, const std::vector<std::size_t>& or
 
 TEST_P(Exact, OrderOfSubmissionDecidesOnlyTies) {
   const Size size = GetParam();
-  Renderer renderer(options(size));
+  Painter renderer(options(size));
   std::uint64_t compared = 0, tied = 0, seen = 0;
   for (int i = 0; i < 4 * kLayerKinds; ++i) {
     LayerScene scene = generate_layers(seed_of(size, i), size.width, size.height);
@@ -238,12 +239,12 @@ TEST_P(Exact, OrderOfSubmissionDecidesOnlyTies) {
 // Twice the same renderer, and one that has drawn other things before.
 TEST_P(Exact, NothingOfAnEarlierFrameIsLeft) {
   const Size size = GetParam();
-  Renderer used(options(size));
+  Painter used(options(size));
   for (int i = 0; i < 2 * kLayerKinds; ++i) {
     const LayerScene scene = generate_layers(seed_of(size, i), size.width, size.height);
     SCOPED_TRACE(scene.kind);
     LayerProgram program(scene, size.width, size.height);
-    Renderer fresh(options(size));
+    Painter fresh(options(size));
     const LayerPicture expected = take(fresh, program);
     const LayerPicture first = take(used, program), again = take(used, program);
     EXPECT_TRUE(same_bits(first, expected));
@@ -275,7 +276,7 @@ TEST(ExactBins, DenseOnesEqualTheOracle) {
   LayerProgram program(scene, size.width, size.height);
   for (const Isa isa : available_isas())
     for (const Relative& relative : relatives(options(size), isa)) {
-      Renderer renderer(relative.options);
+      Painter renderer(relative.options);
       ASSERT_TRUE(equals_oracle(take(renderer, program), oracle)) << relative.name;
     }
 }
@@ -286,7 +287,7 @@ TEST(ExactColours, ColourWithoutAlphaIsAdded) {
   LayerScene scene = layer_stack(3, 3, 0.5, size.width, size.height);
   for (std::size_t i = 0; i < scene.size(); ++i) scene.colors[i] = {0.25F, 0, 0.125F, 0};
   LayerProgram program(scene, size.width, size.height);
-  Renderer renderer(options(size));
+  Painter renderer(options(size));
   const LayerPicture picture = take(renderer, program);
   EXPECT_EQ(picture.color(5, 5).x, 0.75F);
   EXPECT_EQ(picture.color(5, 5).y, 0.0F);
@@ -301,7 +302,7 @@ TEST(ExactColours, FaintLayersKeepTheirHue) {
     LayerScene scene = layer_stack(4, 5, 0.5, size.width, size.height);
     for (Vec4& color : scene.colors) color = {0.8F * alpha, 0.4F * alpha, 0.2F * alpha, alpha};
     LayerProgram program(scene, size.width, size.height);
-    Renderer renderer(options(size));
+    Painter renderer(options(size));
     const LayerPicture picture = take(renderer, program);
     const Rgba8 c = picture.color8(5, 5);
     EXPECT_EQ((Rgba8{204, 102, 51, c.a}), c) << alpha;

@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/io/io.hpp>
+#include <rastrum/io.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
@@ -22,13 +22,14 @@
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/texture.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/directories.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/materials.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/real_meshes.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -191,7 +192,7 @@ void expect_exact(const SceneView& scene, const Camera& camera, RenderOptions o,
     o.rasterizer = "grouped";
     o.threads = 2;
     const LayerPicture picture = [&] {
-      Renderer renderer(o);
+      Painter renderer(o);
       return take(renderer, scene, camera);
     }();
     ASSERT_TRUE(equals_oracle(picture, oracle,
@@ -199,7 +200,7 @@ void expect_exact(const SceneView& scene, const Camera& camera, RenderOptions o,
         << name(isa);
     o.rasterizer = "tiled";
     o.threads = 8;
-    Renderer renderer(o);
+    Painter renderer(o);
     ASSERT_TRUE(same_bits(take(renderer, scene, camera), picture)) << name(isa);
   }
 }
@@ -253,7 +254,7 @@ TEST(Facade, GeneratedScenesEqualTheOracle) {
     for (const Isa isa : available_isas()) {
       o.isa = isa;
       o.threads = i % 2 == 0 ? 2 : 8;
-      Renderer renderer(o);
+      Painter renderer(o);
       const auto r = equals_oracle(take(renderer, binding.view(), layers.camera), oracle);
       EXPECT_TRUE(r) << name(isa);
       if (!r && ++failures == 3) FAIL() << "three frames failed; the rest was not drawn";

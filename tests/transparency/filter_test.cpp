@@ -12,13 +12,14 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_program.hpp"
 #include "tests/support/layer_scenes.hpp"
+#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 namespace {
@@ -52,7 +53,7 @@ std::string title(int i, const LayerScene& scene) {
 
 TEST(Unsorted, EqualsTheOracleThatBlendsAsSubmitted) {
   RenderOptions o = options(Transparency::unsorted);
-  std::vector<Renderer> renderers;
+  std::vector<Painter> renderers;
   for (const Isa isa : available_isas())
     for (const char* const rasterizer : {"grouped", "tiled"})
       for (const int threads : {1, 8}) {
@@ -71,7 +72,7 @@ TEST(Unsorted, EqualsTheOracleThatBlendsAsSubmitted) {
     for (std::size_t p = 0; p < oracle.color.size(); ++p)
       unlike_exact += std::abs(oracle.color[p].r - exact.color[p].r) > 0.01;
     LayerProgram program(scene, kWidth, kHeight);
-    for (Renderer& renderer : renderers)
+    for (Painter& renderer : renderers)
       ASSERT_TRUE(equals_oracle(take(renderer, program), oracle))
           << renderer.options().rasterizer << " " << name(*renderer.options().isa) << " "
           << renderer.options().threads;
@@ -80,13 +81,13 @@ TEST(Unsorted, EqualsTheOracleThatBlendsAsSubmitted) {
 }
 
 TEST(DepthFilter, IsRightWhereItMarksNothing) {
-  Renderer exact(options(Transparency::exact));
+  Painter exact(options(Transparency::exact));
   // Blocks of more fragments than memory go by planes, which are filtered and then repaired.
   RenderOptions with_little_memory = options(Transparency::exact);
   with_little_memory.memory_limit = kLittleMemory;
-  Renderer repairing(with_little_memory);
+  Painter repairing(with_little_memory);
   const int sizes[] = {1, 3, 8, 64};
-  std::vector<Renderer> filters;
+  std::vector<Painter> filters;
   for (const int k : sizes) filters.emplace_back(options(Transparency::filter, k));
   std::uint64_t wrong[4] = {}, differing = 0, repaired = 0;
   for (int i = 0; i < scene_count(); ++i) {
@@ -143,9 +144,9 @@ TEST(DepthFilter, MarksDoNotDependOnThreads) {
     o.height = kHigh;
     o.rasterizer = rasterizer;
     o.threads = 1;
-    Renderer one(o);
+    Painter one(o);
     o.threads = 8;
-    Renderer eight_threads(o);
+    Painter eight_threads(o);
     std::uint64_t marked = 0;
     for (int i = 0; i < 2 * kLayerKinds; ++i) {
       const LayerScene scene =
@@ -163,12 +164,12 @@ TEST(DepthFilter, MarksDoNotDependOnThreads) {
 
 // What a pixel that is nearly opaque still lets through is all that a threshold may take.
 TEST(AlphaThreshold, CostsNoMoreThanItLetsThrough) {
-  Renderer exact(options(Transparency::exact));
+  Painter exact(options(Transparency::exact));
   std::uint64_t changed = 0;
   for (const float threshold : {1 - 1.0F / 128, 0.75F}) {
     RenderOptions o = options(Transparency::exact);
     o.transparency.alpha_threshold = threshold;
-    Renderer early(o);
+    Painter early(o);
     const double through = 1 - double{threshold};
     for (int i = 0; i < scene_count(); ++i) {
       const LayerScene scene = scene_of(i);
@@ -233,9 +234,9 @@ TEST(AlphaThreshold, LeavesOutTheSameLayersHoweverTheyAreShaded) {
   std::uint64_t all = 0, said = 0, not_said = 0;
   for (const float threshold : {1 - 1.0F / 128, 0.75F}) {
     RenderOptions o = options(Transparency::exact);
-    Renderer exact(o);
+    Painter exact(o);
     o.transparency.alpha_threshold = threshold;
-    std::vector<Renderer> renderers;
+    std::vector<Painter> renderers;
     for (const Isa isa : available_isas()) {
       o.isa = isa;
       renderers.emplace_back(o);
@@ -245,13 +246,13 @@ TEST(AlphaThreshold, LeavesOutTheSameLayersHoweverTheyAreShaded) {
     renderers.emplace_back(o);
     o.memory_limit = 0;
     o.device = Device::serial;
-    Renderer serial(o);
+    Painter serial(o);
     for (int i = 0; i < kLayerKinds; ++i) {
       const LayerScene scene = scene_of(i);
       SCOPED_TRACE(title(i, scene));
       LayerProgram program(scene, kWidth, kHeight);
       const LayerPicture own = take(serial, program);
-      for (Renderer& renderer : renderers) EXPECT_TRUE(same_bits(take(renderer, program), own));
+      for (Painter& renderer : renderers) EXPECT_TRUE(same_bits(take(renderer, program), own));
       const OneAlpha says(program.shader(), kAlphas[i % 5], true);
       const OneAlpha is_silent(program.shader(), kAlphas[i % 5], false);
       const OneAlpha everywhere(program.shader(), kAlphas[i % 5], true);
@@ -260,7 +261,7 @@ TEST(AlphaThreshold, LeavesOutTheSameLayersHoweverTheyAreShaded) {
       (void)take(exact, program, everywhere);
       const std::uint64_t exactly = everywhere.shaded() - before;
       all += exactly * renderers.size();
-      for (Renderer& renderer : renderers) {
+      for (Painter& renderer : renderers) {
         EXPECT_TRUE(same_bits(take(renderer, program, says), expected)) << kAlphas[i % 5];
         EXPECT_TRUE(same_bits(take(renderer, program, is_silent), expected)) << kAlphas[i % 5];
       }
@@ -281,7 +282,7 @@ TEST(AlphaThreshold, LeavesOutTheSameLayersHoweverTheyAreShaded) {
 }
 
 TEST(TransparencyOptions, NoneDrawsTranslucentSurfacesOpaque) {
-  Renderer none(options(Transparency::none)), exact(options(Transparency::exact));
+  Painter none(options(Transparency::none)), exact(options(Transparency::exact));
   for (int i = 0; i < kLayerKinds; ++i) {
     const LayerScene scene = scene_of(i);
     SCOPED_TRACE(title(i, scene));

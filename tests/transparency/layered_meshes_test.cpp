@@ -10,15 +10,16 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/io/io.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/directories.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_program.hpp"
 #include "tests/support/layer_scenes.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/real_meshes.hpp"
 #include "tests/support/scenes.hpp"
@@ -78,7 +79,7 @@ void expect_exact(LayerScene scene, std::uint32_t least_depth) {
       o.rasterizer = "grouped";
       o.threads = 2;
       const LayerPicture picture = [&] {
-        Renderer renderer(o);
+        Painter renderer(o);
         return take(renderer, program);
       }();
       ASSERT_TRUE(equals_oracle(picture, oracle)) << name(isa);
@@ -88,7 +89,7 @@ void expect_exact(LayerScene scene, std::uint32_t least_depth) {
       EXPECT_EQ(picture.counter("repaired pixels"), picture.error_pixels());
       o.rasterizer = "tiled";
       o.threads = 8;
-      Renderer renderer(o);
+      Painter renderer(o);
       ASSERT_TRUE(same_bits(take(renderer, program), picture)) << name(isa);
     }
   }

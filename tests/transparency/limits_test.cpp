@@ -9,14 +9,15 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/render/render.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_program.hpp"
 #include "tests/support/layer_scenes.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 
 namespace rastrum::test {
@@ -35,7 +36,7 @@ RenderOptions options(int size, std::uint64_t limit, int threads, const char* ra
 }
 
 /// The frame, which keeps to the limit; nothing where it was refused because no part of it fits.
-std::optional<LayerPicture> take_within(Renderer& renderer, LayerProgram& program) {
+std::optional<LayerPicture> take_within(Painter& renderer, LayerProgram& program) {
   const std::uint64_t limit = renderer.options().memory_limit;
   try {
     LayerPicture picture = take(renderer, program);
@@ -56,14 +57,14 @@ TEST(Limits, TenThousandLayers) {
   const LayerImage oracle = blend_layers(question.input(), LayerOrder::depth);
   ASSERT_EQ(oracle.most_layers(), static_cast<std::uint32_t>(layers));
   LayerProgram program(scene, kSize, kSize);
-  Renderer free(options(kSize, 0, 2, "auto"));
+  Painter free(options(kSize, 0, 2, "auto"));
   const LayerPicture expected = take(free, program);
   EXPECT_TRUE(equals_oracle(expected, oracle));
   EXPECT_EQ(expected.counter("deepest"), static_cast<std::uint64_t>(layers));
   for (const char* const rasterizer : {"grouped", "tiled"})
     for (const std::uint64_t limit : {4 * kMebi, 16 * kMebi, 192 * kMebi}) {
       SCOPED_TRACE(std::string(rasterizer).append(", ").append(std::to_string(limit)));
-      Renderer limited(options(kSize, limit, 2, rasterizer));
+      Painter limited(options(kSize, limit, 2, rasterizer));
       const auto picture = take_within(limited, program);
       if (picture) {
         EXPECT_TRUE(same_bits(*picture, expected));
@@ -94,8 +95,8 @@ LayerScene many_triangles(int count) {
 TEST(Limits, LittleMemoryChangesNoPixel) {
   constexpr int kSize = 160;
   constexpr std::uint64_t kLimit = 5 * kMebi;
-  Renderer free(options(kSize, 0, 2, "auto"));
-  std::vector<Renderer> limited;
+  Painter free(options(kSize, 0, 2, "auto"));
+  std::vector<Painter> limited;
   for (const char* const rasterizer : {"grouped", "tiled"})
     for (const int threads : {2, 8})
       limited.emplace_back(options(kSize, kLimit, threads, rasterizer));
@@ -104,7 +105,7 @@ TEST(Limits, LittleMemoryChangesNoPixel) {
     LayerProgram program(scene, kSize, kSize);
     const LayerPicture expected = take(free, program);
     EXPECT_GE(expected.stats.peak_bytes, least);
-    for (Renderer& renderer : limited) {
+    for (Painter& renderer : limited) {
       const auto picture = take_within(renderer, program);
       if (picture) {
         ASSERT_TRUE(same_bits(*picture, expected)) << renderer.options().rasterizer;
@@ -133,7 +134,7 @@ TEST(Limits, TenThousandLayersAt512) {
   const LayerImage oracle = blend_layers(one_pixel, LayerOrder::depth);
   ASSERT_EQ(oracle.most_layers(), static_cast<std::uint32_t>(kLayers));
   LayerProgram program(scene, kSize, kSize);
-  Renderer renderer(options(kSize, kLimit, 2, "auto"));
+  Painter renderer(options(kSize, kLimit, 2, "auto"));
   const LayerPicture picture = take(renderer, program);
   EXPECT_LE(picture.stats.peak_bytes, kLimit);
   // The bound on colours would let a few layers of so many vanish.

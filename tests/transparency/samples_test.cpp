@@ -11,15 +11,16 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/raster/draws/program.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/program.hpp>
 #include <rastrum/raster/draws/samples.hpp>
-#include <rastrum/render/render.hpp>
+#include <rastrum/render.hpp>
 
 #include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_program.hpp"
 #include "tests/support/layer_scenes.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
@@ -57,7 +58,7 @@ class Samples : public testing::TestWithParam<int> {
  protected:
   void SetUp() override {
     try {
-      Renderer probe(options({8, 8}, GetParam()));
+      Painter probe(options({8, 8}, GetParam()));
     } catch (const Error& e) {
       GTEST_SKIP() << "no " << GetParam() << " samples here: " << e.what();
     }
@@ -70,7 +71,7 @@ class Samples : public testing::TestWithParam<int> {
     int failures = 0;
     std::uint64_t partly = 0;
     for (const Size size : kSizes) {
-      std::vector<std::vector<std::pair<std::string, Renderer>>> by_isa;
+      std::vector<std::vector<std::pair<std::string, Painter>>> by_isa;
       for (const Isa isa : available_isas()) {
         auto& family = by_isa.emplace_back();
         for (const auto& [rasterizer, threads] :
@@ -82,7 +83,7 @@ class Samples : public testing::TestWithParam<int> {
           o.threads = threads;
           std::string title = rasterizer;
           title.append(", ").append(std::to_string(threads)).append(", ").append(name(isa));
-          family.emplace_back(std::move(title), Renderer(o));
+          family.emplace_back(std::move(title), Painter(o));
         }
       }
       for (int i = 0; i < scenes; ++i) {
@@ -138,9 +139,9 @@ TEST_P(Serial, EqualsTheOracleAndThreads) {
     o.transparency.method = method;
     o.isa = Isa::scalar;
     o.threads = 2;
-    Renderer threads(o);
+    Painter threads(o);
     o.device = Device::serial;
-    Renderer serial(o);
+    Painter serial(o);
     const LayerOrder order =
         method == Transparency::exact ? LayerOrder::depth : LayerOrder::submission;
     for (int i = 0; i < scenes; ++i) {
@@ -214,7 +215,7 @@ TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
     targets.keys = p.keys.view();
     targets.overdraw = p.overdraw.view();
     targets.extra = extra;
-    Renderer(o).draw({&d, 1}, targets);
+    Painter(o).draw({&d, 1}, targets);
     return p;
   };
   for (const Device device : {Device::serial, Device::threads}) {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::cli::window {
 

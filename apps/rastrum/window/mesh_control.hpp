@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include <rastrum/scene/camera.hpp>
+#include <rastrum/camera.hpp>
 
 #include "event.hpp"
 #include "view.hpp"

@@ -14,9 +14,9 @@
 namespace rastrum::cli::window {
 namespace {
 
-std::vector<std::string> with_auto(const std::vector<AxisInfo>& axis) {
+std::vector<std::string> with_auto(const std::vector<family::AxisInfo>& axis) {
   std::vector<std::string> names{"auto"};
-  for (const AxisInfo& info : axis) names.push_back(info.name);
+  for (const family::AxisInfo& info : axis) names.push_back(info.name);
   return names;
 }
 
@@ -51,7 +51,7 @@ bool choose_samples(int& samples) {
   return true;
 }
 
-bool choose_threads(RenderOptions& r) {
+bool choose_threads(RendererOptions& r) {
   static const int most = parallel::Threads(0).concurrency();
   bool serial = r.device == Device::serial;
   bool changed = ImGui::Checkbox("serial reference device", &serial);
@@ -69,10 +69,10 @@ bool choose_threads(RenderOptions& r) {
 
 void draw_mesh_controls(MeshSubject& subject) {
   MeshSubject::Settings s = subject.settings();
-  RenderOptions& r = s.render;
+  family::Options& r = s.render;
   bool changed = choose_shader(r.shader);
-  changed |= choose_name("rasterizer", with_auto(rasterizers()), r.rasterizer);
-  changed |= choose_name("visibility", with_auto(visibilities()), r.visibility);
+  changed |= choose_name("rasterizer", with_auto(family::rasterizer_axis()), r.rasterizer);
+  changed |= choose_name("visibility", with_auto(family::visibility_axis()), r.visibility);
   changed |= ImGui::SliderFloat("opacity", &r.opacity, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp);
   changed |= choose_transparency(r.transparency);
   changed |= choose_samples(r.samples);

@@ -4,9 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 #include "heatmap.hpp"
 #include "progress.hpp"
@@ -59,9 +60,9 @@ std::string next(const std::vector<std::string>& names, const std::string& now, 
   return names[(i + (back ? names.size() - 1 : 1)) % names.size()];
 }
 
-std::vector<std::string> axis_names(const std::vector<AxisInfo>& axis) {
+std::vector<std::string> axis_names(const std::vector<family::AxisInfo>& axis) {
   std::vector<std::string> names{"auto"};
-  for (const AxisInfo& info : axis) names.push_back(info.name);
+  for (const family::AxisInfo& info : axis) names.push_back(info.name);
   return names;
 }
 
@@ -74,37 +75,27 @@ std::shared_ptr<const LoadedScene> load_scene(const SceneArguments& a) {
       load_inputs(a.inputs, a.normals, timeline, progress, a.format));
 }
 
-/// A renderer for the size of moving pictures and one for full ones, so that going from one to the
-/// other costs neither threads nor scratch.
-class MeshSubject::Renderers {
+/// The renderer, made anew where its options or its row change.
+class MeshSubject::Painter {
  public:
-  Renderer& get(const RenderOptions& options, std::uint64_t version) {
-    std::erase_if(kept_, [&](const Kept& k) { return k.version != version; });
-    const auto same_size = [&](const Kept& k) {
-      return k.renderer->options().width == options.width &&
-             k.renderer->options().height == options.height;
-    };
-    auto found = std::find_if(kept_.begin(), kept_.end(), same_size);
-    if (found == kept_.end()) {
-      if (kept_.size() == kMost) kept_.erase(kept_.begin());
-      kept_.push_back({version, std::make_unique<Renderer>(options)});
-      found = kept_.end() - 1;
+  Renderer& get(const RendererOptions& options, const family::Row& row) {
+    if (!renderer_ || options_ != options || row_ != row) {
+      renderer_.reset();
+      renderer_.emplace(family::make_renderer(options, row));
+      options_ = options;
+      row_ = row;
     }
-    std::rotate(found, found + 1, kept_.end());  // the last used is the last to go
-    return *kept_.back().renderer;
+    return *renderer_;
   }
 
  private:
-  static constexpr std::size_t kMost = 2;
-  struct Kept {
-    std::uint64_t version;
-    std::unique_ptr<Renderer> renderer;
-  };
-  std::vector<Kept> kept_;
+  std::optional<Renderer> renderer_;
+  RendererOptions options_;
+  family::Row row_;
 };
 
 MeshSubject::MeshSubject(SceneArguments arguments, std::shared_ptr<const LoadedScene> scene)
-    : control_(Camera{}, {}, true), renderers_(std::make_shared<Renderers>()) {
+    : control_(Camera{}, {}, true), painter_(std::make_shared<Painter>()) {
   settings_.render = arguments.render;
   show(std::move(arguments), std::move(scene));
 }
@@ -149,7 +140,7 @@ void MeshSubject::handle(const Event& event) {
 
 void MeshSubject::change(char key, bool back) {
   Settings s = settings_;
-  RenderOptions& r = s.render;
+  family::Options& r = s.render;
   switch (key) {
     case 'm': {
       std::vector<std::string> names;
@@ -160,10 +151,10 @@ void MeshSubject::change(char key, bool back) {
       break;
     }
     case 'n':
-      r.rasterizer = next(axis_names(rasterizers()), r.rasterizer, back);
+      r.rasterizer = next(axis_names(family::rasterizer_axis()), r.rasterizer, back);
       break;
     case 'v':
-      r.visibility = next(axis_names(visibilities()), r.visibility, back);
+      r.visibility = next(axis_names(family::visibility_axis()), r.visibility, back);
       break;
     case 't': {
       constexpr int kMethods = static_cast<int>(Transparency::none) + 1;
@@ -191,13 +182,13 @@ void MeshSubject::change(char key, bool back) {
 }
 
 std::function<Drawn()> MeshSubject::draw(int width, int height) {
-  RenderOptions options = settings_.render;
+  family::Options options = settings_.render;
   options.width = width;
   options.height = height;
   options.shader = shader_of(options.shader, scene_->has_materials);
-  return [options, heat_map = settings_.heat_map, version = settings_version_, scene = scene_,
-          camera = control_.camera(), renderers = renderers_]() -> Drawn {
-    Renderer& renderer = renderers->get(options, version);
+  return [options, heat_map = settings_.heat_map, scene = scene_, camera = control_.camera(),
+          painter = painter_]() -> Drawn {
+    Renderer& renderer = painter->get(options, options);
     Drawn drawn{Image<Rgba8>(options.width, options.height), options.background.w == 1, {}};
     Image<std::uint32_t> overdraw;
     Targets targets;
@@ -208,7 +199,7 @@ std::function<Drawn()> MeshSubject::draw(int width, int height) {
     }
     Timeline timeline;
     const FrameStats stats =
-        timed_render(renderer, scene->binding.view(), camera, targets, timeline, "frame");
+        timed_render(renderer, scene->binding.view(), camera, options, targets, timeline, "frame");
     drawn.figures = {stats.frame_ms, stats.stages, rows(stats)};
     if (heat_map) {
       Heatmap heat = make_heatmap(overdraw.view());

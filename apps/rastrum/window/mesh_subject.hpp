@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include <rastrum/render/render.hpp>
+#include <rastrum/family.hpp>
 
 #include "camera_path.hpp"
 #include "mesh_control.hpp"
@@ -37,7 +37,7 @@ class MeshSubject final : public Subject {
   /// What the panel changes. Width, height and whatever it does not show stay as the command line
   /// had them.
   struct Settings {
-    RenderOptions render;
+    family::Options render;
     bool heat_map = false;  ///< fragments at each pixel instead of the picture
   };
 
@@ -67,7 +67,7 @@ class MeshSubject final : public Subject {
   [[nodiscard]] static std::span<const KeyHelp> command_keys();
 
  private:
-  class Renderers;  // of the worker's thread
+  class Painter;  // of the worker's thread
   void show(SceneArguments arguments, std::shared_ptr<const LoadedScene> scene);
   /// What `key` stands for becomes the next one, with `back` the one before.
   void change(char key, bool back);
@@ -79,7 +79,7 @@ class MeshSubject final : public Subject {
   Settings settings_;
   std::uint64_t settings_version_ = 1;
   std::uint64_t base_version_ = 0;  ///< so that a new control's versions are new numbers, too
-  std::shared_ptr<Renderers> renderers_;
+  std::shared_ptr<Painter> painter_;
   std::optional<CameraPath> path_;
   std::vector<PathKey> recorded_;
 };

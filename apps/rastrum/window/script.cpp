@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 #include "json_fields.hpp"
 

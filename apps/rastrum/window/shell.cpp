@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 #include "imgui_sdl.hpp"
 #include "panel.hpp"

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include <rastrum/core/image.hpp>
-#include <rastrum/raster/frame/options.hpp>
+#include <rastrum/frame.hpp>
+#include <rastrum/image.hpp>
 
 #include "event.hpp"
 #include "worker.hpp"

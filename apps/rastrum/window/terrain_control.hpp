@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
-#include <rastrum/terrain/options.hpp>
-#include <rastrum/terrain/shadows.hpp>
+#include <rastrum/terrain.hpp>
+#include <rastrum/terrain_light.hpp>
 
 #include "event.hpp"
 

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 #include "progress.hpp"
 
@@ -40,8 +40,7 @@ std::string name_of(const TerrainInput& input) {
 
 }  // namespace
 
-/// What is kept from frame to frame: the map, the light on it, a renderer for moving pictures and
-/// one for full ones.
+/// What is kept from frame to frame: the map, the light on it, the renderer.
 class TerrainSubject::Stage {
  public:
   /// Reads the map unless it is the one that is there.
@@ -60,7 +59,7 @@ class TerrainSubject::Stage {
     source_ = std::move(source);
     name_ = name_of(input);
   }
-  const terrain::Terrain& lit(const terrain::Light& light, const TerrainOptions& o) {
+  const terrain::Terrain& lit(const terrain::Light& light, const TerrainLook& o) {
     const auto key = light_key(light, o);
     if (!lit_ || key != key_) {
       lit_.emplace(source_->lit(light, o));
@@ -68,33 +67,22 @@ class TerrainSubject::Stage {
     }
     return *lit_;
   }
-  terrain::TerrainRenderer& renderer(const TerrainOptions& options, std::uint64_t version) {
-    std::erase_if(kept_, [&](const Kept& k) { return k.version != version; });
-    auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) {
-      const TerrainOptions& o = k.renderer.options();
-      return o.width == options.width && o.height == options.height &&
-             o.distance == options.distance && o.fov_rad == options.fov_rad && o.sky == options.sky;
-    });
-    if (found == kept_.end()) {
-      if (kept_.size() == kMost) kept_.erase(kept_.begin());
-      kept_.push_back({version, terrain::TerrainRenderer(options)});
-      found = kept_.end() - 1;
+  terrain::TerrainRenderer& renderer(const terrain::TerrainRendererOptions& options) {
+    if (!renderer_ || options_ != options) {
+      renderer_.reset();
+      renderer_.emplace(options);
+      options_ = options;
     }
-    std::rotate(found, found + 1, kept_.end());
-    return kept_.back().renderer;
+    return *renderer_;
   }
 
  private:
-  static constexpr std::size_t kMost = 2;
-  struct Kept {
-    std::uint64_t version;
-    terrain::TerrainRenderer renderer;
-  };
   std::string name_;
   std::unique_ptr<LoadedTerrain> source_;
   std::optional<terrain::Terrain> lit_;
   decltype(light_key({}, {})) key_;
-  std::vector<Kept> kept_;
+  std::optional<terrain::TerrainRenderer> renderer_;
+  terrain::TerrainRendererOptions options_;
 };
 
 TerrainSubject::TerrainSubject(const TerrainSceneArguments& arguments,
@@ -171,7 +159,7 @@ void TerrainSubject::change(std::string_view key, bool back) {
 
 std::function<Drawn()> TerrainSubject::draw(int width, int height) {
   const TerrainPose& pose = control_.pose();
-  TerrainOptions o = settings_.options;
+  TerrainLook o = settings_.options;
   terrain::Light light = settings_.light;
   terrain::TerrainCamera camera = pose.camera;
   light.sun = pose.sun;
@@ -192,14 +180,13 @@ std::function<Drawn()> TerrainSubject::draw(int width, int height) {
   o.scale_px *= shrunk;
   o.width = width;
   o.height = height;
-  return [o, light, camera, input = maps_[map_], version = settings_version_,
-          stage = stage_]() -> Drawn {
-    terrain::TerrainRenderer& renderer = stage->renderer(o, version);
+  return [o, light, camera, input = maps_[map_], stage = stage_]() -> Drawn {
+    terrain::TerrainRenderer& renderer = stage->renderer(o);
     static_cast<void>(stage->map(input));
     const terrain::Terrain& lit = stage->lit(light, o);
     Drawn drawn{Image<Rgba8>(o.width, o.height), true, {}};
     const auto begin = std::chrono::steady_clock::now();
-    const terrain::TerrainStats s = renderer.render(lit, camera, {.color8 = drawn.image.view()});
+    const terrain::TerrainStats s = renderer.render(lit, camera, o, {.color8 = drawn.image});
     const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - begin;
     const auto count = [](std::uint64_t n) { return std::to_string(n); };
     drawn.figures = {ms.count(),

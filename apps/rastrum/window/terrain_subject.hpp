@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include <rastrum/terrain/renderer.hpp>
+#include <rastrum/terrain.hpp>
 
 #include "subject.hpp"
 #include "terrain_control.hpp"
@@ -17,7 +17,7 @@ class TerrainSubject final : public Subject {
  public:
   /// What the panel changes, beside the pose.
   struct Settings {
-    terrain::TerrainOptions options;
+    TerrainLook options;
     terrain::Light light;
     bool sky_dims = true;
   };

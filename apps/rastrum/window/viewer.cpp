@@ -5,9 +5,9 @@
 #include <new>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/io/io.hpp>
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/stop.hpp>
 
 #include "arguments.hpp"
 

@@ -5,46 +5,22 @@
 #include <cstdint>
 #include <span>
 
-#include <rastrum/core/config.hpp>
+#include <rastrum/config.hpp>
+#include <rastrum/primitives.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
-#include <rastrum/raster/frame/options.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/raster/shade/shading.hpp>
 
 namespace rastrum::raster {
 
-/// The value is the number of vertices of a primitive.
-enum class Topology : std::uint8_t { points = 1, lines = 2, triangles = 3 };
-
-/// Which side of a triangle is its front: where its vertices turn counter-clockwise on the screen,
-/// clockwise, or whichever is seen; then no face is culled.
-enum class Winding : std::uint8_t { counter_clockwise, clockwise, either };
-
-/// Wider lines and larger points are refused.
-inline constexpr float kMaxLineWidth = 4096, kMaxPointSize = 4096;
-
-/// Points, lines or triangles over one vertex source. Ids count primitives through the draws of a
-/// frame in order.
-struct Draw {
+/// Primitives over one vertex stage. Their flags are those of its pieces.
+struct Draw : Primitives {
   VertexStage source;  ///< must be set
-  std::size_t vertex_count = 0;
-  std::span<const std::uint32_t> indices{};  ///< empty: vertices in order
-  std::uint64_t primitive_count = 0;         ///< at most those that the indices or vertices make up
-  Topology topology = Topology::triangles;
-  std::uint32_t flags = 0;  ///< of its pieces
   /// Flags by material, so that a mesh of several needs no draw for each: triangle t has those of
   /// material_flags[face_materials[t]] too. Both or none.
   std::span<const std::uint32_t> face_materials{}, material_flags{};
-  Cull cull = Cull::none;  ///< which faces of triangles are left out
-  Winding winding = Winding::counter_clockwise;
-  float line_width = 1;  ///< px across the minor axis, rounded to a whole number of at least 1
-  float point_size = 1;  ///< px, in n.8; less than 1 counts as 1
-  /// Added to the depth of every fragment before it is cut to [0, 1], as GL's polygon offset, but
-  /// for all topologies and in units of reversed depth (more is nearer): depth_bias +
-  /// depth_bias_slope · max(|zx|, |zy|), the change of depth per px.
-  float depth_bias = 0, depth_bias_slope = 0;
-  /// What shades it and, where `flags` has kTested, tests its fragments; none: what Renderer::draw
-  /// is given. Program::draw sets both.
+  /// What shades it and, where `flags` has kTested, tests its fragments; none: what
+  /// RendererAccess::draw is given.
   Shading shading;
   Testing test;
 

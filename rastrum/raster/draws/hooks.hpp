@@ -7,7 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include <rastrum/parallel/device.hpp>
+#include <rastrum/device.hpp>
+#include <rastrum/primitives.hpp>
 #include <rastrum/raster/draws/samples.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/raster/shade/color.hpp>
@@ -36,9 +37,6 @@ struct VisibleBlock {
   BlockColors* extra = nullptr;           ///< its further outputs; null: not wanted
   const ShadingPoints* points = nullptr;  ///< where they are; null: at their pixels' centres
 };
-
-/// How many outputs a shader may have beside its colour.
-inline constexpr std::size_t kMaxExtraTargets = 7;
 
 /// Shades the visible surface of a block. Thread-safe.
 class BlockShader {

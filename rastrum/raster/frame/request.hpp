@@ -6,9 +6,10 @@
 #include <string_view>
 
 #include <rastrum/core/vec.hpp>
+#include <rastrum/frame.hpp>
 #include <rastrum/raster/draws/draw.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
-#include <rastrum/raster/frame/options.hpp>
+#include <rastrum/tuning.hpp>
 
 namespace rastrum::raster {
 

@@ -3,7 +3,8 @@
 
 #include <cstdint>
 
-#include <rastrum/core/config.hpp>
+#include <rastrum/config.hpp>
+#include <rastrum/primitives.hpp>
 #include <rastrum/raster/draws/projection.hpp>
 
 namespace rastrum::raster {
@@ -33,19 +34,15 @@ struct alignas(16) Piece {
 };
 static_assert(sizeof(Piece) == 48);
 
-/// Fragments of this piece pass a fragment test (alpha mask, discard) before the maximum.
-inline constexpr std::uint32_t kTested = 1;
-/// Fragments of this piece are there where they are nearer than the picture that the targets hold
-/// (Targets::over), so that every coverage and visibility, layers too, heeds it before it resolves
-/// a pixel.
+/// Beside kTested and kTranslucent (primitives.hpp): fragments of this piece are there where they are
+/// nearer than the picture that the targets hold (Targets::over), so that every coverage and
+/// visibility, layers too, heeds it before it resolves a pixel.
 inline constexpr std::uint32_t kOverPicture = 32;
 /// Fragments have to be asked for before the maximum.
 inline constexpr std::uint32_t kMayDrop = kTested | kOverPicture;
 /// What the piece is; neither: a triangle.
 inline constexpr std::uint32_t kLine = 2, kPoint = 4;
 inline constexpr int kLineWidthShift = 16;
-/// Fragments of this piece are blended: alpha is the shader's to say.
-inline constexpr std::uint32_t kTranslucent = 8;
 /// A triangle that was wound clockwise on the screen: where surfaces are closed, one of those that
 /// others hide.
 inline constexpr std::uint32_t kFacesAway = 16;

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include <rastrum/raster/assemble/points_and_lines.hpp>
+#include <rastrum/program.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 
@@ -22,12 +23,6 @@ namespace rastrum::raster {
 struct WeightPlanes {
   double x0 = 0, y0 = 0;
   double p[3], q[3], r[3];
-};
-
-struct Weights {
-  double b[3];      ///< normalized, they add up to 1
-  double db_dx[3];  ///< change per px of the normalized weights
-  double db_dy[3];
 };
 
 template <class Geometry>
@@ -139,21 +134,6 @@ RASTRUM_HD inline Weights weights_at(const WeightPlanes& w, int x, int y,
   }
   return result;
 }
-
-/// What a scalar shader knows about a fragment.
-struct Fragment {
-  int x = 0, y = 0;
-  Vec2 from_centre{0, 0};  ///< where in the pixel it is shaded, px
-  float depth = 0;
-  std::uint64_t id = 0;        ///< primitive in submission order
-  std::uint64_t triangle = 0;  ///< or line or point, within its draw
-  std::size_t draw = 0;        ///< index into FrameGeometry::draws
-  bool front = true;  ///< is seen from its front (Draw::winding; `either`: counter-clockwise)
-  std::uint32_t vertex[3] = {};  ///< as many as the topology has
-  Weights weights;
-  Vec2 point;  ///< of a point: where in its square, (0, 0) at the top left to (1, 1)
-  const WeightPlanes* planes = nullptr;
-};
 
 /// Finds primitives and their weights for fragment after fragment; neighbours mostly share one,
 /// whose planes are then kept.

@@ -1,0 +1,3 @@
+#pragma once
+#include <rastrum/frame.hpp>
+#include <rastrum/tuning.hpp>

@@ -1,0 +1,112 @@
+// Images: row 0 at the top. An Image has its rows one after the other, pixel (x, y) at index
+// y · width + x; an ImageView may have them anywhere at equal distances.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <rastrum/error.hpp>
+#include <rastrum/vec.hpp>
+
+namespace rastrum {
+
+inline constexpr int kMaxImageSize = 32768;
+
+/// Straight (not premultiplied) alpha, 8 bit.
+struct Rgba8 {
+  std::uint8_t r = 0, g = 0, b = 0, a = 0;
+  friend bool operator==(const Rgba8&, const Rgba8&) = default;
+};
+static_assert(sizeof(Rgba8) == 4);
+
+/// A borrowed image. Trivially copyable; does not own. `{data, width, height}` is an image whose
+/// rows lie one after the other; who sets the fields one by one sets the stride as well.
+template <class T>
+struct ImageView {
+  T* data = nullptr;  ///< pixel (0, 0): the left one of the top row
+  int width = 0, height = 0;
+  /// Elements from a row to the next one below: the width, or more where a picture is part of a
+  /// wider one, or negative where rows lie from the bottom up (OpenGL's order, BMP): `data` is then
+  /// the row that lies last, {first + (height − 1) · width, width, height, −width}. What reads or
+  /// draws refuses a stride between −width and width.
+  std::ptrdiff_t stride = width;
+
+  [[nodiscard]] RASTRUM_HD bool empty() const { return data == nullptr; }
+  [[nodiscard]] RASTRUM_HD T* row(int y) const { return data + y * stride; }
+  [[nodiscard]] RASTRUM_HD T& operator()(int x, int y) const { return data[y * stride + x]; }
+  /// To read what may also be written. (A template, for nvcc warns of conversions to the same
+  /// type.)
+  template <std::same_as<const T> U>
+  RASTRUM_HD operator ImageView<U>() const requires(!std::is_const_v<T>) {
+    return {data, width, height, stride};
+  }
+};
+
+/// Throws Error{invalid_argument} that begins with `name` where rows of the view overlap.
+template <class T>
+void check_stride(const ImageView<T>& view, const std::string& name) {
+  const std::ptrdiff_t apart = view.stride < 0 ? -view.stride : view.stride;
+  if (!view.empty() && apart < view.width)
+    throw Error(Errc::invalid_argument,
+                name + ": rows of " + std::to_string(view.width) +
+                    " pixels overlap with a stride of " + std::to_string(view.stride) +
+                    "; make the view as {data, width, height}, or give the elements from a row to "
+                    "the next (negative: from the bottom up)");
+}
+
+/// check_stride, and the same where the view is neither empty nor width × height.
+template <class T>
+void check_size(const ImageView<T>& view, int width, int height, const std::string& name) {
+  if (view.empty()) return;
+  if (view.width != width || view.height != height)
+    throw Error(Errc::invalid_argument, name + " is " + std::to_string(view.width) + "x" +
+                                            std::to_string(view.height) + " and must be " +
+                                            std::to_string(width) + "x" + std::to_string(height) +
+                                            ", as the frame is");
+  check_stride(view, name);
+}
+
+/// An owned W × H image, value-initialized.
+template <class T>
+class Image {
+ public:
+  Image() = default;
+  /// Throws Error{invalid_argument} unless 1 ≤ width, height ≤ 32,768.
+  Image(int width, int height) : width_(width), height_(height) {
+    if (width < 1 || height < 1 || width > kMaxImageSize || height > kMaxImageSize)
+      throw Error(Errc::invalid_argument, "image size " + std::to_string(width) + "x" +
+                                              std::to_string(height) +
+                                              " is outside 1x1 to 32768x32768");
+    pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  }
+
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  [[nodiscard]] bool empty() const { return pixels_.empty(); }
+  [[nodiscard]] std::span<T> pixels() { return pixels_; }
+  [[nodiscard]] std::span<const T> pixels() const { return pixels_; }
+  [[nodiscard]] T& operator()(int x, int y) { return pixels_[index(x, y)]; }
+  [[nodiscard]] const T& operator()(int x, int y) const { return pixels_[index(x, y)]; }
+  [[nodiscard]] ImageView<T> view() { return {pixels_.data(), width_, height_, width_}; }
+  [[nodiscard]] ImageView<const T> view() const {
+    return {pixels_.data(), width_, height_, width_};
+  }
+  /// So that an image can be given where a view is wanted; to be written, not a temporary one.
+  operator ImageView<T>() & { return view(); }
+  operator ImageView<const T>() const { return view(); }
+
+ private:
+  [[nodiscard]] std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(x);
+  }
+  int width_ = 0, height_ = 0;
+  std::vector<T> pixels_;
+};
+
+}  // namespace rastrum

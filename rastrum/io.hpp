@@ -1,0 +1,171 @@
+// Files in and out, chosen by extension. Readers keep the file's order: triangle ids are the order
+// of submission, polygons become fans from their first vertex, nothing is merged or reordered.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <rastrum/image.hpp>
+#include <rastrum/scene.hpp>
+
+namespace rastrum::io {
+
+class AtomicFile;
+
+/// Reads .obj (with .mtl), .ply, .stl, .off, .gltf or .glb (by extension, any case).
+/// Vertices with non-finite coordinates are kept (the renderer drops and counts their triangles);
+/// degenerate triangles keep their numbers. Normals are the file's or none.
+/// Throws Error{not_found | bad_format | unsupported | io} naming the file and the place in it.
+[[nodiscard]] Scene read_scene(const std::filesystem::path& file);
+
+/// The same from memory. `format`: obj, ply, stl, off, gltf or glb, as an extension has it, with or
+/// without its dot. `name` appears in errors, and textures and the like are looked for beside it.
+[[nodiscard]] Scene decode_scene(std::span<const std::byte> bytes, std::string_view format,
+                                 const std::filesystem::path& name);
+/// The formats of read_scene, without dots.
+[[nodiscard]] std::vector<std::string_view> scene_formats();
+
+/// Decodes a PNG or JPEG (by its first bytes), from a file or from memory; `name` appears in
+/// errors.
+[[nodiscard]] Image<Rgba8> read_image(const std::filesystem::path& file);
+[[nodiscard]] Image<Rgba8> decode_image(std::span<const std::byte> bytes, const std::string& name);
+
+/// Writers write to a temporary name beside `file` and rename it, so that a file is whole or
+/// absent. Throws Error{io} naming the file, Error{invalid_argument} for an empty image or rows
+/// that overlap.
+void write_png(const std::filesystem::path& file, ImageView<const Rgba8> image);
+/// float32 RGBA, premultiplied: an RGBA EXR (32 bit), or NPY of shape (H, W, 4).
+void write_exr(const std::filesystem::path& file, ImageView<const Vec4> image);
+void write_npy(const std::filesystem::path& file, ImageView<const Vec4> image);
+/// One channel: EXR channel "Z", or NPY of shape (H, W).
+void write_exr(const std::filesystem::path& file, ImageView<const float> image);
+void write_npy(const std::filesystem::path& file, ImageView<const float> image);
+void write_npy(const std::filesystem::path& file, ImageView<const std::int64_t> image);
+void write_npy(const std::filesystem::path& file, ImageView<const std::int32_t> image);
+
+/// Binary little-endian PLY with positions, faces, and the normals, texture coordinates and colours
+/// that share the positions' indices (those with indices of their own are left out). Throws
+/// Error{invalid_argument} for an index out of range or fewer values than positions.
+void write_ply(const std::filesystem::path& file, const Mesh& mesh);
+
+/// The same into a file that the caller has begun and commits: together with others, or to standard
+/// output (atomic_file.hpp).
+void write_png(AtomicFile& out, ImageView<const Rgba8> image);
+void write_exr(AtomicFile& out, ImageView<const Vec4> image);
+void write_npy(AtomicFile& out, ImageView<const Vec4> image);
+void write_exr(AtomicFile& out, ImageView<const float> image);
+void write_npy(AtomicFile& out, ImageView<const float> image);
+void write_npy(AtomicFile& out, ImageView<const std::int64_t> image);
+void write_npy(AtomicFile& out, ImageView<const std::int32_t> image);
+void write_ply(AtomicFile& out, const Mesh& mesh);
+
+// Whole or absent: a file is written under a temporary name in the same directory and renamed.
+// Several become visible together: all are written before the first is renamed.
+
+/// Chooses standard output in the place of a file.
+struct StandardOutput {};
+
+/// Without commit() the destructor removes the temporary. A symbolic link is followed. A target
+/// that exists and is not a regular file (a device) is written directly; what cannot seek (a pipe)
+/// and standard output get their bytes at commit(), so that nothing leaves before all is written.
+/// Every member throws Error{io} naming the file. Cost: what the system's calls cost.
+class AtomicFile {
+ public:
+  explicit AtomicFile(const std::filesystem::path& file);
+  explicit AtomicFile(StandardOutput);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// The open stream, which can seek; check nothing, commit() does.
+  [[nodiscard]] std::FILE* stream() { return stream_; }
+  void write(const void* data, std::size_t size);
+  void commit();
+  /// All are finished, then those for pipes sent, then the temporaries renamed: where one of them
+  /// cannot be finished none is seen.
+  static void commit(std::span<AtomicFile* const> files);
+  /// The error for a failure seen elsewhere; `what` is the reason.
+  [[noreturn]] void fail(const char* what) const;
+  /// The name as the caller gave it, for messages.
+  [[nodiscard]] const std::filesystem::path& name() const { return asked_; }
+
+ private:
+  void open_temporary();
+  void spool(int fd);
+  void finish();
+  void send();
+
+  std::filesystem::path asked_;      ///< as the caller spelled it, for messages
+  std::filesystem::path target_;     ///< links resolved
+  std::filesystem::path temporary_;  ///< empty: written directly, or sent
+  std::FILE* stream_ = nullptr;
+  int lock_ = -1;  ///< the temporary's, so that others see that it is in work
+  int sent_ = -1;  ///< where the bytes of a spooled file go
+};
+
+/// For a program that ends by a signal: removes the temporaries of all files that are in work, and
+/// holds every thread that begins or commits one from then on, so that nothing is half there. Call
+/// it from a thread, not from a signal's handler, and end the process next: it cannot be undone.
+void abandon_files() noexcept;
+
+/// Removes the temporaries in `folder` that a writer which was killed has left. Those of living
+/// writers are locked, on other machines of a cluster too, and are not touched; nor is anything
+/// where locks are not known. What cannot be removed is left. O(names in the folder).
+void remove_abandoned(const std::filesystem::path& folder);
+
+// What `rastrum info FILE` prints.
+
+/// A text of several lines: meshes with their vertices and triangles, instances, bounds, materials,
+/// textures, cameras; how many triangles have a vertex that is not finite (the renderer drops them)
+/// or no area; the warnings. O(triangles of all instances).
+/// Throws Error{invalid_argument} for an index out of range.
+[[nodiscard]] std::string describe(const Scene& scene);
+
+// Height maps from files: a grid of heights and how many of its units make one cell of the map.
+
+/// Row 0 is at the top (north), columns go east.
+struct HeightGrid {
+  Image<float> heights{};  ///< as the file has them, voids NaN
+  /// Units of `heights` that are as long as one cell is wide. Multiplying by 1 / units_per_cell
+  /// gives the terrain its true proportions (DEM, GeoTIFF), or 16-bit values the range of 8-bit
+  /// ones (257), which is that of the classic maps.
+  double units_per_cell = 1;
+  /// Whether the file says how long a cell is (DEM, GeoTIFF), or is of 8 bits, where a unit has
+  /// been a cell since Voxel Space; else `units_per_cell` is a guess.
+  bool scale_known = false;
+};
+
+/// The size of a raw file, which does not say it; 0: square.
+struct RawSize {
+  int width = 0, height = 0;
+};
+
+/// Reads heights from, by extension in any case:
+///   .png            8 or 16-bit grey (colour only where red = green = blue), 0 to 255 or 65,535
+///   .raw .bin .r16  uint16, little-endian, no header, `raw` wide and high
+///   .npy            shape (H, W): float32/64, int or uint of 8, 16 or 32 bits, any byte order
+///   .dem            USGS DEM, the ASCII format of 1024-byte records
+///   .tif .tiff      GeoTIFF, where the library was built with GDAL
+/// Up to 32,768 × 32,768. Throws Error{not_found | bad_format | unsupported | io | out_of_memory}
+/// that names the file and the place in it. Cost: one pass over the file.
+[[nodiscard]] HeightGrid read_heights(const std::filesystem::path& file, RawSize raw = {});
+
+/// The readers behind it, over bytes in memory; `name` appears in errors.
+[[nodiscard]] HeightGrid decode_height_png(std::span<const std::byte> bytes,
+                                           const std::string& name);
+[[nodiscard]] HeightGrid decode_height_raw(std::span<const std::byte> bytes,
+                                           const std::string& name, RawSize size = {});
+[[nodiscard]] HeightGrid decode_height_npy(std::span<const std::byte> bytes,
+                                           const std::string& name);
+[[nodiscard]] HeightGrid decode_height_dem(std::span<const std::byte> bytes,
+                                           const std::string& name);
+/// GDAL opens files itself.
+[[nodiscard]] HeightGrid read_height_gdal(const std::filesystem::path& file);
+
+}  // namespace rastrum::io

@@ -1,0 +1,47 @@
+// What is drawn beside meshes of a scene: points, lines or triangles, and how.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <rastrum/frame.hpp>
+
+namespace rastrum::raster {
+
+/// The value is the number of vertices of a primitive.
+enum class Topology : std::uint8_t { points = 1, lines = 2, triangles = 3 };
+
+/// Which side of a triangle is its front: where its vertices turn counter-clockwise on the screen,
+/// clockwise, or whichever is seen; then no face is culled.
+enum class Winding : std::uint8_t { counter_clockwise, clockwise, either };
+
+/// Primitives::flags. Fragments pass a fragment test (alpha mask, discard) before the nearest is
+/// taken; fragments are blended: alpha is the shader's to say.
+inline constexpr std::uint32_t kTested = 1, kTranslucent = 8;
+
+/// How many outputs a program may have beside its colour.
+inline constexpr std::size_t kMaxExtraTargets = 7;
+
+/// Wider lines and larger points are refused.
+inline constexpr float kMaxLineWidth = 4096, kMaxPointSize = 4096;
+
+/// Points, lines or triangles over vertices that are numbered from 0. Ids count primitives through
+/// the draws of a frame in order.
+struct Primitives {
+  std::size_t vertex_count = 0;
+  std::span<const std::uint32_t> indices{};  ///< empty: vertices in order
+  std::uint64_t primitive_count = 0;         ///< at most those that the indices or vertices make up
+  Topology topology = Topology::triangles;
+  std::uint32_t flags = 0;
+  Cull cull = Cull::none;  ///< which faces of triangles are left out
+  Winding winding = Winding::counter_clockwise;
+  float line_width = 1;  ///< px across the minor axis, rounded to a whole number of at least 1
+  float point_size = 1;  ///< px, in n.8; less than 1 counts as 1
+  /// Added to the depth of every fragment before it is cut to [0, 1], as GL's polygon offset, but
+  /// for all topologies and in units of reversed depth (more is nearer): depth_bias +
+  /// depth_bias_slope · max(|zx|, |zy|), the change of depth per px.
+  float depth_bias = 0, depth_bias_slope = 0;
+};
+
+}  // namespace rastrum::raster

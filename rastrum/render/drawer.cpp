@@ -1,0 +1,166 @@
+#include <rastrum/render/drawer.hpp>
+
+#include <algorithm>
+#include <utility>
+
+#include <rastrum/error.hpp>
+#include <rastrum/parallel/device_estimate.hpp>
+#include <rastrum/raster/frame/driver.hpp>
+#include <rastrum/raster/frame/fast_path.hpp>
+#include <rastrum/raster/frame/reference.hpp>
+#include <rastrum/render/device_work.hpp>
+#include <rastrum/transparency/layered_path.hpp>
+#include <rastrum/transparency/reference.hpp>
+
+namespace rastrum {
+namespace {
+
+class ByNeed final : public raster::FrameDrawer {
+ public:
+  ByNeed(Methods methods, std::uint64_t memory_limit, MemoryAccount& memory,
+         parallel::Threads* threads)
+      : methods_(std::move(methods)),
+        memory_limit_(memory_limit),
+        memory_(memory),
+        threads_(threads) {}
+
+  [[nodiscard]] FrameStats draw(raster::FrameRequest& request) override {
+    const bool layers = needs_layers(request);
+    std::unique_ptr<raster::FrameDriver>& driver = layers ? layers_ : keys_;
+    if (!driver)
+      driver = std::make_unique<raster::FrameDriver>((layers ? methods_.layers : methods_.keys)(),
+                                                     layers && threads_ == nullptr
+                                                         ? 0  // its lists cannot be cut
+                                                         : memory_limit_,
+                                                     memory_, threads_);
+    FrameStats stats = driver->draw(request);
+    if (const std::string& reason = layers ? methods_.why_layers : methods_.why_keys;
+        !reason.empty())
+      stats.why = reason;
+    return stats;
+  }
+
+ private:
+  Methods methods_;
+  std::uint64_t memory_limit_;
+  MemoryAccount& memory_;
+  parallel::Threads* threads_;
+  std::unique_ptr<raster::FrameDriver> keys_, layers_;
+};
+
+class OnDevice final : public raster::FrameDrawer {
+ public:
+  OnDevice(DeviceFrames frames, std::string automatic_why, parallel::Threads& threads)
+      : frames_(std::move(frames)),
+        there_{Device::cuda, std::move(automatic_why)},
+        threads_(threads) {}
+
+  [[nodiscard]] FrameStats draw(raster::FrameRequest& request) override {
+    DeviceChoice choice = choose(request);
+    if (choice.device == Device::cuda) {
+      FrameStats stats = frames_.device->render(request);
+      if (!frames_.why.empty()) stats.why = std::string(frames_.why).append("; ").append(stats.why);
+      if (stats.device_why.empty()) stats.device_why = std::move(choice.why);
+      return stats;
+    }
+    if (request.in_place)
+      throw Error(Errc::unsupported,
+                  std::string("arrays in the device's memory (in_place): ").append(choice.why));
+    if (!host_) host_ = frames_.make_host();
+    FrameStats stats = host_->draw(request);
+    stats.device = Device::threads;
+    stats.device_why = std::move(choice.why);
+    return stats;
+  }
+
+ private:
+  [[nodiscard]] DeviceChoice choose(const raster::FrameRequest& request) const {
+    if (std::string why_not = frames_.device ? why_not_there(request) : frames_.why_host;
+        !why_not.empty())
+      return {Device::threads, std::move(why_not)};
+    if (there_.why.empty() || request.in_place) return there_;
+    return choose_device(there_, device_work(request), threads_.concurrency());
+  }
+  /// Why the device leaves a frame to the CPU; empty where it draws it.
+  [[nodiscard]] std::string why_not_there(const raster::FrameRequest& request) const {
+    if (std::string why_not = frames_.device->why_no_test(request); !why_not.empty())
+      return why_not;
+    return needs_layers(request) ? frames_.device->why_no_layers(request) : std::string();
+  }
+
+  DeviceFrames frames_;
+  DeviceChoice there_;
+  parallel::Threads& threads_;
+  std::unique_ptr<raster::FrameDrawer> host_;
+};
+
+}  // namespace
+
+bool blends(std::span<const raster::Draw> draws, const TransparencyOptions& options) {
+  return options.method != Transparency::none &&
+         std::ranges::any_of(draws, [](const raster::Draw& d) {
+           return (d.any_flags() & raster::kTranslucent) != 0;
+         });
+}
+
+bool needs_layers(const raster::FrameRequest& request) {
+  return request.samples > 1 || blends(request.draws, request.transparency);
+}
+
+std::string why(bool rasterizer, bool visibility, bool layers) {
+  std::string text;
+  if (rasterizer)
+    text =
+        "auto takes grouped: threads own bins, whose keys stay in cache and which skip what is "
+        "hidden";
+  if (layers)
+    text.append(text.empty() ? "" : "; ")
+        .append("layers, because something is translucent or pixels have several samples");
+  else if (visibility)
+    text.append(text.empty() ? "auto takes " : "; ")
+        .append("atomic: a plain maximum where a thread owns the keys, and shading once a pixel");
+  return text.empty() ? "as asked for" : text;
+}
+
+std::unique_ptr<raster::FrameDrawer> make_drawer_of(Methods methods, std::uint64_t memory_limit,
+                                                    MemoryAccount& memory,
+                                                    parallel::Threads* threads) {
+  return std::make_unique<ByNeed>(std::move(methods), memory_limit, memory, threads);
+}
+
+std::unique_ptr<raster::FrameDrawer> make_reference_drawer(std::uint64_t memory_limit,
+                                                           MemoryAccount& memory,
+                                                           transparency::MakeBlend make_blend) {
+  return make_drawer_of({raster::make_reference,
+                         [make_blend] { return transparency::make_layered_reference(make_blend); }},
+                        memory_limit, memory, nullptr);
+}
+
+std::unique_ptr<raster::FrameDrawer> make_device_drawer(DeviceFrames frames,
+                                                        const DrawerOptions& options,
+                                                        parallel::Threads& threads) {
+  return std::make_unique<OnDevice>(std::move(frames), options.automatic_why, threads);
+}
+
+std::unique_ptr<raster::FrameDrawer> make_drawer(const DrawerOptions& options,
+                                                 MemoryAccount& memory,
+                                                 parallel::Threads* threads) {
+  if (threads == nullptr)
+    return make_reference_drawer(options.memory_limit, memory, transparency::make_blend);
+  const auto make_fast = [&memory, threads, limit = options.memory_limit] {
+    return make_drawer_of(
+        {[&memory] { return raster::make_fast_path(memory); },
+         [&memory] { return transparency::make_layered_path(memory, transparency::make_blend); },
+         why(true, true, false), why(true, true, true)},
+        limit, memory, threads);
+  };
+  if (options.device != Device::cuda) return make_fast();
+  return make_device_drawer(
+      {make_cuda_rasterizer(options.memory_limit, memory, *threads),
+       {},
+       {},
+       make_fast},
+      options, *threads);
+}
+
+}  // namespace rastrum

@@ -1,0 +1,53 @@
+// The names of the built-in shaders, and which one `automatic` is.
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <rastrum/error.hpp>
+#include <rastrum/render.hpp>
+
+namespace rastrum {
+namespace {
+
+constexpr std::array<std::string_view, 9> kShaderNames{
+    "auto", "flat", "depth", "normal", "id", "lambert", "phong", "material", "wireframe"};
+
+}  // namespace
+
+std::vector<std::string_view> shader_names() {
+  return {kShaderNames.begin(), kShaderNames.end()};
+}
+
+std::string_view name(Shader shader) {
+  return kShaderNames.at(static_cast<std::size_t>(shader));
+}
+
+Shader shader_for(Shader shader, const SceneView& scene) {
+  if (shader != Shader::automatic) return shader;
+  return scene.materials.empty() ? Shader::phong : Shader::material;
+}
+
+Cull material_cull(const InstanceView& instance, std::span<const Material> materials,
+                   Shader shader) {
+  if (shader != Shader::material || materials.empty() || !instance.mesh.face_materials.empty() ||
+      materials[instance.mesh.material].double_sided)
+    return Cull::none;
+  const auto& m = instance.object_to_world.m;
+  const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  return determinant < 0 ? Cull::front : Cull::back;
+}
+
+Shader shader_from_name(std::string_view wanted) {
+  std::string known;
+  for (std::size_t i = 0; i < kShaderNames.size(); ++i) {
+    if (kShaderNames[i] == wanted) return static_cast<Shader>(i);
+    known += (i == 0 ? "" : ", ") + std::string(kShaderNames[i]);
+  }
+  throw Error(Errc::invalid_argument,
+              "no shader is called '" + std::string(wanted) + "'; there are " + known);
+}
+
+}  // namespace rastrum

@@ -1,0 +1,138 @@
+// What is drawn: instances of meshes with their materials. `SceneView` borrows the caller's arrays,
+// `Scene` owns what a reader made of a file.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <rastrum/camera.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/mat.hpp>
+#include <rastrum/mesh.hpp>
+#include <rastrum/vec.hpp>
+
+namespace rastrum {
+
+enum class Wrap : std::uint8_t { repeat, mirrored_repeat, clamp_to_edge };
+enum class TextureFilter : std::uint8_t { nearest, linear };  ///< linear minifies trilinearly
+enum class AlphaMode : std::uint8_t { opaque, mask, blend };
+
+/// A decoded picture as its file has it: 8 bit, straight alpha, row 0 at the top. Whether it holds
+/// sRGB (base colour, emissive) or linear data (the others) is the use's business.
+struct Texture {
+  std::string name{};
+  Image<Rgba8> image{};
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+  TextureFilter mag = TextureFilter::linear, min = TextureFilter::linear;
+  bool mipmaps = true;
+};
+
+inline constexpr std::int32_t kNoTexture = -1;
+
+/// Factors are linear. A texture index refers to Scene::textures.
+struct Material {
+  std::string name{};
+  Vec4 base_color{1, 1, 1, 1};
+  std::int32_t base_color_texture = kNoTexture;
+  float metallic = 1, roughness = 1;
+  std::int32_t metallic_roughness_texture = kNoTexture;  ///< G roughness, B metallic
+  std::int32_t normal_texture = kNoTexture;
+  float normal_scale = 1;
+  std::int32_t occlusion_texture = kNoTexture;
+  float occlusion_strength = 1;
+  Vec3 emissive{0, 0, 0};
+  std::int32_t emissive_texture = kNoTexture;
+  /// An additional mask whose red channel multiplies alpha (OBJ's map_d).
+  std::int32_t alpha_texture = kNoTexture;
+  AlphaMode alpha_mode = AlphaMode::opaque;
+  float alpha_cutoff = 0.5F;  ///< mask: a fragment with alpha < cutoff is discarded
+  bool double_sided = false;
+  bool unlit = false;  ///< KHR_materials_unlit
+  /// Of every surface that has this material, in [0, 1]: FrameOptions::opacity for a part of the
+  /// scene. The two are multiplied.
+  float opacity = 1;
+};
+
+// What is drawn: instances of meshes with their materials. `SceneView` borrows the caller's arrays,
+// `Scene` owns what a reader made of a file.
+
+/// A mesh placed in the world. Triangle ids count through the instances in order.
+struct InstanceView {
+  MeshView mesh{};
+  Mat4d object_to_world = Mat4d::identity();
+};
+
+/// Spans over the caller's arrays. An empty `materials` means one default material.
+struct SceneView {
+  std::span<const InstanceView> instances{};
+  std::span<const Material> materials{};
+  std::span<const Texture> textures{};
+};
+
+struct Instance {
+  std::uint32_t mesh = 0;  ///< index into Scene::meshes
+  Mat4d object_to_world = Mat4d::identity();
+};
+
+/// What readers return: meshes, instances in order of submission, materials, textures, cameras.
+struct Scene {
+  std::vector<Mesh> meshes{};
+  std::vector<Instance> instances{};
+  std::vector<Material> materials{};  ///< empty: the file has none
+  std::vector<Texture> textures{};
+  std::vector<Camera> cameras{};
+  /// What a reader left out or found odd, a sentence each; nothing is lost silently.
+  std::vector<std::string> warnings{};
+
+  /// Appends `other` behind this scene: indices into meshes, materials and textures are shifted.
+  /// Where one of the two has no materials it is given plain ones.
+  void append(Scene other);
+  /// Throws Error{invalid_argument} where an instance is of no mesh.
+  [[nodiscard]] std::uint64_t triangle_count() const;
+};
+
+/// Gives the meshes of a scene without materials some that look as if there were none: the colour
+/// of the plain shaders, or the mesh's own colours, which blend.
+void add_plain_materials(Scene& scene);
+
+/// The borrowed form of a scene; keeps the instance list that the span points to. The scene must
+/// outlive it.
+class SceneBinding {
+ public:
+  /// Throws Error{invalid_argument} where an instance is of no mesh.
+  explicit SceneBinding(const Scene& scene);
+  [[nodiscard]] SceneView view() const { return view_; }
+
+ private:
+  std::vector<InstanceView> instances_;
+  SceneView view_;
+};
+
+/// Axis-aligned box and the vertices it was taken from.
+struct Bounds {
+  Vec3 min{}, max{};
+  std::uint64_t vertices_in_use = 0;  ///< 0: the box is meaningless
+};
+
+/// Bounds, in world space, of the finite vertices that triangles use. O(vertices + triangles).
+/// Throws Error{invalid_argument} for an index out of range, as fit_camera.
+[[nodiscard]] Bounds bounds(const SceneView& scene);
+
+/// The default camera (`--fit`): centre = centre of the bounding box of the vertices in use,
+/// r = distance of the farthest of them from it (0 counts as 1), eye = centre + (0, 0, d) with
+/// d = r / sin(fov/2), looking along −z, +y up, near = max(d − 1.001 r, d / 1000), far infinite;
+/// orthographic: height 2 r, far = d + 1.001 r. Throws Error{invalid_argument} unless
+/// 0 < fov_rad < π, of an orthographic camera, too.
+[[nodiscard]] Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic);
+
+/// Area-weighted vertex normals: at each position index the normalized sum of the cross products of
+/// its triangles' edges. `positions.size()` values; (0, 0, 0) where no triangle touches. `indices`
+/// as MeshView's: empty, they are the positions in order, and each triangle has its own normal.
+/// Throws Error{invalid_argument} for an index out of range. O(positions + indices).
+[[nodiscard]] std::vector<Vec3> vertex_normals(std::span<const Vec3> positions,
+                                               std::span<const std::uint32_t> indices);
+
+}  // namespace rastrum

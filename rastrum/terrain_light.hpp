@@ -1,0 +1,143 @@
+// The stage before a terrain's renderer: sun and shadows make lit colours, so that the renderer
+// only samples heights and colours; and terrains that are functions, which are lit as they are
+// sampled.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <rastrum/config.hpp>
+#include <rastrum/device.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/terrain.hpp>
+
+namespace rastrum::terrain {
+
+struct Sun {
+  double azimuth_deg = 315;   ///< clockwise from north (−y): 90 is east (+x)
+  double elevation_deg = 35;  ///< above the horizon, up to 90
+};
+
+struct ShadowOptions {
+  Tiling tiling = Tiling::repeat;
+  Device device = Device::threads;
+  int threads = 0;           ///< 0: all
+  std::optional<Isa> isa{};  ///< none: the best this machine has
+};
+
+/// 1 where a cell is in shadow, else 0; exact by the definition above, the same on every device.
+/// Cost: two lines of a sweep a cell and column of the map, further columns where the longest
+/// shadow reaches beyond the map's edge, and a traversal of the few cells that the sweep cannot
+/// decide (shadow_sweep.hpp). Throws Error{invalid_argument} for a sun that is not finite or above
+/// 90°.
+[[nodiscard]] Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun,
+                                                const ShadowOptions& options = {});
+
+/// How much of the sun's disc each cell sees, 0 to 255: the mean of sharp_shadows over 16 points
+/// spread evenly over a disc of angular radius `radius_deg` (the real one has 0.2666°).
+/// Cost: 16 × sharp_shadows.
+[[nodiscard]] Image<std::uint8_t> soft_light(ImageView<const float> heights, const Sun& sun,
+                                             double radius_deg, const ShadowOptions& options = {});
+/// `seen` of so many points, as that mean.
+[[nodiscard]] RASTRUM_HD constexpr std::uint8_t part_of_suns(std::uint32_t seen,
+                                                             std::uint32_t points) {
+  return static_cast<std::uint8_t>((seen * 255 + points / 2) / points);
+}
+
+/// The march of paper 3 (6.2, listing 6.4): samples k = 1 … steps − 1 along the ray.
+struct March {
+  double distance = 1024;  ///< d_m, cells along the ray
+  int steps = 256;         ///< d_c, 2 to 65,536
+};
+
+/// How many of a cell's samples hide the sun: those whose cell is higher than the ray, which starts
+/// at the cell's corner as in the paper; sample k lies k · distance / steps along the unit vector
+/// to the sun. Cells are floored where the paper's code truncates (which differs at negative
+/// coordinates), and own height + climb is compared in float32. Holes count as in sharp_shadows.
+/// Cost: cells × steps. Throws Error{invalid_argument} for a sun or march out of range.
+[[nodiscard]] Image<std::uint16_t> hidden_samples(ImageView<const float> heights, const Sun& sun,
+                                                  const March& march = {},
+                                                  const ShadowOptions& options = {});
+
+// The stage before the renderer: sun and shadows make lit colours, so that the renderer only
+// samples heights and colours.
+
+enum class Shadows : std::uint8_t {
+  none,
+  accumulated,  ///< paper 3: colour · √(1 / (1 + n)), n the hidden samples of a march
+  sharp,        ///< colour · ambient where the sun is hidden
+  soft,         ///< between the two by the part of the sun's disc that is seen
+};
+
+struct Light {
+  Sun sun{};
+  Shadows shadows = Shadows::none;
+  /// Slopes get ToSun::shade. For colours that are painted without light; satellite pictures have
+  /// it.
+  bool hill_shading = false;
+  float ambient = 0.45F;           ///< of a colour, where no sun is; [0, 1]
+  double sun_radius_deg = 0.2666;  ///< of soft shadows
+  March march{};                   ///< of accumulated ones
+  /// Where colours and heights differ in size the coarser ones are read between the centres of
+  /// their cells, as MapFilter::bilinear reads heights; else each cell has one light, each texel one
+  /// colour.
+  bool smooth = false;
+};
+
+/// The sky in the light of the sun, as FutSpace's dims with it (paper 3's program; the paper gives
+/// no rule, so this is ours): `by_day` where the sun stands 30° high or more, from there on falling
+/// linearly to a sixteenth at −6°, the end of civil twilight, and staying so.
+[[nodiscard]] Rgba8 sky_in(Rgba8 by_day, const Sun& sun) noexcept;
+
+/// The colours of a map in this light, opaque, as fine as the finer of heights and colours; the
+/// others are repeated, or `smooth`. Empty colours are colors_by_height.
+/// Cost: the shadows', and O(cells). Throws Error{invalid_argument} for what no light can be.
+[[nodiscard]] Image<Rgba8> lit_colors(const HeightMap& map, const Light& light,
+                                      const ShadowOptions& options = {});
+
+/// Heights of n points of the plane; called from several threads at once.
+using HeightFunction =
+    std::function<void(const double* x, const double* y, std::size_t n, float* heights)>;
+
+/// A terrain of a function: height_color between `low` and `high`, with slopes by central
+/// differences, in this light. Shadows are by the march of each visible sample (paper 3's
+/// generate_shadowmap with a function), `sharp` dark where any sample hides the sun and `soft`
+/// where more and more do: there are no cells that could be traversed.
+[[nodiscard]] Terrain function_terrain(HeightFunction function, double low, double high,
+                                       const Light& light);
+
+// Terrains that are functions of the plane, by name; expression.hpp has those of a text.
+
+struct FunctionInfo {
+  std::string_view name, description;
+  double low, high;  ///< what the heights lie between
+};
+
+/// Those of paper 3 (its figure 6.1 and its program's list) and fractal noise. Their arithmetic is
+/// ours (no sine of the C library), so they are the same bits on every machine.
+[[nodiscard]] const std::vector<FunctionInfo>& named_functions();
+
+/// Throws Error{not_found} that lists the names.
+[[nodiscard]] HeightFunction named_function(std::string_view name);
+
+/// The least and the greatest finite height on a grid of 128² points over [0, 1024)², for the
+/// colours of expressions; (0, 1) where there is none.
+struct HeightRange {
+  double low = 0, high = 1;
+};
+[[nodiscard]] HeightRange sampled_range(const HeightFunction& function);
+
+// Terrains that are formulas in a text. Of the target Rastrum::io, as all that reads with a library
+// of others; Rastrum::rastrum alone has everything else of this folder.
+
+/// A formula of x and y in the language of muParser, such as `40*sin(x/30)*cos(y/50)`.
+/// Throws Error{invalid_argument} with the place of the mistake, Error{unsupported} where the
+/// library was built without muParser.
+[[nodiscard]] HeightFunction expression_function(const std::string& expression);
+
+}  // namespace rastrum::terrain

@@ -1,0 +1,83 @@
+// Renderers with all that a picture of theirs depends on in one place, as tests vary it.
+#pragma once
+
+#include <span>
+#include <stop_token>
+#include <utility>
+
+#include <rastrum/family.hpp>
+#include <rastrum/raster/draws/draw.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
+#include <rastrum/render/access.hpp>
+#include <rastrum/terrain.hpp>
+
+namespace rastrum::test {
+
+/// The renderer's options, the row of the family, and the looks of its frames.
+struct RenderOptions : family::Options {
+  bool in_place = false;  ///< frames by Renderer::render_in_place
+};
+
+/// Throws what either part of the options is refused with.
+class Painter {
+ public:
+  explicit Painter(const RenderOptions& options)
+      : options_((check(options), options)), renderer_(family::make_renderer(options, options)) {
+    options_.device = renderer_.options().device;
+  }
+
+  FrameStats render(const SceneView& scene, const Camera& camera, const Targets& targets,
+                    std::stop_token stop = {}) {
+    return options_.in_place
+               ? renderer_.render_in_place(scene, camera, options_, targets, std::move(stop))
+               : renderer_.render(scene, camera, options_, targets, std::move(stop));
+  }
+  /// Draws with shaders and tests of their own, or these.
+  FrameStats draw(std::span<raster::Draw> draws, const raster::Shading& shading,
+                  const raster::Testing& test, const Targets& targets, std::stop_token stop = {}) {
+    return RendererAccess::draw(renderer_, draws, shading, test, options_, targets,
+                                std::move(stop));
+  }
+  FrameStats draw(std::span<raster::Draw> draws, const Targets& targets,
+                  std::stop_token stop = {}) {
+    return RendererAccess::draw(renderer_, draws, {}, {}, options_, targets, std::move(stop));
+  }
+
+  /// With what Device::automatic took.
+  [[nodiscard]] const RenderOptions& options() const { return options_; }
+
+ private:
+  RenderOptions options_;
+  Renderer renderer_;
+};
+
+/// One frame with everything chosen by `options`.
+[[nodiscard]] inline Image<Rgba8> render(const SceneView& scene, const Camera& camera,
+                                         const RenderOptions& options) {
+  Image<Rgba8> image(options.width, options.height);
+  Painter(options).render(scene, camera, {.color8 = image});
+  return image;
+}
+
+/// The same of terrains.
+struct TerrainLook : terrain::TerrainOptions, terrain::TerrainRendererOptions {};
+
+class TerrainPainter {
+ public:
+  explicit TerrainPainter(const TerrainLook& look)
+      : look_((terrain::check(look), look)), renderer_(look) {
+    look_.device = renderer_.options().device;
+  }
+  terrain::TerrainStats render(const terrain::Terrain& terrain,
+                               const terrain::TerrainCamera& camera,
+                               const terrain::TerrainTargets& targets, std::stop_token stop = {}) {
+    return renderer_.render(terrain, camera, look_, targets, std::move(stop));
+  }
+  [[nodiscard]] const TerrainLook& options() const { return look_; }
+
+ private:
+  TerrainLook look_;
+  terrain::TerrainRenderer renderer_;
+};
+
+}  // namespace rastrum::test
