@@ -57,7 +57,7 @@ class TerrainObjectsProgram : public ProgramOnHills {
     Drawn d;
     const terrain::Terrain ground(
         terrain::HeightMap{Image<float>(map_.heights), Image<Rgba8>(map_.colors)});
-    const terrain::TerrainTargets targets{d.color.view(), d.depth.view()};
+    const terrain::TerrainTargets targets{.color8 = d.color, .depth = d.depth};
     const terrain::TerrainStats stats = TerrainPainter(options_).render(ground, camera_, targets);
     if (scene == nullptr) return d;
     how.width = kWidth;

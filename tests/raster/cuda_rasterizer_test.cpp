@@ -241,7 +241,8 @@ TEST_F(CudaRasterizer, InPlaceNothingIsCopied) {
   Painter serial(o);
   Frame expected = draw(serial, binding.view(), camera);
   Frame frame = draw(serial, SceneBinding(soup(1, 8, 8)).view(), camera);
-  Targets targets{frame.color8.view(), frame.color.view(), frame.depth.view(), frame.ids.view()};
+  Targets targets{
+      .color8 = frame.color8, .color = frame.color, .depth = frame.depth, .ids = frame.ids};
   o.device = Device::cuda;
   Painter copying(o);
   const std::uint64_t copied = copying.render(binding.view(), camera, targets).peak_bytes;

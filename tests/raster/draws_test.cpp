@@ -159,8 +159,11 @@ WithExtra draw_all(const RenderOptions& o, Draws& draws, const raster::BlockShad
   w.frame.depth = Image<float>(kWidth, kHeight);
   w.frame.ids = Image<std::int64_t>(kWidth, kHeight);
   w.frame.overdraw = Image<std::uint32_t>(kWidth, kHeight);
-  Targets targets{w.frame.color8.view(), w.frame.color.view(), w.frame.depth.view(),
-                  w.frame.ids.view(), w.frame.overdraw.view()};
+  Targets targets{.color8 = w.frame.color8,
+                  .color = w.frame.color,
+                  .depth = w.frame.depth,
+                  .ids = w.frame.ids,
+                  .overdraw = w.frame.overdraw};
   const std::array extra{w.extra.view()};
   targets.extra = extra;
   w.frame.stats = Painter(o).draw(draws, shader, test, targets);

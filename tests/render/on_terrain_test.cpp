@@ -479,7 +479,7 @@ TEST(OnTerrain, RefusesWhatCannotBeComposed) {
   Image<Rgba8> color(kWidth, kHeight);
   Image<Rgba8> small_color(8, 8);
   Image<float> depth(kWidth, kHeight), small(8, 8);
-  const terrain::TerrainTargets targets{color.view(), depth.view()};
+  const terrain::TerrainTargets targets{.color8 = color, .depth = depth};
   const auto message = [&](const TerrainLook& options, const RenderOptions& how,
                            const terrain::TerrainTargets& to,
                            const std::vector<std::size_t>& facing = {}) -> std::string {

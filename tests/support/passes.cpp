@@ -43,8 +43,11 @@ Passes draw_in_passes(Painter& renderer, const SceneView& scene, const Camera& c
             {}},
            Image<std::uint64_t>(w, h)};
   std::ranges::fill(p.keys.pixels(), ~std::uint64_t{0});
-  Targets targets{p.frame.color8.view(), p.frame.color.view(), p.frame.depth.view(),
-                  p.frame.ids.view(), p.frame.overdraw.view()};
+  Targets targets{.color8 = p.frame.color8,
+                  .color = p.frame.color,
+                  .depth = p.frame.depth,
+                  .ids = p.frame.ids,
+                  .overdraw = p.frame.overdraw};
   targets.keys = p.keys.view();
   const InstanceView& whole = scene.instances[0];
   const std::size_t triangles = whole.mesh.triangle_count();

@@ -1,0 +1,135 @@
+// One renderer draws frames of any size and look, each as one that was made for it alone; and a
+// Renderer without the family draws what the family's default draws.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/error.hpp>
+#include <rastrum/family.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/terrain.hpp>
+
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace {
+
+struct Picture {
+  Image<Rgba8> color;
+  Image<float> depth;
+  FrameStats stats;
+
+  Picture(Renderer& renderer, const SceneView& scene, const FrameOptions& frame)
+      : color(frame.width, frame.height), depth(frame.width, frame.height) {
+    stats = renderer.render(scene, fit_camera(scene, 1.0472F, false), frame,
+                            {.color8 = color, .depth = depth});
+  }
+  [[nodiscard]] bool is(const Picture& o) const {
+    return std::ranges::equal(color.pixels(), o.color.pixels()) &&
+           std::ranges::equal(depth.pixels(), o.depth.pixels());
+  }
+};
+
+std::vector<FrameOptions> looks() {
+  return {{.width = 96, .height = 64},
+          {.width = 640, .height = 480, .background = {0.2F, 0.4F, 0.6F, 1}},
+          {.width = 33, .height = 17, .shader = Shader::normal, .cull = Cull::back},
+          {.width = 320, .height = 200, .opacity = 0.4F},
+          {.width = 320, .height = 200, .shader = Shader::depth},
+          {.width = 64, .height = 64, .opacity = 0.4F, .samples = 8},
+          {.width = 700, .height = 40, .shader = Shader::id},
+          {.width = 96, .height = 64}};
+}
+
+TEST(FrameOptions, AreEachFramesOwn) {
+  const Scene scene = single(shapes::torus_knot());
+  const SceneBinding binding(scene);
+  for (const RendererOptions& by :
+       {RendererOptions{.threads = 3}, RendererOptions{.memory_limit = 4U << 20, .threads = 2},
+        RendererOptions{.device = Device::serial}}) {
+    Renderer renderer(by);
+    for (const FrameOptions& frame : looks()) {
+      Renderer fresh(by);
+      const Picture expected(fresh, binding.view(), frame), got(renderer, binding.view(), frame);
+      EXPECT_TRUE(got.is(expected)) << frame.width << " x " << frame.height;
+      EXPECT_EQ(got.stats.shader, expected.stats.shader);
+      if (by.memory_limit != 0) EXPECT_LE(got.stats.peak_bytes, by.memory_limit);
+    }
+  }
+}
+
+TEST(FrameOptions, AreCheckedBeforeAndByEachFrame) {
+  const Scene scene = single(shapes::boxes(1));
+  const SceneBinding binding(scene);
+  Renderer renderer({.threads = 1});
+  const FrameOptions bad[] = {{.width = 0}, {.opacity = 2}, {.samples = 3}};
+  for (const FrameOptions& frame : bad) {
+    EXPECT_THROW(check(frame), Error);
+    EXPECT_THROW(renderer.render(binding.view(), {}, frame, {}), Error);
+    EXPECT_THROW(renderer.draw({}, frame, {}), Error);
+  }
+}
+
+TEST(Renderer, IsTheFamilysDefault) {
+  const Scene scene = single(shapes::torus_knot());
+  const SceneBinding binding(scene);
+  Renderer plain({.threads = 2});
+  Renderer of_family = family::make_renderer({.threads = 2}, {});
+  for (const FrameOptions& frame : looks()) {
+    const Picture a(plain, binding.view(), frame), b(of_family, binding.view(), frame);
+    EXPECT_TRUE(a.is(b));
+    EXPECT_EQ(a.stats.rasterizer, b.stats.rasterizer);
+    EXPECT_EQ(a.stats.visibility, b.stats.visibility);
+    EXPECT_EQ(a.stats.why, b.stats.why);
+    EXPECT_EQ(a.stats.counters, b.stats.counters);
+  }
+}
+
+TEST(Renderer, LeavesApproximationsToTheFamily) {
+  const Scene scene = single(shapes::boxes(2));
+  const SceneBinding binding(scene);
+  const FrameOptions frame{
+      .width = 16, .height = 16, .opacity = 0.5F, .transparency = {.method = Transparency::wboit}};
+  for (const Device device : {Device::threads, Device::serial}) {
+    Renderer plain({.device = device, .threads = 1});
+    try {
+      const Picture refused(plain, binding.view(), frame);
+      ADD_FAILURE() << name(device);
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::unsupported) << e.what();
+    }
+    Renderer of_family = family::make_renderer({.device = device, .threads = 1}, {});
+    const Picture drawn(of_family, binding.view(), frame);
+    EXPECT_GT(drawn.stats.pixels_covered, 0U);
+  }
+}
+
+TEST(TerrainOptions, AreEachFramesOwn) {
+  Image<float> heights(64, 64);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) heights(x, y) = static_cast<float>((x * 7 + y * 5) % 23);
+  const terrain::Terrain ground(terrain::HeightMap{heights, {}});
+  terrain::TerrainRenderer renderer({.threads = 2});
+  const terrain::TerrainOptions frames[] = {
+      {.width = 80, .height = 50, .distance = 100},
+      {.width = 200, .height = 30, .distance = 60, .step = 0, .filter = terrain::Filter::bilinear},
+      {.width = 31, .height = 90, .distance = 90, .filter = terrain::Filter::mip},
+      {.width = 64, .height = 64, .distance = 80, .classic = true},
+      {.width = 80, .height = 50, .distance = 100, .method = terrain::Method::words}};
+  for (const terrain::TerrainOptions& frame : frames) {
+    const auto draw = [&](terrain::TerrainRenderer& by) {
+      Image<Rgba8> color(frame.width, frame.height);
+      by.render(ground, {.x = 30, .y = 40}, frame, {.color8 = color});
+      return color;
+    };
+    terrain::TerrainRenderer fresh({.threads = 2});
+    EXPECT_TRUE(std::ranges::equal(draw(renderer).pixels(), draw(fresh).pixels()));
+  }
+  EXPECT_THROW(renderer.render(ground, {}, {.width = 0}, {}), Error);
+}
+
+}  // namespace
+}  // namespace rastrum::test
