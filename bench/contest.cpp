@@ -8,7 +8,7 @@
 
 #include <bench/cuda/in_place.hpp>
 #include <rastrum/core/image.hpp>
-#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/draws/vertices.hpp>
 
 #include "attempt.hpp"
 
@@ -158,9 +158,9 @@ FrameStats draw(Renderer& renderer, const Subject& subject, const Targets& targe
     return renderer.render({{&instance, 1}, {}, {}}, subject.camera, targets);
   }
   const Mat4d to_clip = world_to_clip(subject.camera, subject.width, subject.height);
-  const raster::TransformSource source(subject.mesh.positions, to_clip);
+  const raster::MatrixVertices source(subject.mesh.positions, to_clip);
   raster::Draw draw;
-  draw.source = &source;
+  draw.source = source;
   draw.vertex_count = subject.mesh.positions.size();
   draw.indices = subject.mesh.indices;
   draw.primitive_count = subject.mesh.triangle_count();

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <rastrum/core/error.hpp>
-#include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/camera.hpp>
 #include <rastrum/scene/mesh.hpp>

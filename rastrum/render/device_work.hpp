@@ -3,7 +3,7 @@
 #pragma once
 
 #include <rastrum/parallel/device_estimate.hpp>
-#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/frame/request.hpp>
 
 namespace rastrum {
 

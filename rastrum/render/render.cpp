@@ -12,8 +12,6 @@
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/turn.hpp>
 #include <rastrum/raster/draws/mixed_draws.hpp>
-#include <rastrum/raster/draws/over_picture.hpp>
-#include <rastrum/raster/draws/transform_source.hpp>
 #include <rastrum/raster/shade/alpha.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/lit.hpp>
@@ -170,10 +168,10 @@ struct Renderer::Impl {
   explicit Impl(RenderOptions o) : options(std::move(o)) {}
 
   FrameStats render(const SceneView& scene, const Camera& camera, const Targets& targets);
-  FrameStats draw_depth(std::span<raster::Draw> draws, const raster::FragmentTest* test,
+  FrameStats draw_depth(std::span<raster::Draw> draws, const raster::Testing& test,
                         const Targets& targets);
-  FrameStats draw(std::span<raster::Draw> draws, const raster::BlockShader* shader,
-                  const raster::FragmentTest* test, const Targets& targets,
+  FrameStats draw(std::span<raster::Draw> draws, const raster::Shading& shading,
+                  const raster::Testing& test, const Targets& targets,
                   std::string_view noun = "draw", bool linear_light = false);
 
   std::mutex one_at_a_time;
@@ -224,17 +222,17 @@ FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const 
   return impl_->render(scene, camera, targets);
 }
 
-FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::BlockShader& shader,
-                          const raster::FragmentTest* test, const Targets& targets,
+FrameStats Renderer::draw(std::span<raster::Draw> draws, const raster::Shading& shading,
+                          const raster::Testing& test, const Targets& targets,
                           std::stop_token stop) {
   const parallel::Turn turn(impl_->one_at_a_time, stop);
-  return impl_->draw(draws, &shader, test, targets);
+  return impl_->draw(draws, shading, test, targets);
 }
 
 FrameStats Renderer::draw(std::span<raster::Draw> draws, const Targets& targets,
                           std::stop_token stop) {
   const parallel::Turn turn(impl_->one_at_a_time, stop);
-  return impl_->draw(draws, nullptr, nullptr, targets);
+  return impl_->draw(draws, {}, {}, targets);
 }
 
 FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera,
@@ -248,8 +246,6 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera,
     check_attributes(scene);
   raster::check_materials(scene);
   const Mat4d to_clip = world_to_clip(camera, o.width, o.height);
-  std::vector<raster::TransformSource> sources;
-  sources.reserve(scene.instances.size());
   std::vector<raster::Draw> draws;
   draws.reserve(scene.instances.size());
   const bool blends = o.transparency.method != Transparency::none && taken != Shader::depth;
@@ -257,9 +253,9 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera,
   const std::vector<std::uint32_t> material_flags = raster::material_flags(scene.materials, blends);
   std::uint32_t any_flags = 0;  // of materials and vertex colours
   for (const InstanceView& instance : scene.instances) {
-    sources.emplace_back(instance.mesh.positions, to_clip * instance.object_to_world);
     raster::Draw& draw = draws.emplace_back();
-    draw.source = &sources.back();
+    draw.source =
+        raster::MatrixVertices(instance.mesh.positions, to_clip * instance.object_to_world);
     draw.vertex_count = instance.mesh.positions.size();
     draw.indices = instance.mesh.indices;
     draw.primitive_count = instance.mesh.triangle_count();
@@ -278,37 +274,34 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera,
   const bool is_translucent = all_translucent || any_blend;
   const bool shades_materials = taken == Shader::material;
   std::optional<raster::MaterialScene> materials;
-  std::unique_ptr<raster::FragmentTest> test;
   if (shades_materials || any_mask || any_blend) {
     textures.update(scene.textures, raster::texture_uses(scene, shades_materials, any_blend),
                     threads.get());
     materials.emplace(scene, camera, o.width, o.height, textures);
   }
-  if (any_mask) test = raster::make_alpha_test(*materials, isa);
+  raster::Testing test;
+  if (any_mask) test = raster::MaskTest{&*materials};
   const auto named = [&](FrameStats stats) {
     stats.shader = name(taken);
     return stats;
   };
-  if (taken == Shader::depth) return named(draw_depth(draws, test.get(), targets));
+  if (taken == Shader::depth) return named(draw_depth(draws, test, targets));
   const bool linear = is_translucent && shades_materials;
   std::optional<raster::LitScene> lit;
-  std::unique_ptr<raster::BlockShader> shader;
+  raster::Shading shading;
   if (shades_materials) {
-    shader = raster::make_material_shader(*materials, linear);
+    shading = raster::MaterialShading{&*materials, linear};
   } else {
     lit.emplace(scene, camera, o.width, o.height);
-    shader = raster::make_lit_shader(lit_model(taken), *lit);
+    shading = raster::LitShading{lit_model(taken), &*lit};
   }
-  std::unique_ptr<raster::BlockShader> blended;
-  if (is_translucent)
-    blended = raster::make_alpha_shader(*shader, any_blend ? &*materials : nullptr, o.opacity);
-  return named(
-      draw(draws, blended ? blended.get() : shader.get(), test.get(), targets, "instance", linear));
+  if (is_translucent) shading = shading.with_alpha(any_blend ? &*materials : nullptr, o.opacity);
+  return named(draw(draws, shading, test, targets, "instance", linear));
 }
 
 /// Grey by depth needs the range of depths in the picture, so it is a pass after the frame.
-FrameStats Renderer::Impl::draw_depth(std::span<raster::Draw> draws,
-                                      const raster::FragmentTest* test, const Targets& targets) {
+FrameStats Renderer::Impl::draw_depth(std::span<raster::Draw> draws, const raster::Testing& test,
+                                      const Targets& targets) {
   const RenderOptions& o = options;
   if (targets.over)
     throw Error(Errc::invalid_argument,
@@ -325,7 +318,7 @@ FrameStats Renderer::Impl::draw_depth(std::span<raster::Draw> draws,
   }
   const raster::FragmentShader unused(
       [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
-  FrameStats stats = draw(draws, &unused, test, first, "instance");
+  FrameStats stats = draw(draws, unused, test, first, "instance");
   const auto begin = std::chrono::steady_clock::now();
   stretch_depth(first.depth, o.background, targets);
   const double ms =
@@ -335,17 +328,14 @@ FrameStats Renderer::Impl::draw_depth(std::span<raster::Draw> draws,
   return stats;
 }
 
-FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::BlockShader* shader,
-                                const raster::FragmentTest* test, const Targets& targets,
+FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Shading& shading,
+                                const raster::Testing& test, const Targets& targets,
                                 std::string_view noun, bool linear_light) {
   const RenderOptions& o = options;
   check_targets(targets, o);
-  raster::MixedDraws mixed(draws, shader, test);
+  raster::MixedDraws mixed(draws, shading, test);
   draws = mixed.draws();
-  shader = mixed.shader();
-  test = mixed.test();
-  if (const std::size_t outputs = shader == nullptr ? 0 : shader->extra_count();
-      targets.extra.size() > outputs)
+  if (const std::size_t outputs = mixed.shading().extra_count(); targets.extra.size() > outputs)
     throw Error(Errc::invalid_argument, std::to_string(targets.extra.size()) +
                                             " extra targets, but the shader has " +
                                             std::to_string(outputs) + " outputs beside its colour");
@@ -356,11 +346,12 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Blo
     throw Error(Errc::invalid_argument,
                 "a pass that loads can neither blend translucent surfaces over what the passes "
                 "before have drawn nor add samples to it; draw all in one pass");
-  std::optional<raster::OverPicture> over;
+  std::vector<raster::Draw> over;  // the caller's stay as they are
   if (targets.over) {
     check_over(targets, o);
-    draws = over.emplace(targets.depth, draws, test).draws();
-    test = &*over;
+    over.assign(draws.begin(), draws.end());
+    for (raster::Draw& d : over) d.flags |= raster::kOverPicture;
+    draws = over;
   }
   raster::FrameRequest request;
   request.width = o.width;
@@ -370,8 +361,8 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Blo
   request.isa = isa;
   request.draws = draws;
   request.draw_noun = noun;
-  request.test = test;
-  request.shader = shader;
+  request.test = mixed.test();
+  request.shading = mixed.shading();
   request.background = o.background;
   request.targets = targets;
   request.tuning = o.tuning;

@@ -12,7 +12,8 @@
 
 #include <rastrum/core/image.hpp>
 #include <rastrum/parallel/device.hpp>
-#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/draws/draw.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/frame/options.hpp>
 #include <rastrum/scene/scene.hpp>
 
@@ -114,16 +115,15 @@ class Renderer {
   FrameStats render(const SceneView& scene, const Camera& camera, const Targets& targets,
                     std::stop_token stop = {});
 
-  /// The programmable form: draws of any vertex source with any shader (raster/draws/program.hpp
+  /// The programmable form: draws of any vertex source with any shading (raster/draws/program.hpp
   /// makes both from a caller's functions) and a fragment test for the draws that ask for it: each
-  /// by its own (Draw::shader, Draw::test), where it has none by `shader` and `test` (null: none).
+  /// by its own (Draw::shading, Draw::test), where it has none by `shading` and `test`.
   /// So programs and built-in shaders meet in one frame, with layers, samples and extra targets
   /// too; outputs that a draw's shader does not have are 0. Draws whose flags have
   /// raster::kTranslucent are blended by the alpha that the shader returns; opacity is the shader's
   /// business here. Throws as render(), Error{invalid_argument} naming the draw.
-  FrameStats draw(std::span<raster::Draw> draws, const raster::BlockShader& shader,
-                  const raster::FragmentTest* test, const Targets& targets,
-                  std::stop_token stop = {});
+  FrameStats draw(std::span<raster::Draw> draws, const raster::Shading& shading,
+                  const raster::Testing& test, const Targets& targets, std::stop_token stop = {});
   /// The same where each draw has a shader of its own, as those of a Program have.
   FrameStats draw(std::span<raster::Draw> draws, const Targets& targets, std::stop_token stop = {});
 

@@ -94,7 +94,7 @@ struct FunctionView {
 };
 
 /// A terrain of function_terrain as a device can have it, its steps in the host's memory and as
-/// long as the surface; none of a caller's own function or surface.
-[[nodiscard]] std::optional<FunctionView> function_view(const Surface& surface);
+/// long as the terrain; none of a map, a caller's own function or surface.
+[[nodiscard]] std::optional<FunctionView> function_view(const Terrain& terrain);
 
 }  // namespace rastrum::terrain

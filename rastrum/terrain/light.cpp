@@ -92,6 +92,8 @@ T between(const Image<T>& image, const Tap& x, const Tap& y) {
              mix(image(x.a, y.b), image(x.b, y.b), x.share), y.share);
 }
 
+}  // namespace
+
 class LitFunction final : public Surface {
  public:
   LitFunction(HeightFunction function, double low, double high, const Light& light)
@@ -160,7 +162,10 @@ class LitFunction final : public Surface {
   std::vector<FunctionStep> steps_;
 };
 
-}  // namespace
+Terrain::Terrain(std::shared_ptr<const LitFunction> function)
+    : Terrain(std::shared_ptr<const Surface>(function)) {
+  lit_function_ = function.get();
+}
 
 Rgba8 sky_in(Rgba8 by_day, const Sun& sun) noexcept {
   constexpr double kDay = 30, kNight = -6, kLeast = 1.0 / 16;
@@ -205,9 +210,9 @@ Terrain function_terrain(HeightFunction function, double low, double high, const
   return Terrain(std::make_shared<const LitFunction>(std::move(function), low, high, light));
 }
 
-std::optional<FunctionView> function_view(const Surface& surface) {
-  const auto* const lit_function = dynamic_cast<const LitFunction*>(&surface);
-  return lit_function == nullptr ? std::nullopt : lit_function->view();
+std::optional<FunctionView> function_view(const Terrain& terrain) {
+  const LitFunction* const function = terrain.lit_function();
+  return function == nullptr ? std::nullopt : function->view();
 }
 
 }  // namespace rastrum::terrain

@@ -45,12 +45,16 @@ class Surface {
   virtual void colors(const double* x, const double* y, std::size_t n, Rgba8* out) const = 0;
 };
 
+class LitFunction;
+
 /// A terrain to look at: cheap to copy, never changed, safe to share between threads.
 class Terrain {
  public:
   /// Takes over the map. Throws Error{invalid_argument} where it has no cell. O(cells).
   explicit Terrain(HeightMap map);
   explicit Terrain(std::shared_ptr<const Surface> surface);
+  /// What function_terrain (light.hpp) makes.
+  explicit Terrain(std::shared_ptr<const LitFunction> function);
 
   /// From two functors `float height(double x, double y)` and `Rgba8 color(double x, double y)`.
   template <class Height, class Color>
@@ -68,6 +72,8 @@ class Terrain {
   /// +inf.
   [[nodiscard]] float highest() const { return highest_; }
   [[nodiscard]] const Surface& surface() const { return *surface_; }
+  /// The surface, where function_terrain made it; else null.
+  [[nodiscard]] const LitFunction* lit_function() const { return lit_function_; }
 
   /// The height at a point, unfiltered; NaN in a hole.
   [[nodiscard]] float height_at(double x, double y, Tiling tiling = Tiling::repeat) const;
@@ -78,6 +84,7 @@ class Terrain {
   std::shared_ptr<const Image<float>> heights_;
   std::shared_ptr<const Image<Rgba8>> colors_;
   std::shared_ptr<const Surface> surface_;
+  const LitFunction* lit_function_ = nullptr;
   float highest_ = 0;
 };
 

@@ -15,6 +15,7 @@
 
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/parallel/stop.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/raster/visibility/atomic.hpp>
@@ -67,7 +68,8 @@ class LayersRegion final : public raster::Region {
     micro_.restart();
     samples_ = context.request->samples;
     const Targets& targets = context.request->targets;
-    shader_ = targets.color8.empty() && targets.color.empty() ? nullptr : context.request->shader;
+    shading_ = targets.color8.empty() && targets.color.empty() ? raster::Shading()
+                                                               : context.request->shading;
     const TransparencyOptions& options = context.request->transparency;
     if (!blend_ || options != made_for_ || context.request->isa != made_with_) {
       made_for_ = options;
@@ -177,7 +179,7 @@ class LayersRegion final : public raster::Region {
     if (samples_ > 1 || made_for_.method == Transparency::filter) return false;
     if (!packed_.collect(records, micro, grid, surface_)) return false;
     if (blend_->order() == LayerOrder::depth) packed_.sort();
-    if (shader_ != nullptr) packed_.shade(context_, *shader_, blend_->opaque_at());
+    if (shading_) packed_.shade(context_, shading_, blend_->opaque_at());
     for (int by = grid.by; by < grid.by + grid.rows; ++by)
       for (int bx = grid.bx; bx < grid.bx + grid.columns; ++bx) {
         std::uint64_t* const keys = surface_.block(bx, by);
@@ -185,7 +187,7 @@ class LayersRegion final : public raster::Region {
         const bool any = packed_.any(bx, by);
         shade_opaque(keys, bx, by, any ? behind_ : out);
         if (!any) continue;
-        if (shader_ != nullptr) {
+        if (shading_) {
           blend_->begin(behind_);
           packed_.blend(bx, by, *blend_);
           blend_->finish(out);
@@ -205,7 +207,7 @@ class LayersRegion final : public raster::Region {
     BlockColors& out = *surface_.colors_of(bx, by);
     if (samples_ > 1) {
       note(bx, by,
-           sampled_.resolve(context_, shader_, *blend_, records, bx, by, filter(), planes_,
+           sampled_.resolve(context_, shading_, *blend_, records, bx, by, filter(), planes_,
                             made_for_.method != Transparency::filter, keys, out));
       return;
     }
@@ -301,8 +303,8 @@ class LayersRegion final : public raster::Region {
   }
 
   const BlockColors& shade(const std::uint64_t* keys, std::uint64_t mask, int bx, int by) {
-    if (shader_ != nullptr &&
-        shader_->shade(*context_.frame,
+    if (shading_ &&
+        shading_.shade(*context_.frame,
                        {keys, mask, bx * kBlockSize, by * kBlockSize, context_.shader_scratch},
                        context_.request->isa, colors_))
       std::fill_n(colors_.a, 64, 1.0F);
@@ -315,7 +317,7 @@ class LayersRegion final : public raster::Region {
         context_.kernel->covered(keys) &
         raster::samples_inside({0, 0, context_.request->width, context_.request->height}, bx, by);
     if (covered != ~std::uint64_t{0}) out = {};
-    if (covered == 0 || shader_ == nullptr) return;
+    if (covered == 0 || !shading_) return;
     const BlockColors& colors = shade(keys, covered, bx, by);
     for (std::uint64_t m = covered; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
@@ -339,7 +341,7 @@ class LayersRegion final : public raster::Region {
   raster::SurfaceView surface_;
   Rect rect_;
   int columns_ = 0;
-  const raster::BlockShader* shader_ = nullptr;
+  raster::Shading shading_;  ///< none: no colour is wanted
   std::size_t planes_ = 0;
   int samples_ = 1;
 

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include <rastrum/parallel/mask.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 
 namespace rastrum::transparency {
 namespace {
@@ -156,7 +157,7 @@ void PackedFragments::sort() {
         kernel_->sort(sort_keys_.data() + r.begin, r.layers);
 }
 
-void PackedFragments::shade(const raster::RegionContext& context, const raster::BlockShader& shader,
+void PackedFragments::shade(const raster::RegionContext& context, const raster::Shading& shading,
                             float opaque_at) {
   const std::size_t blocks = (count_ + 63) / 64;
   colors_.reserve(1 + blocks * 64);
@@ -165,17 +166,17 @@ void PackedFragments::shade(const raster::RegionContext& context, const raster::
   std::fill_n(wanted_.data(), blocks, ~std::uint64_t{0});
   if (count_ % 64 != 0) wanted_[blocks - 1] = ~std::uint64_t{0} >> (64 - count_ % 64);
   if (opaque_at > 0) {
-    const std::optional<float> alpha = shader.alpha();
-    if (!alpha) return shade_by_turns(context, shader, opaque_at);
+    const std::optional<float> alpha = shading.alpha();
+    if (!alpha) return shade_by_turns(context, shading, opaque_at);
     const std::uint32_t most = layers_until(*alpha, opaque_at);
     leave_out_behind(most);
     for (Row& row : rows_) row.layers = std::min(row.layers, most);
   }
-  shade_wanted(context, shader);
+  shade_wanted(context, shading);
 }
 
 void PackedFragments::shade_wanted(const raster::RegionContext& context,
-                                   const raster::BlockShader& shader) {
+                                   const raster::Shading& shading) {
   // Where only some are wanted, rows of 8 mostly are as a whole, as a triangle's fragments lie side
   // by side; so they stay where they are.
   const std::size_t blocks = (count_ + 63) / 64;
@@ -184,14 +185,14 @@ void PackedFragments::shade_wanted(const raster::RegionContext& context,
     if (b + 1 < blocks)
       for (std::uint64_t m = wanted_[b + 1] & first_[b + 1]; m != 0; m &= m - 1) {
         const std::size_t number = (b + 1) * 64 + static_cast<std::size_t>(std::countr_zero(m));
-        shader.prefetch(*context.frame, raster::id_of_key(keys_[number]));
+        shading.prefetch(*context.frame, raster::id_of_key(keys_[number]));
       }
     if (wanted_[b] == 0) continue;
     kernel_->points(pixels_.data() + b * 64, points_);
     raster::VisibleBlock block{keys_.data() + b * 64, wanted_[b], grid_.bx * kBlockSize,
                                grid_.by * kBlockSize, context.shader_scratch};
     block.points = &points_;
-    if (shader.shade(*context.frame, block, context.request->isa, plane_))
+    if (shading.shade(*context.frame, block, context.request->isa, plane_))
       std::fill_n(plane_.a, 64, 1.0F);
     Vec4* const colors = colors_.data() + 1 + b * 64;
     if (block.covered == ~std::uint64_t{0}) {
@@ -220,10 +221,10 @@ void PackedFragments::leave_out_behind(std::uint32_t most) {
 }
 
 void PackedFragments::shade_by_turns(const raster::RegionContext& context,
-                                     const raster::BlockShader& shader, float opaque_at) {
+                                     const raster::Shading& shading, float opaque_at) {
   std::uint32_t begin = 0, end = kFirstTurn;
   leave_out_behind(end);
-  shade_wanted(context, shader);
+  shade_wanted(context, shading);
   std::fill_n(through_, std::size(through_), 1.0F);
   for (; end < deepest_; begin = end, end *= 2) {
     std::fill_n(wanted_.data(), (count_ + 63) / 64, 0U);
@@ -245,7 +246,7 @@ void PackedFragments::shade_by_turns(const raster::RegionContext& context,
         }
       }
     if (!any) return;
-    shade_wanted(context, shader);
+    shade_wanted(context, shading);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <rastrum/parallel/stop.hpp>
 #include <rastrum/raster/assemble/assemble.hpp>
 #include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/frame/stopwatch.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/transparency/blend.hpp>
@@ -66,16 +67,18 @@ struct Scene {
 
 bool Scene::keeps(const raster::Draw& draw, std::uint64_t primitive, int x, int y,
                   const Fragment& f) {
-  if ((draw.flags_of(primitive) & raster::kTested) == 0 || request.test == nullptr) return true;
+  const std::uint32_t flags = draw.flags_of(primitive);
+  if ((flags & raster::kMayDrop) == 0) return true;
   raster::ShadingPoints points{};
   const raster::Block block = block_of(x, y);
   const int i = std::countr_zero(block.mask);
   points.dx[i] = f.dx;
   points.dy[i] = f.dy;
   Piece piece{};
+  piece.flags = flags;
   piece.low = f.shaded_key & raster::kIdMask;
   piece.z0 = std::bit_cast<float>(static_cast<std::uint32_t>(f.shaded_key >> raster::kIdBits));
-  return request.test->test(frame, piece, block, &points) != 0;
+  return request.kept(frame, piece, block, &points) != 0;
 }
 
 void Scene::add(const raster::Draw& draw, std::uint64_t primitive, FrameStats& stats) {
@@ -126,7 +129,7 @@ void Scene::add(const raster::Draw& draw, std::uint64_t primitive, FrameStats& s
 }
 
 Vec4 Scene::shade(int x, int y, const Fragment& f) {
-  if (request.shader == nullptr) return {};
+  if (!request.shading) return {};
   alignas(64) std::uint64_t keys[64] = {};
   raster::ShadingPoints points{};
   const raster::Block block = block_of(x, y);
@@ -138,7 +141,7 @@ Vec4 Scene::shade(int x, int y, const Fragment& f) {
                                scratch.data()};
   visible.points = &points;
   BlockColors colors;
-  const bool opaque = request.shader->shade(frame, visible, Isa::scalar, colors);
+  const bool opaque = request.shading.shade(frame, visible, Isa::scalar, colors);
   return {colors.r[i], colors.g[i], colors.b[i], opaque ? 1.0F : colors.a[i]};
 }
 
@@ -206,8 +209,8 @@ FrameStats render_reference(raster::FrameRequest& request, MemoryAccount& memory
   Buffer<raster::ProjectedVertex> projected(memory);
   projected.reserve(totals.vertices);
   for (const raster::Draw& draw : request.draws)
-    draw.source->project(0, draw.vertex_count, frame.viewport, Isa::scalar,
-                         projected.data() + draw.first_vertex);
+    draw.source.project(0, draw.vertex_count, frame.viewport, Isa::scalar,
+                        projected.data() + draw.first_vertex);
   frame.projected = projected.data();
 
   for (int y = 0; y < request.height; ++y) {
@@ -217,7 +220,7 @@ FrameStats render_reference(raster::FrameRequest& request, MemoryAccount& memory
       std::fill_n(request.targets.overdraw.row(y), request.width, 0U);
   }
   Scene scene{request, frame, {}, {}};
-  scene.scratch.begin(request.shader);
+  scene.scratch.begin(request.shading.scratch_bytes());
   scene.pixels.resize(static_cast<std::size_t>(request.width) *
                       static_cast<std::size_t>(request.height));
   stats.triangles.input = totals.primitives;

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include <rastrum/parallel/mask.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 
 namespace rastrum::transparency {
@@ -159,11 +160,11 @@ void SampledBlock::shade() {
 void SampledBlock::flush(Shaded& plane) {
   if (plane.mask == 0) return;
   BlockColors shaded;
-  if (shader_ != nullptr) {
+  if (shading_) {
     raster::VisibleBlock block{plane.keys, plane.mask, bx_ * kBlockSize, by_ * kBlockSize,
                                context_->shader_scratch};
     block.points = &plane.points;
-    if (shader_->shade(*context_->frame, block, context_->request->isa, shaded))
+    if (shading_.shade(*context_->frame, block, context_->request->isa, shaded))
       std::fill_n(shaded.a, 64, 1.0F);
     for (const std::uint32_t k : plane_triangles_) {
       std::uint32_t place = triangles_[k].color;
@@ -187,8 +188,7 @@ LayerCounts SampledBlock::blend_sample(std::uint32_t sample, BlockColors& out) {
   LayerCounts counts;
   BlockColors behind = {}, layer;
   for (int i = 0; i < 64; ++i)
-    if (owner_[sample][i] != kNone && shader_ != nullptr)
-      behind.set(i, color(owner_[sample][i], i));
+    if (owner_[sample][i] != kNone && shading_) behind.set(i, color(owner_[sample][i], i));
   blend_->begin(behind);
   for (int pass = 0; pass < blend_->passes(); ++pass) {
     blend_->begin_pass(pass);
@@ -214,10 +214,10 @@ LayerCounts SampledBlock::blend_sample(std::uint32_t sample, BlockColors& out) {
         for (std::uint64_t m = mask; m != 0; m &= m - 1) {
           const int i = std::countr_zero(m);
           nearest_[i] = std::max(nearest_[i], lists_.plane(k)[i]);
-          if (shader_ != nullptr) layer.set(i, color(owners[i], i));
+          if (shading_) layer.set(i, color(owners[i], i));
         }
         if (pass == 0) counts.fragments += static_cast<std::uint64_t>(parallel::popcount(mask));
-        if ((mask & ~finished) != 0 && shader_ != nullptr)
+        if ((mask & ~finished) != 0 && shading_)
           finished |= blend_->layer({lists_.plane(k), mask & ~finished, layer});
       }
       if (pass == 0) counts.deepest += depth;
@@ -229,12 +229,12 @@ LayerCounts SampledBlock::blend_sample(std::uint32_t sample, BlockColors& out) {
 }
 
 LayerCounts SampledBlock::resolve(const raster::RegionContext& context,
-                                  const raster::BlockShader* shader, LayerBlend& blend,
+                                  const raster::Shading& shading, LayerBlend& blend,
                                   std::span<Record> records, int bx, int by, std::size_t filter,
                                   std::size_t planes, bool repair, std::uint64_t* keys,
                                   BlockColors& out) {
   context_ = &context;
-  shader_ = shader;
+  shading_ = shading;
   blend_ = &blend;
   records_ = records;
   bx_ = bx;
@@ -272,14 +272,14 @@ LayerCounts SampledBlock::resolve(const raster::RegionContext& context,
 
 /// The fragment test, once a triangle and pixel.
 void SampledBlock::test() {
-  if (context_->request->test == nullptr) return;
+  if (!context_->request->has_tests()) return;
   Shaded own;
   for (std::uint32_t k = 0; k < triangle_count_; ++k) {
     Triangle& t = triangles_[k];
     const Piece& piece = *records_[t.first].piece;
-    if ((piece.flags & raster::kTested) == 0) continue;
+    if ((piece.flags & raster::kMayDrop) == 0) continue;
     find_points(t, own);
-    t.kept = context_->request->test->test(
+    t.kept = context_->request->kept(
         *context_->frame, piece,
         {0, static_cast<std::uint16_t>(bx_), static_cast<std::uint16_t>(by_), own.mask},
         &own.points);

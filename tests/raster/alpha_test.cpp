@@ -12,7 +12,7 @@
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/raster/draws/program.hpp>
-#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/render/render.hpp>
 
@@ -282,12 +282,12 @@ TEST(Alpha, TheDepthPictureIsOfTheNearestSurfaceWhateverItsOpacity) {
 TEST(Alpha, UsersShadersBlendByTheirOwn) {
   const Mesh mesh = quad(kSize, {0, 0}, {1, 1});
   const Mat4d to_clip = world_to_clip(pixel_camera(kSize, kSize), kSize, kSize);
-  const raster::TransformSource source(mesh.positions, to_clip);
+  const raster::MatrixVertices source(mesh.positions, to_clip);
   const raster::FragmentShader shader([](const raster::FrameGeometry&, const raster::Fragment&) {
     return Vec4{0.25F, 0, 0.5F, 0.5F};
   });
   raster::Draw d;
-  d.source = &source;
+  d.source = source;
   d.vertex_count = mesh.positions.size();
   d.indices = mesh.indices;
   d.primitive_count = 2;

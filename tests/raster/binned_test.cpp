@@ -22,7 +22,7 @@
 #include <rastrum/core/error.hpp>
 #include <rastrum/raster/assemble/points_and_lines.hpp>
 #include <rastrum/raster/coverage/tile_mask.hpp>
-#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/frame/rasterizer.hpp>
 #include <rastrum/raster/frame/reference.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
@@ -531,8 +531,8 @@ TEST(Binned, EveryPassSeesTheSameChunks) {
                  from.begin() + static_cast<std::ptrdiff_t>(t * 3 + 3));
   }
   mesh.positions = std::move(mixed);
-  const raster::TransformSource source(mesh.positions,
-                                       world_to_clip(pixel_camera(kSize, kSize), kSize, kSize));
+  const raster::MatrixVertices source(mesh.positions,
+                                      world_to_clip(pixel_camera(kSize, kSize), kSize, kSize));
   for (const Schedule schedule : kSchedules)
     for (const int threads : {1, 8})
       for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{4} << 20}) {
@@ -542,7 +542,7 @@ TEST(Binned, EveryPassSeesTheSameChunks) {
         tuning.schedule = schedule;
         raster::Rasterizer rasterizer(binned_row(), again, tuning, limit, memory, exec);
         raster::Draw draw;
-        draw.source = &source;
+        draw.source = source;
         draw.vertex_count = mesh.positions.size();
         draw.primitive_count = draw.vertex_count / 3;
         raster::FrameRequest request;
@@ -566,11 +566,11 @@ TEST(Binned, SendsLinesAndPointsThroughItsQueues) {
     const double x = random.real(0, kSize), y = random.real(0, kSize);
     positions.push_back(at_pixel(x, y, random.real(0, 1), kSize, kSize));
   }
-  const raster::TransformSource source(positions,
-                                       world_to_clip(pixel_camera(kSize, kSize), kSize, kSize));
+  const raster::MatrixVertices source(positions,
+                                      world_to_clip(pixel_camera(kSize, kSize), kSize, kSize));
   std::array<raster::Draw, 2> draws;
   for (raster::Draw& d : draws) {
-    d.source = &source;
+    d.source = source;
     d.vertex_count = positions.size();
   }
   draws[0].topology = raster::Topology::lines;

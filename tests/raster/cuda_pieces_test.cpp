@@ -50,15 +50,13 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
     const GeneratedScene g = generate(seed, kWidth, kHeight);
     const SceneBinding binding(g.scene);
     const Mat4d to_clip = world_to_clip(g.camera, kWidth, kHeight);
-    std::vector<raster::TransformSource> sources;
-    sources.reserve(binding.view().instances.size());
     std::vector<raster::Draw> draws;
     std::vector<raster::DeviceDraw> device_draws;
     parallel::Cuda exec;
     for (const InstanceView& instance : binding.view().instances) {
       const Mat4d matrix = to_clip * instance.object_to_world;
       raster::Draw& d = draws.emplace_back();
-      d.source = &sources.emplace_back(instance.mesh.positions, matrix);
+      d.source = raster::MatrixVertices(instance.mesh.positions, matrix);
       d.vertex_count = instance.mesh.positions.size();
       d.indices = instance.mesh.indices;
       d.primitive_count = instance.mesh.triangle_count();

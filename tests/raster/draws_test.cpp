@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/raster/draws/program.hpp>
-#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
@@ -214,13 +214,10 @@ TEST(Draws, MayHaveABuiltInShader) {
   const SceneBinding binding(scene);
   const Camera camera = fit_camera(binding.view(), 1, false);
   const Mat4d to_clip = world_to_clip(camera, kWidth, kHeight);
-  std::vector<raster::TransformSource> sources;
   std::vector<Draw> meshes;
-  sources.reserve(2);
   for (const InstanceView& instance : binding.view().instances) {
-    sources.emplace_back(instance.mesh.positions, to_clip * instance.object_to_world);
     Draw& d = meshes.emplace_back();
-    d.source = &sources.back();
+    d.source = raster::MatrixVertices(instance.mesh.positions, to_clip * instance.object_to_world);
     d.vertex_count = instance.mesh.positions.size();
     d.indices = instance.mesh.indices;
     d.primitive_count = instance.mesh.triangle_count();
@@ -230,12 +227,11 @@ TEST(Draws, MayHaveABuiltInShader) {
     RenderOptions o = options(device);
     o.shader = Shader::phong;
     const raster::LitScene lit_scene(binding.view(), camera, kWidth, kHeight);
-    const auto phong = raster::make_lit_shader(raster::LitModel::phong, lit_scene);
-    const auto normal = raster::make_lit_shader(raster::LitModel::normal, lit_scene);
     std::vector<Draw> draws{two.second.draw(3), meshes[0], two.first.draw(3), meshes[1], meshes[0]};
     draws[0].depth_bias = draws[2].depth_bias = -0.45F;
-    draws[1].shader = draws[3].shader = phong.get();
-    draws[4].shader = normal.get();  // the lower half of the sphere again, before itself
+    draws[1].shading = draws[3].shading = raster::LitShading{raster::LitModel::phong, &lit_scene};
+    draws[4].shading = raster::LitShading{raster::LitModel::normal, &lit_scene};
+    // the lower half of the sphere again, before itself
     draws[4].depth_bias = 0.05F;
     draws[4].primitive_count /= 2;
     Renderer renderer(o);

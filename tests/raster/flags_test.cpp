@@ -9,7 +9,7 @@
 
 #include <rastrum/core/error.hpp>
 #include <rastrum/raster/draws/program.hpp>
-#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/render/render.hpp>
 
@@ -54,9 +54,9 @@ struct Mixed {
     }
     to_clip = world_to_clip(pixel_camera(kWidth, kHeight), kWidth, kHeight);
   }
-  [[nodiscard]] raster::Draw draw(const raster::TransformSource& source) const {
+  [[nodiscard]] raster::Draw draw(const raster::MatrixVertices& source) const {
     raster::Draw d;
-    d.source = &source;
+    d.source = source;
     d.vertex_count = positions.size();
     d.primitive_count = face_materials.size();
     return d;
@@ -82,13 +82,13 @@ TEST_P(FlagsByMaterial, ATestSeesItsMaterialsAlone) {
   const std::vector<std::uint32_t> flags{0, raster::kTested, 0};
   for (const int longest_run : {1, 5, 700}) {
     const Mixed mixed(longest_run);
-    const raster::TransformSource source(mixed.positions, mixed.to_clip);
+    const raster::MatrixVertices source(mixed.positions, mixed.to_clip);
     // What is left where all of material 1 is dropped: the same scene with it moved out of sight.
     Mixed rest = mixed;
     for (std::size_t t = 0; t < rest.face_materials.size(); ++t)
       if (rest.face_materials[t] == 1)
         for (std::size_t c = 0; c < 3; ++c) rest.positions[t * 3 + c] = {-1000, -1000, 0};
-    const raster::TransformSource rest_source(rest.positions, rest.to_clip);
+    const raster::MatrixVertices rest_source(rest.positions, rest.to_clip);
     std::vector<raster::Draw> draws{rest.draw(rest_source)};
     Renderer renderer(options(GetParam()));
     const Frame expected = draw(renderer, draws, white, nullptr);
@@ -119,7 +119,7 @@ TEST(FlagsOfADraw, FaceMaterialsAreChecked) {
     return Vec4{1, 1, 1, 1};
   });
   const Mixed mixed(3);
-  const raster::TransformSource source(mixed.positions, mixed.to_clip);
+  const raster::MatrixVertices source(mixed.positions, mixed.to_clip);
   Renderer renderer(options({"auto", "auto"}));
   std::vector<raster::Draw> draws{mixed.draw(source)};
   const std::vector<std::uint32_t> two_flags{0, 0}, three_flags{0, 0, 0};
@@ -142,7 +142,7 @@ TEST(FlagsOfADraw, FaceMaterialsAreChecked) {
 
 TEST(Setup, FragmentsOfTranslucentTrianglesSayThatTheyAre) {
   const Mixed mixed(3);
-  const raster::TransformSource source(mixed.positions, mixed.to_clip);
+  const raster::VertexStage source = raster::MatrixVertices(mixed.positions, mixed.to_clip);
   const raster::Viewport viewport = raster::Viewport::of(kWidth, kHeight);
   std::vector<raster::ProjectedVertex> vertices(mixed.positions.size());
   for (const Isa isa : available_isas()) {

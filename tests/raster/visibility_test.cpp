@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/core/memory.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/raster/visibility/region.hpp>
 
@@ -153,7 +154,7 @@ class Resolver {
     request_.width = kWidth;
     request_.height = kHeight;
     request_.isa = isa;
-    request_.shader = &shader_;
+    request_.shading = &shader_;
     request_.hierarchical_z = false;
     request_.targets.color = {color_.data(), kWidth, kHeight, kWidth};
     shared_ = method.make(Sharing::shared, memory_);

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/render/scene_on_terrain.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
@@ -386,11 +386,11 @@ TEST(OverPicture, AsksTheTestOfADrawForThatDrawAlone) {
   Camera camera;
   camera.eye = {0, 0, 4};
   const Mat4d to_clip = world_to_clip(camera, kWidth, kHeight);
-  const raster::TransformSource sources[] = {{box.positions, to_clip * at(-0.8, 0, 0, 1)},
-                                             {box.positions, to_clip * at(0.8, 0, 0, 1)}};
+  const raster::MatrixVertices sources[] = {{box.positions, to_clip * at(-0.8, 0, 0, 1)},
+                                            {box.positions, to_clip * at(0.8, 0, 0, 1)}};
   raster::Draw draws[2];
   for (int i = 0; i < 2; ++i) {
-    draws[i].source = &sources[i];
+    draws[i].source = sources[i];
     draws[i].vertex_count = box.positions.size();
     draws[i].indices = box.indices;
     draws[i].primitive_count = box.triangle_count();

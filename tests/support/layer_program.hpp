@@ -35,8 +35,8 @@ class LayerProgram {
           program_.draw(clip_.size(), std::span(corners_).subspan(3 * begin, 3 * (end - begin)));
       draw.flags = scene.holes ? raster::kTested : 0U;
       if (scene.opaque[begin] == 0) draw.flags |= raster::kTranslucent;
-      draw.shader = nullptr;  // tests wrap what shader() is
-      draw.test = nullptr;
+      draw.shading = {};  // tests wrap what shader() is
+      draw.test = {};
       draws_.push_back(draw);
       begin = end;
     }

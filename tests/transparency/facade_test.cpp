@@ -14,7 +14,8 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/io/io.hpp>
-#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
+#include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/raster/shade/alpha.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
@@ -45,11 +46,10 @@ class Fragments {
       blends |= m.alpha_mode == AlphaMode::blend;
       masks |= m.alpha_mode == AlphaMode::mask;
     }
-    sources_.reserve(scene.instances.size());
     for (const InstanceView& instance : scene.instances) {
-      sources_.emplace_back(instance.mesh.positions, to_clip * instance.object_to_world);
       raster::Draw& draw = draws_.emplace_back();
-      draw.source = &sources_.back();
+      draw.source =
+          raster::MatrixVertices(instance.mesh.positions, to_clip * instance.object_to_world);
       draw.vertex_count = instance.mesh.positions.size();
       draw.indices = instance.mesh.indices;
       draw.primitive_count = instance.mesh.triangle_count();
@@ -61,12 +61,11 @@ class Fragments {
     textures_.update(scene.textures, raster::texture_uses(scene, materials, blends), nullptr);
     material_scene_ =
         std::make_unique<raster::MaterialScene>(scene, camera, o.width, o.height, textures_);
-    inner_ = materials ? raster::make_material_shader(*material_scene_, true)
-                       : raster::make_lit_shader(raster::LitModel::phong, lit_scene_);
-    shader_ =
-        raster::make_alpha_shader(*inner_, blends ? material_scene_.get() : nullptr, o.opacity);
-    scratch_.begin(shader_.get());
-    if (masks) test_ = raster::make_alpha_test(*material_scene_, Isa::scalar);
+    shading_ = raster::LitShading{raster::LitModel::phong, &lit_scene_};
+    if (materials) shading_ = raster::MaterialShading{material_scene_.get(), true};
+    shading_ = shading_.with_alpha(blends ? material_scene_.get() : nullptr, o.opacity);
+    scratch_.begin(shading_.scratch_bytes());
+    if (masks) test_ = raster::MaskTest{material_scene_.get()};
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
       const MeshView& mesh = scene.instances[i].mesh;
       for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
@@ -90,7 +89,7 @@ class Fragments {
     raster::VisibleBlock block{keys, at.mask, at.x0, at.y0, scratch_.data()};
     block.points = &at.points;
     raster::BlockColors colors;
-    if (shader_->shade(frame_, block, Isa::scalar, colors)) colors.a[at.bit] = 1;
+    if (shading_.shade(frame_, block, Isa::scalar, colors)) colors.a[at.bit] = 1;
     return {colors.r[at.bit], colors.g[at.bit], colors.b[at.bit], colors.a[at.bit]};
   }
   [[nodiscard]] bool is_hole(std::int64_t id, const ShadePoint& p) const {
@@ -98,10 +97,10 @@ class Fragments {
     const At at(p);
     raster::Piece piece{};
     piece.low = raster::kIdMask - static_cast<std::uint64_t>(id);
-    return test_->test(frame_, piece,
-                       {0, static_cast<std::uint16_t>(at.x0 / 8),
-                        static_cast<std::uint16_t>(at.y0 / 8), at.mask},
-                       &at.points) == 0;
+    return test_.test(frame_, piece,
+                      {0, static_cast<std::uint16_t>(at.x0 / 8),
+                       static_cast<std::uint16_t>(at.y0 / 8), at.mask},
+                      &at.points) == 0;
   }
 
  private:
@@ -119,14 +118,13 @@ class Fragments {
   };
 
   MemoryAccount memory_;
-  std::vector<raster::TransformSource> sources_;
   std::vector<raster::Draw> draws_;
   raster::FrameGeometry frame_;
   raster::TextureSet textures_{memory_};
   raster::LitScene lit_scene_;
   std::unique_ptr<raster::MaterialScene> material_scene_;
-  std::unique_ptr<raster::BlockShader> inner_, shader_;
-  std::unique_ptr<raster::FragmentTest> test_;
+  raster::Shading shading_;
+  raster::Testing test_;
   std::vector<AlphaMode> modes_;
   bool all_translucent_ = false;
   raster::ShaderScratch scratch_;

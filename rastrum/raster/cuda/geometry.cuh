@@ -13,7 +13,7 @@
 #include <rastrum/core/error.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/raster/draws/geometry.hpp>
-#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/draws/vertices.hpp>
 
 /// Of functions that many kernels need and that are large: a call, where nvcc would compile them,
 /// for minutes, in each kernel. A GPU has to show what the calls cost.
@@ -26,7 +26,7 @@ struct DeviceVertices {
   std::span<const Vec3> positions;  ///< object space
   Mat4d object_to_clip;
   /// Of a vertex stage that only the host can run, what it has made: then there are no positions.
-  std::span<const Vec4d> clip;                 ///< VertexSource::clip_position of each
+  std::span<const Vec4d> clip;                 ///< VertexStage::clip_position of each
   std::span<const ProjectedVertex> projected;  ///< else DeviceScene's; empty: where they are read
 
   [[nodiscard]] RASTRUM_HD ProjectedVertex vertex(const Mat4& matrix, Viewport viewport,
@@ -103,7 +103,7 @@ class DeviceScene {
     const Viewport viewport = Viewport::of(width, height);
     for (const DeviceDraw& d : draws) {
       Draw draw = d.draw;
-      draw.source = nullptr;
+      draw.source = {};
       draw.first_id = first_id + primitives_;
       primitives_ += draw.primitive_count;
       numbered.push_back(draw);

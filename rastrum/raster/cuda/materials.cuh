@@ -52,8 +52,6 @@ struct TestOnDevice {
   DeviceGeometry geometry;
   MaterialView masks;
   bool has_masks = false;
-  /// Flags of each draw beside those by material: a mask is looked at where they say kTested.
-  std::span<const std::uint32_t> flags;
   ImageView<const float> behind;  ///< of the band that begins in row `y0`; null: nothing is
   int y0 = 0;
 
@@ -71,10 +69,8 @@ struct TestOnDevice {
  private:
   RASTRUM_HD_CALL bool passes_mask_of(std::uint64_t id, int x, int y) const {
     const Draw& draw = geometry.draw_of(id);
-    const auto p = static_cast<std::size_t>(id - draw.first_id);
-    std::uint32_t tested = flags[geometry.number_of(draw)];
-    if (!draw.material_flags.empty()) tested |= draw.material_flags[draw.face_materials[p]];
-    return (tested & kTested) == 0 || passes_mask(masks, geometry, id, x, y, {0, 0});
+    return (draw.flags_of(id - draw.first_id) & kTested) == 0 ||
+           passes_mask(masks, geometry, id, x, y, {0, 0});
   }
 };
 

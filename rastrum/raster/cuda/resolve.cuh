@@ -39,7 +39,7 @@ struct DeviceTargets {
   }
 };
 
-/// The lit shaders for which has() says so, at one opacity as AlphaShader has it; at 0 nothing is
+/// The lit shaders for which has() says so, at one opacity as Shading has it; at 0 nothing is
 /// read. `scene`: spans of the device's.
 struct LitOnDevice {
   LitModel model = LitModel::flat;
@@ -205,10 +205,10 @@ void check_attribute(Exec& exec, const Attribute& attribute, const MeshView& mes
 template <class Exec>
 class LitUpload {
  public:
-  LitUpload(Exec& exec, Uploads<Exec>& uploads, const LitForm& form) {
-    const bool wants_normals = form.model != LitModel::flat && form.model != LitModel::id;
+  LitUpload(Exec& exec, Uploads<Exec>& uploads, const LitShading& lit) {
+    const bool wants_normals = lit.model != LitModel::flat && lit.model != LitModel::id;
     std::vector<LitDraw> draws;
-    for (LitDraw draw : form.scene->draws) {
+    for (LitDraw draw : lit.scene->draws) {
       MeshView& mesh = draw.mesh;
       const auto move = [&](auto& attribute, bool wanted) {
         if (!wanted) return;
@@ -217,8 +217,8 @@ class LitUpload {
       };
       if (wants_normals && mesh.normals.empty()) mesh.positions = uploads(mesh.positions);
       move(mesh.normals, wants_normals);
-      move(mesh.colors, form.scene->colored);
-      if (!form.scene->materials.empty()) mesh.face_materials = uploads(mesh.face_materials);
+      move(mesh.colors, lit.scene->colored);
+      if (!lit.scene->materials.empty()) mesh.face_materials = uploads(mesh.face_materials);
       // The façade has checked what it could read.
       if (uploads.in_place()) {
         check_attribute(exec, mesh.normals, mesh, "normals");
@@ -228,9 +228,9 @@ class LitUpload {
     }
     draws_ = parallel::to_device(exec, draws);
     view_ = {{draws_.data(), draws_.size()},
-             form.scene->rays,
-             form.scene->colored,
-             uploads(std::span(form.scene->materials))};
+             lit.scene->rays,
+             lit.scene->colored,
+             uploads(std::span(lit.scene->materials))};
   }
   [[nodiscard]] const LitView& view() const { return view_; }
 

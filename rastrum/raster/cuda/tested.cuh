@@ -25,7 +25,7 @@ struct IsTestedIn {
   Rect view;
   std::uint32_t skip;
   RASTRUM_HD bool operator()(const Piece& piece) const {
-    return (piece.flags & kTested) != 0 && (piece.flags & skip) == 0 &&
+    return (piece.flags & kMayDrop) != 0 && (piece.flags & skip) == 0 &&
            !piece_bounds(piece, view).empty();
   }
 };
@@ -61,7 +61,7 @@ struct DrawTested {
 
 }  // namespace cuda_detail
 
-/// Draws the pieces of `scene` that have kTested, and no flag of `skip`, onto the keys of
+/// Draws the pieces of `scene` that have one of kMayDrop, and no flag of `skip`, onto the keys of
 /// `surface`, where test(key, x, y) holds. Returns the number of fragments before the test. What
 /// became of the primitives is the SurfaceDrawer's to count, and to check. Memory as of its draw().
 /// Work O(primitives + blocks of boxes + fragments). Waits.

@@ -14,8 +14,8 @@
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/cuda/geometry.cuh>
-#include <rastrum/raster/draws/geometry.hpp>
-#include <rastrum/raster/draws/transform_source.hpp>
+#include <rastrum/raster/draws/vertices.hpp>
+#include <rastrum/raster/frame/request.hpp>
 
 namespace rastrum::raster {
 
@@ -59,9 +59,9 @@ struct HostVertices {
                              [&](std::size_t part) {
                                const std::size_t begin = part * kGrain;
                                const std::size_t end = std::min(begin + kGrain, draw.vertex_count);
-                               draw.source->project(begin, end, viewport, isa, &projected[begin]);
+                               draw.source.project(begin, end, viewport, isa, &projected[begin]);
                                for (std::size_t i = begin; i < end; ++i)
-                                 clip[i] = draw.source->clip_position(i);
+                                 clip[i] = draw.source.clip_position(i);
                              });
   }
 };
@@ -82,9 +82,9 @@ template <class Exec>
     d.draw.indices = uploads(draw.indices);
     d.draw.face_materials = uploads(draw.face_materials);
     d.draw.material_flags = uploads(draw.material_flags);
-    if (const auto* const matrix = dynamic_cast<const TransformSource*>(draw.source)) {
-      d.vertices.positions = uploads(matrix->positions());
-      d.vertices.object_to_clip = matrix->object_to_clip();
+    if (const MatrixVertices* const matrix = draw.source.matrix()) {
+      d.vertices.positions = uploads(matrix->positions);
+      d.vertices.object_to_clip = matrix->object_to_clip;
     } else {
       if (uploads.in_place())
         throw Error(Errc::unsupported,

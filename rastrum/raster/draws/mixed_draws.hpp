@@ -1,27 +1,27 @@
-// Frames whose draws have shaders and fragment tests of their own (Draw::shader, Draw::test). What
-// draws a frame knows one of each: here they are one, which hands the samples of a block on to the
-// shader of the draw that each belongs to.
+// Frames whose draws have shading and fragment tests of their own (Draw::shading, Draw::test). What
+// draws a frame knows one of each: here they are one, which hands the samples of a block on to what
+// shades the draw that each belongs to.
 #pragma once
 
 #include <cstddef>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 
 namespace rastrum::raster {
 
 class MixedDraws final : public BlockShader, public FragmentTest {
  public:
-  /// `shader` and `test` (null: none) are those of draws without their own. All must outlive this.
-  /// Throws Error{invalid_argument} naming a draw without a shader. O(draws).
-  MixedDraws(std::span<Draw> draws, const BlockShader* shader, const FragmentTest* test);
+  /// `shading` and `test` are those of draws without their own. The draws must outlive this. Throws
+  /// Error{invalid_argument} naming a draw without a shader. O(draws).
+  MixedDraws(std::span<Draw> draws, const Shading& shading, const Testing& test);
 
   /// What the frame has: the given ones where all draws have the same.
   [[nodiscard]] std::span<Draw> draws() { return draws_; }
-  [[nodiscard]] const BlockShader* shader() const { return shader_; }  ///< null: without draws
-  [[nodiscard]] const FragmentTest* test() const { return test_; }
+  [[nodiscard]] const Shading& shading() const { return shading_; }  ///< none: without draws
+  [[nodiscard]] const Testing& test() const { return test_; }
 
   bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
              BlockColors& colors) const noexcept override;
@@ -35,15 +35,23 @@ class MixedDraws final : public BlockShader, public FragmentTest {
                                    const ShadingPoints* points) const noexcept override;
 
  private:
-  bool shade_part(const FrameGeometry& frame, const VisibleBlock& part, const BlockShader& shader,
-                  Isa isa, BlockColors& colors) const noexcept;
+  /// One of the shadings.
+  struct Part {
+    Shading shading;
+    std::size_t scratch;  ///< bytes before its own
+  };
+  [[nodiscard]] const Part& part_of(const FrameGeometry& frame, const Draw& draw) const {
+    return parts_[part_of_draw_[static_cast<std::size_t>(&draw - frame.draws.data())]];
+  }
+  bool shade_part(const FrameGeometry& frame, const VisibleBlock& block, const Part& part, Isa isa,
+                  BlockColors& colors) const noexcept;
 
   std::span<Draw> draws_;
-  std::vector<Draw> own_draws_;  ///< each with its shader, where they differ
-  const BlockShader* shader_;
-  const FragmentTest* other_test_;  ///< of draws without their own
-  const FragmentTest* test_;
-  std::unordered_map<const BlockShader*, std::size_t> scratch_of_;  ///< bytes before its scratch
+  std::vector<Draw> own_draws_;  ///< each with its shading and test, where they differ
+  Shading shading_;
+  Testing test_;
+  std::vector<Part> parts_;
+  std::vector<std::uint32_t> part_of_draw_;
   std::size_t scratch_bytes_ = 0, extra_count_ = 0;
 };
 

@@ -9,7 +9,7 @@
 //   renderer.draw({&draw, 1}, targets);
 //
 // A frame may have draws of several programs. A caller's BlockShader that is to shade the draws of
-// a program instead (one that wraps it, say) goes into Draw::shader.
+// a program instead (one that wraps it, say) goes into Draw::shading.
 //
 // Shading is deferred: the vertex function runs once a vertex for positions, and again for the
 // corners of each triangle that is seen in a block, so that no varying is stored. All functions are
@@ -28,6 +28,7 @@
 #include <utility>
 
 #include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
 
@@ -78,7 +79,7 @@ class Program final : public VertexSource, public BlockShader {
     d.topology = topology;
     d.primitive_count =
         (indices.empty() ? vertex_count : indices.size()) / static_cast<std::size_t>(topology);
-    d.shader = this;
+    d.shading = this;
     d.test = test();
     if constexpr (kDiscards) d.flags = kTested;
     return d;

@@ -62,12 +62,12 @@ void Emitter::flush() {
       count_overdraw(frame_.request.targets.overdraw, blocks);
   }
   // With several samples a pixel a triangle is tested once a pixel, by who resolves them.
-  if (frame_.request.test != nullptr && frame_.request.samples == 1) {
+  if (frame_.request.has_tests() && frame_.request.samples == 1) {
     blocks = keep(blocks, [&](const Block& b) {
       const Piece& piece = pieces_[b.piece];
-      return (piece.flags & kTested) == 0
+      return (piece.flags & kMayDrop) == 0
                  ? b.mask
-                 : frame_.request.test->test(frame_.geometry, piece, b, nullptr);
+                 : frame_.request.kept(frame_.geometry, piece, b, nullptr);
     });
   }
   if (!blocks.empty()) region_.blocks(chunk_, pieces_, blocks);
@@ -83,7 +83,8 @@ void Emitter::fragments(Rect bin, std::span<const BinFragment> fragments) {
 }
 
 void* Frame::shader_scratch(Worker& worker) const {
-  if (std::exchange(worker.shader_of, number) != number) worker.shader.begin(request.shader);
+  if (std::exchange(worker.shader_of, number) != number)
+    worker.shader.begin(request.shading.scratch_bytes());
   return worker.shader.data();
 }
 

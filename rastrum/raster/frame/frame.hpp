@@ -16,7 +16,8 @@
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/scratch.hpp>
 #include <rastrum/raster/bin/tile_grid.hpp>
-#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
+#include <rastrum/raster/frame/request.hpp>
 #include <rastrum/raster/frame/stopwatch.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>

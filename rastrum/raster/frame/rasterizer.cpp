@@ -109,8 +109,8 @@ void Rasterizer::project(FrameRequest& request, FrameGeometry& frame) {
         threads_, (draw.vertex_count + kProjectGrain - 1) / kProjectGrain, [&](std::size_t i) {
           const std::size_t begin = i * kProjectGrain;
           const std::size_t end = std::min(begin + kProjectGrain, draw.vertex_count);
-          draw.source->project(begin, end, frame.viewport, request.isa,
-                               projected_.data() + draw.first_vertex + begin);
+          draw.source.project(begin, end, frame.viewport, request.isa,
+                              projected_.data() + draw.first_vertex + begin);
         });
   frame.projected = projected_.data();
 }

@@ -6,7 +6,7 @@
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/coverage/coverage.hpp>
-#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/frame/request.hpp>
 #include <rastrum/raster/visibility/region.hpp>
 
 namespace rastrum::raster {

@@ -7,6 +7,7 @@
 #include <rastrum/parallel/stop.hpp>
 #include <rastrum/raster/assemble/assemble.hpp>
 #include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/frame/stopwatch.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 
@@ -23,12 +24,12 @@ void draw_piece(const FrameRequest& request, const FrameGeometry& frame, const P
     for (int x = span.begin; x < span.end; ++x) {
       ++stats.fragments;
       if (!request.targets.overdraw.empty()) ++request.targets.overdraw(x, y);
-      if ((piece.flags & kTested) != 0 && request.test != nullptr) {
+      if ((piece.flags & kMayDrop) != 0) {
         const std::uint64_t bit = std::uint64_t{1}
                                   << (y % kBlockSize * kBlockSize + x % kBlockSize);
         const Block block{0, static_cast<std::uint16_t>(x / kBlockSize),
                           static_cast<std::uint16_t>(y / kBlockSize), bit};
-        if (request.test->test(frame, piece, block, nullptr) == 0) continue;
+        if (request.kept(frame, piece, block, nullptr) == 0) continue;
       }
       std::uint64_t& key = keys(x, y);
       key = std::max(key, make_key(depth_at(piece, x, y), piece.low));
@@ -52,8 +53,8 @@ FrameStats render_reference(FrameRequest& request, MemoryAccount& memory) {
   Buffer<ProjectedVertex> projected(memory);
   projected.reserve(totals.vertices);
   for (const Draw& draw : request.draws)
-    draw.source->project(0, draw.vertex_count, frame.viewport, Isa::scalar,
-                         projected.data() + draw.first_vertex);
+    draw.source.project(0, draw.vertex_count, frame.viewport, Isa::scalar,
+                        projected.data() + draw.first_vertex);
   frame.projected = projected.data();
   watch.lap(stats, "project");
 
@@ -86,7 +87,7 @@ FrameStats render_reference(FrameRequest& request, MemoryAccount& memory) {
   watch.lap(stats, "rasterize");
 
   ShaderScratch scratch;
-  scratch.begin(request.shader);
+  scratch.begin(request.shading.scratch_bytes());
   const Backdrop backdrop = backdrop_of(request);
   for (int y0 = 0; y0 < request.height; y0 += kBlockSize) {
     parallel::throw_if_stopped();

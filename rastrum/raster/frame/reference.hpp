@@ -3,7 +3,7 @@
 #pragma once
 
 #include <rastrum/core/memory.hpp>
-#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/frame/request.hpp>
 
 namespace rastrum::raster {
 

@@ -9,6 +9,7 @@
 #include <rastrum/core/enum.hpp>
 #include <rastrum/core/error.hpp>
 #include <rastrum/parallel/mask.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/shade/srgb.hpp>
 
@@ -81,7 +82,7 @@ void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
   bool opaque = false;
   if (shaded == nullptr) {
     colors = &own;
-    if (block.covered != 0) opaque = request.shader->shade(frame, block, request.isa, own);
+    if (block.covered != 0) opaque = request.shading.shade(frame, block, request.isa, own);
   }
   const Kernels& kernel = kernels(request.isa);
   const bool stores_block =
@@ -107,7 +108,7 @@ void shade_extra(const FrameRequest& request, const FrameGeometry& frame, Visibl
                  std::uint64_t touched, const Window& w, BlockColors& colors) {
   BlockColors extra[kMaxExtraTargets];
   block.extra = extra;
-  if (block.covered != 0 && request.shader->shade(frame, block, request.isa, colors))
+  if (block.covered != 0 && request.shading.shade(frame, block, request.isa, colors))
     std::fill_n(colors.a, 64, 1.0F);
   for (std::size_t k = 0; k < request.targets.extra.size(); ++k)
     for (std::uint64_t m = touched; m != 0; m &= m - 1) {
@@ -158,7 +159,7 @@ void check_draw(const Draw& draw, std::string_view noun, std::size_t number) {
   check_enum(draw.topology, Topology::triangles, name + ": its topology");
   check_enum(draw.cull, Cull::front, name + ": its cull");
   check_enum(draw.winding, Winding::either, name + ": its winding");
-  require(draw.source != nullptr, "its source is null; set it to what projects its vertices");
+  require(bool{draw.source}, "its source is null; set it to what projects its vertices");
   const bool indexed = !draw.indices.empty();
   const std::size_t corners = indexed ? draw.indices.size() : draw.vertex_count;
   const std::uint64_t most = corners / static_cast<std::size_t>(draw.topology);
@@ -248,13 +249,16 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
 
 Totals number_draws(std::span<Draw> draws, std::uint64_t first_id, std::string_view noun) {
   Totals totals;
-  std::unordered_map<const BlockShader*, std::size_t> of_shader;
+  std::unordered_map<Shading, std::size_t, Shading::Hash> of_shading;
+  std::size_t* number = nullptr;
   for (std::size_t i = 0; i < draws.size(); ++i) {
     Draw& draw = draws[i];
     check_draw(draw, noun, i);
     draw.first_id = first_id + totals.primitives;
     draw.first_vertex = totals.vertices;
-    draw.number = of_shader[draw.shader]++;
+    // Mostly all have one.
+    if (i == 0 || draw.shading != draws[i - 1].shading) number = &of_shading[draw.shading];
+    draw.number = (*number)++;
     totals.primitives += draw.primitive_count;
     totals.vertices += draw.vertex_count;
   }

@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/frame/request.hpp>
 #include <rastrum/raster/resolve/surface.hpp>
 
 namespace rastrum::raster {
@@ -14,7 +14,7 @@ namespace rastrum::raster {
 
 /// Shades one 8 × 8 block (`keys`: 64, 64-byte aligned) and writes its part of every target;
 /// pixels outside the image are left out, and so are those that an earlier pass won
-/// (Targets::load). `scratch` is the shader's (geometry.hpp); `shaded` are the colours where
+/// (Targets::load). `scratch` is the shader's (hooks.hpp); `shaded` are the colours where
 /// visibility has shaded already, else null. Returns how many pixels hold a surface of this pass.
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const Backdrop& backdrop,
                   const std::uint64_t* keys, int x0, int y0, void* scratch,

@@ -28,13 +28,19 @@ RASTRUM_HD constexpr std::uint64_t id_of_key(std::uint64_t key) {
 struct alignas(16) Piece {
   std::int32_t x[3], y[3];  ///< n.8, inside the guard band, but for what is said to be in pixels
   float z0, zx, zy;         ///< depth at vertex 0 and its change per px
-  std::uint32_t flags;      ///< kTested, kTranslucent, kFacesAway, kLine or kPoint, a line's width
+  std::uint32_t flags;      ///< kTested … kFacesAway, kLine or kPoint, its sample, a line's width
   std::uint64_t low;        ///< the key's low part: kIdMask − id
 };
 static_assert(sizeof(Piece) == 48);
 
 /// Fragments of this piece pass a fragment test (alpha mask, discard) before the maximum.
 inline constexpr std::uint32_t kTested = 1;
+/// Fragments of this piece are there where they are nearer than the picture that the targets hold
+/// (Targets::over), so that every coverage and visibility, layers too, heeds it before it resolves
+/// a pixel.
+inline constexpr std::uint32_t kOverPicture = 32;
+/// Fragments have to be asked for before the maximum.
+inline constexpr std::uint32_t kMayDrop = kTested | kOverPicture;
 /// What the piece is; neither: a triangle.
 inline constexpr std::uint32_t kLine = 2, kPoint = 4;
 inline constexpr int kLineWidthShift = 16;

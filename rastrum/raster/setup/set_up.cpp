@@ -29,7 +29,7 @@ struct Corners {
       }
     seen_from = {};
     if (frame.projected == nullptr)
-      draw.source->project_indexed({indices, count * 3}, frame.viewport, frame.isa, vertices);
+      draw.source.project_indexed({indices, count * 3}, frame.viewport, frame.isa, vertices);
     else
       for (std::uint32_t i = 0; i < count * 3; ++i)
         vertices[i] = frame.projected[draw.first_vertex + indices[i]];

@@ -227,7 +227,7 @@ HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c
   const I size = hn::Set(d, kMicroSize);
   const auto small = hn::And(hn::Lt(hn::Sub(x1, x0), size), hn::Lt(hn::Sub(y1, y0), size));
   const std::uint32_t micro =
-      !in.micro || (in.flags & kTested) != 0 ? 0U : lane_bits(small) & in_view;
+      !in.micro || (in.flags & kMayDrop) != 0 ? 0U : lane_bits(small) & in_view;
   std::uint32_t culled = 0;
   if (micro != 0) {
     const I zero = hn::Zero(d);

@@ -3,75 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include <rastrum/raster/shade/material_kernels.hpp>
-
 namespace rastrum::raster {
-namespace {
-
-class AlphaTest final : public FragmentTest {
- public:
-  AlphaTest(const MaterialScene& scene, Isa isa) : scene_(scene), kernels_(material_kernels(isa)) {}
-
-  std::uint64_t test(const FrameGeometry& frame, const Piece& piece, const Block& block,
-                     const ShadingPoints* points) const noexcept override {
-    return kernels_.alpha_test(scene_.view(), frame, id_of_key(piece.low), block.mask,
-                               block.bx * kBlockSize, block.by * kBlockSize, points);
-  }
-  [[nodiscard]] const MaterialScene& scene() const { return scene_; }
-
- private:
-  const MaterialScene& scene_;
-  const MaterialKernels& kernels_;
-};
-
-class AlphaShader final : public BlockShader {
- public:
-  AlphaShader(const BlockShader& inner, const MaterialScene* blending, float opacity)
-      : inner_(inner), blending_(blending), opacity_(opacity) {}
-
-  bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
-             BlockColors& colors) const noexcept override {
-    const MaterialKernels& kernel = material_kernels(isa);
-    alignas(64) float alpha[64];
-    AlphaMasks masks;
-    if (blending_ != nullptr) {
-      masks = kernel.alpha(blending_->view(), frame, block, opacity_, alpha);
-    } else {
-      std::fill_n(alpha, 64, opacity_);
-      if (opacity_ > 0) masks.visible = block.covered;
-      if (opacity_ == 1) masks.opaque = block.covered;
-    }
-    if (masks.opaque == block.covered) return inner_.shade(frame, block, isa, colors);
-    if (masks.visible == 0) {
-      colors = {};
-      return false;
-    }
-    VisibleBlock visible = block;
-    visible.covered = masks.visible;
-    if (inner_.shade(frame, visible, isa, colors)) std::fill_n(colors.a, 64, 1.0F);
-    kernel.premultiply(alpha, colors);
-    return false;
-  }
-
-  void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept override {
-    inner_.prefetch(frame, id);
-  }
-  [[nodiscard]] std::optional<float> alpha() const noexcept override {
-    const std::optional<float> own = inner_.alpha();
-    return own && blending_ == nullptr ? std::optional(*own * opacity_) : std::nullopt;
-  }
-  [[nodiscard]] std::size_t scratch_bytes() const noexcept override {
-    return inner_.scratch_bytes();
-  }
-  [[nodiscard]] AlphaForm form() const { return {&inner_, blending_, opacity_}; }
-
- private:
-  const BlockShader& inner_;
-  const MaterialScene* blending_;
-  float opacity_;
-};
-
-}  // namespace
 
 std::vector<std::uint32_t> material_flags(std::span<const Material> materials, bool blends) {
   std::vector<std::uint32_t> flags;
@@ -125,25 +57,6 @@ bool has_vertex_alpha(const MeshView& mesh, parallel::Threads* exec) {
   else
     for (std::size_t i = 0; i < parts; ++i) look(i);
   return any;
-}
-
-std::unique_ptr<FragmentTest> make_alpha_test(const MaterialScene& scene, Isa isa) {
-  return std::make_unique<AlphaTest>(scene, isa);
-}
-
-std::unique_ptr<BlockShader> make_alpha_shader(const BlockShader& inner,
-                                               const MaterialScene* blending, float opacity) {
-  return std::make_unique<AlphaShader>(inner, blending, opacity);
-}
-
-std::optional<AlphaForm> alpha_form(const BlockShader& shader) {
-  const auto* const alpha = dynamic_cast<const AlphaShader*>(&shader);
-  return alpha == nullptr ? std::nullopt : std::optional(alpha->form());
-}
-
-const MaterialScene* alpha_test_form(const FragmentTest& test) {
-  const auto* const alpha = dynamic_cast<const AlphaTest*>(&test);
-  return alpha == nullptr ? nullptr : &alpha->scene();
 }
 
 }  // namespace rastrum::raster

@@ -10,13 +10,13 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include <rastrum/raster/draws/geometry.hpp>
-#include <rastrum/raster/shade/material.hpp>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/raster/draws/draw.hpp>
+#include <rastrum/scene/material.hpp>
+#include <rastrum/scene/scene.hpp>
 
 namespace rastrum::raster {
 
@@ -34,26 +34,5 @@ std::uint32_t set_material_flags(Draw& draw, const MeshView& mesh,
 /// Whether some vertex colour is translucent. O(vertices), divided among the threads of `exec`
 /// (null: one).
 [[nodiscard]] bool has_vertex_alpha(const MeshView& mesh, parallel::Threads* exec);
-
-/// AlphaMode::mask. `scene` must outlive the test; its textures must hold those of the masks.
-[[nodiscard]] std::unique_ptr<FragmentTest> make_alpha_test(const MaterialScene& scene, Isa isa);
-
-/// The colours of `inner`, multiplied by alpha; what has none is not shaded. `blending` may be null
-/// where no material is translucent; else its textures must hold those of such materials.
-/// Both must outlive the shader, which has no further outputs.
-[[nodiscard]] std::unique_ptr<BlockShader> make_alpha_shader(const BlockShader& inner,
-                                                             const MaterialScene* blending,
-                                                             float opacity);
-
-/// What make_alpha_shader was given; none for another shader.
-struct AlphaForm {
-  const BlockShader* inner;
-  const MaterialScene* blending;
-  float opacity;
-};
-[[nodiscard]] std::optional<AlphaForm> alpha_form(const BlockShader& shader);
-
-/// What make_alpha_test was given; null for another test.
-[[nodiscard]] const MaterialScene* alpha_test_form(const FragmentTest& test);
 
 }  // namespace rastrum::raster

@@ -14,6 +14,7 @@
 
 #include <rastrum/raster/assemble/points_and_lines.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 
 namespace rastrum::raster {
 

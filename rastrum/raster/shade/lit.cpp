@@ -48,59 +48,27 @@ float wire(const Fragment& f) {
   return static_cast<float>(std::clamp(1.0 - nearest, 0.0, 1.0));
 }
 
-class LitShader final : public BlockShader {
- public:
-  LitShader(LitModel model, const LitScene& scene) : model_(model), scene_(scene) {}
+Vec4 color(const LitShading& lit, const FrameGeometry& frame, const Fragment& f) {
+  if (lit.model == LitModel::id) return opaque(id_color(f.id));
+  const float line = wire(f);
+  const LitDraw& draw = lit.scene->draws[frame.draws[f.draw].number];
+  return opaque(base_color(lit.scene->view(), draw, f) * (1 - line) + kWireColor * line);
+}
 
-  bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
-             BlockColors& colors) const noexcept override {
-    if (model_ == LitModel::id || model_ == LitModel::wireframe) {
-      const FragmentShader scalar(
-          [this](const FrameGeometry& g, const Fragment& f) { return color(g, f); });
-      return scalar.shade(frame, block, isa, colors);
-    }
-    if (isa != Isa::scalar && shade_lit_simd(isa, model_, scene_, frame, block, colors))
-      return true;
-    shade_scalar(frame, block, colors);
-    return true;
+void shade_scalar(const LitShading& lit, const FrameGeometry& frame, const VisibleBlock& block,
+                  BlockColors& colors) {
+  KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
+  const bool wants_normals = lit.model != LitModel::flat;
+  const LitView view = lit.scene->view();
+  for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    const int x = block.x0 + i % kBlockSize, y = block.y0 + i / kBlockSize;
+    const LitTriangle& t = kept.find(*lit.scene, frame, block.keys[i] & kIdMask, wants_normals);
+    const Vec2 from_centre =
+        block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
+    colors.set(i, opaque(shade_lit(lit.model, view, t, x, y, from_centre)));
   }
-
-  void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept override {
-    prefetch_triangle(scene_, frame, id, model_ != LitModel::flat);
-  }
-
-  [[nodiscard]] std::optional<float> alpha() const noexcept override { return 1.0F; }
-  [[nodiscard]] std::size_t scratch_bytes() const noexcept override {
-    return sizeof(KeptTriangles);
-  }
-  [[nodiscard]] LitForm form() const { return {model_, &scene_}; }
-
- private:
-  [[nodiscard]] Vec4 color(const FrameGeometry& frame, const Fragment& f) const {
-    if (model_ == LitModel::id) return opaque(id_color(f.id));
-    const float line = wire(f);
-    const LitDraw& draw = scene_.draws[frame.draws[f.draw].number];
-    return opaque(base_color(scene_.view(), draw, f) * (1 - line) + kWireColor * line);
-  }
-
-  void shade_scalar(const FrameGeometry& frame, const VisibleBlock& block,
-                    BlockColors& colors) const {
-    KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
-    const bool wants_normals = model_ != LitModel::flat;
-    const LitView view = scene_.view();
-    for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
-      const int i = std::countr_zero(m);
-      const int x = block.x0 + i % kBlockSize, y = block.y0 + i / kBlockSize;
-      const LitTriangle& t = kept.find(scene_, frame, block.keys[i] & kIdMask, wants_normals);
-      const Vec2 from_centre =
-          block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
-      colors.set(i, opaque(shade_lit(model_, view, t, x, y, from_centre)));
-    }
-  }
-
-  LitModel model_;
-  const LitScene& scene_;
-};
+}
 
 void normal_matrix(const Mat4d& object_to_world, float (&out)[3][3]) {
   // The cofactors are the inverse transpose up to the determinant, whose sign and size do not
@@ -182,13 +150,16 @@ LitScene::LitScene(const SceneView& scene, const Camera& camera, int width, int 
                          display_value(m.base_color.z)});
 }
 
-std::unique_ptr<BlockShader> make_lit_shader(LitModel model, const LitScene& scene) {
-  return std::make_unique<LitShader>(model, scene);
-}
-
-std::optional<LitForm> lit_form(const BlockShader& shader) {
-  const auto* const lit = dynamic_cast<const LitShader*>(&shader);
-  return lit != nullptr ? std::optional(lit->form()) : std::nullopt;
+void shade_lit_block(const LitShading& lit, const FrameGeometry& frame, const VisibleBlock& block,
+                     Isa isa, BlockColors& colors) noexcept {
+  if (lit.model == LitModel::id || lit.model == LitModel::wireframe) {
+    const FragmentShader scalar(
+        [&lit](const FrameGeometry& g, const Fragment& f) { return color(lit, g, f); });
+    (void)scalar.shade(frame, block, isa, colors);
+    return;
+  }
+  if (isa == Isa::scalar || !shade_lit_simd(isa, lit.model, *lit.scene, frame, block, colors))
+    shade_scalar(lit, frame, block, colors);
 }
 
 }  // namespace rastrum::raster

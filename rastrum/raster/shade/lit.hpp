@@ -6,18 +6,17 @@
 // (textures are the material shader's); n turned to face the viewer.
 #pragma once
 
-#include <memory>
-#include <optional>
+#include <cstdint>
 #include <span>
 #include <vector>
 
-#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/core/config.hpp>
+#include <rastrum/core/vec.hpp>
+#include <rastrum/raster/shade/shading.hpp>
 #include <rastrum/scene/camera.hpp>
 #include <rastrum/scene/scene.hpp>
 
 namespace rastrum::raster {
-
-enum class LitModel : std::uint8_t { flat, normal, id, lambert, phong, wireframe };
 
 /// What the lit shaders read of one draw.
 struct LitDraw {
@@ -63,14 +62,9 @@ struct LitScene {
   [[nodiscard]] LitView view() const { return {draws, rays, colored, materials}; }
 };
 
-/// `scene` must outlive the shader.
-[[nodiscard]] std::unique_ptr<BlockShader> make_lit_shader(LitModel model, const LitScene& scene);
-
-/// What make_lit_shader was given; none for another shader.
-struct LitForm {
-  LitModel model;
-  const LitScene* scene;
-};
-[[nodiscard]] std::optional<LitForm> lit_form(const BlockShader& shader);
+/// Sets the colours of the covered samples (others may be set to anything), which are opaque; alpha
+/// is not set. Its scratch is a KeptTriangles (lit_triangle.hpp).
+void shade_lit_block(const LitShading& lit, const FrameGeometry& frame, const VisibleBlock& block,
+                     Isa isa, BlockColors& colors) noexcept;
 
 }  // namespace rastrum::raster

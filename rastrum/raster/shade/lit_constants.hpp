@@ -4,6 +4,8 @@
 #include <cstdint>
 
 #include <rastrum/core/vec.hpp>
+#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 
 namespace rastrum::raster {

@@ -33,24 +33,6 @@ std::array<TextureReference, 6> references(const Material& m) {
            {m.alpha_texture, TexelUse::data, true}}};
 }
 
-class MaterialShader final : public BlockShader {
- public:
-  MaterialShader(const MaterialScene& scene, bool linear) : scene_(scene), linear_(linear) {}
-
-  bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
-             BlockColors& colors) const noexcept override {
-    material_kernels(isa).shade(scene_.view(), frame, block, linear_, colors);
-    return true;
-  }
-
-  [[nodiscard]] std::optional<float> alpha() const noexcept override { return 1.0F; }
-  [[nodiscard]] MaterialForm form() const { return {&scene_, linear_}; }
-
- private:
-  const MaterialScene& scene_;
-  bool linear_;
-};
-
 }  // namespace
 
 MaterialScene::MaterialScene(const SceneView& scene, const Camera& camera, int width, int height,
@@ -139,15 +121,6 @@ std::vector<std::uint8_t> texture_uses(const SceneView& scene, bool shading, boo
         uses[static_cast<std::size_t>(r.texture)] |= static_cast<std::uint8_t>(r.use);
   }
   return uses;
-}
-
-std::unique_ptr<BlockShader> make_material_shader(const MaterialScene& scene, bool linear) {
-  return std::make_unique<MaterialShader>(scene, linear);
-}
-
-std::optional<MaterialForm> material_form(const BlockShader& shader) {
-  const auto* const material = dynamic_cast<const MaterialShader*>(&shader);
-  return material != nullptr ? std::optional(material->form()) : std::nullopt;
 }
 
 }  // namespace rastrum::raster

@@ -24,12 +24,9 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/scene/camera.hpp>
@@ -95,17 +92,5 @@ void check_materials(const SceneView& scene);
 /// alpha comes from, of masks and, with `blending`, of AlphaMode::blend.
 [[nodiscard]] std::vector<std::uint8_t> texture_uses(const SceneView& scene, bool shading,
                                                      bool blending);
-
-/// `linear`: leaves the transfer function to FrameRequest::linear_light. `scene` must outlive the
-/// shader.
-[[nodiscard]] std::unique_ptr<BlockShader> make_material_shader(const MaterialScene& scene,
-                                                                bool linear);
-
-/// What make_material_shader was given; none for another shader.
-struct MaterialForm {
-  const MaterialScene* scene;
-  bool linear;
-};
-[[nodiscard]] std::optional<MaterialForm> material_form(const BlockShader& shader);
 
 }  // namespace rastrum::raster

@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/shade/material.hpp>
 
 namespace rastrum::raster {

@@ -15,7 +15,7 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
-#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/frame/request.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/resolve/surface.hpp>
 

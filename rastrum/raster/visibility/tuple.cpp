@@ -5,6 +5,7 @@
 #include <thread>
 
 #include <rastrum/parallel/scratch.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/visibility/fragments.hpp>
 
 namespace rastrum::raster {
@@ -42,7 +43,8 @@ class TupleRegion final : public Region {
     const Targets& targets = context.request->targets;
     context_ = context;
     surface_ = surface;
-    shader_ = targets.color8.empty() && targets.color.empty() ? nullptr : context.request->shader;
+    shading_ =
+        targets.color8.empty() && targets.color.empty() ? Shading() : context.request->shading;
     chunks_ = chunks;
     done_ = false;
     ++use_;
@@ -64,9 +66,9 @@ class TupleRegion final : public Region {
     void* const scratch = shader_scratch();
     for (const Block& b : blocks) {
       context_.kernel->keys(pieces[b.piece], b, keys);
-      if (shader_ != nullptr) {
+      if (shading_) {
         const VisibleBlock visible{keys, b.mask, b.bx * kBlockSize, b.by * kBlockSize, scratch};
-        if (shader_->shade(*context_.frame, visible, context_.request->isa, colors))
+        if (shading_.shade(*context_.frame, visible, context_.request->isa, colors))
           std::fill_n(colors.a, 64, 1.0F);
       }
       if constexpr (kSharing == Sharing::shared) {
@@ -76,7 +78,7 @@ class TupleRegion final : public Region {
         take_greater(b, keys, colors);
       }
     }
-    if (shader_ != nullptr) shaded_.fetch_add(count_fragments(blocks), std::memory_order_relaxed);
+    if (shading_) shaded_.fetch_add(count_fragments(blocks), std::memory_order_relaxed);
   }
 
   void collect(Counters& counters) override {
@@ -85,15 +87,16 @@ class TupleRegion final : public Region {
 
  private:
   void* shader_scratch() {
-    if (shader_ == nullptr) return nullptr;
+    if (!shading_) return nullptr;
     ScratchOfUse& scratch = scratch_.local();
-    if (std::exchange(scratch.zeroed_for, use_) != use_) scratch.shader.begin(shader_);
+    if (std::exchange(scratch.zeroed_for, use_) != use_)
+      scratch.shader.begin(shading_.scratch_bytes());
     return scratch.shader.data();
   }
 
   void take_greater(const Block& b, const std::uint64_t* keys, const BlockColors& colors) {
     std::uint64_t* const out = surface_.block(b.bx, b.by);
-    BlockColors* const out_colors = shader_ == nullptr ? nullptr : surface_.colors_of(b.bx, b.by);
+    BlockColors* const out_colors = !shading_ ? nullptr : surface_.colors_of(b.bx, b.by);
     for (std::uint64_t m = b.mask; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
       if (keys[i] <= out[i]) continue;
@@ -104,7 +107,7 @@ class TupleRegion final : public Region {
   }
 
   RegionContext context_;
-  const BlockShader* shader_ = nullptr;
+  Shading shading_;  ///< none: no colour is wanted
   SurfaceView surface_;
   PixelNumbers pixels_;
   Buffer<std::uint8_t> locks_;

@@ -26,6 +26,8 @@
 #include <rastrum/raster/cuda/surface_drawer.cuh>
 #include <rastrum/raster/cuda/tested.cuh>
 #include <rastrum/raster/cuda/upload.cuh>
+#include <rastrum/raster/draws/hooks.hpp>
+#include <rastrum/raster/frame/request.hpp>
 #include <rastrum/raster/frame/stopwatch.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/render/cuda/band_images.cuh>
@@ -48,9 +50,9 @@ class DeviceRasterizer final : public CudaRasterizer {
         host_(memory, threads) {}
 
   [[nodiscard]] std::string why_no_test(const FrameRequest& request) const override {
-    return !has_tests(request) || TestForm::of(*request.test)
-               ? std::string()
-               : "a caller's fragment test (discard) is code of the CPU";
+    return has_tests(request) && request.test.own() != nullptr
+               ? "a caller's fragment test (discard) is code of the CPU"
+               : std::string();
   }
   [[nodiscard]] std::string why_no_layers(const FrameRequest& request) const override {
     if (std::string why(transparency::SceneLayers::why_not(request)); !why.empty()) return why;
@@ -192,7 +194,7 @@ class DeviceRasterizer final : public CudaRasterizer {
                   request.draws, nullptr,        request.isa};
     f.shaders.emplace([&request] {
       ShaderScratch scratch;
-      scratch.begin(request.shader);
+      scratch.begin(request.shading.scratch_bytes());
       return scratch;
     });
   }
@@ -219,7 +221,7 @@ class DeviceRasterizer final : public CudaRasterizer {
       });
     const std::uint32_t skip = f.has_layers ? kTranslucent : 0;
     const DeviceCounts counts = drawer_->draw(exec_, *f.scene, band.surface, f.plan, request.tuning,
-                                              skip | (f.look->has_test() ? kTested : 0), colors);
+                                              skip | (f.look->has_test() ? kMayDrop : 0), colors);
     f.stats.fragments += counts.fragments;
     if (f.look->has_test())
       f.stats.fragments += draw_tested(exec_, *f.scene, band.surface, f.plan, skip, test);

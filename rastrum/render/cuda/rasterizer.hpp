@@ -9,7 +9,7 @@
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/stop.hpp>
-#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/frame/request.hpp>
 
 namespace rastrum {
 

@@ -9,7 +9,7 @@ namespace rastrum::terrain {
 
 std::string why_not_on_device(const Terrain& terrain, const TerrainOptions& options) {
   if (terrain.is_map()) return {};
-  if (!function_view(terrain.surface()))
+  if (!function_view(terrain))
     return "this terrain is a function of the caller's or an expression, which the CPU alone can "
            "call";
   return options.classic ? "the classic picture of a function is the CPU's" : std::string();
@@ -40,8 +40,7 @@ std::uint64_t device_bytes(const Terrain& terrain, const TerrainOptions& options
     bytes += kStartBytes * slices * (static_cast<std::uint64_t>(options.width) / kTeamColumns + 1);
   // The march of a function's shadows.
   if (!terrain.is_map())
-    if (const auto function = function_view(terrain.surface()))
-      bytes += function->steps.size_bytes();
+    if (const auto function = function_view(terrain)) bytes += function->steps.size_bytes();
   // The setup's lists. An arena rounds blocks up by a quarter.
   constexpr std::uint64_t kSetupBytes = 64, kSmall = std::uint64_t{1} << 20;
   bytes += kSmall + kSetupBytes * slices;

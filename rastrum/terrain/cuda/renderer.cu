@@ -75,9 +75,9 @@ class CudaRenderer final : public DeviceRenderer {
     const int width = options.width, height = options.height;
     const TerrainTargets on_device{colors_.sized(exec_, targets.color8, width, height),
                                    depths_.sized(exec_, targets.depth, width, height)};
-    const Counts counts = terrain.is_map() ? draw_frame(exec_, *map_, options, camera, on_device)
-                                           : draw_frame(exec_, *function_view(terrain.surface()),
-                                                        options, camera, on_device);
+    const Counts counts =
+        terrain.is_map() ? draw_frame(exec_, *map_, options, camera, on_device)
+                         : draw_frame(exec_, *function_view(terrain), options, camera, on_device);
     if (roll != nullptr) {
       rolled_colors_.roll(exec_, *roll, on_device.color8, targets.color8);
       rolled_depths_.roll(exec_, *roll, on_device.depth, targets.depth);

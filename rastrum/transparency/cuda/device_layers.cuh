@@ -300,7 +300,7 @@ DeviceLayerCounts blend(parallel::Cuda& exec, const DeviceLayers& layers, const 
 /// Blends the translucent pieces of `layers` over its opaque surface.
 /// `options`: exact or unsorted (why_not_on_a_device), and the alpha threshold.
 /// `shade`: (key, x, y) → premultiplied Vec4, the colour of a fragment at a pixel's centre; the
-/// key has its depth and id (piece.hpp). `test`: (key, x, y) → bool, for pieces with kTested.
+/// key has its depth and id (piece.hpp). `test`: (key, x, y) → bool, for pieces with kMayDrop.
 /// Both are copied into kernels, are called any number of times, and must be pure.
 /// Waits for sizes and, at the end, for its counts. Memory: 8 bytes a piece, 20 a block, and what
 /// `tuning.bytes` says. Work O(blocks of boxes + fragments · log of a block's records) where the

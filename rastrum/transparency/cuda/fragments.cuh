@@ -35,7 +35,7 @@ struct FrameView {
   Vec4* colors;         ///< of the opaque surface, premultiplied; become the picture's
   float opaque_at;      ///< a pixel is finished where no more is seen through its layers
   Shade shade;          ///< (key, x, y) → premultiplied colour
-  Test test;            ///< (key, x, y) → whether a fragment of a piece with kTested is there
+  Test test;            ///< (key, x, y) → whether a fragment of a piece with kMayDrop is there
 
   RASTRUM_HD std::size_t columns() const {
     return static_cast<std::size_t>((view.x1 - view.x0 + raster::kBlockSize - 1) /
@@ -63,7 +63,7 @@ struct FrameView {
   /// The key of a fragment; 0 where there is none or the test leaves it out.
   RASTRUM_HD std::uint64_t key(const raster::Piece& piece, int x, int y, int = 0) const {
     const std::uint64_t w = raster::make_key(raster::depth_at(piece, x, y), piece.low);
-    return (piece.flags & raster::kTested) != 0 && !test(w, x, y) ? 0 : w;
+    return (piece.flags & raster::kMayDrop) != 0 && !test(w, x, y) ? 0 : w;
   }
   /// The colour of a piece in a pixel; `key` is its key there, of any sample.
   RASTRUM_HD Vec4 color(const raster::Piece&, std::uint64_t key, int x, int y) const {

@@ -1,0 +1,96 @@
+// What the pipeline draws: points, lines or triangles over vertices from any source.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <rastrum/core/config.hpp>
+#include <rastrum/raster/draws/vertices.hpp>
+#include <rastrum/raster/frame/options.hpp>
+#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/shade/shading.hpp>
+
+namespace rastrum::raster {
+
+/// The value is the number of vertices of a primitive.
+enum class Topology : std::uint8_t { points = 1, lines = 2, triangles = 3 };
+
+/// Which side of a triangle is its front: where its vertices turn counter-clockwise on the screen,
+/// clockwise, or whichever is seen; then no face is culled.
+enum class Winding : std::uint8_t { counter_clockwise, clockwise, either };
+
+/// Wider lines and larger points are refused.
+inline constexpr float kMaxLineWidth = 4096, kMaxPointSize = 4096;
+
+/// Points, lines or triangles over one vertex source. Ids count primitives through the draws of a
+/// frame in order.
+struct Draw {
+  VertexStage source;  ///< must be set
+  std::size_t vertex_count = 0;
+  std::span<const std::uint32_t> indices{};  ///< empty: vertices in order
+  std::uint64_t primitive_count = 0;         ///< at most those that the indices or vertices make up
+  Topology topology = Topology::triangles;
+  std::uint32_t flags = 0;  ///< of its pieces
+  /// Flags by material, so that a mesh of several needs no draw for each: triangle t has those of
+  /// material_flags[face_materials[t]] too. Both or none.
+  std::span<const std::uint32_t> face_materials{}, material_flags{};
+  Cull cull = Cull::none;  ///< which faces of triangles are left out
+  Winding winding = Winding::counter_clockwise;
+  float line_width = 1;  ///< px across the minor axis, rounded to a whole number of at least 1
+  float point_size = 1;  ///< px, in n.8; less than 1 counts as 1
+  /// Added to the depth of every fragment before it is cut to [0, 1], as GL's polygon offset, but
+  /// for all topologies and in units of reversed depth (more is nearer): depth_bias +
+  /// depth_bias_slope · max(|zx|, |zy|), the change of depth per px.
+  float depth_bias = 0, depth_bias_slope = 0;
+  /// What shades it and, where `flags` has kTested, tests its fragments; none: what Renderer::draw
+  /// is given. Program::draw sets both.
+  Shading shading;
+  Testing test;
+
+  // Filled by the pipeline.
+  std::uint64_t first_id = 0;
+  std::size_t first_vertex = 0;  ///< of this draw in FrameGeometry::projected
+  std::size_t number = 0;        ///< among the draws of its shading
+
+  [[nodiscard]] RASTRUM_HD std::uint32_t vertex(std::uint64_t primitive, int corner) const {
+    const std::size_t i = static_cast<std::size_t>(primitive) * static_cast<std::size_t>(topology) +
+                          static_cast<std::size_t>(corner);
+    return indices.empty() ? static_cast<std::uint32_t>(i) : indices[i];
+  }
+  [[nodiscard]] RASTRUM_HD std::uint32_t flags_of(std::uint64_t primitive) const {
+    return material_flags.empty()
+               ? flags
+               : flags | material_flags[face_materials[static_cast<std::size_t>(primitive)]];
+  }
+  /// Those that some primitive may have.
+  [[nodiscard]] std::uint32_t any_flags() const {
+    std::uint32_t any = flags;
+    for (const std::uint32_t f : material_flags) any |= f;
+    return any;
+  }
+  /// What the winding makes of `cull`, for counter-clockwise fronts.
+  [[nodiscard]] RASTRUM_HD Cull effective_cull() const {
+    if (cull == Cull::none || winding == Winding::either) return Cull::none;
+    const bool swap = winding == Winding::clockwise;
+    return (cull == Cull::back) != swap ? Cull::back : Cull::front;
+  }
+  /// Whether the setup kernel may make its pieces; otherwise assemble_primitive does.
+  [[nodiscard]] bool has_kernel() const {
+    return topology == Topology::triangles && depth_bias == 0 && depth_bias_slope == 0;
+  }
+};
+
+/// The draw that holds primitive `id`. O(log draws).
+[[nodiscard]] RASTRUM_HD inline const Draw& draw_with(std::span<const Draw> draws,
+                                                      std::uint64_t id) {
+  std::size_t low = 0;
+  std::size_t high = draws.size();
+  while (high - low > 1) {
+    const std::size_t middle = (low + high) / 2;
+    (draws[middle].first_id <= id ? low : high) = middle;
+  }
+  return draws[low];
+}
+
+}  // namespace rastrum::raster

@@ -1,0 +1,91 @@
+// The vertex stage of a draw: a value that host and device read, positions under a matrix or a
+// function of the caller's own.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <variant>
+
+#include <rastrum/core/mat.hpp>
+#include <rastrum/parallel/device.hpp>
+#include <rastrum/raster/assemble/clip.hpp>
+#include <rastrum/raster/draws/projection.hpp>
+
+namespace rastrum::raster {
+
+/// A vertex stage of the caller's own. Thread-safe.
+class VertexSource {
+ public:
+  virtual ~VertexSource() = default;
+  /// Projects vertices [begin, end) into out[0 … end − begin).
+  virtual void project(std::size_t begin, std::size_t end, Viewport viewport, Isa isa,
+                       ProjectedVertex* out) const noexcept = 0;
+  /// Homogeneous position for the clipper; NaN where the vertex is not finite.
+  [[nodiscard]] virtual Vec4d clip_position(std::size_t vertex) const noexcept = 0;
+};
+
+/// A position for the clipper: in float32, or for a finite vertex that overflows there in float64;
+/// a NaN or infinity stays one.
+[[nodiscard]] RASTRUM_HD inline Vec4d clip_position_of(Vec3 p, const Mat4& matrix,
+                                                       const Mat4d& matrix64) {
+  const Vec4 clip = transform_point(matrix, p);
+  if (std::isfinite(clip.x) && std::isfinite(clip.y) && std::isfinite(clip.z) &&
+      std::isfinite(clip.w))
+    return {clip.x, clip.y, clip.z, clip.w};
+  const auto row = [&](int i) {
+    return matrix64.m[i][0] * p.x + matrix64.m[i][1] * p.y + matrix64.m[i][2] * p.z +
+           matrix64.m[i][3];
+  };
+  return {row(0), row(1), row(2), row(3)};
+}
+
+/// Positions in object space, which must outlive the frame, and their matrix to clip space.
+struct MatrixVertices {
+  std::span<const Vec3> positions;
+  Mat4d object_to_clip;
+  Mat4 object_to_clip32;  ///< the same, rounded
+
+  MatrixVertices(std::span<const Vec3> p, const Mat4d& to_clip)
+      : positions(p), object_to_clip(to_clip), object_to_clip32(to_clip) {}
+};
+
+/// Where the vertices of a draw come from.
+class VertexStage {
+ public:
+  VertexStage() = default;  ///< from nowhere
+  VertexStage(const MatrixVertices& vertices) : stage_(vertices) {}
+  /// The caller's, which must outlive the frame; null: from nowhere.
+  VertexStage(const VertexSource* own) {
+    if (own != nullptr) stage_ = own;
+  }
+
+  [[nodiscard]] explicit operator bool() const { return stage_.index() != 0; }
+  /// What a device can read; null: vertices are the host's to make.
+  [[nodiscard]] const MatrixVertices* matrix() const {
+    return std::get_if<MatrixVertices>(&stage_);
+  }
+
+  /// Projects vertices [begin, end) into out[0 … end − begin). Thread-safe, as are the others.
+  void project(std::size_t begin, std::size_t end, Viewport viewport, Isa isa,
+               ProjectedVertex* out) const noexcept;
+  /// Projects the vertices that `indices` name, into out[0 … size).
+  void project_indexed(std::span<const std::uint32_t> indices, Viewport viewport, Isa isa,
+                       ProjectedVertex* out) const noexcept;
+  /// Homogeneous position for the clipper; NaN where the vertex is not finite.
+  [[nodiscard]] Vec4d clip_position(std::size_t vertex) const noexcept {
+    if (const MatrixVertices* const m = matrix())
+      return clip_position_of(m->positions[vertex], m->object_to_clip32, m->object_to_clip);
+    return own().clip_position(vertex);
+  }
+
+ private:
+  [[nodiscard]] const VertexSource& own() const {
+    return **std::get_if<const VertexSource*>(&stage_);
+  }
+
+  std::variant<std::monostate, MatrixVertices, const VertexSource*> stage_;
+};
+
+}  // namespace rastrum::raster

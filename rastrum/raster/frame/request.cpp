@@ -1,0 +1,25 @@
+#include <rastrum/raster/frame/request.hpp>
+
+#include <bit>
+
+#include <rastrum/raster/setup/make_piece.hpp>
+
+namespace rastrum::raster {
+
+std::uint64_t FrameRequest::kept(const FrameGeometry& frame, const Piece& piece, const Block& block,
+                                 const ShadingPoints* points) const noexcept {
+  Block nearer = block;
+  if ((piece.flags & kOverPicture) != 0)
+    for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      const int x = block.bx * kBlockSize + i % kBlockSize;
+      const int y = block.by * kBlockSize + i / kBlockSize;
+      const float behind = targets.depth(x, y);
+      // What has depth 0 is drawn where nothing is.
+      if (behind > 0 && !(depth_at(piece, x, y) > behind)) nearer.mask ^= std::uint64_t{1} << i;
+    }
+  if ((piece.flags & kTested) == 0 || nearer.mask == 0) return nearer.mask;
+  return test.test(frame, piece, nearer, points);
+}
+
+}  // namespace rastrum::raster

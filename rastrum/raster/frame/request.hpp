@@ -1,0 +1,44 @@
+// One frame, as it is handed down to what draws it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include <rastrum/core/vec.hpp>
+#include <rastrum/raster/draws/draw.hpp>
+#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/frame/options.hpp>
+
+namespace rastrum::raster {
+
+/// One frame, as the façade hands it to a rasterizer.
+struct FrameRequest {
+  int width = 0, height = 0;
+  Isa isa = Isa::scalar;
+  std::span<Draw> draws;
+  std::string_view draw_noun = "draw";  ///< what messages call one: a scene's are instances
+  Testing test;                         ///< none: no piece is tested
+  Shading shading;                      ///< may be none where no colour is asked for
+  Vec4 background{};                    ///< display values, straight alpha
+  Targets targets;
+  Tuning tuning;
+  bool in_place = false;            ///< arrays and targets are memory of the device that draws
+  std::uint64_t texture_bytes = 0;  ///< that a memory limit counts beside the frame's own
+  bool hierarchical_z = true;
+  TransparencyOptions transparency;  ///< for a visibility that keeps layers
+  int samples = 1;                   ///< a pixel; more want a visibility that keeps layers
+  /// The shader returns linear light: it is blended as such, also over the background, and the sRGB
+  /// transfer is applied to the result.
+  bool linear_light = false;
+
+  /// Whether some piece may be tested: by `test` (kTested), or against the picture that the targets
+  /// hold (kOverPicture).
+  [[nodiscard]] bool has_tests() const { return test || targets.over; }
+  /// The samples of `block.mask` that the tests of the piece keep; `points` as FragmentTest's. What
+  /// is drawn over a picture reads a pixel of Targets::depth before it is written.
+  [[nodiscard]] std::uint64_t kept(const FrameGeometry& frame, const Piece& piece,
+                                   const Block& block, const ShadingPoints* points) const noexcept;
+};
+
+}  // namespace rastrum::raster

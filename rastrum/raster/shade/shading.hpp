@@ -1,0 +1,138 @@
+// What shades and what tests a draw or a frame: values, which the host calls, a block at a time,
+// and a device reads. A caller's own function (hooks.hpp) is one alternative of each.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <variant>
+
+#include <rastrum/parallel/device.hpp>
+#include <rastrum/raster/draws/samples.hpp>
+#include <rastrum/raster/setup/piece.hpp>
+
+namespace rastrum::raster {
+
+class BlockShader;
+class FragmentTest;
+struct BlockColors;
+struct FrameGeometry;
+struct LitScene;
+struct MaterialScene;
+struct VisibleBlock;
+
+enum class LitModel : std::uint8_t { flat, normal, id, lambert, phong, wireframe };
+
+/// The plain shaders (lit.hpp).
+struct LitShading {
+  LitModel model = LitModel::flat;
+  const LitScene* scene = nullptr;
+  bool operator==(const LitShading&) const = default;
+};
+
+/// The scene's materials (material.hpp).
+struct MaterialShading {
+  const MaterialScene* scene = nullptr;
+  bool linear = false;  ///< leaves the transfer function to FrameRequest::linear_light
+  bool operator==(const MaterialShading&) const = default;
+};
+
+/// Where colours come from, and the alpha that they are multiplied by (alpha.hpp). What it points
+/// to must outlive the frame. The built-in ones take their draws for the instances of their scene,
+/// in order, whatever stands between them.
+class Shading {
+ public:
+  Shading() = default;  ///< none: no colour can be asked for
+  Shading(const LitShading& lit) : colors_(lit) {}
+  Shading(const MaterialShading& material) : colors_(material) {}
+  /// The caller's own.
+  Shading(const BlockShader& own) : colors_(&own) {}
+  /// The same; null: none.
+  Shading(const BlockShader* own) {
+    if (own != nullptr) colors_ = own;
+  }
+  /// The same colours, multiplied by alpha; what has none is not shaded, and there are no further
+  /// outputs. `blending`: the scene whose translucent materials say it, whose textures must hold
+  /// those of such materials; null: there are none.
+  [[nodiscard]] Shading with_alpha(const MaterialScene* blending, float opacity) const {
+    Shading s = *this;
+    s.blending_ = blending;
+    s.opacity_ = opacity;
+    return s;
+  }
+
+  [[nodiscard]] explicit operator bool() const { return colors_.index() != 0; }
+  bool operator==(const Shading&) const = default;
+
+  /// Each is null where the colours are another's.
+  [[nodiscard]] const LitShading* lit() const { return std::get_if<LitShading>(&colors_); }
+  [[nodiscard]] const MaterialShading* material() const {
+    return std::get_if<MaterialShading>(&colors_);
+  }
+  [[nodiscard]] const BlockShader* own() const {
+    const auto* const own = std::get_if<const BlockShader*>(&colors_);
+    return own == nullptr ? nullptr : *own;
+  }
+  [[nodiscard]] const MaterialScene* blending() const { return blending_; }
+  [[nodiscard]] float opacity() const { return opacity_; }
+
+  /// As BlockShader's, whatever shades. Requires that there is something.
+  bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
+             BlockColors& colors) const noexcept;
+  void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept;
+  [[nodiscard]] std::optional<float> alpha() const noexcept;
+  [[nodiscard]] std::size_t scratch_bytes() const noexcept;  ///< of none: 0
+  [[nodiscard]] std::size_t extra_count() const noexcept;    ///< of none: 0
+
+  struct Hash {
+    std::size_t operator()(const Shading& s) const noexcept;
+  };
+
+ private:
+  [[nodiscard]] bool has_alpha() const { return blending_ != nullptr || opacity_ != 1; }
+  bool shade_colors(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
+                    BlockColors& colors) const noexcept;
+
+  std::variant<std::monostate, LitShading, MaterialShading, const BlockShader*> colors_;
+  const MaterialScene* blending_ = nullptr;
+  float opacity_ = 1;
+};
+
+/// AlphaMode::mask (alpha.hpp): what lies below a material's cutoff is a hole. The scene's textures
+/// must hold those of the masks.
+struct MaskTest {
+  const MaterialScene* scene = nullptr;
+  bool operator==(const MaskTest&) const = default;
+};
+
+/// What decides, before the maximum, which fragments of pieces with kTested are there. What it
+/// points to must outlive the frame.
+class Testing {
+ public:
+  Testing() = default;  ///< all are
+  Testing(const MaskTest& masks) : test_(masks) {}
+  /// The caller's own; null: all are.
+  Testing(const FragmentTest* own) {
+    if (own != nullptr) test_ = own;
+  }
+
+  [[nodiscard]] explicit operator bool() const { return test_.index() != 0; }
+  bool operator==(const Testing&) const = default;
+
+  /// Each is null where another tests.
+  [[nodiscard]] const MaskTest* masks() const { return std::get_if<MaskTest>(&test_); }
+  [[nodiscard]] const FragmentTest* own() const {
+    const auto* const own = std::get_if<const FragmentTest*>(&test_);
+    return own == nullptr ? nullptr : *own;
+  }
+
+  /// As FragmentTest's.
+  [[nodiscard]] std::uint64_t test(const FrameGeometry& frame, const Piece& piece,
+                                   const Block& block, const ShadingPoints* points) const noexcept;
+
+ private:
+  std::variant<std::monostate, MaskTest, const FragmentTest*> test_;
+};
+
+}  // namespace rastrum::raster
