@@ -25,7 +25,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TREE = ROOT / "build" / "break-rows"
 BUILD = TREE / "build" / "release"
-RASTER = "rastrum/raster/"
+LIBRARY = "rastrum/"
 
 COVERAGES = ("scanline", "pineda", "tiled", "hybrid", "binned", "grouped")
 VISIBILITIES = ("atomic", "search", "tuple", "sorted", "hashed")
@@ -37,7 +37,7 @@ TESTS = {"coverage": ("coverage_test", "binned_test"), "visibility": ("visibilit
 @dataclasses.dataclass(frozen=True)
 class Break:
     name: str
-    file: str  # below rastrum/raster
+    file: str  # below rastrum
     text: str
     broken: str
     coverages: tuple = COVERAGES  # the points of the table that fail: coverages …
@@ -47,7 +47,7 @@ class Break:
 
     @property
     def axis(self):
-        return "coverage" if self.file.startswith("coverage/") else "visibility"
+        return "coverage" if "coverage/" in self.file or "raster/bin/" in self.file else "visibility"
 
     def expected_points(self):
         return {f"{c}_{v}" for c in self.coverages for v in self.visibilities}
@@ -58,120 +58,120 @@ class Break:
 
 BREAKS = (
     # --- Coverages --------------------------------------------------------------------------------
-    Break("scanline", "coverage/rows.hpp",
+    Break("scanline", "family/coverage/rows.hpp",
           "static_cast<std::size_t>(box.y1 - box.y0);",
           "static_cast<std::size_t>(box.y1 - box.y0 - 1);",  # a triangle's last row
           ("scanline",), units=("scanline", "hybrid"),
           why="hybrid's tuning `small_path = rows`, in its own tests, is scanline"),
-    Break("pineda, small", "coverage/pineda.cpp",
+    Break("pineda, small", "family/coverage/pineda.cpp",
           "all.first(parted.first_count)", "all.first(parted.first_count / 2)", ("pineda",)),
-    Break("pineda, large", "coverage/pineda.cpp",
+    Break("pineda, large", "family/coverage/pineda.cpp",
           "add_tile<kTile>(frame, pieces, pair.piece,",
           "if (j != 0) add_tile<kTile>(frame, pieces, pair.piece,",
           ("pineda",)),
-    Break("tiled", "coverage/tiled.cpp",
+    Break("tiled", "family/coverage/tiled.cpp",
           "pieces.data(), which);", "pieces.data(), std::span(which).first(which.size() / 2));",
           ("tiled",)),
-    Break("hybrid, small", "coverage/hybrid.cpp",
+    Break("hybrid, small", "family/coverage/hybrid.cpp",
           "all.first(parted.first_count)", "all.first(parted.first_count / 2)", ("hybrid",)),
-    Break("hybrid, large", "coverage/hybrid.cpp",
+    Break("hybrid, large", "family/coverage/hybrid.cpp",
           "all.subspan(parted.first_count)", "all.last((all.size() - parted.first_count) / 2)",
           ("hybrid",)),
-    Break("binned, small", "coverage/binned.cpp",
+    Break("binned, small", "family/coverage/binned.cpp",
           "[&](int bx, int by) { emitter.add_uncovered(piece, bx, by); }",
           "[&](int bx, int by) { if (piece % 2 == 0) emitter.add_uncovered(piece, bx, by); }",
           ("binned",)),
-    Break("binned, queue", "coverage/binned.cpp",
+    Break("binned, queue", "family/coverage/binned.cpp",
           "if (store) queue[tail++] = {piece, bin, {}};",
           "if (store) queue[tail++] = {piece, bin & ~1U, {}};", ("binned",)),
-    Break("binned, tile mask", "coverage/tile_mask.hpp",
+    Break("binned, tile mask", "family/coverage/tile_mask.hpp",
           "row <= last_row;", "row < last_row;", ("binned",)),
-    Break("binned, persistent", "coverage/binned.cpp",
+    Break("binned, persistent", "family/coverage/binned.cpp",
           "mask.for_each([&](int tile) { draw_tile(piece, rect, tile, emitter); });",
           "mask.for_each([&](int tile) { if (tile != 0) draw_tile(piece, rect, tile, emitter); });",
           (), units=("binned",), why="the table draws in the two-stage schedule, the default"),
-    Break("grouped, bins of large", "coverage/grouped.cpp",
+    Break("grouped, bins of large", "raster/bin/groups.cpp",
           "for (int by = by0; by <= by1; ++by)", "for (int by = by0; by < by1; ++by)",
           ("grouped",)),
-    Break("grouped, lists", "coverage/grouped.cpp",
+    Break("grouped, lists", "raster/bin/groups.hpp",
           "const PieceList pieces{group.pieces.data.data(), list.data(), list.size()};",
           "const PieceList pieces{group.pieces.data.data(), list.data(), list.size() - 1};",
           ("grouped",)),
-    Break("grouped, micro triangles", "coverage/grouped.cpp",
-          "return emitter.fragments(bin, fragments);",
-          "return emitter.fragments(bin, fragments.first(fragments.size() / 2));",
+    Break("grouped, micro triangles", "raster/bin/groups.hpp",
+          "return sink.fragments(bin, fragments);",
+          "return sink.fragments(bin, fragments.first(fragments.size() / 2));",
           ("grouped",), ("atomic", "search", "sorted", "hashed"),
           why="tuple takes no finished keys: it has to shade"),
 
     # What coverages share: the papers build one on the other.
-    Break("blocks of small boxes", "coverage/boxes.hpp",
+    Break("blocks of small boxes", "family/coverage/boxes.hpp",
           "(box.x1 - 1) / kBlockSize - bx + 1,", "(box.x1 - 1) / kBlockSize - bx,",
           ("pineda", "hybrid"), why="both draw small triangles so (paper 1, table 5)"),
-    Break("bins and tiles", "coverage/bins.hpp",
+    Break("bins and tiles", "family/coverage/bins.hpp",
           "return !box.empty() && may_touch(edges_of(piece), box);",
           "return j != 0 && !box.empty() && may_touch(edges_of(piece), box);",
           ("pineda", "tiled", "hybrid"), why="the hierarchy of all three (paper 1, section 3.1.3)"),
-    Break("tiles sorted", "coverage/sorted_tiles.hpp",
+    Break("tiles sorted", "family/coverage/sorted_tiles.hpp",
           "end - begins_[segment]);", "end - begins_[segment] - 1);",
           ("tiled", "hybrid"), why="hybrid is tiled for large triangles (paper 1, section 3.3)"),
 
     # --- Visibilities -----------------------------------------------------------------------------
-    Break("atomic, owned", "visibility/atomic.cpp",
+    Break("atomic, owned", "raster/cover/bin_keys.cpp",
           "blocks.data(), blocks.size(), surface_);",
           "blocks.data(), blocks.size() / 2, surface_);",
           OWNING, ("atomic",), why="coverages with tiles"),
-    Break("atomic, shared", "visibility/atomic.cpp",
+    Break("atomic, shared", "family/visibility/atomic.cpp",
           "raise_atomically(out[i], keys[i]);",
           "if (i % 2 == 0) raise_atomically(out[i], keys[i]);",
           SHARING, ("atomic",), why="coverages without tiles; hybrid for small triangles"),
-    Break("atomic, micro triangles", "visibility/atomic.cpp",
+    Break("atomic, micro triangles", "raster/cover/bin_keys.cpp",
           "surface_.keys[f.pixel] = std::max(surface_.keys[f.pixel], f.key);",
           "surface_.keys[f.pixel] = f.key;",
           ("grouped",), ("atomic",), why="only grouped makes fragments of its own"),
-    Break("search, second pass", "visibility/search.cpp",
+    Break("search, second pass", "family/visibility/search.cpp",
           "if (step_ == Step::searching) return std::nullopt;",
           "if (step_ == Step::maximum) return std::nullopt;", visibilities=("search",)),
-    Break("search, micro triangles", "visibility/search.cpp",
+    Break("search, micro triangles", "family/visibility/search.cpp",
           "raise<kSharing>(depth_[pixel], depth_of_key(f.key));",
           "depth_[pixel] = depth_of_key(f.key);",
           ("grouped",), ("search",), why="only grouped makes fragments of its own"),
-    Break("tuple, keys", "visibility/tuple.cpp",
+    Break("tuple, keys", "family/visibility/tuple.cpp",
           "if (keys[i] <= out[i]) continue;", "if (out[i] != 0) continue;",
           visibilities=("tuple",)),
-    Break("tuple, colours", "visibility/tuple.cpp",
+    Break("tuple, colours", "family/visibility/tuple.cpp",
           "{colors.r[i], colors.g[i], colors.b[i], colors.a[i]}",
           "{colors.r[i], colors.b[i], colors.g[i], colors.a[i]}", visibilities=("tuple",)),
-    Break("sorted, segments", "visibility/sorted.cpp",
+    Break("sorted, segments", "family/visibility/sorted.cpp",
           "maximum = std::max(maximum, keys[i]);", "maximum = keys[i];",
           visibilities=("sorted",)),
-    Break("sorted, owned", "visibility/sorted.cpp",
+    Break("sorted, owned", "family/visibility/sorted.cpp",
           "slices_.add(exec_, first + i, key);", "slices_.add(exec_, first, key);",
           OWNING, ("sorted",), why="coverages with tiles"),
-    Break("sorted, shared", "visibility/sorted.cpp",
+    Break("sorted, shared", "family/visibility/sorted.cpp",
           "sort_keys_[to] = static_cast<SortKey>(first + i);", "sort_keys_[to] = static_cast<SortKey>(first);",
           SHARING, ("sorted",), why="coverages without tiles; hybrid for small triangles"),
-    Break("sorted, micro triangles", "visibility/sorted.cpp",
+    Break("sorted, micro triangles", "family/visibility/sorted.cpp",
           "slices_.add(exec_, pixels_.pixel(f), f.key);",
           "slices_.add(exec_, pixels_.pixel(f) & ~1U, f.key);",
           ("grouped",), ("sorted",), why="only grouped makes fragments of its own"),
-    Break("hashed, maximum", "visibility/hashed.cpp",
-          "raster::raise<kSharing>(keys_[slot], key);",
-          "if (found == Slot::taken) raster::raise<kSharing>(keys_[slot], key);",
+    Break("hashed, maximum", "family/visibility/hashed.cpp",
+          "family::raise<kSharing>(keys_[slot], key);",
+          "if (found == Slot::taken) family::raise<kSharing>(keys_[slot], key);",
           visibilities=("hashed",)),
-    Break("hashed, owned", "visibility/hashed.cpp",
+    Break("hashed, owned", "family/visibility/hashed.cpp",
           "        raise(home, block * 64 + i, key);", "        raise(home, block * 64, key);",
           OWNING, ("hashed",), why="coverages with tiles"),
-    Break("hashed, shared", "visibility/hashed.cpp",
+    Break("hashed, shared", "family/visibility/hashed.cpp",
           "probes += table_.raise(home, block * 64 + i, key);",
           "probes += table_.raise(home, block * 64, key);",
           SHARING, ("hashed",), why="coverages without tiles; hybrid for small triangles"),
-    Break("hashed, micro triangles", "visibility/hashed.cpp",
+    Break("hashed, micro triangles", "family/visibility/hashed.cpp",
           "const std::uint32_t pixel = pixels_.pixel(f);",
           "const std::uint32_t pixel = pixels_.pixel(f) & ~1U;",
           ("grouped",), ("hashed",), why="only grouped makes fragments of its own"),
 
     # What visibilities share.
-    Break("fragments one by one", "visibility/fragments.hpp",
+    Break("fragments one by one", "family/visibility/fragments.hpp",
           "make_key(depth, piece.low)", "make_key(depth / 2, piece.low)",
           visibilities=("search", "sorted", "hashed"),
           why="atomic and tuple take the keys of a whole block"),
@@ -229,7 +229,7 @@ def broken_rows(axis):
 
 def check(b):
     """Breaks, builds, tests, restores. Returns (points, units)."""
-    file = TREE / RASTER / b.file
+    file = TREE / LIBRARY / b.file
     source = file.read_text()
     if source.count(b.text) != 1:
         raise Failure(f"{b.name}: {b.file} has {source.count(b.text)} times, not once: {b.text}")

@@ -7,13 +7,17 @@
 #include <utility>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/family/blend/approximations.hpp>
 #include <rastrum/family/cuda/rasterizer.hpp>
-#include <rastrum/raster/frame/rasterizer.hpp>
+#include <rastrum/family/row.hpp>
+#include <rastrum/family/visibility/layers.hpp>
+#include <rastrum/raster/frame/driver.hpp>
+#include <rastrum/raster/frame/fast_path.hpp>
 #include <rastrum/raster/frame/reference.hpp>
 #include <rastrum/render/cuda/rasterizer.hpp>
 #include <rastrum/render/device_work.hpp>
 #include <rastrum/render/registry.hpp>
-#include <rastrum/transparency/layers.hpp>
+#include <rastrum/transparency/layered_path.hpp>
 #include <rastrum/transparency/reference.hpp>
 
 namespace rastrum {
@@ -85,14 +89,14 @@ std::string why(const RenderOptions& options, bool layers) {
   std::string text;
   if (options.rasterizer == "auto")
     text.append("auto takes ")
-        .append(raster::coverages().front().name)
+        .append(family::coverages().front().name)
         .append(": threads own bins, whose keys stay in cache and which skip what is hidden");
   if (layers)
     text.append(text.empty() ? "" : "; ")
         .append("layers, because something is translucent or pixels have several samples");
   else if (options.visibility == "auto")
     text.append(text.empty() ? "auto takes " : "; ")
-        .append(raster::visibilities().front().name)
+        .append(family::visibilities().front().name)
         .append(": a plain maximum where a thread owns the keys, and shading once a pixel");
   return text.empty() ? "as asked for" : text;
 }
@@ -109,11 +113,11 @@ bool needs_layers(const raster::FrameRequest& request) {
 }
 
 /// Layers want a thread that owns a tile, and are a visibility themselves.
-void check_layers(const raster::CoverageRow& coverage, bool visibility_is_asked_for) {
+void check_layers(const family::CoverageRow& coverage, bool visibility_is_asked_for) {
   if (visibility_is_asked_for) refuse_visibility();
   if (coverage.owns_tiles) return;
   std::string owners;
-  for (const raster::CoverageRow& row : raster::coverages())
+  for (const family::CoverageRow& row : family::coverages())
     if (row.owns_tiles) owners.append(owners.empty() ? "" : ", ").append(row.name);
   throw Error(
       Errc::invalid_argument,
@@ -123,16 +127,36 @@ void check_layers(const raster::CoverageRow& coverage, bool visibility_is_asked_
           .append(owners));
 }
 
+/// One of two drawers, each made when a frame first needs it: keys are enough, or not.
+template <class MakeKeys, class MakeLayers>
+DrawFrame by_need(MakeKeys make_keys, MakeLayers make_layers) {
+  using Drawer = std::shared_ptr<raster::FrameDrawer>;
+  return [make_keys, make_layers, keys = Drawer(),
+          layers = Drawer()](raster::FrameRequest& request) mutable {
+    if (needs_layers(request)) {
+      if (!layers) layers = make_layers();
+      return layers->draw(request);
+    }
+    if (!keys) keys = make_keys();
+    return keys->draw(request);
+  };
+}
+
 DrawFrame make_reference(const RenderOptions& options, MemoryAccount& memory) {
   if (options.rasterizer != "auto" && options.rasterizer != kReference)
     throw Error(Errc::invalid_argument,
                 std::string("the rasterizer '")
                     .append(options.rasterizer)
                     .append("' needs --device threads; serial has 'reference'"));
-  return [&memory](raster::FrameRequest& request) {
-    return needs_layers(request) ? transparency::render_reference(request, memory)
-                                 : raster::render_reference(request, memory);
-  };
+  return by_need(
+      [&memory, limit = options.memory_limit] {
+        return std::make_unique<raster::FrameDriver>(raster::make_reference(), limit, memory,
+                                                     nullptr);
+      },
+      [&memory] {
+        return std::make_unique<raster::FrameDriver>(
+            transparency::make_layered_reference(family::make_blend), 0, memory, nullptr);
+      });
 }
 
 constexpr std::string_view kBySize = "by-size";
@@ -151,11 +175,11 @@ struct OnCuda {
 };
 
 OnCuda choose_on_cuda(const RenderOptions& options, MemoryAccount& memory) {
-  const std::string_view atomic = raster::visibilities().front().name;
+  const std::string_view atomic = family::visibilities().front().name;
   const auto& visibility =
       options.visibility == "auto"
-          ? raster::visibilities().front()
-          : find_row(raster::visibilities(), options.visibility, "visibility", "auto");
+          ? family::visibilities().front()
+          : find_row(family::visibilities(), options.visibility, "visibility", "auto");
   if (options.rasterizer == kBySize && visibility.name != atomic)
     throw Error(Errc::invalid_argument, std::string("by-size draws by '")
                                             .append(atomic)
@@ -168,10 +192,10 @@ OnCuda choose_on_cuda(const RenderOptions& options, MemoryAccount& memory) {
   if (options.rasterizer == "auto")
     return {"hybrid", visibility.name, "auto takes hybrid, for by-size has no other visibility"};
   const auto& coverage =
-      find_row(raster::coverages(), options.rasterizer, "rasterizer", "auto, reference, by-size");
+      find_row(family::coverages(), options.rasterizer, "rasterizer", "auto, reference, by-size");
   // Refuses sizes of bins and tiles that the host refuses.
   static_cast<void>(coverage.make(options.tuning, memory));
-  if (coverage.name == raster::coverages().front().name)
+  if (coverage.name == family::coverages().front().name)
     return {{}, {}, "'grouped' keeps its groups and bins in a core's cache: it is the CPU's", true};
   if (options.tuning.schedule == raster::Schedule::persistent)
     return {{}, {}, "the persistent schedule of 'binned' is the CPU's", true};
@@ -234,7 +258,7 @@ const std::vector<AxisInfo>& rasterizers() {
     std::vector<AxisInfo> list{{std::string(kReference),
                                 "rows of triangles in order into one visibility buffer; one "
                                 "thread, plain C++"}};
-    for (const raster::CoverageRow& row : raster::coverages())
+    for (const family::CoverageRow& row : family::coverages())
       list.push_back({std::string(row.name), std::string(row.description)});
     return list;
   }();
@@ -244,7 +268,7 @@ const std::vector<AxisInfo>& rasterizers() {
 const std::vector<AxisInfo>& visibilities() {
   static const std::vector<AxisInfo> infos = [] {
     std::vector<AxisInfo> list;
-    for (const raster::Visibility& row : raster::visibilities())
+    for (const family::Visibility& row : family::visibilities())
       list.push_back({std::string(row.name), std::string(row.description)});
     return list;
   }();
@@ -257,27 +281,38 @@ DrawFrame make_rasterizer(const RenderOptions& options, MemoryAccount& memory,
   if (options.device == Device::cuda) return make_on_cuda(options, memory, *threads, automatic_why);
   const auto& coverage =
       options.rasterizer == "auto"
-          ? raster::coverages().front()
-          : find_row(raster::coverages(), options.rasterizer, "rasterizer", "auto, reference");
+          ? family::coverages().front()
+          : find_row(family::coverages(), options.rasterizer, "rasterizer", "auto, reference");
   const auto& visibility =
       options.visibility == "auto"
-          ? raster::visibilities().front()
-          : find_row(raster::visibilities(), options.visibility, "visibility", "auto");
-  const auto make = [&memory, threads, &coverage, tuning = options.tuning,
-                     limit = options.memory_limit](const raster::Visibility& by) {
-    return std::make_shared<raster::Rasterizer>(coverage, by, tuning, limit, memory, *threads);
-  };
+          ? family::visibilities().front()
+          : find_row(family::visibilities(), options.visibility, "visibility", "auto");
   const bool is_asked_for = options.visibility != "auto";
-  return [rasterizer = make(visibility), layered = std::shared_ptr<raster::Rasterizer>(), make,
-          &coverage, is_asked_for, why_keys = why(options, false),
+  // Refuses tunings that were not compiled.
+  static_cast<void>(coverage.make(options.tuning, memory));
+  // The renderer's own path is the table's first point.
+  const bool is_first = coverage.name == family::coverages().front().name;
+  const bool is_fast = is_first && visibility.name == family::visibilities().front().name &&
+                       options.hierarchical_z &&
+                       options.tuning.order == raster::BlockOrder::row_major;
+  const auto drive = [&memory, threads,
+                      limit = options.memory_limit](std::unique_ptr<raster::Method> method) {
+    return std::make_unique<raster::FrameDriver>(std::move(method), limit, memory, threads);
+  };
+  const DrawFrame draw = by_need(
+      [=, &memory, &coverage, &visibility, tuning = options.tuning] {
+        return drive(is_fast ? raster::make_fast_path(memory)
+                             : family::make_row(coverage, visibility, tuning, memory));
+      },
+      [=, &memory, &coverage, tuning = options.tuning] {
+        check_layers(coverage, is_asked_for);
+        return drive(is_first ? transparency::make_layered_path(memory, family::make_blend)
+                              : family::make_row(coverage, family::layers(), tuning, memory));
+      });
+  return [draw, why_keys = why(options, false),
           why_layers = why(options, true)](raster::FrameRequest& request) mutable {
-    const bool layers = needs_layers(request);
-    if (layers) {
-      check_layers(coverage, is_asked_for);
-      if (!layered) layered = make(transparency::layers());
-    }
-    FrameStats stats = (layers ? layered : rasterizer)->render(request);
-    stats.why = layers ? why_layers : why_keys;
+    FrameStats stats = draw(request);
+    stats.why = needs_layers(request) ? why_layers : why_keys;
     return stats;
   };
 }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <rastrum/transparency/approximations.hpp>
+#include <rastrum/core/error.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
 
 namespace rastrum::transparency {
@@ -73,13 +73,12 @@ std::unique_ptr<LayerBlend> make_blend(const TransparencyOptions& options, Isa i
     case Transparency::unsorted:
       return std::make_unique<AsSubmitted>(isa);
     case Transparency::wboit:
-      return make_wboit();
-    case Transparency::mlab4:
-      return make_mlab4();
     case Transparency::mboit4:
-      return make_mboit(4);
     case Transparency::mboit6:
-      return make_mboit(6);
+    case Transparency::mlab4:
+      throw Error(Errc::unsupported,
+                  "the approximations of transparency are drawn by the renderer of "
+                  "rastrum/family/renderer.hpp (Rastrum::family)");
     default:
       return std::make_unique<FrontToBack>(options.alpha_threshold, isa);
   }

@@ -43,6 +43,10 @@ class LayerBlend {
   virtual void finish(raster::BlockColors& out) = 0;
 };
 
+using MakeBlend = std::unique_ptr<LayerBlend> (*)(const TransparencyOptions& options, Isa isa);
+
+/// Exact blending, and without sorting. Throws Error{unsupported} for the approximations: they are
+/// the family's.
 [[nodiscard]] std::unique_ptr<LayerBlend> make_blend(const TransparencyOptions& options, Isa isa);
 
 }  // namespace rastrum::transparency

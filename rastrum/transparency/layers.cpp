@@ -6,7 +6,8 @@
 // Where it deviates: the paper shades fragment by fragment, in the order of blocks; here a plane of
 // fragments, one a pixel, is shaded like a visible surface, so that every shader of the opaque path
 // serves and neighbours share vectors. Lists grow, so that no density of a bin needs a rasterizer
-// of its own; `grouped` cuts dense bins to smaller regions, and all are in flight at once.
+// of its own; dense bins are cut to smaller parts (layered_path.cpp), and all are in flight at
+// once.
 #include <rastrum/transparency/layers.hpp>
 
 #include <algorithm>
@@ -15,10 +16,10 @@
 
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/parallel/stop.hpp>
+#include <rastrum/raster/cover/bin_keys.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
-#include <rastrum/raster/visibility/atomic.hpp>
 #include <rastrum/transparency/blend.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
 #include <rastrum/transparency/packed_fragments.hpp>
@@ -46,10 +47,11 @@ constexpr std::size_t kLeastPlanes = 64;
 /// A key and an owner for each pixel, and the mask.
 constexpr std::uint64_t kPlaneBytes = 64 * 12 + 8;
 
-class LayersRegion final : public raster::Region {
- public:
-  explicit LayersRegion(MemoryAccount& memory)
-      : opaque_(raster::make_atomic(raster::Sharing::owned, memory)),
+}  // namespace
+
+struct LayeredBin::Impl {
+  Impl(MemoryAccount& memory, MakeBlend make_blend)
+      : make_blend_(make_blend),
         records_(memory),
         micro_(memory),
         order_(memory),
@@ -57,13 +59,13 @@ class LayersRegion final : public raster::Region {
         packed_(memory),
         sampled_(memory) {}
 
-  void begin(const raster::RegionContext& context, const raster::SurfaceView& surface, Rect rect,
-             std::size_t chunks) override {
+  void begin(const raster::BinContext& context, const raster::SurfaceView& surface, Rect rect) {
     context_ = context;
     surface_ = surface;
     rect_ = rect;
     columns_ = raster::block_columns(rect);
-    opaque_->begin(context, surface, rect, chunks);
+    // Who counts overdraw wants to see everything.
+    opaque_.begin(*context.kernel, surface, rect, context.request->targets.overdraw.empty());
     records_.restart();
     micro_.restart();
     samples_ = context.request->samples;
@@ -74,10 +76,10 @@ class LayersRegion final : public raster::Region {
     if (!blend_ || options != made_for_ || context.request->isa != made_with_) {
       made_for_ = options;
       made_with_ = context.request->isa;
-      blend_ = make_blend(options, made_with_);
+      blend_ = make_blend_(options, made_with_);
     }
-    // Half of what fragments may take is for records (grouped.cpp cuts bins by it), and a worker
-    // may come to keep both planes and packed fragments.
+    // Half of what fragments may take is for records (layered_path.cpp cuts bins by it), and a
+    // worker may come to keep both planes and packed fragments.
     const std::uint64_t share = context.fragment_bytes / 4;
     planes_ = kMostPlanes;
     if (share != 0)
@@ -85,13 +87,7 @@ class LayersRegion final : public raster::Region {
     packed_.begin(context.request->isa, share);
   }
 
-  std::optional<Pass> next() override {
-    const auto pass = opaque_->next();
-    if (!pass) resolve();
-    return pass;
-  }
-
-  void blocks(std::size_t chunk, const Piece* pieces, std::span<const Block> blocks) override {
+  void blocks(const Piece* pieces, std::span<const Block> blocks) {
     for (std::size_t i = 0; i < blocks.size();) {
       // With several samples a pixel the keys of the surface are not enough for opaque ones.
       const auto is_opaque = [&](const Block& b) {
@@ -99,7 +95,7 @@ class LayersRegion final : public raster::Region {
       };
       std::size_t end = i;
       while (end < blocks.size() && is_opaque(blocks[end])) ++end;
-      if (end > i) opaque_->blocks(chunk, pieces, blocks.subspan(i, end - i));
+      if (end > i) opaque_.blocks(pieces, blocks.subspan(i, end - i));
       for (; end < blocks.size() && !is_opaque(blocks[end]); ++end)
         records_.add({pieces + blocks[end].piece, blocks[end].mask,
                       block_number(blocks[end].bx, blocks[end].by)});
@@ -107,7 +103,7 @@ class LayersRegion final : public raster::Region {
     }
   }
 
-  void fragments(std::span<const BinFragment> fragments) override {
+  void fragments(std::span<const BinFragment> fragments) {
     // They count from the bin, of which the region may be a part.
     constexpr std::uint32_t kBlocks = raster::kBinSize / kBlockSize;
     const auto columns = static_cast<std::uint32_t>(columns_);
@@ -120,7 +116,7 @@ class LayersRegion final : public raster::Region {
       };
       std::size_t end = i;
       while (end < fragments.size() && is_opaque(fragments[end])) ++end;
-      if (end > i) opaque_->fragments(fragments.subspan(i, end - i));
+      if (end > i) opaque_.fragments(fragments.subspan(i, end - i));
       i = end;
       while (end < fragments.size() && !is_opaque(fragments[end])) ++end;
       MicroRecord* out = micro_.room(end - i);
@@ -133,10 +129,10 @@ class LayersRegion final : public raster::Region {
     }
   }
 
-  raster::DepthBounds* bounds() override { return samples_ == 1 ? opaque_->bounds() : nullptr; }
+  raster::DepthBounds* bounds() { return samples_ == 1 ? opaque_.bounds() : nullptr; }
 
-  void collect(raster::Counters& counters) override {
-    opaque_->collect(counters);
+  void collect(raster::Counters& counters) {
+    opaque_.collect(counters);
     const auto add = [&](std::string_view name, std::uint64_t& value) {
       raster::add_counter(counters, name, std::exchange(value, 0));
     };
@@ -148,7 +144,6 @@ class LayersRegion final : public raster::Region {
     raster::raise_counter(counters, "deepest", std::exchange(totals_.deepest, 0));
   }
 
- private:
   [[nodiscard]] std::uint32_t block_number(int bx, int by) const {
     return static_cast<std::uint32_t>((by - rect_.y0 / kBlockSize) * columns_ + bx -
                                       rect_.x0 / kBlockSize);
@@ -337,7 +332,7 @@ class LayersRegion final : public raster::Region {
     }
   }
 
-  raster::RegionContext context_;
+  raster::BinContext context_;
   raster::SurfaceView surface_;
   Rect rect_;
   int columns_ = 0;
@@ -345,7 +340,8 @@ class LayersRegion final : public raster::Region {
   std::size_t planes_ = 0;
   int samples_ = 1;
 
-  std::unique_ptr<Region> opaque_;
+  MakeBlend make_blend_;
+  raster::BinKeys opaque_;
   std::unique_ptr<LayerBlend> blend_;
   TransparencyOptions made_for_;
   Isa made_with_ = Isa::scalar;
@@ -360,17 +356,29 @@ class LayersRegion final : public raster::Region {
   std::uint64_t layer_blocks_ = 0, misplaced_ = 0;
 };
 
-std::unique_ptr<raster::Region> make_layers(raster::Sharing, MemoryAccount& memory) {
-  return std::make_unique<LayersRegion>(memory);
+LayeredBin::LayeredBin(MemoryAccount& memory, MakeBlend make_blend)
+    : impl_(std::make_unique<Impl>(memory, make_blend)) {}
+LayeredBin::LayeredBin(LayeredBin&&) noexcept = default;
+LayeredBin::~LayeredBin() = default;
+
+void LayeredBin::begin(const raster::BinContext& context, const raster::SurfaceView& surface,
+                       Rect rect) {
+  impl_->begin(context, surface, rect);
 }
-
-}  // namespace
-
-const raster::Visibility& layers() noexcept {
-  static constexpr raster::Visibility kRow{
-      "layers", "all fragments of a pixel in order, for transparency", true, true, 0, make_layers,
-      true};
-  return kRow;
+void LayeredBin::blocks(const Piece* pieces, std::span<const Block> blocks) {
+  impl_->blocks(pieces, blocks);
+}
+void LayeredBin::fragments(std::span<const BinFragment> fragments) {
+  impl_->fragments(fragments);
+}
+raster::DepthBounds* LayeredBin::bounds() {
+  return impl_->bounds();
+}
+void LayeredBin::finish() {
+  impl_->resolve();
+}
+void LayeredBin::collect(raster::Counters& counters) {
+  impl_->collect(counters);
 }
 
 }  // namespace rastrum::transparency

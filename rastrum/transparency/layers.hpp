@@ -1,20 +1,48 @@
-// The visibility of transparency: keeps every fragment that may be seen and resolves all of a pixel
-// in order (papers 4 and 5; docs/architecture.md, Layers).
+// The visibility of transparency: keeps every fragment of a bin that may be seen and resolves all
+// of a pixel in order (papers 4 and 5; docs/layers.md).
 #pragma once
 
-#include <rastrum/raster/visibility/region.hpp>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/transparency/blend.hpp>
 
 namespace rastrum::transparency {
 
-/// Records the blocks of translucent pieces and draws opaque ones as `atomic` does; at the end of a
-/// region it blends, block by block, by FrameRequest::transparency. Only for regions that one
-/// thread owns. The keys become those of the nearest surface, translucent or not.
+/// Records the blocks of translucent pieces and draws opaque ones as BinKeys does; `finish` blends,
+/// block by block, by FrameRequest::transparency. For a bin, or a part of one, that one thread
+/// owns. The keys become those of the nearest surface, translucent or not.
 ///
 /// Counters: "translucent fragments" that opaque surfaces do not hide, "layer blocks" (a piece's
 /// part of an 8 × 8 block), "deepest" (most fragments of a pixel), "windows" (walks over a block's
 /// pieces beyond the first), and "wrong pixels" with Transparency::filter or "repaired pixels" with
 /// `exact`.
-/// Memory: 24 bytes a recorded block of a region, and 8 bytes a pixel of a block and layer.
-[[nodiscard]] const raster::Visibility& layers() noexcept;
+/// Memory: 24 bytes a recorded block, and 8 bytes a pixel of a block and layer.
+class LayeredBin {
+ public:
+  static constexpr bool kColors = true;  ///< it fills the surface's
+
+  LayeredBin(MemoryAccount& memory, MakeBlend make_blend);
+  LayeredBin(LayeredBin&&) noexcept;
+  ~LayeredBin();
+
+  /// As BinKeys has them.
+  void begin(const raster::BinContext& context, const raster::SurfaceView& surface,
+             raster::Rect rect);
+  void blocks(const raster::Piece* pieces, std::span<const raster::Block> blocks);
+  void fragments(std::span<const raster::BinFragment> fragments);
+  [[nodiscard]] raster::DepthBounds* bounds();
+  static void find_bounds() {}  // what faces away is not drawn later
+  /// All has been drawn: blends.
+  void finish();
+  void collect(raster::Counters& counters);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace rastrum::transparency

@@ -157,7 +157,7 @@ void PackedFragments::sort() {
         kernel_->sort(sort_keys_.data() + r.begin, r.layers);
 }
 
-void PackedFragments::shade(const raster::RegionContext& context, const raster::Shading& shading,
+void PackedFragments::shade(const raster::BinContext& context, const raster::Shading& shading,
                             float opaque_at) {
   const std::size_t blocks = (count_ + 63) / 64;
   colors_.reserve(1 + blocks * 64);
@@ -175,7 +175,7 @@ void PackedFragments::shade(const raster::RegionContext& context, const raster::
   shade_wanted(context, shading);
 }
 
-void PackedFragments::shade_wanted(const raster::RegionContext& context,
+void PackedFragments::shade_wanted(const raster::BinContext& context,
                                    const raster::Shading& shading) {
   // Where only some are wanted, rows of 8 mostly are as a whole, as a triangle's fragments lie side
   // by side; so they stay where they are.
@@ -220,7 +220,7 @@ void PackedFragments::leave_out_behind(std::uint32_t most) {
     }
 }
 
-void PackedFragments::shade_by_turns(const raster::RegionContext& context,
+void PackedFragments::shade_by_turns(const raster::BinContext& context,
                                      const raster::Shading& shading, float opaque_at) {
   std::uint32_t begin = 0, end = kFirstTurn;
   leave_out_behind(end);

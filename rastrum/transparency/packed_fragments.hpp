@@ -12,7 +12,7 @@
 #include <span>
 
 #include <rastrum/core/memory.hpp>
-#include <rastrum/raster/visibility/region.hpp>
+#include <rastrum/raster/frame/frame.hpp>
 #include <rastrum/transparency/blend.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>
 #include <rastrum/transparency/records.hpp>
@@ -48,7 +48,7 @@ class PackedFragments {
   void sort();
   /// `opaque_at` as LayerBlend has it: above 0 they must be sorted, and layers behind which it
   /// hides need not be shaded.
-  void shade(const raster::RegionContext& context, const raster::Shading& shading, float opaque_at);
+  void shade(const raster::BinContext& context, const raster::Shading& shading, float opaque_at);
   /// Whether the block has any of them.
   [[nodiscard]] bool any(int bx, int by) const;
   /// Raises the keys of a block to those of the nearest fragments.
@@ -72,10 +72,10 @@ class PackedFragments {
   bool append(std::size_t n, const std::uint64_t* opaque);
   bool deal(const BlockGrid& grid);
   /// Shades those that `wanted_` has.
-  void shade_wanted(const raster::RegionContext& context, const raster::Shading& shading);
+  void shade_wanted(const raster::BinContext& context, const raster::Shading& shading);
   /// Shades the nearest layers and then, as far as pixels are not finished, twice as many and so
   /// on.
-  void shade_by_turns(const raster::RegionContext& context, const raster::Shading& shading,
+  void shade_by_turns(const raster::BinContext& context, const raster::Shading& shading,
                       float opaque_at);
   /// Leaves out the layers of each pixel behind the first `most`.
   void leave_out_behind(std::uint32_t most);

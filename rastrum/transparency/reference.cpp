@@ -10,8 +10,8 @@
 #include <rastrum/raster/assemble/assemble.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
-#include <rastrum/raster/frame/stopwatch.hpp>
-#include <rastrum/raster/resolve/resolve.hpp>
+#include <rastrum/raster/frame/reference.hpp>
+#include <rastrum/raster/setup/set_up.hpp>
 #include <rastrum/transparency/blend.hpp>
 
 namespace rastrum::transparency {
@@ -53,12 +53,12 @@ raster::Block block_of(int x, int y) {
 }
 
 struct Scene {
-  raster::FrameRequest& request;
+  raster::Frame& under_way;
+  const raster::FrameRequest& request;
   const raster::FrameGeometry& frame;
   std::vector<Pixel> pixels;
-  raster::ShaderScratch scratch;
 
-  void add(const raster::Draw& draw, std::uint64_t primitive, FrameStats& stats);
+  raster::Fate add(const raster::Draw& draw, std::uint64_t primitive);
   /// Whether the fragment passes the test.
   bool keeps(const raster::Draw& draw, std::uint64_t primitive, int x, int y, const Fragment& f);
   Vec4 shade(int x, int y, const Fragment& f);
@@ -81,7 +81,7 @@ bool Scene::keeps(const raster::Draw& draw, std::uint64_t primitive, int x, int 
   return request.kept(frame, piece, block, &points) != 0;
 }
 
-void Scene::add(const raster::Draw& draw, std::uint64_t primitive, FrameStats& stats) {
+raster::Fate Scene::add(const raster::Draw& draw, std::uint64_t primitive) {
   const auto offsets = raster::sample_offsets(request.samples);
   std::map<std::pair<int, int>, Fragment> covered;
   raster::Fate fate = raster::Fate::culled;
@@ -92,9 +92,6 @@ void Scene::add(const raster::Draw& draw, std::uint64_t primitive, FrameStats& s
         static_cast<std::uint32_t>(s), offsets[s]);
     if (here != raster::Fate::culled) fate = here;
   }
-  stats.triangles.dropped += fate == raster::Fate::dropped;
-  stats.triangles.culled += fate == raster::Fate::culled;
-  stats.triangles.clipped += fate == raster::Fate::clipped;
   // Shaded at the centre where the triangle covers it, else at the first sample that it covers.
   std::map<std::pair<int, int>, Fragment> centres;
   (void)raster::assemble_primitive(frame, draw, primitive,
@@ -116,7 +113,7 @@ void Scene::add(const raster::Draw& draw, std::uint64_t primitive, FrameStats& s
     }
     const auto samples = static_cast<std::uint32_t>(
         std::ranges::count_if(fragment.keys, [](std::uint64_t key) { return key != 0; }));
-    stats.fragments += samples;
+    under_way.fragments += samples;
     if (!request.targets.overdraw.empty()) request.targets.overdraw(x, y) += samples;
     if (!keeps(draw, primitive, x, y, fragment)) continue;
     fragment.translucent = request.transparency.method != Transparency::none &&
@@ -126,6 +123,7 @@ void Scene::add(const raster::Draw& draw, std::uint64_t primitive, FrameStats& s
            static_cast<std::size_t>(x)]
         .push_back(fragment);
   }
+  return fate;
 }
 
 Vec4 Scene::shade(int x, int y, const Fragment& f) {
@@ -138,7 +136,7 @@ Vec4 Scene::shade(int x, int y, const Fragment& f) {
   points.dx[i] = f.dx;
   points.dy[i] = f.dy;
   raster::VisibleBlock visible{keys, block.mask, block.bx * kBlockSize, block.by * kBlockSize,
-                               scratch.data()};
+                               under_way.shader_scratch()};
   visible.points = &points;
   BlockColors colors;
   const bool opaque = request.shading.shade(frame, visible, Isa::scalar, colors);
@@ -189,65 +187,50 @@ std::uint64_t Scene::resolve(int x, int y, LayerBlend& blend, BlockColors& color
   return nearest;
 }
 
+class LayeredReference final : public raster::Method {
+ public:
+  explicit LayeredReference(MakeBlend make_blend) : make_blend_(make_blend) {}
+
+  [[nodiscard]] raster::Needs needs() const override {
+    return {.rasterizer = "reference", .visibility = "layers", .colors = true, .whole_view = true};
+  }
+
+  void draw(raster::Frame& frame, std::uint64_t first, std::uint64_t last) override {
+    const raster::FrameRequest& request = frame.request;
+    if (request.transparency.method == Transparency::filter)
+      throw Error(Errc::invalid_argument,
+                  "the filter's errors come from sorted blocks, which --device serial does not "
+                  "have; use --device threads");
+    Scene scene{frame, frame.request, frame.geometry, {}};
+    scene.pixels.resize(static_cast<std::size_t>(request.width) *
+                        static_cast<std::size_t>(request.height));
+    FrameStats::Triangles triangles;
+    raster::for_each_primitive(frame, first, last,
+                               [&](const raster::Draw& draw, std::uint64_t primitive) {
+                                 raster::count_fate(scene.add(draw, primitive), triangles);
+                               });
+    raster::count_triangles(frame, triangles);
+    frame.watch.lap(frame.stats, "rasterize");
+    const std::unique_ptr<LayerBlend> blend = make_blend_(request.transparency, Isa::scalar);
+    for (int y = 0; y < request.height; ++y) {
+      parallel::throw_if_stopped();
+      for (int x = 0; x < request.width; ++x) {
+        const int bx = x / kBlockSize, by = y / kBlockSize;
+        frame.surface.block(bx, by)[y % kBlockSize * kBlockSize + x % kBlockSize] =
+            scene.resolve(x, y, *blend, *frame.surface.colors_of(bx, by));
+      }
+    }
+    frame.watch.lap(frame.stats, "blend");
+  }
+
+ private:
+  MakeBlend make_blend_;
+};
+
 }  // namespace
 
-FrameStats render_reference(raster::FrameRequest& request, MemoryAccount& memory) {
-  if (request.transparency.method == Transparency::filter)
-    throw Error(Errc::invalid_argument,
-                "the filter's errors come from sorted blocks, which --device serial does not have; "
-                "use --device threads");
-  raster::Stopwatch watch;
-  FrameStats stats;
-  stats.rasterizer = "reference";
-  stats.visibility = "layers";
-  const raster::Totals totals =
-      raster::number_draws(request.draws, request.targets.first_id, request.draw_noun);
-  raster::check_indices(request.draws, request.draw_noun);
-  raster::FrameGeometry frame{request.width, request.height,
-                              raster::Viewport::of(request.width, request.height), request.draws,
-                              nullptr};
-  Buffer<raster::ProjectedVertex> projected(memory);
-  projected.reserve(totals.vertices);
-  for (const raster::Draw& draw : request.draws)
-    draw.source.project(0, draw.vertex_count, frame.viewport, Isa::scalar,
-                        projected.data() + draw.first_vertex);
-  frame.projected = projected.data();
-
-  for (int y = 0; y < request.height; ++y) {
-    if (!request.targets.errors.empty())
-      std::fill_n(request.targets.errors.row(y), request.width, std::uint8_t{0});
-    if (!request.targets.overdraw.empty())
-      std::fill_n(request.targets.overdraw.row(y), request.width, 0U);
-  }
-  Scene scene{request, frame, {}, {}};
-  scene.scratch.begin(request.shading.scratch_bytes());
-  scene.pixels.resize(static_cast<std::size_t>(request.width) *
-                      static_cast<std::size_t>(request.height));
-  stats.triangles.input = totals.primitives;
-  for (const raster::Draw& draw : request.draws)
-    for (std::uint64_t p = 0; p < draw.primitive_count; ++p) {
-      parallel::throw_if_stopped();
-      scene.add(draw, p, stats);
-    }
-  stats.triangles.drawn = stats.triangles.input - stats.triangles.dropped - stats.triangles.culled;
-  watch.lap(stats, "rasterize");
-
-  const std::unique_ptr<LayerBlend> blend = make_blend(request.transparency, Isa::scalar);
-  const raster::Backdrop backdrop = raster::backdrop_of(request);
-  for (int y0 = 0; y0 < request.height; y0 += kBlockSize) {
-    parallel::throw_if_stopped();
-    for (int x0 = 0; x0 < request.width; x0 += kBlockSize) {
-      alignas(64) std::uint64_t keys[64] = {};
-      BlockColors colors = {};
-      for (int y = y0; y < std::min(y0 + kBlockSize, request.height); ++y)
-        for (int x = x0; x < std::min(x0 + kBlockSize, request.width); ++x)
-          keys[(y - y0) * kBlockSize + (x - x0)] = scene.resolve(x, y, *blend, colors);
-      stats.pixels_covered += static_cast<std::uint64_t>(raster::resolve_block(
-          request, frame, backdrop, keys, x0, y0, scene.scratch.data(), &colors));
-    }
-  }
-  watch.lap(stats, "shade");
-  return stats;
+std::unique_ptr<raster::Method> make_layered_reference(MakeBlend make_blend) {
+  return std::make_unique<LayeredReference>(make_blend);
 }
 
 }  // namespace rastrum::transparency

@@ -1,15 +1,17 @@
 // The reference of layers: every fragment of every pixel in a list, sorted, shaded one by one.
-// Written for plainness; the layers row must equal it.
+// Written for plainness; the layered path must equal it.
 #pragma once
 
-#include <rastrum/core/memory.hpp>
-#include <rastrum/raster/frame/request.hpp>
+#include <memory>
+
+#include <rastrum/raster/frame/method.hpp>
+#include <rastrum/transparency/blend.hpp>
 
 namespace rastrum::transparency {
 
-/// One frame on one thread, with transparency and several samples a pixel.
-/// Memory: 40 bytes a fragment and sample. Throws Error{invalid_argument} where an index is out of
-/// range, and for Transparency::filter, whose errors are those of blocks, which it does not have.
-[[nodiscard]] FrameStats render_reference(raster::FrameRequest& request, MemoryAccount& memory);
+/// Transparency and several samples a pixel on one thread. Memory: 40 bytes a fragment and sample.
+/// Frames throw Error{invalid_argument} for Transparency::filter, whose errors are those of blocks,
+/// which it does not have.
+[[nodiscard]] std::unique_ptr<raster::Method> make_layered_reference(MakeBlend make_blend);
 
 }  // namespace rastrum::transparency

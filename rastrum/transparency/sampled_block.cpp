@@ -228,11 +228,10 @@ LayerCounts SampledBlock::blend_sample(std::uint32_t sample, BlockColors& out) {
   return counts;
 }
 
-LayerCounts SampledBlock::resolve(const raster::RegionContext& context,
-                                  const raster::Shading& shading, LayerBlend& blend,
-                                  std::span<Record> records, int bx, int by, std::size_t filter,
-                                  std::size_t planes, bool repair, std::uint64_t* keys,
-                                  BlockColors& out) {
+LayerCounts SampledBlock::resolve(const raster::BinContext& context, const raster::Shading& shading,
+                                  LayerBlend& blend, std::span<Record> records, int bx, int by,
+                                  std::size_t filter, std::size_t planes, bool repair,
+                                  std::uint64_t* keys, BlockColors& out) {
   context_ = &context;
   shading_ = shading;
   blend_ = &blend;

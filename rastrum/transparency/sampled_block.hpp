@@ -12,7 +12,7 @@
 #include <vector>
 
 #include <rastrum/core/memory.hpp>
-#include <rastrum/raster/visibility/region.hpp>
+#include <rastrum/raster/frame/frame.hpp>
 #include <rastrum/transparency/blend.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
 #include <rastrum/transparency/records.hpp>
@@ -41,7 +41,7 @@ class SampledBlock {
   /// `records`: of opaque and translucent pieces; they are reordered. `filter` and `planes` as
   /// LayerLists::restart has them; `repair`: sort what the filter misplaced.
   /// Memory: 16 bytes a fragment that is shaded, 12 bytes a pixel and layer.
-  LayerCounts resolve(const raster::RegionContext& context, const raster::Shading& shading,
+  LayerCounts resolve(const raster::BinContext& context, const raster::Shading& shading,
                       LayerBlend& blend, std::span<Record> records, int bx, int by,
                       std::size_t filter, std::size_t planes, bool repair, std::uint64_t* keys,
                       raster::BlockColors& out);
@@ -81,7 +81,7 @@ class SampledBlock {
   template <class F>
   void for_each_record(const Triangle& t, std::optional<std::uint32_t> only, F&& f);
 
-  const raster::RegionContext* context_ = nullptr;
+  const raster::BinContext* context_ = nullptr;
   raster::Shading shading_;  ///< none: no colour is wanted
   LayerBlend* blend_ = nullptr;
   std::span<Record> records_;

@@ -1,6 +1,6 @@
 // Paper 2's rasterizer: its masks against their definition, both schedules against the reference,
 // its counters and the load of its simulated workers against counts made here.
-#include <rastrum/raster/coverage/binned.hpp>
+#include <rastrum/family/coverage/binned.hpp>
 
 #include <algorithm>
 #include <array>
@@ -20,10 +20,11 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/core/error.hpp>
+#include <rastrum/family/coverage/tile_mask.hpp>
+#include <rastrum/family/row.hpp>
 #include <rastrum/raster/assemble/points_and_lines.hpp>
-#include <rastrum/raster/coverage/tile_mask.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
-#include <rastrum/raster/frame/rasterizer.hpp>
+#include <rastrum/raster/frame/driver.hpp>
 #include <rastrum/raster/frame/reference.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/render/render.hpp>
@@ -62,9 +63,9 @@ RenderOptions binned(int width, int height, Schedule schedule, int threads) {
   return o;
 }
 
-const raster::CoverageRow& binned_row() {
-  return *std::ranges::find(raster::coverages(), std::string_view("binned"),
-                            &raster::CoverageRow::name);
+const family::CoverageRow& binned_row() {
+  return *std::ranges::find(family::coverages(), std::string_view("binned"),
+                            &family::CoverageRow::name);
 }
 
 std::string title(const RenderOptions& o) {
@@ -175,7 +176,7 @@ raster::ProjectedVertex vertex(int x_fx8, int y_fx8) {
 
 template <int kBin, int kTile>
 void expect_exact_masks(std::uint64_t seed, int count) {
-  using Tiles = raster::TilesOfBin<kBin, kTile>;
+  using Tiles = family::TilesOfBin<kBin, kTile>;
   Random random(seed);
   std::uint64_t covered = 0, empty = 0;
   for (int i = 0; i < count; ++i) {
@@ -232,7 +233,7 @@ TEST(TileMask, HoldsExactlyTheTilesWithACoveredSample) {
 }
 
 TEST(TileMask, OfLinesAndPoints) {
-  using Tiles = raster::TilesOfBin<64, 8>;
+  using Tiles = family::TilesOfBin<64, 8>;
   Random random(11);
   std::array<std::uint64_t, 2> covered{};
   for (int i = 0; i < 2000; ++i) {
@@ -270,7 +271,7 @@ TEST(TileMask, HalfLineIsItsDefinition) {
   for (int i = 0; i < 20000; ++i) {
     const int n = random.integer(1, 16);
     const std::int64_t step = random.integer(-9, 9), base = random.integer(-60, 60);
-    const raster::Span span = raster::half_line(base, step, n);
+    const raster::Span span = family::half_line(base, step, n);
     for (int t = 0; t < n; ++t)
       ASSERT_EQ(t >= span.begin && t < span.end, base + step * t >= 0)
           << base << " + " << step << " · " << t;
@@ -476,9 +477,9 @@ TEST(Binned, TwoStagesLoadAllWorkersAlike) {
 
 using Seen = std::vector<std::tuple<std::uint32_t, int, int, std::uint64_t>>;
 
-class Again final : public raster::Region {
+class Again final : public family::Region {
  public:
-  void begin(const raster::RegionContext&, const raster::SurfaceView&, raster::Rect,
+  void begin(const family::RegionContext&, const raster::SurfaceView&, raster::Rect,
              std::size_t chunks) override {
     first_.assign(chunks, {});
     again_.assign(chunks, {});
@@ -514,9 +515,9 @@ class Again final : public raster::Region {
 
 TEST(Binned, EveryPassSeesTheSameChunks) {
   constexpr int kSize = 512;
-  raster::Visibility again;
+  family::Visibility again;
   again.name = "again";
-  again.make = [](raster::Sharing, MemoryAccount&) -> std::unique_ptr<raster::Region> {
+  again.make = [](family::Sharing, MemoryAccount&) -> std::unique_ptr<family::Region> {
     return std::make_unique<Again>();
   };
   Scene scene = sized_triangles(300, 4000, 40000, kSize, kSize, 5);
@@ -540,7 +541,8 @@ TEST(Binned, EveryPassSeesTheSameChunks) {
         parallel::Threads exec(threads, &memory);
         raster::Tuning tuning;
         tuning.schedule = schedule;
-        raster::Rasterizer rasterizer(binned_row(), again, tuning, limit, memory, exec);
+        raster::FrameDriver rasterizer(family::make_row(binned_row(), again, tuning, memory), limit,
+                                       memory, &exec);
         raster::Draw draw;
         draw.source = source;
         draw.vertex_count = mesh.positions.size();
@@ -550,7 +552,7 @@ TEST(Binned, EveryPassSeesTheSameChunks) {
         request.draws = {&draw, 1};
         for (int frame = 0; frame < 2; ++frame) {  // the second finds the first one's scratch
           Again::blocks_seen = 0;
-          const FrameStats stats = rasterizer.render(request);
+          const FrameStats stats = rasterizer.draw(request);
           EXPECT_GT(counter(stats, "large"), 0U);
           EXPECT_GT(counter(stats, "small"), 0U);
           EXPECT_GT(Again::blocks_seen, 10000U);
@@ -594,18 +596,20 @@ TEST(Binned, SendsLinesAndPointsThroughItsQueues) {
   MemoryAccount memory;
   Pictures expected;
   raster::FrameRequest plain = request_for(expected);
-  const FrameStats stats = raster::render_reference(plain, memory);
+  const FrameStats stats =
+      raster::FrameDriver(raster::make_reference(), 0, memory, nullptr).draw(plain);
   EXPECT_GT(stats.fragments, 100000U);
   for (const Schedule schedule : kSchedules) {
     parallel::Threads exec(2, &memory);
     raster::Tuning tuning;
     tuning.schedule = schedule;
     tuning.large_px = 1;
-    raster::Rasterizer rasterizer(binned_row(), raster::visibilities().front(), tuning, 0, memory,
-                                  exec);
+    raster::FrameDriver rasterizer(
+        family::make_row(binned_row(), family::visibilities().front(), tuning, memory), 0, memory,
+        &exec);
     Pictures actual;
     raster::FrameRequest request = request_for(actual);
-    const FrameStats s = rasterizer.render(request);
+    const FrameStats s = rasterizer.draw(request);
     EXPECT_TRUE(std::ranges::equal(actual.overdraw.pixels(), expected.overdraw.pixels()));
     EXPECT_TRUE(std::ranges::equal(actual.ids.pixels(), expected.ids.pixels()));
     EXPECT_EQ(counter(s, "small"), 0U);

@@ -13,16 +13,15 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/core/memory.hpp>
-#include <rastrum/raster/draws/hooks.hpp>
+#include <rastrum/family/visibility/region.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
-#include <rastrum/raster/visibility/region.hpp>
 
 #include "tests/support/random.hpp"
 
 namespace rastrum::test {
 namespace {
 
-using namespace rastrum::raster;
+using namespace rastrum::family;
 
 constexpr int kWidth = 100, kHeight = 75;
 constexpr Rect kImage{0, 0, kWidth, kHeight};
@@ -163,8 +162,8 @@ class Resolver {
 
   Resolved shared(const Case& c, std::uint64_t fragment_bytes) {
     const SurfaceView surface = whole(c);
-    shared_->begin({&request_, &frame_, &kernel_, &exec_, fragment_bytes}, surface, kImage,
-                   c.chunks.size());
+    shared_->begin({{&request_, &frame_, &kernel_, fragment_bytes, nullptr}, &exec_, false},
+                   surface, kImage, c.chunks.size());
     while (const auto pass = shared_->next())
       parallel::for_each_index(exec_, pass->last - pass->first, [&](std::size_t i) {
         hand_over(*shared_, pass->first + i, c.pieces, c.chunks[pass->first + i]);
@@ -203,7 +202,7 @@ class Resolver {
           local.colors = colors.data();
           copy(bin, part, local);
         }
-        owned_->begin({&request_, &frame_, &kernel_, nullptr, fragment_bytes},
+        owned_->begin({{&request_, &frame_, &kernel_, fragment_bytes, nullptr}, nullptr, true},
                       is_local ? local : part, bin, 1);
         while (const auto pass = owned_->next()) {
           EXPECT_EQ(pass->first, 0U);

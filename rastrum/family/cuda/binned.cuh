@@ -15,7 +15,7 @@
 #include <rastrum/family/cuda/small.cuh>
 #include <rastrum/family/cuda/tiles.cuh>
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/raster/coverage/tile_mask.hpp>
+#include <rastrum/family/coverage/tile_mask.hpp>
 
 namespace rastrum::family {
 

@@ -19,7 +19,7 @@
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/surface_drawer.cuh>
 #include <rastrum/raster/frame/options.hpp>
-#include <rastrum/raster/visibility/region.hpp>
+#include <rastrum/family/visibility/region.hpp>
 
 namespace rastrum::family {
 

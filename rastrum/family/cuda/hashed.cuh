@@ -11,7 +11,7 @@
 #include <span>
 
 #include <rastrum/family/cuda/fragments.cuh>
-#include <rastrum/raster/visibility/hash_slots.hpp>
+#include <rastrum/family/visibility/hash_slots.hpp>
 
 namespace rastrum::family {
 

@@ -7,7 +7,7 @@
 #include <span>
 
 #include <rastrum/family/cuda/small.cuh>
-#include <rastrum/raster/coverage/rows.hpp>
+#include <rastrum/family/coverage/rows.hpp>
 
 namespace rastrum::family {
 

@@ -9,7 +9,7 @@
 #include <rastrum/family/cuda/frame.cuh>
 #include <rastrum/family/cuda/turns.cuh>
 #include <rastrum/raster/bin/order.hpp>
-#include <rastrum/raster/coverage/boxes.hpp>
+#include <rastrum/family/coverage/boxes.hpp>
 
 namespace rastrum::family {
 

@@ -9,7 +9,7 @@
 
 #include <rastrum/family/cuda/frame.cuh>
 #include <rastrum/family/cuda/turns.cuh>
-#include <rastrum/raster/coverage/bins.hpp>
+#include <rastrum/family/coverage/bins.hpp>
 
 namespace rastrum::family {
 

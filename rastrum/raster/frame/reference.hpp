@@ -1,13 +1,35 @@
-// The reference rasterizer: every triangle in order, every row by its exact interval, the maximum
-// of the keys in a full-frame visibility buffer. Written for plainness; the others must equal it.
+// The reference: rows of samples, triangle after triangle, one thread, into the maximum of the keys
+// in a full-frame visibility buffer. Written for plainness; the others must equal it.
 #pragma once
 
-#include <rastrum/core/memory.hpp>
-#include <rastrum/raster/frame/request.hpp>
+#include <memory>
+
+#include <rastrum/parallel/stop.hpp>
+#include <rastrum/raster/assemble/assemble.hpp>
+#include <rastrum/raster/frame/method.hpp>
+#include <rastrum/raster/resolve/resolve.hpp>
 
 namespace rastrum::raster {
 
-/// One frame on one thread. Throws Error{invalid_argument} where an index is out of range.
-[[nodiscard]] FrameStats render_reference(FrameRequest& request, MemoryAccount& memory);
+/// Calls f(draw, primitive) for primitives [first, last) of the frame's numbering, in order, as
+/// long as nobody asks to stop. Throws Error{invalid_argument} naming an index that is out of
+/// range.
+template <class F>
+void for_each_primitive(const Frame& frame, std::uint64_t first, std::uint64_t last, const F& f) {
+  check_indices(frame.request.draws, frame.request.draw_noun);
+  for (std::uint64_t id = first; id < last; ++id) {
+    parallel::throw_if_stopped();
+    const Draw& draw = frame.geometry.draw_of(id);
+    f(draw, id - draw.first_id);
+  }
+}
+
+inline void count_fate(Fate fate, FrameStats::Triangles& triangles) {
+  triangles.dropped += fate == Fate::dropped;
+  triangles.culled += fate == Fate::culled;
+  triangles.clipped += fate == Fate::clipped;
+}
+
+[[nodiscard]] std::unique_ptr<Method> make_reference();
 
 }  // namespace rastrum::raster

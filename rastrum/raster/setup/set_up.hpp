@@ -2,7 +2,6 @@
 // the SIMD setup kernel, and the clipper for the few that need it.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <span>
 
@@ -37,20 +36,6 @@ class MicroSink {
 /// not, the pieces are incomplete.
 [[nodiscard]] bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last,
                           Pieces& pieces, MicroSink* micro = nullptr);
-
-/// The same with all threads, into one array. Counts the triangles in the frame's statistics.
-/// Memory: twice the pieces. Throws Error{invalid_argument} naming an index that is out of range.
-class PieceArray {
- public:
-  explicit PieceArray(MemoryAccount& memory) : memory_(memory), pieces_(memory) {}
-  /// Valid until the next call.
-  std::span<const Piece> fill(Frame& frame, std::uint64_t first, std::uint64_t last);
-
- private:
-  MemoryAccount& memory_;
-  Buffer<Piece> pieces_;
-  std::vector<Pieces> groups_;
-};
 
 /// Adds what became of the triangles of a group to the frame's statistics, once for all bands.
 void count_triangles(Frame& frame, const FrameStats::Triangles& triangles);

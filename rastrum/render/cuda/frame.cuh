@@ -27,6 +27,7 @@
 #include <rastrum/raster/cuda/tested.cuh>
 #include <rastrum/raster/cuda/upload.cuh>
 #include <rastrum/raster/draws/hooks.hpp>
+#include <rastrum/raster/frame/driver.hpp>
 #include <rastrum/raster/frame/request.hpp>
 #include <rastrum/raster/frame/stopwatch.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
@@ -127,7 +128,7 @@ class DeviceRasterizer final : public CudaRasterizer {
   [[nodiscard]] FrameStats render(FrameRequest& request, const std::stop_token* stop) override {
     const parallel::StopScope scope(stop);
     Frame frame(request, exec_);
-    frame.totals = number_draws(request.draws, request.targets.first_id, request.draw_noun);
+    frame.totals = raster::begin_frame(request);
     try {
       begin_frame(frame);
       for (int y = 0; y < request.height; y += frame.plan.band_rows)
@@ -187,9 +188,6 @@ class DeviceRasterizer final : public CudaRasterizer {
                     f.plan.project_first);
     exec_.wait();
     f.watch.lap(f.stats, "project");
-    if (!request.targets.errors.empty())
-      for (int y = 0; y < request.height; ++y)
-        std::fill_n(request.targets.errors.row(y), request.width, std::uint8_t{0});
     f.geometry = {request.width, request.height, Viewport::of(request.width, request.height),
                   request.draws, nullptr,        request.isa};
     f.shaders.emplace([&request] {
@@ -282,16 +280,15 @@ class DeviceRasterizer final : public CudaRasterizer {
 
   static void count_primitives(Frame& f, const Outcomes& sum) {
     FrameStats::Triangles& t = f.stats.triangles;
-    t.input = f.totals.primitives;
     t.dropped = sum.dropped;
     t.culled = sum.culled;
     t.clipped = sum.clipped;
-    t.drawn = t.input - t.dropped - t.culled;
   }
 
   /// What the statistics say of it.
   void end_frame(Frame& f) {
     FrameStats& stats = f.stats;
+    raster::end_frame(f.totals, stats);
     stats.rasterizer = kind_.rasterizer;
     stats.visibility = kind_.visibility;
     stats.isa = f.request.isa;

@@ -1,0 +1,20 @@
+#include <rastrum/family/blend/approximations.hpp>
+
+namespace rastrum::family {
+
+std::unique_ptr<LayerBlend> make_blend(const TransparencyOptions& options, Isa isa) {
+  switch (options.method) {
+    case Transparency::wboit:
+      return make_wboit();
+    case Transparency::mlab4:
+      return make_mlab4();
+    case Transparency::mboit4:
+      return make_mboit(4);
+    case Transparency::mboit6:
+      return make_mboit(6);
+    default:
+      return transparency::make_blend(options, isa);
+  }
+}
+
+}  // namespace rastrum::family

@@ -1,0 +1,40 @@
+#include <rastrum/family/coverage/hybrid.hpp>
+
+#include <rastrum/family/coverage/immediate.hpp>
+#include <rastrum/family/coverage/scanline.hpp>
+#include <rastrum/family/coverage/sorted_tiles.hpp>
+#include <rastrum/family/piece_array.hpp>
+
+namespace rastrum::family {
+namespace {
+
+template <int kBin, int kTile>
+class Hybrid final : public Coverage {
+ public:
+  Hybrid(const Tuning& tuning, MemoryAccount& memory)
+      : draw_small_(tuning.small_path == SmallPath::rows ? draw_scanlines : draw_box_blocks),
+        pieces_(memory) {}
+
+  void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
+    const std::span<const Piece> pieces = pieces_.fill(frame, first, last);
+    const auto parted = small_pieces_first(frame, pieces);
+    const std::span<const std::uint32_t> all = parted.elements;
+    frame.watch.lap(frame.stats, "setup");
+    draw_small_(frame, pieces.data(), all.first(parted.first_count));
+    frame.watch.lap(frame.stats, "small");
+    draw_sorted_tiles<kBin, kTile>(frame, pieces.data(), all.subspan(parted.first_count));
+    frame.watch.lap(frame.stats, "large");
+  }
+
+ private:
+  void (*draw_small_)(Frame&, const Piece*, std::span<const std::uint32_t>);
+  PieceArray pieces_;
+};
+
+}  // namespace
+
+std::unique_ptr<Coverage> make_hybrid(const Tuning& tuning, MemoryAccount& memory) {
+  return make_with_tiles<Hybrid>("hybrid", tuning, memory);
+}
+
+}  // namespace rastrum::family

@@ -1,0 +1,47 @@
+#include <rastrum/family/coverage/pineda.hpp>
+
+#include <rastrum/family/coverage/immediate.hpp>
+#include <rastrum/family/coverage/tiles.hpp>
+#include <rastrum/family/piece_array.hpp>
+
+namespace rastrum::family {
+namespace {
+
+template <int kBin, int kTile>
+class Pineda final : public Coverage {
+ public:
+  Pineda(const Tuning&, MemoryAccount& memory) : pieces_(memory) {}
+
+  void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
+    const std::span<const Piece> pieces = pieces_.fill(frame, first, last);
+    const auto parted = small_pieces_first(frame, pieces);
+    const std::span<const std::uint32_t> all = parted.elements;
+    frame.watch.lap(frame.stats, "setup");
+    draw_box_blocks(frame, pieces.data(), all.first(parted.first_count));
+    frame.watch.lap(frame.stats, "small");
+    draw_tiles_of(frame, pieces.data(), all.subspan(parted.first_count));
+    frame.watch.lap(frame.stats, "large");
+  }
+
+ private:
+  static void draw_tiles_of(Frame& frame, const Piece* pieces,
+                            std::span<const std::uint32_t> which) {
+    const Tiles<kBin, kTile> tiles(frame, pieces);
+    tiles.expand(frame, which, kResultsPerChunk, 0, [&](const auto& bins, const auto& expansion) {
+      draw_expanded(frame, pieces, expansion, bins,
+                    [&](const BinPair& pair, std::size_t j, Emitter& emitter) {
+                      add_tile<kTile>(frame, pieces, pair.piece, tiles.tile(pair.bin, j), emitter);
+                    });
+    });
+  }
+
+  PieceArray pieces_;
+};
+
+}  // namespace
+
+std::unique_ptr<Coverage> make_pineda(const Tuning& tuning, MemoryAccount& memory) {
+  return make_with_tiles<Pineda>("pineda", tuning, memory);
+}
+
+}  // namespace rastrum::family

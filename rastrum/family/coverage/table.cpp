@@ -1,0 +1,50 @@
+// The rows of the coverage axis.
+#include <array>
+
+#include <rastrum/family/coverage/binned.hpp>
+#include <rastrum/family/coverage/coverage.hpp>
+#include <rastrum/family/coverage/grouped.hpp>
+#include <rastrum/family/coverage/hybrid.hpp>
+#include <rastrum/family/coverage/pineda.hpp>
+#include <rastrum/family/coverage/scanline.hpp>
+#include <rastrum/family/coverage/tiled.hpp>
+
+namespace rastrum::family {
+namespace {
+
+/// Of a coverage on a PieceArray: the piece twice (48 bytes, in its group and in the array), its
+/// index as filtered and as parted (4 each), and its place in one expansion at a time (8).
+constexpr int kIndexedPiece = 2 * 48 + 2 * 4 + 8;
+
+}  // namespace
+
+std::span<const CoverageRow> coverages() noexcept {
+  static constexpr std::array kTable{
+      CoverageRow{
+          "grouped",
+          "(bin, piece) pairs sorted in groups of triangles; a thread owns a bin and shades "
+          "it in cache",
+          true, true, 160, make_grouped},
+      CoverageRow{"scanline", "triangles expanded to rows, rows to columns, at once into the frame",
+                  false, true, kIndexedPiece, make_scanline},
+      CoverageRow{"pineda",
+                  "bins and tiles by edge functions and masks, small triangles apart, at once into "
+                  "the frame",
+                  false, true, kIndexedPiece, make_pineda},
+      CoverageRow{"tiled",
+                  "(tile, triangle) pairs sorted by tile; a thread owns a tile and shades it in "
+                  "cache",
+                  true, true, kIndexedPiece, make_tiled},
+      CoverageRow{"hybrid",
+                  "small triangles at once into the frame, the others sorted by tile onto it",
+                  false, true, kIndexedPiece, make_hybrid},
+      CoverageRow{
+          "binned",
+          "batches of 32 triangles; large ones go through a queue of bins, whose tiles are dealt "
+          "out in equal shares or whose bins belong to workers (paper 2)",
+          false, true, 128, make_binned},
+  };
+  return kTable;
+}
+
+}  // namespace rastrum::family

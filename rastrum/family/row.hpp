@@ -1,0 +1,19 @@
+// A row of the table as a method: a coverage and a visibility.
+#pragma once
+
+#include <memory>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/family/coverage/coverage.hpp>
+#include <rastrum/family/visibility/region.hpp>
+#include <rastrum/raster/frame/method.hpp>
+
+namespace rastrum::family {
+
+/// What is given outlives the method. Frames need threads.
+/// Throws Error{invalid_argument} for a tuning that was not compiled.
+[[nodiscard]] std::unique_ptr<Method> make_row(const CoverageRow& coverage,
+                                               const Visibility& visibility, const Tuning& tuning,
+                                               MemoryAccount& memory);
+
+}  // namespace rastrum::family

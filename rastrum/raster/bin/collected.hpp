@@ -1,0 +1,95 @@
+// Entries in the order in which they were made, and the same sorted by bin.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <rastrum/core/memory.hpp>
+
+namespace rastrum::raster {
+
+/// Calls use(bin, run) for runs of entries of the same bin. Neighbours mostly share one, and a
+/// counter that is raised for each of them would be waited for each time.
+template <class Entry, class Use>
+void for_each_run(std::span<const Entry> entries, const Use& use) {
+  for (std::size_t i = 0; i < entries.size();) {
+    const std::uint32_t bin = entries[i].bin;
+    std::size_t end = i + 1;
+    while (end < entries.size() && entries[end].bin == bin) ++end;
+    use(bin, entries.subspan(i, end - i));
+    i = end;
+  }
+}
+
+/// Entries in the order in which they were made, and how many each bin gets. A thread's: it is
+/// filled again for every group, so that it stays in cache. `Entry` has a member `bin`.
+template <class Entry>
+class Collected {
+ public:
+  explicit Collected(MemoryAccount& memory) : entries_(memory), next_(memory) {}
+
+  void restart(std::size_t bins) {
+    count_ = 0;
+    next_.reserve(bins + 1);
+    std::fill_n(next_.data(), bins + 1, 0U);
+  }
+  /// Room for `n` more entries; say with `added` how many were written.
+  [[nodiscard]] Entry* room(std::size_t n) {
+    entries_.grow(count_ + n, count_);
+    return entries_.data() + count_;
+  }
+  void added(std::size_t n) {
+    for_each_run(std::span<const Entry>(entries_.data() + count_, n),
+                 [&](std::uint32_t bin, std::span<const Entry> run) {
+                   next_[bin + 1] += static_cast<std::uint32_t>(run.size());
+                 });
+    count_ += n;
+  }
+  [[nodiscard]] std::span<const Entry> entries() const { return {entries_.data(), count_}; }
+  /// bins + 1 numbers; element b + 1 counts bin b.
+  [[nodiscard]] std::span<const std::uint32_t> counts(std::size_t bins) const {
+    return {next_.data(), bins + 1};
+  }
+
+ private:
+  Buffer<Entry> entries_;
+  Buffer<std::uint32_t> next_;
+  std::size_t count_ = 0;
+};
+
+/// The entries of a group, sorted by bin.
+template <class Entry>
+class BinLists {
+ public:
+  explicit BinLists(MemoryAccount& memory) : sorted_(memory), begin_(memory) {}
+
+  /// Stable counting sort.
+  void sort(const Collected<Entry>& collected, std::size_t bins) {
+    const std::span<const Entry> entries = collected.entries();
+    const std::span<const std::uint32_t> counts = collected.counts(bins);
+    sorted_.reserve(entries.size());
+    begin_.reserve(bins + 1);
+    // Shifted by one, so that after the scatter each element has moved on to its own bin's begin.
+    std::uint32_t sum = 0;
+    begin_[0] = 0;
+    for (std::size_t b = 0; b < bins; ++b) {
+      begin_[b + 1] = sum;
+      sum += counts[b + 1];
+    }
+    for_each_run(entries, [&](std::uint32_t bin, std::span<const Entry> run) {
+      std::copy(run.begin(), run.end(), sorted_.data() + begin_[bin + 1]);
+      begin_[bin + 1] += static_cast<std::uint32_t>(run.size());
+    });
+  }
+  [[nodiscard]] std::span<const Entry> bin(std::size_t b) const {
+    return {sorted_.data() + begin_[b], begin_[b + 1] - begin_[b]};
+  }
+
+ private:
+  Buffer<Entry> sorted_;
+  Buffer<std::uint32_t> begin_;
+};
+
+}  // namespace rastrum::raster

@@ -1,0 +1,212 @@
+#include <rastrum/raster/bin/groups.hpp>
+
+#include <atomic>
+#include <limits>
+
+#include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/resolve/resolve.hpp>
+
+namespace rastrum::raster {
+namespace {
+
+/// Triangles of a group: few enough that what a thread collects stays in its L2 cache …
+constexpr std::uint64_t kMinGroup = 4096;
+/// … and that the groups' tables of bins together stay small.
+constexpr std::uint64_t kMaxBinTables = std::uint64_t{1} << 19;
+
+/// Adds the pairs of a piece with the bins of its box that it may touch.
+void bin_piece(const Piece& piece, std::uint32_t index, const BinTable& lists,
+               Collected<PieceInBin>& pairs) {
+  const BinNumbers numbers = lists.numbers();
+  const Rect view = numbers.view;
+  const Rect box = piece_bounds(piece, view);
+  if (box.empty()) return;
+  const int bx0 = box.x0 / kBinSize, by0 = box.y0 / kBinSize;
+  const int bx1 = (box.x1 - 1) / kBinSize, by1 = (box.y1 - 1) / kBinSize;
+  const std::size_t touched =
+      static_cast<std::size_t>(bx1 - bx0 + 1) * static_cast<std::size_t>(by1 - by0 + 1);
+  PieceInBin* const out = pairs.room(touched);
+  std::size_t n = 0;
+  // A box in two bins has a vertex in each, unless the view cuts it: not worth asking.
+  const bool asks = touched > 2;
+  const Edges edges = asks ? edges_of(piece) : Edges{};
+  for (int by = by0; by <= by1; ++by)
+    for (int bx = bx0; bx <= bx1; ++bx) {
+      const int x0 = bx * kBinSize, y0 = by * kBinSize;
+      if (asks && !may_touch(edges, {x0, y0, x0 + kBinSize, y0 + kBinSize})) continue;
+      const int row = by - view.y0 / kBinSize, column = bx - view.x0 / kBinSize;
+      const auto bin = static_cast<std::uint32_t>(row * lists.bins.columns() + column);
+      out[n++] = {numbers.of(piece, bin), index};
+    }
+  pairs.added(n);
+}
+
+/// Adds the pairs of pieces [first, …) with the bins of `view` until all are there, or as many as
+/// `most` after a piece. Returns the first piece that was left.
+std::uint32_t bin_pieces(const Kernels& kernel, std::span<const Piece> pieces, std::uint32_t first,
+                         std::size_t most, const BinTable& lists, Collected<PieceInBin>& pairs) {
+  const BinNumbers numbers = lists.numbers();
+  std::uint32_t bin[64];
+  std::uint32_t index = first;
+  while (index < pieces.size() && pairs.entries().size() < most) {
+    auto n = static_cast<std::uint32_t>(
+        std::min({std::size(bin), pieces.size() - index, most - pairs.entries().size()}));
+    kernel.bins(pieces.data() + index, n, numbers, bin);
+    for (std::uint32_t i = 0; i < n;) {
+      PieceInBin* const out = pairs.room(n - i);
+      std::uint32_t k = 0;
+      for (; i < n && bin[i] != kManyBins; ++i) out[k++] = {bin[i], index + i};
+      pairs.added(k);
+      if (i < n) {
+        bin_piece(pieces[index + i], index + i, lists, pairs);
+        ++i;
+      }
+      // A piece that touched many bins may have left no room for those after it.
+      if (i < n && pairs.entries().size() + (n - i) > most) {
+        n = i;
+        break;
+      }
+    }
+    index += n;
+  }
+  return index;
+}
+
+/// Pairs of a group at one time: each is in the group, and those of a thread's group are collected
+/// before, in memory that has doubled.
+std::size_t most_pairs(const Frame& frame, std::size_t groups) {
+  if (frame.expansion_bytes == 0) return std::numeric_limits<std::size_t>::max();
+  const auto threads = static_cast<std::uint64_t>(frame.concurrency());
+  return frame.expansion_bytes / ((groups + 3 * threads) * sizeof(PieceInBin));
+}
+
+/// Leaves out the pieces that do not touch the view.
+void keep_in_view(Pieces& pieces, Rect view) {
+  std::uint32_t kept = 0;
+  for (std::uint32_t i = 0; i < pieces.count; ++i)
+    if (!piece_bounds(pieces.data[i], view).empty()) pieces.data[kept++] = pieces.data[i];
+  pieces.count = kept;
+}
+
+}  // namespace
+
+/// What a thread needs to fill a group.
+struct TriangleGroups::Filler final : MicroSink {
+  explicit Filler(MemoryAccount& memory) : pieces(memory), pairs(memory), micro(memory) {}
+  Pieces pieces;  ///< of a group, before those outside of the view are left out
+  Collected<PieceInBin> pairs;
+  Collected<BinFragment> micro;
+  bool whole = true;        ///< the view is the image, whose bins setup numbers; else:
+  int image_columns = 0;    ///< bins in a row of it
+  int column = 0, row = 0;  ///< the view's first bin
+  int columns = 0, rows = 0;
+
+  void restart(const Frame& frame, const BinTable& lists) {
+    const TileGrid& bins = lists.bins;
+    pairs.restart(lists.count());
+    micro.restart(bins.count());
+    whole = bins.count() == TileGrid{{0, 0, frame.request.width, frame.request.height}}.count();
+    image_columns = (frame.request.width + kBinSize - 1) / kBinSize;
+    column = bins.view.x0 / kBinSize;
+    row = bins.view.y0 / kBinSize;
+    columns = bins.columns();
+    rows = bins.rows();
+  }
+
+  BinFragment* room(std::size_t n) override { return micro.room(n); }
+  void written(std::size_t n) override {
+    if (whole) {
+      micro.added(n);
+      return;
+    }
+    BinFragment* const all = micro.room(0);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto bin = static_cast<int>(all[i].bin);
+      const int x = bin % image_columns - column, y = bin / image_columns - row;
+      all[kept] = all[i];
+      all[kept].bin = static_cast<std::uint32_t>(y * columns + x);
+      kept += x >= 0 && x < columns && y >= 0 && y < rows;
+    }
+    micro.added(kept);
+  }
+};
+
+TriangleGroups::TriangleGroups(MemoryAccount& memory)
+    : memory_(memory), fillers_([&memory] { return Filler(memory); }) {}
+TriangleGroups::~TriangleGroups() = default;
+
+std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTable& lists,
+                                                       bool micro, std::uint64_t first,
+                                                       std::uint64_t last) {
+  if (frame.view_bytes != 0) groups_.clear();  // what other views needed
+  const std::size_t bin_count = lists.bins.count(), list_count = lists.count();
+  const std::uint64_t most_groups = std::max<std::uint64_t>(kMaxBinTables / (2 * bin_count), 1);
+  const std::uint64_t group_size =
+      std::max(kMinGroup, (last - first + most_groups - 1) / most_groups);
+  const auto group_count = static_cast<std::size_t>((last - first + group_size - 1) / group_size);
+  while (groups_.size() < group_count) groups_.emplace_back(memory_);
+  const std::size_t most = most_pairs(frame, group_count);
+  std::atomic<bool> in_range = true;
+  std::atomic<std::uint64_t> pairs = 0, micro_fragments = 0, bytes = 0;
+  const bool limited = frame.view_bytes != 0;
+  frame.for_each_index(group_count, [&](std::size_t g) {
+    if (limited && bytes.load(std::memory_order_relaxed) > frame.view_bytes) return;
+    Group& group = groups_[g];
+    Filler& scratch = fillers_.local();
+    Pieces& pieces = limited ? scratch.pieces : group.pieces;
+    pieces.count = 0;
+    pieces.triangles = {};
+    scratch.restart(frame, lists);
+    const std::uint64_t begin = first + g * group_size;
+    if (!raster::set_up(frame, begin, std::min(begin + group_size, last), pieces,
+                        micro ? &scratch : nullptr)) {
+      in_range = false;
+      return;
+    }
+    if (limited) keep_in_view(pieces, frame.view);
+    group.binned = bin_pieces(frame.kernel, pieces.span(), 0, most, lists, scratch.pairs);
+    const std::size_t n = scratch.pairs.entries().size(), m = scratch.micro.entries().size();
+    if (limited) {
+      const std::uint64_t own = pieces.count * sizeof(Piece) + n * sizeof(PieceInBin) +
+                                m * sizeof(BinFragment) +
+                                (list_count + bin_count) * sizeof(std::uint32_t);
+      if (bytes.fetch_add(own, std::memory_order_relaxed) + own > frame.view_bytes) return;
+      group.pieces.data.reserve(pieces.count);
+      std::copy_n(pieces.data.data(), pieces.count, group.pieces.data.data());
+      group.pieces.count = pieces.count;
+      group.pieces.triangles = pieces.triangles;
+    }
+    group.by_bin.sort(scratch.pairs, list_count);
+    group.fragments.sort(scratch.micro, bin_count);
+    pairs.fetch_add(n, std::memory_order_relaxed);
+    micro_fragments.fetch_add(m, std::memory_order_relaxed);
+  });
+  if (!in_range) check_indices(frame.request.draws, frame.request.draw_noun);
+  if (limited && bytes > frame.view_bytes) {
+    groups_.clear();
+    return std::nullopt;
+  }
+  for (std::size_t g = 0; g < group_count; ++g) count_triangles(frame, groups_[g].pieces.triangles);
+  frame.count("bins", pairs);
+  frame.count("micro fragments", micro_fragments);
+  return std::span<Group>{groups_.data(), group_count};
+}
+
+void TriangleGroups::bin_more(Frame& frame, const BinTable& lists, std::span<Group> groups) {
+  const std::size_t most = most_pairs(frame, groups.size());
+  std::atomic<std::uint64_t> pairs = 0;
+  frame.for_each_index(groups.size(), [&](std::size_t g) {
+    Group& group = groups[g];
+    Filler& scratch = fillers_.local();
+    scratch.restart(frame, lists);
+    group.binned =
+        bin_pieces(frame.kernel, group.pieces.span(), group.binned, most, lists, scratch.pairs);
+    group.by_bin.sort(scratch.pairs, lists.count());
+    group.fragments.sort(scratch.micro, lists.bins.count());
+    pairs.fetch_add(scratch.pairs.entries().size(), std::memory_order_relaxed);
+  });
+  frame.count("bins", pairs);
+}
+
+}  // namespace rastrum::raster

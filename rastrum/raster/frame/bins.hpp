@@ -1,0 +1,107 @@
+// The second half of the fast path: a thread owns a bin, covers its pieces, keeps the keys in its
+// cache and shades them there. What resolves the fragments of a pixel is the bin's: the maximum
+// (BinKeys), or exact layers (transparency/layers.hpp).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/parallel/scratch.hpp>
+#include <rastrum/parallel/stop.hpp>
+#include <rastrum/raster/bin/groups.hpp>
+#include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/frame/tile_surface.hpp>
+
+namespace rastrum::raster {
+
+/// Blocks that are handed on at once.
+inline constexpr std::size_t kBlockCapacity = 512;
+
+/// `Bin` is made from a MemoryAccount& and has begin(context, surface, rect), blocks(pieces,
+/// blocks), fragments(f), bounds(), find_bounds(), finish() and collect(counters) as BinKeys has
+/// them; kColors: it fills the surface's colours.
+template <class Bin>
+class Bins {
+ public:
+  template <class... Args>
+  explicit Bins(MemoryAccount& memory, Args... args)
+      : workers_([&memory, args...] {
+          return Worker{memory, args...};
+        }) {}
+
+  /// Draws what `groups` have in `bin`, or in the part `rect` of it, at most `side_px` across.
+  /// Thread-safe for distinct rectangles.
+  void draw(Frame& frame, const BinTable& lists, std::span<const Group> groups, std::size_t bin,
+            Rect rect, int side_px) {
+    const bool local = !frame.has_surface();
+    bool is_empty = true;
+    for (const Group& group : groups) is_empty = is_empty && group.is_empty(lists, bin);
+    if (is_empty && local) return frame.shade_nothing(rect);
+    if (is_empty) return;
+    Worker& worker = workers_.local();
+    const SurfaceView surface =
+        local ? worker.tile.begin(frame.request.targets, rect, side_px, Bin::kColors)
+              : frame.surface.part(rect.x0 / kBlockSize, rect.y0 / kBlockSize);
+    worker.bin.begin(frame.context(), surface, rect);
+    Sink sink(frame, worker);
+    enumerate_bin(frame, lists, groups, bin, rect, sink);
+    sink.flush();
+    worker.bin.finish();
+    if (local) frame.shade(surface, rect);
+  }
+
+  /// Adds what the bins counted since the last call.
+  void collect(Counters& counters) {
+    workers_.for_each([&](Worker& worker) { worker.bin.collect(counters); });
+  }
+
+ private:
+  struct Worker {
+    template <class... Args>
+    explicit Worker(MemoryAccount& memory, Args... args) : tile(memory), bin(memory, args...) {}
+    alignas(64) Block blocks[kBlockCapacity];
+    TileSurface tile;
+    Bin bin;
+  };
+
+  /// Collects covered blocks (bin/groups.hpp says how it is filled), counts and tests them, and
+  /// hands them to the bin.
+  class Sink {
+   public:
+    Sink(Frame& frame, Worker& worker) : frame_(frame), worker_(worker) {}
+
+    void use(const Piece* pieces) { pieces_ = pieces; }
+    [[nodiscard]] std::span<Block> room() {
+      if (kBlockCapacity - count_ < static_cast<std::size_t>(kBlocksPerBin)) flush();
+      return {worker_.blocks + count_, kBlockCapacity - count_};
+    }
+    void written(std::size_t n) { count_ += n; }
+    [[nodiscard]] DepthBounds* bounds() { return worker_.bin.bounds(); }
+    void find_bounds() { worker_.bin.find_bounds(); }
+    void fragments(Rect bin, std::span<const BinFragment> fragments) {
+      frame_.count_fragments(bin, fragments);
+      worker_.bin.fragments(fragments);
+    }
+    void flush() {
+      if (count_ == 0) return;
+      parallel::throw_if_stopped();  // one bin may have most of the scene
+      std::span<Block> blocks(worker_.blocks, count_);
+      count_ = 0;
+      frame_.count_fragments(blocks);
+      blocks = frame_.test(pieces_, blocks);
+      if (!blocks.empty()) worker_.bin.blocks(pieces_, blocks);
+    }
+
+   private:
+    Frame& frame_;
+    Worker& worker_;
+    const Piece* pieces_ = nullptr;
+    std::size_t count_ = 0;
+  };
+
+  parallel::ScratchPool<Worker> workers_;
+};
+
+}  // namespace rastrum::raster

@@ -1,0 +1,18 @@
+// Named counters of a method's own work: what tells the rows of a table from one.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace rastrum::raster {
+
+using Counters = std::vector<std::pair<std::string_view, std::uint64_t>>;
+
+/// Adds to the counter of that name.
+void add_counter(Counters& counters, std::string_view name, std::uint64_t value);
+/// Makes the counter of that name at least `value`.
+void raise_counter(Counters& counters, std::string_view name, std::uint64_t value);
+
+}  // namespace rastrum::raster

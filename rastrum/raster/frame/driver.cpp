@@ -1,0 +1,243 @@
+#include <rastrum/raster/frame/driver.hpp>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <rastrum/core/error.hpp>
+#include <rastrum/raster/bin/tile_grid.hpp>
+#include <rastrum/raster/resolve/resolve.hpp>
+
+namespace rastrum::raster {
+namespace {
+
+constexpr std::size_t kProjectGrain = 4096;
+
+/// Below this many bytes for triangles or fragments at once the pieces of the work would be smaller
+/// than what a task costs.
+constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 19;
+
+/// A thread's own, beside what is dealt out: a tile's keys, colours and depths.
+constexpr std::uint64_t kThreadBytes = std::uint64_t{1} << 17;
+
+/// Pieces of a batch are counted in 32 bits, and the clipper makes fewer than 16 of a triangle.
+constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
+
+[[noreturn]] void refuse_limit(std::uint64_t limit, const std::string& why) {
+  throw Error(Errc::out_of_memory, std::string("a memory limit of ")
+                                       .append(std::to_string(limit))
+                                       .append(" bytes ")
+                                       .append(why));
+}
+
+}  // namespace
+
+Totals begin_frame(FrameRequest& request) {
+  const Targets& targets = request.targets;
+  const Totals totals = number_draws(request.draws, targets.first_id, request.draw_noun);
+  if (request.in_place) return totals;
+  for (int y = 0; y < request.height; ++y) {
+    if (!targets.overdraw.empty() && !targets.load)
+      std::fill_n(targets.overdraw.row(y), request.width, 0U);
+    if (!targets.errors.empty()) std::fill_n(targets.errors.row(y), request.width, std::uint8_t{0});
+  }
+  return totals;
+}
+
+void end_frame(const Totals& totals, FrameStats& stats) {
+  stats.triangles.input = totals.primitives;
+  stats.triangles.drawn = totals.primitives - stats.triangles.dropped - stats.triangles.culled;
+}
+
+/// How the work is cut: bands of rows, and in each band batches of triangles. Without a limit there
+/// is one of both.
+struct FrameDriver::Plan {
+  bool project_first = true;  ///< else vertices are projected where triangles need them
+  bool surface = true;        ///< keys for a band, else tiles keep their own
+  int band_rows = 0;
+  std::uint64_t batch = 0;  ///< triangles
+  std::uint64_t fragment_bytes = 0;
+  std::uint64_t expansion_bytes = 0;
+  std::uint64_t view_bytes = 0;
+};
+
+FrameDriver::FrameDriver(std::unique_ptr<Method> method, std::uint64_t memory_limit,
+                         MemoryAccount& memory, parallel::Threads* threads)
+    : method_(std::move(method)),
+      needs_(method_->needs()),
+      memory_limit_(memory_limit),
+      threads_(threads),
+      projected_(memory),
+      keys_(memory),
+      colors_(memory) {}
+
+FrameDriver::~FrameDriver() = default;
+
+FrameDriver::Plan FrameDriver::plan(const FrameRequest& request, const Totals& totals) const {
+  const std::uint64_t triangles = totals.primitives;
+  Plan p;
+  p.batch = std::clamp<std::uint64_t>(triangles, 1, kLargestBatch);
+  if (needs_.whole_view) p.batch = std::max<std::uint64_t>(triangles, 1);
+  p.surface = needs_.surface || p.batch < triangles;
+  p.band_rows = request.height;
+  if (memory_limit_ == 0) return p;
+
+  const std::uint64_t row_of_pixels =
+      static_cast<std::uint64_t>(block_columns({0, 0, request.width, 1})) * kBlockSize *
+      static_cast<std::uint64_t>(needs_.surface_bytes);
+  // The least band is a row of bins, so that a band never cuts one.
+  const std::uint64_t least_band = row_of_pixels * kBinSize;
+  const auto threads =
+      static_cast<std::uint64_t>(threads_ == nullptr ? 1 : threads_->concurrency());
+  const std::uint64_t others = request.texture_bytes + kThreadBytes * threads;
+  const std::uint64_t least = others + std::max(least_band, kLeastShare) + 3 * kLeastShare;
+  if (memory_limit_ < least)
+    refuse_limit(memory_limit_,
+                 "is less than the " + std::to_string(least) + " that this frame needs at least");
+
+  // A quarter each for projected vertices, triangles, the surface and fragments; what one does not
+  // need is not given to another, so that the plan of a frame does not jump.
+  const std::uint64_t band_share = std::max((memory_limit_ - others) / 4, least_band);
+  const std::uint64_t share = (memory_limit_ - others - band_share) / 3;
+  p.project_first = totals.vertices <= share / sizeof(ProjectedVertex);
+  p.fragment_bytes = share;
+  if (needs_.whole_view) {
+    p.view_bytes = share;
+    if (!needs_.cuts_views)
+      throw Error(Errc::out_of_memory,
+                  std::string("'")
+                      .append(needs_.rasterizer)
+                      .append("' keeps all triangles of a frame with layers at once, whatever the "
+                              "memory limit; 'grouped' heeds it"));
+    return p;
+  }
+  // What triangles are expanded to is known in the middle of a draw only, and what does not fit
+  // then is drawn in turns, onto a surface.
+  p.expansion_bytes = needs_.expands ? share / 2 : 0;
+  p.batch = std::min(
+      p.batch, (share - p.expansion_bytes) / static_cast<std::uint64_t>(needs_.triangle_bytes));
+  p.surface = p.surface || needs_.expands || p.batch < triangles;
+  if (p.surface)
+    p.band_rows = static_cast<int>(
+        std::min(band_share / least_band * kBinSize, static_cast<std::uint64_t>(request.height)));
+  return p;
+}
+
+void FrameDriver::project(Frame& frame) {
+  const FrameRequest& request = frame.request;
+  for (const Draw& draw : request.draws)
+    frame.for_each_index(
+        (draw.vertex_count + kProjectGrain - 1) / kProjectGrain, [&](std::size_t i) {
+          const std::size_t begin = i * kProjectGrain;
+          const std::size_t end = std::min(begin + kProjectGrain, draw.vertex_count);
+          draw.source.project(begin, end, frame.geometry.viewport, request.isa,
+                              projected_.data() + draw.first_vertex + begin);
+        });
+  frame.geometry.projected = projected_.data();
+}
+
+/// Draws the view, in halves where it does not fit.
+void FrameDriver::draw_view(Frame& frame, std::uint64_t first, std::uint64_t last) {
+  const Rect view = frame.view;
+  frame.fits = true;
+  method_->draw(frame, first, last);
+  frame.first_band = frame.first_band && !frame.fits;
+  if (frame.fits) return;
+  const int columns = (view.x1 - view.x0 + kBinSize - 1) / kBinSize;
+  const int rows = (view.y1 - view.y0 + kBinSize - 1) / kBinSize;
+  if (columns == 1 && rows == 1)
+    refuse_limit(memory_limit_, std::string("does not hold what touches the 64 x 64 pixels at (")
+                                    .append(std::to_string(view.x0))
+                                    .append(", ")
+                                    .append(std::to_string(view.y0))
+                                    .append("), which layers need at once"));
+  Rect a = view, b = view;
+  if (rows > 1)
+    a.y1 = b.y0 = view.y0 + (rows + 1) / 2 * kBinSize;
+  else
+    a.x1 = b.x0 = view.x0 + (columns + 1) / 2 * kBinSize;
+  for (const Rect& half : {a, b}) {
+    frame.view = half;
+    draw_view(frame, first, last);
+  }
+}
+
+void FrameDriver::draw_band(Frame& frame, const Plan& plan, std::uint64_t triangles) {
+  const Rect band = frame.view;
+  const TileGrid tiles{band, kBinSize, frame.request.tuning.order};
+  const auto each_tile = [&](const auto& f) {
+    frame.for_each_index(tiles.count(), [&](std::size_t t) {
+      const Rect r = tiles.rect(tiles.tile_at(t));
+      f(r, frame.surface.part(r.x0 / kBlockSize, r.y0 / kBlockSize));
+    });
+  };
+  if (plan.surface) {
+    const std::size_t blocks = block_count(band);
+    keys_.reserve(blocks * 64);
+    if (needs_.colors) colors_.reserve(blocks);
+    frame.surface = {band.x0 / kBlockSize, band.y0 / kBlockSize, block_columns(band), keys_.data(),
+                     needs_.colors ? colors_.data() : nullptr};
+    each_tile([&](Rect r, const SurfaceView& s) { load_keys(frame.request.targets, r, s); });
+  }
+  const std::uint64_t first_id = frame.request.targets.first_id;
+  if (needs_.whole_view) {
+    draw_view(frame, first_id, first_id + triangles);
+    frame.view = band;
+  } else {
+    std::uint64_t drawn = 0;
+    do {  // once without triangles too: the background is drawn
+      const std::uint64_t count = std::min(plan.batch, triangles - drawn);
+      method_->draw(frame, first_id + drawn, first_id + drawn + count);
+      drawn += count;
+    } while (drawn < triangles);
+  }
+  if (!plan.surface) return;
+  each_tile([&](Rect r, const SurfaceView& s) { frame.shade(s, r); });
+  frame.watch.lap(frame.stats, "shade");
+}
+
+FrameStats FrameDriver::draw(FrameRequest& request) {
+  Stopwatch watch;
+  FrameStats stats;
+  stats.rasterizer = needs_.rasterizer;
+  stats.visibility = needs_.visibility;
+  stats.isa = request.isa;
+  const Totals totals = begin_frame(request);
+  const Plan cut = plan(request, totals);
+  Frame frame{
+      .request = request,
+      .geometry = {request.width, request.height, Viewport::of(request.width, request.height),
+                   request.draws, nullptr, request.isa},
+      .kernel = kernels(request.isa),
+      .threads = threads_,
+      .shaders = shaders_,
+      .stats = stats,
+      .watch = watch,
+      .number = ++frames_};
+  if (cut.project_first) {
+    projected_.reserve(totals.vertices);
+    project(frame);
+    watch.lap(stats, "project");
+  }
+  frame.fragment_bytes = cut.fragment_bytes;
+  frame.expansion_bytes = cut.expansion_bytes;
+  frame.view_bytes = cut.view_bytes;
+  try {
+    for (int y = 0; y < request.height; y += cut.band_rows) {
+      frame.view = {0, y, request.width, std::min(y + cut.band_rows, request.height)};
+      frame.first_band = y == 0;
+      draw_band(frame, cut, totals.primitives);
+    }
+  } catch (...) {
+    method_->abandon();
+    throw;
+  }
+  end_frame(totals, stats);
+  stats.fragments = frame.fragments;
+  stats.pixels_covered = frame.pixels_covered;
+  for (const auto& [name, value] : frame.counters)
+    stats.counters.emplace_back(std::string(name), value);
+  return stats;
+}
+
+}  // namespace rastrum::raster

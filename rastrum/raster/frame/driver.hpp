@@ -1,0 +1,49 @@
+// The one driver of a frame: numbers and projects what is drawn, cuts the work to a memory limit,
+// lets a method find the keys, makes the images, and counts.
+#pragma once
+
+#include <memory>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/raster/frame/frame_drawer.hpp>
+#include <rastrum/raster/frame/method.hpp>
+#include <rastrum/raster/resolve/resolve.hpp>
+
+namespace rastrum::raster {
+
+/// What every frame begins with, whoever draws it: numbers the draws, and clears the targets that
+/// are counted up or set only here and there (overdraw, errors).
+[[nodiscard]] Totals begin_frame(FrameRequest& request);
+/// What it ends with: the statistics of its triangles.
+void end_frame(const Totals& totals, FrameStats& stats);
+
+class FrameDriver final : public FrameDrawer {
+ public:
+  /// `memory_limit`: bytes of scratch that `memory` may hold, 0 for any. `threads`: null for the
+  /// serial reference. Both outlive the driver.
+  FrameDriver(std::unique_ptr<Method> method, std::uint64_t memory_limit, MemoryAccount& memory,
+              parallel::Threads* threads);
+  ~FrameDriver() override;
+
+  [[nodiscard]] FrameStats draw(FrameRequest& request) override;
+
+ private:
+  struct Plan;
+  [[nodiscard]] Plan plan(const FrameRequest& request, const Totals& totals) const;
+  void project(Frame& frame);
+  void draw_view(Frame& frame, std::uint64_t first, std::uint64_t last);
+  void draw_band(Frame& frame, const Plan& plan, std::uint64_t triangles);
+
+  std::unique_ptr<Method> method_;
+  Needs needs_;
+  std::uint64_t memory_limit_;
+  parallel::Threads* threads_;
+  std::uint64_t frames_ = 0;  ///< drawn or under way
+  parallel::ScratchPool<ShaderOfThread> shaders_;
+  Buffer<ProjectedVertex> projected_;
+  Buffer<std::uint64_t> keys_;
+  Buffer<BlockColors> colors_;
+};
+
+}  // namespace rastrum::raster

@@ -1,0 +1,18 @@
+// What draws the frames of a Renderer.
+#pragma once
+
+#include <rastrum/raster/frame/request.hpp>
+
+namespace rastrum::raster {
+
+/// The fast path, the serial reference, a device, a row of the family. Keeps its scratch between
+/// frames; one frame at a time.
+class FrameDrawer {
+ public:
+  virtual ~FrameDrawer() = default;
+  /// One frame. Throws Error{invalid_argument} where an index is out of range, Error{out_of_memory}
+  /// where the limit is too small for any piece of the work.
+  [[nodiscard]] virtual FrameStats draw(FrameRequest& request) = 0;
+};
+
+}  // namespace rastrum::raster

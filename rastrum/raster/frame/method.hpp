@@ -1,0 +1,41 @@
+// A way to draw: the one fast path, the serial reference, exact layers, a row of the family. The
+// driver (driver.hpp) begins and ends a frame, cuts it for a memory limit and makes images from
+// keys; a method finds the keys.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include <rastrum/raster/frame/frame.hpp>
+
+namespace rastrum::raster {
+
+/// What a method draws onto, and what it keeps, for cutting a frame where memory is limited.
+struct Needs {
+  std::string_view rasterizer, visibility;  ///< as the statistics name them
+  /// Draws onto a surface of the whole band; else only where batches of triangles meet there.
+  bool surface = true;
+  int surface_bytes = 8;  ///< a pixel: keys, and what the method keeps beside them
+  bool colors = false;    ///< fills SurfaceView::colors
+  /// Bytes of scratch a triangle, beside what it is expanded to.
+  int triangle_bytes = 96;
+  /// Expands triangles to rows, bins or pairs, which it keeps below Frame::expansion_bytes.
+  bool expands = false;
+  /// Needs all triangles of a view at once: instead of batches of triangles the view is cut until
+  /// they fit (Frame::view_bytes), if the method can tell (`cuts_views`).
+  bool whole_view = false, cuts_views = false;
+};
+
+class Method {
+ public:
+  virtual ~Method() = default;
+  [[nodiscard]] virtual Needs needs() const = 0;
+  /// Draws triangles [first, last) of the frame's numbering into Frame::view: onto its surface or,
+  /// without, into tiles of its own that it shades. Names its work in Frame::counters. Where the
+  /// view needs more than Frame::view_bytes it draws nothing and clears Frame::fits.
+  virtual void draw(Frame& frame, std::uint64_t first, std::uint64_t last) = 0;
+  /// The frame threw: nothing of it is to be in the next one's statistics.
+  virtual void abandon() {}
+};
+
+}  // namespace rastrum::raster

@@ -1,0 +1,37 @@
+// The keys, and colours, of a tile that a thread owns: they stay in its cache from the first piece
+// to the last pixel.
+#pragma once
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/raster/resolve/resolve.hpp>
+
+namespace rastrum::raster {
+
+class TileSurface {
+ public:
+  explicit TileSurface(MemoryAccount& memory) : keys_(memory), colors_(memory) {}
+
+  /// A surface for `rect`, of whole blocks and at most `tile_px` across, which begins with what the
+  /// passes before left. Valid until the next call.
+  [[nodiscard]] SurfaceView begin(const Targets& targets, Rect rect, int tile_px, bool colors) {
+    // Rows of a whole tile, also at the image's edge: kernels like one stride.
+    SurfaceView surface{rect.x0 / kBlockSize, rect.y0 / kBlockSize,
+                        (tile_px + kBlockSize - 1) / kBlockSize, nullptr, nullptr};
+    const std::size_t blocks =
+        static_cast<std::size_t>(surface.columns) * static_cast<std::size_t>(block_rows(rect));
+    keys_.reserve(blocks * 64);
+    surface.keys = keys_.data();
+    load_keys(targets, rect, surface);
+    if (colors) {
+      colors_.reserve(blocks);
+      surface.colors = colors_.data();
+    }
+    return surface;
+  }
+
+ private:
+  Buffer<std::uint64_t> keys_;
+  Buffer<BlockColors> colors_;
+};
+
+}  // namespace rastrum::raster

@@ -1,0 +1,18 @@
+// The fast path of scenes with translucent surfaces, or of several samples a pixel (called
+// `grouped` and `layers`): bins as on the opaque one (raster/frame/bins.hpp), in which every
+// fragment is kept and blended in order.
+#pragma once
+
+#include <memory>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/raster/frame/method.hpp>
+#include <rastrum/transparency/blend.hpp>
+
+namespace rastrum::transparency {
+
+/// Work O(triangles + fragments · log layers); memory as the opaque path and LayeredBin have it.
+[[nodiscard]] std::unique_ptr<raster::Method> make_layered_path(MemoryAccount& memory,
+                                                                MakeBlend make_blend);
+
+}  // namespace rastrum::transparency
