@@ -27,14 +27,14 @@ constexpr int kRepeats = 7;
 constexpr std::align_val_t kAlignment{128};
 
 /// Floats from the system, aligned; written once by the thread that uses them.
-class Buffer {
+class FloatArray {
  public:
-  Buffer() : data_(static_cast<float*>(::operator new(kFloats * sizeof(float), kAlignment))) {
+  FloatArray() : data_(static_cast<float*>(::operator new(kFloats * sizeof(float), kAlignment))) {
     write_floats(data_, kFloats, 1);
   }
-  ~Buffer() { ::operator delete(data_, kAlignment); }
-  Buffer(const Buffer&) = delete;
-  Buffer& operator=(const Buffer&) = delete;
+  ~FloatArray() { ::operator delete(data_, kAlignment); }
+  FloatArray(const FloatArray&) = delete;
+  FloatArray& operator=(const FloatArray&) = delete;
   [[nodiscard]] float* data() const { return data_; }
 
  private:
@@ -46,14 +46,14 @@ class Team {
  public:
   explicit Team(int threads) : threads_(threads) {}
 
-  double best_seconds(const std::function<void(const Buffer&, const Buffer&)>& work) const {
+  double best_seconds(const std::function<void(const FloatArray&, const FloatArray&)>& work) const {
     using Clock = std::chrono::steady_clock;
     std::vector<std::vector<double>> seconds(static_cast<std::size_t>(threads_));
     std::barrier sync(threads_);
     std::vector<std::jthread> team;
     for (auto& mine : seconds)
       team.emplace_back([&] {
-        const Buffer a, b;
+        const FloatArray a, b;
         for (int i = 0; i < kRepeats; ++i) {
           sync.arrive_and_wait();
           const auto begin = Clock::now();
@@ -87,23 +87,23 @@ MachineLimits measure_machine(int threads) {
   const auto keep = [&](float value) { sink = value; };
   MachineLimits m;
   m.threads = threads;
-  m.read_gbs = gigabytes / team.best_seconds([&](const Buffer& a, const Buffer&) {
+  m.read_gbs = gigabytes / team.best_seconds([&](const FloatArray& a, const FloatArray&) {
     keep(read_floats(a.data(), kFloats));
   });
-  m.write_gbs = gigabytes / team.best_seconds([&](const Buffer& a, const Buffer&) {
+  m.write_gbs = gigabytes / team.best_seconds([&](const FloatArray& a, const FloatArray&) {
     write_floats(a.data(), kFloats, 2);
   });
-  m.stream_gbs = gigabytes / team.best_seconds([&](const Buffer& a, const Buffer&) {
+  m.stream_gbs = gigabytes / team.best_seconds([&](const FloatArray& a, const FloatArray&) {
     stream_floats(a.data(), kFloats, 2);
   });
-  m.copy_gbs = 2 * gigabytes / team.best_seconds([&](const Buffer& a, const Buffer& b) {
+  m.copy_gbs = 2 * gigabytes / team.best_seconds([&](const FloatArray& a, const FloatArray& b) {
     copy_floats(a.data(), b.data(), kFloats);
   });
   const double gigaoperations = n * arithmetic_operations(kSteps) / 1e9;
-  m.gflops_fma = gigaoperations / team.best_seconds([&](const Buffer&, const Buffer&) {
+  m.gflops_fma = gigaoperations / team.best_seconds([&](const FloatArray&, const FloatArray&) {
     keep(fused_multiply_adds(kSteps, 0.5F));
   });
-  m.gflops = gigaoperations / team.best_seconds([&](const Buffer&, const Buffer&) {
+  m.gflops = gigaoperations / team.best_seconds([&](const FloatArray&, const FloatArray&) {
     keep(multiplies_and_adds(kSteps, 0.5F));
   });
   return m;

@@ -182,7 +182,7 @@ bool frames(const TableOptions& options, const MachineLimits& device, const Heig
     classic.distance = size.distance;
     classic.threads = threads;
     TerrainOptions mip = fast, words = fast;
-    mip.filter = terrain::Filter::mip;
+    mip.filter = terrain::MapFilter::mip;
     mip.dz = 0.02;
     words.method = Method::words;
     std::vector<Entry> entries;

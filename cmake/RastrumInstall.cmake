@@ -12,7 +12,6 @@ function(rastrum_dependencies target out)
   set(package_muparser "muparser CONFIG")
   set(package_JPEG "JPEG")
   set(package_OpenEXR "OpenEXR CONFIG")
-  set(package_tinyobjloader "tinyobjloader CONFIG")
   set(package_nlohmann_json "nlohmann_json CONFIG")
 
   get_target_property(links ${target} LINK_LIBRARIES)

@@ -9,8 +9,8 @@ command leaves there is the page's picture of the same file name (images/NAME.pn
 to it within 1/255 a channel; every picture of a page is drawn by its commands. Files that nobody has
 (dragon.ply, alps.png, ...) are the stand-ins of docs_files.py under those names; what starts programs
 elsewhere (sbatch, docker, ssh) is one that starts them here. What cannot be run is no ```sh block.
-`accept` makes the drawn pictures the pages'. `links` sees that files which pages name are there, and
-that no picture is left over. DIR is where the program was built (build/release).
+`accept` makes the drawn pictures the pages'. `links` sees that files and headings which pages name are
+there, pages that sources name too, and that no picture is left over. DIR is where the program was built (build/release).
 """
 import os
 import pathlib
@@ -25,16 +25,34 @@ import docs_files
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs" / "images"
 TIMEOUT_S = 240
-TOLERANCE = 1  # of 255, between instruction sets (docs/conventions.md)
+TOLERANCE = 1  # of 255, between instruction sets (conventions.md)
 TOLERANCE_MAGNIFIED = 16  # of *_difference.png, which shows the differences of two pictures times 8
 
-LINK = re.compile(r"!?\[[^\]]*\]\(([^)#\s]+)[^)]*\)")
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)#\s]*)(?:#([^)\s]*))?[^)]*\)")
+HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
+NAMED_PAGE = re.compile(r"\bdocs/[\w/]+\.md\b")  # in comments of sources
 PICTURE = re.compile(r"!\[[^\]]*\]\((?:docs/)?images/([^)]+)\)")
 TYPED = re.compile(r"(?: {4,}|\t)(?:\$ )?(?:\./dev|rastrum) ")
 
 
 def pages():
+    """Those whose commands are run."""
     return ["README.md"] + sorted(f"docs/{p.name}" for p in (ROOT / "docs").glob("*.md"))
+
+
+def all_pages():
+    """Those whose links are followed: the log's, the decisions' and the folders' own as well."""
+    inside = (ROOT / "docs").glob("*/*.md")
+    return pages() + sorted(str(p.relative_to(ROOT)) for p in inside) + [
+        str(p.relative_to(ROOT)) for p in sorted(ROOT.glob("*/README.md"))]
+
+
+def sources():
+    """What may speak of pages in its comments."""
+    folders = ("apps", "bench", "cmake", "examples", "rastrum", "tests", "tools")
+    endings = {".hpp", ".cpp", ".cuh", ".cu", ".cmake", ".txt", ".py"}
+    return [file for folder in folders for file in sorted((ROOT / folder).rglob("*"))
+            if file.suffix in endings and file.name != "docs_test.py"]
 
 
 def split(text):
@@ -161,18 +179,33 @@ def check(page, build, accept):
         return wrong + check_pictures(folder, build, page, text, accept)
 
 
+def prose(page):
+    """The text without what stands in ``` blocks."""
+    return re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+
+
+def anchors(page):
+    """What GitHub makes of a page's headings."""
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-")
+            for heading in HEADING.findall(prose(page))}
+
+
 def check_links():
     wrong, linked = [], set()
-    for page in pages():
-        folder = (ROOT / page).parent
-        text = re.sub(r"^```.*?^```", "", (ROOT / page).read_text(encoding="utf-8"),
-                      flags=re.MULTILINE | re.DOTALL)
-        for target in LINK.findall(text):
+    for page in all_pages():
+        for target, anchor in LINK.findall(prose(ROOT / page)):
             if "://" in target:
                 continue
-            linked.add((folder / target).resolve())
-            if not (folder / target).exists():
+            file = (ROOT / page).parent / target if target else ROOT / page
+            linked.add(file.resolve())
+            if not file.exists():
                 wrong.append(f"{page}: {target} is not there")
+            elif anchor and anchor not in anchors(file):
+                wrong.append(f"{page}: {target}#{anchor} is no heading there")
+    for source in sources():
+        for named in NAMED_PAGE.findall(source.read_text(encoding="utf-8", errors="replace")):
+            if not (ROOT / named).exists():
+                wrong.append(f"{source.relative_to(ROOT)}: {named} is not there")
     wrong += [f"{image.relative_to(ROOT)}: no page shows it"
               for image in sorted(IMAGES.iterdir()) if image.resolve() not in linked]
     return wrong

@@ -23,10 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The colour of surfaces without one (docs/conventions.md, phong): linear light that
-/// srgb_from_linear turns into 0.8, 0.7, 0.6 to an ulp, so that plain shaders draw what they did.
-constexpr Vec4 kPlain{0.603780866F, 0.447983563F, 0.318572849F, 1};
-
 Scene make_builtin(const std::string& input, const std::string& source) {
   const std::string spec = source.substr(kBuiltin.size());
   Scene scene;
@@ -48,26 +44,11 @@ Vec4 linear(Vec4 display) {
   return {channel(display.x), channel(display.y), channel(display.z), 1};
 }
 
-/// Gives a scene without materials one for all, which looks as if there were none.
-void add_plain_material(Scene& scene) {
-  Material& m = scene.materials.emplace_back();
-  m.name = "plain";
-  m.base_color = kPlain;
-  m.metallic = 0;
-  m.double_sided = true;
-  for (const Mesh& mesh : scene.meshes)
-    if (!mesh.colors.empty()) {
-      // Vertex colours stand for themselves, and their alpha counts.
-      m.base_color = {1, 1, 1, 1};
-      m.alpha_mode = AlphaMode::blend;
-    }
-}
-
 /// A colour takes the place of the base colours, their textures and the vertex colours.
 void paint(Scene& scene, const Look& look) {
   if (look.color)
     for (Mesh& mesh : scene.meshes) mesh.colors = {};
-  if (scene.materials.empty()) add_plain_material(scene);
+  if (scene.materials.empty()) add_plain_materials(scene);
   double opacity = look.opacity;
   if (look.color) opacity *= double{look.color->w};
   for (Material& m : scene.materials) {
@@ -162,21 +143,16 @@ Inputs load_inputs(const std::vector<std::string>& inputs, const NormalOptions& 
                    Timeline& timeline, Progress& progress, std::string_view format) {
   Inputs all;
   std::vector<Scene> scenes;
-  bool any_look = false;
   for (const std::string& input : inputs) {
     progress.show("loading " + input);
     timeline.measure("load " + input, "load", [&] {
       Loaded loaded = load(input, format);
       all.has_materials |= loaded.has_materials;
-      any_look |= !loaded.has_materials && !loaded.scene.materials.empty();
       scenes.push_back(std::move(loaded.scene));
     });
   }
   std::uint64_t first_id = 0;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    // Beside an input that was painted the others look as they did.
-    if (any_look && !all.has_materials && scenes[i].materials.empty())
-      add_plain_material(scenes[i]);
     const std::uint64_t triangles = scenes[i].triangle_count();
     all.parts.push_back({inputs[i], first_id, triangles});
     first_id += triangles;

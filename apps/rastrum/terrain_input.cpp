@@ -98,7 +98,7 @@ LoadedTerrain::LoadedTerrain(const TerrainInput& input) {
 
 terrain::Terrain LoadedTerrain::lit(terrain::Light light, const terrain::TerrainOptions& o) const {
   light.hill_shading = map_.colors.empty();
-  light.smooth = o.filter == terrain::Filter::bilinear;
+  light.smooth = o.filter == terrain::MapFilter::bilinear;
   if (!is_map()) return terrain::function_terrain(function_, low_, high_, light);
   terrain::HeightMap map{map_.heights, {}};
   if (light.shadows == terrain::Shadows::none && !light.hill_shading)

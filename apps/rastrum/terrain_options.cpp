@@ -154,10 +154,10 @@ void add_terrain_picture(Parser& app, TerrainSceneArguments& a) {
   add(app, "--filter", "NAME", "none, bilinear, mip (bilinear; --classic: none)",
       [&a](const std::string& s) {
         a.filter_given = true;
-        a.options.filter = choose<terrain::Filter>("--filter", s,
-                                                   {{"none", terrain::Filter::none},
-                                                    {"bilinear", terrain::Filter::bilinear},
-                                                    {"mip", terrain::Filter::mip}});
+        a.options.filter = choose<terrain::MapFilter>("--filter", s,
+                                                      {{"none", terrain::MapFilter::none},
+                                                       {"bilinear", terrain::MapFilter::bilinear},
+                                                       {"mip", terrain::MapFilter::mip}});
       })
       ->group(group);
   add(app, "--projection", "NAME",
@@ -240,7 +240,7 @@ void add_terrain_machine(Parser& app, TerrainSceneArguments& a) {
 void settle(TerrainSceneArguments& a) {
   if (!a.options.classic) return;
   if (a.dim_sky) throw UsageError("--dim-sky", "the sky of the original program has one colour");
-  if (!a.filter_given) a.options.filter = terrain::Filter::none;
+  if (!a.filter_given) a.options.filter = terrain::MapFilter::none;
   a.input.classic_scale = true;
 }
 

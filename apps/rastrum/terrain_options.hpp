@@ -26,7 +26,7 @@ struct TerrainSceneArguments {
 
   /// The program filters, with the steps that go with it, unless it is told otherwise.
   TerrainSceneArguments() {
-    options.filter = terrain::Filter::bilinear;
+    options.filter = terrain::MapFilter::bilinear;
     options.step = 0;
   }
 };

@@ -38,17 +38,17 @@ class MemoryAccount {
 /// A growing array of trivial elements that is never initialized and never shrinks: the contents
 /// are the caller's business. 64-byte aligned. The account must outlive it.
 template <class T>
-class Buffer {
+class ScratchBuffer {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
-  explicit Buffer(MemoryAccount& account) noexcept : account_(&account) {}
-  Buffer(Buffer&& other) noexcept
+  explicit ScratchBuffer(MemoryAccount& account) noexcept : account_(&account) {}
+  ScratchBuffer(ScratchBuffer&& other) noexcept
       : account_(other.account_),
         data_(std::move(other.data_)),
         capacity_(std::exchange(other.capacity_, 0)) {}
-  Buffer& operator=(Buffer&&) = delete;
-  ~Buffer() { release(); }
+  ScratchBuffer& operator=(ScratchBuffer&&) = delete;
+  ~ScratchBuffer() { release(); }
 
   /// At least `count` elements; the first `keep` survive. Amortized O(1) an element when grown by
   /// steps. Throws Error{out_of_memory} with what was asked for.

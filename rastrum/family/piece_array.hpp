@@ -20,7 +20,7 @@ class PieceArray {
 
  private:
   MemoryAccount& memory_;
-  Buffer<Piece> pieces_;
+  ScratchBuffer<Piece> pieces_;
   std::vector<Pieces> groups_;
 };
 

@@ -137,9 +137,11 @@ std::int32_t Materials::load_texture(std::size_t index) {
     const Json values = document_["samplers"].at(s->count());
     sampler.wrap_u = wrap_of(values.count("wrapS", 10497));
     sampler.wrap_v = wrap_of(values.count("wrapT", 10497));
-    sampler.mag = values.count("magFilter", 9729) == 9728 ? Filter::nearest : Filter::linear;
+    sampler.mag =
+        values.count("magFilter", 9729) == 9728 ? TextureFilter::nearest : TextureFilter::linear;
     const std::size_t min = values.count("minFilter", 9987);
-    sampler.min = min == 9728 || min == 9984 || min == 9986 ? Filter::nearest : Filter::linear;
+    sampler.min =
+        min == 9728 || min == 9984 || min == 9986 ? TextureFilter::nearest : TextureFilter::linear;
     sampler.mipmaps = min >= 9984;
   }
   const std::size_t image = source->count();

@@ -1,26 +1,43 @@
-// MTL through tinyobjloader, onto the metallic-roughness material: Kd and map_Kd are the base
-// colour, d (or 1 − Tr) its alpha, map_d a cut-out mask, Ke emission; Ns becomes a roughness. An
-// MTL surface is a dielectric: metallic 0.
+// MTL, the materials of OBJ files, onto the metallic-roughness material: Kd and map_Kd are the base
+// colour, d (or 1 − Tr) its alpha, map_d a cut-out mask, Ke and map_Ke emission. Ns becomes a
+// roughness, unless the extension for physically based materials gives it (Pr, and Pm, norm).
+// What else there is (ambient and specular colours, height maps, models of illumination) is not
+// drawn, and passed over like keys that nobody knows. A statement that cannot be read is passed
+// over, too, with a warning that names the first line: many files in use have one.
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <exception>
-#include <istream>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <string>
-#include <vector>
-
-#include <tiny_obj_loader.h>
+#include <string_view>
+#include <utility>
 
 #include <rastrum/io/io.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
+#include <rastrum/io/text_cursor.hpp>
 
 namespace rastrum::io {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// What stands behind map_Kd and its like; without a name there is no map.
+struct TextureMap {
+  std::string name{};
+  bool clamp = false;
+  float multiplier = 1;  ///< -bm
+};
+
+struct MtlMaterial {
+  std::string name{};
+  std::optional<Vec3> diffuse{}, emission{};
+  std::optional<float> dissolve{}, transparency{};  ///< d and Tr; the first wins
+  float shininess = 1;
+  std::optional<float> roughness{}, metallic{};
+  TextureMap diffuse_map{}, emission_map{}, alpha_map{}, normal_map{};
+};
 
 /// Textures of one .mtl file, each file read once.
 class TextureReader {
@@ -28,11 +45,10 @@ class TextureReader {
   TextureReader(const fs::path& file, Scene& scene)
       : folder_(file.parent_path()), name_(file.string()), scene_(scene) {}
 
-  std::int32_t operator()(const std::string& name, const tinyobj::texture_option_t& option) {
-    if (name.empty()) return kNoTexture;
-    const std::string key = name + (option.clamp ? "\n" : "");
-    const auto [it, is_new] = known_.emplace(key, kNoTexture);
-    if (is_new) it->second = read(name, option.clamp);
+  std::int32_t operator()(const TextureMap& map) {
+    if (map.name.empty()) return kNoTexture;
+    const auto [it, is_new] = known_.emplace(std::pair(map.name, map.clamp), kNoTexture);
+    if (is_new) it->second = read(map);
     return it->second;
   }
 
@@ -43,15 +59,15 @@ class TextureReader {
   }
 
  private:
-  std::int32_t read(const std::string& name, bool clamp) {
-    std::string relative = name;
+  std::int32_t read(const TextureMap& map) {
+    std::string relative = map.name;
     std::replace(relative.begin(), relative.end(), '\\', '/');
     const fs::path file = find(folder_ / relative);
     try {
       Texture t;
       t.image = read_image(file);
       t.name = file.filename().string();
-      if (clamp) t.wrap_u = t.wrap_v = Wrap::clamp_to_edge;
+      if (map.clamp) t.wrap_u = t.wrap_v = Wrap::clamp_to_edge;
       scene_.textures.push_back(std::move(t));
       return static_cast<std::int32_t>(scene_.textures.size()) - 1;
     } catch (const Error& e) {
@@ -83,32 +99,32 @@ class TextureReader {
   std::string substitutes_;
   std::string name_;
   Scene& scene_;
-  std::map<std::string, std::int32_t> known_;
+  std::map<std::pair<std::string, bool>, std::int32_t> known_;
 };
 
-float finite_or(double x, float otherwise) {
-  return std::isfinite(x) ? static_cast<float>(x) : otherwise;
-}
-
-Material convert(const tinyobj::material_t& m, TextureReader& texture) {
+Material convert(const MtlMaterial& m, TextureReader& texture) {
+  const auto channel = [](float x) { return std::clamp(x, 0.0F, 1.0F); };
   Material r;
   r.double_sided = true;  // MTL knows no sides
   r.name = m.name;
-  const auto channel = [](double x) { return std::clamp(finite_or(x, 1), 0.0F, 1.0F); };
-  r.base_color = {channel(m.diffuse[0]), channel(m.diffuse[1]), channel(m.diffuse[2]),
-                  channel(m.dissolve)};
-  r.metallic = 0;
+  // A map of diffuse colours without a factor is taken by 0.6, as by most who read MTL.
+  const float factor = m.diffuse_map.name.empty() ? 0 : 0.6F;
+  const Vec3 diffuse = m.diffuse.value_or(Vec3{factor, factor, factor});
+  const float alpha = m.dissolve.value_or(1 - m.transparency.value_or(0));
+  r.base_color = {channel(diffuse.x), channel(diffuse.y), channel(diffuse.z), channel(alpha)};
+  r.metallic = channel(m.metallic.value_or(0));  // a surface is a dielectric if not told otherwise
   // The Blinn–Phong exponent whose lobe is as wide as a GGX lobe of this roughness (α = roughness²,
   // Ns = 2 / α² − 2).
-  const float shininess = std::max(0.0F, finite_or(m.shininess, 0));
-  r.roughness = std::sqrt(std::sqrt(2 / (shininess + 2)));
-  r.emissive = {std::max(0.0F, finite_or(m.emission[0], 0)),
-                std::max(0.0F, finite_or(m.emission[1], 0)),
-                std::max(0.0F, finite_or(m.emission[2], 0))};
-  r.base_color_texture = texture(m.diffuse_texname, m.diffuse_texopt);
-  r.emissive_texture = texture(m.emissive_texname, m.emissive_texopt);
-  r.alpha_texture = texture(m.alpha_texname, m.alpha_texopt);
-  // A map without its factor: the factor is 1 (the loader does so for map_Kd).
+  r.roughness = m.roughness ? channel(*m.roughness)
+                            : std::sqrt(std::sqrt(2 / (std::max(0.0F, m.shininess) + 2)));
+  const Vec3 emission = m.emission.value_or(Vec3{0, 0, 0});
+  r.emissive = {std::max(0.0F, emission.x), std::max(0.0F, emission.y), std::max(0.0F, emission.z)};
+  r.base_color_texture = texture(m.diffuse_map);
+  r.emissive_texture = texture(m.emission_map);
+  r.alpha_texture = texture(m.alpha_map);
+  r.normal_texture = texture(m.normal_map);
+  r.normal_scale = m.normal_map.multiplier;
+  // A map without its factor: the factor is 1.
   if (r.emissive_texture != kNoTexture && r.emissive == Vec3{0, 0, 0}) r.emissive = {1, 1, 1};
   if (r.alpha_texture != kNoTexture)
     r.alpha_mode = AlphaMode::mask;
@@ -116,6 +132,162 @@ Material convert(const tinyobj::material_t& m, TextureReader& texture) {
     r.alpha_mode = AlphaMode::blend;
   return r;
 }
+
+class MtlReader {
+ public:
+  MtlReader(Bytes bytes, const fs::path& file, Scene& scene,
+            std::unordered_map<std::string, std::uint32_t>& by_name)
+      : name_(file.string()),
+        in_(as_text(bytes), name_),
+        texture_(file, scene),
+        scene_(scene),
+        by_name_(by_name) {}
+
+  void read() {
+    while (!in_.at_end()) {
+      start_ = in_.offset();
+      const std::string_view line = in_.line();
+      TextCursor words(line, name_);
+      if (!words.at_line_end() && words.peek() != '#') statement(words);
+    }
+    finish_material();
+    if (wrong_ != 0)
+      scene_.warnings.push_back(
+          first_wrong_ + (wrong_ > 1 ? " (and " + std::to_string(wrong_ - 1) + " more)" : ""));
+    texture_.warn();
+  }
+
+ private:
+  void statement(TextCursor& words) {
+    const std::string_view key = words.token();
+    if (key == "newmtl") {
+      finish_material();
+      material_ = {};
+      words.skip_blanks();
+      material_.name = words.line();
+      if (material_.name.empty()) wrong("newmtl without a name");
+    } else if (key == "Kd") {
+      color(words, key, material_.diffuse);
+    } else if (key == "Ke") {
+      color(words, key, material_.emission);
+    } else if (key == "Ns") {
+      if (const auto x = number(words, key)) material_.shininess = *x;
+    } else if (key == "d") {
+      if (TextCursor at = words; at.token() == "-halo")
+        words = at;  // alpha by the angle: not drawn
+      assign(material_.dissolve, number(words, key));
+      compare_alphas();
+    } else if (key == "Tr") {
+      assign(material_.transparency, number(words, key));
+      compare_alphas();
+    } else if (key == "Pr") {
+      assign(material_.roughness, number(words, key));
+    } else if (key == "Pm") {
+      assign(material_.metallic, number(words, key));
+    } else if (key == "map_Kd") {
+      map(words, key, material_.diffuse_map);
+    } else if (key == "map_Ke") {
+      map(words, key, material_.emission_map);
+    } else if (key == "map_d") {
+      map(words, key, material_.alpha_map);
+    } else if (key == "norm") {
+      map(words, key, material_.normal_map);
+    }
+  }
+
+  std::optional<float> number(TextCursor& words, std::string_view key) {
+    const std::optional<float> x = words.optional_word<float>();
+    if (x && std::isfinite(*x)) return x;
+    wrong(x ? std::string(key) + " is not finite" : missing(words, key, "a number"));
+    return {};
+  }
+
+  static void assign(std::optional<float>& to, std::optional<float> x) {
+    if (x) to = x;
+  }
+
+  /// One number stands for all three.
+  void color(TextCursor& words, std::string_view key, std::optional<Vec3>& to) {
+    const auto r = number(words, key);
+    if (!r) return;
+    if (words.at_line_end()) {
+      to = {*r, *r, *r};
+      return;
+    }
+    const auto g = number(words, key);
+    const auto b = g ? number(words, key) : g;
+    if (b) to = {*r, *g, *b};
+  }
+
+  /// Most write 1 − d as Tr, some d: worth a word where the two differ by more than their digits.
+  void compare_alphas() {
+    const auto [d, tr] = std::pair(material_.dissolve, material_.transparency);
+    if (d && tr && std::abs(*d - (1 - *tr)) > 0.005F)
+      wrong("d and Tr of " + io::quoted(material_.name) + " differ: d is taken");
+  }
+
+  /// Options, then a name to the end of the line, which may hold spaces.
+  void map(TextCursor& words, std::string_view key, TextureMap& to) {
+    TextureMap map;
+    while (!words.at_line_end() && words.peek() == '-' && option(words, map)) continue;
+    if (words.at_line_end()) return wrong(missing(words, key, "the name of a picture"));
+    map.name = words.line();
+    to = std::move(map);
+  }
+
+  /// False, and `words` left alone, where a name begins with a dash.
+  static bool option(TextCursor& words, TextureMap& map) {
+    static constexpr std::array<std::string_view, 8> kOneWord = {
+        "-blendu", "-blendv", "-boost", "-cc", "-colorspace", "-imfchan", "-texres", "-type"};
+    TextCursor at = words;
+    const std::string_view name = at.token();
+    if (name == "-o" || name == "-s" || name == "-t") {  // one to three numbers; not drawn
+      for (int i = 0; i < 3 && at.optional_word<float>(); ++i) continue;
+    } else if (name == "-mm") {
+      for (int i = 0; i < 2 && at.optional_word<float>(); ++i) continue;
+    } else if (name == "-bm") {
+      if (const auto x = at.optional_word<float>(); x && std::isfinite(*x)) map.multiplier = *x;
+    } else if (name == "-clamp") {
+      map.clamp = at.token() != "off";
+    } else if (std::find(kOneWord.begin(), kOneWord.end(), name) != kOneWord.end()) {
+      at.token();
+    } else {
+      return false;
+    }
+    words = at;
+    return true;
+  }
+
+  static std::string missing(TextCursor& words, std::string_view key, const char* what) {
+    const bool at_end = words.at_line_end();
+    return std::string(key) + " wants " + what + ", found " +
+           (at_end ? "the end of the line" : io::quoted(words.token()));
+  }
+
+  /// Counted without an exception for each: a large file may be wrong in all its lines.
+  void wrong(const std::string& message) {
+    if (wrong_++ == 0)
+      first_wrong_ = name_ + ":" + std::to_string(in_.line_of(start_)) + ": " + message;
+  }
+
+  /// The first of a name wins; what stands before any name belongs to none.
+  void finish_material() {
+    if (material_.name.empty()) return;
+    const auto index = static_cast<std::uint32_t>(scene_.materials.size());
+    if (by_name_.emplace(material_.name, index).second)
+      scene_.materials.push_back(convert(material_, texture_));
+  }
+
+  std::string name_;
+  TextCursor in_;
+  TextureReader texture_;
+  Scene& scene_;
+  std::unordered_map<std::string, std::uint32_t>& by_name_;
+  MtlMaterial material_{};
+  std::size_t start_ = 0;  ///< of the statement that is read
+  std::size_t wrong_ = 0;
+  std::string first_wrong_{};
+};
 
 }  // namespace
 
@@ -133,30 +305,7 @@ void read_mtl(const fs::path& file, Scene& scene,
 
 void parse_mtl(Bytes bytes, const fs::path& file, Scene& scene,
                std::unordered_map<std::string, std::uint32_t>& by_name) {
-  std::map<std::string, int> index_of;
-  std::vector<tinyobj::material_t> materials;
-  std::string warning, error;
-  try {
-    std::istringstream in{std::string(as_text(bytes))};
-    tinyobj::LoadMtl(&index_of, &materials, &in, &warning, &error);
-  } catch (const std::exception& e) {
-    scene.warnings.push_back(file.string() + ": drawn without these materials: " + e.what());
-    return;
-  }
-  for (std::string* s : {&warning, &error}) {
-    if (s->empty()) continue;
-    const auto lines = std::count(s->begin(), s->end(), '\n');
-    scene.warnings.push_back(file.string() + ": " +
-                             s->substr(0, std::min<std::size_t>(s->find('\n'), 200)) +
-                             (lines > 1 ? " (and " + std::to_string(lines - 1) + " more)" : ""));
-  }
-  TextureReader texture(file, scene);
-  for (const tinyobj::material_t& m : materials) {
-    if (m.name.empty()) continue;  // the loader ends every file with one, even an empty file
-    if (by_name.emplace(m.name, static_cast<std::uint32_t>(scene.materials.size())).second)
-      scene.materials.push_back(convert(m, texture));
-  }
-  texture.warn();
+  MtlReader(bytes, file, scene, by_name).read();
 }
 
 }  // namespace rastrum::io

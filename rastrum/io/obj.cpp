@@ -1,7 +1,6 @@
-// Wavefront OBJ. Own reader: tinyobjloader 2.0rc10 stores a polygon's corner count in 8 bits, reads
-// a word that is no number as 0, accepts indices that do not exist and knows no line numbers; its
-// MTL reader is used (mtl.cpp). One mesh for a file, so that triangles keep the file's order over
-// groups, objects and materials.
+// Wavefront OBJ, strictly: a polygon has as many corners as it says, what is no number is an error,
+// and so is an index that does not exist, with file and line. Materials are mtl.cpp's. One mesh for
+// a file, so that triangles keep the file's order over groups, objects and materials.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

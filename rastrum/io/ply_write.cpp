@@ -29,9 +29,9 @@ bool fit_bytes(const std::vector<Vec4>& colors) {
 }
 
 /// Collects rows and hands them on in large pieces.
-class Buffer {
+class RowWriter {
  public:
-  explicit Buffer(AtomicFile& out) : out_(out) { bytes_.reserve(kSize); }
+  explicit RowWriter(AtomicFile& out) : out_(out) { bytes_.reserve(kSize); }
   void put(const void* data, std::size_t n) {
     if (bytes_.size() + n > kSize) flush();
     const auto* p = static_cast<const std::byte*>(data);
@@ -84,14 +84,14 @@ void write_ply(AtomicFile& out, const Mesh& mesh) {
   header += "element face " + std::to_string(faces) +
             "\nproperty list uchar uint vertex_indices\nend_header\n";
 
-  Buffer buffer(out);
-  buffer.put(header.data(), header.size());
+  RowWriter rows(out);
+  rows.put(header.data(), header.size());
   for (std::size_t i = 0; i < vertices; ++i) {
-    buffer.put(&mesh.positions[i], sizeof(Vec3));
-    if (normals) buffer.put(&mesh.normals.values[i], sizeof(Vec3));
+    rows.put(&mesh.positions[i], sizeof(Vec3));
+    if (normals) rows.put(&mesh.normals.values[i], sizeof(Vec3));
     if (texcoords) {
       const Vec2 t = {mesh.texcoords.values[i].x, 1 - mesh.texcoords.values[i].y};
-      buffer.put(&t, sizeof t);
+      rows.put(&t, sizeof t);
     }
     if (!colors) continue;
     const Vec4 c = mesh.colors.values[i];
@@ -99,9 +99,9 @@ void write_ply(AtomicFile& out, const Mesh& mesh) {
       const float scaled[4] = {c.x * 255, c.y * 255, c.z * 255, c.w * 255};
       std::uint8_t b[4];
       for (int k = 0; k < 4; ++k) b[k] = static_cast<std::uint8_t>(std::lround(scaled[k]));
-      buffer.put(b, sizeof b);
+      rows.put(b, sizeof b);
     } else {
-      buffer.put(&c, sizeof c);
+      rows.put(&c, sizeof c);
     }
   }
   for (std::size_t t = 0; t < faces; ++t) {
@@ -110,9 +110,9 @@ void write_ply(AtomicFile& out, const Mesh& mesh) {
       const std::uint32_t i = view.vertex(3 * t + c);
       std::memcpy(face + 1 + 4 * c, &i, 4);
     }
-    buffer.put(face, sizeof face);
+    rows.put(face, sizeof face);
   }
-  buffer.flush();
+  rows.flush();
 }
 
 }  // namespace rastrum::io

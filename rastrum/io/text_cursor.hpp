@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -100,6 +101,25 @@ class TextCursor {
     const T value = number<T>(what, across_lines);
     if (at_ != end_ && !is_space(*at_))
       fail(std::string("expected ") + what + ", found " + excerpt());
+    return value;
+  }
+
+  /// The same where a reader goes on without it: nothing, and the place unmoved, where what comes
+  /// next on this line is no such word.
+  template <class T>
+  std::optional<T> optional_word() {
+    skip_blanks();
+    const char* first = at_ != end_ && *at_ == '+' ? at_ + 1 : at_;
+    T value{};
+    const auto [next, error] = std::from_chars(first, end_, value);
+    if (error == std::errc::invalid_argument || (next != end_ && !is_space(*next))) return {};
+    if (error == std::errc::result_out_of_range) {
+      if constexpr (!std::is_floating_point_v<T>)
+        return {};
+      else
+        value = out_of_range<T>(first, next);
+    }
+    at_ = next;
     return value;
   }
 

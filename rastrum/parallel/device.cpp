@@ -1,5 +1,7 @@
 #include <rastrum/parallel/device.hpp>
 
+// What the SIMD sources are compiled for, by the same question that they ask.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #include <hwy/detect_targets.h>
 
 #include <algorithm>
@@ -68,11 +70,11 @@ std::vector<Isa> available_isas() {
   const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") &&
                       __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
                       __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd");
-  if (sse4) isas.push_back(Isa::sse4);
-  if (avx2) isas.push_back(Isa::avx2);
-  if (avx512) isas.push_back(Isa::avx512);
+  if (sse4 && (HWY_TARGETS & HWY_SSE4) != 0) isas.push_back(Isa::sse4);
+  if (avx2 && (HWY_TARGETS & HWY_AVX2) != 0) isas.push_back(Isa::avx2);
+  if (avx512 && (HWY_TARGETS & HWY_AVX3) != 0) isas.push_back(Isa::avx512);
 #elif HWY_ARCH_ARM
-  isas.push_back(Isa::neon);
+  if ((HWY_TARGETS & HWY_NEON) != 0) isas.push_back(Isa::neon);
 #endif
   return isas;
 }
@@ -81,9 +83,14 @@ Isa choose_isa(std::optional<Isa> wanted) {
   const std::vector<Isa> isas = available_isas();
   if (!wanted) return isas.back();
   check_enum(*wanted, Isa::neon, "isa");
-  if (std::ranges::find(isas, *wanted) == isas.end())
-    throw Error(Errc::no_device,
-                "this machine cannot run " + std::string(name(*wanted)) + " instructions");
+  if (std::ranges::find(isas, *wanted) == isas.end()) {
+    std::string others;
+    for (const Isa isa : isas) others.append(others.empty() ? "" : ", ").append(name(isa));
+    throw Error(Errc::no_device, std::string("--isa ")
+                                     .append(name(*wanted))
+                                     .append(": this machine, or this build, has only ")
+                                     .append(others));
+  }
   return *wanted;
 }
 

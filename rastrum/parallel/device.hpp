@@ -25,10 +25,12 @@ struct DeviceChoice {
 /// Instruction sets that the SIMD leaves are compiled for. `scalar` is plain C++.
 enum class Isa : std::uint8_t { scalar, sse4, avx2, avx512, neon };
 [[nodiscard]] std::string_view name(Isa isa);
-/// Those that this machine can run, slowest first; always begins with `scalar`.
+/// Those that this machine can run and this library is compiled for, slowest first; always begins
+/// with `scalar`.
 [[nodiscard]] std::vector<Isa> available_isas();
-/// `wanted`, or the best of available_isas(). Throws Error{no_device} where this machine cannot run
-/// it.
+/// `wanted`, or the best of available_isas(). Whoever is given an instruction set asks here, so
+/// that one that is not there is never plain C++ in silence: throws Error{no_device} that names
+/// those that are, Error{invalid_argument} for a value that is none.
 [[nodiscard]] Isa choose_isa(std::optional<Isa> wanted);
 
 }  // namespace rastrum

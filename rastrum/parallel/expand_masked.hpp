@@ -6,7 +6,7 @@
 //
 // Work O(n + Σ size + result), span O(kBlock + log n). Allocates the result and, with threads, 8
 // bytes per segment, kBits / 8 per mask and 8 for every 4096 elements.
-// The default of 64 bits is measured (docs/performance.md, Words).
+// The default of 64 bits is measured (docs/log/words.md).
 // Source: paper 1, section 3.1.2.
 #pragma once
 

@@ -5,9 +5,9 @@
 namespace rastrum {
 namespace {
 
-// Of one thread: within a factor of 2.5 of docs/performance.md's first table, from 968 triangles at
-// 4096² (pixels) to 4.4 million (primitives), but for a soup of a million large ones, whose samples
-// nobody knows before.
+// Of one thread: within a factor of 2.5 of docs/log/triangles.md's first table, from 968 triangles
+// at 4096² (pixels) to 4.4 million (primitives), but for a soup of a million large ones, whose
+// samples nobody knows before.
 constexpr double kHostPrimitive_ns = 50, kHostPixel_ns = 4;
 // Of an A100, guessed: a billion triangles a second; some 30 bytes a pixel of keys, colours and
 // what is read again, at 1.5 TB/s.

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include <rastrum/core/enum.hpp>
 #include <rastrum/core/error.hpp>
 #include <rastrum/family/blend/approximations.hpp>
 #include <rastrum/family/cuda/rasterizer.hpp>
@@ -33,7 +34,8 @@ std::vector<std::string_view> shader_names() {
 }
 
 std::string_view name(Shader shader) {
-  return kShaderNames.at(static_cast<std::size_t>(shader));
+  check_enum(shader, Shader::wireframe, "the shader");
+  return kShaderNames[static_cast<std::size_t>(shader)];
 }
 
 Shader shader_for(Shader shader, const SceneView& scene) {

@@ -37,6 +37,7 @@ enum class Shader : std::uint8_t {
 [[nodiscard]] std::vector<std::string_view> shader_names();
 /// Throws Error{invalid_argument} that lists the names.
 [[nodiscard]] Shader shader_from_name(std::string_view name);
+/// Throws Error{invalid_argument} for a value that is none.
 [[nodiscard]] std::string_view name(Shader shader);
 /// What `shader` is for `scene`: itself, or what `automatic` takes.
 [[nodiscard]] Shader shader_for(Shader shader, const SceneView& scene);

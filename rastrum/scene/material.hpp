@@ -11,7 +11,7 @@
 namespace rastrum {
 
 enum class Wrap : std::uint8_t { repeat, mirrored_repeat, clamp_to_edge };
-enum class Filter : std::uint8_t { nearest, linear };  ///< linear minifies trilinearly
+enum class TextureFilter : std::uint8_t { nearest, linear };  ///< linear minifies trilinearly
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 
 /// A decoded picture as its file has it: 8 bit, straight alpha, row 0 at the top. Whether it holds
@@ -20,7 +20,7 @@ struct Texture {
   std::string name{};
   Image<Rgba8> image{};
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-  Filter mag = Filter::linear, min = Filter::linear;
+  TextureFilter mag = TextureFilter::linear, min = TextureFilter::linear;
   bool mipmaps = true;
 };
 

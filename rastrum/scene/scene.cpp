@@ -50,14 +50,38 @@ void check_indices(const MeshView& mesh) {
                       ", but there are only " + std::to_string(mesh.positions.size()));
 }
 
+void add_plain_materials(Scene& scene) {
+  // Linear light that the sRGB transfer turns into the plain shaders' 0.8, 0.7, 0.6 to an ulp.
+  constexpr Vec4 kPlain{0.603780866F, 0.447983563F, 0.318572849F, 1};
+  constexpr std::uint32_t kNone = ~0U;
+  std::uint32_t plain = kNone, colored = kNone;
+  for (Mesh& mesh : scene.meshes) {
+    const bool has_colors = !mesh.colors.empty();
+    std::uint32_t& index = has_colors ? colored : plain;
+    if (index == kNone) {
+      index = static_cast<std::uint32_t>(scene.materials.size());
+      Material& m = scene.materials.emplace_back();
+      m.name = "plain";
+      m.metallic = 0;
+      m.double_sided = true;
+      // Vertex colours stand for themselves, and their alpha counts.
+      if (has_colors)
+        m.alpha_mode = AlphaMode::blend;
+      else
+        m.base_color = kPlain;
+    }
+    mesh.material = index;
+    mesh.face_materials = {};
+  }
+}
+
 void Scene::append(Scene other) {
   const auto mesh_offset = static_cast<std::uint32_t>(meshes.size());
   const auto texture_offset = static_cast<std::int32_t>(textures.size());
-  // A file without materials draws with a default of its own once another file brings some.
+  // A file without materials looks as it did once another file brings some.
   const bool any_materials = !materials.empty() || !other.materials.empty();
-  if (any_materials && materials.empty() && !meshes.empty()) materials.emplace_back();
-  if (any_materials && other.materials.empty() && !other.meshes.empty())
-    other.materials.emplace_back();
+  if (any_materials && materials.empty()) add_plain_materials(*this);
+  if (any_materials && other.materials.empty()) add_plain_materials(other);
   const auto material_offset = static_cast<std::uint32_t>(materials.size());
 
   for (Mesh& mesh : other.meshes) {

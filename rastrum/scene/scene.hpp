@@ -44,10 +44,15 @@ struct Scene {
   std::vector<std::string> warnings{};
 
   /// Appends `other` behind this scene: indices into meshes, materials and textures are shifted.
+  /// Where one of the two has no materials it is given plain ones.
   void append(Scene other);
   /// Throws Error{invalid_argument} where an instance is of no mesh.
   [[nodiscard]] std::uint64_t triangle_count() const;
 };
+
+/// Gives the meshes of a scene without materials some that look as if there were none: the colour
+/// of the plain shaders, or the mesh's own colours, which blend.
+void add_plain_materials(Scene& scene);
 
 /// The borrowed form of a scene; keeps the instance list that the span points to. The scene must
 /// outlive it.

@@ -23,7 +23,7 @@ class BlockMarks {
   /// For pictures `height` rows high, with distances or without.
   void prepare(int height, bool colors, bool depths) {
     const std::size_t n = static_cast<std::size_t>(height) * kBlockColumns;
-    const auto grow = [n](Buffer<std::uint32_t>& marks) {
+    const auto grow = [n](ScratchBuffer<std::uint32_t>& marks) {
       if (marks.capacity() >= n) return;
       marks.reserve(n);
       std::fill_n(marks.data(), n, 0U);
@@ -56,7 +56,8 @@ class BlockMarks {
   /// Writes columns [first, first + n) of the targets and forgets the marks.
   void resolve(const Kernels& kernels, std::size_t first, std::size_t n, int height, Rgba8 sky,
                const TerrainTargets& targets) {
-    const auto write = [&](Buffer<std::uint32_t>& marks, const auto& view, std::uint32_t empty) {
+    const auto write = [&](ScratchBuffer<std::uint32_t>& marks, const auto& view,
+                           std::uint32_t empty) {
       alignas(64) std::uint32_t above[kBlockColumns];
       std::fill_n(above, kBlockColumns, empty);
       // Pixels are 32 bits, whatever they mean.
@@ -73,7 +74,7 @@ class BlockMarks {
  private:
   static constexpr std::uint32_t kOpaque = std::bit_cast<std::uint32_t>(Rgba8{0, 0, 0, 255});
   bool with_colors_ = false, with_depths_ = false;
-  Buffer<std::uint32_t> colors_, depths_;
+  ScratchBuffer<std::uint32_t> colors_, depths_;
 };
 
 /// The marks of each thread, kept between frames.

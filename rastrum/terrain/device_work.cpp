@@ -8,7 +8,7 @@
 namespace rastrum::terrain {
 namespace {
 
-// Of one thread, by a column's slice and by a pixel: docs/performance.md's table from 800×450 to
+// Of one thread, by a column's slice and by a pixel: docs/log/terrain.md's table from 800×450 to
 // 3840×2160 within a third. `words` takes some 35 times as long, within a factor of 1.7.
 constexpr double kHostSlice_ns = 0.4, kHostPixel_ns = 0.7, kHostWords = 35;
 // Of an A100, guessed: eight bytes a slice and a pixel at 1.5 TB/s; the words write and scan pairs.

@@ -15,7 +15,7 @@ void heights_scalar(const Samples& samples, const Slice& slice, std::size_t n,
   for (std::size_t i = 0; i < n; ++i) {
     const float x = samples.setup.fx + slice.z * b.ux[i], y = samples.setup.fy + slice.z * b.uy[i];
     b.heights[i] = map.height_at(x, y, level);
-    b.cells[i] = map.filter == Filter::bilinear ? 0 : map.cell_at(x, y, level);
+    b.cells[i] = map.filter == MapFilter::bilinear ? 0 : map.cell_at(x, y, level);
   }
 }
 

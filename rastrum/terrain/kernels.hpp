@@ -52,7 +52,7 @@ struct MapSize {
 };
 
 struct Kernels {
-  /// Heights and cells of columns [0, n) on a slice. No cells with Filter::bilinear.
+  /// Heights and cells of columns [0, n) on a slice. No cells with MapFilter::bilinear.
   void (*heights)(const Samples& samples, const Slice& slice, std::size_t n,
                   ColumnBlock& block) noexcept;
 
@@ -80,7 +80,7 @@ struct Kernels {
 /// Slices that classic positions are accumulated for at a time; their number is rounded up to it.
 inline constexpr std::size_t kClassicSlices = 8;
 
-/// The best table at or below `isa` that was compiled for this architecture.
+/// The table of `isa`, one of available_isas() (choose_isa); of others, plain C++.
 [[nodiscard]] const Kernels& kernels(Isa isa) noexcept;
 
 /// Where the Highway source meets the table; returns false where `isa` was not compiled.

@@ -64,12 +64,12 @@ struct Axis {
   F inverse_;
 };
 
-template <Wrap kWrap, Filter kFilter>
+template <Wrap kWrap, MapFilter kFilter>
 void heights(const Samples& samples, const Slice& slice, std::size_t n, ColumnBlock& b) noexcept {
   const F32 d;
   const I32 di;
   const MapView& map = samples.map;
-  const int level = kFilter == Filter::mip ? map.height_level(slice.level) : 0;
+  const int level = kFilter == MapFilter::mip ? map.height_level(slice.level) : 0;
   const ImageView<const float>& image = map.heights(level);
   const float* cells = image.data;
   const Axis<kWrap> across(map.width), down(map.height);
@@ -80,13 +80,13 @@ void heights(const Samples& samples, const Slice& slice, std::size_t n, ColumnBl
   for (std::size_t i = 0; i < n; i += kLanes) {
     F x = hn::Add(fx, hn::Mul(z, hn::Load(d, b.ux + i)));
     F y = hn::Add(fy, hn::Mul(z, hn::Load(d, b.uy + i)));
-    if constexpr (kFilter == Filter::bilinear) {
+    if constexpr (kFilter == MapFilter::bilinear) {
       x = hn::Sub(x, hn::Set(d, 0.5F));
       y = hn::Sub(y, hn::Set(d, 0.5F));
     }
     const F x0 = hn::Floor(x), y0 = hn::Floor(y);
     const I u = hn::Add(cell_x, hn::ConvertTo(di, x0)), v = hn::Add(cell_y, hn::ConvertTo(di, y0));
-    if constexpr (kFilter == Filter::bilinear) {
+    if constexpr (kFilter == MapFilter::bilinear) {
       const F tx = hn::Sub(x, x0), ty = hn::Sub(y, y0);
       const I one = hn::Set(di, 1);
       const I left = across.tiled(u), right = across.tiled(hn::Add(u, one));
@@ -100,7 +100,7 @@ void heights(const Samples& samples, const Slice& slice, std::size_t n, ColumnBl
       hn::Store(hn::Add(above, hn::Mul(ty, hn::Sub(below, above))), d, b.heights + i);
     } else {
       I column = across.tiled(u), row = down.tiled(v);
-      if constexpr (kFilter == Filter::mip) {
+      if constexpr (kFilter == MapFilter::mip) {
         column = hn::ShiftRightSame(column, level);
         row = hn::ShiftRightSame(row, level);
       }
@@ -116,9 +116,11 @@ void heights(const Samples& samples, const Slice& slice, std::size_t n, ColumnBl
 template <Wrap kWrap>
 void heights_filtered(const Samples& samples, const Slice& slice, std::size_t n,
                       ColumnBlock& b) noexcept {
-  if (samples.map.filter == Filter::none) return heights<kWrap, Filter::none>(samples, slice, n, b);
-  if (samples.map.filter == Filter::mip) return heights<kWrap, Filter::mip>(samples, slice, n, b);
-  heights<kWrap, Filter::bilinear>(samples, slice, n, b);
+  if (samples.map.filter == MapFilter::none)
+    return heights<kWrap, MapFilter::none>(samples, slice, n, b);
+  if (samples.map.filter == MapFilter::mip)
+    return heights<kWrap, MapFilter::mip>(samples, slice, n, b);
+  heights<kWrap, MapFilter::bilinear>(samples, slice, n, b);
 }
 
 void heights_tiled(const Samples& samples, const Slice& slice, std::size_t n,

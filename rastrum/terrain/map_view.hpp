@@ -75,7 +75,7 @@ struct HalvedCell {
 /// cell.
 struct MapView {
   MapLevels levels{};
-  Filter filter = Filter::none;
+  MapFilter filter = MapFilter::none;
   Tiling tiling = Tiling::repeat;
   std::int32_t cell_x = 0, cell_y = 0;
   int width = 0, height = 0;
@@ -104,7 +104,7 @@ struct MapView {
   }
   /// A cell's colour has the cell's index.
   [[nodiscard]] RASTRUM_HD bool colors_match() const {
-    return filter != Filter::bilinear && levels.color_width == width &&
+    return filter != MapFilter::bilinear && levels.color_width == width &&
            levels.color_height == height;
   }
 };
@@ -159,7 +159,7 @@ RASTRUM_HD T HalvedCell<T>::operator()(int x, int y) const {
 }
 
 RASTRUM_HD inline float MapView::height_at(float x, float y, int level) const {
-  if (filter == Filter::bilinear) {
+  if (filter == MapFilter::bilinear) {
     x -= 0.5F;
     y -= 0.5F;
     const float x0 = std::floor(x), y0 = std::floor(y), tx = x - x0, ty = y - y0;
@@ -198,10 +198,10 @@ RASTRUM_HD inline Rgba8 MapView::color_at(float x, float y, int level) const {
   const ImageView<const Rgba8>& whole = colors(0);
   const float u = map_detail::texels(i, x - x0, width, color_x, tiling);
   const float v = map_detail::texels(j, y - y0, height, color_y, tiling);
-  if (filter != Filter::bilinear) {
+  if (filter != MapFilter::bilinear) {
     level += color_level;
     const int last = static_cast<int>(levels.colors.size()) - 1;
-    level = filter == Filter::none || level < 0 ? 0 : level < last ? level : last;
+    level = filter == MapFilter::none || level < 0 ? 0 : level < last ? level : last;
     const int s = static_cast<int>(u), t = static_cast<int>(v);
     return colors(level)((s < whole.width ? s : whole.width - 1) >> level,
                          (t < whole.height ? t : whole.height - 1) >> level);

@@ -26,7 +26,7 @@ struct TerrainCamera {
   bool operator==(const TerrainCamera&) const = default;
 };
 
-enum class Filter : std::uint8_t {
+enum class MapFilter : std::uint8_t {
   none,      ///< the cell under the sample
   bilinear,  ///< between the centres of four cells, heights and colours
   mip,       ///< one cell of the pyramid: maximum of the heights, mean of the colours
@@ -68,7 +68,7 @@ struct TerrainOptions {
   /// is high at their distance (a share of it, so that `dz` is not used); the others take 1 and
   /// `dz`.
   double step = 1, dz = 0.005;
-  Filter filter = Filter::none;
+  MapFilter filter = MapFilter::none;
   Tiling tiling = Tiling::repeat;
   Projection projection = Projection::planar;
   Rgba8 sky = kSky;

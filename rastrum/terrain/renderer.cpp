@@ -128,7 +128,7 @@ void TerrainRenderer::Impl::prepare(const Terrain& terrain, Device where) {
   if (!terrain.is_map() || where == Device::cuda) return;
   if (where == Device::threads && !(ceiling && ceiling->is_of(terrain)))
     ceiling.emplace(terrain.heights());
-  const bool whole = options.filter == Filter::mip;
+  const bool whole = options.filter == MapFilter::mip;
   if (!(pyramid && pyramid->is_of(terrain, whole)))
     pyramid.emplace(terrain.heights(), terrain.colors(), whole);
 }

@@ -27,7 +27,7 @@ class TerrainRenderer {
   TerrainRenderer& operator=(TerrainRenderer&&) noexcept;
 
   /// Fills `targets`. The picture depends on terrain, camera and options alone: not on the method
-  /// (but for Filter and cells that are the same), device, threads or instruction set.
+  /// (but for MapFilter and cells that are the same), device, threads or instruction set.
   /// Cost: O(width · slices + width · height). Throws Error{invalid_argument} for a camera that is
   /// not finite or farther than 1e12 cells away, or targets of another size;
   /// Error{out_of_memory} for a map that is too large for the CUDA device that was asked for.
@@ -42,7 +42,7 @@ class TerrainRenderer {
 };
 
 /// The height of the ground at a point as it is drawn near by: of the cell, between the centres of
-/// four with Filter::bilinear; NaN in a hole.
+/// four with MapFilter::bilinear; NaN in a hole.
 [[nodiscard]] double ground_at(const Terrain& terrain, double x, double y,
                                const TerrainOptions& options);
 

@@ -32,7 +32,7 @@ double half_width(const TerrainOptions& o) {
 /// leaves each row below the horizon a sample of flat ground (a step takes step / z of the rows
 /// between its ground and the horizon). 0: steps of a length of their own.
 double step_share(const TerrainOptions& o) {
-  const bool own = o.classic || o.step != 0 || o.filter != Filter::bilinear;
+  const bool own = o.classic || o.step != 0 || o.filter != MapFilter::bilinear;
   return own ? 0 : std::max(1 / std::max<double>(scale_px(o), o.height), kLeastShare);
 }
 
@@ -65,7 +65,7 @@ void check(const TerrainOptions& o) {
   require(o.width >= 1 && o.height >= 1 && o.width <= kMaxImageSize && o.height <= kMaxImageSize,
           "terrain: the size " + std::to_string(o.width) + "x" + std::to_string(o.height) +
               " is outside 1x1 to 32768x32768");
-  check_enum(o.filter, Filter::mip, "terrain: the filter");
+  check_enum(o.filter, MapFilter::mip, "terrain: the filter");
   check_enum(o.tiling, Tiling::clamp, "terrain: the tiling");
   check_enum(o.projection, Projection::cylindrical, "terrain: the projection");
   check_enum(o.method, Method::words, "terrain: the method");
@@ -177,7 +177,7 @@ Setup set_up(const TerrainOptions& o, const TerrainCamera& camera, const Extent&
     along += along * share;
     slice.z = static_cast<float>(z);
     slice.rows = static_cast<float>(scale / z);
-    if (o.filter == Filter::mip) {
+    if (o.filter == MapFilter::mip) {
       const double step = first_step(o) + o.dz * static_cast<double>(k);
       slice.level = std::max(0, std::ilogb(std::max(step, z * spacing)));
     }

@@ -85,7 +85,8 @@ void on_cpu(const ShadowOptions& options, F&& f) {
 
 /// The instruction set of the options; `serial` is plain C++.
 Isa isa_of(const ShadowOptions& options) {
-  return options.device == Device::serial ? Isa::scalar : choose_isa(options.isa);
+  const Isa chosen = choose_isa(options.isa);
+  return options.device == Device::serial ? Isa::scalar : chosen;
 }
 
 /// ShadowKernels::tile_ranges in plain C++.
@@ -191,11 +192,11 @@ Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun
                                   const ShadowOptions& options) {
   check_stride(heights, "the height map");
   check(sun);
+  const Isa isa = isa_of(options);
   if (const auto dark =
           on_cuda(options, [&] { return sharp_shadows_on_device(heights, sun, options.tiling); }))
     return *dark;
   Image<std::uint8_t> shadow(heights.width, heights.height);
-  const Isa isa = isa_of(options);
   const ShadowKernels& kernels = shadow_kernels(isa);
   Image<float> copy;
   HeightTiles tiles;
@@ -304,10 +305,10 @@ Image<std::uint16_t> hidden_samples(ImageView<const float> heights, const Sun& s
                                     const March& march, const ShadowOptions& options) {
   check_stride(heights, "the height map");
   const std::vector<MarchSample> samples = march_samples(sun, march);
+  const ShadowKernels& kernels = shadow_kernels(isa_of(options));
   if (const auto hidden = on_cuda(
           options, [&] { return hidden_samples_on_device(heights, sun, march, options.tiling); }))
     return *hidden;
-  const ShadowKernels& kernels = shadow_kernels(isa_of(options));
   Image<float> copy;
   HeightTiles tiles;
   const ShadowCaster map = caster_of(heights, options.tiling, kernels, copy, tiles);

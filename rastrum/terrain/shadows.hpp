@@ -1,7 +1,7 @@
 // Where the sun does not reach a height map.
 //
 // The surface. A map is made of columns: cell (i, j) is the square [i, i + 1) × [j, j + 1), flat at
-// its height (as Filter::none draws it), tiled beyond the map's edge. A cell is judged at the
+// its height (as MapFilter::none draws it), tiled beyond the map's edge. A cell is judged at the
 // middle of its top. From there a ray goes to the sun; the cell is in shadow where the ray runs
 // through another cell below that cell's top. The ray climbs, so it is lowest where it enters:
 //
@@ -41,7 +41,7 @@ struct ShadowOptions {
 /// Cost: two lines of a sweep a cell and column of the map, further columns where the longest
 /// shadow reaches beyond the map's edge, and a traversal of the few cells that the sweep cannot
 /// decide (shadow_sweep.hpp). Throws Error{invalid_argument} for a sun that is not finite or above
-/// 90°.
+/// 90°, Error{no_device}.
 [[nodiscard]] Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun,
                                                 const ShadowOptions& options = {});
 

@@ -74,7 +74,7 @@ double ground_at(const Terrain& terrain, double x, double y, const TerrainOption
   const auto at = [&](double u, double v) {
     return static_cast<double>(terrain.height_at(u, v, options.tiling));
   };
-  if (!terrain.is_map() || options.filter != Filter::bilinear) return at(x, y);
+  if (!terrain.is_map() || options.filter != MapFilter::bilinear) return at(x, y);
   const double u = std::floor(x - 0.5), v = std::floor(y - 0.5);
   const double tx = x - 0.5 - u, ty = y - 0.5 - v;
   return std::lerp(std::lerp(at(u, v), at(u + 1, v), tx),

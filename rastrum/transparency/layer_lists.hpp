@@ -153,9 +153,9 @@ class LayerLists {
     [[no_unique_address]] Owner owner;
   };
 
-  Buffer<std::uint64_t> planes_, masks_;
-  Buffer<Owner> owners_;
-  Buffer<Entry> column_;
+  ScratchBuffer<std::uint64_t> planes_, masks_;
+  ScratchBuffer<Owner> owners_;
+  ScratchBuffer<Entry> column_;
   std::size_t allocated_ = 0, capacity_ = 0, room_ = 0, filter_ = 0;
   std::uint64_t order_mask_ = 0;
   std::uint32_t counts_[64] = {};

@@ -347,7 +347,7 @@ struct LayeredBin::Impl {
   Isa made_with_ = Isa::scalar;
   ByBlock<Record> records_;
   ByBlock<MicroRecord> micro_;
-  Buffer<std::uint64_t> order_;  ///< of a block's records: ~depth << 32 | number
+  ScratchBuffer<std::uint64_t> order_;  ///< of a block's records: ~depth << 32 | number
   LayerLists<> lists_;
   PackedFragments packed_;
   SampledBlock sampled_;

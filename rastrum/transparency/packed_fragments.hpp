@@ -95,12 +95,13 @@ class PackedFragments {
   std::uint64_t last_low_ = 0;  ///< of the keys; ids rise as these fall
   bool sorted_ = false;
 
-  Buffer<std::uint64_t> keys_;
-  Buffer<std::uint16_t> pixels_;
+  ScratchBuffer<std::uint64_t> keys_;
+  ScratchBuffer<std::uint16_t> pixels_;
   std::size_t count_ = 0;
-  Buffer<Vec4> colors_;  ///< by number + 1
-  Buffer<std::uint64_t> sort_keys_;
-  Buffer<std::uint64_t> first_, wanted_;  ///< a bit a fragment: first of a triangle; to be shaded
+  ScratchBuffer<Vec4> colors_;  ///< by number + 1
+  ScratchBuffer<std::uint64_t> sort_keys_;
+  ScratchBuffer<std::uint64_t> first_,
+      wanted_;  ///< a bit a fragment: first of a triangle; to be shaded
   std::size_t deepest_ = 0;
   Row rows_[kRows];
   alignas(64) std::uint16_t left_[kPackedPitch * kPackedPitch];  ///< fragments of a pixel to deal

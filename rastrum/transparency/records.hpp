@@ -61,8 +61,8 @@ class ByBlock {
   }
 
  private:
-  Buffer<T> records_, sorted_;
-  Buffer<std::uint32_t> begin_;
+  ScratchBuffer<T> records_, sorted_;
+  ScratchBuffer<std::uint32_t> begin_;
   std::size_t count_ = 0;
 };
 

@@ -89,10 +89,11 @@ class SampledBlock {
   std::size_t filter_ = 0, planes_ = 0;
   bool repair_ = false;
 
-  Buffer<Triangle> triangles_;
+  ScratchBuffer<Triangle> triangles_;
   std::uint32_t triangle_count_ = 0;
-  Buffer<std::uint64_t> order_;  ///< of the triangles, as insertion wants them: in the low half
-  Buffer<Vec4> colors_;
+  ScratchBuffer<std::uint64_t>
+      order_;  ///< of the triangles, as insertion wants them: in the low half
+  ScratchBuffer<Vec4> colors_;
   std::uint32_t color_count_ = 0;
   std::vector<std::uint32_t> plane_triangles_;  ///< whose fragments wait to be shaded
   LayerLists<std::uint32_t> lists_;             ///< owner: the triangle

@@ -19,7 +19,7 @@ class ProgramOnHills : public Program {
     Program::SetUp();
     options_.width = kWidth;
     options_.height = kHeight;
-    options_.filter = terrain::Filter::bilinear;
+    options_.filter = terrain::MapFilter::bilinear;
     options_.step = 0;
     map_.heights = Image<float>(kMap, kMap);
     map_.colors = Image<Rgba8>(kMap, kMap);

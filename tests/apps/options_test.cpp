@@ -10,6 +10,7 @@
 #include <rastrum/scene/shapes/shapes.hpp>
 
 #include "program.hpp"
+#include "tests/support/isa.hpp"
 
 namespace rastrum::test {
 namespace {
@@ -246,6 +247,20 @@ TEST_F(Options, ADeviceThatIsNotHereSaysSo) {
   EXPECT_NE(r.err.find("use --device threads"), std::string::npos) << r.err;
   EXPECT_EQ(r.err.find("no-such-file"), std::string::npos) << "it was read first: " << r.err;
   EXPECT_NE(r.err.find(status.why_not), std::string::npos) << r.err;
+}
+
+TEST_F(Options, AnInstructionSetThatIsNotHereSaysSo) {
+  const std::string isa(name(missing_isa()));
+  for (const char* device : {"serial", "threads", "auto"})
+    for (std::vector<std::string> args :
+         {std::vector<std::string>{"render", "no-such-file.obj"},
+          std::vector<std::string>{"terrain", "--height", "no-such-file.png", "--shadows",
+                                   "sharp"}}) {
+      args.insert(args.end(), {"-o", "p.png", "--device", device, "--isa", isa});
+      const Outcome r = run(args);
+      EXPECT_EQ(r.status, 1);
+      EXPECT_EQ(r.err.find("rastrum: error: --isa " + isa + ": "), 0U) << r.err;
+    }
 }
 
 TEST_F(Options, AutoTakesADeviceAndSaysWhy) {

@@ -23,7 +23,7 @@ class TerrainObjectsProgram : public ProgramOnHills {
   void SetUp() override {
     ProgramOnHills::SetUp();
     options_.distance = 120;
-    options_.filter = terrain::Filter::none;  // objects stand on cells
+    options_.filter = terrain::MapFilter::none;  // objects stand on cells
     options_.step = 1;
     camera_ = {30, 58, 40, 0, 10, 0};
     sprite_ = Image<Rgba8>(4, 8);
@@ -110,7 +110,7 @@ TEST_F(TerrainObjectsProgram, AMeshStandsOnTheGround) {
 }
 
 TEST_F(TerrainObjectsProgram, ASurfaceBetweenCellsIsTheGroundOfTheBilinearFilter) {
-  options_.filter = terrain::Filter::bilinear;
+  options_.filter = terrain::MapFilter::bilinear;
   options_.step = 0;
   const auto h = [&](int x, int y) { return static_cast<double>(map_.heights(x, y)); };
   // (20.75, 30.25) lies a quarter past the centre of cell 20 and a quarter before that of row 30.

@@ -21,7 +21,6 @@ namespace rastrum::test {
 namespace {
 
 using namespace terrain;
-using TerrainFilter = terrain::Filter;
 
 constexpr double kRadians = std::numbers::pi / 180;
 
@@ -106,12 +105,12 @@ TEST_F(TerrainProgram, Picture) {
 
 TEST_F(TerrainProgram, FiltersTilesProjectionMachine) {
   for (const auto& [word, filter] :
-       {std::pair("none", TerrainFilter::none), std::pair("bilinear", TerrainFilter::bilinear),
-        std::pair("mip", TerrainFilter::mip)}) {
+       {std::pair("none", MapFilter::none), std::pair("bilinear", MapFilter::bilinear),
+        std::pair("mip", MapFilter::mip)}) {
     options_.filter = filter;
     expect({"--filter", word});
   }
-  options_.filter = TerrainFilter::bilinear;
+  options_.filter = MapFilter::bilinear;
   for (const auto& [word, tiling] :
        {std::pair("repeat", Tiling::repeat), std::pair("mirror", Tiling::mirror),
         std::pair("clamp", Tiling::clamp)}) {
@@ -135,7 +134,7 @@ TEST_F(TerrainProgram, Steps) {
   expect({"--dz", "0.02"});
   options_.dz = 0.005;
   for (const auto& [word, filter] :
-       {std::pair("none", TerrainFilter::none), std::pair("mip", TerrainFilter::mip)}) {
+       {std::pair("none", MapFilter::none), std::pair("mip", terrain::MapFilter::mip)}) {
     options_.filter = filter;
     expect({"--filter", word});
   }
@@ -143,7 +142,7 @@ TEST_F(TerrainProgram, Steps) {
 
 TEST_F(TerrainProgram, Classic) {
   options_.classic = true;
-  options_.filter = TerrainFilter::none;
+  options_.filter = MapFilter::none;
   expect({"--classic"});
   camera_.altitude = 78;
   camera_.horizon_px = 100;
@@ -182,7 +181,7 @@ TEST_F(TerrainProgram, TheSkyDimsWithTheSunButNotTheOriginals) {
   expect({"--sun", "315,12"});
   options_.sky = kSky;
   options_.classic = true;
-  options_.filter = TerrainFilter::none;
+  options_.filter = MapFilter::none;
   expect({"--classic", "--sun", "315,-6"});
 }
 
@@ -205,7 +204,7 @@ TEST_F(TerrainProgram, LightIsSmoothUnderFinerColours) {
   const std::vector<std::string> args{"--sun", "250,25", "--shadows", "soft", "--sun-radius", "4"};
   expect(args, {map_.heights, lit_colors(map_, smooth)});
   const Image<Rgba8> shown = png("p.png");
-  options_.filter = TerrainFilter::none;
+  options_.filter = MapFilter::none;
   std::vector<std::string> cells = args;
   cells.insert(cells.end(), {"--filter", "none"});
   expect(cells, {map_.heights, lit_colors(map_, light)});
@@ -278,7 +277,7 @@ TEST_F(TerrainProgram, RawHeightsOfASizeAndScale) {
   expect_scale(0.5F, "one's own");
   EXPECT_EQ(with({"--classic"}).find("note"), std::string::npos);
   options_.classic = true;
-  options_.filter = TerrainFilter::none;
+  options_.filter = MapFilter::none;
   map_.heights = bytes;
   EXPECT_TRUE(same_pixels(png("p.png"), drawn(map_))) << "--classic: 16 bits have the range of 8";
 }

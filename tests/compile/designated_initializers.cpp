@@ -76,7 +76,7 @@ void terrains() {
   using namespace terrain;
   const TerrainOptions size{.width = 64, .height = 64};
   const TerrainOptions fog{.fog = {.density = 0.1}, .ground_clearance = 2};
-  const TerrainOptions mip{.filter = terrain::Filter::mip};
+  const TerrainOptions mip{.filter = terrain::MapFilter::mip};
   const TerrainCamera camera{.x = 1, .y = 2};
   const TerrainTargets targets{.depth = {}};
   const HeightMap map{.heights = Image<float>(1, 1)};

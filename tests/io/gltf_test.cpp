@@ -194,7 +194,7 @@ TEST(Gltf, MaterialsAndTextures) {
   EXPECT_EQ(s.textures[0].image(1, 0), (Rgba8{1, 2, 3, 4}));
   EXPECT_EQ(s.textures[0].wrap_u, Wrap::clamp_to_edge);
   EXPECT_EQ(s.textures[0].wrap_v, Wrap::mirrored_repeat);
-  EXPECT_EQ(s.textures[0].mag, Filter::nearest);
+  EXPECT_EQ(s.textures[0].mag, TextureFilter::nearest);
   EXPECT_FALSE(s.textures[0].mipmaps);
   EXPECT_EQ(s.textures[1].wrap_u, Wrap::repeat);
   EXPECT_TRUE(s.textures[1].mipmaps);

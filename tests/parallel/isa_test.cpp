@@ -1,12 +1,16 @@
 // available_isas, which asks the processor by the compiler's runtime, against Highway's own
-// question.
+// question; and that an instruction set that is not there is an error.
 #include <algorithm>
 #include <cstdint>
+#include <string>
 
 #include <gtest/gtest.h>
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)  // as the library
 #include <hwy/targets.h>
 
+#include <rastrum/core/error.hpp>
 #include <rastrum/parallel/device.hpp>
+#include <tests/support/isa.hpp>
 
 namespace rastrum {
 namespace {
@@ -14,7 +18,7 @@ namespace {
 TEST(Isa, AvailableOnesAreHighways) {
   const auto isas = available_isas();
   const auto has = [&](Isa isa) { return std::ranges::find(isas, isa) != isas.end(); };
-  const std::int64_t known = hwy::SupportedTargets();
+  const std::int64_t known = hwy::SupportedTargets() & HWY_TARGETS;
   EXPECT_TRUE(has(Isa::scalar));
 #if HWY_ARCH_X86
   EXPECT_EQ(has(Isa::sse4), (known & HWY_SSE4) != 0);
@@ -23,6 +27,20 @@ TEST(Isa, AvailableOnesAreHighways) {
 #elif HWY_ARCH_ARM
   EXPECT_EQ(has(Isa::neon), (known & HWY_NEON) != 0);
 #endif
+}
+
+TEST(Isa, OneThatIsNotThereIsRefused) {
+  for (const Isa isa : available_isas()) EXPECT_EQ(choose_isa(isa), isa);
+  EXPECT_EQ(choose_isa({}), available_isas().back());
+  try {
+    static_cast<void>(choose_isa(test::missing_isa()));
+    ADD_FAILURE();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::no_device);
+    const std::string said = e.what();
+    EXPECT_EQ(said.find("--isa " + std::string(name(test::missing_isa())) + ": "), 0U) << said;
+    EXPECT_NE(said.find("has only scalar"), std::string::npos) << said;
+  }
 }
 
 }  // namespace

@@ -31,6 +31,7 @@
 
 #include "tests/support/environment.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/isa.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
@@ -558,6 +559,20 @@ TEST(Binned, EveryPassSeesTheSameChunks) {
           EXPECT_GT(Again::blocks_seen, 10000U);
         }
       }
+}
+
+// Here and not through the facade, which refuses it before a frame is asked for.
+TEST(FrameDriver, RefusesInstructionSetsThatAreNotThere) {
+  MemoryAccount memory;
+  parallel::Threads exec(1, &memory);
+  raster::FrameDriver driver(
+      family::make_row(binned_row(), family::visibilities().front(), {}, memory), 0, memory, &exec);
+  raster::FrameRequest request;
+  request.width = request.height = 8;
+  request.isa = missing_isa();
+  EXPECT_THROW(static_cast<void>(driver.draw(request)), Error);
+  request.isa = available_isas().back();
+  EXPECT_EQ(driver.draw(request).isa, request.isa);
 }
 
 TEST(Binned, SendsLinesAndPointsThroughItsQueues) {

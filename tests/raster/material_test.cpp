@@ -75,7 +75,7 @@ TEST(Material, TheFirstTexelIsTopLeft) {
       dim{9, 90, 200, 255};
   const Rgba8 colors[2][2] = {{red, green}, {blue, dim}};
   Texture t = texture(2, 2, [&](int x, int y) { return colors[y][x]; });
-  t.mag = Filter::nearest;
+  t.mag = TextureFilter::nearest;
   const Frame frame = draw_quad(unlit(quad({0, 0}, {1, 1}), std::move(t)));
   for (int y = 0; y < kSize; ++y)
     for (int x = 0; x < kSize; ++x)
@@ -87,14 +87,14 @@ TEST(Material, AnUnlitTexelKeepsItsCode) {
     return Rgba8{static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(255 - x),
                  static_cast<std::uint8_t>(x / 2), 255};
   });
-  t.mag = t.min = Filter::nearest;
+  t.mag = t.min = TextureFilter::nearest;
   t.mipmaps = false;
   const Image<Rgba8> image = t.image;
   for (int part = 0; part < 4; ++part) {
     const float u = static_cast<float>(part) / 4;
     Texture copy;
     copy.image = image;
-    copy.mag = copy.min = Filter::nearest;
+    copy.mag = copy.min = TextureFilter::nearest;
     const Frame frame = draw_quad(unlit(quad({u, 0}, {u + 0.25F, 1}), std::move(copy)));
     for (int x = 0; x < kSize; ++x)
       ASSERT_EQ(frame.color8(x, 9), image(part * kSize + x, 0)) << part << ", " << x;
@@ -136,7 +136,7 @@ TEST(Material, WrapModesOfBothAxes) {
   for (const Wrap u : kModes)
     for (const Wrap v : kModes) {
       Texture t = texture(4, 2, color_of);
-      t.mag = Filter::nearest;
+      t.mag = TextureFilter::nearest;
       t.wrap_u = u;
       t.wrap_v = v;
       // 16 texels of 4 px across and 8 of 8 px down.
@@ -183,7 +183,7 @@ TEST(Material, AMinifiedCheckerboardIsItsMeanInLinearLight) {
   for (int x = 0; x < kSize; ++x) ASSERT_EQ(same.color8(x, 3), grey(x % 2 == 1 ? 0 : 255));
   Texture plain = checkerboard(4 * kSize);
   plain.mipmaps = false;
-  plain.min = Filter::nearest;
+  plain.min = TextureFilter::nearest;
   const Frame aliased = draw_quad(unlit(quad({0, 0}, {1, 1}), std::move(plain)));
   EXPECT_NE(aliased.color8(3, 3), grey(188));
 }
@@ -275,7 +275,7 @@ Scene masked(const auto& is_hole) {
   Texture t = texture(kSize, kSize, [&](int x, int y) {
     return Rgba8{200, 10, 10, static_cast<std::uint8_t>(is_hole(x, y) ? 127 : 128)};
   });
-  t.min = t.mag = Filter::nearest;
+  t.min = t.mag = TextureFilter::nearest;
   Scene scene = unlit(quad({0, 0}, {1, 1}), std::move(t));
   scene.materials[0].alpha_mode = AlphaMode::mask;
   scene.materials.emplace_back();

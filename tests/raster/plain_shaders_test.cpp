@@ -89,6 +89,31 @@ TEST(PlainShaders, ShadeAMaterialAsVertexColors) {
   }
 }
 
+/// What has no materials looks the same beside something, here out of sight, that has some.
+TEST(PlainShaders, HaveTheirOwnColorBesideMaterials) {
+  for (const bool has_colors : {false, true}) {
+    Scene alone = single(shapes::sphere(12, 24));
+    if (has_colors)
+      for (std::uint32_t i = 0; i < alone.meshes[0].positions.size(); ++i)
+        alone.meshes[0].colors.values.push_back(
+            {0.1F * static_cast<float>(i % 10), 0.5F, 1, i % 3 == 0 ? 0.5F : 1});
+    Scene other = single(shapes::boxes(1));
+    other.materials = {colored(kRed)};
+    other.instances[0].object_to_world.m[2][3] = 1000;
+    Scene before = alone, behind = other;
+    before.append(other);
+    behind.append(alone);
+    const Camera camera = fit_camera(SceneBinding(alone).view(), 1, false);
+    for (const Shader shader : {Shader::flat, Shader::lambert, Shader::phong, Shader::wireframe}) {
+      const Frame expected = draw(options(shader), alone, camera);
+      ASSERT_GT(expected.stats.pixels_covered, 500U);
+      for (const Scene* scene : {&before, &behind})
+        ASSERT_TRUE(same_picture(draw(options(shader), *scene, camera), expected, 1))
+            << name(shader) << ", " << has_colors;
+    }
+  }
+}
+
 TEST(PlainShaders, BlendTheMaterialsColorByItsAlpha) {
   Scene scene = single(quad(kSize, {0, 0}, {1, 1}));
   scene.materials = {colored({kBlue.x, kBlue.y, kBlue.z, 0.25F})};

@@ -134,7 +134,8 @@ std::vector<View> views() {
     o.fov_rad = 1.1;
   });
   add("words", [](TerrainOptions& o, TerrainCamera&) { o.method = terrain::Method::words; });
-  add("bilinear", [](TerrainOptions& o, TerrainCamera&) { o.filter = terrain::Filter::bilinear; });
+  add("bilinear",
+      [](TerrainOptions& o, TerrainCamera&) { o.filter = terrain::MapFilter::bilinear; });
   add("serial", [](TerrainOptions& o, TerrainCamera&) { o.device = Device::serial; });
   add("classic", [](TerrainOptions& o, TerrainCamera&) { o.classic = true; });
   add("classic, turned", [](TerrainOptions& o, TerrainCamera& c) {
@@ -221,7 +222,7 @@ TEST(OnTerrain, SpritesFaceTheCameraAndBlendInLinearLight) {
       picture(x, y) = y < 8 ? Rgba8{255, 0, 255, 0}
                             : (x < 4 ? Rgba8{20, 200, 40, 128} : Rgba8{250, 10, 30, 255});
   Scene scene = sprite(picture);
-  scene.textures[0].mag = scene.textures[0].min = Filter::nearest;
+  scene.textures[0].mag = scene.textures[0].min = TextureFilter::nearest;
   const Terrain flat(terrain::HeightMap{Image<float>(kMap, kMap), [] {
                                           Image<Rgba8> c(kMap, kMap);
                                           for (Rgba8& p : c.pixels()) p = {180, 140, 90, 255};

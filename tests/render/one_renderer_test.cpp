@@ -85,7 +85,7 @@ terrain::TerrainOptions terrain_options() {
   o.width = o.height = kSide;
   o.distance = 200;
   o.threads = 2;
-  o.filter = terrain::Filter::mip;  // each map has a pyramid, which takes a while to make
+  o.filter = terrain::MapFilter::mip;  // each map has a pyramid, which takes a while to make
   return o;
 }
 constexpr terrain::TerrainCamera kCamera{.x = 50, .y = 90, .altitude = 80, .horizon_px = 30};

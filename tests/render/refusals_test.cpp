@@ -11,6 +11,7 @@
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
+#include "tests/support/isa.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
@@ -65,6 +66,26 @@ TEST(Refusals, EnumsWithoutAValue) {
   expect_refused("blocks is 200", [](auto& o) { o.tuning.order = no_value<raster::BlockOrder>(); });
   expect_refused("small triangles is 200",
                  [](auto& o) { o.tuning.small_path = no_value<raster::SmallPath>(); });
+}
+
+TEST(Refusals, InstructionSetsThatAreNotThere) {
+  for (const Device device : {Device::serial, Device::threads})
+    for (const char* rasterizer : {"auto", "reference"}) {
+      const RenderOptions o = options_with([&](auto& changed) {
+        changed.device = device;
+        changed.rasterizer = rasterizer;
+        changed.isa = missing_isa();
+      });
+      const std::string said = message_of([&] { const Renderer renderer(o); }, Errc::no_device);
+      EXPECT_NE(said.find("--isa"), std::string::npos) << said;
+    }
+}
+
+TEST(Refusals, NamesOfShadersThatAreNone) {
+  EXPECT_NE(message_of([] { static_cast<void>(name(no_value<Shader>())); }).find("shader is 200"),
+            std::string::npos);
+  EXPECT_NE(message_of([] { static_cast<void>(shader_from_name("toon")); }).find("'toon'"),
+            std::string::npos);
 }
 
 TEST(Refusals, BackgroundsThatAreNotFinite) {
@@ -123,7 +144,7 @@ TEST(Refusals, EnumsOfMaterialsAndTextures) {
   bad.textures[0].wrap_v = no_value<Wrap>();
   EXPECT_NE(message(bad).find("texture 0: its wrapping is 200"), std::string::npos);
   bad = scene;
-  bad.textures[0].min = no_value<Filter>();
+  bad.textures[0].min = no_value<TextureFilter>();
   EXPECT_NE(message(bad).find("texture 0: its filter is 200"), std::string::npos);
 }
 

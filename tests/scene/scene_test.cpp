@@ -267,7 +267,7 @@ TEST(SceneAppend, ShiftsIndices) {
   EXPECT_EQ(a.triangle_count(), 72U);
 }
 
-TEST(SceneAppend, FilesWithoutMaterialsKeepTheDefault) {
+TEST(SceneAppend, FilesWithoutMaterialsLookAsTheyDid) {
   // First without, then with materials: the first file's meshes must not take the second's.
   Scene a = marked_scene(0.25F, 0, 0);
   a.append(marked_scene(0.5F, 2, 1));
@@ -284,6 +284,19 @@ TEST(SceneAppend, FilesWithoutMaterialsKeepTheDefault) {
   Scene c = marked_scene(0.25F, 0, 0);
   c.append(marked_scene(0.5F, 0, 0));
   EXPECT_TRUE(c.materials.empty());
+
+  // Of one file the meshes with colours keep them, and those without the plain shaders' colour.
+  Scene d = marked_scene(0.25F, 0, 0);
+  d.meshes[1].colors.values.assign(d.meshes[1].positions.size(), {0, 1, 0, 0.5F});
+  d.append(marked_scene(0.5F, 1, 0));
+  ASSERT_EQ(d.materials.size(), 3U);
+  const Material& plain = d.materials[d.meshes[0].material];
+  const Material& colored = d.materials[d.meshes[1].material];
+  EXPECT_EQ(plain.alpha_mode, AlphaMode::opaque);
+  EXPECT_TRUE(plain.double_sided);
+  EXPECT_LT(plain.base_color.z, plain.base_color.x);
+  EXPECT_EQ(colored.base_color.x, 1.0F);
+  EXPECT_EQ(colored.alpha_mode, AlphaMode::blend);
 }
 
 }  // namespace

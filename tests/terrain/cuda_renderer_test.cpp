@@ -84,7 +84,7 @@ TEST_F(CudaTerrain, RandomMapsAreTheReferencesBits) {
     options.width = 1 + static_cast<int>(random() % 150);
     options.height = 1 + static_cast<int>(random() % 90);
     options.distance = between(1, i % 13 == 0 ? 9000 : 400);
-    options.filter = static_cast<Filter>(i % 3);
+    options.filter = static_cast<MapFilter>(i % 3);
     options.tiling = static_cast<Tiling>(i / 3 % 3);
     options.projection = static_cast<Projection>(i / 9 % 2);
     options.fov_rad = between(0.3, options.projection == Projection::planar ? 2.5 : 6.28);
@@ -117,7 +117,7 @@ TEST_F(CudaTerrain, ARealMapIsTheReferencesBits) {
   options.height = 190;
   options.distance = 1500;
   options.tiling = Tiling::clamp;
-  for (const Filter filter : {Filter::none, Filter::bilinear, Filter::mip}) {
+  for (const MapFilter filter : {MapFilter::none, MapFilter::bilinear, MapFilter::mip}) {
     options.filter = filter;
     expect_same_on_device(terrain, {.x = 200, .y = 420, .altitude = 130, .horizon_px = 40}, options,
                           "filter " + std::to_string(static_cast<int>(filter)));

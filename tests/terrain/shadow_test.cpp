@@ -13,6 +13,7 @@
 
 #include "tests/support/directories.hpp"
 #include "tests/support/environment.hpp"
+#include "tests/support/isa.hpp"
 #include "tests/support/random.hpp"
 
 namespace rastrum::terrain {
@@ -284,6 +285,16 @@ TEST(SharpShadows, RefusesSunsThatAreNone) {
   EXPECT_THROW((void)hidden_samples(map.view(), {0, 40}, {0, 256}), Error);
   EXPECT_THROW((void)hidden_samples(map.view(), {0, 40}, {1024, 1}), Error);
   EXPECT_THROW((void)soft_light(map.view(), {0, 40}, -1), Error);
+}
+
+TEST(SharpShadows, RefuseInstructionSetsThatAreNotThere) {
+  const Image<float> map(4, 4);
+  for (const Device device : {Device::serial, Device::threads}) {
+    const ShadowOptions options{.device = device, .isa = test::missing_isa()};
+    EXPECT_THROW((void)sharp_shadows(map.view(), {0, 40}, options), Error);
+    EXPECT_THROW((void)hidden_samples(map.view(), {0, 40}, {}, options), Error);
+    EXPECT_THROW((void)soft_light(map.view(), {0, 40}, 0.3, options), Error);
+  }
 }
 
 // --- Accumulated

@@ -16,6 +16,7 @@
 #include <rastrum/terrain/setup.hpp>
 #include <rastrum/terrain/words.hpp>
 
+#include "tests/support/isa.hpp"
 #include "tests/terrain/maps.hpp"
 
 namespace rastrum::terrain {
@@ -111,7 +112,7 @@ TEST(Bilinear, IsRightAtCentresAndAtWholeCoordinates) {
   const auto colors = std::make_shared<const Image<Rgba8>>(map.colors);
   const Pyramid pyramid(heights, colors, false);
   TerrainOptions options;
-  options.filter = Filter::bilinear;
+  options.filter = MapFilter::bilinear;
   const MapView view(pyramid, options, terrain::Setup{});
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x) {
@@ -171,7 +172,7 @@ TEST(MapView, TilesHeightsAndColoursOfAnotherSizeAsTheTerrainDoes) {
 
 TEST(Mip, TakesTheLevelOfTheStepOrOfTheColumnsWidth) {
   TerrainOptions options = size(100, 50);  // a column is z / 50 wide
-  options.filter = Filter::mip;
+  options.filter = MapFilter::mip;
   options.dz = 0;
   options.distance = 500;
   const Terrain flat(HeightMap{Image<float>(4, 4), {}});
@@ -194,7 +195,7 @@ TEST(Mip, FarTerrainIsTheMeanOfItsColours) {
   options.distance = 4000;
   const TerrainCamera camera{.altitude = 30, .horizon_px = 10};
   const Picture aliased(Terrain(map), camera, options);
-  options.filter = Filter::mip;
+  options.filter = MapFilter::mip;
   const Picture mean(Terrain(map), camera, options);
   int far = 0;
   for (int y = 0; y < 60; ++y)
@@ -216,7 +217,7 @@ TEST(Mip, ColoursOfTwiceTheSizeAreReadOneLevelUp) {
   const Pyramid pyramid(std::make_shared<const Image<float>>(map.heights),
                         std::make_shared<const Image<Rgba8>>(map.colors), true);
   TerrainOptions options;
-  options.filter = Filter::mip;
+  options.filter = MapFilter::mip;
   const MapView view(pyramid, options, terrain::Setup{});
   EXPECT_EQ(view.color_at(0.1F, 0.9F, 0), (Rgba8{20, 20, 0, 255}));
   EXPECT_EQ(view.color_at(1.9F, 0.1F, 0), (Rgba8{100, 20, 0, 255}));
@@ -527,7 +528,7 @@ TEST(Steps, ArePixelsHighWithTheBilinearFilter) {
   for (const double fov : {0.4, kPi / 2, 2.2})
     for (const double altitude : {2.0, 20.0, 300.0}) {
       TerrainOptions options = size(64, 240);
-      options.filter = Filter::bilinear;
+      options.filter = MapFilter::bilinear;
       options.step = 0;
       options.fov_rad = fov;
       options.distance = 1e5;
@@ -548,7 +549,7 @@ TEST(Steps, ArePixelsHighWithTheBilinearFilter) {
 
 TEST(Steps, OfOtherFiltersAreCellsWhereTheyAreLeftOpen) {
   const Terrain flat(HeightMap{Image<float>(4, 4), {}});
-  for (const Filter filter : {Filter::none, Filter::mip}) {
+  for (const MapFilter filter : {MapFilter::none, MapFilter::mip}) {
     TerrainOptions options = size(64, 40);
     options.filter = filter;
     const auto own = set_up(options, {}, flat).slices;
@@ -561,7 +562,7 @@ TEST(Steps, OfOtherFiltersAreCellsWhereTheyAreLeftOpen) {
     }
   }
   TerrainOptions narrow = size(32768, 40);
-  narrow.filter = Filter::bilinear;
+  narrow.filter = MapFilter::bilinear;
   narrow.step = 0;
   narrow.fov_rad = 1e-4;
   narrow.distance = 8e6;
@@ -631,9 +632,9 @@ TEST(OddInput, IsRefusedWithTheOptionsName) {
   EXPECT_NE(message_of(options).find("larger steps"), std::string::npos);
   options = size(8, 8);
   options.classic = true;
-  options.filter = Filter::bilinear;
+  options.filter = MapFilter::bilinear;
   EXPECT_NE(message_of(options).find("classic"), std::string::npos);
-  options.filter = Filter::none;
+  options.filter = MapFilter::none;
   EXPECT_NE(message_of(options, {.roll_rad = 1}).find("roll"), std::string::npos);
   options = size(8, 8);
   EXPECT_NE(message_of(options, {.x = 1e300}).find("camera"), std::string::npos);
@@ -643,6 +644,15 @@ TEST(OddInput, IsRefusedWithTheOptionsName) {
   EXPECT_THROW(Terrain(HeightMap{}), Error);
 }
 
+TEST(OddInput, InstructionSetsThatAreNotThereAreRefused) {
+  for (const Device device : {Device::serial, Device::threads}) {
+    TerrainOptions options = size(8, 8);
+    options.device = device;
+    options.isa = test::missing_isa();
+    EXPECT_NE(message_of(options).find("--isa"), std::string::npos);
+  }
+}
+
 TEST(OddInput, EnumsWithoutAValueAreRefused) {
   const auto expect = [](const char* part, const std::function<void(TerrainOptions&)>& change) {
     TerrainOptions options = size(8, 8);
@@ -650,7 +660,7 @@ TEST(OddInput, EnumsWithoutAValueAreRefused) {
     const std::string message = message_of(options);
     EXPECT_NE(message.find(part), std::string::npos) << part << ": '" << message << "'";
   };
-  expect("filter is 200", [](TerrainOptions& o) { o.filter = static_cast<Filter>(200); });
+  expect("filter is 200", [](TerrainOptions& o) { o.filter = static_cast<MapFilter>(200); });
   expect("tiling is 200", [](TerrainOptions& o) { o.tiling = static_cast<Tiling>(200); });
   expect("projection is 200",
          [](TerrainOptions& o) { o.projection = static_cast<Projection>(200); });

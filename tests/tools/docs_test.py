@@ -109,6 +109,17 @@ class Docs(unittest.TestCase):
         self.assertEqual(output, "README.md: docs/b.md is not there\n"
                                  "docs/images/b.png: no page shows it\n")
 
+    def test_headings_and_pages_that_sources_name(self):
+        (self.root / "README.md").write_text("[here](docs/a.md#what-it-is-and-why) [b](docs/a.md#b)\n")
+        self.page("## What it is, and `why`\n[up](#what-it-is-and-why) [down](#down)\n")
+        (self.root / "rastrum").mkdir()
+        (self.root / "rastrum" / "x.hpp").write_text("// docs/a.md, docs/log/gone.md\n")
+        code, output = self.docs("links")
+        self.assertEqual(code, 1)
+        self.assertEqual(output, "README.md: docs/a.md#b is no heading there\n"
+                                 "docs/a.md: #down is no heading there\n"
+                                 "rastrum/x.hpp: docs/log/gone.md is not there\n")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -79,7 +79,7 @@ TEST(Unsorted, EqualsTheOracleThatBlendsAsSubmitted) {
   EXPECT_GT(unlike_exact, 1000U);
 }
 
-TEST(Filter, IsRightWhereItMarksNothing) {
+TEST(DepthFilter, IsRightWhereItMarksNothing) {
   Renderer exact(options(Transparency::exact));
   // Blocks of more fragments than memory go by planes, which are filtered and then repaired.
   RenderOptions with_little_memory = options(Transparency::exact);
@@ -135,7 +135,7 @@ TEST(Filter, IsRightWhereItMarksNothing) {
 
 // The marks are the same whoever draws. The picture has more than one bin, else one thread draws
 // it.
-TEST(Filter, MarksDoNotDependOnThreads) {
+TEST(DepthFilter, MarksDoNotDependOnThreads) {
   constexpr int kWide = 200, kHigh = 150;
   for (const char* const rasterizer : {"grouped", "tiled"}) {
     RenderOptions o = options(Transparency::filter, 1);

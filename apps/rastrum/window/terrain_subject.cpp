@@ -25,7 +25,7 @@ constexpr KeyHelp kKeys[] = {
 auto light_key(const terrain::Light& l, const TerrainOptions& o) {
   return std::make_tuple(l.sun.azimuth_deg, l.sun.elevation_deg, l.shadows, l.hill_shading,
                          l.ambient, l.sun_radius_deg, l.march.distance, l.march.steps, o.tiling,
-                         o.filter == terrain::Filter::bilinear);
+                         o.filter == terrain::MapFilter::bilinear);
 }
 
 template <class T>
@@ -156,7 +156,7 @@ void TerrainSubject::change(std::string_view key, bool back) {
     if (other == maps_.end()) return;
     map_ = static_cast<std::size_t>(other - maps_.begin());
   } else if (key == "b") {
-    o.filter = next(o.filter, terrain::Filter::mip, back);
+    o.filter = next(o.filter, terrain::MapFilter::mip, back);
   } else if (key == "c") {
     s.light.shadows = next(s.light.shadows, terrain::Shadows::soft, back);
   } else if (key == "g") {
@@ -178,7 +178,7 @@ std::function<Drawn()> TerrainSubject::draw(int width, int height) {
   o.distance = pose.distance;
   o.sky = sky_of(o, light.sun, settings_.sky_dims);
   if (o.classic)
-    o.filter = terrain::Filter::none;
+    o.filter = terrain::MapFilter::none;
   else
     o.fov_rad = pose.fov_rad;
   // Fewer pixels see the same: what is given in pixels shrinks with them. The original program's

@@ -1,4 +1,4 @@
-// The first axis of the family (docs/architecture.md): how the samples that pieces cover are
+// The first axis of the family (docs/family.md): how the samples that pieces cover are
 // enumerated. A coverage draws a range of triangles into the frame, by draw_shared where all
 // threads share the picture or by draw_tiles where a thread owns a tile; which visibility resolves
 // the fragments is none of its business.

@@ -39,7 +39,7 @@ class ChunkCounts {
   }
 
  private:
-  Buffer<std::uint64_t> counts_;
+  ScratchBuffer<std::uint64_t> counts_;
   std::size_t chunks_ = 0, next_ = 0;
 };
 

@@ -108,8 +108,8 @@ class Table {
                              [&](std::size_t i) { f(i * kRun, std::min(slots_, (i + 1) * kRun)); });
   }
 
-  Buffer<std::uint32_t> pixels_;
-  Buffer<std::uint64_t> keys_;
+  ScratchBuffer<std::uint32_t> pixels_;
+  ScratchBuffer<std::uint64_t> keys_;
   std::uint64_t slots_ = 0;
   std::uint64_t entries_ = 0;  ///< now, where a thread owns the table
   std::uint64_t slots_used_ = 0, entries_found_ = 0;

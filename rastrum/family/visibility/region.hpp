@@ -1,4 +1,4 @@
-// The second axis of the family (docs/architecture.md): how the many fragments of a pixel become
+// The second axis of the family (docs/family.md): how the many fragments of a pixel become
 // one. A visibility method resolves what a coverage enumerates: 8 × 8 blocks of pieces with their
 // masks, a few hundred a call. It sees a region of the screen, which one thread owns (a tile: plain
 // maxima, keys that stay in cache) or all share (a frame: atomics and locks).

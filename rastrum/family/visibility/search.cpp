@@ -92,7 +92,7 @@ class SearchRegion final : public Region {
 
   const Kernels* kernel_ = nullptr;
   PixelNumbers pixels_;
-  Buffer<std::uint32_t> depth_;
+  ScratchBuffer<std::uint32_t> depth_;
   std::size_t chunks_ = 0;
   Step step_ = Step::begun;
   std::atomic<std::uint64_t> compared_ = 0, matches_ = 0;

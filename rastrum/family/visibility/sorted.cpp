@@ -77,8 +77,8 @@ class SliceBySlice {
   }
 
  private:
-  Buffer<std::uint32_t> sort_keys_;
-  Buffer<std::uint64_t> keys_;
+  ScratchBuffer<std::uint32_t> sort_keys_;
+  ScratchBuffer<std::uint64_t> keys_;
   PixelNumbers pixels_;
   std::size_t slice_ = 0, count_ = 0;
   int bits_ = 0;
@@ -173,7 +173,7 @@ class Bands {
     return (pixels.block_count() + (std::size_t{1} << shift) - 1) >> shift;
   }
 
-  Buffer<std::uint64_t> cursors_, begin_;
+  ScratchBuffer<std::uint64_t> cursors_, begin_;
   std::size_t bands_ = 0, lanes_ = 1;
   int block_shift_ = 0;
 };
@@ -311,8 +311,8 @@ class SharedSortedRegion final : public Region {
 
   Bands bands_;
   ChunkCounts chunk_counts_;
-  Buffer<SortKey> sort_keys_;
-  Buffer<std::uint64_t> keys_;
+  ScratchBuffer<SortKey> sort_keys_;
+  ScratchBuffer<std::uint64_t> keys_;
   SliceBySlice slices_;
   parallel::ScratchPool<parallel::Serial> serial_;
   parallel::Threads* exec_ = nullptr;

@@ -109,7 +109,7 @@ class TupleRegion final : public Region {
   Shading shading_;  ///< none: no colour is wanted
   SurfaceView surface_;
   PixelNumbers pixels_;
-  Buffer<std::uint8_t> locks_;
+  ScratchBuffer<std::uint8_t> locks_;
   parallel::ScratchPool<ScratchOfUse> scratch_;
   std::uint64_t use_ = 0;
   std::size_t chunks_ = 0;

@@ -54,8 +54,8 @@ class Collected {
   }
 
  private:
-  Buffer<Entry> entries_;
-  Buffer<std::uint32_t> next_;
+  ScratchBuffer<Entry> entries_;
+  ScratchBuffer<std::uint32_t> next_;
   std::size_t count_ = 0;
 };
 
@@ -88,8 +88,8 @@ class BinLists {
   }
 
  private:
-  Buffer<Entry> sorted_;
-  Buffer<std::uint32_t> begin_;
+  ScratchBuffer<Entry> sorted_;
+  ScratchBuffer<std::uint32_t> begin_;
 };
 
 }  // namespace rastrum::raster

@@ -201,7 +201,7 @@ FrameStats FrameDriver::draw(FrameRequest& request) {
   FrameStats stats;
   stats.rasterizer = needs_.rasterizer;
   stats.visibility = needs_.visibility;
-  stats.isa = request.isa;
+  stats.isa = choose_isa(request.isa);
   const Totals totals = begin_frame(request);
   const Plan cut = plan(request, totals);
   Frame frame{

@@ -41,9 +41,9 @@ class FrameDriver final : public FrameDrawer {
   parallel::Threads* threads_;
   std::uint64_t frames_ = 0;  ///< drawn or under way
   parallel::ScratchPool<ShaderOfThread> shaders_;
-  Buffer<ProjectedVertex> projected_;
-  Buffer<std::uint64_t> keys_;
-  Buffer<BlockColors> colors_;
+  ScratchBuffer<ProjectedVertex> projected_;
+  ScratchBuffer<std::uint64_t> keys_;
+  ScratchBuffer<BlockColors> colors_;
 };
 
 }  // namespace rastrum::raster

@@ -30,8 +30,8 @@ class TileSurface {
   }
 
  private:
-  Buffer<std::uint64_t> keys_;
-  Buffer<BlockColors> colors_;
+  ScratchBuffer<std::uint64_t> keys_;
+  ScratchBuffer<BlockColors> colors_;
 };
 
 }  // namespace rastrum::raster

@@ -145,7 +145,7 @@ struct Kernels {
                std::uint32_t* bins) noexcept;
 };
 
-/// The best table at or below `isa` that was compiled for this architecture.
+/// The table of `isa`, one of available_isas() (choose_isa); of others, plain C++.
 [[nodiscard]] const Kernels& kernels(Isa isa) noexcept;
 
 }  // namespace rastrum::raster

@@ -15,7 +15,7 @@ namespace rastrum::raster {
 struct Pieces {
   explicit Pieces(MemoryAccount& memory) : data(memory) {}
 
-  Buffer<Piece> data;
+  ScratchBuffer<Piece> data;
   std::uint32_t count = 0;
   FrameStats::Triangles triangles;
 

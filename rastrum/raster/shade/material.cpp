@@ -74,8 +74,8 @@ void check_materials(const SceneView& scene) {
     const std::string name = "texture " + std::to_string(i);
     for (const Wrap wrap : {t.wrap_u, t.wrap_v})
       check_enum(wrap, Wrap::clamp_to_edge, name + ": its wrapping");
-    for (const Filter filter : {t.mag, t.min})
-      check_enum(filter, Filter::linear, name + ": its filter");
+    for (const TextureFilter filter : {t.mag, t.min})
+      check_enum(filter, TextureFilter::linear, name + ": its filter");
   }
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     check_enum(scene.materials[i].alpha_mode, AlphaMode::blend,

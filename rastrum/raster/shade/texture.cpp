@@ -99,7 +99,7 @@ void reduce(const MipLevel& from, TexelUse use, std::int32_t width, std::int32_t
 
 struct TextureSet::Chain {
   explicit Chain(MemoryAccount& memory) : texels(memory) {}
-  Buffer<Rgba8> texels;  ///< levels 1 and up, one after the other
+  ScratchBuffer<Rgba8> texels;  ///< levels 1 and up, one after the other
   MipChain chain;
 
   void build(const Texture& texture, TexelUse use, parallel::Threads* exec) {

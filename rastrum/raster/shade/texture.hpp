@@ -33,7 +33,7 @@ inline constexpr int kMaxLevels = 16;  // 2^15 px and below
 struct MipChain {
   const float* decode = nullptr;  ///< 256 values of the r, g and b codes; alpha is code / 255
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-  Filter mag = Filter::linear, min = Filter::linear;
+  TextureFilter mag = TextureFilter::linear, min = TextureFilter::linear;
   int levels = 0;
   std::uint64_t number = 0;  ///< of the picture: that of no other chain, whatever lies where
   MipLevel level[kMaxLevels];

@@ -100,10 +100,10 @@ class Lookup {
   /// By the filters of the chain.
   RASTRUM_HD_LEAF auto operator()(float u, float v, float level_of_detail) const {
     if (!(level_of_detail > 0))
-      return chain_.mag == Filter::linear ? linear(chain_.level[0], u, v)
-                                          : nearest(chain_.level[0], u, v);
+      return chain_.mag == TextureFilter::linear ? linear(chain_.level[0], u, v)
+                                                 : nearest(chain_.level[0], u, v);
     const float level = level_of_detail < last_level_ ? level_of_detail : last_level_;
-    if (chain_.min == Filter::nearest)
+    if (chain_.min == TextureFilter::nearest)
       return nearest(chain_.level[static_cast<int>(level + 0.5F)], u, v);
     const int finer = static_cast<int>(level);
     const float f = level - static_cast<float>(finer);

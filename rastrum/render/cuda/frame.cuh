@@ -291,7 +291,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     raster::end_frame(f.totals, stats);
     stats.rasterizer = kind_.rasterizer;
     stats.visibility = kind_.visibility;
-    stats.isa = f.request.isa;
+    stats.isa = choose_isa(f.request.isa);
     stats.device = Device::cuda;
     stats.why = std::string(kind_.why).append(f.resolves ? "; shaded on the device"
                                                          : "; shaded by the host's threads");

@@ -86,8 +86,8 @@ class HostBand {
   }
 
   parallel::Threads& threads_;
-  Buffer<std::uint64_t> keys_;      ///< in the device's places
-  Buffer<std::uint32_t> overdraw_;  ///< alike
+  ScratchBuffer<std::uint64_t> keys_;      ///< in the device's places
+  ScratchBuffer<std::uint32_t> overdraw_;  ///< alike
 };
 
 }  // namespace rastrum::raster

@@ -1,6 +1,6 @@
 // A height map in the memory of a device: the caller's cells, read where they are, and what frames
-// need beside them, the pyramid of Filter::mip and the maxima that say what stays hidden. Both are
-// made on the device by the functions of the CPU's (map_view.hpp, ceiling.hpp).
+// need beside them, the pyramid of MapFilter::mip and the maxima that say what stays hidden. Both
+// are made on the device by the functions of the CPU's (map_view.hpp, ceiling.hpp).
 //
 // Work O(cells), span O(log size) beside 256 reads of a thread. Takes a third of the map's bytes
 // with the pyramid, and a 256th for the maxima. Waits for the highest height.
@@ -72,7 +72,7 @@ struct DeviceCells {
 
 class DeviceMap {
  public:
-  /// `whole`: with the pyramid of Filter::mip. Throws Error{invalid_argument} for a map without
+  /// `whole`: with the pyramid of MapFilter::mip. Throws Error{invalid_argument} for a map without
   /// cells or with rows apart, Error{out_of_memory}.
   DeviceMap(parallel::Cuda& exec, const DeviceCells& cells, bool whole)
       : heights_(checked(cells.heights)), colors_(checked(cells.colors)), maxima_(cells.heights) {

@@ -26,7 +26,7 @@ std::uint64_t device_bytes(const Terrain& terrain, const TerrainOptions& options
                                   : 0;
   // The maxima of 16 × 16 cells and more; a pyramid, whose odd sizes round up.
   std::uint64_t bytes = cells * kBytes + cells * kBytes / 128;
-  if (options.filter == Filter::mip) bytes += cells * kBytes / 2;
+  if (options.filter == MapFilter::mip) bytes += cells * kBytes / 2;
   // A rolled picture is no larger than the upright one that it is taken from.
   bytes += 2 * 2 * kBytes * area(options.width, options.height);
   const auto slices = static_cast<std::uint64_t>(std::min(slice_count(options), kMaxSlices));

@@ -70,7 +70,7 @@ class CudaRenderer final : public DeviceRenderer {
               const std::function<void(const char* stage)>& lap,
               const std::stop_token* stop) override {
     const parallel::StopScope scope(stop);
-    if (terrain.is_map()) keep(terrain, options.filter == Filter::mip);
+    if (terrain.is_map()) keep(terrain, options.filter == MapFilter::mip);
     lap("map");
     const int width = options.width, height = options.height;
     const TerrainTargets on_device{colors_.sized(exec_, targets.color8, width, height),

@@ -1,0 +1,160 @@
+// MTL: each key and option that is drawn, and files as bad as they come.
+#include <cmath>
+#include <string>
+#include <unordered_map>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/io/io.hpp>
+#include <rastrum/io/parse.hpp>
+#include <tests/io/files.hpp>
+
+namespace rastrum {
+namespace {
+
+/// The scene of a text's materials; textures are looked for in `folder`.
+Scene read(std::string_view text, const std::filesystem::path& folder = "nowhere") {
+  Scene scene;
+  std::unordered_map<std::string, std::uint32_t> by_name;
+  io::parse_mtl(std::as_bytes(std::span(text)), folder / "m.mtl", scene, by_name);
+  EXPECT_EQ(by_name.size(), scene.materials.size());
+  for (const auto& [name, index] : by_name) EXPECT_EQ(scene.materials.at(index).name, name);
+  return scene;
+}
+
+/// The only material of what a file says behind `newmtl m`.
+Material material(const std::string& statements) {
+  const Scene s = read("newmtl m\n" + statements);
+  EXPECT_EQ(s.materials.size(), 1U);
+  for (const std::string& w : s.warnings) ADD_FAILURE() << w;
+  return s.materials.at(0);
+}
+
+/// The only warning of a file.
+std::string warning(std::string_view text) {
+  const Scene s = read(text);
+  EXPECT_EQ(s.warnings.size(), 1U);
+  return s.warnings.empty() ? "" : s.warnings[0];
+}
+
+TEST(Mtl, NothingSaid) {
+  const Material m = material("");
+  EXPECT_EQ(m.base_color.x, 0.0F);
+  EXPECT_EQ(m.base_color.w, 1.0F);
+  EXPECT_EQ(m.metallic, 0.0F);
+  EXPECT_FLOAT_EQ(m.roughness, std::pow(2.0F / 3, 0.25F));  // Ns 1
+  EXPECT_EQ(m.alpha_mode, AlphaMode::opaque);
+  EXPECT_TRUE(m.double_sided);
+  EXPECT_TRUE(read("").materials.empty());
+  EXPECT_TRUE(read("# only a comment").materials.empty());
+  EXPECT_TRUE(read("Kd 1 0 0\n").materials.empty());  // of no material
+}
+
+TEST(Mtl, Numbers) {
+  const Material m = material(" \tKd\t.5 +2.5e-1 7\t \r\n  Ke 0 2 -1\nNs 30\nPm 0.25\n");
+  EXPECT_EQ(m.base_color.x, 0.5F);
+  EXPECT_EQ(m.base_color.y, 0.25F);
+  EXPECT_EQ(m.base_color.z, 1.0F);  // from 7: a colour reflects no more than there is
+  EXPECT_EQ(m.emissive.y, 2.0F);
+  EXPECT_EQ(m.emissive.z, 0.0F);
+  EXPECT_FLOAT_EQ(m.roughness, 0.5F);  // (2 / 32)^(1/4)
+  EXPECT_EQ(m.metallic, 0.25F);
+  EXPECT_EQ(material("Ns 30\nPr 0.125\n").roughness, 0.125F);  // said outright
+  EXPECT_EQ(material("Kd 0.588 0 0").base_color.x, 0.588F);    // correctly rounded
+  EXPECT_EQ(material("Kd 1e-60 0 0").base_color.x, 0.0F);
+  const Vec4 grey = material("Kd 0.5\n").base_color;  // one number stands for three
+  EXPECT_EQ(grey.y, 0.5F);
+  EXPECT_EQ(grey.z, 0.5F);
+}
+
+TEST(Mtl, Alpha) {
+  EXPECT_EQ(material("d 0.25").base_color.w, 0.25F);
+  EXPECT_EQ(material("d 0.25").alpha_mode, AlphaMode::blend);
+  EXPECT_EQ(material("d -halo 0.25").base_color.w, 0.25F);
+  EXPECT_EQ(material("Tr 0.75").base_color.w, 0.25F);
+  EXPECT_EQ(material("d 1\nTr 0").alpha_mode, AlphaMode::opaque);
+  EXPECT_EQ(material("Tr 0.333\nd 0.667").base_color.w, 0.667F);
+  const std::string said = warning("newmtl m\n\nTr 0.9\nd 0.9\n");
+  EXPECT_NE(said.find("m.mtl:4: d and Tr of 'm' differ"), std::string::npos) << said;
+  EXPECT_EQ(read("newmtl m\nd 0.9\nTr 0.9\n").materials.at(0).base_color.w, 0.9F);
+}
+
+TEST(Mtl, Names) {
+  const Scene s = read("newmtl  a name \r\nKd 1 0 0\r\nnewmtl b\nnewmtl a name\nKd 0 1 0");
+  ASSERT_EQ(s.materials.size(), 2U);
+  EXPECT_EQ(s.materials[0].name, "a name");
+  EXPECT_EQ(s.materials[0].base_color.x, 1.0F);  // the first of a name
+  EXPECT_EQ(s.materials[1].name, "b");
+  EXPECT_EQ(s.materials[1].base_color.x, 0.0F);  // nothing of the one before
+}
+
+TEST(Mtl, Maps) {
+  const test::TempFolder folder;
+  Image<Rgba8> image(1, 1);
+  for (const char* name : {"a b.png", "-c.png", "2 d.png"})
+    io::write_png(folder.path(name), std::as_const(image).view());
+  const Scene s = read(
+      "newmtl all\n"
+      "map_Kd -blendu on -cc off -mm 0 1 -o 1 -s 2 2 -t 1 1 1 -boost 2 -texres 64 a b.png\n"
+      "map_Ke -clamp on -type sphere -imfchan r a b.png\n"
+      "map_d -c.png\n"
+      "norm -bm 0.5 a b.png\n"
+      "map_Kd_unknown x.png\nbump -bm 1 x.png\nmap_Ks x.png\nmap_Pr x.png\n"
+      "newmtl another\nmap_Kd -s 1 1 1 2 d.png\nmap_d -clamp off a b.png\n",
+      folder.path(""));
+  EXPECT_TRUE(s.warnings.empty()) << s.warnings[0];
+  ASSERT_EQ(s.materials.size(), 2U);
+  const Material& all = s.materials[0];
+  EXPECT_EQ(all.base_color_texture, 0);
+  EXPECT_EQ(all.base_color.x, 0.6F);
+  EXPECT_EQ(all.emissive_texture, 1);  // clamped: another use of the same file
+  EXPECT_EQ(all.emissive.y, 1.0F);     // a map without its factor
+  EXPECT_EQ(all.alpha_texture, 2);
+  EXPECT_EQ(all.alpha_mode, AlphaMode::mask);
+  EXPECT_EQ(all.normal_texture, 0);
+  EXPECT_EQ(all.normal_scale, 0.5F);
+  EXPECT_EQ(s.materials[1].base_color_texture, 3);
+  EXPECT_EQ(s.materials[1].alpha_texture, 0);
+  ASSERT_EQ(s.textures.size(), 4U);
+  EXPECT_EQ(s.textures[0].wrap_u, Wrap::repeat);
+  EXPECT_EQ(s.textures[1].wrap_v, Wrap::clamp_to_edge);
+  EXPECT_EQ(s.textures[2].name, "-c.png");
+  EXPECT_EQ(s.textures[3].name, "2 d.png");
+}
+
+TEST(Mtl, WhatCannotBeReadIsPassedOver) {
+  EXPECT_NE(warning("newmtl m\nKd red\n").find("m.mtl:2: Kd wants a number, found 'red'"),
+            std::string::npos);
+  EXPECT_NE(warning("newmtl m\nKd 1 2\n").find("found the end of the line"), std::string::npos);
+  EXPECT_NE(warning("newmtl m\nKd 0.5,1,1\n").find("'0.5,1,1'"), std::string::npos);
+  EXPECT_NE(warning("newmtl m\nNs").find("m.mtl:2: Ns wants a number"), std::string::npos);
+  EXPECT_NE(warning("newmtl m\nd nan\n").find("m.mtl:2: d is not finite"), std::string::npos);
+  EXPECT_NE(warning("newmtl m\nKe 1 1e999 1\n").find("Ke is not finite"), std::string::npos);
+  EXPECT_NE(warning("newmtl m\nPr -inf\n").find("Pr is not finite"), std::string::npos);
+  EXPECT_NE(warning("newmtl m\nmap_Kd -clamp on\n").find("wants the name of a picture"),
+            std::string::npos);
+  EXPECT_NE(warning("newmtl\nKd 1 1 1\n").find("m.mtl:1: newmtl without a name"),
+            std::string::npos);
+  const Scene s = read("newmtl m\nKd 1 1 1\nd 0.5\nKd x y z\nd\nNs ten\n");
+  ASSERT_EQ(s.warnings.size(), 1U);
+  EXPECT_NE(s.warnings[0].find(":4: Kd wants a number, found 'x' (and 2 more)"), std::string::npos)
+      << s.warnings[0];
+  EXPECT_EQ(s.materials.at(0).base_color.x, 1.0F);
+  EXPECT_EQ(s.materials.at(0).base_color.w, 0.5F);
+}
+
+TEST(Mtl, OddBytes) {
+  EXPECT_TRUE(read(std::string("\0\0\xff\n\r\r\v\f", 8)).materials.empty());
+  EXPECT_EQ(read("unknown\nillum 2\nnewmtl m\nKdx 1 1 1\nTf 1\nunknown -x").warnings.size(), 0U);
+  const std::string huge(1 << 22, 'x');
+  EXPECT_EQ(read("newmtl " + huge).materials.at(0).name, huge);
+  const std::string said = warning("newmtl m\nKd " + huge + "\n");
+  EXPECT_LT(said.size(), 100U);
+  // All lines wrong: still one warning.
+  std::string wrong = "newmtl m\n";
+  for (int i = 0; i < 200000; ++i) wrong += "Kd\n";
+  EXPECT_NE(warning(wrong).find("(and 199999 more)"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace rastrum
