@@ -63,6 +63,7 @@ TEST(CudaLibrary, DrawsByItsRasterizersAndTheRows) {
     Renderer cuda(o);
     const Frame frame = draw(cuda, binding.view(), g.camera);
     EXPECT_EQ(frame.stats.device, Device::cuda);
+    EXPECT_NE(frame.stats.why.find("shaded on the device"), std::string::npos) << frame.stats.why;
     EXPECT_TRUE(same_surfaces(frame, expected));
     EXPECT_TRUE(same_picture(frame, expected, 0));
     EXPECT_GT(frame.stats.peak_bytes, 0U);  // accounted where the program has the account

@@ -11,6 +11,7 @@
 #include <rastrum/raster/draws/samples.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 
+#include "tests/support/frame.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -8,7 +8,7 @@
 #include <rastrum/core/image.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/raster/cuda/resolve.cuh>
-#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/frame/request.hpp>
 
 namespace rastrum::raster {
 

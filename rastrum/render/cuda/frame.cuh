@@ -28,6 +28,7 @@
 #include <rastrum/raster/cuda/upload.cuh>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/frame/driver.hpp>
+#include <rastrum/raster/frame/request.hpp>
 #include <rastrum/raster/frame/stopwatch.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/render/cuda/band_images.cuh>

@@ -13,7 +13,8 @@
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/scratch.hpp>
-#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
+#include <rastrum/raster/frame/request.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 
 namespace rastrum::raster {
@@ -33,6 +34,7 @@ class HostBand {
     copy(exec, keys.data(), keys_.data(), keys.size());
   }
 
+  /// Adds it to the target, which begin_frame has cleared, or a pass before has filled.
   void store_overdraw(parallel::Cuda& exec, const Targets& targets, Rect view,
                       const Counts& overdraw) {
     overdraw_.reserve(overdraw.size());
@@ -40,12 +42,10 @@ class HostBand {
     const SurfaceView places{0, view.y0 / kBlockSize, block_columns(view), nullptr, nullptr};
     for_each_row(view, [&](int by) {
       for (int y = by * kBlockSize; y < std::min((by + 1) * kBlockSize, view.y1); ++y)
-        for (int x = 0; x < view.x1; ++x) {
-          const std::uint32_t n =
+        for (int x = 0; x < view.x1; ++x)
+          targets.overdraw(x, y) +=
               overdraw_[places.index(x / kBlockSize, by) * 64 +
                         static_cast<std::size_t>(y % kBlockSize * kBlockSize + x % kBlockSize)];
-          targets.overdraw(x, y) = n + (targets.load ? targets.overdraw(x, y) : 0);
-        }
     });
   }
 
