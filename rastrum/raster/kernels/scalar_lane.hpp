@@ -10,6 +10,7 @@ namespace rastrum::raster::scalar_lane {
 
 using F = float;
 using V3 = Vec3;
+using V4 = Vec4;
 
 RASTRUM_HD inline F set(float v) {
   return v;
@@ -26,6 +27,10 @@ RASTRUM_HD inline F max_of(F a, F b) {
 template <class V>
 RASTRUM_HD V choose(bool mask, V yes, V no) {
   return mask ? yes : no;
+}
+template <class V>
+RASTRUM_HD V choose_or_zero(bool mask, V yes) {
+  return mask ? yes : V{};
 }
 
 }  // namespace rastrum::raster::scalar_lane

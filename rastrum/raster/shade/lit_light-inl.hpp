@@ -30,7 +30,7 @@ RASTRUM_LANES V3 unit(const V3& v) {
 }
 /// max(v, 0), and 0 for NaN.
 RASTRUM_LANES F positive(F v) {
-  return choose(v > set(0), v, set(0));
+  return choose_or_zero(v > set(0), v);
 }
 
 /// The light at (px, py), px; `normal` need not be of unit length. Not for `id` and `wireframe`.
