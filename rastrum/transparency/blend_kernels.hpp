@@ -6,6 +6,7 @@
 
 #include <rastrum/raster/frame/options.hpp>
 #include <rastrum/raster/shade/color.hpp>
+#include <rastrum/transparency/over.hpp>
 
 namespace rastrum::transparency {
 
@@ -14,6 +15,15 @@ namespace rastrum::transparency {
 /// divide by alphas of any size.
 struct alignas(64) Seen {
   float r[64], g[64], b[64], a[64], through[64];
+
+  [[nodiscard]] SeenPixel at(int i) const { return {{r[i], g[i], b[i], a[i]}, through[i]}; }
+  void set(int i, const SeenPixel& p) {
+    r[i] = p.color.x;
+    g[i] = p.color.y;
+    b[i] = p.color.z;
+    a[i] = p.color.w;
+    through[i] = p.through;
+  }
 };
 
 struct BlendKernels {

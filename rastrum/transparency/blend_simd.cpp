@@ -20,6 +20,8 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace raster::HWY_NAMESPACE;  // NOLINT: the lanes' names
 
+#include <rastrum/transparency/blend_lanes-inl.hpp>
+
 /// Calls f(first pixel, lanes) for the vectors that hold any pixel of `mask`.
 template <class Each>
 HWY_INLINE void for_each_vector(std::uint64_t mask, const Each& f) {
@@ -33,62 +35,30 @@ HWY_INLINE void for_each_vector(std::uint64_t mask, const Each& f) {
 
 std::uint64_t behind(const raster::BlockColors& layer, std::uint64_t mask, float opaque_at,
                      Seen& seen) noexcept {
-  const F32 d;
-  const F limit = hn::Set(d, opaque_at), one = hn::Set(d, 1.0F);
   std::uint64_t opaque = 0;
   for_each_vector(mask, [&](std::size_t i, auto lanes) HWY_ATTR {
-    const F through = hn::Load(d, seen.through + i);
-    const auto add = [&](const float* channel, float* sum) HWY_ATTR {
-      const F c = hn::IfThenElseZero(lanes, hn::Load(d, channel + i));
-      hn::Store(hn::Add(hn::Load(d, sum + i), hn::Mul(through, c)), d, sum + i);
-      return c;
-    };
-    add(layer.r, seen.r);
-    add(layer.g, seen.g);
-    add(layer.b, seen.b);
-    const F a = add(layer.a, seen.a);
-    const F left = hn::Mul(through, hn::Sub(one, a));
-    hn::Store(left, d, seen.through + i);
-    opaque |= std::uint64_t{lane_bits(hn::RebindMask(I32{}, hn::Le(left, limit)))} << i;
+    SeenPixel pixel = load(seen, i);
+    add_behind(pixel, choose_or_zero(lanes, load(layer, i)));
+    store(pixel, seen, i);
+    opaque |= std::uint64_t{lane_bits(hn::RebindMask(I32{}, pixel.through <= set(opaque_at)))} << i;
   });
   return opaque & mask;
 }
 
 void finish(const Seen& seen, const raster::BlockColors& behind,
             raster::BlockColors& out) noexcept {
-  const F32 d;
-  const F one = hn::Set(d, 1.0F);
-  for (std::size_t i = 0; i < 64; i += kLanes) {
-    const F through = hn::Load(d, seen.through + i);
-    const auto over = [&](const float* sum, const float* channel) HWY_ATTR {
-      return hn::Add(hn::Load(d, sum + i), hn::Mul(through, hn::Load(d, channel + i)));
-    };
-    hn::Store(over(seen.r, behind.r), d, out.r + i);
-    hn::Store(over(seen.g, behind.g), d, out.g + i);
-    hn::Store(over(seen.b, behind.b), d, out.b + i);
-    const F left = hn::Mul(through, hn::Sub(one, hn::Load(d, behind.a + i)));
-    hn::Store(hn::IfThenElse(hn::Eq(left, hn::Zero(d)), one, over(seen.a, behind.a)), d, out.a + i);
-  }
+  for (std::size_t i = 0; i < 64; i += kLanes) store(over(load(seen, i), load(behind, i)), out, i);
 }
 
-void before(const raster::BlockColors& layer, std::uint64_t mask,
-            raster::BlockColors& colors) noexcept {
-  const F32 d;
+void put_before(const raster::BlockColors& layer, std::uint64_t mask,
+                raster::BlockColors& colors) noexcept {
   for_each_vector(mask, [&](std::size_t i, auto lanes) HWY_ATTR {
-    const F behind = hn::Sub(hn::Set(d, 1.0F), hn::Load(d, layer.a + i));
-    const auto put = [&](const float* channel, float* out) HWY_ATTR {
-      const F old = hn::Load(d, out + i);
-      const F sum = hn::Add(hn::Load(d, channel + i), hn::Mul(behind, old));
-      hn::Store(hn::IfThenElse(lanes, sum, old), d, out + i);
-    };
-    put(layer.r, colors.r);
-    put(layer.g, colors.g);
-    put(layer.b, colors.b);
-    put(layer.a, colors.a);
+    const V4 old = load(colors, i);
+    store(choose(lanes, before(load(layer, i), old), old), colors, i);
   });
 }
 
-constexpr BlendKernels kTable{behind, finish, before};
+constexpr BlendKernels kTable{behind, finish, put_before};
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
@@ -100,25 +70,14 @@ HWY_AFTER_NAMESPACE();
 namespace rastrum::transparency {
 namespace {
 
-SeenPixel at(const Seen& seen, int i) {
-  return {seen.r[i], seen.g[i], seen.b[i], seen.a[i], seen.through[i]};
-}
-Vec4 at(const raster::BlockColors& colors, int i) {
-  return {colors.r[i], colors.g[i], colors.b[i], colors.a[i]};
-}
-
 std::uint64_t behind_scalar(const raster::BlockColors& layer, std::uint64_t mask, float opaque_at,
                             Seen& seen) noexcept {
   std::uint64_t opaque = 0;
   for (std::uint64_t m = mask; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    SeenPixel pixel = at(seen, i);
-    add_behind(pixel, at(layer, i));
-    seen.r[i] = pixel.r;
-    seen.g[i] = pixel.g;
-    seen.b[i] = pixel.b;
-    seen.a[i] = pixel.a;
-    seen.through[i] = pixel.through;
+    SeenPixel pixel = seen.at(i);
+    add_behind(pixel, layer.at(i));
+    seen.set(i, pixel);
     opaque |= std::uint64_t{pixel.through <= opaque_at} << i;
   }
   return opaque;
@@ -126,14 +85,14 @@ std::uint64_t behind_scalar(const raster::BlockColors& layer, std::uint64_t mask
 
 void finish_scalar(const Seen& seen, const raster::BlockColors& behind,
                    raster::BlockColors& out) noexcept {
-  for (int i = 0; i < 64; ++i) out.set(i, over(at(seen, i), at(behind, i)));
+  for (int i = 0; i < 64; ++i) out.set(i, over(seen.at(i), behind.at(i)));
 }
 
 void before_scalar(const raster::BlockColors& layer, std::uint64_t mask,
                    raster::BlockColors& colors) noexcept {
   for (std::uint64_t m = mask; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    colors.set(i, transparency::before(at(layer, i), at(colors, i)));
+    colors.set(i, before(layer.at(i), colors.at(i)));
   }
 }
 

@@ -27,6 +27,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace raster::HWY_NAMESPACE;  // NOLINT: the lanes' names
 using U64 = hn::RebindToUnsigned<I64>;
 
+#include <rastrum/transparency/blend_lanes-inl.hpp>
+
 HWY_INLINE F to_float(I v) {
   return hn::ConvertTo(F32{}, v);
 }
@@ -189,12 +191,8 @@ void interleave(const raster::BlockColors& colors, Vec4* out) noexcept {
                           hn::Load(d, colors.b + i), hn::Load(d, colors.a + i), d, &out[i].x);
 }
 
-struct Colors {
-  F r, g, b, a;
-};
-
 /// Loads and a transposition, for they take a fifth of the time of four gathers (Zen 3).
-HWY_INLINE Colors load_colors(const std::uint64_t* sort_keys, const Vec4* colors) {
+HWY_INLINE V4 load_colors(const std::uint64_t* sort_keys, const Vec4* colors) {
   const F32 d;
   const hn::RepartitionToWide<U32> wide;
   const auto color = [&](std::size_t i) HWY_ATTR {
@@ -219,44 +217,25 @@ HWY_INLINE Colors load_colors(const std::uint64_t* sort_keys, const Vec4* colors
 }
 
 void gather(const PackedRow& row, std::size_t first, raster::BlockColors& out) noexcept {
-  const F32 d;
-  for (std::size_t part = 0; part < 8; part += kLanes) {
-    const Colors c = load_colors(row.sort_keys + part, row.colors);
-    hn::Store(c.r, d, out.r + first + part);
-    hn::Store(c.g, d, out.g + first + part);
-    hn::Store(c.b, d, out.b + first + part);
-    hn::Store(c.a, d, out.a + first + part);
-  }
+  for (std::size_t part = 0; part < 8; part += kLanes)
+    store(load_colors(row.sort_keys + part, row.colors), out, first + part);
 }
 
 template <bool kStops>
 HWY_INLINE void behind_rows(const PackedRow& row, std::size_t first, float opaque_at, Seen& seen) {
-  const F32 d;
-  const F one = hn::Set(d, 1.0F);
   for (std::size_t part = 0; part < 8; part += kLanes) {
-    const std::size_t i = first + part;
-    F r = hn::Load(d, seen.r + i), g = hn::Load(d, seen.g + i), b = hn::Load(d, seen.b + i);
-    F a = hn::Load(d, seen.a + i), through = hn::Load(d, seen.through + i);
+    SeenPixel pixel = load(seen, first + part);
     for (std::size_t k = 0; k < row.layers; ++k) {
-      Colors c = load_colors(row.sort_keys + k * 8 + part, row.colors);
+      V4 c = load_colors(row.sort_keys + k * 8 + part, row.colors);
       if constexpr (kStops) {
         // What a finished pixel hides may never have been shaded.
-        const auto finished = hn::Le(through, hn::Set(d, opaque_at));
-        if (hn::AllTrue(d, finished)) break;
-        for (F* const channel : {&c.r, &c.g, &c.b, &c.a})
-          *channel = hn::IfThenZeroElse(finished, *channel);
+        const auto unfinished = hn::Not(pixel.through <= set(opaque_at));
+        if (hn::AllFalse(F32{}, unfinished)) break;
+        c = choose_or_zero(unfinished, c);
       }
-      r = hn::Add(r, hn::Mul(through, c.r));
-      g = hn::Add(g, hn::Mul(through, c.g));
-      b = hn::Add(b, hn::Mul(through, c.b));
-      a = hn::Add(a, hn::Mul(through, c.a));
-      through = hn::Mul(through, hn::Sub(one, c.a));
+      add_behind(pixel, c);
     }
-    hn::Store(r, d, seen.r + i);
-    hn::Store(g, d, seen.g + i);
-    hn::Store(b, d, seen.b + i);
-    hn::Store(a, d, seen.a + i);
-    hn::Store(through, d, seen.through + i);
+    store(pixel, seen, first + part);
   }
 }
 
@@ -267,29 +246,16 @@ void behind(const PackedRow& row, std::size_t first, float opaque_at, Seen& seen
     behind_rows<false>(row, first, opaque_at, seen);
 }
 
-void before(const PackedRow& row, std::size_t first, raster::BlockColors& colors) noexcept {
-  const F32 d;
-  const F one = hn::Set(d, 1.0F);
+void put_before(const PackedRow& row, std::size_t first, raster::BlockColors& colors) noexcept {
   for (std::size_t part = 0; part < 8; part += kLanes) {
-    const std::size_t i = first + part;
-    F r = hn::Load(d, colors.r + i), g = hn::Load(d, colors.g + i), b = hn::Load(d, colors.b + i);
-    F a = hn::Load(d, colors.a + i);
-    for (std::size_t k = 0; k < row.layers; ++k) {
-      const Colors c = load_colors(row.sort_keys + k * 8 + part, row.colors);
-      const F rest = hn::Sub(one, c.a);
-      r = hn::Add(c.r, hn::Mul(rest, r));
-      g = hn::Add(c.g, hn::Mul(rest, g));
-      b = hn::Add(c.b, hn::Mul(rest, b));
-      a = hn::Add(c.a, hn::Mul(rest, a));
-    }
-    hn::Store(r, d, colors.r + i);
-    hn::Store(g, d, colors.g + i);
-    hn::Store(b, d, colors.b + i);
-    hn::Store(a, d, colors.a + i);
+    V4 color = load(colors, first + part);
+    for (std::size_t k = 0; k < row.layers; ++k)
+      color = before(load_colors(row.sort_keys + k * 8 + part, row.colors), color);
+    store(color, colors, first + part);
   }
 }
 
-constexpr PackedKernels kTable{pack, points, sort, interleave, gather, behind, before};
+constexpr PackedKernels kTable{pack, points, sort, interleave, gather, behind, put_before};
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
@@ -348,27 +314,20 @@ void gather_scalar(const PackedRow& row, std::size_t first, raster::BlockColors&
 
 void behind_scalar(const PackedRow& row, std::size_t first, float opaque_at, Seen& seen) noexcept {
   for (std::size_t k = 0; k < row.layers; ++k)
-    for (std::size_t i = first; i < first + 8; ++i) {
-      const Vec4& c = color_at(row, k * 8 + i - first);
-      const float through = seen.through[i];
-      if (opaque_at > 0 && through <= opaque_at) continue;
-      seen.r[i] += through * c.x;
-      seen.g[i] += through * c.y;
-      seen.b[i] += through * c.z;
-      seen.a[i] += through * c.w;
-      seen.through[i] = through * (1 - c.w);
+    for (std::size_t i = 0; i < 8; ++i) {
+      const int at = static_cast<int>(first + i);
+      SeenPixel pixel = seen.at(at);
+      if (opaque_at > 0 && pixel.through <= opaque_at) continue;
+      add_behind(pixel, color_at(row, k * 8 + i));
+      seen.set(at, pixel);
     }
 }
 
 void before_scalar(const PackedRow& row, std::size_t first, raster::BlockColors& colors) noexcept {
   for (std::size_t k = 0; k < row.layers; ++k)
-    for (std::size_t i = first; i < first + 8; ++i) {
-      const Vec4& c = color_at(row, k * 8 + i - first);
-      const float rest = 1 - c.w;
-      colors.r[i] = c.x + rest * colors.r[i];
-      colors.g[i] = c.y + rest * colors.g[i];
-      colors.b[i] = c.z + rest * colors.b[i];
-      colors.a[i] = c.w + rest * colors.a[i];
+    for (std::size_t i = 0; i < 8; ++i) {
+      const int at = static_cast<int>(first + i);
+      colors.set(at, before(color_at(row, k * 8 + i), colors.at(at)));
     }
 }
 

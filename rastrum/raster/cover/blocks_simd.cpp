@@ -16,13 +16,17 @@
 #include <rastrum/raster/kernels/kernels_simd.hpp>
 #include <rastrum/raster/kernels/lanes-inl.hpp>
 #include <rastrum/raster/shade/color.hpp>
-#include <rastrum/raster/shade/srgb_lanes-inl.hpp>
+#include <rastrum/raster/shade/srgb.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster {
 namespace HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
+
+#include <rastrum/raster/kernels/lane_math-inl.hpp>
+#include <rastrum/raster/shade/srgb_curve-inl.hpp>
+#undef RASTRUM_LANES
 
 /// The depths of row `row` of a block, column part by part: the depth formula, lane by lane.
 struct DepthRows {
@@ -183,7 +187,7 @@ void store_over(const BlockColors& colors, std::uint64_t covered, const Backdrop
       const F scale = hn::IfThenElse(divides, hn::Div(one, a), one);
       const auto straight = [&](const float* channel, float behind) HWY_ATTR {
         const F c = hn::Mul(over(hn::Load(d, channel + i), behind), scale);
-        if constexpr (kLinear) return srgb_lanes(d, c);
+        if constexpr (kLinear) return srgb_from_linear(c);
         return c;
       };
       const auto rgb =

@@ -14,6 +14,7 @@ namespace rastrum::raster {
 struct alignas(64) BlockColors {
   float r[64], g[64], b[64], a[64];
 
+  [[nodiscard]] Vec4 at(int i) const { return {r[i], g[i], b[i], a[i]}; }
   /// Sets element i; returns whether `c` is opaque.
   bool set(int i, Vec4 c) {
     r[i] = c.x;

@@ -4,10 +4,7 @@
 // blended into the samples that see it; the lighting then runs once for the row. So a sample's bits
 // do not depend on its neighbours. Setting up a triangle is scalar float32, kept for the block.
 //
-// float32 weights lose about |longest edge|² / |twice the area| ulps to cancellation, so thin and
-// clipped triangles are interpolated in float64 (interpolate.hpp) instead. Square roots and
-// divisions are the exact ones: approximate reciprocals differ between makers of the same
-// instruction set.
+// The arithmetic is lit_light-inl.hpp's, which the scalar form shares.
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
@@ -15,10 +12,9 @@
 #include <hwy/foreach_target.h>  // must precede highway.h
 #include <hwy/highway.h>
 
-#include <algorithm>
 #include <bit>
-#include <cmath>
 
+#include <rastrum/raster/kernels/lanes-inl.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>
@@ -30,51 +26,9 @@ namespace HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
 namespace hn = hwy::HWY_NAMESPACE;
 
-using F32 = hn::CappedTag<float, 8>;
-using F = hn::Vec<F32>;
-constexpr std::size_t kLanes = hn::MaxLanes(F32{});
-
-struct V3 {
-  F x, y, z;
-};
-
-HWY_INLINE F set(float v) {
-  return hn::Set(F32{}, v);
-}
-HWY_INLINE F dot(const V3& a, const V3& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE V3 scale(const V3& a, F s) {
-  return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
-}
-HWY_INLINE V3 normalize(const V3& a) {
-  const F32 d;
-  const F square = dot(a, a);
-  const F inverse = hn::Div(set(1.0F), hn::Sqrt(square));
-  return scale(a, hn::IfThenElse(hn::Gt(square, hn::Zero(d)), inverse, set(1.0F)));
-}
-/// max(v, 0), and 0 for NaN.
-HWY_INLINE F positive(F v) {
-  return hn::IfThenElseZero(hn::Gt(v, hn::Zero(F32{})), v);
-}
-
-HWY_INLINE F corner_sum(float c0, float c1, float c2, F b0, F b1, F b2) {
-  return hn::Add(hn::Add(hn::Mul(set(c0), b0), hn::Mul(set(c1), b1)), hn::Mul(set(c2), b2));
-}
-HWY_INLINE V3 corner_sum(const Vec3 (&v)[3], F b0, F b1, F b2) {
-  return {corner_sum(v[0].x, v[1].x, v[2].x, b0, b1, b2),
-          corner_sum(v[0].y, v[1].y, v[2].y, b0, b1, b2),
-          corner_sum(v[0].z, v[1].z, v[2].z, b0, b1, b2)};
-}
-HWY_INLINE V3 blend(hn::Mask<F32> mask, const V3& yes, const V3& no) {
-  return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y),
-          hn::IfThenElse(mask, yes.z, no.z)};
-}
-HWY_INLINE hn::Mask<F32> lane_mask(std::uint32_t bits) {
-  // LoadMaskBits reads whole bytes.
-  const std::uint8_t memory[8] = {static_cast<std::uint8_t>(bits)};
-  return hn::LoadMaskBits(F32{}, memory);
-}
+#include <rastrum/raster/kernels/lane_math-inl.hpp>
+#include <rastrum/raster/shade/lit_light-inl.hpp>
+#undef RASTRUM_LANES
 
 /// kLanes pixels of a row, and where in them is shaded.
 struct Row {
@@ -89,71 +43,28 @@ struct Row {
 
   [[nodiscard]] HWY_INLINE F px() const {
     const F32 d;
-    const F centre = hn::Add(hn::Iota(d, static_cast<float>(x)), set(0.5F));
-    return dx == nullptr ? centre : hn::Add(centre, hn::Load(d, dx));
+    const F centre = hn::Iota(d, static_cast<float>(x)) + set(0.5F);
+    return dx == nullptr ? centre : centre + hn::Load(d, dx);
   }
   [[nodiscard]] HWY_INLINE F py() const {
     const F centre = set(static_cast<float>(y) + 0.5F);
-    return dy == nullptr ? centre : hn::Add(centre, hn::Load(F32{}, dy));
+    return dy == nullptr ? centre : centre + hn::Load(F32{}, dy);
   }
 };
 
-/// Weights of triangle `t` at the pixels `wanted` of a row, up to a common positive factor; at the
-/// others they may be anything.
-HWY_INLINE void row_weights(const LitTriangle& t, const Row& row, std::uint32_t wanted, F& b0,
-                            F& b1, F& b2) {
+/// Weights of triangle `t` at the pixels `wanted` of a row; at the others they may be anything.
+HWY_INLINE CornerWeights row_weights(const LitTriangle& t, const Row& row, std::uint32_t wanted) {
+  if (!t.exact) return weights_of(t, row.px(), row.py());
+  // One by one, since most triangles that are so thin have few samples in a row.
   const F32 d;
-  if (t.exact) {
-    // One by one, since most triangles that are so thin have few samples in a row.
-    HWY_ALIGN float b[3][kLanes] = {};
-    for (; wanted != 0; wanted &= wanted - 1) {
-      const auto lane = static_cast<std::size_t>(std::countr_zero(wanted));
-      const Vec2 from_centre = row.dx == nullptr ? Vec2{0, 0} : Vec2{row.dx[lane], row.dy[lane]};
-      const Weights w = weights_at(t.planes, row.x + static_cast<int>(lane), row.y, from_centre);
-      for (int c = 0; c < 3; ++c) b[c][lane] = static_cast<float>(w.b[c]);
-    }
-    b0 = hn::Load(d, b[0]);
-    b1 = hn::Load(d, b[1]);
-    b2 = hn::Load(d, b[2]);
-    return;
+  HWY_ALIGN float b[3][kLanes] = {};
+  for (; wanted != 0; wanted &= wanted - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(wanted));
+    const Vec2 from_centre = row.dx == nullptr ? Vec2{0, 0} : Vec2{row.dx[lane], row.dy[lane]};
+    const Weights w = weights_at(t.planes, row.x + static_cast<int>(lane), row.y, from_centre);
+    for (int c = 0; c < 3; ++c) b[c][lane] = static_cast<float>(w.b[c]);
   }
-  const F dx = hn::Sub(row.px(), set(t.x0)), dy = hn::Sub(row.py(), set(t.y0));
-  const F l1 = hn::Add(hn::Mul(set(t.p1), dx), hn::Mul(set(t.q1), dy));
-  const F l2 = hn::Add(hn::Mul(set(t.p2), dx), hn::Mul(set(t.q2), dy));
-  b0 = hn::Mul(hn::Sub(hn::Sub(set(1.0F), l1), l2), set(t.inv_w[0]));
-  b1 = hn::Mul(l1, set(t.inv_w[1]));
-  b2 = hn::Mul(l2, set(t.inv_w[2]));
-}
-
-/// The lighting of a row whose normals (not normalized) and base colours are known.
-template <LitModel kModel>
-HWY_INLINE V3 light_row(const ViewRays& rays, const Row& row, V3 n, const V3& base) {
-  const F32 d;
-  if (kModel == LitModel::flat) return base;
-  n = normalize(n);
-  const F half = set(0.5F);
-  if (kModel == LitModel::normal)
-    return {hn::Add(hn::Mul(n.x, half), half), hn::Add(hn::Mul(n.y, half), half),
-            hn::Add(hn::Mul(n.z, half), half)};
-
-  const F px = row.px(), py = row.py();
-  const auto ray = [&](float origin, float dx, float dy) HWY_ATTR {
-    return hn::Neg(hn::Add(hn::Add(set(origin), hn::Mul(set(dx), px)), hn::Mul(set(dy), py)));
-  };
-  const V3 v = normalize({ray(rays.d.x, rays.dx.x, rays.dy.x), ray(rays.d.y, rays.dx.y, rays.dy.y),
-                          ray(rays.d.z, rays.dx.z, rays.dy.z)});
-  n = scale(n, hn::IfThenElse(hn::Lt(dot(n, v), hn::Zero(d)), set(-1.0F), set(1.0F)));
-  const V3 light{set(kLight.x), set(kLight.y), set(kLight.z)};
-  const F diffuse = hn::Add(set(kAmbient), hn::Mul(set(kDiffuse), positive(dot(n, light))));
-  const V3 lit = scale(base, diffuse);
-  if (kModel == LitModel::lambert) return lit;
-  // (n·h)³² = ((n·u)² / u·u)¹⁶ with u = v + l: the half vector needs no square root.
-  const V3 u{hn::Add(v.x, light.x), hn::Add(v.y, light.y), hn::Add(v.z, light.z)};
-  const F n_u = positive(dot(n, u));
-  F s = hn::Div(hn::Mul(n_u, n_u), hn::Max(dot(u, u), set(1e-20F)));
-  for (int i = 0; i < 4; ++i) s = hn::Mul(s, s);
-  const F specular = hn::Mul(s, set(kSpecular));
-  return {hn::Add(lit.x, specular), hn::Add(lit.y, specular), hn::Add(lit.z, specular)};
+  return {hn::Load(d, b[0]), hn::Load(d, b[1]), hn::Load(d, b[2])};
 }
 
 /// The lanes of `covered` whose keys hold the triangle `low`.
@@ -195,21 +106,16 @@ HWY_INLINE void interpolate_row(const LitScene& scene, const FrameGeometry& fram
   KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
   const std::uint64_t* keys = block.keys + first;
   const Row row(block, first);
-  V3 n{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-  V3 base = n;
+  V3 n = set(Vec3{}), base = n;
   while (rest != 0) {
     const std::uint64_t low = keys[std::countr_zero(rest)] & kIdMask;
     const LitTriangle& t = kept.find(scene, frame, low, wants_normals);
     const std::uint32_t same = same_triangle(keys, low) & rest;
-    const auto mask = lane_mask(same);
+    const auto mask = hn::RebindMask(d, lane_mask(same));
     rest &= ~same;
-    F b0, b1, b2;
-    row_weights(t, row, same, b0, b1, b2);
-    if (wants_normals) n = blend(mask, corner_sum(t.normal, b0, b1, b2), n);
-    if (wants_colors) {
-      const F inverse = hn::Div(set(1.0F), hn::Add(hn::Add(b0, b1), b2));
-      base = blend(mask, scale(corner_sum(t.color, b0, b1, b2), inverse), base);
-    }
+    const CornerWeights w = row_weights(t, row, same);
+    if (wants_normals) n = choose(mask, w.sum(t.normal), n);
+    if (wants_colors) base = choose(mask, interpolated_color(t, w), base);
   }
   if (wants_normals) store(n, surface.n, first);
   if (wants_colors) store(base, surface.base, first);
@@ -231,12 +137,13 @@ void shade_block(const LitScene& scene, const FrameGeometry& frame, const Visibl
         interpolate_row(scene, frame, block, first, static_cast<std::uint32_t>(row), kNormals,
                         colored, surface);
 
-  V3 base{set(kDefaultBase.x), set(kDefaultBase.y), set(kDefaultBase.z)};
+  V3 base = set(kDefaultBase);
   for (std::size_t first = 0; first < 64; first += kLanes) {
     if ((block.covered >> first & kRow) == 0) continue;
     if (colored) base = load(surface.base, first);
     const V3 n = kNormals ? load(surface.n, first) : base;
-    const V3 color = light_row<kModel>(scene.rays, Row(block, first), n, base);
+    const Row row(block, first);
+    const V3 color = light(kModel, scene.rays, row.px(), row.py(), n, base);
     hn::Store(color.x, d, colors.r + first);
     hn::Store(color.y, d, colors.g + first);
     hn::Store(color.z, d, colors.b + first);

@@ -16,7 +16,7 @@
 #include <rastrum/raster/shade/material_constants.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
 #include <rastrum/raster/shade/material_triangle.hpp>
-#include <rastrum/raster/shade/srgb_lanes-inl.hpp>
+#include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/raster/shade/texture_lanes-inl.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
@@ -28,10 +28,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// Fragments of one triangle in a block, densely; the last is repeated up to a whole group.
 struct alignas(64) Run {
   int n = 0, padded = 0;
-  int lane[64];                    ///< 8 · row + column
-  double scale[64];                ///< 1 / Σ weights
-  float weight1[64], weight2[64];  ///< normalized
-  float x[64], y[64];              ///< where they are, px
+  int lane[64];      ///< 8 · row + column
+  double scale[64];  ///< as CornerShares
+  float weight1[64], weight2[64];
+  float x[64], y[64];  ///< where they are, px
 
   Run(std::uint64_t mask, const WeightPlanes& w, int x0, int y0, const ShadingPoints* points) {
     for (; mask != 0; mask &= mask - 1) lane[n++] = std::countr_zero(mask);
@@ -50,14 +50,14 @@ struct alignas(64) Run {
           x[j] += points->dx[lane[j]];
           y[j] += points->dy[lane[j]];
         }
-        const double b0 = w.r[0] + w.p[0] * dx + w.q[0] * dy;
-        const double b1 = w.r[1] + w.p[1] * dx + w.q[1] * dy;
-        const double b2 = w.r[2] + w.p[2] * dx + w.q[2] * dy;
-        const double s = 1 / (b0 + b1 + b2);
-        scale[j] = s;
-        weight1[j] = static_cast<float>(b1 * s);
-        weight2[j] = static_cast<float>(b2 * s);
+        const CornerShares s = CornerShares::at(w, dx, dy);
+        scale[j] = s.scale;
+        weight1[j] = s.weight1;
+        weight2[j] = s.weight2;
       }
+  }
+  [[nodiscard]] HWY_INLINE CornerShares shares(int j) const {
+    return {scale[j], weight1[j], weight2[j]};
   }
 };
 
@@ -65,7 +65,7 @@ struct alignas(64) Run {
 HWY_INLINE void interpolate(const Run& run, float a0, float a1, float a2, float* HWY_RESTRICT out) {
   const float d1 = a1 - a0, d2 = a2 - a0;
   for (int k = 0; k < run.padded; k += kGroup)
-    for (int j = k; j < k + kGroup; ++j) out[j] = a0 + (run.weight1[j] * d1 + run.weight2[j] * d2);
+    for (int j = k; j < k + kGroup; ++j) out[j] = a0 + run.shares(j).offset(d1, d2);
 }
 
 HWY_INLINE void interpolate_texcoords(const MaterialTriangle& t, const Run& run, Coordinates& out) {
@@ -76,18 +76,15 @@ HWY_INLINE void interpolate_texcoords(const MaterialTriangle& t, const Run& run,
   const Vec2 a = t.corner(t.draw.mesh.texcoords, 0);
   const Vec2 d1 = t.corner(t.draw.mesh.texcoords, 1) - a;
   const Vec2 d2 = t.corner(t.draw.mesh.texcoords, 2) - a;
-  const WeightPlanes& w = t.planes;
-  const double p = w.p[0] + w.p[1] + w.p[2], q = w.q[0] + w.q[1] + w.q[2];
   const auto one = [&](float a0, float a1, float a2, float* HWY_RESTRICT value,
                        float* HWY_RESTRICT dx, float* HWY_RESTRICT dy) HWY_ATTR {
-    // (Σ bᵢ aᵢ / Σ bᵢ)′ = (Σ bᵢ′ aᵢ − value Σ bᵢ′) / Σ bᵢ, all relative to corner 0.
-    const double px = w.p[1] * a1 + w.p[2] * a2, qy = w.q[1] * a1 + w.q[2] * a2;
+    const CoordinatePlane plane(t.planes, a0, a1, a2);
     for (int k = 0; k < run.padded; k += kGroup)
       for (int j = k; j < k + kGroup; ++j) {
-        const float offset = run.weight1[j] * a1 + run.weight2[j] * a2;
-        value[j] = a0 + offset;
-        dx[j] = static_cast<float>((px - offset * p) * run.scale[j]);
-        dy[j] = static_cast<float>((qy - offset * q) * run.scale[j]);
+        const Coordinate c = plane.at(run.shares(j));
+        value[j] = c.value;
+        dx[j] = c.dx;
+        dy[j] = c.dy;
       }
   };
   one(a.x, d1.x, d2.x, out.u, out.u_dx, out.u_dy);
@@ -246,16 +243,12 @@ using Floats = hn::ScalableTag<float>;
 using F = hn::Vec<Floats>;
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(Floats{}));
 
-struct V3 {
-  F x, y, z;
-};
+#include <rastrum/raster/kernels/lane_math-inl.hpp>
+#include <rastrum/raster/shade/srgb_curve-inl.hpp>
 
-HWY_INLINE F set(float a) {
-  return hn::Set(Floats{}, a);
-}
-HWY_INLINE V3 set(Vec3 a) {
-  return {set(a.x), set(a.y), set(a.z)};
-}
+#include <rastrum/raster/shade/material_light-inl.hpp>  // after the curve
+#undef RASTRUM_LANES
+
 HWY_INLINE F load(const float* p) {
   return hn::Load(Floats{}, p);
 }
@@ -267,82 +260,9 @@ HWY_INLINE void store(V3 a, float* x, float* y, float* z) {
   hn::Store(a.y, Floats{}, y);
   hn::Store(a.z, Floats{}, z);
 }
-HWY_INLINE V3 add(V3 a, V3 b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-HWY_INLINE V3 subtract(V3 a, V3 b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-HWY_INLINE V3 scale(V3 a, F s) {
-  return {a.x * s, a.y * s, a.z * s};
-}
-HWY_INLINE V3 product(V3 a, V3 b) {
-  return {a.x * b.x, a.y * b.y, a.z * b.z};
-}
-HWY_INLINE F dot(V3 a, V3 b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-HWY_INLINE F reciprocal_length(V3 a) {
-  return set(1) / hn::Sqrt(dot(a, a));
-}
-
-/// NaN becomes the bound.
-HWY_INLINE F at_least(F a, float bound) {
-  return hn::IfThenElse(a > set(bound), a, set(bound));
-}
-HWY_INLINE F at_most(F a, float bound) {
-  return hn::IfThenElse(a < set(bound), a, set(bound));
-}
-HWY_INLINE F clamp01(F a) {
-  return at_most(at_least(a, 0), 1);
-}
-HWY_INLINE F mix(F a, F b, F t) {
-  return a + (b - a) * t;
-}
-HWY_INLINE V3 mix(V3 a, V3 b, F t) {
-  return {mix(a.x, b.x, t), mix(a.y, b.y, t), mix(a.z, b.z, t)};
-}
-
-HWY_INLINE F pow5(F a) {
-  const F a2 = a * a;
-  return a2 * a2 * a;
-}
-
-/// What a shader returns: the display value, or finite linear light.
-HWY_INLINE F written(F linear, bool as_linear) {
-  return as_linear ? at_most(at_least(linear, 0), kMostLight) : srgb_lanes(Floats{}, linear);
-}
-
-struct Reflectance {
-  V3 diffuse, f0;
-  F alpha, alpha2;
-};
-
-/// Light of one direction, reflected towards v; n·l ≤ 0 gives nothing.
-HWY_INLINE V3 reflect(const Reflectance& s, V3 n, V3 v, F nv, Vec3 light, float radiance) {
-  const V3 l = set(light);
-  const V3 sum = add(v, l);
-  const V3 half = scale(sum, set(1) / hn::Sqrt(at_least(dot(sum, sum), 1e-12F)));
-  const F nl = at_least(dot(n, l), 0);
-  const F nh = at_least(dot(n, half), 0);
-  const F vh = at_least(dot(v, half), 0);
-  const F lobe = nh * nh * (s.alpha2 - set(1)) + set(1);
-  const F pi_d = s.alpha2 / (lobe * lobe);
-  const F visibility = set(0.5F) / mix(set(2) * nl * nv, nl + nv, s.alpha);
-  const V3 one = set(Vec3{1, 1, 1});
-  const V3 f = mix(s.f0, one, pow5(clamp01(set(1) - vh)));
-  const V3 diffuse = product(s.diffuse, subtract(one, f));
-  return scale(add(diffuse, scale(f, pi_d * visibility)), nl * set(radiance));
-}
-
-HWY_INLINE V3 hemisphere(V3 diffuse, V3 specular, F normal_y, F mirrored_y) {
-  return add(scale(diffuse, set(kSkyMean) + set(kSkySlope) * normal_y),
-             scale(specular, set(kSkyMean) + set(kSkySlope) * mirrored_y));
-}
-
 /// Lights 64 fragments; what lies outside the covered ones does not matter.
-HWY_INLINE void light(const ViewRays& rays, const Surface& s, int x0, int y0,
-                      const ShadingPoints* points, bool linear, BlockColors& out) {
+HWY_INLINE void light_block(const ViewRays& rays, const Surface& s, int x0, int y0,
+                            const ShadingPoints* points, bool linear, BlockColors& out) {
   const auto& c = s.channel;
   for (int i = 0; i < 64; i += kLanes) {
     F px = load(kSample.x + i) + set(static_cast<float>(x0));
@@ -351,38 +271,17 @@ HWY_INLINE void light(const ViewRays& rays, const Surface& s, int x0, int y0,
       px = px + load(points->dx + i);
       py = py + load(points->dy + i);
     }
-    const V3 away = add(add(set(rays.d), scale(set(rays.dx), px)), scale(set(rays.dy), py));
-    const V3 v = scale(away, set(0) - reciprocal_length(away));
-    const V3 n = load(c[Surface::kNormalX] + i, c[Surface::kNormalY] + i, c[Surface::kNormalZ] + i);
     const V3 base = load(c[Surface::kBaseR] + i, c[Surface::kBaseG] + i, c[Surface::kBaseB] + i);
-    const F metallic = clamp01(load(c[Surface::kMetallic] + i));
-    const F roughness = at_most(at_least(load(c[Surface::kRoughness] + i), kMinRoughness), 1);
-
-    Reflectance surface;
-    surface.diffuse = scale(base, set(1) - metallic);
-    surface.f0 = mix(set(Vec3{kDielectricF0, kDielectricF0, kDielectricF0}), base, metallic);
-    surface.alpha = roughness * roughness;
-    surface.alpha2 = surface.alpha * surface.alpha;
-    const F facing = dot(n, v);
-    const F nv = at_least(facing, 1e-4F);
-    V3 color = add(reflect(surface, n, v, nv, kKeyLight, kKeyRadiance),
-                   reflect(surface, n, v, nv, kFillLight, kFillRadiance));
-
-    const V3 f0 = surface.f0;
-    const F smooth = set(1) - roughness;
-    const V3 rise{at_least(smooth - f0.x, 0), at_least(smooth - f0.y, 0),
-                  at_least(smooth - f0.z, 0)};
-    const V3 f = add(f0, scale(rise, pow5(clamp01(set(1) - nv))));
-    const V3 ambient = hemisphere(surface.diffuse, f, n.y, set(2) * facing * n.y - v.y);
-    color = add(color, scale(ambient, load(c[Surface::kOcclusion] + i)));
-    color = add(color, load(c[Surface::kEmissiveR] + i, c[Surface::kEmissiveG] + i,
-                            c[Surface::kEmissiveB] + i));
-
+    const LitSurface lit{
+        base,
+        load(c[Surface::kNormalX] + i, c[Surface::kNormalY] + i, c[Surface::kNormalZ] + i),
+        load(c[Surface::kMetallic] + i),
+        load(c[Surface::kRoughness] + i),
+        load(c[Surface::kOcclusion] + i),
+        load(c[Surface::kEmissiveR] + i, c[Surface::kEmissiveG] + i, c[Surface::kEmissiveB] + i)};
     const auto unlit = load(c[Surface::kUnlit] + i) > set(0);
-    store({written(hn::IfThenElse(unlit, base.x, color.x), linear),
-           written(hn::IfThenElse(unlit, base.y, color.y), linear),
-           written(hn::IfThenElse(unlit, base.z, color.z), linear)},
-          out.r + i, out.g + i, out.b + i);
+    store(written(choose(unlit, base, light(rays, lit, px, py)), linear), out.r + i, out.g + i,
+          out.b + i);
   }
 }
 
@@ -422,7 +321,7 @@ void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleB
     for (int c = 0; c < Surface::kChannels; ++c)
       for (int k = 0; k < run.n; ++k) surface.channel[c][run.lane[k]] = part.channel[c][k];
   }
-  light(scene.rays, surface, x0, y0, block.points, linear, colors);
+  light_block(scene.rays, surface, x0, y0, block.points, linear, colors);
 }
 
 /// A fragment's own alpha: what a mask tests and what blends.

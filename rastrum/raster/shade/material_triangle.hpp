@@ -19,6 +19,53 @@ RASTRUM_HD_LEAF Vec3 times(const float (&m)[3][3], Vec3 v) {
           m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z};
 }
 
+/// How much of a triangle's corners a point has.
+struct CornerShares {
+  double scale;            ///< 1 / Σ weights
+  float weight1, weight2;  ///< normalized
+
+  /// (dx, dy) px from the planes' origin.
+  [[nodiscard]] RASTRUM_HD_LEAF static CornerShares at(const WeightPlanes& w, double dx,
+                                                       double dy) {
+    const double b0 = w.r[0] + w.p[0] * dx + w.q[0] * dy;
+    const double b1 = w.r[1] + w.p[1] * dx + w.q[1] * dy;
+    const double b2 = w.r[2] + w.p[2] * dx + w.q[2] * dy;
+    const double s = 1 / (b0 + b1 + b2);
+    return {s, static_cast<float>(b1 * s), static_cast<float>(b2 * s)};
+  }
+  /// What an attribute has more than at corner 0, of what it has more at the others: exactly 0
+  /// where it is constant.
+  [[nodiscard]] RASTRUM_HD_LEAF float offset(float d1, float d2) const {
+    return weight1 * d1 + weight2 * d2;
+  }
+};
+
+/// A texture coordinate and its change per px.
+struct Coordinate {
+  float value, dx, dy;
+};
+
+/// A texture coordinate over a triangle.
+struct CoordinatePlane {
+  float a0, d1, d2;     ///< at corner 0, and how much more at the others
+  double p, q, px, qy;  ///< Σ bᵢ′ and Σ bᵢ′ dᵢ, along x and y
+
+  RASTRUM_HD CoordinatePlane(const WeightPlanes& w, float at0, float more1, float more2)
+      : a0(at0),
+        d1(more1),
+        d2(more2),
+        p(w.p[0] + w.p[1] + w.p[2]),
+        q(w.q[0] + w.q[1] + w.q[2]),
+        px(w.p[1] * more1 + w.p[2] * more2),
+        qy(w.q[1] * more1 + w.q[2] * more2) {}
+  /// (Σ bᵢ aᵢ / Σ bᵢ)′ = (Σ bᵢ′ aᵢ − value Σ bᵢ′) / Σ bᵢ, all relative to corner 0.
+  [[nodiscard]] RASTRUM_HD_LEAF Coordinate at(const CornerShares& shares) const {
+    const float offset = shares.offset(d1, d2);
+    return {a0 + offset, static_cast<float>((px - offset * p) * shares.scale),
+            static_cast<float>((qy - offset * q) * shares.scale)};
+  }
+};
+
 /// A triangle that is being shaded.
 struct MaterialTriangle {
   const MaterialDraw& draw;

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 
 #include <rastrum/core/config.hpp>
+#include <rastrum/raster/kernels/scalar_lane.hpp>
 
 namespace rastrum::raster {
 
@@ -27,15 +27,11 @@ inline constexpr float kSrgbKnee = 0.0031308F, kSrgbSlope = 12.92F;
 inline constexpr float kSrgbRoot2 = 0.65398306F, kSrgbRoot4 = 0.68871534F, kSrgbRoot8 = 0.31847525F,
                        kSrgbLinear = 0.020187189F, kSrgbConstant = 0.0040672144F;
 
-/// Linear light to display value, both in [0, 1]; what lies outside is clamped, NaN becomes 0.
-RASTRUM_HD inline float srgb_from_linear(float linear) {
-  const float x = linear > 0 ? (linear < 1 ? linear : 1.0F) : 0.0F;
-  const float s2 = std::sqrt(x);
-  const float s4 = std::sqrt(s2);
-  const float s8 = std::sqrt(s4);
-  const float curve =
-      kSrgbRoot2 * s2 + kSrgbRoot4 * s4 - kSrgbRoot8 * s8 - (kSrgbLinear * x + kSrgbConstant);
-  return x < kSrgbKnee ? x * kSrgbSlope : curve;
-}
+namespace scalar_lane {
+#define RASTRUM_LANES RASTRUM_HD inline
+#include <rastrum/raster/shade/srgb_curve-inl.hpp>
+#undef RASTRUM_LANES
+}  // namespace scalar_lane
+using scalar_lane::srgb_from_linear;
 
 }  // namespace rastrum::raster

@@ -1,0 +1,94 @@
+// The lights of the material shader (material.hpp has the formula), in lanes or in one float
+// (kernels/lane_math-inl.hpp), after srgb_curve-inl.hpp: one body, so the same bits.
+
+/// NaN becomes the bound.
+RASTRUM_LANES F at_least(F a, float bound) {
+  return choose(a > set(bound), a, set(bound));
+}
+RASTRUM_LANES F at_most(F a, float bound) {
+  return choose(a < set(bound), a, set(bound));
+}
+RASTRUM_LANES F clamp01(F a) {
+  return at_most(at_least(a, 0), 1);
+}
+RASTRUM_LANES F mix(F a, F b, F t) {
+  return a + (b - a) * t;
+}
+RASTRUM_LANES V3 mix(const V3& a, const V3& b, F t) {
+  return {mix(a.x, b.x, t), mix(a.y, b.y, t), mix(a.z, b.z, t)};
+}
+RASTRUM_LANES F pow5(F a) {
+  const F a2 = a * a;
+  return a2 * a2 * a;
+}
+
+/// What a shader returns: the display value, or finite linear light.
+RASTRUM_LANES F written(F linear, bool as_linear) {
+  return as_linear ? at_most(at_least(linear, 0), kMostLight) : srgb_from_linear(linear);
+}
+RASTRUM_LANES V3 written(const V3& linear, bool as_linear) {
+  return {written(linear.x, as_linear), written(linear.y, as_linear), written(linear.z, as_linear)};
+}
+
+struct Reflectance {
+  V3 diffuse, f0;
+  F alpha, alpha2;
+};
+
+/// Light of one direction, reflected towards v; n·l ≤ 0 gives nothing.
+RASTRUM_LANES V3 reflect(const Reflectance& s, const V3& n, const V3& v, F nv, Vec3 to_light,
+                         float radiance) {
+  const V3 l = set(to_light);
+  const V3 sum = v + l;
+  const V3 half = sum * (set(1) / square_root(at_least(dot(sum, sum), 1e-12F)));
+  const F nl = at_least(dot(n, l), 0);
+  const F nh = at_least(dot(n, half), 0);
+  const F vh = at_least(dot(v, half), 0);
+  const F lobe = nh * nh * (s.alpha2 - set(1)) + set(1);
+  const F pi_d = s.alpha2 / (lobe * lobe);
+  const F visibility = set(0.5F) / mix(set(2) * nl * nv, nl + nv, s.alpha);
+  const V3 one = set(Vec3{1, 1, 1});
+  const V3 f = mix(s.f0, one, pow5(clamp01(set(1) - vh)));
+  const V3 diffuse = s.diffuse * (one - f);
+  return (diffuse + f * (pi_d * visibility)) * (nl * set(radiance));
+}
+
+RASTRUM_LANES V3 hemisphere(const V3& diffuse, const V3& specular, F normal_y, F mirrored_y) {
+  return diffuse * (set(kSkyMean) + set(kSkySlope) * normal_y) +
+         specular * (set(kSkyMean) + set(kSkySlope) * mirrored_y);
+}
+
+/// What the lights need to know.
+struct LitSurface {
+  V3 base;
+  V3 normal;  ///< unit, towards the viewer
+  F metallic, roughness, occlusion;
+  V3 emission;
+};
+
+/// Linear light at (px, py), px.
+RASTRUM_LANES V3 light(const ViewRays& rays, const LitSurface& s, F px, F py) {
+  constexpr Vec3 key = kKeyLight, fill = kFillLight;  // a device has no address of the namespace's
+  const V3 away = set(rays.d) + set(rays.dx) * px + set(rays.dy) * py;
+  const V3 v = away * (set(0) - set(1) / square_root(dot(away, away)));
+  const V3 n = s.normal;
+  const F metallic = clamp01(s.metallic);
+  const F roughness = at_most(at_least(s.roughness, kMinRoughness), 1);
+
+  Reflectance surface;
+  surface.diffuse = s.base * (set(1) - metallic);
+  surface.f0 = mix(set(Vec3{kDielectricF0, kDielectricF0, kDielectricF0}), s.base, metallic);
+  surface.alpha = roughness * roughness;
+  surface.alpha2 = surface.alpha * surface.alpha;
+  const F facing = dot(n, v);
+  const F nv = at_least(facing, 1e-4F);
+  const V3 direct = reflect(surface, n, v, nv, key, kKeyRadiance) +
+                    reflect(surface, n, v, nv, fill, kFillRadiance);
+
+  const V3 f0 = surface.f0;
+  const F smooth = set(1) - roughness;
+  const V3 rise{at_least(smooth - f0.x, 0), at_least(smooth - f0.y, 0), at_least(smooth - f0.z, 0)};
+  const V3 f = f0 + rise * pow5(clamp01(set(1) - nv));
+  const V3 ambient = hemisphere(surface.diffuse, f, n.y, set(2) * facing * n.y - v.y);
+  return direct + ambient * s.occlusion + s.emission;
+}

@@ -1,0 +1,14 @@
+// The curve from linear light to display values, in lanes or in one float
+// (kernels/lane_math-inl.hpp).
+
+/// Linear light to display value, both in [0, 1]; what lies outside is clamped, NaN becomes 0.
+RASTRUM_LANES F srgb_from_linear(F linear) {
+  const F positive = choose_or_zero(linear > set(0), linear);
+  const F x = choose(positive < set(1), positive, set(1));
+  const F s2 = square_root(x);
+  const F s4 = square_root(s2);
+  const F s8 = square_root(s4);
+  const F curve = set(kSrgbRoot2) * s2 + set(kSrgbRoot4) * s4 - set(kSrgbRoot8) * s8 -
+                  (set(kSrgbLinear) * x + set(kSrgbConstant));
+  return choose(x < set(kSrgbKnee), x * set(kSrgbSlope), curve);
+}

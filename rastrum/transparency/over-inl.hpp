@@ -1,0 +1,28 @@
+// Porter and Duff's `over`, premultiplied, in lanes or in one float
+// (raster/kernels/lane_math-inl.hpp): one body, so that planes of pixels, packed fragments, the
+// scalar kernels and devices have the same bits. Include it in the lanes' namespace.
+
+/// Colour so far, and how much of what lies behind is seen through it (Seen has 64 of them).
+struct SeenPixel {
+  V4 color{};
+  F through = set(1);
+};
+
+/// Adds a layer behind what is seen.
+RASTRUM_LANES void add_behind(SeenPixel& seen, const V4& layer) {
+  seen.color = seen.color + layer * seen.through;
+  seen.through = seen.through * (set(1) - layer.w);
+}
+
+/// What is seen, over `behind`.
+RASTRUM_LANES V4 over(const SeenPixel& seen, const V4& behind) {
+  V4 color = seen.color + behind * seen.through;
+  // What nothing is seen through is opaque, whatever the sum was rounded to.
+  color.w = choose(seen.through * (set(1) - behind.w) == set(0), set(1), color.w);
+  return color;
+}
+
+/// `layer` before `behind`.
+RASTRUM_LANES V4 before(const V4& layer, const V4& behind) {
+  return layer + behind * (set(1) - layer.w);
+}
