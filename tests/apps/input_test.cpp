@@ -7,7 +7,7 @@
 #include "inputs.hpp"
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::input_test {
 namespace {
 
 class Inputs : public Program {
@@ -148,4 +148,4 @@ TEST_F(Inputs, InfoTellsWhatAFileHolds) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::input_test

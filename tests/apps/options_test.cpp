@@ -11,7 +11,7 @@
 
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::options_test {
 namespace {
 
 constexpr int kWidth = 72, kHeight = 56;
@@ -275,4 +275,4 @@ TEST_F(Options, QuietIsQuiet) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::options_test

@@ -6,7 +6,7 @@
 
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::output_test {
 namespace {
 
 class Output : public Program {
@@ -92,4 +92,4 @@ TEST_F(Output, ExtensionsInAnyCase) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::output_test

@@ -13,7 +13,7 @@
 
 #include "hills.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::terrain_objects_test {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
@@ -227,4 +227,4 @@ TEST_F(TerrainObjectsProgram, RefusesWhatCannotStand) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::terrain_objects_test

@@ -17,7 +17,7 @@
 #include "hills.hpp"
 #include "terrain_path.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::terrain_test {
 namespace {
 
 using namespace terrain;
@@ -425,4 +425,4 @@ TEST_F(TerrainProgram, HelpNamesEveryFunctionAndAnExample) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::terrain_test

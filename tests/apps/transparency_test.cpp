@@ -6,7 +6,7 @@
 #include "arguments.hpp"
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::transparency_test {
 namespace {
 
 class TransparencyOption : public Program {
@@ -157,4 +157,4 @@ TEST_F(TransparencyOption, BlendMaterialsAreBlendedAndOnlyNoneWarns) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::transparency_test

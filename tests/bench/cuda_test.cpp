@@ -31,7 +31,7 @@ CudaStatus cuda_status() {
 
 }  // namespace rastrum::parallel
 
-namespace rastrum::bench {
+namespace rastrum::bench::cuda_test {
 namespace {
 
 /// The figures of one table of `bench cuda`.
@@ -116,4 +116,4 @@ TEST(BenchCuda, RatesAreItemsASecondAndTimesOverTheFloor) {
 }
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::cuda_test

@@ -10,7 +10,7 @@
 #include <rastrum/core/error.hpp>
 #include <rastrum/render/render.hpp>
 
-namespace rastrum::bench {
+namespace rastrum::bench::embree_peer_test {
 namespace {
 
 TEST(EmbreePeer, TracesTheSamePicture) {
@@ -40,4 +40,4 @@ TEST(EmbreePeer, TracesTheSamePicture) {
 }
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::embree_peer_test

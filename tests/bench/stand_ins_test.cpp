@@ -15,7 +15,7 @@
 #include <rastrum/core/error.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
-namespace rastrum::bench {
+namespace rastrum::bench::stand_ins_test {
 namespace {
 
 /// Directed edges without their opposite.
@@ -184,4 +184,4 @@ TEST(Contest, TimesWhatIsRightAndSaysWhyNot) {
 }
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::stand_ins_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/random.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::transform_test {
 namespace {
 
 struct P {
@@ -147,4 +147,4 @@ TEST(Quaternion, SlerpTurnsAtConstantSpeedTheShorterWay) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::transform_test

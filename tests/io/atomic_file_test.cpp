@@ -14,7 +14,7 @@
 
 #include "tests/io/files.hpp"
 
-namespace rastrum::io {
+namespace rastrum::io::atomic_file_test {
 namespace {
 
 class AtomicFiles : public testing::Test {
@@ -164,4 +164,4 @@ TEST(DecodeScene, SaysWhatAWronglyNamedFileBeginsAs) {
 }
 
 }  // namespace
-}  // namespace rastrum::io
+}  // namespace rastrum::io::atomic_file_test

@@ -43,7 +43,7 @@
 #endif
 #endif
 
-namespace rastrum {
+namespace rastrum::bad_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -371,4 +371,4 @@ TEST(BadFilesTable, RefusesWhatPngSuiteCallsCorrupt) {
 }
 
 }  // namespace
-}  // namespace rastrum
+}  // namespace rastrum::bad_files_test

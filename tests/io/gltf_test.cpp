@@ -14,7 +14,7 @@
 
 #include "tests/io/files.hpp"
 
-namespace rastrum {
+namespace rastrum::gltf_test {
 namespace {
 
 using Indices = std::vector<std::uint32_t>;
@@ -318,4 +318,4 @@ TEST(Describe, SaysWhatAFileHolds) {
 }
 
 }  // namespace
-}  // namespace rastrum
+}  // namespace rastrum::gltf_test

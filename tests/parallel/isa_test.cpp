@@ -8,7 +8,7 @@
 
 #include <rastrum/parallel/device.hpp>
 
-namespace rastrum {
+namespace rastrum::isa_test {
 namespace {
 
 TEST(Isa, AvailableOnesAreHighways) {
@@ -26,4 +26,4 @@ TEST(Isa, AvailableOnesAreHighways) {
 }
 
 }  // namespace
-}  // namespace rastrum
+}  // namespace rastrum::isa_test

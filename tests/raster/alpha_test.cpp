@@ -21,7 +21,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/random.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::alpha_test {
 namespace {
 
 constexpr int kSize = 24;  // 3 blocks of 8
@@ -407,4 +407,4 @@ TEST(StoreBlended, IsTheScalarOne) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::alpha_test

@@ -35,7 +35,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::binned_test {
 namespace {
 
 using raster::Schedule;
@@ -635,4 +635,4 @@ TEST(Binned, RefusesATuningThatIsNotCompiled) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::binned_test

@@ -18,7 +18,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::cuda_materials_test {
 namespace {
 
 constexpr int kWidth = 107, kHeight = 91;
@@ -254,4 +254,4 @@ TEST_F(CudaMaterials, ACallersDiscardIsTheCPUs) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::cuda_materials_test

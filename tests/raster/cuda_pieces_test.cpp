@@ -14,7 +14,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::cuda_pieces_test {
 namespace {
 
 struct KeepsAll {
@@ -166,4 +166,4 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::cuda_pieces_test

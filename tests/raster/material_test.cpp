@@ -19,7 +19,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::material_test {
 namespace {
 
 constexpr int kSize = 64;
@@ -574,4 +574,4 @@ TEST(Material, RealFilesAreTheSameOnEveryDevice) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::material_test

@@ -17,7 +17,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::plain_shaders_test {
 namespace {
 
 constexpr int kSize = 64;
@@ -124,4 +124,4 @@ TEST(PlainShaders, AutomaticTakesMaterialWhereThereAreSome) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::plain_shaders_test

@@ -12,7 +12,7 @@
 #include <rastrum/render/render.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
-namespace rastrum::test {
+namespace rastrum::test::program_test {
 namespace {
 
 using raster::Fragment;
@@ -420,4 +420,4 @@ TEST(Program, DiscardedFragmentsAreHoles) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::program_test

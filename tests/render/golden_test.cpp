@@ -12,7 +12,7 @@
 #include "tests/support/golden.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::golden_test {
 namespace {
 
 struct Picture {
@@ -71,4 +71,4 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Golden, testing::ValuesIn(kPictures),
                          });
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::golden_test

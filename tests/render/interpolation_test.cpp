@@ -14,7 +14,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::interpolation_test {
 namespace {
 
 using Real = long double;
@@ -136,4 +136,4 @@ TEST(Interpolation, WithinOneInHundredThousandOfTheExactValue) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::interpolation_test

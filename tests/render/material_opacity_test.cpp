@@ -7,7 +7,7 @@
 #include "tests/support/frame.hpp"
 #include "tests/support/materials.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::material_opacity_test {
 namespace {
 
 RenderOptions options(Shader shader, float opacity, Isa isa) {
@@ -74,4 +74,4 @@ TEST(MaterialOpacity, RefusesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::material_opacity_test

@@ -20,7 +20,7 @@
 
 #include "tests/support/materials.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::on_terrain_test {
 namespace {
 
 using terrain::Terrain;
@@ -533,4 +533,4 @@ TEST(Sprite, IsAsHighAsOneAndNeedsAPicture) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::on_terrain_test

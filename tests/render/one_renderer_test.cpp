@@ -16,7 +16,7 @@
 #include "tests/support/frame.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::one_renderer_test {
 namespace {
 
 constexpr int kCallers = 4, kFrames = 6;
@@ -147,4 +147,4 @@ TEST(OneSceneOnTerrain, DrawsForSeveralThreads) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::one_renderer_test

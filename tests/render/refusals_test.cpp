@@ -13,7 +13,7 @@
 
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::refusals_test {
 namespace {
 
 constexpr int kW = 16, kH = 12;
@@ -182,4 +182,4 @@ TEST(Refusals, TargetsOfAnotherSizeWithEveryShader) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::refusals_test

@@ -18,7 +18,7 @@
 #include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::topology_test {
 namespace {
 
 using raster::Topology;
@@ -351,4 +351,4 @@ TEST(Topologies, RefusesWidthsSizesAndBiasesOutOfRange) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::topology_test

@@ -14,7 +14,7 @@
 #include <rastrum/core/transform.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
-namespace rastrum::test {
+namespace rastrum::test::fit_test {
 namespace {
 
 struct Size {
@@ -210,4 +210,4 @@ TEST(SinCosDegrees, AreExactAtQuartersAndCloseElsewhere) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::fit_test

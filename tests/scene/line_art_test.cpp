@@ -10,7 +10,7 @@
 #include <rastrum/scene/line_art.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
-namespace rastrum::test {
+namespace rastrum::test::line_art_test {
 namespace {
 
 TEST(LineArt, EdgesAreThereOnceInTheOrderOfTheirTriangles) {
@@ -67,4 +67,4 @@ TEST(LineArt, NormalsWithIndicesOfTheirOwnAreDrawnAtTheCorners) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::line_art_test

@@ -10,7 +10,7 @@
 #include <rastrum/core/error.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
-namespace rastrum::test {
+namespace rastrum::test::scene_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -287,4 +287,4 @@ TEST(SceneAppend, FilesWithoutMaterialsKeepTheDefault) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::scene_test

@@ -6,7 +6,7 @@
 #include <rastrum/core/error.hpp>
 #include <rastrum/scene/shapes/shapes.hpp>
 
-namespace rastrum::test {
+namespace rastrum::test::spec_test {
 namespace {
 
 bool same(const Mesh& a, const Mesh& b) {
@@ -86,4 +86,4 @@ TEST(Spec, ErrorsNameWhatIsWrongAndWhatIsKnown) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::spec_test

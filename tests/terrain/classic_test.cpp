@@ -22,7 +22,7 @@
 #include "tests/support/directories.hpp"
 #include "tests/terrain/maps.hpp"
 
-namespace rastrum::terrain {
+namespace rastrum::terrain::classic_test {
 namespace {
 
 struct Original {
@@ -226,4 +226,4 @@ TEST(Classic, ABlockEndsSoonWhenStopped) {
 }
 
 }  // namespace
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::classic_test

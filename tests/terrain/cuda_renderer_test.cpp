@@ -18,7 +18,7 @@
 #include "tests/terrain/cuda_device.hpp"
 #include "tests/terrain/maps.hpp"
 
-namespace rastrum::terrain {
+namespace rastrum::terrain::cuda_renderer_test {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -348,4 +348,4 @@ TEST_F(CudaTerrain, AMapThatIsTooLargeIsRefusedByNameAndAutoGoesToTheCpu) {
 }
 
 }  // namespace
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::cuda_renderer_test

@@ -12,7 +12,7 @@
 #include "tests/terrain/cuda_device.hpp"
 #include "tests/terrain/maps.hpp"
 
-namespace rastrum::terrain {
+namespace rastrum::terrain::cuda_spans_test {
 namespace {
 
 class CudaSpans : public test::TerrainOnDevice {};
@@ -63,4 +63,4 @@ TEST_F(CudaSpans, WithoutCellsOrWithGapsAreRefused) {
 }
 
 }  // namespace
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::cuda_spans_test

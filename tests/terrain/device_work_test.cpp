@@ -5,7 +5,7 @@
 
 #include <rastrum/terrain/setup.hpp>
 
-namespace rastrum::terrain {
+namespace rastrum::terrain::device_work_test {
 namespace {
 
 Terrain flat(int edge) {
@@ -56,4 +56,4 @@ TEST(TerrainDeviceWork, PicturesThatComeBackAreTheThreadsAndWordsTheDevices) {
 }
 
 }  // namespace
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::device_work_test

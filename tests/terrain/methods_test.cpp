@@ -15,7 +15,7 @@
 #include "tests/support/stop_trigger.hpp"
 #include "tests/terrain/maps.hpp"
 
-namespace rastrum::terrain {
+namespace rastrum::terrain::methods_test {
 namespace {
 
 struct Picture {
@@ -176,4 +176,4 @@ TEST(Methods, EndSoonWhenStopped) {
 }
 
 }  // namespace
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::methods_test

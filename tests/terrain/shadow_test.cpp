@@ -15,7 +15,7 @@
 #include "tests/support/environment.hpp"
 #include "tests/support/random.hpp"
 
-namespace rastrum::terrain {
+namespace rastrum::terrain::shadow_test {
 namespace {
 
 using test::Random;
@@ -364,4 +364,4 @@ TEST(SoftLight, APostsShadowFadesAwayFromIt) {
 }
 
 }  // namespace
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::shadow_test

@@ -18,7 +18,7 @@
 
 #include "tests/terrain/maps.hpp"
 
-namespace rastrum::terrain {
+namespace rastrum::terrain::terrain_test {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -714,4 +714,4 @@ TEST(OddInput, LargeMaps) {
 }
 
 }  // namespace
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::terrain_test

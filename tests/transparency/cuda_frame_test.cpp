@@ -12,7 +12,7 @@
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::cuda_frame_test {
 namespace {
 
 RenderOptions options(int width, int height, Device device) {
@@ -119,4 +119,4 @@ TEST_F(CudaLayeredFrame, TheRestIsTheCPUs) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::cuda_frame_test

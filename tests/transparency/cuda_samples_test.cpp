@@ -16,7 +16,7 @@
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::cuda_samples_test {
 namespace {
 
 RenderOptions options(int width, int height, int samples, Device device) {
@@ -200,4 +200,4 @@ INSTANTIATE_TEST_SUITE_P(Standard, CudaSampled, testing::Values(4, 8, 16),
                          [](const auto& p) { return std::to_string(p.param); });
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::cuda_samples_test

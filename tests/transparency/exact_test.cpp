@@ -23,7 +23,7 @@
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/random.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::exact_test {
 namespace {
 
 struct Relative {
@@ -310,4 +310,4 @@ TEST(ExactColours, FaintLayersKeepTheirHue) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::exact_test

@@ -20,7 +20,7 @@
 #include "tests/support/layer_program.hpp"
 #include "tests/support/layer_scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::filter_test {
 namespace {
 
 constexpr int kWidth = 48, kHeight = 40;
@@ -293,4 +293,4 @@ TEST(TransparencyOptions, NoneDrawsTranslucentSurfacesOpaque) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::filter_test

@@ -19,7 +19,7 @@
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/random.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::limits_test {
 namespace {
 
 constexpr std::uint64_t kMebi = std::uint64_t{1} << 20;
@@ -150,4 +150,4 @@ TEST(Limits, TenThousandLayersAt512) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::limits_test

@@ -22,7 +22,7 @@
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::samples_test {
 namespace {
 
 struct Size {
@@ -263,4 +263,4 @@ TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::samples_test
