@@ -84,8 +84,8 @@ struct Light {
   double sun_radius_deg = 0.2666;  ///< of soft shadows
   March march{};                   ///< of accumulated ones
   /// Where colours and heights differ in size the coarser ones are read between the centres of
-  /// their cells, as MapFilter::bilinear reads heights; else each cell has one light, each texel one
-  /// colour.
+  /// their cells, as MapFilter::bilinear reads heights; else each cell has one light, each texel
+  /// one colour.
   bool smooth = false;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -9,6 +10,9 @@
 #include <rastrum/vec.hpp>
 
 namespace rastrum::cli {
+
+/// In radians: people write degrees.
+inline constexpr double kDegree = std::numbers::pi / 180;
 
 /// Each throws UsageError that names `option` and shows what is wanted.
 [[nodiscard]] double parse_number(std::string_view option, std::string_view text);  ///< finite

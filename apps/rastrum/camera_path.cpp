@@ -4,7 +4,6 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -12,14 +11,13 @@
 
 #include <rastrum/error.hpp>
 
+#include "arguments.hpp"
 #include "json_fields.hpp"
 #include "json_file.hpp"
 #include "path_keys.hpp"
 
 namespace rastrum::cli {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// The numbers of a camera in the order of their curves.
 struct Column {

@@ -12,7 +12,7 @@
 namespace rastrum::cli {
 namespace {
 
-constexpr const char* kKeys = "x, y, z, scale, rx, ry, rz, color and opacity";
+constexpr const char* kPlacementKeys = "x, y, z, scale, rx, ry, rz, color and opacity";
 
 bool exists(const std::string& file) {
   std::error_code ignored;
@@ -106,8 +106,8 @@ InputSpec parse_input(const std::string& text) {
     if (builtin || exists(before) || items.find('=') != std::string::npos) {
       spec.source = before;
       take_keys(spec, text, items, ",", [&](std::string_view item) {
-        throw UsageError(text, std::string("expected ") + kKeys + " as name=value after @, got '" +
-                                   std::string(item) + "'");
+        throw UsageError(text, std::string("expected ") + kPlacementKeys +
+                                   " as name=value after @, got '" + std::string(item) + "'");
       });
     }
   }

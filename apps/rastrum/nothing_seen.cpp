@@ -30,11 +30,11 @@ enum Fate : std::size_t {
   kFates,
 };
 
-struct Words {
+struct Phrases {
   const char *one, *all;  ///< as in "one lies", "all lie"
   const char* remedy;
 };
-constexpr Words kWords[kFates] = {
+constexpr Phrases kPhrases[kFates] = {
     {"has a NaN or infinite vertex", "have a NaN or infinite vertex", "the file is damaged"},
     {"has no area", "have no area", "`rastrum info` tells what a file holds"},
     {"lies behind the camera", "lie behind the camera",
@@ -180,15 +180,15 @@ Emptiness why_empty(const FrameStats& frame, const FrameOptions& options, const 
   const std::uint64_t input = frame.triangles.input;
   Emptiness why;
   if (order.size() == 1 && input == 1)
-    why.reason = std::string("the one triangle ") + kWords[order[0]].one;
+    why.reason = std::string("the one triangle ") + kPhrases[order[0]].one;
   else if (order.size() == 1)
-    why.reason = "all " + std::to_string(input) + " triangles " + kWords[order[0]].all;
+    why.reason = "all " + std::to_string(input) + " triangles " + kPhrases[order[0]].all;
   else
     why.reason = "of " + std::to_string(input) + " triangles";
   for (std::size_t i = 0; order.size() > 1 && i < order.size(); ++i)
     why.reason += (i == 0 ? " " : ", ") + std::to_string(counts[order[i]]) + " " +
-                  (counts[order[i]] == 1 ? kWords[order[i]].one : kWords[order[i]].all);
-  why.remedy = order[0] == edge_on ? look_from_elsewhere(scene) : kWords[order[0]].remedy;
+                  (counts[order[i]] == 1 ? kPhrases[order[i]].one : kPhrases[order[i]].all);
+  why.remedy = order[0] == edge_on ? look_from_elsewhere(scene) : kPhrases[order[0]].remedy;
   return why;
 }
 

@@ -119,8 +119,8 @@ Output numbered(Output output, std::size_t number, std::size_t count) {
   return output;
 }
 
-nlohmann::ordered_json stats_json(std::vector<TerrainStats> frames, const TerrainArguments& a,
-                                  const LoadedTerrain& source, double load_ms, double light_ms) {
+nlohmann::ordered_json terrain_stats(std::vector<TerrainStats> frames, const TerrainArguments& a,
+                                     const LoadedTerrain& source, double load_ms, double light_ms) {
   std::ranges::sort(frames, {}, &TerrainStats::frame_ms);
   const TerrainStats& median = frames[(frames.size() - 1) / 2];
   const bool serial = median.device == Device::serial;
@@ -165,11 +165,11 @@ struct Stage {
 };
 
 /// The terrain and what stands on it. Colours alone are timed, but objects need the depth.
-struct Pictures {
+struct TerrainPictures {
   Image<Rgba8> color;
   Image<float> depth;
 
-  Pictures(const Stage& stage, bool wants_depth)
+  TerrainPictures(const Stage& stage, bool wants_depth)
       : color(stage.options.width, stage.options.height) {
     if (wants_depth || stage.objects != nullptr)
       depth = Image<float>(color.width(), color.height());
@@ -195,7 +195,7 @@ void write_stats(const TerrainArguments& a, const Stage& stage, std::vector<Terr
                  OutputFiles& files) {
   if (!a.stats) return;
   nlohmann::ordered_json json =
-      stats_json(std::move(frames), a, stage.source, stage.load_ms, stage.light_ms);
+      terrain_stats(std::move(frames), a, stage.source, stage.load_ms, stage.light_ms);
   if (stage.objects != nullptr) json["objects"] = {{"triangles", stage.objects->triangles()}};
   write_json(files.begin(a.stats), json);
 }
@@ -216,7 +216,7 @@ int run_path(const TerrainArguments& a, const Stage& stage, const terrain::Terra
     video = std::make_unique<Mp4Writer>(of_the_run.begin(a.color), a.options.width,
                                         a.options.height, fps);
 
-  Pictures pictures(stage, static_cast<bool>(a.depth));
+  TerrainPictures pictures(stage, static_cast<bool>(a.depth));
   std::vector<TerrainStats> frames;
   for (std::size_t i = 0; i < count; ++i) {
     progress.show("picture " + std::to_string(i + 1) + " of " + std::to_string(count));
@@ -279,7 +279,7 @@ int run(TerrainArguments& a) {
   const terrain::TerrainCamera camera = camera_of(a, source);
   if (!a.path.empty()) return run_path(a, stage, camera, progress);
 
-  Pictures pictures(stage, static_cast<bool>(a.depth));
+  TerrainPictures pictures(stage, static_cast<bool>(a.depth));
   std::vector<TerrainStats> frames;
   const int count = a.frames.value_or(1);
   for (int i = 0; i < count; ++i) {

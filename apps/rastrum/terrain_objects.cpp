@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <rastrum/error.hpp>
@@ -17,8 +16,6 @@
 
 namespace rastrum::cli {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// INPUT[@name=value,…]
 TerrainObject parse_object(const char* option, const std::string& text, bool is_sprite) {

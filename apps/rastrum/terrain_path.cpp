@@ -1,7 +1,6 @@
 #include "terrain_path.hpp"
 
 #include <cassert>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +9,7 @@
 
 #include <rastrum/error.hpp>
 
+#include "arguments.hpp"
 #include "json_fields.hpp"
 #include "json_file.hpp"
 #include "path_keys.hpp"
@@ -19,8 +19,7 @@ namespace {
 
 using terrain::TerrainCamera;
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double TerrainCamera::*kColumns[] = {
+constexpr double TerrainCamera::*kTerrainColumns[] = {
     &TerrainCamera::x,         &TerrainCamera::y,          &TerrainCamera::altitude,
     &TerrainCamera::angle_rad, &TerrainCamera::horizon_px, &TerrainCamera::roll_rad};
 
@@ -33,8 +32,8 @@ void read_angle(JsonFields& fields, const char* degrees, const char* radians, do
   if (rad) angle_rad = *rad;
 }
 
-TerrainPathKey read_key(const JsonFields::Element& element, const TerrainPathKey& before,
-                        bool first) {
+TerrainPathKey read_terrain_key(const JsonFields::Element& element, const TerrainPathKey& before,
+                                bool first) {
   JsonFields fields(*element.value, element.place);
   TerrainPathKey key = before;
   TerrainCamera& c = key.camera;
@@ -58,7 +57,7 @@ TerrainPath::TerrainPath(std::vector<TerrainPathKey> keys, Interpolation interpo
   assert(!keys_.empty());
   std::vector<double> times;
   for (const TerrainPathKey& key : keys_) times.push_back(key.time_s);
-  for (const auto column : kColumns) {
+  for (const auto column : kTerrainColumns) {
     std::vector<double> values;
     for (const TerrainPathKey& key : keys_) values.push_back(key.camera.*column);
     curves_.emplace_back(times, std::move(values), interpolation, Tangent::curve);
@@ -67,12 +66,14 @@ TerrainPath::TerrainPath(std::vector<TerrainPathKey> keys, Interpolation interpo
 
 TerrainCamera TerrainPath::at(double time_s) const {
   TerrainCamera camera;
-  for (std::size_t i = 0; i < curves_.size(); ++i) camera.*kColumns[i] = curves_[i].at(time_s);
+  for (std::size_t i = 0; i < curves_.size(); ++i)
+    camera.*kTerrainColumns[i] = curves_[i].at(time_s);
   return camera;
 }
 
 TerrainPath read_terrain_path(const std::filesystem::path& file, const TerrainCamera& base) {
-  auto [keys, interpolation] = read_path_keys(file, TerrainPathKey{.camera = base}, read_key);
+  auto [keys, interpolation] =
+      read_path_keys(file, TerrainPathKey{.camera = base}, read_terrain_key);
   return {std::move(keys), interpolation};
 }
 

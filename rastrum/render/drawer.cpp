@@ -156,11 +156,8 @@ std::unique_ptr<raster::FrameDrawer> make_drawer(const DrawerOptions& options,
   };
   if (options.device != Device::cuda) return make_fast();
   return make_device_drawer(
-      {make_cuda_rasterizer(options.memory_limit, memory, *threads),
-       {},
-       {},
-       make_fast},
-      options, *threads);
+      {make_cuda_rasterizer(options.memory_limit, memory, *threads), {}, {}, make_fast}, options,
+      *threads);
 }
 
 }  // namespace rastrum

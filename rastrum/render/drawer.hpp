@@ -10,9 +10,9 @@
 #include <rastrum/core/memory.hpp>
 #include <rastrum/device.hpp>
 #include <rastrum/parallel/exec.hpp>
-#include <rastrum/render/cuda/rasterizer.hpp>
 #include <rastrum/raster/frame/frame_drawer.hpp>
 #include <rastrum/raster/frame/method.hpp>
+#include <rastrum/render/cuda/rasterizer.hpp>
 #include <rastrum/transparency/blend.hpp>
 
 namespace rastrum {

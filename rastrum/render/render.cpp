@@ -222,8 +222,7 @@ void Renderer::Impl::make_drawer() {
 }
 
 Renderer::Renderer(RendererOptions options)
-    : Renderer(std::make_unique<Impl>(options,
-                                      choose_device(options.device), false,
+    : Renderer(std::make_unique<Impl>(options, choose_device(options.device), false,
                                       rastrum::make_drawer)) {}
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Renderer::~Renderer() = default;

@@ -201,8 +201,7 @@ Counts TerrainRenderer::Impl::draw_rolled(const Terrain& terrain, const TerrainO
 
 TerrainRenderer::TerrainRenderer(TerrainRendererOptions options) {
   if (options.threads < 0)
-    throw Error(Errc::invalid_argument,
-                "terrain: the number of threads must be at least 0 (all)");
+    throw Error(Errc::invalid_argument, "terrain: the number of threads must be at least 0 (all)");
   impl_ = std::make_unique<Impl>(options);
 }
 TerrainRenderer::~TerrainRenderer() = default;

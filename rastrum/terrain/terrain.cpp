@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include <rastrum/terrain/cell.hpp>
 #include <rastrum/terrain.hpp>
+#include <rastrum/terrain/cell.hpp>
 
 namespace rastrum::terrain {
 namespace {

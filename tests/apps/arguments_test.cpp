@@ -5,7 +5,7 @@
 #include "arguments.hpp"
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::arguments_test {
 namespace {
 
 using WrongArguments = Program;
@@ -137,4 +137,4 @@ TEST(ParseColor, DigitsToDisplayValues) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::arguments_test

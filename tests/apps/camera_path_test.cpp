@@ -15,7 +15,7 @@
 #include "numbered.hpp"
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::camera_path_test {
 namespace {
 
 using cli::Interpolation;
@@ -289,4 +289,4 @@ TEST_F(FakeFfmpeg, MissingIsSaidBeforeAnythingIsDrawn) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::camera_path_test

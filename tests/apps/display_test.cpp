@@ -4,7 +4,7 @@
 
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::display_test {
 namespace {
 
 class NoDisplay : public Program {
@@ -41,4 +41,4 @@ TEST_F(NoDisplay, ADriverThatWasAskedForIsTaken) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::display_test

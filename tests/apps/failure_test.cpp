@@ -3,7 +3,7 @@
 
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::failure_test {
 namespace {
 
 using Failure = Program;
@@ -128,4 +128,4 @@ TEST_F(Failure, OfOneInputStopsTheRender) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::failure_test

@@ -6,7 +6,7 @@
 
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::heatmap_test {
 namespace {
 
 double luminance(Rgba8 c) {
@@ -81,4 +81,4 @@ TEST_F(HeatmapOption, SumOfThePictureIsTheFragments) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::heatmap_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/painter.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::input_test {
 namespace {
 
 class Inputs : public Program {
@@ -150,4 +150,4 @@ TEST_F(Inputs, InfoTellsWhatAFileHolds) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::input_test

@@ -5,7 +5,7 @@
 #include "flatten.hpp"
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::make_test {
 namespace {
 
 using Make = Program;
@@ -115,4 +115,4 @@ TEST(Flatten, AttributesNumberedApartAreLeftOutAndSaid) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::make_test

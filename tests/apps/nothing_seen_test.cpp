@@ -4,7 +4,7 @@
 
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::nothing_seen_test {
 namespace {
 
 using Args = std::vector<std::string>;
@@ -181,4 +181,4 @@ TEST_F(NothingSeen, PicturesOfAPath) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::nothing_seen_test

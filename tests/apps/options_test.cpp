@@ -14,7 +14,7 @@
 
 #include "tests/support/painter.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::options_test {
 namespace {
 
 constexpr int kWidth = 72, kHeight = 56;
@@ -292,4 +292,4 @@ TEST_F(Options, QuietIsQuiet) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::options_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/painter.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::output_test {
 namespace {
 
 class Output : public Program {
@@ -94,4 +94,4 @@ TEST_F(Output, ExtensionsInAnyCase) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::output_test

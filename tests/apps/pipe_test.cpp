@@ -4,7 +4,7 @@
 
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::pipe_test {
 namespace {
 
 using Args = std::vector<std::string>;
@@ -136,4 +136,4 @@ TEST_F(Pipes, WhatInfoPrintsHasArrived) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::pipe_test

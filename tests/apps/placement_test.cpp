@@ -11,7 +11,7 @@
 #include "inputs.hpp"
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::placement_test {
 namespace {
 
 void expect_equal(const Mat4d& a, const Mat4d& b) {
@@ -212,4 +212,4 @@ TEST(InputsOfIds, InputsWithoutTrianglesHaveNone) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::placement_test

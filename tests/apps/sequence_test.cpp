@@ -5,7 +5,7 @@
 
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::sequence_test {
 namespace {
 
 class Sequences : public Program {};
@@ -140,4 +140,4 @@ TEST_F(DepthUnit, BelongsToDepth) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::sequence_test

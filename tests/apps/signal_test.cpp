@@ -12,7 +12,7 @@
 
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::signal_test {
 namespace {
 
 using Args = std::vector<std::string>;
@@ -118,4 +118,4 @@ TEST_F(Signals, WhatALivingRunWritesIsLeftToIt) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::signal_test

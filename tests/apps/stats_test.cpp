@@ -6,7 +6,7 @@
 
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::stats_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -144,4 +144,4 @@ TEST(MedianFrame, IsAFrame) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::stats_test

@@ -6,7 +6,7 @@
 #include "arguments.hpp"
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::suggest_test {
 namespace {
 
 constexpr std::string_view kWords[] = {"render", "terrain", "view", "info", "make"};
@@ -105,4 +105,4 @@ TEST(ParseColor, AsPeopleWriteThem) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::suggest_test

@@ -14,7 +14,7 @@
 
 #include "tests/support/painter.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::terrain_objects_test {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
@@ -228,4 +228,4 @@ TEST_F(TerrainObjectsProgram, RefusesWhatCannotStand) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::terrain_objects_test

@@ -17,7 +17,7 @@
 
 #include "tests/support/painter.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::terrain_test {
 namespace {
 
 using namespace terrain;
@@ -424,4 +424,4 @@ TEST_F(TerrainProgram, HelpNamesEveryFunctionAndAnExample) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::terrain_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/painter.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::transparency_test {
 namespace {
 
 class TransparencyOption : public Program {
@@ -159,4 +159,4 @@ TEST_F(TransparencyOption, BlendMaterialsAreBlendedAndOnlyNoneWarns) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::transparency_test

@@ -10,7 +10,7 @@
 #include "arguments.hpp"
 #include "program.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::view_test {
 namespace {
 
 /// Half of the diagonal from (0, 0, 0) to (2, 4, 4) is r = 3; the centre is (1, 2, 2).
@@ -141,4 +141,4 @@ TEST(CheckView, PlanesAndAngles) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::view_test

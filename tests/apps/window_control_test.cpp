@@ -7,7 +7,7 @@
 #include "window/mesh_control.hpp"
 #include "window/resolution.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::window_control_test {
 namespace {
 
 using namespace cli::window;
@@ -261,4 +261,4 @@ TEST(Resolution, OneSlowFrameChangesLittle) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::window_control_test

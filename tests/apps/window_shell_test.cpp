@@ -15,7 +15,7 @@
 #include "program.hpp"
 #include "x_server.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::window_shell_test {
 namespace {
 
 /// The panel's column; what is right of it is the picture.
@@ -378,4 +378,4 @@ TEST_F(WindowTest, WithoutADisplayItSaysSo) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::window_shell_test

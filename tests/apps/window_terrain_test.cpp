@@ -12,7 +12,7 @@
 #include "window/terrain_control.hpp"
 #include "window/terrain_subject.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::window_terrain_test {
 namespace {
 
 using namespace cli::window;
@@ -387,4 +387,4 @@ TEST_F(TerrainAlongAPath, RefusesWhatCannotBeMeant) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::window_terrain_test

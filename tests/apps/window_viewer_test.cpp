@@ -13,7 +13,7 @@
 #include "window/script.hpp"
 #include "window/viewer.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::window_viewer_test {
 namespace {
 
 using namespace cli::window;
@@ -427,4 +427,4 @@ TEST_F(MeshViewerTest, ScriptsWithMistakesNameThePlace) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::window_viewer_test

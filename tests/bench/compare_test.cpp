@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rastrum::bench {
+namespace rastrum::bench::compare_test {
 namespace {
 
 TEST(Compare, CountsFindEachDifference) {
@@ -61,4 +61,4 @@ TEST(Compare, ExactCountsKeepTheTopLeftRule) {
 }
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::compare_test

@@ -37,7 +37,7 @@ CudaStatus driver_status() {
 
 }  // namespace rastrum::parallel
 
-namespace rastrum::bench {
+namespace rastrum::bench::cuda_test {
 namespace {
 
 /// The figures of one table of `bench cuda`.
@@ -122,4 +122,4 @@ TEST(BenchCuda, RatesAreItemsASecondAndTimesOverTheFloor) {
 }
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::cuda_test

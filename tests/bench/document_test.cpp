@@ -10,7 +10,7 @@
 
 #include <rastrum/error.hpp>
 
-namespace rastrum::bench {
+namespace rastrum::bench::document_test {
 namespace {
 
 Comparison example() {
@@ -120,4 +120,4 @@ TEST(Document, PublishWritesThreeFiles) {
 }
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::document_test

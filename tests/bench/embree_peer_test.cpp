@@ -12,7 +12,7 @@
 
 #include "tests/support/painter.hpp"
 
-namespace rastrum::bench {
+namespace rastrum::bench::embree_peer_test {
 namespace {
 
 TEST(EmbreePeer, TracesTheSamePicture) {
@@ -42,4 +42,4 @@ TEST(EmbreePeer, TracesTheSamePicture) {
 }
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::embree_peer_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rastrum::bench {
+namespace rastrum::bench::floor_test {
 namespace {
 
 MachineLimits machine() {
@@ -57,4 +57,4 @@ TEST(Machine, MeasuresSomethingPossible) {
 }
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::floor_test

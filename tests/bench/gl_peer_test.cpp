@@ -11,7 +11,7 @@
 
 #include <rastrum/error.hpp>
 
-namespace rastrum::bench {
+namespace rastrum::bench::gl_peer_test {
 namespace {
 
 class GlPeerTest : public testing::Test {
@@ -97,4 +97,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, GlMeshTest,
                          });
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::gl_peer_test

@@ -16,7 +16,7 @@
 
 #include <rastrum/error.hpp>
 
-namespace rastrum::bench {
+namespace rastrum::bench::gl_transparency_test {
 namespace {
 
 /// A rectangle over columns [from, width) of the window, at one depth and with one normal.
@@ -239,4 +239,4 @@ TEST_F(GlTransparencyTest, VtkDrawsTheSame) {
 }
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::gl_transparency_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rastrum::bench {
+namespace rastrum::bench::measure_test {
 namespace {
 
 TEST(Measure, MedianTakesTheMiddleOrTheMeanOfTwo) {
@@ -66,4 +66,4 @@ TEST(Measure, SlowFramesAreNotWarmedUp) {
 }
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::measure_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rastrum::bench {
+namespace rastrum::bench::plot_test {
 namespace {
 
 /// Tags that are opened are closed in order, and no bare & or < stands in the text.
@@ -135,4 +135,4 @@ TEST(Plot, SaysSoWhereNothingWasMeasured) {
 }
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::plot_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rastrum::bench {
+namespace rastrum::bench::published_test {
 namespace {
 
 template <class Rows>
@@ -88,4 +88,4 @@ TEST(Published, Paper5AgreesWithItself) {
 }
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::published_test

@@ -12,7 +12,7 @@
 
 #include <rastrum/error.hpp>
 
-namespace rastrum::bench {
+namespace rastrum::bench::report_test {
 namespace {
 
 TEST(Report, SignificantKeepsDigitsAndNoExponent) {
@@ -47,4 +47,4 @@ TEST(Report, JsonIsWholeOrAbsent) {
 }
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::report_test

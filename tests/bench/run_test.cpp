@@ -14,7 +14,7 @@
 
 #include <rastrum/error.hpp>
 
-namespace rastrum::bench {
+namespace rastrum::bench::run_test {
 namespace {
 
 int run_with(std::vector<std::string_view> args) {
@@ -90,4 +90,4 @@ TEST(Scenes, ShapesComeWithSharedNormals) {
 }
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::run_test

@@ -17,7 +17,7 @@
 
 #include "tests/support/painter.hpp"
 
-namespace rastrum::bench {
+namespace rastrum::bench::stand_ins_test {
 namespace {
 
 /// Directed edges without their opposite.
@@ -185,4 +185,4 @@ TEST(Contest, TimesWhatIsRightAndSaysWhyNot) {
 }
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::stand_ins_test

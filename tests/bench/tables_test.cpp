@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rastrum::bench {
+namespace rastrum::bench::tables_test {
 namespace {
 
 class Tables : public testing::TestWithParam<const char*> {};
@@ -45,4 +45,4 @@ INSTANTIATE_TEST_SUITE_P(OneAPaper, Tables,
                          });
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::tables_test

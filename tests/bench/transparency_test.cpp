@@ -12,7 +12,7 @@
 
 #include <rastrum/shapes.hpp>
 
-namespace rastrum::bench {
+namespace rastrum::bench::transparency_test {
 namespace {
 
 /// A row of 100,000 triangles where unsorted takes 10 ms, exact 15, and peers miss no goal.
@@ -151,4 +151,4 @@ TEST(TransparencyMeasure, RunsWithoutPeers) {
 }
 
 }  // namespace
-}  // namespace rastrum::bench
+}  // namespace rastrum::bench::transparency_test

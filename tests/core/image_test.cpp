@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rastrum::test {
+namespace rastrum::test::image_test {
 namespace {
 
 std::string message_of(const ImageView<int>& view, int width = 4, int height = 3) {
@@ -81,4 +81,4 @@ TEST(Image, IsAViewWhereOneIsWanted) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::image_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/random.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::transform_test {
 namespace {
 
 struct P {
@@ -146,4 +146,4 @@ TEST(Quaternion, SlerpTurnsAtConstantSpeedTheShorterWay) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::transform_test

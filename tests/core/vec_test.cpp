@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rastrum::test {
+namespace rastrum::test::vec_test {
 namespace {
 
 // What holds for a vector of any size, where `a` and `b` have whole numbers that divide by two.
@@ -37,4 +37,4 @@ TEST(Vector, HasTheArithmeticThatOneExpects) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::vec_test

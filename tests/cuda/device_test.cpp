@@ -5,7 +5,7 @@
 
 #include "words_on_device.hpp"
 
-namespace rastrum::parallel::test {
+namespace rastrum::parallel::test::device_test {
 namespace {
 
 TEST(Cuda, EveryWordIsBitEqualToSerial) {
@@ -17,4 +17,4 @@ TEST(Cuda, EveryWordIsBitEqualToSerial) {
 }
 
 }  // namespace
-}  // namespace rastrum::parallel::test
+}  // namespace rastrum::parallel::test::device_test

@@ -13,7 +13,7 @@
 
 #include "tests/io/files.hpp"
 
-namespace rastrum::io {
+namespace rastrum::io::atomic_file_test {
 namespace {
 
 class AtomicFiles : public testing::Test {
@@ -163,4 +163,4 @@ TEST(DecodeScene, SaysWhatAWronglyNamedFileBeginsAs) {
 }
 
 }  // namespace
-}  // namespace rastrum::io
+}  // namespace rastrum::io::atomic_file_test

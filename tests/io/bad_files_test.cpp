@@ -44,7 +44,7 @@
 #endif
 #endif
 
-namespace rastrum {
+namespace rastrum::bad_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -372,4 +372,4 @@ TEST(BadFilesTable, RefusesWhatPngSuiteCallsCorrupt) {
 }
 
 }  // namespace
-}  // namespace rastrum
+}  // namespace rastrum::bad_files_test

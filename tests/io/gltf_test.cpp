@@ -13,7 +13,7 @@
 
 #include "tests/io/files.hpp"
 
-namespace rastrum {
+namespace rastrum::gltf_test {
 namespace {
 
 using Indices = std::vector<std::uint32_t>;
@@ -317,4 +317,4 @@ TEST(Describe, SaysWhatAFileHolds) {
 }
 
 }  // namespace
-}  // namespace rastrum
+}  // namespace rastrum::gltf_test

@@ -11,7 +11,7 @@
 #include "tests/io/files.hpp"
 #include "tests/support/directories.hpp"
 
-namespace rastrum {
+namespace rastrum::height_test {
 namespace {
 
 using io::HeightGrid;
@@ -427,4 +427,4 @@ TEST(ReadHeights, NamesWhatItDoesNotRead) {
 }
 
 }  // namespace
-}  // namespace rastrum
+}  // namespace rastrum::height_test

@@ -18,7 +18,7 @@
 #include "tests/io/files.hpp"
 #include "tests/support/directories.hpp"
 
-namespace rastrum {
+namespace rastrum::image_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -260,4 +260,4 @@ TEST(WritePly, DrawsPositionsInOrderWhereThereAreNoIndices) {
 }
 
 }  // namespace
-}  // namespace rastrum
+}  // namespace rastrum::image_test

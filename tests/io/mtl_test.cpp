@@ -9,7 +9,7 @@
 #include <rastrum/io/parse.hpp>
 #include <tests/io/files.hpp>
 
-namespace rastrum {
+namespace rastrum::mtl_test {
 namespace {
 
 /// The scene of a text's materials; textures are looked for in `folder`.
@@ -157,4 +157,4 @@ TEST(Mtl, OddBytes) {
 }
 
 }  // namespace
-}  // namespace rastrum
+}  // namespace rastrum::mtl_test

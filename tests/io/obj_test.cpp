@@ -11,7 +11,7 @@
 
 #include "tests/io/files.hpp"
 
-namespace rastrum {
+namespace rastrum::obj_test {
 namespace {
 
 using Indices = std::vector<std::uint32_t>;
@@ -155,4 +155,4 @@ TEST(Obj, MissingLibrariesAreWarnings) {
 }
 
 }  // namespace
-}  // namespace rastrum
+}  // namespace rastrum::obj_test

@@ -9,7 +9,7 @@
 
 #include "tests/io/files.hpp"
 
-namespace rastrum {
+namespace rastrum::ply_test {
 namespace {
 
 using Indices = std::vector<std::uint32_t>;
@@ -186,4 +186,4 @@ TEST(Ply, BadHeaders) {
 }
 
 }  // namespace
-}  // namespace rastrum
+}  // namespace rastrum::ply_test

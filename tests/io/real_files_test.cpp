@@ -12,7 +12,7 @@
 #include "tests/io/files.hpp"
 #include "tests/support/directories.hpp"
 
-namespace rastrum {
+namespace rastrum::real_files_test {
 namespace {
 
 struct RealFile {
@@ -70,4 +70,4 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 }  // namespace
-}  // namespace rastrum
+}  // namespace rastrum::real_files_test

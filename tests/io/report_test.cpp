@@ -7,7 +7,7 @@
 
 #include <rastrum/error.hpp>
 
-namespace rastrum::test {
+namespace rastrum::test::report_test {
 namespace {
 
 // A scene that no reader made: what it refers to need not be there.
@@ -37,4 +37,4 @@ TEST(Describe, RefusesIndicesOutOfRange) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::report_test

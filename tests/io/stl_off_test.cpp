@@ -9,7 +9,7 @@
 
 #include "tests/io/files.hpp"
 
-namespace rastrum {
+namespace rastrum::stl_off_test {
 namespace {
 
 using Indices = std::vector<std::uint32_t>;
@@ -144,4 +144,4 @@ TEST(ReadScene, KnowsExtensionsAndNamesMissingFiles) {
 }
 
 }  // namespace
-}  // namespace rastrum
+}  // namespace rastrum::stl_off_test

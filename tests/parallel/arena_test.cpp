@@ -6,7 +6,7 @@
 
 #include <rastrum/error.hpp>
 
-namespace rastrum::parallel::test {
+namespace rastrum::parallel::test::arena_test {
 namespace {
 
 #if defined(__has_feature)
@@ -105,4 +105,4 @@ TEST(Arena, FramesAfterTheFirstTakeNothingNew) {
 }
 
 }  // namespace
-}  // namespace rastrum::parallel::test
+}  // namespace rastrum::parallel::test::arena_test

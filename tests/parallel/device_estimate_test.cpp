@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rastrum {
+namespace rastrum::device_estimate_test {
 namespace {
 
 FrameWork work() {
@@ -48,4 +48,4 @@ TEST(DeviceEstimate, ChoosesNothingWhereThereIsNoGpu) {
 }
 
 }  // namespace
-}  // namespace rastrum
+}  // namespace rastrum::device_estimate_test

@@ -4,7 +4,7 @@
 
 #include <rastrum/parallel/cuda/library.hpp>
 
-namespace rastrum::parallel {
+namespace rastrum::parallel::device_library_test {
 namespace {
 
 bool has(const std::string& text, const char* what) {
@@ -26,4 +26,4 @@ TEST(DeviceLibrary, AnotherLibraryIsNone) {
 }
 
 }  // namespace
-}  // namespace rastrum::parallel
+}  // namespace rastrum::parallel::device_library_test

@@ -3,7 +3,7 @@
 
 #include <tests/parallel/backends.hpp>
 
-namespace rastrum::parallel::test {
+namespace rastrum::parallel::test::device_memory_test {
 namespace {
 
 TEST(DeviceMemory, FramesAfterTheFirstAskForNothing) {
@@ -56,4 +56,4 @@ TEST(Pending, IsTheSumThatAScanHadWhenItWasDone) {
 }
 
 }  // namespace
-}  // namespace rastrum::parallel::test
+}  // namespace rastrum::parallel::test::device_memory_test

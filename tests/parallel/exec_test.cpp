@@ -15,7 +15,7 @@
 
 #include "tests/support/stop_trigger.hpp"
 
-namespace rastrum::parallel {
+namespace rastrum::parallel::exec_test {
 namespace {
 
 template <class Exec>
@@ -89,7 +89,7 @@ TEST_P(ThreadCounts, AnErrorReachesTheCaller) {
 
 TEST_P(ThreadCounts, AStoppedLoopLeavesOutWhatHasNotBegun) {
   Threads exec(GetParam());
-  test::StopTrigger trigger(9);
+  rastrum::test::StopTrigger trigger(9);
   const std::stop_token token = trigger.token();
   constexpr std::size_t n = 10000;
   {
@@ -137,4 +137,4 @@ TEST_P(ThreadCounts, BodiesAndTheirLoopsSeeTheStop) {
 INSTANTIATE_TEST_SUITE_P(Counts, ThreadCounts, testing::Values(1, 2, 8));
 
 }  // namespace
-}  // namespace rastrum::parallel
+}  // namespace rastrum::parallel::exec_test

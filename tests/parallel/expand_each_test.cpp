@@ -6,7 +6,7 @@
 #include <tests/parallel/backends.hpp>
 #include <tests/support/environment.hpp>
 
-namespace rastrum::parallel::test {
+namespace rastrum::parallel::test::expand_each_test {
 namespace {
 
 using rastrum::test::count_from_environment;
@@ -148,4 +148,4 @@ TEST(MaskedExpansion, AsksThePredicateOncePerElement) {
 }
 
 }  // namespace
-}  // namespace rastrum::parallel::test
+}  // namespace rastrum::parallel::test::expand_each_test

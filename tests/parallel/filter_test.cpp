@@ -2,7 +2,7 @@
 
 #include <tests/parallel/backends.hpp>
 
-namespace rastrum::parallel::test {
+namespace rastrum::parallel::test::filter_test {
 namespace {
 
 const std::vector<std::uint32_t> kThresholds = {0, 1, 50, 99, 100};  // of 100: none to all
@@ -45,4 +45,4 @@ TEST(Partition, PutsWhatHoldsFirstBothInOrder) {
 }
 
 }  // namespace
-}  // namespace rastrum::parallel::test
+}  // namespace rastrum::parallel::test::filter_test

@@ -4,7 +4,7 @@
 
 #include <tests/parallel/backends.hpp>
 
-namespace rastrum::parallel::test {
+namespace rastrum::parallel::test::histogram_test {
 namespace {
 
 /// Indices of a histogram, some of them outside: anywhere, or nearly all in one bin.
@@ -149,4 +149,4 @@ TEST(SegmentedReduceByIndex, FloatSumsHaveOneResultOnAllBackends) {
 }
 
 }  // namespace
-}  // namespace rastrum::parallel::test
+}  // namespace rastrum::parallel::test::histogram_test

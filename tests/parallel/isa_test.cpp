@@ -12,7 +12,7 @@
 #include <rastrum/parallel/device.hpp>
 #include <tests/support/isa.hpp>
 
-namespace rastrum {
+namespace rastrum::isa_test {
 namespace {
 
 TEST(Isa, AvailableOnesAreHighways) {
@@ -44,4 +44,4 @@ TEST(Isa, OneThatIsNotThereIsRefused) {
 }
 
 }  // namespace
-}  // namespace rastrum
+}  // namespace rastrum::isa_test

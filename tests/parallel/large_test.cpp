@@ -9,7 +9,7 @@
 
 #include <rastrum/parallel/words.hpp>
 
-namespace rastrum::parallel {
+namespace rastrum::parallel::large_test {
 namespace {
 
 constexpr std::size_t kMany = (std::size_t{1} << 31) + 12345;
@@ -106,4 +106,4 @@ TEST(Large, ScatterAndReduceByIndex) {
 }
 
 }  // namespace
-}  // namespace rastrum::parallel
+}  // namespace rastrum::parallel::large_test

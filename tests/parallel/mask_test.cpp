@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rastrum::parallel {
+namespace rastrum::parallel::mask_test {
 namespace {
 
 template <class M>
@@ -65,4 +65,4 @@ static_assert(sizeof(Mask<8>) == 1 && sizeof(Mask<16>) == 2 && sizeof(Mask<32>) 
               sizeof(Mask<64>) == 8 && sizeof(Mask<128>) == 16 && sizeof(Mask<256>) == 32);
 
 }  // namespace
-}  // namespace rastrum::parallel
+}  // namespace rastrum::parallel::mask_test

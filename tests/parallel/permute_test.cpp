@@ -4,7 +4,7 @@
 
 #include <tests/parallel/backends.hpp>
 
-namespace rastrum::parallel::test {
+namespace rastrum::parallel::test::permute_test {
 namespace {
 
 std::vector<std::uint32_t> random_permutation(std::size_t n) {
@@ -111,4 +111,4 @@ TEST(Scatter, StencilLeavesTheRestAlone) {
 }
 
 }  // namespace
-}  // namespace rastrum::parallel::test
+}  // namespace rastrum::parallel::test::permute_test

@@ -4,7 +4,7 @@
 
 #include <tests/parallel/backends.hpp>
 
-namespace rastrum::parallel::test {
+namespace rastrum::parallel::test::scan_test {
 namespace {
 
 TEST(Reduce, FoldsInOrderWithoutCommuting) {
@@ -155,4 +155,4 @@ TEST(ReduceByKey, FloatSumsHaveOneResultOnAllBackends) {
 }
 
 }  // namespace
-}  // namespace rastrum::parallel::test
+}  // namespace rastrum::parallel::test::scan_test

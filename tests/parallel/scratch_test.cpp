@@ -3,7 +3,7 @@
 
 #include <tests/parallel/backends.hpp>
 
-namespace rastrum::parallel::test {
+namespace rastrum::parallel::test::scratch_test {
 namespace {
 
 struct Scratch {
@@ -56,4 +56,4 @@ TEST(Scratch, IsMadeByTheFactoryOnceAThread) {
 }
 
 }  // namespace
-}  // namespace rastrum::parallel::test
+}  // namespace rastrum::parallel::test::scratch_test

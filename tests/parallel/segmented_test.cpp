@@ -4,7 +4,7 @@
 
 #include <tests/parallel/backends.hpp>
 
-namespace rastrum::parallel::test {
+namespace rastrum::parallel::test::segmented_test {
 namespace {
 
 /// Where segments of these sizes begin, and how many elements there are.
@@ -70,4 +70,4 @@ TEST(Segmented, FloatSumsHaveOneResultOnAllBackends) {
 }
 
 }  // namespace
-}  // namespace rastrum::parallel::test
+}  // namespace rastrum::parallel::test::segmented_test

@@ -3,7 +3,7 @@
 
 #include <tests/parallel/backends.hpp>
 
-namespace rastrum::parallel::test {
+namespace rastrum::parallel::test::sort_test {
 namespace {
 
 template <class K>
@@ -100,4 +100,4 @@ TEST(SortByKey, DefaultsToAllBitsOfTheKey) {
 }
 
 }  // namespace
-}  // namespace rastrum::parallel::test
+}  // namespace rastrum::parallel::test::sort_test

@@ -4,7 +4,7 @@
 
 #include <tests/parallel/backends.hpp>
 
-namespace rastrum::parallel::test {
+namespace rastrum::parallel::test::team_test {
 namespace {
 
 constexpr std::size_t kValues = 64;
@@ -51,4 +51,4 @@ TEST(Team, MembersWorkTogetherOnEachBodyOnce) {
 }
 
 }  // namespace
-}  // namespace rastrum::parallel::test
+}  // namespace rastrum::parallel::test::team_test

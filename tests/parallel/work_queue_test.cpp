@@ -6,7 +6,7 @@
 
 #include <tests/parallel/backends.hpp>
 
-namespace rastrum::parallel::test {
+namespace rastrum::parallel::test::work_queue_test {
 namespace {
 
 TEST(WorkQueue, GivesEachItemOnceInChunks) {
@@ -56,4 +56,4 @@ TEST(WorkQueue, ManyProducersAndConsumersLoseNothing) {
 }
 
 }  // namespace
-}  // namespace rastrum::parallel::test
+}  // namespace rastrum::parallel::test::work_queue_test

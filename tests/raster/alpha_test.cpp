@@ -22,7 +22,7 @@
 #include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::alpha_test {
 namespace {
 
 constexpr int kSize = 24;  // 3 blocks of 8
@@ -408,4 +408,4 @@ TEST(StoreBlended, IsTheScalarOne) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::alpha_test

@@ -38,7 +38,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::binned_test {
 namespace {
 
 using raster::Schedule;
@@ -655,4 +655,4 @@ TEST(Binned, RefusesATuningThatIsNotCompiled) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::binned_test

@@ -15,7 +15,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::clip_test {
 namespace {
 
 using Real = long double;
@@ -296,4 +296,4 @@ TEST(Clip, DepthFollowsTheTriangle) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::clip_test

@@ -25,7 +25,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::coverage_test {
 namespace {
 
 using raster::BlockOrder, raster::SmallPath;
@@ -353,4 +353,4 @@ TEST(Tiled, ScratchGrowsWithTrianglesAndNotWithPixels) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::coverage_test

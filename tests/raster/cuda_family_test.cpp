@@ -22,7 +22,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::cuda_family_test {
 namespace {
 
 RenderOptions options(int width, int height, Device device, const TablePoint& point) {
@@ -315,4 +315,4 @@ INSTANTIATE_TEST_SUITE_P(Device, CudaChoice, testing::Values(TablePoint{}),
                          [](const auto&) { return std::string("choice"); });
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::cuda_family_test

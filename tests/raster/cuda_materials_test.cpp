@@ -19,7 +19,7 @@
 #include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::cuda_materials_test {
 namespace {
 
 constexpr int kWidth = 107, kHeight = 91;
@@ -255,4 +255,4 @@ TEST_F(CudaMaterials, ACallersDiscardIsTheCPUs) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::cuda_materials_test

@@ -15,7 +15,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::cuda_pieces_test {
 namespace {
 
 struct KeepsAll {
@@ -169,4 +169,4 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::cuda_pieces_test

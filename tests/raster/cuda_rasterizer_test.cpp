@@ -21,7 +21,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::cuda_rasterizer_test {
 namespace {
 
 testing::AssertionResult same_frame(const Frame& a, const Frame& b) {
@@ -393,4 +393,4 @@ TEST_F(CudaRasterizer, PassesEqualOneDraw) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::cuda_rasterizer_test

@@ -21,7 +21,7 @@
 #include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::draws_test {
 namespace {
 
 using raster::Draw;
@@ -299,4 +299,4 @@ TEST(Draws, ThatCannotBeDrawnAreRefusedByNumber) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::draws_test

@@ -12,7 +12,7 @@
 
 #include "tests/support/random.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::field_test {
 namespace {
 
 using raster::Rect;
@@ -90,4 +90,4 @@ TEST(Field, WithoutFieldsSamplesOrNumbers) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::field_test

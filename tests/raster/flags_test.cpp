@@ -19,7 +19,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::flags_test {
 namespace {
 
 constexpr int kWidth = 150, kHeight = 100;
@@ -186,4 +186,4 @@ TEST(Setup, FragmentsOfTranslucentTrianglesSayThatTheyAre) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::flags_test

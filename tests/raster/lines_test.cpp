@@ -19,7 +19,7 @@
 #include "tests/support/oracle.hpp"
 #include "tests/support/random.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::lines_test {
 namespace {
 
 using raster::Piece;
@@ -346,4 +346,4 @@ TEST(ClipLine, EqualsHalvingInLongDouble) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::lines_test

@@ -20,7 +20,7 @@
 #include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::material_test {
 namespace {
 
 constexpr int kSize = 64;
@@ -575,4 +575,4 @@ TEST(Material, RealFilesAreTheSameOnEveryDevice) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::material_test

@@ -7,7 +7,7 @@
 #include <bit>
 #include <vector>
 
-namespace rastrum::test {
+namespace rastrum::test::oracle_test {
 namespace {
 
 SnappedTriangle px_triangle(std::array<double, 6> xy, std::array<float, 3> depth = {1, 1, 1},
@@ -106,4 +106,4 @@ TEST(Oracle, RefusesWhatIsOutsideTheGuardBand) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::oracle_test

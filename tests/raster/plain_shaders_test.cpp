@@ -18,7 +18,7 @@
 #include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::plain_shaders_test {
 namespace {
 
 constexpr int kSize = 64;
@@ -150,4 +150,4 @@ TEST(PlainShaders, AutomaticTakesMaterialWhereThereAreSome) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::plain_shaders_test

@@ -14,7 +14,7 @@
 
 #include "tests/support/painter.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::program_test {
 namespace {
 
 using raster::Fragment;
@@ -422,4 +422,4 @@ TEST(Program, DiscardedFragmentsAreHoles) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::program_test

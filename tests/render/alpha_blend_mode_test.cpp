@@ -17,7 +17,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/painter.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::alpha_blend_mode_test {
 namespace {
 
 constexpr int kWidth = 900, kHeight = 250;
@@ -142,4 +142,4 @@ INSTANTIATE_TEST_SUITE_P(Shaders, AlphaBlendModeTest, testing::Values(Shader::ma
                          [](const auto& p) { return std::string(name(p.param)); });
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::alpha_blend_mode_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rastrum {
+namespace rastrum::device_work_test {
 namespace {
 
 /// A frame that could be drawn, but for the source of its vertices.
@@ -54,4 +54,4 @@ TEST(DeviceWork, SmallPicturesAreTheThreadsAndLargeMeshesTheDevices) {
 }
 
 }  // namespace
-}  // namespace rastrum
+}  // namespace rastrum::device_work_test

@@ -17,7 +17,7 @@
 #include "tests/support/pieces.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::family_test {
 namespace {
 
 struct Variant {
@@ -101,4 +101,4 @@ INSTANTIATE_TEST_SUITE_P(Sizes, Family, testing::ValuesIn(kVariants),
                          });
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::family_test

@@ -14,7 +14,7 @@
 
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::frame_options_test {
 namespace {
 
 struct Picture {
@@ -132,4 +132,4 @@ TEST(TerrainOptions, AreEachFramesOwn) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::frame_options_test

@@ -13,7 +13,7 @@
 #include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::golden_test {
 namespace {
 
 struct Picture {
@@ -72,4 +72,4 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Golden, testing::ValuesIn(kPictures),
                          });
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::golden_test

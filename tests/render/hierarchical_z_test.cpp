@@ -13,7 +13,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::hierarchical_z_test {
 namespace {
 
 struct Surfaces {
@@ -144,4 +144,4 @@ TEST(HierarchicalZ, WhatFacesAwayIsDrawnLast) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::hierarchical_z_test

@@ -15,7 +15,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::interpolation_test {
 namespace {
 
 using Real = long double;
@@ -137,4 +137,4 @@ TEST(Interpolation, WithinOneInHundredThousandOfTheExactValue) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::interpolation_test

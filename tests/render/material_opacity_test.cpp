@@ -8,7 +8,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/painter.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::material_opacity_test {
 namespace {
 
 RenderOptions options(Shader shader, float opacity, Isa isa) {
@@ -75,4 +75,4 @@ TEST(MaterialOpacity, RefusesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::material_opacity_test

@@ -15,7 +15,7 @@
 #include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::materials_test {
 namespace {
 
 Texture noise(Random& r, int size) {
@@ -103,4 +103,4 @@ INSTANTIATE_TEST_SUITE_P(Opacity, Materials, testing::Values(1.0F, 0.4F),
                          [](const auto& p) { return p.param < 1 ? "Translucent" : "Opaque"; });
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::materials_test

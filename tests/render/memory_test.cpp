@@ -18,7 +18,7 @@
 #include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::memory_test {
 namespace {
 
 /// A mesh in a picture, which together take many times `limit`.
@@ -205,4 +205,4 @@ INSTANTIATE_TEST_SUITE_P(Coverages, SortedMemory, testing::ValuesIn(coverage_nam
                          [](const auto& p) { return p.param; });
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::memory_test

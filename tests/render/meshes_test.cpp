@@ -16,7 +16,7 @@
 #include "tests/support/pieces.hpp"
 #include "tests/support/real_meshes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::meshes_test {
 namespace {
 
 class Meshes : public testing::TestWithParam<const char*> {};
@@ -60,4 +60,4 @@ TEST_P(Meshes, EqualOverTheFamilyAndTheOracle) {
 INSTANTIATE_TEST_SUITE_P(Shared, Meshes, testing::ValuesIn(kRealMeshes), name_of_file);
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::meshes_test

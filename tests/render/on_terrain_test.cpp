@@ -19,7 +19,7 @@
 #include "tests/support/materials.hpp"
 #include "tests/support/painter.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::on_terrain_test {
 namespace {
 
 using terrain::Terrain;
@@ -531,4 +531,4 @@ TEST(Sprite, IsAsHighAsOneAndNeedsAPicture) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::on_terrain_test

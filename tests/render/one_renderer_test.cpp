@@ -17,7 +17,7 @@
 #include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::one_renderer_test {
 namespace {
 
 constexpr int kCallers = 4, kFrames = 6;
@@ -148,4 +148,4 @@ TEST(OneSceneOnTerrain, DrawsForSeveralThreads) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::one_renderer_test

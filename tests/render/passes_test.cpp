@@ -19,7 +19,7 @@
 #include "tests/support/passes.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::passes_test {
 namespace {
 
 constexpr int kWidth = 150, kHeight = 100;
@@ -161,4 +161,4 @@ INSTANTIATE_TEST_SUITE_P(Points, Passes, testing::ValuesIn(table_points()),
                          [](const auto& p) { return test_name(p.param); });
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::passes_test

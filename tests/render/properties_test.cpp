@@ -18,7 +18,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::properties_test {
 namespace {
 
 class Properties : public DeviceTest {};
@@ -472,4 +472,4 @@ INSTANTIATE_TEST_SUITE_P(Devices, Properties, testing::Values(Device::serial, De
                          device_name);
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::properties_test

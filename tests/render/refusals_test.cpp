@@ -15,7 +15,7 @@
 #include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::refusals_test {
 namespace {
 
 constexpr int kW = 16, kH = 12;
@@ -204,4 +204,4 @@ TEST(Refusals, TargetsOfAnotherSizeWithEveryShader) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::refusals_test

@@ -16,7 +16,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::shared_edges_test {
 namespace {
 
 class SharedEdges : public DeviceTest {};
@@ -216,4 +216,4 @@ INSTANTIATE_TEST_SUITE_P(Devices, SharedEdges, testing::Values(Device::serial, D
                          device_name);
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::shared_edges_test

@@ -23,7 +23,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/stop_trigger.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::stop_test {
 namespace {
 
 constexpr int kSize = 256;
@@ -240,4 +240,4 @@ TEST(StopToken, IsTakenByAllThatDrawFrames) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::stop_test

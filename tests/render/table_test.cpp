@@ -20,7 +20,7 @@
 #include "tests/support/real_meshes.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::table_test {
 namespace {
 
 class Table : public testing::TestWithParam<TablePoint> {
@@ -166,4 +166,4 @@ std::string name_of(const testing::TestParamInfo<TablePoint>& p) {
 INSTANTIATE_TEST_SUITE_P(Points, Table, testing::ValuesIn(table_points()), name_of);
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::table_test

@@ -19,7 +19,7 @@
 #include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::topology_test {
 namespace {
 
 using raster::Topology;
@@ -352,4 +352,4 @@ TEST(Topologies, RefusesWidthsSizesAndBiasesOutOfRange) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::topology_test

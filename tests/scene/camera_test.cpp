@@ -9,7 +9,7 @@
 
 #include <rastrum/error.hpp>
 
-namespace rastrum::test {
+namespace rastrum::test::camera_test {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -173,4 +173,4 @@ TEST(Camera, InvalidParametersAreNamed) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::camera_test

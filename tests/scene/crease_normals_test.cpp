@@ -11,7 +11,7 @@
 #include <rastrum/scene.hpp>
 #include <rastrum/shapes.hpp>
 
-namespace rastrum::test {
+namespace rastrum::test::crease_normals_test {
 namespace {
 
 Vec3 normal_at(const Attribute<Vec3>& normals, std::size_t triangle, std::size_t corner) {
@@ -131,4 +131,4 @@ TEST(CreaseNormals, RefuseWhatIsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::crease_normals_test

@@ -14,7 +14,7 @@
 #include <rastrum/shapes.hpp>
 #include <rastrum/transform.hpp>
 
-namespace rastrum::test {
+namespace rastrum::test::fit_test {
 namespace {
 
 struct Size {
@@ -210,4 +210,4 @@ TEST(SinCosDegrees, AreExactAtQuartersAndCloseElsewhere) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::fit_test

@@ -7,7 +7,7 @@
 #include <rastrum/shapes.hpp>
 #include <tests/scene/mesh_properties.hpp>
 
-namespace rastrum::test {
+namespace rastrum::test::gyroid_test {
 namespace {
 
 TEST(MarchingCubes, EveryCaseUsesItsCrossedEdgesAndNoOther) {
@@ -82,4 +82,4 @@ TEST(Gyroid, HasTheAreaOfTheMinimalSurface) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::gyroid_test

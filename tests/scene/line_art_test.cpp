@@ -10,7 +10,7 @@
 #include <rastrum/mesh.hpp>
 #include <rastrum/shapes.hpp>
 
-namespace rastrum::test {
+namespace rastrum::test::line_art_test {
 namespace {
 
 TEST(LineArt, EdgesAreThereOnceInTheOrderOfTheirTriangles) {
@@ -67,4 +67,4 @@ TEST(LineArt, NormalsWithIndicesOfTheirOwnAreDrawnAtTheCorners) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::line_art_test

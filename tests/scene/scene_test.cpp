@@ -10,7 +10,7 @@
 #include <rastrum/error.hpp>
 #include <rastrum/shapes.hpp>
 
-namespace rastrum::test {
+namespace rastrum::test::scene_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -300,4 +300,4 @@ TEST(SceneAppend, FilesWithoutMaterialsLookAsTheyDid) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::scene_test

@@ -12,7 +12,7 @@
 #include <rastrum/shapes.hpp>
 #include <tests/scene/mesh_properties.hpp>
 
-namespace rastrum::test {
+namespace rastrum::test::shapes_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -222,4 +222,4 @@ TEST(Shapes, RandomNumbersAreFixedForever) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::shapes_test

@@ -6,7 +6,7 @@
 #include <rastrum/error.hpp>
 #include <rastrum/shapes.hpp>
 
-namespace rastrum::test {
+namespace rastrum::test::spec_test {
 namespace {
 
 bool same(const Mesh& a, const Mesh& b) {
@@ -86,4 +86,4 @@ TEST(Spec, ErrorsNameWhatIsWrongAndWhatIsKnown) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::spec_test

@@ -8,7 +8,7 @@
 #include <rastrum/shapes.hpp>
 #include <tests/scene/mesh_properties.hpp>
 
-namespace rastrum::test {
+namespace rastrum::test::subdivide_test {
 namespace {
 
 TEST(Subdivide, KeepsAreaBoundsAndClosedness) {
@@ -144,4 +144,4 @@ TEST(Subdivide, RefusesIndicesOutOfRange) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::subdivide_test

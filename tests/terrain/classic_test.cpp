@@ -23,7 +23,7 @@
 #include "tests/support/painter.hpp"
 #include "tests/terrain/maps.hpp"
 
-namespace rastrum::terrain {
+namespace rastrum::terrain::classic_test {
 namespace {
 
 struct Original {
@@ -227,4 +227,4 @@ TEST(Classic, ABlockEndsSoonWhenStopped) {
 }
 
 }  // namespace
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::classic_test

@@ -8,7 +8,7 @@
 #include <rastrum/terrain/color_map.hpp>
 #include <rastrum/terrain_light.hpp>
 
-namespace rastrum::terrain {
+namespace rastrum::terrain::color_map_test {
 namespace {
 
 double lightness(Rgba8 c) {
@@ -141,4 +141,4 @@ TEST(LitColors, SmoothOnesLieBetweenCentres) {
 }
 
 }  // namespace
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::color_map_test

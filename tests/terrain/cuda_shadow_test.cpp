@@ -16,7 +16,7 @@
 #include "tests/terrain/cuda_device.hpp"
 #include "tests/terrain/maps.hpp"
 
-namespace rastrum::terrain {
+namespace rastrum::terrain::cuda_shadow_test {
 namespace {
 
 class CudaShadows : public test::TerrainOnDevice {};
@@ -130,4 +130,4 @@ TEST_F(CudaShadows, LightIsTheSameOnTheDevice) {
 }
 
 }  // namespace
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::cuda_shadow_test

@@ -14,7 +14,7 @@
 
 #include "tests/support/painter.hpp"
 
-namespace rastrum::terrain {
+namespace rastrum::terrain::cuda_spans_test {
 namespace {
 
 class CudaSpans : public test::TerrainOnDevice {};
@@ -65,4 +65,4 @@ TEST_F(CudaSpans, WithoutCellsOrWithGapsAreRefused) {
 }
 
 }  // namespace
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::cuda_spans_test

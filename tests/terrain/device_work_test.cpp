@@ -7,7 +7,7 @@
 
 #include "tests/support/painter.hpp"
 
-namespace rastrum::terrain {
+namespace rastrum::terrain::device_work_test {
 namespace {
 
 Terrain flat(int edge) {
@@ -58,4 +58,4 @@ TEST(TerrainDeviceWork, PicturesThatComeBackAreTheThreadsAndWordsTheDevices) {
 }
 
 }  // namespace
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::device_work_test

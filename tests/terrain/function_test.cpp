@@ -13,7 +13,7 @@
 
 #include "tests/support/random.hpp"
 
-namespace rastrum::terrain {
+namespace rastrum::terrain::function_test {
 namespace {
 
 float at(const HeightFunction& f, double x, double y) {
@@ -130,4 +130,4 @@ TEST(SampledRange, IgnoresWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::function_test

@@ -16,7 +16,7 @@
 #include "tests/support/stop_trigger.hpp"
 #include "tests/terrain/maps.hpp"
 
-namespace rastrum::terrain {
+namespace rastrum::terrain::methods_test {
 namespace {
 
 struct Picture {
@@ -177,4 +177,4 @@ TEST(Methods, EndSoonWhenStopped) {
 }
 
 }  // namespace
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::methods_test

@@ -15,7 +15,7 @@
 
 #include "tests/support/random.hpp"
 
-namespace rastrum::terrain {
+namespace rastrum::terrain::shadow_reach_test {
 namespace {
 
 using test::Random;
@@ -136,4 +136,4 @@ TEST(ShadowTiles, KernelsGiveTheRanges) {
 }
 
 }  // namespace
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::shadow_reach_test

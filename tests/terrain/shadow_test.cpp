@@ -16,7 +16,7 @@
 #include "tests/support/isa.hpp"
 #include "tests/support/random.hpp"
 
-namespace rastrum::terrain {
+namespace rastrum::terrain::shadow_test {
 namespace {
 
 using test::Random;
@@ -375,4 +375,4 @@ TEST(SoftLight, APostsShadowFadesAwayFromIt) {
 }
 
 }  // namespace
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::shadow_test

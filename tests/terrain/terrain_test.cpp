@@ -20,7 +20,7 @@
 
 #include "tests/support/painter.hpp"
 
-namespace rastrum::terrain {
+namespace rastrum::terrain::terrain_test {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -724,4 +724,4 @@ TEST(OddInput, LargeMaps) {
 }
 
 }  // namespace
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::terrain_test

@@ -12,7 +12,7 @@
 
 #include "tests/support/random.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::blend_test {
 namespace {
 
 using raster::BlockColors;
@@ -306,4 +306,4 @@ TEST(Approximations, NearLayersCountMore) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::blend_test

@@ -13,7 +13,7 @@
 #include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::cuda_frame_test {
 namespace {
 
 RenderOptions options(int width, int height, Device device) {
@@ -120,4 +120,4 @@ TEST_F(CudaLayeredFrame, TheRestIsTheCPUs) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::cuda_frame_test

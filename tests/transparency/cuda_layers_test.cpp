@@ -29,7 +29,7 @@
 #include <rastrum/parallel/cuda/status.hpp>
 #endif
 
-namespace rastrum::test {
+namespace rastrum::test::cuda_layers_test {
 namespace {
 
 using transparency::DeviceLayerCounts;
@@ -328,4 +328,4 @@ TEST_F(CudaLayers, TeamsSortAndSumUp) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::cuda_layers_test

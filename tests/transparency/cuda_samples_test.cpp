@@ -17,7 +17,7 @@
 #include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::cuda_samples_test {
 namespace {
 
 RenderOptions options(int width, int height, int samples, Device device) {
@@ -201,4 +201,4 @@ INSTANTIATE_TEST_SUITE_P(Standard, CudaSampled, testing::Values(4, 8, 16),
                          [](const auto& p) { return std::to_string(p.param); });
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::cuda_samples_test

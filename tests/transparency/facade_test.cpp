@@ -33,7 +33,7 @@
 #include "tests/support/real_meshes.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::facade_test {
 namespace {
 
 /// Shades one fragment at a time, as the façade's shader of these options would.
@@ -317,4 +317,4 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::facade_test

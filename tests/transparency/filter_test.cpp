@@ -21,7 +21,7 @@
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/painter.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::filter_test {
 namespace {
 
 constexpr int kWidth = 48, kHeight = 40;
@@ -294,4 +294,4 @@ TEST(TransparencyOptions, NoneDrawsTranslucentSurfacesOpaque) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::filter_test

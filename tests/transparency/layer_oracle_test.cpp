@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rastrum::test {
+namespace rastrum::test::layer_oracle_test {
 namespace {
 
 /// The rectangle [x0, x1) × [0, 4) px, upper and lower half of it under one id.
@@ -221,4 +221,4 @@ TEST(LayerOracle, ShadesAtTheCentreOrTheFirstCoveredSample) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::layer_oracle_test

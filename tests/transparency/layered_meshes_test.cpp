@@ -24,7 +24,7 @@
 #include "tests/support/real_meshes.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::layered_meshes_test {
 namespace {
 
 constexpr int kWidth = 203, kHeight = 149;
@@ -115,4 +115,4 @@ TEST(LayeredShapes, HairballEqualsTheOracle) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::layered_meshes_test

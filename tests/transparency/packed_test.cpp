@@ -15,7 +15,7 @@
 
 #include "tests/support/random.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::packed_test {
 namespace {
 
 using raster::BlockColors;
@@ -181,4 +181,4 @@ INSTANTIATE_TEST_SUITE_P(Isas, Packed, testing::ValuesIn(available_isas()),
                          });
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::packed_test

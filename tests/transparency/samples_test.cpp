@@ -23,7 +23,7 @@
 #include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::test {
+namespace rastrum::test::samples_test {
 namespace {
 
 struct Size {
@@ -264,4 +264,4 @@ TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
 }
 
 }  // namespace
-}  // namespace rastrum::test
+}  // namespace rastrum::test::samples_test

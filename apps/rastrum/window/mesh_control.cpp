@@ -8,13 +8,12 @@ namespace rastrum::cli::window {
 namespace {
 
 constexpr double kFlySpeed = 0.5;   ///< scene radii a second
-constexpr double kFaster = 4;       ///< with Shift
 constexpr double kTurnSpeed = 1.5;  ///< rad a second
 constexpr double kZoomSpeed = 2;    ///< factor a second
 constexpr double kWheelZoom = 1.15;
 constexpr double kPole = 0.01;  ///< rad that the view keeps from straight up and down
 
-constexpr KeyHelp kKeys[] = {
+constexpr KeyHelp kMeshControlKeys[] = {
     {"w, s", "fly forward, back"},     {"a, d", "fly left, right"},
     {"q, e", "fly down, up"},          {"left, right, up, down", "orbit"},
     {"=, -", "zoom in, out"},          {"left shift, right shift", "held: four times as fast"},
@@ -27,7 +26,7 @@ constexpr const char* kMoving[] = {"w",    "s",     "a",  "d",    "q", "e",
 }  // namespace
 
 std::span<const KeyHelp> MeshControl::keys() {
-  return kKeys;
+  return kMeshControlKeys;
 }
 
 MeshControl::MeshControl(const Camera& home, const BoundingSphere& scene, bool follow_planes)

@@ -17,13 +17,13 @@
 namespace rastrum::cli::window {
 namespace {
 
-constexpr KeyHelp kKeys[] = {{"m", "next shader (with Shift: the one before, as below)"},
-                             {"n", "next rasterizer"},
-                             {"v", "next visibility"},
-                             {"t", "next transparency"},
-                             {"o, l", "more, less opacity"},
-                             {"b", "next number of samples"},
-                             {"h", "heat map"}};
+constexpr KeyHelp kMeshSubjectKeys[] = {{"m", "next shader (with Shift: the one before, as below)"},
+                                        {"n", "next rasterizer"},
+                                        {"v", "next visibility"},
+                                        {"t", "next transparency"},
+                                        {"o, l", "more, less opacity"},
+                                        {"b", "next number of samples"},
+                                        {"h", "heat map"}};
 
 std::string text(const char* format, double value) {
   char buffer[64];
@@ -132,7 +132,7 @@ void MeshSubject::set(Settings settings) {
 
 void MeshSubject::handle(const Event& event) {
   if (event.kind == Event::Kind::key_down && !event.ctrl) {
-    for (const KeyHelp& help : kKeys)
+    for (const KeyHelp& help : kMeshSubjectKeys)
       if (help.has(event.key)) return change(event.key[0], event.shift);
   }
   control_.handle(event);
@@ -276,12 +276,12 @@ std::string MeshSubject::title() const {
 }
 
 std::span<const KeyHelp> MeshSubject::command_keys() {
-  return kKeys;
+  return kMeshSubjectKeys;
 }
 
 std::vector<KeyHelp> MeshSubject::keys() const {
   std::vector<KeyHelp> all(MeshControl::keys().begin(), MeshControl::keys().end());
-  all.insert(all.end(), std::begin(kKeys), std::end(kKeys));
+  all.insert(all.end(), std::begin(kMeshSubjectKeys), std::end(kMeshSubjectKeys));
   return all;
 }
 

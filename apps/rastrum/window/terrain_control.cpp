@@ -16,11 +16,10 @@ constexpr double kDistance = 2;                  // factor
 constexpr double kFov = std::numbers::pi / 6;    // rad
 constexpr double kSunTurn = 45, kSunClimb = 15;  // degrees
 constexpr double kRoll = 0.5;                    // rad
-constexpr double kFaster = 4;                    // with Shift
 constexpr double kLeastDistance = 10, kMostDistance = 1e6;
 constexpr double kLeastFov = 0.1, kMostFov = 3;  // rad; a planar picture ends before π
 
-constexpr KeyHelp kKeys[] = {
+constexpr KeyHelp kTerrainControlKeys[] = {
     {"w, s", "move forward, back"},
     {"a, d", "turn left, right"},
     {"q, e", "look up, down (horizon)"},
@@ -37,7 +36,7 @@ constexpr KeyHelp kKeys[] = {
 }  // namespace
 
 std::span<const KeyHelp> TerrainControl::keys() {
-  return kKeys;
+  return kTerrainControlKeys;
 }
 
 TerrainControl::TerrainControl(const TerrainPose& home) : home_(home), pose_(home) {}
@@ -97,7 +96,7 @@ void TerrainControl::handle(const Event& event) {
 
 bool TerrainControl::moving() const {
   if (dragging_) return true;
-  for (const KeyHelp& help : kKeys) {
+  for (const KeyHelp& help : kTerrainControlKeys) {
     bool any = false;
     help.each([&](std::string_view key) { any = any || held_.contains(key); });
     if (any && !help.has("left shift")) return true;

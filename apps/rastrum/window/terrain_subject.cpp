@@ -16,7 +16,7 @@ namespace {
 
 using terrain::TerrainOptions;
 
-constexpr KeyHelp kKeys[] = {
+constexpr KeyHelp kTerrainSubjectKeys[] = {
     {"1", "map or function"},      {"f1", "next map"}, {"b", "next filter"},
     {"c", "next kind of shadows"}, {"g", "fog"},       {"v", "fast, or paper 3's scans"},
     {"t", "next tiling"}};
@@ -126,7 +126,7 @@ std::uint64_t TerrainSubject::version() const {
 
 void TerrainSubject::handle(const Event& event) {
   if (event.kind == Event::Kind::key_down && !event.ctrl)
-    for (const KeyHelp& help : kKeys)
+    for (const KeyHelp& help : kTerrainSubjectKeys)
       if (help.has(event.key)) return change(event.key, event.shift);
   control_.handle(event);
 }
@@ -269,12 +269,12 @@ std::string TerrainSubject::title() const {
 }
 
 std::span<const KeyHelp> TerrainSubject::command_keys() {
-  return kKeys;
+  return kTerrainSubjectKeys;
 }
 
 std::vector<KeyHelp> TerrainSubject::keys() const {
   std::vector<KeyHelp> all(TerrainControl::keys().begin(), TerrainControl::keys().end());
-  all.insert(all.end(), std::begin(kKeys), std::end(kKeys));
+  all.insert(all.end(), std::begin(kTerrainSubjectKeys), std::end(kTerrainSubjectKeys));
   return all;
 }
 

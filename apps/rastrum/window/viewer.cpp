@@ -17,10 +17,10 @@ namespace {
 constexpr double kRest_s = 0.15;       ///< without change, before the full picture is drawn
 constexpr std::size_t kHistory = 120;  ///< frame times that are kept
 
-constexpr KeyHelp kKeys[] = {{"p", "screenshot, with its camera as a path file"},
-                             {"k", "add the camera to a path that render --path draws"},
-                             {"tab", "hide or show the panel"},
-                             {"ctrl+q", "quit"}};
+constexpr KeyHelp kViewerKeys[] = {{"p", "screenshot, with its camera as a path file"},
+                                   {"k", "add the camera to a path that render --path draws"},
+                                   {"tab", "hide or show the panel"},
+                                   {"ctrl+q", "quit"}};
 
 int scaled(int size, std::size_t step) {
   return std::max(static_cast<int>(size * kScales[step] + 0.5), 1);
@@ -38,7 +38,7 @@ Viewer::~Viewer() {
 }
 
 std::vector<KeyHelp> Viewer::keys() {
-  return {std::begin(kKeys), std::end(kKeys)};
+  return {std::begin(kViewerKeys), std::end(kViewerKeys)};
 }
 
 void Viewer::set_target(double ms) {

@@ -12,10 +12,10 @@
 #include <cstdint>
 #include <span>
 
+#include <rastrum/family/coverage/tile_mask.hpp>
 #include <rastrum/family/cuda/small.cuh>
 #include <rastrum/family/cuda/tiles.cuh>
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/family/coverage/tile_mask.hpp>
 
 namespace rastrum::family {
 

@@ -15,11 +15,11 @@
 #include <span>
 #include <string_view>
 
+#include <rastrum/family/visibility/region.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/surface_drawer.cuh>
 #include <rastrum/raster/frame/options.hpp>
-#include <rastrum/family/visibility/region.hpp>
 
 namespace rastrum::family {
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <span>
 
-#include <rastrum/family/cuda/small.cuh>
 #include <rastrum/family/coverage/rows.hpp>
+#include <rastrum/family/cuda/small.cuh>
 
 namespace rastrum::family {
 

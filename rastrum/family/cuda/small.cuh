@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <span>
 
+#include <rastrum/family/coverage/boxes.hpp>
 #include <rastrum/family/cuda/frame.cuh>
 #include <rastrum/family/cuda/turns.cuh>
 #include <rastrum/raster/bin/order.hpp>
-#include <rastrum/family/coverage/boxes.hpp>
 
 namespace rastrum::family {
 

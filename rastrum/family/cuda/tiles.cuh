@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <span>
 
+#include <rastrum/family/coverage/bins.hpp>
 #include <rastrum/family/cuda/frame.cuh>
 #include <rastrum/family/cuda/turns.cuh>
-#include <rastrum/family/coverage/bins.hpp>
 
 namespace rastrum::family {
 

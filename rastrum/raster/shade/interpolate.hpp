@@ -12,8 +12,8 @@
 #include <cstdint>
 #include <utility>
 
-#include <rastrum/raster/assemble/points_and_lines.hpp>
 #include <rastrum/program.hpp>
+#include <rastrum/raster/assemble/points_and_lines.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 
