@@ -49,7 +49,10 @@ HWY_INLINE V4 operator*(const V4& a, F s) {
 HWY_INLINE F square_root(F v) {
   return hn::Sqrt(v);
 }
-/// The larger; `b` where one is NaN, as IEEE's instruction has it.
+/// The smaller, the larger. Not of NaN, of which processors make different things.
+HWY_INLINE F min_of(F a, F b) {
+  return hn::Min(a, b);
+}
 HWY_INLINE F max_of(F a, F b) {
   return hn::Max(a, b);
 }

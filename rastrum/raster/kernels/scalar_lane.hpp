@@ -21,6 +21,9 @@ RASTRUM_HD inline V3 set(Vec3 v) {
 RASTRUM_HD inline F square_root(F v) {
   return std::sqrt(v);
 }
+RASTRUM_HD inline F min_of(F a, F b) {
+  return a < b ? a : b;
+}
 RASTRUM_HD inline F max_of(F a, F b) {
   return a > b ? a : b;
 }

@@ -3,8 +3,7 @@
 
 /// Linear light to display value, both in [0, 1]; what lies outside is clamped, NaN becomes 0.
 RASTRUM_LANES F srgb_from_linear(F linear) {
-  const F positive = choose_or_zero(linear > set(0), linear);
-  const F x = choose(positive < set(1), positive, set(1));
+  const F x = min_of(choose_or_zero(linear > set(0), linear), set(1));
   const F s2 = square_root(x);
   const F s4 = square_root(s2);
   const F s8 = square_root(s4);
