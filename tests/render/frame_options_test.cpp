@@ -56,7 +56,9 @@ TEST(FrameOptions, AreEachFramesOwn) {
       const Picture expected(fresh, binding.view(), frame), got(renderer, binding.view(), frame);
       EXPECT_TRUE(got.is(expected)) << frame.width << " x " << frame.height;
       EXPECT_EQ(got.stats.shader, expected.stats.shader);
-      if (by.memory_limit != 0) EXPECT_LE(got.stats.peak_bytes, by.memory_limit);
+      if (by.memory_limit != 0) {
+        EXPECT_LE(got.stats.peak_bytes, by.memory_limit);
+      }
     }
   }
 }
