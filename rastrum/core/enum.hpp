@@ -4,7 +4,7 @@
 #include <string>
 #include <type_traits>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum {
 

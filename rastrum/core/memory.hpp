@@ -13,7 +13,7 @@
 #include <type_traits>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include <rastrum/core/vec.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum {
 

@@ -1,6 +1,6 @@
 #include <rastrum/family/frame.hpp>
 
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/stop.hpp>
 
 namespace rastrum::family {
 

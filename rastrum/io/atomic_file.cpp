@@ -1,4 +1,4 @@
-#include <rastrum/io/atomic_file.hpp>
+#include <rastrum/io.hpp>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -13,7 +13,7 @@
 #include <string>
 #include <system_error>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::io {
 namespace fs = std::filesystem;

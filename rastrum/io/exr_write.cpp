@@ -2,8 +2,7 @@
 // install.
 #include <string>
 
-#include <rastrum/io/atomic_file.hpp>
-#include <rastrum/io/io.hpp>
+#include <rastrum/io.hpp>
 
 #ifdef RASTRUM_HAS_OPENEXR
 #include <ImfChannelList.h>

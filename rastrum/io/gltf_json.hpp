@@ -12,7 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::io::gltf {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
+#include <rastrum/io.hpp>
 #include <rastrum/io/gltf_internal.hpp>
-#include <rastrum/io/io.hpp>
 
 namespace rastrum::io::gltf {
 namespace {

@@ -1,7 +1,7 @@
 // GeoTIFF through GDAL: the first band, its value for "no data" a void. The library is loaded when
 // a file asks for it: linked, its hundred libraries would cost every start of the program 50 ms (3
 // without). Where it was absent at build time the function says what to install.
-#include <rastrum/io/height_map.hpp>
+#include <rastrum/io.hpp>
 
 #ifdef RASTRUM_GDAL_LIBRARY
 #include <dlfcn.h>

@@ -1,5 +1,5 @@
 // The door of height_map.hpp, and the format that is nothing but its values.
-#include <rastrum/io/height_map.hpp>
+#include <rastrum/io.hpp>
 
 #include <cmath>
 #include <new>

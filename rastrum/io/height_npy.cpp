@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include <rastrum/io/height_map.hpp>
+#include <rastrum/io.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/text_cursor.hpp>
 

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <string>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::io {
 namespace {

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <utility>
 
-#include <rastrum/io/io.hpp>
+#include <rastrum/io.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/io/text_cursor.hpp>

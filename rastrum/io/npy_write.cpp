@@ -3,8 +3,7 @@
 #include <bit>
 #include <string>
 
-#include <rastrum/io/atomic_file.hpp>
-#include <rastrum/io/io.hpp>
+#include <rastrum/io.hpp>
 
 namespace rastrum::io {
 namespace {

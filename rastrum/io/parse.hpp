@@ -9,7 +9,7 @@
 #include <string>
 #include <unordered_map>
 
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/scene.hpp>
 
 namespace rastrum::io {
 

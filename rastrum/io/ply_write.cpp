@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <rastrum/io/atomic_file.hpp>
-#include <rastrum/io/io.hpp>
+#include <rastrum/io.hpp>
 
 namespace rastrum::io {
 namespace {

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include <rastrum/io/height_map.hpp>
+#include <rastrum/io.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 

@@ -4,8 +4,7 @@
 #include <csetjmp>
 #include <cstdio>
 
-#include <rastrum/io/atomic_file.hpp>
-#include <rastrum/io/io.hpp>
+#include <rastrum/io.hpp>
 
 namespace rastrum::io {
 namespace {

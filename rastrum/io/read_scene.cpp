@@ -1,5 +1,5 @@
 // The doors of io.hpp: which reader for which file.
-#include <rastrum/io/io.hpp>
+#include <rastrum/io.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include <rastrum/io/report.hpp>
+#include <rastrum/io.hpp>
 
 #include <algorithm>
 #include <array>

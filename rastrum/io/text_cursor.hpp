@@ -13,7 +13,7 @@
 #include <string_view>
 #include <system_error>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::io {
 

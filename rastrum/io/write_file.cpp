@@ -1,6 +1,5 @@
 // The writers of io.hpp that take a name: begun, written and committed alone.
-#include <rastrum/io/atomic_file.hpp>
-#include <rastrum/io/io.hpp>
+#include <rastrum/io.hpp>
 
 namespace rastrum::io {
 namespace {

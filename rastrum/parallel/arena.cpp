@@ -9,7 +9,7 @@
 #include <sys/mman.h>
 #endif
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::parallel {
 namespace {

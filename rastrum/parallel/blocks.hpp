@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include <rastrum/core/config.hpp>
+#include <rastrum/config.hpp>
 #include <rastrum/parallel/exec.hpp>
 
 namespace rastrum::parallel {

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include <rastrum/core/enum.hpp>
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/parallel/cuda/status.hpp>
 
 namespace rastrum {

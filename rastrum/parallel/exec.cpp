@@ -12,7 +12,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/stop.hpp>
 
 #if defined(RASTRUM_TSAN)
 extern "C" void __tsan_acquire(void* address);

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include <rastrum/core/config.hpp>
+#include <rastrum/config.hpp>
 
 namespace rastrum::parallel {
 

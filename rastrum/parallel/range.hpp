@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <rastrum/core/config.hpp>
+#include <rastrum/config.hpp>
 
 namespace rastrum::parallel {
 

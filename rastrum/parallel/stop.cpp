@@ -1,4 +1,4 @@
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/stop.hpp>
 
 #include <utility>
 

@@ -5,7 +5,7 @@
 #include <mutex>
 #include <stop_token>
 
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/stop.hpp>
 
 namespace rastrum::parallel {
 

@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/core/quaternion.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/turn.hpp>
-#include <rastrum/terrain/matrix.hpp>
+#include <rastrum/terrain.hpp>
+#include <rastrum/transform.hpp>
 
 namespace rastrum {
 

@@ -1,11 +1,11 @@
-#include <rastrum/scene/camera.hpp>
+#include <rastrum/camera.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include <rastrum/core/error.hpp>
 #include <rastrum/core/vec3d.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum {
 namespace {

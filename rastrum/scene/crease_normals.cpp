@@ -1,4 +1,4 @@
-#include <rastrum/scene/crease_normals.hpp>
+#include <rastrum/mesh.hpp>
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <rastrum/core/angle.hpp>
-#include <rastrum/core/error.hpp>
 #include <rastrum/core/vec3d.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum {
 namespace {

@@ -3,7 +3,7 @@
 // x + t z: its eye must have x_e + t z_e at least as large. Two such sides leave a wedge of eyes,
 // and its tip is the nearest of them (as in the "zoom to fit" of viewers; Blender's Frame
 // Selected).
-#include <rastrum/scene/fit.hpp>
+#include <rastrum/fit.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <string>
 
 #include <rastrum/core/angle.hpp>
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/scene/vertices_in_use.hpp>
 
 namespace rastrum {

@@ -1,9 +1,9 @@
-#include <rastrum/scene/line_art.hpp>
+#include <rastrum/mesh.hpp>
 
 #include <algorithm>
 #include <cmath>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum {
 namespace {

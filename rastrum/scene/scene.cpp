@@ -1,4 +1,4 @@
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/scene.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/scene/vertices_in_use.hpp>
 
 namespace rastrum {

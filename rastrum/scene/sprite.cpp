@@ -1,8 +1,8 @@
-#include <rastrum/scene/sprite.hpp>
+#include <rastrum/shapes.hpp>
 
 #include <utility>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <rastrum/core/vec3d.hpp>
-#include <rastrum/scene/mesh.hpp>
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/mesh.hpp>
+#include <rastrum/scene.hpp>
 
 namespace rastrum {
 

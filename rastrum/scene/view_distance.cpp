@@ -1,4 +1,4 @@
-#include <rastrum/scene/view_distance.hpp>
+#include <rastrum/camera.hpp>
 
 #include <cassert>
 #include <cmath>

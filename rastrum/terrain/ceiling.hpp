@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include <rastrum/core/image.hpp>
-#include <rastrum/terrain/terrain.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/terrain.hpp>
 
 namespace rastrum::terrain {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include <rastrum/terrain/terrain.hpp>
+#include <rastrum/terrain.hpp>
 
 namespace rastrum::terrain {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <rastrum/parallel/for_each.hpp>
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/stop.hpp>
 #include <rastrum/terrain/blocks.hpp>
 #include <rastrum/terrain/classic.hpp>
 #include <rastrum/terrain/methods.hpp>

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <rastrum/terrain.hpp>
 #include <rastrum/terrain/ceiling.hpp>
-#include <rastrum/terrain/options.hpp>
 
 namespace rastrum::terrain {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include <rastrum/core/config.hpp>
-#include <rastrum/core/image.hpp>
-#include <rastrum/terrain/shadows.hpp>
+#include <rastrum/config.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/terrain_light.hpp>
 
 namespace rastrum::terrain {
 

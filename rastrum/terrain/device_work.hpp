@@ -3,8 +3,7 @@
 #pragma once
 
 #include <rastrum/parallel/device_estimate.hpp>
-#include <rastrum/terrain/options.hpp>
-#include <rastrum/terrain/terrain.hpp>
+#include <rastrum/terrain.hpp>
 
 namespace rastrum::terrain {
 

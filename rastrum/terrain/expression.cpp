@@ -1,8 +1,8 @@
 // Expressions through muParser. A parser holds the values of its variables, so each thread takes
 // one of its own from a pool. Without the library at build time the function says what to install.
-#include <rastrum/terrain/expression.hpp>
+#include <rastrum/terrain_light.hpp>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 #ifdef RASTRUM_HAS_MUPARSER
 #include <muParser.h>

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <limits>
 
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/stop.hpp>
 #include <rastrum/terrain/blocks.hpp>
 #include <rastrum/terrain/fan.hpp>
 #include <rastrum/terrain/methods.hpp>

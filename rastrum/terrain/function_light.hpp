@@ -11,12 +11,12 @@
 #include <span>
 #include <vector>
 
-#include <rastrum/core/config.hpp>
-#include <rastrum/core/image.hpp>
+#include <rastrum/config.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/terrain.hpp>
 #include <rastrum/terrain/color_map.hpp>
 #include <rastrum/terrain/function_values.hpp>
-#include <rastrum/terrain/light.hpp>
-#include <rastrum/terrain/terrain.hpp>
+#include <rastrum/terrain_light.hpp>
 
 namespace rastrum::terrain {
 

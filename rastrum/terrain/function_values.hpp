@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <rastrum/core/config.hpp>
+#include <rastrum/config.hpp>
 
 namespace rastrum::terrain {
 

@@ -1,12 +1,12 @@
 // The list of the named functions.
-#include <rastrum/terrain/functions.hpp>
+#include <rastrum/terrain_light.hpp>
 
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/terrain/function_values.hpp>
 
 namespace rastrum::terrain {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-#include <rastrum/core/image.hpp>
+#include <rastrum/image.hpp>
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/terrain/samples.hpp>
 

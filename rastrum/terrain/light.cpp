@@ -1,4 +1,4 @@
-#include <rastrum/terrain/light.hpp>
+#include <rastrum/terrain_light.hpp>
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <rastrum/core/enum.hpp>
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/terrain/color_map.hpp>
 #include <rastrum/terrain/function_light.hpp>
 

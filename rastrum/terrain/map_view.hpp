@@ -11,10 +11,9 @@
 #include <span>
 #include <vector>
 
-#include <rastrum/core/image.hpp>
-#include <rastrum/terrain/options.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/terrain.hpp>
 #include <rastrum/terrain/setup.hpp>
-#include <rastrum/terrain/terrain.hpp>
 
 namespace rastrum::terrain {
 

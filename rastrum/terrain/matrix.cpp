@@ -1,4 +1,4 @@
-#include <rastrum/terrain/matrix.hpp>
+#include <rastrum/terrain.hpp>
 
 #include <array>
 #include <cmath>

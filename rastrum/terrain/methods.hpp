@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include <rastrum/parallel/exec.hpp>
-#include <rastrum/terrain/options.hpp>
+#include <rastrum/terrain.hpp>
 #include <rastrum/terrain/samples.hpp>
 
 namespace rastrum::terrain {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/stop.hpp>
 #include <rastrum/terrain/methods.hpp>
 
 namespace rastrum::terrain {

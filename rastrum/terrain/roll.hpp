@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include <rastrum/core/config.hpp>
-#include <rastrum/core/image.hpp>
-#include <rastrum/terrain/options.hpp>
+#include <rastrum/config.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/terrain.hpp>
 
 namespace rastrum::terrain {
 

@@ -3,10 +3,10 @@
 
 #include <cstddef>
 
+#include <rastrum/terrain.hpp>
 #include <rastrum/terrain/ceiling.hpp>
 #include <rastrum/terrain/map_view.hpp>
 #include <rastrum/terrain/setup.hpp>
-#include <rastrum/terrain/terrain.hpp>
 
 namespace rastrum::terrain {
 

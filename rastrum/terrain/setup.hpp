@@ -14,8 +14,7 @@
 #include <span>
 #include <vector>
 
-#include <rastrum/terrain/options.hpp>
-#include <rastrum/terrain/terrain.hpp>
+#include <rastrum/terrain.hpp>
 
 namespace rastrum::terrain {
 

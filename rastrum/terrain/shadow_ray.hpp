@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include <rastrum/terrain/shadows.hpp>
+#include <rastrum/terrain_light.hpp>
 
 namespace rastrum::terrain {
 

@@ -12,7 +12,7 @@
 
 #include <hwy/highway.h>
 
-#include <rastrum/terrain/terrain.hpp>
+#include <rastrum/terrain.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();

@@ -1,7 +1,7 @@
 // The doors of shadows.hpp: plain loops for `serial` and the scalar instruction set, which are the
 // definition; the kernels of shadows_simd.cpp for the others.
 #include <rastrum/parallel/device.hpp>
-#include <rastrum/terrain/shadows.hpp>
+#include <rastrum/terrain_light.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/terrain/cuda/device.hpp>
 #include <rastrum/terrain/shadow_kernels.hpp>

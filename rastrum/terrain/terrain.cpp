@@ -1,10 +1,9 @@
-#include <rastrum/terrain/terrain.hpp>
+#include <rastrum/terrain.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include <rastrum/terrain.hpp>
 #include <rastrum/terrain/cell.hpp>
 
 namespace rastrum::terrain {

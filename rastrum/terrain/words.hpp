@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include <rastrum/core/config.hpp>
-#include <rastrum/core/image.hpp>
+#include <rastrum/config.hpp>
+#include <rastrum/image.hpp>
 #include <rastrum/terrain/setup.hpp>
 
 namespace rastrum::terrain {

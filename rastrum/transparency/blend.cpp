@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
 
 namespace rastrum::transparency {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <memory>
 
-#include <rastrum/raster/frame/options.hpp>
+#include <rastrum/frame.hpp>
 #include <rastrum/raster/shade/color.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include <rastrum/raster/frame/options.hpp>
+#include <rastrum/frame.hpp>
 #include <rastrum/raster/shade/color.hpp>
 #include <rastrum/transparency/over.hpp>
 

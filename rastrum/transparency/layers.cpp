@@ -15,11 +15,11 @@
 #include <utility>
 
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/parallel/stop.hpp>
 #include <rastrum/raster/cover/bin_keys.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
+#include <rastrum/stop.hpp>
 #include <rastrum/transparency/blend.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
 #include <rastrum/transparency/packed_fragments.hpp>

@@ -5,12 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <rastrum/core/vec.hpp>
+#include <rastrum/frame.hpp>
 #include <rastrum/raster/draws/samples.hpp>
-#include <rastrum/raster/frame/options.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/raster/shade/color.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::transparency {
 

@@ -5,13 +5,13 @@
 #include <map>
 #include <vector>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/raster/assemble/assemble.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/frame/reference.hpp>
 #include <rastrum/raster/setup/set_up.hpp>
+#include <rastrum/stop.hpp>
 #include <rastrum/transparency/blend.hpp>
 
 namespace rastrum::transparency {

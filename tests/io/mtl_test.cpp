@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/io/io.hpp>
+#include <rastrum/io.hpp>
 #include <rastrum/io/parse.hpp>
 #include <tests/io/files.hpp>
 

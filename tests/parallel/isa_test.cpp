@@ -8,7 +8,7 @@
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)  // as the library
 #include <hwy/targets.h>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/parallel/device.hpp>
 #include <tests/support/isa.hpp>
 

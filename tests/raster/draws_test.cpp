@@ -184,9 +184,9 @@ TEST(Draws, AreShadedAndTestedEachByItsProgram) {
         SCOPED_TRACE(std::string(name(o.device)) + " " + o.visibility + " " +
                      std::to_string(alpha) + " " + std::to_string(samples));
         const Two two(alpha);
-        std::array parts{two.first.draw(3), two.second.draw(3), two.first.draw(3)};
+        std::array<Draw, 3> parts{two.first.draw(3), two.second.draw(3), two.first.draw(3)};
         const std::uint32_t indices[] = {3, 4, 5};
-        std::array whole{two.both.draw(6), two.both.draw(6, indices), two.both.draw(6)};
+        std::array<Draw, 3> whole{two.both.draw(6), two.both.draw(6, indices), two.both.draw(6)};
         whole[0].primitive_count = whole[2].primitive_count = 1;
         // The third is the first again, behind itself: it counts where something is blended.
         parts[2].depth_bias = whole[2].depth_bias = -0.1F;
@@ -245,7 +245,7 @@ TEST(Draws, MayHaveABuiltInShader) {
     normals.shader = Shader::normal;
     Painter of_normals(normals);
     const Frame with_normals = draw(of_normals, binding.view(), camera);
-    std::array programs{two.first.draw(3), two.second.draw(3)};
+    std::array<Draw, 2> programs{two.first.draw(3), two.second.draw(3)};
     const WithExtra flat = draw_all(o, programs, two.first, two.first.test());
     int seen[5] = {};
     for (int y = 0; y < kHeight; ++y)
@@ -274,7 +274,7 @@ TEST(Draws, MayHaveABuiltInShader) {
 TEST(Draws, ThatCannotBeDrawnAreRefusedByNumber) {
   const Two two(1);
   const auto refused = [&](const std::string& what, auto&& change, Device device) {
-    std::array draws{two.first.draw(3), two.first.draw(3)};
+    std::array<Draw, 2> draws{two.first.draw(3), two.first.draw(3)};
     change(draws[1]);
     const std::string text = message(draws, two.first, device);
     EXPECT_EQ(text.substr(0, 8), "draw 1: ") << text;

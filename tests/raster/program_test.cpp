@@ -243,8 +243,8 @@ TEST(Program, SeveralTargetsGetWhatTheShaderReturns) {
         color_of(v), Vec4{v.scalar, 2, f.depth, 3},
         Vec4{static_cast<float>(f.id), static_cast<float>(f.x), static_cast<float>(f.y), 1}};
   });
-  EXPECT_EQ(one.extra_count(), 0U);
-  ASSERT_EQ(three.extra_count(), 2U);
+  EXPECT_EQ(static_cast<const raster::BlockShader&>(one).extra_count(), 0U);
+  ASSERT_EQ(static_cast<const raster::BlockShader&>(three).extra_count(), 2U);
   for (const family::AxisInfo& visibility : family::visibility_axis()) {
     RenderOptions o = options(Device::threads);
     o.visibility = visibility.name;

@@ -56,7 +56,9 @@ TEST(FrameOptions, AreEachFramesOwn) {
       const Picture expected(fresh, binding.view(), frame), got(renderer, binding.view(), frame);
       EXPECT_TRUE(got.is(expected)) << frame.width << " x " << frame.height;
       EXPECT_EQ(got.stats.shader, expected.stats.shader);
-      if (by.memory_limit != 0) EXPECT_LE(got.stats.peak_bytes, by.memory_limit);
+      if (by.memory_limit != 0) {
+        EXPECT_LE(got.stats.peak_bytes, by.memory_limit);
+      }
     }
   }
 }
@@ -115,8 +117,12 @@ TEST(TerrainOptions, AreEachFramesOwn) {
   terrain::TerrainRenderer renderer({.threads = 2});
   const terrain::TerrainOptions frames[] = {
       {.width = 80, .height = 50, .distance = 100},
-      {.width = 200, .height = 30, .distance = 60, .step = 0, .filter = terrain::Filter::bilinear},
-      {.width = 31, .height = 90, .distance = 90, .filter = terrain::Filter::mip},
+      {.width = 200,
+       .height = 30,
+       .distance = 60,
+       .step = 0,
+       .filter = terrain::MapFilter::bilinear},
+      {.width = 31, .height = 90, .distance = 90, .filter = terrain::MapFilter::mip},
       {.width = 64, .height = 64, .distance = 80, .classic = true},
       {.width = 80, .height = 50, .distance = 100, .method = terrain::Method::words}};
   for (const terrain::TerrainOptions& frame : frames) {

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/on_terrain.hpp>
+#include <rastrum/raster/frame/bins.hpp>
 #include <rastrum/raster/frame/frame.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include <rastrum/program.hpp>
+#include <rastrum/raster/draws/draw.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
 
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/projection.hpp"

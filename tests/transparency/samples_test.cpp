@@ -160,7 +160,7 @@ TEST_P(Serial, EqualsTheOracleAndThreads) {
 INSTANTIATE_TEST_SUITE_P(Standard, Serial, testing::Values(1, 4, 8, 16),
                          [](const auto& p) { return std::to_string(p.param); });
 
-/// What the other targets hold (raster/frame/options.hpp): of the sample with the largest key. A
+/// What the other targets hold (frame.hpp): of the sample with the largest key. A
 /// frame with one sample, of the scene moved so that sample lies at the pixels' centres, has its
 /// key.
 TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {

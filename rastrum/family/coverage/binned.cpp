@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/family/coverage/boxes.hpp>
 #include <rastrum/family/coverage/tile_mask.hpp>
 #include <rastrum/family/piece_array.hpp>
 #include <rastrum/parallel/expand_each.hpp>
-#include <rastrum/parallel/stop.hpp>
 #include <rastrum/parallel/work_queue.hpp>
 #include <rastrum/raster/bin/order.hpp>
+#include <rastrum/stop.hpp>
 
 namespace rastrum::family {
 namespace {

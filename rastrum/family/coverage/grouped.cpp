@@ -1,6 +1,6 @@
 #include <rastrum/family/coverage/grouped.hpp>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/raster/bin/groups.hpp>
 
 namespace rastrum::family {

@@ -9,13 +9,14 @@
 #include <string>
 #include <string_view>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/family/coverage/bins.hpp>
 #include <rastrum/family/coverage/coverage.hpp>
 #include <rastrum/family/coverage/expand_in_turns.hpp>
 #include <rastrum/family/frame.hpp>
+#include <rastrum/frame.hpp>
+#include <rastrum/tuning.hpp>
 #include <rastrum/parallel/masked_expansion.hpp>
-#include <rastrum/raster/frame/options.hpp>
 
 namespace rastrum::family {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/family/cuda/binned.cuh>
 #include <rastrum/family/cuda/family.cuh>
 #include <rastrum/family/cuda/hybrid.cuh>
@@ -14,7 +14,7 @@
 #include <rastrum/family/cuda/rasterizer.hpp>
 #include <rastrum/family/cuda/scanline.cuh>
 #include <rastrum/family/cuda/tiled.cuh>
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/stop.hpp>
 #include <rastrum/render/cuda/make.cuh>
 
 namespace rastrum::family {

@@ -19,7 +19,8 @@
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/surface_drawer.cuh>
-#include <rastrum/raster/frame/options.hpp>
+#include <rastrum/frame.hpp>
+#include <rastrum/tuning.hpp>
 
 namespace rastrum::family {
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include <rastrum/parallel/cuda/words.cuh>
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/stop.hpp>
 
 namespace rastrum::family {
 

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <numeric>
 
-#include <rastrum/core/config.hpp>
+#include <rastrum/config.hpp>
 
 namespace rastrum::family {
 

@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::parallel {
 namespace {

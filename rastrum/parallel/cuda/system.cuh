@@ -10,7 +10,7 @@
 
 #include <thrust/execution_policy.h>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/parallel/arena.hpp>
 #include <rastrum/parallel/exec.hpp>
 

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <limits>
 
-#include <rastrum/core/config.hpp>
+#include <rastrum/config.hpp>
 
 namespace rastrum::parallel {
 

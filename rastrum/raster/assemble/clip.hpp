@@ -5,7 +5,7 @@
 // lines Liang and Barsky, 1984, in homogeneous coordinates.)
 #pragma once
 
-#include <rastrum/core/config.hpp>
+#include <rastrum/config.hpp>
 #include <rastrum/raster/draws/projection.hpp>
 
 namespace rastrum::raster {

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include <rastrum/core/config.hpp>
+#include <rastrum/config.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
 

@@ -5,8 +5,9 @@
 #include <bit>
 #include <cstddef>
 
-#include <rastrum/core/config.hpp>
-#include <rastrum/raster/frame/options.hpp>
+#include <rastrum/config.hpp>
+#include <rastrum/frame.hpp>
+#include <rastrum/tuning.hpp>
 
 namespace rastrum::raster {
 

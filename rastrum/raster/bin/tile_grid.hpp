@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include <rastrum/core/config.hpp>
+#include <rastrum/config.hpp>
 #include <rastrum/raster/bin/order.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 

@@ -14,7 +14,7 @@
 
 #include <cstdint>
 
-#include <rastrum/core/config.hpp>
+#include <rastrum/config.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 
 namespace rastrum::raster {

@@ -20,7 +20,7 @@
 #include <utility>
 
 #include <rastrum/parallel/cuda/words.cuh>
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/stop.hpp>
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/pieces.cuh>
 #include <rastrum/raster/cuda/plan.cuh>

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/draws/vertices.hpp>

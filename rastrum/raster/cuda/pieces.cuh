@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/raster/assemble/assemble.hpp>
 #include <rastrum/raster/cover/rules.hpp>

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/raster/assemble/assemble.hpp>
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/draws/projection.hpp>

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include <rastrum/core/image.hpp>
+#include <rastrum/image.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/geometry.cuh>

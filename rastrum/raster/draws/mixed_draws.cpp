@@ -5,7 +5,7 @@
 #include <string>
 #include <unordered_map>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::raster {
 

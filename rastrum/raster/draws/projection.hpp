@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <limits>
 
-#include <rastrum/core/config.hpp>
-#include <rastrum/core/vec.hpp>
+#include <rastrum/config.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
 

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <span>
 
-#include <rastrum/core/config.hpp>
+#include <rastrum/config.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 
 namespace rastrum::raster {

@@ -8,7 +8,7 @@
 #include <span>
 #include <variant>
 
-#include <rastrum/core/mat.hpp>
+#include <rastrum/mat.hpp>
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/raster/assemble/clip.hpp>
 #include <rastrum/raster/draws/projection.hpp>

@@ -9,10 +9,10 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/scratch.hpp>
-#include <rastrum/parallel/stop.hpp>
 #include <rastrum/raster/bin/groups.hpp>
 #include <rastrum/raster/frame/frame.hpp>
 #include <rastrum/raster/frame/tile_surface.hpp>
+#include <rastrum/stop.hpp>
 
 namespace rastrum::raster {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/raster/bin/tile_grid.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 

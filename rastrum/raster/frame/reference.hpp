@@ -4,10 +4,10 @@
 
 #include <memory>
 
-#include <rastrum/parallel/stop.hpp>
 #include <rastrum/raster/assemble/assemble.hpp>
 #include <rastrum/raster/frame/method.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
+#include <rastrum/stop.hpp>
 
 namespace rastrum::raster {
 

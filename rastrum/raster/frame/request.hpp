@@ -5,11 +5,11 @@
 #include <span>
 #include <string_view>
 
-#include <rastrum/core/vec.hpp>
 #include <rastrum/frame.hpp>
 #include <rastrum/raster/draws/draw.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/tuning.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include <rastrum/raster/frame/options.hpp>
+#include <rastrum/frame.hpp>
 
 namespace rastrum::raster {
 

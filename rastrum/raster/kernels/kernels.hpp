@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <rastrum/core/mat.hpp>
+#include <rastrum/frame.hpp>
+#include <rastrum/mat.hpp>
 #include <rastrum/raster/draws/projection.hpp>
-#include <rastrum/raster/frame/options.hpp>
 #include <rastrum/raster/resolve/surface.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/raster/shade/color.hpp>

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include <rastrum/core/config.hpp>
-#include <rastrum/core/vec.hpp>
+#include <rastrum/config.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::raster::scalar_lane {
 

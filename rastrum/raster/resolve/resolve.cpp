@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include <rastrum/core/enum.hpp>
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>

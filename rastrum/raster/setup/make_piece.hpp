@@ -5,8 +5,8 @@
 #include <bit>
 #include <cstdint>
 
-#include <rastrum/core/config.hpp>
-#include <rastrum/raster/frame/options.hpp>
+#include <rastrum/config.hpp>
+#include <rastrum/frame.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 
 namespace rastrum::raster {

@@ -15,8 +15,7 @@
 
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/draws/draw.hpp>
-#include <rastrum/scene/material.hpp>
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/scene.hpp>
 
 namespace rastrum::raster {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include <rastrum/core/config.hpp>
-#include <rastrum/core/image.hpp>
+#include <rastrum/config.hpp>
+#include <rastrum/image.hpp>
 #include <rastrum/raster/shade/srgb.hpp>
 
 namespace rastrum::raster {

@@ -10,11 +10,11 @@
 #include <span>
 #include <vector>
 
-#include <rastrum/core/config.hpp>
-#include <rastrum/core/vec.hpp>
+#include <rastrum/camera.hpp>
+#include <rastrum/config.hpp>
 #include <rastrum/raster/shade/shading.hpp>
-#include <rastrum/scene/camera.hpp>
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/scene.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
 

@@ -3,10 +3,10 @@
 
 #include <cstdint>
 
-#include <rastrum/core/vec.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/shade/lit.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
 

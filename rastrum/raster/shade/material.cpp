@@ -5,7 +5,7 @@
 #include <string>
 
 #include <rastrum/core/enum.hpp>
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
 
 namespace rastrum::raster {

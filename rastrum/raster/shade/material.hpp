@@ -27,10 +27,10 @@
 #include <span>
 #include <vector>
 
+#include <rastrum/camera.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/texture.hpp>
-#include <rastrum/scene/camera.hpp>
-#include <rastrum/scene/scene.hpp>
+#include <rastrum/scene.hpp>
 
 namespace rastrum::raster {
 

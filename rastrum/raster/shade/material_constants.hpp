@@ -1,7 +1,7 @@
 // The numbers of the material shader; material.hpp says what they are.
 #pragma once
 
-#include <rastrum/core/vec.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
 

@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <rastrum/core/config.hpp>
-#include <rastrum/core/vec.hpp>
+#include <rastrum/config.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/material.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include <rastrum/core/config.hpp>
-#include <rastrum/core/vec.hpp>
-#include <rastrum/scene/mesh.hpp>
+#include <rastrum/config.hpp>
+#include <rastrum/mesh.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include <rastrum/core/config.hpp>
+#include <rastrum/config.hpp>
 #include <rastrum/raster/kernels/scalar_lane.hpp>
 
 namespace rastrum::raster {

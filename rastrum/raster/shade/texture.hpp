@@ -11,7 +11,7 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
-#include <rastrum/scene/material.hpp>
+#include <rastrum/scene.hpp>
 
 namespace rastrum::raster {
 

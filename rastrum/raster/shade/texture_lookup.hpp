@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include <rastrum/core/config.hpp>
+#include <rastrum/config.hpp>
 #include <rastrum/raster/shade/texture.hpp>
 
 namespace rastrum::raster {

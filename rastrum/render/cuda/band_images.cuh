@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <rastrum/core/image.hpp>
+#include <rastrum/image.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/raster/cuda/resolve.cuh>
 #include <rastrum/raster/frame/request.hpp>

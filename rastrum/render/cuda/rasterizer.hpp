@@ -8,8 +8,8 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
-#include <rastrum/parallel/stop.hpp>
 #include <rastrum/raster/frame/request.hpp>
+#include <rastrum/stop.hpp>
 
 namespace rastrum {
 

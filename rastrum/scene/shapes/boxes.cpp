@@ -2,7 +2,7 @@
 // (8 per box, closed); normals and texture coordinates have indices of their own.
 
 #include <rastrum/scene/shapes/require.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/shapes.hpp>
 
 namespace rastrum::shapes {
 namespace {

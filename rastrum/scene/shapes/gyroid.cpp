@@ -14,7 +14,7 @@
 #include <rastrum/parallel/words.hpp>
 #include <rastrum/scene/shapes/marching_cubes_table.hpp>
 #include <rastrum/scene/shapes/require.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/shapes.hpp>
 
 namespace rastrum::shapes {
 namespace {

@@ -3,7 +3,7 @@
 #include <sstream>
 #include <string>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 
 namespace rastrum::shapes {
 

@@ -8,8 +8,8 @@
 #include <type_traits>
 #include <utility>
 
-#include <rastrum/core/error.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/shapes.hpp>
 
 namespace rastrum::shapes {
 namespace {

@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include <rastrum/core/error.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/parallel/words.hpp>
 #include <rastrum/scene/shapes/require.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/shapes.hpp>
 
 namespace rastrum::shapes {
 namespace {

@@ -4,7 +4,7 @@
 #include <rastrum/scene/shapes/teapot_patches.hpp>
 
 #include <rastrum/scene/shapes/require.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/shapes.hpp>
 
 namespace rastrum::shapes {
 namespace {

@@ -8,10 +8,10 @@
 #include <numeric>
 #include <string>
 
-#include <rastrum/core/error.hpp>
 #include <rastrum/core/vec3d.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/scene/shapes/require.hpp>
-#include <rastrum/scene/shapes/shapes.hpp>
+#include <rastrum/shapes.hpp>
 
 namespace rastrum::shapes {
 namespace {

@@ -9,11 +9,11 @@
 #include <stop_token>
 #include <string>
 
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/stop.hpp>
+#include <rastrum/terrain.hpp>
 #include <rastrum/terrain/methods.hpp>
 #include <rastrum/terrain/roll.hpp>
-#include <rastrum/terrain/shadows.hpp>
-#include <rastrum/terrain/terrain.hpp>
+#include <rastrum/terrain_light.hpp>
 
 namespace rastrum::terrain {
 

@@ -25,7 +25,7 @@
 #include <rastrum/terrain/cuda/map.cuh>
 #include <rastrum/terrain/shadow_kernels.hpp>
 #include <rastrum/terrain/shadow_ray.hpp>
-#include <rastrum/terrain/shadows.hpp>
+#include <rastrum/terrain_light.hpp>
 
 namespace rastrum::terrain {
 namespace cuda_detail {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include <rastrum/raster/frame/options.hpp>
+#include <rastrum/frame.hpp>
 
 namespace rastrum::transparency {
 

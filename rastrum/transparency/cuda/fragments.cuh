@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <span>
 
-#include <rastrum/core/vec.hpp>
+#include <rastrum/vec.hpp>
 #include <rastrum/raster/cuda/sample_pattern.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/raster/setup/piece.hpp>

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include <rastrum/parallel/stop.hpp>
+#include <rastrum/stop.hpp>
 #include <rastrum/raster/cuda/pieces.cuh>
 #include <rastrum/raster/cuda/samples.cuh>
 #include <rastrum/transparency/cuda/device_layers.cuh>

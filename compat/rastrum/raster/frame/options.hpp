@@ -1,3 +1,0 @@
-#pragma once
-#include <rastrum/frame.hpp>
-#include <rastrum/tuning.hpp>
