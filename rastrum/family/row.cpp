@@ -3,9 +3,9 @@
 namespace rastrum::family {
 namespace {
 
-class Row final : public Method {
+class RowMethod final : public Method {
  public:
-  Row(const CoverageRow& coverage, const Visibility& visibility, const Tuning& tuning,
+  RowMethod(const CoverageRow& coverage, const Visibility& visibility, const Tuning& tuning,
       MemoryAccount& memory)
       : row_(coverage),
         visibility_(visibility),
@@ -45,7 +45,7 @@ class Row final : public Method {
 
 std::unique_ptr<Method> make_row(const CoverageRow& coverage, const Visibility& visibility,
                                  const Tuning& tuning, MemoryAccount& memory) {
-  return std::make_unique<Row>(coverage, visibility, tuning, memory);
+  return std::make_unique<RowMethod>(coverage, visibility, tuning, memory);
 }
 
 }  // namespace rastrum::family
