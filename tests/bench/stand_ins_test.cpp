@@ -15,10 +15,11 @@
 #include <rastrum/error.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "tests/support/painter.hpp"
-
 namespace rastrum::bench::stand_ins_test {
 namespace {
+
+using test::Painter;
+using test::RenderOptions;
 
 /// Directed edges without their opposite.
 std::size_t open_edges(const Mesh& mesh) {
