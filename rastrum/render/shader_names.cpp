@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/render.hpp>
 
@@ -20,7 +21,8 @@ std::vector<std::string_view> shader_names() {
 }
 
 std::string_view name(Shader shader) {
-  return kShaderNames.at(static_cast<std::size_t>(shader));
+  check_enum(shader, Shader::wireframe, "the shader");
+  return kShaderNames[static_cast<std::size_t>(shader)];
 }
 
 Shader shader_for(Shader shader, const SceneView& scene) {

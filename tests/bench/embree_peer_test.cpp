@@ -15,6 +15,8 @@
 namespace rastrum::bench::embree_peer_test {
 namespace {
 
+using test::RenderOptions;
+
 TEST(EmbreePeer, TracesTheSamePicture) {
   std::optional<EmbreePeer> embree;
   try {

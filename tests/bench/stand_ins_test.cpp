@@ -15,8 +15,6 @@
 #include <rastrum/error.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "tests/support/painter.hpp"
-
 namespace rastrum::bench::stand_ins_test {
 namespace {
 
@@ -75,10 +73,6 @@ TEST(StandIns, PartsAreTheSubdividedMesh) {
 TEST(StandIns, PassesOverPartsAreTheWholePicture) {
   const Mesh base = ball(301);
   const Mesh whole = shapes::subdivide(base, 1);
-  RenderOptions options;
-  options.width = 90;
-  options.height = 70;
-  options.threads = 2;
   Image<std::uint64_t> keys(90, 70), passes(90, 70);
   Image<Rgba8> color(90, 70), passes_color(90, 70);
   const auto pass = [&](const Mesh& mesh, Image<std::uint64_t>& to, Image<Rgba8>& to_color,
@@ -88,8 +82,8 @@ TEST(StandIns, PassesOverPartsAreTheWholePicture) {
     targets.color8 = to_color.view();
     targets.load = first_id > 0;
     targets.first_id = first_id;
-    Painter renderer(options);
-    draw(renderer, {mesh.view(), whole_view(base), 90, 70, &triangle_colors()}, targets);
+    Renderer renderer({.threads = 2});
+    draw(renderer, {mesh.view(), whole_view(base), 90, 70, &triangle_colors()}, {}, targets);
   };
   pass(whole, keys, color, 0);
   std::uint64_t first_id = 0;
@@ -131,11 +125,6 @@ TEST(StandIns, LargeTrianglesHaveTheirSize) {
 
 TEST(StandIns, SheetsFillThePictureOncePerLayer) {
   constexpr int kWidth = 70, kHeight = 50, kLayers = 5, kCells = 4;
-  RenderOptions options;
-  options.width = kWidth;
-  options.height = kHeight;
-  options.threads = 1;
-  options.hierarchical_z = false;
   constexpr std::int64_t kASheet = 2 * kCells * kCells;
   for (const Order order : {Order::front_to_back, Order::random, Order::back_to_front}) {
     const Mesh mesh = sheets(kWidth, kHeight, kLayers, kCells, order);
@@ -145,8 +134,8 @@ TEST(StandIns, SheetsFillThePictureOncePerLayer) {
     Targets targets;
     targets.overdraw = overdraw.view();
     targets.ids = ids.view();
-    Painter renderer(options);
-    draw(renderer, {mesh.view(), window_camera(kWidth, kHeight), kWidth, kHeight}, targets);
+    Renderer renderer = family::make_renderer({.threads = 1}, {.hierarchical_z = false});
+    draw(renderer, {mesh.view(), window_camera(kWidth, kHeight), kWidth, kHeight}, {}, targets);
     EXPECT_TRUE(std::ranges::all_of(overdraw.pixels(), [](std::uint32_t n) {
       return n == kLayers;
     })) << name(order);
@@ -163,7 +152,7 @@ TEST(StandIns, SheetsFillThePictureOncePerLayer) {
 TEST(Contest, TimesWhatIsRightAndSaysWhyNot) {
   const Mesh mesh = ball(500);
   const Subject subject{mesh.view(), whole_view(mesh), 64, 64, &triangle_colors()};
-  RenderOptions options;
+  family::Options options;
   options.threads = 1;
   std::vector<Entrant> entrants(4, {"", options});
   entrants[0].name = "auto";

@@ -47,6 +47,9 @@
 namespace rastrum::bad_files_test {
 namespace {
 
+using test::Painter;
+using test::RenderOptions;
+
 namespace fs = std::filesystem;
 
 /// Of processors' time: others may keep them busy.

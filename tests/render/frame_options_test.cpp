@@ -48,7 +48,7 @@ TEST(FrameOptions, AreEachFramesOwn) {
   const Scene scene = single(shapes::torus_knot());
   const SceneBinding binding(scene);
   for (const RendererOptions& by :
-       {RendererOptions{.threads = 3}, RendererOptions{.memory_limit = 4U << 20, .threads = 2},
+       {RendererOptions{.threads = 3}, RendererOptions{.memory_limit = 16U << 20, .threads = 2},
         RendererOptions{.device = Device::serial}}) {
     Renderer renderer(by);
     for (const FrameOptions& frame : looks()) {

@@ -26,6 +26,9 @@
 namespace rastrum::terrain::classic_test {
 namespace {
 
+using test::TerrainLook;
+using test::TerrainPainter;
+
 struct Original {
   int map_width, map_height;
   std::vector<std::uint8_t> altitude;

@@ -22,6 +22,9 @@
 namespace rastrum::terrain::cuda_renderer_test {
 namespace {
 
+using test::TerrainLook;
+using test::TerrainPainter;
+
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 struct Picture {

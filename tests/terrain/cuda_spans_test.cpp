@@ -17,6 +17,9 @@
 namespace rastrum::terrain::cuda_spans_test {
 namespace {
 
+using test::TerrainLook;
+using test::TerrainPainter;
+
 class CudaSpans : public test::TerrainOnDevice {};
 
 template <class T>

@@ -10,6 +10,8 @@
 namespace rastrum::terrain::device_work_test {
 namespace {
 
+using test::TerrainLook;
+
 Terrain flat(int edge) {
   return Terrain(HeightMap{Image<float>(edge, edge), Image<Rgba8>(edge, edge)});
 }

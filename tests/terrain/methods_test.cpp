@@ -19,6 +19,9 @@
 namespace rastrum::terrain::methods_test {
 namespace {
 
+using test::TerrainLook;
+using test::TerrainPainter;
+
 struct Picture {
   Image<Rgba8> colors;
   Image<float> depth;

@@ -23,6 +23,9 @@
 namespace rastrum::terrain::terrain_test {
 namespace {
 
+using test::TerrainLook;
+using test::TerrainPainter;
+
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr double kPi = 3.14159265358979323846;
@@ -647,7 +650,7 @@ TEST(OddInput, IsRefusedWithTheOptionsName) {
 
 TEST(OddInput, InstructionSetsThatAreNotThereAreRefused) {
   for (const Device device : {Device::serial, Device::threads}) {
-    TerrainOptions options = size(8, 8);
+    TerrainLook options = size(8, 8);
     options.device = device;
     options.isa = test::missing_isa();
     EXPECT_NE(message_of(options).find("--isa"), std::string::npos);
