@@ -14,6 +14,7 @@
 #include <rastrum/program.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
+#include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/render.hpp>
 
 #include "tests/support/family.hpp"

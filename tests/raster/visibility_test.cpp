@@ -288,7 +288,7 @@ class Resolver {
 };
 
 const Visibility& method(std::string_view name) {
-  for (const Visibility& v : raster::visibilities())
+  for (const Visibility& v : family::visibilities())
     if (v.name == name) return v;
   throw std::runtime_error("no such method");
 }
@@ -371,7 +371,7 @@ TEST_P(Methods, CountTheSameWithEveryNumberOfThreads) {
 
 std::vector<std::string> names() {
   std::vector<std::string> all;
-  for (const Visibility& v : raster::visibilities()) all.emplace_back(v.name);
+  for (const Visibility& v : family::visibilities()) all.emplace_back(v.name);
   return all;
 }
 INSTANTIATE_TEST_SUITE_P(All, Methods, testing::ValuesIn(names()),
