@@ -31,7 +31,7 @@ COVERAGES = ("scanline", "pineda", "tiled", "hybrid", "binned", "grouped")
 VISIBILITIES = ("atomic", "search", "tuple", "sorted", "hashed")
 OWNING = ("tiled", "hybrid", "grouped")  # coverages with regions that one thread owns …
 SHARING = ("scanline", "pineda", "hybrid", "binned")  # … and that all share
-# Of a row alone: tests of raster_test, by the axis; what draws all points is render_test's.
+# Of a row alone: tests of family_test, by the axis; what draws all points is render_test's.
 TESTS = {"coverage": "Coverages/*:Order.*:Tiled.*:Tilings.*:Binned.*:TileMask.*",
          "visibility": "All/Methods.*:Layers/Counted.*"}
 POINTS = "Points/Table.*"
@@ -195,7 +195,7 @@ def run(*command, **options):
 
 def build():
     run("cmake", "--build", BUILD, "-j", os.environ.get("RASTRUM_JOBS", str(os.cpu_count())),
-        "--target", "render_test", "raster_test")
+        "--target", "render_test", "family_test")
 
 
 def failed_cases(program, tests):
@@ -224,7 +224,7 @@ def row_of(case):
 def broken_rows(axis):
     """(points of the table, rows of the axis) whose tests fail, or raises."""
     points = {case.rpartition("/")[2] for case in failed_cases("render_test", POINTS)}
-    units = {row_of(case) for case in failed_cases("raster_test", TESTS[axis])}
+    units = {row_of(case) for case in failed_cases("family_test", TESTS[axis])}
     return points, units
 
 

@@ -22,8 +22,7 @@ MAY_INCLUDE = {
     "terrain": {"core", "parallel", "scene"},
     # Files in, images out: what draws them is none of its business, so a reader can be used alone.
     "io": {"core", "parallel", "scene"},
-    # `family` until the rows leave the registry: then nothing of the renderer includes it.
-    "render": {"core", "parallel", "scene", "raster", "transparency", "terrain", "io", "family"},
+    "render": {"core", "parallel", "scene", "raster", "transparency", "terrain", "io"},
     "family": {"core", "parallel", "scene", "raster", "transparency", "terrain", "render"},
     # The library of device code, opened by its file's name: nothing includes it.
     "cuda": {"core", "parallel", "render", "terrain", "family"},

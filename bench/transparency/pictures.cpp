@@ -13,6 +13,7 @@
 #include <bench/registry.hpp>
 #include <bench/report.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/family.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/shapes.hpp>
 
@@ -49,7 +50,8 @@ class Knots {
     o.transparency = transparency;
     o.samples = samples;
     Image<Vec4> picture(size.width, size.height);
-    static_cast<void>(Renderer().render({.instances = instances_}, camera, o, {.color = picture}));
+    static_cast<void>(family::make_renderer({}, {}).render({.instances = instances_}, camera, o,
+                                                           {.color = picture}));
     return picture;
   }
 

@@ -111,7 +111,8 @@ struct FrameScratch {
 /// A frame under way in a row of the family.
 class Frame {
  public:
-  Frame(raster::Frame& frame, const Tuning& t, const Visibility& v, FrameScratch& s)
+  Frame(raster::Frame& frame, const Tuning& t, bool hierarchical_z, const Visibility& v,
+        FrameScratch& s)
       : base(frame),
         request(frame.request),
         geometry(frame.geometry),
@@ -120,6 +121,7 @@ class Frame {
         stats(frame.stats),
         watch(frame.watch),
         tuning(t),
+        hides(hierarchical_z && frame.request.targets.overdraw.empty()),
         visibility(v),
         scratch(s),
         view(frame.view),
@@ -134,6 +136,9 @@ class Frame {
   FrameStats& stats;
   Stopwatch& watch;
   const Tuning& tuning;
+  /// Whether owned regions keep bounds of what they hide. Who counts overdraw wants to see
+  /// everything.
+  const bool hides;
   const Visibility& visibility;
   FrameScratch& scratch;
   const Rect view;            ///< what is being drawn: the image or a part of it
@@ -141,17 +146,12 @@ class Frame {
   const std::uint64_t expansion_bytes;
 
   [[nodiscard]] bool has_surface() const { return base.has_surface(); }
-  /// Whether owned regions keep bounds of what they hide. Who counts overdraw wants to see
-  /// everything.
-  [[nodiscard]] bool hides() const {
-    return request.hierarchical_z && request.targets.overdraw.empty();
-  }
   /// Of the region that all threads share.
   [[nodiscard]] RegionContext shared_context() const {
     return {{&request, &geometry, &kernel, base.fragment_bytes, nullptr}, &exec, false};
   }
   /// Of a region that the calling thread owns; all of those share the budget.
-  [[nodiscard]] RegionContext owned_context() const { return {base.context(), nullptr, hides()}; }
+  [[nodiscard]] RegionContext owned_context() const { return {base.context(), nullptr, hides}; }
   void count(std::string_view name, std::uint64_t value) { base.count(name, value); }
 };
 

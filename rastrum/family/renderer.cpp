@@ -80,14 +80,14 @@ std::unique_ptr<raster::FrameDrawer> make_on_threads(const Row& row, std::uint64
                        row.hierarchical_z && row.tuning.order == raster::BlockOrder::row_major;
   const bool auto_rasterizer = row.rasterizer == "auto", auto_visibility = row.visibility == "auto";
   return make_drawer_of(
-      {[=, &memory, &coverage, &visibility, tuning = row.tuning] {
+      {[=, &memory, &coverage, &visibility, tuning = row.tuning, hides = row.hierarchical_z] {
          return is_fast ? raster::make_fast_path(memory)
-                        : make_row(coverage, visibility, tuning, memory);
+                        : make_row(coverage, visibility, tuning, hides, memory);
        },
-       [=, &memory, &coverage, tuning = row.tuning] {
+       [=, &memory, &coverage, tuning = row.tuning, hides = row.hierarchical_z] {
          check_layers(coverage, !auto_visibility);
          return is_first ? transparency::make_layered_path(memory, make_blend)
-                         : make_row(coverage, layers(), tuning, memory);
+                         : make_row(coverage, layers(), tuning, hides, memory);
        },
        why(auto_rasterizer, auto_visibility, false), why(auto_rasterizer, auto_visibility, true)},
       memory_limit, memory, &threads);
@@ -101,7 +101,6 @@ class WithTuning final : public raster::FrameDrawer {
   [[nodiscard]] FrameStats draw(raster::FrameRequest& request) override {
     if (on_device_ && needs_layers(request) && row_.visibility != "auto") refuse_visibility();
     request.tuning = row_.tuning;
-    request.hierarchical_z = row_.hierarchical_z;
     return drawer_->draw(request);
   }
 

@@ -6,10 +6,11 @@ namespace {
 class RowMethod final : public Method {
  public:
   RowMethod(const CoverageRow& coverage, const Visibility& visibility, const Tuning& tuning,
-      MemoryAccount& memory)
+            bool hierarchical_z, MemoryAccount& memory)
       : row_(coverage),
         visibility_(visibility),
         tuning_(tuning),
+        hierarchical_z_(hierarchical_z),
         coverage_(coverage.make(tuning, memory)),
         scratch_(memory) {}
 
@@ -24,7 +25,7 @@ class RowMethod final : public Method {
             .whole_view = visibility_.whole_view};
   }
   void draw(raster::Frame& under_way, std::uint64_t first, std::uint64_t last) override {
-    Frame frame(under_way, tuning_, visibility_, scratch_);
+    Frame frame(under_way, tuning_, hierarchical_z_, visibility_, scratch_);
     coverage_->draw(frame, first, last);
   }
   /// Regions have counted.
@@ -37,6 +38,7 @@ class RowMethod final : public Method {
   const CoverageRow& row_;
   const Visibility& visibility_;
   const Tuning tuning_;
+  const bool hierarchical_z_;
   std::unique_ptr<Coverage> coverage_;
   FrameScratch scratch_;
 };
@@ -44,8 +46,8 @@ class RowMethod final : public Method {
 }  // namespace
 
 std::unique_ptr<Method> make_row(const CoverageRow& coverage, const Visibility& visibility,
-                                 const Tuning& tuning, MemoryAccount& memory) {
-  return std::make_unique<RowMethod>(coverage, visibility, tuning, memory);
+                                 const Tuning& tuning, bool hierarchical_z, MemoryAccount& memory) {
+  return std::make_unique<RowMethod>(coverage, visibility, tuning, hierarchical_z, memory);
 }
 
 }  // namespace rastrum::family

@@ -11,9 +11,10 @@
 namespace rastrum::family {
 
 /// What is given outlives the method. Frames need threads.
+/// `hierarchical_z`: what is hidden is left out, where the row can; no pixel changes.
 /// Throws Error{invalid_argument} for a tuning that was not compiled.
 [[nodiscard]] std::unique_ptr<Method> make_row(const CoverageRow& coverage,
                                                const Visibility& visibility, const Tuning& tuning,
-                                               MemoryAccount& memory);
+                                               bool hierarchical_z, MemoryAccount& memory);
 
 }  // namespace rastrum::family

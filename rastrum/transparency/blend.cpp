@@ -78,7 +78,7 @@ std::unique_ptr<LayerBlend> make_blend(const TransparencyOptions& options, Isa i
     case Transparency::mlab4:
       throw Error(Errc::unsupported,
                   "the approximations of transparency are drawn by the renderer of "
-                  "rastrum/family/renderer.hpp (Rastrum::family)");
+                  "rastrum/family.hpp (Rastrum::family)");
     default:
       return std::make_unique<FrontToBack>(options.alpha_threshold, isa);
   }

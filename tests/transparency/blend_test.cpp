@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include <rastrum/family/blend/approximations.hpp>
 #include <rastrum/transparency/blend.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
 
@@ -164,7 +165,7 @@ BlockColors blended(const Stack& stack, Transparency method, Isa isa = Isa::scal
                     std::uint64_t mask = ~std::uint64_t{0}) {
   TransparencyOptions options;
   options.method = method;
-  const auto blend = transparency::make_blend(options, isa);
+  const auto blend = family::make_blend(options, isa);
   // Every blend is used for block after block: the first must leave nothing behind.
   BlockColors out;
   for (int block = 0; block < 2; ++block) {
@@ -207,7 +208,7 @@ TEST(Blend, FinishedPixelsAreThoseThatNothingChanges) {
   for (const float threshold : {1.0F, 0.9F}) {
     options.alpha_threshold = threshold;
     for (const Isa isa : available_isas()) {
-      const auto blend = transparency::make_blend(options, isa);
+      const auto blend = family::make_blend(options, isa);
       const BlockColors behind = {};
       blend->begin(behind);
       BlockColors colors = {};

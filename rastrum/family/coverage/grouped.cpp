@@ -12,7 +12,7 @@ class Grouped final : public Coverage {
 
   void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
     const BinTable lists{{frame.view, kBinSize, frame.tuning.order},
-                         frame.visibility.hides && frame.hides()};
+                         frame.visibility.hides && frame.hides};
     // A view without a limit of its own always fits.
     const std::span<Group> groups =
         *groups_.set_up(frame.base, lists, frame.visibility.takes_fragments, first, last);

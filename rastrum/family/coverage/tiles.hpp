@@ -15,8 +15,8 @@
 #include <rastrum/family/coverage/expand_in_turns.hpp>
 #include <rastrum/family/frame.hpp>
 #include <rastrum/frame.hpp>
-#include <rastrum/tuning.hpp>
 #include <rastrum/parallel/masked_expansion.hpp>
+#include <rastrum/tuning.hpp>
 
 namespace rastrum::family {
 

@@ -14,8 +14,8 @@
 #include <rastrum/family/cuda/rasterizer.hpp>
 #include <rastrum/family/cuda/scanline.cuh>
 #include <rastrum/family/cuda/tiled.cuh>
-#include <rastrum/stop.hpp>
 #include <rastrum/render/cuda/make.cuh>
+#include <rastrum/stop.hpp>
 
 namespace rastrum::family {
 namespace {

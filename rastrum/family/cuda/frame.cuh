@@ -16,10 +16,10 @@
 #include <string_view>
 
 #include <rastrum/family/visibility/region.hpp>
+#include <rastrum/frame.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/surface_drawer.cuh>
-#include <rastrum/frame.hpp>
 #include <rastrum/tuning.hpp>
 
 namespace rastrum::family {

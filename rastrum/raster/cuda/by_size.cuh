@@ -20,11 +20,11 @@
 #include <utility>
 
 #include <rastrum/parallel/cuda/words.cuh>
-#include <rastrum/stop.hpp>
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/pieces.cuh>
 #include <rastrum/raster/cuda/plan.cuh>
 #include <rastrum/raster/cuda/surface_drawer.cuh>
+#include <rastrum/stop.hpp>
 
 namespace rastrum::raster {
 

@@ -7,13 +7,13 @@
 #include <span>
 #include <string_view>
 
-#include <rastrum/vec.hpp>
+#include <rastrum/frame.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/pieces.cuh>
 #include <rastrum/raster/cuda/plan.cuh>
-#include <rastrum/frame.hpp>
 #include <rastrum/tuning.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
 

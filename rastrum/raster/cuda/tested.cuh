@@ -12,10 +12,10 @@
 
 #include <rastrum/parallel/cuda/expand.cuh>
 #include <rastrum/parallel/cuda/words.cuh>
-#include <rastrum/stop.hpp>
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/pieces.cuh>
 #include <rastrum/raster/cuda/plan.cuh>
+#include <rastrum/stop.hpp>
 
 namespace rastrum::raster {
 namespace cuda_detail {

@@ -164,7 +164,7 @@ void FrameDriver::draw_view(Frame& frame, std::uint64_t first, std::uint64_t las
 
 void FrameDriver::draw_band(Frame& frame, const Plan& plan, std::uint64_t triangles) {
   const Rect band = frame.view;
-  const TileGrid tiles{band, kBinSize, frame.request.tuning.order};
+  const TileGrid tiles{band, kBinSize};
   const auto each_tile = [&](const auto& f) {
     frame.for_each_index(tiles.count(), [&](std::size_t t) {
       const Rect r = tiles.rect(tiles.tile_at(t));

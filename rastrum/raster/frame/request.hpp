@@ -24,9 +24,8 @@ struct FrameRequest {
   Vec4 background{};                    ///< display values, straight alpha
   Targets targets;
   Tuning tuning;
-  bool in_place = false;            ///< arrays and targets are memory of the device that draws
-  std::uint64_t texture_bytes = 0;  ///< that a memory limit counts beside the frame's own
-  bool hierarchical_z = true;
+  bool in_place = false;             ///< arrays and targets are memory of the device that draws
+  std::uint64_t texture_bytes = 0;   ///< that a memory limit counts beside the frame's own
   TransparencyOptions transparency;  ///< for a visibility that keeps layers
   int samples = 1;                   ///< a pixel; more want a visibility that keeps layers
   /// The shader returns linear light: it is blended as such, also over the background, and the sRGB

@@ -11,12 +11,12 @@
 #include <cstdint>
 #include <span>
 
-#include <rastrum/vec.hpp>
 #include <rastrum/raster/cuda/sample_pattern.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/transparency/over.hpp>
 #include <rastrum/transparency/records.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::transparency::cuda {
 

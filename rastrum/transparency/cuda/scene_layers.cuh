@@ -10,9 +10,9 @@
 #include <string>
 #include <string_view>
 
-#include <rastrum/stop.hpp>
 #include <rastrum/raster/cuda/pieces.cuh>
 #include <rastrum/raster/cuda/samples.cuh>
+#include <rastrum/stop.hpp>
 #include <rastrum/transparency/cuda/device_layers.cuh>
 
 namespace rastrum::transparency {

@@ -543,8 +543,8 @@ TEST(Binned, EveryPassSeesTheSameChunks) {
         parallel::Threads exec(threads, &memory);
         raster::Tuning tuning;
         tuning.schedule = schedule;
-        raster::FrameDriver rasterizer(family::make_row(binned_row(), again, tuning, memory), limit,
-                                       memory, &exec);
+        raster::FrameDriver rasterizer(family::make_row(binned_row(), again, tuning, true, memory),
+                                       limit, memory, &exec);
         raster::Draw draw;
         draw.source = source;
         draw.vertex_count = mesh.positions.size();
@@ -567,7 +567,8 @@ TEST(FrameDriver, RefusesInstructionSetsThatAreNotThere) {
   MemoryAccount memory;
   parallel::Threads exec(1, &memory);
   raster::FrameDriver driver(
-      family::make_row(binned_row(), family::visibilities().front(), {}, memory), 0, memory, &exec);
+      family::make_row(binned_row(), family::visibilities().front(), {}, true, memory), 0, memory,
+      &exec);
   raster::FrameRequest request;
   request.width = request.height = 8;
   request.isa = missing_isa();
@@ -621,8 +622,8 @@ TEST(Binned, SendsLinesAndPointsThroughItsQueues) {
     tuning.schedule = schedule;
     tuning.large_px = 1;
     raster::FrameDriver rasterizer(
-        family::make_row(binned_row(), family::visibilities().front(), tuning, memory), 0, memory,
-        &exec);
+        family::make_row(binned_row(), family::visibilities().front(), tuning, true, memory), 0,
+        memory, &exec);
     Pictures actual;
     raster::FrameRequest request = request_for(actual);
     const FrameStats s = rasterizer.draw(request);

@@ -154,7 +154,6 @@ class Resolver {
     request_.height = kHeight;
     request_.isa = isa;
     request_.shading = &shader_;
-    request_.hierarchical_z = false;
     request_.targets.color = {color_.data(), kWidth, kHeight, kWidth};
     shared_ = method.make(Sharing::shared, memory_);
     owned_ = method.make(Sharing::owned, memory_);
@@ -202,7 +201,7 @@ class Resolver {
           local.colors = colors.data();
           copy(bin, part, local);
         }
-        owned_->begin({{&request_, &frame_, &kernel_, fragment_bytes, nullptr}, nullptr, true},
+        owned_->begin({{&request_, &frame_, &kernel_, fragment_bytes, nullptr}, nullptr, false},
                       is_local ? local : part, bin, 1);
         while (const auto pass = owned_->next()) {
           EXPECT_EQ(pass->first, 0U);
