@@ -22,6 +22,7 @@
 #include "tests/support/cuda_test.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/layer_picture.hpp"
+#include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
@@ -55,12 +56,12 @@ TEST(CudaLibrary, OfAnotherBuildIsRefused) {
 TEST(CudaLibrary, DrawsByItsRasterizersAndTheRows) {
   const GeneratedScene g = generate(3, kSize, kSize);
   const SceneBinding binding(g.scene);
-  Renderer threads(device_options(kSize, kSize, Device::threads));
+  Painter threads(device_options(kSize, kSize, Device::threads));
   const Frame expected = draw(threads, binding.view(), g.camera);
   for (const char* rasterizer : {"auto", "by-size", "tiled", "binned"}) {
     RenderOptions o = device_options(kSize, kSize, Device::cuda);
     o.rasterizer = rasterizer;
-    Renderer cuda(o);
+    Painter cuda(o);
     const Frame frame = draw(cuda, binding.view(), g.camera);
     EXPECT_EQ(frame.stats.device, Device::cuda);
     EXPECT_NE(frame.stats.why.find("shaded on the device"), std::string::npos) << frame.stats.why;
@@ -75,9 +76,9 @@ TEST(CudaLibrary, BlendsLayers) {
   const SceneBinding binding(g.scene);
   RenderOptions o = device_options(kSize, kSize, Device::threads);
   o.opacity = 0.4F;
-  Renderer threads(o);
+  Painter threads(o);
   o.device = Device::cuda;
-  Renderer cuda(o);
+  Painter cuda(o);
   const LayerPicture picture = take(cuda, binding.view(), g.camera);
   EXPECT_EQ(picture.stats.device, Device::cuda) << picture.stats.device_why;
   EXPECT_TRUE(same_bits(picture, take(threads, binding.view(), g.camera)));
@@ -86,7 +87,7 @@ TEST(CudaLibrary, BlendsLayers) {
 TEST(CudaLibrary, ItsErrorsAreTheProgramsErrors) {
   Scene scene = single(shapes::sphere(16, 32));
   scene.meshes[0].indices[7] = 1U << 30;
-  Renderer cuda(device_options(kSize, kSize, Device::cuda));
+  Painter cuda(device_options(kSize, kSize, Device::cuda));
   try {
     (void)draw(cuda, SceneBinding(scene).view(), pixel_camera(kSize, kSize));
     FAIL() << "an index out of range was drawn";
@@ -109,7 +110,7 @@ TEST(CudaLibrary, AStopReachesIt) {
   Image<Rgba8> image(kSize, kSize);
   Targets targets;
   targets.color8 = image.view();
-  Renderer cuda(device_options(kSize, kSize, Device::cuda));
+  Painter cuda(device_options(kSize, kSize, Device::cuda));
   EXPECT_THROW(cuda.draw(draws, program, nullptr, targets, source.get_token()), parallel::Stopped);
   EXPECT_EQ(cuda.draw(draws, program, nullptr, targets).device, Device::cuda);  // as good as new
 }
@@ -128,7 +129,7 @@ TEST(CudaLibrary, DrawsTerrainAndItsShadows) {
   EXPECT_TRUE(std::ranges::equal(here.pixels(), there.pixels()));
 
   const terrain::Terrain hills(terrain::HeightMap{std::move(heights), {}});
-  terrain::TerrainOptions options;
+  TerrainLook options;
   options.width = options.height = kSize;
   const terrain::TerrainCamera camera{.x = 10, .y = 10, .altitude = 60};
   const auto picture = [&](Device device) {
@@ -136,7 +137,7 @@ TEST(CudaLibrary, DrawsTerrainAndItsShadows) {
     Image<Rgba8> image(kSize, kSize);
     terrain::TerrainTargets targets;
     targets.color8 = image.view();
-    terrain::TerrainRenderer renderer(options);
+    TerrainPainter renderer(options);
     EXPECT_EQ(renderer.render(hills, camera, targets).device, device);
     return image;
   };

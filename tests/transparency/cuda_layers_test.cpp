@@ -14,6 +14,7 @@
 #include <rastrum/raster/assemble/assemble.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/transparency/cuda/device_layers.hpp>
 
@@ -53,7 +54,7 @@ LayersFrame frame_of(const LayerScene& scene, LayerProgram& program, int width, 
   std::vector<raster::ProjectedVertex> projected(totals.vertices);
   raster::FrameGeometry whole = geometry;
   for (const raster::Draw& draw : draws)
-    draw.source->project(0, draw.vertex_count, geometry.viewport, Isa::scalar,
+    draw.source.project(0, draw.vertex_count, geometry.viewport, Isa::scalar,
                          projected.data() + draw.first_vertex);
   whole.projected = projected.data();
   for (const raster::Draw& draw : draws)
