@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <rastrum/family/names.hpp>
 #include <rastrum/raster/bin/tile_grid.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <rastrum/family/names.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 

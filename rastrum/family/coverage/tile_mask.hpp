@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include <rastrum/family/coverage/bins.hpp>
+#include <rastrum/family/names.hpp>
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/setup/piece.hpp>

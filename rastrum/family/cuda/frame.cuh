@@ -15,6 +15,7 @@
 #include <span>
 #include <string_view>
 
+#include <rastrum/family/names.hpp>
 #include <rastrum/family/visibility/region.hpp>
 #include <rastrum/frame.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
@@ -25,7 +26,6 @@
 namespace rastrum::family {
 
 // Rows are made of what the renderer has: pieces, blocks, keys, surfaces.
-using namespace raster;  // NOLINT
 
 /// Bytes of a block of a turn, with its place among the fragments.
 inline constexpr std::uint64_t kBlockBytes = sizeof(Block) + sizeof(std::size_t);

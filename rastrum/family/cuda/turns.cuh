@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 
+#include <rastrum/family/names.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/stop.hpp>
 

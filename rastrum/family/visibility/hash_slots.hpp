@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include <rastrum/config.hpp>
+#include <rastrum/family/names.hpp>
 
 namespace rastrum::family {
 

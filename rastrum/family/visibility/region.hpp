@@ -14,14 +14,13 @@
 #include <vector>
 
 #include <rastrum/core/memory.hpp>
+#include <rastrum/family/names.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/frame/frame.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/resolve/surface.hpp>
 
 namespace rastrum::family {
-
-using namespace raster;  // the family stands on it, and names nothing that it has
 
 /// What a method may use of the frame. All of it outlives the region's use.
 struct RegionContext : BinContext {
