@@ -82,9 +82,9 @@ const Kernels& kernels(Isa isa) noexcept {
   static const auto tables = [] {
     std::array<Kernels, static_cast<std::size_t>(Isa::neon) + 1> all;
     all.fill(kScalar);
-    // Only those of this machine: filling a table is compiled for its instruction set, too.
     for (const Isa available : available_isas())
-      fill_kernels(available, all[static_cast<std::size_t>(available)]);
+      if (const Kernels* const compiled = simd_kernels(available))
+        all[static_cast<std::size_t>(available)] = *compiled;
     return all;
   }();
   return tables[static_cast<std::size_t>(isa)];

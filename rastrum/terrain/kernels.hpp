@@ -83,7 +83,7 @@ inline constexpr std::size_t kClassicSlices = 8;
 /// The table of `isa`, one of available_isas() (choose_isa); of others, plain C++.
 [[nodiscard]] const Kernels& kernels(Isa isa) noexcept;
 
-/// Where the Highway source meets the table; returns false where `isa` was not compiled.
-bool fill_kernels(Isa isa, Kernels& table) noexcept;
+/// Where the Highway source meets the table; null where `isa` was not compiled.
+[[nodiscard]] const Kernels* simd_kernels(Isa isa) noexcept;
 
 }  // namespace rastrum::terrain

@@ -325,33 +325,13 @@ HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 
 #if HWY_ONCE
+#include <rastrum/parallel/by_isa.hpp>
+
 namespace rastrum::terrain {
 
-bool fill_kernels(Isa isa, Kernels& table) noexcept {
-  switch (isa) {
-#if HWY_TARGETS & HWY_SSE4
-    case Isa::sse4:
-      table = N_SSE4::kTable;
-      return true;
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2:
-      table = N_AVX2::kTable;
-      return true;
-#endif
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512:
-      table = N_AVX3::kTable;
-      return true;
-#endif
-#if HWY_TARGETS & HWY_NEON
-    case Isa::neon:
-      table = N_NEON::kTable;
-      return true;
-#endif
-    default:
-      return false;
-  }
+const Kernels* simd_kernels(Isa isa) noexcept {
+  static constexpr const Kernels* kTables[] = RASTRUM_BY_ISA(kTable, nullptr);
+  return kTables[static_cast<std::size_t>(isa)];
 }
 
 }  // namespace rastrum::terrain

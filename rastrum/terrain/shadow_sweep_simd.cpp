@@ -438,29 +438,13 @@ HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 
 #if HWY_ONCE
+#include <rastrum/parallel/by_isa.hpp>
+
 namespace rastrum::terrain {
 
 SweepKernel sweep_kernel(Isa isa) noexcept {
-  switch (isa) {
-#if HWY_TARGETS & HWY_SSE4
-    case Isa::sse4:
-      return N_SSE4::sweep;
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2:
-      return N_AVX2::sweep;
-#endif
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512:
-      return N_AVX3::sweep;
-#endif
-#if HWY_TARGETS & HWY_NEON
-    case Isa::neon:
-      return N_NEON::sweep;
-#endif
-    default:
-      return nullptr;
-  }
+  static constexpr SweepKernel kSweeps[] = RASTRUM_BY_ISA(sweep, nullptr);
+  return kSweeps[static_cast<std::size_t>(isa)];
 }
 
 }  // namespace rastrum::terrain

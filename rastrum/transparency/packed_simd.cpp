@@ -264,6 +264,8 @@ HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 
 #if HWY_ONCE
+#include <rastrum/parallel/by_isa.hpp>
+
 namespace rastrum::transparency {
 namespace {
 
@@ -337,26 +339,8 @@ constexpr PackedKernels kScalar{pack_scalar,   points_scalar, sort_scalar,  inte
 }  // namespace
 
 const PackedKernels& packed_kernels(Isa isa) noexcept {
-  switch (isa) {
-#if HWY_TARGETS & HWY_SSE4
-    case Isa::sse4:
-      return N_SSE4::kTable;
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2:
-      return N_AVX2::kTable;
-#endif
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512:
-      return N_AVX3::kTable;
-#endif
-#if HWY_TARGETS & HWY_NEON
-    case Isa::neon:
-      return N_NEON::kTable;
-#endif
-    default:
-      return kScalar;
-  }
+  static constexpr const PackedKernels* kTables[] = RASTRUM_BY_ISA(kTable, &kScalar);
+  return *kTables[static_cast<std::size_t>(isa)];
 }
 
 }  // namespace rastrum::transparency

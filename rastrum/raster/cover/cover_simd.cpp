@@ -566,29 +566,13 @@ HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 
 #if HWY_ONCE
+#include <rastrum/parallel/by_isa.hpp>
+
 namespace rastrum::raster {
 
-bool fill_cover_kernels(Isa isa, Kernels& table) noexcept {
-  switch (isa) {
-#if HWY_TARGETS & HWY_SSE4
-    case Isa::sse4:
-      return N_SSE4::fill(table), true;
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2:
-      return N_AVX2::fill(table), true;
-#endif
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512:
-      return N_AVX3::fill(table), true;
-#endif
-#if HWY_TARGETS & HWY_NEON
-    case Isa::neon:
-      return N_NEON::fill(table), true;
-#endif
-    default:
-      return false;
-  }
+FillKernels fill_cover_kernels(Isa isa) noexcept {
+  static constexpr FillKernels kFill[] = RASTRUM_BY_ISA(fill, nullptr);
+  return kFill[static_cast<std::size_t>(isa)];
 }
 
 }  // namespace rastrum::raster

@@ -140,9 +140,9 @@ const Kernels& kernels(Isa isa) noexcept {
     // Only those of this machine: filling a table is compiled for its instruction set, too.
     for (const Isa available : available_isas()) {
       Kernels& table = all[static_cast<std::size_t>(available)];
-      fill_setup_kernels(available, table);
-      fill_cover_kernels(available, table);
-      fill_block_kernels(available, table);
+      for (const FillKernels fill : {fill_setup_kernels(available), fill_cover_kernels(available),
+                                     fill_block_kernels(available)})
+        if (fill != nullptr) fill(table);
     }
     return all;
   }();

@@ -5,10 +5,12 @@
 
 namespace rastrum::raster {
 
-/// Each sets its part of `table` to the kernels of `isa`. Returns false where they were not
-/// compiled for this architecture; the table then stays as it is.
-bool fill_setup_kernels(Isa isa, Kernels& table) noexcept;
-bool fill_cover_kernels(Isa isa, Kernels& table) noexcept;
-bool fill_block_kernels(Isa isa, Kernels& table) noexcept;
+/// Sets a part of the table.
+using FillKernels = void (*)(Kernels&);
+
+/// Each sets its part to the kernels of `isa`; null where they were not compiled.
+[[nodiscard]] FillKernels fill_setup_kernels(Isa isa) noexcept;
+[[nodiscard]] FillKernels fill_cover_kernels(Isa isa) noexcept;
+[[nodiscard]] FillKernels fill_block_kernels(Isa isa) noexcept;
 
 }  // namespace rastrum::raster

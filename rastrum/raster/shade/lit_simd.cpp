@@ -177,30 +177,17 @@ HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 
 #if HWY_ONCE
+#include <rastrum/parallel/by_isa.hpp>
+
 namespace rastrum::raster {
 
 bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
                     const VisibleBlock& block, BlockColors& colors) noexcept {
-  switch (isa) {
-#if HWY_TARGETS & HWY_SSE4
-    case Isa::sse4:
-      return N_SSE4::shade(model, scene, frame, block, colors);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2:
-      return N_AVX2::shade(model, scene, frame, block, colors);
-#endif
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512:
-      return N_AVX3::shade(model, scene, frame, block, colors);
-#endif
-#if HWY_TARGETS & HWY_NEON
-    case Isa::neon:
-      return N_NEON::shade(model, scene, frame, block, colors);
-#endif
-    default:
-      return false;
-  }
+  using Shade =
+      bool (*)(LitModel, const LitScene&, const FrameGeometry&, const VisibleBlock&, BlockColors&);
+  static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade, nullptr);
+  const Shade shade = kShade[static_cast<std::size_t>(isa)];
+  return shade != nullptr && shade(model, scene, frame, block, colors);
 }
 
 }  // namespace rastrum::raster

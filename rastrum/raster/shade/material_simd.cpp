@@ -410,31 +410,14 @@ HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 
 #if HWY_ONCE
+#include <rastrum/parallel/by_isa.hpp>
+
 namespace rastrum::raster {
 
 const MaterialKernels& material_kernels(Isa isa) noexcept {
-  switch (isa) {
-    case Isa::scalar:
-      return scalar_material_kernels();
-#if HWY_TARGETS & HWY_SSE4
-    case Isa::sse4:
-      return N_SSE4::kTable;
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::avx2:
-      return N_AVX2::kTable;
-#endif
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::avx512:
-      return N_AVX3::kTable;
-#endif
-#if HWY_TARGETS & HWY_NEON
-    case Isa::neon:
-      return N_NEON::kTable;
-#endif
-    default:
-      return scalar_material_kernels();
-  }
+  static const MaterialKernels* const kTables[] =
+      RASTRUM_BY_ISA(kTable, &scalar_material_kernels());
+  return *kTables[static_cast<std::size_t>(isa)];
 }
 
 }  // namespace rastrum::raster

@@ -1,0 +1,34 @@
+// What a source of SIMD kernels was compiled to, by instruction set: for the end of a source that
+// includes itself once a target (HWY_ONCE). Each target has `name` in a namespace of its own;
+// `otherwise` stands for the scalar form, and for targets that this build has not.
+#pragma once
+
+#include <hwy/highway.h>
+
+#if HWY_TARGETS & HWY_SSE4
+#define RASTRUM_OF_SSE4(name, otherwise) &N_SSE4::name
+#else
+#define RASTRUM_OF_SSE4(name, otherwise) otherwise
+#endif
+#if HWY_TARGETS & HWY_AVX2
+#define RASTRUM_OF_AVX2(name, otherwise) &N_AVX2::name
+#else
+#define RASTRUM_OF_AVX2(name, otherwise) otherwise
+#endif
+#if HWY_TARGETS & HWY_AVX3
+#define RASTRUM_OF_AVX512(name, otherwise) &N_AVX3::name
+#else
+#define RASTRUM_OF_AVX512(name, otherwise) otherwise
+#endif
+#if HWY_TARGETS & HWY_NEON
+#define RASTRUM_OF_NEON(name, otherwise) &N_NEON::name
+#else
+#define RASTRUM_OF_NEON(name, otherwise) otherwise
+#endif
+
+/// The initializer of an array of pointers, in the order of rastrum::Isa.
+#define RASTRUM_BY_ISA(name, otherwise)                                            \
+  {                                                                                \
+    otherwise, RASTRUM_OF_SSE4(name, otherwise), RASTRUM_OF_AVX2(name, otherwise), \
+        RASTRUM_OF_AVX512(name, otherwise), RASTRUM_OF_NEON(name, otherwise)       \
+  }
