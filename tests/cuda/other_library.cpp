@@ -1,10 +1,12 @@
 // A library of device code of another Rastrum: nothing of it may be read but its version.
-extern "C" {
-struct Other {
-  const char* version;
-};
-const Other* rastrum_cuda_library() noexcept {
-  static const Other other{"0.0.1-of-another"};
-  return &other;
+namespace rastrum::parallel {
+struct CudaLibrary;
 }
+
+extern "C" const rastrum::parallel::CudaLibrary* rastrum_cuda_library() noexcept {
+  struct Other {
+    const char* version;
+  };
+  static const Other other{"0.0.1-of-another"};
+  return reinterpret_cast<const rastrum::parallel::CudaLibrary*>(&other);
 }
