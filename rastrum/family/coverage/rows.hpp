@@ -12,7 +12,7 @@
 namespace rastrum::family {
 
 /// The pixels [begin, end) of row y that a piece covers; possibly none.
-struct Row {
+struct PieceRow {
   std::uint32_t piece;
   std::uint16_t y, begin, end;
 };
@@ -30,7 +30,7 @@ struct RowCount {
 struct MakeRow {
   const Piece* pieces;
   Rect view;
-  RASTRUM_HD Row operator()(std::uint32_t piece, std::size_t j) const {
+  RASTRUM_HD PieceRow operator()(std::uint32_t piece, std::size_t j) const {
     const Rect box = piece_bounds(pieces[piece], view);
     const int y = box.y0 + static_cast<int>(j);
     const Span span = row_span(pieces[piece], y, box.x0, box.x1);
@@ -41,14 +41,14 @@ struct MakeRow {
 
 /// Column expansion: the blocks that a row crosses …
 struct RunCount {
-  RASTRUM_HD std::size_t operator()(const Row& row) const {
+  RASTRUM_HD std::size_t operator()(const PieceRow& row) const {
     if (row.begin == row.end) return 0;
     return static_cast<std::size_t>((row.end - 1) / kBlockSize - row.begin / kBlockSize + 1);
   }
 };
 /// … and its part in block j of them.
 struct MakeRun {
-  RASTRUM_HD Block operator()(const Row& row, std::size_t j) const {
+  RASTRUM_HD Block operator()(const PieceRow& row, std::size_t j) const {
     const int bx = row.begin / kBlockSize + static_cast<int>(j);
     const int by = row.y / kBlockSize;
     return {row.piece, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by),

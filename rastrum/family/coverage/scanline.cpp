@@ -9,7 +9,7 @@ namespace rastrum::family {
 namespace {
 
 /// A row and its place in the expansion to runs.
-constexpr std::uint64_t kRowBytes = sizeof(Row) + sizeof(std::size_t);
+constexpr std::uint64_t kRowBytes = sizeof(PieceRow) + sizeof(std::size_t);
 
 class Scanline final : public Coverage {
  public:
@@ -33,10 +33,10 @@ void draw_scanlines(Frame& frame, const Piece* pieces, std::span<const std::uint
   std::uint64_t run_count = 0;
   const std::uint64_t row_count = expand_in_turns(
       frame, which, RowCount{pieces, frame.view}, MakeRow{pieces, frame.view}, kRowBytes,
-      [&](const parallel::Buffer<Row>& rows) {
+      [&](const parallel::Buffer<PieceRow>& rows) {
         const parallel::Expansion runs(frame.exec, rows, RunCount{}, kResultsPerChunk);
         draw_expanded(frame, pieces, runs, rows,
-                      [](const Row& row, std::size_t j, Emitter& emitter) {
+                      [](const PieceRow& row, std::size_t j, Emitter& emitter) {
                         emitter.add(MakeRun{}(row, j));
                       });
         run_count += runs.size();

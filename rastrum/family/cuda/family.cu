@@ -45,12 +45,12 @@ struct IsDrawnIn {
 };
 
 /// A point of the table. Counters: "batches of primitives", and the rows' own.
-class Row final : public SurfaceDrawer {
+class RowOnDevice final : public SurfaceDrawer {
  public:
   using Exec = parallel::Cuda;
 
   /// Throws Error{invalid_argument} where a device has no row of that name.
-  Row(std::string_view coverage, std::string_view visibility)
+  RowOnDevice(std::string_view coverage, std::string_view visibility)
       : coverage_(*row_of(std::span(kCoverages<Exec>), coverage)),
         visibility_(*row_of(visibilities_on_device<Exec>(), visibility)) {}
 
@@ -122,8 +122,8 @@ std::unique_ptr<CudaRasterizer> make_rasterizer(std::string_view coverage,
                                                 std::string_view visibility,
                                                 std::uint64_t memory_limit, MemoryAccount& memory,
                                                 parallel::Threads& threads) {
-  return make_device_rasterizer(std::make_unique<Row>(coverage, visibility), memory_limit, memory,
-                                threads);
+  return make_device_rasterizer(std::make_unique<RowOnDevice>(coverage, visibility), memory_limit,
+                                memory, threads);
 }
 
 }  // namespace

@@ -15,12 +15,12 @@ namespace rastrum::family {
 template <class Exec>
 void draw_scanlines(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
                     std::span<const std::uint32_t> which) {
-  constexpr std::uint64_t kRowBytes = sizeof(Row) + sizeof(std::size_t);
+  constexpr std::uint64_t kRowBytes = sizeof(PieceRow) + sizeof(std::size_t);
   const Rect view = frame.surface.view;
   std::uint64_t runs = 0;
   const std::uint64_t rows = expand_in_turns(
       frame.exec, which, RowCount{pieces.data(), view}, MakeRow{pieces.data(), view},
-      frame.most(kRowBytes), [&](std::span<const Row> some) {
+      frame.most(kRowBytes), [&](std::span<const PieceRow> some) {
         runs += expand_in_turns(frame.exec, some, RunCount{}, MakeRun{}, frame.most(kBlockBytes),
                                 [&](std::span<const Block> blocks) { frame.emit(pieces, blocks); });
       });
