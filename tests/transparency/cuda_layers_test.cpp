@@ -55,7 +55,7 @@ LayersFrame frame_of(const LayerScene& scene, LayerProgram& program, int width, 
   raster::FrameGeometry whole = geometry;
   for (const raster::Draw& draw : draws)
     draw.source.project(0, draw.vertex_count, geometry.viewport, Isa::scalar,
-                         projected.data() + draw.first_vertex);
+                        projected.data() + draw.first_vertex);
   whole.projected = projected.data();
   for (const raster::Draw& draw : draws)
     for (std::uint64_t p = 0; p < draw.primitive_count; ++p)
