@@ -404,8 +404,9 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   request.transparency = o.transparency;
   request.samples = o.samples;
   request.linear_light = linear_light;
-  if (const Kind now{o.width, o.height, o.samples, needs_layers(request)}; kind != now) {
-    if (options.memory_limit != 0 && kind != Kind{}) make_drawer();
+  if (options.memory_limit != 0) {
+    const Kind now{o.width, o.height, o.samples, needs_layers(request)};
+    if (kind != Kind{} && kind != now) make_drawer();
     kind = now;
   }
   memory.restart_peak();

@@ -1,10 +1,10 @@
-// Setup of points and lines, beside that of triangles (setup.hpp).
+// Setup of points and lines, beside that of triangles (make_piece.hpp).
 //
 // Lines follow OpenGL's diamond-exit rule (OpenGL 4.6, 14.5.1) with y down as in our images: with
 // both ends moved by −(ε, ε²), a line produces the pixels f whose open diamond
 // |x − x_f| + |y − y_f| < 1/2 it leaves before its second end. So a polyline draws the pixel at a
 // shared end once, and a line that leaves no diamond draws nothing. Which pixels the endless line
-// takes is line_band's (coverage.hpp); here is where they begin and end. Wide lines are `width`
+// takes is line_band's (rules.hpp); here is where they begin and end. Wide lines are `width`
 // pixels across the minor axis everywhere. Exact: integers and a rule for every tie.
 #pragma once
 

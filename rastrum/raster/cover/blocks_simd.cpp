@@ -1,6 +1,6 @@
 // What is done with the keys of 8 × 8 blocks, with Highway, compiled once per instruction set: the
-// maximum and the way to 8-bit colours. Each repeats the operations of its scalar twin (setup.hpp,
-// color.hpp) in the same order, so it gives the same bits.
+// maximum and the way to 8-bit colours. Each repeats the operations of its scalar twin
+// (make_piece.hpp, color.hpp) in the same order, so it gives the same bits.
 
 // SSSE3 adds nothing over the scalar build that SSE4 does not; AVX3_DL nothing that these kernels
 // use.

@@ -1,5 +1,5 @@
 // Coverage with Highway, compiled once per instruction set: the exact edge functions of
-// coverage.hpp, so the same masks. Pieces whose box has at most 8 × 8 samples, nearly all of a fine
+// rules.hpp, so the same masks. Pieces whose box has at most 8 × 8 samples, nearly all of a fine
 // mesh, are covered a piece a lane and then cut along the blocks; the others a block at a time.
 
 // SSSE3 adds nothing over the scalar build that SSE4 does not; AVX3_DL nothing that these kernels

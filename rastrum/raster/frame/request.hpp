@@ -26,8 +26,8 @@ struct FrameRequest {
   Tuning tuning;
   bool in_place = false;             ///< arrays and targets are memory of the device that draws
   std::uint64_t texture_bytes = 0;   ///< that a memory limit counts beside the frame's own
-  TransparencyOptions transparency;  ///< for a visibility that keeps layers
-  int samples = 1;                   ///< a pixel; more want a visibility that keeps layers
+  TransparencyOptions transparency;  ///< where layers are needed
+  int samples = 1;                   ///< a pixel; more want layers
   /// The shader returns linear light: it is blended as such, also over the background, and the sRGB
   /// transfer is applied to the result.
   bool linear_light = false;

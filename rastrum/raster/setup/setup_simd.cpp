@@ -1,5 +1,5 @@
 // Projection and setup with Highway, compiled once per instruction set. Each repeats the operations
-// of its scalar twin (projection.hpp, setup.hpp) in the same order, so it gives the same bits.
+// of its scalar twin (projection.hpp, make_piece.hpp) in the same order, so it gives the same bits.
 
 // SSSE3 adds nothing over the scalar build that SSE4 does not; AVX3_DL nothing that these kernels
 // use.
