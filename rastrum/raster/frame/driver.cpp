@@ -125,7 +125,8 @@ FrameDriver::Plan FrameDriver::plan(const FrameRequest& request, const Totals& t
 
 void FrameDriver::project(Frame& frame) {
   const FrameRequest& request = frame.request;
-  for (const Draw& draw : request.draws)
+  for (const Draw& draw : request.draws) {
+    if (!draw.visible) continue;
     frame.for_each_index(
         (draw.vertex_count + kProjectGrain - 1) / kProjectGrain, [&](std::size_t i) {
           const std::size_t begin = i * kProjectGrain;
@@ -133,6 +134,7 @@ void FrameDriver::project(Frame& frame) {
           draw.source.project(begin, end, frame.geometry.viewport, request.isa,
                               projected_.data() + draw.first_vertex + begin);
         });
+  }
   frame.geometry.projected = projected_.data();
 }
 

@@ -9,7 +9,7 @@ namespace rastrum::raster {
 namespace {
 
 /// The corners of a batch, for frames that keep no projected vertices or have several samples a
-/// pixel.
+/// pixel, and for meshes whose triangles are no packed list.
 struct Corners {
   std::uint32_t indices[kSetupBatch * 3];
   ProjectedVertex vertices[kSetupBatch * 3];
@@ -17,12 +17,15 @@ struct Corners {
 
   /// Returns whether all indices are in range.
   bool load(const FrameGeometry& frame, const Draw& draw, std::uint64_t t, std::uint32_t count) {
-    for (std::uint32_t i = 0; i < count; ++i)
-      for (int c = 0; c < 3; ++c) {
-        const std::uint32_t index = draw.vertex(t + i, c);
-        if (index >= draw.vertex_count) return false;
-        indices[i * 3 + static_cast<std::uint32_t>(c)] = index;
-      }
+    if (draw.mesh != nullptr)
+      draw.mesh->read_triangles(t, count, indices);
+    else
+      for (std::uint32_t i = 0; i < count; ++i)
+        for (int c = 0; c < 3; ++c)
+          indices[i * 3 + static_cast<std::uint32_t>(c)] = draw.vertex(t + i, c);
+    if (std::any_of(indices, indices + std::size_t{count} * 3,
+                    [&](std::uint32_t index) { return index >= draw.vertex_count; }))
+      return false;
     seen_from = {};
     if (frame.projected == nullptr)
       draw.source.project_indexed({indices, count * 3}, frame.viewport, frame.isa, vertices);
@@ -85,6 +88,12 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
   for (std::uint64_t id = first; id < last;) {
     const Draw& draw = geometry.draw_of(id);
     const std::uint64_t t = id - draw.first_id;
+    if (!draw.visible) {
+      const std::uint64_t hidden = std::min(last - id, draw.primitive_count - t);
+      pieces.triangles.culled += hidden;
+      id += hidden;
+      continue;
+    }
     const std::uint32_t count = equal_flags(
         draw, t,
         static_cast<std::uint32_t>(
@@ -93,7 +102,7 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
     input.first = t;
     input.count = count;
     input.first_id = draw.first_id;
-    if (geometry.projected != nullptr && samples.size() == 1) {
+    if (geometry.projected != nullptr && samples.size() == 1 && draw.mesh == nullptr) {
       input.indices = draw.indices.empty() ? nullptr : draw.indices.data();
       input.vertices = geometry.projected + draw.first_vertex;
       input.vertex_count = draw.vertex_count;
