@@ -20,7 +20,8 @@ class InstanceCheck {
     attribute(mesh_.normals, "normals");
     attribute(mesh_.texcoords, "texcoords");
     attribute(mesh_.colors, "colors");
-    check_enum(instance_.winding, Winding::either, name() + ": its winding");
+    if (instance_.winding > Winding::either)
+      check_enum(instance_.winding, Winding::either, name() + ": its winding");
     // Written so that a NaN fails.
     if (!(instance_.opacity >= 0 && instance_.opacity <= 1))
       fail("its opacity must lie in [0, 1], not " + std::to_string(instance_.opacity));
@@ -52,7 +53,7 @@ class InstanceCheck {
              " is out of range, there are " + std::to_string(a.values.size()));
       return;
     }
-    check_enum(a.per, Per::mesh, name() + ": " + array + ".per");
+    if (a.per > Per::mesh) check_enum(a.per, Per::mesh, name() + ": " + array + ".per");
     const auto require = [&](std::size_t count, const char* of) {
       if (a.values.size() < count)
         fail(array + " are fewer (" + std::to_string(a.values.size()) + ") than " + of + " (" +

@@ -13,6 +13,9 @@
 
 namespace rastrum::raster {
 
+/// Stands for a place in FrameGeometry::projected where a draw has none.
+inline constexpr std::size_t kNotProjected = ~std::size_t{0};
+
 /// Primitives over one vertex stage. Their flags are those of its pieces.
 struct Draw : Primitives {
   VertexStage source;  ///< must be set
@@ -31,7 +34,7 @@ struct Draw : Primitives {
 
   // Filled by the pipeline.
   std::uint64_t first_id = 0;
-  std::size_t first_vertex = 0;  ///< of this draw in FrameGeometry::projected
+  std::size_t first_vertex = 0;  ///< of this draw in FrameGeometry::projected, or kNotProjected
   std::size_t number = 0;        ///< among the draws of its shading
 
   [[nodiscard]] RASTRUM_HD std::uint32_t vertex(std::uint64_t primitive, int corner) const {
@@ -74,6 +77,20 @@ struct Draw : Primitives {
                                                       std::uint64_t id) {
   std::size_t low = 0;
   std::size_t high = draws.size();
+  // Instances of one mesh have equally many: then the first guess is the draw or the one beside it.
+  if (high > 16) {
+    const std::uint64_t first = draws[0].first_id;
+    const std::uint64_t ids = draws[high - 1].first_id + draws[high - 1].primitive_count - first;
+    const auto guess = static_cast<std::size_t>(
+        static_cast<double>(id - first) / static_cast<double>(ids) * static_cast<double>(high));
+    if (guess < high && draws[guess].first_id <= id) {
+      low = guess;
+      if (guess + 2 < high && id < draws[guess + 2].first_id) high = guess + 2;
+    } else if (guess < high) {
+      high = guess;
+      if (guess >= 2 && draws[guess - 2].first_id <= id) low = guess - 2;
+    }
+  }
   while (high - low > 1) {
     const std::size_t middle = (low + high) / 2;
     (draws[middle].first_id <= id ? low : high) = middle;

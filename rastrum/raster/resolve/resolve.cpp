@@ -156,10 +156,14 @@ void check_draw(const Draw& draw, std::string_view noun, std::size_t number) {
     if (!ok) refuse(noun, number, what);
   };
   require(draw.topology >= Topology::points, "its topology is 0, which is no value of its enum");
-  const std::string name = std::string(noun).append(" ").append(std::to_string(number));
-  check_enum(draw.topology, Topology::triangles, name + ": its topology");
-  check_enum(draw.cull, Cull::front, name + ": its cull");
-  check_enum(draw.winding, Winding::either, name + ": its winding");
+  const auto check = [&](auto value, auto last, const char* what) {
+    if (value > last)  // a million draws make no million names
+      check_enum(value, last,
+                 std::string(noun).append(" ").append(std::to_string(number)).append(what));
+  };
+  check(draw.topology, Topology::triangles, ": its topology");
+  check(draw.cull, Cull::front, ": its cull");
+  check(draw.winding, Winding::either, ": its winding");
   require(bool{draw.source}, "its source is null; set it to what projects its vertices");
   if (draw.mesh != nullptr) {
     if (const std::string problem = faces_problem(*draw.mesh); !problem.empty())

@@ -27,12 +27,15 @@ struct Corners {
                     [&](std::uint32_t index) { return index >= draw.vertex_count; }))
       return false;
     seen_from = {};
-    if (frame.projected == nullptr)
-      draw.source.project_indexed({indices, count * 3}, frame.viewport, frame.isa, vertices);
+    if (const ProjectedVertex* const projected = frame.projected_of(draw))
+      for (std::uint32_t i = 0; i < count * 3; ++i) vertices[i] = projected[indices[i]];
     else
-      for (std::uint32_t i = 0; i < count * 3; ++i)
-        vertices[i] = frame.projected[draw.first_vertex + indices[i]];
+      draw.source.project_indexed({indices, count * 3}, frame.viewport, frame.isa, vertices);
     return true;
+  }
+  /// All vertices of a draw for which is_projected_in_setup() says so.
+  void load_all(const FrameGeometry& frame, const Draw& draw) {
+    draw.source.project(0, draw.vertex_count, frame.viewport, frame.isa, vertices);
   }
   void see_from(SampleOffset at, std::uint32_t count) {
     const SampleOffset by{at.x - seen_from.x, at.y - seen_from.y};
@@ -102,9 +105,15 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
     input.first = t;
     input.count = count;
     input.first_id = draw.first_id;
-    if (geometry.projected != nullptr && samples.size() == 1 && draw.mesh == nullptr) {
+    const ProjectedVertex* projected = geometry.projected_of(draw);
+    const bool in_place = samples.size() == 1 && draw.mesh == nullptr;
+    if (in_place && projected == nullptr && is_projected_in_setup(draw)) {
+      corners.load_all(geometry, draw);
+      projected = corners.vertices;
+    }
+    if (in_place && projected != nullptr) {
       input.indices = draw.indices.empty() ? nullptr : draw.indices.data();
-      input.vertices = geometry.projected + draw.first_vertex;
+      input.vertices = projected;
       input.vertex_count = draw.vertex_count;
     } else if (draw.has_kernel()) {
       if (!corners.load(geometry, draw, t, count)) return false;
