@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <rastrum/camera.hpp>
@@ -59,10 +60,30 @@ struct Material {
 // What is drawn: instances of meshes with their materials. `SceneView` borrows the caller's arrays,
 // `Scene` owns what a reader made of a file.
 
-/// A mesh placed in the world. Triangle ids count through the instances in order.
+/// What an instance draws, over the caller's arrays.
+using GeometryView = std::variant<MeshView>;
+
+/// A geometry placed in the world, with a look of its own. Ids count the primitives of the
+/// instances in order.
 struct InstanceView {
-  MeshView mesh{};
+  GeometryView geometry{};
   Mat4d object_to_world = Mat4d::identity();
+
+  /// Of all that the instance shows, in [0, 1]; the frame's and the material's are multiplied to
+  /// it.
+  float opacity = 1;
+  /// Linear, straight alpha: stands for the geometry's colours.
+  std::optional<Vec4> color{};
+  /// Stands for the geometry's materials: an index into SceneView::materials.
+  std::optional<std::uint32_t> material{};
+  /// What is not visible draws nothing, and keeps the numbers of its primitives.
+  bool visible = true;
+  Winding winding = Winding::counter_clockwise;
+  /// What stands for the instance in pictures of instances; none: its place in the scene.
+  std::optional<std::int64_t> id{};
+
+  /// The triangle mesh that it draws; null: another geometry.
+  [[nodiscard]] const MeshView* mesh() const { return std::get_if<MeshView>(&geometry); }
 };
 
 /// Spans over the caller's arrays. An empty `materials` means one default material.

@@ -46,7 +46,7 @@ void check_attribute(std::size_t values, std::span<const std::uint32_t> indices,
 /// frame.
 void check_attributes(const SceneView& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const MeshView& mesh = scene.instances[i].mesh;
+    const MeshView& mesh = *scene.instances[i].mesh();
     check_attribute(mesh.normals.values.size(), mesh.normals.indices, mesh, i, "normals");
     check_attribute(mesh.texcoords.values.size(), mesh.texcoords.indices, mesh, i, "texcoords");
     check_attribute(mesh.colors.values.size(), mesh.colors.indices, mesh, i, "colors");
@@ -284,16 +284,16 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
   const std::vector<std::uint32_t> material_flags = raster::material_flags(scene.materials, blends);
   std::uint32_t any_flags = 0;  // of materials and vertex colours
   for (const InstanceView& instance : scene.instances) {
+    const MeshView& mesh = *instance.mesh();
     raster::Draw& draw = draws.emplace_back();
-    draw.source =
-        raster::MatrixVertices(instance.mesh.positions, to_clip * instance.object_to_world);
-    draw.vertex_count = instance.mesh.positions.size();
-    draw.indices = instance.mesh.indices;
-    draw.primitive_count = instance.mesh.triangle_count();
+    draw.source = raster::MatrixVertices(mesh.positions, to_clip * instance.object_to_world);
+    draw.vertex_count = mesh.positions.size();
+    draw.indices = mesh.indices;
+    draw.primitive_count = mesh.triangle_count();
     draw.cull = material_cull(instance, scene.materials, taken);
-    std::uint32_t flags = raster::set_material_flags(draw, instance.mesh, material_flags);
+    std::uint32_t flags = raster::set_material_flags(draw, mesh, material_flags);
     if (blends && scene.materials.empty() && !call.in_place &&
-        raster::has_vertex_alpha(instance.mesh, threads.get())) {
+        raster::has_vertex_alpha(mesh, threads.get())) {
       draw.flags |= raster::kTranslucent;
       flags |= raster::kTranslucent;
     }

@@ -18,7 +18,7 @@ class VerticesInUse {
     // Instances of one mesh often follow each other.
     const MeshView* last = nullptr;
     for (const InstanceView& instance : scene.instances) {
-      const MeshView& mesh = instance.mesh;
+      const MeshView& mesh = *instance.mesh();
       const bool same = last != nullptr && mesh.indices.data() == last->indices.data() &&
                         mesh.indices.size() == last->indices.size() &&
                         mesh.positions.size() == last->positions.size();
@@ -32,7 +32,7 @@ class VerticesInUse {
   template <class F>
   void for_each(F&& f) const {
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
-      const MeshView& mesh = scene_.instances[i].mesh;
+      const MeshView& mesh = *scene_.instances[i].mesh();
       const Mat4d& m = scene_.instances[i].object_to_world;
       const auto visit = [&](Vec3 p) {
         const auto row = [&](int r) {

@@ -74,7 +74,7 @@ std::vector<ProjectedTriangle> project(const SceneView& scene, const Camera& cam
   std::int64_t id = 0;
   for (const InstanceView& instance : scene.instances) {
     const Mat4d m = object_to_clip(camera, instance.object_to_world, width, height);
-    const MeshView& mesh = instance.mesh;
+    const MeshView& mesh = *instance.mesh();
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t, ++id) {
       ProjectedTriangle p;
       p.id = id;

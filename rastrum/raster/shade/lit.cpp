@@ -136,7 +136,7 @@ LitScene::LitScene(const SceneView& scene, const Camera& camera, int width, int 
   draws.reserve(scene.instances.size());
   for (const InstanceView& instance : scene.instances) {
     LitDraw& draw = draws.emplace_back();
-    draw.mesh = instance.mesh;
+    draw.mesh = *instance.mesh();
     normal_matrix(instance.object_to_world, draw.normal_matrix);
     const auto& m = draw.normal_matrix;
     draw.identity = m[0][0] == m[1][1] && m[1][1] == m[2][2] && m[0][0] > 0 && m[0][1] == 0 &&
