@@ -35,7 +35,7 @@ PUBLIC = {
     "raster": {"frame", "primitives", "program", "tuning"},
     "terrain": {"terrain", "terrain_light"},
     "io": {"io"},
-    "render": {"on_terrain", "render"},
+    "render": {"on_terrain", "pick", "render"},
     "family": {"family"},
 }
 FLOOR_OF = {f"{name}.hpp": floor for floor, names in PUBLIC.items() for name in names}

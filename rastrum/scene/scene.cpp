@@ -119,7 +119,16 @@ Bounds bounds(const SceneView& scene) {
 }
 
 Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
+  return fit_camera(scene, fov_rad, orthographic, {0, 0, -1});
+}
+
+Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic, Vec3d direction,
+                  Vec3d up) {
   check_fov(fov_rad);
+  Camera along;
+  along.eye = -normalize(direction);
+  along.up = up;
+  (void)world_to_camera(along);  // throws where there is no direction
   const VerticesInUse vertices(scene);
   const BoundsD b = bounds_float64(vertices);
   const Vec3d centre = {(b.min.x + b.max.x) / 2, (b.min.y + b.max.y) / 2, (b.min.z + b.max.z) / 2};
@@ -133,7 +142,8 @@ Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
   camera.fov_rad = fov_rad;
   camera.orthographic = orthographic;
   camera.target = Vec3(centre);
-  camera.eye = Vec3(Vec3d{centre.x, centre.y, centre.z + distance});
+  camera.eye = Vec3(centre + along.eye * distance);
+  camera.up = up;
   camera.near_plane = static_cast<float>(std::max(distance - 1.001 * r, distance / 1000));
   if (orthographic) {
     camera.orthographic_height = static_cast<float>(2 * r);

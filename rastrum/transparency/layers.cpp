@@ -69,9 +69,7 @@ struct LayeredBin::Impl {
     records_.restart();
     micro_.restart();
     samples_ = context.request->samples;
-    const Targets& targets = context.request->targets;
-    shading_ = targets.color8.empty() && targets.color.empty() ? raster::Shading()
-                                                               : context.request->shading;
+    shading_ = context.request->wants_colors() ? context.request->shading : raster::Shading();
     const TransparencyOptions& options = context.request->transparency;
     if (!blend_ || options != made_for_ || context.request->isa != made_with_) {
       made_for_ = options;

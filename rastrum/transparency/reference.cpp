@@ -67,7 +67,7 @@ struct Scene {
 
 bool Scene::keeps(const raster::Draw& draw, std::uint64_t primitive, int x, int y,
                   const Fragment& f) {
-  const std::uint32_t flags = draw.flags_of(primitive);
+  const std::uint32_t flags = frame.flags_of(draw, primitive);
   if ((flags & raster::kMayDrop) == 0) return true;
   raster::ShadingPoints points{};
   const raster::Block block = block_of(x, y);
@@ -212,9 +212,9 @@ class LayeredReference final : public raster::Method {
     raster::count_triangles(frame, triangles);
     frame.watch.lap(frame.stats, "rasterize");
     const std::unique_ptr<LayerBlend> blend = make_blend_(request.transparency, Isa::scalar);
-    for (int y = 0; y < request.height; ++y) {
+    for (int y = frame.view.y0; y < frame.view.y1; ++y) {
       parallel::throw_if_stopped();
-      for (int x = 0; x < request.width; ++x) {
+      for (int x = frame.view.x0; x < frame.view.x1; ++x) {
         const int bx = x / kBlockSize, by = y / kBlockSize;
         frame.surface.block(bx, by)[y % kBlockSize * kBlockSize + x % kBlockSize] =
             scene.resolve(x, y, *blend, *frame.surface.colors_of(bx, by));

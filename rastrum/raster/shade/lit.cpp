@@ -116,13 +116,16 @@ ViewRays rays_of(const Mat4d& clip, int width, int height) {
 }  // namespace
 
 ViewRays ViewRays::of(const Camera& camera, int width, int height) {
-  if (camera.matrix) return rays_of(*camera.matrix, width, height);
+  const auto* const m = camera.matrix ? camera.matrix->m : nullptr;
+  const bool parallel =
+      m != nullptr ? m[3][0] == 0 && m[3][1] == 0 && m[3][2] == 0 : camera.orthographic;
+  if (m != nullptr && !parallel) return rays_of(*camera.matrix, width, height);
   const Mat4d v = world_to_camera(camera);
   const auto axis = [&](int i, double scale) {
     return Vec3{static_cast<float>(v.m[i][0] * scale), static_cast<float>(v.m[i][1] * scale),
                 static_cast<float>(v.m[i][2] * scale)};
   };
-  if (camera.orthographic) return {axis(2, -1), {}, {}};
+  if (parallel) return {axis(2, -1), {}, {}};
   const double half = std::tan(static_cast<double>(camera.fov_rad) / 2);
   const double per_px = 2 * half / std::min(width, height);
   const Vec3 dx = axis(0, per_px);
