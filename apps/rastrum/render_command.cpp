@@ -1,6 +1,5 @@
 // `rastrum render INPUT… -o OUT`: the options, then check, load, render, write.
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -17,6 +16,7 @@
 #include "arguments.hpp"
 #include "camera_path.hpp"
 #include "commands.hpp"
+#include "frame_images.hpp"
 #include "heatmap.hpp"
 #include "inputs.hpp"
 #include "json_fields.hpp"
@@ -51,6 +51,7 @@ struct RenderArguments : SceneArguments {
   std::optional<std::string> color_file;  ///< what -o says; with color_format it makes `color`
   std::optional<Format> color_format;
   Output color, depth, ids, objects, heatmap, errors, trace, stats;
+  std::vector<FrameImage> images;
 
   /// Whether one run draws many pictures.
   [[nodiscard]] bool is_sequence() const { return !path.empty() || turntable != 0; }
@@ -89,6 +90,12 @@ void add_output_options(Parser& app, RenderArguments& a) {
   add(app, "--objects", "FILE",
       ".npy: int32, which INPUT is seen, from 0 in command order, -1 where nothing is",
       [&a](const std::string& s) { a.objects = parse_output("--objects", s, {Format::npy}); })
+      ->group(group);
+  app.add_repeated("--image", "NAME=FILE",
+                   "what is seen at each pixel (docs/conventions.md), .npy, or .exr where it is of "
+                   "one, three or four floats; may be repeated; the names: " +
+                       frame_image_names(),
+                   [&a](const std::string& s) { a.images.push_back(parse_frame_image(s)); })
       ->group(group);
   add(app, "--heatmap", "FILE",
       ".png: fragments at each pixel, hidden ones too, as colours; legend on stderr",
@@ -139,13 +146,16 @@ void add_frames_option(Parser& app, RenderArguments& a) {
       ->group(kMachineGroup);
 }
 
-/// The outputs that hold one picture, so that a sequence needs a numbered name for each.
-std::array<Output RenderArguments::*, 6> picture_outputs() {
-  return {&RenderArguments::color,   &RenderArguments::depth,   &RenderArguments::ids,
-          &RenderArguments::objects, &RenderArguments::heatmap, &RenderArguments::errors};
+/// The outputs that hold one picture, so that a sequence needs a numbered name for each; those that
+/// are asked for.
+std::vector<Output*> picture_outputs(RenderArguments& a) {
+  std::vector<Output*> outputs{&a.color, &a.depth, &a.ids, &a.objects, &a.heatmap, &a.errors};
+  for (FrameImage& image : a.images) outputs.push_back(&image.output);
+  std::erase_if(outputs, [](const Output* output) { return !*output; });
+  return outputs;
 }
 
-void check_sequence(const RenderArguments& a) {
+void check_sequence(RenderArguments& a) {
   const char* option = a.path.empty() ? "--turntable" : "--path";
   if (a.frames_given)
     throw UsageError("--frames", std::string("leaves no room for ") + option +
@@ -155,14 +165,11 @@ void check_sequence(const RenderArguments& a) {
   if (a.turntable != 0 && a.view.file_camera)
     throw UsageError("--turntable",
                      "the camera of a file has no target to turn about: give --eye and --target");
-  for (const auto member : picture_outputs()) {
-    const Output& output = a.*member;
-    if (!output) continue;
-    if (output.format == Format::mp4)
+  for (const Output* output : picture_outputs(a))
+    if (output->format == Format::mp4)
       Mp4Writer::check(a.render.width, a.render.height);
     else
-      static_cast<void>(NumberedName(output.option, output.file.string()));
-  }
+      static_cast<void>(NumberedName(output->option, output->file.string()));
   if (!a.path.empty())
     static_cast<void>(read_json(a.path));  // a spoilt file is refused before a large scene is read
 }
@@ -174,8 +181,8 @@ void check(RenderArguments& a) {
                            {Format::png, Format::exr, Format::npy, Format::mp4}, a.color_format);
   else if (a.color_format)
     throw UsageError("--output-format", "is for -o");
-  if (!a.color && !a.depth && !a.ids && !a.objects && !a.heatmap && !a.errors && !a.stats &&
-      !a.trace)
+  if (!a.color && !a.depth && !a.ids && !a.objects && a.images.empty() && !a.heatmap && !a.errors &&
+      !a.stats && !a.trace)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
   check_scene_arguments(a);
   if (a.depth_unit && !a.depth) throw UsageError("--depth-unit", "is for --depth");
@@ -185,8 +192,9 @@ void check(RenderArguments& a) {
                      "an .mp4 is drawn along a camera path or of a full turn: give --path or "
                      "--turntable");
   if (a.is_sequence()) check_sequence(a);
-  const Output* const outputs[] = {&a.color,   &a.depth,  &a.ids,   &a.objects,
-                                   &a.heatmap, &a.errors, &a.trace, &a.stats};
+  std::vector<const Output*> outputs{&a.color,   &a.depth,  &a.ids,   &a.objects,
+                                     &a.heatmap, &a.errors, &a.trace, &a.stats};
+  for (const FrameImage& image : a.images) outputs.push_back(&image.output);
   check_outputs(outputs);
 }
 
@@ -251,6 +259,10 @@ void write_images(const RenderArguments& a, const Pictures& p, const Camera& cam
   write(a.objects, [&](io::AtomicFile& file) {
     io::write_npy(file, inputs_of_ids(p.ids.view(), inputs.parts).view());
   });
+  for (std::size_t i = 0; i < a.images.size(); ++i)
+    write(a.images[i].output, [&](io::AtomicFile& file) {
+      write_frame_image(file, a.images[i].output.format, p.images[i]);
+    });
   write(a.heatmap, [&](io::AtomicFile& file) {
     const Heatmap heatmap = make_heatmap(p.overdraw.view());
     io::write_png(file, heatmap.image.view());
@@ -267,26 +279,28 @@ void write_images(const RenderArguments& a, const Pictures& p, const Camera& cam
 
 Wanted wanted_of(const RenderArguments& a) {
   const bool floats = a.color.format == Format::exr || a.color.format == Format::npy;
-  return {.color8 = (a.color && !floats) || a.errors,
-          .color = a.color && floats,
-          .depth = static_cast<bool>(a.depth),
-          .ids = a.ids || a.objects,
-          .overdraw = static_cast<bool>(a.heatmap),
-          .errors = static_cast<bool>(a.errors)};
+  Wanted wanted{.color8 = (a.color && !floats) || a.errors,
+                .color = a.color && floats,
+                .depth = static_cast<bool>(a.depth),
+                .ids = a.ids || a.objects,
+                .overdraw = static_cast<bool>(a.heatmap),
+                .errors = static_cast<bool>(a.errors),
+                .images = {}};
+  for (const FrameImage& image : a.images) wanted.images.push_back(image.kind);
+  return wanted;
 }
 
 /// `a` with the names of picture `number`; throws UsageError where many pictures share a name.
 RenderArguments with_numbers(const RenderArguments& a, std::size_t number, std::size_t count) {
   RenderArguments numbered = a;
-  for (const auto member : picture_outputs()) {
-    Output& output = numbered.*member;
-    if (!output || output.format == Format::mp4) continue;
-    const NumberedName name(output.option, output.file.string());
+  for (Output* output : picture_outputs(numbered)) {
+    if (output->format == Format::mp4) continue;
+    const NumberedName name(output->option, output->file.string());
     if (!name.has_number() && count > 1)
-      throw UsageError(output.option, "there are " + std::to_string(count) +
-                                          " pictures: number them, as in frame_%04d" +
-                                          output.file.extension().string());
-    output.file = name.at(number);
+      throw UsageError(output->option, "there are " + std::to_string(count) +
+                                           " pictures: number them, as in frame_%04d" +
+                                           output->file.extension().string());
+    output->file = name.at(number);
   }
   return numbered;
 }
