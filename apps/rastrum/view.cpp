@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/fit.hpp>
 
 #include "arguments.hpp"
@@ -13,7 +14,8 @@ namespace rastrum::cli {
 namespace {
 
 double distance(Vec3 a, Vec3 b) {
-  return std::hypot(double{a.x} - b.x, double{a.y} - b.y, double{a.z} - b.z);
+  const double x = double{a.x} - b.x, y = double{a.y} - b.y, z = double{a.z} - b.z;
+  return std::sqrt(x * x + y * y + z * z);
 }
 
 Camera file_camera(const Scene& scene, int index) {
@@ -44,7 +46,7 @@ Camera fitted_camera(const ViewOptions& o, const SceneView& view, float fov_rad,
 BoundingSphere bounding_sphere(const SceneView& view) {
   constexpr float kFov = 1;
   const Camera fit = fit_camera(view, kFov, false);
-  return {fit.target, distance(fit.eye, fit.target) * std::sin(double{kFov} / 2)};
+  return {fit.target, distance(fit.eye, fit.target) * elementary::sin(double{kFov} / 2)};
 }
 
 void place_planes(Camera& camera, const BoundingSphere& scene) {
