@@ -126,7 +126,7 @@ std::optional<Camera> read_camera(const Json& camera, const Mat4d& to_world) {
   };
   c.eye = column(3, 1);
   const Vec3 forward = normalize(column(2, -1));
-  c.target = c.eye + forward;
+  c.target = Vec3(c.eye) + forward;
   c.up = normalize(column(1, 1));
   return c;
 }

@@ -13,10 +13,6 @@
 namespace rastrum {
 namespace {
 
-bool is_finite(Vec3d p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
 struct BoundsD {
   Vec3d min{}, max{};
   std::uint64_t count = 0;
