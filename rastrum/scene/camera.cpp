@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/vec.hpp>
 
@@ -42,7 +43,7 @@ Mat4d camera_to_clip(const Camera& c, int width, int height) {
   }
   require(n > 0, "camera: near must be > 0 for a perspective camera");
   check_fov(c.fov_rad);
-  const double cot = 1 / std::tan(static_cast<double>(c.fov_rad) / 2);
+  const double cot = 1 / elementary::tan(static_cast<double>(c.fov_rad) / 2);
   p.m[0][0] = cot * sx;
   p.m[1][1] = cot * sy;
   const bool infinite = std::isinf(f);
