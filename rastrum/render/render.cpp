@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <deque>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -329,8 +330,7 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
     check_attributes(scene);
   raster::check_materials(scene);
   check_outputs(call.targets, true, taken == Shader::material);
-  std::vector<raster::DrawCut> cuts;
-  cuts.reserve(scene.instances.size());  // draws point to them
+  std::deque<raster::DrawCut> cuts;  // draws point to them
   const Mat4d to_clip = world_to_clip(camera, o.width, o.height);
   std::vector<raster::Draw> draws;
   draws.reserve(scene.instances.size());
