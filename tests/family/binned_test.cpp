@@ -29,11 +29,11 @@
 #include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/render.hpp>
 
+#include "tests/family/reference_options.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/isa.hpp"
 #include "tests/support/oracle.hpp"
-#include "tests/support/painter.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
@@ -47,17 +47,8 @@ constexpr std::array kSchedules{Schedule::two_stage, Schedule::persistent};
 constexpr std::array<std::pair<int, int>, 5> kSizes{
     {{64, 8}, {32, 8}, {64, 16}, {128, 8}, {128, 16}}};
 
-RenderOptions serial(int width, int height) {
-  RenderOptions o;
-  o.width = width;
-  o.height = height;
-  o.device = Device::serial;
-  o.shader = Shader::id;
-  return o;
-}
-
 RenderOptions binned(int width, int height, Schedule schedule, int threads) {
-  RenderOptions o = serial(width, height);
+  RenderOptions o = reference_options(width, height);
   o.device = Device::threads;
   o.threads = threads;
   o.rasterizer = "binned";
@@ -319,7 +310,7 @@ TEST(Binned, EnumeratesEachCoveredSampleOnceAndCountsItsWork) {
     o.tuning.large_px = c.large_px;
     renderers.emplace_back(o);
   }
-  Painter reference(serial(kWidth, kHeight));
+  Painter reference(reference_options(kWidth, kHeight));
 
   const int scenes =
       std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 100, kSceneKinds);
@@ -365,7 +356,7 @@ TEST(Binned, DrawsWhatCrossesTheNearPlaneAndTheGuardBand) {
                     {-9e5F, -8e5F, -3}, {9e5F, -7e5F, -3}, {1e4F, 9e5F, -3}};
   const Scene scene = single(std::move(mesh));
   const SceneBinding binding(scene);
-  const Frame expected = draw(serial(kWidth, kHeight), scene, camera);
+  const Frame expected = draw(reference_options(kWidth, kHeight), scene, camera);
   EXPECT_EQ(expected.stats.triangles.clipped, 3U);
   EXPECT_EQ(expected.stats.pixels_covered, std::uint64_t{kWidth} * kHeight);
   const PieceList pieces = pieces_of(binding.view(), camera, kWidth, kHeight);
@@ -396,7 +387,7 @@ TEST(Binned, QueuesGrow) {
   const Scene scene = single(std::move(mesh));
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kSize, kSize);
-  const Frame expected = draw(serial(kSize, kSize), scene, camera);
+  const Frame expected = draw(reference_options(kSize, kSize), scene, camera);
   const Expected work =
       expected_of(pieces_of(binding.view(), camera, kSize, kSize), kSize, kSize, 4000, 64, 8);
   EXPECT_EQ(work.large, static_cast<std::uint64_t>(count));
@@ -423,7 +414,7 @@ TEST(Binned, DrawsInRoundsWhereMemoryIsShort) {
   const Scene scene = sized_triangles(3000, 30000, 80000, kSize, kSize, 4);
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kSize, kSize);
-  const Frame expected = draw(serial(kSize, kSize), scene, camera);
+  const Frame expected = draw(reference_options(kSize, kSize), scene, camera);
   for (const Schedule schedule : kSchedules) {
     RenderOptions options = binned(kSize, kSize, schedule, 8);
     options.tuning.bin_px = 32;

@@ -18,9 +18,9 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
+#include "tests/family/reference_options.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/oracle.hpp"
-#include "tests/support/painter.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
@@ -39,17 +39,8 @@ constexpr int kSmall[] = {0, 1, 40, 100000};
 constexpr BlockOrder kOrders[] = {BlockOrder::row_major, BlockOrder::morton};
 constexpr SmallPath kPaths[] = {SmallPath::blocks, SmallPath::rows};
 
-RenderOptions serial(int width, int height) {
-  RenderOptions o;
-  o.width = width;
-  o.height = height;
-  o.device = Device::serial;
-  o.shader = Shader::id;
-  return o;
-}
-
 RenderOptions threaded(int width, int height, const std::string& rasterizer, int threads) {
-  RenderOptions o = serial(width, height);
+  RenderOptions o = reference_options(width, height);
   o.device = Device::threads;
   o.rasterizer = rasterizer;
   o.threads = threads;
@@ -78,7 +69,7 @@ TEST_P(EverySample, IsEnumeratedOnce) {
   const Row& row = GetParam();
   int n = 0;
   for (const auto& [width, height] : kImageSizes) {
-    Painter reference(serial(width, height));
+    Painter reference(reference_options(width, height));
     for (const auto& [bin_px, tile_px] : kTileSizes) {
       if (!row.has_tiles && bin_px != 0) continue;
       // The other choices take turns: 3, 4, 2 and 2 of them, and the scene, have periods of 3, 4,
@@ -125,7 +116,7 @@ TEST_P(EverySample, IsEnumeratedOnceUnderALimit) {
   const Scene scene = triangles(20000, kWidth, kHeight, 7);
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kWidth, kHeight);
-  const Frame expected = draw(serial(kWidth, kHeight), scene, camera);
+  const Frame expected = draw(reference_options(kWidth, kHeight), scene, camera);
   EXPECT_GT(expected.stats.triangles.drawn, 10000U);
   for (const std::uint64_t limit : {std::uint64_t{4} << 20, std::uint64_t{16} << 20})
     for (const auto& [bin_px, tile_px] : {std::pair{0, 0}, std::pair{128, 8}, std::pair{16, 4}}) {
