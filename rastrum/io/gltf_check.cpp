@@ -171,7 +171,16 @@ void check_meshes(const Json& document, const Counts& n) {
       index(p, "material", n.materials);
       if (p.count("mode", 4) > 6) p.fail("mode must lie between 0 and 6");
     });
-    m.for_each("weights", [](const Json& w) { (void)w.number(); });
+    const std::size_t targets = length(m["primitives"].at(0), "targets");
+    m["primitives"].for_each([&](const Json& p) {
+      if (length(p, "targets") != targets)
+        p.fail("has another number of morph targets than the first primitive");
+    });
+    const auto weights = m.get("weights");
+    if (weights && weights->size() != targets)
+      weights->fail("has " + std::to_string(weights->size()) + " numbers, but there are " +
+                    std::to_string(targets) + " morph targets");
+    if (weights) weights->for_each([](const Json& w) { (void)w.number(); });
   });
 }
 

@@ -13,6 +13,7 @@
 #include <rastrum/io/gltf_json.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
+#include <rastrum/scene/rig.hpp>
 
 namespace rastrum::io::gltf {
 
@@ -96,10 +97,51 @@ class Materials {
   std::map<std::size_t, std::int32_t> textures_, images_;  ///< glTF's index to ours
 };
 
-/// One primitive as a mesh; nullopt, with a warning, where it holds no triangles by its nature.
+/// Whether a primitive is one that read_primitive can make something of; else a warning says why not.
+[[nodiscard]] bool holds_triangles(const Json& primitive, const Json& document,
+                                   std::vector<std::string>& warnings);
+
+/// The attributes and indices of a primitive, wherever its file keeps them.
+class PrimitiveData {
+ public:
+  /// The primitive has positions (holds_triangles).
+  PrimitiveData(const Json& primitive, const Json& document, Buffers& buffers);
+
+  [[nodiscard]] std::size_t vertices() const { return vertices_; }
+  /// The accessor of an attribute, if the primitive has it.
+  [[nodiscard]] std::optional<Json> attribute(const std::string& name) const;
+  /// As vectors of floats, one a vertex; colours of three components get alpha 1.
+  template <class T>
+  [[nodiscard]] std::vector<T> read(const Json& accessor) const;
+  /// Empty where the primitive has none; each is a vertex.
+  [[nodiscard]] std::vector<std::uint32_t> indices() const;
+
+ private:
+  const Json& primitive_;
+  Json accessors_;
+  Buffers& buffers_;
+  std::size_t vertices_ = 0;
+};
+extern template std::vector<Vec2> PrimitiveData::read(const Json&) const;
+extern template std::vector<Vec3> PrimitiveData::read(const Json&) const;
+extern template std::vector<Vec4> PrimitiveData::read(const Json&) const;
+
+/// One primitive as a mesh; nullopt, with a warning, where it holds no whole triangle.
 /// Mesh::material is left alone, `use` says where the material's textures read.
-[[nodiscard]] std::optional<Mesh> read_primitive(const Json& primitive, const Json& document,
-                                                 Buffers& buffers, const TextureUse& use,
+[[nodiscard]] std::optional<Mesh> read_primitive(const Json& primitive, const PrimitiveData& data,
+                                                 const TextureUse& use,
                                                  std::vector<std::string>& warnings);
+
+/// What moves the vertices of `mesh`, which was read from a primitive of the document's `owner`;
+/// null: nothing does.
+[[nodiscard]] std::shared_ptr<const Rig::Shape> read_shape(const Json& primitive,
+                                                           const PrimitiveData& data,
+                                                           const Json& document, const Json& owner,
+                                                           const Mesh& mesh);
+/// The document's nodes and skins, in its numbering, and its animations.
+void read_nodes(const Json& document, Rig& rig);
+void read_skins(const Json& document, Buffers& buffers, Rig& rig);
+[[nodiscard]] std::vector<Animation> read_animations(const Json& document, Buffers& buffers,
+                                                     Rig& rig, std::vector<std::string>& warnings);
 
 }  // namespace rastrum::io::gltf
