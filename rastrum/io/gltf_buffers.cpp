@@ -160,6 +160,11 @@ std::optional<Bytes> Buffers::view(std::size_t index) {
   return bytes->subspan(v.count("byteOffset", 0), v["byteLength"].count());
 }
 
+bool Buffers::has_bytes(const Json& accessor) {
+  const auto v = accessor.get("bufferView");
+  return accessor.get("sparse") || (v && view(v->count()));
+}
+
 /// `convert(from, to)` makes one element, of `components` values, of its bytes.
 template <class T, class Convert>
 std::vector<T> Buffers::elements(const Json& accessor, Convert convert) {

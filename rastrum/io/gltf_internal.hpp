@@ -42,6 +42,8 @@ class Buffers {
   /// The bytes behind a URI: data: or a file beside this one. `where` names it in errors.
   [[nodiscard]] Bytes uri(const std::string& uri, const Json& where);
 
+  /// Whether an accessor holds more than the zeros that stand for bytes which are not there.
+  [[nodiscard]] bool has_bytes(const Json& accessor);
   /// Elements of an accessor as floats, `components` each; integers are normalized where the
   /// accessor says so. Sparse values are put in. `index` must exist.
   [[nodiscard]] std::vector<float> floats(const Json& accessor);

@@ -116,11 +116,32 @@ class Keys {
  public:
   Keys(const Json& document, Buffers& buffers) : document_(document), buffers_(buffers) {}
 
-  Rig::Floats times(const Json& index) {
+  /// The number of keys.
+  std::size_t check_times(const Json& index) const {
     const Json accessor = accessor_of(index);
     const AccessorType type = accessor_type(accessor);
     if (type.component_type != kFloat || type.components != 1)
       accessor.fail("is read as times, but is not SCALAR of floats");
+    return accessor["count"].count();
+  }
+  /// `each` elements of `components` a key.
+  void check_values(const Json& index, std::size_t keys, std::size_t each,
+                    std::size_t components) const {
+    const Json accessor = accessor_of(index);
+    const AccessorType type = accessor_type(accessor);
+    const bool is_integer = type.component_type != kFloat;
+    if (type.components != components || type.component_type == 5125 ||
+        (is_integer && (components == 3 || !accessor.boolean("normalized", false))))
+      accessor.fail("has the wrong type for what it moves");
+    const std::size_t count = accessor["count"].count();
+    if (count % each != 0 || count / each != keys)
+      accessor.fail("has " + std::to_string(count) + " elements, but there are " +
+                    std::to_string(keys) + " keys of " + std::to_string(each));
+  }
+  /// Null where the document leaves the times to an application.
+  Rig::Floats times(const Json& index) {
+    const Json accessor = accessor_of(index);
+    if (!buffers_.has_bytes(accessor)) return nullptr;
     const auto [kept, is_new] = read(index);
     const std::vector<float>& times = *kept;
     for (std::size_t i = 0; is_new && i < times.size(); ++i)
@@ -129,22 +150,10 @@ class Keys {
                       " does not rise from 0 on");
     return kept;
   }
-  /// `width` numbers a key, in accessors of `components`.
-  Rig::Floats values(const Json& index, std::size_t count, std::size_t components) {
-    const Json accessor = accessor_of(index);
-    const AccessorType type = accessor_type(accessor);
-    const bool is_integer = type.component_type != kFloat;
-    if (type.components != components || type.component_type == 5125 ||
-        (is_integer && (components == 3 || !accessor.boolean("normalized", false))))
-      accessor.fail("has the wrong type for what it moves");
-    if (accessor["count"].count() != count)
-      accessor.fail("has " + std::to_string(accessor["count"].count()) +
-                    " elements, but its keys need " + std::to_string(count));
-    return read(index).first;
-  }
+  Rig::Floats values(const Json& index) { return read(index).first; }
 
  private:
-  Json accessor_of(const Json& index) { return document_["accessors"].at(index.count()); }
+  Json accessor_of(const Json& index) const { return document_["accessors"].at(index.count()); }
   std::pair<Rig::Floats, bool> read(const Json& index) {
     Rig::Floats& kept = floats_[index.count()];
     const bool is_new = kept == nullptr;
@@ -199,14 +208,17 @@ std::optional<Rig::Track> read_track(const Json& channel, const Json& animation,
 
   const Json sampler = animation["samplers"].at(channel["sampler"].count());
   t.interpolation = interpolation_of(sampler);
-  t.times = keys.times(sampler["input"]);
   const bool cubic = t.interpolation == Rig::Interpolation::cubic_spline;
-  if (cubic && t.times->size() < 2)
-    sampler["input"].fail("a cubic spline has two keys at least");
+  const std::size_t count = keys.check_times(sampler["input"]);
+  if (cubic && count < 2) sampler["input"].fail("a cubic spline has two keys at least");
   const std::size_t components = of_weights ? 1 : t.width;
-  const std::size_t elements = t.width / components * (cubic ? 3 : 1);
-  // Times are in memory, and weights in the document: the product fits.
-  t.values = keys.values(sampler["output"], t.times->size() * elements, components);
+  keys.check_values(sampler["output"], count, t.width / components * (cubic ? 3 : 1), components);
+  t.times = keys.times(sampler["input"]);
+  if (t.times == nullptr) {
+    warnings.push_back(sampler.path() + " has no times; what it moves stands still");
+    return std::nullopt;
+  }
+  t.values = keys.values(sampler["output"]);
   return t;
 }
 
