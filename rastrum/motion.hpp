@@ -1,5 +1,5 @@
-// What moves in a scene: animations of a file, and poses at a moment of them. A file is read once and
-// posed as often as asked; what does not move is not touched.
+// What moves in a scene: animations of a file, and poses at a moment of them. A file is read once
+// and posed as often as asked; what does not move is not touched.
 #pragma once
 
 #include <cstddef>
@@ -39,10 +39,10 @@ struct Motion {
 /// triangles and sizes; where its file has no normals, it has none afterwards. Views of the scene's
 /// instances (SceneBinding) must be made again, those of its arrays stay.
 ///
-/// Returns the numbers of the meshes that were written, rising. Cost: O(nodes + keys' logarithms) and,
-/// for each vertex of these meshes, its joints and the targets whose weight is not 0.
-/// Throws Error{invalid_argument} for `seconds` that are not finite, and where no file of a scene
-/// that moves has such an animation.
+/// Returns the numbers of the meshes that were written, rising. Cost: O(nodes + keys' logarithms)
+/// and, for each vertex of these meshes, its joints and the targets whose weight is not 0. Throws
+/// Error{invalid_argument} for `seconds` that are not finite, and where no file of a scene that
+/// moves has such an animation.
 std::vector<std::uint32_t> pose(Scene& scene, double seconds, std::size_t animation = 0);
 
 /// The same at rest, as files are read: nodes and weights as they stand, without an animation.

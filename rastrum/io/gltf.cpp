@@ -1,8 +1,9 @@
 // glTF 2.0 and GLB. The document is parsed (nlohmann::json), checked whole (gltf_check.cpp), then
 // the scene's nodes are walked depth-first; meshes, buffers, materials and images are read when
-// they are first used. What moves becomes a Rig (gltf_rig.cpp) and is posed at rest. Own reader: tinygltf 2.7 takes malformed documents for granted (it reads
-// beyond buffers and recurses without bound), drops numbers such as `1.0` where an index stands,
-// and making it safe needs these same checks over the same JSON.
+// they are first used. What moves becomes a Rig (gltf_rig.cpp) and is posed at rest. Own reader:
+// tinygltf 2.7 takes malformed documents for granted (it reads beyond buffers and recurses without
+// bound), drops numbers such as `1.0` where an index stands, and making it safe needs these same
+// checks over the same JSON.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -245,8 +246,8 @@ class GltfReader {
       const auto [at, is_new] = posed_.try_emplace({d.mesh, cause}, d.mesh);
       if (is_new) {
         const auto other = posed_.lower_bound({d.mesh, Cause{}});
-        const bool is_first = other == at && (std::next(at) == posed_.end() ||
-                                              std::next(at)->first.first != d.mesh);
+        const bool is_first =
+            other == at && (std::next(at) == posed_.end() || std::next(at)->first.first != d.mesh);
         if (!is_first) {
           at->second = size32(scene_.meshes);
           scene_.meshes.push_back(Mesh(scene_.meshes[d.mesh]));
@@ -257,8 +258,7 @@ class GltfReader {
       const bool is_skinned = cause.skin != Rig::kNone;
       if (!is_skinned)
         rig_.placed.push_back({size32(scene_.instances), static_cast<std::uint32_t>(index)});
-      scene_.instances.push_back(
-          {at->second, is_skinned ? Mat4d::identity() : to_world_[index]});
+      scene_.instances.push_back({at->second, is_skinned ? Mat4d::identity() : to_world_[index]});
     }
   }
 

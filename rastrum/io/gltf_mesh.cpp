@@ -32,6 +32,19 @@ std::vector<std::uint32_t> triangles_of(const std::vector<std::uint32_t>& corner
   return r;
 }
 
+/// Whether the accessors hold unpacked what an extension has packed.
+bool is_whole(const Json& primitive, const Json& accessors) {
+  bool whole = true;
+  const auto add = [&](const Json& index) {
+    const Json a = accessors.at(index.count());
+    whole &= a.get("bufferView") || a.get("sparse");
+  };
+  primitive["attributes"].for_each_member(
+      [&](const std::string&, const Json& index) { add(index); });
+  if (const auto indices = primitive.get("indices")) add(*indices);
+  return whole;
+}
+
 }  // namespace
 
 bool holds_triangles(const Json& primitive, const Json& document,
@@ -53,6 +66,12 @@ bool holds_triangles(const Json& primitive, const Json& document,
 PrimitiveData::PrimitiveData(const Json& primitive, const Json& document, Buffers& buffers)
     : primitive_(primitive), accessors_(document["accessors"]), buffers_(buffers) {
   vertices_ = (*attribute("POSITION"))["count"].count();
+  const auto packed = primitive.extension(kDraco);
+  if (!packed || (!has_draco() && is_whole(primitive, accessors_))) return;
+  const Json view = (*packed)["bufferView"];
+  const auto bytes = buffers.view(view.count());
+  if (!bytes) view.fail("has no bytes");
+  unpacked_ = decode_draco(primitive, *packed, document, *bytes);
 }
 
 std::optional<Json> PrimitiveData::attribute(const std::string& name) const {
@@ -61,7 +80,21 @@ std::optional<Json> PrimitiveData::attribute(const std::string& name) const {
 }
 
 template <class T>
+std::vector<T> PrimitiveData::read(const std::string& name) const {
+  std::optional<Bytes> packed;
+  if (unpacked_)
+    if (const auto at = unpacked_->attributes.find(name); at != unpacked_->attributes.end())
+      packed = at->second;
+  return convert<T>(*attribute(name), packed);
+}
+
+template <class T>
 std::vector<T> PrimitiveData::read(const Json& accessor) const {
+  return convert<T>(accessor, std::nullopt);
+}
+
+template <class T>
+std::vector<T> PrimitiveData::convert(const Json& accessor, std::optional<Bytes> packed) const {
   constexpr std::size_t kComponents = sizeof(T) / sizeof(float);
   const std::size_t has = accessor_type(accessor).components;
   const bool is_color = kComponents == 4;
@@ -70,7 +103,7 @@ std::vector<T> PrimitiveData::read(const Json& accessor) const {
   if (accessor["count"].count() != vertices_)
     accessor.fail("has " + std::to_string(accessor["count"].count()) +
                   " elements, but the primitive has " + std::to_string(vertices_) + " vertices");
-  const std::vector<float> floats = buffers_.floats(accessor);
+  const std::vector<float> floats = buffers_.floats(accessor, packed);
   std::vector<T> values(vertices_);
   if (has == kComponents) {
     std::memcpy(static_cast<void*>(values.data()), floats.data(), vertices_ * sizeof(T));
@@ -82,14 +115,16 @@ std::vector<T> PrimitiveData::read(const Json& accessor) const {
   }
   return values;
 }
-template std::vector<Vec2> PrimitiveData::read(const Json&) const;
+template std::vector<Vec2> PrimitiveData::read(const std::string&) const;
+template std::vector<Vec3> PrimitiveData::read(const std::string&) const;
+template std::vector<Vec4> PrimitiveData::read(const std::string&) const;
 template std::vector<Vec3> PrimitiveData::read(const Json&) const;
-template std::vector<Vec4> PrimitiveData::read(const Json&) const;
 
 std::vector<std::uint32_t> PrimitiveData::indices() const {
   const auto member = primitive_.get("indices");
   if (!member) return {};
-  std::vector<std::uint32_t> r = buffers_.indices(accessors_.at(member->count()));
+  std::vector<std::uint32_t> r =
+      unpacked_ ? unpacked_->indices : buffers_.indices(accessors_.at(member->count()));
   for (const std::uint32_t i : r)
     if (i >= vertices_)
       member->fail("refers to vertex " + std::to_string(i) + " of " + std::to_string(vertices_));
@@ -99,11 +134,11 @@ std::vector<std::uint32_t> PrimitiveData::indices() const {
 std::optional<Mesh> read_primitive(const Json& primitive, const PrimitiveData& data,
                                    const TextureUse& use, std::vector<std::string>& warnings) {
   Mesh mesh;
-  mesh.positions = data.read<Vec3>(*data.attribute("POSITION"));
-  if (const auto a = data.attribute("NORMAL")) mesh.normals.values = data.read<Vec3>(*a);
-  if (const auto a = data.attribute("COLOR_0")) mesh.colors.values = data.read<Vec4>(*a);
-  if (const auto a = data.attribute("TEXCOORD_" + std::to_string(use.set))) {
-    mesh.texcoords.values = data.read<Vec2>(*a);
+  mesh.positions = data.read<Vec3>("POSITION");
+  if (data.attribute("NORMAL")) mesh.normals.values = data.read<Vec3>("NORMAL");
+  if (data.attribute("COLOR_0")) mesh.colors.values = data.read<Vec4>("COLOR_0");
+  if (const std::string set = "TEXCOORD_" + std::to_string(use.set); data.attribute(set)) {
+    mesh.texcoords.values = data.read<Vec2>(set);
     if (use != TextureUse{use.set}) apply(use, mesh.texcoords.values);
   }
   mesh.indices = data.indices();

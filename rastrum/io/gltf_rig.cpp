@@ -87,15 +87,16 @@ void read_joints(const Json& primitive, const PrimitiveData& data, Rig::Shape& s
   shape.joints.resize(n * shape.influences);
   shape.weights.resize(n * shape.influences);
   for (std::size_t s = 0; s < sets.size(); ++s) {
-    const std::vector<Vec4> joints = data.read<Vec4>(sets[s].joints);
-    const std::vector<Vec4> weights = data.read<Vec4>(sets[s].weights);
+    const std::vector<Vec4> joints = data.read<Vec4>("JOINTS_" + std::to_string(s));
+    const std::vector<Vec4> weights = data.read<Vec4>("WEIGHTS_" + std::to_string(s));
     for (std::size_t v = 0; v < n; ++v) {
       const std::size_t at = v * shape.influences + 4 * s;
       const float j[4] = {joints[v].x, joints[v].y, joints[v].z, joints[v].w};
       const float w[4] = {weights[v].x, weights[v].y, weights[v].z, weights[v].w};
       for (std::size_t k = 0; k < 4; ++k) {
         if (!(w[k] >= 0 && std::isfinite(w[k])))
-          sets[s].weights.fail("vertex " + std::to_string(v) + " has a weight that is not a number from 0 on");
+          sets[s].weights.fail("vertex " + std::to_string(v) +
+                               " has a weight that is not a number from 0 on");
         shape.joints[at + k] = static_cast<std::uint32_t>(j[k]);
         shape.weights[at + k] = w[k];
       }
@@ -201,9 +202,7 @@ std::optional<Rig::Track> read_track(const Json& channel, const Json& animation,
   const Json moved = document["nodes"].at(t.node);
   const bool of_weights = t.path == Rig::Path::weights;
   if (!of_weights && moved.get("matrix")) node->fail("has a matrix, which cannot be animated");
-  t.width = of_weights                         ? target_count(moved, document)
-            : t.path == Rig::Path::rotation ? 4
-                                               : 3;
+  t.width = of_weights ? target_count(moved, document) : t.path == Rig::Path::rotation ? 4 : 3;
   if (t.width == 0) node->fail("has no morph targets whose weights could move");
 
   const Json sampler = animation["samplers"].at(channel["sampler"].count());
@@ -229,7 +228,8 @@ void read_nodes(const Json& document, Rig& rig) {
     rig.nodes.push_back(read_node(node));
     rig.nodes.back().weights = numbers(node, "weights");
     const std::size_t weights = rig.nodes.back().weights.size();
-    if (const std::size_t targets = target_count(node, document); weights != 0 && weights != targets)
+    if (const std::size_t targets = target_count(node, document);
+        weights != 0 && weights != targets)
       node["weights"].fail("has " + std::to_string(weights) + " numbers, but there are " +
                            std::to_string(targets) + " morph targets");
   });
@@ -241,9 +241,8 @@ void read_nodes(const Json& document, Rig& rig) {
   for (std::size_t i = 0; i < rig.nodes.size(); ++i)
     if (rig.nodes[i].parent == Rig::kNone) order.push_back(static_cast<std::uint32_t>(i));
   for (std::size_t i = 0; i < order.size(); ++i)
-    document["nodes"].at(order[i]).for_each("children", [&](const Json& c) {
-      order.push_back(static_cast<std::uint32_t>(c.count()));
-    });
+    document["nodes"].at(order[i]).for_each(
+        "children", [&](const Json& c) { order.push_back(static_cast<std::uint32_t>(c.count())); });
 }
 
 void read_skins(const Json& document, Buffers& buffers, Rig& rig) {

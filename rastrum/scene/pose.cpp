@@ -237,9 +237,8 @@ std::vector<std::uint32_t> pose(Scene& scene, double seconds, std::size_t animat
   std::size_t most = 0;
   for (const Motion& m : scene.motions) most = std::max(most, m.animations.size());
   if (!scene.motions.empty() && animation >= most)
-    throw Error(Errc::invalid_argument, "pose: there is no animation " +
-                                            std::to_string(animation) + ", but " +
-                                            std::to_string(most));
+    throw Error(Errc::invalid_argument, "pose: there is no animation " + std::to_string(animation) +
+                                            ", but " + std::to_string(most));
   std::vector<std::uint32_t> written;
   for (const Motion& m : scene.motions) {
     const bool has = animation < m.animations.size();

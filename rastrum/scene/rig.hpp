@@ -48,7 +48,7 @@ struct Rig {
       std::vector<Vec3> positions, normals;  ///< displacements; either may be empty
     };
     std::vector<Target> targets;
-    std::vector<double> rest_weights;  ///< of the targets; those that it has not are 0
+    std::vector<double> rest_weights;   ///< of the targets; those that it has not are 0
     std::size_t influences = 0;         ///< joints a vertex
     std::vector<std::uint32_t> joints;  ///< `influences` a vertex, of the skin
     std::vector<float> weights;         ///< beside `joints`, not negative
