@@ -10,9 +10,9 @@
 namespace rastrum {
 
 struct Camera {
-  Vec3 eye{0, 0, 1};
-  Vec3 target{0, 0, 0};
-  Vec3 up{0, 1, 0};
+  Vec3d eye{0, 0, 1};
+  Vec3d target{0, 0, 0};
+  Vec3d up{0, 1, 0};
   float fov_rad = 1.04719755F;  ///< 60°, across the smaller side of the image
   bool orthographic = false;
   float orthographic_height = 2;  ///< world units across the smaller side of the image

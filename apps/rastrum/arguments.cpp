@@ -47,8 +47,8 @@ std::uint64_t parse_bytes(std::string_view option, std::string_view text) {
   return value << shift;
 }
 
-Vec3 parse_vec3(std::string_view option, std::string_view text) {
-  float values[3] = {};
+Vec3d parse_vec3(std::string_view option, std::string_view text) {
+  double values[3] = {};
   std::string_view rest = text;
   for (int i = 0; i < 3; ++i) {
     const std::size_t comma = rest.find(',');

@@ -17,7 +17,7 @@ inline constexpr double kDegree = std::numbers::pi / 180;
 /// Each throws UsageError that names `option` and shows what is wanted.
 [[nodiscard]] double parse_number(std::string_view option, std::string_view text);  ///< finite
 [[nodiscard]] int parse_integer(std::string_view option, std::string_view text, int min, int max);
-[[nodiscard]] Vec3 parse_vec3(std::string_view option, std::string_view text);  ///< X,Y,Z
+[[nodiscard]] Vec3d parse_vec3(std::string_view option, std::string_view text);  ///< X,Y,Z
 
 struct Size {
   int width = 1280, height = 720;

@@ -53,8 +53,8 @@ class Turntable {
     for (std::size_t i = 0; i < count_; ++i) {
       const Mat4d m = matrix(i);
       const auto row = [&](int r) {
-        return static_cast<float>(m.m[r][0] * sphere.centre.x + m.m[r][1] * sphere.centre.y +
-                                  m.m[r][2] * sphere.centre.z + m.m[r][3]);
+        return m.m[r][0] * sphere.centre.x + m.m[r][1] * sphere.centre.y +
+               m.m[r][2] * sphere.centre.z + m.m[r][3];
       };
       place_planes(camera, {{row(0), row(1), row(2)}, sphere.radius});
       near = std::min(near, camera.near_plane);

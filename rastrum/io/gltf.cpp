@@ -16,6 +16,8 @@
 
 #include <rastrum/io/gltf_internal.hpp>
 
+#include <rastrum/core/elementary.hpp>
+
 namespace rastrum::io {
 namespace {
 
@@ -77,7 +79,8 @@ std::optional<Camera> read_camera(const Json& camera, const Mat4d& to_world) {
     const double yfov = lens["yfov"].number();
     const double aspect = static_cast<double>(lens.real("aspectRatio", 1));
     if (yfov >= std::numbers::pi) return std::nullopt;
-    c.fov_rad = static_cast<float>(aspect < 1 ? 2 * std::atan(std::tan(yfov / 2) * aspect) : yfov);
+    c.fov_rad = static_cast<float>(
+        aspect < 1 ? 2 * elementary::atan(elementary::tan(yfov / 2) * aspect) : yfov);
     c.near_plane = lens["znear"].real();
     if (const auto zfar = lens.get("zfar")) c.far_plane = zfar->real();
   } else if (type == "orthographic") {

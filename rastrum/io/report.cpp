@@ -125,10 +125,8 @@ void describe_cameras(const Scene& scene, std::string& text) {
   for (std::size_t i = 0; i < std::min(scene.cameras.size(), kMostLines); ++i) {
     const Camera& c = scene.cameras[i];
     text += "  camera " + std::to_string(i) + ": eye " +
-            format("(%g, %g, %g), target (%g, %g, %g), ", static_cast<double>(c.eye.x),
-                   static_cast<double>(c.eye.y), static_cast<double>(c.eye.z),
-                   static_cast<double>(c.target.x), static_cast<double>(c.target.y),
-                   static_cast<double>(c.target.z)) +
+            format("(%g, %g, %g), target (%g, %g, %g), ", c.eye.x, c.eye.y, c.eye.z, c.target.x,
+                   c.target.y, c.target.z) +
             (c.orthographic
                  ? format("orthographic, height %g", static_cast<double>(c.orthographic_height))
                  : format("field of view %g°",

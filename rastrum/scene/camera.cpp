@@ -4,8 +4,9 @@
 #include <cmath>
 #include <string>
 
-#include <rastrum/core/vec3d.hpp>
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum {
 namespace {
@@ -42,7 +43,7 @@ Mat4d camera_to_clip(const Camera& c, int width, int height) {
   }
   require(n > 0, "camera: near must be > 0 for a perspective camera");
   check_fov(c.fov_rad);
-  const double cot = 1 / std::tan(static_cast<double>(c.fov_rad) / 2);
+  const double cot = 1 / elementary::tan(static_cast<double>(c.fov_rad) / 2);
   p.m[0][0] = cot * sx;
   p.m[1][1] = cot * sy;
   const bool infinite = std::isinf(f);
@@ -61,13 +62,10 @@ void check_fov(float fov_rad) {
 }
 
 Mat4d world_to_camera(const Camera& c) {
-  const Vec3d eye = widen(c.eye);
-  const Vec3d target = widen(c.target);
-  const Vec3d back = direction({eye.x - target.x, eye.y - target.y, eye.z - target.z},
-                               "camera: eye and target must be finite and differ");
-  const Vec3d right =
-      direction(cross(widen(c.up), back),
-                "camera: up must be finite, not zero and not along the view direction");
+  const Vec3d back =
+      direction(c.eye - c.target, "camera: eye and target must be finite and differ");
+  const Vec3d right = direction(
+      cross(c.up, back), "camera: up must be finite, not zero and not along the view direction");
   const Vec3d up = cross(back, right);
   Mat4d v = Mat4d::identity();
   const Vec3d axes[3] = {right, up, back};
@@ -75,7 +73,7 @@ Mat4d world_to_camera(const Camera& c) {
     v.m[i][0] = axes[i].x;
     v.m[i][1] = axes[i].y;
     v.m[i][2] = axes[i].z;
-    v.m[i][3] = -dot(axes[i], eye);
+    v.m[i][3] = -dot(axes[i], c.eye);
   }
   return v;
 }

@@ -153,14 +153,14 @@ void deform(const Rig::Shape& shape, const std::vector<double>& weights,
   if (active.empty() && joints == nullptr) return;
   for (std::size_t i = 0; i < shape.positions.size(); ++i) {
     const Affine skin = joints == nullptr ? Affine{} : blend(shape, i, *joints);
-    Vec3d p = widen(shape.positions[i]);
+    Vec3d p = Vec3d(shape.positions[i]);
     for (const Active& a : active)
-      if (!a.target->positions.empty()) p = p + widen(a.target->positions[i]) * a.weight;
+      if (!a.target->positions.empty()) p = p + Vec3d(a.target->positions[i]) * a.weight;
     mesh.positions[i] = Vec3(joints == nullptr ? p : skin.point(p));
     if (shape.normals.empty()) continue;
-    Vec3d n = widen(shape.normals[i]);
+    Vec3d n = Vec3d(shape.normals[i]);
     for (const Active& a : active)
-      if (!a.target->normals.empty()) n = n + widen(a.target->normals[i]) * a.weight;
+      if (!a.target->normals.empty()) n = n + Vec3d(a.target->normals[i]) * a.weight;
     if (joints != nullptr) n = skin.normal(n);
     const double l = length(n);
     mesh.normals.values[i] = l > 0 ? Vec3(n * (1 / l)) : Vec3{};
@@ -217,7 +217,7 @@ void look_from(Camera& camera, const Mat4d& node_to_world) {
   };
   camera.eye = column(3, 1);
   const Vec3 forward = normalize(column(2, -1));
-  camera.target = camera.eye + forward;
+  camera.target = Vec3(camera.eye) + forward;
   camera.up = normalize(column(1, 1));
 }
 

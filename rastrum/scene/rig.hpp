@@ -8,10 +8,10 @@
 #include <vector>
 
 #include <rastrum/camera.hpp>
-#include <rastrum/core/vec3d.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/motion.hpp>
 #include <rastrum/transform.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum {
 

@@ -6,15 +6,12 @@
 #include <string>
 #include <utility>
 
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/scene/vertices_in_use.hpp>
 
 namespace rastrum {
 namespace {
-
-bool is_finite(Vec3d p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
 
 struct BoundsD {
   Vec3d min{}, max{};
@@ -140,11 +137,9 @@ Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
   const BoundsD b = bounds_float64(vertices);
   const Vec3d centre = {(b.min.x + b.max.x) / 2, (b.min.y + b.max.y) / 2, (b.min.z + b.max.z) / 2};
   double r = 0;
-  vertices.for_each([&](Vec3d p) {
-    r = std::max(r, std::hypot(p.x - centre.x, p.y - centre.y, p.z - centre.z));
-  });
+  vertices.for_each([&](Vec3d p) { r = std::max(r, length(p - centre)); });
   if (r == 0) r = 1;
-  const double distance = r / std::sin(static_cast<double>(fov_rad) / 2);
+  const double distance = r / elementary::sin(static_cast<double>(fov_rad) / 2);
   Camera camera;
   camera.fov_rad = fov_rad;
   camera.orthographic = orthographic;
@@ -184,7 +179,7 @@ std::vector<Vec3> vertex_normals(std::span<const Vec3> positions,
   }
   std::vector<Vec3> normals(positions.size());
   for (std::size_t i = 0; i < sums.size(); ++i) {
-    const double l = std::hypot(sums[i].x, sums[i].y, sums[i].z);
+    const double l = length(sums[i]);
     if (l > 0 && std::isfinite(l))
       normals[i] = Vec3(Vec3d{sums[i].x / l, sums[i].y / l, sums[i].z / l});
   }

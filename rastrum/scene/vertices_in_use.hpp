@@ -1,14 +1,13 @@
 // The vertices that triangles use, in world space: what a fit looks at, more than once.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include <rastrum/core/vec3d.hpp>
 #include <rastrum/mesh.hpp>
 #include <rastrum/scene.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum {
 
@@ -40,7 +39,7 @@ class VerticesInUse {
           return m.m[r][0] * p.x + m.m[r][1] * p.y + m.m[r][2] * p.z + m.m[r][3];
         };
         const Vec3d q{row(0), row(1), row(2)};
-        if (std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z)) f(q);
+        if (is_finite(q)) f(q);
       };
       if (mesh.indices.empty()) {
         for (const Vec3 p : mesh.positions.first(mesh.triangle_count() * 3)) visit(p);

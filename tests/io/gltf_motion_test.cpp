@@ -12,7 +12,6 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/vec3d.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
 
@@ -219,9 +218,9 @@ TEST(GltfMotion, SkinsArePosedAtRest) {
       r.x = static_cast<double>(m[0][0] * d.x + m[0][1] * d.y + m[0][2] * d.z);
       r.y = static_cast<double>(m[1][0] * d.x + m[1][1] * d.y + m[1][2] * d.z);
       r.z = static_cast<double>(m[2][0] * d.x + m[2][1] * d.y + m[2][2] * d.z);
-      return unit(r);
+      return normalize(r);
     };
-    const Vec3d n = widen(mesh.normals.values[v]);
+    const Vec3d n = Vec3d(mesh.normals.values[v]);
     EXPECT_NEAR(length(n), 1, 1e-6);
     for (const Vec3 tangent : {side, normalize(cross(before, side))})
       EXPECT_NEAR(dot(n, moved(tangent)), 0, 2e-6);
