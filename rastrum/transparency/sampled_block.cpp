@@ -4,6 +4,7 @@
 #include <bit>
 
 #include <rastrum/parallel/mask.hpp>
+#include <rastrum/raster/assemble/assemble.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 
@@ -56,31 +57,43 @@ void SampledBlock::order_triangles() {
   if (by_depth) std::sort(order_.data(), order_.data() + triangle_count_);
 }
 
+/// Calls f(piece) for the pieces of `piece`'s primitive as they lie at the pixels' centres. What
+/// was clipped is clipped again: the piece that covers a centre may be another one, and cover no
+/// sample of this block.
+template <class F>
+void SampledBlock::for_each_piece_at_centre(const Piece& piece, F&& f) {
+  const std::uint64_t id = raster::kIdMask - piece.low;
+  const raster::FrameGeometry& frame = *context_->frame;
+  const raster::Draw& draw = frame.draw_of(id);
+  const std::uint64_t primitive = id - draw.first_id;
+  if (raster::is_triangle(piece) &&
+      raster::PrimitiveCorners<3>(frame, draw, primitive).needs_clip) {
+    (void)raster::assemble_primitive(frame, draw, primitive, f);
+    return;
+  }
+  const auto offsets = raster::sample_offsets(context_->request->samples);
+  const raster::SampleOffset at = offsets[static_cast<std::size_t>(raster::sample_of(piece))];
+  f(raster::moved(piece, {-at.x, -at.y}));
+}
+
 void SampledBlock::find_points(const Triangle& t, Shaded& out) {
   const auto offsets = raster::sample_offsets(context_->request->samples);
   out.mask = 0;
   for (std::uint32_t r = t.first; r < t.end; ++r) out.mask |= records_[r].mask;
   std::uint64_t left = out.mask;
   alignas(64) std::uint64_t keys[64];
-  // At the centres: by the pieces that the triangle was clipped to, mostly one, moved back.
-  Piece last{};
-  for (std::uint32_t r = t.first; r < t.end && left != 0; ++r) {
-    const auto offset = offsets[static_cast<std::size_t>(raster::sample_of(*records_[r].piece))];
-    const Piece at_centre = raster::moved(*records_[r].piece, {-offset.x, -offset.y});
-    if (std::ranges::equal(at_centre.x, last.x) && std::ranges::equal(at_centre.y, last.y))
-      continue;
-    last = at_centre;
+  for_each_piece_at_centre(*records_[t.first].piece, [&](const Piece& piece) {
     raster::Block block{0, static_cast<std::uint16_t>(bx_), static_cast<std::uint16_t>(by_), 0};
-    context_->kernel->masks(&at_centre, &block, 1);
+    context_->kernel->masks(&piece, &block, 1);
     block.mask &= left;
-    if (block.mask != 0) context_->kernel->keys(at_centre, block, keys);
+    if (block.mask != 0) context_->kernel->keys(piece, block, keys);
     for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
       out.keys[i] = keys[i];
       out.points.dx[i] = out.points.dy[i] = 0;
     }
     left &= ~block.mask;
-  }
+  });
   for (std::uint32_t r = t.first; r < t.end && left != 0; ++r) {
     const std::uint64_t mask = records_[r].mask & left;
     if (mask == 0) continue;

@@ -66,6 +66,8 @@ class SampledBlock {
   void find_triangles();
   void order_triangles();
   void test();
+  template <class F>
+  void for_each_piece_at_centre(const raster::Piece& piece, F&& f);
   void find_points(const Triangle& t, Shaded& out);
   void raise_opaque();
   void find_shown();
