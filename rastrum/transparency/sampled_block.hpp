@@ -79,7 +79,7 @@ class SampledBlock {
     return context_->request->transparency.method != Transparency::none &&
            (records_[t.first].piece->flags & raster::kTranslucent) != 0;
   }
-  /// Calls f(sample, mask, keys) for the records of a triangle, of one sample or all.
+  /// Calls f(sample, mask, keys) for what a triangle covers at one sample or each.
   template <class F>
   void for_each_record(const Triangle& t, std::optional<std::uint32_t> only, F&& f);
 
