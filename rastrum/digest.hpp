@@ -32,6 +32,7 @@ struct Digest {
 [[nodiscard]] Digest digest(ImageView<const std::uint8_t> image);
 [[nodiscard]] Digest digest(ImageView<const std::uint32_t> image);
 [[nodiscard]] Digest digest(ImageView<const std::uint64_t> image);
+[[nodiscard]] Digest digest(ImageView<const std::int32_t> image);
 [[nodiscard]] Digest digest(ImageView<const std::int64_t> image);
 /// Of an owned image.
 template <class T>

@@ -148,6 +148,9 @@ Digest digest(ImageView<const std::uint32_t> image) {
 Digest digest(ImageView<const std::uint64_t> image) {
   return of<std::uint64_t>(image, "uint64");
 }
+Digest digest(ImageView<const std::int32_t> image) {
+  return of<std::int32_t>(image, "int32");
+}
 Digest digest(ImageView<const std::int64_t> image) {
   return of<std::int64_t>(image, "int64");
 }
