@@ -32,7 +32,7 @@ struct Fragment {
 
 using Pixel = std::vector<Fragment>;
 
-/// The keys of a primitive at one sample, by pixel.
+/// The keys of a primitive at one sample, by pixel: the nearest where its pieces overlap.
 void add_keys(const raster::FrameRequest& request, const Piece& piece,
               std::map<std::pair<int, int>, Fragment>& pixels, int sample) {
   const raster::Rect box = raster::piece_bounds(piece, {0, 0, request.width, request.height});
@@ -41,7 +41,8 @@ void add_keys(const raster::FrameRequest& request, const Piece& piece,
     for (int x = span.begin; x < span.end; ++x) {
       Fragment& f = pixels[{y, x}];
       const std::uint64_t key = raster::make_key(raster::depth_at(piece, x, y), piece.low);
-      (sample < 0 ? f.shaded_key : f.keys[sample]) = key;
+      std::uint64_t& nearest = sample < 0 ? f.shaded_key : f.keys[sample];
+      nearest = std::max(nearest, key);
     }
   }
 }
