@@ -36,8 +36,8 @@ struct Row {
 struct Options : RendererOptions, FrameOptions, Row {};
 
 /// A renderer that draws by a row. Device::automatic takes a GPU for the default row alone. Throws
-/// as Renderer, and Error{invalid_argument} that lists the names, or the tunings that were
-/// compiled; its frames throw Error{invalid_argument} where the row cannot draw layers.
+/// as Renderer, and Error{invalid_argument} that lists the names, or says which tunings
+/// there are; its frames throw Error{invalid_argument} where the row cannot draw layers.
 [[nodiscard]] Renderer make_renderer(const RendererOptions& options, const Row& row);
 
 /// A TerrainRenderer that draws Method::words, too. Throws as its constructor.

@@ -13,6 +13,7 @@
 #include <rastrum/image.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/mesh.hpp>
+#include <rastrum/motion.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum {
@@ -117,12 +118,15 @@ struct Scene {
   std::vector<Material> materials{};  ///< empty: the file has none
   std::vector<Texture> textures{};
   std::vector<Camera> cameras{};
+  std::vector<Motion> motions{};  ///< what moves: `pose` (motion.hpp)
   /// What a reader left out or found odd, a sentence each; nothing is lost silently.
   std::vector<std::string> warnings{};
 
   /// Appends `other` behind this scene: indices into meshes, materials and textures are shifted.
   /// Where one of the two has no materials it is given plain ones.
   void append(Scene other);
+  /// Moves everything but the cameras: `to_world` lies before all matrices of instances.
+  void place(const Mat4d& to_world);
   /// Throws Error{invalid_argument} where an instance is of no mesh.
   [[nodiscard]] std::uint64_t triangle_count() const;
 };

@@ -42,6 +42,8 @@ enum class DepthUnit { reversed, world };
 struct RenderArguments : SceneArguments {
   std::filesystem::path path;
   int turntable = 0;  ///< pictures of a full turn; 0: it does not turn
+  std::optional<double> time_s;
+  std::optional<int> animation;
   double fps = 30;
   bool fps_given = false;
   bool frames_given = false;
@@ -137,6 +139,21 @@ void add_path_options(Parser& app, RenderArguments& a) {
       ->group(group);
 }
 
+void add_motion_options(Parser& app, RenderArguments& a) {
+  const char* group = "Motion";
+  add(app, "--time", "S",
+      "the moment of an animation of the files, in seconds; what has ended begins again (without: as "
+      "the files stand, and along --path each picture's own time)",
+      [&a](const std::string& s) {
+        a.time_s = parse_number("--time", s);
+        if (!(*a.time_s >= 0)) throw UsageError("--time", "must not be negative, got '" + s + "'");
+      })
+      ->group(group);
+  add(app, "--animation", "N", "which one, as `rastrum info` counts them (0)",
+      [&a](const std::string& s) { a.animation = parse_integer("--animation", s, 0, 1000000); })
+      ->group(group);
+}
+
 void add_frames_option(Parser& app, RenderArguments& a) {
   add(app, "--frames", "N", "render N times; --stats gives median, minimum and maximum (1)",
       [&a](const std::string& s) {
@@ -186,6 +203,8 @@ void check(RenderArguments& a) {
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
   check_scene_arguments(a);
   if (a.depth_unit && !a.depth) throw UsageError("--depth-unit", "is for --depth");
+  if (a.animation && !a.time_s && a.path.empty())
+    throw UsageError("--animation", "is for --time and --path");
   if (!a.is_sequence() && a.fps_given) throw UsageError("--fps", "is for --path and --turntable");
   if (!a.is_sequence() && a.color && a.color.format == Format::mp4)
     throw UsageError("-o",
@@ -376,6 +395,22 @@ int run_sequence(const RenderArguments& a, Renderer& renderer, const Sequence& s
   return 0;
 }
 
+/// Poses the inputs for --time. Whether they move along the path, too.
+bool pose_for(const RenderArguments& a, Inputs& inputs) {
+  if (!a.time_s && a.path.empty()) return false;
+  const std::size_t count = animation_count(inputs.scene);
+  const auto animation = static_cast<std::size_t>(a.animation.value_or(0));
+  if (a.animation && animation >= count)
+    throw UsageError("--animation", "there is no animation " + std::to_string(animation) +
+                                        ": the files have " + std::to_string(count));
+  if (count == 0) {
+    if (a.time_s && !a.quiet) warn("--time: no input has an animation");
+    return false;
+  }
+  if (a.time_s) pose_inputs(inputs, a.normals, *a.time_s, animation);
+  return !a.time_s;
+}
+
 int run(RenderArguments& a) {
   check(a);
   Timeline timeline;
@@ -385,7 +420,7 @@ int run(RenderArguments& a) {
   Renderer renderer = family::make_renderer(a.render, a.render);
 
   const double load_begin = timeline.now_ms();
-  const Inputs inputs = load_inputs(a.inputs, a.normals, timeline, progress, a.format);
+  Inputs inputs = load_inputs(a.inputs, a.normals, timeline, progress, a.format);
   const Scene& scene = inputs.scene;
   const double load_ms = timeline.now_ms() - load_begin;
   if (!a.quiet && !scene.warnings.empty()) {
@@ -393,17 +428,25 @@ int run(RenderArguments& a) {
     for (const std::string& w : scene.warnings) warn(w);
   }
   if (!a.quiet && a.render.transparency.method == Transparency::none) report_blended(scene);
+  const bool moves = pose_for(a, inputs);
   const SceneBinding binding(scene);
   a.render.shader = shader_of(a.render.shader, inputs.has_materials);
   a.view.turns = a.turntable != 0;
   const Camera camera =
       choose_camera(a.view, scene, binding.view(), {a.render.width, a.render.height});
 
+  std::optional<SceneBinding> posed;
+  SceneAt moving;
+  if (moves)
+    moving = [&](double seconds) {
+      pose_inputs(inputs, a.normals, seconds, static_cast<std::size_t>(a.animation.value_or(0)));
+      return posed.emplace(scene).view();
+    };
   if (a.is_sequence())
     return run_sequence(a, renderer,
                         a.turntable != 0
                             ? on_turntable(a.turntable, binding.view(), a.view, camera)
-                            : along_path(a.path, a.fps, binding.view(), a.view, camera),
+                            : along_path(a.path, a.fps, binding.view(), moving, a.view, camera),
                         inputs, load_ms, timeline, progress);
   const bool timed = a.frames_given || a.stats || a.trace;
   Pictures pictures;
@@ -443,6 +486,7 @@ Command add_render_command(Parser& app) {
   add_transparency_options(render, *arguments);
   add_camera_options(render, *arguments);
   add_path_options(render, *arguments);
+  add_motion_options(render, *arguments);
   add_machine_options(render, *arguments);
   add_frames_option(render, *arguments);
   std::string footer = shapes_help();
@@ -458,6 +502,7 @@ Command add_render_command(Parser& app) {
       "  rastrum render engine.glb --opacity 0.3 --samples 4 -o see_through.png\n"
       "  rastrum render hair.ply --opacity 0.5 --transparency filter:3 --show-errors wrong.png\n"
       "  rastrum render dragon.ply --frames 20 --stats - --trace frames.json --heatmap heat.png\n"
+      "  rastrum render fox.glb --animation 1 --time 0.4 -o running.png\n"
       "  rastrum render dragon.ply --path flight.json --fps 60 -o 'frame_%04d.png'\n"
       "  rastrum render shell.ply@opacity=0.3,color=#88aaff core.stl@z=0.2,rx=90 -o glass.png\n"
       "  rastrum render dragon.ply --turntable 120 -o dragon.mp4\n"

@@ -217,7 +217,8 @@ void check(const FrameOptions& o) {
 struct Renderer::Impl {
   Impl(RendererOptions given, DeviceChoice choice, bool plain, MakeFrameDrawer maker);
 
-  /// What a caller wants of one frame. `in_place`: its arrays are memory of a GPU.
+  /// What a caller wants of one frame, which was checked. `in_place`: its arrays are memory of a
+  /// GPU.
   struct Call {
     const FrameOptions& frame;
     const Targets& targets;
@@ -295,6 +296,7 @@ Renderer RendererAccess::make(RendererOptions options, DeviceChoice choice, bool
 FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
                             const Targets& targets, std::stop_token stop) {
   const parallel::Turn turn(impl_->one_at_a_time, stop);
+  check(frame);
   return impl_->render(scene, camera, {frame, targets});
 }
 
@@ -302,6 +304,7 @@ FrameStats Renderer::render_in_place(const SceneView& scene, const Camera& camer
                                      const FrameOptions& frame, const Targets& targets,
                                      std::stop_token stop) {
   const parallel::Turn turn(impl_->one_at_a_time, stop);
+  check(frame);
   return impl_->render(scene, camera, {frame, targets, impl_->options.device == Device::cuda});
 }
 
@@ -311,6 +314,7 @@ FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draw
                                 std::stop_token stop) {
   Renderer::Impl& impl = *renderer.impl_;
   const parallel::Turn turn(impl.one_at_a_time, stop);
+  check(frame);
   return impl.draw(draws, shading, test, {frame, targets});
 }
 
@@ -322,7 +326,6 @@ FrameStats Renderer::draw(std::span<const raster::ProgramDraw> draws, const Fram
 
 FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, const Call& call) {
   const FrameOptions& o = call.frame;
-  check(o);
   const Shader taken = shader_for(o.shader, scene);
   if (call.in_place)
     check_in_place(scene, call.targets, taken, o);
@@ -437,7 +440,6 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
                                 const OfScene* scene) {
   const FrameOptions& o = call.frame;
   const Targets& targets = call.targets;
-  check(o);
   if (!call.part) check_targets(targets, o);
   if (scene == nullptr) {
     check_outputs(targets, false, false);

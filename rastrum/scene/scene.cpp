@@ -72,6 +72,12 @@ void add_plain_materials(Scene& scene) {
   }
 }
 
+void Scene::place(const Mat4d& to_world) {
+  for (Instance& instance : instances)
+    instance.object_to_world = to_world * instance.object_to_world;
+  for (Motion& motion : motions) motion.to_world = to_world * motion.to_world;
+}
+
 void Scene::append(Scene other) {
   const auto mesh_offset = static_cast<std::uint32_t>(meshes.size());
   const auto texture_offset = static_cast<std::int32_t>(textures.size());
@@ -81,6 +87,12 @@ void Scene::append(Scene other) {
   if (any_materials && other.materials.empty()) add_plain_materials(other);
   const auto material_offset = static_cast<std::uint32_t>(materials.size());
 
+  for (Motion& motion : other.motions) {
+    motion.first_mesh += mesh_offset;
+    motion.first_instance += static_cast<std::uint32_t>(instances.size());
+    motion.first_camera += static_cast<std::uint32_t>(cameras.size());
+    motions.push_back(std::move(motion));
+  }
   for (Mesh& mesh : other.meshes) {
     mesh.material += material_offset;
     for (std::uint32_t& m : mesh.face_materials) m += material_offset;
