@@ -190,7 +190,7 @@ TEST(ClipPlanes, AreTheSameBitsWhateverDraws) {
 
 TEST(ClipPlanes, OfEveryRowOfTheFamily) {
   for (const family::AxisInfo& row : family::rasterizer_axis())
-    for (const std::uint64_t seed : {0, 3, 8}) {
+    for (const std::uint64_t seed : {0U, 3U, 8U}) {
       const GeneratedScene g = generate(seed, kW, kH);
       const SceneBinding binding(g.scene);
       const Cut cut(binding.view(), g.camera, seed);

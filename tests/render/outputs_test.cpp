@@ -127,6 +127,14 @@ void check_pixel(const Surfaces& s, const SceneView& scene, const Camera& camera
       std::max({projected[id].snapped.v[0].depth, projected[id].snapped.v[1].depth,
                 projected[id].snapped.v[2].depth});
   if (!(s.depth(x, y) > 0.05F * nearest) || !std::isinf(camera.far_plane)) return;
+  const auto& v = projected[id].snapped.v;
+  Real longest = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Real dx = v[c].x_fx8 - v[(c + 1) % 3].x_fx8, dy = v[c].y_fx8 - v[(c + 1) % 3].y_fx8;
+    longest = std::max(longest, dx * dx + dy * dy);
+  }
+  // A sliver's plane is as steep as its corners' last bits say.
+  if (std::abs(twice_area(projected[id].snapped)) < Real(0.05) * longest) return;
   ++seen.depths;
   ASSERT_NEAR(s.view_depth(x, y), static_cast<double>(z), 1e-4 * static_cast<double>(z));
   const Real distance = length(p - eye);
@@ -191,7 +199,7 @@ TEST(Outputs, AreTheSameBitsWhateverDraws) {
 
 TEST(Outputs, AreTheSameBitsForEveryRowOfTheFamily) {
   for (const family::AxisInfo& row : family::rasterizer_axis())
-    for (const std::uint64_t seed : {0, 3, 8}) {
+    for (const std::uint64_t seed : {0U, 3U, 8U}) {
       const GeneratedScene g = generate(seed, kW, kH);
       const SceneBinding binding(g.scene);
       RenderOptions o = options();
@@ -326,7 +334,7 @@ TEST(Outputs, LinearLightIsTheColourBeforeItsTransferAndChangesNoOther) {
           ASSERT_EQ(l.w, c.w);
           bright |= l.x > 1;
         }
-      EXPECT_TRUE(bright) << "the emission is not cut";
+      EXPECT_EQ(bright, mode == AlphaMode::opaque) << "the emission is not cut";
     }
 }
 
@@ -361,7 +369,8 @@ TEST(Outputs, RefuseWhatTheyAreNotFor) {
             [&] { Painter(in_place).render(two.scene(), two.camera, {.positions = positions}); });
   const raster::Program program(
       [](std::uint32_t i) {
-        return raster::VertexOutput<Vec3>{{i == 1 ? 3.0F : -1.0F, i == 2 ? 3.0F : -1.0F, 0.5F, 1}, {}};
+        return raster::VertexOutput<Vec3>{{i == 1 ? 3.0F : -1.0F, i == 2 ? 3.0F : -1.0F, 0.5F, 1},
+                                          {}};
       },
       [](const Vec3&, const raster::Fragment&) {
         return Vec4{1, 1, 1, 1};

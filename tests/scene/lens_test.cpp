@@ -11,7 +11,7 @@
 #include <rastrum/scene.hpp>
 #include <rastrum/transform.hpp>
 
-#include "support/random.hpp"
+#include "tests/support/random.hpp"
 
 namespace rastrum::test::lens_test {
 namespace {
