@@ -13,6 +13,7 @@
 #include <rastrum/image.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/mesh.hpp>
+#include <rastrum/surfaces.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum {
@@ -61,7 +62,8 @@ struct Material {
 // `Scene` owns what a reader made of a file.
 
 /// What an instance draws, over the caller's arrays.
-using GeometryView = std::variant<MeshView>;
+using GeometryView =
+    std::variant<MeshView, SpheresView, CylindersView, TubesView, DiscsView>;
 
 /// A geometry placed in the world, with a look of its own. Ids count the primitives of the
 /// instances in order.

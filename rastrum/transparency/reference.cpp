@@ -35,15 +35,11 @@ using Pixel = std::vector<Fragment>;
 /// The keys of a primitive at one sample, by pixel.
 void add_keys(const raster::FrameRequest& request, const Piece& piece,
               std::map<std::pair<int, int>, Fragment>& pixels, int sample) {
-  const raster::Rect box = raster::piece_bounds(piece, {0, 0, request.width, request.height});
-  for (int y = box.y0; y < box.y1; ++y) {
-    const raster::Span span = raster::row_span(piece, y, box.x0, box.x1);
-    for (int x = span.begin; x < span.end; ++x) {
-      Fragment& f = pixels[{y, x}];
-      const std::uint64_t key = raster::make_key(raster::depth_at(piece, x, y), piece.low);
-      (sample < 0 ? f.shaded_key : f.keys[sample]) = key;
-    }
-  }
+  raster::for_each_covered(piece, {0, 0, request.width, request.height}, [&](int x, int y) {
+    Fragment& f = pixels[{y, x}];
+    const std::uint64_t key = raster::make_key(raster::depth_at(piece, x, y), piece.low);
+    (sample < 0 ? f.shaded_key : f.keys[sample]) = key;
+  });
 }
 
 /// A block with the one sample of pixel (x, y).
@@ -192,7 +188,11 @@ class LayeredReference final : public raster::Method {
   explicit LayeredReference(MakeBlend make_blend) : make_blend_(make_blend) {}
 
   [[nodiscard]] raster::Needs needs() const override {
-    return {.rasterizer = "reference", .visibility = "layers", .colors = true, .whole_view = true};
+    return {.rasterizer = "reference",
+            .visibility = "layers",
+            .colors = true,
+            .quadrics = true,
+            .whole_view = true};
   }
 
   void draw(raster::Frame& frame, std::uint64_t first, std::uint64_t last) override {
