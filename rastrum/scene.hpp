@@ -14,6 +14,7 @@
 #include <rastrum/mat.hpp>
 #include <rastrum/mesh.hpp>
 #include <rastrum/motion.hpp>
+#include <rastrum/surfaces.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum {
@@ -71,7 +72,7 @@ struct ClipPlane {
 inline constexpr std::size_t kMaxClipPlanes = 8;
 
 /// What an instance draws, over the caller's arrays.
-using GeometryView = std::variant<MeshView>;
+using GeometryView = std::variant<MeshView, SpheresView, CylindersView, TubesView, DiscsView>;
 
 /// A geometry placed in the world, with a look of its own. Ids count the primitives of the
 /// instances in order.

@@ -31,7 +31,7 @@ MAY_INCLUDE = {
 PUBLIC = {
     "core": {"config", "digest", "error", "image", "mat", "transform", "vec"},
     "parallel": {"device", "stop"},
-    "scene": {"camera", "fit", "mesh", "motion", "scene", "shapes"},
+    "scene": {"camera", "fit", "mesh", "motion", "scene", "shapes", "surfaces"},
     "raster": {"frame", "primitives", "program", "tuning"},
     "terrain": {"terrain", "terrain_light"},
     "io": {"io"},

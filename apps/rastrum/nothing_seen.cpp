@@ -141,6 +141,7 @@ std::array<std::uint64_t, kFates> census(const FrameOptions& options, const Scen
   const Mat4d world_to_view = world_to_clip(camera, options.width, options.height);
   const Shader shader = shader_for(options.shader, scene);
   for (const InstanceView& instance : scene.instances) {
+    if (instance.mesh() == nullptr) continue;
     const MeshView& mesh = *instance.mesh();
     const Eye eye{world_to_view * instance.object_to_world,
                   static_cast<double>(options.width),

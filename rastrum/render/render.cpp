@@ -24,6 +24,7 @@
 #include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/render/access.hpp>
 #include <rastrum/render/surface_of_key.hpp>
+#include <rastrum/render/surfaces.hpp>
 
 namespace rastrum {
 namespace {
@@ -51,6 +52,7 @@ void check_attribute(std::size_t values, std::span<const std::uint32_t> indices,
 /// frame.
 void check_attributes(const SceneView& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    if (scene.instances[i].mesh() == nullptr) continue;
     const MeshView& mesh = *scene.instances[i].mesh();
     check_attribute(mesh.normals.values.size(), mesh.normals.indices, mesh, i, "normals");
     check_attribute(mesh.texcoords.values.size(), mesh.texcoords.indices, mesh, i, "texcoords");
@@ -332,6 +334,7 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
   else
     check_attributes(scene);
   raster::check_materials(scene);
+  check_surfaces(scene);
   check_outputs(call.targets, true, taken == Shader::material);
   std::deque<raster::DrawCut> cuts;  // draws point to them
   const Mat4d to_clip = world_to_clip(camera, o.width, o.height);
@@ -341,9 +344,20 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
   const bool all_translucent = blends && o.opacity < 1;
   const std::vector<std::uint32_t> material_flags = raster::material_flags(scene.materials, blends);
   std::uint32_t any_flags = 0;  // of materials and vertex colours
+  std::uint32_t any_surface_flags = 0;
+  SceneView meshes = scene;
+  const std::vector<InstanceView> mesh_list = mesh_instances(scene);
+  meshes.instances = mesh_list;
+  std::optional<raster::LitModel> model;
+  if (taken != Shader::material) model = lit_model(taken);
+  SurfaceDraws surfaces(scene, {model, blends, o.opacity}, camera, o.width, o.height);
   for (const InstanceView& instance : scene.instances) {
-    const MeshView& mesh = *instance.mesh();
     raster::Draw& draw = draws.emplace_back();
+    if (surfaces.add(instance, to_clip, draw)) {
+      any_surface_flags |= draw.flags;
+      continue;
+    }
+    const MeshView& mesh = *instance.mesh();
     draw.source = raster::MatrixVertices(mesh.positions, to_clip * instance.object_to_world);
     draw.vertex_count = mesh.positions.size();
     draw.indices = mesh.indices;
@@ -365,7 +379,8 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
   }
   const bool any_mask = (any_flags & raster::kTested) != 0;
   const bool any_blend = (any_flags & raster::kTranslucent) != 0;
-  const bool is_translucent = all_translucent || any_blend;
+  const bool is_translucent =
+      all_translucent || any_blend || (any_surface_flags & raster::kTranslucent) != 0;
   const bool shades_materials = taken == Shader::material;
   const bool wants_albedo = !call.targets.albedo.empty();
   std::optional<raster::MaterialScene> materials;
@@ -373,7 +388,7 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
     textures.update(scene.textures,
                     raster::texture_uses(scene, shades_materials || wants_albedo, any_blend),
                     threads.get());
-    materials.emplace(scene, camera, o.width, o.height, textures);
+    materials.emplace(meshes, camera, o.width, o.height, textures);
   }
   std::optional<raster::SurfaceScene> surface;
   if (wants_surface(call.targets)) {
@@ -391,12 +406,13 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
   if (taken == Shader::depth)
     return named(draw_depth(draws, test, call, surface ? &*surface : nullptr));
   const bool linear = shades_materials && (is_translucent || !call.targets.linear.empty());
+  if (linear) surfaces.leave_linear();
   std::optional<raster::LitScene> lit;
   raster::Shading shading;
   if (shades_materials) {
     shading = raster::MaterialShading{&*materials, linear};
   } else {
-    lit.emplace(scene, camera, o.width, o.height);
+    lit.emplace(meshes, camera, o.width, o.height);
     shading = raster::LitShading{lit_model(taken), &*lit};
   }
   if (is_translucent) shading = shading.with_alpha(any_blend ? &*materials : nullptr, o.opacity);

@@ -213,6 +213,7 @@ void check_draw(const Draw& draw, std::string_view noun, std::size_t number) {
   check_enum(draw.topology, Topology::triangles, name + ": its topology");
   check_enum(draw.cull, Cull::front, name + ": its cull");
   check_enum(draw.winding, Winding::either, name + ": its winding");
+  if (draw.quadrics != nullptr) return;
   require(bool{draw.source}, "its source is null; set it to what projects its vertices");
   const bool indexed = !draw.indices.empty();
   const std::size_t corners = indexed ? draw.indices.size() : draw.vertex_count;

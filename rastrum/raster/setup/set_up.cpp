@@ -53,8 +53,9 @@ class TriangleSet {
 SetupOutput all_slow(const Draw& draw, std::uint64_t first, std::uint32_t count,
                      std::uint32_t* slow) {
   SetupOutput out;
+  const int corners = draw.quadrics != nullptr ? 0 : static_cast<int>(draw.topology);
   for (std::uint32_t i = 0; i < count; ++i) {
-    for (int corner = 0; corner < static_cast<int>(draw.topology); ++corner)
+    for (int corner = 0; corner < corners; ++corner)
       out.index_in_range &= draw.vertex(first + i, corner) < draw.vertex_count;
     slow[out.slow++] = i;
   }
@@ -79,6 +80,29 @@ bool has_indices_in_range(const Draw& draw, std::uint64_t first, std::uint32_t c
 }
 
 }  // namespace
+
+void Pieces::add(const Piece& piece) {
+  data.grow(std::size_t{count} + 1, count);
+  Piece& own = data[count++];
+  own = piece;
+  if (!is_quadric(piece)) return;
+  // The two sides of a primitive share theirs.
+  const Piece* const last = count > 1 ? &own - 1 : nullptr;
+  const bool is_second = last != nullptr && is_quadric(*last) && last->low == piece.low &&
+                         (last->flags ^ piece.flags) == kFacesAway;
+  set_quadric(own, is_second ? &quadric_of(*last) : quadrics.add(quadric_of(piece)));
+}
+
+std::size_t Pieces::quadric_bytes() const {
+  std::size_t bytes = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!is_quadric(data[i])) continue;
+    const bool is_second =
+        i > 0 && is_quadric(data[i - 1]) && &quadric_of(data[i - 1]) == &quadric_of(data[i]);
+    if (!is_second) bytes += quadric_of(data[i]).bytes();
+  }
+  return bytes;
+}
 
 bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces& pieces,
             MicroSink* micro) {
@@ -147,10 +171,7 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
       for (std::uint32_t k = 0; k < out.slow; ++k) {
         const Fate fate = assemble_primitive(
             geometry, draw, t + slow[k],
-            [&](const Piece& piece) {
-              pieces.data.grow(std::size_t{pieces.count} + 1, pieces.count);
-              pieces.data[pieces.count++] = piece;
-            },
+            [&](const Piece& piece) { pieces.add(piece); },
             sample, at);
         if (fate == Fate::dropped) dropped.add(slow[k]);
         if (fate == Fate::clipped) clipped.add(slow[k]);
