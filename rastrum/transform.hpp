@@ -2,7 +2,6 @@
 // scales first, and rotations as unit quaternions. Projections are in camera.hpp.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include <rastrum/mat.hpp>
@@ -74,12 +73,7 @@ inline Quaternion normalize(const Quaternion& q) {
 }
 
 /// Right-handed about `axis`, which need not be of unit length; the identity where it is 0.
-inline Quaternion rotation_about(Vec3d axis, double angle_rad) {
-  const double l = length(axis);
-  if (!(l > 0)) return {};
-  const double s = std::sin(angle_rad / 2) / l;
-  return {std::cos(angle_rad / 2), axis.x * s, axis.y * s, axis.z * s};
-}
+[[nodiscard]] Quaternion rotation_about(Vec3d axis, double angle_rad);
 
 /// The rotation's matrix. `q` of unit length.
 constexpr Mat4d rotation(const Quaternion& q) {
@@ -100,16 +94,6 @@ constexpr Mat4d rotation(const Quaternion& q) {
 }
 
 /// From a (t = 0) to b (t = 1) at constant angular speed, the shorter way round.
-inline Quaternion slerp(const Quaternion& a, const Quaternion& b, double t) {
-  const double cosine = dot(a, b);
-  const double sign = cosine < 0 ? -1 : 1;
-  const double angle = std::acos(std::min(std::abs(cosine), 1.0));
-  // Where the sine vanishes the arc is a straight line to the last bits.
-  const double sine = std::sin(angle);
-  const double wa = sine > 1e-9 ? std::sin((1 - t) * angle) / sine : 1 - t;
-  const double wb = sign * (sine > 1e-9 ? std::sin(t * angle) / sine : t);
-  return normalize(
-      {wa * a.w + wb * b.w, wa * a.x + wb * b.x, wa * a.y + wb * b.y, wa * a.z + wb * b.z});
-}
+[[nodiscard]] Quaternion slerp(const Quaternion& a, const Quaternion& b, double t);
 
 }  // namespace rastrum

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/fit.hpp>
 
 #include "arguments.hpp"
@@ -13,7 +14,7 @@ namespace rastrum::cli {
 namespace {
 
 double distance(Vec3d a, Vec3d b) {
-  return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
+  return length(a - b);
 }
 
 Camera file_camera(const Scene& scene, int index) {
@@ -44,7 +45,7 @@ Camera fitted_camera(const ViewOptions& o, const SceneView& view, float fov_rad,
 BoundingSphere bounding_sphere(const SceneView& view) {
   constexpr float kFov = 1;
   const Camera fit = fit_camera(view, kFov, false);
-  return {fit.target, distance(fit.eye, fit.target) * std::sin(double{kFov} / 2)};
+  return {fit.target, distance(fit.eye, fit.target) * elementary::sin(double{kFov} / 2)};
 }
 
 void place_planes(Camera& camera, const BoundingSphere& scene) {

@@ -13,13 +13,15 @@ namespace {
 class InstanceCheck {
  public:
   InstanceCheck(const InstanceView& instance, std::size_t number)
-      : instance_(instance), mesh_(*instance.mesh()), number_(number) {}
+      : instance_(instance), number_(number) {}
 
-  void all() const {
-    if (const std::string problem = faces_problem(mesh_); !problem.empty()) fail(problem);
-    attribute(mesh_.normals, "normals");
-    attribute(mesh_.texcoords, "texcoords");
-    attribute(mesh_.colors, "colors");
+  void arrays(const MeshView& mesh) const {
+    if (const std::string problem = faces_problem(mesh); !problem.empty()) fail(problem);
+    attribute(mesh, mesh.normals, "normals");
+    attribute(mesh, mesh.texcoords, "texcoords");
+    attribute(mesh, mesh.colors, "colors");
+  }
+  void look() const {
     if (instance_.winding > Winding::either)
       check_enum(instance_.winding, Winding::either, name() + ": its winding");
     // Written so that a NaN fails.
@@ -37,17 +39,16 @@ class InstanceCheck {
   }
 
   /// The corners that triangles read.
-  [[nodiscard]] std::size_t corners() const {
-    return mesh_.faces.kind == FaceKind::triangles ? mesh_.triangle_count() * 3
-                                                   : mesh_.corner_count();
+  [[nodiscard]] static std::size_t corners(const MeshView& mesh) {
+    return mesh.faces.kind == FaceKind::triangles ? mesh.triangle_count() * 3 : mesh.corner_count();
   }
 
   template <class T>
-  void attribute(const AttributeView<T>& a, const char* what) const {
+  void attribute(const MeshView& mesh, const AttributeView<T>& a, const char* what) const {
     if (a.empty()) return;
     const std::string array(what);
     if (!a.indices.empty()) {
-      if (a.indices.size() < corners()) fail(array + " have fewer indices than the triangles");
+      if (a.indices.size() < corners(mesh)) fail(array + " have fewer indices than the triangles");
       if (const std::size_t at = first_beyond(a.indices, a.values.size()); at != a.indices.size())
         fail(array + ".indices[" + std::to_string(at) + "]: index " + a.indices.text(at) +
              " is out of range, there are " + std::to_string(a.values.size()));
@@ -61,18 +62,17 @@ class InstanceCheck {
     };
     switch (a.per) {
       case Per::vertex:
-        return require(mesh_.positions.size(), "positions");
+        return require(mesh.positions.size(), "positions");
       case Per::corner:
-        return require(corners(), "corners");
+        return require(corners(mesh), "corners");
       case Per::face:
-        return require(mesh_.face_count(), "faces");
+        return require(mesh.face_count(), "faces");
       case Per::mesh:
         break;
     }
   }
 
   const InstanceView& instance_;
-  const MeshView& mesh_;
   std::size_t number_;
 };
 
@@ -84,13 +84,17 @@ bool is_packed(const AttributeView<T>& a) {
 }  // namespace
 
 void check_scene(const SceneView& scene) {
-  for (std::size_t i = 0; i < scene.instances.size(); ++i)
-    InstanceCheck(scene.instances[i], i).all();
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const InstanceCheck check(scene.instances[i], i);
+    if (const MeshView* const mesh = scene.instances[i].mesh()) check.arrays(*mesh);
+    check.look();
+  }
 }
 
 std::string why_not_on_device(const SceneView& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const InstanceView& instance = scene.instances[i];
+    if (instance.mesh() == nullptr) continue;
     const MeshView& m = *instance.mesh();
     const auto say = [&](const char* what) {
       return "instance " + std::to_string(i) + " has " + what + ", which the device does not read";

@@ -32,6 +32,8 @@ Shader shader_for(Shader shader, const SceneView& scene) {
 
 Cull material_cull(const InstanceView& instance, std::span<const Material> materials,
                    Shader shader) {
+  // What is no mesh is closed, or meant to be seen from both sides.
+  if (instance.mesh() == nullptr) return Cull::none;
   const MeshView& mesh = *instance.mesh();
   if (shader != Shader::material || materials.empty() ||
       (!instance.material && !mesh.face_materials.empty()) ||

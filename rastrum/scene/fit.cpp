@@ -10,7 +10,7 @@
 #include <limits>
 #include <string>
 
-#include <rastrum/core/angle.hpp>
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/scene/vertices_in_use.hpp>
 
@@ -200,7 +200,7 @@ Camera fit(const SceneView& scene, const Camera& view, int width, int height, bo
     ortho_height = ortho_height > 0 ? ortho_height / kFitFill : 2 * r;
     eye.z = depths.nearest + r;
   } else {
-    const double t = tan_half(double{view.fov_rad}) * kFitFill;
+    const double t = elementary::tan(double{view.fov_rad} / 2) * kFitFill;
     const double t_x = t * aspect_x, t_y = t * aspect_y;
     const Touched x = outline.horizontal(t_x), y = outline.vertical(t_y);
     eye.z = depths.nearest + kNearest * r;

@@ -188,26 +188,5 @@ TEST(FitTurntable, OneCameraServesEveryAngle) {
       }
 }
 
-TEST(SinCosDegrees, AreExactAtQuartersAndCloseElsewhere) {
-  for (const double turn : {0.0, 360.0, -720.0, 360e9}) {
-    EXPECT_EQ(sin_cos_degrees(turn).sin, 0);
-    EXPECT_EQ(sin_cos_degrees(turn).cos, 1);
-    EXPECT_EQ(sin_cos_degrees(turn + 90).sin, 1);
-    EXPECT_EQ(sin_cos_degrees(turn + 90).cos, 0);
-    EXPECT_EQ(sin_cos_degrees(turn + 180).sin, 0);
-    EXPECT_EQ(sin_cos_degrees(turn + 180).cos, -1);
-    EXPECT_EQ(sin_cos_degrees(turn - 90).sin, -1);
-    EXPECT_EQ(sin_cos_degrees(turn - 90).cos, 0);
-  }
-  for (double d = -400; d < 400; d += 0.37) {
-    const long double rad = d * std::numbers::pi_v<long double> / 180;
-    EXPECT_NEAR(sin_cos_degrees(d).sin, static_cast<double>(std::sin(rad)), 4e-16) << d;
-    EXPECT_NEAR(sin_cos_degrees(d).cos, static_cast<double>(std::cos(rad)), 4e-16) << d;
-  }
-  for (float rad = 0.01F; rad < 3.1F; rad += 0.03F)
-    EXPECT_NEAR(tan_half(static_cast<double>(rad)) / std::tan(static_cast<double>(rad) / 2), 1,
-                1e-14);
-}
-
 }  // namespace
 }  // namespace rastrum::test::fit_test

@@ -7,18 +7,23 @@
 
 #include <rastrum/config.hpp>
 #include <rastrum/primitives.hpp>
+#include <rastrum/raster/draws/quadrics.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/raster/shade/shading.hpp>
 
 namespace rastrum::raster {
 
+struct DrawCut;
+
 /// Stands for a place in FrameGeometry::projected where a draw has none.
 inline constexpr std::size_t kNotProjected = ~std::size_t{0};
 
 /// Primitives over one vertex stage. Their flags are those of its pieces.
 struct Draw : Primitives {
-  VertexStage source;  ///< must be set
+  VertexStage source;  ///< must be set, or `quadrics`
+  /// The primitives are these; they have no vertices, and the topology says nothing.
+  const QuadricStage* quadrics = nullptr;
   /// Flags by material, so that a mesh of several needs no draw for each: triangle t has those of
   /// material_flags[face_materials[t]], too. Both or none.
   IndexView face_materials{};  ///< where there is a mesh, of its faces
@@ -31,12 +36,22 @@ struct Draw : Primitives {
   /// RendererAccess::draw is given.
   Shading shading;
   Testing test;
+  const DrawCut* cut = nullptr;  ///< its clip planes (cut.hpp), which must outlive the frame
 
   // Filled by the pipeline.
   std::uint64_t first_id = 0;
   std::size_t first_vertex = 0;  ///< of this draw in FrameGeometry::projected, or kNotProjected
   std::size_t number = 0;        ///< among the draws of its shading
 
+  /// Makes it one of the triangles of a mesh, which must outlive the frame.
+  void set_triangles(const MeshView& of) {
+    if (of.is_packed_list())
+      indices = of.indices.packed();
+    else
+      mesh = &of;
+    vertex_count = of.positions.size();
+    primitive_count = of.triangle_count();
+  }
   [[nodiscard]] RASTRUM_HD std::uint32_t vertex(std::uint64_t primitive, int corner) const {
 #if !defined(__CUDA_ARCH__)
     if (mesh != nullptr)
@@ -68,7 +83,8 @@ struct Draw : Primitives {
   }
   /// Whether the setup kernel may make its pieces; otherwise assemble_primitive does.
   [[nodiscard]] bool has_kernel() const {
-    return visible && topology == Topology::triangles && depth_bias == 0 && depth_bias_slope == 0;
+    return visible && quadrics == nullptr && topology == Topology::triangles && depth_bias == 0 &&
+           depth_bias_slope == 0;
   }
 };
 

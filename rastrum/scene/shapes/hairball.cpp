@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/scene/shapes/random.hpp>
 #include <rastrum/scene/shapes/require.hpp>
@@ -22,7 +23,7 @@ struct Strand {
     p[0] = random.unit_vector() * radius;
     for (int i : {1, 2}) {
       // Drawn in statements of their own: compilers order the operands of a product as they like.
-      const double r = radius * std::cbrt(random.uniform());
+      const double r = radius * elementary::cbrt(random.uniform());
       p[i] = random.unit_vector() * r;
     }
     p[3] = random.unit_vector() * radius;
