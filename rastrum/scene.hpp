@@ -62,8 +62,7 @@ struct Material {
 // `Scene` owns what a reader made of a file.
 
 /// What an instance draws, over the caller's arrays.
-using GeometryView =
-    std::variant<MeshView, SpheresView, CylindersView, TubesView, DiscsView>;
+using GeometryView = std::variant<MeshView, SpheresView, CylindersView, TubesView, DiscsView>;
 
 /// A geometry placed in the world, with a look of its own. Ids count the primitives of the
 /// instances in order.

@@ -68,9 +68,8 @@ class VerticesInUse {
         if (std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z)) f(q);
       };
       if (scene_.instances[i].mesh() == nullptr) {
-        for_each_ball(scene_.instances[i].geometry, [&](Vec3 centre, float radius) {
-          visit_ball(widen(centre), radius, visit);
-        });
+        for_each_ball(scene_.instances[i].geometry,
+                      [&](Vec3 centre, float radius) { visit_ball(widen(centre), radius, visit); });
         continue;
       }
       const MeshView& mesh = *scene_.instances[i].mesh();

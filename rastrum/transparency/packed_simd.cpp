@@ -38,18 +38,17 @@ HWY_NOINLINE std::size_t pack_quadric(const raster::Piece& p, std::uint64_t mask
                                       std::uint32_t first, std::uint64_t* keys,
                                       std::uint16_t* pixels) {
   HWY_ALIGN std::uint64_t of_block[64];
-  raster::HWY_NAMESPACE::quadric_keys(
-      p,
-      {0, static_cast<std::uint16_t>(x / raster::kBlockSize),
-       static_cast<std::uint16_t>(y / raster::kBlockSize), mask},
-      of_block);
+  raster::HWY_NAMESPACE::quadric_keys(p,
+                                      {0, static_cast<std::uint16_t>(x / raster::kBlockSize),
+                                       static_cast<std::uint16_t>(y / raster::kBlockSize), mask},
+                                      of_block);
   std::size_t n = 0;
   for (; mask != 0; mask &= mask - 1, ++n) {
     const int i = std::countr_zero(mask);
     keys[n] = of_block[i];
     pixels[n] = static_cast<std::uint16_t>(
-        first + static_cast<std::uint32_t>(i / raster::kBlockSize * kPackedPitch +
-                                           i % raster::kBlockSize));
+        first +
+        static_cast<std::uint32_t>(i / raster::kBlockSize * kPackedPitch + i % raster::kBlockSize));
   }
   return n;
 }

@@ -22,7 +22,8 @@ using raster::BlockColors;
 using raster::kBlockSize;
 using raster::Piece;
 
-/// A triangle, or one side of a quadric, in a pixel: its key at each sample that it covers, and where it is shaded.
+/// A triangle, or one side of a quadric, in a pixel: its key at each sample that it covers, and
+/// where it is shaded.
 struct Fragment {
   std::uint64_t keys[raster::kMaxSamples] = {};  ///< 0: not covered
   std::uint64_t shaded_key = 0;                  ///< where it is shaded

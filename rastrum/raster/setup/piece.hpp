@@ -1,4 +1,5 @@
-// A piece: a set-up triangle, line, point or side of a quadric. What coverage enumerates and visibility resolves.
+// A piece: a set-up triangle, line, point or side of a quadric. What coverage enumerates and
+// visibility resolves.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +31,8 @@ RASTRUM_HD constexpr std::uint64_t id_of_key(std::uint64_t key) {
 struct alignas(16) Piece {
   std::int32_t x[3], y[3];  ///< n.8, inside the guard band, but for what is said to be in pixels
   float z0, zx, zy;         ///< depth at vertex 0 and its change per px
-  std::uint32_t flags;      ///< kTested … kFacesAway, kLine … kQuadric, its sample, a line's width
-  std::uint64_t low;        ///< the key's low part: kIdMask − id
+  std::uint32_t flags;  ///< kTested … kFacesAway, kLine … kQuadric, its sample, a line's width
+  std::uint64_t low;    ///< the key's low part: kIdMask − id
 };
 static_assert(sizeof(Piece) == 48);
 

@@ -67,8 +67,7 @@ SurfacePoint surface_point(const QuadricShape& shape, const RayFrame::Point& h) 
   }
   const double slope = (shape.r1 - shape.r0) / distance;
   const double along = std::clamp(t / distance, 0.0, 1.0);
-  const double off_side =
-      std::abs(radius - (shape.r0 + slope * t)) / std::sqrt(1 + slope * slope);
+  const double off_side = std::abs(radius - (shape.r0 + slope * t)) / std::sqrt(1 + slope * slope);
   if (shape.kind == QuadricKind::cone && std::min(std::abs(t), std::abs(distance - t)) < off_side)
     return {axis * (t < 0.5 * distance ? -1.0 : 1.0), along};
   return {unit_or(outwards - axis * slope, axis), along};
@@ -147,9 +146,8 @@ Vec4 SurfaceShader::color(const Kept& k, const FrameGeometry&, std::uint64_t key
   scalar_wide::Surface s = scalar_wide::surface_at(q, row, false, dx);
   if (!s.covered || quadric_depth(q, s.e) != depth) s = scalar_wide::surface_at(q, row, true, dx);
   const RayFrame& r = k.rays;
-  const RayFrame::Point h{
-      ((r.o.v + r.x.v * dx) + r.y.v * dy) + r.depth.v * s.e,
-      ((r.o.w + r.x.w * dx) + r.y.w * dy) + r.depth.w * s.e};
+  const RayFrame::Point h{((r.o.v + r.x.v * dx) + r.y.v * dy) + r.depth.v * s.e,
+                          ((r.o.w + r.x.w * dx) + r.y.w * dy) + r.depth.w * s.e};
   const SurfacePoint point = surface_point(k.shape, h);
   const Vec4 base = lerp(k.color[0], k.color[1], static_cast<float>(point.along));
   const Vec3 normal = k.surface->to_world.to_world(Vec3(point.normal));

@@ -61,8 +61,8 @@ class SurfaceShader final : public BlockShader {
   struct KeptSurfaces;
 
   void fetch(const FrameGeometry& frame, std::uint64_t low, Kept& out) const;
-  [[nodiscard]] Vec4 color(const Kept& kept, const FrameGeometry& frame, std::uint64_t key, float px,
-                           float py, double dx, double dy) const;
+  [[nodiscard]] Vec4 color(const Kept& kept, const FrameGeometry& frame, std::uint64_t key,
+                           float px, float py, double dx, double dy) const;
 
   SurfaceLook look_;
   bool linear_ = false;
