@@ -2,7 +2,6 @@
 // scales first, and rotations as unit quaternions. Projections are in camera.hpp.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include <rastrum/mat.hpp>
@@ -10,7 +9,7 @@
 
 namespace rastrum {
 
-constexpr Mat4d translation(Vec3 by) {
+constexpr Mat4d translation(Vec3d by) {
   Mat4d r = Mat4d::identity();
   r.m[0][3] = by.x;
   r.m[1][3] = by.y;
@@ -18,7 +17,7 @@ constexpr Mat4d translation(Vec3 by) {
   return r;
 }
 
-constexpr Mat4d scaling(Vec3 by) {
+constexpr Mat4d scaling(Vec3d by) {
   Mat4d r = Mat4d::identity();
   r.m[0][0] = by.x;
   r.m[1][1] = by.y;
@@ -28,7 +27,7 @@ constexpr Mat4d scaling(Vec3 by) {
 
 /// p + along (normal · p): planes across `normal` slide along `along`. A shear, which keeps
 /// volumes, where the two are at right angles.
-constexpr Mat4d shear(Vec3 along, Vec3 normal) {
+constexpr Mat4d shear(Vec3d along, Vec3d normal) {
   const double a[3] = {along.x, along.y, along.z}, n[3] = {normal.x, normal.y, normal.z};
   Mat4d r = Mat4d::identity();
   for (int i = 0; i < 3; ++i)
@@ -38,7 +37,7 @@ constexpr Mat4d shear(Vec3 along, Vec3 normal) {
 
 /// The mirror image in the plane normal · p = offset · |normal|². `normal` is not 0 and need not be
 /// of unit length. Turns fronts into backs (Winding).
-constexpr Mat4d reflection(Vec3 normal, double offset = 0) {
+constexpr Mat4d reflection(Vec3d normal, double offset = 0) {
   const double n[3] = {normal.x, normal.y, normal.z};
   const double squared = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
   Mat4d r = Mat4d::identity();
@@ -74,13 +73,7 @@ inline Quaternion normalize(const Quaternion& q) {
 }
 
 /// Right-handed about `axis`, which need not be of unit length; the identity where it is 0.
-inline Quaternion rotation_about(Vec3 axis, double angle_rad) {
-  const double x = axis.x, y = axis.y, z = axis.z;
-  const double length = std::sqrt(x * x + y * y + z * z);
-  if (!(length > 0)) return {};
-  const double s = std::sin(angle_rad / 2) / length;
-  return {std::cos(angle_rad / 2), x * s, y * s, z * s};
-}
+[[nodiscard]] Quaternion rotation_about(Vec3d axis, double angle_rad);
 
 /// The rotation's matrix. `q` of unit length.
 constexpr Mat4d rotation(const Quaternion& q) {
@@ -101,16 +94,6 @@ constexpr Mat4d rotation(const Quaternion& q) {
 }
 
 /// From a (t = 0) to b (t = 1) at constant angular speed, the shorter way round.
-inline Quaternion slerp(const Quaternion& a, const Quaternion& b, double t) {
-  const double cosine = dot(a, b);
-  const double sign = cosine < 0 ? -1 : 1;
-  const double angle = std::acos(std::min(std::abs(cosine), 1.0));
-  // Where the sine vanishes the arc is a straight line to the last bits.
-  const double sine = std::sin(angle);
-  const double wa = sine > 1e-9 ? std::sin((1 - t) * angle) / sine : 1 - t;
-  const double wb = sign * (sine > 1e-9 ? std::sin(t * angle) / sine : t);
-  return normalize(
-      {wa * a.w + wb * b.w, wa * a.x + wb * b.x, wa * a.y + wb * b.y, wa * a.z + wb * b.z});
-}
+[[nodiscard]] Quaternion slerp(const Quaternion& a, const Quaternion& b, double t);
 
 }  // namespace rastrum

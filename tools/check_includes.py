@@ -29,19 +29,20 @@ MAY_INCLUDE = {
 }
 # The public headers, rastrum/NAME.hpp, by the floor that has their sources.
 PUBLIC = {
-    "core": {"config", "error", "image", "mat", "transform", "vec"},
+    "core": {"config", "digest", "error", "image", "mat", "transform", "vec"},
     "parallel": {"device", "stop"},
-    "scene": {"camera", "fit", "mesh", "scene", "shapes", "surfaces"},
+    "scene": {"camera", "fit", "mesh", "motion", "scene", "shapes", "surfaces"},
     "raster": {"frame", "primitives", "program", "tuning"},
     "terrain": {"terrain", "terrain_light"},
     "io": {"io"},
-    "render": {"on_terrain", "render"},
+    "render": {"on_terrain", "pick", "render"},
     "family": {"family"},
 }
 FLOOR_OF = {f"{name}.hpp": floor for floor, names in PUBLIC.items() for name in names}
 # What users of the library have to do without: why the program has it is in decision 0025.
 PROGRAMS_MAY = {
-    "apps": {"rastrum/core/angle.hpp", "rastrum/io/mapped_file.hpp", "rastrum/parallel/exec.hpp",
+    "apps": {"rastrum/core/angle.hpp", "rastrum/core/elementary.hpp",
+             "rastrum/io/mapped_file.hpp", "rastrum/parallel/exec.hpp",
              "rastrum/raster/assemble/clip.hpp", "rastrum/raster/shade/srgb.hpp"},
     "examples": set(),
 }

@@ -7,12 +7,14 @@
 #include <numbers>
 #include <vector>
 
+#include <rastrum/core/elementary.hpp>
+
 namespace rastrum::cli {
 namespace {
 
 std::uint8_t srgb8(double linear) {
   const double c = std::clamp(linear, 0.0, 1.0);
-  const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
+  const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * elementary::pow(c, 1 / 2.4) - 0.055;
   return static_cast<std::uint8_t>(std::lround(encoded * 255));
 }
 
@@ -34,10 +36,10 @@ const std::array<Rgba8, kRampSize>& heat_ramp() {
     for (int i = 0; i < kRampSize; ++i) {
       const double t = static_cast<double>(i) / (kRampSize - 1);
       const double lightness = 0.32 + 0.64 * t;
-      const double hue = (290 + 178 * t) / 180 * std::numbers::pi;  // violet, red, yellow
+      // From violet by red to yellow.
+      const auto [sin, cos] = elementary::sin_cos((290 + 178 * t) / 180 * std::numbers::pi);
       const double chroma = 0.15;
-      colors[static_cast<std::size_t>(i)] =
-          from_oklab(lightness, chroma * std::cos(hue), chroma * std::sin(hue));
+      colors[static_cast<std::size_t>(i)] = from_oklab(lightness, chroma * cos, chroma * sin);
     }
     return colors;
   }();
@@ -46,7 +48,8 @@ const std::array<Rgba8, kRampSize>& heat_ramp() {
 
 int ramp_index(std::uint32_t n, std::uint32_t max) {
   if (n <= 1) return 0;
-  const double t = std::log(static_cast<double>(n)) / std::log(static_cast<double>(max));
+  const double t =
+      elementary::log(static_cast<double>(n)) / elementary::log(static_cast<double>(max));
   return static_cast<int>(std::lround(t * (kRampSize - 1)));
 }
 

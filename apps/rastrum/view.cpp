@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/fit.hpp>
 
 #include "arguments.hpp"
@@ -12,8 +13,8 @@
 namespace rastrum::cli {
 namespace {
 
-double distance(Vec3 a, Vec3 b) {
-  return std::hypot(double{a.x} - b.x, double{a.y} - b.y, double{a.z} - b.z);
+double distance(Vec3d a, Vec3d b) {
+  return length(a - b);
 }
 
 Camera file_camera(const Scene& scene, int index) {
@@ -44,7 +45,7 @@ Camera fitted_camera(const ViewOptions& o, const SceneView& view, float fov_rad,
 BoundingSphere bounding_sphere(const SceneView& view) {
   constexpr float kFov = 1;
   const Camera fit = fit_camera(view, kFov, false);
-  return {fit.target, distance(fit.eye, fit.target) * std::sin(double{kFov} / 2)};
+  return {fit.target, distance(fit.eye, fit.target) * elementary::sin(double{kFov} / 2)};
 }
 
 void place_planes(Camera& camera, const BoundingSphere& scene) {
@@ -90,7 +91,7 @@ Camera choose_camera(const ViewOptions& o, const Scene& scene, const SceneView& 
   if (o.far_plane) camera.far_plane = static_cast<float>(*o.far_plane);
   if (camera.eye == camera.target)
     throw UsageError(o.target ? "--target" : "--eye", "eye and target must differ");
-  const Vec3 towards = camera.target - camera.eye;
+  const Vec3d towards = camera.target - camera.eye;
   if (length(cross(camera.up, towards)) == 0)
     throw UsageError("--up", o.up ? "must not be zero or along the view direction"
                                   : "is needed: the camera looks along 0,1,0; try --up 0,0,-1");

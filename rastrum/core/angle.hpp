@@ -1,15 +1,14 @@
-// Sines and cosines that are the same bits on every machine: a libm may round its own as it likes,
-// and what leads to a pixel must not depend on whose it is.
+// Angles in degrees, whose quarters are exact.
 #pragma once
 
 #include <cmath>
 #include <numbers>
 
+#include <rastrum/core/elementary.hpp>
+
 namespace rastrum {
 
-struct SinCos {
-  double sin = 0, cos = 1;
-};
+using elementary::SinCos;
 
 /// Of an angle in degrees, any finite one; to about an ulp, exact (−1, 0, 1) at multiples of 90.
 inline SinCos sin_cos_degrees(double degrees) {
@@ -17,15 +16,7 @@ inline SinCos sin_cos_degrees(double degrees) {
   // bits.
   const double turn = std::fmod(degrees, 360.0);
   const double quarters = std::floor(turn / 90 + 0.5);
-  const double x = (turn - 90 * quarters) * (std::numbers::pi / 180);
-  const double x2 = x * x;
-  // Taylor's series within ±45°; the first term left out is below 1e-19.
-  double s = 1, c = 1;
-  for (int n = 18; n >= 2; n -= 2) {
-    s = 1 - x2 / (n * (n + 1)) * s;
-    c = 1 - x2 / ((n - 1) * n) * c;
-  }
-  s *= x;
+  const auto [s, c] = elementary::sin_cos((turn - 90 * quarters) * (std::numbers::pi / 180));
   switch (static_cast<int>(quarters) & 3) {
     case 0:
       return {s, c};
@@ -36,12 +27,6 @@ inline SinCos sin_cos_degrees(double degrees) {
     default:
       return {-c, s};
   }
-}
-
-/// The tangent of half an angle in radians, from 0 to below π.
-inline double tan_half(double angle_rad) {
-  const SinCos half = sin_cos_degrees(angle_rad * (180 / std::numbers::pi) / 2);
-  return half.sin / half.cos;
 }
 
 }  // namespace rastrum

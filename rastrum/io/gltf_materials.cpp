@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/io/gltf_internal.hpp>
 
@@ -24,7 +25,7 @@ TextureUse use_of(const Json& info) {
   (void)transform->numbers("offset", offset);
   (void)transform->numbers("scale", scale);
   const double angle = static_cast<double>(transform->real("rotation", 0));
-  const double c = std::cos(angle), s = std::sin(angle);
+  const auto [s, c] = elementary::sin_cos(angle);
   // translation · rotation · scale, the rotation counter-clockwise in a space whose v points down
   use.m[0][0] = static_cast<float>(c * scale[0]);
   use.m[0][1] = static_cast<float>(s * scale[1]);

@@ -101,7 +101,7 @@ class Quiet {
 std::optional<double> cell_metres(const Gdal& gdal, GDALDatasetH data) {
   double t[6];
   if (gdal.geo_transform(data, t) != CE_None) return std::nullopt;
-  const double step = std::hypot(t[1], t[4]);
+  const double step = std::sqrt(t[1] * t[1] + t[4] * t[4]);
   if (!std::isfinite(step) || !(step > 0)) return std::nullopt;
   constexpr double kMetresPerDegree = 111320;
   const OGRSpatialReferenceH where = gdal.spatial_ref(data);

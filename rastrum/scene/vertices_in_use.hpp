@@ -1,15 +1,14 @@
 // The vertices that triangles use, in world space: what a fit looks at, more than once.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include <rastrum/core/vec3d.hpp>
 #include <rastrum/mesh.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/surfaces.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum {
 
@@ -65,21 +64,21 @@ class VerticesInUse {
           return m.m[r][0] * p.x + m.m[r][1] * p.y + m.m[r][2] * p.z + m.m[r][3];
         };
         const Vec3d q{row(0), row(1), row(2)};
-        if (std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z)) f(q);
+        if (is_finite(q)) f(q);
       };
       if (scene_.instances[i].mesh() == nullptr) {
         for_each_ball(scene_.instances[i].geometry,
-                      [&](Vec3 centre, float radius) { visit_ball(widen(centre), radius, visit); });
+                      [&](Vec3 centre, float radius) { visit_ball(Vec3d(centre), radius, visit); });
         continue;
       }
       const MeshView& mesh = *scene_.instances[i].mesh();
       if (mesh.indices.empty()) {
-        for (const Vec3 p : mesh.positions.first(mesh.triangle_count() * 3)) visit(widen(p));
+        for (const Vec3 p : mesh.positions.first(mesh.triangle_count() * 3)) visit(Vec3d(p));
         continue;
       }
       const std::vector<bool>& used = used_[used_by_[i]];
       for (std::size_t v = 0; v < used.size(); ++v)
-        if (used[v]) visit(widen(mesh.positions[v]));
+        if (used[v]) visit(Vec3d(mesh.positions[v]));
     }
   }
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/parallel/for_each.hpp>
 #include <rastrum/stop.hpp>
 #include <rastrum/terrain/blocks.hpp>
@@ -20,7 +21,7 @@ namespace rastrum::terrain {
 
 std::vector<ClassicLine> classic_lines(const TerrainOptions& options, const TerrainCamera& camera) {
   std::vector<ClassicLine> lines;
-  const double sin = std::sin(camera.angle_rad), cos = std::cos(camera.angle_rad);
+  const auto [sin, cos] = elementary::sin_cos(camera.angle_rad);
   double dz = 1;
   for (double z = 1; z < options.distance; dz += 0.005, z += dz) {
     const double x = -cos * z - sin * z, y = sin * z - cos * z;
@@ -167,7 +168,7 @@ Counts draw_classic_reference(const Terrain& terrain, const TerrainOptions& opti
     }
   Counts counts;
   std::vector<int> hidden(static_cast<std::size_t>(width), height);
-  const double sin = std::sin(camera.angle_rad), cos = std::cos(camera.angle_rad);
+  const auto [sin, cos] = elementary::sin_cos(camera.angle_rad);
   double dz = 1;
   for (double z = 1; z < options.distance; dz += 0.005, z += dz) {
     parallel::throw_if_stopped();

@@ -5,13 +5,13 @@
 #include <limits>
 #include <numbers>
 
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/terrain/shadow_ray.hpp>
 
 namespace rastrum::terrain {
 ToSun ToSun::of(const Sun& sun) {
   const SunRay ray = sun_ray({sun.azimuth_deg, 45});
-  const double up = std::sin(sun.elevation_deg * std::numbers::pi / 180);
-  const double flat = std::cos(sun.elevation_deg * std::numbers::pi / 180);
+  const auto [up, flat] = elementary::sin_cos(sun.elevation_deg * std::numbers::pi / 180);
   return {static_cast<float>(ray.x * flat), static_cast<float>(ray.y * flat),
           static_cast<float>(up)};
 }

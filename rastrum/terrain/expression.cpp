@@ -1,5 +1,8 @@
 // Expressions through muParser. A parser holds the values of its variables, so each thread takes
 // one of its own from a pool. Without the library at build time the function says what to install.
+//
+// muParser reads the formula, and what it computes with is ours: its functions are a libm's, and
+// built for ARM its own operators may be fused, so neither has the same bits everywhere.
 #include <rastrum/terrain_light.hpp>
 
 #include <rastrum/error.hpp>
@@ -13,17 +16,99 @@
 #include <mutex>
 #include <utility>
 #include <vector>
+
+#include <rastrum/core/elementary.hpp>
 #endif
 
 namespace rastrum::terrain {
 #ifdef RASTRUM_HAS_MUPARSER
 namespace {
 
+double power(double x, double y) {
+  if (y == 2) return x * x;
+  if (y == 3) return x * x * x;
+  if (y == 4) return x * x * x * x;
+  return elementary::pow(x, y);
+}
+// The hyperbolic functions lose digits near 0, as many as a height of float32 does not have.
+double sinh(double x) {
+  const double e = elementary::exp(x);
+  return (e - 1 / e) / 2;
+}
+double cosh(double x) {
+  const double e = elementary::exp(x);
+  return (e + 1 / e) / 2;
+}
+double tanh(double x) {
+  return 1 - 2 / (elementary::exp(2 * x) + 1);
+}
+double asinh(double x) {
+  const double size = std::abs(x);
+  return std::copysign(elementary::log(size + std::sqrt(size * size + 1)), x);
+}
+double acosh(double x) {
+  return elementary::log(x + std::sqrt(x * x - 1));
+}
+double atanh(double x) {
+  return (elementary::log1p(x) - elementary::log1p(-x)) / 2;
+}
+
+/// In the place of all that muParser would compute; what is left to it adds, compares or rounds.
+void define_arithmetic(mu::Parser& parser) {
+  struct Function {
+    const char* name;
+    double (*of)(double);
+  };
+  constexpr Function kFunctions[] = {{"sin", elementary::sin},
+                                     {"cos", elementary::cos},
+                                     {"tan", elementary::tan},
+                                     {"asin", elementary::asin},
+                                     {"acos", elementary::acos},
+                                     {"atan", elementary::atan},
+                                     {"sinh", sinh},
+                                     {"cosh", cosh},
+                                     {"tanh", tanh},
+                                     {"asinh", asinh},
+                                     {"acosh", acosh},
+                                     {"atanh", atanh},
+                                     {"exp", elementary::exp},
+                                     {"log", elementary::log},
+                                     {"ln", elementary::log},
+                                     {"log2", elementary::log2},
+                                     {"log10", elementary::log10}};
+  for (const Function& f : kFunctions) parser.DefineFun(f.name, f.of);
+  parser.DefineFun("atan2", elementary::atan2);
+
+  struct Operator {
+    const char* name;
+    double (*of)(double, double);
+    unsigned precedence;
+  };
+  const Operator operators[] = {
+      {"+", [](double a, double b) { return a + b; }, mu::prADD_SUB},
+      {"-", [](double a, double b) { return a - b; }, mu::prADD_SUB},
+      {"*", [](double a, double b) { return a * b; }, mu::prMUL_DIV},
+      {"/", [](double a, double b) { return a / b; }, mu::prMUL_DIV},
+      {"<", [](double a, double b) { return a < b ? 1.0 : 0.0; }, mu::prCMP},
+      {">", [](double a, double b) { return a > b ? 1.0 : 0.0; }, mu::prCMP},
+      {"<=", [](double a, double b) { return a <= b ? 1.0 : 0.0; }, mu::prCMP},
+      {">=", [](double a, double b) { return a >= b ? 1.0 : 0.0; }, mu::prCMP},
+      {"==", [](double a, double b) { return a == b ? 1.0 : 0.0; }, mu::prCMP},
+      {"!=", [](double a, double b) { return a != b ? 1.0 : 0.0; }, mu::prCMP},
+      {"&&", [](double a, double b) { return a != 0 && b != 0 ? 1.0 : 0.0; }, mu::prLAND},
+      {"||", [](double a, double b) { return a != 0 || b != 0 ? 1.0 : 0.0; }, mu::prLOR}};
+  parser.EnableBuiltInOprt(false);
+  for (const Operator& o : operators)
+    parser.DefineOprt(o.name, o.of, o.precedence, mu::oaLEFT, true);
+  parser.DefineOprt("^", power, mu::prPOW, mu::oaRIGHT, true);
+}
+
 struct Formula {
   double x = 0, y = 0;
   mu::Parser parser;
 
   explicit Formula(const std::string& text) {
+    define_arithmetic(parser);
     parser.DefineVar("x", &x);
     parser.DefineVar("y", &y);
     parser.SetExpr(text);

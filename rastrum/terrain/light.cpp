@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/terrain/color_map.hpp>
@@ -104,13 +105,13 @@ class LitFunction final : public Surface {
                light.shadows,
                light.ambient,
                ToSun::of(light.sun)} {
-    const double azimuth = light.sun.azimuth_deg * (std::numbers::pi / 180);
-    const double elevation = light.sun.elevation_deg * (std::numbers::pi / 180);
     if (light.shadows == Shadows::none) return;
+    const auto azimuth = elementary::sin_cos(light.sun.azimuth_deg * (std::numbers::pi / 180));
+    const auto elevation = elementary::sin_cos(light.sun.elevation_deg * (std::numbers::pi / 180));
     for (int k = 1; k < light.march.steps; ++k) {
       const double t = light.march.distance * k / light.march.steps;
-      steps_.push_back({t * std::sin(azimuth) * std::cos(elevation),
-                        -t * std::cos(azimuth) * std::cos(elevation), t * std::sin(elevation)});
+      steps_.push_back(
+          {t * azimuth.sin * elevation.cos, -t * azimuth.cos * elevation.cos, t * elevation.sin});
     }
   }
 

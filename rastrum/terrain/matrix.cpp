@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/terrain/setup.hpp>
 
 namespace rastrum::terrain {
@@ -22,18 +23,18 @@ Mat4d world_to_clip(const TerrainOptions& o, const TerrainCamera& c, double near
   if (o.projection != Projection::planar)
     throw Error(Errc::invalid_argument,
                 "terrain: the cylindrical projection is no matrix; meshes need the planar one");
-  const double sin = std::sin(c.angle_rad), cos = std::cos(c.angle_rad);
+  const auto [sin, cos] = elementary::sin_cos(c.angle_rad);
   // What a point (x, height, y, 1) is from the camera: along the view, to its right, above.
   const Row ahead{-sin, 0, -cos, sin * c.x + cos * c.y};
   const Row right{cos, 0, -sin, -cos * c.x + sin * c.y};
   const Row below{0, -1, 0, c.altitude};
   // Pixels times distance. Classic samples its columns at their left edge and truncates its rows.
-  const double across = o.classic ? o.width / 2.0 : o.width / (2 * std::tan(o.fov_rad / 2));
+  const double across = o.classic ? o.width / 2.0 : o.width / (2 * elementary::tan(o.fov_rad / 2));
   const double half_px = o.classic ? 0.5 : 0;
   Row x_px = combine(across, right, half_px, ahead);  // from the picture's centre
   Row y_px = combine(scale_px(o), below, c.horizon_px - half_px - o.height / 2.0, ahead);
   if (c.roll_rad != 0) {
-    const double rs = std::sin(c.roll_rad), rc = std::cos(c.roll_rad);
+    const auto [rs, rc] = elementary::sin_cos(c.roll_rad);
     const Row x = combine(rc, x_px, rs, y_px);
     y_px = combine(-rs, x_px, rc, y_px);
     x_px = x;

@@ -2,24 +2,24 @@
 
 #include <cmath>
 
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/terrain/setup.hpp>
 
 namespace rastrum::terrain {
 namespace {
 
-struct Turn {
-  double cos, sin;
-  explicit Turn(double angle) : cos(std::cos(angle)), sin(std::sin(angle)) {
-    // A quarter turn of a double is not one of π.
-    if (std::abs(cos) < 1e-12) cos = 0;
-    if (std::abs(sin) < 1e-12) sin = 0;
-  }
-};
+elementary::SinCos turn_by(double angle) {
+  auto [sin, cos] = elementary::sin_cos(angle);
+  // A quarter turn of a double is not one of π.
+  if (std::abs(cos) < 1e-12) cos = 0;
+  if (std::abs(sin) < 1e-12) sin = 0;
+  return {sin, cos};
+}
 
 }  // namespace
 
 Upright upright_of(const TerrainOptions& options, const TerrainCamera& camera) {
-  const Turn turn(camera.roll_rad);
+  const elementary::SinCos turn = turn_by(camera.roll_rad);
   const double c = std::abs(turn.cos), s = std::abs(turn.sin);
   const double width = std::ceil(options.width * c + options.height * s - 1e-6);
   const double height = std::ceil(options.width * s + options.height * c - 1e-6);
@@ -33,7 +33,7 @@ Upright upright_of(const TerrainOptions& options, const TerrainCamera& camera) {
   u.options.scale_px = scale_px(options);
   const double wider = width / options.width;
   u.options.fov_rad = options.projection == Projection::planar
-                          ? 2 * std::atan(std::tan(options.fov_rad / 2) * wider)
+                          ? 2 * elementary::atan(elementary::tan(options.fov_rad / 2) * wider)
                           : options.fov_rad * wider;
   u.camera.horizon_px += (height - options.height) / 2;
   u.camera.roll_rad = 0;
@@ -41,7 +41,7 @@ Upright upright_of(const TerrainOptions& options, const TerrainCamera& camera) {
 }
 
 Roll::Roll(double roll_rad, int width, int height) : width_(width), height_(height) {
-  const Turn turn(roll_rad);
+  const elementary::SinCos turn = turn_by(roll_rad);
   cos_ = turn.cos;
   sin_ = turn.sin;
 }

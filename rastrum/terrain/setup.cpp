@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/core/enum.hpp>
 
 namespace rastrum::terrain {
@@ -25,7 +26,7 @@ void require(bool good, const std::string& message) {
 
 /// Cells across the view at distance 1: from the middle to the edge.
 double half_width(const TerrainOptions& o) {
-  return o.projection == Projection::planar ? std::tan(o.fov_rad / 2) : o.fov_rad / 2;
+  return o.projection == Projection::planar ? elementary::tan(o.fov_rad / 2) : o.fov_rad / 2;
 }
 
 /// The share of its distance that a step is long: what a pixel is high there, and no more than
@@ -103,6 +104,13 @@ void check(const TerrainOptions& o) {
   }
 }
 
+void check_method(const TerrainOptions& o, bool has_words) {
+  if (o.method == Method::words && !has_words)
+    throw Error(Errc::unsupported,
+                "terrain: the method 'words' is drawn by the renderer of rastrum/family.hpp "
+                "(Rastrum::family)");
+}
+
 void check(const TerrainCamera& c) {
   for (const double v : {c.x, c.y, c.altitude, c.angle_rad, c.horizon_px, c.roll_rad})
     require(std::isfinite(v), "terrain: the camera holds a number that is not finite");
@@ -136,13 +144,13 @@ Setup set_up(const TerrainOptions& o, const TerrainCamera& camera, const Extent&
   s.ux.resize(w);
   s.uy.resize(w);
   const double half = half_width(o);
-  const double sin = std::sin(camera.angle_rad), cos = std::cos(camera.angle_rad);
+  const auto [sin, cos] = elementary::sin_cos(camera.angle_rad);
   for (std::size_t i = 0; i < w; ++i) {
     // To the right of the view's axis, and along it.
     double right = ((static_cast<double>(i) + 0.5) * 2 / o.width - 1) * half, ahead = 1;
     if (o.projection == Projection::cylindrical) {
-      ahead = std::cos(right);
-      right = std::sin(right);
+      ahead = elementary::cos(right);
+      right = elementary::sin(right);
     }
     s.ux[i] = static_cast<float>(cos * right - sin * ahead);
     s.uy[i] = static_cast<float>(-sin * right - cos * ahead);
@@ -180,7 +188,7 @@ Setup set_up(const TerrainOptions& o, const TerrainCamera& camera, const Extent&
       slice.level = std::max(0, std::ilogb(std::max(step, z * spacing)));
     }
     if (o.fog.density > 0) {
-      const double through = std::exp(-o.fog.density * std::max(0.0, z - o.fog.start));
+      const double through = elementary::exp(-o.fog.density * std::max(0.0, z - o.fog.start));
       slice.clear = static_cast<std::uint32_t>(std::lround(256 * through));
     }
   }

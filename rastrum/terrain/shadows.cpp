@@ -1,5 +1,6 @@
 // The doors of shadows.hpp: plain loops for `serial` and the scalar instruction set, which are the
 // definition; the kernels of shadows_simd.cpp for the others.
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/terrain_light.hpp>
 
@@ -29,7 +30,7 @@ std::pair<double, double> sin_cos_deg(double degrees) {
   const double turn = std::fmod(degrees, 360.0);
   const double octant = std::round(turn / 45.0);
   const double rest = (turn - octant * 45.0) * (std::numbers::pi / 180);
-  const double s = std::sin(rest), c = std::cos(rest);
+  const auto [s, c] = elementary::sin_cos(rest);
   constexpr double kHalf = std::numbers::sqrt2 / 2;
   const double diagonal_s = kHalf * (s + c), diagonal_c = kHalf * (c - s);
   switch ((static_cast<int>(octant) % 8 + 8) % 8) {
@@ -246,13 +247,13 @@ std::vector<Sun> points_of_disc(const Sun& sun, double radius_deg) {
   std::vector<Sun> points;
   for (int i = 0; i < kPoints; ++i) {
     const double r = radius_deg * std::sqrt((i + 0.5) / kPoints);
-    const double a = i * std::numbers::pi * (3 - std::sqrt(5.0));
-    const double elevation = sun.elevation_deg + r * std::sin(a);
+    const auto [sin, cos] = elementary::sin_cos(i * std::numbers::pi * (3 - std::sqrt(5.0)));
+    const double elevation = sun.elevation_deg + r * sin;
     // Across the sky a degree of azimuth is cos(elevation) long; at the zenith there is no more
     // than half a turn of it.
-    const double across = std::cos(sun.elevation_deg * std::numbers::pi / 180);
-    const double turn = std::min(180.0, std::abs(r * std::cos(a)) / std::max(across, 1e-9));
-    Sun point{sun.azimuth_deg + std::copysign(turn, std::cos(a)), elevation};
+    const double across = elementary::cos(sun.elevation_deg * std::numbers::pi / 180);
+    const double turn = std::min(180.0, std::abs(r * cos) / std::max(across, 1e-9));
+    Sun point{sun.azimuth_deg + std::copysign(turn, cos), elevation};
     if (elevation > 90) point = {point.azimuth_deg + 180, 180 - elevation};
     check(point);
     points.push_back(point);

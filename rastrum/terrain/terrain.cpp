@@ -76,8 +76,8 @@ double ground_at(const Terrain& terrain, double x, double y, const TerrainOption
   if (!terrain.is_map() || options.filter != MapFilter::bilinear) return at(x, y);
   const double u = std::floor(x - 0.5), v = std::floor(y - 0.5);
   const double tx = x - 0.5 - u, ty = y - 0.5 - v;
-  return std::lerp(std::lerp(at(u, v), at(u + 1, v), tx),
-                   std::lerp(at(u, v + 1), at(u + 1, v + 1), tx), ty);
+  const auto mix = [](double a, double b, double t) { return a + (b - a) * t; };
+  return mix(mix(at(u, v), at(u + 1, v), tx), mix(at(u, v + 1), at(u + 1, v + 1), tx), ty);
 }
 
 TerrainCamera above_ground(const Terrain& terrain, const TerrainCamera& camera, double clearance,

@@ -47,7 +47,11 @@ class ByBlock {
   }
   void added(std::size_t n) { count_ += n; }
   [[nodiscard]] std::size_t size() const { return count_; }
-  [[nodiscard]] std::span<const T> in_order() const { return {records_.data(), count_}; }
+  [[nodiscard]] std::span<T> in_order() { return {records_.data(), count_}; }
+  void remove(std::size_t i) {
+    std::copy(records_.data() + i + 1, records_.data() + count_, records_.data() + i);
+    --count_;
+  }
   /// Counting sort.
   void sort(std::size_t blocks) {
     sorted_.reserve(count_);

@@ -37,14 +37,15 @@ using Pixel = std::vector<Fragment>;
 /// Row, column, and whether it is the side of a quadric that faces away.
 using Place = std::tuple<int, int, bool>;
 
-/// The keys of a primitive at one sample, by pixel.
+/// The keys of a primitive at one sample, by pixel: the nearest where its pieces overlap.
 void add_keys(const raster::FrameRequest& request, const Piece& piece,
               std::map<Place, Fragment>& pixels, int sample) {
   const bool away = raster::is_quadric(piece) && (piece.flags & raster::kFacesAway) != 0;
   raster::for_each_covered(piece, {0, 0, request.width, request.height}, [&](int x, int y) {
     Fragment& f = pixels[{y, x, away}];
     const std::uint64_t key = raster::make_key(raster::depth_at(piece, x, y), piece.low);
-    (sample < 0 ? f.shaded_key : f.keys[sample]) = key;
+    std::uint64_t& nearest = sample < 0 ? f.shaded_key : f.keys[sample];
+    nearest = std::max(nearest, key);
   });
 }
 
@@ -69,7 +70,7 @@ struct Scene {
 
 bool Scene::keeps(const raster::Draw& draw, std::uint64_t primitive, int x, int y,
                   const Fragment& f) {
-  const std::uint32_t flags = draw.flags_of(primitive);
+  const std::uint32_t flags = frame.flags_of(draw, primitive);
   if ((flags & raster::kMayDrop) == 0) return true;
   raster::ShadingPoints points{};
   const raster::Block block = block_of(x, y);
@@ -218,9 +219,9 @@ class LayeredReference final : public raster::Method {
     raster::count_triangles(frame, triangles);
     frame.watch.lap(frame.stats, "rasterize");
     const std::unique_ptr<LayerBlend> blend = make_blend_(request.transparency, Isa::scalar);
-    for (int y = 0; y < request.height; ++y) {
+    for (int y = frame.view.y0; y < frame.view.y1; ++y) {
       parallel::throw_if_stopped();
-      for (int x = 0; x < request.width; ++x) {
+      for (int x = frame.view.x0; x < frame.view.x1; ++x) {
         const int bx = x / kBlockSize, by = y / kBlockSize;
         frame.surface.block(bx, by)[y % kBlockSize * kBlockSize + x % kBlockSize] =
             scene.resolve(x, y, *blend, *frame.surface.colors_of(bx, by));

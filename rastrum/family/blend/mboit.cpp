@@ -15,6 +15,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/family/blend/approximations.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 
@@ -43,10 +44,10 @@ void solve(const std::array<double, 4>& c, std::array<double, 3>& roots) {
   const double p = a * a - b / 3;
   const double q = a * (a * a - b / 2) + d / 2;
   const double r = std::sqrt(std::max(p, 0.0));
-  const double angle = std::acos(std::clamp(r > 0 ? q / (r * r * r) : 1.0, -1.0, 1.0)) / 3;
+  const double angle = elementary::acos(std::clamp(r > 0 ? q / (r * r * r) : 1.0, -1.0, 1.0)) / 3;
   for (int k = 0; k < 3; ++k)
     roots[static_cast<std::size_t>(k)] =
-        -2 * r * std::cos(angle + 2 * std::numbers::pi * k / 3) - a;
+        -2 * r * elementary::cos(angle + 2 * std::numbers::pi * k / 3) - a;
 }
 
 /// How much of the absorbance lies before depth z, by `moments` b[0] = 1, b[1] … b[2 n].
@@ -110,7 +111,10 @@ class MomentBased final : public LayerBlend {
     for (auto& pixel : sums_) pixel = {};
     for (auto& pixel : colors_) pixel = {};
   }
-  void begin_pass(int pass) override { pass_ = pass; }
+  void begin_pass(int pass) override {
+    pass_ = pass;
+    if (pass == 1) range_ = elementary::log(nearest_ / farthest_);
+  }
 
   std::uint64_t layer(const Layer& l) override {
     for (std::uint64_t m = l.mask; m != 0; m &= m - 1) {
@@ -120,7 +124,7 @@ class MomentBased final : public LayerBlend {
         nearest_ = std::max(nearest_, d);
         farthest_ = std::min(farthest_, d);
       } else if (pass_ == 1) {
-        double term = -std::log1p(-std::min<double>(l.colors.a[i], kMostAlpha));
+        double term = -elementary::log1p(-std::min<double>(l.colors.a[i], kMostAlpha));
         for (double& sum : sums_[i]) {
           sum += term;
           term *= warped(d);
@@ -137,7 +141,7 @@ class MomentBased final : public LayerBlend {
   }
   void finish(BlockColors& out) override {
     for (int i = 0; i < 64; ++i) {
-      const double through = std::exp(-sums_[i][0]);
+      const double through = elementary::exp(-sums_[i][0]);
       const double scale = colors_[i][3] > 0 ? (1 - through) / colors_[i][3] : 0.0;
       const auto mix = [&](int c, float behind) {
         return static_cast<float>(colors_[i][static_cast<std::size_t>(c)] * scale +
@@ -157,8 +161,7 @@ class MomentBased final : public LayerBlend {
   }
   /// −1 near, 1 far.
   [[nodiscard]] double warped(double d) const {
-    const double range = std::log(nearest_ / farthest_);
-    return range > 0 ? 2 * std::log(nearest_ / d) / range - 1 : 0.0;
+    return range_ > 0 ? 2 * elementary::log(nearest_ / d) / range_ - 1 : 0.0;
   }
   static double transmittance(const Moments& sums, double z) {
     if (!(sums[0] > 0)) return 1;
@@ -169,12 +172,13 @@ class MomentBased final : public LayerBlend {
     Moments b;
     for (std::size_t k = 0; k < b.size(); ++k)
       b[k] = (1 - kBias) * (sums[k] / sums[0]) + kBias * (n == 2 ? kTowards4 : kTowards6)[k];
-    return std::exp(-sums[0] * absorbance_before<n>(b, z));
+    return elementary::exp(-sums[0] * absorbance_before<n>(b, z));
   }
 
   const BlockColors* behind_ = nullptr;
   int pass_ = 0;
   double nearest_ = 0, farthest_ = 1;
+  double range_ = 0;  ///< log(nearest_ / farthest_)
   Moments sums_[64];
   std::array<double, 4> colors_[64];
 };

@@ -156,7 +156,8 @@ template <class Geometry, class Emit>
 RASTRUM_HD Fate assemble_primitive(const Geometry& frame, const Draw& draw, std::uint64_t p,
                                    Emit&& emit, std::uint32_t sample = 0, SampleOffset at = {}) {
   const std::uint64_t id = draw.first_id + p;
-  const std::uint32_t flags = draw.flags_of(p) | sample << kSampleShift;
+  const std::uint32_t flags = frame.flags_of(draw, p) | sample << kSampleShift;
+  if ((flags & kCutAway) != 0) return Fate::culled;
   const auto emit_biased = [&](Piece& piece) {
     add_depth_bias(piece, draw.depth_bias, draw.depth_bias_slope);
     emit(std::as_const(piece));

@@ -14,6 +14,8 @@
 
 namespace rastrum::raster {
 
+struct DrawCut;
+
 /// Primitives over one vertex stage. Their flags are those of its pieces.
 struct Draw : Primitives {
   VertexStage source;  ///< must be set, or `quadrics`
@@ -26,6 +28,7 @@ struct Draw : Primitives {
   /// RendererAccess::draw is given.
   Shading shading;
   Testing test;
+  const DrawCut* cut = nullptr;  ///< its clip planes (cut.hpp), which must outlive the frame
 
   // Filled by the pipeline.
   std::uint64_t first_id = 0;

@@ -2,47 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace rastrum::raster {
 namespace {
-
-/// By elimination with the largest pivot of each column.
-std::optional<Mat4d> inverse_of(Mat4d a) {
-  Mat4d r = Mat4d::identity();
-  for (int column = 0; column < 4; ++column) {
-    int pivot = column;
-    for (int row = column + 1; row < 4; ++row)
-      if (std::abs(a.m[row][column]) > std::abs(a.m[pivot][column])) pivot = row;
-    // Written so that a NaN fails.
-    if (!(std::abs(a.m[pivot][column]) > 0)) return std::nullopt;
-    for (int k = 0; k < 4; ++k) {
-      std::swap(a.m[pivot][k], a.m[column][k]);
-      std::swap(r.m[pivot][k], r.m[column][k]);
-    }
-    const double scale = 1 / a.m[column][column];
-    for (int k = 0; k < 4; ++k) {
-      a.m[column][k] *= scale;
-      r.m[column][k] *= scale;
-    }
-    for (int row = 0; row < 4; ++row) {
-      if (row == column) continue;
-      const double factor = a.m[row][column];
-      for (int k = 0; k < 4; ++k) {
-        a.m[row][k] -= factor * a.m[column][k];
-        r.m[row][k] -= factor * r.m[column][k];
-      }
-    }
-  }
-  for (const auto& row : r.m)
-    for (const double v : row)
-      if (!std::isfinite(v)) return std::nullopt;
-  return r;
-}
-
-bool is_finite(Vec3d p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
 
 double radius_of(std::span<const float> radii, float radius, std::size_t i) {
   return radii.empty() ? radius : radii[i];
@@ -50,31 +12,31 @@ double radius_of(std::span<const float> radii, float radius, std::size_t i) {
 
 QuadricShape shape_of(const SpheresView& s, std::uint64_t i) {
   const auto k = static_cast<std::size_t>(i);
-  const Vec3d p = widen(s.centers[k]);
+  const Vec3d p = Vec3d(s.centers[k]);
   const double r = radius_of(s.radii, s.radius, k);
   return {QuadricKind::sphere, p, p, r, r};
 }
 QuadricShape shape_of(const CylindersView& c, std::uint64_t i) {
   const std::size_t a = c.end(i, 0), b = c.end(i, 1);
-  return {c.caps ? QuadricKind::cone : QuadricKind::open_cone, widen(c.positions[a]),
-          widen(c.positions[b]), radius_of(c.radii, c.radius, a), radius_of(c.radii, c.radius, b)};
+  return {c.caps ? QuadricKind::cone : QuadricKind::open_cone, Vec3d(c.positions[a]),
+          Vec3d(c.positions[b]), radius_of(c.radii, c.radius, a), radius_of(c.radii, c.radius, b)};
 }
 QuadricShape shape_of(const TubesView& t, std::uint64_t i) {
   const std::size_t a = t.begin(i);
-  return {QuadricKind::hull, widen(t.positions[a]), widen(t.positions[a + 1]),
+  return {QuadricKind::hull, Vec3d(t.positions[a]), Vec3d(t.positions[a + 1]),
           radius_of(t.radii, t.radius, a), radius_of(t.radii, t.radius, a + 1)};
 }
 QuadricShape shape_of(const DiscsView& d, std::uint64_t i) {
   const auto k = static_cast<std::size_t>(i);
-  const Vec3d p = widen(d.centers[k]);
+  const Vec3d p = Vec3d(d.centers[k]);
   const double r = radius_of(d.radii, d.radius, k);
-  return {QuadricKind::disc, p, widen(d.normals[k]), r, r};
+  return {QuadricKind::disc, p, Vec3d(d.normals[k]), r, r};
 }
 
 }  // namespace
 
 QuadricStage::QuadricStage(const QuadricGeometry& geometry, const Mat4d& object_to_clip)
-    : geometry_(geometry), object_to_clip_(object_to_clip), inverse_(inverse_of(object_to_clip)) {}
+    : geometry_(geometry), object_to_clip_(object_to_clip), inverse_(inverse(object_to_clip)) {}
 
 ShapeFate QuadricStage::shape(std::uint64_t i, QuadricShape& out) const {
   out = std::visit([&](const auto& geometry) { return shape_of(geometry, i); }, geometry_);

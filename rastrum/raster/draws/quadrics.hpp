@@ -6,9 +6,9 @@
 #include <optional>
 #include <variant>
 
-#include <rastrum/core/vec3d.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/surfaces.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
 

@@ -234,9 +234,10 @@ FrameStats FrameDriver::draw(FrameRequest& request) {
   frame.expansion_bytes = cut.expansion_bytes;
   frame.view_bytes = cut.view_bytes;
   try {
-    for (int y = 0; y < request.height; y += cut.band_rows) {
-      frame.view = {0, y, request.width, std::min(y + cut.band_rows, request.height)};
-      frame.first_band = y == 0;
+    const Rect all = request.part.value_or(Rect{0, 0, request.width, request.height});
+    for (int y = all.y0; y < all.y1; y += cut.band_rows) {
+      frame.view = {all.x0, y, all.x1, std::min(y + cut.band_rows, all.y1)};
+      frame.first_band = y == all.y0;
       draw_band(frame, cut, totals.primitives);
     }
   } catch (...) {

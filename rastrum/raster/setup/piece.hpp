@@ -40,8 +40,12 @@ static_assert(sizeof(Piece) == 48);
 /// are nearer than the picture that the targets hold (Targets::over), so that every coverage and
 /// visibility, layers too, heeds it before it resolves a pixel.
 inline constexpr std::uint32_t kOverPicture = 32;
+/// A clip plane goes through this piece's primitive (draws/cut.hpp).
+inline constexpr std::uint32_t kCut = 128;
+/// Of a primitive's flags alone: a clip plane leaves nothing of it, so there are no pieces.
+inline constexpr std::uint32_t kCutAway = 1U << 31;
 /// Fragments have to be asked for before the maximum.
-inline constexpr std::uint32_t kMayDrop = kTested | kOverPicture;
+inline constexpr std::uint32_t kMayDrop = kTested | kOverPicture | kCut;
 /// What the piece is; none of them: a triangle.
 inline constexpr std::uint32_t kLine = 2, kPoint = 4, kQuadric = 64;
 inline constexpr int kLineWidthShift = 16;

@@ -63,11 +63,20 @@ SetupOutput all_slow(const Draw& draw, std::uint64_t first, std::uint32_t count,
 }
 
 /// How many of the `count` primitives from `first` on have the flags of the first.
-std::uint32_t equal_flags(const Draw& draw, std::uint64_t first, std::uint32_t count) {
-  if (draw.material_flags.empty()) return count;
+std::uint32_t equal_flags(const FrameGeometry& frame, const Draw& draw, std::uint64_t first,
+                          std::uint32_t count) {
+  if (draw.material_flags.empty() && draw.cut == nullptr) return count;
+  const std::uint32_t flags = frame.flags_of(draw, first);
   std::uint32_t n = 1;
-  while (n < count && draw.flags_of(first + n) == draw.flags_of(first)) ++n;
+  while (n < count && frame.flags_of(draw, first + n) == flags) ++n;
   return n;
+}
+
+bool has_indices_in_range(const Draw& draw, std::uint64_t first, std::uint32_t count) {
+  for (std::uint64_t p = first; p < first + count; ++p)
+    for (int corner = 0; corner < static_cast<int>(draw.topology); ++corner)
+      if (draw.vertex(p, corner) >= draw.vertex_count) return false;
+  return true;
 }
 
 }  // namespace
@@ -109,10 +118,17 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
   for (std::uint64_t id = first; id < last;) {
     const Draw& draw = geometry.draw_of(id);
     const std::uint64_t t = id - draw.first_id;
-    const std::uint32_t count = equal_flags(
-        draw, t,
-        static_cast<std::uint32_t>(
-            std::min({std::uint64_t{kSetupBatch}, last - id, draw.primitive_count - t})));
+    const auto most = static_cast<std::uint32_t>(
+        std::min({std::uint64_t{kSetupBatch}, last - id, draw.primitive_count - t}));
+    // Clip planes look at the corners before the kernel does.
+    if (draw.cut != nullptr && !has_indices_in_range(draw, t, most)) return false;
+    const std::uint32_t count = equal_flags(geometry, draw, t, most);
+    const std::uint32_t flags = geometry.flags_of(draw, t);
+    if ((flags & kCutAway) != 0) {
+      pieces.triangles.culled += count;
+      id += count;
+      continue;
+    }
     SetupInput input;
     input.first = t;
     input.count = count;
@@ -136,7 +152,7 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
     TriangleSet seen, clipped, dropped;
     for (std::uint32_t sample = 0; sample < samples.size(); ++sample) {
       const SampleOffset at = samples[sample];
-      input.flags = draw.flags_of(t) | sample << kSampleShift;
+      input.flags = flags | sample << kSampleShift;
       // Who draws translucent surfaces opaque knows no such fragments.
       if (frame.request.transparency.method == Transparency::none) input.flags &= ~kTranslucent;
       if (samples.size() > 1 && draw.has_kernel()) corners.see_from(at, count);

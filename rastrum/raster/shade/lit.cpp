@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/lit_scalar.hpp>
@@ -43,7 +44,7 @@ float wire(const Fragment& f) {
     const WeightPlanes& w = *f.planes;
     const double b = w.r[i] + w.p[i] * (f.x + 0.5 + static_cast<double>(f.from_centre.x) - w.x0) +
                      w.q[i] * (f.y + 0.5 + static_cast<double>(f.from_centre.y) - w.y0);
-    nearest = std::min(nearest, std::abs(b) / std::hypot(w.p[i], w.q[i]));
+    nearest = std::min(nearest, std::abs(b) / std::sqrt(w.p[i] * w.p[i] + w.q[i] * w.q[i]));
   }
   return static_cast<float>(std::clamp(1.0 - nearest, 0.0, 1.0));
 }
@@ -116,14 +117,17 @@ ViewRays rays_of(const Mat4d& clip, int width, int height) {
 }  // namespace
 
 ViewRays ViewRays::of(const Camera& camera, int width, int height) {
-  if (camera.matrix) return rays_of(*camera.matrix, width, height);
+  const auto* const m = camera.matrix ? camera.matrix->m : nullptr;
+  const bool parallel =
+      m != nullptr ? m[3][0] == 0 && m[3][1] == 0 && m[3][2] == 0 : camera.orthographic;
+  if (m != nullptr && !parallel) return rays_of(*camera.matrix, width, height);
   const Mat4d v = world_to_camera(camera);
   const auto axis = [&](int i, double scale) {
     return Vec3{static_cast<float>(v.m[i][0] * scale), static_cast<float>(v.m[i][1] * scale),
                 static_cast<float>(v.m[i][2] * scale)};
   };
-  if (camera.orthographic) return {axis(2, -1), {}, {}};
-  const double half = std::tan(static_cast<double>(camera.fov_rad) / 2);
+  if (parallel) return {axis(2, -1), {}, {}};
+  const double half = elementary::tan(static_cast<double>(camera.fov_rad) / 2);
   const double per_px = 2 * half / std::min(width, height);
   const Vec3 dx = axis(0, per_px);
   const Vec3 dy = axis(1, -per_px);

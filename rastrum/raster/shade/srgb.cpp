@@ -2,9 +2,11 @@
 
 #include <algorithm>
 
+#include <rastrum/core/elementary.hpp>
+
 namespace rastrum::raster {
 double linear_from_srgb(double s) {
-  return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+  return s <= 0.04045 ? s / 12.92 : elementary::pow((s + 0.055) / 1.055, 2.4);
 }
 
 const DecodeTables& decode_tables() {

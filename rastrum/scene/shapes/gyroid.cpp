@@ -10,11 +10,12 @@
 #include <numbers>
 #include <vector>
 
-#include <rastrum/core/vec3d.hpp>
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/parallel/words.hpp>
 #include <rastrum/scene/shapes/marching_cubes_table.hpp>
 #include <rastrum/scene/shapes/require.hpp>
 #include <rastrum/shapes.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::shapes {
 namespace {
@@ -26,8 +27,9 @@ class Grid {
   Grid(int cells, double periods) : points_(static_cast<std::size_t>(cells) + 1) {
     for (std::size_t i = 0; i < points_; ++i) {
       coordinate_.push_back(2.0 * static_cast<double>(i) / cells - 1);
-      sin_.push_back(std::sin(std::numbers::pi * periods * coordinate_[i]));
-      cos_.push_back(std::cos(std::numbers::pi * periods * coordinate_[i]));
+      const auto [s, c] = elementary::sin_cos(std::numbers::pi * periods * coordinate_[i]);
+      sin_.push_back(s);
+      cos_.push_back(c);
     }
   }
 
@@ -77,9 +79,9 @@ Vec3d crossing(const Grid& grid, std::size_t edge) {
 }
 
 Vec3d gradient(Vec3d p, double scale) {
-  const double sx = std::sin(scale * p.x), cx = std::cos(scale * p.x);
-  const double sy = std::sin(scale * p.y), cy = std::cos(scale * p.y);
-  const double sz = std::sin(scale * p.z), cz = std::cos(scale * p.z);
+  const auto [sx, cx] = elementary::sin_cos(scale * p.x);
+  const auto [sy, cy] = elementary::sin_cos(scale * p.y);
+  const auto [sz, cz] = elementary::sin_cos(scale * p.z);
   return {cx * cy - sz * sx, cy * cz - sx * sy, cz * cx - sy * sz};
 }
 
@@ -128,7 +130,7 @@ Mesh gyroid(int cells, float periods) {
                       [&](std::size_t edge) { return static_cast<Vec3>(crossing(grid, edge)); });
   parallel::transform(exec, edges, mesh.normals.values, [&](std::size_t edge) {
     return static_cast<Vec3>(
-        unit(gradient(crossing(grid, edge), std::numbers::pi * double{periods})));
+        normalize(gradient(crossing(grid, edge), std::numbers::pi * double{periods})));
   });
 
   const auto indices = parallel::expand(

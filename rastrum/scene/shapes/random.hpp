@@ -7,7 +7,9 @@
 #include <cstdint>
 #include <numbers>
 
-#include <rastrum/core/vec3d.hpp>
+#include <rastrum/vec.hpp>
+
+#include <rastrum/core/elementary.hpp>
 
 namespace rastrum::shapes {
 
@@ -29,7 +31,8 @@ class Random {
     const double z = uniform(-1, 1);
     const double phi = uniform(0, 2 * std::numbers::pi);
     const double r = std::sqrt(1 - z * z);
-    return {r * std::cos(phi), r * std::sin(phi), z};
+    const auto [sin, cos] = elementary::sin_cos(phi);
+    return {r * cos, r * sin, z};
   }
 
  private:

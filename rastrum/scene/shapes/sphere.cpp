@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/scene/shapes/require.hpp>
 #include <rastrum/shapes.hpp>
 
@@ -16,18 +18,20 @@ Mesh sphere(int rings, int segments) {
   const auto r = static_cast<std::uint32_t>(rings);
   const auto s = static_cast<std::uint32_t>(segments);
 
+  std::vector<elementary::SinCos> azimuths(s);
+  for (std::uint32_t j = 0; j < s; ++j)
+    azimuths[j] = elementary::sin_cos(2 * std::numbers::pi * j / s);
+
   Mesh mesh;
   mesh.name = "sphere";
   mesh.positions.reserve(std::size_t{r - 1} * s + 2);
   mesh.positions.push_back({0, 1, 0});
   for (std::uint32_t i = 1; i < r; ++i) {
-    const double polar = std::numbers::pi * i / r;
-    for (std::uint32_t j = 0; j < s; ++j) {
-      const double azimuth = 2 * std::numbers::pi * j / s;
-      mesh.positions.push_back({static_cast<float>(std::sin(polar) * std::sin(azimuth)),
-                                static_cast<float>(std::cos(polar)),
-                                static_cast<float>(std::sin(polar) * std::cos(azimuth))});
-    }
+    const elementary::SinCos polar = elementary::sin_cos(std::numbers::pi * i / r);
+    for (std::uint32_t j = 0; j < s; ++j)
+      mesh.positions.push_back({static_cast<float>(polar.sin * azimuths[j].sin),
+                                static_cast<float>(polar.cos),
+                                static_cast<float>(polar.sin * azimuths[j].cos)});
   }
   mesh.positions.push_back({0, -1, 0});
   mesh.normals.values = mesh.positions;

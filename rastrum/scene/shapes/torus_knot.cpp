@@ -7,11 +7,13 @@
 #include <numbers>
 #include <numeric>
 #include <string>
+#include <vector>
 
-#include <rastrum/core/vec3d.hpp>
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/scene/shapes/require.hpp>
 #include <rastrum/shapes.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::shapes {
 namespace {
@@ -23,13 +25,13 @@ struct Frame {
 };
 
 Frame knot_frame(int p, int q, double t) {
-  const double cp = std::cos(p * t), sp = std::sin(p * t);
-  const double cq = std::cos(q * t), sq = std::sin(q * t);
+  const auto [sp, cp] = elementary::sin_cos(p * t);
+  const auto [sq, cq] = elementary::sin_cos(q * t);
   const double ring = kMajor + kMinor * cq;
   const Vec3d outward = {cp, 0, sp}, along = {-sp, 0, cp};
   const Vec3d normal = outward * cq + Vec3d{0, sq, 0};
   const Vec3d tangent = along * (p * ring) + (outward * -sq + Vec3d{0, cq, 0}) * (q * kMinor);
-  return {outward * ring + Vec3d{0, kMinor * sq, 0}, normal, unit(cross(tangent, normal))};
+  return {outward * ring + Vec3d{0, kMinor * sq, 0}, normal, normalize(cross(tangent, normal))};
 }
 
 }  // namespace
@@ -47,6 +49,10 @@ Mesh torus_knot(int p, int q, int segments, int sides, float tube) {
   const auto n = static_cast<std::uint32_t>(segments);
   const auto m = static_cast<std::uint32_t>(sides);
 
+  std::vector<elementary::SinCos> around(m);
+  for (std::uint32_t j = 0; j < m; ++j)
+    around[j] = elementary::sin_cos(2 * std::numbers::pi * j / m);
+
   Mesh mesh;
   mesh.name = "torus_knot";
   const std::size_t vertices = std::size_t{n} * m;
@@ -54,9 +60,8 @@ Mesh torus_knot(int p, int q, int segments, int sides, float tube) {
   mesh.normals.values.reserve(vertices);
   for (std::uint32_t i = 0; i < n; ++i) {
     const Frame f = knot_frame(p, q, 2 * std::numbers::pi * i / n);
-    for (std::uint32_t j = 0; j < m; ++j) {
-      const double a = 2 * std::numbers::pi * j / m;
-      const Vec3d normal = f.normal * std::cos(a) + f.binormal * std::sin(a);
+    for (const auto& [sin, cos] : around) {
+      const Vec3d normal = f.normal * cos + f.binormal * sin;
       mesh.positions.push_back(static_cast<Vec3>(f.point + normal * double{tube}));
       mesh.normals.values.push_back(static_cast<Vec3>(normal));
     }
