@@ -246,5 +246,157 @@ TEST(Surfaces, AreTheSameBitsEverywhere) {
   }
 }
 
+/// What a shader is told: outwards, whatever side is seen, under any affine matrix, too.
+TEST(Surfaces, HaveTheNormalsOfTheOracle) {
+  Renderer renderer({.threads = 1});
+  int pixels = 0, seams = 0;
+  for (int seed = 0; seed < 220; ++seed) {
+    const SurfaceScene s = generate_surfaces(static_cast<std::uint64_t>(seed), kWidth, kHeight);
+    FrameOptions frame;
+    frame.shader = Shader::normal;
+    const Picture p = draw(renderer, s, frame);
+    for (int y = 0; y < s.height; ++y)
+      for (int x = 0; x < s.width; ++x) {
+        if (p.ids(x, y) < 0) continue;
+        const auto hits = surfaces_at(s.eye, s.primitives, x + 0.5L, y + 0.5L);
+        if (hits.empty() || hits.front().id != p.ids(x, y)) continue;
+        const Point3 n = hits.front().normal;
+        const Real length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
+        if (!(length > 0)) continue;  // a triangle's
+        ++pixels;
+        const Vec4 c = p.color(x, y);
+        const Real off = std::max({std::abs(n.x / length - (2 * Real(c.x) - 1)),
+                                   std::abs(n.y / length - (2 * Real(c.y) - 1)),
+                                   std::abs(n.z / length - (2 * Real(c.z) - 1))});
+        // Where a side meets an end, rounding decides whose normal it is; an apex has none.
+        seams += off > 1e-4L;
+      }
+  }
+  EXPECT_GT(pixels, 50000);
+  EXPECT_LE(seams, pixels / 20000);
+}
+
+/// Samples at the places of D3D11's pattern of 4 (in sixteenths), and the share of a pixel that 64
+/// samples find.
+TEST(Surfaces, SilhouettesAreThoseOfTheSamples) {
+  constexpr int kPattern[4][2] = {{-2, -6}, {6, -2}, {-6, 2}, {2, 6}};
+  Renderer renderer({.threads = 1});
+  int edges = 0, ties = 0;
+  double off_64 = 0;
+  for (int seed = 0; seed < 5 * kSurfaceKinds; ++seed) {
+    SurfaceScene s = generate_surfaces(static_cast<std::uint64_t>(seed), kWidth, kHeight);
+    if (std::ranges::any_of(s.primitives, [](const SurfacePrimitive& p) {
+          return p.kind == SurfaceKind::triangle;
+        }))
+      continue;
+    FrameOptions frame;
+    frame.samples = 4;
+    frame.shader = Shader::flat;
+    const Picture p = draw(renderer, s, frame);
+    for (int y = 0; y < s.height; ++y)
+      for (int x = 0; x < s.width; ++x) {
+        const auto is_covered = [&](Real dx, Real dy) {
+          return !surfaces_at(s.eye, s.primitives, x + 0.5L + dx, y + 0.5L + dy).empty();
+        };
+        int covered = 0;
+        for (const auto& at : kPattern) covered += is_covered(at[0] / 16.0L, at[1] / 16.0L);
+        const float alpha = p.color(x, y).w;
+        ties += alpha != static_cast<float>(covered) / 4;
+        if (covered == 0 || covered == 4) continue;
+        ++edges;
+        int of_64 = 0;
+        for (int i = 0; i < 64; ++i) of_64 += is_covered((i % 8 - 3.5L) / 8, (i / 8 - 3.5L) / 8);
+        off_64 += std::abs(static_cast<double>(alpha) - of_64 / 64.0);
+      }
+  }
+  ASSERT_GT(edges, 500);
+  EXPECT_EQ(ties, 0);
+  EXPECT_LT(off_64 / edges, 0.13);
+}
+
+/// A closed surface has two layers.
+TEST(Surfaces, AreBlendedFrontOverBack) {
+  const Vec3 centre{0, 0, -4};
+  SpheresView spheres;
+  spheres.centers = {&centre, 1};
+  const InstanceView instance{spheres};
+  Camera camera;
+  camera.eye = {0, 0, 0};
+  camera.target = {0, 0, -1};
+  for (const Cull cull : {Cull::none, Cull::back}) {
+    FrameOptions frame;
+    frame.width = frame.height = 15;
+    frame.opacity = 0.5F;
+    frame.shader = Shader::flat;
+    frame.cull = cull;
+    Image<Vec4> color(15, 15);
+    Renderer renderer;
+    (void)renderer.render({{&instance, 1}, {}, {}}, camera, frame, {.color = color});
+    EXPECT_EQ(color(7, 7).w, cull == Cull::none ? 0.75F : 0.5F);
+    EXPECT_EQ(color(0, 0).w, 0);
+  }
+}
+
+TEST(Surfaces, AreSeenByACameraThatFits) {
+  const Vec3 centres[] = {{10, 2, -3}, {11, 2, -3}};
+  const float radii[] = {2, 0.5F};
+  SpheresView spheres;
+  spheres.centers = centres;
+  spheres.radii = radii;
+  const InstanceView instance{spheres};
+  const SceneView scene{{&instance, 1}, {}, {}};
+  const Bounds b = bounds(scene);
+  EXPECT_FLOAT_EQ(b.min.x, 8);
+  EXPECT_FLOAT_EQ(b.max.x, 12);
+  EXPECT_FLOAT_EQ(b.max.z, -1);
+  const Camera camera = fit_camera(scene, 0.8F, false);
+  FrameOptions frame;
+  frame.width = frame.height = 64;
+  Image<std::int64_t> ids(64, 64);
+  Renderer renderer;
+  const FrameStats stats = renderer.render(scene, camera, frame, {.ids = ids});
+  EXPECT_GT(stats.pixels_covered, 1000U);
+  for (int i = 0; i < 64; ++i)
+    EXPECT_TRUE(ids(i, 0) < 0 && ids(i, 63) < 0 && ids(0, i) < 0 && ids(63, i) < 0) << i;
+}
+
+TEST(Surfaces, RefuseArraysThatDoNotFit) {
+  const std::vector<Vec3> positions{{0, 0, -4}, {1, 0, -4}, {2, 0, -4}, {3, 0, -4}};
+  const std::vector<float> few{1};
+  const std::vector<std::uint32_t> odd{0, 1, 2}, beyond{0, 4}, falling{0, 2, 2}, past{0, 5};
+  const std::vector<Vec4> colors{{1, 1, 1, 1}};
+  struct Case {
+    GeometryView geometry;
+    const char* says;
+  };
+  const Case cases[] = {
+      {SpheresView{positions, few}, "fewer radii (1) than spheres (4)"},
+      {SpheresView{positions, {}, 1, colors}, "fewer colors (1) than spheres (4)"},
+      {SpheresView{positions, {}, 1, {}, 3}, "material 3 is out of range, there are 1"},
+      {CylindersView{positions, odd}, "the number of indices is odd"},
+      {CylindersView{positions, beyond}, "index 4 is out of range, there are 4 positions"},
+      {CylindersView{positions, {}, few}, "fewer radii (1) than positions (4)"},
+      {TubesView{positions, falling}, "offset 2 is 2, which does not lie above"},
+      {TubesView{positions, past}, "the last offset is 5, but there are 4 positions"},
+      {DiscsView{positions}, "fewer normals (0) than discs (4)"},
+  };
+  const Material material;
+  Renderer renderer;
+  for (const Case& c : cases) {
+    const InstanceView instances[] = {{SpheresView{}}, {c.geometry}};
+    Image<Rgba8> image(8, 8);
+    FrameOptions frame;
+    frame.width = frame.height = 8;
+    try {
+      (void)renderer.render({instances, {&material, 1}, {}}, {}, frame, {.color8 = image});
+      ADD_FAILURE() << "not refused: " << c.says;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::invalid_argument);
+      EXPECT_NE(std::string(e.what()).find("instance 1: "), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find(c.says), std::string::npos) << e.what();
+    }
+  }
+}
+
 }  // namespace surfaces_test
 }  // namespace rastrum::test
