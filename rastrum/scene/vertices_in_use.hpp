@@ -1,6 +1,7 @@
 // The vertices that triangles use, in world space: what a fit looks at, more than once.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -19,8 +20,8 @@ class VerticesInUse {
     const MeshView* last = nullptr;
     for (const InstanceView& instance : scene.instances) {
       const MeshView& mesh = *instance.mesh();
-      const bool same = last != nullptr && mesh.indices.data() == last->indices.data() &&
-                        mesh.indices.size() == last->indices.size() &&
+      const bool same = last != nullptr && mesh.indices == last->indices &&
+                        mesh.faces == last->faces &&
                         mesh.positions.size() == last->positions.size();
       if (!same) used_.push_back(used_of(mesh));
       used_by_.push_back(used_.size() - 1);
@@ -34,30 +35,31 @@ class VerticesInUse {
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
       const MeshView& mesh = *scene_.instances[i].mesh();
       const Mat4d& m = scene_.instances[i].object_to_world;
-      const auto visit = [&](Vec3 p) {
+      const auto visit = [&](Vec3d p) {
         const auto row = [&](int r) {
           return m.m[r][0] * p.x + m.m[r][1] * p.y + m.m[r][2] * p.z + m.m[r][3];
         };
         const Vec3d q{row(0), row(1), row(2)};
         if (is_finite(q)) f(q);
       };
-      if (mesh.indices.empty()) {
-        for (const Vec3 p : mesh.positions.first(mesh.triangle_count() * 3)) visit(p);
-        continue;
-      }
       const std::vector<bool>& used = used_[used_by_[i]];
       for (std::size_t v = 0; v < used.size(); ++v)
-        if (used[v]) visit(mesh.positions[v]);
+        if (used[v]) visit(mesh.positions.wide(v));
     }
   }
 
  private:
   static std::vector<bool> used_of(const MeshView& mesh) {
-    std::vector<bool> used;
-    if (mesh.indices.empty()) return used;
     check_indices(mesh);
-    used.resize(mesh.positions.size());
-    for (const std::uint32_t i : mesh.indices) used[i] = true;
+    std::vector<bool> used(mesh.positions.size());
+    constexpr std::size_t kAtOnce = 256;
+    std::uint32_t vertices[3 * kAtOnce];
+    const std::size_t triangles = mesh.triangle_count();
+    for (std::size_t t = 0; t < triangles; t += kAtOnce) {
+      const std::size_t n = std::min(kAtOnce, triangles - t);
+      mesh.read_triangles(t, n, vertices);
+      for (std::size_t i = 0; i < 3 * n; ++i) used[vertices[i]] = true;
+    }
     return used;
   }
 

@@ -111,6 +111,7 @@ RASTRUM_HD Fate assemble_point(const Geometry& frame, const Draw& draw, std::uin
 template <class Geometry, class Emit>
 RASTRUM_HD Fate assemble_primitive(const Geometry& frame, const Draw& draw, std::uint64_t p,
                                    Emit&& emit, std::uint32_t sample = 0, SampleOffset at = {}) {
+  if (!draw.visible) return Fate::culled;
   const std::uint64_t id = draw.first_id + p;
   const std::uint32_t flags = frame.flags_of(draw, p) | sample << kSampleShift;
   if ((flags & kCutAway) != 0) return Fate::culled;
