@@ -52,7 +52,7 @@ class Fragments {
       draw.source =
           raster::MatrixVertices(instance.mesh()->positions, to_clip * instance.object_to_world);
       draw.vertex_count = instance.mesh()->positions.size();
-      draw.indices = instance.mesh()->indices;
+      draw.indices = instance.mesh()->indices.packed();
       draw.primitive_count = instance.mesh()->triangle_count();
     }
     (void)raster::number_draws(draws_, 0);

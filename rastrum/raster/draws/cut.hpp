@@ -23,7 +23,7 @@ struct DrawCut {
   struct Plane {
     double x, y, z, offset;
   };
-  std::vector<Plane> planes;        ///< in object space
+  std::vector<Plane> planes;  ///< in object space
   ArrayView<Vec3> positions;  ///< of its vertices
 
   /// `world`: the frame's.

@@ -18,8 +18,9 @@ Vec3d interpolate(const Fragment& f, const Vec3d (&v)[3]) {
 
 Vec3d position_on(const InstanceView& instance, const Fragment& f) {
   const MeshView& mesh = *instance.mesh();
-  const Vec3d p = interpolate(
-      f, {mesh.positions.wide(f.vertex[0]), mesh.positions.wide(f.vertex[1]), mesh.positions.wide(f.vertex[2])});
+  const Vec3d p =
+      interpolate(f, {mesh.positions.wide(f.vertex[0]), mesh.positions.wide(f.vertex[1]),
+                      mesh.positions.wide(f.vertex[2])});
   const auto& m = instance.object_to_world.m;
   const auto row = [&](int i) {
     return ((m[i][0] * p.x + m[i][1] * p.y) + m[i][2] * p.z) + m[i][3];
