@@ -77,14 +77,15 @@ class Turntable {
 }  // namespace
 
 Sequence along_path(const std::filesystem::path& file, double fps, const SceneView& scene,
-                    const ViewOptions& options, const Camera& base) {
+                    const SceneAt& moving, const ViewOptions& options, const Camera& base) {
   const CameraPath path = read_camera_path(file, base);
   const std::vector<double> times = frame_times(path.first_s(), path.last_s(), fps);
   const bool moves_planes = !path.has_planes() && !options.near_plane;
   return {times.size(), [=, sphere = bounding_sphere(scene)](std::size_t i) -> Sequence::Shot {
             Camera camera = path.at(times[i]);
-            if (moves_planes) place_planes(camera, sphere);
-            return {scene, camera};
+            const SceneView now = moving ? moving(times[i]) : scene;
+            if (moves_planes) place_planes(camera, moving ? bounding_sphere(now) : sphere);
+            return {now, camera};
           }};
 }
 

@@ -135,6 +135,13 @@ void describe_cameras(const Scene& scene, std::string& text) {
   }
 }
 
+void describe_animations(const Scene& scene, std::string& text) {
+  for (const Motion& motion : scene.motions)
+    for (std::size_t i = 0; i < std::min(motion.animations.size(), kMostLines); ++i)
+      text += "  animation " + std::to_string(i) + " " + named(motion.animations[i].name) + ": " +
+              format("%g s", motion.animations[i].duration_s) + '\n';
+}
+
 }  // namespace
 
 std::string describe(const Scene& scene) {
@@ -169,6 +176,7 @@ std::string describe(const Scene& scene) {
   describe_meshes(scene, text);
   describe_materials(scene, text);
   describe_cameras(scene, text);
+  describe_animations(scene, text);
   for (const std::string& w : scene.warnings) text += "  warning: " + w + '\n';
   return text;
 }
