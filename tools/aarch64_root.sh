@@ -24,5 +24,10 @@ options=(-o APT::Architecture=arm64 -o APT::Architectures=arm64 -o "Dir::State::
 apt-get "${options[@]}" -qq update
 (cd "$root/debs" && apt-get "${options[@]}" -qq download "${packages[@]}")
 for deb in "$root"/debs/*.deb; do dpkg -x "$deb" "$root"; done
+# Headers that differ between architectures lie a folder deeper, where the cross compiler looks in its
+# own root alone.
+cp -r "$root"/usr/include/aarch64-linux-gnu/. "$root/usr/include/"
+# /lib is /usr/lib, as on an installed system.
+cp -a "$root/lib/." "$root/usr/lib/"
 rm -rf "$root/apt" "$root/debs"
 echo "${packages[*]}" >"$done_mark"
