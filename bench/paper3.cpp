@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+#include <rastrum/family.hpp>
+#include <rastrum/family/terrain/words.hpp>
 #include <rastrum/terrain.hpp>
 #include <rastrum/terrain/blocks.hpp>
 #include <rastrum/terrain/methods.hpp>
@@ -78,7 +80,7 @@ struct Entry {
 
   Entry(std::string n, const TerrainOptions& o, const TerrainRendererOptions& by)
       : name(std::move(n)),
-        renderer(std::make_shared<TerrainRenderer>(by)),
+        renderer(std::make_shared<TerrainRenderer>(family::make_terrain_renderer(by))),
         options(o),
         picture(std::make_shared<Image<Rgba8>>(o.width, o.height)) {
     timing.name = name;
@@ -282,9 +284,9 @@ class WideFrame {
     if (method == Method::fast)
       draw_fast(threads_, available_isas().back(), pool_, samples, targets);
     else if (device == Device::serial)
-      draw_words(serial_, samples, targets);
+      family::draw_words(serial_, samples, targets);
     else
-      draw_words(threads_, samples, targets);
+      family::draw_words(threads_, samples, targets);
   }
   [[nodiscard]] std::vector<Rgba8>& pixels() { return pixels_; }
 

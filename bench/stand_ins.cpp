@@ -207,10 +207,10 @@ FragmentMatch match_fragments(const Mesh& mesh, int width, int height, std::uint
   // What is hidden counts too.
   Renderer renderer = family::make_renderer({.threads = threads}, {.hierarchical_z = false});
   Image<float> depth(width, height);
-  const Vec3 back = fitted.eye - fitted.target;
+  const Vec3 target(fitted.target), back = Vec3(fitted.eye) - target;
   const auto look = [&](double distance) {
     FragmentMatch match{fitted, 0};
-    match.camera.eye = fitted.target + back * static_cast<float>(distance);
+    match.camera.eye = target + back * static_cast<float>(distance);
     match.camera.near_plane = length(back) * 1e-3F;
     match.found =
         draw(renderer, {mesh.view(), match.camera, width, height}, {}, {.depth = depth}).fragments;

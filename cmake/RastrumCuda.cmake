@@ -35,6 +35,7 @@ set(RASTRUM_DEVICE_SOURCES
   cuda/library.cpp
   family/cuda/family.cu
   family/cuda/visibilities.cu
+  family/terrain/words.cu
   render/cuda/layers.cu
   render/cuda/rasterizer.cu
   terrain/cuda/renderer.cu

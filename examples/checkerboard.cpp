@@ -39,7 +39,7 @@ int main() {
                                                   {p, mesh.normals.values[i]}};
   };
   const auto shade = [&](const Surface& s, const rastrum::raster::Fragment& f) {
-    const Vec3 v = normalize(camera.eye - s.position), l = normalize(Vec3{0.5F, 1, 0.6F});
+    const Vec3 v = normalize(Vec3(camera.eye) - s.position), l = normalize(Vec3{0.5F, 1, 0.6F});
     const Vec3 n = normalize(s.normal) * (dot(s.normal, v) < 0 ? -1.0F : 1.0F);
     const bool odd = std::fmod(std::floor(s.position.x) + std::floor(s.position.z), 2.0F) != 0;
     const bool pot = f.vertex[0] < floor;

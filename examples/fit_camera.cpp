@@ -9,9 +9,10 @@ int main() {
   // A tetrahedron in the caller's own arrays; Rastrum borrows them and copies nothing.
   const std::vector<rastrum::Vec3> positions{{1, 1, 1}, {-1, -1, 1}, {-1, 1, -1}, {1, -1, -1}};
   const std::vector<std::uint32_t> indices{0, 1, 3, 0, 2, 1, 0, 3, 2, 1, 2, 3};
-  rastrum::InstanceView instance;
-  instance.mesh.positions = positions;
-  instance.mesh.indices = indices;
+  rastrum::MeshView mesh;
+  mesh.positions = positions;
+  mesh.indices = indices;
+  const rastrum::InstanceView instance{mesh};
   rastrum::SceneView scene;
   scene.instances = {&instance, 1};
 

@@ -44,7 +44,8 @@ int main() {
                                                   {p, mesh.normals.values[i]}};
   };
   const auto shade = [&](const Surface& s, const rastrum::raster::Fragment& f) {
-    const float facing = std::abs(dot(normalize(s.normal), normalize(camera.eye - s.position)));
+    const float facing =
+        std::abs(dot(normalize(s.normal), normalize(Vec3(camera.eye) - s.position)));
     const float light = 0.3F + 0.7F * facing;
     if (f.draw == 0) return Vec4{0.9F * light, 0.45F * light, 0.15F * light, 1};
     const float alpha = 0.1F + 0.7F * (1 - facing) * (1 - facing);

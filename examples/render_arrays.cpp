@@ -39,11 +39,12 @@ int main() {
       colors[i] = {0.5F + 0.4F * wave, 0.6F, 0.9F, 1};
     }
     const std::vector<rastrum::Vec3> normals = rastrum::vertex_normals(positions, indices);
-    rastrum::InstanceView instance;
-    instance.mesh.positions = positions;
-    instance.mesh.indices = indices;
-    instance.mesh.normals.values = normals;
-    instance.mesh.colors.values = colors;
+    rastrum::MeshView mesh;
+    mesh.positions = positions;
+    mesh.indices = indices;
+    mesh.normals.values = normals;
+    mesh.colors.values = colors;
+    const rastrum::InstanceView instance{mesh};
     rastrum::SceneView scene;
     scene.instances = {&instance, 1};
     const rastrum::FrameStats stats =

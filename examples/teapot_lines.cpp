@@ -26,7 +26,7 @@ int main() {
   scene.meshes.push_back(teapot);
   scene.instances.resize(1);
   rastrum::Camera camera = rastrum::fit_camera(rastrum::SceneBinding(scene).view(), 1.0F, false);
-  camera.eye = camera.eye + Vec3{0.8F, 1.4F, -0.6F};
+  camera.eye = Vec3(camera.eye) + Vec3{0.8F, 1.4F, -0.6F};
   rastrum::FrameOptions frame;
   frame.width = 480;
   frame.height = 360;

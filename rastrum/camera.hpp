@@ -1,6 +1,7 @@
 // The camera: where it stands and what it sees. Right-handed, looks along its own −z, +y up.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 
@@ -10,18 +11,56 @@
 namespace rastrum {
 
 struct Camera {
-  Vec3 eye{0, 0, 1};
-  Vec3 target{0, 0, 0};
-  Vec3 up{0, 1, 0};
+  Vec3d eye{0, 0, 1};
+  Vec3d target{0, 0, 0};
+  Vec3d up{0, 1, 0};
   float fov_rad = 1.04719755F;  ///< 60°, across the smaller side of the image
   bool orthographic = false;
   float orthographic_height = 2;  ///< world units across the smaller side of the image
   float near_plane = 0.01F;       ///< > 0 for perspective
   float far_plane = std::numeric_limits<float>::infinity();  ///< depth 0; beyond it depth stays 0
-  /// World to clip, for what no lens of this kind sees (a terrain's horizon is a shear); depth
-  /// reversed. Nothing else counts then.
+  /// World to clip, for what no lens of this kind sees (a terrain's horizon is a shear, the lenses
+  /// below have their own centre); depth reversed. Nothing else counts then.
   std::optional<Mat4d> matrix{};
 };
+
+// Cameras of others (docs/conventions.md has the conventions in one table).
+
+/// OpenCV's K = (fx s cx; 0 fy cy; 0 0 1), in px: what lies at (x, y, z) in the camera's axes, x to
+/// the right, y down and z ahead, is seen at u = (fx x + s y) / z + cx, v = fy y / z + cy. Without
+/// distortion: undistort the picture first.
+struct Intrinsics {
+  double fx = 0, fy = 0;  ///< not 0; of one sign: the other way round is a mirror
+  double cx = 0, cy = 0;  ///< where the axis meets the picture; need not lie inside of it
+  double skew = 0;
+  /// u and v of the centre of the top left pixel: 0 in OpenCV, where a camera that looks through
+  /// the middle has cx = (W − 1) / 2; 0.5 where it has cx = W / 2 (COLMAP, NeRF and its kin).
+  double first_centre = 0;
+};
+
+/// The camera of a W × H picture with these intrinsics and a pose. `world_to_camera`: (R t; 0 1),
+/// OpenCV's axes, R a rotation to 1e-6. In float64; far is infinite. A picture of another size has
+/// the same view, stretched.
+/// Throws Error{invalid_argument} that names what is out of range.
+[[nodiscard]] Camera camera_from_opencv(const Intrinsics& k, const Mat4d& world_to_camera,
+                                        int width, int height, double near_plane = 0.01);
+/// (R t; 0 1) of a rotation, row after row, and a translation.
+[[nodiscard]] Mat4d pose_from(const double (&rotation)[9], Vec3d translation);
+
+/// What a projection makes of the near and the far plane: z / w in clip space.
+enum class ClipDepth : std::uint8_t {
+  opengl,       ///< −1 and 1
+  zero_to_one,  ///< 0 and 1: Direct3D, Vulkan, Metal, WebGPU
+  reversed      ///< 1 and 0: as here
+};
+
+/// The camera of any 4 × 4 from world to clip space, +y up: projection · view. Throws
+/// Error{invalid_argument} where it is singular or not finite.
+[[nodiscard]] Camera camera_from_matrix(const Mat4d& world_to_clip, ClipDepth depth);
+
+/// `camera` made orthographic, so that a pixel of a W × H picture is `units` of the world across.
+/// Throws Error{invalid_argument} unless units is > 0 and finite and the size at least 1 × 1.
+[[nodiscard]] Camera orthographic_by_scale(Camera camera, double units, int width, int height);
 
 /// World to clip for a W × H image, reversed depth (near 1, far 0). Composed in float64.
 /// Throws Error{invalid_argument} that names the parameter which is out of range.
@@ -30,7 +69,9 @@ struct Camera {
 /// Throws Error{invalid_argument} unless 0 < fov_rad < π.
 void check_fov(float fov_rad);
 
-/// World to camera space, a rigid motion.
+/// World to camera space, a rigid motion. Of a camera with a matrix: what its rows say (the axis is
+/// across the planes of equal w, y as the picture has it, and an orthographic one stands on its
+/// near plane); throws Error{invalid_argument} where they are singular.
 [[nodiscard]] Mat4d world_to_camera(const Camera& camera);
 
 // From reversed depth back to world units.
@@ -38,8 +79,9 @@ void check_fov(float fov_rad);
 /// How far from the camera, along its view axis and in world units, a pixel of reversed depth
 /// `depth` lies (Targets::depth), by the camera's planes n and f: n f / (d (f − n) + n), n / d
 /// where f is infinite, f − d (f − n) for an orthographic camera. Infinity for 0: nothing is there,
-/// or it lies at the far plane or beyond. In float64. Requires a camera without a matrix of its
-/// own.
+/// or it lies at the far plane or beyond. In float64. Of a camera with a matrix by its rows; throws
+/// Error{invalid_argument} where depth does not tell it, as its planes of equal depth are not
+/// across the axis.
 [[nodiscard]] double view_distance(const Camera& camera, float depth);
 
 }  // namespace rastrum

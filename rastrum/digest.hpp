@@ -22,12 +22,14 @@ struct Digest {
 /// Of what a picture holds: a line that says what, then its rows from the top, little-endian,
 /// without what lies between them in memory. In Python, of an array `a` of such pixels:
 ///   hashlib.sha256(f"{a.dtype} {'x'.join(map(str, a.shape))}\n".encode() + a.tobytes())
-/// where a shape is (height, width) or (height, width, 4): "uint8 720x1280x4" for 8-bit colours. A
-/// NaN counts as 0x7fc00000, whatever its sign and payload, of which processors make different
-/// ones. Cost: about 5 ms a megabyte. Throws Error{invalid_argument} for rows that overlap.
+/// where a shape is (height, width) or (height, width, channels): "uint8 720x1280x4" for 8-bit
+/// colours. A NaN counts as 0x7fc00000, whatever its sign and payload, of which processors make
+/// different ones. Cost: about 5 ms a megabyte. Throws Error{invalid_argument} for rows that
+/// overlap.
 [[nodiscard]] Digest digest(ImageView<const Rgba8> image);
 [[nodiscard]] Digest digest(ImageView<const Vec4> image);  ///< float32, four channels
 [[nodiscard]] Digest digest(ImageView<const Vec3> image);  ///< float32, three channels
+[[nodiscard]] Digest digest(ImageView<const Vec2> image);  ///< float32, two channels
 [[nodiscard]] Digest digest(ImageView<const float> image);
 [[nodiscard]] Digest digest(ImageView<const std::uint8_t> image);
 [[nodiscard]] Digest digest(ImageView<const std::uint32_t> image);

@@ -1,12 +1,13 @@
 // The papers' rasterizers (library Rastrum::family): named ways to find what triangles cover, and
-// named ways to resolve the fragments of a pixel. All give the picture that a plain Renderer gives,
-// bit for bit: they are there to be compared.
+// named ways to resolve the fragments of a pixel; and paper 3's way to draw a terrain. All give the
+// picture that a plain Renderer gives, bit for bit: they are there to be compared.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include <rastrum/render.hpp>
+#include <rastrum/terrain.hpp>
 #include <rastrum/tuning.hpp>
 
 namespace rastrum::family {
@@ -35,8 +36,12 @@ struct Row {
 struct Options : RendererOptions, FrameOptions, Row {};
 
 /// A renderer that draws by a row. Device::automatic takes a GPU for the default row alone. Throws
-/// as Renderer, and Error{invalid_argument} that lists the names, or the tunings that were
-/// compiled; its frames throw Error{invalid_argument} where the row cannot draw layers.
+/// as Renderer, and Error{invalid_argument} that lists the names, or says which tunings
+/// there are; its frames throw Error{invalid_argument} where the row cannot draw layers.
 [[nodiscard]] Renderer make_renderer(const RendererOptions& options, const Row& row);
+
+/// A TerrainRenderer that draws Method::words, too. Throws as its constructor.
+[[nodiscard]] terrain::TerrainRenderer make_terrain_renderer(
+    const terrain::TerrainRendererOptions& options);
 
 }  // namespace rastrum::family

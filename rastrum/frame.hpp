@@ -43,13 +43,40 @@ struct TransparencyOptions {
 /// those of the largest key of any sample: of the nearest surface that some sample sees, with its
 /// depth there, even where it covers no other. `extra` is what the shader returns for that surface
 /// at the pixel's centre; where it does not cover the centre, for weights of its corners that are
-/// cut to [0, 1] there. `overdraw` counts samples; `errors` has 255 where some sample has one.
+/// cut to [0, 1] there, and so are the images of the surface below. `overdraw` counts samples;
+/// `errors` has 255 where some sample has one.
 struct Targets {
   ImageView<Rgba8> color8{};            ///< straight alpha
   ImageView<Vec4> color{};              ///< premultiplied float32
   ImageView<float> depth{};             ///< reversed depth in [0, 1], 0 where nothing is
   ImageView<std::int64_t> ids{};        ///< triangle in submission order, −1 where nothing is
   ImageView<std::uint32_t> overdraw{};  ///< fragments at each pixel
+
+  // Of the surface that `ids` names, at the pixel's centre, whatever the shader and its alpha
+  // (docs/conventions.md, "Outputs"). The CPU fills them, from the keys: nothing is computed that
+  // is not asked for. Without a scene, for draws of programs, there are the first three.
+  ImageView<std::int64_t> instances{};   ///< InstanceView::id, −1 where nothing is
+  ImageView<std::int64_t> primitives{};  ///< within its instance (its draw), −1 where nothing is
+  /// Perspective-correct weights of the second and the third corner of the snapped triangle that
+  /// was drawn: position = (1 − x − y) p0 + x p1 + y p2. (0, 0) where nothing is.
+  ImageView<Vec2> barycentrics{};
+  ImageView<Vec3> positions{};  ///< in the world, (0, 0, 0) where nothing is
+  /// Unit length, in the world, (0, 0, 0) where nothing is: the mesh's normals interpolated as
+  /// `phong` has them (the faces' where it has none), turned to the viewer.
+  ImageView<Vec3> normals{};
+  ImageView<Vec3> camera_normals{};  ///< the same in the camera's axes: z towards the viewer
+  ImageView<float> view_depth{};     ///< view_distance of `depth`, infinity where nothing is
+  /// From the eye, by `view_depth` along the ray through the pixel's centre; the same as that for
+  /// an orthographic camera.
+  ImageView<float> distance{};
+  /// Linear light, straight alpha: the material's base colour times its texture's and the vertex
+  /// colours, white where there are none of them, with a fragment's own alpha. Before light, and
+  /// without FrameOptions::opacity. 0 where nothing is.
+  ImageView<Vec4> albedo{};
+  /// Shader::material's colours in linear light, premultiplied, over the background: `color` before
+  /// the transfer function, and not cut to 1. A frame with this blends in linear light; its other
+  /// colours are the same bits, but with several samples, whose mean is then one of linear light.
+  ImageView<Vec4> linear{};
 
   /// Visibility keys (docs/conventions.md), for pictures that are drawn in several passes. With
   /// `load` a pass begins from the keys that the ones before have left here, and touches only the

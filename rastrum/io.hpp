@@ -43,6 +43,10 @@ void write_png(const std::filesystem::path& file, ImageView<const Rgba8> image);
 /// float32 RGBA, premultiplied: an RGBA EXR (32 bit), or NPY of shape (H, W, 4).
 void write_exr(const std::filesystem::path& file, ImageView<const Vec4> image);
 void write_npy(const std::filesystem::path& file, ImageView<const Vec4> image);
+/// float32 x, y, z: EXR channels X, Y and Z, or NPY of shape (H, W, 3); x, y: NPY (H, W, 2).
+void write_exr(const std::filesystem::path& file, ImageView<const Vec3> image);
+void write_npy(const std::filesystem::path& file, ImageView<const Vec3> image);
+void write_npy(const std::filesystem::path& file, ImageView<const Vec2> image);
 /// One channel: EXR channel "Z", or NPY of shape (H, W).
 void write_exr(const std::filesystem::path& file, ImageView<const float> image);
 void write_npy(const std::filesystem::path& file, ImageView<const float> image);
@@ -59,6 +63,9 @@ void write_ply(const std::filesystem::path& file, const Mesh& mesh);
 void write_png(AtomicFile& out, ImageView<const Rgba8> image);
 void write_exr(AtomicFile& out, ImageView<const Vec4> image);
 void write_npy(AtomicFile& out, ImageView<const Vec4> image);
+void write_exr(AtomicFile& out, ImageView<const Vec3> image);
+void write_npy(AtomicFile& out, ImageView<const Vec3> image);
+void write_npy(AtomicFile& out, ImageView<const Vec2> image);
 void write_exr(AtomicFile& out, ImageView<const float> image);
 void write_npy(AtomicFile& out, ImageView<const float> image);
 void write_npy(AtomicFile& out, ImageView<const std::int64_t> image);
@@ -122,7 +129,7 @@ void remove_abandoned(const std::filesystem::path& folder);
 // What `rastrum info FILE` prints.
 
 /// A text of several lines: meshes with their vertices and triangles, instances, bounds, materials,
-/// textures, cameras; how many triangles have a vertex that is not finite (the renderer drops them)
+/// textures, cameras, animations; how many triangles have a vertex that is not finite (the renderer drops them)
 /// or no area; the warnings. O(triangles of all instances).
 /// Throws Error{invalid_argument} for an index out of range.
 [[nodiscard]] std::string describe(const Scene& scene);

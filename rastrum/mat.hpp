@@ -2,6 +2,10 @@
 // rounded to float32 once, so that the vertex transform (float32) starts from the nearest matrix.
 #pragma once
 
+#include <cmath>
+#include <optional>
+#include <utility>
+
 #include <rastrum/vec.hpp>
 
 namespace rastrum {
@@ -33,6 +37,54 @@ constexpr Mat4Of<T> operator*(const Mat4Of<T>& a, const Mat4Of<T>& b) {
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j)
       for (int k = 0; k < 4; ++k) r.m[i][j] += a.m[i][k] * b.m[k][j];
+  return r;
+}
+
+// From the 16 numbers that others hold. Vectors are columns here as there: only the order in memory
+// differs.
+
+/// Row after row, as C arrays and NumPy have a matrix. `T`: float or double.
+template <class T>
+constexpr Mat4d matrix_from_rows(const T* m) {
+  Mat4d r;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) r.m[i][j] = static_cast<double>(m[4 * i + j]);
+  return r;
+}
+/// Column after column, as OpenGL, glTF, GLM and Eigen have it.
+template <class T>
+constexpr Mat4d matrix_from_columns(const T* m) {
+  Mat4d r;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) r.m[i][j] = static_cast<double>(m[4 * j + i]);
+  return r;
+}
+
+/// None where there is none: a pivot is 0 or not finite. Gauss and Jordan's elimination, the
+/// largest pivot of a column first.
+[[nodiscard]] inline std::optional<Mat4d> inverse(Mat4d a) {
+  Mat4d r = Mat4d::identity();
+  for (int k = 0; k < 4; ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < 4; ++i)
+      if (std::abs(a.m[i][k]) > std::abs(a.m[pivot][k])) pivot = i;
+    std::swap(a.m[k], a.m[pivot]);
+    std::swap(r.m[k], r.m[pivot]);
+    const double p = a.m[k][k];
+    if (p == 0 || !std::isfinite(p)) return std::nullopt;
+    for (int j = 0; j < 4; ++j) {
+      a.m[k][j] /= p;
+      r.m[k][j] /= p;
+    }
+    for (int i = 0; i < 4; ++i) {
+      if (i == k) continue;
+      const double f = a.m[i][k];
+      for (int j = 0; j < 4; ++j) {
+        a.m[i][j] -= f * a.m[k][j];
+        r.m[i][j] -= f * r.m[k][j];
+      }
+    }
+  }
   return r;
 }
 

@@ -12,6 +12,10 @@
 
 namespace rastrum {
 
+/// Which side of a triangle is its front: where its vertices turn counter-clockwise on the screen,
+/// clockwise, or whichever is seen; then no face is culled.
+enum class Winding : std::uint8_t { counter_clockwise, clockwise, either };
+
 /// Values at the corners of triangles. Corner c of triangle t reads `values[indices[3t + c]]`;
 /// where `indices` is empty it reads `values` by the position's index, so that an attribute may
 /// share the positions' numbering (glTF, PLY) or have its own (OBJ).

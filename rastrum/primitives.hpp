@@ -6,15 +6,14 @@
 #include <span>
 
 #include <rastrum/frame.hpp>
+#include <rastrum/mesh.hpp>
 
 namespace rastrum::raster {
 
 /// The value is the number of vertices of a primitive.
 enum class Topology : std::uint8_t { points = 1, lines = 2, triangles = 3 };
 
-/// Which side of a triangle is its front: where its vertices turn counter-clockwise on the screen,
-/// clockwise, or whichever is seen; then no face is culled.
-enum class Winding : std::uint8_t { counter_clockwise, clockwise, either };
+using rastrum::Winding;
 
 /// Primitives::flags. Fragments pass a fragment test (alpha mask, discard) before the nearest is
 /// taken; fragments are blended: alpha is the shader's to say.

@@ -13,6 +13,7 @@
 #include <rastrum/device.hpp>
 #include <rastrum/frame.hpp>
 #include <rastrum/image.hpp>
+#include <rastrum/pick.hpp>
 #include <rastrum/scene.hpp>
 
 namespace rastrum {
@@ -70,10 +71,15 @@ struct FrameOptions {
   float opacity = 1;
   TransparencyOptions transparency{};
   int samples = 1;  ///< a pixel: 1, 4, 8 or 16, at D3D11's standard positions
+  /// In the world, at most kMaxClipPlanes: what one of them does not keep is not there, nor does it
+  /// hide what lies behind. Decided at each pixel (a triangle's once a pixel where there are
+  /// several samples) in float64 from the triangle that is drawn; sections stay open.
+  std::vector<ClipPlane> clip_planes{};
 };
 
-/// Throws Error{invalid_argument} for a number or an enum's value out of range and a background
-/// that is not finite: what each frame begins with, for who wants to know before.
+/// Throws Error{invalid_argument} for a number or an enum's value out of range, a background that
+/// is not finite and a clip plane without a direction: what each frame begins with, for who wants
+/// to know before.
 void check(const FrameOptions& options);
 
 namespace raster {
@@ -115,6 +121,13 @@ class Renderer {
   FrameStats render_in_place(const SceneView& scene, const Camera& camera,
                              const FrameOptions& frame, const Targets& targets,
                              std::stop_token stop = {});
+
+  /// What a frame shows at pixel (x, y), without drawing it whole; none where nothing is. Of the
+  /// same bits as the frame's targets. Cost: O(vertices + triangles), and the pixels of one bin.
+  /// Throws as render(), and Error{invalid_argument} for a pixel outside of the frame.
+  [[nodiscard]] std::optional<Pick> pick(const SceneView& scene, const Camera& camera,
+                                         const FrameOptions& frame, int x, int y,
+                                         std::stop_token stop = {});
 
   /// The programmable form: draws with vertex, shading and test functions of a caller's own
   /// (program.hpp), of one program or several, with layers, samples and extra targets too. Draws

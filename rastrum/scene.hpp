@@ -6,12 +6,15 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <rastrum/camera.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/mesh.hpp>
+#include <rastrum/motion.hpp>
+#include <rastrum/surfaces.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum {
@@ -59,10 +62,45 @@ struct Material {
 // What is drawn: instances of meshes with their materials. `SceneView` borrows the caller's arrays,
 // `Scene` owns what a reader made of a file.
 
-/// A mesh placed in the world. Triangle ids count through the instances in order.
+/// Keeps what lies at or in front of it: normal · p + offset ≥ 0. The normal points to what is kept
+/// and need not be of unit length.
+struct ClipPlane {
+  Vec3d normal{};
+  double offset = 0;
+};
+/// So many a frame, and so many an instance.
+inline constexpr std::size_t kMaxClipPlanes = 8;
+
+/// What an instance draws, over the caller's arrays.
+using GeometryView = std::variant<MeshView, SpheresView, CylindersView, TubesView, DiscsView>;
+
+/// Triangles, spheres, cylinders, segments or discs: what has an id. O(1).
+[[nodiscard]] std::uint64_t primitive_count(const GeometryView& geometry);
+
+/// A geometry placed in the world, with a look of its own. Ids count the primitives of the
+/// instances in order.
 struct InstanceView {
-  MeshView mesh{};
+  GeometryView geometry{};
   Mat4d object_to_world = Mat4d::identity();
+
+  /// Of all that the instance shows, in [0, 1]; the frame's and the material's are multiplied to
+  /// it.
+  float opacity = 1;
+  /// Linear, straight alpha: stands for the geometry's colours.
+  std::optional<Vec4> color{};
+  /// Stands for the geometry's materials: an index into SceneView::materials.
+  std::optional<std::uint32_t> material{};
+  /// What is not visible draws nothing, and keeps the numbers of its primitives.
+  bool visible = true;
+  Winding winding = Winding::counter_clockwise;
+  /// What stands for the instance in pictures of instances; none: its place in the scene.
+  std::optional<std::int64_t> id{};
+  /// In object space: of this instance that is seen which all of them keep. At most kMaxClipPlanes;
+  /// FrameOptions::clip_planes says more.
+  std::span<const ClipPlane> clip_planes{};
+
+  /// The triangle mesh that it draws; null: another geometry.
+  [[nodiscard]] const MeshView* mesh() const { return std::get_if<MeshView>(&geometry); }
 };
 
 /// Spans over the caller's arrays. An empty `materials` means one default material.
@@ -84,12 +122,15 @@ struct Scene {
   std::vector<Material> materials{};  ///< empty: the file has none
   std::vector<Texture> textures{};
   std::vector<Camera> cameras{};
+  std::vector<Motion> motions{};  ///< what moves: `pose` (motion.hpp)
   /// What a reader left out or found odd, a sentence each; nothing is lost silently.
   std::vector<std::string> warnings{};
 
   /// Appends `other` behind this scene: indices into meshes, materials and textures are shifted.
   /// Where one of the two has no materials it is given plain ones.
   void append(Scene other);
+  /// Moves everything but the cameras: `to_world` lies before all matrices of instances.
+  void place(const Mat4d& to_world);
   /// Throws Error{invalid_argument} where an instance is of no mesh.
   [[nodiscard]] std::uint64_t triangle_count() const;
 };
@@ -127,6 +168,10 @@ struct Bounds {
 /// orthographic: height 2 r, far = d + 1.001 r. Throws Error{invalid_argument} unless
 /// 0 < fov_rad < π, of an orthographic camera, too.
 [[nodiscard]] Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic);
+/// The same from the side: the camera looks along `direction`, of any length, with `up` upward in
+/// the picture. Throws Error{invalid_argument} for directions that world_to_camera refuses, too.
+[[nodiscard]] Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic,
+                                Vec3d direction, Vec3d up = {0, 1, 0});
 
 /// Area-weighted vertex normals: at each position index the normalized sum of the cross products of
 /// its triangles' edges. `positions.size()` values; (0, 0, 0) where no triangle touches. `indices`

@@ -133,8 +133,10 @@ enum class MapFilter : std::uint8_t {
 };
 
 enum class Method : std::uint8_t {
-  fast,   ///< columns in blocks with a running minimum
-  words,  ///< paper 3's: the `occlude` scan, the scatter and the `fill` scan
+  fast,  ///< columns in blocks with a running minimum
+  /// Paper 3's: the `occlude` scan, the scatter and the `fill` scan. family::make_terrain_renderer
+  /// (family.hpp) makes who draws it.
+  words,
 };
 
 enum class Projection : std::uint8_t {
@@ -233,8 +235,8 @@ class TerrainRenderer {
   /// (but for MapFilter and cells that are the same), device, threads or instruction set.
   /// Cost: O(width · slices + width · height). Throws Error{invalid_argument} that names an
   /// option out of range, for a camera that is not finite or farther than 1e12 cells away, or
-  /// targets of another size; Error{out_of_memory} for a map that is too large for the CUDA device
-  /// that was asked for.
+  /// targets of another size; Error{unsupported} for Method::words; Error{out_of_memory} for a map
+  /// that is too large for the CUDA device that was asked for.
   TerrainStats render(const Terrain& terrain, const TerrainCamera& camera,
                       const TerrainOptions& frame, const TerrainTargets& targets,
                       std::stop_token stop = {});
@@ -243,7 +245,9 @@ class TerrainRenderer {
   [[nodiscard]] const TerrainRendererOptions& options() const;
 
  private:
+  friend struct TerrainAccess;  // terrain/access.hpp: renderers that know one method more
   struct Impl;
+  explicit TerrainRenderer(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -9,7 +9,7 @@
 
 namespace rastrum {
 
-constexpr Mat4d translation(Vec3 by) {
+constexpr Mat4d translation(Vec3d by) {
   Mat4d r = Mat4d::identity();
   r.m[0][3] = by.x;
   r.m[1][3] = by.y;
@@ -17,7 +17,7 @@ constexpr Mat4d translation(Vec3 by) {
   return r;
 }
 
-constexpr Mat4d scaling(Vec3 by) {
+constexpr Mat4d scaling(Vec3d by) {
   Mat4d r = Mat4d::identity();
   r.m[0][0] = by.x;
   r.m[1][1] = by.y;
@@ -27,7 +27,7 @@ constexpr Mat4d scaling(Vec3 by) {
 
 /// p + along (normal · p): planes across `normal` slide along `along`. A shear, which keeps
 /// volumes, where the two are at right angles.
-constexpr Mat4d shear(Vec3 along, Vec3 normal) {
+constexpr Mat4d shear(Vec3d along, Vec3d normal) {
   const double a[3] = {along.x, along.y, along.z}, n[3] = {normal.x, normal.y, normal.z};
   Mat4d r = Mat4d::identity();
   for (int i = 0; i < 3; ++i)
@@ -37,7 +37,7 @@ constexpr Mat4d shear(Vec3 along, Vec3 normal) {
 
 /// The mirror image in the plane normal · p = offset · |normal|². `normal` is not 0 and need not be
 /// of unit length. Turns fronts into backs (Winding).
-constexpr Mat4d reflection(Vec3 normal, double offset = 0) {
+constexpr Mat4d reflection(Vec3d normal, double offset = 0) {
   const double n[3] = {normal.x, normal.y, normal.z};
   const double squared = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
   Mat4d r = Mat4d::identity();
@@ -73,7 +73,7 @@ inline Quaternion normalize(const Quaternion& q) {
 }
 
 /// Right-handed about `axis`, which need not be of unit length; the identity where it is 0.
-[[nodiscard]] Quaternion rotation_about(Vec3 axis, double angle_rad);
+[[nodiscard]] Quaternion rotation_about(Vec3d axis, double angle_rad);
 
 /// The rotation's matrix. `q` of unit length.
 constexpr Mat4d rotation(const Quaternion& q) {

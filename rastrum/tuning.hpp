@@ -10,8 +10,9 @@ enum class BlockOrder : std::uint8_t { row_major, morton };
 /// How `hybrid` draws small triangles: by the blocks of their boxes or by rows (paper 1, 4.2).
 enum class SmallPath : std::uint8_t { blocks, rows };
 
-/// Parameters of the rasterizers; 0 takes the rasterizer's default, which is its paper's. Bin and
-/// tile sizes are compiled in: `Renderer` refuses a pair that is not, and lists those that are.
+/// Parameters of the rasterizers; 0 takes the rasterizer's default, which is its paper's. Sizes
+/// of bins and tiles are powers of two, a bin up to 128 px and 2 to 16 tiles across, a tile from 4
+/// px, with `binned` from 8; `grouped` has its own.
 struct Tuning {
   int bin_px = 0, tile_px = 0;
   int small_px = 0;  ///< box area up to which a triangle is small (128)

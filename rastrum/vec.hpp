@@ -133,4 +133,47 @@ RASTRUM_HD inline bool is_finite(Vec3 a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
+/// A point or direction in float64: where a camera stands, what is computed before it is rounded
+/// to float32 once. Every Vec3 is one; the way back rounds and is said. Its functions are friends,
+/// so that they are found for it alone and what takes a Vec3 has no second meaning.
+struct Vec3d {
+  double x = 0, y = 0, z = 0;
+
+  constexpr Vec3d() = default;
+  RASTRUM_HD constexpr Vec3d(double x_, double y_, double z_) : x(x_), y(y_), z(z_) {}
+  RASTRUM_HD constexpr Vec3d(Vec3 a) : x(a.x), y(a.y), z(a.z) {}
+  RASTRUM_HD constexpr explicit operator Vec3() const {
+    return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+  }
+
+  RASTRUM_HD friend constexpr Vec3d operator+(Vec3d a, Vec3d b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+  }
+  RASTRUM_HD friend constexpr Vec3d operator-(Vec3d a, Vec3d b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
+  RASTRUM_HD friend constexpr Vec3d operator-(Vec3d a) { return {-a.x, -a.y, -a.z}; }
+  RASTRUM_HD friend constexpr Vec3d operator*(Vec3d a, double s) {
+    return {a.x * s, a.y * s, a.z * s};
+  }
+  RASTRUM_HD friend constexpr bool operator==(Vec3d a, Vec3d b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+  }
+  RASTRUM_HD friend constexpr double dot(Vec3d a, Vec3d b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+  }
+  RASTRUM_HD friend constexpr Vec3d cross(Vec3d a, Vec3d b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  }
+  RASTRUM_HD friend double length(Vec3d a) { return std::sqrt(dot(a, a)); }
+  /// The unit vector along `a`; `a` itself where its length is 0.
+  RASTRUM_HD friend Vec3d normalize(Vec3d a) {
+    const double l = length(a);
+    return l > 0 ? a * (1 / l) : a;
+  }
+  RASTRUM_HD friend bool is_finite(Vec3d a) {
+    return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+  }
+};
+
 }  // namespace rastrum

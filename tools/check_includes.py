@@ -31,11 +31,11 @@ MAY_INCLUDE = {
 PUBLIC = {
     "core": {"config", "digest", "error", "image", "mat", "transform", "vec"},
     "parallel": {"device", "stop"},
-    "scene": {"camera", "fit", "mesh", "scene", "shapes"},
+    "scene": {"camera", "fit", "mesh", "motion", "scene", "shapes", "surfaces"},
     "raster": {"frame", "primitives", "program", "tuning"},
     "terrain": {"terrain", "terrain_light"},
     "io": {"io"},
-    "render": {"on_terrain", "render"},
+    "render": {"on_terrain", "pick", "render"},
     "family": {"family"},
 }
 FLOOR_OF = {f"{name}.hpp": floor for floor, names in PUBLIC.items() for name in names}

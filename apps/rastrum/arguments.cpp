@@ -20,6 +20,21 @@ bool convert(std::string_view text, T& value) {
   throw UsageError(option, "expected " + wanted + ", got '" + std::string(text) + "'");
 }
 
+/// Finite numbers between commas.
+template <std::size_t N>
+void parse_list(std::string_view option, std::string_view text, double (&values)[N],
+                const char* wanted) {
+  std::string_view rest = text;
+  for (std::size_t i = 0; i < N; ++i) {
+    const std::size_t comma = rest.find(',');
+    const bool last = i + 1 == N;
+    if ((comma == std::string_view::npos) != last || !convert(rest.substr(0, comma), values[i]) ||
+        !std::isfinite(values[i]))
+      refuse(option, text, wanted);
+    if (!last) rest.remove_prefix(comma + 1);
+  }
+}
+
 }  // namespace
 
 double parse_number(std::string_view option, std::string_view text) {
@@ -47,18 +62,17 @@ std::uint64_t parse_bytes(std::string_view option, std::string_view text) {
   return value << shift;
 }
 
-Vec3 parse_vec3(std::string_view option, std::string_view text) {
-  float values[3] = {};
-  std::string_view rest = text;
-  for (int i = 0; i < 3; ++i) {
-    const std::size_t comma = rest.find(',');
-    const bool last = i == 2;
-    if ((comma == std::string_view::npos) != last || !convert(rest.substr(0, comma), values[i]) ||
-        !std::isfinite(values[i]))
-      refuse(option, text, "three numbers X,Y,Z");
-    if (!last) rest.remove_prefix(comma + 1);
-  }
-  return {values[0], values[1], values[2]};
+Vec3d parse_vec3(std::string_view option, std::string_view text) {
+  double v[3];
+  parse_list(option, text, v, "three numbers X,Y,Z");
+  return {v[0], v[1], v[2]};
+}
+
+ClipPlane parse_clip_plane(std::string_view option, std::string_view text) {
+  double v[4];
+  parse_list(option, text, v, "four numbers X,Y,Z,D");
+  if (v[0] == 0 && v[1] == 0 && v[2] == 0) throw UsageError(option, "the normal must not be 0");
+  return {{v[0], v[1], v[2]}, v[3]};
 }
 
 Size parse_size(std::string_view option, std::string_view text) {

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include <apps/command_line/parser.hpp>
+#include <rastrum/scene.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum::cli {
@@ -17,7 +18,9 @@ inline constexpr double kDegree = std::numbers::pi / 180;
 /// Each throws UsageError that names `option` and shows what is wanted.
 [[nodiscard]] double parse_number(std::string_view option, std::string_view text);  ///< finite
 [[nodiscard]] int parse_integer(std::string_view option, std::string_view text, int min, int max);
-[[nodiscard]] Vec3 parse_vec3(std::string_view option, std::string_view text);  ///< X,Y,Z
+[[nodiscard]] Vec3d parse_vec3(std::string_view option, std::string_view text);  ///< X,Y,Z
+/// X,Y,Z,D: keeps where X x + Y y + Z z + D ≥ 0.
+[[nodiscard]] ClipPlane parse_clip_plane(std::string_view option, std::string_view text);
 
 struct Size {
   int width = 1280, height = 720;

@@ -22,30 +22,36 @@ namespace {
 /// The numbers of a camera in the order of their curves.
 struct Column {
   float Camera::*scalar;  ///< null: a component of `vector`
-  Vec3 Camera::*vector;
-  float Vec3::*component;
+  Vec3d Camera::*vector;
+  double Vec3d::*component;
   Tangent tangent;
 
-  [[nodiscard]] float& of(Camera& c) const {
-    return scalar != nullptr ? c.*scalar : (c.*vector).*component;
+  [[nodiscard]] double get(const Camera& c) const {
+    return scalar != nullptr ? double{c.*scalar} : (c.*vector).*component;
+  }
+  void set(Camera& c, double value) const {
+    if (scalar != nullptr)
+      c.*scalar = static_cast<float>(value);
+    else
+      (c.*vector).*component = value;
   }
 };
 
-constexpr Column curve(Vec3 Camera::*vector, float Vec3::*component) {
+constexpr Column curve(Vec3d Camera::*vector, double Vec3d::*component) {
   return {nullptr, vector, component, Tangent::curve};
 }
 constexpr Column bounded(float Camera::*scalar) {
   return {scalar, nullptr, nullptr, Tangent::monotone};
 }
-constexpr Column kColumns[] = {curve(&Camera::eye, &Vec3::x),
-                               curve(&Camera::eye, &Vec3::y),
-                               curve(&Camera::eye, &Vec3::z),
-                               curve(&Camera::target, &Vec3::x),
-                               curve(&Camera::target, &Vec3::y),
-                               curve(&Camera::target, &Vec3::z),
-                               curve(&Camera::up, &Vec3::x),
-                               curve(&Camera::up, &Vec3::y),
-                               curve(&Camera::up, &Vec3::z),
+constexpr Column kColumns[] = {curve(&Camera::eye, &Vec3d::x),
+                               curve(&Camera::eye, &Vec3d::y),
+                               curve(&Camera::eye, &Vec3d::z),
+                               curve(&Camera::target, &Vec3d::x),
+                               curve(&Camera::target, &Vec3d::y),
+                               curve(&Camera::target, &Vec3d::z),
+                               curve(&Camera::up, &Vec3d::x),
+                               curve(&Camera::up, &Vec3d::y),
+                               curve(&Camera::up, &Vec3d::z),
                                bounded(&Camera::fov_rad),
                                bounded(&Camera::orthographic_height),
                                bounded(&Camera::near_plane),
@@ -57,10 +63,8 @@ float to_float(const JsonFields& fields, const char* name, double value) {
   return static_cast<float>(value);
 }
 
-void read_vec3(JsonFields& fields, const char* name, Vec3& into) {
-  if (const auto v = fields.numbers(name, 3))
-    into = {to_float(fields, name, (*v)[0]), to_float(fields, name, (*v)[1]),
-            to_float(fields, name, (*v)[2])};
+void read_vec3(JsonFields& fields, const char* name, Vec3d& into) {
+  if (const auto v = fields.numbers(name, 3)) into = {(*v)[0], (*v)[1], (*v)[2]};
 }
 
 void read_planes(JsonFields& fields, PathKey& key) {
@@ -128,8 +132,8 @@ CameraPath::CameraPath(std::vector<PathKey> keys, Interpolation interpolation)
   for (const PathKey& key : keys_) times.push_back(key.time_s);
   for (const Column& column : kColumns) {
     std::vector<double> values;
-    for (PathKey& key : keys_) {
-      const float value = column.of(key.camera);
+    for (const PathKey& key : keys_) {
+      const double value = column.get(key.camera);
       values.push_back(std::isfinite(value) ? value : 0);
     }
     curves_.emplace_back(times, std::move(values), interpolation, column.tangent);
@@ -139,8 +143,8 @@ CameraPath::CameraPath(std::vector<PathKey> keys, Interpolation interpolation)
 Camera CameraPath::at(double time_s) const {
   Camera camera = keys_.front().camera;
   for (std::size_t i = 0; i < curves_.size(); ++i) {
-    float& value = kColumns[i].of(camera);
-    if (std::isfinite(value)) value = static_cast<float>(curves_[i].at(time_s));
+    const Column& column = kColumns[i];
+    if (std::isfinite(column.get(camera))) column.set(camera, curves_[i].at(time_s));
   }
   return camera;
 }
@@ -151,7 +155,7 @@ CameraPath read_camera_path(const std::filesystem::path& file, const Camera& bas
 }
 
 nlohmann::ordered_json camera_json(const Camera& c, bool planes) {
-  const auto vec = [](Vec3 v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
+  const auto vec = [](Vec3d v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
   nlohmann::ordered_json entry{{"eye", vec(c.eye)}, {"target", vec(c.target)}, {"up", vec(c.up)}};
   if (c.orthographic)
     entry["orthographic"] = c.orthographic_height;

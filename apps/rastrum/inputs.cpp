@@ -101,9 +101,7 @@ Loaded load(const std::string& input, std::string_view format) {
   scene = spec.source.starts_with(kBuiltin) ? make_builtin(input, spec.source)
                                             : read(spec.source, format);
   loaded.has_materials = !scene.materials.empty();
-  if (spec.placement != Placement{})
-    for (Instance& instance : scene.instances)
-      instance.object_to_world = spec.placement.matrix() * instance.object_to_world;
+  if (spec.placement != Placement{}) scene.place(spec.placement.matrix());
   if (spec.look.given()) paint(scene, spec.look);
   return loaded;
 }
@@ -163,6 +161,18 @@ Inputs load_inputs(const std::vector<std::string>& inputs, const NormalOptions& 
     for (Mesh& mesh : all.scene.meshes) choose_normals(mesh, normals);
   });
   return all;
+}
+
+std::size_t animation_count(const Scene& scene) {
+  std::size_t most = 0;
+  for (const Motion& motion : scene.motions) most = std::max(most, motion.animations.size());
+  return most;
+}
+
+void pose_inputs(Inputs& inputs, const NormalOptions& normals, double seconds,
+                 std::size_t animation) {
+  for (const std::uint32_t mesh : pose(inputs.scene, seconds, animation))
+    choose_normals(inputs.scene.meshes[mesh], normals);
 }
 
 Image<std::int32_t> inputs_of_ids(ImageView<const std::int64_t> ids,

@@ -59,6 +59,12 @@ void check_inputs(const std::vector<std::string>& inputs, std::string_view forma
                                  const NormalOptions& normals, Timeline& timeline,
                                  Progress& progress, std::string_view format = {});
 
+/// How many animations the input with the most has.
+[[nodiscard]] std::size_t animation_count(const Scene& scene);
+/// rastrum::pose; normals that the files do not have are made again. There is such an animation.
+void pose_inputs(Inputs& inputs, const NormalOptions& normals, double seconds,
+                 std::size_t animation);
+
 /// The number of the input that each pixel shows, −1 where `ids` is: a search among the parts.
 [[nodiscard]] Image<std::int32_t> inputs_of_ids(ImageView<const std::int64_t> ids,
                                                 std::span<const InputPart> parts);

@@ -27,6 +27,7 @@ enum Fate : std::size_t {
   edge_on,
   small,
   between,
+  cut_away,
   kFates,
 };
 
@@ -52,6 +53,8 @@ constexpr Phrases kPhrases[kFates] = {
      "bring --eye nearer, use --fit, or give a larger --size"},
     {"falls between the pixels' centres", "fall between the pixels' centres",
      "give a larger --size, or --samples 16"},
+    {"lies behind a --clip-plane", "lie behind a --clip-plane",
+     "the plane X,Y,Z,D keeps where X x + Y y + Z z + D >= 0: change all signs for the other side"},
 };
 
 Vec4d to_clip(const Mat4d& m, Vec3 p) {
@@ -121,13 +124,25 @@ struct Eye {
   }
 };
 
+bool is_cut_away(const FrameOptions& options, const Mat4d& to_world, const Vec3 (&corners)[3]) {
+  return std::ranges::any_of(options.clip_planes, [&](const ClipPlane& plane) {
+    return std::ranges::all_of(corners, [&](Vec3 p) {
+      const Vec4d world = to_clip(to_world, p);
+      return plane.normal.x * world.x + plane.normal.y * world.y + plane.normal.z * world.z +
+                 plane.offset <
+             0;
+    });
+  });
+}
+
 std::array<std::uint64_t, kFates> census(const FrameOptions& options, const SceneView& scene,
                                          const Camera& camera) {
   std::array<std::uint64_t, kFates> counts{};
   const Mat4d world_to_view = world_to_clip(camera, options.width, options.height);
   const Shader shader = shader_for(options.shader, scene);
   for (const InstanceView& instance : scene.instances) {
-    const MeshView& mesh = instance.mesh;
+    if (instance.mesh() == nullptr) continue;
+    const MeshView& mesh = *instance.mesh();
     const Eye eye{world_to_view * instance.object_to_world,
                   static_cast<double>(options.width),
                   static_cast<double>(options.height),
@@ -139,7 +154,9 @@ std::array<std::uint64_t, kFates> census(const FrameOptions& options, const Scen
         const std::size_t c = 3 * t + k;
         return mesh.positions[mesh.indices.empty() ? c : mesh.indices[c]];
       };
-      ++counts[eye.fate({corner(0), corner(1), corner(2)})];
+      const Vec3 corners[3] = {corner(0), corner(1), corner(2)};
+      const bool away = is_cut_away(options, instance.object_to_world, corners);
+      ++counts[away ? cut_away : eye.fate({corners[0], corners[1], corners[2]})];
     }
   }
   return counts;
@@ -168,6 +185,8 @@ Emptiness why_empty(const FrameStats& frame, const FrameOptions& options, const 
   if (frame.triangles.input == 0)
     return {"there are no triangles to draw", "`rastrum info` tells what a file holds"};
   if (frame.pixels_covered != 0) return {"--opacity 0 makes all of it transparent", "give more"};
+  if (frame.fragments != 0 && !options.clip_planes.empty())
+    return {"what is in view lies behind a --clip-plane", kPhrases[cut_away].remedy};
   if (frame.fragments != 0)
     return {"the alpha of its materials (MASK) cuts all of it out",
             "the file's alphaCutoff and textures decide that, --heatmap shows where it is"};

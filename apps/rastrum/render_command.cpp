@@ -1,6 +1,5 @@
 // `rastrum render INPUT… -o OUT`: the options, then check, load, render, write.
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -17,6 +16,7 @@
 #include "arguments.hpp"
 #include "camera_path.hpp"
 #include "commands.hpp"
+#include "frame_images.hpp"
 #include "heatmap.hpp"
 #include "inputs.hpp"
 #include "json_fields.hpp"
@@ -42,6 +42,8 @@ enum class DepthUnit { reversed, world };
 struct RenderArguments : SceneArguments {
   std::filesystem::path path;
   int turntable = 0;  ///< pictures of a full turn; 0: it does not turn
+  std::optional<double> time_s;
+  std::optional<int> animation;
   double fps = 30;
   bool fps_given = false;
   bool frames_given = false;
@@ -51,6 +53,7 @@ struct RenderArguments : SceneArguments {
   std::optional<std::string> color_file;  ///< what -o says; with color_format it makes `color`
   std::optional<Format> color_format;
   Output color, depth, ids, objects, heatmap, errors, trace, stats;
+  std::vector<FrameImage> images;
   bool hash = false;
 
   /// Whether one run draws many pictures.
@@ -90,6 +93,12 @@ void add_output_options(Parser& app, RenderArguments& a) {
   add(app, "--objects", "FILE",
       ".npy: int32, which INPUT is seen, from 0 in command order, -1 where nothing is",
       [&a](const std::string& s) { a.objects = parse_output("--objects", s, {Format::npy}); })
+      ->group(group);
+  app.add_repeated("--image", "NAME=FILE",
+                   "what is seen at each pixel (docs/conventions.md), .npy, or .exr where it is of "
+                   "one, three or four floats; may be repeated; the names: " +
+                       frame_image_names(),
+                   [&a](const std::string& s) { a.images.push_back(parse_frame_image(s)); })
       ->group(group);
   add(app, "--heatmap", "FILE",
       ".png: fragments at each pixel, hidden ones too, as colours; legend on stderr",
@@ -135,6 +144,22 @@ void add_path_options(Parser& app, RenderArguments& a) {
       ->group(group);
 }
 
+void add_motion_options(Parser& app, RenderArguments& a) {
+  const char* group = "Motion";
+  add(app, "--time", "S",
+      "the moment of an animation of the files, in seconds; what has ended begins again (without: "
+      "as "
+      "the files stand, and along --path each picture's own time)",
+      [&a](const std::string& s) {
+        a.time_s = parse_number("--time", s);
+        if (!(*a.time_s >= 0)) throw UsageError("--time", "must not be negative, got '" + s + "'");
+      })
+      ->group(group);
+  add(app, "--animation", "N", "which one, as `rastrum info` counts them (0)",
+      [&a](const std::string& s) { a.animation = parse_integer("--animation", s, 0, 1000000); })
+      ->group(group);
+}
+
 void add_frames_option(Parser& app, RenderArguments& a) {
   add(app, "--frames", "N", "render N times; --stats gives median, minimum and maximum (1)",
       [&a](const std::string& s) {
@@ -144,13 +169,16 @@ void add_frames_option(Parser& app, RenderArguments& a) {
       ->group(kMachineGroup);
 }
 
-/// The outputs that hold one picture, so that a sequence needs a numbered name for each.
-std::array<Output RenderArguments::*, 6> picture_outputs() {
-  return {&RenderArguments::color,   &RenderArguments::depth,   &RenderArguments::ids,
-          &RenderArguments::objects, &RenderArguments::heatmap, &RenderArguments::errors};
+/// The outputs that hold one picture, so that a sequence needs a numbered name for each; those that
+/// are asked for.
+std::vector<Output*> picture_outputs(RenderArguments& a) {
+  std::vector<Output*> outputs{&a.color, &a.depth, &a.ids, &a.objects, &a.heatmap, &a.errors};
+  for (FrameImage& image : a.images) outputs.push_back(&image.output);
+  std::erase_if(outputs, [](const Output* output) { return !*output; });
+  return outputs;
 }
 
-void check_sequence(const RenderArguments& a) {
+void check_sequence(RenderArguments& a) {
   const char* option = a.path.empty() ? "--turntable" : "--path";
   if (a.frames_given)
     throw UsageError("--frames", std::string("leaves no room for ") + option +
@@ -160,14 +188,11 @@ void check_sequence(const RenderArguments& a) {
   if (a.turntable != 0 && a.view.file_camera)
     throw UsageError("--turntable",
                      "the camera of a file has no target to turn about: give --eye and --target");
-  for (const auto member : picture_outputs()) {
-    const Output& output = a.*member;
-    if (!output) continue;
-    if (output.format == Format::mp4)
+  for (const Output* output : picture_outputs(a))
+    if (output->format == Format::mp4)
       Mp4Writer::check(a.render.width, a.render.height);
     else
-      static_cast<void>(NumberedName(output.option, output.file.string()));
-  }
+      static_cast<void>(NumberedName(output->option, output->file.string()));
   if (!a.path.empty())
     static_cast<void>(read_json(a.path));  // a spoilt file is refused before a large scene is read
 }
@@ -179,19 +204,22 @@ void check(RenderArguments& a) {
                            {Format::png, Format::exr, Format::npy, Format::mp4}, a.color_format);
   else if (a.color_format)
     throw UsageError("--output-format", "is for -o");
-  if (!a.color && !a.depth && !a.ids && !a.objects && !a.heatmap && !a.errors && !a.stats &&
-      !a.trace && !a.hash)
+  if (!a.color && !a.depth && !a.ids && !a.objects && a.images.empty() && !a.heatmap && !a.errors &&
+      !a.stats && !a.trace && !a.hash)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
   check_scene_arguments(a);
   if (a.depth_unit && !a.depth) throw UsageError("--depth-unit", "is for --depth");
+  if (a.animation && !a.time_s && a.path.empty())
+    throw UsageError("--animation", "is for --time and --path");
   if (!a.is_sequence() && a.fps_given) throw UsageError("--fps", "is for --path and --turntable");
   if (!a.is_sequence() && a.color && a.color.format == Format::mp4)
     throw UsageError("-o",
                      "an .mp4 is drawn along a camera path or of a full turn: give --path or "
                      "--turntable");
   if (a.is_sequence()) check_sequence(a);
-  const Output* const outputs[] = {&a.color,   &a.depth,  &a.ids,   &a.objects,
-                                   &a.heatmap, &a.errors, &a.trace, &a.stats};
+  std::vector<const Output*> outputs{&a.color,   &a.depth,  &a.ids,   &a.objects,
+                                     &a.heatmap, &a.errors, &a.trace, &a.stats};
+  for (const FrameImage& image : a.images) outputs.push_back(&image.output);
   check_outputs(outputs);
   if (a.hash) check_hash(outputs);
 }
@@ -232,19 +260,21 @@ Image<float> distances(ImageView<const float> depth, const Camera& camera) {
 }
 
 /// Whether --hash is of the 8-bit colours because no picture is written.
-bool hashes_alone(const RenderArguments& a) {
-  const auto outputs = picture_outputs();
-  return a.hash && std::ranges::none_of(outputs, [&](auto member) { return bool{a.*member}; });
+bool hashes_alone(RenderArguments a) {
+  return a.hash && picture_outputs(a).empty();
 }
 
 Wanted wanted_of(const RenderArguments& a) {
   const bool floats = a.color.format == Format::exr || a.color.format == Format::npy;
-  return {.color8 = (a.color && !floats) || a.errors || hashes_alone(a),
-          .color = a.color && floats,
-          .depth = static_cast<bool>(a.depth),
-          .ids = a.ids || a.objects,
-          .overdraw = static_cast<bool>(a.heatmap),
-          .errors = static_cast<bool>(a.errors)};
+  Wanted wanted{.color8 = (a.color && !floats) || a.errors || hashes_alone(a),
+                .color = a.color && floats,
+                .depth = static_cast<bool>(a.depth),
+                .ids = a.ids || a.objects,
+                .overdraw = static_cast<bool>(a.heatmap),
+                .errors = static_cast<bool>(a.errors),
+                .images = {}};
+  for (const FrameImage& image : a.images) wanted.images.push_back(image.kind);
+  return wanted;
 }
 
 /// Into `files`, which the caller commits. `number`: of a picture of many.
@@ -287,6 +317,11 @@ void write_images(const RenderArguments& a, const Pictures& p, const Camera& cam
     io::write_npy(file, objects.view());
     hash("objects", objects);
   });
+  for (std::size_t i = 0; i < a.images.size(); ++i)
+    write(a.images[i].output, [&](io::AtomicFile& file) {
+      write_frame_image(file, a.images[i].output.format, p.images[i]);
+      std::visit([&](const auto& image) { hash(name(a.images[i]), image); }, p.images[i]);
+    });
   write(a.heatmap, [&](io::AtomicFile& file) {
     const Heatmap heatmap = make_heatmap(p.overdraw.view());
     io::write_png(file, heatmap.image.view());
@@ -310,15 +345,14 @@ void write_images(const RenderArguments& a, const Pictures& p, const Camera& cam
 /// `a` with the names of picture `number`; throws UsageError where many pictures share a name.
 RenderArguments with_numbers(const RenderArguments& a, std::size_t number, std::size_t count) {
   RenderArguments numbered = a;
-  for (const auto member : picture_outputs()) {
-    Output& output = numbered.*member;
-    if (!output || output.format == Format::mp4) continue;
-    const NumberedName name(output.option, output.file.string());
+  for (Output* output : picture_outputs(numbered)) {
+    if (output->format == Format::mp4) continue;
+    const NumberedName name(output->option, output->file.string());
     if (!name.has_number() && count > 1)
-      throw UsageError(output.option, "there are " + std::to_string(count) +
-                                          " pictures: number them, as in frame_%04d" +
-                                          output.file.extension().string());
-    output.file = name.at(number);
+      throw UsageError(output->option, "there are " + std::to_string(count) +
+                                           " pictures: number them, as in frame_%04d" +
+                                           output->file.extension().string());
+    output->file = name.at(number);
   }
   return numbered;
 }
@@ -394,6 +428,22 @@ int run_sequence(const RenderArguments& a, Renderer& renderer, const Sequence& s
   return 0;
 }
 
+/// Poses the inputs for --time. Whether they move along the path, too.
+bool pose_for(const RenderArguments& a, Inputs& inputs) {
+  if (!a.time_s && a.path.empty()) return false;
+  const std::size_t count = animation_count(inputs.scene);
+  const auto animation = static_cast<std::size_t>(a.animation.value_or(0));
+  if (a.animation && animation >= count)
+    throw UsageError("--animation", "there is no animation " + std::to_string(animation) +
+                                        ": the files have " + std::to_string(count));
+  if (count == 0) {
+    if (a.time_s && !a.quiet) warn("--time: no input has an animation");
+    return false;
+  }
+  if (a.time_s) pose_inputs(inputs, a.normals, *a.time_s, animation);
+  return !a.time_s;
+}
+
 int run(RenderArguments& a) {
   check(a);
   Timeline timeline;
@@ -403,7 +453,7 @@ int run(RenderArguments& a) {
   Renderer renderer = family::make_renderer(a.render, a.render);
 
   const double load_begin = timeline.now_ms();
-  const Inputs inputs = load_inputs(a.inputs, a.normals, timeline, progress, a.format);
+  Inputs inputs = load_inputs(a.inputs, a.normals, timeline, progress, a.format);
   const Scene& scene = inputs.scene;
   const double load_ms = timeline.now_ms() - load_begin;
   if (!a.quiet && !scene.warnings.empty()) {
@@ -411,17 +461,25 @@ int run(RenderArguments& a) {
     for (const std::string& w : scene.warnings) warn(w);
   }
   if (!a.quiet && a.render.transparency.method == Transparency::none) report_blended(scene);
+  const bool moves = pose_for(a, inputs);
   const SceneBinding binding(scene);
   a.render.shader = shader_of(a.render.shader, inputs.has_materials);
   a.view.turns = a.turntable != 0;
   const Camera camera =
       choose_camera(a.view, scene, binding.view(), {a.render.width, a.render.height});
 
+  std::optional<SceneBinding> posed;
+  SceneAt moving;
+  if (moves)
+    moving = [&](double seconds) {
+      pose_inputs(inputs, a.normals, seconds, static_cast<std::size_t>(a.animation.value_or(0)));
+      return posed.emplace(scene).view();
+    };
   if (a.is_sequence())
     return run_sequence(a, renderer,
                         a.turntable != 0
                             ? on_turntable(a.turntable, binding.view(), a.view, camera)
-                            : along_path(a.path, a.fps, binding.view(), a.view, camera),
+                            : along_path(a.path, a.fps, binding.view(), moving, a.view, camera),
                         inputs, load_ms, timeline, progress);
   const bool timed = a.frames_given || a.stats || a.trace;
   Pictures pictures;
@@ -461,6 +519,7 @@ Command add_render_command(Parser& app) {
   add_transparency_options(render, *arguments);
   add_camera_options(render, *arguments);
   add_path_options(render, *arguments);
+  add_motion_options(render, *arguments);
   add_machine_options(render, *arguments);
   add_frames_option(render, *arguments);
   std::string footer = shapes_help();
@@ -476,6 +535,7 @@ Command add_render_command(Parser& app) {
       "  rastrum render engine.glb --opacity 0.3 --samples 4 -o see_through.png\n"
       "  rastrum render hair.ply --opacity 0.5 --transparency filter:3 --show-errors wrong.png\n"
       "  rastrum render dragon.ply --frames 20 --stats - --trace frames.json --heatmap heat.png\n"
+      "  rastrum render fox.glb --animation 1 --time 0.4 -o running.png\n"
       "  rastrum render dragon.ply --path flight.json --fps 60 -o 'frame_%04d.png'\n"
       "  rastrum render shell.ply@opacity=0.3,color=#88aaff core.stl@z=0.2,rx=90 -o glass.png\n"
       "  rastrum render dragon.ply --turntable 120 -o dragon.mp4\n"

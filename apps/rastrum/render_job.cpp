@@ -9,7 +9,7 @@ namespace rastrum::cli {
 namespace {
 
 /// Allocates what is wanted and returns the views.
-Targets make_targets(Wanted wanted, const FrameOptions& options, Pictures& pictures) {
+Targets make_targets(const Wanted& wanted, const FrameOptions& options, Pictures& pictures) {
   Targets targets;
   const auto add = [&](bool want, auto& image, auto& target) {
     if (!want) return;
@@ -23,6 +23,7 @@ Targets make_targets(Wanted wanted, const FrameOptions& options, Pictures& pictu
   add(wanted.ids, pictures.ids, targets.ids);
   add(wanted.overdraw, pictures.overdraw, targets.overdraw);
   add(wanted.errors, pictures.errors, targets.errors);
+  add_frame_images(wanted.images, options.width, options.height, pictures.images, targets);
   return targets;
 }
 
@@ -56,14 +57,15 @@ std::vector<FrameStats> render_frames(Renderer& renderer, const SceneView& scene
     stats.push_back(timed_render(renderer, scene, camera, frame, all, timeline, "frame"));
     return stats;
   }
-  const Targets color8 = make_targets({.color8 = true}, frame, pictures);
+  const Targets color8 = make_targets({.color8 = true, .images = {}}, frame, pictures);
   for (int i = 0; i < frames; ++i) {
     progress.show("rendering frame " + std::to_string(i + 1) + " of " + std::to_string(frames));
     stats.push_back(timed_render(renderer, scene, camera, frame, color8, timeline,
                                  "frame " + std::to_string(i)));
   }
   wanted.color8 = false;
-  if (wanted.color || wanted.depth || wanted.ids || wanted.overdraw || wanted.errors) {
+  if (wanted.color || wanted.depth || wanted.ids || wanted.overdraw || wanted.errors ||
+      !wanted.images.empty()) {
     const Targets others = make_targets(wanted, frame, pictures);
     timeline.measure("other images", "images",
                      [&] { renderer.render(scene, camera, frame, others); });

@@ -5,6 +5,8 @@
 
 #include <rastrum/render.hpp>
 
+#include "frame_images.hpp"
+
 namespace rastrum::cli {
 
 class Progress;
@@ -13,6 +15,7 @@ class Timeline;
 /// The images that outputs ask for.
 struct Wanted {
   bool color8 = false, color = false, depth = false, ids = false, overdraw = false, errors = false;
+  std::vector<const FrameImageKind*> images{};
 };
 
 struct Pictures {
@@ -22,6 +25,7 @@ struct Pictures {
   Image<std::int64_t> ids;
   Image<std::uint32_t> overdraw;
   Image<std::uint8_t> errors;
+  std::vector<FrameImagePixels> images;  ///< as Wanted's
 };
 
 /// `frame_ms` and the stages are of the whole call, from the caller's mesh in memory to the

@@ -97,6 +97,14 @@ void add_shading_options(Parser& app, SceneArguments& a, const char* group) {
             "--cull", s, {{"none", Cull::none}, {"back", Cull::back}, {"front", Cull::front}});
       })
       ->group(group);
+  app.add_repeated("--clip-plane", "X,Y,Z,D",
+                   "draw only what lies where X x + Y y + Z z + D >= 0 in the world; up to eight",
+                   [&a](const std::string& s) {
+                     a.render.clip_planes.push_back(parse_clip_plane("--clip-plane", s));
+                     if (a.render.clip_planes.size() > kMaxClipPlanes)
+                       throw UsageError("--clip-plane", "there are at most eight");
+                   })
+      ->group(group);
 }
 
 void add_picture_options(Parser& app, SceneArguments& a) {

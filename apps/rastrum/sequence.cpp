@@ -53,8 +53,8 @@ class Turntable {
     for (std::size_t i = 0; i < count_; ++i) {
       const Mat4d m = matrix(i);
       const auto row = [&](int r) {
-        return static_cast<float>(m.m[r][0] * sphere.centre.x + m.m[r][1] * sphere.centre.y +
-                                  m.m[r][2] * sphere.centre.z + m.m[r][3]);
+        return m.m[r][0] * sphere.centre.x + m.m[r][1] * sphere.centre.y +
+               m.m[r][2] * sphere.centre.z + m.m[r][3];
       };
       place_planes(camera, {{row(0), row(1), row(2)}, sphere.radius});
       near = std::min(near, camera.near_plane);
@@ -77,14 +77,15 @@ class Turntable {
 }  // namespace
 
 Sequence along_path(const std::filesystem::path& file, double fps, const SceneView& scene,
-                    const ViewOptions& options, const Camera& base) {
+                    const SceneAt& moving, const ViewOptions& options, const Camera& base) {
   const CameraPath path = read_camera_path(file, base);
   const std::vector<double> times = frame_times(path.first_s(), path.last_s(), fps);
   const bool moves_planes = !path.has_planes() && !options.near_plane;
   return {times.size(), [=, sphere = bounding_sphere(scene)](std::size_t i) -> Sequence::Shot {
             Camera camera = path.at(times[i]);
-            if (moves_planes) place_planes(camera, sphere);
-            return {scene, camera};
+            const SceneView now = moving ? moving(times[i]) : scene;
+            if (moves_planes) place_planes(camera, moving ? bounding_sphere(now) : sphere);
+            return {now, camera};
           }};
 }
 

@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <rastrum/family.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/terrain.hpp>
@@ -261,7 +262,7 @@ int run(TerrainArguments& a) {
   Progress progress(a.quiet);
   // Refuses what cannot be drawn before a large file is read.
   terrain::check(a.options);
-  terrain::TerrainRenderer renderer(a.options);
+  terrain::TerrainRenderer renderer = family::make_terrain_renderer(a.options);
 
   progress.show("loading");
   std::optional<TerrainObjects> objects;

@@ -13,9 +13,8 @@
 namespace rastrum::cli {
 namespace {
 
-double distance(Vec3 a, Vec3 b) {
-  const double x = double{a.x} - b.x, y = double{a.y} - b.y, z = double{a.z} - b.z;
-  return std::sqrt(x * x + y * y + z * z);
+double distance(Vec3d a, Vec3d b) {
+  return length(a - b);
 }
 
 Camera file_camera(const Scene& scene, int index) {
@@ -92,7 +91,7 @@ Camera choose_camera(const ViewOptions& o, const Scene& scene, const SceneView& 
   if (o.far_plane) camera.far_plane = static_cast<float>(*o.far_plane);
   if (camera.eye == camera.target)
     throw UsageError(o.target ? "--target" : "--eye", "eye and target must differ");
-  const Vec3 towards = camera.target - camera.eye;
+  const Vec3d towards = camera.target - camera.eye;
   if (length(cross(camera.up, towards)) == 0)
     throw UsageError("--up", o.up ? "must not be zero or along the view direction"
                                   : "is needed: the camera looks along 0,1,0; try --up 0,0,-1");

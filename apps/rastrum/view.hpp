@@ -20,7 +20,7 @@ struct ViewOptions {
   Fit fit = Fit::tight;
   bool turns = false;  ///< the scene turns: the tight fit is of all that it sweeps over
   std::optional<int> file_camera;
-  std::optional<Vec3> eye, target, up;
+  std::optional<Vec3d> eye, target, up;
   std::optional<double> fov_deg, near_plane, far_plane;
   bool orthographic = false;
   std::optional<double> orthographic_height;  ///< none: the fit camera's
@@ -28,7 +28,7 @@ struct ViewOptions {
 
 /// A ball around all that is drawn.
 struct BoundingSphere {
-  Vec3 centre;
+  Vec3d centre;
   double radius = 1;
 };
 [[nodiscard]] BoundingSphere bounding_sphere(const SceneView& view);

@@ -94,7 +94,7 @@ Rays rays_of(const Camera& camera, int width, int height) {
     };
     return Vec3{axis(0), axis(1), axis(2)};
   };
-  return {camera.eye,         world(-pixel * width / 2, pixel * height / 2, -1),
+  return {Vec3(camera.eye),   world(-pixel * width / 2, pixel * height / 2, -1),
           world(pixel, 0, 0), world(0, -pixel, 0),
           camera.near_plane,  camera.far_plane};
 }

@@ -194,7 +194,8 @@ void GlContext::set_mesh(const MeshView& mesh) {
 
 bool GlContext::set_view(const Camera& camera, int width, int height) {
   world_to_clip_ = static_cast<Mat4>(rastrum::world_to_clip(camera, width, height));
-  const Vec3 viewer = camera.orthographic ? normalize(camera.eye - camera.target) : camera.eye;
+  const Vec3 eye(camera.eye);
+  const Vec3 viewer = camera.orthographic ? normalize(eye - Vec3(camera.target)) : eye;
   eye_ = {viewer.x, viewer.y, viewer.z, camera.orthographic ? 0.0F : 1.0F};
   if (width == width_ && height == height_) return false;
   const GLint largest = limit(GL_MAX_RENDERBUFFER_SIZE);

@@ -135,16 +135,14 @@ void VtkPeer::set_mesh(const MeshView& mesh) {
 }
 
 void VtkPeer::set_view(const Camera& camera, int width, int height) {
-  const Vec3 way = camera.target - camera.eye;
+  const Vec3d way = camera.target - camera.eye;
   if (camera.orthographic || way.x != 0 || way.y != 0 || !(way.z < 0) || camera.up.x != 0 ||
       !(camera.up.y > 0))
     throw Error(Errc::unsupported, "VtkPeer: the camera does not look along -z");
   char numbers[400];
   std::snprintf(numbers, sizeof numbers, "%.9g %.9g %.9g %.9g %.9g %.9g %.9g 0 1 0",
-                static_cast<double>(camera.fov_rad), static_cast<double>(camera.eye.x),
-                static_cast<double>(camera.eye.y), static_cast<double>(camera.eye.z),
-                static_cast<double>(camera.target.x), static_cast<double>(camera.target.y),
-                static_cast<double>(camera.target.z));
+                static_cast<double>(camera.fov_rad), camera.eye.x, camera.eye.y, camera.eye.z,
+                camera.target.x, camera.target.y, camera.target.z);
   impl_->tell("view " + std::to_string(width) + " " + std::to_string(height) + " " + numbers);
   impl_->width = width;
   impl_->height = height;

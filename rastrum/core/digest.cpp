@@ -136,6 +136,9 @@ Digest digest(ImageView<const Vec4> image) {
 Digest digest(ImageView<const Vec3> image) {
   return of<float>(image, "float32");
 }
+Digest digest(ImageView<const Vec2> image) {
+  return of<float>(image, "float32");
+}
 Digest digest(ImageView<const float> image) {
   return of<float>(image, "float32");
 }

@@ -7,13 +7,12 @@
 
 namespace rastrum {
 
-Quaternion rotation_about(Vec3 axis, double angle_rad) {
-  const double x = axis.x, y = axis.y, z = axis.z;
-  const double length = std::sqrt(x * x + y * y + z * z);
-  if (!(length > 0)) return {};
+Quaternion rotation_about(Vec3d axis, double angle_rad) {
+  const double l = length(axis);
+  if (!(l > 0)) return {};
   const auto [sin, cos] = elementary::sin_cos(angle_rad / 2);
-  const double s = sin / length;
-  return {cos, x * s, y * s, z * s};
+  const double s = sin / l;
+  return {cos, axis.x * s, axis.y * s, axis.z * s};
 }
 
 Quaternion slerp(const Quaternion& a, const Quaternion& b, double t) {

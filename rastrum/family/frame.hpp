@@ -26,9 +26,6 @@
 
 namespace rastrum::family {
 
-/// Blocks that are handed to a region at once.
-inline constexpr std::size_t kBlockCapacity = 512;
-
 /// What a thread needs for a tile or a chunk. Kept between frames.
 struct Worker {
   explicit Worker(MemoryAccount& memory) : tile(memory) {}

@@ -73,7 +73,7 @@ std::unique_ptr<raster::FrameDrawer> make_on_threads(const Row& row, std::uint64
                                                      parallel::Threads& threads) {
   const CoverageRow& coverage = coverage_of(row, "auto, reference");
   const Visibility& visibility = visibility_of(row);
-  // Refuses tunings that were not compiled.
+  // Refuses tunings that it does not take.
   static_cast<void>(coverage.make(row.tuning, memory));
   const bool is_first = coverage.name == coverages().front().name;
   const bool is_fast = is_first && visibility.name == visibilities().front().name &&

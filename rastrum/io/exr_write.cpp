@@ -74,6 +74,10 @@ void write_exr(AtomicFile& out, ImageView<const Vec4> image) {
   write(out, image, {"R", "G", "B", "A"});
 }
 
+void write_exr(AtomicFile& out, ImageView<const Vec3> image) {
+  write(out, image, {"X", "Y", "Z"});
+}
+
 void write_exr(AtomicFile& out, ImageView<const float> image) {
   write(out, image, {"Z"});
 }
@@ -90,6 +94,10 @@ namespace {
 }  // namespace
 
 void write_exr(AtomicFile& out, ImageView<const Vec4>) {
+  fail(out.name());
+}
+
+void write_exr(AtomicFile& out, ImageView<const Vec3>) {
   fail(out.name());
 }
 

@@ -1,8 +1,9 @@
 // glTF 2.0 and GLB. The document is parsed (nlohmann::json), checked whole (gltf_check.cpp), then
 // the scene's nodes are walked depth-first; meshes, buffers, materials and images are read when
-// they are first used. Own reader: tinygltf 2.7 takes malformed documents for granted (it reads
-// beyond buffers and recurses without bound), drops numbers such as `1.0` where an index stands,
-// and making it safe needs these same checks over the same JSON.
+// they are first used. What moves becomes a Rig (gltf_rig.cpp) and is posed at rest. Own reader:
+// tinygltf 2.7 takes malformed documents for granted (it reads beyond buffers and recurses without
+// bound), drops numbers such as `1.0` where an index stands, and making it safe needs these same
+// checks over the same JSON.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -69,33 +70,6 @@ Container open_container(Bytes bytes, const std::string& name, std::vector<std::
   return r;
 }
 
-Mat4d local_transform(const Json& node) {
-  Mat4d r = Mat4d::identity();
-  double m[16];
-  if (node.numbers("matrix", m)) {
-    for (int column = 0; column < 4; ++column)
-      for (int row = 0; row < 4; ++row) r.m[row][column] = m[4 * column + row];
-    return r;
-  }
-  double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
-  (void)node.numbers("translation", t);
-  (void)node.numbers("scale", s);
-  if (node.numbers("rotation", q)) {
-    const double l = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    for (double& x : q) x /= l;
-  }
-  const double x = q[0], y = q[1], z = q[2], w = q[3];
-  const double rotation[3][3] = {
-      {1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
-      {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
-      {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) r.m[i][j] = rotation[i][j] * s[j];
-    r.m[i][3] = t[i];
-  }
-  return r;
-}
-
 /// glTF fixes the angle across the height, or the aspect; ours is across the smaller side.
 std::optional<Camera> read_camera(const Json& camera, const Mat4d& to_world) {
   const std::string& type = camera["type"].string();
@@ -119,16 +93,13 @@ std::optional<Camera> read_camera(const Json& camera, const Mat4d& to_world) {
   } else {
     return std::nullopt;
   }
-  const auto column = [&](int k, double sign) {
-    return Vec3{static_cast<float>(sign * to_world.m[0][k]),
-                static_cast<float>(sign * to_world.m[1][k]),
-                static_cast<float>(sign * to_world.m[2][k])};
-  };
-  c.eye = column(3, 1);
-  const Vec3 forward = normalize(column(2, -1));
-  c.target = c.eye + forward;
-  c.up = normalize(column(1, 1));
+  look_from(c, to_world);
   return c;
+}
+
+template <class T>
+std::uint32_t size32(const std::vector<T>& v) {
+  return static_cast<std::uint32_t>(v.size());
 }
 
 class GltfReader {
@@ -141,8 +112,20 @@ class GltfReader {
         materials_(document, buffers_, scene) {}
 
   void read() {
+    gltf::read_nodes(document_, rig_);
+    gltf::read_skins(document_, buffers_, rig_);
+    Motion motion;
+    motion.animations = gltf::read_animations(document_, buffers_, rig_, scene_.warnings);
+    find_weights();
+    to_world_ = to_root(rig_.nodes, rig_.parents_first);
     for (const std::size_t root : roots()) walk(root);
     check_unused_meshes();
+    if (!motion.animations.empty() || !rig_.deformed.empty()) {
+      std::ranges::sort(rig_.deformed, {}, &Rig::Deformed::mesh);
+      motion.rig = std::make_shared<const Rig>(std::move(rig_));
+      scene_.motions.push_back(std::move(motion));
+      pose_at_rest(scene_);
+    }
     if (scene_.instances.empty())
       scene_.warnings.push_back("its scene holds no triangles (" +
                                 std::to_string(length(document_, "meshes")) + " meshes)");
@@ -176,30 +159,26 @@ class GltfReader {
   /// Depth-first with a stack of its own. Every node has at most one parent (checked), so that
   /// from a root there are no cycles.
   void walk(std::size_t root) {
-    struct Visit {
-      std::size_t node;
-      Mat4d parent;
-    };
-    std::vector<Visit> stack = {{root, Mat4d::identity()}};
+    std::vector<std::size_t> stack = {root};
     while (!stack.empty()) {
-      const Visit v = stack.back();
+      const std::size_t index = stack.back();
       stack.pop_back();
-      const Json node = document_["nodes"].at(v.node);
+      const Json node = document_["nodes"].at(index);
       if (const auto visibility = node.extension("KHR_node_visibility"))
         if (!visibility->boolean("visible", true)) continue;
-      const Mat4d to_world = v.parent * local_transform(node);
-      if (const auto mesh = node.get("mesh")) place(mesh->count(), node, to_world);
+      if (node.get("mesh")) place(index, node);
       if (const auto camera = node.get("camera")) {
         const Json c = document_["cameras"].at(camera->count());
-        if (auto converted = read_camera(c, to_world))
+        if (auto converted = read_camera(c, to_world_[index])) {
+          rig_.cameras.push_back({size32(scene_.cameras), static_cast<std::uint32_t>(index)});
           scene_.cameras.push_back(*converted);
-        else
+        } else {
           scene_.warnings.push_back(c.path() + " cannot be used and is left out");
+        }
       }
       const auto children = node.get("children");
       if (!children) continue;
-      for (std::size_t i = children->size(); i-- > 0;)
-        stack.push_back({children->at(i).count(), to_world});
+      for (std::size_t i = children->size(); i-- > 0;) stack.push_back(children->at(i).count());
     }
   }
 
@@ -207,41 +186,134 @@ class GltfReader {
   void check_unused_meshes() {
     std::vector<std::string> ignored;
     for (std::size_t i = 0, n = length(document_, "meshes"); i < n; ++i) {
-      if (meshes_.count(i) != 0) continue;
-      document_["meshes"].at(i)["primitives"].for_each([&](const Json& p) {
-        (void)read_primitive(p, document_, buffers_, gltf::TextureUse{}, ignored);
-      });
+      if (drawn_.count(i) != 0) continue;
+      const Json owner = document_["meshes"].at(i);
+      owner["primitives"].for_each(
+          [&](const Json& p) { (void)read_part(p, owner, gltf::TextureUse{}, ignored); });
     }
   }
 
-  /// Every primitive is a mesh of ours; instances share them.
-  void place(std::size_t index, const Json& node, const Mat4d& to_world) {
-    const bool is_new = meshes_.count(index) == 0;
-    std::vector<std::uint32_t>& ours = meshes_[index];
-    if (is_new) {
-      const Json mesh = document_["meshes"].at(index);
-      mesh["primitives"].for_each([&](const Json& p) {
-        std::optional<std::size_t> material;
-        if (const auto m = p.get("material")) material = m->count();
-        auto read = read_primitive(p, document_, buffers_, materials_.texture_use(material),
-                                   scene_.warnings);
-        if (!read) return;
-        read->name = mesh.string("name", "");
-        read->material = materials_.use(material);
-        ours.push_back(static_cast<std::uint32_t>(scene_.meshes.size()));
-        scene_.meshes.push_back(*std::move(read));
-      });
+  /// A primitive, and what moves its vertices; null: nothing does.
+  struct Part {
+    Mesh mesh;
+    std::shared_ptr<const Rig::Shape> shape;
+  };
+  std::optional<Part> read_part(const Json& primitive, const Json& owner,
+                                const gltf::TextureUse& use, std::vector<std::string>& warnings) {
+    if (!gltf::holds_triangles(primitive, document_, warnings)) return std::nullopt;
+    const gltf::PrimitiveData data(primitive, document_, buffers_);
+    auto mesh = gltf::read_primitive(primitive, data, use, warnings);
+    if (!mesh) return std::nullopt;
+    auto shape = gltf::read_shape(primitive, data, document_, owner, *mesh);
+    return Part{*std::move(mesh), std::move(shape)};
+  }
+
+  /// A primitive in the scene. `shape` is Rig's, or none.
+  struct Drawn {
+    std::uint32_t mesh = 0;
+    std::int32_t shape = Rig::kNone;
+  };
+  const std::vector<Drawn>& drawn(std::size_t index) {
+    const auto [at, is_new] = drawn_.try_emplace(index);
+    if (!is_new) return at->second;
+    const Json owner = document_["meshes"].at(index);
+    owner["primitives"].for_each([&](const Json& p) {
+      std::optional<std::size_t> material;
+      if (const auto m = p.get("material")) material = m->count();
+      auto part = read_part(p, owner, materials_.texture_use(material), scene_.warnings);
+      if (!part) return;
+      part->mesh.name = owner.string("name", "");
+      part->mesh.material = materials_.use(material);
+      Drawn d{size32(scene_.meshes)};
+      scene_.meshes.push_back(std::move(part->mesh));
+      if (part->shape) {
+        d.shape = static_cast<std::int32_t>(rig_.shapes.size());
+        rig_.shapes.push_back(std::move(part->shape));
+      }
+      at->second.push_back(d);
+    });
+    return at->second;
+  }
+
+  /// What the vertices of a mesh depend on besides its primitive.
+  struct Cause {
+    std::int32_t skin = Rig::kNone;
+    std::int32_t weights = Rig::kNone;  ///< a node that has its own
+    friend auto operator<=>(const Cause&, const Cause&) = default;
+  };
+
+  /// Instances share the mesh of a primitive, but where they are deformed apart.
+  void place(std::size_t index, const Json& node) {
+    for (const Drawn& d : drawn(node["mesh"].count())) {
+      const Cause cause = cause_of(index, node, d);
+      const auto [at, is_new] = posed_.try_emplace({d.mesh, cause}, d.mesh);
+      if (is_new) {
+        const auto other = posed_.lower_bound({d.mesh, Cause{}});
+        const bool is_first =
+            other == at && (std::next(at) == posed_.end() || std::next(at)->first.first != d.mesh);
+        if (!is_first) {
+          at->second = size32(scene_.meshes);
+          scene_.meshes.push_back(Mesh(scene_.meshes[d.mesh]));
+        }
+        deform(at->second, d, cause, static_cast<std::uint32_t>(index));
+      }
+      // Joints place a skin, not its node.
+      const bool is_skinned = cause.skin != Rig::kNone;
+      if (!is_skinned)
+        rig_.placed.push_back({size32(scene_.instances), static_cast<std::uint32_t>(index)});
+      scene_.instances.push_back({at->second, is_skinned ? Mat4d::identity() : to_world_[index]});
     }
-    if (node.get("skin"))
-      scene_.warnings.push_back(node.path() + " has a skin; its mesh is drawn unposed");
-    for (const std::uint32_t m : ours) scene_.instances.push_back({m, to_world});
+  }
+
+  Cause cause_of(std::size_t index, const Json& node, const Drawn& d) {
+    Cause cause;
+    const auto skin = node.get("skin");
+    const Rig::Shape* const shape =
+        d.shape == Rig::kNone ? nullptr : rig_.shapes[static_cast<std::size_t>(d.shape)].get();
+    if (skin && (shape == nullptr || shape->influences == 0))
+      scene_.warnings.push_back(skin->path() + ": its mesh has no joints; it is drawn without");
+    else if (skin)
+      cause.skin = static_cast<std::int32_t>(skin->count());
+    if (shape != nullptr && !shape->targets.empty() && has_weights_[index])
+      cause.weights = static_cast<std::int32_t>(index);
+    return cause;
+  }
+
+  void deform(std::uint32_t mesh, const Drawn& d, const Cause& cause, std::uint32_t node) {
+    if (d.shape == Rig::kNone) return;
+    const Rig::Shape& shape = *rig_.shapes[static_cast<std::size_t>(d.shape)];
+    if (cause.skin != Rig::kNone) {
+      const std::size_t joints = rig_.skins[static_cast<std::size_t>(cause.skin)].joints.size();
+      for (const std::uint32_t j : shape.joints)
+        if (j >= joints)
+          document_["nodes"].at(node)["skin"].fail("has " + std::to_string(joints) +
+                                                   " joints, but its mesh refers to joint " +
+                                                   std::to_string(j));
+    } else if (shape.targets.empty()) {
+      return;
+    }
+    rig_.deformed.push_back({mesh, static_cast<std::uint32_t>(d.shape), cause.skin, node});
+  }
+
+  /// Nodes whose weights are their own, not those of their mesh.
+  void find_weights() {
+    has_weights_.resize(rig_.nodes.size());
+    for (std::size_t i = 0; i < rig_.nodes.size(); ++i)
+      has_weights_[i] = !rig_.nodes[i].weights.empty();
+    for (const Rig::Clip& clip : rig_.clips)
+      for (const Rig::Track& track : clip.tracks)
+        if (track.path == Rig::Path::weights) has_weights_[track.node] = true;
   }
 
   const Json& document_;
   Scene& scene_;
   gltf::Buffers buffers_;
   gltf::Materials materials_;
-  std::map<std::size_t, std::vector<std::uint32_t>> meshes_;
+  Rig rig_;
+  std::vector<bool> has_weights_;  ///< by node
+  std::vector<Mat4d> to_world_;    ///< by node, at rest
+  std::map<std::size_t, std::vector<Drawn>> drawn_;
+  std::map<std::pair<std::uint32_t, Cause>, std::uint32_t> posed_;
 };
 
 }  // namespace

@@ -153,22 +153,50 @@ std::optional<Bytes> Buffers::buffer(std::size_t index) {
   return bytes;
 }
 
+/// Whether the buffer is one that only stands for what is packed elsewhere.
+bool Buffers::leaves_out(std::size_t buffer) const {
+  const Json b = document_["buffers"].at(buffer);
+  const auto extension = b.extension(kMeshopt);
+  return (extension && extension->boolean("fallback", false)) || !b.get("uri");
+}
+
 std::optional<Bytes> Buffers::view(std::size_t index) {
   const Json v = document_["bufferViews"].at(index);
+  const auto extension = v.extension(kMeshopt);
+  if (extension && (has_meshopt() || leaves_out(v["buffer"].count()))) {
+    const auto known = unpacked_.find(index);
+    if (known != unpacked_.end()) return known->second;
+    const auto packed = buffer((*extension)["buffer"].count());
+    if (!packed) return std::nullopt;
+    return unpacked_
+        .emplace(index,
+                 decode_meshopt(*extension, packed->subspan(extension->count("byteOffset", 0),
+                                                            (*extension)["byteLength"].count())))
+        .first->second;
+  }
   const auto bytes = buffer(v["buffer"].count());
   if (!bytes) return std::nullopt;
   return bytes->subspan(v.count("byteOffset", 0), v["byteLength"].count());
 }
 
+bool Buffers::has_bytes(const Json& accessor) {
+  const auto v = accessor.get("bufferView");
+  return accessor.get("sparse") || (v && view(v->count()));
+}
+
 /// `convert(from, to)` makes one element, of `components` values, of its bytes.
 template <class T, class Convert>
-std::vector<T> Buffers::elements(const Json& accessor, Convert convert) {
+std::vector<T> Buffers::elements(const Json& accessor, std::optional<Bytes> packed,
+                                 Convert convert) {
   const AccessorType type = accessor_type(accessor);
   const std::size_t count = accessor["count"].count();
-  std::optional<Bytes> bytes;
-  std::size_t stride = type.element_bytes;
-  if (const auto v = accessor.get("bufferView")) {
+  std::optional<Bytes> bytes = packed;
+  std::size_t stride = type.element_bytes, offset = 0;
+  if (packed) {
+    // As many as elements, one behind the other.
+  } else if (const auto v = accessor.get("bufferView")) {
     bytes = view(v->count());
+    offset = accessor.count("byteOffset", 0);
     stride = document_["bufferViews"].at(v->count()).count("byteStride", type.element_bytes);
   }
   if (!bytes && count > kMostZeros)
@@ -176,12 +204,12 @@ std::vector<T> Buffers::elements(const Json& accessor, Convert convert) {
                   Errc::unsupported);
   std::vector<T> values(count * type.components);
   if (bytes) {
-    const std::byte* from = bytes->data() + accessor.count("byteOffset", 0);
+    const std::byte* from = bytes->data() + offset;
     for (std::size_t i = 0; i < count; ++i)
       convert(from + i * stride, &values[i * type.components]);
   }
   const auto sparse = accessor.get("sparse");
-  if (!sparse) return values;
+  if (!sparse || packed) return values;
   const Json where = (*sparse)["indices"], what = (*sparse)["values"];
   const auto at = view(where["bufferView"].count());
   const auto value = view(what["bufferView"].count());
@@ -199,14 +227,14 @@ std::vector<T> Buffers::elements(const Json& accessor, Convert convert) {
   return values;
 }
 
-std::vector<float> Buffers::floats(const Json& accessor) {
+std::vector<float> Buffers::floats(const Json& accessor, std::optional<Bytes> packed) {
   const AccessorType type = accessor_type(accessor);
   const bool normalized = accessor.boolean("normalized", false);
   if (type.component_type == 5126)
-    return elements<float>(accessor, [&](const std::byte* from, float* to) {
+    return elements<float>(accessor, packed, [&](const std::byte* from, float* to) {
       std::memcpy(to, from, type.components * 4);
     });
-  return elements<float>(accessor, [&](const std::byte* from, float* to) {
+  return elements<float>(accessor, packed, [&](const std::byte* from, float* to) {
     for (std::size_t c = 0; c < type.components; ++c)
       to[c] = component(from + c * type.component_bytes, type.component_type, normalized);
   });
@@ -217,9 +245,10 @@ std::vector<std::uint32_t> Buffers::indices(const Json& accessor) {
   if (type.components != 1 ||
       (type.component_type != 5121 && type.component_type != 5123 && type.component_type != 5125))
     accessor.fail("is read as indices, but is not SCALAR of an unsigned integer");
-  return elements<std::uint32_t>(accessor, [&](const std::byte* from, std::uint32_t* to) {
-    *to = unsigned_component(from, type.component_bytes);
-  });
+  return elements<std::uint32_t>(accessor, std::nullopt,
+                                 [&](const std::byte* from, std::uint32_t* to) {
+                                   *to = unsigned_component(from, type.component_bytes);
+                                 });
 }
 
 }  // namespace rastrum::io::gltf

@@ -54,15 +54,24 @@ void check_buffers(const Json& document) {
   });
 }
 
+/// A buffer view, or what an extension has in its place.
+void check_in_buffer(const Json& v, const Json& document, const Counts& n) {
+  const std::size_t buffer = v["buffer"].index(n.buffers);
+  const std::size_t size = document["buffers"].at(buffer)["byteLength"].count();
+  const std::size_t length = v["byteLength"].count();
+  const std::size_t offset = v.count("byteOffset", 0);
+  if (length == 0) v.fail("byteLength must be at least 1");
+  if (offset > size || length > size - offset)
+    v.fail("reaches beyond its buffer of " + std::to_string(size) + " bytes");
+}
+
 void check_views(const Json& document, const Counts& n) {
   document.for_each("bufferViews", [&](const Json& v) {
-    const std::size_t buffer = v["buffer"].index(n.buffers);
-    const std::size_t size = document["buffers"].at(buffer)["byteLength"].count();
-    const std::size_t length = v["byteLength"].count();
-    const std::size_t offset = v.count("byteOffset", 0);
-    if (length == 0) v.fail("byteLength must be at least 1");
-    if (offset > size || length > size - offset)
-      v.fail("reaches beyond its buffer of " + std::to_string(size) + " bytes");
+    check_in_buffer(v, document, n);
+    if (const auto packed = v.extension(kMeshopt)) {
+      check_in_buffer(*packed, document, n);
+      check_meshopt(v, *packed);
+    }
     if (const auto stride = v.get("byteStride")) {
       const std::size_t s = stride->count();
       if (s < 4 || s > 252 || s % 4 != 0) stride->fail("must be a multiple of 4 between 4 and 252");
@@ -169,9 +178,23 @@ void check_meshes(const Json& document, const Counts& n) {
       p.for_each("targets", attributes);
       index(p, "indices", n.accessors);
       index(p, "material", n.materials);
+      if (const auto packed = p.extension(kDraco)) {
+        index(*packed, "bufferView", n.views, true);
+        (*packed)["attributes"].for_each_member(
+            [](const std::string&, const Json& id) { (void)id.count(); });
+      }
       if (p.count("mode", 4) > 6) p.fail("mode must lie between 0 and 6");
     });
-    m.for_each("weights", [](const Json& w) { (void)w.number(); });
+    const std::size_t targets = length(m["primitives"].at(0), "targets");
+    m["primitives"].for_each([&](const Json& p) {
+      if (length(p, "targets") != targets)
+        p.fail("has another number of morph targets than the first primitive");
+    });
+    const auto weights = m.get("weights");
+    if (weights && weights->size() != targets)
+      weights->fail("has " + std::to_string(weights->size()) + " numbers, but there are " +
+                    std::to_string(targets) + " morph targets");
+    if (weights) weights->for_each([](const Json& w) { (void)w.number(); });
   });
 }
 
@@ -284,8 +307,14 @@ void check_asset(const Json& document) {
 
 /// Extensions whose effect on the picture is implemented, or that have none on a still picture.
 constexpr std::string_view kKnown[] = {
-    "KHR_animation_pointer",  "KHR_materials_emissive_strength", "KHR_materials_unlit",
-    "KHR_materials_variants", "KHR_mesh_quantization",           "KHR_node_visibility",
+    kMeshopt,
+    "KHR_animation_pointer",
+    kDraco,
+    "KHR_materials_emissive_strength",
+    "KHR_materials_unlit",
+    "KHR_materials_variants",
+    "KHR_mesh_quantization",
+    "KHR_node_visibility",
     "KHR_texture_transform",
 };
 

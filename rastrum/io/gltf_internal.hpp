@@ -13,6 +13,7 @@
 #include <rastrum/io/gltf_json.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
+#include <rastrum/scene/rig.hpp>
 
 namespace rastrum::io::gltf {
 
@@ -30,20 +31,47 @@ struct AccessorType {
 /// The type of sparse indices and the like. Throws unless 5120 to 5126 without 5124.
 [[nodiscard]] std::size_t component_bytes(const Json& component_type);
 
+/// Extensions that pack bytes, each by a library that may have been missing at build time; then
+/// what there is without it is read: buffers and accessors that hold the same unpacked.
+constexpr const char* kMeshopt = "EXT_meshopt_compression";
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
+[[nodiscard]] bool has_meshopt();
+[[nodiscard]] bool has_draco();
+
+/// `view` has the extension: what it says of itself must be of one size and kind.
+void check_meshopt(const Json& view, const Json& extension);
+/// The bytes of such a view, of which `packed` are the extension's. Checked before.
+/// Throws Error{bad_format}; Error{unsupported} without the library.
+[[nodiscard]] std::vector<std::byte> decode_meshopt(const Json& extension, Bytes packed);
+
+/// What Draco had packed: vertices in the types of their accessors, without gaps.
+struct Unpacked {
+  std::map<std::string, std::vector<std::byte>> attributes;
+  std::vector<std::uint32_t> indices;
+};
+/// `packed`: the bytes of the extension's view. Throws as decode_meshopt.
+[[nodiscard]] Unpacked decode_draco(const Json& primitive, const Json& extension,
+                                    const Json& document, Bytes packed);
+
 /// Bytes of buffers, read when they are asked for.
 class Buffers {
  public:
   Buffers(const Json& document, const std::filesystem::path& file, std::optional<Bytes> glb_chunk)
       : document_(document), file_(file), glb_chunk_(glb_chunk) {}
 
-  /// The bytes of a buffer view; nullopt where the buffer has none (no uri: an application's own).
+  /// The bytes of a buffer view, unpacked; nullopt where the buffer has none (no uri: an
+  /// application's own).
   [[nodiscard]] std::optional<Bytes> view(std::size_t index);
   /// The bytes behind a URI: data: or a file beside this one. `where` names it in errors.
   [[nodiscard]] Bytes uri(const std::string& uri, const Json& where);
 
+  /// Whether an accessor holds more than the zeros that stand for bytes which are not there.
+  [[nodiscard]] bool has_bytes(const Json& accessor);
   /// Elements of an accessor as floats, `components` each; integers are normalized where the
-  /// accessor says so. Sparse values are put in. `index` must exist.
-  [[nodiscard]] std::vector<float> floats(const Json& accessor);
+  /// accessor says so. Sparse values are put in. `packed`: its elements, in the place of those that
+  /// it refers to.
+  [[nodiscard]] std::vector<float> floats(const Json& accessor,
+                                          std::optional<Bytes> packed = std::nullopt);
   /// The elements of a SCALAR accessor of unsigned integers.
   [[nodiscard]] std::vector<std::uint32_t> indices(const Json& accessor);
 
@@ -55,13 +83,15 @@ class Buffers {
     std::vector<std::byte> decoded;
   };
   [[nodiscard]] std::optional<Bytes> buffer(std::size_t index);
+  [[nodiscard]] bool leaves_out(std::size_t buffer) const;
   template <class T, class Convert>
-  std::vector<T> elements(const Json& accessor, Convert convert);
+  std::vector<T> elements(const Json& accessor, std::optional<Bytes> packed, Convert convert);
 
   const Json& document_;
   const std::filesystem::path& file_;
   std::optional<Bytes> glb_chunk_;
   std::map<std::size_t, std::optional<Bytes>> buffers_;
+  std::map<std::size_t, std::vector<std::byte>> unpacked_;  ///< by buffer view
   std::map<std::string, Owned> owned_;
 };
 
@@ -96,10 +126,60 @@ class Materials {
   std::map<std::size_t, std::int32_t> textures_, images_;  ///< glTF's index to ours
 };
 
-/// One primitive as a mesh; nullopt, with a warning, where it holds no triangles by its nature.
+/// Whether a primitive is one that read_primitive can make something of; else a warning says why
+/// not.
+[[nodiscard]] bool holds_triangles(const Json& primitive, const Json& document,
+                                   std::vector<std::string>& warnings);
+
+/// The attributes and indices of a primitive, wherever its file keeps them.
+class PrimitiveData {
+ public:
+  /// The primitive has positions (holds_triangles).
+  PrimitiveData(const Json& primitive, const Json& document, Buffers& buffers);
+
+  [[nodiscard]] std::size_t vertices() const { return vertices_; }
+  /// The accessor of an attribute, if the primitive has it.
+  [[nodiscard]] std::optional<Json> attribute(const std::string& name) const;
+  /// As vectors of floats, one a vertex; colours of three components get alpha 1. Of an attribute
+  /// that the primitive has, or of an accessor beside its attributes.
+  template <class T>
+  [[nodiscard]] std::vector<T> read(const std::string& name) const;
+  template <class T>
+  [[nodiscard]] std::vector<T> read(const Json& accessor) const;
+  /// Empty where the primitive has none; each is a vertex.
+  [[nodiscard]] std::vector<std::uint32_t> indices() const;
+
+ private:
+  const Json& primitive_;
+  Json accessors_;
+  template <class T>
+  [[nodiscard]] std::vector<T> convert(const Json& accessor, std::optional<Bytes> packed) const;
+
+  Buffers& buffers_;
+  std::size_t vertices_ = 0;
+  std::optional<Unpacked> unpacked_;
+};
+extern template std::vector<Vec2> PrimitiveData::read(const std::string&) const;
+extern template std::vector<Vec3> PrimitiveData::read(const std::string&) const;
+extern template std::vector<Vec4> PrimitiveData::read(const std::string&) const;
+extern template std::vector<Vec3> PrimitiveData::read(const Json&) const;
+
+/// One primitive as a mesh; nullopt, with a warning, where it holds no whole triangle.
 /// Mesh::material is left alone, `use` says where the material's textures read.
-[[nodiscard]] std::optional<Mesh> read_primitive(const Json& primitive, const Json& document,
-                                                 Buffers& buffers, const TextureUse& use,
+[[nodiscard]] std::optional<Mesh> read_primitive(const Json& primitive, const PrimitiveData& data,
+                                                 const TextureUse& use,
                                                  std::vector<std::string>& warnings);
+
+/// What moves the vertices of `mesh`, which was read from a primitive of the document's `owner`;
+/// null: nothing does.
+[[nodiscard]] std::shared_ptr<const Rig::Shape> read_shape(const Json& primitive,
+                                                           const PrimitiveData& data,
+                                                           const Json& document, const Json& owner,
+                                                           const Mesh& mesh);
+/// The document's nodes and skins, in its numbering, and its animations.
+void read_nodes(const Json& document, Rig& rig);
+void read_skins(const Json& document, Buffers& buffers, Rig& rig);
+[[nodiscard]] std::vector<Animation> read_animations(const Json& document, Buffers& buffers,
+                                                     Rig& rig, std::vector<std::string>& warnings);
 
 }  // namespace rastrum::io::gltf

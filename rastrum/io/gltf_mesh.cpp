@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -10,30 +11,6 @@
 
 namespace rastrum::io::gltf {
 namespace {
-
-/// The accessor of an attribute as vectors of N floats; `count` elements are expected.
-template <class T>
-std::vector<T> read_attribute(const Json& accessor, Buffers& buffers, std::size_t count) {
-  constexpr std::size_t kComponents = sizeof(T) / sizeof(float);
-  const std::size_t has = accessor_type(accessor).components;
-  const bool is_color = kComponents == 4;
-  if (has != kComponents && !(is_color && has == 3))
-    accessor.fail("has the wrong type for its attribute");
-  if (accessor["count"].count() != count)
-    accessor.fail("has " + std::to_string(accessor["count"].count()) +
-                  " elements, but the primitive has " + std::to_string(count) + " vertices");
-  const std::vector<float> floats = buffers.floats(accessor);
-  std::vector<T> values(count);
-  if (has == kComponents) {
-    std::memcpy(static_cast<void*>(values.data()), floats.data(), count * sizeof(T));
-  } else {
-    for (std::size_t i = 0; i < count; ++i) {
-      const float rgba[4] = {floats[3 * i], floats[3 * i + 1], floats[3 * i + 2], 1};
-      std::memcpy(static_cast<void*>(&values[i]), rgba, sizeof(T));
-    }
-  }
-  return values;
-}
 
 void apply(const TextureUse& use, std::vector<Vec2>& texcoords) {
   const auto& m = use.m;
@@ -55,58 +32,126 @@ std::vector<std::uint32_t> triangles_of(const std::vector<std::uint32_t>& corner
   return r;
 }
 
+/// Whether the accessors hold unpacked what an extension has packed.
+bool is_whole(const Json& primitive, const Json& accessors) {
+  bool whole = true;
+  const auto add = [&](const Json& index) {
+    const Json a = accessors.at(index.count());
+    whole &= a.get("bufferView") || a.get("sparse");
+  };
+  primitive["attributes"].for_each_member(
+      [&](const std::string&, const Json& index) { add(index); });
+  if (const auto indices = primitive.get("indices")) add(*indices);
+  return whole;
+}
+
 }  // namespace
 
-std::optional<Mesh> read_primitive(const Json& primitive, const Json& document, Buffers& buffers,
-                                   const TextureUse& use, std::vector<std::string>& warnings) {
-  const Json attributes = primitive["attributes"];
-  const auto position = attributes.get("POSITION");
+bool holds_triangles(const Json& primitive, const Json& document,
+                     std::vector<std::string>& warnings) {
+  const auto position = primitive["attributes"].get("POSITION");
   if (!position) {
     warnings.push_back(primitive.path() + " has no positions; it is left out");
-    return std::nullopt;
+    return false;
   }
-  const Json accessors = document["accessors"];
-  const Json position_accessor = accessors.at(position->count());
-  const std::size_t count = position_accessor["count"].count();
-  const auto index_member = primitive.get("indices");
   const std::size_t mode = primitive.count("mode", 4);
-  if (mode < 4) {
-    const std::size_t n =
-        index_member ? accessors.at(index_member->count())["count"].count() : count;
-    warnings.push_back(primitive.path() + " holds " + (mode == 0 ? "points" : "lines") + " (" +
-                       std::to_string(n) + " indices); they are left out");
-    return std::nullopt;
-  }
+  if (mode >= 4) return true;
+  const Json corners = primitive.get("indices").value_or(*position);
+  const std::size_t n = document["accessors"].at(corners.count())["count"].count();
+  warnings.push_back(primitive.path() + " holds " + (mode == 0 ? "points" : "lines") + " (" +
+                     std::to_string(n) + " indices); they are left out");
+  return false;
+}
 
+PrimitiveData::PrimitiveData(const Json& primitive, const Json& document, Buffers& buffers)
+    : primitive_(primitive), accessors_(document["accessors"]), buffers_(buffers) {
+  vertices_ = (*attribute("POSITION"))["count"].count();
+  const auto packed = primitive.extension(kDraco);
+  if (!packed || (!has_draco() && is_whole(primitive, accessors_))) return;
+  const Json view = (*packed)["bufferView"];
+  const auto bytes = buffers.view(view.count());
+  if (!bytes) view.fail("has no bytes");
+  unpacked_ = decode_draco(primitive, *packed, document, *bytes);
+}
+
+std::optional<Json> PrimitiveData::attribute(const std::string& name) const {
+  const auto index = primitive_["attributes"].get(name.c_str());
+  return index ? std::optional(accessors_.at(index->count())) : std::nullopt;
+}
+
+template <class T>
+std::vector<T> PrimitiveData::read(const std::string& name) const {
+  std::optional<Bytes> packed;
+  if (unpacked_)
+    if (const auto at = unpacked_->attributes.find(name); at != unpacked_->attributes.end())
+      packed = at->second;
+  return convert<T>(*attribute(name), packed);
+}
+
+template <class T>
+std::vector<T> PrimitiveData::read(const Json& accessor) const {
+  return convert<T>(accessor, std::nullopt);
+}
+
+template <class T>
+std::vector<T> PrimitiveData::convert(const Json& accessor, std::optional<Bytes> packed) const {
+  constexpr std::size_t kComponents = sizeof(T) / sizeof(float);
+  const std::size_t has = accessor_type(accessor).components;
+  const bool is_color = kComponents == 4;
+  if (has != kComponents && !(is_color && has == 3))
+    accessor.fail("has the wrong type for its attribute");
+  if (accessor["count"].count() != vertices_)
+    accessor.fail("has " + std::to_string(accessor["count"].count()) +
+                  " elements, but the primitive has " + std::to_string(vertices_) + " vertices");
+  const std::vector<float> floats = buffers_.floats(accessor, packed);
+  std::vector<T> values(vertices_);
+  if (has == kComponents) {
+    std::memcpy(static_cast<void*>(values.data()), floats.data(), vertices_ * sizeof(T));
+  } else {
+    for (std::size_t i = 0; i < vertices_; ++i) {
+      const float rgba[4] = {floats[3 * i], floats[3 * i + 1], floats[3 * i + 2], 1};
+      std::memcpy(static_cast<void*>(&values[i]), rgba, sizeof(T));
+    }
+  }
+  return values;
+}
+template std::vector<Vec2> PrimitiveData::read(const std::string&) const;
+template std::vector<Vec3> PrimitiveData::read(const std::string&) const;
+template std::vector<Vec4> PrimitiveData::read(const std::string&) const;
+template std::vector<Vec3> PrimitiveData::read(const Json&) const;
+
+std::vector<std::uint32_t> PrimitiveData::indices() const {
+  const auto member = primitive_.get("indices");
+  if (!member) return {};
+  std::vector<std::uint32_t> r =
+      unpacked_ ? unpacked_->indices : buffers_.indices(accessors_.at(member->count()));
+  for (const std::uint32_t i : r)
+    if (i >= vertices_)
+      member->fail("refers to vertex " + std::to_string(i) + " of " + std::to_string(vertices_));
+  return r;
+}
+
+std::optional<Mesh> read_primitive(const Json& primitive, const PrimitiveData& data,
+                                   const TextureUse& use, std::vector<std::string>& warnings) {
   Mesh mesh;
-  mesh.positions = read_attribute<Vec3>(position_accessor, buffers, count);
-  if (const auto a = attributes.get("NORMAL"))
-    mesh.normals.values = read_attribute<Vec3>(accessors.at(a->count()), buffers, count);
-  if (const auto a = attributes.get("COLOR_0"))
-    mesh.colors.values = read_attribute<Vec4>(accessors.at(a->count()), buffers, count);
-  const std::string set = "TEXCOORD_" + std::to_string(use.set);
-  if (const auto a = attributes.get(set.c_str())) {
-    mesh.texcoords.values = read_attribute<Vec2>(accessors.at(a->count()), buffers, count);
+  mesh.positions = data.read<Vec3>("POSITION");
+  if (data.attribute("NORMAL")) mesh.normals.values = data.read<Vec3>("NORMAL");
+  if (data.attribute("COLOR_0")) mesh.colors.values = data.read<Vec4>("COLOR_0");
+  if (const std::string set = "TEXCOORD_" + std::to_string(use.set); data.attribute(set)) {
+    mesh.texcoords.values = data.read<Vec2>(set);
     if (use != TextureUse{use.set}) apply(use, mesh.texcoords.values);
   }
-  if (primitive.get("targets"))
-    warnings.push_back(primitive.path() + " has morph targets; its base shape is drawn");
-
-  if (index_member) {
-    mesh.indices = buffers.indices(accessors.at(index_member->count()));
-    for (const std::uint32_t i : mesh.indices)
-      if (i >= count)
-        index_member->fail("refers to vertex " + std::to_string(i) + " of " +
-                           std::to_string(count));
-  }
-  const std::size_t corners = index_member ? mesh.indices.size() : count;
+  mesh.indices = data.indices();
+  const std::size_t mode = primitive.count("mode", 4);
+  const bool has_indices = primitive.get("indices").has_value();
+  const std::size_t corners = has_indices ? mesh.indices.size() : data.vertices();
   if (corners < 3 || (mode == 4 && corners % 3 != 0))
     warnings.push_back(primitive.path() + " has " + std::to_string(corners) +
                        " indices, which do not make up whole triangles");
   if (mode > 4) {
-    if (!index_member) {
-      mesh.indices.resize(count);
-      for (std::size_t i = 0; i < count; ++i) mesh.indices[i] = static_cast<std::uint32_t>(i);
+    if (!has_indices) {
+      mesh.indices.resize(corners);
+      std::iota(mesh.indices.begin(), mesh.indices.end(), 0U);
     }
     mesh.indices = triangles_of(mesh.indices, mode == 5);
     if (mesh.indices.empty()) return std::nullopt;

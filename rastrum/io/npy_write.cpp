@@ -41,6 +41,14 @@ void write_npy(AtomicFile& out, ImageView<const Vec4> image) {
   write(out, image, "f4", ", 4");
 }
 
+void write_npy(AtomicFile& out, ImageView<const Vec3> image) {
+  write(out, image, "f4", ", 3");
+}
+
+void write_npy(AtomicFile& out, ImageView<const Vec2> image) {
+  write(out, image, "f4", ", 2");
+}
+
 void write_npy(AtomicFile& out, ImageView<const float> image) {
   write(out, image, "f4", "");
 }

@@ -125,16 +125,21 @@ void describe_cameras(const Scene& scene, std::string& text) {
   for (std::size_t i = 0; i < std::min(scene.cameras.size(), kMostLines); ++i) {
     const Camera& c = scene.cameras[i];
     text += "  camera " + std::to_string(i) + ": eye " +
-            format("(%g, %g, %g), target (%g, %g, %g), ", static_cast<double>(c.eye.x),
-                   static_cast<double>(c.eye.y), static_cast<double>(c.eye.z),
-                   static_cast<double>(c.target.x), static_cast<double>(c.target.y),
-                   static_cast<double>(c.target.z)) +
+            format("(%g, %g, %g), target (%g, %g, %g), ", c.eye.x, c.eye.y, c.eye.z, c.target.x,
+                   c.target.y, c.target.z) +
             (c.orthographic
                  ? format("orthographic, height %g", static_cast<double>(c.orthographic_height))
                  : format("field of view %g°",
                           static_cast<double>(c.fov_rad) * 180 / std::numbers::pi)) +
             '\n';
   }
+}
+
+void describe_animations(const Scene& scene, std::string& text) {
+  for (const Motion& motion : scene.motions)
+    for (std::size_t i = 0; i < std::min(motion.animations.size(), kMostLines); ++i)
+      text += "  animation " + std::to_string(i) + " " + named(motion.animations[i].name) + ": " +
+              format("%g s", motion.animations[i].duration_s) + '\n';
 }
 
 }  // namespace
@@ -171,6 +176,7 @@ std::string describe(const Scene& scene) {
   describe_meshes(scene, text);
   describe_materials(scene, text);
   describe_cameras(scene, text);
+  describe_animations(scene, text);
   for (const std::string& w : scene.warnings) text += "  warning: " + w + '\n';
   return text;
 }

@@ -21,6 +21,18 @@ void write_exr(const std::filesystem::path& file, ImageView<const Vec4> image) {
   write_whole(file, [&](AtomicFile& out) { write_exr(out, image); });
 }
 
+void write_exr(const std::filesystem::path& file, ImageView<const Vec3> image) {
+  write_whole(file, [&](AtomicFile& out) { write_exr(out, image); });
+}
+
+void write_npy(const std::filesystem::path& file, ImageView<const Vec3> image) {
+  write_whole(file, [&](AtomicFile& out) { write_npy(out, image); });
+}
+
+void write_npy(const std::filesystem::path& file, ImageView<const Vec2> image) {
+  write_whole(file, [&](AtomicFile& out) { write_npy(out, image); });
+}
+
 void write_exr(const std::filesystem::path& file, ImageView<const float> image) {
   write_whole(file, [&](AtomicFile& out) { write_exr(out, image); });
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <deque>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -12,13 +13,18 @@
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/turn.hpp>
 #include <rastrum/program.hpp>
+#include <rastrum/raster/bin/tile_grid.hpp>
+#include <rastrum/raster/draws/cut.hpp>
 #include <rastrum/raster/draws/mixed_draws.hpp>
+#include <rastrum/raster/resolve/surface_point.hpp>
 #include <rastrum/raster/shade/alpha.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/render/access.hpp>
+#include <rastrum/render/surface_of_key.hpp>
+#include <rastrum/render/surfaces.hpp>
 
 namespace rastrum {
 namespace {
@@ -46,30 +52,69 @@ void check_attribute(std::size_t values, std::span<const std::uint32_t> indices,
 /// frame.
 void check_attributes(const SceneView& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const MeshView& mesh = scene.instances[i].mesh;
+    if (scene.instances[i].mesh() == nullptr) continue;
+    const MeshView& mesh = *scene.instances[i].mesh();
     check_attribute(mesh.normals.values.size(), mesh.normals.indices, mesh, i, "normals");
     check_attribute(mesh.texcoords.values.size(), mesh.texcoords.indices, mesh, i, "texcoords");
     check_attribute(mesh.colors.values.size(), mesh.colors.indices, mesh, i, "colors");
   }
 }
 
-template <class T>
-void check_target(const ImageView<T>& view, const FrameOptions& options, const char* what) {
-  check_size(view, options.width, options.height, std::string("the ").append(what) + " target");
+/// Calls f(view, name) for each target of the surface at a pixel that needs a scene, and for the
+/// others of it.
+template <class F>
+void each_target_of_scene(const Targets& t, const F& f) {
+  f(t.positions, "positions");
+  f(t.normals, "normals");
+  f(t.camera_normals, "camera_normals");
+  f(t.view_depth, "view_depth");
+  f(t.distance, "distance");
+  f(t.albedo, "albedo");
+}
+template <class F>
+void each_target_of_surface(const Targets& t, const F& f) {
+  f(t.instances, "instances");
+  f(t.primitives, "primitives");
+  f(t.barycentrics, "barycentrics");
+  each_target_of_scene(t, f);
+}
+bool wants_surface(const Targets& targets) {
+  bool any = false;
+  each_target_of_surface(targets, [&](const auto& view, const char*) { any |= !view.empty(); });
+  return any;
 }
 
 void check_targets(const Targets& targets, const FrameOptions& o) {
-  check_target(targets.color8, o, "color8");
-  check_target(targets.color, o, "color");
-  check_target(targets.depth, o, "depth");
-  check_target(targets.ids, o, "ids");
-  check_target(targets.overdraw, o, "overdraw");
-  check_target(targets.keys, o, "keys");
-  check_target(targets.errors, o, "errors");
+  const auto check_target = [&](const auto& view, const char* name) {
+    check_size(view, o.width, o.height, std::string("the ").append(name) + " target");
+  };
+  check_target(targets.color8, "color8");
+  check_target(targets.color, "color");
+  check_target(targets.depth, "depth");
+  check_target(targets.ids, "ids");
+  check_target(targets.overdraw, "overdraw");
+  check_target(targets.keys, "keys");
+  check_target(targets.errors, "errors");
+  check_target(targets.linear, "linear");
+  each_target_of_surface(targets, check_target);
   for (const ImageView<Vec4>& extra : targets.extra) {
     if (extra.empty()) throw Error(Errc::invalid_argument, "an extra target is empty");
-    check_target(extra, o, "extra");
+    check_target(extra, "extra");
   }
+}
+
+/// What only a scene has, or only materials have.
+void check_outputs(const Targets& targets, bool has_scene, bool shades_materials) {
+  if (!has_scene)
+    each_target_of_scene(targets, [](const auto& view, const char* name) {
+      if (!view.empty())
+        throw Error(Errc::unsupported, std::string("the ").append(name) +
+                                           " target is of a scene's surfaces; a program returns "
+                                           "its own as a further output (Targets::extra)");
+    });
+  if (!targets.linear.empty() && !shades_materials)
+    throw Error(Errc::unsupported,
+                "the linear target is of the shader 'material': the others compute display values");
 }
 
 raster::LitModel lit_model(Shader shader) {
@@ -127,8 +172,26 @@ void check_in_place(const SceneView& scene, const Targets& targets, Shader shade
   require(scene.materials.empty(), "materials need them in the host's");
   require(o.opacity == 1 && o.samples == 1, "surfaces must be opaque, with one sample a pixel");
   require(targets.overdraw.empty() && targets.errors.empty() && targets.extra.empty() &&
-              !targets.load && !targets.over,
+              targets.linear.empty() && !wants_surface(targets) && !targets.load && !targets.over,
           "of the targets there are color8, color, depth, ids and keys, in one pass");
+  require(o.clip_planes.empty() &&
+              std::ranges::all_of(scene.instances,
+                                  [](const InstanceView& i) { return i.clip_planes.empty(); }),
+          "clip planes need them in the host's");
+}
+
+/// What scenes of more than meshes do not have yet.
+void check_asked_of_meshes(const SceneView& scene, const Targets& targets, const FrameOptions& o) {
+  const auto refuse = [](const char* what) {
+    throw Error(Errc::unsupported, std::string(what).append(
+                                       ": of meshes alone, but the scene has spheres, cylinders, "
+                                       "tubes or discs"));
+  };
+  if (wants_surface(targets)) refuse("targets beside colour, depth, ids and keys");
+  if (!o.clip_planes.empty() ||
+      std::ranges::any_of(scene.instances,
+                          [](const InstanceView& i) { return !i.clip_planes.empty(); }))
+    refuse("clip planes");
 }
 
 void check_over(const Targets& targets, const FrameOptions& o) {
@@ -164,23 +227,30 @@ void check(const FrameOptions& o) {
           "the alpha threshold must be > 0 and at most 1");
   require(o.samples == 1 || o.samples == 4 || o.samples == 8 || o.samples == 16,
           "samples must be 1, 4, 8 or 16");
+  raster::check_clip_planes(o.clip_planes, "the frame: ");
 }
 
 struct Renderer::Impl {
   Impl(RendererOptions given, DeviceChoice choice, bool plain, MakeFrameDrawer maker);
 
-  /// What a caller wants of one frame. `in_place`: its arrays are memory of a GPU.
+  /// What a caller wants of one frame, which was checked. `in_place`: its arrays are memory of a
+  /// GPU.
   struct Call {
     const FrameOptions& frame;
     const Targets& targets;
     bool in_place = false;
+    std::optional<raster::Rect> part{};  ///< FrameRequest::part
   };
   FrameStats render(const SceneView& scene, const Camera& camera, const Call& call);
   FrameStats draw_depth(std::span<raster::Draw> draws, const raster::Testing& test,
-                        const Call& call);
+                        const Call& call, const raster::SurfaceScene* surface);
+  /// What draws of a scene have beside them.
+  struct OfScene {
+    bool linear_light = false;
+    const raster::SurfaceScene* surface = nullptr;
+  };
   FrameStats draw(std::span<raster::Draw> draws, const raster::Shading& shading,
-                  const raster::Testing& test, const Call& call, std::string_view noun = "draw",
-                  bool linear_light = false);
+                  const raster::Testing& test, const Call& call, const OfScene* scene = nullptr);
 
   void make_drawer();
 
@@ -242,6 +312,7 @@ Renderer RendererAccess::make(RendererOptions options, DeviceChoice choice, bool
 FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
                             const Targets& targets, std::stop_token stop) {
   const parallel::Turn turn(impl_->one_at_a_time, stop);
+  check(frame);
   return impl_->render(scene, camera, {frame, targets});
 }
 
@@ -249,6 +320,7 @@ FrameStats Renderer::render_in_place(const SceneView& scene, const Camera& camer
                                      const FrameOptions& frame, const Targets& targets,
                                      std::stop_token stop) {
   const parallel::Turn turn(impl_->one_at_a_time, stop);
+  check(frame);
   return impl_->render(scene, camera, {frame, targets, impl_->options.device == Device::cuda});
 }
 
@@ -258,6 +330,7 @@ FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draw
                                 std::stop_token stop) {
   Renderer::Impl& impl = *renderer.impl_;
   const parallel::Turn turn(impl.one_at_a_time, stop);
+  check(frame);
   return impl.draw(draws, shading, test, {frame, targets});
 }
 
@@ -269,13 +342,15 @@ FrameStats Renderer::draw(std::span<const raster::ProgramDraw> draws, const Fram
 
 FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, const Call& call) {
   const FrameOptions& o = call.frame;
-  check(o);
   const Shader taken = shader_for(o.shader, scene);
   if (call.in_place)
     check_in_place(scene, call.targets, taken, o);
   else
     check_attributes(scene);
   raster::check_materials(scene);
+  check_surfaces(scene);
+  check_outputs(call.targets, true, taken == Shader::material);
+  std::deque<raster::DrawCut> cuts;  // draws point to them
   const Mat4d to_clip = world_to_clip(camera, o.width, o.height);
   std::vector<raster::Draw> draws;
   draws.reserve(scene.instances.size());
@@ -283,32 +358,59 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
   const bool all_translucent = blends && o.opacity < 1;
   const std::vector<std::uint32_t> material_flags = raster::material_flags(scene.materials, blends);
   std::uint32_t any_flags = 0;  // of materials and vertex colours
+  std::uint32_t any_surface_flags = 0;
+  const std::vector<InstanceView> mesh_list = mesh_instances(scene);
+  SceneView meshes = scene;
+  meshes.instances = mesh_list;
+  if (mesh_list.size() < scene.instances.size()) check_asked_of_meshes(scene, call.targets, o);
+  std::optional<raster::LitModel> model;
+  if (taken != Shader::material) model = lit_model(taken);
+  SurfaceDraws surfaces(scene, {model, blends, o.opacity}, camera, o.width, o.height);
   for (const InstanceView& instance : scene.instances) {
     raster::Draw& draw = draws.emplace_back();
-    draw.source =
-        raster::MatrixVertices(instance.mesh.positions, to_clip * instance.object_to_world);
-    draw.vertex_count = instance.mesh.positions.size();
-    draw.indices = instance.mesh.indices;
-    draw.primitive_count = instance.mesh.triangle_count();
+    if (surfaces.add(instance, to_clip, draw)) {
+      any_surface_flags |= draw.flags;
+      continue;
+    }
+    const MeshView& mesh = *instance.mesh();
+    draw.source = raster::MatrixVertices(mesh.positions, to_clip * instance.object_to_world);
+    draw.vertex_count = mesh.positions.size();
+    draw.indices = mesh.indices;
+    draw.primitive_count = mesh.triangle_count();
     draw.cull = material_cull(instance, scene.materials, taken);
-    std::uint32_t flags = raster::set_material_flags(draw, instance.mesh, material_flags);
+    std::uint32_t flags = raster::set_material_flags(draw, mesh, material_flags);
     if (blends && scene.materials.empty() && !call.in_place &&
-        raster::has_vertex_alpha(instance.mesh, threads.get())) {
+        raster::has_vertex_alpha(mesh, threads.get())) {
       draw.flags |= raster::kTranslucent;
       flags |= raster::kTranslucent;
     }
     if (all_translucent) draw.flags |= raster::kTranslucent;
     any_flags |= flags;
+    if (o.clip_planes.empty() && instance.clip_planes.empty()) continue;
+    raster::check_clip_planes(
+        instance.clip_planes,
+        std::string("instance ").append(std::to_string(draws.size() - 1)).append(": ").c_str());
+    draw.cut = &cuts.emplace_back(instance, o.clip_planes);
   }
   const bool any_mask = (any_flags & raster::kTested) != 0;
   const bool any_blend = (any_flags & raster::kTranslucent) != 0;
-  const bool is_translucent = all_translucent || any_blend;
+  const bool is_translucent =
+      all_translucent || any_blend || (any_surface_flags & raster::kTranslucent) != 0;
   const bool shades_materials = taken == Shader::material;
+  const bool wants_albedo = !call.targets.albedo.empty();
   std::optional<raster::MaterialScene> materials;
-  if (shades_materials || any_mask || any_blend) {
-    textures.update(scene.textures, raster::texture_uses(scene, shades_materials, any_blend),
+  if (shades_materials || any_mask || any_blend || wants_albedo) {
+    textures.update(scene.textures,
+                    raster::texture_uses(scene, shades_materials || wants_albedo, any_blend),
                     threads.get());
-    materials.emplace(scene, camera, o.width, o.height, textures);
+    materials.emplace(meshes, camera, o.width, o.height, textures);
+  }
+  std::optional<raster::SurfaceScene> surface;
+  if (wants_surface(call.targets)) {
+    surface.emplace(scene, camera, o.width, o.height);
+    surface->materials = materials ? &*materials : nullptr;
+    if (!call.targets.view_depth.empty() || !call.targets.distance.empty())
+      (void)view_distance(camera, 1);  // throws where depth tells none
   }
   raster::Testing test;
   if (any_mask) test = raster::MaskTest{&*materials};
@@ -316,23 +418,26 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
     stats.shader = name(taken);
     return stats;
   };
-  if (taken == Shader::depth) return named(draw_depth(draws, test, call));
-  const bool linear = is_translucent && shades_materials;
+  if (taken == Shader::depth)
+    return named(draw_depth(draws, test, call, surface ? &*surface : nullptr));
+  const bool linear = shades_materials && (is_translucent || !call.targets.linear.empty());
+  if (linear) surfaces.leave_linear();
   std::optional<raster::LitScene> lit;
   raster::Shading shading;
   if (shades_materials) {
     shading = raster::MaterialShading{&*materials, linear};
   } else {
-    lit.emplace(scene, camera, o.width, o.height);
+    lit.emplace(meshes, camera, o.width, o.height);
     shading = raster::LitShading{lit_model(taken), &*lit};
   }
   if (is_translucent) shading = shading.with_alpha(any_blend ? &*materials : nullptr, o.opacity);
-  return named(draw(draws, shading, test, call, "instance", linear));
+  const OfScene of_scene{linear, surface ? &*surface : nullptr};
+  return named(draw(draws, shading, test, call, &of_scene));
 }
 
 /// Grey by depth needs the range of depths in the picture, so it is a pass after the frame.
 FrameStats Renderer::Impl::draw_depth(std::span<raster::Draw> draws, const raster::Testing& test,
-                                      const Call& call) {
+                                      const Call& call, const raster::SurfaceScene* surface) {
   const FrameOptions& o = call.frame;
   const Targets& targets = call.targets;
   if (targets.over)
@@ -350,7 +455,8 @@ FrameStats Renderer::Impl::draw_depth(std::span<raster::Draw> draws, const raste
   }
   const raster::FragmentShader unused(
       [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
-  FrameStats stats = draw(draws, unused, test, {o, first}, "instance");
+  const OfScene of_scene{false, surface};
+  FrameStats stats = draw(draws, unused, test, {o, first}, &of_scene);
   const auto begin = std::chrono::steady_clock::now();
   stretch_depth(first.depth, o.background, targets);
   const double ms =
@@ -362,11 +468,16 @@ FrameStats Renderer::Impl::draw_depth(std::span<raster::Draw> draws, const raste
 
 FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Shading& shading,
                                 const raster::Testing& test, const Call& call,
-                                std::string_view noun, bool linear_light) {
+                                const OfScene* scene) {
   const FrameOptions& o = call.frame;
   const Targets& targets = call.targets;
-  check(o);
-  check_targets(targets, o);
+  if (!call.part) check_targets(targets, o);
+  if (scene == nullptr) {
+    check_outputs(targets, false, false);
+    if (!o.clip_planes.empty())
+      throw Error(Errc::unsupported,
+                  "clip planes are of a scene's world; a program discards fragments itself");
+  }
   raster::MixedDraws mixed(draws, shading, test);
   draws = mixed.draws();
   if (const std::size_t outputs = mixed.shading().extra_count(); targets.extra.size() > outputs)
@@ -394,7 +505,14 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
     for (raster::Draw& d : draws) d.cull = o.cull;
   request.isa = isa;
   request.draws = draws;
-  request.draw_noun = noun;
+  if (scene != nullptr) {
+    request.draw_noun = "instance";
+    request.linear_light = scene->linear_light;
+    request.surface = scene->surface;
+  }
+  request.wants_surface = wants_surface(targets);
+  request.cuts = std::ranges::any_of(draws, [](const raster::Draw& d) { return d.cut != nullptr; });
+  request.part = call.part;
   request.test = mixed.test();
   request.shading = mixed.shading();
   request.background = o.background;
@@ -403,7 +521,6 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   request.texture_bytes = textures.bytes();
   request.transparency = o.transparency;
   request.samples = o.samples;
-  request.linear_light = linear_light;
   if (options.memory_limit != 0) {
     const Kind now{o.width, o.height, o.samples, needs_layers(request)};
     if (kind != Kind{} && kind != now) make_drawer();
@@ -416,6 +533,34 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   if (options.device != Device::cuda) stats.device = options.device;
   if (stats.device_why.empty()) stats.device_why = device_why;
   return stats;
+}
+
+std::optional<Pick> Renderer::pick(const SceneView& scene, const Camera& camera,
+                                   const FrameOptions& frame, int x, int y, std::stop_token stop) {
+  check(frame);
+  if (x < 0 || x >= frame.width || y < 0 || y >= frame.height)
+    throw Error(Errc::invalid_argument, "pick: pixel (" + std::to_string(x) + ", " +
+                                            std::to_string(y) + ") lies outside of the frame of " +
+                                            std::to_string(frame.width) + "x" +
+                                            std::to_string(frame.height));
+  const int x0 = x / raster::kBinSize * raster::kBinSize;
+  const int y0 = y / raster::kBinSize * raster::kBinSize;
+  const raster::Rect bin{x0, y0, std::min(x0 + raster::kBinSize, frame.width),
+                         std::min(y0 + raster::kBinSize, frame.height)};
+  Image<std::uint64_t> keys(bin.x1 - bin.x0, bin.y1 - bin.y0);
+  Targets targets;
+  targets.keys = keys;
+  FrameOptions plain = frame;
+  // Grey by depth is of the same surfaces.
+  if (plain.shader == Shader::depth) {
+    plain.shader = Shader::flat;
+    plain.transparency.method = Transparency::none;
+  }
+  const parallel::Turn turn(impl_->one_at_a_time, stop);
+  (void)impl_->render(scene, camera, {plain, targets, false, bin});
+  const std::uint64_t key = keys(x - x0, y - y0);
+  if (key == 0) return std::nullopt;
+  return surface_of_key(scene, camera, frame.width, frame.height, key, x, y);
 }
 
 Image<Rgba8> render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,

@@ -5,8 +5,8 @@
 #include <string>
 
 #include <rastrum/core/elementary.hpp>
-#include <rastrum/core/vec3d.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum {
 namespace {
@@ -53,23 +53,7 @@ Mat4d camera_to_clip(const Camera& c, int width, int height) {
   return p;
 }
 
-}  // namespace
-
-void check_fov(float fov_rad) {
-  // Written so that a NaN fails.
-  require(fov_rad > 0 && fov_rad < 3.14159F,
-          "camera: the field of view must lie between 0 and 180 degrees");
-}
-
-Mat4d world_to_camera(const Camera& c) {
-  const Vec3d eye = widen(c.eye);
-  const Vec3d target = widen(c.target);
-  const Vec3d back = direction({eye.x - target.x, eye.y - target.y, eye.z - target.z},
-                               "camera: eye and target must be finite and differ");
-  const Vec3d right =
-      direction(cross(widen(c.up), back),
-                "camera: up must be finite, not zero and not along the view direction");
-  const Vec3d up = cross(back, right);
+Mat4d rigid(Vec3d right, Vec3d up, Vec3d back, Vec3d eye) {
   Mat4d v = Mat4d::identity();
   const Vec3d axes[3] = {right, up, back};
   for (int i = 0; i < 3; ++i) {
@@ -79,6 +63,48 @@ Mat4d world_to_camera(const Camera& c) {
     v.m[i][3] = -dot(axes[i], eye);
   }
   return v;
+}
+
+Vec3d row_of(const Mat4d& m, int i) {
+  return {m.m[i][0], m.m[i][1], m.m[i][2]};
+}
+
+/// World to camera space by the rows of a matrix to clip space.
+Mat4d axes_of(const Mat4d& m) {
+  constexpr const char* kSingular = "camera: its matrix is singular";
+  const Vec3d x = row_of(m, 0), y = row_of(m, 1), z = row_of(m, 2), w = row_of(m, 3);
+  const bool perspective = dot(w, w) > 0;
+  // Of a parallel projection the direction that x and y do not see, nearer where depth is larger.
+  Vec3d back = direction(perspective ? -w : cross(x, y), kSingular);
+  if (!perspective && dot(back, z) < 0) back = -back;
+  const Vec3d up = direction(y - back * dot(y, back), kSingular);
+  // The eye is where x, y and w are 0; the middle of the near plane (z = w) is its likeness.
+  const Vec3d last = perspective ? w : z;
+  const double known[3] = {-m.m[0][3], -m.m[1][3],
+                           perspective ? -m.m[3][3] : m.m[3][3] - m.m[2][3]};
+  const double volume = dot(cross(x, y), last);
+  const Vec3d eye =
+      (cross(y, last) * known[0] + cross(last, x) * known[1] + cross(x, y) * known[2]) *
+      (1 / volume);
+  require(is_finite(eye), kSingular);
+  return rigid(cross(up, back), up, back, eye);
+}
+
+}  // namespace
+
+void check_fov(float fov_rad) {
+  // Written so that a NaN fails.
+  require(fov_rad > 0 && fov_rad < 3.14159F,
+          "camera: the field of view must lie between 0 and 180 degrees");
+}
+
+Mat4d world_to_camera(const Camera& c) {
+  if (c.matrix) return axes_of(*c.matrix);
+  const Vec3d back =
+      direction(c.eye - c.target, "camera: eye and target must be finite and differ");
+  const Vec3d right = direction(
+      cross(c.up, back), "camera: up must be finite, not zero and not along the view direction");
+  return rigid(right, cross(back, right), back, c.eye);
 }
 
 Mat4d world_to_clip(const Camera& camera, int width, int height) {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <rastrum/core/angle.hpp>
-#include <rastrum/core/vec3d.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum {
 namespace {

@@ -51,9 +51,9 @@ struct Touched {
 /// The scene in the camera's axes, still or swept about an axis through the origin.
 class Outline {
  public:
-  Outline(const VerticesInUse& vertices, const Mat4d& to_camera, Vec3d centre, bool turns, Vec3 up)
+  Outline(const VerticesInUse& vertices, const Mat4d& to_camera, Vec3d centre, bool turns, Vec3d up)
       : vertices_(vertices), to_camera_(to_camera), centre_(centre), turns_(turns) {
-    const Vec3d a = turned({up.x, up.y, up.z});
+    const Vec3d a = turned(up);
     const double l = std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
     axis_y_ = a.y / l;  // its x is 0: up is what makes the camera's x
     axis_z_ = a.z / l;
@@ -68,9 +68,7 @@ class Outline {
             centre_.z + (m[0][2] * p.x + m[1][2] * p.y + m[2][2] * p.z)};
   }
   /// How far back from the centre a point of the world lies.
-  [[nodiscard]] double back_of(Vec3 world) const {
-    return turned({world.x - centre_.x, world.y - centre_.y, world.z - centre_.z}).z;
-  }
+  [[nodiscard]] double back_of(Vec3d world) const { return turned(world - centre_).z; }
 
   [[nodiscard]] Touched horizontal(double t) const {
     Touched touched;

@@ -13,10 +13,6 @@
 namespace rastrum {
 namespace {
 
-bool is_finite(Vec3d p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
 struct BoundsD {
   Vec3d min{}, max{};
   std::uint64_t count = 0;
@@ -76,6 +72,12 @@ void add_plain_materials(Scene& scene) {
   }
 }
 
+void Scene::place(const Mat4d& to_world) {
+  for (Instance& instance : instances)
+    instance.object_to_world = to_world * instance.object_to_world;
+  for (Motion& motion : motions) motion.to_world = to_world * motion.to_world;
+}
+
 void Scene::append(Scene other) {
   const auto mesh_offset = static_cast<std::uint32_t>(meshes.size());
   const auto texture_offset = static_cast<std::int32_t>(textures.size());
@@ -85,6 +87,12 @@ void Scene::append(Scene other) {
   if (any_materials && other.materials.empty()) add_plain_materials(other);
   const auto material_offset = static_cast<std::uint32_t>(materials.size());
 
+  for (Motion& motion : other.motions) {
+    motion.first_mesh += mesh_offset;
+    motion.first_instance += static_cast<std::uint32_t>(instances.size());
+    motion.first_camera += static_cast<std::uint32_t>(cameras.size());
+    motions.push_back(std::move(motion));
+  }
   for (Mesh& mesh : other.meshes) {
     mesh.material += material_offset;
     for (std::uint32_t& m : mesh.face_materials) m += material_offset;
@@ -124,7 +132,16 @@ Bounds bounds(const SceneView& scene) {
 }
 
 Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
+  return fit_camera(scene, fov_rad, orthographic, {0, 0, -1});
+}
+
+Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic, Vec3d direction,
+                  Vec3d up) {
   check_fov(fov_rad);
+  Camera along;
+  along.eye = -normalize(direction);
+  along.up = up;
+  (void)world_to_camera(along);  // throws where there is no direction
   const VerticesInUse vertices(scene);
   const BoundsD b = bounds_float64(vertices);
   const Vec3d centre = {(b.min.x + b.max.x) / 2, (b.min.y + b.max.y) / 2, (b.min.z + b.max.z) / 2};
@@ -136,7 +153,8 @@ Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
   camera.fov_rad = fov_rad;
   camera.orthographic = orthographic;
   camera.target = Vec3(centre);
-  camera.eye = Vec3(Vec3d{centre.x, centre.y, centre.z + distance});
+  camera.eye = Vec3(centre + along.eye * distance);
+  camera.up = up;
   camera.near_plane = static_cast<float>(std::max(distance - 1.001 * r, distance / 1000));
   if (orthographic) {
     camera.orthographic_height = static_cast<float>(2 * r);

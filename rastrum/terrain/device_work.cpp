@@ -9,11 +9,11 @@ namespace rastrum::terrain {
 namespace {
 
 // Of one thread, by a column's slice and by a pixel: docs/log/terrain.md's table from 800×450 to
-// 3840×2160 within a third. `words` takes some 35 times as long, within a factor of 1.7.
-constexpr double kHostSlice_ns = 0.4, kHostPixel_ns = 0.7, kHostWords = 35;
-// Of an A100, guessed: eight bytes a slice and a pixel at 1.5 TB/s; the words write and scan pairs.
-constexpr double kDeviceSlice_ns = 0.005, kDevicePixel_ns = 0.005, kDeviceWords = 20;
-constexpr std::uint64_t kLaunches = 8, kWordsLaunches = 60;
+// 3840×2160 within a third.
+constexpr double kHostSlice_ns = 0.4, kHostPixel_ns = 0.7;
+// Of an A100, guessed: eight bytes a slice and a pixel at 1.5 TB/s.
+constexpr double kDeviceSlice_ns = 0.005, kDevicePixel_ns = 0.005;
+constexpr std::uint64_t kLaunches = 8;
 /// Frames that the copy of a map is shared by: fewer than a flight has, more than one picture.
 constexpr std::uint64_t kFramesOfMap = 16;
 
@@ -30,7 +30,6 @@ FrameWork device_work(const Terrain& map, const TerrainOptions& options,
       map.is_map() ? area(map.heights()->width(), map.heights()->height()) * sizeof(float) +
                          area(map.colors()->width(), map.colors()->height()) * sizeof(Rgba8)
                    : 0;
-  const bool words = options.method == Method::words && !options.classic;
   const double slices = std::min(slice_count(options), static_cast<double>(kMaxSlices)) *
                         static_cast<double>(options.width);
   const auto p = static_cast<double>(pixels);
@@ -41,9 +40,9 @@ FrameWork device_work(const Terrain& map, const TerrainOptions& options,
       .append(" pixels of terrain, ")
       .append(std::to_string(static_cast<std::uint64_t>(slices)))
       .append(" slices of columns");
-  work.host_ns = (kHostSlice_ns * slices + kHostPixel_ns * p) * (words ? kHostWords : 1);
-  work.device_ns = (kDeviceSlice_ns * slices + kDevicePixel_ns * p) * (words ? kDeviceWords : 1);
-  work.launches = words ? kWordsLaunches : kLaunches;
+  work.host_ns = kHostSlice_ns * slices + kHostPixel_ns * p;
+  work.device_ns = kDeviceSlice_ns * slices + kDevicePixel_ns * p;
+  work.launches = kLaunches;
   work.bytes = map_bytes / kFramesOfMap + pixels * ((targets.color8.empty() ? 0 : sizeof(Rgba8)) +
                                                     (targets.depth.empty() ? 0 : sizeof(float)));
   return work;

@@ -23,10 +23,6 @@ struct BlockPool;
 Counts draw_fast(parallel::Threads& exec, Isa isa, BlockPool& pool, const Samples& samples,
                  const TerrainTargets& targets);
 
-/// Paper 3's words.
-Counts draw_words(parallel::Serial& exec, const Samples& samples, const TerrainTargets& targets);
-Counts draw_words(parallel::Threads& exec, const Samples& samples, const TerrainTargets& targets);
-
 /// Macke's program in float64, camera lifted before. Positions must stay within 2^51 cells.
 Counts draw_classic(parallel::Threads& exec, Isa isa, BlockPool& pool, const Terrain& terrain,
                     const Ceiling& ceiling, const TerrainOptions& options,

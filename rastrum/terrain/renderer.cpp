@@ -1,5 +1,6 @@
 #include <rastrum/terrain.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <mutex>
@@ -9,6 +10,7 @@
 
 #include <rastrum/parallel/cuda/status.hpp>
 #include <rastrum/parallel/turn.hpp>
+#include <rastrum/terrain/access.hpp>
 #include <rastrum/terrain/blocks.hpp>
 #include <rastrum/terrain/cuda/device.hpp>
 #include <rastrum/terrain/device_work.hpp>
@@ -38,8 +40,9 @@ class Stopwatch {
 }  // namespace
 
 struct TerrainRenderer::Impl {
-  explicit Impl(TerrainRendererOptions given)
+  Impl(TerrainRendererOptions given, const AddedMethod* method)
       : options(given),
+        added(method),
         isa(choose_isa(options.isa)),
         asked(options.device),
         pool(memory),
@@ -48,10 +51,15 @@ struct TerrainRenderer::Impl {
     options.device = choice.device;
     device_why = std::move(choice.why);
     if (options.device == Device::threads) static_cast<void>(threads());
-    if (options.device == Device::cuda) gpu = make_device_renderer();
+    if (options.device == Device::cuda)
+      gpu = added != nullptr ? added->make_device_renderer() : make_device_renderer();
   }
 
   [[nodiscard]] parallel::Threads& threads();
+  /// What draws such frames where the renderer's own methods do not; else null.
+  [[nodiscard]] const AddedMethod* added_for(const TerrainOptions& how) const {
+    return how.method == Method::words && !how.classic ? added : nullptr;
+  }
   [[nodiscard]] DeviceChoice place(const Terrain& terrain, const TerrainOptions& how,
                                    const TerrainTargets& targets);
   void prepare(const Terrain& terrain, const TerrainOptions& how, Device where);
@@ -64,6 +72,7 @@ struct TerrainRenderer::Impl {
 
   std::mutex one_at_a_time;
   TerrainRendererOptions options;
+  const AddedMethod* added;
   Isa isa;
   Device asked;
   std::string device_why;
@@ -90,7 +99,11 @@ DeviceChoice TerrainRenderer::Impl::place(const Terrain& terrain, const TerrainO
   if (options.device != Device::cuda) return choice;
   std::string why_not = why_not_on_device(terrain, how);
   const bool is_drawn_there = why_not.empty();
-  const std::uint64_t bytes = is_drawn_there ? device_bytes(terrain, how) : 0;
+  const AddedMethod* method = added_for(how);
+  std::uint64_t bytes = is_drawn_there ? device_bytes(terrain, how) : 0;
+  if (is_drawn_there && method != nullptr)
+    bytes +=
+        method->device_bytes(static_cast<std::uint64_t>(std::min(slice_count(how), kMaxSlices)));
   if (bytes > fits_gpu) {
     const std::uint64_t free = parallel::cuda_status().free_bytes + gpu->bytes();
     if (bytes > free)
@@ -113,10 +126,12 @@ DeviceChoice TerrainRenderer::Impl::place(const Terrain& terrain, const TerrainO
     else
       fits_gpu = bytes;
   }
-  if (why_not.empty())
-    return asked == Device::automatic
-               ? choose_device(choice, device_work(terrain, how, targets), threads().concurrency())
-               : choice;
+  if (why_not.empty()) {
+    if (asked != Device::automatic) return choice;
+    FrameWork work = device_work(terrain, how, targets);
+    if (method != nullptr) method->weigh(work);
+    return choose_device(choice, work, threads().concurrency());
+  }
   if (is_drawn_there && asked == Device::cuda)
     throw Error(Errc::out_of_memory,
                 std::string("terrain: ").append(why_not).append("; use --device threads"));
@@ -155,9 +170,9 @@ Counts TerrainRenderer::Impl::draw(const Terrain& terrain, const TerrainOptions&
   stats.slices = setup.slices.size();
   Samples samples{{setup, {}}, terrain, ceiling ? &*ceiling : nullptr};
   if (terrain.is_map()) samples.map = MapView(*pyramid, how, setup);
-  if (how.method == Method::words)
-    return on_threads ? draw_words(threads(), samples, targets)
-                      : draw_words(serial, samples, targets);
+  if (const AddedMethod* method = added_for(how))
+    return on_threads ? method->on_threads(threads(), samples, targets)
+                      : method->on_serial(serial, samples, targets);
   return on_threads ? draw_fast(threads(), isa, pool, samples, targets)
                     : draw_reference(samples, targets);
 }
@@ -199,11 +214,16 @@ Counts TerrainRenderer::Impl::draw_rolled(const Terrain& terrain, const TerrainO
   return counts;
 }
 
-TerrainRenderer::TerrainRenderer(TerrainRendererOptions options) {
+TerrainRenderer TerrainAccess::make(const TerrainRendererOptions& options,
+                                    const AddedMethod* added) {
   if (options.threads < 0)
     throw Error(Errc::invalid_argument, "terrain: the number of threads must be at least 0 (all)");
-  impl_ = std::make_unique<Impl>(options);
+  return TerrainRenderer(std::make_unique<TerrainRenderer::Impl>(options, added));
 }
+
+TerrainRenderer::TerrainRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+TerrainRenderer::TerrainRenderer(TerrainRendererOptions options)
+    : TerrainRenderer(TerrainAccess::make(options, nullptr)) {}
 TerrainRenderer::~TerrainRenderer() = default;
 TerrainRenderer::TerrainRenderer(TerrainRenderer&&) noexcept = default;
 TerrainRenderer& TerrainRenderer::operator=(TerrainRenderer&&) noexcept = default;
@@ -217,6 +237,7 @@ TerrainStats TerrainRenderer::render(const Terrain& terrain, const TerrainCamera
                                      std::stop_token stop) {
   const parallel::Turn turn(impl_->one_at_a_time, stop);
   check(options);
+  check_method(options, impl_->added != nullptr);
   check(given);
   if (options.classic && given.roll_rad != 0)
     throw Error(Errc::invalid_argument,

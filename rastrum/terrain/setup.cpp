@@ -104,6 +104,13 @@ void check(const TerrainOptions& o) {
   }
 }
 
+void check_method(const TerrainOptions& o, bool has_words) {
+  if (o.method == Method::words && !has_words)
+    throw Error(Errc::unsupported,
+                "terrain: the method 'words' is drawn by the renderer of rastrum/family.hpp "
+                "(Rastrum::family)");
+}
+
 void check(const TerrainCamera& c) {
   for (const double v : {c.x, c.y, c.altitude, c.angle_rad, c.horizon_px, c.roll_rad})
     require(std::isfinite(v), "terrain: the camera holds a number that is not finite");

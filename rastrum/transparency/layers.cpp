@@ -69,9 +69,7 @@ struct LayeredBin::Impl {
     records_.restart();
     micro_.restart();
     samples_ = context.request->samples;
-    const Targets& targets = context.request->targets;
-    shading_ = targets.color8.empty() && targets.color.empty() ? raster::Shading()
-                                                               : context.request->shading;
+    shading_ = context.request->wants_colors() ? context.request->shading : raster::Shading();
     const TransparencyOptions& options = context.request->transparency;
     if (!blend_ || options != made_for_ || context.request->isa != made_with_) {
       made_for_ = options;
@@ -105,7 +103,8 @@ struct LayeredBin::Impl {
     const Piece& piece = pieces[block.piece];
     Record record{&piece, block.mask, block_number(block.bx, block.by)};
     // Blocks of several samples see to it themselves (sampled_block.cpp).
-    if (samples_ == 1 && block.piece > 0 && pieces[block.piece - 1].low == piece.low)
+    if (samples_ == 1 && raster::is_triangle(piece) && block.piece > 0 &&
+        pieces[block.piece - 1].low == piece.low)
       keep_nearest(record, block.bx, block.by);
     if (record.mask != 0) records_.add(record);
   }

@@ -45,15 +45,20 @@ void SampledBlock::for_each_record(const Triangle& t, std::optional<std::uint32_
 
 /// In order of submission; a triangle's records by sample.
 void SampledBlock::find_triangles() {
-  std::sort(records_.begin(), records_.end(), [](const Record& a, const Record& b) {
+  // The pieces of a triangle face one way, those of a quadric are two surfaces.
+  const auto away = [](const Record& r) { return r.piece->flags & raster::kFacesAway; };
+  std::sort(records_.begin(), records_.end(), [&](const Record& a, const Record& b) {
     if (a.piece->low != b.piece->low) return a.piece->low > b.piece->low;
+    if (away(a) != away(b)) return away(a) < away(b);
     return raster::sample_of(*a.piece) < raster::sample_of(*b.piece);
   });
   triangle_count_ = 0;
   const auto n = static_cast<std::uint32_t>(records_.size());
   for (std::uint32_t first = 0; first < n;) {
     std::uint32_t end = first + 1;
-    while (end < n && records_[end].piece->low == records_[first].piece->low) ++end;
+    while (end < n && records_[end].piece->low == records_[first].piece->low &&
+           away(records_[end]) == away(records_[first]))
+      ++end;
     triangles_.grow(triangle_count_ + 1, triangle_count_);
     triangles_[triangle_count_++] = {first, end, ~std::uint64_t{0}, 0, 0};
     first = end;

@@ -49,7 +49,7 @@ class SampledBlock {
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-  /// The records of one triangle in the block, of all samples.
+  /// The records of one triangle, or one side of a quadric, in the block, of all samples.
   struct Triangle {
     std::uint32_t first, end;
     std::uint64_t kept;   ///< pixels that the fragment test leaves

@@ -148,7 +148,7 @@ TEST_F(CameraPathFile, ErrorsNameThePlace) {
   expect(R"({"keys": {}})", "keys: expected an array");
   expect(R"({"keys": [{}], "speed": 2})", "unknown name 'speed'");
   expect(R"({"keys": [{"eye": [0, 0]}]})", "keys[0]: eye: expected an array of 3 numbers");
-  expect(R"({"keys": [{"eye": [0, 0, 1e99]}]})", "keys[0]: eye: the number is too large");
+  expect(R"({"keys": [{"near": 1e99}]})", "keys[0]: near: the number is too large");
   expect(R"({"keys": [{"eye": [0, 0, 1e999]}]})", "path.json");
   expect(R"({"keys": [{}, {"eye": [0, 0, 5]}]})", "keys[1]: time: is needed");
   expect(R"({"keys": [{"time": 2}, {"time": 2}]})", "keys[1]: time: must be greater");

@@ -35,7 +35,7 @@ Event mouse(Event::Kind kind, double x, double y, Button button = Button::left) 
   return e;
 }
 
-double distance(Vec3 a, Vec3 b) {
+double distance(Vec3d a, Vec3d b) {
   return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
 }
 

@@ -42,7 +42,7 @@ void scenes(const std::vector<Vec3>& positions, const std::vector<std::uint32_t>
   const MeshView mesh{.positions = positions, .indices = indices};
   const MeshView one_material{.positions = positions, .material = 1};
   const AttributeView<Vec3> normals{.values = positions};
-  const InstanceView instance{.mesh = soup};
+  const InstanceView instance{.geometry = soup};
   const InstanceView placed{.object_to_world = Mat4d::identity()};
   const SceneView scene{.instances = {&instance, 1}};
   const SceneView with_textures{.textures = {}};

@@ -29,11 +29,11 @@
 #include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/render.hpp>
 
+#include "tests/family/reference_options.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/isa.hpp"
 #include "tests/support/oracle.hpp"
-#include "tests/support/painter.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
@@ -47,17 +47,8 @@ constexpr std::array kSchedules{Schedule::two_stage, Schedule::persistent};
 constexpr std::array<std::pair<int, int>, 5> kSizes{
     {{64, 8}, {32, 8}, {64, 16}, {128, 8}, {128, 16}}};
 
-RenderOptions serial(int width, int height) {
-  RenderOptions o;
-  o.width = width;
-  o.height = height;
-  o.device = Device::serial;
-  o.shader = Shader::id;
-  return o;
-}
-
 RenderOptions binned(int width, int height, Schedule schedule, int threads) {
-  RenderOptions o = serial(width, height);
+  RenderOptions o = reference_options(width, height);
   o.device = Device::threads;
   o.threads = threads;
   o.rasterizer = "binned";
@@ -176,24 +167,36 @@ raster::ProjectedVertex vertex(int x_fx8, int y_fx8) {
   return v;
 }
 
-template <int kBin, int kTile>
-void expect_exact_masks(std::uint64_t seed, int count) {
-  using Tiles = family::TilesOfBin<kBin, kTile>;
+/// The tiles of a bin that cover_tiles finds, each once, ascending.
+std::vector<bool> covered_tiles(family::BinSizes sizes, const raster::Piece& piece,
+                                raster::Rect bin) {
+  std::vector<bool> tiles(static_cast<std::size_t>(sizes.tiles_per_bin()));
+  int last = -1;
+  family::cover_tiles(sizes, piece, bin, [&](int tile) {
+    EXPECT_GT(tile, last);
+    last = tile;
+    tiles.at(static_cast<std::size_t>(tile)) = true;
+  });
+  return tiles;
+}
+
+void expect_exact_masks(family::BinSizes sizes, std::uint64_t seed, int count) {
+  const int bin_px = sizes.bin_px();
   Random random(seed);
   std::uint64_t covered = 0, empty = 0;
   for (int i = 0; i < count; ++i) {
     // A bin anywhere, whole or cut by the view, and corners near it, far from it, in a line.
     raster::Rect bin;
-    bin.x0 = random.integer(0, 20) * kBin;
-    bin.y0 = random.integer(0, 20) * kBin;
-    bin.x1 = bin.x0 + (random.chance(0.7) ? kBin : random.integer(1, kBin));
-    bin.y1 = bin.y0 + (random.chance(0.7) ? kBin : random.integer(1, kBin));
+    bin.x0 = random.integer(0, 20) * bin_px;
+    bin.y0 = random.integer(0, 20) * bin_px;
+    bin.x1 = bin.x0 + (random.chance(0.7) ? bin_px : random.integer(1, bin_px));
+    bin.y1 = bin.y0 + (random.chance(0.7) ? bin_px : random.integer(1, bin_px));
     const bool far = random.chance(0.3), grid = random.chance(0.3), sliver = random.chance(0.3);
     SnappedTriangle t;
     for (SnappedVertex& v : t.v) {
-      const int reach = far ? 30000 : kBin;
-      v.x_fx8 = (bin.x0 + random.integer(-reach, reach + kBin)) * 256 + random.integer(0, 255);
-      v.y_fx8 = (bin.y0 + random.integer(-reach, reach + kBin)) * 256 + random.integer(0, 255);
+      const int reach = far ? 30000 : bin_px;
+      v.x_fx8 = (bin.x0 + random.integer(-reach, reach + bin_px)) * 256 + random.integer(0, 255);
+      v.y_fx8 = (bin.y0 + random.integer(-reach, reach + bin_px)) * 256 + random.integer(0, 255);
       if (grid) {
         v.x_fx8 = v.x_fx8 / 256 * 256 + 128;
         v.y_fx8 = v.y_fx8 / 256 * 256 + 128;
@@ -211,13 +214,13 @@ void expect_exact_masks(std::uint64_t seed, int count) {
     if (raster::make_piece(corner(0), corner(1), corner(2), 0, 0, Cull::none, bin, piece) ==
         raster::SetupResult::culled)
       continue;
-    const typename Tiles::Mask mask = Tiles::covered(piece, bin);
-    for (int tile = 0; tile < Tiles::Mask::size(); ++tile) {
-      const raster::Rect r = Tiles::tile(bin, tile);
+    const std::vector<bool> found = covered_tiles(sizes, piece, bin);
+    for (std::size_t tile = 0; tile < found.size(); ++tile) {
+      const raster::Rect r = family::tile_of_bin(sizes, bin, static_cast<int>(tile));
       bool any = false;
       for (int y = r.y0; y < std::min(r.y1, bin.y1) && !any; ++y)
         for (int x = r.x0; x < std::min(r.x1, bin.x1) && !any; ++x) any = covers(t, x, y);
-      ASSERT_EQ(mask.test(tile), any) << "triangle " << i << ", tile " << tile;
+      ASSERT_EQ(found[tile], any) << "triangle " << i << ", tile " << tile;
       ++(any ? covered : empty);
     }
   }
@@ -227,15 +230,15 @@ void expect_exact_masks(std::uint64_t seed, int count) {
 
 TEST(TileMask, HoldsExactlyTheTilesWithACoveredSample) {
   const int count = count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 2;
-  expect_exact_masks<64, 8>(1, count);
-  expect_exact_masks<32, 8>(2, count);
-  expect_exact_masks<64, 16>(3, count);
-  expect_exact_masks<128, 8>(4, count / 4);
-  expect_exact_masks<128, 16>(5, count / 4);
+  expect_exact_masks({6, 3}, 1, count);
+  expect_exact_masks({5, 3}, 2, count);
+  expect_exact_masks({6, 4}, 3, count);
+  expect_exact_masks({7, 3}, 4, count / 4);
+  expect_exact_masks({7, 4}, 5, count / 4);
 }
 
 TEST(TileMask, OfLinesAndPoints) {
-  using Tiles = family::TilesOfBin<64, 8>;
+  constexpr family::BinSizes kSizesOfBin{6, 3};
   Random random(11);
   std::array<std::uint64_t, 2> covered{};
   for (int i = 0; i < 2000; ++i) {
@@ -252,15 +255,15 @@ TEST(TileMask, OfLinesAndPoints) {
         is_line ? raster::make_line(a, b, 0, 0, static_cast<std::uint32_t>(size), bin, piece)
                 : raster::make_point(a, 0, 0, size * 700, bin, piece);
     if (result == raster::SetupResult::culled) continue;
-    const Tiles::Mask mask = Tiles::covered(piece, bin);
-    for (int tile = 0; tile < 64; ++tile) {
-      const raster::Rect r = Tiles::tile(bin, tile);
+    const std::vector<bool> found = covered_tiles(kSizesOfBin, piece, bin);
+    for (std::size_t tile = 0; tile < found.size(); ++tile) {
+      const raster::Rect r = family::tile_of_bin(kSizesOfBin, bin, static_cast<int>(tile));
       bool any = false;
       for (int y = r.y0; y < std::min(r.y1, bin.y1); ++y) {
         const raster::Span span = raster::row_span(piece, y, r.x0, std::min(r.x1, bin.x1));
         any = any || span.begin < span.end;
       }
-      ASSERT_EQ(mask.test(tile), any) << i << ", tile " << tile;
+      ASSERT_EQ(found[tile], any) << i << ", tile " << tile;
       covered[is_line] += any;
     }
   }
@@ -307,7 +310,7 @@ TEST(Binned, EnumeratesEachCoveredSampleOnceAndCountsItsWork) {
     o.tuning.large_px = c.large_px;
     renderers.emplace_back(o);
   }
-  Painter reference(serial(kWidth, kHeight));
+  Painter reference(reference_options(kWidth, kHeight));
 
   const int scenes =
       std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 100, kSceneKinds);
@@ -353,7 +356,7 @@ TEST(Binned, DrawsWhatCrossesTheNearPlaneAndTheGuardBand) {
                     {-9e5F, -8e5F, -3}, {9e5F, -7e5F, -3}, {1e4F, 9e5F, -3}};
   const Scene scene = single(std::move(mesh));
   const SceneBinding binding(scene);
-  const Frame expected = draw(serial(kWidth, kHeight), scene, camera);
+  const Frame expected = draw(reference_options(kWidth, kHeight), scene, camera);
   EXPECT_EQ(expected.stats.triangles.clipped, 3U);
   EXPECT_EQ(expected.stats.pixels_covered, std::uint64_t{kWidth} * kHeight);
   const PieceList pieces = pieces_of(binding.view(), camera, kWidth, kHeight);
@@ -384,7 +387,7 @@ TEST(Binned, QueuesGrow) {
   const Scene scene = single(std::move(mesh));
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kSize, kSize);
-  const Frame expected = draw(serial(kSize, kSize), scene, camera);
+  const Frame expected = draw(reference_options(kSize, kSize), scene, camera);
   const Expected work =
       expected_of(pieces_of(binding.view(), camera, kSize, kSize), kSize, kSize, 4000, 64, 8);
   EXPECT_EQ(work.large, static_cast<std::uint64_t>(count));
@@ -411,7 +414,7 @@ TEST(Binned, DrawsInRoundsWhereMemoryIsShort) {
   const Scene scene = sized_triangles(3000, 30000, 80000, kSize, kSize, 4);
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kSize, kSize);
-  const Frame expected = draw(serial(kSize, kSize), scene, camera);
+  const Frame expected = draw(reference_options(kSize, kSize), scene, camera);
   for (const Schedule schedule : kSchedules) {
     RenderOptions options = binned(kSize, kSize, schedule, 8);
     options.tuning.bin_px = 32;
@@ -634,7 +637,7 @@ TEST(Binned, SendsLinesAndPointsThroughItsQueues) {
   }
 }
 
-TEST(Binned, RefusesATuningThatIsNotCompiled) {
+TEST(Binned, RefusesATuningThatItDoesNotTake) {
   const auto refuses = [](int bin_px, int tile_px, int large_px) {
     RenderOptions o = binned(64, 64, Schedule::automatic, 1);
     o.tuning.bin_px = bin_px;
@@ -648,8 +651,10 @@ TEST(Binned, RefusesATuningThatIsNotCompiled) {
       return std::string(e.what());
     }
   };
-  EXPECT_NE(refuses(48, 8, 0).find("64/8, 32/8, 64/16, 128/8, 128/16"), std::string::npos);
-  EXPECT_NE(refuses(0, 32, 0), "");
+  EXPECT_NE(refuses(48, 8, 0).find("tiles from 8 px, bins of 2 to 16 tiles"), std::string::npos);
+  EXPECT_NE(refuses(64, 4, 0), "");
+  EXPECT_EQ(refuses(0, 32, 0), "");
+  EXPECT_NE(refuses(0, 64, 0), "");
   EXPECT_NE(refuses(0, 0, -1), "");
   EXPECT_EQ(refuses(0, 0, 0), "");
   for (const auto& [bin_px, tile_px] : kSizes) EXPECT_EQ(refuses(bin_px, tile_px, 1), "");

@@ -12,26 +12,15 @@
 #include <rastrum/io.hpp>
 
 #include "tests/io/files.hpp"
+#include "tests/io/gltf_document.hpp"
 
 namespace rastrum::gltf_test {
 namespace {
 
 using Indices = std::vector<std::uint32_t>;
+using test::base64;
+using test::document;
 using test::raw;
-
-std::string base64(const std::string& bytes) {
-  static constexpr char kDigits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string r;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t b = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      b = b << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k)
-      r += k <= bytes.size() - i ? kDigits[b >> (18 - 6 * k) & 63U] : '=';
-  }
-  return r;
-}
 
 std::string vec3(float x, float y, float z) {
   return raw(x) + raw(y) + raw(z);
@@ -42,14 +31,6 @@ std::string square_bytes() {
   std::string s = vec3(0, 0, 0) + vec3(1, 0, 0) + vec3(0, 1, 0) + vec3(1, 1, 0);
   for (std::uint16_t i = 0; i < 4; ++i) s += raw(i);
   return s;
-}
-
-/// A document over `bytes` with one buffer and a view of all of it; `rest` are more members.
-std::string document(const std::string& bytes, const std::string& rest) {
-  return R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":)" + std::to_string(bytes.size()) +
-         R"(,"uri":"data:application/octet-stream;base64,)" + base64(bytes) + R"("}],)" +
-         R"("bufferViews":[{"buffer":0,"byteLength":)" + std::to_string(bytes.size()) + "}]," +
-         rest + "}";
 }
 
 constexpr const char* kSquareAccessors =

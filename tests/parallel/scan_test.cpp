@@ -1,6 +1,7 @@
 // reduce, the scans, reduce_by_key: definitions, and one result whatever the backend.
 #include <bit>
 #include <cstring>
+#include <numeric>
 
 #include <tests/parallel/backends.hpp>
 
@@ -63,20 +64,17 @@ TEST(Scan, ExclusiveAndInclusiveMatchTheirDefinitions) {
 
 TEST(Scan, MayWriteOverItsInput) {
   for (const std::size_t n : kSizes) {
-    const auto values = random_values<std::uint32_t>(n, 1000);
-    std::vector<std::uint32_t> expected(n);
-    std::uint32_t sum = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      expected[i] = sum;
-      sum += values[i];
-    }
+    const std::vector<Affine> maps = random_maps(n);
     on_every_backend([&](auto& exec) {
-      auto in_place = values;
-      EXPECT_EQ(exclusive_scan(exec, in_place, in_place, std::uint32_t{0}), sum);
+      std::vector<Affine> expected(n);
+      auto in_place = maps;
+      const Affine sum = exclusive_scan(exec, maps, expected, Affine{}, then);
+      EXPECT_EQ(exclusive_scan(exec, in_place, in_place, Affine{}, then), sum);
       EXPECT_EQ(in_place, expected);
-      in_place = values;
-      inclusive_scan(exec, in_place, in_place, std::uint32_t{0});
-      for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(in_place[i], expected[i] + values[i]);
+      in_place = maps;
+      inclusive_scan(exec, maps, expected, Affine{}, then);
+      inclusive_scan(exec, in_place, in_place, Affine{}, then);
+      EXPECT_EQ(in_place, expected);
     });
   }
 }
@@ -129,13 +127,16 @@ TEST(ReduceByKey, FoldsRunsInOrder) {
 
 TEST(ReduceByKey, OneHugeRunAndAllRunsOfOne) {
   const std::size_t n = 5 * kBlock + 17;
+  std::vector<std::uint32_t> keys(n);
+  std::iota(keys.begin(), keys.end(), 0U);
+  const std::vector<Affine> maps = random_maps(n);
   on_every_backend([&](auto& exec) {
     const auto one = reduce_by_key(exec, constant(n, 9U), constant(n, std::uint64_t{1}));
     EXPECT_EQ(as_vector(one.keys), std::vector<unsigned>{9U});
     EXPECT_EQ(as_vector(one.values), std::vector<std::uint64_t>{n});
-    const auto each = reduce_by_key(exec, counting<std::uint32_t>(n), counting<std::uint32_t>(n));
-    EXPECT_EQ(each.keys.size(), n);
-    EXPECT_EQ(as_vector(each.keys), as_vector(each.values));
+    const auto each = reduce_by_key(exec, keys, maps, then);
+    EXPECT_EQ(as_vector(each.keys), keys);
+    EXPECT_EQ(as_vector(each.values), maps);
   });
 }
 

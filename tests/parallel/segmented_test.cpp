@@ -16,12 +16,12 @@ std::pair<std::vector<std::uint32_t>, std::size_t> begins(const std::vector<std:
 
 TEST(Segmented, ExampleOfThePaper) {
   // Paper 1, section 2.2.2.
-  const std::vector<int> data = {1, 2, 3, 4, 5, 6, 7};
-  const std::vector<std::size_t> first = {0, 3, 5, 6};
+  const std::vector<float> data = {1, 2, 3, 4, 5, 6, 7};
+  const std::vector<std::uint32_t> first = {0, 3, 5, 6};
   on_every_backend([&](auto& exec) {
-    std::vector<int> sums(7);
-    segmented_scan<int>(exec, first, data, sums);
-    EXPECT_EQ(sums, (std::vector<int>{1, 3, 6, 4, 9, 6, 7}));
+    std::vector<float> sums(7);
+    segmented_scan<float>(exec, first, data, sums);
+    EXPECT_EQ(sums, (std::vector<float>{1, 3, 6, 4, 9, 6, 7}));
   });
 }
 

@@ -36,8 +36,8 @@ TEST(SortByKey, IsStableAndSortsByTheLowBits) {
     sorts_like_stable_sort(random_values<std::uint32_t>(n, std::uint64_t{1} << 32), 3);
     sorts_like_stable_sort(random_values<std::uint64_t>(n, ~std::uint64_t{0}), 64);
     sorts_like_stable_sort(random_values<std::uint64_t>(n, ~std::uint64_t{0}), 41);
-    sorts_like_stable_sort(random_values<std::uint16_t>(n, 65536), 16);
-    sorts_like_stable_sort(random_values<std::uint8_t>(n, 256), 8);
+    sorts_like_stable_sort(random_values<std::uint32_t>(n, 65536), 16);
+    sorts_like_stable_sort(random_values<std::uint32_t>(n, 256), 8);
   }
 }
 
@@ -59,7 +59,7 @@ TEST(SortByKey, MovesValuesOfAnySize) {
     std::uint8_t rest[9];
   };
   const std::size_t n = 50021;
-  const auto keys = random_values<std::uint16_t>(n, 5000);
+  const auto keys = random_values<std::uint32_t>(n, 5000);
   on_every_backend([&](auto& exec) {
     auto sorted = keys;
     std::vector<Value> values(n);
@@ -93,7 +93,7 @@ TEST(SortByKey, SkipsDigitsThatAreTheSameInAllKeys) {
 TEST(SortByKey, DefaultsToAllBitsOfTheKey) {
   on_every_backend([](auto& exec) {
     auto keys = random_values<std::uint32_t>(70001, std::uint64_t{1} << 32);
-    std::vector<std::uint8_t> values(keys.size());
+    std::vector<std::uint32_t> values(keys.size());
     sort_by_key(exec, keys, values);
     EXPECT_TRUE(std::is_sorted(keys.begin(), keys.end()));
   });

@@ -56,11 +56,11 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
     for (const InstanceView& instance : binding.view().instances) {
       const Mat4d matrix = to_clip * instance.object_to_world;
       raster::Draw& d = draws.emplace_back();
-      d.source = raster::MatrixVertices(instance.mesh.positions, matrix);
-      d.vertex_count = instance.mesh.positions.size();
-      d.indices = instance.mesh.indices;
-      d.primitive_count = instance.mesh.triangle_count();
-      device_draws.push_back({d, {instance.mesh.positions, matrix, {}, {}}});
+      d.source = raster::MatrixVertices(instance.mesh()->positions, matrix);
+      d.vertex_count = instance.mesh()->positions.size();
+      d.indices = instance.mesh()->indices;
+      d.primitive_count = instance.mesh()->triangle_count();
+      device_draws.push_back({d, {instance.mesh()->positions, matrix, {}, {}}});
     }
     const auto total = raster::number_draws(draws).primitives;
     raster::FrameGeometry frame{kWidth, kHeight, raster::Viewport::of(kWidth, kHeight), draws};

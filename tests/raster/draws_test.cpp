@@ -221,10 +221,11 @@ TEST(Draws, MayHaveABuiltInShader) {
   std::vector<Draw> meshes;
   for (const InstanceView& instance : binding.view().instances) {
     Draw& d = meshes.emplace_back();
-    d.source = raster::MatrixVertices(instance.mesh.positions, to_clip * instance.object_to_world);
-    d.vertex_count = instance.mesh.positions.size();
-    d.indices = instance.mesh.indices;
-    d.primitive_count = instance.mesh.triangle_count();
+    d.source =
+        raster::MatrixVertices(instance.mesh()->positions, to_clip * instance.object_to_world);
+    d.vertex_count = instance.mesh()->positions.size();
+    d.indices = instance.mesh()->indices;
+    d.primitive_count = instance.mesh()->triangle_count();
   }
   const Two two(1);
   for (const Device device : {Device::serial, Device::threads}) {

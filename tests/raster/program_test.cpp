@@ -343,7 +343,7 @@ TEST(Program, APhongOfOnesOwnIsTheBuiltInOne) {
         return VertexOutput<Mixed>{transform_point(to_clip, p), {p, mesh.normals.values[i], 0}};
       },
       [&](const Mixed& m, const Fragment&) {
-        const Vec3 v = normalize(camera.eye - m.position);
+        const Vec3 v = normalize(Vec3(camera.eye) - m.position);
         Vec3 n = normalize(m.normal);
         if (dot(n, v) < 0) n = -n;
         const Vec3 l = normalize(Vec3{0.4F, 0.6F, 1});

@@ -114,7 +114,7 @@ TEST(TerrainOptions, AreEachFramesOwn) {
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x) heights(x, y) = static_cast<float>((x * 7 + y * 5) % 23);
   const terrain::Terrain ground(terrain::HeightMap{heights, {}});
-  terrain::TerrainRenderer renderer({.threads = 2});
+  terrain::TerrainRenderer renderer = family::make_terrain_renderer({.threads = 2});
   const terrain::TerrainOptions frames[] = {
       {.width = 80, .height = 50, .distance = 100},
       {.width = 200,
@@ -131,10 +131,31 @@ TEST(TerrainOptions, AreEachFramesOwn) {
       by.render(ground, {.x = 30, .y = 40}, frame, {.color8 = color});
       return color;
     };
-    terrain::TerrainRenderer fresh({.threads = 2});
+    terrain::TerrainRenderer fresh = family::make_terrain_renderer({.threads = 2});
     EXPECT_TRUE(std::ranges::equal(draw(renderer).pixels(), draw(fresh).pixels()));
   }
   EXPECT_THROW(renderer.render(ground, {}, {.width = 0}, {}), Error);
+}
+
+TEST(TerrainOptions, OfTheFamilyAreRefusedByAPlainRenderer) {
+  const terrain::Terrain ground(terrain::HeightMap{Image<float>(8, 8), {}});
+  const terrain::TerrainOptions words{
+      .width = 16, .height = 16, .distance = 20, .method = terrain::Method::words};
+  for (const Device device : {Device::threads, Device::serial}) {
+    terrain::TerrainRenderer plain({.device = device, .threads = 1});
+    Image<Rgba8> color(16, 16);
+    try {
+      plain.render(ground, {}, words, {.color8 = color});
+      ADD_FAILURE() << name(device);
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::unsupported) << e.what();
+      EXPECT_NE(std::string_view(e.what()).find("Rastrum::family"), std::string_view::npos)
+          << e.what();
+    }
+    terrain::TerrainRenderer of_family =
+        family::make_terrain_renderer({.device = device, .threads = 1});
+    EXPECT_GT(of_family.render(ground, {}, words, {.color8 = color}).samples, 0U);
+  }
 }
 
 }  // namespace

@@ -18,36 +18,7 @@
 namespace rastrum::test::interpolation_test {
 namespace {
 
-using Real = long double;
-
 constexpr int kW = 96, kH = 80;
-
-// A weight of each corner at the sample of pixel (px, py); only their ratios matter.
-std::array<Real, 3> exact_weights(const ProjectedTriangle& t, int px, int py) {
-  const Real x = px + Real(0.5), y = py + Real(0.5);
-  std::array<Real, 3> out;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    if (t.fate == Fate::whole) {
-      const auto& a = t.snapped.v[j];
-      const auto& b = t.snapped.v[k];
-      const Real ax = Real(a.x_fx8) / 256, ay = Real(a.y_fx8) / 256;
-      const Real bx = Real(b.x_fx8) / 256, by = Real(b.y_fx8) / 256;
-      out[i] = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / Real(t.clip[i].w);
-    } else {
-      // The determinant of the two other corners and the sample, in homogeneous px.
-      const auto corner = [&](std::size_t n) {
-        const Real w = t.clip[n].w;
-        return std::array<Real, 3>{(Real(t.clip[n].x) + w) * kW / 2,
-                                   (w - Real(t.clip[n].y)) * kH / 2, w};
-      };
-      const auto a = corner(j), b = corner(k);
-      out[i] = (a[1] * b[2] - a[2] * b[1]) * x + (a[2] * b[0] - a[0] * b[2]) * y +
-               (a[0] * b[1] - a[1] * b[0]);
-    }
-  }
-  return out;
-}
 
 struct Worst {
   Real error = 0;
@@ -61,7 +32,7 @@ void compare(const Frame& f, const Mesh& mesh, const std::vector<ProjectedTriang
     for (int x = 0; x < kW; ++x) {
       if (f.ids(x, y) < 0) continue;
       const ProjectedTriangle& t = projected[static_cast<std::size_t>(f.ids(x, y))];
-      const auto a = exact_weights(t, x, y);
+      const auto a = exact_weights(t, kW, kH, x, y);
       const Real sum = a[0] + a[1] + a[2];
       // Snapping a clipped triangle may cover a sample just outside of it, where the weights
       // extrapolate; only what lies inside is interpolation.

@@ -151,8 +151,8 @@ TEST_P(SharedEdges, ClippedFloorsCoverThemOnce) {
     Random r(seed);
     Camera camera;
     camera.eye = {0, static_cast<float>(r.real(0.3, 1)), 0};
-    camera.target = camera.eye + Vec3{static_cast<float>(r.real(-0.4, 0.4)),
-                                      static_cast<float>(r.real(-1.5, -0.2)), -1};
+    camera.target = Vec3(camera.eye) + Vec3{static_cast<float>(r.real(-0.4, 0.4)),
+                                            static_cast<float>(r.real(-1.5, -0.2)), -1};
     camera.near_plane = static_cast<float>(r.real(0.05, 0.8));
     camera.fov_rad = static_cast<float>(r.real(0.5, 2.2));
     const int n = 6;
@@ -186,7 +186,7 @@ TEST_P(SharedEdges, ClippedFloorsCoverThemOnce) {
       double ray[3];
       for (int i = 0; i < 3; ++i)
         ray[i] = view.m[0][i] * d[0] + view.m[1][i] * d[1] + view.m[2][i] * d[2];
-      const double t = -double{camera.eye.y} / ray[1];  // also the distance along −z
+      const double t = -camera.eye.y / ray[1];  // also the distance along −z
       if (!(t > double{camera.near_plane})) return false;
       const double px = t * ray[0], pz = t * ray[2];
       const double u = px * std::cos(turn) + pz * std::sin(turn);

@@ -87,7 +87,7 @@ TEST(FitPicture, FillsPicturesOfEveryShapeFromEverySide) {
             SCOPED_TRACE(testing::Message() << size.width << "x" << size.height << " ortho "
                                             << orthographic << " fov " << fov);
             expect_filled(b);
-            const Vec3 looks = normalize(c.eye - c.target), wants = normalize(eye);
+            const Vec3 looks = normalize(Vec3(c.eye - c.target)), wants = normalize(eye);
             EXPECT_NEAR(length(looks - wants), 0, 1e-5);
           }
 }

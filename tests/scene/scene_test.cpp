@@ -83,9 +83,9 @@ void expect_fitted(const Camera& c, Vec3 centre, double r, double fov, bool orth
   const double distance = r / std::sin(fov / 2);
   const auto tolerance =
       static_cast<float>(1e-5 * (distance + static_cast<double>(length(centre))));
-  expect_vec(c.target, centre, tolerance);
-  expect_vec(c.eye, centre + Vec3{0, 0, static_cast<float>(distance)}, tolerance);
-  expect_vec(c.up, {0, 1, 0});
+  expect_vec(Vec3(c.target), centre, tolerance);
+  expect_vec(Vec3(c.eye), centre + Vec3{0, 0, static_cast<float>(distance)}, tolerance);
+  expect_vec(Vec3(c.up), {0, 1, 0});
   EXPECT_EQ(c.fov_rad, static_cast<float>(fov));
   EXPECT_EQ(c.orthographic, orthographic);
   EXPECT_NEAR(c.near_plane, std::max(distance - 1.001 * r, distance / 1000), 1e-5 * distance);

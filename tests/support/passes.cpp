@@ -50,14 +50,17 @@ Passes draw_in_passes(Painter& renderer, const SceneView& scene, const Camera& c
                   .overdraw = p.frame.overdraw};
   targets.keys = p.keys.view();
   const InstanceView& whole = scene.instances[0];
-  const std::size_t triangles = whole.mesh.triangle_count();
+  const MeshView& whole_mesh = *whole.mesh();
+  const std::size_t triangles = whole_mesh.triangle_count();
   std::size_t first = 0;
   for (std::size_t pass = 0; pass < passes; ++pass) {
     const std::size_t last = triangles * (pass + 1) * (pass + 1) / (passes * passes);
-    InstanceView part = whole;
-    part.mesh.indices = whole.mesh.indices.subspan(first * 3, (last - first) * 3);
-    if (std::span<const std::uint32_t>& normals = part.mesh.normals.indices; !normals.empty())
+    MeshView mesh = whole_mesh;
+    mesh.indices = whole_mesh.indices.subspan(first * 3, (last - first) * 3);
+    if (std::span<const std::uint32_t>& normals = mesh.normals.indices; !normals.empty())
       normals = normals.subspan(first * 3, (last - first) * 3);
+    InstanceView part = whole;
+    part.geometry = mesh;
     targets.load = pass != 0 && by == By::load;
     targets.over = pass != 0 && by == By::over;
     targets.first_id = first;

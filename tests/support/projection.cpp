@@ -74,7 +74,7 @@ std::vector<ProjectedTriangle> project(const SceneView& scene, const Camera& cam
   std::int64_t id = 0;
   for (const InstanceView& instance : scene.instances) {
     const Mat4d m = object_to_clip(camera, instance.object_to_world, width, height);
-    const MeshView& mesh = instance.mesh;
+    const MeshView& mesh = *instance.mesh();
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t, ++id) {
       ProjectedTriangle p;
       p.id = id;
@@ -91,6 +91,33 @@ std::vector<ProjectedTriangle> project(const SceneView& scene, const Camera& cam
       }
       p.fate = !is_finite ? Fate::dropped : whole ? Fate::whole : Fate::needs_clip;
       out.push_back(p);
+    }
+  }
+  return out;
+}
+
+std::array<Real, 3> exact_weights(const ProjectedTriangle& t, int width, int height, int px,
+                                  int py) {
+  const Real x = px + Real(0.5), y = py + Real(0.5);
+  std::array<Real, 3> out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    if (t.fate == Fate::whole) {
+      const auto& a = t.snapped.v[j];
+      const auto& b = t.snapped.v[k];
+      const Real ax = Real(a.x_fx8) / 256, ay = Real(a.y_fx8) / 256;
+      const Real bx = Real(b.x_fx8) / 256, by = Real(b.y_fx8) / 256;
+      out[i] = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / Real(t.clip[i].w);
+    } else {
+      // The determinant of the two other corners and the sample, in homogeneous px.
+      const auto corner = [&](std::size_t n) {
+        const Real w = t.clip[n].w;
+        return std::array<Real, 3>{(Real(t.clip[n].x) + w) * width / 2,
+                                   (w - Real(t.clip[n].y)) * height / 2, w};
+      };
+      const auto a = corner(j), b = corner(k);
+      out[i] = (a[1] * b[2] - a[2] * b[1]) * x + (a[2] * b[0] - a[0] * b[2]) * y +
+               (a[0] * b[1] - a[1] * b[0]);
     }
   }
   return out;

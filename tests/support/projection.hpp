@@ -2,6 +2,7 @@
 // order, no contraction. Of the library it uses only the types and `world_to_clip`.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -43,5 +44,13 @@ struct ProjectedTriangle {
 /// Every triangle of `scene` in order of submission. Indices must be in range.
 [[nodiscard]] std::vector<ProjectedTriangle> project(const SceneView& scene, const Camera& camera,
                                                      int width, int height);
+
+using Real = long double;
+
+/// A weight of each corner at the centre of pixel (px, py) of a W × H picture, perspective-correct;
+/// only their ratios matter. From the snapped positions, or of a triangle that needs the clipper
+/// from the homogeneous ones.
+[[nodiscard]] std::array<Real, 3> exact_weights(const ProjectedTriangle& t, int width, int height,
+                                                int px, int py);
 
 }  // namespace rastrum::test

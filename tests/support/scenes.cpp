@@ -55,7 +55,7 @@ Camera random_camera(Random& r) {
   Camera c;
   c.eye = random_vector(r, 5);
   const Vec3 forward = normalize(random_vector(r, 1) + Vec3{0.1F, 0.05F, -0.02F});
-  c.target = c.eye + forward * static_cast<float>(r.real(0.5, 4));
+  c.target = Vec3(c.eye) + forward * static_cast<float>(r.real(0.5, 4));
   c.up = std::abs(forward.y) > 0.9F ? Vec3{1, 0, 0} : Vec3{0.1F, 1, 0};
   c.fov_rad = static_cast<float>(r.real(0.4, 2.4));
   const double nears[] = {1e-4, 0.01, 0.05, 0.1};
@@ -344,7 +344,7 @@ void beyond_far(Maker& m) {
 void unindexed(Maker& m) {
   const int n = m.random.integer(1, 66);
   for (int i = 0; i < n; ++i) {
-    const Vec3 centre = m.camera.target + random_vector(m.random, 2);
+    const Vec3 centre = Vec3(m.camera.target) + random_vector(m.random, 2);
     for (int c = 0; c < 3; ++c) m.mesh.positions.push_back(centre + random_vector(m.random, 1));
   }
 }

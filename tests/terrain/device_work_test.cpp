@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <rastrum/family/terrain/words.hpp>
 #include <rastrum/terrain/setup.hpp>
 
 #include "tests/support/painter.hpp"
@@ -49,8 +50,9 @@ TEST(TerrainDeviceWork, PicturesThatComeBackAreTheThreadsAndWordsTheDevices) {
   options.distance = 2000;
   EXPECT_TRUE(worth(1));
   EXPECT_FALSE(worth(16));
-  options.method = Method::words;
-  EXPECT_TRUE(worth(16));
+  FrameWork by_words = work(map, options);
+  family::kTerrainWords.weigh(by_words);
+  EXPECT_TRUE(estimate(by_words, 16).is_worth_it());
   // A map that takes longer to copy than to draw.
   options = {};
   options.width = 640;

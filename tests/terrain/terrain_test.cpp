@@ -1,4 +1,4 @@
-// What a terrain answers at a point, the operators of the words, the options beyond the original:
+// What a terrain answers at a point, the options beyond the original:
 // filters, projections, roll, fog, the matrix; and odd input.
 #include <cmath>
 #include <functional>
@@ -13,7 +13,6 @@
 #include <rastrum/terrain/ceiling.hpp>
 #include <rastrum/terrain/map_view.hpp>
 #include <rastrum/terrain/setup.hpp>
-#include <rastrum/terrain/words.hpp>
 
 #include "tests/support/isa.hpp"
 #include "tests/terrain/maps.hpp"
@@ -76,37 +75,6 @@ TEST(Tiled, FloorsNegativeCoordinates) {
   EXPECT_EQ(tiled(6, 3, Tiling::mirror), 0);
   EXPECT_EQ(tiled(-5, 3, Tiling::clamp), 0);
   EXPECT_EQ(tiled(5, 3, Tiling::clamp), 2);
-}
-
-TEST(Operators, AreAssociative) {
-  std::mt19937 random(1);
-  const auto pair = [&] {
-    const std::int32_t row = random() % 4 == 0 ? kNoRow : static_cast<std::int32_t>(random() % 5);
-    return Pair{
-        {static_cast<std::uint8_t>(random()), 0, 0, 255}, static_cast<float>(random() % 100), row};
-  };
-  const auto pixel = [&] {
-    return Pixel{{static_cast<std::uint8_t>(random()), 0, 0, 255},
-                 static_cast<float>(random() % 3)};
-  };
-  const Occlude occlude;
-  const Fill fill;
-  for (int i = 0; i < 10000; ++i) {
-    const Pair a = pair(), b = pair(), c = pair();
-    EXPECT_EQ(occlude(occlude(a, b), c), occlude(a, occlude(b, c)));
-    EXPECT_EQ(occlude(a, kNoPair), a);
-    EXPECT_EQ(occlude(kNoPair, a).row, a.row);
-    EXPECT_EQ(occlude(a, b), b.row < a.row ? b : a) << "of one row the nearer is seen";
-    const Pixel p = pixel(), q = pixel(), r = pixel();
-    // Empty pixels are all alike, whatever colour is left in them.
-    const Pixel left = fill(fill(p, q), r), right = fill(p, fill(q, r));
-    EXPECT_TRUE(left == right || (left.depth == 0 && right.depth == 0));
-    EXPECT_EQ(fill(Pixel{}, q).depth, q.depth);
-    EXPECT_EQ(fill(p, Pixel{}), p);
-    if (q.depth != 0) {
-      EXPECT_EQ(fill(p, q), q) << "what was drawn stays";
-    }
-  }
 }
 
 TEST(Bilinear, IsRightAtCentresAndAtWholeCoordinates) {

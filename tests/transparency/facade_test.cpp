@@ -51,10 +51,10 @@ class Fragments {
     for (const InstanceView& instance : scene.instances) {
       raster::Draw& draw = draws_.emplace_back();
       draw.source =
-          raster::MatrixVertices(instance.mesh.positions, to_clip * instance.object_to_world);
-      draw.vertex_count = instance.mesh.positions.size();
-      draw.indices = instance.mesh.indices;
-      draw.primitive_count = instance.mesh.triangle_count();
+          raster::MatrixVertices(instance.mesh()->positions, to_clip * instance.object_to_world);
+      draw.vertex_count = instance.mesh()->positions.size();
+      draw.indices = instance.mesh()->indices;
+      draw.primitive_count = instance.mesh()->triangle_count();
     }
     (void)raster::number_draws(draws_, 0);
     frame_ = {o.width, o.height, raster::Viewport::of(o.width, o.height),
@@ -69,7 +69,7 @@ class Fragments {
     scratch_.begin(shading_.scratch_bytes());
     if (masks) test_ = raster::MaskTest{material_scene_.get()};
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-      const MeshView& mesh = scene.instances[i].mesh;
+      const MeshView& mesh = *scene.instances[i].mesh();
       for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
         modes_.push_back(scene.materials.empty()
                              ? AlphaMode::opaque
@@ -135,7 +135,8 @@ class Fragments {
 /// What the `material` shader leaves out: backs of single-sided materials.
 Cull cull_of(const InstanceView& instance, const SceneView& scene, Shader shader) {
   if (shader != Shader::material || scene.materials.empty() ||
-      !instance.mesh.face_materials.empty() || scene.materials[instance.mesh.material].double_sided)
+      !instance.mesh()->face_materials.empty() ||
+      scene.materials[instance.mesh()->material].double_sided)
     return Cull::none;
   const auto& m = instance.object_to_world.m;
   double determinant = 0;
@@ -156,7 +157,7 @@ LayerImage oracle_of(const SceneView& scene, const Camera& camera, const RenderO
       t.id += first;
       triangles.push_back(t);
     }
-    first += static_cast<std::int64_t>(instance.mesh.triangle_count());
+    first += static_cast<std::int64_t>(instance.mesh()->triangle_count());
   }
   const auto fragments = std::make_unique<Fragments>(scene, camera, o);
   const bool linear = o.shader == Shader::material;

@@ -39,13 +39,10 @@ void MeshControl::go_home() {
 }
 
 void MeshControl::place(const Camera& camera) {
-  const auto widen = [](Vec3 v) { return Vector{v.x, v.y, v.z}; };
   camera_ = camera;
-  eye_ = widen(camera.eye);
-  target_ = widen(camera.target);
-  const Vector up = widen(camera.up);
-  const double l = std::hypot(up.x, up.y, up.z);
-  up_ = {up.x / l, up.y / l, up.z / l};
+  eye_ = camera.eye;
+  target_ = camera.target;
+  up_ = normalize(camera.up);
   ++version_;
 }
 
@@ -55,29 +52,20 @@ void MeshControl::resize(int width, int height) {
 }
 
 MeshControl::Axes MeshControl::axes() const {
-  const auto cross = [](const Vector& a, const Vector& b) {
-    return Vector{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-  };
-  const auto unit = [](const Vector& a) {
-    const double l = std::hypot(a.x, a.y, a.z);
-    return Vector{a.x / l, a.y / l, a.z / l};
-  };
-  const Vector back = unit({eye_.x - target_.x, eye_.y - target_.y, eye_.z - target_.z});
-  const Vector right = unit(cross(up_, back));
+  const Vec3d back = normalize(eye_ - target_);
+  const Vec3d right = normalize(cross(up_, back));
   return {right, cross(back, right), back};
 }
 
 /// `v` turned about `up`, then towards it (pitch > 0) without reaching it.
-MeshControl::Vector MeshControl::rotated(const Vector& v, const Vector& up, double yaw_rad,
-                                         double pitch_rad) {
+Vec3d MeshControl::rotated(const Vec3d& v, const Vec3d& up, double yaw_rad, double pitch_rad) {
   const double length = std::hypot(v.x, v.y, v.z);
   const double along = (v.x * up.x + v.y * up.y + v.z * up.z) / length;
-  Vector flat{v.x / length - along * up.x, v.y / length - along * up.y,
-              v.z / length - along * up.z};
+  Vec3d flat{v.x / length - along * up.x, v.y / length - along * up.y, v.z / length - along * up.z};
   const double flat_length = std::hypot(flat.x, flat.y, flat.z);
   flat = {flat.x / flat_length, flat.y / flat_length, flat.z / flat_length};
-  const Vector side{up.y * flat.z - up.z * flat.y, up.z * flat.x - up.x * flat.z,
-                    up.x * flat.y - up.y * flat.x};
+  const Vec3d side{up.y * flat.z - up.z * flat.y, up.z * flat.x - up.x * flat.z,
+                   up.x * flat.y - up.y * flat.x};
   const double limit = std::numbers::pi / 2 - kPole;
   const double pitch = std::clamp(std::atan2(along, flat_length) + pitch_rad, -limit, limit);
   const double c = std::cos(yaw_rad) * std::cos(pitch), s = std::sin(yaw_rad) * std::cos(pitch);
@@ -88,20 +76,20 @@ MeshControl::Vector MeshControl::rotated(const Vector& v, const Vector& up, doub
 }
 
 void MeshControl::orbit(double yaw_rad, double pitch_rad) {
-  const Vector offset{eye_.x - target_.x, eye_.y - target_.y, eye_.z - target_.z};
-  const Vector turned = rotated(offset, up_, yaw_rad, pitch_rad);
-  eye_ = {target_.x + turned.x, target_.y + turned.y, target_.z + turned.z};
+  const Vec3d offset = eye_ - target_;
+  const Vec3d turned = rotated(offset, up_, yaw_rad, pitch_rad);
+  eye_ = target_ + turned;
 }
 
 void MeshControl::look(double yaw_rad, double pitch_rad) {
-  const Vector offset{target_.x - eye_.x, target_.y - eye_.y, target_.z - eye_.z};
-  const Vector turned = rotated(offset, up_, yaw_rad, pitch_rad);
-  target_ = {eye_.x + turned.x, eye_.y + turned.y, eye_.z + turned.z};
+  const Vec3d offset = target_ - eye_;
+  const Vec3d turned = rotated(offset, up_, yaw_rad, pitch_rad);
+  target_ = eye_ + turned;
 }
 
-void MeshControl::shift(const Vector& by) {
-  eye_ = {eye_.x + by.x, eye_.y + by.y, eye_.z + by.z};
-  target_ = {target_.x + by.x, target_.y + by.y, target_.z + by.z};
+void MeshControl::shift(const Vec3d& by) {
+  eye_ = eye_ + by;
+  target_ = target_ + by;
 }
 
 /// What lies as far away as the target stays under the pointer.
@@ -126,19 +114,16 @@ void MeshControl::zoom(double factor) {
         static_cast<float>(std::clamp(height, kNearest * r, kFarthest * r));
     return;
   }
-  const Vector offset{eye_.x - target_.x, eye_.y - target_.y, eye_.z - target_.z};
+  const Vec3d offset = eye_ - target_;
   const double length = std::hypot(offset.x, offset.y, offset.z);
   const double scale = std::clamp(length / factor, kNearest * r, kFarthest * r) / length;
-  eye_ = {target_.x + offset.x * scale, target_.y + offset.y * scale, target_.z + offset.z * scale};
+  eye_ = target_ + offset * scale;
 }
 
 /// From the float64 state to the camera.
 void MeshControl::update() {
-  const auto narrow = [](const Vector& v) {
-    return Vec3{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-  };
-  camera_.eye = narrow(eye_);
-  camera_.target = narrow(target_);
+  camera_.eye = eye_;
+  camera_.target = target_;
   if (follow_planes_) place_planes(camera_, scene_);
   ++version_;
 }

@@ -37,29 +37,26 @@ class MeshControl {
   [[nodiscard]] static std::span<const KeyHelp> keys();
 
  private:
-  struct Vector {
-    double x = 0, y = 0, z = 0;
-  };
   struct Axes {
-    Vector right, up, back;  ///< of the camera, orthonormal
+    Vec3d right, up, back;  ///< of the camera, orthonormal
   };
   [[nodiscard]] Axes axes() const;
   [[nodiscard]] bool held(const char* key) const { return held_.contains(key); }
   void orbit(double yaw_rad, double pitch_rad);
   void look(double yaw_rad, double pitch_rad);
-  void shift(const Vector& by);
+  void shift(const Vec3d& by);
   void pan(double dx_px, double dy_px);
   void zoom(double factor);
   void drag(double dx_px, double dy_px);
   void update();
-  static Vector rotated(const Vector& v, const Vector& up, double yaw_rad, double pitch_rad);
+  static Vec3d rotated(const Vec3d& v, const Vec3d& up, double yaw_rad, double pitch_rad);
 
   enum class Drag { none, orbit, pan, look };
 
   Camera home_, camera_;
   BoundingSphere scene_;
   bool follow_planes_;
-  Vector eye_, target_, up_;
+  Vec3d eye_, target_, up_;
   double width_ = 1280, height_ = 720;
   std::set<std::string, std::less<>> held_;
   bool fast_ = false;

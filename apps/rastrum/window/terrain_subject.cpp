@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <rastrum/error.hpp>
+#include <rastrum/family.hpp>
 
 #include "progress.hpp"
 
@@ -70,7 +71,7 @@ class TerrainSubject::Stage {
   terrain::TerrainRenderer& renderer(const terrain::TerrainRendererOptions& options) {
     if (!renderer_ || options_ != options) {
       renderer_.reset();
-      renderer_.emplace(options);
+      renderer_.emplace(family::make_terrain_renderer(options));
       options_ = options;
     }
     return *renderer_;

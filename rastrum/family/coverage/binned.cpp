@@ -5,7 +5,6 @@
 #include <atomic>
 #include <deque>
 #include <numeric>
-#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -13,8 +12,10 @@
 #include <rastrum/error.hpp>
 #include <rastrum/family/coverage/boxes.hpp>
 #include <rastrum/family/coverage/tile_mask.hpp>
+#include <rastrum/family/coverage/tiles.hpp>
 #include <rastrum/family/piece_array.hpp>
 #include <rastrum/parallel/expand_each.hpp>
+#include <rastrum/parallel/mask.hpp>
 #include <rastrum/parallel/work_queue.hpp>
 #include <rastrum/raster/bin/order.hpp>
 #include <rastrum/stop.hpp>
@@ -75,12 +76,9 @@ struct Batch {
   std::uint32_t bins = 0;    ///< that the boxes of the large ones touch
 };
 
-/// A piece and a bin that its box touches: an element of the queue.
-template <class Mask>
-struct Entry {
-  std::uint32_t piece, bin;
-  Mask tiles;
-};
+/// Of the tiles of a bin, as many as they need.
+using TileMask = parallel::Mask<64>;
+constexpr int kMaxMasks = kMaxTilesAcross * kMaxTilesAcross / TileMask::size();
 
 class CountAtEnd {
  public:
@@ -103,20 +101,19 @@ struct OwnedBin {
   std::uint64_t tiles = 0;
 };
 
-template <int kBin, int kTile>
 class Binned final : public Coverage {
-  using Tiles = TilesOfBin<kBin, kTile>;
-  using Mask = typename Tiles::Mask;
-
  public:
   Binned(const Tuning& tuning, MemoryAccount& memory)
       : large_px_(tuning.large_px == 0 ? kLargePx : tuning.large_px),
         persistent_(tuning.schedule == Schedule::persistent),
+        sizes_(checked_sizes("binned", tuning, kPaper2Sizes, kBlockSize)),
+        masks_per_entry_((static_cast<std::size_t>(sizes_.tiles_per_bin()) + TileMask::size() - 1) /
+                         TileMask::size()),
         setup_(memory) {}
 
   void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
     frame_ = &frame;
-    grid_ = {frame.view, kBin, frame.tuning.order};
+    grid_ = {frame.view, sizes_.bin_px(), frame.tuning.order};
     pieces_ = setup_.fill(frame, first, last);
     frame.watch.lap(frame.stats, "set up");
     const std::size_t count = (pieces_.size() + kBatch - 1) / kBatch;
@@ -132,11 +129,12 @@ class Binned final : public Coverage {
 
     // Each batch's place in the queue. A round's entries are those of a run of whole batches; those
     // of a single one, at most 32 a bin, take less than the view's keys.
-    constexpr std::size_t kEntryBytes = sizeof(Entry<Mask>) + sizeof(std::size_t);
+    const std::size_t entry_bytes =
+        sizeof(BinPair) + masks_per_entry_ * (sizeof(TileMask) + sizeof(std::size_t));
     const std::size_t most =
         frame.expansion_bytes == 0
             ? kQueueEntries
-            : std::min<std::size_t>(kQueueEntries, frame.expansion_bytes / kEntryBytes);
+            : std::min<std::size_t>(kQueueEntries, frame.expansion_bytes / entry_bytes);
     const parallel::Expansion queue(frame.exec, batches_, [](const Batch& b) { return b.bins; });
     work_.bins = queue.size();
     for (std::size_t begin = 0; begin < count;) {
@@ -190,7 +188,7 @@ class Binned final : public Coverage {
   /// Bins are the view's, not the image's.
   [[nodiscard]] Cells bins_of(Rect box) const {
     const int x0 = frame_->view.x0, y0 = frame_->view.y0;
-    return touched({box.x0 - x0, box.y0 - y0, box.x1 - x0, box.y1 - y0}, kBin);
+    return touched({box.x0 - x0, box.y0 - y0, box.x1 - x0, box.y1 - y0}, sizes_.bin_px());
   }
 
   [[nodiscard]] Batch look_at(std::size_t batch) const {
@@ -226,7 +224,7 @@ class Binned final : public Coverage {
   }
 
   void draw_tile(std::uint32_t piece, Rect bin, int tile, Emitter& emitter) const {
-    const Rect r = Tiles::tile(bin, tile), view = frame_->view;
+    const Rect r = tile_of_bin(sizes_, bin, tile), view = frame_->view;
     for (int y = r.y0; y < std::min(r.y1, view.y1); y += kBlockSize)
       for (int x = r.x0; x < std::min(r.x1, view.x1); x += kBlockSize)
         emitter.add_uncovered(piece, x / kBlockSize, y / kBlockSize);
@@ -235,13 +233,12 @@ class Binned final : public Coverage {
   void draw_two_stage(const parallel::Expansion& places, std::size_t begin, std::size_t end) {
     Frame& frame = *frame_;
     const std::size_t first = places.first(begin);
-    auto queue =
-        parallel::make_buffer<Entry<Mask>>(frame.exec, places.segment_end(end - 1) - first);
+    auto queue = parallel::make_buffer<BinPair>(frame.exec, places.segment_end(end - 1) - first);
     draw_shared(frame, end - begin, [&](std::size_t chunk, Emitter& emitter) {
       const bool store = emitter.first_pass();
       std::size_t tail = places.first(begin + chunk) - first;
       draw_batch(begin + chunk, emitter, [&](std::uint32_t piece, std::uint32_t bin) {
-        if (store) queue[tail++] = {piece, bin, {}};
+        if (store) queue[tail++] = {piece, bin};
       });
     });
     Load stored;
@@ -251,24 +248,34 @@ class Binned final : public Coverage {
 
     if (queue.empty()) return;
     std::atomic<std::size_t> count = 0;
+    auto masks = parallel::make_buffer<TileMask>(frame.exec, queue.size() * masks_per_entry_);
     parallel::for_each_index(
         frame.exec, queue.size(),
         [&](std::size_t i) {
-          Entry<Mask>& entry = queue[i];
-          entry.tiles = Tiles::covered(pieces_[entry.piece], grid_.rect(entry.bin));
-          count.fetch_add(static_cast<std::size_t>(entry.tiles.rank()), std::memory_order_relaxed);
+          std::array<TileMask, kMaxMasks> covered{};
+          std::size_t found = 0;
+          cover_tiles(sizes_, pieces_[queue[i].piece], grid_.rect(queue[i].bin), [&](int tile) {
+            covered[static_cast<std::size_t>(tile / TileMask::size())].set(tile % TileMask::size());
+            ++found;
+          });
+          std::copy_n(covered.begin(), masks_per_entry_, &masks[i * masks_per_entry_]);
+          count.fetch_add(found, std::memory_order_relaxed);
         },
         kBatch);
     // As many chunks for each worker as need be, of equal size.
     const std::size_t most = kWorkers * kTilesPerChunk, turns = (count + most - 1) / most;
     const std::size_t share = std::max<std::size_t>(turns * kWorkers, 1);
+    const auto each_mask = parallel::counting(masks.size());
     const parallel::Expansion tiles(
-        frame.exec, queue, [](const Entry<Mask>& e) { return e.tiles.rank(); },
+        frame.exec, each_mask, [&](std::size_t m) { return masks[m].rank(); },
         std::max<std::size_t>((count + share - 1) / share, 1));
     draw_shared(frame, tiles.chunks(), [&](std::size_t chunk, Emitter& emitter) {
       emitter.use(pieces_.data());
-      parallel::ExpansionChunk(tiles, queue, chunk).each([&](const Entry<Mask>& e, std::size_t k) {
-        draw_tile(e.piece, grid_.rect(e.bin), e.tiles.select(static_cast<int>(k)), emitter);
+      parallel::ExpansionChunk(tiles, each_mask, chunk).each([&](std::size_t m, std::size_t k) {
+        const BinPair& entry = queue[m / masks_per_entry_];
+        const int before = static_cast<int>(m % masks_per_entry_) * TileMask::size();
+        draw_tile(entry.piece, grid_.rect(entry.bin), before + masks[m].select(static_cast<int>(k)),
+                  emitter);
       });
     });
     Load load;
@@ -295,9 +302,10 @@ class Binned final : public Coverage {
       emitter.use(pieces_.data());
       std::uint64_t count = 0;
       for (const std::uint32_t piece : list) {
-        const Mask mask = Tiles::covered(pieces_[piece], rect);
-        mask.for_each([&](int tile) { draw_tile(piece, rect, tile, emitter); });
-        count += static_cast<std::uint64_t>(mask.rank());
+        cover_tiles(sizes_, pieces_[piece], rect, [&](int tile) {
+          draw_tile(piece, rect, tile, emitter);
+          ++count;
+        });
       }
       if (emitter.first_pass()) queues[bin].tiles += count;
     };
@@ -359,6 +367,8 @@ class Binned final : public Coverage {
 
   std::int64_t large_px_;
   bool persistent_;
+  BinSizes sizes_;
+  std::size_t masks_per_entry_;
   PieceArray setup_;
 
   // Of the draw under way.
@@ -369,38 +379,11 @@ class Binned final : public Coverage {
   parallel::Buffer<Batch> batches_;
 };
 
-struct Configuration {
-  int bin_px, tile_px;
-  std::unique_ptr<Coverage> (*make)(const Tuning&, MemoryAccount&);
-};
-
-template <int kBin, int kTile>
-constexpr Configuration configuration() {
-  return {kBin, kTile,
-          [](const Tuning& tuning, MemoryAccount& memory) -> std::unique_ptr<Coverage> {
-            return std::make_unique<Binned<kBin, kTile>>(tuning, memory);
-          }};
-}
-
-/// The paper's first.
-constexpr std::array kConfigurations{configuration<64, 8>(), configuration<32, 8>(),
-                                     configuration<64, 16>(), configuration<128, 8>(),
-                                     configuration<128, 16>()};
-
 }  // namespace
 
 std::unique_ptr<Coverage> make_binned(const Tuning& tuning, MemoryAccount& memory) {
   if (tuning.large_px < 0) throw Error(Errc::invalid_argument, "large_px must not be negative");
-  const Configuration& paper = kConfigurations.front();
-  const int bin_px = tuning.bin_px == 0 ? paper.bin_px : tuning.bin_px;
-  const int tile_px = tuning.tile_px == 0 ? paper.tile_px : tuning.tile_px;
-  std::string known;
-  for (const Configuration& c : kConfigurations) {
-    if (c.bin_px == bin_px && c.tile_px == tile_px) return c.make(tuning, memory);
-    known.append(known.empty() ? "" : ", ").append(std::to_string(c.bin_px));
-    known.append("/").append(std::to_string(c.tile_px));
-  }
-  throw Error(Errc::invalid_argument, "'binned' is compiled for these bins/tiles in px: " + known);
+  return std::make_unique<Binned>(tuning, memory);
 }
 
 }  // namespace rastrum::family

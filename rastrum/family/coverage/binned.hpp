@@ -20,9 +20,9 @@
 
 namespace rastrum::family {
 
-/// Work O(triangles + queue entries + blocks); memory 96 bytes a drawn triangle, 18 to 48 an entry
-/// of the queue (24 by default). Requires one of the tunings 64/8, 32/8,
-/// 64/16, 128/8, 128/16 (bin/tile, px). `small` is a piece whose box, cut to the view, has less
+/// Work O(triangles + queue entries + blocks); memory 96 bytes a drawn triangle, 24 an entry of
+/// the queue (72 where a bin has 256 tiles). Throws Error{invalid_argument} for sizes
+/// that it does not take. `small` is a piece whose box, cut to the view, has less
 /// than `large_px` pixels. Counters: "batches", "small", "large", "bins" (queue entries), "tile
 /// pairs" (covered tiles), and the load if 64 workers had shared the work, which is blocks of small
 /// pieces and covered tiles: "most loaded of 64 workers" and "work of 64 workers", all of them

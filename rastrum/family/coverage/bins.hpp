@@ -5,12 +5,15 @@
 // and box, in exact integers.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
 #include <rastrum/family/names.hpp>
+#include <rastrum/raster/bin/order.hpp>
 #include <rastrum/raster/bin/tile_grid.hpp>
 #include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/tuning.hpp>
 
 namespace rastrum::family {
 
@@ -19,42 +22,50 @@ struct BinPair {
   std::uint32_t piece, bin;
 };
 
-/// Sizes of bins and tiles: compiled in, as the host has them …
-template <int kBin, int kTile>
-struct FixedSizes {
-  [[nodiscard]] RASTRUM_HD static constexpr int bin_px() { return kBin; }
-  [[nodiscard]] RASTRUM_HD static constexpr int tile_px() { return kTile; }
+/// Sizes of bins and tiles, powers of two: what is divided by them is shifted. Those of paper 1.
+struct BinSizes {
+  int bin_log2 = 5, tile_log2 = 3;
+
+  [[nodiscard]] RASTRUM_HD int bin_px() const { return 1 << bin_log2; }
+  [[nodiscard]] RASTRUM_HD int tile_px() const { return 1 << tile_log2; }
+  /// Of a bin; as many down.
+  [[nodiscard]] RASTRUM_HD int tiles_across() const { return 1 << (bin_log2 - tile_log2); }
+  [[nodiscard]] RASTRUM_HD int tiles_per_bin() const { return tiles_across() * tiles_across(); }
+  /// Tile t of a bin, numbered row by row.
+  [[nodiscard]] RASTRUM_HD Cell tile_cell(int t) const {
+    return {t & (tiles_across() - 1), t >> (bin_log2 - tile_log2)};
+  }
 };
-/// … or known when it runs, so that a device compiles one kernel for all of them.
-struct RunTimeSizes {
-  int bin, tile;
-  [[nodiscard]] RASTRUM_HD int bin_px() const { return bin; }
-  [[nodiscard]] RASTRUM_HD int tile_px() const { return tile; }
-};
+
+/// Paper 2's.
+inline constexpr BinSizes kPaper2Sizes{6, 3};
+inline constexpr int kMaxBinPx = 128, kMaxTilesAcross = 16;
+
+/// What a tuning asks for whose sizes are known to be good, else `paper`.
+[[nodiscard]] inline BinSizes sizes_of(const Tuning& tuning, BinSizes paper) {
+  const auto log2_of = [](int px) { return std::countr_zero(static_cast<unsigned>(px)); };
+  if (tuning.bin_px != 0) paper.bin_log2 = log2_of(tuning.bin_px);
+  if (tuning.tile_px != 0) paper.tile_log2 = log2_of(tuning.tile_px);
+  return paper;
+}
 
 /// A view in bins with tiles, both numbered row by row.
-template <class Sizes>
-struct BasicTiles {
+struct Tiles {
   const Piece* pieces;
-  Sizes sizes;
+  BinSizes sizes;
   TileGrid bins, tiles;
 
-  BasicTiles(Sizes s, const Piece* p, Rect view, BlockOrder order)
+  Tiles(BinSizes s, const Piece* p, Rect view, BlockOrder order)
       : pieces(p), sizes(s), bins{view, s.bin_px(), order}, tiles{view, s.tile_px(), order} {}
-
-  [[nodiscard]] RASTRUM_HD int tiles_across() const { return sizes.bin_px() / sizes.tile_px(); }
-  [[nodiscard]] RASTRUM_HD std::size_t tiles_per_bin() const {
-    return static_cast<std::size_t>(tiles_across()) * static_cast<std::size_t>(tiles_across());
-  }
 
   /// The bins that the box of a piece touches, as columns and rows of the view's.
   [[nodiscard]] RASTRUM_HD Rect bins_of(std::uint32_t piece) const {
     const Rect view = bins.view;
     const Rect box = piece_bounds(pieces[piece], view);
     if (box.empty()) return {};
-    const int px = sizes.bin_px();
-    return {(box.x0 - view.x0) / px, (box.y0 - view.y0) / px, (box.x1 - 1 - view.x0) / px + 1,
-            (box.y1 - 1 - view.y0) / px + 1};
+    const int by = sizes.bin_log2;
+    return {(box.x0 - view.x0) >> by, (box.y0 - view.y0) >> by, ((box.x1 - 1 - view.x0) >> by) + 1,
+            ((box.y1 - 1 - view.y0) >> by) + 1};
   }
   [[nodiscard]] RASTRUM_HD std::size_t bin_count(std::uint32_t piece) const {
     const Rect r = bins_of(piece);
@@ -71,8 +82,9 @@ struct BasicTiles {
   /// Tile j of a bin in order, cut to the view; empty where it lies outside.
   [[nodiscard]] RASTRUM_HD Rect tile(std::uint32_t bin, std::size_t j) const {
     const Rect b = bins.rect(bin);
-    const int px = sizes.tile_px();
-    const Cell cell = cell_at(bins.order, j, tiles_across(), tiles_across());
+    const int px = sizes.tile_px(), across = sizes.tiles_across();
+    const Cell cell = bins.order == BlockOrder::row_major ? sizes.tile_cell(static_cast<int>(j))
+                                                          : cell_at(bins.order, j, across, across);
     const int x0 = b.x0 + cell.column * px, y0 = b.y0 + cell.row * px;
     return intersection(b, {x0, y0, x0 + px, y0 + px});
   }
@@ -85,36 +97,34 @@ struct BasicTiles {
   /// Number of a tile in the view.
   [[nodiscard]] RASTRUM_HD std::uint32_t tile_id(Rect tile) const {
     const Rect view = tiles.view;
-    const int px = sizes.tile_px();
-    return static_cast<std::uint32_t>((tile.y0 - view.y0) / px * tiles.columns() +
-                                      (tile.x0 - view.x0) / px);
+    const int by = sizes.tile_log2;
+    return static_cast<std::uint32_t>(((tile.y0 - view.y0) >> by) * tiles.columns() +
+                                      ((tile.x0 - view.x0) >> by));
   }
 };
 
 /// Bin expansion: how many there are …
-template <class Sizes>
 struct BinCount {
-  BasicTiles<Sizes> tiles;
+  Tiles tiles;
   RASTRUM_HD std::size_t operator()(std::uint32_t piece) const { return tiles.bin_count(piece); }
 };
 /// … and bin j.
-template <class Sizes>
 struct MakeBin {
-  BasicTiles<Sizes> tiles;
+  Tiles tiles;
   RASTRUM_HD BinPair operator()(std::uint32_t piece, std::size_t j) const {
     return tiles.bin(piece, j);
   }
 };
 /// Tile expansion, masked: how many a bin has …
-template <class Sizes>
 struct TileCount {
-  BasicTiles<Sizes> tiles;
-  RASTRUM_HD std::size_t operator()(const BinPair&) const { return tiles.tiles_per_bin(); }
+  Tiles tiles;
+  RASTRUM_HD std::size_t operator()(const BinPair&) const {
+    return static_cast<std::size_t>(tiles.sizes.tiles_per_bin());
+  }
 };
 /// … and which of them are tiles of the piece.
-template <class Sizes>
 struct TouchesTile {
-  BasicTiles<Sizes> tiles;
+  Tiles tiles;
   RASTRUM_HD bool operator()(const BinPair& pair, std::size_t j) const {
     return tiles.touches(pair, j);
   }

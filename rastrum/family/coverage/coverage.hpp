@@ -28,7 +28,7 @@ struct CoverageRow {
   bool expands = false;
   /// Bytes of scratch a triangle, beside what it is expanded to, for cutting a frame into batches.
   int triangle_bytes = 96;
-  /// Throws Error{invalid_argument} for a tuning that was not compiled, listing those that were.
+  /// Throws Error{invalid_argument} for a tuning that it does not take, saying which it does.
   std::unique_ptr<Coverage> (*make)(const Tuning&, MemoryAccount&) = nullptr;
 };
 

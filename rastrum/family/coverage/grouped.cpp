@@ -47,7 +47,7 @@ class Grouped final : public Coverage {
 std::unique_ptr<Coverage> make_grouped(const Tuning& tuning, MemoryAccount& memory) {
   if ((tuning.bin_px != 0 && tuning.bin_px != kBinSize) ||
       (tuning.tile_px != 0 && tuning.tile_px != kBlockSize))
-    throw Error(Errc::invalid_argument, "'grouped' is compiled for bins of 64 and tiles of 8 px");
+    throw Error(Errc::invalid_argument, "'grouped' has bins of 64 and tiles of 8 px");
   return std::make_unique<Grouped>(memory);
 }
 

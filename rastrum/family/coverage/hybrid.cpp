@@ -8,11 +8,11 @@
 namespace rastrum::family {
 namespace {
 
-template <int kBin, int kTile>
 class Hybrid final : public Coverage {
  public:
   Hybrid(const Tuning& tuning, MemoryAccount& memory)
       : draw_small_(tuning.small_path == SmallPath::rows ? draw_scanlines : draw_box_blocks),
+        sizes_(checked_sizes("hybrid", tuning, {}, kBlockSize / 2)),
         pieces_(memory) {}
 
   void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
@@ -22,19 +22,20 @@ class Hybrid final : public Coverage {
     frame.watch.lap(frame.stats, "setup");
     draw_small_(frame, pieces.data(), all.first(parted.first_count));
     frame.watch.lap(frame.stats, "small");
-    draw_sorted_tiles<kBin, kTile>(frame, pieces.data(), all.subspan(parted.first_count));
+    draw_sorted_tiles(frame, sizes_, pieces.data(), all.subspan(parted.first_count));
     frame.watch.lap(frame.stats, "large");
   }
 
  private:
   void (*draw_small_)(Frame&, const Piece*, std::span<const std::uint32_t>);
+  BinSizes sizes_;
   PieceArray pieces_;
 };
 
 }  // namespace
 
 std::unique_ptr<Coverage> make_hybrid(const Tuning& tuning, MemoryAccount& memory) {
-  return make_with_tiles<Hybrid>("hybrid", tuning, memory);
+  return std::make_unique<Hybrid>(tuning, memory);
 }
 
 }  // namespace rastrum::family

@@ -13,7 +13,7 @@ namespace rastrum::family {
 
 /// Work and memory: those of `pineda` for the small triangles (or of `scanline`), of `tiled` for
 /// the others. Counters: "small", "large", "bins", "tile pairs" (and "rows", "runs"). Throws
-/// Error{invalid_argument} for sizes that are not compiled.
+/// Error{invalid_argument} for sizes that it does not take.
 [[nodiscard]] std::unique_ptr<Coverage> make_hybrid(const Tuning& tuning, MemoryAccount& memory);
 
 }  // namespace rastrum::family

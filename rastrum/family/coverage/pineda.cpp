@@ -7,10 +7,10 @@
 namespace rastrum::family {
 namespace {
 
-template <int kBin, int kTile>
 class Pineda final : public Coverage {
  public:
-  Pineda(const Tuning&, MemoryAccount& memory) : pieces_(memory) {}
+  Pineda(const Tuning& tuning, MemoryAccount& memory)
+      : sizes_(checked_sizes("pineda", tuning, {}, kBlockSize / 2)), pieces_(memory) {}
 
   void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
     const std::span<const Piece> pieces = pieces_.fill(frame, first, last);
@@ -24,24 +24,26 @@ class Pineda final : public Coverage {
   }
 
  private:
-  static void draw_tiles_of(Frame& frame, const Piece* pieces,
-                            std::span<const std::uint32_t> which) {
-    const Tiles<kBin, kTile> tiles(frame, pieces);
-    tiles.expand(frame, which, kResultsPerChunk, 0, [&](const auto& bins, const auto& expansion) {
-      draw_expanded(frame, pieces, expansion, bins,
-                    [&](const BinPair& pair, std::size_t j, Emitter& emitter) {
-                      add_tile<kTile>(frame, pieces, pair.piece, tiles.tile(pair.bin, j), emitter);
-                    });
-    });
+  void draw_tiles_of(Frame& frame, const Piece* pieces,
+                     std::span<const std::uint32_t> which) const {
+    const Tiles tiles(sizes_, pieces, frame.view, frame.tuning.order);
+    expand_tiles(
+        frame, tiles, which, kResultsPerChunk, 0, [&](const auto& bins, const auto& expansion) {
+          draw_expanded(frame, pieces, expansion, bins,
+                        [&](const BinPair& pair, std::size_t j, Emitter& emitter) {
+                          add_tile(frame, tiles, pair.piece, tiles.tile(pair.bin, j), emitter);
+                        });
+        });
   }
 
+  BinSizes sizes_;
   PieceArray pieces_;
 };
 
 }  // namespace
 
 std::unique_ptr<Coverage> make_pineda(const Tuning& tuning, MemoryAccount& memory) {
-  return make_with_tiles<Pineda>("pineda", tuning, memory);
+  return std::make_unique<Pineda>(tuning, memory);
 }
 
 }  // namespace rastrum::family

@@ -12,7 +12,6 @@
 
 #include <rastrum/family/coverage/bins.hpp>
 #include <rastrum/family/names.hpp>
-#include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 
@@ -38,19 +37,19 @@ RASTRUM_HD inline bool covers_any(const Piece& piece, Rect r) {
 
 /// Pixels of tile t of a bin whose tiles are numbered row by row, also those beyond the bin's
 /// rectangle where the view cuts it.
-template <class Sizes>
-[[nodiscard]] RASTRUM_HD Rect tile_of_bin(Sizes sizes, Rect bin, int t) {
-  const int px = sizes.tile_px(), across = sizes.bin_px() / px;
-  const int x0 = bin.x0 + t % across * px, y0 = bin.y0 + t / across * px;
+[[nodiscard]] RASTRUM_HD inline Rect tile_of_bin(BinSizes sizes, Rect bin, int t) {
+  const int px = sizes.tile_px();
+  const Cell cell = sizes.tile_cell(t);
+  const int x0 = bin.x0 + cell.column * px, y0 = bin.y0 + cell.row * px;
   return {x0, y0, x0 + px, y0 + px};
 }
 
 /// Calls add(t) for the tiles with samples inside of `bin` that `piece` covers, ascending.
-template <class Sizes, class Add>
-RASTRUM_HD void cover_tiles(Sizes sizes, const Piece& piece, Rect bin, Add&& add) {
+template <class Add>
+RASTRUM_HD void cover_tiles(BinSizes sizes, const Piece& piece, Rect bin, Add&& add) {
   const Rect box = piece_bounds(piece, bin);
   if (box.empty()) return;
-  const int px = sizes.tile_px(), across = sizes.bin_px() / px;
+  const int px = sizes.tile_px(), by = sizes.tile_log2, across = sizes.tiles_across();
   // A tile's sample that is farthest inside an edge and the one farthest outside, for tile (0, 0).
   const Edges edges = edges_of(piece);
   std::int64_t inmost[4], outmost[4], along_x[4], along_y[4];
@@ -63,9 +62,9 @@ RASTRUM_HD void cover_tiles(Sizes sizes, const Piece& piece, Rect bin, Add&& add
     along_x[i] = a * px;
     along_y[i] = b * px;
   }
-  const int first_row = (box.y0 - bin.y0) / px, last_row = (box.y1 - 1 - bin.y0) / px;
+  const int first_row = (box.y0 - bin.y0) >> by, last_row = (box.y1 - 1 - bin.y0) >> by;
   for (int row = first_row; row <= last_row; ++row) {
-    Span touched{(box.x0 - bin.x0) / px, (box.x1 - 1 - bin.x0) / px + 1};
+    Span touched{(box.x0 - bin.x0) >> by, ((box.x1 - 1 - bin.x0) >> by) + 1};
     Span held[4];  // tiles whose samples are all inside the edge
     for (int i = 0; i < edges.count; ++i) {
       const Span touches = half_line(inmost[i] + along_y[i] * row, along_x[i], across);
@@ -84,23 +83,5 @@ RASTRUM_HD void cover_tiles(Sizes sizes, const Piece& piece, Rect bin, Add&& add
     }
   }
 }
-
-/// A bin of kBin² px has rows of kBin / kTile tiles; tile t is bit t, row by row.
-template <int kBin, int kTile>
-struct TilesOfBin {
-  static_assert(kBin % kTile == 0 && kTile % kBlockSize == 0);
-  static constexpr int kRow = kBin / kTile;
-  using Sizes = FixedSizes<kBin, kTile>;
-  using Mask = parallel::Mask<kRow * kRow>;
-
-  static Rect tile(Rect bin, int t) { return tile_of_bin(Sizes{}, bin, t); }
-
-  /// The tiles with samples inside of `bin` that `piece` covers.
-  static Mask covered(const Piece& piece, Rect bin) {
-    Mask mask;
-    cover_tiles(Sizes{}, piece, bin, [&](int t) { mask.set(t); });
-    return mask;
-  }
-};
 
 }  // namespace rastrum::family

@@ -7,27 +7,28 @@
 namespace rastrum::family {
 namespace {
 
-template <int kBin, int kTile>
 class Tiled final : public Coverage {
  public:
-  Tiled(const Tuning&, MemoryAccount& memory) : pieces_(memory) {}
+  Tiled(const Tuning& tuning, MemoryAccount& memory)
+      : sizes_(checked_sizes("tiled", tuning, {}, kBlockSize / 2)), pieces_(memory) {}
 
   void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
     const std::span<const Piece> pieces = pieces_.fill(frame, first, last);
     const auto which = pieces_in_view(frame, pieces);
     frame.watch.lap(frame.stats, "setup");
-    draw_sorted_tiles<kBin, kTile>(frame, pieces.data(), which);
+    draw_sorted_tiles(frame, sizes_, pieces.data(), which);
     frame.watch.lap(frame.stats, frame.has_surface() ? "draw" : "draw and shade");
   }
 
  private:
+  BinSizes sizes_;
   PieceArray pieces_;
 };
 
 }  // namespace
 
 std::unique_ptr<Coverage> make_tiled(const Tuning& tuning, MemoryAccount& memory) {
-  return make_with_tiles<Tiled>("tiled", tuning, memory);
+  return std::make_unique<Tiled>(tuning, memory);
 }
 
 }  // namespace rastrum::family

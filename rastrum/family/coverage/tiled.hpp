@@ -14,7 +14,7 @@ namespace rastrum::family {
 
 /// Work O(pieces + bins · tiles a bin + pairs · digits + blocks), span that of the sort plus the
 /// longest tile. Memory beside the pieces: 16 bytes and a mask a bin, 20 a pair; none a pixel.
-/// Counters: "bins", "tile pairs". Throws Error{invalid_argument} for sizes that are not compiled.
+/// Counters: "bins", "tile pairs". Throws Error{invalid_argument} for sizes that it does not take.
 [[nodiscard]] std::unique_ptr<Coverage> make_tiled(const Tuning& tuning, MemoryAccount& memory);
 
 }  // namespace rastrum::family

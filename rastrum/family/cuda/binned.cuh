@@ -26,7 +26,7 @@ struct QueueEntry {
 };
 
 struct MakeEntry {
-  DeviceTiles tiles;
+  Tiles tiles;
   RASTRUM_HD QueueEntry operator()(std::uint32_t piece, std::size_t j) const {
     QueueEntry entry{tiles.bin(piece, j), {}};
     cover_tiles(tiles.sizes, tiles.pieces[piece], tiles.bins.rect(entry.pair.bin),
@@ -43,7 +43,7 @@ struct EntryBlockCount {
 };
 /// … and block k of them.
 struct MakeEntryBlock {
-  DeviceTiles tiles;
+  Tiles tiles;
   std::size_t parts;
   RASTRUM_HD Block operator()(const QueueEntry& entry, std::size_t k) const {
     const Rect bin = tiles.bins.rect(entry.pair.bin);
@@ -65,11 +65,11 @@ void draw_binned(FamilyFrame<Exec>& frame, std::span<const Piece> pieces) {
   const std::span<const std::uint32_t> all = parallel::view_of(parted.elements);
   draw_box_blocks(frame, pieces, all.first(parted.first_count));
 
-  const DeviceTiles tiles = tiles_of_frame(frame, pieces, 64, 8);
+  const Tiles tiles = tiles_of_frame(frame, pieces, kPaper2Sizes);
   const std::size_t parts = blocks_per_tile(tiles.sizes);
   std::uint64_t blocks_drawn = 0;
   const std::uint64_t bins = expand_in_turns(
-      frame.exec, all.subspan(parted.first_count), BinCount<RunTimeSizes>{tiles}, MakeEntry{tiles},
+      frame.exec, all.subspan(parted.first_count), BinCount{tiles}, MakeEntry{tiles},
       frame.most(kEntryBytes), [&](std::span<const QueueEntry> queue) {
         blocks_drawn +=
             expand_in_turns(frame.exec, queue, EntryBlockCount{parts}, MakeEntryBlock{tiles, parts},

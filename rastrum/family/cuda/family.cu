@@ -128,6 +128,6 @@ std::unique_ptr<CudaRasterizer> make_rasterizer(std::string_view coverage,
 
 }  // namespace
 
-const CudaRows kCudaRows{make_rasterizer};
+const CudaRows kCudaRows{make_rasterizer, make_cuda_terrain_renderer};
 
 }  // namespace rastrum::family

@@ -10,7 +10,7 @@
 namespace rastrum::family {
 
 struct BlockOfBinTile {
-  DeviceTiles tiles;
+  Tiles tiles;
   RASTRUM_HD Block operator()(const BinPair& pair, std::size_t j, std::size_t part) const {
     return block_of_tile(tiles, pair.piece, tiles.tile(pair.bin, j), part);
   }
@@ -23,7 +23,7 @@ void draw_pineda(FamilyFrame<Exec>& frame, std::span<const Piece> pieces) {
   const auto parted = small_pieces_first(frame, pieces);
   const std::span<const std::uint32_t> all = parallel::view_of(parted.elements);
   draw_box_blocks(frame, pieces, all.first(parted.first_count));
-  const DeviceTiles tiles = tiles_of_frame(frame, pieces);
+  const Tiles tiles = tiles_of_frame(frame, pieces);
   const std::size_t parts = blocks_per_tile(tiles.sizes);
   each_turn_of_bins(frame, tiles, all.subspan(parted.first_count), 0,
                     [&](std::span<const BinPair> bins, const auto& masked) {

@@ -1,4 +1,5 @@
-// A device's rasterizer that draws by a row of the papers' table.
+// What the family has on a device: rasterizers that draw by a row of the papers' table, and the
+// terrain's `words`.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/render/cuda/rasterizer.hpp>
+#include <rastrum/terrain/cuda/device.hpp>
 
 namespace rastrum::family {
 
@@ -18,8 +20,11 @@ struct CudaRows {
                                                      std::uint64_t memory_limit,
                                                      MemoryAccount& memory,
                                                      parallel::Threads& threads);
+  std::unique_ptr<terrain::DeviceRenderer> (*make_terrain_renderer)();
 };
 extern const CudaRows kCudaRows;  ///< in that library
+/// Alike, in words.cu.
+[[nodiscard]] std::unique_ptr<terrain::DeviceRenderer> make_cuda_terrain_renderer();
 
 /// rastrum::make_cuda_rasterizer by `coverage` and `visibility`, names of rows, which are the
 /// host's but for `grouped`. Throws Error{invalid_argument} where a device has no such row,

@@ -20,7 +20,7 @@ template <class Plan>
 struct WriteTilePair {
   Plan plan;
   std::span<const BinPair> bins;
-  DeviceTiles tiles;
+  Tiles tiles;
   std::uint32_t* tile;
   std::uint32_t* piece;
   RASTRUM_HD void operator()(std::size_t k) const {
@@ -32,7 +32,7 @@ struct WriteTilePair {
 };
 /// Block k % parts of pair k / parts.
 struct BlockOfPair {
-  DeviceTiles tiles;
+  Tiles tiles;
   std::span<const std::uint32_t> tile, piece;
   std::size_t parts;
   RASTRUM_HD Block operator()(std::size_t k) const {
@@ -48,7 +48,7 @@ void draw_sorted_tiles(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
   using parallel::view_of;
   // Its tile and its piece, twice while they are sorted, and a share of what sorts.
   constexpr std::uint64_t kPairBytes = 20;
-  const DeviceTiles tiles = tiles_of_frame(frame, pieces);
+  const Tiles tiles = tiles_of_frame(frame, pieces);
   const std::size_t parts = blocks_per_tile(tiles.sizes);
   each_turn_of_bins(
       frame, tiles, which, kPairBytes, [&](std::span<const BinPair> bins, const auto& masked) {

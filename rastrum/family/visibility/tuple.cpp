@@ -39,11 +39,9 @@ class TupleRegion final : public Region {
 
   void begin(const RegionContext& context, const SurfaceView& surface, Rect rect,
              std::size_t chunks) override {
-    const Targets& targets = context.request->targets;
     context_ = context;
     surface_ = surface;
-    shading_ =
-        targets.color8.empty() && targets.color.empty() ? Shading() : context.request->shading;
+    shading_ = context.request->wants_colors() ? context.request->shading : Shading();
     chunks_ = chunks;
     done_ = false;
     ++use_;

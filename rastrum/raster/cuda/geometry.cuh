@@ -65,6 +65,10 @@ struct DeviceGeometry {
     const std::size_t d = number_of(draw);
     return vertices[d].clip_position(matrices[d], index);
   }
+  /// Clip planes are the host's.
+  [[nodiscard]] RASTRUM_HD std::uint32_t flags_of(const Draw& draw, std::uint64_t primitive) const {
+    return draw.flags_of(primitive);
+  }
   [[nodiscard]] RASTRUM_HD const Draw& draw_of(std::uint64_t id) const {
     return draw_with(draws, id);
   }

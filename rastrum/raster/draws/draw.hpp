@@ -7,15 +7,20 @@
 
 #include <rastrum/config.hpp>
 #include <rastrum/primitives.hpp>
+#include <rastrum/raster/draws/quadrics.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/raster/shade/shading.hpp>
 
 namespace rastrum::raster {
 
+struct DrawCut;
+
 /// Primitives over one vertex stage. Their flags are those of its pieces.
 struct Draw : Primitives {
-  VertexStage source;  ///< must be set
+  VertexStage source;  ///< must be set, or `quadrics`
+  /// The primitives are these; they have no vertices, and the topology says nothing.
+  const QuadricStage* quadrics = nullptr;
   /// Flags by material, so that a mesh of several needs no draw for each: triangle t has those of
   /// material_flags[face_materials[t]] too. Both or none.
   std::span<const std::uint32_t> face_materials{}, material_flags{};
@@ -23,6 +28,7 @@ struct Draw : Primitives {
   /// RendererAccess::draw is given.
   Shading shading;
   Testing test;
+  const DrawCut* cut = nullptr;  ///< its clip planes (cut.hpp), which must outlive the frame
 
   // Filled by the pipeline.
   std::uint64_t first_id = 0;
@@ -53,7 +59,8 @@ struct Draw : Primitives {
   }
   /// Whether the setup kernel may make its pieces; otherwise assemble_primitive does.
   [[nodiscard]] bool has_kernel() const {
-    return topology == Topology::triangles && depth_bias == 0 && depth_bias_slope == 0;
+    return quadrics == nullptr && topology == Topology::triangles && depth_bias == 0 &&
+           depth_bias_slope == 0;
   }
 };
 

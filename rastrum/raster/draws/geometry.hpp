@@ -31,8 +31,17 @@ struct FrameGeometry {
     return draw.source.clip_position(index);
   }
 
+  /// Draw::flags_of, with what clip planes make of the primitive: kCut or kCutAway.
+  [[nodiscard]] std::uint32_t flags_of(const Draw& draw, std::uint64_t primitive) const noexcept {
+    return draw.cut == nullptr ? draw.flags_of(primitive)
+                               : draw.flags_of(primitive) | cut_flags(draw, primitive);
+  }
+
   /// The draw that holds primitive `id`. O(log draws).
   [[nodiscard]] const Draw& draw_of(std::uint64_t id) const { return draw_with(draws, id); }
+
+ private:
+  [[nodiscard]] static std::uint32_t cut_flags(const Draw& draw, std::uint64_t primitive) noexcept;
 };
 
 }  // namespace rastrum::raster

@@ -16,9 +16,6 @@
 
 namespace rastrum::raster {
 
-/// Blocks that are handed on at once.
-inline constexpr std::size_t kBlockCapacity = 512;
-
 /// `Bin` is made from a MemoryAccount& and has begin(context, surface, rect), blocks(pieces,
 /// blocks), fragments(f), bounds(), find_bounds(), finish() and collect(counters) as BinKeys has
 /// them; kColors: it fills the surface's colours.

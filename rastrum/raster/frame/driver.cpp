@@ -7,6 +7,7 @@
 #include <rastrum/error.hpp>
 #include <rastrum/raster/bin/tile_grid.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
+#include <rastrum/raster/setup/quadric.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -28,6 +29,10 @@ constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
                                        .append(std::to_string(limit))
                                        .append(" bytes ")
                                        .append(why));
+}
+
+bool has_quadrics(const FrameRequest& request) {
+  return std::ranges::any_of(request.draws, [](const Draw& d) { return d.quadrics != nullptr; });
 }
 
 }  // namespace
@@ -114,8 +119,9 @@ FrameDriver::Plan FrameDriver::plan(const FrameRequest& request, const Totals& t
   // What triangles are expanded to is known in the middle of a draw only, and what does not fit
   // then is drawn in turns, onto a surface.
   p.expansion_bytes = needs_.expands ? share / 2 : 0;
-  p.batch = std::min(
-      p.batch, (share - p.expansion_bytes) / static_cast<std::uint64_t>(needs_.triangle_bytes));
+  std::uint64_t bytes = static_cast<std::uint64_t>(needs_.triangle_bytes);
+  if (has_quadrics(request)) bytes += sizeof(Quadric) + sizeof(Piece);
+  p.batch = std::min(p.batch, (share - p.expansion_bytes) / bytes);
   p.surface = p.surface || needs_.expands || p.batch < triangles;
   if (p.surface)
     p.band_rows = static_cast<int>(
@@ -202,6 +208,11 @@ FrameStats FrameDriver::draw(FrameRequest& request) {
   stats.rasterizer = needs_.rasterizer;
   stats.visibility = needs_.visibility;
   stats.isa = choose_isa(request.isa);
+  if (!needs_.quadrics && has_quadrics(request))
+    throw Error(Errc::unsupported, std::string("'")
+                                       .append(needs_.rasterizer)
+                                       .append("' draws triangles, points and lines; spheres, "
+                                               "cylinders, tubes and discs are the renderer's"));
   const Totals totals = begin_frame(request);
   const Plan cut = plan(request, totals);
   Frame frame{
@@ -223,9 +234,10 @@ FrameStats FrameDriver::draw(FrameRequest& request) {
   frame.expansion_bytes = cut.expansion_bytes;
   frame.view_bytes = cut.view_bytes;
   try {
-    for (int y = 0; y < request.height; y += cut.band_rows) {
-      frame.view = {0, y, request.width, std::min(y + cut.band_rows, request.height)};
-      frame.first_band = y == 0;
+    const Rect all = request.part.value_or(Rect{0, 0, request.width, request.height});
+    for (int y = all.y0; y < all.y1; y += cut.band_rows) {
+      frame.view = {all.x0, y, all.x1, std::min(y + cut.band_rows, all.y1)};
+      frame.first_band = y == all.y0;
       draw_band(frame, cut, totals.primitives);
     }
   } catch (...) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -16,6 +17,9 @@
 #include <rastrum/raster/resolve/surface.hpp>
 
 namespace rastrum::raster {
+
+/// Blocks that are collected before they are handed on.
+inline constexpr std::size_t kBlockCapacity = 512;
 
 /// What a thread keeps of the shader, from frame to frame.
 struct ShaderOfThread {

@@ -2,6 +2,7 @@
 
 #include <bit>
 
+#include <rastrum/raster/draws/cut.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
 
 namespace rastrum::raster {
@@ -18,6 +19,8 @@ std::uint64_t FrameRequest::kept(const FrameGeometry& frame, const Piece& piece,
       // What has depth 0 is drawn where nothing is.
       if (behind > 0 && !(depth_at(piece, x, y) > behind)) nearer.mask ^= std::uint64_t{1} << i;
     }
+  if ((piece.flags & kCut) != 0)
+    nearer.mask = in_front(frame, id_of_key(piece.low), nearer, points);
   if ((piece.flags & kTested) == 0 || nearer.mask == 0) return nearer.mask;
   return test.test(frame, piece, nearer, points);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -13,6 +14,8 @@
 
 namespace rastrum::raster {
 
+struct SurfaceScene;
+
 /// One frame, as the façade hands it to a rasterizer.
 struct FrameRequest {
   int width = 0, height = 0;
@@ -23,6 +26,13 @@ struct FrameRequest {
   Shading shading;                      ///< may be none where no colour is asked for
   Vec4 background{};                    ///< display values, straight alpha
   Targets targets;
+  /// Some target is of the surface at a pixel (resolve/surface_point.hpp), and what those of a
+  /// scene are read from.
+  bool wants_surface = false;
+  const SurfaceScene* surface = nullptr;
+  /// Of the image, cut at bins, what is drawn, and what `targets` hold (depth, ids and keys alone);
+  /// none: all of it.
+  std::optional<Rect> part;
   Tuning tuning;
   bool in_place = false;             ///< arrays and targets are memory of the device that draws
   std::uint64_t texture_bytes = 0;   ///< that a memory limit counts beside the frame's own
@@ -31,10 +41,14 @@ struct FrameRequest {
   /// The shader returns linear light: it is blended as such, also over the background, and the sRGB
   /// transfer is applied to the result.
   bool linear_light = false;
+  bool cuts = false;  ///< some draw has clip planes
 
-  /// Whether some piece may be tested: by `test` (kTested), or against the picture that the targets
-  /// hold (kOverPicture).
-  [[nodiscard]] bool has_tests() const { return test || targets.over; }
+  [[nodiscard]] bool wants_colors() const {
+    return !targets.color8.empty() || !targets.color.empty() || !targets.linear.empty();
+  }
+  /// Whether some piece may be tested: by `test` (kTested), against the picture that the targets
+  /// hold (kOverPicture), or against clip planes (kCut).
+  [[nodiscard]] bool has_tests() const { return test || targets.over || cuts; }
   /// The samples of `block.mask` that the tests of the piece keep; `points` as FragmentTest's. What
   /// is drawn over a picture reads a pixel of Targets::depth before it is written.
   [[nodiscard]] std::uint64_t kept(const FrameGeometry& frame, const Piece& piece,

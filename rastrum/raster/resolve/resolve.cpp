@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <unordered_map>
 
@@ -11,6 +12,7 @@
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
+#include <rastrum/raster/resolve/surface_point.hpp>
 #include <rastrum/raster/shade/srgb.hpp>
 
 namespace rastrum::raster {
@@ -46,24 +48,28 @@ Vec4 straight(Rgba8 c) {
 void store_colors(const FrameRequest& request, const BlockColors& colors, std::uint64_t covered,
                   std::uint64_t touched, const Backdrop& backdrop, const Window& w,
                   bool wants_8_bit) {
+  const Targets& targets = request.targets;
   const Vec4 background = premultiplied_from_straight(request.background);
-  const bool over = request.targets.over;
   const auto behind = [&](const auto& target, int x, int y) {
-    return over && !target.empty() ? backdrop_of(straight(target(x, y)), request.linear_light)
-                                   : backdrop;
+    return targets.over && !target.empty()
+               ? backdrop_of(straight(target(x, y)), request.linear_light)
+               : backdrop;
   };
   for (std::uint64_t m = touched; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const int x = w.x0 + i % kBlockSize, y = w.y0 + i / kBlockSize;
-    Vec4 color = background;
+    Vec4 color = background, linear = backdrop.color;
     Rgba8 color8 = backdrop.empty;
     if ((covered >> i & 1) != 0) {
       const Vec4 front{colors.r[i], colors.g[i], colors.b[i], colors.a[i]};
-      color = behind(request.targets.color, x, y).color_over(front);
-      if (wants_8_bit) color8 = behind(request.targets.color8, x, y).color8_over(front);
+      color = behind(targets.color, x, y).color_over(front);
+      if (wants_8_bit) color8 = behind(targets.color8, x, y).color8_over(front);
+      if (targets.over && !targets.linear.empty()) linear = targets.linear(x, y);
+      linear = front + linear * (1 - front.w);
     }
-    if (wants_8_bit) request.targets.color8(x, y) = color8;
-    if (!request.targets.color.empty()) request.targets.color(x, y) = color;
+    if (wants_8_bit) targets.color8(x, y) = color8;
+    if (!targets.color.empty()) targets.color(x, y) = color;
+    if (!targets.linear.empty()) targets.linear(x, y) = linear;
   }
 }
 
@@ -90,7 +96,7 @@ void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
   if (stores_block && opaque && !request.linear_light) {
     kernel.store_opaque(*colors, block.covered, backdrop.empty, &targets.color8(w.x0, w.y0),
                         targets.color8.stride);
-    if (targets.color.empty()) return;
+    if (targets.color.empty() && targets.linear.empty()) return;
     wants_8_bit = false;
   }
   if (opaque) std::fill_n(own.a, 64, 1.0F);
@@ -99,7 +105,7 @@ void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
                          targets.color8.stride);
     wants_8_bit = false;
   }
-  if (wants_8_bit || !targets.color.empty())
+  if (wants_8_bit || !targets.color.empty() || !targets.linear.empty())
     store_colors(request, *colors, block.covered, touched, backdrop, w, wants_8_bit);
 }
 
@@ -119,17 +125,65 @@ void shade_extra(const FrameRequest& request, const FrameGeometry& frame, Visibl
     }
 }
 
-void store_keys(const Targets& targets, const std::uint64_t* keys, std::uint64_t touched,
+void store_keys(const FrameRequest& request, const std::uint64_t* keys, std::uint64_t touched,
                 const Window& w) {
+  const Targets& targets = request.targets;
+  const Rect part = request.part.value_or(Rect{});
   for (std::uint64_t m = touched; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    const int x = w.x0 + i % kBlockSize, y = w.y0 + i / kBlockSize;
+    const int x = w.x0 - part.x0 + i % kBlockSize, y = w.y0 - part.y0 + i / kBlockSize;
     const std::uint64_t key = keys[i];
     if (!targets.depth.empty())
       targets.depth(x, y) = std::bit_cast<float>(static_cast<std::uint32_t>(key >> kIdBits));
     if (!targets.ids.empty())
       targets.ids(x, y) = key == 0 ? -1 : static_cast<std::int64_t>(id_of_key(key));
     if (!targets.keys.empty()) targets.keys(x, y) = key;
+  }
+}
+
+constexpr float kNowhere = std::numeric_limits<float>::infinity();
+
+/// `f`: null where nothing is.
+void store_surface(const FrameRequest& request, const FrameGeometry& frame, const Fragment* f,
+                   int x, int y) {
+  const Targets& t = request.targets;
+  const SurfaceScene* const scene = request.surface;
+  const auto store = [&](const auto& target, auto nothing, const auto& value) {
+    if (!target.empty()) target(x, y) = f == nullptr ? nothing : value();
+  };
+  store(t.instances, std::int64_t{-1}, [&] {
+    return scene == nullptr ? static_cast<std::int64_t>(f->draw) : scene->instance_id(f->draw);
+  });
+  store(t.primitives, std::int64_t{-1}, [&] { return static_cast<std::int64_t>(f->triangle); });
+  store(t.barycentrics, Vec2{}, [&] {
+    return Vec2{static_cast<float>(f->weights.b[1]), static_cast<float>(f->weights.b[2])};
+  });
+  store(t.positions, Vec3{}, [&] { return Vec3(scene->position(*f)); });
+  if (!t.normals.empty() || !t.camera_normals.empty()) {
+    const Vec3d normal = f == nullptr ? Vec3d{} : scene->normal(*f);
+    store(t.normals, Vec3{}, [&] { return Vec3(normal); });
+    store(t.camera_normals, Vec3{}, [&] { return Vec3(scene->in_camera(normal)); });
+  }
+  if (!t.view_depth.empty() || !t.distance.empty()) {
+    const double z = f == nullptr ? 0 : view_distance(scene->camera, f->depth);
+    store(t.view_depth, kNowhere, [&] { return static_cast<float>(z); });
+    store(t.distance, kNowhere, [&] { return static_cast<float>(z * scene->ray_length(x, y)); });
+  }
+  store(t.albedo, Vec4{}, [&] { return scene->albedo(frame, *f); });
+}
+
+void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
+                    const VisibleBlock& block, std::uint64_t touched) {
+  FragmentLocator locator(frame);
+  for (std::uint64_t m = touched; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    const Fragment* found = nullptr;
+    if ((block.covered >> i & 1) != 0) {
+      Fragment& f = locator.locate(id_of_key(block.keys[i]), block.x0, block.y0, i, nullptr);
+      f.depth = std::bit_cast<float>(static_cast<std::uint32_t>(block.keys[i] >> kIdBits));
+      found = &f;
+    }
+    store_surface(request, frame, found, block.x0 + i % kBlockSize, block.y0 + i / kBlockSize);
   }
 }
 
@@ -159,6 +213,7 @@ void check_draw(const Draw& draw, std::string_view noun, std::size_t number) {
   check_enum(draw.topology, Topology::triangles, name + ": its topology");
   check_enum(draw.cull, Cull::front, name + ": its cull");
   check_enum(draw.winding, Winding::either, name + ": its winding");
+  if (draw.quadrics != nullptr) return;
   require(bool{draw.source}, "its source is null; set it to what projects its vertices");
   const bool indexed = !draw.indices.empty();
   const std::size_t corners = indexed ? draw.indices.size() : draw.vertex_count;
@@ -209,10 +264,11 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const
     shade_extra(request, frame, block, touched, window, colors);
     if (shaded == nullptr) shaded = &colors;
   }
-  if (!targets.color8.empty() || !targets.color.empty())
+  if (request.wants_colors())
     resolve_colors(request, frame, block, touched, shaded, backdrop, window);
   if (!targets.depth.empty() || !targets.ids.empty() || !targets.keys.empty())
-    store_keys(targets, keys, touched, window);
+    store_keys(request, keys, touched, window);
+  if (request.wants_surface) store_surfaces(request, frame, block, touched);
   return parallel::popcount(covered);
 }
 
@@ -234,16 +290,29 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
   if (targets.load || targets.over) return;
   const Vec4 background = premultiplied_from_straight(request.background);
   const Rgba8 background8 = to_straight_rgba8(background);
+  const Vec4 linear = targets.linear.empty() ? Vec4{} : backdrop_of(request).color;
+  const Rect part = request.part.value_or(Rect{});
   const auto fill = [&](const auto& target, int y, auto value) {
-    if (!target.empty()) std::fill_n(target.row(y) + rect.x0, rect.x1 - rect.x0, value);
+    if (!target.empty()) std::fill_n(target.row(y) + (rect.x0 - part.x0), rect.x1 - rect.x0, value);
   };
-  for (int y = rect.y0; y < rect.y1; ++y) {
+  for (int y = rect.y0 - part.y0; y < rect.y1 - part.y0; ++y) {
     for (const ImageView<Vec4>& extra : targets.extra) fill(extra, y, Vec4{});
     fill(targets.color8, y, background8);
     fill(targets.color, y, background);
     fill(targets.depth, y, 0.0F);
     fill(targets.ids, y, std::int64_t{-1});
     fill(targets.keys, y, std::uint64_t{0});
+    fill(targets.linear, y, linear);
+    if (!request.wants_surface) continue;
+    fill(targets.instances, y, std::int64_t{-1});
+    fill(targets.primitives, y, std::int64_t{-1});
+    fill(targets.barycentrics, y, Vec2{});
+    fill(targets.positions, y, Vec3{});
+    fill(targets.normals, y, Vec3{});
+    fill(targets.camera_normals, y, Vec3{});
+    fill(targets.view_depth, y, kNowhere);
+    fill(targets.distance, y, kNowhere);
+    fill(targets.albedo, y, Vec4{});
   }
 }
 

@@ -53,8 +53,9 @@ class TriangleSet {
 SetupOutput all_slow(const Draw& draw, std::uint64_t first, std::uint32_t count,
                      std::uint32_t* slow) {
   SetupOutput out;
+  const int corners = draw.quadrics != nullptr ? 0 : static_cast<int>(draw.topology);
   for (std::uint32_t i = 0; i < count; ++i) {
-    for (int corner = 0; corner < static_cast<int>(draw.topology); ++corner)
+    for (int corner = 0; corner < corners; ++corner)
       out.index_in_range &= draw.vertex(first + i, corner) < draw.vertex_count;
     slow[out.slow++] = i;
   }
@@ -62,14 +63,46 @@ SetupOutput all_slow(const Draw& draw, std::uint64_t first, std::uint32_t count,
 }
 
 /// How many of the `count` primitives from `first` on have the flags of the first.
-std::uint32_t equal_flags(const Draw& draw, std::uint64_t first, std::uint32_t count) {
-  if (draw.material_flags.empty()) return count;
+std::uint32_t equal_flags(const FrameGeometry& frame, const Draw& draw, std::uint64_t first,
+                          std::uint32_t count) {
+  if (draw.material_flags.empty() && draw.cut == nullptr) return count;
+  const std::uint32_t flags = frame.flags_of(draw, first);
   std::uint32_t n = 1;
-  while (n < count && draw.flags_of(first + n) == draw.flags_of(first)) ++n;
+  while (n < count && frame.flags_of(draw, first + n) == flags) ++n;
   return n;
 }
 
+bool has_indices_in_range(const Draw& draw, std::uint64_t first, std::uint32_t count) {
+  for (std::uint64_t p = first; p < first + count; ++p)
+    for (int corner = 0; corner < static_cast<int>(draw.topology); ++corner)
+      if (draw.vertex(p, corner) >= draw.vertex_count) return false;
+  return true;
+}
+
 }  // namespace
+
+void Pieces::add(const Piece& piece) {
+  data.grow(std::size_t{count} + 1, count);
+  Piece& own = data[count++];
+  own = piece;
+  if (!is_quadric(piece)) return;
+  // The two sides of a primitive share theirs.
+  const Piece* const last = count > 1 ? &own - 1 : nullptr;
+  const bool is_second = last != nullptr && is_quadric(*last) && last->low == piece.low &&
+                         (last->flags ^ piece.flags) == kFacesAway;
+  set_quadric(own, is_second ? &quadric_of(*last) : quadrics.add(quadric_of(piece)));
+}
+
+std::size_t Pieces::quadric_bytes() const {
+  std::size_t bytes = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!is_quadric(data[i])) continue;
+    const bool is_second =
+        i > 0 && is_quadric(data[i - 1]) && &quadric_of(data[i - 1]) == &quadric_of(data[i]);
+    if (!is_second) bytes += quadric_of(data[i]).bytes();
+  }
+  return bytes;
+}
 
 bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces& pieces,
             MicroSink* micro) {
@@ -85,10 +118,17 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
   for (std::uint64_t id = first; id < last;) {
     const Draw& draw = geometry.draw_of(id);
     const std::uint64_t t = id - draw.first_id;
-    const std::uint32_t count = equal_flags(
-        draw, t,
-        static_cast<std::uint32_t>(
-            std::min({std::uint64_t{kSetupBatch}, last - id, draw.primitive_count - t})));
+    const auto most = static_cast<std::uint32_t>(
+        std::min({std::uint64_t{kSetupBatch}, last - id, draw.primitive_count - t}));
+    // Clip planes look at the corners before the kernel does.
+    if (draw.cut != nullptr && !has_indices_in_range(draw, t, most)) return false;
+    const std::uint32_t count = equal_flags(geometry, draw, t, most);
+    const std::uint32_t flags = geometry.flags_of(draw, t);
+    if ((flags & kCutAway) != 0) {
+      pieces.triangles.culled += count;
+      id += count;
+      continue;
+    }
     SetupInput input;
     input.first = t;
     input.count = count;
@@ -112,7 +152,7 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
     TriangleSet seen, clipped, dropped;
     for (std::uint32_t sample = 0; sample < samples.size(); ++sample) {
       const SampleOffset at = samples[sample];
-      input.flags = draw.flags_of(t) | sample << kSampleShift;
+      input.flags = flags | sample << kSampleShift;
       // Who draws translucent surfaces opaque knows no such fragments.
       if (frame.request.transparency.method == Transparency::none) input.flags &= ~kTranslucent;
       if (samples.size() > 1 && draw.has_kernel()) corners.see_from(at, count);
@@ -130,12 +170,8 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
       std::uint32_t slow_culled = 0;
       for (std::uint32_t k = 0; k < out.slow; ++k) {
         const Fate fate = assemble_primitive(
-            geometry, draw, t + slow[k],
-            [&](const Piece& piece) {
-              pieces.data.grow(std::size_t{pieces.count} + 1, pieces.count);
-              pieces.data[pieces.count++] = piece;
-            },
-            sample, at);
+            geometry, draw, t + slow[k], [&](const Piece& piece) { pieces.add(piece); }, sample,
+            at);
         if (fate == Fate::dropped) dropped.add(slow[k]);
         if (fate == Fate::clipped) clipped.add(slow[k]);
         slow_culled += fate == Fate::culled;

@@ -7,19 +7,30 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/setup/quadric_store.hpp>
 
 namespace rastrum::raster {
 
 /// The pieces of a run of triangles, in submission order except that a batch's clipped triangles
 /// come behind the others.
 struct Pieces {
-  explicit Pieces(MemoryAccount& memory) : data(memory) {}
+  explicit Pieces(MemoryAccount& memory) : data(memory), quadrics(memory) {}
 
   ScratchBuffer<Piece> data;
+  QuadricStore quadrics;  ///< that the pieces refer to
   std::uint32_t count = 0;
   FrameStats::Triangles triangles;
 
   [[nodiscard]] std::span<const Piece> span() const { return {data.data(), count}; }
+  void restart() {
+    count = 0;
+    triangles = {};
+    quadrics.restart();
+  }
+  /// Adds a piece, and keeps what it refers to.
+  void add(const Piece& piece);
+  /// Of what the pieces refer to.
+  [[nodiscard]] std::size_t quadric_bytes() const;
 };
 
 /// Takes the fragments of micro triangles, a setup batch at a time.

@@ -142,8 +142,8 @@ class FragmentLocator {
   explicit FragmentLocator(const FrameGeometry& frame) : frame_(frame) {}
 
   /// The fragment of primitive `id` at element i of a block that begins at pixel (x0, y0); `points`
-  /// as in VisibleBlock. Valid until the next call.
-  const Fragment& locate(std::uint64_t id, int x0, int y0, int i, const ShadingPoints* points) {
+  /// as in VisibleBlock. Valid until the next call; its depth is the caller's to set.
+  Fragment& locate(std::uint64_t id, int x0, int y0, int i, const ShadingPoints* points) {
     int x = x0 + i % kBlockSize, y = y0 + i / kBlockSize;
     Vec2 from_centre{0, 0};
     if (points != nullptr) {

@@ -117,13 +117,16 @@ ViewRays rays_of(const Mat4d& clip, int width, int height) {
 }  // namespace
 
 ViewRays ViewRays::of(const Camera& camera, int width, int height) {
-  if (camera.matrix) return rays_of(*camera.matrix, width, height);
+  const auto* const m = camera.matrix ? camera.matrix->m : nullptr;
+  const bool parallel =
+      m != nullptr ? m[3][0] == 0 && m[3][1] == 0 && m[3][2] == 0 : camera.orthographic;
+  if (m != nullptr && !parallel) return rays_of(*camera.matrix, width, height);
   const Mat4d v = world_to_camera(camera);
   const auto axis = [&](int i, double scale) {
     return Vec3{static_cast<float>(v.m[i][0] * scale), static_cast<float>(v.m[i][1] * scale),
                 static_cast<float>(v.m[i][2] * scale)};
   };
-  if (camera.orthographic) return {axis(2, -1), {}, {}};
+  if (parallel) return {axis(2, -1), {}, {}};
   const double half = elementary::tan(static_cast<double>(camera.fov_rad) / 2);
   const double per_px = 2 * half / std::min(width, height);
   const Vec3 dx = axis(0, per_px);
@@ -137,7 +140,7 @@ LitScene::LitScene(const SceneView& scene, const Camera& camera, int width, int 
   draws.reserve(scene.instances.size());
   for (const InstanceView& instance : scene.instances) {
     LitDraw& draw = draws.emplace_back();
-    draw.mesh = instance.mesh;
+    draw.mesh = *instance.mesh();
     normal_matrix(instance.object_to_world, draw.normal_matrix);
     const auto& m = draw.normal_matrix;
     draw.identity = m[0][0] == m[1][1] && m[1][1] == m[2][2] && m[0][0] > 0 && m[0][1] == 0 &&

@@ -93,7 +93,8 @@ void check_materials(const SceneView& scene) {
   }
   if (scene.materials.empty()) return;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const MeshView& mesh = scene.instances[i].mesh;
+    if (scene.instances[i].mesh() == nullptr) continue;
+    const MeshView& mesh = *scene.instances[i].mesh();
     const auto fail = [&](const std::string& problem) {
       throw Error(Errc::invalid_argument, "instance " + std::to_string(i) + ": " + problem);
     };

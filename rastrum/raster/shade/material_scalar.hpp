@@ -58,6 +58,24 @@ struct Sampler {
   }
 };
 
+/// Before light, in linear light.
+RASTRUM_HD inline Vec3 base_color(const MaterialTriangle& t, const BoundMaterial& m,
+                                  const MaterialPoint& at, const Sampler& textures) {
+  const auto& colors = t.draw.colors;
+  Vec3 base{m.base.x, m.base.y, m.base.z};
+  if (!colors.values.empty()) {
+    Vec4 c[3];
+    for (int i = 0; i < 3; ++i) c[i] = t.corner(colors, i) * m.base;
+    base = {at.interpolate(c[0].x, c[1].x, c[2].x), at.interpolate(c[0].y, c[1].y, c[2].y),
+            at.interpolate(c[0].z, c[1].z, c[2].z)};
+  }
+  if (m.base_color != nullptr) {
+    const Texel c = textures.look_up<AllChannels>(*m.base_color);
+    base = base * Vec3{c.r, c.g, c.b};
+  }
+  return base;
+}
+
 RASTRUM_HD inline Vec3 normal(const MaterialView& scene, const MaterialTriangle& t,
                               const BoundMaterial& m, const MaterialPoint& at,
                               const Sampler& textures) {
@@ -100,20 +118,9 @@ RASTRUM_HD inline float own_alpha(const MaterialTriangle& t, const BoundMaterial
                                                     const MaterialPoint& at, bool linear) {
   using namespace material_detail;
   const BoundMaterial& m = scene.material_of(t.draw, t.index);
-  const auto& colors = t.draw.mesh.colors;
   const Sampler textures(t, at);
   scalar_lane::LitSurface s{
-      {m.base.x, m.base.y, m.base.z}, {}, m.metallic, m.roughness, 1, m.emission};
-  if (!colors.values.empty()) {
-    Vec4 c[3];
-    for (int i = 0; i < 3; ++i) c[i] = t.corner(colors, i) * m.base;
-    s.base = {at.interpolate(c[0].x, c[1].x, c[2].x), at.interpolate(c[0].y, c[1].y, c[2].y),
-              at.interpolate(c[0].z, c[1].z, c[2].z)};
-  }
-  if (m.base_color != nullptr) {
-    const Texel c = textures.look_up<AllChannels>(*m.base_color);
-    s.base = s.base * Vec3{c.r, c.g, c.b};
-  }
+      base_color(t, m, at, textures), {}, m.metallic, m.roughness, 1, m.emission};
   if (m.unlit) return scalar_lane::written(s.base, linear);
   if (m.metallic_roughness != nullptr) {
     const Texel c = textures.look_up<AllChannels>(*m.metallic_roughness);
@@ -128,6 +135,21 @@ RASTRUM_HD inline float own_alpha(const MaterialTriangle& t, const BoundMaterial
   }
   s.normal = normal(scene, t, m, at, textures);
   return scalar_lane::written(scalar_lane::light(scene.rays, s, at.x, at.y), linear);
+}
+
+/// The base colour of a fragment and its own alpha: linear light, straight.
+template <class Geometry>
+[[nodiscard]] Vec4 material_albedo(const MaterialView& scene, const Geometry& frame,
+                                   const Fragment& f) {
+  const Draw& draw = frame.draws[f.draw];
+  const MaterialTriangle t(scene, frame, draw, f.id);
+  const BoundMaterial& m = scene.material_of(t.draw, t.index);
+  MaterialPoint at(t.planes, f.x, f.y, f.from_centre);
+  // Those of the fragment are cut to [0, 1] where the triangle does not cover the place.
+  at.shares.weight1 = static_cast<float>(f.weights.b[1]);
+  at.shares.weight2 = static_cast<float>(f.weights.b[2]);
+  const Vec3 base = material_detail::base_color(t, m, at, material_detail::Sampler(t, at));
+  return {base.x, base.y, base.z, material_detail::own_alpha(t, m, at)};
 }
 
 /// Whether a mask's material leaves the fragment of primitive `id` at (x, y) standing.

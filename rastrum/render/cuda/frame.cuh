@@ -35,6 +35,7 @@
 #include <rastrum/render/cuda/host_band.cuh>
 #include <rastrum/render/cuda/layers.cuh>
 #include <rastrum/render/cuda/rasterizer.hpp>
+#include <rastrum/render/drawer.hpp>
 
 namespace rastrum::raster {
 
@@ -61,7 +62,7 @@ class DeviceRasterizer final : public CudaRasterizer {
       return "of the device's rasterizers by-size has several samples a pixel";
     if (request.samples > 1 && uses_materials(request))
       return "several samples a pixel of materials, masks and tests are the CPU's";
-    if (!request.targets.overdraw.empty() && is_layered(request))
+    if (!request.targets.overdraw.empty() && blends(request.draws, request.transparency))
       return "overdraw of translucent surfaces is the CPU's";
     return can_resolve(request) ? std::string()
                                 : "translucent fragments, and those of several samples, are "
@@ -143,12 +144,6 @@ class DeviceRasterizer final : public CudaRasterizer {
     return std::move(frame.stats);
   }
 
-  [[nodiscard]] static bool is_layered(const FrameRequest& request) {
-    return request.transparency.method != Transparency::none &&
-           std::ranges::any_of(request.draws, [](const Draw& draw) {
-             return (draw.any_flags() & kTranslucent) != 0;
-           });
-  }
   /// Bytes of scratch beside what is copied: what was asked for, or what is there. 0: any.
   [[nodiscard]] std::uint64_t limit() const {
     if (memory_limit_ != 0) return memory_limit_;
@@ -178,7 +173,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     if (request.in_place && !f.resolves)
       throw Error(Errc::unsupported,
                   "arrays in the device's memory (in_place): this shader needs them in the host's");
-    f.has_layers = is_layered(request);
+    f.has_layers = blends(request.draws, request.transparency);
     f.samples = SamplePattern::of(request.samples);
     f.in_colors = f.has_layers || f.samples.count > 1;
     f.shades_fragments = kind_.shades && f.resolves && wants_colors(request.targets);

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include <rastrum/core/elementary.hpp>
-#include <rastrum/core/vec3d.hpp>
 #include <rastrum/parallel/words.hpp>
 #include <rastrum/scene/shapes/marching_cubes_table.hpp>
 #include <rastrum/scene/shapes/require.hpp>
 #include <rastrum/shapes.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::shapes {
 namespace {
@@ -130,7 +130,7 @@ Mesh gyroid(int cells, float periods) {
                       [&](std::size_t edge) { return static_cast<Vec3>(crossing(grid, edge)); });
   parallel::transform(exec, edges, mesh.normals.values, [&](std::size_t edge) {
     return static_cast<Vec3>(
-        unit(gradient(crossing(grid, edge), std::numbers::pi * double{periods})));
+        normalize(gradient(crossing(grid, edge), std::numbers::pi * double{periods})));
   });
 
   const auto indices = parallel::expand(

@@ -73,10 +73,10 @@ Mesh hairball(int strands, int segments, float width, std::uint64_t seed) {
         for (std::size_t i = 0; i < rows; ++i) {
           const double t = static_cast<double>(i) / segments;
           const Vec3d direction = curve.direction(t);
-          if (dot(direction, direction) > 1e-12) along = unit(direction);
+          if (dot(direction, direction) > 1e-12) along = normalize(direction);
           Vec3d projected = reject(side, along);
           while (dot(projected, projected) < 1e-6) projected = reject(random.unit_vector(), along);
-          side = unit(projected);
+          side = normalize(projected);
           const Vec3d centre = curve.point(t);
           for (const int k : {0, 1}) {
             const std::size_t v = 2 * (strand * rows + i) + static_cast<std::size_t>(k);

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include <rastrum/core/vec3d.hpp>
+#include <rastrum/vec.hpp>
 
 #include <rastrum/core/elementary.hpp>
 

@@ -34,7 +34,7 @@ Mesh soup(int count, float min_size, float max_size, std::uint64_t seed) {
     Vec3d across{};
     do across = cross(axis, random.unit_vector());
     while (dot(across, across) < 1e-6);
-    across = unit(across);
+    across = normalize(across);
     const Vec3d centre = {random.uniform(-room, room), random.uniform(-room, room),
                           random.uniform(-room, room)};
     const Vec3d origin = centre - axis * ((a + x) / 3) - across * (y / 3);

@@ -48,7 +48,7 @@ Vec3d outward(const BezierPatch& patch, const Basis& row, const Basis& column) {
   // At the tips of knob and bottom the first row is one point; the limit of the column's direction
   // there is the mixed derivative.
   if (dot(n, n) < 1e-18) n = cross(evaluate(patch, row.slope, column.slope), down);
-  return unit(n);
+  return normalize(n);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include <array>
 #include <cstddef>
 
-#include <rastrum/core/vec3d.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::shapes {
 

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include <rastrum/core/elementary.hpp>
-#include <rastrum/core/vec3d.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/scene/shapes/require.hpp>
 #include <rastrum/shapes.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::shapes {
 namespace {
@@ -31,7 +31,7 @@ Frame knot_frame(int p, int q, double t) {
   const Vec3d outward = {cp, 0, sp}, along = {-sp, 0, cp};
   const Vec3d normal = outward * cq + Vec3d{0, sq, 0};
   const Vec3d tangent = along * (p * ring) + (outward * -sq + Vec3d{0, cq, 0}) * (q * kMinor);
-  return {outward * ring + Vec3d{0, kMinor * sq, 0}, normal, unit(cross(tangent, normal))};
+  return {outward * ring + Vec3d{0, kMinor * sq, 0}, normal, normalize(cross(tangent, normal))};
 }
 
 }  // namespace

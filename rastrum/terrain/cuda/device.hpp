@@ -51,8 +51,10 @@ struct CudaTerrain {
   Image<std::uint16_t> (*hidden_samples)(ImageView<const float>, const Sun&, const March&, Tiling,
                                          const std::stop_token* stop);
 };
-extern const CudaTerrain kCudaTerrain;                               ///< in that library
-[[nodiscard]] std::unique_ptr<DeviceRenderer> make_cuda_renderer();  ///< alike, in renderer.cu
+extern const CudaTerrain kCudaTerrain;  ///< in that library
+struct MethodOnDevice;                  // method.cuh
+/// Alike, in renderer.cu. `words`, which may be null, must outlive the renderer.
+[[nodiscard]] std::unique_ptr<DeviceRenderer> make_cuda_renderer(const MethodOnDevice* words);
 
 /// Throws Error{no_device}.
 [[nodiscard]] std::unique_ptr<DeviceRenderer> make_device_renderer();
@@ -61,7 +63,8 @@ extern const CudaTerrain kCudaTerrain;                               ///< in tha
 /// light.
 [[nodiscard]] std::string why_not_on_device(const Terrain& terrain, const TerrainOptions& options);
 
-/// The most of a device's memory that draw() takes for such frames, rolled or not.
+/// The most of a device's memory that draw() takes for such frames, rolled or not. An added method
+/// comes on top.
 [[nodiscard]] std::uint64_t device_bytes(const Terrain& terrain, const TerrainOptions& options);
 
 /// sharp_shadows and hidden_samples of a map on the host; the same bits. Throw Error{no_device}.

@@ -6,25 +6,27 @@
 #include <rastrum/terrain/cuda/classic.cuh>
 #include <rastrum/terrain/cuda/fast.cuh>
 #include <rastrum/terrain/cuda/map.cuh>
-#include <rastrum/terrain/cuda/words.cuh>
+#include <rastrum/terrain/cuda/method.cuh>
 #include <rastrum/terrain/setup.hpp>
 
 namespace rastrum::terrain {
 
 /// Fills `targets`, memory of the device of the options' size, with the bits of TerrainRenderer on
 /// any other device. The camera is drawn where it stands: without roll, and not lifted above the
-/// ground. Options and camera are checked, the options' device is not looked at. `map` has the
-/// pyramid where the filter is mip. Waits. Cost: as TerrainRenderer::render. Throws
-/// Error{invalid_argument}, Error{out_of_memory}, Error{no_device}.
+/// ground. Options and camera are checked. `map` has the pyramid where the filter is mip. `words`,
+/// which may be null, draws Method::words. Waits. Cost: as TerrainRenderer::render. Throws
+/// Error{invalid_argument}, Error{out_of_memory}, Error{no_device}, Error{unsupported}.
 [[nodiscard]] inline Counts draw_frame(parallel::Cuda& exec, const DeviceMap& map,
                                        const TerrainOptions& options, const TerrainCamera& camera,
-                                       const TerrainTargets& targets) {
+                                       const TerrainTargets& targets,
+                                       const MethodOnDevice* words = nullptr) {
+  check_method(options, words != nullptr);
   if (options.classic) return draw_classic(exec, map, options, camera, targets);
   const Setup setup = set_up(options, camera, map.extent());
   const DeviceSetup on_device(exec, setup);
   const MapSamples samples{on_device.view(), MapView(map.levels(), options, setup)};
   Counts counts = options.method == Method::words
-                      ? draw_by_words(exec, samples, targets)
+                      ? words->of_map(exec, samples, targets)
                       : draw_by_teams(exec, PlanarWalk{{samples}, map.ceiling()}, targets);
   counts.slices = setup.slices.size();
   return counts;

@@ -7,7 +7,7 @@
 
 #include <rastrum/terrain/cuda/fast.cuh>
 #include <rastrum/terrain/cuda/map.cuh>
-#include <rastrum/terrain/cuda/words.cuh>
+#include <rastrum/terrain/cuda/method.cuh>
 #include <rastrum/terrain/function_light.hpp>
 
 namespace rastrum::terrain {
@@ -44,14 +44,16 @@ struct FunctionWalk : SamplesWalk<FunctionSamples> {
 /// As the draw_frame of a map (draw.cuh). `function`: its steps lie in the host's memory.
 [[nodiscard]] inline Counts draw_frame(parallel::Cuda& exec, const FunctionView& function,
                                        const TerrainOptions& options, const TerrainCamera& camera,
-                                       const TerrainTargets& targets) {
+                                       const TerrainTargets& targets,
+                                       const MethodOnDevice* words = nullptr) {
+  check_method(options, words != nullptr);
   const Setup setup = set_up(options, camera, Extent{});
   const DeviceSetup on_device(exec, setup);
   const auto steps = parallel::upload(exec, function.steps);
   const FunctionSamples samples{on_device.view(),
                                 {function.function, function.light, {steps.data(), steps.size()}}};
   Counts counts = options.method == Method::words
-                      ? draw_by_words(exec, samples, targets)
+                      ? words->of_function(exec, samples, targets)
                       : draw_by_teams(exec, FunctionWalk{{samples}}, targets);
   counts.slices = setup.slices.size();
   return counts;

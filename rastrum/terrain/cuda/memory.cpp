@@ -30,10 +30,6 @@ std::uint64_t device_bytes(const Terrain& terrain, const TerrainOptions& options
   // A rolled picture is no larger than the upright one that it is taken from.
   bytes += 2 * 2 * kBytes * area(options.width, options.height);
   const auto slices = static_cast<std::uint64_t>(std::min(slice_count(options), kMaxSlices));
-  // A batch of the words (words_listing.hpp): pairs, two screens, and what Thrust wants beside
-  // them.
-  constexpr std::uint64_t kBatch = std::uint64_t{1} << 21, kWordsBytes = 64;
-  if (options.method == Method::words) bytes += kWordsBytes * std::max(kBatch, slices);
   // Where teams of 16 columns begin on the classic slices.
   constexpr std::uint64_t kTeamColumns = 16, kStartBytes = 16;
   if (options.classic)

@@ -62,6 +62,7 @@ class DevicePicture {
 
 class CudaRenderer final : public DeviceRenderer {
  public:
+  explicit CudaRenderer(const MethodOnDevice* words) : words_(words) {}
   [[nodiscard]] std::uint64_t bytes() const override { return memory_.held(); }
 
  private:
@@ -76,8 +77,9 @@ class CudaRenderer final : public DeviceRenderer {
     const TerrainTargets on_device{colors_.sized(exec_, targets.color8, width, height),
                                    depths_.sized(exec_, targets.depth, width, height)};
     const Counts counts =
-        terrain.is_map() ? draw_frame(exec_, *map_, options, camera, on_device)
-                         : draw_frame(exec_, *function_view(terrain), options, camera, on_device);
+        terrain.is_map()
+            ? draw_frame(exec_, *map_, options, camera, on_device, words_)
+            : draw_frame(exec_, *function_view(terrain), options, camera, on_device, words_);
     if (roll != nullptr) {
       rolled_colors_.roll(exec_, *roll, on_device.color8, targets.color8);
       rolled_depths_.roll(exec_, *roll, on_device.depth, targets.depth);
@@ -115,6 +117,7 @@ class CudaRenderer final : public DeviceRenderer {
     whole_ = whole;
   }
 
+  const MethodOnDevice* words_;
   MemoryAccount memory_;
   parallel::Cuda exec_{&memory_};
   std::shared_ptr<const Image<float>> kept_heights_;
@@ -129,8 +132,8 @@ class CudaRenderer final : public DeviceRenderer {
 
 }  // namespace
 
-std::unique_ptr<DeviceRenderer> make_cuda_renderer() {
-  return std::make_unique<CudaRenderer>();
+std::unique_ptr<DeviceRenderer> make_cuda_renderer(const MethodOnDevice* words) {
+  return std::make_unique<CudaRenderer>(words);
 }
 
 }  // namespace rastrum::terrain

@@ -49,8 +49,12 @@ Image<std::uint16_t> marched(ImageView<const float> heights, const Sun& sun, con
                                   });
 }
 
+std::unique_ptr<DeviceRenderer> make_renderer() {
+  return make_cuda_renderer(nullptr);
+}
+
 }  // namespace
 
-const CudaTerrain kCudaTerrain{make_cuda_renderer, sharp, of_suns, marched};
+const CudaTerrain kCudaTerrain{make_renderer, sharp, of_suns, marched};
 
 }  // namespace rastrum::terrain

@@ -2,7 +2,7 @@
 // `occlude` scan along each column, a scatter into the columns of the picture, the `fill` scan down
 // them, a transposition. Work O(n · m + l · m), span O(log) beside the words' blocks.
 //
-// One listing for all backends: words.cpp has serial and threads, cuda/words.cuh the device.
+// One listing for all backends: words.cpp has serial and threads, words.cu the device.
 //
 // Deviations. The maps over columns with scans inside are segmented scans. What a pair hides is not
 // scattered a second time, since writers of one element must differ here: a pair is written where
@@ -13,6 +13,7 @@
 #include <limits>
 #include <span>
 
+#include <rastrum/family/terrain/scans.hpp>
 #include <rastrum/parallel/for_each.hpp>
 #include <rastrum/parallel/reduce.hpp>
 #include <rastrum/parallel/scatter.hpp>
@@ -20,9 +21,9 @@
 #include <rastrum/parallel/tabulate.hpp>
 #include <rastrum/parallel/transpose.hpp>
 #include <rastrum/terrain/methods.hpp>
-#include <rastrum/terrain/words.hpp>
+#include <rastrum/terrain/setup.hpp>
 
-namespace rastrum::terrain {
+namespace rastrum::family {
 namespace words_detail {
 
 /// Pairs of a batch, 12 bytes each.
@@ -35,11 +36,11 @@ struct MakePair {
   std::size_t first_column;
 
   RASTRUM_HD Pair operator()(std::size_t i) const {
-    const SetupView& setup = samples.setup;
+    const terrain::SetupView& setup = samples.setup;
     const std::size_t column = first_column + i / setup.slices.size();
-    const Slice& slice = setup.slices[i % setup.slices.size()];
+    const terrain::Slice& slice = setup.slices[i % setup.slices.size()];
     const std::int32_t row = setup.first_row(samples.height(column, slice), slice);
-    if (row == kNoRow) return kNoPair;
+    if (row == terrain::kNoRow) return kNoPair;
     return {samples.color(column, slice), slice.z, row};
   }
 };
@@ -54,7 +55,7 @@ struct IsSeen {
   std::span<const Pair> pairs;
   std::size_t slices;
   RASTRUM_HD bool operator()(std::size_t i) const {
-    return pairs[i].row != kNoRow && (i % slices == 0 || pairs[i].row != pairs[i - 1].row);
+    return pairs[i].row != terrain::kNoRow && (i % slices == 0 || pairs[i].row != pairs[i - 1].row);
   }
 };
 struct CountSeen {
@@ -81,7 +82,7 @@ struct WritePixel {
   std::span<const Pixel> frame;
   std::size_t first_column, columns;
   Pixel sky;
-  TerrainTargets targets;
+  terrain::TerrainTargets targets;
   RASTRUM_HD void operator()(std::size_t i) const {
     const Pixel pixel = Fill{}(sky, frame[i]);
     const int x = static_cast<int>(first_column + i % columns), y = static_cast<int>(i / columns);
@@ -92,7 +93,7 @@ struct WritePixel {
 
 template <class Exec, class AnySamples>
 std::uint64_t draw_columns(Exec& exec, const AnySamples& samples, std::size_t first, std::size_t m,
-                           const TerrainTargets& targets) {
+                           const terrain::TerrainTargets& targets) {
   using namespace parallel;
   const std::size_t n = samples.setup.slices.size();
   const auto l = static_cast<std::size_t>(samples.setup.height);
@@ -119,15 +120,16 @@ std::uint64_t draw_columns(Exec& exec, const AnySamples& samples, std::size_t fi
 
 /// Samples and targets lie where `exec` computes; Samples or MapSamples.
 template <class Exec, class AnySamples>
-Counts draw_by_words(Exec& exec, const AnySamples& samples, const TerrainTargets& targets) {
+terrain::Counts draw_by_words(Exec& exec, const AnySamples& samples,
+                              const terrain::TerrainTargets& targets) {
   const std::size_t columns = samples.setup.ux.size(), n = samples.setup.slices.size();
   const std::size_t longest = std::max(n, static_cast<std::size_t>(samples.setup.height));
   const std::size_t batch = std::clamp<std::size_t>(words_detail::kBatch / longest, 1, columns);
-  Counts counts{n * columns, 0};
+  terrain::Counts counts{n * columns, 0};
   for (std::size_t first = 0; first < columns; first += batch)
     counts.visible +=
         words_detail::draw_columns(exec, samples, first, std::min(batch, columns - first), targets);
   return counts;
 }
 
-}  // namespace rastrum::terrain
+}  // namespace rastrum::family

@@ -8,11 +8,11 @@
 #include <rastrum/image.hpp>
 #include <rastrum/terrain/setup.hpp>
 
-namespace rastrum::terrain {
+namespace rastrum::family {
 
 /// The paper's colour–height pair, with the distance for those who want depth. Its row is the first
-/// that it would be drawn in, at least 0. Not drawn: kNoRow. Listing 4.6 clamps rows to the last
-/// one instead, which draws what lies below the picture into its bottom row.
+/// that it would be drawn in, at least 0. Not drawn: terrain::kNoRow. Listing 4.6 clamps rows to
+/// the last one instead, which draws what lies below the picture into its bottom row.
 struct Pair {
   Rgba8 color;
   float depth = 0;
@@ -20,7 +20,7 @@ struct Pair {
   friend bool operator==(const Pair&, const Pair&) = default;
 };
 /// Of `occlude`.
-inline constexpr Pair kNoPair{{}, 0, kNoRow};
+inline constexpr Pair kNoPair{{}, 0, terrain::kNoRow};
 
 /// Listing 4.8: the nearer one where it hides the farther one.
 struct Occlude {
@@ -44,4 +44,4 @@ struct Fill {
   }
 };
 
-}  // namespace rastrum::terrain
+}  // namespace rastrum::family

@@ -1,0 +1,14 @@
+// From the key of a pixel to what is seen there.
+#pragma once
+
+#include <cstdint>
+
+#include <rastrum/pick.hpp>
+
+namespace rastrum {
+
+/// `key`: not empty, of a primitive of the scene. Throws as barycentrics().
+[[nodiscard]] Pick surface_of_key(const SceneView& scene, const Camera& camera, int width,
+                                  int height, std::uint64_t key, int x, int y);
+
+}  // namespace rastrum

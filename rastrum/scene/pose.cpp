@@ -1,0 +1,257 @@
+// Poses: a rig's nodes at a moment, then what hangs on them. All of it in float64 and in the order
+// that is written here, rounded to float32 once; of libm only functions that are exact.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <rastrum/error.hpp>
+#include <rastrum/scene.hpp>
+#include <rastrum/scene/rig.hpp>
+
+namespace rastrum {
+namespace {
+
+/// The moment of an animation that begins again when it has ended.
+double moment_of(double seconds, double duration_s) {
+  if (!(seconds > 0 && duration_s > 0)) return 0;
+  const double rest = std::fmod(seconds, duration_s);  // exact by its definition
+  return rest > 0 ? rest : duration_s;
+}
+
+Quaternion quaternion(const double* xyzw) {
+  return {xyzw[3], xyzw[0], xyzw[1], xyzw[2]};
+}
+
+/// `width` numbers of a track at a moment; before its first key and behind its last those.
+void sample(const Rig::Track& track, double moment, double* to) {
+  const std::vector<float>& times = *track.times;
+  const float* const values = track.values->data();
+  const std::size_t width = track.width;
+  const bool cubic = track.interpolation == Rig::Interpolation::cubic_spline;
+  // Of key k: part 0 is a cubic spline's tangent in, 1 the value, 2 its tangent out.
+  const auto number = [&](std::size_t k, std::size_t part, std::size_t i) -> double {
+    return values[cubic ? (3 * k + part) * width + i : k * width + i];
+  };
+  const auto after = std::upper_bound(times.begin(), times.end(), moment,
+                                      [](double m, float time) { return m < double{time}; });
+  const auto next = static_cast<std::size_t>(after - times.begin());
+  const std::size_t k = next == 0 ? 0 : next - 1;
+  if (next == 0 || next == times.size() || track.interpolation == Rig::Interpolation::step) {
+    for (std::size_t i = 0; i < width; ++i) to[i] = number(k, 1, i);
+    return;
+  }
+  const double span = double{times[next]} - double{times[k]};
+  const double s = (moment - double{times[k]}) / span;
+  if (cubic) {
+    // Hermite's polynomials; tangents are per second.
+    const double s2 = s * s, s3 = s2 * s;
+    const double from = 2 * s3 - 3 * s2 + 1, out = span * (s3 - 2 * s2 + s);
+    const double into = 3 * s2 - 2 * s3, in = span * (s3 - s2);
+    for (std::size_t i = 0; i < width; ++i)
+      to[i] = from * number(k, 1, i) + out * number(k, 2, i) + into * number(next, 1, i) +
+              in * number(next, 0, i);
+  } else if (track.path == Rig::Path::rotation) {
+    double a[4], b[4];
+    for (std::size_t i = 0; i < 4; ++i) {
+      a[i] = number(k, 1, i);
+      b[i] = number(next, 1, i);
+    }
+    const Quaternion q = slerp(normalize(quaternion(a)), normalize(quaternion(b)), s);
+    to[0] = q.x;
+    to[1] = q.y;
+    to[2] = q.z;
+    to[3] = q.w;
+  } else {
+    for (std::size_t i = 0; i < width; ++i)
+      to[i] = (1 - s) * number(k, 1, i) + s * number(next, 1, i);
+  }
+}
+
+void apply(const Rig::Track& track, double moment, Rig::Node& node) {
+  if (track.path == Rig::Path::weights) {
+    node.weights.resize(track.width);
+    return sample(track, moment, node.weights.data());
+  }
+  double v[4];
+  sample(track, moment, v);
+  switch (track.path) {
+    case Rig::Path::translation:
+      node.translation = {v[0], v[1], v[2]};
+      break;
+    case Rig::Path::scale:
+      node.scale = {v[0], v[1], v[2]};
+      break;
+    default:
+      node.rotation = normalize(quaternion(v));
+  }
+}
+
+/// The upper three rows of an affine matrix.
+struct Affine {
+  double m[3][4] = {};
+
+  void add(const Affine& a, double weight) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 4; ++j) m[i][j] += weight * a.m[i][j];
+  }
+  [[nodiscard]] Vec3d point(Vec3d p) const {
+    const auto row = [&](int i) {
+      return ((m[i][0] * p.x + m[i][1] * p.y) + m[i][2] * p.z) + m[i][3];
+    };
+    return {row(0), row(1), row(2)};
+  }
+  /// Along the inverse transpose: the cofactors, which exist where it does not, turned by the sign
+  /// of the determinant.
+  [[nodiscard]] Vec3d normal(Vec3d n) const {
+    const Vec3d x{m[0][0], m[0][1], m[0][2]}, y{m[1][0], m[1][1], m[1][2]},
+        z{m[2][0], m[2][1], m[2][2]};
+    const Vec3d yz = cross(y, z), zx = cross(z, x), xy = cross(x, y);
+    const double sign = dot(x, yz) < 0 ? -1 : 1;
+    return {sign * dot(yz, n), sign * dot(zx, n), sign * dot(xy, n)};
+  }
+};
+
+/// Of each joint: from the shape as it was bound to where the joint has it now.
+std::vector<Affine> joint_matrices(const Rig::Skin& skin, const std::vector<Mat4d>& to_file) {
+  std::vector<Affine> r(skin.joints.size());
+  for (std::size_t j = 0; j < r.size(); ++j) {
+    const Mat4d m = to_file[skin.joints[j]] * skin.inverse_bind[j];
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 4; ++column) r[j].m[row][column] = m.m[row][column];
+  }
+  return r;
+}
+
+/// The mean of a vertex's joints. Weights need not have the sum 1; a vertex without any follows its
+/// first joint.
+Affine blend(const Rig::Shape& shape, std::size_t vertex, const std::vector<Affine>& joints) {
+  const std::uint32_t* const joint = &shape.joints[vertex * shape.influences];
+  const float* const weight = &shape.weights[vertex * shape.influences];
+  double sum = 0;
+  for (std::size_t k = 0; k < shape.influences; ++k) sum += double{weight[k]};
+  if (!(sum > 0)) return joints[joint[0]];
+  Affine r;
+  for (std::size_t k = 0; k < shape.influences; ++k)
+    if (weight[k] != 0) r.add(joints[joint[k]], double{weight[k]} / sum);
+  return r;
+}
+
+/// Morphing first, then the skin. `joints`: of the skin; null: none.
+void deform(const Rig::Shape& shape, const std::vector<double>& weights,
+            const std::vector<Affine>* joints, Mesh& mesh) {
+  struct Active {
+    const Rig::Shape::Target* target;
+    double weight;
+  };
+  std::vector<Active> active;
+  for (std::size_t t = 0; t < std::min(shape.targets.size(), weights.size()); ++t)
+    if (weights[t] != 0) active.push_back({&shape.targets[t], weights[t]});
+
+  mesh.positions = shape.positions;
+  mesh.normals.values = shape.normals;
+  mesh.normals.indices.clear();
+  if (active.empty() && joints == nullptr) return;
+  for (std::size_t i = 0; i < shape.positions.size(); ++i) {
+    const Affine skin = joints == nullptr ? Affine{} : blend(shape, i, *joints);
+    Vec3d p = Vec3d(shape.positions[i]);
+    for (const Active& a : active)
+      if (!a.target->positions.empty()) p = p + Vec3d(a.target->positions[i]) * a.weight;
+    mesh.positions[i] = Vec3(joints == nullptr ? p : skin.point(p));
+    if (shape.normals.empty()) continue;
+    Vec3d n = Vec3d(shape.normals[i]);
+    for (const Active& a : active)
+      if (!a.target->normals.empty()) n = n + Vec3d(a.target->normals[i]) * a.weight;
+    if (joints != nullptr) n = skin.normal(n);
+    const double l = length(n);
+    mesh.normals.values[i] = l > 0 ? Vec3(n * (1 / l)) : Vec3{};
+  }
+}
+
+/// `clip`: null at rest.
+void pose(Scene& scene, const Motion& motion, const Rig::Clip* clip, double moment,
+          std::vector<std::uint32_t>& written) {
+  const Rig& rig = *motion.rig;
+  std::vector<Rig::Node> nodes = rig.nodes;
+  if (clip != nullptr)
+    for (const Rig::Track& track : clip->tracks) apply(track, moment, nodes[track.node]);
+  const std::vector<Mat4d> to_file = to_root(nodes, rig.parents_first);
+  for (const Rig::Placed& p : rig.placed)
+    scene.instances[motion.first_instance + p.instance].object_to_world =
+        motion.to_world * to_file[p.node];
+  for (const Rig::Seeing& c : rig.cameras)
+    look_from(scene.cameras[motion.first_camera + c.camera], to_file[c.node]);
+
+  std::vector<std::vector<Affine>> joints(rig.skins.size());
+  for (const Rig::Deformed& d : rig.deformed) {
+    std::vector<Affine>* const skin =
+        d.skin == Rig::kNone ? nullptr : &joints[static_cast<std::size_t>(d.skin)];
+    if (skin != nullptr && skin->empty())
+      *skin = joint_matrices(rig.skins[static_cast<std::size_t>(d.skin)], to_file);
+    const std::uint32_t mesh = motion.first_mesh + d.mesh;
+    const Rig::Shape& shape = *rig.shapes[d.shape];
+    const std::vector<double>& weights = nodes[d.node].weights;
+    deform(shape, weights.empty() ? shape.rest_weights : weights, skin, scene.meshes[mesh]);
+    written.push_back(mesh);
+  }
+}
+
+}  // namespace
+
+Mat4d Rig::Node::local() const {
+  if (has_matrix) return matrix;
+  Mat4d r = rastrum::rotation(rotation);
+  const double s[3] = {scale.x, scale.y, scale.z};
+  const double t[3] = {translation.x, translation.y, translation.z};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) r.m[i][j] *= s[j];
+    r.m[i][3] = t[i];
+  }
+  return r;
+}
+
+void look_from(Camera& camera, const Mat4d& node_to_world) {
+  const auto column = [&](int k, double sign) {
+    return Vec3{static_cast<float>(sign * node_to_world.m[0][k]),
+                static_cast<float>(sign * node_to_world.m[1][k]),
+                static_cast<float>(sign * node_to_world.m[2][k])};
+  };
+  camera.eye = column(3, 1);
+  const Vec3 forward = normalize(column(2, -1));
+  camera.target = Vec3(camera.eye) + forward;
+  camera.up = normalize(column(1, 1));
+}
+
+std::vector<Mat4d> to_root(const std::vector<Rig::Node>& nodes,
+                           const std::vector<std::uint32_t>& parents_first) {
+  std::vector<Mat4d> r(nodes.size());
+  for (const std::uint32_t n : parents_first) {
+    const std::int32_t parent = nodes[n].parent;
+    r[n] = (parent == Rig::kNone ? Mat4d::identity() : r[static_cast<std::size_t>(parent)]) *
+           nodes[n].local();
+  }
+  return r;
+}
+
+std::vector<std::uint32_t> pose(Scene& scene, double seconds, std::size_t animation) {
+  if (!std::isfinite(seconds)) throw Error(Errc::invalid_argument, "pose: seconds must be finite");
+  std::size_t most = 0;
+  for (const Motion& m : scene.motions) most = std::max(most, m.animations.size());
+  if (!scene.motions.empty() && animation >= most)
+    throw Error(Errc::invalid_argument, "pose: there is no animation " + std::to_string(animation) +
+                                            ", but " + std::to_string(most));
+  std::vector<std::uint32_t> written;
+  for (const Motion& m : scene.motions) {
+    const bool has = animation < m.animations.size();
+    pose(scene, m, has ? &m.rig->clips[animation] : nullptr,
+         has ? moment_of(seconds, m.animations[animation].duration_s) : 0, written);
+  }
+  return written;
+}
+
+std::vector<std::uint32_t> pose_at_rest(Scene& scene) {
+  std::vector<std::uint32_t> written;
+  for (const Motion& m : scene.motions) pose(scene, m, nullptr, 0, written);
+  return written;
+}
+
+}  // namespace rastrum

@@ -1,0 +1,109 @@
+// --time, --animation, and files that move along a path.
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+#include "tests/io/gltf_document.hpp"
+
+namespace rastrum::test::animation_test {
+namespace {
+
+/// A square, left of the middle at rest, that animation 0 moves to the right within a second, and
+/// animation 1 grows by a morph target within two.
+std::string square() {
+  GltfDocument d;
+  d.floats({-2, -1, 0, -1, -1, 0, -1, 1, 0, -2, -1, 0, -1, 1, 0, -2, 1, 0}, "VEC3");
+  d.floats({0, 0, 0, 3, 0, 0, 3, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0}, "VEC3");
+  d.floats({0, 1}, "SCALAR");
+  d.floats({0, 0, 0, 3, 0, 0}, "VEC3");
+  d.floats({0, 2}, "SCALAR");
+  d.floats({0, 1}, "SCALAR");
+  return d.text(
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"targets":[{"POSITION":1}]}]}],)"
+      R"("nodes":[{"mesh":0}],"animations":[{"name":"walk","samplers":[{"input":2,"output":3}],)"
+      R"("channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}]},)"
+      R"({"name":"grow","samplers":[{"input":4,"output":5}],)"
+      R"("channels":[{"sampler":0,"target":{"node":0,"path":"weights"}}]}])");
+}
+
+class Animations : public Program {
+ protected:
+  static constexpr int kWidth = 80, kHeight = 20;
+
+  void SetUp() override {
+    Program::SetUp();
+    write("s.gltf", square());
+  }
+  /// The first and last column in which something is seen; ten columns are a unit.
+  [[nodiscard]] std::pair<int, int> columns(const std::string& ids) const {
+    const auto values = npy(ids).values<std::int64_t>();
+    std::pair<int, int> range{kWidth, -1};
+    for (int i = 0; i < kWidth * kHeight; ++i)
+      if (values[static_cast<std::size_t>(i)] >= 0)
+        range = {std::min(range.first, i % kWidth), std::max(range.second, i % kWidth)};
+    return range;
+  }
+  [[nodiscard]] std::vector<std::string> drawing(const std::vector<std::string>& extra) const {
+    std::vector<std::string> args{"render", "s.gltf", "--eye", "0,0,5",          "--target",
+                                  "0,0,0",  "--size", "80x20", "--orthographic", "2"};
+    args.insert(args.end(), extra.begin(), extra.end());
+    return args;
+  }
+  [[nodiscard]] std::pair<int, int> seen(std::vector<std::string> extra) const {
+    extra.insert(extra.end(), {"--ids", "i.npy"});
+    must(drawing(extra));
+    return columns("i.npy");
+  }
+};
+
+using Columns = std::pair<int, int>;
+
+TEST_F(Animations, TimeIsAMomentOfAnAnimation) {
+  EXPECT_EQ(seen({}), Columns(20, 29));
+  EXPECT_EQ(seen({"--time", "0"}), Columns(20, 29));
+  EXPECT_EQ(seen({"--time", "0.5"}), Columns(35, 44));
+  EXPECT_EQ(seen({"--time", "1"}), Columns(50, 59));
+  EXPECT_EQ(seen({"--time", "7.5"}), Columns(35, 44)) << "it begins again";
+  EXPECT_EQ(seen({"--time", "1", "--animation", "1"}), Columns(20, 44));
+  const Outcome info = run({"info", "s.gltf"});
+  EXPECT_NE(info.out.find("animation 0 walk: 1 s"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("animation 1 grow: 2 s"), std::string::npos) << info.out;
+}
+
+TEST_F(Animations, APlacedFileMovesInItsPlace) {
+  must({"render", "s.gltf@scale=0.5,y=-20", "s.gltf@scale=0.5,x=1", "--time", "1", "--eye", "0,0,5",
+        "--target", "0,0,0", "--size", "80x20", "--orthographic", "2", "--ids", "i.npy"});
+  EXPECT_EQ(columns("i.npy"), Columns(55, 59)) << "half of three units, beside one";
+}
+
+TEST_F(Animations, AlongAPathEachPictureHasItsTime) {
+  write("p.json", R"({"keys": [{"time": 0, "eye": [0,0,5], "target": [0,0,0]},)"
+                  R"({"time": 1, "eye": [0,0,5], "target": [0,0,0]}]})");
+  must(drawing({"--path", "p.json", "--fps", "2", "--ids", "m%d.npy"}));
+  EXPECT_EQ(columns("m0.npy"), Columns(20, 29));
+  EXPECT_EQ(columns("m1.npy"), Columns(35, 44));
+  EXPECT_EQ(columns("m2.npy"), Columns(50, 59));
+  must(drawing({"--path", "p.json", "--fps", "2", "--time", "0.5", "--ids", "h%d.npy"}));
+  EXPECT_EQ(columns("h0.npy"), Columns(35, 44)) << "--time holds them at a moment";
+  EXPECT_EQ(columns("h2.npy"), Columns(35, 44));
+}
+
+TEST_F(Animations, WhatCannotBeMeantIsRefused) {
+  const auto refused = [&](const std::vector<std::string>& extra, const std::string& words) {
+    const Outcome r = run(drawing(extra));
+    EXPECT_EQ(r.status, 2) << words;
+    EXPECT_NE(r.err.find(words), std::string::npos) << r.err;
+  };
+  refused({"-o", "p.png", "--time", "-1"}, "--time: must not be negative");
+  refused({"-o", "p.png", "--animation", "1"}, "--animation: is for --time and --path");
+  refused({"-o", "p.png", "--time", "1", "--animation", "2"},
+          "--animation: there is no animation 2: the files have 2");
+  const Outcome still = run({"render", "builtin:boxes", "--time", "1", "-o", "p.png"});
+  EXPECT_EQ(still.status, 0);
+  EXPECT_NE(still.err.find("no input has an animation"), std::string::npos) << still.err;
+}
+
+}  // namespace
+}  // namespace rastrum::test::animation_test

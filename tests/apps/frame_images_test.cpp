@@ -1,0 +1,86 @@
+// `--image NAME=FILE` and `--clip-plane`: the program's way to what a library user finds in
+// Targets.
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+
+#include "program.hpp"
+
+namespace rastrum::test::frame_images_test {
+namespace {
+
+class FrameImages : public Program {};
+
+template <class T>
+std::string bytes_of(const Image<T>& image) {
+  return {reinterpret_cast<const char*>(image.pixels().data()), image.pixels().size_bytes()};
+}
+
+TEST_F(FrameImages, HoldWhatTheLibraryHas) {
+  constexpr int kW = 40, kH = 30;
+  must({"render",       "builtin:sphere",
+        "--size",       "40x30",
+        "--eye",        "0,0.5,3",
+        "--target",     "0,0,0",
+        "--near",       "1",
+        "--clip-plane", "1,0,0,0.25",
+        "--image",      "positions=p.npy",
+        "--image",      "instances=i.npy",
+        "--image",      "barycentrics=b.npy",
+        "--image",      "distance=d.npy"});
+  const Mesh mesh = shapes::sphere();
+  const InstanceView instance{mesh.view(), Mat4d::identity()};
+  FrameOptions frame;
+  frame.width = kW;
+  frame.height = kH;
+  frame.clip_planes = {{{1, 0, 0}, 0.25}};
+  Camera camera;
+  camera.eye = {0, 0.5, 3};
+  camera.near_plane = 1;
+  Image<Vec3> positions(kW, kH);
+  Image<std::int64_t> instances(kW, kH);
+  Image<Vec2> barycentrics(kW, kH);
+  Image<float> distance(kW, kH);
+  Targets targets;
+  targets.positions = positions;
+  targets.instances = instances;
+  targets.barycentrics = barycentrics;
+  targets.distance = distance;
+  Renderer().render({.instances = {&instance, 1}}, camera, frame, targets);
+  EXPECT_EQ(npy("i.npy").data, bytes_of(instances));
+  EXPECT_EQ(npy("p.npy").data, bytes_of(positions));
+  EXPECT_EQ(npy("b.npy").data, bytes_of(barycentrics));
+  EXPECT_EQ(npy("d.npy").data, bytes_of(distance));
+  EXPECT_NE(npy("p.npy").header.find("(30, 40, 3)"), std::string::npos);
+}
+
+TEST_F(FrameImages, AreNumberedInSequences) {
+  must({"render", "builtin:boxes", "--size", "16x16", "--turntable", "2", "--image",
+        "normals=n%d.npy"});
+  EXPECT_NE(read("n0.npy"), read("n1.npy"));
+}
+
+TEST_F(FrameImages, RefuseWhatIsNone) {
+  const auto refused = [&](const std::vector<std::string>& more, const char* part) {
+    std::vector<std::string> args{"render", "builtin:sphere", "--size", "8x8"};
+    args.insert(args.end(), more.begin(), more.end());
+    const Outcome r = run(args);
+    EXPECT_EQ(r.status, 2) << part;
+    EXPECT_NE(r.err.find(part), std::string::npos) << r.err;
+  };
+  refused({"--image", "position=p.npy"}, "instances, primitives");
+  refused({"--image", "positions"}, "NAME=FILE");
+  refused({"--image", "positions=p.png"}, ".npy, .exr");
+  refused({"--image", "instances=i.exr"}, ".npy");
+  refused({"--image", "positions=p.npy", "--image", "normals=p.npy"}, "give each its own");
+  refused({"-o", "a.png", "--clip-plane", "1,0,0"}, "four numbers");
+  refused({"-o", "a.png", "--clip-plane", "0,0,0,1"}, "the normal must not be 0");
+}
+
+}  // namespace
+}  // namespace rastrum::test::frame_images_test

@@ -1,0 +1,66 @@
+// glTF documents that tests write themselves.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/io/files.hpp"
+
+namespace rastrum::test {
+
+inline std::string base64(const std::string& bytes) {
+  static constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string r;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t b = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      b = b << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k)
+      r += k <= bytes.size() - i ? kDigits[b >> (18 - 6 * k) & 63U] : '=';
+  }
+  return r;
+}
+
+/// A document over `bytes` with one buffer and a view of all of it; `rest` are more members.
+inline std::string document(const std::string& bytes, const std::string& rest) {
+  return R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":)" + std::to_string(bytes.size()) +
+         R"(,"uri":"data:application/octet-stream;base64,)" + base64(bytes) + R"("}],)" +
+         R"("bufferViews":[{"buffer":0,"byteLength":)" + std::to_string(bytes.size()) + "}]," +
+         rest + "}";
+}
+
+/// A document that grows: bytes with an accessor for each piece of them, then what refers to these.
+class GltfDocument {
+ public:
+  /// An accessor over values of 4 bytes or less; its number. `type` as in "VEC3".
+  template <class T>
+  std::size_t add(const std::vector<T>& values, const std::string& type, int component_type,
+                  bool normalized = false) {
+    const std::size_t components = type == "SCALAR" ? 1
+                                   : type == "MAT4" ? 16
+                                                    : static_cast<std::size_t>(type.back() - '0');
+    while (bytes_.size() % 4 != 0) bytes_ += '\0';
+    accessors_ += (accessors_.empty() ? "" : ",") +
+                  std::string(R"({"bufferView":0,"byteOffset":)") + std::to_string(bytes_.size()) +
+                  R"(,"componentType":)" + std::to_string(component_type) +
+                  (normalized ? R"(,"normalized":true)" : "") + R"(,"count":)" +
+                  std::to_string(values.size() / components) + R"(,"type":")" + type + "\"}";
+    for (const T& v : values) bytes_ += raw(v);
+    return count_++;
+  }
+  std::size_t floats(const std::vector<float>& values, const std::string& type) {
+    return add(values, type, 5126);
+  }
+  /// `rest`: the members besides buffers, views and accessors.
+  [[nodiscard]] std::string text(const std::string& rest) const {
+    return document(bytes_, "\"accessors\":[" + accessors_ + "]," + rest);
+  }
+
+ private:
+  std::string bytes_, accessors_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace rastrum::test

@@ -1,0 +1,401 @@
+// The images of the surface at a pixel (Targets, conventions.md "Outputs"): each against a float64
+// oracle, and the same bits whatever draws.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/transform.hpp>
+
+#include "tests/support/family.hpp"
+#include "tests/support/projection.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/surfaces.hpp"
+
+namespace rastrum::test::outputs_test {
+namespace {
+
+constexpr int kW = 72, kH = 56;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+RenderOptions options() {
+  RenderOptions o;
+  o.width = kW;
+  o.height = kH;
+  o.threads = 1;
+  return o;
+}
+
+Surfaces draw(const SceneView& scene, const Camera& camera, const RenderOptions& o) {
+  Surfaces s(o.width, o.height);
+  Painter(o).render(scene, camera, s.targets());
+  return s;
+}
+
+struct Point {
+  Real x = 0, y = 0, z = 0;
+};
+Point operator-(Point a, Point b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+Real dot(Point a, Point b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+Point cross(Point a, Point b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+Real length(Point a) {
+  return std::sqrt(dot(a, a));
+}
+Point times(const Mat4d& m, Vec3 p) {
+  const auto row = [&](int i) {
+    return Real(m.m[i][0]) * p.x + Real(m.m[i][1]) * p.y + Real(m.m[i][2]) * p.z + Real(m.m[i][3]);
+  };
+  return {row(0), row(1), row(2)};
+}
+
+/// What is checked of how many pixels, so that a test which looks at nothing shows.
+struct Seen {
+  int pixels = 0, faces = 0, smooth = 0, depths = 0;
+};
+
+void check_pixel(const Surfaces& s, const SceneView& scene, const Camera& camera,
+                 const std::vector<ProjectedTriangle>& projected, int x, int y, Seen& seen) {
+  const auto id = static_cast<std::size_t>(s.ids(x, y));
+  std::size_t instance = 0, t = id;
+  while (t >= scene.instances[instance].mesh()->triangle_count())
+    t -= scene.instances[instance++].mesh()->triangle_count();
+  ASSERT_EQ(s.instances(x, y), static_cast<std::int64_t>(instance));
+  ASSERT_EQ(s.primitives(x, y), static_cast<std::int64_t>(t));
+  const MeshView& mesh = *scene.instances[instance].mesh();
+  const auto a = exact_weights(projected[id], kW, kH, x, y);
+  const Real sum = a[0] + a[1] + a[2];
+  // Snapping may cover a sample just outside of a clipped triangle, where weights are cut.
+  if (std::ranges::any_of(a, [&](Real v) { return !(v / sum >= 0); })) return;
+  ++seen.pixels;
+  ASSERT_NEAR(s.barycentrics(x, y).x, static_cast<double>(a[1] / sum), 1e-5);
+  ASSERT_NEAR(s.barycentrics(x, y).y, static_cast<double>(a[2] / sum), 1e-5);
+
+  const Mat4d& m = scene.instances[instance].object_to_world;
+  Point corner[3], p;
+  Real size = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    corner[c] = times(m, mesh.positions[mesh.vertex(3 * t + c)]);
+    p = {p.x + a[c] / sum * corner[c].x, p.y + a[c] / sum * corner[c].y,
+         p.z + a[c] / sum * corner[c].z};
+    size = std::max(size, length(corner[c]));
+  }
+  const Vec3 got = s.positions(x, y);
+  ASSERT_LE(length(Point{got.x, got.y, got.z} - p), 1e-5 * size);
+
+  // Normals against the cross product in the world, turned to the eye.
+  const Mat4d view = world_to_camera(camera);
+  const auto axis = [&](int i) { return Point{view.m[i][0], view.m[i][1], view.m[i][2]}; };
+  const Point eye{camera.eye.x, camera.eye.y, camera.eye.z};
+  const Point to_eye = camera.orthographic ? axis(2) : eye - p;
+  const Vec3 n = s.normals(x, y), nc = s.camera_normals(x, y);
+  const Point normal{n.x, n.y, n.z};
+  if (length(normal) > 0) {
+    ASSERT_NEAR(static_cast<double>(length(normal)), 1, 1e-6);
+    // The ray of the pixel's centre is the one of the snapped triangle to half a px.
+    const Real towards = dot(normal, to_eye) / length(to_eye);
+    ASSERT_GE(towards, -2e-2);
+    for (int i = 0; i < 3; ++i)
+      ASSERT_NEAR((&nc.x)[i], static_cast<double>(dot(axis(i), normal)), 1e-6);
+    const Point e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
+    const Point face = cross(e1, e2);
+    if (mesh.normals.values.empty() && length(face) > 1e-3 * length(e1) * length(e2)) {
+      ++seen.faces;
+      ASSERT_GE(std::abs(dot(normal, face)) / length(face), 1 - 1e-5);
+    }
+    if (!mesh.normals.values.empty()) ++seen.smooth;
+  }
+
+  // Along the axis, as far as a float32 depth tells it: its plane is rounded once a piece.
+  const Real z = -(dot(axis(2), p) + view.m[2][3]);
+  ASSERT_EQ(s.view_depth(x, y), static_cast<float>(view_distance(camera, s.depth(x, y))));
+  if (projected[id].fate != Fate::whole || !(s.depth(x, y) > 0) || camera.orthographic) return;
+  const float nearest =
+      std::max({projected[id].snapped.v[0].depth, projected[id].snapped.v[1].depth,
+                projected[id].snapped.v[2].depth});
+  if (!(s.depth(x, y) > 0.05F * nearest) || !std::isinf(camera.far_plane)) return;
+  const auto& v = projected[id].snapped.v;
+  Real longest = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Real dx = v[c].x_fx8 - v[(c + 1) % 3].x_fx8, dy = v[c].y_fx8 - v[(c + 1) % 3].y_fx8;
+    longest = std::max(longest, dx * dx + dy * dy);
+  }
+  // A sliver's plane is as steep as its corners' last bits say.
+  if (std::abs(twice_area(projected[id].snapped)) < Real(0.05) * longest) return;
+  ++seen.depths;
+  ASSERT_NEAR(s.view_depth(x, y), static_cast<double>(z), 1e-4 * static_cast<double>(z));
+  const Real distance = length(p - eye);
+  ASSERT_NEAR(s.distance(x, y), static_cast<double>(distance),
+              5e-3 * static_cast<double>(distance));
+}
+
+TEST(Outputs, AreWhatAnOracleSaysOfTheVisibleTriangle) {
+  Seen seen;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    const GeneratedScene g = generate(seed, kW, kH);
+    SCOPED_TRACE(g.kind + " " + std::to_string(seed));
+    const SceneBinding binding(g.scene);
+    const SceneView scene = binding.view();
+    const Surfaces s = draw(scene, g.camera, options());
+    const auto projected = project(scene, g.camera, kW, kH);
+    for (int y = 0; y < kH; ++y)
+      for (int x = 0; x < kW; ++x) {
+        if (s.ids(x, y) >= 0) {
+          check_pixel(s, scene, g.camera, projected, x, y, seen);
+          if (HasFatalFailure()) FAIL() << "at " << x << ", " << y;
+          continue;
+        }
+        ASSERT_EQ(s.instances(x, y), -1);
+        ASSERT_EQ(s.primitives(x, y), -1);
+        ASSERT_EQ(s.barycentrics(x, y), Vec2{});
+        ASSERT_EQ(s.positions(x, y), Vec3{});
+        ASSERT_EQ(s.normals(x, y), Vec3{});
+        ASSERT_EQ(s.camera_normals(x, y), Vec3{});
+        ASSERT_EQ(s.view_depth(x, y), kInfinity);
+        ASSERT_EQ(s.distance(x, y), kInfinity);
+        ASSERT_EQ(s.albedo(x, y), Vec4{});
+      }
+  }
+  EXPECT_GT(seen.pixels, 50000);
+  EXPECT_GT(seen.faces, 10000);
+  EXPECT_GT(seen.smooth, 1000);
+  EXPECT_GT(seen.depths, 5000);
+}
+
+// Layers and samples too: of the surface of the largest key, wherever its key came from.
+TEST(Outputs, AreTheSameBitsWhateverDraws) {
+  for (const int samples : {1, 4})
+    for (const float opacity : {1.0F, 0.5F})
+      for (std::uint64_t seed = 0; seed < 24; ++seed) {
+        const GeneratedScene g = generate(seed, kW, kH);
+        const SceneBinding binding(g.scene);
+        RenderOptions base = options();
+        base.samples = samples;
+        base.opacity = opacity;
+        const std::vector<Relative> family = family_of(base);
+        const Surfaces first = draw(binding.view(), g.camera, family.front().options);
+        for (const Relative& r : family)
+          ASSERT_TRUE(same_bits(first, draw(binding.view(), g.camera, r.options)))
+              << r.name << ", " << g.kind << " " << seed;
+        RenderOptions limited = base;
+        limited.memory_limit = 6 << 20;
+        ASSERT_TRUE(same_bits(first, draw(binding.view(), g.camera, limited)))
+            << "limited " << seed;
+      }
+}
+
+TEST(Outputs, AreTheSameBitsForEveryRowOfTheFamily) {
+  for (const family::AxisInfo& row : family::rasterizer_axis())
+    for (const std::uint64_t seed : {0U, 3U, 8U}) {
+      const GeneratedScene g = generate(seed, kW, kH);
+      const SceneBinding binding(g.scene);
+      RenderOptions o = options();
+      const Surfaces first = draw(binding.view(), g.camera, o);
+      o.rasterizer = row.name;
+      ASSERT_TRUE(same_bits(first, draw(binding.view(), g.camera, o))) << row.name << " " << seed;
+    }
+}
+
+/// Two triangles before each other, the nearer one in the left half.
+struct Two {
+  std::vector<Vec3> near{{-2, -2, 1}, {0, -2, 1}, {-1, 4, 1}},
+      far{{-4, -4, 0}, {4, -4, 0}, {0, 8, 0}};
+  std::vector<InstanceView> instances{{MeshView{.positions = near}, Mat4d::identity()},
+                                      {MeshView{.positions = far}, Mat4d::identity()}};
+  Camera camera{.eye = {0, 0, 4}};
+  [[nodiscard]] SceneView scene() const { return {.instances = instances}; }
+};
+
+TEST(Outputs, NameInstancesAsTheirCallerDoes) {
+  Two two;
+  two.instances[1].id = -77;
+  const Surfaces s = draw(two.scene(), two.camera, options());
+  EXPECT_EQ(s.instances(kW / 4 + 4, kH / 2), 0);
+  EXPECT_EQ(s.instances(3 * kW / 4, kH / 2), -77);
+  EXPECT_EQ(s.primitives(3 * kW / 4, kH / 2), 0);
+}
+
+TEST(Outputs, OverAPictureKeepWhatTheyHoldWhereNothingReaches) {
+  Two two;
+  Surfaces s(kW, kH);
+  std::ranges::fill(s.depth.pixels(), 0.0F);
+  for (int y = 0; y < kH; ++y)
+    for (int x = 0; x < kW / 2; ++x) s.depth(x, y) = 1;
+  std::ranges::fill(s.ids.pixels(), std::int64_t{9});
+  std::ranges::fill(s.positions.pixels(), Vec3{7, 8, 9});
+  Targets targets = s.targets();
+  targets.over = true;
+  Painter(options()).render(two.scene(), two.camera, targets);
+  EXPECT_EQ(s.positions(kW / 4, kH / 2), (Vec3{7, 8, 9}));
+  EXPECT_EQ(s.ids(kW / 4, kH / 2), 9);
+  EXPECT_EQ(s.ids(3 * kW / 4, kH / 2), 1);
+  EXPECT_NEAR(s.positions(3 * kW / 4, kH / 2).z, 0, 1e-6);
+}
+
+TEST(Outputs, InPassesAreThoseOfThePassThatIsNearest) {
+  Two two;
+  Surfaces s(kW, kH), all = draw(two.scene(), two.camera, options());
+  Image<std::uint64_t> keys(kW, kH);
+  Painter painter(options());
+  for (std::size_t pass = 0; pass < 2; ++pass) {
+    Targets targets = s.targets();
+    targets.keys = keys;
+    targets.load = pass != 0;
+    targets.first_id = pass;
+    painter.render({.instances = {&two.instances[pass], 1}}, two.camera, targets);
+  }
+  for (int y = 0; y < kH; ++y)
+    for (int x = 0; x < kW; ++x) {
+      ASSERT_EQ(s.ids(x, y), all.ids(x, y));
+      ASSERT_EQ(s.positions(x, y), all.positions(x, y));
+      ASSERT_EQ(s.normals(x, y), all.normals(x, y));
+    }
+}
+
+/// A quad that fills the picture, with corner colours and a texture of one texel.
+struct Painted {
+  Mesh mesh;
+  std::vector<Material> materials{1};
+  std::vector<Texture> textures{1};
+  std::vector<InstanceView> instances;
+  Camera camera{.eye = {0, 0, 3}};
+
+  Painted() {
+    mesh.positions = {{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}};
+    mesh.indices = {0, 1, 2, 0, 2, 3};
+    mesh.colors.values = {{0.5F, 1, 1, 1}, {0.5F, 1, 1, 1}, {0.5F, 1, 1, 1}, {0.5F, 1, 1, 1}};
+    mesh.texcoords.values = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    textures[0].image = Image<Rgba8>(1, 1);
+    textures[0].image(0, 0) = {255, 255, 0, 128};
+    materials[0].base_color = {0.5F, 0.25F, 1, 0.5F};
+    materials[0].base_color_texture = 0;
+    materials[0].emissive = {3, 0, 0};
+    instances.push_back({mesh.view(), Mat4d::identity()});
+  }
+  [[nodiscard]] SceneView scene() const { return {instances, materials, textures}; }
+};
+
+TEST(Outputs, AlbedoIsTheBaseColourBeforeLightWhateverTheShader) {
+  Painted p;
+  for (const Shader shader : {Shader::material, Shader::phong, Shader::depth}) {
+    RenderOptions o = options();
+    o.shader = shader;
+    const Surfaces s = draw(p.scene(), p.camera, o);
+    const Vec4 got = s.albedo(kW / 2, kH / 2);
+    EXPECT_NEAR(got.x, 0.25, 1e-6);
+    EXPECT_NEAR(got.y, 0.25, 1e-6);
+    EXPECT_EQ(got.z, 0);
+    EXPECT_NEAR(got.w, 0.5 * 128 / 255, 1e-6);
+  }
+  p.instances[0].geometry = MeshView{.positions = p.mesh.positions, .indices = p.mesh.indices};
+  const Surfaces plain = draw({.instances = p.instances}, p.camera, options());
+  EXPECT_EQ(plain.albedo(kW / 2, kH / 2), (Vec4{1, 1, 1, 1}));
+}
+
+TEST(Outputs, LinearLightIsTheColourBeforeItsTransferAndChangesNoOther) {
+  Painted p;
+  for (const AlphaMode mode : {AlphaMode::opaque, AlphaMode::blend})
+    for (const Isa isa : available_isas()) {
+      p.materials[0].alpha_mode = mode;
+      RenderOptions o = options();
+      o.isa = isa;
+      o.background = {0.2F, 0.4F, 0.6F, 1};
+      o.shader = Shader::material;
+      Painter painter(o);
+      Image<Vec4> linear(kW, kH), color(kW, kH), without(kW, kH);
+      Image<Rgba8> color8(kW, kH), without8(kW, kH);
+      painter.render(p.scene(), p.camera, {.color8 = color8, .color = color, .linear = linear});
+      painter.render(p.scene(), p.camera, {.color8 = without8, .color = without});
+      bool bright = false;
+      for (int y = 0; y < kH; ++y)
+        for (int x = 0; x < kW; ++x) {
+          ASSERT_EQ(color(x, y), without(x, y));
+          ASSERT_EQ(color8(x, y), without8(x, y));
+          const auto display = [](float v) {
+            const double c = std::clamp(double{v}, 0.0, 1.0);
+            return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
+          };
+          const Vec4 l = linear(x, y), c = color(x, y);
+          ASSERT_NEAR(display(l.x), c.x, 1e-4);
+          ASSERT_NEAR(display(l.y), c.y, 1e-4);
+          ASSERT_EQ(l.w, c.w);
+          bright |= l.x > 1;
+        }
+      EXPECT_EQ(bright, mode == AlphaMode::opaque) << "the emission is not cut";
+    }
+}
+
+TEST(Outputs, RefuseWhatTheyAreNotFor) {
+  const Two two;
+  const auto refused = [&](const char* part, Errc code, auto&& f) {
+    try {
+      f();
+      ADD_FAILURE() << part;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), code) << e.what();
+      EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
+    }
+  };
+  Painter painter(options());
+  Image<Vec3> small(kW, kH - 1), positions(kW, kH);
+  Image<Vec4> linear(kW, kH);
+  refused("positions target is 72x55", Errc::invalid_argument,
+          [&] { painter.render(two.scene(), two.camera, {.positions = small}); });
+  refused("normals target: rows", Errc::invalid_argument, [&] {
+    Targets t;
+    t.normals = positions;
+    t.normals.stride = kW / 2;
+    painter.render(two.scene(), two.camera, t);
+  });
+  refused("'material'", Errc::unsupported,
+          [&] { painter.render(two.scene(), two.camera, {.linear = linear}); });
+  RenderOptions in_place = options();
+  in_place.in_place = true;
+  if (Painter(in_place).options().device == Device::cuda)
+    refused("in one pass", Errc::unsupported,
+            [&] { Painter(in_place).render(two.scene(), two.camera, {.positions = positions}); });
+  const raster::Program program(
+      [](std::uint32_t i) {
+        return raster::VertexOutput<Vec3>{{i == 1 ? 3.0F : -1.0F, i == 2 ? 3.0F : -1.0F, 0.5F, 1},
+                                          {}};
+      },
+      [](const Vec3&, const raster::Fragment&) {
+        return Vec4{1, 1, 1, 1};
+      });
+  const raster::ProgramDraw own = program.draw(3);
+  Renderer renderer(options());
+  refused("positions target is of a scene", Errc::unsupported, [&] {
+    renderer.draw({&own, 1}, options(), {.positions = positions});
+  });
+  // What needs no scene it has.
+  Image<std::int64_t> instances(kW, kH), primitives(kW, kH);
+  Image<Vec2> barycentrics(kW, kH);
+  renderer.draw({&own, 1}, options(),
+                {.instances = instances, .primitives = primitives, .barycentrics = barycentrics});
+  EXPECT_EQ(instances(0, kH - 1), 0);
+  EXPECT_EQ(primitives(0, kH - 1), 0);
+  EXPECT_NEAR(barycentrics(0, kH - 1).x, 0.5 / kW / 2, 1e-5);
+  // Depth does not tell distances of this one.
+  Camera tilted = two.camera;
+  tilted.matrix = world_to_clip(two.camera, kW, kH);
+  tilted.matrix->m[2][0] += 0.1;
+  Image<float> distance(kW, kH);
+  refused("planes of equal depth", Errc::invalid_argument,
+          [&] { painter.render(two.scene(), tilted, {.distance = distance}); });
+}
+
+}  // namespace
+}  // namespace rastrum::test::outputs_test

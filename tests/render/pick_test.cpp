@@ -1,0 +1,102 @@
+// What is under a pixel, in one call: the same bits as the images of the whole frame.
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/pick.hpp>
+#include <rastrum/render.hpp>
+
+#include "tests/support/painter.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/surfaces.hpp"
+
+namespace rastrum::test::pick_test {
+namespace {
+
+constexpr int kW = 150, kH = 100;  // several bins, cut at the edges
+
+template <class T>
+bool same(const T& a, const T& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+TEST(Pick, IsWhatTheImagesOfTheWholeFrameHold) {
+  int seen = 0, empty = 0;
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+    const GeneratedScene g = generate(seed, kW, kH);
+    const SceneBinding binding(g.scene);
+    const SceneView scene = binding.view();
+    FrameOptions frame;
+    frame.width = kW;
+    frame.height = kH;
+    if (seed % 4 == 1) frame.samples = 4;
+    if (seed % 4 == 2) frame.opacity = 0.5F;
+    if (seed % 4 == 3) frame.shader = Shader::depth;
+    Renderer renderer({.device = seed % 8 == 0 ? Device::serial : Device::threads, .threads = 1});
+    Surfaces s(kW, kH);
+    renderer.render(scene, g.camera, frame, s.targets());
+    Random r(seed);
+    for (int n = 0; n < 6; ++n) {
+      const int x = r.integer(0, kW - 1), y = r.integer(0, kH - 1);
+      SCOPED_TRACE(g.kind + " " + std::to_string(seed) + " at " + std::to_string(x) + ", " +
+                   std::to_string(y));
+      const std::optional<Pick> p = renderer.pick(scene, g.camera, frame, x, y);
+      ASSERT_EQ(p.has_value(), s.ids(x, y) >= 0);
+      if (!p) {
+        ++empty;
+        continue;
+      }
+      ++seen;
+      ASSERT_EQ(static_cast<std::int64_t>(p->id), s.ids(x, y));
+      ASSERT_EQ(p->instance_id, s.instances(x, y));
+      ASSERT_EQ(static_cast<std::int64_t>(p->primitive), s.primitives(x, y));
+      const auto& b = p->barycentrics.weight;
+      const Vec2 uv{static_cast<float>(b[1]), static_cast<float>(b[2])};
+      ASSERT_TRUE(same(uv, s.barycentrics(x, y)));
+      ASSERT_TRUE(same(Vec3(p->position), s.positions(x, y)));
+      ASSERT_TRUE(same(Vec3(p->normal), s.normals(x, y)));
+      ASSERT_TRUE(same(p->depth, s.depth(x, y)));
+      ASSERT_TRUE(same(static_cast<float>(p->view_depth), s.view_depth(x, y)));
+      ASSERT_TRUE(same(static_cast<float>(p->distance), s.distance(x, y)));
+      // Its parts say the same.
+      const Located at = locate(scene, p->id);
+      ASSERT_EQ(at.instance, p->instance);
+      ASSERT_EQ(at.primitive, p->primitive);
+      const Barycentrics again = barycentrics(scene, g.camera, kW, kH, p->id, x, y);
+      ASSERT_TRUE(same(again, p->barycentrics));
+      ASSERT_EQ(position(scene, at, again), p->position);
+    }
+  }
+  EXPECT_GT(seen, 1000);
+  EXPECT_GT(empty, 500);
+}
+
+TEST(Pick, RefusesWhatIsNotThere) {
+  const std::vector<Vec3> positions{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  const std::vector<std::uint32_t> indices{0, 1, 7};
+  InstanceView instance{MeshView{.positions = positions}, Mat4d::identity()};
+  const SceneView scene{.instances = {&instance, 1}};
+  const FrameOptions frame{.width = 20, .height = 10};
+  Renderer renderer({.threads = 1});
+  const auto refused = [](const char* part, auto&& f) {
+    try {
+      f();
+      ADD_FAILURE() << part;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::invalid_argument);
+      EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
+    }
+  };
+  refused("(20, 3) lies outside", [&] { (void)renderer.pick(scene, {}, frame, 20, 3); });
+  refused("(2, -1) lies outside", [&] { (void)renderer.pick(scene, {}, frame, 2, -1); });
+  refused("primitive 1 is out of range", [&] { (void)locate(scene, 1); });
+  instance.geometry = MeshView{.positions = positions, .indices = indices};
+  refused("out of range", [&] { (void)renderer.pick(scene, {}, frame, 2, 1); });
+  refused("out of range", [&] { (void)barycentrics(scene, {}, 20, 10, 0, 2, 1); });
+}
+
+}  // namespace
+}  // namespace rastrum::test::pick_test

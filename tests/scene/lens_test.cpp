@@ -1,0 +1,227 @@
+// Cameras that others describe, against their own formulas in float64.
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/camera.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/scene.hpp>
+#include <rastrum/transform.hpp>
+
+#include "tests/support/random.hpp"
+
+namespace rastrum::test::lens_test {
+namespace {
+
+constexpr int kWidth = 641, kHeight = 480;
+
+struct Seen {
+  double x, y, depth, w;  ///< px from the top left corner, reversed depth
+};
+/// By float64 rows, as the renderer's float32 ones would have it before snapping.
+Seen see(const Camera& camera, Vec3d p, int width = kWidth, int height = kHeight) {
+  const Mat4d m = world_to_clip(camera, width, height);
+  const auto row = [&](int i) {
+    return m.m[i][0] * p.x + m.m[i][1] * p.y + m.m[i][2] * p.z + m.m[i][3];
+  };
+  const double w = row(3);
+  return {(row(0) / w + 1) / 2 * width, (1 - row(1) / w) / 2 * height, row(2) / w, w};
+}
+
+Mat4d random_pose(Random& r, double reach) {
+  const Vec3d axis{r.real(-1, 1), r.real(-1, 1), r.real(-1, 1)};
+  Mat4d m = rotation(rotation_about(axis, r.real(-3, 3)));
+  m.m[0][3] = r.real(-reach, reach);
+  m.m[1][3] = r.real(-reach, reach);
+  m.m[2][3] = r.real(-reach, reach);
+  return m;
+}
+Vec3d times(const Mat4d& m, Vec3d p) {
+  const auto row = [&](int i) {
+    return m.m[i][0] * p.x + m.m[i][1] * p.y + m.m[i][2] * p.z + m.m[i][3];
+  };
+  return {row(0), row(1), row(2)};
+}
+
+TEST(Lens, OpenCvSeesAPointWhereItsFormulaSays) {
+  Random r(1);
+  for (int n = 0; n < 2000; ++n) {
+    // Up to where coordinates have seven digits before the point.
+    const double reach = n % 2 == 0 ? 10 : 5e6;
+    const Mat4d pose = random_pose(r, reach);
+    const Intrinsics k{r.real(200, 2000), r.real(200, 2000), r.real(-200, 900),
+                       r.real(-200, 700), r.real(-50, 50),   n % 3 == 0 ? 0.5 : 0.0};
+    const Camera camera = camera_from_opencv(k, pose, kWidth, kHeight, 0.25);
+    const Vec3d seen{r.real(-3, 3), r.real(-3, 3), r.real(0.5, 20)};
+    const Vec3d world = times(inverse(pose).value(), seen);
+    const Vec3d p = times(pose, world);
+    const double u = (k.fx * p.x + k.skew * p.y) / p.z + k.cx, v = k.fy * p.y / p.z + k.cy;
+    const Seen s = see(camera, world);
+    constexpr double kSnap = 1.0 / 256;
+    ASSERT_NEAR(s.x, u + 0.5 - k.first_centre, kSnap) << n;
+    ASSERT_NEAR(s.y, v + 0.5 - k.first_centre, kSnap) << n;
+    ASSERT_NEAR(s.depth, 0.25 / p.z, 1e-6);
+    ASSERT_NEAR(view_distance(camera, static_cast<float>(s.depth)), p.z, 1e-5 * p.z);
+    // The axes that are read off the matrix are the pose's, with y and z turned.
+    const Mat4d axes = world_to_camera(camera);
+    const Vec3d c = times(axes, world);
+    ASSERT_NEAR(c.x, p.x, 1e-6);
+    ASSERT_NEAR(c.y, -p.y, 1e-6);
+    ASSERT_NEAR(c.z, -p.z, 1e-6);
+  }
+}
+
+TEST(Lens, OpenCvIsTheCameraOfAFieldOfView) {
+  Camera camera;
+  camera.fov_rad = 1;
+  camera.near_plane = 0.5F;
+  const double f = kHeight / 2.0 / std::tan(0.5);
+  Mat4d pose = world_to_camera(camera);
+  for (int axis : {1, 2})
+    for (double& v : pose.m[axis]) v = -v;
+  const Mat4d ours = world_to_clip(camera, kWidth, kHeight);
+  const Mat4d others =
+      world_to_clip(camera_from_opencv({f, f, (kWidth - 1) / 2.0, (kHeight - 1) / 2.0}, pose,
+                                       kWidth, kHeight, 0.5),
+                    kWidth, kHeight);
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) EXPECT_NEAR(ours.m[i][j], others.m[i][j], 1e-12) << i << j;
+}
+
+TEST(Lens, AnyMatrixIsReadBack) {
+  Random r(2);
+  for (int n = 0; n < 300; ++n) {
+    Camera c;
+    c.eye = {r.real(-5, 5), r.real(-5, 5), r.real(-5, 5)};
+    c.target = c.eye + Vec3d{r.real(-1, 1), r.real(-0.5, 0.5), 1};
+    c.near_plane = static_cast<float>(r.real(0.1, 1));
+    c.orthographic = n % 2 == 0;
+    if (c.orthographic || n % 3 == 0) c.far_plane = static_cast<float>(r.real(20, 100));
+    const Mat4d clip = world_to_clip(c, kWidth, kHeight);
+    const ClipDepth depths[] = {ClipDepth::opengl, ClipDepth::zero_to_one, ClipDepth::reversed};
+    const ClipDepth kind = depths[n % 3];
+    Mat4d given = clip;
+    for (int j = 0; j < 4; ++j) {
+      const double z = clip.m[2][j], w = clip.m[3][j];
+      if (kind == ClipDepth::opengl) given.m[2][j] = w - 2 * z;
+      if (kind == ClipDepth::zero_to_one) given.m[2][j] = w - z;
+    }
+    const Camera made = camera_from_matrix(given, kind);
+    for (int i = 0; i < 16; ++i) ASSERT_NEAR((&made.matrix->m[0][0])[i], (&clip.m[0][0])[i], 1e-12);
+    const Mat4d wants = world_to_camera(c), has = world_to_camera(made);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) ASSERT_NEAR(has.m[i][j], wants.m[i][j], 1e-9) << n;
+    for (const float d : {0.9F, 0.3F, 0.02F})
+      ASSERT_NEAR(view_distance(made, d) + (c.orthographic ? double{c.near_plane} : 0.0),
+                  view_distance(c, d), 1e-6 * view_distance(c, d));
+  }
+}
+
+TEST(Lens, ATiltedDepthTellsNoDistance) {
+  Camera c;
+  c.matrix = world_to_clip(c, 8, 8);
+  c.matrix->m[2][0] += 0.1;
+  EXPECT_THROW((void)view_distance(c, 0.5F), Error);
+}
+
+TEST(Lens, OrthographicByScaleHasItsUnitsAPixel) {
+  for (const auto& [width, height] : {std::pair{300, 200}, {100, 700}}) {
+    Camera c;
+    c.far_plane = 10;
+    c = orthographic_by_scale(c, 0.25, width, height);
+    EXPECT_NEAR(see(c, {0.25, 0, 0}, width, height).x - see(c, {0, 0, 0}, width, height).x, 1,
+                1e-6);
+    EXPECT_NEAR(see(c, {0, 0.25, 0}, width, height).y - see(c, {0, 0, 0}, width, height).y, -1,
+                1e-6);
+  }
+}
+
+TEST(Lens, FitsAlongAnyDirection) {
+  const std::vector<Vec3> positions{{1, 2, 3}, {3, 2, 3}, {1, 5, 4}};
+  const InstanceView instance{MeshView{.positions = positions}, Mat4d::identity()};
+  const SceneView scene{.instances = {&instance, 1}};
+  for (const Vec3d direction : {Vec3d{1, 0, 0}, {0, -3, 0.1}, {-1, 1, 2}}) {
+    const Camera c = fit_camera(scene, 1, false, direction, {0, 0, 1});
+    const Vec3d looks = normalize(c.target - c.eye), wants = normalize(direction);
+    EXPECT_NEAR(dot(looks, wants), 1, 1e-6);
+    EXPECT_NEAR(length(c.eye - c.target), length(fit_camera(scene, 1, false).eye - c.target), 1e-5);
+    for (const Vec3 p : positions) {
+      const Seen s = see(c, p, 100, 100);
+      EXPECT_TRUE(s.x > 0 && s.x < 100 && s.y > 0 && s.y < 100 && s.depth < 1 && s.w > 0);
+    }
+  }
+  EXPECT_THROW((void)fit_camera(scene, 1, false, {0, 0, 0}), Error);
+  EXPECT_THROW((void)fit_camera(scene, 1, false, {0, 1, 0}), Error);
+}
+
+TEST(Lens, InverseUndoes) {
+  Random r(3);
+  for (int n = 0; n < 200; ++n) {
+    Mat4d m;
+    for (auto& row : m.m)
+      for (double& v : row) v = r.real(-1, 1) * (n % 2 == 0 ? 1 : 1e6);
+    const Mat4d one = m * inverse(m).value();
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) ASSERT_NEAR(one.m[i][j], i == j ? 1 : 0, 1e-8) << n;
+  }
+  Mat4d singular = Mat4d::identity();
+  singular.m[2][2] = 0;
+  EXPECT_FALSE(inverse(singular));
+  singular.m[2][2] = std::nan("");
+  EXPECT_FALSE(inverse(singular));
+}
+
+TEST(Lens, MatricesOfOthersAreReadInTheirOrder) {
+  const float f[16] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};
+  EXPECT_EQ(matrix_from_rows(f).m[1][2], 7);
+  EXPECT_EQ(matrix_from_columns(f).m[1][2], 10);
+  const double d[16] = {0, 1};
+  EXPECT_EQ(matrix_from_rows(d).m[0][1], 1);
+  EXPECT_EQ(matrix_from_columns(d).m[1][0], 1);
+}
+
+TEST(Lens, RefusesWhatNoCameraHas) {
+  const auto expect = [](const char* text, const std::function<void()>& make) {
+    try {
+      make();
+      ADD_FAILURE() << text;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::invalid_argument);
+      EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
+    }
+  };
+  const Intrinsics k{500, 500, 320, 240};
+  const Mat4d pose = Mat4d::identity();
+  const auto cv = [](Intrinsics i, Mat4d m, int w = 640, double near = 0.1) {
+    return [=] { (void)camera_from_opencv(i, m, w, 480, near); };
+  };
+  expect("fx and fy", cv({0, 500, 1, 1}, pose));
+  expect("fx and fy", cv({500, -500, 1, 1}, pose));
+  expect("fx and fy", cv({std::nan(""), 500, 1, 1}, pose));
+  expect("cx, cy", cv({500, 500, std::nan(""), 1}, pose));
+  expect("pixel", cv(k, pose, 0));
+  expect("near", cv(k, pose, 640, 0));
+  expect("near", cv(k, pose, 640, std::nan("")));
+  Mat4d bad = pose;
+  bad.m[0][0] = 2;
+  expect("rotation", cv(k, bad));
+  bad.m[0][0] = -1;
+  expect("rotation", cv(k, bad));
+  bad = pose;
+  bad.m[3][0] = 4;
+  expect("column-major", cv(k, bad));
+  bad.m[0][3] = std::nan("");
+  expect("finite", cv(k, bad));
+  bad = {};
+  expect("singular", [&] { (void)camera_from_matrix(bad, ClipDepth::opengl); });
+  bad.m[0][0] = std::nan("");
+  expect("finite", [&] { (void)camera_from_matrix(bad, ClipDepth::opengl); });
+  expect("units", [] { (void)orthographic_by_scale({}, 0, 8, 8); });
+  expect("units", [] { (void)orthographic_by_scale({}, std::nan(""), 8, 8); });
+}
+
+}  // namespace
+}  // namespace rastrum::test::lens_test

@@ -1,0 +1,28 @@
+// The images of the surface at each pixel, and what differs between two of them.
+#pragma once
+
+#include <cstdint>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/frame.hpp>
+
+namespace rastrum::test {
+
+struct Surfaces {
+  Image<float> depth;
+  Image<std::int64_t> ids, instances, primitives;
+  Image<Vec2> barycentrics;
+  Image<Vec3> positions, normals, camera_normals;
+  Image<float> view_depth, distance;
+  Image<Vec4> albedo;
+
+  /// They hold nonsense, so that a pixel which nobody wrote shows.
+  Surfaces(int width, int height);
+  [[nodiscard]] Targets targets();
+};
+
+/// All bits; the message names the image and the first pixel that differs.
+[[nodiscard]] testing::AssertionResult same_bits(const Surfaces& a, const Surfaces& b);
+
+}  // namespace rastrum::test
