@@ -5,6 +5,7 @@
 //
 // The file: ATOM and HETATM of the first model (PDB format 3.3), columns as the format fixes them.
 // Water is left out. Atoms are bonded that are nearer than their covalent radii and 0.4 Å.
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -17,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/fit.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/render.hpp>
 
@@ -106,6 +108,22 @@ std::vector<std::pair<std::size_t, std::size_t>> bonds_of(const std::vector<Atom
   return bonds;
 }
 
+/// A curve through points (Catmull–Rom), six pieces from one to the next.
+std::vector<Vec3> curve(const std::vector<Vec3>& p) {
+  constexpr std::size_t kPieces = 6;
+  std::vector<Vec3> r;
+  for (std::size_t i = 0; i + 1 < p.size(); ++i)
+    for (std::size_t k = 0; k < kPieces; ++k) {
+      const float t = static_cast<float>(k) / kPieces;
+      const Vec3 before = p[i == 0 ? 0 : i - 1], after = p[std::min(i + 2, p.size() - 1)];
+      r.push_back(p[i] + (p[i + 1] - before) * (0.5F * t) +
+                  (before * 2 - p[i] * 5 + p[i + 1] * 4 - after) * (0.5F * t * t) +
+                  (p[i] * 3 - before - p[i + 1] * 3 + after) * (0.5F * t * t * t));
+    }
+  r.push_back(p.back());
+  return r;
+}
+
 /// What the views below refer to.
 struct Arrays {
   std::vector<Vec3> centers, ends, trace;
@@ -132,17 +150,25 @@ Arrays arrays_of(const std::vector<Atom>& atoms) {
                                             {0.70F, 0.30F, 0.04F, 1},
                                             {0.25F, 0.45F, 0.05F, 1},
                                             {0.45F, 0.08F, 0.35F, 1}}};
-  const Atom* last = nullptr;
+  std::vector<Vec3> run;  // Cα or P that follow each other
+  char chain = 0;
+  const auto end_run = [&] {
+    if (run.empty()) return;
+    const std::vector<Vec3> points = curve(run);
+    a.trace.insert(a.trace.end(), points.begin(), points.end());
+    a.trace_colors.resize(a.trace.size(),
+                          kChains[static_cast<unsigned char>(chain) % kChains.size()]);
+    a.starts.push_back(static_cast<std::uint32_t>(a.trace.size()));
+    run.clear();
+  };
   for (const Atom& atom : atoms) {
     if (!atom.in_backbone) continue;
     // Where residues are missing the tube is, too.
-    if (last && (last->chain != atom.chain || length(last->at - atom.at) > 8))
-      a.starts.push_back(static_cast<std::uint32_t>(a.trace.size()));
-    a.trace.push_back(atom.at);
-    a.trace_colors.push_back(kChains[static_cast<unsigned char>(atom.chain) % kChains.size()]);
-    last = &atom;
+    if (!run.empty() && (chain != atom.chain || length(run.back() - atom.at) > 8)) end_run();
+    run.push_back(atom.at);
+    chain = atom.chain;
   }
-  a.starts.push_back(static_cast<std::uint32_t>(a.trace.size()));
+  end_run();
   return a;
 }
 
@@ -159,7 +185,8 @@ int main(int argc, char** argv) try {
   const rastrum::TubesView backbone{
       .positions = a.trace, .offsets = a.starts, .radius = 0.7F, .colors = a.trace_colors};
   const rastrum::Material shiny{.metallic = 0, .roughness = 0.45F};
-  const rastrum::InstanceView instances[] = {{spheres}, {sticks}, {backbone}};
+  std::vector<rastrum::InstanceView> instances = {{spheres}, {sticks}};
+  if (!a.trace.empty()) instances.push_back({backbone});
   const rastrum::SceneView scene{instances, {&shiny, 1}, {}};
 
   rastrum::FrameOptions frame;
@@ -168,10 +195,11 @@ int main(int argc, char** argv) try {
   frame.samples = 8;
   frame.background = {1, 1, 1, 1};
   frame.shader = rastrum::Shader::material;
-  rastrum::io::write_png(argv[2],
-                         rastrum::render(scene, rastrum::fit_camera(scene, 0.6F, false), frame));
-  std::printf("%zu atoms, %zu bonds, %zu of the backbone: %s\n", atoms.size(), a.ends.size() / 4,
-              a.trace.size(), argv[2]);
+  rastrum::Camera along_z;
+  along_z.fov_rad = 0.6F;
+  const rastrum::Camera camera = rastrum::fit_picture(scene, along_z, frame.width, frame.height);
+  rastrum::io::write_png(argv[2], rastrum::render(scene, camera, frame));
+  std::printf("%zu atoms, %zu bonds: %s\n", atoms.size(), a.ends.size() / 4, argv[2]);
 } catch (const std::exception& e) {
   std::fprintf(stderr, "molecule: %s\n", e.what());
   return 1;
