@@ -180,6 +180,20 @@ void check_in_place(const SceneView& scene, const Targets& targets, Shader shade
           "clip planes need them in the host's");
 }
 
+/// What scenes of more than meshes do not have yet.
+void check_asked_of_meshes(const SceneView& scene, const Targets& targets, const FrameOptions& o) {
+  const auto refuse = [](const char* what) {
+    throw Error(Errc::unsupported, std::string(what).append(
+                                       ": of meshes alone, but the scene has spheres, cylinders, "
+                                       "tubes or discs"));
+  };
+  if (wants_surface(targets)) refuse("targets beside colour, depth, ids and keys");
+  if (!o.clip_planes.empty() ||
+      std::ranges::any_of(scene.instances,
+                          [](const InstanceView& i) { return !i.clip_planes.empty(); }))
+    refuse("clip planes");
+}
+
 void check_over(const Targets& targets, const FrameOptions& o) {
   const auto require = [](bool ok, const char* what) {
     if (!ok) throw Error(Errc::invalid_argument, what);
@@ -345,9 +359,10 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
   const std::vector<std::uint32_t> material_flags = raster::material_flags(scene.materials, blends);
   std::uint32_t any_flags = 0;  // of materials and vertex colours
   std::uint32_t any_surface_flags = 0;
-  SceneView meshes = scene;
   const std::vector<InstanceView> mesh_list = mesh_instances(scene);
+  SceneView meshes = scene;
   meshes.instances = mesh_list;
+  if (mesh_list.size() < scene.instances.size()) check_asked_of_meshes(scene, call.targets, o);
   std::optional<raster::LitModel> model;
   if (taken != Shader::material) model = lit_model(taken);
   SurfaceDraws surfaces(scene, {model, blends, o.opacity}, camera, o.width, o.height);

@@ -74,11 +74,9 @@ class Check {
 };
 
 bool is_translucent(const raster::QuadricGeometry& geometry, const Material* material) {
-  if (material != nullptr)
-    return material->alpha_mode == AlphaMode::blend || material->opacity < 1;
+  if (material != nullptr) return material->alpha_mode == AlphaMode::blend || material->opacity < 1;
   // Written so that a NaN is found.
-  return !std::ranges::all_of(raster::colors_of(geometry),
-                              [](const Vec4& c) { return c.w >= 1; });
+  return !std::ranges::all_of(raster::colors_of(geometry), [](const Vec4& c) { return c.w >= 1; });
 }
 
 }  // namespace

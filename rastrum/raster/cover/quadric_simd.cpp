@@ -102,7 +102,8 @@ void quadric_keys(const Piece& piece, const Block& block, std::uint64_t* keys) n
       const W e = surface_at(q, r, away, samples.columns(block.bx * kBlockSize + column)).e;
       auto depth = hn::DemoteTo(df, depth0 + e);
       depth = hn::Min(hn::IfThenElseZero(hn::Gt(depth, hn::Zero(df)), depth), hn::Set(df, 1.0F));
-      const auto high = hn::PromoteTo(d64, hn::BitCast(hn::RebindToUnsigned<decltype(df)>(), depth));
+      const auto high =
+          hn::PromoteTo(d64, hn::BitCast(hn::RebindToUnsigned<decltype(df)>(), depth));
       hn::Store(hn::Or(hn::ShiftLeft<kIdBits>(high), hn::Set(d64, piece.low)), d64,
                 keys + row * kBlockSize + column);
     }

@@ -24,13 +24,13 @@ struct DrawCut {
     double x, y, z, offset;
   };
   std::vector<Plane> planes;        ///< in object space
-  std::span<const Vec3> positions;  ///< of its vertices
+  ArrayView<Vec3> positions;  ///< of its vertices
 
   /// `world`: the frame's.
   DrawCut(const InstanceView& instance, std::span<const ClipPlane> world);
 
   [[nodiscard]] double ahead(const Plane& plane, std::uint32_t vertex) const {
-    const Vec3d p = positions[vertex];
+    const Vec3d p = positions.wide(vertex);
     return ((plane.x * p.x + plane.y * p.y) + plane.z * p.z) + plane.offset;
   }
 };

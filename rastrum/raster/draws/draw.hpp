@@ -59,7 +59,8 @@ struct Draw : Primitives {
   }
   /// Whether the setup kernel may make its pieces; otherwise assemble_primitive does.
   [[nodiscard]] bool has_kernel() const {
-    return quadrics == nullptr && topology == Topology::triangles && depth_bias == 0 && depth_bias_slope == 0;
+    return quadrics == nullptr && topology == Topology::triangles && depth_bias == 0 &&
+           depth_bias_slope == 0;
   }
 };
 

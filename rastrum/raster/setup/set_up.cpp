@@ -170,9 +170,8 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
       std::uint32_t slow_culled = 0;
       for (std::uint32_t k = 0; k < out.slow; ++k) {
         const Fate fate = assemble_primitive(
-            geometry, draw, t + slow[k],
-            [&](const Piece& piece) { pieces.add(piece); },
-            sample, at);
+            geometry, draw, t + slow[k], [&](const Piece& piece) { pieces.add(piece); }, sample,
+            at);
         if (fate == Fate::dropped) dropped.add(slow[k]);
         if (fate == Fate::clipped) clipped.add(slow[k]);
         slow_culled += fate == Fate::culled;

@@ -61,7 +61,7 @@ struct Sampler {
 /// Before light, in linear light.
 RASTRUM_HD inline Vec3 base_color(const MaterialTriangle& t, const BoundMaterial& m,
                                   const MaterialPoint& at, const Sampler& textures) {
-  const auto& colors = t.draw.mesh.colors;
+  const auto& colors = t.draw.colors;
   Vec3 base{m.base.x, m.base.y, m.base.z};
   if (!colors.values.empty()) {
     Vec4 c[3];

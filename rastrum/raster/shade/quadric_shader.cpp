@@ -1,4 +1,4 @@
-#include <rastrum/raster/shade/surface_shader.hpp>
+#include <rastrum/raster/shade/quadric_shader.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -45,7 +45,7 @@ std::span<const Vec4> colors_of(const QuadricGeometry& geometry) {
   return std::visit([](const auto& g) { return g.colors; }, geometry);
 }
 
-SurfacePoint surface_point(const QuadricShape& shape, const RayFrame::Point& h) {
+QuadricPoint point_on(const QuadricShape& shape, const RayFrame::Point& h) {
   const Vec3d p = (h.v - shape.p0 * h.w) * (1 / h.w);  // from p0
   if (shape.kind == QuadricKind::disc) return {shape.p1, 0};
   if (shape.kind == QuadricKind::sphere) return {unit_or(p, {0, 0, 1}), 0};
@@ -67,15 +67,14 @@ SurfacePoint surface_point(const QuadricShape& shape, const RayFrame::Point& h) 
   }
   const double slope = (shape.r1 - shape.r0) / distance;
   const double along = std::clamp(t / distance, 0.0, 1.0);
-  const double off_side =
-      std::abs(radius - (shape.r0 + slope * t)) / std::sqrt(1 + slope * slope);
+  const double off_side = std::abs(radius - (shape.r0 + slope * t)) / std::sqrt(1 + slope * slope);
   if (shape.kind == QuadricKind::cone && std::min(std::abs(t), std::abs(distance - t)) < off_side)
     return {axis * (t < 0.5 * distance ? -1.0 : 1.0), along};
   return {unit_or(outwards - axis * slope, axis), along};
 }
 
 /// A primitive as shading asks for it.
-struct SurfaceShader::Kept {
+struct QuadricShader::Kept {
   std::uint64_t low = 0;  ///< of the key; 0: none yet
   const Surface* surface = nullptr;
   QuadricShape shape;
@@ -85,12 +84,12 @@ struct SurfaceShader::Kept {
   Vec4 color[2];
 };
 /// Those that were seen last, by their ids' low bits.
-struct SurfaceShader::KeptSurfaces {
+struct QuadricShader::KeptQuadrics {
   static constexpr std::size_t kCount = 64;
   Kept kept[kCount];
 };
 
-SurfaceShader::SurfaceShader(const SurfaceLook& look, std::span<const Material> materials,
+QuadricShader::QuadricShader(const QuadricLook& look, std::span<const Material> materials,
                              const Camera& camera, int width, int height)
     : look_(look), materials_(materials.begin(), materials.end()) {
   const LitScene lit({{}, materials, {}}, camera, width, height);
@@ -99,7 +98,7 @@ SurfaceShader::SurfaceShader(const SurfaceLook& look, std::span<const Material> 
   if (materials_.empty()) materials_.emplace_back().alpha_mode = AlphaMode::blend;
 }
 
-void SurfaceShader::add(const QuadricStage& stage, const Mat4d& object_to_world) {
+void QuadricShader::add(const QuadricStage& stage, const Mat4d& object_to_world) {
   const InstanceView place{MeshView{}, object_to_world};
   const LitScene lit({{&place, 1}, {}, {}}, {}, 1, 1);
   Surface s{&stage, lit.draws.front(), {1, 1, 1, 1}, &materials_.front()};
@@ -114,11 +113,11 @@ void SurfaceShader::add(const QuadricStage& stage, const Mat4d& object_to_world)
   surfaces_.push_back(s);
 }
 
-std::size_t SurfaceShader::scratch_bytes() const noexcept {
-  return sizeof(KeptSurfaces);
+std::size_t QuadricShader::scratch_bytes() const noexcept {
+  return sizeof(KeptQuadrics);
 }
 
-void SurfaceShader::fetch(const FrameGeometry& frame, std::uint64_t low, Kept& out) const {
+void QuadricShader::fetch(const FrameGeometry& frame, std::uint64_t low, Kept& out) const {
   out.low = low;
   const std::uint64_t id = kIdMask - low;
   const Draw& draw = frame.draw_of(id);
@@ -138,7 +137,7 @@ void SurfaceShader::fetch(const FrameGeometry& frame, std::uint64_t low, Kept& o
   out.color[1] = colors[ends.second] * out.surface->base;
 }
 
-Vec4 SurfaceShader::color(const Kept& k, const FrameGeometry&, std::uint64_t key, float px,
+Vec4 QuadricShader::color(const Kept& k, const FrameGeometry&, std::uint64_t key, float px,
                           float py, double dx, double dy) const {
   const Quadric& q = k.quadric;
   // Which of the two surfaces it is, its depth tells.
@@ -147,10 +146,9 @@ Vec4 SurfaceShader::color(const Kept& k, const FrameGeometry&, std::uint64_t key
   scalar_wide::Surface s = scalar_wide::surface_at(q, row, false, dx);
   if (!s.covered || quadric_depth(q, s.e) != depth) s = scalar_wide::surface_at(q, row, true, dx);
   const RayFrame& r = k.rays;
-  const RayFrame::Point h{
-      ((r.o.v + r.x.v * dx) + r.y.v * dy) + r.depth.v * s.e,
-      ((r.o.w + r.x.w * dx) + r.y.w * dy) + r.depth.w * s.e};
-  const SurfacePoint point = surface_point(k.shape, h);
+  const RayFrame::Point h{((r.o.v + r.x.v * dx) + r.y.v * dy) + r.depth.v * s.e,
+                          ((r.o.w + r.x.w * dx) + r.y.w * dy) + r.depth.w * s.e};
+  const QuadricPoint point = point_on(k.shape, h);
   const Vec4 base = lerp(k.color[0], k.color[1], static_cast<float>(point.along));
   const Vec3 normal = k.surface->to_world.to_world(Vec3(point.normal));
   const Material& m = *k.surface->material;
@@ -175,10 +173,10 @@ Vec4 SurfaceShader::color(const Kept& k, const FrameGeometry&, std::uint64_t key
   return {c.x * alpha, c.y * alpha, c.z * alpha, alpha};
 }
 
-bool SurfaceShader::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa,
+bool QuadricShader::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa,
                           BlockColors& colors) const noexcept {
   bool opaque = true;
-  KeptSurfaces& all = *static_cast<KeptSurfaces*>(block.scratch);
+  KeptQuadrics& all = *static_cast<KeptQuadrics*>(block.scratch);
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const std::uint64_t key = block.keys[i];
@@ -188,7 +186,7 @@ bool SurfaceShader::shade(const FrameGeometry& frame, const VisibleBlock& block,
       colors.set(i, {c.x, c.y, c.z, 1});
       continue;
     }
-    Kept& kept = all.kept[low % KeptSurfaces::kCount];
+    Kept& kept = all.kept[low % KeptQuadrics::kCount];
     if (kept.low != low) fetch(frame, low, kept);
     const Vec2 from_centre =
         block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
