@@ -74,6 +74,9 @@ inline constexpr std::size_t kMaxClipPlanes = 8;
 /// What an instance draws, over the caller's arrays.
 using GeometryView = std::variant<MeshView, SpheresView, CylindersView, TubesView, DiscsView>;
 
+/// Triangles, spheres, cylinders, segments or discs: what has an id. O(1).
+[[nodiscard]] std::uint64_t primitive_count(const GeometryView& geometry);
+
 /// A geometry placed in the world, with a look of its own. Ids count the primitives of the
 /// instances in order.
 struct InstanceView {

@@ -59,7 +59,7 @@ struct TubesView {
   std::span<const Vec4> colors{};  ///< one a position, linear along the axis
   std::uint32_t material = 0;
 
-  /// Segments. O(polylines).
+  /// Segments. O(1).
   [[nodiscard]] std::size_t size() const;
   /// The position at which a segment begins; it ends at the next. O(log polylines).
   [[nodiscard]] std::size_t begin(std::uint64_t segment) const;

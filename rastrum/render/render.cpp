@@ -151,6 +151,20 @@ void check_in_place(const SceneView& scene, const Targets& targets, Shader shade
           "clip planes need them in the host's");
 }
 
+/// What scenes of more than meshes do not have yet.
+void check_asked_of_meshes(const SceneView& scene, const Targets& targets, const FrameOptions& o) {
+  const auto refuse = [](const char* what) {
+    throw Error(Errc::unsupported,
+                std::string(what).append(": of meshes alone, but the scene has spheres, cylinders, "
+                                         "tubes or discs"));
+  };
+  if (wants_surface(targets)) refuse("targets beside colour, depth, ids and keys");
+  if (!o.clip_planes.empty() || std::ranges::any_of(scene.instances, [](const InstanceView& i) {
+        return !i.clip_planes.empty();
+      }))
+    refuse("clip planes");
+}
+
 void check_over(const Targets& targets, const FrameOptions& o) {
   const auto require = [](bool ok, const char* what) {
     if (!ok) throw Error(Errc::invalid_argument, what);
@@ -197,7 +211,7 @@ struct Renderer::Impl {
     const Targets& targets;
     bool in_place = false;
     std::optional<raster::Rect> part{};  ///< FrameRequest::part
-    std::string why_host{};              ///< FrameRequest::why_host
+    std::string why_host{};              ///< FrameRequest's
   };
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
   FrameStats draw_depth(std::span<raster::Draw> draws, const raster::Testing& test,
@@ -322,6 +336,7 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
   SceneView meshes = scene;
   std::vector<InstanceView> mesh_list;
   if (!std::ranges::all_of(scene.instances, is_mesh)) {
+    check_asked_of_meshes(scene, call.targets, o);
     mesh_list = mesh_instances(scene);
     meshes.instances = mesh_list;
   }
@@ -341,8 +356,13 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
       continue;
     }
     const MeshView& mesh = *instance.mesh();
-    draw.set_triangles(mesh);
+    if (mesh.is_packed_list())
+      draw.indices = mesh.indices.packed();
+    else
+      draw.mesh = &mesh;
     draw.source = raster::MatrixVertices(mesh.positions, to_clip * instance.object_to_world);
+    draw.vertex_count = mesh.positions.size();
+    draw.primitive_count = mesh.triangle_count();
     draw.cull = material_cull(instance, scene.materials, taken);
     std::uint32_t flags = raster::set_material_flags(draw, instance, material_flags);
     if (blends && scene.materials.empty() && !call.in_place && instance.visible &&
@@ -422,9 +442,8 @@ FrameStats Renderer::Impl::draw_depth(std::span<raster::Draw> draws, const raste
   const raster::FragmentShader unused(
       [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
   const OfScene of_scene{false, surface};
-  Call pass{o, first};
-  pass.why_host = call.why_host;
-  FrameStats stats = draw(draws, unused, test, pass, &of_scene);
+  FrameStats stats =
+      draw(draws, unused, test, {o, first, false, call.part, call.why_host}, &of_scene);
   const auto begin = std::chrono::steady_clock::now();
   stretch_depth(first.depth, o.background, targets);
   const double ms =

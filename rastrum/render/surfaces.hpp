@@ -7,7 +7,7 @@
 
 #include <rastrum/raster/draws/draw.hpp>
 #include <rastrum/raster/draws/quadrics.hpp>
-#include <rastrum/raster/shade/surface_shader.hpp>
+#include <rastrum/raster/shade/quadric_shader.hpp>
 #include <rastrum/scene.hpp>
 
 namespace rastrum {
@@ -20,19 +20,19 @@ void check_surfaces(const SceneView& scene);
 /// The draws of a frame's quadrics; they refer to it.
 class SurfaceDraws {
  public:
-  SurfaceDraws(const SceneView& scene, const raster::SurfaceLook& look, const Camera& camera,
+  SurfaceDraws(const SceneView& scene, const raster::QuadricLook& look, const Camera& camera,
                int width, int height)
       : look_(look), shader_(look, scene.materials, camera, width, height), scene_(scene) {}
 
   /// Whether the instance is one; then makes its draw.
   bool add(const InstanceView& instance, const Mat4d& world_to_clip, raster::Draw& draw);
 
-  /// As SurfaceShader's.
+  /// As QuadricShader's.
   void leave_linear() { shader_.leave_linear(); }
 
  private:
-  raster::SurfaceLook look_;
-  raster::SurfaceShader shader_;
+  raster::QuadricLook look_;
+  raster::QuadricShader shader_;
   SceneView scene_;
   std::deque<raster::QuadricStage> stages_;  // draws point to them
 };

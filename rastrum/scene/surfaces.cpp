@@ -1,3 +1,4 @@
+#include <rastrum/scene.hpp>
 #include <rastrum/surfaces.hpp>
 
 #include <algorithm>
@@ -27,6 +28,17 @@ std::size_t TubesView::begin(std::uint64_t segment) const {
     (segments_before(*this, middle) <= segment ? low : high) = middle;
   }
   return static_cast<std::size_t>(segment) + offsets[0] + low;
+}
+
+std::uint64_t primitive_count(const GeometryView& geometry) {
+  struct Count {
+    std::uint64_t operator()(const MeshView& m) const { return m.triangle_count(); }
+    std::uint64_t operator()(const SpheresView& s) const { return s.size(); }
+    std::uint64_t operator()(const CylindersView& c) const { return c.size(); }
+    std::uint64_t operator()(const TubesView& t) const { return t.size(); }
+    std::uint64_t operator()(const DiscsView& d) const { return d.size(); }
+  };
+  return std::visit(Count{}, geometry);
 }
 
 }  // namespace rastrum

@@ -103,8 +103,8 @@ struct LayeredBin::Impl {
     const Piece& piece = pieces[block.piece];
     Record record{&piece, block.mask, block_number(block.bx, block.by)};
     // Blocks of several samples see to it themselves (sampled_block.cpp).
-    if (samples_ == 1 && block.piece > 0 && pieces[block.piece - 1].low == piece.low &&
-        !raster::is_quadric(piece))
+    if (samples_ == 1 && raster::is_triangle(piece) && block.piece > 0 &&
+        pieces[block.piece - 1].low == piece.low)
       keep_nearest(record, block.bx, block.by);
     if (record.mask != 0) records_.add(record);
   }

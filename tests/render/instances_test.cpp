@@ -199,6 +199,53 @@ TEST(Instances, ALookOutOfRangeIsRefused) {
          [](InstanceView& i) { i.winding = static_cast<Winding>(9); });
 }
 
+TEST(Instances, SpheresHaveALookToo) {
+  const std::vector<Vec3> centers{{-0.4F, 0, 0}, {0.4F, 0.1F, 0.2F}, {0.1F, -0.3F, 0.5F}};
+  std::vector<Material> materials(2);
+  materials[1].base_color = {0.9F, 0.4F, 0.3F, 1};
+  const Vec4 color{0.3F, 0.8F, 0.4F, 0.5F};
+  const std::vector<Vec4> colors(3, color);
+  for_each_frame([&](Renderer& renderer, const FrameOptions& look, bool with_materials) {
+    const auto draw = [&](const auto& change, FrameOptions by) {
+      SpheresView spheres{.centers = centers, .radius = 0.35F};
+      InstanceView instances[2];
+      change(spheres, instances[0]);
+      instances[0].geometry = spheres;
+      Sheet sheet(3);
+      instances[1].geometry = sheet.view();
+      instances[1].material = 0;
+      instances[1].object_to_world.m[2][3] = -0.6;
+      by.width = kW;
+      by.height = kH;
+      Camera camera;
+      camera.eye = {0.2, -0.5, 2.6};
+      SceneView scene{.instances = instances};
+      if (with_materials) scene.materials = materials;
+      Picture p;
+      p.stats =
+          renderer.render(scene, camera, by, {.color = p.color, .depth = p.depth, .ids = p.ids});
+      return p;
+    };
+    const auto same = [&](const auto& a, const auto& b) {
+      EXPECT_TRUE(draw(a, look).is(draw(b, look)));
+    };
+    const auto plain = [](SpheresView&, InstanceView&) {};
+    same([&](SpheresView&, InstanceView& i) { i.color = color; },
+         [&](SpheresView& s, InstanceView&) { s.colors = colors; });
+    if (with_materials)
+      same([&](SpheresView&, InstanceView& i) { i.material = 1; },
+           [&](SpheresView& s, InstanceView&) { s.material = 1; });
+    const Picture hidden = draw([](SpheresView&, InstanceView& i) { i.visible = false; }, look);
+    EXPECT_TRUE(std::ranges::none_of(hidden.ids.pixels(),
+                                     [](std::int64_t id) { return id >= 0 && id < 3; }));
+    EXPECT_TRUE(std::ranges::any_of(hidden.ids.pixels(), [](std::int64_t id) { return id >= 3; }));
+    const Picture faint = draw([](SpheresView&, InstanceView& i) { i.opacity = 0.5F; }, look);
+    const Picture whole = draw(plain, look);
+    EXPECT_TRUE(std::ranges::equal(faint.ids.pixels(), whole.ids.pixels()));
+    EXPECT_FALSE(faint.is(whole));
+  });
+}
+
 /// A cube in n³ places.
 struct Cubes {
   std::vector<Vec3> corners;

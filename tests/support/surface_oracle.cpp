@@ -62,9 +62,7 @@ struct Axis {
     unit = v * (1 / size);
   }
   [[nodiscard]] Real height(const Point3& p) const { return dot(p - origin, unit); }
-  [[nodiscard]] Point3 across(const Point3& p) const {
-    return (p - origin) - unit * height(p);
-  }
+  [[nodiscard]] Point3 across(const Point3& p) const { return (p - origin) - unit * height(p); }
 };
 
 void add_cone_roots(const Ray& r, const Axis& axis, Real r0, Real slope, std::vector<Real>& roots) {
@@ -218,8 +216,8 @@ std::vector<SurfaceHit> surfaces_at(const OracleCamera& c,
   const Real y = (Real(c.height) / 2 - y_px) * c.px_scale;
   // The parameter is the distance along the view's axis.
   const Point3 sideways = c.right * x + c.up * y;
-  const Ray world = c.orthographic ? Ray{c.eye + sideways, c.back * -1}
-                                   : Ray{c.eye, sideways - c.back};
+  const Ray world =
+      c.orthographic ? Ray{c.eye + sideways, c.back * -1} : Ray{c.eye, sideways - c.back};
   std::vector<SurfaceHit> hits;
   for (const SurfacePrimitive& s : scene) {
     const bool is_dropped = s.kind != SurfaceKind::triangle && !(std::max(s.r0, s.r1) > 0);

@@ -42,7 +42,7 @@ struct OracleCamera {
 struct SurfaceHit {
   Real depth;  ///< reversed, not cut to [0, 1]
   std::int64_t id;
-  bool front;  ///< entered there
+  bool front;     ///< entered there
   Point3 normal;  ///< world, outwards, not of unit length; not of triangles
 };
 

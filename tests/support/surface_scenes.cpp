@@ -66,8 +66,8 @@ class Maker {
     o.back = {0, 0, 1};
     o.orthographic = c.orthographic;
     const int side = std::min(s_.width, s_.height);
-    o.px_scale = c.orthographic ? Real(8) / side
-                                : 2 * std::tan(static_cast<Real>(c.fov_rad) / 2) / side;
+    o.px_scale =
+        c.orthographic ? Real(8) / side : 2 * std::tan(static_cast<Real>(c.fov_rad) / 2) / side;
     o.near_plane = static_cast<Real>(c.near_plane);
     o.far_plane = std::isinf(c.far_plane) ? 0 : static_cast<Real>(c.far_plane);
     o.width = s_.width;
@@ -83,7 +83,8 @@ class Maker {
     const double across = s_.camera.orthographic ? 4 : std::max(0.8, -0.55 * z);
     // Eighths, so that nothing is rounded far from the origin.
     const auto eighths = [](double v) { return static_cast<float>(std::round(v * 64) / 64); };
-    return origin_ + Vec3{eighths(real(-across, across)), eighths(real(-across, across)), eighths(z)};
+    return origin_ +
+           Vec3{eighths(real(-across, across)), eighths(real(-across, across)), eighths(z)};
   }
   float radius() {
     if (kind_ == kTiny) return static_cast<float>(real(0.01, 0.2));
@@ -119,7 +120,9 @@ class Maker {
     s_.primitives.push_back(p);
     return s_.primitives.back();
   }
-  static bool is_fine(Vec3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+  static bool is_fine(Vec3 p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+  }
   /// Only for the renderer.
   void skip(bool is_dropped) {
     ++next_id_;
@@ -231,8 +234,9 @@ class Maker {
       positions.push_back(last);
       radii.push_back(last_radius);
       for (int i = 1; i < n; ++i) {
-        const Vec3 p =
-            kind_ == kDegenerate && random_.chance(0.3) ? last : other_end(last, kind_ == kTiny ? 0.4 : 3);
+        const Vec3 p = kind_ == kDegenerate && random_.chance(0.3)
+                           ? last
+                           : other_end(last, kind_ == kTiny ? 0.4 : 3);
         const float r = random_.chance(0.5) ? last_radius : radius();
         add(SurfaceKind::tube, widen(last), widen(p), last_radius, r);
         positions.push_back(p);
@@ -266,10 +270,11 @@ class Maker {
 
   MeshView triangle() {
     auto& p = s_.positions.emplace_back();
-    // Not steep: its depth is of snapped corners.
+    // Neither steep nor thin: its corners are snapped.
     p.push_back(place());
-    for (int i = 0; i < 2; ++i)
-      p.push_back(p[0] + Vec3{static_cast<float>(real(-4, 4)), static_cast<float>(real(-4, 4)),
+    const double x = real(0.5, 4), y = real(-4, 4), turned = real(0.5, 1.5);
+    for (const auto& [u, v] : {std::pair{x, y}, std::pair{-y * turned, x * turned}})
+      p.push_back(p[0] + Vec3{static_cast<float>(u), static_cast<float>(v),
                               static_cast<float>(real(-0.2, 0.2))});
     SurfacePrimitive& t = add(SurfaceKind::triangle, widen(p[0]), widen(p[1]), 1, 1);
     t.p2 = widen(p[2]);

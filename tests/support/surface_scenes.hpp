@@ -1,5 +1,5 @@
-// Generated scenes of spheres, cylinders, cones, tubes, discs and triangles, for the library and for
-// the oracle of surfaces. Reproducible from a seed.
+// Generated scenes of spheres, cylinders, cones, tubes, discs and triangles, for the library and
+// for the oracle of surfaces. Reproducible from a seed.
 #pragma once
 
 #include <cstdint>

@@ -167,10 +167,9 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
     group.binned = bin_pieces(frame.kernel, pieces.span(), 0, most, lists, scratch.pairs);
     const std::size_t n = scratch.pairs.entries().size(), m = scratch.micro.entries().size();
     if (limited) {
-      const std::uint64_t own = pieces.count * sizeof(Piece) + n * sizeof(PieceInBin) +
-                                m * sizeof(BinFragment) +
-                                (list_count + bin_count) * sizeof(std::uint32_t) +
-                                pieces.quadric_bytes();
+      const std::uint64_t own =
+          pieces.count * sizeof(Piece) + n * sizeof(PieceInBin) + m * sizeof(BinFragment) +
+          (list_count + bin_count) * sizeof(std::uint32_t) + pieces.quadric_bytes();
       if (bytes.fetch_add(own, std::memory_order_relaxed) + own > frame.view_bytes) return;
       group.pieces.data.reserve(pieces.count);
       group.pieces.restart();

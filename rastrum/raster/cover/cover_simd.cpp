@@ -2,9 +2,7 @@
 // rules.hpp, so the same masks. Pieces whose box has at most 8 × 8 samples, nearly all of a fine
 // mesh, are covered a piece a lane and then cut along the blocks; the others a block at a time.
 
-// SSSE3 adds nothing over the scalar build that SSE4 does not; AVX3_DL nothing that these kernels
-// use.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/cover/cover_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h
@@ -485,8 +483,9 @@ HWY_INLINE std::uint32_t hidden_lanes(const Piece* const (&pieces)[kLanes], cons
                           hn::Min(lowest(down, column), lowest(down, right)));
   const auto few =
       hn::And(hn::Lt(hn::Sub(last_column, column), four), hn::Lt(hn::Sub(last_row, row), four));
-  const auto triangle = hn::Eq(
-      hn::And(third[1], hn::Set(di, static_cast<std::int32_t>(kLine | kPoint | kQuadric))), hn::Zero(di));
+  const auto triangle =
+      hn::Eq(hn::And(third[1], hn::Set(di, static_cast<std::int32_t>(kLine | kPoint | kQuadric))),
+             hn::Zero(di));
   const auto is_finite = [&](F v) HWY_ATTR { return hn::Eq(hn::Sub(v, v), hn::Zero(d)); };
   const auto below = hn::And(hn::Gt(bound, hn::Zero(d)), hn::Lt(depth, bound));
   return lane_bits(hn::And(few, triangle)) &
@@ -552,8 +551,7 @@ void masks(const Piece* pieces, Block* blocks, std::size_t n) noexcept {
     if (is_quadric(pieces[block.piece])) {
       const Piece& piece = pieces[block.piece];
       const int x0 = block.bx * kBlockSize, y0 = block.by * kBlockSize;
-      const Rect box =
-          sample_bounds(piece.x, piece.y, {x0, y0, x0 + kBlockSize, y0 + kBlockSize});
+      const Rect box = sample_bounds(piece.x, piece.y, {x0, y0, x0 + kBlockSize, y0 + kBlockSize});
       if (!box.empty()) block.mask = quadric_mask(piece, block.bx, block.by, box);
       continue;
     }

@@ -1,5 +1,6 @@
 // Quadrics in lanes, for the SIMD leaves that cover pieces and make keys: declared once per
-// instruction set, defined in quadric_simd.cpp. Include it after highway.h, outside of any namespace.
+// instruction set, defined in quadric_simd.cpp. Include it after highway.h, outside of any
+// namespace.
 
 // Highway compiles a source once per target; this guard lets the header in once per target too.
 #if defined(RASTRUM_RASTER_QUADRIC_KERNELS_INL_HPP_) == defined(HWY_TARGET_TOGGLE)

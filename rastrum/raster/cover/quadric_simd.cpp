@@ -1,7 +1,7 @@
 // Coverage and depth of quadrics with Highway, compiled once per instruction set: the body that the
 // scalar form has (setup/quadric_depth-inl.hpp), several columns of a row at once.
 
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/cover/quadric_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h
@@ -102,7 +102,8 @@ void quadric_keys(const Piece& piece, const Block& block, std::uint64_t* keys) n
       const W e = surface_at(q, r, away, samples.columns(block.bx * kBlockSize + column)).e;
       auto depth = hn::DemoteTo(df, depth0 + e);
       depth = hn::Min(hn::IfThenElseZero(hn::Gt(depth, hn::Zero(df)), depth), hn::Set(df, 1.0F));
-      const auto high = hn::PromoteTo(d64, hn::BitCast(hn::RebindToUnsigned<decltype(df)>(), depth));
+      const auto high =
+          hn::PromoteTo(d64, hn::BitCast(hn::RebindToUnsigned<decltype(df)>(), depth));
       hn::Store(hn::Or(hn::ShiftLeft<kIdBits>(high), hn::Set(d64, piece.low)), d64,
                 keys + row * kBlockSize + column);
     }

@@ -2,43 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace rastrum::raster {
 namespace {
-
-/// By elimination with the largest pivot of each column.
-std::optional<Mat4d> inverse_of(Mat4d a) {
-  Mat4d r = Mat4d::identity();
-  for (int column = 0; column < 4; ++column) {
-    int pivot = column;
-    for (int row = column + 1; row < 4; ++row)
-      if (std::abs(a.m[row][column]) > std::abs(a.m[pivot][column])) pivot = row;
-    // Written so that a NaN fails.
-    if (!(std::abs(a.m[pivot][column]) > 0)) return std::nullopt;
-    for (int k = 0; k < 4; ++k) {
-      std::swap(a.m[pivot][k], a.m[column][k]);
-      std::swap(r.m[pivot][k], r.m[column][k]);
-    }
-    const double scale = 1 / a.m[column][column];
-    for (int k = 0; k < 4; ++k) {
-      a.m[column][k] *= scale;
-      r.m[column][k] *= scale;
-    }
-    for (int row = 0; row < 4; ++row) {
-      if (row == column) continue;
-      const double factor = a.m[row][column];
-      for (int k = 0; k < 4; ++k) {
-        a.m[row][k] -= factor * a.m[column][k];
-        r.m[row][k] -= factor * r.m[column][k];
-      }
-    }
-  }
-  for (const auto& row : r.m)
-    for (const double v : row)
-      if (!std::isfinite(v)) return std::nullopt;
-  return r;
-}
 
 double radius_of(std::span<const float> radii, float radius, std::size_t i) {
   return radii.empty() ? radius : radii[i];
@@ -70,7 +36,7 @@ QuadricShape shape_of(const DiscsView& d, std::uint64_t i) {
 }  // namespace
 
 QuadricStage::QuadricStage(const QuadricGeometry& geometry, const Mat4d& object_to_clip)
-    : geometry_(geometry), object_to_clip_(object_to_clip), inverse_(inverse_of(object_to_clip)) {}
+    : geometry_(geometry), object_to_clip_(object_to_clip), inverse_(inverse(object_to_clip)) {}
 
 ShapeFate QuadricStage::shape(std::uint64_t i, QuadricShape& out) const {
   out = std::visit([&](const auto& geometry) { return shape_of(geometry, i); }, geometry_);

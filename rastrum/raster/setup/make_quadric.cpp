@@ -118,12 +118,14 @@ void set_form(const LinearVector& s, const Linear& rho, double reach, QuadricPar
   part.inverse_a = 1 / a;
 }
 
-/// Where g ≥ 0. A plane that holds the rays is turned a little.
-void add_limit(Linear g, double reach, QuadricPart& part) {
+/// Where g ≥ 0. A plane that holds the rays is turned a little. Returns whether it was not.
+bool add_limit(Linear g, double reach, QuadricPart& part) {
   const double least = 1e-12 * std::max(std::abs(g.o), 1e-3) / reach;
-  if (std::abs(g.depth) < least) g.depth = g.depth < 0 ? -least : least;
+  const bool crosses = std::abs(g.depth) >= least;
+  if (!crosses) g.depth = g.depth < 0 ? -least : least;
   const double scale = -1 / g.depth;
   part.limits[part.limit_count++] = {g.o * scale, g.x * scale, g.y * scale, g.depth > 0};
+  return crosses;
 }
 
 bool is_finite(const Quadric& q) {
@@ -150,14 +152,16 @@ class PartMaker {
     if (asks_eye_) add_limit(w_of(frame_), reach_, part);
     return part;
   }
-  void add_disc(const Ball& ball, Vec3d normal) {
+  /// Returns whether it is not seen edge-on.
+  bool add_disc(const Ball& ball, Vec3d normal) {
     QuadricPart& part = add_ball(ball);
     const Linear g = from(frame_, ball.centre).along(normal) * (1 / ball.radius);
-    add_limit(g, reach_, part);
+    const bool is_seen = add_limit(g, reach_, part);
     // Its exact negative, so that both are at one depth.
     part.limits[part.limit_count] = part.limits[part.limit_count - 1];
     part.limits[part.limit_count].is_least = !part.limits[part.limit_count].is_least;
     ++part.limit_count;
+    return is_seen;
   }
   /// Between p0 and p1, where the radii are r0 and r1. What lies between its ends lies where w > 0.
   void add_cone(Vec3d p0, Vec3d p1, double r0, double r1) {
@@ -229,7 +233,8 @@ bool make_quadric(const QuadricStage& stage, const QuadricShape& shape, Viewport
       ny = first ? by : ny.with(by);
       nd = first ? bd : nd.with(bd);
     }
-    across = {std::max(across.least, (nx.least + 1) * hw), std::min(across.most, (nx.most + 1) * hw)};
+    across = {std::max(across.least, (nx.least + 1) * hw),
+              std::min(across.most, (nx.most + 1) * hw)};
     down = {std::max(down.least, (1 - ny.most) * hh), std::min(down.most, (1 - ny.least) * hh)};
     depths = nd;
   }
@@ -290,7 +295,7 @@ bool make_quadric(const QuadricStage& stage, const QuadricShape& shape, Viewport
       parts.add_ball(balls[0]);
       break;
     case QuadricKind::disc:
-      parts.add_disc(balls[0], shape.p1);
+      if (!parts.add_disc(balls[0], shape.p1)) return false;
       place.front = q.part[0].limits[q.part[0].limit_count - 2].is_least;
       break;
     case QuadricKind::cone:
@@ -311,8 +316,8 @@ bool make_quadric(const QuadricStage& stage, const QuadricShape& shape, Viewport
       break;
     }
   }
-  q.is_plain = shape.kind == QuadricKind::sphere && is_ahead && !place.asks_near &&
-               q.part[0].inverse_a > 0;
+  q.is_plain =
+      shape.kind == QuadricKind::sphere && is_ahead && !place.asks_near && q.part[0].inverse_a > 0;
   return is_finite(q);
 }
 

@@ -3,10 +3,10 @@
 //
 // Sigg, Weyrich, Botsch and Gross, "GPU-based ray-casting of quadratic surfaces" (2006): with M the
 // matrix to clip space a quadric Q is M⁻ᵀ Q M⁻¹ there, and what the ray of pixel (x, y) meets are
-// the depths d with (x, y, d, 1) M⁻ᵀ Q M⁻¹ (x, y, d, 1)ᵀ = 0: A d² + 2 B d + C = 0 with A constant, B
-// linear and D = B² − A C quadratic in x and y. Deviations: all is relative to a pixel and a depth
-// of the primitive's own, so that nothing cancels far from the origin, and in float64; flat ends
-// and the hulls of tubes are intervals of depth along the ray.
+// the depths d with (x, y, d, 1) M⁻ᵀ Q M⁻¹ (x, y, d, 1)ᵀ = 0: A d² + 2 B d + C = 0 with A constant,
+// B linear and D = B² − A C quadratic in x and y. Deviations: all is relative to a pixel and a
+// depth of the primitive's own, so that nothing cancels far from the origin, and in float64; flat
+// ends and the hulls of tubes are intervals of depth along the ray.
 #pragma once
 
 #include <array>
@@ -56,8 +56,8 @@ struct Quadric {
 };
 
 /// A quadric's pieces are its surface that faces the viewer and, with kFacesAway, the other one.
-/// They have the place of a pixel about which all is told in x[0], y[0] and two corners of their box
-/// in the others, n.8, and refer to the quadric.
+/// They have the place of a pixel about which all is told in x[0], y[0] and two corners of their
+/// box in the others, n.8, and refer to the quadric.
 RASTRUM_HD inline void set_quadric(Piece& p, const Quadric* quadric) {
   const auto halves = std::bit_cast<std::array<float, 2>>(quadric);
   p.z0 = 0;

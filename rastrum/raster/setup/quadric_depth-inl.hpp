@@ -72,9 +72,8 @@ RASTRUM_LANES Inside inside_part(const QuadricPart& p, const QuadricRow::Part& r
   const W near_least = greater(limits.least, r.leaves), far_most = lesser(limits.most, r.enters);
   const WideMask is_near = at_most(near_least, limits.most);
   const WideMask is_far = at_most(limits.least, far_most);
-  const DepthInterval e{
-      choose(r.real, choose(is_near, near_least, limits.least), limits.least),
-      choose(r.real, choose(is_near, limits.most, far_most), limits.most)};
+  const DepthInterval e{choose(r.real, choose(is_near, near_least, limits.least), limits.least),
+                        choose(r.real, choose(is_near, limits.most, far_most), limits.most)};
   return {e, both(either(is_near, is_far), at_most(e.least, e.most))};
 }
 
@@ -99,7 +98,8 @@ RASTRUM_LANES Surface surface_at(const Quadric& q, const QuadricRow& row, bool a
   for (std::uint32_t k = 1; k < q.part_count; ++k) {
     const Inside i = inside_part(q.part[k], row.part[k], dx);
     const WideMask two = both(i.any, all.any);
-    all.e.least = choose(two, lesser(all.e.least, i.e.least), choose(i.any, i.e.least, all.e.least));
+    all.e.least =
+        choose(two, lesser(all.e.least, i.e.least), choose(i.any, i.e.least, all.e.least));
     all.e.most = choose(two, greater(all.e.most, i.e.most), choose(i.any, i.e.most, all.e.most));
     all.any = either(all.any, i.any);
   }

@@ -1,9 +1,7 @@
 // Projection and setup with Highway, compiled once per instruction set. Each repeats the operations
 // of its scalar twin (projection.hpp, make_piece.hpp) in the same order, so it gives the same bits.
 
-// SSSE3 adds nothing over the scalar build that SSE4 does not; AVX3_DL nothing that these kernels
-// use.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/setup/setup_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h

@@ -2,7 +2,7 @@
 // them, Highway where they do not (the lights). A block is done in two steps: each triangle's run
 // of fragments fills its part of a surface (interpolation and textures), then the whole block is
 // lit at once.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/shade/material_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h

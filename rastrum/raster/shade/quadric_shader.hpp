@@ -20,16 +20,16 @@
 namespace rastrum::raster {
 
 /// A point of a quadric's surface, in object space.
-struct SurfacePoint {
+struct QuadricPoint {
   Vec3d normal;      ///< outwards, of unit length
   double along = 0;  ///< of the primitive's axis, from 0 at its first end to 1
 };
 
 /// The point of the shape that is `h`, on its surface but for rounding.
-[[nodiscard]] SurfacePoint surface_point(const QuadricShape& shape, const RayFrame::Point& h);
+[[nodiscard]] QuadricPoint point_on(const QuadricShape& shape, const RayFrame::Point& h);
 
 /// How the surfaces of a frame look.
-struct SurfaceLook {
+struct QuadricLook {
   std::optional<LitModel> model;  ///< none: as materials
   bool blends = false;            ///< alpha counts
   float opacity = 1;              ///< the frame's
@@ -37,9 +37,9 @@ struct SurfaceLook {
 
 /// Shades draws of quadrics, in the order of `add`. Scenes without materials are of one that blends
 /// by its colours. Textures are not read: a quadric has no texture coordinates.
-class SurfaceShader final : public BlockShader {
+class QuadricShader final : public BlockShader {
  public:
-  SurfaceShader(const SurfaceLook& look, std::span<const Material> materials, const Camera& camera,
+  QuadricShader(const QuadricLook& look, std::span<const Material> materials, const Camera& camera,
                 int width, int height);
   /// `stage`, that of `instance`, must outlive the frame.
   void add(const QuadricStage& stage, const InstanceView& instance);
@@ -60,13 +60,13 @@ class SurfaceShader final : public BlockShader {
     float opacity;  ///< of the instance
   };
   struct Kept;
-  struct KeptSurfaces;
+  struct KeptQuadrics;
 
   void fetch(const FrameGeometry& frame, std::uint64_t low, Kept& out) const;
   [[nodiscard]] Vec4 color(const Kept& kept, const FrameGeometry& frame, std::uint64_t key,
                            float px, float py, double dx, double dy) const;
 
-  SurfaceLook look_;
+  QuadricLook look_;
   bool linear_ = false;
   std::vector<Surface> surfaces_;
   std::vector<Material> materials_;  ///< at least one

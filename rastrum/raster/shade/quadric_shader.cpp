@@ -1,4 +1,4 @@
-#include <rastrum/raster/shade/surface_shader.hpp>
+#include <rastrum/raster/shade/quadric_shader.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -45,7 +45,7 @@ std::span<const Vec4> colors_of(const QuadricGeometry& geometry) {
   return std::visit([](const auto& g) { return g.colors; }, geometry);
 }
 
-SurfacePoint surface_point(const QuadricShape& shape, const RayFrame::Point& h) {
+QuadricPoint point_on(const QuadricShape& shape, const RayFrame::Point& h) {
   const Vec3d p = (h.v - shape.p0 * h.w) * (1 / h.w);  // from p0
   if (shape.kind == QuadricKind::disc) return {shape.p1, 0};
   if (shape.kind == QuadricKind::sphere) return {unit_or(p, {0, 0, 1}), 0};
@@ -74,7 +74,7 @@ SurfacePoint surface_point(const QuadricShape& shape, const RayFrame::Point& h) 
 }
 
 /// A primitive as shading asks for it.
-struct SurfaceShader::Kept {
+struct QuadricShader::Kept {
   std::uint64_t low = 0;  ///< of the key; 0: none yet
   const Surface* surface = nullptr;
   QuadricShape shape;
@@ -84,12 +84,12 @@ struct SurfaceShader::Kept {
   Vec4 color[2];
 };
 /// Those that were seen last, by their ids' low bits.
-struct SurfaceShader::KeptSurfaces {
+struct QuadricShader::KeptQuadrics {
   static constexpr std::size_t kCount = 64;
   Kept kept[kCount];
 };
 
-SurfaceShader::SurfaceShader(const SurfaceLook& look, std::span<const Material> materials,
+QuadricShader::QuadricShader(const QuadricLook& look, std::span<const Material> materials,
                              const Camera& camera, int width, int height)
     : look_(look), materials_(materials.begin(), materials.end()) {
   const LitScene lit({{}, materials, {}}, camera, width, height);
@@ -98,7 +98,7 @@ SurfaceShader::SurfaceShader(const SurfaceLook& look, std::span<const Material> 
   if (materials_.empty()) materials_.emplace_back().alpha_mode = AlphaMode::blend;
 }
 
-void SurfaceShader::add(const QuadricStage& stage, const InstanceView& instance) {
+void QuadricShader::add(const QuadricStage& stage, const InstanceView& instance) {
   const LitScene lit({{&instance, 1}, {}, {}}, {}, 1, 1);
   Surface s{&stage, lit.draws.front(), {1, 1, 1, 1}, {}, &materials_.front(), instance.opacity};
   const std::uint32_t material = instance.material.value_or(material_of(stage.geometry()));
@@ -116,11 +116,11 @@ void SurfaceShader::add(const QuadricStage& stage, const InstanceView& instance)
   surfaces_.push_back(s);
 }
 
-std::size_t SurfaceShader::scratch_bytes() const noexcept {
-  return sizeof(KeptSurfaces);
+std::size_t QuadricShader::scratch_bytes() const noexcept {
+  return sizeof(KeptQuadrics);
 }
 
-void SurfaceShader::fetch(const FrameGeometry& frame, std::uint64_t low, Kept& out) const {
+void QuadricShader::fetch(const FrameGeometry& frame, std::uint64_t low, Kept& out) const {
   out.low = low;
   const std::uint64_t id = kIdMask - low;
   const Draw& draw = frame.draw_of(id);
@@ -140,7 +140,7 @@ void SurfaceShader::fetch(const FrameGeometry& frame, std::uint64_t low, Kept& o
   out.color[1] = colors[ends.second] * out.surface->base;
 }
 
-Vec4 SurfaceShader::color(const Kept& k, const FrameGeometry&, std::uint64_t key, float px,
+Vec4 QuadricShader::color(const Kept& k, const FrameGeometry&, std::uint64_t key, float px,
                           float py, double dx, double dy) const {
   const Quadric& q = k.quadric;
   // Which of the two surfaces it is, its depth tells.
@@ -151,7 +151,7 @@ Vec4 SurfaceShader::color(const Kept& k, const FrameGeometry&, std::uint64_t key
   const RayFrame& r = k.rays;
   const RayFrame::Point h{((r.o.v + r.x.v * dx) + r.y.v * dy) + r.depth.v * s.e,
                           ((r.o.w + r.x.w * dx) + r.y.w * dy) + r.depth.w * s.e};
-  const SurfacePoint point = surface_point(k.shape, h);
+  const QuadricPoint point = point_on(k.shape, h);
   const Vec4 base = lerp(k.color[0], k.color[1], static_cast<float>(point.along));
   const Vec3 normal = k.surface->to_world.to_world(Vec3(point.normal));
   const Material& m = *k.surface->material;
@@ -176,10 +176,10 @@ Vec4 SurfaceShader::color(const Kept& k, const FrameGeometry&, std::uint64_t key
   return {c.x * alpha, c.y * alpha, c.z * alpha, alpha};
 }
 
-bool SurfaceShader::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa,
+bool QuadricShader::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa,
                           BlockColors& colors) const noexcept {
   bool opaque = true;
-  KeptSurfaces& all = *static_cast<KeptSurfaces*>(block.scratch);
+  KeptQuadrics& all = *static_cast<KeptQuadrics*>(block.scratch);
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const std::uint64_t key = block.keys[i];
@@ -189,7 +189,7 @@ bool SurfaceShader::shade(const FrameGeometry& frame, const VisibleBlock& block,
       colors.set(i, {c.x, c.y, c.z, 1});
       continue;
     }
-    Kept& kept = all.kept[low % KeptSurfaces::kCount];
+    Kept& kept = all.kept[low % KeptQuadrics::kCount];
     if (kept.low != low) fetch(frame, low, kept);
     const Vec2 from_centre =
         block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
