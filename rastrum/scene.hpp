@@ -177,7 +177,7 @@ struct Bounds {
 /// its triangles' edges. `positions.size()` values; (0, 0, 0) where no triangle touches. `indices`
 /// as MeshView's: empty, they are the positions in order, and each triangle has its own normal.
 /// Throws Error{invalid_argument} for an index out of range. O(positions + indices).
-[[nodiscard]] std::vector<Vec3> vertex_normals(std::span<const Vec3> positions,
-                                               std::span<const std::uint32_t> indices);
+[[nodiscard]] std::vector<Vec3> vertex_normals(const ArrayView<Vec3>& positions,
+                                               const IndexView& indices);
 
 }  // namespace rastrum

@@ -29,7 +29,7 @@ MAY_INCLUDE = {
 }
 # The public headers, rastrum/NAME.hpp, by the floor that has their sources.
 PUBLIC = {
-    "core": {"config", "digest", "error", "image", "mat", "transform", "vec"},
+    "core": {"array", "config", "digest", "error", "image", "mat", "transform", "vec"},
     "parallel": {"device", "stop"},
     "scene": {"camera", "fit", "mesh", "motion", "scene", "shapes", "surfaces"},
     "raster": {"frame", "primitives", "program", "tuning"},

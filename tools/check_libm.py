@@ -14,7 +14,7 @@ import re
 import sys
 
 FUNCTIONS = """sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp exp2 expm1 log
-log2 log10 log1p pow cbrt hypot lerp fma erf erfc tgamma lgamma sincos rsqrt""".split()
+log2 log10 log1p pow cbrt hypot fma erf erfc tgamma lgamma sincos rsqrt""".split()
 # A folder or a file, and why it may.
 EXCEPTIONS = {
     "apps/rastrum/window/": "what a hand moves, or the clock, is another picture each time",
@@ -22,7 +22,7 @@ EXCEPTIONS = {
 ENDINGS = {".hpp", ".cpp", ".h", ".inl", ".cu", ".cuh"}
 NAMES = "|".join(FUNCTIONS)
 # std::sin, called or named; sin(…) of the global namespace, where it is no member and no definition.
-CALL = re.compile(rf"\bstd::(?:{NAMES})[fl]?\b"
+CALL = re.compile(rf"\bstd::(?:{NAMES}|lerp)[fl]?\b"
                   rf"|(?<![\w.>:])(?:::\s*)?(?:{NAMES})[fl]?\s*\(")
 DEFINITION = re.compile(r"\b(?:double|float|auto|void|F)\s*$")
 HEADER = re.compile(r"^\s*#\s*include\s*<(math\.h|tgmath\.h)>")

@@ -32,7 +32,7 @@ struct Alone {
     draw.source = raster::MatrixVertices(
         mesh.positions, world_to_clip(camera, width, height) * instance.object_to_world);
     draw.vertex_count = mesh.positions.size();
-    draw.indices = mesh.indices;
+    draw.mesh = &mesh;
     draw.primitive_count = mesh.triangle_count();
     draw.winding = instance.winding;
     draw.first_id = id - at.primitive;
@@ -78,9 +78,11 @@ Barycentrics barycentrics(const SceneView& scene, const Camera& camera, int widt
 Vec3d position(const SceneView& scene, const Located& at, const Barycentrics& where) {
   require_mesh(scene, at);
   const InstanceView& instance = scene.instances[at.instance];
+  const MeshView& mesh = *instance.mesh();
+  const TrianglePlace place = mesh.place(at.primitive);
   raster::Fragment f;
   for (std::size_t c = 0; c < 3; ++c) {
-    f.vertex[c] = instance.mesh()->vertex(3 * at.primitive + c);
+    f.vertex[c] = mesh.vertex(place.corner[c]);
     f.weights.b[c] = where.weight[c];
   }
   return raster::position_on(instance, f);

@@ -1,6 +1,7 @@
 // The vertices that triangles use, in world space: what a fit looks at, more than once.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -45,8 +46,8 @@ class VerticesInUse {
         continue;
       }
       const MeshView& mesh = *instance.mesh();
-      const bool same = last != nullptr && mesh.indices.data() == last->indices.data() &&
-                        mesh.indices.size() == last->indices.size() &&
+      const bool same = last != nullptr && mesh.indices == last->indices &&
+                        mesh.faces == last->faces &&
                         mesh.positions.size() == last->positions.size();
       if (!same) used_.push_back(used_of(mesh));
       used_by_.push_back(used_.size() - 1);
@@ -71,14 +72,9 @@ class VerticesInUse {
                       [&](Vec3 centre, float radius) { visit_ball(Vec3d(centre), radius, visit); });
         continue;
       }
-      const MeshView& mesh = *scene_.instances[i].mesh();
-      if (mesh.indices.empty()) {
-        for (const Vec3 p : mesh.positions.first(mesh.triangle_count() * 3)) visit(Vec3d(p));
-        continue;
-      }
       const std::vector<bool>& used = used_[used_by_[i]];
       for (std::size_t v = 0; v < used.size(); ++v)
-        if (used[v]) visit(Vec3d(mesh.positions[v]));
+        if (used[v]) visit(scene_.instances[i].mesh()->positions.wide(v));
     }
   }
 
@@ -100,11 +96,16 @@ class VerticesInUse {
   }
 
   static std::vector<bool> used_of(const MeshView& mesh) {
-    std::vector<bool> used;
-    if (mesh.indices.empty()) return used;
     check_indices(mesh);
-    used.resize(mesh.positions.size());
-    for (const std::uint32_t i : mesh.indices) used[i] = true;
+    std::vector<bool> used(mesh.positions.size());
+    constexpr std::size_t kAtOnce = 256;
+    std::uint32_t vertices[3 * kAtOnce];
+    const std::size_t triangles = mesh.triangle_count();
+    for (std::size_t t = 0; t < triangles; t += kAtOnce) {
+      const std::size_t n = std::min(kAtOnce, triangles - t);
+      mesh.read_triangles(t, n, vertices);
+      for (std::size_t i = 0; i < 3 * n; ++i) used[vertices[i]] = true;
+    }
     return used;
   }
 

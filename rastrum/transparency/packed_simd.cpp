@@ -3,7 +3,7 @@
 // SortKeys are sorted by networks, a vector of pixels at once: lists are short, what their order is
 // cannot be predicted, and a network has no branches. Up to 8 sort_keys it runs in registers;
 // beyond that it is Batcher's merge exchange (Knuth, TAOCP 3, 5.2.2 M), O(n log² n) for any n.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/transparency/packed_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h

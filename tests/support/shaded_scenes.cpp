@@ -43,7 +43,8 @@ void give(Random& r, const Mesh& mesh, Attribute<T>& attribute, const Make& make
 
 Texture texture(Random& r) {
   Texture t;
-  t.image = Image<Rgba8>(r.integer(1, 20), r.integer(1, 20));
+  const int height = r.integer(1, 20), width = r.integer(1, 20);
+  t.image = Image<Rgba8>(width, height);
   for (Rgba8& p : t.image.pixels()) {
     const std::uint64_t bits = r.bits();
     p = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8),

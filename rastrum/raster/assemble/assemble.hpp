@@ -155,6 +155,7 @@ Fate assemble_quadric(int width, int height, const Draw& draw, std::uint64_t p, 
 template <class Geometry, class Emit>
 RASTRUM_HD Fate assemble_primitive(const Geometry& frame, const Draw& draw, std::uint64_t p,
                                    Emit&& emit, std::uint32_t sample = 0, SampleOffset at = {}) {
+  if (!draw.visible) return Fate::culled;
   const std::uint64_t id = draw.first_id + p;
   const std::uint32_t flags = frame.flags_of(draw, p) | sample << kSampleShift;
   if ((flags & kCutAway) != 0) return Fate::culled;

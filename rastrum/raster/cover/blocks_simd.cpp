@@ -2,9 +2,7 @@
 // maximum and the way to 8-bit colours. Each repeats the operations of its scalar twin
 // (make_piece.hpp, color.hpp) in the same order, so it gives the same bits.
 
-// SSSE3 adds nothing over the scalar build that SSE4 does not; AVX3_DL nothing that these kernels
-// use.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/cover/blocks_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h

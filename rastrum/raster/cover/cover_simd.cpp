@@ -2,9 +2,7 @@
 // rules.hpp, so the same masks. Pieces whose box has at most 8 × 8 samples, nearly all of a fine
 // mesh, are covered a piece a lane and then cut along the blocks; the others a block at a time.
 
-// SSSE3 adds nothing over the scalar build that SSE4 does not; AVX3_DL nothing that these kernels
-// use.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/cover/cover_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h

@@ -1,7 +1,7 @@
 // Coverage and depth of quadrics with Highway, compiled once per instruction set: the body that the
 // scalar form has (setup/quadric_depth-inl.hpp), several columns of a row at once.
 
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/cover/quadric_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h

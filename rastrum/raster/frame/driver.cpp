@@ -8,6 +8,7 @@
 #include <rastrum/raster/bin/tile_grid.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/raster/setup/quadric.hpp>
+#include <rastrum/raster/setup/set_up.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -33,6 +34,20 @@ constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
 
 bool has_quadrics(const FrameRequest& request) {
   return std::ranges::any_of(request.draws, [](const Draw& d) { return d.quadrics != nullptr; });
+}
+
+/// Gives draws their places among the projected vertices, and returns how many there are.
+std::uint64_t place_projected(std::span<Draw> draws) {
+  std::uint64_t vertices = 0;
+  for (Draw& draw : draws) {
+    if (!draw.visible || is_projected_in_setup(draw)) {
+      draw.first_vertex = kNotProjected;
+      continue;
+    }
+    draw.first_vertex = vertices;
+    vertices += draw.vertex_count;
+  }
+  return vertices;
 }
 
 }  // namespace
@@ -131,7 +146,8 @@ FrameDriver::Plan FrameDriver::plan(const FrameRequest& request, const Totals& t
 
 void FrameDriver::project(Frame& frame) {
   const FrameRequest& request = frame.request;
-  for (const Draw& draw : request.draws)
+  for (const Draw& draw : request.draws) {
+    if (!draw.visible || draw.first_vertex == kNotProjected) continue;
     frame.for_each_index(
         (draw.vertex_count + kProjectGrain - 1) / kProjectGrain, [&](std::size_t i) {
           const std::size_t begin = i * kProjectGrain;
@@ -139,6 +155,7 @@ void FrameDriver::project(Frame& frame) {
           draw.source.project(begin, end, frame.geometry.viewport, request.isa,
                               projected_.data() + draw.first_vertex + begin);
         });
+  }
   frame.geometry.projected = projected_.data();
 }
 
@@ -213,7 +230,8 @@ FrameStats FrameDriver::draw(FrameRequest& request) {
                                        .append(needs_.rasterizer)
                                        .append("' draws triangles, points and lines; spheres, "
                                                "cylinders, tubes and discs are the renderer's"));
-  const Totals totals = begin_frame(request);
+  Totals totals = begin_frame(request);
+  totals.vertices = place_projected(request.draws);
   const Plan cut = plan(request, totals);
   Frame frame{
       .request = request,

@@ -11,6 +11,13 @@
 
 namespace rastrum::raster {
 
+/// Whether a draw's vertices are projected when its triangles are set up, all at once, rather than
+/// before: a million instances of a small mesh then keep no vertices.
+[[nodiscard]] inline bool is_projected_in_setup(const Draw& draw) {
+  return draw.has_kernel() && draw.source.matrix() != nullptr &&
+         draw.primitive_count <= kSetupBatch && draw.vertex_count <= 3 * draw.primitive_count;
+}
+
 /// The pieces of a run of triangles, in submission order except that a batch's clipped triangles
 /// come behind the others.
 struct Pieces {
