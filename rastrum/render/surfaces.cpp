@@ -73,14 +73,13 @@ class Check {
   std::size_t instance_;
 };
 
-bool is_translucent(const InstanceView& instance, const raster::QuadricGeometry& geometry,
+bool is_translucent(const raster::QuadricGeometry& geometry, const InstanceView& instance,
                     const Material* material) {
-  if (instance.opacity < 1) return true;
   if (material != nullptr) return material->alpha_mode == AlphaMode::blend || material->opacity < 1;
   // Written so that a NaN is found.
-  const auto is_opaque = [](const Vec4& c) { return c.w >= 1; };
-  if (instance.color) return !is_opaque(*instance.color);
-  return !std::ranges::all_of(raster::colors_of(geometry), is_opaque);
+  if (instance.color) return !(instance.color->w >= 1);
+  return !std::ranges::all_of(raster::colors_of(geometry, instance),
+                              [](const Vec4& c) { return c.w >= 1; });
 }
 
 }  // namespace
@@ -89,8 +88,7 @@ void check_surfaces(const SceneView& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i)
     if (const auto geometry = quadrics_of(scene.instances[i].geometry)) {
       const Check check(i);
-      check.material(scene.instances[i].material.value_or(raster::material_of(*geometry)),
-                     scene.materials.size());
+      check.material(raster::material_of(*geometry, scene.instances[i]), scene.materials.size());
       std::visit(check, *geometry);
     }
 }
@@ -106,10 +104,10 @@ bool SurfaceDraws::add(const InstanceView& instance, const Mat4d& world_to_clip,
   draw.primitive_count = std::visit([](const auto& g) { return g.size(); }, *geometry);
   draw.shading = shader_;
   const Material* const material =
-      scene_.materials.empty()
-          ? nullptr
-          : &scene_.materials[instance.material.value_or(raster::material_of(*geometry))];
-  if (look_.blends && (look_.opacity < 1 || is_translucent(instance, *geometry, material)))
+      scene_.materials.empty() ? nullptr
+                               : &scene_.materials[raster::material_of(*geometry, instance)];
+  if (look_.blends &&
+      (look_.opacity < 1 || instance.opacity < 1 || is_translucent(*geometry, instance, material)))
     draw.flags |= raster::kTranslucent;
   return true;
 }

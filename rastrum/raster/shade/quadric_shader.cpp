@@ -38,10 +38,11 @@ Vec4 lerp(const Vec4& a, const Vec4& b, float t) {
 
 }  // namespace
 
-std::uint32_t material_of(const QuadricGeometry& geometry) {
-  return std::visit([](const auto& g) { return g.material; }, geometry);
+std::uint32_t material_of(const QuadricGeometry& geometry, const InstanceView& instance) {
+  return instance.material.value_or(std::visit([](const auto& g) { return g.material; }, geometry));
 }
-std::span<const Vec4> colors_of(const QuadricGeometry& geometry) {
+std::span<const Vec4> colors_of(const QuadricGeometry& geometry, const InstanceView& instance) {
+  if (instance.color) return {};
   return std::visit([](const auto& g) { return g.colors; }, geometry);
 }
 
@@ -99,20 +100,23 @@ QuadricShader::QuadricShader(const QuadricLook& look, std::span<const Material> 
 }
 
 void QuadricShader::add(const QuadricStage& stage, const InstanceView& instance) {
-  const LitScene lit({{&instance, 1}, {}, {}}, {}, 1, 1);
-  Surface s{&stage, lit.draws.front(), {1, 1, 1, 1}, {}, &materials_.front(), instance.opacity};
-  const std::uint32_t material = instance.material.value_or(material_of(stage.geometry()));
-  if (!display_.empty()) s.material = &materials_[material];
-  if (!instance.color) s.colors = colors_of(stage.geometry());
-  const bool has_colors = instance.color || !s.colors.empty();
-  s.base = s.material->base_color;
+  const InstanceView place{MeshView{}, instance.object_to_world};
+  const LitScene lit({{&place, 1}, {}, {}}, {}, 1, 1);
+  const bool has_materials = !display_.empty();
+  const std::size_t m = has_materials ? material_of(stage.geometry(), instance) : 0;
+  const Material& material = materials_[m];
+  Surface s{&stage,
+            lit.draws.front(),
+            material.base_color,
+            &material,
+            look_.opacity * instance.opacity * material.opacity,
+            colors_of(stage.geometry(), instance)};
   if (look_.model) {
-    const Vec3 base = !display_.empty() ? display_[material]
-                      : has_colors      ? Vec3{1, 1, 1}
-                                        : kDefaultBase;
+    const bool plain = s.colors.empty() && !instance.color;
+    const Vec3 base = has_materials ? display_[m] : plain ? kDefaultBase : Vec3{1, 1, 1};
     s.base = {base.x, base.y, base.z, s.base.w};
   }
-  if (instance.color) s.base = *instance.color * s.base;
+  if (instance.color) s.base = s.base * *instance.color;
   surfaces_.push_back(s);
 }
 
@@ -157,7 +161,7 @@ Vec4 QuadricShader::color(const Kept& k, const FrameGeometry&, std::uint64_t key
   const Material& m = *k.surface->material;
   float alpha = 1;
   if (look_.blends) {
-    alpha = look_.opacity * m.opacity * k.surface->opacity;
+    alpha = k.surface->opacity;
     if (m.alpha_mode == AlphaMode::blend) alpha *= base.w;
     alpha = clamped_alpha(alpha);
   }
