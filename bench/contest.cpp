@@ -167,7 +167,7 @@ FrameStats draw(Renderer& renderer, const Subject& subject, FrameOptions frame,
   raster::Draw draw;
   draw.source = source;
   draw.vertex_count = subject.mesh.positions.size();
-  draw.indices = subject.mesh.indices;
+  draw.indices = subject.mesh.indices.packed();
   draw.primitive_count = subject.mesh.triangle_count();
   const raster::BlockShader& shader = subject.shader != nullptr ? *subject.shader : depth_cubed();
   return RendererAccess::draw(renderer, {&draw, 1}, shader, {}, frame, targets);
@@ -266,8 +266,8 @@ Measured measured_ms(const Result& result, const Subject& subject, bool memory) 
   m.samples_ms = result.timing.samples_ms;
   m.scratch_bytes = result.stats.peak_bytes;
   if (memory)
-    m.all_bytes = m.scratch_bytes + subject.mesh.positions.size_bytes() +
-                  subject.mesh.indices.size_bytes() +
+    m.all_bytes = m.scratch_bytes + subject.mesh.positions.packed().size_bytes() +
+                  subject.mesh.indices.packed().size_bytes() +
                   static_cast<std::uint64_t>(subject.width) *
                       static_cast<std::uint64_t>(subject.height) * sizeof(Rgba8);
   return m;

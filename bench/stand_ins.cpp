@@ -174,7 +174,7 @@ Mesh read_mesh(const std::string& file) {
 MeshView first_part(const Mesh& mesh, double share) {
   MeshView view = mesh.view();
   const auto n = static_cast<std::size_t>(static_cast<double>(mesh.triangle_count()) * share);
-  view.indices = view.indices.first(n * 3);
+  view.indices = view.indices.subview(0, n * 3);
   return view;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <rastrum/array.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum {
@@ -16,39 +17,100 @@ namespace rastrum {
 /// clockwise, or whichever is seen; then no face is culled.
 enum class Winding : std::uint8_t { counter_clockwise, clockwise, either };
 
-/// Values at the corners of triangles. Corner c of triangle t reads `values[indices[3t + c]]`;
-/// where `indices` is empty it reads `values` by the position's index, so that an attribute may
-/// share the positions' numbering (glTF, PLY) or have its own (OBJ).
+/// How the corners of a mesh, one an index, make faces, and faces triangles.
+enum class FaceKind : std::uint8_t {
+  triangles,  ///< three corners each
+  quads,      ///< four corners each: triangles (0, 1, 2) and (0, 2, 3)
+  polygons,   ///< runs of corners, each the fan (0, k + 1, k + 2); also fans
+  strips,     ///< runs of corners: (k, k + 1, k + 2), in odd triangles (k + 1, k, k + 2)
+};
+
+/// `offsets`: of polygons and strips, one more than faces: face i has the corners offsets[i] to
+/// offsets[i + 1] (VTK's offsets and connectivity). A face of two corners has no triangle; fewer
+/// are refused, as are offsets beyond the corners. Empty: all corners are one face.
+struct FacesView {
+  FaceKind kind = FaceKind::triangles;
+  IndexView offsets{};
+
+  bool operator==(const FacesView&) const = default;
+};
+
+/// Where a triangle's corners and its face are among those of its mesh.
+struct TrianglePlace {
+  std::size_t corner[3];
+  std::size_t face;
+};
+
+/// What each value of an attribute is of.
+enum class Per : std::uint8_t { vertex, corner, face, mesh };
+
+/// Values at the corners of triangles. With `indices`, one a corner, corner c reads
+/// values[indices[c]] (OBJ); without, `values` has one a position (glTF, PLY), a corner, a face or
+/// for all.
 template <class T>
 struct AttributeView {
-  std::span<const T> values{};
-  std::span<const std::uint32_t> indices{};
+  ArrayView<T> values{};
+  IndexView indices{};
+  Per per = Per::vertex;
 
-  [[nodiscard]] bool empty() const { return values.empty(); }
+  [[nodiscard]] RASTRUM_HD bool empty() const { return values.empty(); }
+  /// Which of the values corner c of a triangle has; `vertex`: its positions.
+  [[nodiscard]] RASTRUM_HD std::size_t element(const TrianglePlace& t,
+                                               const std::uint32_t (&vertex)[3],
+                                               std::size_t c) const {
+    if (!indices.empty()) return indices[t.corner[c]];
+    if (per == Per::vertex) return vertex[c];
+    return per == Per::corner ? t.corner[c] : per == Per::face ? t.face : 0;
+  }
+  [[nodiscard]] RASTRUM_HD T at(const TrianglePlace& t, const std::uint32_t (&vertex)[3],
+                                std::size_t c) const {
+    return values[element(t, vertex, c)];
+  }
 };
 
-/// A triangle mesh over the caller's arrays; nothing is copied, so they must outlive the render.
-/// Counter-clockwise is front. Every index must be < its array's size; the render checks this.
+/// A mesh over the caller's arrays, of any types and strides (array.hpp); nothing is copied, so
+/// they must outlive the render. Counter-clockwise is front. Every index must be < its array's
+/// size; the render checks this. At most 2³² − 1 positions.
 struct MeshView {
-  std::span<const Vec3> positions{};         ///< object space
-  std::span<const std::uint32_t> indices{};  ///< 3 per triangle; empty: positions in order
-  AttributeView<Vec3> normals{};             ///< need not be unit length; empty: face normals
-  AttributeView<Vec2> texcoords{};           ///< (0, 0) is the top left of a texture, as in glTF
-  AttributeView<Vec4> colors{};              ///< linear, straight alpha; multiplies the base colour
-  std::span<const std::uint32_t> face_materials{};  ///< one per triangle; empty: `material` for all
-  std::uint32_t material = 0;                       ///< index into Scene::materials
+  ArrayView<Vec3> positions{};      ///< object space; float64 is transformed in float64
+  IndexView indices{};              ///< one a corner; empty: positions in order
+  AttributeView<Vec3> normals{};    ///< need not be unit length; empty: face normals
+  AttributeView<Vec2> texcoords{};  ///< (0, 0) is the top left of a texture, as in glTF
+  AttributeView<Vec4> colors{};     ///< linear, straight alpha; multiplies the base colour
+  IndexView face_materials{};       ///< one a face; empty: `material` for all
+  std::uint32_t material = 0;       ///< index into Scene::materials
+  FacesView faces{};
 
-  [[nodiscard]] std::size_t triangle_count() const {
-    return (indices.empty() ? positions.size() : indices.size()) / 3;
+  [[nodiscard]] std::size_t corner_count() const {
+    return indices.empty() ? positions.size() : indices.size();
   }
-  /// The position of corner 3t + c, c of triangle t.
-  [[nodiscard]] std::uint32_t vertex(std::size_t corner) const {
+  [[nodiscard]] std::size_t face_count() const;
+  [[nodiscard]] std::size_t triangle_count() const;
+  /// The position of a corner.
+  [[nodiscard]] RASTRUM_HD std::uint32_t vertex(std::size_t corner) const {
     return indices.empty() ? static_cast<std::uint32_t>(corner) : indices[corner];
   }
+  /// Of triangle t < triangle_count(). O(log faces) where there are offsets, else O(1).
+  [[nodiscard]] RASTRUM_HD TrianglePlace place(std::size_t t) const {
+#if !defined(__CUDA_ARCH__)
+    if (faces.kind != FaceKind::triangles) return place_in_face(t);
+#endif
+    return {{3 * t, 3 * t + 1, 3 * t + 2}, t};
+  }
+  /// The positions of the corners of triangles first to first + n, three each. O(n + log faces).
+  void read_triangles(std::size_t first, std::size_t n, std::uint32_t* vertices) const;
+  /// Whether its triangles are a list that a device reads: packed indices, or none, and no faces of
+  /// another kind.
+  [[nodiscard]] bool is_packed_list() const {
+    return faces.kind == FaceKind::triangles && indices.is_packed();
+  }
+
+ private:
+  [[nodiscard]] TrianglePlace place_in_face(std::size_t t) const;
 };
 
-/// Throws Error{invalid_argument} that names the first of the triangles' indices that is no
-/// position's. O(indices).
+/// Throws Error{invalid_argument} that names the first offset that is out of order or range, and
+/// the first of the corners' indices that is no position's. O(offsets + indices).
 void check_indices(const MeshView& mesh);
 
 template <class T>
@@ -73,7 +135,7 @@ struct Mesh {
 
   [[nodiscard]] MeshView view() const {
     return {positions,     indices,        normals.view(), texcoords.view(),
-            colors.view(), face_materials, material};
+            colors.view(), face_materials, material,       {}};
   }
   [[nodiscard]] std::size_t triangle_count() const { return view().triangle_count(); }
 };

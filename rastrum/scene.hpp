@@ -14,6 +14,7 @@
 #include <rastrum/mat.hpp>
 #include <rastrum/mesh.hpp>
 #include <rastrum/motion.hpp>
+#include <rastrum/surfaces.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum {
@@ -71,7 +72,10 @@ struct ClipPlane {
 inline constexpr std::size_t kMaxClipPlanes = 8;
 
 /// What an instance draws, over the caller's arrays.
-using GeometryView = std::variant<MeshView>;
+using GeometryView = std::variant<MeshView, SpheresView, CylindersView, TubesView, DiscsView>;
+
+/// Triangles, spheres, cylinders, segments or discs: what has an id. O(1).
+[[nodiscard]] std::uint64_t primitive_count(const GeometryView& geometry);
 
 /// A geometry placed in the world, with a look of its own. Ids count the primitives of the
 /// instances in order.
@@ -173,7 +177,7 @@ struct Bounds {
 /// its triangles' edges. `positions.size()` values; (0, 0, 0) where no triangle touches. `indices`
 /// as MeshView's: empty, they are the positions in order, and each triangle has its own normal.
 /// Throws Error{invalid_argument} for an index out of range. O(positions + indices).
-[[nodiscard]] std::vector<Vec3> vertex_normals(std::span<const Vec3> positions,
-                                               std::span<const std::uint32_t> indices);
+[[nodiscard]] std::vector<Vec3> vertex_normals(const ArrayView<Vec3>& positions,
+                                               const IndexView& indices);
 
 }  // namespace rastrum

@@ -29,9 +29,9 @@ MAY_INCLUDE = {
 }
 # The public headers, rastrum/NAME.hpp, by the floor that has their sources.
 PUBLIC = {
-    "core": {"config", "error", "image", "mat", "transform", "vec"},
+    "core": {"array", "config", "digest", "error", "image", "mat", "transform", "vec"},
     "parallel": {"device", "stop"},
-    "scene": {"camera", "fit", "mesh", "motion", "scene", "shapes"},
+    "scene": {"camera", "fit", "mesh", "motion", "scene", "shapes", "surfaces"},
     "raster": {"frame", "primitives", "program", "tuning"},
     "terrain": {"terrain", "terrain_light"},
     "io": {"io"},

@@ -36,6 +36,10 @@ bool has_exr(const FrameImageKind& kind) {
 
 }  // namespace
 
+const char* name(const FrameImage& image) {
+  return image.kind->name;
+}
+
 std::string frame_image_names() {
   std::string names;
   for (const FrameImageKind& kind : kKinds)

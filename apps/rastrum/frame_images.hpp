@@ -22,6 +22,8 @@ struct FrameImage {
 
 /// NAME=FILE. Throws UsageError that lists the names.
 [[nodiscard]] FrameImage parse_frame_image(const std::string& text);
+/// As on the command line.
+[[nodiscard]] const char* name(const FrameImage& image);
 /// The names, for help texts.
 [[nodiscard]] std::string frame_image_names();
 

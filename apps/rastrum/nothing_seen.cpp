@@ -141,6 +141,7 @@ std::array<std::uint64_t, kFates> census(const FrameOptions& options, const Scen
   const Mat4d world_to_view = world_to_clip(camera, options.width, options.height);
   const Shader shader = shader_for(options.shader, scene);
   for (const InstanceView& instance : scene.instances) {
+    if (instance.mesh() == nullptr) continue;
     const MeshView& mesh = *instance.mesh();
     const Eye eye{world_to_view * instance.object_to_world,
                   static_cast<double>(options.width),
@@ -149,11 +150,9 @@ std::array<std::uint64_t, kFates> census(const FrameOptions& options, const Scen
                   options.cull,
                   material_cull(instance, scene.materials, shader)};
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-      const auto corner = [&](std::size_t k) {
-        const std::size_t c = 3 * t + k;
-        return mesh.positions[mesh.indices.empty() ? c : mesh.indices[c]];
-      };
-      const Vec3 corners[3] = {corner(0), corner(1), corner(2)};
+      std::uint32_t v[3];
+      mesh.read_triangles(t, 1, v);
+      const Vec3 corners[3] = {mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]]};
       const bool away = is_cut_away(options, instance.object_to_world, corners);
       ++counts[away ? cut_away : eye.fate({corners[0], corners[1], corners[2]})];
     }

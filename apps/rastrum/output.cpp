@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <system_error>
 #include <vector>
@@ -118,6 +119,19 @@ void check_outputs(std::span<const Output* const> outputs) {
     else
       check_directory(*outputs[i]);
   }
+}
+
+void print_hash(const Digest& digest, std::string_view what, std::optional<std::size_t> number) {
+  std::string line = digest.hex().append("  ").append(what);
+  if (number) line.append(" ").append(std::to_string(*number));
+  std::puts(line.c_str());
+}
+
+void check_hash(std::span<const Output* const> outputs) {
+  for (const Output* const output : outputs)
+    if (output->to_stdout())
+      throw UsageError("--hash", "is printed to standard output, and so is what " + output->option +
+                                     " asks for: name a file there");
 }
 
 io::AtomicFile& OutputFiles::begin(const Output& output) {

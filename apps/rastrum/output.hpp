@@ -1,6 +1,7 @@
 // Files that are written: checked before any work is done, format by extension, all or none.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <initializer_list>
 #include <list>
@@ -9,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include <rastrum/digest.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/io.hpp>
 
@@ -39,6 +41,12 @@ struct Output {
 /// where a directory is missing or not writable: an hour of work should not end with that. Outputs
 /// not asked for are ignored. What killed programs have left in those directories is removed.
 void check_outputs(std::span<const Output* const> outputs);
+
+/// `--hash`: prints a picture's digest to standard output, a line of the digest, what it is of, and
+/// the picture's number where there are many.
+void print_hash(const Digest& digest, std::string_view what, std::optional<std::size_t> number);
+/// Throws UsageError where one of `outputs` is standard output, which has no room for both.
+void check_hash(std::span<const Output* const> outputs);
 
 /// The files of one picture, or of one run: none is seen before commit(), then all are.
 class OutputFiles {

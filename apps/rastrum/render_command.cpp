@@ -54,6 +54,7 @@ struct RenderArguments : SceneArguments {
   std::optional<Format> color_format;
   Output color, depth, ids, objects, heatmap, errors, trace, stats;
   std::vector<FrameImage> images;
+  bool hash = false;
 
   /// Whether one run draws many pictures.
   [[nodiscard]] bool is_sequence() const { return !path.empty() || turntable != 0; }
@@ -114,6 +115,10 @@ void add_output_options(Parser& app, RenderArguments& a) {
   add(app, "--trace", "FILE", ".json: stages for chrome://tracing or ui.perfetto.dev",
       [&a](const std::string& s) { a.trace = parse_output("--trace", s, {Format::json}); })
       ->group(group);
+  app.add_flag("--hash", a.hash,
+               "print the digest (SHA-256, docs/conventions.md) of the pixels of each picture that "
+               "is written, or without any of the 8-bit colours")
+      ->group(group);
   app.add_flag("--quiet", a.quiet, "print errors alone: no warnings, legend, summary or progress")
       ->group(group);
 }
@@ -142,7 +147,8 @@ void add_path_options(Parser& app, RenderArguments& a) {
 void add_motion_options(Parser& app, RenderArguments& a) {
   const char* group = "Motion";
   add(app, "--time", "S",
-      "the moment of an animation of the files, in seconds; what has ended begins again (without: as "
+      "the moment of an animation of the files, in seconds; what has ended begins again (without: "
+      "as "
       "the files stand, and along --path each picture's own time)",
       [&a](const std::string& s) {
         a.time_s = parse_number("--time", s);
@@ -199,7 +205,7 @@ void check(RenderArguments& a) {
   else if (a.color_format)
     throw UsageError("--output-format", "is for -o");
   if (!a.color && !a.depth && !a.ids && !a.objects && a.images.empty() && !a.heatmap && !a.errors &&
-      !a.stats && !a.trace)
+      !a.stats && !a.trace && !a.hash)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
   check_scene_arguments(a);
   if (a.depth_unit && !a.depth) throw UsageError("--depth-unit", "is for --depth");
@@ -215,6 +221,7 @@ void check(RenderArguments& a) {
                                      &a.heatmap, &a.errors, &a.trace, &a.stats};
   for (const FrameImage& image : a.images) outputs.push_back(&image.output);
   check_outputs(outputs);
+  if (a.hash) check_hash(outputs);
 }
 
 void report_blended(const Scene& scene) {
@@ -232,16 +239,13 @@ void report_missing(const FrameStats& frame) {
          " triangles have a NaN or infinite vertex and are not drawn");
 }
 
-void write_error_picture(const RenderArguments& a, const Pictures& p, io::AtomicFile& file,
-                         Progress& progress) {
-  const ErrorPicture picture = make_error_picture(p.color8.view(), p.errors.view());
-  io::write_png(file, picture.image.view());
+void report_errors(const RenderArguments& a, const ErrorPicture& picture, std::size_t pixels,
+                   Progress& progress) {
   progress.clear();
   if (a.quiet) return;
   const bool repaired = a.render.transparency.method == Transparency::exact;
   std::fprintf(stderr, "%s: %lu of %lu pixels are red: %s\n", a.errors.name().c_str(),
-               static_cast<unsigned long>(picture.wrong),
-               static_cast<unsigned long>(p.errors.pixels().size()),
+               static_cast<unsigned long>(picture.wrong), static_cast<unsigned long>(pixels),
                repaired ? "the filter could not hold them, and they were sorted"
                         : "blended in a wrong order");
 }
@@ -255,50 +259,14 @@ Image<float> distances(ImageView<const float> depth, const Camera& camera) {
   return distance;
 }
 
-/// Into `files`, which the caller commits.
-void write_images(const RenderArguments& a, const Pictures& p, const Camera& camera,
-                  const Inputs& inputs, OutputFiles& files, Timeline& timeline,
-                  Progress& progress) {
-  const auto write = [&](const Output& output, auto&& writer) {
-    if (!output) return;
-    progress.show("writing " + output.name());
-    timeline.measure("write " + output.name(), "write", [&] { writer(files.begin(output)); });
-  };
-  if (a.color.format != Format::mp4)
-    write(a.color, [&](io::AtomicFile& file) {
-      write_color(file, a.color.format, p.color8.view(), p.color.view());
-    });
-  write(a.depth, [&](io::AtomicFile& file) {
-    if (a.depth_unit == DepthUnit::world)
-      write_depth(file, a.depth.format, distances(p.depth.view(), camera).view());
-    else
-      write_depth(file, a.depth.format, p.depth.view());
-  });
-  write(a.ids, [&](io::AtomicFile& file) { io::write_npy(file, p.ids.view()); });
-  write(a.objects, [&](io::AtomicFile& file) {
-    io::write_npy(file, inputs_of_ids(p.ids.view(), inputs.parts).view());
-  });
-  for (std::size_t i = 0; i < a.images.size(); ++i)
-    write(a.images[i].output, [&](io::AtomicFile& file) {
-      write_frame_image(file, a.images[i].output.format, p.images[i]);
-    });
-  write(a.heatmap, [&](io::AtomicFile& file) {
-    const Heatmap heatmap = make_heatmap(p.overdraw.view());
-    io::write_png(file, heatmap.image.view());
-    progress.clear();
-    if (!a.quiet)
-      std::fprintf(stderr,
-                   "heatmap: black 0, dark violet 1, light yellow %lu fragments at a pixel, "
-                   "logarithmic; %lu fragments in all\n",
-                   static_cast<unsigned long>(heatmap.max),
-                   static_cast<unsigned long>(heatmap.sum));
-  });
-  write(a.errors, [&](io::AtomicFile& file) { write_error_picture(a, p, file, progress); });
+/// Whether --hash is of the 8-bit colours because no picture is written.
+bool hashes_alone(RenderArguments a) {
+  return a.hash && picture_outputs(a).empty();
 }
 
 Wanted wanted_of(const RenderArguments& a) {
   const bool floats = a.color.format == Format::exr || a.color.format == Format::npy;
-  Wanted wanted{.color8 = (a.color && !floats) || a.errors,
+  Wanted wanted{.color8 = (a.color && !floats) || a.errors || hashes_alone(a),
                 .color = a.color && floats,
                 .depth = static_cast<bool>(a.depth),
                 .ids = a.ids || a.objects,
@@ -307,6 +275,71 @@ Wanted wanted_of(const RenderArguments& a) {
                 .images = {}};
   for (const FrameImage& image : a.images) wanted.images.push_back(image.kind);
   return wanted;
+}
+
+/// Into `files`, which the caller commits. `number`: of a picture of many.
+void write_images(const RenderArguments& a, const Pictures& p, const Camera& camera,
+                  const Inputs& inputs, std::optional<std::size_t> number, OutputFiles& files,
+                  Timeline& timeline, Progress& progress) {
+  const auto write = [&](const Output& output, auto&& writer) {
+    if (!output) return;
+    progress.show("writing " + output.name());
+    timeline.measure("write " + output.name(), "write", [&] { writer(files.begin(output)); });
+  };
+  const auto hash = [&](const char* what, const auto& image) {
+    if (!a.hash) return;
+    progress.clear();
+    print_hash(digest(image), what, number);
+  };
+  if (a.color || hashes_alone(a)) {
+    if (wanted_of(a).color)
+      hash("color", p.color);
+    else
+      hash("color", p.color8);
+  }
+  if (a.color.format != Format::mp4)
+    write(a.color, [&](io::AtomicFile& file) {
+      write_color(file, a.color.format, p.color8.view(), p.color.view());
+    });
+  write(a.depth, [&](io::AtomicFile& file) {
+    Image<float> in_world;
+    if (a.depth_unit == DepthUnit::world) in_world = distances(p.depth.view(), camera);
+    const Image<float>& depth = in_world.empty() ? p.depth : in_world;
+    write_depth(file, a.depth.format, depth.view());
+    hash("depth", depth);
+  });
+  write(a.ids, [&](io::AtomicFile& file) {
+    io::write_npy(file, p.ids.view());
+    hash("ids", p.ids);
+  });
+  write(a.objects, [&](io::AtomicFile& file) {
+    const auto objects = inputs_of_ids(p.ids.view(), inputs.parts);
+    io::write_npy(file, objects.view());
+    hash("objects", objects);
+  });
+  for (std::size_t i = 0; i < a.images.size(); ++i)
+    write(a.images[i].output, [&](io::AtomicFile& file) {
+      write_frame_image(file, a.images[i].output.format, p.images[i]);
+      std::visit([&](const auto& image) { hash(name(a.images[i]), image); }, p.images[i]);
+    });
+  write(a.heatmap, [&](io::AtomicFile& file) {
+    const Heatmap heatmap = make_heatmap(p.overdraw.view());
+    io::write_png(file, heatmap.image.view());
+    hash("heatmap", heatmap.image);
+    progress.clear();
+    if (!a.quiet)
+      std::fprintf(stderr,
+                   "heatmap: black 0, dark violet 1, light yellow %lu fragments at a pixel, "
+                   "logarithmic; %lu fragments in all\n",
+                   static_cast<unsigned long>(heatmap.max),
+                   static_cast<unsigned long>(heatmap.sum));
+  });
+  write(a.errors, [&](io::AtomicFile& file) {
+    const ErrorPicture picture = make_error_picture(p.color8.view(), p.errors.view());
+    io::write_png(file, picture.image.view());
+    hash("errors", picture.image);
+    report_errors(a, picture, p.errors.pixels().size(), progress);
+  });
 }
 
 /// `a` with the names of picture `number`; throws UsageError where many pictures share a name.
@@ -369,7 +402,7 @@ int run_sequence(const RenderArguments& a, Renderer& renderer, const Sequence& s
     cameras.push_back(camera);
     if (is_empty(stats.front(), a.render) && empty++ == 0) first_empty = i;
     OutputFiles files;
-    write_images(with_numbers(a, i, sequence.count), pictures, camera, inputs, files, timeline,
+    write_images(with_numbers(a, i, sequence.count), pictures, camera, inputs, i, files, timeline,
                  progress);
     files.commit();
     if (video) video->add(pictures.color8.view());
@@ -464,7 +497,7 @@ int run(RenderArguments& a) {
   }
 
   OutputFiles files;
-  write_images(a, pictures, camera, inputs, files, timeline, progress);
+  write_images(a, pictures, camera, inputs, {}, files, timeline, progress);
   progress.clear();
   finish(a, frames, load_ms, inputs, {camera}, timeline, files);
   if (!a.quiet && a.color)

@@ -41,7 +41,7 @@ struct TerrainArguments : TerrainSceneArguments {
   std::filesystem::path path;
   std::optional<double> fps;
   std::optional<int> frames;
-  bool quiet = false;
+  bool quiet = false, hash = false;
   Output color, depth, stats;
 };
 
@@ -61,6 +61,10 @@ void add_outputs(Parser& app, TerrainArguments& a) {
   add(app, "--stats", "FILE", ".json: counts, memory and times", [&a](const std::string& s) {
     a.stats = parse_output("--stats", s, {Format::json});
   })->group(group);
+  app.add_flag("--hash", a.hash,
+               "print the digest (SHA-256, docs/conventions.md) of the pixels of each picture that "
+               "is written, or without any of the 8-bit colours")
+      ->group(group);
   app.add_flag("--quiet", a.quiet, "print errors alone")->group(group);
 }
 
@@ -97,7 +101,7 @@ void check_path(const TerrainArguments& a) {
 }
 
 void check(const TerrainArguments& a) {
-  if (!a.color && !a.depth && !a.stats)
+  if (!a.color && !a.depth && !a.stats && !a.hash)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
   if (a.path.empty() && a.fps) throw UsageError("--fps", "is for --path");
   if (a.path.empty() && a.color && a.color.format == Format::mp4)
@@ -106,6 +110,7 @@ void check(const TerrainArguments& a) {
   check_terrain_objects(a.objects, a.options);
   const Output* const outputs[] = {&a.color, &a.depth, &a.stats};
   check_outputs(outputs);
+  if (a.hash) check_hash(outputs);
 }
 
 /// The file of picture `number`. Throws UsageError where `count` pictures share a name.
@@ -189,6 +194,12 @@ struct TerrainPictures {
       stage.renderer.render(stage.terrain, camera, stage.options, {.depth = depth.view()});
     cli::write_depth(files.begin(output), output.format, depth.view());
   }
+  /// `number`: of a picture of many.
+  void print_hashes(const TerrainArguments& a, std::optional<std::size_t> number) const {
+    if (!a.hash) return;
+    if (a.color || !a.depth) print_hash(digest(color), "color", number);
+    if (a.depth) print_hash(digest(depth), "depth", number);
+  }
 };
 
 /// The output that is of the whole run.
@@ -229,6 +240,8 @@ int run_path(const TerrainArguments& a, const Stage& stage, const terrain::Terra
     else if (a.color)
       io::write_png(files.begin(numbered(a.color, i, count)), pictures.color.view());
     if (a.depth) pictures.write_depth(stage, camera, numbered(a.depth, i, count), files);
+    progress.clear();
+    pictures.print_hashes(a, i);
     files.commit();
   }
   if (video) video->finish();
@@ -291,6 +304,7 @@ int run(TerrainArguments& a) {
   if (a.color) io::write_png(files.begin(a.color), pictures.color.view());
   if (a.depth) pictures.write_depth(stage, camera, a.depth, files);
   progress.clear();
+  pictures.print_hashes(a, {});
   const auto fastest = std::ranges::min(frames, {}, &TerrainStats::frame_ms).frame_ms;
   write_stats(a, stage, std::move(frames), files);
   files.commit();

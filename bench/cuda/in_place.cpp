@@ -25,8 +25,8 @@ ImageView<T> view_of(const DeviceMemory& memory, const FrameOptions& o) {
 }  // namespace
 
 void MeshesInPlace::add(const MeshView& mesh) {
-  positions_.emplace_back(mesh.positions);
-  indices_.emplace_back(mesh.indices);
+  positions_.emplace_back(mesh.positions.packed());
+  indices_.emplace_back(mesh.indices.packed());
   MeshView there;
   there.positions = positions_.back().view();
   there.indices = indices_.back().view();

@@ -226,10 +226,13 @@ void EmbreePeer::set_mesh(const MeshView& mesh) {
   if (s.scene != nullptr) rtcReleaseScene(s.scene);  // it borrows the buffers
   s.scene = nullptr;
   s.vertex_count = mesh.positions.size();
-  s.positions.assign(mesh.positions.begin(), mesh.positions.end());
+  const auto copy = [](auto& to, const auto& view) {
+    to.assign(view.packed().begin(), view.packed().end());
+  };
+  copy(s.positions, mesh.positions);
   s.positions.emplace_back();  // Embree reads 16 bytes at each vertex
-  s.normals.assign(mesh.normals.values.begin(), mesh.normals.values.end());
-  s.indices.assign(mesh.indices.begin(), mesh.indices.end());
+  copy(s.normals, mesh.normals.values);
+  copy(s.indices, mesh.indices);
   if (mesh.indices.empty())
     for (std::size_t i = 0; i < s.vertex_count / 3 * 3; ++i)
       s.indices.push_back(static_cast<std::uint32_t>(i));

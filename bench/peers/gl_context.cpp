@@ -166,15 +166,15 @@ void GlContext::set_mesh(const MeshView& mesh) {
     throw Error(Errc::invalid_argument,
                 "the OpenGL peers' normals must share the positions' indices");
   const auto bytes = [](std::size_t n) { return static_cast<GLsizeiptr>(n); };
-  const std::size_t positions = mesh.positions.size_bytes();
-  const std::size_t normals = mesh.normals.values.size_bytes();
+  const std::size_t positions = mesh.positions.packed().size_bytes();
+  const std::size_t normals = mesh.normals.values.packed().size_bytes();
   gl.BindBuffer(GL_ARRAY_BUFFER, buffers_[0]);
   gl.BufferData(GL_ARRAY_BUFFER, bytes(positions * 2), nullptr, GL_STATIC_DRAW);
   gl.BufferSubData(GL_ARRAY_BUFFER, 0, bytes(positions), mesh.positions.data());
   if (normals != 0)
     gl.BufferSubData(GL_ARRAY_BUFFER, bytes(positions), bytes(normals), mesh.normals.values.data());
   std::vector<std::uint32_t> in_order;
-  std::span<const std::uint32_t> indices = mesh.indices;
+  std::span<const std::uint32_t> indices = mesh.indices.packed();
   if (indices.empty()) {
     in_order.resize(mesh.positions.size() / 3 * 3);
     std::iota(in_order.begin(), in_order.end(), 0U);

@@ -126,9 +126,9 @@ void VtkPeer::set_mesh(const MeshView& mesh) {
     out.write(reinterpret_cast<const char*>(values.data()),
               static_cast<std::streamsize>(values.size_bytes()));
   };
-  write(mesh.positions);
-  write(mesh.normals.values);
-  write(mesh.indices);
+  write(mesh.positions.packed());
+  write(mesh.normals.values.packed());
+  write(mesh.indices.packed());
   if (!out.flush()) throw Error(Errc::io, "cannot write " + file);
   impl_->tell("mesh " + file + " " + std::to_string(mesh.positions.size()) + " " +
               std::to_string(mesh.triangle_count()));

@@ -3,8 +3,8 @@
 // IEEE's + − · / √ and of integers alone (decision 0030; tools/check_libm.py holds sources to it).
 //
 // In float64, faithfully rounded: the error is below 0.53 ulp, so nearly always the nearest number
-// is returned; 0.8 ulp for pow where |y log x| is above 100, 1 ulp where a result is below 2⁻¹⁰²². NaN,
-// infinities and zeros are IEEE's. Cost: 30 to 150 ns.
+// is returned; 0.8 ulp for pow where |y log x| is above 100, 1 ulp where a result is below
+// 2⁻¹⁰²². NaN, infinities and zeros are IEEE's. Cost: 30 to 150 ns.
 #pragma once
 
 namespace rastrum::elementary {

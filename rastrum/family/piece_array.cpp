@@ -19,8 +19,7 @@ std::span<const Piece> PieceArray::fill(Frame& frame, std::uint64_t first, std::
   std::atomic<bool> in_range = true;
   parallel::for_each_index(frame.exec, group_count, [&](std::size_t g) {
     const std::uint64_t begin = first + g * kGroup;
-    groups_[g].count = 0;
-    groups_[g].triangles = {};
+    groups_[g].restart();
     if (!set_up(frame.base, begin, std::min(begin + kGroup, last), groups_[g])) in_range = false;
   });
   if (!in_range) check_indices(frame.request.draws, frame.request.draw_noun);

@@ -1,7 +1,8 @@
 #include <rastrum/parallel/device.hpp>
 
 // What the SIMD sources are compiled for, by the same question that they ask.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
+
 #include <hwy/detect_targets.h>
 
 #include <algorithm>

@@ -87,6 +87,10 @@ class OnDevice final : public raster::FrameDrawer {
     if (request.wants_surface || !request.targets.linear.empty())
       return "of the targets the device has color8, color, depth, ids and keys";
     if (request.part) return "a part of a frame is the CPU's";
+    if (std::ranges::any_of(request.draws,
+                            [](const raster::Draw& d) { return d.quadrics != nullptr; }))
+      return "spheres, cylinders, tubes and discs are the CPU's";
+    if (!request.why_host.empty()) return request.why_host;
     if (std::string why_not = frames_.device->why_no_test(request); !why_not.empty())
       return why_not;
     return needs_layers(request) ? frames_.device->why_no_layers(request) : std::string();

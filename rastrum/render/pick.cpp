@@ -10,6 +10,12 @@
 namespace rastrum {
 namespace {
 
+void require_mesh(const SceneView& scene, const Located& at) {
+  if (scene.instances[at.instance].mesh() == nullptr)
+    throw Error(Errc::unsupported, "instance " + std::to_string(at.instance) +
+                                       " is no mesh: only of meshes it is known what lies where");
+}
+
 /// One instance as a scene of its own, so that what is asked about a primitive costs nothing for
 /// the others.
 struct Alone {
@@ -21,11 +27,12 @@ struct Alone {
 
   Alone(const SceneView& all, const Camera& camera, int width, int height, std::uint64_t id)
       : at(locate(all, id)), instance(all.instances[at.instance]), scene{{&instance, 1}, {}, {}} {
+    require_mesh(all, at);
     const MeshView& mesh = *instance.mesh();
     draw.source = raster::MatrixVertices(
         mesh.positions, world_to_clip(camera, width, height) * instance.object_to_world);
     draw.vertex_count = mesh.positions.size();
-    draw.indices = mesh.indices;
+    draw.mesh = &mesh;
     draw.primitive_count = mesh.triangle_count();
     draw.winding = instance.winding;
     draw.first_id = id - at.primitive;
@@ -53,7 +60,7 @@ Barycentrics weights_of(const raster::Fragment& f) {
 Located locate(const SceneView& scene, std::uint64_t id) {
   std::uint64_t first = 0;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const std::uint64_t count = scene.instances[i].mesh()->triangle_count();
+    const std::uint64_t count = primitive_count(scene.instances[i].geometry);
     if (id - first < count) return {i, id - first};
     first += count;
   }
@@ -69,10 +76,13 @@ Barycentrics barycentrics(const SceneView& scene, const Camera& camera, int widt
 }
 
 Vec3d position(const SceneView& scene, const Located& at, const Barycentrics& where) {
+  require_mesh(scene, at);
   const InstanceView& instance = scene.instances[at.instance];
+  const MeshView& mesh = *instance.mesh();
+  const TrianglePlace place = mesh.place(at.primitive);
   raster::Fragment f;
   for (std::size_t c = 0; c < 3; ++c) {
-    f.vertex[c] = instance.mesh()->vertex(3 * at.primitive + c);
+    f.vertex[c] = mesh.vertex(place.corner[c]);
     f.weights.b[c] = where.weight[c];
   }
   return raster::position_on(instance, f);

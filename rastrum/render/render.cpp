@@ -23,40 +23,12 @@
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/render/access.hpp>
+#include <rastrum/render/scene_checks.hpp>
 #include <rastrum/render/surface_of_key.hpp>
+#include <rastrum/render/surfaces.hpp>
 
 namespace rastrum {
 namespace {
-
-void check_attribute(std::size_t values, std::span<const std::uint32_t> indices,
-                     const MeshView& mesh, std::size_t instance, const char* what) {
-  if (values == 0) return;
-  const auto fail = [&](const std::string& problem) {
-    throw Error(Errc::invalid_argument,
-                "instance " + std::to_string(instance) + ": " + what + " " + problem);
-  };
-  if (indices.empty()) {
-    if (values < mesh.positions.size())
-      fail("are fewer (" + std::to_string(values) + ") than positions (" +
-           std::to_string(mesh.positions.size()) + ")");
-    return;
-  }
-  if (indices.size() < mesh.triangle_count() * 3) fail("have fewer indices than the triangles");
-  for (const std::uint32_t i : indices)
-    if (i >= values)
-      fail("index " + std::to_string(i) + " is out of range, there are " + std::to_string(values));
-}
-
-/// Attributes are read only where a triangle is seen, so their indices are checked before the
-/// frame.
-void check_attributes(const SceneView& scene) {
-  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const MeshView& mesh = *scene.instances[i].mesh();
-    check_attribute(mesh.normals.values.size(), mesh.normals.indices, mesh, i, "normals");
-    check_attribute(mesh.texcoords.values.size(), mesh.texcoords.indices, mesh, i, "texcoords");
-    check_attribute(mesh.colors.values.size(), mesh.colors.indices, mesh, i, "colors");
-  }
-}
 
 /// Calls f(view, name) for each target of the surface at a pixel that needs a scene, and for the
 /// others of it.
@@ -168,6 +140,7 @@ void check_in_place(const SceneView& scene, const Targets& targets, Shader shade
   require(shader != Shader::depth && shader != Shader::material && shader != Shader::wireframe,
           "the shaders depth, material and wireframe need them in the host's");
   require(scene.materials.empty(), "materials need them in the host's");
+  if (const std::string why = why_not_on_device(scene); !why.empty()) require(false, why.c_str());
   require(o.opacity == 1 && o.samples == 1, "surfaces must be opaque, with one sample a pixel");
   require(targets.overdraw.empty() && targets.errors.empty() && targets.extra.empty() &&
               targets.linear.empty() && !wants_surface(targets) && !targets.load && !targets.over,
@@ -176,6 +149,20 @@ void check_in_place(const SceneView& scene, const Targets& targets, Shader shade
               std::ranges::all_of(scene.instances,
                                   [](const InstanceView& i) { return i.clip_planes.empty(); }),
           "clip planes need them in the host's");
+}
+
+/// What scenes of more than meshes do not have yet.
+void check_asked_of_meshes(const SceneView& scene, const Targets& targets, const FrameOptions& o) {
+  const auto refuse = [](const char* what) {
+    throw Error(Errc::unsupported,
+                std::string(what).append(": of meshes alone, but the scene has spheres, cylinders, "
+                                         "tubes or discs"));
+  };
+  if (wants_surface(targets)) refuse("targets beside colour, depth, ids and keys");
+  if (!o.clip_planes.empty() || std::ranges::any_of(scene.instances, [](const InstanceView& i) {
+        return !i.clip_planes.empty();
+      }))
+    refuse("clip planes");
 }
 
 void check_over(const Targets& targets, const FrameOptions& o) {
@@ -224,8 +211,9 @@ struct Renderer::Impl {
     const Targets& targets;
     bool in_place = false;
     std::optional<raster::Rect> part{};  ///< FrameRequest::part
+    std::string why_host{};              ///< FrameRequest's
   };
-  FrameStats render(const SceneView& scene, const Camera& camera, const Call& call);
+  FrameStats render(const SceneView& scene, const Camera& camera, Call call);
   FrameStats draw_depth(std::span<raster::Draw> draws, const raster::Testing& test,
                         const Call& call, const raster::SurfaceScene* surface);
   /// What draws of a scene have beside them.
@@ -324,14 +312,16 @@ FrameStats Renderer::draw(std::span<const raster::ProgramDraw> draws, const Fram
   return RendererAccess::draw(*this, own, {}, {}, frame, targets, std::move(stop));
 }
 
-FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, const Call& call) {
+FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, Call call) {
   const FrameOptions& o = call.frame;
   const Shader taken = shader_for(o.shader, scene);
   if (call.in_place)
     check_in_place(scene, call.targets, taken, o);
   else
-    check_attributes(scene);
+    check_scene(scene);
+  if (options.device == Device::cuda) call.why_host = why_not_on_device(scene);
   raster::check_materials(scene);
+  check_surfaces(scene);
   check_outputs(call.targets, true, taken == Shader::material);
   std::deque<raster::DrawCut> cuts;  // draws point to them
   const Mat4d to_clip = world_to_clip(camera, o.width, o.height);
@@ -340,22 +330,43 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
   const bool blends = o.transparency.method != Transparency::none && taken != Shader::depth;
   const bool all_translucent = blends && o.opacity < 1;
   const std::vector<std::uint32_t> material_flags = raster::material_flags(scene.materials, blends);
-  std::uint32_t any_flags = 0;  // of materials and vertex colours
+  std::uint32_t any_flags = 0;  // of materials and colours
+  std::uint32_t any_surface_flags = 0;
+  const bool some_translucent =
+      blends && std::ranges::any_of(scene.instances, [](const InstanceView& instance) {
+        return instance.visible && instance.opacity < 1;
+      });
+  const std::vector<InstanceView> mesh_list = mesh_instances(scene);
+  SceneView meshes = scene;
+  meshes.instances = mesh_list;
+  if (mesh_list.size() < scene.instances.size()) check_asked_of_meshes(scene, call.targets, o);
+  std::optional<raster::LitModel> model;
+  if (taken != Shader::material) model = lit_model(taken);
+  SurfaceDraws surfaces(scene, {model, blends, o.opacity}, camera, o.width, o.height);
   for (const InstanceView& instance : scene.instances) {
-    const MeshView& mesh = *instance.mesh();
     raster::Draw& draw = draws.emplace_back();
+    draw.visible = instance.visible;
+    draw.winding = instance.winding;
+    if (surfaces.add(instance, to_clip, draw)) {
+      any_surface_flags |= draw.flags;
+      continue;
+    }
+    const MeshView& mesh = *instance.mesh();
+    if (mesh.is_packed_list())
+      draw.indices = mesh.indices.packed();
+    else
+      draw.mesh = &mesh;
     draw.source = raster::MatrixVertices(mesh.positions, to_clip * instance.object_to_world);
     draw.vertex_count = mesh.positions.size();
-    draw.indices = mesh.indices;
     draw.primitive_count = mesh.triangle_count();
     draw.cull = material_cull(instance, scene.materials, taken);
-    std::uint32_t flags = raster::set_material_flags(draw, mesh, material_flags);
-    if (blends && scene.materials.empty() && !call.in_place &&
-        raster::has_vertex_alpha(mesh, threads.get())) {
+    std::uint32_t flags = raster::set_material_flags(draw, instance, material_flags);
+    if (blends && scene.materials.empty() && !call.in_place && instance.visible &&
+        raster::has_color_alpha(instance, threads.get())) {
       draw.flags |= raster::kTranslucent;
       flags |= raster::kTranslucent;
     }
-    if (all_translucent) draw.flags |= raster::kTranslucent;
+    if (all_translucent || (blends && instance.opacity < 1)) draw.flags |= raster::kTranslucent;
     any_flags |= flags;
     if (o.clip_planes.empty() && instance.clip_planes.empty()) continue;
     raster::check_clip_planes(
@@ -364,8 +375,9 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
     draw.cut = &cuts.emplace_back(instance, o.clip_planes);
   }
   const bool any_mask = (any_flags & raster::kTested) != 0;
-  const bool any_blend = (any_flags & raster::kTranslucent) != 0;
-  const bool is_translucent = all_translucent || any_blend;
+  const bool any_blend = some_translucent || (any_flags & raster::kTranslucent) != 0;
+  const bool is_translucent =
+      all_translucent || any_blend || (any_surface_flags & raster::kTranslucent) != 0;
   const bool shades_materials = taken == Shader::material;
   const bool wants_albedo = !call.targets.albedo.empty();
   std::optional<raster::MaterialScene> materials;
@@ -373,7 +385,7 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
     textures.update(scene.textures,
                     raster::texture_uses(scene, shades_materials || wants_albedo, any_blend),
                     threads.get());
-    materials.emplace(scene, camera, o.width, o.height, textures);
+    materials.emplace(meshes, camera, o.width, o.height, textures);
   }
   std::optional<raster::SurfaceScene> surface;
   if (wants_surface(call.targets)) {
@@ -391,12 +403,13 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
   if (taken == Shader::depth)
     return named(draw_depth(draws, test, call, surface ? &*surface : nullptr));
   const bool linear = shades_materials && (is_translucent || !call.targets.linear.empty());
+  if (linear) surfaces.leave_linear();
   std::optional<raster::LitScene> lit;
   raster::Shading shading;
   if (shades_materials) {
     shading = raster::MaterialShading{&*materials, linear};
   } else {
-    lit.emplace(scene, camera, o.width, o.height);
+    lit.emplace(meshes, camera, o.width, o.height);
     shading = raster::LitShading{lit_model(taken), &*lit};
   }
   if (is_translucent) shading = shading.with_alpha(any_blend ? &*materials : nullptr, o.opacity);
@@ -425,7 +438,8 @@ FrameStats Renderer::Impl::draw_depth(std::span<raster::Draw> draws, const raste
   const raster::FragmentShader unused(
       [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
   const OfScene of_scene{false, surface};
-  FrameStats stats = draw(draws, unused, test, {o, first}, &of_scene);
+  FrameStats stats =
+      draw(draws, unused, test, {o, first, false, call.part, call.why_host}, &of_scene);
   const auto begin = std::chrono::steady_clock::now();
   stretch_depth(first.depth, o.background, targets);
   const double ms =
@@ -487,6 +501,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   request.background = o.background;
   request.targets = targets;
   request.in_place = call.in_place;
+  request.why_host = call.why_host;
   request.texture_bytes = textures.bytes();
   request.transparency = o.transparency;
   request.samples = o.samples;

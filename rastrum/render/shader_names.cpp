@@ -32,9 +32,12 @@ Shader shader_for(Shader shader, const SceneView& scene) {
 
 Cull material_cull(const InstanceView& instance, std::span<const Material> materials,
                    Shader shader) {
+  // What is no mesh is closed, or meant to be seen from both sides.
+  if (instance.mesh() == nullptr) return Cull::none;
   const MeshView& mesh = *instance.mesh();
-  if (shader != Shader::material || materials.empty() || !mesh.face_materials.empty() ||
-      materials[mesh.material].double_sided)
+  if (shader != Shader::material || materials.empty() ||
+      (!instance.material && !mesh.face_materials.empty()) ||
+      materials[instance.material.value_or(mesh.material)].double_sided)
     return Cull::none;
   const auto& m = instance.object_to_world.m;
   const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -

@@ -1,4 +1,5 @@
 #include <rastrum/mesh.hpp>
+#include <rastrum/scene/mesh_checks.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -23,11 +24,15 @@ void add_line(std::vector<Vec3>& lines, Vec3 from, Vec3 normal, float length) {
 }  // namespace
 
 std::vector<std::uint32_t> edge_indices(const MeshView& mesh) {
-  const std::size_t corners = mesh.triangle_count() * 3;
-  std::vector<Edge> edges(corners);
-  for (std::size_t c = 0; c < corners; ++c) {
-    const std::uint64_t a = mesh.vertex(c), b = mesh.vertex(c % 3 == 2 ? c - 2 : c + 1);
-    edges[c] = {std::min(a, b) << 32 | std::max(a, b), c};
+  const std::size_t triangles = mesh.triangle_count();
+  std::vector<Edge> edges(triangles * 3);
+  for (std::size_t t = 0; t < triangles; ++t) {
+    std::uint32_t vertex[3];
+    mesh.read_triangles(t, 1, vertex);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint64_t a = vertex[c], b = vertex[(c + 1) % 3];
+      edges[3 * t + c] = {std::min(a, b) << 32 | std::max(a, b), 3 * t + c};
+    }
   }
   std::ranges::sort(edges, [](const Edge& a, const Edge& b) {
     return a.key != b.key ? a.key < b.key : a.place < b.place;
@@ -48,25 +53,34 @@ std::vector<std::uint32_t> edge_indices(const MeshView& mesh) {
 
 std::vector<Vec3> normal_lines(const MeshView& mesh, float length) {
   std::vector<Vec3> lines;
-  const auto at = [](auto values, std::size_t i) {
+  const auto at = [](const auto& values, std::size_t i) {
     if (i >= values.size())
       throw Error(Errc::invalid_argument, "normal_lines: an index is out of range");
     return values[i];
   };
-  if (!mesh.normals.empty() && mesh.normals.indices.empty()) {
+  if (const std::string problem = faces_problem(mesh); !problem.empty())
+    throw Error(Errc::invalid_argument, "normal_lines: " + problem);
+  if (!mesh.normals.empty() && mesh.normals.indices.empty() && mesh.normals.per == Per::vertex) {
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
       add_line(lines, mesh.positions[i], at(mesh.normals.values, i), length);
     return lines;
   }
-  const auto position = [&](std::size_t corner) { return at(mesh.positions, mesh.vertex(corner)); };
-  for (std::size_t c = 0; c < mesh.triangle_count() * 3; c += 3) {
-    const Vec3 p[3] = {position(c), position(c + 1), position(c + 2)};
+  const std::size_t triangles = mesh.triangle_count();
+  for (std::size_t t = 0; t < triangles; ++t) {
+    const TrianglePlace place = mesh.place(t);
+    std::uint32_t vertex[3];
+    Vec3 p[3];
+    for (std::size_t i = 0; i < 3; ++i) {
+      vertex[i] = mesh.vertex(place.corner[i]);
+      p[i] = at(mesh.positions, vertex[i]);
+    }
     if (mesh.normals.empty()) {
       add_line(lines, (p[0] + p[1] + p[2]) * (1.0F / 3), cross(p[1] - p[0], p[2] - p[0]), length);
       continue;
     }
     for (std::size_t i = 0; i < 3; ++i)
-      add_line(lines, p[i], at(mesh.normals.values, at(mesh.normals.indices, c + i)), length);
+      add_line(lines, p[i], at(mesh.normals.values, mesh.normals.element(place, vertex, i)),
+               length);
   }
   return lines;
 }

@@ -38,15 +38,6 @@ const Mesh& mesh_of(const Scene& scene, const Instance& instance) {
 
 }  // namespace
 
-void check_indices(const MeshView& mesh) {
-  for (std::size_t c = 0; c < mesh.indices.size(); ++c)
-    if (mesh.indices[c] >= mesh.positions.size())
-      throw Error(Errc::invalid_argument,
-                  "mesh: corner " + std::to_string(c % 3) + " of triangle " +
-                      std::to_string(c / 3) + " is vertex " + std::to_string(mesh.indices[c]) +
-                      ", but there are only " + std::to_string(mesh.positions.size()));
-}
-
 void add_plain_materials(Scene& scene) {
   // Linear light that the sRGB transfer turns into the plain shaders' 0.8, 0.7, 0.6 to an ulp.
   constexpr Vec4 kPlain{0.603780866F, 0.447983563F, 0.318572849F, 1};
@@ -163,8 +154,7 @@ Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic, Vec3
   return camera;
 }
 
-std::vector<Vec3> vertex_normals(std::span<const Vec3> positions,
-                                 std::span<const std::uint32_t> indices) {
+std::vector<Vec3> vertex_normals(const ArrayView<Vec3>& positions, const IndexView& indices) {
   MeshView mesh;
   mesh.positions = positions;
   mesh.indices = indices;
@@ -173,13 +163,8 @@ std::vector<Vec3> vertex_normals(std::span<const Vec3> positions,
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     const std::uint32_t corner[3] = {mesh.vertex(3 * t), mesh.vertex(3 * t + 1),
                                      mesh.vertex(3 * t + 2)};
-    const Vec3 a = positions[corner[0]];
-    const Vec3d e1 = {double{positions[corner[1]].x} - a.x, double{positions[corner[1]].y} - a.y,
-                      double{positions[corner[1]].z} - a.z};
-    const Vec3d e2 = {double{positions[corner[2]].x} - a.x, double{positions[corner[2]].y} - a.y,
-                      double{positions[corner[2]].z} - a.z};
-    const Vec3d n = {e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z,
-                     e1.x * e2.y - e1.y * e2.x};
+    const Vec3d a = positions.wide(corner[0]);
+    const Vec3d n = cross(positions.wide(corner[1]) - a, positions.wide(corner[2]) - a);
     if (!is_finite(n)) continue;
     for (const std::uint32_t c : corner) {
       sums[c].x += n.x;

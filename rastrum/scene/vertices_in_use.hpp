@@ -1,15 +1,38 @@
 // The vertices that triangles use, in world space: what a fit looks at, more than once.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include <rastrum/mesh.hpp>
 #include <rastrum/scene.hpp>
+#include <rastrum/surfaces.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum {
+
+/// Calls f(centre, radius) for balls whose convex hull holds what a geometry that is no mesh draws.
+/// Indices and offsets must be in range.
+template <class F>
+void for_each_ball(const GeometryView& geometry, F&& f) {
+  const auto radius = [](const auto& g, std::size_t i) {
+    return g.radii.empty() ? g.radius : g.radii[i];
+  };
+  const auto all = [&](const auto& g, std::span<const Vec3> centres, std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i) f(centres[i], radius(g, i));
+  };
+  if (const auto* const s = std::get_if<SpheresView>(&geometry)) all(*s, s->centers, s->size());
+  if (const auto* const d = std::get_if<DiscsView>(&geometry)) all(*d, d->centers, d->size());
+  if (const auto* const t = std::get_if<TubesView>(&geometry))
+    all(*t, t->positions, t->positions.size());
+  if (const auto* const c = std::get_if<CylindersView>(&geometry))
+    for (std::size_t i = 0; i < c->size(); ++i)
+      for (const int end : {0, 1})
+        if (const std::size_t k = c->end(i, end); k < c->positions.size())
+          f(c->positions[k], radius(*c, k));
+}
 
 class VerticesInUse {
  public:
@@ -18,9 +41,13 @@ class VerticesInUse {
     // Instances of one mesh often follow each other.
     const MeshView* last = nullptr;
     for (const InstanceView& instance : scene.instances) {
+      if (instance.mesh() == nullptr) {
+        used_by_.push_back(0);
+        continue;
+      }
       const MeshView& mesh = *instance.mesh();
-      const bool same = last != nullptr && mesh.indices.data() == last->indices.data() &&
-                        mesh.indices.size() == last->indices.size() &&
+      const bool same = last != nullptr && mesh.indices == last->indices &&
+                        mesh.faces == last->faces &&
                         mesh.positions.size() == last->positions.size();
       if (!same) used_.push_back(used_of(mesh));
       used_by_.push_back(used_.size() - 1);
@@ -32,32 +59,53 @@ class VerticesInUse {
   template <class F>
   void for_each(F&& f) const {
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
-      const MeshView& mesh = *scene_.instances[i].mesh();
       const Mat4d& m = scene_.instances[i].object_to_world;
-      const auto visit = [&](Vec3 p) {
+      const auto visit = [&](Vec3d p) {
         const auto row = [&](int r) {
           return m.m[r][0] * p.x + m.m[r][1] * p.y + m.m[r][2] * p.z + m.m[r][3];
         };
         const Vec3d q{row(0), row(1), row(2)};
         if (is_finite(q)) f(q);
       };
-      if (mesh.indices.empty()) {
-        for (const Vec3 p : mesh.positions.first(mesh.triangle_count() * 3)) visit(p);
+      if (scene_.instances[i].mesh() == nullptr) {
+        for_each_ball(scene_.instances[i].geometry,
+                      [&](Vec3 centre, float radius) { visit_ball(Vec3d(centre), radius, visit); });
         continue;
       }
       const std::vector<bool>& used = used_[used_by_[i]];
       for (std::size_t v = 0; v < used.size(); ++v)
-        if (used[v]) visit(mesh.positions[v]);
+        if (used[v]) visit(scene_.instances[i].mesh()->positions.wide(v));
     }
   }
 
  private:
+  /// Places about a ball: its extremes along the axes, and the edges and corners of the cube about
+  /// it, drawn in so that no plane that holds all of them cuts off more than a fortieth of the
+  /// radius.
+  template <class Visit>
+  static void visit_ball(Vec3d centre, double radius, const Visit& visit) {
+    if (!(radius >= 0)) return;
+    for (int x = -1; x <= 1; ++x)
+      for (int y = -1; y <= 1; ++y)
+        for (int z = -1; z <= 1; ++z) {
+          const int n = x * x + y * y + z * z;
+          if (n == 0) continue;
+          const double s = n == 1 ? radius : radius * 1.13 / std::sqrt(static_cast<double>(n));
+          visit(centre + Vec3d{x * s, y * s, z * s});
+        }
+  }
+
   static std::vector<bool> used_of(const MeshView& mesh) {
-    std::vector<bool> used;
-    if (mesh.indices.empty()) return used;
     check_indices(mesh);
-    used.resize(mesh.positions.size());
-    for (const std::uint32_t i : mesh.indices) used[i] = true;
+    std::vector<bool> used(mesh.positions.size());
+    constexpr std::size_t kAtOnce = 256;
+    std::uint32_t vertices[3 * kAtOnce];
+    const std::size_t triangles = mesh.triangle_count();
+    for (std::size_t t = 0; t < triangles; t += kAtOnce) {
+      const std::size_t n = std::min(kAtOnce, triangles - t);
+      mesh.read_triangles(t, n, vertices);
+      for (std::size_t i = 0; i < 3 * n; ++i) used[vertices[i]] = true;
+    }
     return used;
   }
 

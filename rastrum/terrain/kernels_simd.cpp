@@ -1,6 +1,6 @@
 // The fast path's kernels in vectors of columns with Highway, compiled once per instruction set.
 // Multiply and add are kept apart, so all give the bits of the scalar loops in kernels.cpp.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/terrain/kernels_simd.cpp"
 #include <hwy/cache_control.h>

@@ -1,6 +1,6 @@
 // The sweep of shadow_sweep.hpp with Highway, compiled once per instruction set: bands lie in
 // lanes. It gives the definition's bits whatever it is compiled for.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/terrain/shadow_sweep_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h

@@ -1,7 +1,7 @@
 // The march of paper 3 with Highway, compiled once per instruction set: 4 vectors of a row at a
 // time. It repeats the scalar operations and gives the same counts. And the ranges of the heights
 // in tiles of a map.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/terrain/shadows_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h

@@ -1,6 +1,6 @@
 // Blending in vectors of pixels with Highway, compiled once per instruction set. Multiply and add
 // are kept apart, so all give the bits of the scalar loops.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/transparency/blend_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h

@@ -62,6 +62,7 @@ class LayeredPath final : public raster::Method {
             .colors = true,
             .triangle_bytes = 160,
             .expands = true,
+            .quadrics = true,
             .whole_view = true,
             .cuts_views = true};
   }

@@ -94,10 +94,36 @@ struct LayeredBin::Impl {
       std::size_t end = i;
       while (end < blocks.size() && is_opaque(blocks[end])) ++end;
       if (end > i) opaque_.blocks(pieces, blocks.subspan(i, end - i));
-      for (; end < blocks.size() && !is_opaque(blocks[end]); ++end)
-        records_.add({pieces + blocks[end].piece, blocks[end].mask,
-                      block_number(blocks[end].bx, blocks[end].by)});
+      for (; end < blocks.size() && !is_opaque(blocks[end]); ++end) record(pieces, blocks[end]);
       i = end;
+    }
+  }
+
+  void record(const Piece* pieces, const Block& block) {
+    const Piece& piece = pieces[block.piece];
+    Record record{&piece, block.mask, block_number(block.bx, block.by)};
+    // Blocks of several samples see to it themselves (sampled_block.cpp).
+    if (samples_ == 1 && raster::is_triangle(piece) && block.piece > 0 &&
+        pieces[block.piece - 1].low == piece.low)
+      keep_nearest(record, block.bx, block.by);
+    if (record.mask != 0) records_.add(record);
+  }
+  /// The pieces that a triangle was clipped to may overlap by a snapped vertex; they are one layer,
+  /// and at each sample the nearest counts. They come one after the other.
+  void keep_nearest(Record& record, std::uint16_t bx, std::uint16_t by) {
+    alignas(64) std::uint64_t keys[64], others[64];
+    for (std::size_t k = records_.size(); k-- > 0;) {
+      Record& other = records_.in_order()[k];
+      if (other.piece->low != record.piece->low) return;
+      const std::uint64_t both = other.block == record.block ? other.mask & record.mask : 0;
+      if (both == 0) continue;
+      context_.kernel->keys(*record.piece, {0, bx, by, both}, keys);
+      context_.kernel->keys(*other.piece, {0, bx, by, both}, others);
+      for (std::uint64_t m = both; m != 0; m &= m - 1) {
+        const int i = std::countr_zero(m);
+        (keys[i] > others[i] ? other : record).mask &= ~(std::uint64_t{1} << i);
+      }
+      if (other.mask == 0) records_.remove(k);
     }
   }
 

@@ -3,7 +3,7 @@
 // SortKeys are sorted by networks, a vector of pixels at once: lists are short, what their order is
 // cannot be predicted, and a network has no branches. Up to 8 sort_keys it runs in registers;
 // beyond that it is Batcher's merge exchange (Knuth, TAOCP 3, 5.2.2 M), O(n log² n) for any n.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/transparency/packed_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h
@@ -14,6 +14,7 @@
 #include <type_traits>
 
 #include <rastrum/parallel/mask.hpp>
+#include <rastrum/raster/cover/quadric_kernels-inl.hpp>
 #include <rastrum/raster/kernels/lanes-inl.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>
@@ -33,8 +34,28 @@ HWY_INLINE F to_float(I v) {
   return hn::ConvertTo(F32{}, v);
 }
 
+HWY_NOINLINE std::size_t pack_quadric(const raster::Piece& p, std::uint64_t mask, int x, int y,
+                                      std::uint32_t first, std::uint64_t* keys,
+                                      std::uint16_t* pixels) {
+  HWY_ALIGN std::uint64_t of_block[64];
+  raster::HWY_NAMESPACE::quadric_keys(p,
+                                      {0, static_cast<std::uint16_t>(x / raster::kBlockSize),
+                                       static_cast<std::uint16_t>(y / raster::kBlockSize), mask},
+                                      of_block);
+  std::size_t n = 0;
+  for (; mask != 0; mask &= mask - 1, ++n) {
+    const int i = std::countr_zero(mask);
+    keys[n] = of_block[i];
+    pixels[n] = static_cast<std::uint16_t>(
+        first +
+        static_cast<std::uint32_t>(i / raster::kBlockSize * kPackedPitch + i % raster::kBlockSize));
+  }
+  return n;
+}
+
 std::size_t pack(const raster::Piece& p, std::uint64_t mask, int x, int y, std::uint32_t first,
                  std::uint64_t* keys, std::uint16_t* pixels) noexcept {
+  if (raster::is_quadric(p)) return pack_quadric(p, mask, x, y, first, keys, pixels);
   constexpr float kPxPerSubpixel = 1.0F / raster::kSubpixels;
   const F32 d;
   const auto count = static_cast<std::size_t>(parallel::popcount(mask));

@@ -11,6 +11,7 @@
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/setup/quadric.hpp>
 
 namespace rastrum::transparency {
 
@@ -46,7 +47,11 @@ class ByBlock {
   }
   void added(std::size_t n) { count_ += n; }
   [[nodiscard]] std::size_t size() const { return count_; }
-  [[nodiscard]] std::span<const T> in_order() const { return {records_.data(), count_}; }
+  [[nodiscard]] std::span<T> in_order() { return {records_.data(), count_}; }
+  void remove(std::size_t i) {
+    std::copy(records_.data() + i + 1, records_.data() + count_, records_.data() + i);
+    --count_;
+  }
   /// Counting sort.
   void sort(std::size_t blocks) {
     sorted_.reserve(count_);
@@ -72,6 +77,11 @@ class ByBlock {
   const auto count = [&](std::uint64_t of) {
     return static_cast<float>(parallel::popcount(mask & of));
   };
+  if (raster::is_quadric(piece)) {
+    // Any guess will do.
+    const raster::Quadric& q = raster::quadric_of(piece);
+    return (piece.flags & raster::kFacesAway) != 0 ? q.lowest : q.highest;
+  }
   const float n = count(~std::uint64_t{0});
   const float x =
       4 * count(0xF0F0F0F0F0F0F0F0U) + 2 * count(0xCCCCCCCCCCCCCCCCU) + count(0xAAAAAAAAAAAAAAAAU);

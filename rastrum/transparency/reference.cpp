@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <tuple>
 #include <vector>
 
 #include <rastrum/error.hpp>
@@ -21,7 +22,8 @@ using raster::BlockColors;
 using raster::kBlockSize;
 using raster::Piece;
 
-/// A triangle in a pixel: its key at each sample that it covers, and where it is shaded.
+/// A triangle, or one side of a quadric, in a pixel: its key at each sample that it covers, and
+/// where it is shaded.
 struct Fragment {
   std::uint64_t keys[raster::kMaxSamples] = {};  ///< 0: not covered
   std::uint64_t shaded_key = 0;                  ///< where it is shaded
@@ -32,18 +34,19 @@ struct Fragment {
 
 using Pixel = std::vector<Fragment>;
 
-/// The keys of a primitive at one sample, by pixel.
+/// Row, column, and whether it is the side of a quadric that faces away.
+using Place = std::tuple<int, int, bool>;
+
+/// The keys of a primitive at one sample, by pixel: the nearest where its pieces overlap.
 void add_keys(const raster::FrameRequest& request, const Piece& piece,
-              std::map<std::pair<int, int>, Fragment>& pixels, int sample) {
-  const raster::Rect box = raster::piece_bounds(piece, {0, 0, request.width, request.height});
-  for (int y = box.y0; y < box.y1; ++y) {
-    const raster::Span span = raster::row_span(piece, y, box.x0, box.x1);
-    for (int x = span.begin; x < span.end; ++x) {
-      Fragment& f = pixels[{y, x}];
-      const std::uint64_t key = raster::make_key(raster::depth_at(piece, x, y), piece.low);
-      (sample < 0 ? f.shaded_key : f.keys[sample]) = key;
-    }
-  }
+              std::map<Place, Fragment>& pixels, int sample) {
+  const bool away = raster::is_quadric(piece) && (piece.flags & raster::kFacesAway) != 0;
+  raster::for_each_covered(piece, {0, 0, request.width, request.height}, [&](int x, int y) {
+    Fragment& f = pixels[{y, x, away}];
+    const std::uint64_t key = raster::make_key(raster::depth_at(piece, x, y), piece.low);
+    std::uint64_t& nearest = sample < 0 ? f.shaded_key : f.keys[sample];
+    nearest = std::max(nearest, key);
+  });
 }
 
 /// A block with the one sample of pixel (x, y).
@@ -83,7 +86,7 @@ bool Scene::keeps(const raster::Draw& draw, std::uint64_t primitive, int x, int 
 
 raster::Fate Scene::add(const raster::Draw& draw, std::uint64_t primitive) {
   const auto offsets = raster::sample_offsets(request.samples);
-  std::map<std::pair<int, int>, Fragment> covered;
+  std::map<Place, Fragment> covered;
   raster::Fate fate = raster::Fate::culled;
   for (std::size_t s = 0; s < offsets.size(); ++s) {
     const raster::Fate here = raster::assemble_primitive(
@@ -93,11 +96,11 @@ raster::Fate Scene::add(const raster::Draw& draw, std::uint64_t primitive) {
     if (here != raster::Fate::culled) fate = here;
   }
   // Shaded at the centre where the triangle covers it, else at the first sample that it covers.
-  std::map<std::pair<int, int>, Fragment> centres;
+  std::map<Place, Fragment> centres;
   (void)raster::assemble_primitive(frame, draw, primitive,
                                    [&](const Piece& p) { add_keys(request, p, centres, -1); });
   for (auto& [place, fragment] : covered) {
-    const auto [y, x] = place;
+    const auto [y, x, away] = place;
     const auto centre = centres.find(place);
     if (centre != centres.end()) {
       fragment.shaded_key = centre->second.shaded_key;
@@ -192,7 +195,11 @@ class LayeredReference final : public raster::Method {
   explicit LayeredReference(MakeBlend make_blend) : make_blend_(make_blend) {}
 
   [[nodiscard]] raster::Needs needs() const override {
-    return {.rasterizer = "reference", .visibility = "layers", .colors = true, .whole_view = true};
+    return {.rasterizer = "reference",
+            .visibility = "layers",
+            .colors = true,
+            .quadrics = true,
+            .whole_view = true};
   }
 
   void draw(raster::Frame& frame, std::uint64_t first, std::uint64_t last) override {

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include <rastrum/parallel/mask.hpp>
+#include <rastrum/raster/assemble/assemble.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 
@@ -13,32 +14,51 @@ using raster::BlockColors;
 using raster::kBlockSize;
 using raster::Piece;
 
+/// The pieces that a triangle was clipped to may overlap by a snapped vertex: the nearest counts.
 template <class F>
 void SampledBlock::for_each_record(const Triangle& t, std::optional<std::uint32_t> only, F&& f) {
-  alignas(64) std::uint64_t keys[64];
-  for (std::uint32_t r = t.first; r < t.end; ++r) {
-    const Record& record = records_[r];
-    const auto sample = static_cast<std::uint32_t>(raster::sample_of(*record.piece));
-    const std::uint64_t mask = record.mask & t.kept;
-    if (mask == 0 || sample != only.value_or(sample)) continue;
+  alignas(64) std::uint64_t keys[64], others[64];
+  const auto find = [&](const Record& record, std::uint64_t mask, std::uint64_t* out) {
     context_->kernel->keys(
         *record.piece, {0, static_cast<std::uint16_t>(bx_), static_cast<std::uint16_t>(by_), mask},
-        keys);
-    f(sample, mask, static_cast<const std::uint64_t*>(keys));
+        out);
+  };
+  for (std::uint32_t r = t.first; r < t.end;) {
+    const int sample = raster::sample_of(*records_[r].piece);
+    std::uint64_t mask = records_[r].mask & t.kept;
+    const bool wanted = static_cast<std::uint32_t>(sample) == only.value_or(sample);
+    if (wanted && mask != 0) find(records_[r], mask, keys);
+    for (++r; r < t.end && raster::sample_of(*records_[r].piece) == sample; ++r) {
+      const std::uint64_t more = records_[r].mask & t.kept;
+      if (!wanted || more == 0) continue;
+      find(records_[r], more, others);
+      for (std::uint64_t m = more; m != 0; m &= m - 1) {
+        const int i = std::countr_zero(m);
+        keys[i] = (mask >> i & 1) != 0 ? std::max(keys[i], others[i]) : others[i];
+      }
+      mask |= more;
+    }
+    if (wanted && mask != 0)
+      f(static_cast<std::uint32_t>(sample), mask, static_cast<const std::uint64_t*>(keys));
   }
 }
 
 /// In order of submission; a triangle's records by sample.
 void SampledBlock::find_triangles() {
-  std::sort(records_.begin(), records_.end(), [](const Record& a, const Record& b) {
+  // The pieces of a triangle face one way, those of a quadric are two surfaces.
+  const auto away = [](const Record& r) { return r.piece->flags & raster::kFacesAway; };
+  std::sort(records_.begin(), records_.end(), [&](const Record& a, const Record& b) {
     if (a.piece->low != b.piece->low) return a.piece->low > b.piece->low;
+    if (away(a) != away(b)) return away(a) < away(b);
     return raster::sample_of(*a.piece) < raster::sample_of(*b.piece);
   });
   triangle_count_ = 0;
   const auto n = static_cast<std::uint32_t>(records_.size());
   for (std::uint32_t first = 0; first < n;) {
     std::uint32_t end = first + 1;
-    while (end < n && records_[end].piece->low == records_[first].piece->low) ++end;
+    while (end < n && records_[end].piece->low == records_[first].piece->low &&
+           away(records_[end]) == away(records_[first]))
+      ++end;
     triangles_.grow(triangle_count_ + 1, triangle_count_);
     triangles_[triangle_count_++] = {first, end, ~std::uint64_t{0}, 0, 0};
     first = end;
@@ -56,47 +76,55 @@ void SampledBlock::order_triangles() {
   if (by_depth) std::sort(order_.data(), order_.data() + triangle_count_);
 }
 
-void SampledBlock::find_points(const Triangle& t, Shaded& out) {
+/// Calls f(piece) for the pieces of `piece`'s primitive as they lie at the pixels' centres. What
+/// was clipped is clipped again: the piece that covers a centre may be another one, and cover no
+/// sample of this block.
+template <class F>
+void SampledBlock::for_each_piece_at_centre(const Piece& piece, F&& f) {
+  const std::uint64_t id = raster::kIdMask - piece.low;
+  const raster::FrameGeometry& frame = *context_->frame;
+  const raster::Draw& draw = frame.draw_of(id);
+  const std::uint64_t primitive = id - draw.first_id;
+  if (raster::is_triangle(piece) &&
+      raster::PrimitiveCorners<3>(frame, draw, primitive).needs_clip) {
+    (void)raster::assemble_primitive(frame, draw, primitive, f);
+    return;
+  }
   const auto offsets = raster::sample_offsets(context_->request->samples);
+  const raster::SampleOffset at = offsets[static_cast<std::size_t>(raster::sample_of(piece))];
+  f(raster::moved(piece, {-at.x, -at.y}));
+}
+
+void SampledBlock::find_points(const Triangle& t, Shaded& out) {
   out.mask = 0;
   for (std::uint32_t r = t.first; r < t.end; ++r) out.mask |= records_[r].mask;
-  std::uint64_t left = out.mask;
+  std::uint64_t at_centre = 0;
   alignas(64) std::uint64_t keys[64];
-  // At the centres: by the pieces that the triangle was clipped to, mostly one, moved back.
-  Piece last{};
-  for (std::uint32_t r = t.first; r < t.end && left != 0; ++r) {
-    const auto offset = offsets[static_cast<std::size_t>(raster::sample_of(*records_[r].piece))];
-    const Piece at_centre = raster::moved(*records_[r].piece, {-offset.x, -offset.y});
-    if (std::ranges::equal(at_centre.x, last.x) && std::ranges::equal(at_centre.y, last.y))
-      continue;
-    last = at_centre;
+  for_each_piece_at_centre(*records_[t.first].piece, [&](const Piece& piece) {
     raster::Block block{0, static_cast<std::uint16_t>(bx_), static_cast<std::uint16_t>(by_), 0};
-    context_->kernel->masks(&at_centre, &block, 1);
-    block.mask &= left;
-    if (block.mask != 0) context_->kernel->keys(at_centre, block, keys);
+    context_->kernel->masks(&piece, &block, 1);
+    block.mask &= out.mask;
+    if (block.mask != 0) context_->kernel->keys(piece, block, keys);
     for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
-      out.keys[i] = keys[i];
+      out.keys[i] = (at_centre >> i & 1) != 0 ? std::max(out.keys[i], keys[i]) : keys[i];
       out.points.dx[i] = out.points.dy[i] = 0;
     }
-    left &= ~block.mask;
-  }
-  for (std::uint32_t r = t.first; r < t.end && left != 0; ++r) {
-    const std::uint64_t mask = records_[r].mask & left;
-    if (mask == 0) continue;
-    const Piece& piece = *records_[r].piece;
-    context_->kernel->keys(
-        piece, {0, static_cast<std::uint16_t>(bx_), static_cast<std::uint16_t>(by_), mask}, keys);
-    const auto offset = offsets[static_cast<std::size_t>(raster::sample_of(piece))];
+    at_centre |= block.mask;
+  });
+  std::uint64_t left = out.mask & ~at_centre;
+  if (left == 0) return;
+  const auto offsets = raster::sample_offsets(context_->request->samples);
+  for_each_record(t, {}, [&](std::uint32_t sample, std::uint64_t mask, const auto* at_sample) {
     constexpr float kPx = 1.0F / raster::kSubpixels;
-    for (std::uint64_t m = mask; m != 0; m &= m - 1) {
+    for (std::uint64_t m = mask & left; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
-      out.keys[i] = keys[i];
-      out.points.dx[i] = static_cast<float>(offset.x) * kPx;
-      out.points.dy[i] = static_cast<float>(offset.y) * kPx;
+      out.keys[i] = at_sample[i];
+      out.points.dx[i] = static_cast<float>(offsets[sample].x) * kPx;
+      out.points.dy[i] = static_cast<float>(offsets[sample].y) * kPx;
     }
     left &= ~mask;
-  }
+  });
 }
 
 void SampledBlock::raise_opaque() {

@@ -49,7 +49,7 @@ class SampledBlock {
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-  /// The records of one triangle in the block, of all samples.
+  /// The records of one triangle, or one side of a quadric, in the block, of all samples.
   struct Triangle {
     std::uint32_t first, end;
     std::uint64_t kept;   ///< pixels that the fragment test leaves
@@ -66,6 +66,8 @@ class SampledBlock {
   void find_triangles();
   void order_triangles();
   void test();
+  template <class F>
+  void for_each_piece_at_centre(const raster::Piece& piece, F&& f);
   void find_points(const Triangle& t, Shaded& out);
   void raise_opaque();
   void find_shown();
@@ -77,7 +79,7 @@ class SampledBlock {
     return context_->request->transparency.method != Transparency::none &&
            (records_[t.first].piece->flags & raster::kTranslucent) != 0;
   }
-  /// Calls f(sample, mask, keys) for the records of a triangle, of one sample or all.
+  /// Calls f(sample, mask, keys) for what a triangle covers at one sample or each.
   template <class F>
   void for_each_record(const Triangle& t, std::optional<std::uint32_t> only, F&& f);
 

@@ -106,12 +106,12 @@ void expect_rounded(float got, Real exact, Real magnitude) {
 }
 
 /// A skeleton of five joints in a chain, beside nodes that must not matter, and a cloud of
-/// triangles that each hang on up to eight joints.
+/// triangles that each hang on up to eight joints and are morphed before.
 struct Skeleton {
   static constexpr std::size_t kJoints = 5, kVertices = 90;
   std::mt19937 random{7};
   std::vector<Placement> places;
-  std::vector<float> bind, positions, normals;
+  std::vector<float> bind, positions, normals, displacements;
   std::vector<std::uint8_t> joints[2], weights0;
   std::vector<float> weights1;
 
@@ -125,6 +125,7 @@ struct Skeleton {
       for (std::size_t i = 0; i < 3; ++i) p.t[i] = double{in(-1, 1)};
       for (std::size_t i = 0; i < 4; ++i) p.q[i] = double{in(-1, 1)};
       for (std::size_t i = 0; i < 3; ++i) p.s[i] = double{in(0.5F, 2)};
+      if (j == kJoints - 1) p.s[0] = -p.s[0];  // a mirror
       places.push_back(p);
       for (int k = 0; k < 16; ++k)
         bind.push_back(k == 15      ? 1.0F
@@ -134,6 +135,7 @@ struct Skeleton {
     }
     for (std::size_t v = 0; v < kVertices; ++v) {
       for (int k = 0; k < 3; ++k) positions.push_back(in(-2, 2));
+      for (int k = 0; k < 3; ++k) displacements.push_back(in(-1, 1));
       Vec3 n = normalize(Vec3{in(-1, 1), in(-1, 1), in(0.1F, 1)});
       normals.insert(normals.end(), {n.x, n.y, n.z});
       for (int k = 0; k < 4; ++k) {
@@ -154,6 +156,7 @@ struct Skeleton {
     d.add(std::vector<std::uint16_t>(joints[1].begin(), joints[1].end()), "VEC4", 5123);
     d.floats(weights1, "VEC4");
     d.floats(bind, "MAT4");
+    d.floats(displacements, "VEC3");
     std::string nodes =
         R"([{"mesh":0,"skin":0,"translation":[100,0,0]},{"children":[2],"scale":[2,2,2]})";
     std::string ids;
@@ -165,7 +168,7 @@ struct Skeleton {
     }
     return d.text(
         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1,"JOINTS_0":2,)"
-        R"("WEIGHTS_0":3,"JOINTS_1":4,"WEIGHTS_1":5}}]}],"skins":[{"inverseBindMatrices":6,"joints":[)" +
+        R"("WEIGHTS_0":3,"JOINTS_1":4,"WEIGHTS_1":5},"targets":[{"POSITION":7}]}],"weights":[0.75]}],"skins":[{"inverseBindMatrices":6,"joints":[)" +
         ids + R"(]}],"nodes":)" + nodes + "]");
   }
 
@@ -188,6 +191,7 @@ TEST(GltfMotion, SkinsArePosedAtRest) {
   ASSERT_EQ(scene.meshes.size(), 1U);
   const Mesh& mesh = scene.meshes[0];
   ASSERT_EQ(mesh.positions.size(), Skeleton::kVertices);
+  std::size_t mirrored = 0;
   EXPECT_EQ(scene.instances[0].object_to_world.m[0][3], 0)
       << "the node of a skinned mesh is ignored";
   const std::vector<Matrix> matrices = skeleton.joint_matrices();
@@ -206,9 +210,18 @@ TEST(GltfMotion, SkinsArePosedAtRest) {
     const float got[3] = {mesh.positions[v].x, mesh.positions[v].y, mesh.positions[v].z};
     for (std::size_t i = 0; i < 3; ++i) {
       Real exact = m[i][3];
-      for (std::size_t j = 0; j < 3; ++j) exact += m[i][j] * skeleton.positions[3 * v + j];
+      for (std::size_t j = 0; j < 3; ++j)
+        exact += m[i][j] * (skeleton.positions[3 * v + j] +
+                            static_cast<Real>(0.75F) * skeleton.displacements[3 * v + j]);
       expect_rounded(got[i], exact / sum, 10);
     }
+    const Vector rows[3] = {
+        {m[0][0], m[0][1], m[0][2]}, {m[1][0], m[1][1], m[1][2]}, {m[2][0], m[2][1], m[2][2]}};
+    Real determinant = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      determinant += rows[0][i] * (rows[1][(i + 1) % 3] * rows[2][(i + 2) % 3] -
+                                   rows[1][(i + 2) % 3] * rows[2][(i + 1) % 3]);
+    mirrored += determinant < 0 ? 1U : 0U;
     // A normal stays at right angles to what was so, and on its side.
     const Vec3 before{skeleton.normals[3 * v], skeleton.normals[3 * v + 1],
                       skeleton.normals[3 * v + 2]};
@@ -226,6 +239,8 @@ TEST(GltfMotion, SkinsArePosedAtRest) {
       EXPECT_NEAR(dot(n, moved(tangent)), 0, 2e-6);
     EXPECT_GT(dot(n, moved(before)), 0);
   }
+  EXPECT_GT(mirrored, 3U);
+  EXPECT_LT(mirrored, Skeleton::kVertices);
 }
 
 /// A triangle on node 0 whose `path` is animated: keys at 1, 2 and 4 s.

@@ -5,7 +5,8 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)  // as the library
+#include <rastrum/parallel/simd_targets.hpp>  // as the library
+
 #include <hwy/targets.h>
 
 #include <rastrum/error.hpp>

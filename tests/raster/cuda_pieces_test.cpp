@@ -58,9 +58,9 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
       raster::Draw& d = draws.emplace_back();
       d.source = raster::MatrixVertices(instance.mesh()->positions, matrix);
       d.vertex_count = instance.mesh()->positions.size();
-      d.indices = instance.mesh()->indices;
+      d.indices = instance.mesh()->indices.packed();
       d.primitive_count = instance.mesh()->triangle_count();
-      device_draws.push_back({d, {instance.mesh()->positions, matrix, {}, {}}});
+      device_draws.push_back({d, {instance.mesh()->positions.packed(), matrix, {}, {}}});
     }
     const auto total = raster::number_draws(draws).primitives;
     raster::FrameGeometry frame{kWidth, kHeight, raster::Viewport::of(kWidth, kHeight), draws};

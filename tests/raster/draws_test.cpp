@@ -224,7 +224,7 @@ TEST(Draws, MayHaveABuiltInShader) {
     d.source =
         raster::MatrixVertices(instance.mesh()->positions, to_clip * instance.object_to_world);
     d.vertex_count = instance.mesh()->positions.size();
-    d.indices = instance.mesh()->indices;
+    d.indices = instance.mesh()->indices.packed();
     d.primitive_count = instance.mesh()->triangle_count();
   }
   const Two two(1);

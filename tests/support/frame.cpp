@@ -2,6 +2,7 @@
 #include "tests/support/painter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
@@ -115,6 +116,17 @@ AssertionResult same_picture(const Frame& a, const Frame& b, int tolerance) {
     return std::abs(x.r - y.r) <= tolerance && std::abs(x.g - y.g) <= tolerance &&
            std::abs(x.b - y.b) <= tolerance && std::abs(x.a - y.a) <= tolerance;
   };
+  if (tolerance == 0 && !a.color.empty() && !b.color.empty()) {
+    const auto same = [](const Vec4& x, const Vec4& y) {
+      using Bits = std::array<std::uint32_t, 4>;
+      return std::bit_cast<Bits>(x) == std::bit_cast<Bits>(y);
+    };
+    auto floats = same_pixels("float colour", a.color.width(), a.color.pixels(), b.color.pixels(),
+                              same, [](AssertionResult& r, const Vec4& v) {
+                                r << '(' << v.x << ' ' << v.y << ' ' << v.z << ' ' << v.w << ')';
+                              });
+    if (!floats) return floats;
+  }
   return same_pixels("colour", a.color8.width(), a.color8.pixels(), b.color8.pixels(), near,
                      [](AssertionResult& r, Rgba8 v) {
                        r << '(' << int{v.r} << ' ' << int{v.g} << ' ' << int{v.b} << ' ' << int{v.a}

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 
 #include <rastrum/io.hpp>
@@ -64,6 +65,22 @@ testing::AssertionResult matches_golden(const std::string& name, const Image<Rgb
   const auto differing = std::ranges::count_if(
       diff.pixels(), [](Rgba8 p) { return p.r != 0 || p.g != 0 || p.b != 0; });
   return fail(name + ": " + std::to_string(differing) + " pixels differ from the golden picture");
+}
+
+testing::AssertionResult matches_golden(const std::string& name, const Digest& actual) {
+  const fs::path failure = golden_failures_dir() / (name + ".actual.sha256");
+  std::error_code absent;
+  fs::remove(failure, absent);
+  std::ifstream golden(golden_dir() / "hashes.txt");
+  std::string expected, of;
+  while (golden >> expected >> of && of != name) {
+  }
+  if (of == name && expected == actual.hex()) return testing::AssertionSuccess();
+  fs::create_directories(failure.parent_path());
+  std::ofstream(failure) << actual.hex() << "\n";
+  return testing::AssertionFailure()
+         << name << " is " << actual.hex() << ", and hashes.txt has "
+         << (of == name ? expected : "none of that name") << " (./dev golden shows and accepts)";
 }
 
 }  // namespace rastrum::test

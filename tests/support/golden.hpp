@@ -1,10 +1,12 @@
-// Golden pictures: few, small, in plain Git (tests/golden/NAME.png), compared exactly.
+// Golden pictures: few, small, in plain Git (tests/golden/NAME.png), compared exactly; and digests
+// of those that nobody has to look at (tests/golden/hashes.txt).
 #pragma once
 
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include <rastrum/digest.hpp>
 #include <rastrum/image.hpp>
 
 namespace rastrum::test {
@@ -14,5 +16,10 @@ namespace rastrum::test {
 /// `./dev golden` shows and accepts; a match removes them.
 [[nodiscard]] testing::AssertionResult matches_golden(const std::string& name,
                                                       const Image<Rgba8>& actual);
+
+/// Compares with the line of `name` in tests/golden/hashes.txt. A difference writes
+/// NAME.actual.sha256, which `./dev golden` accepts, too.
+[[nodiscard]] testing::AssertionResult matches_golden(const std::string& name,
+                                                      const Digest& actual);
 
 }  // namespace rastrum::test

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include <rastrum/core/elementary.hpp>
+
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -35,7 +37,7 @@ class Alphas {
       case 2:  // what draws nothing and what hides all, now and then
         return r.chance(0.15) ? 0 : r.chance(0.1) ? 1 : r.real(0, std::min(1.0, 10.0 / layers_));
       case 3:
-        return std::pow(10.0, r.real(-7, 0));
+        return elementary::pow(10.0, r.real(-7, 0));
       default:
         return 0.5;
     }
@@ -84,8 +86,8 @@ struct Maker {
   double larger() const { return std::max(width, height); }
   /// 1 to `most`, few or many alike, and no more than the picture can bear.
   int count(int most) {
-    const double log_most = std::log(static_cast<double>(std::min(most, most_layers())));
-    return std::max(1, static_cast<int>(std::lround(std::exp(random.real(0, log_most)))));
+    const double log_most = elementary::log(static_cast<double>(std::min(most, most_layers())));
+    return std::max(1, static_cast<int>(std::lround(elementary::exp(random.real(0, log_most)))));
   }
   void look() {
     flat = random.chance(0.5);
@@ -107,7 +109,7 @@ void crossing_quads(Maker& m) {
   Alphas alpha(m.random, n);
   for (int i = 0; i < n; ++i) {
     const double x = m.x(), y = m.y(), turn = m.random.real(0, 2 * kPi), size = m.larger();
-    const double dx = size * std::cos(turn), dy = size * std::sin(turn);
+    const double dx = size * elementary::cos(turn), dy = size * elementary::sin(turn);
     const Vec4 color = m.color(alpha());
     const auto z = [&] { return m.random.real(0, 1); };
     m.quad({m.at(x - dx, y - dy, z()), m.at(x + dy, y - dx, z()), m.at(x + dx, y + dy, z()),
@@ -139,7 +141,10 @@ void repeated(Maker& m) {
   std::array<Vec3, 3> p{};
   for (int i = 0; i < n; ++i) {
     if (i % 40 == 0)
-      for (Vec3& v : p) v = m.at(m.x(), m.y(), m.random.real(0, 1));
+      for (Vec3& v : p) {
+        const double z = m.random.real(0, 1), y = m.y(), x = m.x();
+        v = m.at(x, y, z);
+      }
     const auto k = static_cast<std::size_t>(m.random.integer(0, 2));
     const bool turned = m.random.chance(0.5);
     m.triangle(p[k], p[(k + (turned ? 2 : 1)) % 3], p[(k + (turned ? 1 : 2)) % 3],
@@ -171,7 +176,7 @@ void ribbons(Maker& m) {
   Alphas alpha(m.random, n / 4 + 1);
   for (int i = 0; i < n; ++i) {
     const double cx = m.x(), cy = m.y(), radius = m.random.real(0.1, 1) * m.larger();
-    const double start = m.random.real(0, 2 * kPi), thin = std::exp(m.random.real(-3, 1.5));
+    const double start = m.random.real(0, 2 * kPi), thin = elementary::exp(m.random.real(-3, 1.5));
     const double z0 = m.random.real(0, 1), z1 = m.random.real(0, 1);
     const Vec4 color = m.color(alpha());
     std::uint32_t before[2] = {};
@@ -181,7 +186,8 @@ void ribbons(Maker& m) {
       std::uint32_t now[2];
       for (int side = 0; side < 2; ++side) {
         const double r = radius + thin * side;
-        now[side] = m.vertex(m.at(cx + r * std::cos(angle), cy + r * std::sin(angle), z));
+        now[side] =
+            m.vertex(m.at(cx + r * elementary::cos(angle), cy + r * elementary::sin(angle), z));
       }
       if (s > 0) {
         m.scene.add(before[0], before[1], now[0], color);
@@ -238,7 +244,7 @@ void micro(Maker& m) {
     Random heap(static_cast<std::uint64_t>(i % heaps) + 77);
     const double cx = heap.real(0, m.width), cy = heap.real(0, m.height);
     const double x = cx + m.random.real(-spread, spread), y = cy + m.random.real(-spread, spread);
-    const double size = std::exp(m.random.real(-2, 1.2));
+    const double size = elementary::exp(m.random.real(-2, 1.2));
     const auto corner = [&] {
       const double u = x + m.random.real(-size, size), v = y + m.random.real(-size, size);
       return m.at(u, v, m.random.real(0, 1));
@@ -278,7 +284,7 @@ void soup(Maker& m) {
   const int n = m.count(400);
   Alphas alpha(m.random, n / 4 + 1);
   for (int i = 0; i < n; ++i) {
-    const double x = m.x(), y = m.y(), size = std::exp(m.random.real(-1, 5));
+    const double x = m.x(), y = m.y(), size = elementary::exp(m.random.real(-1, 5));
     const auto corner = [&] {
       const double u = x + m.random.real(-size, size), v = y + m.random.real(-size, size);
       return m.at(u, v, m.random.real(0, 1));

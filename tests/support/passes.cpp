@@ -56,9 +56,9 @@ Passes draw_in_passes(Painter& renderer, const SceneView& scene, const Camera& c
   for (std::size_t pass = 0; pass < passes; ++pass) {
     const std::size_t last = triangles * (pass + 1) * (pass + 1) / (passes * passes);
     MeshView mesh = whole_mesh;
-    mesh.indices = whole_mesh.indices.subspan(first * 3, (last - first) * 3);
-    if (std::span<const std::uint32_t>& normals = mesh.normals.indices; !normals.empty())
-      normals = normals.subspan(first * 3, (last - first) * 3);
+    mesh.indices = whole_mesh.indices.subview(first * 3, (last - first) * 3);
+    if (IndexView& normals = mesh.normals.indices; !normals.empty())
+      normals = normals.subview(first * 3, (last - first) * 3);
     InstanceView part = whole;
     part.geometry = mesh;
     targets.load = pass != 0 && by == By::load;

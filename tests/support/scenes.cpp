@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/core/elementary.hpp>
+
 #include "tests/support/random.hpp"
 
 namespace rastrum::test {
@@ -81,7 +83,7 @@ void soup(Maker& m) {
   const Placer p = m.placer();
   const int n = m.random.integer(1, 60);
   for (int i = 0; i < n; ++i) {
-    const double x = m.x(), y = m.y(), size = std::exp(m.random.real(-1, 5));
+    const double x = m.x(), y = m.y(), size = elementary::exp(m.random.real(-1, 5));
     const auto corner = [&] {
       return p.at(
           {x + m.random.real(-size, size), y + m.random.real(-size, size), m.random.real(0.1, 4)});
@@ -106,7 +108,7 @@ void fan(Maker& m) {
   for (int i = 0; i < n; ++i) {
     const double angle = turn + 2 * kPi * i / n;
     const double r = m.random.real(0.1, 0.9) * m.larger();
-    m.vertex(point(cx + r * std::cos(angle), cy + r * std::sin(angle)));
+    m.vertex(point(cx + r * elementary::cos(angle), cy + r * elementary::sin(angle)));
   }
   for (int i = 0; i < n; ++i) {
     const auto a = centre + 1 + static_cast<std::uint32_t>(i);
@@ -125,9 +127,9 @@ void grid(Maker& m) {
   for (int j = 0; j <= n; ++j) {
     for (int i = 0; i <= n; ++i) {
       const double u = (i - n / 2.0) * cell, v = (j - n / 2.0) * cell;
-      m.vertex(
-          p.at({cx + u * std::cos(turn) - v * std::sin(turn),
-                cy + u * std::sin(turn) + v * std::cos(turn), flat ? 1.0 : m.random.real(0.1, 4)}));
+      m.vertex(p.at({cx + u * elementary::cos(turn) - v * elementary::sin(turn),
+                     cy + u * elementary::sin(turn) + v * elementary::cos(turn),
+                     flat ? 1.0 : m.random.real(0.1, 4)}));
     }
   }
   for (int j = 0; j < n; ++j) {
@@ -150,7 +152,7 @@ void slivers(Maker& m) {
   const int n = m.random.integer(1, 80);
   for (int i = 0; i < n; ++i) {
     const double x0 = m.x(), y0 = m.y(), x1 = m.x(), y1 = m.y();
-    const double thin = std::pow(10.0, m.random.real(-3, 0.3));
+    const double thin = elementary::pow(10.0, m.random.real(-3, 0.3));
     m.triangle({p.at({x0, y0, m.random.real(0.1, 4)}), p.at({x1, y1, m.random.real(0.1, 4)}),
                 p.at({x1 + thin, y1 + thin * m.random.real(-1, 1), m.random.real(0.1, 4)})});
   }
@@ -161,7 +163,7 @@ void sub_pixel(Maker& m) {
   const int n = m.random.integer(20, 200);
   for (int i = 0; i < n; ++i) {
     const double x = m.random.real(0, m.width), y = m.random.real(0, m.height);
-    const double size = std::exp(m.random.real(-6, 0.5)), w = m.random.real(0.1, 4);
+    const double size = elementary::exp(m.random.real(-6, 0.5)), w = m.random.real(0.1, 4);
     const auto corner = [&] {
       return p.at({x + m.random.real(-size, size), y + m.random.real(-size, size), w});
     };
@@ -174,7 +176,7 @@ void huge(Maker& m) {
   const Placer p = m.placer();
   const int n = m.random.integer(1, 20);
   for (int i = 0; i < n; ++i) {
-    const double size = std::pow(10.0, m.random.real(2, 7));
+    const double size = elementary::pow(10.0, m.random.real(2, 7));
     const auto corner = [&] {
       return p.at({m.random.real(-size, size), m.random.real(-size, size), m.random.real(0.1, 4)});
     };
@@ -279,7 +281,7 @@ void extreme(Maker& m) {
   if (m.random.chance(0.5)) m.camera.far_plane = 100;
   const float limit = std::numeric_limits<float>::max() / 16;
   const auto coordinate = [&] {
-    const double magnitude = std::pow(10.0, m.random.real(-3, std::log10(double{limit})));
+    const double magnitude = elementary::pow(10.0, m.random.real(-3, elementary::log10(double{limit})));
     const float v = m.random.chance(0.2) ? limit : static_cast<float>(magnitude);
     return m.random.chance(0.5) ? v : -v;
   };
@@ -353,7 +355,7 @@ void edge_on(Maker& m) {
   const int n = m.random.integer(1, 60);
   for (int i = 0; i < n; ++i) {
     const double x = m.random.real(-1, 1), y = m.random.real(-1, 1);
-    const double lean = std::pow(10.0, m.random.real(-6, -1));
+    const double lean = elementary::pow(10.0, m.random.real(-6, -1));
     const auto corner = [&] {
       const double z = m.random.real(0.2, 6);
       return from_camera(
@@ -408,7 +410,7 @@ void add_attributes(Maker& m) {
 Mat4d random_placement(Random& r) {
   // A rotation about a random axis, unequal scales (now and then a mirror image), a shift.
   const Vec3 a = normalize(random_vector(r, 1) + Vec3{0, 0.01F, 0});
-  const double angle = r.real(0, 2 * kPi), s = std::sin(angle), c = std::cos(angle);
+  const double angle = r.real(0, 2 * kPi), s = elementary::sin(angle), c = elementary::cos(angle);
   const double u[3] = {a.x, a.y, a.z};
   const double k[3][3] = {{0, -u[2], u[1]}, {u[2], 0, -u[0]}, {-u[1], u[0], 0}};
   double scale[3];
@@ -446,7 +448,7 @@ Placer::Placer(const Camera& camera, int width, int height)
       height_(height),
       scale_(camera.orthographic
                  ? double{camera.orthographic_height} / std::min(width, height)
-                 : 2 * std::tan(double{camera.fov_rad} / 2) / std::min(width, height)),
+                 : 2 * elementary::tan(double{camera.fov_rad} / 2) / std::min(width, height)),
       world_to_camera_(world_to_camera(camera)) {}
 
 Vec3 Placer::at(ScreenPoint p) const {

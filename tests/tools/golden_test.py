@@ -54,6 +54,16 @@ class Golden(unittest.TestCase):
         self.assertEqual(self.accepted("teapot"), b"new")
         self.assertIn("no golden picture failed", self.golden()[1])
 
+    def test_accepts_digests(self):
+        for name, digest in (("b", "22"), ("a", "11"), ("b", "33")):
+            folder = self.root / "build" / "ci" / "golden-failures" / "terrain"
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / f"{name}.actual.sha256").write_text(digest + "\n")
+            self.assertIn(f"terrain/{name} (ci)", self.golden()[1])
+            self.assertEqual(self.golden("accept")[0], 0)
+        self.assertEqual((self.root / "tests" / "golden" / "hashes.txt").read_text(),
+                         "11  terrain/a\n33  terrain/b\n")
+
     def test_refuses_a_name_that_did_not_fail(self):
         self.add_failure("ci", "teapot", actual=b"new")
         self.assertEqual(self.golden("accept", "taepot")[0], 1)

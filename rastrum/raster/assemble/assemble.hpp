@@ -5,6 +5,7 @@
 // DeviceGeometry.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include <rastrum/raster/assemble/points_and_lines.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
+#include <rastrum/raster/setup/make_quadric.hpp>
 
 namespace rastrum::raster {
 
@@ -105,12 +107,55 @@ RASTRUM_HD Fate assemble_point(const Geometry& frame, const Draw& draw, std::uin
   return Fate::drawn;
 }
 
+/// At most two pieces, which refer to a quadric that lives as long as the call of `emit`.
+template <class Emit>
+Fate assemble_quadric(int width, int height, const Draw& draw, std::uint64_t p, std::uint32_t flags,
+                      SampleOffset at, Emit&& emit) {
+  QuadricShape shape;
+  switch (draw.quadrics->shape(p, shape)) {
+    case ShapeFate::dropped:
+      return Fate::dropped;
+    case ShapeFate::empty:
+      return Fate::culled;
+    case ShapeFate::drawn:
+      break;
+  }
+  Quadric quadric;
+  QuadricPlace place;
+  if (!make_quadric(*draw.quadrics, shape, Viewport::of(width, height), quadric, place))
+    return Fate::culled;
+  const Cull cull = draw.effective_cull();
+  bool front = cull != Cull::front, back = cull != Cull::back;
+  if (shape.kind == QuadricKind::disc) {
+    front = front && place.front;
+    back = back && !place.front;
+  } else if (front && !quadric.is_open && !place.asks_near &&
+             (flags & (kTested | kTranslucent)) == 0) {
+    back = false;  // it is hidden
+  }
+  Piece piece;
+  std::copy_n(place.x, 3, piece.x);
+  std::copy_n(place.y, 3, piece.y);
+  piece.flags = kQuadric;
+  set_quadric(piece, &quadric);
+  piece.low = kIdMask - (draw.first_id + p);
+  piece = moved(piece, at);
+  if (piece_bounds(piece, {0, 0, width, height}).empty()) return Fate::culled;
+  for (const bool away : {false, true}) {
+    if (!(away ? back : front)) continue;
+    piece.flags = flags | kQuadric | (away ? kFacesAway : 0);
+    emit(std::as_const(piece));
+  }
+  return front || back ? Fate::drawn : Fate::culled;
+}
+
 /// Calls emit(piece) for each piece of primitive `p` of `draw` at sample `sample`, which lies at
 /// `at`; says what became of it (`clipped` ones are drawn too). At most kMaxPieces of a primitive.
 /// Indices must be in range.
 template <class Geometry, class Emit>
 RASTRUM_HD Fate assemble_primitive(const Geometry& frame, const Draw& draw, std::uint64_t p,
                                    Emit&& emit, std::uint32_t sample = 0, SampleOffset at = {}) {
+  if (!draw.visible) return Fate::culled;
   const std::uint64_t id = draw.first_id + p;
   const std::uint32_t flags = frame.flags_of(draw, p) | sample << kSampleShift;
   if ((flags & kCutAway) != 0) return Fate::culled;
@@ -118,6 +163,11 @@ RASTRUM_HD Fate assemble_primitive(const Geometry& frame, const Draw& draw, std:
     add_depth_bias(piece, draw.depth_bias, draw.depth_bias_slope);
     emit(std::as_const(piece));
   };
+#ifndef __CUDACC__
+  // The host's alone, whose frames have them.
+  if (draw.quadrics != nullptr)
+    return assemble_quadric(frame.width, frame.height, draw, p, flags, at, emit);
+#endif
   switch (draw.topology) {
     case Topology::points:
       return assemble_point(frame, draw, id, flags, PrimitiveCorners<1>(frame, draw, p),

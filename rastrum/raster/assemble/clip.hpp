@@ -6,6 +6,7 @@
 #pragma once
 
 #include <rastrum/config.hpp>
+#include <rastrum/mat.hpp>
 #include <rastrum/raster/draws/projection.hpp>
 
 namespace rastrum::raster {
@@ -13,6 +14,18 @@ namespace rastrum::raster {
 struct Vec4d {
   double x = 0, y = 0, z = 0, w = 0;
 };
+
+/// M · (p, 1) in float64, in the order of float32's.
+[[nodiscard]] RASTRUM_HD inline Vec4d transform_point(const Mat4d& a, Vec3d p) {
+  const auto row = [&](int i) {
+    return ((a.m[i][0] * p.x + a.m[i][1] * p.y) + a.m[i][2] * p.z) + a.m[i][3];
+  };
+  return {row(0), row(1), row(2), row(3)};
+}
+[[nodiscard]] RASTRUM_HD inline Vec4 rounded(Vec4d v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z),
+          static_cast<float>(v.w)};
+}
 
 /// A triangle cut by five planes (near and the guard band's four) has at most eight corners.
 inline constexpr int kMaxPolygon = 8;

@@ -28,7 +28,7 @@ void bin_piece(const Piece& piece, std::uint32_t index, const BinTable& lists,
   PieceInBin* const out = pairs.room(touched);
   std::size_t n = 0;
   // A box in two bins has a vertex in each, unless the view cuts it: not worth asking.
-  const bool asks = touched > 2;
+  const bool asks = touched > 2 && !is_quadric(piece);
   const Edges edges = asks ? edges_of(piece) : Edges{};
   for (int by = by0; by <= by1; ++by)
     for (int bx = bx0; bx <= bx1; ++bx) {
@@ -155,8 +155,7 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
     Group& group = groups_[g];
     Filler& scratch = fillers_.local();
     Pieces& pieces = limited ? scratch.pieces : group.pieces;
-    pieces.count = 0;
-    pieces.triangles = {};
+    pieces.restart();
     scratch.restart(frame, lists);
     const std::uint64_t begin = first + g * group_size;
     if (!raster::set_up(frame, begin, std::min(begin + group_size, last), pieces,
@@ -168,13 +167,13 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
     group.binned = bin_pieces(frame.kernel, pieces.span(), 0, most, lists, scratch.pairs);
     const std::size_t n = scratch.pairs.entries().size(), m = scratch.micro.entries().size();
     if (limited) {
-      const std::uint64_t own = pieces.count * sizeof(Piece) + n * sizeof(PieceInBin) +
-                                m * sizeof(BinFragment) +
-                                (list_count + bin_count) * sizeof(std::uint32_t);
+      const std::uint64_t own =
+          pieces.count * sizeof(Piece) + n * sizeof(PieceInBin) + m * sizeof(BinFragment) +
+          (list_count + bin_count) * sizeof(std::uint32_t) + pieces.quadric_bytes();
       if (bytes.fetch_add(own, std::memory_order_relaxed) + own > frame.view_bytes) return;
       group.pieces.data.reserve(pieces.count);
-      std::copy_n(pieces.data.data(), pieces.count, group.pieces.data.data());
-      group.pieces.count = pieces.count;
+      group.pieces.restart();
+      for (const Piece& piece : pieces.span()) group.pieces.add(piece);
       group.pieces.triangles = pieces.triangles;
     }
     group.by_bin.sort(scratch.pairs, list_count);

@@ -2,9 +2,7 @@
 // maximum and the way to 8-bit colours. Each repeats the operations of its scalar twin
 // (make_piece.hpp, color.hpp) in the same order, so it gives the same bits.
 
-// SSSE3 adds nothing over the scalar build that SSE4 does not; AVX3_DL nothing that these kernels
-// use.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/cover/blocks_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h
@@ -13,6 +11,7 @@
 #include <algorithm>
 #include <bit>
 
+#include <rastrum/raster/cover/quadric_kernels-inl.hpp>
 #include <rastrum/raster/kernels/kernels_simd.hpp>
 #include <rastrum/raster/kernels/lanes-inl.hpp>
 #include <rastrum/raster/shade/color.hpp>
@@ -73,6 +72,20 @@ HWY_INLINE std::uint64_t parts_of(std::uint64_t mask) {
   return mask & (kLanes64 == 4 ? 0x1111111111111111U : 0x5555555555555555U);
 }
 
+HWY_NOINLINE void raise_quadric(const Piece& piece, const Block& block, std::uint64_t* out) {
+  HWY_ALIGN std::uint64_t keys[64];
+  quadric_keys(piece, block, keys);
+  const I64 d;
+  for (std::uint64_t rest = parts_of(block.mask); rest != 0; rest &= rest - 1) {
+    const int first = std::countr_zero(rest);
+    const std::uint64_t bits = block.mask >> first & ((1U << kLanes64) - 1);
+    const auto key = hn::And(hn::Load(d, reinterpret_cast<const std::int64_t*>(keys + first)),
+                             hn::Load(d, kLaneTable.keep[bits]));
+    auto* const place = reinterpret_cast<std::int64_t*>(out + first);
+    hn::Store(hn::Max(hn::Load(d, place), key), d, place);
+  }
+}
+
 /// Goes by parts of a row as wide as a vector of keys: most masks have a few samples in each of a
 /// few rows.
 void maximum(const Piece* pieces, const Block* blocks, std::size_t n,
@@ -85,6 +98,10 @@ void maximum(const Piece* pieces, const Block* blocks, std::size_t n,
   for (std::size_t i = 0; i < n; ++i) {
     const Block& block = blocks[i];
     const Piece& p = pieces[block.piece];
+    if (is_quadric(p)) {
+      raise_quadric(p, block, surface.block(block.bx, block.by));
+      continue;
+    }
     // The depth formula, lane by lane: its parts by column and by row.
     HWY_ALIGN float by_column[8], by_row[8];
     const auto fill = [&](float first_px, std::int32_t origin, float slope, float plus, bool adds,
@@ -128,6 +145,7 @@ void maximum(const Piece* pieces, const Block* blocks, std::size_t n,
 }
 
 void keys(const Piece& piece, const Block& block, std::uint64_t* out) noexcept {
+  if (is_quadric(piece)) return quadric_keys(piece, block, out);
   const hn::RebindToUnsigned<I64> d64;
   const DepthRows depths(piece, block);
   for (std::uint64_t rest = block.mask; rest != 0;) {

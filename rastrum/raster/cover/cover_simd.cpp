@@ -2,9 +2,7 @@
 // rules.hpp, so the same masks. Pieces whose box has at most 8 × 8 samples, nearly all of a fine
 // mesh, are covered a piece a lane and then cut along the blocks; the others a block at a time.
 
-// SSSE3 adds nothing over the scalar build that SSE4 does not; AVX3_DL nothing that these kernels
-// use.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/cover/cover_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h
@@ -15,6 +13,7 @@
 #include <cstring>
 
 #include <rastrum/raster/cover/depth_bounds.hpp>
+#include <rastrum/raster/cover/quadric_kernels-inl.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/kernels/kernels_simd.hpp>
 #include <rastrum/raster/kernels/lanes-inl.hpp>
@@ -88,11 +87,27 @@ HWY_INLINE void small_cover(const Piece& p, int bx0, int by0, int bx1, int by1,
   }
 }
 
-/// Points and lines, the scalar way; apart, so that triangles do not pay for their code.
+/// A quadric of which something may be seen in `box`.
+HWY_INLINE std::size_t cover_quadric_blocks(const Piece& piece, std::uint32_t index, Rect box,
+                                            HiddenTest& hidden, Block* out) {
+  std::size_t n = 0;
+  for (int by = box.y0 / kBlockSize; by <= (box.y1 - 1) / kBlockSize; ++by)
+    for (int bx = box.x0 / kBlockSize; bx <= (box.x1 - 1) / kBlockSize; ++bx) {
+      if (hidden.hides_block(piece, bx, by)) continue;
+      const std::uint64_t mask = quadric_mask(piece, bx, by, box);
+      if (mask != 0)
+        out[n++] = {index, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), mask};
+    }
+  return n;
+}
+
+/// Points and lines, the scalar way, and quadrics; apart, so that triangles do not pay for their
+/// code.
 HWY_NOINLINE std::size_t cover_other(const Piece& piece, std::uint32_t index, Rect bin,
                                      HiddenTest& hidden, Block* out) {
   const Rect box = piece_bounds(piece, bin);
   if (box.empty() || hidden.hides_piece(piece, box)) return 0;
+  if (is_quadric(piece)) return cover_quadric_blocks(piece, index, box, hidden, out);
   std::size_t n = 0;
   cover_blocks(
       piece, box, bin, [&](int bx, int by) { return hidden.hides_block(piece, bx, by); },
@@ -233,7 +248,7 @@ void bins(const Piece* pieces, std::size_t n, const BinNumbers& numbers,
     HWY_ALIGN std::int32_t found[kLanes];
     hn::Store(hn::IfThenElse(hn::AndNot(empty, one), bin, hn::Set(d, -1)), d, found);
     for (std::size_t k = 0; k < count; ++k)
-      out[i + k] = is_triangle(*lanes[k]) && found[k] >= 0
+      out[i + k] = has_corners(*lanes[k]) && found[k] >= 0
                        ? numbers.of(*lanes[k], static_cast<std::uint32_t>(found[k]))
                        : kManyBins;
   }
@@ -468,8 +483,9 @@ HWY_INLINE std::uint32_t hidden_lanes(const Piece* const (&pieces)[kLanes], cons
                           hn::Min(lowest(down, column), lowest(down, right)));
   const auto few =
       hn::And(hn::Lt(hn::Sub(last_column, column), four), hn::Lt(hn::Sub(last_row, row), four));
-  const auto triangle = hn::Eq(
-      hn::And(third[1], hn::Set(di, static_cast<std::int32_t>(kLine | kPoint))), hn::Zero(di));
+  const auto triangle =
+      hn::Eq(hn::And(third[1], hn::Set(di, static_cast<std::int32_t>(kLine | kPoint | kQuadric))),
+             hn::Zero(di));
   const auto is_finite = [&](F v) HWY_ATTR { return hn::Eq(hn::Sub(v, v), hn::Zero(d)); };
   const auto below = hn::And(hn::Gt(bound, hn::Zero(d)), hn::Lt(depth, bound));
   return lane_bits(hn::And(few, triangle)) &
@@ -532,6 +548,13 @@ void masks(const Piece* pieces, Block* blocks, std::size_t n) noexcept {
   for (std::size_t k = 0; k < n; ++k) {
     Block& block = blocks[k];
     if (block.mask != 0) continue;
+    if (is_quadric(pieces[block.piece])) {
+      const Piece& piece = pieces[block.piece];
+      const int x0 = block.bx * kBlockSize, y0 = block.by * kBlockSize;
+      const Rect box = sample_bounds(piece.x, piece.y, {x0, y0, x0 + kBlockSize, y0 + kBlockSize});
+      if (!box.empty()) block.mask = quadric_mask(piece, block.bx, block.by, box);
+      continue;
+    }
     if (!is_triangle(pieces[block.piece])) {
       block.mask = cover_8x8(pieces[block.piece], block.bx, block.by);
       continue;

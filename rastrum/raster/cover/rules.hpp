@@ -16,6 +16,7 @@
 
 #include <rastrum/config.hpp>
 #include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/setup/quadric.hpp>
 
 namespace rastrum::raster {
 
@@ -101,7 +102,7 @@ RASTRUM_HD inline Edges edges_of(const Piece& p) {
 
 /// The pixels that may be covered, cut to `view`. May be empty.
 RASTRUM_HD inline Rect piece_bounds(const Piece& p, Rect view) {
-  if (is_triangle(p)) return sample_bounds(p.x, p.y, view);
+  if (has_corners(p)) return sample_bounds(p.x, p.y, view);
   Rect box{p.x[1], p.y[1], p.x[2], p.y[2]};
   if ((p.flags & kLine) != 0) {
     const LineBand band = line_band(p);
@@ -176,21 +177,50 @@ RASTRUM_HD inline std::uint64_t cover_8x8(const Edges& edges, int bx, int by,
   return mask;
 }
 
+/// The samples of block (bx, by) that a quadric's piece covers, as far as `within` of it.
+RASTRUM_HD inline std::uint64_t cover_quadric(const Piece& p, int bx, int by, Rect within) {
+  std::uint64_t mask = 0;
+  for (int i = 0; i < 64; ++i) {
+    const int x = bx * kBlockSize + i % kBlockSize, y = by * kBlockSize + i / kBlockSize;
+    if (x >= within.x0 && x < within.x1 && y >= within.y0 && y < within.y1)
+      mask |= std::uint64_t{sample_quadric(p, x, y).is_covered} << i;
+  }
+  return mask;
+}
+
 /// The samples of block (bx, by) that the piece covers.
 RASTRUM_HD inline std::uint64_t cover_8x8(const Piece& p, int bx, int by) {
+  if (is_quadric(p)) {
+    const int x0 = bx * kBlockSize, y0 = by * kBlockSize;
+    const Rect block{x0, y0, x0 + kBlockSize, y0 + kBlockSize};
+    return cover_quadric(p, bx, by, sample_bounds(p.x, p.y, block));
+  }
   return cover_8x8(edges_of(p), bx, by);
+}
+
+/// Calls f(x, y) for the pixels of `view` whose samples the piece covers, row by row.
+template <class F>
+RASTRUM_HD inline void for_each_covered(const Piece& p, Rect view, F&& f) {
+  const Rect box = piece_bounds(p, view);
+  for (int y = box.y0; y < box.y1; ++y) {
+    const Span span = is_quadric(p) ? Span{box.x0, box.x1} : row_span(p, y, box.x0, box.x1);
+    for (int x = span.begin; x < span.end; ++x)
+      if (!is_quadric(p) || sample_quadric(p, x, y).is_covered) f(x, y);
+  }
 }
 
 /// Calls add(bx, by, mask) for every block of `view` that the piece covers, row by row; those of
 /// which skip(bx, by) says so are left out. `box`: piece_bounds, not empty.
 template <class Skip, class Add>
 RASTRUM_HD inline void cover_blocks(const Piece& p, Rect box, Rect view, Skip&& skip, Add&& add) {
-  const Edges edges = edges_of(p);
+  const bool quadric = is_quadric(p);
+  const Edges edges = quadric ? Edges{} : edges_of(p);
   for (int by = box.y0 / kBlockSize; by <= (box.y1 - 1) / kBlockSize; ++by)
     for (int bx = box.x0 / kBlockSize; bx <= (box.x1 - 1) / kBlockSize; ++bx) {
       const int x0 = bx * kBlockSize, y0 = by * kBlockSize;
       if (!may_touch(edges, {x0, y0, x0 + kBlockSize, y0 + kBlockSize}) || skip(bx, by)) continue;
-      const std::uint64_t mask = cover_8x8(edges, bx, by) & samples_inside(view, bx, by);
+      const std::uint64_t mask = quadric ? cover_quadric(p, bx, by, box)
+                                         : cover_8x8(edges, bx, by) & samples_inside(view, bx, by);
       if (mask != 0) add(bx, by, mask);
     }
 }

@@ -172,19 +172,22 @@ class MaterialUpload {
     materials_ = parallel::to_device(exec, materials);
 
     std::vector<MaterialDraw> draws = scene.draws;
+    std::vector<MeshView> meshes;
     for (MaterialDraw& draw : draws) {
-      MeshView& mesh = draw.mesh;
+      MeshView& mesh = meshes.emplace_back(*draw.mesh);
       const auto move = [&](auto& attribute) {
         attribute.values = uploads(attribute.values);
         attribute.indices = uploads(attribute.indices);
       };
-      mesh.face_materials = uploads(mesh.face_materials);
+      draw.face_materials = uploads(draw.face_materials);
       move(mesh.texcoords);
-      move(mesh.colors);
+      move(draw.colors);
       if (use == MaterialUse::alpha) continue;
       mesh.positions = uploads(mesh.positions);
       move(mesh.normals);
     }
+    meshes_ = parallel::to_device(exec, meshes);
+    for (std::size_t i = 0; i < draws.size(); ++i) draws[i].mesh = meshes_.data() + i;
     draws_ = parallel::to_device(exec, draws);
     view_ = {{materials_.data(), materials_.size()}, {draws_.data(), draws_.size()}, scene.rays};
   }
@@ -193,6 +196,7 @@ class MaterialUpload {
  private:
   Array<MipChain> chains_;
   Array<BoundMaterial> materials_;
+  Array<MeshView> meshes_;
   Array<MaterialDraw> draws_;
   MaterialView view_;
 };

@@ -196,7 +196,8 @@ void check_attribute(Exec& exec, const Attribute& attribute, const MeshView& mes
   require(attribute.indices.size() >= mesh.triangle_count() * 3,
           " have fewer indices than the triangles");
   const auto beyond = parallel::Computed(
-      attribute.indices.size(), cuda_detail::IsBeyond{attribute.indices, attribute.values.size()});
+      attribute.indices.size(),
+      cuda_detail::IsBeyond{attribute.indices.packed(), attribute.values.size()});
   require(parallel::reduce(exec, beyond, std::uint64_t{0}) == 0, " have an index out of range");
 }
 
@@ -208,8 +209,9 @@ class LitUpload {
   LitUpload(Exec& exec, Uploads<Exec>& uploads, const LitShading& lit) {
     const bool wants_normals = lit.model != LitModel::flat && lit.model != LitModel::id;
     std::vector<LitDraw> draws;
+    std::vector<MeshView> meshes;
     for (LitDraw draw : lit.scene->draws) {
-      MeshView& mesh = draw.mesh;
+      MeshView mesh = *draw.mesh;
       const auto move = [&](auto& attribute, bool wanted) {
         if (!wanted) return;
         attribute.values = uploads(attribute.values);
@@ -217,15 +219,18 @@ class LitUpload {
       };
       if (wants_normals && mesh.normals.empty()) mesh.positions = uploads(mesh.positions);
       move(mesh.normals, wants_normals);
-      move(mesh.colors, lit.scene->colored);
-      if (!lit.scene->materials.empty()) mesh.face_materials = uploads(mesh.face_materials);
+      move(draw.colors, lit.scene->colored);
+      if (!lit.scene->materials.empty()) draw.face_materials = uploads(draw.face_materials);
       // The façade has checked what it could read.
       if (uploads.in_place()) {
         check_attribute(exec, mesh.normals, mesh, "normals");
-        check_attribute(exec, mesh.colors, mesh, "colors");
+        check_attribute(exec, draw.colors, mesh, "colors");
       }
       draws.push_back(draw);
+      meshes.push_back(mesh);
     }
+    meshes_ = parallel::to_device(exec, meshes);
+    for (std::size_t i = 0; i < draws.size(); ++i) draws[i].mesh = meshes_.data() + i;
     draws_ = parallel::to_device(exec, draws);
     view_ = {{draws_.data(), draws_.size()},
              lit.scene->rays,
@@ -235,6 +240,7 @@ class LitUpload {
   [[nodiscard]] const LitView& view() const { return view_; }
 
  private:
+  decltype(parallel::make_buffer<MeshView>(std::declval<Exec&>(), 0)) meshes_;
   decltype(parallel::make_buffer<LitDraw>(std::declval<Exec&>(), 0)) draws_;
   LitView view_;
 };

@@ -36,8 +36,10 @@ struct ShadingPlace {
     const auto look = [&](const Piece& piece) {
       if (!covers_centre(edges_of(piece), x, y)) return;
       constexpr float kPx = 1.0F / kSubpixels;
-      place = {make_key(depth_at(piece, x, y), piece.low),
-               {static_cast<float>(at.x) * kPx, static_cast<float>(at.y) * kPx}};
+      const std::uint64_t key = make_key(depth_at(piece, x, y), piece.low);
+      // The nearest where the pieces of a clipped triangle overlap.
+      if (found && key <= place.key) return;
+      place = {key, {static_cast<float>(at.x) * kPx, static_cast<float>(at.y) * kPx}};
       found = true;
     };
     assemble_primitive(geometry, draw, id - draw.first_id, look, 0, at);

@@ -37,6 +37,12 @@ class Uploads {
     if (is_new) at->second = parallel::to_device(*exec_, std::as_bytes(host));
     return {static_cast<const T*>(static_cast<const void*>(at->second.data())), host.size()};
   }
+  /// Of views, which must be packed.
+  template <class T>
+  [[nodiscard]] ArrayView<T> operator()(const ArrayView<T>& host) {
+    return (*this)(host.packed());
+  }
+  [[nodiscard]] IndexView operator()(const IndexView& host) { return (*this)(host.packed()); }
 
  private:
   using Bytes = decltype(parallel::make_buffer<std::byte>(std::declval<Exec&>(), 0));
@@ -83,7 +89,7 @@ template <class Exec>
     d.draw.face_materials = uploads(draw.face_materials);
     d.draw.material_flags = uploads(draw.material_flags);
     if (const MatrixVertices* const matrix = draw.source.matrix()) {
-      d.vertices.positions = uploads(matrix->positions);
+      d.vertices.positions = uploads(matrix->positions.packed());
       d.vertices.object_to_clip = matrix->object_to_clip;
     } else {
       if (uploads.in_place())

@@ -23,14 +23,14 @@ struct DrawCut {
   struct Plane {
     double x, y, z, offset;
   };
-  std::vector<Plane> planes;        ///< in object space
-  std::span<const Vec3> positions;  ///< of its vertices
+  std::vector<Plane> planes;  ///< in object space
+  ArrayView<Vec3> positions;  ///< of its vertices
 
   /// `world`: the frame's.
   DrawCut(const InstanceView& instance, std::span<const ClipPlane> world);
 
   [[nodiscard]] double ahead(const Plane& plane, std::uint32_t vertex) const {
-    const Vec3d p = positions[vertex];
+    const Vec3d p = positions.wide(vertex);
     return ((plane.x * p.x + plane.y * p.y) + plane.z * p.z) + plane.offset;
   }
 };

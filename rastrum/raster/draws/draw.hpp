@@ -7,6 +7,7 @@
 
 #include <rastrum/config.hpp>
 #include <rastrum/primitives.hpp>
+#include <rastrum/raster/draws/quadrics.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/raster/shade/shading.hpp>
@@ -15,12 +16,22 @@ namespace rastrum::raster {
 
 struct DrawCut;
 
+/// Stands for a place in FrameGeometry::projected where a draw has none.
+inline constexpr std::size_t kNotProjected = ~std::size_t{0};
+
 /// Primitives over one vertex stage. Their flags are those of its pieces.
 struct Draw : Primitives {
-  VertexStage source;  ///< must be set
+  VertexStage source;  ///< must be set, or `quadrics`
+  /// The primitives are these; they have no vertices, and the topology says nothing.
+  const QuadricStage* quadrics = nullptr;
   /// Flags by material, so that a mesh of several needs no draw for each: triangle t has those of
-  /// material_flags[face_materials[t]] too. Both or none.
-  std::span<const std::uint32_t> face_materials{}, material_flags{};
+  /// material_flags[face_materials[t]], too. Both or none.
+  IndexView face_materials{};  ///< where there is a mesh, of its faces
+  std::span<const std::uint32_t> material_flags{};
+  /// Who knows the corners of its triangles where they are no packed list (MeshView::faces, indices
+  /// of other types), and must outlive the frame; null: `indices` are they. The host's alone.
+  const MeshView* mesh = nullptr;
+  bool visible = true;  ///< else its primitives are culled
   /// What shades it and, where `flags` has kTested, tests its fragments; none: what
   /// RendererAccess::draw is given.
   Shading shading;
@@ -29,18 +40,25 @@ struct Draw : Primitives {
 
   // Filled by the pipeline.
   std::uint64_t first_id = 0;
-  std::size_t first_vertex = 0;  ///< of this draw in FrameGeometry::projected
+  std::size_t first_vertex = 0;  ///< of this draw in FrameGeometry::projected, or kNotProjected
   std::size_t number = 0;        ///< among the draws of its shading
 
   [[nodiscard]] RASTRUM_HD std::uint32_t vertex(std::uint64_t primitive, int corner) const {
+#if !defined(__CUDA_ARCH__)
+    if (mesh != nullptr)
+      return mesh->vertex(mesh->place(primitive).corner[static_cast<std::size_t>(corner)]);
+#endif
     const std::size_t i = static_cast<std::size_t>(primitive) * static_cast<std::size_t>(topology) +
                           static_cast<std::size_t>(corner);
     return indices.empty() ? static_cast<std::uint32_t>(i) : indices[i];
   }
   [[nodiscard]] RASTRUM_HD std::uint32_t flags_of(std::uint64_t primitive) const {
-    return material_flags.empty()
-               ? flags
-               : flags | material_flags[face_materials[static_cast<std::size_t>(primitive)]];
+    if (material_flags.empty()) return flags;
+    auto face = static_cast<std::size_t>(primitive);
+#if !defined(__CUDA_ARCH__)
+    if (mesh != nullptr) face = mesh->place(face).face;
+#endif
+    return flags | material_flags[face_materials[face]];
   }
   /// Those that some primitive may have.
   [[nodiscard]] std::uint32_t any_flags() const {
@@ -56,7 +74,8 @@ struct Draw : Primitives {
   }
   /// Whether the setup kernel may make its pieces; otherwise assemble_primitive does.
   [[nodiscard]] bool has_kernel() const {
-    return topology == Topology::triangles && depth_bias == 0 && depth_bias_slope == 0;
+    return visible && quadrics == nullptr && topology == Topology::triangles && depth_bias == 0 &&
+           depth_bias_slope == 0;
   }
 };
 
@@ -65,6 +84,20 @@ struct Draw : Primitives {
                                                       std::uint64_t id) {
   std::size_t low = 0;
   std::size_t high = draws.size();
+  // Instances of one mesh have equally many: then the first guess is the draw or the one beside it.
+  if (high > 16) {
+    const std::uint64_t first = draws[0].first_id;
+    const std::uint64_t ids = draws[high - 1].first_id + draws[high - 1].primitive_count - first;
+    const auto guess = static_cast<std::size_t>(
+        static_cast<double>(id - first) / static_cast<double>(ids) * static_cast<double>(high));
+    if (guess < high && draws[guess].first_id <= id) {
+      low = guess;
+      if (guess + 2 < high && id < draws[guess + 2].first_id) high = guess + 2;
+    } else if (guess < high) {
+      high = guess;
+      if (guess >= 2 && draws[guess - 2].first_id <= id) low = guess - 2;
+    }
+  }
   while (high - low > 1) {
     const std::size_t middle = (low + high) / 2;
     (draws[middle].first_id <= id ? low : high) = middle;

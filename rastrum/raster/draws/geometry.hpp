@@ -19,8 +19,14 @@ struct FrameGeometry {
   const ProjectedVertex* projected = nullptr;  ///< null: vertices are projected where they are read
   Isa isa = Isa::scalar;
 
+  /// The projected vertices of a draw; null: they are projected where they are read.
+  [[nodiscard]] const ProjectedVertex* projected_of(const Draw& draw) const {
+    return projected == nullptr || draw.first_vertex == kNotProjected
+               ? nullptr
+               : projected + draw.first_vertex;
+  }
   [[nodiscard]] ProjectedVertex vertex(const Draw& draw, std::uint32_t index) const {
-    if (projected != nullptr) return projected[draw.first_vertex + index];
+    if (const ProjectedVertex* const all = projected_of(draw)) return all[index];
     ProjectedVertex v;
     draw.source.project(index, std::size_t{index} + 1, viewport, isa, &v);
     return v;

@@ -39,7 +39,7 @@ RASTRUM_HD inline ProjectedVertex moved(ProjectedVertex v, SampleOffset by) {
 }
 /// The piece as it is at the samples that lie at `by` (points and lines are the same everywhere).
 RASTRUM_HD inline Piece moved(Piece p, SampleOffset by) {
-  if (!is_triangle(p)) return p;
+  if (!has_corners(p)) return p;
   for (int c = 0; c < 3; ++c) {
     p.x[c] -= by.x;
     p.y[c] -= by.y;

@@ -1,18 +1,58 @@
 #include <rastrum/raster/draws/vertices.hpp>
 
 #include <algorithm>
+#include <type_traits>
 
 #include <rastrum/raster/kernels/kernels.hpp>
 
 namespace rastrum::raster {
 
+namespace {
+
+/// Positions that are read at once where they are not packed, or not in order.
+constexpr std::size_t kPositionsAtOnce = 256;
+
+/// Calls read(first, n, positions) for the n positions that are projected next, float32 or float64.
+template <class Read>
+void project_read(const MatrixVertices& m, std::size_t count, Viewport viewport, Isa isa,
+                  ProjectedVertex* out, const Read& read) {
+  const Kernels& kernel = kernels(isa);
+  const auto each = [&](auto& positions, const auto& project) {
+    for (std::size_t i = 0; i < count; i += kPositionsAtOnce) {
+      const std::size_t n = std::min(kPositionsAtOnce, count - i);
+      read(i, n, positions);
+      project(positions, n, out + i);
+    }
+  };
+  if (m.positions.is_wide()) {
+    Vec3d positions[kPositionsAtOnce];
+    each(positions, [&](const Vec3d* p, std::size_t n, ProjectedVertex* to) {
+      kernel.project64(p, n, m.object_to_clip, viewport, to);
+    });
+  } else {
+    Vec3 positions[kPositionsAtOnce];
+    each(positions, [&](const Vec3* p, std::size_t n, ProjectedVertex* to) {
+      kernel.project(p, n, m.object_to_clip32, viewport, to);
+    });
+  }
+}
+
+}  // namespace
+
 void VertexStage::project(std::size_t begin, std::size_t end, Viewport viewport, Isa isa,
                           ProjectedVertex* out) const noexcept {
-  if (const MatrixVertices* const m = matrix())
-    kernels(isa).project(m->positions.data() + begin, end - begin, m->object_to_clip32, viewport,
-                         out);
-  else
-    own().project(begin, end, viewport, isa, out);
+  const MatrixVertices* const m = matrix();
+  if (m == nullptr) return own().project(begin, end, viewport, isa, out);
+  const ArrayView<Vec3>& positions = m->positions;
+  if (positions.is_packed())
+    return kernels(isa).project(positions.data() + begin, end - begin, m->object_to_clip32,
+                                viewport, out);
+  project_read(*m, end - begin, viewport, isa, out, [&](std::size_t i, std::size_t n, auto* to) {
+    if constexpr (std::is_same_v<decltype(to), Vec3d*>)
+      positions.read_wide(begin + i, n, to);
+    else
+      positions.read(begin + i, n, to);
+  });
 }
 
 void VertexStage::project_indexed(std::span<const std::uint32_t> indices, Viewport viewport,
@@ -23,14 +63,17 @@ void VertexStage::project_indexed(std::span<const std::uint32_t> indices, Viewpo
       own().project(indices[i], std::size_t{indices[i]} + 1, viewport, isa, out + i);
     return;
   }
-  constexpr std::size_t kGather = 256;
-  Vec3 gathered[kGather];
-  const Kernels& kernel = kernels(isa);
-  for (std::size_t begin = 0; begin < indices.size(); begin += kGather) {
-    const std::size_t n = std::min(kGather, indices.size() - begin);
-    for (std::size_t i = 0; i < n; ++i) gathered[i] = m->positions[indices[begin + i]];
-    kernel.project(gathered, n, m->object_to_clip32, viewport, out + begin);
-  }
+  const ArrayView<Vec3>& positions = m->positions;
+  project_read(*m, indices.size(), viewport, isa, out, [&](std::size_t i, std::size_t n, auto* to) {
+    const std::span<const std::uint32_t> some = indices.subspan(i, n);
+    if constexpr (std::is_same_v<decltype(to), Vec3d*>) {
+      positions.gather_wide(some, to);
+    } else if (positions.is_packed()) {
+      for (std::size_t k = 0; k < n; ++k) to[k] = positions.data()[some[k]];
+    } else {
+      positions.gather(some, to);
+    }
+  });
 }
 
 }  // namespace rastrum::raster

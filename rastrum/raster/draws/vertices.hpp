@@ -8,6 +8,7 @@
 #include <span>
 #include <variant>
 
+#include <rastrum/array.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/raster/assemble/clip.hpp>
@@ -41,13 +42,23 @@ class VertexSource {
   return {row(0), row(1), row(2), row(3)};
 }
 
+/// The same of a position in float64: transformed as it is and rounded once.
+[[nodiscard]] inline Vec4d clip_position_of(Vec3d p, const Mat4d& matrix64) {
+  const Vec4d exact = transform_point(matrix64, p);
+  const Vec4 clip = rounded(exact);
+  if (std::isfinite(clip.x) && std::isfinite(clip.y) && std::isfinite(clip.z) &&
+      std::isfinite(clip.w))
+    return {clip.x, clip.y, clip.z, clip.w};
+  return exact;
+}
+
 /// Positions in object space, which must outlive the frame, and their matrix to clip space.
 struct MatrixVertices {
-  std::span<const Vec3> positions;
+  ArrayView<Vec3> positions;
   Mat4d object_to_clip;
   Mat4 object_to_clip32;  ///< the same, rounded
 
-  MatrixVertices(std::span<const Vec3> p, const Mat4d& to_clip)
+  MatrixVertices(const ArrayView<Vec3>& p, const Mat4d& to_clip)
       : positions(p), object_to_clip(to_clip), object_to_clip32(to_clip) {}
 };
 
@@ -76,7 +87,9 @@ class VertexStage {
   /// Homogeneous position for the clipper; NaN where the vertex is not finite.
   [[nodiscard]] Vec4d clip_position(std::size_t vertex) const noexcept {
     if (const MatrixVertices* const m = matrix())
-      return clip_position_of(m->positions[vertex], m->object_to_clip32, m->object_to_clip);
+      return m->positions.is_wide()
+                 ? clip_position_of(m->positions.wide(vertex), m->object_to_clip)
+                 : clip_position_of(m->positions[vertex], m->object_to_clip32, m->object_to_clip);
     return own().clip_position(vertex);
   }
 

@@ -7,6 +7,8 @@
 #include <rastrum/error.hpp>
 #include <rastrum/raster/bin/tile_grid.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
+#include <rastrum/raster/setup/quadric.hpp>
+#include <rastrum/raster/setup/set_up.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -28,6 +30,24 @@ constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
                                        .append(std::to_string(limit))
                                        .append(" bytes ")
                                        .append(why));
+}
+
+bool has_quadrics(const FrameRequest& request) {
+  return std::ranges::any_of(request.draws, [](const Draw& d) { return d.quadrics != nullptr; });
+}
+
+/// Gives draws their places among the projected vertices, and returns how many there are.
+std::uint64_t place_projected(std::span<Draw> draws) {
+  std::uint64_t vertices = 0;
+  for (Draw& draw : draws) {
+    if (!draw.visible || is_projected_in_setup(draw)) {
+      draw.first_vertex = kNotProjected;
+      continue;
+    }
+    draw.first_vertex = vertices;
+    vertices += draw.vertex_count;
+  }
+  return vertices;
 }
 
 }  // namespace
@@ -114,8 +134,9 @@ FrameDriver::Plan FrameDriver::plan(const FrameRequest& request, const Totals& t
   // What triangles are expanded to is known in the middle of a draw only, and what does not fit
   // then is drawn in turns, onto a surface.
   p.expansion_bytes = needs_.expands ? share / 2 : 0;
-  p.batch = std::min(
-      p.batch, (share - p.expansion_bytes) / static_cast<std::uint64_t>(needs_.triangle_bytes));
+  std::uint64_t bytes = static_cast<std::uint64_t>(needs_.triangle_bytes);
+  if (has_quadrics(request)) bytes += sizeof(Quadric) + sizeof(Piece);
+  p.batch = std::min(p.batch, (share - p.expansion_bytes) / bytes);
   p.surface = p.surface || needs_.expands || p.batch < triangles;
   if (p.surface)
     p.band_rows = static_cast<int>(
@@ -125,7 +146,8 @@ FrameDriver::Plan FrameDriver::plan(const FrameRequest& request, const Totals& t
 
 void FrameDriver::project(Frame& frame) {
   const FrameRequest& request = frame.request;
-  for (const Draw& draw : request.draws)
+  for (const Draw& draw : request.draws) {
+    if (!draw.visible || draw.first_vertex == kNotProjected) continue;
     frame.for_each_index(
         (draw.vertex_count + kProjectGrain - 1) / kProjectGrain, [&](std::size_t i) {
           const std::size_t begin = i * kProjectGrain;
@@ -133,6 +155,7 @@ void FrameDriver::project(Frame& frame) {
           draw.source.project(begin, end, frame.geometry.viewport, request.isa,
                               projected_.data() + draw.first_vertex + begin);
         });
+  }
   frame.geometry.projected = projected_.data();
 }
 
@@ -202,7 +225,13 @@ FrameStats FrameDriver::draw(FrameRequest& request) {
   stats.rasterizer = needs_.rasterizer;
   stats.visibility = needs_.visibility;
   stats.isa = choose_isa(request.isa);
-  const Totals totals = begin_frame(request);
+  if (!needs_.quadrics && has_quadrics(request))
+    throw Error(Errc::unsupported, std::string("'")
+                                       .append(needs_.rasterizer)
+                                       .append("' draws triangles, points and lines; spheres, "
+                                               "cylinders, tubes and discs are the renderer's"));
+  Totals totals = begin_frame(request);
+  totals.vertices = place_projected(request.draws);
   const Plan cut = plan(request, totals);
   Frame frame{
       .request = request,

@@ -28,7 +28,8 @@ class FastPath final : public Method {
             .visibility = "atomic",
             .surface = false,
             .triangle_bytes = 160,
-            .expands = true};
+            .expands = true,
+            .quadrics = true};
   }
 
   void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {

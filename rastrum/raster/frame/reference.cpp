@@ -13,28 +13,24 @@ namespace {
 /// the same interface as everywhere.
 void draw_piece(Frame& frame, const Piece& piece) {
   const FrameRequest& request = frame.request;
-  const Rect box = piece_bounds(piece, frame.view);
-  for (int y = box.y0; y < box.y1; ++y) {
-    const Span span = row_span(piece, y, box.x0, box.x1);
-    for (int x = span.begin; x < span.end; ++x) {
-      ++frame.fragments;
-      if (!request.targets.overdraw.empty()) ++request.targets.overdraw(x, y);
-      const int sample = y % kBlockSize * kBlockSize + x % kBlockSize;
-      if ((piece.flags & kMayDrop) != 0) {
-        const Block block{0, static_cast<std::uint16_t>(x / kBlockSize),
-                          static_cast<std::uint16_t>(y / kBlockSize), std::uint64_t{1} << sample};
-        if (request.kept(frame.geometry, piece, block, nullptr) == 0) continue;
-      }
-      std::uint64_t& key = frame.surface.block(x / kBlockSize, y / kBlockSize)[sample];
-      key = std::max(key, make_key(depth_at(piece, x, y), piece.low));
+  for_each_covered(piece, frame.view, [&](int x, int y) {
+    ++frame.fragments;
+    if (!request.targets.overdraw.empty()) ++request.targets.overdraw(x, y);
+    const int sample = y % kBlockSize * kBlockSize + x % kBlockSize;
+    if ((piece.flags & kMayDrop) != 0) {
+      const Block block{0, static_cast<std::uint16_t>(x / kBlockSize),
+                        static_cast<std::uint16_t>(y / kBlockSize), std::uint64_t{1} << sample};
+      if (request.kept(frame.geometry, piece, block, nullptr) == 0) return;
     }
-  }
+    std::uint64_t& key = frame.surface.block(x / kBlockSize, y / kBlockSize)[sample];
+    key = std::max(key, make_key(depth_at(piece, x, y), piece.low));
+  });
 }
 
 class Reference final : public Method {
  public:
   [[nodiscard]] Needs needs() const override {
-    return {.rasterizer = "reference", .visibility = "atomic"};
+    return {.rasterizer = "reference", .visibility = "atomic", .quadrics = true};
   }
   void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
     FrameStats::Triangles triangles;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include <rastrum/frame.hpp>
@@ -35,6 +36,7 @@ struct FrameRequest {
   std::optional<Rect> part;
   Tuning tuning;
   bool in_place = false;             ///< arrays and targets are memory of the device that draws
+  std::string why_host;              ///< why no device draws it; empty: one may
   std::uint64_t texture_bytes = 0;   ///< that a memory limit counts beside the frame's own
   TransparencyOptions transparency;  ///< where layers are needed
   int samples = 1;                   ///< a pixel; more want layers

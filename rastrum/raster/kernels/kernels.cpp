@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 
+#include <rastrum/raster/assemble/clip.hpp>
 #include <rastrum/raster/cover/depth_bounds.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/kernels/kernels_simd.hpp>
@@ -15,6 +16,12 @@ namespace {
 void project_scalar(const Vec3* positions, std::size_t n, const Mat4& m, Viewport viewport,
                     ProjectedVertex* out) noexcept {
   for (std::size_t i = 0; i < n; ++i) out[i] = project(transform_point(m, positions[i]), viewport);
+}
+
+void project64_scalar(const Vec3d* positions, std::size_t n, const Mat4d& m, Viewport viewport,
+                      ProjectedVertex* out) noexcept {
+  for (std::size_t i = 0; i < n; ++i)
+    out[i] = project(rounded(transform_point(m, positions[i])), viewport);
 }
 
 SetupOutput setup_scalar(const SetupInput& in, Piece* pieces, BinFragment*,
@@ -127,9 +134,9 @@ void store_blended_scalar(const BlockColors& colors, std::uint64_t covered,
 
 constexpr std::size_t kIsaCount = static_cast<std::size_t>(Isa::neon) + 1;
 
-constexpr Kernels kScalar{project_scalar,      setup_scalar,         cover_scalar,  masks_scalar,
-                          keys_scalar,         maximum_scalar,       lowest_scalar, covered_scalar,
-                          store_opaque_scalar, store_blended_scalar, bins_scalar};
+constexpr Kernels kScalar{project_scalar, project64_scalar,    setup_scalar,         cover_scalar,
+                          masks_scalar,   keys_scalar,         maximum_scalar,       lowest_scalar,
+                          covered_scalar, store_opaque_scalar, store_blended_scalar, bins_scalar};
 
 }  // namespace
 

@@ -103,6 +103,10 @@ struct Kernels {
   void (*project)(const Vec3* positions, std::size_t n, const Mat4& object_to_clip,
                   Viewport viewport, ProjectedVertex* out) noexcept;
 
+  /// The same in float64 up to clip space, where they are rounded once.
+  void (*project64)(const Vec3d* positions, std::size_t n, const Mat4d& object_to_clip,
+                    Viewport viewport, ProjectedVertex* out) noexcept;
+
   /// Culls and sets up a batch. With `micro`, a triangle without a fragment test whose box is small
   /// enough may become fragments instead of a piece, or nothing where it covers no sample.
   SetupOutput (*setup)(const SetupInput& input, Piece* pieces, BinFragment* fragments,

@@ -14,6 +14,7 @@
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/resolve/surface_point.hpp>
 #include <rastrum/raster/shade/srgb.hpp>
+#include <rastrum/scene/mesh_checks.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -209,14 +210,26 @@ void check_draw(const Draw& draw, std::string_view noun, std::size_t number) {
     if (!ok) refuse(noun, number, what);
   };
   require(draw.topology >= Topology::points, "its topology is 0, which is no value of its enum");
-  const std::string name = std::string(noun).append(" ").append(std::to_string(number));
-  check_enum(draw.topology, Topology::triangles, name + ": its topology");
-  check_enum(draw.cull, Cull::front, name + ": its cull");
-  check_enum(draw.winding, Winding::either, name + ": its winding");
+  const auto check = [&](auto value, auto last, const char* what) {
+    if (value > last)  // a million draws make no million names
+      check_enum(value, last,
+                 std::string(noun).append(" ").append(std::to_string(number)).append(what));
+  };
+  check(draw.topology, Topology::triangles, ": its topology");
+  check(draw.cull, Cull::front, ": its cull");
+  check(draw.winding, Winding::either, ": its winding");
+  if (draw.quadrics != nullptr) return;
   require(bool{draw.source}, "its source is null; set it to what projects its vertices");
+  if (draw.mesh != nullptr) {
+    if (const std::string problem = faces_problem(*draw.mesh); !problem.empty())
+      refuse(noun, number, problem);
+    require(draw.topology == Topology::triangles, "a mesh has triangles");
+  }
   const bool indexed = !draw.indices.empty();
   const std::size_t corners = indexed ? draw.indices.size() : draw.vertex_count;
-  const std::uint64_t most = corners / static_cast<std::size_t>(draw.topology);
+  const std::uint64_t most = draw.mesh != nullptr
+                                 ? draw.mesh->triangle_count()
+                                 : corners / static_cast<std::size_t>(draw.topology);
   if (draw.primitive_count > most)
     refuse(noun, number,
            "primitive_count is " + std::to_string(draw.primitive_count) + ", but its " +
@@ -230,11 +243,12 @@ void check_draw(const Draw& draw, std::string_view noun, std::size_t number) {
   require(std::isfinite(draw.depth_bias) && std::isfinite(draw.depth_bias_slope),
           "the depth bias must be finite");
   if (draw.material_flags.empty()) return;
-  require(draw.face_materials.size() >= draw.primitive_count,
+  require(draw.face_materials.size() >=
+              (draw.mesh != nullptr ? draw.mesh->face_count() : draw.primitive_count),
           "it has flags by material, but fewer face materials than primitives");
-  require(std::all_of(draw.face_materials.begin(), draw.face_materials.end(),
-                      [&](std::uint32_t m) { return m < draw.material_flags.size(); }),
-          "a face material is out of range");
+  require(
+      first_beyond(draw.face_materials, draw.material_flags.size()) == draw.face_materials.size(),
+      "a face material is out of range");
 }
 
 }  // namespace
@@ -338,12 +352,14 @@ Totals number_draws(std::span<Draw> draws, std::uint64_t first_id, std::string_v
 }
 
 void check_indices(std::span<const Draw> draws, std::string_view noun) {
-  for (std::size_t i = 0; i < draws.size(); ++i)
-    for (const std::uint32_t index : draws[i].indices)
-      if (index >= draws[i].vertex_count)
-        refuse(noun, i,
-               "index " + std::to_string(index) + " is out of range, there are " +
-                   std::to_string(draws[i].vertex_count) + " vertices");
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    const Draw& draw = draws[i];
+    const IndexView indices = draw.mesh != nullptr ? draw.mesh->indices : IndexView(draw.indices);
+    if (const std::size_t at = first_beyond(indices, draw.vertex_count); at != indices.size())
+      refuse(noun, i,
+             "indices[" + std::to_string(at) + "]: index " + indices.text(at) +
+                 " is out of range, there are " + std::to_string(draw.vertex_count) + " vertices");
+  }
 }
 
 }  // namespace rastrum::raster

@@ -18,8 +18,9 @@ Vec3d interpolate(const Fragment& f, const Vec3d (&v)[3]) {
 
 Vec3d position_on(const InstanceView& instance, const Fragment& f) {
   const MeshView& mesh = *instance.mesh();
-  const Vec3d p = interpolate(
-      f, {mesh.positions[f.vertex[0]], mesh.positions[f.vertex[1]], mesh.positions[f.vertex[2]]});
+  const Vec3d p =
+      interpolate(f, {mesh.positions.wide(f.vertex[0]), mesh.positions.wide(f.vertex[1]),
+                      mesh.positions.wide(f.vertex[2])});
   const auto& m = instance.object_to_world.m;
   const auto row = [&](int i) {
     return ((m[i][0] * p.x + m[i][1] * p.y) + m[i][2] * p.z) + m[i][3];
@@ -35,7 +36,7 @@ Vec3d SurfaceScene::to_viewer(int x, int y) const {
 Vec3d SurfaceScene::normal(const Fragment& f) const {
   const LitDraw& draw = lit.draws[f.draw];
   Vec3 corners[3];
-  corner_normals(draw.mesh, f.triangle, f.vertex, corners);
+  corner_normals(*draw.mesh, draw.mesh->place(f.triangle), f.vertex, corners);
   const Vec3d n = interpolate(f, {corners[0], corners[1], corners[2]});
   const auto& m = draw.normal_matrix;
   const auto row = [&](int i) {

@@ -8,6 +8,7 @@
 #include <rastrum/config.hpp>
 #include <rastrum/frame.hpp>
 #include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/setup/quadric.hpp>
 
 namespace rastrum::raster {
 
@@ -79,6 +80,7 @@ RASTRUM_HD inline void add_depth_bias(Piece& p, float constant, float slope) {
 
 /// Depth of the sample of pixel (x, y), in [+0, 1].
 RASTRUM_HD inline float depth_at(const Piece& p, int x, int y) {
+  if (is_quadric(p)) return sample_quadric(p, x, y).depth;
   constexpr float kPxPerSubpixel = 1.0F / kSubpixels;
   const float x0 = static_cast<float>(p.x[0]) * kPxPerSubpixel;
   const float y0 = static_cast<float>(p.y[0]) * kPxPerSubpixel;
@@ -94,14 +96,16 @@ RASTRUM_HD inline float depth_at(const Piece& p, int x, int y) {
 /// plane's slopes choose. Rounding keeps the order of exact results, so every operation of depth_at
 /// is monotone in x and in y, and no other sample is nearer. Requires finite slopes.
 RASTRUM_HD inline float highest_depth(const Piece& p, Rect r) {
+  if (is_quadric(p)) return quadric_of(p).highest;
   return depth_at(p, p.zx > 0 ? r.x1 - 1 : r.x0, p.zy > 0 ? r.y1 - 1 : r.y0);
 }
 RASTRUM_HD inline float lowest_depth(const Piece& p, Rect r) {
+  if (is_quadric(p)) return quadric_of(p).lowest;
   return depth_at(p, p.zx > 0 ? r.x0 : r.x1 - 1, p.zy > 0 ? r.y0 : r.y1 - 1);
 }
 /// Slopes that overflow make NaNs at samples level with vertex 0, for which no bound holds.
 RASTRUM_HD inline bool has_depth_bounds(const Piece& p) {
-  return p.zx - p.zx == 0 && p.zy - p.zy == 0;
+  return is_quadric(p) || (p.zx - p.zx == 0 && p.zy - p.zy == 0);
 }
 
 RASTRUM_HD inline std::uint64_t make_key(float depth, std::uint64_t low) {

@@ -1,4 +1,5 @@
-// A piece: a set-up triangle, line or point. What coverage enumerates and visibility resolves.
+// A piece: a set-up triangle, line, point or side of a quadric. What coverage enumerates and
+// visibility resolves.
 #pragma once
 
 #include <cstdint>
@@ -25,12 +26,13 @@ RASTRUM_HD constexpr std::uint64_t id_of_key(std::uint64_t key) {
 /// A line keeps its two ends, in x[2] and y[2] the first pixel along its major axis and the one
 /// past the last, and its width in the flags. A point keeps its centre and its pixels
 /// [x[1], x[2]) × [y[1], y[2]).
+/// What a quadric keeps is in quadric.hpp.
 /// Vertex 0 is the first submitted one and the depth plane's origin.
 struct alignas(16) Piece {
   std::int32_t x[3], y[3];  ///< n.8, inside the guard band, but for what is said to be in pixels
   float z0, zx, zy;         ///< depth at vertex 0 and its change per px
-  std::uint32_t flags;      ///< kTested … kFacesAway, kLine or kPoint, its sample, a line's width
-  std::uint64_t low;        ///< the key's low part: kIdMask − id
+  std::uint32_t flags;  ///< kTested … kFacesAway, kLine … kQuadric, its sample, a line's width
+  std::uint64_t low;    ///< the key's low part: kIdMask − id
 };
 static_assert(sizeof(Piece) == 48);
 
@@ -44,14 +46,21 @@ inline constexpr std::uint32_t kCut = 128;
 inline constexpr std::uint32_t kCutAway = 1U << 31;
 /// Fragments have to be asked for before the maximum.
 inline constexpr std::uint32_t kMayDrop = kTested | kOverPicture | kCut;
-/// What the piece is; neither: a triangle.
-inline constexpr std::uint32_t kLine = 2, kPoint = 4;
+/// What the piece is; none of them: a triangle.
+inline constexpr std::uint32_t kLine = 2, kPoint = 4, kQuadric = 64;
 inline constexpr int kLineWidthShift = 16;
 /// A triangle that was wound clockwise on the screen: where surfaces are closed, one of those that
 /// others hide.
 inline constexpr std::uint32_t kFacesAway = 16;
 
 RASTRUM_HD inline bool is_triangle(const Piece& p) {
+  return (p.flags & (kLine | kPoint | kQuadric)) == 0;
+}
+RASTRUM_HD inline bool is_quadric(const Piece& p) {
+  return (p.flags & kQuadric) != 0;
+}
+/// Whether x and y are three places on the screen whose box holds the piece.
+RASTRUM_HD inline bool has_corners(const Piece& p) {
   return (p.flags & (kLine | kPoint)) == 0;
 }
 

@@ -9,7 +9,7 @@ namespace rastrum::raster {
 namespace {
 
 /// The corners of a batch, for frames that keep no projected vertices or have several samples a
-/// pixel.
+/// pixel, and for meshes whose triangles are no packed list.
 struct Corners {
   std::uint32_t indices[kSetupBatch * 3];
   ProjectedVertex vertices[kSetupBatch * 3];
@@ -17,19 +17,25 @@ struct Corners {
 
   /// Returns whether all indices are in range.
   bool load(const FrameGeometry& frame, const Draw& draw, std::uint64_t t, std::uint32_t count) {
-    for (std::uint32_t i = 0; i < count; ++i)
-      for (int c = 0; c < 3; ++c) {
-        const std::uint32_t index = draw.vertex(t + i, c);
-        if (index >= draw.vertex_count) return false;
-        indices[i * 3 + static_cast<std::uint32_t>(c)] = index;
-      }
-    seen_from = {};
-    if (frame.projected == nullptr)
-      draw.source.project_indexed({indices, count * 3}, frame.viewport, frame.isa, vertices);
+    if (draw.mesh != nullptr)
+      draw.mesh->read_triangles(t, count, indices);
     else
-      for (std::uint32_t i = 0; i < count * 3; ++i)
-        vertices[i] = frame.projected[draw.first_vertex + indices[i]];
+      for (std::uint32_t i = 0; i < count; ++i)
+        for (int c = 0; c < 3; ++c)
+          indices[i * 3 + static_cast<std::uint32_t>(c)] = draw.vertex(t + i, c);
+    if (std::any_of(indices, indices + std::size_t{count} * 3,
+                    [&](std::uint32_t index) { return index >= draw.vertex_count; }))
+      return false;
+    seen_from = {};
+    if (const ProjectedVertex* const projected = frame.projected_of(draw))
+      for (std::uint32_t i = 0; i < count * 3; ++i) vertices[i] = projected[indices[i]];
+    else
+      draw.source.project_indexed({indices, count * 3}, frame.viewport, frame.isa, vertices);
     return true;
+  }
+  /// All vertices of a draw for which is_projected_in_setup() says so.
+  void load_all(const FrameGeometry& frame, const Draw& draw) {
+    draw.source.project(0, draw.vertex_count, frame.viewport, frame.isa, vertices);
   }
   void see_from(SampleOffset at, std::uint32_t count) {
     const SampleOffset by{at.x - seen_from.x, at.y - seen_from.y};
@@ -53,8 +59,9 @@ class TriangleSet {
 SetupOutput all_slow(const Draw& draw, std::uint64_t first, std::uint32_t count,
                      std::uint32_t* slow) {
   SetupOutput out;
+  const int corners = draw.quadrics != nullptr ? 0 : static_cast<int>(draw.topology);
   for (std::uint32_t i = 0; i < count; ++i) {
-    for (int corner = 0; corner < static_cast<int>(draw.topology); ++corner)
+    for (int corner = 0; corner < corners; ++corner)
       out.index_in_range &= draw.vertex(first + i, corner) < draw.vertex_count;
     slow[out.slow++] = i;
   }
@@ -80,6 +87,29 @@ bool has_indices_in_range(const Draw& draw, std::uint64_t first, std::uint32_t c
 
 }  // namespace
 
+void Pieces::add(const Piece& piece) {
+  data.grow(std::size_t{count} + 1, count);
+  Piece& own = data[count++];
+  own = piece;
+  if (!is_quadric(piece)) return;
+  // The two sides of a primitive share theirs.
+  const Piece* const last = count > 1 ? &own - 1 : nullptr;
+  const bool is_second = last != nullptr && is_quadric(*last) && last->low == piece.low &&
+                         (last->flags ^ piece.flags) == kFacesAway;
+  set_quadric(own, is_second ? &quadric_of(*last) : quadrics.add(quadric_of(piece)));
+}
+
+std::size_t Pieces::quadric_bytes() const {
+  std::size_t bytes = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!is_quadric(data[i])) continue;
+    const bool is_second =
+        i > 0 && is_quadric(data[i - 1]) && &quadric_of(data[i - 1]) == &quadric_of(data[i]);
+    if (!is_second) bytes += quadric_of(data[i]).bytes();
+  }
+  return bytes;
+}
+
 bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces& pieces,
             MicroSink* micro) {
   const FrameGeometry& geometry = frame.geometry;
@@ -94,6 +124,12 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
   for (std::uint64_t id = first; id < last;) {
     const Draw& draw = geometry.draw_of(id);
     const std::uint64_t t = id - draw.first_id;
+    if (!draw.visible) {
+      const std::uint64_t hidden = std::min(last - id, draw.primitive_count - t);
+      pieces.triangles.culled += hidden;
+      id += hidden;
+      continue;
+    }
     const auto most = static_cast<std::uint32_t>(
         std::min({std::uint64_t{kSetupBatch}, last - id, draw.primitive_count - t}));
     // Clip planes look at the corners before the kernel does.
@@ -109,9 +145,15 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
     input.first = t;
     input.count = count;
     input.first_id = draw.first_id;
-    if (geometry.projected != nullptr && samples.size() == 1) {
+    const ProjectedVertex* projected = geometry.projected_of(draw);
+    const bool in_place = samples.size() == 1 && draw.mesh == nullptr;
+    if (in_place && projected == nullptr && is_projected_in_setup(draw)) {
+      corners.load_all(geometry, draw);
+      projected = corners.vertices;
+    }
+    if (in_place && projected != nullptr) {
       input.indices = draw.indices.empty() ? nullptr : draw.indices.data();
-      input.vertices = geometry.projected + draw.first_vertex;
+      input.vertices = projected;
       input.vertex_count = draw.vertex_count;
     } else if (draw.has_kernel()) {
       if (!corners.load(geometry, draw, t, count)) return false;
@@ -146,12 +188,8 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
       std::uint32_t slow_culled = 0;
       for (std::uint32_t k = 0; k < out.slow; ++k) {
         const Fate fate = assemble_primitive(
-            geometry, draw, t + slow[k],
-            [&](const Piece& piece) {
-              pieces.data.grow(std::size_t{pieces.count} + 1, pieces.count);
-              pieces.data[pieces.count++] = piece;
-            },
-            sample, at);
+            geometry, draw, t + slow[k], [&](const Piece& piece) { pieces.add(piece); }, sample,
+            at);
         if (fate == Fate::dropped) dropped.add(slow[k]);
         if (fate == Fate::clipped) clipped.add(slow[k]);
         slow_culled += fate == Fate::culled;

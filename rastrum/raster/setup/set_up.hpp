@@ -7,19 +7,37 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/setup/quadric_store.hpp>
 
 namespace rastrum::raster {
+
+/// Whether a draw's vertices are projected when its triangles are set up, all at once, rather than
+/// before: a million instances of a small mesh then keep no vertices.
+[[nodiscard]] inline bool is_projected_in_setup(const Draw& draw) {
+  return draw.has_kernel() && draw.source.matrix() != nullptr &&
+         draw.primitive_count <= kSetupBatch && draw.vertex_count <= 3 * draw.primitive_count;
+}
 
 /// The pieces of a run of triangles, in submission order except that a batch's clipped triangles
 /// come behind the others.
 struct Pieces {
-  explicit Pieces(MemoryAccount& memory) : data(memory) {}
+  explicit Pieces(MemoryAccount& memory) : data(memory), quadrics(memory) {}
 
   ScratchBuffer<Piece> data;
+  QuadricStore quadrics;  ///< that the pieces refer to
   std::uint32_t count = 0;
   FrameStats::Triangles triangles;
 
   [[nodiscard]] std::span<const Piece> span() const { return {data.data(), count}; }
+  void restart() {
+    count = 0;
+    triangles = {};
+    quadrics.restart();
+  }
+  /// Adds a piece, and keeps what it refers to.
+  void add(const Piece& piece);
+  /// Of what the pieces refer to.
+  [[nodiscard]] std::size_t quadric_bytes() const;
 };
 
 /// Takes the fragments of micro triangles, a setup batch at a time.

@@ -1,9 +1,7 @@
 // Projection and setup with Highway, compiled once per instruction set. Each repeats the operations
 // of its scalar twin (projection.hpp, make_piece.hpp) in the same order, so it gives the same bits.
 
-// SSSE3 adds nothing over the scalar build that SSE4 does not; AVX3_DL nothing that these kernels
-// use.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/setup/setup_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h
@@ -29,14 +27,10 @@ HWY_INLINE F row_times(const float (&m)[4], F x, F y, F z) {
   return hn::Add(hn::Add(xy, hn::Mul(hn::Set(d, m[2]), z)), hn::Set(d, m[3]));
 }
 
-HWY_INLINE void project_lanes(F x, F y, F z, const Mat4& m, Viewport viewport,
-                              ProjectedVertex* out) {
+/// From clip space on.
+HWY_INLINE void project_lanes(F cx, F cy, F cz, F cw, Viewport viewport, ProjectedVertex* out) {
   const F32 d;
   const I32 di;
-  const F cx = row_times(m.m[0], x, y, z);
-  const F cy = row_times(m.m[1], x, y, z);
-  const F cz = row_times(m.m[2], x, y, z);
-  const F cw = row_times(m.m[3], x, y, z);
   const F inv_w = hn::Div(hn::Set(d, 1.0F), cw);
   const F hw = hn::Set(d, viewport.half_width);
   const F hh = hn::Set(d, viewport.half_height);
@@ -60,22 +54,56 @@ HWY_INLINE void project_lanes(F x, F y, F z, const Mat4& m, Viewport viewport,
                         reinterpret_cast<std::int32_t*>(out));
 }
 
-void project(const Vec3* positions, std::size_t n, const Mat4& m, Viewport viewport,
-             ProjectedVertex* out) noexcept {
-  const F32 d;
-  F x, y, z;
+HWY_INLINE void project_lanes(F x, F y, F z, const Mat4& m, Viewport viewport,
+                              ProjectedVertex* out) {
+  project_lanes(row_times(m.m[0], x, y, z), row_times(m.m[1], x, y, z), row_times(m.m[2], x, y, z),
+                row_times(m.m[3], x, y, z), viewport, out);
+}
+
+/// Whole vectors of `n` positions, then the rest beside zeros.
+template <class Position, class ProjectLanes>
+HWY_INLINE void project_all(const Position* positions, std::size_t n, ProjectedVertex* out,
+                            const ProjectLanes& project_some) {
   std::size_t i = 0;
-  for (; i + kLanes <= n; i += kLanes) {
-    hn::LoadInterleaved3(d, &positions[i].x, x, y, z);
-    project_lanes(x, y, z, m, viewport, out + i);
-  }
+  for (; i + kLanes <= n; i += kLanes) project_some(positions + i, out + i);
   if (i == n) return;
-  Vec3 rest[kLanes] = {};
+  Position rest[kLanes] = {};
   ProjectedVertex projected[kLanes];
   std::copy_n(positions + i, n - i, rest);
-  hn::LoadInterleaved3(d, &rest[0].x, x, y, z);
-  project_lanes(x, y, z, m, viewport, projected);
+  project_some(rest, projected);
   std::copy_n(projected, n - i, out + i);
+}
+
+void project(const Vec3* positions, std::size_t n, const Mat4& m, Viewport viewport,
+             ProjectedVertex* out) noexcept {
+  project_all(positions, n, out, [&](const Vec3* from, ProjectedVertex* to) HWY_ATTR {
+    F x, y, z;
+    hn::LoadInterleaved3(F32{}, &from->x, x, y, z);
+    project_lanes(x, y, z, m, viewport, to);
+  });
+}
+
+HWY_INLINE D row_times64(const double (&m)[4], D x, D y, D z) {
+  const F64 d;
+  const D xy = hn::Add(hn::Mul(hn::Set(d, m[0]), x), hn::Mul(hn::Set(d, m[1]), y));
+  return hn::Add(hn::Add(xy, hn::Mul(hn::Set(d, m[2]), z)), hn::Set(d, m[3]));
+}
+
+void project64(const Vec3d* positions, std::size_t n, const Mat4d& m, Viewport viewport,
+               ProjectedVertex* out) noexcept {
+  project_all(positions, n, out, [&](const Vec3d* from, ProjectedVertex* to) HWY_ATTR {
+    const F32 d;
+    const hn::Half<F32> dh;
+    HWY_ALIGN float clip[4][kLanes];
+    for (std::size_t h = 0; h < kHalves; ++h) {
+      D x, y, z;
+      hn::LoadInterleaved3(F64{}, &from[h * kLanes64].x, x, y, z);
+      for (std::size_t row = 0; row < 4; ++row)
+        hn::Store(hn::DemoteTo(dh, row_times64(m.m[row], x, y, z)), dh, clip[row] + h * kLanes64);
+    }
+    project_lanes(hn::Load(d, clip[0]), hn::Load(d, clip[1]), hn::Load(d, clip[2]),
+                  hn::Load(d, clip[3]), viewport, to);
+  });
 }
 
 /// Corner vertices of kLanes triangles, transposed.
@@ -425,6 +453,7 @@ SetupOutput setup(const SetupInput& in, Piece* pieces, BinFragment* fragments,
 
 void fill(Kernels& table) {
   table.project = project;
+  table.project64 = project64;
   table.setup = setup;
 }
 

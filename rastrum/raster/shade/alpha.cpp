@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <iterator>
+#include <type_traits>
 
 namespace rastrum::raster {
 
@@ -16,19 +18,39 @@ std::vector<std::uint32_t> material_flags(std::span<const Material> materials, b
   return flags;
 }
 
-std::uint32_t set_material_flags(Draw& draw, const MeshView& mesh,
+namespace {
+
+/// Calls f(values, n) for runs of a view, without copies of what is packed.
+template <class View, class F>
+void for_each_run(const View& view, std::size_t begin, std::size_t end, const F& f) {
+  if (view.is_packed()) return f(view.data() + begin, end - begin);
+  std::remove_cvref_t<decltype(view[0])> values[256];
+  for (std::size_t i = begin; i < end; i += std::size(values)) {
+    const std::size_t n = std::min(std::size(values), end - i);
+    view.read(i, n, values);
+    f(values, n);
+  }
+}
+
+}  // namespace
+
+std::uint32_t set_material_flags(Draw& draw, const InstanceView& instance,
                                  std::span<const std::uint32_t> flags) {
   if (flags.empty()) return 0;
+  const MeshView& mesh = *instance.mesh();
   std::uint32_t any = 0, all = ~0U;
-  if (mesh.face_materials.empty()) {
-    any = all = flags[mesh.material];
+  if (instance.material || mesh.face_materials.empty()) {
+    any = all = flags[instance.material.value_or(mesh.material)];
   } else if (std::equal(flags.begin() + 1, flags.end(), flags.begin())) {
     any = all = flags.front();
   } else {
-    for (const std::uint32_t m : mesh.face_materials.first(mesh.triangle_count())) {
-      any |= flags[m];
-      all &= flags[m];
-    }
+    for_each_run(mesh.face_materials, 0, mesh.face_count(),
+                 [&](const std::uint32_t* materials, std::size_t n) {
+                   for (std::size_t i = 0; i < n; ++i) {
+                     any |= flags[materials[i]];
+                     all &= flags[materials[i]];
+                   }
+                 });
   }
   if (any != all) {
     draw.face_materials = mesh.face_materials;
@@ -39,17 +61,21 @@ std::uint32_t set_material_flags(Draw& draw, const MeshView& mesh,
   return any;
 }
 
-bool has_vertex_alpha(const MeshView& mesh, parallel::Threads* exec) {
+bool has_color_alpha(const InstanceView& instance, parallel::Threads* exec) {
+  // Written so that a NaN is found.
+  const auto is_opaque = [](const Vec4& c) { return c.w >= 1; };
+  if (instance.color) return !is_opaque(*instance.color);
   constexpr std::size_t kGrain = 1 << 14;
-  const std::span<const Vec4> colors = mesh.colors.values;
+  const ArrayView<Vec4>& colors = instance.mesh()->colors.values;
   std::atomic<bool> any = false;
   const auto look = [&](std::size_t part) {
     if (any.load(std::memory_order_relaxed)) return;
     const std::size_t begin = part * kGrain;
-    // Written so that a NaN is found.
-    if (!std::ranges::all_of(colors.subspan(begin, std::min(kGrain, colors.size() - begin)),
-                             [](const Vec4& c) { return c.w >= 1; }))
-      any.store(true, std::memory_order_relaxed);
+    for_each_run(colors, begin, std::min(begin + kGrain, colors.size()),
+                 [&](const Vec4* some, std::size_t n) {
+                   if (!std::all_of(some, some + n, is_opaque))
+                     any.store(true, std::memory_order_relaxed);
+                 });
   };
   const std::size_t parts = (colors.size() + kGrain - 1) / kGrain;
   if (exec != nullptr)

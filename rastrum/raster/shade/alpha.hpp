@@ -5,7 +5,7 @@
 //   AlphaMode::mask     own alpha below the cutoff: a hole (a fragment test); else alpha = opacity
 //   AlphaMode::blend    alpha = opacity · own alpha, in [0, 1], NaN 0
 //
-// The opacity is the frame's times the material's.
+// The opacity is the frame's times the material's times the instance's.
 // Scenes without materials have one of AlphaMode::blend, so that vertex colours say it.
 #pragma once
 
@@ -24,14 +24,14 @@ namespace rastrum::raster {
 [[nodiscard]] std::vector<std::uint32_t> material_flags(std::span<const Material> materials,
                                                         bool blends);
 
-/// Gives `draw`, which is of `mesh`, the flags of its materials (none: of no material) and returns
-/// those that some triangle has. `flags` must outlive the draw. O(1), or O(triangles) where
+/// Gives `draw`, which is of `instance`, the flags of its materials (none: of no material) and
+/// returns those that some triangle has. `flags` must outlive the draw. O(1), or O(faces) where
 /// face_materials have different ones.
-std::uint32_t set_material_flags(Draw& draw, const MeshView& mesh,
+std::uint32_t set_material_flags(Draw& draw, const InstanceView& instance,
                                  std::span<const std::uint32_t> flags);
 
-/// Whether some vertex colour is translucent. O(vertices), divided among the threads of `exec`
-/// (null: one).
-[[nodiscard]] bool has_vertex_alpha(const MeshView& mesh, parallel::Threads* exec);
+/// Whether some colour is translucent: the instance's, or where it has none one of the mesh's.
+/// O(colours), divided among the threads of `exec` (null: one).
+[[nodiscard]] bool has_color_alpha(const InstanceView& instance, parallel::Threads* exec);
 
 }  // namespace rastrum::raster

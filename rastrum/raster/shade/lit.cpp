@@ -14,15 +14,12 @@ namespace rastrum::raster {
 namespace {
 
 Vec3 base_color(const LitView& scene, const LitDraw& draw, const Fragment& f) {
-  const Vec3 base = scene.base_color(draw, f.triangle);
-  const MeshView& mesh = draw.mesh;
-  if (mesh.colors.empty()) return base;
+  const TrianglePlace place = draw.mesh->place(f.triangle);
+  const Vec3 base = scene.base_color(draw, place.face);
+  if (draw.colors.empty()) return base;
   Vec3 sum;
-  for (int c = 0; c < 3; ++c) {
-    const std::size_t i = mesh.colors.indices.empty()
-                              ? f.vertex[c]
-                              : mesh.colors.indices[f.triangle * 3 + static_cast<std::size_t>(c)];
-    const Vec4 v = mesh.colors.values[i];
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Vec4 v = draw.colors.at(place, f.vertex, c);
     sum = sum + Vec3{v.x, v.y, v.z} * static_cast<float>(f.weights.b[c]);
   }
   return {base.x * sum.x, base.y * sum.y, base.z * sum.z};
@@ -140,12 +137,17 @@ LitScene::LitScene(const SceneView& scene, const Camera& camera, int width, int 
   draws.reserve(scene.instances.size());
   for (const InstanceView& instance : scene.instances) {
     LitDraw& draw = draws.emplace_back();
-    draw.mesh = *instance.mesh();
+    draw.mesh = instance.mesh();
+    draw.colors = draw.mesh->colors;
+    // A view of the instance's own, which outlives the frame as the scene does.
+    if (instance.color) draw.colors = {.values = std::span(&*instance.color, 1), .per = Per::mesh};
+    draw.material = instance.material.value_or(draw.mesh->material);
+    if (!instance.material) draw.face_materials = draw.mesh->face_materials;
     normal_matrix(instance.object_to_world, draw.normal_matrix);
     const auto& m = draw.normal_matrix;
     draw.identity = m[0][0] == m[1][1] && m[1][1] == m[2][2] && m[0][0] > 0 && m[0][1] == 0 &&
                     m[0][2] == 0 && m[1][0] == 0 && m[1][2] == 0 && m[2][0] == 0 && m[2][1] == 0;
-    colored |= !draw.mesh.colors.empty();
+    colored |= !draw.colors.empty();
   }
   colored |= !scene.materials.empty();
   materials.reserve(scene.materials.size());

@@ -20,7 +20,10 @@ namespace rastrum::raster {
 
 /// What the lit shaders read of one draw.
 struct LitDraw {
-  MeshView mesh;
+  const MeshView* mesh = nullptr;
+  AttributeView<Vec4> colors;  ///< the mesh's, or what stands for them
+  IndexView face_materials;    ///< the same; empty: `material`
+  std::uint32_t material = 0;
   float normal_matrix[3][3];  ///< object to world, inverse transpose
   bool identity = false;      ///< normal_matrix is a multiple of the identity
 
@@ -47,9 +50,9 @@ struct LitView {
   bool colored = false;
   std::span<const Vec3> materials;
 
-  /// What the mesh's colours at the corners of triangle `t` are multiplied by, or stand for where
-  /// it has none.
-  [[nodiscard]] RASTRUM_HD Vec3 base_color(const LitDraw& draw, std::uint64_t t) const;
+  /// What the colours at the corners of a face's triangles are multiplied by, or stand for where
+  /// there are none.
+  [[nodiscard]] RASTRUM_HD Vec3 base_color(const LitDraw& draw, std::size_t face) const;
 };
 
 struct LitScene {

@@ -6,7 +6,7 @@
 //
 // The arithmetic is lit_light-inl.hpp's, which the scalar form shares.
 
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/shade/lit_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h
@@ -69,8 +69,7 @@ HWY_INLINE CornerWeights row_weights(const LitTriangle& t, const Row& row, std::
 
 /// The lanes of `covered` whose keys hold the triangle `low`.
 HWY_INLINE std::uint32_t same_triangle(const std::uint64_t* keys, std::uint64_t low) {
-  constexpr std::size_t kLanes64 = hn::MaxLanes(hn::CappedTag<std::uint64_t, 4>{});
-  const hn::CappedTag<std::uint64_t, 4> d;
+  const hn::RebindToUnsigned<I64> d;
   std::uint32_t same = 0;
   for (std::size_t i = 0; i < kLanes; i += kLanes64) {
     std::uint8_t bits = 0;

@@ -28,11 +28,10 @@ struct LitTriangle {
   WeightPlanes planes;
 };
 
-RASTRUM_HD inline Vec3 LitView::base_color(const LitDraw& draw, std::uint64_t t) const {
+RASTRUM_HD inline Vec3 LitView::base_color(const LitDraw& draw, std::size_t face) const {
   constexpr Vec3 default_base = kDefaultBase;  // a device has no address of the namespace's
-  const MeshView& mesh = draw.mesh;
-  if (materials.empty()) return mesh.colors.values.empty() ? default_base : Vec3{1, 1, 1};
-  return materials[mesh.face_materials.empty() ? mesh.material : mesh.face_materials[t]];
+  if (materials.empty()) return draw.colors.empty() ? default_base : Vec3{1, 1, 1};
+  return materials[draw.face_materials.empty() ? draw.material : draw.face_materials[face]];
 }
 
 namespace lit_detail {
@@ -94,19 +93,19 @@ RASTRUM_HD void fetch_triangle(const LitView& scene, const Geometry& frame, std:
   const std::uint64_t t = id - draw.first_id;
   const std::uint32_t vertex[3] = {draw.vertex(t, 0), draw.vertex(t, 1), draw.vertex(t, 2)};
   lit_detail::fetch_weights(frame, draw, t, vertex, out);
-  const MeshView& mesh = lit.mesh;
+  if (!wants_normals && !scene.colored) return;
+  const TrianglePlace place = lit.mesh->place(t);
   if (wants_normals) {
-    corner_normals(mesh, t, vertex, out.normal);
+    corner_normals(*lit.mesh, place, vertex, out.normal);
     if (!lit.identity)
       for (Vec3& n : out.normal) n = lit.to_world(n);
   }
   if (!scene.colored) return;
-  const Vec3 base = scene.base_color(lit, t);
+  const Vec3 base = scene.base_color(lit, place.face);
   for (std::size_t c = 0; c < 3; ++c) {
     out.color[c] = base;
-    if (mesh.colors.values.empty()) continue;
-    const std::size_t i = mesh.colors.indices.empty() ? vertex[c] : mesh.colors.indices[t * 3 + c];
-    const Vec4 color = mesh.colors.values[i];
+    if (lit.colors.empty()) continue;
+    const Vec4 color = lit.colors.at(place, vertex, c);
     out.color[c] = {base.x * color.x, base.y * color.y, base.z * color.z};
   }
 }

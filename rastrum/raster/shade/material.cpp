@@ -7,6 +7,7 @@
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
+#include <rastrum/scene/mesh_checks.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -43,9 +44,11 @@ MaterialScene::MaterialScene(const SceneView& scene, const Camera& camera, int w
   draws.resize(lit.draws.size());
   for (std::size_t d = 0; d < draws.size(); ++d) {
     draws[d].mesh = lit.draws[d].mesh;
-    if (scene.materials.empty()) {
-      draws[d].mesh.face_materials = {};
-      draws[d].mesh.material = 0;
+    draws[d].colors = lit.draws[d].colors;
+    draws[d].opacity = scene.instances[d].opacity;
+    if (!scene.materials.empty()) {
+      draws[d].face_materials = lit.draws[d].face_materials;
+      draws[d].material = lit.draws[d].material;
     }
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
@@ -93,20 +96,26 @@ void check_materials(const SceneView& scene) {
   }
   if (scene.materials.empty()) return;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    if (scene.instances[i].mesh() == nullptr) continue;
     const MeshView& mesh = *scene.instances[i].mesh();
     const auto fail = [&](const std::string& problem) {
       throw Error(Errc::invalid_argument, "instance " + std::to_string(i) + ": " + problem);
     };
-    std::uint32_t largest = mesh.material;
-    if (!mesh.face_materials.empty()) {
-      if (mesh.face_materials.size() < mesh.triangle_count())
-        fail("has fewer face materials (" + std::to_string(mesh.face_materials.size()) +
-             ") than triangles (" + std::to_string(mesh.triangle_count()) + ")");
-      largest = 0;
-      for (const std::uint32_t m : mesh.face_materials) largest = std::max(largest, m);
+    const auto& own = scene.instances[i].material;
+    std::string beyond;
+    if (own || mesh.face_materials.empty()) {
+      const std::uint32_t m = own.value_or(mesh.material);
+      if (m >= scene.materials.size()) beyond = std::to_string(m);
+    } else {
+      const bool triangles = mesh.faces.kind == FaceKind::triangles;
+      if (mesh.face_materials.size() < mesh.face_count())
+        fail("has fewer face materials (" + std::to_string(mesh.face_materials.size()) + ") than " +
+             (triangles ? "triangles (" : "faces (") + std::to_string(mesh.face_count()) + ")");
+      const std::size_t at = first_beyond(mesh.face_materials, scene.materials.size());
+      if (at != mesh.face_materials.size()) beyond = mesh.face_materials.text(at);
     }
-    if (largest >= scene.materials.size())
-      fail("material " + std::to_string(largest) + " is out of range, there are " +
+    if (!beyond.empty())
+      fail("material " + beyond + " is out of range, there are " +
            std::to_string(scene.materials.size()));
   }
 }

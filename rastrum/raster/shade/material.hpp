@@ -53,7 +53,11 @@ struct BoundMaterial {
 };
 
 struct MaterialDraw {
-  MeshView mesh;
+  const MeshView* mesh = nullptr;
+  AttributeView<Vec4> colors;  ///< as LitDraw's, as the next two
+  IndexView face_materials;
+  std::uint32_t material = 0;
+  float opacity = 1;          ///< of the instance
   float normal_matrix[3][3];  ///< object to world, inverse transpose
   float to_world[3][3];       ///< object to world, directions
 };
@@ -66,8 +70,8 @@ struct MaterialView {
 
   [[nodiscard]] RASTRUM_HD const BoundMaterial& material_of(const MaterialDraw& draw,
                                                             std::uint64_t triangle) const {
-    const auto& of_face = draw.mesh.face_materials;
-    return materials[of_face.empty() ? draw.mesh.material : of_face[triangle]];
+    if (draw.face_materials.empty()) return materials[draw.material];
+    return materials[draw.face_materials[draw.mesh->place(triangle).face]];
   }
 };
 

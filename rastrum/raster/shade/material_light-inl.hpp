@@ -75,11 +75,11 @@ RASTRUM_LANES V3 light(const ViewRays& rays, const LitSurface& s, F px, F py) {
   const F metallic = clamp01(s.metallic);
   const F roughness = at_most(at_least(s.roughness, kMinRoughness), 1);
 
-  Reflectance surface;
-  surface.diffuse = s.base * (set(1) - metallic);
-  surface.f0 = mix(set(Vec3{kDielectricF0, kDielectricF0, kDielectricF0}), s.base, metallic);
-  surface.alpha = roughness * roughness;
-  surface.alpha2 = surface.alpha * surface.alpha;
+  const F alpha = roughness * roughness;
+  const Reflectance surface{
+      s.base * (set(1) - metallic),
+      mix(set(Vec3{kDielectricF0, kDielectricF0, kDielectricF0}), s.base, metallic), alpha,
+      alpha * alpha};
   const F facing = dot(n, v);
   const F nv = at_least(facing, 1e-4F);
   const V3 direct = reflect(surface, n, v, nv, key, kKeyRadiance) +

@@ -41,7 +41,7 @@ struct Sampler {
   Coordinate u{}, v{};
 
   RASTRUM_HD Sampler(const MaterialTriangle& t, const MaterialPoint& at) {
-    const auto& texcoords = t.draw.mesh.texcoords;
+    const auto& texcoords = t.draw.mesh->texcoords;
     if (texcoords.values.empty()) return;
     const Vec2 a = t.corner(texcoords, 0);
     const Vec2 d1 = t.corner(texcoords, 1) - a;
@@ -61,7 +61,7 @@ struct Sampler {
 /// Before light, in linear light.
 RASTRUM_HD inline Vec3 base_color(const MaterialTriangle& t, const BoundMaterial& m,
                                   const MaterialPoint& at, const Sampler& textures) {
-  const auto& colors = t.draw.mesh.colors;
+  const auto& colors = t.draw.colors;
   Vec3 base{m.base.x, m.base.y, m.base.z};
   if (!colors.values.empty()) {
     Vec4 c[3];
@@ -79,7 +79,7 @@ RASTRUM_HD inline Vec3 base_color(const MaterialTriangle& t, const BoundMaterial
 RASTRUM_HD inline Vec3 normal(const MaterialView& scene, const MaterialTriangle& t,
                               const BoundMaterial& m, const MaterialPoint& at,
                               const Sampler& textures) {
-  const auto& normals = t.draw.mesh.normals;
+  const auto& normals = t.draw.mesh->normals;
   const Vec3 face = t.face_normal();
   const float side = is_seen_from_behind(scene.rays, face, at.x, at.y) ? -1.0F : 1.0F;
   Vec3 n = face * side;
@@ -98,7 +98,7 @@ RASTRUM_HD inline Vec3 normal(const MaterialView& scene, const MaterialTriangle&
 /// A fragment's own alpha: what a mask tests and what blends.
 RASTRUM_HD inline float own_alpha(const MaterialTriangle& t, const BoundMaterial& m,
                                   const MaterialPoint& at) {
-  const auto& colors = t.draw.mesh.colors;
+  const auto& colors = t.draw.colors;
   float alpha = m.base.w;
   if (!colors.values.empty())
     alpha = at.interpolate(t.corner(colors, 0).w * m.base.w, t.corner(colors, 1).w * m.base.w,
@@ -173,7 +173,7 @@ template <class Geometry>
   const Draw& draw = frame.draw_of(id);
   const MaterialDraw& of = scene.draws[draw.number];
   const BoundMaterial& m = scene.material_of(of, id - draw.first_id);
-  opacity *= m.opacity;
+  opacity = opacity * m.opacity * of.opacity;
   if (m.alpha_mode != AlphaMode::blend) return clamped_alpha(opacity);
   if (has_constant_alpha(of, m)) return clamped_alpha(opacity * m.base.w);
   const MaterialTriangle t(scene, frame, draw, id);

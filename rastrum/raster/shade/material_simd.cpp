@@ -2,7 +2,7 @@
 // them, Highway where they do not (the lights). A block is done in two steps: each triangle's run
 // of fragments fills its part of a surface (interpolation and textures), then the whole block is
 // lit at once.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/shade/material_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h
@@ -69,13 +69,13 @@ HWY_INLINE void interpolate(const Run& run, float a0, float a1, float a2, float*
 }
 
 HWY_INLINE void interpolate_texcoords(const MaterialTriangle& t, const Run& run, Coordinates& out) {
-  if (t.draw.mesh.texcoords.empty()) {
+  if (t.draw.mesh->texcoords.empty()) {
     std::memset(&out, 0, sizeof(out));
     return;
   }
-  const Vec2 a = t.corner(t.draw.mesh.texcoords, 0);
-  const Vec2 d1 = t.corner(t.draw.mesh.texcoords, 1) - a;
-  const Vec2 d2 = t.corner(t.draw.mesh.texcoords, 2) - a;
+  const Vec2 a = t.corner(t.draw.mesh->texcoords, 0);
+  const Vec2 d1 = t.corner(t.draw.mesh->texcoords, 1) - a;
+  const Vec2 d2 = t.corner(t.draw.mesh->texcoords, 2) - a;
   const auto one = [&](float a0, float a1, float a2, float* HWY_RESTRICT value,
                        float* HWY_RESTRICT dx, float* HWY_RESTRICT dy) HWY_ATTR {
     const CoordinatePlane plane(t.planes, a0, a1, a2);
@@ -125,7 +125,7 @@ HWY_INLINE void multiply(const Run& run, const float* HWY_RESTRICT factor,
 HWY_INLINE void fill_normals(const MaterialView& scene, const MaterialTriangle& t,
                              const BoundMaterial& material, const Run& run, const Coordinates& at,
                              Surface& out) {
-  const MeshView& mesh = t.draw.mesh;
+  const MeshView& mesh = *t.draw.mesh;
   float* HWY_RESTRICT nx = out.channel[Surface::kNormalX];
   float* HWY_RESTRICT ny = out.channel[Surface::kNormalY];
   float* HWY_RESTRICT nz = out.channel[Surface::kNormalZ];
@@ -176,7 +176,7 @@ HWY_INLINE void fill_normals(const MaterialView& scene, const MaterialTriangle& 
 HWY_INLINE void fill_surface(const MaterialView& scene, const MaterialTriangle& t, const Run& run,
                              Surface& out) {
   const BoundMaterial& m = scene.material_of(t.draw, t.index);
-  const MeshView& mesh = t.draw.mesh;
+  const MeshView& mesh = *t.draw.mesh;
   float* const r = out.channel[Surface::kBaseR];
   float* const g = out.channel[Surface::kBaseG];
   float* const b = out.channel[Surface::kBaseB];
@@ -195,13 +195,13 @@ HWY_INLINE void fill_surface(const MaterialView& scene, const MaterialTriangle& 
   const auto look_up = [&](const MipChain& chain)
                            HWY_ATTR { sample(chain, at, run.n, run.padded, texels); };
 
-  if (mesh.colors.empty()) {
+  if (t.draw.colors.empty()) {
     fill(run, m.base.x, r);
     fill(run, m.base.y, g);
     fill(run, m.base.z, b);
   } else {
     Vec4 c[3];
-    for (int i = 0; i < 3; ++i) c[i] = t.corner(mesh.colors, i) * m.base;
+    for (int i = 0; i < 3; ++i) c[i] = t.corner(t.draw.colors, i) * m.base;
     interpolate(run, c[0].x, c[1].x, c[2].x, r);
     interpolate(run, c[0].y, c[1].y, c[2].y, g);
     interpolate(run, c[0].z, c[1].z, c[2].z, b);
@@ -328,12 +328,11 @@ void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleB
 HWY_INLINE void own_alpha(const MaterialTriangle& t, const BoundMaterial& material, const Run& run,
                           float* HWY_RESTRICT alpha) {
   const float base = material.base.w;
-  if (t.draw.mesh.colors.empty())
+  if (t.draw.colors.empty())
     fill(run, base, alpha);
   else
-    interpolate(run, t.corner(t.draw.mesh.colors, 0).w * base,
-                t.corner(t.draw.mesh.colors, 1).w * base, t.corner(t.draw.mesh.colors, 2).w * base,
-                alpha);
+    interpolate(run, t.corner(t.draw.colors, 0).w * base, t.corner(t.draw.colors, 1).w * base,
+                t.corner(t.draw.colors, 2).w * base, alpha);
   if (material.base_color == nullptr && material.alpha == nullptr) return;
   Coordinates at;
   interpolate_texcoords(t, run, at);
@@ -378,7 +377,7 @@ AlphaMasks alpha(const MaterialView& scene, const FrameGeometry& frame, const Vi
     const MaterialDraw& of = scene.draws[draw->number];
     const BoundMaterial& material = scene.material_of(of, id - draw->first_id);
     const bool blends = material.alpha_mode == AlphaMode::blend;
-    const float opacity = frame_opacity * material.opacity;
+    const float opacity = frame_opacity * material.opacity * of.opacity;
     if (!blends || has_constant_alpha(of, material)) {
       const float a = clamped_alpha(blends ? opacity * material.base.w : opacity);
       for (std::uint64_t m = mask; m != 0; m &= m - 1) set(std::countr_zero(m), a);

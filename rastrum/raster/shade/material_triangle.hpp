@@ -70,6 +70,7 @@ struct CoordinatePlane {
 struct MaterialTriangle {
   const MaterialDraw& draw;
   std::uint64_t index;  ///< within its draw
+  TrianglePlace place;
   std::uint32_t vertex[3];
   WeightPlanes planes;
 
@@ -79,21 +80,23 @@ struct MaterialTriangle {
                               std::uint64_t id)
       : draw(scene.draws[d.number]),
         index(id - d.first_id),
+        place(draw.mesh->place(index)),
         vertex{d.vertex(index, 0), d.vertex(index, 1), d.vertex(index, 2)},
         planes(weight_planes(frame, d, index)) {}
 
   template <class T>
   [[nodiscard]] RASTRUM_HD T corner(const AttributeView<T>& attribute, int c) const {
-    return attribute.values[attribute.indices.empty()
-                                ? vertex[c]
-                                : attribute.indices[index * 3 + static_cast<std::size_t>(c)]];
+    return attribute.at(place, vertex, static_cast<std::size_t>(c));
+  }
+  /// From corner 0 to corner c: rounded once where the positions are float64.
+  [[nodiscard]] RASTRUM_HD Vec3 edge(int c) const {
+    const ArrayView<Vec3>& positions = draw.mesh->positions;
+    if (positions.is_wide()) return Vec3(positions.wide(vertex[c]) - positions.wide(vertex[0]));
+    return positions[vertex[c]] - positions[vertex[0]];
   }
   /// Of the plane, of unit length, in the world; 0 without area.
   [[nodiscard]] RASTRUM_HD Vec3 face_normal() const {
-    const auto& positions = draw.mesh.positions;
-    const Vec3 p = positions[vertex[0]];
-    return normalize(
-        times(draw.normal_matrix, cross(positions[vertex[1]] - p, positions[vertex[2]] - p)));
+    return normalize(times(draw.normal_matrix, cross(edge(1), edge(2))));
   }
 };
 
@@ -123,11 +126,10 @@ struct TangentFrame {
   Vec3 right{}, up{};
 
   RASTRUM_HD explicit TangentFrame(const MaterialTriangle& t) {
-    const MeshView& mesh = t.draw.mesh;
+    const MeshView& mesh = *t.draw.mesh;
     if (mesh.texcoords.values.empty()) return;
-    const Vec3 p = mesh.positions[t.vertex[0]];
-    const Vec3 e1 = times(t.draw.to_world, mesh.positions[t.vertex[1]] - p);
-    const Vec3 e2 = times(t.draw.to_world, mesh.positions[t.vertex[2]] - p);
+    const Vec3 e1 = times(t.draw.to_world, t.edge(1));
+    const Vec3 e2 = times(t.draw.to_world, t.edge(2));
     const Vec2 a = t.corner(mesh.texcoords, 0);
     const Vec2 d1 = t.corner(mesh.texcoords, 1) - a, d2 = t.corner(mesh.texcoords, 2) - a;
     const float sign = d1.x * d2.y - d2.x * d1.y < 0 ? -1.0F : 1.0F;
@@ -155,8 +157,7 @@ RASTRUM_HD_LEAF float clamped_alpha(float a) {
 
 /// Whether all fragments of a triangle have the alpha of its material.
 RASTRUM_HD inline bool has_constant_alpha(const MaterialDraw& draw, const BoundMaterial& material) {
-  return draw.mesh.colors.values.empty() && material.base_color == nullptr &&
-         material.alpha == nullptr;
+  return draw.colors.empty() && material.base_color == nullptr && material.alpha == nullptr;
 }
 
 }  // namespace rastrum::raster

@@ -1,0 +1,315 @@
+// Views of values in a caller's memory, whatever the type of their numbers and their stride.
+// Nothing is copied, so the memory must outlive the view. How a view's values are read is decided
+// once, when it is made: what lies as the renderer has it (packed float32, packed 32-bit indices)
+// is read in place, everything else by functions of its type, in runs.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <ranges>
+#include <span>
+#include <string>
+#include <type_traits>
+
+#include <rastrum/config.hpp>
+#include <rastrum/vec.hpp>
+
+namespace rastrum {
+
+/// The type of the numbers that values are made of.
+enum class NumberType : std::uint8_t {
+  float32,
+  float64,
+  uint8,
+  int8,
+  uint16,
+  int16,
+  uint32,
+  int32,
+  uint64,
+  int64,
+};
+[[nodiscard]] std::size_t bytes_of(NumberType type) noexcept;
+
+/// Where `count` values lie in a buffer, for who knows their types only when it runs.
+struct ArrayLayout {
+  NumberType type = NumberType::float32;
+  int channels = 1;  ///< numbers a value
+  std::size_t count = 0;
+  std::size_t offset_bytes = 0;     ///< of the first value
+  std::ptrdiff_t stride_bytes = 0;  ///< from value to value
+};
+
+/// What values may be made of: float32 and float64 as they are; 8 and 16 bits normalized as in
+/// glTF, linearly, unsigned ones to [0, 1], signed ones to [−1, 1] (the least counts as −1).
+template <class C>
+concept ValueNumber =
+    std::same_as<C, float> || std::same_as<C, double> || std::same_as<C, std::uint8_t> ||
+    std::same_as<C, std::int8_t> || std::same_as<C, std::uint16_t> || std::same_as<C, std::int16_t>;
+
+/// What indices and offsets may be made of: integers of any size and sign.
+template <class C>
+concept IndexNumber = std::integral<C> && !std::same_as<C, bool>;
+
+/// The values of a view: 1 to 4 float32.
+template <class T>
+concept ViewedValue = std::same_as<T, float> || Vector<T>;
+
+namespace array_detail {
+
+template <class T>
+inline constexpr int kChannels = static_cast<int>(sizeof(T) / sizeof(float));
+
+/// float64 of a position; of others nobody asks for it.
+template <class T>
+using Wide = std::conditional_t<std::same_as<T, Vec3>, Vec3d, T>;
+
+/// How the values of one type are read.
+template <class T>
+struct Reader {
+  bool wide;  ///< of float64
+  T (*at)(const std::byte* value);
+  Wide<T> (*wide_at)(const std::byte* value);
+  /// Values 0 to n from `first` on.
+  void (*run)(const std::byte* first, std::ptrdiff_t stride, std::size_t n, T* out);
+  void (*wide_run)(const std::byte* first, std::ptrdiff_t stride, std::size_t n, Wide<T>* out);
+  /// Those that `indices` name.
+  void (*gather)(const std::byte* first, std::ptrdiff_t stride, const std::uint32_t* indices,
+                 std::size_t n, T* out);
+  void (*wide_gather)(const std::byte* first, std::ptrdiff_t stride, const std::uint32_t* indices,
+                      std::size_t n, Wide<T>* out);
+};
+
+/// Of numbers of type C, `channels` of them; one that a Vec4 has more is 1.
+template <class T, class C>
+[[nodiscard]] const Reader<T>& reader(int channels) noexcept;
+
+/// How integers of one type are read, as int64 bits; `is_signed`: what they mean.
+struct IndexReader {
+  bool is_signed;
+  std::uint64_t (*at)(const std::byte* value);
+  /// As IndexView::operator[].
+  void (*run)(const std::byte* first, std::ptrdiff_t stride, std::size_t n, std::uint32_t* out);
+};
+template <class C>
+[[nodiscard]] const IndexReader& index_reader() noexcept;
+
+/// Fixed widths, so that `long` and `long long` are one.
+template <class C>
+using Fixed = std::conditional_t<
+    sizeof(C) == 8, std::conditional_t<std::is_signed_v<C>, std::int64_t, std::uint64_t>,
+    std::conditional_t<
+        sizeof(C) == 4, std::conditional_t<std::is_signed_v<C>, std::int32_t, std::uint32_t>,
+        std::conditional_t<sizeof(C) == 2,
+                           std::conditional_t<std::is_signed_v<C>, std::int16_t, std::uint16_t>,
+                           std::conditional_t<std::is_signed_v<C>, std::int8_t, std::uint8_t>>>>;
+
+template <class R>
+concept Contiguous = std::ranges::contiguous_range<R> && std::ranges::sized_range<R>;
+template <class R>
+using ValueOf = std::remove_cv_t<std::ranges::range_value_t<R>>;
+
+[[nodiscard]] inline bool is_aligned(const void* p, std::size_t to) {
+  return reinterpret_cast<std::uintptr_t>(p) % to == 0;
+}
+
+}  // namespace array_detail
+
+/// `size()` values of type T. A stride counts bytes from value to value; it may be larger than a
+/// value (a vertex of an interleaved buffer), smaller or negative (views are only read), and 0: one
+/// value for all. Numbers need no alignment.
+template <ViewedValue T>
+class ArrayView {
+ public:
+  using Wide = array_detail::Wide<T>;
+
+  ArrayView() = default;
+  /// Vectors, arrays and spans of T.
+  template <array_detail::Contiguous R>
+  requires std::same_as<array_detail::ValueOf<R>, T> ArrayView(const R& packed)
+      : data_(as_bytes(std::ranges::data(packed))),
+        size_(std::ranges::size(packed)),
+        stride_(sizeof(T)) {}
+  /// Positions and directions in float64.
+  template <array_detail::Contiguous R>
+  requires(std::same_as<T, Vec3>&& std::same_as<array_detail::ValueOf<R>, Vec3d>)
+      ArrayView(const R& packed)
+      : ArrayView(of(&std::ranges::data(packed)->x, std::ranges::size(packed))) {}
+
+  /// `count` values, each of as many numbers as T has. A packed array without `stride_bytes`.
+  template <ValueNumber C>
+  [[nodiscard]] static ArrayView of(const C* numbers, std::size_t count,
+                                    std::ptrdiff_t stride_bytes = array_detail::kChannels<T> *
+                                                                  sizeof(C)) {
+    return ArrayView(numbers, array_detail::kChannels<T>, count, stride_bytes);
+  }
+  /// Colours without alpha, which is 1.
+  template <ValueNumber C>
+  requires std::same_as<T, Vec4>
+  [[nodiscard]] static ArrayView rgb(const C* numbers, std::size_t count,
+                                     std::ptrdiff_t stride_bytes = 3 * sizeof(C)) {
+    return ArrayView(numbers, 3, count, stride_bytes);
+  }
+  /// Values in a buffer. Throws Error{invalid_argument} where one of them reaches beyond it, the
+  /// type is none of ValueNumber's, or the channels are not T's (a Vec4 may have 3).
+  [[nodiscard]] static ArrayView in(std::span<const std::byte> buffer, const ArrayLayout& layout);
+
+  [[nodiscard]] RASTRUM_HD std::size_t size() const { return size_; }
+  [[nodiscard]] RASTRUM_HD bool empty() const { return size_ == 0; }
+
+  /// Whether it is T after T in float32: what a device reads.
+  [[nodiscard]] RASTRUM_HD bool is_packed() const { return reader_ == nullptr; }
+  /// Requires is_packed().
+  [[nodiscard]] RASTRUM_HD std::span<const T> packed() const { return {data(), size_}; }
+  /// Requires is_packed().
+  [[nodiscard]] RASTRUM_HD const T* data() const {
+    return static_cast<const T*>(static_cast<const void*>(data_));
+  }
+
+  /// Value i < size(), rounded to float32.
+  [[nodiscard]] RASTRUM_HD T operator[](std::size_t i) const {
+#if !defined(__CUDA_ARCH__)
+    if (reader_ != nullptr) return reader_->at(place(i));
+#endif
+    return data()[i];
+  }
+  /// The same as it is, where it is float64.
+  [[nodiscard]] RASTRUM_HD Wide wide(std::size_t i) const {
+#if !defined(__CUDA_ARCH__)
+    if (reader_ != nullptr) return reader_->wide_at(place(i));
+#endif
+    return data()[i];
+  }
+  [[nodiscard]] RASTRUM_HD bool is_wide() const {
+    return reader_ != nullptr && is_float64();
+  }
+
+  /// Values first to first + n. Require !is_packed(), as do the others.
+  void read(std::size_t first, std::size_t n, T* out) const {
+    reader_->run(place(first), stride_, n, out);
+  }
+  void read_wide(std::size_t first, std::size_t n, Wide* out) const {
+    reader_->wide_run(place(first), stride_, n, out);
+  }
+  /// Those that `indices` name, which are < size().
+  void gather(std::span<const std::uint32_t> indices, T* out) const {
+    reader_->gather(data_, stride_, indices.data(), indices.size(), out);
+  }
+  void gather_wide(std::span<const std::uint32_t> indices, Wide* out) const {
+    reader_->wide_gather(data_, stride_, indices.data(), indices.size(), out);
+  }
+
+ private:
+  template <class C>
+  ArrayView(const C* numbers, int channels, std::size_t count, std::ptrdiff_t stride_bytes)
+      : data_(as_bytes(numbers)), size_(count), stride_(stride_bytes) {
+    const bool packed = std::same_as<C, float> && channels == array_detail::kChannels<T> &&
+                        stride_bytes == static_cast<std::ptrdiff_t>(sizeof(T)) &&
+                        array_detail::is_aligned(numbers, alignof(T));
+    if (!packed) reader_ = &array_detail::reader<T, C>(channels);
+  }
+  static const std::byte* as_bytes(const void* p) {
+    return static_cast<const std::byte*>(p);
+  }
+  [[nodiscard]] const std::byte* place(std::size_t i) const {
+    return data_ + static_cast<std::ptrdiff_t>(i) * stride_;
+  }
+  [[nodiscard]] RASTRUM_HD bool is_float64() const {
+    return reader_->wide;
+  }
+
+  const std::byte* data_ = nullptr;
+  std::size_t size_ = 0;
+  std::ptrdiff_t stride_ = sizeof(T);
+  const array_detail::Reader<T>* reader_ = nullptr;  ///< null: packed
+};
+
+/// What stands for an index that is negative or does not fit into 32 bits: it is out of every
+/// range.
+inline constexpr std::uint32_t kNoIndex = std::numeric_limits<std::uint32_t>::max();
+
+/// `size()` indices or offsets of any integer type. Strides as ArrayView's.
+class IndexView {
+ public:
+  IndexView() = default;
+  /// Vectors, arrays and spans of integers.
+  template <array_detail::Contiguous R>
+  requires IndexNumber<array_detail::ValueOf<R>> IndexView(const R& packed)
+      : IndexView(of(std::ranges::data(packed), std::ranges::size(packed))) {}
+
+  template <IndexNumber C>
+  [[nodiscard]] static IndexView of(const C* indices, std::size_t count,
+                                    std::ptrdiff_t stride_bytes = sizeof(C)) {
+    using Fixed = array_detail::Fixed<C>;
+    IndexView v;
+    v.data_ = static_cast<const std::byte*>(static_cast<const void*>(indices));
+    v.size_ = count;
+    v.stride_ = stride_bytes;
+    const bool packed = std::same_as<Fixed, std::uint32_t> && stride_bytes == sizeof(C) &&
+                        array_detail::is_aligned(indices, alignof(C));
+    if (!packed) v.reader_ = &array_detail::index_reader<Fixed>();
+    return v;
+  }
+  /// Indices in a buffer. Throws Error{invalid_argument} where one of them reaches beyond it, or
+  /// the layout is not of one integer an index.
+  [[nodiscard]] static IndexView in(std::span<const std::byte> buffer, const ArrayLayout& layout);
+
+  [[nodiscard]] RASTRUM_HD std::size_t size() const { return size_; }
+  [[nodiscard]] RASTRUM_HD bool empty() const { return size_ == 0; }
+  /// Whether it is uint32 after uint32: what a device reads.
+  [[nodiscard]] RASTRUM_HD bool is_packed() const { return reader_ == nullptr; }
+  /// Requires is_packed().
+  [[nodiscard]] RASTRUM_HD std::span<const std::uint32_t> packed() const { return {data(), size_}; }
+  [[nodiscard]] RASTRUM_HD const std::uint32_t* data() const {
+    return static_cast<const std::uint32_t*>(static_cast<const void*>(data_));
+  }
+
+  /// Index i < size(); kNoIndex for what is negative or 2³² − 1 or more.
+  [[nodiscard]] RASTRUM_HD std::uint32_t operator[](std::size_t i) const {
+#if !defined(__CUDA_ARCH__)
+    if (reader_ != nullptr) {
+      const std::uint64_t wide = reader_->at(place(i));
+      return wide < kNoIndex ? static_cast<std::uint32_t>(wide) : kNoIndex;
+    }
+#endif
+    return data()[i];
+  }
+  /// The same in 64 bits: of an offset. Negative ones are 2⁶³ and more.
+  [[nodiscard]] std::uint64_t wide(std::size_t i) const {
+    return reader_ == nullptr ? data()[i] : reader_->at(place(i));
+  }
+  /// As it is, for messages.
+  [[nodiscard]] std::string text(std::size_t i) const;
+  /// Indices first to first + n, as operator[].
+  void read(std::size_t first, std::size_t n, std::uint32_t* out) const {
+    if (reader_ != nullptr)
+      reader_->run(place(first), stride_, n, out);
+    else if (n != 0)
+      std::memcpy(out, data() + first, n * sizeof(std::uint32_t));
+  }
+  /// Indices first to first + n, as a view.
+  [[nodiscard]] IndexView subview(std::size_t first, std::size_t n) const {
+    IndexView part = *this;
+    part.data_ = place(first);
+    part.size_ = n;
+    return part;
+  }
+
+  /// Whether both view the same memory in the same way.
+  bool operator==(const IndexView&) const = default;
+
+ private:
+  [[nodiscard]] const std::byte* place(std::size_t i) const {
+    return data_ + static_cast<std::ptrdiff_t>(i) * stride_;
+  }
+
+  const std::byte* data_ = nullptr;
+  std::size_t size_ = 0;
+  std::ptrdiff_t stride_ = sizeof(std::uint32_t);
+  const array_detail::IndexReader* reader_ = nullptr;  ///< null: packed
+};
+
+}  // namespace rastrum

@@ -1,0 +1,33 @@
+// Quadrics in lanes, for the SIMD leaves that cover pieces and make keys: declared once per
+// instruction set, defined in quadric_simd.cpp. Include it after highway.h, outside of any
+// namespace.
+
+// Highway compiles a source once per target; this guard lets the header in once per target too.
+#if defined(RASTRUM_RASTER_QUADRIC_KERNELS_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_QUADRIC_KERNELS_INL_HPP_
+#undef RASTRUM_RASTER_QUADRIC_KERNELS_INL_HPP_
+#else
+#define RASTRUM_RASTER_QUADRIC_KERNELS_INL_HPP_
+#endif
+
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+#include <rastrum/raster/setup/piece.hpp>
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster {
+namespace HWY_NAMESPACE {
+
+/// cover_quadric (rules.hpp): `within`, in px, is not empty and lies in the piece's box.
+std::uint64_t quadric_mask(const Piece& piece, int bx, int by, Rect within) noexcept;
+/// Kernels::keys of a quadric's piece.
+void quadric_keys(const Piece& piece, const Block& block, std::uint64_t* keys) noexcept;
+
+}  // namespace HWY_NAMESPACE
+}  // namespace rastrum::raster
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+#endif  // RASTRUM_RASTER_QUADRIC_KERNELS_INL_HPP_

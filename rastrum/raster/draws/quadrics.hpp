@@ -1,0 +1,59 @@
+// Spheres, cylinders, cones, tubes and discs as the pipeline draws them: each is one shape, in
+// object space, under the matrix of its draw.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include <rastrum/mat.hpp>
+#include <rastrum/surfaces.hpp>
+#include <rastrum/vec.hpp>
+
+namespace rastrum::raster {
+
+enum class QuadricKind : std::uint8_t {
+  sphere,
+  cone,       ///< between two flat ends; a cylinder where the radii are equal
+  open_cone,  ///< without the ends
+  hull,       ///< of two spheres: a tube's segment
+  disc,       ///< about p0; p1 is its unit normal
+};
+
+/// All finite.
+struct QuadricShape {
+  QuadricKind kind = QuadricKind::sphere;
+  Vec3d p0, p1;
+  double r0 = 0, r1 = 0;
+};
+
+/// What became of a primitive before it was projected.
+enum class ShapeFate : std::uint8_t {
+  drawn,
+  empty,   ///< nothing to draw: a radius or a length of 0
+  dropped  ///< a number that is not finite, or a negative radius
+};
+
+using QuadricGeometry = std::variant<SpheresView, CylindersView, TubesView, DiscsView>;
+
+/// The primitives of a draw and the matrices that they are seen by. Must outlive the frame.
+class QuadricStage {
+ public:
+  /// `object_to_clip` need not have an inverse: then nothing is drawn.
+  QuadricStage(const QuadricGeometry& geometry, const Mat4d& object_to_clip);
+
+  /// The shape of primitive `i`, simplified: a hull in which one sphere holds the other is that
+  /// sphere. Indices must be in range.
+  [[nodiscard]] ShapeFate shape(std::uint64_t i, QuadricShape& out) const;
+  [[nodiscard]] const Mat4d& object_to_clip() const { return object_to_clip_; }
+  /// Null: there is none.
+  [[nodiscard]] const Mat4d* clip_to_object() const { return inverse_ ? &*inverse_ : nullptr; }
+  [[nodiscard]] const QuadricGeometry& geometry() const { return geometry_; }
+
+ private:
+  QuadricGeometry geometry_;
+  Mat4d object_to_clip_;
+  std::optional<Mat4d> inverse_;
+};
+
+}  // namespace rastrum::raster

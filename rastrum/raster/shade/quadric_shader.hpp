@@ -1,0 +1,79 @@
+// The built-in shaders over quadrics: normal and colour are those of the exact point of the surface
+// that a sample sees, in float64; the light is the triangles' (lit_light-inl.hpp,
+// material_light-inl.hpp).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <rastrum/camera.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
+#include <rastrum/raster/draws/quadrics.hpp>
+#include <rastrum/raster/setup/make_quadric.hpp>
+#include <rastrum/raster/shade/lit.hpp>
+#include <rastrum/raster/shade/shading.hpp>
+#include <rastrum/scene.hpp>
+
+namespace rastrum::raster {
+
+/// A point of a quadric's surface, in object space.
+struct QuadricPoint {
+  Vec3d normal;      ///< outwards, of unit length
+  double along = 0;  ///< of the primitive's axis, from 0 at its first end to 1
+};
+
+/// The point of the shape that is `h`, on its surface but for rounding.
+[[nodiscard]] QuadricPoint point_on(const QuadricShape& shape, const RayFrame::Point& h);
+
+/// How the surfaces of a frame look.
+struct QuadricLook {
+  std::optional<LitModel> model;  ///< none: as materials
+  bool blends = false;            ///< alpha counts
+  float opacity = 1;              ///< the frame's
+};
+
+/// Shades draws of quadrics, in the order of `add`. Scenes without materials are of one that blends
+/// by its colours. Textures are not read: a quadric has no texture coordinates.
+class QuadricShader final : public BlockShader {
+ public:
+  QuadricShader(const QuadricLook& look, std::span<const Material> materials, const Camera& camera,
+                int width, int height);
+  /// `stage` must outlive the frame.
+  void add(const QuadricStage& stage, const Mat4d& object_to_world);
+  /// As MaterialShading::linear.
+  void leave_linear() { linear_ = true; }
+
+  bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
+             BlockColors& colors) const noexcept override;
+  [[nodiscard]] std::size_t scratch_bytes() const noexcept override;
+
+ private:
+  struct Surface {
+    const QuadricStage* stage;
+    LitDraw to_world;  ///< for its normal matrix
+    Vec4 base;         ///< what colours are multiplied by, or stand for; alpha the own one
+    const Material* material;
+  };
+  struct Kept;
+  struct KeptQuadrics;
+
+  void fetch(const FrameGeometry& frame, std::uint64_t low, Kept& out) const;
+  [[nodiscard]] Vec4 color(const Kept& kept, const FrameGeometry& frame, std::uint64_t key,
+                           float px, float py, double dx, double dy) const;
+
+  QuadricLook look_;
+  bool linear_ = false;
+  std::vector<Surface> surfaces_;
+  std::vector<Material> materials_;  ///< at least one
+  std::vector<Vec3> display_;        ///< their base colours; empty: there are none
+  ViewRays rays_;
+};
+
+/// The material of a quadric's geometry, and its colours.
+[[nodiscard]] std::uint32_t material_of(const QuadricGeometry& geometry);
+[[nodiscard]] std::span<const Vec4> colors_of(const QuadricGeometry& geometry);
+
+}  // namespace rastrum::raster

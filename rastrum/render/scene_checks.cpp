@@ -1,0 +1,116 @@
+#include <rastrum/render/scene_checks.hpp>
+
+#include <cmath>
+
+#include <rastrum/core/enum.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/scene/mesh_checks.hpp>
+
+namespace rastrum {
+namespace {
+
+[[noreturn]] void refuse(std::size_t number, const std::string& problem) {
+  throw Error(Errc::invalid_argument,
+              std::string("instance ").append(std::to_string(number)).append(": ").append(problem));
+}
+
+void check_look(const InstanceView& instance, std::size_t number) {
+  if (instance.winding > Winding::either)
+    check_enum(instance.winding, Winding::either,
+               "instance " + std::to_string(number) + ": its winding");
+  // Written so that a NaN fails.
+  if (!(instance.opacity >= 0 && instance.opacity <= 1))
+    refuse(number, "its opacity must lie in [0, 1], not " + std::to_string(instance.opacity));
+  if (const auto& c = instance.color; c && !(std::isfinite(c->x) && std::isfinite(c->y) &&
+                                             std::isfinite(c->z) && std::isfinite(c->w)))
+    refuse(number, "its colour must be four finite numbers");
+}
+
+/// The arrays of an instance.
+class MeshCheck {
+ public:
+  MeshCheck(const MeshView& mesh, std::size_t number) : mesh_(mesh), number_(number) {}
+
+  void all() const {
+    if (const std::string problem = faces_problem(mesh_); !problem.empty()) fail(problem);
+    attribute(mesh_.normals, "normals");
+    attribute(mesh_.texcoords, "texcoords");
+    attribute(mesh_.colors, "colors");
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& problem) const { refuse(number_, problem); }
+
+  /// The corners that triangles read.
+  [[nodiscard]] std::size_t corners() const {
+    return mesh_.faces.kind == FaceKind::triangles ? mesh_.triangle_count() * 3
+                                                   : mesh_.corner_count();
+  }
+
+  template <class T>
+  void attribute(const AttributeView<T>& a, const char* what) const {
+    if (a.empty()) return;
+    const std::string array(what);
+    if (!a.indices.empty()) {
+      if (a.indices.size() < corners()) fail(array + " have fewer indices than the triangles");
+      if (const std::size_t at = first_beyond(a.indices, a.values.size()); at != a.indices.size())
+        fail(array + ".indices[" + std::to_string(at) + "]: index " + a.indices.text(at) +
+             " is out of range, there are " + std::to_string(a.values.size()));
+      return;
+    }
+    if (a.per > Per::mesh)
+      check_enum(a.per, Per::mesh, "instance " + std::to_string(number_) + ": " + array + ".per");
+    const auto require = [&](std::size_t count, const char* of) {
+      if (a.values.size() < count)
+        fail(array + " are fewer (" + std::to_string(a.values.size()) + ") than " + of + " (" +
+             std::to_string(count) + ")");
+    };
+    switch (a.per) {
+      case Per::vertex:
+        return require(mesh_.positions.size(), "positions");
+      case Per::corner:
+        return require(corners(), "corners");
+      case Per::face:
+        return require(mesh_.face_count(), "faces");
+      case Per::mesh:
+        break;
+    }
+  }
+
+  const MeshView& mesh_;
+  std::size_t number_;
+};
+
+template <class T>
+bool is_packed(const AttributeView<T>& a) {
+  return a.values.is_packed() && a.indices.is_packed() && a.per == Per::vertex;
+}
+
+}  // namespace
+
+void check_scene(const SceneView& scene) {
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    check_look(scene.instances[i], i);
+    if (const MeshView* const mesh = scene.instances[i].mesh()) MeshCheck(*mesh, i).all();
+  }
+}
+
+std::string why_not_on_device(const SceneView& scene) {
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const InstanceView& instance = scene.instances[i];
+    if (instance.mesh() == nullptr) continue;
+    const MeshView& m = *instance.mesh();
+    const auto say = [&](const char* what) {
+      return "instance " + std::to_string(i) + " has " + what + ", which the device does not read";
+    };
+    if (!m.is_packed_list()) return say("faces or indices that are no list of uint32 triangles");
+    if (!m.positions.is_packed() || !is_packed(m.normals) || !is_packed(m.texcoords) ||
+        !is_packed(m.colors) || !m.face_materials.is_packed())
+      return say("arrays that are not packed float32 or uint32, one value a vertex");
+    if (instance.opacity != 1 || instance.color || !instance.visible)
+      return say("an opacity, a colour or a visibility of its own");
+  }
+  return {};
+}
+
+}  // namespace rastrum

@@ -1,0 +1,117 @@
+#include <rastrum/render/surfaces.hpp>
+
+#include <algorithm>
+#include <string>
+
+#include <rastrum/error.hpp>
+
+namespace rastrum {
+namespace {
+
+std::optional<raster::QuadricGeometry> quadrics_of(const GeometryView& geometry) {
+  if (const auto* const s = std::get_if<SpheresView>(&geometry)) return *s;
+  if (const auto* const c = std::get_if<CylindersView>(&geometry)) return *c;
+  if (const auto* const t = std::get_if<TubesView>(&geometry)) return *t;
+  if (const auto* const d = std::get_if<DiscsView>(&geometry)) return *d;
+  return std::nullopt;
+}
+
+/// Checks the arrays of an instance.
+class Check {
+ public:
+  explicit Check(std::size_t instance) : instance_(instance) {}
+
+  void operator()(const SpheresView& s) const {
+    enough(s.radii.size(), "radii", s.size(), "spheres");
+    enough(s.colors.size(), "colors", s.size(), "spheres");
+  }
+  void operator()(const CylindersView& c) const {
+    of_positions(c.radii.size(), c.colors.size(), c.positions.size());
+    if (c.indices.size() % 2 != 0) fail("the number of indices is odd");
+    for (const std::uint32_t i : c.indices)
+      if (i >= c.positions.size())
+        fail("index " + std::to_string(i) + " is out of range, there are " +
+             std::to_string(c.positions.size()) + " positions");
+  }
+  void operator()(const TubesView& t) const {
+    of_positions(t.radii.size(), t.colors.size(), t.positions.size());
+    for (std::size_t i = 0; i + 1 < t.offsets.size(); ++i)
+      if (t.offsets[i] >= t.offsets[i + 1])
+        fail("offset " + std::to_string(i + 1) + " is " + std::to_string(t.offsets[i + 1]) +
+             ", which does not lie above the one before, " + std::to_string(t.offsets[i]));
+    if (!t.offsets.empty() && t.offsets.back() > t.positions.size())
+      fail("the last offset is " + std::to_string(t.offsets.back()) + ", but there are " +
+           std::to_string(t.positions.size()) + " positions");
+  }
+  void operator()(const DiscsView& d) const {
+    enough(d.radii.size(), "radii", d.size(), "discs");
+    enough(d.colors.size(), "colors", d.size(), "discs");
+    if (d.normals.size() < d.size())
+      fail("there are fewer normals (" + std::to_string(d.normals.size()) + ") than discs (" +
+           std::to_string(d.size()) + ")");
+  }
+  void material(std::uint32_t m, std::size_t materials) const {
+    if (materials != 0 && m >= materials)
+      fail("material " + std::to_string(m) + " is out of range, there are " +
+           std::to_string(materials));
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw Error(Errc::invalid_argument, "instance " + std::to_string(instance_) + ": " + problem);
+  }
+  void enough(std::size_t values, const char* what, std::size_t wanted, const char* of) const {
+    if (values != 0 && values < wanted)
+      fail(std::string("there are fewer ") + what + " (" + std::to_string(values) + ") than " + of +
+           " (" + std::to_string(wanted) + ")");
+  }
+  void of_positions(std::size_t radii, std::size_t colors, std::size_t positions) const {
+    enough(radii, "radii", positions, "positions");
+    enough(colors, "colors", positions, "positions");
+  }
+
+  std::size_t instance_;
+};
+
+bool is_translucent(const raster::QuadricGeometry& geometry, const Material* material) {
+  if (material != nullptr) return material->alpha_mode == AlphaMode::blend || material->opacity < 1;
+  // Written so that a NaN is found.
+  return !std::ranges::all_of(raster::colors_of(geometry), [](const Vec4& c) { return c.w >= 1; });
+}
+
+}  // namespace
+
+void check_surfaces(const SceneView& scene) {
+  for (std::size_t i = 0; i < scene.instances.size(); ++i)
+    if (const auto geometry = quadrics_of(scene.instances[i].geometry)) {
+      const Check check(i);
+      check.material(raster::material_of(*geometry), scene.materials.size());
+      std::visit(check, *geometry);
+    }
+}
+
+bool SurfaceDraws::add(const InstanceView& instance, const Mat4d& world_to_clip,
+                       raster::Draw& draw) {
+  const auto geometry = quadrics_of(instance.geometry);
+  if (!geometry) return false;
+  const raster::QuadricStage& stage =
+      stages_.emplace_back(*geometry, world_to_clip * instance.object_to_world);
+  shader_.add(stage, instance.object_to_world);
+  draw.quadrics = &stage;
+  draw.primitive_count = std::visit([](const auto& g) { return g.size(); }, *geometry);
+  draw.shading = shader_;
+  const Material* const material =
+      scene_.materials.empty() ? nullptr : &scene_.materials[raster::material_of(*geometry)];
+  if (look_.blends && (look_.opacity < 1 || is_translucent(*geometry, material)))
+    draw.flags |= raster::kTranslucent;
+  return true;
+}
+
+std::vector<InstanceView> mesh_instances(const SceneView& scene) {
+  std::vector<InstanceView> meshes;
+  std::ranges::copy_if(scene.instances, std::back_inserter(meshes),
+                       [](const InstanceView& i) { return i.mesh() != nullptr; });
+  return meshes;
+}
+
+}  // namespace rastrum

@@ -1,0 +1,43 @@
+// The instances of a scene that are no meshes, as draws.
+#pragma once
+
+#include <deque>
+#include <span>
+#include <vector>
+
+#include <rastrum/raster/draws/draw.hpp>
+#include <rastrum/raster/draws/quadrics.hpp>
+#include <rastrum/raster/shade/quadric_shader.hpp>
+#include <rastrum/scene.hpp>
+
+namespace rastrum {
+
+/// Throws Error{invalid_argument} that names the instance and its array: fewer radii, colours or
+/// normals than there are to be, an index or offset out of range, offsets that do not rise, a
+/// material that is none. O(indices).
+void check_surfaces(const SceneView& scene);
+
+/// The draws of a frame's quadrics; they refer to it.
+class SurfaceDraws {
+ public:
+  SurfaceDraws(const SceneView& scene, const raster::QuadricLook& look, const Camera& camera,
+               int width, int height)
+      : look_(look), shader_(look, scene.materials, camera, width, height), scene_(scene) {}
+
+  /// Whether the instance is one; then makes its draw.
+  bool add(const InstanceView& instance, const Mat4d& world_to_clip, raster::Draw& draw);
+
+  /// As QuadricShader's.
+  void leave_linear() { shader_.leave_linear(); }
+
+ private:
+  raster::QuadricLook look_;
+  raster::QuadricShader shader_;
+  SceneView scene_;
+  std::deque<raster::QuadricStage> stages_;  // draws point to them
+};
+
+/// The instances that are meshes.
+[[nodiscard]] std::vector<InstanceView> mesh_instances(const SceneView& scene);
+
+}  // namespace rastrum

@@ -1,0 +1,220 @@
+// The faces of a mesh as triangles, and what can be wrong with them.
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+#include <rastrum/core/enum.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/mesh.hpp>
+#include <rastrum/scene/mesh_checks.hpp>
+
+namespace rastrum {
+namespace {
+
+/// Corners begin to end are one face.
+struct Run {
+  std::uint64_t begin, end;
+  [[nodiscard]] std::uint64_t triangles() const { return end - begin < 2 ? 0 : end - begin - 2; }
+};
+
+/// Faces that are runs of corners.
+struct Runs {
+  const MeshView& mesh;
+
+  [[nodiscard]] std::size_t count() const {
+    const std::size_t n = mesh.faces.offsets.size();
+    return n == 0 ? mesh.corner_count() != 0 : n - 1;
+  }
+  [[nodiscard]] Run operator[](std::size_t face) const {
+    const IndexView& offsets = mesh.faces.offsets;
+    if (offsets.empty()) return {0, mesh.corner_count()};
+    return {offsets.wide(face), offsets.wide(face + 1)};
+  }
+  /// Each face has two triangles less than corners, so no list of them is kept.
+  [[nodiscard]] std::uint64_t first_triangle(std::size_t face) const {
+    const IndexView& offsets = mesh.faces.offsets;
+    return offsets.empty() ? 0 : offsets.wide(face) - offsets.wide(0) - 2 * face;
+  }
+  /// The face of a triangle: the last that does not begin after it. O(log faces).
+  [[nodiscard]] std::size_t face_of(std::uint64_t triangle) const {
+    std::size_t low = 0, high = count();
+    while (high - low > 1) {
+      const std::size_t middle = low + (high - low) / 2;
+      (first_triangle(middle) <= triangle ? low : high) = middle;
+    }
+    return low;
+  }
+};
+
+/// The corners of triangle `k` of a run.
+void corners_in_run(FaceKind kind, std::uint64_t begin, std::uint64_t k, std::size_t (&out)[3]) {
+  if (kind == FaceKind::polygons) {
+    out[0] = begin;
+    out[1] = begin + k + 1;
+    out[2] = begin + k + 2;
+  } else {
+    out[0] = begin + k + k % 2;
+    out[1] = begin + k + 1 - k % 2;
+    out[2] = begin + k + 2;
+  }
+}
+
+void in_order(std::size_t first, std::size_t n, std::uint32_t* out) {
+  std::iota(out, out + n, static_cast<std::uint32_t>(first));
+}
+
+void read_corners(const MeshView& mesh, std::size_t first, std::size_t n, std::uint32_t* out) {
+  if (mesh.indices.empty())
+    in_order(first, n, out);
+  else
+    mesh.indices.read(first, n, out);
+}
+
+/// Corners that are read at once.
+constexpr std::size_t kCornersAtOnce = 256;
+
+void read_quads(const MeshView& mesh, std::size_t t, std::size_t n, std::uint32_t* out) {
+  std::uint32_t corner[kCornersAtOnce];
+  for (const std::size_t end = t + n; t < end;) {
+    const std::size_t quad = t / 2, quads = std::min((end - 1) / 2 - quad + 1, kCornersAtOnce / 4);
+    read_corners(mesh, 4 * quad, 4 * quads, corner);
+    for (; t < end && t / 2 < quad + quads; ++t, out += 3) {
+      const std::uint32_t* const c = corner + 4 * (t / 2 - quad);
+      out[0] = c[0];
+      out[1] = c[1 + t % 2];
+      out[2] = c[2 + t % 2];
+    }
+  }
+}
+
+void read_runs(const MeshView& mesh, std::size_t t, std::size_t n, std::uint32_t* out) {
+  const Runs runs{mesh};
+  std::uint32_t corner[kCornersAtOnce];
+  std::size_t face = runs.face_of(t);
+  std::uint64_t k = t - runs.first_triangle(face);
+  while (n > 0) {
+    const Run run = runs[face];
+    if (k >= run.triangles()) {
+      ++face;
+      k = 0;
+      continue;
+    }
+    const auto m = static_cast<std::size_t>(
+        std::min<std::uint64_t>({n, run.triangles() - k, kCornersAtOnce - 2}));
+    read_corners(mesh, run.begin + k, m + 2, corner);
+    std::uint32_t apex = 0;
+    read_corners(mesh, run.begin, 1, &apex);
+    for (std::size_t i = 0; i < m; ++i, out += 3) {
+      const std::size_t odd = (k + i) % 2;
+      const bool fan = mesh.faces.kind == FaceKind::polygons;
+      out[0] = fan ? apex : corner[i + odd];
+      out[1] = corner[i + 1 - (fan ? 0 : odd)];
+      out[2] = corner[i + 2];
+    }
+    k += m;
+    n -= m;
+  }
+}
+
+}  // namespace
+
+std::size_t MeshView::face_count() const {
+  switch (faces.kind) {
+    case FaceKind::triangles:
+      return corner_count() / 3;
+    case FaceKind::quads:
+      return corner_count() / 4;
+    default:
+      return Runs{*this}.count();
+  }
+}
+
+std::size_t MeshView::triangle_count() const {
+  switch (faces.kind) {
+    case FaceKind::triangles:
+      return corner_count() / 3;
+    case FaceKind::quads:
+      return corner_count() / 4 * 2;
+    default: {
+      const Runs runs{*this};
+      if (runs.count() == 0) return 0;
+      const std::size_t last = runs.count() - 1;
+      return runs.first_triangle(last) + runs[last].triangles();
+    }
+  }
+}
+
+TrianglePlace MeshView::place_in_face(std::size_t t) const {
+  TrianglePlace place{};
+  if (faces.kind == FaceKind::quads) {
+    place.face = t / 2;
+    corners_in_run(FaceKind::polygons, 4 * place.face, t % 2, place.corner);
+    return place;
+  }
+  const Runs runs{*this};
+  place.face = runs.face_of(t);
+  corners_in_run(faces.kind, runs[place.face].begin, t - runs.first_triangle(place.face),
+                 place.corner);
+  return place;
+}
+
+void MeshView::read_triangles(std::size_t first, std::size_t n, std::uint32_t* vertices) const {
+  switch (faces.kind) {
+    case FaceKind::triangles:
+      return read_corners(*this, 3 * first, 3 * n, vertices);
+    case FaceKind::quads:
+      return read_quads(*this, first, n, vertices);
+    default:
+      return read_runs(*this, first, n, vertices);
+  }
+}
+
+std::string faces_problem(const MeshView& mesh) {
+  const IndexView& offsets = mesh.faces.offsets;
+  if (mesh.faces.kind > FaceKind::strips)
+    return "faces.kind is " + std::to_string(static_cast<int>(mesh.faces.kind)) +
+           ", which is no value of its enum";
+  if (mesh.positions.size() > kNoIndex)
+    return "has " + std::to_string(mesh.positions.size()) + " positions; at most " +
+           std::to_string(kNoIndex) + " have a number";
+  if (offsets.empty()) return {};
+  if (mesh.faces.kind < FaceKind::polygons) return "triangles and quads have no faces.offsets";
+  for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
+    const std::uint64_t begin = offsets.wide(i), end = offsets.wide(i + 1);
+    if (end > mesh.corner_count() || begin > end || end - begin < 2)
+      return "faces.offsets: face " + std::to_string(i) + " has the corners " + offsets.text(i) +
+             " to " + offsets.text(i + 1) + " of " + std::to_string(mesh.corner_count()) +
+             "; it must have two or more";
+  }
+  return {};
+}
+
+std::size_t first_beyond(const IndexView& indices, std::size_t size) {
+  std::uint32_t part[kCornersAtOnce];
+  for (std::size_t i = 0; i < indices.size(); i += kCornersAtOnce) {
+    const std::size_t n = std::min(kCornersAtOnce, indices.size() - i);
+    indices.read(i, n, part);
+    std::uint32_t largest = 0;
+    for (std::size_t k = 0; k < n; ++k) largest = std::max(largest, part[k]);
+    if (largest < size) continue;
+    return i + static_cast<std::size_t>(
+                   std::find_if(part, part + n, [&](std::uint32_t v) { return v >= size; }) - part);
+  }
+  return indices.size();
+}
+
+void check_indices(const MeshView& mesh) {
+  if (const std::string problem = faces_problem(mesh); !problem.empty())
+    throw Error(Errc::invalid_argument, "mesh: " + problem);
+  const std::size_t c = first_beyond(mesh.indices, mesh.positions.size());
+  if (c == mesh.indices.size()) return;
+  const bool lists = mesh.faces.kind == FaceKind::triangles;
+  throw Error(Errc::invalid_argument,
+              "mesh: corner " +
+                  (lists ? std::to_string(c % 3) + " of triangle " + std::to_string(c / 3)
+                         : std::to_string(c)) +
+                  " is vertex " + mesh.indices.text(c) + ", but there are only " +
+                  std::to_string(mesh.positions.size()));
+}
+
+}  // namespace rastrum

@@ -1,0 +1,103 @@
+// Any array, no copy: what a frame allocates does not grow with a mesh beyond what the packed one
+// needs, for every layout. A program of its own, because it counts what `new` is asked for.
+#include <atomic>
+#include <cstdint>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/render.hpp>
+
+#include "tests/support/array_layouts.hpp"
+
+namespace {
+
+std::atomic<std::uint64_t> asked_for{0};
+
+void* counted(std::size_t bytes, std::size_t alignment) {
+  asked_for.fetch_add(bytes, std::memory_order_relaxed);
+  const std::size_t whole = (bytes + alignment - 1) / alignment * alignment;
+  if (void* const p = std::aligned_alloc(alignment, whole == 0 ? alignment : whole)) return p;
+  throw std::bad_alloc();
+}
+
+// Not inline: GCC takes free() of what `new` gave for a mistake where it sees both.
+[[gnu::noinline]] void release(void* p) noexcept {
+  std::free(p);
+}
+
+}  // namespace
+
+void* operator new(std::size_t n) {
+  return counted(n, alignof(std::max_align_t));
+}
+void* operator new(std::size_t n, std::align_val_t a) {
+  return counted(n, static_cast<std::size_t>(a));
+}
+void operator delete(void* p) noexcept {
+  release(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  release(p);
+}
+void operator delete(void* p, std::align_val_t) noexcept {
+  release(p);
+}
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  release(p);
+}
+
+namespace rastrum::test::allocations_test {
+namespace {
+
+/// What a frame of a mesh takes: bytes of `new`, and of scratch, which is accounted apart.
+struct Bytes {
+  std::uint64_t asked, scratch;
+};
+
+Bytes bytes_of(const MeshView& mesh, const FrameOptions& look, std::uint64_t limit) {
+  const InstanceView instance{mesh};
+  std::vector<Material> materials(2);
+  Image<Rgba8> image(look.width, look.height);
+  Camera camera;
+  camera.eye = {0.3, -0.8, 1.9};
+  // One thread, so that what each keeps is the same from run to run.
+  Renderer renderer({.memory_limit = limit, .threads = 1});
+  const std::uint64_t before = asked_for;
+  const FrameStats stats = renderer.render({.instances = {&instance, 1}, .materials = materials},
+                                           camera, look, {.color8 = image});
+  return {asked_for - before, stats.peak_bytes};
+}
+
+TEST(Allocations, OfALayoutAreThoseOfThePackedMesh) {
+  const Sheet sheet(220);  // 96,800 triangles: a copy of any of its arrays is 190 KB or more
+  constexpr std::uint64_t kSmall = 16 << 10;
+  for (const FrameOptions& look :
+       {FrameOptions{.width = 160, .height = 120, .shader = Shader::phong},
+        FrameOptions{.width = 160, .height = 120, .shader = Shader::material},
+        FrameOptions{.width = 160, .height = 120, .shader = Shader::flat, .opacity = 0.5F}})
+    for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{4} << 20}) {
+      const Bytes packed = bytes_of(sheet.view(), look, limit);
+      EXPECT_GT(packed.scratch, kSmall);
+      for (const Layout& layout : layouts()) {
+        if (layout.name.ends_with("int16")) continue;  // of fewer vertices
+        Memory memory;
+        const MeshView mesh = layout.view(sheet, memory);
+        const Bytes other = bytes_of(mesh, look, limit);
+        EXPECT_LE(other.asked, packed.asked + kSmall) << layout.name;
+        EXPECT_LE(other.scratch, packed.scratch + kSmall) << layout.name;
+      }
+      // float64, too, whose picture may differ.
+      std::vector<Vec3d> wide(sheet.positions.begin(), sheet.positions.end());
+      MeshView mesh = sheet.view();
+      mesh.positions = wide;
+      const Bytes other = bytes_of(mesh, look, limit);
+      EXPECT_LE(other.asked, packed.asked + kSmall);
+      EXPECT_LE(other.scratch, packed.scratch + packed.scratch / 50);
+    }
+}
+
+}  // namespace
+}  // namespace rastrum::test::allocations_test

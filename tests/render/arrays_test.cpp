@@ -1,0 +1,417 @@
+// Any array, no copy: a mesh gives one picture, bit for bit, whatever the types and strides of its
+// arrays and the kind of its faces; float64 positions stand still far from the origin; and what
+// cannot be drawn is refused by instance, array and place. What it costs in memory is
+// allocations_test.cpp's.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/error.hpp>
+#include <rastrum/render.hpp>
+
+#include "tests/support/array_layouts.hpp"
+
+namespace rastrum::test::arrays_test {
+namespace {
+
+constexpr int kW = 150, kH = 110;
+
+struct Picture {
+  Image<Rgba8> color8{kW, kH};
+  Image<Vec4> color{kW, kH};
+  Image<float> depth{kW, kH};
+  Image<std::int64_t> ids{kW, kH};
+  FrameStats stats;
+
+  [[nodiscard]] std::size_t pixels_that_differ(const Picture& o) const {
+    std::size_t n = 0;
+    for (int y = 0; y < kH; ++y)
+      for (int x = 0; x < kW; ++x)
+        n += !(ids(x, y) == o.ids(x, y) && color8(x, y) == o.color8(x, y) &&
+               std::bit_cast<std::uint32_t>(depth(x, y)) ==
+                   std::bit_cast<std::uint32_t>(o.depth(x, y)) &&
+               color(x, y) == o.color(x, y));
+    return n;
+  }
+  [[nodiscard]] std::size_t ids_that_differ(const Picture& o) const {
+    std::size_t n = 0;
+    for (int y = 0; y < kH; ++y)
+      for (int x = 0; x < kW; ++x) n += ids(x, y) != o.ids(x, y);
+    return n;
+  }
+};
+
+Picture draw(Renderer& renderer, const SceneView& scene, const Camera& camera, FrameOptions look) {
+  look.width = kW;
+  look.height = kH;
+  Picture p;
+  p.stats = renderer.render(scene, camera, look,
+                            {.color8 = p.color8, .color = p.color, .depth = p.depth, .ids = p.ids});
+  return p;
+}
+
+Camera camera_of_sheet() {
+  Camera c;
+  c.eye = {0.3, -0.8, 1.9};
+  c.target = {0, 0.05, 0};
+  return c;
+}
+
+std::vector<Material> two_materials() {
+  std::vector<Material> m(2);
+  m[0].roughness = 0.4F;
+  m[0].double_sided = true;
+  m[1].base_color = {0.9F, 0.6F, 0.5F, 0.6F};
+  m[1].alpha_mode = AlphaMode::blend;
+  m[1].double_sided = true;
+  return m;
+}
+
+struct Look {
+  const char* name;
+  FrameOptions frame;
+  bool materials = false;
+};
+
+std::vector<Look> looks() {
+  return {{"phong", {.shader = Shader::phong}},
+          {"material", {.shader = Shader::material}, true},
+          {"normal, 4 samples", {.shader = Shader::normal, .samples = 4}},
+          {"wireframe", {.shader = Shader::wireframe}},
+          {"layers", {.shader = Shader::lambert, .opacity = 0.6F}}};
+}
+
+std::vector<RendererOptions> renderers() {
+  return {{.threads = 2},
+          {.memory_limit = 3U << 20, .threads = 2},  // projects where vertices are read
+          {.device = Device::serial}};
+}
+
+TEST(Arrays, EveryLayoutHasThePictureOfThePackedOne) {
+  const Sheet sheet(23);
+  const std::vector<Material> materials = two_materials();
+  const Camera camera = camera_of_sheet();
+  for (const RendererOptions& by : renderers()) {
+    Renderer renderer(by);
+    for (const Look& look : looks()) {
+      const auto picture = [&](const MeshView& mesh) {
+        const InstanceView instance{mesh};
+        SceneView scene{.instances = {&instance, 1}};
+        if (look.materials) scene.materials = materials;
+        return draw(renderer, scene, camera, look.frame);
+      };
+      const Picture packed = picture(sheet.view());
+      ASSERT_GT(packed.stats.pixels_covered, 2000U);
+      for (const Layout& layout : layouts()) {
+        Memory memory;
+        const Picture other = picture(layout.view(sheet, memory));
+        EXPECT_EQ(packed.pixels_that_differ(other), 0U)
+            << layout.name << ", " << look.name << ", limit " << by.memory_limit;
+        EXPECT_EQ(packed.stats.triangles.drawn, other.stats.triangles.drawn) << layout.name;
+      }
+    }
+  }
+}
+
+/// The triangles of a mesh one by one, as place() and read_triangles() tell them.
+TEST(Arrays, FacesAreTrianglesInTheirOrder) {
+  const std::vector<Vec3> positions(40);
+  MeshView mesh;
+  mesh.positions = positions;
+  const auto triangles = [&] {
+    std::vector<std::vector<std::uint32_t>> all;
+    for (std::size_t first = 0; first < mesh.triangle_count(); ++first) {
+      const std::size_t n = mesh.triangle_count() - first;
+      std::vector<std::uint32_t> run(3 * n);
+      mesh.read_triangles(first, n, run.data());
+      for (std::size_t t = 0; t < n; ++t) {
+        const TrianglePlace place = mesh.place(first + t);
+        for (std::size_t c = 0; c < 3; ++c)
+          EXPECT_EQ(mesh.vertex(place.corner[c]), run[3 * t + c]) << first << " " << t << " " << c;
+        if (first == 0) {
+          std::vector<std::uint32_t>& face = all.emplace_back(
+              run.begin() + 3 * static_cast<int>(t), run.begin() + 3 * static_cast<int>(t) + 3);
+          face.push_back(static_cast<std::uint32_t>(place.face));
+        }
+      }
+    }
+    return all;
+  };
+  using Triangles = std::vector<std::vector<std::uint32_t>>;
+  const std::vector<std::int64_t> offsets{2, 5, 7, 11, 13};
+  mesh.faces = {FaceKind::polygons, offsets};
+  EXPECT_EQ(triangles(), (Triangles{{2, 3, 4, 0}, {7, 8, 9, 2}, {7, 9, 10, 2}}));
+  mesh.faces.kind = FaceKind::strips;
+  EXPECT_EQ(triangles(), (Triangles{{2, 3, 4, 0}, {7, 8, 9, 2}, {9, 8, 10, 2}}));
+  const std::vector<std::uint16_t> corners{9, 8, 7, 6, 5};
+  mesh.indices = corners;
+  mesh.faces = {FaceKind::strips, {}};
+  EXPECT_EQ(triangles(), (Triangles{{9, 8, 7, 0}, {7, 8, 6, 0}, {7, 6, 5, 0}}));
+  mesh.faces = {FaceKind::polygons, {}};
+  EXPECT_EQ(triangles(), (Triangles{{9, 8, 7, 0}, {9, 7, 6, 0}, {9, 6, 5, 0}}));
+  mesh.faces = {FaceKind::quads, {}};
+  EXPECT_EQ(triangles(), (Triangles{{9, 8, 7, 0}, {9, 7, 6, 0}}));
+  mesh.indices = {};
+  // One fan larger than what is read at once.
+  const std::vector<Vec3> many(1000);
+  mesh.positions = many;
+  mesh.faces = {FaceKind::polygons, {}};
+  EXPECT_EQ(triangles().back(), (std::vector<std::uint32_t>{0, 998, 999, 0}));
+  mesh.faces = {FaceKind::strips, {}};
+  EXPECT_EQ(triangles().back(), (std::vector<std::uint32_t>{998, 997 + 0, 999, 0}));
+  mesh.positions = {};
+  EXPECT_EQ(mesh.triangle_count(), 0U);
+}
+
+TEST(Arrays, NumbersAreWhatGltfMakesOfThem) {
+  const std::uint8_t u8[] = {0, 51, 255, 1};
+  EXPECT_EQ(ArrayView<Vec4>::of(u8, 1)[0], (Vec4{0, 51 / 255.0F, 1, 1 / 255.0F}));
+  EXPECT_EQ(ArrayView<Vec4>::rgb(u8, 1)[0], (Vec4{0, 51 / 255.0F, 1, 1}));
+  const std::int8_t i8[] = {-128, -127, 127};
+  EXPECT_EQ(ArrayView<Vec3>::of(i8, 1)[0], (Vec3{-1, -1, 1}));
+  const std::uint16_t u16[] = {65535, 13107};
+  EXPECT_EQ(ArrayView<Vec2>::of(u16, 1)[0], (Vec2{1, 0.2F}));
+  const std::int16_t i16[] = {-32768};
+  EXPECT_EQ(ArrayView<float>::of(i16, 1)[0], -1.0F);
+  const double f64[] = {1e300, 0.1, -0.0};
+  EXPECT_EQ(ArrayView<Vec3>::of(f64, 1).wide(0), (Vec3d{1e300, 0.1, 0}));
+  EXPECT_EQ(ArrayView<Vec3>::of(f64, 1)[0].x, std::numeric_limits<float>::infinity());
+  const std::int64_t i64[] = {-1, 7, std::int64_t{1} << 32, 0xFFFFFFFE};
+  const IndexView indices(i64);
+  EXPECT_EQ(indices[0], kNoIndex);
+  EXPECT_EQ(indices[1], 7U);
+  EXPECT_EQ(indices[2], kNoIndex);
+  EXPECT_EQ(indices[3], 0xFFFFFFFEU);
+  EXPECT_EQ(indices.text(0), "-1");
+  // One value for all.
+  const float up[] = {0, 0, 1};
+  const ArrayView<Vec3> normals = ArrayView<Vec3>::of(up, 1000, 0);
+  EXPECT_EQ(normals[999], (Vec3{0, 0, 1}));
+}
+
+/// Boxes on a plane, as a city has them, and a camera among them.
+struct City {
+  std::vector<Vec3> positions;
+  std::vector<std::uint32_t> indices;
+
+  City() {
+    for (int i = 0; i < 400; ++i) {
+      const float x = static_cast<float>(i % 20) * 25, y = static_cast<float>(i / 20) * 25;
+      const float high = 8 + static_cast<float>(i * 37 % 50);
+      const auto first = static_cast<std::uint32_t>(positions.size());
+      for (int c = 0; c < 8; ++c)
+        positions.push_back({x + static_cast<float>(c % 2) * 12.3F,
+                             y + static_cast<float>(c / 2 % 2) * 14.7F,
+                             static_cast<float>(c / 4) * high});
+      for (const std::uint32_t c :
+           {0U, 2U, 1U, 1U, 2U, 3U, 4U, 5U, 6U, 5U, 7U, 6U, 0U, 1U, 4U, 1U, 5U, 4U,
+            2U, 6U, 3U, 3U, 6U, 7U, 0U, 4U, 2U, 2U, 4U, 6U, 1U, 3U, 5U, 3U, 7U, 5U})
+        indices.push_back(first + c);
+    }
+  }
+  [[nodiscard]] std::vector<Vec3d> at(Vec3d origin) const {
+    std::vector<Vec3d> moved;
+    for (const Vec3& p : positions) moved.push_back(Vec3d(p) + origin);
+    return moved;
+  }
+};
+
+Camera in_the_city(Vec3d origin) {
+  Camera c;
+  c.eye = Vec3d{-40, -60, 55} + origin;
+  c.target = Vec3d{250, 240, 0} + origin;
+  c.up = {0, 0, 1};
+  c.near_plane = 1;
+  return c;
+}
+
+TEST(Arrays, ACityInUtmCoordinatesStandsStill) {
+  const City city;
+  const Vec3d utm{5e6, 4e5, 100};
+  const std::vector<Vec3d> far = city.at(utm);
+  std::vector<Vec3> far32;
+  for (const Vec3d& p : far) far32.push_back(Vec3(p));
+  Renderer renderer({.threads = 2});
+  const auto picture = [&](const ArrayView<Vec3>& positions, Vec3d origin) {
+    MeshView mesh;
+    mesh.positions = positions;
+    mesh.indices = city.indices;
+    const InstanceView instance{mesh};
+    return draw(renderer, {.instances = {&instance, 1}}, in_the_city(origin), {});
+  };
+  const Picture home = picture(city.positions, {});
+  ASSERT_GT(home.stats.pixels_covered, kW * kH / 4U);
+  // float64 at the origin and 5000 km away: rounded once each, so that a vertex may snap to the
+  // neighbouring 256th of a pixel, and seldom a pixel is another's.
+  EXPECT_LE(home.ids_that_differ(picture(far, utm)), 12U);
+  EXPECT_LE(home.ids_that_differ(picture(city.at({}), {})), 12U);
+  // What float32 makes of it: half metres.
+  EXPECT_GT(home.ids_that_differ(picture(far32, utm)), 300U);
+}
+
+TEST(Arrays, Float64HasTheSameBitsEverywhere) {
+  const City city;
+  const Vec3d utm{5e6, 4e5, 100};
+  const std::vector<Vec3d> positions = city.at(utm);
+  MeshView mesh;
+  mesh.positions = positions;
+  mesh.indices = city.indices;
+  Memory memory;
+  MeshView strided = mesh;
+  strided.positions = ArrayView<Vec3>::of(memory.put(&positions[0].x, 3, positions.size(), 40, 1),
+                                          positions.size(), 40);
+  // Some of it behind the eye, for the clipper; large and not finite numbers.
+  std::vector<Vec3d> nasty = positions;
+  nasty[3] = {1e200, 4e5, 100};
+  nasty[11].x = std::numeric_limits<double>::quiet_NaN();
+  nasty[21].y = std::numeric_limits<double>::infinity();
+  MeshView bad = mesh;
+  bad.positions = nasty;
+  Camera close = in_the_city(utm);
+  close.eye = Vec3d{120, 118, 4} + utm;
+  for (const Camera& camera : {in_the_city(utm), close})
+    for (const MeshView* const m : {&mesh, &strided, &bad}) {
+      const InstanceView instance{*m};
+      const SceneView scene{.instances = {&instance, 1}};
+      Renderer serial({.device = Device::serial});
+      for (const Look& look : looks()) {
+        if (look.materials) continue;
+        const Picture reference = draw(serial, scene, camera, look.frame);
+        EXPECT_EQ(reference.stats.triangles.dropped > 0, m == &bad);
+        for (const Isa isa : available_isas())
+          for (const std::uint64_t limit : {0U, 3U << 20}) {
+            Renderer renderer({.memory_limit = limit, .threads = 2, .isa = isa});
+            const Picture other = draw(renderer, scene, camera, look.frame);
+            EXPECT_EQ(reference.pixels_that_differ(other), 0U) << look.name << " " << name(isa);
+          }
+      }
+    }
+}
+
+// What is refused.
+
+struct Bad {
+  const char* message;
+  std::function<void(MeshView&)> change;
+};
+
+TEST(Arrays, WhatCannotBeReadIsRefused) {
+  const Sheet sheet(4);
+  const std::vector<std::int32_t> negative{0, 1, 2, 3, -4, 5};
+  const std::vector<std::int64_t> huge{0, 1, 2, 3, std::int64_t{1} << 32, 5};
+  const std::vector<std::uint64_t> largest{0, 1, std::numeric_limits<std::uint64_t>::max()};
+  const std::vector<std::uint32_t> none{0, 1, 0xFFFFFFFF};
+  const std::vector<std::uint8_t> beyond{0, 25, 1};
+  const std::vector<std::int64_t> falling{0, 4, 3, 8}, from_behind{-4, 4, 8}, too_far{0, 4, 9999},
+      lonely{0, 3, 4, 7};
+  const std::vector<Vec3> three(3);
+  const std::vector<Bad> all{
+      {"instance 1: indices[4]: index -4 is out of range, there are 25 vertices",
+       [&](MeshView& m) { m.indices = negative; }},
+      {"indices[4]: index 4294967296 is out of range", [&](MeshView& m) { m.indices = huge; }},
+      {"indices[2]: index 18446744073709551615 is out", [&](MeshView& m) { m.indices = largest; }},
+      {"indices[2]: index 4294967295 is out of range", [&](MeshView& m) { m.indices = none; }},
+      {"indices[1]: index 25 is out of range", [&](MeshView& m) { m.indices = beyond; }},
+      {"instance 1: faces.offsets: face 1 has the corners 4 to 3 of 96",
+       [&](MeshView& m) {
+         m.faces = {FaceKind::polygons, falling};
+       }},
+      {"face 0 has the corners -4 to 4",
+       [&](MeshView& m) {
+         m.faces = {FaceKind::polygons, from_behind};
+       }},
+      {"face 1 has the corners 4 to 9999 of 96",
+       [&](MeshView& m) {
+         m.faces = {FaceKind::strips, too_far};
+       }},
+      {"face 1 has the corners 3 to 4 of 96; it must have two or more",
+       [&](MeshView& m) {
+         m.faces = {FaceKind::polygons, lonely};
+       }},
+      {"triangles and quads have no faces.offsets",
+       [&](MeshView& m) {
+         m.faces = {FaceKind::quads, falling};
+       }},
+      {"faces.kind is 200", [&](MeshView& m) { m.faces.kind = static_cast<FaceKind>(200); }},
+      {"normals are fewer (3) than positions (25)", [&](MeshView& m) { m.normals.values = three; }},
+      {"normals are fewer (3) than corners (96)",
+       [&](MeshView& m) {
+         m.normals = {three, {}, Per::corner};
+       }},
+      {"normals are fewer (3) than faces (32)",
+       [&](MeshView& m) {
+         m.normals = {three, {}, Per::face};
+       }},
+      {"normals.per is 200",
+       [&](MeshView& m) {
+         m.normals = {three, {}, static_cast<Per>(200)};
+       }},
+      {"colors have fewer indices than the triangles",
+       [&](MeshView& m) { m.colors.indices = negative; }},
+      {"has 4294967296 positions", [&](MeshView& m) {
+         m.positions = ArrayView<Vec3>::of(&three[0].x, std::size_t{1} << 32, 0);
+       }}};
+  for (const RendererOptions& by : renderers()) {
+    Renderer renderer(by);
+    for (const Bad& bad : all) {
+      InstanceView instances[2]{{sheet.view()}, {}};
+      MeshView mesh = sheet.view();
+      bad.change(mesh);
+      instances[1].geometry = mesh;
+      std::string message;
+      try {
+        (void)draw(renderer, {.instances = instances}, camera_of_sheet(), {});
+      } catch (const Error& e) {
+        EXPECT_EQ(e.code(), Errc::invalid_argument);
+        message = e.what();
+      }
+      EXPECT_NE(message.find(bad.message), std::string::npos)
+          << bad.message << ": '" << message << "'";
+    }
+  }
+}
+
+TEST(Arrays, BuffersThatAreTooSmallAreRefused) {
+  const std::vector<std::byte> buffer(100);
+  const auto refused = [&](const ArrayLayout& l) {
+    try {
+      (void)ArrayView<Vec3>::in(buffer, l);
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::invalid_argument);
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  using enum NumberType;
+  const std::size_t most = std::numeric_limits<std::size_t>::max();
+  EXPECT_EQ(refused({float32, 3, 8, 4, 12}), "");
+  EXPECT_EQ(refused({float32, 3, 5, 88, -22}), "");
+  EXPECT_EQ(refused({float64, 3, most, 76, 0}), "");
+  EXPECT_EQ(refused({float64, 3, 0, most, 24}), "");
+  EXPECT_EQ(refused({int16, 3, 16, 4, 6}), "");
+  for (const ArrayLayout& l :
+       std::vector<ArrayLayout>{{float32, 3, 9, 0, 12},
+                                {float32, 3, 1, 89, 12},
+                                {float32, 3, 2, 11, -12},
+                                {float64, 3, 5, 0, 24},
+                                {float32, 3, most, 0, 1},
+                                {float32, 3, 2, 0, std::numeric_limits<std::ptrdiff_t>::min()},
+                                {float32, 3, 2, 0, std::numeric_limits<std::ptrdiff_t>::max()},
+                                {float32, 3, 1, most, 12}})
+    EXPECT_NE(refused(l).find("reach beyond a buffer of 100 bytes"), std::string::npos);
+  EXPECT_NE(refused({float32, 4, 1, 0, 16}).find("3 channels, not 4"), std::string::npos);
+  EXPECT_NE(refused({int64, 3, 1, 0, 24}).find("float32, float64"), std::string::npos);
+  EXPECT_THROW((void)IndexView::in(buffer, {float32, 1, 1, 0, 4}), Error);
+  EXPECT_THROW((void)IndexView::in(buffer, {int32, 1, 26, 0, 4}), Error);
+  EXPECT_EQ(IndexView::in(buffer, {int32, 1, 25, 0, 4}).size(), 25U);
+}
+
+}  // namespace
+}  // namespace rastrum::test::arrays_test

@@ -1,0 +1,382 @@
+// Digests of pictures, and of what leads to them, that are the same on every machine: those of
+// tests/golden/hashes.txt. `./dev check --full` runs them on AArch64, too.
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/elementary.hpp>
+#include <rastrum/digest.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/family.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/terrain.hpp>
+#include <rastrum/terrain_light.hpp>
+#include <rastrum/transform.hpp>
+
+#include "tests/support/golden.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/shaded_scenes.hpp"
+
+namespace rastrum::test::hash_test {
+namespace {
+
+/// One digest of many.
+class Sum {
+ public:
+  void add(const Digest& d) { bytes_.insert(bytes_.end(), d.bytes.begin(), d.bytes.end()); }
+  template <class T>
+  void add(const std::vector<T>& values) {
+    add(digest(ImageView<const T>{values.data(), static_cast<int>(values.size()), 1}));
+  }
+  [[nodiscard]] Digest total() const {
+    return digest(ImageView<const std::uint8_t>{bytes_.data(), static_cast<int>(bytes_.size()), 1});
+  }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
+};
+
+struct Picture {
+  Image<Rgba8> color8;
+  Image<Vec4> color;
+  Image<float> depth;
+  Image<std::int64_t> ids;
+
+  explicit Picture(const FrameOptions& f)
+      : color8(f.width, f.height),
+        color(f.width, f.height),
+        depth(f.width, f.height),
+        ids(f.width, f.height) {}
+  [[nodiscard]] Targets targets() {
+    Targets t;
+    t.color8 = color8;
+    t.color = color;
+    t.depth = depth;
+    t.ids = ids;
+    return t;
+  }
+  void add_to(Sum& sum) const {
+    sum.add(digest(color8));
+    sum.add(digest(color));
+    sum.add(digest(depth));
+    sum.add(digest(ids));
+  }
+};
+
+/// Where the instruction sets' pictures are one, so is this.
+template <class Draw>
+void expect_golden(const std::string& name, const Draw& draw) {
+  for (const Isa isa : available_isas()) {
+    Sum sum;
+    draw(isa, sum);
+    ASSERT_TRUE(matches_golden(name, sum.total())) << rastrum::name(isa);
+  }
+}
+
+TEST(Hashes, Shapes) {
+  const std::pair<const char*, Mesh> shapes[] = {
+      {"teapot", shapes::teapot(6)},
+      {"sphere", shapes::sphere(24, 48)},
+      {"torus_knot", shapes::torus_knot()},
+      {"boxes", shapes::boxes(3)},
+      {"hairball", shapes::hairball(50, 16)},
+      {"gyroid", shapes::gyroid(24)},
+      {"soup", shapes::soup(500)},
+  };
+  for (const auto& [name, mesh] : shapes) {
+    Sum sum;
+    sum.add(mesh.positions);
+    sum.add(mesh.normals.values);
+    sum.add(mesh.indices);
+    EXPECT_TRUE(matches_golden(std::string("shapes/") + name, sum.total()));
+    const Scene scene = single(mesh);
+    expect_golden(std::string("pictures/") + name, [&](Isa isa, Sum& pictures) {
+      Renderer renderer({.threads = 2, .isa = isa});
+      const SceneBinding binding(scene);
+      for (const Shader shader : {Shader::id, Shader::depth, Shader::normal, Shader::phong}) {
+        FrameOptions f;
+        f.width = 160;
+        f.height = 120;
+        f.shader = shader;
+        Picture picture(f);
+        renderer.render(binding.view(), fit_camera(binding.view(), 0.8F, false), f,
+                        picture.targets());
+        picture.add_to(pictures);
+      }
+    });
+  }
+}
+
+std::vector<std::uint64_t> bits_of(const std::vector<double>& values) {
+  std::vector<std::uint64_t> bits;
+  for (const double v : values) bits.push_back(std::isnan(v) ? 0 : std::bit_cast<std::uint64_t>(v));
+  return bits;
+}
+
+TEST(Hashes, ElementaryFunctions) {
+  using namespace elementary;
+  const std::pair<const char*, double (*)(double)> functions[] = {
+      {"sin", sin},
+      {"cos", cos},
+      {"tan", tan},
+      {"asin", asin},
+      {"acos", acos},
+      {"atan", atan},
+      {"exp", exp},
+      {"log", log},
+      {"log2", log2},
+      {"log10", log10},
+      {"log1p", log1p},
+      {"cbrt", cbrt},
+      {"pow", [](double x) { return pow(std::abs(x), 2.4); }},
+      {"atan2", [](double x) { return atan2(x, 1 - x * x); }}};
+  for (const auto& [name, f] : functions) {
+    Random random(3);
+    std::vector<double> values;
+    for (int i = 0; i < 10000; ++i) values.push_back(f(random.real(-1, 1)));
+    for (int i = 0; i < 10000; ++i) {
+      // One a statement: compilers order arguments as they like.
+      const int exponent = random.integer(-60, 60);
+      values.push_back(f(std::ldexp(random.real(-1, 1), exponent)));
+    }
+    Sum sum;
+    sum.add(bits_of(values));
+    EXPECT_TRUE(matches_golden(std::string("elementary/") + name, sum.total()));
+  }
+}
+
+TEST(Hashes, CamerasAndRotations) {
+  Random r(11);
+  std::vector<double> values;
+  const auto add = [&](const Mat4d& m) {
+    for (const auto& row : m.m) values.insert(values.end(), std::begin(row), std::end(row));
+  };
+  const auto real = [&] { return static_cast<float>(r.real(-2, 2)); };
+  const auto vector = [&] {
+    const float x = real(), y = real();
+    return Vec3{x, y, real()};
+  };
+  for (int i = 0; i < 500; ++i) {
+    Camera camera;
+    camera.eye = vector() + Vec3{0, 0, 9};
+    camera.target = vector();
+    camera.fov_rad = static_cast<float>(r.real(0.01, 3));
+    add(world_to_clip(camera, 640, 480));
+    const double angle = r.real(-9, 9);
+    const Quaternion a = rotation_about(vector(), angle), b = rotation_about(vector(), 1);
+    add(rotation(slerp(a, b, r.real(0, 1))));
+  }
+  Sum sum;
+  sum.add(bits_of(values));
+  EXPECT_TRUE(matches_golden("cameras", sum.total()));
+}
+
+// Every shader, with materials, layers, samples, clipping.
+TEST(Hashes, ShadedScenes) {
+  constexpr int kGroup = 50;
+  for (int first = 0; first < 400; first += kGroup)
+    expect_golden("shaded/" + std::to_string(first), [&](Isa isa, Sum& sum) {
+      Renderer renderer({.threads = 2, .isa = isa});
+      for (int seed = first; seed < first + kGroup; ++seed) {
+        const ShadedScene s = generate_shaded(static_cast<std::uint64_t>(seed));
+        Picture picture(s.frame);
+        const SceneBinding binding(s.scene);
+        renderer.render(binding.view(), s.camera, s.frame, picture.targets());
+        picture.add_to(sum);
+      }
+    });
+}
+
+TEST(Hashes, Transparency) {
+  const std::pair<const char*, Transparency> methods[] = {
+      {"filter", Transparency::filter}, {"unsorted", Transparency::unsorted},
+      {"wboit", Transparency::wboit},   {"mboit4", Transparency::mboit4},
+      {"mboit6", Transparency::mboit6}, {"mlab4", Transparency::mlab4}};
+  for (const auto& [name, method] : methods)
+    expect_golden(std::string("transparency/") + name, [&](Isa isa, Sum& sum) {
+      Renderer renderer = family::make_renderer({.threads = 2, .isa = isa}, {});
+      for (std::uint64_t seed = 0; seed < 25; ++seed) {
+        ShadedScene s = generate_shaded(seed);
+        s.frame.transparency.method = method;
+        s.frame.opacity = 0.4F;
+        s.frame.samples = 1;
+        Picture picture(s.frame);
+        const SceneBinding binding(s.scene);
+        renderer.render(binding.view(), s.camera, s.frame, picture.targets());
+        picture.add_to(sum);
+      }
+    });
+}
+
+struct Tint {
+  Vec3 color;
+  Tint operator+(const Tint& o) const { return {color + o.color}; }
+  Tint operator*(float s) const { return {color * s}; }
+};
+
+TEST(Hashes, PointsLinesAndTriangles) {
+  Random r(17);
+  std::vector<Vec4> clip;
+  std::vector<Vec3> colors;
+  for (int i = 0; i < 240; ++i) {
+    const auto real = [&](double a, double b) { return static_cast<float>(r.real(a, b)); };
+    const float w = real(0.1, 3), x = real(-1.3, 1.3), y = real(-1.3, 1.3);
+    clip.push_back({x * w, y * w, real(-0.1, 1.1) * w, w});
+    const float red = real(0, 1), green = real(0, 1);
+    colors.push_back({red, green, real(0, 1)});
+  }
+  const raster::Program program(
+      [&](std::uint32_t i) {
+        return raster::VertexOutput<Tint>{clip[i], {colors[i]}};
+      },
+      [](const Tint& t, const raster::Fragment& f) {
+        const float alpha = f.draw == 1 ? 0.5F : 1.0F;
+        return Vec4{t.color.x * alpha, t.color.y * alpha, t.color.z * alpha, alpha};
+      });
+  for (const raster::Topology topology :
+       {raster::Topology::points, raster::Topology::lines, raster::Topology::triangles}) {
+    const char* const names[] = {"points", "lines", "triangles"};
+    expect_golden(
+        std::string("program/") + names[static_cast<int>(topology) - 1], [&](Isa isa, Sum& sum) {
+          Renderer renderer({.threads = 2, .isa = isa});
+          for (const int samples : {1, 4}) {
+            raster::ProgramDraw draws[2] = {program.draw(clip.size()), program.draw(clip.size())};
+            for (raster::ProgramDraw& d : draws) {
+              d.topology = topology;
+              d.primitive_count = clip.size() / static_cast<std::size_t>(topology);
+              d.line_width = 3;
+              d.point_size = 5.5F;
+              d.depth_bias = &d == draws ? 0 : 0.05F;
+            }
+            draws[1].flags = raster::kTranslucent;
+            FrameOptions f;
+            f.width = 150;
+            f.height = 110;
+            f.samples = samples;
+            f.background = {0.1F, 0.2F, 0.3F, 0.6F};
+            Picture picture(f);
+            renderer.draw(draws, f, picture.targets());
+            picture.add_to(sum);
+          }
+        });
+  }
+}
+
+// --- Terrain ------------------------------------------------------------------------------------
+
+terrain::HeightMap map() {
+  Random r(23);
+  terrain::HeightMap map{Image<float>(128, 96), Image<Rgba8>(64, 48)};
+  const terrain::HeightFunction noise = terrain::named_function("noise");
+  for (int y = 0; y < 96; ++y)
+    for (int x = 0; x < 128; ++x) {
+      const double u = x * 4, v = y * 4;
+      noise(&u, &v, 1, &map.heights(x, y));
+      if (r.chance(0.002)) map.heights(x, y) = NAN;
+    }
+  for (Rgba8& c : map.colors.pixels()) {
+    const std::uint64_t bits = r.bits();
+    c = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8),
+         static_cast<std::uint8_t>(bits >> 16), 255};
+  }
+  return map;
+}
+
+void add(Sum& sum, const terrain::Terrain& terrain, terrain::TerrainOptions o, Isa isa,
+         std::initializer_list<double> angles) {
+  o.width = 120;
+  o.height = 80;
+  o.distance = 300;
+  terrain::TerrainRenderer renderer({.threads = 2, .isa = isa});
+  Image<Rgba8> color(o.width, o.height);
+  Image<float> depth(o.width, o.height);
+  terrain::TerrainCamera camera;
+  camera.x = 60.25;
+  camera.y = 70.75;
+  camera.altitude = 130;
+  camera.horizon_px = 30;
+  for (const double angle : angles) {
+    camera.angle_rad = angle;
+    camera.roll_rad = o.classic ? 0 : angle / 8 - 0.2;
+    renderer.render(terrain, camera, o, {.color8 = color, .depth = depth});
+    sum.add(digest(color));
+    sum.add(digest(depth));
+  }
+}
+
+TEST(Hashes, TerrainViews) {
+  using namespace terrain;
+  std::vector<std::pair<std::string, TerrainOptions>> views(6);
+  views[0] = {"plain", {}};
+  views[1] = {"classic", {.classic = true}};
+  views[2] = {"bilinear", {.fov_rad = 1.1, .filter = MapFilter::bilinear, .fog = {0.004, 20, {}}}};
+  views[2].second.step = 0;
+  views[3] = {"mip", {.dz = 0.05, .filter = MapFilter::mip, .tiling = Tiling::mirror}};
+  views[4] = {"cylinder", {.fov_rad = 5, .projection = Projection::cylindrical}};
+  views[5] = {"clamped", {.tiling = Tiling::clamp, .ground_clearance = 12}};
+  const Terrain terrain(map());
+  for (const auto& [name, options] : views)
+    expect_golden("terrain/" + name, [&](Isa isa, Sum& sum) {
+      add(sum, terrain, options, isa, {0.3, 2.5, 4.0});
+    });
+}
+
+TEST(Hashes, TerrainLight) {
+  using namespace terrain;
+  const std::pair<const char*, Shadows> shadows[] = {{"none", Shadows::none},
+                                                     {"accumulated", Shadows::accumulated},
+                                                     {"sharp", Shadows::sharp},
+                                                     {"soft", Shadows::soft}};
+  for (const auto& [name, kind] : shadows) {
+    Light light;
+    light.sun = {250, 25};
+    light.shadows = kind;
+    light.hill_shading = true;
+    light.sun_radius_deg = 2;
+    light.smooth = true;
+    light.march.steps = 16;  // of functions for each sample that is seen
+    expect_golden(std::string("light/") + name, [&](Isa isa, Sum& sum) {
+      const HeightMap heights = map();
+      sum.add(digest(lit_colors(heights, light, {.threads = 2, .isa = isa})));
+      for (const FunctionInfo& f : named_functions())
+        add(sum, function_terrain(named_function(f.name), f.low, f.high, light), {}, isa, {0.3});
+    });
+  }
+}
+
+TEST(Hashes, Formulas) {
+  using namespace terrain;
+  Sum sum;
+  for (const char* formula :
+       {"40*sin(x/30)*cos(y/50)+x^2/1000", "exp(-((x-500)/90)^2)*120+tan(y/900)",
+        "x^1.7/300+ln(1+y^2)", "atan2(y-300,x-300)*20+sqrt(x^2+y^2)/9",
+        "log10(9+x^2)+log2(2+y^2)+tanh(x/99)+cosh(y/400)",
+        "x>300 && y<500 ? asin(sin(x)) : acos(cos(y))+atan(x)+sinh(x/999)"}) {
+    HeightFunction f;
+    try {
+      f = expression_function(formula);
+    } catch (const Error& e) {
+      ASSERT_EQ(e.code(), Errc::unsupported) << e.what();
+      GTEST_SKIP() << e.what();
+    }
+    std::vector<float> values;
+    for (int i = 0; i < 5000; ++i) {
+      const double x = i * 0.37, y = 1700 - i * 0.21;
+      f(&x, &y, 1, &values.emplace_back());
+    }
+    sum.add(values);
+  }
+  EXPECT_TRUE(matches_golden("formulas", sum.total()));
+}
+
+}  // namespace
+}  // namespace rastrum::test::hash_test

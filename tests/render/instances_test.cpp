@@ -1,0 +1,277 @@
+// Instances with a look of their own: opacity, colour, material, visibility and winding give the
+// picture that the mesh or the frame would have with them, bit for bit, in every shader, with
+// layers and on the reference; and many instances of a small mesh keep no vertices.
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/error.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/transform.hpp>
+
+#include "tests/support/array_layouts.hpp"
+
+namespace rastrum::test::instances_test {
+namespace {
+
+constexpr int kW = 120, kH = 90;
+
+struct Picture {
+  Image<Vec4> color{kW, kH};
+  Image<float> depth{kW, kH};
+  Image<std::int64_t> ids{kW, kH};
+  FrameStats stats;
+
+  [[nodiscard]] bool is(const Picture& o) const {
+    return std::ranges::equal(color.pixels(), o.color.pixels()) &&
+           std::ranges::equal(depth.pixels(), o.depth.pixels()) &&
+           std::ranges::equal(ids.pixels(), o.ids.pixels());
+  }
+};
+
+/// Two sheets, one before the other.
+struct TwoSheets {
+  Sheet sheet{9};
+  std::vector<Material> materials;
+  InstanceView instances[2];
+
+  explicit TwoSheets(bool with_materials) {
+    if (with_materials) {
+      materials.resize(3);
+      for (Material& m : materials) m.double_sided = true;
+      materials[1].base_color = {0.2F, 0.9F, 0.3F, 0.7F};
+      materials[1].alpha_mode = AlphaMode::blend;
+      materials[2].base_color = {0.9F, 0.3F, 0.3F, 1};
+    }
+    MeshView mesh = sheet.view();
+    mesh.colors = {};
+    if (!with_materials) mesh.face_materials = {};
+    instances[0] = {.geometry = mesh};
+    instances[1] = {.geometry = mesh};
+    instances[1].object_to_world.m[0][3] = 0.3;
+    instances[1].object_to_world.m[2][3] = 0.5;
+  }
+  [[nodiscard]] MeshView& mesh(int i) { return std::get<MeshView>(instances[i].geometry); }
+  [[nodiscard]] Picture draw(Renderer& renderer, FrameOptions look) const {
+    look.width = kW;
+    look.height = kH;
+    Camera camera;
+    camera.eye = {0.2, -0.5, 2.6};
+    Picture p;
+    p.stats = renderer.render({.instances = instances, .materials = materials}, camera, look,
+                              {.color = p.color, .depth = p.depth, .ids = p.ids});
+    return p;
+  }
+};
+
+/// Calls f(renderer, look, with materials) for shaders, layers, samples, threads and the reference.
+template <class F>
+void for_each_frame(const F& f) {
+  for (const RendererOptions& by :
+       {RendererOptions{.threads = 2}, RendererOptions{.device = Device::serial}}) {
+    Renderer renderer(by);
+    for (const FrameOptions& look :
+         {FrameOptions{.shader = Shader::phong}, FrameOptions{.shader = Shader::flat},
+          FrameOptions{.shader = Shader::wireframe}, FrameOptions{.shader = Shader::material},
+          FrameOptions{.shader = Shader::lambert, .opacity = 0.5F},
+          FrameOptions{.shader = Shader::normal, .samples = 4}})
+      for (const bool materials : {false, true}) {
+        SCOPED_TRACE(std::string(name(look.shader)) + (materials ? ", materials" : "") +
+                     (by.device == Device::serial ? ", serial" : ""));
+        f(renderer, look, materials);
+      }
+  }
+}
+
+TEST(Instances, OpacityOfAllIsTheFrames) {
+  for_each_frame([](Renderer& renderer, FrameOptions look, bool materials) {
+    TwoSheets scene(materials);
+    for (InstanceView& instance : scene.instances) instance.opacity = 0.5F;
+    const Picture own = scene.draw(renderer, look);
+    for (InstanceView& instance : scene.instances) instance.opacity = 1;
+    const Picture none = scene.draw(renderer, look);
+    look.opacity *= 0.5F;
+    EXPECT_TRUE(own.is(scene.draw(renderer, look)));
+    EXPECT_FALSE(own.is(none));
+  });
+}
+
+TEST(Instances, OpacityOfOneIsItsMaterials) {
+  for_each_frame([](Renderer& renderer, const FrameOptions& look, bool materials) {
+    if (!materials) return;
+    TwoSheets scene(true), by_material(true);
+    for (TwoSheets* s : {&scene, &by_material}) {
+      s->instances[1].material = 2;
+      s->mesh(0).face_materials = {};
+    }
+    scene.instances[1].opacity = 0.25F;
+    by_material.materials[2].opacity = 0.25F;
+    EXPECT_TRUE(scene.draw(renderer, look).is(by_material.draw(renderer, look)));
+  });
+}
+
+TEST(Instances, ColourStandsForTheMeshs) {
+  const Vec4 color{0.9F, 0.1F, 0.4F, 0.5F};
+  for_each_frame([&](Renderer& renderer, const FrameOptions& look, bool materials) {
+    TwoSheets own(materials), of_mesh(materials);
+    own.instances[1].color = color;
+    const std::vector<Vec4> all(of_mesh.sheet.positions.size(), color);
+    of_mesh.mesh(1).colors.values = all;
+    EXPECT_TRUE(own.draw(renderer, look).is(of_mesh.draw(renderer, look)));
+    of_mesh.mesh(1).colors = {.values = std::span(&color, 1), .per = Per::mesh};
+    EXPECT_TRUE(own.draw(renderer, look).is(of_mesh.draw(renderer, look)));
+  });
+}
+
+TEST(Instances, MaterialStandsForTheMeshs) {
+  for_each_frame([](Renderer& renderer, const FrameOptions& look, bool materials) {
+    if (!materials) return;
+    TwoSheets own(true), of_mesh(true);
+    own.instances[0].material = 1;
+    of_mesh.mesh(0).face_materials = {};
+    of_mesh.mesh(0).material = 1;
+    EXPECT_TRUE(own.draw(renderer, look).is(of_mesh.draw(renderer, look)));
+  });
+}
+
+TEST(Instances, WhatIsNotVisibleKeepsItsNumbers) {
+  for_each_frame([](Renderer& renderer, const FrameOptions& look, bool materials) {
+    TwoSheets scene(materials), far_away(materials);
+    // The other is small enough to be set up at once; both are drawn, then one.
+    for (const int hidden : {0, 1}) {
+      scene.instances[hidden].visible = false;
+      far_away.instances[hidden].object_to_world.m[2][3] = 50;  // behind the eye
+      const Picture a = scene.draw(renderer, look), b = far_away.draw(renderer, look);
+      EXPECT_TRUE(a.is(b));
+      EXPECT_EQ(a.stats.triangles.input, b.stats.triangles.input);
+      EXPECT_EQ(a.stats.triangles.culled, b.stats.triangles.culled);
+      scene.instances[hidden].visible = true;
+      far_away.instances[hidden].object_to_world.m[2][3] = 0.5 * hidden;
+    }
+  });
+}
+
+TEST(Instances, WindingTurnsWhatIsCulled) {
+  for_each_frame([](Renderer& renderer, FrameOptions look, bool materials) {
+    TwoSheets scene(materials);
+    look.cull = Cull::front;
+    const Picture front = scene.draw(renderer, look);
+    look.cull = Cull::back;
+    const Picture back = scene.draw(renderer, look);
+    for (InstanceView& i : scene.instances) i.winding = Winding::clockwise;
+    EXPECT_TRUE(front.is(scene.draw(renderer, look)));
+    for (InstanceView& i : scene.instances) i.winding = Winding::either;
+    const Picture either = scene.draw(renderer, look);
+    EXPECT_TRUE(either.is(scene.draw(
+        renderer, {.shader = look.shader, .opacity = look.opacity, .samples = look.samples})));
+    EXPECT_FALSE(front.is(back));
+  });
+}
+
+TEST(Instances, ALookOutOfRangeIsRefused) {
+  const auto message = [](const auto& change) {
+    TwoSheets scene(true);
+    change(scene.instances[1]);
+    Renderer renderer({.threads = 1});
+    try {
+      (void)scene.draw(renderer, {});
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::invalid_argument);
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  const auto expect = [&](const char* part, const auto& change) {
+    EXPECT_NE(message(change).find(part), std::string::npos) << message(change);
+  };
+  expect("instance 1: its opacity must lie in [0, 1]", [](InstanceView& i) { i.opacity = 1.5F; });
+  expect("instance 1: its opacity", [](InstanceView& i) { i.opacity = 0.0F / 0.0F; });
+  expect("instance 1: its colour must be four finite", [](InstanceView& i) {
+    i.color = Vec4{0, 1, 1 / 0.0F, 1};
+  });
+  expect("instance 1: material 3 is out of range, there are 3",
+         [](InstanceView& i) { i.material = 3; });
+  expect("instance 1: its winding is 9",
+         [](InstanceView& i) { i.winding = static_cast<Winding>(9); });
+}
+
+/// A cube in n³ places.
+struct Cubes {
+  std::vector<Vec3> corners;
+  std::vector<std::uint32_t> indices{0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                     2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+  std::vector<InstanceView> instances;
+
+  explicit Cubes(int n) {
+    for (int c = 0; c < 8; ++c)
+      corners.push_back(
+          {static_cast<float>(c % 2), static_cast<float>(c / 2 % 2), static_cast<float>(c / 4)});
+    MeshView cube;
+    cube.positions = corners;
+    cube.indices = indices;
+    for (int i = 0; i < n * n * n; ++i) {
+      InstanceView& at = instances.emplace_back(InstanceView{.geometry = cube});
+      const double scale = 0.5 / n;
+      const int place[3] = {i % n, i / n % n, i / n / n};
+      for (int k = 0; k < 3; ++k) {
+        at.object_to_world.m[k][k] = scale;
+        at.object_to_world.m[k][3] = 2.0 * place[k] / n - 1;
+      }
+    }
+  }
+};
+
+TEST(Instances, ManyOfASmallMeshKeepNoVertices) {
+  const Cubes cubes(16);
+  Renderer renderer({.threads = 2}), limited({.memory_limit = 4U << 20, .threads = 2}),
+      serial({.device = Device::serial});
+  Camera camera;
+  camera.eye = {1.3, 1.1, 2.2};
+  const auto draw = [&](Renderer& by, std::span<const InstanceView> instances, int samples) {
+    Picture p;
+    p.stats =
+        by.render({.instances = instances}, camera, {.width = kW, .height = kH, .samples = samples},
+                  {.color = p.color, .depth = p.depth, .ids = p.ids});
+    return p;
+  };
+  // The same triangles as one mesh, whose positions are the same numbers: all are powers of two.
+  std::vector<Vec3> positions;
+  std::vector<std::uint32_t> indices;
+  for (const InstanceView& at : cubes.instances) {
+    for (const std::uint32_t i : cubes.indices)
+      indices.push_back(static_cast<std::uint32_t>(positions.size()) + i);
+    for (const Vec3& c : cubes.corners) {
+      const auto& m = at.object_to_world.m;
+      positions.push_back(
+          Vec3(Vec3d{m[0][0] * c.x + m[0][3], m[1][1] * c.y + m[1][3], m[2][2] * c.z + m[2][3]}));
+    }
+  }
+  MeshView all;
+  all.positions = positions;
+  all.indices = indices;
+  const InstanceView one{all};
+  for (const int samples : {1, 4}) {
+    const Picture reference = draw(serial, cubes.instances, samples);
+    ASSERT_GT(reference.stats.pixels_covered, 2500U);
+    EXPECT_TRUE(reference.is(draw(renderer, cubes.instances, samples)));
+    EXPECT_TRUE(reference.is(draw(limited, cubes.instances, samples)));
+    // Another matrix rounds otherwise, so that a vertex may snap to the place beside.
+    const Picture whole = draw(serial, {&one, 1}, samples);
+    std::size_t other = 0;
+    for (int y = 0; y < kH; ++y)
+      for (int x = 0; x < kW; ++x) other += reference.ids(x, y) != whole.ids(x, y);
+    EXPECT_LT(other, reference.stats.pixels_covered / 50);
+  }
+  Renderer fresh({.threads = 2}), fresh_too({.threads = 2});
+  const std::uint64_t many = draw(fresh, cubes.instances, 1).stats.peak_bytes,
+                      whole = draw(fresh_too, {&one, 1}, 1).stats.peak_bytes;
+  const std::uint64_t vertices = positions.size() * 16;
+  EXPECT_LT(many + vertices / 2, whole);
+}
+
+}  // namespace
+}  // namespace rastrum::test::instances_test

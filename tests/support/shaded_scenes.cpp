@@ -1,0 +1,155 @@
+#include "tests/support/shaded_scenes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <rastrum/transform.hpp>
+
+#include "tests/support/layer_scenes.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test {
+namespace shaded_scenes {
+namespace {
+
+float real(Random& r, double low, double high) {
+  return static_cast<float>(r.real(low, high));
+}
+Vec3 vector(Random& r, double size) {
+  const float x = real(r, -size, size), y = real(r, -size, size);
+  return {x, y, real(r, -size, size)};
+}
+Vec4 color(Random& r, double least_alpha) {
+  const float red = real(r, 0, 1), green = real(r, 0, 1), blue = real(r, 0, 1);
+  return {red, green, blue, r.chance(0.5) ? 1.0F : real(r, least_alpha, 1)};
+}
+float one_of(Random& r, std::initializer_list<float> values) {
+  return values.begin()[r.integer(0, static_cast<int>(values.size()) - 1)];
+}
+
+/// A value for each position, or with numbers of its own for each corner.
+template <class T, class Make>
+void give(Random& r, const Mesh& mesh, Attribute<T>& attribute, const Make& make) {
+  const bool own = r.chance(0.3);
+  const std::size_t corners = 3 * mesh.triangle_count();
+  attribute.values.resize(own ? 7 : mesh.positions.size());
+  for (T& v : attribute.values) v = make();
+  attribute.indices.clear();
+  for (std::size_t i = 0; own && i < corners; ++i)
+    attribute.indices.push_back(static_cast<std::uint32_t>(r.integer(0, 6)));
+}
+
+Texture texture(Random& r) {
+  Texture t;
+  const int height = r.integer(1, 20), width = r.integer(1, 20);
+  t.image = Image<Rgba8>(width, height);
+  for (Rgba8& p : t.image.pixels()) {
+    const std::uint64_t bits = r.bits();
+    p = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8),
+         static_cast<std::uint8_t>(bits >> 16), static_cast<std::uint8_t>(bits >> 24)};
+  }
+  t.wrap_u = static_cast<Wrap>(r.integer(0, 2));
+  t.wrap_v = static_cast<Wrap>(r.integer(0, 2));
+  t.mag = static_cast<TextureFilter>(r.integer(0, 1));
+  t.min = static_cast<TextureFilter>(r.integer(0, 1));
+  t.mipmaps = r.chance(0.7);
+  return t;
+}
+
+Material material(Random& r, int textures) {
+  const auto some = [&] { return r.chance(0.4) ? r.integer(0, textures) - 1 : kNoTexture; };
+  Material m;
+  m.base_color = color(r, 0);
+  m.base_color_texture = some();
+  m.metallic = one_of(r, {0, 1, 0.3F});
+  m.roughness = one_of(r, {0, 1, 0.5F, 0.03F});
+  m.metallic_roughness_texture = some();
+  m.normal_texture = some();
+  m.normal_scale = one_of(r, {1, 0.5F, -2});
+  m.occlusion_texture = some();
+  m.occlusion_strength = real(r, 0, 1);
+  if (r.chance(0.3)) m.emissive = {real(r, 0, 2), 0, real(r, 0, 0.5)};
+  m.emissive_texture = some();
+  m.alpha_texture = some();
+  m.alpha_mode = static_cast<AlphaMode>(r.integer(0, 2));
+  m.alpha_cutoff = real(r, 0, 1);
+  m.double_sided = r.chance(0.5);
+  m.unlit = r.chance(0.2);
+  m.opacity = r.chance(0.7) ? 1.0F : real(r, 0, 1);
+  return m;
+}
+
+/// Normals of all sizes, 0 among them.
+Vec3 normal(Random& r) {
+  const float size = one_of(r, {1, 1, 1, 1e-18F, 1e18F, 3e38F, 1e-38F, 0});
+  return vector(r, 1) * size;
+}
+
+void dress(Random& r, Scene& scene) {
+  const auto count = r.chance(0.6) ? r.integer(1, 4) : 0;
+  for (int i = 0; count > 0 && i < 3; ++i) scene.textures.push_back(texture(r));
+  scene.materials.clear();
+  for (int i = 0; i < count; ++i) scene.materials.push_back(material(r, 3));
+  for (Mesh& mesh : scene.meshes) {
+    mesh.face_materials.clear();
+    mesh.material = 0;
+    if (count > 0 && r.chance(0.5))
+      for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+        mesh.face_materials.push_back(static_cast<std::uint32_t>(r.integer(0, count - 1)));
+    if (r.chance(0.6)) give(r, mesh, mesh.normals, [&] { return normal(r); });
+    if (r.chance(0.5)) give(r, mesh, mesh.colors, [&] { return color(r, 0); });
+    const double reach = static_cast<double>(one_of(r, {1, 5, 300}));
+    if (r.chance(0.7))
+      give(r, mesh, mesh.texcoords, [&] {
+        const float u = real(r, -reach, reach);
+        return Vec2{u, real(r, -reach, reach)};
+      });
+  }
+  // Turned and scaled about the middle of the scene, by little, so that what was seen is seen.
+  if (!r.chance(0.3)) return;
+  const Vec3 axis = vector(r, 1);
+  const Mat4d turn = rotation(rotation_about(axis, r.real(-0.1, 0.1)));
+  const float squeeze = one_of(r, {1, 0.9F, -1});
+  for (Instance& i : scene.instances)
+    i.object_to_world = i.object_to_world * turn * scaling({squeeze, 1, 1.1F});
+}
+
+FrameOptions frame(Random& r) {
+  FrameOptions f;
+  f.width = r.integer(8, 64);
+  f.height = r.integer(8, 64);
+  f.shader = static_cast<Shader>(r.integer(1, 8));
+  if (r.chance(0.4)) f.shader = Shader::material;
+  f.cull = static_cast<Cull>(r.chance(0.7) ? 0 : r.integer(1, 2));
+  f.background = color(r, 0);
+  f.opacity = r.chance(0.6) ? 1.0F : real(r, 0, 1);
+  f.samples = r.chance(0.7) ? 1 : 1 << r.integer(2, 4);
+  return f;
+}
+
+}  // namespace
+}  // namespace shaded_scenes
+
+ShadedScene generate_shaded(std::uint64_t seed) {
+  using namespace shaded_scenes;
+  Random r(seed ^ 0x5EEDC0108);
+  ShadedScene s;
+  s.frame = frame(r);
+  if (r.chance(0.15)) {
+    LayerScene layers = generate_layers(seed, s.frame.width, s.frame.height, 20000);
+    s.kind = layers.kind;
+    s.scene = single(std::move(layers.mesh));
+    s.camera = layers.camera;
+  } else {
+    GeneratedScene g = generate(seed, s.frame.width, s.frame.height);
+    s.kind = g.kind;
+    s.scene = std::move(g.scene);
+    s.camera = g.camera;
+  }
+  dress(r, s.scene);
+  return s;
+}
+
+}  // namespace rastrum::test

@@ -1,0 +1,54 @@
+// The oracle of spheres, cylinders, cones, tubes and discs: a ray through the centre of a pixel, in
+// long double, against each primitive by itself. It shares no code with the library: rays are of
+// points and directions (no homogeneous matrix), and what is inside is asked of places between the
+// roots, not of intervals of depth. Plain on purpose.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace rastrum::test {
+
+using Real = long double;
+
+struct Point3 {
+  Real x = 0, y = 0, z = 0;
+};
+
+enum class SurfaceKind : std::uint8_t { sphere, closed_cone, open_cone, tube, disc, triangle };
+
+struct SurfacePrimitive {
+  SurfaceKind kind = SurfaceKind::sphere;
+  Point3 p0, p1;  ///< object space; of a disc p1 is its normal
+  Real r0 = 0, r1 = 0;
+  Point3 p2;  ///< of a triangle
+  /// World = columns · object + origin.
+  Point3 columns[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  Point3 origin;
+  std::int64_t id = 0;
+  bool culls_front = false, culls_back = false;
+};
+
+/// The camera looks from `eye` along −z of its axes.
+struct OracleCamera {
+  Point3 eye, right, up, back;  ///< orthonormal
+  bool orthographic = false;
+  Real px_scale = 1;  ///< the view's extent at distance 1 (orthographic: anywhere) of a pixel
+  Real near_plane = 0, far_plane = 0;  ///< far 0: infinite
+  int width = 0, height = 0;
+};
+
+/// A surface that a ray passes at or beyond the near plane.
+struct SurfaceHit {
+  Real depth;  ///< reversed, not cut to [0, 1]
+  std::int64_t id;
+  bool front;     ///< entered there
+  Point3 normal;  ///< world, outwards, not of unit length; not of triangles
+};
+
+/// Of the ray through (x_px, y_px), nearest first.
+[[nodiscard]] std::vector<SurfaceHit> surfaces_at(const OracleCamera& camera,
+                                                  const std::vector<SurfacePrimitive>& scene,
+                                                  Real x_px, Real y_px);
+
+}  // namespace rastrum::test

@@ -1,0 +1,302 @@
+#include "tests/support/surface_scenes.hpp"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "tests/support/random.hpp"
+
+namespace rastrum::test {
+namespace surface_scenes {
+
+enum Kind {
+  kMixed,       ///< beside and through each other
+  kNear,        ///< the near plane cuts them, or the eye is inside
+  kBehind,      ///< also behind the eye
+  kTiny,        ///< about a pixel
+  kHuge,        ///< larger than the picture
+  kDegenerate,  ///< radii of 0, no length, NaN, infinity, negative radii
+  kFar,         ///< far from the origin
+  kAffine,      ///< under any affine matrix
+  kOrthographic,
+  kFinite,  ///< a far plane
+  kAlong,   ///< seen along their axes
+  kKinds
+};
+constexpr const char* kNames[] = {"mixed", "near",   "behind",       "tiny",   "huge", "degenerate",
+                                  "far",   "affine", "orthographic", "finite", "along"};
+
+Point3 widen(Vec3 v) {
+  return {v.x, v.y, v.z};
+}
+
+class Maker {
+ public:
+  Maker(std::uint64_t seed, int width, int height)
+      : kind_(static_cast<Kind>(seed % kKinds)), random_(seed) {
+    s_.kind = kNames[kind_];
+    s_.width = width;
+    s_.height = height;
+  }
+
+  SurfaceScene make() {
+    make_camera();
+    const int n = random_.integer(2, 5);
+    for (int i = 0; i < n; ++i) add_instance();
+    return std::move(s_);
+  }
+
+ private:
+  double real(double a, double b) { return random_.real(a, b); }
+
+  void make_camera() {
+    Camera& c = s_.camera;
+    // On the axes of the world, so that the oracle knows them exactly.
+    origin_ = kind_ == kFar ? Vec3{1048576, -524288, 2097152} : Vec3{0, 0, 0};
+    c.eye = origin_;
+    c.target = origin_ + Vec3{0, 0, -1};
+    c.near_plane = 0.5F;
+    c.orthographic = kind_ == kOrthographic || (kind_ == kAlong && random_.chance(0.5));
+    if (c.orthographic) c.orthographic_height = 8;
+    if (c.orthographic || kind_ == kFinite) c.far_plane = 24;
+    OracleCamera& o = s_.eye;
+    o.eye = widen(origin_);
+    o.right = {1, 0, 0};
+    o.up = {0, 1, 0};
+    o.back = {0, 0, 1};
+    o.orthographic = c.orthographic;
+    const int side = std::min(s_.width, s_.height);
+    o.px_scale =
+        c.orthographic ? Real(8) / side : 2 * std::tan(static_cast<Real>(c.fov_rad) / 2) / side;
+    o.near_plane = static_cast<Real>(c.near_plane);
+    o.far_plane = std::isinf(c.far_plane) ? 0 : static_cast<Real>(c.far_plane);
+    o.width = s_.width;
+    o.height = s_.height;
+  }
+
+  /// A place where something may be seen, object space.
+  Vec3 place() {
+    double z = real(-14, -2);
+    if (kind_ == kNear) z = real(-2.5, 0.3);
+    if (kind_ == kBehind) z = real(-8, 8);
+    if (kind_ == kFinite) z = real(-30, -2);
+    const double across = s_.camera.orthographic ? 4 : std::max(0.8, -0.55 * z);
+    // Eighths, so that nothing is rounded far from the origin.
+    const auto eighths = [](double v) { return static_cast<float>(std::round(v * 64) / 64); };
+    return origin_ +
+           Vec3{eighths(real(-across, across)), eighths(real(-across, across)), eighths(z)};
+  }
+  float radius() {
+    if (kind_ == kTiny) return static_cast<float>(real(0.01, 0.2));
+    if (kind_ == kHuge) return static_cast<float>(std::exp(real(1, 7)));
+    return static_cast<float>(real(0.2, 2.5));
+  }
+  Vec3 other_end(Vec3 p, double size) {
+    if (kind_ == kAlong) return p + Vec3{0, 0, static_cast<float>(-std::round(size * 64) / 64)};
+    const auto step = [&] { return static_cast<float>(std::round(real(-size, size) * 64) / 64); };
+    const float x = step(), y = step(), z = step();
+    return p + Vec3{x, y, z};
+  }
+  float odd_number() {
+    constexpr float kInf = std::numeric_limits<float>::infinity();
+    const float numbers[] = {std::numeric_limits<float>::quiet_NaN(), kInf, -kInf, -1};
+    return numbers[random_.integer(0, 3)];
+  }
+
+  SurfacePrimitive& add(SurfaceKind kind, Point3 p0, Point3 p1, Real r0, Real r1) {
+    SurfacePrimitive p;
+    p.kind = kind;
+    p.p0 = p0;
+    p.p1 = p1;
+    p.r0 = r0;
+    p.r1 = r1;
+    const auto column = [&](int i) {
+      const auto& m = matrix_.m;
+      return Point3{m[0][i], m[1][i], m[2][i]};
+    };
+    for (int i = 0; i < 3; ++i) p.columns[i] = column(i);
+    p.origin = column(3);
+    p.id = next_id_++;
+    s_.primitives.push_back(p);
+    return s_.primitives.back();
+  }
+  static bool is_fine(Vec3 p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+  }
+  /// Only for the renderer.
+  void skip(bool is_dropped) {
+    ++next_id_;
+    s_.dropped += is_dropped;
+  }
+
+  void add_instance() {
+    matrix_ = Mat4d::identity();
+    if (kind_ == kAffine) {
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) matrix_.m[i][j] = (i == j ? 1.0 : 0.0) + real(-0.6, 0.6);
+      matrix_.m[0][3] = real(-1, 1);
+      matrix_.m[2][3] = real(-4, 0);
+    }
+    InstanceView instance;
+    instance.object_to_world = matrix_;
+    // Far away float32 vertices tremble.
+    switch (random_.integer(0, kind_ == kFar ? 4 : 5)) {
+      case 0:
+        instance.geometry = spheres();
+        break;
+      case 1:
+        instance.geometry = cylinders(true);
+        break;
+      case 2:
+        instance.geometry = cylinders(false);
+        break;
+      case 3:
+        instance.geometry = tubes();
+        break;
+      case 4:
+        instance.geometry = discs();
+        break;
+      default:
+        instance.geometry = triangle();
+    }
+    s_.instances.push_back(instance);
+  }
+
+  SpheresView spheres() {
+    auto& centers = s_.positions.emplace_back();
+    auto& radii = s_.radii.emplace_back();
+    const int n = random_.integer(1, 3);
+    for (int i = 0; i < n; ++i) {
+      Vec3 p = place();
+      float r = radius();
+      if (kind_ == kDegenerate && random_.chance(0.5)) {
+        if (random_.chance(0.3))
+          r = 0;
+        else if (random_.chance(0.5))
+          r = odd_number();
+        else
+          p.y = std::numeric_limits<float>::quiet_NaN();
+      }
+      centers.push_back(p);
+      radii.push_back(r);
+      if (is_fine(p) && r > 0 && std::isfinite(r))
+        add(SurfaceKind::sphere, widen(p), {}, r, r);
+      else
+        skip(!(r == 0 && is_fine(p)));
+    }
+    return {centers, radii};
+  }
+
+  CylindersView cylinders(bool caps) {
+    auto& positions = s_.positions.emplace_back();
+    auto& radii = s_.radii.emplace_back();
+    auto& indices = s_.indices.emplace_back();
+    const int n = random_.integer(1, 2);
+    for (int i = 0; i < n; ++i) {
+      const Vec3 p = place();
+      Vec3 q = other_end(p, kind_ == kTiny ? 0.4 : 4);
+      float r0 = radius(), r1 = random_.chance(0.4) ? r0 : random_.chance(0.3) ? 0 : radius();
+      bool ok = true, dropped = false;
+      if (kind_ == kDegenerate && random_.chance(0.5)) {
+        if (random_.chance(0.4)) {
+          q = p;
+          ok = false;
+        } else {
+          r1 = odd_number();
+          ok = false;
+          dropped = true;
+        }
+      }
+      ok = ok && !(q.x == p.x && q.y == p.y && q.z == p.z);
+      // Backwards, through indices.
+      const auto at = static_cast<std::uint32_t>(positions.size());
+      indices.insert(indices.end(), {at + 1, at});
+      positions.insert(positions.end(), {q, p});
+      radii.insert(radii.end(), {r1, r0});
+      if (ok)
+        add(caps ? SurfaceKind::closed_cone : SurfaceKind::open_cone, widen(p), widen(q), r0, r1);
+      else
+        skip(dropped);
+    }
+    return {positions, indices, radii, 1, {}, caps};
+  }
+
+  TubesView tubes() {
+    auto& positions = s_.positions.emplace_back();
+    auto& radii = s_.radii.emplace_back();
+    auto& offsets = s_.indices.emplace_back();
+    offsets.push_back(0);
+    const int lines = random_.integer(1, 2);
+    for (int line = 0; line < lines; ++line) {
+      const int n = random_.integer(1, 3);
+      Vec3 last = place();
+      float last_radius = radius();
+      positions.push_back(last);
+      radii.push_back(last_radius);
+      for (int i = 1; i < n; ++i) {
+        const Vec3 p = kind_ == kDegenerate && random_.chance(0.3)
+                           ? last
+                           : other_end(last, kind_ == kTiny ? 0.4 : 3);
+        const float r = random_.chance(0.5) ? last_radius : radius();
+        add(SurfaceKind::tube, widen(last), widen(p), last_radius, r);
+        positions.push_back(p);
+        radii.push_back(r);
+        last = p;
+        last_radius = r;
+      }
+      offsets.push_back(static_cast<std::uint32_t>(positions.size()));
+    }
+    return {positions, offsets, radii};
+  }
+
+  DiscsView discs() {
+    auto& centers = s_.positions.emplace_back();
+    auto& normals = s_.positions.emplace_back();
+    auto& radii = s_.radii.emplace_back();
+    Vec3 n{static_cast<float>(real(-1, 1)), static_cast<float>(real(-1, 1)),
+           static_cast<float>(real(-1, 1))};
+    if (kind_ == kAlong) n = {0, 1, 0};  // edge-on in an orthographic view
+    const bool none = kind_ == kDegenerate && random_.chance(0.4);
+    if (none) n = {};
+    centers.push_back(place());
+    normals.push_back(n);
+    radii.push_back(radius());
+    if (none)
+      skip(false);
+    else
+      add(SurfaceKind::disc, widen(centers[0]), widen(n), radii[0], radii[0]);
+    return {centers, normals, radii};
+  }
+
+  MeshView triangle() {
+    auto& p = s_.positions.emplace_back();
+    // Neither steep nor thin: its corners are snapped.
+    p.push_back(place());
+    const double x = real(0.5, 4), y = real(-4, 4), turned = real(0.5, 1.5);
+    for (const auto& [u, v] : {std::pair{x, y}, std::pair{-y * turned, x * turned}})
+      p.push_back(p[0] + Vec3{static_cast<float>(u), static_cast<float>(v),
+                              static_cast<float>(real(-0.2, 0.2))});
+    SurfacePrimitive& t = add(SurfaceKind::triangle, widen(p[0]), widen(p[1]), 1, 1);
+    t.p2 = widen(p[2]);
+    MeshView mesh;
+    mesh.positions = p;
+    return mesh;
+  }
+
+  Kind kind_;
+  Random random_;
+  SurfaceScene s_;
+  Vec3 origin_;
+  Mat4d matrix_;
+  std::int64_t next_id_ = 0;
+};
+
+}  // namespace surface_scenes
+
+const int kSurfaceKinds = surface_scenes::kKinds;
+
+SurfaceScene generate_surfaces(std::uint64_t seed, int width, int height) {
+  return surface_scenes::Maker(seed, width, height).make();
+}
+
+}  // namespace rastrum::test

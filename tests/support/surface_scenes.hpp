@@ -1,0 +1,41 @@
+// Generated scenes of spheres, cylinders, cones, tubes, discs and triangles, for the library and
+// for the oracle of surfaces. Reproducible from a seed.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include <rastrum/scene.hpp>
+
+#include "tests/support/surface_oracle.hpp"
+
+namespace rastrum::test {
+
+struct SurfaceScene {
+  std::string kind;
+  std::vector<InstanceView> instances;
+  std::vector<Material> materials;  ///< empty, or one
+  Camera camera;
+  int width = 0, height = 0;
+  std::vector<SurfacePrimitive> primitives;
+  OracleCamera eye;
+  std::size_t dropped = 0;  ///< primitives that no renderer draws, and counts
+
+  [[nodiscard]] SceneView view() const { return {instances, materials, {}}; }
+
+  // What the views refer to.
+  std::deque<std::vector<Vec3>> positions;
+  std::deque<std::vector<float>> radii;
+  std::deque<std::vector<std::uint32_t>> indices;
+  std::deque<std::vector<Vec4>> colors;
+};
+
+/// How many kinds there are; `generate_surfaces` makes kind seed % kSurfaceKinds.
+extern const int kSurfaceKinds;
+
+/// At most 12 primitives.
+[[nodiscard]] SurfaceScene generate_surfaces(std::uint64_t seed, int width, int height);
+
+}  // namespace rastrum::test
