@@ -11,8 +11,8 @@ int main() {
   std::vector<rastrum::Vec3> helix;
   std::vector<float> thickness;
   std::vector<rastrum::Vec4> colors;
-  for (int i = 0; i <= 60; ++i) {
-    const float t = static_cast<float>(i) / 60;
+  for (int i = 0; i <= 200; ++i) {
+    const float t = static_cast<float>(i) / 200;
     const float angle = 18 * t;
     helix.push_back({1.6F * std::cos(angle), 3.2F * t, 1.6F * std::sin(angle)});
     thickness.push_back(0.05F + 0.12F * t);
@@ -40,7 +40,7 @@ int main() {
   pipe.radius = 0.45F;
   pipe.caps = false;
 
-  const std::vector<rastrum::Vec3> places{{-0.6F, 0.01F, 2.6F}, {0.8F, 0.5F, 2.9F}};
+  const std::vector<rastrum::Vec3> places{{-1.7F, 0.01F, 2.4F}, {0.8F, 0.5F, 2.9F}};
   const std::vector<rastrum::Vec3> normals{{0, 1, 0}, {0.4F, 0.6F, 1}};
   rastrum::DiscsView discs;
   discs.centers = places;

@@ -53,7 +53,10 @@ void run(std::span<const std::byte> bytes) {
 #elif defined(RASTRUM_FUZZ_off)
   require_sound(io::parse_off(bytes, file));
 #elif defined(RASTRUM_FUZZ_gltf)
-  require_sound(io::parse_gltf(bytes, file));
+  Scene scene = io::parse_gltf(bytes, file);
+  require_sound(scene);
+  if (!scene.motions.empty() && !scene.motions[0].animations.empty()) pose(scene, 0.5);
+  require_sound(scene);
 #elif defined(RASTRUM_FUZZ_mtl)
   Scene scene;
   std::unordered_map<std::string, std::uint32_t> by_name;

@@ -31,9 +31,7 @@ struct Alone {
     const MeshView& mesh = *instance.mesh();
     draw.source = raster::MatrixVertices(
         mesh.positions, world_to_clip(camera, width, height) * instance.object_to_world);
-    draw.vertex_count = mesh.positions.size();
-    draw.mesh = &mesh;
-    draw.primitive_count = mesh.triangle_count();
+    draw.set_triangles(mesh);
     draw.winding = instance.winding;
     draw.first_id = id - at.primitive;
     geometry = {width, height, raster::Viewport::of(width, height), {&draw, 1}, nullptr};
@@ -79,10 +77,9 @@ Vec3d position(const SceneView& scene, const Located& at, const Barycentrics& wh
   require_mesh(scene, at);
   const InstanceView& instance = scene.instances[at.instance];
   const MeshView& mesh = *instance.mesh();
-  const TrianglePlace place = mesh.place(at.primitive);
   raster::Fragment f;
   for (std::size_t c = 0; c < 3; ++c) {
-    f.vertex[c] = mesh.vertex(place.corner[c]);
+    f.vertex[c] = mesh.vertex(mesh.place(at.primitive).corner[c]);
     f.weights.b[c] = where.weight[c];
   }
   return raster::position_on(instance, f);

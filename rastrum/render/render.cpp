@@ -211,7 +211,7 @@ struct Renderer::Impl {
     const Targets& targets;
     bool in_place = false;
     std::optional<raster::Rect> part{};  ///< FrameRequest::part
-    std::string why_host{};              ///< FrameRequest's
+    std::string why_host{};              ///< FrameRequest::why_host
   };
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
   FrameStats draw_depth(std::span<raster::Draw> draws, const raster::Testing& test,
@@ -332,14 +332,18 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
   const std::vector<std::uint32_t> material_flags = raster::material_flags(scene.materials, blends);
   std::uint32_t any_flags = 0;  // of materials and colours
   std::uint32_t any_surface_flags = 0;
+  const auto is_mesh = [](const InstanceView& instance) { return instance.mesh() != nullptr; };
+  SceneView meshes = scene;
+  std::vector<InstanceView> mesh_list;
+  if (!std::ranges::all_of(scene.instances, is_mesh)) {
+    mesh_list = mesh_instances(scene);
+    meshes.instances = mesh_list;
+    check_asked_of_meshes(scene, call.targets, o);
+  }
   const bool some_translucent =
-      blends && std::ranges::any_of(scene.instances, [](const InstanceView& instance) {
+      blends && std::ranges::any_of(meshes.instances, [](const InstanceView& instance) {
         return instance.visible && instance.opacity < 1;
       });
-  const std::vector<InstanceView> mesh_list = mesh_instances(scene);
-  SceneView meshes = scene;
-  meshes.instances = mesh_list;
-  if (mesh_list.size() < scene.instances.size()) check_asked_of_meshes(scene, call.targets, o);
   std::optional<raster::LitModel> model;
   if (taken != Shader::material) model = lit_model(taken);
   SurfaceDraws surfaces(scene, {model, blends, o.opacity}, camera, o.width, o.height);
@@ -352,13 +356,8 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
       continue;
     }
     const MeshView& mesh = *instance.mesh();
-    if (mesh.is_packed_list())
-      draw.indices = mesh.indices.packed();
-    else
-      draw.mesh = &mesh;
+    draw.set_triangles(mesh);
     draw.source = raster::MatrixVertices(mesh.positions, to_clip * instance.object_to_world);
-    draw.vertex_count = mesh.positions.size();
-    draw.primitive_count = mesh.triangle_count();
     draw.cull = material_cull(instance, scene.materials, taken);
     std::uint32_t flags = raster::set_material_flags(draw, instance, material_flags);
     if (blends && scene.materials.empty() && !call.in_place && instance.visible &&
@@ -438,8 +437,9 @@ FrameStats Renderer::Impl::draw_depth(std::span<raster::Draw> draws, const raste
   const raster::FragmentShader unused(
       [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
   const OfScene of_scene{false, surface};
-  FrameStats stats =
-      draw(draws, unused, test, {o, first, false, call.part, call.why_host}, &of_scene);
+  Call pass{o, first};
+  pass.why_host = call.why_host;
+  FrameStats stats = draw(draws, unused, test, pass, &of_scene);
   const auto begin = std::chrono::steady_clock::now();
   stretch_depth(first.depth, o.background, targets);
   const double ms =

@@ -9,57 +9,52 @@
 namespace rastrum {
 namespace {
 
-[[noreturn]] void refuse(std::size_t number, const std::string& problem) {
-  throw Error(Errc::invalid_argument,
-              std::string("instance ").append(std::to_string(number)).append(": ").append(problem));
-}
-
-void check_look(const InstanceView& instance, std::size_t number) {
-  if (instance.winding > Winding::either)
-    check_enum(instance.winding, Winding::either,
-               "instance " + std::to_string(number) + ": its winding");
-  // Written so that a NaN fails.
-  if (!(instance.opacity >= 0 && instance.opacity <= 1))
-    refuse(number, "its opacity must lie in [0, 1], not " + std::to_string(instance.opacity));
-  if (const auto& c = instance.color; c && !(std::isfinite(c->x) && std::isfinite(c->y) &&
-                                             std::isfinite(c->z) && std::isfinite(c->w)))
-    refuse(number, "its colour must be four finite numbers");
-}
-
-/// The arrays of an instance.
-class MeshCheck {
+/// One instance's arrays.
+class InstanceCheck {
  public:
-  MeshCheck(const MeshView& mesh, std::size_t number) : mesh_(mesh), number_(number) {}
+  InstanceCheck(const InstanceView& instance, std::size_t number)
+      : instance_(instance), number_(number) {}
 
-  void all() const {
-    if (const std::string problem = faces_problem(mesh_); !problem.empty()) fail(problem);
-    attribute(mesh_.normals, "normals");
-    attribute(mesh_.texcoords, "texcoords");
-    attribute(mesh_.colors, "colors");
+  void arrays(const MeshView& mesh) const {
+    if (const std::string problem = faces_problem(mesh); !problem.empty()) fail(problem);
+    attribute(mesh, mesh.normals, "normals");
+    attribute(mesh, mesh.texcoords, "texcoords");
+    attribute(mesh, mesh.colors, "colors");
+  }
+  void look() const {
+    if (instance_.winding > Winding::either)
+      check_enum(instance_.winding, Winding::either, name() + ": its winding");
+    // Written so that a NaN fails.
+    if (!(instance_.opacity >= 0 && instance_.opacity <= 1))
+      fail("its opacity must lie in [0, 1], not " + std::to_string(instance_.opacity));
+    if (const auto& c = instance_.color; c && !(std::isfinite(c->x) && std::isfinite(c->y) &&
+                                                std::isfinite(c->z) && std::isfinite(c->w)))
+      fail("its colour must be four finite numbers");
   }
 
  private:
-  [[noreturn]] void fail(const std::string& problem) const { refuse(number_, problem); }
+  [[nodiscard]] std::string name() const { return "instance " + std::to_string(number_); }
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw Error(Errc::invalid_argument, name() + ": " + problem);
+  }
 
   /// The corners that triangles read.
-  [[nodiscard]] std::size_t corners() const {
-    return mesh_.faces.kind == FaceKind::triangles ? mesh_.triangle_count() * 3
-                                                   : mesh_.corner_count();
+  [[nodiscard]] static std::size_t corners(const MeshView& mesh) {
+    return mesh.faces.kind == FaceKind::triangles ? mesh.triangle_count() * 3 : mesh.corner_count();
   }
 
   template <class T>
-  void attribute(const AttributeView<T>& a, const char* what) const {
+  void attribute(const MeshView& mesh, const AttributeView<T>& a, const char* what) const {
     if (a.empty()) return;
     const std::string array(what);
     if (!a.indices.empty()) {
-      if (a.indices.size() < corners()) fail(array + " have fewer indices than the triangles");
+      if (a.indices.size() < corners(mesh)) fail(array + " have fewer indices than the triangles");
       if (const std::size_t at = first_beyond(a.indices, a.values.size()); at != a.indices.size())
         fail(array + ".indices[" + std::to_string(at) + "]: index " + a.indices.text(at) +
              " is out of range, there are " + std::to_string(a.values.size()));
       return;
     }
-    if (a.per > Per::mesh)
-      check_enum(a.per, Per::mesh, "instance " + std::to_string(number_) + ": " + array + ".per");
+    if (a.per > Per::mesh) check_enum(a.per, Per::mesh, name() + ": " + array + ".per");
     const auto require = [&](std::size_t count, const char* of) {
       if (a.values.size() < count)
         fail(array + " are fewer (" + std::to_string(a.values.size()) + ") than " + of + " (" +
@@ -67,17 +62,17 @@ class MeshCheck {
     };
     switch (a.per) {
       case Per::vertex:
-        return require(mesh_.positions.size(), "positions");
+        return require(mesh.positions.size(), "positions");
       case Per::corner:
-        return require(corners(), "corners");
+        return require(corners(mesh), "corners");
       case Per::face:
-        return require(mesh_.face_count(), "faces");
+        return require(mesh.face_count(), "faces");
       case Per::mesh:
         break;
     }
   }
 
-  const MeshView& mesh_;
+  const InstanceView& instance_;
   std::size_t number_;
 };
 
@@ -90,8 +85,9 @@ bool is_packed(const AttributeView<T>& a) {
 
 void check_scene(const SceneView& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    check_look(scene.instances[i], i);
-    if (const MeshView* const mesh = scene.instances[i].mesh()) MeshCheck(*mesh, i).all();
+    const InstanceCheck check(scene.instances[i], i);
+    if (const MeshView* const mesh = scene.instances[i].mesh()) check.arrays(*mesh);
+    check.look();
   }
 }
 

@@ -73,10 +73,13 @@ class Check {
   std::size_t instance_;
 };
 
-bool is_translucent(const raster::QuadricGeometry& geometry, const Material* material) {
+bool is_translucent(const raster::QuadricGeometry& geometry, const InstanceView& instance,
+                    const Material* material) {
   if (material != nullptr) return material->alpha_mode == AlphaMode::blend || material->opacity < 1;
   // Written so that a NaN is found.
-  return !std::ranges::all_of(raster::colors_of(geometry), [](const Vec4& c) { return c.w >= 1; });
+  if (instance.color) return !(instance.color->w >= 1);
+  return !std::ranges::all_of(raster::colors_of(geometry, instance),
+                              [](const Vec4& c) { return c.w >= 1; });
 }
 
 }  // namespace
@@ -85,7 +88,7 @@ void check_surfaces(const SceneView& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i)
     if (const auto geometry = quadrics_of(scene.instances[i].geometry)) {
       const Check check(i);
-      check.material(raster::material_of(*geometry), scene.materials.size());
+      check.material(raster::material_of(*geometry, scene.instances[i]), scene.materials.size());
       std::visit(check, *geometry);
     }
 }
@@ -96,13 +99,15 @@ bool SurfaceDraws::add(const InstanceView& instance, const Mat4d& world_to_clip,
   if (!geometry) return false;
   const raster::QuadricStage& stage =
       stages_.emplace_back(*geometry, world_to_clip * instance.object_to_world);
-  shader_.add(stage, instance.object_to_world);
+  shader_.add(stage, instance);
   draw.quadrics = &stage;
   draw.primitive_count = std::visit([](const auto& g) { return g.size(); }, *geometry);
   draw.shading = shader_;
   const Material* const material =
-      scene_.materials.empty() ? nullptr : &scene_.materials[raster::material_of(*geometry)];
-  if (look_.blends && (look_.opacity < 1 || is_translucent(*geometry, material)))
+      scene_.materials.empty() ? nullptr
+                               : &scene_.materials[raster::material_of(*geometry, instance)];
+  if (look_.blends &&
+      (look_.opacity < 1 || instance.opacity < 1 || is_translucent(*geometry, instance, material)))
     draw.flags |= raster::kTranslucent;
   return true;
 }

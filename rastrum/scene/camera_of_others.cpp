@@ -10,7 +10,7 @@
 namespace rastrum {
 namespace {
 
-void require(bool ok, const char* what) {
+void require_lens(bool ok, const char* what) {
   if (!ok) throw Error(Errc::invalid_argument, what);
 }
 
@@ -41,19 +41,20 @@ Mat4d pose_from(const double (&rotation)[9], Vec3d translation) {
 
 Camera camera_from_opencv(const Intrinsics& k, const Mat4d& world_to_camera, int width, int height,
                           double near_plane) {
-  require(width >= 1 && height >= 1, "camera: the picture must have at least a pixel");
-  require(std::isfinite(k.fx) && std::isfinite(k.fy) && k.fx * k.fy > 0,
-          "camera: fx and fy must be finite, not 0 and of one sign");
-  require(std::isfinite(k.cx) && std::isfinite(k.cy) && std::isfinite(k.skew) &&
-              std::isfinite(k.first_centre),
-          "camera: cx, cy, the skew and the first pixel's centre must be finite");
-  require(near_plane > 0 && std::isfinite(near_plane), "camera: near must be > 0 and finite");
-  require(is_finite(world_to_camera), "camera: the pose must be finite");
+  require_lens(width >= 1 && height >= 1, "camera: the picture must have at least a pixel");
+  require_lens(std::isfinite(k.fx) && std::isfinite(k.fy) && k.fx * k.fy > 0,
+               "camera: fx and fy must be finite, not 0 and of one sign");
+  require_lens(std::isfinite(k.cx) && std::isfinite(k.cy) && std::isfinite(k.skew) &&
+                   std::isfinite(k.first_centre),
+               "camera: cx, cy, the skew and the first pixel's centre must be finite");
+  require_lens(near_plane > 0 && std::isfinite(near_plane), "camera: near must be > 0 and finite");
+  require_lens(is_finite(world_to_camera), "camera: the pose must be finite");
   const auto& bottom = world_to_camera.m[3];
-  require(bottom[0] == 0 && bottom[1] == 0 && bottom[2] == 0 && bottom[3] == 1,
-          "camera: the last row of the pose must be 0 0 0 1; is it column-major?");
-  require(is_rotation(world_to_camera),
-          "camera: the pose must be a rotation and a translation, from the world to the camera");
+  require_lens(bottom[0] == 0 && bottom[1] == 0 && bottom[2] == 0 && bottom[3] == 1,
+               "camera: the last row of the pose must be 0 0 0 1; is it column-major?");
+  require_lens(
+      is_rotation(world_to_camera),
+      "camera: the pose must be a rotation and a translation, from the world to the camera");
   // Ours are the pixels' corners: the centre of the top left one is (0.5, 0.5). w = z, and
   // x = 2 u / W − 1, y = 1 − 2 v / H times w.
   const double cx = k.cx - k.first_centre + 0.5, cy = k.cy - k.first_centre + 0.5;
@@ -71,7 +72,7 @@ Camera camera_from_opencv(const Intrinsics& k, const Mat4d& world_to_camera, int
 }
 
 Camera camera_from_matrix(const Mat4d& world_to_clip, ClipDepth depth) {
-  require(is_finite(world_to_clip), "camera: its matrix must be finite");
+  require_lens(is_finite(world_to_clip), "camera: its matrix must be finite");
   Mat4d m = world_to_clip;
   for (int j = 0; j < 4; ++j) {
     const double z = m.m[2][j], w = m.m[3][j];
@@ -81,15 +82,15 @@ Camera camera_from_matrix(const Mat4d& world_to_clip, ClipDepth depth) {
   Camera camera;
   camera.matrix = m;
   (void)world_to_camera(camera);  // throws where it is singular
-  require(inverse(m).has_value(), "camera: its matrix is singular");
+  require_lens(inverse(m).has_value(), "camera: its matrix is singular");
   return camera;
 }
 
 Camera orthographic_by_scale(Camera camera, double units, int width, int height) {
-  require(width >= 1 && height >= 1, "camera: the picture must have at least a pixel");
+  require_lens(width >= 1 && height >= 1, "camera: the picture must have at least a pixel");
   const double across = units * std::min(width, height);
-  require(across > 0 && std::isfinite(static_cast<float>(across)),
-          "camera: the world's units a pixel must be > 0 and finite");
+  require_lens(across > 0 && std::isfinite(static_cast<float>(across)),
+               "camera: the world's units a pixel must be > 0 and finite");
   camera.orthographic = true;
   camera.orthographic_height = static_cast<float>(across);
   camera.matrix.reset();

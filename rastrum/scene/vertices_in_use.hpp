@@ -72,9 +72,10 @@ class VerticesInUse {
                       [&](Vec3 centre, float radius) { visit_ball(Vec3d(centre), radius, visit); });
         continue;
       }
+      const MeshView& mesh = *scene_.instances[i].mesh();
       const std::vector<bool>& used = used_[used_by_[i]];
       for (std::size_t v = 0; v < used.size(); ++v)
-        if (used[v]) visit(scene_.instances[i].mesh()->positions.wide(v));
+        if (used[v]) visit(mesh.positions.wide(v));
     }
   }
 

@@ -337,6 +337,37 @@ TEST(Surfaces, AreBlendedFrontOverBack) {
   }
 }
 
+/// An instance's own look, as a mesh's.
+TEST(Surfaces, HaveTheirInstancesLook) {
+  const Vec3 centre{0, 0, -4};
+  const Vec4 green{0, 1, 0, 1};
+  SpheresView spheres;
+  spheres.centers = {&centre, 1};
+  spheres.colors = {&green, 1};
+  Camera camera;
+  camera.eye = {0, 0, 0};
+  camera.target = {0, 0, -1};
+  FrameOptions frame;
+  frame.width = frame.height = 15;
+  frame.shader = Shader::flat;
+  Renderer renderer;
+  const auto middle = [&](const InstanceView& instance) {
+    Image<Vec4> color(15, 15);
+    (void)renderer.render({{&instance, 1}, {}, {}}, camera, frame, {.color = color});
+    return color(7, 7);
+  };
+  InstanceView instance{spheres};
+  EXPECT_EQ(middle(instance).y, 1);
+  instance.color = Vec4{1, 0, 0.5F, 1};
+  EXPECT_EQ(middle(instance).x, 1);
+  EXPECT_EQ(middle(instance).y, 0);
+  EXPECT_EQ(middle(instance).z, 0.5F);
+  instance.opacity = 0.5F;
+  EXPECT_EQ(middle(instance).w, 0.75F);
+  instance.visible = false;
+  EXPECT_EQ(middle(instance).w, 0);
+}
+
 TEST(Surfaces, AreSeenByACameraThatFits) {
   const Vec3 centres[] = {{10, 2, -3}, {11, 2, -3}};
   const float radii[] = {2, 0.5F};

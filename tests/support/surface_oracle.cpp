@@ -126,8 +126,10 @@ Point3 normal_of(const SurfacePrimitive& s, const Point3& p) {
   const Point3 v = axis.across(p);
   const Real rho = std::sqrt(dot(v, v));
   const Real side = std::abs(rho - s.r0 - slope * h);
-  if (s.kind == SurfaceKind::closed_cone && std::abs(h) < side) return axis.unit * -1;
-  if (s.kind == SurfaceKind::closed_cone && std::abs(h - axis.size) < side) return axis.unit;
+  if (s.kind == SurfaceKind::closed_cone) {
+    const Real low = std::abs(h), high = std::abs(h - axis.size);
+    if (std::min(low, high) < side) return axis.unit * (low < high ? -1 : 1);
+  }
   return v * (1 / rho) - axis.unit * slope;
 }
 

@@ -101,6 +101,15 @@ HWY_INLINE std::size_t cover_quadric_blocks(const Piece& piece, std::uint32_t in
   return n;
 }
 
+/// What a piece refers to is somewhere else, and was written long ago: of a million small spheres
+/// waiting for it took half of the time.
+HWY_INLINE void prefetch_quadric(const Piece& piece) {
+  if (!is_quadric(piece)) return;
+  const auto* const q = reinterpret_cast<const char*>(&quadric_of(piece));
+  __builtin_prefetch(q);
+  __builtin_prefetch(q + 64);
+}
+
 /// Points and lines, the scalar way, and quadrics; apart, so that triangles do not pay for their
 /// code.
 HWY_NOINLINE std::size_t cover_other(const Piece& piece, std::uint32_t index, Rect bin,
@@ -508,6 +517,7 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
       pieces[i] = in.pieces + in.list[cursor + (i < count ? i : 0)].piece;
       if (cursor + kLanes + i < in.count)
         __builtin_prefetch(in.pieces + in.list[cursor + kLanes + i].piece);
+      prefetch_quadric(*pieces[i]);
     }
     const Triangles t = load_triangles(pieces);
     std::uint32_t dropped = 0;

@@ -23,7 +23,7 @@ namespace HWY_NAMESPACE {
 
 /// cover_quadric (rules.hpp): `within`, in px, is not empty and lies in the piece's box.
 std::uint64_t quadric_mask(const Piece& piece, int bx, int by, Rect within) noexcept;
-/// Kernels::keys of a quadric's piece.
+/// Kernels::keys of a quadric's piece, as far as the mask reaches.
 void quadric_keys(const Piece& piece, const Block& block, std::uint64_t* keys) noexcept;
 
 }  // namespace HWY_NAMESPACE

@@ -64,50 +64,63 @@ struct QuadricSamples {
 };
 
 constexpr int kStep = static_cast<int>(kLanes64);
+constexpr std::uint64_t kStepBits = (std::uint64_t{1} << kStep) - 1;
+
+/// Calls use(row, column, surface) for the steps of a row of block (bx, by) that hold a bit of
+/// `wanted`. What kind of quadric it is is asked once.
+template <class Use>
+HWY_INLINE void for_each_step(const Piece& piece, int bx, int by, std::uint64_t wanted,
+                              const Use& use) {
+  const Quadric& q = quadric_of(piece);
+  const bool away = (piece.flags & kFacesAway) != 0;
+  const QuadricSamples samples(piece);
+  W columns[kBlockSize / kLanes64];
+  for (int k = 0; k < kBlockSize / kStep; ++k)
+    columns[k] = samples.columns(bx * kBlockSize + k * kStep);
+  const auto each = [&](const auto& surface_of) HWY_ATTR {
+    for (std::uint64_t rest = wanted; rest != 0;) {
+      const int row = std::countr_zero(rest) / kBlockSize;
+      const std::uint64_t bits = rest >> (row * kBlockSize) & 255U;
+      rest &= ~(std::uint64_t{255} << (row * kBlockSize));
+      const QuadricRow r(q, samples.row(by * kBlockSize + row));
+      for (int k = 0; k < kBlockSize / kStep; ++k)
+        if ((bits >> (k * kStep) & kStepBits) != 0) use(row, k * kStep, surface_of(r, columns[k]));
+    }
+  };
+  if (!q.is_plain)
+    return each([&](const QuadricRow& r, W dx) HWY_ATTR { return surface_at(q, r, away, dx); });
+  each([&](const QuadricRow& r, W dx) HWY_ATTR {
+    const Roots roots = roots_of(q.part[0], r.part[0], dx);
+    return Surface{away ? roots.leaves : roots.enters, roots.real};
+  });
+}
 
 }  // namespace
 
 std::uint64_t quadric_mask(const Piece& piece, int bx, int by, Rect within) noexcept {
-  const Quadric& q = quadric_of(piece);
-  const bool away = (piece.flags & kFacesAway) != 0;
-  const QuadricSamples samples(piece);
-  const int x0 = bx * kBlockSize, y0 = by * kBlockSize;
-  const int first = std::max(within.x0 - x0, 0) / kStep * kStep;
-  const int last = std::min(within.x1 - x0, kBlockSize);
+  const std::uint64_t wanted = samples_inside(within, bx, by);
   std::uint64_t mask = 0;
-  for (int row = std::max(within.y0 - y0, 0); row < std::min(within.y1 - y0, kBlockSize); ++row) {
-    const QuadricRow r(q, samples.row(y0 + row));
-    for (int column = first; column < last; column += kStep) {
-      std::uint8_t bits = 0;
-      hn::StoreMaskBits(F64{}, surface_at(q, r, away, samples.columns(x0 + column)).covered, &bits);
-      mask |= static_cast<std::uint64_t>(bits & ((1U << kLanes64) - 1))
-              << (row * kBlockSize + column);
-    }
-  }
-  return mask & samples_inside(within, bx, by);
+  for_each_step(piece, bx, by, wanted, [&](int row, int column, const Surface& s) HWY_ATTR {
+    std::uint8_t bits = 0;
+    hn::StoreMaskBits(F64{}, s.covered, &bits);
+    mask |= (bits & kStepBits) << (row * kBlockSize + column);
+  });
+  return mask & wanted;
 }
 
 void quadric_keys(const Piece& piece, const Block& block, std::uint64_t* keys) noexcept {
-  const Quadric& q = quadric_of(piece);
-  const bool away = (piece.flags & kFacesAway) != 0;
-  const QuadricSamples samples(piece);
   const hn::Rebind<float, F64> df;
   const hn::RebindToUnsigned<I64> d64;
-  const W depth0 = wide(q.depth0);
-  for (std::uint64_t rest = block.mask; rest != 0;) {
-    const int row = std::countr_zero(rest) / kBlockSize;
-    rest &= ~(std::uint64_t{255} << (row * kBlockSize));
-    const QuadricRow r(q, samples.row(block.by * kBlockSize + row));
-    for (int column = 0; column < kBlockSize; column += kStep) {
-      const W e = surface_at(q, r, away, samples.columns(block.bx * kBlockSize + column)).e;
-      auto depth = hn::DemoteTo(df, depth0 + e);
-      depth = hn::Min(hn::IfThenElseZero(hn::Gt(depth, hn::Zero(df)), depth), hn::Set(df, 1.0F));
-      const auto high =
-          hn::PromoteTo(d64, hn::BitCast(hn::RebindToUnsigned<decltype(df)>(), depth));
-      hn::Store(hn::Or(hn::ShiftLeft<kIdBits>(high), hn::Set(d64, piece.low)), d64,
-                keys + row * kBlockSize + column);
-    }
-  }
+  const W depth0 = wide(quadric_of(piece).depth0);
+  const auto low = hn::Set(d64, piece.low);
+  for_each_step(
+      piece, block.bx, block.by, block.mask, [&](int row, int column, const Surface& s) HWY_ATTR {
+        auto depth = hn::DemoteTo(df, depth0 + s.e);
+        depth = hn::Min(hn::IfThenElseZero(hn::Gt(depth, hn::Zero(df)), depth), hn::Set(df, 1.0F));
+        const auto high =
+            hn::PromoteTo(d64, hn::BitCast(hn::RebindToUnsigned<decltype(df)>(), depth));
+        hn::Store(hn::Or(hn::ShiftLeft<kIdBits>(high), low), d64, keys + row * kBlockSize + column);
+      });
 }
 
 }  // namespace HWY_NAMESPACE

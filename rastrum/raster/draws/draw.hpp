@@ -43,6 +43,15 @@ struct Draw : Primitives {
   std::size_t first_vertex = 0;  ///< of this draw in FrameGeometry::projected, or kNotProjected
   std::size_t number = 0;        ///< among the draws of its shading
 
+  /// Makes it one of the triangles of a mesh, which must outlive the frame.
+  void set_triangles(const MeshView& of) {
+    if (of.is_packed_list())
+      indices = of.indices.packed();
+    else
+      mesh = &of;
+    vertex_count = of.positions.size();
+    primitive_count = of.triangle_count();
+  }
   [[nodiscard]] RASTRUM_HD std::uint32_t vertex(std::uint64_t primitive, int corner) const {
 #if !defined(__CUDA_ARCH__)
     if (mesh != nullptr)

@@ -32,10 +32,6 @@ constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
                                        .append(why));
 }
 
-bool has_quadrics(const FrameRequest& request) {
-  return std::ranges::any_of(request.draws, [](const Draw& d) { return d.quadrics != nullptr; });
-}
-
 /// Gives draws their places among the projected vertices, and returns how many there are.
 std::uint64_t place_projected(std::span<Draw> draws) {
   std::uint64_t vertices = 0;
@@ -48,6 +44,10 @@ std::uint64_t place_projected(std::span<Draw> draws) {
     vertices += draw.vertex_count;
   }
   return vertices;
+}
+
+bool has_quadrics(const FrameRequest& request) {
+  return std::ranges::any_of(request.draws, [](const Draw& d) { return d.quadrics != nullptr; });
 }
 
 }  // namespace

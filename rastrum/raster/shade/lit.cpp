@@ -138,11 +138,14 @@ LitScene::LitScene(const SceneView& scene, const Camera& camera, int width, int 
   for (const InstanceView& instance : scene.instances) {
     LitDraw& draw = draws.emplace_back();
     draw.mesh = instance.mesh();
-    draw.colors = draw.mesh->colors;
-    // A view of the instance's own, which outlives the frame as the scene does.
-    if (instance.color) draw.colors = {.values = std::span(&*instance.color, 1), .per = Per::mesh};
-    draw.material = instance.material.value_or(draw.mesh->material);
-    if (!instance.material) draw.face_materials = draw.mesh->face_materials;
+    if (const MeshView* const mesh = draw.mesh) {
+      draw.colors = mesh->colors;
+      // A view of the instance's own, which outlives the frame as the scene does.
+      if (instance.color)
+        draw.colors = {.values = std::span(&*instance.color, 1), .per = Per::mesh};
+      draw.material = instance.material.value_or(mesh->material);
+      if (!instance.material) draw.face_materials = mesh->face_materials;
+    }
     normal_matrix(instance.object_to_world, draw.normal_matrix);
     const auto& m = draw.normal_matrix;
     draw.identity = m[0][0] == m[1][1] && m[1][1] == m[2][2] && m[0][0] > 0 && m[0][1] == 0 &&

@@ -38,10 +38,11 @@ Vec4 lerp(const Vec4& a, const Vec4& b, float t) {
 
 }  // namespace
 
-std::uint32_t material_of(const QuadricGeometry& geometry) {
-  return std::visit([](const auto& g) { return g.material; }, geometry);
+std::uint32_t material_of(const QuadricGeometry& geometry, const InstanceView& instance) {
+  return instance.material.value_or(std::visit([](const auto& g) { return g.material; }, geometry));
 }
-std::span<const Vec4> colors_of(const QuadricGeometry& geometry) {
+std::span<const Vec4> colors_of(const QuadricGeometry& geometry, const InstanceView& instance) {
+  if (instance.color) return {};
   return std::visit([](const auto& g) { return g.colors; }, geometry);
 }
 
@@ -98,18 +99,24 @@ QuadricShader::QuadricShader(const QuadricLook& look, std::span<const Material> 
   if (materials_.empty()) materials_.emplace_back().alpha_mode = AlphaMode::blend;
 }
 
-void QuadricShader::add(const QuadricStage& stage, const Mat4d& object_to_world) {
-  const InstanceView place{MeshView{}, object_to_world};
+void QuadricShader::add(const QuadricStage& stage, const InstanceView& instance) {
+  const InstanceView place{MeshView{}, instance.object_to_world};
   const LitScene lit({{&place, 1}, {}, {}}, {}, 1, 1);
-  Surface s{&stage, lit.draws.front(), {1, 1, 1, 1}, &materials_.front()};
-  if (!display_.empty()) s.material = &materials_[material_of(stage.geometry())];
-  s.base = s.material->base_color;
+  const bool has_materials = !display_.empty();
+  const std::size_t m = has_materials ? material_of(stage.geometry(), instance) : 0;
+  const Material& material = materials_[m];
+  Surface s{&stage,
+            lit.draws.front(),
+            material.base_color,
+            &material,
+            look_.opacity * instance.opacity * material.opacity,
+            colors_of(stage.geometry(), instance)};
   if (look_.model) {
-    const Vec3 base = !display_.empty() ? display_[material_of(stage.geometry())]
-                      : colors_of(stage.geometry()).empty() ? kDefaultBase
-                                                            : Vec3{1, 1, 1};
+    const bool plain = s.colors.empty() && !instance.color;
+    const Vec3 base = has_materials ? display_[m] : plain ? kDefaultBase : Vec3{1, 1, 1};
     s.base = {base.x, base.y, base.z, s.base.w};
   }
+  if (instance.color) s.base = s.base * *instance.color;
   surfaces_.push_back(s);
 }
 
@@ -130,7 +137,7 @@ void QuadricShader::fetch(const FrameGeometry& frame, std::uint64_t low, Kept& o
   std::copy_n(place.x, 3, out.piece.x);
   std::copy_n(place.y, 3, out.piece.y);
   out.color[0] = out.color[1] = out.surface->base;
-  const std::span<const Vec4> colors = colors_of(stage.geometry());
+  const std::span<const Vec4> colors = out.surface->colors;
   if (colors.empty()) return;
   const ColorEnds ends = color_ends(stage.geometry(), primitive);
   out.color[0] = colors[ends.first] * out.surface->base;
@@ -154,7 +161,7 @@ Vec4 QuadricShader::color(const Kept& k, const FrameGeometry&, std::uint64_t key
   const Material& m = *k.surface->material;
   float alpha = 1;
   if (look_.blends) {
-    alpha = look_.opacity * m.opacity;
+    alpha = k.surface->opacity;
     if (m.alpha_mode == AlphaMode::blend) alpha *= base.w;
     alpha = clamped_alpha(alpha);
   }

@@ -41,8 +41,8 @@ class QuadricShader final : public BlockShader {
  public:
   QuadricShader(const QuadricLook& look, std::span<const Material> materials, const Camera& camera,
                 int width, int height);
-  /// `stage` must outlive the frame.
-  void add(const QuadricStage& stage, const Mat4d& object_to_world);
+  /// `instance`: of the stage, whose own look is heeded. `stage` must outlive the frame.
+  void add(const QuadricStage& stage, const InstanceView& instance);
   /// As MaterialShading::linear.
   void leave_linear() { linear_ = true; }
 
@@ -56,6 +56,8 @@ class QuadricShader final : public BlockShader {
     LitDraw to_world;  ///< for its normal matrix
     Vec4 base;         ///< what colours are multiplied by, or stand for; alpha the own one
     const Material* material;
+    float opacity;                 ///< the instance's, the frame's and the material's
+    std::span<const Vec4> colors;  ///< empty: there are none
   };
   struct Kept;
   struct KeptQuadrics;
@@ -72,8 +74,11 @@ class QuadricShader final : public BlockShader {
   ViewRays rays_;
 };
 
-/// The material of a quadric's geometry, and its colours.
-[[nodiscard]] std::uint32_t material_of(const QuadricGeometry& geometry);
-[[nodiscard]] std::span<const Vec4> colors_of(const QuadricGeometry& geometry);
+/// The material of an instance of a quadric's geometry, and the geometry's colours, unless the
+/// instance's colour stands for them.
+[[nodiscard]] std::uint32_t material_of(const QuadricGeometry& geometry,
+                                        const InstanceView& instance);
+[[nodiscard]] std::span<const Vec4> colors_of(const QuadricGeometry& geometry,
+                                              const InstanceView& instance);
 
 }  // namespace rastrum::raster
