@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <rastrum/digest.hpp>
 #include <rastrum/shapes.hpp>
 
 #include "program.hpp"
@@ -75,6 +76,28 @@ TEST_F(Output, AreTheLibrarysImages) {
   EXPECT_NE(npy("i.npy").header.find("(64, 96)"), std::string::npos);
   EXPECT_NE(npy("d.npy").header.find("(64, 96)"), std::string::npos);
   EXPECT_EQ(std::ranges::count(e.ids.pixels(), -1), std::ranges::count(e.depth.pixels(), 0.0F));
+}
+
+// A line for each picture that is written, or of the 8-bit colours alone.
+TEST_F(Output, HashesAreTheLibrarysDigests) {
+  const Drawn e = expected();
+  const auto lines = [&](std::vector<std::string> more) {
+    std::vector<std::string> args{"render",       "builtin:teapot?n=4", "--size", "96x64",
+                                  "--background", "#3366cc80",          "--hash"};
+    args.insert(args.end(), more.begin(), more.end());
+    const Outcome o = run(args);
+    EXPECT_EQ(o.status, 0) << o.err;
+    return o.out;
+  };
+  const std::string color8 = digest(e.color8).hex() + "  color";
+  EXPECT_EQ(lines({}), color8 + "\n");
+  EXPECT_EQ(lines({"-o", "p.npy", "--depth", "d.npy", "--ids", "i.npy"}),
+            digest(e.color).hex() + "  color\n" + digest(e.depth).hex() + "  depth\n" +
+                digest(e.ids).hex() + "  ids\n");
+  EXPECT_NE(lines({"--turntable", "2"}).find("  color 1\n"), std::string::npos);
+  const Outcome both = run({"render", "builtin:teapot", "--hash", "-o", "-"});
+  EXPECT_EQ(both.status, 2);
+  EXPECT_NE(both.err.find("--hash"), std::string::npos) << both.err;
 }
 
 TEST_F(Output, DepthAsExr) {
