@@ -39,7 +39,7 @@ Camera oblique_camera(const SceneView& scene) {
   Camera c = fit_camera(scene, 0.8F, false);
   const float distance = length(Vec3(c.eye) - Vec3(c.target));
   const float radius = distance * std::sin(c.fov_rad / 2);
-  c.eye = Vec3(c.target) + normalize({0.45F, 0.4F, 1}) * (1.05F * distance);
+  c.eye = Vec3(c.target) + normalize(Vec3{0.45F, 0.4F, 1}) * (1.05F * distance);
   c.near_plane = 1.05F * distance - 1.01F * radius;
   return c;
 }
