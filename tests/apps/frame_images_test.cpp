@@ -60,7 +60,7 @@ TEST_F(FrameImages, HoldWhatTheLibraryHas) {
 }
 
 TEST_F(FrameImages, AreNumberedInSequences) {
-  must({"render", "builtin:boxes", "--size", "16x16", "--turntable", "2", "--image",
+  must({"render", "builtin:boxes", "--size", "16x16", "--turntable", "3", "--image",
         "normals=n%d.npy"});
   EXPECT_NE(read("n0.npy"), read("n1.npy"));
 }

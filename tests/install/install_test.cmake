@@ -63,8 +63,9 @@ file(WRITE ${renders}/renders.cpp [[
 
 int main() {
   const std::vector<rastrum::Vec3> positions{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
-  rastrum::InstanceView instance;
-  instance.mesh.positions = positions;
+  rastrum::MeshView mesh;
+  mesh.positions = positions;
+  const rastrum::InstanceView instance{mesh};
   rastrum::SceneView scene;
   scene.instances = {&instance, 1};
   const auto image = rastrum::render(scene, rastrum::fit_camera(scene, 1.0F, false),
