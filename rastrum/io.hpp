@@ -129,9 +129,9 @@ void remove_abandoned(const std::filesystem::path& folder);
 // What `rastrum info FILE` prints.
 
 /// A text of several lines: meshes with their vertices and triangles, instances, bounds, materials,
-/// textures, cameras, animations; how many triangles have a vertex that is not finite (the renderer drops them)
-/// or no area; the warnings. O(triangles of all instances).
-/// Throws Error{invalid_argument} for an index out of range.
+/// textures, cameras, animations; how many triangles have a vertex that is not finite (the renderer
+/// drops them) or no area; the warnings. O(triangles of all instances). Throws
+/// Error{invalid_argument} for an index out of range.
 [[nodiscard]] std::string describe(const Scene& scene);
 
 // Height maps from files: a grid of heights and how many of its units make one cell of the map.

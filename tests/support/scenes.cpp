@@ -281,7 +281,8 @@ void extreme(Maker& m) {
   if (m.random.chance(0.5)) m.camera.far_plane = 100;
   const float limit = std::numeric_limits<float>::max() / 16;
   const auto coordinate = [&] {
-    const double magnitude = elementary::pow(10.0, m.random.real(-3, elementary::log10(double{limit})));
+    const double magnitude =
+        elementary::pow(10.0, m.random.real(-3, elementary::log10(double{limit})));
     const float v = m.random.chance(0.2) ? limit : static_cast<float>(magnitude);
     return m.random.chance(0.5) ? v : -v;
   };

@@ -91,7 +91,11 @@ struct MaterialTriangle {
   /// From corner 0 to corner c: rounded once where the positions are float64.
   [[nodiscard]] RASTRUM_HD Vec3 edge(int c) const {
     const ArrayView<Vec3>& positions = draw.mesh->positions;
-    if (positions.is_wide()) return Vec3(positions.wide(vertex[c]) - positions.wide(vertex[0]));
+    if (positions.is_wide()) {
+      const Vec3d e = positions.wide(vertex[c]) - positions.wide(vertex[0]);
+      // nvcc takes Vec3(e) for the members in parentheses.
+      return {static_cast<float>(e.x), static_cast<float>(e.y), static_cast<float>(e.z)};
+    }
     return positions[vertex[c]] - positions[vertex[0]];
   }
   /// Of the plane, of unit length, in the world; 0 without area.
