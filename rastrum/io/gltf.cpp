@@ -215,7 +215,8 @@ class GltfReader {
   };
   const std::vector<Drawn>& drawn(std::size_t index) {
     const auto [at, is_new] = drawn_.try_emplace(index);
-    if (!is_new) return at->second;
+    std::vector<Drawn>& all = at->second;
+    if (!is_new) return all;
     const Json owner = document_["meshes"].at(index);
     owner["primitives"].for_each([&](const Json& p) {
       std::optional<std::size_t> material;
@@ -230,9 +231,9 @@ class GltfReader {
         d.shape = static_cast<std::int32_t>(rig_.shapes.size());
         rig_.shapes.push_back(std::move(part->shape));
       }
-      at->second.push_back(d);
+      all.push_back(d);
     });
-    return at->second;
+    return all;
   }
 
   /// What the vertices of a mesh depend on besides its primitive.
