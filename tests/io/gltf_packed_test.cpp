@@ -109,7 +109,7 @@ using Corners = std::array<Vec3, 3>;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     Corners c;
     for (std::size_t k = 0; k < 3; ++k) c[k] = mesh.positions[mesh.indices[3 * t + k]];
-    std::ranges::rotate(c, std::ranges::min_element(c, less));
+    std::rotate(c.begin(), std::ranges::min_element(c, less), c.end());
     r.push_back(c);
   }
   std::ranges::sort(r, [&](const Corners& a, const Corners& b) {

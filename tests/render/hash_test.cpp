@@ -201,12 +201,12 @@ TEST(Hashes, Transparency) {
       {"filter", Transparency::filter}, {"unsorted", Transparency::unsorted},
       {"wboit", Transparency::wboit},   {"mboit4", Transparency::mboit4},
       {"mboit6", Transparency::mboit6}, {"mlab4", Transparency::mlab4}};
-  for (const auto& [name, method] : methods)
-    expect_golden(std::string("transparency/") + name, [&](Isa isa, Sum& sum) {
+  for (const auto& method : methods)
+    expect_golden(std::string("transparency/") + method.first, [&](Isa isa, Sum& sum) {
       Renderer renderer = family::make_renderer({.threads = 2, .isa = isa}, {});
       for (std::uint64_t seed = 0; seed < 25; ++seed) {
         ShadedScene s = generate_shaded(seed);
-        s.frame.transparency.method = method;
+        s.frame.transparency.method = method.second;
         s.frame.opacity = 0.4F;
         s.frame.samples = 1;
         Picture picture(s.frame);
@@ -324,9 +324,9 @@ TEST(Hashes, TerrainViews) {
   views[4] = {"cylinder", {.fov_rad = 5, .projection = Projection::cylindrical}};
   views[5] = {"clamped", {.tiling = Tiling::clamp, .ground_clearance = 12}};
   const Terrain terrain(map());
-  for (const auto& [name, options] : views)
-    expect_golden("terrain/" + name, [&](Isa isa, Sum& sum) {
-      add(sum, terrain, options, isa, {0.3, 2.5, 4.0});
+  for (const auto& view : views)
+    expect_golden("terrain/" + view.first, [&](Isa isa, Sum& sum) {
+      add(sum, terrain, view.second, isa, {0.3, 2.5, 4.0});
     });
 }
 
