@@ -78,8 +78,9 @@ void index_run(const std::byte* first, std::ptrdiff_t stride, std::size_t n, std
 
 /// That value `count` − 1 ends in the buffer, and all others do. Sizes are compared before they are
 /// multiplied.
-void check_within(std::span<const std::byte> buffer, const ArrayLayout& l) {
-  if (l.count == 0) return;
+/// Where the first value lies. Throws where one of them reaches beyond `buffer`.
+const void* first_within(std::span<const std::byte> buffer, const ArrayLayout& l) {
+  if (l.count == 0) return buffer.data();
   const std::size_t size = buffer.size();
   const std::size_t value = bytes_of(l.type) * static_cast<std::size_t>(l.channels);
   const auto step = l.stride_bytes < 0
@@ -96,6 +97,7 @@ void check_within(std::span<const std::byte> buffer, const ArrayLayout& l) {
                     " bytes from byte " + std::to_string(l.offset_bytes) + " on, every " +
                     std::to_string(l.stride_bytes) + " bytes, reach beyond a buffer of " +
                     std::to_string(size) + " bytes");
+  return buffer.data() + l.offset_bytes;
 }
 
 }  // namespace
@@ -151,8 +153,7 @@ ArrayView<T> ArrayView<T>::in(std::span<const std::byte> buffer, const ArrayLayo
     throw Error(Errc::invalid_argument, "array: values have " + std::to_string(kWanted) +
                                             " channels, not " + std::to_string(l.channels));
   const auto view = [&]<class C>(C) {
-    array_detail::check_within(buffer, l);
-    const void* const first = buffer.data() + l.offset_bytes;
+    const void* const first = array_detail::first_within(buffer, l);
     return ArrayView(static_cast<const C*>(first), l.channels, l.count, l.stride_bytes);
   };
   switch (l.type) {
@@ -193,8 +194,7 @@ IndexView IndexView::in(std::span<const std::byte> buffer, const ArrayLayout& l)
     throw Error(Errc::invalid_argument,
                 "array: indices have one channel, not " + std::to_string(l.channels));
   const auto view = [&]<class C>(C) {
-    array_detail::check_within(buffer, l);
-    const void* const first = buffer.data() + l.offset_bytes;
+    const void* const first = array_detail::first_within(buffer, l);
     return of(static_cast<const C*>(first), l.count, l.stride_bytes);
   };
   switch (l.type) {

@@ -108,7 +108,7 @@ Digest of(ImageView<const T> image, const char* type) {
   for (int y = 0; y < image.height; ++y) {
     const void* data = image.row(y);
     if constexpr (std::is_same_v<Number, float>) {
-      std::memcpy(row.data(), data, bytes);
+      if (bytes != 0) std::memcpy(row.data(), data, bytes);
       for (float& v : row)
         if (std::isnan(v)) v = std::bit_cast<float>(0x7fc00000U);
       data = row.data();

@@ -50,7 +50,7 @@ TEST(FrameOptions, AreEachFramesOwn) {
   const Scene scene = single(shapes::torus_knot());
   const SceneBinding binding(scene);
   for (const RendererOptions& by :
-       {RendererOptions{.threads = 3}, RendererOptions{.memory_limit = 16U << 20, .threads = 2},
+       {RendererOptions{.threads = 3}, RendererOptions{.memory_limit = 16U << 20, .threads = 1},
         RendererOptions{.device = Device::serial}}) {
     Renderer renderer(by);
     for (const FrameOptions& frame : looks()) {
@@ -60,7 +60,7 @@ TEST(FrameOptions, AreEachFramesOwn) {
       EXPECT_EQ(got.stats.shader, expected.stats.shader);
       if (by.memory_limit != 0) {
         EXPECT_LE(got.stats.peak_bytes, by.memory_limit);
-        // What other frames took is given back; threads differ by a little.
+        // What other frames took is given back. One thread: several share the work as they like.
         EXPECT_LE(got.stats.peak_bytes, expected.stats.peak_bytes + (std::uint64_t{1} << 20));
       }
     }
