@@ -78,9 +78,9 @@ RASTRUM_HD inline void add_depth_bias(Piece& p, float constant, float slope) {
   p.z0 = static_cast<float>(z0 > -1e30 ? (z0 < 1e30 ? z0 : 1e30) : -1e30);
 }
 
-/// Depth of the sample of pixel (x, y), in [+0, 1].
-RASTRUM_HD inline float depth_at(const Piece& p, int x, int y) {
-  if (is_quadric(p)) return sample_quadric(p, x, y).depth;
+/// Depth of the sample of pixel (x, y), in [+0, 1], of a piece that is no quadric: what setup may
+/// ask for without a call.
+RASTRUM_HD inline float plane_depth_at(const Piece& p, int x, int y) {
   constexpr float kPxPerSubpixel = 1.0F / kSubpixels;
   const float x0 = static_cast<float>(p.x[0]) * kPxPerSubpixel;
   const float y0 = static_cast<float>(p.y[0]) * kPxPerSubpixel;
@@ -91,17 +91,21 @@ RASTRUM_HD inline float depth_at(const Piece& p, int x, int y) {
   const float at_least_0 = d > 0 ? d : 0.0F;
   return at_least_0 < 1 ? at_least_0 : 1.0F;
 }
+/// The same of any piece.
+RASTRUM_HD inline float depth_at(const Piece& p, int x, int y) {
+  return is_quadric(p) ? sample_quadric(p, x, y).depth : plane_depth_at(p, x, y);
+}
 
 /// The largest depth of any sample of pixels [x0, x1) × [y0, y1): depth_at the corner that the
 /// plane's slopes choose. Rounding keeps the order of exact results, so every operation of depth_at
 /// is monotone in x and in y, and no other sample is nearer. Requires finite slopes.
 RASTRUM_HD inline float highest_depth(const Piece& p, Rect r) {
   if (is_quadric(p)) return quadric_of(p).highest;
-  return depth_at(p, p.zx > 0 ? r.x1 - 1 : r.x0, p.zy > 0 ? r.y1 - 1 : r.y0);
+  return plane_depth_at(p, p.zx > 0 ? r.x1 - 1 : r.x0, p.zy > 0 ? r.y1 - 1 : r.y0);
 }
 RASTRUM_HD inline float lowest_depth(const Piece& p, Rect r) {
   if (is_quadric(p)) return quadric_of(p).lowest;
-  return depth_at(p, p.zx > 0 ? r.x0 : r.x1 - 1, p.zy > 0 ? r.y0 : r.y1 - 1);
+  return plane_depth_at(p, p.zx > 0 ? r.x0 : r.x1 - 1, p.zy > 0 ? r.y0 : r.y1 - 1);
 }
 /// Slopes that overflow make NaNs at samples level with vertex 0, for which no bound holds.
 RASTRUM_HD inline bool has_depth_bounds(const Piece& p) {

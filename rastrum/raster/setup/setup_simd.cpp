@@ -301,7 +301,8 @@ HWY_INLINE std::uint32_t write_fragments(const Piece p, std::uint32_t mask, cons
     const int x = first_x + sample % kMicroSize, y = first_y + sample / kMicroSize;
     if (x < in.view.x0 || x >= in.view.x1 || y < in.view.y0 || y >= in.view.y1) continue;
     const auto ux = static_cast<std::uint32_t>(x), uy = static_cast<std::uint32_t>(y);
-    out[n++] = {make_key(depth_at(p, x, y), p.low), uy / kBinSize * in.bin_columns + ux / kBinSize,
+    out[n++] = {make_key(plane_depth_at(p, x, y), p.low),
+                uy / kBinSize * in.bin_columns + ux / kBinSize,
                 ((uy % kBinSize / kBlockSize * kBlocksPerBinRow + ux % kBinSize / kBlockSize) * 64 +
                  uy % kBlockSize * kBlockSize + ux % kBlockSize) |
                     translucent};
