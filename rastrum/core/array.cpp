@@ -76,9 +76,8 @@ void index_run(const std::byte* first, std::ptrdiff_t stride, std::size_t n, std
     out[i] = static_cast<std::uint32_t>(std::min<std::uint64_t>(index_at<C>(first), kNoIndex));
 }
 
-/// That value `count` − 1 ends in the buffer, and all others do. Sizes are compared before they are
-/// multiplied.
-/// Where the first value lies. Throws where one of them reaches beyond `buffer`.
+/// Where the first value lies. Throws where the last one, and so some other, reaches beyond
+/// `buffer`. Sizes are compared before they are multiplied.
 const void* first_within(std::span<const std::byte> buffer, const ArrayLayout& l) {
   if (l.count == 0) return buffer.data();
   const std::size_t size = buffer.size();
@@ -126,24 +125,41 @@ template const IndexReader& index_reader<std::int64_t>() noexcept;
 
 }  // namespace array_detail
 
-std::size_t bytes_of(NumberType type) noexcept {
+namespace {
+
+/// f of a number of this type; f(nullptr) for a value that the enum does not have.
+template <class F>
+auto visit_type(NumberType type, const F& f) {
   switch (type) {
-    case NumberType::uint8:
-    case NumberType::int8:
-      return 1;
-    case NumberType::uint16:
-    case NumberType::int16:
-      return 2;
     case NumberType::float32:
-    case NumberType::uint32:
-    case NumberType::int32:
-      return 4;
+      return f(float{});
     case NumberType::float64:
+      return f(double{});
+    case NumberType::uint8:
+      return f(std::uint8_t{});
+    case NumberType::int8:
+      return f(std::int8_t{});
+    case NumberType::uint16:
+      return f(std::uint16_t{});
+    case NumberType::int16:
+      return f(std::int16_t{});
+    case NumberType::uint32:
+      return f(std::uint32_t{});
+    case NumberType::int32:
+      return f(std::int32_t{});
     case NumberType::uint64:
+      return f(std::uint64_t{});
     case NumberType::int64:
-      return 8;
+      return f(std::int64_t{});
   }
-  return 0;
+  return f(nullptr);
+}
+
+}  // namespace
+
+std::size_t bytes_of(NumberType type) noexcept {
+  return visit_type(
+      type, []<class C>(C) -> std::size_t { return std::is_null_pointer_v<C> ? 0 : sizeof(C); });
 }
 
 template <ViewedValue T>
@@ -152,27 +168,15 @@ ArrayView<T> ArrayView<T>::in(std::span<const std::byte> buffer, const ArrayLayo
   if (l.channels != kWanted && !(std::same_as<T, Vec4> && l.channels == 3))
     throw Error(Errc::invalid_argument, "array: values have " + std::to_string(kWanted) +
                                             " channels, not " + std::to_string(l.channels));
-  const auto view = [&]<class C>(C) {
-    const void* const first = array_detail::first_within(buffer, l);
-    return ArrayView(static_cast<const C*>(first), l.channels, l.count, l.stride_bytes);
-  };
-  switch (l.type) {
-    case NumberType::float32:
-      return view(float{});
-    case NumberType::float64:
-      return view(double{});
-    case NumberType::uint8:
-      return view(std::uint8_t{});
-    case NumberType::int8:
-      return view(std::int8_t{});
-    case NumberType::uint16:
-      return view(std::uint16_t{});
-    case NumberType::int16:
-      return view(std::int16_t{});
-    default:
+  return visit_type(l.type, [&]<class C>(C) -> ArrayView {
+    if constexpr (std::is_floating_point_v<C> || (std::is_integral_v<C> && sizeof(C) <= 2)) {
+      const void* const first = array_detail::first_within(buffer, l);
+      return ArrayView(static_cast<const C*>(first), l.channels, l.count, l.stride_bytes);
+    } else {
       throw Error(Errc::invalid_argument,
                   "array: values are float32, float64 or normalized integers of 8 or 16 bits");
-  }
+    }
+  });
 }
 
 #define RASTRUM_READERS(T)                                                                      \
@@ -193,30 +197,14 @@ IndexView IndexView::in(std::span<const std::byte> buffer, const ArrayLayout& l)
   if (l.channels != 1)
     throw Error(Errc::invalid_argument,
                 "array: indices have one channel, not " + std::to_string(l.channels));
-  const auto view = [&]<class C>(C) {
-    const void* const first = array_detail::first_within(buffer, l);
-    return of(static_cast<const C*>(first), l.count, l.stride_bytes);
-  };
-  switch (l.type) {
-    case NumberType::uint8:
-      return view(std::uint8_t{});
-    case NumberType::int8:
-      return view(std::int8_t{});
-    case NumberType::uint16:
-      return view(std::uint16_t{});
-    case NumberType::int16:
-      return view(std::int16_t{});
-    case NumberType::uint32:
-      return view(std::uint32_t{});
-    case NumberType::int32:
-      return view(std::int32_t{});
-    case NumberType::uint64:
-      return view(std::uint64_t{});
-    case NumberType::int64:
-      return view(std::int64_t{});
-    default:
+  return visit_type(l.type, [&]<class C>(C) -> IndexView {
+    if constexpr (std::is_integral_v<C>) {
+      const void* const first = array_detail::first_within(buffer, l);
+      return of(static_cast<const C*>(first), l.count, l.stride_bytes);
+    } else {
       throw Error(Errc::invalid_argument, "array: indices are integers");
-  }
+    }
+  });
 }
 
 std::string IndexView::text(std::size_t i) const {
