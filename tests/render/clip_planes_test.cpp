@@ -17,6 +17,7 @@
 #include "tests/support/oracle.hpp"
 #include "tests/support/projection.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test::clip_planes_test {
@@ -248,15 +249,6 @@ TEST(ClipPlanes, RefuseWhatIsNone) {
   const std::vector<Vec3> positions{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
   InstanceView instance{MeshView{.positions = positions}, Mat4d::identity()};
   const SceneView scene{.instances = {&instance, 1}};
-  const auto refused = [](const char* part, auto&& f) {
-    try {
-      f();
-      ADD_FAILURE() << part;
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), Errc::invalid_argument);
-      EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
-    }
-  };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto with = [&](std::vector<ClipPlane> planes) {
     return [&, planes] {
@@ -265,22 +257,24 @@ TEST(ClipPlanes, RefuseWhatIsNone) {
       check(o);
     };
   };
-  refused("the frame: clip plane 1 has no direction", with({{{1, 0, 0}, 0}, {{0, 0, 0}, 1}}));
-  refused("clip plane 0 is not finite", with({{{nan, 0, 0}, 0}}));
-  refused("clip plane 0 is not finite", with({{{1, 0, 0}, nan}}));
-  refused("9 clip planes; there are at most 8", with(std::vector<ClipPlane>(9, {{1, 0, 0}, 0})));
+  expect_refused("the frame: clip plane 1 has no direction",
+                 with({{{1, 0, 0}, 0}, {{0, 0, 0}, 1}}));
+  expect_refused("clip plane 0 is not finite", with({{{nan, 0, 0}, 0}}));
+  expect_refused("clip plane 0 is not finite", with({{{1, 0, 0}, nan}}));
+  expect_refused("9 clip planes; there are at most 8",
+                 with(std::vector<ClipPlane>(9, {{1, 0, 0}, 0})));
   const std::vector<ClipPlane> bad{{{0, 0, 0}, 0}};
   instance.clip_planes = bad;
   Image<float> depth(kW, kH);
-  refused("instance 0: clip plane 0",
-          [&] { Painter(options()).render(scene, {}, {.depth = depth}); });
+  expect_refused("instance 0: clip plane 0",
+                 [&] { Painter(options()).render(scene, {}, {.depth = depth}); });
   // An index that is out of range is an error before a plane looks at its vertex.
   const std::vector<std::uint32_t> indices{0, 1, 7};
   instance.geometry = MeshView{.positions = positions, .indices = indices};
   const std::vector<ClipPlane> good{{{1, 0, 0}, 0}};
   instance.clip_planes = good;
   for (const Device device : {Device::serial, Device::threads})
-    refused("out of range", [&] {
+    expect_refused("out of range", [&] {
       RenderOptions o = options();
       o.device = device;
       Painter(o).render(scene, {}, {.depth = depth});

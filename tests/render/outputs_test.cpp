@@ -17,6 +17,7 @@
 #include "tests/support/family.hpp"
 #include "tests/support/projection.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/surfaces.hpp"
 
@@ -346,33 +347,25 @@ TEST(Outputs, LinearLightIsTheColourBeforeItsTransferAndChangesNoOther) {
 
 TEST(Outputs, RefuseWhatTheyAreNotFor) {
   const Two two;
-  const auto refused = [&](const char* part, Errc code, auto&& f) {
-    try {
-      f();
-      ADD_FAILURE() << part;
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), code) << e.what();
-      EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
-    }
-  };
   Painter painter(options());
   Image<Vec3> small(kW, kH - 1), positions(kW, kH);
   Image<Vec4> linear(kW, kH);
-  refused("positions target is 72x55", Errc::invalid_argument,
-          [&] { painter.render(two.scene(), two.camera, {.positions = small}); });
-  refused("normals target: rows", Errc::invalid_argument, [&] {
+  expect_refused("positions target is 72x55", Errc::invalid_argument,
+                 [&] { painter.render(two.scene(), two.camera, {.positions = small}); });
+  expect_refused("normals target: rows", Errc::invalid_argument, [&] {
     Targets t;
     t.normals = positions;
     t.normals.stride = kW / 2;
     painter.render(two.scene(), two.camera, t);
   });
-  refused("'material'", Errc::unsupported,
-          [&] { painter.render(two.scene(), two.camera, {.linear = linear}); });
+  expect_refused("'material'", Errc::unsupported,
+                 [&] { painter.render(two.scene(), two.camera, {.linear = linear}); });
   RenderOptions in_place = options();
   in_place.in_place = true;
   if (Painter(in_place).options().device == Device::cuda)
-    refused("in one pass", Errc::unsupported,
-            [&] { Painter(in_place).render(two.scene(), two.camera, {.positions = positions}); });
+    expect_refused("in one pass", Errc::unsupported, [&] {
+      Painter(in_place).render(two.scene(), two.camera, {.positions = positions});
+    });
   const raster::Program program(
       [](std::uint32_t i) {
         return raster::VertexOutput<Vec3>{{i == 1 ? 3.0F : -1.0F, i == 2 ? 3.0F : -1.0F, 0.5F, 1},
@@ -383,7 +376,7 @@ TEST(Outputs, RefuseWhatTheyAreNotFor) {
       });
   const raster::ProgramDraw own = program.draw(3);
   Renderer renderer(options());
-  refused("positions target is of a scene", Errc::unsupported, [&] {
+  expect_refused("positions target is of a scene", Errc::unsupported, [&] {
     renderer.draw({&own, 1}, options(), {.positions = positions});
   });
   // What needs no scene it has.
@@ -399,8 +392,8 @@ TEST(Outputs, RefuseWhatTheyAreNotFor) {
   tilted.matrix = world_to_clip(two.camera, kW, kH);
   tilted.matrix->m[2][0] += 0.1;
   Image<float> distance(kW, kH);
-  refused("planes of equal depth", Errc::invalid_argument,
-          [&] { painter.render(two.scene(), tilted, {.distance = distance}); });
+  expect_refused("planes of equal depth", Errc::invalid_argument,
+                 [&] { painter.render(two.scene(), tilted, {.distance = distance}); });
 }
 
 }  // namespace

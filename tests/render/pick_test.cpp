@@ -10,6 +10,7 @@
 
 #include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/surfaces.hpp"
 
@@ -81,21 +82,12 @@ TEST(Pick, RefusesWhatIsNotThere) {
   const SceneView scene{.instances = {&instance, 1}};
   const FrameOptions frame{.width = 20, .height = 10};
   Renderer renderer({.threads = 1});
-  const auto refused = [](const char* part, auto&& f) {
-    try {
-      f();
-      ADD_FAILURE() << part;
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), Errc::invalid_argument);
-      EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
-    }
-  };
-  refused("(20, 3) lies outside", [&] { (void)renderer.pick(scene, {}, frame, 20, 3); });
-  refused("(2, -1) lies outside", [&] { (void)renderer.pick(scene, {}, frame, 2, -1); });
-  refused("primitive 1 is out of range", [&] { (void)locate(scene, 1); });
+  expect_refused("(20, 3) lies outside", [&] { (void)renderer.pick(scene, {}, frame, 20, 3); });
+  expect_refused("(2, -1) lies outside", [&] { (void)renderer.pick(scene, {}, frame, 2, -1); });
+  expect_refused("primitive 1 is out of range", [&] { (void)locate(scene, 1); });
   instance.geometry = MeshView{.positions = positions, .indices = indices};
-  refused("out of range", [&] { (void)renderer.pick(scene, {}, frame, 2, 1); });
-  refused("out of range", [&] { (void)barycentrics(scene, {}, 20, 10, 0, 2, 1); });
+  expect_refused("out of range", [&] { (void)renderer.pick(scene, {}, frame, 2, 1); });
+  expect_refused("out of range", [&] { (void)barycentrics(scene, {}, 20, 10, 0, 2, 1); });
 }
 
 }  // namespace
