@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <deque>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -14,95 +13,17 @@
 #include <rastrum/parallel/turn.hpp>
 #include <rastrum/program.hpp>
 #include <rastrum/raster/bin/tile_grid.hpp>
-#include <rastrum/raster/draws/cut.hpp>
 #include <rastrum/raster/draws/mixed_draws.hpp>
-#include <rastrum/raster/resolve/surface_point.hpp>
-#include <rastrum/raster/shade/alpha.hpp>
-#include <rastrum/raster/shade/interpolate.hpp>
-#include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/render/access.hpp>
 #include <rastrum/render/scene_checks.hpp>
+#include <rastrum/render/scene_draws.hpp>
 #include <rastrum/render/surface_of_key.hpp>
-#include <rastrum/render/surfaces.hpp>
+#include <rastrum/render/target_checks.hpp>
 
 namespace rastrum {
 namespace {
-
-/// Calls f(view, name) for each target of the surface at a pixel that needs a scene, and for the
-/// others of it.
-template <class F>
-void each_target_of_scene(const Targets& t, const F& f) {
-  f(t.positions, "positions");
-  f(t.normals, "normals");
-  f(t.camera_normals, "camera_normals");
-  f(t.view_depth, "view_depth");
-  f(t.distance, "distance");
-  f(t.albedo, "albedo");
-}
-template <class F>
-void each_target_of_surface(const Targets& t, const F& f) {
-  f(t.instances, "instances");
-  f(t.primitives, "primitives");
-  f(t.barycentrics, "barycentrics");
-  each_target_of_scene(t, f);
-}
-bool wants_surface(const Targets& targets) {
-  bool any = false;
-  each_target_of_surface(targets, [&](const auto& view, const char*) { any |= !view.empty(); });
-  return any;
-}
-
-void check_targets(const Targets& targets, const FrameOptions& o) {
-  const auto check_target = [&](const auto& view, const char* name) {
-    check_size(view, o.width, o.height, std::string("the ").append(name) + " target");
-  };
-  check_target(targets.color8, "color8");
-  check_target(targets.color, "color");
-  check_target(targets.depth, "depth");
-  check_target(targets.ids, "ids");
-  check_target(targets.overdraw, "overdraw");
-  check_target(targets.keys, "keys");
-  check_target(targets.errors, "errors");
-  check_target(targets.linear, "linear");
-  each_target_of_surface(targets, check_target);
-  for (const ImageView<Vec4>& extra : targets.extra) {
-    if (extra.empty()) throw Error(Errc::invalid_argument, "an extra target is empty");
-    check_target(extra, "extra");
-  }
-}
-
-/// What only a scene has, or only materials have.
-void check_outputs(const Targets& targets, bool has_scene, bool shades_materials) {
-  if (!has_scene)
-    each_target_of_scene(targets, [](const auto& view, const char* name) {
-      if (!view.empty())
-        throw Error(Errc::unsupported, std::string("the ").append(name) +
-                                           " target is of a scene's surfaces; a program returns "
-                                           "its own as a further output (Targets::extra)");
-    });
-  if (!targets.linear.empty() && !shades_materials)
-    throw Error(Errc::unsupported,
-                "the linear target is of the shader 'material': the others compute display values");
-}
-
-raster::LitModel lit_model(Shader shader) {
-  switch (shader) {
-    case Shader::flat:
-      return raster::LitModel::flat;
-    case Shader::normal:
-      return raster::LitModel::normal;
-    case Shader::id:
-      return raster::LitModel::id;
-    case Shader::lambert:
-      return raster::LitModel::lambert;
-    case Shader::wireframe:
-      return raster::LitModel::wireframe;
-    default:
-      return raster::LitModel::phong;
-  }
-}
 
 /// Nearest white, farthest black; one depth alone is white. A surface at depth 0 is left to the
 /// background, from which its depth does not tell it.
@@ -127,51 +48,6 @@ void stretch_depth(ImageView<float> depth, Vec4 background, const Targets& targe
       if (!targets.color8.empty()) targets.color8(x, y) = raster::to_straight_rgba8(color);
       if (!targets.color.empty()) targets.color(x, y) = color;
     }
-}
-
-/// What of a frame in a device's memory the host would have to read or write.
-void check_in_place(const SceneView& scene, const Targets& targets, Shader shader,
-                    const FrameOptions& o) {
-  const auto require = [](bool ok, const char* what) {
-    if (!ok)
-      throw Error(Errc::unsupported,
-                  std::string("arrays in the device's memory (in_place): ").append(what));
-  };
-  require(shader != Shader::depth && shader != Shader::material && shader != Shader::wireframe,
-          "the shaders depth, material and wireframe need them in the host's");
-  require(scene.materials.empty(), "materials need them in the host's");
-  if (const std::string why = why_not_on_device(scene); !why.empty()) require(false, why.c_str());
-  require(o.opacity == 1 && o.samples == 1, "surfaces must be opaque, with one sample a pixel");
-  require(targets.overdraw.empty() && targets.errors.empty() && targets.extra.empty() &&
-              targets.linear.empty() && !wants_surface(targets) && !targets.load && !targets.over,
-          "of the targets there are color8, color, depth, ids and keys, in one pass");
-  require(o.clip_planes.empty() &&
-              std::ranges::all_of(scene.instances,
-                                  [](const InstanceView& i) { return i.clip_planes.empty(); }),
-          "clip planes need them in the host's");
-}
-
-/// What scenes of more than meshes do not have yet.
-void check_asked_of_meshes(const SceneView& scene, const Targets& targets, const FrameOptions& o) {
-  const auto refuse = [](const char* what) {
-    throw Error(Errc::unsupported,
-                std::string(what).append(": of meshes alone, but the scene has spheres, cylinders, "
-                                         "tubes or discs"));
-  };
-  if (wants_surface(targets)) refuse("targets beside colour, depth, ids and keys");
-  if (!o.clip_planes.empty() || std::ranges::any_of(scene.instances, [](const InstanceView& i) {
-        return !i.clip_planes.empty();
-      }))
-    refuse("clip planes");
-}
-
-void check_over(const Targets& targets, const FrameOptions& o) {
-  const auto require = [](bool ok, const char* what) {
-    if (!ok) throw Error(Errc::invalid_argument, what);
-  };
-  require(!targets.depth.empty(), "to draw over a picture its depth is needed");
-  require(!targets.load, "a pass that loads keys knows what it draws over by them");
-  require(o.samples == 1, "a picture that is drawn over has one sample a pixel");
 }
 
 }  // namespace
@@ -214,15 +90,10 @@ struct Renderer::Impl {
     std::string why_host{};              ///< FrameRequest::why_host
   };
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
-  FrameStats draw_depth(std::span<raster::Draw> draws, const raster::Testing& test,
-                        const Call& call, const raster::SurfaceScene* surface);
-  /// What draws of a scene have beside them.
-  struct OfScene {
-    bool linear_light = false;
-    const raster::SurfaceScene* surface = nullptr;
-  };
+  FrameStats draw_depth(SceneDraws& scene, const Call& call);
+  /// `scene`: what the draws are of; null: programs.
   FrameStats draw(std::span<raster::Draw> draws, const raster::Shading& shading,
-                  const raster::Testing& test, const Call& call, const OfScene* scene = nullptr);
+                  const raster::Testing& test, const Call& call, const SceneDraws* scene = nullptr);
 
   void make_drawer();
 
@@ -323,102 +194,15 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
   raster::check_materials(scene);
   check_surfaces(scene);
   check_outputs(call.targets, true, taken == Shader::material);
-  std::deque<raster::DrawCut> cuts;  // draws point to them
-  const Mat4d to_clip = world_to_clip(camera, o.width, o.height);
-  std::vector<raster::Draw> draws;
-  draws.reserve(scene.instances.size());
-  const bool blends = o.transparency.method != Transparency::none && taken != Shader::depth;
-  const bool all_translucent = blends && o.opacity < 1;
-  const std::vector<std::uint32_t> material_flags = raster::material_flags(scene.materials, blends);
-  std::uint32_t any_flags = 0;  // of materials and colours
-  std::uint32_t any_surface_flags = 0;
-  const auto is_mesh = [](const InstanceView& instance) { return instance.mesh() != nullptr; };
-  SceneView meshes = scene;
-  std::vector<InstanceView> mesh_list;
-  if (!std::ranges::all_of(scene.instances, is_mesh)) {
-    mesh_list = mesh_instances(scene);
-    meshes.instances = mesh_list;
-    check_asked_of_meshes(scene, call.targets, o);
-  }
-  const bool some_translucent =
-      blends && std::ranges::any_of(meshes.instances, [](const InstanceView& instance) {
-        return instance.visible && instance.opacity < 1;
-      });
-  std::optional<raster::LitModel> model;
-  if (taken != Shader::material) model = lit_model(taken);
-  SurfaceDraws surfaces(scene, {model, blends, o.opacity}, camera, o.width, o.height);
-  for (const InstanceView& instance : scene.instances) {
-    raster::Draw& draw = draws.emplace_back();
-    draw.visible = instance.visible;
-    draw.winding = instance.winding;
-    if (surfaces.add(instance, to_clip, draw)) {
-      any_surface_flags |= draw.flags;
-      continue;
-    }
-    const MeshView& mesh = *instance.mesh();
-    draw.set_triangles(mesh);
-    draw.source = raster::MatrixVertices(mesh.positions, to_clip * instance.object_to_world);
-    draw.cull = material_cull(instance, scene.materials, taken);
-    std::uint32_t flags = raster::set_material_flags(draw, instance, material_flags);
-    if (blends && scene.materials.empty() && !call.in_place && instance.visible &&
-        raster::has_color_alpha(instance, threads.get())) {
-      draw.flags |= raster::kTranslucent;
-      flags |= raster::kTranslucent;
-    }
-    if (all_translucent || (blends && instance.opacity < 1)) draw.flags |= raster::kTranslucent;
-    any_flags |= flags;
-    if (o.clip_planes.empty() && instance.clip_planes.empty()) continue;
-    raster::check_clip_planes(
-        instance.clip_planes,
-        std::string("instance ").append(std::to_string(draws.size() - 1)).append(": ").c_str());
-    draw.cut = &cuts.emplace_back(instance, o.clip_planes);
-  }
-  const bool any_mask = (any_flags & raster::kTested) != 0;
-  const bool any_blend = some_translucent || (any_flags & raster::kTranslucent) != 0;
-  const bool is_translucent =
-      all_translucent || any_blend || (any_surface_flags & raster::kTranslucent) != 0;
-  const bool shades_materials = taken == Shader::material;
-  const bool wants_albedo = !call.targets.albedo.empty();
-  std::optional<raster::MaterialScene> materials;
-  if (shades_materials || any_mask || any_blend || wants_albedo) {
-    textures.update(scene.textures,
-                    raster::texture_uses(scene, shades_materials || wants_albedo, any_blend),
-                    threads.get());
-    materials.emplace(meshes, camera, o.width, o.height, textures);
-  }
-  std::optional<raster::SurfaceScene> surface;
-  if (wants_surface(call.targets)) {
-    surface.emplace(scene, camera, o.width, o.height);
-    surface->materials = materials ? &*materials : nullptr;
-    if (!call.targets.view_depth.empty() || !call.targets.distance.empty())
-      (void)view_distance(camera, 1);  // throws where depth tells none
-  }
-  raster::Testing test;
-  if (any_mask) test = raster::MaskTest{&*materials};
-  const auto named = [&](FrameStats stats) {
-    stats.shader = name(taken);
-    return stats;
-  };
-  if (taken == Shader::depth)
-    return named(draw_depth(draws, test, call, surface ? &*surface : nullptr));
-  const bool linear = shades_materials && (is_translucent || !call.targets.linear.empty());
-  if (linear) surfaces.leave_linear();
-  std::optional<raster::LitScene> lit;
-  raster::Shading shading;
-  if (shades_materials) {
-    shading = raster::MaterialShading{&*materials, linear};
-  } else {
-    lit.emplace(meshes, camera, o.width, o.height);
-    shading = raster::LitShading{lit_model(taken), &*lit};
-  }
-  if (is_translucent) shading = shading.with_alpha(any_blend ? &*materials : nullptr, o.opacity);
-  const OfScene of_scene{linear, surface ? &*surface : nullptr};
-  return named(draw(draws, shading, test, call, &of_scene));
+  SceneDraws of(scene, camera, {o, call.targets, taken, call.in_place}, textures, threads.get());
+  FrameStats stats = taken == Shader::depth ? draw_depth(of, call)
+                                            : draw(of.draws(), of.shading(), of.test(), call, &of);
+  stats.shader = name(taken);
+  return stats;
 }
 
 /// Grey by depth needs the range of depths in the picture, so it is a pass after the frame.
-FrameStats Renderer::Impl::draw_depth(std::span<raster::Draw> draws, const raster::Testing& test,
-                                      const Call& call, const raster::SurfaceScene* surface) {
+FrameStats Renderer::Impl::draw_depth(SceneDraws& scene, const Call& call) {
   const FrameOptions& o = call.frame;
   const Targets& targets = call.targets;
   if (targets.over)
@@ -436,10 +220,9 @@ FrameStats Renderer::Impl::draw_depth(std::span<raster::Draw> draws, const raste
   }
   const raster::FragmentShader unused(
       [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
-  const OfScene of_scene{false, surface};
   Call pass{o, first};
   pass.why_host = call.why_host;
-  FrameStats stats = draw(draws, unused, test, pass, &of_scene);
+  FrameStats stats = draw(scene.draws(), unused, scene.test(), pass, &scene);
   const auto begin = std::chrono::steady_clock::now();
   stretch_depth(first.depth, o.background, targets);
   const double ms =
@@ -451,7 +234,7 @@ FrameStats Renderer::Impl::draw_depth(std::span<raster::Draw> draws, const raste
 
 FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Shading& shading,
                                 const raster::Testing& test, const Call& call,
-                                const OfScene* scene) {
+                                const SceneDraws* scene) {
   const FrameOptions& o = call.frame;
   const Targets& targets = call.targets;
   if (!call.part) check_targets(targets, o);
@@ -490,8 +273,8 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   request.draws = draws;
   if (scene != nullptr) {
     request.draw_noun = "instance";
-    request.linear_light = scene->linear_light;
-    request.surface = scene->surface;
+    request.linear_light = scene->linear_light();
+    request.surface = scene->surface();
   }
   request.wants_surface = wants_surface(targets);
   request.cuts = std::ranges::any_of(draws, [](const raster::Draw& d) { return d.cut != nullptr; });

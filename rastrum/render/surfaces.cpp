@@ -112,10 +112,11 @@ bool SurfaceDraws::add(const InstanceView& instance, const Mat4d& world_to_clip,
   return true;
 }
 
-std::vector<InstanceView> mesh_instances(const SceneView& scene) {
+std::optional<std::vector<InstanceView>> meshes_beside_others(const SceneView& scene) {
+  const auto is_mesh = [](const InstanceView& i) { return i.mesh() != nullptr; };
+  if (std::ranges::all_of(scene.instances, is_mesh)) return std::nullopt;
   std::vector<InstanceView> meshes;
-  std::ranges::copy_if(scene.instances, std::back_inserter(meshes),
-                       [](const InstanceView& i) { return i.mesh() != nullptr; });
+  std::ranges::copy_if(scene.instances, std::back_inserter(meshes), is_mesh);
   return meshes;
 }
 

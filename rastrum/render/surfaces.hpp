@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,7 +38,7 @@ class SurfaceDraws {
   std::deque<raster::QuadricStage> stages_;  // draws point to them
 };
 
-/// The instances that are meshes.
-[[nodiscard]] std::vector<InstanceView> mesh_instances(const SceneView& scene);
+/// The instances that are meshes, where there are others, too; none: all are.
+[[nodiscard]] std::optional<std::vector<InstanceView>> meshes_beside_others(const SceneView& scene);
 
 }  // namespace rastrum

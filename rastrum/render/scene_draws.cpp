@@ -1,0 +1,127 @@
+#include <rastrum/render/scene_draws.hpp>
+
+#include <algorithm>
+#include <string>
+
+#include <rastrum/pick.hpp>
+#include <rastrum/raster/shade/alpha.hpp>
+#include <rastrum/render/target_checks.hpp>
+
+namespace rastrum {
+namespace {
+
+raster::LitModel lit_model(Shader shader) {
+  switch (shader) {
+    case Shader::flat:
+      return raster::LitModel::flat;
+    case Shader::normal:
+      return raster::LitModel::normal;
+    case Shader::id:
+      return raster::LitModel::id;
+    case Shader::lambert:
+      return raster::LitModel::lambert;
+    case Shader::wireframe:
+      return raster::LitModel::wireframe;
+    default:
+      return raster::LitModel::phong;
+  }
+}
+
+bool blends_surfaces(const SceneDraws::Options& o) {
+  return o.frame.transparency.method != Transparency::none && o.shader != Shader::depth;
+}
+
+raster::QuadricLook look_of(const SceneDraws::Options& o) {
+  std::optional<raster::LitModel> model;
+  if (o.shader != Shader::material) model = lit_model(o.shader);
+  return {model, blends_surfaces(o), o.frame.opacity};
+}
+
+}  // namespace
+
+SceneDraws::SceneDraws(const SceneView& scene, const Camera& camera, const Options& options,
+                       raster::TextureSet& textures, parallel::Threads* threads)
+    : scene_(scene),
+      meshes_(scene),
+      surfaces_(scene, look_of(options), camera, options.frame.width, options.frame.height) {
+  const FrameOptions& o = options.frame;
+  const Targets& targets = options.targets;
+  mesh_list_ = meshes_beside_others(scene);
+  if (mesh_list_) {
+    meshes_.instances = *mesh_list_;
+    check_asked_of_meshes(scene, targets, o);
+  }
+  const Flags flags = make_draws(options, world_to_clip(camera, o.width, o.height), threads);
+
+  const bool masks = (flags.materials & raster::kTested) != 0;
+  const bool material_alpha = (flags.materials & raster::kTranslucent) != 0;
+  const bool shades_materials = options.shader == Shader::material;
+  const bool wants_albedo = !targets.albedo.empty();
+  if (shades_materials || masks || material_alpha || wants_albedo) {
+    textures.update(scene.textures,
+                    raster::texture_uses(scene, shades_materials || wants_albedo, material_alpha),
+                    threads);
+    materials_.emplace(meshes_, camera, o.width, o.height, textures);
+  }
+  if (wants_surface(targets)) {
+    surface_.emplace(scene_, camera, o.width, o.height);
+    surface_->materials = materials_ ? &*materials_ : nullptr;
+    if (!targets.view_depth.empty() || !targets.distance.empty())
+      (void)view_distance(camera, 1);  // throws where depth tells none
+  }
+  if (masks) test_ = raster::MaskTest{&*materials_};
+  if (options.shader == Shader::depth) return;
+
+  const bool translucent = (flags.any & raster::kTranslucent) != 0;
+  linear_light_ = shades_materials && (translucent || !targets.linear.empty());
+  if (linear_light_) surfaces_.leave_linear();
+  if (shades_materials) {
+    shading_ = raster::MaterialShading{&*materials_, linear_light_};
+  } else {
+    lit_.emplace(meshes_, camera, o.width, o.height);
+    shading_ = raster::LitShading{lit_model(options.shader), &*lit_};
+  }
+  if (translucent)
+    shading_ = shading_.with_alpha(material_alpha ? &*materials_ : nullptr, o.opacity);
+}
+
+SceneDraws::Flags SceneDraws::make_draws(const Options& options, const Mat4d& to_clip,
+                                         parallel::Threads* threads) {
+  const FrameOptions& o = options.frame;
+  const bool blends = blends_surfaces(options);
+  Flags all;
+  if (blends && o.opacity < 1) all.any |= raster::kTranslucent;
+  material_flags_ = raster::material_flags(scene_.materials, blends);
+  draws_.reserve(scene_.instances.size());
+  for (const InstanceView& instance : scene_.instances) {
+    raster::Draw& draw = draws_.emplace_back();
+    draw.visible = instance.visible;
+    draw.winding = instance.winding;
+    if (surfaces_.add(instance, to_clip, draw)) {
+      all.any |= draw.flags;
+      continue;
+    }
+    const MeshView& mesh = *instance.mesh();
+    draw.set_triangles(mesh);
+    draw.source = raster::MatrixVertices(mesh.positions, to_clip * instance.object_to_world);
+    draw.cull = material_cull(instance, scene_.materials, options.shader);
+    std::uint32_t flags = raster::set_material_flags(draw, instance, material_flags_);
+    if (blends && scene_.materials.empty() && !options.in_place && instance.visible &&
+        raster::has_color_alpha(instance, threads)) {
+      draw.flags |= raster::kTranslucent;
+      flags |= raster::kTranslucent;
+    }
+    if (blends && instance.visible && instance.opacity < 1) flags |= raster::kTranslucent;
+    if (blends && (o.opacity < 1 || instance.opacity < 1)) draw.flags |= raster::kTranslucent;
+    all.materials |= flags;
+    all.any |= flags;
+    if (o.clip_planes.empty() && instance.clip_planes.empty()) continue;
+    raster::check_clip_planes(
+        instance.clip_planes,
+        std::string("instance ").append(std::to_string(draws_.size() - 1)).append(": ").c_str());
+    draw.cut = &cuts_.emplace_back(instance, o.clip_planes);
+  }
+  return all;
+}
+
+}  // namespace rastrum

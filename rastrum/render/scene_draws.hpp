@@ -1,0 +1,72 @@
+// A scene as what the pipeline draws: a draw an instance, and what shades and tests them.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/raster/draws/cut.hpp>
+#include <rastrum/raster/draws/draw.hpp>
+#include <rastrum/raster/resolve/surface_point.hpp>
+#include <rastrum/raster/shade/lit.hpp>
+#include <rastrum/raster/shade/material.hpp>
+#include <rastrum/raster/shade/shading.hpp>
+#include <rastrum/raster/shade/texture.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/render/surfaces.hpp>
+
+namespace rastrum {
+
+/// Of one frame. What it gives points into it and into the scene.
+class SceneDraws {
+ public:
+  struct Options {
+    const FrameOptions& frame;
+    const Targets& targets;
+    Shader shader;  ///< what the frame's became for this scene (shader_for)
+    bool in_place;  ///< arrays are a device's: none of their values is read here
+  };
+  /// The scene was checked (check_scene). Textures that the frame reads are brought up to date.
+  /// Throws Error where planes, outputs and what is drawn do not go together. O(instances +
+  /// colours that may be translucent).
+  SceneDraws(const SceneView& scene, const Camera& camera, const Options& options,
+             raster::TextureSet& textures, parallel::Threads* threads);
+  SceneDraws(const SceneDraws&) = delete;
+  SceneDraws& operator=(const SceneDraws&) = delete;
+
+  [[nodiscard]] std::span<raster::Draw> draws() { return draws_; }
+  /// Of draws without their own; none for Shader::depth, whose greys need the whole picture.
+  [[nodiscard]] const raster::Shading& shading() const { return shading_; }
+  [[nodiscard]] const raster::Testing& test() const { return test_; }
+  [[nodiscard]] bool linear_light() const { return linear_light_; }
+  /// Null where no target is of the surface at a pixel.
+  [[nodiscard]] const raster::SurfaceScene* surface() const {
+    return surface_ ? &*surface_ : nullptr;
+  }
+
+ private:
+  /// Flags that some primitive has: by what materials, colours and looks of meshes say, which
+  /// MaterialScene reads, and by anything.
+  struct Flags {
+    std::uint32_t materials = 0, any = 0;
+  };
+  Flags make_draws(const Options& options, const Mat4d& to_clip, parallel::Threads* threads);
+
+  SceneView scene_;
+  std::optional<std::vector<InstanceView>> mesh_list_;  ///< where there are others, too
+  SceneView meshes_;                                    ///< the instances that are meshes
+  std::vector<std::uint32_t> material_flags_;           // draws point to them
+  std::vector<raster::Draw> draws_;
+  std::deque<raster::DrawCut> cuts_;  // draws point to them
+  SurfaceDraws surfaces_;
+  std::optional<raster::MaterialScene> materials_;
+  std::optional<raster::LitScene> lit_;
+  std::optional<raster::SurfaceScene> surface_;
+  raster::Shading shading_;
+  raster::Testing test_;
+  bool linear_light_ = false;
+};
+
+}  // namespace rastrum

@@ -1,0 +1,29 @@
+// What a frame is asked to write, looked at before it is begun.
+#pragma once
+
+#include <rastrum/render.hpp>
+
+namespace rastrum {
+
+/// Whether a target is asked for that is of the surface at a pixel (raster/resolve/surface_point).
+[[nodiscard]] bool wants_surface(const Targets& targets);
+
+/// Throws Error{invalid_argument} for a target that is not of the frame's size, and names it.
+void check_targets(const Targets& targets, const FrameOptions& frame);
+
+/// What only a scene has, or only materials have: Error{unsupported}.
+void check_outputs(const Targets& targets, bool has_scene, bool shades_materials);
+
+/// Throws Error{unsupported} for what of a frame in a device's memory the host would have to read
+/// or write.
+void check_in_place(const SceneView& scene, const Targets& targets, Shader shader,
+                    const FrameOptions& frame);
+
+/// What scenes of more than meshes do not have yet: Error{unsupported}.
+void check_asked_of_meshes(const SceneView& scene, const Targets& targets,
+                           const FrameOptions& frame);
+
+/// Throws Error{invalid_argument} where a picture cannot be drawn over (Targets::over).
+void check_over(const Targets& targets, const FrameOptions& frame);
+
+}  // namespace rastrum
