@@ -25,6 +25,7 @@ struct QuadricShape {
   QuadricKind kind = QuadricKind::sphere;
   Vec3d p0, p1;
   double r0 = 0, r1 = 0;
+  double along = 0;  ///< of a sphere: which end of its primitive it is about, 0 or 1
 };
 
 /// What became of a primitive before it was projected.
@@ -36,6 +37,14 @@ enum class ShapeFate : std::uint8_t {
 
 using QuadricGeometry = std::variant<SpheresView, CylindersView, TubesView, DiscsView>;
 
+/// The positions of primitive `i`, which are those of its radii and colours, too; one stands for
+/// both where it has but one. Offsets must be in range.
+struct AxisEnds {
+  std::size_t first, second;
+};
+[[nodiscard]] AxisEnds axis_ends(const QuadricGeometry& geometry, std::uint64_t i);
+[[nodiscard]] const ArrayView<Vec3>& positions_of(const QuadricGeometry& geometry);
+
 /// The primitives of a draw and the matrices that they are seen by. Must outlive the frame.
 class QuadricStage {
  public:
@@ -43,7 +52,7 @@ class QuadricStage {
   QuadricStage(const QuadricGeometry& geometry, const Mat4d& object_to_clip);
 
   /// The shape of primitive `i`, simplified: a hull in which one sphere holds the other is that
-  /// sphere. Indices must be in range.
+  /// sphere, about one of its two ends. Indices must be in range.
   [[nodiscard]] ShapeFate shape(std::uint64_t i, QuadricShape& out) const;
   [[nodiscard]] const Mat4d& object_to_clip() const { return object_to_clip_; }
   /// Null: there is none.
