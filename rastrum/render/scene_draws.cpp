@@ -47,10 +47,7 @@ SceneDraws::SceneDraws(const SceneView& scene, const Camera& camera, const Optio
   const FrameOptions& o = options.frame;
   const Targets& targets = options.targets;
   mesh_list_ = meshes_beside_others(scene);
-  if (mesh_list_) {
-    meshes_.instances = *mesh_list_;
-    check_asked_of_meshes(scene, targets, o);
-  }
+  if (mesh_list_) meshes_.instances = *mesh_list_;
   const Flags flags = make_draws(options, world_to_clip(camera, o.width, o.height), threads);
 
   const bool masks = (flags.materials & raster::kTested) != 0;
@@ -97,7 +94,13 @@ SceneDraws::Flags SceneDraws::make_draws(const Options& options, const Mat4d& to
     raster::Draw& draw = draws_.emplace_back();
     draw.visible = instance.visible;
     draw.winding = instance.winding;
-    if (surfaces_.add(instance, to_clip, draw)) {
+    if (!o.clip_planes.empty() || !instance.clip_planes.empty()) {
+      raster::check_clip_planes(
+          instance.clip_planes,
+          std::string("instance ").append(std::to_string(draws_.size() - 1)).append(": ").c_str());
+      draw.cut = &cuts_.emplace_back(instance, o.clip_planes);
+    }
+    if (surfaces_.add(instance, to_clip, draw, threads)) {
       all.any |= draw.flags;
       continue;
     }
@@ -107,7 +110,7 @@ SceneDraws::Flags SceneDraws::make_draws(const Options& options, const Mat4d& to
     draw.cull = material_cull(instance, scene_.materials, options.shader);
     std::uint32_t flags = raster::set_material_flags(draw, instance, material_flags_);
     if (blends && scene_.materials.empty() && !options.in_place && instance.visible &&
-        raster::has_color_alpha(instance, threads)) {
+        raster::has_color_alpha(instance, mesh.colors.values, threads)) {
       draw.flags |= raster::kTranslucent;
       flags |= raster::kTranslucent;
     }
@@ -115,11 +118,6 @@ SceneDraws::Flags SceneDraws::make_draws(const Options& options, const Mat4d& to
     if (blends && (o.opacity < 1 || instance.opacity < 1)) draw.flags |= raster::kTranslucent;
     all.materials |= flags;
     all.any |= flags;
-    if (o.clip_planes.empty() && instance.clip_planes.empty()) continue;
-    raster::check_clip_planes(
-        instance.clip_planes,
-        std::string("instance ").append(std::to_string(draws_.size() - 1)).append(": ").c_str());
-    draw.cut = &cuts_.emplace_back(instance, o.clip_planes);
   }
   return all;
 }

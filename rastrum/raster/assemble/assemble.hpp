@@ -131,7 +131,7 @@ Fate assemble_quadric(int width, int height, const Draw& draw, std::uint64_t p, 
     front = front && place.front;
     back = back && !place.front;
   } else if (front && !quadric.is_open && !place.asks_near &&
-             (flags & (kTested | kTranslucent)) == 0) {
+             (flags & (kTested | kCut | kTranslucent)) == 0) {
     back = false;  // it is hidden
   }
   Piece piece;
