@@ -19,6 +19,8 @@
 
 namespace rastrum::raster {
 
+struct SphereLanes;
+
 /// How the surfaces of a frame look.
 struct QuadricLook {
   std::optional<LitModel> model;  ///< none: as materials
@@ -57,9 +59,21 @@ class QuadricShader final : public BlockShader, public FragmentTest {
   struct Kept;
   struct KeptQuadrics;
 
-  void fetch(const FrameGeometry& frame, std::uint64_t low, Kept& out) const;
-  [[nodiscard]] Vec4 color(const Kept& kept, const FrameGeometry& frame, std::uint64_t key,
-                           float px, float py, QuadricSurface::Place at) const;
+  struct Seen {
+    Vec4 base;
+    Vec3 normal;  ///< world space, of any length
+  };
+
+  /// `all`: whose eye is used; null: a new one.
+  void fetch(const FrameGeometry& frame, std::uint64_t low, KeptQuadrics* all, Kept& out) const;
+  [[nodiscard]] static Seen seen(const Kept& kept, std::uint64_t key, QuadricSurface::Place at);
+  /// `own`: the alpha of what is seen.
+  [[nodiscard]] float alpha(const Surface& surface, float own) const;
+  [[nodiscard]] Vec4 color(const Kept& kept, std::uint64_t key, float px, float py,
+                           QuadricSurface::Place at) const;
+  /// shade() of the models that lanes have.
+  bool shade_lit(const SphereLanes& lanes, const FrameGeometry& frame, const VisibleBlock& block,
+                 Isa isa, BlockColors& colors) const;
 
   QuadricLook look_;
   bool linear_ = false;
