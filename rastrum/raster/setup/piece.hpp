@@ -52,6 +52,8 @@ inline constexpr int kLineWidthShift = 16;
 /// A triangle that was wound clockwise on the screen: where surfaces are closed, one of those that
 /// others hide.
 inline constexpr std::uint32_t kFacesAway = 16;
+/// One of those that a triangle was clipped to.
+inline constexpr std::uint32_t kClipped = 1U << 14;
 
 RASTRUM_HD inline bool is_triangle(const Piece& p) {
   return (p.flags & (kLine | kPoint | kQuadric)) == 0;
