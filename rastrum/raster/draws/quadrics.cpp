@@ -33,6 +33,17 @@ QuadricShape shape_of(const DiscsView& d, std::uint64_t i) {
   return {QuadricKind::disc, p, d.normals.wide(k), r, r};
 }
 
+template <class T>
+void prefetch_element(const ArrayView<T>& values, std::uint64_t i) {
+  if (!values.empty() && values.is_packed()) __builtin_prefetch(values.data() + i);
+}
+void prefetch_shape(const SpheresView& s, std::uint64_t i) {
+  prefetch_element(s.centers, i);
+  prefetch_element(s.radii, i);
+}
+template <class Geometry>
+void prefetch_shape(const Geometry& /*reads through indices*/, std::uint64_t) {}
+
 }  // namespace
 
 AxisEnds axis_ends(const QuadricGeometry& geometry, std::uint64_t i) {
@@ -57,6 +68,10 @@ const ArrayView<Vec3>& positions_of(const QuadricGeometry& geometry) {
 
 QuadricStage::QuadricStage(const QuadricGeometry& geometry, const Mat4d& object_to_clip)
     : geometry_(geometry), object_to_clip_(object_to_clip), inverse_(inverse(object_to_clip)) {}
+
+void QuadricStage::prefetch(std::uint64_t i) const {
+  std::visit([&](const auto& geometry) { prefetch_shape(geometry, i); }, geometry_);
+}
 
 ShapeFate QuadricStage::shape(std::uint64_t i, QuadricShape& out) const {
   out = std::visit([&](const auto& geometry) { return shape_of(geometry, i); }, geometry_);
