@@ -17,7 +17,7 @@ std::uint32_t quadric_cut_flags(const DrawCut& cut, const QuadricStage& stage,
                                 std::uint64_t primitive) {
   QuadricShape shape;
   if (stage.shape(primitive, shape) != ShapeFate::drawn) return 0;
-  const bool has_two = shape.kind != QuadricKind::sphere && shape.kind != QuadricKind::disc;
+  const bool has_two = has_two_ends(shape.kind);
   std::uint32_t flags = 0;
   for (const DrawCut::Plane& plane : cut.planes) {
     const double scale = length(Vec3d{plane.x, plane.y, plane.z}) * (1 + 1e-9);
