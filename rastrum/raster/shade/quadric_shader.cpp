@@ -8,7 +8,7 @@
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/shade/lit_scalar.hpp>
 #include <rastrum/raster/shade/material_scalar.hpp>
-#include <rastrum/raster/shade/sphere_lanes.hpp>
+#include <rastrum/raster/shade/quadric_lanes.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -169,57 +169,52 @@ std::uint64_t QuadricShader::test(const FrameGeometry& frame, const Piece& piece
   return kept;
 }
 
-bool QuadricShader::shade_lit(const SphereLanes& lanes, const FrameGeometry& frame,
+void QuadricShader::fill(const QuadricLanes& lanes, const Kept& kept, const VisibleBlock& block,
+                         std::uint64_t mask, QuadricBlock& out) {
+  const QuadricKind kind = kept.quadric.shape.kind;
+  if (block.points == nullptr && (kind == QuadricKind::sphere || kind == QuadricKind::hull))
+    return lanes.fill(kept.quadric, kept.surface->to_world.normal_matrix, kept.color, block, mask,
+                      out);
+  for (; mask != 0; mask &= mask - 1) {
+    const int i = std::countr_zero(mask);
+    const Vec2 from_centre =
+        block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
+    const Seen s =
+        seen(kept, block.keys[i],
+             kept.quadric.at(block.x0 + i % kBlockSize, block.y0 + i / kBlockSize, from_centre));
+    const float n[3] = {s.normal.x, s.normal.y, s.normal.z};
+    const float base[3] = {s.base.x, s.base.y, s.base.z};
+    for (int k = 0; k < 3; ++k) {
+      out.lit.n[k][i] = n[k];
+      out.lit.base[k][i] = base[k];
+    }
+    out.alpha[i] = s.base.w;
+  }
+}
+
+bool QuadricShader::shade_lit(const QuadricLanes& lanes, const FrameGeometry& frame,
                               const VisibleBlock& block, Isa isa, BlockColors& colors) const {
   KeptQuadrics& all = *static_cast<KeptQuadrics*>(block.scratch);
-  const bool by_id = look_.model == LitModel::id;
-  LitBlock surface;
-  float own_alpha[64];
-  const Surface* of[64];
+  QuadricBlock surface;
   for (std::uint64_t rest = block.covered; rest != 0;) {
     const std::uint64_t low = block.keys[std::countr_zero(rest)] & kIdMask;
     const std::uint64_t same = lanes.samples_of(block.keys, low) & rest;
     rest &= ~same;
     Kept& kept = all.kept[low % KeptQuadrics::kCount];
     if (kept.low != low) fetch(frame, low, &all, kept);
-    const bool is_sphere = kept.quadric.quadric.is_plain && block.points == nullptr;
-    const Vec4 base =
-        lerp(kept.color[0], kept.color[1], static_cast<float>(kept.quadric.shape.along));
-    if (is_sphere && !by_id)
-      lanes.fill(kept.quadric, kept.surface->to_world.normal_matrix, {base.x, base.y, base.z},
-                 block, same, surface);
+    fill(lanes, kept, block, same, surface);
+    if (!look_.blends) continue;
     for (std::uint64_t m = same; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
-      of[i] = kept.surface;
-      own_alpha[i] = base.w;
-      if (is_sphere) continue;
-      const Vec2 from_centre =
-          block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
-      const Seen s =
-          seen(kept, block.keys[i],
-               kept.quadric.at(block.x0 + i % kBlockSize, block.y0 + i / kBlockSize, from_centre));
-      own_alpha[i] = s.base.w;
-      const float n[3] = {s.normal.x, s.normal.y, s.normal.z};
-      const float c[3] = {s.base.x, s.base.y, s.base.z};
-      for (int k = 0; k < 3; ++k) {
-        surface.n[k][i] = n[k];
-        surface.base[k][i] = c[k];
-      }
+      surface.alpha[i] = alpha(*kept.surface, surface.alpha[i]);
     }
   }
-  if (by_id)
-    for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
-      const int i = std::countr_zero(m);
-      const Vec3 c = id_color(id_of_key(block.keys[i]));
-      colors.set(i, {c.x, c.y, c.z, 1});
-    }
-  else
-    (void)light_lit_simd(isa, *look_.model, rays_, block, surface, colors);
+  (void)light_lit_simd(isa, *look_.model, rays_, block, surface.lit, colors);
   if (!look_.blends) return true;
   bool opaque = true;
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    const float a = alpha(*of[i], own_alpha[i]);
+    const float a = surface.alpha[i];
     opaque &= colors.set(i, {colors.r[i] * a, colors.g[i] * a, colors.b[i] * a, a});
   }
   return opaque;
@@ -227,9 +222,9 @@ bool QuadricShader::shade_lit(const SphereLanes& lanes, const FrameGeometry& fra
 
 bool QuadricShader::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
                           BlockColors& colors) const noexcept {
-  const SphereLanes* const lanes = sphere_lanes(isa);
+  const QuadricLanes* const lanes = quadric_lanes(isa);
   if (lanes != nullptr && look_.model && *look_.model != LitModel::wireframe &&
-      (*look_.model != LitModel::id || look_.blends))
+      *look_.model != LitModel::id)
     return shade_lit(*lanes, frame, block, isa, colors);
   bool opaque = true;
   KeptQuadrics& all = *static_cast<KeptQuadrics*>(block.scratch);
@@ -237,10 +232,15 @@ bool QuadricShader::shade(const FrameGeometry& frame, const VisibleBlock& block,
     const int i = std::countr_zero(m);
     const std::uint64_t key = block.keys[i];
     const std::uint64_t low = key & kIdMask;
-    if (look_.model == LitModel::id && !look_.blends) {
-      const Vec3 c = id_color(kIdMask - low);
-      colors.set(i, {c.x, c.y, c.z, 1});
-      continue;
+    if (look_.model == LitModel::id) {
+      const std::uint64_t id = kIdMask - low;
+      const Surface& surface = surfaces_[frame.draw_of(id).number];
+      if (!look_.blends || !surface.has_own_alpha()) {
+        const Vec3 c = id_color(id);
+        const float a = alpha(surface, 1);
+        opaque &= colors.set(i, {c.x * a, c.y * a, c.z * a, a});
+        continue;
+      }
     }
     Kept& kept = all.kept[low % KeptQuadrics::kCount];
     if (kept.low != low) fetch(frame, low, &all, kept);

@@ -19,7 +19,8 @@
 
 namespace rastrum::raster {
 
-struct SphereLanes;
+struct QuadricBlock;
+struct QuadricLanes;
 
 /// How the surfaces of a frame look.
 struct QuadricLook {
@@ -55,6 +56,11 @@ class QuadricShader final : public BlockShader, public FragmentTest {
     const Material* material;
     float opacity;           ///< the instance's, the frame's and the material's
     ArrayView<Vec4> colors;  ///< empty: there are none
+
+    /// Whether alpha may change from point to point.
+    [[nodiscard]] bool has_own_alpha() const {
+      return material->alpha_mode == AlphaMode::blend && !(colors.empty() && base.w == 1);
+    }
   };
   struct Kept;
   struct KeptQuadrics;
@@ -71,8 +77,11 @@ class QuadricShader final : public BlockShader, public FragmentTest {
   [[nodiscard]] float alpha(const Surface& surface, float own) const;
   [[nodiscard]] Vec4 color(const Kept& kept, std::uint64_t key, float px, float py,
                            QuadricSurface::Place at) const;
+  /// What is seen of a primitive at the samples `mask` of a block.
+  static void fill(const QuadricLanes& lanes, const Kept& kept, const VisibleBlock& block,
+                   std::uint64_t mask, QuadricBlock& out);
   /// shade() of the models that lanes have.
-  bool shade_lit(const SphereLanes& lanes, const FrameGeometry& frame, const VisibleBlock& block,
+  bool shade_lit(const QuadricLanes& lanes, const FrameGeometry& frame, const VisibleBlock& block,
                  Isa isa, BlockColors& colors) const;
 
   QuadricLook look_;
