@@ -122,7 +122,7 @@ QuadricShader::Seen QuadricShader::seen(const Kept& k, std::uint64_t key,
           k.surface->to_world.to_world(Vec3(point.normal))};
 }
 
-float QuadricShader::alpha(const Surface& surface, float own) const {
+float QuadricShader::alpha_of(const Surface& surface, float own) const {
   if (!look_.blends) return 1;
   float alpha = surface.opacity;
   if (surface.material->alpha_mode == AlphaMode::blend) alpha *= own;
@@ -133,7 +133,7 @@ Vec4 QuadricShader::color(const Kept& k, std::uint64_t key, float px, float py,
                           QuadricSurface::Place at) const {
   const auto [base, normal] = seen(k, key, at);
   const Material& m = *k.surface->material;
-  const float alpha = this->alpha(*k.surface, base.w);
+  const float alpha = alpha_of(*k.surface, base.w);
   Vec3 c{base.x, base.y, base.z};
   if (look_.model) {
     c = scalar_lane::light(*look_.model, rays_, px, py, normal, c);
@@ -206,7 +206,7 @@ bool QuadricShader::shade_lit(const QuadricLanes& lanes, const FrameGeometry& fr
     if (!look_.blends) continue;
     for (std::uint64_t m = same; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
-      surface.alpha[i] = alpha(*kept.surface, surface.alpha[i]);
+      surface.alpha[i] = alpha_of(*kept.surface, surface.alpha[i]);
     }
   }
   (void)light_lit_simd(isa, *look_.model, rays_, block, surface.lit, colors);
@@ -237,7 +237,7 @@ bool QuadricShader::shade(const FrameGeometry& frame, const VisibleBlock& block,
       const Surface& surface = surfaces_[frame.draw_of(id).number];
       if (!look_.blends || !surface.has_own_alpha()) {
         const Vec3 c = id_color(id);
-        const float a = alpha(surface, 1);
+        const float a = alpha_of(surface, 1);
         opaque &= colors.set(i, {c.x * a, c.y * a, c.z * a, a});
         continue;
       }

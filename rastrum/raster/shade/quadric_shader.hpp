@@ -74,7 +74,7 @@ class QuadricShader final : public BlockShader, public FragmentTest {
   void fetch(const FrameGeometry& frame, std::uint64_t low, KeptQuadrics* all, Kept& out) const;
   [[nodiscard]] static Seen seen(const Kept& kept, std::uint64_t key, QuadricSurface::Place at);
   /// `own`: the alpha of what is seen.
-  [[nodiscard]] float alpha(const Surface& surface, float own) const;
+  [[nodiscard]] float alpha_of(const Surface& surface, float own) const;
   [[nodiscard]] Vec4 color(const Kept& kept, std::uint64_t key, float px, float py,
                            QuadricSurface::Place at) const;
   /// What is seen of a primitive at the samples `mask` of a block.
