@@ -4,16 +4,28 @@
 #include <string>
 
 #include <rastrum/error.hpp>
+#include <rastrum/raster/draws/vertices_of.hpp>
 #include <rastrum/raster/resolve/surface_point.hpp>
 #include <rastrum/render/surface_of_key.hpp>
 
 namespace rastrum {
 namespace {
 
-void require_mesh(const SceneView& scene, const Located& at) {
-  if (scene.instances[at.instance].mesh() == nullptr)
-    throw Error(Errc::unsupported, "instance " + std::to_string(at.instance) +
-                                       " is no mesh: only of meshes it is known what lies where");
+/// The draw of the instance that holds a primitive.
+raster::Draw draw_of(const SceneView& scene, const Located& at, const Mat4d& world_to_clip) {
+  const InstanceView& instance = scene.instances[at.instance];
+  raster::Draw draw;
+  if (!raster::set_vertices(draw, instance.geometry, world_to_clip * instance.object_to_world))
+    throw Error(Errc::unsupported,
+                "instance " + std::to_string(at.instance) +
+                    " is no mesh, points or lines: only of those it is known what lies where");
+  const auto corners = static_cast<int>(draw.topology);
+  for (int c = 0; c < corners; ++c)
+    if (draw.vertex(at.primitive, c) >= draw.vertex_count)
+      throw Error(Errc::invalid_argument, "instance " + std::to_string(at.instance) +
+                                              ": an index of primitive " +
+                                              std::to_string(at.primitive) + " is out of range");
+  return draw;
 }
 
 /// One instance as a scene of its own, so that what is asked about a primitive costs nothing for
@@ -26,20 +38,13 @@ struct Alone {
   raster::FrameGeometry geometry;
 
   Alone(const SceneView& all, const Camera& camera, int width, int height, std::uint64_t id)
-      : at(locate(all, id)), instance(all.instances[at.instance]), scene{{&instance, 1}, {}, {}} {
-    require_mesh(all, at);
-    const MeshView& mesh = *instance.mesh();
-    draw.source = raster::MatrixVertices(
-        mesh.positions, world_to_clip(camera, width, height) * instance.object_to_world);
-    draw.set_triangles(mesh);
+      : at(locate(all, id)),
+        instance(all.instances[at.instance]),
+        scene{{&instance, 1}, {}, {}},
+        draw(draw_of(all, at, world_to_clip(camera, width, height))) {
     draw.winding = instance.winding;
     draw.first_id = id - at.primitive;
     geometry = {width, height, raster::Viewport::of(width, height), {&draw, 1}, nullptr};
-    for (int c = 0; c < 3; ++c)
-      if (draw.vertex(at.primitive, c) >= draw.vertex_count)
-        throw Error(Errc::invalid_argument, "instance " + std::to_string(at.instance) +
-                                                ": an index of triangle " +
-                                                std::to_string(at.primitive) + " is out of range");
   }
   Alone(const Alone&) = delete;
   Alone& operator=(const Alone&) = delete;
@@ -74,15 +79,13 @@ Barycentrics barycentrics(const SceneView& scene, const Camera& camera, int widt
 }
 
 Vec3d position(const SceneView& scene, const Located& at, const Barycentrics& where) {
-  require_mesh(scene, at);
-  const InstanceView& instance = scene.instances[at.instance];
-  const MeshView& mesh = *instance.mesh();
+  const raster::Draw draw = draw_of(scene, at, Mat4d::identity());
   raster::Fragment f;
-  for (std::size_t c = 0; c < 3; ++c) {
-    f.vertex[c] = mesh.vertex(mesh.place(at.primitive).corner[c]);
+  for (int c = 0; c < static_cast<int>(draw.topology); ++c) {
+    f.vertex[c] = draw.vertex(at.primitive, c);
     f.weights.b[c] = where.weight[c];
   }
-  return raster::position_on(instance, f);
+  return raster::position_on(scene.instances[at.instance], f);
 }
 
 Pick surface_of_key(const SceneView& scene, const Camera& camera, int width, int height,

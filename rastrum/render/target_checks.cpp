@@ -95,6 +95,10 @@ void check_asked_of_meshes(const SceneView& scene, const Targets& targets, const
                 std::string(what).append(": of meshes alone, but the scene has spheres, cylinders, "
                                          "tubes or discs"));
   };
+  const auto is_quadric = [](const InstanceView& i) {
+    return i.mesh() == nullptr && !is_points_or_lines(i.geometry);
+  };
+  if (std::ranges::none_of(scene.instances, is_quadric)) return;
   if (wants_surface(targets)) refuse("targets beside colour, depth, ids and keys");
   if (!o.clip_planes.empty() || std::ranges::any_of(scene.instances, [](const InstanceView& i) {
         return !i.clip_planes.empty();

@@ -9,8 +9,9 @@
 
 namespace rastrum::raster {
 
-DrawCut::DrawCut(const InstanceView& instance, std::span<const ClipPlane> world)
-    : positions(instance.mesh()->positions) {
+DrawCut::DrawCut(const InstanceView& instance, std::span<const ClipPlane> world,
+                 const ArrayView<Vec3>& vertices)
+    : positions(vertices) {
   planes.reserve(world.size() + instance.clip_planes.size());
   const auto& m = instance.object_to_world.m;
   for (const ClipPlane& p : world) {

@@ -26,8 +26,9 @@ struct DrawCut {
   std::vector<Plane> planes;  ///< in object space
   ArrayView<Vec3> positions;  ///< of its vertices
 
-  /// `world`: the frame's.
-  DrawCut(const InstanceView& instance, std::span<const ClipPlane> world);
+  /// `world`: the frame's; `vertices`: the instance's.
+  DrawCut(const InstanceView& instance, std::span<const ClipPlane> world,
+          const ArrayView<Vec3>& vertices);
 
   [[nodiscard]] double ahead(const Plane& plane, std::uint32_t vertex) const {
     const Vec3d p = positions.wide(vertex);

@@ -14,13 +14,26 @@ Vec3d interpolate(const Fragment& f, const Vec3d (&v)[3]) {
   return v[0] * b[0] + v[1] * b[1] + v[2] * b[2];
 }
 
+/// The positions of a geometry, and how many of them a primitive has.
+struct Corners {
+  const ArrayView<Vec3>* positions;
+  int count;
+};
+Corners corners_of(const GeometryView& geometry) {
+  if (const auto* const points = std::get_if<PointsView>(&geometry)) return {&points->positions, 1};
+  if (const auto* const lines = std::get_if<LinesView>(&geometry)) return {&lines->positions, 2};
+  return {&std::get<MeshView>(geometry).positions, 3};
+}
+
 }  // namespace
 
 Vec3d position_on(const InstanceView& instance, const Fragment& f) {
-  const MeshView& mesh = *instance.mesh();
-  const Vec3d p =
-      interpolate(f, {mesh.positions.wide(f.vertex[0]), mesh.positions.wide(f.vertex[1]),
-                      mesh.positions.wide(f.vertex[2])});
+  const Corners corners = corners_of(instance.geometry);
+  Vec3d p;
+  for (int c = 0; c < corners.count; ++c) {
+    const Vec3d part = corners.positions->wide(f.vertex[c]) * f.weights.b[c];
+    p = c == 0 ? part : p + part;
+  }
   const auto& m = instance.object_to_world.m;
   const auto row = [&](int i) {
     return ((m[i][0] * p.x + m[i][1] * p.y) + m[i][2] * p.z) + m[i][3];
@@ -35,9 +48,14 @@ Vec3d SurfaceScene::to_viewer(int x, int y) const {
 
 Vec3d SurfaceScene::normal(const Fragment& f) const {
   const LitDraw& draw = lit.draws[f.draw];
-  Vec3 corners[3];
-  corner_normals(*draw.mesh, draw.mesh->place(f.triangle), f.vertex, corners);
-  const Vec3d n = interpolate(f, {corners[0], corners[1], corners[2]});
+  Vec3d n;
+  if (const auto* const points = std::get_if<PointsView>(&scene.instances[f.draw].geometry)) {
+    if (!points->normals.empty()) n = Vec3d(safe_normal(points->normals[f.vertex[0]]));
+  } else if (draw.mesh != nullptr) {
+    Vec3 corners[3];
+    corner_normals(*draw.mesh, draw.mesh->place(f.triangle), f.vertex, corners);
+    n = interpolate(f, {corners[0], corners[1], corners[2]});
+  }
   const auto& m = draw.normal_matrix;
   const auto row = [&](int i) {
     return (double{m[i][0]} * n.x + double{m[i][1]} * n.y) + double{m[i][2]} * n.z;
@@ -61,7 +79,9 @@ double SurfaceScene::ray_length(int x, int y) const {
 }
 
 Vec4 SurfaceScene::albedo(const FrameGeometry& frame, const Fragment& f) const {
-  return material_albedo(materials->view(), frame, f);
+  const GeometryView& geometry = scene.instances[f.draw].geometry;
+  return std::holds_alternative<MeshView>(geometry) ? material_albedo(materials->view(), frame, f)
+                                                    : points_and_lines->albedo(frame, f);
 }
 
 }  // namespace rastrum::raster

@@ -13,6 +13,7 @@
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/material.hpp>
+#include <rastrum/raster/shade/point_line_shader.hpp>
 #include <rastrum/scene.hpp>
 
 namespace rastrum::raster {
@@ -27,6 +28,7 @@ struct SurfaceScene {
   LitScene lit;
   Mat4d to_camera;
   const MaterialScene* materials = nullptr;  ///< with textures of what alpha and colour come from
+  const PointLineShader* points_and_lines = nullptr;  ///< that of their draws
 
   SurfaceScene(const SceneView& s, const Camera& c, int width, int height)
       : scene(s), camera(c), lit(s, c, width, height), to_camera(world_to_camera(c)) {}
@@ -44,7 +46,7 @@ struct SurfaceScene {
   [[nodiscard]] Vec3d in_camera(Vec3d direction) const;
   /// How far the pixel's ray goes for each unit along the axis; 1 for an orthographic camera.
   [[nodiscard]] double ray_length(int x, int y) const;
-  /// Linear light, straight alpha. Requires `materials`.
+  /// Linear light, straight alpha. Requires `materials`, or `points_and_lines`.
   [[nodiscard]] Vec4 albedo(const FrameGeometry& frame, const Fragment& f) const;
 
  private:

@@ -38,9 +38,6 @@ Vec4 lerp(const Vec4& a, const Vec4& b, float t) {
 
 }  // namespace
 
-std::uint32_t material_of(const QuadricGeometry& geometry, const InstanceView& instance) {
-  return instance.material.value_or(std::visit([](const auto& g) { return g.material; }, geometry));
-}
 std::span<const Vec4> colors_of(const QuadricGeometry& geometry, const InstanceView& instance) {
   if (instance.color) return {};
   return std::visit([](const auto& g) { return g.colors; }, geometry);
@@ -90,34 +87,9 @@ struct QuadricShader::KeptQuadrics {
   Kept kept[kCount];
 };
 
-QuadricShader::QuadricShader(const QuadricLook& look, std::span<const Material> materials,
-                             const Camera& camera, int width, int height)
-    : look_(look), materials_(materials.begin(), materials.end()) {
-  const LitScene lit({{}, materials, {}}, camera, width, height);
-  display_ = lit.materials;
-  rays_ = lit.rays;
-  if (materials_.empty()) materials_.emplace_back().alpha_mode = AlphaMode::blend;
-}
-
 void QuadricShader::add(const QuadricStage& stage, const InstanceView& instance) {
-  const InstanceView place{MeshView{}, instance.object_to_world};
-  const LitScene lit({{&place, 1}, {}, {}}, {}, 1, 1);
-  const bool has_materials = !display_.empty();
-  const std::size_t m = has_materials ? material_of(stage.geometry(), instance) : 0;
-  const Material& material = materials_[m];
-  Surface s{&stage,
-            lit.draws.front(),
-            material.base_color,
-            &material,
-            look_.opacity * instance.opacity * material.opacity,
-            colors_of(stage.geometry(), instance)};
-  if (look_.model) {
-    const bool plain = s.colors.empty() && !instance.color;
-    const Vec3 base = has_materials ? display_[m] : plain ? kDefaultBase : Vec3{1, 1, 1};
-    s.base = {base.x, base.y, base.z, s.base.w};
-  }
-  if (instance.color) s.base = s.base * *instance.color;
-  surfaces_.push_back(s);
+  const std::span<const Vec4> colors = colors_of(stage.geometry(), instance);
+  surfaces_.push_back({&stage, colors, look_.surface(instance, !colors.empty())});
 }
 
 std::size_t QuadricShader::scratch_bytes() const noexcept {
@@ -136,12 +108,13 @@ void QuadricShader::fetch(const FrameGeometry& frame, std::uint64_t low, Kept& o
   (void)make_quadric(stage, out.shape, frame.viewport, out.quadric, place, &out.rays);
   std::copy_n(place.x, 3, out.piece.x);
   std::copy_n(place.y, 3, out.piece.y);
-  out.color[0] = out.color[1] = out.surface->base;
+  const Vec4& base = out.surface->plain.base;
+  out.color[0] = out.color[1] = base;
   const std::span<const Vec4> colors = out.surface->colors;
   if (colors.empty()) return;
   const ColorEnds ends = color_ends(stage.geometry(), primitive);
-  out.color[0] = colors[ends.first] * out.surface->base;
-  out.color[1] = colors[ends.second] * out.surface->base;
+  out.color[0] = colors[ends.first] * base;
+  out.color[1] = colors[ends.second] * base;
 }
 
 Vec4 QuadricShader::color(const Kept& k, const FrameGeometry&, std::uint64_t key, float px,
@@ -157,27 +130,8 @@ Vec4 QuadricShader::color(const Kept& k, const FrameGeometry&, std::uint64_t key
                           ((r.o.w + r.x.w * dx) + r.y.w * dy) + r.depth.w * s.e};
   const QuadricPoint point = point_on(k.shape, h);
   const Vec4 base = lerp(k.color[0], k.color[1], static_cast<float>(point.along));
-  const Vec3 normal = k.surface->to_world.to_world(Vec3(point.normal));
-  const Material& m = *k.surface->material;
-  float alpha = 1;
-  if (look_.blends) {
-    alpha = k.surface->opacity;
-    if (m.alpha_mode == AlphaMode::blend) alpha *= base.w;
-    alpha = clamped_alpha(alpha);
-  }
-  Vec3 c{base.x, base.y, base.z};
-  if (look_.model) {
-    c = scalar_lane::light(*look_.model, rays_, px, py, normal, c);
-  } else if (m.unlit) {
-    c = scalar_lane::written(c, linear_);
-  } else {
-    const Vec3 away = rays_.d + rays_.dx * px + rays_.dy * py;
-    const Vec3 n = scalar_lane::unit(normal);
-    const float side = dot(n, away) > 0 ? -1.0F : 1.0F;
-    const scalar_lane::LitSurface lit{c, n * side, m.metallic, m.roughness, 1, m.emissive};
-    c = scalar_lane::written(scalar_lane::light(rays_, lit, px, py), linear_);
-  }
-  return {c.x * alpha, c.y * alpha, c.z * alpha, alpha};
+  const Vec3 normal = times(k.surface->plain.normal_matrix, Vec3(point.normal));
+  return look_.shade(k.surface->plain, base, &normal, px, py, kIdMask - k.low);
 }
 
 bool QuadricShader::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa,
@@ -188,7 +142,7 @@ bool QuadricShader::shade(const FrameGeometry& frame, const VisibleBlock& block,
     const int i = std::countr_zero(m);
     const std::uint64_t key = block.keys[i];
     const std::uint64_t low = key & kIdMask;
-    if (look_.model == LitModel::id && !look_.blends) {
+    if (look_.look().model == LitModel::id && !look_.look().blends) {
       const Vec3 c = id_color(kIdMask - low);
       colors.set(i, {c.x, c.y, c.z, 1});
       continue;
@@ -201,13 +155,8 @@ bool QuadricShader::shade(const FrameGeometry& frame, const VisibleBlock& block,
     constexpr double kPx = 1.0 / kSubpixels;
     const double dx = (x + 0.5 + static_cast<double>(from_centre.x)) - kept.piece.x[0] * kPx;
     const double dy = (y + 0.5 + static_cast<double>(from_centre.y)) - kept.piece.y[0] * kPx;
-    Vec4 c = color(kept, frame, key, static_cast<float>(x) + 0.5F + from_centre.x,
-                   static_cast<float>(y) + 0.5F + from_centre.y, dx, dy);
-    if (look_.model == LitModel::id) {
-      const Vec3 by_id = id_color(kIdMask - low);
-      c = {by_id.x * c.w, by_id.y * c.w, by_id.z * c.w, c.w};
-    }
-    opaque &= colors.set(i, c);
+    opaque &= colors.set(i, color(kept, frame, key, static_cast<float>(x) + 0.5F + from_centre.x,
+                                  static_cast<float>(y) + 0.5F + from_centre.y, dx, dy));
   }
   return opaque;
 }

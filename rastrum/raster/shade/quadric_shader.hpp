@@ -1,6 +1,5 @@
 // The built-in shaders over quadrics: normal and colour are those of the exact point of the surface
-// that a sample sees, in float64; the light is the triangles' (lit_light-inl.hpp,
-// material_light-inl.hpp).
+// that a sample sees, in float64; the rest is plain_surface.hpp's.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +12,7 @@
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/draws/quadrics.hpp>
 #include <rastrum/raster/setup/make_quadric.hpp>
-#include <rastrum/raster/shade/lit.hpp>
-#include <rastrum/raster/shade/shading.hpp>
+#include <rastrum/raster/shade/plain_surface.hpp>
 #include <rastrum/scene.hpp>
 
 namespace rastrum::raster {
@@ -28,23 +26,17 @@ struct QuadricPoint {
 /// The point of the shape that is `h`, on its surface but for rounding.
 [[nodiscard]] QuadricPoint point_on(const QuadricShape& shape, const RayFrame::Point& h);
 
-/// How the surfaces of a frame look.
-struct QuadricLook {
-  std::optional<LitModel> model;  ///< none: as materials
-  bool blends = false;            ///< alpha counts
-  float opacity = 1;              ///< the frame's
-};
-
-/// Shades draws of quadrics, in the order of `add`. Scenes without materials are of one that blends
-/// by its colours. Textures are not read: a quadric has no texture coordinates.
+/// Shades draws of quadrics, in the order of `add`. Textures are not read: a quadric has no texture
+/// coordinates.
 class QuadricShader final : public BlockShader {
  public:
-  QuadricShader(const QuadricLook& look, std::span<const Material> materials, const Camera& camera,
-                int width, int height);
+  QuadricShader(const SurfaceLook& look, std::span<const Material> materials, const Camera& camera,
+                int width, int height)
+      : look_(look, materials, camera, width, height) {}
   /// `instance`: of the stage, whose own look is heeded. `stage` must outlive the frame.
   void add(const QuadricStage& stage, const InstanceView& instance);
   /// As MaterialShading::linear.
-  void leave_linear() { linear_ = true; }
+  void leave_linear() { look_.leave_linear(); }
 
   bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
              BlockColors& colors) const noexcept override;
@@ -53,11 +45,8 @@ class QuadricShader final : public BlockShader {
  private:
   struct Surface {
     const QuadricStage* stage;
-    LitDraw to_world;  ///< for its normal matrix
-    Vec4 base;         ///< what colours are multiplied by, or stand for; alpha the own one
-    const Material* material;
-    float opacity;                 ///< the instance's, the frame's and the material's
     std::span<const Vec4> colors;  ///< empty: there are none
+    PlainSurface plain;
   };
   struct Kept;
   struct KeptQuadrics;
@@ -66,18 +55,11 @@ class QuadricShader final : public BlockShader {
   [[nodiscard]] Vec4 color(const Kept& kept, const FrameGeometry& frame, std::uint64_t key,
                            float px, float py, double dx, double dy) const;
 
-  QuadricLook look_;
-  bool linear_ = false;
+  PlainLook look_;
   std::vector<Surface> surfaces_;
-  std::vector<Material> materials_;  ///< at least one
-  std::vector<Vec3> display_;        ///< their base colours; empty: there are none
-  ViewRays rays_;
 };
 
-/// The material of an instance of a quadric's geometry, and the geometry's colours, unless the
-/// instance's colour stands for them.
-[[nodiscard]] std::uint32_t material_of(const QuadricGeometry& geometry,
-                                        const InstanceView& instance);
+/// The geometry's colours, unless the instance's stands for them.
 [[nodiscard]] std::span<const Vec4> colors_of(const QuadricGeometry& geometry,
                                               const InstanceView& instance);
 

@@ -1,0 +1,14 @@
+// What an instance of a scene draws, as a draw.
+#pragma once
+
+#include <rastrum/mat.hpp>
+#include <rastrum/raster/draws/draw.hpp>
+#include <rastrum/scene.hpp>
+
+namespace rastrum::raster {
+
+/// Makes `draw` one of a geometry that has vertices, a mesh, points or lines, which must outlive
+/// the frame; false: it is another, and nothing is done.
+bool set_vertices(Draw& draw, const GeometryView& geometry, const Mat4d& object_to_clip);
+
+}  // namespace rastrum::raster
