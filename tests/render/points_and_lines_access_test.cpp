@@ -103,7 +103,7 @@ TEST(PointsAndLinesAccess, ImagesHoldTheSurface) {
   EXPECT_EQ(s.instances(45, py), 77);
   EXPECT_TRUE(same(s.barycentrics(45, py), Vec2{}));
   EXPECT_TRUE(same(s.positions(46, py + 1), dot[0]));
-  EXPECT_TRUE(same(s.normals(45, py), Vec3{0, 0, 1})) << "turned to the viewer";
+  EXPECT_EQ(s.normals(45, py), (Vec3{0, 0, 1})) << "turned to the viewer";
   EXPECT_TRUE(same(s.albedo(45, py), Vec4{1, 1, 1, 1}));
   EXPECT_EQ(s.ids(5, 5), -1);
   EXPECT_EQ(s.instances(5, 5), -1);
@@ -141,6 +141,7 @@ TEST(PointsAndLinesAccess, FitsSeeAllOfThem) {
 TEST(PointsAndLinesAccess, RefuseArraysThatAreWrong) {
   const std::vector<Vec3> at(4);
   const std::vector<Vec4> few(3);
+  const std::vector<Vec3> one(1);
   const auto refuses = [&](const GeometryView& geometry, const char* part,
                            Errc code = Errc::invalid_argument) {
     const InstanceView instances[2] = {{MeshView{}}, {geometry}};
@@ -167,7 +168,7 @@ TEST(PointsAndLinesAccess, RefuseArraysThatAreWrong) {
   const std::vector<float> sizes(2);
   refuses(points([&](auto& p) { p.colors = few; }),
           "instance 1: colors are fewer (3) than positions (4)");
-  refuses(points([&](auto& p) { p.normals = std::vector<Vec3>(1); }), "normals are fewer (1)");
+  refuses(points([&](auto& p) { p.normals = one; }), "normals are fewer (1)");
   refuses(points([&](auto& p) { p.sizes = sizes; }), "sizes are fewer (2)");
   refuses(points([](auto& p) { p.material = 2; }), "instance 1: material 2 is out of range");
   for (const float bad : {0.0F, -1.0F, 4097.0F, std::numeric_limits<float>::quiet_NaN()}) {

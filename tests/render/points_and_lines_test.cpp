@@ -192,6 +192,7 @@ struct Flat {
     camera.eye = {0, 0, 5};
     camera.target = {0, 0, 0};
     camera.orthographic = true;
+    camera.far_plane = 10;
     camera.orthographic_height = static_cast<float>(kHeight) / 50;
   }
   [[nodiscard]] SceneView view() const { return {instances, materials, {}}; }
@@ -288,7 +289,7 @@ TEST(PointsAndLines, HeedMaterials) {
 
 /// Two translucent points over each other and over a triangle, as the colours are blended by hand.
 TEST(PointsAndLines, BlendInLayers) {
-  const std::vector<Vec3> near_far{{0, 0, 1}, {0, 0, 0.5F}};
+  const std::vector<Vec3> near_far{{0.01F, 0, 1}, {0.01F, 0, 0.5F}};
   const std::vector<Vec4> colors{{1, 0, 0, 0.5F}, {0, 1, 0, 0.25F}};
   const std::vector<Vec3> triangle{{-3, -3, 0}, {3, -3, 0}, {0, 3, 0}};
   PointsView points;

@@ -236,6 +236,7 @@ PointLineScene generate_points_and_lines(std::uint64_t seed, int width, int heig
   s.camera.orthographic = r.chance(0.3);
   s.camera.orthographic_height = 2.2F;
   s.camera.near_plane = 0.1F;
+  if (s.camera.orthographic) s.camera.far_plane = 9;
   for (int i = r.integer(1, 5); i > 0; --i) {
     InstanceView& instance = s.instances.emplace_back();
     const int kind = r.integer(0, 4);
