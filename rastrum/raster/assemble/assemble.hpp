@@ -122,9 +122,10 @@ Fate assemble_quadric(int width, int height, const Draw& draw, std::uint64_t p, 
     case ShapeFate::drawn:
       break;
   }
+  if (draw.quadrics->clip_to_object() == nullptr) return Fate::culled;
   Quadric quadric;
   QuadricPlace place;
-  if (!make_quadric(*draw.quadrics, shape, Viewport::of(width, height), quadric, place))
+  if (!make_quadric({*draw.quadrics, Viewport::of(width, height)}, shape, quadric, place))
     return Fate::culled;
   const Cull cull = draw.effective_cull();
   bool front = cull != Cull::front, back = cull != Cull::back;

@@ -14,6 +14,33 @@ constexpr std::uint64_t kMinGroup = 4096;
 /// … and that the groups' tables of bins together stay small.
 constexpr std::uint64_t kMaxBinTables = std::uint64_t{1} << 19;
 
+/// Adds a deferred piece to the bins of its box.
+void bin_deferred(const Piece& piece, const BinTable& lists, Collected<DeferredInBin>& out) {
+  const Rect view = lists.bins.view;
+  const Rect box = sample_bounds(piece.x, piece.y, view);
+  if (box.empty()) return;
+  const int bx0 = box.x0 / kBinSize, by0 = box.y0 / kBinSize;
+  const int bx1 = (box.x1 - 1) / kBinSize, by1 = (box.y1 - 1) / kBinSize;
+  const auto touched =
+      static_cast<std::size_t>(bx1 - bx0 + 1) * static_cast<std::size_t>(by1 - by0 + 1);
+  DeferredInBin* next = out.room(touched);
+  for (int by = by0; by <= by1; ++by)
+    for (int bx = bx0; bx <= bx1; ++bx) {
+      const auto in_bin = [](int v, int bin) {
+        return static_cast<std::uint8_t>(std::clamp(v - bin * kBinSize, 0, kBinSize));
+      };
+      const int row = by - view.y0 / kBinSize, column = bx - view.x0 / kBinSize;
+      *next++ = {piece.low,
+                 piece.z0,
+                 in_bin(box.x0, bx),
+                 in_bin(box.y0, by),
+                 in_bin(box.x1, bx),
+                 in_bin(box.y1, by),
+                 static_cast<std::uint32_t>(row * lists.bins.columns() + column)};
+    }
+  out.added(touched);
+}
+
 /// Adds the pairs of a piece with the bins of its box that it may touch.
 void bin_piece(const Piece& piece, std::uint32_t index, const BinTable& lists,
                Collected<PieceInBin>& pairs) {
@@ -44,13 +71,15 @@ void bin_piece(const Piece& piece, std::uint32_t index, const BinTable& lists,
 /// Adds the pairs of pieces [first, …) with the bins of `view` until all are there, or as many as
 /// `most` after a piece. Returns the first piece that was left.
 std::uint32_t bin_pieces(const Kernels& kernel, std::span<const Piece> pieces, std::uint32_t first,
-                         std::size_t most, const BinTable& lists, Collected<PieceInBin>& pairs) {
+                         std::size_t most, const BinTable& lists, Collected<PieceInBin>& pairs,
+                         Collected<DeferredInBin>& deferred) {
   const BinNumbers numbers = lists.numbers();
+  const auto count = [&] { return pairs.entries().size() + deferred.entries().size(); };
   std::uint32_t bin[64];
   std::uint32_t index = first;
-  while (index < pieces.size() && pairs.entries().size() < most) {
+  while (index < pieces.size() && count() < most) {
     auto n = static_cast<std::uint32_t>(
-        std::min({std::size(bin), pieces.size() - index, most - pairs.entries().size()}));
+        std::min({std::size(bin), pieces.size() - index, most - count()}));
     kernel.bins(pieces.data() + index, n, numbers, bin);
     for (std::uint32_t i = 0; i < n;) {
       PieceInBin* const out = pairs.room(n - i);
@@ -58,11 +87,15 @@ std::uint32_t bin_pieces(const Kernels& kernel, std::span<const Piece> pieces, s
       for (; i < n && bin[i] != kManyBins; ++i) out[k++] = {bin[i], index + i};
       pairs.added(k);
       if (i < n) {
-        bin_piece(pieces[index + i], index + i, lists, pairs);
+        const Piece& piece = pieces[index + i];
+        if (is_deferred(piece))
+          bin_deferred(piece, lists, deferred);
+        else
+          bin_piece(piece, index + i, lists, pairs);
         ++i;
       }
       // A piece that touched many bins may have left no room for those after it.
-      if (i < n && pairs.entries().size() + (n - i) > most) {
+      if (i < n && count() + (n - i) > most) {
         n = i;
         break;
       }
@@ -74,10 +107,11 @@ std::uint32_t bin_pieces(const Kernels& kernel, std::span<const Piece> pieces, s
 
 /// Pairs of a group at one time: each is in the group, and those of a thread's group are collected
 /// before, in memory that has doubled.
-std::size_t most_pairs(const Frame& frame, std::size_t groups) {
+std::size_t most_pairs(const Frame& frame, const BinTable& lists, std::size_t groups) {
+  const std::size_t entry_bytes = lists.defers ? sizeof(DeferredInBin) : sizeof(PieceInBin);
   if (frame.expansion_bytes == 0) return std::numeric_limits<std::size_t>::max();
   const auto threads = static_cast<std::uint64_t>(frame.concurrency());
-  return frame.expansion_bytes / ((groups + 3 * threads) * sizeof(PieceInBin));
+  return frame.expansion_bytes / ((groups + 3 * threads) * entry_bytes);
 }
 
 /// Leaves out the pieces that do not touch the view.
@@ -92,10 +126,12 @@ void keep_in_view(Pieces& pieces, Rect view) {
 
 /// What a thread needs to fill a group.
 struct TriangleGroups::Filler final : MicroSink {
-  explicit Filler(MemoryAccount& memory) : pieces(memory), pairs(memory), micro(memory) {}
+  explicit Filler(MemoryAccount& memory)
+      : pieces(memory), pairs(memory), micro(memory), deferred(memory) {}
   Pieces pieces;  ///< of a group, before those outside of the view are left out
   Collected<PieceInBin> pairs;
   Collected<BinFragment> micro;
+  Collected<DeferredInBin> deferred;
   bool whole = true;        ///< the view is the image, whose bins setup numbers; else:
   int image_columns = 0;    ///< bins in a row of it
   int column = 0, row = 0;  ///< the view's first bin
@@ -105,6 +141,7 @@ struct TriangleGroups::Filler final : MicroSink {
     const TileGrid& bins = lists.bins;
     pairs.restart(lists.count());
     micro.restart(bins.count());
+    deferred.restart(lists.defers ? bins.count() : 0);
     whole = bins.count() == TileGrid{{0, 0, frame.request.width, frame.request.height}}.count();
     image_columns = (frame.request.width + kBinSize - 1) / kBinSize;
     column = bins.view.x0 / kBinSize;
@@ -146,7 +183,7 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
       std::max(kMinGroup, (last - first + most_groups - 1) / most_groups);
   const auto group_count = static_cast<std::size_t>((last - first + group_size - 1) / group_size);
   while (groups_.size() < group_count) groups_.emplace_back(memory_);
-  const std::size_t most = most_pairs(frame, group_count);
+  const std::size_t most = most_pairs(frame, lists, group_count);
   std::atomic<bool> in_range = true;
   std::atomic<std::uint64_t> pairs = 0, micro_fragments = 0, bytes = 0;
   const bool limited = frame.view_bytes != 0;
@@ -159,12 +196,13 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
     scratch.restart(frame, lists);
     const std::uint64_t begin = first + g * group_size;
     if (!raster::set_up(frame, begin, std::min(begin + group_size, last), pieces,
-                        micro ? &scratch : nullptr)) {
+                        micro ? &scratch : nullptr, lists.defers)) {
       in_range = false;
       return;
     }
     if (limited) keep_in_view(pieces, frame.view);
-    group.binned = bin_pieces(frame.kernel, pieces.span(), 0, most, lists, scratch.pairs);
+    group.binned =
+        bin_pieces(frame.kernel, pieces.span(), 0, most, lists, scratch.pairs, scratch.deferred);
     const std::size_t n = scratch.pairs.entries().size(), m = scratch.micro.entries().size();
     if (limited) {
       const std::uint64_t own =
@@ -178,7 +216,8 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
     }
     group.by_bin.sort(scratch.pairs, list_count);
     group.fragments.sort(scratch.micro, bin_count);
-    pairs.fetch_add(n, std::memory_order_relaxed);
+    if (lists.defers) group.deferred.sort(scratch.deferred, bin_count);
+    pairs.fetch_add(n + scratch.deferred.entries().size(), std::memory_order_relaxed);
     micro_fragments.fetch_add(m, std::memory_order_relaxed);
   });
   if (!in_range) check_indices(frame.request.draws, frame.request.draw_noun);
@@ -193,17 +232,19 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
 }
 
 void TriangleGroups::bin_more(Frame& frame, const BinTable& lists, std::span<Group> groups) {
-  const std::size_t most = most_pairs(frame, groups.size());
+  const std::size_t most = most_pairs(frame, lists, groups.size());
   std::atomic<std::uint64_t> pairs = 0;
   frame.for_each_index(groups.size(), [&](std::size_t g) {
     Group& group = groups[g];
     Filler& scratch = fillers_.local();
     scratch.restart(frame, lists);
-    group.binned =
-        bin_pieces(frame.kernel, group.pieces.span(), group.binned, most, lists, scratch.pairs);
+    group.binned = bin_pieces(frame.kernel, group.pieces.span(), group.binned, most, lists,
+                              scratch.pairs, scratch.deferred);
     group.by_bin.sort(scratch.pairs, lists.count());
     group.fragments.sort(scratch.micro, lists.bins.count());
-    pairs.fetch_add(scratch.pairs.entries().size(), std::memory_order_relaxed);
+    if (lists.defers) group.deferred.sort(scratch.deferred, lists.bins.count());
+    pairs.fetch_add(scratch.pairs.entries().size() + scratch.deferred.entries().size(),
+                    std::memory_order_relaxed);
   });
   frame.count("bins", pairs);
 }

@@ -30,6 +30,8 @@ namespace rastrum::raster {
 struct BinTable {
   TileGrid bins;
   bool two = false;
+  /// Setup may make deferred pieces (cover/bin_quadrics.hpp).
+  bool defers = false;
 
   [[nodiscard]] std::size_t count() const { return bins.count() * (two ? 2 : 1); }
   /// That of the pieces of bin `b` that face away, where there are two.
@@ -41,16 +43,19 @@ struct BinTable {
 
 /// What became of the triangles [first, last) of the frame.
 struct Group {
-  explicit Group(MemoryAccount& memory) : pieces(memory), by_bin(memory), fragments(memory) {}
+  explicit Group(MemoryAccount& memory)
+      : pieces(memory), by_bin(memory), fragments(memory), deferred(memory) {}
 
   Pieces pieces;
-  std::uint32_t binned = 0;  ///< pieces whose pairs are, or were, in by_bin
+  std::uint32_t binned = 0;  ///< pieces whose pairs are, or were, in by_bin or deferred
   BinLists<PieceInBin> by_bin;
   BinLists<BinFragment> fragments;
+  BinLists<DeferredInBin> deferred;  ///< only where lists defer
 
   [[nodiscard]] bool is_empty(const BinTable& lists, std::size_t bin) const {
     return by_bin.bin(bin).empty() && fragments.bin(bin).empty() &&
-           (!lists.two || by_bin.bin(lists.away(bin)).empty());
+           (!lists.two || by_bin.bin(lists.away(bin)).empty()) &&
+           (!lists.defers || deferred.bin(bin).empty());
   }
 };
 

@@ -14,6 +14,8 @@ namespace {
 /// pixel once or twice there is nothing to find. (Counting their samples instead cost 3 % of a
 /// frame.)
 constexpr std::uint32_t kLook = 32;
+/// The same for what comes from front to back, where there is more to be found.
+constexpr std::uint32_t kLookInOrder = 2;
 
 }  // namespace
 
@@ -51,6 +53,19 @@ void BinKeys::fragments(std::span<const BinFragment> fragments) {
                                         by0 + block / kBlocksPerBinRow)[f.pixel % 64];
     key = std::max(key, f.key);
   }
+}
+
+void BinKeys::raised(const RaisedKeys& raised) {
+  if (!is_bounded_) return;
+  bounds_.hidden_blocks += raised.hidden_blocks;
+  bool any = false;
+  for (std::uint64_t m = raised.blocks; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    if (++unseen_[i] < kLookInOrder) continue;
+    look(i);
+    any = true;
+  }
+  if (any) find_least();
 }
 
 void BinKeys::find_bounds() {

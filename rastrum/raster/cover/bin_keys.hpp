@@ -22,6 +22,11 @@ class BinKeys {
   void blocks(const Piece* pieces, std::span<const Block> blocks);
   /// Fragments whose key is known already, by their places in the bin.
   void fragments(std::span<const BinFragment> fragments);
+  /// What a kernel has raised the surface's keys by.
+  void raised(const RaisedKeys& raised);
+  [[nodiscard]] const SurfaceView& surface() const { return surface_; }
+  /// Counts pieces that who draws has left out.
+  void hid_pieces(std::uint64_t n) { bounds_.hidden_pieces += n; }
 
   /// Null where nothing is known.
   [[nodiscard]] DepthBounds* bounds() { return is_bounded_ ? &bounds_ : nullptr; }

@@ -53,18 +53,6 @@ struct DepthRows {
   }
 };
 
-/// Element m keeps the lanes of the bits of m.
-struct alignas(32) LaneTable {
-  std::int64_t keep[1 << kLanes64][kLanes64];
-};
-constexpr LaneTable kLaneTable = [] {
-  LaneTable table{};
-  for (std::size_t m = 0; m < std::size_t{1} << kLanes64; ++m)
-    for (std::size_t lane = 0; lane < kLanes64; ++lane)
-      table.keep[m][lane] = (m >> lane & 1) != 0 ? -1 : 0;
-  return table;
-}();
-
 /// One bit for every kLanes64 samples: the first, where `mask` has any of them.
 HWY_INLINE std::uint64_t parts_of(std::uint64_t mask) {
   mask |= mask >> 1;

@@ -257,7 +257,7 @@ void bins(const Piece* pieces, std::size_t n, const BinNumbers& numbers,
     HWY_ALIGN std::int32_t found[kLanes];
     hn::Store(hn::IfThenElse(hn::AndNot(empty, one), bin, hn::Set(d, -1)), d, found);
     for (std::size_t k = 0; k < count; ++k)
-      out[i + k] = has_corners(*lanes[k]) && found[k] >= 0
+      out[i + k] = has_corners(*lanes[k]) && !is_deferred(*lanes[k]) && found[k] >= 0
                        ? numbers.of(*lanes[k], static_cast<std::uint32_t>(found[k]))
                        : kManyBins;
   }

@@ -20,34 +20,9 @@ namespace rastrum::raster {
 namespace HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
 
-using W = D;
-using WideMask = hn::Mask<F64>;
-HWY_INLINE W wide(double v) {
-  return hn::Set(F64{}, v);
-}
-HWY_INLINE W square_root(W v) {
-  return hn::Sqrt(v);
-}
-HWY_INLINE W lesser(W a, W b) {
-  return hn::Min(a, b);
-}
-HWY_INLINE W greater(W a, W b) {
-  return hn::Max(a, b);
-}
-HWY_INLINE WideMask at_most(W a, W b) {
-  return hn::Le(a, b);
-}
-HWY_INLINE WideMask both(WideMask a, WideMask b) {
-  return hn::And(a, b);
-}
-HWY_INLINE WideMask either(WideMask a, WideMask b) {
-  return hn::Or(a, b);
-}
-HWY_INLINE W choose(WideMask mask, W yes, W no) {
-  return hn::IfThenElse(mask, yes, no);
-}
-#define RASTRUM_LANES HWY_INLINE
+#include <rastrum/raster/kernels/wide_lanes-inl.hpp>
 #include <rastrum/raster/setup/quadric_depth-inl.hpp>
+#undef RASTRUM_LAMBDA
 #undef RASTRUM_LANES
 
 /// Where the samples of a block lie from the place of a quadric's piece, px.

@@ -33,10 +33,25 @@ QuadricShape shape_of(const DiscsView& d, std::uint64_t i) {
   return {QuadricKind::disc, p, Vec3d(d.normals[k]), r, r};
 }
 
+template <class T>
+void prefetch_element(std::span<const T> values, std::uint64_t i) {
+  if (!values.empty()) __builtin_prefetch(values.data() + i);
+}
+void prefetch_shape(const SpheresView& s, std::uint64_t i) {
+  prefetch_element(s.centers, i);
+  prefetch_element(s.radii, i);
+}
+template <class Geometry>
+void prefetch_shape(const Geometry& /*reads through indices*/, std::uint64_t) {}
+
 }  // namespace
 
 QuadricStage::QuadricStage(const QuadricGeometry& geometry, const Mat4d& object_to_clip)
     : geometry_(geometry), object_to_clip_(object_to_clip), inverse_(inverse(object_to_clip)) {}
+
+void QuadricStage::prefetch(std::uint64_t i) const {
+  std::visit([&](const auto& geometry) { prefetch_shape(geometry, i); }, geometry_);
+}
 
 ShapeFate QuadricStage::shape(std::uint64_t i, QuadricShape& out) const {
   out = std::visit([&](const auto& geometry) { return shape_of(geometry, i); }, geometry_);

@@ -20,6 +20,11 @@ enum class QuadricKind : std::uint8_t {
   disc,       ///< about p0; p1 is its unit normal
 };
 
+/// Whether p1 and r1 are another end's.
+constexpr bool has_two_ends(QuadricKind kind) {
+  return kind != QuadricKind::sphere && kind != QuadricKind::disc;
+}
+
 /// All finite.
 struct QuadricShape {
   QuadricKind kind = QuadricKind::sphere;
@@ -45,6 +50,8 @@ class QuadricStage {
   /// The shape of primitive `i`, simplified: a hull in which one sphere holds the other is that
   /// sphere. Indices must be in range.
   [[nodiscard]] ShapeFate shape(std::uint64_t i, QuadricShape& out) const;
+  /// Asks the cache for what shape() will read.
+  void prefetch(std::uint64_t i) const;
   [[nodiscard]] const Mat4d& object_to_clip() const { return object_to_clip_; }
   /// Null: there is none.
   [[nodiscard]] const Mat4d* clip_to_object() const { return inverse_ ? &*inverse_ : nullptr; }

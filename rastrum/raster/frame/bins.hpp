@@ -18,7 +18,8 @@ namespace rastrum::raster {
 
 /// `Bin` is made from a MemoryAccount& and has begin(context, surface, rect), blocks(pieces,
 /// blocks), fragments(f), bounds(), find_bounds(), finish() and collect(counters) as BinKeys has
-/// them; kColors: it fills the surface's colours.
+/// them; kColors: it fills the surface's colours. Where lists defer (BinTable) it has
+/// deferred(frame, groups, bin, rect), which draws those quadrics.
 template <class Bin>
 class Bins {
  public:
@@ -42,6 +43,8 @@ class Bins {
         local ? worker.tile.begin(frame.request.targets, rect, side_px, Bin::kColors)
               : frame.surface.part(rect.x0 / kBlockSize, rect.y0 / kBlockSize);
     worker.bin.begin(frame.context(), surface, rect);
+    if constexpr (requires { worker.bin.deferred(frame, groups, bin, rect); })
+      if (lists.defers) worker.bin.deferred(frame, groups, bin, rect);
     Sink sink(frame, worker);
     enumerate_bin(frame, lists, groups, bin, rect, sink);
     sink.flush();

@@ -1,6 +1,9 @@
 #include <rastrum/raster/frame/fast_path.hpp>
 
+#include <algorithm>
+
 #include <rastrum/raster/cover/bin_keys.hpp>
+#include <rastrum/raster/cover/bin_quadrics.hpp>
 #include <rastrum/raster/frame/bins.hpp>
 
 namespace rastrum::raster {
@@ -11,12 +14,18 @@ class NearestInBin : public BinKeys {
  public:
   static constexpr bool kColors = false;
 
-  explicit NearestInBin(MemoryAccount&) {}
+  explicit NearestInBin(MemoryAccount& memory) : quadrics_(memory) {}
   void begin(const BinContext& context, const SurfaceView& surface, Rect rect) {
-    // Who counts overdraw wants to see everything.
     BinKeys::begin(*context.kernel, surface, rect, context.request->targets.overdraw.empty());
   }
+  void deferred(Frame& frame, std::span<const Group> groups, std::size_t bin, Rect rect) {
+    frame.fragments.fetch_add(quadrics_.draw(frame.context(), groups, bin, rect, *this),
+                              std::memory_order_relaxed);
+  }
   static void finish() {}
+
+ private:
+  BinQuadrics quadrics_;
 };
 
 class FastPath final : public Method {
@@ -33,7 +42,11 @@ class FastPath final : public Method {
   }
 
   void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
-    const BinTable lists{{frame.view, kBinSize}, frame.request.targets.overdraw.empty()};
+    // Who counts overdraw wants to see everything.
+    const bool hides = frame.request.targets.overdraw.empty();
+    const bool has_quadrics = std::ranges::any_of(
+        frame.request.draws, [](const Draw& d) { return d.quadrics != nullptr; });
+    const BinTable lists{{frame.view, kBinSize}, hides, hides && has_quadrics};
     // Without a limit for the view they always fit.
     const std::span<Group> groups = *groups_.set_up(frame, lists, true, first, last);
     frame.watch.lap(frame.stats, "setup and bin");

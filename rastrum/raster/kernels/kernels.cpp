@@ -154,12 +154,24 @@ void store_blended_scalar(const BlockColors& colors, std::uint64_t covered,
   }
 }
 
+/// Does without deferred pieces.
+SetupOutput defer_scalar(const QuadricInput& in, Piece*, std::uint32_t* slow) noexcept {
+  SetupOutput out;
+  out.slow = in.count;
+  std::copy_n(in.numbers, in.count, slow);
+  return out;
+}
+RaisedKeys raise_scalar(const QuadricBatch&, Rect, const DepthBounds*,
+                        const SurfaceView&) noexcept {
+  return {};
+}
+
 constexpr std::size_t kIsaCount = static_cast<std::size_t>(Isa::neon) + 1;
 
 constexpr Kernels kScalar{
     project_scalar,      project64_scalar,     setup_scalar,   points_scalar, cover_scalar,
     masks_scalar,        keys_scalar,          maximum_scalar, lowest_scalar, covered_scalar,
-    store_opaque_scalar, store_blended_scalar, bins_scalar};
+    store_opaque_scalar, store_blended_scalar, bins_scalar,    defer_scalar,  raise_scalar};
 
 }  // namespace
 
@@ -170,8 +182,9 @@ const Kernels& kernels(Isa isa) noexcept {
     // Only those of this machine: filling a table is compiled for its instruction set, too.
     for (const Isa available : available_isas()) {
       Kernels& table = all[static_cast<std::size_t>(available)];
-      for (const FillKernels fill : {fill_setup_kernels(available), fill_cover_kernels(available),
-                                     fill_block_kernels(available)})
+      for (const FillKernels fill :
+           {fill_setup_kernels(available), fill_cover_kernels(available),
+            fill_block_kernels(available), fill_quadric_kernels(available)})
         if (fill != nullptr) fill(table);
     }
     return all;

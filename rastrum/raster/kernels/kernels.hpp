@@ -10,11 +10,14 @@
 #include <rastrum/frame.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/raster/draws/projection.hpp>
+#include <rastrum/raster/draws/quadrics.hpp>
 #include <rastrum/raster/resolve/surface.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/raster/shade/color.hpp>
 
 namespace rastrum::raster {
+
+struct QuadricEye;
 
 /// Triangles [first, first + count) of a draw.
 struct SetupInput {
@@ -121,6 +124,42 @@ struct DepthBounds {
   }
 };
 
+/// Spheres, cones and their like of one draw, whose pieces may be deferred.
+struct QuadricInput {
+  const QuadricEye* eye = nullptr;
+  const QuadricShape* shapes = nullptr;    ///< something of each is to be drawn
+  const std::uint32_t* numbers = nullptr;  ///< in the batch, of each shape
+  std::uint32_t count = 0;
+  std::uint64_t first_id = 0;  ///< of number 0
+  std::uint32_t flags = 0;     ///< of the pieces
+  Rect view;
+};
+
+/// A deferred piece in a bin: all that a bin asks of it, since a million pieces are far apart.
+struct DeferredInBin {
+  std::uint64_t low;            ///< the key's
+  float highest;                ///< none of its depths is larger
+  std::uint8_t x0, y0, x1, y1;  ///< the samples of its box, px in the bin
+  std::uint32_t bin;
+};
+
+/// What a bin makes of some of them, a quadric a lane: all of one stage.
+struct QuadricBatch {
+  static constexpr std::uint32_t kCapacity = 16;
+  const QuadricEye* eye = nullptr;
+  QuadricKind kind{};  ///< of all
+  std::uint32_t count = 0;
+  QuadricShape shapes[kCapacity];
+  DeferredInBin places[kCapacity];
+};
+
+/// What became of the keys of a bin.
+struct RaisedKeys {
+  std::uint64_t fragments = 0;      ///< samples that are covered
+  std::uint64_t blocks = 0;         ///< a bit for each block that has one
+  std::uint64_t hidden_blocks = 0;  ///< not covered, since they are hidden
+};
+
 struct Kernels {
   /// n positions through the matrix, the divide, the viewport and the snapping.
   void (*project)(const Vec3* positions, std::size_t n, const Mat4& object_to_clip,
@@ -171,9 +210,18 @@ struct Kernels {
                         Rgba8* out, std::ptrdiff_t stride) noexcept;
 
   /// The bin that holds the box of each of n pieces, or kManyBins where that has to be looked at: a
-  /// box in several or in none, a line, a point.
+  /// box in several or in none, a line, a point, a deferred piece.
   void (*bins)(const Piece* pieces, std::size_t n, const BinNumbers& numbers,
                std::uint32_t* bins) noexcept;
+
+  /// Writes the deferred pieces of quadrics with one surface, the one in front, which the near
+  /// plane does not cut; numbers of those that the others must be made of are `slow`.
+  SetupOutput (*defer)(const QuadricInput& input, Piece* pieces, std::uint32_t* slow) noexcept;
+
+  /// Makes the quadrics of deferred pieces and raises the keys of a bin by them. `bounds` may be
+  /// null.
+  RaisedKeys (*raise)(const QuadricBatch& batch, Rect bin, const DepthBounds* bounds,
+                      const SurfaceView& surface) noexcept;
 };
 
 /// The table of `isa`, one of available_isas() (choose_isa); of others, plain C++.

@@ -37,6 +37,18 @@ constexpr std::size_t kLanes64 = hn::MaxLanes(F64{});
 constexpr std::size_t kHalves = kLanes / kLanes64;
 using I128 = hn::Full128<std::int32_t>;
 
+/// Element m keeps the lanes of the bits of m.
+struct alignas(32) LaneTable {
+  std::int64_t keep[1 << kLanes64][kLanes64];
+};
+[[maybe_unused]] constexpr LaneTable kLaneTable = [] {
+  LaneTable table{};
+  for (std::size_t m = 0; m < std::size_t{1} << kLanes64; ++m)
+    for (std::size_t lane = 0; lane < kLanes64; ++lane)
+      table.keep[m][lane] = (m >> lane & 1) != 0 ? -1 : 0;
+  return table;
+}();
+
 HWY_INLINE D half_to_double(I v, std::size_t half) {
   const F64 d;
 #if HWY_MAX_BYTES >= 32

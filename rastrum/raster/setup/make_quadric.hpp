@@ -25,11 +25,29 @@ struct RayFrame {
   Point o, x, y, depth;
 };
 
+/// What setup asks of the matrices of a stage and of a picture.
+struct QuadricEye {
+  /// A row of the matrix to clip space.
+  struct Row {
+    Vec3d v;
+    double w = 0;
+    double length = 0;   ///< |v|
+    double cross_w = 0;  ///< |v × v of row w|²
+    double dot_w = 0;    ///< v · v of row w
+  };
+  Row x, y, z, w;
+  Row before;  ///< z − w > 0 lies before the near plane
+  double half_width = 0, half_height = 0;
+  RayFrame::Point column[4];  ///< of the matrix from clip space
+
+  /// The stage's matrix must have an inverse.
+  QuadricEye(const QuadricStage& stage, Viewport viewport);
+};
+
 /// Whether anything of the shape may be seen in the picture; then sets all of the quadric, its
 /// place and, where it is wanted, the frame. Depends on the shape and the whole picture alone.
 /// About 500 operations of float64.
-[[nodiscard]] bool make_quadric(const QuadricStage& stage, const QuadricShape& shape,
-                                Viewport viewport, Quadric& quadric, QuadricPlace& place,
-                                RayFrame* frame = nullptr);
+[[nodiscard]] bool make_quadric(const QuadricEye& eye, const QuadricShape& shape, Quadric& quadric,
+                                QuadricPlace& place, RayFrame* frame = nullptr);
 
 }  // namespace rastrum::raster

@@ -53,6 +53,9 @@ inline constexpr int kLineWidthShift = 16;
 /// A triangle that was wound clockwise on the screen: where surfaces are closed, one of those that
 /// others hide.
 inline constexpr std::uint32_t kFacesAway = 16;
+/// With kQuadric: its quadric is made by the bins that see it (cover/bin_quadrics.hpp). Of the
+/// piece there are the box and, in z0, Quadric::highest; it faces the viewer.
+inline constexpr std::uint32_t kDeferred = 1U << 13;
 
 RASTRUM_HD inline bool is_triangle(const Piece& p) {
   return (p.flags & (kLine | kPoint | kQuadric)) == 0;
@@ -62,6 +65,9 @@ RASTRUM_HD inline bool is_round(const Piece& p) {
 }
 RASTRUM_HD inline bool is_quadric(const Piece& p) {
   return (p.flags & kQuadric) != 0;
+}
+RASTRUM_HD inline bool is_deferred(const Piece& p) {
+  return (p.flags & kDeferred) != 0;
 }
 /// Whether x and y are three places on the screen whose box holds the piece.
 RASTRUM_HD inline bool has_corners(const Piece& p) {

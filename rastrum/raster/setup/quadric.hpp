@@ -18,6 +18,7 @@
 
 #include <rastrum/config.hpp>
 #include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
 
@@ -71,17 +72,32 @@ RASTRUM_HD inline const Quadric& quadric_of(const Piece& p) {
 namespace scalar_wide {
 
 using W = double;
-RASTRUM_HD inline W wide(double v) {
+using WideMask = bool;
+using WideVec = Vec3d;
+
+RASTRUM_HD inline W wide(W v) {
+  return v;
+}
+RASTRUM_HD inline WideVec wide(const WideVec& v) {
   return v;
 }
 RASTRUM_HD inline W square_root(W v) {
   return std::sqrt(v);
+}
+RASTRUM_HD inline W absolute(W v) {
+  return std::abs(v);
+}
+RASTRUM_HD inline W floor_of(W v) {
+  return std::floor(v);
 }
 RASTRUM_HD inline W lesser(W a, W b) {
   return a < b ? a : b;
 }
 RASTRUM_HD inline W greater(W a, W b) {
   return a > b ? a : b;
+}
+RASTRUM_HD inline bool below(W a, W b) {
+  return a < b;
 }
 RASTRUM_HD inline bool at_most(W a, W b) {
   return a <= b;
@@ -92,10 +108,15 @@ RASTRUM_HD inline bool both(bool a, bool b) {
 RASTRUM_HD inline bool either(bool a, bool b) {
   return a || b;
 }
+RASTRUM_HD inline bool opposite(bool a) {
+  return !a;
+}
+RASTRUM_HD inline bool is_any(bool a) {
+  return a;
+}
 RASTRUM_HD inline W choose(bool mask, W yes, W no) {
   return mask ? yes : no;
 }
-using WideMask = bool;
 
 #define RASTRUM_LANES RASTRUM_HD inline
 #include <rastrum/raster/setup/quadric_depth-inl.hpp>

@@ -28,8 +28,11 @@ struct Roots {
   W enters, leaves;
   WideMask real;
 };
+RASTRUM_LANES W discriminant_of(const QuadricPart& p, const QuadricRow::Part& row, W dx) {
+  return wide(row.d) + dx * (wide(row.dx) + wide(p.dxx) * dx);
+}
 RASTRUM_LANES Roots roots_of(const QuadricPart& p, const QuadricRow::Part& row, W dx) {
-  const W d = wide(row.d) + dx * (wide(row.dx) + wide(p.dxx) * dx);
+  const W d = discriminant_of(p, row, dx);
   const W b = wide(row.b) + wide(p.bx) * dx;
   const WideMask real = at_most(wide(0), d);
   const W root = square_root(choose(real, d, wide(0)));

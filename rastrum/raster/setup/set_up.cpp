@@ -112,6 +112,57 @@ SetupOutput all_slow(const Draw& draw, std::uint64_t first, std::uint32_t count,
   return out;
 }
 
+/// Whether a piece of the shape may be deferred, as far as the shape can tell.
+bool is_deferrable(const QuadricShape& shape) {
+  switch (shape.kind) {
+    case QuadricKind::sphere:
+    case QuadricKind::cone:
+      return true;
+    case QuadricKind::hull:
+      return shape.r0 > 0 && shape.r1 > 0;
+    case QuadricKind::open_cone:
+    case QuadricKind::disc:
+      break;
+  }
+  return false;
+}
+
+/// Whether what has one surface to show is deferred: opaque, and seen from outside.
+bool may_defer(const Draw& draw, std::uint32_t flags) {
+  return draw.quadrics != nullptr && draw.quadrics->clip_to_object() != nullptr &&
+         draw.effective_cull() != Cull::front && (flags & (kMayDrop | kTranslucent)) == 0;
+}
+
+/// Makes deferred pieces of a batch of quadrics; the others are left to assemble_primitive.
+SetupOutput defer_quadrics(const Frame& frame, const Draw& draw, std::uint64_t first,
+                           std::uint32_t count, std::uint32_t flags, Piece* out,
+                           std::uint32_t* slow) {
+  SetupOutput result;
+  QuadricShape shapes[kSetupBatch];
+  std::uint32_t numbers[kSetupBatch];
+  const FrameGeometry& geometry = frame.geometry;
+  const QuadricEye eye(*draw.quadrics, geometry.viewport);
+  QuadricInput in{&eye,
+                  shapes,
+                  numbers,
+                  0,
+                  draw.first_id + first,
+                  flags,
+                  {0, 0, geometry.width, geometry.height}};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    numbers[in.count] = i;
+    if (draw.quadrics->shape(first + i, shapes[in.count]) == ShapeFate::drawn &&
+        is_deferrable(shapes[in.count]))
+      ++in.count;
+    else
+      slow[result.slow++] = i;
+  }
+  const SetupOutput deferred = frame.kernel.defer(in, out, slow + result.slow);
+  result.pieces = deferred.pieces;
+  result.slow += deferred.slow;
+  return result;
+}
+
 /// How many of the `count` primitives from `first` on have the flags of the first.
 std::uint32_t equal_flags(const FrameGeometry& frame, const Draw& draw, std::uint64_t first,
                           std::uint32_t count) {
@@ -155,7 +206,7 @@ std::size_t Pieces::quadric_bytes() const {
 }
 
 bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces& pieces,
-            MicroSink* micro) {
+            MicroSink* micro, bool defers) {
   const FrameGeometry& geometry = frame.geometry;
   const Rect image{0, 0, geometry.width, geometry.height};
   const std::span<const SampleOffset> samples = sample_offsets(frame.request.samples);
@@ -223,6 +274,7 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
       pieces.data.grow(std::size_t{pieces.count} + kSetupBatch, pieces.count);
       BinFragment* const fragments =
           micro == nullptr ? nullptr : micro->room(kSetupBatch * kMicroSize * kMicroSize);
+      Piece* const room = pieces.data.data() + pieces.count;
       SetupOutput out;
       if (as_points) {
         std::int32_t sizes[kSetupBatch];
@@ -231,7 +283,9 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
              input.flags | (draw.is_round() ? kRound : 0), image, input.bin_columns},
             fragments, slow);
       } else if (draw.has_kernel()) {
-        out = frame.kernel.setup(input, pieces.data.data() + pieces.count, fragments, slow);
+        out = frame.kernel.setup(input, room, fragments, slow);
+      } else if (defers && may_defer(draw, input.flags)) {
+        out = defer_quadrics(frame, draw, t, count, input.flags, room, slow);
       } else {
         out = all_slow(draw, t, count, slow);
       }

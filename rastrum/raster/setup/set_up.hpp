@@ -54,10 +54,10 @@ class MicroSink {
 };
 
 /// Sets up triangles [first, last), which may span draws, behind those that `pieces` holds. With
-/// `micro`, micro triangles become its fragments. Returns whether all indices were in range; where
-/// not, the pieces are incomplete.
+/// `micro`, micro triangles become its fragments; with `defers`, quadrics become deferred pieces
+/// where they can. Returns whether all indices were in range; where not, the pieces are incomplete.
 [[nodiscard]] bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last,
-                          Pieces& pieces, MicroSink* micro = nullptr);
+                          Pieces& pieces, MicroSink* micro = nullptr, bool defers = false);
 
 /// Adds what became of the triangles of a group to the frame's statistics, once for all bands.
 void count_triangles(Frame& frame, const FrameStats::Triangles& triangles);

@@ -105,7 +105,7 @@ void QuadricShader::fetch(const FrameGeometry& frame, std::uint64_t low, Kept& o
   const std::uint64_t primitive = id - draw.first_id;
   QuadricPlace place;
   (void)stage.shape(primitive, out.shape);
-  (void)make_quadric(stage, out.shape, frame.viewport, out.quadric, place, &out.rays);
+  (void)make_quadric({stage, frame.viewport}, out.shape, out.quadric, place, &out.rays);
   std::copy_n(place.x, 3, out.piece.x);
   std::copy_n(place.y, 3, out.piece.y);
   const Vec4& base = out.surface->plain.base;

@@ -1,0 +1,73 @@
+// Names for arithmetic in float64 lanes, so that a body in these names
+// (setup/quadric_depth-inl.hpp, setup/quadric_form-inl.hpp) serves doubles (`scalar_wide` in
+// setup/quadric.hpp) and vectors. Include it after kernels/lanes-inl.hpp in a namespace of an
+// instruction set.
+//
+// No guard: each source of each instruction set has its own.
+
+using W = D;
+using WideMask = hn::Mask<F64>;
+
+struct WideVec {
+  W x, y, z;
+};
+
+HWY_INLINE W wide(double v) {
+  return hn::Set(F64{}, v);
+}
+HWY_INLINE WideVec wide(const Vec3d& v) {
+  return {wide(v.x), wide(v.y), wide(v.z)};
+}
+HWY_INLINE W square_root(W v) {
+  return hn::Sqrt(v);
+}
+HWY_INLINE W absolute(W v) {
+  return hn::Abs(v);
+}
+HWY_INLINE W floor_of(W v) {
+  return hn::Floor(v);
+}
+HWY_INLINE W lesser(W a, W b) {
+  return hn::Min(a, b);
+}
+HWY_INLINE W greater(W a, W b) {
+  return hn::Max(a, b);
+}
+HWY_INLINE WideMask below(W a, W b) {
+  return hn::Lt(a, b);
+}
+HWY_INLINE WideMask at_most(W a, W b) {
+  return hn::Le(a, b);
+}
+HWY_INLINE WideMask both(WideMask a, WideMask b) {
+  return hn::And(a, b);
+}
+HWY_INLINE WideMask either(WideMask a, WideMask b) {
+  return hn::Or(a, b);
+}
+HWY_INLINE WideMask opposite(WideMask a) {
+  return hn::Not(a);
+}
+HWY_INLINE bool is_any(WideMask a) {
+  return !hn::AllFalse(F64{}, a);
+}
+HWY_INLINE W choose(WideMask mask, W yes, W no) {
+  return hn::IfThenElse(mask, yes, no);
+}
+HWY_INLINE WideVec operator+(const WideVec& a, const WideVec& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+HWY_INLINE WideVec operator-(const WideVec& a, const WideVec& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+HWY_INLINE WideVec operator*(const WideVec& a, W s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+HWY_INLINE W dot(const WideVec& a, const WideVec& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+HWY_INLINE WideVec cross(const WideVec& a, const WideVec& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+#define RASTRUM_LANES HWY_INLINE
+#define RASTRUM_LAMBDA HWY_ATTR
