@@ -60,7 +60,7 @@ struct Vertices {
 };
 
 /// `faces`: null: none, and no element for them.
-void write(AtomicFile& out, const Vertices& v, const MeshView* faces) {
+void write_vertices(AtomicFile& out, const Vertices& v, const MeshView* faces) {
   const std::size_t vertices = v.positions.size();
   const bool bytes = fit_bytes(v.colors);
   std::string header = "ply\nformat binary_little_endian 1.0\nelement vertex " +
@@ -134,20 +134,20 @@ void write_ply(AtomicFile& out, const Mesh& mesh) {
                                               std::to_string(i) + " of " +
                                               std::to_string(vertices));
   const MeshView view = mesh.view();
-  write(out,
-        {mesh.positions, shared(mesh.normals, "normals"),
-         shared(mesh.texcoords, "texture coordinates"), shared(mesh.colors, "colours")},
-        &view);
+  write_vertices(out,
+                 {mesh.positions, shared(mesh.normals, "normals"),
+                  shared(mesh.texcoords, "texture coordinates"), shared(mesh.colors, "colours")},
+                 &view);
 }
 
 void write_ply(AtomicFile& out, const Points& points) {
   const std::size_t n = points.positions.size();
-  write(out,
-        {points.positions,
-         each(out, "there are ", points.normals, n, "normals"),
-         {},
-         each(out, "there are ", points.colors, n, "colours")},
-        nullptr);
+  write_vertices(out,
+                 {points.positions,
+                  each(out, "there are ", points.normals, n, "normals"),
+                  {},
+                  each(out, "there are ", points.colors, n, "colours")},
+                 nullptr);
 }
 
 }  // namespace rastrum::io

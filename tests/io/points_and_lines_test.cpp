@@ -43,7 +43,7 @@ constexpr const char* kCloud =
     "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
     "property uchar red\nproperty uchar green\nproperty uchar blue\n"
     "property float intensity\n";
-constexpr const char* kTwo = "end_header\n1 2 3 0 0 1 255 0 51 7\n4 5 6 0 1 0 0 255 0 8\n";
+constexpr const char* kTwo = "end_header\n1 2 3 0 0 1 255 0 0 7\n4 5 6 0 1 0 0 255 0 8\n";
 
 TEST(PointFiles, PlyWithoutFacesIsACloud) {
   for (const char* const faces : {"", "element face 0\nproperty list uchar int vertex_indices\n"}) {
@@ -55,7 +55,7 @@ TEST(PointFiles, PlyWithoutFacesIsACloud) {
     EXPECT_EQ(p.name, "cloud");
     EXPECT_EQ(p.positions, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}));
     EXPECT_EQ(p.normals, (std::vector<Vec3>{{0, 0, 1}, {0, 1, 0}}));
-    EXPECT_EQ(p.colors, (std::vector<Vec4>{{1, 0, 0.2F, 1}, {0, 1, 0, 1}}));
+    EXPECT_EQ(p.colors, (std::vector<Vec4>{{1, 0, 0, 1}, {0, 1, 0, 1}}));
     ASSERT_EQ(s.warnings.size(), 1U);
     EXPECT_NE(s.warnings[0].find("not drawn: vertex.intensity"), std::string::npos);
   }

@@ -15,11 +15,11 @@ Vec3d interpolate(const Fragment& f, const Vec3d (&v)[3]) {
 }
 
 /// The positions of a geometry, and how many of them a primitive has.
-struct Corners {
+struct CornerPositions {
   const ArrayView<Vec3>* positions;
   int count;
 };
-Corners corners_of(const GeometryView& geometry) {
+CornerPositions corner_positions(const GeometryView& geometry) {
   if (const auto* const points = std::get_if<PointsView>(&geometry)) return {&points->positions, 1};
   if (const auto* const lines = std::get_if<LinesView>(&geometry)) return {&lines->positions, 2};
   return {&std::get<MeshView>(geometry).positions, 3};
@@ -28,7 +28,7 @@ Corners corners_of(const GeometryView& geometry) {
 }  // namespace
 
 Vec3d position_on(const InstanceView& instance, const Fragment& f) {
-  const Corners corners = corners_of(instance.geometry);
+  const CornerPositions corners = corner_positions(instance.geometry);
   Vec3d p;
   for (int c = 0; c < corners.count; ++c) {
     const Vec3d part = corners.positions->wide(f.vertex[c]) * f.weights.b[c];
