@@ -21,8 +21,10 @@ struct Located {
 
 /// How much of each corner of primitive `id` there is at the centre of pixel (x, y) of a W × H
 /// picture: perspective-correct, of the snapped triangle that is drawn, each in [0, 1], adding up
-/// to
-/// 1. The triangle need not be seen there, but its weights are then cut. In float64.
+/// to 1. The triangle need not be seen there, but its weights are then cut. In float64.
+/// Of a cylinder, cone or tube: of the two ends of its axis, at the side that faces the viewer, or
+/// at the other one where that does not cover the pixel's centre. Of what has one position, and
+/// where neither does: (1, 0, 0).
 /// Throws Error{invalid_argument} as locate(), and for an index of its corners that is out of
 /// range.
 struct Barycentrics {
@@ -31,7 +33,8 @@ struct Barycentrics {
 [[nodiscard]] Barycentrics barycentrics(const SceneView& scene, const Camera& camera, int width,
                                         int height, std::uint64_t id, int x, int y);
 
-/// Where these lie in the world, in float64. Throws as barycentrics().
+/// Where these lie in the world, in float64: of spheres, cylinders, tubes and discs on the axis, or
+/// at the centre (of the surface: Pick::position). Throws as barycentrics().
 [[nodiscard]] Vec3d position(const SceneView& scene, const Located& at, const Barycentrics& where);
 
 /// What a frame shows at a pixel; Targets says what each is.
@@ -41,7 +44,7 @@ struct Pick {
   std::int64_t instance_id = 0;  ///< InstanceView::id
   std::uint64_t primitive = 0;   ///< within its instance
   Barycentrics barycentrics;
-  Vec3d position;   ///< in the world
+  Vec3d position;   ///< of the surface, in the world
   Vec3d normal;     ///< unit length, in the world, turned to the viewer; 0 where it has none
   float depth = 0;  ///< reversed
   double view_depth = 0, distance = 0;

@@ -1,28 +1,33 @@
 // Surfaces that are no triangles: spheres, cylinders and cones, tubes, discs. They are drawn
-// exactly, as quadrics (docs/primitives.md), not as meshes of them. Views over the caller's arrays;
-// nothing is copied, so they must outlive the render.
+// exactly, as quadrics (docs/primitives.md), not as meshes of them. Views over the caller's arrays,
+// of any types and strides (array.hpp); nothing is copied, so they must outlive the render.
 //
 // What is in common. Coordinates and radii are of object space; under any affine object_to_world a
-// sphere is the ellipsoid that it becomes. A radius of 0 draws nothing. A primitive with a radius
+// sphere is the ellipsoid that it becomes. Positions and normals in float64 are taken as they are,
+// radii and colours are rounded to float32. A radius of 0 draws nothing. A primitive with a radius
 // that is negative, or with a number that is not finite, is dropped and counted. `radii` empty:
 // `radius` for all. `colors`: linear, straight alpha; empty: the plain colour, or the material's.
+// Arrays that are too short, indices out of range and offsets that do not rise are refused by the
+// render, which names instance, array and place.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <string>
+#include <vector>
 
+#include <rastrum/array.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum {
 
 /// A primitive is a sphere.
 struct SpheresView {
-  std::span<const Vec3> centers{};
-  std::span<const float> radii{};  ///< one a sphere
+  ArrayView<Vec3> centers{};
+  ArrayView<float> radii{};  ///< one a sphere
   float radius = 1;
-  std::span<const Vec4> colors{};  ///< one a sphere
-  std::uint32_t material = 0;      ///< index into SceneView::materials
+  ArrayView<Vec4> colors{};    ///< one a sphere
+  std::uint32_t material = 0;  ///< index into SceneView::materials
 
   [[nodiscard]] std::size_t size() const { return centers.size(); }
 };
@@ -30,33 +35,33 @@ struct SpheresView {
 /// A primitive is a cylinder between two positions, a cone where their radii differ. Of length 0 it
 /// draws nothing.
 struct CylindersView {
-  std::span<const Vec3> positions{};
-  std::span<const std::uint32_t> indices{};  ///< two a primitive; empty: positions in order
-  std::span<const float> radii{};            ///< one a position
+  ArrayView<Vec3> positions{};
+  IndexView indices{};       ///< two a primitive; empty: positions in order
+  ArrayView<float> radii{};  ///< one a position
   float radius = 1;
-  std::span<const Vec4> colors{};  ///< one a position, linear along the axis
-  bool caps = true;                ///< closed by flat discs; else open, and seen from inside, too
+  ArrayView<Vec4> colors{};  ///< one a position, linear along the axis
+  bool caps = true;          ///< closed by flat discs; else open, and seen from inside, too
   std::uint32_t material = 0;
 
   [[nodiscard]] std::size_t size() const {
     return (indices.empty() ? positions.size() : indices.size()) / 2;
   }
   /// The position of end `i`, 0 or 1, of a primitive.
-  [[nodiscard]] std::uint32_t end(std::uint64_t primitive, int i) const {
+  [[nodiscard]] std::size_t end(std::uint64_t primitive, int i) const {
     const std::size_t k = static_cast<std::size_t>(primitive) * 2 + static_cast<std::size_t>(i);
-    return indices.empty() ? static_cast<std::uint32_t>(k) : indices[k];
+    return indices.empty() ? k : indices[k];
   }
 };
 
 /// Polylines with round joints and ends. A primitive is a segment: the convex hull of the spheres
 /// about its two positions, so that neighbours share a sphere.
 struct TubesView {
-  std::span<const Vec3> positions{};
+  ArrayView<Vec3> positions{};
   /// Polyline i has positions [offsets[i], offsets[i + 1]); n + 1 that rise; empty: one polyline.
-  std::span<const std::uint32_t> offsets{};
-  std::span<const float> radii{};  ///< one a position
+  IndexView offsets{};
+  ArrayView<float> radii{};  ///< one a position
   float radius = 1;
-  std::span<const Vec4> colors{};  ///< one a position, linear along the axis
+  ArrayView<Vec4> colors{};  ///< one a position, linear along the axis
   std::uint32_t material = 0;
 
   /// Segments. O(1).
@@ -67,14 +72,70 @@ struct TubesView {
 
 /// A primitive is a flat disc. It has two sides; its front is where its normal points to.
 struct DiscsView {
-  std::span<const Vec3> centers{};
-  std::span<const Vec3> normals{};  ///< one a disc, need not be of unit length; 0 draws nothing
-  std::span<const float> radii{};   ///< one a disc
+  ArrayView<Vec3> centers{};
+  ArrayView<Vec3> normals{};  ///< one a disc, need not be of unit length; 0 draws nothing
+  ArrayView<float> radii{};   ///< one a disc
   float radius = 1;
-  std::span<const Vec4> colors{};  ///< one a disc
+  ArrayView<Vec4> colors{};  ///< one a disc
   std::uint32_t material = 0;
 
   [[nodiscard]] std::size_t size() const { return centers.size(); }
+};
+
+// The same with arrays of their own, as readers and procedural shapes return them.
+
+struct Spheres {
+  std::string name{};
+  std::vector<Vec3> centers{};
+  std::vector<float> radii{};
+  float radius = 1;
+  std::vector<Vec4> colors{};
+  std::uint32_t material = 0;
+
+  [[nodiscard]] SpheresView view() const { return {centers, radii, radius, colors, material}; }
+};
+
+struct Cylinders {
+  std::string name{};
+  std::vector<Vec3> positions{};
+  std::vector<std::uint32_t> indices{};
+  std::vector<float> radii{};
+  float radius = 1;
+  std::vector<Vec4> colors{};
+  bool caps = true;
+  std::uint32_t material = 0;
+
+  [[nodiscard]] CylindersView view() const {
+    return {positions, indices, radii, radius, colors, caps, material};
+  }
+};
+
+struct Tubes {
+  std::string name{};
+  std::vector<Vec3> positions{};
+  std::vector<std::uint32_t> offsets{};
+  std::vector<float> radii{};
+  float radius = 1;
+  std::vector<Vec4> colors{};
+  std::uint32_t material = 0;
+
+  [[nodiscard]] TubesView view() const {
+    return {positions, offsets, radii, radius, colors, material};
+  }
+};
+
+struct Discs {
+  std::string name{};
+  std::vector<Vec3> centers{};
+  std::vector<Vec3> normals{};
+  std::vector<float> radii{};
+  float radius = 1;
+  std::vector<Vec4> colors{};
+  std::uint32_t material = 0;
+
+  [[nodiscard]] DiscsView view() const {
+    return {centers, normals, radii, radius, colors, material};
+  }
 };
 
 }  // namespace rastrum

@@ -1,31 +1,46 @@
 #include <rastrum/pick.hpp>
 
-#include <bit>
+#include <algorithm>
+#include <optional>
 #include <string>
 
 #include <rastrum/error.hpp>
 #include <rastrum/raster/draws/vertices_of.hpp>
 #include <rastrum/raster/resolve/surface_point.hpp>
 #include <rastrum/render/surface_of_key.hpp>
+#include <rastrum/render/surfaces.hpp>
 
 namespace rastrum {
 namespace {
 
-/// The draw of the instance that holds a primitive.
-raster::Draw draw_of(const SceneView& scene, const Located& at, const Mat4d& world_to_clip) {
-  const InstanceView& instance = scene.instances[at.instance];
-  raster::Draw draw;
-  if (!raster::set_vertices(draw, instance.geometry, world_to_clip * instance.object_to_world))
-    throw Error(Errc::unsupported,
-                "instance " + std::to_string(at.instance) +
-                    " is no mesh, points or lines: only of those it is known what lies where");
-  const auto corners = static_cast<int>(draw.topology);
-  for (int c = 0; c < corners; ++c)
+[[noreturn]] void refuse_index(const Located& at, const char* of) {
+  throw Error(Errc::invalid_argument, std::string("instance ")
+                                          .append(std::to_string(at.instance))
+                                          .append(": an index of ")
+                                          .append(of)
+                                          .append(" ")
+                                          .append(std::to_string(at.primitive))
+                                          .append(" is out of range"));
+}
+
+/// Throws where they are out of range.
+raster::AxisEnds ends_of(const Located& at, const raster::QuadricGeometry& geometry) {
+  if (at.primitive >= std::visit([](const auto& g) { return g.size(); }, geometry))
+    refuse_index(at, "primitive");
+  const raster::AxisEnds ends = raster::axis_ends(geometry, at.primitive);
+  if (std::max(ends.first, ends.second) >= raster::positions_of(geometry).size())
+    refuse_index(at, "primitive");
+  return ends;
+}
+
+/// Makes `draw` that of the instance, which has vertices. Throws where those of the primitive are
+/// out of range.
+void set_vertices_of(raster::Draw& draw, const Located& at, const InstanceView& instance,
+                     const Mat4d& to_clip) {
+  raster::set_vertices(draw, instance.geometry, to_clip);
+  for (int c = 0; c < static_cast<int>(draw.topology); ++c)
     if (draw.vertex(at.primitive, c) >= draw.vertex_count)
-      throw Error(Errc::invalid_argument, "instance " + std::to_string(at.instance) +
-                                              ": an index of primitive " +
-                                              std::to_string(at.primitive) + " is out of range");
-  return draw;
+      refuse_index(at, instance.mesh() != nullptr ? "triangle" : "primitive");
 }
 
 /// One instance as a scene of its own, so that what is asked about a primitive costs nothing for
@@ -34,28 +49,41 @@ struct Alone {
   Located at;
   InstanceView instance;
   SceneView scene;
+  std::optional<raster::QuadricStage> quadrics;
   raster::Draw draw;
   raster::FrameGeometry geometry;
 
   Alone(const SceneView& all, const Camera& camera, int width, int height, std::uint64_t id)
-      : at(locate(all, id)),
-        instance(all.instances[at.instance]),
-        scene{{&instance, 1}, {}, {}},
-        draw(draw_of(all, at, world_to_clip(camera, width, height))) {
+      : at(locate(all, id)), instance(all.instances[at.instance]), scene{{&instance, 1}, {}, {}} {
+    const Mat4d to_clip = world_to_clip(camera, width, height) * instance.object_to_world;
     draw.winding = instance.winding;
     draw.first_id = id - at.primitive;
     geometry = {width, height, raster::Viewport::of(width, height), {&draw, 1}, nullptr};
+    if (const auto surfaces = quadrics_of(instance.geometry)) {
+      (void)ends_of(at, *surfaces);
+      draw.quadrics = &quadrics.emplace(*surfaces, to_clip);
+      return;
+    }
+    set_vertices_of(draw, at, instance, to_clip);
   }
   Alone(const Alone&) = delete;
   Alone& operator=(const Alone&) = delete;
-
-  [[nodiscard]] raster::Fragment fragment(std::uint64_t id, int x, int y) const {
-    return raster::FragmentLocator(geometry).locate(id, x, y, 0, nullptr);
-  }
 };
 
 Barycentrics weights_of(const raster::Fragment& f) {
   return {{f.weights.b[0], f.weights.b[1], f.weights.b[2]}};
+}
+
+/// The nearer of the two sides of a quadric that cover the pixel's centre: front, else back.
+Barycentrics weights_of_quadric(const Alone& alone, int x, int y) {
+  raster::QuadricSurface s;
+  if (!s.find(*alone.quadrics, alone.at.primitive, alone.geometry.viewport)) return {};
+  const raster::QuadricSurface::Place centre = s.at(x, y);
+  raster::scalar_wide::Surface side = s.side(false, centre);
+  if (!side.covered) side = s.side(true, centre);
+  if (!side.covered) return {};
+  const double along = raster::point_on(s.shape, s.point(centre, side.e)).along;
+  return {{1 - along, along, 0}};
 }
 
 }  // namespace
@@ -75,24 +103,35 @@ Located locate(const SceneView& scene, std::uint64_t id) {
 Barycentrics barycentrics(const SceneView& scene, const Camera& camera, int width, int height,
                           std::uint64_t id, int x, int y) {
   const Alone alone(scene, camera, width, height, id);
-  return weights_of(alone.fragment(id, x, y));
+  if (alone.quadrics) return weights_of_quadric(alone, x, y);
+  return weights_of(raster::FragmentLocator(alone.geometry).locate(id, x, y, 0, nullptr));
 }
 
 Vec3d position(const SceneView& scene, const Located& at, const Barycentrics& where) {
-  const raster::Draw draw = draw_of(scene, at, Mat4d::identity());
+  const InstanceView& instance = scene.instances[at.instance];
+  if (const auto surfaces = quadrics_of(instance.geometry)) {
+    const raster::AxisEnds ends = ends_of(at, *surfaces);
+    const ArrayView<Vec3>& p = raster::positions_of(*surfaces);
+    return raster::in_world(
+        instance, p.wide(ends.first) * where.weight[0] + p.wide(ends.second) * where.weight[1]);
+  }
+  raster::Draw draw;
+  set_vertices_of(draw, at, instance, Mat4d::identity());
   raster::Fragment f;
   for (int c = 0; c < static_cast<int>(draw.topology); ++c) {
     f.vertex[c] = draw.vertex(at.primitive, c);
     f.weights.b[c] = where.weight[c];
   }
-  return raster::position_on(scene.instances[at.instance], f);
+  return raster::position_on(instance, f);
 }
 
-Pick surface_of_key(const SceneView& scene, const Camera& camera, int width, int height,
+Pick surface_of_key(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
                     std::uint64_t key, int x, int y) {
   const std::uint64_t id = raster::id_of_key(key);
+  const int width = frame.width, height = frame.height;
   const Alone alone(scene, camera, width, height, id);
-  const raster::Fragment f = alone.fragment(id, x, y);
+  raster::SurfaceLocator locator(alone.geometry, frame.samples);
+  const raster::SeenFragment& f = locator.locate(key, x, y, 0);
   const raster::SurfaceScene surface(alone.scene, camera, width, height);
   Pick pick;
   pick.id = id;
@@ -102,7 +141,7 @@ Pick surface_of_key(const SceneView& scene, const Camera& camera, int width, int
   pick.barycentrics = weights_of(f);
   pick.position = surface.position(f);
   pick.normal = surface.normal(f);
-  pick.depth = std::bit_cast<float>(static_cast<std::uint32_t>(key >> raster::kIdBits));
+  pick.depth = f.depth;
   pick.view_depth = view_distance(camera, pick.depth);
   pick.distance = pick.view_depth * surface.ray_length(x, y);
   return pick;

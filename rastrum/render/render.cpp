@@ -327,7 +327,7 @@ std::optional<Pick> Renderer::pick(const SceneView& scene, const Camera& camera,
   (void)impl_->render(scene, camera, {plain, targets, false, bin});
   const std::uint64_t key = keys(x - x0, y - y0);
   if (key == 0) return std::nullopt;
-  return surface_of_key(scene, camera, frame.width, frame.height, key, x, y);
+  return surface_of_key(scene, camera, frame, key, x, y);
 }
 
 Image<Rgba8> render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,

@@ -50,10 +50,7 @@ SceneDraws::SceneDraws(const SceneView& scene, const Camera& camera, const Optio
   const FrameOptions& o = options.frame;
   const Targets& targets = options.targets;
   mesh_list_ = meshes_beside_others(scene);
-  if (mesh_list_) {
-    meshes_.instances = *mesh_list_;
-    check_asked_of_meshes(scene, targets, o);
-  }
+  if (mesh_list_) meshes_.instances = *mesh_list_;
   const Flags flags = make_draws(options, world_to_clip(camera, o.width, o.height), threads);
 
   const bool masks = (flags.materials & raster::kTested) != 0;
@@ -104,36 +101,38 @@ SceneDraws::Flags SceneDraws::make_draws(const Options& options, const Mat4d& to
     raster::Draw& draw = draws_.emplace_back();
     draw.visible = instance.visible;
     draw.winding = instance.winding;
-    if (surfaces_.add(instance, to_clip, draw)) {
+    if (!o.clip_planes.empty() || !instance.clip_planes.empty()) {
+      raster::check_clip_planes(
+          instance.clip_planes,
+          std::string("instance ").append(std::to_string(draws_.size() - 1)).append(": ").c_str());
+      draw.cut = &cuts_.emplace_back(instance, o.clip_planes);
+    }
+    if (surfaces_.add(instance, to_clip, draw, threads)) {
       all.any |= draw.flags;
       continue;
     }
     raster::set_vertices(draw, instance.geometry, to_clip * instance.object_to_world);
-    const bool is_mesh = instance.mesh() != nullptr;
     std::uint32_t flags = 0;
-    if (is_mesh) {
+    ArrayView<Vec4> colors;
+    if (const MeshView* const mesh = instance.mesh()) {
+      colors = mesh->colors.values;
       draw.cull = material_cull(instance, scene_.materials, options.shader);
       flags = raster::set_material_flags(draw, instance, material_flags_);
     } else {
-      points_and_lines_.add(instance);
+      colors = points_and_lines_.add(instance);
       draw.shading = points_and_lines_;
       draw.test = &points_and_lines_;
       if (!material_flags_.empty()) draw.flags |= material_flags_[raster::material_of(instance)];
     }
     if (blends && scene_.materials.empty() && !options.in_place && instance.visible &&
-        raster::has_color_alpha(instance, threads)) {
+        raster::has_color_alpha(instance, colors, threads)) {
       draw.flags |= raster::kTranslucent;
       flags |= raster::kTranslucent;
     }
     if (blends && instance.visible && instance.opacity < 1) flags |= raster::kTranslucent;
     if (blends && (o.opacity < 1 || instance.opacity < 1)) draw.flags |= raster::kTranslucent;
-    if (is_mesh) all.materials |= flags;
+    if (instance.mesh() != nullptr) all.materials |= flags;
     all.any |= flags | draw.flags;
-    if (o.clip_planes.empty() && instance.clip_planes.empty()) continue;
-    raster::check_clip_planes(
-        instance.clip_planes,
-        std::string("instance ").append(std::to_string(draws_.size() - 1)).append(": ").c_str());
-    draw.cut = &cuts_.emplace_back(instance, o.clip_planes, draw.source.matrix()->positions);
   }
   return all;
 }

@@ -4,17 +4,11 @@
 #include <string>
 
 #include <rastrum/error.hpp>
+#include <rastrum/raster/shade/alpha.hpp>
+#include <rastrum/scene/mesh_checks.hpp>
 
 namespace rastrum {
 namespace {
-
-std::optional<raster::QuadricGeometry> quadrics_of(const GeometryView& geometry) {
-  if (const auto* const s = std::get_if<SpheresView>(&geometry)) return *s;
-  if (const auto* const c = std::get_if<CylindersView>(&geometry)) return *c;
-  if (const auto* const t = std::get_if<TubesView>(&geometry)) return *t;
-  if (const auto* const d = std::get_if<DiscsView>(&geometry)) return *d;
-  return std::nullopt;
-}
 
 /// Checks the arrays of an instance.
 class Check {
@@ -28,20 +22,18 @@ class Check {
   void operator()(const CylindersView& c) const {
     of_positions(c.radii.size(), c.colors.size(), c.positions.size());
     if (c.indices.size() % 2 != 0) fail("the number of indices is odd");
-    for (const std::uint32_t i : c.indices)
-      if (i >= c.positions.size())
-        fail("index " + std::to_string(i) + " is out of range, there are " +
-             std::to_string(c.positions.size()) + " positions");
+    if (const std::size_t at = first_beyond(c.indices, c.positions.size()); at != c.indices.size())
+      fail("indices[" + std::to_string(at) + "]: index " + c.indices.text(at) +
+           " is out of range, there are " + std::to_string(c.positions.size()) + " positions");
   }
   void operator()(const TubesView& t) const {
     of_positions(t.radii.size(), t.colors.size(), t.positions.size());
-    for (std::size_t i = 0; i + 1 < t.offsets.size(); ++i)
-      if (t.offsets[i] >= t.offsets[i + 1])
-        fail("offset " + std::to_string(i + 1) + " is " + std::to_string(t.offsets[i + 1]) +
-             ", which does not lie above the one before, " + std::to_string(t.offsets[i]));
-    if (!t.offsets.empty() && t.offsets.back() > t.positions.size())
-      fail("the last offset is " + std::to_string(t.offsets.back()) + ", but there are " +
-           std::to_string(t.positions.size()) + " positions");
+    // Negative ones are beyond all positions.
+    for (std::size_t i = 0; i < t.offsets.size(); ++i)
+      if (t.offsets.wide(i) > t.positions.size())
+        fail(offset(t, i) + ", but there are " + std::to_string(t.positions.size()) + " positions");
+      else if (i > 0 && t.offsets.wide(i) <= t.offsets.wide(i - 1))
+        fail(offset(t, i) + ", which does not lie above the one before, " + t.offsets.text(i - 1));
   }
   void operator()(const DiscsView& d) const {
     enough(d.radii.size(), "radii", d.size(), "discs");
@@ -70,19 +62,29 @@ class Check {
     enough(colors, "colors", positions, "positions");
   }
 
+  static std::string offset(const TubesView& t, std::size_t i) {
+    return "offsets[" + std::to_string(i) + "] is " + t.offsets.text(i);
+  }
+
   std::size_t instance_;
 };
 
 bool is_translucent(const raster::QuadricGeometry& geometry, const InstanceView& instance,
-                    const Material* material) {
+                    const Material* material, parallel::Threads* threads) {
   if (material != nullptr) return material->alpha_mode == AlphaMode::blend || material->opacity < 1;
-  // Written so that a NaN is found.
-  if (instance.color) return !(instance.color->w >= 1);
-  return !std::ranges::all_of(raster::colors_of(geometry, instance),
-                              [](const Vec4& c) { return c.w >= 1; });
+  return raster::has_color_alpha(
+      instance, std::visit([](const auto& g) { return g.colors; }, geometry), threads);
 }
 
 }  // namespace
+
+std::optional<raster::QuadricGeometry> quadrics_of(const GeometryView& geometry) {
+  if (const auto* const s = std::get_if<SpheresView>(&geometry)) return *s;
+  if (const auto* const c = std::get_if<CylindersView>(&geometry)) return *c;
+  if (const auto* const t = std::get_if<TubesView>(&geometry)) return *t;
+  if (const auto* const d = std::get_if<DiscsView>(&geometry)) return *d;
+  return std::nullopt;
+}
 
 void check_surfaces(const SceneView& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i)
@@ -93,8 +95,8 @@ void check_surfaces(const SceneView& scene) {
     }
 }
 
-bool SurfaceDraws::add(const InstanceView& instance, const Mat4d& world_to_clip,
-                       raster::Draw& draw) {
+bool SurfaceDraws::add(const InstanceView& instance, const Mat4d& world_to_clip, raster::Draw& draw,
+                       parallel::Threads* threads) {
   const auto geometry = quadrics_of(instance.geometry);
   if (!geometry) return false;
   const raster::QuadricStage& stage =
@@ -105,9 +107,13 @@ bool SurfaceDraws::add(const InstanceView& instance, const Mat4d& world_to_clip,
   draw.shading = shader_;
   const Material* const material =
       scene_.materials.empty() ? nullptr : &scene_.materials[raster::material_of(instance)];
-  if (look_.blends &&
-      (look_.opacity < 1 || instance.opacity < 1 || is_translucent(*geometry, instance, material)))
+  if (look_.blends && (look_.opacity < 1 || instance.opacity < 1 ||
+                       is_translucent(*geometry, instance, material, threads)))
     draw.flags |= raster::kTranslucent;
+  if (material != nullptr && material->alpha_mode == AlphaMode::mask) {
+    draw.flags |= raster::kTested;
+    draw.test = &shader_;
+  }
   return true;
 }
 

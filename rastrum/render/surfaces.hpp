@@ -6,12 +6,16 @@
 #include <span>
 #include <vector>
 
+#include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/draws/draw.hpp>
 #include <rastrum/raster/draws/quadrics.hpp>
 #include <rastrum/raster/shade/quadric_shader.hpp>
 #include <rastrum/scene.hpp>
 
 namespace rastrum {
+
+/// What of instances are quadrics; none: it is another geometry.
+[[nodiscard]] std::optional<raster::QuadricGeometry> quadrics_of(const GeometryView& geometry);
 
 /// Throws Error{invalid_argument} that names the instance and its array: fewer radii, colours or
 /// normals than there are to be, an index or offset out of range, offsets that do not rise, a
@@ -26,7 +30,8 @@ class SurfaceDraws {
       : look_(look), shader_(look, scene.materials, camera, width, height), scene_(scene) {}
 
   /// Whether the instance is one; then makes its draw.
-  bool add(const InstanceView& instance, const Mat4d& world_to_clip, raster::Draw& draw);
+  bool add(const InstanceView& instance, const Mat4d& world_to_clip, raster::Draw& draw,
+           parallel::Threads* threads);
 
   /// As QuadricShader's.
   void leave_linear() { shader_.leave_linear(); }

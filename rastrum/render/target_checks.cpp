@@ -89,23 +89,6 @@ void check_in_place(const SceneView& scene, const Targets& targets, Shader shade
           "clip planes need them in the host's");
 }
 
-void check_asked_of_meshes(const SceneView& scene, const Targets& targets, const FrameOptions& o) {
-  const auto refuse = [](const char* what) {
-    throw Error(Errc::unsupported,
-                std::string(what).append(": of meshes alone, but the scene has spheres, cylinders, "
-                                         "tubes or discs"));
-  };
-  const auto is_quadric = [](const InstanceView& i) {
-    return i.mesh() == nullptr && !is_points_or_lines(i.geometry);
-  };
-  if (std::ranges::none_of(scene.instances, is_quadric)) return;
-  if (wants_surface(targets)) refuse("targets beside colour, depth, ids and keys");
-  if (!o.clip_planes.empty() || std::ranges::any_of(scene.instances, [](const InstanceView& i) {
-        return !i.clip_planes.empty();
-      }))
-    refuse("clip planes");
-}
-
 void check_over(const Targets& targets, const FrameOptions& o) {
   const auto require = [](bool ok, const char* what) {
     if (!ok) throw Error(Errc::invalid_argument, what);

@@ -19,10 +19,6 @@ void check_outputs(const Targets& targets, bool has_scene, bool shades_materials
 void check_in_place(const SceneView& scene, const Targets& targets, Shader shader,
                     const FrameOptions& frame);
 
-/// What scenes of more than meshes do not have yet: Error{unsupported}.
-void check_asked_of_meshes(const SceneView& scene, const Targets& targets,
-                           const FrameOptions& frame);
-
 /// Throws Error{invalid_argument} where a picture cannot be drawn over (Targets::over).
 void check_over(const Targets& targets, const FrameOptions& frame);
 

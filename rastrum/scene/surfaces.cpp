@@ -9,7 +9,7 @@ namespace {
 
 /// Segments of the polylines before the i-th, where each has one position at least.
 std::size_t segments_before(const TubesView& tubes, std::size_t i) {
-  return tubes.offsets[i] - tubes.offsets[0] - i;
+  return static_cast<std::size_t>(tubes.offsets.wide(i) - tubes.offsets.wide(0)) - i;
 }
 
 }  // namespace
@@ -27,7 +27,7 @@ std::size_t TubesView::begin(std::uint64_t segment) const {
     const std::size_t middle = (low + high) / 2;
     (segments_before(*this, middle) <= segment ? low : high) = middle;
   }
-  return static_cast<std::size_t>(segment) + offsets[0] + low;
+  return static_cast<std::size_t>(segment + offsets.wide(0)) + low;
 }
 
 std::uint64_t primitive_count(const GeometryView& geometry) {

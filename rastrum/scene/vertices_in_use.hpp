@@ -24,8 +24,8 @@ void for_each_ball(const GeometryView& geometry, F&& f) {
   const auto radius = [](const auto& g, std::size_t i) {
     return g.radii.empty() ? g.radius : g.radii[i];
   };
-  const auto all = [&](const auto& g, std::span<const Vec3> centres, std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i) f(centres[i], radius(g, i));
+  const auto all = [&](const auto& g, const ArrayView<Vec3>& centres, std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i) f(centres.wide(i), radius(g, i));
   };
   if (const auto* const s = std::get_if<SpheresView>(&geometry)) all(*s, s->centers, s->size());
   if (const auto* const d = std::get_if<DiscsView>(&geometry)) all(*d, d->centers, d->size());
@@ -35,7 +35,7 @@ void for_each_ball(const GeometryView& geometry, F&& f) {
     for (std::size_t i = 0; i < c->size(); ++i)
       for (const int end : {0, 1})
         if (const std::size_t k = c->end(i, end); k < c->positions.size())
-          f(c->positions[k], radius(*c, k));
+          f(c->positions.wide(k), radius(*c, k));
 }
 
 /// Calls f(Vec3d) for the positions that points and lines use; of other geometries, for none.
@@ -96,7 +96,7 @@ class VerticesInUse {
       };
       if (scene_.instances[i].mesh() == nullptr) {
         for_each_ball(scene_.instances[i].geometry,
-                      [&](Vec3 centre, float radius) { visit_ball(Vec3d(centre), radius, visit); });
+                      [&](Vec3d centre, float radius) { visit_ball(centre, radius, visit); });
         for_each_position(scene_.instances[i].geometry, visit);
         continue;
       }

@@ -63,13 +63,15 @@ struct Scene {
 
   raster::Fate add(const raster::Draw& draw, std::uint64_t primitive);
   /// Whether the fragment passes the test.
-  bool keeps(const raster::Draw& draw, std::uint64_t primitive, int x, int y, const Fragment& f);
+  bool keeps(const raster::Draw& draw, std::uint64_t primitive, const Place& place,
+             const Fragment& f);
   Vec4 shade(int x, int y, const Fragment& f);
   std::uint64_t resolve(int x, int y, LayerBlend& blend, BlockColors& colors);
 };
 
-bool Scene::keeps(const raster::Draw& draw, std::uint64_t primitive, int x, int y,
+bool Scene::keeps(const raster::Draw& draw, std::uint64_t primitive, const Place& place,
                   const Fragment& f) {
+  const auto [y, x, away] = place;
   const std::uint32_t flags = frame.flags_of(draw, primitive);
   if ((flags & raster::kMayDrop) == 0) return true;
   raster::ShadingPoints points{};
@@ -78,7 +80,7 @@ bool Scene::keeps(const raster::Draw& draw, std::uint64_t primitive, int x, int 
   points.dx[i] = f.dx;
   points.dy[i] = f.dy;
   Piece piece{};
-  piece.flags = flags;
+  piece.flags = flags | (away ? raster::kFacesAway : 0);
   piece.low = f.shaded_key & raster::kIdMask;
   piece.z0 = std::bit_cast<float>(static_cast<std::uint32_t>(f.shaded_key >> raster::kIdBits));
   return request.kept(frame, piece, block, &points) != 0;
@@ -118,7 +120,7 @@ raster::Fate Scene::add(const raster::Draw& draw, std::uint64_t primitive) {
         std::ranges::count_if(fragment.keys, [](std::uint64_t key) { return key != 0; }));
     under_way.fragments += samples;
     if (!request.targets.overdraw.empty()) request.targets.overdraw(x, y) += samples;
-    if (!keeps(draw, primitive, x, y, fragment)) continue;
+    if (!keeps(draw, primitive, place, fragment)) continue;
     fragment.translucent = request.transparency.method != Transparency::none &&
                            (draw.flags_of(primitive) & raster::kTranslucent) != 0;
     fragment.color = shade(x, y, fragment);

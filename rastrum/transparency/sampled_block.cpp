@@ -16,7 +16,8 @@ using raster::Piece;
 
 /// The pieces that a triangle was clipped to may overlap by a snapped vertex: the nearest counts.
 template <class F>
-void SampledBlock::for_each_record(const Triangle& t, std::optional<std::uint32_t> only, F&& f) {
+void SampledBlock::for_each_record(const Triangle& t, const std::uint64_t& pixels,
+                                   std::optional<std::uint32_t> only, F&& f) {
   alignas(64) std::uint64_t keys[64], others[64];
   const auto find = [&](const Record& record, std::uint64_t mask, std::uint64_t* out) {
     context_->kernel->keys(
@@ -25,11 +26,11 @@ void SampledBlock::for_each_record(const Triangle& t, std::optional<std::uint32_
   };
   for (std::uint32_t r = t.first; r < t.end;) {
     const int sample = raster::sample_of(*records_[r].piece);
-    std::uint64_t mask = records_[r].mask & t.kept;
+    std::uint64_t mask = records_[r].mask & pixels;
     const bool wanted = static_cast<std::uint32_t>(sample) == only.value_or(sample);
     if (wanted && mask != 0) find(records_[r], mask, keys);
     for (++r; r < t.end && raster::sample_of(*records_[r].piece) == sample; ++r) {
-      const std::uint64_t more = records_[r].mask & t.kept;
+      const std::uint64_t more = records_[r].mask & pixels;
       if (!wanted || more == 0) continue;
       find(records_[r], more, others);
       for (std::uint64_t m = more; m != 0; m &= m - 1) {
@@ -81,13 +82,11 @@ void SampledBlock::order_triangles() {
 /// sample of this block.
 template <class F>
 void SampledBlock::for_each_piece_at_centre(const Piece& piece, F&& f) {
-  const std::uint64_t id = raster::kIdMask - piece.low;
-  const raster::FrameGeometry& frame = *context_->frame;
-  const raster::Draw& draw = frame.draw_of(id);
-  const std::uint64_t primitive = id - draw.first_id;
-  if (raster::is_triangle(piece) &&
-      raster::PrimitiveCorners<3>(frame, draw, primitive).needs_clip) {
-    (void)raster::assemble_primitive(frame, draw, primitive, f);
+  if ((piece.flags & raster::kClipped) != 0) {
+    const std::uint64_t id = raster::kIdMask - piece.low;
+    const raster::FrameGeometry& frame = *context_->frame;
+    const raster::Draw& draw = frame.draw_of(id);
+    (void)raster::assemble_primitive(frame, draw, id - draw.first_id, f);
     return;
   }
   const auto offsets = raster::sample_offsets(context_->request->samples);
@@ -115,16 +114,17 @@ void SampledBlock::find_points(const Triangle& t, Shaded& out) {
   std::uint64_t left = out.mask & ~at_centre;
   if (left == 0) return;
   const auto offsets = raster::sample_offsets(context_->request->samples);
-  for_each_record(t, {}, [&](std::uint32_t sample, std::uint64_t mask, const auto* at_sample) {
-    constexpr float kPx = 1.0F / raster::kSubpixels;
-    for (std::uint64_t m = mask & left; m != 0; m &= m - 1) {
-      const int i = std::countr_zero(m);
-      out.keys[i] = at_sample[i];
-      out.points.dx[i] = static_cast<float>(offsets[sample].x) * kPx;
-      out.points.dy[i] = static_cast<float>(offsets[sample].y) * kPx;
-    }
-    left &= ~mask;
-  });
+  for_each_record(t, left, {},
+                  [&](std::uint32_t sample, std::uint64_t mask, const auto* at_sample) {
+                    constexpr float kPx = 1.0F / raster::kSubpixels;
+                    for (std::uint64_t m = mask; m != 0; m &= m - 1) {
+                      const int i = std::countr_zero(m);
+                      out.keys[i] = at_sample[i];
+                      out.points.dx[i] = static_cast<float>(offsets[sample].x) * kPx;
+                      out.points.dy[i] = static_cast<float>(offsets[sample].y) * kPx;
+                    }
+                    left &= ~mask;
+                  });
 }
 
 void SampledBlock::raise_opaque() {
@@ -135,14 +135,15 @@ void SampledBlock::raise_opaque() {
   }
   for (std::uint32_t t = 0; t < triangle_count_; ++t) {
     if (is_translucent(triangles_[t])) continue;
-    for_each_record(triangles_[t], {}, [&](std::uint32_t s, std::uint64_t mask, const auto* keys) {
-      for (std::uint64_t m = mask; m != 0; m &= m - 1) {
-        const int i = std::countr_zero(m);
-        if (keys[i] <= opaque_[s][i]) continue;
-        opaque_[s][i] = keys[i];
-        owner_[s][i] = t;
-      }
-    });
+    for_each_record(triangles_[t], triangles_[t].kept, {},
+                    [&](std::uint32_t s, std::uint64_t mask, const auto* keys) {
+                      for (std::uint64_t m = mask; m != 0; m &= m - 1) {
+                        const int i = std::countr_zero(m);
+                        if (keys[i] <= opaque_[s][i]) continue;
+                        opaque_[s][i] = keys[i];
+                        owner_[s][i] = t;
+                      }
+                    });
   }
 }
 
@@ -150,7 +151,7 @@ void SampledBlock::find_shown() {
   for (std::uint32_t k = 0; k < triangle_count_; ++k) {
     Triangle& t = triangles_[k];
     const bool translucent = is_translucent(t);
-    for_each_record(t, {}, [&](std::uint32_t s, std::uint64_t mask, const auto* keys) {
+    for_each_record(t, t.kept, {}, [&](std::uint32_t s, std::uint64_t mask, const auto* keys) {
       for (std::uint64_t m = mask; m != 0; m &= m - 1) {
         const int i = std::countr_zero(m);
         const bool shows = translucent ? keys[i] > opaque_[s][i] : owner_[s][i] == k;
@@ -226,7 +227,7 @@ LayerCounts SampledBlock::blend_sample(std::uint32_t sample, BlockColors& out) {
       for (std::uint32_t n = 0; n < triangle_count_; ++n) {
         const auto k = static_cast<std::uint32_t>(order_[n]);
         if (!is_translucent(triangles_[k])) continue;
-        for_each_record(triangles_[k], sample,
+        for_each_record(triangles_[k], triangles_[k].kept, sample,
                         [&](std::uint32_t, std::uint64_t mask, const auto* keys) {
                           for (std::uint64_t m = mask; m != 0; m &= m - 1) {
                             const int i = std::countr_zero(m);

@@ -79,9 +79,11 @@ class SampledBlock {
     return context_->request->transparency.method != Transparency::none &&
            (records_[t.first].piece->flags & raster::kTranslucent) != 0;
   }
-  /// Calls f(sample, mask, keys) for what a triangle covers at one sample or each.
+  /// Calls f(sample, mask, keys) for what a triangle covers of `pixels` at one sample or each. f
+  /// may leave pixels out of those for the samples that follow.
   template <class F>
-  void for_each_record(const Triangle& t, std::optional<std::uint32_t> only, F&& f);
+  void for_each_record(const Triangle& t, const std::uint64_t& pixels,
+                       std::optional<std::uint32_t> only, F&& f);
 
   const raster::BinContext* context_ = nullptr;
   raster::Shading shading_;  ///< none: no colour is wanted

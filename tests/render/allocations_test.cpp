@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <new>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 #include <rastrum/render.hpp>
 
 #include "tests/support/array_layouts.hpp"
+#include "tests/support/surface_layouts.hpp"
 
 namespace {
 
@@ -57,8 +59,8 @@ struct Bytes {
   std::uint64_t asked, scratch;
 };
 
-Bytes bytes_of(const MeshView& mesh, const FrameOptions& look, std::uint64_t limit) {
-  const InstanceView instance{mesh};
+Bytes bytes_of(const GeometryView& geometry, const FrameOptions& look, std::uint64_t limit) {
+  const InstanceView instance{geometry};
   std::vector<Material> materials(2);
   Image<Rgba8> image(look.width, look.height);
   Camera camera;
@@ -97,6 +99,40 @@ TEST(Allocations, OfALayoutAreThoseOfThePackedMesh) {
       EXPECT_LE(other.asked, packed.asked + kSmall);
       EXPECT_LE(other.scratch, packed.scratch + packed.scratch / 50);
     }
+}
+
+TEST(Allocations, OfSpheresAndTheirKinAreThoseOfThePackedOnes) {
+  Cloud cloud(30000);  // a copy of any of its arrays is 120 KB or more
+  // A thread of small ones, so that not their pixels take the time.
+  for (std::uint32_t i = 0; i < cloud.positions.size(); ++i) {
+    cloud.radii[i] /= 64;
+    cloud.pairs[i] = i ^ 1U;
+    if (i > 0) cloud.positions[i] = cloud.positions[i - 1] + cloud.normals[i] * 0.02F;
+  }
+  constexpr std::uint64_t kSmall = 16 << 10;
+  for (const FrameOptions& look :
+       {FrameOptions{.width = 160, .height = 120, .shader = Shader::phong},
+        FrameOptions{.width = 160, .height = 120, .shader = Shader::flat, .opacity = 0.5F}}) {
+    std::vector<Bytes> packed;
+    for (const GeometryView& g : CloudViews(cloud).geometries())
+      packed.push_back(bytes_of(g, look, 0));
+    for (const CloudLayout& layout : cloud_layouts()) {
+      // Of fewer places.
+      if (layout.name.find("int8") != std::string::npos ||
+          layout.name.find("int16") != std::string::npos)
+        continue;
+      Memory memory;
+      CloudViews views(cloud);
+      layout.change(cloud, memory, views);
+      const std::vector<GeometryView> other = views.geometries();
+      for (std::size_t i = 0; i < other.size(); ++i) {
+        const Bytes b = bytes_of(other[i], look, 0);
+        EXPECT_GT(packed[i].scratch, 10 * kSmall);
+        EXPECT_LE(b.asked, packed[i].asked + kSmall) << layout.name << ", geometry " << i;
+        EXPECT_LE(b.scratch, packed[i].scratch + kSmall) << layout.name << ", geometry " << i;
+      }
+    }
+  }
 }
 
 }  // namespace

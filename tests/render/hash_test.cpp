@@ -25,6 +25,8 @@
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/shaded_scenes.hpp"
+#include "tests/support/surface_scenes.hpp"
+#include "tests/support/surfaces.hpp"
 
 namespace rastrum::test::hash_test {
 namespace {
@@ -376,6 +378,32 @@ TEST(Hashes, Formulas) {
     sum.add(values);
   }
   EXPECT_TRUE(matches_golden("formulas", sum.total()));
+}
+
+// Spheres, cylinders, cones, tubes and discs, beside triangles and cut by planes.
+TEST(Hashes, Surfaces) {
+  constexpr Shader kShaders[] = {Shader::phong, Shader::material, Shader::normal, Shader::id};
+  for (int kind = 0; kind < kSurfaceKinds; ++kind)
+    expect_golden("surfaces/" + std::to_string(kind), [&](Isa isa, Sum& sum) {
+      Renderer renderer({.threads = 2, .isa = isa});
+      for (int i = 0; i < 8; ++i) {
+        const auto seed = static_cast<std::uint64_t>(kind + i * kSurfaceKinds);
+        SurfaceScene s = generate_surfaces(seed, 90, 70);
+        if (i % 2 == 1) add_clip_planes(s, seed);
+        FrameOptions f{.width = s.width, .height = s.height};
+        f.shader = kShaders[i % 4];
+        f.opacity = i % 3 == 2 ? 0.5F : 1;
+        f.samples = i == 5 ? 4 : 1;
+        f.clip_planes = s.clip_planes;
+        Picture picture(f);
+        Surfaces images(s.width, s.height);
+        Targets targets = images.targets();
+        targets.color = picture.color;
+        renderer.render(s.view(), s.camera, f, targets);
+        sum.add(digest(picture.color));
+        for_each_image(images, [&](const auto& image) { sum.add(digest(image)); });
+      }
+    });
 }
 
 }  // namespace

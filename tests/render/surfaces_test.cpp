@@ -45,6 +45,7 @@ struct Picture {
 Picture draw(Renderer& renderer, const SurfaceScene& s, FrameOptions frame) {
   frame.width = s.width;
   frame.height = s.height;
+  frame.clip_planes = s.clip_planes;
   Picture p(s.width, s.height);
   Targets targets;
   targets.ids = p.ids;
@@ -165,6 +166,7 @@ TEST(Surfaces, AreThoseOfTheOracle) {
   const int n = scene_count(1100);
   for (int seed = 0; seed < n; ++seed) {
     SurfaceScene s = generate_surfaces(static_cast<std::uint64_t>(seed), kWidth, kHeight);
+    if (seed % 4 == 1) add_clip_planes(s, static_cast<std::uint64_t>(seed));
     FrameOptions frame;
     frame.cull = seed % 5 == 3 ? Cull::back : seed % 7 == 3 ? Cull::front : Cull::none;
     for (SurfacePrimitive& p : s.primitives) {
@@ -230,7 +232,8 @@ TEST(Surfaces, AreTheSameBitsEverywhere) {
   const int n = scene_count(154);
   for (int seed = 0; seed < n; ++seed) {
     // Several bins and, below a limit, several bands.
-    const SurfaceScene s = generate_surfaces(static_cast<std::uint64_t>(seed), 150, 97);
+    SurfaceScene s = generate_surfaces(static_cast<std::uint64_t>(seed), 150, 97);
+    if (seed % 4 == 1) add_clip_planes(s, static_cast<std::uint64_t>(seed));
     const FrameOptions frame = frame_of(seed);
     const Picture expected = draw(reference, s, frame);
     for (const auto& renderer : renderers) {
@@ -318,7 +321,7 @@ TEST(Surfaces, SilhouettesAreThoseOfTheSamples) {
 TEST(Surfaces, AreBlendedFrontOverBack) {
   const Vec3 centre{0, 0, -4};
   SpheresView spheres;
-  spheres.centers = {&centre, 1};
+  spheres.centers = std::span(&centre, 1);
   const InstanceView instance{spheres};
   Camera camera;
   camera.eye = {0, 0, 0};
@@ -342,8 +345,8 @@ TEST(Surfaces, HaveTheirInstancesLook) {
   const Vec3 centre{0, 0, -4};
   const Vec4 green{0, 1, 0, 1};
   SpheresView spheres;
-  spheres.centers = {&centre, 1};
-  spheres.colors = {&green, 1};
+  spheres.centers = std::span(&centre, 1);
+  spheres.colors = std::span(&green, 1);
   Camera camera;
   camera.eye = {0, 0, 0};
   camera.target = {0, 0, -1};
@@ -405,10 +408,12 @@ TEST(Surfaces, RefuseArraysThatDoNotFit) {
       {SpheresView{positions, {}, 1, colors}, "fewer colors (1) than spheres (4)"},
       {SpheresView{positions, {}, 1, {}, 3}, "material 3 is out of range, there are 1"},
       {CylindersView{positions, odd}, "the number of indices is odd"},
-      {CylindersView{positions, beyond}, "index 4 is out of range, there are 4 positions"},
+      {CylindersView{positions, beyond},
+       "indices[1]: index 4 is out of range, there are 4 positions"},
       {CylindersView{positions, {}, few}, "fewer radii (1) than positions (4)"},
-      {TubesView{positions, falling}, "offset 2 is 2, which does not lie above"},
-      {TubesView{positions, past}, "the last offset is 5, but there are 4 positions"},
+      {TubesView{positions, falling},
+       "offsets[2] is 2, which does not lie above the one before, 2"},
+      {TubesView{positions, past}, "offsets[1] is 5, but there are 4 positions"},
       {DiscsView{positions}, "fewer normals (0) than discs (4)"},
   };
   const Material material;

@@ -133,6 +133,20 @@ Point3 normal_of(const SurfacePrimitive& s, const Point3& p) {
   return v * (1 / rho) - axis.unit * slope;
 }
 
+/// Where along the axis a point of the surface belongs.
+Real along_of(const SurfacePrimitive& s, const Point3& p) {
+  if (s.kind == SurfaceKind::tube) return Tube(s).foot(p);
+  if (s.kind != SurfaceKind::closed_cone && s.kind != SurfaceKind::open_cone) return 0;
+  const Axis axis(s.p0, s.p1);
+  return std::clamp<Real>(axis.height(p) / axis.size, 0, 1);
+}
+
+bool is_kept(const SurfacePrimitive& s, const Point3& object, const Point3& world) {
+  return std::all_of(s.planes.begin(), s.planes.end(), [&](const OraclePlane& p) {
+    return dot(p.normal, p.in_object_space ? object : world) + p.offset >= 0;
+  });
+}
+
 struct Crossing {
   Real t;
   bool enters;
@@ -227,6 +241,8 @@ std::vector<SurfaceHit> surfaces_at(const OracleCamera& c,
     const Ray object{solve(s.columns, world.from - s.origin), solve(s.columns, world.along)};
     for (const Crossing& hit : crossings(s, object)) {
       if (!(hit.t >= c.near_plane) || (hit.enters ? s.culls_front : s.culls_back)) continue;
+      const Point3 in_object = object.at(hit.t), in_world = world.at(hit.t);
+      if (!is_kept(s, in_object, in_world)) continue;
       const Real n = c.near_plane, f = c.far_plane;
       Real depth = n / hit.t;
       if (c.orthographic)
@@ -234,14 +250,16 @@ std::vector<SurfaceHit> surfaces_at(const OracleCamera& c,
       else if (f > 0)
         depth = n * (f - hit.t) / (hit.t * (f - n));
       Point3 normal;
+      Real along = 0;
       if (s.kind != SurfaceKind::triangle) {
+        along = along_of(s, in_object);
         // The inverse transpose, up to a positive factor: rows of cofactors.
-        const Point3 o = normal_of(s, object.at(hit.t));
+        const Point3 o = normal_of(s, in_object);
         const Point3(&m)[3] = s.columns;
         normal = cross(m[1], m[2]) * o.x + cross(m[2], m[0]) * o.y + cross(m[0], m[1]) * o.z;
         if (dot(m[0], cross(m[1], m[2])) < 0) normal = normal * -1;
       }
-      hits.push_back({depth, s.id, hit.enters, normal});
+      hits.push_back({depth, s.id, hit.enters, normal, in_world, hit.t, along});
     }
   }
   std::stable_sort(hits.begin(), hits.end(),

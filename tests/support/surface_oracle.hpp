@@ -4,6 +4,7 @@
 // roots, not of intervals of depth. Plain on purpose.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -17,6 +18,13 @@ struct Point3 {
 
 enum class SurfaceKind : std::uint8_t { sphere, closed_cone, open_cone, tube, disc, triangle };
 
+/// Keeps n · p + offset ≥ 0.
+struct OraclePlane {
+  Point3 normal;
+  Real offset = 0;
+  bool in_object_space = false;
+};
+
 struct SurfacePrimitive {
   SurfaceKind kind = SurfaceKind::sphere;
   Point3 p0, p1;  ///< object space; of a disc p1 is its normal
@@ -26,7 +34,9 @@ struct SurfacePrimitive {
   Point3 columns[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   Point3 origin;
   std::int64_t id = 0;
+  std::size_t instance = 0;
   bool culls_front = false, culls_back = false;
+  std::vector<OraclePlane> planes;  ///< of a point all keep it, or it is not there
 };
 
 /// The camera looks from `eye` along −z of its axes.
@@ -42,8 +52,11 @@ struct OracleCamera {
 struct SurfaceHit {
   Real depth;  ///< reversed, not cut to [0, 1]
   std::int64_t id;
-  bool front;     ///< entered there
-  Point3 normal;  ///< world, outwards, not of unit length; not of triangles
+  bool front;       ///< entered there
+  Point3 normal;    ///< world, outwards, not of unit length; not of triangles
+  Point3 position;  ///< world
+  Real view_depth;  ///< along the axis
+  Real along;       ///< of the primitive's axis, from 0 to 1; 0 where it has none
 };
 
 /// Of the ray through (x_px, y_px), nearest first.

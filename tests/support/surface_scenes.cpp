@@ -1,8 +1,11 @@
 #include "tests/support/surface_scenes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include <rastrum/core/elementary.hpp>
 
 #include "tests/support/random.hpp"
 
@@ -88,7 +91,7 @@ class Maker {
   }
   float radius() {
     if (kind_ == kTiny) return static_cast<float>(real(0.01, 0.2));
-    if (kind_ == kHuge) return static_cast<float>(std::exp(real(1, 7)));
+    if (kind_ == kHuge) return static_cast<float>(elementary::exp(real(1, 7)));
     return static_cast<float>(real(0.2, 2.5));
   }
   Vec3 other_end(Vec3 p, double size) {
@@ -117,6 +120,7 @@ class Maker {
     for (int i = 0; i < 3; ++i) p.columns[i] = column(i);
     p.origin = column(3);
     p.id = next_id_++;
+    p.instance = s_.instances.size();
     s_.primitives.push_back(p);
     return s_.primitives.back();
   }
@@ -291,12 +295,58 @@ class Maker {
   std::int64_t next_id_ = 0;
 };
 
+/// Through a place near a primitive.
+ClipPlane plane_near(const SurfacePrimitive& p, bool in_world, Random& random) {
+  const auto real = [&](double a, double b) { return random.real(a, b); };
+  const Vec3d n{real(-1, 1), real(-1, 1), real(-1, 1)};
+  Vec3d at{static_cast<double>(p.p0.x), static_cast<double>(p.p0.y), static_cast<double>(p.p0.z)};
+  if (in_world) {
+    const auto row = [&](Real Point3::*c) {
+      return static_cast<double>(p.columns[0].*c * p.p0.x + p.columns[1].*c * p.p0.y +
+                                 p.columns[2].*c * p.p0.z + p.origin.*c);
+    };
+    at = {row(&Point3::x), row(&Point3::y), row(&Point3::z)};
+  }
+  const double r = static_cast<double>(std::max(p.r0, p.r1));
+  at = at + Vec3d{real(-r, r), real(-r, r), real(-r, r)};
+  return {n, -dot(n, at)};
+}
+
+OraclePlane oracle_plane(const ClipPlane& p, bool in_object_space) {
+  return {{p.normal.x, p.normal.y, p.normal.z}, p.offset, in_object_space};
+}
+
 }  // namespace surface_scenes
 
 const int kSurfaceKinds = surface_scenes::kKinds;
 
 SurfaceScene generate_surfaces(std::uint64_t seed, int width, int height) {
   return surface_scenes::Maker(seed, width, height).make();
+}
+
+void add_clip_planes(SurfaceScene& s, std::uint64_t seed) {
+  using namespace surface_scenes;
+  if (s.primitives.empty()) return;
+  Random random(seed + 77);
+  const auto some = [&]() -> const SurfacePrimitive& {
+    return s.primitives[static_cast<std::size_t>(
+        random.integer(0, static_cast<int>(s.primitives.size()) - 1))];
+  };
+  for (int n = random.integer(0, 2); n > 0; --n)
+    s.clip_planes.push_back(plane_near(some(), true, random));
+  for (std::size_t i = 0; i < s.instances.size(); i += 2) {
+    const auto own = std::ranges::find(s.primitives, i, &SurfacePrimitive::instance);
+    if (own == s.primitives.end()) continue;
+    std::vector<ClipPlane>& planes = s.own_planes.emplace_back();
+    for (int n = random.integer(1, 2); n > 0; --n)
+      planes.push_back(plane_near(*own, false, random));
+    s.instances[i].clip_planes = planes;
+  }
+  for (SurfacePrimitive& p : s.primitives) {
+    for (const ClipPlane& c : s.clip_planes) p.planes.push_back(oracle_plane(c, false));
+    for (const ClipPlane& c : s.instances[p.instance].clip_planes)
+      p.planes.push_back(oracle_plane(c, true));
+  }
 }
 
 }  // namespace rastrum::test

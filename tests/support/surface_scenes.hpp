@@ -21,7 +21,8 @@ struct SurfaceScene {
   int width = 0, height = 0;
   std::vector<SurfacePrimitive> primitives;
   OracleCamera eye;
-  std::size_t dropped = 0;  ///< primitives that no renderer draws, and counts
+  std::size_t dropped = 0;             ///< primitives that no renderer draws, and counts
+  std::vector<ClipPlane> clip_planes;  ///< of the world
 
   [[nodiscard]] SceneView view() const { return {instances, materials, {}}; }
 
@@ -29,7 +30,7 @@ struct SurfaceScene {
   std::deque<std::vector<Vec3>> positions;
   std::deque<std::vector<float>> radii;
   std::deque<std::vector<std::uint32_t>> indices;
-  std::deque<std::vector<Vec4>> colors;
+  std::deque<std::vector<ClipPlane>> own_planes;
 };
 
 /// How many kinds there are; `generate_surfaces` makes kind seed % kSurfaceKinds.
@@ -37,5 +38,9 @@ extern const int kSurfaceKinds;
 
 /// At most 12 primitives.
 [[nodiscard]] SurfaceScene generate_surfaces(std::uint64_t seed, int width, int height);
+
+/// Gives it up to two planes of the world and every second instance one or two of its own, for the
+/// library and for the oracle.
+void add_clip_planes(SurfaceScene& scene, std::uint64_t seed);
 
 }  // namespace rastrum::test

@@ -22,6 +22,22 @@ struct Surfaces {
   [[nodiscard]] Targets targets();
 };
 
+/// Calls f(image) for each.
+template <class F>
+void for_each_image(const Surfaces& s, const F& f) {
+  f(s.ids);
+  f(s.depth);
+  f(s.instances);
+  f(s.primitives);
+  f(s.barycentrics);
+  f(s.positions);
+  f(s.normals);
+  f(s.camera_normals);
+  f(s.view_depth);
+  f(s.distance);
+  f(s.albedo);
+}
+
 /// All bits; the message names the image and the first pixel that differs.
 [[nodiscard]] testing::AssertionResult same_bits(const Surfaces& a, const Surfaces& b);
 

@@ -55,12 +55,12 @@ RASTRUM_HD Fate assemble_triangle(const Geometry& frame, const Draw& draw, std::
   const Cull cull = draw.effective_cull();
   Piece piece;
   const auto make = [&](const ProjectedVertex& v0, const ProjectedVertex& v1,
-                        const ProjectedVertex& v2, Cull side) {
-    return make_piece(moved(v0, at), moved(v1, at), moved(v2, at), id, flags, side, view, piece);
+                        const ProjectedVertex& v2, std::uint32_t with, Cull side) {
+    return make_piece(moved(v0, at), moved(v1, at), moved(v2, at), id, with, side, view, piece);
   };
   if (!c.needs_clip) {
     const auto& v = c.projected;
-    if (make(v[0], v[1], v[2], cull) == SetupResult::culled) return Fate::culled;
+    if (make(v[0], v[1], v[2], flags, cull) == SetupResult::culled) return Fate::culled;
     emit(piece);
     return Fate::drawn;
   }
@@ -73,8 +73,8 @@ RASTRUM_HD Fate assemble_triangle(const Geometry& frame, const Draw& draw, std::
   const Cull other_side = facing > 0 ? Cull::back : Cull::front;
   bool any = false;
   for (int i = 2; i < polygon.size; ++i)
-    if (make(polygon.vertices[0], polygon.vertices[i - 1], polygon.vertices[i], other_side) ==
-        SetupResult::drawn) {
+    if (make(polygon.vertices[0], polygon.vertices[i - 1], polygon.vertices[i], flags | kClipped,
+             other_side) == SetupResult::drawn) {
       emit(piece);
       any = true;
     }
@@ -133,7 +133,7 @@ Fate assemble_quadric(int width, int height, const Draw& draw, std::uint64_t p, 
     front = front && place.front;
     back = back && !place.front;
   } else if (front && !quadric.is_open && !place.asks_near &&
-             (flags & (kTested | kTranslucent)) == 0) {
+             (flags & (kTested | kCut | kTranslucent)) == 0) {
     back = false;  // it is hidden
   }
   Piece piece;

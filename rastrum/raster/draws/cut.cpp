@@ -1,17 +1,73 @@
 #include <rastrum/raster/draws/cut.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <string>
 
 #include <rastrum/error.hpp>
+#include <rastrum/raster/draws/vertices_of.hpp>
+#include <rastrum/raster/setup/quadric_surface.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
 
 namespace rastrum::raster {
+namespace {
 
-DrawCut::DrawCut(const InstanceView& instance, std::span<const ClipPlane> world,
-                 const ArrayView<Vec3>& vertices)
-    : positions(vertices) {
+/// A ball that holds a part of a quadric is told apart from a plane by its radius and a little.
+std::uint32_t quadric_cut_flags(const DrawCut& cut, const QuadricStage& stage,
+                                std::uint64_t primitive) {
+  QuadricShape shape;
+  if (stage.shape(primitive, shape) != ShapeFate::drawn) return 0;
+  const bool has_two = has_two_ends(shape.kind);
+  std::uint32_t flags = 0;
+  for (const DrawCut::Plane& plane : cut.planes) {
+    const double scale = length(Vec3d{plane.x, plane.y, plane.z}) * (1 + 1e-9);
+    const double ahead[2] = {DrawCut::ahead(plane, shape.p0),
+                             DrawCut::ahead(plane, has_two ? shape.p1 : shape.p0)};
+    const double reach[2] = {shape.r0 * scale, (has_two ? shape.r1 : shape.r0) * scale};
+    if (ahead[0] < -reach[0] && ahead[1] < -reach[1]) return kCutAway;
+    // Written so that a NaN is asked about at each fragment.
+    if (!(ahead[0] > reach[0] && ahead[1] > reach[1])) flags = kCut;
+  }
+  return flags;
+}
+
+/// Where sample `i` of a block is looked at.
+struct SamplePlace {
+  int x, y;
+  Vec2 from_centre;
+
+  SamplePlace(const Block& block, const ShadingPoints* points, int i)
+      : x(block.bx * kBlockSize + i % kBlockSize),
+        y(block.by * kBlockSize + i / kBlockSize),
+        from_centre(points == nullptr ? Vec2{0, 0} : Vec2{points->dx[i], points->dy[i]}) {}
+};
+
+std::uint64_t quadric_in_front(const FrameGeometry& frame, const Draw& draw, const Piece& piece,
+                               const Block& block, const ShadingPoints* points) {
+  QuadricSurface surface;
+  if (!surface.find(*draw.quadrics, id_of_key(piece.low) - draw.first_id, frame.viewport)) return 0;
+  const bool away = (piece.flags & kFacesAway) != 0;
+  std::uint64_t kept = 0;
+  for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    const SamplePlace sample(block, points, i);
+    const QuadricSurface::Place at = surface.at(sample.x, sample.y, sample.from_centre);
+    const RayFrame::Point h = surface.point(at, surface.side(away, at).e);
+    const bool keep = std::ranges::all_of(draw.cut->planes, [&](const DrawCut::Plane& p) {
+      const double value = ((p.x * h.v.x + p.y * h.v.y) + p.z * h.v.z) + p.offset * h.w;
+      return h.w < 0 ? value <= 0 : value >= 0;
+    });
+    kept |= std::uint64_t{keep} << i;
+  }
+  return kept;
+}
+
+}  // namespace
+
+DrawCut::DrawCut(const InstanceView& instance, std::span<const ClipPlane> world) {
+  if (const VertexList vertices = vertices_of(instance.geometry); vertices.positions != nullptr)
+    positions = *vertices.positions;
   planes.reserve(world.size() + instance.clip_planes.size());
   const auto& m = instance.object_to_world.m;
   for (const ClipPlane& p : world) {
@@ -42,6 +98,7 @@ void check_clip_planes(std::span<const ClipPlane> planes, const char* whose) {
 
 /// Indices must be in range.
 std::uint32_t FrameGeometry::cut_flags(const Draw& draw, std::uint64_t primitive) noexcept {
+  if (draw.quadrics != nullptr) return quadric_cut_flags(*draw.cut, *draw.quadrics, primitive);
   const int corners = static_cast<int>(draw.topology);
   std::uint32_t flags = 0;
   for (const DrawCut::Plane& plane : draw.cut->planes) {
@@ -54,9 +111,11 @@ std::uint32_t FrameGeometry::cut_flags(const Draw& draw, std::uint64_t primitive
   return flags;
 }
 
-std::uint64_t in_front(const FrameGeometry& frame, std::uint64_t id, const Block& block,
+std::uint64_t in_front(const FrameGeometry& frame, const Piece& piece, const Block& block,
                        const ShadingPoints* points) noexcept {
+  const std::uint64_t id = id_of_key(piece.low);
   const Draw& draw = frame.draw_of(id);
+  if (draw.quadrics != nullptr) return quadric_in_front(frame, draw, piece, block, points);
   const std::uint64_t primitive = id - draw.first_id;
   const int corners = static_cast<int>(draw.topology);
   const WeightPlanes w = corners == 3 ? weight_planes(frame, draw, primitive)
@@ -81,12 +140,9 @@ std::uint64_t in_front(const FrameGeometry& frame, std::uint64_t id, const Block
       ahead.add(w, c, draw.cut->ahead(plane, draw.vertex(primitive, c)));
     for (std::uint64_t m = mask; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
-      double x = block.bx * kBlockSize + i % kBlockSize + 0.5 - w.x0;
-      double y = block.by * kBlockSize + i / kBlockSize + 0.5 - w.y0;
-      if (points != nullptr) {
-        x += static_cast<double>(points->dx[i]);
-        y += static_cast<double>(points->dy[i]);
-      }
+      const SamplePlace sample(block, points, i);
+      const double x = sample.x + 0.5 - w.x0 + static_cast<double>(sample.from_centre.x);
+      const double y = sample.y + 0.5 - w.y0 + static_cast<double>(sample.from_centre.y);
       const double value = ahead.at(x, y);
       // Written so that a NaN is not kept.
       if (!(all.at(x, y) < 0 ? value <= 0 : value >= 0)) mask ^= std::uint64_t{1} << i;

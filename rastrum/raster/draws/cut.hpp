@@ -6,7 +6,7 @@
 // At a fragment the sign of Σ bᵢ sᵢ decides, with sᵢ how far vertex i lies in front of the plane
 // and bᵢ > 0 its weight, linear on the screen: no division, and no clipped vertex that would be
 // snapped. In float64: ((p x + q y) + r), the planes of the weights first summed over the corners
-// in order.
+// in order. At a quadric's it is the sign of n · h + offset · w at the point (h, w) of its side.
 #pragma once
 
 #include <cstdint>
@@ -24,15 +24,16 @@ struct DrawCut {
     double x, y, z, offset;
   };
   std::vector<Plane> planes;  ///< in object space
-  ArrayView<Vec3> positions;  ///< of its vertices
+  ArrayView<Vec3> positions;  ///< of its vertices; of a quadric none
 
-  /// `world`: the frame's; `vertices`: the instance's.
-  DrawCut(const InstanceView& instance, std::span<const ClipPlane> world,
-          const ArrayView<Vec3>& vertices);
+  /// `world`: the frame's.
+  DrawCut(const InstanceView& instance, std::span<const ClipPlane> world);
 
-  [[nodiscard]] double ahead(const Plane& plane, std::uint32_t vertex) const {
-    const Vec3d p = positions.wide(vertex);
+  [[nodiscard]] static double ahead(const Plane& plane, Vec3d p) {
     return ((plane.x * p.x + plane.y * p.y) + plane.z * p.z) + plane.offset;
+  }
+  [[nodiscard]] double ahead(const Plane& plane, std::uint32_t vertex) const {
+    return ahead(plane, positions.wide(vertex));
   }
 };
 
@@ -40,9 +41,9 @@ struct DrawCut {
 /// plane that is not finite or has no direction.
 void check_clip_planes(std::span<const ClipPlane> planes, const char* whose);
 
-/// The samples of `block.mask` at which primitive `id` lies in front of its draw's planes. `points`
-/// as FragmentTest's.
-[[nodiscard]] std::uint64_t in_front(const FrameGeometry& frame, std::uint64_t id,
+/// The samples of `block.mask` at which the piece's primitive lies in front of its draw's planes.
+/// `points` as FragmentTest's.
+[[nodiscard]] std::uint64_t in_front(const FrameGeometry& frame, const Piece& piece,
                                      const Block& block, const ShadingPoints* points) noexcept;
 
 }  // namespace rastrum::raster

@@ -30,6 +30,7 @@ struct QuadricShape {
   QuadricKind kind = QuadricKind::sphere;
   Vec3d p0, p1;
   double r0 = 0, r1 = 0;
+  double along = 0;  ///< of a sphere: which end of its primitive it is about, 0 or 1
 };
 
 /// What became of a primitive before it was projected.
@@ -41,6 +42,14 @@ enum class ShapeFate : std::uint8_t {
 
 using QuadricGeometry = std::variant<SpheresView, CylindersView, TubesView, DiscsView>;
 
+/// The positions of primitive `i`, which are those of its radii and colours, too; one stands for
+/// both where it has but one. Offsets must be in range.
+struct AxisEnds {
+  std::size_t first, second;
+};
+[[nodiscard]] AxisEnds axis_ends(const QuadricGeometry& geometry, std::uint64_t i);
+[[nodiscard]] const ArrayView<Vec3>& positions_of(const QuadricGeometry& geometry);
+
 /// The primitives of a draw and the matrices that they are seen by. Must outlive the frame.
 class QuadricStage {
  public:
@@ -48,7 +57,7 @@ class QuadricStage {
   QuadricStage(const QuadricGeometry& geometry, const Mat4d& object_to_clip);
 
   /// The shape of primitive `i`, simplified: a hull in which one sphere holds the other is that
-  /// sphere. Indices must be in range.
+  /// sphere, about one of its two ends. Indices must be in range.
   [[nodiscard]] ShapeFate shape(std::uint64_t i, QuadricShape& out) const;
   /// Asks the cache for what shape() will read.
   void prefetch(std::uint64_t i) const;

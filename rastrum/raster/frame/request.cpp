@@ -19,8 +19,7 @@ std::uint64_t FrameRequest::kept(const FrameGeometry& frame, const Piece& piece,
       // What has depth 0 is drawn where nothing is.
       if (behind > 0 && !(depth_at(piece, x, y) > behind)) nearer.mask ^= std::uint64_t{1} << i;
     }
-  if ((piece.flags & kCut) != 0)
-    nearer.mask = in_front(frame, id_of_key(piece.low), nearer, points);
+  if ((piece.flags & kCut) != 0) nearer.mask = in_front(frame, piece, nearer, points);
   if ((piece.flags & kTested) == 0 || nearer.mask == 0) return nearer.mask;
   return test.test(frame, piece, nearer, points);
 }

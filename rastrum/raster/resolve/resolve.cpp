@@ -145,7 +145,7 @@ void store_keys(const FrameRequest& request, const std::uint64_t* keys, std::uin
 constexpr float kNowhere = std::numeric_limits<float>::infinity();
 
 /// `f`: null where nothing is.
-void store_surface(const FrameRequest& request, const FrameGeometry& frame, const Fragment* f,
+void store_surface(const FrameRequest& request, const FrameGeometry& frame, const SeenFragment* f,
                    int x, int y) {
   const Targets& t = request.targets;
   const SurfaceScene* const scene = request.surface;
@@ -175,15 +175,12 @@ void store_surface(const FrameRequest& request, const FrameGeometry& frame, cons
 
 void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
                     const VisibleBlock& block, std::uint64_t touched) {
-  FragmentLocator locator(frame);
+  SurfaceLocator locator(frame, request.samples);
   for (std::uint64_t m = touched; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    const Fragment* found = nullptr;
-    if ((block.covered >> i & 1) != 0) {
-      Fragment& f = locator.locate(id_of_key(block.keys[i]), block.x0, block.y0, i, nullptr);
-      f.depth = std::bit_cast<float>(static_cast<std::uint32_t>(block.keys[i] >> kIdBits));
-      found = &f;
-    }
+    const SeenFragment* found = nullptr;
+    if ((block.covered >> i & 1) != 0)
+      found = &locator.locate(block.keys[i], block.x0, block.y0, i);
     store_surface(request, frame, found, block.x0 + i % kBlockSize, block.y0 + i / kBlockSize);
   }
 }

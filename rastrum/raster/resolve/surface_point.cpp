@@ -1,9 +1,12 @@
 #include <rastrum/raster/resolve/surface_point.hpp>
 
+#include <bit>
 #include <cmath>
 
+#include <rastrum/raster/draws/vertices_of.hpp>
 #include <rastrum/raster/shade/material_scalar.hpp>
 #include <rastrum/raster/shade/normals.hpp>
+#include <rastrum/raster/shade/quadric_shader.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -14,26 +17,53 @@ Vec3d interpolate(const Fragment& f, const Vec3d (&v)[3]) {
   return v[0] * b[0] + v[1] * b[1] + v[2] * b[2];
 }
 
-/// The positions of a geometry, and how many of them a primitive has.
-struct CornerPositions {
-  const ArrayView<Vec3>* positions;
-  int count;
-};
-CornerPositions corner_positions(const GeometryView& geometry) {
-  if (const auto* const points = std::get_if<PointsView>(&geometry)) return {&points->positions, 1};
-  if (const auto* const lines = std::get_if<LinesView>(&geometry)) return {&lines->positions, 2};
-  return {&std::get<MeshView>(geometry).positions, 3};
-}
-
 }  // namespace
 
+const SeenFragment& SurfaceLocator::locate(std::uint64_t key, int x0, int y0, int i) {
+  const std::uint64_t id = id_of_key(key);
+  if (draw_ == nullptr || id - draw_->first_id >= draw_->primitive_count)
+    draw_ = &frame_.draw_of(id);
+  const Draw& draw = *draw_;
+  seen_.depth = std::bit_cast<float>(static_cast<std::uint32_t>(key >> kIdBits));
+  if (draw.quadrics == nullptr) {
+    Fragment& f = locator_.locate(id, x0, y0, i, nullptr);
+    f.depth = seen_.depth;
+    static_cast<Fragment&>(seen_) = f;
+    seen_.quadric = nullptr;
+    return seen_;
+  }
+  seen_.id = id;
+  locate_quadric(draw, x0 + i % kBlockSize, y0 + i / kBlockSize);
+  return seen_;
+}
+
+void SurfaceLocator::locate_quadric(const Draw& draw, int x, int y) {
+  seen_.x = x;
+  seen_.y = y;
+  seen_.triangle = seen_.id - draw.first_id;
+  seen_.draw = static_cast<std::size_t>(&draw - frame_.draws.data());
+  if (seen_.id != quadric_id_) {
+    (void)surface_.find(*draw.quadrics, seen_.triangle, frame_.viewport);
+    quadric_id_ = seen_.id;
+  }
+  hit_ = seen_of(surface_, x, y, seen_.depth, samples_);
+  seen_.weights = {};
+  seen_.weights.b[0] = 1 - hit_.point.along;
+  seen_.weights.b[1] = hit_.point.along;
+  seen_.quadric = &hit_;
+}
+
 Vec3d position_on(const InstanceView& instance, const Fragment& f) {
-  const CornerPositions corners = corner_positions(instance.geometry);
+  const VertexList vertices = vertices_of(instance.geometry);
   Vec3d p;
-  for (int c = 0; c < corners.count; ++c) {
-    const Vec3d part = corners.positions->wide(f.vertex[c]) * f.weights.b[c];
+  for (int c = 0; c < static_cast<int>(vertices.topology); ++c) {
+    const Vec3d part = vertices.positions->wide(f.vertex[c]) * f.weights.b[c];
     p = c == 0 ? part : p + part;
   }
+  return in_world(instance, p);
+}
+
+Vec3d in_world(const InstanceView& instance, Vec3d p) {
   const auto& m = instance.object_to_world.m;
   const auto row = [&](int i) {
     return ((m[i][0] * p.x + m[i][1] * p.y) + m[i][2] * p.z) + m[i][3];
@@ -46,17 +76,21 @@ Vec3d SurfaceScene::to_viewer(int x, int y) const {
   return -(Vec3d(r.d) + Vec3d(r.dx) * (x + 0.5) + Vec3d(r.dy) * (y + 0.5));
 }
 
-Vec3d SurfaceScene::normal(const Fragment& f) const {
-  const LitDraw& draw = lit.draws[f.draw];
-  Vec3d n;
-  if (const auto* const points = std::get_if<PointsView>(&scene.instances[f.draw].geometry)) {
-    if (!points->normals.empty()) n = Vec3d(safe_normal(points->normals[f.vertex[0]]));
-  } else if (draw.mesh != nullptr) {
-    Vec3 corners[3];
-    corner_normals(*draw.mesh, draw.mesh->place(f.triangle), f.vertex, corners);
-    n = interpolate(f, {corners[0], corners[1], corners[2]});
-  }
-  const auto& m = draw.normal_matrix;
+Vec3d SurfaceScene::object_normal(const SeenFragment& f) const {
+  if (f.quadric != nullptr) return f.quadric->point.normal;
+  const GeometryView& geometry = scene.instances[f.draw].geometry;
+  if (std::holds_alternative<LinesView>(geometry)) return {};
+  if (const auto* const points = std::get_if<PointsView>(&geometry))
+    return points->normals.empty() ? Vec3d{} : Vec3d(safe_normal(points->normals[f.vertex[0]]));
+  const MeshView& mesh = *lit.draws[f.draw].mesh;
+  Vec3 corners[3];
+  corner_normals(mesh, mesh.place(f.triangle), f.vertex, corners);
+  return interpolate(f, {corners[0], corners[1], corners[2]});
+}
+
+Vec3d SurfaceScene::normal(const SeenFragment& f) const {
+  const Vec3d n = object_normal(f);
+  const auto& m = lit.draws[f.draw].normal_matrix;
   const auto row = [&](int i) {
     return (double{m[i][0]} * n.x + double{m[i][1]} * n.y) + double{m[i][2]} * n.z;
   };
@@ -78,10 +112,16 @@ double SurfaceScene::ray_length(int x, int y) const {
   return length(ray) / in_camera(ray).z;
 }
 
-Vec4 SurfaceScene::albedo(const FrameGeometry& frame, const Fragment& f) const {
-  const GeometryView& geometry = scene.instances[f.draw].geometry;
-  return std::holds_alternative<MeshView>(geometry) ? material_albedo(materials->view(), frame, f)
-                                                    : points_and_lines->albedo(frame, f);
+Vec4 SurfaceScene::albedo(const FrameGeometry& frame, const SeenFragment& f) const {
+  const InstanceView& instance = scene.instances[f.draw];
+  if (f.quadric != nullptr) {
+    const QuadricGeometry& geometry = frame.draws[f.draw].quadrics->geometry();
+    const Vec4 own = color_at(geometry, instance, f.triangle, f.quadric->point.along);
+    if (scene.materials.empty()) return own;
+    return scene.materials[material_of(instance)].base_color * own;
+  }
+  if (is_points_or_lines(instance.geometry)) return points_and_lines->albedo(frame, f);
+  return material_albedo(materials->view(), frame, f);
 }
 
 }  // namespace rastrum::raster

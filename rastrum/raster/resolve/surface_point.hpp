@@ -10,6 +10,7 @@
 
 #include <rastrum/camera.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/setup/quadric_surface.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/material.hpp>
@@ -18,8 +19,39 @@
 
 namespace rastrum::raster {
 
-/// Where a fragment of an instance lies in the world, by its corners and weights.
+/// A fragment of what is seen. A quadric's has no vertices, and its weights are those of the two
+/// ends of its axis.
+struct SeenFragment : Fragment {
+  const QuadricHit* quadric = nullptr;  ///< of a quadric, else null
+};
+
+/// Finds what is seen at one pixel after the other, by its key.
+class SurfaceLocator {
+ public:
+  /// `samples`: a pixel, of the picture that has the keys.
+  SurfaceLocator(const FrameGeometry& frame, int samples)
+      : frame_(frame), samples_(samples), locator_(frame) {}
+
+  /// At pixel `i` of the block that begins at (x0, y0). Valid until the next call.
+  [[nodiscard]] const SeenFragment& locate(std::uint64_t key, int x0, int y0, int i);
+
+ private:
+  void locate_quadric(const Draw& draw, int x, int y);
+
+  const FrameGeometry& frame_;
+  int samples_;
+  FragmentLocator locator_;
+  const Draw* draw_ = nullptr;  ///< that was asked for last
+  SeenFragment seen_;
+  QuadricHit hit_;
+  QuadricSurface surface_;  ///< of primitive quadric_id_
+  std::uint64_t quadric_id_ = kMaxId + 1;
+};
+
+/// Where a fragment of a mesh, point or line lies in the world, by its corners and weights.
 [[nodiscard]] Vec3d position_on(const InstanceView& instance, const Fragment& f);
+/// The same of a place in object space.
+[[nodiscard]] Vec3d in_world(const InstanceView& instance, Vec3d p);
 
 /// What is read of a scene whose instances are the frame's draws, in order.
 struct SurfaceScene {
@@ -38,18 +70,22 @@ struct SurfaceScene {
     return scene.instances[draw].id.value_or(static_cast<std::int64_t>(draw));
   }
   /// In the world.
-  [[nodiscard]] Vec3d position(const Fragment& f) const {
-    return position_on(scene.instances[f.draw], f);
+  [[nodiscard]] Vec3d position(const SeenFragment& f) const {
+    const InstanceView& instance = scene.instances[f.draw];
+    return f.quadric != nullptr ? in_world(instance, f.quadric->position)
+                                : position_on(instance, f);
   }
   /// Unit length, in the world, turned to the viewer; 0 where there is none.
-  [[nodiscard]] Vec3d normal(const Fragment& f) const;
+  [[nodiscard]] Vec3d normal(const SeenFragment& f) const;
   [[nodiscard]] Vec3d in_camera(Vec3d direction) const;
   /// How far the pixel's ray goes for each unit along the axis; 1 for an orthographic camera.
   [[nodiscard]] double ray_length(int x, int y) const;
   /// Linear light, straight alpha. Requires `materials`, or `points_and_lines`.
-  [[nodiscard]] Vec4 albedo(const FrameGeometry& frame, const Fragment& f) const;
+  [[nodiscard]] Vec4 albedo(const FrameGeometry& frame, const SeenFragment& f) const;
 
  private:
+  /// In object space, not of unit length.
+  [[nodiscard]] Vec3d object_normal(const SeenFragment& f) const;
   /// Towards the viewer, not normalized.
   [[nodiscard]] Vec3d to_viewer(int x, int y) const;
 };

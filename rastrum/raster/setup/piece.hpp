@@ -53,6 +53,8 @@ inline constexpr int kLineWidthShift = 16;
 /// A triangle that was wound clockwise on the screen: where surfaces are closed, one of those that
 /// others hide.
 inline constexpr std::uint32_t kFacesAway = 16;
+/// One of those that a triangle was clipped to.
+inline constexpr std::uint32_t kClipped = 1U << 14;
 /// With kQuadric: its quadric is made by the bins that see it (cover/bin_quadrics.hpp). Of the
 /// piece there are the box and, in z0, Quadric::highest; it faces the viewer.
 inline constexpr std::uint32_t kDeferred = 1U << 13;

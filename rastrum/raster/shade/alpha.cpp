@@ -61,16 +61,12 @@ std::uint32_t set_material_flags(Draw& draw, const InstanceView& instance,
   return any;
 }
 
-bool has_color_alpha(const InstanceView& instance, parallel::Threads* exec) {
+bool has_color_alpha(const InstanceView& instance, const ArrayView<Vec4>& colors,
+                     parallel::Threads* exec) {
   // Written so that a NaN is found.
   const auto is_opaque = [](const Vec4& c) { return c.w >= 1; };
   if (instance.color) return !is_opaque(*instance.color);
   constexpr std::size_t kGrain = 1 << 14;
-  const auto* const points = std::get_if<PointsView>(&instance.geometry);
-  const auto* const lines = std::get_if<LinesView>(&instance.geometry);
-  const ArrayView<Vec4>& colors = points != nullptr  ? points->colors
-                                  : lines != nullptr ? lines->colors
-                                                     : instance.mesh()->colors.values;
   std::atomic<bool> any = false;
   const auto look = [&](std::size_t part) {
     if (any.load(std::memory_order_relaxed)) return;

@@ -30,8 +30,9 @@ namespace rastrum::raster {
 std::uint32_t set_material_flags(Draw& draw, const InstanceView& instance,
                                  std::span<const std::uint32_t> flags);
 
-/// Whether some colour is translucent: the instance's, or where it has none one of the geometry's,
-/// a mesh, points or lines. O(colours), divided among the threads of `exec` (null: one).
-[[nodiscard]] bool has_color_alpha(const InstanceView& instance, parallel::Threads* exec);
+/// Whether some colour is translucent: the instance's, or where it has none one of its geometry's.
+/// O(colours), divided among the threads of `exec` (null: one).
+[[nodiscard]] bool has_color_alpha(const InstanceView& instance, const ArrayView<Vec4>& colors,
+                                   parallel::Threads* exec);
 
 }  // namespace rastrum::raster

@@ -15,7 +15,7 @@ Vec4 point_color(const ArrayView<Vec4>& colors, const Vec4& base, std::uint32_t 
 
 }  // namespace
 
-void PointLineShader::add(const InstanceView& instance) {
+ArrayView<Vec4> PointLineShader::add(const InstanceView& instance) {
   Part& part = parts_.emplace_back();
   if (const auto* const points = std::get_if<PointsView>(&instance.geometry)) {
     part.colors = points->colors;
@@ -25,6 +25,7 @@ void PointLineShader::add(const InstanceView& instance) {
   }
   if (instance.color) part.colors = {};
   part.surface = look_.surface(instance, !part.colors.empty());
+  return part.colors;
 }
 
 Vec4 PointLineShader::along(const Part& part, const Vec4& base, const Fragment& f) {

@@ -22,8 +22,8 @@ class PointLineShader final : public BlockShader, public FragmentTest {
                   const Camera& camera, int width, int height)
       : look_(look, materials, camera, width, height) {}
 
-  /// `instance`: of points or lines; must outlive the frame.
-  void add(const InstanceView& instance);
+  /// `instance`: of points or lines, whose arrays must outlive the frame. Returns their colours.
+  ArrayView<Vec4> add(const InstanceView& instance);
   /// As MaterialShading::linear.
   void leave_linear() { look_.leave_linear(); }
 

@@ -11,24 +11,15 @@
 #include <rastrum/camera.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/draws/quadrics.hpp>
-#include <rastrum/raster/setup/make_quadric.hpp>
+#include <rastrum/raster/setup/quadric_surface.hpp>
 #include <rastrum/raster/shade/plain_surface.hpp>
 #include <rastrum/scene.hpp>
 
 namespace rastrum::raster {
 
-/// A point of a quadric's surface, in object space.
-struct QuadricPoint {
-  Vec3d normal;      ///< outwards, of unit length
-  double along = 0;  ///< of the primitive's axis, from 0 at its first end to 1
-};
-
-/// The point of the shape that is `h`, on its surface but for rounding.
-[[nodiscard]] QuadricPoint point_on(const QuadricShape& shape, const RayFrame::Point& h);
-
-/// Shades draws of quadrics, in the order of `add`. Textures are not read: a quadric has no texture
-/// coordinates.
-class QuadricShader final : public BlockShader {
+/// Shades draws of quadrics, in the order of `add`, and tests those whose material is a mask.
+/// Textures are not read: a quadric has no texture coordinates.
+class QuadricShader final : public BlockShader, public FragmentTest {
  public:
   QuadricShader(const SurfaceLook& look, std::span<const Material> materials, const Camera& camera,
                 int width, int height)
@@ -41,11 +32,14 @@ class QuadricShader final : public BlockShader {
   bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
              BlockColors& colors) const noexcept override;
   [[nodiscard]] std::size_t scratch_bytes() const noexcept override;
+  [[nodiscard]] std::uint64_t test(const FrameGeometry& frame, const Piece& piece,
+                                   const Block& block,
+                                   const ShadingPoints* points) const noexcept override;
 
  private:
   struct Surface {
     const QuadricStage* stage;
-    std::span<const Vec4> colors;  ///< empty: there are none
+    ArrayView<Vec4> colors;  ///< empty: there are none
     PlainSurface plain;
   };
   struct Kept;
@@ -53,14 +47,19 @@ class QuadricShader final : public BlockShader {
 
   void fetch(const FrameGeometry& frame, std::uint64_t low, Kept& out) const;
   [[nodiscard]] Vec4 color(const Kept& kept, const FrameGeometry& frame, std::uint64_t key,
-                           float px, float py, double dx, double dy) const;
+                           float px, float py, QuadricSurface::Place at) const;
 
   PlainLook look_;
   std::vector<Surface> surfaces_;
 };
 
 /// The geometry's colours, unless the instance's stands for them.
-[[nodiscard]] std::span<const Vec4> colors_of(const QuadricGeometry& geometry,
-                                              const InstanceView& instance);
+[[nodiscard]] ArrayView<Vec4> colors_of(const QuadricGeometry& geometry,
+                                        const InstanceView& instance);
+
+/// The colour that the geometry, or the instance instead, gives to a place along a primitive's
+/// axis; white where neither has one.
+[[nodiscard]] Vec4 color_at(const QuadricGeometry& geometry, const InstanceView& instance,
+                            std::uint64_t primitive, double along);
 
 }  // namespace rastrum::raster

@@ -1,0 +1,224 @@
+// The arrays of spheres, cylinders, tubes and discs: one picture, bit for bit, whatever their types
+// and strides; float64 places stand still far from the origin; and what cannot be drawn is refused
+// by instance, array and place, or dropped and counted.
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/render.hpp>
+
+#include "tests/support/refused.hpp"
+#include "tests/support/surface_layouts.hpp"
+
+namespace rastrum::test::surface_arrays_test {
+
+constexpr int kW = 90, kH = 70;
+
+struct Picture {
+  Image<Vec4> color{kW, kH};
+  Image<float> depth{kW, kH};
+  Image<std::int64_t> ids{kW, kH};
+  FrameStats stats;
+
+  [[nodiscard]] std::size_t pixels_that_differ(const Picture& o) const {
+    std::size_t n = 0;
+    for (int y = 0; y < kH; ++y)
+      for (int x = 0; x < kW; ++x)
+        n += ids(x, y) == o.ids(x, y) && color(x, y) == o.color(x, y) &&
+                     std::bit_cast<std::uint32_t>(depth(x, y)) ==
+                         std::bit_cast<std::uint32_t>(o.depth(x, y))
+                 ? 0
+                 : 1U;
+    return n;
+  }
+};
+
+Camera camera_at(Vec3d origin) {
+  Camera c;
+  c.eye = origin + Vec3d{0.5, -1, 7};
+  c.target = origin;
+  return c;
+}
+
+Picture draw(Renderer& renderer, const GeometryView& geometry, Vec3d origin = {},
+             FrameOptions frame = {}) {
+  frame.width = kW;
+  frame.height = kH;
+  const InstanceView instance{geometry};
+  Picture p;
+  p.stats = renderer.render({{&instance, 1}, {}, {}}, camera_at(origin), frame,
+                            {.color = p.color, .depth = p.depth, .ids = p.ids});
+  return p;
+}
+
+TEST(SurfaceArrays, EveryLayoutHasThePictureOfThePackedOne) {
+  const Cloud cloud(120);
+  for (const RendererOptions& by :
+       {RendererOptions{.threads = 2}, RendererOptions{.device = Device::serial}}) {
+    Renderer renderer(by);
+    for (const FrameOptions& frame :
+         {FrameOptions{.shader = Shader::phong}, FrameOptions{.shader = Shader::flat, .samples = 4},
+          FrameOptions{.shader = Shader::material, .opacity = 0.5F}}) {
+      std::vector<Picture> packed;
+      for (const GeometryView& g : CloudViews(cloud).geometries()) {
+        packed.push_back(draw(renderer, g, {}, frame));
+        ASSERT_GT(packed.back().stats.pixels_covered, 400U);
+      }
+      for (const CloudLayout& layout : cloud_layouts()) {
+        Memory memory;
+        CloudViews views(cloud);
+        layout.change(cloud, memory, views);
+        const std::vector<GeometryView> other = views.geometries();
+        for (std::size_t i = 0; i < other.size(); ++i)
+          EXPECT_EQ(packed[i].pixels_that_differ(draw(renderer, other[i], {}, frame)), 0U)
+              << layout.name << ", geometry " << i;
+      }
+    }
+  }
+}
+
+// A molecule at 10⁷ units: its places are float64, and so is all that is composed of them.
+TEST(SurfaceArrays, AMoleculeFarFromTheOriginStandsStill) {
+  const Cloud cloud(120);
+  const Vec3d far{1e7, -2e7, 3e7};
+  Renderer renderer;
+  CloudViews views(cloud);
+  const std::vector<GeometryView> at_origin = views.geometries();
+  std::vector<Vec3d> wide;
+  std::vector<Vec3> narrow;
+  for (const Vec3& p : cloud.positions) {
+    wide.push_back(Vec3d(p) + far);
+    narrow.push_back(Vec3(wide.back()));
+  }
+  const auto ids_that_differ = [&](const ArrayView<Vec3>& positions) {
+    views.positions = positions;
+    const std::vector<GeometryView> there = views.geometries();
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < there.size(); ++i) {
+      const Picture a = draw(renderer, at_origin[i]), b = draw(renderer, there[i], far);
+      for (int y = 0; y < kH; ++y)
+        for (int x = 0; x < kW; ++x) n += a.ids(x, y) != b.ids(x, y) ? 1U : 0U;
+    }
+    return n;
+  };
+  EXPECT_EQ(ids_that_differ(wide), 0U);
+  EXPECT_GT(ids_that_differ(narrow), 1000U);
+}
+
+template <class T>
+std::span<const std::byte> bytes(const std::vector<T>& v) {
+  return std::as_bytes(std::span(v));
+}
+
+/// Draws it as the second of two instances.
+void render(const GeometryView& geometry) {
+  const InstanceView instances[] = {{SpheresView{}}, {geometry}};
+  Image<float> depth(kW, kH);
+  FrameOptions frame{.width = kW, .height = kH};
+  (void)Renderer({.threads = 1}).render({instances, {}, {}}, {}, frame, {.depth = depth});
+}
+
+template <class C>
+void refuse_index(C value, const char* text) {
+  const std::vector<Vec3> positions(100);
+  const std::vector<C> indices{0, 1, 2, value};
+  const CylindersView cylinders{.positions = positions, .indices = indices};
+  const std::string says = std::string("instance 1: indices[3]: index ") + text +
+                           " is out of range, there are 100 positions";
+  expect_refused(says.c_str(), [&] { render(cylinders); });
+  // An offset may be the number of positions.
+  const std::vector<C> offsets{0, value};
+  const TubesView tubes{.positions = positions, .offsets = offsets};
+  if (std::string(text) == "100") return render(tubes);
+  expect_refused((std::string("instance 1: offsets[1] is ") + text).c_str(),
+                 [&] { render(tubes); });
+}
+
+TEST(SurfaceArrays, RefuseIndicesThatAreOutOfRange) {
+  refuse_index<std::uint8_t>(200, "200");
+  refuse_index<std::int8_t>(-1, "-1");
+  refuse_index<std::uint16_t>(100, "100");
+  refuse_index<std::int16_t>(-32768, "-32768");
+  refuse_index<std::uint32_t>(0xFFFFFFFF, "4294967295");
+  refuse_index<std::int32_t>(-1, "-1");
+  refuse_index<std::uint64_t>(std::uint64_t{1} << 40, "1099511627776");
+  refuse_index<std::uint64_t>(std::uint64_t{1} << 32, "4294967296");
+  refuse_index<std::int64_t>(-1, "-1");
+}
+
+TEST(SurfaceArrays, RefuseOffsetsThatDoNotRise) {
+  const std::vector<Vec3> positions(10);
+  const auto tubes = [&](const IndexView& offsets) {
+    return [&positions, offsets] { render(TubesView{.positions = positions, .offsets = offsets}); };
+  };
+  const std::vector<std::int64_t> falls{0, 5, 4}, rests{2, 2}, negative{-3, 4};
+  const std::vector<std::uint8_t> beyond{0, 11};
+  expect_refused("instance 1: offsets[2] is 4, which does not lie above the one before, 5",
+                 tubes(falls));
+  expect_refused("offsets[1] is 2, which does not lie above", tubes(rests));
+  expect_refused("offsets[0] is -3, but there are 10 positions", tubes(negative));
+  expect_refused("offsets[1] is 11, but there are 10 positions", tubes(beyond));
+  const std::vector<std::uint16_t> good{3, 4, 10};
+  EXPECT_EQ((TubesView{.positions = positions, .offsets = good}.size()), 5U);
+  tubes(good)();
+}
+
+TEST(SurfaceArrays, RefuseStridesBeyondTheirBuffer) {
+  const std::vector<double> radii(10);
+  using Layout = ArrayLayout;
+  constexpr NumberType kType = NumberType::float64;
+  EXPECT_EQ(ArrayView<float>::in(bytes(radii), {kType, 1, 4, 0, 24}).size(), 4U);
+  for (const Layout& l : {Layout{kType, 1, 11, 0, 8}, Layout{kType, 1, 4, 16, 24},
+                          Layout{kType, 1, 3, 8, -8}, Layout{kType, 1, 2, 80, 0}})
+    expect_refused("reach beyond a buffer of 80 bytes",
+                   [&] { (void)ArrayView<float>::in(bytes(radii), l); });
+  expect_refused("values have 3 channels, not 1", [&] {
+    (void)ArrayView<Vec3>::in(bytes(radii), {kType, 1, 3, 0, 24});
+  });
+  expect_refused("normalized integers of 8 or 16 bits", [&] {
+    (void)ArrayView<float>::in(bytes(radii), {NumberType::int32, 1, 3, 0, 4});
+  });
+}
+
+TEST(SurfaceArrays, DropAndCountWhatIsNotFinite) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Renderer renderer;
+  const std::vector<double> radii{1, kNan, kInfinity, -1, -kInfinity, 0, 1e300, 1};
+  const std::vector<Vec3d> places(radii.size());
+  const ArrayView<float> wide = ArrayView<float>::of(radii.data(), radii.size());
+  // 1e300 rounds to infinity.
+  const auto dropped = [&](const GeometryView& g) {
+    return draw(renderer, g).stats.triangles.dropped;
+  };
+  EXPECT_EQ(dropped(SpheresView{.centers = places, .radii = wide}), 5U);
+  const std::vector<Vec3d> odd{{kNan, 0, 0}, {0, kInfinity, 0}, {0, 0, -kInfinity}, {0, 0, 0}};
+  EXPECT_EQ(dropped(SpheresView{.centers = odd}), 3U);
+  EXPECT_EQ(dropped(CylindersView{.positions = odd}), 2U);
+  EXPECT_EQ(dropped(TubesView{.positions = odd}), 3U);
+  EXPECT_EQ(dropped(DiscsView{.centers = odd, .normals = odd}), 3U);
+  EXPECT_EQ(draw(renderer, SpheresView{.centers = odd}).stats.triangles.drawn, 1U);
+}
+
+TEST(SurfaceArrays, ThatAreEmptyDrawNothing) {
+  Renderer renderer;
+  const std::vector<Vec3> one{{0, 0, 0}};
+  const std::vector<std::int64_t> offset{0}, single{0, 1};
+  for (const GeometryView& g :
+       {GeometryView{SpheresView{}}, GeometryView{CylindersView{}}, GeometryView{TubesView{}},
+        GeometryView{DiscsView{}}, GeometryView{CylindersView{.positions = one}},
+        GeometryView{TubesView{.positions = one}},
+        GeometryView{TubesView{.positions = one, .offsets = offset}},
+        GeometryView{TubesView{.positions = one, .offsets = single}}}) {
+    const Picture p = draw(renderer, g);
+    EXPECT_EQ(p.stats.pixels_covered, 0U);
+    EXPECT_EQ(p.stats.triangles.input, 0U);
+  }
+}
+
+}  // namespace rastrum::test::surface_arrays_test

@@ -1,0 +1,369 @@
+// What targets and pick say of spheres, cylinders, cones, tubes and discs: against the oracle of
+// surfaces, beside and through triangles, cut by planes, and the same bits whatever draws.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/pick.hpp>
+#include <rastrum/render.hpp>
+
+#include "tests/support/random.hpp"
+#include "tests/support/refused.hpp"
+#include "tests/support/surface_scenes.hpp"
+#include "tests/support/surfaces.hpp"
+
+namespace rastrum::test::surface_outputs_test {
+
+constexpr int kW = 40, kH = 27;
+
+SurfaceScene scene_of(int seed, int width = kW, int height = kH) {
+  SurfaceScene s = generate_surfaces(static_cast<std::uint64_t>(seed), width, height);
+  if (seed % 3 == 1) add_clip_planes(s, static_cast<std::uint64_t>(seed));
+  return s;
+}
+
+Surfaces draw(Renderer& renderer, const SurfaceScene& s, FrameOptions frame) {
+  frame.width = s.width;
+  frame.height = s.height;
+  frame.clip_planes = s.clip_planes;
+  Surfaces images(s.width, s.height);
+  (void)renderer.render(s.view(), s.camera, frame, images.targets());
+  return images;
+}
+
+Real distance(const Point3& a, const Vec3& b) {
+  const Real x = a.x - static_cast<Real>(b.x), y = a.y - static_cast<Real>(b.y),
+             z = a.z - static_cast<Real>(b.z);
+  return std::sqrt(x * x + y * y + z * z);
+}
+Real size_of(const Point3& a) {
+  return std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
+}
+
+/// The surface of the oracle that a pixel shows; null: it is a tie, or a triangle.
+const SurfaceHit* hit_of(const std::vector<SurfaceHit>& hits, std::int64_t id, float depth) {
+  const SurfaceHit* best = nullptr;
+  const auto off = [&](const SurfaceHit& h) {
+    return std::abs(h.depth - static_cast<Real>(depth));
+  };
+  for (const SurfaceHit& h : hits)
+    if (h.id == id && (best == nullptr || off(h) < off(*best))) best = &h;
+  return best != nullptr && off(*best) <= 1e-6L * static_cast<Real>(depth) + 1e-12L ? best
+                                                                                    : nullptr;
+}
+
+/// Pixels that were looked at, and those at which something is further off than rounding: an end
+/// that meets a side, a silhouette.
+struct Seen {
+  int pixels = 0, position = 0, normal = 0, along = 0, backs = 0, inside = 0;
+};
+
+void check_pixel(const SurfaceScene& s, const Surfaces& images, const SurfaceHit& hit, int x, int y,
+                 Seen& seen) {
+  ++seen.pixels;
+  seen.backs += hit.front ? 0 : 1;
+  const auto p = std::ranges::find(s.primitives, hit.id, &SurfacePrimitive::id);
+  const Real reach = std::max(p->r0, p->r1);
+  const Vec3 position = images.positions(x, y);
+  seen.position +=
+      distance(hit.position, position) > 2e-7L * size_of(hit.position) + 1e-6L * reach ? 1 : 0;
+  // Unit length, to the viewer.
+  const Vec3 n = images.normals(x, y);
+  ASSERT_NEAR(length(n), 1, 1e-6);
+  const OracleCamera& eye = s.eye;
+  const Point3 from_eye{hit.position.x - eye.eye.x, hit.position.y - eye.eye.y,
+                        hit.position.z - eye.eye.z};
+  const Point3 ray = eye.orthographic ? Point3{0, 0, -1} : from_eye;
+  ASSERT_LE((ray.x * n.x + ray.y * n.y + ray.z * n.z) / size_of(ray), 1e-4L);
+  const Real scale = 1 / size_of(hit.normal);
+  const Vec3 outwards{static_cast<float>(hit.normal.x * scale),
+                      static_cast<float>(hit.normal.y * scale),
+                      static_cast<float>(hit.normal.z * scale)};
+  seen.normal += std::min(length(n - outwards), length(n + outwards)) > 1e-4F ? 1 : 0;
+  seen.inside += length(n - outwards) > 1 ? 1 : 0;
+  // The camera's axes are the world's.
+  ASSERT_LE(length(images.camera_normals(x, y) - n), 1e-6F);
+  seen.along +=
+      std::abs(static_cast<Real>(images.barycentrics(x, y).x) - hit.along) > 1e-4L ? 1 : 0;
+  ASSERT_EQ(images.barycentrics(x, y).y, 0);
+  const auto z = static_cast<double>(hit.view_depth);
+  ASSERT_NEAR(images.view_depth(x, y), z, 2e-5 * z);
+  const auto away = static_cast<double>(eye.orthographic ? hit.view_depth : size_of(from_eye));
+  ASSERT_NEAR(images.distance(x, y), away, 2e-5 * away);
+}
+
+TEST(SurfaceOutputs, AreThoseOfTheOracle) {
+  Renderer renderer({.threads = 1});
+  Seen seen;
+  int empty = 0, ties = 0;
+  for (int seed = 0; seed < 660; ++seed) {
+    const SurfaceScene s = scene_of(seed);
+    SCOPED_TRACE(s.kind + " " + std::to_string(seed));
+    FrameOptions frame;
+    frame.cull = seed % 5 == 2 ? Cull::front : Cull::none;
+    const Surfaces images = draw(renderer, s, frame);
+    for (int y = 0; y < kH; ++y)
+      for (int x = 0; x < kW; ++x) {
+        const std::int64_t id = images.ids(x, y);
+        if (id < 0) {
+          ++empty;
+          ASSERT_EQ(images.instances(x, y), -1);
+          ASSERT_EQ(images.positions(x, y), Vec3{});
+          ASSERT_EQ(images.normals(x, y), Vec3{});
+          continue;
+        }
+        const Located at = locate(s.view(), static_cast<std::uint64_t>(id));
+        ASSERT_EQ(images.instances(x, y), static_cast<std::int64_t>(at.instance));
+        ASSERT_EQ(images.primitives(x, y), static_cast<std::int64_t>(at.primitive));
+        // At the far plane or beyond it depth does not tell one side from the other.
+        if (s.instances[at.instance].mesh() != nullptr || !(images.depth(x, y) > 0)) continue;
+        const auto hits = surfaces_at(s.eye, s.primitives, x + 0.5L, y + 0.5L);
+        const SurfaceHit* const hit = hit_of(hits, id, images.depth(x, y));
+        ties += hit == nullptr ? 1 : 0;
+        if (hit != nullptr) check_pixel(s, images, *hit, x, y, seen);
+        if (HasFatalFailure()) FAIL() << "at " << x << ", " << y;
+      }
+  }
+  EXPECT_GT(seen.pixels, 100000);
+  EXPECT_GT(seen.backs, 5000);
+  EXPECT_GT(seen.inside, 5000);
+  EXPECT_GT(empty, 100000);
+  EXPECT_LE(ties, seen.pixels / 5000);
+  EXPECT_LE(seen.position, seen.pixels / 20000);
+  EXPECT_LE(seen.normal, seen.pixels / 20000);
+  EXPECT_LE(seen.along, seen.pixels / 20000);
+}
+
+TEST(SurfaceOutputs, AreTheSameBitsWhateverDraws) {
+  Renderer reference({.device = Device::serial});
+  std::vector<std::unique_ptr<Renderer>> others;
+  for (const Isa isa : available_isas())
+    others.push_back(std::make_unique<Renderer>(RendererOptions{.threads = 3, .isa = isa}));
+  others.push_back(
+      std::make_unique<Renderer>(RendererOptions{.memory_limit = 3U << 20, .threads = 2}));
+  for (int seed = 0; seed < 132; ++seed) {
+    const SurfaceScene s = scene_of(seed, 150, 97);
+    FrameOptions frame;
+    frame.samples = seed % 5 == 2 ? 4 : 1;
+    frame.opacity = seed % 4 == 1 ? 0.4F : 1;
+    frame.shader = seed % 7 == 3 ? Shader::depth : Shader::phong;
+    const Surfaces expected = draw(reference, s, frame);
+    for (const auto& other : others)
+      ASSERT_TRUE(same_bits(expected, draw(*other, s, frame)))
+          << s.kind << " " << seed << ", " << name(other->options().isa.value_or(Isa::scalar));
+  }
+}
+
+template <class T>
+bool same(const T& a, const T& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+TEST(SurfaceOutputs, ArePickedOneByOne) {
+  Renderer renderer({.threads = 1});
+  int seen = 0, fronts = 0;
+  for (int seed = 0; seed < 330; ++seed) {
+    const SurfaceScene s = scene_of(seed, 150, 97);
+    FrameOptions frame;
+    frame.width = s.width;
+    frame.height = s.height;
+    frame.clip_planes = s.clip_planes;
+    frame.samples = seed % 5 == 2 ? 4 : 1;
+    frame.opacity = seed % 4 == 1 ? 0.4F : 1;
+    const Surfaces images = draw(renderer, s, frame);
+    Random r(static_cast<std::uint64_t>(seed));
+    for (int n = 0; n < 6; ++n) {
+      const int x = r.integer(0, s.width - 1), y = r.integer(0, s.height - 1);
+      SCOPED_TRACE(s.kind + " " + std::to_string(seed) + " at " + std::to_string(x) + ", " +
+                   std::to_string(y));
+      const std::optional<Pick> p = renderer.pick(s.view(), s.camera, frame, x, y);
+      ASSERT_EQ(p.has_value(), images.ids(x, y) >= 0);
+      if (!p) continue;
+      ASSERT_EQ(static_cast<std::int64_t>(p->id), images.ids(x, y));
+      ASSERT_EQ(p->instance_id, images.instances(x, y));
+      ASSERT_TRUE(same(Vec3(p->position), images.positions(x, y)));
+      ASSERT_TRUE(same(Vec3(p->normal), images.normals(x, y)));
+      ASSERT_TRUE(same(p->depth, images.depth(x, y)));
+      ASSERT_TRUE(same(static_cast<float>(p->distance), images.distance(x, y)));
+      const auto& b = p->barycentrics.weight;
+      ASSERT_TRUE(same(Vec2{static_cast<float>(b[1]), static_cast<float>(b[2])},
+                       images.barycentrics(x, y)));
+      if (s.instances[p->instance].mesh() != nullptr) continue;
+      ++seen;
+      ASSERT_EQ(b[0] + b[1], 1);
+      const Barycentrics again = barycentrics(s.view(), s.camera, s.width, s.height, p->id, x, y);
+      fronts += same(again, p->barycentrics) ? 1 : 0;
+      // Their place is on the primitive's axis.
+      const auto of =
+          std::ranges::find(s.primitives, static_cast<std::int64_t>(p->id), &SurfacePrimitive::id);
+      const bool one_end = of->kind == SurfaceKind::sphere || of->kind == SurfaceKind::disc;
+      const Real u = one_end ? 0 : static_cast<Real>(b[1]);
+      const auto object = [&](Real Point3::*c) {
+        return of->p0.*c + ((one_end ? of->p0 : of->p1).*c - of->p0.*c) * u;
+      };
+      const auto world = [&](Real Point3::*c) {
+        return of->columns[0].*c * object(&Point3::x) + of->columns[1].*c * object(&Point3::y) +
+               of->columns[2].*c * object(&Point3::z) + of->origin.*c;
+      };
+      const Vec3d axis = position(s.view(), {p->instance, p->primitive}, p->barycentrics);
+      const Point3 want{world(&Point3::x), world(&Point3::y), world(&Point3::z)};
+      ASSERT_LE(std::abs(axis.x - want.x) + std::abs(axis.y - want.y) + std::abs(axis.z - want.z),
+                1e-12L * (size_of(want) + size_of(of->p0) + size_of(of->p1)));
+    }
+  }
+  EXPECT_GT(seen, 300);
+  EXPECT_GT(fronts, seen * 3 / 4);
+}
+
+/// A scene of one geometry before an eye at the origin that looks along −z.
+struct One {
+  std::vector<Vec3> centers{{0, 0, -4}};
+  std::vector<Vec4> colors{{0.5F, 0.25F, 1, 0.5F}};
+  std::vector<Material> materials;
+  InstanceView instance{SpheresView{.centers = centers, .colors = colors}};
+  Camera camera;
+
+  One() {
+    camera.eye = {0, 0, 0};
+    camera.target = {0, 0, -1};
+  }
+  One(const One&) = delete;
+  One& operator=(const One&) = delete;
+  [[nodiscard]] SceneView scene() const { return {{&instance, 1}, materials, {}}; }
+};
+
+// Where only a sample sees the surface, the point is that sample's.
+TEST(SurfaceOutputs, OfSeveralSamplesLieOnTheSurface) {
+  const One one;
+  FrameOptions frame{.width = 31, .height = 31, .samples = 8};
+  Renderer renderer;
+  Surfaces images(31, 31), centre(31, 31);
+  (void)renderer.render(one.scene(), one.camera, frame, images.targets());
+  frame.samples = 1;
+  (void)renderer.render(one.scene(), one.camera, frame, centre.targets());
+  int beside = 0;
+  for (int y = 0; y < 31; ++y)
+    for (int x = 0; x < 31; ++x) {
+      if (images.ids(x, y) < 0) continue;
+      const Vec3 from = images.positions(x, y) - one.centers[0];
+      ASSERT_NEAR(length(from), 1, 1e-6);
+      ASSERT_LE(length(images.normals(x, y) - from), 1e-6F);
+      if (centre.ids(x, y) >= 0)
+        ASSERT_EQ(images.positions(x, y), centre.positions(x, y));
+      else
+        ++beside;
+    }
+  EXPECT_GT(beside, 10);
+}
+
+TEST(SurfaceOutputs, AlbedoIsTheBaseColourBeforeLight) {
+  One one;
+  Renderer renderer;
+  const auto albedo = [&](Shader shader) {
+    FrameOptions frame{.width = 15, .height = 15, .shader = shader};
+    Image<Vec4> image(15, 15);
+    Targets targets;
+    targets.albedo = image;
+    (void)renderer.render(one.scene(), one.camera, frame, targets);
+    EXPECT_EQ(image(0, 0), Vec4{});
+    return image(7, 7);
+  };
+  for (const Shader shader : {Shader::phong, Shader::depth, Shader::material})
+    EXPECT_EQ(albedo(shader), one.colors[0]);
+  one.materials.resize(1);
+  one.materials[0].base_color = {1, 0.5F, 0.5F, 0.5F};
+  for (const Shader shader : {Shader::phong, Shader::material})
+    EXPECT_EQ(albedo(shader), (Vec4{0.5F, 0.125F, 0.5F, 0.25F}));
+  one.instance.color = Vec4{0, 1, 0, 1};
+  EXPECT_EQ(albedo(Shader::flat), (Vec4{0, 0.5F, 0, 0.5F}));
+  one.instance.color = {};
+  one.instance.geometry = SpheresView{.centers = one.centers};
+  one.materials.clear();
+  EXPECT_EQ(albedo(Shader::flat), (Vec4{1, 1, 1, 1}));
+}
+
+// A fat end of a tube that holds its thin one is that end: its colour, its place along the axis.
+TEST(SurfaceOutputs, OfATubeThatOneEndHoldsAreThatEnds) {
+  const std::vector<Vec3> positions{{0, 0, -4}, {0, 0.25F, -4}};
+  const std::vector<Vec4> colors{{1, 0, 0, 1}, {0, 1, 0, 1}};
+  One one;
+  for (const bool second : {false, true}) {
+    const std::vector<float> radii{second ? 0.25F : 1.0F, second ? 1.0F : 0.25F};
+    one.instance.geometry = TubesView{.positions = positions, .radii = radii, .colors = colors};
+    FrameOptions frame{.width = 15, .height = 15, .shader = Shader::flat};
+    Image<Vec4> color(15, 15);
+    Surfaces images(15, 15);
+    Targets targets = images.targets();
+    targets.color = color;
+    Renderer renderer;
+    (void)renderer.render(one.scene(), one.camera, frame, targets);
+    EXPECT_EQ(color(7, 7), colors[second ? 1 : 0]);
+    EXPECT_EQ(images.barycentrics(7, 7), (Vec2{second ? 1.0F : 0.0F, 0}));
+    EXPECT_EQ(images.albedo(7, 7), colors[second ? 1 : 0]);
+  }
+}
+
+// AlphaMode::mask by what a quadric has: the factor and its colours, linear along the axis.
+TEST(SurfaceOutputs, MasksCutWhatTheirColoursSay) {
+  const std::vector<Vec3> positions{{-1, 0, -4}, {1, 0, -4}};
+  const std::vector<float> radii{0.5F, 0.5F};
+  const std::vector<Vec4> colors{{1, 1, 1, 0}, {1, 1, 1, 1}};
+  One one;
+  one.instance.geometry = CylindersView{.positions = positions, .radii = radii, .colors = colors};
+  one.materials.resize(1);
+  one.materials[0].alpha_mode = AlphaMode::mask;
+  one.materials[0].alpha_cutoff = 0.25F;
+  for (const Shader shader : {Shader::flat, Shader::material, Shader::depth})
+    for (const int samples : {1, 4})
+      for (const RendererOptions& by :
+           {RendererOptions{.device = Device::serial}, RendererOptions{.threads = 2}}) {
+        FrameOptions frame{.width = 60, .height = 60, .shader = shader, .samples = samples};
+        Surfaces images(60, 60);
+        (void)Renderer(by).render(one.scene(), one.camera, frame, images.targets());
+        int inside = 0;
+        for (int x = 0; x < 60; ++x) {
+          if (images.ids(x, 30) < 0) continue;
+          EXPECT_GE(images.positions(x, 30).x, -0.5F - 0.06F) << x;
+          inside += images.normals(x, 30).z > 0 && images.positions(x, 30).z < -4 ? 1 : 0;
+        }
+        EXPECT_LT(images.ids(20, 30), 0);
+        EXPECT_GE(images.ids(26, 30), 0);
+        EXPECT_EQ(inside, 0) << "the axis is level, so that both sides are cut alike";
+      }
+}
+
+TEST(SurfaceOutputs, PlanesThatKeepAllChangeNothingAndThatKeepNothingLeaveNothing) {
+  One one;
+  FrameOptions frame{.width = 31, .height = 31};
+  Renderer renderer({.threads = 1});
+  const auto drawn = [&](Surfaces& images) {
+    return renderer.render(one.scene(), one.camera, frame, images.targets());
+  };
+  Surfaces without(31, 31), with(31, 31);
+  const FrameStats whole = drawn(without);
+  frame.clip_planes.assign(kMaxClipPlanes, ClipPlane{{0, 1, 0}, 2});
+  const FrameStats kept = drawn(with);
+  EXPECT_TRUE(same_bits(without, with));
+  EXPECT_EQ(whole.fragments, kept.fragments) << "no fragment is asked for, and no back is made";
+  frame.clip_planes = {{{0, 1, 0}, -2}};
+  const FrameStats none = drawn(with);
+  EXPECT_EQ(none.pixels_covered, 0U);
+  EXPECT_EQ(none.fragments, 0U);
+  EXPECT_EQ(none.triangles.culled, 1U);
+  // A cut sphere shows its inside, turned to the viewer.
+  frame.clip_planes = {{{0, 0, -1}, -4}};
+  (void)drawn(with);
+  EXPECT_LT(with.positions(15, 15).z, -4.9F);
+  EXPECT_GT(with.normals(15, 15).z, 0.9F);
+  const std::vector<ClipPlane> bad{{{0, 0, 0}, 1}};
+  one.instance.clip_planes = bad;
+  expect_refused("instance 0: clip plane 0 has no direction", [&] { (void)drawn(with); });
+}
+
+}  // namespace rastrum::test::surface_outputs_test
