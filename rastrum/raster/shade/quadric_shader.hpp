@@ -1,5 +1,6 @@
 // The built-in shaders over quadrics: normal and colour are those of the exact point of the surface
-// that a sample sees, in float64; the rest is plain_surface.hpp's.
+// that a sample sees, in float64; the light is the triangles' (lit_light-inl.hpp,
+// material_light-inl.hpp).
 #pragma once
 
 #include <cstdint>
@@ -12,22 +13,27 @@
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/draws/quadrics.hpp>
 #include <rastrum/raster/setup/quadric_surface.hpp>
+#include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/plain_surface.hpp>
+#include <rastrum/raster/shade/shading.hpp>
 #include <rastrum/scene.hpp>
 
 namespace rastrum::raster {
 
+struct QuadricBlock;
+struct QuadricLanes;
+
 /// Shades draws of quadrics, in the order of `add`, and tests those whose material is a mask.
-/// Textures are not read: a quadric has no texture coordinates.
+/// Scenes without materials are of one that blends by its colours. Textures are not read: a quadric
+/// has no texture coordinates.
 class QuadricShader final : public BlockShader, public FragmentTest {
  public:
   QuadricShader(const SurfaceLook& look, std::span<const Material> materials, const Camera& camera,
-                int width, int height)
-      : look_(look, materials, camera, width, height) {}
+                int width, int height);
   /// `instance`: of the stage, whose own look is heeded. `stage` must outlive the frame.
   void add(const QuadricStage& stage, const InstanceView& instance);
   /// As MaterialShading::linear.
-  void leave_linear() { look_.leave_linear(); }
+  void leave_linear() { linear_ = true; }
 
   bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
              BlockColors& colors) const noexcept override;
@@ -39,18 +45,45 @@ class QuadricShader final : public BlockShader, public FragmentTest {
  private:
   struct Surface {
     const QuadricStage* stage;
+    LitDraw to_world;  ///< for its normal matrix
+    Vec4 base;         ///< what colours are multiplied by, or stand for; alpha the own one
+    const Material* material;
+    float opacity;           ///< the instance's, the frame's and the material's
     ArrayView<Vec4> colors;  ///< empty: there are none
-    PlainSurface plain;
+
+    /// Whether alpha may change from point to point.
+    [[nodiscard]] bool has_own_alpha() const {
+      return material->alpha_mode == AlphaMode::blend && !(colors.empty() && base.w == 1);
+    }
   };
   struct Kept;
   struct KeptQuadrics;
 
-  void fetch(const FrameGeometry& frame, std::uint64_t low, Kept& out) const;
-  [[nodiscard]] Vec4 color(const Kept& kept, const FrameGeometry& frame, std::uint64_t key,
-                           float px, float py, QuadricSurface::Place at) const;
+  struct Seen {
+    Vec4 base;
+    Vec3 normal;  ///< world space, of any length
+  };
 
-  PlainLook look_;
+  /// `all`: whose eye is used; null: a new one.
+  void fetch(const FrameGeometry& frame, std::uint64_t low, KeptQuadrics* all, Kept& out) const;
+  [[nodiscard]] static Seen seen(const Kept& kept, std::uint64_t key, QuadricSurface::Place at);
+  /// `own`: the alpha of what is seen.
+  [[nodiscard]] float alpha_of(const Surface& surface, float own) const;
+  [[nodiscard]] Vec4 color(const Kept& kept, std::uint64_t key, float px, float py,
+                           QuadricSurface::Place at) const;
+  /// What is seen of a primitive at the samples `mask` of a block.
+  static void fill(const QuadricLanes& lanes, const Kept& kept, const VisibleBlock& block,
+                   std::uint64_t mask, QuadricBlock& out);
+  /// shade() of the models that lanes have.
+  bool shade_lit(const QuadricLanes& lanes, const FrameGeometry& frame, const VisibleBlock& block,
+                 Isa isa, BlockColors& colors) const;
+
+  SurfaceLook look_;
+  bool linear_ = false;
   std::vector<Surface> surfaces_;
+  std::vector<Material> materials_;  ///< at least one
+  std::vector<Vec3> display_;        ///< their base colours; empty: there are none
+  ViewRays rays_;
 };
 
 /// The geometry's colours, unless the instance's stands for them.
