@@ -13,30 +13,32 @@
 namespace {
 
 float height(float x, float z) {
-  return 0.9F * std::sin(x) * std::cos(0.8F * z) + 0.25F * std::sin(2.7F * x + 1.9F * z);
+  return 0.55F * std::sin(x) * std::cos(0.8F * z) + 0.1F * std::sin(2.7F * x + 1.9F * z);
 }
 
 /// Denser along the scanner's path, as scans are.
 rastrum::Scene scan() {
   rastrum::Points points;
   std::mt19937 random(1);
-  std::normal_distribution<float> across(0, 1.6F);
+  std::normal_distribution<float> across(0, 1.3F);
   std::uniform_real_distribution<float> along(-7, 7);
   for (int i = 0; i < 400'000; ++i) {
     const float x = along(random);
-    const float z = 1.2F * std::sin(0.6F * x) + across(random);
+    const float off = across(random);
+    if (std::abs(off) > 3) continue;
+    const float z = 1.2F * std::sin(0.6F * x) + off;
     const float y = height(x, z);
     constexpr float e = 0.01F;
     points.positions.push_back({x, y, z});
     points.normals.push_back(
         {height(x - e, z) - height(x + e, z), 2 * e, height(x, z - e) - height(x, z + e)});
-    const float t = (y + 1.1F) / 2.2F;  // from water to rock
+    const float t = (y + 0.65F) / 1.3F;  // from water to rock
     points.colors.push_back({0.25F + 0.75F * t, 0.55F + 0.3F * t, 0.75F - 0.35F * t, 1});
   }
   rastrum::Lines path;
   path.kind = rastrum::LineKind::polylines;
   for (float x = -7; x <= 7; x += 0.05F)
-    path.positions.push_back({x, 2.2F, 1.2F * std::sin(0.6F * x)});
+    path.positions.push_back({x, 1.6F, 1.2F * std::sin(0.6F * x)});
   path.colors.assign(path.positions.size(), {0.8F, 0.1F, 0.1F, 1});
   path.line_width = 2;
 
