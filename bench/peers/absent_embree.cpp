@@ -16,6 +16,9 @@ std::string EmbreePeer::description() const {
   return {};
 }
 void EmbreePeer::set_mesh(const MeshView&) {}
+void EmbreePeer::set_spheres(std::span<const Vec3>, std::span<const float>) {}
+void EmbreePeer::set_tubes(std::span<const Vec3>, std::span<const float>,
+                           std::span<const std::uint32_t>) {}
 void EmbreePeer::build() {}
 void EmbreePeer::trace(const Camera&, ImageView<Rgba8>) {}
 

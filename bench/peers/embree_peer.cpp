@@ -106,8 +106,11 @@ struct EmbreePeer::Impl {
   RTCScene scene = nullptr;
   tbb::task_arena arena;
   std::vector<Vec3> positions, normals;
+  std::vector<Vec4> balls;  ///< of spheres and tubes: place and radius
+  std::vector<std::uint8_t> neighbours;
   std::vector<std::uint32_t> indices;
   std::size_t vertex_count = 0;
+  RTCGeometryType type = RTC_GEOMETRY_TYPE_TRIANGLE;
   bool native16 = false;
 
   explicit Impl(int threads) : arena(threads) {
@@ -127,18 +130,41 @@ struct EmbreePeer::Impl {
   void build() {
     if (scene != nullptr) rtcReleaseScene(scene);
     scene = rtcNewScene(device);
-    RTCGeometry triangles = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetSharedGeometryBuffer(triangles, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                               positions.data(), 0, sizeof(Vec3), vertex_count);
-    rtcSetSharedGeometryBuffer(triangles, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                               indices.data(), 0, 3 * sizeof(std::uint32_t), indices.size() / 3);
-    rtcCommitGeometry(triangles);
-    rtcAttachGeometry(scene, triangles);
-    rtcReleaseGeometry(triangles);
+    RTCGeometry geometry = rtcNewGeometry(device, type);
+    const auto share = [&](RTCBufferType buffer, RTCFormat format, const auto& values,
+                           std::size_t bytes, std::size_t count) {
+      rtcSetSharedGeometryBuffer(geometry, buffer, 0, format, values.data(), 0, bytes, count);
+    };
+    if (type == RTC_GEOMETRY_TYPE_TRIANGLE) {
+      share(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions, sizeof(Vec3), vertex_count);
+      share(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, indices, 3 * sizeof(std::uint32_t),
+            indices.size() / 3);
+    } else {
+      share(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, balls, sizeof(Vec4), balls.size());
+    }
+    if (type == RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE) {
+      share(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, indices, sizeof(std::uint32_t), indices.size());
+      share(RTC_BUFFER_TYPE_FLAGS, RTC_FORMAT_UCHAR, neighbours, 1, neighbours.size());
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
     arena.execute([&] { rtcJoinCommitScene(scene); });
     if (const RTCError e = rtcGetDeviceError(device); e != RTC_ERROR_NONE)
       throw Error(e == RTC_ERROR_OUT_OF_MEMORY ? Errc::out_of_memory : Errc::unsupported,
                   "Embree error " + std::to_string(e) + " in build");
+  }
+
+  /// Takes its scene away, which borrows the buffers.
+  void become(RTCGeometryType to) {
+    if (scene != nullptr) rtcReleaseScene(scene);
+    scene = nullptr;
+    type = to;
+  }
+  void set_balls(std::span<const Vec3> places, std::span<const float> radii) {
+    balls.clear();
+    for (std::size_t i = 0; i < places.size(); ++i)
+      balls.push_back({places[i].x, places[i].y, places[i].z, radii[i]});
   }
 
   template <class Packet>
@@ -176,6 +202,12 @@ struct EmbreePeer::Impl {
         continue;
       }
       any = true;
+      if (type != RTC_GEOMETRY_TYPE_TRIANGLE) {
+        s.nx[i] = packet.hit.Ng_x[i];
+        s.ny[i] = packet.hit.Ng_y[i];
+        s.nz[i] = packet.hit.Ng_z[i];
+        continue;
+      }
       const std::uint32_t* corner = &indices[3 * static_cast<std::size_t>(packet.hit.primID[i])];
       const float u = packet.hit.u[i], v = packet.hit.v[i];
       const Vec3 n =
@@ -223,8 +255,7 @@ void EmbreePeer::set_mesh(const MeshView& mesh) {
   if (!mesh.normals.indices.empty() || mesh.normals.values.size() != mesh.positions.size())
     throw Error(Errc::invalid_argument, "EmbreePeer: normals must share the positions' indices");
   Impl& s = *impl_;
-  if (s.scene != nullptr) rtcReleaseScene(s.scene);  // it borrows the buffers
-  s.scene = nullptr;
+  s.become(RTC_GEOMETRY_TYPE_TRIANGLE);
   s.vertex_count = mesh.positions.size();
   const auto copy = [](auto& to, const auto& view) {
     to.assign(view.packed().begin(), view.packed().end());
@@ -236,6 +267,28 @@ void EmbreePeer::set_mesh(const MeshView& mesh) {
   if (mesh.indices.empty())
     for (std::size_t i = 0; i < s.vertex_count / 3 * 3; ++i)
       s.indices.push_back(static_cast<std::uint32_t>(i));
+}
+
+void EmbreePeer::set_spheres(std::span<const Vec3> centers, std::span<const float> radii) {
+  impl_->become(RTC_GEOMETRY_TYPE_SPHERE_POINT);
+  impl_->set_balls(centers, radii);
+}
+
+void EmbreePeer::set_tubes(std::span<const Vec3> positions, std::span<const float> radii,
+                           std::span<const std::uint32_t> offsets) {
+  Impl& s = *impl_;
+  s.become(RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+  s.set_balls(positions, radii);
+  s.indices.clear();
+  s.neighbours.clear();
+  for (std::size_t line = 0; line + 1 < offsets.size(); ++line)
+    for (std::uint32_t i = offsets[line]; i + 1 < offsets[line + 1]; ++i) {
+      const bool is_first = i == offsets[line], is_last = i + 2 == offsets[line + 1];
+      s.indices.push_back(i);
+      s.neighbours.push_back(
+          static_cast<std::uint8_t>((is_first ? 0 : RTC_CURVE_FLAG_NEIGHBOR_LEFT) |
+                                    (is_last ? 0 : RTC_CURVE_FLAG_NEIGHBOR_RIGHT)));
+    }
 }
 
 void EmbreePeer::build() {

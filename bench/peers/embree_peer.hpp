@@ -3,7 +3,9 @@
 // the same `phong`.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
 #include <rastrum/camera.hpp>
@@ -25,6 +27,12 @@ class EmbreePeer {
   /// Copies the mesh into buffers with the padding that Embree asks for. Needs normals that share
   /// the positions' indices; throws Error{invalid_argument} otherwise.
   void set_mesh(const MeshView& mesh);
+  /// Spheres instead (RTC_GEOMETRY_TYPE_SPHERE_POINT); copies them. A radius each.
+  void set_spheres(std::span<const Vec3> centers, std::span<const float> radii);
+  /// Tubes instead (RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE); copies them. A radius a position;
+  /// polyline i has positions [offsets[i], offsets[i + 1]).
+  void set_tubes(std::span<const Vec3> positions, std::span<const float> radii,
+                 std::span<const std::uint32_t> offsets);
   /// Builds the acceleration structure anew, at Embree's default quality.
   void build();
   /// Traces and shades into `image`; transparent black where a ray meets nothing.

@@ -44,8 +44,12 @@ QuadricPoint point_on(const QuadricShape& shape, const RayFrame::Point& h) {
 }
 
 bool QuadricSurface::find(const QuadricStage& stage, std::uint64_t primitive, Viewport viewport) {
-  return stage.clip_to_object() != nullptr && stage.shape(primitive, shape) == ShapeFate::drawn &&
-         make_quadric({stage, viewport}, shape, quadric, place, &rays);
+  return stage.clip_to_object() != nullptr && find(stage, primitive, QuadricEye(stage, viewport));
+}
+bool QuadricSurface::find(const QuadricStage& stage, std::uint64_t primitive,
+                          const QuadricEye& eye) {
+  return stage.shape(primitive, shape) == ShapeFate::drawn &&
+         make_quadric(eye, shape, quadric, place, &rays);
 }
 
 QuadricHit seen_of(const QuadricSurface& surface, int x, int y, float depth, int samples) {

@@ -30,6 +30,9 @@ struct QuadricSurface {
 
   /// Whether anything of the primitive may be seen; then sets all.
   [[nodiscard]] bool find(const QuadricStage& stage, std::uint64_t primitive, Viewport viewport);
+  /// The same for who keeps the stage's eye.
+  [[nodiscard]] bool find(const QuadricStage& stage, std::uint64_t primitive,
+                          const QuadricEye& eye);
 
   /// A place on the screen, from QuadricPlace's.
   struct Place {

@@ -30,9 +30,18 @@ RASTRUM_HD constexpr Vec3 id_color(std::uint64_t id) {
   return {channel(0), channel(8), channel(16)};
 }
 
+/// What the lighting of a block needs, by sample.
+struct alignas(64) LitBlock {
+  float n[3][64];     ///< the normal, world space, of any length
+  float base[3][64];  ///< the base colour
+};
+
 /// The SIMD form (lit_simd.cpp); its colours are opaque. Returns false where it has none for
 /// `model`.
 bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
                     const VisibleBlock& block, BlockColors& colors) noexcept;
+/// The same of what others have found; alpha is not set.
+bool light_lit_simd(Isa isa, LitModel model, const ViewRays& rays, const VisibleBlock& block,
+                    const LitBlock& surface, BlockColors& colors) noexcept;
 
 }  // namespace rastrum::raster

@@ -13,6 +13,7 @@
 #include <hwy/highway.h>
 
 #include <bit>
+#include <type_traits>
 
 #include <rastrum/raster/kernels/lanes-inl.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
@@ -80,12 +81,6 @@ HWY_INLINE std::uint32_t same_triangle(const std::uint64_t* keys, std::uint64_t 
   return same;
 }
 
-/// What the lighting of a block needs, by sample.
-struct BlockSurface {
-  HWY_ALIGN float n[3][64];
-  HWY_ALIGN float base[3][64];
-};
-
 HWY_INLINE void store(const V3& v, float (&to)[3][64], std::size_t at) {
   const F32 d;
   hn::Store(v.x, d, to[0] + at);
@@ -100,7 +95,7 @@ HWY_INLINE V3 load(const float (&from)[3][64], std::size_t at) {
 /// Normals (not normalized) and colours of a row, each triangle's blended into its samples.
 HWY_INLINE void interpolate_row(const LitScene& scene, const FrameGeometry& frame,
                                 const VisibleBlock& block, std::size_t first, std::uint32_t rest,
-                                bool wants_normals, bool wants_colors, BlockSurface& surface) {
+                                bool wants_normals, bool wants_colors, LitBlock& surface) {
   const F32 d;
   KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
   const std::uint64_t* keys = block.keys + first;
@@ -120,53 +115,75 @@ HWY_INLINE void interpolate_row(const LitScene& scene, const FrameGeometry& fram
   if (wants_colors) store(base, surface.base, first);
 }
 
-/// Two loops: a row's lighting is one long chain of square roots and divisions, and the processor
-/// overlaps the chains of several rows only where little else stands between them.
+/// Lights what `surface` holds; without `colored` it has the default base colour.
 template <LitModel kModel>
-void shade_block(const LitScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
-                 BlockColors& colors) {
+void light_block(const ViewRays& rays, const VisibleBlock& block, const LitBlock& surface,
+                 bool colored, BlockColors& colors) {
   const F32 d;
-  constexpr bool kNormals = kModel != LitModel::flat;
   constexpr std::uint64_t kRow = (1U << kLanes) - 1;
-  const bool colored = kModel != LitModel::normal && scene.colored;
-  BlockSurface surface;
-  if (kNormals || colored)
-    for (std::size_t first = 0; first < 64; first += kLanes)
-      if (const std::uint64_t row = block.covered >> first & kRow; row != 0)
-        interpolate_row(scene, frame, block, first, static_cast<std::uint32_t>(row), kNormals,
-                        colored, surface);
-
   V3 base = set(kDefaultBase);
   for (std::size_t first = 0; first < 64; first += kLanes) {
     if ((block.covered >> first & kRow) == 0) continue;
     if (colored) base = load(surface.base, first);
-    const V3 n = kNormals ? load(surface.n, first) : base;
+    const V3 n = kModel != LitModel::flat ? load(surface.n, first) : base;
     const Row row(block, first);
-    const V3 color = light(kModel, scene.rays, row.px(), row.py(), n, base);
+    const V3 color = light(kModel, rays, row.px(), row.py(), n, base);
     hn::Store(color.x, d, colors.r + first);
     hn::Store(color.y, d, colors.g + first);
     hn::Store(color.z, d, colors.b + first);
   }
 }
 
-bool shade(LitModel model, const LitScene& scene, const FrameGeometry& frame,
-           const VisibleBlock& block, BlockColors& colors) noexcept {
+/// Two loops: a row's lighting is one long chain of square roots and divisions, and the processor
+/// overlaps the chains of several rows only where little else stands between them.
+template <LitModel kModel>
+void shade_block(const LitScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
+                 BlockColors& colors) {
+  constexpr bool kNormals = kModel != LitModel::flat;
+  constexpr std::uint64_t kRow = (1U << kLanes) - 1;
+  const bool colored = kModel != LitModel::normal && scene.colored;
+  LitBlock surface;
+  if (kNormals || colored)
+    for (std::size_t first = 0; first < 64; first += kLanes)
+      if (const std::uint64_t row = block.covered >> first & kRow; row != 0)
+        interpolate_row(scene, frame, block, first, static_cast<std::uint32_t>(row), kNormals,
+                        colored, surface);
+  light_block<kModel>(scene.rays, block, surface, colored, colors);
+}
+
+/// Calls use(constant of the model); returns whether it is one that lanes have.
+template <class Use>
+HWY_INLINE bool with_model(LitModel model, const Use& use) {
   switch (model) {
     case LitModel::flat:
-      shade_block<LitModel::flat>(scene, frame, block, colors);
+      use(std::integral_constant<LitModel, LitModel::flat>{});
       return true;
     case LitModel::normal:
-      shade_block<LitModel::normal>(scene, frame, block, colors);
+      use(std::integral_constant<LitModel, LitModel::normal>{});
       return true;
     case LitModel::lambert:
-      shade_block<LitModel::lambert>(scene, frame, block, colors);
+      use(std::integral_constant<LitModel, LitModel::lambert>{});
       return true;
     case LitModel::phong:
-      shade_block<LitModel::phong>(scene, frame, block, colors);
+      use(std::integral_constant<LitModel, LitModel::phong>{});
       return true;
     default:
       return false;
   }
+}
+
+bool shade(LitModel model, const LitScene& scene, const FrameGeometry& frame,
+           const VisibleBlock& block, BlockColors& colors) noexcept {
+  return with_model(model, [&](auto m) HWY_ATTR {
+    shade_block<decltype(m)::value>(scene, frame, block, colors);
+  });
+}
+
+bool light_all(LitModel model, const ViewRays& rays, const VisibleBlock& block,
+               const LitBlock& surface, BlockColors& colors) noexcept {
+  return with_model(model, [&](auto m) HWY_ATTR {
+    light_block<decltype(m)::value>(rays, block, surface, true, colors);
+  });
 }
 
 }  // namespace
@@ -187,6 +204,15 @@ bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameG
   static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade, nullptr);
   const Shade shade = kShade[static_cast<std::size_t>(isa)];
   return shade != nullptr && shade(model, scene, frame, block, colors);
+}
+
+bool light_lit_simd(Isa isa, LitModel model, const ViewRays& rays, const VisibleBlock& block,
+                    const LitBlock& surface, BlockColors& colors) noexcept {
+  using Light =
+      bool (*)(LitModel, const ViewRays&, const VisibleBlock&, const LitBlock&, BlockColors&);
+  static constexpr Light kLights[] = RASTRUM_BY_ISA(light_all, nullptr);
+  const Light light = kLights[static_cast<std::size_t>(isa)];
+  return light != nullptr && light(model, rays, block, surface, colors);
 }
 
 }  // namespace rastrum::raster

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/shade/lit_scalar.hpp>
 #include <rastrum/raster/shade/material_scalar.hpp>
+#include <rastrum/raster/shade/quadric_lanes.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -43,8 +45,16 @@ struct QuadricShader::Kept {
 };
 /// Those that were seen last, by their ids' low bits.
 struct QuadricShader::KeptQuadrics {
-  static constexpr std::size_t kCount = 64;
+  static constexpr std::size_t kCount = 128;
   Kept kept[kCount];
+  const QuadricStage* stage = nullptr;  ///< that was seen last
+  std::optional<QuadricEye> eye;        ///< its
+
+  const QuadricEye& eye_of(const QuadricStage& of, Viewport viewport) {
+    if (stage != &of) eye.emplace(of, viewport);
+    stage = &of;
+    return *eye;
+  }
 };
 
 QuadricShader::QuadricShader(const QuadricLook& look, std::span<const Material> materials,
@@ -81,14 +91,18 @@ std::size_t QuadricShader::scratch_bytes() const noexcept {
   return sizeof(KeptQuadrics);
 }
 
-void QuadricShader::fetch(const FrameGeometry& frame, std::uint64_t low, Kept& out) const {
+void QuadricShader::fetch(const FrameGeometry& frame, std::uint64_t low, KeptQuadrics* all,
+                          Kept& out) const {
   out.low = low;
   const std::uint64_t id = kIdMask - low;
   const Draw& draw = frame.draw_of(id);
   out.surface = &surfaces_[draw.number];
   const QuadricStage& stage = *out.surface->stage;
   const std::uint64_t primitive = id - draw.first_id;
-  (void)out.quadric.find(stage, primitive, frame.viewport);
+  if (all != nullptr)
+    (void)out.quadric.find(stage, primitive, all->eye_of(stage, frame.viewport));
+  else
+    (void)out.quadric.find(stage, primitive, frame.viewport);
   out.color[0] = out.color[1] = out.surface->base;
   const ArrayView<Vec4>& colors = out.surface->colors;
   if (colors.empty()) return;
@@ -97,22 +111,29 @@ void QuadricShader::fetch(const FrameGeometry& frame, std::uint64_t low, Kept& o
   out.color[1] = colors[ends.second] * out.surface->base;
 }
 
-Vec4 QuadricShader::color(const Kept& k, const FrameGeometry&, std::uint64_t key, float px,
-                          float py, QuadricSurface::Place at) const {
+QuadricShader::Seen QuadricShader::seen(const Kept& k, std::uint64_t key,
+                                        QuadricSurface::Place at) {
   // Which of the two surfaces it is, its depth tells.
   const auto depth = std::bit_cast<float>(static_cast<std::uint32_t>(key >> kIdBits));
   scalar_wide::Surface s = k.quadric.side(false, at);
   if (!s.covered || quadric_depth(k.quadric.quadric, s.e) != depth) s = k.quadric.side(true, at);
   const QuadricPoint point = point_on(k.quadric.shape, k.quadric.point(at, s.e));
-  const Vec4 base = lerp(k.color[0], k.color[1], static_cast<float>(point.along));
-  const Vec3 normal = k.surface->to_world.to_world(Vec3(point.normal));
+  return {lerp(k.color[0], k.color[1], static_cast<float>(point.along)),
+          k.surface->to_world.to_world(Vec3(point.normal))};
+}
+
+float QuadricShader::alpha_of(const Surface& surface, float own) const {
+  if (!look_.blends) return 1;
+  float alpha = surface.opacity;
+  if (surface.material->alpha_mode == AlphaMode::blend) alpha *= own;
+  return clamped_alpha(alpha);
+}
+
+Vec4 QuadricShader::color(const Kept& k, std::uint64_t key, float px, float py,
+                          QuadricSurface::Place at) const {
+  const auto [base, normal] = seen(k, key, at);
   const Material& m = *k.surface->material;
-  float alpha = 1;
-  if (look_.blends) {
-    alpha = k.surface->opacity;
-    if (m.alpha_mode == AlphaMode::blend) alpha *= base.w;
-    alpha = clamped_alpha(alpha);
-  }
+  const float alpha = alpha_of(*k.surface, base.w);
   Vec3 c{base.x, base.y, base.z};
   if (look_.model) {
     c = scalar_lane::light(*look_.model, rays_, px, py, normal, c);
@@ -131,7 +152,7 @@ Vec4 QuadricShader::color(const Kept& k, const FrameGeometry&, std::uint64_t key
 std::uint64_t QuadricShader::test(const FrameGeometry& frame, const Piece& piece,
                                   const Block& block, const ShadingPoints* points) const noexcept {
   Kept k;
-  fetch(frame, piece.low, k);
+  fetch(frame, piece.low, nullptr, k);
   const bool away = (piece.flags & kFacesAway) != 0;
   std::uint64_t kept = 0;
   for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
@@ -148,26 +169,86 @@ std::uint64_t QuadricShader::test(const FrameGeometry& frame, const Piece& piece
   return kept;
 }
 
-bool QuadricShader::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa,
+void QuadricShader::fill(const QuadricLanes& lanes, const Kept& kept, const VisibleBlock& block,
+                         std::uint64_t mask, QuadricBlock& out) {
+  const QuadricKind kind = kept.quadric.shape.kind;
+  if (block.points == nullptr && (kind == QuadricKind::sphere || kind == QuadricKind::hull))
+    return lanes.fill(kept.quadric, kept.surface->to_world.normal_matrix, kept.color, block, mask,
+                      out);
+  for (; mask != 0; mask &= mask - 1) {
+    const int i = std::countr_zero(mask);
+    const Vec2 from_centre =
+        block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
+    const Seen s =
+        seen(kept, block.keys[i],
+             kept.quadric.at(block.x0 + i % kBlockSize, block.y0 + i / kBlockSize, from_centre));
+    const float n[3] = {s.normal.x, s.normal.y, s.normal.z};
+    const float base[3] = {s.base.x, s.base.y, s.base.z};
+    for (int k = 0; k < 3; ++k) {
+      out.lit.n[k][i] = n[k];
+      out.lit.base[k][i] = base[k];
+    }
+    out.alpha[i] = s.base.w;
+  }
+}
+
+bool QuadricShader::shade_lit(const QuadricLanes& lanes, const FrameGeometry& frame,
+                              const VisibleBlock& block, Isa isa, BlockColors& colors) const {
+  KeptQuadrics& all = *static_cast<KeptQuadrics*>(block.scratch);
+  QuadricBlock surface;
+  for (std::uint64_t rest = block.covered; rest != 0;) {
+    const std::uint64_t low = block.keys[std::countr_zero(rest)] & kIdMask;
+    const std::uint64_t same = lanes.samples_of(block.keys, low) & rest;
+    rest &= ~same;
+    Kept& kept = all.kept[low % KeptQuadrics::kCount];
+    if (kept.low != low) fetch(frame, low, &all, kept);
+    fill(lanes, kept, block, same, surface);
+    if (!look_.blends) continue;
+    for (std::uint64_t m = same; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      surface.alpha[i] = alpha_of(*kept.surface, surface.alpha[i]);
+    }
+  }
+  (void)light_lit_simd(isa, *look_.model, rays_, block, surface.lit, colors);
+  if (!look_.blends) return true;
+  bool opaque = true;
+  for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    const float a = surface.alpha[i];
+    opaque &= colors.set(i, {colors.r[i] * a, colors.g[i] * a, colors.b[i] * a, a});
+  }
+  return opaque;
+}
+
+bool QuadricShader::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
                           BlockColors& colors) const noexcept {
+  const QuadricLanes* const lanes = quadric_lanes(isa);
+  if (lanes != nullptr && look_.model && *look_.model != LitModel::wireframe &&
+      *look_.model != LitModel::id)
+    return shade_lit(*lanes, frame, block, isa, colors);
   bool opaque = true;
   KeptQuadrics& all = *static_cast<KeptQuadrics*>(block.scratch);
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const std::uint64_t key = block.keys[i];
     const std::uint64_t low = key & kIdMask;
-    if (look_.model == LitModel::id && !look_.blends) {
-      const Vec3 c = id_color(kIdMask - low);
-      colors.set(i, {c.x, c.y, c.z, 1});
-      continue;
+    if (look_.model == LitModel::id) {
+      const std::uint64_t id = kIdMask - low;
+      const Surface& surface = surfaces_[frame.draw_of(id).number];
+      if (!look_.blends || !surface.has_own_alpha()) {
+        const Vec3 c = id_color(id);
+        const float a = alpha_of(surface, 1);
+        opaque &= colors.set(i, {c.x * a, c.y * a, c.z * a, a});
+        continue;
+      }
     }
     Kept& kept = all.kept[low % KeptQuadrics::kCount];
-    if (kept.low != low) fetch(frame, low, kept);
+    if (kept.low != low) fetch(frame, low, &all, kept);
     const Vec2 from_centre =
         block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
     const int x = block.x0 + i % kBlockSize, y = block.y0 + i / kBlockSize;
     Vec4 c =
-        color(kept, frame, key, static_cast<float>(x) + 0.5F + from_centre.x,
+        color(kept, key, static_cast<float>(x) + 0.5F + from_centre.x,
               static_cast<float>(y) + 0.5F + from_centre.y, kept.quadric.at(x, y, from_centre));
     if (look_.model == LitModel::id) {
       const Vec3 by_id = id_color(kIdMask - low);

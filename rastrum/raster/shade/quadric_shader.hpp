@@ -19,6 +19,9 @@
 
 namespace rastrum::raster {
 
+struct QuadricBlock;
+struct QuadricLanes;
+
 /// How the surfaces of a frame look.
 struct QuadricLook {
   std::optional<LitModel> model;  ///< none: as materials
@@ -53,13 +56,33 @@ class QuadricShader final : public BlockShader, public FragmentTest {
     const Material* material;
     float opacity;           ///< the instance's, the frame's and the material's
     ArrayView<Vec4> colors;  ///< empty: there are none
+
+    /// Whether alpha may change from point to point.
+    [[nodiscard]] bool has_own_alpha() const {
+      return material->alpha_mode == AlphaMode::blend && !(colors.empty() && base.w == 1);
+    }
   };
   struct Kept;
   struct KeptQuadrics;
 
-  void fetch(const FrameGeometry& frame, std::uint64_t low, Kept& out) const;
-  [[nodiscard]] Vec4 color(const Kept& kept, const FrameGeometry& frame, std::uint64_t key,
-                           float px, float py, QuadricSurface::Place at) const;
+  struct Seen {
+    Vec4 base;
+    Vec3 normal;  ///< world space, of any length
+  };
+
+  /// `all`: whose eye is used; null: a new one.
+  void fetch(const FrameGeometry& frame, std::uint64_t low, KeptQuadrics* all, Kept& out) const;
+  [[nodiscard]] static Seen seen(const Kept& kept, std::uint64_t key, QuadricSurface::Place at);
+  /// `own`: the alpha of what is seen.
+  [[nodiscard]] float alpha_of(const Surface& surface, float own) const;
+  [[nodiscard]] Vec4 color(const Kept& kept, std::uint64_t key, float px, float py,
+                           QuadricSurface::Place at) const;
+  /// What is seen of a primitive at the samples `mask` of a block.
+  static void fill(const QuadricLanes& lanes, const Kept& kept, const VisibleBlock& block,
+                   std::uint64_t mask, QuadricBlock& out);
+  /// shade() of the models that lanes have.
+  bool shade_lit(const QuadricLanes& lanes, const FrameGeometry& frame, const VisibleBlock& block,
+                 Isa isa, BlockColors& colors) const;
 
   QuadricLook look_;
   bool linear_ = false;

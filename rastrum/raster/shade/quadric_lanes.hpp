@@ -1,0 +1,33 @@
+// Spheres and tubes under the shaders, several samples of a row at once (quadric_lanes_simd.cpp):
+// the bits are those of QuadricShader's one sample.
+#pragma once
+
+#include <cstdint>
+
+#include <rastrum/frame.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
+#include <rastrum/raster/setup/quadric_surface.hpp>
+#include <rastrum/raster/shade/lit_constants.hpp>
+
+namespace rastrum::raster {
+
+/// What shading wants of the samples of a block.
+struct QuadricBlock {
+  LitBlock lit;
+  alignas(64) float alpha[64];  ///< the surfaces' own
+};
+
+struct QuadricLanes {
+  /// The samples of a block whose keys end in `low`.
+  std::uint64_t (*samples_of)(const std::uint64_t* keys, std::uint64_t low) noexcept;
+  /// Sets what is seen of a sphere or a hull at the samples `mask`, which it has, at the centres of
+  /// their pixels. `to_world`: of normals; `colors`: at the ends of its axis.
+  void (*fill)(const QuadricSurface& surface, const float (&to_world)[3][3],
+               const Vec4 (&colors)[2], const VisibleBlock& block, std::uint64_t mask,
+               QuadricBlock& out) noexcept;
+};
+
+/// Null: that instruction set has none.
+[[nodiscard]] const QuadricLanes* quadric_lanes(Isa isa) noexcept;
+
+}  // namespace rastrum::raster
