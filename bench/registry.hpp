@@ -36,6 +36,7 @@ int run_transparency(std::span<const std::string_view> options);
 int run_transparency_pictures(std::span<const std::string_view> options);
 int run_cuda(std::span<const std::string_view> options);
 int run_spheres(std::span<const std::string_view> options);
+int run_points(std::span<const std::string_view> options);
 int run_tubes(std::span<const std::string_view> options);
 int run_words(std::span<const std::string_view> options);
 

@@ -28,7 +28,8 @@ template <class T>
 }
 
 [[maybe_unused]] void require_sound(const Scene& scene) {
-  for (const Instance& i : scene.instances) require(i.mesh < scene.meshes.size());
+  for (const Instance& i : scene.instances)
+    require(i.geometry ? *i.geometry < scene.geometries.size() : i.mesh < scene.meshes.size());
   for (const Mesh& m : scene.meshes) {
     require(m.indices.size() % 3 == 0);
     for (const std::uint32_t i : m.indices) require(i < m.positions.size());

@@ -187,6 +187,11 @@ class ArrayView {
     return reader_ != nullptr && is_float64();
   }
 
+  /// Where value i lies, for who asks the cache for it.
+  [[nodiscard]] const void* address(std::size_t i) const {
+    return place(i);
+  }
+
   /// Values first to first + n. Require !is_packed(), as do the others.
   void read(std::size_t first, std::size_t n, T* out) const {
     reader_->run(place(first), stride_, n, out);

@@ -18,7 +18,8 @@ namespace rastrum::io {
 
 class AtomicFile;
 
-/// Reads .obj (with .mtl), .ply, .stl, .off, .gltf or .glb (by extension, any case).
+/// Reads .obj (with .mtl), .ply, .stl, .off, .gltf or .glb (by extension, any case). A PLY file
+/// without faces is a cloud of points; glTF and OBJ files may have points and lines beside meshes.
 /// Vertices with non-finite coordinates are kept (the renderer drops and counts their triangles);
 /// degenerate triangles keep their numbers. Normals are the file's or none.
 /// Throws Error{not_found | bad_format | unsupported | io} naming the file and the place in it.
@@ -57,6 +58,8 @@ void write_npy(const std::filesystem::path& file, ImageView<const std::int32_t> 
 /// that share the positions' indices (those with indices of their own are left out). Throws
 /// Error{invalid_argument} for an index out of range or fewer values than positions.
 void write_ply(const std::filesystem::path& file, const Mesh& mesh);
+/// The same of points: a file without faces.
+void write_ply(const std::filesystem::path& file, const Points& points);
 
 /// The same into a file that the caller has begun and commits: together with others, or to standard
 /// output (atomic_file.hpp).
@@ -71,6 +74,7 @@ void write_npy(AtomicFile& out, ImageView<const float> image);
 void write_npy(AtomicFile& out, ImageView<const std::int64_t> image);
 void write_npy(AtomicFile& out, ImageView<const std::int32_t> image);
 void write_ply(AtomicFile& out, const Mesh& mesh);
+void write_ply(AtomicFile& out, const Points& points);
 
 // Whole or absent: a file is written under a temporary name in the same directory and renamed.
 // Several become visible together: all are written before the first is renamed.

@@ -14,6 +14,7 @@
 #include <rastrum/mat.hpp>
 #include <rastrum/mesh.hpp>
 #include <rastrum/motion.hpp>
+#include <rastrum/points_and_lines.hpp>
 #include <rastrum/surfaces.hpp>
 #include <rastrum/vec.hpp>
 
@@ -72,10 +73,16 @@ struct ClipPlane {
 inline constexpr std::size_t kMaxClipPlanes = 8;
 
 /// What an instance draws, over the caller's arrays.
-using GeometryView = std::variant<MeshView, SpheresView, CylindersView, TubesView, DiscsView>;
+using GeometryView =
+    std::variant<MeshView, PointsView, LinesView, SpheresView, CylindersView, TubesView, DiscsView>;
 
-/// Triangles, spheres, cylinders, segments or discs: what has an id. O(1).
+/// Triangles, points, segments, spheres, cylinders or discs: what has an id. O(1).
 [[nodiscard]] std::uint64_t primitive_count(const GeometryView& geometry);
+
+[[nodiscard]] inline bool is_points_or_lines(const GeometryView& geometry) {
+  return std::holds_alternative<PointsView>(geometry) ||
+         std::holds_alternative<LinesView>(geometry);
+}
 
 /// A geometry placed in the world, with a look of its own. Ids count the primitives of the
 /// instances in order.
@@ -110,14 +117,22 @@ struct SceneView {
   std::span<const Texture> textures{};
 };
 
+/// What is no mesh, with arrays of its own.
+using Geometry = std::variant<Points, Lines>;
+[[nodiscard]] GeometryView view(const Geometry& geometry);
+
 struct Instance {
   std::uint32_t mesh = 0;  ///< index into Scene::meshes
   Mat4d object_to_world = Mat4d::identity();
+  /// Index into Scene::geometries: what it is instead of a mesh.
+  std::optional<std::uint32_t> geometry{};
 };
 
-/// What readers return: meshes, instances in order of submission, materials, textures, cameras.
+/// What readers return: meshes and other geometries, instances in order of submission, materials,
+/// textures, cameras.
 struct Scene {
   std::vector<Mesh> meshes{};
+  std::vector<Geometry> geometries{};
   std::vector<Instance> instances{};
   std::vector<Material> materials{};  ///< empty: the file has none
   std::vector<Texture> textures{};
@@ -126,24 +141,28 @@ struct Scene {
   /// What a reader left out or found odd, a sentence each; nothing is lost silently.
   std::vector<std::string> warnings{};
 
-  /// Appends `other` behind this scene: indices into meshes, materials and textures are shifted.
+  /// Appends `other` behind this scene: indices into meshes, geometries, materials and textures are
+  /// shifted.
   /// Where one of the two has no materials it is given plain ones.
   void append(Scene other);
   /// Moves everything but the cameras: `to_world` lies before all matrices of instances.
   void place(const Mat4d& to_world);
-  /// Throws Error{invalid_argument} where an instance is of no mesh.
+  /// Of the meshes of all instances. Throws Error{invalid_argument} where an instance is of a mesh,
+  /// or geometry, that is none.
   [[nodiscard]] std::uint64_t triangle_count() const;
+  /// What has an id: those, and the primitives of other geometries. Throws likewise.
+  [[nodiscard]] std::uint64_t primitive_count() const;
 };
 
-/// Gives the meshes of a scene without materials some that look as if there were none: the colour
-/// of the plain shaders, or the mesh's own colours, which blend.
+/// Gives the meshes and geometries of a scene without materials some that look as if there were
+/// none: the colour of the plain shaders, or their own colours, which blend.
 void add_plain_materials(Scene& scene);
 
 /// The borrowed form of a scene; keeps the instance list that the span points to. The scene must
 /// outlive it.
 class SceneBinding {
  public:
-  /// Throws Error{invalid_argument} where an instance is of no mesh.
+  /// Throws Error{invalid_argument} where an instance is of a mesh, or geometry, that is none.
   explicit SceneBinding(const Scene& scene);
   [[nodiscard]] SceneView view() const { return view_; }
 
@@ -158,7 +177,7 @@ struct Bounds {
   std::uint64_t vertices_in_use = 0;  ///< 0: the box is meaningless
 };
 
-/// Bounds, in world space, of the finite vertices that triangles use. O(vertices + triangles).
+/// Bounds, in world space, of the finite vertices that primitives use. O(vertices + primitives).
 /// Throws Error{invalid_argument} for an index out of range, as fit_camera.
 [[nodiscard]] Bounds bounds(const SceneView& scene);
 

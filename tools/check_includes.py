@@ -31,7 +31,7 @@ MAY_INCLUDE = {
 PUBLIC = {
     "core": {"array", "config", "digest", "error", "image", "mat", "transform", "vec"},
     "parallel": {"device", "stop"},
-    "scene": {"camera", "fit", "mesh", "motion", "scene", "shapes", "surfaces"},
+    "scene": {"camera", "fit", "mesh", "motion", "points_and_lines", "scene", "shapes", "surfaces"},
     "raster": {"frame", "primitives", "program", "tuning"},
     "terrain": {"terrain", "terrain_light"},
     "io": {"io"},

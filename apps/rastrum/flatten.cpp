@@ -1,8 +1,10 @@
 #include "flatten.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <utility>
+#include <variant>
 
 #include <rastrum/error.hpp>
 
@@ -36,10 +38,32 @@ bool is_identity(const Mat4d& a) {
   return true;
 }
 
-void place(Mesh& mesh, const Mat4d& a) {
+void place(std::vector<Vec3>& positions, std::vector<Vec3>& normals, const Mat4d& a) {
   if (is_identity(a)) return;
-  for (Vec3& p : mesh.positions) p = transform_position(a, p);
-  for (Vec3& n : mesh.normals.values) n = transform_normal(a, n);
+  for (Vec3& p : positions) p = transform_position(a, p);
+  for (Vec3& n : normals) n = transform_normal(a, n);
+}
+void place(Mesh& mesh, const Mat4d& a) {
+  place(mesh.positions, mesh.normals.values, a);
+}
+void place(Points& points, const Mat4d& a) {
+  place(points.positions, points.normals, a);
+}
+
+/// Of their attributes those that all have.
+Points joined(const std::vector<Points>& clouds) {
+  Points all;
+  const auto have = [&](auto member) {
+    return std::ranges::none_of(clouds, [&](const Points& p) { return (p.*member).empty(); });
+  };
+  const auto join = [&](auto member) {
+    for (const Points& p : clouds)
+      (all.*member).insert((all.*member).end(), (p.*member).begin(), (p.*member).end());
+  };
+  join(&Points::positions);
+  if (have(&Points::normals)) join(&Points::normals);
+  if (have(&Points::colors)) join(&Points::colors);
+  return all;
 }
 
 /// Drops an attribute that the positions' indices cannot reach, or that the meshes before this one
@@ -88,7 +112,18 @@ void append(Mesh& into, Mesh& from, Kept& kept, Kept& whole) {
 Flattened flatten(Scene scene) {
   Flattened flat{{}, std::move(scene.warnings)};
   Kept kept, whole;
+  std::vector<Points> clouds;
+  bool lines = false;
   for (const Instance& instance : scene.instances) {
+    if (instance.geometry) {
+      const Geometry& geometry = scene.geometries[*instance.geometry];
+      lines |= std::holds_alternative<Lines>(geometry);
+      if (const auto* const points = std::get_if<Points>(&geometry)) {
+        clouds.push_back(*points);
+        place(clouds.back(), instance.object_to_world);
+      }
+      continue;
+    }
     Mesh mesh = scene.meshes[instance.mesh];
     place(mesh, instance.object_to_world);
     append(flat.mesh, mesh, kept, whole);
@@ -99,6 +134,11 @@ Flattened flatten(Scene scene) {
                               " are left out: some mesh has none, or has them numbered apart from "
                               "the positions, which PLY cannot say");
   };
+  if (lines) flat.warnings.emplace_back("the lines are left out: PLY has none");
+  if (!clouds.empty() && flat.mesh.triangle_count() != 0)
+    flat.warnings.emplace_back("the points are left out: a PLY file with faces has none");
+  else
+    flat.points = joined(clouds);
   tell(whole.normals, "normals");
   tell(whole.texcoords, "texture coordinates");
   tell(whole.colors, "colours");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <utility>
+#include <variant>
 
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
@@ -46,8 +47,11 @@ Vec4 linear(Vec4 display) {
 
 /// A colour takes the place of the base colours, their textures and the vertex colours.
 void paint(Scene& scene, const Look& look) {
-  if (look.color)
+  if (look.color) {
     for (Mesh& mesh : scene.meshes) mesh.colors = {};
+    for (Geometry& geometry : scene.geometries)
+      std::visit([](auto& g) { g.colors = {}; }, geometry);
+  }
   if (scene.materials.empty()) add_plain_materials(scene);
   double opacity = look.opacity;
   if (look.color) opacity *= double{look.color->w};
@@ -151,7 +155,7 @@ Inputs load_inputs(const std::vector<std::string>& inputs, const NormalOptions& 
   }
   std::uint64_t first_id = 0;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const std::uint64_t triangles = scenes[i].triangle_count();
+    const std::uint64_t triangles = scenes[i].primitive_count();
     all.parts.push_back({inputs[i], first_id, triangles});
     first_id += triangles;
     all.scene.append(std::move(scenes[i]));
@@ -161,6 +165,13 @@ Inputs load_inputs(const std::vector<std::string>& inputs, const NormalOptions& 
     for (Mesh& mesh : all.scene.meshes) choose_normals(mesh, normals);
   });
   return all;
+}
+
+void set_sizes(Scene& scene, const PixelSizes& sizes) {
+  for (Geometry& geometry : scene.geometries) {
+    if (auto* const points = std::get_if<Points>(&geometry)) points->point_size = sizes.point;
+    if (auto* const lines = std::get_if<Lines>(&geometry)) lines->line_width = sizes.line;
+  }
 }
 
 std::size_t animation_count(const Scene& scene) {

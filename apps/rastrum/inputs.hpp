@@ -27,7 +27,12 @@ struct NormalOptions {
   double crease_deg = 40;  ///< 180: as Normals::vertex
 };
 
-/// An input's part of the scene.
+/// Of points and lines, px.
+struct PixelSizes {
+  float point = 1, line = 1;
+};
+
+/// An input's part of the scene. Points and segments of lines have ids as triangles do.
 struct InputPart {
   std::string name;  ///< as it was given
   std::uint64_t first_id = 0, triangles = 0;
@@ -58,6 +63,9 @@ void check_inputs(const std::vector<std::string>& inputs, std::string_view forma
 [[nodiscard]] Inputs load_inputs(const std::vector<std::string>& inputs,
                                  const NormalOptions& normals, Timeline& timeline,
                                  Progress& progress, std::string_view format = {});
+
+/// Gives all points and lines of a scene their sizes.
+void set_sizes(Scene& scene, const PixelSizes& sizes);
 
 /// How many animations the input with the most has.
 [[nodiscard]] std::size_t animation_count(const Scene& scene);

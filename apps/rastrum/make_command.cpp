@@ -53,9 +53,15 @@ int run(const MakeArguments& a) {
   if (!a.quiet)
     for (const std::string& w : flat.warnings) warn(w);
   OutputFiles files;
-  io::write_ply(files.begin(a.output), flat.mesh);
+  const bool is_cloud = !flat.points.positions.empty();
+  if (is_cloud)
+    io::write_ply(files.begin(a.output), flat.points);
+  else
+    io::write_ply(files.begin(a.output), flat.mesh);
   files.commit();
-  if (!a.quiet)
+  if (!a.quiet && is_cloud)
+    std::fprintf(stderr, "%s: %zu points\n", a.output.name().c_str(), flat.points.positions.size());
+  else if (!a.quiet)
     std::fprintf(stderr, "%s: %zu vertices, %zu triangles\n", a.output.name().c_str(),
                  flat.mesh.positions.size(), flat.mesh.triangle_count());
   return 0;

@@ -194,6 +194,8 @@ Emptiness why_empty(const FrameStats& frame, const FrameOptions& options, const 
   for (std::size_t f = 0; f < kFates; ++f)
     if (counts[f] != 0) order.push_back(static_cast<Fate>(f));
   std::ranges::stable_sort(order, std::ranges::greater{}, [&](Fate f) { return counts[f]; });
+  if (order.empty())  // the places of points, lines and exact surfaces are not looked at
+    return {"nothing of it lies in the view, or faces the camera", "--fit shows all"};
   const std::uint64_t input = frame.triangles.input;
   Emptiness why;
   if (order.size() == 1 && input == 1)

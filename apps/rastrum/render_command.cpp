@@ -454,6 +454,7 @@ int run(RenderArguments& a) {
 
   const double load_begin = timeline.now_ms();
   Inputs inputs = load_inputs(a.inputs, a.normals, timeline, progress, a.format);
+  set_sizes(inputs.scene, a.sizes);
   const Scene& scene = inputs.scene;
   const double load_ms = timeline.now_ms() - load_begin;
   if (!a.quiet && !scene.warnings.empty()) {

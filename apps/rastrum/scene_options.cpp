@@ -5,6 +5,7 @@
 
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
+#include <rastrum/primitives.hpp>
 #include <rastrum/shapes.hpp>
 
 #include "transparency.hpp"
@@ -89,6 +90,19 @@ void add_shading_options(Parser& app, SceneArguments& a, const char* group) {
           throw UsageError("--crease", "must lie in 0 to 180 degrees, got '" + s + "'");
       })
       ->group(group);
+  const auto add_size = [&](const char* option, float most, const char* what, float& size) {
+    add(app, option, "PX", what, [option, most, &size](const std::string& s) {
+      size = static_cast<float>(parse_number(option, s));
+      if (!(size > 0 && size <= most))
+        throw UsageError(option, "must be > 0 and at most " +
+                                     std::to_string(static_cast<int>(most)) + " px, got '" + s +
+                                     "'");
+    })->group(group);
+  };
+  add_size("--point-size", raster::kMaxPointSize, "side of the points of files, px (1)",
+           a.sizes.point);
+  add_size("--line-width", raster::kMaxLineWidth, "width of the lines of files, px (1)",
+           a.sizes.line);
   add(app, "--cull", "NAME",
       "none, back, front; counter-clockwise is front; with none, the material shader still leaves "
       "out the back of single-sided glTF materials (none)",

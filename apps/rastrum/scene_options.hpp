@@ -17,6 +17,7 @@ struct SceneArguments {
   std::string format;  ///< of inputs whose names do not say
   family::Options render;
   NormalOptions normals;
+  PixelSizes sizes;
   bool crease_given = false;
   ViewOptions view;
   bool fit = false;

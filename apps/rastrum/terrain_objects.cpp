@@ -156,6 +156,7 @@ TerrainObjects::TerrainObjects(const TerrainObjectArguments& a, const TerrainLoo
       has_materials = true;
     } else {
       Inputs inputs = load_inputs({object.input}, a.scene.normals, timeline, progress);
+      set_sizes(inputs.scene, a.scene.sizes);
       has_materials |= inputs.has_materials;
       scene_.append(std::move(inputs.scene));
     }

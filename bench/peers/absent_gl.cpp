@@ -26,6 +26,7 @@ std::string GlPeer::description() const {
   return {};
 }
 void GlPeer::set_mesh(const MeshView&) {}
+void GlPeer::set_points(std::span<const Vec3>) {}
 void GlPeer::set_view(const Camera&, int, int) {}
 void GlPeer::draw_phong() {}
 void GlPeer::draw_ids() {}

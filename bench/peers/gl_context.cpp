@@ -184,12 +184,24 @@ void GlContext::set_mesh(const MeshView& mesh) {
   gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, bytes(indices.size_bytes()), indices.data(),
                 GL_STATIC_DRAW);
   index_count_ = static_cast<GLsizei>(indices.size());
+  point_count_ = 0;
   gl.EnableVertexAttribArray(0);
   gl.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Vec3), nullptr);
   gl.EnableVertexAttribArray(1);
   gl.VertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(Vec3),
                          reinterpret_cast<const void*>(positions));
   check("set_mesh");
+}
+
+void GlContext::set_points(std::span<const Vec3> positions) {
+  gl.BindBuffer(GL_ARRAY_BUFFER, buffers_[0]);
+  gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(positions.size_bytes()), positions.data(),
+                GL_STATIC_DRAW);
+  gl.EnableVertexAttribArray(0);
+  gl.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Vec3), nullptr);
+  gl.VertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(Vec3), nullptr);
+  point_count_ = static_cast<GLsizei>(positions.size());
+  check("set_points");
 }
 
 bool GlContext::set_view(const Camera& camera, int width, int height) {
@@ -212,6 +224,7 @@ void GlContext::draw_mesh(const GlProgram& p) const {
   gl.Viewport(0, 0, width_, height_);
   gl.Uniform4fv(p.rows, 4, &world_to_clip_.m[0][0]);
   if (p.eye >= 0) gl.Uniform4fv(p.eye, 1, &eye_.x);
+  if (point_count_ != 0) return gl.DrawArrays(GL_POINTS, 0, point_count_);
   gl.DrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
 }
 

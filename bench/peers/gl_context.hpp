@@ -4,6 +4,7 @@
 
 #include <EGL/egl.h>
 
+#include <span>
 #include <string>
 
 #include <rastrum/camera.hpp>
@@ -50,13 +51,15 @@ class GlContext {
   /// Copies positions, indices and the normals that share the positions' indices into static
   /// buffers. Throws Error{invalid_argument} where the normals have indices of their own.
   void set_mesh(const MeshView& mesh);
+  /// Points of one pixel instead of a mesh; programs get no normals.
+  void set_points(std::span<const Vec3> positions);
   /// Takes `world_to_clip(camera, width, height)`, rounded to float32. Throws Error{unsupported}
   /// where the driver has no framebuffer that large. Returns whether the size is another now.
   bool set_view(const Camera& camera, int width, int height);
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
 
-  /// Draws the mesh into the bound framebuffer.
+  /// Draws the mesh, or points, into the bound framebuffer.
   void draw_mesh(const GlProgram& program) const;
 
  private:
@@ -68,6 +71,7 @@ class GlContext {
   EGLContext context_ = EGL_NO_CONTEXT;
   GLuint buffers_[2] = {};  // vertices, indices
   GLsizei index_count_ = 0;
+  GLsizei point_count_ = 0;  ///< 0: a mesh is drawn
   int width_ = 0, height_ = 0;
   Mat4 world_to_clip_{};
   Vec4 eye_{};

@@ -112,6 +112,10 @@ void GlPeer::set_mesh(const MeshView& mesh) {
   impl_->context.set_mesh(mesh);
 }
 
+void GlPeer::set_points(std::span<const Vec3> positions) {
+  impl_->context.set_points(positions);
+}
+
 void GlPeer::set_view(const Camera& camera, int width, int height) {
   Impl& s = *impl_;
   if (!s.context.set_view(camera, width, height)) return;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
 #include <rastrum/camera.hpp>
@@ -32,6 +33,8 @@ class GlPeer {
   /// Copies positions, indices and the normals that share the positions' indices into static
   /// buffers. Throws Error{invalid_argument} where the normals have indices of their own.
   void set_mesh(const MeshView& mesh);
+  /// Points of one pixel instead of a mesh, whose ids `draw_ids` draws.
+  void set_points(std::span<const Vec3> positions);
   /// Takes `world_to_clip(camera, width, height)`, rounded to float32, and a framebuffer of that
   /// size. Throws Error{unsupported} where the driver has no framebuffer that large.
   void set_view(const Camera& camera, int width, int height);

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <rastrum/io/gltf_internal.hpp>
@@ -195,23 +196,29 @@ class GltfReader {
 
   /// A primitive, and what moves its vertices; null: nothing does.
   struct Part {
-    Mesh mesh;
+    std::variant<Mesh, Geometry> drawn;
     std::shared_ptr<const Rig::Shape> shape;
   };
   std::optional<Part> read_part(const Json& primitive, const Json& owner,
                                 const gltf::TextureUse& use, std::vector<std::string>& warnings) {
-    if (!gltf::holds_triangles(primitive, document_, warnings)) return std::nullopt;
+    if (!gltf::has_positions(primitive, warnings)) return std::nullopt;
     const gltf::PrimitiveData data(primitive, document_, buffers_);
+    if (gltf::is_points_or_lines(primitive)) {
+      auto geometry = gltf::read_points_or_lines(primitive, data, warnings);
+      if (!geometry) return std::nullopt;
+      return Part{*std::move(geometry), nullptr};
+    }
     auto mesh = gltf::read_primitive(primitive, data, use, warnings);
     if (!mesh) return std::nullopt;
     auto shape = gltf::read_shape(primitive, data, document_, owner, *mesh);
     return Part{*std::move(mesh), std::move(shape)};
   }
 
-  /// A primitive in the scene. `shape` is Rig's, or none.
+  /// A primitive in the scene, a mesh or another geometry. `shape` is Rig's, or none.
   struct Drawn {
     std::uint32_t mesh = 0;
     std::int32_t shape = Rig::kNone;
+    std::optional<std::uint32_t> geometry{};
   };
   const std::vector<Drawn>& drawn(std::size_t index) {
     const auto [at, is_new] = drawn_.try_emplace(index);
@@ -223,10 +230,20 @@ class GltfReader {
       if (const auto m = p.get("material")) material = m->count();
       auto part = read_part(p, owner, materials_.texture_use(material), scene_.warnings);
       if (!part) return;
-      part->mesh.name = owner.string("name", "");
-      part->mesh.material = materials_.use(material);
+      const auto name = [&](auto& g) {
+        g.name = owner.string("name", "");
+        g.material = materials_.use(material);
+      };
+      if (auto* const geometry = std::get_if<Geometry>(&part->drawn)) {
+        std::visit(name, *geometry);
+        all.push_back({0, Rig::kNone, size32(scene_.geometries)});
+        scene_.geometries.push_back(std::move(*geometry));
+        return;
+      }
+      Mesh& mesh = std::get<Mesh>(part->drawn);
+      name(mesh);
       Drawn d{size32(scene_.meshes)};
-      scene_.meshes.push_back(std::move(part->mesh));
+      scene_.meshes.push_back(std::move(mesh));
       if (part->shape) {
         d.shape = static_cast<std::int32_t>(rig_.shapes.size());
         rig_.shapes.push_back(std::move(part->shape));
@@ -246,6 +263,14 @@ class GltfReader {
   /// Instances share the mesh of a primitive, but where they are deformed apart.
   void place(std::size_t index, const Json& node) {
     for (const Drawn& d : drawn(node["mesh"].count())) {
+      if (d.geometry) {
+        if (node.get("skin"))
+          scene_.warnings.push_back(node["skin"].path() +
+                                    ": points and lines are drawn without their skin");
+        rig_.placed.push_back({size32(scene_.instances), static_cast<std::uint32_t>(index)});
+        scene_.instances.push_back({0, to_world_[index], d.geometry});
+        continue;
+      }
       const Cause cause = cause_of(index, node, d);
       const auto [at, is_new] = posed_.try_emplace({d.mesh, cause}, d.mesh);
       if (is_new) {

@@ -126,15 +126,15 @@ class Materials {
   std::map<std::size_t, std::int32_t> textures_, images_;  ///< glTF's index to ours
 };
 
-/// Whether a primitive is one that read_primitive can make something of; else a warning says why
-/// not.
-[[nodiscard]] bool holds_triangles(const Json& primitive, const Json& document,
-                                   std::vector<std::string>& warnings);
+/// Whether a primitive has positions; else a warning says that it is left out.
+[[nodiscard]] bool has_positions(const Json& primitive, std::vector<std::string>& warnings);
+/// Whether it is of points or lines (modes 0 to 3), not of triangles.
+[[nodiscard]] bool is_points_or_lines(const Json& primitive);
 
 /// The attributes and indices of a primitive, wherever its file keeps them.
 class PrimitiveData {
  public:
-  /// The primitive has positions (holds_triangles).
+  /// The primitive has positions.
   PrimitiveData(const Json& primitive, const Json& document, Buffers& buffers);
 
   [[nodiscard]] std::size_t vertices() const { return vertices_; }
@@ -169,6 +169,12 @@ extern template std::vector<Vec3> PrimitiveData::read(const Json&) const;
 [[nodiscard]] std::optional<Mesh> read_primitive(const Json& primitive, const PrimitiveData& data,
                                                  const TextureUse& use,
                                                  std::vector<std::string>& warnings);
+
+/// One of points or lines; nullopt, with a warning, where it holds none. Its material is left
+/// alone.
+[[nodiscard]] std::optional<Geometry> read_points_or_lines(const Json& primitive,
+                                                           const PrimitiveData& data,
+                                                           std::vector<std::string>& warnings);
 
 /// What moves the vertices of `mesh`, which was read from a primitive of the document's `owner`;
 /// null: nothing does.

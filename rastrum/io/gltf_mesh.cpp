@@ -1,4 +1,5 @@
-// One glTF primitive as a mesh: its accessors, its triangles (lists, strips, fans).
+// One glTF primitive as a mesh, points or lines: its accessors, its triangles (lists, strips,
+// fans).
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -47,20 +48,14 @@ bool is_whole(const Json& primitive, const Json& accessors) {
 
 }  // namespace
 
-bool holds_triangles(const Json& primitive, const Json& document,
-                     std::vector<std::string>& warnings) {
-  const auto position = primitive["attributes"].get("POSITION");
-  if (!position) {
-    warnings.push_back(primitive.path() + " has no positions; it is left out");
-    return false;
-  }
-  const std::size_t mode = primitive.count("mode", 4);
-  if (mode >= 4) return true;
-  const Json corners = primitive.get("indices").value_or(*position);
-  const std::size_t n = document["accessors"].at(corners.count())["count"].count();
-  warnings.push_back(primitive.path() + " holds " + (mode == 0 ? "points" : "lines") + " (" +
-                     std::to_string(n) + " indices); they are left out");
+bool has_positions(const Json& primitive, std::vector<std::string>& warnings) {
+  if (primitive["attributes"].get("POSITION")) return true;
+  warnings.push_back(primitive.path() + " has no positions; it is left out");
   return false;
+}
+
+bool is_points_or_lines(const Json& primitive) {
+  return primitive.count("mode", 4) < 4;
 }
 
 PrimitiveData::PrimitiveData(const Json& primitive, const Json& document, Buffers& buffers)
@@ -160,6 +155,56 @@ std::optional<Mesh> read_primitive(const Json& primitive, const PrimitiveData& d
     mesh.indices.resize(mesh.indices.size() / 3 * 3);
   }
   return mesh;
+}
+
+namespace {
+
+Points read_points(const PrimitiveData& data, const std::vector<std::uint32_t>& corners) {
+  const auto values = [&](auto all) {
+    if (corners.empty()) return all;
+    decltype(all) chosen;
+    chosen.reserve(corners.size());
+    for (const std::uint32_t c : corners) chosen.push_back(all[c]);
+    return chosen;
+  };
+  Points points;
+  points.positions = values(data.read<Vec3>("POSITION"));
+  if (data.attribute("NORMAL")) points.normals = values(data.read<Vec3>("NORMAL"));
+  if (data.attribute("COLOR_0")) points.colors = values(data.read<Vec4>("COLOR_0"));
+  return points;
+}
+
+}  // namespace
+
+std::optional<Geometry> read_points_or_lines(const Json& primitive, const PrimitiveData& data,
+                                             std::vector<std::string>& warnings) {
+  enum Mode : std::size_t { points, segments, loop, strip };
+  const std::size_t mode = primitive.count("mode", 4);
+  if (primitive.get("targets"))
+    warnings.push_back(primitive.path() +
+                       " holds points or lines, whose morph targets are not "
+                       "applied");
+  std::vector<std::uint32_t> corners = data.indices();
+  const bool has_indices = primitive.get("indices").has_value();
+  const std::size_t n = has_indices ? corners.size() : data.vertices();
+  if (n < (mode == points ? 1U : 2U) || (mode == segments && n % 2 != 0))
+    warnings.push_back(primitive.path() + " has " + std::to_string(n) +
+                       " indices, which do not make up whole " +
+                       (mode == points ? "points" : "lines"));
+  if (n < (mode == points ? 1U : 2U)) return std::nullopt;
+  if (mode == points) return read_points(data, corners);
+  if (!has_indices) {
+    corners.resize(n);
+    std::iota(corners.begin(), corners.end(), 0U);
+  }
+  if (mode == segments) corners.resize(n / 2 * 2);
+  if (mode == loop) corners.push_back(corners.front());
+  Lines lines;
+  lines.kind = mode == segments ? LineKind::segments : LineKind::polylines;
+  lines.positions = data.read<Vec3>("POSITION");
+  if (data.attribute("COLOR_0")) lines.colors = data.read<Vec4>("COLOR_0");
+  lines.indices = std::move(corners);
+  return lines;
 }
 
 }  // namespace rastrum::io::gltf

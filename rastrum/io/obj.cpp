@@ -1,6 +1,7 @@
 // Wavefront OBJ, strictly: a polygon has as many corners as it says, what is no number is an error,
 // and so is an index that does not exist, with file and line. Materials are mtl.cpp's. One mesh for
-// a file, so that triangles keep the file's order over groups, objects and materials.
+// a file, so that triangles keep the file's order over groups, objects and materials; its points
+// and lines come behind it.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -10,6 +11,7 @@
 #include <string>
 #include <unordered_map>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <rastrum/io/mapped_file.hpp>
@@ -52,10 +54,14 @@ class ObjReader {
     finish_texcoords();
     finish_normals();
     warn_about_the_rest();
-    Scene drawn = scene_of(std::move(mesh_));
-    drawn.meshes[0].name = file_.stem().string();
-    scene_.meshes = std::move(drawn.meshes);
-    scene_.instances = std::move(drawn.instances);
+    std::vector<Geometry> loose = points_and_lines();
+    if (loose.empty() || !mesh_.indices.empty()) {
+      Scene drawn = scene_of(std::move(mesh_));
+      drawn.meshes[0].name = file_.stem().string();
+      scene_.meshes = std::move(drawn.meshes);
+      scene_.instances = std::move(drawn.instances);
+    }
+    for (Geometry& geometry : loose) add_geometry(scene_, std::move(geometry));
     return std::move(scene_);
   }
 
@@ -75,6 +81,8 @@ class ObjReader {
       texcoord();
     } else if (word == "f" || word == "fo") {
       face();
+    } else if (word == "p" || word == "l") {
+      loose_element(word == "l");
     } else if (word == "usemtl") {
       use_material(rest());
       return;
@@ -135,12 +143,14 @@ class ObjReader {
   }
 
   /// `index` as the file has it: from 1, or negative from the end so far.
-  std::uint32_t resolve(std::int64_t index, std::size_t count, const char* what) {
+  std::uint32_t resolve(std::int64_t index, std::size_t count, const char* what,
+                        const char* whose = "face") {
     const std::int64_t zero_based =
         index > 0 ? index - 1 : static_cast<std::int64_t>(count) + index;
     if (index == 0 || zero_based < 0 || zero_based >= kMissing)
-      in_.fail_at(start_, "the face refers to " + std::string(what) + " " + std::to_string(index) +
-                              ", but there are " + std::to_string(count) + " so far");
+      in_.fail_at(start_, std::string("the ") + whose + " refers to " + what + " " +
+                              std::to_string(index) + ", but there are " + std::to_string(count) +
+                              " so far");
     return static_cast<std::uint32_t>(zero_based);
   }
 
@@ -193,6 +203,63 @@ class ObjReader {
     if (n < 3) ++small_faces_;
   }
 
+  /// `p v…`: points; `l v…` or `l v/vt…`: a polyline, whose texture coordinates nothing reads.
+  void loose_element(bool is_line) {
+    const char* const name = is_line ? "line" : "point";
+    const std::size_t begin = loose_corners_.size();
+    while (!at_statement_end()) {
+      loose_corners_.push_back(resolve(in_.number<std::int64_t>("a vertex index"),
+                                       mesh_.positions.size(), "vertex", name));
+      loose_use_.note(loose_corners_.back(), start_);
+      if (is_line && in_.peek() == '/') {
+        in_.advance(1);
+        if (is_index()) (void)in_.number<std::int64_t>("a texture coordinate's index");
+      }
+      if (!TextCursor::is_space(in_.peek()) && in_.peek() != '\\')
+        in_.fail_at(start_, std::string("the ") + name + " has a corner that is not v" +
+                                (is_line ? " or v/vt" : ""));
+    }
+    const std::size_t n = loose_corners_.size() - begin;
+    if (n < (is_line ? 2U : 1U)) {
+      loose_corners_.resize(begin);
+      ++short_lines_;
+      return;
+    }
+    loose_.push_back({is_line, material_, begin, n});
+  }
+
+  /// Points and polylines, one geometry for each material, in the order in which they are first
+  /// used; of the whole file, so that a file of thousands of lines is no scene of thousands.
+  std::vector<Geometry> points_and_lines() {
+    std::vector<Geometry> all;
+    std::map<std::pair<bool, std::uint32_t>, std::size_t> numbers;
+    for (const Loose& element : loose_) {
+      const auto [at, is_new] =
+          numbers.try_emplace({element.is_line, element.material}, all.size());
+      if (is_new) {
+        if (element.is_line)
+          all.emplace_back(Lines{.name = file_.stem().string(), .kind = LineKind::polylines});
+        else
+          all.emplace_back(Points{.name = file_.stem().string()});
+      }
+      std::visit(
+          [&](auto& g) {
+            g.material = element.material;
+            for (std::size_t i = 0; i < element.count; ++i) {
+              const std::uint32_t v = loose_corners_[element.begin + i];
+              g.positions.push_back(mesh_.positions[v]);
+              if (!mesh_.colors.empty()) g.colors.push_back(mesh_.colors.values[v]);
+            }
+          },
+          all[at->second]);
+      if (auto* const lines = std::get_if<Lines>(&all[at->second])) {
+        if (is_new) lines->offsets.push_back(0);
+        lines->offsets.push_back(static_cast<std::uint32_t>(lines->positions.size()));
+      }
+    }
+    return all;
+  }
+
   void read_library(const std::string& names) {
     // Names may hold spaces; several names may share a line. The whole line is tried first.
     const auto folder = file_.parent_path();
@@ -228,7 +295,8 @@ class ObjReader {
     std::vector<std::uint32_t> index_of(used_names_.size() + 1, kMissing);
     bool all = true;
     const bool unnamed =
-        std::find(face_materials_.begin(), face_materials_.end(), 0U) != face_materials_.end();
+        std::find(face_materials_.begin(), face_materials_.end(), 0U) != face_materials_.end() ||
+        std::ranges::any_of(loose_, [](const Loose& e) { return e.material == 0; });
     std::string unknown;
     for (std::size_t i = 0; i < used_names_.size(); ++i) {
       const auto it = by_name_.find(used_names_[i]);
@@ -242,7 +310,10 @@ class ObjReader {
     if (!unknown.empty())
       scene_.warnings.push_back(name_ + ": no .mtl file defines " + unknown +
                                 "; drawn with the default material");
-    if (scene_.materials.empty()) return;  // nothing was found: the file has no materials
+    if (scene_.materials.empty()) {  // nothing was found: the file has no materials
+      for (Loose& e : loose_) e.material = 0;
+      return;
+    }
     if (!all || unnamed) {
       const auto fallback = static_cast<std::uint32_t>(scene_.materials.size());
       Material m;
@@ -252,6 +323,7 @@ class ObjReader {
       std::replace(index_of.begin(), index_of.end(), kMissing, fallback);
     }
     for (std::uint32_t& m : face_materials_) m = index_of[m];
+    for (Loose& e : loose_) e.material = index_of[e.material];
     const bool uniform = std::adjacent_find(face_materials_.begin(), face_materials_.end(),
                                             std::not_equal_to<>()) == face_materials_.end();
     if (uniform) {
@@ -262,11 +334,13 @@ class ObjReader {
   }
 
   void check_positions() {
-    if (position_use_.any && position_use_.largest >= mesh_.positions.size())
-      in_.fail_at(position_use_.offset,
-                  "the face refers to vertex " +
-                      std::to_string(std::uint64_t{position_use_.largest} + 1) +
-                      ", but the file has " + std::to_string(mesh_.positions.size()));
+    for (const auto& [use, whose] :
+         {std::pair(&position_use_, "face"), std::pair(&loose_use_, "point or line")})
+      if (use->any && use->largest >= mesh_.positions.size())
+        in_.fail_at(use->offset, std::string("the ") + whose + " refers to vertex " +
+                                     std::to_string(std::uint64_t{use->largest} + 1) +
+                                     ", but the file has " +
+                                     std::to_string(mesh_.positions.size()));
   }
 
   void finish_colors() {
@@ -348,6 +422,9 @@ class ObjReader {
     if (small_faces_ != 0)
       scene_.warnings.push_back(name_ + ": " + std::to_string(small_faces_) +
                                 " faces with fewer than 3 corners are left out");
+    if (short_lines_ != 0)
+      scene_.warnings.push_back(name_ + ": " + std::to_string(short_lines_) +
+                                " points and lines with too few vertices are left out");
     std::string kinds;
     int listed = 0;
     for (const auto& [kind, count] : ignored_) {
@@ -359,7 +436,7 @@ class ObjReader {
     }
     if (!kinds.empty())
       scene_.warnings.push_back(name_ + ": statements that are not drawn: " + kinds);
-    if (mesh_.indices.empty())
+    if (mesh_.indices.empty() && loose_.empty())
       scene_.warnings.push_back(name_ + ": holds no faces (" +
                                 std::to_string(mesh_.positions.size()) + " vertices)");
   }
@@ -379,14 +456,22 @@ class ObjReader {
   std::vector<Vec2> texcoords_;
   std::vector<Vec3> normals_;
   std::vector<std::uint32_t> texcoord_indices_, normal_indices_;
-  Use position_use_, texcoord_use_, normal_use_;
+  /// A statement of points, or a polyline: corners [begin, begin + count) of loose_corners_.
+  struct Loose {
+    bool is_line;
+    std::uint32_t material;
+    std::size_t begin, count;
+  };
+  std::vector<Loose> loose_;
+  std::vector<std::uint32_t> loose_corners_;
+  Use position_use_, texcoord_use_, normal_use_, loose_use_;
   std::vector<std::string> libraries_, used_names_;
   std::unordered_map<std::string, std::uint32_t> by_name_;        ///< what .mtl files define
   std::unordered_map<std::string, std::uint32_t> has_materials_;  ///< what usemtl names
   std::vector<std::uint32_t> face_materials_;
   std::uint32_t material_ = 0;  ///< 0: no usemtl yet
   std::map<std::string, std::size_t> ignored_;
-  std::size_t small_faces_ = 0;
+  std::size_t small_faces_ = 0, short_lines_ = 0;
 };
 
 }  // namespace

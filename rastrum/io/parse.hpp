@@ -36,5 +36,7 @@ void parse_mtl(Bytes bytes, const std::filesystem::path& file, Scene& scene,
 /// A scene that draws `mesh`, whose triangles are all in its indices, once; a mesh without indices
 /// is empty.
 [[nodiscard]] Scene scene_of(Mesh mesh);
+/// Adds an instance of `geometry`, which stands where its file's vertices do.
+void add_geometry(Scene& scene, Geometry geometry);
 
 }  // namespace rastrum::io

@@ -1,4 +1,5 @@
-// PLY: ASCII and binary of both endians, faces (polygons become fans) and triangle strips. Binary
+// PLY: ASCII and binary of both endians, faces (polygons become fans) and triangle strips; without
+// faces its vertices are points. Binary
 // elements without lists are read property by property as strided columns; the common layouts
 // (`float x y z` side by side; faces of `uchar int[3]` alone) go through copies of 12 bytes, so
 // that a mapped file loads at about memory speed. Counts are checked against the bytes that are
@@ -99,8 +100,14 @@ class PlyReader {
       }
     }
     check_indices();
-    warn();
-    Scene scene = scene_of(std::move(mesh_));
+    const bool is_cloud = faces_ == 0 && !mesh_.positions.empty();
+    if (is_cloud && !mesh_.texcoords.empty()) unused_.emplace_back("texture coordinates");
+    warn(is_cloud);
+    Scene scene;
+    if (is_cloud)
+      add_geometry(scene, cloud());
+    else
+      scene = scene_of(std::move(mesh_));
     scene.warnings = std::move(warnings_);
     return scene;
   }
@@ -128,6 +135,15 @@ class PlyReader {
     const std::byte* p = bytes_.data() + at_;
     at_ += n;
     return p;
+  }
+
+  /// The vertices alone.
+  Points cloud() {
+    Points points;
+    points.positions = std::move(mesh_.positions);
+    points.normals = std::move(mesh_.normals.values);
+    points.colors = std::move(mesh_.colors.values);
+    return points;
   }
 
   // ---- vertices
@@ -278,6 +294,7 @@ class PlyReader {
   // ---- faces
 
   void read_faces(const Element& e, bool strips) {
+    faces_ += e.count;
     const int found = e.find({"vertex_indices", "vertex_index"});
     if (found < 0) {
       if (e.count != 0) warnings_.push_back(name_ + ": its faces have no vertex_indices");
@@ -442,7 +459,7 @@ class PlyReader {
          ", but the file has " + std::to_string(mesh_.positions.size()));
   }
 
-  void warn() {
+  void warn(bool is_cloud) {
     if (small_faces_ != 0)
       warnings_.push_back(name_ + ": " + std::to_string(small_faces_) +
                           " faces with fewer than 3 corners are left out");
@@ -451,7 +468,7 @@ class PlyReader {
       for (const std::string& u : unused_) list += (list.empty() ? "" : ", ") + u;
       warnings_.push_back(name_ + ": properties that are not drawn: " + list.substr(0, 300));
     }
-    if (mesh_.indices.empty())
+    if (mesh_.indices.empty() && !is_cloud)
       warnings_.push_back(name_ + ": holds no faces (" + std::to_string(mesh_.positions.size()) +
                           " vertices)");
   }
@@ -465,14 +482,16 @@ class PlyReader {
   Mesh mesh_;
   std::vector<std::int64_t> polygon_;
   std::vector<std::string> unused_, warnings_;
-  std::size_t small_faces_ = 0;
+  std::size_t faces_ = 0, small_faces_ = 0;
 };
 
 }  // namespace
 
 Scene parse_ply(Bytes bytes, const std::filesystem::path& file) {
   Scene scene = PlyReader(bytes, file).read();
-  scene.meshes[0].name = file.stem().string();
+  const std::string name = file.stem().string();
+  for (Mesh& mesh : scene.meshes) mesh.name = name;
+  for (Geometry& geometry : scene.geometries) std::visit([&](auto& g) { g.name = name; }, geometry);
   return scene;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,7 @@ bool is_byte(float x) {
   return x >= 0 && x <= 1 && scaled * (1 / 255.0F) == x;
 }
 
-bool fit_bytes(const std::vector<Vec4>& colors) {
+bool fit_bytes(std::span<const Vec4> colors) {
   return std::all_of(colors.begin(), colors.end(), [](const Vec4& c) {
     return is_byte(c.x) && is_byte(c.y) && is_byte(c.z) && is_byte(c.w);
   });
@@ -49,51 +50,44 @@ class RowWriter {
 
 }  // namespace
 
-void write_ply(AtomicFile& out, const Mesh& mesh) {
-  const std::size_t vertices = mesh.positions.size();
-  const MeshView view = mesh.view();
-  const std::size_t faces = view.triangle_count();
-  const auto shared = [&](const auto& attribute, const char* what) {
-    if (attribute.empty() || !attribute.indices.empty() || vertices == 0) return false;
-    if (attribute.values.size() < vertices)
-      throw Error(Errc::invalid_argument, out.name().string() + ": the mesh has " +
-                                              std::to_string(vertices) + " positions, but " + what +
-                                              " for only " +
-                                              std::to_string(attribute.values.size()));
-    return true;
-  };
-  const bool normals = shared(mesh.normals, "normals"),
-             texcoords = shared(mesh.texcoords, "texture coordinates"),
-             colors = shared(mesh.colors, "colours");
-  const bool bytes = colors && fit_bytes(mesh.colors.values);
-  for (const std::uint32_t i : mesh.indices)
-    if (i >= vertices)
-      throw Error(Errc::invalid_argument, out.name().string() + ": the mesh refers to vertex " +
-                                              std::to_string(i) + " of " +
-                                              std::to_string(vertices));
+namespace {
 
+/// What each vertex has; empty: it is left out.
+struct Vertices {
+  std::span<const Vec3> positions, normals;
+  std::span<const Vec2> texcoords;
+  std::span<const Vec4> colors;
+};
+
+/// `faces`: null: none, and no element for them.
+void write_vertices(AtomicFile& out, const Vertices& v, const MeshView* faces) {
+  const std::size_t vertices = v.positions.size();
+  const bool bytes = fit_bytes(v.colors);
   std::string header = "ply\nformat binary_little_endian 1.0\nelement vertex " +
                        std::to_string(vertices) +
                        "\nproperty float x\nproperty float y\nproperty float z\n";
-  if (normals) header += "property float nx\nproperty float ny\nproperty float nz\n";
-  if (texcoords) header += "property float s\nproperty float t\n";
-  if (colors)
+  if (!v.normals.empty()) header += "property float nx\nproperty float ny\nproperty float nz\n";
+  if (!v.texcoords.empty()) header += "property float s\nproperty float t\n";
+  if (!v.colors.empty())
     for (const char* c : {"red", "green", "blue", "alpha"})
       header += std::string("property ") + (bytes ? "uchar " : "float ") + c + "\n";
-  header += "element face " + std::to_string(faces) +
-            "\nproperty list uchar uint vertex_indices\nend_header\n";
+  const std::size_t face_count = faces == nullptr ? 0 : faces->triangle_count();
+  if (faces != nullptr)
+    header += "element face " + std::to_string(face_count) +
+              "\nproperty list uchar uint vertex_indices\n";
+  header += "end_header\n";
 
   RowWriter rows(out);
   rows.put(header.data(), header.size());
   for (std::size_t i = 0; i < vertices; ++i) {
-    rows.put(&mesh.positions[i], sizeof(Vec3));
-    if (normals) rows.put(&mesh.normals.values[i], sizeof(Vec3));
-    if (texcoords) {
-      const Vec2 t = {mesh.texcoords.values[i].x, 1 - mesh.texcoords.values[i].y};
+    rows.put(&v.positions[i], sizeof(Vec3));
+    if (!v.normals.empty()) rows.put(&v.normals[i], sizeof(Vec3));
+    if (!v.texcoords.empty()) {
+      const Vec2 t = {v.texcoords[i].x, 1 - v.texcoords[i].y};
       rows.put(&t, sizeof t);
     }
-    if (!colors) continue;
-    const Vec4 c = mesh.colors.values[i];
+    if (v.colors.empty()) continue;
+    const Vec4 c = v.colors[i];
     if (bytes) {
       const float scaled[4] = {c.x * 255, c.y * 255, c.z * 255, c.w * 255};
       std::uint8_t b[4];
@@ -103,15 +97,57 @@ void write_ply(AtomicFile& out, const Mesh& mesh) {
       rows.put(&c, sizeof c);
     }
   }
-  for (std::size_t t = 0; t < faces; ++t) {
+  for (std::size_t t = 0; t < face_count; ++t) {
     std::byte face[13] = {std::byte{3}};
     for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t i = view.vertex(3 * t + c);
+      const std::uint32_t i = faces->vertex(3 * t + c);
       std::memcpy(face + 1 + 4 * c, &i, 4);
     }
     rows.put(face, sizeof face);
   }
   rows.flush();
+}
+
+/// As many of `values` as there are vertices; none where it has none.
+template <class T>
+std::span<const T> each(const AtomicFile& out, const char* whose, const std::vector<T>& values,
+                        std::size_t vertices, const char* what) {
+  if (values.empty() || vertices == 0) return {};
+  if (values.size() < vertices)
+    throw Error(Errc::invalid_argument, out.name().string() + ": " + whose +
+                                            std::to_string(vertices) + " positions, but " + what +
+                                            " for only " + std::to_string(values.size()));
+  return std::span(values).first(vertices);
+}
+
+}  // namespace
+
+void write_ply(AtomicFile& out, const Mesh& mesh) {
+  const std::size_t vertices = mesh.positions.size();
+  const auto shared = [&](const auto& attribute, const char* what) {
+    return attribute.indices.empty() ? each(out, "the mesh has ", attribute.values, vertices, what)
+                                     : decltype(each(out, "", attribute.values, vertices, what)){};
+  };
+  for (const std::uint32_t i : mesh.indices)
+    if (i >= vertices)
+      throw Error(Errc::invalid_argument, out.name().string() + ": the mesh refers to vertex " +
+                                              std::to_string(i) + " of " +
+                                              std::to_string(vertices));
+  const MeshView view = mesh.view();
+  write_vertices(out,
+                 {mesh.positions, shared(mesh.normals, "normals"),
+                  shared(mesh.texcoords, "texture coordinates"), shared(mesh.colors, "colours")},
+                 &view);
+}
+
+void write_ply(AtomicFile& out, const Points& points) {
+  const std::size_t n = points.positions.size();
+  write_vertices(out,
+                 {points.positions,
+                  each(out, "there are ", points.normals, n, "normals"),
+                  {},
+                  each(out, "there are ", points.colors, n, "colours")},
+                 nullptr);
 }
 
 }  // namespace rastrum::io

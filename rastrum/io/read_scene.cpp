@@ -77,7 +77,7 @@ std::string wrong_name(Bytes bytes, const Reader& reader) {
 Scene parse(const Reader& reader, Bytes bytes, const std::filesystem::path& name) {
   try {
     Scene scene = reader.parse(bytes, name);
-    if (scene.triangle_count() == 0)
+    if (scene.primitive_count() == 0)
       if (const std::string hint = wrong_name(bytes, reader); !hint.empty())
         // What the wrong reader found odd besides is no news.
         scene.warnings = {name.string() + ": no triangles as " + reader.extension + "; " + hint};
@@ -121,6 +121,12 @@ Scene scene_of(Mesh mesh) {
   scene.meshes.push_back(std::move(mesh));
   scene.instances.push_back({0, Mat4d::identity()});
   return scene;
+}
+
+void add_geometry(Scene& scene, Geometry geometry) {
+  const auto number = static_cast<std::uint32_t>(scene.geometries.size());
+  scene.geometries.push_back(std::move(geometry));
+  scene.instances.push_back({0, Mat4d::identity(), number});
 }
 
 Scene decode_scene(std::span<const std::byte> bytes, std::string_view format,

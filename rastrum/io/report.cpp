@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <numbers>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <rastrum/core/enum.hpp>
@@ -70,7 +71,8 @@ Faults faults(const Mesh& mesh) {
 
 void describe_meshes(const Scene& scene, std::string& text) {
   std::vector<std::uint64_t> uses(scene.meshes.size());
-  for (const Instance& i : scene.instances) ++uses[i.mesh];
+  for (const Instance& i : scene.instances)
+    if (!i.geometry) ++uses[i.mesh];
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
     if (i == kMostLines) {
       text += "  … and " + counted(scene.meshes.size() - i, "mesh") + " more\n";
@@ -85,6 +87,34 @@ void describe_meshes(const Scene& scene, std::string& text) {
     if (!m.texcoords.empty()) text += ", texture coordinates";
     if (!m.colors.empty()) text += ", colours";
     text += '\n';
+  }
+}
+
+void describe_geometries(const Scene& scene, std::string& text) {
+  for (std::size_t i = 0; i < scene.geometries.size(); ++i) {
+    if (i == kMostLines) {
+      text +=
+          "  … and " + std::to_string(scene.geometries.size() - i) + " more of points or lines\n";
+      break;
+    }
+    struct Line {
+      std::size_t number;
+      std::string operator()(const Points& p) const {
+        return begin("points", p.name) + counted(p.positions.size(), "point") +
+               has(p.normals.size(), "normals") + has(p.colors.size(), "colours");
+      }
+      std::string operator()(const Lines& l) const {
+        return begin("lines", l.name) + counted(l.view().size(), "segment") +
+               has(l.colors.size(), "colours");
+      }
+      [[nodiscard]] std::string begin(const char* kind, const std::string& name) const {
+        return std::string("  ") + kind + " " + std::to_string(number) + " " + named(name) + ": ";
+      }
+      static std::string has(std::size_t values, const char* what) {
+        return values == 0 ? std::string() : std::string(", ") + what;
+      }
+    };
+    text += std::visit(Line{i}, scene.geometries[i]) + '\n';
   }
 }
 
@@ -145,15 +175,24 @@ void describe_animations(const Scene& scene, std::string& text) {
 }  // namespace
 
 std::string describe(const Scene& scene) {
-  const SceneBinding binding(scene);  // which checks that instances have meshes
+  const SceneBinding binding(scene);  // which checks that instances have meshes or geometries
   std::vector<Faults> by_mesh;
   for (const Mesh& m : scene.meshes) by_mesh.push_back(faults(m));
   Faults all;
+  std::uint64_t points = 0, segments = 0;
   for (const Instance& i : scene.instances) {
+    if (i.geometry) {
+      const Geometry& g = scene.geometries[*i.geometry];
+      if (const auto* const p = std::get_if<Points>(&g)) points += p->positions.size();
+      if (const auto* const l = std::get_if<Lines>(&g)) segments += l->view().size();
+      continue;
+    }
     all.not_finite += by_mesh[i.mesh].not_finite;
     all.no_area += by_mesh[i.mesh].no_area;
   }
-  std::string text = counted(scene.triangle_count(), "triangle") + " in " +
+  std::string text = counted(scene.triangle_count(), "triangle") +
+                     (points != 0 ? ", " + counted(points, "point") : "") +
+                     (segments != 0 ? ", " + counted(segments, "line segment") : "") + " in " +
                      counted(scene.instances.size(), "instance") + " of " +
                      counted(scene.meshes.size(), "mesh") + ", " +
                      counted(scene.materials.size(), "material") + ", " +
@@ -174,6 +213,7 @@ std::string describe(const Scene& scene) {
         "  dropped: " + counted(all.not_finite, "triangle") + " with a vertex that is not finite\n";
   if (all.no_area != 0) text += "  without area: " + counted(all.no_area, "triangle") + '\n';
   describe_meshes(scene, text);
+  describe_geometries(scene, text);
   describe_materials(scene, text);
   describe_cameras(scene, text);
   describe_animations(scene, text);

@@ -56,5 +56,8 @@ void write_npy(const std::filesystem::path& file, ImageView<const std::int32_t> 
 void write_ply(const std::filesystem::path& file, const Mesh& mesh) {
   write_whole(file, [&](AtomicFile& out) { write_ply(out, mesh); });
 }
+void write_ply(const std::filesystem::path& file, const Points& points) {
+  write_whole(file, [&](AtomicFile& out) { write_ply(out, points); });
+}
 
 }  // namespace rastrum::io

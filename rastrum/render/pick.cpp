@@ -5,6 +5,7 @@
 #include <string>
 
 #include <rastrum/error.hpp>
+#include <rastrum/raster/draws/vertices_of.hpp>
 #include <rastrum/raster/resolve/surface_point.hpp>
 #include <rastrum/render/surface_of_key.hpp>
 #include <rastrum/render/surfaces.hpp>
@@ -32,6 +33,16 @@ raster::AxisEnds ends_of(const Located& at, const raster::QuadricGeometry& geome
   return ends;
 }
 
+/// Makes `draw` that of the instance, which has vertices. Throws where those of the primitive are
+/// out of range.
+void set_vertices_of(raster::Draw& draw, const Located& at, const InstanceView& instance,
+                     const Mat4d& to_clip) {
+  raster::set_vertices(draw, instance.geometry, to_clip);
+  for (int c = 0; c < static_cast<int>(draw.topology); ++c)
+    if (draw.vertex(at.primitive, c) >= draw.vertex_count)
+      refuse_index(at, instance.mesh() != nullptr ? "triangle" : "primitive");
+}
+
 /// One instance as a scene of its own, so that what is asked about a primitive costs nothing for
 /// the others.
 struct Alone {
@@ -53,11 +64,7 @@ struct Alone {
       draw.quadrics = &quadrics.emplace(*surfaces, to_clip);
       return;
     }
-    const MeshView& mesh = *instance.mesh();
-    draw.source = raster::MatrixVertices(mesh.positions, to_clip);
-    draw.set_triangles(mesh);
-    for (int c = 0; c < 3; ++c)
-      if (draw.vertex(at.primitive, c) >= draw.vertex_count) refuse_index(at, "triangle");
+    set_vertices_of(draw, at, instance, to_clip);
   }
   Alone(const Alone&) = delete;
   Alone& operator=(const Alone&) = delete;
@@ -108,10 +115,11 @@ Vec3d position(const SceneView& scene, const Located& at, const Barycentrics& wh
     return raster::in_world(
         instance, p.wide(ends.first) * where.weight[0] + p.wide(ends.second) * where.weight[1]);
   }
-  const MeshView& mesh = *instance.mesh();
+  raster::Draw draw;
+  set_vertices_of(draw, at, instance, Mat4d::identity());
   raster::Fragment f;
-  for (std::size_t c = 0; c < 3; ++c) {
-    f.vertex[c] = mesh.vertex(mesh.place(at.primitive).corner[c]);
+  for (int c = 0; c < static_cast<int>(draw.topology); ++c) {
+    f.vertex[c] = draw.vertex(at.primitive, c);
     f.weights.b[c] = where.weight[c];
   }
   return raster::position_on(instance, f);

@@ -4,6 +4,7 @@
 
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/raster/shade/plain_surface.hpp>
 #include <rastrum/scene/mesh_checks.hpp>
 
 namespace rastrum {
@@ -16,10 +17,18 @@ class InstanceCheck {
       : instance_(instance), number_(number) {}
 
   void arrays(const MeshView& mesh) const {
-    if (const std::string problem = faces_problem(mesh); !problem.empty()) fail(problem);
+    none(faces_problem(mesh));
     attribute(mesh, mesh.normals, "normals");
     attribute(mesh, mesh.texcoords, "texcoords");
     attribute(mesh, mesh.colors, "colors");
+  }
+  void arrays(const PointsView& points) const { none(arrays_problem(points)); }
+  void arrays(const LinesView& lines) const { none(arrays_problem(lines)); }
+  void material(std::size_t materials) const {
+    const std::uint32_t m = raster::material_of(instance_);
+    if (materials != 0 && m >= materials)
+      fail("material " + std::to_string(m) + " is out of range, there are " +
+           std::to_string(materials));
   }
   void look() const {
     if (instance_.winding > Winding::either)
@@ -33,6 +42,9 @@ class InstanceCheck {
   }
 
  private:
+  void none(const std::string& problem) const {
+    if (!problem.empty()) fail(problem);
+  }
   [[nodiscard]] std::string name() const { return "instance " + std::to_string(number_); }
   [[noreturn]] void fail(const std::string& problem) const {
     throw Error(Errc::invalid_argument, name() + ": " + problem);
@@ -86,7 +98,11 @@ bool is_packed(const AttributeView<T>& a) {
 void check_scene(const SceneView& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const InstanceCheck check(scene.instances[i], i);
+    const GeometryView& geometry = scene.instances[i].geometry;
     if (const MeshView* const mesh = scene.instances[i].mesh()) check.arrays(*mesh);
+    if (const auto* const points = std::get_if<PointsView>(&geometry)) check.arrays(*points);
+    if (const auto* const lines = std::get_if<LinesView>(&geometry)) check.arrays(*lines);
+    if (is_points_or_lines(geometry)) check.material(scene.materials.size());
     check.look();
   }
 }
@@ -94,6 +110,8 @@ void check_scene(const SceneView& scene) {
 std::string why_not_on_device(const SceneView& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const InstanceView& instance = scene.instances[i];
+    if (is_points_or_lines(instance.geometry))
+      return "instance " + std::to_string(i) + " is of points or lines, which are the CPU's";
     if (instance.mesh() == nullptr) continue;
     const MeshView& m = *instance.mesh();
     const auto say = [&](const char* what) {

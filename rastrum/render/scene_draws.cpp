@@ -4,6 +4,7 @@
 #include <string>
 
 #include <rastrum/pick.hpp>
+#include <rastrum/raster/draws/vertices_of.hpp>
 #include <rastrum/raster/shade/alpha.hpp>
 #include <rastrum/render/target_checks.hpp>
 
@@ -31,7 +32,7 @@ bool blends_surfaces(const SceneDraws::Options& o) {
   return o.frame.transparency.method != Transparency::none && o.shader != Shader::depth;
 }
 
-raster::QuadricLook look_of(const SceneDraws::Options& o) {
+raster::SurfaceLook look_of(const SceneDraws::Options& o) {
   std::optional<raster::LitModel> model;
   if (o.shader != Shader::material) model = lit_model(o.shader);
   return {model, blends_surfaces(o), o.frame.opacity};
@@ -43,7 +44,9 @@ SceneDraws::SceneDraws(const SceneView& scene, const Camera& camera, const Optio
                        raster::TextureSet& textures, parallel::Threads* threads)
     : scene_(scene),
       meshes_(scene),
-      surfaces_(scene, look_of(options), camera, options.frame.width, options.frame.height) {
+      surfaces_(scene, look_of(options), camera, options.frame.width, options.frame.height),
+      points_and_lines_(look_of(options), scene.materials, camera, options.frame.width,
+                        options.frame.height) {
   const FrameOptions& o = options.frame;
   const Targets& targets = options.targets;
   mesh_list_ = meshes_beside_others(scene);
@@ -63,6 +66,7 @@ SceneDraws::SceneDraws(const SceneView& scene, const Camera& camera, const Optio
   if (wants_surface(targets)) {
     surface_.emplace(scene_, camera, o.width, o.height);
     surface_->materials = materials_ ? &*materials_ : nullptr;
+    surface_->points_and_lines = &points_and_lines_;
     if (!targets.view_depth.empty() || !targets.distance.empty())
       (void)view_distance(camera, 1);  // throws where depth tells none
   }
@@ -71,7 +75,10 @@ SceneDraws::SceneDraws(const SceneView& scene, const Camera& camera, const Optio
 
   const bool translucent = (flags.any & raster::kTranslucent) != 0;
   linear_light_ = shades_materials && (translucent || !targets.linear.empty());
-  if (linear_light_) surfaces_.leave_linear();
+  if (linear_light_) {
+    surfaces_.leave_linear();
+    points_and_lines_.leave_linear();
+  }
   if (shades_materials) {
     shading_ = raster::MaterialShading{&*materials_, linear_light_};
   } else {
@@ -104,20 +111,28 @@ SceneDraws::Flags SceneDraws::make_draws(const Options& options, const Mat4d& to
       all.any |= draw.flags;
       continue;
     }
-    const MeshView& mesh = *instance.mesh();
-    draw.set_triangles(mesh);
-    draw.source = raster::MatrixVertices(mesh.positions, to_clip * instance.object_to_world);
-    draw.cull = material_cull(instance, scene_.materials, options.shader);
-    std::uint32_t flags = raster::set_material_flags(draw, instance, material_flags_);
+    raster::set_vertices(draw, instance.geometry, to_clip * instance.object_to_world);
+    std::uint32_t flags = 0;
+    ArrayView<Vec4> colors;
+    if (const MeshView* const mesh = instance.mesh()) {
+      colors = mesh->colors.values;
+      draw.cull = material_cull(instance, scene_.materials, options.shader);
+      flags = raster::set_material_flags(draw, instance, material_flags_);
+    } else {
+      colors = points_and_lines_.add(instance);
+      draw.shading = points_and_lines_;
+      draw.test = &points_and_lines_;
+      if (!material_flags_.empty()) draw.flags |= material_flags_[raster::material_of(instance)];
+    }
     if (blends && scene_.materials.empty() && !options.in_place && instance.visible &&
-        raster::has_color_alpha(instance, mesh.colors.values, threads)) {
+        raster::has_color_alpha(instance, colors, threads)) {
       draw.flags |= raster::kTranslucent;
       flags |= raster::kTranslucent;
     }
     if (blends && instance.visible && instance.opacity < 1) flags |= raster::kTranslucent;
     if (blends && (o.opacity < 1 || instance.opacity < 1)) draw.flags |= raster::kTranslucent;
-    all.materials |= flags;
-    all.any |= flags;
+    if (instance.mesh() != nullptr) all.materials |= flags;
+    all.any |= flags | draw.flags;
   }
   return all;
 }

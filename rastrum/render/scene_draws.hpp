@@ -12,6 +12,7 @@
 #include <rastrum/raster/resolve/surface_point.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/material.hpp>
+#include <rastrum/raster/shade/point_line_shader.hpp>
 #include <rastrum/raster/shade/shading.hpp>
 #include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/render.hpp>
@@ -61,6 +62,7 @@ class SceneDraws {
   std::vector<raster::Draw> draws_;
   std::deque<raster::DrawCut> cuts_;  // draws point to them
   SurfaceDraws surfaces_;
+  raster::PointLineShader points_and_lines_;
   std::optional<raster::MaterialScene> materials_;
   std::optional<raster::LitScene> lit_;
   std::optional<raster::SurfaceScene> surface_;

@@ -90,7 +90,7 @@ void check_surfaces(const SceneView& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i)
     if (const auto geometry = quadrics_of(scene.instances[i].geometry)) {
       const Check check(i);
-      check.material(raster::material_of(*geometry, scene.instances[i]), scene.materials.size());
+      check.material(raster::material_of(scene.instances[i]), scene.materials.size());
       std::visit(check, *geometry);
     }
 }
@@ -106,8 +106,7 @@ bool SurfaceDraws::add(const InstanceView& instance, const Mat4d& world_to_clip,
   draw.primitive_count = std::visit([](const auto& g) { return g.size(); }, *geometry);
   draw.shading = shader_;
   const Material* const material =
-      scene_.materials.empty() ? nullptr
-                               : &scene_.materials[raster::material_of(*geometry, instance)];
+      scene_.materials.empty() ? nullptr : &scene_.materials[raster::material_of(instance)];
   if (look_.blends && (look_.opacity < 1 || instance.opacity < 1 ||
                        is_translucent(*geometry, instance, material, threads)))
     draw.flags |= raster::kTranslucent;

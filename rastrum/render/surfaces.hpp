@@ -25,7 +25,7 @@ void check_surfaces(const SceneView& scene);
 /// The draws of a frame's quadrics; they refer to it.
 class SurfaceDraws {
  public:
-  SurfaceDraws(const SceneView& scene, const raster::QuadricLook& look, const Camera& camera,
+  SurfaceDraws(const SceneView& scene, const raster::SurfaceLook& look, const Camera& camera,
                int width, int height)
       : look_(look), shader_(look, scene.materials, camera, width, height), scene_(scene) {}
 
@@ -37,7 +37,7 @@ class SurfaceDraws {
   void leave_linear() { shader_.leave_linear(); }
 
  private:
-  raster::QuadricLook look_;
+  raster::SurfaceLook look_;
   raster::QuadricShader shader_;
   SceneView scene_;
   std::deque<raster::QuadricStage> stages_;  // draws point to them

@@ -28,23 +28,35 @@ BoundsD bounds_float64(const VerticesInUse& vertices) {
   return b;
 }
 
-const Mesh& mesh_of(const Scene& scene, const Instance& instance) {
-  if (instance.mesh >= scene.meshes.size())
-    throw Error(Errc::invalid_argument,
-                "scene: an instance is of mesh " + std::to_string(instance.mesh) +
-                    ", but there are only " + std::to_string(scene.meshes.size()));
-  return scene.meshes[instance.mesh];
+GeometryView view_of(const Scene& scene, const Instance& instance) {
+  const auto require = [](std::size_t number, std::size_t count, const char* what) {
+    if (number < count) return;
+    throw Error(Errc::invalid_argument, std::string("scene: an instance is of ")
+                                            .append(what)
+                                            .append(std::to_string(number))
+                                            .append(", but there are only ")
+                                            .append(std::to_string(count)));
+  };
+  if (instance.geometry) {
+    require(*instance.geometry, scene.geometries.size(), "geometry ");
+    return view(scene.geometries[*instance.geometry]);
+  }
+  require(instance.mesh, scene.meshes.size(), "mesh ");
+  return scene.meshes[instance.mesh].view();
 }
 
 }  // namespace
+
+GeometryView view(const Geometry& geometry) {
+  return std::visit([](const auto& g) -> GeometryView { return g.view(); }, geometry);
+}
 
 void add_plain_materials(Scene& scene) {
   // Linear light that the sRGB transfer turns into the plain shaders' 0.8, 0.7, 0.6 to an ulp.
   constexpr Vec4 kPlain{0.603780866F, 0.447983563F, 0.318572849F, 1};
   constexpr std::uint32_t kNone = ~0U;
   std::uint32_t plain = kNone, colored = kNone;
-  for (Mesh& mesh : scene.meshes) {
-    const bool has_colors = !mesh.colors.empty();
+  const auto material_for = [&](bool has_colors) {
     std::uint32_t& index = has_colors ? colored : plain;
     if (index == kNone) {
       index = static_cast<std::uint32_t>(scene.materials.size());
@@ -58,9 +70,14 @@ void add_plain_materials(Scene& scene) {
       else
         m.base_color = kPlain;
     }
-    mesh.material = index;
+    return index;
+  };
+  for (Mesh& mesh : scene.meshes) {
+    mesh.material = material_for(!mesh.colors.empty());
     mesh.face_materials = {};
   }
+  for (Geometry& geometry : scene.geometries)
+    std::visit([&](auto& g) { g.material = material_for(!g.colors.empty()); }, geometry);
 }
 
 void Scene::place(const Mat4d& to_world) {
@@ -71,6 +88,7 @@ void Scene::place(const Mat4d& to_world) {
 
 void Scene::append(Scene other) {
   const auto mesh_offset = static_cast<std::uint32_t>(meshes.size());
+  const auto geometry_offset = static_cast<std::uint32_t>(geometries.size());
   const auto texture_offset = static_cast<std::int32_t>(textures.size());
   // A file without materials looks as it did once another file brings some.
   const bool any_materials = !materials.empty() || !other.materials.empty();
@@ -89,8 +107,13 @@ void Scene::append(Scene other) {
     for (std::uint32_t& m : mesh.face_materials) m += material_offset;
     meshes.push_back(std::move(mesh));
   }
+  for (Geometry& geometry : other.geometries) {
+    std::visit([&](auto& g) { g.material += material_offset; }, geometry);
+    geometries.push_back(std::move(geometry));
+  }
   for (Instance instance : other.instances) {
     instance.mesh += mesh_offset;
+    if (instance.geometry) *instance.geometry += geometry_offset;
     instances.push_back(instance);
   }
   for (Material& m : other.materials) {
@@ -106,14 +129,23 @@ void Scene::append(Scene other) {
 
 std::uint64_t Scene::triangle_count() const {
   std::uint64_t n = 0;
-  for (const Instance& i : instances) n += mesh_of(*this, i).triangle_count();
+  for (const Instance& i : instances)
+    if (const GeometryView g = view_of(*this, i);
+        const auto* const mesh = std::get_if<MeshView>(&g))
+      n += mesh->triangle_count();
+  return n;
+}
+
+std::uint64_t Scene::primitive_count() const {
+  std::uint64_t n = 0;
+  for (const Instance& i : instances) n += rastrum::primitive_count(view_of(*this, i));
   return n;
 }
 
 SceneBinding::SceneBinding(const Scene& scene) {
   instances_.reserve(scene.instances.size());
   for (const Instance& i : scene.instances)
-    instances_.push_back({mesh_of(scene, i).view(), i.object_to_world});
+    instances_.push_back({view_of(scene, i), i.object_to_world});
   view_ = {instances_, scene.materials, scene.textures};
 }
 

@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include <rastrum/error.hpp>
 #include <rastrum/mesh.hpp>
+#include <rastrum/points_and_lines.hpp>
 #include <rastrum/scene.hpp>
+#include <rastrum/scene/mesh_checks.hpp>
 #include <rastrum/surfaces.hpp>
 #include <rastrum/vec.hpp>
 
@@ -32,6 +36,29 @@ void for_each_ball(const GeometryView& geometry, F&& f) {
       for (const int end : {0, 1})
         if (const std::size_t k = c->end(i, end); k < c->positions.size())
           f(c->positions.wide(k), radius(*c, k));
+}
+
+/// Calls f(Vec3d) for the positions that points and lines use; of other geometries, for none.
+/// Offsets must be in range. Throws Error{invalid_argument} for an index that is not.
+template <class F>
+void for_each_position(const GeometryView& geometry, F&& f) {
+  const auto check = [](const auto& g) {
+    std::string problem = arrays_problem(g);
+    if (const std::size_t at = first_beyond(g.indices, g.positions.size());
+        problem.empty() && at != g.indices.size())
+      problem = "indices[" + std::to_string(at) + "]: index " + g.indices.text(at) +
+                " is out of range, there are " + std::to_string(g.positions.size()) + " positions";
+    if (!problem.empty()) throw Error(Errc::invalid_argument, "points or lines: " + problem);
+  };
+  if (const auto* const p = std::get_if<PointsView>(&geometry)) {
+    check(*p);
+    for (std::size_t i = 0; i < p->size(); ++i) f(p->positions.wide(p->vertex(i)));
+  }
+  if (const auto* const l = std::get_if<LinesView>(&geometry)) {
+    check(*l);
+    for (std::size_t s = 0; s < l->size(); ++s)
+      for (const int end : {0, 1}) f(l->positions.wide(l->vertex(s, end)));
+  }
 }
 
 class VerticesInUse {
@@ -70,6 +97,7 @@ class VerticesInUse {
       if (scene_.instances[i].mesh() == nullptr) {
         for_each_ball(scene_.instances[i].geometry,
                       [&](Vec3d centre, float radius) { visit_ball(centre, radius, visit); });
+        for_each_position(scene_.instances[i].geometry, visit);
         continue;
       }
       const MeshView& mesh = *scene_.instances[i].mesh();

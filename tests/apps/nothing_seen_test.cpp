@@ -127,10 +127,8 @@ TEST_F(NothingSeen, SeveralReasonsTheMostFrequentFirst) {
 }
 
 TEST_F(NothingSeen, NoTriangles) {
-  write("points.ply",
-        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-        "property float z\nend_header\n0 0 0\n");
-  const std::string said = must(command({"points.ply"}, {}));
+  write("loose.obj", "v 0 0 0\n");
+  const std::string said = must(command({"loose.obj"}, {}));
   EXPECT_NE(said.find("warning: nothing is seen: there are no triangles to draw"),
             std::string::npos)
       << said;

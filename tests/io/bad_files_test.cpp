@@ -129,7 +129,7 @@ std::string draw(const Scene& scene) {
     stats[i] = Painter(options).render(binding.view(), camera, targets);
   }
   if (!std::ranges::equal(ids[0].pixels(), ids[1].pixels())) return "two pictures of it";
-  if (stats[0].triangles.input != scene.triangle_count()) return "triangles lost";
+  if (stats[0].triangles.input != scene.primitive_count()) return "triangles lost";
   for (const FrameStats& s : stats)
     if (s.triangles.input != s.triangles.dropped + s.triangles.culled + s.triangles.drawn)
       return "triangles that do not add up";
@@ -139,7 +139,7 @@ std::string draw(const Scene& scene) {
 /// What is done with a scene that was read.
 std::string examine(const Scene& scene) {
   for (const Instance& i : scene.instances)
-    if (i.mesh >= scene.meshes.size()) return "an instance of no mesh";
+    if (!i.geometry && i.mesh >= scene.meshes.size()) return "an instance of no mesh";
   for (const Mesh& m : scene.meshes) {
     const auto sound = [&](const auto& attribute) {
       if (attribute.indices.empty())

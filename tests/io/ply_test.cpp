@@ -135,12 +135,6 @@ TEST(Ply, UnknownElementsAndListsAreSkipped) {
   EXPECT_EQ(s.meshes[0].positions[2].x, 2.0F);
 }
 
-TEST(Ply, ACloudOfPointsHasNoTriangles) {
-  const Scene s = read(header("ascii", 3, kXyz, 0, "") + "0 0 0\n1 0 0\n0 1 0\n");
-  EXPECT_EQ(s.triangle_count(), 0U);
-  EXPECT_EQ(s.warnings.size(), 1U);
-}
-
 TEST(Ply, LiesAreRefusedBeforeAnythingIsAllocated) {
   const std::string list = "property list uchar int vertex_indices\n";
   EXPECT_NE(error_of(header("binary_little_endian", 2000000000, kXyz, 0, list)).find("2000000000"),

@@ -199,6 +199,12 @@ bool covers(const SnappedLine& l, int px, int py) {
 }
 
 bool covers(const SnappedPoint& p, int px, int py) {
+  if (p.round && p.size_fx8 >= 384) {
+    const std::int64_t dx = 2 * (sample_fx8(px) - p.v.x_fx8);
+    const std::int64_t dy = 2 * (sample_fx8(py) - p.v.y_fx8);
+    const std::int64_t beyond = dx * dx + dy * dy - p.size_fx8 * p.size_fx8;
+    return beyond < 0 || (beyond == 0 && (dx < 0 || (dx == 0 && dy < 0)));
+  }
   // |sample − centre| < size / 2, doubled.
   const auto within = [&](std::int64_t sample, const Perturbed& centre) {
     const Perturbed twice = (Perturbed(sample) - centre) * Perturbed(2);

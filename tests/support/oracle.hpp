@@ -32,6 +32,7 @@ struct SnappedPoint {
   SnappedVertex v;
   std::int64_t size_fx8 = 256;
   std::int64_t id = 0;
+  bool round = false;
 };
 
 /// A primitive and what is added to its depth: constant + slope · its steepest change per px.
@@ -74,7 +75,8 @@ struct OracleImage {
 /// as it is written, with y down and both ends moved by −(ε, ε²) for an infinitesimal ε. A wide
 /// line is moved by −(width − 1) / 2 across and each of its pixels repeated.
 [[nodiscard]] bool covers(const SnappedLine& l, int px, int py);
-/// Whether the sample of pixel (px, py) lies in the square, moved likewise.
+/// Whether the sample of pixel (px, py) lies in the square, moved likewise, or, round and of 1.5 px
+/// or more, in the disc with the left half of its rim and the top.
 [[nodiscard]] bool covers(const SnappedPoint& p, int px, int py);
 
 [[nodiscard]] float depth_at(const SnappedPrimitive& p, int px, int py);

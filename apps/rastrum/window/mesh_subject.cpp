@@ -71,8 +71,9 @@ std::vector<std::string> axis_names(const std::vector<family::AxisInfo>& axis) {
 std::shared_ptr<const LoadedScene> load_scene(const SceneArguments& a) {
   Timeline timeline;
   Progress progress(true);
-  return std::make_shared<const LoadedScene>(
-      load_inputs(a.inputs, a.normals, timeline, progress, a.format));
+  Inputs inputs = load_inputs(a.inputs, a.normals, timeline, progress, a.format);
+  set_sizes(inputs.scene, a.sizes);
+  return std::make_shared<const LoadedScene>(std::move(inputs));
 }
 
 /// The renderer, made anew where its options or its row change.

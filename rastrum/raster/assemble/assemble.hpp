@@ -97,11 +97,13 @@ RASTRUM_HD Fate assemble_line(const Geometry& frame, const Draw& draw, std::uint
 template <class Geometry, class Emit>
 RASTRUM_HD Fate assemble_point(const Geometry& frame, const Draw& draw, std::uint64_t id,
                                std::uint32_t flags, PrimitiveCorners<1> c, Emit&& emit) {
-  if (!c.finite) return Fate::dropped;
+  const float size = draw.size_of(id - draw.first_id);
+  if (!c.finite || !std::isfinite(size)) return Fate::dropped;
   if (c.needs_clip && !clip_point(c.clip[0], frame.viewport, c.projected[0])) return Fate::culled;
   Piece piece;
-  if (make_point(c.projected[0], id, flags, point_size_fx8(draw.point_size),
-                 {0, 0, frame.width, frame.height}, piece) == SetupResult::culled)
+  if (draw.is_round()) flags |= kRound;
+  if (make_point(c.projected[0], id, flags, point_size_fx8(size), {0, 0, frame.width, frame.height},
+                 piece) == SetupResult::culled)
     return Fate::culled;
   emit(piece);
   return Fate::drawn;

@@ -63,21 +63,16 @@ RASTRUM_HD inline SetupResult make_line(const ProjectedVertex& a, const Projecte
   return SetupResult::drawn;
 }
 
-/// A point is the square of its size (n.8, px) under the top-left rule: the samples in
-/// [x − size / 2, x + size / 2) × [y − size / 2, y + size / 2).
+/// Fills `piece` unless the square of `size_fx8` about the point has no sample of `view`. With
+/// kRound in `flags` it is a disc, unless that is so small that it may hold no sample.
 RASTRUM_HD inline SetupResult make_point(const ProjectedVertex& v, std::uint64_t id,
                                          std::uint32_t flags, std::int32_t size_fx8, Rect view,
                                          Piece& piece) {
-  // Pixel i is in from 2 (256 i + 128) ≥ 2 v ∓ size on: ⌈(2 v ∓ size − 256) / 512⌉.
-  const auto first = [](std::int32_t twice) {
-    return (twice - kSubpixels + 2 * kSubpixels - 1) >> (kSubpixelBits + 1);
-  };
+  if (size_fx8 < kLeastRound) flags &= ~kRound;
   piece.x[0] = v.x_fx8;
   piece.y[0] = v.y_fx8;
-  piece.x[1] = first(2 * v.x_fx8 - size_fx8);
-  piece.x[2] = first(2 * v.x_fx8 + size_fx8);
-  piece.y[1] = first(2 * v.y_fx8 - size_fx8);
-  piece.y[2] = first(2 * v.y_fx8 + size_fx8);
+  piece.x[1] = size_fx8;
+  piece.x[2] = piece.y[1] = piece.y[2] = 0;
   piece.flags = flags | kPoint;
   if (piece_bounds(piece, view).empty()) return SetupResult::culled;
   piece.z0 = v.depth;
@@ -91,8 +86,10 @@ RASTRUM_HD inline std::uint32_t whole_width(float width) {
   return width > 1 ? static_cast<std::uint32_t>(std::nearbyint(width)) : 1;
 }
 
+/// In [1, kMaxPointSize] px. A NaN counts as 1.
 RASTRUM_HD inline std::int32_t point_size_fx8(float size) {
-  return size > 1 ? static_cast<std::int32_t>(std::nearbyint(size * kSubpixels)) : kSubpixels;
+  const float most = size < kMaxPointSize ? size : kMaxPointSize;
+  return size > 1 ? static_cast<std::int32_t>(std::nearbyint(most * kSubpixels)) : kSubpixels;
 }
 
 }  // namespace rastrum::raster

@@ -79,7 +79,11 @@ class BinLists {
       sum += counts[b + 1];
     }
     for_each_run(entries, [&](std::uint32_t bin, std::span<const Entry> run) {
-      std::copy(run.begin(), run.end(), sorted_.data() + begin_[bin + 1]);
+      Entry* const to = sorted_.data() + begin_[bin + 1];
+      if (run.size() == 1)  // points lie anywhere; a call of memmove costs more than they do
+        *to = run.front();
+      else
+        std::copy(run.begin(), run.end(), to);
       begin_[bin + 1] += static_cast<std::uint32_t>(run.size());
     });
   }

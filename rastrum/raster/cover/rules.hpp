@@ -1,6 +1,7 @@
 // Exact coverage: the one interval of a row and the one mask of a block. Every rasterizer covers
 // through these two, or through their SIMD form (cover_simd.cpp), which tests hold equal to them.
-// Triangles, lines and points are all the common inside of a few edge functions.
+// Triangles, lines and points are all the common inside of a few edge functions; of a round point
+// that is the square about it.
 //
 // The arithmetic. An edge from a to b has the function E(p) = (b.x − a.x)(p.y − a.y) −
 // (b.y − a.y)(p.x − a.x), positive inside. At sample (i, j), p = 256 (i, j) + 128, so a step of one
@@ -12,6 +13,7 @@
 // clamped to ±2^30 therefore keeps the sign of every sum and never overflows int32.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include <rastrum/config.hpp>
@@ -78,6 +80,49 @@ RASTRUM_HD inline LineBand line_band(const Piece& p) {
   return band;
 }
 
+/// A point is the square of its size (n.8, px) under the top-left rule: the samples in
+/// [x − size / 2, x + size / 2) × [y − size / 2, y + size / 2). Pixel i is in from 2 (256 i + 128)
+/// ≥ 2 v ∓ size on: ⌈(2 v ∓ size − 256) / 512⌉.
+RASTRUM_HD inline Rect point_square(std::int32_t x_fx8, std::int32_t y_fx8, std::int32_t size_fx8) {
+  const auto first = [](std::int32_t twice) {
+    return (twice - kSubpixels + 2 * kSubpixels - 1) >> (kSubpixelBits + 1);
+  };
+  return {first(2 * x_fx8 - size_fx8), first(2 * y_fx8 - size_fx8), first(2 * x_fx8 + size_fx8),
+          first(2 * y_fx8 + size_fx8)};
+}
+
+/// Round points below this size, n.8 px, are square: a disc of less than √2 px may hold no sample.
+inline constexpr std::int32_t kLeastRound = 3 * kSubpixels / 2;
+
+/// Pixels [begin, end) of a row.
+struct Span {
+  int begin, end;
+};
+
+/// The pixels of row y in the disc of a round point, in [x0, x1): the samples within it, and of
+/// those on its rim the left half with the top, as of the square. In 1/512 px, where all is whole:
+/// u² + v² against size², u and v from the centre to the sample.
+RASTRUM_HD inline Span disc_span(std::int32_t x_fx8, std::int32_t y_fx8, std::int32_t size_fx8,
+                                 int y, int x0, int x1) {
+  const std::int64_t v = 2 * (std::int64_t{y} * kSubpixels + kHalfPixel - y_fx8);
+  const std::int64_t room = std::int64_t{size_fx8} * size_fx8 - v * v;
+  if (room < 0) return {x0, x0};
+  // Below 2^41, so its root is never rounded up to a whole number.
+  const auto root = static_cast<std::int64_t>(std::sqrt(static_cast<double>(room)));
+  const bool left = room > 0 || v < 0;    // the sample at −root is in
+  const bool right = root * root < room;  // that at root, too
+  if (!left) return {x0, x0};
+  // The first and last u that are in; where both are 0 it is the top, or a row of one sample.
+  const std::int64_t first = -root, last = right || root == 0 ? root : root - 1;
+  const std::int64_t centre = 2 * std::int64_t{x_fx8} - kSubpixels;
+  const std::int64_t begin = -((-(centre + first)) >> (kSubpixelBits + 1));
+  const std::int64_t end = ((centre + last) >> (kSubpixelBits + 1)) + 1;
+  const auto cut = [&](std::int64_t x) {
+    return static_cast<int>(x < x0 ? x0 : (x > x1 ? x1 : x));
+  };
+  return {cut(begin), cut(end > begin ? end : begin)};
+}
+
 /// The edge functions whose common inside a piece is: a triangle's three; the two sides of a line
 /// and its ends; the four sides of a point.
 struct Edges {
@@ -88,8 +133,10 @@ struct Edges {
 RASTRUM_HD inline Edges edges_of(const Piece& p) {
   if (is_triangle(p))
     return {{edge_function(p, 0), edge_function(p, 1), edge_function(p, 2), {}}, 3};
-  if ((p.flags & kPoint) != 0)
-    return {{{-p.x[1], 1, 0}, {p.x[2] - 1, -1, 0}, {-p.y[1], 0, 1}, {p.y[2] - 1, 0, -1}}, 4};
+  if ((p.flags & kPoint) != 0) {
+    const Rect r = point_square(p.x[0], p.y[0], p.x[1]);
+    return {{{-r.x0, 1, 0}, {r.x1 - 1, -1, 0}, {-r.y0, 0, 1}, {r.y1 - 1, 0, -1}}, 4};
+  }
   // n ≤ pixel < n + width ⇔ run (pixel + 1) > base + rise m and run (pixel − width + 1) ≤ the same.
   const LineBand l = line_band(p);
   const std::int64_t below = l.run - 1 - l.base;
@@ -103,8 +150,10 @@ RASTRUM_HD inline Edges edges_of(const Piece& p) {
 /// The pixels that may be covered, cut to `view`. May be empty.
 RASTRUM_HD inline Rect piece_bounds(const Piece& p, Rect view) {
   if (has_corners(p)) return sample_bounds(p.x, p.y, view);
-  Rect box{p.x[1], p.y[1], p.x[2], p.y[2]};
-  if ((p.flags & kLine) != 0) {
+  Rect box;
+  if ((p.flags & kPoint) != 0) {
+    box = point_square(p.x[0], p.y[0], p.x[1]);
+  } else {
     const LineBand band = line_band(p);
     const std::int32_t first = p.x[2], end = p.y[2];
     const auto a = static_cast<int>(band.minor(first));
@@ -128,11 +177,6 @@ RASTRUM_HD inline bool may_touch(const Edges& edges, Rect r) {
   return true;
 }
 
-/// Pixels [begin, end) of a row.
-struct Span {
-  int begin, end;
-};
-
 /// The pixels of row y that the piece covers, within [x0, x1): exact, possibly empty.
 RASTRUM_HD inline Span row_span(const Piece& p, int y, int x0, int x1) {
   std::int64_t begin = x0;
@@ -152,7 +196,10 @@ RASTRUM_HD inline Span row_span(const Piece& p, int y, int x0, int x1) {
     }
   }
   if (end < begin) end = begin;
-  return {static_cast<int>(begin), static_cast<int>(end)};
+  const Span span{static_cast<int>(begin), static_cast<int>(end)};
+  return is_round(p) && span.begin < span.end
+             ? disc_span(p.x[0], p.y[0], p.x[1], y, span.begin, span.end)
+             : span;
 }
 
 /// The samples of block (bx, by) inside of all edges; bit 8 · row + column. Of its rows and columns
@@ -177,6 +224,18 @@ RASTRUM_HD inline std::uint64_t cover_8x8(const Edges& edges, int bx, int by,
   return mask;
 }
 
+/// The samples of block (bx, by) in the disc of a round point.
+RASTRUM_HD inline std::uint64_t cover_disc(const Piece& p, int bx, int by) {
+  std::uint64_t mask = 0;
+  const int x0 = bx * kBlockSize;
+  for (int row = 0; row < kBlockSize; ++row) {
+    const Span s = disc_span(p.x[0], p.y[0], p.x[1], by * kBlockSize + row, x0, x0 + kBlockSize);
+    const std::uint64_t bits = (1U << (s.end - x0)) - (1U << (s.begin - x0));
+    mask |= bits << (row * kBlockSize);
+  }
+  return mask;
+}
+
 /// The samples of block (bx, by) that a quadric's piece covers, as far as `within` of it.
 RASTRUM_HD inline std::uint64_t cover_quadric(const Piece& p, int bx, int by, Rect within) {
   std::uint64_t mask = 0;
@@ -195,7 +254,7 @@ RASTRUM_HD inline std::uint64_t cover_8x8(const Piece& p, int bx, int by) {
     const Rect block{x0, y0, x0 + kBlockSize, y0 + kBlockSize};
     return cover_quadric(p, bx, by, sample_bounds(p.x, p.y, block));
   }
-  return cover_8x8(edges_of(p), bx, by);
+  return is_round(p) ? cover_disc(p, bx, by) : cover_8x8(edges_of(p), bx, by);
 }
 
 /// Calls f(x, y) for the pixels of `view` whose samples the piece covers, row by row.
@@ -219,8 +278,10 @@ RASTRUM_HD inline void cover_blocks(const Piece& p, Rect box, Rect view, Skip&& 
     for (int bx = box.x0 / kBlockSize; bx <= (box.x1 - 1) / kBlockSize; ++bx) {
       const int x0 = bx * kBlockSize, y0 = by * kBlockSize;
       if (!may_touch(edges, {x0, y0, x0 + kBlockSize, y0 + kBlockSize}) || skip(bx, by)) continue;
-      const std::uint64_t mask = quadric ? cover_quadric(p, bx, by, box)
-                                         : cover_8x8(edges, bx, by) & samples_inside(view, bx, by);
+      const std::uint64_t mask =
+          quadric ? cover_quadric(p, bx, by, box)
+                  : (is_round(p) ? cover_disc(p, bx, by) : cover_8x8(edges, bx, by)) &
+                        samples_inside(view, bx, by);
       if (mask != 0) add(bx, by, mask);
     }
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include <rastrum/error.hpp>
+#include <rastrum/raster/draws/vertices_of.hpp>
 #include <rastrum/raster/setup/quadric_surface.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
 
@@ -65,7 +66,8 @@ std::uint64_t quadric_in_front(const FrameGeometry& frame, const Draw& draw, con
 }  // namespace
 
 DrawCut::DrawCut(const InstanceView& instance, std::span<const ClipPlane> world) {
-  if (const MeshView* const mesh = instance.mesh()) positions = mesh->positions;
+  if (const VertexList vertices = vertices_of(instance.geometry); vertices.positions != nullptr)
+    positions = *vertices.positions;
   planes.reserve(world.size() + instance.clip_planes.size());
   const auto& m = instance.object_to_world.m;
   for (const ClipPlane& p : world) {

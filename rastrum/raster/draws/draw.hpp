@@ -6,6 +6,7 @@
 #include <span>
 
 #include <rastrum/config.hpp>
+#include <rastrum/points_and_lines.hpp>
 #include <rastrum/primitives.hpp>
 #include <rastrum/raster/draws/quadrics.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
@@ -31,6 +32,9 @@ struct Draw : Primitives {
   /// Who knows the corners of its triangles where they are no packed list (MeshView::faces, indices
   /// of other types), and must outlive the frame; null: `indices` are they. The host's alone.
   const MeshView* mesh = nullptr;
+  /// The same of points and lines of a scene, and of points their sizes. At most one of the three.
+  const PointsView* points = nullptr;
+  const LinesView* lines = nullptr;
   bool visible = true;  ///< else its primitives are culled
   /// What shades it and, where `flags` has kTested, tests its fragments; none: what
   /// RendererAccess::draw is given.
@@ -52,14 +56,36 @@ struct Draw : Primitives {
     vertex_count = of.positions.size();
     primitive_count = of.triangle_count();
   }
+  void set_points(const PointsView& of) {
+    points = &of;
+    topology = Topology::points;
+    point_size = of.point_size;
+    vertex_count = of.positions.size();
+    primitive_count = of.size();
+  }
+  void set_lines(const LinesView& of) {
+    lines = &of;
+    topology = Topology::lines;
+    line_width = of.line_width;
+    vertex_count = of.positions.size();
+    primitive_count = of.size();
+  }
   [[nodiscard]] RASTRUM_HD std::uint32_t vertex(std::uint64_t primitive, int corner) const {
 #if !defined(__CUDA_ARCH__)
     if (mesh != nullptr)
       return mesh->vertex(mesh->place(primitive).corner[static_cast<std::size_t>(corner)]);
+    if (points != nullptr) return points->vertex(primitive);
+    if (lines != nullptr) return lines->vertex(primitive, corner);
 #endif
     const std::size_t i = static_cast<std::size_t>(primitive) * static_cast<std::size_t>(topology) +
                           static_cast<std::size_t>(corner);
     return indices.empty() ? static_cast<std::uint32_t>(i) : indices[i];
+  }
+  /// Of its corners, whoever knows them.
+  [[nodiscard]] IndexView index_view() const {
+    if (mesh != nullptr) return mesh->indices;
+    if (points != nullptr) return points->indices;
+    return lines != nullptr ? lines->indices : IndexView(indices);
   }
   [[nodiscard]] RASTRUM_HD std::uint32_t flags_of(std::uint64_t primitive) const {
     if (material_flags.empty()) return flags;
@@ -68,6 +94,16 @@ struct Draw : Primitives {
     if (mesh != nullptr) face = mesh->place(face).face;
 #endif
     return flags | material_flags[face_materials[face]];
+  }
+  /// Of a point, px.
+  [[nodiscard]] RASTRUM_HD float size_of(std::uint64_t primitive) const {
+#if !defined(__CUDA_ARCH__)
+    if (points != nullptr && !points->sizes.empty()) return points->sizes[vertex(primitive, 0)];
+#endif
+    return point_size;
+  }
+  [[nodiscard]] bool is_round() const {
+    return points != nullptr && points->round;
   }
   /// Those that some primitive may have.
   [[nodiscard]] std::uint32_t any_flags() const {
@@ -83,7 +119,16 @@ struct Draw : Primitives {
   }
   /// Whether the setup kernel may make its pieces; otherwise assemble_primitive does.
   [[nodiscard]] bool has_kernel() const {
-    return visible && quadrics == nullptr && topology == Topology::triangles && depth_bias == 0 &&
+    return may_have_kernel(Topology::triangles);
+  }
+  /// Whether the kernel of points may make fragments of them.
+  [[nodiscard]] bool has_points_kernel() const {
+    return may_have_kernel(Topology::points);
+  }
+
+ private:
+  [[nodiscard]] bool may_have_kernel(Topology of) const {
+    return visible && quadrics == nullptr && topology == of && depth_bias == 0 &&
            depth_bias_slope == 0;
   }
 };

@@ -50,6 +50,10 @@ bool has_quadrics(const FrameRequest& request) {
   return std::ranges::any_of(request.draws, [](const Draw& d) { return d.quadrics != nullptr; });
 }
 
+bool has_round_points(const FrameRequest& request) {
+  return std::ranges::any_of(request.draws, [](const Draw& d) { return d.is_round(); });
+}
+
 }  // namespace
 
 Totals begin_frame(FrameRequest& request) {
@@ -225,11 +229,12 @@ FrameStats FrameDriver::draw(FrameRequest& request) {
   stats.rasterizer = needs_.rasterizer;
   stats.visibility = needs_.visibility;
   stats.isa = choose_isa(request.isa);
-  if (!needs_.quadrics && has_quadrics(request))
-    throw Error(Errc::unsupported, std::string("'")
-                                       .append(needs_.rasterizer)
-                                       .append("' draws triangles, points and lines; spheres, "
-                                               "cylinders, tubes and discs are the renderer's"));
+  if (!needs_.quadrics && (has_quadrics(request) || has_round_points(request)))
+    throw Error(Errc::unsupported,
+                std::string("'")
+                    .append(needs_.rasterizer)
+                    .append("' draws triangles, square points and lines; round points, spheres, "
+                            "cylinders, tubes and discs are the renderer's"));
   Totals totals = begin_frame(request);
   totals.vertices = place_projected(request.draws);
   const Plan cut = plan(request, totals);

@@ -21,7 +21,7 @@ struct Needs {
   int triangle_bytes = 96;
   /// Expands triangles to rows, bins or pairs, which it keeps below Frame::expansion_bytes.
   bool expands = false;
-  bool quadrics = false;  ///< draws spheres and their like
+  bool quadrics = false;  ///< draws spheres and their like, and round points
   /// Needs all triangles of a view at once: instead of batches of triangles the view is cut until
   /// they fit (Frame::view_bytes), if the method can tell (`cuts_views`).
   bool whole_view = false, cuts_views = false;

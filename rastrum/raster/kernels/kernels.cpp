@@ -5,6 +5,7 @@
 #include <bit>
 
 #include <rastrum/raster/assemble/clip.hpp>
+#include <rastrum/raster/assemble/points_and_lines.hpp>
 #include <rastrum/raster/cover/depth_bounds.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/kernels/kernels_simd.hpp>
@@ -45,6 +46,27 @@ SetupOutput setup_scalar(const SetupInput& in, Piece* pieces, BinFragment*,
     } else if (make_piece(v[0], v[1], v[2], in.first_id + t, in.flags, in.cull, in.view,
                           pieces[out.pieces]) == SetupResult::drawn) {
       ++out.pieces;
+    }
+  }
+  return out;
+}
+
+SetupOutput points_scalar(const PointsInput& in, BinFragment* fragments,
+                          std::uint32_t* slow) noexcept {
+  SetupOutput out;
+  for (std::uint32_t i = 0; i < in.count; ++i) {
+    const ProjectedVertex& v = in.vertices[i];
+    const std::int32_t size = in.sizes != nullptr ? in.sizes[i] : kSubpixels;
+    Piece piece;
+    if (v.x_fx8 == kNeedsClip || size > kMicroPoint) {
+      slow[out.slow++] = i;
+    } else if (make_point(v, in.first_id + i, in.flags, size, in.view, piece) ==
+               SetupResult::drawn) {
+      const std::uint64_t key = make_key(plane_depth_at(piece, 0, 0), piece.low);
+      ++out.micro;
+      for_each_covered(piece, in.view, [&](int x, int y) {
+        fragments[out.fragments++] = fragment_at(x, y, key, in.flags, in.bin_columns);
+      });
     }
   }
   return out;
@@ -146,10 +168,10 @@ RaisedKeys raise_scalar(const QuadricBatch&, Rect, const DepthBounds*,
 
 constexpr std::size_t kIsaCount = static_cast<std::size_t>(Isa::neon) + 1;
 
-constexpr Kernels kScalar{project_scalar, project64_scalar,    setup_scalar,         cover_scalar,
-                          masks_scalar,   keys_scalar,         maximum_scalar,       lowest_scalar,
-                          covered_scalar, store_opaque_scalar, store_blended_scalar, bins_scalar,
-                          defer_scalar,   raise_scalar};
+constexpr Kernels kScalar{
+    project_scalar,      project64_scalar,     setup_scalar,   points_scalar, cover_scalar,
+    masks_scalar,        keys_scalar,          maximum_scalar, lowest_scalar, covered_scalar,
+    store_opaque_scalar, store_blended_scalar, bins_scalar,    defer_scalar,  raise_scalar};
 
 }  // namespace
 

@@ -46,6 +46,20 @@ struct SetupOutput {
   bool index_in_range = true;   ///< false: the batch was abandoned
 };
 
+/// Points that become fragments at once. `slow` of them are those that need the clipper or are
+/// larger than kMicroPoint.
+struct PointsInput {
+  const ProjectedVertex* vertices = nullptr;  ///< one a point
+  std::uint32_t count = 0;                    ///< at most kSetupBatch
+  const std::int32_t* sizes = nullptr;        ///< n.8, one a point; null: all are one pixel
+  std::uint64_t first_id = 0;
+  std::uint32_t flags = 0;  ///< without any of kMayDrop
+  Rect view;
+  std::uint32_t bin_columns = 0;  ///< bins in a row of the image
+};
+/// The largest of them, n.8: nine fragments take no more memory than a piece and its places.
+inline constexpr std::int32_t kMicroPoint = 3 * kSubpixels;
+
 /// A (bin, piece) pair. Coverages that draw what faces away after the rest number the bins twice
 /// (BinNumbers).
 struct PieceInBin {
@@ -77,6 +91,15 @@ struct BinNumbers {
   }
 };
 
+/// A fragment at pixel (x, y) of an image with so many bins in a row; `flags` are its piece's.
+RASTRUM_HD inline BinFragment fragment_at(int x, int y, std::uint64_t key, std::uint32_t flags,
+                                          std::uint32_t bin_columns) {
+  const auto ux = static_cast<std::uint32_t>(x), uy = static_cast<std::uint32_t>(y);
+  return {key, uy / kBinSize * bin_columns + ux / kBinSize,
+          ((uy % kBinSize / kBlockSize * kBlocksPerBinRow + ux % kBinSize / kBlockSize) * 64 +
+           uy % kBlockSize * kBlockSize + ux % kBlockSize) |
+              ((flags & kTranslucent) != 0 ? kTranslucentFragment : 0)};
+}
 /// Where in its bin a fragment lies, px.
 RASTRUM_HD inline int column_in_bin(const BinFragment& f) {
   const auto pixel = static_cast<int>(f.pixel & ~kTranslucentFragment);
@@ -150,6 +173,10 @@ struct Kernels {
   /// enough may become fragments instead of a piece, or nothing where it covers no sample.
   SetupOutput (*setup)(const SetupInput& input, Piece* pieces, BinFragment* fragments,
                        std::uint32_t* slow) noexcept;
+
+  /// Points as fragments, in order: `micro` of the result are those that are drawn so.
+  SetupOutput (*points)(const PointsInput& input, BinFragment* fragments,
+                        std::uint32_t* slow) noexcept;
 
   /// Writes the blocks of `bin` that pieces list[cursor …] cover, with their masks (none empty),
   /// until the list ends or fewer than kBlocksPerBin places are left; returns how many, moves the

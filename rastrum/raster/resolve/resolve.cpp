@@ -227,7 +227,8 @@ void check_draw(const Draw& draw, std::string_view noun, std::size_t number) {
   const std::uint64_t most = draw.mesh != nullptr
                                  ? draw.mesh->triangle_count()
                                  : corners / static_cast<std::size_t>(draw.topology);
-  if (draw.primitive_count > most)
+  // Those of points and lines were counted with their arrays.
+  if (draw.points == nullptr && draw.lines == nullptr && draw.primitive_count > most)
     refuse(noun, number,
            "primitive_count is " + std::to_string(draw.primitive_count) + ", but its " +
                std::to_string(corners) + (indexed ? " indices" : " vertices") + " make up " +
@@ -351,7 +352,7 @@ Totals number_draws(std::span<Draw> draws, std::uint64_t first_id, std::string_v
 void check_indices(std::span<const Draw> draws, std::string_view noun) {
   for (std::size_t i = 0; i < draws.size(); ++i) {
     const Draw& draw = draws[i];
-    const IndexView indices = draw.mesh != nullptr ? draw.mesh->indices : IndexView(draw.indices);
+    const IndexView indices = draw.index_view();
     if (const std::size_t at = first_beyond(indices, draw.vertex_count); at != indices.size())
       refuse(noun, i,
              "indices[" + std::to_string(at) + "]: index " + indices.text(at) +

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 
+#include <rastrum/raster/draws/vertices_of.hpp>
 #include <rastrum/raster/shade/material_scalar.hpp>
 #include <rastrum/raster/shade/normals.hpp>
 #include <rastrum/raster/shade/quadric_shader.hpp>
@@ -53,10 +54,13 @@ void SurfaceLocator::locate_quadric(const Draw& draw, int x, int y) {
 }
 
 Vec3d position_on(const InstanceView& instance, const Fragment& f) {
-  const MeshView& mesh = *instance.mesh();
-  return in_world(
-      instance, interpolate(f, {mesh.positions.wide(f.vertex[0]), mesh.positions.wide(f.vertex[1]),
-                                mesh.positions.wide(f.vertex[2])}));
+  const VertexList vertices = vertices_of(instance.geometry);
+  Vec3d p;
+  for (int c = 0; c < static_cast<int>(vertices.topology); ++c) {
+    const Vec3d part = vertices.positions->wide(f.vertex[c]) * f.weights.b[c];
+    p = c == 0 ? part : p + part;
+  }
+  return in_world(instance, p);
 }
 
 Vec3d in_world(const InstanceView& instance, Vec3d p) {
@@ -74,6 +78,10 @@ Vec3d SurfaceScene::to_viewer(int x, int y) const {
 
 Vec3d SurfaceScene::object_normal(const SeenFragment& f) const {
   if (f.quadric != nullptr) return f.quadric->point.normal;
+  const GeometryView& geometry = scene.instances[f.draw].geometry;
+  if (std::holds_alternative<LinesView>(geometry)) return {};
+  if (const auto* const points = std::get_if<PointsView>(&geometry))
+    return points->normals.empty() ? Vec3d{} : Vec3d(safe_normal(points->normals[f.vertex[0]]));
   const MeshView& mesh = *lit.draws[f.draw].mesh;
   Vec3 corners[3];
   corner_normals(mesh, mesh.place(f.triangle), f.vertex, corners);
@@ -105,13 +113,14 @@ double SurfaceScene::ray_length(int x, int y) const {
 }
 
 Vec4 SurfaceScene::albedo(const FrameGeometry& frame, const SeenFragment& f) const {
+  const InstanceView& instance = scene.instances[f.draw];
   if (f.quadric != nullptr) {
-    const InstanceView& instance = scene.instances[f.draw];
     const QuadricGeometry& geometry = frame.draws[f.draw].quadrics->geometry();
     const Vec4 own = color_at(geometry, instance, f.triangle, f.quadric->point.along);
     if (scene.materials.empty()) return own;
-    return scene.materials[material_of(geometry, instance)].base_color * own;
+    return scene.materials[material_of(instance)].base_color * own;
   }
+  if (is_points_or_lines(instance.geometry)) return points_and_lines->albedo(frame, f);
   return material_albedo(materials->view(), frame, f);
 }
 

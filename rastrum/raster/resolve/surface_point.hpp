@@ -14,6 +14,7 @@
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/material.hpp>
+#include <rastrum/raster/shade/point_line_shader.hpp>
 #include <rastrum/scene.hpp>
 
 namespace rastrum::raster {
@@ -47,7 +48,7 @@ class SurfaceLocator {
   std::uint64_t quadric_id_ = kMaxId + 1;
 };
 
-/// Where a fragment of a mesh lies in the world, by its corners and weights.
+/// Where a fragment of a mesh, point or line lies in the world, by its corners and weights.
 [[nodiscard]] Vec3d position_on(const InstanceView& instance, const Fragment& f);
 /// The same of a place in object space.
 [[nodiscard]] Vec3d in_world(const InstanceView& instance, Vec3d p);
@@ -59,6 +60,7 @@ struct SurfaceScene {
   LitScene lit;
   Mat4d to_camera;
   const MaterialScene* materials = nullptr;  ///< with textures of what alpha and colour come from
+  const PointLineShader* points_and_lines = nullptr;  ///< that of their draws
 
   SurfaceScene(const SceneView& s, const Camera& c, int width, int height)
       : scene(s), camera(c), lit(s, c, width, height), to_camera(world_to_camera(c)) {}
@@ -78,7 +80,7 @@ struct SurfaceScene {
   [[nodiscard]] Vec3d in_camera(Vec3d direction) const;
   /// How far the pixel's ray goes for each unit along the axis; 1 for an orthographic camera.
   [[nodiscard]] double ray_length(int x, int y) const;
-  /// Linear light, straight alpha. Requires `materials`.
+  /// Linear light, straight alpha. Requires `materials`, or `points_and_lines`.
   [[nodiscard]] Vec4 albedo(const FrameGeometry& frame, const SeenFragment& f) const;
 
  private:

@@ -24,8 +24,7 @@ RASTRUM_HD constexpr std::uint64_t id_of_key(std::uint64_t key) {
 /// on the screen, whose y points down). Its vertices are its three exact edges: edge i runs from
 /// vertex i to vertex (i + 1) mod 3.
 /// A line keeps its two ends, in x[2] and y[2] the first pixel along its major axis and the one
-/// past the last, and its width in the flags. A point keeps its centre and its pixels
-/// [x[1], x[2]) × [y[1], y[2]).
+/// past the last, and its width in the flags. A point keeps its centre and, in x[1], its size.
 /// What a quadric keeps is in quadric.hpp.
 /// Vertex 0 is the first submitted one and the depth plane's origin.
 struct alignas(16) Piece {
@@ -48,6 +47,8 @@ inline constexpr std::uint32_t kCutAway = 1U << 31;
 inline constexpr std::uint32_t kMayDrop = kTested | kOverPicture | kCut;
 /// What the piece is; none of them: a triangle.
 inline constexpr std::uint32_t kLine = 2, kPoint = 4, kQuadric = 64;
+/// A point that is a disc.
+inline constexpr std::uint32_t kRound = 1U << 12;
 inline constexpr int kLineWidthShift = 16;
 /// A triangle that was wound clockwise on the screen: where surfaces are closed, one of those that
 /// others hide.
@@ -60,6 +61,9 @@ inline constexpr std::uint32_t kDeferred = 1U << 13;
 
 RASTRUM_HD inline bool is_triangle(const Piece& p) {
   return (p.flags & (kLine | kPoint | kQuadric)) == 0;
+}
+RASTRUM_HD inline bool is_round(const Piece& p) {
+  return (p.flags & kRound) != 0;
 }
 RASTRUM_HD inline bool is_quadric(const Piece& p) {
   return (p.flags & kQuadric) != 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bitset>
+#include <cmath>
 
 #include <rastrum/raster/assemble/assemble.hpp>
 
@@ -27,13 +28,24 @@ struct Corners {
                     [&](std::uint32_t index) { return index >= draw.vertex_count; }))
       return false;
     seen_from = {};
-    if (const ProjectedVertex* const projected = frame.projected_of(draw))
-      for (std::uint32_t i = 0; i < count * 3; ++i) vertices[i] = projected[indices[i]];
-    else
-      draw.source.project_indexed({indices, count * 3}, frame.viewport, frame.isa, vertices);
+    project(frame, draw, count * 3);
     return true;
   }
-  /// All vertices of a draw for which is_projected_in_setup() says so.
+  /// The vertices of points. Returns whether all indices are in range.
+  bool load_points(const FrameGeometry& frame, const Draw& draw, std::uint64_t t,
+                   std::uint32_t count) {
+    if (draw.points != nullptr && draw.points->indices.empty()) {
+      draw.source.project(t, t + count, frame.viewport, frame.isa, vertices);
+      return true;
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+      indices[i] = draw.vertex(t + i, 0);
+      if (indices[i] >= draw.vertex_count) return false;
+    }
+    project(frame, draw, count);
+    return true;
+  }
+  /// All vertices of a draw for which is_projected_at_once() says so.
   void load_all(const FrameGeometry& frame, const Draw& draw) {
     draw.source.project(0, draw.vertex_count, frame.viewport, frame.isa, vertices);
   }
@@ -43,7 +55,39 @@ struct Corners {
       if (vertices[i].x_fx8 != kNeedsClip) vertices[i] = moved(vertices[i], by);
     seen_from = at;
   }
+
+ private:
+  /// Those that the first `n` indices name.
+  void project(const FrameGeometry& frame, const Draw& draw, std::uint32_t n) {
+    if (const ProjectedVertex* const projected = frame.projected_of(draw))
+      for (std::uint32_t i = 0; i < n; ++i) vertices[i] = projected[indices[i]];
+    else
+      draw.source.project_indexed({indices, n}, frame.viewport, frame.isa, vertices);
+  }
 };
+
+/// Whether some of a draw's points are small enough for the kernel that makes fragments.
+bool has_small_points(const Draw& draw) {
+  return draw.has_points_kernel() && ((draw.points != nullptr && !draw.points->sizes.empty()) ||
+                                      point_size_fx8(draw.point_size) <= kMicroPoint);
+}
+
+/// The sizes of points as their kernel wants them. Those that are not finite count as large, and
+/// are dropped there.
+const std::int32_t* sizes_of(const Draw& draw, std::uint64_t first, std::uint32_t count,
+                             std::int32_t (&out)[kSetupBatch]) {
+  if (draw.points == nullptr || draw.points->sizes.empty()) {
+    const std::int32_t size = point_size_fx8(draw.point_size);
+    if (size == kSubpixels) return nullptr;
+    std::fill_n(out, count, size);
+    return out;
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const float size = draw.size_of(first + i);
+    out[i] = std::isfinite(size) ? point_size_fx8(size) : kMicroPoint + 1;
+  }
+  return out;
+}
 
 /// Triangles of a batch: those that some sample of a pixel sees, say.
 class TriangleSet {
@@ -199,7 +243,7 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
     input.first_id = draw.first_id;
     const ProjectedVertex* projected = geometry.projected_of(draw);
     const bool in_place = samples.size() == 1 && draw.mesh == nullptr;
-    if (in_place && projected == nullptr && is_projected_in_setup(draw)) {
+    if (in_place && projected == nullptr && is_projected_at_once(draw)) {
       corners.load_all(geometry, draw);
       projected = corners.vertices;
     }
@@ -218,6 +262,8 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
     input.view = image;
     input.bin_columns = static_cast<std::uint32_t>((geometry.width + kBinSize - 1) / kBinSize);
     input.micro = micro != nullptr;
+    const bool as_points = micro != nullptr && (flags & kMayDrop) == 0 && has_small_points(draw);
+    if (as_points && !corners.load_points(geometry, draw, t, count)) return false;
 
     TriangleSet seen, clipped, dropped;
     for (std::uint32_t sample = 0; sample < samples.size(); ++sample) {
@@ -230,10 +276,20 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
       BinFragment* const fragments =
           micro == nullptr ? nullptr : micro->room(kSetupBatch * kMicroSize * kMicroSize);
       Piece* const room = pieces.data.data() + pieces.count;
-      const SetupOutput out = draw.has_kernel() ? frame.kernel.setup(input, room, fragments, slow)
-                              : defers && may_defer(draw, input.flags)
-                                  ? defer_quadrics(frame, draw, t, count, input.flags, room, slow)
-                                  : all_slow(draw, t, count, slow);
+      SetupOutput out;
+      if (as_points) {
+        std::int32_t sizes[kSetupBatch];
+        out = frame.kernel.points(
+            {corners.vertices, count, sizes_of(draw, t, count, sizes), id,
+             input.flags | (draw.is_round() ? kRound : 0), image, input.bin_columns},
+            fragments, slow);
+      } else if (draw.has_kernel()) {
+        out = frame.kernel.setup(input, room, fragments, slow);
+      } else if (defers && may_defer(draw, input.flags)) {
+        out = defer_quadrics(frame, draw, t, count, input.flags, room, slow);
+      } else {
+        out = all_slow(draw, t, count, slow);
+      }
       if (!out.index_in_range) return false;
       const std::uint32_t first_piece = pieces.count;
       pieces.count += out.pieces;

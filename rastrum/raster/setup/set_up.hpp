@@ -11,11 +11,15 @@
 
 namespace rastrum::raster {
 
-/// Whether a draw's vertices are projected when its triangles are set up, all at once, rather than
-/// before: a million instances of a small mesh then keep no vertices.
-[[nodiscard]] inline bool is_projected_in_setup(const Draw& draw) {
+/// Whether a draw's vertices are projected when its triangles are set up, all at once: a million
+/// instances of a small mesh then keep no vertices.
+[[nodiscard]] inline bool is_projected_at_once(const Draw& draw) {
   return draw.has_kernel() && draw.source.matrix() != nullptr &&
          draw.primitive_count <= kSetupBatch && draw.vertex_count <= 3 * draw.primitive_count;
+}
+/// Whether its vertices are projected there rather than before. Those of points are asked for once.
+[[nodiscard]] inline bool is_projected_in_setup(const Draw& draw) {
+  return draw.points != nullptr || is_projected_at_once(draw);
 }
 
 /// The pieces of a run of triangles, in submission order except that a batch's clipped triangles

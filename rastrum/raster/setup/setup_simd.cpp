@@ -294,18 +294,12 @@ HWY_INLINE std::uint32_t write_fragments(const Piece p, std::uint32_t mask, cons
                                          BinFragment* out) {
   const int first_x = (min3(p.x[0], p.x[1], p.x[2]) + kHalfPixel - 1) >> kSubpixelBits;
   const int first_y = (min3(p.y[0], p.y[1], p.y[2]) + kHalfPixel - 1) >> kSubpixelBits;
-  const std::uint32_t translucent = (p.flags & kTranslucent) != 0 ? kTranslucentFragment : 0;
   std::uint32_t n = 0;
   for (; mask != 0; mask &= mask - 1) {
     const int sample = std::countr_zero(mask);
     const int x = first_x + sample % kMicroSize, y = first_y + sample / kMicroSize;
     if (x < in.view.x0 || x >= in.view.x1 || y < in.view.y0 || y >= in.view.y1) continue;
-    const auto ux = static_cast<std::uint32_t>(x), uy = static_cast<std::uint32_t>(y);
-    out[n++] = {make_key(plane_depth_at(p, x, y), p.low),
-                uy / kBinSize * in.bin_columns + ux / kBinSize,
-                ((uy % kBinSize / kBlockSize * kBlocksPerBinRow + ux % kBinSize / kBlockSize) * 64 +
-                 uy % kBlockSize * kBlockSize + ux % kBlockSize) |
-                    translucent};
+    out[n++] = fragment_at(x, y, make_key(plane_depth_at(p, x, y), p.low), p.flags, in.bin_columns);
   }
   return n;
 }
@@ -452,7 +446,74 @@ SetupOutput setup(const SetupInput& in, Piece* pieces, BinFragment* fragments,
   return result;
 }
 
+/// kLanes points of one pixel, from `in.vertices + first` on.
+HWY_INLINE void one_pixel_points(const PointsInput& in, std::uint32_t first, BinFragment* fragments,
+                                 std::uint32_t* slow, SetupOutput& out) {
+  const F32 df;
+  const I32 di;
+  const auto set = [&](int v) HWY_ATTR { return hn::Set(di, v); };
+  I vx, vy, bits, inv_w;
+  hn::LoadInterleaved4(di, reinterpret_cast<const std::int32_t*>(in.vertices + first), vx, vy, bits,
+                       inv_w);
+  const std::uint32_t clipped = lane_bits(hn::Eq(vx, set(kNeedsClip)));
+  // ⌈v / 256⌉ − 1, as point_square has it.
+  const I x = hn::ShiftRight<kSubpixelBits>(hn::Sub(vx, set(1)));
+  const I y = hn::ShiftRight<kSubpixelBits>(hn::Sub(vy, set(1)));
+  const auto inside = [&](I v, int begin, int end) HWY_ATTR {
+    return hn::And(hn::Gt(v, set(begin - 1)), hn::Lt(v, set(end)));
+  };
+  std::uint32_t drawn =
+      lane_bits(hn::And(inside(x, in.view.x0, in.view.x1), inside(y, in.view.y0, in.view.y1))) &
+      ~clipped;
+  // The depth formula without slopes.
+  const F z = hn::BitCast(df, bits);
+  const F depth = hn::Min(hn::IfThenElseZero(hn::Gt(z, hn::Zero(df)), z), hn::Set(df, 1.0F));
+  const I bin = hn::Add(hn::Mul(hn::ShiftRight<6>(y), set(static_cast<int>(in.bin_columns))),
+                        hn::ShiftRight<6>(x));
+  static_assert(kBinSize == 64 && kBlockSize == 8);
+  const auto part = [&](I v, int mask) HWY_ATTR { return hn::And(v, set(mask)); };
+  const I pixel = hn::Or(hn::Or(hn::ShiftLeft<6>(part(y, 0x38)), hn::ShiftLeft<3>(part(x, 0x38))),
+                         hn::Or(hn::ShiftLeft<3>(part(y, 7)), part(x, 7)));
+  const I flagged = hn::Or(
+      pixel, set((in.flags & kTranslucent) != 0 ? static_cast<int>(kTranslucentFragment) : 0));
+  HWY_ALIGN std::int32_t bins[kLanes], pixels[kLanes], depths[kLanes];
+  hn::Store(bin, di, bins);
+  hn::Store(flagged, di, pixels);
+  hn::Store(hn::BitCast(di, depth), di, depths);
+  for (std::uint32_t rest = clipped; rest != 0; rest &= rest - 1)
+    slow[out.slow++] = first + static_cast<std::uint32_t>(std::countr_zero(rest));
+  const std::uint64_t low = kIdMask - (in.first_id + first);
+  out.micro += static_cast<std::uint32_t>(std::popcount(drawn));
+  for (; drawn != 0; drawn &= drawn - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(drawn));
+    fragments[out.fragments++] = {
+        std::uint64_t{static_cast<std::uint32_t>(depths[i])} << kIdBits | (low - i),
+        static_cast<std::uint32_t>(bins[i]), static_cast<std::uint32_t>(pixels[i])};
+  }
+}
+
+SetupOutput points(const PointsInput& in, BinFragment* fragments, std::uint32_t* slow) noexcept {
+  SetupOutput out;
+  std::uint32_t i = 0;
+  if (in.sizes == nullptr)
+    for (; i + kLanes <= in.count; i += kLanes) one_pixel_points(in, i, fragments, slow, out);
+  if (i == in.count) return out;
+  // Larger ones, and the last few, the scalar way.
+  PointsInput rest = in;
+  rest.vertices += i;
+  rest.count -= i;
+  rest.first_id += i;
+  const SetupOutput tail =
+      kernels(Isa::scalar).points(rest, fragments + out.fragments, slow + out.slow);
+  for (std::uint32_t t = 0; t < tail.slow; ++t) slow[out.slow + t] += i;
+  out.fragments += tail.fragments;
+  out.micro += tail.micro;
+  out.slow += tail.slow;
+  return out;
+}
+
 void fill(Kernels& table) {
+  table.points = points;
   table.project = project;
   table.project64 = project64;
   table.setup = setup;

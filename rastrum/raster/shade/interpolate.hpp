@@ -203,7 +203,7 @@ class FragmentLocator {
     if (v.x_fx8 == kNeedsClip)
       (void)clip_point(frame_.clip_position(draw, fragment_.vertex[0]), frame_.viewport, v);
     constexpr double kPx = 1.0 / kSubpixels;
-    square_px_ = point_size_fx8(draw.point_size) * kPx;
+    square_px_ = point_size_fx8(draw.size_of(fragment_.triangle)) * kPx;
     WeightPlanes w{};
     w.x0 = v.x_fx8 * kPx - square_px_ / 2;
     w.y0 = v.y_fx8 * kPx - square_px_ / 2;

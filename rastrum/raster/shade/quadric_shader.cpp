@@ -19,9 +19,6 @@ Vec4 lerp(const Vec4& a, const Vec4& b, float t) {
 
 }  // namespace
 
-std::uint32_t material_of(const QuadricGeometry& geometry, const InstanceView& instance) {
-  return instance.material.value_or(std::visit([](const auto& g) { return g.material; }, geometry));
-}
 ArrayView<Vec4> colors_of(const QuadricGeometry& geometry, const InstanceView& instance) {
   if (instance.color) return {};
   return std::visit([](const auto& g) { return g.colors; }, geometry);
@@ -57,7 +54,7 @@ struct QuadricShader::KeptQuadrics {
   }
 };
 
-QuadricShader::QuadricShader(const QuadricLook& look, std::span<const Material> materials,
+QuadricShader::QuadricShader(const SurfaceLook& look, std::span<const Material> materials,
                              const Camera& camera, int width, int height)
     : look_(look), materials_(materials.begin(), materials.end()) {
   const LitScene lit({{}, materials, {}}, camera, width, height);
@@ -70,7 +67,7 @@ void QuadricShader::add(const QuadricStage& stage, const InstanceView& instance)
   const InstanceView place{MeshView{}, instance.object_to_world};
   const LitScene lit({{&place, 1}, {}, {}}, {}, 1, 1);
   const bool has_materials = !display_.empty();
-  const std::size_t m = has_materials ? material_of(stage.geometry(), instance) : 0;
+  const std::size_t m = has_materials ? material_of(instance) : 0;
   const Material& material = materials_[m];
   Surface s{&stage,
             lit.draws.front(),

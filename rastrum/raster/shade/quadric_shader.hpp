@@ -14,6 +14,7 @@
 #include <rastrum/raster/draws/quadrics.hpp>
 #include <rastrum/raster/setup/quadric_surface.hpp>
 #include <rastrum/raster/shade/lit.hpp>
+#include <rastrum/raster/shade/plain_surface.hpp>
 #include <rastrum/raster/shade/shading.hpp>
 #include <rastrum/scene.hpp>
 
@@ -22,19 +23,12 @@ namespace rastrum::raster {
 struct QuadricBlock;
 struct QuadricLanes;
 
-/// How the surfaces of a frame look.
-struct QuadricLook {
-  std::optional<LitModel> model;  ///< none: as materials
-  bool blends = false;            ///< alpha counts
-  float opacity = 1;              ///< the frame's
-};
-
 /// Shades draws of quadrics, in the order of `add`, and tests those whose material is a mask.
 /// Scenes without materials are of one that blends by its colours. Textures are not read: a quadric
 /// has no texture coordinates.
 class QuadricShader final : public BlockShader, public FragmentTest {
  public:
-  QuadricShader(const QuadricLook& look, std::span<const Material> materials, const Camera& camera,
+  QuadricShader(const SurfaceLook& look, std::span<const Material> materials, const Camera& camera,
                 int width, int height);
   /// `instance`: of the stage, whose own look is heeded. `stage` must outlive the frame.
   void add(const QuadricStage& stage, const InstanceView& instance);
@@ -84,7 +78,7 @@ class QuadricShader final : public BlockShader, public FragmentTest {
   bool shade_lit(const QuadricLanes& lanes, const FrameGeometry& frame, const VisibleBlock& block,
                  Isa isa, BlockColors& colors) const;
 
-  QuadricLook look_;
+  SurfaceLook look_;
   bool linear_ = false;
   std::vector<Surface> surfaces_;
   std::vector<Material> materials_;  ///< at least one
@@ -92,10 +86,7 @@ class QuadricShader final : public BlockShader, public FragmentTest {
   ViewRays rays_;
 };
 
-/// The material of an instance of a quadric's geometry, and the geometry's colours, unless the
-/// instance's colour stands for them.
-[[nodiscard]] std::uint32_t material_of(const QuadricGeometry& geometry,
-                                        const InstanceView& instance);
+/// The geometry's colours, unless the instance's stands for them.
 [[nodiscard]] ArrayView<Vec4> colors_of(const QuadricGeometry& geometry,
                                         const InstanceView& instance);
 

@@ -1,0 +1,179 @@
+// `rastrum bench points`: clouds of points of one pixel and of three, beside OpenGL's points (Mesa
+// llvmpipe) of one. The ids of each picture are compared with the serial reference's before
+// anything is timed.
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <rastrum/error.hpp>
+#include <rastrum/render.hpp>
+
+#include "cloud.hpp"
+#include "machine.hpp"
+#include "measure.hpp"
+#include "peers/gl_peer.hpp"
+#include "registry.hpp"
+#include "report.hpp"
+#include "tables/document.hpp"
+#include "tables/options.hpp"
+
+namespace rastrum::bench {
+namespace {
+
+struct Cloud {
+  std::vector<Vec3> positions;
+  std::vector<Rgba8> colors;
+  PointsView view;
+
+  Cloud(std::size_t n, int width, int height) {
+    Noise noise;
+    positions.reserve(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      positions.push_back(place(noise, double(width) / height));
+      const auto channel = [&] { return static_cast<std::uint8_t>(256 * noise.next()); };
+      colors.push_back({channel(), channel(), channel(), 255});
+    }
+    view.positions = positions;
+  }
+};
+
+/// What is drawn and shown of a cloud.
+struct Way {
+  const char* name;
+  float point_size;
+  bool colored;
+};
+constexpr Way kWays[] = {
+    {"1 px, id", 1, false}, {"1 px, colours", 1, true}, {"3 px, id", 3, false}};
+
+/// The bytes that a frame must move: positions read, a word a pixel written; over the bandwidths.
+double floor_ms(std::size_t points, int width, int height, const MachineLimits& machine) {
+  return (12.0 * static_cast<double>(points) / machine.read_gbs +
+          4.0 * width * height / machine.stream_gbs) /
+         1e6;
+}
+
+std::unique_ptr<GlPeer> start_gl(Document& document, int threads) {
+  try {
+    auto gl = std::make_unique<GlPeer>(threads);
+    document.notes.push_back("Beside " + gl->description() + ".");
+    return gl;
+  } catch (const Error& e) {
+    document.notes.push_back(std::string("Without its peer: ") + e.what() + ".");
+    return nullptr;
+  }
+}
+
+double share_of_equal(ImageView<const std::int64_t> ours, const Image<std::int32_t>& gl) {
+  std::size_t equal = 0;
+  for (int y = 0; y < ours.height; ++y)
+    for (int x = 0; x < ours.width; ++x) equal += ours(x, y) == gl(x, y) ? 1 : 0;
+  return static_cast<double>(equal) / (static_cast<double>(ours.width) * ours.height);
+}
+
+}  // namespace
+
+int run_points(std::span<const std::string_view> arguments) {
+  TableOptions options;
+  OptionParser parser("points", "Frames of clouds of points at 1920 × 1080.");
+  options.add_to(parser, false);
+  if (const auto status = parser.parse(arguments)) return *status;
+  options.resolve();
+  FrameOptions frame;
+  frame.width = options.size(1920);
+  frame.height = options.size(1080);
+  frame.background = {0, 0, 0, 1};
+  const MachineLimits machine = measure_machine(options.threads);
+  Document document{"points", "Clouds of points"};
+  if (options.quick) document.notes.push_back(options.quick_note());
+  document.notes.push_back(std::to_string(frame.width) + " × " + std::to_string(frame.height) +
+                           ", " + options.here() +
+                           "; the ids are the serial reference's. CPU ms are of all threads.");
+  const std::unique_ptr<GlPeer> gl = start_gl(document, options.threads);
+  Grid grid{"",
+            {"points", "drawn", "ms", "CPU ms", "set up ms", "draw ms", "fragments", "MB",
+             "floor ms", "as llvmpipe"},
+            {}};
+  Plot plot;
+  plot.title = document.title;
+  plot.note = options.here();
+  plot.x_title = "points";
+  plot.y_title = "ms";
+  Panel panel{"frame", {}};
+  for (const Way& way : kWays)
+    panel.series.push_back({way.name, {}, static_cast<int>(panel.series.size())});
+  bool right = true;
+  for (const std::size_t most : {std::size_t{1'000'000}, std::size_t{10'000'000}}) {
+    const std::size_t n = options.triangles(most);
+    Cloud cloud(n, frame.width, frame.height);
+    const Camera camera = camera_at_origin();
+    Renderer renderer({.threads = options.threads}), reference({.device = Device::serial});
+    plot.places.push_back(std::to_string(n));
+    if (gl) {
+      gl->set_points(cloud.positions);
+      gl->set_view(camera, frame.width, frame.height);
+    }
+    std::vector<InstanceView> instances;
+    std::vector<FrameStats> stats(std::size(kWays));
+    Image<Rgba8> image(frame.width, frame.height);
+    std::vector<Contender> contenders;
+    std::optional<double> share;
+    for (std::size_t w = 0; w < std::size(kWays); ++w) {
+      cloud.view.point_size = kWays[w].point_size;
+      cloud.view.colors = {};
+      if (kWays[w].colored)
+        cloud.view.colors = ArrayView<Vec4>::rgb(&cloud.colors[0].r, n, sizeof(Rgba8));
+      instances.push_back({cloud.view});
+    }
+    for (std::size_t w = 0; w < std::size(kWays); ++w) {
+      const SceneView scene{{&instances[w], 1}, {}, {}};
+      FrameOptions own = frame;
+      own.shader = kWays[w].colored ? Shader::flat : Shader::id;
+      Image<std::int64_t> ids(frame.width, frame.height), expected(frame.width, frame.height);
+      (void)renderer.render(scene, camera, own, {.ids = ids});
+      (void)reference.render(scene, camera, own, {.ids = expected});
+      right = right && std::ranges::equal(ids.pixels(), expected.pixels());
+      if (gl && w == 0) {
+        gl->draw_ids();
+        share = share_of_equal(ids, gl->ids());
+      }
+      contenders.push_back({kWays[w].name, [&, own, scene, w] {
+                              stats[w] = renderer.render(scene, camera, own, {.color8 = image});
+                            }});
+    }
+    if (gl) contenders.push_back({"llvmpipe, 1 px, id", [&] { gl->draw_ids(); }});
+    progress(std::to_string(n) + " points");
+    const std::vector<Timing> timings = measure_interleaved(contenders, options.plan());
+    for (std::size_t w = 0; w < timings.size(); ++w) {
+      const Timing& timing = timings[w];
+      const bool ours = w < std::size(kWays);
+      const auto stage = [&](std::string_view of) {
+        double ms = 0;
+        for (const auto& s : stats[w].stages)
+          if (s.name == of) ms += s.end_ms - s.begin_ms;
+        return significant(ms);
+      };
+      grid.rows.push_back({std::to_string(n), timing.name, significant(timing.median_ms()),
+                           significant(median(timing.cpu_samples_ms)),
+                           ours ? stage("setup and bin") : "", ours ? stage("draw and shade") : "",
+                           ours ? std::to_string(stats[w].fragments) : "",
+                           ours ? significant(static_cast<double>(stats[w].peak_bytes) / 1e6) : "",
+                           significant(floor_ms(n, frame.width, frame.height, machine)),
+                           !ours && share ? significant(*share, 5) : ""});
+      if (ours) panel.series[w].values.push_back(timing.median_ms());
+      document.figures.push_back({{"points", n},
+                                  {"drawn", timing.name},
+                                  {"ms", timing.median_ms()},
+                                  {"cpu_ms", median(timing.cpu_samples_ms)}});
+    }
+  }
+  plot.panels = {std::move(panel)};
+  document.grids.push_back(std::move(grid));
+  document.plot = std::move(plot);
+  publish(document, options.out);
+  return right ? 0 : 1;
+}
+
+}  // namespace rastrum::bench

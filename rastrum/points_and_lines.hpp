@@ -1,0 +1,104 @@
+// Points and lines whose size is in pixels, as instances of a scene: views over the caller's
+// arrays, of which nothing is copied, so they must outlive the render, and the owning forms that
+// readers return. Their rules are in docs/conventions.md.
+//
+// What is in common. Positions are of object space; float64 is transformed in float64. Every index
+// must be < positions.size(), of which there are at most 2³² − 1; the render checks this. A
+// primitive with a position that is not finite is dropped and counted. `colors`: linear, straight
+// alpha, one a position; empty: the plain colour, or the material's, which they multiply. Textures
+// are not read: there are no coordinates. What has no normals is not lit, but shows its colour.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <rastrum/array.hpp>
+#include <rastrum/vec.hpp>
+
+namespace rastrum {
+
+/// A primitive is a point: the samples in a square, or disc, of `point_size` px about its position,
+/// at least one pixel. It is as large at any distance.
+struct PointsView {
+  ArrayView<Vec3> positions{};
+  IndexView indices{};         ///< one a point; empty: positions in order
+  ArrayView<Vec3> normals{};   ///< one a position, need not be of unit length; empty: not lit
+  ArrayView<Vec4> colors{};    ///< one a position
+  ArrayView<float> sizes{};    ///< px, one a position, cut to [1, 4096]; empty: `point_size`
+  float point_size = 1;        ///< px, in (0, 4096]; less than 1 counts as 1
+  bool round = false;          ///< a disc, from a size of 1.5 px on
+  std::uint32_t material = 0;  ///< index into SceneView::materials
+
+  [[nodiscard]] std::size_t size() const {
+    return indices.empty() ? positions.size() : indices.size();
+  }
+  /// The position of a point.
+  [[nodiscard]] std::uint32_t vertex(std::uint64_t point) const {
+    const auto i = static_cast<std::size_t>(point);
+    return indices.empty() ? static_cast<std::uint32_t>(i) : indices[i];
+  }
+};
+
+/// How the corners of lines, one an index, make segments.
+enum class LineKind : std::uint8_t {
+  segments,   ///< two corners each
+  polylines,  ///< runs of corners, each joined to the next
+};
+
+/// A primitive is a segment of a line, `line_width` px wide across its minor axis (diamond exit): a
+/// polyline draws the pixel at a shared corner once.
+struct LinesView {
+  ArrayView<Vec3> positions{};
+  IndexView indices{};  ///< one a corner; empty: positions in order
+  LineKind kind = LineKind::segments;
+  /// Of polylines, one more than there are: the i-th has the corners offsets[i] to offsets[i + 1],
+  /// at least one. Empty: all corners are one polyline.
+  IndexView offsets{};
+  ArrayView<Vec4> colors{};    ///< one a position, linear along a segment
+  float line_width = 1;        ///< px, in (0, 4096], rounded to a whole number of at least 1
+  std::uint32_t material = 0;  ///< index into SceneView::materials
+
+  [[nodiscard]] std::size_t corner_count() const {
+    return indices.empty() ? positions.size() : indices.size();
+  }
+  /// Segments. O(1).
+  [[nodiscard]] std::size_t size() const;
+  /// The corner at which a segment begins; it ends at the next. O(log polylines).
+  [[nodiscard]] std::size_t begin(std::uint64_t segment) const;
+  /// The position of a segment's end, 0 or 1.
+  [[nodiscard]] std::uint32_t vertex(std::uint64_t segment, int end) const {
+    const std::size_t corner = begin(segment) + static_cast<std::size_t>(end);
+    return indices.empty() ? static_cast<std::uint32_t>(corner) : indices[corner];
+  }
+};
+
+/// Points that own their arrays; the meaning of each is PointsView's.
+struct Points {
+  std::string name{};
+  std::vector<Vec3> positions{};
+  std::vector<Vec3> normals{};
+  std::vector<Vec4> colors{};
+  float point_size = 1;
+  bool round = false;
+  std::uint32_t material = 0;
+
+  [[nodiscard]] PointsView view() const;
+};
+
+/// Lines that own their arrays; the meaning of each is LinesView's.
+struct Lines {
+  std::string name{};
+  std::vector<Vec3> positions{};
+  std::vector<std::uint32_t> indices{};
+  LineKind kind = LineKind::segments;
+  std::vector<std::uint32_t> offsets{};
+  std::vector<Vec4> colors{};
+  float line_width = 1;
+  std::uint32_t material = 0;
+
+  [[nodiscard]] LinesView view() const;
+};
+
+}  // namespace rastrum

@@ -1,0 +1,22 @@
+// What an instance of a scene draws, as a draw.
+#pragma once
+
+#include <rastrum/mat.hpp>
+#include <rastrum/raster/draws/draw.hpp>
+#include <rastrum/scene.hpp>
+
+namespace rastrum::raster {
+
+/// The positions of a geometry that has vertices, a mesh, points or lines, and what they make up;
+/// null: it is another.
+struct VertexList {
+  const ArrayView<Vec3>* positions = nullptr;
+  Topology topology = Topology::triangles;
+};
+[[nodiscard]] VertexList vertices_of(const GeometryView& geometry);
+
+/// Makes `draw` one of a geometry that has vertices, a mesh, points or lines, which must outlive
+/// the frame; false: it is another, and nothing is done.
+bool set_vertices(Draw& draw, const GeometryView& geometry, const Mat4d& object_to_clip);
+
+}  // namespace rastrum::raster

@@ -1,0 +1,73 @@
+#include <rastrum/raster/shade/plain_surface.hpp>
+
+#include <algorithm>
+#include <variant>
+
+#include <rastrum/raster/shade/lit_scalar.hpp>
+#include <rastrum/raster/shade/material_scalar.hpp>
+
+namespace rastrum::raster {
+
+PlainLook::PlainLook(const SurfaceLook& look, std::span<const Material> materials,
+                     const Camera& camera, int width, int height)
+    : look_(look), materials_(materials.begin(), materials.end()) {
+  const LitScene lit({{}, materials, {}}, camera, width, height);
+  display_ = lit.materials;
+  rays_ = lit.rays;
+  if (materials_.empty()) materials_.emplace_back().alpha_mode = AlphaMode::blend;
+}
+
+std::uint32_t material_of(const InstanceView& instance) {
+  return instance.material.value_or(
+      std::visit([](const auto& g) { return g.material; }, instance.geometry));
+}
+
+PlainSurface PlainLook::surface(const InstanceView& instance, bool colored) const {
+  const InstanceView place{MeshView{}, instance.object_to_world};
+  const LitScene lit({{&place, 1}, {}, {}}, {}, 1, 1);
+  const bool has_materials = !display_.empty();
+  const std::size_t m = has_materials ? material_of(instance) : 0;
+  PlainSurface s;
+  s.material = &materials_[m];
+  s.opacity = look_.opacity * instance.opacity * s.material->opacity;
+  s.base = s.albedo = s.material->base_color;
+  std::copy_n(&lit.draws.front().normal_matrix[0][0], 9, &s.normal_matrix[0][0]);
+  if (look_.model) {
+    const bool plain = !colored && !instance.color;
+    const Vec3 base = has_materials ? display_[m] : plain ? kDefaultBase : Vec3{1, 1, 1};
+    s.base = {base.x, base.y, base.z, s.base.w};
+  }
+  if (instance.color) {
+    s.base = s.base * *instance.color;
+    s.albedo = s.albedo * *instance.color;
+  }
+  return s;
+}
+
+Vec4 PlainLook::shade(const PlainSurface& s, const Vec4& base, const Vec3* normal, float px,
+                      float py, std::uint64_t id) const {
+  const Material& m = *s.material;
+  float alpha = 1;
+  if (look_.blends) {
+    alpha = s.opacity;
+    if (m.alpha_mode == AlphaMode::blend) alpha *= base.w;
+    alpha = clamped_alpha(alpha);
+  }
+  Vec3 c{base.x, base.y, base.z};
+  if (look_.model == LitModel::id) {
+    c = id_color(id);
+  } else if (look_.model) {
+    if (normal != nullptr) c = scalar_lane::light(*look_.model, rays_, px, py, *normal, c);
+  } else if (m.unlit || normal == nullptr) {
+    c = scalar_lane::written(c, linear_);
+  } else {
+    const Vec3 away = rays_.d + rays_.dx * px + rays_.dy * py;
+    const Vec3 n = scalar_lane::unit(*normal);
+    const float side = dot(n, away) > 0 ? -1.0F : 1.0F;
+    const scalar_lane::LitSurface lit{c, n * side, m.metallic, m.roughness, 1, m.emissive};
+    c = scalar_lane::written(scalar_lane::light(rays_, lit, px, py), linear_);
+  }
+  return {c.x * alpha, c.y * alpha, c.z * alpha, alpha};
+}
+
+}  // namespace rastrum::raster

@@ -1,0 +1,62 @@
+// How what has no textures looks: points, lines, spheres and their like. From a colour and a
+// normal, wherever they come from, by the light of the triangles (lit_light-inl.hpp,
+// material_light-inl.hpp).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <rastrum/camera.hpp>
+#include <rastrum/raster/shade/lit.hpp>
+#include <rastrum/raster/shade/shading.hpp>
+#include <rastrum/scene.hpp>
+
+namespace rastrum::raster {
+
+/// How the surfaces of a frame look.
+struct SurfaceLook {
+  std::optional<LitModel> model;  ///< none: as materials
+  bool blends = false;            ///< alpha counts
+  float opacity = 1;              ///< the frame's
+};
+
+/// What an instance brings to the look of its surfaces.
+struct PlainSurface {
+  Vec4 base;    ///< what colours are multiplied by, or stand for; alpha the own one
+  Vec4 albedo;  ///< the same in linear light, whatever the shader
+  const Material* material = nullptr;
+  float opacity = 1;               ///< the instance's, the frame's and the material's
+  float normal_matrix[3][3] = {};  ///< object to world, inverse transpose
+};
+
+/// The instance's, or where it has none its geometry's.
+[[nodiscard]] std::uint32_t material_of(const InstanceView& instance);
+
+/// Shades them. Scenes without materials are of one that blends by its colours.
+class PlainLook {
+ public:
+  PlainLook(const SurfaceLook& look, std::span<const Material> materials, const Camera& camera,
+            int width, int height);
+
+  /// `colored`: the geometry has colours, and no colour of the instance stands for them.
+  [[nodiscard]] PlainSurface surface(const InstanceView& instance, bool colored) const;
+  /// As MaterialShading::linear.
+  void leave_linear() { linear_ = true; }
+  [[nodiscard]] const SurfaceLook& look() const { return look_; }
+
+  /// The colour at (px, py), px, premultiplied. `base`: the surface's own, with its colours;
+  /// `normal`: in the world, of any length; null: it is not lit.
+  [[nodiscard]] Vec4 shade(const PlainSurface& surface, const Vec4& base, const Vec3* normal,
+                           float px, float py, std::uint64_t id) const;
+
+ private:
+  SurfaceLook look_;
+  bool linear_ = false;
+  std::vector<Material> materials_;  ///< at least one
+  std::vector<Vec3> display_;        ///< their base colours; empty: there are none
+  ViewRays rays_;
+};
+
+}  // namespace rastrum::raster

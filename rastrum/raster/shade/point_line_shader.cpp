@@ -1,0 +1,111 @@
+#include <rastrum/raster/shade/point_line_shader.hpp>
+
+#include <bit>
+
+#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/shade/material_triangle.hpp>
+#include <rastrum/raster/shade/normals.hpp>
+
+namespace rastrum::raster {
+namespace {
+
+Vec4 point_color(const ArrayView<Vec4>& colors, const Vec4& base, std::uint32_t vertex) {
+  return colors.empty() ? base : colors[vertex] * base;
+}
+
+}  // namespace
+
+ArrayView<Vec4> PointLineShader::add(const InstanceView& instance) {
+  Part& part = parts_.emplace_back();
+  if (const auto* const points = std::get_if<PointsView>(&instance.geometry)) {
+    part.colors = points->colors;
+    part.normals = points->normals;
+  } else {
+    part.colors = std::get<LinesView>(instance.geometry).colors;
+  }
+  if (instance.color) part.colors = {};
+  part.surface = look_.surface(instance, !part.colors.empty());
+  return part.colors;
+}
+
+Vec4 PointLineShader::along(const Part& part, const Vec4& base, const Fragment& f) {
+  const Vec4 first = point_color(part.colors, base, f.vertex[0]);
+  if (part.colors.empty()) return first;
+  // Exactly the first where they are equal.
+  const Vec4 change = point_color(part.colors, base, f.vertex[1]) + first * -1;
+  return first + change * static_cast<float>(f.weights.b[1]);
+}
+
+void PointLineShader::prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept {
+  const Draw& draw = frame.draw_of(id);
+  const Part& part = part_of(draw);
+  if (part.colors.empty() && part.normals.empty()) return;
+  const std::uint32_t v = draw.vertex(id - draw.first_id, 0);
+  if (!part.colors.empty()) __builtin_prefetch(part.colors.address(v));
+  if (!part.normals.empty()) __builtin_prefetch(part.normals.address(v));
+}
+
+bool PointLineShader::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa,
+                            BlockColors& colors) const noexcept {
+  // Neighbours on the screen lie anywhere in memory.
+  for (std::uint64_t m = block.covered; m != 0; m &= m - 1)
+    prefetch(frame, id_of_key(block.keys[std::countr_zero(m)]));
+  FragmentLocator locator(frame);
+  bool opaque = true;
+  for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    const std::uint64_t id = id_of_key(block.keys[i]);
+    const Draw& draw = frame.draw_of(id);
+    const Part& part = part_of(draw);
+    Vec4 base;
+    Vec3 normal;
+    if (draw.topology == Topology::lines) {
+      base =
+          along(part, part.surface.base, locator.locate(id, block.x0, block.y0, i, block.points));
+    } else {
+      const std::uint32_t v = draw.vertex(id - draw.first_id, 0);
+      base = point_color(part.colors, part.surface.base, v);
+      if (!part.normals.empty())
+        normal = times(part.surface.normal_matrix, safe_normal(part.normals[v]));
+    }
+    const Vec2 from_centre =
+        block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
+    const float px = static_cast<float>(block.x0 + i % kBlockSize) + 0.5F + from_centre.x;
+    const float py = static_cast<float>(block.y0 + i / kBlockSize) + 0.5F + from_centre.y;
+    const bool is_lit = normal.x != 0 || normal.y != 0 || normal.z != 0;
+    opaque &=
+        colors.set(i, look_.shade(part.surface, base, is_lit ? &normal : nullptr, px, py, id));
+  }
+  return opaque;
+}
+
+std::uint64_t PointLineShader::test(const FrameGeometry& frame, const Piece& piece,
+                                    const Block& block,
+                                    const ShadingPoints* points) const noexcept {
+  const std::uint64_t id = id_of_key(piece.low);
+  const Draw& draw = frame.draw_of(id);
+  const Part& part = part_of(draw);
+  const float cutoff = part.surface.material->alpha_cutoff;
+  if (draw.topology == Topology::points || part.colors.empty()) {
+    const std::uint32_t v = draw.vertex(id - draw.first_id, 0);
+    return point_color(part.colors, part.surface.base, v).w < cutoff ? 0 : block.mask;
+  }
+  FragmentLocator locator(frame);
+  std::uint64_t kept = block.mask;
+  for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    const Fragment& f = locator.locate(id, block.bx * kBlockSize, block.by * kBlockSize, i, points);
+    if (along(part, part.surface.base, f).w < cutoff) kept ^= std::uint64_t{1} << i;
+  }
+  return kept;
+}
+
+Vec4 PointLineShader::albedo(const FrameGeometry& frame, const Fragment& f) const {
+  const Draw& draw = frame.draws[f.draw];
+  const Part& part = part_of(draw);
+  return draw.topology == Topology::lines
+             ? along(part, part.surface.albedo, f)
+             : point_color(part.colors, part.surface.albedo, f.vertex[0]);
+}
+
+}  // namespace rastrum::raster

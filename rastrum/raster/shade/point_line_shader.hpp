@@ -1,0 +1,54 @@
+// The built-in shaders over points and lines of a scene, and the masks of their materials. A point
+// has one colour; along a line it is linear, perspective-correct as every attribute of it. Points
+// with normals are lit, the rest shows its colour.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <rastrum/camera.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
+#include <rastrum/raster/shade/plain_surface.hpp>
+#include <rastrum/scene.hpp>
+
+namespace rastrum::raster {
+
+/// Shades draws of points and lines, in the order of `add`.
+class PointLineShader final : public BlockShader, public FragmentTest {
+ public:
+  PointLineShader(const SurfaceLook& look, std::span<const Material> materials,
+                  const Camera& camera, int width, int height)
+      : look_(look, materials, camera, width, height) {}
+
+  /// `instance`: of points or lines, whose arrays must outlive the frame. Returns their colours.
+  ArrayView<Vec4> add(const InstanceView& instance);
+  /// As MaterialShading::linear.
+  void leave_linear() { look_.leave_linear(); }
+
+  bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
+             BlockColors& colors) const noexcept override;
+  void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept override;
+  /// AlphaMode::mask: what lies below the material's cutoff is not there.
+  [[nodiscard]] std::uint64_t test(const FrameGeometry& frame, const Piece& piece,
+                                   const Block& block,
+                                   const ShadingPoints* points) const noexcept override;
+  /// Of a fragment: linear light, straight.
+  [[nodiscard]] Vec4 albedo(const FrameGeometry& frame, const Fragment& f) const;
+
+ private:
+  struct Part {
+    ArrayView<Vec4> colors;   ///< one a position; empty: there are none
+    ArrayView<Vec3> normals;  ///< the same
+    PlainSurface surface;
+  };
+  [[nodiscard]] const Part& part_of(const Draw& draw) const { return parts_[draw.number]; }
+  /// A fragment of a line's colour, times `base`; the corners' shares are `f`'s.
+  [[nodiscard]] static Vec4 along(const Part& part, const Vec4& base, const Fragment& f);
+
+  PlainLook look_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace rastrum::raster

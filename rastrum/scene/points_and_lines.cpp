@@ -1,0 +1,112 @@
+#include <rastrum/points_and_lines.hpp>
+
+#include <rastrum/array.hpp>
+#include <rastrum/core/enum.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/scene/mesh_checks.hpp>
+
+namespace rastrum {
+namespace {
+
+/// Segments of the polylines before the i-th, where each has one corner at least.
+std::uint64_t segments_before(const LinesView& lines, std::size_t i) {
+  return lines.offsets.wide(i) - lines.offsets.wide(0) - i;
+}
+
+std::string count_problem(std::size_t positions) {
+  if (positions <= kNoIndex) return {};
+  return "has " + std::to_string(positions) + " positions; at most " + std::to_string(kNoIndex) +
+         " have a number";
+}
+
+std::string too_few(std::size_t values, const char* what, std::size_t positions) {
+  if (values == 0 || values >= positions) return {};
+  return std::string(what) + " are fewer (" + std::to_string(values) + ") than positions (" +
+         std::to_string(positions) + ")";
+}
+
+/// The first that is not empty.
+std::string first_problem(std::initializer_list<std::string> problems) {
+  for (const std::string& p : problems)
+    if (!p.empty()) return p;
+  return {};
+}
+
+}  // namespace
+
+std::size_t LinesView::size() const {
+  const std::size_t corners = corner_count();
+  if (kind == LineKind::segments) return corners / 2;
+  if (offsets.empty()) return corners == 0 ? 0 : corners - 1;
+  return static_cast<std::size_t>(segments_before(*this, offsets.size() - 1));
+}
+
+std::size_t LinesView::begin(std::uint64_t segment) const {
+  const auto s = static_cast<std::size_t>(segment);
+  if (kind == LineKind::segments) return 2 * s;
+  if (offsets.empty()) return s;
+  // The last polyline that has at most `segment` segments before it.
+  std::size_t low = 0, high = offsets.size() - 1;
+  while (high - low > 1) {
+    const std::size_t middle = low + (high - low) / 2;
+    (segments_before(*this, middle) <= segment ? low : high) = middle;
+  }
+  return s + static_cast<std::size_t>(offsets.wide(0)) + low;
+}
+
+PointsView Points::view() const {
+  PointsView v;
+  v.positions = positions;
+  v.normals = normals;
+  v.colors = colors;
+  v.point_size = point_size;
+  v.round = round;
+  v.material = material;
+  return v;
+}
+
+LinesView Lines::view() const {
+  LinesView v;
+  v.positions = positions;
+  v.indices = indices;
+  v.kind = kind;
+  v.offsets = offsets;
+  v.colors = colors;
+  v.line_width = line_width;
+  v.material = material;
+  return v;
+}
+
+std::string arrays_problem(const PointsView& points) {
+  const std::size_t n = points.positions.size();
+  return first_problem({count_problem(n), too_few(points.normals.size(), "normals", n),
+                        too_few(points.colors.size(), "colors", n),
+                        too_few(points.sizes.size(), "sizes", n)});
+}
+
+std::string arrays_problem(const LinesView& lines) {
+  const std::size_t n = lines.positions.size(), corners = lines.corner_count();
+  if (lines.kind > LineKind::polylines)
+    return "kind is " + std::to_string(static_cast<int>(lines.kind)) +
+           ", which is no value of its enum";
+  if (std::string problem =
+          first_problem({count_problem(n), too_few(lines.colors.size(), "colors", n)});
+      !problem.empty())
+    return problem;
+  const IndexView& offsets = lines.offsets;
+  if (lines.kind == LineKind::segments) {
+    if (!offsets.empty()) return "segments have no offsets";
+    if (corners % 2 != 0) return "the number of corners, " + std::to_string(corners) + ", is odd";
+    return {};
+  }
+  for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
+    const std::uint64_t begin = offsets.wide(i), end = offsets.wide(i + 1);
+    if (end > corners || begin >= end)
+      return "offsets: polyline " + std::to_string(i) + " has the corners " + offsets.text(i) +
+             " to " + offsets.text(i + 1) + " of " + std::to_string(corners) +
+             "; it must have one or more";
+  }
+  return {};
+}
+
+}  // namespace rastrum

@@ -1,0 +1,214 @@
+// What is asked of points and lines beside their picture: the images of the surface at a pixel,
+// what lies under a pointer, fits, and what is refused.
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/error.hpp>
+#include <rastrum/fit.hpp>
+#include <rastrum/pick.hpp>
+#include <rastrum/render.hpp>
+
+#include "tests/support/point_line_scenes.hpp"
+#include "tests/support/refused.hpp"
+#include "tests/support/surfaces.hpp"
+
+namespace rastrum::test::points_and_lines_access_test {
+namespace {
+
+constexpr int kWidth = 90, kHeight = 60;
+
+FrameOptions frame() {
+  FrameOptions o;
+  o.width = kWidth;
+  o.height = kHeight;
+  o.shader = Shader::flat;
+  return o;
+}
+
+template <class T>
+bool same(const T& a, const T& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+/// Every image says what `pick` says, and all ways to draw say the same.
+TEST(PointsAndLinesAccess, PickIsWhatTheImagesHold) {
+  int seen = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    const PointLineScene s = generate_points_and_lines(seed, kWidth, kHeight);
+    Surfaces reference(kWidth, kHeight), fast(kWidth, kHeight);
+    Renderer serial({.device = Device::serial}), threads({.threads = 2});
+    serial.render(s.view(), s.camera, frame(), reference.targets());
+    threads.render(s.view(), s.camera, frame(), fast.targets());
+    ASSERT_TRUE(same_bits(fast, reference));
+    for (int y = 1; y < kHeight; y += 7)
+      for (int x = 1; x < kWidth; x += 7) {
+        const std::optional<Pick> p = threads.pick(s.view(), s.camera, frame(), x, y);
+        ASSERT_EQ(p.has_value(), fast.ids(x, y) >= 0);
+        if (!p) continue;
+        ++seen;
+        ASSERT_EQ(static_cast<std::int64_t>(p->id), fast.ids(x, y));
+        ASSERT_EQ(p->instance_id, fast.instances(x, y));
+        ASSERT_EQ(static_cast<std::int64_t>(p->primitive), fast.primitives(x, y));
+        ASSERT_TRUE(same(Vec3(p->position), fast.positions(x, y)));
+        ASSERT_TRUE(same(Vec3(p->normal), fast.normals(x, y)));
+        ASSERT_EQ(static_cast<float>(p->view_depth), fast.view_depth(x, y));
+        const Located at{p->instance, p->primitive};
+        ASSERT_TRUE(same(Vec3(position(s.view(), at, p->barycentrics)), fast.positions(x, y)));
+      }
+  }
+  EXPECT_GT(seen, 300);
+}
+
+TEST(PointsAndLinesAccess, ImagesHoldTheSurface) {
+  const std::vector<Vec3> ends{{-1, 0, 0}, {1, 0, 0}}, dot{{0, 0.5F, 0}}, normal{{0, 0, -2}};
+  const std::vector<Vec4> colors{{1, 0, 0, 1}, {0, 0, 1, 0.5F}};
+  LinesView line;
+  line.positions = ends;
+  line.colors = colors;
+  line.line_width = 7;
+  PointsView point;
+  point.positions = dot;
+  point.normals = normal;
+  point.point_size = 5;
+  InstanceView instances[2] = {{line}, {point}};
+  instances[0].object_to_world.m[2][3] = -0.25;
+  instances[1].id = 77;
+  Camera camera;
+  camera.eye = {0, 0, 2};
+  camera.target = {0, 0, 0};
+  camera.orthographic = true;
+  camera.orthographic_height = 3;  // 20 px a unit
+  camera.near_plane = 0.5F;
+  camera.far_plane = 5;
+  Surfaces s(kWidth, kHeight);
+  Renderer({.threads = 1}).render({instances, {}, {}}, camera, frame(), s.targets());
+  const int x = 50, y = 30, py = 20;  // the line's at x = 0.275; the point is at (45, 20)
+  EXPECT_EQ(s.instances(x, y), 0);
+  EXPECT_EQ(s.primitives(x, y), 0);
+  const float b = (0.275F + 1) / 2;
+  EXPECT_NEAR(s.barycentrics(x, y).x, b, 1e-6F);
+  EXPECT_EQ(s.barycentrics(x, y).y, 0);
+  EXPECT_NEAR(s.positions(x, y).x, 0.275F, 1e-6F);
+  EXPECT_EQ(s.positions(x, y).z, -0.25F);
+  EXPECT_TRUE(same(s.normals(x, y), Vec3{}));
+  EXPECT_NEAR(s.view_depth(x, y), 2.25F, 1e-5F);
+  EXPECT_NEAR(s.albedo(x, y).x, 1 - b, 1e-6F);
+  EXPECT_NEAR(s.albedo(x, y).w, 1 - b / 2, 1e-6F);
+  EXPECT_EQ(s.instances(45, py), 77);
+  EXPECT_TRUE(same(s.barycentrics(45, py), Vec2{}));
+  EXPECT_TRUE(same(s.positions(46, py + 1), dot[0]));
+  EXPECT_EQ(s.normals(45, py), (Vec3{0, 0, 1})) << "turned to the viewer";
+  EXPECT_TRUE(same(s.albedo(45, py), Vec4{1, 1, 1, 1}));
+  EXPECT_EQ(s.ids(5, 5), -1);
+  EXPECT_EQ(s.instances(5, 5), -1);
+}
+
+TEST(PointsAndLinesAccess, FitsSeeAllOfThem) {
+  const std::vector<Vec3> at{{-3, 1, 0}, {5, 2, 1}, {100, 100, 100}};
+  const std::vector<std::uint8_t> used{0, 1};
+  PointsView points;
+  points.positions = at;
+  points.indices = used;
+  LinesView line;
+  line.positions = at;
+  line.indices = used;
+  for (const GeometryView& geometry : {GeometryView(points), GeometryView(line)}) {
+    const InstanceView instance{geometry};
+    const SceneView scene{{&instance, 1}, {}, {}};
+    const Bounds b = bounds(scene);
+    EXPECT_EQ(b.vertices_in_use, 2U);
+    EXPECT_TRUE(same(b.min, Vec3{-3, 1, 0}));
+    EXPECT_TRUE(same(b.max, Vec3{5, 2, 1}));
+    const Camera camera = fit_picture(scene, {}, kWidth, kHeight);
+    Surfaces s(kWidth, kHeight);
+    const FrameStats stats = Renderer({.threads = 1}).render(scene, camera, frame(), s.targets());
+    EXPECT_EQ(stats.triangles.drawn, stats.triangles.input);
+  }
+  const std::vector<std::uint8_t> beyond{0, 3};
+  points.indices = beyond;
+  const InstanceView instance{points};
+  expect_refused("indices[1]: index 3 is out of range, there are 3 positions", [&] {
+    (void)bounds({{&instance, 1}, {}, {}});
+  });
+}
+
+TEST(PointsAndLinesAccess, RefuseArraysThatAreWrong) {
+  const std::vector<Vec3> at(4);
+  const std::vector<Vec4> few(3);
+  const std::vector<Vec3> one(1);
+  const auto refuses = [&](const GeometryView& geometry, const char* part,
+                           Errc code = Errc::invalid_argument) {
+    const InstanceView instances[2] = {{MeshView{}}, {geometry}};
+    const std::vector<Material> materials(2);
+    Image<Vec4> color(kWidth, kHeight);
+    for (const Device device : {Device::serial, Device::threads})
+      expect_refused(part, code, [&] {
+        Renderer({.device = device})
+            .render({instances, materials, {}}, {}, frame(), {.color = color});
+      });
+  };
+  const auto points = [&](auto change) {
+    PointsView p;
+    p.positions = at;
+    change(p);
+    return p;
+  };
+  const auto lines = [&](auto change) {
+    LinesView l;
+    l.positions = at;
+    change(l);
+    return l;
+  };
+  const std::vector<float> sizes(2);
+  refuses(points([&](auto& p) { p.colors = few; }),
+          "instance 1: colors are fewer (3) than positions (4)");
+  refuses(points([&](auto& p) { p.normals = one; }), "normals are fewer (1)");
+  refuses(points([&](auto& p) { p.sizes = sizes; }), "sizes are fewer (2)");
+  refuses(points([](auto& p) { p.material = 2; }), "instance 1: material 2 is out of range");
+  for (const float bad : {0.0F, -1.0F, 4097.0F, std::numeric_limits<float>::quiet_NaN()}) {
+    refuses(points([&](auto& p) { p.point_size = bad; }), "instance 1: the point size must be");
+    refuses(lines([&](auto& l) { l.line_width = bad; }), "instance 1: the line width must be");
+  }
+  refuses(lines([&](auto& l) { l.colors = few; }), "instance 1: colors are fewer");
+  refuses(lines([](auto& l) { l.kind = static_cast<LineKind>(9); }), "kind is 9");
+  const std::vector<std::int32_t> odd{0, 1, 2}, offsets{0, 2, 2, 4}, beyond{0, 5}, negative{-1, 2};
+  refuses(lines([&](auto& l) { l.indices = odd; }), "the number of corners, 3, is odd");
+  refuses(lines([&](auto& l) { l.offsets = offsets; }), "segments have no offsets");
+  for (const auto* const bad : {&offsets, &beyond, &negative})
+    refuses(lines([&](auto& l) {
+              l.kind = LineKind::polylines;
+              l.offsets = *bad;
+            }),
+            "instance 1: offsets: polyline");
+  const auto index_of = [&](auto type, const char* text) {
+    const std::vector<decltype(type)> indices{1, 0, type, 2};
+    const std::string part = "instance 1: indices[2]: index " + std::string(text) +
+                             " is out of range, there are 4 vertices";
+    refuses(points([&](auto& p) { p.indices = indices; }), part.c_str());
+    refuses(points([&](auto& p) {
+              p.indices = indices;
+              p.point_size = 9;
+            }),
+            part.c_str());
+    refuses(lines([&](auto& l) { l.indices = indices; }), part.c_str());
+  };
+  index_of(std::uint8_t{4}, "4");
+  index_of(std::int8_t{-1}, "-1");
+  index_of(std::uint16_t{65535}, "65535");
+  index_of(std::int32_t{-7}, "-7");
+  index_of(std::uint32_t{4'000'000'000}, "4000000000");
+  index_of(std::int64_t{1} << 40, "1099511627776");
+  index_of(~std::uint64_t{0}, "18446744073709551615");
+  const std::vector<std::byte> buffer(48);
+  EXPECT_THROW((void)ArrayView<Vec3>::in(buffer, {.channels = 3, .count = 4, .stride_bytes = 16}),
+               Error);
+}
+
+}  // namespace
+}  // namespace rastrum::test::points_and_lines_access_test

@@ -1,0 +1,335 @@
+// Points and lines of a scene: what is seen is what the brute-force oracle says, every way to draw
+// them is the same to the bit, and they look as their colours, normals and materials say.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/pick.hpp>
+#include <rastrum/raster/kernels/kernels.hpp>
+#include <rastrum/render.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/family.hpp"
+#include "tests/support/point_line_scenes.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/refused.hpp"
+#include "tests/support/surfaces.hpp"
+
+namespace rastrum::test::points_and_lines_test {
+namespace {
+
+constexpr int kWidth = 150, kHeight = 91;  // several bins, cut at the edges
+
+struct Picture {
+  Image<std::int64_t> ids{kWidth, kHeight};
+  Image<float> depth{kWidth, kHeight};
+  Image<std::uint32_t> overdraw{kWidth, kHeight};
+  Image<Vec4> color{kWidth, kHeight};
+  FrameStats stats;
+};
+
+FrameOptions frame_of(Shader shader = Shader::flat) {
+  FrameOptions o;
+  o.width = kWidth;
+  o.height = kHeight;
+  o.shader = shader;
+  return o;
+}
+
+Picture draw(Renderer& renderer, const SceneView& scene, const Camera& camera,
+             const FrameOptions& o) {
+  Picture p;
+  Targets t;
+  t.ids = p.ids;
+  t.depth = p.depth;
+  t.overdraw = p.overdraw;
+  t.color = p.color;
+  p.stats = renderer.render(scene, camera, o, t);
+  return p;
+}
+
+template <class T>
+bool same_pixels(const Image<T>& a, const Image<T>& b) {
+  return std::memcmp(a.pixels().data(), b.pixels().data(), a.pixels().size_bytes()) == 0;
+}
+testing::AssertionResult same(const Picture& a, const Picture& b) {
+  if (!same_pixels(a.ids, b.ids)) return testing::AssertionFailure() << "ids";
+  if (!same_pixels(a.depth, b.depth)) return testing::AssertionFailure() << "depth";
+  if (!same_pixels(a.overdraw, b.overdraw)) return testing::AssertionFailure() << "overdraw";
+  if (!same_pixels(a.color, b.color)) return testing::AssertionFailure() << "colour";
+  const auto &s = a.stats.triangles, &t = b.stats.triangles;
+  if (s.dropped != t.dropped || s.culled != t.culled || s.drawn != t.drawn)
+    return testing::AssertionFailure() << "counts";
+  return testing::AssertionSuccess();
+}
+
+int scene_count(int daily) {
+  return count_from_environment("RASTRUM_POINT_SCENES", daily);
+}
+
+TEST(PointsAndLines, AreWhatTheOracleSays) {
+  Renderer serial({.device = Device::serial}), threads({.threads = 2});
+  std::uint64_t points = 0, discs = 0, segments = 0, dropped = 0;
+  for (int seed = 0; seed < scene_count(400); ++seed) {
+    SCOPED_TRACE(seed);
+    const PointLineScene s =
+        generate_points_and_lines(static_cast<std::uint64_t>(seed), kWidth, kHeight);
+    const OracleImage want = brute_force(kWidth, kHeight, s.primitives);
+    Picture p;
+    for (Renderer* const renderer : {&serial, &threads}) {
+      p = draw(*renderer, s.view(), s.camera, frame_of());
+      ASSERT_TRUE(std::ranges::equal(p.ids.pixels(), want.ids));
+      ASSERT_TRUE(std::ranges::equal(p.depth.pixels(), want.depth));
+      ASSERT_TRUE(std::ranges::equal(p.overdraw.pixels(), want.overdraw));
+      ASSERT_EQ(p.stats.triangles.input, s.input);
+      ASSERT_EQ(p.stats.triangles.dropped, s.dropped);
+    }
+    dropped += s.dropped;
+    for (const SnappedPrimitive& primitive : s.primitives) {
+      const std::int64_t id =
+          std::visit([](const auto& shape) { return shape.id; }, primitive.shape);
+      const auto seen = static_cast<std::uint64_t>(std::ranges::count(want.ids, id));
+      if (const auto* const point = std::get_if<SnappedPoint>(&primitive.shape))
+        (point->round ? discs : points) += seen;
+      segments += std::holds_alternative<SnappedLine>(primitive.shape) ? seen : 0;
+    }
+  }
+  EXPECT_GT(points, 10000U);
+  EXPECT_GT(discs, 10000U);
+  EXPECT_GT(segments, 10000U);
+  EXPECT_GT(dropped, 100U);
+}
+
+/// Instruction sets, threads, limits of memory; opaque, in layers, with several samples.
+TEST(PointsAndLines, AreTheSameBitsEverywhere) {
+  for (const bool layers : {false, true}) {
+    Renderer reference({.device = Device::serial});
+    std::vector<Renderer> others;
+    for (const Isa isa : available_isas())
+      for (const int threads : {1, 3})
+        others.push_back(Renderer({.memory_limit = threads == 3 ? std::uint64_t{8} << 20 : 0,
+                                   .threads = threads,
+                                   .isa = isa}));
+    for (int seed = 0; seed < scene_count(120); ++seed) {
+      PointLineScene s =
+          generate_points_and_lines(static_cast<std::uint64_t>(seed), kWidth, kHeight);
+      Random r(static_cast<std::uint64_t>(seed));
+      constexpr Shader kShaders[] = {Shader::flat,    Shader::normal, Shader::id,
+                                     Shader::lambert, Shader::phong,  Shader::wireframe};
+      FrameOptions o = frame_of(kShaders[seed % 6]);
+      if (layers) {
+        if (seed % 3 != 0) o.samples = 4;
+        for (InstanceView& i : s.instances)
+          if (r.chance(0.6)) i.opacity = static_cast<float>(r.real(0.2, 1));
+      }
+      const Picture want = draw(reference, s.view(), s.camera, o);
+      for (std::size_t k = 0; k < others.size(); ++k)
+        ASSERT_TRUE(same(draw(others[k], s.view(), s.camera, o), want))
+            << "scene " << seed << ", renderer " << k << ", layers " << layers;
+    }
+  }
+}
+
+/// The kernels of all instruction sets make the fragments of the scalar one, in its order.
+TEST(PointsAndLines, KernelsMakeTheSameFragments) {
+  using namespace raster;
+  Random r(7);
+  std::uint64_t fragments = 0, slow = 0;
+  for (int round = 0; round < 2000; ++round) {
+    std::vector<ProjectedVertex> vertices(static_cast<std::size_t>(r.integer(1, 256)));
+    for (ProjectedVertex& v : vertices) {
+      v.x_fx8 = r.chance(0.05) ? kNeedsClip : r.integer(-600, 600 * 256);
+      v.y_fx8 = r.integer(-600, 300 * 256);
+      v.depth = r.chance(0.1) ? -0.0F : static_cast<float>(r.real(-0.2, 1.2));
+    }
+    std::vector<std::int32_t> sizes(vertices.size());
+    for (std::int32_t& size : sizes) size = r.integer(256, 800);
+    PointsInput in;
+    in.vertices = vertices.data();
+    in.count = static_cast<std::uint32_t>(vertices.size());
+    in.sizes = round % 2 == 0 ? nullptr : sizes.data();
+    in.first_id = 1'000'000'007;
+    in.flags = (round % 4 < 2 ? kRound : 0) | (round % 8 < 4 ? kTranslucent : 0);
+    in.view = {0, 0, 577, 251};
+    in.bin_columns = 10;
+    const auto made = [&](Isa isa) {
+      std::vector<BinFragment> out(kSetupBatch * 16);
+      std::vector<std::uint32_t> left(kSetupBatch);
+      const SetupOutput n = kernels(isa).points(in, out.data(), left.data());
+      out.resize(n.fragments);
+      left.resize(n.slow);
+      return std::tuple(out, left, n.micro);
+    };
+    const auto [want, want_slow, want_micro] = made(Isa::scalar);
+    fragments += want.size();
+    slow += want_slow.size();
+    for (const Isa isa : available_isas()) {
+      const auto [got, got_slow, got_micro] = made(isa);
+      ASSERT_EQ(got.size(), want.size()) << name(isa);
+      ASSERT_EQ(std::memcmp(got.data(), want.data(), got.size() * sizeof(BinFragment)), 0)
+          << name(isa);
+      ASSERT_EQ(got_slow, want_slow);
+      ASSERT_EQ(got_micro, want_micro);
+    }
+  }
+  EXPECT_GT(fragments, 100'000U);
+  EXPECT_GT(slow, 1000U);
+}
+
+/// A scene of an instance, seen from +z, a unit 50 px.
+struct Flat {
+  std::vector<InstanceView> instances;
+  std::vector<Material> materials;
+  Camera camera;
+
+  explicit Flat(GeometryView geometry) : instances{InstanceView{std::move(geometry)}} {
+    camera.eye = {0, 0, 5};
+    camera.target = {0, 0, 0};
+    camera.orthographic = true;
+    camera.far_plane = 10;
+    camera.orthographic_height = static_cast<float>(kHeight) / 50;
+  }
+  [[nodiscard]] SceneView view() const { return {instances, materials, {}}; }
+  [[nodiscard]] Picture draw(const FrameOptions& o) const {
+    Renderer renderer({.threads = 1});
+    return points_and_lines_test::draw(renderer, view(), camera, o);
+  }
+};
+const Vec4 kRed{1, 0, 0, 1}, kBlue{0, 0, 1, 1};
+
+void expect_near(Vec4 a, Vec4 b, float by = 1e-5F) {
+  for (const float d : {a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w}) EXPECT_NEAR(d, 0, by);
+}
+
+/// Of the middle of the picture.
+Vec4 middle(const Picture& p) {
+  return p.color(kWidth / 2, kHeight / 2);
+}
+
+TEST(PointsAndLines, ShowTheirColours) {
+  const std::vector<Vec3> at{{-1, 0, 0}, {1, 0, 0}};
+  const std::vector<Vec4> colors{kRed, kBlue};
+  LinesView line;
+  line.positions = at;
+  line.colors = colors;
+  line.line_width = 5;
+  const Picture p = Flat(line).draw(frame_of());
+  expect_near(middle(p), {0.5F, 0, 0.5F, 1}, 0.01F);
+  expect_near(p.color(kWidth / 2 - 49, kHeight / 2), kRed, 0.02F);
+  // Without normals the lit shaders show colours, too.
+  EXPECT_TRUE(same_pixels(Flat(line).draw(frame_of(Shader::phong)).color, p.color));
+  EXPECT_TRUE(same_pixels(Flat(line).draw(frame_of(Shader::normal)).color, p.color));
+  // An instance's colour stands for them; none is the plain one.
+  Flat painted(line);
+  painted.instances[0].color = kBlue;
+  expect_near(middle(painted.draw(frame_of())), kBlue);
+  line.colors = {};
+  expect_near(middle(Flat(line).draw(frame_of(Shader::lambert))), {0.8F, 0.7F, 0.6F, 1});
+}
+
+TEST(PointsAndLines, AreLitByTheNormalsOfPoints) {
+  const std::vector<Vec3> at{{0, 0, 0}}, to_side{{0, 3, 0}}, none{{0, 0, 0}};
+  PointsView point;
+  point.positions = at;
+  point.point_size = 9;
+  const Vec4 plain = middle(Flat(point).draw(frame_of(Shader::phong)));
+  expect_near(plain, {0.8F, 0.7F, 0.6F, 1});
+  point.normals = to_side;
+  expect_near(middle(Flat(point).draw(frame_of(Shader::normal))), {0.5F, 1, 0.5F, 1});
+  const Vec4 lit = middle(Flat(point).draw(frame_of(Shader::lambert)));
+  // 0.1 + 0.8 n · l, l = (0.4, 0.6, 1) normalized.
+  const float share = 0.1F + 0.8F * 0.6F / std::sqrt(0.16F + 0.36F + 1);
+  expect_near(lit, {0.8F * share, 0.7F * share, 0.6F * share, 1});
+  // A normal without a direction lights nothing.
+  point.normals = none;
+  expect_near(middle(Flat(point).draw(frame_of(Shader::phong))), plain);
+}
+
+TEST(PointsAndLines, HeedMaterials) {
+  const std::vector<Vec3> at{{-1, 0, 0}, {1, 0, 0}};
+  const std::vector<Vec4> fading{{1, 1, 1, 0}, {1, 1, 1, 1}};
+  LinesView line;
+  line.positions = at;
+  line.colors = fading;
+  line.line_width = 5;
+  line.material = 1;
+  Flat s(line);
+  s.materials.resize(2);
+  s.materials[1].base_color = {0.5F, 0.25F, 1, 1};
+  // Written with the sRGB transfer.
+  expect_near(middle(s.draw(frame_of(Shader::material))), {0.735357F, 0.537099F, 1, 1}, 1e-4F);
+  const auto left = [](const Picture& p) { return p.color(kWidth / 2 - 25, kHeight / 2); };
+  s.materials[1].alpha_mode = AlphaMode::blend;
+  EXPECT_NEAR(left(s.draw(frame_of())).w, 0.25F, 0.02F);
+  s.materials[1].opacity = 0.5F;
+  EXPECT_NEAR(left(s.draw(frame_of())).w, 0.125F, 0.02F);
+  s.materials[1].opacity = 1;
+  s.materials[1].alpha_mode = AlphaMode::mask;
+  s.materials[1].alpha_cutoff = 0.5F;
+  const Picture masked = s.draw(frame_of());
+  EXPECT_EQ(masked.ids(kWidth / 2 - 25, kHeight / 2), -1);
+  EXPECT_EQ(masked.ids(kWidth / 2 + 25, kHeight / 2), 0);
+  // The same of points, each as a whole.
+  PointsView points;
+  points.positions = at;
+  points.colors = fading;
+  points.point_size = 5;
+  points.material = 1;
+  s.instances[0].geometry = points;
+  const Picture dots = s.draw(frame_of());
+  EXPECT_EQ(dots.ids(kWidth / 2 - 50, kHeight / 2), -1);
+  EXPECT_EQ(dots.ids(kWidth / 2 + 50, kHeight / 2), 1);
+}
+
+/// Two translucent points over each other and over a triangle, as the colours are blended by hand.
+TEST(PointsAndLines, BlendInLayers) {
+  const std::vector<Vec3> near_far{{0.01F, 0, 1}, {0.01F, 0, 0.5F}};
+  const std::vector<Vec4> colors{{1, 0, 0, 0.5F}, {0, 1, 0, 0.25F}};
+  const std::vector<Vec3> triangle{{-3, -3, 0}, {3, -3, 0}, {0, 3, 0}};
+  PointsView points;
+  points.positions = near_far;
+  points.colors = colors;
+  points.point_size = 7;
+  Flat s(points);
+  MeshView mesh;
+  mesh.positions = triangle;
+  InstanceView behind{mesh};
+  behind.color = kBlue;
+  s.instances.push_back(behind);
+  expect_near(middle(s.draw(frame_of())), {0.5F, 0.125F, 0.375F, 1});
+  // One pixel, and so fragments.
+  points.point_size = 1;
+  s.instances[0].geometry = points;
+  expect_near(middle(s.draw(frame_of())), {0.5F, 0.125F, 0.375F, 1});
+}
+
+TEST(PointsAndLines, AreCutByPlanes) {
+  const std::vector<Vec3> at{{-1, 0, 0}, {1, 0, 0}};
+  LinesView line;
+  line.positions = at;
+  line.line_width = 3;
+  Flat s(line);
+  const std::vector<ClipPlane> keep_right{{{1, 0, 0}, -0.2}};
+  s.instances[0].clip_planes = keep_right;
+  const Picture p = s.draw(frame_of());
+  const int y = kHeight / 2, cut = kWidth / 2 + 10;  // x = 0.2 is at 85 px
+  EXPECT_EQ(p.ids(cut - 1, y), -1);
+  EXPECT_EQ(p.ids(cut + 1, y), 0);
+  PointsView points;
+  points.positions = at;
+  points.point_size = 30;
+  s.instances[0].geometry = points;
+  const Picture q = s.draw(frame_of());
+  EXPECT_EQ(q.ids(kWidth / 2 - 50, y), -1);
+  EXPECT_EQ(q.ids(kWidth / 2 + 50 - 14, y), 1) << "a point is there or not";
+  EXPECT_EQ(q.stats.triangles.culled, 1U);
+}
+
+}  // namespace
+}  // namespace rastrum::test::points_and_lines_test

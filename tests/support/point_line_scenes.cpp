@@ -1,0 +1,268 @@
+#include "tests/support/point_line_scenes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <rastrum/raster/assemble/clip.hpp>
+#include <rastrum/transform.hpp>
+
+#include "tests/support/projection.hpp"
+#include "tests/support/random.hpp"
+
+namespace rastrum::test {
+namespace {
+
+/// The vertices of an instance, as they are asked for one by one.
+class Vertices {
+ public:
+  Vertices(const PointLineScene& scene, const InstanceView& instance)
+      : width_(scene.width),
+        height_(scene.height),
+        matrix_(object_to_clip(scene.camera, instance.object_to_world, width_, height_)) {}
+
+  struct Vertex {
+    bool finite = true, whole = true;
+    ClipVertex clip;
+    SnappedVertex snapped;
+  };
+  [[nodiscard]] Vertex of(const ArrayView<Vec3>& positions, std::size_t i) const {
+    Vertex v;
+    const Vec3d p = positions.wide(i);
+    v.finite = std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+    if (!v.finite) return v;
+    v.clip = positions.is_wide() ? wide(p) : to_clip(matrix_, positions[i]);
+    v.whole = snap(v.clip, width_, height_, v.snapped);
+    return v;
+  }
+  [[nodiscard]] raster::Viewport viewport() const { return raster::Viewport::of(width_, height_); }
+
+ private:
+  /// Float64, rounded to float32 once.
+  [[nodiscard]] ClipVertex wide(Vec3d p) const {
+    const auto row = [&](int i) {
+      const auto& m = matrix_.m[i];
+      return static_cast<double>(
+          static_cast<float>(((m[0] * p.x + m[1] * p.y) + m[2] * p.z) + m[3]));
+    };
+    return {row(0), row(1), row(2), row(3)};
+  }
+
+  int width_, height_;
+  Mat4d matrix_;
+};
+
+raster::ProjectedVertex projected(const Vertices::Vertex& v) {
+  return {v.whole ? static_cast<std::int32_t>(v.snapped.x_fx8) : raster::kNeedsClip,
+          static_cast<std::int32_t>(v.snapped.y_fx8), v.snapped.depth, 0};
+}
+raster::Vec4d homogeneous(const Vertices::Vertex& v) {
+  return {v.clip.x, v.clip.y, v.clip.z, v.clip.w};
+}
+SnappedVertex snapped(const raster::ProjectedVertex& v) {
+  return {v.x_fx8, v.y_fx8, v.depth};
+}
+
+void expect_points(PointLineScene& s, const InstanceView& instance, const PointsView& points) {
+  const Vertices vertices(s, instance);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto id = static_cast<std::int64_t>(s.input++);
+    const std::size_t k =
+        points.indices.empty() ? i : static_cast<std::size_t>(points.indices.wide(i));
+    const auto v = vertices.of(points.positions, k);
+    const float size = points.sizes.empty() ? points.point_size : points.sizes[k];
+    if (!v.finite || !std::isfinite(size)) {
+      ++s.dropped;
+      continue;
+    }
+    raster::ProjectedVertex p = projected(v);
+    if (!v.whole && !raster::clip_point(homogeneous(v), vertices.viewport(), p)) continue;
+    const std::int64_t size_fx8 =
+        std::llrint(std::clamp(static_cast<double>(size), 1.0, 4096.0) * 256);
+    s.primitives.push_back({SnappedPoint{snapped(p), size_fx8, id, points.round}, 0, 0});
+  }
+}
+
+/// The corners of a line's segments, polyline by polyline.
+std::vector<std::size_t> segment_corners(const LinesView& lines) {
+  std::vector<std::size_t> first;
+  const std::size_t corners = lines.corner_count();
+  if (lines.kind == LineKind::segments) {
+    for (std::size_t c = 0; c + 1 < corners; c += 2) first.push_back(c);
+  } else if (lines.offsets.empty()) {
+    for (std::size_t c = 0; c + 1 < corners; ++c) first.push_back(c);
+  } else {
+    for (std::size_t l = 0; l + 1 < lines.offsets.size(); ++l)
+      for (std::size_t c = lines.offsets.wide(l); c + 1 < lines.offsets.wide(l + 1); ++c)
+        first.push_back(c);
+  }
+  return first;
+}
+
+void expect_lines(PointLineScene& s, const InstanceView& instance, const LinesView& lines) {
+  const Vertices vertices(s, instance);
+  for (const std::size_t corner : segment_corners(lines)) {
+    const auto id = static_cast<std::int64_t>(s.input++);
+    const auto at = [&](std::size_t c) {
+      return vertices.of(lines.positions, lines.indices.empty()
+                                              ? c
+                                              : static_cast<std::size_t>(lines.indices.wide(c)));
+    };
+    const auto a = at(corner), b = at(corner + 1);
+    if (!a.finite || !b.finite) {
+      ++s.dropped;
+      continue;
+    }
+    const raster::Vec4d clip[2] = {homogeneous(a), homogeneous(b)};
+    raster::ProjectedVertex ends[2] = {projected(a), projected(b)};
+    if ((!a.whole || !b.whole) && !raster::clip_line(clip, ends, vertices.viewport())) continue;
+    const int width = std::max(static_cast<int>(std::lrint(lines.line_width)), 1);
+    s.primitives.push_back({SnappedLine{{snapped(ends[0]), snapped(ends[1])}, width, id}, 0, 0});
+  }
+}
+
+/// Triangles in front of the near plane.
+void expect_triangles(PointLineScene& s, const InstanceView& instance, const MeshView& mesh) {
+  const Vertices vertices(s, instance);
+  for (std::size_t t = 0; t < mesh.positions.size() / 3; ++t) {
+    SnappedTriangle triangle{{}, static_cast<std::int64_t>(s.input++)};
+    for (std::size_t c = 0; c < 3; ++c)
+      triangle.v[c] = vertices.of(mesh.positions, 3 * t + c).snapped;
+    if (twice_area(triangle) != 0) s.primitives.push_back({triangle, 0, 0});
+  }
+}
+
+Vec3 somewhere(Random& r, bool nasty) {
+  Vec3 p{static_cast<float>(r.real(-1.3, 1.3)), static_cast<float>(r.real(-1.1, 1.1)),
+         static_cast<float>(r.real(-2, 0.5))};
+  if (!nasty) return p;
+  if (r.chance(0.06)) p.z = static_cast<float>(r.real(1.9, 6));  // before the near plane, behind
+  if (r.chance(0.03)) p.x *= 1e6F;                               // beyond the guard band
+  if (r.chance(0.03)) p.y = std::numeric_limits<float>::quiet_NaN();
+  return p;
+}
+
+/// `count` positions of an instance and what each may have.
+struct Arrays {
+  ArrayView<Vec3> positions, normals;
+  ArrayView<Vec4> colors;
+  IndexView indices;
+};
+
+Arrays random_arrays(PointLineScene& s, Random& r, int count, int corners, bool indexed) {
+  Arrays a;
+  std::vector<Vec3>& p = s.positions.emplace_back();
+  std::vector<Vec4>& c = s.colors.emplace_back();
+  std::vector<Vec3>& n = s.normals.emplace_back();
+  const bool nasty = r.chance(0.5);
+  for (int i = 0; i < count; ++i) {
+    p.push_back(somewhere(r, nasty));
+    c.push_back({static_cast<float>(r.real(0, 1)), static_cast<float>(r.real(0, 1)),
+                 static_cast<float>(r.real(0, 1)), 1});
+    n.push_back(somewhere(r, false));
+  }
+  if (r.chance(0.3)) {
+    std::vector<Vec3d>& wide = s.wide_positions.emplace_back();
+    for (const Vec3 v : p) wide.push_back(Vec3d(v) + Vec3d{1e-9, 0, 0});
+    a.positions = wide;
+  } else if (r.chance(0.3)) {
+    a.positions =
+        ArrayView<Vec3>::of(&p.back().x, p.size(), -static_cast<std::ptrdiff_t>(sizeof(Vec3)));
+  } else {
+    a.positions = p;
+  }
+  if (r.chance(0.6)) a.colors = c;
+  if (r.chance(0.5)) a.normals = n;
+  if (indexed) {
+    std::vector<std::int64_t>& indices = s.indices.emplace_back();
+    for (int i = 0; i < corners; ++i) indices.push_back(r.integer(0, count - 1));
+    a.indices = indices;
+  }
+  return a;
+}
+
+PointsView random_points(PointLineScene& s, Random& r) {
+  const int count = r.integer(1, 300);
+  const bool indexed = r.chance(0.3);
+  const Arrays a = random_arrays(s, r, count, r.integer(1, 300), indexed);
+  PointsView points;
+  points.positions = a.positions;
+  points.normals = a.normals;
+  points.colors = a.colors;
+  points.indices = a.indices;
+  points.round = r.chance(0.5);
+  constexpr float kSizes[] = {1, 1, 0.3F, 1.49F, 1.5F, 2, 3, 3.01F, 7, 20.3F};
+  points.point_size = kSizes[r.integer(0, 9)];
+  if (r.chance(0.3)) {
+    std::vector<float>& sizes = s.sizes.emplace_back();
+    for (int i = 0; i < count; ++i)
+      sizes.push_back(static_cast<float>(r.real(-1, r.chance(0.2) ? 12 : 4)));
+    if (r.chance(0.3)) sizes[0] = std::numeric_limits<float>::quiet_NaN();
+    points.sizes = sizes;
+  }
+  return points;
+}
+
+LinesView random_lines(PointLineScene& s, Random& r) {
+  const int count = 2 * r.integer(1, 12), corners = 2 * r.integer(1, 12);
+  const bool indexed = r.chance(0.4);
+  const Arrays a = random_arrays(s, r, count, corners, indexed);
+  LinesView lines;
+  lines.positions = a.positions;
+  lines.colors = a.colors;
+  lines.indices = a.indices;
+  lines.line_width = static_cast<float>(r.chance(0.5) ? 1 : r.real(0.1, 7));
+  lines.kind = r.chance(0.5) ? LineKind::segments : LineKind::polylines;
+  if (lines.kind == LineKind::polylines && r.chance(0.7)) {
+    std::vector<std::uint16_t>& offsets = s.offsets.emplace_back();
+    const auto most = static_cast<int>(lines.corner_count());
+    for (int at = r.integer(0, 1); at <= most; at += r.integer(1, 5))
+      offsets.push_back(static_cast<std::uint16_t>(at));
+    lines.offsets = offsets;
+    if (offsets.size() < 2) lines.offsets = {};
+  }
+  return lines;
+}
+
+}  // namespace
+
+PointLineScene generate_points_and_lines(std::uint64_t seed, int width, int height) {
+  Random r(seed);
+  PointLineScene s;
+  s.width = width;
+  s.height = height;
+  s.camera.eye = {r.real(-0.3, 0.3), r.real(-0.3, 0.3), 1.8};
+  s.camera.target = {0, 0, 0};
+  s.camera.orthographic = r.chance(0.3);
+  s.camera.orthographic_height = 2.2F;
+  s.camera.near_plane = 0.1F;
+  if (s.camera.orthographic) s.camera.far_plane = 9;
+  for (int i = r.integer(1, 5); i > 0; --i) {
+    InstanceView& instance = s.instances.emplace_back();
+    const int kind = r.integer(0, 4);
+    if (r.chance(0.4) && kind < 4)
+      instance.object_to_world = translation({r.real(-0.4, 0.4), 0, 0}) * scaling({1, 1.25, 0.75});
+    if (kind < 2) {
+      instance.geometry = random_points(s, r);
+    } else if (kind < 4) {
+      instance.geometry = random_lines(s, r);
+    } else {
+      std::vector<Vec3>& p = s.positions.emplace_back();
+      for (int k = 3 * r.integer(1, 6); k > 0; --k) p.push_back(somewhere(r, false));
+      MeshView mesh;
+      mesh.positions = p;
+      instance.geometry = mesh;
+    }
+  }
+  for (const InstanceView& instance : s.instances) {
+    if (const auto* const p = std::get_if<PointsView>(&instance.geometry))
+      expect_points(s, instance, *p);
+    else if (const auto* const l = std::get_if<LinesView>(&instance.geometry))
+      expect_lines(s, instance, *l);
+    else
+      expect_triangles(s, instance, *instance.mesh());
+  }
+  return s;
+}
+
+}  // namespace rastrum::test

@@ -1,0 +1,41 @@
+// Generated scenes of points, lines and triangles, for the library and for the brute-force oracle.
+// Reproducible from a seed.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include <rastrum/scene.hpp>
+
+#include "tests/support/oracle.hpp"
+
+namespace rastrum::test {
+
+/// What a primitive of points or lines brings to the oracle of colours.
+struct PointLineScene {
+  std::vector<InstanceView> instances;
+  Camera camera;
+  int width = 0, height = 0;
+  /// Snapped, with the ids of the scene; lines that need it as the library's clipper cuts them.
+  std::vector<SnappedPrimitive> primitives;
+  std::uint64_t input = 0, dropped = 0;
+
+  [[nodiscard]] SceneView view() const { return {instances, {}, {}}; }
+
+  // What the views refer to.
+  std::deque<std::vector<Vec3>> positions;
+  std::deque<std::vector<Vec3d>> wide_positions;
+  std::deque<std::vector<Vec4>> colors;
+  std::deque<std::vector<Vec3>> normals;
+  std::deque<std::vector<float>> sizes;
+  std::deque<std::vector<std::int64_t>> indices;
+  std::deque<std::vector<std::uint16_t>> offsets;
+};
+
+/// At most 5 instances: points of one pixel and larger, round and square, of one size or one each;
+/// segments and polylines; triangles. Arrays of several types, with and without indices; some
+/// vertices behind the eye, before the near plane, beyond the guard band, NaN.
+[[nodiscard]] PointLineScene generate_points_and_lines(std::uint64_t seed, int width, int height);
+
+}  // namespace rastrum::test
