@@ -1,7 +1,10 @@
 // `rastrum bench spheres` and `rastrum bench tubes`: many small exact surfaces. The ids of each
 // picture are compared with the serial reference's before anything is timed. Embree traces the same
-// with rays, in turns with our frames; its picture is compared with ours first.
+// with rays, and VTK draws spheres on llvmpipe, in turns with our frames; their pictures are
+// compared with ours first.
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -13,6 +16,7 @@
 #include "measure.hpp"
 #include "peers/compare.hpp"
 #include "peers/embree_peer.hpp"
+#include "peers/vtk_peer.hpp"
 #include "registry.hpp"
 #include "report.hpp"
 #include "tables/document.hpp"
@@ -66,49 +70,88 @@ void make_tubes(Made& made, std::size_t n, int width, int height) {
 
 using Make = void (*)(Made&, std::size_t, int, int);
 
-/// Embree's times beside ours, of one scene.
-class Peer {
- public:
-  explicit Peer(int threads) {
+/// The least share of pixels whose colours are the peer's within 4/255, or which both cover. What
+/// differs lies on silhouettes, where another sphere is seen: peers compute in float32.
+constexpr double kAgreement = 0.99;
+
+/// A peer that could be started, or why not.
+template <class P>
+struct Started {
+  std::optional<P> peer;
+  std::string note;
+
+  explicit Started(int threads) {
     try {
-      embree_.emplace(threads);
-      note_ = embree_->description() + ", built and traced apart; ratios are paired medians.";
+      peer.emplace(threads);
+      note = peer->description();
     } catch (const Error& e) {
       if (e.code() != Errc::no_device) throw;
-      note_ = e.what();
+      note = e.what();
     }
   }
-  [[nodiscard]] const std::string& note() const { return note_; }
+};
 
-  /// The times of `ours` and, where there is a peer, of building and of tracing. The share of
-  /// pixels whose colours agree within 4/255 goes to `agreement`.
+/// Share of the pixels that either covers that both do.
+double common_coverage(const Image<Rgba8>& ours, const Image<Vec4>& theirs) {
+  std::size_t either = 0, both = 0;
+  for (int y = 0; y < ours.height(); ++y)
+    for (int x = 0; x < ours.width(); ++x) {
+      const bool a = ours(x, y).a != 0, b = theirs(x, y).w != 0;
+      either += a || b;
+      both += a && b;
+    }
+  return either == 0 ? 1 : static_cast<double>(both) / static_cast<double>(either);
+}
+
+/// The times of others beside ours.
+class Peers {
+ public:
+  explicit Peers(int threads) : embree_(threads), vtk_(threads) {}
+  [[nodiscard]] std::string note() const {
+    return embree_.note + ", built and traced apart; " + vtk_.note +
+           " (its sphere mapper; it has none for tubes). Ratios are paired medians.";
+  }
+
+  /// Turns of `ours`, whose picture is compared with theirs first, and of those that there are:
+  /// "build", "trace" and "vtk". Whether the pictures agree goes to `right`.
   std::vector<Timing> measure(const Made& made, const Camera& camera, const Contender& ours,
-                              const Image<Rgba8>& picture, const Plan& plan, double& agreement) {
+                              const Image<Rgba8>& picture, const Plan& plan, bool& right) {
     std::vector<Contender> all{ours};
     Image<Rgba8> traced(picture.width(), picture.height());
-    if (embree_) {
+    ours.frame();
+    if (embree_.peer) {
+      EmbreePeer& embree = *embree_.peer;
       if (made.offsets.empty())
-        embree_->set_spheres(made.positions, made.radii);
+        embree.set_spheres(made.positions, made.radii);
       else
-        embree_->set_tubes(made.positions, made.radii, made.offsets);
-      embree_->build();
-      embree_->trace(camera, traced);
-      ours.frame();
-      agreement = compare_colors(picture, traced, 4).share();
-      all.push_back({"build", [&] { embree_->build(); }});
-      all.push_back({"trace", [&] { embree_->trace(camera, traced); }});
+        embree.set_tubes(made.positions, made.radii, made.offsets);
+      embree.build();
+      embree.trace(camera, traced);
+      expect("Embree", compare_colors(picture, traced, 4).share(), right);
+      all.push_back({"build", [&embree] { embree.build(); }});
+      all.push_back({"trace", [&] { embree.trace(camera, traced); }});
+    }
+    if (vtk_.peer && made.offsets.empty()) {
+      VtkPeer& vtk = *vtk_.peer;
+      vtk.set_spheres(made.positions, made.radii);
+      vtk.set_view(camera, picture.width(), picture.height());
+      vtk.draw(1);
+      expect("VTK", common_coverage(picture, vtk.picture()), right);
+      all.push_back({"vtk", [&vtk] { vtk.draw(1); }});
     }
     return measure_interleaved(all, plan);
   }
 
  private:
-  std::optional<EmbreePeer> embree_;
-  std::string note_;
-};
+  static void expect(const char* who, double agreement, bool& right) {
+    if (agreement >= kAgreement) return;
+    std::fprintf(stderr, "%s has the same at %.4f of the pixels only\n", who, agreement);
+    right = false;
+  }
 
-/// The least share of pixels whose colours must agree with the peer's. What differs are pixels on a
-/// silhouette, whose colour is another sphere's: Embree's rays are in float32.
-constexpr double kAgreement = 0.97;
+  Started<EmbreePeer> embree_;
+  Started<VtkPeer> vtk_;
+};
 
 int run_surfaces(std::span<const std::string_view> arguments, const char* name, const char* what,
                  std::size_t most, Make make) {
@@ -125,11 +168,11 @@ int run_surfaces(std::span<const std::string_view> arguments, const char* name, 
   if (options.quick) document.notes.push_back(options.quick_note());
   document.notes.push_back(std::to_string(frame.width) + " × " + std::to_string(frame.height) +
                            ", " + options.here() + "; the ids are the serial reference's.");
-  Peer peer(options.threads);
-  document.notes.push_back(peer.note());
+  Peers peers(options.threads);
+  document.notes.push_back(peers.note());
   Grid grid{"",
             {what, "shader", "ms", "set up ms", "draw ms", "fragments", "MB", "Embree build ÷ ours",
-             "trace ÷ ours", "same pixels"},
+             "trace ÷ ours", "VTK ÷ ours"},
             {}};
   Plot plot;
   plot.title = document.title;
@@ -160,16 +203,14 @@ int run_surfaces(std::span<const std::string_view> arguments, const char* name, 
                                   stats = renderer.render(scene, camera, frame, {.color8 = image});
                                 }};
       // The peer shades as `phong` does.
-      const bool has_peer = shader == Shader::phong;
-      double agreement = 1;
       const std::vector<Timing> timings =
-          has_peer ? peer.measure(made, camera, contender, image, options.plan(), agreement)
-                   : measure_interleaved({&contender, 1}, options.plan());
-      right = right && agreement >= kAgreement;
+          shader == Shader::phong
+              ? peers.measure(made, camera, contender, image, options.plan(), right)
+              : measure_interleaved({&contender, 1}, options.plan());
       const Timing& timing = timings.front();
-      const auto ratio = [&](std::size_t of) {
-        return timings.size() <= of ? std::string()
-                                    : significant(median_ratio(timings[of], timing));
+      const auto ratio = [&](std::string_view of) {
+        const auto found = std::ranges::find(timings, of, &Timing::name);
+        return found == timings.end() ? std::string() : significant(median_ratio(*found, timing));
       };
       const auto stage = [&](std::string_view of) {
         double ms = 0;
@@ -180,19 +221,16 @@ int run_surfaces(std::span<const std::string_view> arguments, const char* name, 
       grid.rows.push_back({std::to_string(options.triangles(n)), contender.name,
                            significant(timing.median_ms()), stage("setup and bin"),
                            stage("draw and shade"), std::to_string(stats.fragments),
-                           significant(static_cast<double>(stats.peak_bytes) / 1e6), ratio(1),
-                           ratio(2), timings.size() > 1 ? significant(agreement) : ""});
+                           significant(static_cast<double>(stats.peak_bytes) / 1e6), ratio("build"),
+                           ratio("trace"), ratio("vtk")});
       panel.series[shader == Shader::id ? 0 : 1].values.push_back(timing.median_ms());
       document.figures.push_back({{"primitives", options.triangles(n)},
                                   {"shader", contender.name},
                                   {"ms", timing.median_ms()},
                                   {"fragments", stats.fragments},
                                   {"bytes", stats.peak_bytes}});
-      if (timings.size() > 1) {
-        document.figures.back()["embree_build_ms"] = timings[1].median_ms();
-        document.figures.back()["embree_trace_ms"] = timings[2].median_ms();
-        document.figures.back()["agreement"] = agreement;
-      }
+      for (std::size_t k = 1; k < timings.size(); ++k)
+        document.figures.back()[timings[k].name + "_ms"] = timings[k].median_ms();
     }
   }
   plot.panels = {std::move(panel)};

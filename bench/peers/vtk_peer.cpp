@@ -39,6 +39,16 @@ class TemporaryFile {
   std::string name_;
 };
 
+/// Spans, one behind the other.
+template <class... Values>
+void write(const std::string& file, const Values&... values) {
+  std::ofstream out(file, std::ios::binary);
+  (out.write(reinterpret_cast<const char*>(values.data()),
+             static_cast<std::streamsize>(values.size_bytes())),
+   ...);
+  if (!out.flush()) throw Error(Errc::io, "cannot write " + file);
+}
+
 }  // namespace
 
 struct VtkPeer::Impl {
@@ -121,17 +131,15 @@ void VtkPeer::set_mesh(const MeshView& mesh) {
       mesh.indices.empty())
     throw Error(Errc::invalid_argument, "VtkPeer: normals must share the positions' indices");
   const std::string& file = impl_->file.name();
-  std::ofstream out(file, std::ios::binary);
-  const auto write = [&](const auto& values) {
-    out.write(reinterpret_cast<const char*>(values.data()),
-              static_cast<std::streamsize>(values.size_bytes()));
-  };
-  write(mesh.positions.packed());
-  write(mesh.normals.values.packed());
-  write(mesh.indices.packed());
-  if (!out.flush()) throw Error(Errc::io, "cannot write " + file);
+  write(file, mesh.positions.packed(), mesh.normals.values.packed(), mesh.indices.packed());
   impl_->tell("mesh " + file + " " + std::to_string(mesh.positions.size()) + " " +
               std::to_string(mesh.triangle_count()));
+}
+
+void VtkPeer::set_spheres(std::span<const Vec3> centers, std::span<const float> radii) {
+  const std::string& file = impl_->file.name();
+  write(file, centers, radii.first(centers.size()));
+  impl_->tell("spheres " + file + " " + std::to_string(centers.size()));
 }
 
 void VtkPeer::set_view(const Camera& camera, int width, int height) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 
 #include <rastrum/camera.hpp>
@@ -24,10 +25,13 @@ class VtkPeer {
   [[nodiscard]] std::string description() const;
   /// The mesh has indices, and normals that share them; else Error{invalid_argument}.
   void set_mesh(const MeshView& mesh);
+  /// Spheres instead, by VTK's sphere mapper: a radius each.
+  void set_spheres(std::span<const Vec3> centers, std::span<const float> radii);
   /// The camera is a perspective one along −z with +y up; else Error{unsupported}.
   void set_view(const Camera& camera, int width, int height);
 
-  /// Draws with the peers' `phong` until no layer is left; waits for the end.
+  /// Draws with the peers' `phong`, until no layer is left where the opacity is not 1; waits for
+  /// the end.
   void draw(float opacity);
   /// The last frame's colours, premultiplied, of 8 bits.
   [[nodiscard]] Image<Vec4> picture();

@@ -1,11 +1,13 @@
-"""VTK's depth peeling, drawn for `rastrum bench transparency` by a child process.
+"""VTK's depth peeling and its sphere mapper, drawn for `rastrum bench transparency` and `spheres`
+by a child process.
 
 Debian's package (python3-vtk9) is built for X11: where there is no DISPLAY, Xvfb is started. Lines on
 stdin are commands, each is answered by one line on stdout, "done" or "error …":
 
     mesh FILE VERTICES TRIANGLES   positions, normals (float32 × 3), indices (uint32 × 3), raw
+    spheres FILE COUNT             instead: places (float32 × 3), radii (float32), raw
     view WIDTH HEIGHT FOV_RAD EX EY EZ TX TY TZ UX UY UZ
-    draw OPACITY                   one frame, finished
+    draw OPACITY                   one frame, finished; peeled where it is not 1
     picture FILE                   the frame as RGBA8, row 0 at the top, raw
 
 VTK's own light is replaced by the peers' `phong` (gl_context.cpp), so that all shade alike. The
@@ -54,8 +56,7 @@ class Peer:
 
         self.vtk = vtk
         self.actor = vtk.vtkActor()
-        self.mapper = vtk.vtkPolyDataMapper()
-        self.actor.SetMapper(self.mapper)
+        self.actor.SetMapper(vtk.vtkPolyDataMapper())
         self.actor.GetProperty().SetInterpolationToPhong()
         self.actor.GetShaderProperty().AddFragmentShaderReplacement(
             "//VTK::Light::Impl", True, PHONG, False)
@@ -93,23 +94,53 @@ class Peer:
             indices.fromfile(data, 3 * triangles)
         offsets = array.array("i", range(0, 3 * triangles + 1, 3))
 
-        def vtk_array(kind, values, components):
-            out = kind()
-            out.SetNumberOfComponents(components)
-            out.SetVoidArray(values, len(values), 1)
-            return out
-
-        points = vtk.vtkPoints()
-        points.SetData(vtk_array(vtk.vtkFloatArray, positions, 3))
+        data = self.data(positions)
         cells = vtk.vtkCellArray()
-        cells.SetData(vtk_array(vtk.vtkTypeInt32Array, offsets, 1),
-                      vtk_array(vtk.vtkTypeInt32Array, indices, 1))
-        data = vtk.vtkPolyData()
-        data.SetPoints(points)
+        cells.SetData(self.array(vtk.vtkTypeInt32Array, offsets, 1),
+                      self.array(vtk.vtkTypeInt32Array, indices, 1))
         data.SetPolys(cells)
-        data.GetPointData().SetNormals(vtk_array(vtk.vtkFloatArray, normals, 3))
-        self.mapper.SetInputData(data)
+        data.GetPointData().SetNormals(self.array(vtk.vtkFloatArray, normals, 3))
+        mapper = vtk.vtkPolyDataMapper()
+        mapper.SetInputData(data)
+        self.actor.SetMapper(mapper)
         self.kept = positions, normals, indices, offsets  # VTK borrows them
+
+    def spheres(self, file, count):
+        vtk = self.vtk
+        count = int(count)
+        with open(file, "rb") as data:
+            places, radii = array.array("f"), array.array("f")
+            places.fromfile(data, 3 * count)
+            radii.fromfile(data, count)
+        data = self.data(places)
+        scale = self.array(vtk.vtkFloatArray, radii, 1)
+        scale.SetName("radius")
+        data.GetPointData().AddArray(scale)
+        offsets, numbers = array.array("i", range(count + 1)), array.array("i", range(count))
+        cells = vtk.vtkCellArray()  # the mapper draws vertices, not points
+        cells.SetData(self.array(vtk.vtkTypeInt32Array, offsets, 1),
+                      self.array(vtk.vtkTypeInt32Array, numbers, 1))
+        data.SetVerts(cells)
+        mapper = vtk.vtkOpenGLSphereMapper()
+        mapper.SetInputData(data)
+        mapper.SetScaleArray("radius")
+        mapper.SetScalarVisibility(False)
+        self.actor.SetMapper(mapper)
+        self.kept = places, radii, offsets, numbers  # VTK borrows them
+
+    @staticmethod
+    def array(kind, values, components):
+        out = kind()
+        out.SetNumberOfComponents(components)
+        out.SetVoidArray(values, len(values), 1)
+        return out
+
+    def data(self, places):
+        points = self.vtk.vtkPoints()
+        points.SetData(self.array(self.vtk.vtkFloatArray, places, 3))
+        data = self.vtk.vtkPolyData()
+        data.SetPoints(points)
+        return data
 
     def view(self, width, height, fov, *where):
         width, height = int(width), int(height)
@@ -124,10 +155,11 @@ class Peer:
         self.renderer.ResetCameraClippingRange()
 
     def draw(self, opacity):
-        self.actor.GetProperty().SetOpacity(float(opacity))
+        opacity = float(opacity)
+        self.actor.GetProperty().SetOpacity(opacity)
         self.window.Render()
         self.window.WaitForCompletion()
-        if not self.renderer.GetLastRenderingUsedDepthPeeling():
+        if opacity != 1 and not self.renderer.GetLastRenderingUsedDepthPeeling():
             raise RuntimeError("VTK did not peel")
 
     def picture(self, file):
@@ -147,8 +179,8 @@ def main():
         server = start_display()
         peer = Peer()
         print("done", peer.describe(), file=answers)
-        commands = {"mesh": peer.mesh, "view": peer.view, "draw": peer.draw,
-                    "picture": peer.picture}
+        commands = {"mesh": peer.mesh, "spheres": peer.spheres, "view": peer.view,
+                    "draw": peer.draw, "picture": peer.picture}
         for line in sys.stdin:
             command, *arguments = line.split()
             commands[command](*arguments)

@@ -167,6 +167,15 @@ SetupOutput defer_quadrics(const Frame& frame, const Draw& draw, std::uint64_t f
 std::uint32_t equal_flags(const FrameGeometry& frame, const Draw& draw, std::uint64_t first,
                           std::uint32_t count) {
   if (draw.material_flags.empty() && draw.cut == nullptr) return count;
+  // The usual case in a loop of its own: asking for each triangle's flags was 2 % of a frame.
+  if (draw.cut == nullptr && draw.mesh == nullptr && draw.face_materials.is_packed()) {
+    const auto materials =
+        draw.face_materials.packed().subspan(static_cast<std::size_t>(first), count);
+    const std::uint32_t own = draw.material_flags[materials[0]];
+    std::uint32_t n = 1;
+    while (n < count && draw.material_flags[materials[n]] == own) ++n;
+    return n;
+  }
   const std::uint32_t flags = frame.flags_of(draw, first);
   std::uint32_t n = 1;
   while (n < count && frame.flags_of(draw, first + n) == flags) ++n;
