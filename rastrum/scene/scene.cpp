@@ -144,8 +144,11 @@ std::uint64_t Scene::primitive_count() const {
 
 SceneBinding::SceneBinding(const Scene& scene) {
   instances_.reserve(scene.instances.size());
-  for (const Instance& i : scene.instances)
-    instances_.push_back({view_of(scene, i), i.object_to_world});
+  for (const Instance& i : scene.instances) {
+    InstanceView& instance = instances_.emplace_back();
+    instance.geometry = view_of(scene, i);
+    instance.object_to_world = i.object_to_world;
+  }
   view_ = {instances_, scene.materials, scene.textures};
 }
 
