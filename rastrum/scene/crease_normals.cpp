@@ -27,12 +27,12 @@ struct Face {
 };
 
 /// A number for each vertex, the same for equal positions, counted from 0 as they first come.
-struct Points {
+struct JoinedPoints {
   std::vector<std::uint32_t> of_vertex;
   std::size_t count = 0;
 };
 
-Points weld(std::span<const Vec3> positions) {
+JoinedPoints weld(std::span<const Vec3> positions) {
   // -0 equals 0 and has other bits; adding 0 makes them one.
   const auto key = [&](std::uint32_t vertex) {
     const Vec3 p = positions[vertex];
@@ -40,7 +40,7 @@ Points weld(std::span<const Vec3> positions) {
   };
   constexpr std::uint32_t kEmpty = ~0U;
   std::vector<std::uint32_t> slots(std::bit_ceil(positions.size() * 2 + 2), kEmpty);
-  Points points;
+  JoinedPoints points;
   points.of_vertex.resize(positions.size());
   for (std::uint32_t v = 0; v < positions.size(); ++v) {
     const auto k = key(v);
@@ -117,7 +117,7 @@ Attribute<Vec3> crease_normals(std::span<const Vec3> positions,
   check_indices(mesh);
   const std::size_t triangles = mesh.triangle_count();
 
-  const Points points = weld(positions);
+  const JoinedPoints points = weld(positions);
   const auto point = [&](std::size_t corner) { return points.of_vertex[mesh.vertex(corner)]; };
   std::vector<Face> faces(triangles);
   // The corners at point p, in the order of triangles: corners[begin[p]] to corners[begin[p + 1]].
