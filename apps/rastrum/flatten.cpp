@@ -110,7 +110,7 @@ void append(Mesh& into, Mesh& from, Kept& kept, Kept& whole) {
 }  // namespace
 
 Flattened flatten(Scene scene) {
-  Flattened flat{{}, std::move(scene.warnings)};
+  Flattened flat{{}, {}, std::move(scene.warnings)};
   Kept kept, whole;
   std::vector<Points> clouds;
   bool lines = false, surfaces = false;

@@ -49,6 +49,7 @@ class Crowd {
     offsets_.push_back(static_cast<std::uint32_t>(line_positions_.size()));
     tubes.offsets = offsets_;
     tubes.radii = line_radii_;
+    tubes.colors = line_colors_;
     CylindersView cones;
     cones.positions = cone_positions_;
     cones.radii = cone_radii_;
@@ -79,10 +80,11 @@ class Crowd {
     m.m[2][3] = -3;
     return m;
   }
+  Vec4 color() { return {real(0, 1), real(0, 1), real(0, 1), 1}; }
   void add_sphere(float least, float most) {
     centres_.push_back(place());
     sphere_radii_.push_back(random_.chance(0.02) ? 0 : real(least, most));
-    colors_.push_back({real(0, 1), real(0, 1), real(0, 1), 1});
+    colors_.push_back(color());
   }
   void add_line() {
     offsets_.push_back(static_cast<std::uint32_t>(line_positions_.size()));
@@ -90,6 +92,7 @@ class Crowd {
     const float radius = real(0.01, 0.08);
     for (int i = 0; i < 5; ++i) {
       line_positions_.push_back(p);
+      line_colors_.push_back(color());
       // Points, round ends, and balls that hold their neighbours.
       line_radii_.push_back(random_.chance(0.1) ? 0 : random_.chance(0.1) ? 6 * radius : radius);
       p = p + Vec3{real(-0.3, 0.3), real(-0.3, 0.3), real(-0.3, 0.3)};
@@ -106,7 +109,7 @@ class Crowd {
   Random random_;
   std::vector<Vec3> centres_, line_positions_, cone_positions_;
   std::vector<float> sphere_radii_, line_radii_, cone_radii_;
-  std::vector<Vec4> colors_;
+  std::vector<Vec4> colors_, line_colors_;
   std::vector<std::uint32_t> offsets_;
   Mesh mesh_ = shapes::soup(400, 0.05F, 0.5F);
   std::vector<InstanceView> instances_;
