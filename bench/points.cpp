@@ -69,7 +69,7 @@ std::unique_ptr<GlPeer> start_gl(Document& document, int threads) {
 double share_of_equal(ImageView<const std::int64_t> ours, const Image<std::int32_t>& gl) {
   std::size_t equal = 0;
   for (int y = 0; y < ours.height; ++y)
-    for (int x = 0; x < ours.width; ++x) equal += ours(x, y) == gl(x, y) ? 1 : 0;
+    for (int x = 0; x < ours.width; ++x) equal += std::size_t{ours(x, y) == gl(x, y)};
   return static_cast<double>(equal) / (static_cast<double>(ours.width) * ours.height);
 }
 

@@ -118,7 +118,7 @@ struct SceneView {
 };
 
 /// What is no mesh, with arrays of its own.
-using Geometry = std::variant<Points, Lines>;
+using Geometry = std::variant<Points, Lines, Spheres, Cylinders, Tubes, Discs>;
 [[nodiscard]] GeometryView view(const Geometry& geometry);
 
 /// An InstanceView that owns; the meaning of its look is that one's.

@@ -149,9 +149,18 @@ std::uint64_t Scene::primitive_count() const {
 
 SceneBinding::SceneBinding(const Scene& scene) {
   instances_.reserve(scene.instances.size());
-  for (const Instance& i : scene.instances)
-    instances_.push_back({view_of(scene, i), i.object_to_world, i.opacity, i.color, i.material,
-                          i.visible, i.winding, i.id, i.clip_planes});
+  for (const Instance& i : scene.instances) {
+    InstanceView& instance = instances_.emplace_back();
+    instance.geometry = view_of(scene, i);
+    instance.object_to_world = i.object_to_world;
+    instance.opacity = i.opacity;
+    instance.color = i.color;
+    instance.material = i.material;
+    instance.visible = i.visible;
+    instance.winding = i.winding;
+    instance.id = i.id;
+    instance.clip_planes = i.clip_planes;
+  }
   view_ = {instances_, scene.materials, scene.textures};
 }
 
