@@ -41,6 +41,22 @@ namespace rastrum::shapes {
 [[nodiscard]] Mesh soup(int count = 10000, float min_size = 0.01F, float max_size = 0.2F,
                         std::uint64_t seed = 1);
 
+// Surfaces that are no meshes (surfaces.hpp), coloured by place.
+
+/// Random spheres in the cube [−1, 1]³ with radii from [min_radius, max_radius], each size of which
+/// covers as much.
+[[nodiscard]] Spheres spheres(int count = 1000, float min_radius = 0.02F, float max_radius = 0.2F,
+                              std::uint64_t seed = 1);
+/// Random cones of `length` in the cube [−1, 1]³, closed, with `radius` at one end and less at the
+/// other.
+[[nodiscard]] Cylinders cylinders(int count = 500, float length = 0.4F, float radius = 0.04F,
+                                  std::uint64_t seed = 1);
+/// A closed tube of one radius around the curve of `torus_knot`, of `segments`.
+[[nodiscard]] Tubes tube(int p = 2, int q = 3, int segments = 256, float radius = 0.15F);
+/// Random discs as the spheres.
+[[nodiscard]] Discs discs(int count = 1000, float min_radius = 0.02F, float max_radius = 0.2F,
+                          std::uint64_t seed = 1);
+
 /// Every triangle split in 4 at the edge midpoints, `times` (0 to 16) times; shared edges share the
 /// new vertices, triangle t becomes 4t … 4t + 3 (a corner each, then the middle), attributes, also
 /// those with indices of their own, are interpolated linearly.
@@ -50,8 +66,10 @@ namespace rastrum::shapes {
 [[nodiscard]] Mesh subdivide(const Mesh& mesh, int times);
 
 /// A shape by its specification, as on the command line: `teapot`,
-/// `hairball?strands=100&width=0.01`. Throws Error{invalid_argument} naming the shape or parameter
-/// and listing the known ones.
+/// `hairball?strands=100&width=0.01`, as one instance. Throws Error{invalid_argument} naming the
+/// shape or parameter and listing the known ones.
+[[nodiscard]] Scene scene_from_spec(std::string_view spec);
+/// The mesh of it. Throws Error{invalid_argument} for a shape that is none, too.
 [[nodiscard]] Mesh from_spec(std::string_view spec);
 
 /// Name, parameters with their defaults, and a line of description of each shape, for `--help`.

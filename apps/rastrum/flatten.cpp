@@ -113,7 +113,7 @@ Flattened flatten(Scene scene) {
   Flattened flat{{}, {}, std::move(scene.warnings)};
   Kept kept, whole;
   std::vector<Points> clouds;
-  bool lines = false;
+  bool lines = false, surfaces = false;
   for (const Instance& instance : scene.instances) {
     if (instance.geometry) {
       const Geometry& geometry = scene.geometries[*instance.geometry];
@@ -121,6 +121,8 @@ Flattened flatten(Scene scene) {
       if (const auto* const points = std::get_if<Points>(&geometry)) {
         clouds.push_back(*points);
         place(clouds.back(), instance.object_to_world);
+      } else {
+        surfaces |= !std::holds_alternative<Lines>(geometry);
       }
       continue;
     }
@@ -135,6 +137,9 @@ Flattened flatten(Scene scene) {
                               "the positions, which PLY cannot say");
   };
   if (lines) flat.warnings.emplace_back("the lines are left out: PLY has none");
+  if (surfaces)
+    flat.warnings.emplace_back(
+        "the spheres, cylinders, tubes and discs are left out: PLY has none");
   if (!clouds.empty() && flat.mesh.triangle_count() != 0)
     flat.warnings.emplace_back("the points are left out: a PLY file with faces has none");
   else

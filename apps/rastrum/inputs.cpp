@@ -28,13 +28,13 @@ Scene make_builtin(const std::string& input, const std::string& source) {
   const std::string spec = source.substr(kBuiltin.size());
   Scene scene;
   try {
-    scene.meshes.push_back(shapes::from_spec(spec));
+    scene = shapes::scene_from_spec(spec);
   } catch (const Error& e) {
     if (e.code() == Errc::invalid_argument) throw UsageError(input, e.what());
     throw;
   }
-  if (scene.meshes[0].name.empty()) scene.meshes[0].name = spec.substr(0, spec.find('?'));
-  scene.instances.emplace_back();
+  for (Mesh& mesh : scene.meshes)
+    if (mesh.name.empty()) mesh.name = spec.substr(0, spec.find('?'));
   return scene;
 }
 

@@ -47,6 +47,10 @@ int run(const MakeArguments& a) {
   Progress progress(a.quiet);
   progress.show("making " + a.input);
   Scene scene = load_input(input, a.format);
+  const bool is_of_surfaces =
+      scene.meshes.empty() && !scene.geometries.empty() && is_shape(a.input);
+  if (is_of_surfaces)
+    throw UsageError(a.input, "is no mesh, and PLY has no such surfaces; `render` draws them");
   Flattened flat = flatten(std::move(scene));
   if (a.subdivide > 0) flat.mesh = shapes::subdivide(flat.mesh, a.subdivide);
   progress.clear();

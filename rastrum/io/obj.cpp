@@ -242,17 +242,17 @@ class ObjReader {
         else
           all.emplace_back(Points{.name = file_.stem().string()});
       }
-      std::visit(
-          [&](auto& g) {
-            g.material = element.material;
-            for (std::size_t i = 0; i < element.count; ++i) {
-              const std::uint32_t v = loose_corners_[element.begin + i];
-              g.positions.push_back(mesh_.positions[v]);
-              if (!mesh_.colors.empty()) g.colors.push_back(mesh_.colors.values[v]);
-            }
-          },
-          all[at->second]);
+      const auto add = [&](auto& g) {
+        g.material = element.material;
+        for (std::size_t i = 0; i < element.count; ++i) {
+          const std::uint32_t v = loose_corners_[element.begin + i];
+          g.positions.push_back(mesh_.positions[v]);
+          if (!mesh_.colors.empty()) g.colors.push_back(mesh_.colors.values[v]);
+        }
+      };
+      if (auto* const points = std::get_if<Points>(&all[at->second])) add(*points);
       if (auto* const lines = std::get_if<Lines>(&all[at->second])) {
+        add(*lines);
         if (is_new) lines->offsets.push_back(0);
         lines->offsets.push_back(static_cast<std::uint32_t>(lines->positions.size()));
       }

@@ -93,8 +93,7 @@ void describe_meshes(const Scene& scene, std::string& text) {
 void describe_geometries(const Scene& scene, std::string& text) {
   for (std::size_t i = 0; i < scene.geometries.size(); ++i) {
     if (i == kMostLines) {
-      text +=
-          "  … and " + std::to_string(scene.geometries.size() - i) + " more of points or lines\n";
+      text += "  … and " + std::to_string(scene.geometries.size() - i) + " more geometries\n";
       break;
     }
     struct Line {
@@ -106,6 +105,22 @@ void describe_geometries(const Scene& scene, std::string& text) {
       std::string operator()(const Lines& l) const {
         return begin("lines", l.name) + counted(l.view().size(), "segment") +
                has(l.colors.size(), "colours");
+      }
+      std::string operator()(const Spheres& s) const {
+        return begin("spheres", s.name) + counted(s.view().size(), "sphere") +
+               has(s.colors.size(), "colours");
+      }
+      std::string operator()(const Cylinders& c) const {
+        return begin("cylinders", c.name) + counted(c.view().size(), "cylinder") +
+               has(c.colors.size(), "colours");
+      }
+      std::string operator()(const Tubes& t) const {
+        return begin("tubes", t.name) + counted(t.view().size(), "segment") +
+               has(t.colors.size(), "colours");
+      }
+      std::string operator()(const Discs& d) const {
+        return begin("discs", d.name) + counted(d.view().size(), "disc") +
+               has(d.colors.size(), "colours");
       }
       [[nodiscard]] std::string begin(const char* kind, const std::string& name) const {
         return std::string("  ") + kind + " " + std::to_string(number) + " " + named(name) + ": ";
@@ -179,12 +194,14 @@ std::string describe(const Scene& scene) {
   std::vector<Faults> by_mesh;
   for (const Mesh& m : scene.meshes) by_mesh.push_back(faults(m));
   Faults all;
-  std::uint64_t points = 0, segments = 0;
+  std::uint64_t points = 0, segments = 0, surfaces = 0;
   for (const Instance& i : scene.instances) {
     if (i.geometry) {
       const Geometry& g = scene.geometries[*i.geometry];
-      if (const auto* const p = std::get_if<Points>(&g)) points += p->positions.size();
-      if (const auto* const l = std::get_if<Lines>(&g)) segments += l->view().size();
+      const std::uint64_t count = primitive_count(view(g));
+      (std::holds_alternative<Points>(g)  ? points
+       : std::holds_alternative<Lines>(g) ? segments
+                                          : surfaces) += count;
       continue;
     }
     all.not_finite += by_mesh[i.mesh].not_finite;
@@ -192,7 +209,8 @@ std::string describe(const Scene& scene) {
   }
   std::string text = counted(scene.triangle_count(), "triangle") +
                      (points != 0 ? ", " + counted(points, "point") : "") +
-                     (segments != 0 ? ", " + counted(segments, "line segment") : "") + " in " +
+                     (segments != 0 ? ", " + counted(segments, "line segment") : "") +
+                     (surfaces != 0 ? ", " + counted(surfaces, "exact surface") : "") + " in " +
                      counted(scene.instances.size(), "instance") + " of " +
                      counted(scene.meshes.size(), "mesh") + ", " +
                      counted(scene.materials.size(), "material") + ", " +

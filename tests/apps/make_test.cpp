@@ -55,6 +55,7 @@ TEST_F(Make, RefusesWhatItCannotDo) {
   EXPECT_EQ(run({"make", "sphere", "-o", "s.obj"}).status, 2);
   EXPECT_EQ(run({"make", "sphere", "--subdivide", "-1", "-o", "s.ply"}).status, 2);
   EXPECT_EQ(run({"make", "gone.obj", "-o", "s.ply"}).status, 1);
+  EXPECT_EQ(run({"make", "spheres", "-o", "s.ply"}).status, 2);
   EXPECT_TRUE(files().empty());
 }
 

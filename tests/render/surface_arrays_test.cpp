@@ -6,11 +6,13 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/refused.hpp"
 #include "tests/support/surface_layouts.hpp"
@@ -219,6 +221,48 @@ TEST(SurfaceArrays, ThatAreEmptyDrawNothing) {
     EXPECT_EQ(p.stats.pixels_covered, 0U);
     EXPECT_EQ(p.stats.triangles.input, 0U);
   }
+}
+
+// What a scene owns goes with it, is given a look beside materials, and is drawn as views of it.
+TEST(SurfaceArrays, AreOwnedByScenesToo) {
+  Scene scene = shapes::scene_from_spec("torus_knot");
+  scene.materials.resize(1);
+  for (const char* spec : {"spheres?count=40", "tube?segments=20", "cylinders?count=30", "discs"})
+    scene.append(shapes::scene_from_spec(spec));
+  Mat4d up = Mat4d::identity();
+  up.m[1][3] = 2;
+  scene.place(up);
+  const SceneBinding binding(scene);
+  const SceneView view = binding.view();
+  ASSERT_EQ(view.instances.size(), 5U);
+  std::vector<InstanceView> same(view.instances.begin(), view.instances.end());
+  const auto& spheres = std::get<Spheres>(scene.geometries[0]);
+  const auto& tubes = std::get<Tubes>(scene.geometries[1]);
+  const auto& cylinders = std::get<Cylinders>(scene.geometries[2]);
+  const auto& discs = std::get<Discs>(scene.geometries[3]);
+  same[1].geometry =
+      SpheresView{spheres.centers, spheres.radii, 1, spheres.colors, spheres.material};
+  same[2].geometry = TubesView{tubes.positions, {}, {}, tubes.radius, tubes.colors, tubes.material};
+  same[3].geometry = CylindersView{cylinders.positions, {},   cylinders.radii,   1,
+                                   cylinders.colors,    true, cylinders.material};
+  same[4].geometry =
+      DiscsView{discs.centers, discs.normals, discs.radii, 1, discs.colors, discs.material};
+  // Their own colours show.
+  EXPECT_LT(spheres.material, scene.materials.size());
+  EXPECT_EQ(scene.materials[spheres.material].alpha_mode, AlphaMode::blend);
+  const Bounds b = bounds(view);
+  EXPECT_GT(b.min.y, 0.3F);
+  EXPECT_LT(b.max.y, 3.7F);
+  Renderer renderer;
+  FrameOptions frame{.width = kW, .height = kH};
+  const Camera camera = fit_camera(view, 0.8F, false);
+  Picture owned, viewed;
+  owned.stats = renderer.render(view, camera, frame, {.color = owned.color, .ids = owned.ids});
+  viewed.stats = renderer.render({same, view.materials, view.textures}, camera, frame,
+                                 {.color = viewed.color, .ids = viewed.ids});
+  EXPECT_EQ(owned.pixels_that_differ(viewed), 0U);
+  EXPECT_GT(owned.stats.pixels_covered, 1000U);
+  EXPECT_EQ(owned.stats.triangles.input, scene.primitive_count());
 }
 
 }  // namespace rastrum::test::surface_arrays_test

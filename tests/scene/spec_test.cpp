@@ -1,5 +1,7 @@
+#include <cmath>
 #include <cstring>
 #include <functional>
+#include <variant>
 
 #include <gtest/gtest.h>
 
@@ -40,14 +42,44 @@ TEST(Spec, ReadsEveryParameter) {
 
 TEST(Spec, CatalogueListsWhatFromSpecKnows) {
   const auto infos = shapes::catalogue();
-  EXPECT_EQ(infos.size(), 7U);
+  EXPECT_EQ(infos.size(), 11U);
   for (const shapes::ShapeInfo& info : infos) {
     EXPECT_FALSE(info.description.empty());
     // The listed parameters with their defaults are themselves a specification.
-    EXPECT_TRUE(
-        same(shapes::from_spec(info.name + "?" + info.parameters), shapes::from_spec(info.name)))
-        << info.name;
+    const Scene scene = shapes::scene_from_spec(info.name + "?" + info.parameters);
+    const Scene plain = shapes::scene_from_spec(info.name);
+    ASSERT_EQ(scene.instances.size(), 1U);
+    EXPECT_GT(scene.primitive_count(), 0U);
+    EXPECT_EQ(scene.primitive_count(), plain.primitive_count());
+    if (!scene.meshes.empty()) {
+      EXPECT_TRUE(same(shapes::from_spec(info.name), plain.meshes.front())) << info.name;
+      EXPECT_TRUE(same(scene.meshes.front(), plain.meshes.front())) << info.name;
+    }
   }
+}
+
+TEST(Spec, ShapesThatAreNoMeshesAreGeometries) {
+  const Scene spheres = shapes::scene_from_spec("spheres?count=20&min_radius=0.1&max_radius=0.3");
+  const auto& s = std::get<Spheres>(spheres.geometries.at(0));
+  EXPECT_EQ(s.centers.size(), 20U);
+  for (std::size_t i = 0; i < s.centers.size(); ++i) {
+    EXPECT_GE(s.radii[i], 0.1F);
+    EXPECT_LE(s.radii[i], 0.3F);
+    for (const float x : {s.centers[i].x, s.centers[i].y, s.centers[i].z})
+      EXPECT_LE(std::abs(x) + s.radii[i], 1.0001F);
+  }
+  const Scene tube = shapes::scene_from_spec("tube?p=3&q=5&segments=60&radius=0.125");
+  const auto& t = std::get<Tubes>(tube.geometries.at(0));
+  EXPECT_EQ(t.view().size(), 60U);
+  EXPECT_EQ(t.positions.front(), t.positions.back());
+  EXPECT_EQ(t.radius, 0.125F);
+  EXPECT_EQ(std::get<Cylinders>(shapes::scene_from_spec("cylinders?count=3").geometries.at(0))
+                .view()
+                .size(),
+            3U);
+  EXPECT_EQ(
+      std::get<Discs>(shapes::scene_from_spec("discs?count=4").geometries.at(0)).normals.size(),
+      4U);
 }
 
 std::string error_of(const std::function<void()>& f) {
@@ -66,6 +98,9 @@ TEST(Spec, ErrorsNameWhatIsWrongAndWhatIsKnown) {
     for (const char* part : parts)
       EXPECT_NE(message.find(part), std::string::npos) << spec << " → " << message;
   };
+  expect("spheres", {"'spheres' is no mesh"});
+  expect("tube?p=2&q=4", {"tube: p and q must have no common divisor"});
+  expect("spheres?max_radius=2", {"spheres: max_radius must lie in"});
   expect("", {"no shape ''", "teapot"});
   expect("teapod",
          {"teapod", "teapot", "sphere", "torus_knot", "boxes", "hairball", "gyroid", "soup"});

@@ -62,7 +62,6 @@ HWY_INLINE unsigned bits_of(WideMask mask) {
 }
 
 SetupOutput defer(const QuadricInput& in, Piece* pieces, std::uint32_t* slow) noexcept {
-  const F64 d;
   const hn::Rebind<std::int32_t, F64> di;
   const hn::Rebind<float, F64> df;
   SetupOutput out;

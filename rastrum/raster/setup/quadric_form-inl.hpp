@@ -78,7 +78,7 @@ RASTRUM_LANES WidePlace place_of(const QuadricEye& eye, const WideBall& first,
                                  const WideBall* second) {
   WideEnd ends = end_of(eye, first);
   if (second != nullptr) ends = united(ends, end_of(eye, *second));
-  WidePlace p;
+  WidePlace p{};
   p.is_hidden = ends.is_hidden;
   p.asks_near = ends.asks_near;
   p.is_ahead = ends.is_ahead;
@@ -203,7 +203,7 @@ RASTRUM_LANES void set_form(const WideLinearVec& s, const WideLinear& rho, W rea
   const W r[3] = {rho.o, rho.x, rho.y};
   const W re = rho.depth;
   W b[3], d[3][3];
-  WideVec m[3], k[3];
+  WideVec m[3] = {}, k[3] = {};
   for (int i = 0; i < 3; ++i) {
     b[i] = dot(s.depth, v[i]) - re * r[i];
     m[i] = v[i] * re - s.depth * r[i];
@@ -235,7 +235,7 @@ RASTRUM_LANES void set_form(const WideLinearVec& s, const WideLinear& rho, W rea
 }
 
 RASTRUM_LANES WidePart ball_part(const WideRays& rays, const WideBall& ball, W reach) {
-  WidePart part;
+  WidePart part{};
   set_form(from(rays, ball.centre) * (wide(1) / ball.radius), w_of(rays), reach, part);
   return part;
 }
@@ -256,7 +256,7 @@ RASTRUM_LANES FoundLimit limit_of(WideLinear g, W reach) {
 /// Between two points, where the radii are r0 and r1. What lies between its ends lies where w > 0.
 RASTRUM_LANES WidePart cone_part(const WideRays& rays, const WideBall& first,
                                  const WideBall& second, W reach) {
-  WidePart part;
+  WidePart part{};
   const WideVec between = second.centre - first.centre;
   const W r0 = first.radius, r1 = second.radius;
   const WideVec middle = (first.centre + second.centre) * wide(0.5);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <concepts>
 #include <cstddef>
 #include <span>
 #include <system_error>
@@ -49,45 +50,88 @@ struct Shape {
   const char* name;
   std::vector<Parameter> parameters;
   const char* description;
-  Mesh (*make)(const Arguments&);
+  Scene (*make)(const Arguments&);
 };
+
+Scene scene_of(Mesh mesh) {
+  Scene scene;
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.emplace_back();
+  return scene;
+}
+template <class G>
+requires std::constructible_from<Geometry, G> Scene scene_of(G geometry) {
+  Scene scene;
+  scene.geometries.emplace_back(std::move(geometry));
+  scene.instances.emplace_back().geometry = 0;
+  return scene;
+}
 
 const std::vector<Shape>& table() {
   static const std::vector<Shape> shapes = {
       {"teapot",
        {{"n", "16"}},
        "Newell's teapot, 32 Bézier patches of n × n quads (64 n² triangles)",
-       [](const Arguments& a) { return teapot(a.get<int>(0)); }},
+       [](const Arguments& a) { return scene_of(teapot(a.get<int>(0))); }},
       {"sphere",
        {{"rings", "32"}, {"segments", "64"}},
        "latitude-longitude sphere of radius 1 (2 (rings − 1) segments triangles)",
-       [](const Arguments& a) { return sphere(a.get<int>(0), a.get<int>(1)); }},
+       [](const Arguments& a) { return scene_of(sphere(a.get<int>(0), a.get<int>(1))); }},
       {"torus_knot",
        {{"p", "2"}, {"q", "3"}, {"segments", "256"}, {"sides", "24"}, {"tube", "0.25"}},
        "tube around the (p, q) torus knot (2 segments sides triangles)",
        [](const Arguments& a) {
-         return torus_knot(a.get<int>(0), a.get<int>(1), a.get<int>(2), a.get<int>(3),
-                           a.get<float>(4));
+         return scene_of(torus_knot(a.get<int>(0), a.get<int>(1), a.get<int>(2), a.get<int>(3),
+                                    a.get<float>(4)));
        }},
       {"boxes",
        {{"count", "4"}, {"fill", "0.6"}},
        "count³ boxes of edge `fill` in a grid of unit cells (12 count³ triangles)",
-       [](const Arguments& a) { return boxes(a.get<int>(0), a.get<float>(1)); }},
+       [](const Arguments& a) { return scene_of(boxes(a.get<int>(0), a.get<float>(1))); }},
       {"hairball",
        {{"strands", "22500"}, {"segments", "64"}, {"width", "0.002"}, {"seed", "1"}},
        "crossing curves in the unit ball as thin ribbons (2 strands segments triangles)",
        [](const Arguments& a) {
-         return hairball(a.get<int>(0), a.get<int>(1), a.get<float>(2), a.get<std::uint64_t>(3));
+         return scene_of(
+             hairball(a.get<int>(0), a.get<int>(1), a.get<float>(2), a.get<std::uint64_t>(3)));
        }},
       {"gyroid",
        {{"cells", "64"}, {"periods", "2"}},
        "gyroid surface by marching cubes on a grid of cells³",
-       [](const Arguments& a) { return gyroid(a.get<int>(0), a.get<float>(1)); }},
+       [](const Arguments& a) { return scene_of(gyroid(a.get<int>(0), a.get<float>(1))); }},
       {"soup",
        {{"count", "10000"}, {"min_size", "0.01"}, {"max_size", "0.2"}, {"seed", "1"}},
        "random triangles with edges from min_size to max_size in the cube [−1, 1]³",
        [](const Arguments& a) {
-         return soup(a.get<int>(0), a.get<float>(1), a.get<float>(2), a.get<std::uint64_t>(3));
+         return scene_of(
+             soup(a.get<int>(0), a.get<float>(1), a.get<float>(2), a.get<std::uint64_t>(3)));
+       }},
+      {"spheres",
+       {{"count", "1000"}, {"min_radius", "0.02"}, {"max_radius", "0.2"}, {"seed", "1"}},
+       "random spheres in the cube [−1, 1]³, exact",
+       [](const Arguments& a) {
+         return scene_of(
+             spheres(a.get<int>(0), a.get<float>(1), a.get<float>(2), a.get<std::uint64_t>(3)));
+       }},
+      {"cylinders",
+       {{"count", "500"}, {"length", "0.4"}, {"radius", "0.04"}, {"seed", "1"}},
+       "random cones in the cube [−1, 1]³, exact",
+       [](const Arguments& a) {
+         return scene_of(
+             cylinders(a.get<int>(0), a.get<float>(1), a.get<float>(2), a.get<std::uint64_t>(3)));
+       }},
+      {"tube",
+       {{"p", "2"}, {"q", "3"}, {"segments", "256"}, {"radius", "0.15"}},
+       "tube around the curve of the (p, q) torus knot, exact",
+       [](const Arguments& a) {
+         return scene_of(tube(a.get<int>(0), a.get<int>(1), a.get<int>(2), a.get<float>(3)));
+       }},
+      {"discs",
+       {{"count", "1000"}, {"min_radius", "0.02"}, {"max_radius", "0.2"}, {"seed", "1"}},
+       "random discs in the cube [−1, 1]³, exact",
+       [](const Arguments& a) {
+         return scene_of(
+             discs(a.get<int>(0), a.get<float>(1), a.get<float>(2), a.get<std::uint64_t>(3)));
        }},
   };
   return shapes;
@@ -109,7 +153,7 @@ const Shape& find_shape(std::string_view name) {
 
 }  // namespace
 
-Mesh from_spec(std::string_view spec) {
+Scene scene_from_spec(std::string_view spec) {
   const std::size_t question = spec.find('?');
   const Shape& shape = find_shape(spec.substr(0, question));
   std::vector<std::string_view> values;
@@ -139,6 +183,14 @@ Mesh from_spec(std::string_view spec) {
     values[i] = item.substr(equals + 1);
   }
   return shape.make(Arguments(shape.name, shape.parameters, std::move(values)));
+}
+
+Mesh from_spec(std::string_view spec) {
+  Scene scene = scene_from_spec(spec);
+  if (scene.meshes.empty())
+    throw Error(Errc::invalid_argument,
+                "'" + std::string(spec) + "' is no mesh: its surfaces are drawn as they are");
+  return std::move(scene.meshes.front());
 }
 
 std::vector<ShapeInfo> catalogue() {

@@ -1,7 +1,7 @@
 // A tube around the (p, q) torus knot: p turns about the y axis while q turns about the tube of a
 // torus with radii 1 and 0.4. The frame is the torus's own normal, which is perpendicular to the
 // curve and closes with it; so the tube closes without a twist correction and its normals are
-// exact.
+// exact. And the same knot as a tube of quadrics, whose surface is exact, too.
 
 #include <cmath>
 #include <numbers>
@@ -11,6 +11,7 @@
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/scene/shapes/place_color.hpp>
 #include <rastrum/scene/shapes/require.hpp>
 #include <rastrum/shapes.hpp>
 #include <rastrum/vec.hpp>
@@ -34,18 +35,23 @@ Frame knot_frame(int p, int q, double t) {
   return {outward * ring + Vec3d{0, kMinor * sq, 0}, normal, normalize(cross(tangent, normal))};
 }
 
+void require_knot(const char* shape, int p, int q, int segments, float radius, const char* name) {
+  require_range(shape, "p", p, 1, 1000);
+  require_range(shape, "q", q, 0, 1000);
+  require_range(shape, "segments", segments, 3, 1 << 24);
+  require_range(shape, name, radius, 1e-6, 10);
+  if (std::gcd(p, q) != 1)
+    throw Error(Errc::invalid_argument, std::string(shape) +
+                                            ": p and q must have no common divisor, got " +
+                                            std::to_string(p) + " and " + std::to_string(q));
+}
+
 }  // namespace
 
 Mesh torus_knot(int p, int q, int segments, int sides, float tube) {
-  require_range("torus_knot", "p", p, 1, 1000);
-  require_range("torus_knot", "q", q, 0, 1000);
-  require_range("torus_knot", "segments", segments, 3, 1 << 24);
+  require_knot("torus_knot", p, q, segments, tube, "tube");
   require_range("torus_knot", "sides", sides, 3, 65536);
-  require_range("torus_knot", "tube", tube, 1e-6, 10);
   require_size("torus_knot", "segments and sides", (segments + 1.0) * (sides + 1.0));
-  if (std::gcd(p, q) != 1)
-    throw Error(Errc::invalid_argument, "torus_knot: p and q must have no common divisor, got " +
-                                            std::to_string(p) + " and " + std::to_string(q));
   const auto n = static_cast<std::uint32_t>(segments);
   const auto m = static_cast<std::uint32_t>(sides);
 
@@ -88,6 +94,19 @@ Mesh torus_knot(int p, int q, int segments, int sides, float tube) {
       corner(i + 1, j);
     }
   return mesh;
+}
+
+Tubes tube(int p, int q, int segments, float radius) {
+  require_knot("tube", p, q, segments, radius, "radius");
+  Tubes t;
+  t.name = "tube";
+  t.radius = radius;
+  for (int i = 0; i <= segments; ++i) {
+    const Vec3d at = knot_frame(p, q, 2 * std::numbers::pi * (i % segments) / segments).point;
+    t.positions.push_back(static_cast<Vec3>(at));
+    t.colors.push_back(place_color(at * (1 / (kMajor + kMinor))));
+  }
+  return t;
 }
 
 }  // namespace rastrum::shapes
