@@ -121,11 +121,20 @@ struct SceneView {
 using Geometry = std::variant<Points, Lines, Spheres, Cylinders, Tubes, Discs>;
 [[nodiscard]] GeometryView view(const Geometry& geometry);
 
+/// An InstanceView that owns; the meaning of its look is that one's.
 struct Instance {
   std::uint32_t mesh = 0;  ///< index into Scene::meshes
   Mat4d object_to_world = Mat4d::identity();
   /// Index into Scene::geometries: what it is instead of a mesh.
   std::optional<std::uint32_t> geometry{};
+
+  float opacity = 1;
+  std::optional<Vec4> color{};
+  std::optional<std::uint32_t> material{};  ///< index into Scene::materials
+  bool visible = true;
+  Winding winding = Winding::counter_clockwise;
+  std::optional<std::int64_t> id{};
+  std::vector<ClipPlane> clip_planes{};
 };
 
 /// What readers return: meshes and other geometries, instances in order of submission, materials,
@@ -155,7 +164,8 @@ struct Scene {
 };
 
 /// Gives the meshes and geometries of a scene without materials some that look as if there were
-/// none: the colour of the plain shaders, or their own colours, which blend.
+/// none: the colour of the plain shaders, or their own colours, which blend; so do those of
+/// instances.
 void add_plain_materials(Scene& scene);
 
 /// The borrowed form of a scene; keeps the instance list that the span points to. The scene must

@@ -78,6 +78,10 @@ void add_plain_materials(Scene& scene) {
   }
   for (Geometry& geometry : scene.geometries)
     std::visit([&](auto& g) { g.material = material_for(!g.colors.empty()); }, geometry);
+  for (Instance& instance : scene.instances) {
+    instance.material.reset();
+    if (instance.color) instance.material = material_for(true);
+  }
 }
 
 void Scene::place(const Mat4d& to_world) {
@@ -111,10 +115,11 @@ void Scene::append(Scene other) {
     std::visit([&](auto& g) { g.material += material_offset; }, geometry);
     geometries.push_back(std::move(geometry));
   }
-  for (Instance instance : other.instances) {
+  for (Instance& instance : other.instances) {
     instance.mesh += mesh_offset;
     if (instance.geometry) *instance.geometry += geometry_offset;
-    instances.push_back(instance);
+    if (instance.material) *instance.material += material_offset;
+    instances.push_back(std::move(instance));
   }
   for (Material& m : other.materials) {
     for (std::int32_t* t : {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
@@ -148,6 +153,13 @@ SceneBinding::SceneBinding(const Scene& scene) {
     InstanceView& instance = instances_.emplace_back();
     instance.geometry = view_of(scene, i);
     instance.object_to_world = i.object_to_world;
+    instance.opacity = i.opacity;
+    instance.color = i.color;
+    instance.material = i.material;
+    instance.visible = i.visible;
+    instance.winding = i.winding;
+    instance.id = i.id;
+    instance.clip_planes = i.clip_planes;
   }
   view_ = {instances_, scene.materials, scene.textures};
 }

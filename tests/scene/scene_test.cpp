@@ -267,6 +267,58 @@ TEST(SceneAppend, ShiftsIndices) {
   EXPECT_EQ(a.triangle_count(), 72U);
 }
 
+TEST(SceneBinding, GivesInstancesTheirLook) {
+  Scene scene = scene_of(shapes::boxes(1));
+  Instance& own = scene.instances.emplace_back();
+  own.object_to_world.m[0][3] = 3;
+  own.opacity = 0.25F;
+  own.color = Vec4{1, 0.5F, 0.25F, 0.75F};
+  own.material = 4;
+  own.visible = false;
+  own.winding = Winding::either;
+  own.id = -7;
+  own.clip_planes = {{{0, 1, 0}, 0.5}};
+  const SceneBinding binding(scene);
+  const InstanceView& plain = binding.view().instances[0];
+  const InstanceView& view = binding.view().instances[1];
+  EXPECT_EQ(view.object_to_world.m[0][3], 3);
+  EXPECT_EQ(view.opacity, 0.25F);
+  EXPECT_EQ(view.color, own.color);
+  EXPECT_EQ(view.material, 4U);
+  EXPECT_FALSE(view.visible);
+  EXPECT_EQ(view.winding, Winding::either);
+  EXPECT_EQ(view.id, -7);
+  ASSERT_EQ(view.clip_planes.size(), 1U);
+  EXPECT_EQ(view.clip_planes[0].offset, 0.5);
+  EXPECT_EQ(plain.opacity, 1.0F);
+  EXPECT_FALSE(plain.color || plain.material || plain.id);
+  EXPECT_TRUE(plain.visible);
+}
+
+TEST(SceneAppend, ShiftsTheMaterialsOfInstances) {
+  Scene a = marked_scene(0.25F, 2, 3), b = marked_scene(0.5F, 3, 2);
+  b.instances[1].material = 1;
+  b.instances[1].opacity = 0.5F;
+  a.append(std::move(b));
+  EXPECT_EQ(a.instances[4].material, 3U);
+  EXPECT_EQ(a.instances[4].opacity, 0.5F);
+  EXPECT_FALSE(a.instances[3].material);
+}
+
+// Without materials an instance's colour is what is seen: a plain material must not darken it, and
+// the one that an instance names does not exist.
+TEST(SceneAppend, ColoursOfInstancesWithoutMaterialsStay) {
+  Scene a = marked_scene(0.25F, 0, 0);
+  a.instances[0].color = Vec4{0, 1, 0, 0.5F};
+  a.instances[1].material = 9;
+  a.append(marked_scene(0.5F, 2, 1));
+  ASSERT_TRUE(a.instances[0].material);
+  const Material& seen = a.materials[*a.instances[0].material];
+  EXPECT_EQ(seen.base_color, (Vec4{1, 1, 1, 1}));
+  EXPECT_EQ(seen.alpha_mode, AlphaMode::blend);
+  EXPECT_FALSE(a.instances[1].material);
+}
+
 TEST(SceneAppend, FilesWithoutMaterialsLookAsTheyDid) {
   // First without, then with materials: the first file's meshes must not take the second's.
   Scene a = marked_scene(0.25F, 0, 0);
