@@ -44,6 +44,13 @@ class FakeSubject final : public Subject {
       return d;
     };
   }
+  [[nodiscard]] std::function<std::string()> pick(int x, int y, int width, int height) override {
+    if (!picks) return {};
+    return [=] {
+      return std::to_string(x) + "," + std::to_string(y) + " of " + std::to_string(width) + "x" +
+             std::to_string(height);
+    };
+  }
   [[nodiscard]] Worker::Job open(const std::filesystem::path& file) override {
     return [this, file]() -> Worker::Done {
       if (file == "bad") throw Error(Errc::bad_format, "bad: is spoilt");
@@ -63,7 +70,7 @@ class FakeSubject final : public Subject {
   [[nodiscard]] std::string title() const override { return "fake"; }
   [[nodiscard]] std::vector<KeyHelp> keys() const override { return {{"w", "move"}}; }
 
-  bool is_moving = false, refuse = false;
+  bool is_moving = false, refuse = false, picks = true;
   double ms_a_pixel = 1;
   int pictures = 0;
 
@@ -280,6 +287,44 @@ TEST_F(ViewerTest, TheEndGivesUpWhatIsDrawn) {
   EXPECT_EQ(rows, 0) << "after the window was closed";
 }
 
+Event mouse(Event::Kind kind, double x, double y) {
+  Event e;
+  e.kind = kind;
+  e.x = x;
+  e.y = y;
+  return e;
+}
+
+TEST_F(ViewerTest, AClickNamesWhatIsThere) {
+  const auto from_to = [&](Event press, const Event& release) {
+    press.kind = Event::Kind::button_down;
+    viewer->handle(press);
+    viewer->handle(mouse(Event::Kind::move, release.x, release.y));
+    viewer->handle(release);
+    viewer->settle();
+  };
+  const auto up = [](double x, double y) { return mouse(Event::Kind::button_up, x, y); };
+  EXPECT_EQ(viewer->title(), "fake");
+  from_to(up(20, 30), up(21, 29));
+  EXPECT_EQ(viewer->title(), "fake: 20,30 of 64x32");
+  from_to(up(5, 5), up(20, 5));  // a drag
+  Event shifted = up(9, 9), right = up(9, 9);
+  shifted.shift = true;
+  right.button = Button::right;
+  from_to(shifted, up(9, 9));
+  from_to(right, right);
+  viewer->handle(up(9, 9));       // of a press on the panel
+  from_to(up(9, 32), up(9, 31));  // out of the picture
+  viewer->settle();
+  EXPECT_EQ(viewer->title(), "fake: 20,30 of 64x32");
+  viewer->open("good");
+  viewer->settle();
+  EXPECT_EQ(viewer->title(), "fake");
+  subject->picks = false;
+  from_to(up(1, 1), up(1, 1));
+  EXPECT_EQ(viewer->title(), "fake");
+}
+
 TEST_F(ViewerTest, EndsWhileAPictureIsDrawn) {
   viewer->advance(0);
   viewer->update();
@@ -302,7 +347,7 @@ class MeshViewerTest : public Program {
     Viewer viewer(std::move(subject), options);
     Replay replay(read_script(path("script.json"), keys), viewer);
     while (!replay.finished()) replay.step();
-    title = viewer.subject().title();
+    title = viewer.title();
     return viewer.error();
   }
   [[nodiscard]] std::string shot(const std::string& name) const {
@@ -344,6 +389,19 @@ TEST_F(MeshViewerTest, ScreenshotsAreWhatRenderDraws) {
   heat.insert(heat.end(), {"--heatmap", "heat.png"});
   static_cast<void>(rendered(t, "e", "50x70", heat));
   EXPECT_TRUE(same_pixels(png("e.png"), png("heat.png")));
+}
+
+TEST_F(MeshViewerTest, AClickOnAMeshNamesItsPrimitive) {
+  const auto click = [&](const std::string& at) {
+    EXPECT_EQ(replay("builtin:sphere", R"({"events": [{"button_down": "left", "at": )" + at +
+                                           R"(}, {"time": 0.1, "button_up": "left"}]})"),
+              "");
+  };
+  click("[60, 45]");
+  EXPECT_TRUE(title.starts_with("builtin:sphere: instance 0, primitive ")) << title;
+  EXPECT_NE(title.find(" at ("), std::string::npos) << title;
+  click("[1, 1]");
+  EXPECT_EQ(title, "builtin:sphere: nothing is there");
 }
 
 TEST_F(MeshViewerTest, TwoReplaysAreTheSame) {

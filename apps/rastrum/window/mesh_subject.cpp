@@ -182,13 +182,38 @@ void MeshSubject::change(char key, bool back) {
   set(std::move(s));
 }
 
-std::function<Drawn()> MeshSubject::draw(int width, int height) {
+family::Options MeshSubject::options_for(int width, int height) const {
   family::Options options = settings_.render;
   options.width = width;
   options.height = height;
   options.shader = shader_of(options.shader, scene_->has_materials);
-  return [options, heat_map = settings_.heat_map, scene = scene_, camera = control_.camera(),
-          painter = painter_]() -> Drawn {
+  return options;
+}
+
+std::function<std::string()> MeshSubject::pick(int x, int y, int width, int height) {
+  return [options = options_for(width, height), x, y, scene = scene_, camera = control_.camera(),
+          painter = painter_]() -> std::string {
+    Renderer& renderer = painter->get(options, options);
+    const auto pick = renderer.pick(scene->binding.view(), camera, options, x, y);
+    if (!pick) return "nothing is there";
+    const Vec3d& p = pick->position;
+    return std::string("instance ")
+        .append(std::to_string(pick->instance_id))
+        .append(", primitive ")
+        .append(std::to_string(pick->primitive))
+        .append(" at (")
+        .append(text("%.6g", p.x))
+        .append(", ")
+        .append(text("%.6g", p.y))
+        .append(", ")
+        .append(text("%.6g", p.z))
+        .append(")");
+  };
+}
+
+std::function<Drawn()> MeshSubject::draw(int width, int height) {
+  return [options = options_for(width, height), heat_map = settings_.heat_map, scene = scene_,
+          camera = control_.camera(), painter = painter_]() -> Drawn {
     Renderer& renderer = painter->get(options, options);
     Drawn drawn{Image<Rgba8>(options.width, options.height), options.background.w == 1, {}};
     Image<std::uint32_t> overdraw;

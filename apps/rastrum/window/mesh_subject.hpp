@@ -55,6 +55,7 @@ class MeshSubject final : public Subject {
   [[nodiscard]] bool moving() const override { return control_.moving(); }
   [[nodiscard]] std::uint64_t version() const override;
   [[nodiscard]] std::function<Drawn()> draw(int width, int height) override;
+  [[nodiscard]] std::function<std::string()> pick(int x, int y, int width, int height) override;
   [[nodiscard]] Worker::Job open(const std::filesystem::path& file) override;
   void set_options(const std::string& options) override;
   void write_camera(const std::filesystem::path& file) const override;
@@ -68,6 +69,8 @@ class MeshSubject final : public Subject {
 
  private:
   class Painter;  // of the worker's thread
+  /// The options of a picture.
+  [[nodiscard]] family::Options options_for(int width, int height) const;
   void show(SceneArguments arguments, std::shared_ptr<const LoadedScene> scene);
   /// What `key` stands for becomes the next one, with `back` the one before.
   void change(char key, bool back);

@@ -105,7 +105,9 @@ Area draw_panel(Viewer& viewer, const Controls& controls) {
   if (ImGui::CollapsingHeader("Keys")) {
     draw_keys(viewer.subject().keys());
     draw_keys(Viewer::keys());
-    ImGui::TextWrapped("Drag: orbit; right: look around; middle or Shift: pan; wheel: zoom.");
+    ImGui::TextWrapped(
+        "Click: name what is there. Drag: orbit; right: look around; middle or Shift: pan; wheel: "
+        "zoom.");
     ImGui::TextWrapped("Drop a file on the window to open it.");
   }
   ImGui::PopItemWidth();

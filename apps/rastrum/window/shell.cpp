@@ -284,7 +284,7 @@ class Shell {
   }
 
   void present() {
-    screen_.set_title(viewer_.subject().title());
+    screen_.set_title(viewer_.title());
     ImGui_ImplSDL2_NewFrame();
     ImGui::NewFrame();
     if (panel_)

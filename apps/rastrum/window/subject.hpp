@@ -49,6 +49,9 @@ class Subject {
 
   /// Draws what is to be seen now at this size; holds all that it needs. Throws Error.
   [[nodiscard]] virtual std::function<Drawn()> draw(int width, int height) = 0;
+  /// Says what lies under pixel (x, y) of the picture of this size as it is to be seen now; holds
+  /// all that it needs, and throws Error. None: the subject cannot tell.
+  [[nodiscard]] virtual std::function<std::string()> pick(int x, int y, int width, int height) = 0;
   /// Reads a file and, back on the window's thread, shows it. Throws Error.
   [[nodiscard]] virtual Worker::Job open(const std::filesystem::path& file) = 0;
   /// Options as on the command line, as in "--shader normal --opacity 0.5". Throws Error and leaves

@@ -1,6 +1,7 @@
 #include "viewer.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <new>
 #include <utility>
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double kRest_s = 0.15;       ///< without change, before the full picture is drawn
 constexpr std::size_t kHistory = 120;  ///< frame times that are kept
+constexpr double kClick_px = 3;        ///< that a hand may shake between press and release
 
 constexpr KeyHelp kViewerKeys[] = {{"p", "screenshot, with its camera as a path file"},
                                    {"k", "add the camera to a path that render --path draws"},
@@ -37,6 +39,10 @@ Viewer::~Viewer() {
   drawing_.request_stop();
 }
 
+std::string Viewer::title() const {
+  return picked_.empty() ? subject_->title() : subject_->title() + ": " + picked_;
+}
+
 std::vector<KeyHelp> Viewer::keys() {
   return {std::begin(kViewerKeys), std::end(kViewerKeys)};
 }
@@ -53,6 +59,35 @@ void Viewer::handle(const Event& event) {
     record();
   else
     subject_->handle(event);
+  if (const auto at = clicked(event))
+    pick(static_cast<int>(at->first), static_cast<int>(at->second));
+}
+
+std::optional<std::pair<double, double>> Viewer::clicked(const Event& event) {
+  switch (event.kind) {
+    case Event::Kind::button_down:
+      press_.reset();
+      if (event.button == Button::left && !event.shift) press_ = {event.x, event.y};
+      break;
+    case Event::Kind::move:
+      if (press_ && std::max(std::abs(event.x - press_->first),
+                             std::abs(event.y - press_->second)) > kClick_px)
+        press_.reset();
+      break;
+    case Event::Kind::button_up:
+      if (event.button == Button::left) return std::exchange(press_, std::nullopt);
+      break;
+    case Event::Kind::leave:
+      press_.reset();
+      break;
+    default:
+      break;
+  }
+  return std::nullopt;
+}
+
+void Viewer::pick(int x, int y) {
+  if (x >= 0 && x < options_.width && y >= 0 && y < options_.height) pick_ = {x, y};
 }
 
 void Viewer::resize(int width, int height) {
@@ -133,8 +168,8 @@ std::optional<std::size_t> Viewer::next_step() const {
 }
 
 bool Viewer::busy() const {
-  return worker_.busy() || !screenshots_.empty() || !opens_.empty() || subject_->moving() ||
-         next_step().has_value() || (shown_.step != 0 && !resting());
+  return worker_.busy() || pick_ || !screenshots_.empty() || !opens_.empty() ||
+         subject_->moving() || next_step().has_value() || (shown_.step != 0 && !resting());
 }
 
 void Viewer::submit(Worker::Job job, std::function<void(const std::string&)> failed) {
@@ -224,6 +259,7 @@ bool Viewer::update() {
             done();
             resolution_.forget();
             error_.clear();
+            picked_.clear();
             notice_ = "showing " + file.string();
           };
         },
@@ -232,6 +268,16 @@ bool Viewer::update() {
   }
   if (const auto step = next_step()) {
     draw(*step);
+    return true;
+  }
+  if (pick_) {
+    const auto [x, y] = *std::exchange(pick_, std::nullopt);
+    if (auto job = subject_->pick(x, y, options_.width, options_.height))
+      submit(
+          [this, job = std::move(job)]() -> Worker::Done {
+            return [this, what = job()] { picked_ = what; };
+          },
+          [this](const std::string& what) { error_ = what; });
     return true;
   }
   if (!screenshots_.empty() && shown_.step == 0) {
@@ -248,7 +294,7 @@ bool Viewer::update() {
 
 void Viewer::settle() {
   const bool adaptive = std::exchange(options_.adaptive, false);
-  while (worker_.busy() || next_step() || !opens_.empty() || !screenshots_.empty()) {
+  while (worker_.busy() || next_step() || pick_ || !opens_.empty() || !screenshots_.empty()) {
     worker_.wait();
     update();
   }

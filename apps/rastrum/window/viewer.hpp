@@ -9,6 +9,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "event.hpp"
@@ -39,6 +40,8 @@ class Viewer {
   void open(const std::filesystem::path& file);
   /// Writes the picture once it is full and still: a PNG and, beside it, a .json with the camera.
   void screenshot(const std::filesystem::path& file);
+  /// Says in the title what lies at a pixel of the window.
+  void pick(int x, int y);
   /// As the option line of a script; what is wrong becomes the message.
   void set_options(const std::string& options);
   /// `dt_s`: seconds since the last call.
@@ -49,6 +52,8 @@ class Viewer {
   void settle();
 
   [[nodiscard]] Subject& subject() { return *subject_; }
+  /// What is shown, and what was clicked on.
+  [[nodiscard]] std::string title() const;
   /// The newest picture, or null before the first; `step` tells its resolution.
   [[nodiscard]] const Drawn* picture() const { return picture_.get(); }
   [[nodiscard]] std::size_t step() const { return shown_.step; }
@@ -83,6 +88,9 @@ class Viewer {
   /// The step to draw next; none: nothing to draw.
   [[nodiscard]] std::optional<std::size_t> next_step() const;
   void draw(std::size_t step);
+  /// Where the click began that `event` ends: a press and a release of the left button in one
+  /// place.
+  [[nodiscard]] std::optional<std::pair<double, double>> clicked(const Event& event);
   void write_screenshot(const std::filesystem::path& file);
   /// Runs `job` on the worker; what it throws becomes the error.
   void submit(Worker::Job job, std::function<void(const std::string& what)> failed);
@@ -103,8 +111,10 @@ class Viewer {
   std::shared_ptr<const Drawn> picture_;
   std::uint64_t serial_ = 0;
   std::vector<float> history_ms_;
-  std::string draw_error_, error_, notice_;
+  std::string draw_error_, error_, notice_, picked_;
   std::vector<std::filesystem::path> screenshots_, opens_;
+  std::optional<std::pair<int, int>> pick_;         ///< asked for; the newest counts
+  std::optional<std::pair<double, double>> press_;  ///< of a click that may come
   std::filesystem::path recording_;
   Worker worker_;  ///< last: its thread uses what is above
 };

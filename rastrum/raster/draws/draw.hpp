@@ -102,7 +102,7 @@ struct Draw : Primitives {
 #endif
     return point_size;
   }
-  [[nodiscard]] bool is_round() const {
+  [[nodiscard]] RASTRUM_HD bool is_round() const {
     return points != nullptr && points->round;
   }
   /// Those that some primitive may have.
