@@ -17,6 +17,13 @@ Vec3d interpolate(const Fragment& f, const Vec3d (&v)[3]) {
   return v[0] * b[0] + v[1] * b[1] + v[2] * b[2];
 }
 
+/// corner_normals, and no part of who calls it: GCC 12 leaves out the rounding to float32 of what
+/// is widened at once (decision 0015).
+[[gnu::noinline]] void rounded_normals(const MeshView& mesh, const TrianglePlace& place,
+                                       const std::uint32_t (&vertex)[3], Vec3 (&out)[3]) {
+  corner_normals(mesh, place, vertex, out);
+}
+
 }  // namespace
 
 const SeenFragment& SurfaceLocator::locate(std::uint64_t key, int x0, int y0, int i) {
@@ -84,7 +91,7 @@ Vec3d SurfaceScene::object_normal(const SeenFragment& f) const {
     return points->normals.empty() ? Vec3d{} : Vec3d(safe_normal(points->normals[f.vertex[0]]));
   const MeshView& mesh = *lit.draws[f.draw].mesh;
   Vec3 corners[3];
-  corner_normals(mesh, mesh.place(f.triangle), f.vertex, corners);
+  rounded_normals(mesh, mesh.place(f.triangle), f.vertex, corners);
   return interpolate(f, {corners[0], corners[1], corners[2]});
 }
 
