@@ -44,15 +44,16 @@ PlainSurface PlainLook::surface(const InstanceView& instance, bool colored) cons
   return s;
 }
 
+float PlainLook::alpha(const PlainSurface& s, float own) const {
+  if (!look_.blends) return 1;
+  const float alpha = s.material->alpha_mode == AlphaMode::blend ? s.opacity * own : s.opacity;
+  return clamped_alpha(alpha);
+}
+
 Vec4 PlainLook::shade(const PlainSurface& s, const Vec4& base, const Vec3* normal, float px,
                       float py, std::uint64_t id) const {
   const Material& m = *s.material;
-  float alpha = 1;
-  if (look_.blends) {
-    alpha = s.opacity;
-    if (m.alpha_mode == AlphaMode::blend) alpha *= base.w;
-    alpha = clamped_alpha(alpha);
-  }
+  const float a = alpha(s, base.w);
   Vec3 c{base.x, base.y, base.z};
   if (look_.model == LitModel::id) {
     c = id_color(id);
@@ -67,7 +68,7 @@ Vec4 PlainLook::shade(const PlainSurface& s, const Vec4& base, const Vec3* norma
     const scalar_lane::LitSurface lit{c, n * side, m.metallic, m.roughness, 1, m.emissive};
     c = scalar_lane::written(scalar_lane::light(rays_, lit, px, py), linear_);
   }
-  return {c.x * alpha, c.y * alpha, c.z * alpha, alpha};
+  return {c.x * a, c.y * a, c.z * a, a};
 }
 
 }  // namespace rastrum::raster

@@ -45,7 +45,10 @@ class PlainLook {
   /// As MaterialShading::linear.
   void leave_linear() { linear_ = true; }
   [[nodiscard]] const SurfaceLook& look() const { return look_; }
+  [[nodiscard]] const ViewRays& rays() const { return rays_; }
 
+  /// Of what is drawn, where `own` is the alpha of the surface with its colours.
+  [[nodiscard]] float alpha(const PlainSurface& surface, float own) const;
   /// The colour at (px, py), px, premultiplied. `base`: the surface's own, with its colours;
   /// `normal`: in the world, of any length; null: it is not lit.
   [[nodiscard]] Vec4 shade(const PlainSurface& surface, const Vec4& base, const Vec3* normal,

@@ -6,8 +6,7 @@
 #include <optional>
 
 #include <rastrum/raster/draws/geometry.hpp>
-#include <rastrum/raster/shade/lit_scalar.hpp>
-#include <rastrum/raster/shade/material_scalar.hpp>
+#include <rastrum/raster/shade/material_triangle.hpp>
 #include <rastrum/raster/shade/quadric_lanes.hpp>
 
 namespace rastrum::raster {
@@ -56,32 +55,11 @@ struct QuadricShader::KeptQuadrics {
 
 QuadricShader::QuadricShader(const SurfaceLook& look, std::span<const Material> materials,
                              const Camera& camera, int width, int height)
-    : look_(look), materials_(materials.begin(), materials.end()) {
-  const LitScene lit({{}, materials, {}}, camera, width, height);
-  display_ = lit.materials;
-  rays_ = lit.rays;
-  if (materials_.empty()) materials_.emplace_back().alpha_mode = AlphaMode::blend;
-}
+    : look_(look, materials, camera, width, height) {}
 
 void QuadricShader::add(const QuadricStage& stage, const InstanceView& instance) {
-  const InstanceView place{MeshView{}, instance.object_to_world};
-  const LitScene lit({{&place, 1}, {}, {}}, {}, 1, 1);
-  const bool has_materials = !display_.empty();
-  const std::size_t m = has_materials ? material_of(instance) : 0;
-  const Material& material = materials_[m];
-  Surface s{&stage,
-            lit.draws.front(),
-            material.base_color,
-            &material,
-            look_.opacity * instance.opacity * material.opacity,
-            colors_of(stage.geometry(), instance)};
-  if (look_.model) {
-    const bool plain = s.colors.empty() && !instance.color;
-    const Vec3 base = has_materials ? display_[m] : plain ? kDefaultBase : Vec3{1, 1, 1};
-    s.base = {base.x, base.y, base.z, s.base.w};
-  }
-  if (instance.color) s.base = s.base * *instance.color;
-  surfaces_.push_back(s);
+  const ArrayView<Vec4> colors = colors_of(stage.geometry(), instance);
+  surfaces_.push_back({&stage, look_.surface(instance, !colors.empty()), colors});
 }
 
 std::size_t QuadricShader::scratch_bytes() const noexcept {
@@ -100,12 +78,12 @@ void QuadricShader::fetch(const FrameGeometry& frame, std::uint64_t low, KeptQua
     (void)out.quadric.find(stage, primitive, all->eye_of(stage, frame.viewport));
   else
     (void)out.quadric.find(stage, primitive, frame.viewport);
-  out.color[0] = out.color[1] = out.surface->base;
+  out.color[0] = out.color[1] = out.surface->plain.base;
   const ArrayView<Vec4>& colors = out.surface->colors;
   if (colors.empty()) return;
   const AxisEnds ends = axis_ends(stage.geometry(), primitive);
-  out.color[0] = colors[ends.first] * out.surface->base;
-  out.color[1] = colors[ends.second] * out.surface->base;
+  out.color[0] = colors[ends.first] * out.surface->plain.base;
+  out.color[1] = colors[ends.second] * out.surface->plain.base;
 }
 
 QuadricShader::Seen QuadricShader::seen(const Kept& k, std::uint64_t key,
@@ -116,34 +94,7 @@ QuadricShader::Seen QuadricShader::seen(const Kept& k, std::uint64_t key,
   if (!s.covered || quadric_depth(k.quadric.quadric, s.e) != depth) s = k.quadric.side(true, at);
   const QuadricPoint point = point_on(k.quadric.shape, k.quadric.point(at, s.e));
   return {lerp(k.color[0], k.color[1], static_cast<float>(point.along)),
-          k.surface->to_world.to_world(Vec3(point.normal))};
-}
-
-float QuadricShader::alpha_of(const Surface& surface, float own) const {
-  if (!look_.blends) return 1;
-  float alpha = surface.opacity;
-  if (surface.material->alpha_mode == AlphaMode::blend) alpha *= own;
-  return clamped_alpha(alpha);
-}
-
-Vec4 QuadricShader::color(const Kept& k, std::uint64_t key, float px, float py,
-                          QuadricSurface::Place at) const {
-  const auto [base, normal] = seen(k, key, at);
-  const Material& m = *k.surface->material;
-  const float alpha = alpha_of(*k.surface, base.w);
-  Vec3 c{base.x, base.y, base.z};
-  if (look_.model) {
-    c = scalar_lane::light(*look_.model, rays_, px, py, normal, c);
-  } else if (m.unlit) {
-    c = scalar_lane::written(c, linear_);
-  } else {
-    const Vec3 away = rays_.d + rays_.dx * px + rays_.dy * py;
-    const Vec3 n = scalar_lane::unit(normal);
-    const float side = dot(n, away) > 0 ? -1.0F : 1.0F;
-    const scalar_lane::LitSurface lit{c, n * side, m.metallic, m.roughness, 1, m.emissive};
-    c = scalar_lane::written(scalar_lane::light(rays_, lit, px, py), linear_);
-  }
-  return {c.x * alpha, c.y * alpha, c.z * alpha, alpha};
+          times(k.surface->plain.normal_matrix, Vec3(point.normal))};
 }
 
 std::uint64_t QuadricShader::test(const FrameGeometry& frame, const Piece& piece,
@@ -161,7 +112,7 @@ std::uint64_t QuadricShader::test(const FrameGeometry& frame, const Piece& piece
     const RayFrame::Point h = k.quadric.point(at, k.quadric.side(away, at).e);
     const auto along = static_cast<float>(point_on(k.quadric.shape, h).along);
     const float alpha = lerp(k.color[0], k.color[1], along).w;
-    kept |= std::uint64_t{!(alpha < k.surface->material->alpha_cutoff)} << i;
+    kept |= std::uint64_t{!(alpha < k.surface->plain.material->alpha_cutoff)} << i;
   }
   return kept;
 }
@@ -170,7 +121,7 @@ void QuadricShader::fill(const QuadricLanes& lanes, const Kept& kept, const Visi
                          std::uint64_t mask, QuadricBlock& out) {
   const QuadricKind kind = kept.quadric.shape.kind;
   if (block.points == nullptr && (kind == QuadricKind::sphere || kind == QuadricKind::hull))
-    return lanes.fill(kept.quadric, kept.surface->to_world.normal_matrix, kept.color, block, mask,
+    return lanes.fill(kept.quadric, kept.surface->plain.normal_matrix, kept.color, block, mask,
                       out);
   for (; mask != 0; mask &= mask - 1) {
     const int i = std::countr_zero(mask);
@@ -192,6 +143,7 @@ void QuadricShader::fill(const QuadricLanes& lanes, const Kept& kept, const Visi
 bool QuadricShader::shade_lit(const QuadricLanes& lanes, const FrameGeometry& frame,
                               const VisibleBlock& block, Isa isa, BlockColors& colors) const {
   KeptQuadrics& all = *static_cast<KeptQuadrics*>(block.scratch);
+  const bool blends = look_.look().blends;
   QuadricBlock surface;
   for (std::uint64_t rest = block.covered; rest != 0;) {
     const std::uint64_t low = block.keys[std::countr_zero(rest)] & kIdMask;
@@ -200,14 +152,14 @@ bool QuadricShader::shade_lit(const QuadricLanes& lanes, const FrameGeometry& fr
     Kept& kept = all.kept[low % KeptQuadrics::kCount];
     if (kept.low != low) fetch(frame, low, &all, kept);
     fill(lanes, kept, block, same, surface);
-    if (!look_.blends) continue;
+    if (!blends) continue;
     for (std::uint64_t m = same; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
-      surface.alpha[i] = alpha_of(*kept.surface, surface.alpha[i]);
+      surface.alpha[i] = look_.alpha(kept.surface->plain, surface.alpha[i]);
     }
   }
-  (void)light_lit_simd(isa, *look_.model, rays_, block, surface.lit, colors);
-  if (!look_.blends) return true;
+  (void)light_lit_simd(isa, *look_.look().model, look_.rays(), block, surface.lit, colors);
+  if (!blends) return true;
   bool opaque = true;
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
@@ -219,23 +171,20 @@ bool QuadricShader::shade_lit(const QuadricLanes& lanes, const FrameGeometry& fr
 
 bool QuadricShader::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
                           BlockColors& colors) const noexcept {
+  const auto& model = look_.look().model;
   const QuadricLanes* const lanes = quadric_lanes(isa);
-  if (lanes != nullptr && look_.model && *look_.model != LitModel::wireframe &&
-      *look_.model != LitModel::id)
+  if (lanes != nullptr && model && *model != LitModel::wireframe && *model != LitModel::id)
     return shade_lit(*lanes, frame, block, isa, colors);
   bool opaque = true;
   KeptQuadrics& all = *static_cast<KeptQuadrics*>(block.scratch);
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const std::uint64_t key = block.keys[i];
-    const std::uint64_t low = key & kIdMask;
-    if (look_.model == LitModel::id) {
-      const std::uint64_t id = kIdMask - low;
+    const std::uint64_t low = key & kIdMask, id = kIdMask - low;
+    if (model == LitModel::id) {
       const Surface& surface = surfaces_[frame.draw_of(id).number];
-      if (!look_.blends || !surface.has_own_alpha()) {
-        const Vec3 c = id_color(id);
-        const float a = alpha_of(surface, 1);
-        opaque &= colors.set(i, {c.x * a, c.y * a, c.z * a, a});
+      if (!look_.look().blends || !surface.has_own_alpha()) {
+        opaque &= colors.set(i, look_.shade(surface.plain, {0, 0, 0, 1}, nullptr, 0, 0, id));
         continue;
       }
     }
@@ -244,14 +193,10 @@ bool QuadricShader::shade(const FrameGeometry& frame, const VisibleBlock& block,
     const Vec2 from_centre =
         block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
     const int x = block.x0 + i % kBlockSize, y = block.y0 + i / kBlockSize;
-    Vec4 c =
-        color(kept, key, static_cast<float>(x) + 0.5F + from_centre.x,
-              static_cast<float>(y) + 0.5F + from_centre.y, kept.quadric.at(x, y, from_centre));
-    if (look_.model == LitModel::id) {
-      const Vec3 by_id = id_color(kIdMask - low);
-      c = {by_id.x * c.w, by_id.y * c.w, by_id.z * c.w, c.w};
-    }
-    opaque &= colors.set(i, c);
+    const Seen s = seen(kept, key, kept.quadric.at(x, y, from_centre));
+    opaque &= colors.set(i, look_.shade(kept.surface->plain, s.base, &s.normal,
+                                        static_cast<float>(x) + 0.5F + from_centre.x,
+                                        static_cast<float>(y) + 0.5F + from_centre.y, id));
   }
   return opaque;
 }

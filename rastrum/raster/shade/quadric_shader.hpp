@@ -4,8 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,7 +11,6 @@
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/draws/quadrics.hpp>
 #include <rastrum/raster/setup/quadric_surface.hpp>
-#include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/plain_surface.hpp>
 #include <rastrum/raster/shade/shading.hpp>
 #include <rastrum/scene.hpp>
@@ -33,7 +30,7 @@ class QuadricShader final : public BlockShader, public FragmentTest {
   /// `instance`: of the stage, whose own look is heeded. `stage` must outlive the frame.
   void add(const QuadricStage& stage, const InstanceView& instance);
   /// As MaterialShading::linear.
-  void leave_linear() { linear_ = true; }
+  void leave_linear() { look_.leave_linear(); }
 
   bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
              BlockColors& colors) const noexcept override;
@@ -45,15 +42,13 @@ class QuadricShader final : public BlockShader, public FragmentTest {
  private:
   struct Surface {
     const QuadricStage* stage;
-    LitDraw to_world;  ///< for its normal matrix
-    Vec4 base;         ///< what colours are multiplied by, or stand for; alpha the own one
-    const Material* material;
-    float opacity;           ///< the instance's, the frame's and the material's
+    PlainSurface plain;
     ArrayView<Vec4> colors;  ///< empty: there are none
 
     /// Whether alpha may change from point to point.
     [[nodiscard]] bool has_own_alpha() const {
-      return material->alpha_mode == AlphaMode::blend && !(colors.empty() && base.w == 1);
+      return plain.material->alpha_mode == AlphaMode::blend &&
+             !(colors.empty() && plain.base.w == 1);
     }
   };
   struct Kept;
@@ -67,10 +62,6 @@ class QuadricShader final : public BlockShader, public FragmentTest {
   /// `all`: whose eye is used; null: a new one.
   void fetch(const FrameGeometry& frame, std::uint64_t low, KeptQuadrics* all, Kept& out) const;
   [[nodiscard]] static Seen seen(const Kept& kept, std::uint64_t key, QuadricSurface::Place at);
-  /// `own`: the alpha of what is seen.
-  [[nodiscard]] float alpha_of(const Surface& surface, float own) const;
-  [[nodiscard]] Vec4 color(const Kept& kept, std::uint64_t key, float px, float py,
-                           QuadricSurface::Place at) const;
   /// What is seen of a primitive at the samples `mask` of a block.
   static void fill(const QuadricLanes& lanes, const Kept& kept, const VisibleBlock& block,
                    std::uint64_t mask, QuadricBlock& out);
@@ -78,12 +69,8 @@ class QuadricShader final : public BlockShader, public FragmentTest {
   bool shade_lit(const QuadricLanes& lanes, const FrameGeometry& frame, const VisibleBlock& block,
                  Isa isa, BlockColors& colors) const;
 
-  SurfaceLook look_;
-  bool linear_ = false;
+  PlainLook look_;
   std::vector<Surface> surfaces_;
-  std::vector<Material> materials_;  ///< at least one
-  std::vector<Vec3> display_;        ///< their base colours; empty: there are none
-  ViewRays rays_;
 };
 
 /// The geometry's colours, unless the instance's stands for them.
