@@ -1,8 +1,7 @@
 // `rastrum bench points`: clouds of points of one pixel and of three, beside OpenGL's points (Mesa
-// llvmpipe) of one. The ids of each picture are compared with the serial reference's before
-// anything is timed.
+// llvmpipe) of one and VTK's. The ids of each picture are compared with the serial reference's
+// before anything is timed.
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +13,8 @@
 #include "machine.hpp"
 #include "measure.hpp"
 #include "peers/gl_peer.hpp"
+#include "peers/started.hpp"
+#include "peers/vtk_peer.hpp"
 #include "registry.hpp"
 #include "report.hpp"
 #include "tables/document.hpp"
@@ -55,17 +56,6 @@ double floor_ms(std::size_t points, int width, int height, const MachineLimits& 
          1e6;
 }
 
-std::unique_ptr<GlPeer> start_gl(Document& document, int threads) {
-  try {
-    auto gl = std::make_unique<GlPeer>(threads);
-    document.notes.push_back("Beside " + gl->description() + ".");
-    return gl;
-  } catch (const Error& e) {
-    document.notes.push_back(std::string("Without its peer: ") + e.what() + ".");
-    return nullptr;
-  }
-}
-
 double share_of_equal(ImageView<const std::int64_t> ours, const Image<std::int32_t>& gl) {
   std::size_t equal = 0;
   for (int y = 0; y < ours.height; ++y)
@@ -91,10 +81,15 @@ int run_points(std::span<const std::string_view> arguments) {
   document.notes.push_back(std::to_string(frame.width) + " × " + std::to_string(frame.height) +
                            ", " + options.here() +
                            "; the ids are the serial reference's. CPU ms are of all threads.");
-  const std::unique_ptr<GlPeer> gl = start_gl(document, options.threads);
+  Started<GlPeer> gl_started(options.threads);
+  Started<VtkPeer> vtk_started(options.threads);
+  document.notes.push_back(gl_started.note + "; " + vtk_started.note +
+                           " (its point gaussian mapper without splats).");
+  std::optional<GlPeer>& gl = gl_started.peer;
+  std::optional<VtkPeer>& vtk = vtk_started.peer;
   Grid grid{"",
             {"points", "drawn", "ms", "CPU ms", "set up ms", "draw ms", "fragments", "MB",
-             "floor ms", "as llvmpipe"},
+             "floor ms", "as theirs"},
             {}};
   Plot plot;
   plot.title = document.title;
@@ -115,11 +110,17 @@ int run_points(std::span<const std::string_view> arguments) {
       gl->set_points(cloud.positions);
       gl->set_view(camera, frame.width, frame.height);
     }
+    if (vtk) {
+      vtk->set_points(cloud.positions);
+      vtk->set_view(camera, frame.width, frame.height);
+      vtk->draw(1);
+    }
     std::vector<InstanceView> instances;
     std::vector<FrameStats> stats(std::size(kWays));
     Image<Rgba8> image(frame.width, frame.height);
     std::vector<Contender> contenders;
-    std::optional<double> share;
+    // What the last contenders are compared by: llvmpipe's ids, what VTK covers.
+    std::vector<std::optional<double>> share(std::size(kWays));
     for (std::size_t w = 0; w < std::size(kWays); ++w) {
       cloud.view.point_size = kWays[w].point_size;
       cloud.view.colors = {};
@@ -137,13 +138,20 @@ int run_points(std::span<const std::string_view> arguments) {
       right = right && std::ranges::equal(ids.pixels(), expected.pixels());
       if (gl && w == 0) {
         gl->draw_ids();
-        share = share_of_equal(ids, gl->ids());
+        share.push_back(share_of_equal(ids, gl->ids()));
+      }
+      if (vtk && w == 0) {
+        own.background = {};
+        (void)renderer.render(scene, camera, own, {.color8 = image});
+        own.background = frame.background;
+        share.push_back(common_coverage(image, vtk->picture()));
       }
       contenders.push_back({kWays[w].name, [&, own, scene, w] {
                               stats[w] = renderer.render(scene, camera, own, {.color8 = image});
                             }});
     }
     if (gl) contenders.push_back({"llvmpipe, 1 px, id", [&] { gl->draw_ids(); }});
+    if (vtk) contenders.push_back({"VTK, 1 px", [&] { vtk->draw(1); }});
     progress(std::to_string(n) + " points");
     const std::vector<Timing> timings = measure_interleaved(contenders, options.plan());
     for (std::size_t w = 0; w < timings.size(); ++w) {
@@ -161,7 +169,7 @@ int run_points(std::span<const std::string_view> arguments) {
                            ours ? std::to_string(stats[w].fragments) : "",
                            ours ? significant(static_cast<double>(stats[w].peak_bytes) / 1e6) : "",
                            significant(floor_ms(n, frame.width, frame.height, machine)),
-                           !ours && share ? significant(*share, 5) : ""});
+                           share[w] ? significant(*share[w], 5) : ""});
       if (ours) panel.series[w].values.push_back(timing.median_ms());
       document.figures.push_back({{"points", n},
                                   {"drawn", timing.name},

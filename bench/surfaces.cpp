@@ -16,6 +16,7 @@
 #include "measure.hpp"
 #include "peers/compare.hpp"
 #include "peers/embree_peer.hpp"
+#include "peers/started.hpp"
 #include "peers/vtk_peer.hpp"
 #include "registry.hpp"
 #include "report.hpp"
@@ -73,35 +74,6 @@ using Make = void (*)(Made&, std::size_t, int, int);
 /// The least share of pixels whose colours are the peer's within 4/255, or which both cover. What
 /// differs lies on silhouettes, where another sphere is seen: peers compute in float32.
 constexpr double kAgreement = 0.99;
-
-/// A peer that could be started, or why not.
-template <class P>
-struct Started {
-  std::optional<P> peer;
-  std::string note;
-
-  explicit Started(int threads) {
-    try {
-      peer.emplace(threads);
-      note = peer->description();
-    } catch (const Error& e) {
-      if (e.code() != Errc::no_device) throw;
-      note = e.what();
-    }
-  }
-};
-
-/// Share of the pixels that either covers that both do.
-double common_coverage(const Image<Rgba8>& ours, const Image<Vec4>& theirs) {
-  std::size_t either = 0, both = 0;
-  for (int y = 0; y < ours.height(); ++y)
-    for (int x = 0; x < ours.width(); ++x) {
-      const bool a = ours(x, y).a != 0, b = theirs(x, y).w != 0;
-      either += a || b;
-      both += a && b;
-    }
-  return either == 0 ? 1 : static_cast<double>(both) / static_cast<double>(either);
-}
 
 /// The times of others beside ours.
 class Peers {

@@ -142,6 +142,12 @@ void VtkPeer::set_spheres(std::span<const Vec3> centers, std::span<const float> 
   impl_->tell("spheres " + file + " " + std::to_string(centers.size()));
 }
 
+void VtkPeer::set_points(std::span<const Vec3> positions) {
+  const std::string& file = impl_->file.name();
+  write(file, positions);
+  impl_->tell("points " + file + " " + std::to_string(positions.size()));
+}
+
 void VtkPeer::set_view(const Camera& camera, int width, int height) {
   const Vec3d way = camera.target - camera.eye;
   if (camera.orthographic || way.x != 0 || way.y != 0 || !(way.z < 0) || camera.up.x != 0 ||

@@ -1,6 +1,6 @@
 // VTK's depth peeling (dual where the driver can, which llvmpipe does), which is how scientists
-// draw translucent surfaces on CPUs today: Debian's python3-vtk9 in a child process (vtk_peer.py),
-// so that nothing is built against VTK.
+// draw translucent surfaces on CPUs today, its spheres and its points: Debian's python3-vtk9 in a
+// child process (vtk_peer.py), so that nothing is built against VTK.
 #pragma once
 
 #include <memory>
@@ -27,6 +27,8 @@ class VtkPeer {
   void set_mesh(const MeshView& mesh);
   /// Spheres instead, by VTK's sphere mapper: a radius each.
   void set_spheres(std::span<const Vec3> centers, std::span<const float> radii);
+  /// Points of one pixel instead, by VTK's point gaussian mapper without its splats.
+  void set_points(std::span<const Vec3> positions);
   /// The camera is a perspective one along −z with +y up; else Error{unsupported}.
   void set_view(const Camera& camera, int width, int height);
 

@@ -1,11 +1,12 @@
-"""VTK's depth peeling and its sphere mapper, drawn for `rastrum bench transparency` and `spheres`
-by a child process.
+"""VTK's depth peeling, its sphere mapper and its points, drawn for `rastrum bench transparency`,
+`spheres` and `points` by a child process.
 
 Debian's package (python3-vtk9) is built for X11: where there is no DISPLAY, Xvfb is started. Lines on
 stdin are commands, each is answered by one line on stdout, "done" or "error …":
 
     mesh FILE VERTICES TRIANGLES   positions, normals (float32 × 3), indices (uint32 × 3), raw
     spheres FILE COUNT             instead: places (float32 × 3), radii (float32), raw
+    points FILE COUNT              instead: places (float32 × 3), raw; one pixel each
     view WIDTH HEIGHT FOV_RAD EX EY EZ TX TY TZ UX UY UZ
     draw OPACITY                   one frame, finished; peeled where it is not 1
     picture FILE                   the frame as RGBA8, row 0 at the top, raw
@@ -56,10 +57,8 @@ class Peer:
 
         self.vtk = vtk
         self.actor = vtk.vtkActor()
-        self.actor.SetMapper(vtk.vtkPolyDataMapper())
+        self.draw_by(vtk.vtkPolyDataMapper())
         self.actor.GetProperty().SetInterpolationToPhong()
-        self.actor.GetShaderProperty().AddFragmentShaderReplacement(
-            "//VTK::Light::Impl", True, PHONG, False)
         self.renderer = vtk.vtkRenderer()
         self.renderer.AddActor(self.actor)
         self.renderer.SetBackground(0, 0, 0)
@@ -74,6 +73,14 @@ class Peer:
         self.window.SetAlphaBitPlanes(True)
         self.window.SetMultiSamples(0)
         self.window.AddRenderer(self.renderer)
+
+    def draw_by(self, mapper, phong=True):
+        shader = self.actor.GetShaderProperty()
+        shader.ClearAllFragmentShaderReplacements()
+        if phong:
+            shader.AddFragmentShaderReplacement("//VTK::Light::Impl", True, PHONG, False)
+        self.actor.GetProperty().SetLighting(phong)
+        self.actor.SetMapper(mapper)
 
     def describe(self):
         self.window.SetSize(64, 64)
@@ -102,7 +109,7 @@ class Peer:
         data.GetPointData().SetNormals(self.array(vtk.vtkFloatArray, normals, 3))
         mapper = vtk.vtkPolyDataMapper()
         mapper.SetInputData(data)
-        self.actor.SetMapper(mapper)
+        self.draw_by(mapper)
         self.kept = positions, normals, indices, offsets  # VTK borrows them
 
     def spheres(self, file, count):
@@ -125,8 +132,21 @@ class Peer:
         mapper.SetInputData(data)
         mapper.SetScaleArray("radius")
         mapper.SetScalarVisibility(False)
-        self.actor.SetMapper(mapper)
+        self.draw_by(mapper)
         self.kept = places, radii, offsets, numbers  # VTK borrows them
+
+    def points(self, file, count):
+        vtk = self.vtk
+        places = array.array("f")
+        with open(file, "rb") as data:
+            places.fromfile(data, 3 * int(count))
+        mapper = vtk.vtkPointGaussianMapper()
+        mapper.SetInputData(self.data(places))
+        mapper.SetScaleFactor(0)  # documented: points of one pixel in place of splats
+        mapper.SetEmissive(False)
+        mapper.SetScalarVisibility(False)
+        self.draw_by(mapper, phong=False)
+        self.kept = (places,)  # VTK borrows them
 
     @staticmethod
     def array(kind, values, components):
@@ -179,7 +199,8 @@ def main():
         server = start_display()
         peer = Peer()
         print("done", peer.describe(), file=answers)
-        commands = {"mesh": peer.mesh, "spheres": peer.spheres, "view": peer.view,
+        commands = {"mesh": peer.mesh, "spheres": peer.spheres,
+                    "points": peer.points, "view": peer.view,
                     "draw": peer.draw, "picture": peer.picture}
         for line in sys.stdin:
             command, *arguments = line.split()

@@ -66,8 +66,7 @@ struct Table {
         double* to_y = y.data() + b * slices + k;
         std::copy_n(to_x - slices, kClassicSlices, to_x);
         std::copy_n(to_y - slices, kClassicSlices, to_y);
-        kernels.advance(kClassicSlices, blocks.size(b - 1), dx.data() + k, dy.data() + k, to_x,
-                        to_y);
+        kernels.advance(blocks.size(b - 1), dx.data() + k, dy.data() + k, to_x, to_y);
       }
     });
   }

@@ -39,9 +39,9 @@ std::size_t occlude_scalar(Real altitude, Real rows, Real horizon, std::size_t n
   return visible;
 }
 
-void advance_scalar(std::size_t count, std::size_t columns, const double* dx, const double* dy,
-                    double* x, double* y) noexcept {
-  for (std::size_t k = 0; k < count; ++k)
+void advance_scalar(std::size_t columns, const double* dx, const double* dy, double* x,
+                    double* y) noexcept {
+  for (std::size_t k = 0; k < kClassicSlices; ++k)
     for (std::size_t i = 0; i < columns; ++i) {
       x[k] += dx[k];
       y[k] += dy[k];

@@ -64,9 +64,9 @@ struct Kernels {
   std::size_t (*occlude64)(double altitude, double rows, double horizon, std::size_t n,
                            ColumnBlock& block) noexcept;
 
-  /// The positions of `count` slices moved on by `columns` columns, one addition each.
-  void (*advance)(std::size_t count, std::size_t columns, const double* dx, const double* dy,
-                  double* x, double* y) noexcept;
+  /// The positions of kClassicSlices slices moved on by `columns` columns, one addition each.
+  void (*advance)(std::size_t columns, const double* dx, const double* dy, double* x,
+                  double* y) noexcept;
   /// cells[column · kClassicSlices + slice] of kClassicSlices slices.
   void (*classic_cells)(const ClassicSlices& slices, const MapSize& map, std::size_t n,
                         std::int32_t* cells) noexcept;

@@ -212,17 +212,17 @@ std::size_t occlude64(double altitude, double rows, double horizon, std::size_t 
   return listed;
 }
 
-void advance(std::size_t count, std::size_t columns, const double* dx, const double* dy, double* x,
+void advance(std::size_t columns, const double* dx, const double* dy, double* x,
              double* y) noexcept {
   const F64 d;
-  // Sums of one slice wait for each other, those of others do not.
-  constexpr std::size_t kStep = 2 * kLanes64;
-  std::size_t k = 0;
-  for (; k + kStep <= count; k += kStep) {
-    const D dx0 = hn::LoadU(d, dx + k), dx1 = hn::LoadU(d, dx + k + kLanes64);
-    const D dy0 = hn::LoadU(d, dy + k), dy1 = hn::LoadU(d, dy + k + kLanes64);
-    D x0 = hn::LoadU(d, x + k), x1 = hn::LoadU(d, x + k + kLanes64);
-    D y0 = hn::LoadU(d, y + k), y1 = hn::LoadU(d, y + k + kLanes64);
+  // Sums of one slice wait for each other, those of others do not: two vectors at once where there
+  // are two.
+  constexpr std::size_t kOther = 2 * kLanes64 <= kClassicSlices ? kLanes64 : 0;
+  for (std::size_t k = 0; k < kClassicSlices; k += kLanes64 + kOther) {
+    const D dx0 = hn::LoadU(d, dx + k), dx1 = hn::LoadU(d, dx + k + kOther);
+    const D dy0 = hn::LoadU(d, dy + k), dy1 = hn::LoadU(d, dy + k + kOther);
+    D x0 = hn::LoadU(d, x + k), x1 = hn::LoadU(d, x + k + kOther);
+    D y0 = hn::LoadU(d, y + k), y1 = hn::LoadU(d, y + k + kOther);
     for (std::size_t i = 0; i < columns; ++i) {
       x0 = hn::Add(x0, dx0);
       x1 = hn::Add(x1, dx1);
@@ -230,15 +230,10 @@ void advance(std::size_t count, std::size_t columns, const double* dx, const dou
       y1 = hn::Add(y1, dy1);
     }
     hn::StoreU(x0, d, x + k);
-    hn::StoreU(x1, d, x + k + kLanes64);
+    hn::StoreU(x1, d, x + k + kOther);
     hn::StoreU(y0, d, y + k);
-    hn::StoreU(y1, d, y + k + kLanes64);
+    hn::StoreU(y1, d, y + k + kOther);
   }
-  for (; k < count; ++k)
-    for (std::size_t i = 0; i < columns; ++i) {
-      x[k] += dx[k];
-      y[k] += dy[k];
-    }
 }
 
 /// The cell of floor(at), as an integer in float64.

@@ -1,5 +1,5 @@
-// Spheres, cylinders, tubes and discs in many memories: a geometry's arrays as other types and
-// strides, which must give the picture of the packed ones.
+// Spheres, cylinders, tubes, discs, points and lines in many memories: a geometry's arrays as other
+// types and strides, which must give the picture of the packed ones.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,11 @@
 
 namespace rastrum::test {
 
-/// `n` places in a ball of radius 4, a radius each in 64ths, colours of whole 255ths, pairs and
-/// runs of them.
+/// `n` places in a ball of radius 4, a radius each in 64ths and a size of up to 9 px, colours of
+/// whole 255ths, pairs and runs of them.
 struct Cloud {
   std::vector<Vec3> positions, normals;
-  std::vector<float> radii;
+  std::vector<float> radii, sizes;
   std::vector<Vec4> colors;
   std::vector<std::uint8_t> colors8;
   std::vector<std::uint32_t> pairs, offsets{0};
@@ -31,6 +31,7 @@ struct Cloud {
       positions.push_back({real(-3, 3), real(-3, 3), real(-3, 3)});
       normals.push_back({real(-1, 1), real(-1, 1), real(-1, 1)});
       radii.push_back(static_cast<float>(r.integer(4, 24)) / 64);
+      sizes.push_back(1 + static_cast<float>(i % 33) / 4);
       Vec4 c;
       for (float* const channel : {&c.x, &c.y, &c.z, &c.w}) {
         const int v = channel == &c.w ? 255 : r.integer(0, 255);
@@ -50,7 +51,7 @@ struct Cloud {
 /// The arrays of a cloud as views.
 struct CloudViews {
   ArrayView<Vec3> positions, normals;
-  ArrayView<float> radii;
+  ArrayView<float> radii, sizes;
   ArrayView<Vec4> colors;
   IndexView pairs, offsets;
 
@@ -58,6 +59,7 @@ struct CloudViews {
       : positions(c.positions),
         normals(c.normals),
         radii(c.radii),
+        sizes(c.sizes),
         colors(c.colors),
         pairs(c.pairs),
         offsets(c.offsets) {}
@@ -68,14 +70,27 @@ struct CloudViews {
         .positions = positions, .indices = pairs, .radii = radii, .colors = colors};
     TubesView tubes{.positions = positions, .offsets = offsets, .radii = radii, .colors = colors};
     DiscsView discs{.centers = positions, .normals = normals, .radii = radii, .colors = colors};
-    return {spheres, cylinders, tubes, discs};
+    PointsView points{.positions = positions,
+                      .indices = pairs,
+                      .normals = normals,
+                      .colors = colors,
+                      .sizes = sizes,
+                      .round = true};
+    LinesView segments{.positions = positions, .indices = pairs, .colors = colors, .line_width = 3};
+    LinesView polylines{
+        .positions = positions, .kind = LineKind::polylines, .offsets = offsets, .colors = colors};
+    return {spheres, cylinders, tubes, discs, points, segments, polylines};
   }
 };
 
 struct CloudLayout {
   std::string name;
   std::function<void(const Cloud&, Memory&, CloudViews&)> change;
+  /// Points and lines, the last three geometries, transform float64 places in float64: their
+  /// picture may be another one.
+  bool wide = false;
 };
+inline constexpr std::size_t kPointsAndLinesFrom = 4;
 
 namespace layouts_detail {
 
@@ -112,19 +127,24 @@ inline std::vector<CloudLayout> cloud_layouts() {
   all.push_back(cloud_indices<std::uint32_t>("indices uint32 with a stride", 12));
   all.push_back(cloud_indices<std::int64_t>("indices int64"));
   all.push_back(cloud_indices<std::uint64_t>("indices uint64 backwards", -8));
-  all.push_back({"float64 positions, normals and radii", [](const Cloud& c, Memory& m, auto& v) {
+  all.push_back({"float64 positions, normals and radii",
+                 [](const Cloud& c, Memory& m, auto& v) {
                    const std::size_t n = c.positions.size();
                    v.positions = ArrayView<Vec3>::of(m.put(wide(c.positions).data(), 3, n, 24), n);
                    v.normals =
                        ArrayView<Vec3>::of(m.put(wide(c.normals).data(), 3, n, 32, 4), n, 32);
                    const std::vector<double> radii(c.radii.begin(), c.radii.end());
                    v.radii = ArrayView<float>::of(m.put(radii.data(), 1, n, -8), n, -8);
-                 }});
+                   const std::vector<double> sizes(c.sizes.begin(), c.sizes.end());
+                   v.sizes = ArrayView<float>::of(m.put(sizes.data(), 1, n, 16), n, 16);
+                 },
+                 true});
   all.push_back({"one interleaved buffer, unaligned", [](const Cloud& c, Memory& m, auto& v) {
                    const std::size_t n = c.positions.size();
                    v.positions = ArrayView<Vec3>::of(m.put(&c.positions[0].x, 3, n, 21, 3), n, 21);
                    v.normals = ArrayView<Vec3>::of(m.put(&c.normals[0].x, 3, n, -12), n, -12);
                    v.radii = ArrayView<float>::of(m.put(c.radii.data(), 1, n, 7, 1), n, 7);
+                   v.sizes = ArrayView<float>::of(m.put(c.sizes.data(), 1, n, -5, 2), n, -5);
                  }});
   all.push_back({"RGBA8", [](const Cloud& c, Memory& m, auto& v) {
                    const std::size_t n = c.positions.size();

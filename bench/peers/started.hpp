@@ -1,0 +1,42 @@
+// What benches do with any peer: start it where it is there, and compare what it covers.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include <rastrum/error.hpp>
+#include <rastrum/image.hpp>
+
+namespace rastrum::bench {
+
+/// A peer that could be started, or why not.
+template <class P>
+struct Started {
+  std::optional<P> peer;
+  std::string note;
+
+  explicit Started(int threads) {
+    try {
+      peer.emplace(threads);
+      note = peer->description();
+    } catch (const Error& e) {
+      if (e.code() != Errc::no_device) throw;
+      note = e.what();
+    }
+  }
+};
+
+/// Share of the pixels that either covers that both do.
+inline double common_coverage(const Image<Rgba8>& ours, const Image<Vec4>& theirs) {
+  std::size_t either = 0, both = 0;
+  for (int y = 0; y < ours.height(); ++y)
+    for (int x = 0; x < ours.width(); ++x) {
+      const bool a = ours(x, y).a != 0, b = theirs(x, y).w != 0;
+      either += a || b;
+      both += a && b;
+    }
+  return either == 0 ? 1 : static_cast<double>(both) / static_cast<double>(either);
+}
+
+}  // namespace rastrum::bench
