@@ -176,7 +176,6 @@ HWY_INLINE void fill_normals(const MaterialView& scene, const MaterialTriangle& 
 HWY_INLINE void fill_surface(const MaterialView& scene, const MaterialTriangle& t, const Run& run,
                              Surface& out) {
   const BoundMaterial& m = scene.material_of(t.draw, t.index);
-  const MeshView& mesh = *t.draw.mesh;
   float* const r = out.channel[Surface::kBaseR];
   float* const g = out.channel[Surface::kBaseG];
   float* const b = out.channel[Surface::kBaseB];
