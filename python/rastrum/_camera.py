@@ -1,5 +1,6 @@
 """Cameras: ours, OpenCV's, OpenGL's, and those that see a whole scene."""
 
+import functools
 import math
 
 import numpy as np
@@ -31,7 +32,8 @@ class Camera:
     """
 
     def __init__(self, for_size):
-        self._for_size = for_size  # size -> _rastrum.Camera
+        # size -> _rastrum.Camera. What was fitted once stays where it is.
+        self._for_size = functools.lru_cache(maxsize=8)(for_size)
 
     @staticmethod
     @raises_errors
