@@ -37,7 +37,7 @@ PUBLIC = {
     "scene": {"camera", "fit", "mesh", "motion", "points_and_lines", "scene", "shapes", "surfaces"},
     "raster": {"frame", "primitives", "program", "tuning"},
     "terrain": {"terrain", "terrain_light"},
-    "overlay": {"overlay"},
+    "overlay": {"effects", "overlay"},
     "io": {"io"},
     "render": {"on_terrain", "pick", "render"},
     "family": {"family"},
