@@ -105,6 +105,8 @@ install(FILES
   ${PROJECT_BINARY_DIR}/cmake/RastrumConfigVersion.cmake
   DESTINATION ${package_dir})
 install(FILES LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# Of the font whose outlines are in the library.
+install(FILES rastrum/overlay/font/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.DejaVu)
 if(TARGET rastrum_program)
   install(TARGETS rastrum_program)
 endif()

@@ -163,6 +163,10 @@ struct Scene {
   [[nodiscard]] std::uint64_t primitive_count() const;
 };
 
+/// A material that looks as if there were none: the colour of the plain shaders, or, of what has
+/// colours of its own, those, which blend.
+[[nodiscard]] Material plain_material(bool has_colors);
+
 /// Gives the meshes and geometries of a scene without materials some that look as if there were
 /// none: the colour of the plain shaders, or their own colours, which blend; so do those of
 /// instances.

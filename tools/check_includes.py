@@ -20,9 +20,12 @@ MAY_INCLUDE = {
     "raster": {"core", "parallel", "scene"},
     "transparency": {"core", "parallel", "scene", "raster"},
     "terrain": {"core", "parallel", "scene"},
+    # Functions on finished pictures: what drew them is none of its business.
+    "overlay": {"core", "parallel", "scene"},
     # Files in, images out: what draws them is none of its business, so a reader can be used alone.
     "io": {"core", "parallel", "scene"},
-    "render": {"core", "parallel", "scene", "raster", "transparency", "terrain", "io"},
+    "render": {"core", "parallel", "scene", "raster", "transparency", "terrain", "overlay",
+               "io"},
     "family": {"core", "parallel", "scene", "raster", "transparency", "terrain", "render"},
     # The library of device code, opened by its file's name: nothing includes it.
     "cuda": {"core", "parallel", "render", "terrain", "family"},
@@ -34,6 +37,7 @@ PUBLIC = {
     "scene": {"camera", "fit", "mesh", "motion", "points_and_lines", "scene", "shapes", "surfaces"},
     "raster": {"frame", "primitives", "program", "tuning"},
     "terrain": {"terrain", "terrain_light"},
+    "overlay": {"effects", "overlay"},
     "io": {"io"},
     "render": {"on_terrain", "pick", "render"},
     "family": {"family"},

@@ -51,24 +51,28 @@ GeometryView view(const Geometry& geometry) {
   return std::visit([](const auto& g) -> GeometryView { return g.view(); }, geometry);
 }
 
+Material plain_material(bool has_colors) {
+  Material m;
+  m.name = "plain";
+  m.metallic = 0;
+  m.double_sided = true;
+  // Vertex colours stand for themselves, and their alpha counts. Without: linear light that the
+  // sRGB transfer turns into the plain shaders' 0.8, 0.7, 0.6 to an ulp.
+  if (has_colors)
+    m.alpha_mode = AlphaMode::blend;
+  else
+    m.base_color = {0.603780866F, 0.447983563F, 0.318572849F, 1};
+  return m;
+}
+
 void add_plain_materials(Scene& scene) {
-  // Linear light that the sRGB transfer turns into the plain shaders' 0.8, 0.7, 0.6 to an ulp.
-  constexpr Vec4 kPlain{0.603780866F, 0.447983563F, 0.318572849F, 1};
   constexpr std::uint32_t kNone = ~0U;
   std::uint32_t plain = kNone, colored = kNone;
   const auto material_for = [&](bool has_colors) {
     std::uint32_t& index = has_colors ? colored : plain;
     if (index == kNone) {
       index = static_cast<std::uint32_t>(scene.materials.size());
-      Material& m = scene.materials.emplace_back();
-      m.name = "plain";
-      m.metallic = 0;
-      m.double_sided = true;
-      // Vertex colours stand for themselves, and their alpha counts.
-      if (has_colors)
-        m.alpha_mode = AlphaMode::blend;
-      else
-        m.base_color = kPlain;
+      scene.materials.push_back(plain_material(has_colors));
     }
     return index;
   };

@@ -1,0 +1,26 @@
+"""Rastrum: pictures from arrays, anywhere. No OpenGL, no GPU, no display; the same bytes on every machine.
+
+    import rastrum as rr
+    rr.render("bunny.obj").save("bunny.png")
+    picture = rr.render(rr.Mesh(vertices, faces), rr.Camera.opencv(K, R, t), size=(640, 480),
+                        outputs=("color", "depth", "instance"))
+"""
+
+from ._camera import Camera, orbit
+from ._errors import (ArgumentError, ArgumentTypeError, DeviceError, Error, FileError, FormatError, NotFoundError,
+                      OutOfMemoryError, UnsupportedError)
+from ._render import OUTPUTS, Hit, Picture, Pictures, Renderer, digest, render, views4
+from ._things import (Cylinders, Discs, Lines, Material, Mesh, Points, Scene, Spheres, Tubes, as_scene, load)
+
+__version__ = "0.1.0"
+__all__ = [
+    "OUTPUTS", "ArgumentError", "ArgumentTypeError", "Camera", "Cylinders", "DeviceError", "Discs", "Error", "FileError",
+    "FormatError", "Hit", "Lines", "Material", "Mesh", "NotFoundError", "OutOfMemoryError", "Picture", "Pictures", "Points",
+    "Renderer", "Scene", "Spheres", "Tubes", "UnsupportedError", "as_scene", "digest", "load", "orbit", "render",
+    "trimesh_viewer", "views4",
+]
+
+
+def trimesh_viewer(scene, **frame):
+    """For trimesh: scene.show(viewer=rastrum.trimesh_viewer) returns a Picture, which notebooks show."""
+    return render(scene, **frame)

@@ -1,0 +1,130 @@
+"""Arrays as they come: what can be drawn in place stays where it is."""
+
+import numpy as np
+
+from ._errors import ArgumentError, ArgumentTypeError
+
+
+def _numbers(value, name):
+    """A NumPy array over the memory of `value` where it has some that can be shared."""
+    if isinstance(value, np.ndarray):
+        return value
+    if hasattr(value, "detach"):  # torch: a gradient stays behind
+        value = value.detach()
+    if hasattr(value, "__dlpack__"):
+        try:
+            return np.from_dlpack(value)
+        except (BufferError, RuntimeError, TypeError) as e:
+            raise ArgumentTypeError(f"{name}: not in this process's memory ({e}); of a device's, take .cpu()") from e
+    try:
+        return np.asarray(value)
+    except (ValueError, TypeError) as e:
+        raise ArgumentTypeError(f"{name}: no array ({e})") from e
+
+
+def _drawable(array, kinds, types):
+    return (array.dtype.kind in kinds and array.dtype.itemsize in types and array.dtype.isnative)
+
+
+def _in_place(array):
+    """Whether the numbers of a value lie side by side, at whole multiples of their size."""
+    size = array.itemsize
+    return (all(s % size == 0 for s in array.strides) and
+            (array.ndim < 2 or array.shape[-1] == 1 or array.size == 0 or array.strides[-1] == size))
+
+
+def _copied(array, name, copy, why, make):
+    if copy is False:
+        raise ArgumentError(f"{name}: copy=False, but {why}")
+    return make(array)
+
+
+def floats(value, name, columns, copy=None, normalized=False):
+    """(N, c) with c of `columns`, or (N,) where `columns` is None. float32 and float64 stay where they are,
+    with `normalized` integers of 8 and 16 bits too; other numbers are copied to float64."""
+    array = _numbers(value, name)
+    if array.dtype.kind not in "fiub" or array.dtype.kind == "b" and not normalized:
+        raise ArgumentTypeError(f"{name}: an array of {array.dtype} is none of numbers")
+    if columns is None:
+        if array.ndim == 2 and array.shape[1] == 1:
+            array = array[:, 0]
+        if array.ndim != 1:
+            raise ArgumentError(f"{name}: the shape is {array.shape} and must be (N,)")
+    elif array.ndim != 2 or array.shape[1] not in columns:
+        wanted = " or ".join(map(str, columns))
+        raise ArgumentError(f"{name}: the shape is {array.shape} and must be (N, {wanted})")
+    if not _drawable(array, "f", (4, 8)) and not (normalized and _drawable(array, "iu", (1, 2))):
+        array = _copied(array, name, copy, f"{array.dtype} is not drawn as it is",
+                        lambda a: np.ascontiguousarray(a, np.float64))
+    if copy is True:
+        array = array.copy(order="C")
+    elif not _in_place(array):
+        array = _copied(array, name, copy, "the numbers of a value lie apart", np.ascontiguousarray)
+    return array
+
+
+def integers(value, name, copy=None):
+    """(N,) or (M, K) of integers, in C order."""
+    array = _numbers(value, name)
+    if array.dtype.kind not in "iu":
+        if array.size or array.dtype.kind != "f":
+            raise ArgumentTypeError(f"{name}: indices are integers, these are {array.dtype}")
+        array = array.astype(np.int64)  # [] has no type of its own
+    if array.ndim not in (1, 2):
+        raise ArgumentError(f"{name}: the shape is {array.shape} and must be (N,) or (M, K)")
+    if not array.dtype.isnative:
+        array = _copied(array, name, copy, "the bytes are in the other order",
+                        lambda a: a.astype(a.dtype.newbyteorder("=")))
+    if copy is True:
+        array = array.copy(order="C")
+    elif not array.flags.c_contiguous and not (array.ndim == 1 and _in_place(array)):
+        array = _copied(array, name, copy, "the rows lie apart", np.ascontiguousarray)
+    return array
+
+
+def matrix(value, name):
+    """(4, 4) of float64; (3, 4) is completed."""
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiu" or array.shape not in ((4, 4), (3, 4)):
+        raise ArgumentError(f"{name}: must be (4, 4) or (3, 4) numbers, not {array.shape} of {array.dtype}")
+    return np.ascontiguousarray(array, np.float64)
+
+
+_NAMED = {
+    "black": 0x000000, "white": 0xFFFFFF, "grey": 0x808080, "gray": 0x808080, "silver": 0xC0C0C0,
+    "red": 0xFF0000, "green": 0x008000, "lime": 0x00FF00, "blue": 0x0000FF, "navy": 0x000080,
+    "yellow": 0xFFFF00, "orange": 0xFFA500, "gold": 0xFFD700, "purple": 0x800080, "magenta": 0xFF00FF,
+    "pink": 0xFFC0CB, "cyan": 0x00FFFF, "teal": 0x008080, "brown": 0xA52A2A, "tan": 0xD2B48C,
+}
+
+
+def color(value, name):
+    """Display values (r, g, b, a) in [0, 1] of '#rrggbb', '#rrggbbaa', '#rgb', a name, or 3 or 4 numbers."""
+    if isinstance(value, str):
+        if value in _NAMED:
+            rgb = _NAMED[value]
+            return (rgb >> 16) / 255, (rgb >> 8 & 255) / 255, (rgb & 255) / 255, 1.0
+        digits = value[1:] if value.startswith("#") else ""
+        if len(digits) in (3, 4):
+            digits = "".join(2 * d for d in digits)
+        try:
+            if len(digits) in (6, 8):
+                channels = [int(digits[i:i + 2], 16) / 255 for i in range(0, len(digits), 2)]
+                return tuple(channels + [1.0])[:4] if len(channels) == 3 else tuple(channels)
+        except ValueError:
+            pass
+        raise ArgumentError(f"{name}: {value!r} is no colour; take '#rrggbb' or one of {', '.join(_NAMED)}")
+    try:
+        channels = [float(v) for v in value]
+    except (TypeError, ValueError) as e:
+        raise ArgumentTypeError(f"{name}: {value!r} is no colour") from e
+    if len(channels) not in (3, 4) or not all(0 <= c <= 1 for c in channels):
+        raise ArgumentError(f"{name}: {value!r} must be 3 or 4 numbers from 0 to 1")
+    return tuple(channels + [1.0])[:4]
+
+
+def linear(rgba):
+    """Display values as linear light (sRGB)."""
+    def channel(v):
+        return v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4
+    return tuple(channel(v) for v in rgba[:3]) + (rgba[3],)

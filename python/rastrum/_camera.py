@@ -1,0 +1,121 @@
+"""Cameras: ours, OpenCV's, OpenGL's, and those that see a whole scene."""
+
+import functools
+import math
+
+import numpy as np
+
+from . import _rastrum as _r
+from ._arrays import matrix
+from ._errors import ArgumentError, ArgumentTypeError, raises_errors
+from ._things import as_scene
+
+# Where the eye stands, from the middle of what is seen: +y is up, +z towards the viewer.
+_VIEWS = {"front": (0, 0, 1), "back": (0, 0, -1), "right": (1, 0, 0), "left": (-1, 0, 0), "top": (0, 1, 0),
+          "bottom": (0, -1, 0), "iso": (1, 1, 1)}
+
+
+def _triple(value, name):
+    try:
+        numbers = [float(v) for v in value]
+    except (TypeError, ValueError) as e:
+        raise ArgumentTypeError(f"{name}: must be three numbers, not {value!r}") from e
+    if len(numbers) != 3 or not all(map(math.isfinite, numbers)):
+        raise ArgumentError(f"{name}: must be three finite numbers, not {value!r}")
+    return numbers
+
+
+class Camera:
+    """Where it stands and what it sees. Right-handed, x right, y up, looking along its -z; angles in degrees.
+
+    Made by look_at, orthographic, fit, opencv and opengl. docs/conventions.md compares the conventions.
+    """
+
+    def __init__(self, for_size):
+        # size -> _rastrum.Camera. What was fitted once stays where it is.
+        self._for_size = functools.lru_cache(maxsize=8)(for_size)
+
+    @staticmethod
+    @raises_errors
+    def look_at(eye, target=(0, 0, 0), up=(0, 1, 0), *, fov=60.0, near=0.01, far=math.inf):
+        """From `eye` to `target`. fov: across the smaller side of the picture."""
+        made = _r.look_at(_triple(eye, "eye"), _triple(target, "target"), _triple(up, "up"), fov, None, near, far)
+        return Camera(lambda size: made)
+
+    @staticmethod
+    @raises_errors
+    def orthographic(eye, target=(0, 0, 0), up=(0, 1, 0), *, height, near=0.01, far=1e6):
+        """Parallel projection; height: world units across the smaller side of the picture."""
+        made = _r.look_at(_triple(eye, "eye"), _triple(target, "target"), _triple(up, "up"), 60.0, float(height), near,
+                          far)
+        return Camera(lambda size: made)
+
+    @staticmethod
+    @raises_errors
+    def fit(what, view="front", *, up=(0, 1, 0), fov=60.0, orthographic=False):
+        """All of `what` as large as the picture can have it. view: front, back, left, right, top, bottom, iso, or
+        where the eye stands as seen from the middle of it, (x, y, z)."""
+        scene, up = as_scene(what), _triple(up, "up")
+        if isinstance(view, str):
+            if view not in _VIEWS:
+                raise ArgumentError(f"view: there is no {view}; take one of {', '.join(_VIEWS)}")
+            eye = _VIEWS[view]
+        else:
+            eye = _triple(view, "view")
+        direction = [-float(v) for v in eye]
+        if np.linalg.norm(np.cross(direction, up)) < 1e-9 * np.linalg.norm(direction):
+            up = [0.0, 0.0, -1.0 if direction[1] < 0 else 1.0]  # seen from above, north is up
+        return Camera(lambda size: _r.fit(scene._made, direction, up, fov, orthographic, *size))
+
+    @staticmethod
+    @raises_errors
+    def opencv(K, R=None, t=None, *, near=0.01, first_centre=0.0):
+        """Of OpenCV's intrinsics (3, 3) in pixels and a pose from world to camera (x right, y down, z ahead).
+        first_centre: u and v of the centre of the top left pixel, 0.5 where cx = W / 2 is the middle."""
+        k = np.ascontiguousarray(K, np.float64)
+        pose = np.eye(4)
+        pose[:3, :3] = np.eye(3) if R is None else np.asarray(R, np.float64)
+        pose[:3, 3] = 0 if t is None else np.asarray(t, np.float64).reshape(3)
+        return Camera(lambda size: _r.opencv(k, pose, *size, near, first_centre))
+
+    @staticmethod
+    @raises_errors
+    def opengl(projection, view=None, *, depth="opengl"):
+        """Of 4 x 4 matrices that multiply columns: projection @ view takes the world to clip space. depth: what the
+        near and far plane become: opengl (-1, 1), zero_to_one (0, 1) or reversed (1, 0)."""
+        clip = matrix(projection, "projection")
+        if view is not None:
+            clip = np.ascontiguousarray(clip @ matrix(view, "view"))
+        made = _r.of_matrix(clip, depth)
+        return Camera(lambda size: made)
+
+
+@raises_errors
+def orbit(what, n, *, elevation=25.0, up=(0, 1, 0), fov=60.0):
+    """n cameras around all of `what`, counter-clockwise as seen from above, `elevation` degrees up."""
+    scene, up = as_scene(what), np.asarray(_triple(up, "up"))
+    up = up / np.linalg.norm(up)
+    side = np.cross(up, (0.0, 0.0, 1.0))
+    if np.linalg.norm(side) < 1e-9:
+        side = np.array((1.0, 0.0, 0.0))
+    side = side / np.linalg.norm(side)
+    ahead = np.cross(side, up)
+    rise = math.radians(elevation)
+    cameras = []
+    for i in range(int(n)):
+        a = 2 * math.pi * i / n
+        eye = math.cos(rise) * (math.cos(a) * ahead + math.sin(a) * side) + math.sin(rise) * up
+        cameras.append(Camera.fit(scene, eye, up=up, fov=fov))
+    return cameras
+
+
+@raises_errors
+def as_camera(camera, scene):
+    """A Camera, a (4, 4) from world to OpenGL's clip space, or None: all of the scene from the front."""
+    if camera is None:
+        return Camera.fit(scene)
+    if isinstance(camera, Camera):
+        return camera
+    if np.shape(camera) == (4, 4):
+        return Camera.opengl(camera)
+    raise ArgumentTypeError(f"camera: must be a rastrum.Camera or a (4, 4), not {type(camera).__qualname__}")

@@ -1,0 +1,54 @@
+"""What goes wrong: each exception is the natural class of Python's and `Error` as well."""
+
+import functools
+
+
+class Error(Exception):
+    """Whatever Rastrum refuses; the message names the argument, file or place, and what to do."""
+
+
+class ArgumentError(Error, ValueError):
+    """A value that is out of range, or does not fit the others."""
+
+
+class ArgumentTypeError(Error, TypeError):
+    """A thing of a kind that is not drawn."""
+
+
+class NotFoundError(Error, FileNotFoundError):
+    """A file that is not there."""
+
+
+class FileError(Error, OSError):
+    """Reading or writing failed."""
+
+
+class FormatError(Error, ValueError):
+    """A file that is not what it claims to be."""
+
+
+class UnsupportedError(Error, NotImplementedError):
+    """Valid, but outside of what Rastrum does."""
+
+
+class OutOfMemoryError(Error, MemoryError):
+    """The message says what was asked for."""
+
+
+class DeviceError(Error, RuntimeError):
+    """A backend or instruction set that is not here."""
+
+
+def raises_errors(function):
+    """What Python itself says of wrong arguments becomes an Error, too, of the same natural class."""
+    @functools.wraps(function)
+    def wrapped(*arguments, **named):
+        try:
+            return function(*arguments, **named)
+        except Error:
+            raise
+        except TypeError as e:
+            raise ArgumentTypeError(str(e)) from e
+        except (ValueError, OverflowError) as e:
+            raise ArgumentError(str(e)) from e
+    return wrapped

@@ -1,0 +1,330 @@
+"""Pictures: what is drawn, by whom, and into which arrays."""
+
+import dataclasses
+import hashlib
+import math
+import os
+import pathlib
+import sys
+import tempfile
+import weakref
+
+import numpy as np
+
+from . import _rastrum as _r
+from ._arrays import color as _color
+from ._arrays import floats
+from ._camera import Camera, as_camera
+from ._errors import ArgumentError, ArgumentTypeError, raises_errors
+from ._things import as_scene
+
+#: name: (dtype, numbers a pixel)
+OUTPUTS = {
+    "color": (np.uint8, 4), "color_f32": (np.float32, 4), "depth": (np.float32, 1), "depth_raw": (np.float32, 1),
+    "distance": (np.float32, 1), "id": (np.int32, 1), "instance": (np.int32, 1), "face": (np.int32, 1),
+    "barycentrics": (np.float32, 2), "normal": (np.float32, 3), "camera_normal": (np.float32, 3),
+    "position": (np.float32, 3), "albedo": (np.float32, 4), "linear": (np.float32, 4),
+}
+_IDS = ("id", "instance", "face")
+
+
+def digest(array):
+    """SHA-256 of a picture's pixels in 64 hexadecimal digits, as C++'s digest() and the program's --hash have it."""
+    array = np.ascontiguousarray(array)
+    if array.dtype.kind == "f" and np.isnan(array).any():
+        array = array.copy()
+        array.view(np.uint32)[np.isnan(array)] = 0x7FC00000
+    shape = "x".join(map(str, array.shape))
+    return hashlib.sha256(f"{array.dtype} {shape}\n".encode() + array.astype(array.dtype.newbyteorder("<")).tobytes()).hexdigest()
+
+
+def _number_of_threads():
+    """RASTRUM_NUM_THREADS, else the cores that this process may use, by affinity and its cgroup's quota."""
+    given = os.environ.get("RASTRUM_NUM_THREADS", "")
+    if given:
+        if not given.isdigit() or int(given) < 1:
+            raise ArgumentError(f"RASTRUM_NUM_THREADS: {given!r} is no number of threads")
+        return int(given)
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    try:
+        quota, period = pathlib.Path("/sys/fs/cgroup/cpu.max").read_text().split()
+        if quota != "max":
+            cores = min(cores, max(1, math.ceil(int(quota) / int(period))))
+    except (OSError, ValueError):
+        pass
+    return cores
+
+
+@dataclasses.dataclass(frozen=True)
+class Hit:
+    """What is under a pixel. barycentrics: of the three corners; position, normal: in the world; depth: along the
+    camera's axis; distance: from the eye."""
+    id: int
+    instance: int
+    face: int
+    barycentrics: tuple
+    position: tuple
+    normal: tuple
+    depth: float
+    distance: float
+
+
+class _Fields:
+    """Arrays by name, as attributes."""
+
+    def __init__(self, arrays, stats):
+        self.arrays, self.stats = arrays, stats
+
+    def __getattr__(self, name):
+        arrays = self.__dict__.get("arrays", {})
+        if name in arrays:
+            return arrays[name]
+        if name in OUTPUTS:
+            raise AttributeError(f"{name}: not drawn; ask for it by outputs=({name!r}, ...)")
+        raise AttributeError(name)
+
+    def __dir__(self):
+        return [*super().__dir__(), *self.arrays]
+
+
+class Picture(_Fields):
+    """One frame: its outputs as attributes, NumPy arrays with row 0 at the top.
+
+    color uint8 (H, W, 4), straight alpha; color_f32 float32, premultiplied; depth float32 (H, W), along the axis in
+    world units, 0 where nothing is; depth_raw reversed; distance from the eye; id, instance, face int32 (int64 from
+    2**31 primitives), -1 where nothing is; barycentrics (H, W, 2); normal, position, camera_normal (H, W, 3); albedo,
+    linear (H, W, 4). `stats` is a dict.
+    """
+
+    def __init__(self, arrays, stats, pick):
+        super().__init__(arrays, stats)
+        self._pick = pick
+
+    @raises_errors
+    def pick(self, x, y):
+        """The Hit at pixel (x, y), or None. Looks at the scene as its arrays are now."""
+        return self._pick(int(x), int(y))
+
+    def save(self, path, output=None):
+        """A .png of `color`, or a .npy of any output (the only one there is, or `color`)."""
+        path = os.fspath(path)
+        if path.lower().endswith(".png"):
+            _r.write_png(path, np.ascontiguousarray(self.color))
+        elif path.lower().endswith(".npy"):
+            name = output or ("color" if "color" in self.arrays or len(self.arrays) != 1 else next(iter(self.arrays)))
+            np.save(path, getattr(self, name))
+        else:
+            raise ArgumentError(f"{path}: pictures are saved as .png or .npy")
+        return self
+
+    def pil(self):
+        """`color` as a PIL image."""
+        from PIL import Image
+        return Image.fromarray(self.color, "RGBA")
+
+    def _repr_png_(self):
+        if "color" not in self.arrays:
+            return None
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "picture.png"
+            self.save(file)
+            return file.read_bytes()
+
+
+class Pictures(_Fields):
+    """Several frames: the fields of Picture with a leading N, `stats` a list, and each Picture by its number."""
+
+    def __init__(self, arrays, stats, picks):
+        super().__init__(arrays, stats)
+        self._picks = picks
+
+    def __len__(self):
+        return len(self.stats)
+
+    def __getitem__(self, i):
+        return Picture({name: a[i] for name, a in self.arrays.items()}, self.stats[i], self._picks[i])
+
+    def sheet(self, columns=None):
+        """All colours side by side, one Picture."""
+        n, h, w, _ = self.color.shape
+        columns = columns or math.ceil(math.sqrt(n))
+        rows = math.ceil(n / columns)
+        sheet = np.zeros((rows * h, columns * w, 4), np.uint8)
+        for i, picture in enumerate(self.color):
+            y, x = i // columns * h, i % columns * w
+            sheet[y:y + h, x:x + w] = picture
+        def pick(x, y):
+            i = y // h * columns + x // w
+            return self._picks[i](x % w, y % h) if 0 <= i < n else None
+        return Picture({"color": sheet}, {"pictures": self.stats}, pick)
+
+
+def _bar(done, total):
+    end = "\n" if done == total else ""
+    print(f"\r{done} of {total}", end=end, file=sys.stderr, flush=True)
+
+
+_renderers = weakref.WeakSet()
+
+
+def _after_fork():
+    # The threads of the parent are not here; each Renderer makes its own again.
+    for renderer in _renderers:
+        renderer._forget()
+    _default.clear()
+
+
+os.register_at_fork(after_in_child=_after_fork)
+
+
+class Renderer:
+    """Draws frames, and keeps threads and memory between them. Several may draw at once, a thread each; one that is
+    shared draws one frame after the other.
+
+    threads: None takes RASTRUM_NUM_THREADS or the cores that this process may use. memory_limit: bytes of scratch
+    beside meshes and pictures, 0 for no limit; what does not fit is drawn piece by piece. device: threads, serial,
+    cuda or auto. isa: scalar, sse4, avx2, avx512 or neon; None: the best there is; the picture is the same.
+    """
+
+    @raises_errors
+    def __init__(self, *, threads=None, memory_limit=0, device="threads", isa=None):
+        threads = _number_of_threads() if threads is None else threads
+        if not isinstance(threads, int) or not 1 <= threads <= 1024:
+            raise ArgumentError(f"threads: {threads!r} must be a whole number from 1 to 1024")
+        if not isinstance(memory_limit, int) or memory_limit < 0:
+            raise ArgumentError(f"memory_limit: {memory_limit!r} must be a number of bytes")
+        self._options = threads, memory_limit, device, isa
+        self._made = None
+        self._renderer()
+        _renderers.add(self)
+
+    def _renderer(self):
+        if self._made is None:
+            self._made = _r.Renderer(*self._options)
+        return self._made
+
+    _lost = []
+
+    def _forget(self):
+        # Kept for ever: its end would wait for threads that are not here.
+        Renderer._lost.append(self._made)
+        self._made = None
+
+    def render(self, what, camera=None, *, size=(1280, 720), outputs="color", shader="auto", background=None, samples=1,
+               transparency="exact", cull="none", opacity=1.0, clip_planes=(), out=None, progress=None):
+        """A Picture of `what` by one camera, Pictures by a sequence of cameras or an (N, 4, 4) array.
+
+        what: as_scene has the list. camera: a Camera, a (4, 4), or None: all of it from the front. size: (W, H).
+        outputs: names of Picture's fields. shader: auto, flat, depth, normal, id, lambert, phong, material, wireframe.
+        background: a colour, None: transparent. samples: 1, 4, 8 or 16 a pixel. transparency: exact, unsorted, none.
+        cull: none, back, front. clip_planes: rows (x, y, z, d) of the world; kept is x X + y Y + z Z + d >= 0.
+        out: {name: array} to be filled, (H, W, ...) or with a leading N. progress: called with (done, total) after each
+        frame, or True: a count on a terminal.
+        Raises rastrum.Error of the natural class; KeyboardInterrupt in a frame leaves the arrays partly filled.
+        """
+        scene, made, frame, arrays, many = _prepared(what, camera, size, outputs, shader, background, samples,
+                                                     transparency, cull, opacity, clip_planes, out)
+        if progress is True:
+            progress = _bar if sys.stderr.isatty() else None
+        if progress is not None and not callable(progress):
+            raise ArgumentTypeError(f"progress: {progress!r} cannot be called")
+        renderer = self._renderer()
+        stats = renderer.render(scene._made, made, frame,
+                                {name: a if many else a[np.newaxis] for name, a in arrays.items()}, progress)
+
+        def picker(camera):
+            def pick(x, y):
+                found = renderer.pick(scene._made, camera, frame, x, y)
+                return None if found is None else Hit(**found)
+            return pick
+        if many:
+            return Pictures(arrays, stats, [picker(c) for c in made])
+        return Picture(arrays, stats[0], picker(made[0]))
+
+
+@raises_errors
+def _prepared(what, camera, size, outputs, shader, background, samples, transparency, cull, opacity, clip_planes, out):
+    """(scene, cameras, frame, arrays, whether there are several pictures)"""
+    scene = as_scene(what)
+    many = _is_many(camera)
+    cameras = [as_camera(c, scene) for c in camera] if many else [as_camera(camera, scene)]
+    if not cameras:
+        raise ArgumentError("camera: a sequence of none")
+    width, height = _size(size)
+    frame = _r.frame(width, height, _text(shader, "shader"), _text(cull, "cull"),
+                     [0.0] * 4 if background is None else list(_color(background, "background")), float(opacity),
+                     _text(transparency, "transparency"), samples,
+                     [] if len(clip_planes) == 0 else floats(clip_planes, "clip_planes", (4,)).tolist())
+    made = [c._for_size((width, height)) for c in cameras]
+    return scene, made, frame, _arrays(outputs, out, len(made), many, (height, width), scene.primitives), many
+
+
+def _text(value, name):
+    if not isinstance(value, str):
+        raise ArgumentTypeError(f"{name}: must be a name, not {value!r}")
+    return value
+
+
+def _is_many(camera):
+    return isinstance(camera, (list, tuple)) or np.ndim(camera) == 3 and not isinstance(camera, Camera)
+
+
+def _size(size):
+    try:
+        width, height = size
+        whole = width == int(width) and height == int(height)
+    except (TypeError, ValueError) as e:
+        raise ArgumentTypeError(f"size: must be (width, height), not {size!r}") from e
+    if not whole or not (1 <= width <= 32768 and 1 <= height <= 32768):
+        raise ArgumentError(f"size: {size!r} is outside of 1 x 1 to 32768 x 32768")
+    return int(width), int(height)
+
+
+def _arrays(outputs, out, number, many, shape, primitives):
+    names = [outputs] if isinstance(outputs, str) else list(outputs)
+    given = {} if out is None else dict(out)
+    if out is not None and outputs == "color" and "color" not in given:
+        names = []
+    arrays = {}
+    for name in [*names, *(n for n in given if n not in names)]:
+        if name not in OUTPUTS:
+            raise ArgumentError(f"outputs: there is no {name!r}; take some of {', '.join(OUTPUTS)}")
+        dtype, channels = OUTPUTS[name]
+        expected = (number,) * many + shape + (channels,) * (channels > 1)
+        if name in given:
+            array = given[name]
+            if not isinstance(array, np.ndarray) or not array.flags.writeable or not array.flags.c_contiguous:
+                raise ArgumentTypeError(f"out[{name!r}]: must be a C-contiguous NumPy array that can be written")
+            if array.shape != expected:
+                raise ArgumentError(f"out[{name!r}]: the shape is {array.shape} and must be {expected}")
+            arrays[name] = array
+        else:
+            wide = name in _IDS and primitives > 0x7FFFFFFF
+            arrays[name] = np.empty(expected, np.int64 if wide else dtype)
+    if not arrays:
+        raise ArgumentError("outputs: nothing is asked for")
+    return arrays
+
+
+_default = {}
+
+
+@raises_errors
+def _kept(threads, device, memory_limit, isa):
+    key = threads, device, memory_limit, isa
+    if key not in _default:
+        _default[key] = Renderer(threads=threads, device=device, memory_limit=memory_limit, isa=isa)
+    return _default[key]
+
+
+def render(what, camera=None, *, threads=None, device="threads", memory_limit=0, isa=None, **frame):
+    """One frame, or one a camera; Renderer.render has the parameters, Renderer these. A Renderer is kept for each
+    set of them."""
+    return _kept(threads, device, memory_limit, isa).render(what, camera, **frame)
+
+
+def views4(what, *, size=(512, 512), **frame):
+    """Front, right, top and three-quarter view on one sheet."""
+    scene = as_scene(what)
+    cameras = [Camera.fit(scene, view) for view in ("front", "right", "top", "iso")]
+    return render(scene, cameras, size=size, **frame).sheet(2)

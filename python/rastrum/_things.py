@@ -1,0 +1,391 @@
+"""What is drawn: geometries over arrays, materials, scenes, and how things of other libraries become them."""
+
+import os
+
+import numpy as np
+
+from . import _rastrum as _r
+from ._arrays import color as _color
+from ._arrays import floats, integers, linear, matrix
+from ._errors import ArgumentError, ArgumentTypeError, NotFoundError, raises_errors
+
+
+class Material:
+    """glTF's metallic-roughness surface.
+
+    base_color, emissive: display colours ('#rrggbb', names, 3 or 4 numbers in [0, 1]). Textures: (H, W, 3 or 4)
+    of uint8, sRGB for base colour and emission, copied. `opacity` multiplies the alpha of all that has it.
+    """
+
+    @raises_errors
+    def __init__(self, base_color="white", *, metallic=0.0, roughness=1.0, emissive="black", alpha_mode="opaque",
+                 alpha_cutoff=0.5, double_sided=True, unlit=False, opacity=1.0, base_color_texture=None,
+                 metallic_roughness_texture=None, normal_texture=None, occlusion_texture=None,
+                 emissive_texture=None):
+        self.base_color, self.metallic, self.roughness = base_color, metallic, roughness
+        self.emissive, self.alpha_mode, self.alpha_cutoff = emissive, alpha_mode, alpha_cutoff
+        self.double_sided, self.unlit, self.opacity = double_sided, unlit, opacity
+        self.textures = (base_color_texture, metallic_roughness_texture, normal_texture, occlusion_texture,
+                         emissive_texture)
+
+    def _add_to(self, scene, textures):
+        """Its number among the scene's. `textures`: how many there are by now, a list of one."""
+        numbers = []
+        for t in self.textures:
+            if t is None:
+                numbers.append(-1)
+                continue
+            scene.add_texture(np.asarray(t))
+            numbers.append(textures[0])
+            textures[0] += 1
+        scene.add_material(_r.material(
+            list(linear(_color(self.base_color, "base_color"))), self.metallic, self.roughness,
+            list(linear(_color(self.emissive, "emissive"))[:3]), self.alpha_mode, self.alpha_cutoff,
+            self.double_sided, self.unlit, self.opacity, numbers))
+
+
+class _Thing:
+    """A geometry placed in the world, with a look of its own.
+
+    color: stands for the geometry's colours. opacity in [0, 1]. transform: (4, 4) or (3, 4), object to world.
+    material: a Material. visible: what is not draws nothing and keeps its ids. id: what `instance` pictures hold of
+    it, its place in the scene by default. clip_planes: rows (x, y, z, d) in object space; kept is what has
+    x X + y Y + z Z + d >= 0. winding: counter_clockwise, clockwise or either.
+
+    Arrays are not copied where they can be drawn in place; copy=True always copies, copy=False raises
+    ArgumentError with the reason where a copy would be needed. They are read anew for every frame.
+    """
+
+    def __init__(self, *, color=None, opacity=1.0, material=None, transform=None, visible=True, id=None,
+                 winding="counter_clockwise", clip_planes=()):
+        self.color, self.opacity, self.material = color, opacity, material
+        self.transform, self.visible, self.id = transform, visible, id
+        self.winding, self.clip_planes = winding, clip_planes
+
+    def _add_to(self, scene, materials):
+        transform = None if self.transform is None else matrix(self.transform, "transform")
+        both = None
+        if self.color is not None:
+            display = _color(self.color, "color")
+            both = [list(display), list(linear(display))]
+        if self.material is not None and not isinstance(self.material, Material):
+            raise ArgumentTypeError("material: must be a rastrum.Material")
+        planes = [] if len(self.clip_planes) == 0 else floats(self.clip_planes, "clip_planes", (4,)).tolist()
+        scene.add(self._geometry, transform, float(self.opacity), both, materials.get(id(self.material)),
+                  bool(self.visible), self.winding, self.id, planes)
+
+    @property
+    def primitives(self):
+        """Triangles, points, segments, spheres, ...: what has an id."""
+        return self._geometry.primitives
+
+
+def _colors(value, copy):
+    return None if value is None else floats(value, "colors", (3, 4), copy, normalized=True)
+
+
+def _per(array, name, vertices, corners, faces):
+    """Whose values these are, by how many there are."""
+    if array is None:
+        return "vertex"
+    n = len(array)
+    for kind, count in (("vertex", vertices), ("face", faces), ("corner", corners), ("mesh", 1)):
+        if n == count:
+            return kind
+    raise ArgumentError(f"{name}: {n} values for {vertices} vertices, {faces} faces and {corners} corners")
+
+
+class Mesh(_Thing):
+    """Triangles, quads or polygons.
+
+    positions: (N, 3). indices: (M, 3) triangles or (M, 4) quads, a flat array of three a triangle, or, with
+    `offsets` (F + 1), the corners of polygons one after the other; None: every three positions are a triangle.
+    normals (K, 3), uv (K, 2), colors (K, 3 or 4; floats in [0, 1] or uint8): K is the number of vertices, faces or
+    corners. Shaded with face normals where it has none.
+    """
+
+    @raises_errors
+    def __init__(self, positions, indices=None, *, offsets=None, normals=None, uv=None, colors=None, copy=None, **look):
+        super().__init__(**look)
+        positions = floats(positions, "positions", (3,), copy)
+        vertices, kind = len(positions), "triangles"
+        if indices is not None:
+            indices = integers(indices, "indices", copy)
+            if offsets is not None:
+                offsets, kind = integers(offsets, "offsets", copy), "polygons"
+                indices = indices.reshape(-1)
+            elif indices.ndim == 2:
+                if indices.shape[1] not in (3, 4):
+                    raise ArgumentError(f"indices: the shape is {indices.shape}; faces have 3 or 4 corners "
+                                        "(others: `offsets`)")
+                kind = "quads" if indices.shape[1] == 4 else "triangles"
+        elif offsets is not None:
+            raise ArgumentError("offsets: want indices")
+        corners = vertices if indices is None else indices.size
+        size = 4 if kind == "quads" else 3
+        if offsets is None and corners % size:
+            raise ArgumentError(f"indices: {corners} corners are no whole number of {kind}")
+        faces = len(offsets) - 1 if offsets is not None else corners // size
+        normals = None if normals is None else floats(normals, "normals", (3,), copy)
+        uv = None if uv is None else floats(uv, "uv", (2,), copy)
+        colors = _colors(colors, copy)
+        counts = vertices, corners, faces
+        self._geometry = _r.mesh(positions, indices, kind, offsets, normals, _per(normals, "normals", *counts), uv,
+                                 _per(uv, "uv", *counts), colors, _per(colors, "colors", *counts))
+
+
+def _one_or_each(value, name, copy):
+    """(array, number): a number for all, or one each."""
+    if np.ndim(value) == 0:
+        return None, float(value)
+    return floats(value, name, None, copy), 1.0
+
+
+class Points(_Thing):
+    """Squares or discs of `size` pixels (a number, or one a point) about their positions (N, 3)."""
+
+    @raises_errors
+    def __init__(self, positions, *, size=3.0, round=True, normals=None, colors=None, copy=None, **look):
+        super().__init__(**look)
+        sizes, size = _one_or_each(size, "size", copy)
+        normals = None if normals is None else floats(normals, "normals", (3,), copy)
+        self._geometry = _r.points(floats(positions, "positions", (3,), copy), normals, _colors(colors, copy), sizes,
+                                   size, round)
+
+
+class Lines(_Thing):
+    """Lines of `width` pixels. indices: (M, 2) segments; None: positions in order are one polyline, or with `offsets`
+    (L + 1) several: line i goes through positions offsets[i] to offsets[i + 1]. colors: one a position."""
+
+    @raises_errors
+    def __init__(self, positions, indices=None, *, offsets=None, width=1.0, colors=None, copy=None, **look):
+        super().__init__(**look)
+        polylines = indices is None
+        if indices is not None:
+            indices = integers(indices, "indices", copy)
+        if offsets is not None:
+            offsets, polylines = integers(offsets, "offsets", copy), True
+        self._geometry = _r.lines(floats(positions, "positions", (3,), copy), indices, offsets, polylines,
+                                  _colors(colors, copy), float(width))
+
+
+class Spheres(_Thing):
+    """Exact spheres about centers (N, 3); radius: a number, or one a sphere."""
+
+    @raises_errors
+    def __init__(self, centers, radius=1.0, *, colors=None, copy=None, **look):
+        super().__init__(**look)
+        radii, radius = _one_or_each(radius, "radius", copy)
+        self._geometry = _r.spheres(floats(centers, "centers", (3,), copy), radii, radius, _colors(colors, copy))
+
+
+class Cylinders(_Thing):
+    """Cylinders between pairs of positions, cones where the radii of the two differ. indices: (M, 2)."""
+
+    @raises_errors
+    def __init__(self, positions, indices=None, radius=1.0, *, caps=True, colors=None, copy=None, **look):
+        super().__init__(**look)
+        radii, radius = _one_or_each(radius, "radius", copy)
+        indices = None if indices is None else integers(indices, "indices", copy)
+        self._geometry = _r.cylinders(floats(positions, "positions", (3,), copy), indices, radii, radius,
+                                      _colors(colors, copy), caps)
+
+
+class Tubes(_Thing):
+    """Polylines with round joints and ends; offsets (L + 1) as Lines has them."""
+
+    @raises_errors
+    def __init__(self, positions, offsets=None, radius=1.0, *, colors=None, copy=None, **look):
+        super().__init__(**look)
+        radii, radius = _one_or_each(radius, "radius", copy)
+        offsets = None if offsets is None else integers(offsets, "offsets", copy)
+        self._geometry = _r.tubes(floats(positions, "positions", (3,), copy), offsets, radii, radius,
+                                  _colors(colors, copy))
+
+
+class Discs(_Thing):
+    """Flat discs about centers (N, 3), their fronts where normals (N, 3) point to."""
+
+    @raises_errors
+    def __init__(self, centers, normals, radius=1.0, *, colors=None, copy=None, **look):
+        super().__init__(**look)
+        radii, radius = _one_or_each(radius, "radius", copy)
+        self._geometry = _r.discs(floats(centers, "centers", (3,), copy), floats(normals, "normals", (3,), copy), radii,
+                                  radius, _colors(colors, copy))
+
+
+class Scene:
+    """Things drawn together, in this order: ids count their primitives one after the other.
+
+    crease: meshes of files without normals are smooth where their faces meet at no more than this angle (degrees);
+    180: everywhere; None: nowhere.
+    """
+
+    @raises_errors
+    def __init__(self, things=(), copy=None, crease=40.0):
+        self.files, self.things = [], []
+        self._made = _r.Scene()
+        materials, textures = {}, [0]
+        for thing in _flat(things, copy):
+            if isinstance(thing, (str, os.PathLike)):
+                path = os.fspath(thing)
+                if not os.path.exists(path):
+                    raise NotFoundError(f"{path}: there is no such file")
+                self._made.add_file(path, crease)
+                self.files.append(path)
+                continue
+            material = thing.material
+            if isinstance(material, Material) and id(material) not in materials:
+                material._add_to(self._made, textures)
+                materials[id(material)] = len(materials)
+            thing._add_to(self._made, materials)
+            self.things.append(thing)
+
+    @property
+    def primitives(self):
+        return self._made.primitives
+
+    @property
+    def instances(self):
+        return self._made.instances
+
+    @property
+    def warnings(self):
+        """What readers of files left out or found odd."""
+        return list(self._made.warnings)
+
+    @property
+    def bounds(self):
+        """((x, y, z), (x, y, z)) of all that is finite, in the world; None where nothing is."""
+        return self._made.bounds()
+
+
+def load(path, *, crease=40.0):
+    """The scene of a file (.obj .ply .stl .off .gltf .glb); crease: as Scene has it."""
+    return Scene([path], crease=crease)
+
+
+def _flat(what, copy=None):
+    """Things and paths, one after the other."""
+    if isinstance(what, (_Thing, str, os.PathLike)):
+        yield what
+    elif isinstance(what, Scene):
+        raise ArgumentTypeError("a Scene inside of another: give its things")
+    elif (made := _of_others(what, copy)) is not None:
+        yield from made
+    elif isinstance(what, tuple) and len(what) == 2 and all(np.ndim(a) == 2 for a in what):
+        yield Mesh(*what, copy=copy)
+    elif isinstance(what, (list, tuple)):
+        for thing in what:
+            yield from _flat(thing, copy)
+    else:
+        raise ArgumentTypeError(f"{type(what).__module__}.{type(what).__qualname__}: nothing that can be drawn; take a path, "
+                                "(vertices, faces), a rastrum.Mesh or its kin, a trimesh, PyVista or Open3D mesh, or a list of these")
+
+
+@raises_errors
+def as_scene(what, copy=None):
+    """The Scene of a path, (vertices, faces), things of this package, meshes and scenes of trimesh, PyVista, VTK and
+    Open3D, shapes of build123d and CadQuery, or a list of these. What is no rastrum.Scene is made one."""
+    return what if isinstance(what, Scene) else Scene(what, copy)
+
+
+# --- Things of other libraries, recognised by their modules and never imported ----------------------
+
+
+def _of_others(what, copy):
+    names = {c.__module__.partition(".")[0] + "." + c.__name__ for c in type(what).__mro__}
+    if "trimesh.Trimesh" in names:
+        return [_trimesh(what, None, copy)]
+    if "trimesh.PointCloud" in names:
+        return [Points(what.vertices, colors=_some(what.colors), copy=copy)]
+    if "trimesh.Scene" in names:
+        return _trimesh_scene(what, copy)
+    if names & {"pyvista.PolyData", "vtkmodules.vtkPolyData", "pyvista.DataSet", "vtkmodules.vtkDataSet"}:
+        return _vtk(what, copy)
+    if "open3d.TriangleMesh" in names and hasattr(what, "vertex_normals"):
+        return [Mesh(np.asarray(what.vertices), np.asarray(what.triangles),
+                     normals=_some(np.asarray(what.vertex_normals)), colors=_some(np.asarray(what.vertex_colors)),
+                     copy=copy)]
+    if "open3d.PointCloud" in names and hasattr(what, "points"):
+        return [Points(np.asarray(what.points), normals=_some(np.asarray(what.normals)),
+                       colors=_some(np.asarray(what.colors)), copy=copy)]
+    if "build123d.Shape" in names:
+        return [_cad(what.tessellate(_fine(what.bounding_box().diagonal)), copy)]
+    if names & {"cadquery.Workplane", "cadquery.Shape"}:
+        shape = what.val() if hasattr(what, "val") else what
+        return [_cad(shape.tessellate(_fine(shape.BoundingBox().DiagonalLength)), copy)]
+    return None
+
+
+def _some(array):
+    return None if array is None or len(array) == 0 else array
+
+
+def _trimesh(mesh, transform, copy):
+    look = {}
+    visual = getattr(mesh, "visual", None)
+    if visual is not None and getattr(visual, "kind", None) == "vertex":
+        look["colors"] = np.asarray(visual.vertex_colors)
+    elif visual is not None and getattr(visual, "kind", None) == "face":
+        look["colors"] = np.asarray(visual.face_colors)
+    elif visual is not None and getattr(visual, "kind", None) == "texture" and getattr(visual, "uv", None) is not None:
+        # trimesh counts v from the bottom, glTF from the top.
+        look["uv"] = np.asarray(visual.uv) * (1.0, -1.0) + (0.0, 1.0)
+        image = getattr(visual.material, "baseColorTexture", None) or getattr(visual.material, "image", None)
+        if image is not None:
+            look["material"] = Material(base_color_texture=np.asarray(image.convert("RGBA")))
+    return Mesh(mesh.vertices.view(np.ndarray), mesh.faces.view(np.ndarray), transform=transform, copy=copy, **look)
+
+
+def _trimesh_scene(scene, copy):
+    made = []
+    for node in scene.graph.nodes_geometry:
+        transform, name = scene.graph[node]
+        for thing in _of_others(scene.geometry[name], copy) or []:
+            thing.transform = transform
+            made.append(thing)
+    return made
+
+
+def _vtk(data, copy):
+    """Of a vtkPolyData its polygons, strips aside, lines and points; of other data sets their outer surface."""
+    if not hasattr(data, "GetPolys"):
+        if not hasattr(data, "extract_surface"):
+            raise ArgumentTypeError("a VTK data set that is no vtkPolyData: pyvista.wrap(data), or its surface by "
+                                    "vtkGeometryFilter")
+        data = data.extract_surface()
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    positions = vtk_to_numpy(data.GetPoints().GetData()) if data.GetNumberOfPoints() else np.empty((0, 3), np.float32)
+    normals = data.GetPointData().GetNormals()
+    made = []
+
+    def cells(of):
+        return vtk_to_numpy(of.GetConnectivityArray()), vtk_to_numpy(of.GetOffsetsArray())
+
+    if data.GetNumberOfPolys():
+        corners, offsets = cells(data.GetPolys())
+        made.append(Mesh(positions, corners, offsets=offsets, copy=copy,
+                         normals=None if normals is None else vtk_to_numpy(normals)))
+    if data.GetNumberOfLines():
+        corners, offsets = cells(data.GetLines())
+        made.append(Lines(positions, corners, offsets=offsets, copy=copy))
+    if data.GetNumberOfVerts() or (not made and len(positions)):
+        made.append(Points(positions, copy=copy))
+    return made
+
+
+def _fine(diagonal):
+    """Of a CAD shape: how far its triangles may be off."""
+    return max(diagonal, 1e-9) / 1000
+
+
+def _cad(tessellated, copy):
+    vertices, triangles = tessellated
+    if vertices and hasattr(vertices[0], "toTuple"):
+        vertices = [v.toTuple() for v in vertices]
+    else:
+        vertices = [tuple(v) for v in vertices]
+    return Mesh(np.asarray(vertices, np.float64).reshape(-1, 3), np.asarray(triangles, np.int64).reshape(-1, 3),
+                copy=copy)

@@ -1,0 +1,63 @@
+// What the sources of the module share: arrays as views, and what a Python object holds.
+#pragma once
+
+#include <cstddef>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <rastrum/array.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/mat.hpp>
+#include <rastrum/scene.hpp>
+
+namespace rastrum::python {
+
+namespace nb = nanobind;
+
+/// Any array in this process's memory; it is kept alive as long as this lives.
+using Array = nb::ndarray<nb::ro, nb::device::cpu>;
+/// One that is written.
+using Output = nb::ndarray<nb::device::cpu>;
+
+/// What an instance draws, and the arrays that it views.
+struct ArrayGeometry {
+  GeometryView view{};
+  std::vector<Array> kept{};
+  bool has_colors = false;
+};
+
+/// (N, channels) numbers, or (N,) for one channel, of any stride between values, as a view; nothing
+/// is copied. Throws Error{invalid_argument} that begins with `name`.
+template <ViewedValue T>
+[[nodiscard]] ArrayView<T> values(const Array& array, const char* name);
+/// Any shape of integers, read in C order: (N,), or (M, K) whose rows may be apart only where they
+/// are of one step.
+[[nodiscard]] IndexView indices(const Array& array, const char* name);
+/// Row-major (4, 4) or (3, 4) of float64.
+[[nodiscard]] Mat4d matrix(const Array& array, const char* name);
+
+/// While it lives, Ctrl-C asks the frame to stop, where Python's own handler would only note it.
+/// Of the process's main thread; elsewhere it does nothing. Python's handler runs as well, so that
+/// PyErr_CheckSignals() says afterwards what it is to do.
+class StopOnInterrupt {
+ public:
+  StopOnInterrupt();
+  ~StopOnInterrupt();
+  StopOnInterrupt(const StopOnInterrupt&) = delete;
+  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
+  [[nodiscard]] std::stop_token token() const;
+
+ private:
+  bool installed_ = false;
+};
+
+void bind_geometries(nb::module_& m);
+void bind_cameras(nb::module_& m);
+void bind_scenes(nb::module_& m);
+void bind_frames(nb::module_& m);
+
+}  // namespace rastrum::python

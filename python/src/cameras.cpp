@@ -1,0 +1,101 @@
+// Cameras: ours, and those of others.
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include <rastrum/camera.hpp>
+#include <rastrum/fit.hpp>
+
+#include "scenes.hpp"
+
+namespace rastrum::python {
+namespace {
+
+using Numbers3 = std::array<double, 3>;
+
+Vec3d vec3(const Numbers3& v) {
+  return {v[0], v[1], v[2]};
+}
+Numbers3 numbers(Vec3d v) {
+  return {v.x, v.y, v.z};
+}
+
+constexpr double kPi = 3.14159265358979323846;
+
+Camera look_at(const Numbers3& eye, const Numbers3& target, const Numbers3& up, double fov,
+               std::optional<double> height, double near, double far) {
+  Camera c;
+  c.eye = vec3(eye);
+  c.target = vec3(target);
+  c.up = vec3(up);
+  c.fov_rad = static_cast<float>(fov * kPi / 180);
+  c.orthographic = height.has_value();
+  if (height) c.orthographic_height = static_cast<float>(*height);
+  c.near_plane = static_cast<float>(near);
+  c.far_plane = static_cast<float>(far);
+  return c;
+}
+
+Camera fit(const ArrayScene& scene, const Numbers3& direction, const Numbers3& up, double fov,
+           bool orthographic, int width, int height) {
+  Camera view;
+  view.eye = {0, 0, 0};
+  view.target = vec3(direction);
+  view.up = vec3(up);
+  view.fov_rad = static_cast<float>(fov * kPi / 180);
+  view.orthographic = orthographic;
+  return fit_picture(scene.view(), view, width, height);
+}
+
+Camera opencv(const Array& k, const Array& pose, int width, int height, double near,
+              double first_centre) {
+  if (k.ndim() != 2 || k.shape(0) != 3 || k.shape(1) != 3 || k.dtype() != nb::dtype<double>())
+    throw Error(Errc::invalid_argument, "K: must be (3, 3) of float64");
+  const auto at = [&](std::int64_t i, std::int64_t j) {
+    return static_cast<const double*>(k.data())[i * k.stride(0) + j * k.stride(1)];
+  };
+  if (at(1, 0) != 0 || at(2, 0) != 0 || at(2, 1) != 0 || at(2, 2) != 1)
+    throw Error(Errc::invalid_argument, "K: must be (fx s cx; 0 fy cy; 0 0 1)");
+  return camera_from_opencv({at(0, 0), at(1, 1), at(0, 2), at(1, 2), at(0, 1), first_centre},
+                            matrix(pose, "pose"), width, height, near);
+}
+
+Camera of_matrix(const Array& world_to_clip, const std::string& depth) {
+  const ClipDepth kind =
+      depth == "opengl"        ? ClipDepth::opengl
+      : depth == "zero_to_one" ? ClipDepth::zero_to_one
+      : depth == "reversed"
+          ? ClipDepth::reversed
+          : throw Error(Errc::invalid_argument,
+                        "depth: there is no " + depth + "; take opengl, zero_to_one or reversed");
+  return camera_from_matrix(matrix(world_to_clip, "matrix"), kind);
+}
+
+}  // namespace
+
+void bind_cameras(nb::module_& m) {
+  using nb::arg;
+  nb::class_<Camera>(m, "Camera", "Where it stands and what it sees.")
+      .def_prop_ro("eye", [](const Camera& c) { return numbers(c.eye); })
+      .def_prop_ro("target", [](const Camera& c) { return numbers(c.target); })
+      .def_prop_ro("up", [](const Camera& c) { return numbers(c.up); })
+      .def_prop_ro("fov",
+                   [](const Camera& c) { return static_cast<double>(c.fov_rad) * 180 / kPi; })
+      .def_prop_ro("is_orthographic", [](const Camera& c) { return c.orthographic; })
+      .def_prop_ro("orthographic_height", [](const Camera& c) { return c.orthographic_height; })
+      .def_prop_ro("near", [](const Camera& c) { return c.near_plane; })
+      .def_prop_ro("far", [](const Camera& c) { return c.far_plane; });
+  m.def("look_at", look_at, arg("eye"), arg("target"), arg("up"), arg("fov"), arg("height").none(),
+        arg("near"), arg("far"));
+  m.def("fit", fit, arg("scene"), arg("direction"), arg("up"), arg("fov"), arg("orthographic"),
+        arg("width"), arg("height"));
+  m.def("opencv", opencv, arg("K"), arg("pose"), arg("width"), arg("height"), arg("near"),
+        arg("first_centre"));
+  m.def("of_matrix", of_matrix, arg("matrix"), arg("depth"));
+}
+
+}  // namespace rastrum::python

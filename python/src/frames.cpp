@@ -1,0 +1,409 @@
+// Frames: a renderer that keeps its threads and scratch, and arrays that it fills.
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <rastrum/io.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/stop.hpp>
+
+#include "scenes.hpp"
+
+namespace rastrum::python {
+namespace {
+
+using Numbers4 = std::array<double, 4>;
+
+Cull cull_named(const std::string& name) {
+  if (name == "none") return Cull::none;
+  if (name == "back") return Cull::back;
+  if (name == "front") return Cull::front;
+  throw Error(Errc::invalid_argument, "cull: there is no " + name + "; take none, back or front");
+}
+
+Transparency transparency_named(const std::string& name) {
+  if (name == "exact") return Transparency::exact;
+  if (name == "unsorted") return Transparency::unsorted;
+  if (name == "none") return Transparency::none;
+  throw Error(Errc::invalid_argument,
+              "transparency: there is no " + name + "; take exact, unsorted or none");
+}
+
+/// The value of an enum whose name this is.
+template <class Enum>
+Enum value_named(const char* what, const std::string& asked, std::initializer_list<Enum> all) {
+  std::string names;
+  for (const Enum value : all) {
+    if (name(value) == asked) return value;
+    names += (names.empty() ? "" : ", ") + std::string(name(value));
+  }
+  throw Error(Errc::invalid_argument,
+              std::string(what) + ": there is no " + asked + "; take one of " + names);
+}
+
+FrameOptions frame(int width, int height, const std::string& shader, const std::string& cull,
+                   const Numbers4& background, double opacity, const std::string& transparency,
+                   int samples, const std::vector<Numbers4>& clip_planes) {
+  FrameOptions o;
+  o.width = width;
+  o.height = height;
+  o.shader = shader_from_name(shader);
+  o.cull = cull_named(cull);
+  o.background = {static_cast<float>(background[0]), static_cast<float>(background[1]),
+                  static_cast<float>(background[2]), static_cast<float>(background[3])};
+  o.opacity = static_cast<float>(opacity);
+  o.transparency.method = transparency_named(transparency);
+  o.samples = samples;
+  for (const Numbers4& p : clip_planes) o.clip_planes.push_back({{p[0], p[1], p[2]}, p[3]});
+  check(o);
+  return o;
+}
+
+/// A picture of a batch in the array that is to hold it: (N, H, W) or (N, H, W, channels), in C
+/// order.
+template <class T>
+ImageView<T> picture(const Output& array, std::size_t number, const FrameOptions& o) {
+  const std::size_t pixels = static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height);
+  return {static_cast<T*>(array.data()) + number * pixels, o.width, o.height};
+}
+
+/// What a frame leaves to be done with its images once it is drawn.
+using Finish = std::function<void()>;
+
+/// Ids of 32 bits: drawn in 64, then narrowed. Numbers that do not fit were refused before.
+struct Narrowed {
+  std::vector<std::int64_t> wide;
+
+  ImageView<std::int64_t> view(const FrameOptions& o) {
+    wide.resize(static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height));
+    return {wide.data(), o.width, o.height};
+  }
+  void into(ImageView<std::int32_t> to) const {
+    for (std::size_t i = 0; i < wide.size(); ++i) to.data[i] = static_cast<std::int32_t>(wide[i]);
+  }
+};
+
+/// The scratch of who draws one picture after the other.
+struct Scratch {
+  Narrowed ids, instances, primitives;
+};
+
+struct Kind {
+  const char* name;
+  nb::dlpack::dtype type;
+  int channels;
+  /// Lets the frame fill it, and says what is left to do.
+  Finish (*attach)(Targets&, const Output&, std::size_t number, const FrameOptions&, Scratch&);
+};
+
+template <class T, auto member>
+Finish attach(Targets& t, const Output& a, std::size_t n, const FrameOptions& o, Scratch&) {
+  t.*member = picture<T>(a, n, o);
+  return {};
+}
+/// Where nothing is the renderer has infinity; here, as sensors do, 0.
+template <auto member>
+Finish attach_distance(Targets& t, const Output& a, std::size_t n, const FrameOptions& o,
+                       Scratch&) {
+  const ImageView<float> view = picture<float>(a, n, o);
+  t.*member = view;
+  return [view] {
+    const std::size_t pixels =
+        static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
+    for (std::size_t i = 0; i < pixels; ++i)
+      view.data[i] = view.data[i] == std::numeric_limits<float>::infinity() ? 0.0F : view.data[i];
+  };
+}
+template <auto member, auto scratch>
+Finish attach_ids(Targets& t, const Output& a, std::size_t n, const FrameOptions& o, Scratch& s) {
+  if (a.dtype() == nb::dtype<std::int64_t>()) {
+    t.*member = picture<std::int64_t>(a, n, o);
+    return {};
+  }
+  Narrowed& wide = s.*scratch;
+  t.*member = wide.view(o);
+  return [&wide, to = picture<std::int32_t>(a, n, o)] { wide.into(to); };
+}
+
+const Kind kKinds[] = {
+    {"color", nb::dtype<std::uint8_t>(), 4, attach<Rgba8, &Targets::color8>},
+    {"color_f32", nb::dtype<float>(), 4, attach<Vec4, &Targets::color>},
+    {"depth", nb::dtype<float>(), 1, attach_distance<&Targets::view_depth>},
+    {"depth_raw", nb::dtype<float>(), 1, attach<float, &Targets::depth>},
+    {"distance", nb::dtype<float>(), 1, attach_distance<&Targets::distance>},
+    {"id", nb::dtype<std::int32_t>(), 1, attach_ids<&Targets::ids, &Scratch::ids>},
+    {"instance", nb::dtype<std::int32_t>(), 1,
+     attach_ids<&Targets::instances, &Scratch::instances>},
+    {"face", nb::dtype<std::int32_t>(), 1, attach_ids<&Targets::primitives, &Scratch::primitives>},
+    {"barycentrics", nb::dtype<float>(), 2, attach<Vec2, &Targets::barycentrics>},
+    {"normal", nb::dtype<float>(), 3, attach<Vec3, &Targets::normals>},
+    {"camera_normal", nb::dtype<float>(), 3, attach<Vec3, &Targets::camera_normals>},
+    {"position", nb::dtype<float>(), 3, attach<Vec3, &Targets::positions>},
+    {"albedo", nb::dtype<float>(), 4, attach<Vec4, &Targets::albedo>},
+    {"linear", nb::dtype<float>(), 4, attach<Vec4, &Targets::linear>},
+};
+
+struct Wanted {
+  const Kind* kind;
+  Output array;
+};
+
+/// Checks type and shape of what is to be filled.
+std::vector<Wanted> wanted(const std::map<std::string, Output>& outputs, std::size_t pictures,
+                           const FrameOptions& o, std::uint64_t primitives) {
+  std::vector<Wanted> all;
+  for (const auto& [name, array] : outputs) {
+    const Kind* kind = nullptr;
+    for (const Kind& k : kKinds)
+      if (name == k.name) kind = &k;
+    if (kind == nullptr) {
+      std::string names;
+      for (const Kind& k : kKinds) names += (names.empty() ? "" : ", ") + std::string(k.name);
+      throw Error(Errc::invalid_argument,
+                  "outputs: there is no " + name + "; take some of " + names);
+    }
+    const bool ids = kind->type == nb::dtype<std::int32_t>();
+    const bool wide = ids && array.dtype() == nb::dtype<std::int64_t>();
+    if (array.dtype() != kind->type && !wide)
+      throw Error(
+          Errc::invalid_argument,
+          "out[" + name +
+              "]: the array is of another type; docs/python.md has the types of all outputs");
+    if (ids && !wide && primitives > 0x7fffffffU)
+      throw Error(Errc::invalid_argument,
+                  "out[" + name + "]: " + std::to_string(primitives) + " primitives want int64");
+    const std::size_t axes = kind->channels == 1 ? 3 : 4;
+    std::int64_t expected[4] = {static_cast<std::int64_t>(pictures), o.height, o.width,
+                                kind->channels};
+    bool right = array.ndim() == axes;
+    for (std::size_t i = 0; right && i < axes; ++i)
+      right = static_cast<std::int64_t>(array.shape(i)) == expected[i];
+    std::int64_t step = 1;
+    for (std::size_t i = axes; right && i-- > 0; step *= expected[i])
+      right = expected[i] == 1 || array.stride(i) == step;
+    if (!right)
+      throw Error(Errc::invalid_argument,
+                  "out[" + name + "]: must be C-contiguous, of shape (" + std::to_string(pictures) +
+                      ", " + std::to_string(o.height) + ", " + std::to_string(o.width) +
+                      (kind->channels == 1 ? ")" : ", " + std::to_string(kind->channels) + ")"));
+    all.push_back({kind, array});
+  }
+  return all;
+}
+
+nb::dict stats_of(const FrameStats& s) {
+  nb::dict d, triangles;
+  triangles["input"] = s.triangles.input;
+  triangles["dropped"] = s.triangles.dropped;
+  triangles["culled"] = s.triangles.culled;
+  triangles["clipped"] = s.triangles.clipped;
+  triangles["drawn"] = s.triangles.drawn;
+  d["triangles"] = triangles;
+  d["fragments"] = s.fragments;
+  d["pixels_covered"] = s.pixels_covered;
+  d["peak_bytes"] = s.peak_bytes;
+  d["frame_ms"] = s.frame_ms;
+  d["shader"] = s.shader;
+  return d;
+}
+
+/// Pictures of up to so many pixels are drawn side by side, a thread each.
+constexpr std::int64_t kSmall = 512 * 512;
+
+class FrameRenderer {
+ public:
+  explicit FrameRenderer(const RendererOptions& options) : options_(options), renderer_(options) {}
+
+  std::vector<FrameStats> render(const SceneView& scene, const std::vector<Camera>& cameras,
+                                 const FrameOptions& o, const std::vector<Wanted>& outputs,
+                                 const std::stop_token& stop, const std::function<void()>& after) {
+    std::vector<FrameStats> stats(cameras.size());
+    const auto draw = [&](Renderer& by, Scratch& scratch, std::size_t i) {
+      Targets targets;
+      std::vector<Finish> finish;
+      for (const Wanted& w : outputs)
+        if (Finish f = w.kind->attach(targets, w.array, i, o, scratch))
+          finish.push_back(std::move(f));
+      stats[i] = by.render(scene, cameras[i], o, targets, stop);
+      for (const Finish& f : finish) f();
+    };
+    const std::size_t threads = options_.threads > 0 ? static_cast<std::size_t>(options_.threads)
+                                                     : std::thread::hardware_concurrency();
+    const std::size_t workers = std::min(threads, cameras.size());
+    if (workers < 2 || std::int64_t{o.width} * o.height > kSmall ||
+        options_.device != Device::threads) {
+      const std::scoped_lock lock(mutex_);
+      for (std::size_t i = 0; i < cameras.size(); ++i) {
+        draw(renderer_, scratch_, i);
+        after();
+      }
+      return stats;
+    }
+    const std::scoped_lock lock(mutex_);
+    while (side_.size() < workers) {
+      RendererOptions one = options_;
+      one.threads = 1;
+      side_.push_back(std::make_unique<Side>(one));
+    }
+    std::atomic<std::size_t> next{0}, done{0};
+    std::mutex failing;
+    std::exception_ptr failure;
+    {
+      std::vector<std::jthread> running;
+      for (std::size_t w = 0; w < workers; ++w)
+        running.emplace_back([&, side = side_[w].get()] {
+          try {
+            for (std::size_t i; (i = next++) < cameras.size(); ++done)
+              draw(side->renderer, side->scratch, i);
+          } catch (...) {
+            const std::scoped_lock l(failing);
+            if (!failure) failure = std::current_exception();
+            next = cameras.size();
+          }
+        });
+    }
+    if (failure) std::rethrow_exception(failure);
+    after();
+    return stats;
+  }
+
+  std::optional<Pick> pick(const SceneView& scene, const Camera& camera, const FrameOptions& o,
+                           int x, int y) {
+    return renderer_.pick(scene, camera, o, x, y);
+  }
+
+ private:
+  struct Side {
+    explicit Side(const RendererOptions& options) : renderer(options) {}
+    Renderer renderer;
+    Scratch scratch;
+  };
+  RendererOptions options_;
+  std::mutex mutex_;
+  Renderer renderer_;
+  Scratch scratch_;
+  std::vector<std::unique_ptr<Side>> side_;
+};
+
+/// Draws again where a signal asked for a stop and Python's handler wants none.
+nb::list render(FrameRenderer& renderer, const ArrayScene& scene,
+                const std::vector<Camera>& cameras, const FrameOptions& o,
+                const std::map<std::string, Output>& outputs, const nb::object& progress) {
+  const SceneView view = scene.view();
+  const std::vector<Wanted> all = wanted(outputs, cameras.size(), o, scene.primitive_count());
+  std::size_t done = 0;
+  const auto after = [&] {
+    ++done;
+    if (progress.is_none()) return;
+    const nb::gil_scoped_acquire lock;
+    progress(cameras.size() == 1 ? 1 : done, cameras.size());
+  };
+  std::vector<FrameStats> stats;
+  for (;;) {
+    const StopOnInterrupt interrupt;
+    try {
+      const nb::gil_scoped_release unlock;
+      done = 0;
+      stats = renderer.render(view, cameras, o, all, interrupt.token(), after);
+      break;
+    } catch (const parallel::Stopped&) {
+    }
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+  }
+  nb::list result;
+  for (const FrameStats& s : stats) result.append(stats_of(s));
+  return result;
+}
+
+nb::object pick(FrameRenderer& renderer, const ArrayScene& scene, const Camera& camera,
+                const FrameOptions& o, int x, int y) {
+  const SceneView view = scene.view();
+  std::optional<Pick> p;
+  {
+    const nb::gil_scoped_release unlock;
+    p = renderer.pick(view, camera, o, x, y);
+  }
+  if (!p) return nb::none();
+  nb::dict d;
+  d["id"] = p->id;
+  d["instance"] = p->instance_id;
+  d["face"] = p->primitive;
+  const double* const b = p->barycentrics.weight;
+  d["barycentrics"] = nb::make_tuple(b[0], b[1], b[2]);
+  d["position"] = nb::make_tuple(p->position.x, p->position.y, p->position.z);
+  d["normal"] = nb::make_tuple(p->normal.x, p->normal.y, p->normal.z);
+  d["depth"] = p->view_depth;
+  d["distance"] = p->distance;
+  return d;
+}
+
+void write_png(const std::string& file, const Array& pixels) {
+  if (pixels.ndim() != 3 || pixels.shape(2) != 4 || pixels.dtype() != nb::dtype<std::uint8_t>() ||
+      pixels.stride(2) != 1 || pixels.stride(1) != 4 ||
+      pixels.shape(0) > static_cast<std::size_t>(kMaxImageSize) ||
+      pixels.shape(1) > static_cast<std::size_t>(kMaxImageSize) || pixels.stride(0) % 4 != 0)
+    throw Error(Errc::invalid_argument,
+                "png: must be (H, W, 4) of uint8, a pixel behind the other");
+  io::write_png(file, ImageView<const Rgba8>{static_cast<const Rgba8*>(pixels.data()),
+                                             static_cast<int>(pixels.shape(1)),
+                                             static_cast<int>(pixels.shape(0)),
+                                             static_cast<std::ptrdiff_t>(pixels.stride(0) / 4)});
+}
+
+}  // namespace
+
+void bind_frames(nb::module_& m) {
+  using nb::arg;
+  nb::class_<FrameOptions>(m, "Frame")
+      .def_ro("width", &FrameOptions::width)
+      .def_ro("height", &FrameOptions::height);
+  m.def("frame", frame, arg("width"), arg("height"), arg("shader"), arg("cull"), arg("background"),
+        arg("opacity"), arg("transparency"), arg("samples"), arg("clip_planes"));
+  nb::class_<FrameRenderer>(m, "Renderer")
+      .def(
+          "__init__",
+          [](FrameRenderer* self, int threads, std::uint64_t memory_limit,
+             const std::string& device, const std::optional<std::string>& isa) {
+            RendererOptions o;
+            o.threads = threads;
+            o.memory_limit = memory_limit;
+            o.device =
+                value_named("device", device,
+                            {Device::serial, Device::threads, Device::cuda, Device::automatic});
+            if (isa)
+              o.isa = value_named("isa", *isa,
+                                  {Isa::scalar, Isa::sse4, Isa::avx2, Isa::avx512, Isa::neon});
+            new (self) FrameRenderer(o);
+          },
+          arg("threads"), arg("memory_limit"), arg("device"), arg("isa").none())
+      .def("render", render, arg("scene"), arg("cameras"), arg("frame"), arg("outputs"),
+           arg("progress").none())
+      .def("pick", pick, arg("scene"), arg("camera"), arg("frame"), arg("x"), arg("y"));
+  m.def("shader_names", [] {
+    std::vector<std::string> names;
+    for (const std::string_view n : shader_names()) names.emplace_back(n);
+    return names;
+  });
+  m.def("write_png", write_png, arg("file"), arg("pixels"),
+        nb::call_guard<nb::gil_scoped_release>());
+}
+
+}  // namespace rastrum::python

@@ -1,0 +1,166 @@
+// What can be drawn, over arrays of Python's.
+#include <optional>
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include <rastrum/points_and_lines.hpp>
+#include <rastrum/surfaces.hpp>
+
+#include "bindings.hpp"
+
+namespace rastrum::python {
+namespace {
+
+using Maybe = std::optional<Array>;
+
+Per per_of(const std::string& name) {
+  if (name == "vertex") return Per::vertex;
+  if (name == "corner") return Per::corner;
+  if (name == "face") return Per::face;
+  if (name == "mesh") return Per::mesh;
+  throw Error(Errc::invalid_argument, "per: " + name + " is none of vertex, corner, face and mesh");
+}
+
+/// Remembers what is viewed.
+struct Maker {
+  ArrayGeometry made{};
+
+  template <ViewedValue T>
+  [[nodiscard]] ArrayView<T> take(const Array& array, const char* name) {
+    made.kept.push_back(array);
+    return values<T>(array, name);
+  }
+  template <ViewedValue T>
+  [[nodiscard]] ArrayView<T> take(const Maybe& array, const char* name) {
+    return array ? take<T>(*array, name) : ArrayView<T>{};
+  }
+  [[nodiscard]] IndexView take_indices(const Maybe& array, const char* name) {
+    if (!array) return {};
+    made.kept.push_back(*array);
+    return indices(*array, name);
+  }
+  template <class View>
+  ArrayGeometry finish(const View& view) {
+    made.has_colors = !view.colors.empty();
+    made.view = view;
+    return std::move(made);
+  }
+};
+
+ArrayGeometry mesh(const Array& positions, const Maybe& faces, const std::string& kind,
+                   const Maybe& offsets, const Maybe& normals, const std::string& normals_per,
+                   const Maybe& texcoords, const std::string& texcoords_per, const Maybe& colors,
+                   const std::string& colors_per) {
+  Maker maker;
+  MeshView v;
+  v.positions = maker.take<Vec3>(positions, "positions");
+  v.indices = maker.take_indices(faces, "faces");
+  v.faces.kind = kind == "triangles" ? FaceKind::triangles
+                 : kind == "quads"   ? FaceKind::quads
+                 : kind == "strips"  ? FaceKind::strips
+                                     : FaceKind::polygons;
+  v.faces.offsets = maker.take_indices(offsets, "offsets");
+  v.normals = {maker.take<Vec3>(normals, "normals"), {}, per_of(normals_per)};
+  v.texcoords = {maker.take<Vec2>(texcoords, "uv"), {}, per_of(texcoords_per)};
+  v.colors = {maker.take<Vec4>(colors, "colors"), {}, per_of(colors_per)};
+  return maker.finish(v);
+}
+
+ArrayGeometry points(const Array& positions, const Maybe& normals, const Maybe& colors,
+                     const Maybe& sizes, float size, bool round) {
+  Maker maker;
+  PointsView v;
+  v.positions = maker.take<Vec3>(positions, "positions");
+  v.normals = maker.take<Vec3>(normals, "normals");
+  v.colors = maker.take<Vec4>(colors, "colors");
+  v.sizes = maker.take<float>(sizes, "sizes");
+  v.point_size = size;
+  v.round = round;
+  return maker.finish(v);
+}
+
+ArrayGeometry lines(const Array& positions, const Maybe& segments, const Maybe& offsets,
+                    bool polylines, const Maybe& colors, float width) {
+  Maker maker;
+  LinesView v;
+  v.positions = maker.take<Vec3>(positions, "positions");
+  v.indices = maker.take_indices(segments, "indices");
+  v.kind = polylines ? LineKind::polylines : LineKind::segments;
+  v.offsets = maker.take_indices(offsets, "offsets");
+  v.colors = maker.take<Vec4>(colors, "colors");
+  v.line_width = width;
+  return maker.finish(v);
+}
+
+ArrayGeometry spheres(const Array& centers, const Maybe& radii, float radius, const Maybe& colors) {
+  Maker maker;
+  SpheresView v;
+  v.centers = maker.take<Vec3>(centers, "centers");
+  v.radii = maker.take<float>(radii, "radii");
+  v.radius = radius;
+  v.colors = maker.take<Vec4>(colors, "colors");
+  return maker.finish(v);
+}
+
+ArrayGeometry cylinders(const Array& positions, const Maybe& pairs, const Maybe& radii,
+                        float radius, const Maybe& colors, bool caps) {
+  Maker maker;
+  CylindersView v;
+  v.positions = maker.take<Vec3>(positions, "positions");
+  v.indices = maker.take_indices(pairs, "indices");
+  v.radii = maker.take<float>(radii, "radii");
+  v.radius = radius;
+  v.colors = maker.take<Vec4>(colors, "colors");
+  v.caps = caps;
+  return maker.finish(v);
+}
+
+ArrayGeometry tubes(const Array& positions, const Maybe& offsets, const Maybe& radii, float radius,
+                    const Maybe& colors) {
+  Maker maker;
+  TubesView v;
+  v.positions = maker.take<Vec3>(positions, "positions");
+  v.offsets = maker.take_indices(offsets, "offsets");
+  v.radii = maker.take<float>(radii, "radii");
+  v.radius = radius;
+  v.colors = maker.take<Vec4>(colors, "colors");
+  return maker.finish(v);
+}
+
+ArrayGeometry discs(const Array& centers, const Array& normals, const Maybe& radii, float radius,
+                    const Maybe& colors) {
+  Maker maker;
+  DiscsView v;
+  v.centers = maker.take<Vec3>(centers, "centers");
+  v.normals = maker.take<Vec3>(normals, "normals");
+  v.radii = maker.take<float>(radii, "radii");
+  v.radius = radius;
+  v.colors = maker.take<Vec4>(colors, "colors");
+  return maker.finish(v);
+}
+
+}  // namespace
+
+void bind_geometries(nb::module_& m) {
+  using nb::arg;
+  nb::class_<ArrayGeometry>(m, "Geometry", "What is drawn, over arrays that it keeps alive.")
+      .def_prop_ro("primitives", [](const ArrayGeometry& g) { return primitive_count(g.view); });
+  m.def("mesh", mesh, arg("positions"), arg("faces").none(), arg("kind"), arg("offsets").none(),
+        arg("normals").none(), arg("normals_per"), arg("texcoords").none(), arg("texcoords_per"),
+        arg("colors").none(), arg("colors_per"));
+  m.def("points", points, arg("positions"), arg("normals").none(), arg("colors").none(),
+        arg("sizes").none(), arg("size"), arg("round"));
+  m.def("lines", lines, arg("positions"), arg("indices").none(), arg("offsets").none(),
+        arg("polylines"), arg("colors").none(), arg("width"));
+  m.def("spheres", spheres, arg("centers"), arg("radii").none(), arg("radius"),
+        arg("colors").none());
+  m.def("cylinders", cylinders, arg("positions"), arg("indices").none(), arg("radii").none(),
+        arg("radius"), arg("colors").none(), arg("caps"));
+  m.def("tubes", tubes, arg("positions"), arg("offsets").none(), arg("radii").none(), arg("radius"),
+        arg("colors").none());
+  m.def("discs", discs, arg("centers"), arg("normals"), arg("radii").none(), arg("radius"),
+        arg("colors").none());
+}
+
+}  // namespace rastrum::python

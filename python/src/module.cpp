@@ -1,0 +1,55 @@
+// The module `rastrum._rastrum`: what the C++ library has, for the package's own Python to name.
+#include <new>
+
+#include "bindings.hpp"
+
+namespace rastrum::python {
+namespace {
+
+/// The package's exceptions, by code (rastrum/_errors.py); each is the natural class, too.
+const char* class_of(Errc code) {
+  switch (code) {
+    case Errc::invalid_argument:
+      return "ArgumentError";
+    case Errc::not_found:
+      return "NotFoundError";
+    case Errc::io:
+      return "FileError";
+    case Errc::bad_format:
+      return "FormatError";
+    case Errc::unsupported:
+      return "UnsupportedError";
+    case Errc::out_of_memory:
+      return "OutOfMemoryError";
+    case Errc::no_device:
+      return "DeviceError";
+  }
+  return "Error";
+}
+
+void raise(const char* name, const char* what) {
+  const nb::object type = nb::module_::import_("rastrum._errors").attr(name);
+  PyErr_SetString(type.ptr(), what);
+}
+
+void translate(const std::exception_ptr& thrown, void*) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const Error& e) {
+    raise(class_of(e.code()), e.what());
+  } catch (const std::bad_alloc&) {
+    raise("OutOfMemoryError", "there is not enough memory; memory_limit draws in pieces that fit");
+  }
+}
+
+}  // namespace
+}  // namespace rastrum::python
+
+NB_MODULE(_rastrum, m) {
+  namespace py = rastrum::python;
+  nanobind::register_exception_translator(py::translate);
+  py::bind_geometries(m);
+  py::bind_cameras(m);
+  py::bind_scenes(m);
+  py::bind_frames(m);
+}

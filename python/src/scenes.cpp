@@ -1,0 +1,226 @@
+// Scenes; see the header.
+#include "scenes.hpp"
+
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <rastrum/io.hpp>
+#include <rastrum/render.hpp>
+
+namespace rastrum::python {
+namespace {
+
+using Numbers4 = std::array<double, 4>;
+using Numbers3 = std::array<double, 3>;
+
+Vec4 vec4(const Numbers4& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]),
+          static_cast<float>(v[3])};
+}
+
+/// The place of `name` among `names`, in the order of the enum.
+template <class Enum, std::size_t N>
+Enum named(const char* what, const std::string& name, const char* const (&names)[N]) {
+  std::string all;
+  for (std::size_t i = 0; i < N; ++i) {
+    if (name == names[i]) return static_cast<Enum>(i);
+    all += (i > 0 ? ", " : "") + std::string(names[i]);
+  }
+  throw Error(Errc::invalid_argument,
+              std::string(what) + ": there is no " + name + "; take one of " + all);
+}
+
+Material material(const Numbers4& base_color, double metallic, double roughness,
+                  const Numbers3& emissive, const std::string& alpha_mode, double alpha_cutoff,
+                  bool double_sided, bool unlit, double opacity,
+                  const std::array<std::int32_t, 5>& textures) {
+  Material m;
+  m.base_color = vec4(base_color);
+  m.metallic = static_cast<float>(metallic);
+  m.roughness = static_cast<float>(roughness);
+  m.emissive = {static_cast<float>(emissive[0]), static_cast<float>(emissive[1]),
+                static_cast<float>(emissive[2])};
+  m.alpha_mode = named<AlphaMode>("alpha_mode", alpha_mode, {"opaque", "mask", "blend"});
+  m.alpha_cutoff = static_cast<float>(alpha_cutoff);
+  m.double_sided = double_sided;
+  m.unlit = unlit;
+  m.opacity = static_cast<float>(opacity);
+  m.base_color_texture = textures[0];
+  m.metallic_roughness_texture = textures[1];
+  m.normal_texture = textures[2];
+  m.occlusion_texture = textures[3];
+  m.emissive_texture = textures[4];
+  return m;
+}
+
+}  // namespace
+
+void ArrayScene::add_file(const std::string& file, std::optional<double> crease_deg) {
+  Scene read = io::read_scene(file);
+  if (crease_deg)
+    for (Mesh& mesh : read.meshes)
+      if (mesh.normals.empty())
+        mesh.normals =
+            crease_normals(mesh.positions, mesh.indices, static_cast<float>(*crease_deg));
+  const std::size_t first = files_.instances.size(), count = read.instances.size();
+  files_.append(std::move(read));
+  order_.push_back(OfFile{first, count});
+  bound_ = false;
+}
+
+void ArrayScene::add_texture(const Array& pixels) {
+  if (pixels.ndim() != 3 || pixels.dtype() != nb::dtype<std::uint8_t>() ||
+      (pixels.shape(2) != 3 && pixels.shape(2) != 4))
+    throw Error(Errc::invalid_argument, "texture: must be (H, W, 3 or 4) of uint8");
+  Texture texture;
+  for (const std::size_t axis : {0U, 1U})
+    if (pixels.shape(axis) > static_cast<std::size_t>(kMaxImageSize))
+      throw Error(Errc::invalid_argument, "texture: sides of at most 32768 pixels are drawn");
+  texture.image = {static_cast<int>(pixels.shape(1)), static_cast<int>(pixels.shape(0))};
+  const auto* const from = static_cast<const std::uint8_t*>(pixels.data());
+  for (int y = 0; y < texture.image.height(); ++y)
+    for (int x = 0; x < texture.image.width(); ++x) {
+      const std::uint8_t* const at = from + y * pixels.stride(0) + x * pixels.stride(1);
+      const auto channel = [&](int c) { return at[c * pixels.stride(2)]; };
+      texture.image(x, y) = {channel(0), channel(1), channel(2),
+                             pixels.shape(2) == 4 ? channel(3) : std::uint8_t{255}};
+    }
+  textures_.push_back(std::move(texture));
+  bound_ = false;
+}
+
+void ArrayScene::add(nb::object geometry, const std::optional<Array>& transform, float opacity,
+                     const std::optional<Colors>& color, std::optional<std::uint32_t> material,
+                     bool visible, const std::string& winding, std::optional<std::int64_t> id,
+                     std::vector<ClipPlane> clip_planes) {
+  const auto& arrays = nb::cast<const ArrayGeometry&>(geometry);
+  Added added{std::move(geometry), {}, color, std::move(clip_planes), arrays.has_colors};
+  InstanceView& i = added.instance;
+  i.geometry = arrays.view;
+  if (transform) i.object_to_world = matrix(*transform, "transform");
+  i.opacity = opacity;
+  i.material = material;
+  i.visible = visible;
+  i.winding = named<Winding>("winding", winding, {"counter_clockwise", "clockwise", "either"});
+  i.id = id;
+  order_.push_back(std::move(added));
+  bound_ = false;
+}
+
+void ArrayScene::bind() const {
+  binding_.emplace(files_);
+  instances_.clear();
+  all_materials_ = files_.materials;
+  const auto offset = static_cast<std::uint32_t>(all_materials_.size());
+  const auto texture_offset = static_cast<std::int32_t>(files_.textures.size());
+  for (Material m : materials_) {
+    for (std::int32_t* t : {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
+                            &m.occlusion_texture, &m.emissive_texture})
+      if (*t != kNoTexture) *t += texture_offset;
+    all_materials_.push_back(m);
+  }
+  // One span: copied only where both files and Python have some.
+  all_textures_.clear();
+  if (!files_.textures.empty() && !textures_.empty()) {
+    all_textures_ = files_.textures;
+    all_textures_.insert(all_textures_.end(), textures_.begin(), textures_.end());
+  }
+  // Beside what has a material, what has none looks as it did without.
+  const bool any = !all_materials_.empty();
+  std::uint32_t plain[2] = {};
+  if (any) {
+    plain[0] = static_cast<std::uint32_t>(all_materials_.size());
+    all_materials_.push_back(plain_material(false));
+    plain[1] = plain[0] + 1;
+    all_materials_.push_back(plain_material(true));
+  }
+  // A file without materials drawn beside others was given some by append(); alone it has none.
+  const bool plain_files = any && files_.materials.empty();
+  for (const auto& entry : order_) {
+    if (const auto* const file = std::get_if<OfFile>(&entry)) {
+      for (std::size_t k = 0; k < file->count; ++k) {
+        InstanceView i = binding_->view().instances[file->first + k];
+        if (plain_files) {
+          const bool colored =
+              i.color || std::visit([](const auto& g) { return !g.colors.empty(); }, i.geometry);
+          i.material = plain[colored ? 1 : 0];
+        }
+        instances_.push_back(i);
+      }
+      continue;
+    }
+    const Added& added = std::get<Added>(entry);
+    InstanceView i = added.instance;
+    i.clip_planes = added.clip_planes;
+    if (added.color) i.color = any ? added.color->linear : added.color->display;
+    if (i.material)
+      *i.material += offset;
+    else if (any)
+      i.material = plain[added.has_colors || i.color ? 1 : 0];
+    instances_.push_back(i);
+  }
+  bound_ = true;
+}
+
+SceneView ArrayScene::view() const {
+  if (!bound_) bind();
+  const std::vector<Texture>& textures = !all_textures_.empty() ? all_textures_
+                                         : textures_.empty()    ? files_.textures
+                                                                : textures_;
+  return {instances_, all_materials_, textures};
+}
+
+std::uint64_t ArrayScene::primitive_count() const {
+  std::uint64_t n = 0;
+  for (const InstanceView& i : view().instances) n += rastrum::primitive_count(i.geometry);
+  return n;
+}
+
+void bind_scenes(nb::module_& m) {
+  using nb::arg;
+  nb::class_<Material>(m, "Material");
+  m.def("material", material, arg("base_color"), arg("metallic"), arg("roughness"), arg("emissive"),
+        arg("alpha_mode"), arg("alpha_cutoff"), arg("double_sided"), arg("unlit"), arg("opacity"),
+        arg("textures"));
+  nb::class_<ArrayScene>(m, "Scene")
+      .def(nb::init<>())
+      .def("add_file", &ArrayScene::add_file, arg("file"), arg("crease").none(),
+           nb::call_guard<nb::gil_scoped_release>())
+      .def("add_texture", &ArrayScene::add_texture, arg("pixels"))
+      .def("add_material", &ArrayScene::add_material, arg("material"))
+      .def(
+          "add",
+          [](ArrayScene& s, nb::object geometry, const std::optional<Array>& transform,
+             float opacity, const std::optional<std::array<Numbers4, 2>>& color,
+             std::optional<std::uint32_t> index, bool visible, const std::string& winding,
+             std::optional<std::int64_t> id, const std::vector<Numbers4>& planes) {
+            std::vector<ClipPlane> clip;
+            for (const Numbers4& p : planes) clip.push_back({{p[0], p[1], p[2]}, p[3]});
+            std::optional<Colors> both;
+            if (color) both = {vec4((*color)[0]), vec4((*color)[1])};
+            s.add(std::move(geometry), transform, opacity, both, index, visible, winding, id,
+                  std::move(clip));
+          },
+          arg("geometry"), arg("transform").none(), arg("opacity"), arg("color").none(),
+          arg("material").none(), arg("visible"), arg("winding"), arg("id").none(),
+          arg("clip_planes"))
+      .def_prop_ro("primitives", &ArrayScene::primitive_count)
+      .def_prop_ro("instances", [](const ArrayScene& s) { return s.view().instances.size(); })
+      .def_prop_ro("has_materials", [](const ArrayScene& s) { return !s.view().materials.empty(); })
+      .def_prop_ro("warnings", [](const ArrayScene& s) { return s.files().warnings; })
+      .def("describe", [](const ArrayScene& s) { return io::describe(s.files()); })
+      .def("bounds", [](const ArrayScene& s) -> std::optional<std::pair<Numbers3, Numbers3>> {
+        const Bounds b = bounds(s.view());
+        if (b.vertices_in_use == 0) return std::nullopt;
+        return std::pair(Numbers3{b.min.x, b.min.y, b.min.z}, Numbers3{b.max.x, b.max.y, b.max.z});
+      });
+}
+
+}  // namespace rastrum::python

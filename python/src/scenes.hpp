@@ -1,0 +1,63 @@
+// A scene of Python's: files and geometries in the order in which they were added.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "bindings.hpp"
+
+namespace rastrum::python {
+
+/// One colour: the plain shaders write display values as they are, `material` takes linear ones.
+struct Colors {
+  Vec4 display, linear;
+};
+
+class ArrayScene {
+ public:
+  /// Meshes without normals get crease_normals, unless there is no `crease_deg`. Throws as
+  /// io::read_scene.
+  void add_file(const std::string& file, std::optional<double> crease_deg);
+  void add_texture(const Array& pixels);
+  void add_material(const Material& material) { materials_.push_back(material); }
+  /// `material`: of add_material. The object must be an ArrayGeometry, and is kept alive.
+  void add(nb::object geometry, const std::optional<Array>& transform, float opacity,
+           const std::optional<Colors>& color, std::optional<std::uint32_t> material, bool visible,
+           const std::string& winding, std::optional<std::int64_t> id,
+           std::vector<ClipPlane> clip_planes);
+
+  /// As it stands; valid until the next change. Textures and materials of files come first.
+  [[nodiscard]] SceneView view() const;
+  [[nodiscard]] std::uint64_t primitive_count() const;
+  [[nodiscard]] const Scene& files() const { return files_; }
+
+ private:
+  struct Added {
+    nb::object geometry;
+    InstanceView instance;
+    std::optional<Colors> color;
+    std::vector<ClipPlane> clip_planes;
+    bool has_colors;
+  };
+  struct OfFile {
+    std::size_t first, count;
+  };
+  void bind() const;
+
+  Scene files_;
+  std::vector<Material> materials_;
+  std::vector<Texture> textures_;
+  std::deque<std::variant<OfFile, Added>> order_;
+  // What view() shows, made when it is first asked for.
+  mutable bool bound_ = false;
+  mutable std::optional<SceneBinding> binding_;
+  mutable std::vector<InstanceView> instances_;
+  mutable std::vector<Material> all_materials_;
+  mutable std::vector<Texture> all_textures_;
+};
+
+}  // namespace rastrum::python

@@ -1,0 +1,207 @@
+"""What can be drawn: primitives, looks, cameras, things of other libraries, and what is refused."""
+
+import itertools
+import types
+
+import numpy as np
+import pytest
+
+import rastrum as rr
+
+SIZE = (64, 48)
+CAMERA = rr.Camera.look_at((0, 0, 4), fov=60)
+MIDDLE = np.zeros((1, 3))
+
+
+def ids(thing, **more):
+    return rr.render(thing, CAMERA, size=SIZE, outputs="id", **more).id
+
+
+def test_each_primitive_is_seen():
+    ends = np.array([[-1, 0, 0], [1, 0, 0], [1, 1, 0.0]])
+    for thing, count in ((rr.Spheres(MIDDLE, 0.5), 1), (rr.Spheres(ends, np.array([0.1, 0.2, 0.3])), 3),
+                         (rr.Cylinders(ends[:2], radius=0.2), 1), (rr.Tubes(ends, radius=0.1), 2),
+                         (rr.Discs(MIDDLE, [[0, 0, 1.0]], 0.7), 1), (rr.Points(ends, size=5), 3),
+                         (rr.Lines(ends, width=3), 2), (rr.Lines(ends, [[0, 2]]), 1),
+                         (rr.Mesh(ends), 1), (rr.Mesh(ends, [[0, 1, 2]]), 1)):
+        assert thing.primitives == count
+        assert set(np.unique(ids(thing))) == {-1, *range(count)}, type(thing)
+
+
+def test_a_sphere_is_round():
+    p = rr.render(rr.Spheres(MIDDLE), CAMERA, size=(200, 200), outputs=("depth", "id"))
+    y, x = np.mgrid[0:200, 0:200] + 0.5
+    # The ball of radius 1 at distance 4: rays whose angle is at most asin(1/4).
+    tangent = np.hypot(x - 100, y - 100) / 100 * np.tan(np.radians(30))
+    assert np.array_equal(p.id >= 0, np.sin(np.arctan(tangent)) <= 0.25)
+    assert np.isclose(p.depth[100, 100], 3, atol=1e-3)
+
+
+def test_looks():
+    plain = rr.Spheres(MIDDLE, 0.5)
+    red = rr.render(rr.Spheres(MIDDLE, 0.5, color="#ff0000"), CAMERA, size=SIZE, shader="flat").color[24, 32]
+    assert tuple(red) == (255, 0, 0, 255)
+    half = rr.render(rr.Spheres(MIDDLE, 0.5, color="#ff0000", opacity=0.5), CAMERA, size=SIZE, shader="flat").color[24, 32]
+    assert half[0] == 255 and 180 < half[3] < 200  # two sides of it, each half
+    assert (ids(rr.Spheres(MIDDLE, 0.5, visible=False)) == -1).all()
+    moved = np.eye(4)
+    moved[0, 3] = 1
+    assert ids(rr.Spheres(MIDDLE, 0.5, transform=moved))[24, 32] == -1
+    cut = ids(rr.Spheres(MIDDLE, 0.5, clip_planes=[[1, 0, 0, 0]]))
+    assert (cut[:, :31] == -1).all() and (cut[:, 33:] == 0).any()
+    textured = rr.Mesh([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], [[0, 1, 2, 3]],
+                       uv=[[0, 1], [1, 1], [1, 0], [0, 0.0]],
+                       material=rr.Material(base_color_texture=np.array([[[0, 255, 0], [0, 0, 255]]], np.uint8), unlit=True))
+    p = rr.render([textured, plain], rr.Camera.orthographic((0, 0, 4), height=2), size=(40, 40))
+    assert p.stats["shader"] == "material"
+    assert p.color[2, 2, 1] > 200 and p.color[2, 37, 2] > 200  # left green, right blue
+    assert p.color[20, 20, 0] > 80  # the sphere without a material keeps its own colour
+
+
+def test_cameras_agree():
+    k = np.array([[400, 0, 319.5], [0, 400, 239.5], [0, 0, 1.0]])
+    box = rr.Mesh(np.random.default_rng(3).random((60, 3)) + (0, 0, 3))
+    p = rr.render(box, rr.Camera.opencv(k), size=(640, 480), outputs=("id", "position"))
+    y, x = np.argwhere(p.id >= 0).T
+    X, Y, Z = p.position[y, x].T
+    assert len(y) > 1000
+    assert np.allclose(400 * X / Z + 319.5, x, atol=1e-3) and np.allclose(400 * Y / Z + 239.5, y, atol=1e-3)
+    f = 1 / np.tan(np.radians(30))
+    n, far = 0.01, 100.0
+    projection = np.array([[f * 3 / 4, 0, 0, 0], [0, f, 0, 0], [0, 0, (far + n) / (n - far), 2 * far * n / (n - far)],
+                           [0, 0, -1, 0]])
+    view = np.eye(4)
+    view[2, 3] = -4
+    a = rr.render(rr.Spheres(MIDDLE), rr.Camera.opengl(projection, view), size=SIZE, outputs="id").id
+    assert np.array_equal(a, ids(rr.Spheres(MIDDLE)))
+    assert np.array_equal(a, rr.render(rr.Spheres(MIDDLE), projection @ view, size=SIZE, outputs="id").id)
+    for view in ("front", "back", "left", "right", "top", "bottom", "iso", (1, 2, 3)):
+        assert (rr.render(box, rr.Camera.fit(box, view), size=SIZE, outputs="id").id >= 0).any(), view
+
+
+def stand_in(module, name, **fields):
+    """An object of a class that looks as if it came from another library."""
+    return type(name, (types.SimpleNamespace,), {"__module__": module})(**fields)
+
+
+def test_meshes_of_others_are_recognised(sheet):
+    vertices, triangles = sheet
+    expected = ids(rr.Mesh(vertices, triangles))
+    visual = types.SimpleNamespace(kind=None)
+    mesh = stand_in("trimesh.base", "Trimesh", vertices=vertices, faces=triangles, visual=visual)
+    assert np.array_equal(ids(mesh), expected)
+    legacy = stand_in("open3d.cpu.pybind.geometry", "TriangleMesh", vertices=vertices, triangles=triangles,
+                      vertex_normals=[], vertex_colors=[])
+    assert np.array_equal(ids(legacy), expected)
+    assert np.array_equal(ids([mesh, rr.Points(MIDDLE)]), ids([rr.Mesh(vertices, triangles), rr.Points(MIDDLE)]))
+
+
+def test_real_trimesh(sheet):
+    trimesh = pytest.importorskip("trimesh")
+    mesh = trimesh.Trimesh(*sheet, process=False)
+    expected = ids(rr.Mesh(*sheet))
+    assert np.array_equal(ids(mesh), expected)
+    scene = trimesh.Scene([mesh])
+    assert np.array_equal(ids(scene), expected)
+    assert np.array_equal(scene.show(viewer=rr.trimesh_viewer).color, rr.render(scene).color)
+
+
+def test_real_torch(sheet):
+    torch = pytest.importorskip("torch")
+    vertices = torch.from_numpy(sheet[0].copy()).requires_grad_()
+    assert np.array_equal(ids(rr.Mesh(vertices, torch.from_numpy(sheet[1].astype(np.int64)), copy=False)), ids(sheet))
+
+
+def test_natural_classes(tmp_path):
+    with pytest.raises(FileNotFoundError):
+        rr.load(tmp_path / "none.obj")
+    bad = tmp_path / "bad.ply"
+    bad.write_bytes(b"ply\nnonsense\n")
+    with pytest.raises(rr.FormatError, match="bad.ply"):
+        rr.load(bad)
+    with pytest.raises(ValueError, match="corner 2 of triangle 0 is vertex 3"):
+        rr.render((np.zeros((3, 3)), [[0, 1, 3]]), size=SIZE)
+    with pytest.raises(NotImplementedError):
+        rr.load(_named(tmp_path, "x.xyz"))
+    with pytest.raises(TypeError):
+        rr.render(object(), size=SIZE)
+    for error in (rr.ArgumentError, rr.NotFoundError, rr.FormatError, rr.OutOfMemoryError, rr.DeviceError):
+        assert issubclass(error, rr.Error)
+
+
+def _named(folder, name):
+    file = folder / name
+    file.write_text("0 0 0\n")
+    return file
+
+
+def bad_calls():
+    """More than 2,000 calls that must end in an exception: each argument spoiled in each way that it can be."""
+    good_v, good_f = np.random.default_rng(5).random((8, 3)), np.array([[0, 1, 2], [3, 4, 5]])
+    arrays = [np.zeros((3,)), np.zeros((3, 2)), np.zeros((3, 4)), np.zeros((2, 2, 3)), np.array([["a", "b", "c"]]),
+              np.array([[None, 1, 2]], object), np.zeros((3, 3), complex), np.zeros((3, 3), "M8[s]"), "text", 5, None,
+              object(), [[1, 2, 3], [4, 5]], np.zeros((3, 3), np.dtype([("x", "f4")])), {}, b"bytes", np.array(1.0)]
+    faces = [np.array([[0, 1, 8]]), np.array([[-1, 0, 1]]), np.array([[0, 1]]), np.zeros((1, 5), int),
+             np.array([[0.5, 1, 2]]), np.array([["a"] * 3]), np.array([0, 1]), np.zeros((1, 1, 3), int),
+             np.array([[2**40, 0, 1]]), np.array([[True, False, True]]), "abc", object(), 3]
+    looks = [{"color": "nonsense"}, {"color": (1, 2, 3)}, {"color": (0.1,)}, {"color": object()}, {"opacity": -1},
+             {"opacity": float("nan")}, {"opacity": "half"}, {"transform": np.eye(3)}, {"transform": "here"},
+             {"transform": np.zeros((4, 4), complex)}, {"material": 3}, {"winding": "up"}, {"clip_planes": [[1, 2]]},
+             {"clip_planes": [[0, 0, 0, 1]]}, {"clip_planes": [[1, 0, 0, 0]] * 9}, {"id": "seven"}, {"no_such": 1}]
+    frames = [{"size": s} for s in ((0, 5), (5, 0), (-1, 5), (40000, 5), "big", 5, (1.5, 2), (1, 2, 3), None)]
+    frames += [{"outputs": o} for o in ("colour", ("id", "x"), [], 5, [5])]
+    frames += [{"shader": s} for s in ("fancy", 3, None)] + [{"samples": s} for s in (0, 2, 3, 17, "four", 1.5)]
+    frames += [{"transparency": "guess"}, {"cull": "all"}, {"background": "no"}, {"background": (2, 0, 0)},
+               {"opacity": 2.0}, {"opacity": float("nan")}, {"clip_planes": [[0, 0, 0, 0]]}, {"threads": 0},
+               {"threads": "two"}, {"threads": -1}, {"memory_limit": -5}, {"device": "tpu"}, {"isa": "mmx"},
+               {"out": {"depth": np.zeros((5, 5))}}, {"out": {"depth": np.zeros((48, 64))}}, {"out": {"nothing": 1}},
+               {"out": {"id": np.zeros((48, 64), np.float32)}}, {"camera": 5}, {"camera": np.eye(3)},
+               {"camera": np.zeros((4, 4))}, {"camera": np.full((4, 4), np.nan)}, {"no_such": 1}, {"progress": 5}]
+    for a in arrays:
+        yield lambda a=a: rr.render(rr.Mesh(a, good_f), size=SIZE)
+        yield lambda a=a: rr.render((a, good_f), size=SIZE)
+        for name in ("normals", "uv", "colors"):
+            if a is not None:
+                yield lambda a=a, name=name: rr.render(rr.Mesh(good_v, good_f, **{name: a}), size=SIZE)
+        for kind in (rr.Points, rr.Lines, rr.Spheres, rr.Cylinders, rr.Tubes):
+            yield lambda a=a, kind=kind: rr.render(kind(a), size=SIZE)
+            if not (a is None or isinstance(a, (int, np.ndarray)) and np.ndim(a) == 0):
+                name = "colors" if kind in (rr.Points, rr.Lines) else "radius"
+                yield lambda a=a, kind=kind, name=name: rr.render(kind(good_v, **{name: a}), size=SIZE)
+        yield lambda a=a: rr.render(rr.Discs(good_v, a), size=SIZE)
+    for f in faces:
+        yield lambda f=f: rr.render((good_v, f), size=SIZE)
+        yield lambda f=f: rr.render(rr.Cylinders(good_v, f, caps=np.size), size=SIZE)
+        yield lambda f=f: rr.render(rr.Mesh(good_v, np.arange(8), offsets=f), size=SIZE)
+    for look in looks:
+        for kind in (rr.Spheres, rr.Points, rr.Mesh, rr.Tubes, rr.Lines):
+            positions = good_v[:6] if kind is rr.Mesh else good_v
+            yield lambda look=look, kind=kind, p=positions: rr.render(kind(p, **look), size=SIZE)
+    for frame in frames:
+        for thing in (rr.Spheres(MIDDLE), (good_v, good_f), [rr.Points(good_v), rr.Mesh(good_v[:3])]):
+            yield lambda frame=frame, thing=thing: rr.render(thing, **{"size": SIZE, **frame})
+    for a, b in itertools.product(frames, frames):
+        if not set(a) & set(b):
+            yield lambda a=a, b=b: rr.render(rr.Spheres(MIDDLE), **{"size": SIZE, **a, **b})
+
+
+def test_two_thousand_bad_calls():
+    calls = list(bad_calls())
+    assert len(calls) >= 2000
+    for i, call in enumerate(calls):
+        try:
+            call()
+        except rr.Error as e:
+            assert str(e), i
+            assert isinstance(e, (ValueError, TypeError, NotImplementedError, FileNotFoundError)), (i, type(e))
+        except TypeError as e:
+            assert "unexpected keyword argument 'no_such'" in str(e), i
+        else:
+            pytest.fail(f"call {i} was accepted")
+    assert (ids(rr.Spheres(MIDDLE)) >= 0).any()
+
+
+def test_numbers_that_are_not_finite_are_dropped_and_counted():
+    v = np.random.default_rng(6).random((9, 3))
+    v[4, 1] = np.nan
+    assert rr.render((v, np.arange(9).reshape(3, 3)), CAMERA, size=SIZE).stats["triangles"]["dropped"] == 1

@@ -1,0 +1,82 @@
+// Effects over a finished picture, from its depth and normals: ambient occlusion, eye-dome
+// lighting, silhouettes and feature edges (docs/overlay.md has the formulas, decision 0051 the
+// reasons).
+//
+// Each makes an image of factors in [0, 1], 1 where it leaves the picture as it is and where
+// nothing is drawn; darken() brings them into colours. With several samples a pixel the depth and
+// the normals are those of the nearest surface, as Targets has them. The same bits for every number
+// of threads and instruction set.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include <rastrum/camera.hpp>
+#include <rastrum/device.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/vec.hpp>
+
+namespace rastrum {
+
+/// How much of the light from all around reaches a point: McGuire, Mara and Luebke, Scalable
+/// Ambient Obscurance (HPG 2012), with a fixed pattern of samples.
+struct AmbientOcclusion {
+  double radius = 0;    ///< in the world, of what takes light from a point; > 0
+  double strength = 1;  ///< [0, 16]
+  int samples =
+      16;  ///< a pixel, 1 to 64; the blur spans 4 × 4 pixels, so that many times as many count
+};
+
+/// Shades each pixel by how far it lies behind those around (Boucheny 2009): shape for points,
+/// which have no normals.
+struct EyeDome {
+  double strength = 1;  ///< [0, 100]
+  int radius_px = 2;    ///< 1 to 64
+};
+
+struct Silhouettes {
+  double depth = 0.01;        ///< a step of more than this part of the distance is an edge; 0: none
+  double angle_degrees = 35;  ///< normals that differ by more are an edge; 180: none
+  bool instances = true;      ///< where ids differ, too
+  int width_px = 1;           ///< 1 to 16
+};
+
+/// What a frame left (Targets). All images have one size; normals and ids may be empty.
+struct Surface {
+  ImageView<const float> view_depth{};  ///< Targets::view_depth
+  ImageView<const Vec3> normals{};      ///< Targets::camera_normals
+  ImageView<const std::int64_t> ids{};  ///< Targets::instances, or any other number
+};
+
+/// Keeps threads and scratch between pictures. One call at a time.
+class Effects {
+ public:
+  /// `threads` 0: all. Throws Error{no_device} for an instruction set that is not there.
+  explicit Effects(int threads = 0, std::optional<Isa> isa = {});
+  ~Effects();
+  Effects(Effects&&) noexcept;
+  Effects& operator=(Effects&&) noexcept;
+
+  /// Where a pixel has no normal (points and lines) nothing is taken from it. Throws
+  /// Error{invalid_argument} for images that differ in size, options out of range and a camera
+  /// whose planes of equal depth are not across its axis. Cost: pixels · samples.
+  void ambient_occlusion(const Surface& surface, const Camera& camera,
+                         const AmbientOcclusion& options, ImageView<float> factor);
+  void eye_dome(const Surface& surface, const Camera& camera, const EyeDome& options,
+                ImageView<float> factor);
+  /// An edge lies on the nearer of two surfaces, `width_px` wide.
+  void silhouettes(const Surface& surface, const Camera& camera, const Silhouettes& options,
+                   ImageView<float> factor);
+
+  /// Colours become c · factor + ink · (1 − factor); alpha stays. `color8` is straight, `color`
+  /// premultiplied; either may be empty.
+  void darken(ImageView<Rgba8> color8, ImageView<Vec4> color, ImageView<const float> factor,
+              Vec3 ink = {0, 0, 0});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rastrum

@@ -1,0 +1,115 @@
+// Words, bars and axes over finished pictures: our own fills and an embedded font, so that they are
+// the same bits everywhere (decision 0050).
+//
+// Lengths are in pixels, (0, 0) the picture's top left corner and y downwards; colours are display
+// values with straight alpha. What lies outside of a picture is cut off. One thread; a picture is
+// written by one call at a time.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <rastrum/camera.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/vec.hpp>
+
+namespace rastrum::overlay {
+
+/// What is drawn onto: a frame's colours, Targets::color8 and Targets::color. Either may be empty;
+/// both have one size.
+struct Canvas {
+  ImageView<Rgba8> color8{};  ///< straight alpha
+  ImageView<Vec4> color{};    ///< premultiplied float32
+
+  [[nodiscard]] int width() const { return color8.empty() ? color.width : color8.width; }
+  [[nodiscard]] int height() const { return color8.empty() ? color.height : color8.height; }
+};
+
+// Fills.
+
+struct Point {
+  std::int32_t x = 0, y = 0;  ///< in 1/256 px
+  friend bool operator==(const Point&, const Point&) = default;
+};
+
+/// Closed polygons, of which what winds around a point any way but not at all is inside. Points are
+/// rounded to 1/256 px; one that is not finite or beyond 2²⁰ px throws Error{invalid_argument}.
+class Path {
+ public:
+  void move_to(double x_px, double y_px);
+  void line_to(double x_px, double y_px);
+  /// A rectangle between two corners, in whichever order.
+  void add_rectangle(double x0_px, double y0_px, double x1_px, double y1_px);
+  /// A straight stroke with flat ends.
+  void add_line(double x0_px, double y0_px, double x1_px, double y1_px, double width_px);
+  /// A regular polygon that is nowhere farther than 1/16 px from its circle.
+  void add_disc(double x_px, double y_px, double radius_px);
+  /// The same for who has 1/256 px already.
+  void move_to(Point point);
+  void line_to(Point point);
+  [[nodiscard]] bool empty() const { return points_.empty(); }
+  [[nodiscard]] const std::vector<Point>& points() const { return points_; }
+  /// Where in points() each polygon begins.
+  [[nodiscard]] const std::vector<std::size_t>& begins() const { return begins_; }
+
+ private:
+  std::vector<Point> points_;
+  std::vector<std::size_t> begins_;
+};
+
+/// Whether a pixel may be touched: what hides a fill where something of the picture is nearer.
+using PixelTest = std::function<bool(int x, int y)>;
+
+/// Blends `color` over what `path` covers of each pixel: the share of its area, exact across and in
+/// 64 lines down the pixel, in 255ths. Cost: O(64 · height · edges on a line + pixels).
+/// Throws Error{invalid_argument} for a canvas whose views differ in size or have rows that
+/// overlap.
+void fill(const Canvas& canvas, const Path& path, Rgba8 color, const PixelTest& test = {});
+/// The coverage by itself, 0 to 255.
+void fill(ImageView<std::uint8_t> coverage, const Path& path);
+
+// Words.
+
+enum class AlignX : std::uint8_t { left, center, right };
+enum class AlignY : std::uint8_t {
+  top,       ///< of the capital letters of the first line
+  middle,    ///< of capital letters of the first line and the last line's baseline
+  baseline,  ///< of the first line
+  bottom     ///< the last line's baseline
+};
+
+struct TextStyle {
+  double size_px = 16;  ///< of the em; capital letters are 0.73 of it. In (0, 8192]
+  Rgba8 color{255, 255, 255, 255};
+  double halo_px = 0;             ///< how far around the letters `halo` reaches, [0, 256]
+  Rgba8 halo{0, 0, 0, 255};       ///< so that words are read on any ground
+  AlignX align_x = AlignX::left;  ///< what of the words lies at the given place
+  AlignY align_y = AlignY::baseline;
+  int quarter_turns = 0;  ///< counter-clockwise about that place
+};
+
+/// UTF-8, with \n between lines, at (x, y): DejaVu Sans's ASCII, Latin-1, Latin Extended-A, Greek
+/// and the usual signs of measures and mathematics. What the font has not, and a byte that is no
+/// UTF-8, is the font's box: missing_glyphs() says what. Throws Error{invalid_argument} for a style
+/// out of range.
+void draw_text(const Canvas& canvas, double x_px, double y_px, std::string_view text,
+               const TextStyle& style = {}, const PixelTest& test = {});
+/// The same as outlines, for fills of one's own; without the halo.
+[[nodiscard]] Path text_path(double x_px, double y_px, std::string_view text,
+                             const TextStyle& style = {});
+
+struct TextExtent {
+  double width_px = 0;   ///< of the longest line
+  double height_px = 0;  ///< from the first line's capital letters down to the last line's baseline
+};
+[[nodiscard]] TextExtent measure_text(std::string_view text, double size_px);
+
+/// The code points of `text` that are drawn as boxes, each once, in order; U+FFFD for what is no
+/// UTF-8.
+[[nodiscard]] std::vector<char32_t> missing_glyphs(std::string_view text);
+
+}  // namespace rastrum::overlay

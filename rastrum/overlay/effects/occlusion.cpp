@@ -1,0 +1,130 @@
+// Ambient occlusion, plain: the reference of the lanes (occlusion_simd.cpp), operation by
+// operation. McGuire, Mara and Luebke, Scalable Ambient Obscurance (HPG 2012), section 2.3: around
+// a point P with normal n, samples Q of the picture within a radius take
+//   max(1 − v², 0)³ · max(v · n − bias, 0) / (v² + ε),  v = (Q − P) / radius,
+// of its light. Samples lie on a spiral of golden angles that is turned from pixel to pixel in a
+// pattern of 4 × 4, which the blur averages. The paper's hierarchy of depths is left out: it saves
+// memory traffic of a GPU.
+#include <rastrum/overlay/effects/occlusion.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <rastrum/core/elementary.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/overlay/effects/lens.hpp>
+
+namespace rastrum::overlay {
+namespace {
+
+Vec3 position(const OcclusionFrame& f, int x, int y, float depth) {
+  const float px = static_cast<float>(x) + 0.5F, py = static_cast<float>(y) + 0.5F;
+  const float u = (f.ux * px + f.uy * py) + f.u0, v = f.vy * py + f.v0;
+  const float e = depth * f.per_radius, s = f.perspective ? e : 1.0F;
+  return {u * s, v * s, -e};
+}
+
+}  // namespace
+
+void occlusion_plain(const OcclusionFrame& f, int y, int begin, int end, float* out) {
+  const int right = f.depth.width - 1, bottom = f.depth.height - 1;
+  for (int x = begin; x < end; ++x) {
+    const float depth = f.depth(x, y);
+    if (!(depth < kFarthest)) {
+      out[x] = 1;
+      continue;
+    }
+    const Vec3 p = position(f, x, y, depth), n = f.normals(x, y);
+    const float reach = std::min(f.perspective ? f.reach_px / depth : f.reach_px, f.most_px);
+    const float bias = kOcclusionBias - p.z * kBiasPerDistance;
+    float sum = 0;
+    for (int k = 0; k < f.samples; ++k) {
+      const auto lane = x % kPatternLanes;
+      const int qx = x + static_cast<int>(std::nearbyint(f.offsets(y, k, 0)[lane] * reach));
+      const int qy = y + static_cast<int>(std::nearbyint(f.offsets(y, k, 1)[lane] * reach));
+      if (qx < 0 || qx > right || qy < 0 || qy > bottom) continue;
+      const float there = f.depth(qx, qy);
+      if (!(there < kFarthest)) continue;
+      const Vec3 q = position(f, qx, qy, there);
+      const float vx = q.x - p.x, vy = q.y - p.y, vz = q.z - p.z;
+      const float vv = (vx * vx + vy * vy) + vz * vz, vn = (vx * n.x + vy * n.y) + vz * n.z;
+      const float near = std::max(1.0F - vv, 0.0F);
+      sum = sum + ((near * near) * near) * std::max(vn - bias, 0.0F) / (vv + kOcclusionEpsilon);
+    }
+    out[x] = std::max(1.0F - f.weight * sum, 0.0F);
+  }
+}
+
+void blur_plain(const OcclusionFrame& f, ImageView<const float> in, int y, int dx, int dy,
+                int begin, int end, float* out) {
+  for (int x = begin; x < end; ++x) {
+    const float depth = f.depth(x, y);
+    if (!(depth < kFarthest)) {
+      out[x] = 1;
+      continue;
+    }
+    float sum = 0, weights = 0;
+    for (int i = -2; i <= 2; ++i) {
+      const int qx = x + i * dx, qy = y + i * dy;
+      if (qx < 0 || qx >= in.width || qy < 0 || qy >= in.height) continue;
+      const float apart = std::fabs(f.depth(qx, qy) - depth) * f.per_radius;
+      const float share = i == -2 || i == 2 ? 0.5F : 1.0F;
+      const float weight = share * std::max(1.0F - apart * kBlurSharpness, 0.0F);
+      sum = sum + weight * in(qx, qy);
+      weights = weights + weight;
+    }
+    out[x] = sum / weights;
+  }
+}
+
+OcclusionFrame occlusion_frame(const Surface& surface, const Camera& camera,
+                               const AmbientOcclusion& options) {
+  const auto refuse = [](const char* what, double got) {
+    throw Error(Errc::invalid_argument,
+                std::string("AmbientOcclusion::") + what + ", got " + std::to_string(got));
+  };
+  if (!(options.radius > 0 && std::isfinite(options.radius)))
+    refuse("radius must be > 0 and finite", options.radius);
+  if (!(options.strength >= 0 && options.strength <= 16))
+    refuse("strength must lie in [0, 16]", options.strength);
+  if (options.samples < 1 || options.samples > 64)
+    refuse("samples must lie in 1 to 64", options.samples);
+  const int width = surface.view_depth.width, height = surface.view_depth.height;
+  const Lens lens = lens_of(camera, width, height);
+  const double scale = lens.perspective ? 1 : 1 / options.radius;
+  OcclusionFrame f;
+  f.depth = surface.view_depth;
+  f.normals = surface.normals;
+  f.perspective = lens.perspective;
+  f.ux = static_cast<float>(lens.ux * scale);
+  f.uy = static_cast<float>(lens.uy * scale);
+  f.u0 = static_cast<float>(lens.u0 * scale);
+  f.vy = static_cast<float>(lens.vy * scale);
+  f.v0 = static_cast<float>(lens.v0 * scale);
+  f.per_radius = static_cast<float>(1 / options.radius);
+  f.reach_px = static_cast<float>(options.radius / std::fabs(lens.ux));
+  // Farther apart, samples say little of what lies between and miss every cache.
+  f.most_px = static_cast<float>(std::max(width, height)) / 8;
+  f.samples = options.samples;
+  f.weight =
+      static_cast<float>(options.strength * static_cast<double>(kOcclusionScale) / options.samples);
+  const auto count = static_cast<std::size_t>(kPatternSide * options.samples * 2 * kPatternLanes);
+  f.pattern.resize(count);
+  // Turned by a Bayer matrix's sixteenths, so that neighbours differ most.
+  constexpr int kTurn[4][4] = {{0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
+  constexpr double kTau = 6.283185307179586, kGolden = 2.399963229728653;
+  std::size_t i = 0;
+  for (const auto& row : kTurn)
+    for (int k = 0; k < options.samples; ++k)
+      for (const int axis : {0, 1})
+        for (int lane = 0; lane < kPatternLanes; ++lane) {
+          const double turn = row[lane % kPatternSide] / 16.0;
+          const double out = (k + 0.25 + turn / 2) / options.samples;
+          const auto angle = elementary::sin_cos(kGolden * k + kTau * turn);
+          f.pattern[i++] = static_cast<float>(out * (axis == 0 ? angle.cos : angle.sin));
+        }
+  return f;
+}
+
+}  // namespace rastrum::overlay

@@ -1,0 +1,65 @@
+// Ambient occlusion of a row of pixels and its blur: what the plain kernels and those of each
+// instruction set have in common. Lengths are in units of the radius.
+#pragma once
+
+#include <vector>
+
+#include <rastrum/device.hpp>
+#include <rastrum/effects.hpp>
+#include <rastrum/image.hpp>
+
+namespace rastrum::overlay {
+
+inline constexpr int kPatternSide = 4;    ///< pixels after which the pattern repeats
+inline constexpr int kPatternLanes = 16;  ///< its row of 4, repeated for the widest vector
+
+struct OcclusionFrame {
+  ImageView<const float> depth;
+  ImageView<const Vec3> normals;
+  bool perspective = true;
+  float ux = 0, uy = 0, u0 = 0, vy = 0, v0 = 0;  ///< Lens; of an orthographic one by the radius
+  float per_radius = 0;                          ///< 1 / radius
+  float reach_px = 0,
+        most_px = 0;  ///< of the radius at distance 1 (anywhere); the most samples spread
+  float weight = 0;   ///< strength over the number of samples
+  int samples = 0;
+  /// Of pattern row y % 4 and sample k the offsets across, then down, in parts of the reach:
+  /// [((y % 4) · samples + k) · 2 + axis] · 16 + x % 16.
+  std::vector<float> pattern;
+
+  [[nodiscard]] const float* offsets(int y, int sample, int axis) const {
+    return pattern.data() + (static_cast<std::size_t>((y % kPatternSide) * samples + sample) * 2 +
+                             static_cast<std::size_t>(axis)) *
+                                kPatternLanes;
+  }
+};
+
+// What is the same number for lanes and plain floats.
+inline constexpr float kOcclusionBias = 0.02F;    ///< of the radius, against a plane's own rounding
+inline constexpr float kBiasPerDistance = 2e-6F;  ///< of what depth rounds to
+inline constexpr float kOcclusionEpsilon = 0.01F;  ///< the paper's
+inline constexpr float kOcclusionScale =
+    4.0F;  ///< chosen by looking: a right angle keeps a quarter
+inline constexpr float kBlurSharpness = 2.0F;
+inline constexpr float kFarthest = 3.402823466e38F;
+
+/// Pixels [begin, end) of row y, without blur. `begin` is a multiple of 16.
+using OcclusionKernel = void (*)(const OcclusionFrame& frame, int y, int begin, int end,
+                                 float* out);
+/// Row y of `in` blurred along x (dx 1, dy 0) or y: 5 pixels of weights 1/2, 1, 1, 1, 1/2, less
+/// where they are not as far.
+using BlurKernel = void (*)(const OcclusionFrame& frame, ImageView<const float> in, int y, int dx,
+                            int dy, int begin, int end, float* out);
+
+void occlusion_plain(const OcclusionFrame& frame, int y, int begin, int end, float* out);
+void blur_plain(const OcclusionFrame& frame, ImageView<const float> in, int y, int dx, int dy,
+                int begin, int end, float* out);
+
+[[nodiscard]] OcclusionKernel occlusion_kernel(Isa isa) noexcept;
+[[nodiscard]] BlurKernel blur_kernel(Isa isa) noexcept;
+
+/// Throws Error{invalid_argument} for options out of range.
+[[nodiscard]] OcclusionFrame occlusion_frame(const Surface& surface, const Camera& camera,
+                                             const AmbientOcclusion& options);
+
+}  // namespace rastrum::overlay

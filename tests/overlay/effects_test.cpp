@@ -1,0 +1,281 @@
+// Ambient occlusion, eye-dome lighting, silhouettes: the same bits over threads, instruction sets
+// and layouts, and their formulas against float64.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/digest.hpp>
+#include <rastrum/effects.hpp>
+#include <rastrum/fit.hpp>
+#include <rastrum/overlay/effects/lens.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+
+#include <tests/support/golden.hpp>
+#include <tests/support/isa.hpp>
+
+namespace rastrum::effects_test {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+struct Drawn {
+  Camera camera;
+  Image<float> depth;
+  Image<Vec3> normals;
+  Image<std::int64_t> ids;
+
+  [[nodiscard]] Surface surface() const { return {depth.view(), normals.view(), ids.view()}; }
+};
+
+Drawn drawn(const std::string& spec, int width, int height, bool orthographic = false) {
+  const Scene scene = shapes::scene_from_spec(spec);
+  const SceneBinding binding(scene);
+  Camera view{.eye = {1.2, 0.9, 1.7}};
+  view.orthographic = orthographic;
+  Drawn d{fit_picture(binding.view(), view, width, height), Image<float>(width, height),
+          Image<Vec3>(width, height), Image<std::int64_t>(width, height)};
+  Renderer renderer;
+  renderer.render(binding.view(), d.camera, {.width = width, .height = height},
+                  {.instances = d.ids, .camera_normals = d.normals, .view_depth = d.depth});
+  return d;
+}
+
+Image<float> occlusion(Effects& effects, const Drawn& d, const AmbientOcclusion& options) {
+  Image<float> factor(d.depth.width(), d.depth.height());
+  effects.ambient_occlusion(d.surface(), d.camera, options, factor);
+  return factor;
+}
+
+float least(const Image<float>& image) {
+  return *std::min_element(image.pixels().begin(), image.pixels().end());
+}
+
+/// A picture of planes by hand: depth and normal of each pixel.
+template <class F>
+Drawn made(int width, int height, const Camera& camera, F&& f) {
+  Drawn d{camera, Image<float>(width, height), Image<Vec3>(width, height),
+          Image<std::int64_t>(width, height)};
+  const overlay::Lens lens = overlay::lens_of(camera, width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const double u = lens.ux * (x + 0.5) + lens.uy * (y + 0.5) + lens.u0,
+                   v = lens.vy * (y + 0.5) + lens.v0;
+      const auto [depth, normal] = f(u, v);
+      d.depth(x, y) = static_cast<float>(depth);
+      d.normals(x, y) = normal;
+    }
+  return d;
+}
+
+TEST(Effects, AreTheSameBitsForThreadsInstructionSetsAndLayouts) {
+  for (const bool orthographic : {false, true})
+    for (const auto& [width, height] : {std::pair{331, 203}, {64, 48}, {5, 3}}) {
+      const Drawn d = drawn("gyroid?cells=24", width, height, orthographic);
+      Image<float> occluded[2], dome[2], lines[2];
+      bool first = true;
+      for (const Isa isa : available_isas())
+        for (const int threads : {1, 3}) {
+          Effects effects(threads, isa);
+          // Rows from the bottom up in memory, farther apart than they are long.
+          const int stride = width + 7;
+          std::vector<float> turned(static_cast<std::size_t>(stride * height));
+          const ImageView<float> view{turned.data() + stride * (height - 1), width, height,
+                                      -stride};
+          for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) view(x, y) = d.depth(x, y);
+          Surface surface = d.surface();
+          if (threads == 3) surface.view_depth = view;
+          for (Image<float>* images : {occluded, dome, lines})
+            images[first ? 0 : 1] = Image<float>(width, height);
+          const int at = first ? 0 : 1;
+          effects.ambient_occlusion(surface, d.camera, {.radius = 0.5}, occluded[at]);
+          effects.eye_dome(surface, d.camera, {}, dome[at]);
+          effects.silhouettes(surface, d.camera, {}, lines[at]);
+          if (!first) {
+            for (const Image<float>* images : {occluded, dome, lines})
+              ASSERT_EQ(digest(images[0].view()), digest(images[1].view()))
+                  << name(isa) << ", " << threads << " threads, " << width << "x" << height;
+          }
+          first = false;
+        }
+      if (width == 331) {
+        const std::string kind = orthographic ? "orthographic" : "perspective";
+        EXPECT_TRUE(test::matches_golden("effects/occlusion_" + kind, digest(occluded[0].view())));
+        EXPECT_TRUE(test::matches_golden("effects/eye_dome_" + kind, digest(dome[0].view())));
+        EXPECT_TRUE(test::matches_golden("effects/silhouettes_" + kind, digest(lines[0].view())));
+        EXPECT_LT(least(occluded[0]), 0.85F);
+      }
+    }
+}
+
+TEST(Effects, LensFindsPointsAgain) {
+  const double k[] = {900, 870, 280, 260, 3};
+  Mat4d pose = Mat4d::identity();
+  pose.m[2][3] = 5;
+  const Camera cameras[] = {Camera{.eye = {1, 2, 3}},
+                            Camera{.eye = {1, 2, 3}, .orthographic = true, .far_plane = 100},
+                            camera_from_opencv({k[0], k[1], k[2], k[3], k[4]}, pose, 640, 480)};
+  for (const Camera& camera : cameras) {
+    const Mat4d to_clip = world_to_clip(camera, 640, 480), to_camera = world_to_camera(camera);
+    const overlay::Lens lens = overlay::lens_of(camera, 640, 480);
+    const double world[4] = {0.2, 0.3, -0.4, 1};
+    double clip[4] = {}, seen[4] = {};
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) {
+        clip[i] += to_clip.m[i][j] * world[j];
+        seen[i] += to_camera.m[i][j] * world[j];
+      }
+    const double x = (clip[0] / clip[3] + 1) * 320, y = (1 - clip[1] / clip[3]) * 240;
+    const double s = lens.perspective ? -seen[2] : 1;
+    EXPECT_NEAR((lens.ux * x + lens.uy * y + lens.u0) * s, seen[0], 1e-9);
+    EXPECT_NEAR((lens.vy * y + lens.v0) * s, seen[1], 1e-9);
+  }
+}
+
+TEST(AmbientOcclusion, LeavesPlanesAndDarkensCorners) {
+  const Camera camera{.eye = {0, 0, 0}, .target = {0, 0, -1}};
+  // A slanted plane: n · p = −3.
+  const Vec3 n{0.36F, 0.48F, 0.8F};
+  const Drawn plane = made(160, 120, camera, [&](double u, double v) {
+    return std::pair{3 / (0.8 - 0.36 * u - 0.48 * v), n};
+  });
+  Effects effects;
+  EXPECT_EQ(least(occlusion(effects, plane, {.radius = 0.5})), 1);
+  // Two walls that meet at x = 0, z = −4, at a right angle, open towards the eye.
+  const auto half = static_cast<float>(std::numbers::sqrt2 / 2);
+  const Drawn corner = made(160, 120, camera, [&](double u, double) {
+    return std::pair{4 / (1 + std::fabs(u)), u < 0 ? Vec3{half, 0, half} : Vec3{-half, 0, half}};
+  });
+  const Image<float> dark = occlusion(effects, corner, {.radius = 0.5});
+  EXPECT_NEAR(dark(80, 60), 0.25, 0.1);
+  EXPECT_EQ(dark(10, 60), 1);
+  for (int x = 80; x < 110; ++x) EXPECT_LE(dark(x, 60), dark(x + 1, 60) + 0.02F) << x;
+  // The same edge seen from the other side takes nothing.
+  const Drawn ridge = made(160, 120, camera, [&](double u, double) {
+    return std::pair{3 / (1 - std::fabs(u)), u < 0 ? Vec3{-half, 0, half} : Vec3{half, 0, half}};
+  });
+  EXPECT_EQ(least(occlusion(effects, ridge, {.radius = 0.5})), 1);
+}
+
+TEST(AmbientOcclusion, IsNotTakenFromFarAheadNorFromNothing) {
+  const Camera camera{.eye = {0, 0, 0}, .target = {0, 0, -1}};
+  const Drawn disc = made(80, 60, camera, [&](double u, double v) {
+    const double r = u * u + v * v;
+    if (r < 0.05) return std::pair{2.0, Vec3{0, 0, 1}};
+    if (r < 0.2) return std::pair{9.0, Vec3{0, 0, 1}};
+    return std::pair{static_cast<double>(kInfinity), Vec3{}};
+  });
+  Effects effects;
+  EXPECT_EQ(least(occlusion(effects, disc, {.radius = 1})), 1);
+}
+
+TEST(EyeDome, IsItsFormula) {
+  const Drawn d = drawn("boxes?count=3", 97, 61);
+  Effects effects;
+  Image<float> factor(97, 61);
+  effects.eye_dome(d.surface(), d.camera, {.strength = 0.7, .radius_px = 2}, factor);
+  const int around[8][2] = {{2, 0}, {1, 1}, {0, 2}, {-1, 1}, {-2, 0}, {-1, -1}, {0, -2}, {1, -1}};
+  int dark = 0;
+  for (int y = 0; y < 61; ++y)
+    for (int x = 0; x < 97; ++x) {
+      double sum = 0;
+      if (d.depth(x, y) < kInfinity)
+        for (const auto& [dx, dy] : around) {
+          if (x + dx < 0 || x + dx >= 97 || y + dy < 0 || y + dy >= 61) continue;
+          const double q = d.depth(x + dx, y + dy), p = d.depth(x, y);
+          if (q < p) sum += std::log(p / q);
+        }
+      // (1 − t/16)¹⁶ lies below exp(−t) by at most 0.02.
+      const double wanted = std::exp(-100 * 0.7 / 8 * sum);
+      ASSERT_NEAR(factor(x, y), wanted, 0.02) << x << ", " << y;
+      dark += wanted < 0.5;
+    }
+  EXPECT_GT(dark, 50);
+}
+
+TEST(Silhouettes, AreWhereSurfacesEndAndBend) {
+  const Camera camera{.eye = {0, 0, 0}, .target = {0, 0, -1}};
+  // A square before a slanted plane before nothing.
+  Drawn d = made(40, 40, camera, [&](double u, double v) {
+    if (std::fabs(u) < 0.2 && std::fabs(v) < 0.2) return std::pair{2.0, Vec3{0, 0, 1}};
+    if (std::fabs(u) < 0.4 && std::fabs(v) < 0.4)
+      return std::pair{4 / (1 - 0.5 * u), Vec3{0, 0, 1}};
+    return std::pair{static_cast<double>(kInfinity), Vec3{}};
+  });
+  Effects effects;
+  Image<float> factor(40, 40);
+  effects.silhouettes(d.surface(), camera, {}, factor);
+  const auto is_there = [&](int x, int y) {
+    return x >= 0 && x < 40 && y >= 0 && y < 40 && d.depth(x, y) < kInfinity;
+  };
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 40; ++x) {
+      bool edge = false;
+      for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+        if (is_there(x, y) &&
+            (!is_there(x + dx, y + dy) || (d.depth(x, y) == 2 && d.depth(x + dx, y + dy) != 2)))
+          edge = true;
+      ASSERT_EQ(factor(x, y), edge ? 0 : 1) << x << ", " << y;
+    }
+  // Normals and ids alone.
+  for (float& depth : d.depth.pixels()) depth = 3;
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 40; ++x) {
+      d.normals(x, y) = x < 10 ? Vec3{0, 0, 1} : x < 30 ? Vec3{0.6F, 0, 0.8F} : Vec3{};
+      d.ids(x, y) = y < 20 ? 4 : 5;
+    }
+  effects.silhouettes(d.surface(), camera, {}, factor);
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 40; ++x)
+      ASSERT_EQ(factor(x, y), x == 9 || y == 19 ? 0 : 1) << x << "," << y;
+  effects.silhouettes(d.surface(), camera, {.angle_degrees = 40, .instances = false}, factor);
+  for (const float f : factor.pixels()) ASSERT_EQ(f, 1);
+}
+
+TEST(Effects, DarkenMixesTowardsInkAndKeepsAlpha) {
+  Image<Rgba8> color8(2, 1);
+  Image<Vec4> color(2, 1);
+  Image<float> factor(2, 1);
+  color8(0, 0) = color8(1, 0) = {200, 100, 50, 128};
+  color(0, 0) = color(1, 0) = {0.4F, 0.2F, 0.1F, 0.5F};
+  factor(0, 0) = 0.5F;
+  factor(1, 0) = 1;
+  Effects effects;
+  effects.darken(color8, color, factor, {1, 0, 0});
+  EXPECT_EQ(color8(0, 0), (Rgba8{228, 50, 25, 128}));
+  EXPECT_EQ(color8(1, 0), (Rgba8{200, 100, 50, 128}));
+  EXPECT_NEAR(color(0, 0).x, 0.2 + 0.25, 1e-6);
+  EXPECT_EQ(color(0, 0).w, 0.5F);
+  EXPECT_EQ(color(1, 0).x, 0.4F);
+}
+
+TEST(Effects, RefuseWhatIsOutOfRange) {
+  const Drawn d = drawn("teapot", 16, 12);
+  Effects effects;
+  Image<float> factor(16, 12), other(16, 13);
+  EXPECT_THROW(occlusion(effects, d, {}), Error);  // no radius
+  EXPECT_THROW(occlusion(effects, d, {.radius = std::nan("")}), Error);
+  EXPECT_THROW(occlusion(effects, d, {.radius = 1, .strength = -1}), Error);
+  EXPECT_THROW(occlusion(effects, d, {.radius = 1, .samples = 0}), Error);
+  Surface surface = d.surface();
+  EXPECT_THROW(effects.ambient_occlusion(surface, d.camera, {.radius = 1}, other), Error);
+  surface.normals = {};
+  EXPECT_THROW(effects.ambient_occlusion(surface, d.camera, {.radius = 1}, factor), Error);
+  EXPECT_THROW(effects.eye_dome({}, d.camera, {}, factor), Error);
+  EXPECT_THROW(effects.eye_dome(surface, d.camera, {.radius_px = 0}, factor), Error);
+  EXPECT_THROW(effects.eye_dome(surface, d.camera, {.strength = -1}, factor), Error);
+  EXPECT_THROW(effects.silhouettes(surface, d.camera, {.depth = -1}, factor), Error);
+  EXPECT_THROW(effects.silhouettes(surface, d.camera, {.angle_degrees = 181}, factor), Error);
+  EXPECT_THROW(effects.silhouettes(surface, d.camera, {.width_px = 0}, factor), Error);
+  EXPECT_THROW(effects.silhouettes(surface, d.camera, {}, {}), Error);
+  EXPECT_THROW(Effects(1, test::missing_isa()), Error);
+}
+
+}  // namespace
+}  // namespace rastrum::effects_test
