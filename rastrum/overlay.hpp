@@ -1,5 +1,5 @@
 // Words, bars and axes over finished pictures: our own fills and an embedded font, so that they are
-// the same bits everywhere (decision 0050).
+// the same bits everywhere (docs/overlay.md, decision 0050).
 //
 // Lengths are in pixels, (0, 0) the picture's top left corner and y downwards; colours are display
 // values with straight alpha. What lies outside of a picture is cut off. One thread; a picture is

@@ -183,8 +183,29 @@ std::optional<BoxEdge> edge_for_labels(const Box& box, int axis) {
   return best;
 }
 
+struct Taken {
+  double left, top, right, bottom;
+};
+
+/// Where letters at (x, y) lie, with a little air.
+Taken room_of(double x, double y, const TextExtent& extent, const TextStyle& style) {
+  const double air = style.size_px * 0.15, w = extent.width_px, h = extent.height_px;
+  const double left = style.align_x == AlignX::left     ? x
+                      : style.align_x == AlignX::center ? x - w / 2
+                                                        : x - w;
+  const double top = style.align_y == AlignY::top      ? y
+                     : style.align_y == AlignY::middle ? y - h / 2
+                                                       : y - h;
+  return {left - air, top - air, left + w + air, top + h + air};
+}
+
+bool overlap(const Taken& a, const Taken& b) {
+  return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+}
+
+/// A number that would lie on one that is there already, as at corners, is left out.
 void draw_labels(const Canvas& canvas, const Box& box, const BoxEdge& edge, Vec2 centre,
-                 const Measures& m, const Look& look) {
+                 const Measures& m, const Look& look, std::vector<Taken>& taken) {
   const Screen a = edge.ends[0], b = edge.ends[1];
   if (edge.length < 2 * m.letter) return;
   // Away from the middle of the box, across the edge.
@@ -207,8 +228,15 @@ void draw_labels(const Canvas& canvas, const Box& box, const BoxEdge& edge, Vec2
       const double reach = tick + wider / 2;
       path.add_line(at->x, at->y, at->x + ox * reach, at->y + oy * reach, m.line + wider);
     });
-    draw_text(canvas, at->x + ox * gap, at->y + oy * gap, t.label, style);
-    widest = std::max(widest, measure_text(t.label, m.letter).width_px);
+    const TextExtent extent = measure_text(t.label, m.letter);
+    widest = std::max(widest, extent.width_px);
+    const double x = at->x + ox * gap, y = at->y + oy * gap;
+    const Taken room = room_of(x, y, extent, style);
+    if (std::any_of(taken.begin(), taken.end(),
+                    [&](const Taken& other) { return overlap(room, other); }))
+      continue;
+    taken.push_back(room);
+    draw_text(canvas, x, y, t.label, style);
   }
   // Beyond the numbers, as far as they reach in that direction.
   const double out = gap + m.letter * 1.1 + std::fabs(ox) * widest + std::fabs(oy) * m.letter * 0.7;
@@ -246,10 +274,11 @@ void draw_bounds(const Canvas& canvas, const Camera& camera, Vec3d low, Vec3d hi
   draw_segments(canvas, segments, m.line, look.color, depth);
   const auto middle = box.seen({(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2});
   if (!middle) return;
+  std::vector<Taken> taken;
   for (int axis = 0; axis < 3; ++axis)
     if (const auto edge = edge_for_labels(box, axis))
       draw_labels(canvas, box, *edge,
-                  {static_cast<float>(middle->x), static_cast<float>(middle->y)}, m, look);
+                  {static_cast<float>(middle->x), static_cast<float>(middle->y)}, m, look, taken);
 }
 
 }  // namespace rastrum::overlay
