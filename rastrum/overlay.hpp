@@ -1,5 +1,5 @@
 // Words, bars and axes over finished pictures: our own fills and an embedded font, so that they are
-// the same bits everywhere (decision 0050).
+// the same bits everywhere (docs/overlay.md, decision 0050).
 //
 // Lengths are in pixels, (0, 0) the picture's top left corner and y downwards; colours are display
 // values with straight alpha. What lies outside of a picture is cut off. One thread; a picture is
@@ -111,5 +111,69 @@ struct TextExtent {
 /// The code points of `text` that are drawn as boxes, each once, in order; U+FFFD for what is no
 /// UTF-8.
 [[nodiscard]] std::vector<char32_t> missing_glyphs(std::string_view text);
+
+// Numbers.
+
+/// Ticks of an axis from `low` to `high`, both finite: multiples of 1, 2 or 5 · 10ⁿ within the
+/// range, about `wanted` of them, or, logarithmically (both > 0), powers of ten, thinned or with 2
+/// and 5 between them. Labels are written in decimals, or as m × 10ⁿ where all are
+/// large or small, as all ticks of an axis are: with the digits that tell them apart.
+struct Tick {
+  double value = 0;
+  std::string label;  ///< UTF-8, with a minus sign
+};
+[[nodiscard]] std::vector<Tick> ticks(double low, double high, int wanted,
+                                      bool logarithmic = false);
+
+// What pictures of data are given.
+
+enum class Corner : std::uint8_t { bottom_left, bottom_right, top_left, top_right };
+enum class Side : std::uint8_t { right, left, bottom, top };
+
+/// What words and lines of a picture look like: one choice for all of it.
+struct Look {
+  Rgba8 color{245, 245, 245, 255};
+  Rgba8 halo{20, 22, 26, 200};
+  double scale = 1;  ///< of letters and lines, whose sizes follow the picture's smaller side
+};
+/// A look that is read on `background`: dark letters on a light one.
+[[nodiscard]] Look look_on(Vec4 background);
+/// The size of small letters in a picture: 1/40 of its smaller side, at least 9 px.
+[[nodiscard]] double letter_px(const Canvas& canvas, const Look& look);
+
+struct ScalarBar {
+  /// From low to high, display values, straight alpha; drawn one beside the other where `discrete`,
+  /// else blended linearly from the first at `low` to the last at `high`.
+  std::vector<Vec4> colors;
+  bool discrete = false;
+  double low = 0, high = 1;
+  bool logarithmic = false;
+  std::string title{}, unit{};
+  /// Swatches at the ends, and one for what is no number.
+  std::optional<Vec4> below{}, above{}, nan{};
+  /// Names in the place of numbers, one for each colour.
+  std::vector<std::string> categories{};
+  Side side = Side::right;
+};
+/// Throws Error{invalid_argument} for a bar without colours, a range that is not finite or upside
+/// down or, with a logarithm, not above 0, and categories that are not as many as colours.
+void draw_scalar_bar(const Canvas& canvas, const ScalarBar& bar, const Look& look = {});
+
+/// The directions of x, y and z in a corner: red, green and blue, those that point away behind.
+void draw_axes(const Canvas& canvas, const Camera& camera, Corner corner = Corner::bottom_left,
+               const Look& look = {});
+
+/// The box from `low` to `high` in the world with ticks: its edges but for those that nothing but
+/// faces towards the viewer meet, hidden where `depth` (reversed, the picture's own; may be empty)
+/// is nearer, and numbers along one silhouette edge of each axis. Throws Error{invalid_argument}
+/// for a box that is not finite or upside down.
+void draw_bounds(const Canvas& canvas, const Camera& camera, Vec3d low, Vec3d high,
+                 ImageView<const float> depth = {}, const Look& look = {});
+
+/// Words at the top of the picture, in the middle, above all else.
+void draw_title(const Canvas& canvas, std::string_view text, const Look& look = {});
+/// Smaller words in a corner.
+void draw_caption(const Canvas& canvas, std::string_view text, Corner corner,
+                  const Look& look = {});
 
 }  // namespace rastrum::overlay

@@ -13,6 +13,7 @@
 #include <rastrum/io.hpp>
 #include <rastrum/render.hpp>
 
+#include "annotations.hpp"
 #include "arguments.hpp"
 #include "camera_path.hpp"
 #include "commands.hpp"
@@ -54,6 +55,7 @@ struct RenderArguments : SceneArguments {
   std::optional<Format> color_format;
   Output color, depth, ids, objects, heatmap, errors, trace, stats;
   std::vector<FrameImage> images;
+  AnnotationOptions annotations;
   bool hash = false;
 
   /// Whether one run draws many pictures.
@@ -208,6 +210,7 @@ void check(RenderArguments& a) {
       !a.stats && !a.trace && !a.hash)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
   check_scene_arguments(a);
+  check_annotations(a.annotations, a.color || a.errors || a.hash);
   if (a.depth_unit && !a.depth) throw UsageError("--depth-unit", "is for --depth");
   if (a.animation && !a.time_s && a.path.empty())
     throw UsageError("--animation", "is for --time and --path");
@@ -268,13 +271,26 @@ Wanted wanted_of(const RenderArguments& a) {
   const bool floats = a.color.format == Format::exr || a.color.format == Format::npy;
   Wanted wanted{.color8 = (a.color && !floats) || a.errors || hashes_alone(a),
                 .color = a.color && floats,
-                .depth = static_cast<bool>(a.depth),
+                .depth = a.depth || a.annotations.bounds,
                 .ids = a.ids || a.objects,
                 .overdraw = static_cast<bool>(a.heatmap),
                 .errors = static_cast<bool>(a.errors),
-                .images = {}};
+                .images = {},
+                .surface = a.annotations.effects()};
   for (const FrameImage& image : a.images) wanted.images.push_back(image.kind);
   return wanted;
+}
+
+/// Words and effects, into the colours alone.
+void annotate_pictures(const RenderArguments& a, Pictures& p, const SceneView& scene,
+                       const Camera& camera, std::optional<Effects>& effects) {
+  if (!a.annotations.any() || (p.color8.empty() && p.color.empty())) return;
+  if (!effects) effects.emplace(a.render.threads, a.render.isa);
+  overlay::Canvas canvas;
+  if (!p.color8.empty()) canvas.color8 = p.color8.view();
+  if (!p.color.empty()) canvas.color = p.color.view();
+  annotate(a.annotations, canvas, p.surface, p.depth.view(), scene, camera, a.render.background,
+           *effects);
 }
 
 /// Into `files`, which the caller commits. `number`: of a picture of many.
@@ -392,6 +408,7 @@ int run_sequence(const RenderArguments& a, Renderer& renderer, const Sequence& s
   Pictures pictures;
   std::vector<FrameStats> frames;
   std::vector<Camera> cameras;
+  std::optional<Effects> effects;
   std::size_t empty = 0, first_empty = 0;
   for (std::size_t i = 0; i < sequence.count; ++i) {
     progress.show("picture " + std::to_string(i + 1) + " of " + std::to_string(sequence.count));
@@ -401,6 +418,7 @@ int run_sequence(const RenderArguments& a, Renderer& renderer, const Sequence& s
     frames.push_back(stats.front());
     cameras.push_back(camera);
     if (is_empty(stats.front(), a.render) && empty++ == 0) first_empty = i;
+    annotate_pictures(a, pictures, scene, camera, effects);
     OutputFiles files;
     write_images(with_numbers(a, i, sequence.count), pictures, camera, inputs, i, files, timeline,
                  progress);
@@ -462,12 +480,14 @@ int run(RenderArguments& a) {
     for (const std::string& w : scene.warnings) warn(w);
   }
   if (!a.quiet && a.render.transparency.method == Transparency::none) report_blended(scene);
+  if (!a.quiet) report_missing_glyphs(a.annotations.words);
   const bool moves = pose_for(a, inputs);
   const SceneBinding binding(scene);
   a.render.shader = shader_of(a.render.shader, inputs.has_materials);
   a.view.turns = a.turntable != 0;
-  const Camera camera =
-      choose_camera(a.view, scene, binding.view(), {a.render.width, a.render.height});
+  Camera camera = choose_camera(a.view, scene, binding.view(), {a.render.width, a.render.height});
+  if (a.annotations.bounds && !a.view.file_camera && !a.view.eye && !a.view.orthographic_height)
+    camera = with_room_for_bounds(camera);
 
   std::optional<SceneBinding> posed;
   SceneAt moving;
@@ -497,6 +517,9 @@ int run(RenderArguments& a) {
     }
   }
 
+  std::optional<Effects> effects;
+  timeline.measure("words and effects", "annotate",
+                   [&] { annotate_pictures(a, pictures, binding.view(), camera, effects); });
   OutputFiles files;
   write_images(a, pictures, camera, inputs, {}, files, timeline, progress);
   progress.clear();
@@ -518,6 +541,7 @@ Command add_render_command(Parser& app) {
   add_output_options(render, *arguments);
   add_picture_options(render, *arguments);
   add_transparency_options(render, *arguments);
+  add_annotation_options(render, arguments->annotations);
   add_camera_options(render, *arguments);
   add_path_options(render, *arguments);
   add_motion_options(render, *arguments);
@@ -533,6 +557,7 @@ Command add_render_command(Parser& app) {
       "  rastrum render scene.glb --camera 0 --size 1920x1080 --background '#20242c' -o scene.png\n"
       "  rastrum render a.stl b.ply --eye 3,2,5 --target 0,0,0 --depth d.npy --ids i.npy -o c.exr\n"
       "  rastrum render builtin:teapot 'builtin:sphere?x=3,scale=0.5' --shader normal -o two.png\n"
+      "  rastrum render part.stl --bounds --axes --occlusion --title 'Part 7' -o part.png\n"
       "  rastrum render engine.glb --opacity 0.3 --samples 4 -o see_through.png\n"
       "  rastrum render hair.ply --opacity 0.5 --transparency filter:3 --show-errors wrong.png\n"
       "  rastrum render dragon.ply --frames 20 --stats - --trace frames.json --heatmap heat.png\n"

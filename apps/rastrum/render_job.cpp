@@ -24,6 +24,12 @@ Targets make_targets(const Wanted& wanted, const FrameOptions& options, Pictures
   add(wanted.overdraw, pictures.overdraw, targets.overdraw);
   add(wanted.errors, pictures.errors, targets.errors);
   add_frame_images(wanted.images, options.width, options.height, pictures.images, targets);
+  if (wanted.surface) {
+    add(targets.view_depth.empty(), pictures.view_depth, targets.view_depth);
+    add(targets.camera_normals.empty(), pictures.camera_normals, targets.camera_normals);
+    add(targets.instances.empty(), pictures.instances, targets.instances);
+    pictures.surface = {targets.view_depth, targets.camera_normals, targets.instances};
+  }
   return targets;
 }
 
@@ -65,7 +71,7 @@ std::vector<FrameStats> render_frames(Renderer& renderer, const SceneView& scene
   }
   wanted.color8 = false;
   if (wanted.color || wanted.depth || wanted.ids || wanted.overdraw || wanted.errors ||
-      !wanted.images.empty()) {
+      wanted.surface || !wanted.images.empty()) {
     const Targets others = make_targets(wanted, frame, pictures);
     timeline.measure("other images", "images",
                      [&] { renderer.render(scene, camera, frame, others); });

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include <rastrum/effects.hpp>
 #include <rastrum/render.hpp>
 
 #include "frame_images.hpp"
@@ -16,6 +17,7 @@ class Timeline;
 struct Wanted {
   bool color8 = false, color = false, depth = false, ids = false, overdraw = false, errors = false;
   std::vector<const FrameImageKind*> images{};
+  bool surface = false;  ///< what effects look at
 };
 
 struct Pictures {
@@ -26,6 +28,10 @@ struct Pictures {
   Image<std::uint32_t> overdraw;
   Image<std::uint8_t> errors;
   std::vector<FrameImagePixels> images;  ///< as Wanted's
+  Image<float> view_depth;               ///< of these what is no image of Wanted's
+  Image<Vec3> camera_normals;
+  Image<std::int64_t> instances;
+  Surface surface;  ///< with Wanted::surface; of this object's images, or of its frame's
 };
 
 /// `frame_ms` and the stages are of the whole call, from the caller's mesh in memory to the

@@ -16,6 +16,7 @@
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/terrain.hpp>
 
+#include "annotations.hpp"
 #include "arguments.hpp"
 #include "camera_path.hpp"
 #include "commands.hpp"
@@ -38,6 +39,7 @@ using terrain::TerrainStats;
 
 struct TerrainArguments : TerrainSceneArguments {
   TerrainObjectArguments objects;
+  WordOptions words;
   std::filesystem::path path;
   std::optional<double> fps;
   std::optional<int> frames;
@@ -108,6 +110,9 @@ void check(const TerrainArguments& a) {
     throw UsageError("-o", "an .mp4 is drawn along a camera path: give --path");
   if (!a.path.empty()) check_path(a);
   check_terrain_objects(a.objects, a.options);
+  check_words(a.words, a.color || a.hash);
+  if (a.words.scale_given && !a.words.any())
+    throw UsageError("--text-scale", "is for --title and --caption");
   const Output* const outputs[] = {&a.color, &a.depth, &a.stats};
   check_outputs(outputs);
   if (a.hash) check_hash(outputs);
@@ -194,6 +199,10 @@ struct TerrainPictures {
       stage.renderer.render(stage.terrain, camera, stage.options, {.depth = depth.view()});
     cli::write_depth(files.begin(output), output.format, depth.view());
   }
+  /// Over sky and ground alike: light letters with a dark rim.
+  void write_words(const WordOptions& words) {
+    if (words.any()) draw_words(words, {.color8 = color.view()}, look_of(words, {}));
+  }
   /// `number`: of a picture of many.
   void print_hashes(const TerrainArguments& a, std::optional<std::size_t> number) const {
     if (!a.hash) return;
@@ -234,6 +243,7 @@ int run_path(const TerrainArguments& a, const Stage& stage, const terrain::Terra
     progress.show("picture " + std::to_string(i + 1) + " of " + std::to_string(count));
     const terrain::TerrainCamera camera = path.at(times[i]);
     frames.push_back(pictures.draw(stage, camera));
+    pictures.write_words(a.words);
     OutputFiles files;
     if (video)
       video->add(pictures.color.view());
@@ -273,6 +283,7 @@ int run(TerrainArguments& a) {
     progress.clear();
     note(source.scale_note());
   }
+  if (!a.quiet) report_missing_glyphs(a.words);
   const double load_ms = timeline.now_ms();
   progress.show("lighting");
   const terrain::Terrain terrain = source.lit(a.light, a.options);
@@ -300,6 +311,7 @@ int run(TerrainArguments& a) {
     progress.show("rendering frame " + std::to_string(i + 1) + " of " + std::to_string(count));
     frames.push_back(pictures.draw(stage, camera));
   }
+  pictures.write_words(a.words);
   OutputFiles files;
   if (a.color) io::write_png(files.begin(a.color), pictures.color.view());
   if (a.depth) pictures.write_depth(stage, camera, a.depth, files);
@@ -328,6 +340,7 @@ Command add_terrain_command(Parser& app) {
   add_terrain_picture(command, *arguments);
   add_terrain_light(command, *arguments);
   add_terrain_objects(command, arguments->objects);
+  add_word_options(command, arguments->words, "Words");
   add_terrain_machine(command, *arguments);
   add_frames(command, *arguments);
   std::string footer = "Functions:\n";

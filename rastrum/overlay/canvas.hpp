@@ -1,11 +1,40 @@
 // What the drawing functions of this floor have in common beside the public header.
 #pragma once
 
+#include <cmath>
+
 #include <rastrum/overlay.hpp>
 
 namespace rastrum::overlay {
 
 /// Throws Error{invalid_argument} where the views differ in size or have rows that overlap.
 void check(const Canvas& canvas);
+
+/// Lengths of a picture, from the size of its letters.
+struct Measures {
+  double letter, line, halo, margin;
+};
+[[nodiscard]] inline Measures measures_of(const Canvas& canvas, const Look& look) {
+  const double letter = letter_px(canvas, look);
+  return {letter, std::fmax(1, std::nearbyint(letter / 14)), letter * 0.11, letter};
+}
+
+[[nodiscard]] inline TextStyle letters(const Measures& m, const Look& look) {
+  return {.size_px = m.letter, .color = look.color, .halo_px = m.halo, .halo = look.halo};
+}
+
+/// Blends the halo of what `add(path, width)` adds, then that itself.
+template <class Add>
+void fill_with_halo(const Canvas& canvas, const Measures& m, const Look& look, Rgba8 color,
+                    Add&& add, const PixelTest& test = {}) {
+  if (look.halo.a != 0) {
+    Path halo;
+    add(halo, 2 * m.halo);
+    fill(canvas, halo, look.halo, test);
+  }
+  Path path;
+  add(path, 0);
+  fill(canvas, path, color, test);
+}
 
 }  // namespace rastrum::overlay

@@ -1,0 +1,169 @@
+#include "annotations.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include <rastrum/core/elementary.hpp>
+
+#include "arguments.hpp"
+#include "progress.hpp"
+#include "view.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+constexpr const char* kGroup = "Words and effects";
+
+void add_number(Parser& app, const char* option, const char* type, const char* help,
+                std::optional<double>& value, double most) {
+  add(app, option, type, help, [option, most, &value](const std::string& s) {
+    value = parse_number(option, s);
+    if (!(*value > 0 && *value <= most))
+      throw UsageError(option, "must be > 0 and finite, got '" + s + "'");
+  })->group(kGroup);
+}
+
+Vec3d wide(Vec3 v) {
+  return {v.x, v.y, v.z};
+}
+
+}  // namespace
+
+void add_word_options(Parser& app, WordOptions& a, const char* group) {
+  add(app, "--title", "TEXT", "words at the top of the picture, UTF-8, \\n between lines",
+      [&a](const std::string& s) { a.title = s; })
+      ->group(group);
+  app.add_repeated("--caption", "TEXT",
+                   "smaller words: the first one in the bottom right corner, then the top left, "
+                   "top right, bottom left",
+                   [&a](const std::string& s) {
+                     if (a.captions.size() == 4) throw UsageError("--caption", "there are four");
+                     a.captions.push_back(s);
+                   })
+      ->group(group);
+  add(app, "--text-scale", "S", "size of all words and lines of these (1)",
+      [&a](const std::string& s) {
+        a.scale = parse_number("--text-scale", s);
+        a.scale_given = true;
+        if (!(a.scale > 0 && a.scale <= 100))
+          throw UsageError("--text-scale", "must lie in 0 to 100, got '" + s + "'");
+      })
+      ->group(group);
+}
+
+void add_annotation_options(Parser& app, AnnotationOptions& a) {
+  add_word_options(app, a.words, kGroup);
+  app.add_flag("--axes", a.axes, "the directions of x, y and z in the bottom left corner")
+      ->group(kGroup);
+  app.add_flag("--bounds", a.bounds,
+               "a box around the scene with ticks and numbers; the fitted camera leaves a margin")
+      ->group(kGroup);
+  app.add_flag("--occlusion", a.occlusion,
+               "darken what other surfaces take light from (ambient occlusion)")
+      ->group(kGroup);
+  add_number(app, "--occlusion-radius", "R",
+             "how far surfaces take light, in the scene's units (0.15 of the scene's radius)",
+             a.occlusion_radius, 1e300);
+  add_number(app, "--occlusion-strength", "S", "how much (1)", a.occlusion_strength, 16);
+  app.add_flag("--edl", a.dome,
+               "darken what lies behind its neighbours (eye-dome lighting): shape for points")
+      ->group(kGroup);
+  add_number(app, "--edl-strength", "S", "how much (1)", a.dome_strength, 100);
+  app.add_flag("--silhouettes", a.silhouettes,
+               "black lines where surfaces end, bend by more than 35 degrees or another begins")
+      ->group(kGroup);
+}
+
+void check_words(const WordOptions& a, bool has_colors) {
+  if (a.any() && !has_colors)
+    throw UsageError(a.title.empty() ? "--caption" : "--title",
+                     "is written into a picture: give -o");
+}
+
+void check_annotations(const AnnotationOptions& a, bool has_colors) {
+  check_words(a.words, has_colors);
+  if (a.any() && !has_colors)
+    throw UsageError(a.axes        ? "--axes"
+                     : a.bounds    ? "--bounds"
+                     : a.occlusion ? "--occlusion"
+                     : a.dome      ? "--edl"
+                                   : "--silhouettes",
+                     "is drawn into a picture: give -o");
+  if ((a.occlusion_radius || a.occlusion_strength) && !a.occlusion)
+    throw UsageError(a.occlusion_radius ? "--occlusion-radius" : "--occlusion-strength",
+                     "is for --occlusion");
+  if (a.dome_strength && !a.dome) throw UsageError("--edl-strength", "is for --edl");
+  if (a.words.scale_given && !a.words.any() && !a.axes && !a.bounds)
+    throw UsageError("--text-scale", "is for --title, --caption, --axes and --bounds");
+}
+
+void report_missing_glyphs(const WordOptions& a) {
+  std::string all = a.title;
+  for (const std::string& caption : a.captions) all += caption;
+  std::string codes;
+  for (const char32_t code : overlay::missing_glyphs(all)) {
+    char text[16];
+    std::snprintf(text, sizeof text, "U+%04X", static_cast<unsigned>(code));
+    codes.append(codes.empty() ? "" : ", ").append(text);
+  }
+  if (!codes.empty()) warn("the font has no " + codes + ": drawn as boxes");
+}
+
+overlay::Look look_of(const WordOptions& a, Vec4 background) {
+  overlay::Look look = overlay::look_on(background);
+  look.scale = a.scale;
+  return look;
+}
+
+void draw_words(const WordOptions& a, const overlay::Canvas& canvas, const overlay::Look& look) {
+  using overlay::Corner;
+  constexpr Corner kCorners[] = {Corner::bottom_right, Corner::top_left, Corner::top_right,
+                                 Corner::bottom_left};
+  if (!a.title.empty()) overlay::draw_title(canvas, a.title, look);
+  for (std::size_t i = 0; i < a.captions.size(); ++i)
+    overlay::draw_caption(canvas, a.captions[i], kCorners[i], look);
+}
+
+Camera with_room_for_bounds(Camera camera) {
+  constexpr double kRoom = 1.5;
+  camera.orthographic_height = static_cast<float>(camera.orthographic_height * kRoom);
+  const double half = kRoom * elementary::tan(static_cast<double>(camera.fov_rad) / 2);
+  camera.fov_rad = static_cast<float>(2 * elementary::atan(half));
+  return camera;
+}
+
+void annotate(const AnnotationOptions& a, const overlay::Canvas& canvas, const Surface& surface,
+              ImageView<const float> depth, const SceneView& scene, const Camera& camera,
+              Vec4 background, Effects& effects) {
+  if (a.effects()) {
+    Image<float> factor(canvas.width(), canvas.height());
+    if (a.occlusion) {
+      AmbientOcclusion options;
+      options.radius = a.occlusion_radius.value_or(0.15 * bounding_sphere(scene).radius);
+      options.strength = a.occlusion_strength.value_or(options.strength);
+      effects.ambient_occlusion(surface, camera, options, factor);
+      effects.darken(canvas.color8, canvas.color, factor.view());
+    }
+    if (a.dome) {
+      EyeDome options;
+      options.strength = a.dome_strength.value_or(options.strength);
+      // As wide in a large picture as in a small one.
+      options.radius_px = std::clamp(std::min(canvas.width(), canvas.height()) / 360, 1, 64);
+      effects.eye_dome(surface, camera, options, factor);
+      effects.darken(canvas.color8, canvas.color, factor.view());
+    }
+    if (a.silhouettes) {
+      effects.silhouettes(surface, camera, {}, factor);
+      effects.darken(canvas.color8, canvas.color, factor.view());
+    }
+  }
+  const overlay::Look look = look_of(a.words, background);
+  if (a.bounds)
+    if (const Bounds box = bounds(scene); box.vertices_in_use != 0)
+      overlay::draw_bounds(canvas, camera, wide(box.min), wide(box.max), depth, look);
+  if (a.axes) overlay::draw_axes(canvas, camera, overlay::Corner::bottom_left, look);
+  draw_words(a.words, canvas, look);
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,94 @@
+// Words and effects as options of the program: colours alone change, and what cannot be meant is
+// refused.
+#include <set>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+namespace rastrum::test::annotations_test {
+namespace {
+
+using Annotations = Program;
+
+const std::vector<std::string> kScene{
+    "render", "builtin:gyroid?cells=16", "--eye", "4,3,5", "--target", "0,0,0", "--size",
+    "240x180"};
+
+std::vector<std::string> with(const std::vector<std::string>& more) {
+  std::vector<std::string> all = kScene;
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+TEST_F(Annotations, ChangeColoursAlone) {
+  must(with({"-o", "plain.png", "--depth", "d0.npy", "--ids", "i0.npy"}));
+  const Image<Rgba8> plain = png("plain.png");
+  for (const std::string option : {"--axes", "--bounds", "--occlusion", "--edl", "--silhouettes"}) {
+    must(with({option, "-o", "a.png", "--depth", "d1.npy", "--ids", "i1.npy", "--image",
+               "view-depth=v.npy"}));
+    EXPECT_FALSE(same_pixels(plain, png("a.png"))) << option;
+    EXPECT_EQ(read("d0.npy"), read("d1.npy")) << option;
+    EXPECT_EQ(read("i0.npy"), read("i1.npy")) << option;
+  }
+  must(with({"--title", "α = 3°", "--caption", "one", "--caption", "two", "-o", "a.png"}));
+  EXPECT_FALSE(same_pixels(plain, png("a.png")));
+  // Thread counts and instruction sets change nothing; timed frames are annotated, too.
+  const std::vector<std::string> all{"--axes", "--bounds", "--occlusion", "--edl", "--silhouettes"};
+  std::set<std::string> pictures;
+  for (const std::vector<std::string>& how : std::vector<std::vector<std::string>>{
+           {}, {"--threads", "1"}, {"--isa", "scalar"}, {"--frames", "2"}}) {
+    std::vector<std::string> args = with(all);
+    args.insert(args.end(), how.begin(), how.end());
+    args.insert(args.end(), {"-o", "a.png"});
+    must(args);
+    pictures.insert(read("a.png"));
+  }
+  EXPECT_EQ(pictures.size(), 1U);
+}
+
+TEST_F(Annotations, FloatsAreAnnotatedToo) {
+  must(with({"-o", "plain.npy"}));
+  must(with({"--title", "Boxes", "--occlusion", "-o", "a.npy"}));
+  EXPECT_NE(read("plain.npy"), read("a.npy"));
+}
+
+TEST_F(Annotations, AreInEachPictureOfATurn) {
+  must({"render", "builtin:teapot", "--size", "80x60", "--bounds", "--turntable", "2", "-o",
+        "t_%d.png"});
+  EXPECT_FALSE(same_pixels(png("t_0.png"), png("t_1.png")));
+}
+
+TEST_F(Annotations, TerrainHasWords) {
+  const std::vector<std::string> scene{"terrain", "--function", "noise", "--size", "160x120"};
+  std::vector<std::string> titled = scene, plain = scene;
+  titled.insert(titled.end(), {"--title", "Noise", "-o", "t.png"});
+  plain.insert(plain.end(), {"-o", "p.png"});
+  must(titled);
+  must(plain);
+  EXPECT_FALSE(same_pixels(png("t.png"), png("p.png")));
+}
+
+TEST_F(Annotations, SayWhatTheFontHasNot) {
+  const std::string said = must(with({"--title", "漢 a", "-o", "a.png"}));
+  EXPECT_NE(said.find("the font has no U+6F22"), std::string::npos) << said;
+}
+
+TEST_F(Annotations, RefuseWhatCannotBeMeant) {
+  const auto refused = [&](const std::vector<std::string>& args, const std::string& option) {
+    const Outcome outcome = run(args);
+    EXPECT_EQ(outcome.status, 2) << option;
+    EXPECT_NE(outcome.err.find(option), std::string::npos) << outcome.err;
+  };
+  refused(with({"--axes", "--depth", "d.npy"}), "--axes");
+  refused(with({"--title", "a", "--depth", "d.npy"}), "--title");
+  refused(with({"--occlusion-radius", "2", "-o", "a.png"}), "--occlusion-radius");
+  refused(with({"--occlusion", "--occlusion-radius", "-2", "-o", "a.png"}), "--occlusion-radius");
+  refused(with({"--edl-strength", "2", "-o", "a.png"}), "--edl-strength");
+  refused(with({"--text-scale", "2", "-o", "a.png"}), "--text-scale");
+  refused(with({"--title", "a", "--text-scale", "0", "-o", "a.png"}), "--text-scale");
+  refused({"terrain", "--function", "noise", "--title", "a", "--depth", "d.npy"}, "--title");
+}
+
+}  // namespace
+}  // namespace rastrum::test::annotations_test
