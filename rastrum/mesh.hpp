@@ -66,6 +66,16 @@ struct AttributeView {
                                 std::size_t c) const {
     return values[element(t, vertex, c)];
   }
+  /// Of all three corners: how they lie is asked once.
+  RASTRUM_HD void corners(const TrianglePlace& t, const std::uint32_t (&vertex)[3],
+                          T (&out)[3]) const {
+    if (indices.empty() && per == Per::vertex && values.is_packed()) {
+      const T* const packed = values.data();
+      for (int c = 0; c < 3; ++c) out[c] = packed[vertex[c]];
+      return;
+    }
+    for (std::size_t c = 0; c < 3; ++c) out[c] = at(t, vertex, c);
+  }
 };
 
 /// A mesh over the caller's arrays, of any types and strides (array.hpp); nothing is copied, so

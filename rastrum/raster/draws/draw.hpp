@@ -81,6 +81,14 @@ struct Draw : Primitives {
                           static_cast<std::size_t>(corner);
     return indices.empty() ? static_cast<std::uint32_t>(i) : indices[i];
   }
+  /// The three of a triangle: who knows them is asked once.
+  RASTRUM_HD void vertices(std::uint64_t triangle, std::uint32_t (&out)[3]) const {
+    const bool is_list =
+        mesh == nullptr && points == nullptr && lines == nullptr && !indices.empty();
+    const std::uint32_t* const packed =
+        is_list ? indices.data() + static_cast<std::size_t>(triangle) * 3 : nullptr;
+    for (int c = 0; c < 3; ++c) out[c] = packed != nullptr ? packed[c] : vertex(triangle, c);
+  }
   /// Of its corners, whoever knows them.
   [[nodiscard]] IndexView index_view() const {
     if (mesh != nullptr) return mesh->indices;

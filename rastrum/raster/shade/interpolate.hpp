@@ -62,11 +62,10 @@ RASTRUM_HD WeightPlanes line_weight_planes(const Geometry& frame, const Draw& dr
   return w;
 }
 
+/// Of the triangle with these vertices.
 template <class Geometry>
 RASTRUM_HD WeightPlanes weight_planes(const Geometry& frame, const Draw& draw,
-                                      std::uint64_t triangle) {
-  const std::uint32_t index[3] = {draw.vertex(triangle, 0), draw.vertex(triangle, 1),
-                                  draw.vertex(triangle, 2)};
+                                      const std::uint32_t (&index)[3]) {
   const ProjectedVertex v0 = frame.vertex(draw, index[0]), v1 = frame.vertex(draw, index[1]),
                         v2 = frame.vertex(draw, index[2]);
   WeightPlanes w;
@@ -104,6 +103,14 @@ RASTRUM_HD WeightPlanes weight_planes(const Geometry& frame, const Draw& draw,
     w.r[i] = -ex + ey + ew;
   }
   return w;
+}
+
+template <class Geometry>
+RASTRUM_HD WeightPlanes weight_planes(const Geometry& frame, const Draw& draw,
+                                      std::uint64_t triangle) {
+  std::uint32_t vertex[3];
+  draw.vertices(triangle, vertex);
+  return weight_planes(frame, draw, vertex);
 }
 
 /// At a point of pixel (x, y), `from_centre` px from its centre. Snapping may put a sample a little

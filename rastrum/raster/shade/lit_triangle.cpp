@@ -11,16 +11,15 @@ void prefetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::u
   const Draw& draw = frame.draw_of(id);
   const MeshView& mesh = *scene.draws[draw.number].mesh;
   const ProjectedVertex* const projected = frame.projected_of(draw);
-  for (int c = 0; c < 3; ++c) {
-    const std::uint32_t v = draw.vertex(id - draw.first_id, c);
-    if (projected != nullptr) __builtin_prefetch(projected + v);
-    if (!wants_normals) continue;
-    if (mesh.normals.empty()) {
-      if (mesh.positions.is_packed()) __builtin_prefetch(mesh.positions.data() + v);
-    } else if (mesh.normals.indices.empty() && mesh.normals.values.is_packed()) {
-      __builtin_prefetch(mesh.normals.values.data() + v);
-    }
-  }
+  std::uint32_t vertex[3];
+  draw.vertices(id - draw.first_id, vertex);
+  if (projected != nullptr)
+    for (const std::uint32_t v : vertex) __builtin_prefetch(projected + v);
+  if (!wants_normals) return;
+  const bool flat = mesh.normals.empty();
+  const ArrayView<Vec3>& read = flat ? mesh.positions : mesh.normals.values;
+  if (!read.is_packed() || !(flat || mesh.normals.indices.empty())) return;
+  for (const std::uint32_t v : vertex) __builtin_prefetch(read.data() + v);
 }
 
 }  // namespace rastrum::raster

@@ -42,13 +42,13 @@ inline constexpr float kThin = 32.0F;
 inline constexpr float kSteep = 1e-4F;
 
 template <class Geometry>
-RASTRUM_HD void fetch_weights(const Geometry& frame, const Draw& draw, std::uint64_t t,
+RASTRUM_HD void fetch_weights(const Geometry& frame, const Draw& draw,
                               const std::uint32_t (&vertex)[3], LitTriangle& out) {
   const ProjectedVertex v0 = frame.vertex(draw, vertex[0]), v1 = frame.vertex(draw, vertex[1]),
                         v2 = frame.vertex(draw, vertex[2]);
   out.exact = true;
   if (v0.x_fx8 == kNeedsClip || v1.x_fx8 == kNeedsClip || v2.x_fx8 == kNeedsClip) {
-    out.planes = weight_planes(frame, draw, t);
+    out.planes = weight_planes(frame, draw, vertex);
     return;
   }
   constexpr float kPx = 1.0F / kSubpixels;
@@ -64,7 +64,7 @@ RASTRUM_HD void fetch_weights(const Geometry& frame, const Draw& draw, std::uint
   const bool thin = extent > 128.0F && !(extent < kThin * std::abs(det));
   out.exact = thin || !(smallest > kSteep * largest);
   if (out.exact) {
-    out.planes = weight_planes(frame, draw, t);
+    out.planes = weight_planes(frame, draw, vertex);
     return;
   }
   const float inv_det = 1.0F / det;
@@ -91,8 +91,9 @@ RASTRUM_HD void fetch_triangle(const LitView& scene, const Geometry& frame, std:
   const Draw& draw = frame.draw_of(id);
   const LitDraw& lit = scene.draws[draw.number];
   const std::uint64_t t = id - draw.first_id;
-  const std::uint32_t vertex[3] = {draw.vertex(t, 0), draw.vertex(t, 1), draw.vertex(t, 2)};
-  lit_detail::fetch_weights(frame, draw, t, vertex, out);
+  std::uint32_t vertex[3];
+  draw.vertices(t, vertex);
+  lit_detail::fetch_weights(frame, draw, vertex, out);
   if (!wants_normals && !scene.colored) return;
   const TrianglePlace place = lit.mesh->place(t);
   if (wants_normals) {
@@ -102,12 +103,14 @@ RASTRUM_HD void fetch_triangle(const LitView& scene, const Geometry& frame, std:
   }
   if (!scene.colored) return;
   const Vec3 base = scene.base_color(lit, place.face);
-  for (std::size_t c = 0; c < 3; ++c) {
-    out.color[c] = base;
-    if (lit.colors.empty()) continue;
-    const Vec4 color = lit.colors.at(place, vertex, c);
-    out.color[c] = {base.x * color.x, base.y * color.y, base.z * color.z};
+  if (lit.colors.empty()) {
+    for (Vec3& c : out.color) c = base;
+    return;
   }
+  Vec4 color[3];
+  lit.colors.corners(place, vertex, color);
+  for (int c = 0; c < 3; ++c)
+    out.color[c] = {base.x * color[c].x, base.y * color[c].y, base.z * color[c].z};
 }
 
 void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t low,

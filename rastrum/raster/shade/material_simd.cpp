@@ -73,9 +73,9 @@ HWY_INLINE void interpolate_texcoords(const MaterialTriangle& t, const Run& run,
     std::memset(&out, 0, sizeof(out));
     return;
   }
-  const Vec2 a = t.corner(t.draw.mesh->texcoords, 0);
-  const Vec2 d1 = t.corner(t.draw.mesh->texcoords, 1) - a;
-  const Vec2 d2 = t.corner(t.draw.mesh->texcoords, 2) - a;
+  Vec2 corner[3];
+  t.corners(t.draw.mesh->texcoords, corner);
+  const Vec2 a = corner[0], d1 = corner[1] - a, d2 = corner[2] - a;
   const auto one = [&](float a0, float a1, float a2, float* HWY_RESTRICT value,
                        float* HWY_RESTRICT dx, float* HWY_RESTRICT dy) HWY_ATTR {
     const CoordinatePlane plane(t.planes, a0, a1, a2);
@@ -144,7 +144,8 @@ HWY_INLINE void fill_normals(const MaterialView& scene, const MaterialTriangle& 
       }
   } else {
     Vec3 n[3];
-    for (int c = 0; c < 3; ++c) n[c] = times(t.draw.normal_matrix, t.corner(mesh.normals, c));
+    t.corners(mesh.normals, n);
+    for (Vec3& c : n) c = times(t.draw.normal_matrix, c);
     interpolate(run, n[0].x, n[1].x, n[2].x, nx);
     interpolate(run, n[0].y, n[1].y, n[2].y, ny);
     interpolate(run, n[0].z, n[1].z, n[2].z, nz);
@@ -176,7 +177,6 @@ HWY_INLINE void fill_normals(const MaterialView& scene, const MaterialTriangle& 
 HWY_INLINE void fill_surface(const MaterialView& scene, const MaterialTriangle& t, const Run& run,
                              Surface& out) {
   const BoundMaterial& m = scene.material_of(t.draw, t.index);
-  const MeshView& mesh = *t.draw.mesh;
   float* const r = out.channel[Surface::kBaseR];
   float* const g = out.channel[Surface::kBaseG];
   float* const b = out.channel[Surface::kBaseB];
@@ -201,7 +201,8 @@ HWY_INLINE void fill_surface(const MaterialView& scene, const MaterialTriangle& 
     fill(run, m.base.z, b);
   } else {
     Vec4 c[3];
-    for (int i = 0; i < 3; ++i) c[i] = t.corner(t.draw.colors, i) * m.base;
+    t.corners(t.draw.colors, c);
+    for (Vec4& color : c) color = color * m.base;
     interpolate(run, c[0].x, c[1].x, c[2].x, r);
     interpolate(run, c[0].y, c[1].y, c[2].y, g);
     interpolate(run, c[0].z, c[1].z, c[2].z, b);
@@ -328,11 +329,13 @@ void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleB
 HWY_INLINE void own_alpha(const MaterialTriangle& t, const BoundMaterial& material, const Run& run,
                           float* HWY_RESTRICT alpha) {
   const float base = material.base.w;
-  if (t.draw.colors.empty())
+  if (t.draw.colors.empty()) {
     fill(run, base, alpha);
-  else
-    interpolate(run, t.corner(t.draw.colors, 0).w * base, t.corner(t.draw.colors, 1).w * base,
-                t.corner(t.draw.colors, 2).w * base, alpha);
+  } else {
+    Vec4 c[3];
+    t.corners(t.draw.colors, c);
+    interpolate(run, c[0].w * base, c[1].w * base, c[2].w * base, alpha);
+  }
   if (material.base_color == nullptr && material.alpha == nullptr) return;
   Coordinates at;
   interpolate_texcoords(t, run, at);

@@ -78,15 +78,19 @@ struct MaterialTriangle {
   template <class Geometry>
   RASTRUM_HD MaterialTriangle(const MaterialView& scene, const Geometry& frame, const Draw& d,
                               std::uint64_t id)
-      : draw(scene.draws[d.number]),
-        index(id - d.first_id),
-        place(draw.mesh->place(index)),
-        vertex{d.vertex(index, 0), d.vertex(index, 1), d.vertex(index, 2)},
-        planes(weight_planes(frame, d, index)) {}
+      : draw(scene.draws[d.number]), index(id - d.first_id), place(draw.mesh->place(index)) {
+    d.vertices(index, vertex);
+    planes = weight_planes(frame, d, vertex);
+  }
 
   template <class T>
   [[nodiscard]] RASTRUM_HD T corner(const AttributeView<T>& attribute, int c) const {
     return attribute.at(place, vertex, static_cast<std::size_t>(c));
+  }
+  /// All three.
+  template <class T>
+  RASTRUM_HD void corners(const AttributeView<T>& attribute, T (&out)[3]) const {
+    attribute.corners(place, vertex, out);
   }
   /// From corner 0 to corner c: rounded once where the positions are float64.
   [[nodiscard]] RASTRUM_HD Vec3 edge(int c) const {

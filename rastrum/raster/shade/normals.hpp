@@ -14,9 +14,21 @@ namespace rastrum::raster {
 /// The normal of the triangle's plane, counter-clockwise in front; its largest component is 1. In
 /// float64, because products of coordinates up to FLT_MAX / 16 overflow float32. 0 without area.
 RASTRUM_HD inline Vec3 face_normal(const MeshView& mesh, const std::uint32_t (&vertex)[3]) {
-  const Vec3d a = mesh.positions.wide(vertex[0]);
-  const auto [x, y, z] =
-      cross(mesh.positions.wide(vertex[1]) - a, mesh.positions.wide(vertex[2]) - a);
+  Vec3d a, u, v;
+  if (mesh.positions.is_packed()) {
+    // By reference: GCC 12 reads copies back by other parts than it wrote, and waits for the
+    // writes.
+    const Vec3* const p = mesh.positions.data();
+    const Vec3 &p0 = p[vertex[0]], &p1 = p[vertex[1]], &p2 = p[vertex[2]];
+    a.x = p0.x, a.y = p0.y, a.z = p0.z;
+    u.x = p1.x - a.x, u.y = p1.y - a.y, u.z = p1.z - a.z;
+    v.x = p2.x - a.x, v.y = p2.y - a.y, v.z = p2.z - a.z;
+  } else {
+    a = mesh.positions.wide(vertex[0]);
+    u = mesh.positions.wide(vertex[1]) - a;
+    v = mesh.positions.wide(vertex[2]) - a;
+  }
+  const auto [x, y, z] = cross(u, v);
   const double largest = std::max({std::abs(x), std::abs(y), std::abs(z)});
   if (!(largest > 0)) return {};
   return {static_cast<float>(x / largest), static_cast<float>(y / largest),
@@ -38,7 +50,8 @@ RASTRUM_HD inline void corner_normals(const MeshView& mesh, const TrianglePlace&
     out[0] = out[1] = out[2] = face_normal(mesh, vertex);
     return;
   }
-  for (std::size_t c = 0; c < 3; ++c) out[c] = safe_normal(mesh.normals.at(place, vertex, c));
+  mesh.normals.corners(place, vertex, out);
+  for (Vec3& n : out) n = safe_normal(n);
 }
 
 }  // namespace rastrum::raster
