@@ -1,0 +1,120 @@
+// `rastrum bench effects`: what ambient occlusion, eye-dome lighting and silhouettes add to a frame
+// at 1920 × 1080. Each factor is compared with the plain code's before anything is timed.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <rastrum/digest.hpp>
+#include <rastrum/effects.hpp>
+#include <rastrum/fit.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+
+#include "measure.hpp"
+#include "registry.hpp"
+#include "report.hpp"
+#include "scenes.hpp"
+#include "tables/document.hpp"
+#include "tables/options.hpp"
+
+namespace rastrum::bench {
+namespace {
+
+struct Pictures {
+  Image<Rgba8> color;
+  Image<float> depth, factor;
+  Image<Vec3> normals;
+  Image<std::int64_t> ids;
+
+  Pictures(int width, int height)
+      : color(width, height),
+        depth(width, height),
+        factor(width, height),
+        normals(width, height),
+        ids(width, height) {}
+  [[nodiscard]] Surface surface() const { return {depth.view(), normals.view(), ids.view()}; }
+};
+
+constexpr int kEffects = 3;
+constexpr const char* kNames[kEffects] = {"occlusion", "eye dome", "silhouettes"};
+
+void apply(Effects& effects, int which, Pictures& p, const Camera& camera, double radius) {
+  if (which == 0) effects.ambient_occlusion(p.surface(), camera, {.radius = radius}, p.factor);
+  if (which == 1) effects.eye_dome(p.surface(), camera, {}, p.factor);
+  if (which == 2) effects.silhouettes(p.surface(), camera, {}, p.factor);
+}
+
+}  // namespace
+
+int run_effects(std::span<const std::string_view> arguments) {
+  TableOptions options;
+  OptionParser parser("effects", "Occlusion, eye-dome lighting, silhouettes at 1920 × 1080.");
+  options.add_to(parser, false);
+  if (const auto status = parser.parse(arguments)) return *status;
+  options.resolve();
+  FrameOptions frame;
+  frame.width = options.size(1920);
+  frame.height = options.size(1080);
+  frame.shader = Shader::phong;
+  Document document{"effects", "Effects over finished pictures"};
+  if (options.quick) document.notes.push_back(options.quick_note());
+  document.notes.push_back(
+      std::to_string(frame.width) + " × " + std::to_string(frame.height) + ", " + options.here() +
+      ", ms; an effect with its way into the colours; the factors are the plain "
+      "code's, bit by bit.");
+  Grid grid{"",
+            {"scene", "phong", "with depth, normals, instances", "occlusion", "eye dome",
+             "silhouettes", "all ÷ phong"},
+            {}};
+  bool right = true;
+  for (const SceneInfo& info : peer_scenes()) {
+    if (info.soup || !available(info)) continue;
+    Scene scene;
+    scene.meshes.push_back(load(info));
+    scene.instances.resize(1);
+    const SceneBinding binding(scene);
+    const Camera camera =
+        fit_picture(binding.view(), {.eye = {1, 0.7, 1.4}}, frame.width, frame.height);
+    const Bounds box = bounds(binding.view());
+    const double radius = 0.075 * static_cast<double>(length(box.max - box.min));
+    Pictures p(frame.width, frame.height), plain(frame.width, frame.height);
+    Renderer renderer({.threads = options.threads});
+    Effects effects(options.threads), reference(1, Isa::scalar);
+    const Targets all{
+        .color8 = p.color, .instances = p.ids, .camera_normals = p.normals, .view_depth = p.depth};
+    (void)renderer.render(binding.view(), camera, frame, all);
+    plain.depth = p.depth;
+    plain.normals = p.normals;
+    plain.ids = p.ids;
+    for (int i = 0; i < kEffects; ++i) {
+      apply(effects, i, p, camera, radius);
+      apply(reference, i, plain, camera, radius);
+      right = right && digest(p.factor.view()) == digest(plain.factor.view());
+    }
+    std::vector<Contender> contenders{
+        {"phong",
+         [&] { (void)renderer.render(binding.view(), camera, frame, {.color8 = p.color}); }},
+        {"surface", [&] { (void)renderer.render(binding.view(), camera, frame, all); }}};
+    for (int i = 0; i < kEffects; ++i)
+      contenders.push_back({kNames[i], [&, i] {
+                              apply(effects, i, p, camera, radius);
+                              effects.darken(p.color, {}, p.factor.view());
+                            }});
+    const std::vector<Timing> timings = measure_interleaved(contenders, options.plan());
+    std::vector<std::string> row{std::string(info.name)};
+    double sum = 0;
+    for (std::size_t i = 0; i < timings.size(); ++i) {
+      row.push_back(significant(timings[i].median_ms()));
+      if (i > 0) sum += timings[i].median_ms();
+      document.figures.push_back(
+          {{"scene", info.name}, {"what", timings[i].name}, {"ms", timings[i].median_ms()}});
+    }
+    row.push_back(significant(sum / timings.front().median_ms()));
+    grid.rows.push_back(std::move(row));
+  }
+  document.grids.push_back(std::move(grid));
+  publish(document, options.out);
+  return right ? 0 : 1;
+}
+
+}  // namespace rastrum::bench
