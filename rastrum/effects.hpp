@@ -58,9 +58,10 @@ class Effects {
   Effects(Effects&&) noexcept;
   Effects& operator=(Effects&&) noexcept;
 
-  /// Where a pixel has no normal (points and lines) nothing is taken from it. Throws
-  /// Error{invalid_argument} for images that differ in size, options out of range and a camera
-  /// whose planes of equal depth are not across its axis. Cost: pixels · samples.
+  /// Without `normals` those of the surface that neighbours in depth span: faces', and cheaper than
+  /// a frame's own. Where a pixel has none (points and lines in `normals`) nothing is taken from
+  /// it. Throws Error{invalid_argument} for images that differ in size, options out of range and a
+  /// camera whose planes of equal depth are not across its axis. Cost: pixels · samples.
   void ambient_occlusion(const Surface& surface, const Camera& camera,
                          const AmbientOcclusion& options, ImageView<float> factor);
   void eye_dome(const Surface& surface, const Camera& camera, const EyeDome& options,

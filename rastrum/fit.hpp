@@ -1,5 +1,10 @@
-// Cameras from which a whole scene fills the picture: what `--fit` and `--turntable` take.
+// Cameras from which a whole scene fills the picture: what `--fit` and `--turntable` take; and ways
+// to look at it by name and angle.
 #pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
 
 #include <rastrum/scene.hpp>
 
@@ -31,5 +36,36 @@ inline constexpr double kFitFill = 0.95;
 /// scene keeps its size. The target lies on that axis.
 [[nodiscard]] Camera fit_turntable(const SceneView& scene, const Camera& view, int width,
                                    int height);
+
+/// A way to look at something: along `direction`, with `up` upward in the picture, at right angles
+/// and of unit length.
+struct View {
+  Vec3d direction{0, 0, -1};
+  Vec3d up{0, 1, 0};
+};
+
+/// Where the eye stands. With +y up: front at +z, right at +x; another `up` turns these axes by the
+/// shortest way from +y, so that with +z up (CAD) the front is at −y and right stays +x.
+enum class ViewName : std::uint8_t { front, back, left, right, top, bottom, iso };
+/// front, back, …, iso, in the order of the enum.
+[[nodiscard]] std::vector<std::string_view> view_names();
+/// `iso`: between front, right and top, so that the axes of a cube are equally long in the picture.
+/// From above, back is up in the picture, from below front is. Throws Error{invalid_argument} for
+/// an `up` without a direction.
+[[nodiscard]] View view_of(ViewName name, Vec3d up = {0, 1, 0});
+
+/// Degrees. First the eye goes `azimuth` around `up` (to the right), then `elevation` upward, at
+/// most to where it looks straight down or up; at last the picture turns by `roll` about its
+/// middle, counter-clockwise.
+struct Turn {
+  double azimuth_deg = 0, elevation_deg = 0, roll_deg = 0;
+};
+/// Throws Error{invalid_argument} for numbers that are not finite, and an elevation that leads
+/// beyond straight down or up.
+[[nodiscard]] View turned(const View& view, const Turn& by, Vec3d up = {0, 1, 0});
+
+/// `camera` with a picture `times` as large: a narrower field of view, the eye where it is. Throws
+/// Error{invalid_argument} unless `times` is > 0 and finite, and for a camera with a matrix.
+[[nodiscard]] Camera zoomed(Camera camera, double times);
 
 }  // namespace rastrum

@@ -142,7 +142,8 @@ void annotate(const AnnotationOptions& a, const overlay::Canvas& canvas, const S
       AmbientOcclusion options;
       options.radius = a.occlusion_radius.value_or(0.15 * bounding_sphere(scene).radius);
       options.strength = a.occlusion_strength.value_or(options.strength);
-      effects.ambient_occlusion(surface, camera, options, factor);
+      // By depth alone: the frame need not find normals.
+      effects.ambient_occlusion({.view_depth = surface.view_depth}, camera, options, factor);
       effects.darken(canvas.color8, canvas.color, factor.view());
     }
     if (a.dome) {

@@ -276,7 +276,8 @@ Wanted wanted_of(const RenderArguments& a) {
                 .overdraw = static_cast<bool>(a.heatmap),
                 .errors = static_cast<bool>(a.errors),
                 .images = {},
-                .surface = a.annotations.effects()};
+                .surface = a.annotations.effects(),
+                .edges = a.annotations.silhouettes};
   for (const FrameImage& image : a.images) wanted.images.push_back(image.kind);
   return wanted;
 }

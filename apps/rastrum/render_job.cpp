@@ -26,8 +26,9 @@ Targets make_targets(const Wanted& wanted, const FrameOptions& options, Pictures
   add_frame_images(wanted.images, options.width, options.height, pictures.images, targets);
   if (wanted.surface) {
     add(targets.view_depth.empty(), pictures.view_depth, targets.view_depth);
-    add(targets.camera_normals.empty(), pictures.camera_normals, targets.camera_normals);
-    add(targets.instances.empty(), pictures.instances, targets.instances);
+    add(wanted.edges && targets.camera_normals.empty(), pictures.camera_normals,
+        targets.camera_normals);
+    add(wanted.edges && targets.instances.empty(), pictures.instances, targets.instances);
     pictures.surface = {targets.view_depth, targets.camera_normals, targets.instances};
   }
   return targets;

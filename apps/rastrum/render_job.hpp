@@ -17,7 +17,8 @@ class Timeline;
 struct Wanted {
   bool color8 = false, color = false, depth = false, ids = false, overdraw = false, errors = false;
   std::vector<const FrameImageKind*> images{};
-  bool surface = false;  ///< what effects look at
+  bool surface = false;  ///< the depth that effects look at
+  bool edges = false;    ///< normals and instances beside it
 };
 
 struct Pictures {

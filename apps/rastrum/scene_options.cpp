@@ -172,6 +172,12 @@ void add_transparency_options(Parser& app, SceneArguments& a) {
       ->group(group);
 }
 
+std::string joined(const std::vector<std::string_view>& names) {
+  std::string all;
+  for (const std::string_view n : names) all += (all.empty() ? "" : ", ") + std::string(n);
+  return all;
+}
+
 void add_camera_options(Parser& app, SceneArguments& a) {
   const char* group = "Camera (what is not given is taken from --fit)";
   ViewOptions& v = a.view;
@@ -188,6 +194,27 @@ void add_camera_options(Parser& app, SceneArguments& a) {
       })
       ->expected(0, 1)
       ->group(group);
+  add(app, "--view", "NAME", "whence: " + joined(view_names()) + "; with +y or --up upward (front)",
+      [&v](const std::string& s) {
+        const std::vector<std::string_view> names = view_names();
+        const auto found = std::ranges::find(names, s);
+        if (found == names.end())
+          throw UsageError("--view", "expected " + joined(names) + ", got '" + s + "'");
+        v.view = static_cast<ViewName>(found - names.begin());
+      })
+      ->group(group);
+  add(app, "--azimuth", "DEG", "the eye goes around what it sees, to the right",
+      [&v](const std::string& s) { v.azimuth_deg = parse_number("--azimuth", s); })
+      ->group(group);
+  add(app, "--elevation", "DEG", "and upward", [&v](const std::string& s) {
+    v.elevation_deg = parse_number("--elevation", s);
+  })->group(group);
+  add(app, "--roll", "DEG", "the picture turns, counter-clockwise", [&v](const std::string& s) {
+    v.roll_deg = parse_number("--roll", s);
+  })->group(group);
+  add(app, "--zoom", "TIMES", "a picture so many times as large", [&v](const std::string& s) {
+    v.zoom = parse_number("--zoom", s);
+  })->group(group);
   add(app, "--camera", "N", "the N-th camera of the files, from 0", [&v](const std::string& s) {
     v.file_camera = parse_integer("--camera", s, 0, std::numeric_limits<int>::max());
   })->group(group);
@@ -197,9 +224,14 @@ void add_camera_options(Parser& app, SceneArguments& a) {
   add(app, "--target", "X,Y,Z", "what it looks at", [&v](const std::string& s) {
     v.target = parse_vec3("--target", s);
   })->group(group);
-  add(app, "--up", "X,Y,Z", "which way is up in the picture (0,1,0)", [&v](const std::string& s) {
-    v.up = parse_vec3("--up", s);
-  })->group(group);
+  add(app, "--up", "X,Y,Z", "which way is up in the picture; also x, y or z (0,1,0)",
+      [&v](const std::string& s) {
+        v.up = s == "x"   ? Vec3d{1, 0, 0}
+               : s == "y" ? Vec3d{0, 1, 0}
+               : s == "z" ? Vec3d{0, 0, 1}
+                          : parse_vec3("--up", s);
+      })
+      ->group(group);
   add(app, "--fov", "DEG", "field of view across the smaller side (60)",
       [&v](const std::string& s) { v.fov_deg = parse_number("--fov", s); })
       ->group(group);
@@ -269,6 +301,13 @@ void check_scene_arguments(const SceneArguments& a) {
     throw UsageError("--fit", "puts the camera where it sees everything, " + other +
                                   " where you say: leave one of them out");
   }
+  if (v.has_view() && (v.eye || v.target || v.file_camera))
+    throw UsageError(v.view            ? "--view"
+                     : v.azimuth_deg   ? "--azimuth"
+                     : v.elevation_deg ? "--elevation"
+                                       : "--roll",
+                     "turns the camera that sees everything; with --eye, --target and --camera it "
+                     "stands where they say");
   if (a.crease_given && (a.normals.kind == Normals::vertex || a.normals.kind == Normals::face))
     throw UsageError("--crease", "is for --normals file and crease");
   if (v.file_camera && v.orthographic)

@@ -28,6 +28,35 @@ Camera file_camera(const Scene& scene, int index) {
   return scene.cameras[static_cast<std::size_t>(index)];
 }
 
+/// The view that names and angles say.
+View view_of(const ViewOptions& o) {
+  const Vec3d up = o.up.value_or(Vec3d{0, 1, 0});
+  if (length(up) == 0) throw UsageError("--up", "must not be zero");
+  try {
+    return turned(rastrum::view_of(o.view.value_or(ViewName::front), up),
+                  {o.azimuth_deg.value_or(0), o.elevation_deg.value_or(0), o.roll_deg.value_or(0)},
+                  up);
+  } catch (const Error& e) {
+    throw UsageError("--elevation", e.what());
+  }
+}
+
+/// The camera of a view that sees everything. What turns does so about --up.
+Camera viewed_camera(const ViewOptions& o, const SceneView& scene, float fov_rad, Size picture) {
+  const View v = view_of(o);
+  if (o.fit == Fit::sphere) return fit_camera(scene, fov_rad, o.orthographic, v.direction, v.up);
+  Camera along;
+  along.eye = {0, 0, 0};
+  along.target = v.direction;
+  along.up = v.up;
+  along.fov_rad = fov_rad;
+  along.orthographic = o.orthographic;
+  const Vec3d up = o.up.value_or(Vec3d{0, 1, 0});
+  if (o.turns && o.roll_deg.value_or(0) == 0 && length(cross(up, v.direction)) > 1e-6)
+    along.up = up;
+  return (o.turns ? fit_turntable : fit_picture)(scene, along, picture.width, picture.height);
+}
+
 /// The camera that nobody placed: along −z.
 Camera fitted_camera(const ViewOptions& o, const SceneView& view, float fov_rad, Size picture) {
   Camera along;
@@ -58,6 +87,9 @@ void place_planes(Camera& camera, const BoundingSphere& scene) {
 void check_view(const ViewOptions& o) {
   if (o.fov_deg && !(*o.fov_deg > 0 && *o.fov_deg < 180))
     throw UsageError("--fov", "must lie between 0 and 180 degrees");
+  if (o.zoom && !(*o.zoom > 0 && std::isfinite(*o.zoom)))
+    throw UsageError("--zoom", "must be greater than 0");
+  if (o.has_view()) (void)view_of(o);
   if (o.near_plane && !o.orthographic && !o.file_camera && !(*o.near_plane > 0))
     throw UsageError("--near", "must be greater than 0 for a perspective camera");
   if (o.near_plane && o.far_plane && !(*o.near_plane < *o.far_plane))
@@ -75,7 +107,8 @@ Camera choose_camera(const ViewOptions& o, const Scene& scene, const SceneView& 
     camera = file_camera(scene, *o.file_camera);
   } else {
     const double fov_rad = o.fov_deg.value_or(60) * std::numbers::pi / 180;
-    camera = fitted_camera(o, view, static_cast<float>(fov_rad), picture);
+    camera = (o.has_view() ? viewed_camera : fitted_camera)(o, view, static_cast<float>(fov_rad),
+                                                            picture);
     if (o.eye) {
       camera.eye = *o.eye;
       place_planes(camera, bounding_sphere(view));
@@ -83,12 +116,13 @@ Camera choose_camera(const ViewOptions& o, const Scene& scene, const SceneView& 
   }
   if (o.eye) camera.eye = *o.eye;
   if (o.target) camera.target = *o.target;
-  if (o.up) camera.up = *o.up;
+  if (o.up && !o.has_view()) camera.up = *o.up;
   if (o.fov_deg) camera.fov_rad = static_cast<float>(*o.fov_deg * std::numbers::pi / 180);
   if (o.orthographic_height)
     camera.orthographic_height = static_cast<float>(*o.orthographic_height);
   if (o.near_plane) camera.near_plane = static_cast<float>(*o.near_plane);
   if (o.far_plane) camera.far_plane = static_cast<float>(*o.far_plane);
+  if (o.zoom) camera = zoomed(camera, *o.zoom);
   if (camera.eye == camera.target)
     throw UsageError(o.target ? "--target" : "--eye", "eye and target must differ");
   const Vec3d towards = camera.target - camera.eye;

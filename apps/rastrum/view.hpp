@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include <rastrum/fit.hpp>
 #include <rastrum/scene.hpp>
 
 #include "arguments.hpp"
@@ -19,11 +20,16 @@ enum class Fit {
 struct ViewOptions {
   Fit fit = Fit::tight;
   bool turns = false;  ///< the scene turns: the tight fit is of all that it sweeps over
+  /// Whence the fitted camera looks; with them it stands where it sees everything.
+  std::optional<ViewName> view;
+  std::optional<double> azimuth_deg, elevation_deg, roll_deg, zoom;
   std::optional<int> file_camera;
   std::optional<Vec3d> eye, target, up;
   std::optional<double> fov_deg, near_plane, far_plane;
   bool orthographic = false;
   std::optional<double> orthographic_height;  ///< none: the fit camera's
+
+  [[nodiscard]] bool has_view() const { return view || azimuth_deg || elevation_deg || roll_deg; }
 };
 
 /// A ball around all that is drawn.

@@ -10,11 +10,6 @@ from ._arrays import matrix
 from ._errors import ArgumentError, ArgumentTypeError, raises_errors
 from ._things import as_scene
 
-# Where the eye stands, from the middle of what is seen: +y is up, +z towards the viewer.
-_VIEWS = {"front": (0, 0, 1), "back": (0, 0, -1), "right": (1, 0, 0), "left": (-1, 0, 0), "top": (0, 1, 0),
-          "bottom": (0, -1, 0), "iso": (1, 1, 1)}
-
-
 def _triple(value, name):
     try:
         numbers = [float(v) for v in value]
@@ -57,14 +52,11 @@ class Camera:
         where the eye stands as seen from the middle of it, (x, y, z)."""
         scene, up = as_scene(what), _triple(up, "up")
         if isinstance(view, str):
-            if view not in _VIEWS:
-                raise ArgumentError(f"view: there is no {view}; take one of {', '.join(_VIEWS)}")
-            eye = _VIEWS[view]
+            direction, up = _r.view(view, up)
         else:
-            eye = _triple(view, "view")
-        direction = [-float(v) for v in eye]
-        if np.linalg.norm(np.cross(direction, up)) < 1e-9 * np.linalg.norm(direction):
-            up = [0.0, 0.0, -1.0 if direction[1] < 0 else 1.0]  # seen from above, north is up
+            direction = [-v for v in _triple(view, "view")]
+            if np.linalg.norm(np.cross(direction, up)) < 1e-9 * np.linalg.norm(direction):
+                raise ArgumentError("up: lies along the view; from above take up=(0, 0, -1), say")
         return Camera(lambda size: _r.fit(scene._made, direction, up, fov, orthographic, *size))
 
     @staticmethod

@@ -2,9 +2,14 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 
 #include <rastrum/camera.hpp>
@@ -51,6 +56,19 @@ Camera fit(const ArrayScene& scene, const Numbers3& direction, const Numbers3& u
   return fit_picture(scene.view(), view, width, height);
 }
 
+/// (direction, up)
+std::pair<Numbers3, Numbers3> view(const std::string& name, const Numbers3& up) {
+  const std::vector<std::string_view> names = view_names();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (name == names[i]) {
+      const View v = view_of(static_cast<ViewName>(i), vec3(up));
+      return {numbers(v.direction), numbers(v.up)};
+    }
+  std::string all;
+  for (const std::string_view n : names) all += (all.empty() ? "" : ", ") + std::string(n);
+  throw Error(Errc::invalid_argument, "view: there is no " + name + "; take one of " + all);
+}
+
 Camera opencv(const Array& k, const Array& pose, int width, int height, double near,
               double first_centre) {
   if (k.ndim() != 2 || k.shape(0) != 3 || k.shape(1) != 3 || k.dtype() != nb::dtype<double>())
@@ -93,6 +111,7 @@ void bind_cameras(nb::module_& m) {
         arg("near"), arg("far"));
   m.def("fit", fit, arg("scene"), arg("direction"), arg("up"), arg("fov"), arg("orthographic"),
         arg("width"), arg("height"));
+  m.def("view", view, arg("name"), arg("up"));
   m.def("opencv", opencv, arg("K"), arg("pose"), arg("width"), arg("height"), arg("near"),
         arg("first_centre"));
   m.def("of_matrix", of_matrix, arg("matrix"), arg("depth"));

@@ -1,6 +1,7 @@
 // Every option of `rastrum render` once, by its effect: the picture is the one that the library
 // draws with the same choice.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -108,6 +109,44 @@ TEST_F(Options, FitOfTheSphereIsWhatItWas) {
   expect({"--fit", "sphere"}, fit_camera(binding.view(), 1.04719755F, false));
   expect({"--fit", "sphere", "--orthographic", "fit"},
          fit_camera(binding.view(), 1.04719755F, true));
+}
+
+TEST_F(Options, ViewsByNameAndAngle) {
+  const Scene scene = boxes();
+  const SceneBinding binding(scene);
+  const auto along = [](const View& v) {
+    Camera c;
+    c.eye = {0, 0, 0};
+    c.target = v.direction;
+    c.up = v.up;
+    return c;
+  };
+  const auto tight = [&](const View& v) {
+    return fit_picture(binding.view(), along(v), kWidth, kHeight);
+  };
+  for (std::size_t i = 0; i < view_names().size(); ++i)
+    expect({"--view", std::string(view_names()[i])}, tight(view_of(static_cast<ViewName>(i))));
+  const Vec3d z{0, 0, 1};
+  const View front = view_of(ViewName::front), cad = view_of(ViewName::iso, z);
+  expect({"--azimuth", "30", "--elevation", "-20"}, tight(turned(front, {30, -20, 0})));
+  expect({"--view", "iso", "--up", "z", "--roll", "15"}, tight(turned(cad, {0, 0, 15}, z)));
+  expect({"--zoom", "2"}, zoomed(fit(boxes(), render_), 2));
+  const View left = view_of(ViewName::left);
+  expect({"--fit", "sphere", "--view", "left"},
+         fit_camera(binding.view(), 1.04719755F, false, left.direction, left.up));
+  for (const auto& [option, value, says] :
+       {std::array{"--view", "above", "expected front, back, left, right, top, bottom, iso"},
+        std::array{"--elevation", "91", "looks straight down or up"},
+        std::array{"--zoom", "0", "must be greater than 0"}}) {
+    const Outcome r = run({"render", "builtin:boxes", option, value, "-o", "q.png"});
+    EXPECT_EQ(r.status, 2);
+    EXPECT_NE(r.err.find(says), std::string::npos) << r.err;
+  }
+  const Outcome r =
+      run({"render", "builtin:boxes", "--view", "top", "--eye", "1,2,3", "-o", "q.png"});
+  EXPECT_EQ(r.status, 2);
+  EXPECT_NE(r.err.find("--view: turns the camera that sees everything"), std::string::npos)
+      << r.err;
 }
 
 TEST_F(Options, Shaders) {

@@ -21,6 +21,7 @@ struct Effects::Impl {
   parallel::Threads threads;
   Isa isa;
   std::vector<float> scratch[2];
+  std::vector<Vec3> normals;
 
   Impl(int count, std::optional<Isa> wanted) : threads(count), isa(choose_isa(wanted)) {}
 
@@ -38,12 +39,10 @@ struct Effects::Impl {
 
 namespace {
 
-void check(const Surface& surface, ImageView<float> factor, bool with_normals) {
+void check(const Surface& surface, ImageView<float> factor) {
   const int width = surface.view_depth.width, height = surface.view_depth.height;
   if (surface.view_depth.empty() || width < 1 || height < 1)
     throw Error(Errc::invalid_argument, "effects: Surface::view_depth is empty");
-  if (with_normals && surface.normals.empty())
-    throw Error(Errc::invalid_argument, "effects: Surface::normals is empty");
   if (factor.empty()) throw Error(Errc::invalid_argument, "effects: the factors' image is empty");
   check_stride(surface.view_depth, "Surface::view_depth");
   check_size(surface.normals, width, height, "Surface::normals");
@@ -87,14 +86,20 @@ Effects& Effects::operator=(Effects&&) noexcept = default;
 
 void Effects::ambient_occlusion(const Surface& surface, const Camera& camera,
                                 const AmbientOcclusion& options, ImageView<float> factor) {
-  check(surface, factor, true);
+  check(surface, factor);
   const int width = factor.width, height = factor.height;
   // Lanes gather by 32-bit numbers from the first row on.
   const std::ptrdiff_t stride = surface.view_depth.stride;
   if (stride * height > INT32_MAX || stride * height < INT32_MIN)
     throw Error(Errc::invalid_argument,
                 "effects: Surface::view_depth has more than 2^31 numbers from first to last");
-  const overlay::OcclusionFrame frame = overlay::occlusion_frame(surface, camera, options);
+  overlay::OcclusionFrame frame = overlay::occlusion_frame(surface, camera, options);
+  if (surface.normals.empty()) {
+    impl_->normals.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    const ImageView<Vec3> made{impl_->normals.data(), width, height};
+    impl_->for_each_row(height, [&](int y) { normals_from_depth(frame, y, made.row(y)); });
+    frame.normals = made;
+  }
   const auto kernel = overlay::occlusion_kernel(impl_->isa);
   const auto blur = overlay::blur_kernel(impl_->isa);
   const ImageView<float> raw = impl_->image(0, width, height),
@@ -107,7 +112,7 @@ void Effects::ambient_occlusion(const Surface& surface, const Camera& camera,
 
 void Effects::eye_dome(const Surface& surface, const Camera& camera, const EyeDome& options,
                        ImageView<float> factor) {
-  check(surface, factor, false);
+  check(surface, factor);
   if (!(options.strength >= 0 && options.strength <= 100))
     throw Error(Errc::invalid_argument,
                 "EyeDome::strength must lie in [0, 100], got " + std::to_string(options.strength));
@@ -143,7 +148,7 @@ void Effects::eye_dome(const Surface& surface, const Camera& camera, const EyeDo
 
 void Effects::silhouettes(const Surface& surface, const Camera& camera, const Silhouettes& options,
                           ImageView<float> factor) {
-  check(surface, factor, false);
+  check(surface, factor);
   if (!(options.depth >= 0 && std::isfinite(options.depth)))
     throw Error(Errc::invalid_argument,
                 "Silhouettes::depth must be >= 0 and finite, got " + std::to_string(options.depth));

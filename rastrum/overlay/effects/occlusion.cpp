@@ -78,6 +78,41 @@ void blur_plain(const OcclusionFrame& f, ImageView<const float> in, int y, int d
   }
 }
 
+void normals_from_depth(const OcclusionFrame& f, int y, Vec3* out) {
+  const int width = f.depth.width, height = f.depth.height;
+  // Towards growing x or y, whichever side the neighbour lies on.
+  const auto difference = [&](int x, Vec3 p, float depth, int dx, int dy, bool& found) {
+    Vec3 best{};
+    float least = kFarthest;
+    for (const int side : {1, -1}) {
+      const int qx = x + side * dx, qy = y + side * dy;
+      if (qx < 0 || qx >= width || qy < 0 || qy >= height) continue;
+      const float there = f.depth(qx, qy), apart = std::fabs(there - depth);
+      if (!(apart < least)) continue;
+      least = apart;
+      const Vec3 q = position(f, qx, qy, there);
+      best = side > 0 ? q - p : p - q;
+    }
+    found = found && least < kFarthest;
+    return best;
+  };
+  for (int x = 0; x < width; ++x) {
+    const float depth = f.depth(x, y);
+    out[x] = {};
+    if (!(depth < kFarthest)) continue;
+    const Vec3 p = position(f, x, y, depth);
+    bool found = true;
+    const Vec3 a = difference(x, p, depth, 1, 0, found), b = difference(x, p, depth, 0, 1, found);
+    if (!found) continue;
+    // x to the right and y downwards: b × a looks at the viewer.
+    const Vec3 n{b.y * a.z - b.z * a.y, b.z * a.x - b.x * a.z, b.x * a.y - b.y * a.x};
+    const float square = (n.x * n.x + n.y * n.y) + n.z * n.z;
+    if (!(square > 0)) continue;
+    const float length = std::sqrt(square);
+    out[x] = {n.x / length, n.y / length, n.z / length};
+  }
+}
+
 OcclusionFrame occlusion_frame(const Surface& surface, const Camera& camera,
                                const AmbientOcclusion& options) {
   const auto refuse = [](const char* what, double got) {

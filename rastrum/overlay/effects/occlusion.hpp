@@ -55,6 +55,10 @@ void occlusion_plain(const OcclusionFrame& frame, int y, int begin, int end, flo
 void blur_plain(const OcclusionFrame& frame, ImageView<const float> in, int y, int dx, int dy,
                 int begin, int end, float* out);
 
+/// Normals of row y from depth alone: across the differences to the neighbours, of both sides the
+/// one that is nearer in depth; (0, 0, 0) where a pixel has none.
+void normals_from_depth(const OcclusionFrame& frame, int y, Vec3* out);
+
 [[nodiscard]] OcclusionKernel occlusion_kernel(Isa isa) noexcept;
 [[nodiscard]] BlurKernel blur_kernel(Isa isa) noexcept;
 
