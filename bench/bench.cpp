@@ -37,6 +37,7 @@ constexpr std::array kBenchmarks = {
               run_transparency_pictures},
     Benchmark{"points", "ten million points beside OpenGL's (Mesa llvmpipe)", run_points},
     Benchmark{"effects", "occlusion, eye-dome lighting and silhouettes over a frame", run_effects},
+    Benchmark{"instances", "many instances of one mesh beside one mesh of them all", run_instances},
     Benchmark{"spheres", "a million exact spheres", run_spheres},
     Benchmark{"tubes", "a hundred thousand segments of tubes", run_tubes},
     Benchmark{"words", "expand_masked, sort_by_key, reduce_by_index beside others", run_words},
