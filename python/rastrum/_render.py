@@ -1,5 +1,6 @@
 """Pictures: what is drawn, by whom, and into which arrays."""
 
+import atexit
 import dataclasses
 import hashlib
 import math
@@ -307,6 +308,8 @@ def _arrays(outputs, out, number, many, shape, primitives):
 
 
 _default = {}
+# Before the interpreter takes the module apart.
+atexit.register(_default.clear)
 
 
 @raises_errors

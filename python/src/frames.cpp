@@ -402,6 +402,13 @@ void bind_frames(nb::module_& m) {
     for (const std::string_view n : shader_names()) names.emplace_back(n);
     return names;
   });
+  m.def("read_image", [](const std::string& file) {
+    auto* const image = new Image<Rgba8>(io::read_image(file));
+    const nb::capsule owner(image, [](void* p) noexcept { delete static_cast<Image<Rgba8>*>(p); });
+    const std::size_t shape[] = {static_cast<std::size_t>(image->height()),
+                                 static_cast<std::size_t>(image->width()), 4};
+    return nb::ndarray<nb::numpy, std::uint8_t>(image->pixels().data(), 3, shape, owner);
+  });
   m.def("write_png", write_png, arg("file"), arg("pixels"),
         nb::call_guard<nb::gil_scoped_release>());
 }

@@ -214,12 +214,11 @@ Camera fit(const SceneView& scene, const Camera& view, int width, int height, bo
 
   Camera camera = view;
   camera.matrix.reset();
-  camera.eye = Vec3(outline.to_world(eye));
+  camera.eye = outline.to_world(eye);
   // Where the view axis meets the axis of turning, which is as far as the centre where they stand
   // at right angles.
   const double target_back = turns ? eye.y * outline.axis_z() / outline.axis_y() : 0;
-  camera.target = Vec3(outline.to_world({eye.x, eye.y, target_back}));
-  // From the eye as it is after rounding.
+  camera.target = outline.to_world({eye.x, eye.y, target_back});
   const double back = outline.back_of(camera.eye);
   if (view.orthographic) {
     camera.orthographic_height = static_cast<float>(ortho_height);

@@ -1,0 +1,18 @@
+"""PyVista's screenshot."""
+import pyvista as pv
+
+REQUIREMENTS = ["pyvista==0.49.1", "vtk==9.7.2", "numpy"]
+
+
+def prepare(scene):
+    plotter = pv.Plotter(off_screen=True, window_size=(scene.size, scene.size))
+    plotter.add_mesh(pv.PolyData.from_regular_faces(scene.vertices, scene.faces))
+    plotter.camera.position = tuple(scene.eye)
+    plotter.camera.focal_point = tuple(scene.target)
+    plotter.camera.view_angle = scene.fov
+    plotter.camera.clipping_range = scene.near, scene.far
+
+    def draw():
+        plotter.render()
+        return {"color": plotter.screenshot(return_img=True)}
+    return draw

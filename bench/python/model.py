@@ -1,0 +1,53 @@
+"""What all draw: a wavy ball of about so many triangles, and where it is seen from."""
+import dataclasses
+import math
+
+import numpy as np
+
+
+@dataclasses.dataclass
+class Scene:
+    vertices: np.ndarray  # (N, 3) float64
+    faces: np.ndarray  # (M, 3) int64
+    eye: np.ndarray
+    target: np.ndarray
+    fov: float  # degrees, both ways: pictures are square
+    size: int
+    near: float = 0.5
+    far: float = 10.0
+
+
+def ball(triangles):
+    """Rings and segments with bumps, closed, counter-clockwise from outside."""
+    rings = max(4, round(math.sqrt(triangles / 4)))
+    segments = 2 * rings
+    polar = np.linspace(0, np.pi, rings + 1)[:, None]
+    around = np.linspace(0, 2 * np.pi, segments, endpoint=False)[None, :]
+    r = 1 + 0.08 * np.sin(9 * polar) * np.cos(7 * around)
+    v = np.stack([r * np.sin(polar) * np.cos(around), r * np.cos(polar) + 0 * around, -r * np.sin(polar) * np.sin(around)], -1)
+    i, j = np.meshgrid(np.arange(rings), np.arange(segments), indexing="ij")
+    a, b = i * segments + j, i * segments + (j + 1) % segments
+    c, d = a + segments, b + segments
+    faces = np.concatenate([np.stack([a, c, b], -1).reshape(-1, 3), np.stack([b, c, d], -1).reshape(-1, 3)])
+    return v.reshape(-1, 3), faces.astype(np.int64)
+
+
+def scene(triangles, size):
+    v, f = ball(triangles)
+    return Scene(v, f, np.array([0.0, 0.0, 3.2]), np.zeros(3), 45.0, size)
+
+
+def ring(n):
+    """(n, 4, 4): OpenGL's camera to world, around the y axis."""
+    poses = np.tile(np.eye(4), (n, 1, 1))
+    a = 2 * np.pi * np.arange(n) / n
+    poses[:, 0, 0] = poses[:, 2, 2] = np.cos(a)
+    poses[:, 0, 2], poses[:, 2, 0] = np.sin(a), -np.sin(a)
+    poses[:, 0, 3], poses[:, 2, 3] = 3.2 * np.sin(a), 3.2 * np.cos(a)
+    return poses
+
+
+def projection(scene):
+    """OpenGL's."""
+    f, n, far = 1 / math.tan(math.radians(scene.fov) / 2), scene.near, scene.far
+    return np.array([[f, 0, 0, 0], [0, f, 0, 0], [0, 0, (far + n) / (n - far), 2 * far * n / (n - far)], [0, 0, -1, 0]])

@@ -1,0 +1,173 @@
+# What type checkers and editors know of the package; tests/test_stubs.py holds it to what is there.
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from os import PathLike
+from typing import Any, Literal, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__version__: str
+__all__: list[str]
+
+Color = str | Sequence[float]
+Output = Literal["color", "color_f32", "depth", "depth_raw", "distance", "id", "instance", "face", "barycentrics", "normal",
+                 "camera_normal", "position", "albedo", "linear"]
+OUTPUTS: dict[str, tuple[type, int]]
+
+class Error(Exception): ...
+class ArgumentError(Error, ValueError): ...
+class ArgumentTypeError(Error, TypeError): ...
+class NotFoundError(Error, FileNotFoundError): ...
+class FileError(Error, OSError): ...
+class FormatError(Error, ValueError): ...
+class UnsupportedError(Error, NotImplementedError): ...
+class OutOfMemoryError(Error, MemoryError): ...
+class DeviceError(Error, RuntimeError): ...
+
+class Material:
+    def __init__(self, base_color: Color = "white", *, metallic: float = 0.0, roughness: float = 1.0,
+                 emissive: Color = "black", alpha_mode: Literal["opaque", "mask", "blend"] = "opaque",
+                 alpha_cutoff: float = 0.5, double_sided: bool = True, unlit: bool = False, opacity: float = 1.0,
+                 base_color_texture: ArrayLike | None = None, metallic_roughness_texture: ArrayLike | None = None,
+                 normal_texture: ArrayLike | None = None, occlusion_texture: ArrayLike | None = None,
+                 emissive_texture: ArrayLike | None = None) -> None: ...
+
+class _Thing:
+    color: Color | None
+    opacity: float
+    material: Material | None
+    transform: ArrayLike | None
+    visible: bool
+    id: int | None
+    winding: str
+    clip_planes: ArrayLike
+    @property
+    def primitives(self) -> int: ...
+
+# `look`: color, opacity, material, transform, visible, id, winding, clip_planes.
+class Mesh(_Thing):
+    def __init__(self, positions: ArrayLike, indices: ArrayLike | None = None, *, offsets: ArrayLike | None = None,
+                 normals: ArrayLike | None = None, uv: ArrayLike | None = None, colors: ArrayLike | None = None,
+                 copy: bool | None = None, **look: Any) -> None: ...
+
+class Points(_Thing):
+    def __init__(self, positions: ArrayLike, *, size: ArrayLike = 3.0, round: bool = True, normals: ArrayLike | None = None,
+                 colors: ArrayLike | None = None, copy: bool | None = None, **look: Any) -> None: ...
+
+class Lines(_Thing):
+    def __init__(self, positions: ArrayLike, indices: ArrayLike | None = None, *, offsets: ArrayLike | None = None,
+                 width: float = 1.0, colors: ArrayLike | None = None, copy: bool | None = None, **look: Any) -> None: ...
+
+class Spheres(_Thing):
+    def __init__(self, centers: ArrayLike, radius: ArrayLike = 1.0, *, colors: ArrayLike | None = None,
+                 copy: bool | None = None, **look: Any) -> None: ...
+
+class Cylinders(_Thing):
+    def __init__(self, positions: ArrayLike, indices: ArrayLike | None = None, radius: ArrayLike = 1.0, *,
+                 caps: bool = True, colors: ArrayLike | None = None, copy: bool | None = None, **look: Any) -> None: ...
+
+class Tubes(_Thing):
+    def __init__(self, positions: ArrayLike, offsets: ArrayLike | None = None, radius: ArrayLike = 1.0, *,
+                 colors: ArrayLike | None = None, copy: bool | None = None, **look: Any) -> None: ...
+
+class Discs(_Thing):
+    def __init__(self, centers: ArrayLike, normals: ArrayLike, radius: ArrayLike = 1.0, *, colors: ArrayLike | None = None,
+                 copy: bool | None = None, **look: Any) -> None: ...
+
+class Scene:
+    files: list[str]
+    things: list[_Thing]
+    def __init__(self, things: Any = (), copy: bool | None = None, crease: float | None = 40.0) -> None: ...
+    @property
+    def primitives(self) -> int: ...
+    @property
+    def instances(self) -> int: ...
+    @property
+    def warnings(self) -> list[str]: ...
+    @property
+    def bounds(self) -> tuple[Sequence[float], Sequence[float]] | None: ...
+
+def load(path: str | PathLike[str], *, crease: float | None = 40.0) -> Scene: ...
+def as_scene(what: Any, copy: bool | None = None) -> Scene: ...
+
+class Camera:
+    def __init__(self, for_size: Callable[[tuple[int, int]], Any]) -> None: ...
+    @staticmethod
+    def look_at(eye: Sequence[float], target: Sequence[float] = (0, 0, 0), up: Sequence[float] = (0, 1, 0), *,
+                fov: float = 60.0, near: float = 0.01, far: float = ...) -> Camera: ...
+    @staticmethod
+    def orthographic(eye: Sequence[float], target: Sequence[float] = (0, 0, 0), up: Sequence[float] = (0, 1, 0), *,
+                     height: float, near: float = 0.01, far: float = 1e6) -> Camera: ...
+    @staticmethod
+    def fit(what: Any, view: str | Sequence[float] = "front", *, up: Sequence[float] = (0, 1, 0), fov: float = 60.0,
+            orthographic: bool = False) -> Camera: ...
+    @staticmethod
+    def opencv(K: ArrayLike, R: ArrayLike | None = None, t: ArrayLike | None = None, *, near: float = 0.01,
+               first_centre: float = 0.0) -> Camera: ...
+    @staticmethod
+    def opengl(projection: ArrayLike, view: ArrayLike | None = None, *, depth: str = "opengl") -> Camera: ...
+
+def orbit(what: Any, n: int, *, elevation: float = 25.0, up: Sequence[float] = (0, 1, 0), fov: float = 60.0) -> list[Camera]: ...
+
+class Hit:
+    id: int
+    instance: int
+    face: int
+    barycentrics: tuple[float, float, float]
+    position: tuple[float, float, float]
+    normal: tuple[float, float, float]
+    depth: float
+    distance: float
+
+class _Fields:
+    arrays: dict[str, NDArray[Any]]
+    color: NDArray[np.uint8]
+    color_f32: NDArray[np.float32]
+    depth: NDArray[np.float32]
+    depth_raw: NDArray[np.float32]
+    distance: NDArray[np.float32]
+    id: NDArray[np.integer[Any]]
+    instance: NDArray[np.integer[Any]]
+    face: NDArray[np.integer[Any]]
+    barycentrics: NDArray[np.float32]
+    normal: NDArray[np.float32]
+    camera_normal: NDArray[np.float32]
+    position: NDArray[np.float32]
+    albedo: NDArray[np.float32]
+    linear: NDArray[np.float32]
+
+class Picture(_Fields):
+    stats: dict[str, Any]
+    def __init__(self, arrays: dict[str, NDArray[Any]], stats: dict[str, Any], pick: Callable[[int, int], Hit | None]) -> None: ...
+    def pick(self, x: int, y: int) -> Hit | None: ...
+    def save(self, path: str | PathLike[str], output: str | None = None) -> Picture: ...
+    def pil(self) -> Any: ...
+
+class Pictures(_Fields):
+    stats: list[dict[str, Any]]
+    def __init__(self, arrays: dict[str, NDArray[Any]], stats: list[dict[str, Any]], picks: list[Any]) -> None: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, i: int) -> Picture: ...
+    def sheet(self, columns: int | None = None) -> Picture: ...
+
+class Renderer:
+    def __init__(self, *, threads: int | None = None, memory_limit: int = 0, device: str = "threads",
+                 isa: str | None = None) -> None: ...
+    @overload
+    def render(self, what: Any, camera: Camera | None = None, *, size: tuple[int, int] = (1280, 720),
+               outputs: Output | Iterable[Output] = "color", shader: str = "auto", background: Color | None = None,
+               samples: int = 1, transparency: str = "exact", cull: str = "none", opacity: float = 1.0,
+               clip_planes: ArrayLike = (), out: Mapping[str, NDArray[Any]] | None = None,
+               progress: Callable[[int, int], None] | bool | None = None) -> Picture: ...
+    @overload
+    def render(self, what: Any, camera: Sequence[Camera] | NDArray[Any], *, size: tuple[int, int] = (1280, 720),
+               outputs: Output | Iterable[Output] = "color", shader: str = "auto", background: Color | None = None,
+               samples: int = 1, transparency: str = "exact", cull: str = "none", opacity: float = 1.0,
+               clip_planes: ArrayLike = (), out: Mapping[str, NDArray[Any]] | None = None,
+               progress: Callable[[int, int], None] | bool | None = None) -> Pictures: ...
+
+def render(what: Any, camera: Any = None, *, threads: int | None = None, device: str = "threads", memory_limit: int = 0,
+           isa: str | None = None, **frame: Any) -> Any: ...
+def views4(what: Any, *, size: tuple[int, int] = (512, 512), **frame: Any) -> Picture: ...
+def digest(array: ArrayLike) -> str: ...
+def trimesh_viewer(scene: Any, **frame: Any) -> Any: ...

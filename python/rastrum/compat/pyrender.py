@@ -1,0 +1,360 @@
+"""pyrender's names and flags over Rastrum: `import rastrum.compat.pyrender as pyrender`.
+
+For who draws off screen: no OpenGL, no OSMesa, no display. What differs: the light is Rastrum's own (lights are kept in the
+scene and not drawn, which is said once), there is no Viewer, and pictures are the same bits on every machine.
+"""
+
+import warnings
+
+import numpy as np
+
+from .. import _things as _t
+from .._camera import Camera as _Camera
+from .._errors import ArgumentError, UnsupportedError
+from .._render import Renderer as _Renderer
+
+__all__ = ["Camera", "DirectionalLight", "IntrinsicsCamera", "Light", "Material", "Mesh", "MetallicRoughnessMaterial", "Node",
+           "OffscreenRenderer", "OrthographicCamera", "PerspectiveCamera", "PointLight", "Primitive", "RenderFlags", "Scene",
+           "SpotLight", "Viewer"]
+
+
+class RenderFlags:
+    NONE, DEPTH_ONLY, OFFSCREEN, FLIP_WIREFRAME, ALL_WIREFRAME, ALL_SOLID = 0, 1, 2, 4, 8, 16
+    SHADOWS_DIRECTIONAL, SHADOWS_POINT, SHADOWS_SPOT, SHADOWS_ALL = 32, 64, 128, 224
+    VERTEX_NORMALS, FACE_NORMALS, SKIP_CULL_FACES, RGBA, FLAT, SEG = 256, 512, 1024, 2048, 4096, 8192
+
+
+class Camera:
+    def __init__(self, znear=0.05, zfar=100.0, name=None):
+        self.znear, self.zfar, self.name = znear, zfar, name
+
+    def get_projection_matrix(self, width=None, height=None):
+        raise NotImplementedError
+
+    def _depth_rows(self, p):
+        """Of a perspective projection: what near and far become; zfar None is infinite."""
+        n, f = self.znear, self.zfar
+        p[2, 2], p[2, 3] = (-1.0, -2.0 * n) if f is None else ((f + n) / (n - f), 2.0 * f * n / (n - f))
+        p[3, 2] = -1.0
+        return p
+
+
+class PerspectiveCamera(Camera):
+    """yfov: radians."""
+
+    def __init__(self, yfov, znear=0.05, zfar=None, aspectRatio=None, name=None):
+        super().__init__(znear, zfar, name)
+        self.yfov, self.aspectRatio = yfov, aspectRatio
+
+    def get_projection_matrix(self, width=None, height=None):
+        aspect = self.aspectRatio
+        if aspect is None:
+            if width is None or height is None:
+                raise ArgumentError("aspectRatio: is needed where there is no picture")
+            aspect = width / height
+        p, t = np.zeros((4, 4)), np.tan(self.yfov / 2)
+        p[0, 0], p[1, 1] = 1 / (aspect * t), 1 / t
+        return self._depth_rows(p)
+
+
+class IntrinsicsCamera(Camera):
+    """fx, fy, cx, cy: pixels; (0, 0) is the top left corner of the picture."""
+
+    def __init__(self, fx, fy, cx, cy, znear=0.05, zfar=100.0, name=None):
+        super().__init__(znear, zfar, name)
+        self.fx, self.fy, self.cx, self.cy = fx, fy, cx, cy
+
+    def get_projection_matrix(self, width, height):
+        p = np.zeros((4, 4))
+        p[0, 0], p[1, 1] = 2 * self.fx / width, 2 * self.fy / height
+        p[0, 2], p[1, 2] = 1 - 2 * self.cx / width, 2 * self.cy / height - 1
+        return self._depth_rows(p)
+
+
+class OrthographicCamera(Camera):
+    def __init__(self, xmag, ymag, znear=0.05, zfar=100.0, name=None):
+        super().__init__(znear, zfar, name)
+        self.xmag, self.ymag = xmag, ymag
+
+    def get_projection_matrix(self, width=None, height=None):
+        across = self.ymag * width / height if width is not None and height is not None else self.xmag
+        n, f = self.znear, self.zfar
+        p = np.diag([1 / across, 1 / self.ymag, 2 / (n - f), 1.0])
+        p[2, 3] = (f + n) / (n - f)
+        return p
+
+
+class Light:
+    """Kept, not drawn."""
+
+    def __init__(self, color=None, intensity=None, name=None, **other):
+        self.color, self.intensity, self.name = color, intensity, name
+        self.__dict__.update(other)
+
+
+class DirectionalLight(Light):
+    pass
+
+
+class PointLight(Light):
+    pass
+
+
+class SpotLight(Light):
+    pass
+
+
+class Material:
+    pass
+
+
+class MetallicRoughnessMaterial(Material):
+    def __init__(self, name=None, baseColorFactor=None, baseColorTexture=None, metallicFactor=1.0, roughnessFactor=1.0,
+                 emissiveFactor=None, alphaMode=None, alphaCutoff=None, doubleSided=False, smooth=True, wireframe=False, **other):
+        self.name, self.baseColorTexture = name, baseColorTexture
+        self.baseColorFactor = np.ones(4) if baseColorFactor is None else np.asarray(baseColorFactor, float)
+        if self.baseColorFactor.dtype.kind in "f" and self.baseColorFactor.max() > 1:
+            self.baseColorFactor = self.baseColorFactor / 255
+        if self.baseColorFactor.shape == (3,):
+            self.baseColorFactor = np.append(self.baseColorFactor, 1.0)
+        self.metallicFactor, self.roughnessFactor, self.emissiveFactor = metallicFactor, roughnessFactor, emissiveFactor
+        self.alphaMode, self.alphaCutoff, self.doubleSided = alphaMode or "OPAQUE", alphaCutoff or 0.5, doubleSided
+        self.smooth, self.wireframe = smooth, wireframe
+
+
+class Primitive:
+    """positions (N, 3), normals, color_0, indices (M, 3), material, poses (K, 4, 4); mode 4: triangles, 0: points."""
+
+    def __init__(self, positions, normals=None, tangents=None, texcoord_0=None, texcoord_1=None, color_0=None, joints_0=None,
+                 weights_0=None, indices=None, material=None, mode=None, targets=None, poses=None):
+        self.positions, self.normals, self.texcoord_0, self.color_0 = positions, normals, texcoord_0, color_0
+        self.indices, self.material, self.poses = indices, material, poses
+        self.mode = 4 if mode is None else mode
+
+    def _geometry(self, point_size, smooth):
+        look = {} if self.color_0 is None else {"colors": np.asarray(self.color_0)}
+        if self.mode == 0:
+            return lambda **more: _t.Points(self.positions, size=point_size, round=False, normals=self.normals,
+                                            **look, **more)
+        if self.mode != 4:
+            raise UnsupportedError(f"Primitive: mode {self.mode} is not drawn; triangles (4) and points (0) are")
+        if not look and self.material is not None:
+            look["color"] = np.clip(self.material.baseColorFactor, 0, 1)
+        normals = self.normals if smooth else None
+        return lambda **more: _t.Mesh(self.positions, self.indices, normals=normals, **look, **more)
+
+
+class Mesh:
+    def __init__(self, primitives, name=None, weights=None, is_visible=True):
+        self.primitives, self.name, self.is_visible = list(primitives), name, is_visible
+
+    @staticmethod
+    def from_points(points, colors=None, normals=None, is_visible=True, poses=None):
+        return Mesh([Primitive(points, normals=normals, color_0=colors, mode=0, poses=poses)], is_visible=is_visible)
+
+    @staticmethod
+    def from_trimesh(mesh, material=None, is_visible=True, poses=None, wireframe=False, smooth=True):
+        """Of a trimesh.Trimesh, or a list of them."""
+        primitives = []
+        for m in mesh if isinstance(mesh, (list, tuple, set, np.ndarray)) else [mesh]:
+            colors, kind = None, getattr(getattr(m, "visual", None), "kind", None)
+            if material is None and kind == "vertex":
+                colors = np.asarray(m.visual.vertex_colors)
+            elif material is None and kind == "face":
+                colors = np.asarray(m.visual.face_colors)
+            primitives.append(Primitive(np.asarray(m.vertices), indices=np.asarray(m.faces), color_0=colors,
+                                        normals=np.asarray(m.vertex_normals) if smooth else None, material=material,
+                                        poses=poses))
+        return Mesh(primitives, is_visible=is_visible)
+
+
+class Node:
+    """A mesh, camera or light, placed: `matrix`, or translation, rotation (x, y, z, w) and scale."""
+
+    def __init__(self, name=None, camera=None, children=None, skin=None, matrix=None, mesh=None, weights=None, rotation=None,
+                 scale=None, translation=None, light=None):
+        self.name, self.camera, self.mesh, self.light = name, camera, mesh, light
+        self.children = list(children or [])
+        if matrix is None:
+            matrix = np.eye(4)
+            x, y, z, w = (0, 0, 0, 1) if rotation is None else np.asarray(rotation, float)
+            matrix[:3, :3] = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                              [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                              [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+            matrix[:3, :3] *= np.ones(3) if scale is None else np.asarray(scale, float)
+            matrix[:3, 3] = 0 if translation is None else translation
+        self.matrix = np.asarray(matrix, float)
+
+    @property
+    def translation(self):
+        return self.matrix[:3, 3]
+
+
+class Scene:
+    def __init__(self, nodes=None, bg_color=None, ambient_light=None, name=None):
+        self.bg_color = np.ones(4) if bg_color is None else np.asarray(bg_color, float)
+        self.ambient_light, self.name, self.main_camera_node = ambient_light, name, None
+        self._parents = {}
+        for node in nodes or []:
+            self.add_node(node)
+
+    @staticmethod
+    def from_trimesh_scene(trimesh_scene, bg_color=None, ambient_light=None):
+        scene = Scene(bg_color=bg_color, ambient_light=ambient_light)
+        for name in trimesh_scene.graph.nodes_geometry:
+            pose, geometry = trimesh_scene.graph[name]
+            scene.add(Mesh.from_trimesh(trimesh_scene.geometry[geometry]), pose=pose, name=name)
+        return scene
+
+    @property
+    def nodes(self):
+        return set(self._parents)
+
+    @property
+    def mesh_nodes(self):
+        return {n for n in self._parents if n.mesh is not None}
+
+    @property
+    def camera_nodes(self):
+        return {n for n in self._parents if n.camera is not None}
+
+    @property
+    def light_nodes(self):
+        return {n for n in self._parents if n.light is not None}
+
+    meshes = property(lambda self: {n.mesh for n in self.mesh_nodes})
+    cameras = property(lambda self: {n.camera for n in self.camera_nodes})
+    lights = property(lambda self: {n.light for n in self.light_nodes})
+
+    def add(self, obj, name=None, pose=None, parent_node=None, parent_name=None):
+        kind = "mesh" if isinstance(obj, Mesh) else "camera" if isinstance(obj, Camera) else "light" if isinstance(
+            obj, Light) else None
+        if kind is None:
+            raise TypeError(f"Scene.add: {type(obj).__qualname__} is no mesh, camera or light")
+        if parent_name is not None:
+            parent_node = next(iter(self.get_nodes(name=parent_name)), None)
+            if parent_node is None:
+                raise ValueError(f"parent_name: there is no node {parent_name}")
+        node = Node(name=name, matrix=np.eye(4) if pose is None else pose, **{kind: obj})
+        self.add_node(node, parent_node)
+        return node
+
+    def add_node(self, node, parent_node=None):
+        if node in self._parents:
+            raise ValueError("the node is in the scene already")
+        self._parents[node] = parent_node
+        if parent_node is not None and node not in parent_node.children:
+            parent_node.children.append(node)
+        if node.camera is not None and self.main_camera_node is None:
+            self.main_camera_node = node
+        for child in node.children:
+            if child not in self._parents:
+                self.add_node(child, node)
+
+    def get_nodes(self, node=None, name=None, obj=None, obj_name=None):
+        return {n for n in self._parents
+                if (node is None or n is node) and (name is None or n.name == name) and
+                (obj is None or obj in (n.mesh, n.camera, n.light)) and
+                (obj_name is None or obj_name in [o.name for o in (n.mesh, n.camera, n.light) if o is not None])}
+
+    def has_node(self, node):
+        return node in self._parents
+
+    def remove_node(self, node):
+        if node not in self._parents:
+            raise ValueError("the node is not in the scene")
+        for child in list(node.children):
+            if child in self._parents:
+                self.remove_node(child)
+        parent = self._parents.pop(node)
+        if parent is not None:
+            parent.children.remove(node)
+        if node is self.main_camera_node:
+            self.main_camera_node = next(iter(self.camera_nodes), None)
+
+    def clear(self):
+        self._parents.clear()
+        self.main_camera_node = None
+
+    def get_pose(self, node):
+        if node not in self._parents:
+            raise ValueError("the node is not in the scene")
+        pose = node.matrix
+        while (node := self._parents[node]) is not None:
+            pose = node.matrix @ pose
+        return pose
+
+    def set_pose(self, node, pose):
+        """Within its parent."""
+        if node not in self._parents:
+            raise ValueError("the node is not in the scene")
+        node.matrix = np.asarray(pose, float)
+
+
+def _placed(camera, pose, size):
+    if not isinstance(camera, OrthographicCamera):
+        return _Camera.opengl(camera.get_projection_matrix(*size) @ np.linalg.inv(pose))
+    # A parallel projection's matrix does not say where the eye is, from which depth counts.
+    eye = pose[:3, 3]
+    return _Camera.orthographic(eye, eye - pose[:3, 2], pose[:3, 1], height=2 * camera.ymag * min(1, size[0] / size[1]),
+                                near=camera.znear, far=camera.zfar)
+
+
+class OffscreenRenderer:
+    """viewport_width, viewport_height: pixels."""
+
+    _said = False
+
+    def __init__(self, viewport_width, viewport_height, point_size=1.0):
+        self.viewport_width, self.viewport_height, self.point_size = viewport_width, viewport_height, point_size
+        self._renderer = _Renderer()
+
+    def render(self, scene, flags=RenderFlags.NONE, seg_node_map=None):
+        """(color, depth), or depth alone with DEPTH_ONLY. color: (H, W, 3) uint8, with RGBA (H, W, 4), with SEG the colours
+        of seg_node_map. depth: (H, W) float32 along the axis, 0 where nothing is."""
+        if scene.main_camera_node is None:
+            raise ValueError("the scene has no camera")
+        if scene.lights and not OffscreenRenderer._said:
+            OffscreenRenderer._said = True
+            warnings.warn("rastrum.compat.pyrender: lights are not drawn yet; the light is Rastrum's own", stacklevel=2)
+        size = self.viewport_width, self.viewport_height
+        node = scene.main_camera_node
+        camera = _placed(node.camera, scene.get_pose(node), size)
+        things, nodes = [], []
+        for n in scene._parents:
+            if n.mesh is None or not n.mesh.is_visible:
+                continue
+            for primitive in n.mesh.primitives:
+                make = primitive._geometry(self.point_size, not flags & RenderFlags.FACE_NORMALS)
+                poses = [np.eye(4)] if primitive.poses is None else np.asarray(primitive.poses, float).reshape(-1, 4, 4)
+                for pose in poses:
+                    things.append(make(transform=scene.get_pose(n) @ pose, id=len(nodes)))
+            nodes.append(n)
+        shader = ("wireframe" if flags & RenderFlags.ALL_WIREFRAME else
+                  "flat" if flags & (RenderFlags.FLAT | RenderFlags.SEG) else "auto")
+        segmented = bool(flags & RenderFlags.SEG)
+        outputs = ["depth"]
+        if not flags & RenderFlags.DEPTH_ONLY:
+            outputs.append("instance" if segmented else "color")
+        background = np.clip(np.append(scene.bg_color, 1.0)[:4] if scene.bg_color.shape == (3,) else scene.bg_color, 0, 1)
+        picture = self._renderer.render(_t.Scene(things), camera, size=size, outputs=outputs, shader=shader,
+                                        background=background, cull="none" if flags & RenderFlags.SKIP_CULL_FACES else "back")
+        if flags & RenderFlags.DEPTH_ONLY:
+            return picture.depth
+        if segmented:
+            colors = np.zeros((len(nodes) + 1, 3), np.uint8)  # the last: nothing
+            for i, n in enumerate(nodes):
+                given = (seg_node_map or {}).get(n)
+                if given is not None:
+                    given = np.asarray(given)
+                    colors[i] = np.round(given[:3] * 255) if given.dtype.kind == "f" else given[:3]
+            return colors[picture.instance], picture.depth
+        return picture.color if flags & RenderFlags.RGBA else np.ascontiguousarray(picture.color[..., :3]), picture.depth
+
+    def delete(self):
+        pass
+
+
+class Viewer:
+    def __init__(self, *arguments, **named):
+        raise UnsupportedError("Viewer: Rastrum draws pictures; OffscreenRenderer returns them, `rastrum view` has a window")

@@ -1,0 +1,67 @@
+"""What the package is to others: PyVista's plug-in, pytest's fixture."""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import rastrum as rr
+
+TEST = """
+import numpy as np, rastrum as rr
+def test_ball(rr_snapshot):
+    rr_snapshot(rr.render(rr.Spheres(np.zeros((1, 3)), RADIUS), rr.Camera.look_at((0, 0, 4)), size=(40, 30)), "ball")
+"""
+
+
+def run_pytest(folder, *options):
+    package = pathlib.Path(rr.__file__).resolve().parent
+    path = os.pathsep.join([str(pathlib.Path(rr.__file__).parent.parent), os.environ.get("PYTHONPATH", "")])
+    assert package.is_dir()
+    return subprocess.run([sys.executable, "-m", "pytest", "-q", "-p", "rastrum.pytest_plugin", *options], cwd=folder,
+                          capture_output=True, text=True,
+                          env={**os.environ, "PYTHONPATH": path, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"})
+
+
+def test_a_snapshot_is_taken_held_and_shown_where_it_differs(tmp_path):
+    test = tmp_path / "test_it.py"
+    test.write_text(TEST.replace("RADIUS", "1.0"))
+    first = run_pytest(tmp_path)
+    assert first.returncode == 1 and "no digest yet" in first.stdout
+    assert run_pytest(tmp_path, "--rr-update").returncode == 0
+    book = json.loads((tmp_path / "rr_snapshots.json").read_text())
+    ball = rr.render(rr.Spheres(np.zeros((1, 3))), rr.Camera.look_at((0, 0, 4)), size=(40, 30))
+    assert book == {"test_it.py::ball": rr.digest(ball.color)}
+    assert run_pytest(tmp_path).returncode == 0
+    test.write_text(TEST.replace("RADIUS", "1.1"))
+    wrong = run_pytest(tmp_path)
+    assert wrong.returncode == 1 and "pixels differ" in wrong.stdout, wrong.stdout
+    for kind in ("actual", "expected", "difference"):
+        assert (tmp_path / "rr_failures" / f"ball.{kind}.png").stat().st_size > 0
+
+
+def test_pyvista():
+    pv = pytest.importorskip("pyvista")
+    import rastrum.pyvista_plugin  # noqa: F401  where no wheel is installed there are no entry points
+    sphere = pv.Sphere(theta_resolution=40, phi_resolution=40)
+    faces = sphere.regular_faces
+    direct = rr.render(rr.Mesh(np.asarray(sphere.points), faces, normals=np.asarray(sphere.point_normals)), size=(90, 70))
+    assert np.array_equal(sphere.rastrum.render(size=(90, 70)).color, direct.color)
+    plotter = pv.Plotter(off_screen=True, window_size=(160, 120))
+    plotter.add_mesh(sphere, color="red", opacity=0.5)
+    plotter.add_mesh(pv.Cube(center=(2, 0, 0)), scalars=np.arange(6.0), cmap="viridis", show_scalar_bar=False)
+    plotter.add_mesh(pv.Line((0, 0, 0), (2, 2, 0)), line_width=4)
+    plotter.add_points(np.array([[0.0, 2, 0]]), point_size=9)
+    plotter.add_mesh(pv.Plane(center=(-2, 0, 0)).elevation((-2, -0.5, 0), (-2, 0.5, 0)), cmap="gray", lighting=False)
+    plotter.add_text("words")
+    plotter.camera_position = "xy"
+    p = plotter.rastrum.screenshot(outputs=("color", "instance"))
+    assert set(np.unique(p.instance)) == {-1, 0, 1, 2, 3, 4}
+    assert any("Text" in name or "Annotation" in name for name in plotter.rastrum.left_out)
+    assert p.color[p.instance == 1][:, :3].std(axis=0).max() < 60  # one side of the cube: one colour but for the light
+    middle = p.color[p.instance == 0].mean(axis=0)
+    assert middle[0] > middle[1] + 30

@@ -1,0 +1,47 @@
+"""What __init__.pyi says is what there is: names, and the parameters of each function."""
+
+import ast
+import inspect
+import pathlib
+
+import rastrum as rr
+
+STUB = pathlib.Path(__file__).resolve().parents[1] / "rastrum" / "__init__.pyi"
+
+
+def parameters(function):
+    a = function.args
+    return [p.arg for p in a.posonlyargs + a.args] + ([a.vararg.arg] if a.vararg else []) + [
+        p.arg for p in a.kwonlyargs] + ([a.kwarg.arg] if a.kwarg else [])
+
+
+def actual(function):
+    return list(inspect.signature(function).parameters)
+
+
+def test_the_stub_is_the_package():
+    tree = ast.parse(STUB.read_text(encoding="utf-8"))
+    functions = {n.name: n for n in tree.body if isinstance(n, ast.FunctionDef)}
+    classes = {n.name: n for n in tree.body if isinstance(n, ast.ClassDef)}
+    public = {n for n in rr.__all__ if callable(getattr(rr, n))}
+    assert public == {n for n in (*functions, *classes) if not n.startswith("_")}
+    for name, function in functions.items():
+        assert parameters(function) == actual(getattr(rr, name)), name
+    for name, cls in classes.items():
+        if name.startswith("_"):
+            continue
+        for member in cls.body:
+            if not isinstance(member, ast.FunctionDef):
+                continue
+            there = inspect.getattr_static(getattr(rr, name), member.name)
+            if isinstance(there, property):
+                continue
+            if isinstance(there, staticmethod):
+                there = there.__func__
+            assert parameters(member) == actual(there), f"{name}.{member.name}"
+
+
+def test_everything_public_is_documented():
+    for name in rr.__all__:
+        if callable(getattr(rr, name)):
+            assert inspect.getdoc(getattr(rr, name)), name
