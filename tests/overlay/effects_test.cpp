@@ -293,6 +293,41 @@ TEST(Effects, DarkenMixesTowardsInkAndKeepsAlpha) {
   EXPECT_EQ(color(1, 0).x, 0.4F);
 }
 
+TEST(Effects, DarkenIsTheSameOnEveryInstructionSet) {
+  constexpr int kWidth = 67, kHeight = 64;
+  Image<Rgba8> before(kWidth, kHeight);
+  Image<float> factor(kWidth, kHeight);
+  std::uint32_t state = 1;
+  const auto random = [&] { return (state = state * 1664525 + 1013904223) >> 8; };
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const auto byte = [&] { return static_cast<std::uint8_t>(random()); };
+      before(x, y) = {byte(), byte(), byte(), byte()};
+      // Whole rows and single pixels that stay as they are, and halves that are ties.
+      factor(x, y) = y % 4 == 0 || random() % 3 == 0 ? 1.0F
+                     : random() % 2 == 0             ? 0.5F
+                                                     : static_cast<float>(random() % 1025) / 1024;
+    }
+  for (const Vec3 ink : {Vec3{0, 0, 0}, Vec3{0.2F, 1, 0.5F}})
+    for (const Isa isa : available_isas()) {
+      Image<Rgba8> after(kWidth, kHeight);
+      std::copy(before.pixels().begin(), before.pixels().end(), after.pixels().begin());
+      Effects(1, isa).darken(after, {}, factor.view(), ink);
+      for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+          const Rgba8 c = before(x, y);
+          const float f = factor(x, y);
+          const auto mixed = [&](std::uint8_t from, float to) {
+            return static_cast<std::uint8_t>(
+                std::nearbyint(static_cast<float>(from) * f + to * 255.0F * (1 - f)));
+          };
+          ASSERT_EQ(after(x, y),
+                    (Rgba8{mixed(c.r, ink.x), mixed(c.g, ink.y), mixed(c.b, ink.z), c.a}))
+              << name(isa) << ", " << x << ", " << y;
+        }
+    }
+}
+
 TEST(Effects, RefuseWhatIsOutOfRange) {
   const Drawn d = drawn("teapot", 16, 12);
   Effects effects;

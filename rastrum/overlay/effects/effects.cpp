@@ -10,6 +10,7 @@
 
 #include <rastrum/core/angle.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/overlay/effects/darken.hpp>
 #include <rastrum/overlay/effects/lens.hpp>
 #include <rastrum/overlay/effects/occlusion.hpp>
 #include <rastrum/parallel/device.hpp>
@@ -104,7 +105,8 @@ void Effects::ambient_occlusion(const Surface& surface, const Camera& camera,
     for (int x = 0; x < width; x += kTileWidth)
       for (int y = y0; y < y1; ++y)
         kernel(frame, y, x, std::min(x + kTileWidth, width), factor.row(y));
-    for (int y = y0; y < y1; ++y) blur(frame, factor.row(y), y, {false, 1}, 0, width, across.row(y));
+    for (int y = y0; y < y1; ++y)
+      blur(frame, factor.row(y), y, {false, 1}, 0, width, across.row(y));
   });
   impl_->for_each_row(height, [&](int y) {
     blur(frame, across.row(y), y, {true, across.stride}, 0, width, factor.row(y));
@@ -205,23 +207,16 @@ void Effects::darken(ImageView<Rgba8> color8, ImageView<Vec4> color, ImageView<c
   check_size(color, factor.width, factor.height, "effects: color");
   check_stride(factor, "effects: the factors' image");
   const Vec3 ink8 = ink * 255.0F;
+  const auto kernel = overlay::darken_kernel(impl_->isa);
   impl_->for_each_row(factor.height, [&](int y) {
+    if (!color8.empty()) kernel(factor.row(y), ink8, factor.width, color8.row(y));
+    if (color.empty()) return;
     for (int x = 0; x < factor.width; ++x) {
       const float f = factor(x, y), left = 1 - f;
       if (f == 1) continue;
-      if (!color8.empty()) {
-        Rgba8& c = color8(x, y);
-        const auto mixed = [&](std::uint8_t from, float to) {
-          const float v = static_cast<float>(from) * f + to * left;
-          return static_cast<std::uint8_t>(std::nearbyint(std::clamp(v, 0.0F, 255.0F)));
-        };
-        c = {mixed(c.r, ink8.x), mixed(c.g, ink8.y), mixed(c.b, ink8.z), c.a};
-      }
-      if (!color.empty()) {
-        Vec4& c = color(x, y);
-        c = {c.x * f + ink.x * c.w * left, c.y * f + ink.y * c.w * left,
-             c.z * f + ink.z * c.w * left, c.w};
-      }
+      Vec4& c = color(x, y);
+      c = {c.x * f + ink.x * c.w * left, c.y * f + ink.y * c.w * left, c.z * f + ink.z * c.w * left,
+           c.w};
     }
   });
 }

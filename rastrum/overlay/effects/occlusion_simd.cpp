@@ -34,16 +34,25 @@ struct Pixels {
   hn::Vec<I> place;
 };
 
+/// Lens::u and v of the pixels whose centres are (px, py).
+HWY_INLINE V across_of(const OcclusionFrame& f, V px, V py) {
+  const D d;
+  V along = hn::Mul(hn::Set(d, f.ux), px);
+  // Skewed cameras alone have it, and to add 0 changes no bit.
+  if (f.uy != 0) along = hn::Add(along, hn::Mul(hn::Set(d, f.uy), py));
+  return hn::Add(along, hn::Set(d, f.u0));
+}
+HWY_INLINE V down_of(const OcclusionFrame& f, V py) {
+  const D d;
+  return hn::Add(hn::Mul(hn::Set(d, f.vy), py), hn::Set(d, f.v0));
+}
+
 HWY_INLINE Position position(const OcclusionFrame& f, V px, V py, V depth) {
   const D d;
-  V across = hn::Mul(hn::Set(d, f.ux), px);
-  // Skewed cameras alone have it, and a 0 changes no bit.
-  if (f.uy != 0) across = hn::Add(across, hn::Mul(hn::Set(d, f.uy), py));
-  const V u = hn::Add(across, hn::Set(d, f.u0));
-  const V v = hn::Add(hn::Mul(hn::Set(d, f.vy), py), hn::Set(d, f.v0));
+  const V u = across_of(f, px, py), v = down_of(f, py);
   const V e = hn::Mul(depth, hn::Set(d, f.per_radius));
-  const V s = f.perspective ? e : hn::Set(d, 1.0F);
-  return {hn::Mul(u, s), hn::Mul(v, s), hn::Neg(e)};
+  if (!f.perspective) return {u, v, hn::Neg(e)};
+  return {hn::Mul(u, e), hn::Mul(v, e), hn::Neg(e)};
 }
 
 HWY_INLINE V sum_of(V a, V b, V c) {
@@ -99,21 +108,12 @@ HWY_INLINE void normals_from_depth(const OcclusionFrame& f, int x, int y, V dept
 
 /// The samples of a vector of pixels, sample after sample.
 struct Samples {
-  HWY_ALIGN std::int32_t places[kMostSamples * kPatternLanes];  ///< from f.depth.data
-  HWY_ALIGN float depths[kMostSamples * kPatternLanes];
+  static constexpr int kCapacity = kMostSamples * kPatternLanes;
+  HWY_ALIGN std::int32_t places[kCapacity];  ///< from f.depth.data
+  HWY_ALIGN float depths[kCapacity];
+  HWY_ALIGN float u[kCapacity];  ///< Lens; NaN beyond the picture
+  HWY_ALIGN float v[kCapacity];
 };
-
-/// Where sample k lies, from the pixels' centres, px: whole numbers below 2^23, so that sums with
-/// them are what sums of integers would be.
-HWY_INLINE V offset(const float* pattern, V reach) {
-  return hn::Round(hn::Mul(hn::Load(D{}, pattern), reach));
-}
-
-HWY_INLINE hn::Mask<D> inside(const Pixels& at, V qx, V qy) {
-  const V zero = hn::Zero(D{});
-  return hn::And(hn::And(hn::Gt(qx, zero), hn::Lt(qx, at.width)),
-                 hn::And(hn::Gt(qy, zero), hn::Lt(qy, at.height)));
-}
 
 /// `kBorder`: some may lie beyond the picture. Vectors of the pattern begin at `pattern`.
 template <bool kBorder>
@@ -122,38 +122,50 @@ HWY_INLINE void find_samples(const OcclusionFrame& f, const Pixels& at, const fl
   const D d;
   const I di;
   const auto stride = hn::Set(di, f.stride);
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  std::int32_t* out = samples.places;
-  for (int k = 0; k < f.samples; ++k, pattern += 2 * kPatternLanes, out += lanes) {
-    const V dx = offset(pattern, at.reach), dy = offset(pattern + kPatternLanes, at.reach);
+  const std::size_t lanes = hn::Lanes(d), count = static_cast<std::size_t>(f.samples) * lanes;
+  for (std::size_t i = 0; i < count; i += lanes, pattern += 2 * kPatternLanes) {
+    // Whole numbers below 2^23: sums with them are what those of integers would be.
+    const V dx = hn::Round(hn::Mul(hn::Load(d, pattern), at.reach)),
+            dy = hn::Round(hn::Mul(hn::Load(d, pattern + kPatternLanes), at.reach));
+    const V qx = hn::Add(at.px, dx), qy = hn::Add(at.py, dy);
     auto place =
         hn::Add(at.place, hn::Add(hn::Mul(hn::NearestInt(dy), stride), hn::NearestInt(dx)));
-    if constexpr (kBorder)
-      place = hn::IfThenElseZero(
-          hn::RebindMask(di, inside(at, hn::Add(at.px, dx), hn::Add(at.py, dy))), place);
-    hn::Store(place, di, out);
+    V u = across_of(f, qx, qy);
+    if constexpr (kBorder) {
+      const V zero = hn::Zero(d);
+      const auto inside = hn::And(hn::And(hn::Gt(qx, zero), hn::Lt(qx, at.width)),
+                                  hn::And(hn::Gt(qy, zero), hn::Lt(qy, at.height)));
+      place = hn::IfThenElseZero(hn::RebindMask(di, inside), place);
+      u = hn::IfThenElse(inside, u, hn::NaN(d));
+    }
+    hn::Store(place, di, samples.places + i);
+    hn::Store(u, d, samples.u + i);
+    hn::Store(down_of(f, qy), d, samples.v + i);
   }
 }
 
 /// How much light they take.
-template <bool kBorder>
-HWY_INLINE V taken(const OcclusionFrame& f, const Pixels& at, const float* pattern,
-                   const Samples& samples) {
+template <bool kPerspective>
+HWY_INLINE V taken(const OcclusionFrame& f, const Pixels& at, const Samples& samples) {
   const D d;
   const V one = hn::Set(d, 1.0F), farthest = hn::Set(d, kFarthest);
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const float* depths = samples.depths;
+  const V per_radius = hn::Set(d, f.per_radius);
+  const V away = hn::Neg(at.nz);  // z grows towards the viewer, distances do not
+  const std::size_t lanes = hn::Lanes(d), count = static_cast<std::size_t>(f.samples) * lanes;
   V sum = hn::Zero(d);
-  for (int k = 0; k < f.samples; ++k, pattern += 2 * kPatternLanes, depths += lanes) {
-    const V qx = hn::Add(at.px, offset(pattern, at.reach)),
-            qy = hn::Add(at.py, offset(pattern + kPatternLanes, at.reach));
-    const V q_depth = hn::Load(d, depths);
-    const Position q = position(f, qx, qy, q_depth);
-    const V vx = hn::Sub(q.x, at.p.x), vy = hn::Sub(q.y, at.p.y), vz = hn::Sub(q.z, at.p.z);
+  for (std::size_t i = 0; i < count; i += lanes) {
+    const V depth = hn::Load(d, samples.depths + i), e = hn::Mul(depth, per_radius);
+    V qx = hn::Load(d, samples.u + i), qy = hn::Load(d, samples.v + i);
+    if constexpr (kPerspective) {
+      qx = hn::Mul(qx, e);
+      qy = hn::Mul(qy, e);
+    }
+    const V vx = hn::Sub(qx, at.p.x), vy = hn::Sub(qy, at.p.y), vz = hn::Add(e, at.p.z);
     const V vv = sum_of(hn::Mul(vx, vx), hn::Mul(vy, vy), hn::Mul(vz, vz));
-    const V vn = sum_of(hn::Mul(vx, at.nx), hn::Mul(vy, at.ny), hn::Mul(vz, at.nz));
-    auto takes = hn::And(hn::And(hn::Lt(q_depth, farthest), hn::Lt(vv, one)), hn::Gt(vn, at.bias));
-    if constexpr (kBorder) takes = hn::And(takes, inside(at, qx, qy));
+    const V vn = sum_of(hn::Mul(vx, at.nx), hn::Mul(vy, at.ny), hn::Mul(vz, away));
+    // No comparison with NaN holds, so that this leaves out what lies beyond the picture.
+    const auto takes =
+        hn::And(hn::And(hn::Lt(depth, farthest), hn::Lt(vv, one)), hn::Gt(vn, at.bias));
     // Mostly none does: surfaces are flat or bend away.
     if (hn::AllFalse(d, takes)) continue;
     const V near = hn::Sub(one, vv);
@@ -211,8 +223,7 @@ void occlusion(const OcclusionFrame& f, int y, int begin, int end, float* out) {
     else
       find_samples<false>(f, at, pattern, samples);
     load_each(f.depth.data, samples.places, f.samples * lanes, samples.depths);
-    const V sum =
-        border ? taken<true>(f, at, pattern, samples) : taken<false>(f, at, pattern, samples);
+    const V sum = f.perspective ? taken<true>(f, at, samples) : taken<false>(f, at, samples);
     const V left = hn::Max(hn::Sub(one, hn::Mul(hn::Set(d, f.weight), sum)), hn::Zero(d));
     hn::StoreU(hn::IfThenElse(there, left, one), d, out + x);
   }
