@@ -97,7 +97,7 @@ void Effects::ambient_occlusion(const Surface& surface, const Camera& camera,
   const auto kernel = overlay::occlusion_kernel(impl_->isa);
   const auto blur = overlay::blur_kernel(impl_->isa);
   const ImageView<float> across = impl_->image(width, height);
-  // Tiles whose samples, 100 px around, stay in a second-level cache.
+  // Tiles whose samples, 100 px around, stay in a second-level cache also of wide pictures.
   constexpr int kTileWidth = 128, kTileHeight = 32;
   const int bands = (height + kTileHeight - 1) / kTileHeight;
   parallel::for_each_index(impl_->threads, static_cast<std::size_t>(bands), [&](std::size_t band) {

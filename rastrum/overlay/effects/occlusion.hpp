@@ -66,8 +66,8 @@ void occlusion_plain(const OcclusionFrame& frame, int y, int begin, int end, flo
 void blur_plain(const OcclusionFrame& frame, const float* in, int y, BlurTaps taps, int begin,
                 int end, float* out);
 
-/// out[i] = from[places[i]]. Load by load, since gathers of AMD's and of patched Intel machines
-/// take twice as long (docs/log/words.md).
+/// out[i] = from[places[i]]. Load by load, which is faster than the instruction set's gather here
+/// (docs/log/effects.md).
 void load_each(const float* from, const std::int32_t* places, int count, float* out) noexcept;
 
 /// The normal of a pixel from depth alone: across the differences to the neighbours, of both sides
