@@ -69,7 +69,13 @@ std::vector<std::uint8_t> sides_of(const MeshView& mesh, double angle_degrees) {
 }
 
 bool is_same(const MeshView& a, const MeshView& b) {
-  return a.positions == b.positions && a.indices == b.indices && a.faces == b.faces;
+  const auto& p = a.positions;
+  const auto& q = b.positions;
+  const bool same_places =
+      p.size() == q.size() && p.is_packed() == q.is_packed() && p.is_wide() == q.is_wide() &&
+      (p.empty() ||
+       (p.address(0) == q.address(0) && p.address(p.size() - 1) == q.address(q.size() - 1)));
+  return same_places && a.indices == b.indices && a.faces == b.faces;
 }
 
 }  // namespace
@@ -97,9 +103,10 @@ SceneEdges::SceneEdges(const SceneView& scene, double angle_degrees) : scene_(sc
 SceneEdges::Place SceneEdges::find(std::int64_t id) const {
   const auto number = static_cast<std::uint64_t>(id);
   if (id < 0 || number >= first_ids_.back())
-    throw Error(Errc::invalid_argument, "SceneEdges: primitive " + std::to_string(id) +
-                                            " is out of range, the scene has " +
-                                            std::to_string(first_ids_.back()));
+    throw Error(Errc::invalid_argument, std::string("SceneEdges: primitive ")
+                                            .append(std::to_string(id))
+                                            .append(" is out of range, the scene has ")
+                                            .append(std::to_string(first_ids_.back())));
   const auto after = std::upper_bound(first_ids_.begin(), first_ids_.end(), number);
   const auto instance = static_cast<std::size_t>(after - first_ids_.begin()) - 1;
   return {instance, number - first_ids_[instance]};
