@@ -16,8 +16,8 @@ namespace rastrum {
 /// Colours from low to high.
 struct ColorMap {
   std::string name{};
-  /// At even steps, the first at the low end and the last at the high one, blended linearly between;
-  /// where `discrete`, each has an equal part of the range for itself.
+  /// At even steps, the first at the low end and the last at the high one, blended linearly
+  /// between; where `discrete`, each has an equal part of the range for itself.
   std::vector<Vec4> colors{};
   bool discrete = false;
 };
@@ -48,18 +48,24 @@ struct ScalarOpacity {
 /// How numbers become colours.
 struct ScalarMapping {
   ColorMap map = color_map("viridis");
-  std::optional<ScalarRange> range{};  ///< none: from the least to the greatest finite number in use
-  bool logarithmic = false;            ///< even steps of the map are even factors; range above 0
-  bool symmetric = false;              ///< the range is widened, so that 0 lies in its middle
-  int steps = 0;                       ///< so many colours of equal parts of the range; 0: blended
+  std::optional<ScalarRange>
+      range{};               ///< none: from the least to the greatest finite number in use
+  bool logarithmic = false;  ///< even steps of the map are even factors; range above 0
+  bool symmetric = false;    ///< the range is widened, so that 0 lies in its middle
+  int steps = 0;             ///< so many colours of equal parts of the range; 0: blended
   /// Number i has colour i of the map (the same colours again where there are too few of a discrete
   /// one; of a blended one as far apart as can be), all others are `nan`. No range is asked for.
+  /// Between vertices of different categories lie numbers that are none: give them one a face.
   std::vector<double> categories{};
   std::optional<Vec4> below{}, above{};  ///< beyond the range; none: the colours of its ends
   Vec4 nan{0.5F, 0.5F, 0.5F, 1};
   /// Opacities at rising numbers, linear between and the outermost ones beyond; they multiply the
   /// colours' own alpha, but that of `nan`.
   std::vector<ScalarOpacity> opacity{};
+  /// Lines on meshes where these numbers are, as wide in pixels at any distance.
+  std::vector<double> isolines{};
+  Vec4 isoline_color{0, 0, 0, 1};
+  float isoline_px = 1;  ///< in (0, 64]
 };
 
 /// A mapping with a range: what colours a picture. Immutable; the same bits on every machine.
@@ -72,17 +78,22 @@ class ScalarColors {
   /// categories that are not finite or twice there; values of opacity that do not rise.
   ScalarColors(const ScalarMapping& mapping, ScalarRange in_use);
 
-  /// The colour of a number.
+  /// The colour of a number: a display value, straight alpha.
   [[nodiscard]] Vec4 operator()(double value) const;
   /// Where between the ends of the range a number of it lies, [0, 1].
   [[nodiscard]] double part(double value) const;
-  /// After `symmetric`.
+  /// With what `symmetric` made of it.
   [[nodiscard]] ScalarRange range() const { return range_; }
   /// Whether a colour may have alpha below 1.
   [[nodiscard]] bool is_translucent() const { return translucent_; }
   /// As of a ScalarBar: one a step or category, or those of the map.
   [[nodiscard]] const std::vector<Vec4>& colors() const { return colors_; }
   [[nodiscard]] bool is_discrete() const { return discrete_; }
+
+  [[nodiscard]] bool has_isolines() const { return !isolines_.empty(); }
+  /// `color` with the isolines over it, where the number is `value` and changes by `per_px` from
+  /// pixel to pixel along its steepest way.
+  [[nodiscard]] Vec4 with_isolines(Vec4 color, double value, double per_px) const;
 
  private:
   [[nodiscard]] Vec4 map_color(double value) const;
@@ -97,6 +108,9 @@ class ScalarColors {
   std::vector<std::pair<double, std::size_t>> categories_;  ///< by number; place in colors_
   Vec4 below_, above_, nan_;
   std::vector<ScalarOpacity> opacity_;
+  std::vector<double> isolines_;  ///< rising
+  Vec4 isoline_color_;
+  double isoline_px_ = 1;
 };
 
 /// From the least to the greatest finite number; none: {0, 0}. `above_zero`: of those above 0.

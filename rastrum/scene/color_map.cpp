@@ -71,8 +71,10 @@ ColorMap color_map_or_list(std::string_view text) {
     if (one.empty()) continue;
     const std::optional<Vec4> color = one[0] == '#' ? parsed(one.substr(1)) : std::nullopt;
     if (!color)
-      throw Error(Errc::invalid_argument, "a list of colours is #RRGGBB or #RRGGBBAA, separated by "
-                                          "commas; '" + std::string(one) + "' is none");
+      throw Error(Errc::invalid_argument,
+                  "a list of colours is #RRGGBB or #RRGGBBAA, separated by "
+                  "commas; '" +
+                      std::string(one) + "' is none");
     map.colors.push_back(*color);
   }
   return map;

@@ -33,8 +33,7 @@ float blend(float a, float b, double part) {
 /// At part t of the blended colours, [0, 1].
 Vec4 blended(const std::vector<Vec4>& colors, double t) {
   const double at = t * static_cast<double>(colors.size() - 1);
-  const std::size_t i = static_cast<std::size_t>(at),
-                    j = std::min(i + 1, colors.size() - 1);
+  const std::size_t i = static_cast<std::size_t>(at), j = std::min(i + 1, colors.size() - 1);
   const double part = at - static_cast<double>(i);
   const Vec4 a = colors[i], b = colors[j];
   return {blend(a.x, b.x, part), blend(a.y, b.y, part), blend(a.z, b.z, part),
@@ -59,8 +58,7 @@ ScalarRange checked_range(const ScalarMapping& m, ScalarRange in_use) {
   if (!std::isfinite(r.low) || !std::isfinite(r.high)) refuse("range: not finite: " + said);
   if (r.low > r.high) refuse("range: upside down: " + said);
   if (m.logarithmic && m.symmetric) refuse("logarithmic: a range around 0 has no logarithm");
-  if (m.logarithmic && !(r.low > 0))
-    refuse("range: must lie above 0 with a logarithm: " + said);
+  if (m.logarithmic && !(r.low > 0)) refuse("range: must lie above 0 with a logarithm: " + said);
   if (m.symmetric) {
     const double far = std::max(std::abs(r.low), std::abs(r.high));
     r = {-far, far};
@@ -72,12 +70,22 @@ ScalarRange checked_range(const ScalarMapping& m, ScalarRange in_use) {
 }  // namespace
 
 ScalarColors::ScalarColors(const ScalarMapping& m, ScalarRange in_use)
-    : logarithmic_(m.logarithmic && m.categories.empty()), nan_(m.nan), opacity_(m.opacity) {
+    : logarithmic_(m.logarithmic && m.categories.empty()),
+      nan_(m.nan),
+      opacity_(m.opacity),
+      isolines_(m.isolines),
+      isoline_color_(m.isoline_color),
+      isoline_px_(double{m.isoline_px}) {
   if (m.map.colors.empty()) refuse("map: '" + m.map.name + "' has no colours");
   for (const Vec4& c : m.map.colors) check_color(c, "map");
   check_color(m.nan, "nan");
   if (m.below) check_color(*m.below, "below");
   if (m.above) check_color(*m.above, "above");
+  check_color(m.isoline_color, "isoline_color");
+  if (!(m.isoline_px > 0 && m.isoline_px <= 64)) refuse("isoline_px: must lie in (0, 64]");
+  for (std::size_t i = 0; i < isolines_.size(); ++i)
+    if (!std::isfinite(isolines_[i])) refuse("isolines[" + std::to_string(i) + "]: not finite");
+  std::sort(isolines_.begin(), isolines_.end());
   if (m.steps < 0) refuse("steps: " + std::to_string(m.steps) + " is below 0");
   for (std::size_t i = 0; i < m.opacity.size(); ++i) {
     if (!std::isfinite(m.opacity[i].value) || !in_unit(m.opacity[i].opacity))
@@ -113,6 +121,7 @@ ScalarColors::ScalarColors(const ScalarMapping& m, ScalarRange in_use)
   const auto translucent = [](Vec4 c) { return c.w < 1; };
   translucent_ = std::any_of(colors_.begin(), colors_.end(), translucent) || translucent(below_) ||
                  translucent(above_) || translucent(nan_) ||
+                 (!isolines_.empty() && translucent(isoline_color_)) ||
                  std::any_of(opacity_.begin(), opacity_.end(),
                              [](const ScalarOpacity& o) { return o.opacity < 1; });
 }
@@ -126,18 +135,16 @@ double ScalarColors::part(double value) const {
 
 Vec4 ScalarColors::map_color(double value) const {
   if (!categories_.empty()) {
-    // Interpolating equal numbers may leave them by a few roundings.
-    const double within = 1e-6 * std::max(1.0, std::abs(value));
-    auto at = std::lower_bound(categories_.begin(), categories_.end(),
-                               std::pair{value - within, std::size_t{0}});
-    return at != categories_.end() && at->first <= value + within ? colors_[at->second] : nan_;
+    const auto at =
+        std::lower_bound(categories_.begin(), categories_.end(), std::pair{value, std::size_t{0}});
+    return at != categories_.end() && at->first == value ? colors_[at->second] : nan_;
   }
   if (value < range_.low) return below_;
   if (value > range_.high) return above_;
   if (!discrete_) return blended(colors_, part(value));
   const std::size_t last = colors_.size() - 1;
-  return colors_[std::min(last, static_cast<std::size_t>(
-                                    part(value) * static_cast<double>(colors_.size())))];
+  return colors_[std::min(
+      last, static_cast<std::size_t>(part(value) * static_cast<double>(colors_.size())))];
 }
 
 float ScalarColors::opacity_at(double value) const {
@@ -158,14 +165,17 @@ Vec4 ScalarColors::operator()(double value) const {
   return c;
 }
 
-ScalarRange finite_range(std::span<const double> values, bool above_zero) {
-  ScalarRange r{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  for (const double v : values)
-    if (std::isfinite(v) && (!above_zero || v > 0)) {
-      r.low = std::min(r.low, v);
-      r.high = std::max(r.high, v);
-    }
-  return r.low <= r.high ? r : ScalarRange{0, 0};
+Vec4 ScalarColors::with_isolines(Vec4 c, double value, double per_px) const {
+  if (!(per_px > 0) || !std::isfinite(value)) return c;
+  // The nearest of them is one of the two beside the number.
+  const auto above = std::lower_bound(isolines_.begin(), isolines_.end(), value);
+  double off = std::numeric_limits<double>::infinity();
+  if (above != isolines_.end()) off = *above - value;
+  if (above != isolines_.begin()) off = std::min(off, value - above[-1]);
+  const double share = std::clamp(isoline_px_ / 2 + 0.5 - off / per_px, 0.0, 1.0);
+  const Vec4 line = isoline_color_;
+  return {blend(c.x, line.x, share), blend(c.y, line.y, share), blend(c.z, line.z, share),
+          blend(c.w, line.w, share)};
 }
 
 }  // namespace rastrum
