@@ -8,7 +8,6 @@
 #include <rastrum/error.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/scene/scalars.hpp>
-#include <rastrum/transform.hpp>
 
 namespace rastrum {
 namespace {
@@ -59,6 +58,14 @@ const std::vector<Vec3>& positions_of(const G& g) {
     return g.positions;
 }
 
+Vec3d in_world(const Mat4d& to_world, Vec3 p) {
+  const auto row = [&](int i) {
+    const auto& m = to_world.m[i];
+    return ((m[0] * p.x + m[1] * p.y) + m[2] * p.z) + m[3];
+  };
+  return {row(0), row(1), row(2)};
+}
+
 /// Gives every instance a mesh, or geometry, of its own.
 void make_unique(Scene& scene) {
   std::vector<bool> mesh_taken(scene.meshes.size()), geometry_taken(scene.geometries.size());
@@ -88,7 +95,7 @@ void make_scalars(Scene& scene, const std::string& name, const Value& value) {
       NamedScalars& s = g.scalars.emplace_back();
       s.name = name;
       for (const Vec3& p : positions_of(g))
-        s.values.push_back(value(transform_point(instance.object_to_world, Vec3d(p))));
+        s.values.push_back(value(in_world(instance.object_to_world, p)));
     };
     if (instance.geometry)
       std::visit(make, scene.geometries[*instance.geometry]);
