@@ -16,6 +16,7 @@
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/point_line_shader.hpp>
 #include <rastrum/scene.hpp>
+#include <rastrum/scene/view_distance.hpp>
 
 namespace rastrum::raster {
 
@@ -59,6 +60,7 @@ struct SurfaceScene {
   const Camera& camera;
   LitScene lit;
   Mat4d to_camera;
+  DistanceByDepth distance_by_depth;         ///< set where view_depth or distance is asked for
   const MaterialScene* materials = nullptr;  ///< with textures of what alpha and colour come from
   const PointLineShader* points_and_lines = nullptr;  ///< that of their draws
 
