@@ -55,8 +55,7 @@ def main():
              "// Name, whether its colours are categories, and they as RRGGBB.",
              "inline constexpr PublishedMap kPublishedMaps[] = {"]
     samples = [by + ".",
-               "// Name, colours of its own table, and of these some: place, then R, G, B in 1/65535.",
-               "inline constexpr Published kPublished[] = {"]
+               "// Name, colours of its own table, and of these some: place, then R, G, B in 1/65535."]
     for name in SEQUENTIAL + DIVERGING + CYCLIC + QUALITATIVE:
         digits = "".join("%02x%02x%02x" % tuple(np.rint(c * 255).astype(int)) for c in kept(name))
         discrete = "true" if name in QUALITATIVE else "false"
@@ -70,7 +69,7 @@ def main():
                     for i in at]
         samples.append("    }},")
     (root / "rastrum/scene/color_maps/tables.inc").write_text("\n".join([*table, "};", ""]))
-    (root / "tests/scene/color_maps_published.inc").write_text("\n".join([*samples, "};", ""]))
+    (root / "tests/scene/color_maps_published.inc").write_text("\n".join([*samples, ""]))
 
 
 main()

@@ -110,10 +110,10 @@ const raster::SurfaceScalars& SceneDraws::scalars_of(std::size_t instance) const
 }
 
 void SceneDraws::choose_meshes() {
-  std::size_t others = 0;
-  for (std::size_t i = 0; i < scene_.instances.size(); ++i)
-    others += scene_.instances[i].mesh() == nullptr || shows_scalars(i) ? 1 : 0;
-  if (others == 0) return;
+  bool others = false;
+  for (std::size_t i = 0; i < scene_.instances.size() && !others; ++i)
+    others = scene_.instances[i].mesh() == nullptr || shows_scalars(i);
+  if (!others) return;
   mesh_list_.emplace();
   for (std::size_t i = 0; i < scene_.instances.size(); ++i)
     if (scene_.instances[i].mesh() != nullptr)
