@@ -19,6 +19,9 @@ namespace rastrum {
 /// What each value of an attribute is of.
 enum class Per : std::uint8_t { vertex, corner, face, mesh };
 
+template <class C>
+concept ScalarNumber = std::same_as<C, float> || std::same_as<C, double> || IndexNumber<C>;
+
 /// Numbers of any type in a caller's memory, read as float64 as they are: integers are not
 /// normalized (those of 64 bits are rounded to nearest). Strides as ArrayView's.
 class ScalarView {
@@ -26,13 +29,11 @@ class ScalarView {
   ScalarView() = default;
   /// Vectors, arrays and spans of numbers.
   template <array_detail::Contiguous R>
-  requires(std::is_arithmetic_v<array_detail::ValueOf<R>>&& IndexNumber<array_detail::ValueOf<R>> ||
-           std::floating_point<array_detail::ValueOf<R>>) ScalarView(const R& packed)
+  requires ScalarNumber<array_detail::ValueOf<R>> ScalarView(const R& packed)
       : ScalarView(of(std::ranges::data(packed), std::ranges::size(packed))) {}
 
   /// `count` numbers: float, double or integers of any size.
-  template <class C>
-  requires std::same_as<C, float> || std::same_as<C, double> || IndexNumber<C>
+  template <ScalarNumber C>
   [[nodiscard]] static ScalarView of(const C* numbers, std::size_t count,
                                      std::ptrdiff_t stride_bytes = sizeof(C)) {
     ScalarView v;

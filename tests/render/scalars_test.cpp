@@ -399,7 +399,7 @@ TEST(Scalars, AreTheSameBitsWhateverDraws) {
             << r.name << " " << seed;
       }
       RenderOptions limited = base;
-      limited.memory_limit = 1 << 20;
+      limited.memory_limit = 6 << 20;
       ASSERT_EQ(digest(first.color.view()),
                 digest(draw(binding.view(), g.camera, limited).color.view()));
     }
