@@ -127,10 +127,11 @@ void draw_words(const WordOptions& a, const overlay::Canvas& canvas, const overl
     overlay::draw_caption(canvas, a.captions[i], kCorners[i], look);
 }
 
-Camera with_room_for_bounds(Camera camera) {
-  constexpr double kRoom = 1.5;
-  camera.orthographic_height = static_cast<float>(camera.orthographic_height * kRoom);
-  const double half = kRoom * elementary::tan(static_cast<double>(camera.fov_rad) / 2);
+Camera with_room(const AnnotationOptions& a, Camera camera) {
+  if (!a.bounds && !a.scalars.bar()) return camera;
+  const double room = a.bounds ? 1.5 : 1.25;
+  camera.orthographic_height = static_cast<float>(camera.orthographic_height * room);
+  const double half = room * elementary::tan(static_cast<double>(camera.fov_rad) / 2);
   camera.fov_rad = static_cast<float>(2 * elementary::atan(half));
   return camera;
 }

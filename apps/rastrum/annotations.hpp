@@ -52,8 +52,9 @@ void report_missing_glyphs(const WordOptions& a);
 [[nodiscard]] overlay::Look look_of(const WordOptions& a, Vec4 background);
 void draw_words(const WordOptions& a, const overlay::Canvas& canvas, const overlay::Look& look);
 
-/// A camera that leaves a margin for the numbers of --bounds around what it was fitted to.
-[[nodiscard]] Camera with_room_for_bounds(Camera camera);
+/// A camera that leaves a margin for the numbers of --bounds, or for --bar, around what it was
+/// fitted to.
+[[nodiscard]] Camera with_room(const AnnotationOptions& a, Camera camera);
 
 /// Effects, then the box, axes and words, onto `canvas`. `surface` must be there for effects,
 /// `depth` (reversed) for bounds.

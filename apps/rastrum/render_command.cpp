@@ -488,8 +488,8 @@ int run(RenderArguments& a) {
   a.render.shader = shader_of(a.render.shader, inputs.has_materials);
   a.view.turns = a.turntable != 0;
   Camera camera = choose_camera(a.view, scene, binding.view(), {a.render.width, a.render.height});
-  if (a.annotations.bounds && !a.view.file_camera && !a.view.eye && !a.view.orthographic_height)
-    camera = with_room_for_bounds(camera);
+  if (!a.view.file_camera && !a.view.eye && !a.view.orthographic_height)
+    camera = with_room(a.annotations, camera);
 
   std::optional<SceneBinding> posed;
   SceneAt moving;

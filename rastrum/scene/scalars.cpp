@@ -170,7 +170,8 @@ void show_scalars(Scene& scene, const std::string& name) {
     } else {
       for (const ScalarSummary& s : scalar_summaries(scene)) names.append(s.name).append(", ");
       throw Error(Errc::not_found, "there are no scalars called '" + name + "'; there are " +
-                                       names + "and of every scene x, y, z and distance");
+                                       (names.empty() ? "none but those" : names + "and those") +
+                                       " of every scene: x, y, z, distance");
     }
   }
   scene.shown_scalars = name;

@@ -265,7 +265,7 @@ TEST(SceneScalars, AreShownByName) {
   EXPECT_EQ(binding.view().instances[1].mesh()->scalars.values.size(), 3U);
   EXPECT_TRUE(shows_scalars(binding.view(), binding.view().instances[0]));
   EXPECT_EQ(scalar_colors(binding.view()).range(), (ScalarRange{1, 2}));
-  expect_refused("there are heat, and of every scene x, y, z and distance", Errc::not_found,
+  expect_refused("there are heat, and those of every scene: x, y, z, distance", Errc::not_found,
                  [&] { show_scalars(scene, "cold"); });
 }
 
