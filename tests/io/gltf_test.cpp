@@ -114,7 +114,7 @@ TEST(Gltf, SparseAccessorsOverZerosAndOverBytes) {
 
 // What an application has added: numbers by their names; vectors of its own are passed over.
 TEST(Gltf, AttributesOfApplicationsAreScalars) {
-  GltfDocument d;
+  test::GltfDocument d;
   d.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
   d.floats({0.5F, -2, 7}, "SCALAR");
   d.add(std::vector<std::uint8_t>{3, 0, 255}, "SCALAR", 5121);
