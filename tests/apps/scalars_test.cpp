@@ -83,7 +83,7 @@ TEST_F(Scalars, HaveABarAndIsolines) {
 TEST_F(Scalars, RefuseWhatCannotBeMeant) {
   const auto refused = [&](const std::vector<std::string>& more, const std::string& part,
                            int status = 2) {
-    std::vector<std::string> args{"render", "builtin:box", "-o", "a.png"};
+    std::vector<std::string> args{"render", "builtin:boxes", "-o", "a.png"};
     args.insert(args.end(), more.begin(), more.end());
     const Outcome outcome = run(args);
     EXPECT_EQ(outcome.status, status) << part;
