@@ -39,11 +39,13 @@ std::vector<std::uint8_t> sides_of(const MeshView& mesh, double angle_degrees) {
     mesh.read_triangles(t, 1, vertex);
     const Vec3d a = mesh.positions.wide(vertex[0]);
     normals[t] = cross(mesh.positions.wide(vertex[1]) - a, mesh.positions.wide(vertex[2]) - a);
+    std::uint64_t point[3];
+    for (std::size_t c = 0; c < 3; ++c) point[c] = points.of_vertex[vertex[c]];
+    // Two corners in one place: a line, which lies between no faces.
+    if (point[0] == point[1] || point[1] == point[2] || point[2] == point[0]) continue;
     for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint64_t from = points.of_vertex[vertex[c]],
-                          to = points.of_vertex[vertex[(c + 1) % 3]];
-      if (from != to)
-        sides.push_back({std::min(from, to) << 32 | std::max(from, to), 3 * t + c, from > to});
+      const std::uint64_t from = point[c], to = point[(c + 1) % 3];
+      sides.push_back({std::min(from, to) << 32 | std::max(from, to), 3 * t + c, from > to});
     }
   }
   std::sort(sides.begin(), sides.end());
