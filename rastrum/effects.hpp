@@ -1,5 +1,5 @@
-// Effects over a finished picture, from its depth and normals: ambient occlusion, eye-dome
-// lighting, silhouettes and feature edges (docs/overlay.md has the formulas, decision 0051 the
+// Effects over a finished picture, from its depth, normals and ids: ambient occlusion, eye-dome
+// lighting, silhouettes, the edges of meshes (docs/overlay.md has the formulas, decision 0051 the
 // reasons).
 //
 // Each makes an image of factors in [0, 1], 1 where it leaves the picture as it is and where
