@@ -18,6 +18,11 @@ ImageView<T> own(Image<T>& image, const FrameOptions& frame) {
   return image.view();
 }
 
+/// As --fit sphere has it, whose picture it fills.
+double radius_of(const SceneView& scene) {
+  return static_cast<double>(fit_camera(scene, 1, true).orthographic_height) / 2;
+}
+
 Annotations annotations(std::optional<double> occlusion_radius, double occlusion_strength,
                         std::optional<double> edl_strength, bool silhouettes,
                         std::optional<double> edge_angle, double edge_width, bool axes, bool bounds,
@@ -67,7 +72,7 @@ void AnnotationScratch::draw(const Annotations& a, const SceneEdges* edges, cons
   const auto darken = [&] { effects->darken(targets.color8, targets.color, to); };
   if (a.occlusion) {
     AmbientOcclusion o = *a.occlusion;
-    if (o.radius == 0) o.radius = 0.15 * bounding_sphere(scene).radius;
+    if (o.radius == 0) o.radius = 0.15 * radius_of(scene);
     // By depth alone, as the program does.
     effects->ambient_occlusion({.view_depth = targets.view_depth}, camera, o, to);
     darken();
