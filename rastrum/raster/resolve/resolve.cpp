@@ -153,7 +153,7 @@ void store_surface(const FrameRequest& request, const FrameGeometry& frame, cons
     if (!target.empty()) target(x, y) = f == nullptr ? nothing : value();
   };
   store(t.instances, std::int64_t{-1}, [&] {
-    return scene == nullptr ? static_cast<std::int64_t>(f->draw) : scene->instance_id(f->draw);
+    return scene == nullptr ? static_cast<std::int64_t>(f->draw) : scene->instance_id(*f);
   });
   store(t.primitives, std::int64_t{-1}, [&] { return static_cast<std::int64_t>(f->triangle); });
   store(t.barycentrics, Vec2{}, [&] {
@@ -196,21 +196,18 @@ std::uint64_t of_this_pass(const std::uint64_t* keys, std::uint64_t covered,
   return mask;
 }
 
-[[noreturn]] void refuse(std::string_view noun, std::size_t number, const std::string& problem) {
-  throw Error(
-      Errc::invalid_argument,
-      std::string(noun).append(" ").append(std::to_string(number)).append(": ").append(problem));
+[[noreturn]] void refuse(const DrawNames& names, std::size_t draw, const std::string& problem) {
+  throw Error(Errc::invalid_argument, names.of(draw).append(": ").append(problem));
 }
 
-void check_draw(const Draw& draw, std::string_view noun, std::size_t number) {
+void check_draw(const Draw& draw, const DrawNames& names, std::size_t number) {
   const auto require = [&](bool ok, const char* what) {
-    if (!ok) refuse(noun, number, what);
+    if (!ok) refuse(names, number, what);
   };
   require(draw.topology >= Topology::points, "its topology is 0, which is no value of its enum");
   const auto check = [&](auto value, auto last, const char* what) {
     if (value > last)  // a million draws make no million names
-      check_enum(value, last,
-                 std::string(noun).append(" ").append(std::to_string(number)).append(what));
+      check_enum(value, last, names.of(number).append(what));
   };
   check(draw.topology, Topology::triangles, ": its topology");
   check(draw.cull, Cull::front, ": its cull");
@@ -219,18 +216,18 @@ void check_draw(const Draw& draw, std::string_view noun, std::size_t number) {
   require(bool{draw.source}, "its source is null; set it to what projects its vertices");
   if (draw.mesh != nullptr) {
     if (const std::string problem = faces_problem(*draw.mesh); !problem.empty())
-      refuse(noun, number, problem);
+      refuse(names, number, problem);
     require(draw.topology == Topology::triangles, "a mesh has triangles");
   }
   const bool indexed = !draw.indices.empty();
-  const std::size_t corners = indexed ? draw.indices.size() : draw.vertex_count;
+  const std::size_t corners = indexed ? draw.indices.size() : draw.own_vertices();
   const std::uint64_t most = draw.mesh != nullptr
                                  ? draw.mesh->triangle_count()
                                  : corners / static_cast<std::size_t>(draw.topology);
   // Those of points and lines were counted with their arrays.
-  if (draw.points == nullptr && draw.lines == nullptr && draw.primitive_count > most)
-    refuse(noun, number,
-           "primitive_count is " + std::to_string(draw.primitive_count) + ", but its " +
+  if (draw.points == nullptr && draw.lines == nullptr && draw.own_primitives() > most)
+    refuse(names, number,
+           "primitive_count is " + std::to_string(draw.own_primitives()) + ", but its " +
                std::to_string(corners) + (indexed ? " indices" : " vertices") + " make up " +
                std::to_string(most));
   // Written so that a NaN fails.
@@ -242,7 +239,7 @@ void check_draw(const Draw& draw, std::string_view noun, std::size_t number) {
           "the depth bias must be finite");
   if (draw.material_flags.empty()) return;
   require(draw.face_materials.size() >=
-              (draw.mesh != nullptr ? draw.mesh->face_count() : draw.primitive_count),
+              (draw.mesh != nullptr ? draw.mesh->face_count() : draw.own_primitives()),
           "it has flags by material, but fewer face materials than primitives");
   require(
       first_beyond(draw.face_materials, draw.material_flags.size()) == draw.face_materials.size(),
@@ -327,13 +324,13 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
   }
 }
 
-Totals number_draws(std::span<Draw> draws, std::uint64_t first_id, std::string_view noun) {
+Totals number_draws(std::span<Draw> draws, std::uint64_t first_id, const DrawNames& names) {
   Totals totals;
   std::unordered_map<Shading, std::size_t, Shading::Hash> of_shading;
   std::size_t* number = nullptr;
   for (std::size_t i = 0; i < draws.size(); ++i) {
     Draw& draw = draws[i];
-    check_draw(draw, noun, i);
+    check_draw(draw, names, i);
     draw.first_id = first_id + totals.primitives;
     draw.first_vertex = totals.vertices;
     // Mostly all have one.
@@ -349,14 +346,15 @@ Totals number_draws(std::span<Draw> draws, std::uint64_t first_id, std::string_v
   return totals;
 }
 
-void check_indices(std::span<const Draw> draws, std::string_view noun) {
+void check_indices(std::span<const Draw> draws, const DrawNames& names) {
   for (std::size_t i = 0; i < draws.size(); ++i) {
     const Draw& draw = draws[i];
     const IndexView indices = draw.index_view();
-    if (const std::size_t at = first_beyond(indices, draw.vertex_count); at != indices.size())
-      refuse(noun, i,
+    if (const std::size_t at = first_beyond(indices, draw.own_vertices()); at != indices.size())
+      refuse(names, i,
              "indices[" + std::to_string(at) + "]: index " + indices.text(at) +
-                 " is out of range, there are " + std::to_string(draw.vertex_count) + " vertices");
+                 " is out of range, there are " + std::to_string(draw.own_vertices()) +
+                 " vertices");
   }
 }
 
