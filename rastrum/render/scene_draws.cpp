@@ -70,7 +70,7 @@ SceneDraws::SceneDraws(const InstanceRuns& runs, const Camera& camera, const Opt
     surface_->materials = materials_ ? &*materials_ : nullptr;
     surface_->points_and_lines = &points_and_lines_;
     if (!targets.view_depth.empty() || !targets.distance.empty())
-      (void)view_distance(camera, 1);  // throws where depth tells none
+      surface_->distance_by_depth = distance_by_depth(camera);
   }
   if (masks) test_ = raster::MaskTest{&*materials_};
   if (options.shader == Shader::depth) return;

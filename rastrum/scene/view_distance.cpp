@@ -1,7 +1,6 @@
-#include <rastrum/camera.hpp>
+#include <rastrum/scene/view_distance.hpp>
 
 #include <cmath>
-#include <limits>
 
 #include <rastrum/error.hpp>
 
@@ -10,7 +9,7 @@ namespace {
 
 /// z and w change along the axis alone: of what lies t ahead of the eye z = a t + b and w = c t +
 /// e.
-double distance_by_rows(const Camera& camera, double depth) {
+DistanceByDepth by_rows(const Camera& camera) {
   const Mat4d v = world_to_camera(camera);
   const auto& m = camera.matrix->m;
   // What a row is at the eye, and how it changes along an axis of the camera.
@@ -29,17 +28,22 @@ double distance_by_rows(const Camera& camera, double depth) {
           Errc::invalid_argument,
           "camera: the planes of equal depth of its matrix are not across its axis, so that "
           "depth alone tells no distance");
-  return (at_eye(2) - depth * at_eye(3)) / (depth * c - a);
+  return {at_eye(2), at_eye(3), c, -a};
 }
 
 }  // namespace
 
+DistanceByDepth distance_by_depth(const Camera& camera) {
+  const double n = camera.near_plane, f = camera.far_plane;
+  if (camera.matrix) return by_rows(camera);
+  if (camera.orthographic) return {f, f - n, 0, 1};
+  return std::isinf(f) ? DistanceByDepth{n, 0, 1, 0} : DistanceByDepth{n * f, 0, f - n, n};
+}
+
 double view_distance(const Camera& camera, float depth) {
+  // Nothing is everywhere, also of cameras whose depth tells no distance.
   if (!(depth > 0)) return std::numeric_limits<double>::infinity();
-  const double d = depth, n = camera.near_plane, f = camera.far_plane;
-  if (camera.matrix) return distance_by_rows(camera, d);
-  if (camera.orthographic) return f - d * (f - n);
-  return std::isinf(f) ? n / d : n * f / (d * (f - n) + n);
+  return distance_by_depth(camera)(depth);
 }
 
 }  // namespace rastrum

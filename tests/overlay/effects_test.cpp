@@ -188,16 +188,13 @@ TEST(AmbientOcclusion, FindsNormalsFromDepth) {
     const Surface depth_alone{.view_depth = boxes.depth.view()};
     const overlay::OcclusionFrame frame =
         overlay::occlusion_frame(depth_alone, boxes.camera, {.radius = 0.5});
-    std::vector<Vec3> row(200);
     int near = 0, all = 0;
-    for (int y = 0; y < 150; ++y) {
-      overlay::normals_from_depth(frame, y, row.data());
+    for (int y = 0; y < 150; ++y)
       for (int x = 0; x < 200; ++x) {
         if (!(boxes.depth(x, y) < kInfinity)) continue;
         ++all;
-        near += dot(row[static_cast<std::size_t>(x)], boxes.normals(x, y)) > 0.99F;
+        near += dot(overlay::normal_from_depth(frame, x, y), boxes.normals(x, y)) > 0.99F;
       }
-    }
     // All but at creases, where the nearer neighbour may lie on another face.
     EXPECT_GT(all, 3000);
     EXPECT_GT(near, all * 94 / 100) << orthographic;
@@ -294,6 +291,41 @@ TEST(Effects, DarkenMixesTowardsInkAndKeepsAlpha) {
   EXPECT_NEAR(color(0, 0).x, 0.2 + 0.25, 1e-6);
   EXPECT_EQ(color(0, 0).w, 0.5F);
   EXPECT_EQ(color(1, 0).x, 0.4F);
+}
+
+TEST(Effects, DarkenIsTheSameOnEveryInstructionSet) {
+  constexpr int kWidth = 67, kHeight = 64;
+  Image<Rgba8> before(kWidth, kHeight);
+  Image<float> factor(kWidth, kHeight);
+  std::uint32_t state = 1;
+  const auto random = [&] { return (state = state * 1664525 + 1013904223) >> 8; };
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const auto byte = [&] { return static_cast<std::uint8_t>(random()); };
+      before(x, y) = {byte(), byte(), byte(), byte()};
+      // Whole rows and single pixels that stay as they are, and halves that are ties.
+      factor(x, y) = y % 4 == 0 || random() % 3 == 0 ? 1.0F
+                     : random() % 2 == 0             ? 0.5F
+                                                     : static_cast<float>(random() % 1025) / 1024;
+    }
+  for (const Vec3 ink : {Vec3{0, 0, 0}, Vec3{0.2F, 1, 0.5F}})
+    for (const Isa isa : available_isas()) {
+      Image<Rgba8> after(kWidth, kHeight);
+      std::copy(before.pixels().begin(), before.pixels().end(), after.pixels().begin());
+      Effects(1, isa).darken(after, {}, factor.view(), ink);
+      for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+          const Rgba8 c = before(x, y);
+          const float f = factor(x, y);
+          const auto mixed = [&](std::uint8_t from, float to) {
+            return static_cast<std::uint8_t>(
+                std::nearbyint(static_cast<float>(from) * f + to * 255.0F * (1 - f)));
+          };
+          ASSERT_EQ(after(x, y),
+                    (Rgba8{mixed(c.r, ink.x), mixed(c.g, ink.y), mixed(c.b, ink.z), c.a}))
+              << name(isa) << ", " << x << ", " << y;
+        }
+    }
 }
 
 TEST(Effects, RefuseWhatIsOutOfRange) {

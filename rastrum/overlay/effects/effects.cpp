@@ -10,6 +10,7 @@
 
 #include <rastrum/core/angle.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/overlay/effects/darken.hpp>
 #include <rastrum/overlay/effects/lens.hpp>
 #include <rastrum/overlay/effects/occlusion.hpp>
 #include <rastrum/parallel/device.hpp>
@@ -20,8 +21,7 @@ namespace rastrum {
 struct Effects::Impl {
   parallel::Threads threads;
   Isa isa;
-  std::vector<float> scratch[2];
-  std::vector<Vec3> normals;
+  std::vector<float> scratch;
 
   Impl(int count, std::optional<Isa> wanted) : threads(count), isa(choose_isa(wanted)) {}
 
@@ -31,9 +31,9 @@ struct Effects::Impl {
         threads, static_cast<std::size_t>(height), [&](std::size_t y) { row(static_cast<int>(y)); },
         8);
   }
-  ImageView<float> image(int which, int width, int height) {
-    scratch[which].resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    return {scratch[which].data(), width, height};
+  ImageView<float> image(int width, int height) {
+    scratch.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    return {scratch.data(), width, height};
   }
 };
 
@@ -93,21 +93,24 @@ void Effects::ambient_occlusion(const Surface& surface, const Camera& camera,
   if (stride * height > INT32_MAX || stride * height < INT32_MIN)
     throw Error(Errc::invalid_argument,
                 "effects: Surface::view_depth has more than 2^31 numbers from first to last");
-  overlay::OcclusionFrame frame = overlay::occlusion_frame(surface, camera, options);
-  if (surface.normals.empty()) {
-    impl_->normals.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    const ImageView<Vec3> made{impl_->normals.data(), width, height};
-    impl_->for_each_row(height, [&](int y) { normals_from_depth(frame, y, made.row(y)); });
-    frame.normals = made;
-  }
+  const overlay::OcclusionFrame frame = overlay::occlusion_frame(surface, camera, options);
   const auto kernel = overlay::occlusion_kernel(impl_->isa);
   const auto blur = overlay::blur_kernel(impl_->isa);
-  const ImageView<float> raw = impl_->image(0, width, height),
-                         across = impl_->image(1, width, height);
-  impl_->for_each_row(height, [&](int y) { kernel(frame, y, 0, width, raw.row(y)); });
-  impl_->for_each_row(height, [&](int y) { blur(frame, raw, y, 1, 0, 0, width, across.row(y)); });
-  impl_->for_each_row(height,
-                      [&](int y) { blur(frame, across, y, 0, 1, 0, width, factor.row(y)); });
+  const ImageView<float> across = impl_->image(width, height);
+  // Tiles whose samples, 100 px around, stay in a second-level cache also of wide pictures.
+  constexpr int kTileWidth = 128, kTileHeight = 32;
+  const int bands = (height + kTileHeight - 1) / kTileHeight;
+  parallel::for_each_index(impl_->threads, static_cast<std::size_t>(bands), [&](std::size_t band) {
+    const int y0 = static_cast<int>(band) * kTileHeight, y1 = std::min(y0 + kTileHeight, height);
+    for (int x = 0; x < width; x += kTileWidth)
+      for (int y = y0; y < y1; ++y)
+        kernel(frame, y, x, std::min(x + kTileWidth, width), factor.row(y));
+    for (int y = y0; y < y1; ++y)
+      blur(frame, factor.row(y), y, {false, 1}, 0, width, across.row(y));
+  });
+  impl_->for_each_row(height, [&](int y) {
+    blur(frame, across.row(y), y, {true, across.stride}, 0, width, factor.row(y));
+  });
 }
 
 void Effects::eye_dome(const Surface& surface, const Camera& camera, const EyeDome& options,
@@ -204,23 +207,16 @@ void Effects::darken(ImageView<Rgba8> color8, ImageView<Vec4> color, ImageView<c
   check_size(color, factor.width, factor.height, "effects: color");
   check_stride(factor, "effects: the factors' image");
   const Vec3 ink8 = ink * 255.0F;
+  const auto kernel = overlay::darken_kernel(impl_->isa);
   impl_->for_each_row(factor.height, [&](int y) {
+    if (!color8.empty()) kernel(factor.row(y), ink8, factor.width, color8.row(y));
+    if (color.empty()) return;
     for (int x = 0; x < factor.width; ++x) {
       const float f = factor(x, y), left = 1 - f;
       if (f == 1) continue;
-      if (!color8.empty()) {
-        Rgba8& c = color8(x, y);
-        const auto mixed = [&](std::uint8_t from, float to) {
-          const float v = static_cast<float>(from) * f + to * left;
-          return static_cast<std::uint8_t>(std::nearbyint(std::clamp(v, 0.0F, 255.0F)));
-        };
-        c = {mixed(c.r, ink8.x), mixed(c.g, ink8.y), mixed(c.b, ink8.z), c.a};
-      }
-      if (!color.empty()) {
-        Vec4& c = color(x, y);
-        c = {c.x * f + ink.x * c.w * left, c.y * f + ink.y * c.w * left,
-             c.z * f + ink.z * c.w * left, c.w};
-      }
+      Vec4& c = color(x, y);
+      c = {c.x * f + ink.x * c.w * left, c.y * f + ink.y * c.w * left, c.z * f + ink.z * c.w * left,
+           c.w};
     }
   });
 }

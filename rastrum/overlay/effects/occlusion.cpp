@@ -35,7 +35,8 @@ void occlusion_plain(const OcclusionFrame& f, int y, int begin, int end, float* 
       out[x] = 1;
       continue;
     }
-    const Vec3 p = position(f, x, y, depth), n = f.normals(x, y);
+    const Vec3 p = position(f, x, y, depth);
+    const Vec3 n = f.normals.empty() ? normal_from_depth(f, x, y) : f.normals(x, y);
     const float reach = std::min(f.perspective ? f.reach_px / depth : f.reach_px, f.most_px);
     const float bias = kOcclusionBias - p.z * kBiasPerDistance;
     float sum = 0;
@@ -56,8 +57,9 @@ void occlusion_plain(const OcclusionFrame& f, int y, int begin, int end, float* 
   }
 }
 
-void blur_plain(const OcclusionFrame& f, ImageView<const float> in, int y, int dx, int dy,
-                int begin, int end, float* out) {
+void blur_plain(const OcclusionFrame& f, const float* in, int y, BlurTaps taps, int begin, int end,
+                float* out) {
+  const int dx = taps.down ? 0 : 1, dy = 1 - dx;
   for (int x = begin; x < end; ++x) {
     const float depth = f.depth(x, y);
     if (!(depth < kFarthest)) {
@@ -67,26 +69,43 @@ void blur_plain(const OcclusionFrame& f, ImageView<const float> in, int y, int d
     float sum = 0, weights = 0;
     for (int i = -2; i <= 2; ++i) {
       const int qx = x + i * dx, qy = y + i * dy;
-      if (qx < 0 || qx >= in.width || qy < 0 || qy >= in.height) continue;
+      if (qx < 0 || qx >= f.depth.width || qy < 0 || qy >= f.depth.height) continue;
       const float apart = std::fabs(f.depth(qx, qy) - depth) * f.per_radius;
       const float share = i == -2 || i == 2 ? 0.5F : 1.0F;
       const float weight = share * std::max(1.0F - apart * kBlurSharpness, 0.0F);
-      sum = sum + weight * in(qx, qy);
+      sum = sum + weight * in[x + i * taps.step];
       weights = weights + weight;
     }
     out[x] = sum / weights;
   }
 }
 
-void normals_from_depth(const OcclusionFrame& f, int y, Vec3* out) {
-  const int width = f.depth.width, height = f.depth.height;
+void load_each(const float* from, const std::int32_t* places, int count, float* out) noexcept {
+  int i = 0;
+  // Four at a time are stored as one.
+  for (; i + 4 <= count; i += 4) {
+    const float a = from[places[i]], b = from[places[i + 1]], c = from[places[i + 2]],
+                d = from[places[i + 3]];
+    out[i] = a;
+    out[i + 1] = b;
+    out[i + 2] = c;
+    out[i + 3] = d;
+  }
+  for (; i < count; ++i) out[i] = from[places[i]];
+}
+
+Vec3 normal_from_depth(const OcclusionFrame& f, int x, int y) {
+  const float depth = f.depth(x, y);
+  if (!(depth < kFarthest)) return {};
+  const Vec3 p = position(f, x, y, depth);
+  bool found = true;
   // Towards growing x or y, whichever side the neighbour lies on.
-  const auto difference = [&](int x, Vec3 p, float depth, int dx, int dy, bool& found) {
+  const auto difference = [&](int dx, int dy) {
     Vec3 best{};
     float least = kFarthest;
     for (const int side : {1, -1}) {
       const int qx = x + side * dx, qy = y + side * dy;
-      if (qx < 0 || qx >= width || qy < 0 || qy >= height) continue;
+      if (qx < 0 || qx >= f.depth.width || qy < 0 || qy >= f.depth.height) continue;
       const float there = f.depth(qx, qy), apart = std::fabs(there - depth);
       if (!(apart < least)) continue;
       least = apart;
@@ -96,21 +115,14 @@ void normals_from_depth(const OcclusionFrame& f, int y, Vec3* out) {
     found = found && least < kFarthest;
     return best;
   };
-  for (int x = 0; x < width; ++x) {
-    const float depth = f.depth(x, y);
-    out[x] = {};
-    if (!(depth < kFarthest)) continue;
-    const Vec3 p = position(f, x, y, depth);
-    bool found = true;
-    const Vec3 a = difference(x, p, depth, 1, 0, found), b = difference(x, p, depth, 0, 1, found);
-    if (!found) continue;
-    // x to the right and y downwards: b × a looks at the viewer.
-    const Vec3 n{b.y * a.z - b.z * a.y, b.z * a.x - b.x * a.z, b.x * a.y - b.y * a.x};
-    const float square = (n.x * n.x + n.y * n.y) + n.z * n.z;
-    if (!(square > 0)) continue;
-    const float length = std::sqrt(square);
-    out[x] = {n.x / length, n.y / length, n.z / length};
-  }
+  const Vec3 a = difference(1, 0), b = difference(0, 1);
+  if (!found) return {};
+  // x to the right and y downwards: b × a looks at the viewer.
+  const Vec3 n{b.y * a.z - b.z * a.y, b.z * a.x - b.x * a.z, b.x * a.y - b.y * a.x};
+  const float square = (n.x * n.x + n.y * n.y) + n.z * n.z;
+  if (!(square > 0)) return {};
+  const float length = std::sqrt(square);
+  return {n.x / length, n.y / length, n.z / length};
 }
 
 OcclusionFrame occlusion_frame(const Surface& surface, const Camera& camera,
@@ -123,13 +135,14 @@ OcclusionFrame occlusion_frame(const Surface& surface, const Camera& camera,
     refuse("radius must be > 0 and finite", options.radius);
   if (!(options.strength >= 0 && options.strength <= 16))
     refuse("strength must lie in [0, 16]", options.strength);
-  if (options.samples < 1 || options.samples > 64)
+  if (options.samples < 1 || options.samples > kMostSamples)
     refuse("samples must lie in 1 to 64", options.samples);
   const int width = surface.view_depth.width, height = surface.view_depth.height;
   const Lens lens = lens_of(camera, width, height);
   const double scale = lens.perspective ? 1 : 1 / options.radius;
   OcclusionFrame f;
   f.depth = surface.view_depth;
+  f.stride = static_cast<int>(surface.view_depth.stride);
   f.normals = surface.normals;
   f.perspective = lens.perspective;
   f.ux = static_cast<float>(lens.ux * scale);

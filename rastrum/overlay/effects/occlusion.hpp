@@ -2,6 +2,8 @@
 // instruction set have in common. Lengths are in units of the radius.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <rastrum/device.hpp>
@@ -15,7 +17,7 @@ inline constexpr int kPatternLanes = 16;  ///< its row of 4, repeated for the wi
 
 struct OcclusionFrame {
   ImageView<const float> depth;
-  ImageView<const Vec3> normals;
+  ImageView<const Vec3> normals;  ///< empty: by depth
   bool perspective = true;
   float ux = 0, uy = 0, u0 = 0, vy = 0, v0 = 0;  ///< Lens; of an orthographic one by the radius
   float per_radius = 0;                          ///< 1 / radius
@@ -23,6 +25,7 @@ struct OcclusionFrame {
         most_px = 0;  ///< of the radius at distance 1 (anywhere); the most samples spread
   float weight = 0;   ///< strength over the number of samples
   int samples = 0;
+  int stride = 0;  ///< of `depth`
   /// Of pattern row y % 4 and sample k the offsets across, then down, in parts of the reach:
   /// [((y % 4) · samples + k) · 2 + axis] · 16 + x % 16.
   std::vector<float> pattern;
@@ -41,23 +44,35 @@ inline constexpr float kOcclusionEpsilon = 0.01F;  ///< the paper's
 inline constexpr float kOcclusionScale =
     4.0F;  ///< chosen by looking: a right angle keeps a quarter
 inline constexpr float kBlurSharpness = 2.0F;
+inline constexpr int kMostSamples = 64;
 inline constexpr float kFarthest = 3.402823466e38F;
 
-/// Pixels [begin, end) of row y, without blur. `begin` is a multiple of 16.
+/// Where a blur's five numbers lie: `step` apart, in a row of the picture or across rows.
+struct BlurTaps {
+  bool down;
+  std::ptrdiff_t step;
+};
+
+/// Pixels [begin, end) of row y, without blur. `begin` is a multiple of 16. Without
+/// OcclusionFrame::normals those that depth tells.
 using OcclusionKernel = void (*)(const OcclusionFrame& frame, int y, int begin, int end,
                                  float* out);
-/// Row y of `in` blurred along x (dx 1, dy 0) or y: 5 pixels of weights 1/2, 1, 1, 1, 1/2, less
-/// where they are not as far.
-using BlurKernel = void (*)(const OcclusionFrame& frame, ImageView<const float> in, int y, int dx,
-                            int dy, int begin, int end, float* out);
+/// A blurred row y, whose numbers are at `in`: 5 pixels of weights 1/2, 1, 1, 1, 1/2, less where
+/// they are not as far.
+using BlurKernel = void (*)(const OcclusionFrame& frame, const float* in, int y, BlurTaps taps,
+                            int begin, int end, float* out);
 
 void occlusion_plain(const OcclusionFrame& frame, int y, int begin, int end, float* out);
-void blur_plain(const OcclusionFrame& frame, ImageView<const float> in, int y, int dx, int dy,
-                int begin, int end, float* out);
+void blur_plain(const OcclusionFrame& frame, const float* in, int y, BlurTaps taps, int begin,
+                int end, float* out);
 
-/// Normals of row y from depth alone: across the differences to the neighbours, of both sides the
-/// one that is nearer in depth; (0, 0, 0) where a pixel has none.
-void normals_from_depth(const OcclusionFrame& frame, int y, Vec3* out);
+/// out[i] = from[places[i]]. Load by load, which is faster than the instruction set's gather here
+/// (docs/log/effects.md).
+void load_each(const float* from, const std::int32_t* places, int count, float* out) noexcept;
+
+/// The normal of a pixel from depth alone: across the differences to the neighbours, of both sides
+/// the one that is nearer in depth; (0, 0, 0) where it has none.
+[[nodiscard]] Vec3 normal_from_depth(const OcclusionFrame& frame, int x, int y);
 
 [[nodiscard]] OcclusionKernel occlusion_kernel(Isa isa) noexcept;
 [[nodiscard]] BlurKernel blur_kernel(Isa isa) noexcept;

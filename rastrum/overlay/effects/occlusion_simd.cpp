@@ -25,30 +25,168 @@ struct Position {
   V x, y, z;
 };
 
+/// The pixels of a vector, and what their samples have in common.
+struct Pixels {
+  V px, py;  ///< centres
+  Position p;
+  V nx, ny, nz, reach, bias;
+  V width, height;  ///< of the picture
+  hn::Vec<I> place;
+};
+
+/// Lens::u and v of the pixels whose centres are (px, py).
+HWY_INLINE V across_of(const OcclusionFrame& f, V px, V py) {
+  const D d;
+  V along = hn::Mul(hn::Set(d, f.ux), px);
+  // Skewed cameras alone have it, and to add 0 changes no bit.
+  if (f.uy != 0) along = hn::Add(along, hn::Mul(hn::Set(d, f.uy), py));
+  return hn::Add(along, hn::Set(d, f.u0));
+}
+HWY_INLINE V down_of(const OcclusionFrame& f, V py) {
+  const D d;
+  return hn::Add(hn::Mul(hn::Set(d, f.vy), py), hn::Set(d, f.v0));
+}
+
 HWY_INLINE Position position(const OcclusionFrame& f, V px, V py, V depth) {
   const D d;
-  const V u = hn::Add(hn::Add(hn::Mul(hn::Set(d, f.ux), px), hn::Mul(hn::Set(d, f.uy), py)),
-                      hn::Set(d, f.u0));
-  const V v = hn::Add(hn::Mul(hn::Set(d, f.vy), py), hn::Set(d, f.v0));
+  const V u = across_of(f, px, py), v = down_of(f, py);
   const V e = hn::Mul(depth, hn::Set(d, f.per_radius));
-  const V s = f.perspective ? e : hn::Set(d, 1.0F);
-  return {hn::Mul(u, s), hn::Mul(v, s), hn::Neg(e)};
+  if (!f.perspective) return {u, v, hn::Neg(e)};
+  return {hn::Mul(u, e), hn::Mul(v, e), hn::Neg(e)};
 }
 
 HWY_INLINE V sum_of(V a, V b, V c) {
   return hn::Add(hn::Add(a, b), c);
 }
 
+/// b × a and the same of the other components, for normal_from_depth.
+struct Difference {
+  V x, y, z;
+  hn::Mask<D> found;
+};
+
+/// Towards growing x or y, from the side whose neighbour is nearer in depth: normal_from_depth's.
+template <bool kAcross>
+HWY_INLINE Difference difference(const OcclusionFrame& f, const Pixels& at, V depth, V after,
+                                 V before) {
+  const D d;
+  const V one = hn::Set(d, 1.0F);
+  const V apart_after = hn::Abs(hn::Sub(after, depth)),
+          apart_before = hn::Abs(hn::Sub(before, depth));
+  // In plain comparisons a NaN is not near.
+  const auto has_after = hn::Lt(apart_after, hn::Set(d, kFarthest));
+  const V least = hn::IfThenElse(has_after, apart_after, hn::Set(d, kFarthest));
+  const auto is_before = hn::Lt(apart_before, least);
+  const auto found = hn::Or(is_before, has_after);
+  const V there = hn::IfThenElse(is_before, before, after);
+  const V step = hn::IfThenElse(is_before, hn::Neg(one), one);
+  const Position q = kAcross ? position(f, hn::Add(at.px, step), at.py, there)
+                             : position(f, at.px, hn::Add(at.py, step), there);
+  // p − q is −(q − p), whatever it rounds to.
+  return {hn::Mul(hn::Sub(q.x, at.p.x), step), hn::Mul(hn::Sub(q.y, at.p.y), step),
+          hn::Mul(hn::Sub(q.z, at.p.z), step), found};
+}
+
+/// normal_from_depth of the pixels from (x, y) on, which have neighbours on all sides.
+HWY_INLINE void normals_from_depth(const OcclusionFrame& f, int x, int y, V depth, Pixels& at) {
+  const D d;
+  const float* row = f.depth.row(y) + x;
+  const auto a = difference<true>(f, at, depth, hn::LoadU(d, row + 1), hn::LoadU(d, row - 1));
+  const auto b = difference<false>(f, at, depth, hn::LoadU(d, f.depth.row(y + 1) + x),
+                                   hn::LoadU(d, f.depth.row(y - 1) + x));
+  const auto minor = [](V p, V q, V r, V s)
+                         HWY_ATTR { return hn::Sub(hn::Mul(p, q), hn::Mul(r, s)); };
+  const V nx = minor(b.y, a.z, b.z, a.y), ny = minor(b.z, a.x, b.x, a.z),
+          nz = minor(b.x, a.y, b.y, a.x);
+  const V square = sum_of(hn::Mul(nx, nx), hn::Mul(ny, ny), hn::Mul(nz, nz));
+  const auto has = hn::And(hn::And(a.found, b.found), hn::Gt(square, hn::Zero(d)));
+  const V length = hn::Sqrt(square);
+  at.nx = hn::IfThenElseZero(has, hn::Div(nx, length));
+  at.ny = hn::IfThenElseZero(has, hn::Div(ny, length));
+  at.nz = hn::IfThenElseZero(has, hn::Div(nz, length));
+}
+
+/// The samples of a vector of pixels, sample after sample.
+struct Samples {
+  static constexpr int kCapacity = kMostSamples * kPatternLanes;
+  HWY_ALIGN std::int32_t places[kCapacity];  ///< from f.depth.data
+  HWY_ALIGN float depths[kCapacity];
+  HWY_ALIGN float u[kCapacity];  ///< Lens; NaN beyond the picture
+  HWY_ALIGN float v[kCapacity];
+};
+
+/// `kBorder`: some may lie beyond the picture. Vectors of the pattern begin at `pattern`.
+template <bool kBorder>
+HWY_INLINE void find_samples(const OcclusionFrame& f, const Pixels& at, const float* pattern,
+                             Samples& samples) {
+  const D d;
+  const I di;
+  const auto stride = hn::Set(di, f.stride);
+  const std::size_t lanes = hn::Lanes(d), count = static_cast<std::size_t>(f.samples) * lanes;
+  for (std::size_t i = 0; i < count; i += lanes, pattern += 2 * kPatternLanes) {
+    // Whole numbers below 2^23: sums with them are what those of integers would be.
+    const V dx = hn::Round(hn::Mul(hn::Load(d, pattern), at.reach)),
+            dy = hn::Round(hn::Mul(hn::Load(d, pattern + kPatternLanes), at.reach));
+    const V qx = hn::Add(at.px, dx), qy = hn::Add(at.py, dy);
+    auto place =
+        hn::Add(at.place, hn::Add(hn::Mul(hn::NearestInt(dy), stride), hn::NearestInt(dx)));
+    V u = across_of(f, qx, qy);
+    if constexpr (kBorder) {
+      const V zero = hn::Zero(d);
+      const auto inside = hn::And(hn::And(hn::Gt(qx, zero), hn::Lt(qx, at.width)),
+                                  hn::And(hn::Gt(qy, zero), hn::Lt(qy, at.height)));
+      place = hn::IfThenElseZero(hn::RebindMask(di, inside), place);
+      u = hn::IfThenElse(inside, u, hn::NaN(d));
+    }
+    hn::Store(place, di, samples.places + i);
+    hn::Store(u, d, samples.u + i);
+    hn::Store(down_of(f, qy), d, samples.v + i);
+  }
+}
+
+/// How much light they take.
+template <bool kPerspective>
+HWY_INLINE V taken(const OcclusionFrame& f, const Pixels& at, const Samples& samples) {
+  const D d;
+  const V one = hn::Set(d, 1.0F), farthest = hn::Set(d, kFarthest);
+  const V per_radius = hn::Set(d, f.per_radius);
+  const V away = hn::Neg(at.nz);  // z grows towards the viewer, distances do not
+  const std::size_t lanes = hn::Lanes(d), count = static_cast<std::size_t>(f.samples) * lanes;
+  V sum = hn::Zero(d);
+  for (std::size_t i = 0; i < count; i += lanes) {
+    const V depth = hn::Load(d, samples.depths + i), e = hn::Mul(depth, per_radius);
+    V qx = hn::Load(d, samples.u + i), qy = hn::Load(d, samples.v + i);
+    if constexpr (kPerspective) {
+      qx = hn::Mul(qx, e);
+      qy = hn::Mul(qy, e);
+    }
+    const V vx = hn::Sub(qx, at.p.x), vy = hn::Sub(qy, at.p.y), vz = hn::Add(e, at.p.z);
+    const V vv = sum_of(hn::Mul(vx, vx), hn::Mul(vy, vy), hn::Mul(vz, vz));
+    const V vn = sum_of(hn::Mul(vx, at.nx), hn::Mul(vy, at.ny), hn::Mul(vz, away));
+    // No comparison with NaN holds, so that this leaves out what lies beyond the picture.
+    const auto takes =
+        hn::And(hn::And(hn::Lt(depth, farthest), hn::Lt(vv, one)), hn::Gt(vn, at.bias));
+    // Mostly none does: surfaces are flat or bend away.
+    if (hn::AllFalse(d, takes)) continue;
+    const V near = hn::Sub(one, vv);
+    const V light = hn::Div(hn::Mul(hn::Mul(hn::Mul(near, near), near), hn::Sub(vn, at.bias)),
+                            hn::Add(vv, hn::Set(d, kOcclusionEpsilon)));
+    sum = hn::IfThenElse(takes, hn::Add(sum, light), sum);
+  }
+  return sum;
+}
+
 void occlusion(const OcclusionFrame& f, int y, int begin, int end, float* out) {
   const D d;
   const I di;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const V one = hn::Set(d, 1.0F), zero = hn::Zero(d), half = hn::Set(d, 0.5F);
-  const V farthest = hn::Set(d, kFarthest), epsilon = hn::Set(d, kOcclusionEpsilon);
-  const auto width = hn::Set(di, f.depth.width), height = hn::Set(di, f.depth.height);
-  const auto none = hn::Set(di, -1), stride = hn::Set(di, static_cast<int>(f.depth.stride));
-  const auto row = hn::Set(di, y);
-  const V py = hn::Add(hn::ConvertTo(d, row), half);
+  const V one = hn::Set(d, 1.0F), half = hn::Set(d, 0.5F), farthest = hn::Set(d, kFarthest);
+  const bool own_normals = f.normals.empty();
+  Pixels at;
+  at.py = hn::Set(d, static_cast<float>(y) + 0.5F);
+  at.width = hn::Set(d, static_cast<float>(f.depth.width));
+  at.height = hn::Set(d, static_cast<float>(f.depth.height));
+  Samples samples;
   int x = begin;
   for (; x + lanes <= end; x += lanes) {
     const V depth = hn::LoadU(d, f.depth.row(y) + x);
@@ -57,54 +195,54 @@ void occlusion(const OcclusionFrame& f, int y, int begin, int end, float* out) {
       hn::StoreU(one, d, out + x);
       continue;
     }
-    const auto column = hn::Iota(di, x);
-    const Position p = position(f, hn::Add(hn::ConvertTo(d, column), half), py, depth);
-    V nx, ny, nz;
-    hn::LoadInterleaved3(d, &f.normals(x, y).x, nx, ny, nz);
-    const V spread = hn::Set(d, f.reach_px);
-    const V reach = hn::Min(f.perspective ? hn::Div(spread, depth) : spread, hn::Set(d, f.most_px));
-    const V bias = hn::Sub(hn::Set(d, kOcclusionBias), hn::Mul(p.z, hn::Set(d, kBiasPerDistance)));
-    V sum = zero;
-    for (int k = 0; k < f.samples; ++k) {
-      const int lane = x % kPatternLanes;
-      const auto qx =
-          hn::Add(column, hn::NearestInt(hn::Mul(hn::LoadU(d, f.offsets(y, k, 0) + lane), reach)));
-      const auto qy =
-          hn::Add(row, hn::NearestInt(hn::Mul(hn::LoadU(d, f.offsets(y, k, 1) + lane), reach)));
-      const auto inside = hn::And(hn::And(hn::Gt(qx, none), hn::Lt(qx, width)),
-                                  hn::And(hn::Gt(qy, none), hn::Lt(qy, height)));
-      const auto place = hn::IfThenElseZero(inside, hn::Add(hn::Mul(qy, stride), qx));
-      const V q_depth = hn::GatherIndex(d, f.depth.data, place);
-      const auto counts = hn::And(hn::RebindMask(d, inside), hn::Lt(q_depth, farthest));
-      const Position q = position(f, hn::Add(hn::ConvertTo(d, qx), half),
-                                  hn::Add(hn::ConvertTo(d, qy), half), q_depth);
-      const V vx = hn::Sub(q.x, p.x), vy = hn::Sub(q.y, p.y), vz = hn::Sub(q.z, p.z);
-      const V vv = sum_of(hn::Mul(vx, vx), hn::Mul(vy, vy), hn::Mul(vz, vz));
-      const V vn = sum_of(hn::Mul(vx, nx), hn::Mul(vy, ny), hn::Mul(vz, nz));
-      const V near = hn::Max(hn::Sub(one, vv), zero);
-      const V takes =
-          hn::Div(hn::Mul(hn::Mul(hn::Mul(near, near), near), hn::Max(hn::Sub(vn, bias), zero)),
-                  hn::Add(vv, epsilon));
-      sum = hn::IfThenElse(counts, hn::Add(sum, takes), sum);
+    if (own_normals &&
+        (x == 0 || x + lanes == f.depth.width || y == 0 || y + 1 == f.depth.height)) {
+      occlusion_plain(f, y, x, x + lanes, out);
+      continue;
     }
-    const V left = hn::Max(hn::Sub(one, hn::Mul(hn::Set(d, f.weight), sum)), zero);
+    const auto column = hn::Iota(di, x);
+    at.px = hn::Add(hn::ConvertTo(d, column), half);
+    at.p = position(f, at.px, at.py, depth);
+    if (own_normals)
+      normals_from_depth(f, x, y, depth, at);
+    else
+      hn::LoadInterleaved3(d, &f.normals(x, y).x, at.nx, at.ny, at.nz);
+    const V spread = hn::Set(d, f.reach_px);
+    // Of what is not there it is 0, so that nothing far away is asked for.
+    at.reach = hn::IfThenElseZero(
+        there, hn::Min(f.perspective ? hn::Div(spread, depth) : spread, hn::Set(d, f.most_px)));
+    at.bias = hn::Sub(hn::Set(d, kOcclusionBias), hn::Mul(at.p.z, hn::Set(d, kBiasPerDistance)));
+    at.place = hn::Add(column, hn::Set(di, y * f.stride));
+    // An offset is less than the reach, and rounds to at most 1/2 more.
+    const int reach = static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, at.reach))) + 2;
+    const bool border =
+        x < reach || x + lanes + reach > f.depth.width || y < reach || y + reach >= f.depth.height;
+    const float* pattern = f.offsets(y, 0, 0) + x % kPatternLanes;
+    if (border)
+      find_samples<true>(f, at, pattern, samples);
+    else
+      find_samples<false>(f, at, pattern, samples);
+    load_each(f.depth.data, samples.places, f.samples * lanes, samples.depths);
+    const V sum = f.perspective ? taken<true>(f, at, samples) : taken<false>(f, at, samples);
+    const V left = hn::Max(hn::Sub(one, hn::Mul(hn::Set(d, f.weight), sum)), hn::Zero(d));
     hn::StoreU(hn::IfThenElse(there, left, one), d, out + x);
   }
   occlusion_plain(f, y, x, end, out);
 }
 
-void blur(const OcclusionFrame& f, ImageView<const float> in, int y, int dx, int dy, int begin,
-          int end, float* out) {
+void blur(const OcclusionFrame& f, const float* in, int y, BlurTaps taps, int begin, int end,
+          float* out) {
   const D d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const V one = hn::Set(d, 1.0F), zero = hn::Zero(d), farthest = hn::Set(d, kFarthest);
   const V per_radius = hn::Set(d, f.per_radius), sharpness = hn::Set(d, kBlurSharpness);
+  const int dx = taps.down ? 0 : 1, dy = 1 - dx, width = f.depth.width;
   // What reaches beyond the picture is left to the plain form.
   const int first = std::min(end, std::max(begin, 2 * dx));
-  blur_plain(f, in, y, dx, dy, begin, first, out);
-  const bool rows_inside = dy == 0 || (y >= 2 && y + 2 < in.height);
+  blur_plain(f, in, y, taps, begin, first, out);
+  const bool rows_inside = !taps.down || (y >= 2 && y + 2 < f.depth.height);
   int x = first;
-  for (; rows_inside && x + lanes + 2 * dx <= in.width && x + lanes <= end; x += lanes) {
+  for (; rows_inside && x + lanes + 2 * dx <= width && x + lanes <= end; x += lanes) {
     const V depth = hn::LoadU(d, f.depth.row(y) + x);
     const auto there = hn::Lt(depth, farthest);
     if (hn::AllFalse(d, there)) {
@@ -117,12 +255,12 @@ void blur(const OcclusionFrame& f, ImageView<const float> in, int y, int dx, int
       const V apart = hn::Mul(hn::Abs(hn::Sub(q_depth, depth)), per_radius);
       const V share = hn::Set(d, i == -2 || i == 2 ? 0.5F : 1.0F);
       const V weight = hn::Mul(share, hn::Max(hn::Sub(one, hn::Mul(apart, sharpness)), zero));
-      sum = hn::Add(sum, hn::Mul(weight, hn::LoadU(d, in.row(y + i * dy) + x + i * dx)));
+      sum = hn::Add(sum, hn::Mul(weight, hn::LoadU(d, in + x + i * taps.step)));
       weights = hn::Add(weights, weight);
     }
     hn::StoreU(hn::IfThenElse(there, hn::Div(sum, weights), one), d, out + x);
   }
-  blur_plain(f, in, y, dx, dy, x, end, out);
+  blur_plain(f, in, y, taps, x, end, out);
 }
 
 }  // namespace

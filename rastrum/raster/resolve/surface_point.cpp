@@ -100,7 +100,7 @@ Vec3d SurfaceScene::object_normal(const SeenFragment& f) const {
 Vec3d SurfaceScene::normal(const SeenFragment& f) const {
   const Vec3d n = object_normal(f);
   LitDraw own;
-  if (f.copy != 0) own = lit.draws[f.draw].of(instance(f));
+  if (f.copy != 0) own = lit.draws[f.draw].of(instance(f.draw, f.copy));
   const auto& m = (f.copy != 0 ? own : lit.draws[f.draw]).normal_matrix;
   const auto row = [&](int i) {
     return (double{m[i][0]} * n.x + double{m[i][1]} * n.y) + double{m[i][2]} * n.z;

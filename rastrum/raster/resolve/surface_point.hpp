@@ -17,6 +17,7 @@
 #include <rastrum/raster/shade/point_line_shader.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/scene/instance_runs.hpp>
+#include <rastrum/scene/view_distance.hpp>
 
 namespace rastrum::raster {
 
@@ -62,24 +63,25 @@ struct SurfaceScene {
   const Camera& camera;
   LitScene lit;
   Mat4d to_camera;
+  DistanceByDepth distance_by_depth;         ///< set where view_depth or distance is asked for
   const MaterialScene* materials = nullptr;  ///< with textures of what alpha and colour come from
   const PointLineShader* points_and_lines = nullptr;  ///< that of their draws
 
   SurfaceScene(const SceneView& s, const InstanceRuns* r, const Camera& c, int width, int height)
       : scene(s), runs(r), camera(c), lit(s, c, width, height), to_camera(world_to_camera(c)) {}
 
-  [[nodiscard]] const InstanceView& instance(const SeenFragment& f) const {
-    return runs == nullptr ? scene.instances[f.draw] : runs->instances(f.draw)[f.copy];
+  [[nodiscard]] const InstanceView& instance(std::size_t draw, std::uint64_t copy) const {
+    return runs == nullptr ? scene.instances[draw] : runs->instances(draw)[copy];
   }
   /// InstanceView::id.
-  [[nodiscard]] std::int64_t instance_id(const SeenFragment& f) const {
-    const std::uint64_t number = runs == nullptr ? f.draw : runs->number(f.draw) + f.copy;
-    return instance(f).id.value_or(static_cast<std::int64_t>(number));
+  [[nodiscard]] std::int64_t instance_id(std::size_t draw, std::uint64_t copy) const {
+    const std::uint64_t number = runs == nullptr ? draw : runs->number(draw) + copy;
+    return instance(draw, copy).id.value_or(static_cast<std::int64_t>(number));
   }
   /// In the world.
   [[nodiscard]] Vec3d position(const SeenFragment& f) const {
-    return f.quadric != nullptr ? in_world(instance(f), f.quadric->position)
-                                : position_on(instance(f), f);
+    return f.quadric != nullptr ? in_world(instance(f.draw, f.copy), f.quadric->position)
+                                : position_on(instance(f.draw, f.copy), f);
   }
   /// Unit length, in the world, turned to the viewer; 0 where there is none.
   [[nodiscard]] Vec3d normal(const SeenFragment& f) const;
