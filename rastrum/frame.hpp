@@ -73,6 +73,9 @@ struct Targets {
   /// colours, white where there are none of them, with a fragment's own alpha. Before light, and
   /// without FrameOptions::opacity. 0 where nothing is.
   ImageView<Vec4> albedo{};
+  /// The numbers that the geometry has there (MeshView::scalars), interpolated in float64; NaN
+  /// where there are none, and where nothing is.
+  ImageView<float> scalars{};
   /// Shader::material's colours in linear light, premultiplied, over the background: `color` before
   /// the transfer function, and not cut to 1. A frame with this blends in linear light; its other
   /// colours are the same bits, but with several samples, whose mean is then one of linear light.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <rastrum/array.hpp>
+#include <rastrum/scalars.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum {
@@ -40,9 +41,6 @@ struct TrianglePlace {
   std::size_t corner[3];
   std::size_t face;
 };
-
-/// What each value of an attribute is of.
-enum class Per : std::uint8_t { vertex, corner, face, mesh };
 
 /// Values at the corners of triangles. With `indices`, one a corner, corner c reads
 /// values[indices[c]] (OBJ); without, `values` has one a position (glTF, PLY), a corner, a face or
@@ -91,6 +89,7 @@ struct MeshView {
   IndexView face_materials{};       ///< one a face; empty: `material` for all
   std::uint32_t material = 0;       ///< index into Scene::materials
   FacesView faces{};
+  MeshScalarsView scalars{};  ///< numbers that become colours: InstanceView::scalar_mapping
 
   /// Whether both view the same memory in the same way.
   bool operator==(const MeshView&) const = default;
@@ -145,10 +144,18 @@ struct Mesh {
   Attribute<Vec4> colors{};
   std::vector<std::uint32_t> face_materials{};
   std::uint32_t material = 0;
+  std::vector<NamedScalars> scalars{};  ///< of which Scene::shown_scalars has one in the view
 
   [[nodiscard]] MeshView view() const {
-    return {positions,     indices,        normals.view(), texcoords.view(),
-            colors.view(), face_materials, material,       {}};
+    return {positions,
+            indices,
+            normals.view(),
+            texcoords.view(),
+            colors.view(),
+            face_materials,
+            material,
+            {},
+            {}};
   }
   [[nodiscard]] std::size_t triangle_count() const { return view().triangle_count(); }
 };

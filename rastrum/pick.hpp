@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include <rastrum/camera.hpp>
 #include <rastrum/scene.hpp>
@@ -48,6 +49,7 @@ struct Pick {
   Vec3d normal;     ///< unit length, in the world, turned to the viewer; 0 where it has none
   float depth = 0;  ///< reversed
   double view_depth = 0, distance = 0;
+  std::optional<double> scalar;  ///< the geometry's, interpolated; none: it has none
 };
 
 }  // namespace rastrum

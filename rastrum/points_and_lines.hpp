@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <rastrum/array.hpp>
+#include <rastrum/scalars.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum {
@@ -30,6 +31,7 @@ struct PointsView {
   float point_size = 1;        ///< px, in (0, 4096]; less than 1 counts as 1
   bool round = false;          ///< a disc, from a size of 1.5 px on
   std::uint32_t material = 0;  ///< index into SceneView::materials
+  ScalarView scalars{};        ///< one a position
 
   [[nodiscard]] std::size_t size() const {
     return indices.empty() ? positions.size() : indices.size();
@@ -59,6 +61,7 @@ struct LinesView {
   ArrayView<Vec4> colors{};    ///< one a position, linear along a segment
   float line_width = 1;        ///< px, in (0, 4096], rounded to a whole number of at least 1
   std::uint32_t material = 0;  ///< index into SceneView::materials
+  ScalarView scalars{};        ///< one a position, linear along a segment
 
   [[nodiscard]] std::size_t corner_count() const {
     return indices.empty() ? positions.size() : indices.size();
@@ -83,6 +86,7 @@ struct Points {
   float point_size = 1;
   bool round = false;
   std::uint32_t material = 0;
+  std::vector<NamedScalars> scalars{};
 
   [[nodiscard]] PointsView view() const;
 };
@@ -97,6 +101,7 @@ struct Lines {
   std::vector<Vec4> colors{};
   float line_width = 1;
   std::uint32_t material = 0;
+  std::vector<NamedScalars> scalars{};
 
   [[nodiscard]] LinesView view() const;
 };

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <rastrum/camera.hpp>
+#include <rastrum/color_map.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/mesh.hpp>
@@ -105,6 +106,11 @@ struct InstanceView {
   /// In object space: of this instance that is seen which all of them keep. At most kMaxClipPlanes;
   /// FrameOptions::clip_planes says more.
   std::span<const ClipPlane> clip_planes{};
+  /// A number for all of it: stands for the geometry's scalars.
+  std::optional<double> scalar{};
+  /// What makes colours of its scalars: an index into SceneView::scalar_mappings, where there are
+  /// some. They stand for colours, materials' base colours and textures.
+  std::uint32_t scalar_mapping = 0;
 
   /// The triangle mesh that it draws; null: another geometry.
   [[nodiscard]] const MeshView* mesh() const { return std::get_if<MeshView>(&geometry); }
@@ -115,6 +121,7 @@ struct SceneView {
   std::span<const InstanceView> instances{};
   std::span<const Material> materials{};
   std::span<const Texture> textures{};
+  std::span<const ScalarMapping> scalar_mappings{};  ///< empty: scalars colour nothing
 };
 
 /// What is no mesh, with arrays of its own.
@@ -135,6 +142,8 @@ struct Instance {
   Winding winding = Winding::counter_clockwise;
   std::optional<std::int64_t> id{};
   std::vector<ClipPlane> clip_planes{};
+  std::optional<double> scalar{};
+  std::uint32_t scalar_mapping = 0;  ///< index into Scene::scalar_mappings
 };
 
 /// What readers return: meshes and other geometries, instances in order of submission, materials,
@@ -147,6 +156,9 @@ struct Scene {
   std::vector<Texture> textures{};
   std::vector<Camera> cameras{};
   std::vector<Motion> motions{};  ///< what moves: `pose` (motion.hpp)
+  std::vector<ScalarMapping> scalar_mappings{};
+  /// The name of the scalars that instances show, where their geometry has some of it; empty: none.
+  std::string shown_scalars{};
   /// What a reader left out or found odd, a sentence each; nothing is lost silently.
   std::vector<std::string> warnings{};
 
@@ -184,6 +196,33 @@ class SceneBinding {
   std::vector<InstanceView> instances_;
   SceneView view_;
 };
+
+// Scalars.
+
+/// Whether a picture shows numbers by colours of this instance: it has some, and a mapping.
+[[nodiscard]] bool shows_scalars(const SceneView& scene, const InstanceView& instance);
+
+/// The mapping with its range: its own, or from the least to the greatest finite number of the
+/// instances that it is for (of those above 0 with a logarithm). Throws Error{invalid_argument} as
+/// ScalarColors, and for a number that is none of a mapping. O(scalars).
+[[nodiscard]] ScalarColors scalar_colors(const SceneView& scene, std::size_t mapping = 0);
+
+/// What a scene's geometries have of one name.
+struct ScalarSummary {
+  std::string name;
+  std::uint64_t values = 0;
+  ScalarRange range;      ///< of the finite ones
+  std::uint64_t nan = 0;  ///< how many are not finite
+  bool operator==(const ScalarSummary&) const = default;
+};
+/// In the order in which geometries have them. O(scalars).
+[[nodiscard]] std::vector<ScalarSummary> scalar_summaries(const Scene& scene);
+
+/// Sets Scene::shown_scalars. `x`, `y`, `z` and `distance` are made where no geometry has scalars
+/// of the name: the place in the world, and how far it is from the middle of the scene's box; a
+/// mesh or geometry of several instances then becomes one an instance. Throws Error{not_found},
+/// which lists the names.
+void show_scalars(Scene& scene, const std::string& name);
 
 /// Axis-aligned box and the vertices it was taken from.
 struct Bounds {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include <rastrum/array.hpp>
+#include <rastrum/scalars.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum {
@@ -28,6 +29,7 @@ struct SpheresView {
   float radius = 1;
   ArrayView<Vec4> colors{};    ///< one a sphere
   std::uint32_t material = 0;  ///< index into SceneView::materials
+  ScalarView scalars{};        ///< one a sphere
 
   [[nodiscard]] std::size_t size() const { return centers.size(); }
 };
@@ -42,6 +44,7 @@ struct CylindersView {
   ArrayView<Vec4> colors{};  ///< one a position, linear along the axis
   bool caps = true;          ///< closed by flat discs; else open, and seen from inside, too
   std::uint32_t material = 0;
+  ScalarView scalars{};  ///< one a position, linear along the axis
 
   [[nodiscard]] std::size_t size() const {
     return (indices.empty() ? positions.size() : indices.size()) / 2;
@@ -63,6 +66,7 @@ struct TubesView {
   float radius = 1;
   ArrayView<Vec4> colors{};  ///< one a position, linear along the axis
   std::uint32_t material = 0;
+  ScalarView scalars{};  ///< one a position, linear along the axis
 
   /// Segments. O(1).
   [[nodiscard]] std::size_t size() const;
@@ -78,6 +82,7 @@ struct DiscsView {
   float radius = 1;
   ArrayView<Vec4> colors{};  ///< one a disc
   std::uint32_t material = 0;
+  ScalarView scalars{};  ///< one a disc
 
   [[nodiscard]] std::size_t size() const { return centers.size(); }
 };
@@ -91,8 +96,9 @@ struct Spheres {
   float radius = 1;
   std::vector<Vec4> colors{};
   std::uint32_t material = 0;
+  std::vector<NamedScalars> scalars{};
 
-  [[nodiscard]] SpheresView view() const { return {centers, radii, radius, colors, material}; }
+  [[nodiscard]] SpheresView view() const { return {centers, radii, radius, colors, material, {}}; }
 };
 
 struct Cylinders {
@@ -104,9 +110,10 @@ struct Cylinders {
   std::vector<Vec4> colors{};
   bool caps = true;
   std::uint32_t material = 0;
+  std::vector<NamedScalars> scalars{};
 
   [[nodiscard]] CylindersView view() const {
-    return {positions, indices, radii, radius, colors, caps, material};
+    return {positions, indices, radii, radius, colors, caps, material, {}};
   }
 };
 
@@ -118,9 +125,10 @@ struct Tubes {
   float radius = 1;
   std::vector<Vec4> colors{};
   std::uint32_t material = 0;
+  std::vector<NamedScalars> scalars{};
 
   [[nodiscard]] TubesView view() const {
-    return {positions, offsets, radii, radius, colors, material};
+    return {positions, offsets, radii, radius, colors, material, {}};
   }
 };
 
@@ -132,9 +140,10 @@ struct Discs {
   float radius = 1;
   std::vector<Vec4> colors{};
   std::uint32_t material = 0;
+  std::vector<NamedScalars> scalars{};
 
   [[nodiscard]] DiscsView view() const {
-    return {centers, normals, radii, radius, colors, material};
+    return {centers, normals, radii, radius, colors, material, {}};
   }
 };
 

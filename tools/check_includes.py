@@ -32,9 +32,10 @@ MAY_INCLUDE = {
 }
 # The public headers, rastrum/NAME.hpp, by the floor that has their sources.
 PUBLIC = {
-    "core": {"array", "config", "digest", "error", "image", "mat", "transform", "vec"},
+    "core": {"array", "config", "digest", "error", "image", "mat", "scalars", "transform", "vec"},
     "parallel": {"device", "stop"},
-    "scene": {"camera", "fit", "mesh", "motion", "points_and_lines", "scene", "shapes", "surfaces"},
+    "scene": {"camera", "color_map", "fit", "mesh", "motion", "points_and_lines", "scene",
+              "shapes", "surfaces"},
     "raster": {"frame", "primitives", "program", "tuning"},
     "terrain": {"terrain", "terrain_light"},
     "overlay": {"effects", "overlay"},

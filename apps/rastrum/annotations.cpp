@@ -53,6 +53,7 @@ void add_word_options(Parser& app, WordOptions& a, const char* group) {
 }
 
 void add_annotation_options(Parser& app, AnnotationOptions& a) {
+  add_scalar_options(app, a.scalars);
   add_word_options(app, a.words, kGroup);
   app.add_flag("--axes", a.axes, "the directions of x, y and z in the bottom left corner")
       ->group(kGroup);
@@ -83,6 +84,7 @@ void check_words(const WordOptions& a, bool has_colors) {
 
 void check_annotations(const AnnotationOptions& a, bool has_colors) {
   check_words(a.words, has_colors);
+  check_scalars(a.scalars, has_colors);
   if (a.any() && !has_colors)
     throw UsageError(a.axes        ? "--axes"
                      : a.bounds    ? "--bounds"
@@ -94,8 +96,8 @@ void check_annotations(const AnnotationOptions& a, bool has_colors) {
     throw UsageError(a.occlusion_radius ? "--occlusion-radius" : "--occlusion-strength",
                      "is for --occlusion");
   if (a.dome_strength && !a.dome) throw UsageError("--edl-strength", "is for --edl");
-  if (a.words.scale_given && !a.words.any() && !a.axes && !a.bounds)
-    throw UsageError("--text-scale", "is for --title, --caption, --axes and --bounds");
+  if (a.words.scale_given && !a.words.any() && !a.scalars.bar() && !a.axes && !a.bounds)
+    throw UsageError("--text-scale", "is for --title, --caption, --bar, --axes and --bounds");
 }
 
 void report_missing_glyphs(const WordOptions& a) {
@@ -125,10 +127,11 @@ void draw_words(const WordOptions& a, const overlay::Canvas& canvas, const overl
     overlay::draw_caption(canvas, a.captions[i], kCorners[i], look);
 }
 
-Camera with_room_for_bounds(Camera camera) {
-  constexpr double kRoom = 1.5;
-  camera.orthographic_height = static_cast<float>(camera.orthographic_height * kRoom);
-  const double half = kRoom * elementary::tan(static_cast<double>(camera.fov_rad) / 2);
+Camera with_room(const AnnotationOptions& a, Camera camera) {
+  if (!a.bounds && !a.scalars.bar()) return camera;
+  const double room = a.bounds ? 1.5 : 1.25;
+  camera.orthographic_height = static_cast<float>(camera.orthographic_height * room);
+  const double half = room * elementary::tan(static_cast<double>(camera.fov_rad) / 2);
   camera.fov_rad = static_cast<float>(2 * elementary::atan(half));
   return camera;
 }
@@ -164,6 +167,7 @@ void annotate(const AnnotationOptions& a, const overlay::Canvas& canvas, const S
     if (const Bounds box = bounds(scene); box.vertices_in_use != 0)
       overlay::draw_bounds(canvas, camera, wide(box.min), wide(box.max), depth, look);
   if (a.axes) overlay::draw_axes(canvas, camera, overlay::Corner::bottom_left, look);
+  draw_bar(a.scalars, scene, canvas, look);
   draw_words(a.words, canvas, look);
 }
 

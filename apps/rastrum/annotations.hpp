@@ -11,6 +11,7 @@
 #include <rastrum/scene.hpp>
 
 #include "option.hpp"
+#include "scalar_options.hpp"
 
 namespace rastrum::cli {
 
@@ -27,12 +28,15 @@ struct WordOptions {
 /// What needs a scene and its camera, too.
 struct AnnotationOptions {
   WordOptions words;
+  ScalarOptions scalars;  ///< whose bar is drawn
   bool axes = false, bounds = false;
   bool occlusion = false, dome = false, silhouettes = false;
   std::optional<double> occlusion_radius, occlusion_strength, dome_strength;
 
   [[nodiscard]] bool effects() const { return occlusion || dome || silhouettes; }
-  [[nodiscard]] bool any() const { return words.any() || axes || bounds || effects(); }
+  [[nodiscard]] bool any() const {
+    return words.any() || scalars.bar() || axes || bounds || effects();
+  }
 };
 
 void add_word_options(Parser& app, WordOptions& a, const char* group);
@@ -48,8 +52,9 @@ void report_missing_glyphs(const WordOptions& a);
 [[nodiscard]] overlay::Look look_of(const WordOptions& a, Vec4 background);
 void draw_words(const WordOptions& a, const overlay::Canvas& canvas, const overlay::Look& look);
 
-/// A camera that leaves a margin for the numbers of --bounds around what it was fitted to.
-[[nodiscard]] Camera with_room_for_bounds(Camera camera);
+/// A camera that leaves a margin for the numbers of --bounds, or for --bar, around what it was
+/// fitted to.
+[[nodiscard]] Camera with_room(const AnnotationOptions& a, Camera camera);
 
 /// Effects, then the box, axes and words, onto `canvas`. `surface` must be there for effects,
 /// `depth` (reversed) for bounds.

@@ -25,6 +25,7 @@ constexpr FrameImageKind kKinds[] = {
     {"view-depth", &Targets::view_depth},
     {"distance", &Targets::distance},
     {"albedo", &Targets::albedo},
+    {"scalars", &Targets::scalars},
     {"linear", &Targets::linear},
 };
 

@@ -483,12 +483,13 @@ int run(RenderArguments& a) {
   if (!a.quiet && a.render.transparency.method == Transparency::none) report_blended(scene);
   if (!a.quiet) report_missing_glyphs(a.annotations.words);
   const bool moves = pose_for(a, inputs);
+  set_scalars(a.annotations.scalars, inputs.scene);
   const SceneBinding binding(scene);
   a.render.shader = shader_of(a.render.shader, inputs.has_materials);
   a.view.turns = a.turntable != 0;
   Camera camera = choose_camera(a.view, scene, binding.view(), {a.render.width, a.render.height});
-  if (a.annotations.bounds && !a.view.file_camera && !a.view.eye && !a.view.orthographic_height)
-    camera = with_room_for_bounds(camera);
+  if (!a.view.file_camera && !a.view.eye && !a.view.orthographic_height)
+    camera = with_room(a.annotations, camera);
 
   std::optional<SceneBinding> posed;
   SceneAt moving;
@@ -558,6 +559,7 @@ Command add_render_command(Parser& app) {
       "  rastrum render scene.glb --camera 0 --size 1920x1080 --background '#20242c' -o scene.png\n"
       "  rastrum render a.stl b.ply --eye 3,2,5 --target 0,0,0 --depth d.npy --ids i.npy -o c.exr\n"
       "  rastrum render builtin:teapot 'builtin:sphere?x=3,scale=0.5' --shader normal -o two.png\n"
+      "  rastrum render scan.ply --scalars quality --cmap turbo --bar Quality -o quality.png\n"
       "  rastrum render part.stl --bounds --axes --occlusion --title 'Part 7' -o part.png\n"
       "  rastrum render engine.glb --opacity 0.3 --samples 4 -o see_through.png\n"
       "  rastrum render hair.ply --opacity 0.5 --transparency filter:3 --show-errors wrong.png\n"

@@ -1,5 +1,6 @@
 // How the values of each type are read: the one place where types become code.
 #include <rastrum/array.hpp>
+#include <rastrum/scalars.hpp>
 
 #include <algorithm>
 
@@ -203,6 +204,32 @@ IndexView IndexView::in(std::span<const std::byte> buffer, const ArrayLayout& l)
       return of(static_cast<const C*>(first), l.count, l.stride_bytes);
     } else {
       throw Error(Errc::invalid_argument, "array: indices are integers");
+    }
+  });
+}
+
+ScalarView ScalarView::in(std::span<const std::byte> buffer, const ArrayLayout& l) {
+  if (l.channels != 1)
+    throw Error(Errc::invalid_argument,
+                "array: scalars have one channel, not " + std::to_string(l.channels));
+  return visit_type(l.type, [&]<class C>(C) -> ScalarView {
+    if constexpr (std::is_arithmetic_v<C>)
+      return of(static_cast<const C*>(array_detail::first_within(buffer, l)), l.count,
+                l.stride_bytes);
+    else
+      throw Error(Errc::invalid_argument, "array: the type is none");
+  });
+}
+
+double ScalarView::operator[](std::size_t i) const {
+  const std::byte* const at = data_ + static_cast<std::ptrdiff_t>(i) * stride_;
+  return visit_type(type_, [&]<class C>(C) -> double {
+    if constexpr (std::is_arithmetic_v<C>) {
+      C value;
+      std::memcpy(&value, at, sizeof value);
+      return static_cast<double>(value);
+    } else {
+      return 0;
     }
   });
 }

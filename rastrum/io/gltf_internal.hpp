@@ -146,6 +146,9 @@ class PrimitiveData {
   [[nodiscard]] std::vector<T> read(const std::string& name) const;
   template <class T>
   [[nodiscard]] std::vector<T> read(const Json& accessor) const;
+  /// The attributes that an application has added, whose names begin with an underscore: those of
+  /// one number a vertex.
+  [[nodiscard]] std::vector<NamedScalars> scalars() const;
   /// Empty where the primitive has none; each is a vertex.
   [[nodiscard]] std::vector<std::uint32_t> indices() const;
 
@@ -159,6 +162,7 @@ class PrimitiveData {
   std::size_t vertices_ = 0;
   std::optional<Unpacked> unpacked_;
 };
+extern template std::vector<float> PrimitiveData::read(const std::string&) const;
 extern template std::vector<Vec2> PrimitiveData::read(const std::string&) const;
 extern template std::vector<Vec3> PrimitiveData::read(const std::string&) const;
 extern template std::vector<Vec4> PrimitiveData::read(const std::string&) const;

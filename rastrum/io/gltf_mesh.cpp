@@ -110,10 +110,21 @@ std::vector<T> PrimitiveData::convert(const Json& accessor, std::optional<Bytes>
   }
   return values;
 }
+template std::vector<float> PrimitiveData::read(const std::string&) const;
 template std::vector<Vec2> PrimitiveData::read(const std::string&) const;
 template std::vector<Vec3> PrimitiveData::read(const std::string&) const;
 template std::vector<Vec4> PrimitiveData::read(const std::string&) const;
 template std::vector<Vec3> PrimitiveData::read(const Json&) const;
+
+std::vector<NamedScalars> PrimitiveData::scalars() const {
+  std::vector<NamedScalars> all;
+  primitive_["attributes"].for_each_member([&](const std::string& name, const Json&) {
+    if (!name.starts_with("_") || accessor_type(*attribute(name)).components != 1) return;
+    const std::vector<float> values = read<float>(name);
+    all.push_back({name, {values.begin(), values.end()}, Per::vertex});
+  });
+  return all;
+}
 
 std::vector<std::uint32_t> PrimitiveData::indices() const {
   const auto member = primitive_.get("indices");
@@ -136,6 +147,7 @@ std::optional<Mesh> read_primitive(const Json& primitive, const PrimitiveData& d
     mesh.texcoords.values = data.read<Vec2>(set);
     if (use != TextureUse{use.set}) apply(use, mesh.texcoords.values);
   }
+  mesh.scalars = data.scalars();
   mesh.indices = data.indices();
   const std::size_t mode = primitive.count("mode", 4);
   const bool has_indices = primitive.get("indices").has_value();
@@ -171,6 +183,8 @@ Points read_points(const PrimitiveData& data, const std::vector<std::uint32_t>& 
   points.positions = values(data.read<Vec3>("POSITION"));
   if (data.attribute("NORMAL")) points.normals = values(data.read<Vec3>("NORMAL"));
   if (data.attribute("COLOR_0")) points.colors = values(data.read<Vec4>("COLOR_0"));
+  points.scalars = data.scalars();
+  for (NamedScalars& s : points.scalars) s.values = values(std::move(s.values));
   return points;
 }
 
@@ -203,6 +217,7 @@ std::optional<Geometry> read_points_or_lines(const Json& primitive, const Primit
   lines.kind = mode == segments ? LineKind::segments : LineKind::polylines;
   lines.positions = data.read<Vec3>("POSITION");
   if (data.attribute("COLOR_0")) lines.colors = data.read<Vec4>("COLOR_0");
+  lines.scalars = data.scalars();
   lines.indices = std::move(corners);
   return lines;
 }

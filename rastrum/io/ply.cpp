@@ -73,6 +73,7 @@ struct Target {
   float* first = nullptr;
   std::size_t stride = 0;  ///< floats
   float scale = 1;
+  double* number = nullptr;  ///< one of scalars instead, one a vertex
 };
 
 class PlyReader {
@@ -100,6 +101,10 @@ class PlyReader {
       }
     }
     check_indices();
+    // Triangles of later elements have none of an earlier one's numbers.
+    for (NamedScalars& s : mesh_.scalars)
+      if (s.per == Per::face)
+        s.values.resize(mesh_.indices.size() / 3, std::numeric_limits<double>::quiet_NaN());
     const bool is_cloud = faces_ == 0 && !mesh_.positions.empty();
     if (is_cloud && !mesh_.texcoords.empty()) unused_.emplace_back("texture coordinates");
     warn(is_cloud);
@@ -143,6 +148,7 @@ class PlyReader {
     points.positions = std::move(mesh_.positions);
     points.normals = std::move(mesh_.normals.values);
     points.colors = std::move(mesh_.colors.values);
+    points.scalars = std::move(mesh_.scalars);
     return points;
   }
 
@@ -160,7 +166,9 @@ class PlyReader {
       const std::byte* base = take(stride * e.count, e);
       std::size_t offset = 0;
       for (std::size_t k = 0; k < e.properties.size(); ++k) {
-        if (targets[k].first != nullptr) {
+        if (targets[k].number != nullptr) {
+          numbers(base + offset, stride, e.count, e.properties[k].type, targets[k].number);
+        } else if (targets[k].first != nullptr) {
           if (is_vec3(e, targets, k)) {
             copy_vec3(base + offset, stride, e.count, targets[k]);
             offset += 8;
@@ -183,6 +191,7 @@ class PlyReader {
           if (t.first != nullptr) t.first += t.stride * i;
           const std::byte* at = take(size_of(p.type), e);
           if (t.first != nullptr) column(at, 0, 1, p.type, t);
+          if (t.number != nullptr) numbers(at, 0, 1, p.type, t.number + i);
         }
     }
     for (Vec2& t : mesh_.texcoords.values) t.y = 1 - t.y;  // PLY counts from the bottom
@@ -234,9 +243,61 @@ class PlyReader {
       for (std::size_t c = 0; c < 4; ++c)
         if (rgba[c] >= 0) place(rgba[c], &mesh_.colors.values[0].x + c, 4, true);
     }
-    for (std::size_t k = 0; k < e.properties.size(); ++k)
-      if (!used[k]) unused_.push_back(e.name + "." + e.properties[k].name);
+    for (std::size_t k = 0; k < e.properties.size(); ++k) {
+      if (used[k]) continue;
+      if (e.properties[k].is_list)
+        unused_.push_back(e.name + "." + e.properties[k].name);
+      else
+        targets[k].number = add_scalars(e.properties[k].name, Per::vertex, e.count).data();
+    }
     return targets;
+  }
+
+  // ---- scalars: what is nothing else
+
+  std::vector<double>& add_scalars(const std::string& name, Per per, std::size_t count) {
+    NamedScalars& s = mesh_.scalars.emplace_back();
+    const auto has = [&](const std::string& n) {
+      return std::count_if(mesh_.scalars.begin(), mesh_.scalars.end() - 1,
+                           [&](const NamedScalars& other) { return other.name == n; }) != 0;
+    };
+    s.name = per == Per::face && has(name) ? "face." + name : name;
+    s.per = per;
+    s.values.assign(count, std::numeric_limits<double>::quiet_NaN());
+    return s.values;
+  }
+
+  void numbers(const std::byte* from, std::size_t stride, std::size_t n, Type type,
+               double* to) const {
+    with_type(type, [&](auto v) {
+      using T = decltype(v);
+      for (std::size_t i = 0; i < n; ++i, from += stride)
+        to[i] = static_cast<double>(load<T>(from, swap_));
+    });
+  }
+
+  /// Of the properties of faces, those that are numbers: places in mesh_.scalars, −1 for others.
+  std::vector<int> face_scalars(const Element& e, std::size_t list) {
+    std::vector<int> places(e.properties.size(), -1);
+    for (std::size_t k = 0; k < e.properties.size(); ++k) {
+      if (k == list) continue;
+      if (e.properties[k].is_list) {
+        unused_.push_back(e.name + "." + e.properties[k].name);
+        continue;
+      }
+      // Triangles of elements before have none.
+      (void)add_scalars(e.properties[k].name, Per::face, mesh_.indices.size() / 3);
+      places[k] = static_cast<int>(mesh_.scalars.size() - 1);
+    }
+    return places;
+  }
+
+  /// All triangles of a face have its numbers.
+  void end_face(const std::vector<int>& places, const std::vector<double>& values) {
+    for (std::size_t k = 0; k < places.size(); ++k)
+      if (places[k] >= 0)
+        mesh_.scalars[static_cast<std::size_t>(places[k])].values.resize(mesh_.indices.size() / 3,
+                                                                         values[k]);
   }
 
   /// Three float32 of this machine's byte order side by side that go side by side.
@@ -276,6 +337,8 @@ class PlyReader {
   void ascii_value(const Property& p, const Target& t, std::size_t i) {
     if (p.is_list) {
       ascii_skip_list(p);
+    } else if (t.number != nullptr) {
+      t.number[i] = text_->word<double>(p.name.c_str(), true);
     } else if (t.first == nullptr) {
       ascii_skip_value();
     } else {
@@ -304,27 +367,30 @@ class PlyReader {
     const auto list = static_cast<std::size_t>(found);
     const Property& p = e.properties[list];
     if (!p.is_list || !ply::is_integer(p.type)) fail("vertex_indices is not a list of integers");
-    for (std::size_t k = 0; k < e.properties.size(); ++k)
-      if (k != list) unused_.push_back(e.name + "." + e.properties[k].name);
+    const std::vector<int> places = face_scalars(e, list);
     if (ascii()) {
-      ascii_faces(e, list, strips);
+      ascii_faces(e, list, strips, places);
       return;
     }
+    std::vector<double> values(places.size());
     reserve_triangles(e, p);
     std::size_t first = 0;
     if (!strips && !swap_ && e.properties.size() == 1 && size_of(p.count_type) == 1 &&
         size_of(p.type) == 4)
       first = plain_triangles(e.count);
-    for (std::size_t i = first; i < e.count; ++i)
+    for (std::size_t i = first; i < e.count; ++i) {
       for (std::size_t k = 0; k < e.properties.size(); ++k) {
         if (k == list) {
           binary_face(e, p, strips);
         } else if (e.properties[k].is_list) {
           skip_list(e.properties[k], e);
         } else {
-          (void)take(size_of(e.properties[k].type), e);
+          const Type type = e.properties[k].type;
+          numbers(take(size_of(type), e), 0, 1, type, &values[k]);
         }
       }
+      end_face(places, values);
+    }
   }
 
   /// As if all faces were triangles, but never more than the bytes left can hold.
@@ -376,8 +442,10 @@ class PlyReader {
     emit(strips);
   }
 
-  void ascii_faces(const Element& e, std::size_t list, bool strips) {
-    for (std::size_t i = 0; i < e.count; ++i)
+  void ascii_faces(const Element& e, std::size_t list, bool strips,
+                   const std::vector<int>& places) {
+    std::vector<double> values(places.size());
+    for (std::size_t i = 0; i < e.count; ++i) {
       for (std::size_t k = 0; k < e.properties.size(); ++k) {
         const Property& p = e.properties[k];
         if (k == list) {
@@ -389,9 +457,11 @@ class PlyReader {
         } else if (p.is_list) {
           ascii_skip_list(p);
         } else {
-          ascii_skip_value();
+          values[k] = text_->word<double>(p.name.c_str(), true);
         }
       }
+      end_face(places, values);
+    }
   }
 
   /// The triangles of `polygon_`: a fan from its first corner, or strips that −1 ends, every second

@@ -133,6 +133,21 @@ void describe_geometries(const Scene& scene, std::string& text) {
   }
 }
 
+void describe_scalars(const Scene& scene, std::string& text) {
+  const std::vector<ScalarSummary> all = scalar_summaries(scene);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i == kMostLines) {
+      text += "  … and " + std::to_string(all.size() - i) + " more scalars\n";
+      break;
+    }
+    const ScalarSummary& s = all[i];
+    text += "  scalars " + named(s.name) + ": " + counted(s.values, "value") +
+            format(", %.6g to %.6g", s.range.low, s.range.high);
+    if (s.nan != 0) text += ", " + grouped(s.nan) + " not finite";
+    text += '\n';
+  }
+}
+
 void describe_materials(const Scene& scene, std::string& text) {
   static constexpr const char* kModes[] = {"opaque", "mask", "blend"};
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
@@ -232,6 +247,7 @@ std::string describe(const Scene& scene) {
   if (all.no_area != 0) text += "  without area: " + counted(all.no_area, "triangle") + '\n';
   describe_meshes(scene, text);
   describe_geometries(scene, text);
+  describe_scalars(scene, text);
   describe_materials(scene, text);
   describe_cameras(scene, text);
   describe_animations(scene, text);

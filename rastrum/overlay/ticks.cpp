@@ -42,7 +42,7 @@ std::string decimal(std::int64_t number, int decimals) {
   std::string digits = std::to_string(std::abs(number));
   const auto places = static_cast<std::size_t>(std::max(decimals, 0));
   if (digits.size() <= places) digits.insert(0, places + 1 - digits.size(), '0');
-  if (places != 0) digits.insert(digits.size() - places, ".");
+  if (places != 0) digits.insert(digits.size() - places, 1, '.');
   return number < 0 ? "−" + digits : digits;
 }
 

@@ -132,7 +132,9 @@ Pick surface_of_key(const SceneView& scene, const Camera& camera, const FrameOpt
   const Alone alone(scene, camera, width, height, id);
   raster::SurfaceLocator locator(alone.geometry, frame.samples);
   const raster::SeenFragment& f = locator.locate(key, x, y, 0);
-  const raster::SurfaceScene surface(alone.scene, nullptr, camera, width, height);
+  raster::SurfaceScene surface(alone.scene, nullptr, camera, width, height);
+  const raster::SurfaceScalars scalars(alone.instance, nullptr);
+  surface.scalars = {&scalars, 1};
   Pick pick;
   pick.id = id;
   pick.instance = alone.at.instance;
@@ -141,6 +143,7 @@ Pick surface_of_key(const SceneView& scene, const Camera& camera, const FrameOpt
   pick.barycentrics = weights_of(f);
   pick.position = surface.position(f);
   pick.normal = surface.normal(f);
+  if (!scalars.empty()) pick.scalar = surface.scalar(alone.geometry, f);
   pick.depth = f.depth;
   pick.view_depth = view_distance(camera, pick.depth);
   pick.distance = pick.view_depth * surface.ray_length(x, y);

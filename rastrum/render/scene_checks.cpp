@@ -21,6 +21,8 @@ class InstanceCheck {
     attribute(mesh, mesh.normals, "normals");
     attribute(mesh, mesh.texcoords, "texcoords");
     attribute(mesh, mesh.colors, "colors");
+    if (!mesh.scalars.empty())
+      enough(mesh, mesh.scalars.values.size(), mesh.scalars.per, "scalars");
   }
   void arrays(const PointsView& points) const { none(arrays_problem(points)); }
   void arrays(const LinesView& lines) const { none(arrays_problem(lines)); }
@@ -29,6 +31,11 @@ class InstanceCheck {
     if (materials != 0 && m >= materials)
       fail("material " + std::to_string(m) + " is out of range, there are " +
            std::to_string(materials));
+  }
+  void mapping(std::size_t mappings) const {
+    if (mappings != 0 && instance_.scalar_mapping >= mappings)
+      fail("scalar mapping " + std::to_string(instance_.scalar_mapping) +
+           " is out of range, there are " + std::to_string(mappings));
   }
   void look() const {
     if (instance_.winding > Winding::either)
@@ -66,13 +73,17 @@ class InstanceCheck {
              " is out of range, there are " + std::to_string(a.values.size()));
       return;
     }
-    if (a.per > Per::mesh) check_enum(a.per, Per::mesh, name() + ": " + array + ".per");
+    enough(mesh, a.values.size(), a.per, array);
+  }
+
+  void enough(const MeshView& mesh, std::size_t values, Per per, const std::string& array) const {
+    if (per > Per::mesh) check_enum(per, Per::mesh, name() + ": " + array + ".per");
     const auto require = [&](std::size_t count, const char* of) {
-      if (a.values.size() < count)
-        fail(array + " are fewer (" + std::to_string(a.values.size()) + ") than " + of + " (" +
+      if (values < count)
+        fail(array + " are fewer (" + std::to_string(values) + ") than " + of + " (" +
              std::to_string(count) + ")");
     };
-    switch (a.per) {
+    switch (per) {
       case Per::vertex:
         return require(mesh.positions.size(), "positions");
       case Per::corner:
@@ -104,6 +115,7 @@ void check_scene(const InstanceRuns& runs) {
     if (const auto* const points = std::get_if<PointsView>(&geometry)) check.arrays(*points);
     if (const auto* const lines = std::get_if<LinesView>(&geometry)) check.arrays(*lines);
     if (is_points_or_lines(geometry)) check.material(scene.materials.size());
+    check.mapping(scene.scalar_mappings.size());
     check.look();
   }
 }
@@ -111,6 +123,8 @@ void check_scene(const InstanceRuns& runs) {
 std::string why_not_on_device(const SceneView& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const InstanceView& instance = scene.instances[i];
+    if (shows_scalars(scene, instance))
+      return "instance " + std::to_string(i) + " shows scalars, which are the CPU's to colour";
     if (is_points_or_lines(instance.geometry))
       return "instance " + std::to_string(i) + " is of points or lines, which are the CPU's";
     if (instance.mesh() == nullptr) continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include <rastrum/pick.hpp>
 #include <rastrum/raster/draws/vertices_of.hpp>
@@ -50,8 +51,8 @@ SceneDraws::SceneDraws(const InstanceRuns& runs, const Camera& camera, const Opt
                         options.frame.height) {
   const FrameOptions& o = options.frame;
   const Targets& targets = options.targets;
-  mesh_list_ = meshes_beside_others(scene_);
-  if (mesh_list_) meshes_.instances = *mesh_list_;
+  set_scalars(targets);
+  choose_meshes();
   const Flags flags = make_draws(options, world_to_clip(camera, o.width, o.height), threads);
 
   const bool masks = (flags.materials & raster::kTested) != 0;
@@ -69,10 +70,12 @@ SceneDraws::SceneDraws(const InstanceRuns& runs, const Camera& camera, const Opt
     surface_.emplace(scene_, &runs_, camera, o.width, o.height);
     surface_->materials = materials_ ? &*materials_ : nullptr;
     surface_->points_and_lines = &points_and_lines_;
+    surface_->scalars = scalars_;
     if (!targets.view_depth.empty() || !targets.distance.empty())
       surface_->distance_by_depth = distance_by_depth(camera);
   }
   if (masks) test_ = raster::MaskTest{&*materials_};
+  shade_scalar_meshes(options, camera, textures);
   if (options.shader == Shader::depth) return;
 
   const bool translucent = (flags.any & raster::kTranslucent) != 0;
@@ -80,6 +83,7 @@ SceneDraws::SceneDraws(const InstanceRuns& runs, const Camera& camera, const Opt
   if (linear_light_) {
     surfaces_.leave_linear();
     points_and_lines_.leave_linear();
+    if (scalar_meshes_) scalar_meshes_->leave_linear();
   }
   if (shades_materials) {
     shading_ = raster::MaterialShading{&*materials_, linear_light_};
@@ -96,10 +100,54 @@ template <class MeshDraw>
 void SceneDraws::set_copies(std::vector<MeshDraw>& of_meshes) const {
   std::size_t mesh = 0;
   for (std::size_t run = 0; run < draws_.size(); ++run) {
-    if (scene_.instances[run].mesh() == nullptr) continue;
+    if (scene_.instances[run].mesh() == nullptr || shows_scalars(run)) continue;
     if (draws_[run].is_copied()) of_meshes[mesh].copies = runs_.instances(run);
     ++mesh;
   }
+}
+
+void SceneDraws::set_scalars(const Targets& targets) {
+  const auto shows = [&](const InstanceView& i) { return rastrum::shows_scalars(scene_, i); };
+  const bool any = !scene_.scalar_mappings.empty() && std::ranges::any_of(scene_.instances, shows);
+  if (!any && targets.scalars.empty()) return;
+  if (any)
+    for (std::size_t m = 0; m < scene_.scalar_mappings.size(); ++m)
+      scalar_colors_.push_back(scalar_colors(scene_, m));
+  for (const InstanceView& i : scene_.instances)
+    scalars_.emplace_back(i, any ? &scalar_colors_[i.scalar_mapping] : nullptr);
+}
+
+const raster::SurfaceScalars& SceneDraws::scalars_of(std::size_t instance) const {
+  static const raster::SurfaceScalars kNone;
+  return scalars_.empty() ? kNone : scalars_[instance];
+}
+
+void SceneDraws::choose_meshes() {
+  bool others = false;
+  for (std::size_t i = 0; i < scene_.instances.size() && !others; ++i)
+    others = scene_.instances[i].mesh() == nullptr || shows_scalars(i);
+  if (!others) return;
+  mesh_list_.emplace();
+  for (std::size_t i = 0; i < scene_.instances.size(); ++i)
+    if (scene_.instances[i].mesh() != nullptr)
+      (shows_scalars(i) ? scalar_mesh_list_ : *mesh_list_).push_back(scene_.instances[i]);
+  meshes_.instances = *mesh_list_;
+}
+
+void SceneDraws::shade_scalar_meshes(const Options& options, const Camera& camera,
+                                     const raster::TextureSet& textures) {
+  if (scalar_mesh_list_.empty()) return;
+  std::vector<raster::SurfaceScalars> scalars;
+  for (std::size_t i = 0; i < scene_.instances.size(); ++i)
+    if (scene_.instances[i].mesh() != nullptr && shows_scalars(i)) scalars.push_back(scalars_[i]);
+  const SceneView shown{scalar_mesh_list_, scene_.materials, scene_.textures, {}};
+  scalar_meshes_.emplace(look_of(options), shown, std::move(scalars), camera, options.frame.width,
+                         options.frame.height, textures);
+  for (std::size_t i = 0; i < scene_.instances.size(); ++i)
+    if (scene_.instances[i].mesh() != nullptr && shows_scalars(i)) {
+      draws_[i].shading = *scalar_meshes_;
+      draws_[i].test = &*scalar_meshes_;
+    }
 }
 
 SceneDraws::Flags SceneDraws::make_draws(const Options& options, const Mat4d& to_clip,
@@ -119,7 +167,8 @@ SceneDraws::Flags SceneDraws::make_draws(const Options& options, const Mat4d& to
                                 names().of(draws_.size() - 1).append(": ").c_str());
       draw.cut = &cuts_.emplace_back(instance, o.clip_planes);
     }
-    if (surfaces_.add(instance, to_clip, draw, threads)) {
+    const raster::SurfaceScalars& scalars = scalars_of(draws_.size() - 1);
+    if (surfaces_.add(instance, scalars, to_clip, draw, threads)) {
       all.any |= draw.flags;
       continue;
     }
@@ -134,13 +183,16 @@ SceneDraws::Flags SceneDraws::make_draws(const Options& options, const Mat4d& to
       draw.cull = material_cull(instance, scene_.materials, options.shader);
       flags = raster::set_material_flags(draw, instance, material_flags_);
     } else {
-      colors = points_and_lines_.add(instance);
+      colors = points_and_lines_.add(instance, scalars);
       draw.shading = points_and_lines_;
       draw.test = &points_and_lines_;
       if (!material_flags_.empty()) draw.flags |= material_flags_[raster::material_of(instance)];
     }
-    if (blends && scene_.materials.empty() && !options.in_place && instance.visible &&
-        raster::has_color_alpha(instance, colors, threads)) {
+    const bool color_alpha = scalars.colors() != nullptr
+                                 ? scalars.colors()->is_translucent()
+                                 : scene_.materials.empty() && !options.in_place &&
+                                       raster::has_color_alpha(instance, colors, threads);
+    if (blends && instance.visible && color_alpha) {
       draw.flags |= raster::kTranslucent;
       flags |= raster::kTranslucent;
     }

@@ -15,7 +15,9 @@
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/point_line_shader.hpp>
+#include <rastrum/raster/shade/scalar_mesh_shader.hpp>
 #include <rastrum/raster/shade/shading.hpp>
+#include <rastrum/raster/shade/surface_scalars.hpp>
 #include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/render/surfaces.hpp>
@@ -58,16 +60,29 @@ class SceneDraws {
   struct Flags {
     std::uint32_t materials = 0, any = 0;
   };
+  void set_scalars(const Targets& targets);
+  [[nodiscard]] const raster::SurfaceScalars& scalars_of(std::size_t instance) const;
+  [[nodiscard]] bool shows_scalars(std::size_t instance) const {
+    return scalars_of(instance).colors() != nullptr;
+  }
+  void choose_meshes();
+  void shade_scalar_meshes(const Options& options, const Camera& camera,
+                           const raster::TextureSet& textures);
   Flags make_draws(const Options& options, const Mat4d& to_clip, parallel::Threads* threads);
   /// Tells what shades meshes, in their order, whose copies they are.
   template <class MeshDraw>
   void set_copies(std::vector<MeshDraw>& of_meshes) const;
 
   const InstanceRuns& runs_;
-  SceneView scene_;                                     ///< of the first of each run
+  SceneView scene_;  ///< of the first of each run
+  /// What shows scalars; empty where no instance has some that the frame asks for.
+  std::vector<ScalarColors> scalar_colors_;             ///< by mapping
+  std::vector<raster::SurfaceScalars> scalars_;         ///< by instance
   std::optional<std::vector<InstanceView>> mesh_list_;  ///< where there are others, too
-  SceneView meshes_;                                    ///< the instances that are meshes
-  std::vector<std::uint32_t> material_flags_;           // draws point to them
+  SceneView meshes_;  ///< the instances that are meshes and show no scalars
+  std::vector<InstanceView> scalar_mesh_list_;  ///< those that do
+  std::optional<raster::ScalarMeshShader> scalar_meshes_;
+  std::vector<std::uint32_t> material_flags_;  // draws point to them
   std::vector<raster::Draw> draws_;
   std::deque<raster::DrawCut> cuts_;  // draws point to them
   SurfaceDraws surfaces_;

@@ -18,16 +18,17 @@ class Check {
   void operator()(const SpheresView& s) const {
     enough(s.radii.size(), "radii", s.size(), "spheres");
     enough(s.colors.size(), "colors", s.size(), "spheres");
+    enough(s.scalars.size(), "scalars", s.size(), "spheres");
   }
   void operator()(const CylindersView& c) const {
-    of_positions(c.radii.size(), c.colors.size(), c.positions.size());
+    of_positions(c.radii.size(), c.colors.size(), c.scalars.size(), c.positions.size());
     if (c.indices.size() % 2 != 0) fail("the number of indices is odd");
     if (const std::size_t at = first_beyond(c.indices, c.positions.size()); at != c.indices.size())
       fail("indices[" + std::to_string(at) + "]: index " + c.indices.text(at) +
            " is out of range, there are " + std::to_string(c.positions.size()) + " positions");
   }
   void operator()(const TubesView& t) const {
-    of_positions(t.radii.size(), t.colors.size(), t.positions.size());
+    of_positions(t.radii.size(), t.colors.size(), t.scalars.size(), t.positions.size());
     // Negative ones are beyond all positions.
     for (std::size_t i = 0; i < t.offsets.size(); ++i)
       if (t.offsets.wide(i) > t.positions.size())
@@ -38,6 +39,7 @@ class Check {
   void operator()(const DiscsView& d) const {
     enough(d.radii.size(), "radii", d.size(), "discs");
     enough(d.colors.size(), "colors", d.size(), "discs");
+    enough(d.scalars.size(), "scalars", d.size(), "discs");
     if (d.normals.size() < d.size())
       fail("there are fewer normals (" + std::to_string(d.normals.size()) + ") than discs (" +
            std::to_string(d.size()) + ")");
@@ -57,8 +59,10 @@ class Check {
       fail(std::string("there are fewer ") + what + " (" + std::to_string(values) + ") than " + of +
            " (" + std::to_string(wanted) + ")");
   }
-  void of_positions(std::size_t radii, std::size_t colors, std::size_t positions) const {
+  void of_positions(std::size_t radii, std::size_t colors, std::size_t scalars,
+                    std::size_t positions) const {
     enough(radii, "radii", positions, "positions");
+    enough(scalars, "scalars", positions, "positions");
     enough(colors, "colors", positions, "positions");
   }
 
@@ -74,6 +78,10 @@ bool is_translucent(const raster::QuadricGeometry& geometry, const InstanceView&
   if (material != nullptr) return material->alpha_mode == AlphaMode::blend || material->opacity < 1;
   return raster::has_color_alpha(
       instance, std::visit([](const auto& g) { return g.colors; }, geometry), threads);
+}
+
+bool is_translucent(const raster::SurfaceScalars& scalars, const Material* material) {
+  return scalars.colors()->is_translucent() || (material != nullptr && material->opacity < 1);
 }
 
 }  // namespace
@@ -96,34 +104,28 @@ void check_surfaces(const InstanceRuns& runs) {
     }
 }
 
-bool SurfaceDraws::add(const InstanceView& instance, const Mat4d& world_to_clip, raster::Draw& draw,
-                       parallel::Threads* threads) {
+bool SurfaceDraws::add(const InstanceView& instance, const raster::SurfaceScalars& scalars,
+                       const Mat4d& world_to_clip, raster::Draw& draw, parallel::Threads* threads) {
   const auto geometry = quadrics_of(instance.geometry);
   if (!geometry) return false;
   const raster::QuadricStage& stage =
       stages_.emplace_back(*geometry, world_to_clip * instance.object_to_world);
-  shader_.add(stage, instance);
+  shader_.add(stage, instance, scalars);
   draw.quadrics = &stage;
   draw.primitive_count = std::visit([](const auto& g) { return g.size(); }, *geometry);
   draw.shading = shader_;
   const Material* const material =
       scene_.materials.empty() ? nullptr : &scene_.materials[raster::material_of(instance)];
-  if (look_.blends && (look_.opacity < 1 || instance.opacity < 1 ||
-                       is_translucent(*geometry, instance, material, threads)))
+  if (look_.blends &&
+      (look_.opacity < 1 || instance.opacity < 1 ||
+       (scalars.colors() != nullptr ? is_translucent(scalars, material)
+                                    : is_translucent(*geometry, instance, material, threads))))
     draw.flags |= raster::kTranslucent;
   if (material != nullptr && material->alpha_mode == AlphaMode::mask) {
     draw.flags |= raster::kTested;
     draw.test = &shader_;
   }
   return true;
-}
-
-std::optional<std::vector<InstanceView>> meshes_beside_others(const SceneView& scene) {
-  const auto is_mesh = [](const InstanceView& i) { return i.mesh() != nullptr; };
-  if (std::ranges::all_of(scene.instances, is_mesh)) return std::nullopt;
-  std::vector<InstanceView> meshes;
-  std::ranges::copy_if(scene.instances, std::back_inserter(meshes), is_mesh);
-  return meshes;
 }
 
 }  // namespace rastrum

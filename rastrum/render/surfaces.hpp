@@ -29,9 +29,9 @@ class SurfaceDraws {
                int width, int height)
       : look_(look), shader_(look, scene.materials, camera, width, height), scene_(scene) {}
 
-  /// Whether the instance is one; then makes its draw.
-  bool add(const InstanceView& instance, const Mat4d& world_to_clip, raster::Draw& draw,
-           parallel::Threads* threads);
+  /// Whether the instance, with these scalars, is one; then makes its draw.
+  bool add(const InstanceView& instance, const raster::SurfaceScalars& scalars,
+           const Mat4d& world_to_clip, raster::Draw& draw, parallel::Threads* threads);
 
   /// As QuadricShader's.
   void leave_linear() { shader_.leave_linear(); }
@@ -42,8 +42,5 @@ class SurfaceDraws {
   SceneView scene_;
   std::deque<raster::QuadricStage> stages_;  // draws point to them
 };
-
-/// The instances that are meshes, where there are others, too; none: all are.
-[[nodiscard]] std::optional<std::vector<InstanceView>> meshes_beside_others(const SceneView& scene);
 
 }  // namespace rastrum

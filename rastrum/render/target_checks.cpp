@@ -19,6 +19,7 @@ void each_target_of_scene(const Targets& t, const F& f) {
   f(t.view_depth, "view_depth");
   f(t.distance, "distance");
   f(t.albedo, "albedo");
+  f(t.scalars, "scalars");
 }
 template <class F>
 void each_target_of_surface(const Targets& t, const F& f) {

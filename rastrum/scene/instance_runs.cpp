@@ -22,13 +22,18 @@ bool are_alike(const std::optional<Vec4>& a, const std::optional<Vec4>& b) {
   return are_finite(*a) && are_finite(*b) && (a->w >= 1) == (b->w >= 1);
 }
 
+bool has_scalars(const InstanceView& i) {
+  return i.scalar || !i.mesh()->scalars.empty();
+}
+
 /// What is NaN is like nothing.
 bool are_alike(const InstanceView& a, const InstanceView& b) {
   return a.mesh() != nullptr && b.mesh() != nullptr && a.opacity == b.opacity &&
          a.material == b.material && a.visible == b.visible && a.winding == b.winding &&
          are_alike(a.color, b.color) &&
          is_mirroring(a.object_to_world) == is_mirroring(b.object_to_world) &&
-         a.clip_planes.empty() && b.clip_planes.empty() && *a.mesh() == *b.mesh();
+         a.clip_planes.empty() && b.clip_planes.empty() && !has_scalars(a) && !has_scalars(b) &&
+         *a.mesh() == *b.mesh();
 }
 
 /// How many instances of a geometry make the longest run.

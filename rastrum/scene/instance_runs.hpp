@@ -15,7 +15,8 @@ namespace rastrum {
 
 /// The instances of a run lie one after the other in the scene, draw one mesh and differ in their
 /// matrices, ids and colours alone (all or none mirror; all or none have a colour, and all or none
-/// of those are opaque). What is no mesh and what has clip planes is a run of its own.
+/// of those are opaque). What is no mesh and what has clip planes or
+/// scalars is a run of its own.
 class InstanceRuns {
  public:
   /// `scene` must outlive this. Without `joins` each instance is a run. O(instances), divided among

@@ -81,7 +81,8 @@ std::string arrays_problem(const PointsView& points) {
   const std::size_t n = points.positions.size();
   return first_problem({count_problem(n), too_few(points.normals.size(), "normals", n),
                         too_few(points.colors.size(), "colors", n),
-                        too_few(points.sizes.size(), "sizes", n)});
+                        too_few(points.sizes.size(), "sizes", n),
+                        too_few(points.scalars.size(), "scalars", n)});
 }
 
 std::string arrays_problem(const LinesView& lines) {
@@ -90,7 +91,8 @@ std::string arrays_problem(const LinesView& lines) {
     return "kind is " + std::to_string(static_cast<int>(lines.kind)) +
            ", which is no value of its enum";
   if (std::string problem =
-          first_problem({count_problem(n), too_few(lines.colors.size(), "colors", n)});
+          first_problem({count_problem(n), too_few(lines.colors.size(), "colors", n),
+                         too_few(lines.scalars.size(), "scalars", n)});
       !problem.empty())
     return problem;
   const IndexView& offsets = lines.offsets;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include <rastrum/core/elementary.hpp>
@@ -28,6 +29,24 @@ BoundsD bounds_float64(const VerticesInUse& vertices) {
   return b;
 }
 
+/// The scalars that the scene shows; null: the geometry has none of the name.
+const NamedScalars* shown(const Scene& scene, const std::vector<NamedScalars>& scalars) {
+  if (scene.shown_scalars.empty()) return nullptr;
+  for (const NamedScalars& s : scalars)
+    if (s.name == scene.shown_scalars) return &s;
+  return nullptr;
+}
+
+/// Of what is no mesh.
+void set_scalars(GeometryView& geometry, const ScalarView& values) {
+  std::visit(
+      [&](auto& g) {
+        if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(g)>, MeshView>)
+          g.scalars = values;
+      },
+      geometry);
+}
+
 GeometryView view_of(const Scene& scene, const Instance& instance) {
   const auto require = [](std::size_t number, std::size_t count, const char* what) {
     if (number < count) return;
@@ -39,10 +58,18 @@ GeometryView view_of(const Scene& scene, const Instance& instance) {
   };
   if (instance.geometry) {
     require(*instance.geometry, scene.geometries.size(), "geometry ");
-    return view(scene.geometries[*instance.geometry]);
+    const Geometry& geometry = scene.geometries[*instance.geometry];
+    GeometryView v = view(geometry);
+    const NamedScalars* const s =
+        std::visit([&](const auto& g) { return shown(scene, g.scalars); }, geometry);
+    if (s != nullptr) set_scalars(v, s->values);
+    return v;
   }
   require(instance.mesh, scene.meshes.size(), "mesh ");
-  return scene.meshes[instance.mesh].view();
+  const Mesh& mesh = scene.meshes[instance.mesh];
+  MeshView v = mesh.view();
+  if (const NamedScalars* const s = shown(scene, mesh.scalars)) v.scalars = {s->values, s->per};
+  return v;
 }
 
 }  // namespace
@@ -97,6 +124,7 @@ void Scene::place(const Mat4d& to_world) {
 void Scene::append(Scene other) {
   const auto mesh_offset = static_cast<std::uint32_t>(meshes.size());
   const auto geometry_offset = static_cast<std::uint32_t>(geometries.size());
+  const auto mapping_offset = static_cast<std::uint32_t>(scalar_mappings.size());
   const auto texture_offset = static_cast<std::int32_t>(textures.size());
   // A file without materials looks as it did once another file brings some.
   const bool any_materials = !materials.empty() || !other.materials.empty();
@@ -123,6 +151,7 @@ void Scene::append(Scene other) {
     instance.mesh += mesh_offset;
     if (instance.geometry) *instance.geometry += geometry_offset;
     if (instance.material) *instance.material += material_offset;
+    instance.scalar_mapping += mapping_offset;
     instances.push_back(std::move(instance));
   }
   for (Material& m : other.materials) {
@@ -132,6 +161,8 @@ void Scene::append(Scene other) {
     materials.push_back(std::move(m));
   }
   std::move(other.textures.begin(), other.textures.end(), std::back_inserter(textures));
+  std::move(other.scalar_mappings.begin(), other.scalar_mappings.end(),
+            std::back_inserter(scalar_mappings));
   std::move(other.cameras.begin(), other.cameras.end(), std::back_inserter(cameras));
   std::move(other.warnings.begin(), other.warnings.end(), std::back_inserter(warnings));
 }
@@ -164,8 +195,10 @@ SceneBinding::SceneBinding(const Scene& scene) {
     instance.winding = i.winding;
     instance.id = i.id;
     instance.clip_planes = i.clip_planes;
+    instance.scalar = i.scalar;
+    instance.scalar_mapping = i.scalar_mapping;
   }
-  view_ = {instances_, scene.materials, scene.textures};
+  view_ = {instances_, scene.materials, scene.textures, scene.scalar_mappings};
 }
 
 Bounds bounds(const SceneView& scene) {

@@ -112,6 +112,30 @@ TEST(Gltf, SparseAccessorsOverZerosAndOverBytes) {
   }
 }
 
+// What an application has added: numbers by their names; vectors of its own are passed over.
+TEST(Gltf, AttributesOfApplicationsAreScalars) {
+  test::GltfDocument d;
+  d.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+  d.floats({0.5F, -2, 7}, "SCALAR");
+  d.add(std::vector<std::uint8_t>{3, 0, 255}, "SCALAR", 5121);
+  d.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+  for (const int mode : {4, 0, 3}) {
+    const Scene s =
+        read(d.text(R"("meshes":[{"primitives":[{"mode":)" + std::to_string(mode) +
+                    R"(,"attributes":{"POSITION":0,"_TEMPERATURE":1,"_PART":2,"_FLOW":3}}]}],)"
+                    R"("nodes":[{"mesh":0}])"));
+    const std::vector<NamedScalars>& scalars =
+        mode == 4 ? s.meshes.at(0).scalars
+                  : std::visit(
+                        [](const auto& g) -> const auto& { return g.scalars; }, s.geometries.at(0));
+    ASSERT_EQ(scalars.size(), 2U);
+    EXPECT_EQ(scalars[0].name, "_PART");
+    EXPECT_EQ(scalars[0].values, (std::vector<double>{3, 0, 255}));
+    EXPECT_EQ(scalars[1].name, "_TEMPERATURE");
+    EXPECT_EQ(scalars[1].values, (std::vector<double>{0.5, -2, 7}));
+  }
+}
+
 TEST(Gltf, StridesAndNormalizedIntegers) {
   // Interleaved: position of int16 normalized, padded to 8; colour of 4 × uint8.
   std::string bytes;

@@ -56,7 +56,54 @@ TEST(Ply, AsciiWithEverything) {
   EXPECT_EQ(m.colors.values[0].x, 1.0F);
   EXPECT_FLOAT_EQ(m.colors.values[0].z, 0.2F);
   EXPECT_EQ(m.colors.values[0].w, 1.0F);
-  EXPECT_EQ(s.warnings.size(), 2U) << "the face of 2 corners, the property quality";
+  EXPECT_EQ(s.warnings.size(), 1U) << "the face of 2 corners";
+  ASSERT_EQ(m.scalars.size(), 1U);
+  EXPECT_EQ(m.scalars[0].name, "quality");
+  EXPECT_EQ(m.scalars[0].values, (std::vector<double>{7, 7, 7, 7}));
+}
+
+// What is nothing else is a number: of vertices and of faces, whose triangles all have it.
+TEST(Ply, OtherPropertiesAreScalars) {
+  const std::string vertices = std::string(kXyz) + "property double heat\nproperty uchar tag\n";
+  const std::string faces =
+      "property int part\nproperty list uchar int vertex_indices\nproperty float heat\n"
+      "property list uchar float weights\n";
+  const auto check = [](const Scene& s) {
+    const Mesh& m = s.meshes.at(0);
+    ASSERT_EQ(m.indices, (Indices{0, 1, 2, 0, 2, 3, 0, 1, 3}));
+    ASSERT_EQ(m.scalars.size(), 4U);
+    EXPECT_EQ(m.scalars[0].name, "heat");
+    EXPECT_EQ(m.scalars[0].per, Per::vertex);
+    EXPECT_EQ(m.scalars[0].values, (std::vector<double>{0.1, -1e300, 2, 3}));
+    EXPECT_EQ(m.scalars[1].name, "tag");
+    EXPECT_EQ(m.scalars[1].values, (std::vector<double>{0, 255, 7, 9}));
+    EXPECT_EQ(m.scalars[2].name, "part");
+    EXPECT_EQ(m.scalars[2].per, Per::face);
+    EXPECT_EQ(m.scalars[2].values, (std::vector<double>{-4, -4, 5}));
+    EXPECT_EQ(m.scalars[3].name, "face.heat");
+    EXPECT_EQ(m.scalars[3].values, (std::vector<double>{0.5, 0.5, 0.25}));
+    ASSERT_EQ(s.warnings.size(), 1U);
+    EXPECT_NE(s.warnings[0].find("not drawn: face.weights"), std::string::npos);
+  };
+  check(read(header("ascii", 4, vertices, 2, faces) +
+             "0 0 0 0.1 0\n1 0 0 -1e300 255\n1 1 0 2 7\n0 1 0 3 9\n"
+             "-4 4 0 1 2 3 0.5 0\n5 3 0 1 3 0.25 2 1 2\n"));
+  for (const bool big : {false, true}) {
+    std::string bytes =
+        header(big ? "binary_big_endian" : "binary_little_endian", 4, vertices, 2, faces);
+    const double heat[] = {0.1, -1e300, 2, 3};
+    const std::uint8_t tag[] = {0, 255, 7, 9};
+    for (int v = 0; v < 4; ++v)
+      bytes += raw(v == 1 || v == 2 ? 1.0F : 0.0F, big) + raw(v >= 2 ? 1.0F : 0.0F, big) +
+               raw(0.0F, big) + raw(heat[v], big) + raw(tag[v], big);
+    bytes += raw(std::int32_t{-4}, big) + raw(std::uint8_t{4}, big);
+    for (std::int32_t v = 0; v < 4; ++v) bytes += raw(v, big);
+    bytes += raw(0.5F, big) + raw(std::uint8_t{0}, big);
+    bytes += raw(std::int32_t{5}, big) + raw(std::uint8_t{3}, big);
+    for (const std::int32_t v : {0, 1, 3}) bytes += raw(v, big);
+    bytes += raw(0.25F, big) + raw(std::uint8_t{1}, big) + raw(8.0F, big);
+    check(read(bytes));
+  }
 }
 
 /// The same square in each combination of types and byte orders must be the same mesh.

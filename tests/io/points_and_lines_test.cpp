@@ -56,8 +56,10 @@ TEST(PointFiles, PlyWithoutFacesIsACloud) {
     EXPECT_EQ(p.positions, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}));
     EXPECT_EQ(p.normals, (std::vector<Vec3>{{0, 0, 1}, {0, 1, 0}}));
     EXPECT_EQ(p.colors, (std::vector<Vec4>{{1, 0, 0, 1}, {0, 1, 0, 1}}));
-    ASSERT_EQ(s.warnings.size(), 1U);
-    EXPECT_NE(s.warnings[0].find("not drawn: vertex.intensity"), std::string::npos);
+    EXPECT_TRUE(s.warnings.empty());
+    ASSERT_EQ(p.scalars.size(), 1U);
+    EXPECT_EQ(p.scalars[0].name, "intensity");
+    EXPECT_EQ(p.scalars[0].values, (std::vector<double>{7, 8}));
   }
   // No vertices, and it is an empty mesh.
   const Scene none = read("a.ply",

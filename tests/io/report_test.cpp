@@ -1,6 +1,7 @@
 #include <rastrum/io.hpp>
 
 #include <functional>
+#include <limits>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -34,6 +35,17 @@ TEST(Describe, RefusesIndicesOutOfRange) {
   expect("an instance is of mesh 9", [](Scene& s) { s.instances[0].mesh = 9; });
   expect("alpha mode is 200",
          [](Scene& s) { s.materials[0].alpha_mode = static_cast<AlphaMode>(200); });
+}
+
+TEST(Describe, NamesScalarsWithTheirRange) {
+  Scene scene;
+  Mesh& mesh = scene.meshes.emplace_back();
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.scalars = {{"heat", {1.5, -2, std::numeric_limits<double>::infinity()}}};
+  scene.instances.resize(1);
+  EXPECT_NE(io::describe(scene).find("scalars heat: 3 values, -2 to 1.5, 1 not finite"),
+            std::string::npos)
+      << io::describe(scene);
 }
 
 }  // namespace

@@ -164,6 +164,7 @@ void store_keys(const FrameRequest& request, const std::uint64_t* keys, std::uin
 }
 
 constexpr float kNowhere = std::numeric_limits<float>::infinity();
+constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
 
 /// What a key alone tells: which primitive of which draw.
 void store_numbers(const FrameRequest& request, const FrameGeometry& frame,
@@ -228,6 +229,10 @@ void store_point(const FrameRequest& request, const FrameGeometry& frame, const 
     store(t.camera_normals, Vec3{}, [&] { return Vec3(scene->in_camera(normal)); });
   }
   store(t.albedo, Vec4{}, [&] { return scene->albedo(frame, *f); });
+  store(t.scalars, kNoNumber, [&] {
+    const double value = scene->scalar(frame, *f);
+    return std::isnan(value) ? kNoNumber : static_cast<float>(value);
+  });
 }
 
 void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
@@ -236,7 +241,7 @@ void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
   if (!t.instances.empty() || !t.primitives.empty()) store_numbers(request, frame, block, touched);
   if (!t.view_depth.empty() || !t.distance.empty()) store_distances(request, block, touched);
   if (t.barycentrics.empty() && t.positions.empty() && t.normals.empty() &&
-      t.camera_normals.empty() && t.albedo.empty())
+      t.camera_normals.empty() && t.albedo.empty() && t.scalars.empty())
     return;
   SurfaceLocator locator(frame, request.samples);
   for (std::uint64_t m = touched; m != 0; m &= m - 1) {
@@ -384,6 +389,7 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
     fill(targets.view_depth, y, kNowhere);
     fill(targets.distance, y, kNowhere);
     fill(targets.albedo, y, Vec4{});
+    fill(targets.scalars, y, kNoNumber);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include <rastrum/raster/draws/vertices_of.hpp>
 #include <rastrum/raster/shade/material_scalar.hpp>
@@ -123,8 +124,20 @@ double SurfaceScene::ray_length(int x, int y) const {
   return length(ray) / in_camera(ray).z;
 }
 
+double SurfaceScene::scalar(const FrameGeometry& frame, const SeenFragment& f) const {
+  if (scalars.empty() || scalars[f.draw].empty()) return std::numeric_limits<double>::quiet_NaN();
+  const Draw& draw = frame.draws[f.draw];
+  if (f.quadric == nullptr) return scalars[f.draw].at(f, draw.topology);
+  double ends[2];
+  scalars[f.draw].at_ends(axis_ends(draw.quadrics->geometry(), f.triangle), ends);
+  return SurfaceScalars::between(ends, f.quadric->point.along);
+}
+
 Vec4 SurfaceScene::albedo(const FrameGeometry& frame, const SeenFragment& f) const {
   const InstanceView& instance = scene.instances[f.draw];
+  if (!scalars.empty() && scalars[f.draw].colors() != nullptr)
+    return f.quadric != nullptr ? scalars[f.draw].color(scalar(frame, f), true)
+                                : scalars[f.draw].color(f, frame.draws[f.draw].topology, true);
   if (f.quadric != nullptr) {
     const QuadricGeometry& geometry = frame.draws[f.draw].quadrics->geometry();
     const Vec4 own = color_at(geometry, instance, f.triangle, f.quadric->point.along);

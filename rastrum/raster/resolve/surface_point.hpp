@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include <rastrum/camera.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
@@ -15,6 +16,7 @@
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/point_line_shader.hpp>
+#include <rastrum/raster/shade/surface_scalars.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/scene/instance_runs.hpp>
 #include <rastrum/scene/view_distance.hpp>
@@ -66,6 +68,7 @@ struct SurfaceScene {
   DistanceByDepth distance_by_depth;         ///< set where view_depth or distance is asked for
   const MaterialScene* materials = nullptr;  ///< with textures of what alpha and colour come from
   const PointLineShader* points_and_lines = nullptr;  ///< that of their draws
+  std::span<const SurfaceScalars> scalars{};          ///< of each instance; empty: none has some
 
   SurfaceScene(const SceneView& s, const InstanceRuns* r, const Camera& c, int width, int height)
       : scene(s), runs(r), camera(c), lit(s, c, width, height), to_camera(world_to_camera(c)) {}
@@ -85,6 +88,8 @@ struct SurfaceScene {
   }
   /// Unit length, in the world, turned to the viewer; 0 where there is none.
   [[nodiscard]] Vec3d normal(const SeenFragment& f) const;
+  /// What its geometry has there; NaN: nothing.
+  [[nodiscard]] double scalar(const FrameGeometry& frame, const SeenFragment& f) const;
   [[nodiscard]] Vec3d in_camera(Vec3d direction) const;
   /// How far the pixel's ray goes for each unit along the axis; 1 for an orthographic camera.
   [[nodiscard]] double ray_length(int x, int y) const;

@@ -34,21 +34,9 @@ Vec4 opaque(Vec3 c) {
   return {c.x, c.y, c.z, 1};
 }
 
-/// How much of a line about a pixel wide along the triangle's edges covers the sample, in [0, 1].
-float wire(const Fragment& f) {
-  double nearest = 1e9;
-  for (int i = 0; i < 3; ++i) {
-    const WeightPlanes& w = *f.planes;
-    const double b = w.r[i] + w.p[i] * (f.x + 0.5 + static_cast<double>(f.from_centre.x) - w.x0) +
-                     w.q[i] * (f.y + 0.5 + static_cast<double>(f.from_centre.y) - w.y0);
-    nearest = std::min(nearest, std::abs(b) / std::sqrt(w.p[i] * w.p[i] + w.q[i] * w.q[i]));
-  }
-  return static_cast<float>(std::clamp(1.0 - nearest, 0.0, 1.0));
-}
-
 Vec4 color(const LitShading& lit, const FrameGeometry& frame, const Fragment& f) {
   if (lit.model == LitModel::id) return opaque(id_color(f.id));
-  const float line = wire(f);
+  const float line = wire_share(f);
   const Draw& draw = frame.draws[f.draw];
   const LitDraw& shared = lit.scene->draws[draw.number];
   const LitView view = lit.scene->view();
@@ -118,6 +106,17 @@ ViewRays rays_of(const Mat4d& clip, int width, int height) {
 }
 
 }  // namespace
+
+float wire_share(const Fragment& f) {
+  double nearest = 1e9;
+  for (int i = 0; i < 3; ++i) {
+    const WeightPlanes& w = *f.planes;
+    const double b = w.r[i] + w.p[i] * (f.x + 0.5 + static_cast<double>(f.from_centre.x) - w.x0) +
+                     w.q[i] * (f.y + 0.5 + static_cast<double>(f.from_centre.y) - w.y0);
+    nearest = std::min(nearest, std::abs(b) / std::sqrt(w.p[i] * w.p[i] + w.q[i] * w.q[i]));
+  }
+  return static_cast<float>(std::clamp(1.0 - nearest, 0.0, 1.0));
+}
 
 ViewRays ViewRays::of(const Camera& camera, int width, int height) {
   const auto* const m = camera.matrix ? camera.matrix->m : nullptr;

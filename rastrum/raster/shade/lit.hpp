@@ -12,6 +12,7 @@
 
 #include <rastrum/camera.hpp>
 #include <rastrum/config.hpp>
+#include <rastrum/program.hpp>
 #include <rastrum/raster/shade/shading.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/vec.hpp>
@@ -68,6 +69,9 @@ struct LitScene {
   LitScene(const SceneView& scene, const Camera& camera, int width, int height);
   [[nodiscard]] LitView view() const { return {draws, rays, colored, materials}; }
 };
+
+/// How much of a line about a pixel wide along the triangle's edges covers the fragment, in [0, 1].
+[[nodiscard]] float wire_share(const Fragment& f);
 
 /// Sets the colours of the covered samples (others may be set to anything), which are opaque; alpha
 /// is not set. Its scratch is a KeptTriangles (lit_triangle.hpp).

@@ -12,10 +12,11 @@ namespace scalar_lane {
 #undef RASTRUM_LANES
 }  // namespace scalar_lane
 
-/// The colour of triangle `t` at pixel (x, y), `from_centre` px from its centre.
+/// The colour of triangle `t` at pixel (x, y), `from_centre` px from its centre. `own_base`: stands
+/// for the base colour; null: there is none.
 [[nodiscard]] RASTRUM_HD inline Vec3 shade_lit(LitModel model, const LitView& scene,
-                                               const LitTriangle& t, int x, int y,
-                                               Vec2 from_centre) {
+                                               const LitTriangle& t, int x, int y, Vec2 from_centre,
+                                               const Vec3* own_base = nullptr) {
   const float px = static_cast<float>(x) + 0.5F + from_centre.x;
   const float py = static_cast<float>(y) + 0.5F + from_centre.y;
   scalar_lane::CornerWeights w;
@@ -28,7 +29,10 @@ namespace scalar_lane {
   }
   constexpr Vec3 default_base = kDefaultBase;
   Vec3 base = default_base;
-  if (scene.colored && model != LitModel::normal) base = scalar_lane::interpolated_color(t, w);
+  if (own_base != nullptr)
+    base = *own_base;
+  else if (scene.colored && model != LitModel::normal)
+    base = scalar_lane::interpolated_color(t, w);
   const Vec3 normal = model != LitModel::flat ? w.sum(t.normal) : base;
   return scalar_lane::light(model, scene.rays, px, py, normal, base);
 }

@@ -112,15 +112,21 @@ RASTRUM_HD inline float own_alpha(const MaterialTriangle& t, const BoundMaterial
 
 }  // namespace material_detail
 
-/// The colour of triangle `t` at a point, opaque: a display value or linear light.
+/// The colour of triangle `t` at a point, opaque: a display value or linear light. `own_base`:
+/// stands for the base colour; null: there is none.
 [[nodiscard]] RASTRUM_HD inline Vec3 shade_material(const MaterialView& scene,
                                                     const MaterialTriangle& t,
-                                                    const MaterialPoint& at, bool linear) {
+                                                    const MaterialPoint& at, bool linear,
+                                                    const Vec3* own_base = nullptr) {
   using namespace material_detail;
   const BoundMaterial& m = scene.material_of(t.draw, t.index);
   const Sampler textures(t, at);
-  scalar_lane::LitSurface s{
-      base_color(t, m, at, textures), {}, m.metallic, m.roughness, 1, m.emission};
+  scalar_lane::LitSurface s{own_base != nullptr ? *own_base : base_color(t, m, at, textures),
+                            {},
+                            m.metallic,
+                            m.roughness,
+                            1,
+                            m.emission};
   if (m.unlit) return scalar_lane::written(s.base, linear);
   if (m.metallic_roughness != nullptr) {
     const Texel c = textures.look_up<AllChannels>(*m.metallic_roughness);

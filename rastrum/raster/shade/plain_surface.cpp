@@ -46,7 +46,8 @@ PlainSurface PlainLook::surface(const InstanceView& instance, bool colored) cons
 
 float PlainLook::alpha(const PlainSurface& s, float own) const {
   if (!look_.blends) return 1;
-  const float alpha = s.material->alpha_mode == AlphaMode::blend ? s.opacity * own : s.opacity;
+  const bool counts = s.own_alpha || s.material->alpha_mode == AlphaMode::blend;
+  const float alpha = counts ? s.opacity * own : s.opacity;
   return clamped_alpha(alpha);
 }
 

@@ -28,6 +28,7 @@ struct PlainSurface {
   Vec4 albedo;  ///< the same in linear light, whatever the shader
   const Material* material = nullptr;
   float opacity = 1;               ///< the instance's, the frame's and the material's
+  bool own_alpha = false;          ///< counts whatever the mode of the material
   float normal_matrix[3][3] = {};  ///< object to world, inverse transpose
 };
 

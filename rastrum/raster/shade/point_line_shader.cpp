@@ -15,16 +15,18 @@ Vec4 point_color(const ArrayView<Vec4>& colors, const Vec4& base, std::uint32_t 
 
 }  // namespace
 
-ArrayView<Vec4> PointLineShader::add(const InstanceView& instance) {
+ArrayView<Vec4> PointLineShader::add(const InstanceView& instance, const SurfaceScalars& scalars) {
   Part& part = parts_.emplace_back();
+  part.scalars = scalars;
   if (const auto* const points = std::get_if<PointsView>(&instance.geometry)) {
     part.colors = points->colors;
     part.normals = points->normals;
   } else {
     part.colors = std::get<LinesView>(instance.geometry).colors;
   }
-  if (instance.color) part.colors = {};
+  if (instance.color || scalars.colors() != nullptr) part.colors = {};
   part.surface = look_.surface(instance, !part.colors.empty());
+  part.surface.own_alpha = scalars.colors() != nullptr;
   return part.colors;
 }
 
@@ -59,15 +61,19 @@ bool PointLineShader::shade(const FrameGeometry& frame, const VisibleBlock& bloc
     const Part& part = part_of(draw);
     Vec4 base;
     Vec3 normal;
-    if (draw.topology == Topology::lines) {
+    if (part.scalars.colors() != nullptr) {
+      const Fragment& f = locator.locate(id, block.x0, block.y0, i, block.points);
+      base = part.scalars.color(f, draw.topology, !look_.look().model);
+    } else if (draw.topology == Topology::lines) {
       base =
           along(part, part.surface.base, locator.locate(id, block.x0, block.y0, i, block.points));
     } else {
       const std::uint32_t v = draw.vertex(id - draw.first_id, 0);
       base = point_color(part.colors, part.surface.base, v);
-      if (!part.normals.empty())
-        normal = times(part.surface.normal_matrix, safe_normal(part.normals[v]));
     }
+    if (!part.normals.empty())
+      normal = times(part.surface.normal_matrix,
+                     safe_normal(part.normals[draw.vertex(id - draw.first_id, 0)]));
     const Vec2 from_centre =
         block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
     const float px = static_cast<float>(block.x0 + i % kBlockSize) + 0.5F + from_centre.x;
@@ -85,6 +91,7 @@ std::uint64_t PointLineShader::test(const FrameGeometry& frame, const Piece& pie
   const std::uint64_t id = id_of_key(piece.low);
   const Draw& draw = frame.draw_of(id);
   const Part& part = part_of(draw);
+  if (part.scalars.colors() != nullptr) return block.mask;  // nothing says what is a hole
   const float cutoff = part.surface.material->alpha_cutoff;
   if (draw.topology == Topology::points || part.colors.empty()) {
     const std::uint32_t v = draw.vertex(id - draw.first_id, 0);

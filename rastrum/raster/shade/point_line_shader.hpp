@@ -11,6 +11,7 @@
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/shade/plain_surface.hpp>
+#include <rastrum/raster/shade/surface_scalars.hpp>
 #include <rastrum/scene.hpp>
 
 namespace rastrum::raster {
@@ -22,8 +23,9 @@ class PointLineShader final : public BlockShader, public FragmentTest {
                   const Camera& camera, int width, int height)
       : look_(look, materials, camera, width, height) {}
 
-  /// `instance`: of points or lines, whose arrays must outlive the frame. Returns their colours.
-  ArrayView<Vec4> add(const InstanceView& instance);
+  /// `instance`: of points or lines, whose arrays must outlive the frame, and its scalars. Returns
+  /// their colours, which scalars stand for.
+  ArrayView<Vec4> add(const InstanceView& instance, const SurfaceScalars& scalars);
   /// As MaterialShading::linear.
   void leave_linear() { look_.leave_linear(); }
 
@@ -41,6 +43,7 @@ class PointLineShader final : public BlockShader, public FragmentTest {
   struct Part {
     ArrayView<Vec4> colors;   ///< one a position; empty: there are none
     ArrayView<Vec3> normals;  ///< the same
+    SurfaceScalars scalars;
     PlainSurface surface;
   };
   [[nodiscard]] const Part& part_of(const Draw& draw) const { return parts_[draw.number]; }

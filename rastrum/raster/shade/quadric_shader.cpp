@@ -38,6 +38,7 @@ struct QuadricShader::Kept {
   const Surface* surface = nullptr;
   QuadricSurface quadric;
   Vec4 color[2];
+  double scalar[2] = {0, 0};  ///< at the ends of its axis, where they are shown
 };
 /// Those that were seen last, by their ids' low bits.
 struct QuadricShader::KeptQuadrics {
@@ -57,9 +58,12 @@ QuadricShader::QuadricShader(const SurfaceLook& look, std::span<const Material> 
                              const Camera& camera, int width, int height)
     : look_(look, materials, camera, width, height) {}
 
-void QuadricShader::add(const QuadricStage& stage, const InstanceView& instance) {
-  const ArrayView<Vec4> colors = colors_of(stage.geometry(), instance);
-  surfaces_.push_back({&stage, look_.surface(instance, !colors.empty()), colors});
+void QuadricShader::add(const QuadricStage& stage, const InstanceView& instance,
+                        const SurfaceScalars& scalars) {
+  const bool shows = scalars.colors() != nullptr;
+  const ArrayView<Vec4> colors = shows ? ArrayView<Vec4>{} : colors_of(stage.geometry(), instance);
+  surfaces_.push_back({&stage, look_.surface(instance, !colors.empty()), colors, scalars});
+  surfaces_.back().plain.own_alpha = shows;
 }
 
 std::size_t QuadricShader::scratch_bytes() const noexcept {
@@ -79,6 +83,8 @@ void QuadricShader::fetch(const FrameGeometry& frame, std::uint64_t low, KeptQua
   else
     (void)out.quadric.find(stage, primitive, frame.viewport);
   out.color[0] = out.color[1] = out.surface->plain.base;
+  if (out.surface->shows_scalars())
+    out.surface->scalars.at_ends(axis_ends(stage.geometry(), primitive), out.scalar);
   const ArrayView<Vec4>& colors = out.surface->colors;
   if (colors.empty()) return;
   const AxisEnds ends = axis_ends(stage.geometry(), primitive);
@@ -87,20 +93,24 @@ void QuadricShader::fetch(const FrameGeometry& frame, std::uint64_t low, KeptQua
 }
 
 QuadricShader::Seen QuadricShader::seen(const Kept& k, std::uint64_t key,
-                                        QuadricSurface::Place at) {
+                                        QuadricSurface::Place at) const {
   // Which of the two surfaces it is, its depth tells.
   const auto depth = std::bit_cast<float>(static_cast<std::uint32_t>(key >> kIdBits));
   scalar_wide::Surface s = k.quadric.side(false, at);
   if (!s.covered || quadric_depth(k.quadric.quadric, s.e) != depth) s = k.quadric.side(true, at);
   const QuadricPoint point = point_on(k.quadric.shape, k.quadric.point(at, s.e));
-  return {lerp(k.color[0], k.color[1], static_cast<float>(point.along)),
-          times(k.surface->plain.normal_matrix, Vec3(point.normal))};
+  const Vec4 base = k.surface->shows_scalars()
+                        ? k.surface->scalars.color(SurfaceScalars::between(k.scalar, point.along),
+                                                   !look_.look().model)
+                        : lerp(k.color[0], k.color[1], static_cast<float>(point.along));
+  return {base, times(k.surface->plain.normal_matrix, Vec3(point.normal))};
 }
 
 std::uint64_t QuadricShader::test(const FrameGeometry& frame, const Piece& piece,
                                   const Block& block, const ShadingPoints* points) const noexcept {
   Kept k;
   fetch(frame, piece.low, nullptr, k);
+  if (k.surface->shows_scalars()) return block.mask;  // nothing says what is a hole
   const bool away = (piece.flags & kFacesAway) != 0;
   std::uint64_t kept = 0;
   for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
@@ -118,9 +128,10 @@ std::uint64_t QuadricShader::test(const FrameGeometry& frame, const Piece& piece
 }
 
 void QuadricShader::fill(const QuadricLanes& lanes, const Kept& kept, const VisibleBlock& block,
-                         std::uint64_t mask, QuadricBlock& out) {
+                         std::uint64_t mask, QuadricBlock& out) const {
   const QuadricKind kind = kept.quadric.shape.kind;
-  if (block.points == nullptr && (kind == QuadricKind::sphere || kind == QuadricKind::hull))
+  if (block.points == nullptr && !kept.surface->shows_scalars() &&
+      (kind == QuadricKind::sphere || kind == QuadricKind::hull))
     return lanes.fill(kept.quadric, kept.surface->plain.normal_matrix, kept.color, block, mask,
                       out);
   for (; mask != 0; mask &= mask - 1) {

@@ -13,6 +13,7 @@
 #include <rastrum/raster/setup/quadric_surface.hpp>
 #include <rastrum/raster/shade/plain_surface.hpp>
 #include <rastrum/raster/shade/shading.hpp>
+#include <rastrum/raster/shade/surface_scalars.hpp>
 #include <rastrum/scene.hpp>
 
 namespace rastrum::raster {
@@ -27,8 +28,9 @@ class QuadricShader final : public BlockShader, public FragmentTest {
  public:
   QuadricShader(const SurfaceLook& look, std::span<const Material> materials, const Camera& camera,
                 int width, int height);
-  /// `instance`: of the stage, whose own look is heeded. `stage` must outlive the frame.
-  void add(const QuadricStage& stage, const InstanceView& instance);
+  /// `instance`: of the stage, whose own look is heeded, as are its scalars. `stage` must outlive
+  /// the frame.
+  void add(const QuadricStage& stage, const InstanceView& instance, const SurfaceScalars& scalars);
   /// As MaterialShading::linear.
   void leave_linear() { look_.leave_linear(); }
 
@@ -44,9 +46,12 @@ class QuadricShader final : public BlockShader, public FragmentTest {
     const QuadricStage* stage;
     PlainSurface plain;
     ArrayView<Vec4> colors;  ///< empty: there are none
+    SurfaceScalars scalars;
 
+    [[nodiscard]] bool shows_scalars() const { return scalars.colors() != nullptr; }
     /// Whether alpha may change from point to point.
     [[nodiscard]] bool has_own_alpha() const {
+      if (shows_scalars()) return true;
       return plain.material->alpha_mode == AlphaMode::blend &&
              !(colors.empty() && plain.base.w == 1);
     }
@@ -61,10 +66,10 @@ class QuadricShader final : public BlockShader, public FragmentTest {
 
   /// `all`: whose eye is used; null: a new one.
   void fetch(const FrameGeometry& frame, std::uint64_t low, KeptQuadrics* all, Kept& out) const;
-  [[nodiscard]] static Seen seen(const Kept& kept, std::uint64_t key, QuadricSurface::Place at);
+  [[nodiscard]] Seen seen(const Kept& kept, std::uint64_t key, QuadricSurface::Place at) const;
   /// What is seen of a primitive at the samples `mask` of a block.
-  static void fill(const QuadricLanes& lanes, const Kept& kept, const VisibleBlock& block,
-                   std::uint64_t mask, QuadricBlock& out);
+  void fill(const QuadricLanes& lanes, const Kept& kept, const VisibleBlock& block,
+            std::uint64_t mask, QuadricBlock& out) const;
   /// shade() of the models that lanes have.
   bool shade_lit(const QuadricLanes& lanes, const FrameGeometry& frame, const VisibleBlock& block,
                  Isa isa, BlockColors& colors) const;

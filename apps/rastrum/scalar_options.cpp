@@ -1,0 +1,186 @@
+#include "scalar_options.hpp"
+
+#include <string_view>
+#include <vector>
+
+#include <rastrum/error.hpp>
+
+#include "arguments.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+constexpr const char* kScalarGroup = "Numbers as colours";
+
+std::vector<std::string> parts_of(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+std::vector<double> parse_numbers(const char* option, const std::string& text) {
+  std::vector<double> numbers;
+  for (const std::string& part : parts_of(text, ',')) numbers.push_back(parse_number(option, part));
+  return numbers;
+}
+
+ScalarRange parse_range(const std::string& text) {
+  const std::vector<double> ends = parse_numbers("--range", text);
+  if (ends.size() != 2)
+    throw UsageError("--range", "expected LOW,HIGH as in 0,100, got '" + text + "'");
+  if (ends[0] > ends[1]) throw UsageError("--range", "is upside down: '" + text + "'");
+  return {ends[0], ends[1]};
+}
+
+std::vector<ScalarOpacity> parse_opacity(const std::string& text) {
+  std::vector<ScalarOpacity> all;
+  for (const std::string& part : parts_of(text, ',')) {
+    const std::vector<std::string> pair = parts_of(part, ':');
+    if (pair.size() != 2)
+      throw UsageError("--scalar-opacity",
+                       "expected VALUE:OPACITY,... as in 0:0,10:1, got '" + text + "'");
+    all.push_back({parse_number("--scalar-opacity", pair[0]),
+                   static_cast<float>(parse_number("--scalar-opacity", pair[1]))});
+  }
+  return all;
+}
+
+ColorMap parse_map(const std::string& text) {
+  try {
+    return color_map_or_list(text);
+  } catch (const Error& e) {
+    throw UsageError("--cmap", e.what());
+  }
+}
+
+std::string map_names() {
+  std::string names;
+  for (const std::string_view n : color_map_names())
+    names.append(names.empty() ? "" : ", ").append(n);
+  return names;
+}
+
+}  // namespace
+
+void add_scalar_options(Parser& app, ScalarOptions& s) {
+  add(app, "--scalars", "NAME",
+      "colours by numbers of the files (rastrum info lists them), or by x, y, z, distance",
+      [&s](const std::string& v) { s.name = v; })
+      ->group(kScalarGroup);
+  const auto add_one = [&](const char* option, const char* type, const std::string& help,
+                           auto&& set) {
+    add(app, option, type, help.c_str(), [&s, option, set](const std::string& v) {
+      s.given = option;
+      set(s, v);
+    })->group(kScalarGroup);
+  };
+  ScalarMapping& m = s.mapping;
+  add_one(
+      "--cmap", "NAME",
+      "colours from low to high, NAME_r reversed, or #rrggbb,#rrggbb,... (viridis): " + map_names(),
+      [&m](ScalarOptions&, const std::string& v) { m.map = parse_map(v); });
+  add_one("--range", "LOW,HIGH", "numbers of the first and last colour (the least and greatest)",
+          [&m](ScalarOptions&, const std::string& v) { m.range = parse_range(v); });
+  const auto add_switch = [&](const char* option, const char* help, bool& value) {
+    app.add_flag(option, value, help)->group(kScalarGroup);
+  };
+  add_switch("--log", "even steps of colour are even factors", m.logarithmic);
+  add_switch("--symmetric", "0 is the middle of the range", m.symmetric);
+  add_one("--steps", "N", "so many colours, each of an equal part of the range",
+          [&m](ScalarOptions&, const std::string& v) {
+            m.steps = parse_integer("--steps", v, 1, 65536);
+          });
+  add_one("--categories", "V,V,...", "a colour for each of these numbers, none for others",
+          [&m](ScalarOptions&, const std::string& v) {
+            m.categories = parse_numbers("--categories", v);
+          });
+  add_one("--below", "COLOUR", "of numbers below the range (its first colour)",
+          [&m](ScalarOptions&, const std::string& v) { m.below = parse_color("--below", v); });
+  add_one("--above", "COLOUR", "of numbers above it (its last colour)",
+          [&m](ScalarOptions&, const std::string& v) { m.above = parse_color("--above", v); });
+  add_one("--nan-color", "COLOUR", "where there is no number (#808080)",
+          [&m](ScalarOptions&, const std::string& v) { m.nan = parse_color("--nan-color", v); });
+  add_one("--scalar-opacity", "V:A,V:A,...", "opacity at these numbers, linear between them",
+          [&m](ScalarOptions&, const std::string& v) { m.opacity = parse_opacity(v); });
+  add_one("--isolines", "N|V,V,...",
+          "lines on meshes: about N of them, or where these numbers are (V, for one alone)",
+          [](ScalarOptions& all, const std::string& v) {
+            if (v.find(',') == std::string::npos)
+              all.isoline_count = parse_integer("--isolines", v, 1, 1000);
+            else
+              all.mapping.isolines =
+                  parse_numbers("--isolines", v.back() == ',' ? v.substr(0, v.size() - 1) : v);
+          });
+  add_one("--isoline-color", "COLOUR", "(black)", [&m](ScalarOptions&, const std::string& v) {
+    m.isoline_color = parse_color("--isoline-color", v);
+  });
+  add_one("--isoline-width", "PX", "(1)", [&m](ScalarOptions&, const std::string& v) {
+    m.isoline_px = static_cast<float>(parse_number("--isoline-width", v));
+  });
+  add_one("--bar", "TITLE", "a bar beside the picture that says which colour is which number",
+          [](ScalarOptions& all, const std::string& v) { all.bar_title = v; });
+  add_one("--bar-unit", "UNIT", "behind the title",
+          [](ScalarOptions& all, const std::string& v) { all.bar_unit = v; });
+}
+
+void check_scalars(const ScalarOptions& s, bool has_colors) {
+  if (s.name.empty()) {
+    const char* const option = s.given != nullptr      ? s.given
+                               : s.mapping.logarithmic ? "--log"
+                               : s.mapping.symmetric   ? "--symmetric"
+                                                       : nullptr;
+    if (option != nullptr) throw UsageError(option, "is of numbers: say which, as in --scalars z");
+    return;
+  }
+  if (s.bar() && !has_colors) throw UsageError("--bar", "is drawn into a picture: give -o");
+  if (!s.bar() && !s.bar_unit.empty()) throw UsageError("--bar-unit", "is for --bar");
+  try {
+    // What cannot be meant whatever the numbers are.
+    ScalarMapping m = s.mapping;
+    if (!m.range) m.range = ScalarRange{1, 2};
+    static_cast<void>(ScalarColors(m, {}));
+  } catch (const Error& e) {
+    throw UsageError("--scalars", e.what());
+  }
+}
+
+void set_scalars(const ScalarOptions& s, Scene& scene) {
+  if (s.name.empty()) return;
+  show_scalars(scene, s.name);
+  scene.scalar_mappings = {s.mapping};
+  if (s.isoline_count == 0) return;
+  const ScalarRange range = scalar_colors(SceneBinding(scene).view()).range();
+  for (const overlay::Tick& tick :
+       overlay::ticks(range.low, range.high, s.isoline_count, s.mapping.logarithmic))
+    scene.scalar_mappings[0].isolines.push_back(tick.value);
+}
+
+void draw_bar(const ScalarOptions& s, const SceneView& scene, const overlay::Canvas& canvas,
+              const overlay::Look& look) {
+  if (!s.bar()) return;
+  const ScalarMapping& m = scene.scalar_mappings[0];
+  const ScalarColors colors = scalar_colors(scene);
+  overlay::ScalarBar bar;
+  bar.colors = colors.colors();
+  bar.discrete = colors.is_discrete();
+  bar.low = colors.range().low;
+  bar.high = colors.range().high;
+  bar.logarithmic = m.logarithmic && m.categories.empty();
+  bar.title = *s.bar_title;
+  bar.unit = s.bar_unit;
+  if (m.categories.empty()) {
+    bar.below = m.below;
+    bar.above = m.above;
+  }
+  for (const double category : m.categories) {
+    const auto ticks = overlay::ticks(category, category, 1);
+    bar.categories.push_back(ticks.empty() ? std::to_string(category) : ticks.front().label);
+  }
+  overlay::draw_scalar_bar(canvas, bar, look);
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,35 @@
+// Numbers that become colours, as options: which ones, how, and a bar that says what they mean.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <rastrum/color_map.hpp>
+#include <rastrum/overlay.hpp>
+#include <rastrum/scene.hpp>
+
+#include "option.hpp"
+
+namespace rastrum::cli {
+
+struct ScalarOptions {
+  std::string name;  ///< empty: none are shown
+  ScalarMapping mapping;
+  int isoline_count = 0;  ///< about so many, where the bar has its ticks
+  std::optional<std::string> bar_title;
+  std::string bar_unit;
+  const char* given = nullptr;  ///< an option that needs --scalars
+
+  [[nodiscard]] bool bar() const { return bar_title.has_value(); }
+};
+
+void add_scalar_options(Parser& app, ScalarOptions& s);
+/// What the parser cannot see by itself. Throws UsageError.
+void check_scalars(const ScalarOptions& s, bool has_colors);
+/// Makes the scene show them. Throws Error for a name that it has not.
+void set_scalars(const ScalarOptions& s, Scene& scene);
+/// The bar of the scene's first mapping.
+void draw_bar(const ScalarOptions& s, const SceneView& scene, const overlay::Canvas& canvas,
+              const overlay::Look& look);
+
+}  // namespace rastrum::cli

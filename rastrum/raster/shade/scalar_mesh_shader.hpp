@@ -1,0 +1,46 @@
+// The built-in shaders over meshes whose numbers are their colours: these stand for base colours,
+// textures and vertex colours; the light, the normals and the rest of a material are as without.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <rastrum/camera.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
+#include <rastrum/raster/shade/lit.hpp>
+#include <rastrum/raster/shade/material.hpp>
+#include <rastrum/raster/shade/plain_surface.hpp>
+#include <rastrum/raster/shade/surface_scalars.hpp>
+#include <rastrum/scene.hpp>
+
+namespace rastrum::raster {
+
+/// Shades the draws of such instances, in their order, and tests those whose material is a mask,
+/// which its texture says as without scalars. Alpha is opacity times the colour's, whatever the
+/// mode of the material.
+class ScalarMeshShader final : public BlockShader, public FragmentTest {
+ public:
+  /// `scene`: of these instances alone, `scalars` theirs; both must outlive this. `textures`: up to
+  /// date with what materials and masks read.
+  ScalarMeshShader(const SurfaceLook& look, const SceneView& scene,
+                   std::vector<SurfaceScalars> scalars, const Camera& camera, int width, int height,
+                   const TextureSet& textures);
+  /// As MaterialShading::linear.
+  void leave_linear() { linear_ = true; }
+
+  bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
+             BlockColors& colors) const noexcept override;
+  [[nodiscard]] std::size_t scratch_bytes() const noexcept override;
+  [[nodiscard]] std::uint64_t test(const FrameGeometry& frame, const Piece& piece,
+                                   const Block& block,
+                                   const ShadingPoints* points) const noexcept override;
+
+ private:
+  SurfaceLook look_;
+  bool linear_ = false;
+  std::vector<SurfaceScalars> scalars_;  ///< by Draw::number
+  LitScene lit_;
+  MaterialScene materials_;
+};
+
+}  // namespace rastrum::raster

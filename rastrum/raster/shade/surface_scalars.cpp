@@ -1,0 +1,89 @@
+#include <rastrum/raster/shade/surface_scalars.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <rastrum/raster/shade/srgb.hpp>
+#include <rastrum/scene/scalars.hpp>
+
+namespace rastrum::raster {
+namespace {
+
+/// Σ bᵢ vᵢ, left to right, no further than the numbers themselves; so what is equal at all corners
+/// is equal everywhere, and no rounding leads beyond a range that the corners end.
+double weighted(const double* b, const double* v, int n) {
+  double sum = v[0] * b[0], low = v[0], high = v[0];
+  bool nan = std::isnan(v[0]);
+  for (int i = 1; i < n; ++i) {
+    sum = sum + v[i] * b[i];
+    low = std::min(low, v[i]);
+    high = std::max(high, v[i]);
+    nan |= std::isnan(v[i]);
+  }
+  if (nan) return sum;
+  if (low == high) return low;
+  return sum < low ? low : sum > high ? high : sum;
+}
+
+Vec4 linear_light(Vec4 display) {
+  const auto channel = [](float c) { return static_cast<float>(linear_from_srgb(double{c})); };
+  return {channel(display.x), channel(display.y), channel(display.z), display.w};
+}
+
+}  // namespace
+
+SurfaceScalars::SurfaceScalars(const InstanceView& instance, const ScalarColors* colors)
+    : values_(scalars_of(instance)),
+      mesh_(instance.mesh()),
+      colors_(values_.empty() ? nullptr : colors) {}
+
+void SurfaceScalars::at_corners(const Fragment& f, Topology topology, double (&out)[3]) const {
+  const int n = static_cast<int>(topology);
+  if (values_.per == Per::mesh) {
+    std::fill_n(out, n, values_.values[0]);
+  } else if (values_.per == Per::vertex) {
+    for (int c = 0; c < n; ++c) out[c] = values_.values[f.vertex[c]];
+  } else {
+    const TrianglePlace place = mesh_->place(f.triangle);
+    for (int c = 0; c < n; ++c)
+      out[c] = values_.values[values_.per == Per::face ? place.face : place.corner[c]];
+  }
+}
+
+double SurfaceScalars::at(const Fragment& f, Topology topology) const {
+  double corner[3];
+  at_corners(f, topology, corner);
+  return weighted(f.weights.b, corner, static_cast<int>(topology));
+}
+
+void SurfaceScalars::at_ends(const AxisEnds& ends, double (&out)[2]) const {
+  const bool one = values_.per == Per::mesh;
+  out[0] = values_.values[one ? 0 : ends.first];
+  out[1] = values_.values[one ? 0 : ends.second];
+}
+
+double SurfaceScalars::between(const double (&ends)[2], double along) {
+  const double weights[2] = {1 - along, along};
+  return weighted(weights, ends, 2);
+}
+
+Vec4 SurfaceScalars::color(double value, bool linear) const {
+  const Vec4 c = (*colors_)(value);
+  return linear ? linear_light(c) : c;
+}
+
+Vec4 SurfaceScalars::color(const Fragment& f, Topology topology, bool linear) const {
+  double corner[3];
+  at_corners(f, topology, corner);
+  const double value = weighted(f.weights.b, corner, static_cast<int>(topology));
+  if (topology != Topology::triangles || !colors_->has_isolines()) return color(value, linear);
+  double dx = 0, dy = 0;
+  for (int c = 0; c < 3; ++c) {
+    dx = dx + corner[c] * f.weights.db_dx[c];
+    dy = dy + corner[c] * f.weights.db_dy[c];
+  }
+  const Vec4 c = colors_->with_isolines((*colors_)(value), value, std::sqrt(dx * dx + dy * dy));
+  return linear ? linear_light(c) : c;
+}
+
+}  // namespace rastrum::raster

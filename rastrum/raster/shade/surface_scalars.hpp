@@ -1,0 +1,44 @@
+// The numbers of an instance at a place of its surface, and the colours that they become
+// (docs/conventions.md, "Scalars"): interpolated first and mapped then, in float64, in the order
+// that is written in surface_scalars.cpp.
+#pragma once
+
+#include <rastrum/color_map.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/raster/draws/quadrics.hpp>
+#include <rastrum/scene.hpp>
+
+namespace rastrum::raster {
+
+/// Of one instance, which must outlive this. Without numbers it is of none.
+class SurfaceScalars {
+ public:
+  SurfaceScalars() = default;
+  /// `colors`: null where its numbers colour nothing.
+  SurfaceScalars(const InstanceView& instance, const ScalarColors* colors);
+
+  /// Whether there are numbers.
+  [[nodiscard]] bool empty() const { return values_.empty(); }
+  /// Null where they colour nothing.
+  [[nodiscard]] const ScalarColors* colors() const { return colors_; }
+
+  /// What a fragment of a mesh, of points or lines has.
+  [[nodiscard]] double at(const Fragment& f, Topology topology) const;
+  /// At the two ends of a quadric's axis, and between them.
+  void at_ends(const AxisEnds& ends, double (&out)[2]) const;
+  [[nodiscard]] static double between(const double (&ends)[2], double along);
+
+  /// The base colour of a fragment: straight alpha; a display value or linear light. Requires
+  /// colors(), as does the next.
+  [[nodiscard]] Vec4 color(const Fragment& f, Topology topology, bool linear) const;
+  [[nodiscard]] Vec4 color(double value, bool linear) const;
+
+ private:
+  void at_corners(const Fragment& f, Topology topology, double (&out)[3]) const;
+
+  MeshScalarsView values_;
+  const MeshView* mesh_ = nullptr;  ///< null: it is none
+  const ScalarColors* colors_ = nullptr;
+};
+
+}  // namespace rastrum::raster

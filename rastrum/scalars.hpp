@@ -1,0 +1,90 @@
+// Numbers on geometry, which become colours (color_map.hpp): what a measurement or a simulation has
+// found at each vertex, face, point or instance.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <ranges>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <rastrum/array.hpp>
+#include <rastrum/config.hpp>
+
+namespace rastrum {
+
+/// What each value of an attribute is of.
+enum class Per : std::uint8_t { vertex, corner, face, mesh };
+
+template <class C>
+concept ScalarNumber = std::same_as<C, float> || std::same_as<C, double> || IndexNumber<C>;
+
+/// Numbers of any type in a caller's memory, read as float64 as they are: integers are not
+/// normalized (those of 64 bits are rounded to nearest). Strides as ArrayView's.
+class ScalarView {
+ public:
+  ScalarView() = default;
+  /// Vectors, arrays and spans of numbers.
+  template <array_detail::Contiguous R>
+  requires ScalarNumber<array_detail::ValueOf<R>> ScalarView(const R& packed)
+      : ScalarView(of(std::ranges::data(packed), std::ranges::size(packed))) {}
+
+  /// `count` numbers: float, double or integers of any size.
+  template <ScalarNumber C>
+  [[nodiscard]] static ScalarView of(const C* numbers, std::size_t count,
+                                     std::ptrdiff_t stride_bytes = sizeof(C)) {
+    ScalarView v;
+    v.data_ = static_cast<const std::byte*>(static_cast<const void*>(numbers));
+    v.size_ = count;
+    v.stride_ = stride_bytes;
+    v.type_ = type_of<C>();
+    return v;
+  }
+  /// Numbers in a buffer. Throws Error{invalid_argument} where one of them reaches beyond it, or
+  /// the layout is not of one number a value.
+  [[nodiscard]] static ScalarView in(std::span<const std::byte> buffer, const ArrayLayout& layout);
+
+  [[nodiscard]] RASTRUM_HD std::size_t size() const { return size_; }
+  [[nodiscard]] RASTRUM_HD bool empty() const { return size_ == 0; }
+  /// Number i < size().
+  [[nodiscard]] double operator[](std::size_t i) const;
+
+ private:
+  template <class C>
+  static constexpr NumberType type_of() {
+    if constexpr (std::same_as<C, float>) return NumberType::float32;
+    if constexpr (std::same_as<C, double>) return NumberType::float64;
+    if constexpr (std::integral<C>) {
+      constexpr bool s = std::is_signed_v<C>;
+      if constexpr (sizeof(C) == 1) return s ? NumberType::int8 : NumberType::uint8;
+      if constexpr (sizeof(C) == 2) return s ? NumberType::int16 : NumberType::uint16;
+      if constexpr (sizeof(C) == 4) return s ? NumberType::int32 : NumberType::uint32;
+      if constexpr (sizeof(C) == 8) return s ? NumberType::int64 : NumberType::uint64;
+    }
+  }
+
+  const std::byte* data_ = nullptr;
+  std::size_t size_ = 0;
+  std::ptrdiff_t stride_ = sizeof(float);
+  NumberType type_ = NumberType::float32;
+};
+
+/// Of a mesh; empty: it has none.
+struct MeshScalarsView {
+  ScalarView values{};
+  Per per = Per::vertex;
+
+  [[nodiscard]] RASTRUM_HD bool empty() const { return values.empty(); }
+};
+
+/// Numbers that a geometry owns. Of what is no mesh: one a position, sphere or disc.
+struct NamedScalars {
+  std::string name{};
+  std::vector<double> values{};
+  Per per = Per::vertex;
+};
+
+}  // namespace rastrum

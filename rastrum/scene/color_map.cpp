@@ -1,0 +1,83 @@
+// Colour maps by name, and lists of colours; see color_map.hpp.
+#include <algorithm>
+#include <string>
+
+#include <rastrum/color_map.hpp>
+#include <rastrum/error.hpp>
+
+namespace rastrum {
+namespace {
+
+struct PublishedMap {
+  std::string_view name;
+  bool discrete;
+  std::string_view digits;
+};
+
+#include <rastrum/scene/color_maps/tables.inc>
+
+/// −1: no hexadecimal digit.
+int digit_of(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+/// RRGGBB or RRGGBBAA; none where it is something else.
+std::optional<Vec4> parsed(std::string_view digits) {
+  if (digits.size() != 6 && digits.size() != 8) return std::nullopt;
+  float channel[4] = {0, 0, 0, 1};
+  for (std::size_t c = 0; 2 * c < digits.size(); ++c) {
+    const int high = digit_of(digits[2 * c]), low = digit_of(digits[2 * c + 1]);
+    if (high < 0 || low < 0) return std::nullopt;
+    channel[c] = static_cast<float>(16 * high + low) / 255.0F;
+  }
+  return Vec4{channel[0], channel[1], channel[2], channel[3]};
+}
+
+}  // namespace
+
+std::vector<std::string_view> color_map_names() {
+  std::vector<std::string_view> names;
+  for (const PublishedMap& m : kPublishedMaps) names.push_back(m.name);
+  return names;
+}
+
+ColorMap color_map(std::string_view name) {
+  const bool reversed = name.ends_with("_r");
+  const std::string_view stem = name.substr(0, name.size() - (reversed ? 2 : 0));
+  for (const PublishedMap& m : kPublishedMaps) {
+    if (m.name != stem) continue;
+    ColorMap map{std::string(name), {}, m.discrete};
+    for (std::size_t i = 0; i < m.digits.size(); i += 6)
+      map.colors.push_back(parsed(m.digits.substr(i, 6)).value());
+    if (reversed) std::reverse(map.colors.begin(), map.colors.end());
+    return map;
+  }
+  std::string names;
+  for (const std::string_view n : color_map_names()) names.append(" ").append(n);
+  throw Error(Errc::not_found, "no colour map is called '" + std::string(name) +
+                                   "'; there are, each also with _r for its reverse:" + names);
+}
+
+ColorMap color_map_or_list(std::string_view text) {
+  if (text.empty() || text[0] != '#') return color_map(text);
+  ColorMap map{std::string(text), {}, false};
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(", ", begin), text.size());
+    const std::string_view one = text.substr(begin, end - begin);
+    begin = end + 1;
+    if (one.empty()) continue;
+    const std::optional<Vec4> color = one[0] == '#' ? parsed(one.substr(1)) : std::nullopt;
+    if (!color)
+      throw Error(Errc::invalid_argument,
+                  "a list of colours is #RRGGBB or #RRGGBBAA, separated by "
+                  "commas; '" +
+                      std::string(one) + "' is none");
+    map.colors.push_back(*color);
+  }
+  return map;
+}
+
+}  // namespace rastrum

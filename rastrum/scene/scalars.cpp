@@ -1,0 +1,186 @@
+// The scalars of a scene: what of it shows some, their range, and those that coordinates make.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+#include <rastrum/error.hpp>
+#include <rastrum/scene.hpp>
+#include <rastrum/scene/scalars.hpp>
+
+namespace rastrum {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Grows `range`, empty at first, by the finite numbers of `values`; returns how many are not.
+template <class Values>
+std::uint64_t grow(ScalarRange& range, const Values& values, bool above_zero = false) {
+  std::uint64_t others = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double v = values[i];
+    if (!std::isfinite(v)) {
+      ++others;
+    } else if (!above_zero || v > 0) {
+      range.low = std::min(range.low, v);
+      range.high = std::max(range.high, v);
+    }
+  }
+  return others;
+}
+
+ScalarRange or_zero(ScalarRange range) {
+  return range.low <= range.high ? range : ScalarRange{0, 0};
+}
+
+/// The scalars of all geometries of a scene.
+template <class F>
+void for_each_scalars(const Scene& scene, F&& f) {
+  for (const Mesh& mesh : scene.meshes)
+    for (const NamedScalars& s : mesh.scalars) f(s);
+  for (const Geometry& geometry : scene.geometries)
+    std::visit(
+        [&](const auto& g) {
+          for (const NamedScalars& s : g.scalars) f(s);
+        },
+        geometry);
+}
+
+const std::vector<Vec3>& positions_of(const Mesh& g) {
+  return g.positions;
+}
+template <class G>
+const std::vector<Vec3>& positions_of(const G& g) {
+  if constexpr (requires { g.centers; })
+    return g.centers;
+  else
+    return g.positions;
+}
+
+Vec3d in_world(const Mat4d& to_world, Vec3 p) {
+  const auto row = [&](int i) {
+    const auto& m = to_world.m[i];
+    return ((m[0] * p.x + m[1] * p.y) + m[2] * p.z) + m[3];
+  };
+  return {row(0), row(1), row(2)};
+}
+
+/// Gives every instance a mesh, or geometry, of its own.
+void make_unique(Scene& scene) {
+  std::vector<bool> mesh_taken(scene.meshes.size()), geometry_taken(scene.geometries.size());
+  for (Instance& instance : scene.instances) {
+    const auto take = [](auto& all, std::vector<bool>& taken, std::uint32_t& number) {
+      if (number >= taken.size()) return;  // refused where it is drawn
+      if (taken[number]) {
+        all.push_back(all[number]);
+        number = static_cast<std::uint32_t>(all.size() - 1);
+      } else {
+        taken[number] = true;
+      }
+    };
+    if (instance.geometry)
+      take(scene.geometries, geometry_taken, *instance.geometry);
+    else
+      take(scene.meshes, mesh_taken, instance.mesh);
+  }
+}
+
+/// The scalars of `name` from places in the world.
+template <class Value>
+void make_scalars(Scene& scene, const std::string& name, const Value& value) {
+  make_unique(scene);
+  for (const Instance& instance : scene.instances) {
+    const auto make = [&](auto& g) {
+      NamedScalars& s = g.scalars.emplace_back();
+      s.name = name;
+      for (const Vec3& p : positions_of(g))
+        s.values.push_back(value(in_world(instance.object_to_world, p)));
+    };
+    if (instance.geometry)
+      std::visit(make, scene.geometries[*instance.geometry]);
+    else
+      make(scene.meshes[instance.mesh]);
+  }
+}
+
+}  // namespace
+
+MeshScalarsView scalars_of(const InstanceView& instance) {
+  if (instance.scalar) return {std::span(&*instance.scalar, 1), Per::mesh};
+  return std::visit(
+      [](const auto& g) -> MeshScalarsView {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(g)>, MeshView>)
+          return g.scalars;
+        else
+          return {g.scalars, Per::vertex};
+      },
+      instance.geometry);
+}
+
+bool shows_scalars(const SceneView& scene, const InstanceView& instance) {
+  return !scene.scalar_mappings.empty() && !scalars_of(instance).empty();
+}
+
+ScalarColors scalar_colors(const SceneView& scene, std::size_t mapping) {
+  if (mapping >= scene.scalar_mappings.size())
+    throw Error(Errc::invalid_argument, "scalar mapping " + std::to_string(mapping) +
+                                            " is out of range, there are " +
+                                            std::to_string(scene.scalar_mappings.size()));
+  const ScalarMapping& m = scene.scalar_mappings[mapping];
+  if (m.range || !m.categories.empty()) return ScalarColors(m, {0, 1});
+  ScalarRange range{kInfinity, -kInfinity};
+  bool any = false;
+  for (const InstanceView& instance : scene.instances) {
+    if (!instance.visible || instance.scalar_mapping != mapping) continue;
+    const ScalarView values = scalars_of(instance).values;
+    any |= !values.empty();
+    grow(range, values, m.logarithmic);
+  }
+  // Where nothing is finite (or above 0) there is nothing to tell apart.
+  if (!any || !(range.low <= range.high)) range = m.logarithmic ? ScalarRange{1, 1} : ScalarRange{};
+  return ScalarColors(m, range);
+}
+
+std::vector<ScalarSummary> scalar_summaries(const Scene& scene) {
+  std::vector<ScalarSummary> all;
+  for_each_scalars(scene, [&](const NamedScalars& s) {
+    auto at = std::ranges::find(all, s.name, &ScalarSummary::name);
+    if (at == all.end()) at = all.insert(all.end(), {s.name, 0, {kInfinity, -kInfinity}, 0});
+    at->values += s.values.size();
+    at->nan += grow(at->range, s.values);
+  });
+  for (ScalarSummary& s : all) s.range = or_zero(s.range);
+  return all;
+}
+
+void show_scalars(Scene& scene, const std::string& name) {
+  bool known = false;
+  std::string names;
+  for_each_scalars(scene, [&](const NamedScalars& s) { known |= s.name == name; });
+  if (!known) {
+    if (name == "x" || name == "y" || name == "z") {
+      make_scalars(scene, name, [&](const Vec3d& p) {
+        return name == "x" ? p.x : name == "y" ? p.y : p.z;
+      });
+    } else if (name == "distance") {
+      const Bounds box = bounds(SceneBinding(scene).view());
+      const Vec3d middle = (Vec3d(box.min) + Vec3d(box.max)) * 0.5;
+      make_scalars(scene, name, [&](const Vec3d& p) { return length(p - middle); });
+    } else {
+      for (const ScalarSummary& s : scalar_summaries(scene)) names.append(s.name).append(", ");
+      throw Error(Errc::not_found, "there are no scalars called '" + name + "'; there are " +
+                                       (names.empty() ? "none but those" : names + "and those") +
+                                       " of every scene: x, y, z, distance");
+    }
+  }
+  scene.shown_scalars = name;
+}
+
+ScalarRange finite_range(std::span<const double> values, bool above_zero) {
+  ScalarRange r{kInfinity, -kInfinity};
+  grow(r, values, above_zero);
+  return or_zero(r);
+}
+
+}  // namespace rastrum

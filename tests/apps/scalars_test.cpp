@@ -1,0 +1,107 @@
+// Numbers as colours by options of the program: of files, of places, with a bar, and what is
+// refused.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+namespace rastrum::test::scalars_program_test {
+namespace {
+
+using Scalars = Program;
+
+constexpr const char* kFile =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+    "property float z\nproperty float heat\nelement face 2\n"
+    "property list uchar int vertex_indices\nproperty uchar part\nend_header\n"
+    "0 0 0 0\n1 0 0 1\n1 1 0 1\n0 1 0 nan\n3 0 1 2 4\n3 0 2 3 9\n";
+
+TEST_F(Scalars, OfAFileAreDrawnAndListed) {
+  write("s.ply", kFile);
+  const std::string info = run({"info", "s.ply"}).out;
+  EXPECT_NE(info.find("scalars heat: 4 values, 0 to 1, 1 not finite"), std::string::npos) << info;
+  EXPECT_NE(info.find("scalars part: 2 values, 4 to 9"), std::string::npos) << info;
+  const std::vector<std::string> base{"render", "s.ply",          "--shader", "flat",     "--size",
+                                      "64x64",  "--transparency", "exact",    "--output", "a.png"};
+  const auto drawn = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> args = base;
+    args.insert(args.end(), more.begin(), more.end());
+    must(args);
+    return png("a.png");
+  };
+  // Below the diagonal are the numbers, above it the corner that has none.
+  const Image<Rgba8> heat =
+      drawn({"--scalars", "heat", "--cmap", "gray", "--nan-color", "#ff0000"});
+  EXPECT_EQ(heat(20, 10), (Rgba8{255, 0, 0, 255}));
+  EXPECT_EQ(heat(40, 58).r, heat(40, 58).g);
+  EXPECT_LT(heat(20, 58).r, heat(40, 58).r);
+  const Image<Rgba8> part =
+      drawn({"--scalars", "part", "--cmap", "#0000ff,#00ff00", "--steps", "2"});
+  EXPECT_EQ(part(40, 58), (Rgba8{0, 0, 255, 255}));
+  EXPECT_EQ(part(20, 10), (Rgba8{0, 255, 0, 255}));
+  const Image<Rgba8> named =
+      drawn({"--scalars", "part", "--categories", "9,4", "--cmap", "#ff0000,#00ff00"});
+  EXPECT_EQ(named(20, 10), (Rgba8{255, 0, 0, 255}));
+  EXPECT_EQ(named(40, 58), (Rgba8{0, 255, 0, 255}));
+  const Image<Rgba8> faint = drawn({"--scalars", "part", "--scalar-opacity", "4:0,9:1"});
+  EXPECT_EQ(faint(40, 58).a, 0);
+  EXPECT_EQ(faint(20, 10).a, 255);
+}
+
+TEST_F(Scalars, OfPlacesAreThoseOfTheWorld) {
+  must({"render", "builtin:teapot?y=7", "--scalars", "y", "--size", "64x48", "--image",
+        "scalars=s.npy", "--image", "positions=p.npy"});
+  const std::vector<float> s = npy("s.npy").values<float>(), p = npy("p.npy").values<float>();
+  int seen = 0;
+  for (std::size_t i = 0; i < 64 * 48; ++i) {
+    if (std::isnan(s[i])) continue;
+    ASSERT_NEAR(s[i], p[3 * i + 1], 1e-5);
+    ++seen;
+  }
+  EXPECT_GT(seen, 500);
+}
+
+TEST_F(Scalars, HaveABarAndIsolines) {
+  const std::vector<std::string> base{"render",  "builtin:sphere", "--scalars", "y",  "--size",
+                                      "160x120", "--eye",          "0,0,4",     "-o", "a.png"};
+  must(base);
+  const Image<Rgba8> plain = png("a.png");
+  for (const std::vector<std::string>& more :
+       std::vector<std::vector<std::string>>{{"--bar", "Height", "--bar-unit", "m"},
+                                             {"--isolines", "5"},
+                                             {"--isolines", "0.25,", "--isoline-width", "3"},
+                                             {"--log", "--range", "0.1,1"},
+                                             {"--symmetric", "--cmap", "RdBu_r"}}) {
+    std::vector<std::string> args = base;
+    args.insert(args.end(), more.begin(), more.end());
+    must(args);
+    EXPECT_FALSE(same_pixels(plain, png("a.png"))) << more[0];
+  }
+}
+
+TEST_F(Scalars, RefuseWhatCannotBeMeant) {
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& part,
+                           int status = 2) {
+    std::vector<std::string> args{"render", "builtin:boxes", "-o", "a.png"};
+    args.insert(args.end(), more.begin(), more.end());
+    const Outcome outcome = run(args);
+    EXPECT_EQ(outcome.status, status) << part;
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+  };
+  refused({"--scalars", "heat"}, "there are none but those of every scene: x, y, z, distance", 1);
+  refused({"--cmap", "viridis"}, "say which, as in --scalars z");
+  refused({"--log"}, "--log");
+  refused({"--scalars", "z", "--cmap", "vridis"}, "there are, each also with _r for its reverse");
+  refused({"--scalars", "z", "--range", "2,1"}, "upside down");
+  refused({"--scalars", "z", "--range", "2"}, "LOW,HIGH");
+  refused({"--scalars", "z", "--range", "nan,1"}, "--range");
+  refused({"--scalars", "z", "--log", "--range", "-1,1"}, "must lie above 0");
+  refused({"--scalars", "z", "--scalar-opacity", "1:0,0:1"}, "must rise");
+  refused({"--scalars", "z", "--scalar-opacity", "1"}, "VALUE:OPACITY");
+  refused({"--scalars", "z", "--bar-unit", "m"}, "is for --bar");
+  refused({"--scalars", "z", "--isoline-width", "0"}, "isoline_px");
+}
+
+}  // namespace
+}  // namespace rastrum::test::scalars_program_test

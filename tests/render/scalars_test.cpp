@@ -1,0 +1,441 @@
+// Scalars become colours (docs/conventions.md, "Scalars"): interpolated first and mapped then,
+// against a float64 oracle; at every kind of geometry; and what is refused.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/digest.hpp>
+#include <rastrum/pick.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/transform.hpp>
+
+#include "tests/support/family.hpp"
+#include "tests/support/projection.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/refused.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test::scalars_test {
+namespace {
+
+constexpr int kW = 72, kH = 56;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// The number itself as a grey: red is where in the range it lies.
+ScalarMapping grey(double low, double high) {
+  return {.map = {"grey", {{0, 0, 0, 1}, {1, 1, 1, 1}}, false}, .range = ScalarRange{low, high}};
+}
+
+struct Picture {
+  Image<Vec4> color;
+  Image<float> scalars;
+  Image<std::int64_t> ids;
+
+  Picture(int w, int h) : color(w, h), scalars(w, h), ids(w, h) {}
+};
+
+Picture draw(const SceneView& scene, const Camera& camera, const RenderOptions& o) {
+  Picture p(o.width, o.height);
+  Painter(o).render(scene, camera, {.color = p.color, .ids = p.ids, .scalars = p.scalars});
+  return p;
+}
+
+RenderOptions flat(int w = kW, int h = kH) {
+  RenderOptions o;
+  o.width = w;
+  o.height = h;
+  o.shader = Shader::flat;
+  o.threads = 1;
+  return o;
+}
+
+/// A camera that sees the unit square from (0, 0) to (1, 1) as the whole picture.
+Camera square_camera() {
+  Camera camera;
+  camera.eye = {0.5, 0.5, 1};
+  camera.target = {0.5, 0.5, 0};
+  camera.orthographic = true;
+  camera.orthographic_height = 1;
+  camera.near_plane = 0.1F;
+  camera.far_plane = 2;
+  return camera;
+}
+
+const std::vector<Vec3> kSquare{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+const std::vector<std::uint32_t> kTwoTriangles{0, 1, 2, 0, 2, 3};
+
+MeshView square(const ScalarView& values, Per per = Per::vertex) {
+  MeshView mesh;
+  mesh.positions = kSquare;
+  mesh.indices = kTwoTriangles;
+  mesh.scalars = {values, per};
+  return mesh;
+}
+
+SceneView scene_of(const InstanceView& instance, const ScalarMapping& mapping) {
+  return {{&instance, 1}, {}, {}, {&mapping, 1}};
+}
+
+TEST(Scalars, AreInterpolatedFirstAndMappedThen) {
+  int pixels = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const GeneratedScene g = generate(seed, kW, kH);
+    SCOPED_TRACE(g.kind + " " + std::to_string(seed));
+    const SceneBinding binding(g.scene);
+    std::vector<InstanceView> instances(binding.view().instances.begin(),
+                                        binding.view().instances.end());
+    Random random(seed);
+    std::vector<std::vector<double>> values(instances.size());
+    const Per per = static_cast<Per>(seed % 4);
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+      MeshView mesh = *instances[i].mesh();
+      for (std::size_t v = 0; v < std::max(mesh.positions.size(), mesh.corner_count()); ++v)
+        values[i].push_back(random.real(-3, 5));
+      mesh.scalars = {values[i], per};
+      instances[i].geometry = mesh;
+      instances[i].color.reset();
+    }
+    const ScalarMapping mapping = grey(-3, 5);
+    const SceneView scene{instances, {}, {}, {&mapping, 1}};
+    const Picture p = draw(scene, g.camera, flat());
+    const auto projected = project(scene, g.camera, kW, kH);
+    for (int y = 0; y < kH; ++y)
+      for (int x = 0; x < kW; ++x) {
+        if (p.ids(x, y) < 0) {
+          ASSERT_TRUE(std::isnan(p.scalars(x, y)));
+          continue;
+        }
+        const auto id = static_cast<std::size_t>(p.ids(x, y));
+        const Located at = locate(scene, id);
+        const MeshView& mesh = *instances[at.instance].mesh();
+        const std::vector<double>& v = values[at.instance];
+        const auto t = static_cast<std::size_t>(at.primitive);
+        const auto a = exact_weights(projected[id], kW, kH, x, y);
+        const Real sum = a[0] + a[1] + a[2];
+        if (std::ranges::any_of(a, [&](Real w) { return !(w / sum >= 0); })) continue;
+        Real value = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+          const std::size_t element = per == Per::vertex   ? mesh.vertex(3 * t + c)
+                                      : per == Per::corner ? 3 * t + c
+                                      : per == Per::face   ? t
+                                                           : 0;
+          value += a[c] / sum * v[element];
+        }
+        ASSERT_NEAR(p.scalars(x, y), static_cast<double>(value), 1e-5) << x << ", " << y;
+        ASSERT_NEAR(p.color(x, y).x, static_cast<double>((value + 3) / 8), 2e-6) << x << ", " << y;
+        ++pixels;
+      }
+  }
+  EXPECT_GT(pixels, 50000);
+}
+
+// 64 bands over two triangles: colours at four corners, blended, could show none of them.
+TEST(Scalars, AreNotSmearedByASteepMap) {
+  const std::vector<float> values{0, 1, 1, 0};
+  ScalarMapping mapping = grey(0, 1);
+  mapping.steps = 64;
+  const InstanceView instance{square(values)};
+  const Picture p = draw(scene_of(instance, mapping), square_camera(), flat(256, 256));
+  for (int y = 0; y < 256; ++y)
+    for (int x = 0; x < 256; ++x)
+      ASSERT_EQ(p.color(x, y).x, static_cast<float>(x / 4 / 63.0)) << x << ", " << y;
+}
+
+TEST(Scalars, OfWhatIsNoNumberHaveItsColour) {
+  const std::vector<double> values{0, kNan, 1, 0};
+  ScalarMapping mapping = grey(0, 1);
+  mapping.nan = {1, 0, 0, 1};
+  const InstanceView instance{square(values)};
+  const Picture p = draw(scene_of(instance, mapping), square_camera(), flat(64, 64));
+  EXPECT_EQ(p.color(50, 60), mapping.nan);  // of the triangle with that corner
+  EXPECT_TRUE(std::isnan(p.scalars(50, 60)));
+  EXPECT_EQ(p.color(2, 2).y, p.color(2, 2).x);
+  EXPECT_FALSE(std::isnan(p.scalars(2, 2)));
+}
+
+TEST(Scalars, OfThreeEqualCornersAreExactlyThat) {
+  // 0.1 is none of binary; a range that ends there shows no colour of what lies beyond.
+  const std::vector<double> values{0.1, 0.1, 0.1, 0.1};
+  ScalarMapping mapping = grey(-1, 0.1);
+  mapping.above = Vec4{1, 0, 0, 1};
+  const InstanceView instance{square(values)};
+  const Picture p = draw(scene_of(instance, mapping), square_camera(), flat());
+  for (int y = 0; y < kH; ++y)
+    for (int x = 10; x < kW - 10; ++x) ASSERT_EQ(p.color(x, y), (Vec4{1, 1, 1, 1}));
+}
+
+TEST(Scalars, OfAnInstanceStandForItsGeometrys) {
+  const std::vector<float> values{0, 1, 1, 0};
+  InstanceView instance{square(values)};
+  instance.scalar = 0.25;
+  const ScalarMapping mapping = grey(0, 1);
+  const Picture p = draw(scene_of(instance, mapping), square_camera(), flat());
+  EXPECT_EQ(p.color(kW / 2, kH / 2), (Vec4{0.25F, 0.25F, 0.25F, 1}));
+  EXPECT_EQ(p.scalars(kW / 2, kH / 2), 0.25F);
+}
+
+TEST(Scalars, HaveAMappingEachInstanceChooses) {
+  const std::vector<float> values{0, 1, 1, 0};
+  std::vector<InstanceView> instances(2);
+  instances[0].geometry = instances[1].geometry = square(values);
+  instances[0].object_to_world = scaling({0.5, 1, 1});
+  instances[1].object_to_world = translation({0.5, 0, 0}) * scaling({0.5, 1, 1});
+  instances[0].scalar = 1;
+  instances[1].scalar = 1;
+  instances[1].scalar_mapping = 1;
+  const std::vector<ScalarMapping> mappings{grey(0, 2), grey(0, 4)};
+  const SceneView scene{instances, {}, {}, mappings};
+  const Picture p = draw(scene, square_camera(), flat(64, 64));
+  EXPECT_EQ(p.color(16, 32).x, 0.5F);
+  EXPECT_EQ(p.color(48, 32).x, 0.25F);
+}
+
+// The automatic range is that of the instances which use the mapping.
+TEST(Scalars, HaveTheRangeOfTheirFiniteNumbers) {
+  const std::vector<double> values{3, 7, 7, kNan};
+  const InstanceView instance{square(values)};
+  ScalarMapping mapping = grey(0, 1);
+  mapping.range.reset();
+  const SceneView scene = scene_of(instance, mapping);
+  EXPECT_EQ(scalar_colors(scene).range(), (ScalarRange{3, 7}));
+  const Picture p = draw(scene, square_camera(), flat(64, 64));
+  EXPECT_NEAR(p.color(32, 60).x, 32.5 / 64, 1e-6);
+}
+
+TEST(Scalars, OfEveryGeometry) {
+  const ScalarMapping mapping = grey(0, 8);
+  const std::vector<Vec3> ends{{0.1F, 0.5F, 0}, {0.9F, 0.5F, 0}};
+  const std::vector<Vec3> up{{0, 0, 1}, {0, 0, 1}};
+  const std::vector<std::int16_t> values{2, 6};
+  const auto at = [&](const GeometryView& geometry, int x, int y) {
+    InstanceView instance;
+    instance.geometry = geometry;
+    const SceneView scene = scene_of(instance, mapping);
+    const Picture p = draw(scene, square_camera(), flat(101, 101));
+    EXPECT_GE(p.ids(x, y), 0);
+    EXPECT_NEAR(p.color(x, y).x, p.scalars(x, y) / 8, 1e-6);
+    EXPECT_EQ(p.color(x, y).y, p.color(x, y).x);
+    const auto pick =
+        Renderer({.threads = 1}).pick(scene, square_camera(), {.width = 101, .height = 101}, x, y);
+    EXPECT_TRUE(pick && pick->scalar);
+    if (pick && pick->scalar) {
+      EXPECT_EQ(static_cast<float>(*pick->scalar), p.scalars(x, y));
+    }
+    return p.scalars(x, y);
+  };
+  PointsView points{.positions = ends, .point_size = 9, .scalars = values};
+  EXPECT_EQ(at(points, 10, 50), 2);
+  EXPECT_EQ(at(points, 90, 50), 6);
+  LinesView lines{.positions = ends, .line_width = 3, .scalars = values};
+  EXPECT_NEAR(at(lines, 50, 50), 4, 1e-4);
+  EXPECT_NEAR(at(lines, 30, 50), 3, 1e-2);
+  SpheresView spheres{.centers = ends, .radius = 0.1F, .scalars = values};
+  EXPECT_EQ(at(spheres, 10, 50), 2);
+  EXPECT_EQ(at(spheres, 93, 52), 6);
+  CylindersView cylinders{.positions = ends, .radius = 0.1F, .scalars = values};
+  EXPECT_NEAR(at(cylinders, 50, 50), 4, 1e-5);
+  EXPECT_NEAR(at(cylinders, 30, 53), 2 + 4 * (30.5 / 101 - 0.1) / 0.8, 1e-4);
+  TubesView tubes{.positions = ends, .radius = 0.05F, .scalars = values};
+  EXPECT_NEAR(at(tubes, 30, 50), 2 + 4 * (30.5 / 101 - 0.1) / 0.8, 1e-4);
+  DiscsView discs{.centers = ends, .normals = up, .radius = 0.1F, .scalars = values};
+  EXPECT_EQ(at(discs, 90, 50), 6);
+}
+
+TEST(Scalars, OfOpacityAreLayersInOrder) {
+  const std::vector<float> values{0, 0, 0, 0};
+  std::vector<InstanceView> instances(2);
+  instances[0].geometry = instances[1].geometry = square(values);
+  instances[0].object_to_world = translation({0, 0, 0.2});
+  instances[0].scalar = 1;  // in front: white, a quarter of it
+  instances[1].scalar = 0;
+  ScalarMapping mapping = grey(0, 1);
+  mapping.map.colors[0] = {0, 1, 0, 1};
+  mapping.opacity = {{0, 1}, {1, 0.25F}};
+  RenderOptions o = flat();
+  o.background = {0, 0, 0, 1};
+  const SceneView scene{instances, {}, {}, {&mapping, 1}};
+  const Vec4 expected{0.25F, 1, 0.25F, 1};
+  EXPECT_EQ(draw(scene, square_camera(), o).color(kW / 2, kH / 2), expected);
+  o.samples = 4;
+  EXPECT_EQ(draw(scene, square_camera(), o).color(kW / 2, kH / 2), expected);
+  o.transparency.method = Transparency::none;
+  EXPECT_EQ(draw(scene, square_camera(), o).color(kW / 2, kH / 2), (Vec4{1, 1, 1, 1}));
+}
+
+/// How much of a line a row of pixels has, where the ground is white and the line black.
+double darkness(const Picture& p, int y) {
+  double sum = 0;
+  for (int x = 0; x < p.color.width(); ++x) sum += 1 - double{p.color(x, y).x};
+  return sum;
+}
+
+TEST(Scalars, HaveIsolinesOfOneWidthAtEveryDistance) {
+  const std::vector<float> values{0, 1, 1, 0};
+  ScalarMapping mapping{.map = {"white", {{1, 1, 1, 1}}, false}, .range = ScalarRange{0, 1}};
+  mapping.isolines = {0.5};
+  mapping.isoline_px = 3;
+  InstanceView instance{square(values)};
+  const Picture p = draw(scene_of(instance, mapping), square_camera(), flat(101, 101));
+  for (int y = 2; y < 99; ++y) {
+    ASSERT_NEAR(darkness(p, y), 3, 1e-4) << y;
+    ASSERT_EQ(p.color(50, y).x, 0);
+  }
+  // In perspective, the square laid back: as wide far away as near.
+  Camera camera;
+  camera.eye = {0.5, -0.5, 0.4};
+  camera.target = {0.5, 0.5, 0};
+  camera.fov_rad = 0.8F;
+  camera.near_plane = 0.01F;
+  const Picture back = draw(scene_of(instance, mapping), camera, flat(101, 101));
+  int rows = 0;
+  for (int y = 0; y < 101; ++y) {
+    if (back.ids(50, y) < 0) continue;
+    ++rows;
+    ASSERT_GT(back.color(44, y).x, 0.99) << y;
+    ASSERT_EQ(back.color(50, y).x, 0) << y;
+  }
+  EXPECT_GT(rows, 20);
+}
+
+TEST(Scalars, KeepTheHolesOfMasks) {
+  const std::vector<float> values{0, 1, 1, 0};
+  const std::vector<Vec2> texcoords{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  MeshView mesh = square(values);
+  mesh.texcoords.values = texcoords;
+  Texture texture;
+  texture.image = Image<Rgba8>(2, 1);
+  texture.image(0, 0) = {255, 0, 0, 255};
+  texture.image(1, 0) = {255, 0, 0, 0};
+  texture.mag = texture.min = TextureFilter::nearest;
+  texture.mipmaps = false;
+  Material material;
+  material.base_color_texture = 0;
+  material.alpha_mode = AlphaMode::mask;
+  material.double_sided = true;
+  const InstanceView instance{mesh};
+  const ScalarMapping mapping = grey(0, 1);
+  const SceneView scene{{&instance, 1}, {&material, 1}, {&texture, 1}, {&mapping, 1}};
+  for (const Shader shader : {Shader::flat, Shader::material}) {
+    RenderOptions o = flat(64, 64);
+    o.shader = shader;
+    const Picture p = draw(scene, square_camera(), o);
+    EXPECT_GE(p.ids(16, 32), 0);
+    EXPECT_EQ(p.ids(48, 32), -1);
+    if (shader == Shader::flat) {
+      EXPECT_NEAR(p.color(16, 32).x, 16.5 / 64, 1e-6);
+    }
+  }
+}
+
+TEST(Scalars, AreColouredInLinearLightByMaterials) {
+  const std::vector<float> values{0.5F, 0.5F, 0.5F, 0.5F};
+  Material material;
+  material.unlit = true;
+  material.base_color = {1, 0, 0, 1};
+  const InstanceView instance{square(values)};
+  const ScalarMapping mapping = grey(0, 1);
+  const SceneView scene{{&instance, 1}, {&material, 1}, {}, {&mapping, 1}};
+  RenderOptions o = flat();
+  o.shader = Shader::material;
+  Image<Vec4> color(kW, kH), albedo(kW, kH);
+  Painter(o).render(scene, square_camera(), {.color = color, .albedo = albedo});
+  const Vec4 c = color(kW / 2, kH / 2), a = albedo(kW / 2, kH / 2);
+  EXPECT_NEAR(c.x, 0.5, 5e-5);  // what the transfer function is to its inverse
+  EXPECT_EQ(c.x, c.y);
+  EXPECT_NEAR(a.x, 0.21404114, 1e-7);
+  EXPECT_EQ(a.w, 1);
+}
+
+TEST(Scalars, OfNothingChangeNoBit) {
+  const Scene sphere = shapes::scene_from_spec("sphere?segments=24");
+  const SceneBinding binding(sphere);
+  SceneView scene = binding.view();
+  const Camera camera = fit_camera(scene, 1, false);
+  RenderOptions o = flat();
+  o.shader = Shader::phong;
+  const auto without = digest(render(scene, camera, o));
+  const ScalarMapping mapping;
+  scene.scalar_mappings = {&mapping, 1};
+  EXPECT_EQ(without, digest(render(scene, camera, o)));
+  // Numbers without a mapping are read by their target alone.
+  InstanceView instance = scene.instances[0];
+  instance.scalar = 3;
+  const SceneView numbered{{&instance, 1}, {}, {}, {}};
+  EXPECT_EQ(without, digest(render(numbered, camera, o)));
+  EXPECT_EQ(draw(numbered, camera, o).scalars(kW / 2, kH / 2), 3);
+}
+
+TEST(Scalars, AreTheSameBitsWhateverDraws) {
+  for (const int samples : {1, 4})
+    for (std::uint64_t seed = 0; seed < 16; ++seed) {
+      GeneratedScene g = generate(seed, kW, kH);
+      Random random(seed);
+      for (Mesh& mesh : g.scene.meshes) {
+        NamedScalars& s = mesh.scalars.emplace_back();
+        s.name = "s";
+        for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+          s.values.push_back(random.chance(0.02) ? kNan : random.real(0, 1));
+      }
+      g.scene.shown_scalars = "s";
+      ScalarMapping& m = g.scene.scalar_mappings.emplace_back();
+      m.map = color_map(seed % 2 == 0 ? "turbo" : "tab10");
+      if (seed % 3 == 0) m.opacity = {{0.2, 0.3F}, {0.8, 1}};
+      if (seed % 3 == 1) m.isolines = {0.25, 0.5, 0.75};
+      const SceneBinding binding(g.scene);
+      RenderOptions base = flat();
+      base.samples = samples;
+      base.shader = seed % 4 == 0 ? Shader::material : Shader::phong;
+      const auto family = family_of(base);
+      const Picture first = draw(binding.view(), g.camera, family.front().options);
+      for (const Relative& r : family) {
+        const Picture other = draw(binding.view(), g.camera, r.options);
+        ASSERT_EQ(digest(first.color.view()), digest(other.color.view())) << r.name << " " << seed;
+        ASSERT_EQ(digest(first.scalars.view()), digest(other.scalars.view()))
+            << r.name << " " << seed;
+      }
+      RenderOptions limited = base;
+      limited.memory_limit = 6 << 20;
+      ASSERT_EQ(digest(first.color.view()),
+                digest(draw(binding.view(), g.camera, limited).color.view()));
+    }
+}
+
+TEST(Scalars, RefuseWhatDoesNotFit) {
+  const std::vector<float> values{0, 1, 1};
+  const ScalarMapping mapping;
+  const auto refuse = [&](const char* part, const GeometryView& geometry) {
+    InstanceView instance;
+    instance.geometry = geometry;
+    expect_refused(part,
+                   [&] { (void)render(scene_of(instance, mapping), square_camera(), flat()); });
+  };
+  refuse("instance 0: scalars are fewer (3) than positions (4)", square(values));
+  refuse("instance 0: scalars are fewer (3) than corners (6)", square(values, Per::corner));
+  refuse("scalars.per", square(values, static_cast<Per>(9)));
+  refuse("scalars are fewer (3)", PointsView{.positions = kSquare, .scalars = values});
+  refuse("scalars are fewer (3)", LinesView{.positions = kSquare, .scalars = values});
+  refuse("fewer scalars (3) than spheres (4)", SpheresView{.centers = kSquare, .scalars = values});
+  refuse("fewer scalars (3) than positions (4)",
+         TubesView{.positions = kSquare, .scalars = values});
+  InstanceView instance{square(std::span<const float>{})};
+  instance.scalar = 1;
+  instance.scalar_mapping = 1;
+  expect_refused("instance 0: scalar mapping 1 is out of range, there are 1",
+                 [&] { (void)render(scene_of(instance, mapping), square_camera(), flat()); });
+  instance.scalar_mapping = 0;
+  const ScalarMapping upside_down{.range = ScalarRange{1, 0}};
+  expect_refused("ScalarMapping::range: upside down",
+                 [&] { (void)render(scene_of(instance, upside_down), square_camera(), flat()); });
+  ScalarMapping log;
+  log.logarithmic = true;
+  instance.scalar = -1;  // nothing has a logarithm: the colour of no number
+  EXPECT_EQ(draw(scene_of(instance, log), square_camera(), flat()).color(kW / 2, kH / 2), log.nan);
+}
+
+}  // namespace
+}  // namespace rastrum::test::scalars_test
