@@ -352,6 +352,7 @@ TEST(InstanceRuns, HoldWhatIsAlikeAndNothingElse) {
   EXPECT_EQ(with([&](InstanceView& i) { i.geometry = one.view(2); }), split);
   EXPECT_EQ(with([&](InstanceView& i) { i.geometry = SpheresView{}; }), split);
   EXPECT_EQ(with([](InstanceView& i) { i.object_to_world.m[0][0] = -1; }), split);
+  EXPECT_EQ(with([](InstanceView& i) { i.scalar = 3; }), split);
   EXPECT_EQ(with([](InstanceView& i) { i.id = 7; }), Lengths{6});
   EXPECT_EQ(with([](InstanceView& i) { i.object_to_world.m[0][3] = 2; }), Lengths{6});
   for (InstanceView& i : list) i.color = Vec4{0.2F, 0.3F, 0.4F, 1};
