@@ -298,7 +298,7 @@ HWY_INLINE std::uint64_t samples_of(std::uint64_t low, const std::uint64_t* keys
 }
 
 void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleBlock& block,
-           bool linear, BlockColors& colors) noexcept {
+           bool linear, const float* own_base, BlockColors& colors) noexcept {
   const std::uint64_t* const keys = block.keys;
   const int x0 = block.x0, y0 = block.y0;
   std::uint64_t left = block.covered;
@@ -322,6 +322,9 @@ void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleB
     for (int c = 0; c < Surface::kChannels; ++c)
       for (int k = 0; k < run.n; ++k) surface.channel[c][run.lane[k]] = part.channel[c][k];
   }
+  if (own_base != nullptr)
+    for (int c = 0; c < 3; ++c)
+      std::memcpy(surface.channel[Surface::kBaseR + c], own_base + 64 * c, 64 * sizeof(float));
   light_block(scene.rays, surface, x0, y0, block.points, linear, colors);
 }
 
