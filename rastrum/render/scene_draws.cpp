@@ -33,10 +33,20 @@ bool blends_surfaces(const SceneDraws::Options& o) {
   return o.frame.transparency.method != Transparency::none && o.shader != Shader::depth;
 }
 
-raster::SurfaceLook look_of(const SceneDraws::Options& o) {
+raster::SurfaceLook look_of(const SceneDraws::Options& o,
+                            const std::optional<raster::FrameLights>& lights) {
   std::optional<raster::LitModel> model;
   if (o.shader != Shader::material) model = lit_model(o.shader);
-  return {model, blends_surfaces(o), o.frame.opacity};
+  return {model, blends_surfaces(o), o.frame.opacity, lights ? &lights->set() : nullptr};
+}
+
+/// None where nothing asks for them.
+std::optional<raster::FrameLights> lights_of(const SceneDraws::Options& o, const Camera& camera) {
+  const bool lit =
+      o.shader == Shader::lambert || o.shader == Shader::phong || o.shader == Shader::material;
+  if (!lit || o.frame.lights.empty()) return {};
+  return std::optional<raster::FrameLights>(std::in_place, o.frame.lights, camera, o.frame.width,
+                                            o.frame.height);
 }
 
 }  // namespace
@@ -44,9 +54,11 @@ raster::SurfaceLook look_of(const SceneDraws::Options& o) {
 SceneDraws::SceneDraws(const SceneView& scene, const Camera& camera, const Options& options,
                        raster::TextureSet& textures, parallel::Threads* threads)
     : scene_(scene),
+      lights_(lights_of(options, camera)),
       meshes_(scene),
-      surfaces_(scene, look_of(options), camera, options.frame.width, options.frame.height),
-      points_and_lines_(look_of(options), scene.materials, camera, options.frame.width,
+      surfaces_(scene, look_of(options, lights_), camera, options.frame.width,
+                options.frame.height),
+      points_and_lines_(look_of(options, lights_), scene.materials, camera, options.frame.width,
                         options.frame.height) {
   const FrameOptions& o = options.frame;
   const Targets& targets = options.targets;
@@ -63,6 +75,7 @@ SceneDraws::SceneDraws(const SceneView& scene, const Camera& camera, const Optio
                     raster::texture_uses(scene, shades_materials || wants_albedo, material_alpha),
                     threads);
     materials_.emplace(meshes_, camera, o.width, o.height, textures);
+    materials_->lights = lights_ ? &lights_->set() : nullptr;
   }
   if (wants_surface(targets)) {
     surface_.emplace(scene_, camera, o.width, o.height);
@@ -87,6 +100,7 @@ SceneDraws::SceneDraws(const SceneView& scene, const Camera& camera, const Optio
     shading_ = raster::MaterialShading{&*materials_, linear_light_};
   } else {
     lit_.emplace(meshes_, camera, o.width, o.height);
+    lit_->lights = lights_ ? &lights_->set() : nullptr;
     shading_ = raster::LitShading{lit_model(options.shader), &*lit_};
   }
   if (translucent)
@@ -128,8 +142,8 @@ void SceneDraws::shade_scalar_meshes(const Options& options, const Camera& camer
   for (std::size_t i = 0; i < scene_.instances.size(); ++i)
     if (scene_.instances[i].mesh() != nullptr && shows_scalars(i)) scalars.push_back(scalars_[i]);
   const SceneView shown{scalar_mesh_list_, scene_.materials, scene_.textures, {}};
-  scalar_meshes_.emplace(look_of(options), shown, std::move(scalars), camera, options.frame.width,
-                         options.frame.height, textures);
+  scalar_meshes_.emplace(look_of(options, lights_), shown, std::move(scalars), camera,
+                         options.frame.width, options.frame.height, textures);
   for (std::size_t i = 0; i < scene_.instances.size(); ++i)
     if (scene_.instances[i].mesh() != nullptr && shows_scalars(i)) {
       draws_[i].shading = *scalar_meshes_;

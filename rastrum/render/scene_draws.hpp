@@ -10,6 +10,7 @@
 #include <rastrum/raster/draws/cut.hpp>
 #include <rastrum/raster/draws/draw.hpp>
 #include <rastrum/raster/resolve/surface_point.hpp>
+#include <rastrum/raster/shade/light_set.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/point_line_shader.hpp>
@@ -66,6 +67,7 @@ class SceneDraws {
   Flags make_draws(const Options& options, const Mat4d& to_clip, parallel::Threads* threads);
 
   SceneView scene_;
+  std::optional<raster::FrameLights> lights_;  ///< none: the fixed light
   /// What shows scalars; empty where no instance has some that the frame asks for.
   std::vector<ScalarColors> scalar_colors_;             ///< by mapping
   std::vector<raster::SurfaceScalars> scalars_;         ///< by instance

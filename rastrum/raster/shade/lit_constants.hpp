@@ -41,7 +41,8 @@ struct alignas(64) LitBlock {
 bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
                     const VisibleBlock& block, BlockColors& colors) noexcept;
 /// The same of what others have found; alpha is not set.
-bool light_lit_simd(Isa isa, LitModel model, const ViewRays& rays, const VisibleBlock& block,
-                    const LitBlock& surface, BlockColors& colors) noexcept;
+bool light_lit_simd(Isa isa, LitModel model, const ViewRays& rays, const LightSet* lights,
+                    const VisibleBlock& block, const LitBlock& surface,
+                    BlockColors& colors) noexcept;
 
 }  // namespace rastrum::raster

@@ -26,7 +26,8 @@ void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleB
       block.covered, block.x0, block.y0, block.points, [&](int i, int x, int y, Vec2 from_centre) {
         const std::uint64_t id = id_of_key(block.keys[i]);
         const MaterialTriangle t(scene, frame, frame.draw_of(id), id);
-        const Vec3 c = shade_material(scene, t, MaterialPoint(t.planes, x, y, from_centre), linear);
+        const Vec3 c = shade_material(scene, t, MaterialPoint(t.planes, x, y, from_centre), linear,
+                                      depth_of_key(block.keys[i]));
         colors.set(i, {c.x, c.y, c.z, 1});
       });
 }

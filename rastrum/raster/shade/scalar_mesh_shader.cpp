@@ -15,7 +15,9 @@ ScalarMeshShader::ScalarMeshShader(const SurfaceLook& look, const SceneView& sce
     : look_(look),
       scalars_(std::move(scalars)),
       lit_(scene, camera, width, height),
-      materials_(scene, camera, width, height, textures) {}
+      materials_(scene, camera, width, height, textures) {
+  lit_.lights = materials_.lights = look.lights;
+}
 
 std::size_t ScalarMeshShader::scratch_bytes() const noexcept {
   return sizeof(KeptTriangles);
@@ -49,12 +51,12 @@ bool ScalarMeshShader::shade(const FrameGeometry& frame, const VisibleBlock& blo
     } else if (look_.model) {
       const LitTriangle& t =
           kept.find(lit_, frame, block.keys[i] & kIdMask, look_.model != LitModel::flat);
-      c = shade_lit(*look_.model, lit, t, x, y, from_centre, &base);
+      c = shade_lit(*look_.model, lit, t, x, y, from_centre, depth_of_key(block.keys[i]), &base);
     } else {
       if (!triangle || triangle_id != id) triangle.emplace(materials, frame, draw, id);
       triangle_id = id;
       c = shade_material(materials, *triangle, MaterialPoint(triangle->planes, x, y, from_centre),
-                         linear_, &base);
+                         linear_, depth_of_key(block.keys[i]), &base);
     }
     float alpha = 1;
     if (look_.blends) {
