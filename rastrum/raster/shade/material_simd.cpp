@@ -13,6 +13,7 @@
 #include <cstring>
 
 #include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/shade/light_set.hpp>
 #include <rastrum/raster/shade/material_constants.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
 #include <rastrum/raster/shade/material_triangle.hpp>
