@@ -169,6 +169,7 @@ void add_transparency_options(Parser& app, SceneArguments& a) {
       "1, 4, 8 or 16 a pixel, at D3D11's standard positions; --ids and --depth are of the nearest "
       "one (1)",
       [&a](const std::string& s) {
+        a.samples_given = true;
         a.render.samples = choose<int>("--samples", s, {{"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}});
       })
       ->group(group);

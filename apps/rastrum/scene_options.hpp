@@ -21,6 +21,7 @@ struct SceneArguments {
   bool crease_given = false;
   ViewOptions view;
   bool fit = false;
+  bool samples_given = false;
 };
 
 /// Adds --format, for a command that reads meshes.
