@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include <rastrum/mat.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum {
@@ -58,6 +59,9 @@ inline constexpr std::size_t kMaxLights = 256;
 
 /// Throws Error{invalid_argument} that names the light by its number and what is out of range.
 void check_lights(std::span<const Light> lights);
+
+/// One that stands in the world, moved: its place and its directions, not its range and brightness.
+[[nodiscard]] Light placed(const Light& light, const Mat4d& to_world);
 
 /// A lamp at the viewer's forehead: directional, along the camera's axis.
 [[nodiscard]] Light headlight(float intensity = 1);

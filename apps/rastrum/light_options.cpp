@@ -128,17 +128,28 @@ Light parse_light(const std::string& text) {
   return light;
 }
 
-void add_light_options(Parser& app, std::vector<Light>& lights, const char* group) {
+void add_file_lights(const Scene& scene, std::vector<Light>& lights) {
+  if (scene.lights.empty()) throw UsageError("--lights", "the inputs have no lights of their own");
+  lights.insert(lights.end(), scene.lights.begin(), scene.lights.end());
+  if (lights.size() > kMaxLights)
+    throw UsageError("--lights", std::to_string(lights.size()) + " lights, at most " +
+                                     std::to_string(kMaxLights) + " are possible");
+}
+
+void add_light_options(Parser& app, std::vector<Light>& lights, bool& of_files, const char* group) {
   add(app, "--lights", "NAME",
       "of lambert, phong and material: default: the fixed light of each; headlight: one at the "
-      "viewer; studio: key, fill, back and head light (default)",
-      [&lights](const std::string& s) {
+      "viewer; studio: key, fill, back and head light; file: those of glTF files (default)",
+      [&lights, &of_files](const std::string& s) {
         if (s == "headlight")
           lights.push_back(headlight());
         else if (s == "studio")
           std::ranges::copy(light_kit(), std::back_inserter(lights));
+        else if (s == "file")
+          of_files = true;
         else if (s != "default")
-          throw UsageError("--lights", "expected default, headlight or studio, got '" + s + "'");
+          throw UsageError("--lights",
+                           "expected default, headlight, studio or file, got '" + s + "'");
       })
       ->group(group);
   app.add_repeated("--light", "KIND:X,Y,Z:...",

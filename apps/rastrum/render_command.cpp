@@ -22,6 +22,7 @@
 #include "inputs.hpp"
 #include "json_fields.hpp"
 #include "json_file.hpp"
+#include "light_options.hpp"
 #include "mp4.hpp"
 #include "nothing_seen.hpp"
 #include "numbered.hpp"
@@ -212,7 +213,7 @@ void set_studio(RenderArguments& a) {
   if (!a.studio) return;
   ViewOptions& v = a.view;
   if (!v.view && !v.eye && !v.target && !v.file_camera && a.path.empty()) v.view = ViewName::iso;
-  if (a.render.lights.empty()) a.render.lights = light_kit();
+  if (a.render.lights.empty() && !a.file_lights) a.render.lights = light_kit();
   if (!a.samples_given) a.render.samples = 4;
   if (a.color || a.errors || a.hash) a.annotations.occlusion = true;
 }
@@ -501,6 +502,7 @@ int run(RenderArguments& a) {
   }
   if (!a.quiet && a.render.transparency.method == Transparency::none) report_blended(scene);
   if (!a.quiet) report_missing_glyphs(a.annotations.words);
+  if (a.file_lights) add_file_lights(scene, a.render.lights);
   const bool moves = pose_for(a, inputs);
   set_scalars(a.annotations.scalars, inputs.scene);
   const SceneBinding binding(scene);

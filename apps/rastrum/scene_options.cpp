@@ -130,7 +130,7 @@ void add_picture_options(Parser& app, SceneArguments& a) {
     a.render.height = size.height;
   })->group(group);
   add_shading_options(app, a, group);
-  add_light_options(app, a.render.lights, group);
+  add_light_options(app, a.render.lights, a.file_lights, group);
   add(app, "--background", "COLOUR", "#rrggbb[aa], #rgb[a] or a name of CSS's (transparent)",
       [&a](const std::string& s) { a.render.background = parse_color("--background", s); })
       ->group(group);

@@ -119,6 +119,7 @@ class GltfReader {
     motion.animations = gltf::read_animations(document_, buffers_, rig_, scene_.warnings);
     find_weights();
     to_world_ = to_root(rig_.nodes, rig_.parents_first);
+    lights_ = gltf::read_lights(document_);
     for (const std::size_t root : roots()) walk(root);
     check_unused_meshes();
     if (!motion.animations.empty() || !rig_.deformed.empty()) {
@@ -177,9 +178,20 @@ class GltfReader {
           scene_.warnings.push_back(c.path() + " cannot be used and is left out");
         }
       }
+      if (const auto light = gltf::light_of_node(node, lights_.size()))
+        add_light(node, placed(lights_[*light], to_world_[index]));
       const auto children = node.get("children");
       if (!children) continue;
       for (std::size_t i = children->size(); i-- > 0;) stack.push_back(children->at(i).count());
+    }
+  }
+
+  void add_light(const Json& node, const Light& light) {
+    try {
+      check_lights({&light, 1});
+      scene_.lights.push_back(light);
+    } catch (const Error&) {
+      scene_.warnings.push_back(node.path() + ": its light has no direction and is left out");
     }
   }
 
@@ -332,6 +344,7 @@ class GltfReader {
   }
 
   const Json& document_;
+  std::vector<Light> lights_;  ///< of the document
   Scene& scene_;
   gltf::Buffers buffers_;
   gltf::Materials materials_;

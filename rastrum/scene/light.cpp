@@ -75,6 +75,34 @@ void check_lights(std::span<const Light> lights) {
   }
 }
 
+Light placed(const Light& light, const Mat4d& to_world) {
+  if (light.of_camera) return light;
+  const auto& m = to_world.m;
+  const auto turn = [&](Vec3 v) {
+    const Vec3d d{v.x, v.y, v.z};
+    return Vec3(Vec3d{m[0][0] * d.x + m[0][1] * d.y + m[0][2] * d.z,
+                      m[1][0] * d.x + m[1][1] * d.y + m[1][2] * d.z,
+                      m[2][0] * d.x + m[2][1] * d.y + m[2][2] * d.z});
+  };
+  const auto move = [&](Vec3d p) {
+    return Vec3d{m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3],
+                 m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3],
+                 m[2][0] * p.x + m[2][1] * p.y + m[2][2] * p.z + m[2][3]};
+  };
+  Light moved = light;
+  if (auto* const h = std::get_if<HemisphereLight>(&moved.kind)) {
+    h->up = turn(h->up);
+  } else if (auto* const d = std::get_if<DirectionalLight>(&moved.kind)) {
+    d->direction = turn(d->direction);
+  } else if (auto* const p = std::get_if<PointLight>(&moved.kind)) {
+    p->position = move(p->position);
+  } else if (auto* const s = std::get_if<SpotLight>(&moved.kind)) {
+    s->position = move(s->position);
+    s->direction = turn(s->direction);
+  }
+  return moved;
+}
+
 Light headlight(float intensity) {
   Light light;
   light.intensity = intensity;

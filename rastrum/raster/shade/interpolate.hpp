@@ -113,29 +113,39 @@ RASTRUM_HD WeightPlanes weight_planes(const Geometry& frame, const Draw& draw,
   return weight_planes(frame, draw, vertex);
 }
 
-/// At a point of pixel (x, y), `from_centre` px from its centre. Snapping may put a sample a little
-/// outside of a clipped triangle's exact shape, where thin ones would extrapolate wildly; so
-/// weights are cut to [0, 1].
-RASTRUM_HD inline Weights weights_at(const WeightPlanes& w, int x, int y,
-                                     Vec2 from_centre = {0, 0}) {
+/// At a point of pixel (x, y), `from_centre` px from its centre, without how they change. Snapping
+/// may put a sample a little outside of a clipped triangle's exact shape, where thin ones would
+/// extrapolate wildly; so weights are cut to [0, 1]. Returns the sum of what they were before.
+RASTRUM_HD inline double shares_at(const WeightPlanes& w, int x, int y, Vec2 from_centre,
+                                   double (&b)[3]) {
   const double dx = x + 0.5 + static_cast<double>(from_centre.x) - w.x0;
   const double dy = y + 0.5 + static_cast<double>(from_centre.y) - w.y0;
-  Weights result;
-  double sum = 0, sum_dx = 0, sum_dy = 0;
+  double sum = 0;
   for (int i = 0; i < 3; ++i) {
-    result.b[i] = w.r[i] + w.p[i] * dx + w.q[i] * dy;
-    sum += result.b[i];
+    b[i] = w.r[i] + w.p[i] * dx + w.q[i] * dy;
+    sum += b[i];
+  }
+  double inside = 0;
+  for (double& share : b) {
+    share /= sum;
+    share = share > 0 ? (share < 1 ? share : 1.0) : 0.0;
+    inside += share;
+  }
+  for (double& share : b) share /= inside;
+  return sum;
+}
+
+/// The same with them.
+RASTRUM_HD inline Weights weights_at(const WeightPlanes& w, int x, int y,
+                                     Vec2 from_centre = {0, 0}) {
+  Weights result;
+  const double sum = shares_at(w, x, y, from_centre, result.b);
+  double sum_dx = 0, sum_dy = 0;
+  for (int i = 0; i < 3; ++i) {
     sum_dx += w.p[i];
     sum_dy += w.q[i];
   }
-  double inside = 0;
-  for (double& b : result.b) {
-    b /= sum;
-    b = b > 0 ? (b < 1 ? b : 1.0) : 0.0;
-    inside += b;
-  }
   for (int i = 0; i < 3; ++i) {
-    result.b[i] /= inside;
     result.db_dx[i] = (w.p[i] - result.b[i] * sum_dx) / sum;
     result.db_dy[i] = (w.q[i] - result.b[i] * sum_dy) / sum;
   }
@@ -149,8 +159,10 @@ class FragmentLocator {
   explicit FragmentLocator(const FrameGeometry& frame) : frame_(frame) {}
 
   /// The fragment of primitive `id` at element i of a block that begins at pixel (x0, y0); `points`
-  /// as in VisibleBlock. Valid until the next call; its depth is the caller's to set.
-  Fragment& locate(std::uint64_t id, int x0, int y0, int i, const ShadingPoints* points) {
+  /// as in VisibleBlock. Valid until the next call; its depth is the caller's to set. Without
+  /// `changes` nobody asks how its weights change across pixels.
+  Fragment& locate(std::uint64_t id, int x0, int y0, int i, const ShadingPoints* points,
+                   bool changes = true) {
     int x = x0 + i % kBlockSize, y = y0 + i / kBlockSize;
     Vec2 from_centre{0, 0};
     if (points != nullptr) {
@@ -184,7 +196,10 @@ class FragmentLocator {
     fragment_.x = x;
     fragment_.y = y;
     fragment_.from_centre = from_centre;
-    fragment_.weights = weights_at(planes_, x, y, fragment_.from_centre);
+    if (changes)
+      fragment_.weights = weights_at(planes_, x, y, fragment_.from_centre);
+    else
+      (void)shares_at(planes_, x, y, fragment_.from_centre, fragment_.weights.b);
     if (square_px_ > 0)
       fragment_.point = {static_cast<float>((x + 0.5 - planes_.x0) / square_px_),
                          static_cast<float>((y + 0.5 - planes_.y0) / square_px_)};

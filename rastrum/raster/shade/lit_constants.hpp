@@ -40,6 +40,10 @@ struct alignas(64) LitBlock {
 /// `model`.
 bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
                     const VisibleBlock& block, BlockColors& colors) noexcept;
+/// The same with base colours that `surface` holds; of its normals nothing is read.
+bool shade_own_base_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
+                         const VisibleBlock& block, LitBlock& surface,
+                         BlockColors& colors) noexcept;
 /// The same of what others have found; alpha is not set.
 bool light_lit_simd(Isa isa, LitModel model, const ViewRays& rays, const LightSet* lights,
                     const VisibleBlock& block, const LitBlock& surface,

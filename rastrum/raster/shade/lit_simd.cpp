@@ -162,20 +162,20 @@ HWY_INLINE void light_block(const ViewRays& rays, const LightSet* lights, const 
 }
 
 /// Two loops: a row's lighting is one long chain of square roots and divisions, and the processor
-/// overlaps the chains of several rows only where little else stands between them.
+/// overlaps the chains of several rows only where little else stands between them. `own_base`:
+/// `surface` holds the base colours.
 template <LitModel kModel>
 void shade_block(const LitScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
-                 BlockColors& colors) {
+                 LitBlock& surface, bool own_base, BlockColors& colors) {
   constexpr bool kNormals = kModel != LitModel::flat;
   constexpr std::uint64_t kRow = (1U << kLanes) - 1;
-  const bool colored = kModel != LitModel::normal && scene.colored;
-  LitBlock surface;
+  const bool colored = !own_base && kModel != LitModel::normal && scene.colored;
   if (kNormals || colored)
     for (std::size_t first = 0; first < 64; first += kLanes)
       if (const std::uint64_t row = block.covered >> first & kRow; row != 0)
         interpolate_row(scene, frame, block, first, static_cast<std::uint32_t>(row), kNormals,
                         colored, surface);
-  light_block<kModel>(scene.rays, scene.lights, block, surface, colored, colors);
+  light_block<kModel>(scene.rays, scene.lights, block, surface, own_base || colored, colors);
 }
 
 /// Calls use(constant of the model); returns whether it is one that lanes have.
@@ -202,7 +202,15 @@ HWY_INLINE bool with_model(LitModel model, const Use& use) {
 bool shade(LitModel model, const LitScene& scene, const FrameGeometry& frame,
            const VisibleBlock& block, BlockColors& colors) noexcept {
   return with_model(model, [&](auto m) HWY_ATTR {
-    shade_block<decltype(m)::value>(scene, frame, block, colors);
+    LitBlock surface;
+    shade_block<decltype(m)::value>(scene, frame, block, surface, false, colors);
+  });
+}
+
+bool shade_own_base(LitModel model, const LitScene& scene, const FrameGeometry& frame,
+                    const VisibleBlock& block, LitBlock& surface, BlockColors& colors) noexcept {
+  return with_model(model, [&](auto m) HWY_ATTR {
+    shade_block<decltype(m)::value>(scene, frame, block, surface, true, colors);
   });
 }
 
@@ -231,6 +239,16 @@ bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameG
   static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade, nullptr);
   const Shade shade = kShade[static_cast<std::size_t>(isa)];
   return shade != nullptr && shade(model, scene, frame, block, colors);
+}
+
+bool shade_own_base_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
+                         const VisibleBlock& block, LitBlock& surface,
+                         BlockColors& colors) noexcept {
+  using Shade = bool (*)(LitModel, const LitScene&, const FrameGeometry&, const VisibleBlock&,
+                         LitBlock&, BlockColors&);
+  static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade_own_base, nullptr);
+  const Shade shade = kShade[static_cast<std::size_t>(isa)];
+  return shade != nullptr && shade(model, scene, frame, block, surface, colors);
 }
 
 bool light_lit_simd(Isa isa, LitModel model, const ViewRays& rays, const LightSet* lights,

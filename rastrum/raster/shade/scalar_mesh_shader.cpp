@@ -17,56 +17,84 @@ ScalarMeshShader::ScalarMeshShader(const SurfaceLook& look, const SceneView& sce
       lit_(scene, camera, width, height),
       materials_(scene, camera, width, height, textures) {
   lit_.lights = materials_.lights = look.lights;
+  for (const SurfaceScalars& s : scalars_) isolines_ |= s.colors()->has_isolines();
 }
 
 std::size_t ScalarMeshShader::scratch_bytes() const noexcept {
   return sizeof(KeptTriangles);
 }
 
-bool ScalarMeshShader::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa,
+bool ScalarMeshShader::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
                              BlockColors& colors) const noexcept {
+  LitBlock surface;
+  alignas(64) float alpha[64];
+  FragmentLocator locator(frame);
+  const MaterialView materials = materials_.view();
+  const bool is_wire = look_.model == LitModel::wireframe;
+  for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    const std::uint64_t id = id_of_key(block.keys[i]);
+    const Fragment& f = locator.locate(id, block.x0, block.y0, i, block.points, isolines_);
+    const std::size_t number = frame.draws[f.draw].number;
+    const Vec4 own = scalars_[number].color(f, Topology::triangles, !look_.model);
+    Vec3 base{own.x, own.y, own.z};
+    if (is_wire) {
+      const float line = wire_share(f);
+      base = base * (1 - line) + kWireColor * line;
+    } else if (look_.model == LitModel::id) {
+      base = id_color(id);
+    }
+    surface.base[0][i] = base.x;
+    surface.base[1][i] = base.y;
+    surface.base[2][i] = base.z;
+    alpha[i] = 1;
+    if (look_.blends) {
+      const MaterialDraw& of = materials.draws[number];
+      const BoundMaterial& material = materials.material_of(of, f.triangle);
+      alpha[i] = clamped_alpha(look_.opacity * material.opacity * of.opacity * own.w);
+    }
+  }
+  light(frame, block, isa, surface, colors);
+  bool opaque = true;
+  for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    const float a = alpha[i];
+    opaque &= colors.set(i, {colors.r[i] * a, colors.g[i] * a, colors.b[i] * a, a});
+  }
+  return opaque;
+}
+
+void ScalarMeshShader::light(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
+                             LitBlock& surface, BlockColors& colors) const {
+  const bool is_final = look_.model == LitModel::wireframe || look_.model == LitModel::id;
+  if (look_.model && !is_final && isa != Isa::scalar &&
+      shade_own_base_simd(isa, *look_.model, lit_, frame, block, surface, colors))
+    return;
   KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
   const LitView lit = lit_.view();
   const MaterialView materials = materials_.view();
-  FragmentLocator locator(frame);
   std::optional<MaterialTriangle> triangle;  // that was seen last
   std::uint64_t triangle_id = 0;
-  bool opaque = true;
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const int x = block.x0 + i % kBlockSize, y = block.y0 + i / kBlockSize;
     const Vec2 from_centre =
         block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
-    const std::uint64_t id = id_of_key(block.keys[i]);
-    const Fragment& f = locator.locate(id, block.x0, block.y0, i, block.points);
-    const Draw& draw = frame.draws[f.draw];
-    const Vec4 own = scalars_[draw.number].color(f, Topology::triangles, !look_.model);
-    const Vec3 base{own.x, own.y, own.z};
-    Vec3 c;
-    if (look_.model == LitModel::id) {
-      c = id_color(id);
-    } else if (look_.model == LitModel::wireframe) {
-      const float line = wire_share(f);
-      c = base * (1 - line) + kWireColor * line;
-    } else if (look_.model) {
+    const Vec3 base{surface.base[0][i], surface.base[1][i], surface.base[2][i]};
+    Vec3 c = base;
+    if (look_.model && !is_final) {
       const LitTriangle& t =
           kept.find(lit_, frame, block.keys[i] & kIdMask, look_.model != LitModel::flat);
       c = shade_lit(*look_.model, lit, t, x, y, from_centre, depth_of_key(block.keys[i]), &base);
-    } else {
-      if (!triangle || triangle_id != id) triangle.emplace(materials, frame, draw, id);
+    } else if (!look_.model) {
+      const std::uint64_t id = id_of_key(block.keys[i]);
+      if (!triangle || triangle_id != id) triangle.emplace(materials, frame, frame.draw_of(id), id);
       triangle_id = id;
       c = shade_material(materials, *triangle, MaterialPoint(triangle->planes, x, y, from_centre),
                          linear_, depth_of_key(block.keys[i]), &base);
     }
-    float alpha = 1;
-    if (look_.blends) {
-      const MaterialDraw& of = materials.draws[draw.number];
-      const BoundMaterial& material = materials.material_of(of, f.triangle);
-      alpha = clamped_alpha(look_.opacity * material.opacity * of.opacity * own.w);
-    }
-    opaque &= colors.set(i, {c.x * alpha, c.y * alpha, c.z * alpha, alpha});
+    colors.set(i, {c.x, c.y, c.z, 1});
   }
-  return opaque;
 }
 
 std::uint64_t ScalarMeshShader::test(const FrameGeometry& frame, const Piece& piece,

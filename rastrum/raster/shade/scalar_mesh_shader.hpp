@@ -8,6 +8,7 @@
 #include <rastrum/camera.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/shade/lit.hpp>
+#include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/plain_surface.hpp>
 #include <rastrum/raster/shade/surface_scalars.hpp>
@@ -36,8 +37,13 @@ class ScalarMeshShader final : public BlockShader, public FragmentTest {
                                    const ShadingPoints* points) const noexcept override;
 
  private:
+  /// Colours of the covered samples, whose base colours `surface` holds; alpha 1.
+  void light(const FrameGeometry& frame, const VisibleBlock& block, Isa isa, LitBlock& surface,
+             BlockColors& colors) const;
+
   SurfaceLook look_;
   bool linear_ = false;
+  bool isolines_ = false;                ///< some of them have some
   std::vector<SurfaceScalars> scalars_;  ///< by Draw::number
   LitScene lit_;
   MaterialScene materials_;

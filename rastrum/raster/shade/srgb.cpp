@@ -9,6 +9,20 @@ double linear_from_srgb(double s) {
   return s <= 0.04045 ? s / 12.92 : elementary::pow((s + 0.055) / 1.055, 2.4);
 }
 
+float linear_from_display(float display) {
+  constexpr std::size_t kSteps = 4096;
+  static const std::array<double, kSteps + 2> table = [] {
+    std::array<double, kSteps + 2> t{};
+    for (std::size_t i = 0; i < t.size(); ++i)
+      t[i] = linear_from_srgb(static_cast<double>(i) / kSteps);
+    return t;
+  }();
+  if (!(display > 0)) return 0;
+  const double at = std::min(double{display}, 1.0) * kSteps;
+  const auto i = static_cast<std::size_t>(at);
+  return static_cast<float>(table[i] + (table[i + 1] - table[i]) * (at - static_cast<double>(i)));
+}
+
 const DecodeTables& decode_tables() {
   static const DecodeTables tables = [] {
     DecodeTables t;

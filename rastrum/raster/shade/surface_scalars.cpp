@@ -26,8 +26,8 @@ double weighted(const double* b, const double* v, int n) {
 }
 
 Vec4 linear_light(Vec4 display) {
-  const auto channel = [](float c) { return static_cast<float>(linear_from_srgb(double{c})); };
-  return {channel(display.x), channel(display.y), channel(display.z), display.w};
+  return {linear_from_display(display.x), linear_from_display(display.y),
+          linear_from_display(display.z), display.w};
 }
 
 }  // namespace

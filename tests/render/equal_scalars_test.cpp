@@ -1,0 +1,151 @@
+// What scalars colour is the same bits on every instruction set, for every number of threads and on
+// the serial device: meshes with all that has a colour, points, lines and quadrics.
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/digest.hpp>
+#include <rastrum/render.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/point_line_scenes.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/shaded_scenes.hpp"
+#include "tests/support/surface_scenes.hpp"
+
+namespace rastrum::test::equal_scalars_test {
+namespace {
+
+/// Numbers for what has up to so many positions, a few of them none.
+std::vector<double> numbers(std::uint64_t seed) {
+  Random random(seed);
+  std::vector<double> values;
+  for (int i = 0; i < 20000; ++i)
+    values.push_back(random.chance(0.01) ? std::numeric_limits<double>::quiet_NaN()
+                                         : random.real(0, 1));
+  return values;
+}
+
+ScalarMapping mapping_of(std::uint64_t seed) {
+  const char* const maps[] = {"viridis", "turbo", "tab10", "RdBu", "twilight"};
+  ScalarMapping m;
+  m.map = color_map(maps[seed % 5]);
+  if (seed % 2 == 0) m.range = ScalarRange{0.1, 0.9};
+  m.logarithmic = seed % 4 == 0;
+  if (seed % 3 == 0) m.steps = 7;
+  if (seed % 5 == 0) m.isolines = {0.25, 0.5, 0.75};
+  if (seed % 7 == 0) m.opacity = {{0.2, 0.1F}, {0.8, 1}};
+  return m;
+}
+
+/// Gives all instances numbers, one each where the seed says so.
+void number(std::vector<InstanceView>& instances, const std::vector<double>& values,
+            std::uint64_t seed) {
+  Random random(seed);
+  for (InstanceView& instance : instances) {
+    const int which = random.integer(0, 5);
+    if (which == 0) instance.scalar = random.real(0, 1);
+    if (which <= 1) continue;
+    const Per per = static_cast<Per>(random.integer(0, 3));
+    std::visit(
+        [&](auto& g) {
+          if constexpr (requires { g.scalars.per; })
+            g.scalars = {values, per};
+          else
+            g.scalars = values;
+        },
+        instance.geometry);
+  }
+}
+
+/// Everything that shows scalars, as one line.
+std::string picture(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                    const FrameOptions& frame) {
+  Image<Vec4> color(frame.width, frame.height), albedo(frame.width, frame.height);
+  Image<float> scalars(frame.width, frame.height);
+  renderer.render(scene, camera, frame, {.color = color, .albedo = albedo, .scalars = scalars});
+  return digest(color.view()).hex() + digest(albedo.view()).hex() + digest(scalars.view()).hex();
+}
+
+class EqualScalars : public testing::Test {
+ protected:
+  EqualScalars() {
+    ways_.emplace_back(RendererOptions{.device = Device::serial});
+    for (const Isa isa : available_isas())
+      ways_.emplace_back(RendererOptions{.threads = 1, .isa = isa});
+    ways_.emplace_back(RendererOptions{.threads = 3});
+  }
+  void expect_equal(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
+                    std::uint64_t seed) {
+    const std::string expected = picture(ways_[0], scene, camera, frame);
+    for (std::size_t i = 1; i < ways_.size(); ++i)
+      ASSERT_EQ(picture(ways_[i], scene, camera, frame), expected)
+          << "scene " << seed << ", way " << i << ", " << name(frame.shader);
+    pictures_.push_back(expected);
+  }
+  /// That the pictures are not all of nothing.
+  void expect_different(std::size_t at_least) {
+    std::ranges::sort(pictures_);
+    pictures_.erase(std::unique(pictures_.begin(), pictures_.end()), pictures_.end());
+    EXPECT_GE(pictures_.size(), at_least);
+  }
+
+  std::vector<Renderer> ways_;
+  std::vector<std::string> pictures_;
+};
+
+TEST_F(EqualScalars, OfMeshes) {
+  const int scenes = count_from_environment("RASTRUM_COLOR_SCENES", 300);
+  for (int i = 0; i < scenes; ++i) {
+    const auto seed = static_cast<std::uint64_t>(i);
+    const ShadedScene s = generate_shaded(seed);
+    const SceneBinding binding(s.scene);
+    SceneView scene = binding.view();
+    std::vector<InstanceView> instances(scene.instances.begin(), scene.instances.end());
+    const std::vector<double> values = numbers(seed);
+    number(instances, values, seed);
+    const ScalarMapping mapping = mapping_of(seed);
+    scene.instances = instances;
+    scene.scalar_mappings = {&mapping, 1};
+    expect_equal(scene, s.camera, s.frame, seed);
+  }
+  expect_different(static_cast<std::size_t>(scenes) / 2);
+}
+
+TEST_F(EqualScalars, OfPointsAndLines) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    PointLineScene s = generate_points_and_lines(seed, 60, 44);
+    const std::vector<double> values = numbers(seed);
+    number(s.instances, values, seed);
+    const ScalarMapping mapping = mapping_of(seed);
+    SceneView scene = s.view();
+    scene.scalar_mappings = {&mapping, 1};
+    FrameOptions frame{.width = 60, .height = 44};
+    frame.shader = seed % 3 == 0 ? Shader::material : Shader::phong;
+    if (seed % 4 == 3) frame.samples = 4;
+    expect_equal(scene, s.camera, frame, seed);
+  }
+  expect_different(100);
+}
+
+TEST_F(EqualScalars, OfQuadrics) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    SurfaceScene s = generate_surfaces(seed, 60, 44);
+    const std::vector<double> values = numbers(seed);
+    number(s.instances, values, seed);
+    const ScalarMapping mapping = mapping_of(seed);
+    SceneView scene = s.view();
+    scene.scalar_mappings = {&mapping, 1};
+    FrameOptions frame{.width = 60, .height = 44};
+    frame.shader = seed % 3 == 0 ? Shader::material : Shader::phong;
+    if (seed % 4 == 3) frame.samples = 4;
+    expect_equal(scene, s.camera, frame, seed);
+  }
+  expect_different(100);
+}
+
+}  // namespace
+}  // namespace rastrum::test::equal_scalars_test
