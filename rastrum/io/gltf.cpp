@@ -179,20 +179,25 @@ class GltfReader {
         }
       }
       if (const auto light = gltf::light_of_node(node, lights_.size()))
-        add_light(node, placed(lights_[*light], to_world_[index]));
+        add_light(node, lights_[*light], to_world_[index]);
       const auto children = node.get("children");
       if (!children) continue;
       for (std::size_t i = children->size(); i-- > 0;) stack.push_back(children->at(i).count());
     }
   }
 
-  void add_light(const Json& node, const Light& light) {
+  void add_light(const Json& node, const std::optional<Light>& light, const Mat4d& to_world) {
+    const auto leave_out = [&](const char* why) {
+      scene_.warnings.push_back(node.path() + ": its light " + why + " and is left out");
+    };
+    if (!light) return leave_out("is of a kind that is not known");
+    const Light standing = placed(*light, to_world);
     try {
-      check_lights({&light, 1});
-      scene_.lights.push_back(light);
+      check_lights({&standing, 1});
     } catch (const Error&) {
-      scene_.warnings.push_back(node.path() + ": its light has no direction and is left out");
+      return leave_out("has no direction");
     }
+    scene_.lights.push_back(standing);
   }
 
   /// A mesh that no node draws is read all the same: what is broken is refused, not drawn empty.
@@ -344,7 +349,7 @@ class GltfReader {
   }
 
   const Json& document_;
-  std::vector<Light> lights_;  ///< of the document
+  std::vector<std::optional<Light>> lights_;  ///< of the document
   Scene& scene_;
   gltf::Buffers buffers_;
   gltf::Materials materials_;

@@ -54,8 +54,9 @@ struct Unpacked {
 [[nodiscard]] Unpacked decode_draco(const Json& primitive, const Json& extension,
                                     const Json& document, Bytes packed);
 
-/// Lights of KHR_lights_punctual, unplaced: at the origin, along −z. Throws Error{bad_format}.
-[[nodiscard]] std::vector<Light> read_lights(const Json& document);
+/// Lights of KHR_lights_punctual, unplaced: at the origin, along −z; none: of a kind that is
+/// not known. Throws Error{bad_format}.
+[[nodiscard]] std::vector<std::optional<Light>> read_lights(const Json& document);
 /// Which of so many a node places; none: it has none. Throws likewise.
 [[nodiscard]] std::optional<std::size_t> light_of_node(const Json& node, std::size_t lights);
 

@@ -50,7 +50,7 @@ SpotLight spot_of(const Json& light) {
   return spot;
 }
 
-Light light_of(const Json& json) {
+std::optional<Light> light_of(const Json& json) {
   Light light;
   const std::string& type = json["type"].string();
   light.color = color_of(json);
@@ -63,7 +63,7 @@ Light light_of(const Json& json) {
   else if (type == "spot")
     light.kind = spot_of(json);
   else
-    json.fail("type must be directional, point or spot");
+    return std::nullopt;
   try {
     check_lights({&light, 1});
   } catch (const Error& e) {
@@ -74,8 +74,8 @@ Light light_of(const Json& json) {
 
 }  // namespace
 
-std::vector<Light> read_lights(const Json& document) {
-  std::vector<Light> lights;
+std::vector<std::optional<Light>> read_lights(const Json& document) {
+  std::vector<std::optional<Light>> lights;
   if (const auto extension = document.extension(kLights))
     extension->for_each("lights", [&](const Json& l) { lights.push_back(light_of(l)); });
   return lights;

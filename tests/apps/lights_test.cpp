@@ -37,8 +37,8 @@ TEST_F(LightOptions, LightThePictureAndNothingElse) {
 
 TEST_F(LightOptions, StudioIsWhatItSays) {
   must(with({"--studio", "-o", "studio.png"}));
-  must(with({"--view", "iso", "--lights", "studio", "--occlusion", "--samples", "4", "-o",
-             "said.png"}));
+  must(with(
+      {"--view", "iso", "--lights", "studio", "--occlusion", "--samples", "4", "-o", "said.png"}));
   EXPECT_TRUE(same_pixels(png("studio.png"), png("said.png")));
   must(with({"--studio", "--view", "top", "--samples", "1", "--lights", "headlight", "-o",
              "studio.png"}));

@@ -254,8 +254,8 @@ TEST(Gltf, LightsStandWhereNodesAre) {
   EXPECT_FLOAT_EQ(spot.outer_rad, 0.3F);
   EXPECT_NE(io::describe(s).find("light 2: spot"), std::string::npos) << io::describe(s);
 
-  Scene moved = read(lit(R"({"type":"point"})",
-                         R"({"extensions":{"KHR_lights_punctual":{"light":0}}})"));
+  Scene moved =
+      read(lit(R"({"type":"point"})", R"({"extensions":{"KHR_lights_punctual":{"light":0}}})"));
   Mat4d to_world = Mat4d::identity();
   to_world.m[0][3] = 7;
   moved.place(to_world);
@@ -265,15 +265,18 @@ TEST(Gltf, LightsStandWhereNodesAre) {
 TEST(Gltf, LightsThatCannotBeMeantAreRefused) {
   const std::string on = R"({"extensions":{"KHR_lights_punctual":{"light":0}}})";
   for (const char* const bad :
-       {R"({"type":"laser"})", R"({"intensity":1})", R"({"type":"point","intensity":-1})",
-        R"({"type":"point","range":0})", R"({"type":"point","color":[1,1]})",
-        R"({"type":"point","color":[1,-1,0]})", R"({"type":"spot"})",
+       {R"({"intensity":1})", R"({"type":"point","intensity":-1})", R"({"type":"point","range":0})",
+        R"({"type":"point","color":[1,1]})", R"({"type":"point","color":[1,-1,0]})",
+        R"({"type":"spot"})",
         R"({"type":"spot","spot":{"innerConeAngle":0.4,"outerConeAngle":0.3}})",
         R"({"type":"spot","spot":{"outerConeAngle":1.6}})"})
     EXPECT_THROW((void)read(lit(bad, on)), Error) << bad;
   EXPECT_THROW((void)read(lit(R"({"type":"point"})",
                               R"({"extensions":{"KHR_lights_punctual":{"light":1}}})")),
                Error);
+  const Scene unknown = read(lit(R"({"type":"laser"})", on));
+  EXPECT_TRUE(unknown.lights.empty());
+  EXPECT_EQ(unknown.warnings.size(), 1U);
   EXPECT_NO_THROW((void)read(lit(R"({"type":"point"})", on)));
 }
 
