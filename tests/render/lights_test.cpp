@@ -273,7 +273,7 @@ struct Mixture {
     SpheresView spheres;
     spheres.centers = places;
     spheres.radius = 0.2F;
-    instances = {{view(knot)}, {spheres}};
+    instances = {{knot.view()}, {spheres}};
     PointsView points;
     points.positions = places;
     points.normals = normals;
@@ -342,7 +342,9 @@ TEST(Lights, ArePlacedByAMatrixCameraToo) {
   const auto b = draw(ball.view(), matrix, lit_by(lights, Shader::phong));
   for (int y = 0; y < kSize; ++y)
     for (int x = 0; x < kSize; ++x)
-      if (a(x, y).w != 0 && b(x, y).w != 0) ASSERT_NEAR(a(x, y).x, b(x, y).x, 1.0 / 255);
+      if (a(x, y).w != 0 && b(x, y).w != 0) {
+        ASSERT_NEAR(a(x, y).x, b(x, y).x, 1.0 / 255);
+      }
 }
 
 TEST(Lights, ThatCannotBeMeantAreRefused) {
