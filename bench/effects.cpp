@@ -1,5 +1,5 @@
-// `rastrum bench effects`: what ambient occlusion, eye-dome lighting and silhouettes add to a frame
-// at 1920 × 1080. Each factor is compared with the plain code's before anything is timed.
+// `rastrum bench effects`: what ambient occlusion, eye-dome lighting, silhouettes and edges add to
+// a frame at 1920 × 1080. Each factor is compared with the plain code's before anything is timed.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -24,32 +24,36 @@ struct Pictures {
   Image<Rgba8> color;
   Image<float> depth, factor;
   Image<Vec3> normals;
-  Image<std::int64_t> ids;
+  Image<std::int64_t> ids, primitives;  ///< of instances; Targets::ids
 
   Pictures(int width, int height)
       : color(width, height),
         depth(width, height),
         factor(width, height),
         normals(width, height),
-        ids(width, height) {}
+        ids(width, height),
+        primitives(width, height) {}
   [[nodiscard]] Surface surface() const { return {depth.view(), normals.view(), ids.view()}; }
 };
 
-constexpr int kEffects = 3;
-constexpr const char* kNames[kEffects] = {"occlusion", "eye dome", "silhouettes"};
+constexpr int kEffects = 4;
+constexpr const char* kNames[kEffects] = {"occlusion", "eye dome", "silhouettes", "edges"};
 
-void apply(Effects& effects, int which, Pictures& p, const Camera& camera, double radius) {
+void apply(Effects& effects, int which, Pictures& p, const Camera& camera, double radius,
+           const SceneEdges& edges) {
   if (which == 0)
     effects.ambient_occlusion({.view_depth = p.depth.view()}, camera, {.radius = radius}, p.factor);
   if (which == 1) effects.eye_dome(p.surface(), camera, {}, p.factor);
   if (which == 2) effects.silhouettes(p.surface(), camera, {}, p.factor);
+  if (which == 3) effects.edges(p.primitives.view(), edges, camera, 1, p.factor);
 }
 
 }  // namespace
 
 int run_effects(std::span<const std::string_view> arguments) {
   TableOptions options;
-  OptionParser parser("effects", "Occlusion, eye-dome lighting, silhouettes at 1920 × 1080.");
+  OptionParser parser("effects",
+                      "Occlusion, eye-dome lighting, silhouettes, edges at 1920 × 1080.");
   options.add_to(parser, false);
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
@@ -64,8 +68,8 @@ int run_effects(std::span<const std::string_view> arguments) {
       ", ms; an effect with its way into the colours; the factors are the plain "
       "code's, bit by bit.");
   Grid grid{"",
-            {"scene", "phong", "with view depth", "and normals, instances", "occlusion", "eye dome",
-             "silhouettes", "with occlusion ÷ phong"},
+            {"scene", "phong", "with view depth", "and ids, normals, instances", "occlusion",
+             "eye dome", "silhouettes", "edges", "with occlusion ÷ phong"},
             {}};
   Plot plot;
   plot.title = document.title;
@@ -92,15 +96,20 @@ int run_effects(std::span<const std::string_view> arguments) {
     Pictures p(frame.width, frame.height), plain(frame.width, frame.height);
     Renderer renderer({.threads = options.threads});
     Effects effects(options.threads), reference(1, Isa::scalar);
-    const Targets all{
-        .color8 = p.color, .instances = p.ids, .camera_normals = p.normals, .view_depth = p.depth};
+    const SceneEdges edges(binding.view(), 30);
+    const Targets all{.color8 = p.color,
+                      .ids = p.primitives,
+                      .instances = p.ids,
+                      .camera_normals = p.normals,
+                      .view_depth = p.depth};
     (void)renderer.render(binding.view(), camera, frame, all);
     plain.depth = p.depth;
     plain.normals = p.normals;
     plain.ids = p.ids;
+    plain.primitives = p.primitives;
     for (int i = 0; i < kEffects; ++i) {
-      apply(effects, i, p, camera, radius);
-      apply(reference, i, plain, camera, radius);
+      apply(effects, i, p, camera, radius, edges);
+      apply(reference, i, plain, camera, radius, edges);
       right = right && digest(p.factor.view()) == digest(plain.factor.view());
     }
     std::vector<Contender> contenders{
@@ -111,11 +120,11 @@ int run_effects(std::span<const std::string_view> arguments) {
            (void)renderer.render(binding.view(), camera, frame,
                                  {.color8 = p.color, .view_depth = p.depth});
          }},
-        {"and normals, instances",
+        {"and ids, normals, instances",
          [&] { (void)renderer.render(binding.view(), camera, frame, all); }}};
     for (int i = 0; i < kEffects; ++i)
       contenders.push_back({kNames[i], [&, i] {
-                              apply(effects, i, p, camera, radius);
+                              apply(effects, i, p, camera, radius, edges);
                               effects.darken(p.color, {}, p.factor.view());
                             }});
     const std::vector<Timing> timings = measure_interleaved(contenders, options.plan());

@@ -74,6 +74,17 @@ void add_annotation_options(Parser& app, AnnotationOptions& a) {
   app.add_flag("--silhouettes", a.silhouettes,
                "black lines where surfaces end, bend by more than 35 degrees or another begins")
       ->group(kGroup);
+  app.add_flag("--edges", a.edges, "the edges of the meshes as black lines on what is seen of them")
+      ->group(kGroup);
+  add(app, "--edge-angle", "DEG",
+      "of edges between two faces those that meet at more, as 30 for creases and borders (0: all)",
+      [&a](const std::string& s) {
+        a.edge_angle = parse_number("--edge-angle", s);
+        if (!(*a.edge_angle >= 0 && *a.edge_angle <= 180))
+          throw UsageError("--edge-angle", "must lie in 0 to 180 degrees, got '" + s + "'");
+      })
+      ->group(kGroup);
+  add_number(app, "--edge-width", "PX", "how wide (1)", a.edge_width, 64);
 }
 
 void check_words(const WordOptions& a, bool has_colors) {
@@ -90,11 +101,14 @@ void check_annotations(const AnnotationOptions& a, bool has_colors) {
                      : a.bounds    ? "--bounds"
                      : a.occlusion ? "--occlusion"
                      : a.dome      ? "--edl"
+                     : a.edges     ? "--edges"
                                    : "--silhouettes",
                      "is drawn into a picture: give -o");
   if ((a.occlusion_radius || a.occlusion_strength) && !a.occlusion)
     throw UsageError(a.occlusion_radius ? "--occlusion-radius" : "--occlusion-strength",
                      "is for --occlusion");
+  if ((a.edge_angle || a.edge_width) && !a.edges)
+    throw UsageError(a.edge_angle ? "--edge-angle" : "--edge-width", "is for --edges");
   if (a.dome_strength && !a.dome) throw UsageError("--edl-strength", "is for --edl");
   if (a.words.scale_given && !a.words.any() && !a.scalars.bar() && !a.axes && !a.bounds)
     throw UsageError("--text-scale", "is for --title, --caption, --bar, --axes and --bounds");
@@ -137,8 +151,8 @@ Camera with_room(const AnnotationOptions& a, Camera camera) {
 }
 
 void annotate(const AnnotationOptions& a, const overlay::Canvas& canvas, const Surface& surface,
-              ImageView<const float> depth, const SceneView& scene, const Camera& camera,
-              Vec4 background, Effects& effects) {
+              ImageView<const float> depth, ImageView<const std::int64_t> ids,
+              const SceneView& scene, const Camera& camera, Vec4 background, Effects& effects) {
   if (a.effects()) {
     Image<float> factor(canvas.width(), canvas.height());
     if (a.occlusion) {
@@ -161,6 +175,12 @@ void annotate(const AnnotationOptions& a, const overlay::Canvas& canvas, const S
       effects.silhouettes(surface, camera, {}, factor);
       effects.darken(canvas.color8, canvas.color, factor.view());
     }
+  }
+  if (a.edges) {
+    Image<float> factor(canvas.width(), canvas.height());
+    effects.edges(ids, SceneEdges(scene, a.edge_angle.value_or(0)), camera,
+                  a.edge_width.value_or(1), factor);
+    effects.darken(canvas.color8, canvas.color, factor.view());
   }
   const overlay::Look look = look_of(a.words, background);
   if (a.bounds)

@@ -30,12 +30,14 @@ struct AnnotationOptions {
   WordOptions words;
   ScalarOptions scalars;  ///< whose bar is drawn
   bool axes = false, bounds = false;
-  bool occlusion = false, dome = false, silhouettes = false;
+  bool occlusion = false, dome = false, silhouettes = false, edges = false;
   std::optional<double> occlusion_radius, occlusion_strength, dome_strength;
+  std::optional<double> edge_angle, edge_width;
 
+  /// Those that look at depth.
   [[nodiscard]] bool effects() const { return occlusion || dome || silhouettes; }
   [[nodiscard]] bool any() const {
-    return words.any() || scalars.bar() || axes || bounds || effects();
+    return words.any() || scalars.bar() || axes || bounds || edges || effects();
   }
 };
 
@@ -57,9 +59,9 @@ void draw_words(const WordOptions& a, const overlay::Canvas& canvas, const overl
 [[nodiscard]] Camera with_room(const AnnotationOptions& a, Camera camera);
 
 /// Effects, then the box, axes and words, onto `canvas`. `surface` must be there for effects,
-/// `depth` (reversed) for bounds.
+/// `depth` (reversed) for bounds, `ids` for edges.
 void annotate(const AnnotationOptions& a, const overlay::Canvas& canvas, const Surface& surface,
-              ImageView<const float> depth, const SceneView& scene, const Camera& camera,
-              Vec4 background, Effects& effects);
+              ImageView<const float> depth, ImageView<const std::int64_t> ids,
+              const SceneView& scene, const Camera& camera, Vec4 background, Effects& effects);
 
 }  // namespace rastrum::cli

@@ -292,7 +292,7 @@ Wanted wanted_of(const RenderArguments& a) {
   Wanted wanted{.color8 = (a.color && !floats) || a.errors || hashes_alone(a),
                 .color = a.color && floats,
                 .depth = a.depth || a.annotations.bounds,
-                .ids = a.ids || a.objects,
+                .ids = a.ids || a.objects || a.annotations.edges,
                 .overdraw = static_cast<bool>(a.heatmap),
                 .errors = static_cast<bool>(a.errors),
                 .images = {},
@@ -310,8 +310,8 @@ void annotate_pictures(const RenderArguments& a, Pictures& p, const SceneView& s
   overlay::Canvas canvas;
   if (!p.color8.empty()) canvas.color8 = p.color8.view();
   if (!p.color.empty()) canvas.color = p.color.view();
-  annotate(a.annotations, canvas, p.surface, p.depth.view(), scene, camera, a.render.background,
-           *effects);
+  annotate(a.annotations, canvas, p.surface, p.depth.view(), p.ids.view(), scene, camera,
+           a.render.background, *effects);
 }
 
 /// Into `files`, which the caller commits. `number`: of a picture of many.

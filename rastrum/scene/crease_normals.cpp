@@ -1,14 +1,13 @@
 #include <rastrum/mesh.hpp>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include <rastrum/core/angle.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/scene/weld.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum {
@@ -25,38 +24,6 @@ struct Face {
   Vec3d normal;
   double length = 0;  ///< 0: takes no part
 };
-
-/// A number for each vertex, the same for equal positions, counted from 0 as they first come.
-struct JoinedPoints {
-  std::vector<std::uint32_t> of_vertex;
-  std::size_t count = 0;
-};
-
-JoinedPoints weld(std::span<const Vec3> positions) {
-  // -0 equals 0 and has other bits; adding 0 makes them one.
-  const auto key = [&](std::uint32_t vertex) {
-    const Vec3 p = positions[vertex];
-    return std::bit_cast<std::array<std::uint32_t, 3>>(Vec3{p.x + 0.0F, p.y + 0.0F, p.z + 0.0F});
-  };
-  constexpr std::uint32_t kEmpty = ~0U;
-  std::vector<std::uint32_t> slots(std::bit_ceil(positions.size() * 2 + 2), kEmpty);
-  JoinedPoints points;
-  points.of_vertex.resize(positions.size());
-  for (std::uint32_t v = 0; v < positions.size(); ++v) {
-    const auto k = key(v);
-    std::uint64_t h = (std::uint64_t{k[0]} << 32 | k[1]) * 0x9E3779B97F4A7C15ULL;
-    h = (h ^ h >> 32 ^ k[2]) * 0xD6E8FEB86659FD93ULL;
-    std::size_t at = static_cast<std::size_t>(h ^ h >> 32) & (slots.size() - 1);
-    while (slots[at] != kEmpty && key(slots[at]) != k) at = (at + 1) & (slots.size() - 1);
-    if (slots[at] == kEmpty) {
-      slots[at] = v;
-      points.of_vertex[v] = static_cast<std::uint32_t>(points.count++);
-    } else {
-      points.of_vertex[v] = points.of_vertex[slots[at]];
-    }
-  }
-  return points;
-}
 
 /// The groups of the triangles around one point; its memory is kept from point to point.
 class Groups {
@@ -117,7 +84,8 @@ Attribute<Vec3> crease_normals(std::span<const Vec3> positions,
   check_indices(mesh);
   const std::size_t triangles = mesh.triangle_count();
 
-  const JoinedPoints points = weld(positions);
+  const JoinedPoints points =
+      weld(positions.size(), [&](std::uint32_t v) { return Vec3d(positions[v]); });
   const auto point = [&](std::size_t corner) { return points.of_vertex[mesh.vertex(corner)]; };
   std::vector<Face> faces(triangles);
   // The corners at point p, in the order of triangles: corners[begin[p]] to corners[begin[p + 1]].

@@ -24,7 +24,8 @@ std::vector<std::string> with(const std::vector<std::string>& more) {
 TEST_F(Annotations, ChangeColoursAlone) {
   must(with({"-o", "plain.png", "--depth", "d0.npy", "--ids", "i0.npy"}));
   const Image<Rgba8> plain = png("plain.png");
-  for (const std::string option : {"--axes", "--bounds", "--occlusion", "--edl", "--silhouettes"}) {
+  for (const std::string option :
+       {"--axes", "--bounds", "--occlusion", "--edl", "--silhouettes", "--edges"}) {
     must(with({option, "-o", "a.png", "--depth", "d1.npy", "--ids", "i1.npy", "--image",
                "view-depth=v.npy"}));
     EXPECT_FALSE(same_pixels(plain, png("a.png"))) << option;
@@ -34,7 +35,8 @@ TEST_F(Annotations, ChangeColoursAlone) {
   must(with({"--title", "α = 3°", "--caption", "one", "--caption", "two", "-o", "a.png"}));
   EXPECT_FALSE(same_pixels(plain, png("a.png")));
   // Thread counts and instruction sets change nothing; timed frames are annotated, too.
-  const std::vector<std::string> all{"--axes", "--bounds", "--occlusion", "--edl", "--silhouettes"};
+  const std::vector<std::string> all{"--axes", "--bounds",      "--occlusion",
+                                     "--edl",  "--silhouettes", "--edges"};
   std::set<std::string> pictures;
   for (const std::vector<std::string>& how : std::vector<std::vector<std::string>>{
            {}, {"--threads", "1"}, {"--isa", "scalar"}, {"--frames", "2"}}) {
@@ -85,6 +87,10 @@ TEST_F(Annotations, RefuseWhatCannotBeMeant) {
   refused(with({"--occlusion-radius", "2", "-o", "a.png"}), "--occlusion-radius");
   refused(with({"--occlusion", "--occlusion-radius", "-2", "-o", "a.png"}), "--occlusion-radius");
   refused(with({"--edl-strength", "2", "-o", "a.png"}), "--edl-strength");
+  refused(with({"--edge-angle", "30", "-o", "a.png"}), "--edge-angle");
+  refused(with({"--edges", "--edge-angle", "181", "-o", "a.png"}), "--edge-angle");
+  refused(with({"--edges", "--edge-width", "0", "-o", "a.png"}), "--edge-width");
+  refused(with({"--edges", "--depth", "d.npy"}), "--edges");
   refused(with({"--text-scale", "2", "-o", "a.png"}), "--text-scale");
   refused(with({"--title", "a", "--text-scale", "0", "-o", "a.png"}), "--text-scale");
   refused({"terrain", "--function", "noise", "--title", "a", "--depth", "d.npy"}, "--title");

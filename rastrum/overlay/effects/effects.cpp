@@ -11,6 +11,7 @@
 #include <rastrum/core/angle.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/overlay/effects/darken.hpp>
+#include <rastrum/overlay/effects/edges.hpp>
 #include <rastrum/overlay/effects/lens.hpp>
 #include <rastrum/overlay/effects/occlusion.hpp>
 #include <rastrum/parallel/device.hpp>
@@ -197,6 +198,31 @@ void Effects::silhouettes(const Surface& surface, const Camera& camera, const Si
           edge = is_edge(x, y, k, 0) || is_edge(x, y, 0, k) || is_edge(x, y, -k, 0) ||
                  is_edge(x, y, 0, -k);
       factor(x, y) = edge ? 0.0F : 1.0F;
+    }
+  });
+}
+
+void Effects::edges(ImageView<const std::int64_t> ids, const SceneEdges& edges,
+                    const Camera& camera, double width_px, ImageView<float> factor) {
+  if (ids.empty() || factor.empty())
+    throw Error(Errc::invalid_argument, "effects: the ids or the factors' image is empty");
+  check_stride(ids, "effects: ids");
+  check_size(factor, ids.width, ids.height, "the factors' image");
+  if (!(width_px > 0 && width_px <= 64))
+    throw Error(Errc::invalid_argument,
+                "the width of edges must lie in (0, 64] px, got " + std::to_string(width_px));
+  const Mat4d to_clip = world_to_clip(camera, ids.width, ids.height);
+  // Before threads work, which may not throw.
+  std::int64_t last = -1;
+  for (int y = 0; y < ids.height; ++y)
+    last = std::max(last, *std::max_element(ids.row(y), ids.row(y) + ids.width));
+  if (last >= 0) static_cast<void>(edges.find(last));
+  impl_->for_each_row(ids.height, [&](int y) {
+    overlay::TriangleSides sides;
+    for (int x = 0; x < ids.width; ++x) {
+      const std::int64_t id = ids(x, y);
+      if (id != sides.id()) sides.find(edges, to_clip, ids.width, ids.height, id);
+      factor(x, y) = sides.factor(x + 0.5, y + 0.5, width_px / 2);
     }
   });
 }

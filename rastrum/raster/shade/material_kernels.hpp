@@ -17,9 +17,10 @@ struct AlphaMasks {
 };
 
 struct MaterialKernels {
-  /// Colours of the covered samples, all opaque, as display values or as linear light.
+  /// Colours of the covered samples, all opaque, as display values or as linear light. `own_base`:
+  /// stands for the base colours, 64 red ones, then green and blue, 64-byte aligned; null: none do.
   void (*shade)(const MaterialView& scene, const FrameGeometry& frame, const VisibleBlock& block,
-                bool linear, BlockColors& colors) noexcept;
+                bool linear, const float* own_base, BlockColors& colors) noexcept;
   /// The subset of `mask` (bit 8 · row + column of the block at (x0, y0)) where triangle `id` is
   /// not cut out. `points` as in VisibleBlock.
   std::uint64_t (*alpha_test)(const MaterialView& scene, const FrameGeometry& frame,

@@ -21,13 +21,16 @@ void for_each_sample(std::uint64_t mask, int x0, int y0, const ShadingPoints* po
 }
 
 void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleBlock& block,
-           bool linear, BlockColors& colors) noexcept {
+           bool linear, const float* own_base, BlockColors& colors) noexcept {
   for_each_sample(
       block.covered, block.x0, block.y0, block.points, [&](int i, int x, int y, Vec2 from_centre) {
         const std::uint64_t id = id_of_key(block.keys[i]);
         const MaterialTriangle t(scene, frame, frame.draw_of(id), id);
-        const Vec3 c = shade_material(scene, t, MaterialPoint(t.planes, x, y, from_centre), linear,
-                                      depth_of_key(block.keys[i]));
+        const Vec3 base =
+            own_base == nullptr ? Vec3{} : Vec3{own_base[i], own_base[64 + i], own_base[128 + i]};
+        const Vec3 c =
+            shade_material(scene, t, MaterialPoint(t.planes, x, y, from_centre), linear,
+                           depth_of_key(block.keys[i]), own_base == nullptr ? nullptr : &base);
         colors.set(i, {c.x, c.y, c.z, 1});
       });
 }

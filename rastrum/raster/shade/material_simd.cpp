@@ -310,7 +310,7 @@ HWY_INLINE std::uint64_t samples_of(std::uint64_t low, const std::uint64_t* keys
 }
 
 void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleBlock& block,
-           bool linear, BlockColors& colors) noexcept {
+           bool linear, const float* own_base, BlockColors& colors) noexcept {
   const std::uint64_t* const keys = block.keys;
   const int x0 = block.x0, y0 = block.y0;
   std::uint64_t left = block.covered;
@@ -334,6 +334,9 @@ void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleB
     for (int c = 0; c < Surface::kChannels; ++c)
       for (int k = 0; k < run.n; ++k) surface.channel[c][run.lane[k]] = part.channel[c][k];
   }
+  if (own_base != nullptr)
+    for (int c = 0; c < 3; ++c)
+      std::memcpy(surface.channel[Surface::kBaseR + c], own_base + 64 * c, 64 * sizeof(float));
   if (scene.lights == nullptr)
     light_block<true>(scene, surface, block, linear, colors);
   else
@@ -365,7 +368,7 @@ std::uint64_t alpha_test(const MaterialView& scene, const FrameGeometry& frame, 
                          std::uint64_t mask, int x0, int y0, const ShadingPoints* points) noexcept {
   const Draw& draw = frame.draw_of(id);
   const MaterialDraw& of = scene.draws[draw.number];
-  const BoundMaterial& material = scene.material_of(of, id - draw.first_id);
+  const BoundMaterial& material = scene.material_of(of, draw.of_copy(id - draw.first_id).primitive);
   if (mask == 0 || material.alpha_mode != AlphaMode::mask) return mask;
   const MaterialTriangle t(scene, frame, draw, id);
   const Run run(mask, t.planes, x0, y0, points);
@@ -393,7 +396,8 @@ AlphaMasks alpha(const MaterialView& scene, const FrameGeometry& frame, const Vi
     const std::uint64_t id = id_of_key(low);
     if (draw == nullptr || id - draw->first_id >= draw->primitive_count) draw = &frame.draw_of(id);
     const MaterialDraw& of = scene.draws[draw->number];
-    const BoundMaterial& material = scene.material_of(of, id - draw->first_id);
+    const BoundMaterial& material =
+        scene.material_of(of, draw->of_copy(id - draw->first_id).primitive);
     const bool blends = material.alpha_mode == AlphaMode::blend;
     const float opacity = frame_opacity * material.opacity * of.opacity;
     if (!blends || has_constant_alpha(of, material)) {

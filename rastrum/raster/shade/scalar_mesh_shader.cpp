@@ -1,10 +1,11 @@
 #include <rastrum/raster/shade/scalar_mesh_shader.hpp>
 
+#include <algorithm>
 #include <bit>
-#include <optional>
 #include <utility>
 
 #include <rastrum/raster/shade/lit_scalar.hpp>
+#include <rastrum/raster/shade/material_kernels.hpp>
 #include <rastrum/raster/shade/material_scalar.hpp>
 
 namespace rastrum::raster {
@@ -27,16 +28,22 @@ std::size_t ScalarMeshShader::scratch_bytes() const noexcept {
 bool ScalarMeshShader::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
                              BlockColors& colors) const noexcept {
   LitBlock surface;
+  if (block.covered != ~std::uint64_t{0}) std::fill_n(surface.base[0], 3 * 64, 0.0F);
   alignas(64) float alpha[64];
   FragmentLocator locator(frame);
   const MaterialView materials = materials_.view();
   const bool is_wire = look_.model == LitModel::wireframe;
+  double corner[3] = {};
+  std::uint64_t corners_of = kMaxId + 1;  // the triangle that they are of
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const std::uint64_t id = id_of_key(block.keys[i]);
     const Fragment& f = locator.locate(id, block.x0, block.y0, i, block.points, isolines_);
     const std::size_t number = frame.draws[f.draw].number;
-    const Vec4 own = scalars_[number].color(f, Topology::triangles, !look_.model);
+    const SurfaceScalars& scalars = scalars_[number];
+    if (id != corners_of) scalars.at_corners(f, Topology::triangles, corner);
+    corners_of = id;
+    const Vec4 own = scalars.color(corner, f.weights, Topology::triangles, !look_.model);
     Vec3 base{own.x, own.y, own.z};
     if (is_wire) {
       const float line = wire_share(f);
@@ -66,32 +73,27 @@ bool ScalarMeshShader::shade(const FrameGeometry& frame, const VisibleBlock& blo
 
 void ScalarMeshShader::light(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
                              LitBlock& surface, BlockColors& colors) const {
+  if (!look_.model) {
+    material_kernels(isa).shade(materials_.view(), frame, block, linear_, surface.base[0], colors);
+    return;
+  }
   const bool is_final = look_.model == LitModel::wireframe || look_.model == LitModel::id;
-  if (look_.model && !is_final && isa != Isa::scalar &&
+  if (!is_final && isa != Isa::scalar &&
       shade_own_base_simd(isa, *look_.model, lit_, frame, block, surface, colors))
     return;
   KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
   const LitView lit = lit_.view();
-  const MaterialView materials = materials_.view();
-  std::optional<MaterialTriangle> triangle;  // that was seen last
-  std::uint64_t triangle_id = 0;
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const int x = block.x0 + i % kBlockSize, y = block.y0 + i / kBlockSize;
     const Vec2 from_centre =
         block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
-    const Vec3 base{surface.base[0][i], surface.base[1][i], surface.base[2][i]};
-    Vec3 c = base;
-    if (look_.model && !is_final) {
+    Vec3 c{surface.base[0][i], surface.base[1][i], surface.base[2][i]};
+    if (!is_final) {
       const LitTriangle& t =
           kept.find(lit_, frame, block.keys[i] & kIdMask, look_.model != LitModel::flat);
+      const Vec3 base = c;
       c = shade_lit(*look_.model, lit, t, x, y, from_centre, depth_of_key(block.keys[i]), &base);
-    } else if (!look_.model) {
-      const std::uint64_t id = id_of_key(block.keys[i]);
-      if (!triangle || triangle_id != id) triangle.emplace(materials, frame, frame.draw_of(id), id);
-      triangle_id = id;
-      c = shade_material(materials, *triangle, MaterialPoint(triangle->planes, x, y, from_centre),
-                         linear_, depth_of_key(block.keys[i]), &base);
     }
     colors.set(i, {c.x, c.y, c.z, 1});
   }

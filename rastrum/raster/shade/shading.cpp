@@ -17,7 +17,7 @@ bool Shading::shade_colors(const FrameGeometry& frame, const VisibleBlock& block
     return true;
   }
   if (const MaterialShading* const m = material()) {
-    material_kernels(isa).shade(m->scene->view(), frame, block, m->linear, colors);
+    material_kernels(isa).shade(m->scene->view(), frame, block, m->linear, nullptr, colors);
     return true;
   }
   return own()->shade(frame, block, isa, colors);

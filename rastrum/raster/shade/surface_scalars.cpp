@@ -75,12 +75,17 @@ Vec4 SurfaceScalars::color(double value, bool linear) const {
 Vec4 SurfaceScalars::color(const Fragment& f, Topology topology, bool linear) const {
   double corner[3];
   at_corners(f, topology, corner);
-  const double value = weighted(f.weights.b, corner, static_cast<int>(topology));
+  return color(corner, f.weights, topology, linear);
+}
+
+Vec4 SurfaceScalars::color(const double (&corner)[3], const Weights& weights, Topology topology,
+                           bool linear) const {
+  const double value = weighted(weights.b, corner, static_cast<int>(topology));
   if (topology != Topology::triangles || !colors_->has_isolines()) return color(value, linear);
   double dx = 0, dy = 0;
   for (int c = 0; c < 3; ++c) {
-    dx = dx + corner[c] * f.weights.db_dx[c];
-    dy = dy + corner[c] * f.weights.db_dy[c];
+    dx = dx + corner[c] * weights.db_dx[c];
+    dy = dy + corner[c] * weights.db_dy[c];
   }
   const Vec4 c = colors_->with_isolines((*colors_)(value), value, std::sqrt(dx * dx + dy * dy));
   return linear ? linear_light(c) : c;

@@ -22,6 +22,8 @@ class SurfaceScalars {
   /// Null where they colour nothing.
   [[nodiscard]] const ScalarColors* colors() const { return colors_; }
 
+  /// At the corners of the primitive of a fragment, as many as the topology has.
+  void at_corners(const Fragment& f, Topology topology, double (&out)[3]) const;
   /// What a fragment of a mesh, of points or lines has.
   [[nodiscard]] double at(const Fragment& f, Topology topology) const;
   /// At the two ends of a quadric's axis, and between them.
@@ -29,13 +31,13 @@ class SurfaceScalars {
   [[nodiscard]] static double between(const double (&ends)[2], double along);
 
   /// The base colour of a fragment: straight alpha; a display value or linear light. Requires
-  /// colors(), as does the next.
+  /// colors(), as do the next.
   [[nodiscard]] Vec4 color(const Fragment& f, Topology topology, bool linear) const;
+  [[nodiscard]] Vec4 color(const double (&corner)[3], const Weights& weights, Topology topology,
+                           bool linear) const;
   [[nodiscard]] Vec4 color(double value, bool linear) const;
 
  private:
-  void at_corners(const Fragment& f, Topology topology, double (&out)[3]) const;
-
   MeshScalarsView values_;
   const MeshView* mesh_ = nullptr;  ///< null: it is none
   const ScalarColors* colors_ = nullptr;

@@ -1,0 +1,61 @@
+// Edges of the triangles that are seen: at each pixel the sides of the one that its id names, as
+// lines of the picture. What is hidden has no pixel, so that no depth is compared and none needs an
+// offset; a side that two faces in view share is drawn half by each.
+#include <rastrum/overlay/effects/edges.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <rastrum/mat.hpp>
+
+namespace rastrum::overlay {
+
+void TriangleSides::find(const SceneEdges& edges, const Mat4d& to_clip, int width, int height,
+                         std::int64_t id) {
+  id_ = id;
+  count_ = 0;
+  if (id < 0) return;
+  const SceneEdges::Place place = edges.find(id);
+  const std::uint8_t drawn = edges.sides(place);
+  if (drawn == 0) return;
+  const InstanceView& instance = edges.scene().instances[place.instance];
+  if (place.instance != instance_) {
+    instance_ = place.instance;
+    object_to_clip_ = to_clip * instance.object_to_world;
+  }
+  const MeshView& mesh = *instance.mesh();
+  std::uint32_t vertex[3];
+  mesh.read_triangles(static_cast<std::size_t>(place.primitive), 1, vertex);
+  // Homogeneous places in the picture, px: the line through two of them is their cross product, in
+  // front of the eye or behind it.
+  Vec3d corner[3];
+  for (int c = 0; c < 3; ++c) {
+    const Vec3d p = mesh.positions.wide(vertex[c]);
+    const auto row = [&](int i) {
+      const auto& m = object_to_clip_.m[i];
+      return ((m[0] * p.x + m[1] * p.y) + m[2] * p.z) + m[3];
+    };
+    const double x = row(0), y = row(1), w = row(3);
+    corner[c] = {(x + w) * (0.5 * width), (w - y) * (0.5 * height), w};
+  }
+  for (int c = 0; c < 3; ++c) {
+    if ((drawn >> c & 1) == 0) continue;
+    const Vec3d line = cross(corner[c], corner[(c + 1) % 3]);
+    const double scale = std::sqrt(line.x * line.x + line.y * line.y);
+    // Both ends in one place: no line.
+    if (!(scale > 0) || !std::isfinite(scale)) continue;
+    line_[count_++] = {line.x / scale, line.y / scale, line.z / scale};
+  }
+}
+
+float TriangleSides::factor(double x, double y, double half_width) const {
+  double covered = 0;
+  for (int i = 0; i < count_; ++i) {
+    const Vec3d& l = line_[i];
+    const double away = std::fabs((l.x * x + l.y * y) + l.z);
+    covered = std::max(covered, std::min(half_width + 0.5 - away, 1.0));
+  }
+  return static_cast<float>(1 - covered);
+}
+
+}  // namespace rastrum::overlay

@@ -1,0 +1,123 @@
+#include <rastrum/effects.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <rastrum/core/angle.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/scene/weld.hpp>
+
+namespace rastrum {
+namespace {
+
+/// A side of a triangle, by the points at its ends, the smaller one first.
+struct Side {
+  std::uint64_t points;
+  std::uint64_t place;  ///< 3 · triangle + side
+  bool turned;          ///< it goes from the larger to the smaller
+
+  bool operator<(const Side& o) const {
+    return points != o.points ? points < o.points : place < o.place;
+  }
+};
+
+std::vector<std::uint8_t> sides_of(const MeshView& mesh, double angle_degrees) {
+  check_indices(mesh);
+  const std::size_t triangles = mesh.triangle_count();
+  const bool cuts_faces =
+      mesh.faces.kind == FaceKind::quads || mesh.faces.kind == FaceKind::polygons;
+  if (angle_degrees == 0 && !cuts_faces) return {};
+  const JoinedPoints points =
+      weld(mesh.positions.size(), [&](std::uint32_t v) { return mesh.positions.wide(v); });
+  std::vector<Side> sides;
+  sides.reserve(3 * triangles);
+  std::vector<Vec3d> normals(triangles);  // twice the area long
+  for (std::size_t t = 0; t < triangles; ++t) {
+    std::uint32_t vertex[3];
+    mesh.read_triangles(t, 1, vertex);
+    const Vec3d a = mesh.positions.wide(vertex[0]);
+    normals[t] = cross(mesh.positions.wide(vertex[1]) - a, mesh.positions.wide(vertex[2]) - a);
+    std::uint64_t point[3];
+    for (std::size_t c = 0; c < 3; ++c) point[c] = points.of_vertex[vertex[c]];
+    // Two corners in one place: a line, which lies between no faces.
+    if (point[0] == point[1] || point[1] == point[2] || point[2] == point[0]) continue;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint64_t from = point[c], to = point[(c + 1) % 3];
+      sides.push_back({std::min(from, to) << 32 | std::max(from, to), 3 * t + c, from > to});
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  const double cosine = sin_cos_degrees(angle_degrees).cos;
+  const auto is_edge = [&](const Side& a, const Side& b) {
+    const std::size_t t = a.place / 3, u = b.place / 3;
+    if (cuts_faces && mesh.place(t).face == mesh.place(u).face) return false;
+    if (angle_degrees == 0) return true;
+    // Neighbours that go round the same way pass their common side in opposite directions.
+    const double sign = a.turned == b.turned ? -1 : 1;
+    return !(sign * dot(normals[t], normals[u]) >=
+             cosine * (length(normals[t]) * length(normals[u])));
+  };
+  std::vector<std::uint8_t> drawn(triangles);
+  for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
+    while (end < sides.size() && sides[end].points == sides[i].points) ++end;
+    // One triangle alone has a border there, and where three meet there is no angle.
+    if (end - i == 2 && !is_edge(sides[i], sides[i + 1])) continue;
+    for (std::size_t k = i; k < end; ++k)
+      drawn[sides[k].place / 3] |= static_cast<std::uint8_t>(1U << sides[k].place % 3);
+  }
+  return drawn;
+}
+
+bool is_same(const MeshView& a, const MeshView& b) {
+  const auto& p = a.positions;
+  const auto& q = b.positions;
+  const bool same_places =
+      p.size() == q.size() && p.is_packed() == q.is_packed() && p.is_wide() == q.is_wide() &&
+      (p.empty() ||
+       (p.address(0) == q.address(0) && p.address(p.size() - 1) == q.address(q.size() - 1)));
+  return same_places && a.indices == b.indices && a.faces == b.faces;
+}
+
+}  // namespace
+
+SceneEdges::SceneEdges(const SceneView& scene, double angle_degrees) : scene_(scene) {
+  if (!(angle_degrees >= 0 && angle_degrees <= 180))
+    throw Error(Errc::invalid_argument,
+                "SceneEdges: the angle must lie in [0, 180], got " + std::to_string(angle_degrees));
+  std::uint64_t next = 0;
+  const MeshView* last = nullptr;
+  for (const InstanceView& instance : scene.instances) {
+    first_ids_.push_back(next);
+    next += primitive_count(instance.geometry);
+    const MeshView* const mesh = instance.mesh();
+    // Instances of one mesh mostly follow each other.
+    if (mesh != nullptr && (last == nullptr || !is_same(*mesh, *last))) {
+      tables_.push_back(sides_of(*mesh, angle_degrees));
+      last = mesh;
+    }
+    table_of_.push_back(tables_.empty() ? 0 : tables_.size() - 1);
+  }
+  first_ids_.push_back(next);
+}
+
+SceneEdges::Place SceneEdges::find(std::int64_t id) const {
+  const auto number = static_cast<std::uint64_t>(id);
+  if (id < 0 || number >= first_ids_.back())
+    throw Error(Errc::invalid_argument, std::string("SceneEdges: primitive ")
+                                            .append(std::to_string(id))
+                                            .append(" is out of range, the scene has ")
+                                            .append(std::to_string(first_ids_.back())));
+  const auto after = std::upper_bound(first_ids_.begin(), first_ids_.end(), number);
+  const auto instance = static_cast<std::size_t>(after - first_ids_.begin()) - 1;
+  return {instance, number - first_ids_[instance]};
+}
+
+std::uint8_t SceneEdges::sides(const Place& place) const {
+  if (scene_.instances[place.instance].mesh() == nullptr) return 0;
+  const std::vector<std::uint8_t>& drawn = tables_[table_of_[place.instance]];
+  return drawn.empty() ? 7 : drawn[static_cast<std::size_t>(place.primitive)];
+}
+
+}  // namespace rastrum
