@@ -207,6 +207,9 @@ class ArrayView {
     reader_->wide_gather(data_, stride_, indices.data(), indices.size(), out);
   }
 
+  /// Whether both view the same memory in the same way.
+  bool operator==(const ArrayView&) const = default;
+
  private:
   template <class C>
   ArrayView(const C* numbers, int channels, std::size_t count, std::ptrdiff_t stride_bytes)

@@ -51,6 +51,7 @@ struct AttributeView {
   IndexView indices{};
   Per per = Per::vertex;
 
+  bool operator==(const AttributeView&) const = default;
   [[nodiscard]] RASTRUM_HD bool empty() const { return values.empty(); }
   /// Which of the values corner c of a triangle has; `vertex`: its positions.
   [[nodiscard]] RASTRUM_HD std::size_t element(const TrianglePlace& t,
@@ -90,6 +91,8 @@ struct MeshView {
   FacesView faces{};
   MeshScalarsView scalars{};  ///< numbers that become colours: InstanceView::scalar_mapping
 
+  /// Whether both view the same memory in the same way.
+  bool operator==(const MeshView&) const = default;
   [[nodiscard]] std::size_t corner_count() const {
     return indices.empty() ? positions.size() : indices.size();
   }

@@ -52,6 +52,9 @@ class ScalarView {
   /// Number i < size().
   [[nodiscard]] double operator[](std::size_t i) const;
 
+  /// Whether both view the same memory in the same way.
+  bool operator==(const ScalarView&) const = default;
+
  private:
   template <class C>
   static constexpr NumberType type_of() {
@@ -77,6 +80,7 @@ struct MeshScalarsView {
   ScalarView values{};
   Per per = Per::vertex;
 
+  bool operator==(const MeshScalarsView&) const = default;
   [[nodiscard]] RASTRUM_HD bool empty() const { return values.empty(); }
 };
 

@@ -22,7 +22,7 @@ std::span<const Piece> PieceArray::fill(Frame& frame, std::uint64_t first, std::
     groups_[g].restart();
     if (!set_up(frame.base, begin, std::min(begin + kGroup, last), groups_[g])) in_range = false;
   });
-  if (!in_range) check_indices(frame.request.draws, frame.request.draw_noun);
+  if (!in_range) check_indices(frame.request.draws, frame.request.names);
 
   std::vector<std::size_t> place(group_count);
   std::size_t total = 0;

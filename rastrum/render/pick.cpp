@@ -132,7 +132,7 @@ Pick surface_of_key(const SceneView& scene, const Camera& camera, const FrameOpt
   const Alone alone(scene, camera, width, height, id);
   raster::SurfaceLocator locator(alone.geometry, frame.samples);
   const raster::SeenFragment& f = locator.locate(key, x, y, 0);
-  raster::SurfaceScene surface(alone.scene, camera, width, height);
+  raster::SurfaceScene surface(alone.scene, nullptr, camera, width, height);
   const raster::SurfaceScalars scalars(alone.instance, nullptr);
   surface.scalars = {&scalars, 1};
   Pick pick;

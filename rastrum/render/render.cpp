@@ -186,15 +186,16 @@ FrameStats Renderer::draw(std::span<const raster::ProgramDraw> draws, const Fram
 FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, Call call) {
   const FrameOptions& o = call.frame;
   const Shader taken = shader_for(o.shader, scene);
-  if (call.in_place)
-    check_in_place(scene, call.targets, taken, o);
-  else
-    check_scene(scene);
+  if (call.in_place) check_in_place(scene, call.targets, taken, o);
+  // A device reads no copies, and clip planes are told in the object space of each instance.
+  const InstanceRuns runs(scene, options.device != Device::cuda && o.clip_planes.empty(),
+                          threads.get());
+  if (!call.in_place) check_scene(runs);
   if (options.device == Device::cuda) call.why_host = why_not_on_device(scene);
-  raster::check_materials(scene);
-  check_surfaces(scene);
+  raster::check_materials(runs);
+  check_surfaces(runs);
   check_outputs(call.targets, true, taken == Shader::material);
-  SceneDraws of(scene, camera, {o, call.targets, taken, call.in_place}, textures, threads.get());
+  SceneDraws of(runs, camera, {o, call.targets, taken, call.in_place}, textures, threads.get());
   FrameStats stats = taken == Shader::depth ? draw_depth(of, call)
                                             : draw(of.draws(), of.shading(), of.test(), call, &of);
   stats.shader = name(taken);
@@ -272,7 +273,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   request.isa = isa;
   request.draws = draws;
   if (scene != nullptr) {
-    request.draw_noun = "instance";
+    request.names = scene->names();
     request.linear_light = scene->linear_light();
     request.surface = scene->surface();
   }

@@ -106,9 +106,10 @@ bool is_packed(const AttributeView<T>& a) {
 
 }  // namespace
 
-void check_scene(const SceneView& scene) {
+void check_scene(const InstanceRuns& runs) {
+  const SceneView& scene = runs.firsts();
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const InstanceCheck check(scene.instances[i], i);
+    const InstanceCheck check(scene.instances[i], runs.number(i));
     const GeometryView& geometry = scene.instances[i].geometry;
     if (const MeshView* const mesh = scene.instances[i].mesh()) check.arrays(*mesh);
     if (const auto* const points = std::get_if<PointsView>(&geometry)) check.arrays(*points);

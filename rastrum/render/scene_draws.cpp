@@ -41,12 +41,13 @@ raster::SurfaceLook look_of(const SceneDraws::Options& o) {
 
 }  // namespace
 
-SceneDraws::SceneDraws(const SceneView& scene, const Camera& camera, const Options& options,
+SceneDraws::SceneDraws(const InstanceRuns& runs, const Camera& camera, const Options& options,
                        raster::TextureSet& textures, parallel::Threads* threads)
-    : scene_(scene),
-      meshes_(scene),
-      surfaces_(scene, look_of(options), camera, options.frame.width, options.frame.height),
-      points_and_lines_(look_of(options), scene.materials, camera, options.frame.width,
+    : runs_(runs),
+      scene_(runs.firsts()),
+      meshes_(scene_),
+      surfaces_(scene_, look_of(options), camera, options.frame.width, options.frame.height),
+      points_and_lines_(look_of(options), scene_.materials, camera, options.frame.width,
                         options.frame.height) {
   const FrameOptions& o = options.frame;
   const Targets& targets = options.targets;
@@ -59,13 +60,14 @@ SceneDraws::SceneDraws(const SceneView& scene, const Camera& camera, const Optio
   const bool shades_materials = options.shader == Shader::material;
   const bool wants_albedo = !targets.albedo.empty();
   if (shades_materials || masks || material_alpha || wants_albedo) {
-    textures.update(scene.textures,
-                    raster::texture_uses(scene, shades_materials || wants_albedo, material_alpha),
+    textures.update(scene_.textures,
+                    raster::texture_uses(scene_, shades_materials || wants_albedo, material_alpha),
                     threads);
     materials_.emplace(meshes_, camera, o.width, o.height, textures);
+    set_copies(materials_->draws);
   }
   if (wants_surface(targets)) {
-    surface_.emplace(scene_, camera, o.width, o.height);
+    surface_.emplace(scene_, &runs_, camera, o.width, o.height);
     surface_->materials = materials_ ? &*materials_ : nullptr;
     surface_->points_and_lines = &points_and_lines_;
     surface_->scalars = scalars_;
@@ -87,10 +89,21 @@ SceneDraws::SceneDraws(const SceneView& scene, const Camera& camera, const Optio
     shading_ = raster::MaterialShading{&*materials_, linear_light_};
   } else {
     lit_.emplace(meshes_, camera, o.width, o.height);
+    set_copies(lit_->draws);
     shading_ = raster::LitShading{lit_model(options.shader), &*lit_};
   }
   if (translucent)
     shading_ = shading_.with_alpha(material_alpha ? &*materials_ : nullptr, o.opacity);
+}
+
+template <class MeshDraw>
+void SceneDraws::set_copies(std::vector<MeshDraw>& of_meshes) const {
+  std::size_t mesh = 0;
+  for (std::size_t run = 0; run < draws_.size(); ++run) {
+    if (scene_.instances[run].mesh() == nullptr || shows_scalars(run)) continue;
+    if (draws_[run].is_copied()) of_meshes[mesh].copies = runs_.instances(run);
+    ++mesh;
+  }
 }
 
 void SceneDraws::set_scalars(const Targets& targets) {
@@ -150,9 +163,8 @@ SceneDraws::Flags SceneDraws::make_draws(const Options& options, const Mat4d& to
     draw.visible = instance.visible;
     draw.winding = instance.winding;
     if (!o.clip_planes.empty() || !instance.clip_planes.empty()) {
-      raster::check_clip_planes(
-          instance.clip_planes,
-          std::string("instance ").append(std::to_string(draws_.size() - 1)).append(": ").c_str());
+      raster::check_clip_planes(instance.clip_planes,
+                                names().of(draws_.size() - 1).append(": ").c_str());
       draw.cut = &cuts_.emplace_back(instance, o.clip_planes);
     }
     const raster::SurfaceScalars& scalars = scalars_of(draws_.size() - 1);
@@ -160,7 +172,10 @@ SceneDraws::Flags SceneDraws::make_draws(const Options& options, const Mat4d& to
       all.any |= draw.flags;
       continue;
     }
-    raster::set_vertices(draw, instance.geometry, to_clip * instance.object_to_world);
+    if (const std::size_t run = draws_.size() - 1; runs_.length(run) > 1)
+      raster::set_copies(draw, runs_.instances(run), runs_.length(run), to_clip);
+    else
+      raster::set_vertices(draw, instance.geometry, to_clip * instance.object_to_world);
     std::uint32_t flags = 0;
     ArrayView<Vec4> colors;
     if (const MeshView* const mesh = instance.mesh()) {

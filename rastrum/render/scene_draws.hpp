@@ -1,4 +1,5 @@
-// A scene as what the pipeline draws: a draw an instance, and what shades and tests them.
+// A scene as what the pipeline draws: a draw a run of alike instances, and what shades and tests
+// them.
 #pragma once
 
 #include <deque>
@@ -9,6 +10,7 @@
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/draws/cut.hpp>
 #include <rastrum/raster/draws/draw.hpp>
+#include <rastrum/raster/frame/request.hpp>
 #include <rastrum/raster/resolve/surface_point.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/material.hpp>
@@ -19,6 +21,7 @@
 #include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/render/surfaces.hpp>
+#include <rastrum/scene/instance_runs.hpp>
 
 namespace rastrum {
 
@@ -32,9 +35,9 @@ class SceneDraws {
     bool in_place;  ///< arrays are a device's: none of their values is read here
   };
   /// The scene was checked (check_scene). Textures that the frame reads are brought up to date.
-  /// Throws Error where planes, outputs and what is drawn do not go together. O(instances +
+  /// Throws Error where planes, outputs and what is drawn do not go together. O(runs +
   /// colours that may be translucent).
-  SceneDraws(const SceneView& scene, const Camera& camera, const Options& options,
+  SceneDraws(const InstanceRuns& runs, const Camera& camera, const Options& options,
              raster::TextureSet& textures, parallel::Threads* threads);
   SceneDraws(const SceneDraws&) = delete;
   SceneDraws& operator=(const SceneDraws&) = delete;
@@ -44,6 +47,8 @@ class SceneDraws {
   [[nodiscard]] const raster::Shading& shading() const { return shading_; }
   [[nodiscard]] const raster::Testing& test() const { return test_; }
   [[nodiscard]] bool linear_light() const { return linear_light_; }
+  /// What messages call the draws.
+  [[nodiscard]] raster::DrawNames names() const { return {"instance", &runs_}; }
   /// Null where no target is of the surface at a pixel.
   [[nodiscard]] const raster::SurfaceScene* surface() const {
     return surface_ ? &*surface_ : nullptr;
@@ -64,8 +69,12 @@ class SceneDraws {
   void shade_scalar_meshes(const Options& options, const Camera& camera,
                            const raster::TextureSet& textures);
   Flags make_draws(const Options& options, const Mat4d& to_clip, parallel::Threads* threads);
+  /// Tells what shades meshes, in their order, whose copies they are.
+  template <class MeshDraw>
+  void set_copies(std::vector<MeshDraw>& of_meshes) const;
 
-  SceneView scene_;
+  const InstanceRuns& runs_;
+  SceneView scene_;  ///< of the first of each run
   /// What shows scalars; empty where no instance has some that the frame asks for.
   std::vector<ScalarColors> scalar_colors_;             ///< by mapping
   std::vector<raster::SurfaceScalars> scalars_;         ///< by instance

@@ -7,6 +7,7 @@
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/render.hpp>
+#include <rastrum/scene/instance_runs.hpp>
 
 namespace rastrum {
 namespace {
@@ -39,11 +40,7 @@ Cull material_cull(const InstanceView& instance, std::span<const Material> mater
       (!instance.material && !mesh.face_materials.empty()) ||
       materials[instance.material.value_or(mesh.material)].double_sided)
     return Cull::none;
-  const auto& m = instance.object_to_world.m;
-  const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-  return determinant < 0 ? Cull::front : Cull::back;
+  return is_mirroring(instance.object_to_world) ? Cull::front : Cull::back;
 }
 
 Shader shader_from_name(std::string_view wanted) {

@@ -94,10 +94,11 @@ std::optional<raster::QuadricGeometry> quadrics_of(const GeometryView& geometry)
   return std::nullopt;
 }
 
-void check_surfaces(const SceneView& scene) {
+void check_surfaces(const InstanceRuns& runs) {
+  const SceneView& scene = runs.firsts();
   for (std::size_t i = 0; i < scene.instances.size(); ++i)
     if (const auto geometry = quadrics_of(scene.instances[i].geometry)) {
-      const Check check(i);
+      const Check check(runs.number(i));
       check.material(raster::material_of(scene.instances[i]), scene.materials.size());
       std::visit(check, *geometry);
     }

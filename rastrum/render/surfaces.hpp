@@ -10,7 +10,7 @@
 #include <rastrum/raster/draws/draw.hpp>
 #include <rastrum/raster/draws/quadrics.hpp>
 #include <rastrum/raster/shade/quadric_shader.hpp>
-#include <rastrum/scene.hpp>
+#include <rastrum/scene/instance_runs.hpp>
 
 namespace rastrum {
 
@@ -20,7 +20,7 @@ namespace rastrum {
 /// Throws Error{invalid_argument} that names the instance and its array: fewer radii, colours or
 /// normals than there are to be, an index or offset out of range, offsets that do not rise, a
 /// material that is none. O(indices).
-void check_surfaces(const SceneView& scene);
+void check_surfaces(const InstanceRuns& runs);
 
 /// The draws of a frame's quadrics; they refer to it.
 class SurfaceDraws {

@@ -47,7 +47,8 @@ TEST(Distances, AreTheFormulasBitsOnEveryInstructionSet) {
   const Camera by_matrix =
       camera_from_matrix(world_to_clip(finite, kWidth, kHeight), ClipDepth::reversed);
   for (const Camera& camera : {perspective, finite, orthographic, by_matrix}) {
-    SurfaceScene scene(SceneView{}, camera, kWidth, kHeight);
+    const SceneView nothing;
+    SurfaceScene scene(nothing, nullptr, camera, kWidth, kHeight);
     scene.distance_by_depth = distance_by_depth(camera);
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
       alignas(64) std::uint64_t keys[64];

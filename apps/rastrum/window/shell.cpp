@@ -21,8 +21,9 @@ constexpr int kIdle_ms = 100;  ///< between looks at the clock where nothing mov
 /// Where something does. The thread that draws does not wake the window: SDL would send the window
 /// a message for it, which may come when the window is gone, and X ends the program for that.
 constexpr int kFrame_ms = 2;
-constexpr double kLongest_s = 0.1;  ///< a step of motion, so that a pause is not a leap
-constexpr int kImguiFrames = 3;     ///< until ImGui has settled after an event
+constexpr double kLongest_s = 0.1;     ///< a step of motion, so that a pause is not a leap
+constexpr int kImguiFrames = 3;        ///< until ImGui has settled after an event
+constexpr unsigned kMessages_ms = 20;  ///< until messages under way have been read
 
 [[noreturn]] void fail(const char* what) {
   throw Error(Errc::no_device, std::string(what) + ": " + SDL_GetError());
@@ -108,7 +109,13 @@ class Screen {
     }
     if (texture_ != nullptr) SDL_DestroyTexture(texture_);
     if (renderer_ != nullptr) SDL_DestroyRenderer(renderer_);
-    if (window_ != nullptr) SDL_DestroyWindow(window_);
+    if (window_ != nullptr) {
+      // SDL wakes itself by a message to the window, over a connection of its own. One that the X
+      // server reads after the window is gone would end the program with an error.
+      SDL_HideWindow(window_);
+      SDL_Delay(kMessages_ms);
+      SDL_DestroyWindow(window_);
+    }
   }
   [[noreturn]] void undo_and_fail(const char* what) {
     const std::string why = SDL_GetError();

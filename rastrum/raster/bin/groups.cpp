@@ -220,7 +220,7 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
     pairs.fetch_add(n + scratch.deferred.entries().size(), std::memory_order_relaxed);
     micro_fragments.fetch_add(m, std::memory_order_relaxed);
   });
-  if (!in_range) check_indices(frame.request.draws, frame.request.draw_noun);
+  if (!in_range) check_indices(frame.request.draws, frame.request.names);
   if (limited && bytes > frame.view_bytes) {
     groups_.clear();
     return std::nullopt;

@@ -17,6 +17,14 @@ namespace rastrum::raster {
 
 struct DrawCut;
 
+/// A mesh that is drawn many times, under one matrix after the other: the draw has its triangles
+/// and vertices once more for each copy, copy after copy.
+struct Copies {
+  std::uint64_t count = 1;
+  std::uint64_t primitives = 0;  ///< of one copy, as `vertices`; 0 where there is only one
+  std::uint32_t vertices = 0;
+};
+
 /// Stands for a place in FrameGeometry::projected where a draw has none.
 inline constexpr std::size_t kNotProjected = ~std::size_t{0};
 
@@ -35,6 +43,7 @@ struct Draw : Primitives {
   /// The same of points and lines of a scene, and of points their sizes. At most one of the three.
   const PointsView* points = nullptr;
   const LinesView* lines = nullptr;
+  Copies copies{};      ///< of the mesh; the host's alone
   bool visible = true;  ///< else its primitives are culled
   /// What shades it and, where `flags` has kTested, tests its fragments; none: what
   /// RendererAccess::draw is given.
@@ -47,14 +56,16 @@ struct Draw : Primitives {
   std::size_t first_vertex = 0;  ///< of this draw in FrameGeometry::projected, or kNotProjected
   std::size_t number = 0;        ///< among the draws of its shading
 
-  /// Makes it one of the triangles of a mesh, which must outlive the frame.
-  void set_triangles(const MeshView& of) {
+  /// Makes it one of the triangles of a mesh, which must outlive the frame, `count` times.
+  void set_triangles(const MeshView& of, std::size_t count = 1) {
     if (of.is_packed_list())
       indices = of.indices.packed();
     else
       mesh = &of;
-    vertex_count = of.positions.size();
-    primitive_count = of.triangle_count();
+    if (count > 1)
+      copies = {count, of.triangle_count(), static_cast<std::uint32_t>(of.positions.size())};
+    vertex_count = of.positions.size() * count;
+    primitive_count = of.triangle_count() * count;
   }
   void set_points(const PointsView& of) {
     points = &of;
@@ -70,7 +81,42 @@ struct Draw : Primitives {
     vertex_count = of.positions.size();
     primitive_count = of.size();
   }
+  /// A primitive of the draw as one of a copy.
+  struct OfCopy {
+    std::uint64_t copy = 0, primitive = 0;
+  };
+  [[nodiscard]] RASTRUM_HD bool is_copied() const {
+#if defined(__CUDA_ARCH__)
+    return false;
+#else
+    return copies.count > 1;
+#endif
+  }
+  [[nodiscard]] RASTRUM_HD OfCopy of_copy(std::uint64_t primitive) const {
+    if (!is_copied()) return {0, primitive};
+    return {primitive / copies.primitives, primitive % copies.primitives};
+  }
+  /// The number of a copy's first vertex.
+  [[nodiscard]] RASTRUM_HD std::uint32_t first_vertex_of(std::uint64_t copy) const {
+    return static_cast<std::uint32_t>(copy) * copies.vertices;
+  }
+  /// Of one copy.
+  [[nodiscard]] std::uint64_t own_primitives() const {
+    return primitive_count / copies.count;
+  }
+  [[nodiscard]] std::size_t own_vertices() const {
+    return vertex_count / copies.count;
+  }
+
   [[nodiscard]] RASTRUM_HD std::uint32_t vertex(std::uint64_t primitive, int corner) const {
+    if (is_copied()) {
+      const OfCopy of = of_copy(primitive);
+      return first_vertex_of(of.copy) + own_vertex(of.primitive, corner);
+    }
+    return own_vertex(primitive, corner);
+  }
+  /// The same of a copy's primitive, among the copy's vertices.
+  [[nodiscard]] RASTRUM_HD std::uint32_t own_vertex(std::uint64_t primitive, int corner) const {
 #if !defined(__CUDA_ARCH__)
     if (mesh != nullptr)
       return mesh->vertex(mesh->place(primitive).corner[static_cast<std::size_t>(corner)]);
@@ -85,9 +131,12 @@ struct Draw : Primitives {
   RASTRUM_HD void vertices(std::uint64_t triangle, std::uint32_t (&out)[3]) const {
     const bool is_list =
         mesh == nullptr && points == nullptr && lines == nullptr && !indices.empty();
+    const OfCopy of = of_copy(triangle);
     const std::uint32_t* const packed =
-        is_list ? indices.data() + static_cast<std::size_t>(triangle) * 3 : nullptr;
-    for (int c = 0; c < 3; ++c) out[c] = packed != nullptr ? packed[c] : vertex(triangle, c);
+        is_list ? indices.data() + static_cast<std::size_t>(of.primitive) * 3 : nullptr;
+    const std::uint32_t first = first_vertex_of(of.copy);
+    for (int c = 0; c < 3; ++c)
+      out[c] = first + (packed != nullptr ? packed[c] : own_vertex(of.primitive, c));
   }
   /// Of its corners, whoever knows them.
   [[nodiscard]] IndexView index_view() const {
@@ -97,7 +146,7 @@ struct Draw : Primitives {
   }
   [[nodiscard]] RASTRUM_HD std::uint32_t flags_of(std::uint64_t primitive) const {
     if (material_flags.empty()) return flags;
-    auto face = static_cast<std::size_t>(primitive);
+    auto face = static_cast<std::size_t>(of_copy(primitive).primitive);
 #if !defined(__CUDA_ARCH__)
     if (mesh != nullptr) face = mesh->place(face).face;
 #endif

@@ -37,17 +37,13 @@ void project_read(const MatrixVertices& m, std::size_t count, Viewport viewport,
   }
 }
 
-}  // namespace
-
-void VertexStage::project(std::size_t begin, std::size_t end, Viewport viewport, Isa isa,
-                          ProjectedVertex* out) const noexcept {
-  const MatrixVertices* const m = matrix();
-  if (m == nullptr) return own().project(begin, end, viewport, isa, out);
-  const ArrayView<Vec3>& positions = m->positions;
+void project_range(const MatrixVertices& m, std::size_t begin, std::size_t end, Viewport viewport,
+                   Isa isa, ProjectedVertex* out) {
+  const ArrayView<Vec3>& positions = m.positions;
   if (positions.is_packed())
-    return kernels(isa).project(positions.data() + begin, end - begin, m->object_to_clip32,
-                                viewport, out);
-  project_read(*m, end - begin, viewport, isa, out, [&](std::size_t i, std::size_t n, auto* to) {
+    return kernels(isa).project(positions.data() + begin, end - begin, m.object_to_clip32, viewport,
+                                out);
+  project_read(m, end - begin, viewport, isa, out, [&](std::size_t i, std::size_t n, auto* to) {
     if constexpr (std::is_same_v<decltype(to), Vec3d*>)
       positions.read_wide(begin + i, n, to);
     else
@@ -55,16 +51,10 @@ void VertexStage::project(std::size_t begin, std::size_t end, Viewport viewport,
   });
 }
 
-void VertexStage::project_indexed(std::span<const std::uint32_t> indices, Viewport viewport,
-                                  Isa isa, ProjectedVertex* out) const noexcept {
-  const MatrixVertices* const m = matrix();
-  if (m == nullptr) {
-    for (std::size_t i = 0; i < indices.size(); ++i)
-      own().project(indices[i], std::size_t{indices[i]} + 1, viewport, isa, out + i);
-    return;
-  }
-  const ArrayView<Vec3>& positions = m->positions;
-  project_read(*m, indices.size(), viewport, isa, out, [&](std::size_t i, std::size_t n, auto* to) {
+void project_named(const MatrixVertices& m, std::span<const std::uint32_t> indices,
+                   Viewport viewport, Isa isa, ProjectedVertex* out) {
+  const ArrayView<Vec3>& positions = m.positions;
+  project_read(m, indices.size(), viewport, isa, out, [&](std::size_t i, std::size_t n, auto* to) {
     const std::span<const std::uint32_t> some = indices.subspan(i, n);
     if constexpr (std::is_same_v<decltype(to), Vec3d*>) {
       positions.gather_wide(some, to);
@@ -74,6 +64,52 @@ void VertexStage::project_indexed(std::span<const std::uint32_t> indices, Viewpo
       positions.gather(some, to);
     }
   });
+}
+
+/// Copy by copy, as far as the same one is meant in a row.
+void project_named(const CopiedVertices& all, std::span<const std::uint32_t> indices,
+                   Viewport viewport, Isa isa, ProjectedVertex* out) {
+  const std::size_t size = all.positions.size();
+  std::uint32_t own[kPositionsAtOnce];
+  for (std::size_t i = 0; i < indices.size();) {
+    const std::size_t first = indices[i] / size * size;
+    std::size_t n = 0;
+    for (; n < kPositionsAtOnce && i + n < indices.size(); ++n) {
+      const std::size_t vertex = indices[i + n] - first;  // wraps where it is of one before
+      if (vertex >= size) break;
+      own[n] = static_cast<std::uint32_t>(vertex);
+    }
+    project_named(all.copy(first / size), {own, n}, viewport, isa, out + i);
+    i += n;
+  }
+}
+
+}  // namespace
+
+void VertexStage::project(std::size_t begin, std::size_t end, Viewport viewport, Isa isa,
+                          ProjectedVertex* out) const noexcept {
+  if (const MatrixVertices* const m = matrix())
+    return project_range(*m, begin, end, viewport, isa, out);
+  const CopiedVertices* const all = copies();
+  if (all == nullptr) return own().project(begin, end, viewport, isa, out);
+  const std::size_t size = all->positions.size();
+  while (begin < end) {
+    const std::size_t first = begin / size * size;
+    const std::size_t stop = std::min(end, first + size);
+    project_range(all->copy(first / size), begin - first, stop - first, viewport, isa, out);
+    out += stop - begin;
+    begin = stop;
+  }
+}
+
+void VertexStage::project_indexed(std::span<const std::uint32_t> indices, Viewport viewport,
+                                  Isa isa, ProjectedVertex* out) const noexcept {
+  if (const MatrixVertices* const m = matrix())
+    return project_named(*m, indices, viewport, isa, out);
+  if (const CopiedVertices* const all = copies())
+    return project_named(*all, indices, viewport, isa, out);
+  for (std::size_t i = 0; i < indices.size(); ++i)
+    own().project(indices[i], std::size_t{indices[i]} + 1, viewport, isa, out + i);
 }
 
 }  // namespace rastrum::raster

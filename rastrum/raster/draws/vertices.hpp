@@ -62,17 +62,36 @@ struct MatrixVertices {
       : positions(p), object_to_clip(to_clip), object_to_clip32(to_clip) {}
 };
 
+/// The same positions under one matrix after the other: vertex v of copy k has the number
+/// k · positions.size() + v.
+struct CopiedVertices {
+  ArrayView<Vec3> positions;
+  const Mat4d* object_to_world;  ///< of copy 0
+  std::size_t stride_bytes;      ///< from copy to copy
+  Mat4d world_to_clip;
+
+  [[nodiscard]] MatrixVertices copy(std::size_t k) const {
+    const auto* const bytes =
+        static_cast<const std::byte*>(static_cast<const void*>(object_to_world));
+    const void* const own = bytes + k * stride_bytes;
+    return {positions, world_to_clip * *static_cast<const Mat4d*>(own)};
+  }
+};
+
 /// Where the vertices of a draw come from.
 class VertexStage {
  public:
   VertexStage() = default;  ///< from nowhere
   VertexStage(const MatrixVertices& vertices) : stage_(vertices) {}
+  VertexStage(const CopiedVertices& vertices) : stage_(vertices) {}
   /// The caller's, which must outlive the frame; null: from nowhere.
   VertexStage(const VertexSource* own) {
     if (own != nullptr) stage_ = own;
   }
 
   [[nodiscard]] explicit operator bool() const { return stage_.index() != 0; }
+  /// Whether vertices are positions under matrices.
+  [[nodiscard]] bool has_positions() const { return matrix() != nullptr || copies() != nullptr; }
   /// What a device can read; null: vertices are the host's to make.
   [[nodiscard]] const MatrixVertices* matrix() const {
     return std::get_if<MatrixVertices>(&stage_);
@@ -86,19 +105,28 @@ class VertexStage {
                        ProjectedVertex* out) const noexcept;
   /// Homogeneous position for the clipper; NaN where the vertex is not finite.
   [[nodiscard]] Vec4d clip_position(std::size_t vertex) const noexcept {
-    if (const MatrixVertices* const m = matrix())
-      return m->positions.is_wide()
-                 ? clip_position_of(m->positions.wide(vertex), m->object_to_clip)
-                 : clip_position_of(m->positions[vertex], m->object_to_clip32, m->object_to_clip);
+    if (const MatrixVertices* const m = matrix()) return clip_position(*m, vertex);
+    if (const CopiedVertices* const c = copies()) {
+      const std::size_t n = c->positions.size();
+      return clip_position(c->copy(vertex / n), vertex % n);
+    }
     return own().clip_position(vertex);
   }
 
  private:
+  [[nodiscard]] static Vec4d clip_position(const MatrixVertices& m, std::size_t vertex) {
+    return m.positions.is_wide()
+               ? clip_position_of(m.positions.wide(vertex), m.object_to_clip)
+               : clip_position_of(m.positions[vertex], m.object_to_clip32, m.object_to_clip);
+  }
+  [[nodiscard]] const CopiedVertices* copies() const {
+    return std::get_if<CopiedVertices>(&stage_);
+  }
   [[nodiscard]] const VertexSource& own() const {
     return **std::get_if<const VertexSource*>(&stage_);
   }
 
-  std::variant<std::monostate, MatrixVertices, const VertexSource*> stage_;
+  std::variant<std::monostate, MatrixVertices, CopiedVertices, const VertexSource*> stage_;
 };
 
 }  // namespace rastrum::raster

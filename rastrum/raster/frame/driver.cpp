@@ -58,7 +58,7 @@ bool has_round_points(const FrameRequest& request) {
 
 Totals begin_frame(FrameRequest& request) {
   const Targets& targets = request.targets;
-  const Totals totals = number_draws(request.draws, targets.first_id, request.draw_noun);
+  const Totals totals = number_draws(request.draws, targets.first_id, request.names);
   if (request.in_place) return totals;
   for (int y = 0; y < request.height; ++y) {
     if (!targets.overdraw.empty() && !targets.load)

@@ -16,7 +16,7 @@ namespace rastrum::raster {
 /// range.
 template <class F>
 void for_each_primitive(const Frame& frame, std::uint64_t first, std::uint64_t last, const F& f) {
-  check_indices(frame.request.draws, frame.request.draw_noun);
+  check_indices(frame.request.draws, frame.request.names);
   for (std::uint64_t id = first; id < last; ++id) {
     parallel::throw_if_stopped();
     const Draw& draw = frame.geometry.draw_of(id);

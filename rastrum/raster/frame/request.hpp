@@ -10,6 +10,7 @@
 #include <rastrum/frame.hpp>
 #include <rastrum/raster/draws/draw.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/scene/instance_runs.hpp>
 #include <rastrum/tuning.hpp>
 #include <rastrum/vec.hpp>
 
@@ -17,15 +18,26 @@ namespace rastrum::raster {
 
 struct SurfaceScene;
 
+/// What messages call draws.
+struct DrawNames {
+  std::string_view noun = "draw";      ///< a scene's are instances
+  const InstanceRuns* runs = nullptr;  ///< of instances, whose number is the first one's
+
+  [[nodiscard]] std::string of(std::size_t draw) const {
+    const std::size_t number = runs == nullptr ? draw : runs->number(draw);
+    return std::string(noun).append(" ").append(std::to_string(number));
+  }
+};
+
 /// One frame, as the façade hands it to a rasterizer.
 struct FrameRequest {
   int width = 0, height = 0;
   Isa isa = Isa::scalar;
   std::span<Draw> draws;
-  std::string_view draw_noun = "draw";  ///< what messages call one: a scene's are instances
-  Testing test;                         ///< none: no piece is tested
-  Shading shading;                      ///< may be none where no colour is asked for
-  Vec4 background{};                    ///< display values, straight alpha
+  DrawNames names{};
+  Testing test;       ///< none: no piece is tested
+  Shading shading;    ///< may be none where no colour is asked for
+  Vec4 background{};  ///< display values, straight alpha
   Targets targets;
   /// Some target is of the surface at a pixel (resolve/surface_point.hpp), and what those of a
   /// scene are read from.

@@ -173,19 +173,24 @@ void store_numbers(const FrameRequest& request, const FrameGeometry& frame,
   const SurfaceScene* const scene = request.surface;
   std::int64_t instances[64], primitives[64];
   const Draw* draw = nullptr;
+  std::uint64_t copy = 0;
   std::int64_t instance = -1;
   for (std::uint64_t m = touched; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     instances[i] = primitives[i] = -1;
     if ((block.covered >> i & 1) == 0) continue;
     const std::uint64_t id = id_of_key(block.keys[i]);
-    if (draw == nullptr || id - draw->first_id >= draw->primitive_count) {
-      draw = &frame.draw_of(id);
+    const bool is_other = draw == nullptr || id - draw->first_id >= draw->primitive_count;
+    if (is_other) draw = &frame.draw_of(id);
+    const Draw::OfCopy of = draw->of_copy(id - draw->first_id);
+    if (is_other || of.copy != copy) {
       const auto place = static_cast<std::size_t>(draw - frame.draws.data());
-      instance = scene == nullptr ? static_cast<std::int64_t>(place) : scene->instance_id(place);
+      copy = of.copy;
+      instance =
+          scene == nullptr ? static_cast<std::int64_t>(place) : scene->instance_id(place, copy);
     }
     instances[i] = instance;
-    primitives[i] = static_cast<std::int64_t>(id - draw->first_id);
+    primitives[i] = static_cast<std::int64_t>(of.primitive);
   }
   if (!t.instances.empty()) store_block(t.instances, instances, touched, block.x0, block.y0);
   if (!t.primitives.empty()) store_block(t.primitives, primitives, touched, block.x0, block.y0);
@@ -259,21 +264,18 @@ std::uint64_t of_this_pass(const std::uint64_t* keys, std::uint64_t covered,
   return mask;
 }
 
-[[noreturn]] void refuse(std::string_view noun, std::size_t number, const std::string& problem) {
-  throw Error(
-      Errc::invalid_argument,
-      std::string(noun).append(" ").append(std::to_string(number)).append(": ").append(problem));
+[[noreturn]] void refuse(const DrawNames& names, std::size_t draw, const std::string& problem) {
+  throw Error(Errc::invalid_argument, names.of(draw).append(": ").append(problem));
 }
 
-void check_draw(const Draw& draw, std::string_view noun, std::size_t number) {
+void check_draw(const Draw& draw, const DrawNames& names, std::size_t number) {
   const auto require = [&](bool ok, const char* what) {
-    if (!ok) refuse(noun, number, what);
+    if (!ok) refuse(names, number, what);
   };
   require(draw.topology >= Topology::points, "its topology is 0, which is no value of its enum");
   const auto check = [&](auto value, auto last, const char* what) {
     if (value > last)  // a million draws make no million names
-      check_enum(value, last,
-                 std::string(noun).append(" ").append(std::to_string(number)).append(what));
+      check_enum(value, last, names.of(number).append(what));
   };
   check(draw.topology, Topology::triangles, ": its topology");
   check(draw.cull, Cull::front, ": its cull");
@@ -282,18 +284,18 @@ void check_draw(const Draw& draw, std::string_view noun, std::size_t number) {
   require(bool{draw.source}, "its source is null; set it to what projects its vertices");
   if (draw.mesh != nullptr) {
     if (const std::string problem = faces_problem(*draw.mesh); !problem.empty())
-      refuse(noun, number, problem);
+      refuse(names, number, problem);
     require(draw.topology == Topology::triangles, "a mesh has triangles");
   }
   const bool indexed = !draw.indices.empty();
-  const std::size_t corners = indexed ? draw.indices.size() : draw.vertex_count;
+  const std::size_t corners = indexed ? draw.indices.size() : draw.own_vertices();
   const std::uint64_t most = draw.mesh != nullptr
                                  ? draw.mesh->triangle_count()
                                  : corners / static_cast<std::size_t>(draw.topology);
   // Those of points and lines were counted with their arrays.
-  if (draw.points == nullptr && draw.lines == nullptr && draw.primitive_count > most)
-    refuse(noun, number,
-           "primitive_count is " + std::to_string(draw.primitive_count) + ", but its " +
+  if (draw.points == nullptr && draw.lines == nullptr && draw.own_primitives() > most)
+    refuse(names, number,
+           "primitive_count is " + std::to_string(draw.own_primitives()) + ", but its " +
                std::to_string(corners) + (indexed ? " indices" : " vertices") + " make up " +
                std::to_string(most));
   // Written so that a NaN fails.
@@ -305,7 +307,7 @@ void check_draw(const Draw& draw, std::string_view noun, std::size_t number) {
           "the depth bias must be finite");
   if (draw.material_flags.empty()) return;
   require(draw.face_materials.size() >=
-              (draw.mesh != nullptr ? draw.mesh->face_count() : draw.primitive_count),
+              (draw.mesh != nullptr ? draw.mesh->face_count() : draw.own_primitives()),
           "it has flags by material, but fewer face materials than primitives");
   require(
       first_beyond(draw.face_materials, draw.material_flags.size()) == draw.face_materials.size(),
@@ -391,13 +393,13 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
   }
 }
 
-Totals number_draws(std::span<Draw> draws, std::uint64_t first_id, std::string_view noun) {
+Totals number_draws(std::span<Draw> draws, std::uint64_t first_id, const DrawNames& names) {
   Totals totals;
   std::unordered_map<Shading, std::size_t, Shading::Hash> of_shading;
   std::size_t* number = nullptr;
   for (std::size_t i = 0; i < draws.size(); ++i) {
     Draw& draw = draws[i];
-    check_draw(draw, noun, i);
+    check_draw(draw, names, i);
     draw.first_id = first_id + totals.primitives;
     draw.first_vertex = totals.vertices;
     // Mostly all have one.
@@ -413,14 +415,15 @@ Totals number_draws(std::span<Draw> draws, std::uint64_t first_id, std::string_v
   return totals;
 }
 
-void check_indices(std::span<const Draw> draws, std::string_view noun) {
+void check_indices(std::span<const Draw> draws, const DrawNames& names) {
   for (std::size_t i = 0; i < draws.size(); ++i) {
     const Draw& draw = draws[i];
     const IndexView indices = draw.index_view();
-    if (const std::size_t at = first_beyond(indices, draw.vertex_count); at != indices.size())
-      refuse(noun, i,
+    if (const std::size_t at = first_beyond(indices, draw.own_vertices()); at != indices.size())
+      refuse(names, i,
              "indices[" + std::to_string(at) + "]: index " + indices.text(at) +
-                 " is out of range, there are " + std::to_string(draw.vertex_count) + " vertices");
+                 " is out of range, there are " + std::to_string(draw.own_vertices()) +
+                 " vertices");
   }
 }
 

@@ -28,7 +28,7 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept;
 
 /// Numbers the primitives (from `first_id`) and vertices of the draws and, of each shader, the
 /// draws themselves; returns the totals. Throws Error{invalid_argument} that names the draw (by
-/// `noun` and number) if there are more primitives than ids, without a source, and for a number of
+/// its name) if there are more primitives than ids, without a source, and for a number of
 /// primitives, topology, line width, point size, depth bias or face material out of range.
 /// O(draws), and O(primitives) of those with flags by material.
 struct Totals {
@@ -36,9 +36,9 @@ struct Totals {
   std::size_t vertices = 0;
 };
 [[nodiscard]] Totals number_draws(std::span<Draw> draws, std::uint64_t first_id = 0,
-                                  std::string_view noun = "draw");
+                                  const DrawNames& names = {});
 
 /// Throws Error{invalid_argument} naming the first index that is out of range, if there is one.
-void check_indices(std::span<const Draw> draws, std::string_view noun);
+void check_indices(std::span<const Draw> draws, const DrawNames& names);
 
 }  // namespace rastrum::raster

@@ -37,6 +37,7 @@ const SeenFragment& SurfaceLocator::locate(std::uint64_t key, int x0, int y0, in
     Fragment& f = locator_.locate(id, x0, y0, i, nullptr);
     f.depth = seen_.depth;
     static_cast<Fragment&>(seen_) = f;
+    seen_.copy = draw.of_copy(id - draw.first_id).copy;
     seen_.quadric = nullptr;
     return seen_;
   }
@@ -49,6 +50,7 @@ void SurfaceLocator::locate_quadric(const Draw& draw, int x, int y) {
   seen_.x = x;
   seen_.y = y;
   seen_.triangle = seen_.id - draw.first_id;
+  seen_.copy = 0;
   seen_.draw = static_cast<std::size_t>(&draw - frame_.draws.data());
   if (seen_.id != quadric_id_) {
     (void)surface_.find(*draw.quadrics, seen_.triangle, frame_.viewport);
@@ -98,7 +100,9 @@ Vec3d SurfaceScene::object_normal(const SeenFragment& f) const {
 
 Vec3d SurfaceScene::normal(const SeenFragment& f) const {
   const Vec3d n = object_normal(f);
-  const auto& m = lit.draws[f.draw].normal_matrix;
+  LitDraw own;
+  if (f.copy != 0) own = lit.draws[f.draw].of(instance(f.draw, f.copy));
+  const auto& m = (f.copy != 0 ? own : lit.draws[f.draw]).normal_matrix;
   const auto row = [&](int i) {
     return (double{m[i][0]} * n.x + double{m[i][1]} * n.y) + double{m[i][2]} * n.z;
   };

@@ -18,6 +18,7 @@
 #include <rastrum/raster/shade/point_line_shader.hpp>
 #include <rastrum/raster/shade/surface_scalars.hpp>
 #include <rastrum/scene.hpp>
+#include <rastrum/scene/instance_runs.hpp>
 #include <rastrum/scene/view_distance.hpp>
 
 namespace rastrum::raster {
@@ -25,6 +26,7 @@ namespace rastrum::raster {
 /// A fragment of what is seen. A quadric's has no vertices, and its weights are those of the two
 /// ends of its axis.
 struct SeenFragment : Fragment {
+  std::uint64_t copy = 0;               ///< of its draw
   const QuadricHit* quadric = nullptr;  ///< of a quadric, else null
 };
 
@@ -56,9 +58,10 @@ class SurfaceLocator {
 /// The same of a place in object space.
 [[nodiscard]] Vec3d in_world(const InstanceView& instance, Vec3d p);
 
-/// What is read of a scene whose instances are the frame's draws, in order.
+/// What is read of a scene whose runs of instances are the frame's draws, in order.
 struct SurfaceScene {
-  const SceneView& scene;
+  const SceneView& scene;    ///< of the first of each run
+  const InstanceRuns* runs;  ///< null: of one instance each
   const Camera& camera;
   LitScene lit;
   Mat4d to_camera;
@@ -67,18 +70,21 @@ struct SurfaceScene {
   const PointLineShader* points_and_lines = nullptr;  ///< that of their draws
   std::span<const SurfaceScalars> scalars{};          ///< of each instance; empty: none has some
 
-  SurfaceScene(const SceneView& s, const Camera& c, int width, int height)
-      : scene(s), camera(c), lit(s, c, width, height), to_camera(world_to_camera(c)) {}
+  SurfaceScene(const SceneView& s, const InstanceRuns* r, const Camera& c, int width, int height)
+      : scene(s), runs(r), camera(c), lit(s, c, width, height), to_camera(world_to_camera(c)) {}
 
-  /// InstanceView::id of a draw.
-  [[nodiscard]] std::int64_t instance_id(std::size_t draw) const {
-    return scene.instances[draw].id.value_or(static_cast<std::int64_t>(draw));
+  [[nodiscard]] const InstanceView& instance(std::size_t draw, std::uint64_t copy) const {
+    return runs == nullptr ? scene.instances[draw] : runs->instances(draw)[copy];
+  }
+  /// InstanceView::id.
+  [[nodiscard]] std::int64_t instance_id(std::size_t draw, std::uint64_t copy) const {
+    const std::uint64_t number = runs == nullptr ? draw : runs->number(draw) + copy;
+    return instance(draw, copy).id.value_or(static_cast<std::int64_t>(number));
   }
   /// In the world.
   [[nodiscard]] Vec3d position(const SeenFragment& f) const {
-    const InstanceView& instance = scene.instances[f.draw];
-    return f.quadric != nullptr ? in_world(instance, f.quadric->position)
-                                : position_on(instance, f);
+    return f.quadric != nullptr ? in_world(instance(f.draw, f.copy), f.quadric->position)
+                                : position_on(instance(f.draw, f.copy), f);
   }
   /// Unit length, in the world, turned to the viewer; 0 where there is none.
   [[nodiscard]] Vec3d normal(const SeenFragment& f) const;

@@ -18,17 +18,23 @@ struct Corners {
 
   /// Returns whether all indices are in range.
   bool load(const FrameGeometry& frame, const Draw& draw, std::uint64_t t, std::uint32_t count) {
-    if (draw.mesh != nullptr)
-      draw.mesh->read_triangles(t, count, indices);
-    else
-      for (std::uint32_t i = 0; i < count; ++i)
-        for (int c = 0; c < 3; ++c)
-          indices[i * 3 + static_cast<std::uint32_t>(c)] = draw.vertex(t + i, c);
-    if (std::any_of(indices, indices + std::size_t{count} * 3,
-                    [&](std::uint32_t index) { return index >= draw.vertex_count; }))
-      return false;
+    if (!load_indices(draw, t, count)) return false;
     seen_from = {};
     project(frame, draw, count * 3);
+    return true;
+  }
+  /// Copies [copy, copy + n) of a draw for which is_projected_at_once() says so, with `indices`
+  /// into `vertices`.
+  bool load_copies(const FrameGeometry& frame, const Draw& draw, std::uint64_t copy,
+                   std::uint64_t n) {
+    const auto own = static_cast<std::uint32_t>(draw.own_primitives());
+    if (!load_indices(draw, copy * own, own)) return false;
+    const std::uint32_t first = draw.first_vertex_of(copy);
+    for (std::uint32_t i = 0; i < own * 3; ++i) indices[i] -= first;
+    for (std::uint32_t i = own * 3; i < own * 3 * n; ++i)
+      indices[i] = indices[i - own * 3] + draw.copies.vertices;
+    draw.source.project(first, first + draw.copies.vertices * n, frame.viewport, frame.isa,
+                        vertices);
     return true;
   }
   /// The vertices of points. Returns whether all indices are in range.
@@ -57,6 +63,29 @@ struct Corners {
   }
 
  private:
+  /// Of triangles [t, t + count), which may be of several copies.
+  bool load_indices(const Draw& draw, std::uint64_t t, std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count;) {
+      const Draw::OfCopy of = draw.of_copy(t + i);
+      const auto n = static_cast<std::uint32_t>(
+          std::min<std::uint64_t>(count - i, draw.own_primitives() - of.primitive));
+      std::uint32_t* const some = indices + std::size_t{i} * 3;
+      if (draw.mesh != nullptr)
+        draw.mesh->read_triangles(of.primitive, n, some);
+      else
+        for (std::uint32_t k = 0; k < n; ++k)
+          for (int c = 0; c < 3; ++c)
+            some[k * 3 + static_cast<std::uint32_t>(c)] = draw.own_vertex(of.primitive + k, c);
+      const std::size_t size = draw.own_vertices();
+      const std::uint32_t first = draw.first_vertex_of(of.copy);
+      for (std::uint32_t k = 0; k < n * 3; ++k) {
+        if (some[k] >= size) return false;
+        some[k] += first;
+      }
+      i += n;
+    }
+    return true;
+  }
   /// Those that the first `n` indices name.
   void project(const FrameGeometry& frame, const Draw& draw, std::uint32_t n) {
     if (const ProjectedVertex* const projected = frame.projected_of(draw))
@@ -168,7 +197,8 @@ std::uint32_t equal_flags(const FrameGeometry& frame, const Draw& draw, std::uin
                           std::uint32_t count) {
   if (draw.material_flags.empty() && draw.cut == nullptr) return count;
   // The usual case in a loop of its own: asking for each triangle's flags was 2 % of a frame.
-  if (draw.cut == nullptr && draw.mesh == nullptr && draw.face_materials.is_packed()) {
+  if (draw.cut == nullptr && draw.mesh == nullptr && !draw.is_copied() &&
+      draw.face_materials.is_packed()) {
     const auto materials =
         draw.face_materials.packed().subspan(static_cast<std::size_t>(first), count);
     const std::uint32_t own = draw.material_flags[materials[0]];
@@ -235,8 +265,14 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
       id += hidden;
       continue;
     }
+    // A batch holds as many small copies as there is room for, and else one of them at most.
+    const Draw::OfCopy of = draw.of_copy(t);
+    const bool at_once = is_projected_at_once(draw);
+    const std::uint64_t own = draw.own_primitives();
+    const std::uint64_t copies =
+        at_once ? std::min(kSetupBatch / own, draw.copies.count - of.copy) : 1;
     const auto most = static_cast<std::uint32_t>(
-        std::min({std::uint64_t{kSetupBatch}, last - id, draw.primitive_count - t}));
+        std::min({std::uint64_t{kSetupBatch}, last - id, copies * own - of.primitive}));
     // Clip planes look at the corners before the kernel does.
     if (draw.cut != nullptr && !has_indices_in_range(draw, t, most)) return false;
     const std::uint32_t count = equal_flags(geometry, draw, t, most);
@@ -252,14 +288,23 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
     input.first_id = draw.first_id;
     const ProjectedVertex* projected = geometry.projected_of(draw);
     const bool in_place = samples.size() == 1 && draw.mesh == nullptr;
-    if (in_place && projected == nullptr && is_projected_at_once(draw)) {
+    if (in_place && projected == nullptr && at_once && !draw.is_copied()) {
       corners.load_all(geometry, draw);
       projected = corners.vertices;
     }
     if (in_place && projected != nullptr) {
       input.indices = draw.indices.empty() ? nullptr : draw.indices.data();
-      input.vertices = projected;
-      input.vertex_count = draw.vertex_count;
+      input.vertices = projected + draw.first_vertex_of(of.copy);
+      input.vertex_count = draw.own_vertices();
+      input.first = of.primitive;
+      input.first_id = id - of.primitive;
+    } else if (samples.size() == 1 && at_once && draw.is_copied()) {
+      if (!corners.load_copies(geometry, draw, of.copy, copies)) return false;
+      input.indices = corners.indices;
+      input.vertices = corners.vertices;
+      input.vertex_count = draw.copies.vertices * copies;
+      input.first = of.primitive;
+      input.first_id = id - of.primitive;
     } else if (draw.has_kernel()) {
       if (!corners.load(geometry, draw, t, count)) return false;
       input.vertices = corners.vertices;

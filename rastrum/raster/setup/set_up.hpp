@@ -14,8 +14,8 @@ namespace rastrum::raster {
 /// Whether a draw's vertices are projected when its triangles are set up, all at once: a million
 /// instances of a small mesh then keep no vertices.
 [[nodiscard]] inline bool is_projected_at_once(const Draw& draw) {
-  return draw.has_kernel() && draw.source.matrix() != nullptr &&
-         draw.primitive_count <= kSetupBatch && draw.vertex_count <= 3 * draw.primitive_count;
+  return draw.has_kernel() && draw.source.has_positions() && draw.own_primitives() <= kSetupBatch &&
+         draw.own_vertices() <= 3 * draw.own_primitives();
 }
 /// Whether its vertices are projected there rather than before. Those of points are asked for once.
 [[nodiscard]] inline bool is_projected_in_setup(const Draw& draw) {

@@ -175,7 +175,8 @@ class FragmentLocator {
       const Draw& draw = frame_.draw_of(id);
       square_px_ = 0;
       fragment_.id = id;
-      fragment_.triangle = id - draw.first_id;
+      const std::uint64_t primitive = id - draw.first_id;
+      fragment_.triangle = primitive;
       fragment_.draw = static_cast<std::size_t>(&draw - frame_.draws.data());
       for (int c = 0; c < static_cast<int>(draw.topology); ++c)
         fragment_.vertex[c] = draw.vertex(fragment_.triangle, c);
@@ -191,6 +192,10 @@ class FragmentLocator {
           break;
       }
       fragment_.front = draw.topology != Topology::triangles || is_front(draw);
+      if (draw.is_copied()) {
+        fragment_.triangle = draw.of_copy(primitive).primitive;
+        for (std::uint32_t& v : fragment_.vertex) v %= draw.copies.vertices;
+      }
       fragment_.planes = &planes_;
     }
     fragment_.x = x;

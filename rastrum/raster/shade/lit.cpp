@@ -37,8 +37,14 @@ Vec4 opaque(Vec3 c) {
 Vec4 color(const LitShading& lit, const FrameGeometry& frame, const Fragment& f) {
   if (lit.model == LitModel::id) return opaque(id_color(f.id));
   const float line = wire_share(f);
-  const LitDraw& draw = lit.scene->draws[frame.draws[f.draw].number];
-  return opaque(base_color(lit.scene->view(), draw, f) * (1 - line) + kWireColor * line);
+  const Draw& draw = frame.draws[f.draw];
+  const LitDraw& shared = lit.scene->draws[draw.number];
+  const LitView view = lit.scene->view();
+  const Vec3 base =
+      draw.is_copied()
+          ? base_color(view, shared.of(shared.copies[draw.of_copy(f.id - draw.first_id).copy]), f)
+          : base_color(view, shared, f);
+  return opaque(base * (1 - line) + kWireColor * line);
 }
 
 void shade_scalar(const LitShading& lit, const FrameGeometry& frame, const VisibleBlock& block,
@@ -56,7 +62,7 @@ void shade_scalar(const LitShading& lit, const FrameGeometry& frame, const Visib
   }
 }
 
-void normal_matrix(const Mat4d& object_to_world, float (&out)[3][3]) {
+void set_normal_matrix(const Mat4d& object_to_world, float (&out)[3][3]) {
   // The cofactors are the inverse transpose up to the determinant, whose sign and size do not
   // matter: normals are normalized and turned to the viewer. They also exist where the matrix is
   // singular.
@@ -131,25 +137,30 @@ ViewRays ViewRays::of(const Camera& camera, int width, int height) {
   return {corner, dx, dy};
 }
 
+LitDraw LitDraw::of(const InstanceView& instance) const {
+  LitDraw own = *this;
+  // A view of the instance's own, which outlives the frame as the scene does.
+  if (instance.color) own.colors = {.values = std::span(&*instance.color, 1), .per = Per::mesh};
+  set_normal_matrix(instance.object_to_world, own.normal_matrix);
+  const auto& m = own.normal_matrix;
+  own.identity = m[0][0] == m[1][1] && m[1][1] == m[2][2] && m[0][0] > 0 && m[0][1] == 0 &&
+                 m[0][2] == 0 && m[1][0] == 0 && m[1][2] == 0 && m[2][0] == 0 && m[2][1] == 0;
+  return own;
+}
+
 LitScene::LitScene(const SceneView& scene, const Camera& camera, int width, int height)
     : rays(ViewRays::of(camera, width, height)) {
   draws.reserve(scene.instances.size());
   for (const InstanceView& instance : scene.instances) {
-    LitDraw& draw = draws.emplace_back();
+    LitDraw draw;
     draw.mesh = instance.mesh();
     if (const MeshView* const mesh = draw.mesh) {
       draw.colors = mesh->colors;
-      // A view of the instance's own, which outlives the frame as the scene does.
-      if (instance.color)
-        draw.colors = {.values = std::span(&*instance.color, 1), .per = Per::mesh};
       draw.material = instance.material.value_or(mesh->material);
       if (!instance.material) draw.face_materials = mesh->face_materials;
     }
-    normal_matrix(instance.object_to_world, draw.normal_matrix);
-    const auto& m = draw.normal_matrix;
-    draw.identity = m[0][0] == m[1][1] && m[1][1] == m[2][2] && m[0][0] > 0 && m[0][1] == 0 &&
-                    m[0][2] == 0 && m[1][0] == 0 && m[1][2] == 0 && m[2][0] == 0 && m[2][1] == 0;
-    colored |= !draw.colors.empty();
+    draws.push_back(draw.of(instance));
+    colored |= !draws.back().colors.empty();
   }
   colored |= !scene.materials.empty();
   materials.reserve(scene.materials.size());

@@ -22,12 +22,16 @@ namespace rastrum::raster {
 /// What the lit shaders read of one draw.
 struct LitDraw {
   const MeshView* mesh = nullptr;
+  /// Where the mesh is drawn as copies, their instances; else null.
+  const InstanceView* copies = nullptr;
   AttributeView<Vec4> colors;  ///< the mesh's, or what stands for them
   IndexView face_materials;    ///< the same; empty: `material`
   std::uint32_t material = 0;
   float normal_matrix[3][3];  ///< object to world, inverse transpose
   bool identity = false;      ///< normal_matrix is a multiple of the identity
 
+  /// With the matrix and colour of `instance`.
+  [[nodiscard]] LitDraw of(const InstanceView& instance) const;
   [[nodiscard]] RASTRUM_HD Vec3 to_world(Vec3 n) const {
     const auto& m = normal_matrix;
     return {m[0][0] * n.x + m[0][1] * n.y + m[0][2] * n.z,

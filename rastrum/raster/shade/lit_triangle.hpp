@@ -82,19 +82,10 @@ RASTRUM_HD void fetch_weights(const Geometry& frame, const Draw& draw,
 
 }  // namespace lit_detail
 
-/// Sets up the triangle whose keys end in `low`.
-template <class Geometry>
-RASTRUM_HD void fetch_triangle(const LitView& scene, const Geometry& frame, std::uint64_t low,
-                               bool wants_normals, LitTriangle& out) {
-  out.low = low;
-  const std::uint64_t id = kIdMask - low;
-  const Draw& draw = frame.draw_of(id);
-  const LitDraw& lit = scene.draws[draw.number];
-  const std::uint64_t t = id - draw.first_id;
-  std::uint32_t vertex[3];
-  draw.vertices(t, vertex);
-  lit_detail::fetch_weights(frame, draw, vertex, out);
-  if (!wants_normals && !scene.colored) return;
+/// Sets the normals and colours of triangle `t` of a mesh, where they are wanted.
+RASTRUM_HD inline void fetch_attributes(const LitView& scene, const LitDraw& lit, std::uint64_t t,
+                                        const std::uint32_t (&vertex)[3], bool wants_normals,
+                                        LitTriangle& out) {
   const TrianglePlace place = lit.mesh->place(t);
   if (wants_normals) {
     corner_normals(*lit.mesh, place, vertex, out.normal);
@@ -111,6 +102,30 @@ RASTRUM_HD void fetch_triangle(const LitView& scene, const Geometry& frame, std:
   lit.colors.corners(place, vertex, color);
   for (int c = 0; c < 3; ++c)
     out.color[c] = {base.x * color[c].x, base.y * color[c].y, base.z * color[c].z};
+}
+
+/// Sets up the triangle whose keys end in `low`.
+template <class Geometry>
+RASTRUM_HD void fetch_triangle(const LitView& scene, const Geometry& frame, std::uint64_t low,
+                               bool wants_normals, LitTriangle& out) {
+  out.low = low;
+  const std::uint64_t id = kIdMask - low;
+  const Draw& draw = frame.draw_of(id);
+  const LitDraw& lit = scene.draws[draw.number];
+  const std::uint64_t t = id - draw.first_id;
+  std::uint32_t vertex[3];
+  draw.vertices(t, vertex);
+  lit_detail::fetch_weights(frame, draw, vertex, out);
+  if (!wants_normals && !scene.colored) return;
+#if !defined(__CUDA_ARCH__)
+  if (draw.is_copied()) {
+    const Draw::OfCopy of = draw.of_copy(t);
+    for (std::uint32_t& v : vertex) v -= draw.first_vertex_of(of.copy);
+    return fetch_attributes(scene, lit.of(lit.copies[of.copy]), of.primitive, vertex, wants_normals,
+                            out);
+  }
+#endif
+  fetch_attributes(scene, lit, t, vertex, wants_normals, out);
 }
 
 void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t low,

@@ -36,6 +36,23 @@ std::array<TextureReference, 6> references(const Material& m) {
 
 }  // namespace
 
+void MaterialDraw::set(const LitDraw& lit, const InstanceView& instance) {
+  colors = lit.colors;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      normal_matrix[i][j] = lit.normal_matrix[i][j];
+      to_world[i][j] = static_cast<float>(instance.object_to_world.m[i][j]);
+    }
+}
+
+MaterialDraw MaterialDraw::of(const InstanceView& instance) const {
+  MaterialDraw own = *this;
+  LitDraw lit;
+  lit.colors = colors;
+  own.set(lit.of(instance), instance);
+  return own;
+}
+
 MaterialScene::MaterialScene(const SceneView& scene, const Camera& camera, int width, int height,
                              const TextureSet& textures) {
   // The normal matrices are those of the lit shaders.
@@ -44,17 +61,12 @@ MaterialScene::MaterialScene(const SceneView& scene, const Camera& camera, int w
   draws.resize(lit.draws.size());
   for (std::size_t d = 0; d < draws.size(); ++d) {
     draws[d].mesh = lit.draws[d].mesh;
-    draws[d].colors = lit.draws[d].colors;
     draws[d].opacity = scene.instances[d].opacity;
     if (!scene.materials.empty()) {
       draws[d].face_materials = lit.draws[d].face_materials;
       draws[d].material = lit.draws[d].material;
     }
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) {
-        draws[d].normal_matrix[i][j] = lit.draws[d].normal_matrix[i][j];
-        draws[d].to_world[i][j] = static_cast<float>(scene.instances[d].object_to_world.m[i][j]);
-      }
+    draws[d].set(lit.draws[d], scene.instances[d]);
   }
   const auto bind = [&](const Material& m) {
     materials.push_back({m.base_color, m.metallic, m.roughness, m.normal_scale,
@@ -70,7 +82,8 @@ MaterialScene::MaterialScene(const SceneView& scene, const Camera& camera, int w
   if (materials.empty()) bind(kDefaultMaterial);
 }
 
-void check_materials(const SceneView& scene) {
+void check_materials(const InstanceRuns& runs) {
+  const SceneView& scene = runs.firsts();
   const std::size_t textures = scene.textures.size();
   for (std::size_t i = 0; i < textures; ++i) {
     const Texture& t = scene.textures[i];
@@ -99,7 +112,8 @@ void check_materials(const SceneView& scene) {
     if (scene.instances[i].mesh() == nullptr) continue;
     const MeshView& mesh = *scene.instances[i].mesh();
     const auto fail = [&](const std::string& problem) {
-      throw Error(Errc::invalid_argument, "instance " + std::to_string(i) + ": " + problem);
+      throw Error(Errc::invalid_argument,
+                  "instance " + std::to_string(runs.number(i)) + ": " + problem);
     };
     const auto& own = scene.instances[i].material;
     std::string beyond;

@@ -30,7 +30,7 @@
 #include <rastrum/camera.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/texture.hpp>
-#include <rastrum/scene.hpp>
+#include <rastrum/scene/instance_runs.hpp>
 
 namespace rastrum::raster {
 
@@ -54,12 +54,18 @@ struct BoundMaterial {
 
 struct MaterialDraw {
   const MeshView* mesh = nullptr;
-  AttributeView<Vec4> colors;  ///< as LitDraw's, as the next two
+  const InstanceView* copies = nullptr;  ///< as LitDraw's
+  AttributeView<Vec4> colors;            ///< as LitDraw's, as the next two
   IndexView face_materials;
   std::uint32_t material = 0;
   float opacity = 1;          ///< of the instance
   float normal_matrix[3][3];  ///< object to world, inverse transpose
   float to_world[3][3];       ///< object to world, directions
+
+  /// What `lit` and `instance`, which it is of, say.
+  void set(const LitDraw& lit, const InstanceView& instance);
+  /// With the matrix and colour of `instance`.
+  [[nodiscard]] MaterialDraw of(const InstanceView& instance) const;
 };
 
 /// What shaders read of a scene's materials, of the host's memory or a device's.
@@ -90,7 +96,7 @@ struct MaterialScene {
 
 /// Throws Error{invalid_argument} naming the material or instance whose index into textures or
 /// materials is out of range. O(triangles with face_materials).
-void check_materials(const SceneView& scene);
+void check_materials(const InstanceRuns& runs);
 
 /// The uses TextureSet::update wants: all that `materials` read, or, without `shading`, only what
 /// alpha comes from, of masks and, with `blending`, of AlphaMode::blend.

@@ -164,7 +164,7 @@ template <class Geometry>
                                           std::uint64_t id, int x, int y, Vec2 from_centre) {
   const Draw& draw = frame.draw_of(id);
   const MaterialDraw& of = scene.draws[draw.number];
-  const BoundMaterial& m = scene.material_of(of, id - draw.first_id);
+  const BoundMaterial& m = scene.material_of(of, draw.of_copy(id - draw.first_id).primitive);
   if (m.alpha_mode != AlphaMode::mask) return true;
   const MaterialTriangle t(scene, frame, draw, id);
   return !(material_detail::own_alpha(t, m, MaterialPoint(t.planes, x, y, from_centre)) <
@@ -178,7 +178,7 @@ template <class Geometry>
                                         float opacity) {
   const Draw& draw = frame.draw_of(id);
   const MaterialDraw& of = scene.draws[draw.number];
-  const BoundMaterial& m = scene.material_of(of, id - draw.first_id);
+  const BoundMaterial& m = scene.material_of(of, draw.of_copy(id - draw.first_id).primitive);
   opacity = opacity * m.opacity * of.opacity;
   if (m.alpha_mode != AlphaMode::blend) return clamped_alpha(opacity);
   if (has_constant_alpha(of, m)) return clamped_alpha(opacity * m.base.w);

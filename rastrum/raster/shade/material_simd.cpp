@@ -353,7 +353,7 @@ std::uint64_t alpha_test(const MaterialView& scene, const FrameGeometry& frame, 
                          std::uint64_t mask, int x0, int y0, const ShadingPoints* points) noexcept {
   const Draw& draw = frame.draw_of(id);
   const MaterialDraw& of = scene.draws[draw.number];
-  const BoundMaterial& material = scene.material_of(of, id - draw.first_id);
+  const BoundMaterial& material = scene.material_of(of, draw.of_copy(id - draw.first_id).primitive);
   if (mask == 0 || material.alpha_mode != AlphaMode::mask) return mask;
   const MaterialTriangle t(scene, frame, draw, id);
   const Run run(mask, t.planes, x0, y0, points);
@@ -381,7 +381,8 @@ AlphaMasks alpha(const MaterialView& scene, const FrameGeometry& frame, const Vi
     const std::uint64_t id = id_of_key(low);
     if (draw == nullptr || id - draw->first_id >= draw->primitive_count) draw = &frame.draw_of(id);
     const MaterialDraw& of = scene.draws[draw->number];
-    const BoundMaterial& material = scene.material_of(of, id - draw->first_id);
+    const BoundMaterial& material =
+        scene.material_of(of, draw->of_copy(id - draw->first_id).primitive);
     const bool blends = material.alpha_mode == AlphaMode::blend;
     const float opacity = frame_opacity * material.opacity * of.opacity;
     if (!blends || has_constant_alpha(of, material)) {

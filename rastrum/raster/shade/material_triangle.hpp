@@ -68,8 +68,13 @@ struct CoordinatePlane {
 
 /// A triangle that is being shaded.
 struct MaterialTriangle {
+  /// Filled for copies alone, which share all but a matrix and a colour.
+  union OwnDraw {
+    MaterialDraw draw;
+    RASTRUM_HD OwnDraw() {}
+  } own;
   const MaterialDraw& draw;
-  std::uint64_t index;  ///< within its draw
+  std::uint64_t index;  ///< within its mesh
   TrianglePlace place;
   std::uint32_t vertex[3];
   WeightPlanes planes;
@@ -78,10 +83,16 @@ struct MaterialTriangle {
   template <class Geometry>
   RASTRUM_HD MaterialTriangle(const MaterialView& scene, const Geometry& frame, const Draw& d,
                               std::uint64_t id)
-      : draw(scene.draws[d.number]), index(id - d.first_id), place(draw.mesh->place(index)) {
-    d.vertices(index, vertex);
+      : draw(draw_of(scene.draws[d.number], d, id)),
+        index(d.of_copy(id - d.first_id).primitive),
+        place(draw.mesh->place(index)) {
+    d.vertices(id - d.first_id, vertex);
     planes = weight_planes(frame, d, vertex);
+    if (d.is_copied())
+      for (std::uint32_t& v : vertex) v %= d.copies.vertices;
   }
+  MaterialTriangle(const MaterialTriangle&) = delete;
+  MaterialTriangle& operator=(const MaterialTriangle&) = delete;
 
   template <class T>
   [[nodiscard]] RASTRUM_HD T corner(const AttributeView<T>& attribute, int c) const {
@@ -105,6 +116,15 @@ struct MaterialTriangle {
   /// Of the plane, of unit length, in the world; 0 without area.
   [[nodiscard]] RASTRUM_HD Vec3 face_normal() const {
     return normalize(times(draw.normal_matrix, cross(edge(1), edge(2))));
+  }
+
+ private:
+  RASTRUM_HD const MaterialDraw& draw_of(const MaterialDraw& shared, const Draw& d,
+                                         std::uint64_t id) {
+#if !defined(__CUDA_ARCH__)
+    if (d.is_copied()) return own.draw = shared.of(shared.copies[d.of_copy(id - d.first_id).copy]);
+#endif
+    return shared;
   }
 };
 

@@ -137,7 +137,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     } catch (const Error& error) {
       // Which index was out of range is for the host to find.
       if (error.code() == Errc::invalid_argument && !request.in_place)
-        check_indices(request.draws, request.draw_noun);
+        check_indices(request.draws, request.names);
       throw;
     }
     end_frame(frame);

@@ -1,0 +1,47 @@
+// The instances of a scene in runs of alike ones, so that what they share is kept and looked at
+// once: a million instances of one mesh are one run.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/scene.hpp>
+
+namespace rastrum {
+
+/// Whether what is under it turns its faces inside out.
+[[nodiscard]] bool is_mirroring(const Mat4d& object_to_world);
+
+/// The instances of a run lie one after the other in the scene, draw one mesh and differ in their
+/// matrices, ids and colours alone (all or none mirror; all or none have a colour, and all or none
+/// of those are opaque). What is no mesh and what has clip planes or
+/// scalars is a run of its own.
+class InstanceRuns {
+ public:
+  /// `scene` must outlive this. Without `joins` each instance is a run. O(instances), divided among
+  /// `threads` (null: one).
+  InstanceRuns(const SceneView& scene, bool joins, parallel::Threads* threads);
+
+  /// The scene with the first instance of each run alone.
+  [[nodiscard]] const SceneView& firsts() const { return firsts_; }
+  /// The scene's instances from the first of run `run` on.
+  [[nodiscard]] const InstanceView* instances(std::size_t run) const {
+    return scene_.instances.data() + number(run);
+  }
+  /// Which of the scene's instances is the first of run `run`.
+  [[nodiscard]] std::size_t number(std::size_t run) const {
+    return begin_.empty() ? run : begin_[run];
+  }
+  [[nodiscard]] std::size_t length(std::size_t run) const {
+    return begin_.empty() ? 1 : begin_[run + 1] - begin_[run];
+  }
+
+ private:
+  SceneView scene_;
+  SceneView firsts_;
+  std::vector<std::size_t> begin_;  ///< one more than there are runs; empty: all have length 1
+  std::vector<InstanceView> list_;  ///< of firsts_, where some run is longer
+};
+
+}  // namespace rastrum
