@@ -87,9 +87,7 @@ Counts walk(const Samples& samples, const Kernels& kernels, std::size_t first, s
     }
     Rgba8 colors[kBlockColumns];
     if (is_map)
-      for (std::size_t i = 0; i < visible; ++i)
-        colors[i] =
-            samples.color(first + static_cast<std::size_t>(block.mark[i]) % kBlockColumns, slice);
+      kernels.colors(samples, slice, visible, block, colors);
     else
       surface.colors(slice, block, visible, colors);
     marks.put_colors(block, visible, colors);

@@ -73,10 +73,25 @@ void fill_scalar(std::uint32_t* marks, int first, int last, std::size_t n, std::
   }
 }
 
-constexpr Kernels kScalar{heights_scalar, occlude_scalar<float>, occlude_scalar<double>,
-                          advance_scalar, classic_cells_scalar,  fill_scalar};
+constexpr Kernels kScalar{heights_scalar,
+                          colors_one_by_one,
+                          occlude_scalar<float>,
+                          occlude_scalar<double>,
+                          advance_scalar,
+                          classic_cells_scalar,
+                          fill_scalar};
 
 }  // namespace
+
+void colors_one_by_one(const Samples& samples, const Slice& slice, std::size_t n,
+                       const ColumnBlock& b, Rgba8* colors) noexcept {
+  const SetupView& setup = samples.setup;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto column = static_cast<std::size_t>(b.mark[i]) % kBlockColumns;
+    const float x = setup.fx + slice.z * b.ux[column], y = setup.fy + slice.z * b.uy[column];
+    colors[i] = faded(samples.map.color_at(x, y, slice.level), setup.fog, slice.clear);
+  }
+}
 
 const Kernels& kernels(Isa isa) noexcept {
   static const auto tables = [] {

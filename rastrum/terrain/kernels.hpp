@@ -56,6 +56,11 @@ struct Kernels {
   void (*heights)(const Samples& samples, const Slice& slice, std::size_t n,
                   ColumnBlock& block) noexcept;
 
+  /// The colours of the n columns that `mark` lists, behind the fog, of a map. kBlockColumns of
+  /// them: what lies beyond n is overwritten.
+  void (*colors)(const Samples& samples, const Slice& slice, std::size_t n,
+                 const ColumnBlock& block, Rgba8* colors) noexcept;
+
   /// The columns whose sample lies above all before: lowers `hidden` and `deepest`, lists them in
   /// order in `mark` and `cell`; returns how many. Its row is (altitude − height) · rows + horizon.
   std::size_t (*occlude)(float altitude, float rows, float horizon, std::size_t n,
@@ -79,6 +84,10 @@ struct Kernels {
 
 /// Slices that classic positions are accumulated for at a time; their number is rounded up to it.
 inline constexpr std::size_t kClassicSlices = 8;
+
+/// Kernels::colors one at a time.
+void colors_one_by_one(const Samples& samples, const Slice& slice, std::size_t n,
+                       const ColumnBlock& block, Rgba8* colors) noexcept;
 
 /// The table of `isa`, one of available_isas() (choose_isa); of others, plain C++.
 [[nodiscard]] const Kernels& kernels(Isa isa) noexcept;

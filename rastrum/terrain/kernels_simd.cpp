@@ -133,6 +133,103 @@ void heights_tiled(const Samples& samples, const Slice& slice, std::size_t n,
   heights_filtered<Wrap::repeat>(samples, slice, n, b);
 }
 
+/// map_detail::texels.
+template <Wrap kWrap>
+HWY_INLINE F texels(I cell, F within, int size, float texels_a_cell) {
+  const F32 d;
+  const I32 di;
+  const F one = hn::Set(d, 1.0F);
+  const I end = hn::Set(di, size);
+  if constexpr (kWrap == Wrap::mirror) {
+    const I turned = Axis<Wrap::repeat>(2 * size).tiled(cell);
+    const auto is_turned = hn::RebindMask(d, hn::Not(hn::Lt(turned, end)));
+    within = hn::IfThenElse(is_turned, hn::Sub(one, within), within);
+  }
+  if constexpr (kWrap == Wrap::clamp) {
+    within = hn::IfThenZeroElse(hn::RebindMask(d, hn::Lt(cell, hn::Zero(di))), within);
+    within = hn::IfThenElse(hn::RebindMask(d, hn::Lt(cell, end)), within, one);
+  }
+  const F whole = hn::ConvertTo(d, Axis<kWrap>(size).tiled(cell));
+  return hn::Mul(hn::Add(whole, within), hn::Set(d, texels_a_cell));
+}
+
+/// MapView::color_at between four texels.
+template <Wrap kWrap>
+void colors_between(const Samples& samples, const Slice& slice, std::size_t n, const ColumnBlock& b,
+                    Rgba8* colors) noexcept {
+  const F32 d;
+  const I32 di;
+  const U32 du;
+  using U = hn::Vec<U32>;
+  const MapView& map = samples.map;
+  const ImageView<const Rgba8>& image = map.colors(0);
+  const auto* const pixels = reinterpret_cast<const std::uint32_t*>(image.data);
+  const Axis<kWrap> across(image.width), down(image.height);
+  const I stride = hn::Set(di, static_cast<std::int32_t>(image.stride));
+  const F z = hn::Set(d, slice.z), half = hn::Set(d, 0.5F), parts = hn::Set(d, 256.0F);
+  const U whole = hn::Set(du, 256U), low = hn::Set(du, 255U);
+  const U clear = hn::Set(du, slice.clear), veil = hn::Set(du, 256 - slice.clear);
+  const Rgba8 fog = samples.setup.fog;
+  const std::uint32_t fog_of[3] = {fog.r, fog.g, fog.b};
+  const I last = hn::Set(di, static_cast<std::int32_t>(kBlockColumns) - 1);
+  for (std::size_t i = 0; i < n; i += kLanes) {
+    const I column = hn::And(hn::Load(di, b.mark + i), last);
+    const F x = hn::Add(hn::Set(d, samples.setup.fx), hn::Mul(z, hn::GatherIndex(d, b.ux, column)));
+    const F y = hn::Add(hn::Set(d, samples.setup.fy), hn::Mul(z, hn::GatherIndex(d, b.uy, column)));
+    const F x0 = hn::Floor(x), y0 = hn::Floor(y);
+    const F u = texels<kWrap>(hn::Add(hn::Set(di, map.cell_x), hn::ConvertTo(di, x0)),
+                              hn::Sub(x, x0), map.width, map.color_x);
+    const F v = texels<kWrap>(hn::Add(hn::Set(di, map.cell_y), hn::ConvertTo(di, y0)),
+                              hn::Sub(y, y0), map.height, map.color_y);
+    const F um = hn::Sub(u, half), vm = hn::Sub(v, half);
+    const F u0 = hn::Floor(um), v0 = hn::Floor(vm);
+    const auto share = [&](F at, F from) HWY_ATTR {
+      return hn::BitCast(du, hn::ConvertTo(di, hn::Mul(hn::Sub(at, from), parts)));
+    };
+    const U tx = share(um, u0), ty = share(vm, v0);
+    const U sx = hn::Sub(whole, tx), sy = hn::Sub(whole, ty);
+    const I one = hn::Set(di, 1), s = hn::ConvertTo(di, u0), t = hn::ConvertTo(di, v0);
+    const I left = across.tiled(s), right = across.tiled(hn::Add(s, one));
+    const I upper = hn::Mul(down.tiled(t), stride),
+            lower = hn::Mul(down.tiled(hn::Add(t, one)), stride);
+    const U c0 = hn::GatherIndex(du, pixels, hn::Add(upper, left)),
+            c1 = hn::GatherIndex(du, pixels, hn::Add(upper, right)),
+            c2 = hn::GatherIndex(du, pixels, hn::Add(lower, left)),
+            c3 = hn::GatherIndex(du, pixels, hn::Add(lower, right));
+    U mixed = hn::Set(du, 0xff000000U);
+    for (int channel = 0; channel < 3; ++channel) {
+      const auto of = [&](U c)
+                          HWY_ATTR { return hn::And(hn::ShiftRightSame(c, 8 * channel), low); };
+      const U above = hn::Add(hn::Mul(of(c0), sx), hn::Mul(of(c1), tx));
+      const U below = hn::Add(hn::Mul(of(c2), sx), hn::Mul(of(c3), tx));
+      const U c = hn::ShiftRight<16>(
+          hn::Add(hn::Add(hn::Mul(above, sy), hn::Mul(below, ty)), hn::Set(du, 32768U)));
+      const U behind = hn::ShiftRight<8>(
+          hn::Add(hn::Add(hn::Mul(c, clear), hn::Mul(hn::Set(du, fog_of[channel]), veil)),
+                  hn::Set(du, 128U)));
+      mixed = hn::Or(mixed, hn::ShiftLeftSame(behind, 8 * channel));
+    }
+    hn::StoreU(mixed, du, reinterpret_cast<std::uint32_t*>(colors + i));
+  }
+}
+
+bool is_power_of_two(int n) {
+  return (n & (n - 1)) == 0;
+}
+
+void colors(const Samples& samples, const Slice& slice, std::size_t n, const ColumnBlock& b,
+            Rgba8* out) noexcept {
+  const MapView& map = samples.map;
+  if (map.filter != MapFilter::bilinear) return colors_one_by_one(samples, slice, n, b, out);
+  if (map.tiling == Tiling::mirror) return colors_between<Wrap::mirror>(samples, slice, n, b, out);
+  if (map.tiling == Tiling::clamp) return colors_between<Wrap::clamp>(samples, slice, n, b, out);
+  const ImageView<const Rgba8>& image = map.colors(0);
+  if (is_power_of_two(map.width) && is_power_of_two(map.height) && is_power_of_two(image.width) &&
+      is_power_of_two(image.height))
+    return colors_between<Wrap::mask>(samples, slice, n, b, out);
+  colors_between<Wrap::repeat>(samples, slice, n, b, out);
+}
+
 /// Lists the lanes of `visible`, whose first rows are `top`.
 HWY_INLINE std::size_t list(ColumnBlock& b, std::size_t i, std::size_t listed,
                             hn::Mask<I32> visible, I top) {
@@ -311,7 +408,7 @@ void fill(std::uint32_t* marks, int first, int last, std::size_t n, std::uint32_
   if (stream) hwy::FlushStream();
 }
 
-constexpr Kernels kTable{heights_tiled, occlude, occlude64, advance, classic_cells, fill};
+constexpr Kernels kTable{heights_tiled, colors, occlude, occlude64, advance, classic_cells, fill};
 
 }  // namespace
 }  // namespace HWY_NAMESPACE

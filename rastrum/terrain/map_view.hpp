@@ -1,6 +1,6 @@
 // How a map is read: tiling, filter and pyramid, one sample at a time, on any device. The SIMD
-// kernels do the same operations on vectors of samples for heights; colours are only read where
-// something is visible, and always here.
+// kernels do the same operations on vectors of samples for heights and, between cells, for colours,
+// which are only read where something is visible.
 #pragma once
 
 #include <algorithm>

@@ -3,8 +3,10 @@
 #include <rastrum/terrain.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -73,6 +75,42 @@ TEST(BetweenCells, ArePicturesTheSameBitsWhoeverDraws) {
                   plain)
             << name(isa) << ", " << threads << " threads";
   }
+}
+
+TEST(BetweenCells, AreColoursOfAnySizeTheSameBitsWhoeverDraws) {
+  std::uint32_t state = 1;
+  const auto random = [&] { return (state = state * 1664525 + 1013904223) >> 8; };
+  struct Sizes {
+    int width, height, color_width, color_height;
+  };
+  for (const Sizes& s : {Sizes{64, 64, 64, 64}, Sizes{64, 32, 128, 64}, Sizes{50, 37, 50, 37},
+                         Sizes{50, 37, 111, 90}, Sizes{64, 64, 20, 70}})
+    for (const Tiling tiling : {Tiling::repeat, Tiling::mirror, Tiling::clamp})
+      for (const double fog : {0.0, 0.01}) {
+        HeightMap map{Image<float>(s.width, s.height), Image<Rgba8>(s.color_width, s.color_height)};
+        for (float& h : map.heights.pixels()) h = static_cast<float>(random() % 1000) / 100;
+        const auto byte = [&] { return static_cast<std::uint8_t>(random()); };
+        for (Rgba8& c : map.colors.pixels()) c = {byte(), byte(), byte(), 255};
+        const Terrain terrain(std::move(map));
+        TerrainOptions o;
+        o.width = 101;
+        o.height = 70;
+        o.filter = MapFilter::bilinear;
+        o.step = 0;
+        o.tiling = tiling;
+        o.fog.density = fog;
+        o.distance = 200;
+        const TerrainCamera camera{
+            .x = -30.3, .y = 77.7, .altitude = 14, .angle_rad = 0.7, .horizon_px = 12};
+        Image<Rgba8> plain(o.width, o.height), drawn(o.width, o.height);
+        TerrainRenderer({.device = Device::serial}).render(terrain, camera, o, {.color8 = plain});
+        for (const Isa isa : available_isas()) {
+          TerrainRenderer({.threads = 2, .isa = isa}).render(terrain, camera, o, {.color8 = drawn});
+          ASSERT_EQ(digest(plain.view()).hex(), digest(drawn.view()).hex())
+              << name(isa) << ", colours " << s.color_width << " x " << s.color_height
+              << ", tiling " << static_cast<int>(tiling);
+        }
+      }
 }
 
 }  // namespace
