@@ -54,7 +54,7 @@ TEST_F(LightOptions, OfFilesAreAskedFor) {
   must({"render", "builtin:teapot", "lit.gltf", "--shader", "phong", "--eye", "0,2,5", "--target",
         "0,0,0", "--size", "120x90", "--lights", "file", "-o", "file.png"});
   must({"render", "builtin:teapot", "lit.gltf", "--shader", "phong", "--eye", "0,2,5", "--target",
-        "0,0,0", "--size", "120x90", "--light", "point:0,2,3:intensity=2.8647890", "-o",
+        "0,0,0", "--size", "120x90", "--light", "point:0,2,3:intensity=2.86478886", "-o",
         "said.png"});
   EXPECT_TRUE(same_pixels(png("file.png"), png("said.png")));
 }
