@@ -24,7 +24,7 @@ OUTPUTS = {
     "color": (np.uint8, 4), "color_f32": (np.float32, 4), "depth": (np.float32, 1), "depth_raw": (np.float32, 1),
     "distance": (np.float32, 1), "id": (np.int32, 1), "instance": (np.int32, 1), "face": (np.int32, 1),
     "barycentrics": (np.float32, 2), "normal": (np.float32, 3), "camera_normal": (np.float32, 3),
-    "position": (np.float32, 3), "albedo": (np.float32, 4), "linear": (np.float32, 4),
+    "position": (np.float32, 3), "albedo": (np.float32, 4), "linear": (np.float32, 4), "scalars": (np.float32, 1),
 }
 _IDS = ("id", "instance", "face")
 
@@ -59,7 +59,7 @@ def _number_of_threads():
 @dataclasses.dataclass(frozen=True)
 class Hit:
     """What is under a pixel. barycentrics: of the three corners; position, normal: in the world; depth: along the
-    camera's axis; distance: from the eye."""
+    camera's axis; distance: from the eye; scalar: of its numbers, None where it has none."""
     id: int
     instance: int
     face: int
@@ -68,6 +68,7 @@ class Hit:
     normal: tuple
     depth: float
     distance: float
+    scalar: float | None = None
 
 
 class _Fields:
@@ -94,7 +95,7 @@ class Picture(_Fields):
     color uint8 (H, W, 4), straight alpha; color_f32 float32, premultiplied; depth float32 (H, W), along the axis in
     world units, 0 where nothing is; depth_raw reversed; distance from the eye; id, instance, face int32 (int64 from
     2**31 primitives), -1 where nothing is; barycentrics (H, W, 2); normal, position, camera_normal (H, W, 3); albedo,
-    linear (H, W, 4). `stats` is a dict.
+    linear (H, W, 4); scalars float32 (H, W), the things' numbers, NaN where there are none. `stats` is a dict.
     """
 
     def __init__(self, arrays, stats, pick):
