@@ -169,13 +169,15 @@ class Renderer:
     def render(self, what: Any, camera: Camera | None = None, *, size: tuple[int, int] = (1280, 720),
                outputs: Output | Iterable[Output] = "color", shader: str = "auto", background: Color | None = None,
                samples: int = 1, transparency: str = "exact", cull: str = "none", opacity: float = 1.0,
-               clip_planes: ArrayLike = (), out: Mapping[str, NDArray[Any]] | None = None,
+               clip_planes: ArrayLike = (), annotate: str | Iterable[str] | Mapping[str, Any] = (),
+               out: Mapping[str, NDArray[Any]] | None = None,
                progress: Callable[[int, int], None] | bool | None = None) -> Picture: ...
     @overload
     def render(self, what: Any, camera: Sequence[Camera] | NDArray[Any], *, size: tuple[int, int] = (1280, 720),
                outputs: Output | Iterable[Output] = "color", shader: str = "auto", background: Color | None = None,
                samples: int = 1, transparency: str = "exact", cull: str = "none", opacity: float = 1.0,
-               clip_planes: ArrayLike = (), out: Mapping[str, NDArray[Any]] | None = None,
+               clip_planes: ArrayLike = (), annotate: str | Iterable[str] | Mapping[str, Any] = (),
+               out: Mapping[str, NDArray[Any]] | None = None,
                progress: Callable[[int, int], None] | bool | None = None) -> Pictures: ...
 
 def render(what: Any, camera: Any = None, *, threads: int | None = None, device: str = "threads", memory_limit: int = 0,

@@ -13,6 +13,7 @@ import weakref
 import numpy as np
 
 from . import _rastrum as _r
+from ._annotate import annotations as _annotations
 from ._arrays import color as _color
 from ._arrays import floats
 from ._camera import Camera, as_camera
@@ -213,26 +214,29 @@ class Renderer:
         self._made = None
 
     def render(self, what, camera=None, *, size=(1280, 720), outputs="color", shader="auto", background=None, samples=1,
-               transparency="exact", cull="none", opacity=1.0, clip_planes=(), out=None, progress=None):
+               transparency="exact", cull="none", opacity=1.0, clip_planes=(), annotate=(), out=None, progress=None):
         """A Picture of `what` by one camera, Pictures by a sequence of cameras or an (N, 4, 4) array.
 
         what: as_scene has the list. camera: a Camera, a (4, 4), or None: all of it from the front. size: (W, H).
         outputs: names of Picture's fields. shader: auto, flat, depth, normal, id, lambert, phong, material, wireframe.
         background: a colour, None: transparent. samples: 1, 4, 8 or 16 a pixel. transparency: exact, unsorted, none.
         cull: none, back, front. clip_planes: rows (x, y, z, d) of the world; kept is x X + y Y + z Z + d >= 0.
+        annotate: what is drawn over the colours, by name, or {name: options}: "occlusion" (radius, in world units,
+        strength), "edl" (strength), "silhouettes", "edges" (angle, in degrees: creases and borders alone; width, px),
+        "axes", "bounds" (a camera of None leaves a margin for its numbers), "title", "captions" (a list), "text_scale".
         out: {name: array} to be filled, (H, W, ...) or with a leading N. progress: called with (done, total) after each
         frame, or True: a count on a terminal.
         Raises rastrum.Error of the natural class; KeyboardInterrupt in a frame leaves the arrays partly filled.
         """
-        scene, made, frame, arrays, many = _prepared(what, camera, size, outputs, shader, background, samples,
-                                                     transparency, cull, opacity, clip_planes, out)
+        scene, made, frame, arrays, many, notes = _prepared(what, camera, size, outputs, shader, background, samples,
+                                                            transparency, cull, opacity, clip_planes, annotate, out)
         if progress is True:
             progress = _bar if sys.stderr.isatty() else None
         if progress is not None and not callable(progress):
             raise ArgumentTypeError(f"progress: {progress!r} cannot be called")
         renderer = self._renderer()
         stats = renderer.render(scene._made, made, frame,
-                                {name: a if many else a[np.newaxis] for name, a in arrays.items()}, progress)
+                                {name: a if many else a[np.newaxis] for name, a in arrays.items()}, notes, progress)
 
         def picker(camera):
             def pick(x, y):
@@ -245,8 +249,9 @@ class Renderer:
 
 
 @raises_errors
-def _prepared(what, camera, size, outputs, shader, background, samples, transparency, cull, opacity, clip_planes, out):
-    """(scene, cameras, frame, arrays, whether there are several pictures)"""
+def _prepared(what, camera, size, outputs, shader, background, samples, transparency, cull, opacity, clip_planes,
+              annotate, out):
+    """(scene, cameras, frame, arrays, whether there are several pictures, annotations)"""
     scene = as_scene(what)
     many = _is_many(camera)
     cameras = [as_camera(c, scene) for c in camera] if many else [as_camera(camera, scene)]
@@ -258,7 +263,10 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
                      _text(transparency, "transparency"), samples,
                      [] if len(clip_planes) == 0 else floats(clip_planes, "clip_planes", (4,)).tolist())
     made = [c._for_size((width, height)) for c in cameras]
-    return scene, made, frame, _arrays(outputs, out, len(made), many, (height, width), scene.primitives), many
+    notes = _annotations(annotate)
+    if notes is not None and notes.bounds and camera is None:
+        made = [_r.zoomed(c, 1 / 1.5) for c in made]
+    return scene, made, frame, _arrays(outputs, out, len(made), many, (height, width), scene.primitives), many, notes
 
 
 def _text(value, name):

@@ -111,6 +111,7 @@ void bind_cameras(nb::module_& m) {
         arg("near"), arg("far"));
   m.def("fit", fit, arg("scene"), arg("direction"), arg("up"), arg("fov"), arg("orthographic"),
         arg("width"), arg("height"));
+  m.def("zoomed", zoomed, arg("camera"), arg("times"));
   m.def("view", view, arg("name"), arg("up"));
   m.def("opencv", opencv, arg("K"), arg("pose"), arg("width"), arg("height"), arg("near"),
         arg("first_centre"));

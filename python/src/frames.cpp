@@ -25,6 +25,7 @@
 #include <rastrum/render.hpp>
 #include <rastrum/stop.hpp>
 
+#include "annotations.hpp"
 #include "scenes.hpp"
 
 namespace rastrum::python {
@@ -104,6 +105,7 @@ struct Narrowed {
 /// The scratch of who draws one picture after the other.
 struct Scratch {
   Narrowed ids, instances, primitives;
+  AnnotationScratch annotations;
 };
 
 struct Kind {
@@ -235,15 +237,23 @@ class FrameRenderer {
 
   std::vector<FrameStats> render(const SceneView& scene, const std::vector<Camera>& cameras,
                                  const FrameOptions& o, const std::vector<Wanted>& outputs,
-                                 const std::stop_token& stop, const std::function<void()>& after) {
+                                 const Annotations* annotations, const std::stop_token& stop,
+                                 const std::function<void()>& after) {
     std::vector<FrameStats> stats(cameras.size());
+    std::optional<SceneEdges> edges;
+    if (annotations != nullptr && annotations->edge_angle)
+      edges.emplace(scene, *annotations->edge_angle);
     const auto draw = [&](Renderer& by, Scratch& scratch, std::size_t i) {
       Targets targets;
       std::vector<Finish> finish;
       for (const Wanted& w : outputs)
         if (Finish f = w.kind->attach(targets, w.array, i, o, scratch))
           finish.push_back(std::move(f));
+      if (annotations != nullptr) scratch.annotations.attach(*annotations, o, targets);
       stats[i] = by.render(scene, cameras[i], o, targets, stop);
+      if (annotations != nullptr)
+        scratch.annotations.draw(*annotations, edges ? &*edges : nullptr, scene, cameras[i], o,
+                                 by.options(), targets);
       for (const Finish& f : finish) f();
     };
     const std::size_t threads = options_.threads > 0 ? static_cast<std::size_t>(options_.threads)
@@ -307,7 +317,8 @@ class FrameRenderer {
 /// Draws again where a signal asked for a stop and Python's handler wants none.
 nb::list render(FrameRenderer& renderer, const ArrayScene& scene,
                 const std::vector<Camera>& cameras, const FrameOptions& o,
-                const std::map<std::string, Output>& outputs, const nb::object& progress) {
+                const std::map<std::string, Output>& outputs, const Annotations* annotations,
+                const nb::object& progress) {
   const SceneView view = scene.view();
   const std::vector<Wanted> all = wanted(outputs, cameras.size(), o, scene.primitive_count());
   std::size_t done = 0;
@@ -323,7 +334,7 @@ nb::list render(FrameRenderer& renderer, const ArrayScene& scene,
     try {
       const nb::gil_scoped_release unlock;
       done = 0;
-      stats = renderer.render(view, cameras, o, all, interrupt.token(), after);
+      stats = renderer.render(view, cameras, o, all, annotations, interrupt.token(), after);
       break;
     } catch (const parallel::Stopped&) {
     }
@@ -397,7 +408,7 @@ void bind_frames(nb::module_& m) {
           },
           arg("threads"), arg("memory_limit"), arg("device"), arg("isa").none())
       .def("render", render, arg("scene"), arg("cameras"), arg("frame"), arg("outputs"),
-           arg("progress").none())
+           arg("annotations").none(), arg("progress").none())
       .def("pick", pick, arg("scene"), arg("camera"), arg("frame"), arg("x"), arg("y"));
   m.def("shader_names", [] {
     std::vector<std::string> names;

@@ -1,6 +1,7 @@
 // The module `rastrum._rastrum`: what the C++ library has, for the package's own Python to name.
 #include <new>
 
+#include "annotations.hpp"
 #include "bindings.hpp"
 
 namespace rastrum::python {
@@ -51,5 +52,6 @@ NB_MODULE(_rastrum, m) {
   py::bind_geometries(m);
   py::bind_cameras(m);
   py::bind_scenes(m);
+  py::bind_annotations(m);
   py::bind_frames(m);
 }

@@ -1,0 +1,72 @@
+"""Words, axes and effects that are drawn over a picture with it."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from . import _rastrum as _r
+from ._errors import ArgumentError, ArgumentTypeError
+
+#: name: its options and their defaults; None: by the scene
+_EFFECTS = {"occlusion": {"radius": None, "strength": 1.0}, "edl": {"strength": 1.0}, "silhouettes": {},
+            "edges": {"angle": 0.0, "width": 1.0}, "axes": {}, "bounds": {}}
+_WORDS = ("title", "captions", "text_scale")
+
+
+def _number(value, name):
+    if isinstance(value, bool) or not isinstance(value, (int, float, np.number)):
+        raise ArgumentTypeError(f"{name}: must be a number, not {value!r}")
+    return float(value)
+
+
+def annotations(wanted):
+    """What `annotate` of render means, for C++; None where it is nothing."""
+    if isinstance(wanted, str):
+        wanted = (wanted,)
+    if not isinstance(wanted, Mapping):
+        wanted = {name: True for name in wanted}
+    effects = {}
+    for name, value in wanted.items():
+        if name in _WORDS:
+            continue
+        if name not in _EFFECTS:
+            raise ArgumentError(f"annotate: there is no {name!r}; take some of {', '.join([*_EFFECTS, *_WORDS])}")
+        if value is None or value is False:
+            continue
+        options = {} if value is True else value
+        if not isinstance(options, Mapping):
+            raise ArgumentTypeError(f"annotate[{name!r}]: must be True or a dict of options, not {value!r}")
+        for key in options:
+            if key not in _EFFECTS[name]:
+                have = ", ".join(_EFFECTS[name]) or "none"
+                raise ArgumentError(f"annotate[{name!r}]: there is no option {key!r}; there is {have}")
+        effects[name] = {**_EFFECTS[name], **options}
+    title, captions = wanted.get("title") or "", wanted.get("captions") or ()
+    captions = [captions] if isinstance(captions, str) else list(captions)
+    if not isinstance(title, str) or not all(isinstance(c, str) for c in captions):
+        raise ArgumentTypeError("annotate: title and captions are words")
+    if not effects and not title and not captions:
+        return None
+
+    def option(name, key, low, high):
+        value = effects[name][key]
+        if value is None:
+            return None
+        value = _number(value, f"annotate[{name!r}][{key!r}]")
+        if not low <= value <= high:
+            raise ArgumentError(f"annotate[{name!r}][{key!r}]: {value} must lie in {low} to {high}")
+        return value
+
+    has = effects.__contains__
+    radius = strength = None
+    if has("occlusion"):
+        # 0 is C++'s word for the scene's own.
+        given = option("occlusion", "radius", 0, 1e300)
+        if given == 0:
+            raise ArgumentError("annotate['occlusion']['radius']: must be > 0")
+        radius, strength = given or 0.0, option("occlusion", "strength", 0, 16)
+    return _r.annotations(
+        radius, strength or 0.0, option("edl", "strength", 0, 100) if has("edl") else None, has("silhouettes"),
+        option("edges", "angle", 0, 180) if has("edges") else None,
+        option("edges", "width", 1e-3, 64) if has("edges") else 1.0, has("axes"), has("bounds"), title, captions,
+        _number(wanted.get("text_scale", 1.0), "annotate['text_scale']"))
