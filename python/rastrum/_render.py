@@ -223,7 +223,7 @@ class Renderer:
         cull: none, back, front. clip_planes: rows (x, y, z, d) of the world; kept is x X + y Y + z Z + d >= 0.
         annotate: what is drawn over the colours, by name, or {name: options}: "occlusion" (radius, in world units,
         strength), "edl" (strength), "silhouettes", "edges" (angle, in degrees: creases and borders alone; width, px),
-        "axes", "bounds" (a camera of None leaves a margin for its numbers), "title", "captions" (a list), "text_scale".
+        "axes", "bounds" and "bar" (of scalars; a camera of None leaves a margin for their numbers), "title", "captions" (a list), "text_scale".
         out: {name: array} to be filled, (H, W, ...) or with a leading N. progress: called with (done, total) after each
         frame, or True: a count on a terminal.
         Raises rastrum.Error of the natural class; KeyboardInterrupt in a frame leaves the arrays partly filled.
@@ -264,8 +264,8 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
                      [] if len(clip_planes) == 0 else floats(clip_planes, "clip_planes", (4,)).tolist())
     made = [c._for_size((width, height)) for c in cameras]
     notes = _annotations(annotate)
-    if notes is not None and notes.bounds and camera is None:
-        made = [_r.zoomed(c, 1 / 1.5) for c in made]
+    if notes is not None and notes.room != 1 and camera is None:
+        made = [_r.zoomed(c, 1 / notes.room) for c in made]
     return scene, made, frame, _arrays(outputs, out, len(made), many, (height, width), scene.primitives), many, notes
 
 

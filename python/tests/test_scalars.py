@@ -103,6 +103,19 @@ def test_maps(sheet):
     assert len(np.unique(glass[..., 3])) > 20
 
 
+def test_a_bar_is_drawn(sheet):
+    vertices, triangles = sheet
+    mesh = rr.Mesh(vertices, triangles, scalars=heat(vertices))
+    camera = rr.Camera.fit(mesh)
+    plain = rr.render(mesh, camera, size=(320, 240)).color
+    barred = rr.render(mesh, camera, size=(320, 240), annotate={"bar": {"title": "Heat", "unit": "K"}}).color
+    other = np.argwhere((plain != barred).any(-1))
+    assert len(other) > 500 and other[:, 1].min() > 160  # at the right
+    assert (rr.render(mesh, camera, size=(320, 240), annotate={"bar": "Heat"}).color != barred).any()
+    with pytest.raises(rr.ArgumentError, match="bar"):
+        rr.render(rr.Mesh(vertices, triangles), size=SIZE, annotate="bar")
+
+
 @pytest.mark.parametrize("bad", [
     dict(cmap="nomap"), dict(cmap=[]), dict(clim=(1, 0)), dict(clim=(1,)), dict(clim=(float("nan"), 1)), dict(log=True, clim=(-1, 1)),
     dict(steps=-1), dict(categories=[1, 1]), dict(opacity=[(1, 1), (0, 1)]), dict(opacity=[(0, 2)]), dict(isolines=[float("inf")]),
