@@ -55,8 +55,9 @@ void write_npy(const std::filesystem::path& file, ImageView<const std::int64_t> 
 void write_npy(const std::filesystem::path& file, ImageView<const std::int32_t> image);
 
 /// Binary little-endian PLY with positions, faces, and the normals, texture coordinates and colours
-/// that share the positions' indices (those with indices of their own are left out). Throws
-/// Error{invalid_argument} for an index out of range or fewer values than positions.
+/// that share the positions' indices (those with indices of their own are left out), and scalars of
+/// vertices and faces as doubles of their names (a blank in one is written _). Throws
+/// Error{invalid_argument} for an index out of range or fewer values than positions or faces.
 void write_ply(const std::filesystem::path& file, const Mesh& mesh);
 /// The same of points: a file without faces.
 void write_ply(const std::filesystem::path& file, const Points& points);

@@ -50,8 +50,25 @@ void place(Points& points, const Mat4d& a) {
   place(points.positions, points.normals, a);
 }
 
+/// Those of two meshes, or clouds, where both have the same names. Returns whether any are lost.
+bool join_scalars(std::vector<NamedScalars>& into, const std::vector<NamedScalars>& from) {
+  const bool same = std::ranges::equal(
+      into, from, [](const auto& a, const auto& b) { return a.name == b.name && a.per == b.per; });
+  if (!same) {
+    into.clear();
+    return true;
+  }
+  for (std::size_t i = 0; i < into.size(); ++i)
+    into[i].values.insert(into[i].values.end(), from[i].values.begin(), from[i].values.end());
+  return false;
+}
+
+struct Kept {
+  bool normals = true, texcoords = true, colors = true, scalars = true;
+};
+
 /// Of their attributes those that all have.
-Points joined(const std::vector<Points>& clouds) {
+Points joined(const std::vector<Points>& clouds, Kept& whole) {
   Points all;
   const auto have = [&](auto member) {
     return std::ranges::none_of(clouds, [&](const Points& p) { return (p.*member).empty(); });
@@ -63,6 +80,9 @@ Points joined(const std::vector<Points>& clouds) {
   join(&Points::positions);
   if (have(&Points::normals)) join(&Points::normals);
   if (have(&Points::colors)) join(&Points::colors);
+  if (!clouds.empty()) all.scalars = clouds.front().scalars;
+  for (std::size_t i = 1; i < clouds.size(); ++i)
+    whole.scalars &= !join_scalars(all.scalars, clouds[i].scalars);
   return all;
 }
 
@@ -81,10 +101,6 @@ void join(Attribute<T>& into, Attribute<T>& from, std::size_t positions, bool& k
   into.values.insert(into.values.end(), from.values.begin(),
                      from.values.begin() + static_cast<std::ptrdiff_t>(positions));
 }
-
-struct Kept {
-  bool normals = true, texcoords = true, colors = true;
-};
 
 void append(Mesh& into, Mesh& from, Kept& kept, Kept& whole) {
   const std::size_t first = into.positions.size();
@@ -105,6 +121,10 @@ void append(Mesh& into, Mesh& from, Kept& kept, Kept& whole) {
   whole.normals &= !lost[0];
   whole.texcoords &= !lost[1];
   whole.colors &= !lost[2];
+  if (first == 0)
+    into.scalars = from.scalars;
+  else
+    whole.scalars &= !join_scalars(into.scalars, from.scalars);
 }
 
 }  // namespace
@@ -143,10 +163,12 @@ Flattened flatten(Scene scene) {
   if (!clouds.empty() && flat.mesh.triangle_count() != 0)
     flat.warnings.emplace_back("the points are left out: a PLY file with faces has none");
   else
-    flat.points = joined(clouds);
+    flat.points = joined(clouds, whole);
   tell(whole.normals, "normals");
   tell(whole.texcoords, "texture coordinates");
   tell(whole.colors, "colours");
+  if (!whole.scalars)
+    flat.warnings.emplace_back("the scalars are left out: not all parts have the same ones");
   if (!scene.materials.empty())
     flat.warnings.emplace_back("the materials are left out: PLY has none");
   return flat;

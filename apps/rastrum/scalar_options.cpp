@@ -102,8 +102,11 @@ void add_scalar_options(Parser& app, ScalarOptions& s) {
           [&m](ScalarOptions&, const std::string& v) { m.below = parse_color("--below", v); });
   add_one("--above", "COLOUR", "of numbers above it (its last colour)",
           [&m](ScalarOptions&, const std::string& v) { m.above = parse_color("--above", v); });
-  add_one("--nan-color", "COLOUR", "where there is no number (#808080)",
-          [&m](ScalarOptions&, const std::string& v) { m.nan = parse_color("--nan-color", v); });
+  add_one("--nan-color", "COLOUR", "where there is no number, also in the bar (#808080)",
+          [](ScalarOptions& all, const std::string& v) {
+            all.mapping.nan = parse_color("--nan-color", v);
+            all.nan_given = true;
+          });
   add_one("--scalar-opacity", "V:A,V:A,...", "opacity at these numbers, linear between them",
           [&m](ScalarOptions&, const std::string& v) { m.opacity = parse_opacity(v); });
   add_one("--isolines", "N|V,V,...",
@@ -165,6 +168,7 @@ void draw_bar(const ScalarOptions& s, const SceneView& scene, const overlay::Can
   overlay::ScalarBar bar = overlay::scalar_bar(scene.scalar_mappings[0], scalar_colors(scene));
   bar.title = *s.bar_title;
   bar.unit = s.bar_unit;
+  if (s.nan_given) bar.nan = scene.scalar_mappings[0].nan;
   overlay::draw_scalar_bar(canvas, bar, look);
 }
 

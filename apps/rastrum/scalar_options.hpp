@@ -15,7 +15,8 @@ namespace rastrum::cli {
 struct ScalarOptions {
   std::string name;  ///< empty: none are shown
   ScalarMapping mapping;
-  int isoline_count = 0;  ///< about so many, where the bar has its ticks
+  bool nan_given = false;  ///< its colour, which the bar then shows
+  int isoline_count = 0;   ///< about so many, where the bar has its ticks
   std::optional<std::string> bar_title;
   std::string bar_unit;
   const char* given = nullptr;  ///< an option that needs --scalars

@@ -57,10 +57,37 @@ struct Vertices {
   std::span<const Vec3> positions, normals;
   std::span<const Vec2> texcoords;
   std::span<const Vec4> colors;
+  std::vector<const NamedScalars*> scalars{};
 };
 
+/// As a word of the header.
+std::string word_of(const std::string& name) {
+  std::string word = name.empty() ? "scalars" : name;
+  for (char& c : word)
+    if (static_cast<unsigned char>(c) <= ' ') c = '_';
+  return word;
+}
+
+/// Those that PLY can say: one a vertex, or one a face.
+std::vector<const NamedScalars*> scalars_of(const AtomicFile& out,
+                                            const std::vector<NamedScalars>& all, Per per,
+                                            std::size_t count) {
+  std::vector<const NamedScalars*> chosen;
+  for (const NamedScalars& s : all) {
+    if (s.per != per || s.values.empty()) continue;
+    if (s.values.size() < count)
+      throw Error(Errc::invalid_argument, out.name().string() + ": there are " +
+                                              std::to_string(s.values.size()) + " scalars '" +
+                                              s.name + "', but " + std::to_string(count) +
+                                              (per == Per::face ? " faces" : " positions"));
+    chosen.push_back(&s);
+  }
+  return chosen;
+}
+
 /// `faces`: null: none, and no element for them.
-void write_vertices(AtomicFile& out, const Vertices& v, const MeshView* faces) {
+void write_vertices(AtomicFile& out, const Vertices& v, const MeshView* faces,
+                    const std::vector<const NamedScalars*>& face_scalars = {}) {
   const std::size_t vertices = v.positions.size();
   const bool bytes = fit_bytes(v.colors);
   std::string header = "ply\nformat binary_little_endian 1.0\nelement vertex " +
@@ -71,10 +98,12 @@ void write_vertices(AtomicFile& out, const Vertices& v, const MeshView* faces) {
   if (!v.colors.empty())
     for (const char* c : {"red", "green", "blue", "alpha"})
       header += std::string("property ") + (bytes ? "uchar " : "float ") + c + "\n";
+  for (const NamedScalars* s : v.scalars) header += "property double " + word_of(s->name) + "\n";
   const std::size_t face_count = faces == nullptr ? 0 : faces->triangle_count();
   if (faces != nullptr)
     header += "element face " + std::to_string(face_count) +
               "\nproperty list uchar uint vertex_indices\n";
+  for (const NamedScalars* s : face_scalars) header += "property double " + word_of(s->name) + "\n";
   header += "end_header\n";
 
   RowWriter rows(out);
@@ -86,16 +115,16 @@ void write_vertices(AtomicFile& out, const Vertices& v, const MeshView* faces) {
       const Vec2 t = {v.texcoords[i].x, 1 - v.texcoords[i].y};
       rows.put(&t, sizeof t);
     }
-    if (v.colors.empty()) continue;
-    const Vec4 c = v.colors[i];
-    if (bytes) {
+    if (!v.colors.empty() && bytes) {
+      const Vec4 c = v.colors[i];
       const float scaled[4] = {c.x * 255, c.y * 255, c.z * 255, c.w * 255};
       std::uint8_t b[4];
       for (int k = 0; k < 4; ++k) b[k] = static_cast<std::uint8_t>(std::lround(scaled[k]));
       rows.put(b, sizeof b);
-    } else {
-      rows.put(&c, sizeof c);
+    } else if (!v.colors.empty()) {
+      rows.put(&v.colors[i], sizeof(Vec4));
     }
+    for (const NamedScalars* s : v.scalars) rows.put(&s->values[i], sizeof(double));
   }
   for (std::size_t t = 0; t < face_count; ++t) {
     std::byte face[13] = {std::byte{3}};
@@ -104,6 +133,7 @@ void write_vertices(AtomicFile& out, const Vertices& v, const MeshView* faces) {
       std::memcpy(face + 1 + 4 * c, &i, 4);
     }
     rows.put(face, sizeof face);
+    for (const NamedScalars* s : face_scalars) rows.put(&s->values[t], sizeof(double));
   }
   rows.flush();
 }
@@ -136,8 +166,9 @@ void write_ply(AtomicFile& out, const Mesh& mesh) {
   const MeshView view = mesh.view();
   write_vertices(out,
                  {mesh.positions, shared(mesh.normals, "normals"),
-                  shared(mesh.texcoords, "texture coordinates"), shared(mesh.colors, "colours")},
-                 &view);
+                  shared(mesh.texcoords, "texture coordinates"), shared(mesh.colors, "colours"),
+                  scalars_of(out, mesh.scalars, Per::vertex, vertices)},
+                 &view, scalars_of(out, mesh.scalars, Per::face, mesh.triangle_count()));
 }
 
 void write_ply(AtomicFile& out, const Points& points) {
@@ -146,7 +177,8 @@ void write_ply(AtomicFile& out, const Points& points) {
                  {points.positions,
                   each(out, "there are ", points.normals, n, "normals"),
                   {},
-                  each(out, "there are ", points.colors, n, "colours")},
+                  each(out, "there are ", points.colors, n, "colours"),
+                  scalars_of(out, points.scalars, Per::vertex, n)},
                  nullptr);
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "flatten.hpp"
 #include "program.hpp"
 
 namespace rastrum::test::scalars_program_test {
@@ -47,6 +48,33 @@ TEST_F(Scalars, OfAFileAreDrawnAndListed) {
   const Image<Rgba8> faint = drawn({"--scalars", "part", "--scalar-opacity", "4:0,9:1"});
   EXPECT_EQ(faint(40, 58).a, 0);
   EXPECT_EQ(faint(20, 10).a, 255);
+}
+
+TEST_F(Scalars, StayWithTheirMeshes) {
+  write("s.ply", kFile);
+  must({"make", "s.ply@x=5", "-o", "one.ply"});
+  EXPECT_NE(run({"info", "one.ply"}).out.find("scalars part: 2 values, 4 to 9"), std::string::npos);
+  must({"make", "s.ply", "--subdivide", "2", "-o", "many.ply"});
+  const std::string info = run({"info", "many.ply"}).out;
+  EXPECT_NE(info.find("scalars part: 32 values, 4 to 9"), std::string::npos) << info;
+  EXPECT_NE(info.find("scalars heat: 25 values, 0 to 1"), std::string::npos) << info;
+  // Of several meshes what all have.
+  Scene two;
+  two.meshes.resize(2);
+  two.instances.resize(2);
+  two.instances[1].mesh = 1;
+  for (Mesh& mesh : two.meshes) {
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.scalars = {{"heat", {1, 2, 3}}};
+  }
+  const cli::Flattened same = cli::flatten(two);
+  EXPECT_EQ(same.mesh.scalars.at(0).values, (std::vector<double>{1, 2, 3, 1, 2, 3}));
+  EXPECT_TRUE(same.warnings.empty());
+  two.meshes[1].scalars[0].name = "cold";
+  const cli::Flattened apart = cli::flatten(two);
+  EXPECT_TRUE(apart.mesh.scalars.empty());
+  ASSERT_EQ(apart.warnings.size(), 1U);
+  EXPECT_NE(apart.warnings[0].find("the scalars are left out"), std::string::npos);
 }
 
 TEST_F(Scalars, OfPlacesAreThoseOfTheWorld) {

@@ -106,6 +106,27 @@ TEST(Ply, OtherPropertiesAreScalars) {
   }
 }
 
+TEST(Ply, ScalarsAreWrittenAsTheyAreRead) {
+  const test::TempFolder folder;
+  Mesh m;
+  m.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  m.indices = {0, 1, 2, 1, 3, 2};
+  m.scalars = {{"heat", {0.1, 1e300, -3, 4}, Per::vertex},
+               {"part of it", {7, -7}, Per::face},
+               {"left out", {1, 2, 3, 4, 5, 6}, Per::corner}};
+  io::write_ply(folder.path("b.ply"), m);
+  const Mesh again = io::read_scene(folder.path("b.ply")).meshes.at(0);
+  EXPECT_EQ(again.indices, m.indices);
+  ASSERT_EQ(again.scalars.size(), 2U);
+  EXPECT_EQ(again.scalars[0].name, "heat");
+  EXPECT_EQ(again.scalars[0].values, m.scalars[0].values);
+  EXPECT_EQ(again.scalars[1].name, "part_of_it");
+  EXPECT_EQ(again.scalars[1].per, Per::face);
+  EXPECT_EQ(again.scalars[1].values, m.scalars[1].values);
+  m.scalars[1].values.pop_back();
+  EXPECT_THROW(io::write_ply(folder.path("b.ply"), m), Error);
+}
+
 /// The same square in each combination of types and byte orders must be the same mesh.
 template <class Count, class Index, class Real>
 void expect_square(const char* count, const char* index, const char* real, bool big) {

@@ -77,7 +77,13 @@ TEST(PointFiles, CloudsAreWrittenAsTheyAreRead) {
   EXPECT_EQ(points_of(again).positions, p.positions);
   EXPECT_EQ(points_of(again).normals, p.normals);
   EXPECT_EQ(points_of(again).colors, p.colors);
+  ASSERT_EQ(points_of(again).scalars.size(), 1U);
+  EXPECT_EQ(points_of(again).scalars[0].name, "intensity");
+  EXPECT_EQ(points_of(again).scalars[0].values, p.scalars[0].values);
   EXPECT_TRUE(again.warnings.empty());
+  Points few = p;
+  few.scalars[0].values.pop_back();
+  EXPECT_THROW(io::write_ply(folder.path("b.ply"), few), Error) << "scalars lost without a word";
   p.colors.pop_back();
   EXPECT_THROW(io::write_ply(folder.path("b.ply"), p), Error) << "colours lost without a word";
 }

@@ -118,6 +118,42 @@ TEST(Hashes, Shapes) {
   }
 }
 
+/// Numbers by every map, over meshes and quadrics.
+TEST(Hashes, Scalars) {
+  for (const std::string_view map : color_map_names()) {
+    Sum sum;
+    for (const Vec4& c : color_map(map).colors) sum.add(std::vector<Vec4>{c});
+    EXPECT_TRUE(matches_golden(std::string("color_maps/").append(map), sum.total()));
+  }
+  for (const std::string spec : {"gyroid?cells=24", "tube", "spheres"}) {
+    Scene scene = shapes::scene_from_spec(spec);
+    show_scalars(scene, "distance");
+    ScalarMapping& m = scene.scalar_mappings.emplace_back();
+    m.map = color_map("turbo");
+    m.range = ScalarRange{0.25, 1.5};
+    m.logarithmic = true;
+    m.below = Vec4{1, 1, 1, 0.25F};
+    m.isolines = {0.5, 1};
+    expect_golden("scalars/" + spec.substr(0, spec.find('?')), [&](Isa isa, Sum& pictures) {
+      Renderer renderer({.threads = 2, .isa = isa});
+      const SceneBinding binding(scene);
+      for (const Shader shader : {Shader::flat, Shader::phong, Shader::material}) {
+        FrameOptions f;
+        f.width = 160;
+        f.height = 120;
+        f.shader = shader;
+        Picture picture(f);
+        Targets targets = picture.targets();
+        Image<float> scalars(f.width, f.height);
+        targets.scalars = scalars;
+        renderer.render(binding.view(), fit_camera(binding.view(), 0.8F, false), f, targets);
+        picture.add_to(pictures);
+        pictures.add(digest(scalars));
+      }
+    });
+  }
+}
+
 std::vector<std::uint64_t> bits_of(const std::vector<double>& values) {
   std::vector<std::uint64_t> bits;
   for (const double v : values) bits.push_back(std::isnan(v) ? 0 : std::bit_cast<std::uint64_t>(v));

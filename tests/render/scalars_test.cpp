@@ -11,6 +11,7 @@
 #include <rastrum/digest.hpp>
 #include <rastrum/pick.hpp>
 #include <rastrum/render.hpp>
+#include <rastrum/render/scene_checks.hpp>
 #include <rastrum/shapes.hpp>
 #include <rastrum/transform.hpp>
 
@@ -403,6 +404,16 @@ TEST(Scalars, AreTheSameBitsWhateverDraws) {
       ASSERT_EQ(digest(first.color.view()),
                 digest(draw(binding.view(), g.camera, limited).color.view()));
     }
+}
+
+TEST(Scalars, AreTheHostsToColour) {
+  const std::vector<float> values{0, 1, 1, 0};
+  const InstanceView instance{square(values)};
+  const ScalarMapping mapping;
+  SceneView scene = scene_of(instance, mapping);
+  EXPECT_NE(why_not_on_device(scene).find("instance 0 shows scalars"), std::string::npos);
+  scene.scalar_mappings = {};
+  EXPECT_EQ(why_not_on_device(scene), "");
 }
 
 TEST(Scalars, RefuseWhatDoesNotFit) {

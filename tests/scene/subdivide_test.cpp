@@ -143,5 +143,25 @@ TEST(Subdivide, RefusesIndicesOutOfRange) {
             Errc::invalid_argument);
 }
 
+TEST(Subdivide, SplitsScalars) {
+  Mesh m;
+  m.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  m.indices = {0, 1, 2};
+  m.scalars = {{"v", {0, 1, 3}, Per::vertex},
+               {"c", {0, 1, 3}, Per::corner},
+               {"f", {7}, Per::face},
+               {"m", {9}, Per::mesh}};
+  const Mesh out = shapes::subdivide(m, 1);
+  ASSERT_EQ(out.positions.size(), 6U);
+  ASSERT_EQ(out.scalars[0].values.size(), 6U);
+  // At a corner of a triangle both have the same number.
+  for (std::size_t c = 0; c < 12; ++c)
+    EXPECT_EQ(out.scalars[1].values.at(c), out.scalars[0].values.at(out.indices[c])) << c;
+  EXPECT_EQ(out.scalars[2].values, (std::vector<double>{7, 7, 7, 7}));
+  EXPECT_EQ(out.scalars[3].values, (std::vector<double>{9}));
+  m.scalars[0].values.pop_back();
+  EXPECT_THROW((void)shapes::subdivide(m, 1), Error);
+}
+
 }  // namespace
 }  // namespace rastrum::test::subdivide_test

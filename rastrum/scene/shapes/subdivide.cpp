@@ -153,9 +153,41 @@ void normalize_layout(Mesh& mesh) {
       require_indices(attribute.indices, attribute.values.size(), what);
     }
   });
+  for (NamedScalars& s : mesh.scalars) {
+    const std::size_t count = s.per == Per::vertex   ? mesh.positions.size()
+                              : s.per == Per::corner ? corners
+                              : s.per == Per::face   ? corners / 3
+                                                     : 1;
+    require_all(s.values.size(), count, "scalars");
+    s.values.resize(count);
+  }
   if (mesh.face_materials.empty()) return;
   require_all(mesh.face_materials.size(), corners / 3, "face materials");
   mesh.face_materials.resize(corners / 3);
+}
+
+/// Four triangles have their face's; corners blend as vertices do.
+void split_scalars(parallel::Threads& exec, NamedScalars& s, const Edges& edges) {
+  if (s.per == Per::vertex) {
+    add_midpoints(exec, s.values, edges);
+  } else if (s.per == Per::face) {
+    std::vector<double> four(4 * s.values.size());
+    parallel::tabulate(exec, four, [&](std::size_t i) { return s.values[i / 4]; });
+    s.values = std::move(four);
+  } else if (s.per == Per::corner) {
+    std::vector<double> four(4 * s.values.size());
+    parallel::for_each_block(
+        exec, s.values.size() / 3, [&](std::size_t, std::size_t begin, std::size_t end) {
+          for (std::size_t t = begin; t < end; ++t) {
+            const double* v = &s.values[3 * t];
+            const double ab = v[0] * 0.5 + v[1] * 0.5, bc = v[1] * 0.5 + v[2] * 0.5,
+                         ca = v[2] * 0.5 + v[0] * 0.5;
+            const double all[12] = {v[0], ab, ca, ab, v[1], bc, ca, bc, v[2], ab, bc, ca};
+            std::copy_n(all, 12, &four[12 * t]);
+          }
+        });
+    s.values = std::move(four);
+  }
 }
 
 void split_once(parallel::Threads& exec, Mesh& mesh, int times_left) {
@@ -172,6 +204,7 @@ void split_once(parallel::Threads& exec, Mesh& mesh, int times_left) {
     add_midpoints(exec, attribute.values, own);
     attribute.indices = split(exec, attribute.indices, own, old_size);
   });
+  for (NamedScalars& s : mesh.scalars) split_scalars(exec, s, edges);
   const std::size_t old_size = mesh.positions.size();
   add_midpoints(exec, mesh.positions, edges);
   mesh.indices = split(exec, mesh.indices, edges, old_size);
