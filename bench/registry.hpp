@@ -39,6 +39,7 @@ int run_transparency_pictures(std::span<const std::string_view> options);
 int run_cuda(std::span<const std::string_view> options);
 int run_spheres(std::span<const std::string_view> options);
 int run_points(std::span<const std::string_view> options);
+int run_terrain(std::span<const std::string_view> options);
 int run_tubes(std::span<const std::string_view> options);
 int run_words(std::span<const std::string_view> options);
 

@@ -13,6 +13,7 @@
 #include <rastrum/device.hpp>
 #include <rastrum/frame.hpp>
 #include <rastrum/image.hpp>
+#include <rastrum/light.hpp>
 #include <rastrum/pick.hpp>
 #include <rastrum/scene.hpp>
 
@@ -75,6 +76,9 @@ struct FrameOptions {
   /// hide what lies behind. Decided at each pixel (a triangle's once a pixel where there are
   /// several samples) in float64 from the triangle that is drawn; sections stay open.
   std::vector<ClipPlane> clip_planes{};
+  /// What lights the scene for `lambert`, `phong` and `material`; empty: the fixed light of each.
+  /// The CPU's: frames with lights are not drawn by a device.
+  std::vector<Light> lights{};
 };
 
 /// Throws Error{invalid_argument} for a number or an enum's value out of range, a background that

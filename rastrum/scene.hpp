@@ -12,6 +12,7 @@
 #include <rastrum/camera.hpp>
 #include <rastrum/color_map.hpp>
 #include <rastrum/image.hpp>
+#include <rastrum/light.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/mesh.hpp>
 #include <rastrum/motion.hpp>
@@ -155,6 +156,7 @@ struct Scene {
   std::vector<Material> materials{};  ///< empty: the file has none
   std::vector<Texture> textures{};
   std::vector<Camera> cameras{};
+  std::vector<Light> lights{};    ///< of its files; a picture has those of FrameOptions
   std::vector<Motion> motions{};  ///< what moves: `pose` (motion.hpp)
   std::vector<ScalarMapping> scalar_mappings{};
   /// The name of the scalars that instances show, where their geometry has some of it; empty: none.
@@ -166,7 +168,8 @@ struct Scene {
   /// shifted.
   /// Where one of the two has no materials it is given plain ones.
   void append(Scene other);
-  /// Moves everything but the cameras: `to_world` lies before all matrices of instances.
+  /// Moves everything but the cameras: `to_world` lies before all matrices of instances, and moves
+  /// lights.
   void place(const Mat4d& to_world);
   /// Of the meshes of all instances. Throws Error{invalid_argument} where an instance is of a mesh,
   /// or geometry, that is none.

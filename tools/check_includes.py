@@ -34,7 +34,7 @@ MAY_INCLUDE = {
 PUBLIC = {
     "core": {"array", "config", "digest", "error", "image", "mat", "scalars", "transform", "vec"},
     "parallel": {"device", "stop"},
-    "scene": {"camera", "color_map", "fit", "mesh", "motion", "points_and_lines", "scene",
+    "scene": {"camera", "color_map", "fit", "light", "mesh", "motion", "points_and_lines", "scene",
               "shapes", "surfaces"},
     "raster": {"frame", "primitives", "program", "tuning"},
     "terrain": {"terrain", "terrain_light"},

@@ -22,6 +22,7 @@
 #include "inputs.hpp"
 #include "json_fields.hpp"
 #include "json_file.hpp"
+#include "light_options.hpp"
 #include "mp4.hpp"
 #include "nothing_seen.hpp"
 #include "numbered.hpp"
@@ -57,6 +58,7 @@ struct RenderArguments : SceneArguments {
   std::vector<FrameImage> images;
   AnnotationOptions annotations;
   bool hash = false;
+  bool studio = false;
 
   /// Whether one run draws many pictures.
   [[nodiscard]] bool is_sequence() const { return !path.empty() || turntable != 0; }
@@ -199,6 +201,23 @@ void check_sequence(RenderArguments& a) {
     static_cast<void>(read_json(a.path));  // a spoilt file is refused before a large scene is read
 }
 
+void add_studio_option(Parser& app, RenderArguments& a) {
+  app.add_flag("--studio", a.studio,
+               "a picture to show, in what is not said otherwise: --view iso --lights studio "
+               "--occlusion --samples 4")
+      ->group("Picture");
+}
+
+/// What --studio stands for, where nothing else was asked for.
+void set_studio(RenderArguments& a) {
+  if (!a.studio) return;
+  ViewOptions& v = a.view;
+  if (!v.view && !v.eye && !v.target && !v.file_camera && a.path.empty()) v.view = ViewName::iso;
+  if (a.render.lights.empty() && !a.file_lights) a.render.lights = light_kit();
+  if (!a.samples_given) a.render.samples = 4;
+  if (a.color || a.errors || a.hash) a.annotations.occlusion = true;
+}
+
 /// What the parser cannot see by itself, before anything is read.
 void check(RenderArguments& a) {
   if (a.color_file)
@@ -209,6 +228,7 @@ void check(RenderArguments& a) {
   if (!a.color && !a.depth && !a.ids && !a.objects && a.images.empty() && !a.heatmap && !a.errors &&
       !a.stats && !a.trace && !a.hash)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
+  set_studio(a);
   check_scene_arguments(a);
   check_annotations(a.annotations, a.color || a.errors || a.hash);
   if (a.depth_unit && !a.depth) throw UsageError("--depth-unit", "is for --depth");
@@ -482,6 +502,7 @@ int run(RenderArguments& a) {
   }
   if (!a.quiet && a.render.transparency.method == Transparency::none) report_blended(scene);
   if (!a.quiet) report_missing_glyphs(a.annotations.words);
+  if (a.file_lights) add_file_lights(scene, a.render.lights);
   const bool moves = pose_for(a, inputs);
   set_scalars(a.annotations.scalars, inputs.scene);
   const SceneBinding binding(scene);
@@ -542,6 +563,7 @@ Command add_render_command(Parser& app) {
   add_input_option(render, *arguments)->required();
   add_output_options(render, *arguments);
   add_picture_options(render, *arguments);
+  add_studio_option(render, *arguments);
   add_transparency_options(render, *arguments);
   add_annotation_options(render, arguments->annotations);
   add_camera_options(render, *arguments);
@@ -559,6 +581,8 @@ Command add_render_command(Parser& app) {
       "  rastrum render scene.glb --camera 0 --size 1920x1080 --background '#20242c' -o scene.png\n"
       "  rastrum render a.stl b.ply --eye 3,2,5 --target 0,0,0 --depth d.npy --ids i.npy -o c.exr\n"
       "  rastrum render builtin:teapot 'builtin:sphere?x=3,scale=0.5' --shader normal -o two.png\n"
+      "  rastrum render part.stl --studio -o part.png\n"
+      "  rastrum render part.stl --lights studio --light point:0,2,1:intensity=3 -o lit.png\n"
       "  rastrum render scan.ply --scalars quality --cmap turbo --bar Quality -o quality.png\n"
       "  rastrum render part.stl --bounds --axes --occlusion --title 'Part 7' -o part.png\n"
       "  rastrum render engine.glb --opacity 0.3 --samples 4 -o see_through.png\n"

@@ -8,6 +8,7 @@
 #include <rastrum/primitives.hpp>
 #include <rastrum/shapes.hpp>
 
+#include "light_options.hpp"
 #include "transparency.hpp"
 
 namespace rastrum::cli {
@@ -129,6 +130,7 @@ void add_picture_options(Parser& app, SceneArguments& a) {
     a.render.height = size.height;
   })->group(group);
   add_shading_options(app, a, group);
+  add_light_options(app, a.render.lights, a.file_lights, group);
   add(app, "--background", "COLOUR", "#rrggbb[aa], #rgb[a] or a name of CSS's (transparent)",
       [&a](const std::string& s) { a.render.background = parse_color("--background", s); })
       ->group(group);
@@ -167,6 +169,7 @@ void add_transparency_options(Parser& app, SceneArguments& a) {
       "1, 4, 8 or 16 a pixel, at D3D11's standard positions; --ids and --depth are of the nearest "
       "one (1)",
       [&a](const std::string& s) {
+        a.samples_given = true;
         a.render.samples = choose<int>("--samples", s, {{"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}});
       })
       ->group(group);

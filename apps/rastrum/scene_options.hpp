@@ -21,6 +21,8 @@ struct SceneArguments {
   bool crease_given = false;
   ViewOptions view;
   bool fit = false;
+  bool samples_given = false;
+  bool file_lights = false;  ///< those of the inputs are added to the frame's
 };
 
 /// Adds --format, for a command that reads meshes.

@@ -119,6 +119,7 @@ class GltfReader {
     motion.animations = gltf::read_animations(document_, buffers_, rig_, scene_.warnings);
     find_weights();
     to_world_ = to_root(rig_.nodes, rig_.parents_first);
+    lights_ = gltf::read_lights(document_);
     for (const std::size_t root : roots()) walk(root);
     check_unused_meshes();
     if (!motion.animations.empty() || !rig_.deformed.empty()) {
@@ -177,10 +178,26 @@ class GltfReader {
           scene_.warnings.push_back(c.path() + " cannot be used and is left out");
         }
       }
+      if (const auto light = gltf::light_of_node(node, lights_.size()))
+        add_light(node, lights_[*light], to_world_[index]);
       const auto children = node.get("children");
       if (!children) continue;
       for (std::size_t i = children->size(); i-- > 0;) stack.push_back(children->at(i).count());
     }
+  }
+
+  void add_light(const Json& node, const std::optional<Light>& light, const Mat4d& to_world) {
+    const auto leave_out = [&](const char* why) {
+      scene_.warnings.push_back(node.path() + ": its light " + why + " and is left out");
+    };
+    if (!light) return leave_out("is of a kind that is not known");
+    const Light standing = placed(*light, to_world);
+    try {
+      check_lights({&standing, 1});
+    } catch (const Error&) {
+      return leave_out("has no direction");
+    }
+    scene_.lights.push_back(standing);
   }
 
   /// A mesh that no node draws is read all the same: what is broken is refused, not drawn empty.
@@ -332,6 +349,7 @@ class GltfReader {
   }
 
   const Json& document_;
+  std::vector<std::optional<Light>> lights_;  ///< of the document
   Scene& scene_;
   gltf::Buffers buffers_;
   gltf::Materials materials_;

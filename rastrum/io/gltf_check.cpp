@@ -310,6 +310,7 @@ constexpr std::string_view kKnown[] = {
     kMeshopt,
     "KHR_animation_pointer",
     kDraco,
+    "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_unlit",
     "KHR_materials_variants",

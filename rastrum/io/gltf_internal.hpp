@@ -13,6 +13,7 @@
 #include <rastrum/io/gltf_json.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
+#include <rastrum/light.hpp>
 #include <rastrum/scene/rig.hpp>
 
 namespace rastrum::io::gltf {
@@ -52,6 +53,12 @@ struct Unpacked {
 /// `packed`: the bytes of the extension's view. Throws as decode_meshopt.
 [[nodiscard]] Unpacked decode_draco(const Json& primitive, const Json& extension,
                                     const Json& document, Bytes packed);
+
+/// Lights of KHR_lights_punctual, unplaced: at the origin, along −z; none: of a kind that is
+/// not known. Throws Error{bad_format}.
+[[nodiscard]] std::vector<std::optional<Light>> read_lights(const Json& document);
+/// Which of so many a node places; none: it has none. Throws likewise.
+[[nodiscard]] std::optional<std::size_t> light_of_node(const Json& node, std::size_t lights);
 
 /// Bytes of buffers, read when they are asked for.
 class Buffers {

@@ -195,6 +195,17 @@ void describe_cameras(const Scene& scene, std::string& text) {
   }
 }
 
+void describe_lights(const Scene& scene, std::string& text) {
+  constexpr const char* kKinds[] = {"ambient", "hemisphere", "directional", "point", "spot"};
+  for (std::size_t i = 0; i < std::min(scene.lights.size(), kMostLines); ++i) {
+    const Light& l = scene.lights[i];
+    text += "  light " + std::to_string(i) + ": " + kKinds[l.kind.index()] +
+            format(", intensity %g, colour (%g, %g, %g)\n", static_cast<double>(l.intensity),
+                   static_cast<double>(l.color.x), static_cast<double>(l.color.y),
+                   static_cast<double>(l.color.z));
+  }
+}
+
 void describe_animations(const Scene& scene, std::string& text) {
   for (const Motion& motion : scene.motions)
     for (std::size_t i = 0; i < std::min(motion.animations.size(), kMostLines); ++i)
@@ -250,6 +261,7 @@ std::string describe(const Scene& scene) {
   describe_scalars(scene, text);
   describe_materials(scene, text);
   describe_cameras(scene, text);
+  describe_lights(scene, text);
   describe_animations(scene, text);
   for (const std::string& w : scene.warnings) text += "  warning: " + w + '\n';
   return text;

@@ -75,6 +75,7 @@ void check(const FrameOptions& o) {
   require(o.samples == 1 || o.samples == 4 || o.samples == 8 || o.samples == 16,
           "samples must be 1, 4, 8 or 16");
   raster::check_clip_planes(o.clip_planes, "the frame: ");
+  check_lights(o.lights);
 }
 
 struct Renderer::Impl {
@@ -192,6 +193,8 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
                           threads.get());
   if (!call.in_place) check_scene(runs);
   if (options.device == Device::cuda) call.why_host = why_not_on_device(scene);
+  if (call.why_host.empty() && !o.lights.empty())
+    call.why_host = "the frame has lights of its own, which are the CPU's";
   raster::check_materials(runs);
   check_surfaces(runs);
   check_outputs(call.targets, true, taken == Shader::material);

@@ -33,10 +33,20 @@ bool blends_surfaces(const SceneDraws::Options& o) {
   return o.frame.transparency.method != Transparency::none && o.shader != Shader::depth;
 }
 
-raster::SurfaceLook look_of(const SceneDraws::Options& o) {
+raster::SurfaceLook look_of(const SceneDraws::Options& o,
+                            const std::optional<raster::FrameLights>& lights) {
   std::optional<raster::LitModel> model;
   if (o.shader != Shader::material) model = lit_model(o.shader);
-  return {model, blends_surfaces(o), o.frame.opacity};
+  return {model, blends_surfaces(o), o.frame.opacity, lights ? &lights->set() : nullptr};
+}
+
+/// None where nothing asks for them.
+std::optional<raster::FrameLights> lights_of(const SceneDraws::Options& o, const Camera& camera) {
+  const bool lit =
+      o.shader == Shader::lambert || o.shader == Shader::phong || o.shader == Shader::material;
+  if (!lit || o.frame.lights.empty()) return {};
+  return std::optional<raster::FrameLights>(std::in_place, o.frame.lights, camera, o.frame.width,
+                                            o.frame.height);
 }
 
 }  // namespace
@@ -45,9 +55,11 @@ SceneDraws::SceneDraws(const InstanceRuns& runs, const Camera& camera, const Opt
                        raster::TextureSet& textures, parallel::Threads* threads)
     : runs_(runs),
       scene_(runs.firsts()),
+      lights_(lights_of(options, camera)),
       meshes_(scene_),
-      surfaces_(scene_, look_of(options), camera, options.frame.width, options.frame.height),
-      points_and_lines_(look_of(options), scene_.materials, camera, options.frame.width,
+      surfaces_(scene_, look_of(options, lights_), camera, options.frame.width,
+                options.frame.height),
+      points_and_lines_(look_of(options, lights_), scene_.materials, camera, options.frame.width,
                         options.frame.height) {
   const FrameOptions& o = options.frame;
   const Targets& targets = options.targets;
@@ -64,6 +76,7 @@ SceneDraws::SceneDraws(const InstanceRuns& runs, const Camera& camera, const Opt
                     raster::texture_uses(scene_, shades_materials || wants_albedo, material_alpha),
                     threads);
     materials_.emplace(meshes_, camera, o.width, o.height, textures);
+    materials_->lights = lights_ ? &lights_->set() : nullptr;
     set_copies(materials_->draws);
   }
   if (wants_surface(targets)) {
@@ -89,6 +102,7 @@ SceneDraws::SceneDraws(const InstanceRuns& runs, const Camera& camera, const Opt
     shading_ = raster::MaterialShading{&*materials_, linear_light_};
   } else {
     lit_.emplace(meshes_, camera, o.width, o.height);
+    lit_->lights = lights_ ? &lights_->set() : nullptr;
     set_copies(lit_->draws);
     shading_ = raster::LitShading{lit_model(options.shader), &*lit_};
   }
@@ -141,8 +155,8 @@ void SceneDraws::shade_scalar_meshes(const Options& options, const Camera& camer
   for (std::size_t i = 0; i < scene_.instances.size(); ++i)
     if (scene_.instances[i].mesh() != nullptr && shows_scalars(i)) scalars.push_back(scalars_[i]);
   const SceneView shown{scalar_mesh_list_, scene_.materials, scene_.textures, {}};
-  scalar_meshes_.emplace(look_of(options), shown, std::move(scalars), camera, options.frame.width,
-                         options.frame.height, textures);
+  scalar_meshes_.emplace(look_of(options, lights_), shown, std::move(scalars), camera,
+                         options.frame.width, options.frame.height, textures);
   for (std::size_t i = 0; i < scene_.instances.size(); ++i)
     if (scene_.instances[i].mesh() != nullptr && shows_scalars(i)) {
       draws_[i].shading = *scalar_meshes_;

@@ -12,6 +12,7 @@
 #include <rastrum/raster/draws/draw.hpp>
 #include <rastrum/raster/frame/request.hpp>
 #include <rastrum/raster/resolve/surface_point.hpp>
+#include <rastrum/raster/shade/light_set.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/point_line_shader.hpp>
@@ -74,7 +75,8 @@ class SceneDraws {
   void set_copies(std::vector<MeshDraw>& of_meshes) const;
 
   const InstanceRuns& runs_;
-  SceneView scene_;  ///< of the first of each run
+  SceneView scene_;                            ///< of the first of each run
+  std::optional<raster::FrameLights> lights_;  ///< none: the fixed light
   /// What shows scalars; empty where no instance has some that the frame asks for.
   std::vector<ScalarColors> scalar_colors_;             ///< by mapping
   std::vector<raster::SurfaceScalars> scalars_;         ///< by instance

@@ -119,6 +119,7 @@ void Scene::place(const Mat4d& to_world) {
   for (Instance& instance : instances)
     instance.object_to_world = to_world * instance.object_to_world;
   for (Motion& motion : motions) motion.to_world = to_world * motion.to_world;
+  for (Light& light : lights) light = placed(light, to_world);
 }
 
 void Scene::append(Scene other) {
@@ -164,6 +165,7 @@ void Scene::append(Scene other) {
   std::move(other.scalar_mappings.begin(), other.scalar_mappings.end(),
             std::back_inserter(scalar_mappings));
   std::move(other.cameras.begin(), other.cameras.end(), std::back_inserter(cameras));
+  std::move(other.lights.begin(), other.lights.end(), std::back_inserter(lights));
   std::move(other.warnings.begin(), other.warnings.end(), std::back_inserter(warnings));
 }
 

@@ -159,7 +159,7 @@ TEST_F(TerrainProgram, LightAndShadows) {
   for (const auto& [word, shadows] :
        {std::pair("accumulated", Shadows::accumulated), std::pair("sharp", Shadows::sharp),
         std::pair("soft", Shadows::soft)}) {
-    const Light light{.sun = sun, .shadows = shadows, .sun_radius_deg = 4};
+    const terrain::Light light{.sun = sun, .shadows = shadows, .sun_radius_deg = 4};
     expect({"--sun", "250,25", "--shadows", word, "--sun-radius", "4"},
            {map_.heights, lit_colors(map_, light)});
     for (const Image<Rgba8>& other : pictures) EXPECT_FALSE(same_pixels(png("p.png"), other));
@@ -197,8 +197,8 @@ TEST_F(TerrainProgram, LightIsSmoothUnderFinerColours) {
   for (Rgba8& c : fine.pixels()) c = {240, 240, 240, 255};
   io::write_png(path("c.png"), fine.view());
   map_.colors = std::move(fine);
-  const Light light{.sun = {250, 25}, .shadows = Shadows::soft, .sun_radius_deg = 4};
-  Light smooth = light;
+  const terrain::Light light{.sun = {250, 25}, .shadows = Shadows::soft, .sun_radius_deg = 4};
+  terrain::Light smooth = light;
   smooth.smooth = true;
   options_.sky = sky_in(kSky, light.sun);
   const std::vector<std::string> args{"--sun", "250,25", "--shadows", "soft", "--sun-radius", "4"};

@@ -38,7 +38,8 @@ INSTANTIATE_TEST_SUITE_P(OneAPaper, Tables,
                          testing::Values("paper1-table1", "paper1-table2", "paper1-table4",
                                          "paper2", "paper3", "paper5-table1", "paper5-table3",
                                          "paper5-table4", "auto", "hashed", "hiz", "transparency",
-                                         "points", "spheres", "tubes", "instances", "effects"),
+                                         "points", "spheres", "tubes", "instances", "effects",
+                                         "terrain"),
                          [](const auto& row) {
                            std::string name = row.param;
                            std::erase(name, '-');

@@ -83,7 +83,7 @@ void terrains() {
   const TerrainCamera camera{.x = 1, .y = 2};
   const TerrainTargets targets{.depth = {}};
   const HeightMap map{.heights = Image<float>(1, 1)};
-  const Light light{.sun = {.azimuth_deg = 90}, .shadows = Shadows::soft};
+  const terrain::Light light{.sun = {.azimuth_deg = 90}, .shadows = Shadows::soft};
   const ShadowOptions shadows{.threads = 1};
   const March march{.steps = 16};
   const io::HeightGrid grid{.units_per_cell = 257};

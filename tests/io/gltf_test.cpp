@@ -224,6 +224,62 @@ TEST(Gltf, Cameras) {
   EXPECT_EQ(s.cameras[1].orthographic_height, 4.0F);
 }
 
+/// A square under lights, and nodes that place them.
+std::string lit(const std::string& lights, const std::string& nodes) {
+  return square(R"({"attributes":{"POSITION":0}})",
+                R"([{"mesh":0},)" + nodes + R"(],"extensionsRequired":["KHR_lights_punctual"],)" +
+                    R"("extensionsUsed":["KHR_lights_punctual"],)" +
+                    R"("extensions":{"KHR_lights_punctual":{"lights":[)" + lights + "]}}");
+}
+
+TEST(Gltf, LightsStandWhereNodesAre) {
+  const Scene s = read(lit(
+      R"({"type":"directional","intensity":3},{"type":"point","color":[1,0.5,0],"range":4},)"
+      R"({"type":"spot","intensity":2,"spot":{"innerConeAngle":0.1,"outerConeAngle":0.3}})",
+      R"({"rotation":[0,1,0,0],"extensions":{"KHR_lights_punctual":{"light":0}}},)"
+      R"({"translation":[1,2,3],"scale":[2,2,2],"extensions":{"KHR_lights_punctual":{"light":1}}},)"
+      R"({"translation":[4,5,6],"extensions":{"KHR_lights_punctual":{"light":2}}})"));
+  EXPECT_EQ(io::describe(s).find("KHR_lights"), std::string::npos) << io::describe(s);
+  ASSERT_EQ(s.lights.size(), 3U);
+  const auto& sun = std::get<DirectionalLight>(s.lights[0].kind);
+  EXPECT_NEAR(sun.direction.z, 1, 1e-6F) << "turned about y: it shines along +z";
+  EXPECT_FLOAT_EQ(s.lights[0].intensity, 3 / 3.14159265F);
+  const auto& lamp = std::get<PointLight>(s.lights[1].kind);
+  EXPECT_EQ(lamp.position.y, 2);
+  EXPECT_EQ(lamp.range, 4) << "a node's scale is not a light's";
+  EXPECT_EQ(s.lights[1].color, (Vec3{1, 0.5F, 0}));
+  const auto& spot = std::get<SpotLight>(s.lights[2].kind);
+  EXPECT_EQ(spot.position.z, 6);
+  EXPECT_EQ(spot.direction.z, -1);
+  EXPECT_FLOAT_EQ(spot.outer_rad, 0.3F);
+  EXPECT_NE(io::describe(s).find("light 2: spot"), std::string::npos) << io::describe(s);
+
+  Scene moved =
+      read(lit(R"({"type":"point"})", R"({"extensions":{"KHR_lights_punctual":{"light":0}}})"));
+  Mat4d to_world = Mat4d::identity();
+  to_world.m[0][3] = 7;
+  moved.place(to_world);
+  EXPECT_EQ(std::get<PointLight>(moved.lights.at(0).kind).position.x, 7);
+}
+
+TEST(Gltf, LightsThatCannotBeMeantAreRefused) {
+  const std::string on = R"({"extensions":{"KHR_lights_punctual":{"light":0}}})";
+  for (const char* const bad :
+       {R"({"intensity":1})", R"({"type":"point","intensity":-1})", R"({"type":"point","range":0})",
+        R"({"type":"point","color":[1,1]})", R"({"type":"point","color":[1,-1,0]})",
+        R"({"type":"spot"})",
+        R"({"type":"spot","spot":{"innerConeAngle":0.4,"outerConeAngle":0.3}})",
+        R"({"type":"spot","spot":{"outerConeAngle":1.6}})"})
+    EXPECT_THROW((void)read(lit(bad, on)), Error) << bad;
+  EXPECT_THROW((void)read(lit(R"({"type":"point"})",
+                              R"({"extensions":{"KHR_lights_punctual":{"light":1}}})")),
+               Error);
+  const Scene unknown = read(lit(R"({"type":"laser"})", on));
+  EXPECT_TRUE(unknown.lights.empty());
+  EXPECT_NE(io::describe(unknown).find("is of a kind that is not known"), std::string::npos);
+  EXPECT_NO_THROW((void)read(lit(R"({"type":"point"})", on)));
+}
+
 TEST(Gltf, BinaryContainer) {
   const std::string bytes = square_bytes();
   std::string json =

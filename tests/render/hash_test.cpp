@@ -375,7 +375,7 @@ TEST(Hashes, TerrainLight) {
                                                      {"sharp", Shadows::sharp},
                                                      {"soft", Shadows::soft}};
   for (const auto& [name, kind] : shadows) {
-    Light light;
+    terrain::Light light;
     light.sun = {250, 25};
     light.shadows = kind;
     light.hill_shading = true;

@@ -180,6 +180,42 @@ TEST(Scalars, OfAnInstanceStandForItsGeometrys) {
   EXPECT_EQ(p.scalars(kW / 2, kH / 2), 0.25F);
 }
 
+// Alike instances are one draw (scene/instance_runs.hpp); what shows numbers stands between such.
+TEST(Scalars, StandBetweenRunsOfAlikeInstances) {
+  MeshView mesh;
+  mesh.positions = kSquare;
+  mesh.indices = kTwoTriangles;
+  std::vector<InstanceView> instances(8);
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    instances[i].geometry = mesh;
+    instances[i].object_to_world =
+        translation({static_cast<double>(i) / 8, 0, 0}) * scaling({0.125, 1, 1});
+  }
+  instances[3].scalar = 0.25;
+  instances[6].scalar = 0.75;
+  const ScalarMapping mapping = grey(0, 1);
+  const SceneView scene{instances, {}, {}, {&mapping, 1}};
+  for (const Shader shader : {Shader::flat, Shader::material}) {
+    RenderOptions o = flat(64, 64);
+    o.shader = shader;
+    const Picture p = draw(scene, square_camera(), o);
+    for (int i = 0; i < 8; ++i) {
+      const float expected = i == 3 ? 0.25F : i == 6 ? 0.75F : std::nanf("");
+      const float got = p.scalars(8 * i + 4, 32);
+      EXPECT_TRUE(got == expected || (std::isnan(got) && std::isnan(expected))) << i;
+      const Vec4 c = p.color(8 * i + 4, 32), plain = p.color(4, 32);
+      if (std::isnan(expected)) {
+        EXPECT_EQ(c, plain) << i;
+      } else if (shader == Shader::flat) {
+        EXPECT_EQ(c, (Vec4{expected, expected, expected, 1})) << i;
+      } else {
+        EXPECT_NE(c, plain) << i;
+      }
+      EXPECT_EQ(p.ids(8 * i + 4, 32) / 2, i);
+    }
+  }
+}
+
 TEST(Scalars, HaveAMappingEachInstanceChooses) {
   const std::vector<float> values{0, 1, 1, 0};
   std::vector<InstanceView> instances(2);

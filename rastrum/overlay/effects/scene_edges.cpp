@@ -71,13 +71,7 @@ std::vector<std::uint8_t> sides_of(const MeshView& mesh, double angle_degrees) {
 }
 
 bool is_same(const MeshView& a, const MeshView& b) {
-  const auto& p = a.positions;
-  const auto& q = b.positions;
-  const bool same_places =
-      p.size() == q.size() && p.is_packed() == q.is_packed() && p.is_wide() == q.is_wide() &&
-      (p.empty() ||
-       (p.address(0) == q.address(0) && p.address(p.size() - 1) == q.address(q.size() - 1)));
-  return same_places && a.indices == b.indices && a.faces == b.faces;
+  return a.positions == b.positions && a.indices == b.indices && a.faces == b.faces;
 }
 
 }  // namespace

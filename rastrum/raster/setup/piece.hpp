@@ -2,6 +2,7 @@
 // visibility resolves.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 #include <rastrum/config.hpp>
@@ -18,6 +19,10 @@ inline constexpr std::uint64_t kMaxId = kIdMask - 1;
 
 RASTRUM_HD constexpr std::uint64_t id_of_key(std::uint64_t key) {
   return kIdMask - (key & kIdMask);
+}
+
+inline float depth_of_key(std::uint64_t key) {
+  return std::bit_cast<float>(static_cast<std::uint32_t>(key >> kIdBits));
 }
 
 /// A triangle is wound so that its inside is where all three edge functions are positive (clockwise

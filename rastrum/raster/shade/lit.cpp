@@ -58,7 +58,8 @@ void shade_scalar(const LitShading& lit, const FrameGeometry& frame, const Visib
     const LitTriangle& t = kept.find(*lit.scene, frame, block.keys[i] & kIdMask, wants_normals);
     const Vec2 from_centre =
         block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
-    colors.set(i, opaque(shade_lit(lit.model, view, t, x, y, from_centre)));
+    colors.set(
+        i, opaque(shade_lit(lit.model, view, t, x, y, from_centre, depth_of_key(block.keys[i]))));
   }
 }
 

@@ -19,6 +19,8 @@
 
 namespace rastrum::raster {
 
+struct LightSet;
+
 /// What the lit shaders read of one draw.
 struct LitDraw {
   const MeshView* mesh = nullptr;
@@ -54,6 +56,7 @@ struct LitView {
   ViewRays rays;
   bool colored = false;
   std::span<const Vec3> materials;
+  const LightSet* lights = nullptr;  ///< null: the fixed light; a device has no others
 
   /// What the colours at the corners of a face's triangles are multiplied by, or stand for where
   /// there are none.
@@ -66,8 +69,10 @@ struct LitScene {
   bool colored = false;         ///< some draw has colours of its own, or a material's
   std::vector<Vec3> materials;  ///< the base colour of each, a display value
 
+  const LightSet* lights = nullptr;  ///< the frame's, which must outlive this; null: none
+
   LitScene(const SceneView& scene, const Camera& camera, int width, int height);
-  [[nodiscard]] LitView view() const { return {draws, rays, colored, materials}; }
+  [[nodiscard]] LitView view() const { return {draws, rays, colored, materials, lights}; }
 };
 
 /// How much of a line about a pixel wide along the triangle's edges covers the fragment, in [0, 1].

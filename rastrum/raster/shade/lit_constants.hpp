@@ -45,7 +45,8 @@ bool shade_own_base_simd(Isa isa, LitModel model, const LitScene& scene, const F
                          const VisibleBlock& block, LitBlock& surface,
                          BlockColors& colors) noexcept;
 /// The same of what others have found; alpha is not set.
-bool light_lit_simd(Isa isa, LitModel model, const ViewRays& rays, const VisibleBlock& block,
-                    const LitBlock& surface, BlockColors& colors) noexcept;
+bool light_lit_simd(Isa isa, LitModel model, const ViewRays& rays, const LightSet* lights,
+                    const VisibleBlock& block, const LitBlock& surface,
+                    BlockColors& colors) noexcept;
 
 }  // namespace rastrum::raster

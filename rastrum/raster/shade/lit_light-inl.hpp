@@ -33,6 +33,19 @@ RASTRUM_LANES F positive(F v) {
   return choose_or_zero(v > set(0), v);
 }
 
+/// Which way the surface looks that `v`, a unit direction, sees.
+RASTRUM_LANES V3 turned_to(const V3& v, const V3& facing) {
+  return facing * choose(dot(facing, v) < set(0), set(-1), set(1));
+}
+/// (n·h)³² = ((n·u)² / u·u)¹⁶ with u = v + l: the half vector needs no square root.
+RASTRUM_LANES F highlight(const V3& n, const V3& v, const V3& l) {
+  const V3 u = v + l;
+  const F n_u = positive(dot(n, u));
+  F s = n_u * n_u / max_of(dot(u, u), set(1e-20F));
+  for (int i = 0; i < 4; ++i) s = s * s;
+  return s;
+}
+
 /// The light at (px, py), px; `normal` need not be of unit length. Not for `id` and `wireframe`.
 RASTRUM_LANES V3 light(LitModel model, const ViewRays& rays, F px, F py, const V3& normal,
                        const V3& base) {
@@ -41,16 +54,33 @@ RASTRUM_LANES V3 light(LitModel model, const ViewRays& rays, F px, F py, const V
   const V3 half = set(Vec3{0.5F, 0.5F, 0.5F});
   if (model == LitModel::normal) return facing * half + half;
   const V3 v = unit(-(set(rays.d) + set(rays.dx) * px + set(rays.dy) * py));
-  const V3 n = facing * choose(dot(facing, v) < set(0), set(-1), set(1));
+  const V3 n = turned_to(v, facing);
   constexpr Vec3 to_light = kLight;  // a device has no address of the namespace's
   const V3 l = set(to_light);
   const V3 lit = base * (set(kAmbient) + set(kDiffuse) * positive(dot(n, l)));
   if (model == LitModel::lambert) return lit;
-  // (n·h)³² = ((n·u)² / u·u)¹⁶ with u = v + l: the half vector needs no square root.
-  const V3 u = v + l;
-  const F n_u = positive(dot(n, u));
-  F s = n_u * n_u / max_of(dot(u, u), set(1e-20F));
-  for (int i = 0; i < 4; ++i) s = s * s;
-  const F specular = s * set(kSpecular);
+  const F specular = highlight(n, v, l) * set(kSpecular);
   return lit + V3{specular, specular, specular};
+}
+
+/// The same by a frame's lights, of the surface at reversed depth `depth`: each shines as the fixed
+/// one, and on no surface that is turned away from it.
+RASTRUM_LANES V3 light_by(const LightSet& lights, LitModel model, const ViewRays& rays, F px, F py,
+                          F depth, const V3& normal, const V3& base) {
+  if (model == LitModel::flat || model == LitModel::normal)
+    return light(model, rays, px, py, normal, base);
+  const V3 v = unit(-(set(rays.d) + set(rays.dx) * px + set(rays.dy) * py));
+  const V3 n = turned_to(v, unit(normal));
+  const V3 place = lights.has_places ? place_of(lights, px, py, depth) : v;
+  V3 diffuse = from_around(lights, n);
+  V3 specular = set(Vec3{});
+  for (const LightTerm& term : lights.terms) {
+    const Incoming in = incoming(term, place);
+    const F n_l = positive(dot(n, in.to_light));
+    diffuse = diffuse + in.radiance * n_l;
+    if (model == LitModel::lambert) continue;
+    const F shine = highlight(n, v, in.to_light) * set(kSpecular / kDiffuse);
+    specular = specular + in.radiance * choose_or_zero(n_l > set(0), shine);
+  }
+  return base * diffuse + specular;
 }

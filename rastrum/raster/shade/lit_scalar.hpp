@@ -1,7 +1,7 @@
 // The lit shaders but `id` and `wireframe` at one point, for the host and for devices.
 #pragma once
 
-#include <rastrum/raster/kernels/scalar_lane.hpp>
+#include <rastrum/raster/shade/lights_scalar.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>
 
@@ -12,11 +12,12 @@ namespace scalar_lane {
 #undef RASTRUM_LANES
 }  // namespace scalar_lane
 
-/// The colour of triangle `t` at pixel (x, y), `from_centre` px from its centre. `own_base`: stands
+/// The colour of triangle `t` at pixel (x, y), `from_centre` px from its centre, where its depth is
+/// `depth`, which the scene's own lights ask for. `own_base`: stands
 /// for the base colour; null: there is none.
 [[nodiscard]] RASTRUM_HD inline Vec3 shade_lit(LitModel model, const LitView& scene,
                                                const LitTriangle& t, int x, int y, Vec2 from_centre,
-                                               const Vec3* own_base = nullptr) {
+                                               float depth = 0, const Vec3* own_base = nullptr) {
   const float px = static_cast<float>(x) + 0.5F + from_centre.x;
   const float py = static_cast<float>(y) + 0.5F + from_centre.y;
   scalar_lane::CornerWeights w;
@@ -34,6 +35,8 @@ namespace scalar_lane {
   else if (scene.colored && model != LitModel::normal)
     base = scalar_lane::interpolated_color(t, w);
   const Vec3 normal = model != LitModel::flat ? w.sum(t.normal) : base;
+  if (scene.lights != nullptr)
+    return scalar_lane::light_by(*scene.lights, model, scene.rays, px, py, depth, normal, base);
   return scalar_lane::light(model, scene.rays, px, py, normal, base);
 }
 

@@ -17,6 +17,7 @@
 
 #include <rastrum/raster/kernels/lanes-inl.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/shade/light_set.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>
 
@@ -28,7 +29,9 @@ namespace {  // several sources have an N_AVX2
 namespace hn = hwy::HWY_NAMESPACE;
 
 #include <rastrum/raster/kernels/lane_math-inl.hpp>
-#include <rastrum/raster/shade/lit_light-inl.hpp>
+#include <rastrum/raster/shade/lights-inl.hpp>
+
+#include <rastrum/raster/shade/lit_light-inl.hpp>  // after the lights
 #undef RASTRUM_LANES
 
 /// kLanes pixels of a row, and where in them is shaded.
@@ -115,10 +118,19 @@ HWY_INLINE void interpolate_row(const LitScene& scene, const FrameGeometry& fram
   if (wants_colors) store(base, surface.base, first);
 }
 
-/// Lights what `surface` holds; without `colored` it has the default base colour.
-template <LitModel kModel>
-void light_block(const ViewRays& rays, const VisibleBlock& block, const LitBlock& surface,
-                 bool colored, BlockColors& colors) {
+/// Depths of a row; of samples that hold nothing they may be anything.
+HWY_INLINE F row_depth(const std::uint64_t* keys) {
+  HWY_ALIGN float depth[kLanes];
+  for (std::size_t i = 0; i < kLanes; ++i) depth[i] = depth_of_key(keys[i]);
+  return hn::Load(F32{}, depth);
+}
+
+/// Lights what `surface` holds, by the fixed light or those of `lights`; without `colored` it has
+/// the default base colour.
+template <LitModel kModel, bool kFixed>
+HWY_NOINLINE void light_rows(const ViewRays& rays, const LightSet* lights,
+                             const VisibleBlock& block, const LitBlock& surface, bool colored,
+                             BlockColors& colors) {
   const F32 d;
   constexpr std::uint64_t kRow = (1U << kLanes) - 1;
   V3 base = set(kDefaultBase);
@@ -127,11 +139,26 @@ void light_block(const ViewRays& rays, const VisibleBlock& block, const LitBlock
     if (colored) base = load(surface.base, first);
     const V3 n = kModel != LitModel::flat ? load(surface.n, first) : base;
     const Row row(block, first);
-    const V3 color = light(kModel, rays, row.px(), row.py(), n, base);
+    V3 color;
+    if constexpr (kFixed)
+      color = light(kModel, rays, row.px(), row.py(), n, base);
+    else
+      color = light_by(*lights, kModel, rays, row.px(), row.py(), row_depth(block.keys + first), n,
+                       base);
     hn::Store(color.x, d, colors.r + first);
     hn::Store(color.y, d, colors.g + first);
     hn::Store(color.z, d, colors.b + first);
   }
+}
+
+template <LitModel kModel>
+HWY_INLINE void light_block(const ViewRays& rays, const LightSet* lights, const VisibleBlock& block,
+                            const LitBlock& surface, bool colored, BlockColors& colors) {
+  constexpr bool kLit = kModel == LitModel::lambert || kModel == LitModel::phong;
+  if (kLit && lights != nullptr)
+    light_rows<kModel, !kLit>(rays, lights, block, surface, colored, colors);
+  else
+    light_rows<kModel, true>(rays, nullptr, block, surface, colored, colors);
 }
 
 /// Two loops: a row's lighting is one long chain of square roots and divisions, and the processor
@@ -148,7 +175,7 @@ void shade_block(const LitScene& scene, const FrameGeometry& frame, const Visibl
       if (const std::uint64_t row = block.covered >> first & kRow; row != 0)
         interpolate_row(scene, frame, block, first, static_cast<std::uint32_t>(row), kNormals,
                         colored, surface);
-  light_block<kModel>(scene.rays, block, surface, own_base || colored, colors);
+  light_block<kModel>(scene.rays, scene.lights, block, surface, own_base || colored, colors);
 }
 
 /// Calls use(constant of the model); returns whether it is one that lanes have.
@@ -187,10 +214,10 @@ bool shade_own_base(LitModel model, const LitScene& scene, const FrameGeometry& 
   });
 }
 
-bool light_all(LitModel model, const ViewRays& rays, const VisibleBlock& block,
-               const LitBlock& surface, BlockColors& colors) noexcept {
+bool light_all(LitModel model, const ViewRays& rays, const LightSet* lights,
+               const VisibleBlock& block, const LitBlock& surface, BlockColors& colors) noexcept {
   return with_model(model, [&](auto m) HWY_ATTR {
-    light_block<decltype(m)::value>(rays, block, surface, true, colors);
+    light_block<decltype(m)::value>(rays, lights, block, surface, true, colors);
   });
 }
 
@@ -224,13 +251,14 @@ bool shade_own_base_simd(Isa isa, LitModel model, const LitScene& scene, const F
   return shade != nullptr && shade(model, scene, frame, block, surface, colors);
 }
 
-bool light_lit_simd(Isa isa, LitModel model, const ViewRays& rays, const VisibleBlock& block,
-                    const LitBlock& surface, BlockColors& colors) noexcept {
-  using Light =
-      bool (*)(LitModel, const ViewRays&, const VisibleBlock&, const LitBlock&, BlockColors&);
+bool light_lit_simd(Isa isa, LitModel model, const ViewRays& rays, const LightSet* lights,
+                    const VisibleBlock& block, const LitBlock& surface,
+                    BlockColors& colors) noexcept {
+  using Light = bool (*)(LitModel, const ViewRays&, const LightSet*, const VisibleBlock&,
+                         const LitBlock&, BlockColors&);
   static constexpr Light kLights[] = RASTRUM_BY_ISA(light_all, nullptr);
   const Light light = kLights[static_cast<std::size_t>(isa)];
-  return light != nullptr && light(model, rays, block, surface, colors);
+  return light != nullptr && light(model, rays, lights, block, surface, colors);
 }
 
 }  // namespace rastrum::raster

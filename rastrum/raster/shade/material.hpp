@@ -73,6 +73,7 @@ struct MaterialView {
   std::span<const BoundMaterial> materials;
   std::span<const MaterialDraw> draws;
   ViewRays rays;
+  const LightSet* lights = nullptr;  ///< as LitView's
 
   [[nodiscard]] RASTRUM_HD const BoundMaterial& material_of(const MaterialDraw& draw,
                                                             std::uint64_t triangle) const {
@@ -86,12 +87,13 @@ struct MaterialScene {
   std::vector<BoundMaterial> materials;  ///< at least one
   std::vector<MaterialDraw> draws;
   ViewRays rays;
+  const LightSet* lights = nullptr;  ///< as LitScene's
 
   /// `scene` and `textures` must outlive this.
   MaterialScene(const SceneView& scene, const Camera& camera, int width, int height,
                 const TextureSet& textures);
 
-  [[nodiscard]] MaterialView view() const { return {materials, draws, rays}; }
+  [[nodiscard]] MaterialView view() const { return {materials, draws, rays, lights}; }
 };
 
 /// Throws Error{invalid_argument} naming the material or instance whose index into textures or

@@ -1,16 +1,7 @@
 // The lights of the material shader (material.hpp has the formula), in lanes or in one float
-// (kernels/lane_math-inl.hpp), after srgb_curve-inl.hpp: one body, so the same bits.
+// (kernels/lane_math-inl.hpp), after srgb_curve-inl.hpp and lights-inl.hpp: one body, so the same
+// bits.
 
-/// NaN becomes the bound.
-RASTRUM_LANES F at_least(F a, float bound) {
-  return choose(a > set(bound), a, set(bound));
-}
-RASTRUM_LANES F at_most(F a, float bound) {
-  return choose(a < set(bound), a, set(bound));
-}
-RASTRUM_LANES F clamp01(F a) {
-  return at_most(at_least(a, 0), 1);
-}
 RASTRUM_LANES F mix(F a, F b, F t) {
   return a + (b - a) * t;
 }
@@ -35,10 +26,12 @@ struct Reflectance {
   F alpha, alpha2;
 };
 
+struct Reflected {
+  V3 share;  ///< of what arrives
+  F n_l;     ///< how much of it does
+};
 /// Light of one direction, reflected towards v; n·l ≤ 0 gives nothing.
-RASTRUM_LANES V3 reflect(const Reflectance& s, const V3& n, const V3& v, F nv, Vec3 to_light,
-                         float radiance) {
-  const V3 l = set(to_light);
+RASTRUM_LANES Reflected reflect(const Reflectance& s, const V3& n, const V3& v, F nv, const V3& l) {
   const V3 sum = v + l;
   const V3 half = sum * (set(1) / square_root(at_least(dot(sum, sum), 1e-12F)));
   const F nl = at_least(dot(n, l), 0);
@@ -50,7 +43,13 @@ RASTRUM_LANES V3 reflect(const Reflectance& s, const V3& n, const V3& v, F nv, V
   const V3 one = set(Vec3{1, 1, 1});
   const V3 f = mix(s.f0, one, pow5(clamp01(set(1) - vh)));
   const V3 diffuse = s.diffuse * (one - f);
-  return (diffuse + f * (pi_d * visibility)) * (nl * set(radiance));
+  return {diffuse + f * (pi_d * visibility), nl};
+}
+/// Of a white light.
+RASTRUM_LANES V3 reflect(const Reflectance& s, const V3& n, const V3& v, F nv, Vec3 to_light,
+                         float radiance) {
+  const Reflected r = reflect(s, n, v, nv, set(to_light));
+  return r.share * (r.n_l * set(radiance));
 }
 
 RASTRUM_LANES V3 hemisphere(const V3& diffuse, const V3& specular, F normal_y, F mirrored_y) {
@@ -66,9 +65,15 @@ struct LitSurface {
   V3 emission;
 };
 
-/// Linear light at (px, py), px.
-RASTRUM_LANES V3 light(const ViewRays& rays, const LitSurface& s, F px, F py) {
-  constexpr Vec3 key = kKeyLight, fill = kFillLight;  // a device has no address of the namespace's
+/// What all lights of a point have in common.
+struct SeenSurface {
+  V3 n, v;
+  F facing;  ///< n·v
+  F nv;      ///< the same, above 0
+  Reflectance surface;
+  V3 f;  ///< of light from all around
+};
+RASTRUM_LANES SeenSurface seen_from(const ViewRays& rays, const LitSurface& s, F px, F py) {
   const V3 away = set(rays.d) + set(rays.dx) * px + set(rays.dy) * py;
   const V3 v = away * (set(0) - set(1) / square_root(dot(away, away)));
   const V3 n = s.normal;
@@ -82,13 +87,36 @@ RASTRUM_LANES V3 light(const ViewRays& rays, const LitSurface& s, F px, F py) {
       alpha * alpha};
   const F facing = dot(n, v);
   const F nv = at_least(facing, 1e-4F);
-  const V3 direct = reflect(surface, n, v, nv, key, kKeyRadiance) +
-                    reflect(surface, n, v, nv, fill, kFillRadiance);
 
   const V3 f0 = surface.f0;
   const F smooth = set(1) - roughness;
   const V3 rise{at_least(smooth - f0.x, 0), at_least(smooth - f0.y, 0), at_least(smooth - f0.z, 0)};
-  const V3 f = f0 + rise * pow5(clamp01(set(1) - nv));
-  const V3 ambient = hemisphere(surface.diffuse, f, n.y, set(2) * facing * n.y - v.y);
+  return {n, v, facing, nv, surface, f0 + rise * pow5(clamp01(set(1) - nv))};
+}
+
+/// Linear light at (px, py), px.
+RASTRUM_LANES V3 light(const ViewRays& rays, const LitSurface& s, F px, F py) {
+  constexpr Vec3 key = kKeyLight, fill = kFillLight;  // a device has no address of the namespace's
+  const SeenSurface p = seen_from(rays, s, px, py);
+  const V3 direct = reflect(p.surface, p.n, p.v, p.nv, key, kKeyRadiance) +
+                    reflect(p.surface, p.n, p.v, p.nv, fill, kFillRadiance);
+  const V3 ambient = hemisphere(p.surface.diffuse, p.f, p.n.y, set(2) * p.facing * p.n.y - p.v.y);
+  return direct + ambient * s.occlusion + s.emission;
+}
+
+/// The same by a frame's lights, of the surface at reversed depth `depth`.
+RASTRUM_LANES V3 light_by(const LightSet& lights, const ViewRays& rays, const LitSurface& s, F px,
+                          F py, F depth) {
+  const SeenSurface p = seen_from(rays, s, px, py);
+  const V3 place = lights.has_places ? place_of(lights, px, py, depth) : p.v;
+  V3 direct = set(Vec3{});
+  for (const LightTerm& term : lights.terms) {
+    const Incoming in = incoming(term, place);
+    const Reflected r = reflect(p.surface, p.n, p.v, p.nv, in.to_light);
+    direct = direct + r.share * (in.radiance * r.n_l);
+  }
+  const V3 mirrored = p.n * (set(2) * p.facing) - p.v;
+  const V3 ambient =
+      p.surface.diffuse * from_around(lights, p.n) + p.f * from_around(lights, mirrored);
   return direct + ambient * s.occlusion + s.emission;
 }

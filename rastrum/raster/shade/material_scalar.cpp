@@ -28,8 +28,9 @@ void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleB
         const MaterialTriangle t(scene, frame, frame.draw_of(id), id);
         const Vec3 base =
             own_base == nullptr ? Vec3{} : Vec3{own_base[i], own_base[64 + i], own_base[128 + i]};
-        const Vec3 c = shade_material(scene, t, MaterialPoint(t.planes, x, y, from_centre), linear,
-                                      own_base == nullptr ? nullptr : &base);
+        const Vec3 c =
+            shade_material(scene, t, MaterialPoint(t.planes, x, y, from_centre), linear,
+                           depth_of_key(block.keys[i]), own_base == nullptr ? nullptr : &base);
         colors.set(i, {c.x, c.y, c.z, 1});
       });
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include <rastrum/raster/shade/lights_scalar.hpp>
 #include <rastrum/raster/shade/material_constants.hpp>
 #include <rastrum/raster/shade/material_triangle.hpp>
 #include <rastrum/raster/shade/srgb.hpp>
@@ -112,11 +113,13 @@ RASTRUM_HD inline float own_alpha(const MaterialTriangle& t, const BoundMaterial
 
 }  // namespace material_detail
 
-/// The colour of triangle `t` at a point, opaque: a display value or linear light. `own_base`:
-/// stands for the base colour; null: there is none.
+/// The colour of triangle `t` at a point, opaque: a display value or linear light. `depth`: there,
+/// which the scene's own lights ask for. `own_base`: stands for the base colour; null: there is
+/// none.
 [[nodiscard]] RASTRUM_HD inline Vec3 shade_material(const MaterialView& scene,
                                                     const MaterialTriangle& t,
                                                     const MaterialPoint& at, bool linear,
+                                                    float depth = 0,
                                                     const Vec3* own_base = nullptr) {
   using namespace material_detail;
   const BoundMaterial& m = scene.material_of(t.draw, t.index);
@@ -140,6 +143,9 @@ RASTRUM_HD inline float own_alpha(const MaterialTriangle& t, const BoundMaterial
     s.emission = s.emission * Vec3{c.r, c.g, c.b};
   }
   s.normal = normal(scene, t, m, at, textures);
+  if (scene.lights != nullptr)
+    return scalar_lane::written(
+        scalar_lane::light_by(*scene.lights, scene.rays, s, at.x, at.y, depth), linear);
   return scalar_lane::written(scalar_lane::light(scene.rays, s, at.x, at.y), linear);
 }
 

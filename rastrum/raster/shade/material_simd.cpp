@@ -13,6 +13,7 @@
 #include <cstring>
 
 #include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/shade/light_set.hpp>
 #include <rastrum/raster/shade/material_constants.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
 #include <rastrum/raster/shade/material_triangle.hpp>
@@ -245,9 +246,10 @@ using F = hn::Vec<Floats>;
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(Floats{}));
 
 #include <rastrum/raster/kernels/lane_math-inl.hpp>
+#include <rastrum/raster/shade/lights-inl.hpp>
 #include <rastrum/raster/shade/srgb_curve-inl.hpp>
 
-#include <rastrum/raster/shade/material_light-inl.hpp>  // after the curve
+#include <rastrum/raster/shade/material_light-inl.hpp>  // after the curve and the lights
 #undef RASTRUM_LANES
 
 HWY_INLINE F load(const float* p) {
@@ -262,12 +264,15 @@ HWY_INLINE void store(V3 a, float* x, float* y, float* z) {
   hn::Store(a.z, Floats{}, z);
 }
 /// Lights 64 fragments; what lies outside the covered ones does not matter.
-HWY_INLINE void light_block(const ViewRays& rays, const Surface& s, int x0, int y0,
-                            const ShadingPoints* points, bool linear, BlockColors& out) {
+template <bool kFixed>
+HWY_NOINLINE void light_block(const MaterialView& scene, const Surface& s,
+                              const VisibleBlock& block, bool linear, BlockColors& out) {
+  const ViewRays& rays = scene.rays;
+  const ShadingPoints* const points = block.points;
   const auto& c = s.channel;
   for (int i = 0; i < 64; i += kLanes) {
-    F px = load(kSample.x + i) + set(static_cast<float>(x0));
-    F py = load(kSample.y + i) + set(static_cast<float>(y0));
+    F px = load(kSample.x + i) + set(static_cast<float>(block.x0));
+    F py = load(kSample.y + i) + set(static_cast<float>(block.y0));
     if (points != nullptr) {
       px = px + load(points->dx + i);
       py = py + load(points->dy + i);
@@ -281,8 +286,15 @@ HWY_INLINE void light_block(const ViewRays& rays, const Surface& s, int x0, int 
         load(c[Surface::kOcclusion] + i),
         load(c[Surface::kEmissiveR] + i, c[Surface::kEmissiveG] + i, c[Surface::kEmissiveB] + i)};
     const auto unlit = load(c[Surface::kUnlit] + i) > set(0);
-    store(written(choose(unlit, base, light(rays, lit, px, py)), linear), out.r + i, out.g + i,
-          out.b + i);
+    V3 color;
+    if constexpr (kFixed) {
+      color = light(rays, lit, px, py);
+    } else {
+      alignas(64) float depth[kLanes];
+      for (int k = 0; k < kLanes; ++k) depth[k] = depth_of_key(block.keys[i + k]);
+      color = light_by(*scene.lights, rays, lit, px, py, load(depth));
+    }
+    store(written(choose(unlit, base, color), linear), out.r + i, out.g + i, out.b + i);
   }
 }
 
@@ -325,7 +337,10 @@ void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleB
   if (own_base != nullptr)
     for (int c = 0; c < 3; ++c)
       std::memcpy(surface.channel[Surface::kBaseR + c], own_base + 64 * c, 64 * sizeof(float));
-  light_block(scene.rays, surface, x0, y0, block.points, linear, colors);
+  if (scene.lights == nullptr)
+    light_block<true>(scene, surface, block, linear, colors);
+  else
+    light_block<false>(scene, surface, block, linear, colors);
 }
 
 /// A fragment's own alpha: what a mask tests and what blends.

@@ -52,14 +52,17 @@ float PlainLook::alpha(const PlainSurface& s, float own) const {
 }
 
 Vec4 PlainLook::shade(const PlainSurface& s, const Vec4& base, const Vec3* normal, float px,
-                      float py, std::uint64_t id) const {
+                      float py, std::uint64_t key) const {
   const Material& m = *s.material;
   const float a = alpha(s, base.w);
   Vec3 c{base.x, base.y, base.z};
   if (look_.model == LitModel::id) {
-    c = id_color(id);
+    c = id_color(id_of_key(key));
   } else if (look_.model) {
-    if (normal != nullptr) c = scalar_lane::light(*look_.model, rays_, px, py, *normal, c);
+    if (normal != nullptr)
+      c = look_.lights == nullptr ? scalar_lane::light(*look_.model, rays_, px, py, *normal, c)
+                                  : scalar_lane::light_by(*look_.lights, *look_.model, rays_, px,
+                                                          py, depth_of_key(key), *normal, c);
   } else if (m.unlit || normal == nullptr) {
     c = scalar_lane::written(c, linear_);
   } else {
@@ -67,7 +70,10 @@ Vec4 PlainLook::shade(const PlainSurface& s, const Vec4& base, const Vec3* norma
     const Vec3 n = scalar_lane::unit(*normal);
     const float side = dot(n, away) > 0 ? -1.0F : 1.0F;
     const scalar_lane::LitSurface lit{c, n * side, m.metallic, m.roughness, 1, m.emissive};
-    c = scalar_lane::written(scalar_lane::light(rays_, lit, px, py), linear_);
+    c = look_.lights == nullptr
+            ? scalar_lane::light(rays_, lit, px, py)
+            : scalar_lane::light_by(*look_.lights, rays_, lit, px, py, depth_of_key(key));
+    c = scalar_lane::written(c, linear_);
   }
   return {c.x * a, c.y * a, c.z * a, a};
 }

@@ -17,9 +17,10 @@ namespace rastrum::raster {
 
 /// How the surfaces of a frame look.
 struct SurfaceLook {
-  std::optional<LitModel> model;  ///< none: as materials
-  bool blends = false;            ///< alpha counts
-  float opacity = 1;              ///< the frame's
+  std::optional<LitModel> model;     ///< none: as materials
+  bool blends = false;               ///< alpha counts
+  float opacity = 1;                 ///< the frame's
+  const LightSet* lights = nullptr;  ///< as LitScene's
 };
 
 /// What an instance brings to the look of its surfaces.
@@ -51,9 +52,9 @@ class PlainLook {
   /// Of what is drawn, where `own` is the alpha of the surface with its colours.
   [[nodiscard]] float alpha(const PlainSurface& surface, float own) const;
   /// The colour at (px, py), px, premultiplied. `base`: the surface's own, with its colours;
-  /// `normal`: in the world, of any length; null: it is not lit.
+  /// `normal`: in the world, of any length; null: it is not lit. `key`: of the sample.
   [[nodiscard]] Vec4 shade(const PlainSurface& surface, const Vec4& base, const Vec3* normal,
-                           float px, float py, std::uint64_t id) const;
+                           float px, float py, std::uint64_t key) const;
 
  private:
   SurfaceLook look_;

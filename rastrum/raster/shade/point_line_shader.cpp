@@ -79,8 +79,8 @@ bool PointLineShader::shade(const FrameGeometry& frame, const VisibleBlock& bloc
     const float px = static_cast<float>(block.x0 + i % kBlockSize) + 0.5F + from_centre.x;
     const float py = static_cast<float>(block.y0 + i / kBlockSize) + 0.5F + from_centre.y;
     const bool is_lit = normal.x != 0 || normal.y != 0 || normal.z != 0;
-    opaque &=
-        colors.set(i, look_.shade(part.surface, base, is_lit ? &normal : nullptr, px, py, id));
+    opaque &= colors.set(
+        i, look_.shade(part.surface, base, is_lit ? &normal : nullptr, px, py, block.keys[i]));
   }
   return opaque;
 }

@@ -95,7 +95,7 @@ void QuadricShader::fetch(const FrameGeometry& frame, std::uint64_t low, KeptQua
 QuadricShader::Seen QuadricShader::seen(const Kept& k, std::uint64_t key,
                                         QuadricSurface::Place at) const {
   // Which of the two surfaces it is, its depth tells.
-  const auto depth = std::bit_cast<float>(static_cast<std::uint32_t>(key >> kIdBits));
+  const float depth = depth_of_key(key);
   scalar_wide::Surface s = k.quadric.side(false, at);
   if (!s.covered || quadric_depth(k.quadric.quadric, s.e) != depth) s = k.quadric.side(true, at);
   const QuadricPoint point = point_on(k.quadric.shape, k.quadric.point(at, s.e));
@@ -169,7 +169,8 @@ bool QuadricShader::shade_lit(const QuadricLanes& lanes, const FrameGeometry& fr
       surface.alpha[i] = look_.alpha(kept.surface->plain, surface.alpha[i]);
     }
   }
-  (void)light_lit_simd(isa, *look_.look().model, look_.rays(), block, surface.lit, colors);
+  (void)light_lit_simd(isa, *look_.look().model, look_.rays(), look_.look().lights, block,
+                       surface.lit, colors);
   if (!blends) return true;
   bool opaque = true;
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
@@ -195,7 +196,7 @@ bool QuadricShader::shade(const FrameGeometry& frame, const VisibleBlock& block,
     if (model == LitModel::id) {
       const Surface& surface = surfaces_[frame.draw_of(id).number];
       if (!look_.look().blends || !surface.has_own_alpha()) {
-        opaque &= colors.set(i, look_.shade(surface.plain, {0, 0, 0, 1}, nullptr, 0, 0, id));
+        opaque &= colors.set(i, look_.shade(surface.plain, {0, 0, 0, 1}, nullptr, 0, 0, key));
         continue;
       }
     }
@@ -207,7 +208,7 @@ bool QuadricShader::shade(const FrameGeometry& frame, const VisibleBlock& block,
     const Seen s = seen(kept, key, kept.quadric.at(x, y, from_centre));
     opaque &= colors.set(i, look_.shade(kept.surface->plain, s.base, &s.normal,
                                         static_cast<float>(x) + 0.5F + from_centre.x,
-                                        static_cast<float>(y) + 0.5F + from_centre.y, id));
+                                        static_cast<float>(y) + 0.5F + from_centre.y, key));
   }
   return opaque;
 }

@@ -17,6 +17,7 @@ ScalarMeshShader::ScalarMeshShader(const SurfaceLook& look, const SceneView& sce
       scalars_(std::move(scalars)),
       lit_(scene, camera, width, height),
       materials_(scene, camera, width, height, textures) {
+  lit_.lights = materials_.lights = look.lights;
   for (const SurfaceScalars& s : scalars_) isolines_ |= s.colors()->has_isolines();
 }
 
@@ -92,7 +93,7 @@ void ScalarMeshShader::light(const FrameGeometry& frame, const VisibleBlock& blo
       const LitTriangle& t =
           kept.find(lit_, frame, block.keys[i] & kIdMask, look_.model != LitModel::flat);
       const Vec3 base = c;
-      c = shade_lit(*look_.model, lit, t, x, y, from_centre, &base);
+      c = shade_lit(*look_.model, lit, t, x, y, from_centre, depth_of_key(block.keys[i]), &base);
     }
     colors.set(i, {c.x, c.y, c.z, 1});
   }

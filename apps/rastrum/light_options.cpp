@@ -1,0 +1,167 @@
+#include "light_options.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <variant>
+
+#include <rastrum/error.hpp>
+#include <rastrum/raster/shade/srgb.hpp>
+
+#include "arguments.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+constexpr const char* kOption = "--light";
+
+std::vector<std::string> parts_of(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(':', begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+Vec3 linear(Vec4 display) {
+  const auto channel = [](float v) {
+    return static_cast<float>(raster::linear_from_srgb(static_cast<double>(v)));
+  };
+  return {channel(display.x), channel(display.y), channel(display.z)};
+}
+
+float number(const std::string& text) {
+  return static_cast<float>(parse_number(kOption, text));
+}
+float radians(const std::string& text) {
+  return static_cast<float>(parse_number(kOption, text) * kDegree);
+}
+
+/// A light of a kind as it is without anything further, and what of it a place sets.
+Light light_of(const std::string& kind) {
+  Light light;
+  if (kind == "ambient") {
+    light.kind = AmbientLight{};
+  } else if (kind == "hemisphere") {
+    light.kind = HemisphereLight{};
+  } else if (kind == "directional") {
+    light.kind = DirectionalLight{};
+  } else if (kind == "point") {
+    light.kind = PointLight{};
+  } else if (kind == "spot") {
+    light.kind = SpotLight{};
+  } else if (kind == "headlight") {
+    light = headlight();
+  } else {
+    throw UsageError(kOption,
+                     "expected ambient, hemisphere, directional, point, spot or headlight, then "
+                     "what it is, as in point:2,3,4:intensity=9, got '" +
+                         kind + "'");
+  }
+  return light;
+}
+
+void set_place(Light& light, const std::string& text) {
+  const Vec3d v = parse_vec3(kOption, text);
+  if (auto* const h = std::get_if<HemisphereLight>(&light.kind))
+    h->up = Vec3(v);
+  else if (auto* const d = std::get_if<DirectionalLight>(&light.kind))
+    d->direction = Vec3(v);
+  else if (auto* const p = std::get_if<PointLight>(&light.kind))
+    p->position = v;
+  else if (auto* const s = std::get_if<SpotLight>(&light.kind))
+    s->position = v;
+  else
+    throw UsageError(kOption, "an ambient light has no place: '" + text + "'");
+}
+
+/// Whether the light has a value of that name.
+bool set_value(Light& light, const std::string& name, const std::string& value) {
+  auto* const spot = std::get_if<SpotLight>(&light.kind);
+  auto* const point = std::get_if<PointLight>(&light.kind);
+  auto* const hemisphere = std::get_if<HemisphereLight>(&light.kind);
+  if (name == "intensity") {
+    light.intensity = number(value);
+  } else if (name == "color") {
+    light.color = linear(parse_color(kOption, value));
+  } else if (name == "of") {
+    if (value != "camera" && value != "world")
+      throw UsageError(kOption, "of= is camera or world, got '" + value + "'");
+    light.of_camera = value == "camera";
+  } else if (name == "below" && hemisphere != nullptr) {
+    hemisphere->below = linear(parse_color(kOption, value));
+  } else if (name == "range" && (point != nullptr || spot != nullptr)) {
+    (point != nullptr ? point->range : spot->range) = number(value);
+  } else if (name == "towards" && spot != nullptr) {
+    spot->direction = Vec3(parse_vec3(kOption, value));
+  } else if (name == "inner" && spot != nullptr) {
+    spot->inner_rad = radians(value);
+  } else if (name == "outer" && spot != nullptr) {
+    spot->outer_rad = radians(value);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Light parse_light(const std::string& text) {
+  const std::vector<std::string> parts = parts_of(text);
+  Light light = light_of(parts.front());
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const std::size_t equal = parts[i].find('=');
+    if (equal == std::string::npos && i == 1)
+      set_place(light, parts[i]);
+    else if (equal == std::string::npos ||
+             !set_value(light, parts[i].substr(0, equal), parts[i].substr(equal + 1)))
+      throw UsageError(kOption, "a light of kind " + parts.front() + " has no '" + parts[i] +
+                                    "'; there are intensity=, color=, of=, below= (hemisphere), "
+                                    "range= (point, spot), towards=, inner=, outer= (spot)");
+  }
+  try {
+    check_lights({&light, 1});
+  } catch (const Error& e) {
+    throw UsageError(kOption, std::string(e.what()) + ": '" + text + "'");
+  }
+  return light;
+}
+
+void add_file_lights(const Scene& scene, std::vector<Light>& lights) {
+  if (scene.lights.empty()) throw UsageError("--lights", "the inputs have no lights of their own");
+  lights.insert(lights.end(), scene.lights.begin(), scene.lights.end());
+  if (lights.size() > kMaxLights)
+    throw UsageError("--lights", std::to_string(lights.size()) + " lights, at most " +
+                                     std::to_string(kMaxLights) + " are possible");
+}
+
+void add_light_options(Parser& app, std::vector<Light>& lights, bool& of_files, const char* group) {
+  add(app, "--lights", "NAME",
+      "of lambert, phong and material: default: the fixed light of each; headlight: one at the "
+      "viewer; studio: key, fill, back and head light; file: those of glTF files (default)",
+      [&lights, &of_files](const std::string& s) {
+        if (s == "headlight")
+          lights.push_back(headlight());
+        else if (s == "studio")
+          std::ranges::copy(light_kit(), std::back_inserter(lights));
+        else if (s == "file")
+          of_files = true;
+        else if (s != "default")
+          throw UsageError("--lights",
+                           "expected default, headlight, studio or file, got '" + s + "'");
+      })
+      ->group(group);
+  app.add_repeated("--light", "KIND:X,Y,Z:...",
+                   "instead of the fixed light, or beside --lights: ambient, hemisphere:UP, "
+                   "directional:DIRECTION, point:PLACE, spot:PLACE:towards=DIRECTION, headlight, "
+                   "with :intensity=I:color=COLOUR:of=camera (docs/light.md); may be repeated",
+                   [&lights](const std::string& s) {
+                     if (lights.size() >= kMaxLights)
+                       throw UsageError("--light", "there are at most 256");
+                     lights.push_back(parse_light(s));
+                   })
+      ->group(group);
+}
+
+}  // namespace rastrum::cli

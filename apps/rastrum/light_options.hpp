@@ -1,0 +1,23 @@
+// Lights as options of the commands that draw meshes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <rastrum/light.hpp>
+#include <rastrum/scene.hpp>
+
+#include "option.hpp"
+
+namespace rastrum::cli {
+
+/// Fills `lights`; both options may be given, and add up. `of_files`: those of the inputs count,
+/// too.
+void add_light_options(Parser& app, std::vector<Light>& lights, bool& of_files, const char* group);
+/// Adds those of the inputs. Throws UsageError where they have none.
+void add_file_lights(const Scene& scene, std::vector<Light>& lights);
+
+/// KIND[:PLACE][:NAME=VALUE]…, as --light has it. Throws UsageError.
+[[nodiscard]] Light parse_light(const std::string& text);
+
+}  // namespace rastrum::cli

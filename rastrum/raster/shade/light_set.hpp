@@ -1,0 +1,55 @@
+// A frame's lights as shading reads them: rounded to float32 once, what is of the camera placed in
+// the world, what comes from all around summed up.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <rastrum/camera.hpp>
+#include <rastrum/light.hpp>
+#include <rastrum/vec.hpp>
+
+namespace rastrum::raster {
+
+/// A light that comes from somewhere.
+struct LightTerm {
+  enum class Kind : std::uint8_t { directional, point, spot };
+  Kind kind = Kind::directional;
+  Vec3 place;  ///< the direction to it, of unit length; with a position that, from LightSet::origin
+  Vec3 radiance;                          ///< E / π, linear, where it shines at a distance of 1
+  float inv_range2 = 0;                   ///< 1 / range²
+  Vec3 axis;                              ///< of a spot, in which it shines, of unit length
+  float cone_scale = 0, cone_offset = 0;  ///< saturate(cos · scale + offset)²
+};
+
+/// A linear function of pixel and depth: all that is asked for a point's place.
+struct PixelPlane {
+  float constant = 0, x = 0, y = 0, depth = 0;
+};
+
+struct LightSet {
+  std::span<const LightTerm> terms;
+  bool has_places = false;  ///< some term is not directional
+  /// Of light from all around a direction n brings ambient + rise · n (each channel has its own).
+  Vec3 ambient, rise_x, rise_y, rise_z;
+  /// A sample's place in the world, from an origin near the eye: (x, y, z) / w of its pixel
+  /// coordinates and its depth. So of any camera.
+  PixelPlane x, y, z, w;
+};
+
+/// What owns them.
+class FrameLights {
+ public:
+  /// Lights that check_lights passes, seen by `camera`.
+  FrameLights(std::span<const Light> lights, const Camera& camera, int width, int height);
+  FrameLights(const FrameLights&) = delete;
+  FrameLights& operator=(const FrameLights&) = delete;
+  [[nodiscard]] const LightSet& set() const { return set_; }
+
+ private:
+  std::vector<LightTerm> terms_;
+  LightSet set_;
+};
+
+}  // namespace rastrum::raster

@@ -1,0 +1,49 @@
+// What reaches a point of a frame's lights (LightSet), in lanes or in one float
+// (kernels/lane_math-inl.hpp): one body, so the same bits. lit_light-inl.hpp and
+// material_light-inl.hpp come after it.
+
+/// NaN becomes the bound.
+RASTRUM_LANES F at_least(F a, float bound) {
+  return choose(a > set(bound), a, set(bound));
+}
+RASTRUM_LANES F at_most(F a, float bound) {
+  return choose(a < set(bound), a, set(bound));
+}
+RASTRUM_LANES F clamp01(F a) {
+  return at_most(at_least(a, 0), 1);
+}
+
+RASTRUM_LANES F on_plane(const PixelPlane& p, F px, F py, F depth) {
+  return set(p.constant) + set(p.x) * px + set(p.y) * py + set(p.depth) * depth;
+}
+/// Of the surface at (px, py), px, that has reversed depth `depth` there.
+RASTRUM_LANES V3 place_of(const LightSet& lights, F px, F py, F depth) {
+  const F scale = set(1) / on_plane(lights.w, px, py, depth);
+  return V3{on_plane(lights.x, px, py, depth), on_plane(lights.y, px, py, depth),
+            on_plane(lights.z, px, py, depth)} *
+         scale;
+}
+
+/// Light from all around, as a surface with normal `n` gathers it.
+RASTRUM_LANES V3 from_around(const LightSet& lights, const V3& n) {
+  return set(lights.ambient) + set(lights.rise_x) * n.x + set(lights.rise_y) * n.y +
+         set(lights.rise_z) * n.z;
+}
+
+struct Incoming {
+  V3 to_light;  ///< of unit length
+  V3 radiance;
+};
+RASTRUM_LANES Incoming incoming(const LightTerm& t, const V3& place) {
+  if (t.kind == LightTerm::Kind::directional) return {set(t.place), set(t.radiance)};
+  const V3 away = set(t.place) - place;
+  const F square = at_least(dot(away, away), 1e-12F);
+  const V3 l = away * (set(1) / square_root(square));
+  const F reach = square * set(t.inv_range2);
+  F share = at_least(set(1) - reach * reach, 0) / square;
+  if (t.kind == LightTerm::Kind::spot) {
+    const F cone = clamp01(dot(set(t.axis), l) * set(-t.cone_scale) + set(t.cone_offset));
+    share = share * (cone * cone);
+  }
+  return {l, set(t.radiance) * share};
+}

@@ -1,0 +1,127 @@
+#include <rastrum/light.hpp>
+
+#include <cmath>
+#include <string>
+#include <variant>
+
+#include <rastrum/core/angle.hpp>
+#include <rastrum/error.hpp>
+
+namespace rastrum {
+namespace {
+
+bool is_color(Vec3 c) {
+  return c.x >= 0 && c.y >= 0 && c.z >= 0 && c.x <= 1e12F && c.y <= 1e12F && c.z <= 1e12F;
+}
+
+bool is_direction(Vec3 v) {
+  const double square = static_cast<double>(v.x) * v.x + static_cast<double>(v.y) * v.y +
+                        static_cast<double>(v.z) * v.z;
+  return square > 0 && std::isfinite(square);
+}
+
+/// What is wrong with it; null: nothing.
+struct Problem {
+  const char* operator()(const AmbientLight&) const { return nullptr; }
+  const char* operator()(const HemisphereLight& h) const {
+    if (!is_direction(h.up)) return "its up must be finite and not zero";
+    return is_color(h.below) ? nullptr : "its colour below must lie in [0, 1e12]";
+  }
+  const char* operator()(const DirectionalLight& d) const {
+    return is_direction(d.direction) ? nullptr : "its direction must be finite and not zero";
+  }
+  const char* operator()(const PointLight& p) const { return placed(p.position, p.range); }
+  const char* operator()(const SpotLight& s) const {
+    if (const char* const problem = placed(s.position, s.range)) return problem;
+    if (!is_direction(s.direction)) return "its direction must be finite and not zero";
+    // Half a turn in float32 is a little more than in float64.
+    const bool cone = s.inner_rad >= 0 && s.inner_rad < s.outer_rad &&
+                      s.outer_rad <= std::numbers::pi_v<float> / 2;
+    return cone ? nullptr : "its cone must have 0 <= inner < outer <= 90 degrees";
+  }
+  static const char* placed(Vec3d p, float range) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+      return "its position must be finite";
+    return range > 0 ? nullptr : "its range must be greater than 0";
+  }
+};
+
+/// Away from where VTK's kit has a lamp: `elevation` above and `azimuth` to the right of the
+/// viewer.
+Light lamp(double elevation, double azimuth, float intensity, Vec3 color) {
+  const SinCos up = sin_cos_degrees(elevation), across = sin_cos_degrees(azimuth);
+  Light light;
+  light.kind = DirectionalLight{Vec3(Vec3d{-up.cos * across.sin, -up.sin, -up.cos * across.cos})};
+  light.color = color;
+  light.intensity = intensity;
+  light.of_camera = true;
+  return light;
+}
+
+}  // namespace
+
+void check_lights(std::span<const Light> lights) {
+  if (lights.size() > kMaxLights)
+    throw Error(Errc::invalid_argument, std::to_string(lights.size()) + " lights, at most " +
+                                            std::to_string(kMaxLights) + " are possible");
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const Light& light = lights[i];
+    const char* problem = std::visit(Problem{}, light.kind);
+    if (!is_color(light.color)) problem = "its colour must lie in [0, 1e12]";
+    if (!(light.intensity >= 0 && light.intensity <= 1e12F))
+      problem = "its intensity must lie in [0, 1e12]";
+    if (problem != nullptr)
+      throw Error(Errc::invalid_argument, "light " + std::to_string(i) + ": " + problem);
+  }
+}
+
+Light placed(const Light& light, const Mat4d& to_world) {
+  if (light.of_camera) return light;
+  const auto& m = to_world.m;
+  const auto turn = [&](Vec3 v) {
+    const Vec3d d{v.x, v.y, v.z};
+    return Vec3(Vec3d{m[0][0] * d.x + m[0][1] * d.y + m[0][2] * d.z,
+                      m[1][0] * d.x + m[1][1] * d.y + m[1][2] * d.z,
+                      m[2][0] * d.x + m[2][1] * d.y + m[2][2] * d.z});
+  };
+  const auto move = [&](Vec3d p) {
+    return Vec3d{m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3],
+                 m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3],
+                 m[2][0] * p.x + m[2][1] * p.y + m[2][2] * p.z + m[2][3]};
+  };
+  Light moved = light;
+  if (auto* const h = std::get_if<HemisphereLight>(&moved.kind)) {
+    h->up = turn(h->up);
+  } else if (auto* const d = std::get_if<DirectionalLight>(&moved.kind)) {
+    d->direction = turn(d->direction);
+  } else if (auto* const p = std::get_if<PointLight>(&moved.kind)) {
+    p->position = move(p->position);
+  } else if (auto* const s = std::get_if<SpotLight>(&moved.kind)) {
+    s->position = move(s->position);
+    s->direction = turn(s->direction);
+  }
+  return moved;
+}
+
+Light headlight(float intensity) {
+  Light light;
+  light.intensity = intensity;
+  light.of_camera = true;
+  return light;
+}
+
+std::vector<Light> light_kit(float ambient) {
+  constexpr float kKey = 0.75F;
+  constexpr Vec3 kWarm{1, 0.972320F, 0.902222F}, kCool{0.90824F, 0.93314F, 1},
+      kWhite{0.9998F, 0.9998F, 0.9998F};
+  std::vector<Light> kit{lamp(50, 10, kKey, kWarm), lamp(-75, -10, kKey / 3, kCool),
+                         lamp(0, 110, kKey / 3.5F, kWhite), lamp(0, -110, kKey / 3.5F, kWhite),
+                         headlight(kKey / 3)};
+  Light all_around;
+  all_around.kind = AmbientLight{};
+  all_around.intensity = ambient;
+  kit.push_back(all_around);
+  return kit;
+}
+
+}  // namespace rastrum

@@ -1,0 +1,83 @@
+// Lights as options of the program.
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+namespace rastrum::test::lights_test {
+namespace {
+
+using LightOptions = Program;
+
+const std::vector<std::string> kScene{"render", "builtin:teapot", "--size", "120x90"};
+
+std::vector<std::string> with(const std::vector<std::string>& more) {
+  std::vector<std::string> all = kScene;
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+TEST_F(LightOptions, LightThePictureAndNothingElse) {
+  must(with({"-o", "plain.png", "--depth", "d0.npy"}));
+  const Image<Rgba8> plain = png("plain.png");
+  for (const std::string light :
+       {"ambient:intensity=0.5", "hemisphere:0,0,1:below=#402000:color=skyblue",
+        "directional:0,-1,-1", "point:2,2,2:intensity=4:range=9",
+        "spot:0,3,3:towards=0,-1,-1:inner=5:outer=20:intensity=9", "headlight:intensity=0.7"}) {
+    must(with({"--light", light, "-o", "lit.png", "--depth", "d1.npy"}));
+    EXPECT_FALSE(same_pixels(plain, png("lit.png"))) << light;
+    EXPECT_EQ(read("d0.npy"), read("d1.npy")) << light;
+  }
+  must(with({"--lights", "default", "-o", "same.png"}));
+  EXPECT_TRUE(same_pixels(plain, png("same.png")));
+  must(with({"--lights", "headlight", "-o", "head.png"}));
+  must(with({"--light", "directional:of=camera", "-o", "same.png"}));
+  EXPECT_TRUE(same_pixels(png("head.png"), png("same.png")));
+}
+
+TEST_F(LightOptions, StudioIsWhatItSays) {
+  must(with({"--studio", "-o", "studio.png"}));
+  must(with(
+      {"--view", "iso", "--lights", "studio", "--occlusion", "--samples", "4", "-o", "said.png"}));
+  EXPECT_TRUE(same_pixels(png("studio.png"), png("said.png")));
+  must(with({"--studio", "--view", "top", "--samples", "1", "--lights", "headlight", "-o",
+             "studio.png"}));
+  must(with({"--view", "top", "--lights", "headlight", "--occlusion", "-o", "said.png"}));
+  EXPECT_TRUE(same_pixels(png("studio.png"), png("said.png")));
+}
+
+TEST_F(LightOptions, OfFilesAreAskedFor) {
+  write("lit.gltf",
+        R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual"],)"
+        R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","intensity":9}]}},)"
+        R"("nodes":[{"translation":[0,2,3],"extensions":{"KHR_lights_punctual":{"light":0}}}]})");
+  must({"render", "builtin:teapot", "lit.gltf", "--shader", "phong", "--eye", "0,2,5", "--target",
+        "0,0,0", "--size", "120x90", "--lights", "file", "-o", "file.png"});
+  must({"render", "builtin:teapot", "lit.gltf", "--shader", "phong", "--eye", "0,2,5", "--target",
+        "0,0,0", "--size", "120x90", "--light", "point:0,2,3:intensity=2.86478886", "-o",
+        "said.png"});
+  EXPECT_TRUE(same_pixels(png("file.png"), png("said.png")));
+}
+
+TEST_F(LightOptions, RefuseWhatCannotBeMeant) {
+  const auto refused = [&](const std::vector<std::string>& args, const std::string& part) {
+    const Outcome outcome = run(with(args));
+    EXPECT_EQ(outcome.status, 2) << part;
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+  };
+  refused({"--light", "laser:1,2,3", "-o", "a.png"}, "--light: expected ambient, hemisphere");
+  refused({"--light", "point:1,2", "-o", "a.png"}, "--light");
+  refused({"--light", "ambient:1,2,3", "-o", "a.png"}, "has no place");
+  refused({"--light", "point:1,2,3:outer=4", "-o", "a.png"}, "has no 'outer=4'");
+  refused({"--light", "point:1,2,3:range=-4", "-o", "a.png"}, "its range");
+  refused({"--light", "directional:0,0,0", "-o", "a.png"}, "its direction");
+  refused({"--light", "headlight:intensity=-1", "-o", "a.png"}, "its intensity");
+  refused({"--light", "headlight:intensity=nan", "-o", "a.png"}, "--light");
+  refused({"--light", "spot:0,0,1:inner=30:outer=20", "-o", "a.png"}, "its cone");
+  refused({"--light", "headlight:of=me", "-o", "a.png"}, "of= is camera or world");
+  refused({"--lights", "disco", "-o", "a.png"}, "--lights");
+  refused({"--lights", "file", "-o", "a.png"}, "have no lights");
+}
+
+}  // namespace
+}  // namespace rastrum::test::lights_test

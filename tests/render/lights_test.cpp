@@ -1,0 +1,396 @@
+// A frame's own lights: against their formulas in float64 on a sphere, against the fixed light that
+// they can say, and the same bits whatever draws.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/digest.hpp>
+#include <rastrum/light.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/surfaces.hpp>
+
+#include "tests/support/refused.hpp"
+
+namespace rastrum::test::lights_test {
+namespace {
+
+constexpr int kSize = 96;
+
+/// A ball of radius 1 about the origin, a quadric, so that its normals are exact.
+struct Ball {
+  std::vector<Vec3> centre{{0, 0, 0}};
+  std::vector<InstanceView> instances;
+  std::vector<Material> materials;
+
+  Ball() {
+    SpheresView spheres;
+    spheres.centers = centre;
+    spheres.radius = 1;
+    instances.push_back({spheres});
+  }
+  [[nodiscard]] SceneView view() const { return {instances, materials, {}, {}}; }
+};
+
+Camera camera(bool orthographic) {
+  Camera c;
+  c.eye = {1.5, 1, 3};
+  c.orthographic = orthographic;
+  c.orthographic_height = 2.5F;
+  c.near_plane = 0.5F;
+  if (orthographic) c.far_plane = 20;
+  return c;
+}
+
+Image<Vec4> draw(const SceneView& scene, const Camera& seen_by, FrameOptions frame,
+                 const RendererOptions& options = {.threads = 1}) {
+  frame.width = frame.height = kSize;
+  Image<Vec4> color(kSize, kSize);
+  Renderer(options).render(scene, seen_by, frame, {.color = color});
+  return color;
+}
+
+FrameOptions lit_by(std::vector<Light> lights, Shader shader) {
+  FrameOptions frame;
+  frame.shader = shader;
+  frame.lights = std::move(lights);
+  return frame;
+}
+
+Light light(decltype(Light::kind) kind, float intensity = 1, Vec3 color = {1, 1, 1}) {
+  Light l;
+  l.kind = kind;
+  l.intensity = intensity;
+  l.color = color;
+  return l;
+}
+
+// The formulas of docs/light.md.
+
+Vec3d wide(Vec3 v) {
+  return {v.x, v.y, v.z};
+}
+Vec3d unit(Vec3d v) {
+  return v * (1 / length(v));
+}
+Vec3d times(Vec3d a, Vec3d b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+
+struct Arrived {
+  Vec3d to_light;
+  Vec3d radiance;
+};
+/// From around: what a direction gathers.
+std::optional<Vec3d> around(const Light& l, Vec3d d) {
+  const Vec3d full = wide(l.color) * l.intensity;
+  if (std::holds_alternative<AmbientLight>(l.kind)) return full;
+  if (const auto* const h = std::get_if<HemisphereLight>(&l.kind)) {
+    const double share = (1 + dot(unit(wide(h->up)), d)) / 2;
+    return full * share + wide(h->below) * (l.intensity * (1 - share));
+  }
+  return {};
+}
+Arrived arrived(const Light& l, Vec3d p) {
+  const Vec3d full = wide(l.color) * l.intensity;
+  if (const auto* const d = std::get_if<DirectionalLight>(&l.kind))
+    return {unit(wide(d->direction)) * -1, full};
+  const auto* const point = std::get_if<PointLight>(&l.kind);
+  const auto* const spot = std::get_if<SpotLight>(&l.kind);
+  const Vec3d away = (point != nullptr ? point->position : spot->position) - p;
+  const double range = point != nullptr ? point->range : spot->range;
+  const double d = length(away);
+  double share = std::max(std::min(1 - std::pow(d / range, 4), 1.0), 0.0) / (d * d);
+  if (spot != nullptr) {
+    const double inner = std::cos(spot->inner_rad), outer = std::cos(spot->outer_rad);
+    const double scale = 1 / std::max(0.001, inner - outer);
+    const double cosine = dot(unit(away) * -1, unit(wide(spot->direction)));
+    const double cone = std::clamp(cosine * scale - outer * scale, 0.0, 1.0);
+    share *= cone * cone;
+  }
+  return {unit(away), full * share};
+}
+
+/// Of `lambert` and `phong`.
+Vec3d expected_display(const std::vector<Light>& lights, bool shines, Vec3d p, Vec3d n, Vec3d v) {
+  const Vec3d base{0.8, 0.7, 0.6};
+  Vec3d sum;
+  for (const Light& l : lights) {
+    if (const auto all_around = around(l, n)) {
+      sum = sum + times(base, *all_around);
+      continue;
+    }
+    const Arrived in = arrived(l, p);
+    const double n_l = dot(n, in.to_light);
+    if (n_l <= 0) continue;
+    sum = sum + times(base, in.radiance) * n_l;
+    const double n_h = std::max(dot(n, unit(v + in.to_light)), 0.0);
+    if (shines) sum = sum + in.radiance * (0.375 * std::pow(n_h, 32));
+  }
+  return sum;
+}
+
+/// Of a material without textures, in linear light.
+Vec3d expected_linear(const std::vector<Light>& lights, const Material& m, Vec3d p, Vec3d n,
+                      Vec3d v) {
+  const Vec3d base = wide({m.base_color.x, m.base_color.y, m.base_color.z});
+  const Vec3d one{1, 1, 1};
+  const Vec3d f0 = one * (0.04 * (1 - m.metallic)) + base * m.metallic;
+  const Vec3d diffuse = base * (1 - m.metallic);
+  const double alpha = static_cast<double>(m.roughness) * m.roughness, alpha2 = alpha * alpha;
+  const double nv = std::max(dot(n, v), 1e-4);
+  Vec3d sum;
+  for (const Light& l : lights) {
+    if (const auto of_n = around(l, n)) {
+      const Vec3d of_r = *around(l, n * (2 * dot(n, v)) - v);
+      const auto rise = [&](double c) { return std::max(1 - m.roughness - c, 0.0); };
+      const Vec3d f =
+          f0 + Vec3d{rise(f0.x), rise(f0.y), rise(f0.z)} * std::pow(std::max(1 - nv, 0.0), 5);
+      sum = sum + times(diffuse, *of_n) + times(f, of_r);
+      continue;
+    }
+    const Arrived in = arrived(l, p);
+    const double nl = dot(n, in.to_light);
+    if (nl <= 0) continue;
+    const Vec3d h = unit(v + in.to_light);
+    const double nh = std::max(dot(n, h), 0.0), vh = std::max(dot(v, h), 0.0);
+    const double lobe = nh * nh * (alpha2 - 1) + 1;
+    const double specular =
+        alpha2 / (lobe * lobe) * 0.5 / (2 * nl * nv * (1 - alpha) + (nl + nv) * alpha);
+    const Vec3d f = f0 + (one - f0) * std::pow(1 - vh, 5);
+    sum = sum + times(times(diffuse, one - f) + f * specular, in.radiance) * nl;
+  }
+  return sum;
+}
+
+double display(double linear) {
+  const double x = std::clamp(linear, 0.0, 1.0);
+  return x < 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+}
+
+/// Calls f(x, y, place, to the viewer) where the centre of a pixel sees the ball.
+template <class F>
+void each_pixel(const Camera& c, F&& f) {
+  const Mat4d to_camera = world_to_camera(c);
+  const auto axis = [&](int i) {
+    return Vec3d{to_camera.m[i][0], to_camera.m[i][1], to_camera.m[i][2]};
+  };
+  const Vec3d right = axis(0), up = axis(1), ahead = axis(2) * -1;
+  const double half =
+      c.orthographic ? c.orthographic_height / 2.0 : std::tan(static_cast<double>(c.fov_rad) / 2);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const double a = ((x + 0.5) * 2 / kSize - 1) * half, b = (1 - (y + 0.5) * 2 / kSize) * half;
+      const Vec3d across = right * a + up * b;
+      const Vec3d from = c.orthographic ? c.eye + across : c.eye;
+      const Vec3d d = unit(c.orthographic ? ahead : ahead + across);
+      const double along = -dot(from, d), miss = dot(from, from) - along * along;
+      if (miss < 1) f(x, y, from + d * (along - std::sqrt(1 - miss)), d * -1);
+    }
+}
+
+/// Lights of every kind, alone and together.
+std::vector<std::vector<Light>> sets_of_lights() {
+  std::vector<std::vector<Light>> sets{
+      {light(AmbientLight{}, 0.4F, {1, 0.5F, 0.25F})},
+      {light(HemisphereLight{{1, 2, -1}, {0.3F, 0.1F, 0}}, 0.7F, {0.4F, 0.6F, 1})},
+      {light(DirectionalLight{{-3, -2, -1}}, 0.9F, {1, 0.9F, 0.8F})},
+      {light(PointLight{{0.8, 1.2, 1.1}}, 0.6F)},
+      {light(PointLight{{-0.5, 1, 2}, 2.2F}, 2, {0.5F, 1, 0.5F})},
+      {light(SpotLight{{1, 1.5, 2}, {-1, -1.4F, -1.6F}}, 3)},
+      {light(SpotLight{{1, 1.5, 2}, {-1, -1.4F, -1.6F}, 4, 0.2F, 0.3F}, 3, {1, 0, 0.5F})}};
+  std::vector<Light> all;
+  for (const auto& set : sets)
+    for (Light l : set) {
+      l.intensity *= 0.3F;
+      all.push_back(l);
+    }
+  sets.push_back(all);
+  return sets;
+}
+
+TEST(Lights, AreTheirFormulasOnASphere) {
+  Ball ball;
+  Material matt, metal;
+  matt.base_color = {0.7F, 0.5F, 0.3F, 1};
+  matt.metallic = 0.2F;
+  matt.roughness = 0.6F;
+  for (const bool orthographic : {false, true})
+    for (const std::vector<Light>& lights : sets_of_lights())
+      for (const Shader shader : {Shader::lambert, Shader::phong, Shader::material}) {
+        const bool is_material = shader == Shader::material;
+        ball.materials.clear();
+        if (is_material) ball.materials.push_back(matt);
+        const Camera seen_by = camera(orthographic);
+        const Image<Vec4> color = draw(ball.view(), seen_by, lit_by(lights, shader));
+        double worst = 0;
+        int seen = 0;
+        each_pixel(seen_by, [&](int x, int y, Vec3d p, Vec3d v) {
+          const Vec4 c = color(x, y);
+          if (c.w == 0) return;  // where rounding decides that the ball ends
+          ++seen;
+          Vec3d e = is_material ? expected_linear(lights, matt, p, p, v)
+                                : expected_display(lights, shader == Shader::phong, p, p, v);
+          if (is_material) e = {display(e.x), display(e.y), display(e.z)};
+          worst = std::max({worst, std::abs(c.x - e.x), std::abs(c.y - e.y), std::abs(c.z - e.z)});
+        });
+        EXPECT_GT(seen, 1500);
+        EXPECT_LE(worst, 1.0 / 255) << name(shader) << ", " << lights.size() << " lights of kind "
+                                    << lights.front().kind.index();
+      }
+}
+
+TEST(Lights, SayTheFixedLightOfPhong) {
+  Ball ball;
+  const auto fixed = draw(ball.view(), camera(false), lit_by({}, Shader::phong));
+  const auto said =
+      draw(ball.view(), camera(false),
+           lit_by({light(AmbientLight{}, 0.1F), light(DirectionalLight{{-0.4F, -0.6F, -1}}, 0.8F)},
+                  Shader::phong));
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) ASSERT_NEAR(fixed(x, y).x, said(x, y).x, 1.0 / 255);
+}
+
+/// Meshes, a ball, points with and without normals, and what is translucent.
+struct Mixture {
+  Mesh knot = shapes::torus_knot(2, 3, 60, 8);
+  std::vector<Vec3> places, normals;
+  std::vector<InstanceView> instances;
+
+  Mixture() {
+    for (int i = 0; i < 40; ++i) {
+      const auto t = static_cast<float>(i);
+      places.push_back({1.3F * std::cos(t), 0.04F * t - 0.8F, 1.3F * std::sin(t)});
+      normals.push_back({std::cos(t), 0.3F, std::sin(t)});
+    }
+    SpheresView spheres;
+    spheres.centers = places;
+    spheres.radius = 0.2F;
+    instances = {{knot.view()}, {spheres}};
+    PointsView points;
+    points.positions = places;
+    points.normals = normals;
+    points.point_size = 9;
+    instances.push_back({points});
+    instances[1].opacity = 0.6F;
+    instances[2].object_to_world.m[0][3] = 0.3;
+  }
+  [[nodiscard]] SceneView scene() const { return {instances, {}, {}, {}}; }
+};
+
+TEST(Lights, AreTheSameBitsForAllThatDraws) {
+  const Mixture mixture;
+  std::vector<Light> lights = sets_of_lights().back();
+  const std::vector<Light> kit = light_kit();
+  lights.insert(lights.end(), kit.begin(), kit.end());
+  for (const bool orthographic : {false, true})
+    for (const Shader shader : {Shader::lambert, Shader::phong, Shader::material})
+      for (const int samples : {1, 4}) {
+        FrameOptions frame = lit_by(lights, shader);
+        frame.samples = samples;
+        const Camera seen_by = camera(orthographic);
+        const auto first =
+            draw(mixture.scene(), seen_by, frame, {.device = Device::serial, .threads = 1});
+        const auto plain = draw(mixture.scene(), seen_by, [&] {
+          FrameOptions without = frame;
+          without.lights.clear();
+          return without;
+        }());
+        EXPECT_FALSE(digest(first) == digest(plain));
+        for (const Isa isa : available_isas())
+          for (const int threads : {1, 3})
+            EXPECT_TRUE(digest(first) == digest(draw(mixture.scene(), seen_by, frame,
+                                                     {.threads = threads, .isa = isa})))
+                << name(shader) << ", " << samples << " samples, " << name(isa);
+      }
+}
+
+TEST(Lights, OfTheCameraMoveWithIt) {
+  const Ball ball;
+  Camera one = camera(false), other = one;
+  other.eye = {-3.2, 0.4, -1.1};
+  const double scale = length(one.eye) / length(other.eye);
+  other.eye = other.eye * scale;
+  std::vector<Light> lights = light_kit();
+  lights.push_back(light(SpotLight{{0.5, 0.5, -1}, {0, 0, -1}}, 4));
+  lights.back().of_camera = true;
+  const auto a = draw(ball.view(), one, lit_by(lights, Shader::phong));
+  const auto b = draw(ball.view(), other, lit_by(lights, Shader::phong));
+  int seen = 0;
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      if (a(x, y).w == 0 || b(x, y).w == 0) continue;
+      ++seen;
+      ASSERT_NEAR(a(x, y).x, b(x, y).x, 1.0 / 255) << x << ", " << y;
+    }
+  EXPECT_GT(seen, 1500);
+}
+
+TEST(Lights, ArePlacedByAMatrixCameraToo) {
+  const Ball ball;
+  const Camera lens = camera(false);
+  const Camera matrix = camera_from_matrix(world_to_clip(lens, kSize, kSize), ClipDepth::reversed);
+  const std::vector<Light> lights = sets_of_lights().back();
+  const auto a = draw(ball.view(), lens, lit_by(lights, Shader::phong));
+  const auto b = draw(ball.view(), matrix, lit_by(lights, Shader::phong));
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x)
+      if (a(x, y).w != 0 && b(x, y).w != 0) {
+        ASSERT_NEAR(a(x, y).x, b(x, y).x, 1.0 / 255);
+      }
+}
+
+TEST(Lights, ThatCannotBeMeantAreRefused) {
+  const Ball ball;
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  const auto refused = [&](const char* part, const Light& bad) {
+    expect_refused(part, [&] {
+      static_cast<void>(
+          draw(ball.view(), camera(false), lit_by({light(AmbientLight{}), bad}, Shader::phong)));
+    });
+  };
+  for (const float bad : {-1.0F, kNan, kInf}) {
+    refused("light 1: its intensity", light(AmbientLight{}, bad));
+    refused("light 1: its colour", light(AmbientLight{}, 1, {1, bad, 1}));
+    refused("light 1: its colour below", light(HemisphereLight{{0, 1, 0}, {bad, 0, 0}}));
+  }
+  for (const Vec3 bad : {Vec3{0, 0, 0}, Vec3{0, kNan, 1}, Vec3{kInf, 0, 0}}) {
+    refused("light 1: its direction", light(DirectionalLight{bad}));
+    refused("light 1: its direction", light(SpotLight{{}, bad}));
+    refused("light 1: its up", light(HemisphereLight{bad}));
+  }
+  refused("light 1: its position", light(PointLight{{kNan, 0, 0}}));
+  refused("light 1: its position", light(SpotLight{{0, kInf, 0}}));
+  for (const float bad : {0.0F, -2.0F, kNan}) {
+    refused("light 1: its range", light(PointLight{{}, bad}));
+    refused("light 1: its range", light(SpotLight{{}, {0, 0, -1}, bad}));
+  }
+  refused("light 1: its cone", light(SpotLight{{}, {0, 0, -1}, kInf, 0.5F, 0.4F}));
+  refused("light 1: its cone", light(SpotLight{{}, {0, 0, -1}, kInf, 0.5F, 0.5F}));
+  refused("light 1: its cone", light(SpotLight{{}, {0, 0, -1}, kInf, -0.1F, 0.5F}));
+  refused("light 1: its cone", light(SpotLight{{}, {0, 0, -1}, kInf, 0, 1.6F}));
+  refused("light 1: its cone", light(SpotLight{{}, {0, 0, -1}, kInf, kNan, 0.5F}));
+  expect_refused("257 lights", [&] {
+    static_cast<void>(
+        draw(ball.view(), camera(false), lit_by(std::vector<Light>(257), Shader::phong)));
+  });
+}
+
+TEST(Lights, LeaveOtherShadersAlone) {
+  const Mixture mixture;
+  for (const Shader shader : {Shader::flat, Shader::normal, Shader::id, Shader::depth})
+    EXPECT_EQ(digest(draw(mixture.scene(), camera(false), lit_by({}, shader))),
+              digest(draw(mixture.scene(), camera(false), lit_by(light_kit(), shader))))
+        << name(shader);
+}
+
+}  // namespace
+}  // namespace rastrum::test::lights_test

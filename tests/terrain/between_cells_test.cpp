@@ -1,0 +1,79 @@
+// Near ground under a sharp shadow: squares with MapFilter::none, none with `bilinear`, and either
+// the same bits by plain code and on every instruction set.
+#include <rastrum/terrain.hpp>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/digest.hpp>
+#include <rastrum/parallel/device.hpp>
+#include <rastrum/terrain_light.hpp>
+
+namespace rastrum::terrain::between_cells_test {
+namespace {
+
+constexpr int kWidth = 200, kHeight = 120;
+
+/// A plane with a wall in the east, whose shadow ends at cell 40.
+Terrain shaded_plane() {
+  HeightMap map{Image<float>(64, 64), Image<Rgba8>(64, 64)};
+  for (Rgba8& c : map.colors.pixels()) c = {200, 200, 200, 255};
+  for (int y = 0; y < 64; ++y) map.heights(50, y) = 10;
+  map.colors = lit_colors(map, {.sun = {90, 45}, .shadows = Shadows::sharp, .ambient = 0.5F},
+                          {.tiling = Tiling::clamp});
+  return Terrain(std::move(map));
+}
+
+Image<Rgba8> picture(const Terrain& terrain, MapFilter filter, TerrainRendererOptions by) {
+  TerrainOptions options;
+  options.width = kWidth;
+  options.height = kHeight;
+  options.filter = filter;
+  options.step = filter == MapFilter::bilinear ? 0 : 1;
+  options.tiling = Tiling::clamp;
+  Image<Rgba8> color(kWidth, kHeight);
+  // 3 cells above the plane, the end of the shadow ahead.
+  const TerrainCamera camera{.x = 40, .y = 32, .altitude = 3, .horizon_px = 20};
+  TerrainRenderer(by).render(terrain, camera, options, {.color8 = color});
+  return color;
+}
+
+TEST(BetweenCells, AreShadowsOnNearGround) {
+  const Terrain terrain = shaded_plane();
+  const Image<Rgba8> cells = picture(terrain, MapFilter::none, {}),
+                     between = picture(terrain, MapFilter::bilinear, {});
+  // Rows of near ground, where a cell is tens of pixels wide.
+  for (int y = kHeight - 20; y < kHeight; ++y) {
+    int jump = 0, steps = 0, jump_of_cells = 0;
+    for (int x = 1; x < kWidth; ++x) {
+      jump = std::max(jump, std::abs(between(x, y).r - between(x - 1, y).r));
+      steps += between(x, y).r != between(x - 1, y).r;
+      jump_of_cells = std::max(jump_of_cells, std::abs(cells(x, y).r - cells(x - 1, y).r));
+      EXPECT_LE(between(x, y).r, between(x - 1, y).r) << "lit in the west, " << x << ", " << y;
+    }
+    EXPECT_EQ(jump_of_cells, 100) << y;
+    EXPECT_LE(jump, 10) << y;
+    EXPECT_GE(steps, 15) << y;
+    EXPECT_EQ(between(0, y).r, 200) << y;
+    EXPECT_EQ(between(kWidth - 1, y).r, 100) << y;
+  }
+}
+
+TEST(BetweenCells, ArePicturesTheSameBitsWhoeverDraws) {
+  const Terrain terrain = shaded_plane();
+  for (const MapFilter filter : {MapFilter::none, MapFilter::bilinear}) {
+    const std::string plain =
+        digest(picture(terrain, filter, {.device = Device::serial}).view()).hex();
+    for (const Isa isa : available_isas())
+      for (const int threads : {1, 3})
+        EXPECT_EQ(digest(picture(terrain, filter, {.threads = threads, .isa = isa}).view()).hex(),
+                  plain)
+            << name(isa) << ", " << threads << " threads";
+  }
+}
+
+}  // namespace
+}  // namespace rastrum::terrain::between_cells_test
