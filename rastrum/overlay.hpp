@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <rastrum/camera.hpp>
+#include <rastrum/color_map.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/vec.hpp>
 
@@ -155,6 +156,8 @@ struct ScalarBar {
   std::vector<std::string> categories{};
   Side side = Side::right;
 };
+/// The bar of what colours numbers, and of the mapping that `colors` is made of.
+[[nodiscard]] ScalarBar scalar_bar(const ScalarMapping& mapping, const ScalarColors& colors);
 /// Throws Error{invalid_argument} for a bar without colours, a range that is not finite or upside
 /// down or, with a logarithm, not above 0, and categories that are not as many as colours.
 void draw_scalar_bar(const Canvas& canvas, const ScalarBar& bar, const Look& look = {});

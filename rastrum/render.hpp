@@ -79,6 +79,9 @@ struct FrameOptions {
   /// What lights the scene for `lambert`, `phong` and `material`; empty: the fixed light of each.
   /// The CPU's: frames with lights are not drawn by a device.
   std::vector<Light> lights{};
+  /// What stands in the way of directional lights, and of spots that reach at most 84.8° from their
+  /// axis, takes their light; of what is translucent all of it. Of `lights` alone.
+  bool shadows = false;
 };
 
 /// Throws Error{invalid_argument} for a number or an enum's value out of range, a background that

@@ -136,7 +136,8 @@ void add_file_lights(const Scene& scene, std::vector<Light>& lights) {
                                      std::to_string(kMaxLights) + " are possible");
 }
 
-void add_light_options(Parser& app, std::vector<Light>& lights, bool& of_files, const char* group) {
+void add_light_options(Parser& app, FrameOptions& frame, bool& of_files, const char* group) {
+  std::vector<Light>& lights = frame.lights;
   add(app, "--lights", "NAME",
       "of lambert, phong and material: default: the fixed light of each; headlight: one at the "
       "viewer; studio: key, fill, back and head light; file: those of glTF files (default)",
@@ -161,6 +162,9 @@ void add_light_options(Parser& app, std::vector<Light>& lights, bool& of_files, 
                        throw UsageError("--light", "there are at most 256");
                      lights.push_back(parse_light(s));
                    })
+      ->group(group);
+  app.add_flag("--shadows", frame.shadows,
+               "of directional lights and spots that --lights and --light say")
       ->group(group);
 }
 

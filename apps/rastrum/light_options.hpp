@@ -5,15 +5,16 @@
 #include <vector>
 
 #include <rastrum/light.hpp>
+#include <rastrum/render.hpp>
 #include <rastrum/scene.hpp>
 
 #include "option.hpp"
 
 namespace rastrum::cli {
 
-/// Fills `lights`; both options may be given, and add up. `of_files`: those of the inputs count,
-/// too.
-void add_light_options(Parser& app, std::vector<Light>& lights, bool& of_files, const char* group);
+/// Fills the frame's lights; both options may be given, and add up. `of_files`: those of the inputs
+/// count, too.
+void add_light_options(Parser& app, FrameOptions& frame, bool& of_files, const char* group);
 /// Adds those of the inputs. Throws UsageError where they have none.
 void add_file_lights(const Scene& scene, std::vector<Light>& lights);
 

@@ -165,25 +165,10 @@ void set_scalars(const ScalarOptions& s, Scene& scene) {
 void draw_bar(const ScalarOptions& s, const SceneView& scene, const overlay::Canvas& canvas,
               const overlay::Look& look) {
   if (!s.bar()) return;
-  const ScalarMapping& m = scene.scalar_mappings[0];
-  const ScalarColors colors = scalar_colors(scene);
-  overlay::ScalarBar bar;
-  bar.colors = colors.colors();
-  bar.discrete = colors.is_discrete();
-  bar.low = colors.range().low;
-  bar.high = colors.range().high;
-  bar.logarithmic = m.logarithmic && m.categories.empty();
+  overlay::ScalarBar bar = overlay::scalar_bar(scene.scalar_mappings[0], scalar_colors(scene));
   bar.title = *s.bar_title;
   bar.unit = s.bar_unit;
-  if (m.categories.empty()) {
-    bar.below = m.below;
-    bar.above = m.above;
-  }
-  if (s.nan_given) bar.nan = m.nan;
-  for (const double category : m.categories) {
-    const auto ticks = overlay::ticks(category, category, 1);
-    bar.categories.push_back(ticks.empty() ? std::to_string(category) : ticks.front().label);
-  }
+  if (s.nan_given) bar.nan = scene.scalar_mappings[0].nan;
   overlay::draw_scalar_bar(canvas, bar, look);
 }
 

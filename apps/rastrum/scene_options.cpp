@@ -130,7 +130,7 @@ void add_picture_options(Parser& app, SceneArguments& a) {
     a.render.height = size.height;
   })->group(group);
   add_shading_options(app, a, group);
-  add_light_options(app, a.render.lights, a.file_lights, group);
+  add_light_options(app, a.render, a.file_lights, group);
   add(app, "--background", "COLOUR", "#rrggbb[aa], #rgb[a] or a name of CSS's (transparent)",
       [&a](const std::string& s) { a.render.background = parse_color("--background", s); })
       ->group(group);
@@ -298,6 +298,8 @@ std::string shapes_help() {
 
 void check_scene_arguments(const SceneArguments& a) {
   check_inputs(a.inputs, a.format);
+  if (a.render.shadows && a.render.lights.empty() && !a.file_lights)
+    throw UsageError("--shadows", "is of --lights and --light, as in --lights studio --shadows");
   const ViewOptions& v = a.view;
   if (a.fit && (v.eye || v.target || v.file_camera)) {
     const std::string other = v.eye ? "--eye" : v.target ? "--target" : "--camera";

@@ -11,7 +11,7 @@ __all__: list[str]
 
 Color = str | Sequence[float]
 Output = Literal["color", "color_f32", "depth", "depth_raw", "distance", "id", "instance", "face", "barycentrics", "normal",
-                 "camera_normal", "position", "albedo", "linear"]
+                 "camera_normal", "position", "albedo", "linear", "scalars"]
 OUTPUTS: dict[str, tuple[type, int]]
 
 class Error(Exception): ...
@@ -32,6 +32,14 @@ class Material:
                  normal_texture: ArrayLike | None = None, occlusion_texture: ArrayLike | None = None,
                  emissive_texture: ArrayLike | None = None) -> None: ...
 
+class ColorMapping:
+    def __init__(self, cmap: Any = "viridis", clim: Sequence[float] | None = None, *, log: bool = False, symmetric: bool = False,
+                 steps: int = 0, categories: Iterable[float] = (), below: Color | None = None, above: Color | None = None,
+                 nan: Color = "gray", opacity: Iterable[tuple[float, float]] = (), isolines: Iterable[float] = (),
+                 isoline_color: Color = "black", isoline_width: float = 1.0) -> None: ...
+
+def color_maps() -> list[str]: ...
+
 class _Thing:
     color: Color | None
     opacity: float
@@ -41,10 +49,12 @@ class _Thing:
     id: int | None
     winding: str
     clip_planes: ArrayLike
+    scalars: NDArray[Any] | None
+    mapping: ColorMapping | None
     @property
     def primitives(self) -> int: ...
 
-# `look`: color, opacity, material, transform, visible, id, winding, clip_planes.
+# `look`: color, opacity, material, transform, visible, id, winding, clip_planes, scalars, cmap, clim.
 class Mesh(_Thing):
     def __init__(self, positions: ArrayLike, indices: ArrayLike | None = None, *, offsets: ArrayLike | None = None,
                  normals: ArrayLike | None = None, uv: ArrayLike | None = None, colors: ArrayLike | None = None,
@@ -118,6 +128,7 @@ class Hit:
     normal: tuple[float, float, float]
     depth: float
     distance: float
+    scalar: float | None
 
 class _Fields:
     arrays: dict[str, NDArray[Any]]
@@ -135,6 +146,7 @@ class _Fields:
     position: NDArray[np.float32]
     albedo: NDArray[np.float32]
     linear: NDArray[np.float32]
+    scalars: NDArray[np.float32]
 
 class Picture(_Fields):
     stats: dict[str, Any]

@@ -9,7 +9,8 @@ from ._errors import ArgumentError, ArgumentTypeError
 
 #: name: its options and their defaults; None: by the scene
 _EFFECTS = {"occlusion": {"radius": None, "strength": 1.0}, "edl": {"strength": 1.0}, "silhouettes": {},
-            "edges": {"angle": 0.0, "width": 1.0}, "axes": {}, "bounds": {}}
+            "edges": {"angle": 0.0, "width": 1.0}, "axes": {}, "bounds": {},
+            "bar": {"title": "", "unit": ""}}
 _WORDS = ("title", "captions", "text_scale")
 
 
@@ -17,6 +18,14 @@ def _number(value, name):
     if isinstance(value, bool) or not isinstance(value, (int, float, np.number)):
         raise ArgumentTypeError(f"{name}: must be a number, not {value!r}")
     return float(value)
+
+
+def _bar(options):
+    if options is None:
+        return None
+    if not all(isinstance(v, str) for v in options.values()):
+        raise ArgumentTypeError("annotate['bar']: title and unit are words")
+    return options["title"], options["unit"]
 
 
 def annotations(wanted):
@@ -33,7 +42,7 @@ def annotations(wanted):
             raise ArgumentError(f"annotate: there is no {name!r}; take some of {', '.join([*_EFFECTS, *_WORDS])}")
         if value is None or value is False:
             continue
-        options = {} if value is True else value
+        options = {} if value is True else {"title": value} if name == "bar" and isinstance(value, str) else value
         if not isinstance(options, Mapping):
             raise ArgumentTypeError(f"annotate[{name!r}]: must be True or a dict of options, not {value!r}")
         for key in options:
@@ -68,5 +77,6 @@ def annotations(wanted):
     return _r.annotations(
         radius, strength or 0.0, option("edl", "strength", 0, 100) if has("edl") else None, has("silhouettes"),
         option("edges", "angle", 0, 180) if has("edges") else None,
-        option("edges", "width", 1e-3, 64) if has("edges") else 1.0, has("axes"), has("bounds"), title, captions,
+        option("edges", "width", 1e-3, 64) if has("edges") else 1.0, has("axes"), has("bounds"), _bar(effects.get("bar")),
+        title, captions,
         _number(wanted.get("text_scale", 1.0), "annotate['text_scale']"))

@@ -39,6 +39,24 @@ def _copied(array, name, copy, why, make):
     return make(array)
 
 
+def scalars(value, name, copy=None):
+    """(N,) of numbers, each type where it is."""
+    array = _numbers(value, name)
+    if array.dtype.kind == "b":
+        array = array.view(np.uint8)
+    if array.dtype.kind not in "fiu" or array.ndim not in (1, 2) or array.ndim == 2 and array.shape[1] != 1:
+        raise ArgumentError(f"{name}: must be (N,) numbers, not {array.shape} of {array.dtype}")
+    array = array[:, 0] if array.ndim == 2 else array
+    if not _drawable(array, "f", (4, 8)) and not _drawable(array, "iu", (1, 2, 4, 8)):
+        array = _copied(array, name, copy, f"{array.dtype} is not drawn as it is",
+                        lambda a: np.ascontiguousarray(a, np.float64))
+    if copy is True:
+        array = array.copy()
+    elif not _in_place(array):
+        array = _copied(array, name, copy, "they lie at no whole multiples of their size", np.ascontiguousarray)
+    return array
+
+
 def floats(value, name, columns, copy=None, normalized=False):
     """(N, c) with c of `columns`, or (N,) where `columns` is None. float32 and float64 stay where they are,
     with `normalized` integers of 8 and 16 bits too; other numbers are copied to float64."""

@@ -25,7 +25,7 @@ OUTPUTS = {
     "color": (np.uint8, 4), "color_f32": (np.float32, 4), "depth": (np.float32, 1), "depth_raw": (np.float32, 1),
     "distance": (np.float32, 1), "id": (np.int32, 1), "instance": (np.int32, 1), "face": (np.int32, 1),
     "barycentrics": (np.float32, 2), "normal": (np.float32, 3), "camera_normal": (np.float32, 3),
-    "position": (np.float32, 3), "albedo": (np.float32, 4), "linear": (np.float32, 4),
+    "position": (np.float32, 3), "albedo": (np.float32, 4), "linear": (np.float32, 4), "scalars": (np.float32, 1),
 }
 _IDS = ("id", "instance", "face")
 
@@ -60,7 +60,7 @@ def _number_of_threads():
 @dataclasses.dataclass(frozen=True)
 class Hit:
     """What is under a pixel. barycentrics: of the three corners; position, normal: in the world; depth: along the
-    camera's axis; distance: from the eye."""
+    camera's axis; distance: from the eye; scalar: of its numbers, None where it has none."""
     id: int
     instance: int
     face: int
@@ -69,6 +69,7 @@ class Hit:
     normal: tuple
     depth: float
     distance: float
+    scalar: float | None = None
 
 
 class _Fields:
@@ -95,7 +96,7 @@ class Picture(_Fields):
     color uint8 (H, W, 4), straight alpha; color_f32 float32, premultiplied; depth float32 (H, W), along the axis in
     world units, 0 where nothing is; depth_raw reversed; distance from the eye; id, instance, face int32 (int64 from
     2**31 primitives), -1 where nothing is; barycentrics (H, W, 2); normal, position, camera_normal (H, W, 3); albedo,
-    linear (H, W, 4). `stats` is a dict.
+    linear (H, W, 4); scalars float32 (H, W), the things' numbers, NaN where there are none. `stats` is a dict.
     """
 
     def __init__(self, arrays, stats, pick):
@@ -222,7 +223,7 @@ class Renderer:
         cull: none, back, front. clip_planes: rows (x, y, z, d) of the world; kept is x X + y Y + z Z + d >= 0.
         annotate: what is drawn over the colours, by name, or {name: options}: "occlusion" (radius, in world units,
         strength), "edl" (strength), "silhouettes", "edges" (angle, in degrees: creases and borders alone; width, px),
-        "axes", "bounds" (a camera of None leaves a margin for its numbers), "title", "captions" (a list), "text_scale".
+        "axes", "bounds" and "bar" (of scalars; a camera of None leaves a margin for their numbers), "title", "captions" (a list), "text_scale".
         out: {name: array} to be filled, (H, W, ...) or with a leading N. progress: called with (done, total) after each
         frame, or True: a count on a terminal.
         Raises rastrum.Error of the natural class; KeyboardInterrupt in a frame leaves the arrays partly filled.
@@ -263,8 +264,8 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
                      [] if len(clip_planes) == 0 else floats(clip_planes, "clip_planes", (4,)).tolist())
     made = [c._for_size((width, height)) for c in cameras]
     notes = _annotations(annotate)
-    if notes is not None and notes.bounds and camera is None:
-        made = [_r.zoomed(c, 1 / 1.5) for c in made]
+    if notes is not None and notes.room != 1 and camera is None:
+        made = [_r.zoomed(c, 1 / notes.room) for c in made]
     return scene, made, frame, _arrays(outputs, out, len(made), many, (height, width), scene.primitives), many, notes
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from . import _rastrum as _r
 from ._arrays import color as _color
-from ._arrays import floats, integers, linear, matrix
+from ._arrays import floats, integers, linear, matrix, scalars as _scalars
 from ._errors import ArgumentError, ArgumentTypeError, NotFoundError, raises_errors
 
 
@@ -44,6 +44,47 @@ class Material:
             self.double_sided, self.unlit, self.opacity, numbers))
 
 
+class ColorMapping:
+    """How numbers become colours; give one to several things, and one range holds for all of them.
+
+    cmap: a name (`color_maps()`; NAME_r is its reverse), a list of colours, or one of matplotlib's colormaps.
+    clim: (low, high), None: from the least to the greatest finite number. log: by factors. symmetric: 0 in the middle.
+    steps: so many colours. categories: numbers that have a colour each. below, above, nan: colours beyond the range and
+    of what is no number. opacity: (number, opacity) pairs, linear between. isolines: numbers where lines are drawn on
+    meshes, isoline_width pixels wide. The picture: docs/scalars.md.
+    """
+
+    @raises_errors
+    def __init__(self, cmap="viridis", clim=None, *, log=False, symmetric=False, steps=0, categories=(), below=None,
+                 above=None, nan="gray", opacity=(), isolines=(), isoline_color="black", isoline_width=1.0):
+        colors, discrete = _map(cmap)
+        if clim is not None:
+            clim = tuple(float(v) for v in clim)
+            if len(clim) != 2:
+                raise ArgumentError(f"clim: {clim!r} must be (low, high)")
+        self._made = _r.mapping(
+            colors, discrete, clim, bool(log), bool(symmetric), steps, [float(v) for v in categories],
+            None if below is None else list(_color(below, "below")),
+            None if above is None else list(_color(above, "above")), list(_color(nan, "nan")),
+            [(float(v), float(a)) for v, a in opacity], [float(v) for v in isolines],
+            list(_color(isoline_color, "isoline_color")), float(isoline_width))
+
+
+def color_maps():
+    """The names of colour maps, without the reversed ones."""
+    return list(_r.color_map_names())
+
+
+def _map(cmap):
+    """(colours, whether each has a part of the range for itself)"""
+    if isinstance(cmap, str):
+        return _r.color_map(cmap)
+    if callable(cmap):  # matplotlib
+        n = getattr(cmap, "N", 256)
+        return [tuple(float(c) for c in cmap(i)) for i in range(n)], n < 64
+    return [list(_color(c, "cmap")) for c in cmap], False
+
+
 class _Thing:
     """A geometry placed in the world, with a look of its own.
 
@@ -52,17 +93,36 @@ class _Thing:
     it, its place in the scene by default. clip_planes: rows (x, y, z, d) in object space; kept is what has
     x X + y Y + z Z + d >= 0. winding: counter_clockwise, clockwise or either.
 
+    scalars: numbers that become colours instead: one for all of it, or one a vertex, face, corner, point, sphere or
+    disc. cmap: a ColorMapping, or what that takes; clim: (low, high), its range.
+
     Arrays are not copied where they can be drawn in place; copy=True always copies, copy=False raises
     ArgumentError with the reason where a copy would be needed. They are read anew for every frame.
     """
 
     def __init__(self, *, color=None, opacity=1.0, material=None, transform=None, visible=True, id=None,
-                 winding="counter_clockwise", clip_planes=()):
+                 winding="counter_clockwise", clip_planes=(), scalars=None, cmap="viridis", clim=None, copy=None):
         self.color, self.opacity, self.material = color, opacity, material
         self.transform, self.visible, self.id = transform, visible, id
         self.winding, self.clip_planes = winding, clip_planes
+        self.scalars, self.mapping, self._scalar = None, None, None
+        if scalars is None:
+            return
+        if isinstance(cmap, ColorMapping) and clim is not None:
+            raise ArgumentError("clim: the range is the ColorMapping's")
+        self.mapping = cmap if isinstance(cmap, ColorMapping) else ColorMapping(cmap, clim)
+        if np.ndim(scalars) == 0:
+            self._scalar = float(scalars)
+        else:
+            self.scalars = _scalars(scalars, "scalars", copy)
 
-    def _add_to(self, scene, materials):
+    def _add_to(self, scene, materials, mappings):
+        mapping = 0
+        if self.mapping is not None:
+            if id(self.mapping) not in mappings:
+                mappings[id(self.mapping)] = len(mappings)
+                scene.add_mapping(self.mapping._made)
+            mapping = mappings[id(self.mapping)]
         transform = None if self.transform is None else matrix(self.transform, "transform")
         both = None
         if self.color is not None:
@@ -72,7 +132,7 @@ class _Thing:
             raise ArgumentTypeError("material: must be a rastrum.Material")
         planes = [] if len(self.clip_planes) == 0 else floats(self.clip_planes, "clip_planes", (4,)).tolist()
         scene.add(self._geometry, transform, float(self.opacity), both, materials.get(id(self.material)),
-                  bool(self.visible), self.winding, self.id, planes)
+                  bool(self.visible), self.winding, self.id, planes, self._scalar, mapping)
 
     @property
     def primitives(self):
@@ -106,7 +166,7 @@ class Mesh(_Thing):
 
     @raises_errors
     def __init__(self, positions, indices=None, *, offsets=None, normals=None, uv=None, colors=None, copy=None, **look):
-        super().__init__(**look)
+        super().__init__(copy=copy, **look)
         positions = floats(positions, "positions", (3,), copy)
         vertices, kind = len(positions), "triangles"
         if indices is not None:
@@ -131,7 +191,8 @@ class Mesh(_Thing):
         colors = _colors(colors, copy)
         counts = vertices, corners, faces
         self._geometry = _r.mesh(positions, indices, kind, offsets, normals, _per(normals, "normals", *counts), uv,
-                                 _per(uv, "uv", *counts), colors, _per(colors, "colors", *counts))
+                                 _per(uv, "uv", *counts), colors, _per(colors, "colors", *counts), self.scalars,
+                                 _per(self.scalars, "scalars", *counts))
 
 
 def _one_or_each(value, name, copy):
@@ -146,11 +207,11 @@ class Points(_Thing):
 
     @raises_errors
     def __init__(self, positions, *, size=3.0, round=True, normals=None, colors=None, copy=None, **look):
-        super().__init__(**look)
+        super().__init__(copy=copy, **look)
         sizes, size = _one_or_each(size, "size", copy)
         normals = None if normals is None else floats(normals, "normals", (3,), copy)
         self._geometry = _r.points(floats(positions, "positions", (3,), copy), normals, _colors(colors, copy), sizes,
-                                   size, round)
+                                   size, round, self.scalars)
 
 
 class Lines(_Thing):
@@ -159,14 +220,14 @@ class Lines(_Thing):
 
     @raises_errors
     def __init__(self, positions, indices=None, *, offsets=None, width=1.0, colors=None, copy=None, **look):
-        super().__init__(**look)
+        super().__init__(copy=copy, **look)
         polylines = indices is None
         if indices is not None:
             indices = integers(indices, "indices", copy)
         if offsets is not None:
             offsets, polylines = integers(offsets, "offsets", copy), True
         self._geometry = _r.lines(floats(positions, "positions", (3,), copy), indices, offsets, polylines,
-                                  _colors(colors, copy), float(width))
+                                  _colors(colors, copy), float(width), self.scalars)
 
 
 class Spheres(_Thing):
@@ -174,9 +235,10 @@ class Spheres(_Thing):
 
     @raises_errors
     def __init__(self, centers, radius=1.0, *, colors=None, copy=None, **look):
-        super().__init__(**look)
+        super().__init__(copy=copy, **look)
         radii, radius = _one_or_each(radius, "radius", copy)
-        self._geometry = _r.spheres(floats(centers, "centers", (3,), copy), radii, radius, _colors(colors, copy))
+        self._geometry = _r.spheres(floats(centers, "centers", (3,), copy), radii, radius, _colors(colors, copy),
+                                    self.scalars)
 
 
 class Cylinders(_Thing):
@@ -184,11 +246,11 @@ class Cylinders(_Thing):
 
     @raises_errors
     def __init__(self, positions, indices=None, radius=1.0, *, caps=True, colors=None, copy=None, **look):
-        super().__init__(**look)
+        super().__init__(copy=copy, **look)
         radii, radius = _one_or_each(radius, "radius", copy)
         indices = None if indices is None else integers(indices, "indices", copy)
         self._geometry = _r.cylinders(floats(positions, "positions", (3,), copy), indices, radii, radius,
-                                      _colors(colors, copy), caps)
+                                      _colors(colors, copy), caps, self.scalars)
 
 
 class Tubes(_Thing):
@@ -196,11 +258,11 @@ class Tubes(_Thing):
 
     @raises_errors
     def __init__(self, positions, offsets=None, radius=1.0, *, colors=None, copy=None, **look):
-        super().__init__(**look)
+        super().__init__(copy=copy, **look)
         radii, radius = _one_or_each(radius, "radius", copy)
         offsets = None if offsets is None else integers(offsets, "offsets", copy)
         self._geometry = _r.tubes(floats(positions, "positions", (3,), copy), offsets, radii, radius,
-                                  _colors(colors, copy))
+                                  _colors(colors, copy), self.scalars)
 
 
 class Discs(_Thing):
@@ -208,10 +270,10 @@ class Discs(_Thing):
 
     @raises_errors
     def __init__(self, centers, normals, radius=1.0, *, colors=None, copy=None, **look):
-        super().__init__(**look)
+        super().__init__(copy=copy, **look)
         radii, radius = _one_or_each(radius, "radius", copy)
         self._geometry = _r.discs(floats(centers, "centers", (3,), copy), floats(normals, "normals", (3,), copy), radii,
-                                  radius, _colors(colors, copy))
+                                  radius, _colors(colors, copy), self.scalars)
 
 
 class Scene:
@@ -225,7 +287,7 @@ class Scene:
     def __init__(self, things=(), copy=None, crease=40.0):
         self.files, self.things = [], []
         self._made = _r.Scene()
-        materials, textures = {}, [0]
+        materials, mappings, textures = {}, {}, [0]
         for thing in _flat(things, copy):
             if isinstance(thing, (str, os.PathLike)):
                 path = os.fspath(thing)
@@ -238,7 +300,7 @@ class Scene:
             if isinstance(material, Material) and id(material) not in materials:
                 material._add_to(self._made, textures)
                 materials[id(material)] = len(materials)
-            thing._add_to(self._made, materials)
+            thing._add_to(self._made, materials, mappings)
             self.things.append(thing)
 
     @property
@@ -359,6 +421,10 @@ def _vtk(data, copy):
 
     positions = vtk_to_numpy(data.GetPoints().GetData()) if data.GetNumberOfPoints() else np.empty((0, 3), np.float32)
     normals = data.GetPointData().GetNormals()
+    active = data.GetPointData().GetScalars()
+    numbers = {}
+    if active is not None and active.GetNumberOfComponents() == 1:
+        numbers["scalars"] = vtk_to_numpy(active)
     made = []
 
     def cells(of):
@@ -367,12 +433,12 @@ def _vtk(data, copy):
     if data.GetNumberOfPolys():
         corners, offsets = cells(data.GetPolys())
         made.append(Mesh(positions, corners, offsets=offsets, copy=copy,
-                         normals=None if normals is None else vtk_to_numpy(normals)))
+                         normals=None if normals is None else vtk_to_numpy(normals), **numbers))
     if data.GetNumberOfLines():
         corners, offsets = cells(data.GetLines())
         made.append(Lines(positions, corners, offsets=offsets, copy=copy))
     if data.GetNumberOfVerts() or (not made and len(positions)):
-        made.append(Points(positions, copy=copy))
+        made.append(Points(positions, copy=copy, **numbers))
     return made
 
 

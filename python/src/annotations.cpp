@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -26,6 +27,7 @@ double radius_of(const SceneView& scene) {
 Annotations annotations(std::optional<double> occlusion_radius, double occlusion_strength,
                         std::optional<double> edl_strength, bool silhouettes,
                         std::optional<double> edge_angle, double edge_width, bool axes, bool bounds,
+                        const std::optional<std::pair<std::string, std::string>>& bar,
                         const std::string& title, const std::vector<std::string>& captions,
                         double text_scale) {
   Annotations a;
@@ -37,6 +39,7 @@ Annotations annotations(std::optional<double> occlusion_radius, double occlusion
   a.edge_width = edge_width;
   a.axes = axes;
   a.bounds = bounds;
+  if (bar) a.bar = {bar->first, bar->second};
   a.title = title;
   a.captions = captions;
   a.text_scale = text_scale;
@@ -99,6 +102,14 @@ void AnnotationScratch::draw(const Annotations& a, const SceneEdges* edges, cons
     if (const Bounds box = bounds(scene); box.vertices_in_use != 0)
       overlay::draw_bounds(canvas, camera, box.min, box.max, targets.depth, look);
   if (a.axes) overlay::draw_axes(canvas, camera, overlay::Corner::bottom_left, look);
+  if (a.bar) {
+    if (scene.scalar_mappings.empty())
+      throw Error(Errc::invalid_argument, "annotate: bar is of things with scalars; none has any");
+    overlay::ScalarBar bar = overlay::scalar_bar(scene.scalar_mappings[0], scalar_colors(scene));
+    bar.title = a.bar->title;
+    bar.unit = a.bar->unit;
+    overlay::draw_scalar_bar(canvas, bar, look);
+  }
   using overlay::Corner;
   constexpr Corner kCorners[] = {Corner::bottom_right, Corner::top_left, Corner::top_right,
                                  Corner::bottom_left};
@@ -109,10 +120,13 @@ void AnnotationScratch::draw(const Annotations& a, const SceneEdges* edges, cons
 
 void bind_annotations(nb::module_& m) {
   using nb::arg;
-  nb::class_<Annotations>(m, "Annotations").def_ro("bounds", &Annotations::bounds);
+  nb::class_<Annotations>(m, "Annotations").def_prop_ro("room", [](const Annotations& a) {
+    return a.bounds ? 1.5 : a.bar ? 1.25 : 1.0;
+  });
   m.def("annotations", annotations, arg("occlusion_radius").none(), arg("occlusion_strength"),
         arg("edl_strength").none(), arg("silhouettes"), arg("edge_angle").none(), arg("edge_width"),
-        arg("axes"), arg("bounds"), arg("title"), arg("captions"), arg("text_scale"));
+        arg("axes"), arg("bounds"), arg("bar").none(), arg("title"), arg("captions"),
+        arg("text_scale"));
 }
 
 }  // namespace rastrum::python

@@ -22,6 +22,10 @@ struct Annotations {
   std::optional<double> edge_angle{};  ///< none: no edges
   double edge_width = 1;
   bool axes = false, bounds = false;
+  struct Bar {
+    std::string title, unit;
+  };
+  std::optional<Bar> bar{};  ///< of the scene's first mapping
   std::string title{};
   std::vector<std::string> captions{};
   double text_scale = 1;

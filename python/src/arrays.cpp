@@ -99,6 +99,15 @@ template ArrayView<Vec2> values(const Array&, const char*);
 template ArrayView<Vec3> values(const Array&, const char*);
 template ArrayView<Vec4> values(const Array&, const char*);
 
+ScalarView scalars(const Array& array, const char* name) {
+  const NumberType type = number_type(array, name);
+  if (array.ndim() != 1) refuse(name, "the shape is " + shape_of(array) + " and must be (N,)");
+  const std::size_t count = array.shape(0);
+  if (count == 0) return {};
+  const Buffer buffer(array, type, 1, count, stride_bytes(array, 0, type));
+  return ScalarView::in(buffer.bytes, buffer.layout);
+}
+
 IndexView indices(const Array& array, const char* name) {
   const NumberType type = number_type(array, name);
   if (type == NumberType::float32 || type == NumberType::float64)

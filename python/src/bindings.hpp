@@ -12,6 +12,7 @@
 #include <rastrum/array.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/mat.hpp>
+#include <rastrum/scalars.hpp>
 #include <rastrum/scene.hpp>
 
 namespace rastrum::python {
@@ -34,6 +35,8 @@ struct ArrayGeometry {
 /// is copied. Throws Error{invalid_argument} that begins with `name`.
 template <ViewedValue T>
 [[nodiscard]] ArrayView<T> values(const Array& array, const char* name);
+/// (N,) numbers of any type and stride, as a view.
+[[nodiscard]] ScalarView scalars(const Array& array, const char* name);
 /// Any shape of integers, read in C order: (N,), or (M, K) whose rows may be apart only where they
 /// are of one step.
 [[nodiscard]] IndexView indices(const Array& array, const char* name);

@@ -161,6 +161,7 @@ const Kind kKinds[] = {
     {"position", nb::dtype<float>(), 3, attach<Vec3, &Targets::positions>},
     {"albedo", nb::dtype<float>(), 4, attach<Vec4, &Targets::albedo>},
     {"linear", nb::dtype<float>(), 4, attach<Vec4, &Targets::linear>},
+    {"scalars", nb::dtype<float>(), 1, attach<float, &Targets::scalars>},
 };
 
 struct Wanted {
@@ -363,6 +364,7 @@ nb::object pick(FrameRenderer& renderer, const ArrayScene& scene, const Camera& 
   d["normal"] = nb::make_tuple(p->normal.x, p->normal.y, p->normal.z);
   d["depth"] = p->view_depth;
   d["distance"] = p->distance;
+  d["scalar"] = p->scalar;
   return d;
 }
 

@@ -35,6 +35,11 @@ struct Maker {
   [[nodiscard]] ArrayView<T> take(const Maybe& array, const char* name) {
     return array ? take<T>(*array, name) : ArrayView<T>{};
   }
+  [[nodiscard]] ScalarView take_scalars(const Maybe& array) {
+    if (!array) return {};
+    made.kept.push_back(*array);
+    return scalars(*array, "scalars");
+  }
   [[nodiscard]] IndexView take_indices(const Maybe& array, const char* name) {
     if (!array) return {};
     made.kept.push_back(*array);
@@ -51,7 +56,8 @@ struct Maker {
 ArrayGeometry mesh(const Array& positions, const Maybe& faces, const std::string& kind,
                    const Maybe& offsets, const Maybe& normals, const std::string& normals_per,
                    const Maybe& texcoords, const std::string& texcoords_per, const Maybe& colors,
-                   const std::string& colors_per) {
+                   const std::string& colors_per, const Maybe& scalars,
+                   const std::string& scalars_per) {
   Maker maker;
   MeshView v;
   v.positions = maker.take<Vec3>(positions, "positions");
@@ -64,11 +70,12 @@ ArrayGeometry mesh(const Array& positions, const Maybe& faces, const std::string
   v.normals = {maker.take<Vec3>(normals, "normals"), {}, per_of(normals_per)};
   v.texcoords = {maker.take<Vec2>(texcoords, "uv"), {}, per_of(texcoords_per)};
   v.colors = {maker.take<Vec4>(colors, "colors"), {}, per_of(colors_per)};
+  v.scalars = {maker.take_scalars(scalars), per_of(scalars_per)};
   return maker.finish(v);
 }
 
 ArrayGeometry points(const Array& positions, const Maybe& normals, const Maybe& colors,
-                     const Maybe& sizes, float size, bool round) {
+                     const Maybe& sizes, float size, bool round, const Maybe& scalars) {
   Maker maker;
   PointsView v;
   v.positions = maker.take<Vec3>(positions, "positions");
@@ -77,11 +84,12 @@ ArrayGeometry points(const Array& positions, const Maybe& normals, const Maybe& 
   v.sizes = maker.take<float>(sizes, "sizes");
   v.point_size = size;
   v.round = round;
+  v.scalars = maker.take_scalars(scalars);
   return maker.finish(v);
 }
 
 ArrayGeometry lines(const Array& positions, const Maybe& segments, const Maybe& offsets,
-                    bool polylines, const Maybe& colors, float width) {
+                    bool polylines, const Maybe& colors, float width, const Maybe& scalars) {
   Maker maker;
   LinesView v;
   v.positions = maker.take<Vec3>(positions, "positions");
@@ -90,21 +98,24 @@ ArrayGeometry lines(const Array& positions, const Maybe& segments, const Maybe& 
   v.offsets = maker.take_indices(offsets, "offsets");
   v.colors = maker.take<Vec4>(colors, "colors");
   v.line_width = width;
+  v.scalars = maker.take_scalars(scalars);
   return maker.finish(v);
 }
 
-ArrayGeometry spheres(const Array& centers, const Maybe& radii, float radius, const Maybe& colors) {
+ArrayGeometry spheres(const Array& centers, const Maybe& radii, float radius, const Maybe& colors,
+                      const Maybe& scalars) {
   Maker maker;
   SpheresView v;
   v.centers = maker.take<Vec3>(centers, "centers");
   v.radii = maker.take<float>(radii, "radii");
   v.radius = radius;
   v.colors = maker.take<Vec4>(colors, "colors");
+  v.scalars = maker.take_scalars(scalars);
   return maker.finish(v);
 }
 
 ArrayGeometry cylinders(const Array& positions, const Maybe& pairs, const Maybe& radii,
-                        float radius, const Maybe& colors, bool caps) {
+                        float radius, const Maybe& colors, bool caps, const Maybe& scalars) {
   Maker maker;
   CylindersView v;
   v.positions = maker.take<Vec3>(positions, "positions");
@@ -113,11 +124,12 @@ ArrayGeometry cylinders(const Array& positions, const Maybe& pairs, const Maybe&
   v.radius = radius;
   v.colors = maker.take<Vec4>(colors, "colors");
   v.caps = caps;
+  v.scalars = maker.take_scalars(scalars);
   return maker.finish(v);
 }
 
 ArrayGeometry tubes(const Array& positions, const Maybe& offsets, const Maybe& radii, float radius,
-                    const Maybe& colors) {
+                    const Maybe& colors, const Maybe& scalars) {
   Maker maker;
   TubesView v;
   v.positions = maker.take<Vec3>(positions, "positions");
@@ -125,11 +137,12 @@ ArrayGeometry tubes(const Array& positions, const Maybe& offsets, const Maybe& r
   v.radii = maker.take<float>(radii, "radii");
   v.radius = radius;
   v.colors = maker.take<Vec4>(colors, "colors");
+  v.scalars = maker.take_scalars(scalars);
   return maker.finish(v);
 }
 
 ArrayGeometry discs(const Array& centers, const Array& normals, const Maybe& radii, float radius,
-                    const Maybe& colors) {
+                    const Maybe& colors, const Maybe& scalars) {
   Maker maker;
   DiscsView v;
   v.centers = maker.take<Vec3>(centers, "centers");
@@ -137,6 +150,7 @@ ArrayGeometry discs(const Array& centers, const Array& normals, const Maybe& rad
   v.radii = maker.take<float>(radii, "radii");
   v.radius = radius;
   v.colors = maker.take<Vec4>(colors, "colors");
+  v.scalars = maker.take_scalars(scalars);
   return maker.finish(v);
 }
 
@@ -148,19 +162,19 @@ void bind_geometries(nb::module_& m) {
       .def_prop_ro("primitives", [](const ArrayGeometry& g) { return primitive_count(g.view); });
   m.def("mesh", mesh, arg("positions"), arg("faces").none(), arg("kind"), arg("offsets").none(),
         arg("normals").none(), arg("normals_per"), arg("texcoords").none(), arg("texcoords_per"),
-        arg("colors").none(), arg("colors_per"));
+        arg("colors").none(), arg("colors_per"), arg("scalars").none(), arg("scalars_per"));
   m.def("points", points, arg("positions"), arg("normals").none(), arg("colors").none(),
-        arg("sizes").none(), arg("size"), arg("round"));
+        arg("sizes").none(), arg("size"), arg("round"), arg("scalars").none());
   m.def("lines", lines, arg("positions"), arg("indices").none(), arg("offsets").none(),
-        arg("polylines"), arg("colors").none(), arg("width"));
+        arg("polylines"), arg("colors").none(), arg("width"), arg("scalars").none());
   m.def("spheres", spheres, arg("centers"), arg("radii").none(), arg("radius"),
-        arg("colors").none());
+        arg("colors").none(), arg("scalars").none());
   m.def("cylinders", cylinders, arg("positions"), arg("indices").none(), arg("radii").none(),
-        arg("radius"), arg("colors").none(), arg("caps"));
+        arg("radius"), arg("colors").none(), arg("caps"), arg("scalars").none());
   m.def("tubes", tubes, arg("positions"), arg("offsets").none(), arg("radii").none(), arg("radius"),
-        arg("colors").none());
+        arg("colors").none(), arg("scalars").none());
   m.def("discs", discs, arg("centers"), arg("normals"), arg("radii").none(), arg("radius"),
-        arg("colors").none());
+        arg("colors").none(), arg("scalars").none());
 }
 
 }  // namespace rastrum::python

@@ -11,6 +11,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <rastrum/color_map.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/render.hpp>
 
@@ -60,6 +61,42 @@ Material material(const Numbers4& base_color, double metallic, double roughness,
   return m;
 }
 
+using Interval = std::pair<double, double>;
+
+ScalarMapping mapping(const std::vector<Numbers4>& colors, bool discrete,
+                      const std::optional<Interval>& range, bool logarithmic, bool symmetric,
+                      int steps, const std::vector<double>& categories,
+                      const std::optional<Numbers4>& below, const std::optional<Numbers4>& above,
+                      const Numbers4& nan, const std::vector<Interval>& opacity,
+                      const std::vector<double>& isolines, const Numbers4& isoline_color,
+                      double isoline_px) {
+  ScalarMapping m;
+  m.map = {"", {}, discrete};
+  for (const Numbers4& c : colors) m.map.colors.push_back(vec4(c));
+  if (range) m.range = {range->first, range->second};
+  m.logarithmic = logarithmic;
+  m.symmetric = symmetric;
+  m.steps = steps;
+  m.categories = categories;
+  if (below) m.below = vec4(*below);
+  if (above) m.above = vec4(*above);
+  m.nan = vec4(nan);
+  for (const auto& [value, alpha] : opacity)
+    m.opacity.push_back({value, static_cast<float>(alpha)});
+  m.isolines = isolines;
+  m.isoline_color = vec4(isoline_color);
+  m.isoline_px = static_cast<float>(isoline_px);
+  (void)ScalarColors(m, {0, 1});  // throws where a field is wrong
+  return m;
+}
+
+std::pair<std::vector<Numbers4>, bool> map_named(const std::string& name) {
+  const ColorMap map = color_map(name);
+  std::vector<Numbers4> colors;
+  for (const Vec4& c : map.colors) colors.push_back({c.x, c.y, c.z, c.w});
+  return {colors, map.discrete};
+}
+
 }  // namespace
 
 void ArrayScene::add_file(const std::string& file, std::optional<double> crease_deg) {
@@ -99,7 +136,8 @@ void ArrayScene::add_texture(const Array& pixels) {
 void ArrayScene::add(nb::object geometry, const std::optional<Array>& transform, float opacity,
                      const std::optional<Colors>& color, std::optional<std::uint32_t> material,
                      bool visible, const std::string& winding, std::optional<std::int64_t> id,
-                     std::vector<ClipPlane> clip_planes) {
+                     std::vector<ClipPlane> clip_planes, std::optional<double> scalar,
+                     std::uint32_t mapping) {
   const auto& arrays = nb::cast<const ArrayGeometry&>(geometry);
   Added added{std::move(geometry), {}, color, std::move(clip_planes), arrays.has_colors};
   InstanceView& i = added.instance;
@@ -110,6 +148,8 @@ void ArrayScene::add(nb::object geometry, const std::optional<Array>& transform,
   i.visible = visible;
   i.winding = named<Winding>("winding", winding, {"counter_clockwise", "clockwise", "either"});
   i.id = id;
+  i.scalar = scalar;
+  i.scalar_mapping = mapping;
   order_.push_back(std::move(added));
   bound_ = false;
 }
@@ -174,7 +214,7 @@ SceneView ArrayScene::view() const {
   const std::vector<Texture>& textures = !all_textures_.empty() ? all_textures_
                                          : textures_.empty()    ? files_.textures
                                                                 : textures_;
-  return {instances_, all_materials_, textures};
+  return {instances_, all_materials_, textures, mappings_};
 }
 
 std::uint64_t ArrayScene::primitive_count() const {
@@ -189,28 +229,47 @@ void bind_scenes(nb::module_& m) {
   m.def("material", material, arg("base_color"), arg("metallic"), arg("roughness"), arg("emissive"),
         arg("alpha_mode"), arg("alpha_cutoff"), arg("double_sided"), arg("unlit"), arg("opacity"),
         arg("textures"));
+  nb::class_<ScalarMapping>(m, "Mapping");
+  m.def("mapping", mapping, arg("colors"), arg("discrete"), arg("range").none(), arg("logarithmic"),
+        arg("symmetric"), arg("steps"), arg("categories"), arg("below").none(), arg("above").none(),
+        arg("nan"), arg("opacity"), arg("isolines"), arg("isoline_color"), arg("isoline_px"));
+  m.def("color_map", map_named, arg("name"));
+  m.def("color_map_names", [] {
+    std::vector<std::string> names;
+    for (const std::string_view n : color_map_names()) names.emplace_back(n);
+    return names;
+  });
   nb::class_<ArrayScene>(m, "Scene")
       .def(nb::init<>())
       .def("add_file", &ArrayScene::add_file, arg("file"), arg("crease").none(),
            nb::call_guard<nb::gil_scoped_release>())
       .def("add_texture", &ArrayScene::add_texture, arg("pixels"))
       .def("add_material", &ArrayScene::add_material, arg("material"))
+      .def("add_mapping", &ArrayScene::add_mapping, arg("mapping"))
+      .def(
+          "scalar_range",
+          [](const ArrayScene& s, std::size_t mapping) {
+            const ScalarRange r = scalar_colors(s.view(), mapping).range();
+            return std::pair(r.low, r.high);
+          },
+          arg("mapping"))
       .def(
           "add",
           [](ArrayScene& s, nb::object geometry, const std::optional<Array>& transform,
              float opacity, const std::optional<std::array<Numbers4, 2>>& color,
              std::optional<std::uint32_t> index, bool visible, const std::string& winding,
-             std::optional<std::int64_t> id, const std::vector<Numbers4>& planes) {
+             std::optional<std::int64_t> id, const std::vector<Numbers4>& planes,
+             std::optional<double> scalar, std::uint32_t mapping) {
             std::vector<ClipPlane> clip;
             for (const Numbers4& p : planes) clip.push_back({{p[0], p[1], p[2]}, p[3]});
             std::optional<Colors> both;
             if (color) both = {vec4((*color)[0]), vec4((*color)[1])};
             s.add(std::move(geometry), transform, opacity, both, index, visible, winding, id,
-                  std::move(clip));
+                  std::move(clip), scalar, mapping);
           },
           arg("geometry"), arg("transform").none(), arg("opacity"), arg("color").none(),
           arg("material").none(), arg("visible"), arg("winding"), arg("id").none(),
-          arg("clip_planes"))
+          arg("clip_planes"), arg("scalar").none(), arg("mapping"))
       .def_prop_ro("primitives", &ArrayScene::primitive_count)
       .def_prop_ro("instances", [](const ArrayScene& s) { return s.view().instances.size(); })
       .def_prop_ro("has_materials", [](const ArrayScene& s) { return !s.view().materials.empty(); })

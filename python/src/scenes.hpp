@@ -24,11 +24,13 @@ class ArrayScene {
   void add_file(const std::string& file, std::optional<double> crease_deg);
   void add_texture(const Array& pixels);
   void add_material(const Material& material) { materials_.push_back(material); }
-  /// `material`: of add_material. The object must be an ArrayGeometry, and is kept alive.
+  void add_mapping(const ScalarMapping& mapping) { mappings_.push_back(mapping); }
+  /// `material`: of add_material; `scalar`: a number for all of it; `mapping`: of add_mapping, for
+  /// its scalars. The object must be an ArrayGeometry, and is kept alive.
   void add(nb::object geometry, const std::optional<Array>& transform, float opacity,
            const std::optional<Colors>& color, std::optional<std::uint32_t> material, bool visible,
            const std::string& winding, std::optional<std::int64_t> id,
-           std::vector<ClipPlane> clip_planes);
+           std::vector<ClipPlane> clip_planes, std::optional<double> scalar, std::uint32_t mapping);
 
   /// As it stands; valid until the next change. Textures and materials of files come first.
   [[nodiscard]] SceneView view() const;
@@ -51,6 +53,7 @@ class ArrayScene {
   Scene files_;
   std::vector<Material> materials_;
   std::vector<Texture> textures_;
+  std::vector<ScalarMapping> mappings_;
   std::deque<std::variant<OfFile, Added>> order_;
   // What view() shows, made when it is first asked for.
   mutable bool bound_ = false;

@@ -104,6 +104,24 @@ void add_outline(Path& path, const BarFrame& f, double low_end, double high_end,
 
 }  // namespace
 
+ScalarBar scalar_bar(const ScalarMapping& mapping, const ScalarColors& colors) {
+  ScalarBar bar;
+  bar.colors = colors.colors();
+  bar.discrete = colors.is_discrete();
+  bar.low = colors.range().low;
+  bar.high = colors.range().high;
+  bar.logarithmic = mapping.logarithmic && mapping.categories.empty();
+  if (mapping.categories.empty()) {
+    bar.below = mapping.below;
+    bar.above = mapping.above;
+  }
+  for (const double category : mapping.categories) {
+    const auto numbers = ticks(category, category, 1);
+    bar.categories.push_back(numbers.empty() ? std::to_string(category) : numbers.front().label);
+  }
+  return bar;
+}
+
 void draw_scalar_bar(const Canvas& canvas, const ScalarBar& bar, const Look& look) {
   check(bar);
   check(canvas);

@@ -19,6 +19,7 @@
 #include <rastrum/render/access.hpp>
 #include <rastrum/render/scene_checks.hpp>
 #include <rastrum/render/scene_draws.hpp>
+#include <rastrum/render/shadows.hpp>
 #include <rastrum/render/surface_of_key.hpp>
 #include <rastrum/render/target_checks.hpp>
 
@@ -114,6 +115,7 @@ struct Renderer::Impl {
     bool operator==(const Kind&) const = default;
   } kind;
   std::unique_ptr<raster::FrameDrawer> drawer;
+  Shadows shadows;
 };
 
 Renderer::Impl::Impl(RendererOptions given, DeviceChoice choice, bool plain, MakeFrameDrawer maker)
@@ -198,10 +200,25 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
   raster::check_materials(runs);
   check_surfaces(runs);
   check_outputs(call.targets, true, taken == Shader::material);
-  SceneDraws of(runs, camera, {o, call.targets, taken, call.in_place}, textures, threads.get());
+  const bool lit = taken == Shader::lambert || taken == Shader::phong || taken == Shader::material;
+  const auto begin = std::chrono::steady_clock::now();
+  const auto shadowed =
+      lit ? shadows.draw(scene, camera, o, options) : std::span<const raster::LightShadow>{};
+  const double shadows_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  SceneDraws of(runs, camera, {o, call.targets, taken, call.in_place, shadowed}, textures,
+                threads.get());
   FrameStats stats = taken == Shader::depth ? draw_depth(of, call)
                                             : draw(of.draws(), of.shading(), of.test(), call, &of);
   stats.shader = name(taken);
+  if (!shadowed.empty()) {
+    for (StageTime& stage : stats.stages) {
+      stage.begin_ms += shadows_ms;
+      stage.end_ms += shadows_ms;
+    }
+    stats.stages.insert(stats.stages.begin(), {"shadows", 0, shadows_ms});
+    stats.frame_ms += shadows_ms;
+  }
   return stats;
 }
 
@@ -322,6 +339,7 @@ std::optional<Pick> Renderer::pick(const SceneView& scene, const Camera& camera,
   Targets targets;
   targets.keys = keys;
   FrameOptions plain = frame;
+  plain.lights.clear();
   // Grey by depth is of the same surfaces.
   if (plain.shader == Shader::depth) {
     plain.shader = Shader::flat;

@@ -45,8 +45,8 @@ std::optional<raster::FrameLights> lights_of(const SceneDraws::Options& o, const
   const bool lit =
       o.shader == Shader::lambert || o.shader == Shader::phong || o.shader == Shader::material;
   if (!lit || o.frame.lights.empty()) return {};
-  return std::optional<raster::FrameLights>(std::in_place, o.frame.lights, camera, o.frame.width,
-                                            o.frame.height);
+  return std::optional<raster::FrameLights>(std::in_place, o.frame.lights, o.shadows, camera,
+                                            o.frame.width, o.frame.height);
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ class SceneDraws {
     const Targets& targets;
     Shader shader;  ///< what the frame's became for this scene (shader_for)
     bool in_place;  ///< arrays are a device's: none of their values is read here
+    std::span<const raster::LightShadow> shadows{};  ///< one a light of the frame; empty: none
   };
   /// The scene was checked (check_scene). Textures that the frame reads are brought up to date.
   /// Throws Error where planes, outputs and what is drawn do not go together. O(runs +

@@ -28,6 +28,9 @@ TEST_F(LightOptions, LightThePictureAndNothingElse) {
     EXPECT_FALSE(same_pixels(plain, png("lit.png"))) << light;
     EXPECT_EQ(read("d0.npy"), read("d1.npy")) << light;
   }
+  must(with({"--lights", "studio", "-o", "open.png"}));
+  must(with({"--lights", "studio", "--shadows", "-o", "shadowed.png"}));
+  EXPECT_FALSE(same_pixels(png("open.png"), png("shadowed.png")));
   must(with({"--lights", "default", "-o", "same.png"}));
   EXPECT_TRUE(same_pixels(plain, png("same.png")));
   must(with({"--lights", "headlight", "-o", "head.png"}));
@@ -75,6 +78,7 @@ TEST_F(LightOptions, RefuseWhatCannotBeMeant) {
   refused({"--light", "headlight:intensity=nan", "-o", "a.png"}, "--light");
   refused({"--light", "spot:0,0,1:inner=30:outer=20", "-o", "a.png"}, "its cone");
   refused({"--light", "headlight:of=me", "-o", "a.png"}, "of= is camera or world");
+  refused({"--shadows", "-o", "a.png"}, "--shadows: is of --lights and --light");
   refused({"--lights", "disco", "-o", "a.png"}, "--lights");
   refused({"--lights", "file", "-o", "a.png"}, "have no lights");
 }

@@ -384,6 +384,88 @@ TEST(Lights, ThatCannotBeMeantAreRefused) {
   });
 }
 
+/// A ball over a floor.
+struct BallOnFloor {
+  Mesh floor;
+  Ball ball;
+  std::vector<InstanceView> instances;
+
+  BallOnFloor() {
+    floor.positions = {{-3, -1.5F, -3}, {-3, -1.5F, 3}, {3, -1.5F, 3}, {3, -1.5F, -3}};
+    floor.indices = {0, 1, 2, 0, 2, 3};
+    instances = {ball.instances.front(), {floor.view()}};
+  }
+  [[nodiscard]] SceneView view() const { return {instances, {}, {}, {}}; }
+};
+
+/// How far the line from p to the light passes the ball's middle; far where the ball lies behind.
+double miss(const Light& l, Vec3d p) {
+  const Arrived in = arrived(l, p);
+  const double along = -dot(p, in.to_light);
+  return along < 0 ? 9 : std::sqrt(std::max(dot(p, p) - along * along, 0.0));
+}
+
+TEST(Lights, CastShadowsAlongTheirRays) {
+  const BallOnFloor scene;
+  Camera seen_by = camera(false);
+  seen_by.eye = {0.5, 2.5, 6};
+  for (const Shader shader : {Shader::lambert, Shader::phong, Shader::material}) {
+    int hidden = 0;
+    for (const Light& l :
+         {light(DirectionalLight{{-1, -1.2F, -0.4F}}, 0.8F),
+          light(DirectionalLight{{-1, -0.6F, 0.1F}}, 0.8F),
+          light(DirectionalLight{{-1, -0.15F, 0.1F}}, 0.8F),  // nearly along the floor
+          light(SpotLight{{1.5, 3, 1}, {-1.5F, -3, -1}}, 9)}) {
+      FrameOptions frame = lit_by({light(AmbientLight{}, 0.2F), l}, shader);
+      const auto open = draw(scene.view(), seen_by, frame);
+      frame.lights.pop_back();
+      const auto dark = draw(scene.view(), seen_by, frame);
+      frame.shadows = true;
+      frame.lights.push_back(l);
+      Image<Vec3> places(kSize, kSize);
+      Image<std::int64_t> ids(kSize, kSize);
+      Image<Vec4> color(kSize, kSize);
+      frame.width = frame.height = kSize;
+      Renderer renderer(RendererOptions{.threads = 1});
+      const FrameStats stats = renderer.render(
+          scene.view(), seen_by, frame, {.color = color, .instances = ids, .positions = places});
+      EXPECT_EQ(stats.stages.front().name, "shadows");
+      int lit = 0;
+      for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+          if (ids(x, y) != 1) continue;
+          // Three texels are 0.013 across, and so much again is how far they reach.
+          const double passes = miss(l, wide(places(x, y)));
+          if (passes > 1.06) {
+            ++lit;
+            ASSERT_EQ(color(x, y), open(x, y)) << name(shader) << " " << x << ", " << y;
+          } else if (passes < 0.94) {
+            ++hidden;
+            ASSERT_EQ(color(x, y), dark(x, y)) << name(shader) << " " << x << ", " << y;
+          }
+        }
+      EXPECT_GT(lit, 500);
+    }
+    EXPECT_GT(hidden, 100);
+  }
+}
+
+TEST(Lights, CastTheSameShadowsWhateverDraws) {
+  const Mixture mixture;
+  std::vector<Light> lights = light_kit();
+  lights.push_back(light(SpotLight{{1.5, 2, 2.5}, {-1, -1.4F, -1.6F}}, 3));
+  for (const Shader shader : {Shader::phong, Shader::material}) {
+    FrameOptions frame = lit_by(lights, shader);
+    frame.shadows = true;
+    const auto first =
+        draw(mixture.scene(), camera(false), frame, {.device = Device::serial, .threads = 1});
+    for (const Isa isa : available_isas())
+      EXPECT_TRUE(digest(first) ==
+                  digest(draw(mixture.scene(), camera(false), frame, {.threads = 2, .isa = isa})))
+          << name(shader) << ", " << name(isa);
+  }
+}
+
 TEST(Lights, LeaveOtherShadersAlone) {
   const Mixture mixture;
   for (const Shader shader : {Shader::flat, Shader::normal, Shader::id, Shader::depth})

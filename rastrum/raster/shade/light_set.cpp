@@ -56,10 +56,28 @@ PixelPlane plane(const Mat4d& clip_to_world, int row, int width, int height) {
           static_cast<float>(m[1] * -2 / height), static_cast<float>(m[2])};
 }
 
+ShadowMap map_of(const LightShadow& shadow, const Mat4d& from_origin) {
+  const Mat4d clip = shadow.world_to_clip * from_origin;
+  const int size = shadow.depth.width;
+  const auto row = [&](auto&& of) {
+    return Vec4{static_cast<float>(of(0)), static_cast<float>(of(1)), static_cast<float>(of(2)),
+                static_cast<float>(of(3))};
+  };
+  ShadowMap map;
+  map.depth = &shadow.depth(0, 0);
+  map.size = size;
+  map.column = row([&](int k) { return (clip.m[3][k] + clip.m[0][k]) * size / 2; });
+  map.row = row([&](int k) { return (clip.m[3][k] - clip.m[1][k]) * size / 2; });
+  map.z = row([&](int k) { return clip.m[2][k]; });
+  map.w = row([&](int k) { return clip.m[3][k]; });
+  map.offset = static_cast<float>(3 * shadow.texel);
+  return map;
+}
+
 }  // namespace
 
-FrameLights::FrameLights(std::span<const Light> lights, const Camera& camera, int width,
-                         int height) {
+FrameLights::FrameLights(std::span<const Light> lights, std::span<const LightShadow> shadows,
+                         const Camera& camera, int width, int height) {
   Frame frame;
   const auto camera_to_world = inverse(world_to_camera(camera));
   frame.camera_to_world = camera_to_world.value_or(Mat4d::identity());
@@ -74,7 +92,8 @@ FrameLights::FrameLights(std::span<const Light> lights, const Camera& camera, in
     set_.z = plane(*to_world, 2, width, height);
     set_.w = plane(*to_world, 3, width, height);
   }
-  for (const Light& light : lights) {
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const Light& light = lights[i];
     const Vec3 full = light.color * light.intensity;
     if (std::holds_alternative<AmbientLight>(light.kind)) {
       set_.ambient = set_.ambient + full;
@@ -106,7 +125,9 @@ FrameLights::FrameLights(std::span<const Light> lights, const Camera& camera, in
       term.axis = Vec3(direction(frame, light.of_camera, spot.direction));
       set_cone(spot, term);
     }
-    set_.has_places |= term.kind != LightTerm::Kind::directional;
+    if (!shadows.empty() && !shadows[i].depth.empty())
+      term.shadow = &maps_.emplace_back(map_of(shadows[i], from_origin));
+    set_.has_places |= term.kind != LightTerm::Kind::directional || term.shadow != nullptr;
   }
   set_.terms = terms_;
 }

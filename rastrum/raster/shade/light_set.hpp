@@ -3,11 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
 #include <rastrum/camera.hpp>
+#include <rastrum/image.hpp>
 #include <rastrum/light.hpp>
+#include <rastrum/mat.hpp>
+#include <rastrum/raster/shade/shadow_map.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
@@ -21,6 +25,7 @@ struct LightTerm {
   float inv_range2 = 0;                   ///< 1 / range²
   Vec3 axis;                              ///< of a spot, in which it shines, of unit length
   float cone_scale = 0, cone_offset = 0;  ///< saturate(cos · scale + offset)²
+  const ShadowMap* shadow = nullptr;      ///< null: nothing stands in its way
 };
 
 /// A linear function of pixel and depth: all that is asked for a point's place.
@@ -30,7 +35,7 @@ struct PixelPlane {
 
 struct LightSet {
   std::span<const LightTerm> terms;
-  bool has_places = false;  ///< some term is not directional
+  bool has_places = false;  ///< some term asks where a surface lies
   /// Of light from all around a direction n brings ambient + rise · n (each channel has its own).
   Vec3 ambient, rise_x, rise_y, rise_z;
   /// A sample's place in the world, from an origin near the eye: (x, y, z) / w of its pixel
@@ -38,17 +43,27 @@ struct LightSet {
   PixelPlane x, y, z, w;
 };
 
+/// What a light sees of the scene.
+struct LightShadow {
+  ImageView<const float> depth{};  ///< reversed, square; empty: it has no shadows
+  Mat4d world_to_clip;
+  double texel = 0;  ///< the width of one where w is 1
+};
+
 /// What owns them.
 class FrameLights {
  public:
   /// Lights that check_lights passes, seen by `camera`.
-  FrameLights(std::span<const Light> lights, const Camera& camera, int width, int height);
+  /// `shadows`: one a light, whose pictures must outlive this; empty: there are none.
+  FrameLights(std::span<const Light> lights, std::span<const LightShadow> shadows,
+              const Camera& camera, int width, int height);
   FrameLights(const FrameLights&) = delete;
   FrameLights& operator=(const FrameLights&) = delete;
   [[nodiscard]] const LightSet& set() const { return set_; }
 
  private:
   std::vector<LightTerm> terms_;
+  std::deque<ShadowMap> maps_;  ///< terms point to them
   LightSet set_;
 };
 

@@ -47,3 +47,7 @@ RASTRUM_LANES Incoming incoming(const LightTerm& t, const V3& place) {
   }
   return {l, set(t.radiance) * share};
 }
+/// Less what stands in its way to a surface with unit normal `n`, on the side that is seen.
+RASTRUM_LANES V3 unshadowed(const LightTerm& t, const V3& radiance, const V3& place, const V3& n) {
+  return t.shadow == nullptr ? radiance : radiance * lane_by_lane(*t.shadow, place, n);
+}

@@ -5,6 +5,11 @@
 #include <rastrum/raster/shade/light_set.hpp>
 
 namespace rastrum::raster::scalar_lane {
+/// What `of` says of two vectors; lanes have the same (kernels/lane_by_lane-inl.hpp).
+template <class Of>
+RASTRUM_HD F lane_by_lane(const Of& of, const V3& a, const V3& b) {
+  return of.at(a, b);
+}
 #define RASTRUM_LANES RASTRUM_HD inline
 #include <rastrum/raster/shade/lights-inl.hpp>
 #undef RASTRUM_LANES

@@ -77,10 +77,11 @@ RASTRUM_LANES V3 light_by(const LightSet& lights, LitModel model, const ViewRays
   for (const LightTerm& term : lights.terms) {
     const Incoming in = incoming(term, place);
     const F n_l = positive(dot(n, in.to_light));
-    diffuse = diffuse + in.radiance * n_l;
+    const V3 radiance = unshadowed(term, in.radiance, place, n);
+    diffuse = diffuse + radiance * n_l;
     if (model == LitModel::lambert) continue;
     const F shine = highlight(n, v, in.to_light) * set(kSpecular / kDiffuse);
-    specular = specular + in.radiance * choose_or_zero(n_l > set(0), shine);
+    specular = specular + radiance * choose_or_zero(n_l > set(0), shine);
   }
   return base * diffuse + specular;
 }

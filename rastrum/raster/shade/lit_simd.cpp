@@ -29,6 +29,8 @@ namespace {  // several sources have an N_AVX2
 namespace hn = hwy::HWY_NAMESPACE;
 
 #include <rastrum/raster/kernels/lane_math-inl.hpp>
+
+#include <rastrum/raster/kernels/lane_by_lane-inl.hpp>
 #include <rastrum/raster/shade/lights-inl.hpp>
 
 #include <rastrum/raster/shade/lit_light-inl.hpp>  // after the lights

@@ -113,7 +113,8 @@ RASTRUM_LANES V3 light_by(const LightSet& lights, const ViewRays& rays, const Li
   for (const LightTerm& term : lights.terms) {
     const Incoming in = incoming(term, place);
     const Reflected r = reflect(p.surface, p.n, p.v, p.nv, in.to_light);
-    direct = direct + r.share * (in.radiance * r.n_l);
+    const V3 radiance = unshadowed(term, in.radiance, place, p.n);
+    direct = direct + r.share * (radiance * r.n_l);
   }
   const V3 mirrored = p.n * (set(2) * p.facing) - p.v;
   const V3 ambient =
