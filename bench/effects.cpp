@@ -1,5 +1,6 @@
-// `rastrum bench effects`: what ambient occlusion, eye-dome lighting, silhouettes and edges add to
-// a frame at 1920 × 1080. Each factor is compared with the plain code's before anything is timed.
+// `rastrum bench effects`: what ambient occlusion, eye-dome lighting, silhouettes, edges, lights
+// and shadows add to a frame at 1920 × 1080, and the whole of --studio. Each factor and lit picture
+// is compared with the plain code's before anything is timed.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -48,12 +49,39 @@ void apply(Effects& effects, int which, Pictures& p, const Camera& camera, doubl
   if (which == 3) effects.edges(p.primitives.view(), edges, camera, 1, p.factor);
 }
 
+/// Frames of other lights than the fixed one, and what --studio draws.
+struct LitFrame {
+  const char* name;
+  FrameOptions options;
+  bool occlusion = false;
+};
+
+std::vector<LitFrame> lit_frames(const FrameOptions& plain) {
+  FrameOptions kit = plain, shadows = plain, studio = plain;
+  kit.lights = studio.lights = light_kit();
+  shadows.lights = {Light{.kind = DirectionalLight{{-0.4F, -0.6F, -1}}, .of_camera = true}};
+  shadows.shadows = true;
+  studio.samples = 4;
+  return {{"studio's lights", kit}, {"one light, shadows", shadows}, {"studio", studio, true}};
+}
+
+void draw(Renderer& renderer, Effects& effects, const LitFrame& frame, const SceneView& scene,
+          const Camera& camera, double radius, Pictures& p) {
+  Targets targets{.color8 = p.color};
+  if (frame.occlusion) targets.view_depth = p.depth;
+  (void)renderer.render(scene, camera, frame.options, targets);
+  if (!frame.occlusion) return;
+  effects.ambient_occlusion({.view_depth = p.depth.view()}, camera, {.radius = radius}, p.factor);
+  effects.darken(p.color, {}, p.factor.view());
+}
+
 }  // namespace
 
 int run_effects(std::span<const std::string_view> arguments) {
   TableOptions options;
   OptionParser parser("effects",
-                      "Occlusion, eye-dome lighting, silhouettes, edges at 1920 × 1080.");
+                      "Occlusion, eye-dome lighting, silhouettes, edges, lights, shadows and "
+                      "--studio at 1920 × 1080.");
   options.add_to(parser, false);
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
@@ -69,7 +97,8 @@ int run_effects(std::span<const std::string_view> arguments) {
       "code's, bit by bit.");
   Grid grid{"",
             {"scene", "phong", "with view depth", "and ids, normals, instances", "occlusion",
-             "eye dome", "silhouettes", "edges", "with occlusion ÷ phong"},
+             "eye dome", "silhouettes", "edges", "studio's lights", "one light, shadows", "studio",
+             "with occlusion ÷ phong", "studio ÷ phong"},
             {}};
   Plot plot;
   plot.title = document.title;
@@ -112,6 +141,13 @@ int run_effects(std::span<const std::string_view> arguments) {
       apply(reference, i, plain, camera, radius, edges);
       right = right && digest(p.factor.view()) == digest(plain.factor.view());
     }
+    const std::vector<LitFrame> lit = lit_frames(frame);
+    Renderer scalar({.threads = options.threads, .isa = Isa::scalar});
+    for (const LitFrame& l : lit) {
+      draw(renderer, effects, l, binding.view(), camera, radius, p);
+      draw(scalar, reference, l, binding.view(), camera, radius, plain);
+      right = right && digest(p.color.view()) == digest(plain.color.view());
+    }
     std::vector<Contender> contenders{
         {"phong",
          [&] { (void)renderer.render(binding.view(), camera, frame, {.color8 = p.color}); }},
@@ -127,6 +163,9 @@ int run_effects(std::span<const std::string_view> arguments) {
                               apply(effects, i, p, camera, radius, edges);
                               effects.darken(p.color, {}, p.factor.view());
                             }});
+    for (const LitFrame& l : lit)
+      contenders.push_back(
+          {l.name, [&] { draw(renderer, effects, l, binding.view(), camera, radius, p); }});
     const std::vector<Timing> timings = measure_interleaved(contenders, options.plan());
     std::vector<std::string> row{std::string(info.name)};
     for (std::size_t i = 0; i < timings.size(); ++i) {
@@ -143,6 +182,7 @@ int run_effects(std::span<const std::string_view> arguments) {
     }
     row.push_back(
         significant((timings[1].median_ms() + timings[3].median_ms()) / timings[0].median_ms()));
+    row.push_back(significant(median_ratio(timings.back(), timings[0])));
     grid.rows.push_back(std::move(row));
   }
   document.grids.push_back(std::move(grid));

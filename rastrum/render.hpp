@@ -16,6 +16,7 @@
 #include <rastrum/light.hpp>
 #include <rastrum/pick.hpp>
 #include <rastrum/scene.hpp>
+#include <rastrum/tone.hpp>
 
 namespace rastrum {
 
@@ -82,6 +83,9 @@ struct FrameOptions {
   /// What stands in the way of directional lights, and of spots that reach at most 84.8° from their
   /// axis, takes their light; of what is translucent all of it. Of `lights` alone.
   bool shadows = false;
+  /// Of Shader::material: how its linear light becomes `color8` and `color`; `linear` is without.
+  /// Where several samples or layers meet, their mean is mapped.
+  ToneMapping tone{};
 };
 
 /// Throws Error{invalid_argument} for a number or an enum's value out of range, a background that

@@ -40,7 +40,7 @@ PUBLIC = {
     "terrain": {"terrain", "terrain_light"},
     "overlay": {"effects", "overlay"},
     "io": {"io"},
-    "render": {"on_terrain", "pick", "render"},
+    "render": {"on_terrain", "pick", "render", "tone"},
     "family": {"family"},
 }
 FLOOR_OF = {f"{name}.hpp": floor for floor, names in PUBLIC.items() for name in names}

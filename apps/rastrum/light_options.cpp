@@ -163,6 +163,26 @@ void add_light_options(Parser& app, FrameOptions& frame, bool& of_files, const c
                      lights.push_back(parse_light(s));
                    })
       ->group(group);
+  add(app, "--tone", "NAME",
+      "of --shader material: how light above 1 is shown: none: cut (default), reinhard, aces, "
+      "neutral (Khronos PBR Neutral)",
+      [&frame](const std::string& s) {
+        constexpr const char* kNames[] = {"none", "reinhard", "aces", "neutral"};
+        for (std::size_t i = 0; i < std::size(kNames); ++i)
+          if (s == kNames[i]) {
+            frame.tone.tone = static_cast<Tone>(i);
+            return;
+          }
+        throw UsageError("--tone", "expected none, reinhard, aces or neutral, got '" + s + "'");
+      })
+      ->group(group);
+  add(app, "--exposure", "STOPS", "of --shader material: light is doubled so many times (0)",
+      [&frame](const std::string& s) {
+        frame.tone.exposure_stops = static_cast<float>(parse_number("--exposure", s));
+        if (!(frame.tone.exposure_stops >= -32 && frame.tone.exposure_stops <= 32))
+          throw UsageError("--exposure", "must lie in -32 to 32, got '" + s + "'");
+      })
+      ->group(group);
   app.add_flag("--shadows", frame.shadows,
                "of directional lights and spots that --lights and --light say")
       ->group(group);

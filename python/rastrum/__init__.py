@@ -9,6 +9,7 @@
 from ._camera import Camera, orbit
 from ._errors import (ArgumentError, ArgumentTypeError, DeviceError, Error, FileError, FormatError, NotFoundError,
                       OutOfMemoryError, UnsupportedError)
+from ._lights import Light
 from ._render import OUTPUTS, Hit, Picture, Pictures, Renderer, digest, render, views4
 from ._things import (ColorMapping, Cylinders, Discs, Lines, Material, Mesh, Points, Scene, Spheres, Tubes, as_scene, color_maps,
                       load)
@@ -16,7 +17,7 @@ from ._things import (ColorMapping, Cylinders, Discs, Lines, Material, Mesh, Poi
 __version__ = "0.1.0"
 __all__ = [
     "OUTPUTS", "ArgumentError", "ArgumentTypeError", "Camera", "ColorMapping", "Cylinders", "DeviceError", "Discs", "Error", "FileError",
-    "FormatError", "Hit", "Lines", "Material", "Mesh", "NotFoundError", "OutOfMemoryError", "Picture", "Pictures", "Points",
+    "FormatError", "Hit", "Light", "Lines", "Material", "Mesh", "NotFoundError", "OutOfMemoryError", "Picture", "Pictures", "Points",
     "Renderer", "Scene", "Spheres", "Tubes", "UnsupportedError", "as_scene", "color_maps", "digest", "load", "orbit", "render",
     "trimesh_viewer", "views4",
 ]

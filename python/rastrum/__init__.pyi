@@ -84,6 +84,22 @@ class Discs(_Thing):
     def __init__(self, centers: ArrayLike, normals: ArrayLike, radius: ArrayLike = 1.0, *, colors: ArrayLike | None = None,
                  copy: bool | None = None, **look: Any) -> None: ...
 
+class Light:
+    def __init__(self, kind: str, place: Sequence[float] = (0, 0, 0), direction: Sequence[float] = (0, 0, -1),
+                 below: Color = "black", range: float = ..., inner: float = 0.0, outer: float = 45.0, *, color: Color = "white",
+                 intensity: float = 1.0, of_camera: bool = False) -> None: ...
+    @classmethod
+    def ambient(cls, **look: Any) -> Light: ...
+    @classmethod
+    def hemisphere(cls, up: Sequence[float] = (0, 1, 0), below: Color = "black", **look: Any) -> Light: ...
+    @classmethod
+    def directional(cls, direction: Sequence[float] = (0, 0, -1), **look: Any) -> Light: ...
+    @classmethod
+    def point(cls, position: Sequence[float], range: float = ..., **look: Any) -> Light: ...
+    @classmethod
+    def spot(cls, position: Sequence[float], direction: Sequence[float], inner: float = 0.0, outer: float = 45.0,
+             range: float = ..., **look: Any) -> Light: ...
+
 class Scene:
     files: list[str]
     things: list[_Thing]
@@ -169,14 +185,16 @@ class Renderer:
     def render(self, what: Any, camera: Camera | None = None, *, size: tuple[int, int] = (1280, 720),
                outputs: Output | Iterable[Output] = "color", shader: str = "auto", background: Color | None = None,
                samples: int = 1, transparency: str = "exact", cull: str = "none", opacity: float = 1.0,
-               clip_planes: ArrayLike = (), annotate: str | Iterable[str] | Mapping[str, Any] = (),
+               clip_planes: ArrayLike = (), lights: str | Light | Sequence[str | Light] | None = None,
+               shadows: bool = False, tone: str = "none", exposure: float = 0.0, annotate: str | Iterable[str] | Mapping[str, Any] = (),
                out: Mapping[str, NDArray[Any]] | None = None,
                progress: Callable[[int, int], None] | bool | None = None) -> Picture: ...
     @overload
     def render(self, what: Any, camera: Sequence[Camera] | NDArray[Any], *, size: tuple[int, int] = (1280, 720),
                outputs: Output | Iterable[Output] = "color", shader: str = "auto", background: Color | None = None,
                samples: int = 1, transparency: str = "exact", cull: str = "none", opacity: float = 1.0,
-               clip_planes: ArrayLike = (), annotate: str | Iterable[str] | Mapping[str, Any] = (),
+               clip_planes: ArrayLike = (), lights: str | Light | Sequence[str | Light] | None = None,
+               shadows: bool = False, tone: str = "none", exposure: float = 0.0, annotate: str | Iterable[str] | Mapping[str, Any] = (),
                out: Mapping[str, NDArray[Any]] | None = None,
                progress: Callable[[int, int], None] | bool | None = None) -> Pictures: ...
 

@@ -18,6 +18,7 @@ from ._arrays import color as _color
 from ._arrays import floats
 from ._camera import Camera, as_camera
 from ._errors import ArgumentError, ArgumentTypeError, raises_errors
+from ._lights import lights as _lights
 from ._things import as_scene
 
 #: name: (dtype, numbers a pixel)
@@ -214,13 +215,17 @@ class Renderer:
         self._made = None
 
     def render(self, what, camera=None, *, size=(1280, 720), outputs="color", shader="auto", background=None, samples=1,
-               transparency="exact", cull="none", opacity=1.0, clip_planes=(), annotate=(), out=None, progress=None):
+               transparency="exact", cull="none", opacity=1.0, clip_planes=(), lights=None, shadows=False, tone="none",
+               exposure=0.0, annotate=(), out=None, progress=None):
         """A Picture of `what` by one camera, Pictures by a sequence of cameras or an (N, 4, 4) array.
 
         what: as_scene has the list. camera: a Camera, a (4, 4), or None: all of it from the front. size: (W, H).
         outputs: names of Picture's fields. shader: auto, flat, depth, normal, id, lambert, phong, material, wireframe.
         background: a colour, None: transparent. samples: 1, 4, 8 or 16 a pixel. transparency: exact, unsorted, none.
         cull: none, back, front. clip_planes: rows (x, y, z, d) of the world; kept is x X + y Y + z Z + d >= 0.
+        lights: of lambert, phong and material: headlight, studio (key, fill, back and head light), Lights, a list of
+        these; None: the fixed light of each. shadows: of directional lights and spots. tone, exposure: of material:
+        none, reinhard, aces or neutral for what is brighter than white, after `exposure` stops.
         annotate: what is drawn over the colours, by name, or {name: options}: "occlusion" (radius, in world units,
         strength), "edl" (strength), "silhouettes", "edges" (angle, in degrees: creases and borders alone; width, px),
         "axes", "bounds" and "bar" (of scalars; a camera of None leaves a margin for their numbers), "title", "captions" (a list), "text_scale".
@@ -229,7 +234,8 @@ class Renderer:
         Raises rastrum.Error of the natural class; KeyboardInterrupt in a frame leaves the arrays partly filled.
         """
         scene, made, frame, arrays, many, notes = _prepared(what, camera, size, outputs, shader, background, samples,
-                                                            transparency, cull, opacity, clip_planes, annotate, out)
+                                                            transparency, cull, opacity, clip_planes, lights, shadows, tone,
+                                                            exposure, annotate, out)
         if progress is True:
             progress = _bar if sys.stderr.isatty() else None
         if progress is not None and not callable(progress):
@@ -250,7 +256,7 @@ class Renderer:
 
 @raises_errors
 def _prepared(what, camera, size, outputs, shader, background, samples, transparency, cull, opacity, clip_planes,
-              annotate, out):
+              lights, shadows, tone, exposure, annotate, out):
     """(scene, cameras, frame, arrays, whether there are several pictures, annotations)"""
     scene = as_scene(what)
     many = _is_many(camera)
@@ -261,7 +267,8 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
     frame = _r.frame(width, height, _text(shader, "shader"), _text(cull, "cull"),
                      [0.0] * 4 if background is None else list(_color(background, "background")), float(opacity),
                      _text(transparency, "transparency"), samples,
-                     [] if len(clip_planes) == 0 else floats(clip_planes, "clip_planes", (4,)).tolist())
+                     [] if len(clip_planes) == 0 else floats(clip_planes, "clip_planes", (4,)).tolist(),
+                     _lights(lights), bool(shadows), _text(tone, "tone"), float(exposure))
     made = [c._for_size((width, height)) for c in cameras]
     notes = _annotations(annotate)
     if notes is not None and notes.room != 1 and camera is None:

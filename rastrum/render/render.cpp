@@ -22,6 +22,7 @@
 #include <rastrum/render/shadows.hpp>
 #include <rastrum/render/surface_of_key.hpp>
 #include <rastrum/render/target_checks.hpp>
+#include <rastrum/render/tone_pass.hpp>
 
 namespace rastrum {
 namespace {
@@ -77,6 +78,9 @@ void check(const FrameOptions& o) {
           "samples must be 1, 4, 8 or 16");
   raster::check_clip_planes(o.clip_planes, "the frame: ");
   check_lights(o.lights);
+  check_enum(o.tone.tone, Tone::neutral, "the tone");
+  require(o.tone.exposure_stops >= -32 && o.tone.exposure_stops <= 32,
+          "the exposure must lie in [-32, 32] stops");
 }
 
 struct Renderer::Impl {
@@ -200,16 +204,21 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
   raster::check_materials(runs);
   check_surfaces(runs);
   check_outputs(call.targets, true, taken == Shader::material);
+  TonePass tone;
+  const bool tones = TonePass::wanted(o, call.targets, taken);
+  if (tones) check_targets(call.targets, o);
+  const Targets targets = tones ? tone.targets(o, call.targets) : call.targets;
+  const Call drawn{o, targets, call.in_place, call.part, call.why_host};
   const bool lit = taken == Shader::lambert || taken == Shader::phong || taken == Shader::material;
   const auto begin = std::chrono::steady_clock::now();
   const auto shadowed =
       lit ? shadows.draw(scene, camera, o, options) : std::span<const raster::LightShadow>{};
   const double shadows_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-  SceneDraws of(runs, camera, {o, call.targets, taken, call.in_place, shadowed}, textures,
+  SceneDraws of(runs, camera, {o, targets, taken, call.in_place, shadowed}, textures,
                 threads.get());
-  FrameStats stats = taken == Shader::depth ? draw_depth(of, call)
-                                            : draw(of.draws(), of.shading(), of.test(), call, &of);
+  FrameStats stats = taken == Shader::depth ? draw_depth(of, drawn)
+                                            : draw(of.draws(), of.shading(), of.test(), drawn, &of);
   stats.shader = name(taken);
   if (!shadowed.empty()) {
     for (StageTime& stage : stats.stages) {
@@ -218,6 +227,15 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
     }
     stats.stages.insert(stats.stages.begin(), {"shadows", 0, shadows_ms});
     stats.frame_ms += shadows_ms;
+  }
+  if (tones) {
+    const auto frame_end = std::chrono::steady_clock::now();
+    tone.draw(o, call.targets, threads.get());
+    const double ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - frame_end)
+            .count();
+    stats.stages.push_back({"tone", stats.frame_ms, stats.frame_ms + ms});
+    stats.frame_ms += ms;
   }
   return stats;
 }

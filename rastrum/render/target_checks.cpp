@@ -84,6 +84,7 @@ void check_in_place(const SceneView& scene, const Targets& targets, Shader shade
   require(targets.overdraw.empty() && targets.errors.empty() && targets.extra.empty() &&
               targets.linear.empty() && !wants_surface(targets) && !targets.load && !targets.over,
           "of the targets there are color8, color, depth, ids and keys, in one pass");
+  require(o.tone == ToneMapping{}, "tone mapping is the CPU's");
   require(o.lights.empty(), "lights of the frame's own are the CPU's");
   require(o.clip_planes.empty() &&
               std::ranges::all_of(scene.instances,

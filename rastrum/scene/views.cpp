@@ -35,7 +35,9 @@ View view_of(ViewName name, Vec3d up) {
   const auto with_up = [&](Vec3d v) {
     if (u.y <= -1) return Vec3d{v.x, -v.y, -v.z};
     const Vec3d axis{u.z, 0, -u.x};  // cross(+y, u)
-    return v * u.y + cross(axis, v) + axis * (dot(axis, v) / (1 + u.y));
+    // 1 + u.y, without its digits being lost where u is almost −y.
+    const double above = u.y < 0 ? (u.x * u.x + u.z * u.z) / (1 - u.y) : 1 + u.y;
+    return v * u.y + cross(axis, v) + axis * (dot(axis, v) / above);
   };
   const Vec3d front = with_up({0, 0, 1}), right = with_up({1, 0, 0});
   switch (name) {

@@ -41,8 +41,13 @@ TEST(Views, HaveTheirNames) {
 }
 
 TEST(Views, AreAtRightAnglesAndOfUnitLength) {
-  for (const Vec3d up :
-       {Vec3d{0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {0, -1, 0}, {1, 2, -3}, {-2, -1, 0.5}})
+  for (const Vec3d up : {Vec3d{0, 1, 0},
+                         {0, 0, 1},
+                         {1, 0, 0},
+                         {0, -1, 0},
+                         {1e-7, -1, 2e-7},
+                         {1, 2, -3},
+                         {-2, -1, 0.5}})
     for (int i = 0; i <= static_cast<int>(ViewName::iso); ++i)
       for (const Turn& by : {Turn{}, Turn{30, 0, 0}, Turn{-70, 0, 45}, Turn{0, 0, 180}}) {
         const View v = turned(view_of(static_cast<ViewName>(i), up), by, up);

@@ -1,0 +1,82 @@
+"""What lights a scene."""
+
+import math
+
+import numpy as np
+
+from . import _rastrum as _r
+from ._arrays import color as _color
+from ._arrays import linear
+from ._errors import ArgumentError, ArgumentTypeError, raises_errors
+
+_NAMES = ("default", "headlight", "studio")
+
+
+def _three(value, name):
+    array = np.asarray(value, np.float64) if not isinstance(value, str) else np.empty(0)
+    if array.shape != (3,):
+        raise ArgumentError(f"{name}: must be three numbers, not {value!r}")
+    return array.tolist()
+
+
+class Light:
+    """A light; made by one of its five functions.
+
+    color: of a display, as colours everywhere. intensity: how bright it makes a white, matt surface that faces it (a
+    unit away, where it has a position). of_camera: places and directions are the camera's, x to the right, y up, z
+    towards the viewer. Directions are those in which light travels.
+    """
+
+    @raises_errors
+    def __init__(self, kind, place=(0, 0, 0), direction=(0, 0, -1), below="black", range=math.inf, inner=0.0, outer=45.0, *,
+                 color="white", intensity=1.0, of_camera=False):
+        self._made = _r.light(kind, _three(place, "position"), _three(direction, "direction"),
+                              list(linear(_color(below, "below"))[:3]), float(range), math.radians(inner),
+                              math.radians(outer), list(linear(_color(color, "color"))[:3]), float(intensity),
+                              bool(of_camera))
+
+    @classmethod
+    def ambient(cls, **look):
+        """From everywhere."""
+        return cls("ambient", **look)
+
+    @classmethod
+    def hemisphere(cls, up=(0, 1, 0), below="black", **look):
+        """Its colour from `up`, `below` from the other side, linear between."""
+        return cls("hemisphere", direction=up, below=below, **look)
+
+    @classmethod
+    def directional(cls, direction=(0, 0, -1), **look):
+        """Parallel, from far away."""
+        return cls("directional", direction=direction, **look)
+
+    @classmethod
+    def point(cls, position, range=math.inf, **look):
+        """Weaker by the square of the distance, nothing beyond `range`."""
+        return cls("point", position, range=range, **look)
+
+    @classmethod
+    def spot(cls, position, direction, inner=0.0, outer=45.0, range=math.inf, **look):
+        """A point light in a cone: full up to `inner` degrees from its axis, nothing beyond `outer`."""
+        return cls("spot", position, direction, range=range, inner=inner, outer=outer, **look)
+
+
+def lights(wanted):
+    """What `lights` of render means, for C++."""
+    if wanted is None:
+        return []
+    if isinstance(wanted, (str, Light)):
+        wanted = (wanted,)
+    made = []
+    for light in wanted:
+        if isinstance(light, Light):
+            made.append(light._made)
+        elif not isinstance(light, str):
+            raise ArgumentTypeError(f"lights: {light!r} is no rastrum.Light")
+        elif light == "headlight":
+            made.append(_r.headlight())
+        elif light == "studio":
+            made += _r.light_kit()
+        elif light != "default":
+            raise ArgumentError(f"lights: there is no {light!r}; take some of {', '.join(_NAMES)}, or a rastrum.Light")
+    return made

@@ -1,0 +1,124 @@
+#include <rastrum/render/tone_pass.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+
+#include <rastrum/core/elementary.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/raster/shade/color.hpp>
+
+namespace rastrum {
+namespace {
+
+/// Above it all curves are at their end; their squares stay finite.
+constexpr float kBrightest = 1e9F;
+
+Vec3 each(Vec3 c, float (*curve)(float)) {
+  return {curve(c.x), curve(c.y), curve(c.z)};
+}
+
+float reinhard(float x) {
+  return x / (1 + x);
+}
+
+float aces(float x) {
+  return (x * (2.51F * x + 0.03F)) / (x * (2.43F * x + 0.59F) + 0.14F);
+}
+
+/// As the specification's sample code has it, step by step.
+Vec3 neutral(Vec3 c) {
+  constexpr float kStart = 0.8F - 0.04F, kDesaturation = 0.15F;
+  const float least = std::min({c.x, c.y, c.z});
+  const float offset = least < 0.08F ? least - 6.25F * least * least : 0.04F;
+  c = {c.x - offset, c.y - offset, c.z - offset};
+  const float peak = std::max({c.x, c.y, c.z});
+  if (peak < kStart) return c;
+  constexpr float kLeft = 1 - kStart;
+  const float now = 1 - kLeft * kLeft / (peak + kLeft - kStart);
+  const float scale = now / peak;
+  const float white = 1 - 1 / (kDesaturation * (peak - now) + 1);
+  const auto mixed = [&](float x) { return x * scale * (1 - white) + now * white; };
+  return {mixed(c.x), mixed(c.y), mixed(c.z)};
+}
+
+Vec3 toned(Tone tone, Vec3 c) {
+  switch (tone) {
+    case Tone::reinhard:
+      return each(c, reinhard);
+    case Tone::aces:
+      return each(c, aces);
+    case Tone::neutral:
+      return neutral(c);
+    case Tone::none:
+      break;
+  }
+  return c;
+}
+
+}  // namespace
+
+bool TonePass::wanted(const FrameOptions& frame, const Targets& targets, Shader taken) {
+  if (frame.tone == ToneMapping{} || (targets.color8.empty() && targets.color.empty()))
+    return false;
+  if (taken != Shader::material)
+    throw Error(Errc::invalid_argument, "tone mapping is of linear light, which the shader '" +
+                                            std::string(name(taken)) +
+                                            "' has not; take 'material'");
+  if (targets.over || targets.load)
+    throw Error(Errc::unsupported, "tone mapping is of a whole picture, not of one over another");
+  return true;
+}
+
+Targets TonePass::targets(const FrameOptions& frame, const Targets& asked) {
+  Targets all = asked;
+  all.color8 = {};
+  all.color = {};
+  if (all.linear.empty()) {
+    own_linear_ = Image<Vec4>(frame.width, frame.height);
+    all.linear = own_linear_.view();
+  }
+  if (all.depth.empty()) {
+    own_depth_ = Image<float>(frame.width, frame.height);
+    all.depth = own_depth_.view();
+  }
+  linear_ = all.linear;
+  depth_ = all.depth;
+  return all;
+}
+
+void TonePass::draw(const FrameOptions& frame, const Targets& asked,
+                    parallel::Threads* threads) const {
+  const auto exposure =
+      static_cast<float>(elementary::pow(2, static_cast<double>(frame.tone.exposure_stops)));
+  const Vec4 nothing = raster::premultiplied_from_straight(frame.background);
+  const Rgba8 nothing8 = raster::to_straight_rgba8(nothing);
+  const auto exposed = [&](float x) {
+    const float e = x * exposure;
+    return e > 0 ? std::min(e, kBrightest) : 0.0F;  // of NaN 0
+  };
+  const auto row = [&](std::size_t place) {
+    const int y = static_cast<int>(place);
+    for (int x = 0; x < frame.width; ++x) {
+      Vec4 color = nothing;
+      Rgba8 color8 = nothing8;
+      if (depth_(x, y) > 0) {
+        const Vec4 c = raster::straight_from_premultiplied(linear_(x, y));
+        const Vec3 t = toned(frame.tone.tone, {exposed(c.x), exposed(c.y), exposed(c.z)});
+        const Vec4 display{raster::srgb_from_linear(t.x), raster::srgb_from_linear(t.y),
+                           raster::srgb_from_linear(t.z), c.w};
+        color = raster::premultiplied_from_straight(display);
+        color8 = raster::to_straight_rgba8(color);
+      }
+      if (!asked.color.empty()) asked.color(x, y) = color;
+      if (!asked.color8.empty()) asked.color8(x, y) = color8;
+    }
+  };
+  const auto rows = static_cast<std::size_t>(frame.height);
+  if (threads != nullptr)
+    parallel::for_each_index(*threads, rows, row, 8);
+  else
+    for (std::size_t y = 0; y < rows; ++y) row(y);
+}
+
+}  // namespace rastrum

@@ -1,0 +1,31 @@
+// Tone mapping: a pass over the finished linear light of a frame.
+#pragma once
+
+#include <rastrum/frame.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/render.hpp>
+
+namespace rastrum {
+
+/// The images of one frame that the pass reads and its caller did not ask for.
+class TonePass {
+ public:
+  /// Whether the frame is tone mapped; `taken`: what its shader became. Throws
+  /// Error{invalid_argument} for another shader than `material`, and for a pass over a picture.
+  [[nodiscard]] static bool wanted(const FrameOptions& frame, const Targets& targets, Shader taken);
+
+  /// `asked` with linear light and depth in the place of colours.
+  [[nodiscard]] Targets targets(const FrameOptions& frame, const Targets& asked);
+  /// Fills the colours of `asked` from what targets() gave. Where nothing is seen they are the
+  /// background as it is.
+  void draw(const FrameOptions& frame, const Targets& asked, parallel::Threads* threads) const;
+
+ private:
+  Image<Vec4> own_linear_;
+  Image<float> own_depth_;
+  ImageView<const Vec4> linear_;
+  ImageView<const float> depth_;
+};
+
+}  // namespace rastrum

@@ -1,0 +1,24 @@
+// From linear light, which has no upper end, to what a display shows (docs/light.md, "Tone").
+#pragma once
+
+#include <cstdint>
+
+namespace rastrum {
+
+/// What becomes of a channel x of linear light, above 0, before the sRGB curve; the result is cut
+/// to 1.
+enum class Tone : std::uint8_t {
+  none,      ///< x
+  reinhard,  ///< x / (1 + x): Reinhard and others, Photographic tone reproduction (2002)
+  aces,      ///< Narkowicz's fit of the Academy's curve (2015)
+  neutral,   ///< Khronos PBR Neutral: colours below 0.8 nearly as they are, whiter above
+};
+
+struct ToneMapping {
+  Tone tone = Tone::none;
+  float exposure_stops = 0;  ///< light is multiplied by 2 to this before, in [-32, 32]
+
+  bool operator==(const ToneMapping&) const = default;
+};
+
+}  // namespace rastrum

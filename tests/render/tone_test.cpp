@@ -1,0 +1,165 @@
+// Tone mapping: against its formulas in float64, the same bits for everyone, and what it is not of.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/error.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+
+namespace rastrum::test::tone_test {
+namespace {
+
+constexpr int kW = 96, kH = 72;
+
+/// A ball from black to far brighter than white, before a background that is no black.
+struct Bright {
+  Mesh ball = shapes::sphere(24, 24);
+  std::vector<Material> materials{Material{}};
+  std::vector<InstanceView> instances{1};
+  FrameOptions frame{.width = kW,
+                     .height = kH,
+                     .shader = Shader::material,
+                     .background = {0.2F, 0.3F, 0.4F, 0.5F}};
+
+  Bright() {
+    materials[0].base_color = {0.9F, 0.6F, 0.2F, 1};
+    instances[0].geometry = ball.view();
+    frame.lights = {{.kind = DirectionalLight{{1, -1, -1}}, .intensity = 12}};
+  }
+  struct Pictures {
+    Image<Vec4> color{kW, kH}, linear{kW, kH};
+    Image<Rgba8> color8{kW, kH};
+    Image<float> depth{kW, kH};
+  };
+  [[nodiscard]] Pictures draw(const ToneMapping& tone, RendererOptions by = {.threads = 2},
+                              int samples = 1) const {
+    FrameOptions look = frame;
+    look.tone = tone;
+    look.samples = samples;
+    Camera camera;
+    camera.eye = {0, 0, 3};
+    Pictures p;
+    (void)Renderer(by).render(
+        {instances, materials, {}}, camera, look,
+        {.color8 = p.color8, .color = p.color, .depth = p.depth, .linear = p.linear});
+    return p;
+  }
+};
+
+/// The specifications' formulas.
+void map(Tone tone, double (&c)[3]) {
+  if (tone == Tone::reinhard)
+    for (double& x : c) x = x / (1 + x);
+  if (tone == Tone::aces)
+    for (double& x : c) x = x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
+  if (tone != Tone::neutral) return;
+  const double least = std::min({c[0], c[1], c[2]});
+  const double offset = least < 0.08 ? least - 6.25 * least * least : 0.04;
+  for (double& x : c) x -= offset;
+  const double peak = std::max({c[0], c[1], c[2]}), start = 0.8 - 0.04;
+  if (peak < start) return;
+  const double now = 1 - (1 - start) * (1 - start) / (peak + 1 - start - start);
+  const double g = 1 - 1 / (0.15 * (peak - now) + 1);
+  for (double& x : c) x = x * now / peak * (1 - g) + now * g;
+}
+
+double display(double linear) {
+  const double x = std::clamp(linear, 0.0, 1.0);
+  return x < 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+}
+
+TEST(ToneMapping, IsItsFormula) {
+  const Bright bright;
+  for (const Tone tone : {Tone::none, Tone::reinhard, Tone::aces, Tone::neutral})
+    for (const float stops : {0.0F, -2.5F, 3.0F}) {
+      const ToneMapping how{tone, stops};
+      if (how == ToneMapping{}) continue;
+      SCOPED_TRACE(std::to_string(static_cast<int>(tone)) + ", " + std::to_string(stops));
+      const Bright::Pictures p = bright.draw(how);
+      int seen = 0, above_white = 0;
+      double most = 0;
+      for (int y = 0; y < kH; ++y)
+        for (int x = 0; x < kW; ++x) {
+          if (p.depth(x, y) == 0) {
+            EXPECT_EQ(p.color(x, y), (Vec4{0.1F, 0.15F, 0.2F, 0.5F}));
+            continue;
+          }
+          ++seen;
+          const Vec4 l = p.linear(x, y);
+          double c[3] = {l.x, l.y, l.z};
+          for (double& channel : c) channel = channel / double{l.w} * std::exp2(double{stops});
+          above_white += std::max({c[0], c[1], c[2]}) > 1 ? 1 : 0;
+          map(tone, c);
+          const float got[3] = {p.color(x, y).x, p.color(x, y).y, p.color(x, y).z};
+          const std::uint8_t got8[3] = {p.color8(x, y).r, p.color8(x, y).g, p.color8(x, y).b};
+          for (int i = 0; i < 3; ++i) {
+            most = std::max(most, std::abs(display(c[i]) - double{got[i]}));
+            EXPECT_EQ(got8[i], static_cast<std::uint8_t>(got[i] * 255 + 0.5F));
+          }
+        }
+      EXPECT_GT(seen, kW * kH / 5);
+      if (stops >= 0) {
+        EXPECT_GT(above_white, seen / 10);
+      }
+      EXPECT_LT(most, 2e-4);
+    }
+}
+
+TEST(ToneMapping, IsTheSameForEveryone) {
+  const Bright bright;
+  for (const int samples : {1, 4})
+    for (const Tone tone : {Tone::reinhard, Tone::neutral}) {
+      const ToneMapping how{tone, 0.5F};
+      const Bright::Pictures expected = bright.draw(how, {.device = Device::serial}, samples);
+      for (const Isa isa : available_isas())
+        for (const int threads : {1, 3}) {
+          const auto p = bright.draw(how, {.threads = threads, .isa = isa}, samples);
+          EXPECT_TRUE(std::ranges::equal(p.color.pixels(), expected.color.pixels()));
+          EXPECT_TRUE(std::ranges::equal(p.color8.pixels(), expected.color8.pixels()));
+        }
+    }
+}
+
+TEST(ToneMapping, LeavesTheOtherImages) {
+  const Bright bright;
+  const Bright::Pictures plain = bright.draw({}), mapped = bright.draw({Tone::aces, 1});
+  EXPECT_TRUE(std::ranges::equal(plain.linear.pixels(), mapped.linear.pixels()));
+  EXPECT_TRUE(std::ranges::equal(plain.depth.pixels(), mapped.depth.pixels()));
+  EXPECT_FALSE(std::ranges::equal(plain.color8.pixels(), mapped.color8.pixels()));
+}
+
+std::string refusal(const FrameOptions& frame, const Targets& targets) {
+  const Bright bright;
+  try {
+    (void)Renderer({.threads = 1})
+        .render({bright.instances, bright.materials, {}}, {}, frame, targets);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "it was drawn";
+}
+
+TEST(ToneMapping, RefusesWhatItIsNotOf) {
+  Bright bright;
+  Image<Rgba8> color8(kW, kH), small(kW / 2, kH);
+  FrameOptions frame = bright.frame;
+  frame.tone = {Tone::aces, 0};
+  EXPECT_EQ(refusal(frame, {.color8 = color8}), "it was drawn");
+  EXPECT_NE(refusal(frame, {.color8 = small}).find("48x72"), std::string::npos);
+  frame.shader = Shader::phong;
+  EXPECT_NE(refusal(frame, {.color8 = color8}).find("'material'"), std::string::npos);
+  frame.shader = Shader::material;
+  for (const float stops : {33.0F, -33.0F, std::nanf("")}) {
+    frame.tone = {Tone::none, stops};
+    EXPECT_NE(refusal(frame, {.color8 = color8}).find("exposure"), std::string::npos);
+  }
+  frame.tone = {static_cast<Tone>(9), 0};
+  EXPECT_NE(refusal(frame, {.color8 = color8}).find("tone"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace rastrum::test::tone_test
