@@ -36,7 +36,7 @@ def test_the_stub_is_the_package():
             there = inspect.getattr_static(getattr(rr, name), member.name)
             if isinstance(there, property):
                 continue
-            if isinstance(there, staticmethod):
+            if isinstance(there, (staticmethod, classmethod)):
                 there = there.__func__
             assert parameters(member) == actual(there), f"{name}.{member.name}"
 
