@@ -406,6 +406,49 @@ LayerScene layer_stack(std::uint64_t seed, int count, double alpha, int width, i
   return std::move(m.scene);
 }
 
+LayerScene overlapping_pieces() {
+  // Found among many. The first corner is beside the guard band, the last barely behind the near
+  // plane: what this cuts off is about a step of the snapping wide, and in the middle of the fan.
+  LayerScene scene;
+  scene.kind = "overlapping_pieces";
+  scene.camera.eye = {0, 0, 0};
+  scene.camera.target = {0, 0, -1};
+  scene.camera.near_plane = 0.1F;
+  scene.mesh.positions = {
+      {-706.188293F, -0.039451614F, -0.5F},
+      {0.323428512F, 0.210162237F, -0.5F},
+      {0.00607562531F, 0.0351930633F, -0.0999995321F},
+      {722.457092F, 0.481751621F, -0.5F},
+      {0.385045379F, -0.12634553F, -0.5F},
+      {-0.0254268497F, -0.0388722382F, -0.0999996141F},
+      {-343.240936F, -0.287163258F, -0.5F},
+      {0.00439171772F, -0.061611034F, -0.5F},
+      {0.0271349885F, 0.0226431675F, -0.0999943838F},
+      {935.252075F, 0.406848699F, -0.5F},
+      {0.00598360365F, -0.0676583126F, -0.5F},
+      {-0.0667591467F, -0.0406496301F, -0.0999973491F},
+      {-701.455078F, -0.0696747825F, -0.5F},
+      {0.275118619F, 0.45087567F, -0.5F},
+      {0.0818680674F, 0.0568387695F, -0.0999991074F},
+      {-308.243958F, -0.0928642079F, -0.5F},
+      {0.305543631F, 0.353243381F, -0.5F},
+      {0.0862086564F, 0.0424581245F, -0.0999989733F},
+      {620.030151F, 0.355757147F, -0.5F},
+      {0.0987962559F, -0.282826483F, -0.5F},
+      {0.00155374862F, -0.00271855504F, -0.0999995917F},
+      {-710.743958F, 0.177131549F, -0.5F},
+      {-0.177561224F, -0.117712684F, -0.5F},
+      {0.0485489108F, -0.0117430026F, -0.0999993607F},
+  };
+  Random random(1);
+  for (std::uint32_t i = 0; i < scene.mesh.positions.size(); i += 3) {
+    const auto channel = [&] { return static_cast<float>(0.5 * random.real(0, 1)); };
+    const float r = channel(), g = channel();
+    scene.add(i, i + 1, i + 2, {r, g, channel(), 0.5F});
+  }
+  return scene;
+}
+
 LayerQuestion::LayerQuestion(const LayerScene& scene, int width, int height, int samples,
                              Vec4 background)
     : scene_(scene), width_(width), height_(height), samples_(samples) {

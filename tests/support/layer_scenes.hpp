@@ -51,6 +51,10 @@ extern const int kLayerKinds;
 [[nodiscard]] LayerScene layer_stack(std::uint64_t seed, int count, double alpha, int width,
                                      int height);
 
+/// Translucent clipped triangles whose pieces overlap by a snapped vertex, each over the centre of
+/// a pixel of a 64 × 64 picture.
+[[nodiscard]] LayerScene overlapping_pieces();
+
 /// What the oracle needs of a scene: its snapped triangles and the functions of its colours. Holds
 /// references to `scene`.
 struct LayerQuestion {

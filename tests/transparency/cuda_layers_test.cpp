@@ -209,6 +209,43 @@ TEST_F(CudaLayers, EqualTheHostInEveryTierAndBudget) {
   EXPECT_GT(all.deep_blocks, 0U);
 }
 
+/// Pixels that two pieces of one triangle cover.
+int pixels_covered_twice(const LayersFrame& f) {
+  int count = 0;
+  for (std::size_t i = 0; i + 1 < f.pieces.size(); ++i)
+    for (std::size_t k = i + 1; k < f.pieces.size() && f.pieces[k].low == f.pieces[i].low; ++k) {
+      const raster::Rect box = raster::piece_bounds(f.pieces[i], {0, 0, f.width, f.height});
+      for (int y = box.y0; y < box.y1; ++y) {
+        const raster::Span a = raster::row_span(f.pieces[i], y, 0, f.width);
+        const raster::Span b = raster::row_span(f.pieces[k], y, 0, f.width);
+        count += std::max(0, std::min(a.end, b.end) - std::max(a.begin, b.begin));
+      }
+    }
+  return count;
+}
+
+// Pieces of one clipped triangle may overlap by a snapped vertex; they are one layer.
+// Pieces of one clipped triangle may overlap by a snapped vertex; they are one layer.
+TEST_F(CudaLayers, OverlappingPiecesOfAClippedTriangleAreOneLayer) {
+  const int size = 64;
+  const LayerScene scene = overlapping_pieces();
+  LayerProgram program(scene, size, size);
+  const LayersFrame start = frame_of(scene, program, size, size);
+  ASSERT_GE(pixels_covered_twice(start), static_cast<int>(scene.size()));
+  for (const Transparency method : {Transparency::exact, Transparency::unsorted}) {
+    TransparencyOptions options;
+    options.method = method;
+    Painter renderer(host_options(size, size, Device::threads, options));
+    const LayerPicture host = take(renderer, program);
+    for (const Way& way : kWays) {
+      LayersFrame f = start;
+      const DeviceLayerCounts counts = blend_on_device(f, options, way.tuning, way.band_rows);
+      ASSERT_TRUE(equals_host(f, host)) << way.name;
+      EXPECT_EQ(counts.fragments, host.counter("translucent fragments")) << way.name;
+    }
+  }
+}
+
 TEST_F(CudaLayers, UnsortedAndThresholdsEqualTheHost) {
   TransparencyOptions unsorted, paper, early;
   unsorted.method = Transparency::unsorted;

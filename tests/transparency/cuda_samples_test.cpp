@@ -14,6 +14,7 @@
 #include "tests/support/environment.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/layer_picture.hpp"
+#include "tests/support/layer_scenes.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -111,6 +112,22 @@ TEST_P(CudaSampled, LayersEqualSerial) {
   }
   EXPECT_GT(blended, 10000U);
   EXPECT_GT(repaired, 0U);
+}
+
+// Pieces of one clipped triangle that overlap are one layer at every sample.
+TEST_P(CudaSampled, OverlappingPiecesEqualSerial) {
+  const LayerScene layers = overlapping_pieces();
+  const Scene scene = single(layers.mesh);
+  const SceneBinding binding(scene);
+  RenderOptions o = options(64, 64, GetParam(), Device::serial);
+  o.shader = Shader::flat;
+  o.opacity = 0.5F;
+  Painter serial(o);
+  o.device = Device::cuda;
+  Painter cuda(o);
+  const LayerPicture frame = take(cuda, binding.view(), layers.camera);
+  ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
+  ASSERT_TRUE(same_bits(frame, take(serial, binding.view(), layers.camera)));
 }
 
 // Triangles of all sizes, by a thread, a team and by tiles; bands in little memory.

@@ -157,6 +157,29 @@ TEST_P(Serial, EqualsTheOracleAndThreads) {
   }
 }
 
+// Pieces of one clipped triangle that overlap are one layer.
+TEST_P(Serial, OverlappingPiecesAreOneLayerEverywhere) {
+  const Size size{64, 64};
+  const LayerScene scene = overlapping_pieces();
+  LayerProgram program(scene, size.width, size.height);
+  for (const Transparency method : {Transparency::exact, Transparency::unsorted}) {
+    RenderOptions o = options(size, GetParam());
+    o.transparency.method = method;
+    o.device = Device::serial;
+    Painter serial(o);
+    const LayerPicture expected = take(serial, program);
+    o.device = Device::threads;
+    for (const Isa isa : available_isas()) {
+      o.isa = isa;
+      Painter threads(o);
+      const LayerPicture picture = take(threads, program);
+      ASSERT_TRUE(same_bits(expected, picture));
+      // No pixel has a triangle twice.
+      EXPECT_LE(picture.counter("deepest"), scene.size());
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Standard, Serial, testing::Values(1, 4, 8, 16),
                          [](const auto& p) { return std::to_string(p.param); });
 

@@ -191,7 +191,7 @@ struct BlendBlock {
       for (int sample = 0; sample < kSamples; ++sample) {
         const std::size_t q = static_cast<std::size_t>(sample) * 64 + p;
         std::uint64_t& key = s.keys[sample][i];
-        key = frame.key(piece, x, y, sample);
+        key = frame.key(record, x, y, sample);
         if (key > s.opaque[q]) parallel::atomic_add(s.layers[q], 1U);
         // A limit is never below the opaque key.
         if (key <= s.limit[q])
@@ -238,7 +238,7 @@ struct BlendBlock {
       for (std::size_t k = 0; k < mine.size(); ++k) {
         const raster::Block& record = mine[s.order[k]];
         if ((record.mask >> p & 1) == 0) continue;
-        const std::uint64_t key = frame.key(frame.pieces[record.piece], x, y, sample);
+        const std::uint64_t key = frame.key(record, x, y, sample);
         if (key > s.opaque[q]) f(key);
       }
     };

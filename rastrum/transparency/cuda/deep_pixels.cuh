@@ -36,7 +36,7 @@ struct DeepPixels {
     const int x = frame.x_of(b, p), y = frame.y_of(b, p);
     for (const raster::Block& record : records.of(b)) {
       if ((record.mask >> p & 1) == 0) continue;
-      const std::uint64_t key = frame.key(frame.pieces[record.piece], x, y, sample);
+      const std::uint64_t key = frame.key(record, x, y, sample);
       if (key > opaque) f(key);
     }
   }

@@ -37,7 +37,8 @@ namespace rastrum::transparency {
 /// those of the last ones that lie outside are set, too, and stay as they are.
 struct DeviceLayers {
   raster::Rect view;                      ///< px; begins with a block's first pixel
-  std::span<const raster::Piece> pieces;  ///< those with kTranslucent are blended, others left out
+  std::span<const raster::Piece> pieces;  ///< those with kTranslucent are blended, others left
+                                          ///< out; those of a clipped triangle side by side
   std::span<std::uint64_t> keys;          ///< of the opaque surface; raised to the nearest layer's
   std::span<Vec4> colors;  ///< premultiplied: the opaque surface, 0 where none is; then the picture
 };

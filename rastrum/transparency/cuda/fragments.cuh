@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <span>
 
+#include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cuda/sample_pattern.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/raster/setup/piece.hpp>
@@ -24,6 +25,20 @@ namespace rastrum::transparency::cuda {
 struct KeepAll {
   RASTRUM_HD bool operator()(std::uint64_t, int, int) const { return true; }
 };
+
+/// Whether a piece that its triangle was clipped to gives a pixel its fragment: pieces may overlap
+/// by a snapped vertex, and the nearest counts, of equal ones the first. They lie side by side.
+/// key_at(piece) → its key there, 0 where it does not cover the pixel.
+template <class KeyAt>
+RASTRUM_HD bool is_nearest_of_clipped(std::span<const raster::Piece> pieces, std::size_t piece,
+                                      std::uint64_t key, const KeyAt& key_at) {
+  const std::uint64_t low = pieces[piece].low;
+  for (std::size_t k = piece; k-- > 0 && pieces[k].low == low;)
+    if (key_at(pieces[k]) >= key) return false;
+  for (std::size_t k = piece + 1; k < pieces.size() && pieces[k].low == low; ++k)
+    if (key_at(pieces[k]) > key) return false;
+  return true;
+}
 
 /// A frame, or a band of it, as kernels see it. Memory of the device: 8 × 8 blocks, row by row, of
 /// 64 pixels each, element 8 · row + column.
@@ -60,14 +75,32 @@ struct FrameView {
   /// Of a sample of those, the key and the colour of element `at`.
   RASTRUM_HD std::uint64_t& key_of(int, std::size_t at) const { return keys[at]; }
   RASTRUM_HD Vec4& color_of(int, std::size_t at) const { return colors[at]; }
-  /// The key of a fragment; 0 where there is none or the test leaves it out.
-  RASTRUM_HD std::uint64_t key(const raster::Piece& piece, int x, int y, int = 0) const {
+  /// The key of the fragment that a record has in a pixel of its mask; 0 where there is none or the
+  /// test leaves it out.
+  RASTRUM_HD std::uint64_t key(const raster::Block& record, int x, int y, int = 0) const {
+    const raster::Piece& piece = pieces[record.piece];
     const std::uint64_t w = raster::make_key(raster::depth_at(piece, x, y), piece.low);
-    return (piece.flags & raster::kMayDrop) != 0 && !test(w, x, y) ? 0 : w;
+    const auto key_at = [&](const raster::Piece& other) { return key_where_covered(other, x, y); };
+    return kept(record, w, x, y, key_at);
   }
   /// The colour of a piece in a pixel; `key` is its key there, of any sample.
   RASTRUM_HD Vec4 color(const raster::Piece&, std::uint64_t key, int x, int y) const {
     return shade(key, x, y);
+  }
+
+ protected:
+  static RASTRUM_HD std::uint64_t key_where_covered(const raster::Piece& piece, int x, int y) {
+    if (!raster::covers_centre(raster::edges_of(piece), x, y)) return 0;
+    return raster::make_key(raster::depth_at(piece, x, y), piece.low);
+  }
+  template <class KeyAt>
+  RASTRUM_HD std::uint64_t kept(const raster::Block& record, std::uint64_t w, int x, int y,
+                                const KeyAt& key_at) const {
+    const std::uint32_t flags = pieces[record.piece].flags;
+    if (w == 0) return 0;
+    if ((flags & raster::kClipped) != 0 && !is_nearest_of_clipped(pieces, record.piece, w, key_at))
+      return 0;
+    return (flags & raster::kMayDrop) != 0 && !test(w, x, y) ? 0 : w;
   }
 };
 
@@ -100,10 +133,11 @@ struct SampledView : FrameView<Shade, Test> {
   RASTRUM_HD Vec4 color(const raster::Piece& piece, std::uint64_t key, int x, int y) const {
     return this->shade(piece, key, x, y);
   }
-  RASTRUM_HD std::uint64_t key(const raster::Piece& piece, int x, int y, int s) const {
-    const raster::Piece seen = raster::moved(piece, at[s]);
-    if (!raster::covers_centre(raster::edges_of(seen), x, y)) return 0;
-    return FrameView<Shade, Test>::key(seen, x, y);
+  RASTRUM_HD std::uint64_t key(const raster::Block& record, int x, int y, int s) const {
+    const auto key_at = [&](const raster::Piece& piece) {
+      return this->key_where_covered(raster::moved(piece, at[s]), x, y);
+    };
+    return this->kept(record, key_at(this->pieces[record.piece]), x, y, key_at);
   }
 };
 
