@@ -12,6 +12,7 @@
 #include <rastrum/family/row.hpp>
 #include <rastrum/family/visibility/layers.hpp>
 #include <rastrum/raster/frame/fast_path.hpp>
+#include <rastrum/raster/frame/sampled_path.hpp>
 #include <rastrum/render/access.hpp>
 #include <rastrum/transparency/layered_path.hpp>
 
@@ -79,6 +80,9 @@ std::unique_ptr<raster::FrameDrawer> make_on_threads(const Row& row, std::uint64
   const bool is_fast = is_first && visibility.name == visibilities().front().name &&
                        row.hierarchical_z && row.tuning.order == raster::BlockOrder::row_major;
   const bool auto_rasterizer = row.rasterizer == "auto", auto_visibility = row.visibility == "auto";
+  // Which the family has no rows for.
+  MakeMethod samples;
+  if (is_fast && auto_visibility) samples = [&memory] { return raster::make_sampled_path(memory); };
   return make_drawer_of(
       {[=, &memory, &coverage, &visibility, tuning = row.tuning, hides = row.hierarchical_z] {
          return is_fast ? raster::make_fast_path(memory)
@@ -89,7 +93,8 @@ std::unique_ptr<raster::FrameDrawer> make_on_threads(const Row& row, std::uint64
          return is_first ? transparency::make_layered_path(memory, make_blend)
                          : make_row(coverage, layers(), tuning, hides, memory);
        },
-       why(auto_rasterizer, auto_visibility, false), why(auto_rasterizer, auto_visibility, true)},
+       why(auto_rasterizer, auto_visibility, false), why(auto_rasterizer, auto_visibility, true),
+       std::move(samples), why_samples(auto_rasterizer)},
       memory_limit, memory, &threads);
 }
 

@@ -8,6 +8,7 @@
 #include <rastrum/raster/frame/driver.hpp>
 #include <rastrum/raster/frame/fast_path.hpp>
 #include <rastrum/raster/frame/reference.hpp>
+#include <rastrum/raster/frame/sampled_path.hpp>
 #include <rastrum/render/device_work.hpp>
 #include <rastrum/transparency/layered_path.hpp>
 #include <rastrum/transparency/reference.hpp>
@@ -25,27 +26,31 @@ class ByNeed final : public raster::FrameDrawer {
         threads_(threads) {}
 
   [[nodiscard]] FrameStats draw(raster::FrameRequest& request) override {
-    const bool layers = needs_layers(request);
-    std::unique_ptr<raster::FrameDriver>& driver = layers ? layers_ : keys_;
-    if (!driver)
-      driver = std::make_unique<raster::FrameDriver>((layers ? methods_.layers : methods_.keys)(),
-                                                     layers && threads_ == nullptr
-                                                         ? 0  // its lists cannot be cut
-                                                         : memory_limit_,
-                                                     memory_, threads_);
-    FrameStats stats = driver->draw(request);
-    if (const std::string& reason = layers ? methods_.why_layers : methods_.why_keys;
-        !reason.empty())
-      stats.why = reason;
-    return stats;
+    const bool samples = methods_.samples && raster::is_sampled(request) &&
+                         !blends(request.draws, request.transparency);
+    if (samples) return draw(request, sampled_, methods_.samples, methods_.why_samples);
+    if (needs_layers(request)) return draw(request, layers_, methods_.layers, methods_.why_layers);
+    return draw(request, keys_, methods_.keys, methods_.why_keys);
   }
 
  private:
+  FrameStats draw(raster::FrameRequest& request, std::unique_ptr<raster::FrameDriver>& driver,
+                  const MakeMethod& make, const std::string& why) {
+    // The reference's lists of layers cannot be cut.
+    const bool limited = threads_ != nullptr || &driver == &keys_;
+    if (!driver)
+      driver = std::make_unique<raster::FrameDriver>(make(), limited ? memory_limit_ : 0, memory_,
+                                                     threads_);
+    FrameStats stats = driver->draw(request);
+    if (!why.empty()) stats.why = why;
+    return stats;
+  }
+
   Methods methods_;
   std::uint64_t memory_limit_;
   MemoryAccount& memory_;
   parallel::Threads* threads_;
-  std::unique_ptr<raster::FrameDriver> keys_, layers_;
+  std::unique_ptr<raster::FrameDriver> keys_, sampled_, layers_;
 };
 
 class OnDevice final : public raster::FrameDrawer {
@@ -130,6 +135,12 @@ std::string why(bool rasterizer, bool visibility, bool layers) {
   return text.empty() ? "as asked for" : text;
 }
 
+std::string why_samples(bool rasterizer) {
+  constexpr const char* kSamples =
+      "samples: a plain maximum at each, and shading once a pixel and primitive";
+  return rasterizer ? why(true, false, false).append("; ").append(kSamples) : kSamples;
+}
+
 std::unique_ptr<raster::FrameDrawer> make_drawer_of(Methods methods, std::uint64_t memory_limit,
                                                     MemoryAccount& memory,
                                                     parallel::Threads* threads) {
@@ -159,7 +170,8 @@ std::unique_ptr<raster::FrameDrawer> make_drawer(const DrawerOptions& options,
     return make_drawer_of(
         {[&memory] { return raster::make_fast_path(memory); },
          [&memory] { return transparency::make_layered_path(memory, transparency::make_blend); },
-         why(true, true, false), why(true, true, true)},
+         why(true, true, false), why(true, true, true),
+         [&memory] { return raster::make_sampled_path(memory); }, why_samples(true)},
         limit, memory, threads);
   };
   if (options.device != Device::cuda) return make_fast();

@@ -44,10 +44,18 @@ using MakeFrameDrawer = std::function<std::unique_ptr<raster::FrameDrawer>(
 /// it (docs/decisions/0010).
 [[nodiscard]] std::string why(bool rasterizer, bool visibility, bool layers);
 
-/// The ways to draw a frame: where keys are enough, and where they are not.
+/// The same of frames that are drawn sample by sample (raster::is_sampled).
+[[nodiscard]] std::string why_samples(bool rasterizer);
+
+using MakeMethod = std::function<std::unique_ptr<raster::Method>()>;
+
+/// The ways to draw a frame: where keys are enough, and where they are not; `samples`: where keys
+/// of each sample are (raster::is_sampled), else null.
 struct Methods {
-  std::function<std::unique_ptr<raster::Method>()> keys, layers;
+  MakeMethod keys, layers;
   std::string why_keys{}, why_layers{};  ///< FrameStats::why
+  MakeMethod samples{};
+  std::string why_samples{};
 };
 /// Frames by these, each made when a frame first needs it.
 [[nodiscard]] std::unique_ptr<raster::FrameDrawer> make_drawer_of(Methods methods,

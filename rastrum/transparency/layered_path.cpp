@@ -69,7 +69,8 @@ class LayeredPath final : public raster::Method {
 
   void draw(raster::Frame& frame, std::uint64_t first, std::uint64_t last) override {
     const BinTable lists{{frame.view, kBinSize}};
-    const auto groups = groups_.set_up(frame, lists, true, first, last);
+    // Fragments of micro triangles are of one sample a pixel.
+    const auto groups = groups_.set_up(frame, lists, frame.request.samples == 1, first, last);
     frame.watch.lap(frame.stats, "setup and bin");
     frame.fits = groups.has_value();
     if (frame.fits) draw_parts(frame, lists, *groups);

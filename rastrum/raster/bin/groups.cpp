@@ -134,16 +134,19 @@ struct TriangleGroups::Filler final : MicroSink {
   Collected<DeferredInBin> deferred;
   bool whole = true;        ///< the view is the image, whose bins setup numbers; else:
   int image_columns = 0;    ///< bins in a row of it
+  int image_bins = 0;       ///< that each sample has
   int column = 0, row = 0;  ///< the view's first bin
   int columns = 0, rows = 0;
 
   void restart(const Frame& frame, const BinTable& lists) {
     const TileGrid& bins = lists.bins;
     pairs.restart(lists.count());
-    micro.restart(bins.count());
+    micro.restart(lists.fragment_count());
     deferred.restart(lists.defers ? bins.count() : 0);
-    whole = bins.count() == TileGrid{{0, 0, frame.request.width, frame.request.height}}.count();
-    image_columns = (frame.request.width + kBinSize - 1) / kBinSize;
+    const TileGrid image{{0, 0, frame.request.width, frame.request.height}, kBinSize};
+    whole = bins.count() == image.count();
+    image_columns = image.columns();
+    image_bins = image_columns * image.rows();
     column = bins.view.x0 / kBinSize;
     row = bins.view.y0 / kBinSize;
     columns = bins.columns();
@@ -160,9 +163,10 @@ struct TriangleGroups::Filler final : MicroSink {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < n; ++i) {
       const auto bin = static_cast<int>(all[i].bin);
-      const int x = bin % image_columns - column, y = bin / image_columns - row;
+      const int x = bin % image_columns - column, y = bin % image_bins / image_columns - row;
       all[kept] = all[i];
-      all[kept].bin = static_cast<std::uint32_t>(y * columns + x);
+      all[kept].bin =
+          static_cast<std::uint32_t>(bin / image_bins * columns * rows + y * columns + x);
       kept += x >= 0 && x < columns && y >= 0 && y < rows;
     }
     micro.added(kept);
@@ -178,7 +182,9 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
                                                        std::uint64_t last) {
   if (frame.view_bytes != 0) groups_.clear();  // what other views needed
   const std::size_t bin_count = lists.bins.count(), list_count = lists.count();
-  const std::uint64_t most_groups = std::max<std::uint64_t>(kMaxBinTables / (2 * bin_count), 1);
+  const std::size_t fragment_lists = lists.fragment_count();
+  const std::uint64_t most_groups =
+      std::max<std::uint64_t>(kMaxBinTables / (2 * bin_count * lists.samples), 1);
   const std::uint64_t group_size =
       std::max(kMinGroup, (last - first + most_groups - 1) / most_groups);
   const auto group_count = static_cast<std::size_t>((last - first + group_size - 1) / group_size);
@@ -207,7 +213,7 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
     if (limited) {
       const std::uint64_t own =
           pieces.count * sizeof(Piece) + n * sizeof(PieceInBin) + m * sizeof(BinFragment) +
-          (list_count + bin_count) * sizeof(std::uint32_t) + pieces.quadric_bytes();
+          (list_count + fragment_lists) * sizeof(std::uint32_t) + pieces.quadric_bytes();
       if (bytes.fetch_add(own, std::memory_order_relaxed) + own > frame.view_bytes) return;
       group.pieces.data.reserve(pieces.count);
       group.pieces.restart();
@@ -215,7 +221,7 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
       group.pieces.triangles = pieces.triangles;
     }
     group.by_bin.sort(scratch.pairs, list_count);
-    group.fragments.sort(scratch.micro, bin_count);
+    group.fragments.sort(scratch.micro, fragment_lists);
     if (lists.defers) group.deferred.sort(scratch.deferred, bin_count);
     pairs.fetch_add(n + scratch.deferred.entries().size(), std::memory_order_relaxed);
     micro_fragments.fetch_add(m, std::memory_order_relaxed);
@@ -241,7 +247,7 @@ void TriangleGroups::bin_more(Frame& frame, const BinTable& lists, std::span<Gro
     group.binned = bin_pieces(frame.kernel, group.pieces.span(), group.binned, most, lists,
                               scratch.pairs, scratch.deferred);
     group.by_bin.sort(scratch.pairs, lists.count());
-    group.fragments.sort(scratch.micro, lists.bins.count());
+    group.fragments.sort(scratch.micro, lists.fragment_count());
     if (lists.defers) group.deferred.sort(scratch.deferred, lists.bins.count());
     pairs.fetch_add(scratch.pairs.entries().size() + scratch.deferred.entries().size(),
                     std::memory_order_relaxed);

@@ -165,6 +165,16 @@ RASTRUM_HD inline Rect piece_bounds(const Piece& p, Rect view) {
           box.x1 < view.x1 ? box.x1 : view.x1, box.y1 < view.y1 ? box.y1 : view.y1};
 }
 
+/// Whether the centre of pixel (x, y) is inside of the edges.
+[[nodiscard]] RASTRUM_HD inline bool covers_centre(const Edges& edges, int x, int y) {
+  bool inside = true;
+  for (int k = 0; k < edges.count; ++k) {
+    const Edge& e = edges.edge[k];
+    inside = inside && e.base + std::int64_t{e.a} * x + std::int64_t{e.b} * y >= 0;
+  }
+  return inside;
+}
+
 /// Whether the rectangle may hold an inside sample: none lies beyond any one edge.
 RASTRUM_HD inline bool may_touch(const Edges& edges, Rect r) {
   for (int i = 0; i < edges.count; ++i) {

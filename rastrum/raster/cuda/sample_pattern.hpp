@@ -29,16 +29,6 @@ struct SamplePattern {
   }
 };
 
-/// Whether the centre of pixel (x, y) is inside of the edges.
-[[nodiscard]] RASTRUM_HD inline bool covers_centre(const Edges& edges, int x, int y) {
-  bool inside = true;
-  for (int k = 0; k < edges.count; ++k) {
-    const Edge& e = edges.edge[k];
-    inside = inside && e.base + std::int64_t{e.a} * x + std::int64_t{e.b} * y >= 0;
-  }
-  return inside;
-}
-
 /// The pixels of `view` of which the piece, as it lies at their centres, may cover a sample. May be
 /// empty.
 [[nodiscard]] RASTRUM_HD inline Rect sampled_bounds(const Piece& piece, Rect view,

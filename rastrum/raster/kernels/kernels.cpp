@@ -43,9 +43,14 @@ SetupOutput setup_scalar(const SetupInput& in, Piece* pieces, BinFragment*,
     }
     if (needs_clip) {
       slow[out.slow++] = i;
-    } else if (make_piece(v[0], v[1], v[2], in.first_id + t, in.flags, in.cull, in.view,
+    } else if (make_piece(moved(v[0], in.at), moved(v[1], in.at), moved(v[2], in.at),
+                          in.first_id + t, in.flags, in.cull, in.view,
                           pieces[out.pieces]) == SetupResult::drawn) {
       ++out.pieces;
+      if (in.seen != nullptr) {
+        const std::uint32_t bit = in.first_seen + i;
+        in.seen[bit / 64] |= std::uint64_t{1} << bit % 64;
+      }
     }
   }
   return out;
@@ -65,7 +70,7 @@ SetupOutput points_scalar(const PointsInput& in, BinFragment* fragments,
       const std::uint64_t key = make_key(plane_depth_at(piece, 0, 0), piece.low);
       ++out.micro;
       for_each_covered(piece, in.view, [&](int x, int y) {
-        fragments[out.fragments++] = fragment_at(x, y, key, in.flags, in.bin_columns);
+        fragments[out.fragments++] = fragment_at(x, y, key, in.flags, in.bin_columns, in.first_bin);
       });
     }
   }

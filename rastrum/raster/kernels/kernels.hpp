@@ -11,6 +11,7 @@
 #include <rastrum/mat.hpp>
 #include <rastrum/raster/draws/projection.hpp>
 #include <rastrum/raster/draws/quadrics.hpp>
+#include <rastrum/raster/draws/samples.hpp>
 #include <rastrum/raster/resolve/surface.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/raster/shade/color.hpp>
@@ -32,6 +33,12 @@ struct SetupInput {
   Rect view;
   std::uint32_t bin_columns = 0;  ///< bins in a row of the image
   bool micro = false;             ///< micro triangles may become fragments
+  SampleOffset at{};              ///< with `seen`: from where in the pixels the vertices are seen
+  std::uint32_t first_bin = 0;    ///< of the fragments
+  /// A bit for each triangle of `count`, from bit `first_seen` on, is set where its box holds a
+  /// sample and it is not culled; null: nobody asks.
+  std::uint64_t* seen = nullptr;
+  std::uint32_t first_seen = 0;
 };
 
 /// At most this many triangles a call; callers provide that many pieces and slow entries, and
@@ -56,6 +63,7 @@ struct PointsInput {
   std::uint32_t flags = 0;  ///< without any of kMayDrop
   Rect view;
   std::uint32_t bin_columns = 0;  ///< bins in a row of the image
+  std::uint32_t first_bin = 0;    ///< of the fragments
 };
 /// The largest of them, n.8: nine fragments take no more memory than a piece and its places.
 inline constexpr std::int32_t kMicroPoint = 3 * kSubpixels;
@@ -81,21 +89,24 @@ inline constexpr int kBlocksPerBin = kBlocksPerBinRow * kBlocksPerBinRow;
 inline constexpr std::uint32_t kManyBins = 0xFFFFFFFF;
 
 /// The bins of a view are numbered row by row; `view` begins at a corner of a bin. Pieces with
-/// kFacesAway are in lists of their own, `away` numbers further; 0: they are not.
+/// kFacesAway are in lists of their own, `away` numbers further; 0: they are not. Those of each
+/// sample are `sample` numbers behind those of the one before; 0: there are no such lists.
 struct BinNumbers {
   Rect view;
-  std::uint32_t away = 0;
+  std::uint32_t away = 0, sample = 0;
 
   [[nodiscard]] std::uint32_t of(const Piece& piece, std::uint32_t bin) const {
-    return bin + ((piece.flags & kFacesAway) != 0 ? away : 0);
+    return bin + ((piece.flags & kFacesAway) != 0 ? away : 0) +
+           static_cast<std::uint32_t>(sample_of(piece)) * sample;
   }
 };
 
-/// A fragment at pixel (x, y) of an image with so many bins in a row; `flags` are its piece's.
+/// A fragment at pixel (x, y) of an image with so many bins in a row, numbered from `first_bin` on;
+/// `flags` are its piece's.
 RASTRUM_HD inline BinFragment fragment_at(int x, int y, std::uint64_t key, std::uint32_t flags,
-                                          std::uint32_t bin_columns) {
+                                          std::uint32_t bin_columns, std::uint32_t first_bin) {
   const auto ux = static_cast<std::uint32_t>(x), uy = static_cast<std::uint32_t>(y);
-  return {key, uy / kBinSize * bin_columns + ux / kBinSize,
+  return {key, first_bin + uy / kBinSize * bin_columns + ux / kBinSize,
           ((uy % kBinSize / kBlockSize * kBlocksPerBinRow + ux % kBinSize / kBlockSize) * 64 +
            uy % kBlockSize * kBlockSize + ux % kBlockSize) |
               ((flags & kTranslucent) != 0 ? kTranslucentFragment : 0)};

@@ -1,7 +1,7 @@
 #include <rastrum/raster/setup/set_up.hpp>
 
 #include <algorithm>
-#include <bitset>
+#include <bit>
 #include <cmath>
 
 #include <rastrum/raster/assemble/assemble.hpp>
@@ -9,17 +9,15 @@
 namespace rastrum::raster {
 namespace {
 
-/// The corners of a batch, for frames that keep no projected vertices or have several samples a
-/// pixel, and for meshes whose triangles are no packed list.
+/// The corners of a batch, for frames that keep no projected vertices, and for meshes whose
+/// triangles are no packed list.
 struct Corners {
   std::uint32_t indices[kSetupBatch * 3];
   ProjectedVertex vertices[kSetupBatch * 3];
-  SampleOffset seen_from;
 
   /// Returns whether all indices are in range.
   bool load(const FrameGeometry& frame, const Draw& draw, std::uint64_t t, std::uint32_t count) {
     if (!load_indices(draw, t, count)) return false;
-    seen_from = {};
     project(frame, draw, count * 3);
     return true;
   }
@@ -54,12 +52,6 @@ struct Corners {
   /// All vertices of a draw for which is_projected_at_once() says so.
   void load_all(const FrameGeometry& frame, const Draw& draw) {
     draw.source.project(0, draw.vertex_count, frame.viewport, frame.isa, vertices);
-  }
-  void see_from(SampleOffset at, std::uint32_t count) {
-    const SampleOffset by{at.x - seen_from.x, at.y - seen_from.y};
-    for (std::uint32_t i = 0; i < count * 3; ++i)
-      if (vertices[i].x_fx8 != kNeedsClip) vertices[i] = moved(vertices[i], by);
-    seen_from = at;
   }
 
  private:
@@ -119,13 +111,15 @@ const std::int32_t* sizes_of(const Draw& draw, std::uint64_t first, std::uint32_
 }
 
 /// Triangles of a batch: those that some sample of a pixel sees, say.
-class TriangleSet {
- public:
-  void add(std::uint64_t i) { seen_[i] = true; }
-  [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(seen_.count()); }
+struct TriangleSet {
+  std::uint64_t bits[kSetupBatch / 64] = {};
 
- private:
-  std::bitset<kSetupBatch> seen_;
+  void add(std::uint32_t i) { bits[i / 64] |= std::uint64_t{1} << i % 64; }
+  [[nodiscard]] std::uint32_t count() const {
+    int n = 0;
+    for (const std::uint64_t word : bits) n += std::popcount(word);
+    return static_cast<std::uint32_t>(n);
+  }
 };
 
 /// Leaves primitives [first, first + count) to assemble_primitive, which wants indices in range.
@@ -250,9 +244,8 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
   const FrameGeometry& geometry = frame.geometry;
   const Rect image{0, 0, geometry.width, geometry.height};
   const std::span<const SampleOffset> samples = sample_offsets(frame.request.samples);
-  // Fragments are of one sample a pixel, and the filter's errors are those of sorted pieces.
-  if (samples.size() > 1 || frame.request.transparency.method == Transparency::filter)
-    micro = nullptr;
+  // The filter's errors are those of sorted pieces.
+  if (frame.request.transparency.method == Transparency::filter) micro = nullptr;
   std::uint32_t slow[kSetupBatch];
   Corners corners;
 
@@ -287,7 +280,7 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
     input.count = count;
     input.first_id = draw.first_id;
     const ProjectedVertex* projected = geometry.projected_of(draw);
-    const bool in_place = samples.size() == 1 && draw.mesh == nullptr;
+    const bool in_place = draw.mesh == nullptr;
     if (in_place && projected == nullptr && at_once && !draw.is_copied()) {
       corners.load_all(geometry, draw);
       projected = corners.vertices;
@@ -298,7 +291,7 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
       input.vertex_count = draw.own_vertices();
       input.first = of.primitive;
       input.first_id = id - of.primitive;
-    } else if (samples.size() == 1 && at_once && draw.is_copied()) {
+    } else if (at_once && draw.is_copied()) {
       if (!corners.load_copies(geometry, draw, of.copy, copies)) return false;
       input.indices = corners.indices;
       input.vertices = corners.vertices;
@@ -319,13 +312,18 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
     const bool as_points = micro != nullptr && (flags & kMayDrop) == 0 && has_small_points(draw);
     if (as_points && !corners.load_points(geometry, draw, t, count)) return false;
 
+    const std::uint32_t image_bins =
+        input.bin_columns * static_cast<std::uint32_t>((geometry.height + kBinSize - 1) / kBinSize);
     TriangleSet seen, clipped, dropped;
+    std::uint32_t seen_points = 0;
+    if (samples.size() > 1) input.seen = seen.bits;
     for (std::uint32_t sample = 0; sample < samples.size(); ++sample) {
       const SampleOffset at = samples[sample];
       input.flags = flags | sample << kSampleShift;
+      input.at = at;
+      input.first_bin = sample * image_bins;
       // Who draws translucent surfaces opaque knows no such fragments.
       if (frame.request.transparency.method == Transparency::none) input.flags &= ~kTranslucent;
-      if (samples.size() > 1 && draw.has_kernel()) corners.see_from(at, count);
       pieces.data.grow(std::size_t{pieces.count} + kSetupBatch, pieces.count);
       BinFragment* const fragments =
           micro == nullptr ? nullptr : micro->room(kSetupBatch * kMicroSize * kMicroSize);
@@ -333,10 +331,11 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
       SetupOutput out;
       if (as_points) {
         std::int32_t sizes[kSetupBatch];
-        out = frame.kernel.points(
-            {corners.vertices, count, sizes_of(draw, t, count, sizes), id,
-             input.flags | (draw.is_round() ? kRound : 0), image, input.bin_columns},
-            fragments, slow);
+        out = frame.kernel.points({corners.vertices, count, sizes_of(draw, t, count, sizes), id,
+                                   input.flags | (draw.is_round() ? kRound : 0), image,
+                                   input.bin_columns, input.first_bin},
+                                  fragments, slow);
+        seen_points = out.micro;
       } else if (draw.has_kernel()) {
         out = frame.kernel.setup(input, room, fragments, slow);
       } else if (defers && may_defer(draw, input.flags)) {
@@ -345,7 +344,6 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
         out = all_slow(draw, t, count, slow);
       }
       if (!out.index_in_range) return false;
-      const std::uint32_t first_piece = pieces.count;
       pieces.count += out.pieces;
       if (micro != nullptr) micro->written(out.fragments);
       std::uint32_t slow_culled = 0;
@@ -353,18 +351,16 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
         const Fate fate = assemble_primitive(
             geometry, draw, t + slow[k], [&](const Piece& piece) { pieces.add(piece); }, sample,
             at);
+        if (fate == Fate::drawn || fate == Fate::clipped) seen.add(slow[k]);
         if (fate == Fate::dropped) dropped.add(slow[k]);
         if (fate == Fate::clipped) clipped.add(slow[k]);
         slow_culled += fate == Fate::culled;
       }
-      if (samples.size() == 1) {
+      if (samples.size() == 1)
         pieces.triangles.culled += count - out.pieces - out.micro - out.slow + slow_culled;
-        continue;
-      }
-      for (std::uint32_t k = first_piece; k < pieces.count; ++k)
-        seen.add(kIdMask - pieces.data[k].low - id);
     }
-    if (samples.size() > 1) pieces.triangles.culled += count - seen.count() - dropped.count();
+    if (samples.size() > 1)
+      pieces.triangles.culled += count - seen.count() - seen_points - dropped.count();
     pieces.triangles.dropped += dropped.count();
     pieces.triangles.clipped += clipped.count();
     id += count;

@@ -53,9 +53,10 @@ class MicroSink {
   virtual void written(std::size_t n) = 0;
 };
 
-/// Sets up triangles [first, last), which may span draws, behind those that `pieces` holds. With
-/// `micro`, micro triangles become its fragments; with `defers`, quadrics become deferred pieces
-/// where they can. Returns whether all indices were in range; where not, the pieces are incomplete.
+/// Sets up triangles [first, last), which may span draws, behind those that `pieces` holds: of each
+/// sample a piece. With `micro`, micro triangles become its fragments, in bins that are numbered
+/// sample by sample; with `defers`, quadrics become deferred pieces where they can. Returns whether
+/// all indices were in range; where not, the pieces are incomplete.
 [[nodiscard]] bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last,
                           Pieces& pieces, MicroSink* micro = nullptr, bool defers = false);
 

@@ -130,19 +130,25 @@ HWY_INLINE void transpose4(const ProjectedVertex* v, const std::uint32_t* index,
   depth = hn::BitCast(d, hn::InterleaveLower(d64, zw01, zw23));
 }
 
-HWY_INLINE Corners load_corners(const ProjectedVertex* v, const std::uint32_t* index) {
+HWY_INLINE Corners load_corners(const SetupInput& in, const std::uint32_t* index) {
   const F32 d;
-  hn::Vec<I128> x, y, depth;
-  transpose4(v, index, x, y, depth);
-#if HWY_MAX_BYTES >= 32
   const I32 di;
+  hn::Vec<I128> x, y, depth;
+  transpose4(in.vertices, index, x, y, depth);
+#if HWY_MAX_BYTES >= 32
   hn::Vec<I128> x1, y1, depth1;
-  transpose4(v, index + 4, x1, y1, depth1);
-  return {hn::Combine(di, x1, x), hn::Combine(di, y1, y),
-          hn::BitCast(d, hn::Combine(di, depth1, depth))};
+  transpose4(in.vertices, index + 4, x1, y1, depth1);
+  Corners c{hn::Combine(di, x1, x), hn::Combine(di, y1, y),
+            hn::BitCast(d, hn::Combine(di, depth1, depth))};
 #else
-  return {x, y, hn::BitCast(d, depth)};
+  Corners c{x, y, hn::BitCast(d, depth)};
 #endif
+  if (in.seen == nullptr) return c;
+  // Several samples. What needs the clipper keeps saying so.
+  const auto clip = hn::Eq(c.x, hn::Set(di, kNeedsClip));
+  c.x = hn::IfThenElse(clip, c.x, hn::Sub(c.x, hn::Set(di, in.at.x)));
+  c.y = hn::Sub(c.y, hn::Set(di, in.at.y));
+  return c;
 }
 
 /// The indices of kLanes triangles by corner, and whether all are in range.
@@ -299,7 +305,8 @@ HWY_INLINE std::uint32_t write_fragments(const Piece p, std::uint32_t mask, cons
     const int sample = std::countr_zero(mask);
     const int x = first_x + sample % kMicroSize, y = first_y + sample / kMicroSize;
     if (x < in.view.x0 || x >= in.view.x1 || y < in.view.y0 || y >= in.view.y1) continue;
-    out[n++] = fragment_at(x, y, make_key(plane_depth_at(p, x, y), p.low), p.flags, in.bin_columns);
+    out[n++] = fragment_at(x, y, make_key(plane_depth_at(p, x, y), p.low), p.flags, in.bin_columns,
+                           in.first_bin);
   }
   return n;
 }
@@ -389,9 +396,9 @@ HWY_INLINE void make_pieces(const SetupInput& in, Waiting& waiting, std::uint32_
   std::uint32_t index[3][kLanes];
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < kLanes; ++i) index[c][i] = waiting.index[c][i < n ? i : 0];
-  const Corners a = load_corners(in.vertices, index[0]);
-  const Corners b = load_corners(in.vertices, index[1]);
-  const Corners c = load_corners(in.vertices, index[2]);
+  const Corners a = load_corners(in, index[0]);
+  const Corners b = load_corners(in, index[1]);
+  const Corners c = load_corners(in, index[2]);
   make_pieces(in, a, b, c, (1U << n) - 1, waiting.triangle, waiting.micro, pieces, fragments, out);
   waiting.drop(n);
 }
@@ -410,10 +417,14 @@ SetupOutput setup(const SetupInput& in, Piece* pieces, BinFragment* fragments,
       result.index_in_range = false;
       return result;
     }
-    const Corners a = load_corners(in.vertices, index[0]);
-    const Corners b = load_corners(in.vertices, index[1]);
-    const Corners c = load_corners(in.vertices, index[2]);
+    const Corners a = load_corners(in, index[0]);
+    const Corners b = load_corners(in, index[1]);
+    const Corners c = load_corners(in, index[2]);
     const Classes classes = classify(a, b, c, in);
+    if (in.seen != nullptr) {
+      const std::uint32_t bit = in.first_seen + i;
+      in.seen[bit / 64] |= std::uint64_t{classes.drawn | classes.none} << bit % 64;
+    }
     for (std::uint32_t rest = classes.slow; rest != 0; rest &= rest - 1)
       slow[result.slow++] = i + static_cast<std::uint32_t>(std::countr_zero(rest));
     result.micro += static_cast<std::uint32_t>(std::popcount(classes.none));
@@ -436,6 +447,7 @@ SetupOutput setup(const SetupInput& in, Piece* pieces, BinFragment* fragments,
   SetupInput rest = in;
   rest.first += i;
   rest.count -= i;
+  rest.first_seen += i;
   const SetupOutput tail =
       kernels(Isa::scalar)
           .setup(rest, pieces + result.pieces, fragments + result.fragments, slow + result.slow);
@@ -468,8 +480,8 @@ HWY_INLINE void one_pixel_points(const PointsInput& in, std::uint32_t first, Bin
   // The depth formula without slopes.
   const F z = hn::BitCast(df, bits);
   const F depth = hn::Min(hn::IfThenElseZero(hn::Gt(z, hn::Zero(df)), z), hn::Set(df, 1.0F));
-  const I bin = hn::Add(hn::Mul(hn::ShiftRight<6>(y), set(static_cast<int>(in.bin_columns))),
-                        hn::ShiftRight<6>(x));
+  const I row = hn::Mul(hn::ShiftRight<6>(y), set(static_cast<int>(in.bin_columns)));
+  const I bin = hn::Add(hn::Add(row, hn::ShiftRight<6>(x)), set(static_cast<int>(in.first_bin)));
   static_assert(kBinSize == 64 && kBlockSize == 8);
   const auto part = [&](I v, int mask) HWY_ATTR { return hn::And(v, set(mask)); };
   const I pixel = hn::Or(hn::Or(hn::ShiftLeft<6>(part(y, 0x38)), hn::ShiftLeft<3>(part(x, 0x38))),

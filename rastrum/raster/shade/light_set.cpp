@@ -10,7 +10,7 @@
 namespace rastrum::raster {
 namespace {
 
-struct Frame {
+struct Standpoint {
   Mat4d camera_to_world;
   Vec3d origin;  ///< from which places are counted
 };
@@ -19,7 +19,7 @@ Vec3d unit(Vec3d v) {
   return v * (1 / length(v));
 }
 
-Vec3d direction(const Frame& frame, bool of_camera, Vec3 v) {
+Vec3d direction(const Standpoint& frame, bool of_camera, Vec3 v) {
   const Vec3d d{v.x, v.y, v.z};
   const auto& m = frame.camera_to_world.m;
   if (!of_camera) return unit(d);
@@ -28,7 +28,7 @@ Vec3d direction(const Frame& frame, bool of_camera, Vec3 v) {
                m[2][0] * d.x + m[2][1] * d.y + m[2][2] * d.z});
 }
 
-Vec3 place(const Frame& frame, bool of_camera, Vec3d p) {
+Vec3 place(const Standpoint& frame, bool of_camera, Vec3d p) {
   const auto& m = frame.camera_to_world.m;
   if (of_camera)
     p = {m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3],
@@ -78,7 +78,7 @@ ShadowMap map_of(const LightShadow& shadow, const Mat4d& from_origin) {
 
 FrameLights::FrameLights(std::span<const Light> lights, std::span<const LightShadow> shadows,
                          const Camera& camera, int width, int height) {
-  Frame frame;
+  Standpoint frame;
   const auto camera_to_world = inverse(world_to_camera(camera));
   frame.camera_to_world = camera_to_world.value_or(Mat4d::identity());
   const auto& c = frame.camera_to_world.m;

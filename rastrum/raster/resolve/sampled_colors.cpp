@@ -1,0 +1,176 @@
+#include <rastrum/raster/resolve/sampled_colors.hpp>
+
+#include <algorithm>
+#include <bit>
+
+#include <rastrum/raster/assemble/assemble.hpp>
+#include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
+
+namespace rastrum::raster {
+namespace {
+
+constexpr std::uint16_t kNoPlace = 0xFFFF;
+}  // namespace
+
+/// Where a primitive is shaded in a pixel.
+struct SampledColors::Place {
+  std::uint64_t key = 0;
+  SampleOffset at{};  ///< from the pixel's centre
+};
+
+/// Finds it. Neighbours mostly share their primitive.
+class SampledColors::Finder {
+ public:
+  explicit Finder(const BinContext& context)
+      : frame_(*context.frame), offsets_(sample_offsets(context.request->samples)) {}
+
+  /// Of the primitive of `key`, which some sample of the pixel sees.
+  Place find(std::uint64_t key, int x, int y) {
+    const std::uint64_t low = key & kIdMask;
+    if (low != low_ || draw_ == nullptr) begin(low);
+    // A point or line is at all samples of its pixels.
+    if (draw_->topology != Topology::triangles) return {key, {}};
+    Place place;
+    if (covers_at({}, x, y, place)) return place;
+    for (const SampleOffset at : offsets_)
+      if (covers_at(at, x, y, place)) return place;
+    return {key, {}};  // not reached
+  }
+
+ private:
+  void begin(std::uint64_t low) {
+    low_ = low;
+    const std::uint64_t id = kIdMask - low;
+    draw_ = &frame_.draw_of(id);
+    primitive_ = id - draw_->first_id;
+  }
+  bool covers_at(SampleOffset at, int x, int y, Place& place) {
+    bool covered = false;
+    (void)assemble_primitive(
+        frame_, *draw_, primitive_,
+        [&](const Piece& piece) {
+          if (!covers_centre(edges_of(piece), x, y)) return;
+          place = {std::max(place.key, make_key(depth_at(piece, x, y), piece.low)), at};
+          covered = true;
+        },
+        0, at);
+    return covered;
+  }
+
+  const FrameGeometry& frame_;
+  std::span<const SampleOffset> offsets_;
+  const Draw* draw_ = nullptr;
+  std::uint64_t low_ = 0, primitive_ = 0;
+};
+
+void SampledColors::resolve(const BinContext& context, const std::uint64_t* planes,
+                            std::size_t plane, int bx, int by, std::uint64_t* nearest,
+                            BlockColors& out) {
+  const auto samples = static_cast<std::size_t>(context.request->samples);
+  std::copy_n(planes, 64, nearest);
+  alignas(64) std::uint64_t differs[64] = {};  // ids among a pixel's samples
+  for (std::size_t s = 1; s < samples; ++s)
+    for (std::size_t i = 0; i < 64; ++i) {
+      const std::uint64_t key = planes[s * plane + i];
+      differs[i] |= (key ^ planes[i]) & kIdMask;
+      nearest[i] = std::max(nearest[i], key);
+    }
+  if (!context.request->wants_colors()) return;
+  std::uint64_t covered = 0, mixed = 0;
+  for (std::size_t i = 0; i < 64; ++i) {
+    covered |= std::uint64_t{nearest[i] != 0} << i;
+    mixed |= std::uint64_t{differs[i] != 0} << i;
+  }
+  if (covered == 0) return;
+
+  bx_ = bx;
+  by_ = by;
+  centred_ = 0;
+  packed_ = groups_ = 0;
+  Finder finder(context);
+  std::uint16_t places[kMaxSamples][64];
+  for (std::uint64_t m = covered; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    const int x = bx * kBlockSize + i % kBlockSize, y = by * kBlockSize + i / kBlockSize;
+    const bool one = (mixed >> i & 1) == 0;
+    for (std::size_t s = 0; s < samples; ++s) {
+      const std::uint64_t key = planes[s * plane + static_cast<std::size_t>(i)];
+      std::uint16_t& at = places[s][i];
+      at = kNoPlace;
+      if (key == 0) continue;
+      for (std::size_t t = 0; t < s && at == kNoPlace; ++t)
+        if (((planes[t * plane + static_cast<std::size_t>(i)] ^ key) & kIdMask) == 0)
+          at = places[t][i];
+      if (at == kNoPlace) add(context, i, finder.find(key, x, y), at);
+      if (one) break;
+    }
+  }
+  flush(context);
+  if (centred_ != 0) shade(context, centre_keys_, centred_, nullptr, colors_[0]);
+
+  // Sample after sample, as layers add them up.
+  const float share = 1.0F / static_cast<float>(samples);
+  const auto mean = [&](const float* of_centres, float* to) {
+    float sum[64] = {};
+    for (std::size_t s = 0; s < samples; ++s)
+      for (std::size_t i = 0; i < 64; ++i) sum[i] += of_centres[i];
+    for (std::size_t i = 0; i < 64; ++i) to[i] = sum[i] * share;
+  };
+  mean(colors_[0].r, out.r);
+  mean(colors_[0].g, out.g);
+  mean(colors_[0].b, out.b);
+  mean(colors_[0].a, out.a);
+  // All others, where a sample sees something else.
+  for (std::uint64_t m = (mixed | (covered & ~centred_)); m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    if ((covered >> i & 1) == 0) continue;
+    const bool one = (mixed >> i & 1) == 0;
+    Vec4 sum;
+    for (std::size_t s = 0; s < samples; ++s) {
+      const std::uint16_t at = places[one ? 0 : s][i];
+      if (at == kNoPlace) continue;
+      const BlockColors& c = colors_[at / 64];
+      const std::size_t k = at % 64;
+      sum = sum + Vec4{c.r[k], c.g[k], c.b[k], c.a[k]};
+    }
+    out.set(i, sum * share);
+  }
+}
+
+void SampledColors::add(const BinContext& context, int pixel, const Place& place,
+                        std::uint16_t& at) {
+  const std::uint64_t bit = std::uint64_t{1} << pixel;
+  if (place.at.x == 0 && place.at.y == 0 && (centred_ & bit) == 0) {
+    centre_keys_[pixel] = place.key;
+    centred_ |= bit;
+    at = static_cast<std::uint16_t>(pixel);
+    return;
+  }
+  if (packed_ == 64) flush(context);
+  constexpr float kPx = 1.0F / kSubpixels;
+  const int e = packed_++;
+  packed_keys_[e] = place.key;
+  packed_points_.dx[e] = static_cast<float>(pixel % kBlockSize - e % kBlockSize) +
+                         static_cast<float>(place.at.x) * kPx;
+  packed_points_.dy[e] = static_cast<float>(pixel / kBlockSize - e / kBlockSize) +
+                         static_cast<float>(place.at.y) * kPx;
+  at = static_cast<std::uint16_t>((groups_ + 1) * 64 + e);
+}
+
+void SampledColors::flush(const BinContext& context) {
+  if (packed_ == 0) return;
+  const std::uint64_t mask = packed_ == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << packed_) - 1;
+  shade(context, packed_keys_, mask, &packed_points_, colors_[++groups_]);
+  packed_ = 0;
+}
+
+void SampledColors::shade(const BinContext& context, const std::uint64_t* keys, std::uint64_t mask,
+                          const ShadingPoints* points, BlockColors& colors) {
+  VisibleBlock block{keys, mask, bx_ * kBlockSize, by_ * kBlockSize, context.shader_scratch};
+  block.points = points;
+  if (context.request->shading.shade(*context.frame, block, context.request->isa, colors))
+    std::fill_n(colors.a, 64, 1.0F);
+}
+
+}  // namespace rastrum::raster

@@ -1,0 +1,45 @@
+// The colours of opaque surfaces with several samples a pixel, from the keys of each sample: a
+// primitive is shaded once in a pixel, at the pixel's centre if it covers it, else at the first
+// sample that it covers (docs/conventions.md). The keys say who is seen, not where else it is, so
+// its coverage is found again from its vertices.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <rastrum/raster/draws/samples.hpp>
+#include <rastrum/raster/frame/frame.hpp>
+
+namespace rastrum::raster {
+
+/// A block of 8 × 8 pixels after another. A thread's own.
+class SampledColors {
+ public:
+  /// `planes`: 64 keys of each sample, `plane` keys apart; `bx`, `by`: the block. Sets `nearest` to
+  /// the largest key of each pixel and, where the frame wants colours, `out` to the mean of the
+  /// samples' premultiplied colours. Requires triangles, points and lines without fragment tests.
+  void resolve(const BinContext& context, const std::uint64_t* planes, std::size_t plane, int bx,
+               int by, std::uint64_t* nearest, BlockColors& out);
+
+ private:
+  struct Place;
+  class Finder;
+
+  void add(const BinContext& context, int pixel, const Place& place, std::uint16_t& at);
+  void flush(const BinContext& context);
+  void shade(const BinContext& context, const std::uint64_t* keys, std::uint64_t mask,
+             const ShadingPoints* points, BlockColors& colors);
+
+  /// Colours by place: those of group 0 lie at their pixels and are of their centres, those of the
+  /// others one after the other.
+  BlockColors colors_[1 + kMaxSamples];
+  alignas(64) std::uint64_t centre_keys_[64];
+  std::uint64_t centred_ = 0;  ///< pixels of group 0
+  alignas(64) std::uint64_t packed_keys_[64];
+  ShadingPoints packed_points_;
+  int packed_ = 0;  ///< in the last group
+  int groups_ = 0;
+  int bx_ = 0, by_ = 0;
+};
+
+}  // namespace rastrum::raster
