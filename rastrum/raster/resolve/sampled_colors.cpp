@@ -28,22 +28,71 @@ class SampledColors::Finder {
   /// Of the primitive of `key`, which some sample of the pixel sees.
   Place find(std::uint64_t key, int x, int y) {
     const std::uint64_t low = key & kIdMask;
-    if (low != low_ || draw_ == nullptr) begin(low);
+    if (low != piece_.low || draw_ == nullptr) begin(low);
     // A point or line is at all samples of its pixels.
     if (draw_->topology != Topology::triangles) return {key, {}};
+    if (is_clipped_) return find_clipped(key, x, y);
+    // A moved piece's edges at the centre are the piece's at the sample.
+    const std::int64_t cx = std::int64_t{x} * kSubpixels + kHalfPixel;
+    const std::int64_t cy = std::int64_t{y} * kSubpixels + kHalfPixel;
+    std::int64_t value[3];
+    for (int k = 0; k < 3; ++k) value[k] = edges_[k].base + edges_[k].a * cx + edges_[k].b * cy;
+    if (value[0] >= 0 && value[1] >= 0 && value[2] >= 0) return {key_at({}, x, y), {}};
+    for (const SampleOffset at : offsets_) {
+      bool inside = true;
+      for (int k = 0; k < 3; ++k) inside &= value[k] + edges_[k].a * at.x + edges_[k].b * at.y >= 0;
+      if (inside) return {key_at(at, x, y), at};
+    }
+    return {key, {}};  // not reached
+  }
+
+ private:
+  /// value(x, y) = base + a x + b y ≥ 0 is inside, x and y in n.8.
+  struct SubpixelEdge {
+    std::int64_t base, a, b;
+  };
+
+  void begin(std::uint64_t low) {
+    const std::uint64_t id = kIdMask - low;
+    if (draw_ == nullptr || id - draw_->first_id >= draw_->primitive_count)
+      draw_ = &frame_.draw_of(id);
+    primitive_ = id - draw_->first_id;
+    piece_.low = low;
+    has_plane_ = false;
+    if (draw_->topology != Topology::triangles) return;
+    std::uint32_t index[3];
+    draw_->vertices(primitive_, index);
+    is_clipped_ = false;
+    for (int c = 0; c < 3; ++c) {
+      vertices_[c] = frame_.vertex(*draw_, index[c]);
+      is_clipped_ |= vertices_[c].x_fx8 == kNeedsClip;
+    }
+    if (is_clipped_) return;
+    piece_.flags = 0;
+    area_ = twice_area(vertices_[0], vertices_[1], vertices_[2]);
+    set_corners(vertices_[0], vertices_[1], vertices_[2], area_, piece_);
+    for (int i = 0; i < 3; ++i) {
+      const int j = i == 2 ? 0 : i + 1;
+      const std::int64_t a = piece_.y[i] - piece_.y[j], b = piece_.x[j] - piece_.x[i];
+      const bool top_left = a > 0 || (a == 0 && b > 0);
+      edges_[i] = {-(a * piece_.x[i] + b * piece_.y[i]) - (top_left ? 0 : 1), a, b};
+    }
+  }
+  std::uint64_t key_at(SampleOffset at, int x, int y) {
+    if (!has_plane_) {
+      set_depth_plane(vertices_[0], vertices_[1], vertices_[2], area_, piece_);
+      add_depth_bias(piece_, draw_->depth_bias, draw_->depth_bias_slope);
+      has_plane_ = true;
+    }
+    return make_key(plane_depth_at(moved(piece_, at), x, y), piece_.low);
+  }
+  /// Of one that has to be clipped: the nearest of the pieces that cover it.
+  Place find_clipped(std::uint64_t key, int x, int y) {
     Place place;
     if (covers_at({}, x, y, place)) return place;
     for (const SampleOffset at : offsets_)
       if (covers_at(at, x, y, place)) return place;
     return {key, {}};  // not reached
-  }
-
- private:
-  void begin(std::uint64_t low) {
-    low_ = low;
-    const std::uint64_t id = kIdMask - low;
-    draw_ = &frame_.draw_of(id);
-    primitive_ = id - draw_->first_id;
   }
   bool covers_at(SampleOffset at, int x, int y, Place& place) {
     bool covered = false;
@@ -61,7 +110,12 @@ class SampledColors::Finder {
   const FrameGeometry& frame_;
   std::span<const SampleOffset> offsets_;
   const Draw* draw_ = nullptr;
-  std::uint64_t low_ = 0, primitive_ = 0;
+  std::uint64_t primitive_ = 0;
+  bool is_clipped_ = false, has_plane_ = false;
+  ProjectedVertex vertices_[3];
+  std::int64_t area_ = 0;
+  SubpixelEdge edges_[3];
+  Piece piece_{};  ///< at the centres
 };
 
 void SampledColors::resolve(const BinContext& context, const std::uint64_t* planes,

@@ -30,13 +30,9 @@ RASTRUM_HD inline bool is_culled(std::int64_t area, Cull cull) {
   return area == 0 || (cull == Cull::back && area > 0) || (cull == Cull::front && area < 0);
 }
 
-/// Fills `piece` unless the triangle is culled: no area, facing away, or no sample of `view` inside
-/// its box. Vertices must be inside the guard band.
-RASTRUM_HD inline SetupResult make_piece(const ProjectedVertex& a, const ProjectedVertex& b,
-                                         const ProjectedVertex& c, std::uint64_t id,
-                                         std::uint32_t flags, Cull cull, Rect view, Piece& piece) {
-  const std::int64_t area = twice_area(a, b, c);
-  if (is_culled(area, cull)) return SetupResult::culled;
+/// The piece's corners in its winding. `area` is not 0.
+RASTRUM_HD inline void set_corners(const ProjectedVertex& a, const ProjectedVertex& b,
+                                   const ProjectedVertex& c, std::int64_t area, Piece& piece) {
   const ProjectedVertex& second = area > 0 ? b : c;
   const ProjectedVertex& third = area > 0 ? c : b;
   piece.x[0] = a.x_fx8;
@@ -45,11 +41,12 @@ RASTRUM_HD inline SetupResult make_piece(const ProjectedVertex& a, const Project
   piece.y[1] = second.y_fx8;
   piece.x[2] = third.x_fx8;
   piece.y[2] = third.y_fx8;
-  if (sample_bounds(piece.x, piece.y, view).empty()) return SetupResult::culled;
+}
 
-  // The plane through the three (x, y, depth): every product and difference of positions is exact
-  // in float64, so swapping b and c changes the signs of numerator and denominator and nothing
-  // else.
+/// The plane through the three (x, y, depth): every product and difference of positions is exact in
+/// float64, so swapping b and c changes the signs of numerator and denominator and nothing else.
+RASTRUM_HD inline void set_depth_plane(const ProjectedVertex& a, const ProjectedVertex& b,
+                                       const ProjectedVertex& c, std::int64_t area, Piece& piece) {
   const double dx1 = b.x_fx8 - a.x_fx8;
   const double dy1 = b.y_fx8 - a.y_fx8;
   const double dx2 = c.x_fx8 - a.x_fx8;
@@ -60,6 +57,18 @@ RASTRUM_HD inline SetupResult make_piece(const ProjectedVertex& a, const Project
   piece.z0 = a.depth;
   piece.zx = static_cast<float>((dz1 * dy2 - dz2 * dy1) / det * kSubpixels);
   piece.zy = static_cast<float>((dz2 * dx1 - dz1 * dx2) / det * kSubpixels);
+}
+
+/// Fills `piece` unless the triangle is culled: no area, facing away, or no sample of `view` inside
+/// its box. Vertices must be inside the guard band.
+RASTRUM_HD inline SetupResult make_piece(const ProjectedVertex& a, const ProjectedVertex& b,
+                                         const ProjectedVertex& c, std::uint64_t id,
+                                         std::uint32_t flags, Cull cull, Rect view, Piece& piece) {
+  const std::int64_t area = twice_area(a, b, c);
+  if (is_culled(area, cull)) return SetupResult::culled;
+  set_corners(a, b, c, area, piece);
+  if (sample_bounds(piece.x, piece.y, view).empty()) return SetupResult::culled;
+  set_depth_plane(a, b, c, area, piece);
   piece.flags = flags | (area > 0 ? kFacesAway : 0);
   piece.low = kIdMask - id;
   return SetupResult::drawn;
