@@ -231,7 +231,11 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
     groups_.clear();
     return std::nullopt;
   }
-  for (std::size_t g = 0; g < group_count; ++g) count_triangles(frame, groups_[g].pieces.triangles);
+  frame.clips = false;
+  for (std::size_t g = 0; g < group_count; ++g) {
+    count_triangles(frame, groups_[g].pieces.triangles);
+    frame.clips |= groups_[g].pieces.triangles.clipped != 0;
+  }
   frame.count("bins", pairs);
   frame.count("micro fragments", micro_fragments);
   return std::span<Group>{groups_.data(), group_count};

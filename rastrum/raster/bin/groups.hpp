@@ -90,8 +90,8 @@ class TriangleGroups {
   /// Fills groups with the pieces of triangles [first, last), with fragments where `micro` asks for
   /// those of micro triangles, and with pairs as far as Frame::expansion_bytes leaves room; the
   /// rest is for bin_more. Nothing: they take more than Frame::view_bytes.
-  /// Counts "bins" (pairs) and "micro fragments". Throws Error{invalid_argument} naming an index
-  /// that is out of range.
+  /// Counts "bins" (pairs) and "micro fragments", and says Frame::clips. Throws
+  /// Error{invalid_argument} naming an index that is out of range.
   [[nodiscard]] std::optional<std::span<Group>> set_up(Frame& frame, const BinTable& lists,
                                                        bool micro, std::uint64_t first,
                                                        std::uint64_t last);

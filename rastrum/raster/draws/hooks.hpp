@@ -50,6 +50,8 @@ class BlockShader {
   virtual void prefetch(const FrameGeometry& /*frame*/, std::uint64_t /*id*/) const noexcept {}
   /// The alpha of all fragments, where it is one and known before they are shaded.
   [[nodiscard]] virtual std::optional<float> alpha() const noexcept { return std::nullopt; }
+  /// Whether colours depend on the depth in a key, not on its id alone.
+  [[nodiscard]] virtual bool wants_depth() const noexcept { return true; }
   /// How many bytes of VisibleBlock::scratch the shader uses, for each thread; 64-byte aligned,
   /// kept from block to block of a frame.
   [[nodiscard]] virtual std::size_t scratch_bytes() const noexcept { return 0; }

@@ -35,6 +35,7 @@ struct BinContext {
   const Kernels* kernel = nullptr;
   std::uint64_t fragment_bytes = 0;  ///< most that fragments may take at once; 0: no limit
   void* shader_scratch = nullptr;    ///< VisibleBlock::scratch
+  bool clips = true;                 ///< some triangle of the view may have been clipped
 };
 
 class Frame {
@@ -59,7 +60,8 @@ class Frame {
   /// Most that the pieces of a view, and what they are expanded to, may take at once where all have
   /// to be there (Needs::whole_view); 0: no limit.
   std::uint64_t view_bytes = 0;
-  bool fits = true;  ///< else the view was not drawn
+  bool fits = true;   ///< else the view was not drawn
+  bool clips = true;  ///< some triangle of the view may have been clipped
 
   std::atomic<std::uint64_t> fragments = 0, pixels_covered = 0;
   Counters counters{};
@@ -74,8 +76,9 @@ class Frame {
   }
   /// Of a bin that the calling thread owns; all threads share the budget.
   [[nodiscard]] BinContext context() const {
-    return {&request, &geometry, &kernel,
-            fragment_bytes / static_cast<std::uint64_t>(concurrency()), shader_scratch()};
+    return {&request,         &geometry,
+            &kernel,          fragment_bytes / static_cast<std::uint64_t>(concurrency()),
+            shader_scratch(), clips};
   }
   void count(std::string_view name, std::uint64_t value) { add_counter(counters, name, value); }
 

@@ -138,6 +138,23 @@ std::uint64_t covered_scalar(const std::uint64_t* keys) noexcept {
   return mask;
 }
 
+SeenBySamples merge_scalar(const std::uint64_t* planes, std::size_t plane, int samples,
+                           std::uint64_t* largest) noexcept {
+  SeenBySamples seen;
+  for (std::size_t i = 0; i < 64; ++i) {
+    std::uint64_t most = planes[i], differs = 0;
+    for (std::size_t s = 1; s < static_cast<std::size_t>(samples); ++s) {
+      const std::uint64_t key = planes[s * plane + i];
+      differs |= (key ^ planes[i]) & kIdMask;
+      most = std::max(most, key);
+    }
+    largest[i] = most;
+    seen.covered |= std::uint64_t{most != 0} << i;
+    seen.mixed |= std::uint64_t{differs != 0} << i;
+  }
+  return seen;
+}
+
 void store_opaque_scalar(const BlockColors& colors, std::uint64_t covered, Rgba8 background,
                          Rgba8* out, std::ptrdiff_t stride) noexcept {
   for (int i = 0; i < 64; ++i)
@@ -173,10 +190,10 @@ RaisedKeys raise_scalar(const QuadricBatch&, Rect, const DepthBounds*,
 
 constexpr std::size_t kIsaCount = static_cast<std::size_t>(Isa::neon) + 1;
 
-constexpr Kernels kScalar{
-    project_scalar,      project64_scalar,     setup_scalar,   points_scalar, cover_scalar,
-    masks_scalar,        keys_scalar,          maximum_scalar, lowest_scalar, covered_scalar,
-    store_opaque_scalar, store_blended_scalar, bins_scalar,    defer_scalar,  raise_scalar};
+constexpr Kernels kScalar{project_scalar,       project64_scalar, setup_scalar, points_scalar,
+                          cover_scalar,         masks_scalar,     keys_scalar,  maximum_scalar,
+                          lowest_scalar,        covered_scalar,   merge_scalar, store_opaque_scalar,
+                          store_blended_scalar, bins_scalar,      defer_scalar, raise_scalar};
 
 }  // namespace
 

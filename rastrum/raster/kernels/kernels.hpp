@@ -164,6 +164,12 @@ struct QuadricBatch {
   DeferredInBin places[kCapacity];
 };
 
+/// What the samples of a block's pixels see.
+struct SeenBySamples {
+  std::uint64_t covered = 0;  ///< something, at some sample
+  std::uint64_t mixed = 0;    ///< not all of them the same primitive, or nothing
+};
+
 /// What became of the keys of a bin.
 struct RaisedKeys {
   std::uint64_t fragments = 0;      ///< samples that are covered
@@ -211,6 +217,10 @@ struct Kernels {
 
   /// Which of 64 keys are not 0.
   std::uint64_t (*covered)(const std::uint64_t* keys) noexcept;
+
+  /// Of 64 keys for each of `samples`, `plane` apart, the largest of each pixel.
+  SeenBySamples (*merge)(const std::uint64_t* planes, std::size_t plane, int samples,
+                         std::uint64_t* largest) noexcept;
 
   /// A whole block of opaque colours in 8 bits, `background` where nothing is covered.
   void (*store_opaque)(const BlockColors& colors, std::uint64_t covered, Rgba8 background,

@@ -23,7 +23,9 @@ struct SampledColors::Place {
 class SampledColors::Finder {
  public:
   explicit Finder(const BinContext& context)
-      : frame_(*context.frame), offsets_(sample_offsets(context.request->samples)) {}
+      : frame_(*context.frame),
+        offsets_(sample_offsets(context.request->samples)),
+        wants_depth_(context.request->shading.wants_depth()) {}
 
   /// Of the primitive of `key`, which some sample of the pixel sees.
   Place find(std::uint64_t key, int x, int y) {
@@ -37,13 +39,15 @@ class SampledColors::Finder {
     const std::int64_t cy = std::int64_t{y} * kSubpixels + kHalfPixel;
     std::int64_t value[3];
     for (int k = 0; k < 3; ++k) value[k] = edges_[k].base + edges_[k].a * cx + edges_[k].b * cy;
-    if (value[0] >= 0 && value[1] >= 0 && value[2] >= 0) return {key_at({}, x, y), {}};
-    for (const SampleOffset at : offsets_) {
-      bool inside = true;
-      for (int k = 0; k < 3; ++k) inside &= value[k] + edges_[k].a * at.x + edges_[k].b * at.y >= 0;
-      if (inside) return {key_at(at, x, y), at};
-    }
-    return {key, {}};  // not reached
+    SampleOffset at{};
+    if ((value[0] | value[1] | value[2]) < 0)
+      for (const SampleOffset offset : offsets_) {
+        at = offset;  // some sample sees it
+        std::int64_t outside = 0;
+        for (int k = 0; k < 3; ++k) outside |= value[k] + edges_[k].a * at.x + edges_[k].b * at.y;
+        if (outside >= 0) break;
+      }
+    return {wants_depth_ ? key_at(at, x, y) : key, at};
   }
 
  private:
@@ -109,6 +113,7 @@ class SampledColors::Finder {
 
   const FrameGeometry& frame_;
   std::span<const SampleOffset> offsets_;
+  bool wants_depth_;  ///< else any key of the primitive will do
   const Draw* draw_ = nullptr;
   std::uint64_t primitive_ = 0;
   bool is_clipped_ = false, has_plane_ = false;
@@ -122,29 +127,23 @@ void SampledColors::resolve(const BinContext& context, const std::uint64_t* plan
                             std::size_t plane, int bx, int by, std::uint64_t* nearest,
                             BlockColors& out) {
   const auto samples = static_cast<std::size_t>(context.request->samples);
-  std::copy_n(planes, 64, nearest);
-  alignas(64) std::uint64_t differs[64] = {};  // ids among a pixel's samples
-  for (std::size_t s = 1; s < samples; ++s)
-    for (std::size_t i = 0; i < 64; ++i) {
-      const std::uint64_t key = planes[s * plane + i];
-      differs[i] |= (key ^ planes[i]) & kIdMask;
-      nearest[i] = std::max(nearest[i], key);
-    }
-  if (!context.request->wants_colors()) return;
-  std::uint64_t covered = 0, mixed = 0;
-  for (std::size_t i = 0; i < 64; ++i) {
-    covered |= std::uint64_t{nearest[i] != 0} << i;
-    mixed |= std::uint64_t{differs[i] != 0} << i;
-  }
-  if (covered == 0) return;
+  const auto [covered, mixed] =
+      context.kernel->merge(planes, plane, context.request->samples, nearest);
+  if (!context.request->wants_colors() || covered == 0) return;
 
   bx_ = bx;
   by_ = by;
   centred_ = 0;
   packed_ = groups_ = 0;
+  if (!context.clips && !context.request->shading.wants_depth()) {
+    // All samples lie about the centre, so a triangle that covers them covers it.
+    centred_ = covered & ~mixed;
+    std::copy_n(planes, 64, centre_keys_);
+  }
+  const std::uint64_t alike = centred_;
   Finder finder(context);
   std::uint16_t places[kMaxSamples][64];
-  for (std::uint64_t m = covered; m != 0; m &= m - 1) {
+  for (std::uint64_t m = covered & ~alike; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const int x = bx * kBlockSize + i % kBlockSize, y = by * kBlockSize + i / kBlockSize;
     const bool one = (mixed >> i & 1) == 0;
@@ -176,9 +175,8 @@ void SampledColors::resolve(const BinContext& context, const std::uint64_t* plan
   mean(colors_[0].b, out.b);
   mean(colors_[0].a, out.a);
   // All others, where a sample sees something else.
-  for (std::uint64_t m = (mixed | (covered & ~centred_)); m != 0; m &= m - 1) {
+  for (std::uint64_t m = (mixed | ~centred_) & covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    if ((covered >> i & 1) == 0) continue;
     const bool one = (mixed >> i & 1) == 0;
     Vec4 sum;
     for (std::size_t s = 0; s < samples; ++s) {

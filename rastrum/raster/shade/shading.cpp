@@ -60,6 +60,13 @@ std::optional<float> Shading::alpha() const noexcept {
   return inner && blending_ == nullptr ? std::optional(*inner * opacity_) : std::nullopt;
 }
 
+bool Shading::wants_depth() const noexcept {
+  if (const LitShading* const l = lit()) return l->scene->lights != nullptr;
+  if (const MaterialShading* const m = material()) return m->scene->lights != nullptr;
+  const BlockShader* const shader = own();
+  return shader != nullptr && shader->wants_depth();
+}
+
 std::size_t Shading::scratch_bytes() const noexcept {
   if (lit() != nullptr) return sizeof(KeptTriangles);
   const BlockShader* const shader = own();

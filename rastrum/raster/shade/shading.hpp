@@ -82,6 +82,7 @@ class Shading {
              BlockColors& colors) const noexcept;
   void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept;
   [[nodiscard]] std::optional<float> alpha() const noexcept;
+  [[nodiscard]] bool wants_depth() const noexcept;           ///< of none: false
   [[nodiscard]] std::size_t scratch_bytes() const noexcept;  ///< of none: 0
   [[nodiscard]] std::size_t extra_count() const noexcept;    ///< of none: 0
 
