@@ -136,18 +136,20 @@ void add_file_lights(const Scene& scene, std::vector<Light>& lights) {
                                      std::to_string(kMaxLights) + " are possible");
 }
 
-void add_light_options(Parser& app, FrameOptions& frame, bool& of_files, const char* group) {
+void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, const char* group) {
   std::vector<Light>& lights = frame.lights;
   add(app, "--lights", "NAME",
       "of lambert, phong and material: default: the fixed light of each; headlight: one at the "
-      "viewer; studio: key, fill, back and head light; file: those of glTF files (default)",
-      [&lights, &of_files](const std::string& s) {
+      "viewer; studio: key, fill, back and head light; file: those of glTF files (studio where -o "
+      "alone and no --shader is asked for, docs/light.md; else default)",
+      [&lights, &choice](const std::string& s) {
+        choice.given = true;
         if (s == "headlight")
           lights.push_back(headlight());
         else if (s == "studio")
           std::ranges::copy(light_kit(), std::back_inserter(lights));
         else if (s == "file")
-          of_files = true;
+          choice.of_files = true;
         else if (s != "default")
           throw UsageError("--lights",
                            "expected default, headlight, studio or file, got '" + s + "'");
@@ -157,7 +159,8 @@ void add_light_options(Parser& app, FrameOptions& frame, bool& of_files, const c
                    "instead of the fixed light, or beside --lights: ambient, hemisphere:UP, "
                    "directional:DIRECTION, point:PLACE, spot:PLACE:towards=DIRECTION, headlight, "
                    "with :intensity=I:color=COLOUR:of=camera (docs/light.md); may be repeated",
-                   [&lights](const std::string& s) {
+                   [&lights, &choice](const std::string& s) {
+                     choice.given = true;
                      if (lights.size() >= kMaxLights)
                        throw UsageError("--light", "there are at most 256");
                      lights.push_back(parse_light(s));

@@ -12,9 +12,15 @@
 
 namespace rastrum::cli {
 
+/// What was said of lights beside those that are in the frame.
+struct LightChoice {
+  bool of_files = false;  ///< those of the inputs are added
+  bool given = false;     ///< something was said, be it the fixed light
+};
+
 /// Fills the frame's lights; both options may be given, and add up. `of_files`: those of the inputs
 /// count, too.
-void add_light_options(Parser& app, FrameOptions& frame, bool& of_files, const char* group);
+void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, const char* group);
 /// Adds those of the inputs. Throws UsageError where they have none.
 void add_file_lights(const Scene& scene, std::vector<Light>& lights);
 

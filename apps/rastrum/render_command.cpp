@@ -203,18 +203,30 @@ void check_sequence(RenderArguments& a) {
 
 void add_studio_option(Parser& app, RenderArguments& a) {
   app.add_flag("--studio", a.studio,
-               "a picture to show, in what is not said otherwise: --view iso --lights studio "
-               "--occlusion --samples 4")
+               "a picture to show: --view iso --lights studio --occlusion --samples 4, each unless "
+               "something else is said; as without it where -o is all that is asked for")
       ->group("Picture");
 }
 
-/// What --studio stands for, where nothing else was asked for.
+/// Whether the light and the samples of a picture to show are for this one, where nothing is said
+/// of them: nobody compares it with others, and nothing but colours is asked for.
+bool is_to_be_shown(const RenderArguments& a) {
+  const family::Options& r = a.render;
+  return (r.device == Device::threads || r.device == Device::serial) && r.rasterizer == "auto" &&
+         r.visibility == "auto" && r.memory_limit == 0 && !a.depth && !a.ids && !a.objects &&
+         a.images.empty() && !a.heatmap && !a.errors;
+}
+
+/// The picture of those who do not say how (docs/light.md).
 void set_studio(RenderArguments& a) {
-  if (!a.studio) return;
   ViewOptions& v = a.view;
-  if (!v.view && !v.eye && !v.target && !v.file_camera && a.path.empty()) v.view = ViewName::iso;
-  if (a.render.lights.empty() && !a.file_lights) a.render.lights = light_kit();
-  if (!a.samples_given) a.render.samples = 4;
+  if (!v.has_view() && !v.eye && !v.target && !v.file_camera && a.path.empty())
+    v.view = ViewName::iso;
+  const bool shows = a.studio || is_to_be_shown(a);
+  if (!a.samples_given && shows) a.render.samples = 4;
+  const bool lights = a.studio || (shows && a.render.shader == Shader::automatic);
+  if (a.lights.given || !lights) return;
+  a.render.lights = light_kit();
   if (a.color || a.errors || a.hash) a.annotations.occlusion = true;
 }
 
@@ -502,7 +514,7 @@ int run(RenderArguments& a) {
   }
   if (!a.quiet && a.render.transparency.method == Transparency::none) report_blended(scene);
   if (!a.quiet) report_missing_glyphs(a.annotations.words);
-  if (a.file_lights) add_file_lights(scene, a.render.lights);
+  if (a.lights.of_files) add_file_lights(scene, a.render.lights);
   const bool moves = pose_for(a, inputs);
   set_scalars(a.annotations.scalars, inputs.scene);
   const SceneBinding binding(scene);

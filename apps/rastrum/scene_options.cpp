@@ -130,7 +130,7 @@ void add_picture_options(Parser& app, SceneArguments& a) {
     a.render.height = size.height;
   })->group(group);
   add_shading_options(app, a, group);
-  add_light_options(app, a.render, a.file_lights, group);
+  add_light_options(app, a.render, a.lights, group);
   add(app, "--background", "COLOUR", "#rrggbb[aa], #rgb[a] or a name of CSS's (transparent)",
       [&a](const std::string& s) { a.render.background = parse_color("--background", s); })
       ->group(group);
@@ -167,7 +167,7 @@ void add_transparency_options(Parser& app, SceneArguments& a) {
   add_blending_options(app, a, group);
   add(app, "--samples", "N",
       "1, 4, 8 or 16 a pixel, at D3D11's standard positions; --ids and --depth are of the nearest "
-      "one (1)",
+      "one (4 where -o alone is asked for, docs/light.md; else 1)",
       [&a](const std::string& s) {
         a.samples_given = true;
         a.render.samples = choose<int>("--samples", s, {{"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}});
@@ -185,7 +185,7 @@ void add_camera_options(Parser& app, SceneArguments& a) {
   const char* group = "Camera (what is not given is taken from --fit)";
   ViewOptions& v = a.view;
   add(app, "--fit", "[NAME]",
-      "look along -z at all that is there, the default; tight: the scene fills the picture; "
+      "look at all that is there, the default; tight: the scene fills the picture; "
       "sphere: a ball around it does (tight)",
       [&a, &v](const std::string& s) {
         a.fit = true;
@@ -197,7 +197,10 @@ void add_camera_options(Parser& app, SceneArguments& a) {
       })
       ->expected(0, 1)
       ->group(group);
-  add(app, "--view", "NAME", "whence: " + joined(view_names()) + "; with +y or --up upward (front)",
+  add(app, "--view", "NAME",
+      "whence: " + joined(view_names()) +
+          "; with +y or --up upward (iso; of render with --azimuth, --elevation or --roll, and of "
+          "view: front)",
       [&v](const std::string& s) {
         const std::vector<std::string_view> names = view_names();
         const auto found = std::ranges::find(names, s);
@@ -298,7 +301,7 @@ std::string shapes_help() {
 
 void check_scene_arguments(const SceneArguments& a) {
   check_inputs(a.inputs, a.format);
-  if (a.render.shadows && a.render.lights.empty() && !a.file_lights)
+  if (a.render.shadows && a.render.lights.empty() && !a.lights.of_files)
     throw UsageError("--shadows", "is of --lights and --light, as in --lights studio --shadows");
   const ViewOptions& v = a.view;
   if (a.fit && (v.eye || v.target || v.file_camera)) {

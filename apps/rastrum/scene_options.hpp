@@ -7,6 +7,7 @@
 #include <rastrum/family.hpp>
 
 #include "inputs.hpp"
+#include "light_options.hpp"
 #include "option.hpp"
 #include "view.hpp"
 
@@ -22,7 +23,7 @@ struct SceneArguments {
   ViewOptions view;
   bool fit = false;
   bool samples_given = false;
-  bool file_lights = false;  ///< those of the inputs are added to the frame's
+  LightChoice lights;
 };
 
 /// Adds --format, for a command that reads meshes.

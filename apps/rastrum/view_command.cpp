@@ -54,7 +54,8 @@ int show(std::unique_ptr<window::Subject> subject, WindowArguments& a, int width
 
 int run(ViewArguments& a) {
   check_scene_arguments(a);
-  if (a.file_lights) throw UsageError("--lights", "the window has default, headlight and studio");
+  if (a.lights.of_files)
+    throw UsageError("--lights", "the window has default, headlight and studio");
   const window::Display display;  // before a large file is read
   auto subject = std::make_unique<window::MeshSubject>(a, window::load_scene(a));
   window::MeshSubject& meshes = *subject;

@@ -1,0 +1,199 @@
+// Several samples of opaque surfaces (raster/frame/sampled_path.hpp) are the reference's, which
+// blends layers, bit for bit: of every instruction set, number of threads and memory limit, with
+// and without what hides.
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/light.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+
+#include "tests/support/environment.hpp"
+#include "tests/support/layer_scenes.hpp"
+#include "tests/support/point_line_scenes.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test::samples_test {
+namespace {
+
+struct Picture {
+  Picture(int width, int height)
+      : color(width, height),
+        color8(width, height),
+        depth(width, height),
+        ids(width, height),
+        overdraw(width, height),
+        normals(width, height),
+        instances(width, height) {}
+  Image<Vec4> color;
+  Image<Rgba8> color8;
+  Image<float> depth;
+  Image<std::int64_t> ids;
+  Image<std::uint32_t> overdraw;
+  Image<Vec3> normals;
+  Image<std::int64_t> instances;
+  FrameStats stats;
+};
+
+/// `counts`: overdraw too, so that nothing may be left out because it is hidden.
+Picture draw(Renderer& renderer, const SceneView& scene, const Camera& camera,
+             const FrameOptions& o, bool counts) {
+  Picture p(o.width, o.height);
+  Targets t;
+  t.color = p.color;
+  t.color8 = p.color8;
+  t.depth = p.depth;
+  t.ids = p.ids;
+  t.normals = p.normals;
+  t.instances = p.instances;
+  if (counts) t.overdraw = p.overdraw;
+  p.stats = renderer.render(scene, camera, o, t);
+  return p;
+}
+
+template <class T>
+bool same_pixels(const Image<T>& a, const Image<T>& b) {
+  return std::memcmp(a.pixels().data(), b.pixels().data(), a.pixels().size_bytes()) == 0;
+}
+testing::AssertionResult same(const Picture& a, const Picture& b, bool counts) {
+  const auto differs = [](const char* what) { return testing::AssertionFailure() << what; };
+  if (!same_pixels(a.ids, b.ids)) return differs("ids");
+  if (!same_pixels(a.depth, b.depth)) return differs("depth");
+  if (!same_pixels(a.color, b.color)) return differs("colour");
+  if (!same_pixels(a.color8, b.color8)) return differs("colour in 8 bits");
+  if (!same_pixels(a.normals, b.normals)) return differs("normals");
+  if (!same_pixels(a.instances, b.instances)) return differs("instances");
+  if (counts && !same_pixels(a.overdraw, b.overdraw)) return differs("overdraw");
+  if (counts && a.stats.fragments != b.stats.fragments) return differs("fragments");
+  const auto &s = a.stats.triangles, &t = b.stats.triangles;
+  if (s.input != t.input || s.drawn != t.drawn || s.culled != t.culled || s.clipped != t.clipped ||
+      s.dropped != t.dropped)
+    return differs("counts of triangles");
+  if (a.stats.pixels_covered != b.stats.pixels_covered) return differs("covered pixels");
+  return testing::AssertionSuccess();
+}
+
+/// Renderers of every instruction set, one of them within little memory.
+std::vector<Renderer> all_renderers() {
+  std::vector<Renderer> all;
+  for (const Isa isa : available_isas())
+    all.push_back(Renderer({.threads = 1 + static_cast<int>(all.size()) % 3, .isa = isa}));
+  all.push_back(Renderer({.memory_limit = std::uint64_t{6} << 20, .threads = 3}));
+  return all;
+}
+
+class Samples : public testing::Test {
+ protected:
+  /// `which`: of the renderers; the rest another time.
+  void expect_same(const SceneView& scene, const Camera& camera, const FrameOptions& o, int which,
+                   const char* visibility = "samples") {
+    const bool counts = which % 2 == 0;
+    const Picture want = draw(reference_, scene, camera, o, counts);
+    Renderer& renderer = all_[static_cast<std::size_t>(which) % all_.size()];
+    const Picture got = draw(renderer, scene, camera, o, counts);
+    ASSERT_EQ(got.stats.visibility, visibility);
+    ASSERT_TRUE(same(got, want, counts));
+    for (const Vec4& c : want.color.pixels()) partly_ += c.w > 0.01F && c.w < 0.99F;
+    clipped_ += want.stats.triangles.clipped;
+  }
+
+  Renderer reference_{{.device = Device::serial}};
+  std::vector<Renderer> all_ = all_renderers();
+  std::uint64_t partly_ = 0, clipped_ = 0;  ///< pixels, triangles
+};
+
+constexpr Shader kShaders[] = {Shader::flat,  Shader::normal, Shader::id,        Shader::lambert,
+                               Shader::phong, Shader::depth,  Shader::wireframe, Shader::material};
+constexpr int kSamples[] = {4, 8, 16};
+constexpr int kSizes[][2] = {{37, 53}, {130, 70}, {8, 8}, {1, 1}, {200, 65}};
+
+FrameOptions options_of(int i) {
+  FrameOptions o;
+  o.width = kSizes[i % 5][0];
+  o.height = kSizes[i % 5][1];
+  o.samples = kSamples[i % 3];
+  o.shader = kShaders[i % 8];
+  o.background = {0.25F, 0.5F, 0.125F, i % 4 == 0 ? 1.0F : 0.0F};
+  return o;
+}
+
+int scene_count(int daily) {
+  return count_from_environment("RASTRUM_SAMPLE_SCENES", daily);
+}
+
+TEST_F(Samples, OfGeneratedScenesAreTheReferences) {
+  const std::vector<Light> lights = light_kit();
+  for (int i = 0; i < scene_count(600); ++i) {
+    FrameOptions o = options_of(i);
+    const GeneratedScene g = generate(static_cast<std::uint64_t>(i), o.width, o.height);
+    SCOPED_TRACE(std::to_string(i).append(", ").append(g.kind));
+    o.cull = i % 7 == 0 ? Cull::back : i % 11 == 0 ? Cull::front : Cull::none;
+    // Then the place of a fragment counts, too, which comes from its depth.
+    if (i % 3 == 0) o.lights = lights;
+    const SceneBinding binding(g.scene);
+    ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), g.camera, o, i));
+  }
+  EXPECT_GT(partly_, 10000U);
+  EXPECT_GT(clipped_, 1000U);
+}
+
+TEST_F(Samples, OfPointsAndLinesAreTheReferences) {
+  for (int i = 0; i < scene_count(120); ++i) {
+    SCOPED_TRACE(i);
+    FrameOptions o = options_of(i);
+    const PointLineScene s =
+        generate_points_and_lines(static_cast<std::uint64_t>(i), o.width, o.height);
+    ASSERT_NO_FATAL_FAILURE(expect_same(s.view(), s.camera, o, i));
+  }
+}
+
+// Pieces of one clipped triangle that overlap, or leave a centre between them.
+TEST_F(Samples, OfClippedTrianglesAreTheReferences) {
+  const LayerScene layers = overlapping_pieces();
+  const Scene scene = single(layers.mesh);
+  const SceneBinding binding(scene);
+  for (int i = 0; i < 3 * static_cast<int>(all_.size()); ++i) {
+    FrameOptions o = options_of(i);
+    o.width = o.height = 64;
+    // Odd: overdraw counts what pieces cover, the reference's what triangles do.
+    ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), layers.camera, o, 2 * i + 1));
+  }
+  EXPECT_GT(clipped_, 0U);
+}
+
+// Triangles that are smaller than the space between samples, and such that hide one another.
+TEST_F(Samples, OfSmallTrianglesAreTheReferences) {
+  const Scene scene = single(shapes::soup(20000, 0.001F, 0.05F));
+  const SceneBinding binding(scene);
+  Camera camera;
+  camera.eye = {0, 0, 3};
+  for (int i = 0; i < 2 * static_cast<int>(all_.size()); ++i) {
+    FrameOptions o = options_of(i);
+    o.width = 200;
+    o.height = 130;
+    o.shader = i % 2 == 0 ? Shader::phong : Shader::id;
+    ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), camera, o, i));
+  }
+}
+
+// What the path does not draw are layers, as before.
+TEST_F(Samples, WhatIsTestedOrBlendedOrRoundAreLayers) {
+  const Scene scene = single(shapes::sphere(20, 10));
+  SceneBinding binding(scene);
+  Camera camera;
+  camera.eye = {0, 0, 3};
+  FrameOptions o = options_of(0);
+  o.clip_planes.push_back({{1, 0.2, 0}, 0});
+  ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), camera, o, 0, "layers"));
+  o.clip_planes.clear();
+  ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), camera, o, 0));
+  o.opacity = 0.5F;
+  ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), camera, o, 0, "layers"));
+}
+
+}  // namespace
+}  // namespace rastrum::test::samples_test
