@@ -40,6 +40,7 @@ namespace rastrum::cli {
 namespace {
 
 enum class DepthUnit { reversed, world };
+enum class Look { studio, plain };
 
 struct RenderArguments : SceneArguments {
   std::filesystem::path path;
@@ -58,7 +59,7 @@ struct RenderArguments : SceneArguments {
   std::vector<FrameImage> images;
   AnnotationOptions annotations;
   bool hash = false;
-  bool studio = false;
+  std::optional<Look> look;
 
   /// Whether one run draws many pictures.
   [[nodiscard]] bool is_sequence() const { return !path.empty() || turntable != 0; }
@@ -201,10 +202,15 @@ void check_sequence(RenderArguments& a) {
     static_cast<void>(read_json(a.path));  // a spoilt file is refused before a large scene is read
 }
 
-void add_studio_option(Parser& app, RenderArguments& a) {
-  app.add_flag("--studio", a.studio,
-               "a picture to show: --view iso --lights studio --occlusion --samples 4, each unless "
-               "something else is said; as without it where -o is all that is asked for")
+void add_look_option(Parser& app, RenderArguments& a) {
+  add(app, "--look", "NAME",
+      "studio: --view iso --lights studio --occlusion --samples 4, plain: --view front --lights "
+      "default --samples 1, each unless something else is said (studio where -o alone is asked "
+      "for, "
+      "docs/light.md)",
+      [&a](const std::string& s) {
+        a.look = choose<Look>("--look", s, {{"studio", Look::studio}, {"plain", Look::plain}});
+      })
       ->group("Picture");
 }
 
@@ -218,16 +224,18 @@ bool is_to_be_shown(const RenderArguments& a) {
 }
 
 /// The picture of those who do not say how (docs/light.md).
-void set_studio(RenderArguments& a) {
+void set_look(RenderArguments& a) {
+  if (a.look == Look::plain) return;
+  const bool studio = a.look == Look::studio;
   ViewOptions& v = a.view;
   if (!v.has_view() && !v.eye && !v.target && !v.file_camera && a.path.empty())
     v.view = ViewName::iso;
-  const bool shows = a.studio || is_to_be_shown(a);
+  const bool shows = studio || is_to_be_shown(a);
   if (!a.samples_given && shows) a.render.samples = 4;
-  const bool lights = a.studio || (shows && a.render.shader == Shader::automatic);
-  if (a.lights.given || !lights) return;
-  a.render.lights = light_kit();
-  if (a.color || a.errors || a.hash) a.annotations.occlusion = true;
+  const bool lights = studio || (shows && a.render.shader == Shader::automatic);
+  if (!a.lights.given && lights) a.render.lights = light_kit();
+  const bool occludes = studio || (lights && !a.lights.given);
+  if (occludes && (a.color || a.errors || a.hash)) a.annotations.occlusion = true;
 }
 
 /// What the parser cannot see by itself, before anything is read.
@@ -240,7 +248,7 @@ void check(RenderArguments& a) {
   if (!a.color && !a.depth && !a.ids && !a.objects && a.images.empty() && !a.heatmap && !a.errors &&
       !a.stats && !a.trace && !a.hash)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
-  set_studio(a);
+  set_look(a);
   check_scene_arguments(a);
   check_annotations(a.annotations, a.color || a.errors || a.hash);
   if (a.depth_unit && !a.depth) throw UsageError("--depth-unit", "is for --depth");
@@ -575,7 +583,7 @@ Command add_render_command(Parser& app) {
   add_input_option(render, *arguments)->required();
   add_output_options(render, *arguments);
   add_picture_options(render, *arguments);
-  add_studio_option(render, *arguments);
+  add_look_option(render, *arguments);
   add_transparency_options(render, *arguments);
   add_annotation_options(render, arguments->annotations);
   add_camera_options(render, *arguments);
@@ -593,7 +601,7 @@ Command add_render_command(Parser& app) {
       "  rastrum render scene.glb --camera 0 --size 1920x1080 --background '#20242c' -o scene.png\n"
       "  rastrum render a.stl b.ply --eye 3,2,5 --target 0,0,0 --depth d.npy --ids i.npy -o c.exr\n"
       "  rastrum render builtin:teapot 'builtin:sphere?x=3,scale=0.5' --shader normal -o two.png\n"
-      "  rastrum render part.stl --studio -o part.png\n"
+      "  rastrum render part.stl -o part.png\n"
       "  rastrum render part.stl --lights studio --light point:0,2,1:intensity=3 -o lit.png\n"
       "  rastrum render scan.ply --scalars quality --cmap turbo --bar Quality -o quality.png\n"
       "  rastrum render part.stl --bounds --axes --occlusion --title 'Part 7' -o part.png\n"

@@ -61,7 +61,7 @@ def test_the_program_draws_the_same(tmp_path):
     file = tmp_path / "b.obj"
     file.write_text("v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
     said = subprocess.run(
-        [os.environ["RASTRUM_PROGRAM"], "render", str(file), "--size", "160x120", "--eye", "3,2,5", "--target", "0,0,0",
+        [os.environ["RASTRUM_PROGRAM"], "render", "--look", "plain", str(file), "--size", "160x120", "--eye", "3,2,5", "--target", "0,0,0",
          "--fov", "60", "--shader", "phong", "--occlusion", "--edl", "--silhouettes", "--edges", "--edge-angle", "20", "--axes",
          "--title", "T", "--caption", "c", "-o", str(tmp_path / "p.png")], capture_output=True, text=True, check=False)
     assert said.returncode == 0, said.stderr

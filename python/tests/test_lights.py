@@ -67,7 +67,7 @@ def test_the_program_draws_the_same(sheet, obj):
     program = os.environ.get("RASTRUM_PROGRAM")
     if not program:
         pytest.skip("RASTRUM_PROGRAM does not name the program")
-    said = subprocess.run([program, "render", str(obj), "--lights", "studio", "--size", "120x90", "--normals", "face", "--hash",
+    said = subprocess.run([program, "render", "--look", "plain", str(obj), "--lights", "studio", "--size", "120x90", "--normals", "face", "--hash",
                            "--quiet"], capture_output=True, text=True, check=True).stdout
     assert said.split()[0] == rr.digest(rr.render(rr.load(obj, crease=None), size=SIZE, lights="studio").color)
 

@@ -82,7 +82,7 @@ def test_files_arrays_and_the_program_agree(sheet, obj):
         pytest.skip("RASTRUM_PROGRAM does not name the program")
     for options, scene in ((["--normals", "face"], rr.load(obj, crease=None)), ([], rr.load(obj)),
                            (["--crease", "0"], rr.load(obj, crease=0))):
-        said = subprocess.run([program, "render", str(obj), "--size", "96x64", "--hash", "--quiet", *options],
+        said = subprocess.run([program, "render", "--look", "plain", str(obj), "--size", "96x64", "--hash", "--quiet", *options],
                               capture_output=True, text=True, check=True).stdout
         assert said.split()[0] == rr.digest(rr.render(scene, size=SIZE).color), options
 

@@ -28,7 +28,7 @@ def test_a_file_and_arrays_agree(sheet, tmp_path):
     program = os.environ.get("RASTRUM_PROGRAM")
     if not program:
         pytest.skip("RASTRUM_PROGRAM does not name the program")
-    said = subprocess.run([program, "render", file, "--scalars", "heat", "--cmap", "plasma", "--range", "-2,2.5", "--steps", "9",
+    said = subprocess.run([program, "render", "--look", "plain", file, "--scalars", "heat", "--cmap", "plasma", "--range", "-2,2.5", "--steps", "9",
                            "--shader", "flat", "--size", "160x120", "--hash", "--normals", "face"], capture_output=True, text=True, check=True)
     mapping = rr.ColorMapping("plasma", (-2, 2.5), steps=9)
     mesh = rr.Mesh(vertices, triangles, scalars=values, cmap=mapping)

@@ -46,8 +46,9 @@ class Animations : public Program {
     return range;
   }
   [[nodiscard]] std::vector<std::string> drawing(const std::vector<std::string>& extra) const {
-    std::vector<std::string> args{"render", "s.gltf", "--eye", "0,0,5",          "--target",
-                                  "0,0,0",  "--size", "80x20", "--orthographic", "2"};
+    std::vector<std::string> args{"render", "--look", "plain",          "s.gltf",
+                                  "--eye",  "0,0,5",  "--target",       "0,0,0",
+                                  "--size", "80x20",  "--orthographic", "2"};
     args.insert(args.end(), extra.begin(), extra.end());
     return args;
   }
@@ -73,8 +74,9 @@ TEST_F(Animations, TimeIsAMomentOfAnAnimation) {
 }
 
 TEST_F(Animations, APlacedFileMovesInItsPlace) {
-  must({"render", "s.gltf@scale=0.5,y=-20", "s.gltf@scale=0.5,x=1", "--time", "1", "--eye", "0,0,5",
-        "--target", "0,0,0", "--size", "80x20", "--orthographic", "2", "--ids", "i.npy"});
+  must({"render", "--look", "plain", "s.gltf@scale=0.5,y=-20", "s.gltf@scale=0.5,x=1", "--time",
+        "1", "--eye", "0,0,5", "--target", "0,0,0", "--size", "80x20", "--orthographic", "2",
+        "--ids", "i.npy"});
   EXPECT_EQ(columns("i.npy"), Columns(55, 59)) << "half of three units, beside one";
 }
 
@@ -100,7 +102,8 @@ TEST_F(Animations, WhatCannotBeMeantIsRefused) {
   refused({"-o", "p.png", "--animation", "1"}, "--animation: is for --time and --path");
   refused({"-o", "p.png", "--time", "1", "--animation", "2"},
           "--animation: there is no animation 2: the files have 2");
-  const Outcome still = run({"render", "builtin:boxes", "--time", "1", "-o", "p.png"});
+  const Outcome still =
+      run({"render", "--look", "plain", "builtin:boxes", "--time", "1", "-o", "p.png"});
   EXPECT_EQ(still.status, 0);
   EXPECT_NE(still.err.find("no input has an animation"), std::string::npos) << still.err;
 }

@@ -11,9 +11,9 @@ namespace {
 
 using Annotations = Program;
 
-const std::vector<std::string> kScene{
-    "render", "builtin:gyroid?cells=16", "--eye", "4,3,5", "--target", "0,0,0", "--size",
-    "240x180"};
+const std::vector<std::string> kScene{"render", "--look", "plain",    "builtin:gyroid?cells=16",
+                                      "--eye",  "4,3,5",  "--target", "0,0,0",
+                                      "--size", "240x180"};
 
 std::vector<std::string> with(const std::vector<std::string>& more) {
   std::vector<std::string> all = kScene;
@@ -56,8 +56,8 @@ TEST_F(Annotations, FloatsAreAnnotatedToo) {
 }
 
 TEST_F(Annotations, AreInEachPictureOfATurn) {
-  must({"render", "builtin:teapot", "--size", "80x60", "--bounds", "--turntable", "2", "-o",
-        "t_%d.png"});
+  must({"render", "--look", "plain", "builtin:teapot", "--size", "80x60", "--bounds", "--turntable",
+        "2", "-o", "t_%d.png"});
   EXPECT_FALSE(same_pixels(png("t_0.png"), png("t_1.png")));
 }
 

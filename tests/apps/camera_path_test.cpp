@@ -169,11 +169,11 @@ constexpr const char* kPath =
 
 TEST_F(CameraPathFile, PicturesAreThoseOfTheirCameras) {
   write("p.json", kPath);
-  must({"render", "builtin:torus_knot", "--size", "80x60", "--path", "p.json", "--fps", "2", "-o",
-        "f_%02d.png", "--depth", "d%d.npy"});
+  must({"render", "--look", "plain", "builtin:torus_knot", "--size", "80x60", "--path", "p.json",
+        "--fps", "2", "-o", "f_%02d.png", "--depth", "d%d.npy"});
   const auto camera = [](const std::string& eye) {
-    return std::vector<std::string>{"render", "builtin:torus_knot", "--size", "80x60", "--eye",
-                                    eye,      "--target",           "0,1,0"};
+    return std::vector<std::string>{"render", "--look", "plain", "builtin:torus_knot", "--size",
+                                    "80x60",  "--eye",  eye,     "--target",           "0,1,0"};
   };
   int number = 0;
   for (const char* eye : {"6,4,6", "0,4,6", "-6,4,6"}) {
@@ -190,7 +190,7 @@ TEST_F(CameraPathFile, PicturesAreThoseOfTheirCameras) {
 TEST_F(CameraPathFile, RefusesWhatCannotBeMeant) {
   write("p.json", kPath);
   const auto refused = [&](std::vector<std::string> more, const std::string& words) {
-    std::vector<std::string> args{"render", "builtin:sphere"};
+    std::vector<std::string> args{"render", "--look", "plain", "builtin:sphere"};
     args.insert(args.end(), more.begin(), more.end());
     const Outcome r = run(args);
     EXPECT_NE(r.status, 0) << words;
@@ -211,11 +211,9 @@ TEST_F(CameraPathFile, AVideoHasThePicturesOfThePath) {
   if (std::system("command -v ffmpeg ffprobe >/dev/null") != 0)
     GTEST_SKIP() << "ffmpeg is missing (Debian: ffmpeg)";
   write("p.json", kPath);
-  const std::vector<std::string> args{"render",       "builtin:torus_knot",
-                                      "--size",       "160x120",
-                                      "--background", "#204060",
-                                      "--path",       "p.json",
-                                      "--fps",        "4"};
+  const std::vector<std::string> args{"render", "--look",  "plain",        "builtin:torus_knot",
+                                      "--size", "160x120", "--background", "#204060",
+                                      "--path", "p.json",  "--fps",        "4"};
   auto video = args, pictures = args;
   video.insert(video.end(), {"-o", "v.mp4"});
   pictures.insert(pictures.end(), {"-o", "f%d.png"});
@@ -256,8 +254,8 @@ class FakeFfmpeg : public CameraPathFile {
     CameraPathFile::TearDown();
   }
   [[nodiscard]] Outcome video() const {
-    return run(
-        {"render", "builtin:sphere", "--size", "640x480", "--path", "p.json", "-o", "v.mp4"});
+    return run({"render", "--look", "plain", "builtin:sphere", "--size", "640x480", "--path",
+                "p.json", "-o", "v.mp4"});
   }
   std::string before_;
 };

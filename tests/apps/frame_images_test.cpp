@@ -23,15 +23,11 @@ std::string bytes_of(const Image<T>& image) {
 
 TEST_F(FrameImages, HoldWhatTheLibraryHas) {
   constexpr int kW = 40, kH = 30;
-  must({"render",       "builtin:sphere",
-        "--size",       "40x30",
-        "--eye",        "0,0.5,3",
-        "--target",     "0,0,0",
-        "--near",       "1",
-        "--clip-plane", "1,0,0,0.25",
-        "--image",      "positions=p.npy",
-        "--image",      "instances=i.npy",
-        "--image",      "barycentrics=b.npy",
+  must({"render",       "--look",          "plain",   "builtin:sphere",
+        "--size",       "40x30",           "--eye",   "0,0.5,3",
+        "--target",     "0,0,0",           "--near",  "1",
+        "--clip-plane", "1,0,0,0.25",      "--image", "positions=p.npy",
+        "--image",      "instances=i.npy", "--image", "barycentrics=b.npy",
         "--image",      "distance=d.npy"});
   const Mesh mesh = shapes::sphere();
   const InstanceView instance{mesh.view(), Mat4d::identity()};
@@ -60,14 +56,14 @@ TEST_F(FrameImages, HoldWhatTheLibraryHas) {
 }
 
 TEST_F(FrameImages, AreNumberedInSequences) {
-  must({"render", "builtin:boxes", "--size", "16x16", "--turntable", "3", "--image",
-        "normals=n%d.npy"});
+  must({"render", "--look", "plain", "builtin:boxes", "--size", "16x16", "--turntable", "3",
+        "--image", "normals=n%d.npy"});
   EXPECT_NE(read("n0.npy"), read("n1.npy"));
 }
 
 TEST_F(FrameImages, RefuseWhatIsNone) {
   const auto refused = [&](const std::vector<std::string>& more, const char* part) {
-    std::vector<std::string> args{"render", "builtin:sphere", "--size", "8x8"};
+    std::vector<std::string> args{"render", "--look", "plain", "builtin:sphere", "--size", "8x8"};
     args.insert(args.end(), more.begin(), more.end());
     const Outcome r = run(args);
     EXPECT_EQ(r.status, 2) << part;

@@ -19,7 +19,7 @@ class Inputs : public Program {
     std::set<std::int64_t> left, right;
   };
   [[nodiscard]] Halves ids_of(const std::vector<std::string>& inputs) const {
-    std::vector<std::string> args{"render"};
+    std::vector<std::string> args{"render", "--look", "plain"};
     args.insert(args.end(), inputs.begin(), inputs.end());
     args.insert(args.end(), {"--ids", "i.npy", "--size", "80x40"});
     must(args);
@@ -59,8 +59,8 @@ TEST_F(Inputs, BuiltinsStandWhereTheyArePlaced) {
   const Drawn expected = draw(scene, fit(scene, options), options);
   for (const char* sphere : {"builtin:sphere?rings=8,segments=12,x=2.5,y=-1,z=0.125,scale=0.75",
                              "builtin:sphere?scale=0.75&x=2.5&rings=8&y=-1&segments=12&z=0.125"}) {
-    must({"render", "builtin:boxes?count=1", sphere, "-o", "p.png", "--ids", "i.npy", "--size",
-          "90x60"});
+    must({"render", "--look", "plain", "builtin:boxes?count=1", sphere, "-o", "p.png", "--ids",
+          "i.npy", "--size", "90x60"});
     EXPECT_TRUE(same_pixels(png("p.png"), expected.color8)) << sphere;
     const auto ids = npy("i.npy").values<std::int64_t>();
     EXPECT_TRUE(std::ranges::equal(ids, expected.ids.pixels())) << sphere;
@@ -70,9 +70,11 @@ TEST_F(Inputs, BuiltinsStandWhereTheyArePlaced) {
 TEST_F(Inputs, MaterialIsTheShaderWhereAFileHasMaterials) {
   write("m.mtl", "newmtl red\nKd 0.8 0.1 0.1\n");
   write("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
-  must({"render", "m.obj", "-o", "default.png", "--size", "32x32"});
-  must({"render", "m.obj", "-o", "material.png", "--size", "32x32", "--shader", "material"});
-  must({"render", "m.obj", "-o", "phong.png", "--size", "32x32", "--shader", "phong"});
+  must({"render", "--look", "plain", "m.obj", "-o", "default.png", "--size", "32x32"});
+  must({"render", "--look", "plain", "m.obj", "-o", "material.png", "--size", "32x32", "--shader",
+        "material"});
+  must({"render", "--look", "plain", "m.obj", "-o", "phong.png", "--size", "32x32", "--shader",
+        "phong"});
   EXPECT_TRUE(same_pixels(png("default.png"), png("material.png")));
   EXPECT_FALSE(same_pixels(png("default.png"), png("phong.png")));
 }
@@ -104,7 +106,8 @@ TEST_F(Inputs, CameraOfAFileIsUsedOnlyWhenAskedFor) {
   RenderOptions options;
   options.width = options.height = 48;
   const auto render = [&](const std::vector<std::string>& extra) {
-    std::vector<std::string> args{"render", "c.gltf", "--depth", "d.npy", "--size", "48x48"};
+    std::vector<std::string> args{"render",  "--look", "plain",  "c.gltf",
+                                  "--depth", "d.npy",  "--size", "48x48"};
     args.insert(args.end(), extra.begin(), extra.end());
     must(args);
     return npy("d.npy").values<float>();
@@ -116,22 +119,23 @@ TEST_F(Inputs, CameraOfAFileIsUsedOnlyWhenAskedFor) {
   camera.near_plane = 1;
   EXPECT_TRUE(std::ranges::equal(render({"--camera", "1", "--near", "1"}),
                                  draw(scene, camera, options).depth.pixels()));
-  const Outcome r = run({"render", "c.gltf", "-o", "p.png", "--camera", "2"});
+  const Outcome r = run({"render", "--look", "plain", "c.gltf", "-o", "p.png", "--camera", "2"});
   EXPECT_EQ(r.status, 2);
   EXPECT_NE(r.err.find("--camera: the inputs have cameras 0 to 1"), std::string::npos) << r.err;
 }
 
 TEST_F(Inputs, WarningsOfReadersAreShown) {
   write("w.obj", "mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
-  const std::string said = must({"render", "w.obj", "-o", "p.png", "--size", "8x8"});
+  const std::string said =
+      must({"render", "--look", "plain", "w.obj", "-o", "p.png", "--size", "8x8"});
   EXPECT_EQ(said.find("warning: "), 0U) << said;
   EXPECT_NE(said.find("gone.mtl"), std::string::npos) << said;
 }
 
 TEST_F(Inputs, AnEmptySceneIsDrawnAndSaid) {
   write("e.obj", "v 0 0 0\n");
-  const std::string said =
-      must({"render", "e.obj", "-o", "p.png", "--size", "8x8", "--background", "#010203"});
+  const std::string said = must({"render", "--look", "plain", "e.obj", "-o", "p.png", "--size",
+                                 "8x8", "--background", "#010203"});
   EXPECT_NE(said.find("warning: nothing is seen: there are no triangles to draw"),
             std::string::npos)
       << said;

@@ -9,7 +9,8 @@ namespace {
 
 using LightOptions = Program;
 
-const std::vector<std::string> kScene{"render", "builtin:teapot", "--size", "120x90"};
+const std::vector<std::string> kScene{"render",         "--look", "plain",
+                                      "builtin:teapot", "--size", "120x90"};
 
 std::vector<std::string> with(const std::vector<std::string>& more) {
   std::vector<std::string> all = kScene;
@@ -39,14 +40,47 @@ TEST_F(LightOptions, LightThePictureAndNothingElse) {
 }
 
 TEST_F(LightOptions, StudioIsWhatItSays) {
-  must(with({"--studio", "-o", "studio.png"}));
-  must(with(
-      {"--view", "iso", "--lights", "studio", "--occlusion", "--samples", "4", "-o", "said.png"}));
-  EXPECT_TRUE(same_pixels(png("studio.png"), png("said.png")));
-  must(with({"--studio", "--view", "top", "--samples", "1", "--lights", "headlight", "-o",
-             "studio.png"}));
-  must(with({"--view", "top", "--lights", "headlight", "--occlusion", "-o", "said.png"}));
-  EXPECT_TRUE(same_pixels(png("studio.png"), png("said.png")));
+  const auto draw = [&](std::vector<std::string> args, const std::string& file) {
+    args.insert(args.begin(), {"render", "builtin:teapot", "--size", "120x90", "-o", file});
+    must(args);
+    return png(file);
+  };
+  const auto said =
+      draw({"--view", "iso", "--lights", "studio", "--occlusion", "--samples", "4"}, "said.png");
+  EXPECT_TRUE(same_pixels(draw({"--look", "studio"}, "studio.png"), said));
+  // Who asks for nothing but a picture gets it, too …
+  EXPECT_TRUE(same_pixels(draw({}, "alone.png"), said));
+  EXPECT_FALSE(same_pixels(draw({"--look", "plain"}, "plain.png"), said));
+  // … but what is said otherwise.
+  EXPECT_TRUE(same_pixels(
+      draw({"--look", "studio", "--view", "top", "--samples", "1", "--lights", "headlight"},
+           "studio.png"),
+      draw({"--look", "plain", "--view", "top", "--lights", "headlight", "--occlusion"},
+           "said.png")));
+  EXPECT_TRUE(
+      same_pixels(draw({"--shader", "phong"}, "phong.png"),
+                  draw({"--look", "plain", "--view", "iso", "--samples", "4"}, "said.png")));
+  EXPECT_TRUE(same_pixels(draw({"--lights", "default"}, "default.png"), png("said.png")));
+  // The picture of before, by name.
+  EXPECT_TRUE(same_pixels(
+      draw({"--fit", "sphere", "--view", "front", "--samples", "1", "--shader", "phong"},
+           "before.png"),
+      draw({"--look", "plain", "--fit", "sphere"}, "said.png")));
+}
+
+// Numbers, and frames that are compared, have one sample and the fixed light.
+TEST_F(LightOptions, MoreThanAPictureIsPlain) {
+  const std::vector<std::vector<std::string>> more{
+      {"--ids", "i.npy"},     {"--depth", "d.npy"},      {"--image", "normals=n.npy"},
+      {"--heatmap", "h.png"}, {"--rasterizer", "tiled"}, {"--memory-limit", "64M"}};
+  must({"render", "builtin:teapot", "--look", "plain", "--view", "iso", "--size", "120x90", "-o",
+        "plain.png"});
+  for (const std::vector<std::string>& options : more) {
+    std::vector<std::string> args{"render", "builtin:teapot", "--size", "120x90", "-o", "p.png"};
+    args.insert(args.end(), options.begin(), options.end());
+    must(args);
+    EXPECT_TRUE(same_pixels(png("p.png"), png("plain.png"))) << options[0];
+  }
 }
 
 TEST_F(LightOptions, OfFilesAreAskedFor) {
@@ -54,11 +88,11 @@ TEST_F(LightOptions, OfFilesAreAskedFor) {
         R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual"],)"
         R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","intensity":9}]}},)"
         R"("nodes":[{"translation":[0,2,3],"extensions":{"KHR_lights_punctual":{"light":0}}}]})");
-  must({"render", "builtin:teapot", "lit.gltf", "--shader", "phong", "--eye", "0,2,5", "--target",
-        "0,0,0", "--size", "120x90", "--lights", "file", "-o", "file.png"});
-  must({"render", "builtin:teapot", "lit.gltf", "--shader", "phong", "--eye", "0,2,5", "--target",
-        "0,0,0", "--size", "120x90", "--light", "point:0,2,3:intensity=2.86478886", "-o",
-        "said.png"});
+  must({"render", "--look", "plain", "builtin:teapot", "lit.gltf", "--shader", "phong", "--eye",
+        "0,2,5", "--target", "0,0,0", "--size", "120x90", "--lights", "file", "-o", "file.png"});
+  must({"render", "--look", "plain", "builtin:teapot", "lit.gltf", "--shader", "phong", "--eye",
+        "0,2,5", "--target", "0,0,0", "--size", "120x90", "--light",
+        "point:0,2,3:intensity=2.86478886", "-o", "said.png"});
   EXPECT_TRUE(same_pixels(png("file.png"), png("said.png")));
 }
 

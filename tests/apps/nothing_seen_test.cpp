@@ -29,7 +29,7 @@ class NothingSeen : public Program {
     EXPECT_TRUE(std::ranges::any_of(png("p.png").pixels(), [](Rgba8 p) { return p.a != 0; }));
   }
   static Args command(const Args& inputs, const Args& options) {
-    Args args{"render", "-o", "p.png", "--size", "40x30"};
+    Args args{"render", "--look", "plain", "-o", "p.png", "--size", "40x30"};
     args.insert(args.end(), inputs.begin(), inputs.end());
     args.insert(args.end(), options.begin(), options.end());
     return args;
@@ -170,8 +170,8 @@ TEST_F(NothingSeen, IsNotSaidOfTranslucentOrSampledPictures) {
 TEST_F(NothingSeen, PicturesOfAPath) {
   write("p.json", R"({"keys":[{"time":0,"eye":[0,0,5],"target":[0,0,0]},
                               {"time":1,"eye":[0,0,5],"target":[0.1,0,9]}]})");
-  const std::string said = must({"render", "builtin:boxes?count=1", "--size", "32x24", "--path",
-                                 "p.json", "--fps", "1", "-o", "f%d.png"});
+  const std::string said = must({"render", "--look", "plain", "builtin:boxes?count=1", "--size",
+                                 "32x24", "--path", "p.json", "--fps", "1", "-o", "f%d.png"});
   EXPECT_NE(said.find("warning: nothing is seen in 1 of 2 pictures; in number 1, the first of "
                       "them, all 12 triangles lie behind the camera"),
             std::string::npos)

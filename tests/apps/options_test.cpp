@@ -34,8 +34,8 @@ class Options : public Program {
     std::string line;
     for (const std::string& e : extra) line += " " + e;
     extra.insert(extra.begin(),
-                 {"render", "builtin:boxes?count=2", "-o", "p.png", "--depth", "d.npy", "--size",
-                  std::to_string(kWidth) + "x" + std::to_string(kHeight)});
+                 {"render", "--look", "plain", "builtin:boxes?count=2", "-o", "p.png", "--depth",
+                  "d.npy", "--size", std::to_string(kWidth) + "x" + std::to_string(kHeight)});
     must(extra);
     EXPECT_TRUE(same_pixels(png("p.png"), expected.color8)) << line;
     EXPECT_TRUE(std::ranges::equal(npy("d.npy").values<float>(), expected.depth.pixels())) << line;
@@ -45,7 +45,7 @@ class Options : public Program {
   RenderOptions render_;
 };
 
-TEST_F(Options, DefaultsAreTheFitCameraAndPhong) {
+TEST_F(Options, PlainIsTheFitCameraAndPhong) {
   expect({}, fit(boxes(), render_));
   expect({"--fit", "tight", "--shader", "phong", "--device", "threads", "--rasterizer", "auto",
           "--cull", "none", "--background", "#00000000", "--normals", "file"},
@@ -53,7 +53,7 @@ TEST_F(Options, DefaultsAreTheFitCameraAndPhong) {
 }
 
 TEST_F(Options, DefaultSize) {
-  must({"render", "builtin:boxes?count=1", "-o", "p.png"});
+  must({"render", "--look", "plain", "builtin:boxes?count=1", "-o", "p.png"});
   EXPECT_EQ(png("p.png").width(), 1280);
   EXPECT_EQ(png("p.png").height(), 720);
 }
@@ -95,7 +95,7 @@ TEST_F(Options, OrthographicFit) {
 }
 
 TEST_F(Options, FitDoesNotSwallowAnInputInSilence) {
-  const Outcome r = run({"render", "--fit", "builtin:boxes", "-o", "p.png"});
+  const Outcome r = run({"render", "--look", "plain", "--fit", "builtin:boxes", "-o", "p.png"});
   EXPECT_EQ(r.status, 2);
   EXPECT_NE(
       r.err.find("--fit: expected tight or sphere, got 'builtin:boxes'; an INPUT stands before"),
@@ -138,12 +138,13 @@ TEST_F(Options, ViewsByNameAndAngle) {
        {std::array{"--view", "above", "expected front, back, left, right, top, bottom, iso"},
         std::array{"--elevation", "91", "looks straight down or up"},
         std::array{"--zoom", "0", "must be greater than 0"}}) {
-    const Outcome r = run({"render", "builtin:boxes", option, value, "-o", "q.png"});
+    const Outcome r =
+        run({"render", "--look", "plain", "builtin:boxes", option, value, "-o", "q.png"});
     EXPECT_EQ(r.status, 2);
     EXPECT_NE(r.err.find(says), std::string::npos) << r.err;
   }
-  const Outcome r =
-      run({"render", "builtin:boxes", "--view", "top", "--eye", "1,2,3", "-o", "q.png"});
+  const Outcome r = run({"render", "--look", "plain", "builtin:boxes", "--view", "top", "--eye",
+                         "1,2,3", "-o", "q.png"});
   EXPECT_EQ(r.status, 2);
   EXPECT_NE(r.err.find("--view: turns the camera that sees everything"), std::string::npos)
       << r.err;
@@ -166,8 +167,8 @@ TEST_F(Options, Cull) {
   const std::vector<std::string> eye{"--eye", "3,2,5", "--stats", "s.json", "--cull"};
   std::vector<std::uint64_t> drawn;
   for (const std::string cull : {"none", "back", "front"}) {
-    std::vector<std::string> args{"render", "builtin:boxes?count=1", "-o", cull + ".png", "--size",
-                                  "64x64"};
+    std::vector<std::string> args{"render", "--look",      "plain",  "builtin:boxes?count=1",
+                                  "-o",     cull + ".png", "--size", "64x64"};
     args.insert(args.end(), eye.begin(), eye.end());
     args.push_back(cull);
     must(args);
@@ -184,7 +185,8 @@ TEST_F(Options, Normals) {
   Mesh mesh = shapes::sphere(5, 7);
   must({"make", "sphere?rings=5,segments=7", "-o", "s.ply"});
   const auto check = [&](const std::string& choice, const Mesh& expected) {
-    must({"render", "s.ply", "-o", "p.png", "--size", "72x56", "--normals", choice});
+    must({"render", "--look", "plain", "s.ply", "-o", "p.png", "--size", "72x56", "--normals",
+          choice});
     const Scene scene = scene_of(expected);
     EXPECT_TRUE(same_pixels(png("p.png"), draw(scene, fit(scene, render_), render_).color8))
         << choice;
@@ -204,7 +206,8 @@ TEST_F(Options, NormalsWhereTheFileHasNone) {
   // A quad bent by 60° along its diagonal: sharp by default.
   write("t.obj", "v 0 0 0\nv 1 0 0.5\nv 0 1 0.5\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
   const auto drawn = [&](const std::vector<std::string>& options) {
-    std::vector<std::string> args{"render", "t.obj", "-o", "p.png", "--size", "40x40"};
+    std::vector<std::string> args{"render", "--look", "plain",  "t.obj",
+                                  "-o",     "p.png",  "--size", "40x40"};
     args.insert(args.end(), options.begin(), options.end());
     must(args);
     return png("p.png");
@@ -221,8 +224,8 @@ TEST_F(Options, NormalsWhereTheFileHasNone) {
 TEST_F(Options, NormalsWithCreasesReplaceTheFilesWhereAskedFor) {
   Mesh mesh = shapes::sphere(5, 7);
   must({"make", "sphere?rings=5,segments=7", "-o", "s.ply"});
-  must({"render", "s.ply", "-o", "p.png", "--size", "72x56", "--normals", "crease", "--crease",
-        "50"});
+  must({"render", "--look", "plain", "s.ply", "-o", "p.png", "--size", "72x56", "--normals",
+        "crease", "--crease", "50"});
   mesh.normals = crease_normals(mesh.positions, mesh.indices, 50);
   const Scene scene = scene_of(mesh);
   EXPECT_TRUE(same_pixels(png("p.png"), draw(scene, fit(scene, render_), render_).color8));
@@ -230,8 +233,8 @@ TEST_F(Options, NormalsWithCreasesReplaceTheFilesWhereAskedFor) {
 
 TEST_F(Options, MachineChoicesReachTheStatisticsAndLeaveThePictureAlone) {
   const auto stats = [&](std::vector<std::string> extra) {
-    extra.insert(extra.begin(), {"render", "builtin:boxes?count=2", "--stats", "s.json", "--ids",
-                                 "i.npy", "--size", "72x56"});
+    extra.insert(extra.begin(), {"render", "--look", "plain", "builtin:boxes?count=2", "--stats",
+                                 "s.json", "--ids", "i.npy", "--size", "72x56"});
     must(extra);
     return json("s.json");
   };
@@ -269,8 +272,8 @@ TEST_F(Options, MachineChoicesReachTheStatisticsAndLeaveThePictureAlone) {
   // So small a frame would keep to those by itself: what is too little is refused by its bytes.
   for (const auto& [limit, bytes] :
        {std::pair{"1000", "1000"}, {"1K", "1024"}, {"1M", "1048576"}}) {
-    const Outcome r = run({"render", "builtin:boxes?count=2", "-o", "p.png", "--size", "72x56",
-                           "--memory-limit", limit});
+    const Outcome r = run({"render", "--look", "plain", "builtin:boxes?count=2", "-o", "p.png",
+                           "--size", "72x56", "--memory-limit", limit});
     EXPECT_EQ(r.status, 1) << limit;
     EXPECT_NE(r.err.find(std::string("a memory limit of ").append(bytes).append(" bytes")),
               std::string::npos)
@@ -282,7 +285,8 @@ TEST_F(Options, MachineChoicesReachTheStatisticsAndLeaveThePictureAlone) {
 TEST_F(Options, ADeviceThatIsNotHereSaysSo) {
   const parallel::CudaStatus status = parallel::cuda_status();
   if (status.usable) GTEST_SKIP() << "there is a " << status.name;
-  const Outcome r = run({"render", "no-such-file.obj", "-o", "p.png", "--device", "cuda"});
+  const Outcome r =
+      run({"render", "--look", "plain", "no-such-file.obj", "-o", "p.png", "--device", "cuda"});
   EXPECT_EQ(r.status, 1);
   EXPECT_NE(r.err.find("--device cuda: CUDA cannot be used: "), std::string::npos) << r.err;
   EXPECT_NE(r.err.find("use --device threads"), std::string::npos) << r.err;
@@ -294,7 +298,7 @@ TEST_F(Options, AnInstructionSetThatIsNotHereSaysSo) {
   const std::string isa(name(missing_isa()));
   for (const char* device : {"serial", "threads", "auto"})
     for (std::vector<std::string> args :
-         {std::vector<std::string>{"render", "no-such-file.obj"},
+         {std::vector<std::string>{"render", "--look", "plain", "no-such-file.obj"},
           std::vector<std::string>{"terrain", "--height", "no-such-file.png", "--shadows",
                                    "sharp"}}) {
       args.insert(args.end(), {"-o", "p.png", "--device", device, "--isa", isa});
@@ -305,22 +309,23 @@ TEST_F(Options, AnInstructionSetThatIsNotHereSaysSo) {
 }
 
 TEST_F(Options, AutoTakesADeviceAndSaysWhy) {
-  must({"render", "builtin:boxes?count=2", "--size", "72x56", "--device", "auto", "--stats",
-        "auto.json", "-o", "auto.png"});
+  must({"render", "--look", "plain", "builtin:boxes?count=2", "--size", "72x56", "--device", "auto",
+        "--stats", "auto.json", "-o", "auto.png"});
   const auto s = json("auto.json");
   EXPECT_EQ(s["device"], "threads");  // with a GPU too: the picture is small
   const parallel::CudaStatus status = parallel::cuda_status();
   const std::string why = s["device_why"];
   EXPECT_NE(why.find(status.usable ? status.name : status.why_not), std::string::npos) << why;
   EXPECT_EQ(why.find(status.usable ? "there is a " : "no CUDA: "), 0U) << why;
-  must({"render", "builtin:boxes?count=2", "--size", "72x56", "--stats", "asked.json"});
+  must({"render", "--look", "plain", "builtin:boxes?count=2", "--size", "72x56", "--stats",
+        "asked.json"});
   EXPECT_EQ(json("asked.json")["device_why"], "");
 }
 
 TEST_F(Options, QuietIsQuiet) {
   write("nan.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 1 1\nf 1 2 3\nf 2 3 4\n");
-  const std::vector<std::string> args{"render", "nan.obj", "-o",        "p.png",
-                                      "--size", "16x16",   "--heatmap", "h.png"};
+  const std::vector<std::string> args{"render", "--look", "plain", "nan.obj",   "-o",
+                                      "p.png",  "--size", "16x16", "--heatmap", "h.png"};
   const std::string said = must(args);
   EXPECT_NE(said.find("warning: 1 of 2 triangles have a NaN"), std::string::npos) << said;
   EXPECT_NE(said.find("heatmap: "), std::string::npos);

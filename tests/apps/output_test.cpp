@@ -15,8 +15,8 @@ namespace {
 class Output : public Program {
  protected:
   void render(const std::vector<std::string>& outputs) const {
-    std::vector<std::string> args{"render", "builtin:teapot?n=4", "--size",
-                                  "96x64",  "--background",       "#3366cc80"};
+    std::vector<std::string> args{"render", "--look", "plain",        "builtin:teapot?n=4",
+                                  "--size", "96x64",  "--background", "#3366cc80"};
     args.insert(args.end(), outputs.begin(), outputs.end());
     must(args);
   }
@@ -82,8 +82,9 @@ TEST_F(Output, AreTheLibrarysImages) {
 TEST_F(Output, HashesAreTheLibrarysDigests) {
   const Drawn e = expected();
   const auto lines = [&](std::vector<std::string> more) {
-    std::vector<std::string> args{"render",       "builtin:teapot?n=4", "--size", "96x64",
-                                  "--background", "#3366cc80",          "--hash"};
+    std::vector<std::string> args{"render", "--look", "plain",        "builtin:teapot?n=4",
+                                  "--size", "96x64",  "--background", "#3366cc80",
+                                  "--hash"};
     args.insert(args.end(), more.begin(), more.end());
     const Outcome o = run(args);
     EXPECT_EQ(o.status, 0) << o.err;
@@ -95,7 +96,7 @@ TEST_F(Output, HashesAreTheLibrarysDigests) {
             digest(e.color).hex() + "  color\n" + digest(e.depth).hex() + "  depth\n" +
                 digest(e.ids).hex() + "  ids\n");
   EXPECT_NE(lines({"--turntable", "2"}).find("  color 1\n"), std::string::npos);
-  const Outcome both = run({"render", "builtin:teapot", "--hash", "-o", "-"});
+  const Outcome both = run({"render", "--look", "plain", "builtin:teapot", "--hash", "-o", "-"});
   EXPECT_EQ(both.status, 2);
   EXPECT_NE(both.err.find("--hash"), std::string::npos) << both.err;
 }

@@ -98,10 +98,10 @@ TEST_F(PlacedInputs, AFileThatIsCalledSoIsMeant) {
   const Image<Rgba8> plain = drawn({"s.ply"});
   EXPECT_TRUE(same_pixels(drawn({"s@x=3.ply"}), plain));
   EXPECT_TRUE(same_pixels(drawn({"a@b.ply@x=0"}), plain));
-  const Outcome gone = run({"render", "me@home.ply", "-o", "p.png"});
+  const Outcome gone = run({"render", "--look", "plain", "me@home.ply", "-o", "p.png"});
   EXPECT_EQ(gone.status, 1);
   EXPECT_NE(gone.err.find("me@home.ply"), std::string::npos) << gone.err;
-  const Outcome wrong = run({"render", "s.ply@opacty=1", "-o", "p.png"});
+  const Outcome wrong = run({"render", "--look", "plain", "s.ply@opacty=1", "-o", "p.png"});
   EXPECT_EQ(wrong.status, 2);
   EXPECT_NE(
       wrong.err.find("s.ply@opacty=1: expected x, y, z, scale, rx, ry, rz, color and opacity"),
@@ -173,8 +173,9 @@ TEST_F(PlacedInputs, ThoseThatSayNothingLookAsBefore) {
 }
 
 TEST_F(PlacedInputs, ObjectsAndStatisticsTellInputsApart) {
-  must({"render", "builtin:sphere?x=-2", "builtin:boxes?count=1", "builtin:sphere?x=2,rings=4",
-        "--objects", "o.npy", "--ids", "i.npy", "--stats", "s.json", "--size", "96x64"});
+  must({"render", "--look", "plain", "builtin:sphere?x=-2", "builtin:boxes?count=1",
+        "builtin:sphere?x=2,rings=4", "--objects", "o.npy", "--ids", "i.npy", "--stats", "s.json",
+        "--size", "96x64"});
   EXPECT_NE(npy("o.npy").header.find("'<i4'"), std::string::npos) << npy("o.npy").header;
   const auto objects = npy("o.npy").values<std::int32_t>();
   const auto ids = npy("i.npy").values<std::int64_t>();

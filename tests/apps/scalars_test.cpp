@@ -23,8 +23,9 @@ TEST_F(Scalars, OfAFileAreDrawnAndListed) {
   const std::string info = run({"info", "s.ply"}).out;
   EXPECT_NE(info.find("scalars heat: 4 values, 0 to 1, 1 not finite"), std::string::npos) << info;
   EXPECT_NE(info.find("scalars part: 2 values, 4 to 9"), std::string::npos) << info;
-  const std::vector<std::string> base{"render", "s.ply",          "--shader", "flat",     "--size",
-                                      "64x64",  "--transparency", "exact",    "--output", "a.png"};
+  const std::vector<std::string> base{"render",         "--look", "plain",    "s.ply",
+                                      "--shader",       "flat",   "--size",   "64x64",
+                                      "--transparency", "exact",  "--output", "a.png"};
   const auto drawn = [&](const std::vector<std::string>& more) {
     std::vector<std::string> args = base;
     args.insert(args.end(), more.begin(), more.end());
@@ -78,8 +79,8 @@ TEST_F(Scalars, StayWithTheirMeshes) {
 }
 
 TEST_F(Scalars, OfPlacesAreThoseOfTheWorld) {
-  must({"render", "builtin:teapot?y=7", "--scalars", "y", "--size", "64x48", "--image",
-        "scalars=s.npy", "--image", "positions=p.npy"});
+  must({"render", "--look", "plain", "builtin:teapot?y=7", "--scalars", "y", "--size", "64x48",
+        "--image", "scalars=s.npy", "--image", "positions=p.npy"});
   const std::vector<float> s = npy("s.npy").values<float>(), p = npy("p.npy").values<float>();
   int seen = 0;
   for (std::size_t i = 0; i < 64 * 48; ++i) {
@@ -91,8 +92,9 @@ TEST_F(Scalars, OfPlacesAreThoseOfTheWorld) {
 }
 
 TEST_F(Scalars, HaveABarAndIsolines) {
-  const std::vector<std::string> base{"render",  "builtin:sphere", "--scalars", "y",  "--size",
-                                      "160x120", "--eye",          "0,0,4",     "-o", "a.png"};
+  const std::vector<std::string> base{"render",    "--look", "plain",  "builtin:sphere",
+                                      "--scalars", "y",      "--size", "160x120",
+                                      "--eye",     "0,0,4",  "-o",     "a.png"};
   must(base);
   const Image<Rgba8> plain = png("a.png");
   for (const std::vector<std::string>& more :
@@ -111,7 +113,7 @@ TEST_F(Scalars, HaveABarAndIsolines) {
 TEST_F(Scalars, RefuseWhatCannotBeMeant) {
   const auto refused = [&](const std::vector<std::string>& more, const std::string& part,
                            int status = 2) {
-    std::vector<std::string> args{"render", "builtin:boxes", "-o", "a.png"};
+    std::vector<std::string> args{"render", "--look", "plain", "builtin:boxes", "-o", "a.png"};
     args.insert(args.end(), more.begin(), more.end());
     const Outcome outcome = run(args);
     EXPECT_EQ(outcome.status, status) << part;

@@ -13,8 +13,9 @@ class Sequences : public Program {};
 TEST_F(Sequences, ATurntableTurnsTheSceneAndKeepsItsSize) {
   // A flag beside the axis: seen from −z it is on the other side, at quarters it is edge on.
   write("f.obj", "v 1 -1 0\nv 3 -1 0\nv 3 1 0\nv 1 1 0\nf 1 2 3 4\nv -3 0 0\nv -3 0 0\nf 5 6 6\n");
-  const std::string said = must({"render", "f.obj", "--turntable", "4", "-o", "t%02d.png", "--ids",
-                                 "i%02d.npy", "--stats", "s.json", "--size", "120x60"});
+  const std::string said =
+      must({"render", "--look", "plain", "f.obj", "--turntable", "4", "-o", "t%02d.png", "--ids",
+            "i%02d.npy", "--stats", "s.json", "--size", "120x60"});
   EXPECT_NE(said.find("t%02d.png: 4 pictures of 120x60"), std::string::npos) << said;
   const auto columns = [&](const std::string& name) {
     const auto ids = npy(name).values<std::int64_t>();
@@ -41,7 +42,8 @@ TEST_F(Sequences, TheFirstPictureOfATurntableIsThePlainOne) {
   for (const std::vector<std::string>& camera :
        {std::vector<std::string>{"--fit", "sphere"},
         {"--eye", "1,2,6", "--target", "0.2,0.1,0", "--up", "0.1,1,0", "--near", "1"}}) {
-    std::vector<std::string> args{"render", "builtin:teapot?n=3", "--size", "64x48"};
+    std::vector<std::string> args{"render", "--look", "plain", "builtin:teapot?n=3",
+                                  "--size", "64x48"};
     args.insert(args.end(), camera.begin(), camera.end());
     std::vector<std::string> turned = args;
     args.insert(args.end(), {"-o", "p.png"});
@@ -55,8 +57,8 @@ TEST_F(Sequences, TheFirstPictureOfATurntableIsThePlainOne) {
 
 TEST_F(Sequences, ATurntableOfAnOwnCameraCutsNothingOff) {
   // The scene stands off its target: its near plane must serve when it comes to the front.
-  must({"render", "builtin:sphere?x=3", "--eye", "0,0,9", "--target", "0,0,0", "--turntable", "8",
-        "--ids", "i%d.npy", "--stats", "s.json", "--size", "64x64"});
+  must({"render", "--look", "plain", "builtin:sphere?x=3", "--eye", "0,0,9", "--target", "0,0,0",
+        "--turntable", "8", "--ids", "i%d.npy", "--stats", "s.json", "--size", "64x64"});
   const auto cameras = json("s.json")["cameras"];
   EXPECT_LE(cameras[0]["near"].get<double>(), 5);
   for (int i = 0; i < 8; ++i) {
@@ -67,15 +69,15 @@ TEST_F(Sequences, ATurntableOfAnOwnCameraCutsNothingOff) {
 
 TEST_F(Sequences, ATurntableAsAFilm) {
   if (std::system("ffmpeg -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no ffmpeg";
-  must({"render", "builtin:teapot?n=3", "--turntable", "5", "--fps", "10", "-o", "t.mp4", "--size",
-        "64x48"});
+  must({"render", "--look", "plain", "builtin:teapot?n=3", "--turntable", "5", "--fps", "10", "-o",
+        "t.mp4", "--size", "64x48"});
   EXPECT_EQ(files(), std::vector<std::string>{"t.mp4"});
   EXPECT_GT(read("t.mp4").size(), 500U);
 }
 
 TEST_F(Sequences, RefuseWhatCannotBeMeant) {
   const auto refused = [&](const std::vector<std::string>& extra, const std::string& words) {
-    std::vector<std::string> args{"render", "builtin:boxes", "--turntable", "4"};
+    std::vector<std::string> args{"render", "--look", "plain", "builtin:boxes", "--turntable", "4"};
     args.insert(args.end(), extra.begin(), extra.end());
     const Outcome r = run(args);
     EXPECT_EQ(r.status, 2) << words;
@@ -87,7 +89,8 @@ TEST_F(Sequences, RefuseWhatCannotBeMeant) {
   refused({"-o", "t%d.png", "--path", "p.json"}, "--turntable: leaves no room for --path");
   refused({"-o", "t%d.png", "--camera", "0"}, "--turntable: the camera of a file has no target");
   refused({"-o", "t%d.png", "--turntable", "0"}, "--turntable");
-  const Outcome fps = run({"render", "builtin:boxes", "-o", "p.png", "--fps", "3"});
+  const Outcome fps =
+      run({"render", "--look", "plain", "builtin:boxes", "-o", "p.png", "--fps", "3"});
   EXPECT_NE(fps.err.find("--fps: is for --path and --turntable"), std::string::npos) << fps.err;
 }
 
@@ -99,8 +102,8 @@ class DepthUnit : public Program {
     write("w.obj", "v -1 -1 2\nv 1 -1 2\nv 1 1 2\nv -1 1 2\nf 1 2 3 4\n");
   }
   [[nodiscard]] std::vector<float> depths(const std::vector<std::string>& extra) const {
-    std::vector<std::string> args{"render", "w.obj",  "--eye", "0,0,12",  "--target",
-                                  "0,0,0",  "--size", "31x31", "--depth", "d.npy"};
+    std::vector<std::string> args{"render",   "--look", "plain",  "w.obj", "--eye",   "0,0,12",
+                                  "--target", "0,0,0",  "--size", "31x31", "--depth", "d.npy"};
     args.insert(args.end(), extra.begin(), extra.end());
     must(args);
     return npy("d.npy").values<float>();
@@ -134,7 +137,8 @@ TEST_F(DepthUnit, ReversedIsWhatItWasAndStatsHaveTheFormula) {
 }
 
 TEST_F(DepthUnit, BelongsToDepth) {
-  const Outcome r = run({"render", "w.obj", "-o", "p.png", "--depth-unit", "world"});
+  const Outcome r =
+      run({"render", "--look", "plain", "w.obj", "-o", "p.png", "--depth-unit", "world"});
   EXPECT_EQ(r.status, 2);
   EXPECT_NE(r.err.find("--depth-unit: is for --depth"), std::string::npos) << r.err;
 }

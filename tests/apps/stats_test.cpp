@@ -29,8 +29,8 @@ TEST_F(Stats, SchemaAndSums) {
   write("t.obj",
         "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nv nan 0 0\nv 0 0 9\nv 0 3 20\nv 1 3 20\n"
         "f 1 2 3\nf 1 2 4\nf 1 2 5\nf 1 1 2\nf 5 6 7\n");
-  must({"render", "t.obj", "--eye", "0,0,4", "--target", "0,0,0", "--size", "60x40", "--frames",
-        "5", "--stats", "s.json", "--ids", "i.npy"});
+  must({"render", "--look", "plain", "t.obj", "--eye", "0,0,4", "--target", "0,0,0", "--size",
+        "60x40", "--frames", "5", "--stats", "s.json", "--ids", "i.npy"});
   const Json s = json("s.json");
   EXPECT_EQ(keys(s),
             (std::vector<std::string>{
@@ -65,8 +65,9 @@ TEST_F(Stats, SchemaAndSums) {
 
 TEST_F(Stats, SumsOfManyTriangles) {
   for (const char* cull : {"none", "back"}) {
-    must({"render", "builtin:soup?count=3000,max_size=0.6", "builtin:sphere", "--eye", "0,0.1,0.5",
-          "--target", "0,0,0", "--size", "80x80", "--cull", cull, "--stats", "s.json"});
+    must({"render", "--look", "plain", "builtin:soup?count=3000,max_size=0.6", "builtin:sphere",
+          "--eye", "0,0.1,0.5", "--target", "0,0,0", "--size", "80x80", "--cull", cull, "--stats",
+          "s.json"});
     const Json t = json("s.json")["triangles"];
     const auto n = [&](const char* key) { return t[key].get<std::uint64_t>(); };
     EXPECT_EQ(n("input"), 3000U + 2 * 31 * 64);
@@ -77,7 +78,8 @@ TEST_F(Stats, SumsOfManyTriangles) {
 }
 
 TEST_F(Stats, DashIsStandardOutput) {
-  const Outcome r = run({"render", "builtin:sphere", "--size", "9x9", "--stats", "-"});
+  const Outcome r =
+      run({"render", "--look", "plain", "builtin:sphere", "--size", "9x9", "--stats", "-"});
   EXPECT_EQ(r.status, 0);
   EXPECT_EQ(Json::parse(r.out)["size"], Json::array({9, 9}));
   EXPECT_TRUE(files().empty()) << "no file called -";
@@ -85,8 +87,8 @@ TEST_F(Stats, DashIsStandardOutput) {
 
 TEST_F(Stats, CountsDoNotDependOnTheOutputs) {
   const auto counts = [&](const std::vector<std::string>& outputs) {
-    std::vector<std::string> args{"render", "builtin:boxes", "--size",
-                                  "64x64",  "--stats",       "s.json"};
+    std::vector<std::string> args{"render", "--look", "plain",   "builtin:boxes",
+                                  "--size", "64x64",  "--stats", "s.json"};
     args.insert(args.end(), outputs.begin(), outputs.end());
     must(args);
     const Json s = json("s.json");
@@ -98,8 +100,8 @@ TEST_F(Stats, CountsDoNotDependOnTheOutputs) {
 }
 
 TEST_F(Stats, TraceHoldsEveryFrameAndItsStagesAddUp) {
-  must({"render", "builtin:boxes?count=6", "builtin:sphere?x=9", "--frames", "4", "--trace",
-        "t.json", "-o", "p.png", "--heatmap", "h.png", "--size", "400x300"});
+  must({"render", "--look", "plain", "builtin:boxes?count=6", "builtin:sphere?x=9", "--frames", "4",
+        "--trace", "t.json", "-o", "p.png", "--heatmap", "h.png", "--size", "400x300"});
   const Json trace = json("t.json");
   std::vector<Json> frames, stages;
   std::set<std::string> others;

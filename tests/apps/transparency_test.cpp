@@ -24,8 +24,8 @@ class TransparencyOption : public Program {
     const Image<Rgba8> expected = draw(scene, fit(scene, render_), render_).color8;
     std::string line;
     for (const std::string& o : options) line += " " + o;
-    options.insert(options.begin(), {"render", "builtin:boxes?count=3", "-o", "p.png", "--size",
-                                     "72x56", "--opacity", "0.25"});
+    options.insert(options.begin(), {"render", "--look", "plain", "builtin:boxes?count=3", "-o",
+                                     "p.png", "--size", "72x56", "--opacity", "0.25"});
     must(options);
     Image<Rgba8> picture = png("p.png");
     EXPECT_TRUE(same_pixels(picture, expected)) << line;
@@ -87,23 +87,23 @@ TEST_F(TransparencyOption, WordsOfTheParser) {
 }
 
 TEST_F(TransparencyOption, StatisticsCountLayers) {
-  must({"render", "builtin:boxes?count=3", "--opacity", "0.5", "--stats", "s.json", "--size",
-        "72x56"});
+  must({"render", "--look", "plain", "builtin:boxes?count=3", "--opacity", "0.5", "--stats",
+        "s.json", "--size", "72x56"});
   const auto counters = json("s.json")["counters"];
   EXPECT_GT(counters["translucent fragments"], 0);
   EXPECT_GT(counters["layer blocks"], 0);
   EXPECT_GT(counters["deepest"], 2);
   EXPECT_TRUE(counters.contains("repaired pixels"));
   EXPECT_EQ(json("s.json")["visibility"], "layers");
-  must({"render", "builtin:boxes?count=3", "--opacity", "0.5", "--stats", "s.json", "--size",
-        "72x56", "--transparency", "filter:1"});
+  must({"render", "--look", "plain", "builtin:boxes?count=3", "--opacity", "0.5", "--stats",
+        "s.json", "--size", "72x56", "--transparency", "filter:1"});
   EXPECT_TRUE(json("s.json")["counters"].contains("wrong pixels"));
 }
 
 TEST_F(TransparencyOption, ErrorsArePaintedRedOverTheGreyPicture) {
   // A soup's triangles cross each other: a filter of one fragment must fail somewhere.
-  const std::vector<std::string> base{"render",    "builtin:soup", "--size",        "160x120",
-                                      "--opacity", "0.5",          "--transparency"};
+  const std::vector<std::string> base{"render",  "--look",    "plain", "builtin:soup",  "--size",
+                                      "160x120", "--opacity", "0.5",   "--transparency"};
   const auto red_of = [&](const std::string& method, bool timed) {
     std::vector<std::string> args = base;
     args.insert(args.end(), {method, "--show-errors", "e.png", "-o", "p.png"});
@@ -148,7 +148,8 @@ TEST(ErrorPicture, GreyIsTheLumaOverBlack) {
 TEST_F(TransparencyOption, BlendMaterialsAreBlendedAndOnlyNoneWarns) {
   write("m.mtl", "newmtl glass\nKd 1 0 0\nd 0.5\n");
   write("t.obj", "mtllib m.mtl\nusemtl glass\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  const std::vector<std::string> args{"render", "t.obj", "-o", "p.png", "--size", "33x33"};
+  const std::vector<std::string> args{"render", "--look", "plain",  "t.obj",
+                                      "-o",     "p.png",  "--size", "33x33"};
   EXPECT_EQ(must(args).find("BLEND"), std::string::npos);
   EXPECT_EQ(png("p.png")(14, 18).a, 128);
   auto none = args;

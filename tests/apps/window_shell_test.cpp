@@ -123,6 +123,7 @@ class WindowTest : public Program {
         std::to_string(picture.width()) + "x" + std::to_string(picture.height());
     std::vector<std::string> args{command, "--path", shot + ".json", "--size",
                                   size,    "-o",     "rendered.png"};
+    if (command == "render") args.insert(args.end(), {"--look", "plain"});
     args.insert(args.end(), options.begin(), options.end());
     must(args);
     EXPECT_TRUE(same_pixels(picture, png("rendered.png"))) << shot;
@@ -234,7 +235,7 @@ TEST_F(WindowTest, KeysChangeThePicture) {
   std::vector<std::string> heat_options = options;
   heat_options.insert(heat_options.end(), {"--path", heat + ".json", "--size", "300x200", "--quiet",
                                            "-o", "x.png", "--heatmap", "heat.png"});
-  heat_options.insert(heat_options.begin(), "render");
+  heat_options.insert(heat_options.begin(), {"render", "--look", "plain"});
   must(heat_options);
   EXPECT_TRUE(same_pixels(png(heat + ".png"), png("heat.png")));
   EXPECT_FALSE(same_pixels(png(heat + ".png"), png("x.png")));

@@ -356,8 +356,9 @@ class MeshViewerTest : public Program {
   /// The picture that `rastrum render` makes of the camera file of a screenshot.
   Image<Rgba8> rendered(const std::string& input, const std::string& name, const std::string& size,
                         const std::vector<std::string>& more = {}) {
-    std::vector<std::string> args{"render", input,          "--path",  name + ".json", "--size",
-                                  size,     "--background", "#1a334d", "-o",           "r.png"};
+    std::vector<std::string> args{"render",       "--look",       "plain",  input,
+                                  "--path",       name + ".json", "--size", size,
+                                  "--background", "#1a334d",      "-o",     "r.png"};
     args.insert(args.end(), more.begin(), more.end());
     must(args);
     return png("r.png");
@@ -418,8 +419,8 @@ TEST_F(MeshViewerTest, TwoReplaysAreTheSame) {
   EXPECT_TRUE(read("b1.png") == read("b2.png"));
   EXPECT_FALSE(read("a1.png") == read("b1.png"));
   // And those of the path: picture 3 of ten a second is the one at 0.3 s.
-  must({"render", "builtin:gyroid", "--path", "script.json", "--fps", "10", "--size", "120x90",
-        "--background", "#1a334d", "-o", "f%d.png"});
+  must({"render", "--look", "plain", "builtin:gyroid", "--path", "script.json", "--fps", "10",
+        "--size", "120x90", "--background", "#1a334d", "-o", "f%d.png"});
   EXPECT_TRUE(same_pixels(png("a1.png"), png("f3.png")));
   EXPECT_TRUE(same_pixels(png("b1.png"), png("f10.png")));
 }
