@@ -71,7 +71,7 @@ TEST(Placement, ScalesThenTurnsAboutXYZThenMoves) {
 class PlacedInputs : public Program {
  protected:
   [[nodiscard]] Image<Rgba8> drawn(std::vector<std::string> args) const {
-    args.insert(args.begin(), "render");
+    args.insert(args.begin(), {"render", "--look", "plain"});
     args.insert(args.end(), {"-o", "p.png", "--size", "96x64"});
     must(args);
     return png("p.png");
