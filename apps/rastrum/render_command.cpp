@@ -204,7 +204,8 @@ void check_sequence(RenderArguments& a) {
 
 void add_look_option(Parser& app, RenderArguments& a) {
   add(app, "--look", "NAME",
-      "studio: --view iso --lights studio --occlusion --samples 4, plain: --view front --lights "
+      "studio: --view iso --fov 30 --lights studio --occlusion --samples 4, plain: --view front "
+      "--lights "
       "default --samples 1, each unless something else is said (studio where -o alone is asked "
       "for, "
       "docs/light.md)",
@@ -228,8 +229,11 @@ void set_look(RenderArguments& a) {
   if (a.look == Look::plain) return;
   const bool studio = a.look == Look::studio;
   ViewOptions& v = a.view;
-  if (!v.has_view() && !v.eye && !v.target && !v.file_camera && a.path.empty())
+  if (!v.has_view() && !v.eye && !v.target && !v.file_camera && a.path.empty()) {
     v.view = ViewName::iso;
+    // Wider lenses make what is near too large: looked at over twenty files.
+    if (!v.fov_deg) v.fov_deg = 30;
+  }
   const bool shows = studio || is_to_be_shown(a);
   if (!a.samples_given && shows) a.render.samples = 4;
   const bool lights = studio || (shows && a.render.shader == Shader::automatic);

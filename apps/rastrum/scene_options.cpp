@@ -238,7 +238,8 @@ void add_camera_options(Parser& app, SceneArguments& a) {
                           : parse_vec3("--up", s);
       })
       ->group(group);
-  add(app, "--fov", "DEG", "field of view across the smaller side (60)",
+  add(app, "--fov", "DEG",
+      "field of view across the smaller side (60; 30 where nothing is said of the camera)",
       [&v](const std::string& s) { v.fov_deg = parse_number("--fov", s); })
       ->group(group);
   add(app, "--near", "N", "distance of the near plane (just before the scene)",

@@ -46,7 +46,8 @@ TEST_F(LightOptions, StudioIsWhatItSays) {
     return png(file);
   };
   const auto said =
-      draw({"--view", "iso", "--lights", "studio", "--occlusion", "--samples", "4"}, "said.png");
+      draw({"--view", "iso", "--fov", "30", "--lights", "studio", "--occlusion", "--samples", "4"},
+           "said.png");
   EXPECT_TRUE(same_pixels(draw({"--look", "studio"}, "studio.png"), said));
   // Who asks for nothing but a picture gets it, too …
   EXPECT_TRUE(same_pixels(draw({}, "alone.png"), said));
@@ -57,9 +58,9 @@ TEST_F(LightOptions, StudioIsWhatItSays) {
            "studio.png"),
       draw({"--look", "plain", "--view", "top", "--lights", "headlight", "--occlusion"},
            "said.png")));
-  EXPECT_TRUE(
-      same_pixels(draw({"--shader", "phong"}, "phong.png"),
-                  draw({"--look", "plain", "--view", "iso", "--samples", "4"}, "said.png")));
+  EXPECT_TRUE(same_pixels(
+      draw({"--shader", "phong"}, "phong.png"),
+      draw({"--look", "plain", "--view", "iso", "--fov", "30", "--samples", "4"}, "said.png")));
   EXPECT_TRUE(same_pixels(draw({"--lights", "default"}, "default.png"), png("said.png")));
   // The picture of before, by name.
   EXPECT_TRUE(same_pixels(
@@ -73,8 +74,8 @@ TEST_F(LightOptions, MoreThanAPictureIsPlain) {
   const std::vector<std::vector<std::string>> more{
       {"--ids", "i.npy"},     {"--depth", "d.npy"},      {"--image", "normals=n.npy"},
       {"--heatmap", "h.png"}, {"--rasterizer", "tiled"}, {"--memory-limit", "64M"}};
-  must({"render", "builtin:teapot", "--look", "plain", "--view", "iso", "--size", "120x90", "-o",
-        "plain.png"});
+  must({"render", "builtin:teapot", "--look", "plain", "--view", "iso", "--fov", "30", "--size",
+        "120x90", "-o", "plain.png"});
   for (const std::vector<std::string>& options : more) {
     std::vector<std::string> args{"render", "builtin:teapot", "--size", "120x90", "-o", "p.png"};
     args.insert(args.end(), options.begin(), options.end());
