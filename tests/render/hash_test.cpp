@@ -15,6 +15,7 @@
 #include <rastrum/digest.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/family.hpp>
+#include <rastrum/light.hpp>
 #include <rastrum/program.hpp>
 #include <rastrum/shapes.hpp>
 #include <rastrum/terrain.hpp>
@@ -150,6 +151,36 @@ TEST(Hashes, Scalars) {
         picture.add_to(pictures);
         pictures.add(digest(scalars));
       }
+    });
+  }
+}
+
+/// Every kind of light, shadows, tone and samples, over each shader that is lit.
+TEST(Hashes, Lights) {
+  std::vector<Light> several = light_kit();
+  several.push_back({.kind = HemisphereLight{{0, 1, 0.5F}, {0.1F, 0.05F, 0}}, .intensity = 0.2F});
+  several.push_back({.kind = PointLight{{0.6, 1.6, 1.2}, 4}, .color = {1, 0.7F, 0.4F}});
+  several.push_back({.kind = SpotLight{{2, 2, 2}, {-1, -1, -1}, 10, 0.2F, 0.5F}, .intensity = 6});
+  for (const std::string spec : {"torus_knot", "boxes?count=3", "spheres"}) {
+    const Scene scene = shapes::scene_from_spec(spec);
+    expect_golden("lights/" + spec.substr(0, spec.find('?')), [&](Isa isa, Sum& pictures) {
+      Renderer renderer({.threads = 2, .isa = isa});
+      const SceneBinding binding(scene);
+      for (const Shader shader : {Shader::lambert, Shader::phong, Shader::material})
+        for (const bool shows : {false, true}) {
+          FrameOptions f;
+          f.width = 160;
+          f.height = 120;
+          f.shader = shader;
+          f.lights = shows ? several : light_kit();
+          f.shadows = shows;
+          f.samples = shows ? 1 : 4;
+          if (shows && shader == Shader::material) f.tone = {Tone::aces, 0.5F};
+          Picture picture(f);
+          renderer.render(binding.view(), fit_camera(binding.view(), 0.8F, false), f,
+                          picture.targets());
+          picture.add_to(pictures);
+        }
     });
   }
 }
