@@ -19,89 +19,107 @@ struct SampledColors::Place {
   SampleOffset at{};  ///< from the pixel's centre
 };
 
-/// Finds it. Neighbours mostly share their primitive.
+/// A primitive, as it is found again.
+struct SampledColors::Primitive {
+  /// value(x, y) = base + a x + b y ≥ 0 is inside, x and y in n.8.
+  struct SubpixelEdge {
+    std::int64_t base, a, b;
+  };
+  const Draw* draw;
+  bool is_clipped, has_plane;
+  ProjectedVertex vertices[3];
+  std::int64_t area;
+  SubpixelEdge edges[3];
+  Piece piece;  ///< at the centres; its `low` is always set
+};
+
+/// Finds places. Neighbours, also those of the next row, mostly share their primitives, of which
+/// some are kept.
 class SampledColors::Finder {
  public:
-  explicit Finder(const BinContext& context)
+  Finder(const BinContext& context, Primitive* kept)
       : frame_(*context.frame),
         offsets_(sample_offsets(context.request->samples)),
-        wants_depth_(context.request->shading.wants_depth()) {}
+        wants_depth_(context.request->shading.wants_depth()),
+        kept_(kept) {
+    std::fill_n(lows_, kKept, ~std::uint64_t{0});
+  }
 
   /// Of the primitive of `key`, which some sample of the pixel sees.
   Place find(std::uint64_t key, int x, int y) {
     const std::uint64_t low = key & kIdMask;
-    if (low != piece_.low || draw_ == nullptr) begin(low);
+    const std::size_t slot = low % kKept;
+    Primitive& p = kept_[slot];
+    if (lows_[slot] != low) {
+      lows_[slot] = low;
+      begin(low, p);
+    }
     // A point or line is at all samples of its pixels.
-    if (draw_->topology != Topology::triangles) return {key, {}};
-    if (is_clipped_) return find_clipped(key, x, y);
+    if (p.draw->topology != Topology::triangles) return {key, {}};
+    if (p.is_clipped) return find_clipped(p, key, x, y);
     // A moved piece's edges at the centre are the piece's at the sample.
     const std::int64_t cx = std::int64_t{x} * kSubpixels + kHalfPixel;
     const std::int64_t cy = std::int64_t{y} * kSubpixels + kHalfPixel;
     std::int64_t value[3];
-    for (int k = 0; k < 3; ++k) value[k] = edges_[k].base + edges_[k].a * cx + edges_[k].b * cy;
+    for (int k = 0; k < 3; ++k) value[k] = p.edges[k].base + p.edges[k].a * cx + p.edges[k].b * cy;
     SampleOffset at{};
     if ((value[0] | value[1] | value[2]) < 0)
       for (const SampleOffset offset : offsets_) {
         at = offset;  // some sample sees it
         std::int64_t outside = 0;
-        for (int k = 0; k < 3; ++k) outside |= value[k] + edges_[k].a * at.x + edges_[k].b * at.y;
+        for (int k = 0; k < 3; ++k) outside |= value[k] + p.edges[k].a * at.x + p.edges[k].b * at.y;
         if (outside >= 0) break;
       }
-    return {wants_depth_ ? key_at(at, x, y) : key, at};
+    return {wants_depth_ ? key_at(p, at, x, y) : key, at};
   }
 
  private:
-  /// value(x, y) = base + a x + b y ≥ 0 is inside, x and y in n.8.
-  struct SubpixelEdge {
-    std::int64_t base, a, b;
-  };
-
-  void begin(std::uint64_t low) {
+  void begin(std::uint64_t low, Primitive& p) {
     const std::uint64_t id = kIdMask - low;
     if (draw_ == nullptr || id - draw_->first_id >= draw_->primitive_count)
       draw_ = &frame_.draw_of(id);
-    primitive_ = id - draw_->first_id;
-    piece_.low = low;
-    has_plane_ = false;
+    p.draw = draw_;
+    p.piece.low = low;
+    p.has_plane = p.is_clipped = false;
     if (draw_->topology != Topology::triangles) return;
     std::uint32_t index[3];
-    draw_->vertices(primitive_, index);
-    is_clipped_ = false;
+    draw_->vertices(id - draw_->first_id, index);
     for (int c = 0; c < 3; ++c) {
-      vertices_[c] = frame_.vertex(*draw_, index[c]);
-      is_clipped_ |= vertices_[c].x_fx8 == kNeedsClip;
+      p.vertices[c] = frame_.vertex(*draw_, index[c]);
+      p.is_clipped |= p.vertices[c].x_fx8 == kNeedsClip;
     }
-    if (is_clipped_) return;
-    piece_.flags = 0;
-    area_ = twice_area(vertices_[0], vertices_[1], vertices_[2]);
-    set_corners(vertices_[0], vertices_[1], vertices_[2], area_, piece_);
+    if (p.is_clipped) return;
+    Piece& piece = p.piece;
+    piece.flags = 0;
+    p.area = twice_area(p.vertices[0], p.vertices[1], p.vertices[2]);
+    set_corners(p.vertices[0], p.vertices[1], p.vertices[2], p.area, piece);
     for (int i = 0; i < 3; ++i) {
       const int j = i == 2 ? 0 : i + 1;
-      const std::int64_t a = piece_.y[i] - piece_.y[j], b = piece_.x[j] - piece_.x[i];
+      const std::int64_t a = piece.y[i] - piece.y[j], b = piece.x[j] - piece.x[i];
       const bool top_left = a > 0 || (a == 0 && b > 0);
-      edges_[i] = {-(a * piece_.x[i] + b * piece_.y[i]) - (top_left ? 0 : 1), a, b};
+      p.edges[i] = {-(a * piece.x[i] + b * piece.y[i]) - (top_left ? 0 : 1), a, b};
     }
   }
-  std::uint64_t key_at(SampleOffset at, int x, int y) {
-    if (!has_plane_) {
-      set_depth_plane(vertices_[0], vertices_[1], vertices_[2], area_, piece_);
-      add_depth_bias(piece_, draw_->depth_bias, draw_->depth_bias_slope);
-      has_plane_ = true;
+  static std::uint64_t key_at(Primitive& p, SampleOffset at, int x, int y) {
+    if (!p.has_plane) {
+      set_depth_plane(p.vertices[0], p.vertices[1], p.vertices[2], p.area, p.piece);
+      add_depth_bias(p.piece, p.draw->depth_bias, p.draw->depth_bias_slope);
+      p.has_plane = true;
     }
-    return make_key(plane_depth_at(moved(piece_, at), x, y), piece_.low);
+    return make_key(plane_depth_at(moved(p.piece, at), x, y), p.piece.low);
   }
   /// Of one that has to be clipped: the nearest of the pieces that cover it.
-  Place find_clipped(std::uint64_t key, int x, int y) {
+  Place find_clipped(const Primitive& p, std::uint64_t key, int x, int y) {
     Place place;
-    if (covers_at({}, x, y, place)) return place;
+    if (covers_at(p, {}, x, y, place)) return place;
     for (const SampleOffset at : offsets_)
-      if (covers_at(at, x, y, place)) return place;
+      if (covers_at(p, at, x, y, place)) return place;
     return {key, {}};  // not reached
   }
-  bool covers_at(SampleOffset at, int x, int y, Place& place) {
+  bool covers_at(const Primitive& p, SampleOffset at, int x, int y, Place& place) {
     bool covered = false;
     (void)assemble_primitive(
-        frame_, *draw_, primitive_,
+        frame_, *p.draw, kIdMask - p.piece.low - p.draw->first_id,
         [&](const Piece& piece) {
           if (!covers_centre(edges_of(piece), x, y)) return;
           place = {std::max(place.key, make_key(depth_at(piece, x, y), piece.low)), at};
@@ -115,13 +133,13 @@ class SampledColors::Finder {
   std::span<const SampleOffset> offsets_;
   bool wants_depth_;  ///< else any key of the primitive will do
   const Draw* draw_ = nullptr;
-  std::uint64_t primitive_ = 0;
-  bool is_clipped_ = false, has_plane_ = false;
-  ProjectedVertex vertices_[3];
-  std::int64_t area_ = 0;
-  SubpixelEdge edges_[3];
-  Piece piece_{};  ///< at the centres
+  Primitive* kept_;  ///< kKept, by the last bits of `low`
+  std::uint64_t lows_[kKept];
 };
+
+SampledColors::SampledColors() : kept_(std::make_unique<Primitive[]>(kKept)) {}
+SampledColors::SampledColors(SampledColors&&) noexcept = default;
+SampledColors::~SampledColors() = default;
 
 void SampledColors::resolve(const BinContext& context, const std::uint64_t* planes,
                             std::size_t plane, int bx, int by, std::uint64_t* nearest,
@@ -141,7 +159,7 @@ void SampledColors::resolve(const BinContext& context, const std::uint64_t* plan
     std::copy_n(planes, 64, centre_keys_);
   }
   const std::uint64_t alike = centred_;
-  Finder finder(context);
+  Finder finder(context, kept_.get());
   std::uint16_t places[kMaxSamples][64];
   for (std::uint64_t m = covered & ~alike; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 
 #include <rastrum/raster/draws/samples.hpp>
 #include <rastrum/raster/frame/frame.hpp>
@@ -15,6 +16,10 @@ namespace rastrum::raster {
 /// A block of 8 × 8 pixels after another. A thread's own.
 class SampledColors {
  public:
+  SampledColors();
+  SampledColors(SampledColors&&) noexcept;
+  ~SampledColors();
+
   /// `planes`: 64 keys of each sample, `plane` keys apart; `bx`, `by`: the block. Sets `nearest` to
   /// the largest key of each pixel and, where the frame wants colours, `out` to the mean of the
   /// samples' premultiplied colours. Requires triangles, points and lines without fragment tests.
@@ -23,7 +28,9 @@ class SampledColors {
 
  private:
   struct Place;
+  struct Primitive;
   class Finder;
+  static constexpr std::size_t kKept = 64;
 
   void add(const BinContext& context, int pixel, const Place& place, std::uint16_t& at);
   void flush(const BinContext& context);
@@ -40,6 +47,7 @@ class SampledColors {
   int packed_ = 0;  ///< in the last group
   int groups_ = 0;
   int bx_ = 0, by_ = 0;
+  std::unique_ptr<Primitive[]> kept_;
 };
 
 }  // namespace rastrum::raster
