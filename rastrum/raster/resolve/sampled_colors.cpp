@@ -45,8 +45,9 @@ class SampledColors::Finder {
     std::fill_n(lows_, kKept, ~std::uint64_t{0});
   }
 
-  /// Of the primitive of `key`, which some sample of the pixel sees.
-  Place find(std::uint64_t key, int x, int y) {
+  /// Of the primitive of `key`, which some sample of the pixel sees; `all`: all of them do, and so
+  /// would the centre, about which they lie.
+  Place find(std::uint64_t key, int x, int y, bool all) {
     const std::uint64_t low = key & kIdMask;
     const std::size_t slot = low % kKept;
     Primitive& p = kept_[slot];
@@ -57,6 +58,7 @@ class SampledColors::Finder {
     // A point or line is at all samples of its pixels.
     if (p.draw->topology != Topology::triangles) return {key, {}};
     if (p.is_clipped) return find_clipped(p, key, x, y);
+    if (all) return {wants_depth_ ? key_at(p, {}, x, y) : key, {}};
     // A moved piece's edges at the centre are the piece's at the sample.
     const std::int64_t cx = std::int64_t{x} * kSubpixels + kHalfPixel;
     const std::int64_t cy = std::int64_t{y} * kSubpixels + kHalfPixel;
@@ -106,7 +108,13 @@ class SampledColors::Finder {
       add_depth_bias(p.piece, p.draw->depth_bias, p.draw->depth_bias_slope);
       p.has_plane = true;
     }
-    return make_key(plane_depth_at(moved(p.piece, at), x, y), p.piece.low);
+    Piece plane;  // moved(), of what the depth reads
+    plane.x[0] = p.piece.x[0] - at.x;
+    plane.y[0] = p.piece.y[0] - at.y;
+    plane.z0 = p.piece.z0;
+    plane.zx = p.piece.zx;
+    plane.zy = p.piece.zy;
+    return make_key(plane_depth_at(plane, x, y), p.piece.low);
   }
   /// Of one that has to be clipped: the nearest of the pieces that cover it.
   Place find_clipped(const Primitive& p, std::uint64_t key, int x, int y) {
@@ -173,7 +181,7 @@ void SampledColors::resolve(const BinContext& context, const std::uint64_t* plan
       for (std::size_t t = 0; t < s && at == kNoPlace; ++t)
         if (((planes[t * plane + static_cast<std::size_t>(i)] ^ key) & kIdMask) == 0)
           at = places[t][i];
-      if (at == kNoPlace) add(context, i, finder.find(key, x, y), at);
+      if (at == kNoPlace) add(context, i, finder.find(key, x, y, one), at);
       if (one) break;
     }
   }
