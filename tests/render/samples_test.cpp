@@ -180,17 +180,19 @@ TEST_F(Samples, OfSmallTrianglesAreTheReferences) {
   }
 }
 
-// What the path does not draw are layers, as before.
-TEST_F(Samples, WhatIsTestedOrBlendedOrRoundAreLayers) {
+// Clip planes, asked where a triangle is shaded; and what the path leaves to layers.
+TEST_F(Samples, WhatIsCutIsTheReferencesAndWhatIsBlendedAreLayers) {
   const Scene scene = single(shapes::sphere(20, 10));
   SceneBinding binding(scene);
   Camera camera;
   camera.eye = {0, 0, 3};
   FrameOptions o = options_of(0);
   o.clip_planes.push_back({{1, 0.2, 0}, 0});
-  ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), camera, o, 0, "layers"));
+  for (int i = 0; i < 2 * static_cast<int>(all_.size()); ++i) {
+    o.samples = kSamples[i % 3];
+    ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), camera, o, i));
+  }
   o.clip_planes.clear();
-  ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), camera, o, 0));
   o.opacity = 0.5F;
   ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), camera, o, 0, "layers"));
 }

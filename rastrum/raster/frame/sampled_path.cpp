@@ -31,7 +31,17 @@ class NearestSamplesInBin {
     plane.keys = planes_.data() + sample * plane_;
     keys_.begin(*context_.kernel, plane, rect_, context_.request->targets.overdraw.empty());
   }
-  void blocks(const Piece* pieces, std::span<const Block> blocks) { keys_.blocks(pieces, blocks); }
+  void blocks(const Piece* pieces, std::span<Block> blocks) {
+    if (!context_.request->has_tests()) return keys_.blocks(pieces, blocks);
+    std::size_t kept = 0;
+    for (Block block : blocks) {
+      const Piece& piece = pieces[block.piece];
+      if ((piece.flags & kMayDrop) != 0) block.mask = colors_.test(context_, piece, block);
+      blocks[kept] = block;
+      kept += block.mask != 0;
+    }
+    if (kept != 0) keys_.blocks(pieces, blocks.first(kept));
+  }
   void fragments(std::span<const BinFragment> fragments) { keys_.fragments(fragments); }
   DepthBounds* bounds() { return keys_.bounds(); }
   void find_bounds() { keys_.find_bounds(); }
@@ -98,7 +108,7 @@ class SampledPath final : public Method {
 }  // namespace
 
 bool is_sampled(const FrameRequest& request) {
-  return request.samples > 1 && !request.has_tests() &&
+  return request.samples > 1 && !request.targets.over &&
          std::ranges::none_of(request.draws, [](const Draw& d) { return d.quadrics != nullptr; });
 }
 

@@ -11,8 +11,8 @@
 
 namespace rastrum::raster {
 
-/// Whether the frame is for make_sampled_path: several samples of triangles, points and lines
-/// without fragment tests. That nothing blends is for the caller to know.
+/// Whether the frame is for make_sampled_path: several samples of triangles, points and lines that
+/// are not drawn over a picture. That nothing blends is for the caller to know.
 [[nodiscard]] bool is_sampled(const FrameRequest& request);
 
 /// Work O(samples · (triangles + (bin, piece) pairs + blocks)); memory that of the fast path times

@@ -216,6 +216,21 @@ void SampledColors::resolve(const BinContext& context, const std::uint64_t* plan
   }
 }
 
+std::uint64_t SampledColors::test(const BinContext& context, const Piece& piece,
+                                  const Block& block) {
+  Finder finder(context, kept_.get());
+  constexpr float kPx = 1.0F / kSubpixels;
+  ShadingPoints points;
+  for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    const Place place = finder.find(piece.low, block.bx * kBlockSize + i % kBlockSize,
+                                    block.by * kBlockSize + i / kBlockSize, false);
+    points.dx[i] = static_cast<float>(place.at.x) * kPx;
+    points.dy[i] = static_cast<float>(place.at.y) * kPx;
+  }
+  return context.request->kept(*context.frame, piece, block, &points);
+}
+
 void SampledColors::add(const BinContext& context, int pixel, const Place& place,
                         std::uint16_t& at) {
   const std::uint64_t bit = std::uint64_t{1} << pixel;

@@ -22,9 +22,13 @@ class SampledColors {
 
   /// `planes`: 64 keys of each sample, `plane` keys apart; `bx`, `by`: the block. Sets `nearest` to
   /// the largest key of each pixel and, where the frame wants colours, `out` to the mean of the
-  /// samples' premultiplied colours. Requires triangles, points and lines without fragment tests.
+  /// samples' premultiplied colours. Requires triangles, points and lines.
   void resolve(const BinContext& context, const std::uint64_t* planes, std::size_t plane, int bx,
                int by, std::uint64_t* nearest, BlockColors& out);
+  /// Of what a piece with a fragment test covers at a sample, the pixels that the test keeps: it is
+  /// asked where the primitive is shaded, and says the same for every sample.
+  [[nodiscard]] std::uint64_t test(const BinContext& context, const Piece& piece,
+                                   const Block& block);
 
  private:
   struct Place;
