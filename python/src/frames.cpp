@@ -448,15 +448,15 @@ void rasterize(FrameRenderer& renderer, const std::vector<Array>& positions, con
     for (std::size_t i = 0; i < ranges.size(); ++i) {
       std::tie(all[i].first, all[i].count) = ranges[i];
       if (all[i].first > corners.size() / 3 || all[i].count > corners.size() / 3 - all[i].first)
-        throw Error(Errc::invalid_argument,
-                    "ranges: row " + std::to_string(i) + " reaches beyond the " +
-                        std::to_string(corners.size() / 3) + " triangles");
+        throw Error(Errc::invalid_argument, "ranges: row " + std::to_string(i) +
+                                                " reaches beyond the " +
+                                                std::to_string(corners.size() / 3) + " triangles");
     }
   }
   if (out.ndim() != 4 || out.dtype() != nb::dtype<float>() || out.shape(0) != all.size() ||
       out.shape(3) != 4)
-    throw Error(Errc::invalid_argument, "out: must be (" + std::to_string(all.size()) +
-                                            ", H, W, 4) of float32");
+    throw Error(Errc::invalid_argument,
+                "out: must be (" + std::to_string(all.size()) + ", H, W, 4) of float32");
   const ImageView<Vec4> first{static_cast<Vec4*>(out.data()), static_cast<int>(out.shape(2)),
                               static_cast<int>(out.shape(1))};
   interruptible([&](const std::stop_token& stop) { renderer.rasterize(all, first, stop); });

@@ -27,10 +27,10 @@ void ClipRasterizer::draw(Renderer& by, const ClipTriangles& what, ImageView<Vec
       const std::size_t at = (what.first + t) * 3 + kCornerOf[k];
       const std::uint32_t index = what.triangles[at];
       if (index >= what.positions.size())
-        throw Error(Errc::invalid_argument,
-                    "tri: index " + what.triangles.text(at) + " of triangle " +
-                        std::to_string(what.first + t) + " has no position; there are " +
-                        std::to_string(what.positions.size()));
+        throw Error(Errc::invalid_argument, "tri: index " + what.triangles.text(at) +
+                                                " of triangle " + std::to_string(what.first + t) +
+                                                " has no position; there are " +
+                                                std::to_string(what.positions.size()));
       corners_[t * 3 + k] = index;
     }
 
@@ -46,7 +46,8 @@ void ClipRasterizer::draw(Renderer& by, const ClipTriangles& what, ImageView<Vec
         return raster::VertexOutput<Nothing>{{p.x, -p.y, (p.w - p.z) * 0.5F, p.w}, {}};
       },
       [](const Nothing&, const raster::Fragment&) { return Vec4{}; });
-  const raster::ProgramDraw draw = program.draw(what.positions.size(), corners_);
+  raster::ProgramDraw draw = program.draw(what.positions.size(), corners_);
+  draw.primitive_count = what.count;  // no indices would be all vertices in order
   FrameOptions frame;
   frame.width = into.width;
   frame.height = into.height;
@@ -59,9 +60,10 @@ void ClipRasterizer::draw(Renderer& by, const ClipTriangles& what, ImageView<Vec
   for (std::size_t i = 0; i < pixels; ++i) {
     // What lies beyond the far plane is drawn at a depth of 0, behind all else.
     const bool seen = ids_[i] >= 0 && depth_[i] > 0;
-    into.data[i] = seen ? Vec4{weights_[i].x, weights_[i].y, 1 - 2 * depth_[i],
-                               static_cast<float>(what.first + static_cast<std::size_t>(ids_[i]) + 1)}
-                        : Vec4{0, 0, 0, 0};
+    into.data[i] =
+        seen ? Vec4{weights_[i].x, weights_[i].y, 1 - 2 * depth_[i],
+                    static_cast<float>(what.first + static_cast<std::size_t>(ids_[i]) + 1)}
+             : Vec4{0, 0, 0, 0};
   }
 }
 
