@@ -13,11 +13,14 @@
 #include <span>
 #include <string>
 #include <thread>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -26,6 +29,7 @@
 #include <rastrum/stop.hpp>
 
 #include "annotations.hpp"
+#include "rasterize.hpp"
 #include "scenes.hpp"
 
 namespace rastrum::python {
@@ -345,6 +349,16 @@ class FrameRenderer {
     return renderer_.pick(scene, camera, o, x, y);
   }
 
+  /// A picture for each of `what`, one behind the other.
+  void rasterize(std::span<const ClipTriangles> what, ImageView<Vec4> first,
+                 const std::stop_token& stop) {
+    const std::scoped_lock lock(mutex_);
+    for (const ClipTriangles& one : what) {
+      clip_.draw(renderer_, one, first, stop);
+      first.data += static_cast<std::size_t>(first.width) * static_cast<std::size_t>(first.height);
+    }
+  }
+
  private:
   struct Side {
     explicit Side(const RendererOptions& options) : renderer(options) {}
@@ -355,10 +369,25 @@ class FrameRenderer {
   std::mutex mutex_;
   Renderer renderer_;
   Scratch scratch_;
+  ClipRasterizer clip_;
   std::vector<std::unique_ptr<Side>> side_;
 };
 
 /// Draws again where a signal asked for a stop and Python's handler wants none.
+template <class Draw>
+void interruptible(const Draw& draw) {
+  for (;;) {
+    const StopOnInterrupt interrupt;
+    try {
+      const nb::gil_scoped_release unlock;
+      draw(interrupt.token());
+      return;
+    } catch (const parallel::Stopped&) {
+    }
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+  }
+}
+
 nb::list render(FrameRenderer& renderer, const ArrayScene& scene,
                 const std::vector<Camera>& cameras, const FrameOptions& o,
                 const std::map<std::string, Output>& outputs, const Annotations* annotations,
@@ -373,17 +402,10 @@ nb::list render(FrameRenderer& renderer, const ArrayScene& scene,
     progress(cameras.size() == 1 ? 1 : done, cameras.size());
   };
   std::vector<FrameStats> stats;
-  for (;;) {
-    const StopOnInterrupt interrupt;
-    try {
-      const nb::gil_scoped_release unlock;
-      done = 0;
-      stats = renderer.render(view, cameras, o, all, annotations, interrupt.token(), after);
-      break;
-    } catch (const parallel::Stopped&) {
-    }
-    if (PyErr_CheckSignals() != 0) throw nb::python_error();
-  }
+  interruptible([&](const std::stop_token& stop) {
+    done = 0;
+    stats = renderer.render(view, cameras, o, all, annotations, stop, after);
+  });
   nb::list result;
   for (const FrameStats& s : stats) result.append(stats_of(s));
   return result;
@@ -410,6 +432,34 @@ nb::object pick(FrameRenderer& renderer, const ArrayScene& scene, const Camera& 
   d["distance"] = p->distance;
   d["scalar"] = p->scalar;
   return d;
+}
+
+/// out: (N, H, W, 4) of float32. A picture for each of `positions`; with one of these and `ranges`,
+/// pairs (first triangle, number of them), for each range.
+void rasterize(FrameRenderer& renderer, const std::vector<Array>& positions, const Array& triangles,
+               const std::vector<std::pair<std::uint64_t, std::uint64_t>>& ranges,
+               const Output& out) {
+  const IndexView corners = indices(triangles, "tri");
+  std::vector<ClipTriangles> all;
+  for (const Array& p : positions)
+    all.push_back({values<Vec4>(p, "pos"), corners, 0, corners.size() / 3});
+  if (!ranges.empty()) {
+    all.assign(ranges.size(), all.at(0));
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      std::tie(all[i].first, all[i].count) = ranges[i];
+      if (all[i].first > corners.size() / 3 || all[i].count > corners.size() / 3 - all[i].first)
+        throw Error(Errc::invalid_argument, "ranges: row " + std::to_string(i) +
+                                                " reaches beyond the " +
+                                                std::to_string(corners.size() / 3) + " triangles");
+    }
+  }
+  if (out.ndim() != 4 || out.dtype() != nb::dtype<float>() || out.shape(0) != all.size() ||
+      out.shape(3) != 4)
+    throw Error(Errc::invalid_argument,
+                "out: must be (" + std::to_string(all.size()) + ", H, W, 4) of float32");
+  const ImageView<Vec4> first{static_cast<Vec4*>(out.data()), static_cast<int>(out.shape(2)),
+                              static_cast<int>(out.shape(1))};
+  interruptible([&](const std::stop_token& stop) { renderer.rasterize(all, first, stop); });
 }
 
 void write_png(const std::string& file, const Array& pixels) {
@@ -459,7 +509,8 @@ void bind_frames(nb::module_& m) {
           arg("threads"), arg("memory_limit"), arg("device"), arg("isa").none())
       .def("render", render, arg("scene"), arg("cameras"), arg("frame"), arg("outputs"),
            arg("annotations").none(), arg("progress").none())
-      .def("pick", pick, arg("scene"), arg("camera"), arg("frame"), arg("x"), arg("y"));
+      .def("pick", pick, arg("scene"), arg("camera"), arg("frame"), arg("x"), arg("y"))
+      .def("rasterize", rasterize, arg("positions"), arg("triangles"), arg("ranges"), arg("out"));
   m.def("shader_names", [] {
     std::vector<std::string> names;
     for (const std::string_view n : shader_names()) names.emplace_back(n);

@@ -1,0 +1,37 @@
+// Triangles in clip space as nvdiffrast's users know them: four numbers a pixel.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <stop_token>
+#include <vector>
+
+#include <rastrum/array.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/render.hpp>
+
+namespace rastrum::python {
+
+/// Triangles [first, first + count) of `triangles`, three indices each.
+struct ClipTriangles {
+  ArrayView<Vec4> positions{};  ///< OpenGL's clip space: −w ≤ z ≤ w
+  IndexView triangles{};
+  std::size_t first = 0, count = 0;
+};
+
+/// Keeps what a picture is made of from one to the next.
+class ClipRasterizer {
+ public:
+  /// Fills (u, v, z/w, number of the triangle + 1), the weights of the first and the second corner;
+  /// zeros where nothing is. Row 0 is that of y = −w. Throws Error{invalid_argument} for an index
+  /// that has no position.
+  void draw(Renderer& by, const ClipTriangles& what, ImageView<Vec4> into, std::stop_token stop);
+
+ private:
+  std::vector<std::uint32_t> corners_;
+  std::vector<std::int64_t> ids_;
+  std::vector<float> depth_;
+  std::vector<Vec2> weights_;
+};
+
+}  // namespace rastrum::python
