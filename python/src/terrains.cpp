@@ -13,6 +13,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
+#include <rastrum/stop.hpp>
 #include <rastrum/terrain.hpp>
 #include <rastrum/terrain_light.hpp>
 
@@ -69,6 +70,9 @@ LitTerrain lit(const Array& heights, const std::optional<Array>& colors,
                int threads) {
   terrain::Light light;
   light.sun = {sun[0], sun[1]};
+  if (!std::isfinite(sun[0]) || !std::isfinite(sun[1]) || sun[1] > 90)
+    throw Error(Errc::invalid_argument,
+                "sun: azimuth and elevation must be finite, the elevation at most 90 degrees");
   light.shadows =
       named<terrain::Shadows>("shadows", shadows, {"none", "accumulated", "sharp", "soft"});
   light.hill_shading = !colors;
