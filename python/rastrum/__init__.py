@@ -12,6 +12,7 @@ from ._errors import (ArgumentError, ArgumentTypeError, DeviceError, Error, File
 from ._lights import Light
 from ._rasterize import rasterize
 from ._render import OUTPUTS, Hit, Picture, Pictures, Renderer, digest, render, views4
+from ._terrain import Terrain
 from ._things import (ColorMapping, Cylinders, Discs, Lines, Material, Mesh, Points, Scene, Spheres, Tubes, as_scene, color_maps,
                       load)
 
@@ -19,7 +20,7 @@ __version__ = "0.1.0"
 __all__ = [
     "OUTPUTS", "ArgumentError", "ArgumentTypeError", "Camera", "ColorMapping", "Cylinders", "DeviceError", "Discs", "Error", "FileError",
     "FormatError", "Hit", "Light", "Lines", "Material", "Mesh", "NotFoundError", "OutOfMemoryError", "Picture", "Pictures", "Points",
-    "Renderer", "Scene", "Spheres", "Tubes", "UnsupportedError", "as_scene", "color_maps", "digest", "load", "orbit", "rasterize", "render",
+    "Renderer", "Scene", "Spheres", "Terrain", "Tubes", "UnsupportedError", "as_scene", "color_maps", "digest", "load", "orbit", "rasterize", "render",
     "trimesh_viewer", "views4",
 ]
 

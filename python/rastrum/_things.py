@@ -280,11 +280,12 @@ class Scene:
     """Things drawn together, in this order: ids count their primitives one after the other.
 
     crease: meshes of files without normals are smooth where their faces meet at no more than this angle (degrees);
-    180: everywhere; None: nowhere.
+    180: everywhere; None: nowhere. scalars: which numbers of files become colours, by name; x, y, z and distance are made
+    where no file has them. cmap, clim: as things have them.
     """
 
     @raises_errors
-    def __init__(self, things=(), copy=None, crease=40.0):
+    def __init__(self, things=(), copy=None, crease=40.0, *, scalars=None, cmap="viridis", clim=None):
         self.files, self.things = [], []
         self._made = _r.Scene()
         materials, mappings, textures = {}, {}, [0]
@@ -302,6 +303,21 @@ class Scene:
                 materials[id(material)] = len(materials)
             thing._add_to(self._made, materials, mappings)
             self.things.append(thing)
+        if scalars is not None:
+            self._show(scalars, cmap, clim, mappings)
+
+    def _show(self, scalars, cmap, clim, mappings):
+        if not isinstance(scalars, str):
+            raise ArgumentTypeError(f"scalars: of files they have a name, {scalars!r} is none")
+        if not self.files:
+            raise ArgumentError("scalars: names numbers of files, and there are none; a Mesh takes them itself")
+        if isinstance(cmap, ColorMapping) and clim is not None:
+            raise ArgumentError("clim: the range is the ColorMapping's")
+        mapping = cmap if isinstance(cmap, ColorMapping) else ColorMapping(cmap, clim)
+        if id(mapping) not in mappings:
+            self._made.add_mapping(mapping._made)
+            mappings[id(mapping)] = len(mappings)
+        self._made.show_scalars(scalars, mappings[id(mapping)])
 
     @property
     def primitives(self):
@@ -322,9 +338,9 @@ class Scene:
         return self._made.bounds()
 
 
-def load(path, *, crease=40.0):
-    """The scene of a file (.obj .ply .stl .off .gltf .glb); crease: as Scene has it."""
-    return Scene([path], crease=crease)
+def load(path, *, crease=40.0, scalars=None, cmap="viridis", clim=None):
+    """The scene of a file (.obj .ply .stl .off .gltf .glb); crease, scalars, cmap, clim: as Scene has them."""
+    return Scene([path], crease=crease, scalars=scalars, cmap=cmap, clim=clim)
 
 
 def _flat(what, copy=None):

@@ -54,4 +54,5 @@ NB_MODULE(_rastrum, m) {
   py::bind_scenes(m);
   py::bind_annotations(m);
   py::bind_frames(m);
+  py::bind_terrains(m);
 }

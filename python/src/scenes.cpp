@@ -112,6 +112,12 @@ void ArrayScene::add_file(const std::string& file, std::optional<double> crease_
   bound_ = false;
 }
 
+void ArrayScene::show_scalars(const std::string& name, std::uint32_t mapping) {
+  rastrum::show_scalars(files_, name);
+  for (Instance& i : files_.instances) i.scalar_mapping = mapping;
+  bound_ = false;
+}
+
 void ArrayScene::add_texture(const Array& pixels) {
   if (pixels.ndim() != 3 || pixels.dtype() != nb::dtype<std::uint8_t>() ||
       (pixels.shape(2) != 3 && pixels.shape(2) != 4))
@@ -243,6 +249,7 @@ void bind_scenes(nb::module_& m) {
       .def(nb::init<>())
       .def("add_file", &ArrayScene::add_file, arg("file"), arg("crease").none(),
            nb::call_guard<nb::gil_scoped_release>())
+      .def("show_scalars", &ArrayScene::show_scalars, arg("name"), arg("mapping"))
       .def("add_texture", &ArrayScene::add_texture, arg("pixels"))
       .def("add_material", &ArrayScene::add_material, arg("material"))
       .def("add_mapping", &ArrayScene::add_mapping, arg("mapping"))

@@ -34,6 +34,36 @@ def test_a_file_and_arrays_agree(sheet, tmp_path):
     mesh = rr.Mesh(vertices, triangles, scalars=values, cmap=mapping)
     picture = rr.render(mesh, size=SIZE, shader="flat")
     assert rr.digest(picture.color) in said.stdout
+    loaded = rr.load(file, crease=None, scalars="heat", cmap=mapping)
+    assert (rr.render(loaded, size=SIZE, shader="flat").color == picture.color).all()
+
+
+def test_numbers_of_files_by_name(obj, sheet):
+    vertices, triangles = sheet
+    options = {"size": SIZE, "outputs": ("color", "scalars")}
+    shown = rr.render(rr.load(obj, scalars="z", cmap="plasma", clim=(0, 0.2)), **options)
+    assert np.array_equal(shown.scalars, rr.render(rr.Mesh(vertices, triangles, scalars=vertices[:, 2]), **options).scalars,
+                          equal_nan=True)
+    assert (shown.color != rr.render(obj, **options).color).any()
+    # Beside other things, and one range for all that share a mapping.
+    shared = rr.ColorMapping("viridis")
+    ball = rr.Spheres([[3, 0, 0]], 0.5, scalars=[2.0], cmap=shared)
+    both = rr.Scene([ball, obj], scalars="z", cmap=shared)
+    alone = rr.Scene([ball, rr.Mesh(vertices, triangles, scalars=vertices[:, 2], cmap=shared)])
+    assert np.nanmax(rr.render(both, **options).scalars) == 2
+    colors = [rr.render(s, shader="flat", **options).color for s in (both, alone)]
+    assert (colors[0] == colors[1]).all()
+
+
+def test_what_is_wrong_with_names_of_numbers_is_said(obj, sheet):
+    with pytest.raises(rr.NotFoundError, match="pressure"):
+        rr.load(obj, scalars="pressure")
+    with pytest.raises(rr.ArgumentTypeError, match="^scalars"):
+        rr.load(obj, scalars=[1, 2])
+    with pytest.raises(rr.ArgumentError, match="^scalars: .*files"):
+        rr.Scene([sheet], scalars="z")
+    with pytest.raises(rr.ArgumentError, match="^clim"):
+        rr.load(obj, scalars="z", cmap=rr.ColorMapping(), clim=(0, 1))
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64, np.int8, np.uint8, np.int16, np.uint16, np.int32, np.uint32, np.int64,

@@ -1,0 +1,108 @@
+"""Height maps, lit once and drawn from where one stands."""
+
+import os
+
+import numpy as np
+
+from . import _rastrum as _r
+from ._arrays import _numbers
+from ._arrays import color as _color
+from ._errors import ArgumentError, ArgumentTypeError, UnsupportedError, raises_errors
+from ._render import Picture, _number_of_threads, _size, _text
+
+
+def _rgb(value, name):
+    return None if value is None else [round(255 * c) for c in _color(value, name)[:3]]
+
+
+class Terrain:
+    """A map of heights, (H, W) in cells, row 0 in the north; NaN is a hole. It is copied, and lit here.
+
+    colors: (h, w, 3 or 4) of uint8, of any size, stretched over the map; None: by height, with shaded slopes. sun: (azimuth
+    clockwise from north, elevation) in degrees. shadows: none, accumulated, sharp, soft; ambient: of a colour where no sun
+    is; sun_radius: of soft shadows, degrees. filter: none, bilinear, mip. tiling: what lies beyond the edge: repeat,
+    mirror, clamp. threads: None takes RASTRUM_NUM_THREADS or the cores that this process may use.
+    """
+
+    @raises_errors
+    def __init__(self, heights, colors=None, *, sun=(315.0, 35.0), shadows="none", ambient=0.45, sun_radius=0.2666,
+                 filter="bilinear", tiling="repeat", threads=None):
+        array = _numbers(heights, "heights")
+        if array.dtype.kind not in "fiu" or array.ndim != 2:
+            raise ArgumentError(f"heights: must be (H, W) numbers, not {array.shape} of {array.dtype}")
+        if colors is not None:
+            colors = _numbers(colors, "colors")
+            if colors.dtype != np.uint8 or colors.ndim != 3 or colors.shape[2] not in (3, 4):
+                raise ArgumentError(f"colors: must be (h, w, 3 or 4) of uint8, not {colors.shape} of {colors.dtype}")
+            opaque = np.full((*colors.shape[:2], 4), 255, np.uint8)
+            opaque[..., :3] = colors[..., :3]
+            colors = opaque
+        self._threads = _number_of_threads() if threads is None else threads
+        if not isinstance(self._threads, int) or not 1 <= self._threads <= 1024:
+            raise ArgumentError(f"threads: {threads!r} must be a whole number from 1 to 1024")
+        with np.errstate(over="ignore"):  # what float32 has no number for is a hole
+            array = np.ascontiguousarray(array, np.float32)
+        self._made = _r.lit_terrain(array, colors, list(sun), _text(shadows, "shadows"), ambient, sun_radius,
+                                    _text(filter, "filter"), _text(tiling, "tiling"), self._threads)
+        self._renderer = None, None
+
+    @property
+    def heights(self):
+        """(lowest, highest)"""
+        return self._made.lowest, self._made.highest
+
+    @raises_errors
+    def ground_at(self, x, y):
+        """The height of the ground there, as it is drawn near by; NaN in a hole."""
+        return self._made.ground_at(float(x), float(y))
+
+    @raises_errors
+    def render(self, position=None, *, altitude=None, angle=0.0, horizon=None, roll=0.0, clearance=None, size=(1280, 720),
+               distance=800.0, fov=90.0, scale=0.0, projection="planar", sky=None, fog=None, depth=False):
+        """A Picture: `color`, and with depth=True `depth`, in cells along the view, 0 where the sky is.
+
+        position: (x, y) in cells, x east and y south (half of the width, 0.78 of the height). altitude: in cells (a tenth of
+        the relief above the highest). angle: 0 looks north, 90 west. horizon: its row (a quarter of the height). roll:
+        degrees counter-clockwise. clearance: lifts the camera to so much above the ground. distance: cells that are seen.
+        fov: across, degrees. scale: rows that a height of 1 takes at distance 1, 0: as lenses have it. projection:
+        planar, cylindrical. sky: a colour, None: one that dims with a low sun. fog: density a cell, or (density, start),
+        or (density, start, colour). The program's `terrain` draws the same bits.
+        """
+        width, height = _size(size)
+        density, start, fog_color = _fog(fog)
+        frame = _r.terrain_frame(self._made, width, height, distance, fov, scale, _text(projection, "projection"),
+                                 _rgb(sky, "sky"), density, start, _rgb(fog_color, "fog"), clearance)
+        camera = _r.terrain_camera(self._made, height, None if position is None else list(position), altitude, angle, horizon,
+                                   roll)
+        arrays = {"color": np.empty((height, width, 4), np.uint8)}
+        if depth:
+            arrays["depth"] = np.empty((height, width), np.float32)
+        stats = self._drawer().render(self._made, camera, frame, arrays["color"], arrays.get("depth"))
+        if depth:
+            arrays["depth"][np.isinf(arrays["depth"])] = 0
+        return Picture(arrays, stats, _no_pick)
+
+    _lost = []
+
+    def _drawer(self):
+        # A forked child has none of its parent's threads, and the end of a renderer would wait for them.
+        process, renderer = self._renderer
+        if process != os.getpid():
+            if renderer is not None:
+                Terrain._lost.append(renderer)
+            renderer = _r.TerrainRenderer(self._threads)
+            self._renderer = os.getpid(), renderer
+        return renderer
+
+
+def _no_pick(x, y):
+    raise UnsupportedError("pick: a terrain has no primitives; `depth` says how far it is")
+
+
+def _fog(fog):
+    if fog is None:
+        return 0.0, 0.0, None
+    parts = [fog] if np.isscalar(fog) else list(fog)
+    if not 1 <= len(parts) <= 3:
+        raise ArgumentTypeError(f"fog: must be density, start and colour, not {fog!r}")
+    return (*parts, *(0.0, 0.0, None)[len(parts):])

@@ -1,0 +1,205 @@
+// Terrains: height maps that are lit once and drawn from where one stands.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include <rastrum/stop.hpp>
+#include <rastrum/terrain.hpp>
+#include <rastrum/terrain_light.hpp>
+
+#include "bindings.hpp"
+
+namespace rastrum::python {
+namespace {
+
+using terrain::TerrainCamera;
+using terrain::TerrainOptions;
+using Rgb = std::array<std::uint8_t, 3>;
+
+constexpr double kRadians = std::numbers::pi / 180;
+constexpr std::size_t kMostCells = 1U << 20U;  // along a side
+
+/// The value whose place in `names` this is.
+template <class Enum, std::size_t N>
+Enum named(const char* what, const std::string& name, const char* const (&names)[N]) {
+  std::string all;
+  for (std::size_t i = 0; i < N; ++i) {
+    if (name == names[i]) return static_cast<Enum>(i);
+    all += (i > 0 ? ", " : "") + std::string(names[i]);
+  }
+  throw Error(Errc::invalid_argument,
+              std::string(what) + ": there is no " + name + "; take one of " + all);
+}
+
+/// An image of what Python has made C-contiguous.
+template <class T>
+Image<T> image(const Array& array, const char* what) {
+  if (array.shape(0) == 0 || array.shape(1) == 0 || array.shape(0) > kMostCells ||
+      array.shape(1) > kMostCells)
+    throw Error(Errc::invalid_argument, std::string(what) + ": has " +
+                                            std::to_string(array.shape(1)) + " x " +
+                                            std::to_string(array.shape(0)) + " cells");
+  Image<T> made(static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)));
+  std::memcpy(made.pixels().data(), array.data(), made.pixels().size() * sizeof(T));
+  return made;
+}
+
+/// A lit map, and how it is sampled.
+struct LitTerrain {
+  terrain::Terrain map;
+  terrain::Sun sun;
+  terrain::MapFilter filter;
+  terrain::Tiling tiling;
+  int width, height;
+  double low, high;
+};
+
+LitTerrain lit(const Array& heights, const std::optional<Array>& colors,
+               const std::array<double, 2>& sun, const std::string& shadows, double ambient,
+               double sun_radius_deg, const std::string& filter, const std::string& tiling,
+               int threads) {
+  terrain::Light light;
+  light.sun = {sun[0], sun[1]};
+  if (!std::isfinite(sun[0]) || !std::isfinite(sun[1]) || sun[1] > 90)
+    throw Error(Errc::invalid_argument,
+                "sun: azimuth and elevation must be finite, the elevation at most 90 degrees");
+  light.shadows =
+      named<terrain::Shadows>("shadows", shadows, {"none", "accumulated", "sharp", "soft"});
+  light.hill_shading = !colors;
+  light.ambient = static_cast<float>(ambient);
+  light.sun_radius_deg = sun_radius_deg;
+  const auto filtered = named<terrain::MapFilter>("filter", filter, {"none", "bilinear", "mip"});
+  const auto tiles = named<terrain::Tiling>("tiling", tiling, {"repeat", "mirror", "clamp"});
+  light.smooth = filtered == terrain::MapFilter::bilinear;
+
+  terrain::HeightMap map{image<float>(heights, "heights"), {}};
+  if (colors) map.colors = image<Rgba8>(*colors, "colors");
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (float& h : map.heights.pixels()) {
+    if (!std::isfinite(h)) {
+      h = std::numeric_limits<float>::quiet_NaN();
+      continue;
+    }
+    low = std::min(low, static_cast<double>(h));
+    high = std::max(high, static_cast<double>(h));
+  }
+  if (!(low <= high)) throw Error(Errc::invalid_argument, "heights: none of them is a number");
+  const int width = map.heights.width(), height = map.heights.height();
+  if (light.hill_shading || light.shadows != terrain::Shadows::none)
+    map.colors = terrain::lit_colors(map, light, {tiles, Device::threads, threads, {}});
+  return {terrain::Terrain(std::move(map)), light.sun, filtered, tiles, width, height, low, high};
+}
+
+/// Of who did not say: over the south of the map, looking down on all of it.
+TerrainCamera camera(const LitTerrain& t, int rows, const std::optional<std::array<double, 2>>& at,
+                     const std::optional<double>& altitude, double angle_deg,
+                     const std::optional<double>& horizon_px, double roll_deg) {
+  TerrainCamera c;
+  c.x = at ? (*at)[0] : t.width / 2.0;
+  c.y = at ? (*at)[1] : t.height * (800.0 / 1024);
+  c.altitude = altitude.value_or(t.high + std::max((t.high - t.low) / 10, 1.0));
+  c.angle_rad = angle_deg * kRadians;
+  c.horizon_px = horizon_px.value_or(rows / 4);
+  c.roll_rad = roll_deg * kRadians;
+  return c;
+}
+
+TerrainOptions frame(const LitTerrain& t, int width, int height, double distance, double fov_deg,
+                     double scale_px, const std::string& projection, const std::optional<Rgb>& sky,
+                     double fog_density, double fog_start, const std::optional<Rgb>& fog_color,
+                     const std::optional<double>& clearance) {
+  TerrainOptions o;
+  o.width = width;
+  o.height = height;
+  o.distance = distance;
+  o.fov_rad = fov_deg * kRadians;
+  o.scale_px = scale_px;
+  o.step = 0;
+  o.filter = t.filter;
+  o.tiling = t.tiling;
+  o.projection = named<terrain::Projection>("projection", projection, {"planar", "cylindrical"});
+  const auto opaque = [](const Rgb& c) { return Rgba8{c[0], c[1], c[2], 255}; };
+  o.sky = sky ? opaque(*sky) : terrain::sky_in(o.sky, t.sun);
+  o.fog = {fog_density, fog_start, {}};
+  if (fog_color) o.fog.color = opaque(*fog_color);
+  o.ground_clearance = clearance;
+  check(o);
+  return o;
+}
+
+class TerrainDrawer {
+ public:
+  explicit TerrainDrawer(int threads) : renderer_({Device::threads, threads, {}}) {}
+
+  terrain::TerrainStats render(const LitTerrain& t, const TerrainCamera& from,
+                               const TerrainOptions& o, const Output& color,
+                               const std::optional<Output>& depth) {
+    terrain::TerrainTargets targets;
+    targets.color8 = {static_cast<Rgba8*>(color.data()), o.width, o.height};
+    if (depth) targets.depth = {static_cast<float*>(depth->data()), o.width, o.height};
+    for (;;) {
+      const StopOnInterrupt interrupt;
+      try {
+        const nb::gil_scoped_release unlock;
+        return renderer_.render(t.map, from, o, targets, interrupt.token());
+      } catch (const parallel::Stopped&) {
+      }
+      if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    }
+  }
+
+ private:
+  terrain::TerrainRenderer renderer_;
+};
+
+}  // namespace
+
+void bind_terrains(nb::module_& m) {
+  using nb::arg;
+  nb::class_<LitTerrain>(m, "LitTerrain")
+      .def_prop_ro("lowest", [](const LitTerrain& t) { return t.low; })
+      .def_prop_ro("highest", [](const LitTerrain& t) { return t.high; })
+      .def("ground_at", [](const LitTerrain& t, double x, double y) {
+        TerrainOptions o;
+        o.filter = t.filter;
+        o.tiling = t.tiling;
+        return terrain::ground_at(t.map, x, y, o);
+      });
+  m.def("lit_terrain", lit, arg("heights"), arg("colors").none(), arg("sun"), arg("shadows"),
+        arg("ambient"), arg("sun_radius"), arg("filter"), arg("tiling"), arg("threads"),
+        nb::call_guard<nb::gil_scoped_release>());
+  nb::class_<TerrainCamera>(m, "TerrainCamera");
+  m.def("terrain_camera", camera, arg("terrain"), arg("rows"), arg("position").none(),
+        arg("altitude").none(), arg("angle"), arg("horizon").none(), arg("roll"));
+  nb::class_<TerrainOptions>(m, "TerrainFrame");
+  m.def("terrain_frame", frame, arg("terrain"), arg("width"), arg("height"), arg("distance"),
+        arg("fov"), arg("scale"), arg("projection"), arg("sky").none(), arg("fog_density"),
+        arg("fog_start"), arg("fog_color").none(), arg("clearance").none());
+  nb::class_<TerrainDrawer>(m, "TerrainRenderer")
+      .def(nb::init<int>(), arg("threads"))
+      .def(
+          "render",
+          [](TerrainDrawer& by, const LitTerrain& t, const TerrainCamera& from,
+             const TerrainOptions& o, const Output& color, const std::optional<Output>& depth) {
+            const terrain::TerrainStats s = by.render(t, from, o, color, depth);
+            nb::dict d;
+            d["samples"] = s.samples;
+            d["peak_bytes"] = s.peak_bytes;
+            d["frame_ms"] = s.frame_ms;
+            d["camera"] = nb::make_tuple(s.camera.x, s.camera.y, s.camera.altitude);
+            return d;
+          },
+          arg("terrain"), arg("camera"), arg("frame"), arg("color"), arg("depth").none());
+}
+
+}  // namespace rastrum::python
