@@ -3,7 +3,7 @@
 import argparse
 import sys
 
-from . import ArgumentError, Camera, Error, Scene, _video, orbit, render, views4
+from . import ArgumentError, Camera, Error, Scene, _video, render, views4
 
 
 def _size(text):
@@ -44,7 +44,7 @@ def main(arguments=None):
         if options.command == "video":
             if options.frames < 1 or not 0 < options.fps <= 1000:
                 raise ArgumentError("--frames, --fps: must be greater than 0")
-            cameras = orbit(scene, options.frames, elevation=options.elevation)
+            cameras = _video.turntable(scene, options.frames, options.elevation)
             _video.write(options.output, (render(scene, c, **look) for c in cameras), options.size, options.fps)
             return 0
         if options.command == "views":
