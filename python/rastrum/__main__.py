@@ -1,9 +1,9 @@
-"""python -m rastrum render|views|info FILE...: pictures of files, without the program."""
+"""python -m rastrum render|views|video|info FILE...: pictures of files, without the program."""
 
 import argparse
 import sys
 
-from . import Camera, Error, Scene, render, views4
+from . import ArgumentError, Camera, Error, Scene, _video, render, views4
 
 
 def _size(text):
@@ -15,18 +15,23 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(prog="python -m rastrum", description="Pictures of meshes and point clouds.",
                                      epilog="example: python -m rastrum views part.stl -o views.png")
     commands = parser.add_subparsers(dest="command", required=True)
-    for name, about in (("render", "one picture"), ("views", "front, right, top and three-quarter view"),
+    for name, about in (("render", "one picture"), ("views", "front, right, top and three-quarter view"), ("video", "once around"),
                         ("info", "what is in the files")):
         command = commands.add_parser(name, help=about, description=about)
         command.add_argument("files", nargs="+", metavar="FILE", help=".obj .ply .stl .off .gltf .glb")
         if name != "info":
-            command.add_argument("-o", "--output", required=True, help=".png")
-            command.add_argument("--size", type=_size, default=(1280, 720) if name == "render" else (512, 512),
+            command.add_argument("-o", "--output", required=True,
+                                 help=".mp4, .gif, .png (animated) or frame_%%04d.png" if name == "video" else ".png")
+            command.add_argument("--size", type=_size, default=(1280, 720) if name != "views" else (512, 512),
                                  help="WxH")
             command.add_argument("--shader", default="auto")
             command.add_argument("--background", default=None, help="#rrggbb or a name (transparent)")
         if name == "render":
             command.add_argument("--view", default="front", help="front, back, left, right, top, bottom, iso")
+        if name == "video":
+            command.add_argument("--frames", type=int, default=72, help="pictures of the whole turn (72)")
+            command.add_argument("--fps", type=float, default=24.0, help="(24)")
+            command.add_argument("--elevation", type=float, default=25.0, help="degrees (25)")
     options = parser.parse_args(arguments)
     try:
         scene = Scene(options.files)
@@ -36,6 +41,12 @@ def main(arguments=None):
             print(scene._made.describe(), end="")
             return 0
         look = {"size": options.size, "shader": options.shader, "background": options.background}
+        if options.command == "video":
+            if options.frames < 1 or not 0 < options.fps <= 1000:
+                raise ArgumentError("--frames, --fps: must be greater than 0")
+            cameras = _video.turntable(scene, options.frames, options.elevation)
+            _video.write(options.output, (render(scene, c, **look) for c in cameras), options.size, options.fps)
+            return 0
         if options.command == "views":
             picture = views4(scene, **look)
         else:

@@ -1,0 +1,89 @@
+"""Many pictures in one file: GIF and APNG by PIL, MP4 by ffmpeg, or a PNG each."""
+
+import math
+import re
+import shutil
+import subprocess
+
+from ._camera import Camera
+from ._errors import ArgumentError, FileError, UnsupportedError
+
+_NUMBERED = re.compile(r"%0?\d*d")
+
+
+def turntable(scene, n, elevation, fov=60.0):
+    """n cameras once around all of the scene, at one distance: it keeps its size, where orbit() fits each picture."""
+    bounds = scene.bounds
+    low, high = bounds if bounds is not None else ((-1, -1, -1), (1, 1, 1))
+    middle = [(a + b) / 2 for a, b in zip(low, high)]
+    radius = math.dist(low, high) / 2 or 1.0
+    away = radius / math.sin(math.radians(fov / 2))
+    rise = math.radians(max(-89.0, min(89.0, elevation)))
+    cameras = []
+    for i in range(n):
+        a = 2 * math.pi * i / n
+        toward = math.cos(rise) * math.sin(a), math.sin(rise), math.cos(rise) * math.cos(a)
+        cameras.append(Camera.look_at([m + away * t for m, t in zip(middle, toward)], middle, fov=fov, near=away / 1000))
+    return cameras
+
+
+def check(path, size):
+    """Throws what write() would, as far as it can be known before a picture is drawn."""
+    if _NUMBERED.search(path):
+        if not path.lower().endswith(".png"):
+            raise ArgumentError(f"{path}: pictures with a number are .png")
+    elif path.lower().endswith(".mp4"):
+        if size[0] % 2 or size[1] % 2:
+            raise ArgumentError(f"{path}: MP4 wants an even width and height, not {size[0]}x{size[1]}")
+        _ffmpeg(path)
+    elif path.lower().endswith((".gif", ".png")):
+        _pil(path)
+    else:
+        raise ArgumentError(f"{path}: videos are .mp4, .gif, .png (animated) or frames as in frame_%04d.png")
+
+
+def write(path, pictures, size, fps):
+    """Pictures one after the other, each drawn as it is taken."""
+    check(path, size)
+    if _NUMBERED.search(path):
+        for i, picture in enumerate(pictures):
+            picture.save(path % i)
+    elif path.lower().endswith(".mp4"):
+        _mp4(path, pictures, size, fps)
+    else:
+        frames = [_pil(path).fromarray(p.color) for p in pictures]
+        frames[0].save(path, save_all=True, append_images=frames[1:], duration=round(1000 / fps), loop=0)
+
+
+def _pil(path):
+    try:
+        from PIL import Image
+    except ImportError as e:
+        raise UnsupportedError(f"{path}: PIL writes it, which is not installed (pip install pillow)") from e
+    return Image
+
+
+def _ffmpeg(path):
+    found = shutil.which("ffmpeg")
+    if found is None:
+        try:
+            import imageio_ffmpeg
+            found = imageio_ffmpeg.get_ffmpeg_exe()
+        except (ImportError, RuntimeError) as e:
+            raise UnsupportedError(f"{path}: ffmpeg writes it, which is not here (pip install imageio-ffmpeg)") from e
+    return found
+
+
+def _mp4(path, pictures, size, fps):
+    command = [_ffmpeg(path), "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{size[0]}x{size[1]}",
+               "-r", str(fps), "-i", "-", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "file:" + path]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as encoder:
+        try:
+            for picture in pictures:
+                encoder.stdin.write(picture.color.tobytes())
+            encoder.stdin.close()
+        except BrokenPipeError:
+            pass  # it says why
+        said = encoder.stderr.read().decode(errors="replace").strip()
+    if encoder.returncode != 0:
+        raise FileError(f"{path}: ffmpeg: {said}")
