@@ -70,6 +70,12 @@ def test_the_program_draws_the_same(sheet, obj):
     said = subprocess.run([program, "render", "--look", "plain", str(obj), "--lights", "studio", "--size", "120x90", "--normals", "face", "--hash",
                            "--quiet"], capture_output=True, text=True, check=True).stdout
     assert said.split()[0] == rr.digest(rr.render(rr.load(obj, crease=None), size=SIZE, lights="studio").color)
+    # The program alone draws the picture to show.
+    said = subprocess.run([program, "render", str(obj), "--size", "120x90", "--normals", "face", "--hash", "--quiet"],
+                          check=True, capture_output=True, text=True).stdout
+    part = rr.load(obj, crease=None)
+    shown = rr.render(part, rr.Camera.fit(part, "iso", fov=30), size=SIZE, lights="studio", samples=4, annotate="occlusion")
+    assert said.split()[0] == rr.digest(shown.color)
 
 
 @pytest.mark.parametrize("bad", [
