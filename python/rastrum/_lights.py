@@ -19,6 +19,12 @@ def _three(value, name):
     return array.tolist()
 
 
+def display(linear):
+    """Colours as they are given here, of linear ones in [0, 1]: lights of others are in these."""
+    x = np.clip(np.asarray(linear, float), 0, 1)
+    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
+
+
 class Light:
     """A light; made by one of its five functions.
 

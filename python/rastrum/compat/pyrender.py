@@ -11,6 +11,7 @@ from .. import _things as _t
 from .._camera import Camera as _Camera
 from .._errors import ArgumentError, UnsupportedError
 from .._lights import Light as _Light
+from .._lights import display
 from .._render import Renderer as _Renderer
 
 __all__ = ["Camera", "DirectionalLight", "IntrinsicsCamera", "Light", "Material", "Mesh", "MetallicRoughnessMaterial", "Node",
@@ -84,12 +85,6 @@ class OrthographicCamera(Camera):
         return p
 
 
-def _display(linear):
-    """Display values, as Rastrum's colours are, of linear ones, as pyrender's are."""
-    x = np.clip(np.asarray(linear, float), 0, 1)
-    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
-
-
 class Light:
     """color: linear, (3,), 0 to 1. intensity: lux, or candela where it has a place. It shines along its node's -z."""
 
@@ -98,7 +93,7 @@ class Light:
         self.intensity, self.name = 1.0 if intensity is None else intensity, name
 
     def _look(self):
-        return {"color": tuple(_display(self.color)), "intensity": self.intensity / np.pi}
+        return {"color": tuple(display(self.color)), "intensity": self.intensity / np.pi}
 
     def _placed(self, pose):
         raise UnsupportedError(f"{type(self).__name__}: is of no kind; take DirectionalLight, PointLight or SpotLight")
@@ -155,9 +150,9 @@ class MetallicRoughnessMaterial(Material):
     def _made(self):
         """Of the shader `material`. Its textures are not drawn."""
         emissive = np.zeros(3) if self.emissiveFactor is None else np.asarray(self.emissiveFactor, float)[:3]
-        base = np.append(_display(self.baseColorFactor[:3]), np.clip(self.baseColorFactor[3], 0, 1))
+        base = np.append(display(self.baseColorFactor[:3]), np.clip(self.baseColorFactor[3], 0, 1))
         return _t.Material(tuple(base), metallic=self.metallicFactor, roughness=self.roughnessFactor,
-                           emissive=tuple(_display(emissive)), alpha_mode=self.alphaMode.lower(),
+                           emissive=tuple(display(emissive)), alpha_mode=self.alphaMode.lower(),
                            alpha_cutoff=self.alphaCutoff, double_sided=self.doubleSided)
 
 
@@ -361,7 +356,7 @@ class OffscreenRenderer:
                   "flat" if flags & RenderFlags.FLAT or segmented else "auto")
         lights = [n.light._placed(scene.get_pose(n)) for n in scene._parents if n.light is not None]
         if scene.ambient_light is not None:
-            lights.append(_Light.ambient(color=tuple(_display(np.asarray(scene.ambient_light)[:3]))))
+            lights.append(_Light.ambient(color=tuple(display(np.asarray(scene.ambient_light)[:3]))))
         lit = bool(lights) and shader == "auto" and not flags & RenderFlags.DEPTH_ONLY
         things, nodes = [], []
         for n in scene._parents:
