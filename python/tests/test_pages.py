@@ -1,7 +1,10 @@
-"""The Python of docs/coming_from.md runs, and says what is true."""
+"""The Python of docs/coming_from.md and docs/tour.ipynb runs, and shows what is there."""
 
+import json
 import pathlib
 import re
+import subprocess
+import sys
 import types
 
 import numpy as np
@@ -9,7 +12,9 @@ import pytest
 
 import rastrum as rr
 
-PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "coming_from.md"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGE = ROOT / "docs" / "coming_from.md"
+TOUR = ROOT / "docs" / "tour.ipynb"
 
 
 def ball(n=24):
@@ -45,3 +50,21 @@ def test_every_block_runs(tmp_path, monkeypatch):
     assert (tmp_path / "points.png").stat().st_size > 1000
     assert names["mask"].any(axis=(1, 2)).all() and len(names["points"]) > 1000
     assert isinstance(names["p"], rr.Pictures)
+
+
+def test_the_tour_shows_what_it_holds(tmp_path):
+    pytest.importorskip("PIL")
+    tool = ROOT / "tools" / "notebook.py"
+    if not TOUR.exists() or not tool.exists():
+        pytest.skip("the notebook is not beside the tests")
+    def check(file):
+        return subprocess.run([sys.executable, tool, "check", file], capture_output=True, text=True, cwd=tmp_path)
+    done = check(TOUR)
+    assert done.returncode == 0, done.stderr
+    # Another picture, and other words, are seen.
+    for old, new, cell in (("#c8a070", "#70a0c8", 1), ("nearest:", "farthest:", 4)):
+        notebook = json.loads(TOUR.read_text(encoding="utf-8"))
+        changed = json.dumps(notebook).replace(old, new, 1)
+        (tmp_path / "other.ipynb").write_text(changed)
+        done = check(tmp_path / "other.ipynb")
+        assert done.returncode == 1 and f"cell {cell} " in done.stderr, done.stderr
