@@ -14,6 +14,7 @@
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/resolve/distances.hpp>
 #include <rastrum/raster/resolve/surface_point.hpp>
+#include <rastrum/core/srgb.hpp>
 #include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/scene/mesh_checks.hpp>
 
