@@ -48,7 +48,7 @@ FLOOR_OF = {f"{name}.hpp": floor for floor, names in PUBLIC.items() for name in 
 PROGRAMS_MAY = {
     "apps": {"rastrum/core/angle.hpp", "rastrum/core/elementary.hpp", "rastrum/core/srgb.hpp",
              "rastrum/io/mapped_file.hpp", "rastrum/parallel/exec.hpp",
-             "rastrum/raster/assemble/clip.hpp"},
+             "rastrum/raster/assemble/clip.hpp", "rastrum/raster/shade/srgb.hpp"},
     "examples": set(),
 }
 ENDINGS = {".hpp", ".cpp", ".h", ".inl", ".cu", ".cuh"}

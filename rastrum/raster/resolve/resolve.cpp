@@ -8,13 +8,13 @@
 #include <unordered_map>
 
 #include <rastrum/core/enum.hpp>
+#include <rastrum/core/srgb.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/resolve/distances.hpp>
 #include <rastrum/raster/resolve/surface_point.hpp>
-#include <rastrum/core/srgb.hpp>
 #include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/scene/mesh_checks.hpp>
 
