@@ -65,6 +65,8 @@ void run(std::span<const std::byte> bytes) {
   for (const auto& [name, index] : by_name) require(index < scene.materials.size());
 #elif defined(RASTRUM_FUZZ_image)
   (void)io::decode_image(bytes, "input");
+#elif defined(RASTRUM_FUZZ_light)
+  (void)io::decode_light(bytes, "input");
 #elif defined(RASTRUM_FUZZ_height)
   // The first byte chooses the format.
   if (bytes.empty()) return;

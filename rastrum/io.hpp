@@ -37,6 +37,12 @@ class AtomicFile;
 [[nodiscard]] Image<Rgba8> read_image(const std::filesystem::path& file);
 [[nodiscard]] Image<Rgba8> decode_image(std::span<const std::byte> bytes, const std::string& name);
 
+/// Linear light of a picture, whatever it is of: Radiance's .hdr (its EXPOSURE taken back), OpenEXR
+/// (R, G and B, or Y), PNG or JPEG as sRGB, by the first bytes. What an Environment is made of.
+/// Throws as read_image.
+[[nodiscard]] Image<Vec3> read_light(const std::filesystem::path& file);
+[[nodiscard]] Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& name);
+
 /// Writers write to a temporary name beside `file` and rename it, so that a file is whole or
 /// absent. Throws Error{io} naming the file, Error{invalid_argument} for an empty image or rows
 /// that overlap.

@@ -4,10 +4,12 @@
 
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
 
+#include <rastrum/environment.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/vec.hpp>
 
@@ -44,12 +46,22 @@ struct SpotLight {
   float inner_rad = 0, outer_rad = std::numbers::pi_v<float> / 4;
 };
 
+/// A picture of all that is around. Matt surfaces gather it; what `material` mirrors comes from it
+/// as well, the wider the rougher. It casts no shadows.
+struct EnvironmentLight {
+  std::optional<Environment> picture;  ///< must be there
+  Vec3 up{0, 1, 0};    ///< where the picture's top row is; what was at −z moves the shortest way
+  float turn_rad = 0;  ///< about `up` before, counter-clockwise seen from there
+};
+
 struct Light {
-  std::variant<AmbientLight, HemisphereLight, DirectionalLight, PointLight, SpotLight> kind =
-      DirectionalLight{};
+  std::variant<AmbientLight, HemisphereLight, DirectionalLight, PointLight, SpotLight,
+               EnvironmentLight>
+      kind = DirectionalLight{};
   Vec3 color{1, 1, 1};  ///< linear, each ≥ 0
   /// How bright it makes a white, matt surface that faces it (a unit away, where it has a
-  /// position): glTF's lux or candela divided by π. In [0, 1e12].
+  /// position): glTF's lux or candela divided by π; an environment is multiplied by it. In
+  /// [0, 1e12].
   float intensity = 1;
   bool of_camera = false;  ///< moves with the camera: what is said of places is in its axes
 };

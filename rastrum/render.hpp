@@ -83,6 +83,10 @@ struct FrameOptions {
   /// What stands in the way of directional lights, and of spots that reach at most 84.8° from their
   /// axis, takes their light; of what is translucent all of it. Of `lights` alone.
   bool shadows = false;
+  /// The environments among `lights`, which must have one, are seen where nothing is and through
+  /// what is translucent, in the place of `background`: with `tone`, blended as display values.
+  /// Not of pictures that are drawn over others.
+  bool environment_behind = false;
   /// Of Shader::material: how its linear light becomes `color8` and `color`; `linear` is without.
   /// Where several samples or layers meet, their mean is mapped.
   ToneMapping tone{};

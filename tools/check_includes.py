@@ -34,7 +34,7 @@ MAY_INCLUDE = {
 PUBLIC = {
     "core": {"array", "config", "digest", "error", "image", "mat", "scalars", "transform", "vec"},
     "parallel": {"device", "stop"},
-    "scene": {"camera", "color_map", "fit", "light", "mesh", "motion", "points_and_lines", "scene",
+    "scene": {"camera", "color_map", "environment", "fit", "light", "mesh", "motion", "points_and_lines", "scene",
               "shapes", "surfaces"},
     "raster": {"frame", "primitives", "program", "tuning"},
     "terrain": {"terrain", "terrain_light"},
@@ -46,7 +46,7 @@ PUBLIC = {
 FLOOR_OF = {f"{name}.hpp": floor for floor, names in PUBLIC.items() for name in names}
 # What users of the library have to do without: why the program has it is in decision 0025.
 PROGRAMS_MAY = {
-    "apps": {"rastrum/core/angle.hpp", "rastrum/core/elementary.hpp",
+    "apps": {"rastrum/core/angle.hpp", "rastrum/core/elementary.hpp", "rastrum/core/srgb.hpp",
              "rastrum/io/mapped_file.hpp", "rastrum/parallel/exec.hpp",
              "rastrum/raster/assemble/clip.hpp", "rastrum/raster/shade/srgb.hpp"},
     "examples": set(),

@@ -4,8 +4,10 @@
 #include <iterator>
 #include <variant>
 
+#include <rastrum/core/srgb.hpp>
+#include <rastrum/environment.hpp>
 #include <rastrum/error.hpp>
-#include <rastrum/raster/shade/srgb.hpp>
+#include <rastrum/io.hpp>
 
 #include "arguments.hpp"
 
@@ -26,7 +28,7 @@ std::vector<std::string> parts_of(const std::string& text) {
 
 Vec3 linear(Vec4 display) {
   const auto channel = [](float v) {
-    return static_cast<float>(raster::linear_from_srgb(static_cast<double>(v)));
+    return static_cast<float>(linear_from_srgb(static_cast<double>(v)));
   };
   return {channel(display.x), channel(display.y), channel(display.z)};
 }
@@ -53,16 +55,33 @@ Light light_of(const std::string& kind) {
     light.kind = SpotLight{};
   } else if (kind == "headlight") {
     light = headlight();
+  } else if (kind == "environment") {
+    light.kind = EnvironmentLight{};
   } else {
     throw UsageError(kOption,
-                     "expected ambient, hemisphere, directional, point, spot or headlight, then "
-                     "what it is, as in point:2,3,4:intensity=9, got '" +
+                     "expected ambient, hemisphere, directional, point, spot, headlight or "
+                     "environment, then what it is, as in point:2,3,4:intensity=9, got '" +
                          kind + "'");
   }
   return light;
 }
 
+Environment environment_of(const std::string& text) {
+  try {
+    if (text == "sky") return Environment(builtin_environment(BuiltinEnvironment::sky));
+    if (text == "room") return Environment(builtin_environment(BuiltinEnvironment::room));
+    return Environment(io::read_light(text));
+  } catch (const Error& e) {
+    const std::string what = e.what();
+    throw UsageError(kOption, what.find(text) == std::string::npos ? text + ": " + what : what);
+  }
+}
+
 void set_place(Light& light, const std::string& text) {
+  if (auto* const e = std::get_if<EnvironmentLight>(&light.kind)) {
+    e->picture = environment_of(text);
+    return;
+  }
   const Vec3d v = parse_vec3(kOption, text);
   if (auto* const h = std::get_if<HemisphereLight>(&light.kind))
     h->up = Vec3(v);
@@ -81,6 +100,7 @@ bool set_value(Light& light, const std::string& name, const std::string& value) 
   auto* const spot = std::get_if<SpotLight>(&light.kind);
   auto* const point = std::get_if<PointLight>(&light.kind);
   auto* const hemisphere = std::get_if<HemisphereLight>(&light.kind);
+  auto* const environment = std::get_if<EnvironmentLight>(&light.kind);
   if (name == "intensity") {
     light.intensity = number(value);
   } else if (name == "color") {
@@ -99,6 +119,10 @@ bool set_value(Light& light, const std::string& name, const std::string& value) 
     spot->inner_rad = radians(value);
   } else if (name == "outer" && spot != nullptr) {
     spot->outer_rad = radians(value);
+  } else if (name == "up" && environment != nullptr) {
+    environment->up = Vec3(parse_vec3(kOption, value));
+  } else if (name == "turn" && environment != nullptr) {
+    environment->turn_rad = radians(value);
   } else {
     return false;
   }
@@ -118,7 +142,8 @@ Light parse_light(const std::string& text) {
              !set_value(light, parts[i].substr(0, equal), parts[i].substr(equal + 1)))
       throw UsageError(kOption, "a light of kind " + parts.front() + " has no '" + parts[i] +
                                     "'; there are intensity=, color=, of=, below= (hemisphere), "
-                                    "range= (point, spot), towards=, inner=, outer= (spot)");
+                                    "range= (point, spot), towards=, inner=, outer= (spot), "
+                                    "turn=, up= (environment)");
   }
   try {
     check_lights({&light, 1});
@@ -158,6 +183,7 @@ void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, co
   app.add_repeated("--light", "KIND:X,Y,Z:...",
                    "instead of the fixed light, or beside --lights: ambient, hemisphere:UP, "
                    "directional:DIRECTION, point:PLACE, spot:PLACE:towards=DIRECTION, headlight, "
+                   "environment:FILE (.hdr, .exr, .png, .jpg; or sky, room), "
                    "with :intensity=I:color=COLOUR:of=camera (docs/light.md); may be repeated",
                    [&lights, &choice](const std::string& s) {
                      choice.given = true;
@@ -185,6 +211,9 @@ void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, co
         if (!(frame.tone.exposure_stops >= -32 && frame.tone.exposure_stops <= 32))
           throw UsageError("--exposure", "must lie in -32 to 32, got '" + s + "'");
       })
+      ->group(group);
+  app.add_flag("--environment-behind", frame.environment_behind,
+               "what --light environment shows is seen where nothing else is")
       ->group(group);
   app.add_flag("--shadows", frame.shadows,
                "of directional lights and spots that --lights and --light say")

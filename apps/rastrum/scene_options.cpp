@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <variant>
 
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
@@ -304,6 +305,12 @@ void check_scene_arguments(const SceneArguments& a) {
   check_inputs(a.inputs, a.format);
   if (a.render.shadows && a.render.lights.empty() && !a.lights.of_files)
     throw UsageError("--shadows", "is of --lights and --light, as in --lights studio --shadows");
+  const auto is_environment = [](const Light& light) {
+    return std::holds_alternative<EnvironmentLight>(light.kind);
+  };
+  if (a.render.environment_behind && std::ranges::none_of(a.render.lights, is_environment))
+    throw UsageError("--environment-behind",
+                     "is of --light environment, as in --light environment:sky");
   const ViewOptions& v = a.view;
   if (a.fit && (v.eye || v.target || v.file_camera)) {
     const std::string other = v.eye ? "--eye" : v.target ? "--target" : "--camera";

@@ -10,6 +10,7 @@ from ._camera import Camera, orbit
 from ._errors import (ArgumentError, ArgumentTypeError, DeviceError, Error, FileError, FormatError, NotFoundError,
                       OutOfMemoryError, UnsupportedError)
 from ._lights import Light
+from ._matplotlib import draw_behind
 from ._rasterize import rasterize
 from ._render import OUTPUTS, Hit, Picture, Pictures, Renderer, digest, render, views4
 from ._terrain import Terrain
@@ -20,7 +21,7 @@ __version__ = "0.1.0"
 __all__ = [
     "OUTPUTS", "ArgumentError", "ArgumentTypeError", "Camera", "ColorMapping", "Cylinders", "DeviceError", "Discs", "Error", "FileError",
     "FormatError", "Hit", "Light", "Lines", "Material", "Mesh", "NotFoundError", "OutOfMemoryError", "Picture", "Pictures", "Points",
-    "Renderer", "Scene", "Spheres", "Terrain", "Tubes", "UnsupportedError", "as_scene", "color_maps", "digest", "load", "orbit", "rasterize", "render",
+    "Renderer", "Scene", "Spheres", "Terrain", "Tubes", "UnsupportedError", "as_scene", "color_maps", "digest", "draw_behind", "load", "orbit", "rasterize", "render",
     "trimesh_viewer", "views4",
 ]
 

@@ -188,7 +188,7 @@ class Renderer:
                outputs: Output | Iterable[Output] = "color", shader: str = "auto", background: Color | None = None,
                samples: int = 1, transparency: str = "exact", cull: str = "none", opacity: float = 1.0,
                clip_planes: ArrayLike = (), lights: str | Light | Sequence[str | Light] | None = None,
-               shadows: bool = False, tone: str = "none", exposure: float = 0.0, annotate: str | Iterable[str] | Mapping[str, Any] = (),
+               shadows: bool = False, tone: str = "none", exposure: float = 0.0, environment_behind: bool = False, annotate: str | Iterable[str] | Mapping[str, Any] = (),
                out: Mapping[str, NDArray[Any]] | None = None,
                progress: Callable[[int, int], None] | bool | None = None) -> Picture: ...
     @overload
@@ -196,7 +196,7 @@ class Renderer:
                outputs: Output | Iterable[Output] = "color", shader: str = "auto", background: Color | None = None,
                samples: int = 1, transparency: str = "exact", cull: str = "none", opacity: float = 1.0,
                clip_planes: ArrayLike = (), lights: str | Light | Sequence[str | Light] | None = None,
-               shadows: bool = False, tone: str = "none", exposure: float = 0.0, annotate: str | Iterable[str] | Mapping[str, Any] = (),
+               shadows: bool = False, tone: str = "none", exposure: float = 0.0, environment_behind: bool = False, annotate: str | Iterable[str] | Mapping[str, Any] = (),
                out: Mapping[str, NDArray[Any]] | None = None,
                progress: Callable[[int, int], None] | bool | None = None) -> Pictures: ...
 
@@ -219,4 +219,5 @@ def rasterize(pos: ArrayLike, tri: ArrayLike, resolution: tuple[int, int], range
               threads: int | None = None) -> NDArray[np.float32]: ...
 def views4(what: Any, *, size: tuple[int, int] = (512, 512), **frame: Any) -> Picture: ...
 def digest(array: ArrayLike) -> str: ...
+def draw_behind(ax: Any, what: Any, **frame: Any) -> Any: ...
 def trimesh_viewer(scene: Any, **frame: Any) -> Any: ...

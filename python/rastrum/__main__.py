@@ -3,7 +3,7 @@
 import argparse
 import sys
 
-from . import ArgumentError, Camera, Error, Scene, _video, render, views4
+from . import ArgumentError, Camera, Error, Scene, _video, orbit, render, views4
 
 
 def _size(text):
@@ -24,10 +24,11 @@ def main(arguments=None):
                                  help=".mp4, .gif, .png (animated) or frame_%%04d.png" if name == "video" else ".png")
             command.add_argument("--size", type=_size, default=(1280, 720) if name != "views" else (512, 512),
                                  help="WxH")
-            command.add_argument("--shader", default="auto")
+            command.add_argument("--shader", default="auto",
+                                 help="auto: a picture to show, with studio lights, occlusion and four samples")
             command.add_argument("--background", default=None, help="#rrggbb or a name (transparent)")
         if name == "render":
-            command.add_argument("--view", default="front", help="front, back, left, right, top, bottom, iso")
+            command.add_argument("--view", default="iso", help="front, back, left, right, top, bottom, iso (iso)")
         if name == "video":
             command.add_argument("--frames", type=int, default=72, help="pictures of the whole turn (72)")
             command.add_argument("--fps", type=float, default=24.0, help="(24)")
@@ -41,16 +42,18 @@ def main(arguments=None):
             print(scene._made.describe(), end="")
             return 0
         look = {"size": options.size, "shader": options.shader, "background": options.background}
+        if options.shader == "auto":  # as the program alone
+            look |= {"lights": "studio", "samples": 4, "annotate": "occlusion"}
         if options.command == "video":
             if options.frames < 1 or not 0 < options.fps <= 1000:
                 raise ArgumentError("--frames, --fps: must be greater than 0")
-            cameras = _video.turntable(scene, options.frames, options.elevation)
+            cameras = orbit(scene, options.frames, elevation=options.elevation)
             _video.write(options.output, (render(scene, c, **look) for c in cameras), options.size, options.fps)
             return 0
         if options.command == "views":
             picture = views4(scene, **look)
         else:
-            picture = render(scene, Camera.fit(scene, options.view), **look)
+            picture = render(scene, Camera.fit(scene, options.view, fov=30), **look)
         picture.save(options.output)
     except Error as e:
         print(f"error: {e}", file=sys.stderr)

@@ -84,7 +84,8 @@ class Camera:
 
 @raises_errors
 def orbit(what, n, *, elevation=25.0, up=(0, 1, 0), fov=60.0):
-    """n cameras around all of `what`, counter-clockwise as seen from above, `elevation` degrees up."""
+    """n cameras around all of `what` at one distance, so that it keeps its size; counter-clockwise as seen from above,
+    `elevation` degrees up."""
     scene, up = as_scene(what), np.asarray(_triple(up, "up"))
     up = up / np.linalg.norm(up)
     side = np.cross(up, (0.0, 0.0, 1.0))
@@ -92,12 +93,16 @@ def orbit(what, n, *, elevation=25.0, up=(0, 1, 0), fov=60.0):
         side = np.array((1.0, 0.0, 0.0))
     side = side / np.linalg.norm(side)
     ahead = np.cross(side, up)
-    rise = math.radians(elevation)
+    low, high = np.asarray(scene.bounds if scene.bounds is not None else ((-1, -1, -1), (1, 1, 1)), float)
+    middle, radius = (low + high) / 2, math.dist(low, high) / 2 or 1.0
+    away = radius / math.sin(math.radians(fov / 2))
+    near = max(away - 1.001 * radius, away / 1000)
+    rise = math.radians(max(-89.0, min(89.0, elevation)))
     cameras = []
     for i in range(int(n)):
         a = 2 * math.pi * i / n
         eye = math.cos(rise) * (math.cos(a) * ahead + math.sin(a) * side) + math.sin(rise) * up
-        cameras.append(Camera.fit(scene, eye, up=up, fov=fov))
+        cameras.append(Camera.look_at(middle + away * eye, middle, up, fov=fov, near=near))
     return cameras
 
 

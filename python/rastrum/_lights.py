@@ -1,6 +1,7 @@
 """What lights a scene."""
 
 import math
+import os
 
 import numpy as np
 
@@ -19,8 +20,14 @@ def _three(value, name):
     return array.tolist()
 
 
+def display(linear):
+    """Colours as they are given here, of linear ones in [0, 1]: lights of others are in these."""
+    x = np.clip(np.asarray(linear, float), 0, 1)
+    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
+
+
 class Light:
-    """A light; made by one of its five functions.
+    """A light; made by one of its six functions.
 
     color: of a display, as colours everywhere. intensity: how bright it makes a white, matt surface that faces it (a
     unit away, where it has a position). of_camera: places and directions are the camera's, x to the right, y up, z
@@ -59,6 +66,23 @@ class Light:
     def spot(cls, position, direction, inner=0.0, outer=45.0, range=math.inf, **look):
         """A point light in a cone: full up to `inner` degrees from its axis, nothing beyond `outer`."""
         return cls("spot", position, direction, range=range, inner=inner, outer=outer, **look)
+
+    @classmethod
+    @raises_errors
+    def environment(cls, picture, up=(0, 1, 0), turn=0.0, *, color="white", intensity=1.0, of_camera=False):
+        """A picture of all that is around: a path (.hdr, .exr, .png, .jpg), "sky", "room", or an array (H, 2 H, 3), linear.
+
+        Its top row is at `up`, its middle at -z, turned by `turn` degrees counter-clockwise seen from `up`. Matt
+        surfaces gather it, `material` mirrors it. Making one takes about 0.3 s of a core: keep it for many frames.
+        """
+        if isinstance(picture, (str, os.PathLike)):
+            made = _r.environment_of_file(os.fspath(picture))
+        else:
+            made = _r.environment_of_array(np.ascontiguousarray(picture, np.float32))
+        light = cls.__new__(cls)
+        light._made = _r.environment(made, _three(up, "up"), math.radians(turn), list(linear(_color(color, "color"))[:3]),
+                                     float(intensity), bool(of_camera))
+        return light
 
 
 def lights(wanted):

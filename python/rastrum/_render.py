@@ -216,7 +216,7 @@ class Renderer:
 
     def render(self, what, camera=None, *, size=(1280, 720), outputs="color", shader="auto", background=None, samples=1,
                transparency="exact", cull="none", opacity=1.0, clip_planes=(), lights=None, shadows=False, tone="none",
-               exposure=0.0, annotate=(), out=None, progress=None):
+               exposure=0.0, environment_behind=False, annotate=(), out=None, progress=None):
         """A Picture of `what` by one camera, Pictures by a sequence of cameras or an (N, 4, 4) array.
 
         what: as_scene has the list. camera: a Camera, a (4, 4), or None: all of it from the front. size: (W, H).
@@ -225,7 +225,7 @@ class Renderer:
         cull: none, back, front. clip_planes: rows (x, y, z, d) of the world; kept is x X + y Y + z Z + d >= 0.
         lights: of lambert, phong and material: headlight, studio (key, fill, back and head light), Lights, a list of
         these; None: the fixed light of each. shadows: of directional lights and spots. tone, exposure: of material:
-        none, reinhard, aces or neutral for what is brighter than white, after `exposure` stops.
+        none, reinhard, aces or neutral for what is brighter than white, after `exposure` stops. environment_behind: the environments among lights are seen where nothing is.
         annotate: what is drawn over the colours, by name, or {name: options}: "occlusion" (radius, in world units,
         strength), "edl" (strength), "silhouettes", "edges" (angle, in degrees: creases and borders alone; width, px),
         "axes", "bounds" and "bar" (of scalars; a camera of None leaves a margin for their numbers), "title", "captions" (a list), "text_scale".
@@ -235,7 +235,7 @@ class Renderer:
         """
         scene, made, frame, arrays, many, notes = _prepared(what, camera, size, outputs, shader, background, samples,
                                                             transparency, cull, opacity, clip_planes, lights, shadows, tone,
-                                                            exposure, annotate, out)
+                                                            exposure, environment_behind, annotate, out)
         if progress is True:
             progress = _bar if sys.stderr.isatty() else None
         if progress is not None and not callable(progress):
@@ -256,7 +256,7 @@ class Renderer:
 
 @raises_errors
 def _prepared(what, camera, size, outputs, shader, background, samples, transparency, cull, opacity, clip_planes,
-              lights, shadows, tone, exposure, annotate, out):
+              lights, shadows, tone, exposure, environment_behind, annotate, out):
     """(scene, cameras, frame, arrays, whether there are several pictures, annotations)"""
     scene = as_scene(what)
     many = _is_many(camera)
@@ -268,7 +268,7 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
                      [0.0] * 4 if background is None else list(_color(background, "background")), float(opacity),
                      _text(transparency, "transparency"), samples,
                      [] if len(clip_planes) == 0 else floats(clip_planes, "clip_planes", (4,)).tolist(),
-                     _lights(lights), bool(shadows), _text(tone, "tone"), float(exposure))
+                     _lights(lights), bool(shadows), _text(tone, "tone"), float(exposure), bool(environment_behind))
     made = [c._for_size((width, height)) for c in cameras]
     notes = _annotations(annotate)
     if notes is not None and notes.room != 1 and camera is None:

@@ -5,6 +5,7 @@ import os
 import numpy as np
 
 from . import _rastrum as _r
+from . import _readers
 from ._arrays import color as _color
 from ._arrays import floats, integers, linear, matrix, scalars as _scalars
 from ._errors import ArgumentError, ArgumentTypeError, NotFoundError, raises_errors
@@ -288,14 +289,20 @@ class Scene:
     def __init__(self, things=(), copy=None, crease=40.0, *, scalars=None, cmap="viridis", clim=None):
         self.files, self.things = [], []
         self._made = _r.Scene()
-        materials, mappings, textures = {}, {}, [0]
+        materials, mappings, textures, others = {}, {}, [0], []
         for thing in _flat(things, copy):
             if isinstance(thing, (str, os.PathLike)):
                 path = os.fspath(thing)
                 if not os.path.exists(path):
                     raise NotFoundError(f"{path}: there is no such file")
-                self._made.add_file(path, crease)
-                self.files.append(path)
+                if not _readers.reads(path):
+                    self._made.add_file(path, crease)
+                    self.files.append(path)
+                    continue
+                others.append(path)
+                for made in self._read(path, copy, scalars, cmap, clim):
+                    made._add_to(self._made, materials, mappings)
+                    self.things.append(made)
                 continue
             material = thing.material
             if isinstance(material, Material) and id(material) not in materials:
@@ -303,8 +310,18 @@ class Scene:
                 materials[id(material)] = len(materials)
             thing._add_to(self._made, materials, mappings)
             self.things.append(thing)
-        if scalars is not None:
+        if scalars is not None and (self.files or not others):
             self._show(scalars, cmap, clim, mappings)
+
+    @staticmethod
+    def _read(path, copy, scalars, cmap, clim):
+        """The things of a file that another library reads. Its meshes lie in memory that nobody changes."""
+        read = _readers.read(path)
+        if not hasattr(read, "GetPolys"):
+            return _of_others(read, copy)
+        if scalars is not None and not isinstance(scalars, str):
+            raise ArgumentTypeError(f"scalars: of files they have a name, {scalars!r} is none")
+        return _vtk(read, copy, scalars, cmap, clim)
 
     def _show(self, scalars, cmap, clim, mappings):
         if not isinstance(scalars, str):
@@ -339,7 +356,8 @@ class Scene:
 
 
 def load(path, *, crease=40.0, scalars=None, cmap="viridis", clim=None):
-    """The scene of a file (.obj .ply .stl .off .gltf .glb); crease, scalars, cmap, clim: as Scene has them."""
+    """The scene of a file (.obj .ply .stl .off .gltf .glb; .vtp .vtu .vti .vts .vtr .vtk where the vtk wheel is installed,
+    what trimesh reads where that is); crease, scalars, cmap, clim: as Scene has them."""
     return Scene([path], crease=crease, scalars=scalars, cmap=cmap, clim=clim)
 
 
@@ -426,8 +444,9 @@ def _trimesh_scene(scene, copy):
     return made
 
 
-def _vtk(data, copy):
-    """Of a vtkPolyData its polygons, strips aside, lines and points; of other data sets their outer surface."""
+def _vtk(data, copy, scalars=None, cmap="viridis", clim=None):
+    """Of a vtkPolyData its polygons, strips aside, lines and points; of other data sets their outer surface. scalars: a
+    name of its numbers, None: the active ones of the points."""
     if not hasattr(data, "GetPolys"):
         if not hasattr(data, "extract_surface"):
             raise ArgumentTypeError("a VTK data set that is no vtkPolyData: pyvista.wrap(data), or its surface by "
@@ -437,10 +456,12 @@ def _vtk(data, copy):
 
     positions = vtk_to_numpy(data.GetPoints().GetData()) if data.GetNumberOfPoints() else np.empty((0, 3), np.float32)
     normals = data.GetPointData().GetNormals()
-    active = data.GetPointData().GetScalars()
-    numbers = {}
-    if active is not None and active.GetNumberOfComponents() == 1:
-        numbers["scalars"] = vtk_to_numpy(active)
+    at_points, at_cells = _readers.numbers_of(data, scalars)
+    numbers = {} if at_points is None else {"scalars": at_points, "cmap": cmap, "clim": clim}
+    of_faces = numbers
+    if at_cells is not None:  # VTK counts vertices, lines, faces
+        first = data.GetNumberOfVerts() + data.GetNumberOfLines()
+        of_faces = {"scalars": at_cells[first:first + data.GetNumberOfPolys()], "cmap": cmap, "clim": clim}
     made = []
 
     def cells(of):
@@ -449,7 +470,7 @@ def _vtk(data, copy):
     if data.GetNumberOfPolys():
         corners, offsets = cells(data.GetPolys())
         made.append(Mesh(positions, corners, offsets=offsets, copy=copy,
-                         normals=None if normals is None else vtk_to_numpy(normals), **numbers))
+                         normals=None if normals is None else vtk_to_numpy(normals), **of_faces))
     if data.GetNumberOfLines():
         corners, offsets = cells(data.GetLines())
         made.append(Lines(positions, corners, offsets=offsets, copy=copy))

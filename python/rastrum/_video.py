@@ -1,30 +1,12 @@
 """Many pictures in one file: GIF and APNG by PIL, MP4 by ffmpeg, or a PNG each."""
 
-import math
 import re
 import shutil
 import subprocess
 
-from ._camera import Camera
 from ._errors import ArgumentError, FileError, UnsupportedError
 
 _NUMBERED = re.compile(r"%0?\d*d")
-
-
-def turntable(scene, n, elevation, fov=60.0):
-    """n cameras once around all of the scene, at one distance: it keeps its size, where orbit() fits each picture."""
-    bounds = scene.bounds
-    low, high = bounds if bounds is not None else ((-1, -1, -1), (1, 1, 1))
-    middle = [(a + b) / 2 for a, b in zip(low, high)]
-    radius = math.dist(low, high) / 2 or 1.0
-    away = radius / math.sin(math.radians(fov / 2))
-    rise = math.radians(max(-89.0, min(89.0, elevation)))
-    cameras = []
-    for i in range(n):
-        a = 2 * math.pi * i / n
-        toward = math.cos(rise) * math.sin(a), math.sin(rise), math.cos(rise) * math.cos(a)
-        cameras.append(Camera.look_at([m + away * t for m, t in zip(middle, toward)], middle, fov=fov, near=away / 1000))
-    return cameras
 
 
 def check(path, size):

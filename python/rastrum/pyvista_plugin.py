@@ -4,6 +4,7 @@ import numpy as np
 import pyvista
 
 from ._camera import Camera
+from ._lights import Light, display
 from ._render import render
 from ._things import Lines, Mesh, Points, Scene
 
@@ -24,8 +25,8 @@ class MeshAccessor:
 class PlotterComponent:
     """plotter.rastrum.screenshot(...): what a plotter shows, without OpenGL.
 
-    Surfaces with their colours, lookup tables and opacity, lines and points in pixels, by the plotter's camera, size and
-    background. `left_out` says what was there and is not drawn. Colours are the lookup table's at
+    Surfaces with their colours, lookup tables and opacity, lines and points in pixels, by the plotter's camera, size,
+    background and parallel lights. `left_out` says what was there and is not drawn. Colours are the lookup table's at
     points or cells, and are interpolated as such.
     """
 
@@ -101,6 +102,21 @@ class PlotterComponent:
         matrix = self._plotter.renderer.GetActiveCamera().GetCompositeProjectionTransformMatrix(width / height, -1, 1)
         return Camera.opengl(np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)]))
 
+    def lights(self):
+        """The plotter's lights that are parallel, which those of its light kit and headlight are."""
+        renderer = self._plotter.renderer
+        renderer.UpdateLightsGeometryToFollowCamera()
+        made = []
+        for light in renderer.GetLights():
+            if not light.GetSwitch() or light.GetIntensity() <= 0:
+                continue
+            if light.GetPositional():
+                self.left_out.append("a light with a place")
+                continue
+            way = np.subtract(light.GetTransformedFocalPoint(), light.GetTransformedPosition())
+            made.append(Light.directional(way, color=tuple(display(light.GetDiffuseColor())), intensity=light.GetIntensity()))
+        return made
+
     def screenshot(self, filename=None, **frame):
         """A rastrum.Picture of what the plotter shows, saved as `filename`. frame: as rastrum.render, whose size and
         background are the plotter's."""
@@ -108,6 +124,8 @@ class PlotterComponent:
         if not self._plotter.camera_set:
             self._plotter.view_isometric()
         renderer.ResetCameraClippingRange()
-        frame = {"size": tuple(self._plotter.window_size), "background": renderer.GetBackground(), "samples": 4, **frame}
-        picture = render(self.scene(), self.camera(), **frame)
+        scene, lights = self.scene(), self.lights()
+        lit = {"lights": lights, "shader": "lambert"} if lights else {}  # VTK's surfaces do not shine
+        frame = {"size": tuple(self._plotter.window_size), "background": renderer.GetBackground(), "samples": 4, **lit, **frame}
+        picture = render(scene, self.camera(), **frame)
         return picture if filename is None else picture.save(filename)

@@ -62,6 +62,7 @@ void bind_geometries(nb::module_& m);
 void bind_cameras(nb::module_& m);
 void bind_scenes(nb::module_& m);
 void bind_frames(nb::module_& m);
+void bind_lights(nb::module_& m);
 void bind_terrains(nb::module_& m);
 
 }  // namespace rastrum::python

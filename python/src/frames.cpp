@@ -77,7 +77,7 @@ FrameOptions frame(int width, int height, const std::string& shader, const std::
                    const Numbers4& background, double opacity, const std::string& transparency,
                    int samples, const std::vector<Numbers4>& clip_planes,
                    const std::vector<Light>& lights, bool shadows, const std::string& tone,
-                   double exposure) {
+                   double exposure, bool environment_behind) {
   FrameOptions o;
   o.width = width;
   o.height = height;
@@ -92,38 +92,9 @@ FrameOptions frame(int width, int height, const std::string& shader, const std::
   o.lights = lights;
   o.shadows = shadows;
   o.tone = {tone_named(tone), static_cast<float>(exposure)};
+  o.environment_behind = environment_behind;
   check(o);
   return o;
-}
-
-using Numbers3 = std::array<double, 3>;
-
-Light light(const std::string& kind, const Numbers3& place, const Numbers3& direction,
-            const Numbers3& below, double range, double inner_rad, double outer_rad,
-            const Numbers3& color, double intensity, bool of_camera) {
-  const auto vec3 = [](const Numbers3& v) { return Vec3(Vec3d{v[0], v[1], v[2]}); };
-  const Vec3d at{place[0], place[1], place[2]};
-  Light l;
-  if (kind == "ambient")
-    l.kind = AmbientLight{};
-  else if (kind == "hemisphere")
-    l.kind = HemisphereLight{vec3(direction), vec3(below)};
-  else if (kind == "directional")
-    l.kind = DirectionalLight{vec3(direction)};
-  else if (kind == "point")
-    l.kind = PointLight{at, static_cast<float>(range)};
-  else if (kind == "spot")
-    l.kind = SpotLight{at, vec3(direction), static_cast<float>(range),
-                       static_cast<float>(inner_rad), static_cast<float>(outer_rad)};
-  else
-    throw Error(Errc::invalid_argument,
-                "kind: there is no " + kind +
-                    "; take one of ambient, hemisphere, directional, point, spot");
-  l.color = vec3(color);
-  l.intensity = static_cast<float>(intensity);
-  l.of_camera = of_camera;
-  check_lights({&l, 1});
-  return l;
 }
 
 /// A picture of a batch in the array that is to hold it: (N, H, W) or (N, H, W, channels), in C
@@ -484,12 +455,7 @@ void bind_frames(nb::module_& m) {
       .def_ro("height", &FrameOptions::height);
   m.def("frame", frame, arg("width"), arg("height"), arg("shader"), arg("cull"), arg("background"),
         arg("opacity"), arg("transparency"), arg("samples"), arg("clip_planes"), arg("lights"),
-        arg("shadows"), arg("tone"), arg("exposure"));
-  nb::class_<Light>(m, "Light");
-  m.def("light", light, arg("kind"), arg("place"), arg("direction"), arg("below"), arg("range"),
-        arg("inner"), arg("outer"), arg("color"), arg("intensity"), arg("of_camera"));
-  m.def("headlight", [] { return headlight(); });
-  m.def("light_kit", [] { return light_kit(); });
+        arg("shadows"), arg("tone"), arg("exposure"), arg("environment_behind"));
   nb::class_<FrameRenderer>(m, "Renderer")
       .def(
           "__init__",

@@ -53,6 +53,7 @@ NB_MODULE(_rastrum, m) {
   py::bind_cameras(m);
   py::bind_scenes(m);
   py::bind_annotations(m);
+  py::bind_lights(m);
   py::bind_frames(m);
   py::bind_terrains(m);
 }

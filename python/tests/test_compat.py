@@ -26,9 +26,7 @@ def test_depth_colour_and_background():
     scene = pyrender.Scene(bg_color=[0.0, 0, 1.0, 1.0])
     scene.add(box())
     scene.add(pyrender.PerspectiveCamera(yfov=np.pi / 3), pose=at(0, 0, 5))
-    with pytest.warns(UserWarning, match="lights are not drawn"):
-        scene.add(pyrender.DirectionalLight(color=np.ones(3), intensity=3.0), pose=at(0, 0, 5))
-        color, depth = pyrender.OffscreenRenderer(160, 120).render(scene)
+    color, depth = pyrender.OffscreenRenderer(160, 120).render(scene)
     assert color.shape == (120, 160, 3) and color.dtype == np.uint8
     assert depth.shape == (120, 160) and depth.dtype == np.float32
     assert np.isclose(depth[60, 80], 4) and depth[0, 0] == 0
@@ -39,6 +37,48 @@ def test_depth_colour_and_background():
     assert pyrender.OffscreenRenderer(160, 120).render(scene, flags)[0].shape == (120, 160, 4)
     only = pyrender.OffscreenRenderer(160, 120).render(scene, pyrender.RenderFlags.DEPTH_ONLY)
     assert np.array_equal(only, depth)
+
+
+def white_wall(**material):
+    quad = np.array([[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]], float)
+    white = pyrender.MetallicRoughnessMaterial(metallicFactor=0.0, roughnessFactor=1.0, **material)
+    return pyrender.Mesh([pyrender.Primitive(quad, indices=[[0, 1, 2], [0, 2, 3]], material=white)])
+
+
+def linear(picture):
+    x = picture[..., :3] / 255.0
+    return np.where(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4)
+
+
+def test_lights_are_pyrenders():
+    def lit(light=None, pose=None, ambient=None, flags=pyrender.RenderFlags.NONE, more=()):
+        scene = pyrender.Scene(ambient_light=ambient)
+        scene.add(white_wall())
+        for mesh in more:
+            scene.add(mesh)
+        scene.add(pyrender.PerspectiveCamera(yfov=np.pi / 3), pose=at(0, 0, 5))
+        if light is not None:
+            scene.add(light, pose=at(0, 0, 2) if pose is None else pose)
+        return linear(pyrender.OffscreenRenderer(64, 64).render(scene, flags)[0])
+
+    # The diffuse part of glTF's surface, 0.96 / pi of what arrives, and at roughness 1 little beside it.
+    def expect(value, radiance):
+        assert np.all(np.abs(np.asarray(value) - 0.96 / np.pi * np.asarray(radiance)) < 0.03), value
+
+    expect(lit(pyrender.DirectionalLight(color=[1, 0.5, 0], intensity=2.0))[32, 32], [2, 1, 0])
+    expect(lit(pyrender.PointLight(intensity=8.0))[32, 32], 2)          # two units away
+    spot = lit(pyrender.SpotLight(intensity=8.0, innerConeAngle=0.3, outerConeAngle=0.5))
+    expect(spot[32, 32], 2)
+    assert spot[0, 0].max() == 0
+    assert np.all(lit(pyrender.PointLight(intensity=8.0, range=1.5)) == 0)
+    assert abs(lit(ambient=[0.25, 0.25, 0.25])[32, 32, 0] - 0.25) < 0.02
+    turned = at(0, 0, 2)
+    turned[:3, :3] = np.diag([-1, 1, -1])                               # it shines away from the wall
+    assert np.all(lit(pyrender.DirectionalLight(intensity=2.0), turned) == 0)
+    # A box between light and wall.
+    sun = pyrender.DirectionalLight(intensity=2.0), np.array([[1, 0, 0.6, 0], [0, 1, 0, 0], [-0.6, 0, 1, 3], [0, 0, 0, 1.0]])
+    shown = lit(*sun, flags=pyrender.RenderFlags.SHADOWS_DIRECTIONAL, more=[box()])
+    assert (shown.max(-1) == 0).sum() > (lit(*sun, more=[box()]).max(-1) == 0).sum() + 20
 
 
 def test_nodes_poses_and_segments():

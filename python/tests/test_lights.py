@@ -36,6 +36,32 @@ def test_lights_of_the_camera_move_with_it():
     assert np.abs(draw(light) - draw(light, rr.Camera.look_at((3, 0, 0)))).max() <= 1
 
 
+def test_environments(tmp_path):
+    white = rr.Light.environment(np.full((64, 128, 3), 0.4))
+    assert np.abs(draw(white) - draw(rr.Light.ambient(intensity=0.4))).max() <= 1
+    room = rr.Light.environment("room", intensity=0.5)
+    behind = draw(room, shader="material", environment_behind=True)
+    alone = draw(room, shader="material")
+    assert (behind[..., 3] == 255).all() and (alone[0, 0] == 0).all()
+    assert (behind[alone[..., 3] == 255] == alone[alone[..., 3] == 255]).all()
+    # A red half on the right, then turned to the left.
+    halves = np.zeros((32, 64, 3), np.float32)
+    halves[:, 32:, 0] = 1
+    right = draw(rr.Light.environment(halves))
+    left = draw(rr.Light.environment(halves[:, ::-1]))
+    turned = draw(rr.Light.environment(halves, turn=180))
+    assert right[45, 80, 0] > right[45, 40, 0] + 50 and np.abs(left - turned).max() <= 2
+    for bad, error in (("none.hdr", rr.NotFoundError), (np.zeros((4, 4, 3)), ValueError), (np.zeros((4, 8)), ValueError),
+                       (np.full((4, 8, 3), -1.0), ValueError), (np.full((4, 8, 3), np.nan), ValueError)):
+        with pytest.raises(error):
+            rr.Light.environment(bad)
+    (tmp_path / "a.hdr").write_bytes(b"#?RADIANCE\n\n-Y 2 +X 8\n12")
+    with pytest.raises(rr.FormatError, match="a.hdr"):
+        rr.Light.environment(tmp_path / "a.hdr")
+    with pytest.raises(rr.Error, match="no environment"):
+        draw("headlight", environment_behind=True)
+
+
 def test_shadows():
     floor = rr.Mesh(np.array([[-3, 0, -3], [3, 0, -3], [3, 0, 3], [-3, 0, 3]], np.float32), [[0, 2, 1], [0, 3, 2]])
     things = [floor, rr.Spheres([[0.0, 1, 0]], 0.5)]
@@ -70,6 +96,12 @@ def test_the_program_draws_the_same(sheet, obj):
     said = subprocess.run([program, "render", "--look", "plain", str(obj), "--lights", "studio", "--size", "120x90", "--normals", "face", "--hash",
                            "--quiet"], capture_output=True, text=True, check=True).stdout
     assert said.split()[0] == rr.digest(rr.render(rr.load(obj, crease=None), size=SIZE, lights="studio").color)
+    # The program alone draws the picture to show.
+    said = subprocess.run([program, "render", str(obj), "--size", "120x90", "--normals", "face", "--hash", "--quiet"],
+                          check=True, capture_output=True, text=True).stdout
+    part = rr.load(obj, crease=None)
+    shown = rr.render(part, rr.Camera.fit(part, "iso", fov=30), size=SIZE, lights="studio", samples=4, annotate="occlusion")
+    assert said.split()[0] == rr.digest(shown.color)
 
 
 @pytest.mark.parametrize("bad", [

@@ -65,3 +65,29 @@ def test_pyvista():
     assert p.color[p.instance == 1][:, :3].std(axis=0).max() < 60  # one side of the cube: one colour but for the light
     middle = p.color[p.instance == 0].mean(axis=0)
     assert middle[0] > middle[1] + 30
+
+
+def test_the_plotters_lights():
+    pv = pytest.importorskip("pyvista")
+    import rastrum.pyvista_plugin  # noqa: F401
+
+    def shown(*lights, lighting="none"):
+        plotter = pv.Plotter(off_screen=True, window_size=(80, 80), lighting=lighting)
+        plotter.add_mesh(pv.Plane(i_size=10, j_size=10), color="white")
+        for light in lights:
+            plotter.add_light(light)
+        plotter.camera_position = "xy"
+        return plotter.rastrum.screenshot().color[40, 40, :3], plotter.rastrum
+
+    # VTK's light is in display values: so much of white as the light has, times its slant.
+    tilted = pv.Light(position=(0, 1, 1), focal_point=(0, 0, 0), color=(1.0, 0.5, 0.25), intensity=0.8, light_type="scene light")
+    tilted.positional = False
+    color, component = shown(tilted)
+    assert np.abs(color - 255 * 0.8 * np.sqrt(0.5) * np.array([1, 0.5, 0.25])).max() <= 1 and not component.left_out
+    behind = pv.Light(position=(0, 0, -1), focal_point=(0, 0, 0), light_type="scene light")
+    assert shown(behind)[0].max() == 0
+    assert np.abs(shown(pv.Light(light_type="headlight", intensity=0.5))[0] - 127.5).max() <= 1.5
+    lamp = pv.Light(position=(0, 0, 2), focal_point=(0, 0, 0), light_type="scene light")
+    lamp.positional = True
+    assert shown(lamp)[1].left_out == ["a light with a place"]
+    assert 150 < shown(lighting="light kit")[0].mean() < 256

@@ -122,7 +122,7 @@ def test_natural_classes(tmp_path):
     with pytest.raises(ValueError, match="corner 2 of triangle 0 is vertex 3"):
         rr.render((np.zeros((3, 3)), [[0, 1, 3]]), size=SIZE)
     with pytest.raises(NotImplementedError):
-        rr.load(_named(tmp_path, "x.xyz"))
+        rr.load(_named(tmp_path, "x.unknown"))
     with pytest.raises(TypeError):
         rr.render(object(), size=SIZE)
     for error in (rr.ArgumentError, rr.NotFoundError, rr.FormatError, rr.OutOfMemoryError, rr.DeviceError):

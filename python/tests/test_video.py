@@ -8,7 +8,9 @@ import pytest
 
 import rastrum as rr
 from rastrum.__main__ import main
-from rastrum._video import turntable
+
+
+SHOWN = {"lights": "studio", "samples": 4, "annotate": "occlusion"}
 
 
 def video(obj, output, *more):
@@ -21,24 +23,36 @@ def test_animations_have_all_frames(obj, tmp_path, name):
     assert video(obj, tmp_path / name, "--fps", "10") == 0
     with Image.open(tmp_path / name) as file:
         frames = [np.asarray(f.convert("RGB")) for f in ImageSequence.Iterator(file)]
-    expected = rr.render(obj, turntable(rr.load(obj), 6, 25), size=(64, 48), background="white").color[..., :3]
+    expected = rr.render(obj, rr.orbit(rr.load(obj), 6, elevation=25), size=(64, 48), background="white", **SHOWN).color[..., :3]
     assert len(frames) == 6 and all((a != b).any() for a, b in zip(frames, frames[1:]))
     for frame, drawn in zip(frames, expected):
         # A GIF has a palette; an animated PNG the very pixels.
         assert np.abs(frame.astype(int) - drawn).max() <= (0 if name.endswith("png") else 24)
 
 
-def test_numbered_frames_are_the_turntables(obj, tmp_path):
+def test_numbered_frames_are_an_orbits(obj, tmp_path):
     from PIL import Image
     assert video(obj, tmp_path / "f_%02d.png") == 0
     assert len(list(tmp_path.glob("f_*.png"))) == 6
-    cameras = turntable(rr.load(obj), 6, 25)
-    assert (np.asarray(Image.open(tmp_path / "f_03.png")) == rr.render(obj, cameras[3], size=(64, 48), background="white").color).all()
+    cameras = rr.orbit(rr.load(obj), 6, elevation=25)
+    drawn = rr.render(obj, cameras[3], size=(64, 48), background="white", **SHOWN).color
+    assert (np.asarray(Image.open(tmp_path / "f_03.png")) == drawn).all()
+
+
+def test_render_alone_is_the_programs(obj, tmp_path):
+    from PIL import Image
+    assert main(["render", str(obj), "-o", str(tmp_path / "p.png"), "--size", "64x48"]) == 0
+    part = rr.load(obj)
+    drawn = rr.render(part, rr.Camera.fit(part, "iso", fov=30), size=(64, 48), **SHOWN).color
+    assert (np.asarray(Image.open(tmp_path / "p.png")) == drawn).all()
+    assert main(["render", str(obj), "-o", str(tmp_path / "p.png"), "--size", "64x48", "--shader", "phong", "--view", "front"]) == 0
+    drawn = rr.render(part, rr.Camera.fit(part, fov=30), size=(64, 48)).color
+    assert (np.asarray(Image.open(tmp_path / "p.png")) == drawn).all()
 
 
 def test_it_keeps_its_size_and_stays_in_the_picture():
     scene = rr.Scene([rr.Spheres([[-3, 0, 0], [3, 0, 0]], 0.5)])
-    seen = rr.render(scene, turntable(scene, 8, 25), size=(64, 48), outputs="id").id >= 0
+    seen = rr.render(scene, rr.orbit(scene, 8, elevation=25), size=(64, 48), outputs="id").id >= 0
     assert not seen[:, [0, -1]].any() and not seen[:, :, [0, -1]].any()
     # From both ends, and from both sides, as many pixels but for where they begin.
     areas = seen.sum((1, 2))

@@ -25,6 +25,10 @@ using Bytes = std::span<const std::byte>;
 [[nodiscard]] Image<Rgba8> decode_png(Bytes bytes, const std::string& name);
 [[nodiscard]] Image<Rgba8> decode_jpeg(Bytes bytes, const std::string& name);
 
+/// Linear light of a picture.
+[[nodiscard]] Image<Vec3> decode_rgbe(Bytes bytes, const std::string& name);
+[[nodiscard]] Image<Vec3> decode_exr(Bytes bytes, const std::string& name);
+
 /// Adds the materials of an .mtl file, in its order, to `scene` and their names to `by_name` (the
 /// first of a name wins). What is missing becomes a warning.
 void read_mtl(const std::filesystem::path& file, Scene& scene,

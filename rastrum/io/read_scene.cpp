@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/core/srgb.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 
@@ -161,6 +162,34 @@ Image<Rgba8> decode_image(std::span<const std::byte> bytes, const std::string& n
     fail_memory(name, bytes.size());
   }
   throw Error(Errc::unsupported, name + ": is neither PNG nor JPEG");
+}
+
+Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& name) {
+  const std::string_view text = as_text(bytes);
+  try {
+    if (text.starts_with("#?")) return decode_rgbe(bytes, name);
+    if (text.starts_with("\x76\x2f\x31\x01")) return decode_exr(bytes, name);
+    if (!text.starts_with("\x89PNG") && !text.starts_with("\xFF\xD8\xFF"))
+      throw Error(Errc::unsupported,
+                  name + ": is no picture of light: none of .hdr, .exr, .png, .jpg");
+    const Image<Rgba8> display = decode_image(bytes, name);
+    float linear[256];
+    for (int i = 0; i < 256; ++i) linear[i] = static_cast<float>(linear_from_srgb(i / 255.0));
+    Image<Vec3> light(display.width(), display.height());
+    for (int y = 0; y < light.height(); ++y)
+      for (int x = 0; x < light.width(); ++x) {
+        const Rgba8 c = display(x, y);
+        light(x, y) = {linear[c.r], linear[c.g], linear[c.b]};
+      }
+    return light;
+  } catch (const std::bad_alloc&) {
+    fail_memory(name, bytes.size());
+  }
+}
+
+Image<Vec3> read_light(const std::filesystem::path& file) {
+  const MappedFile mapped(file);
+  return decode_light(mapped.bytes(), file.string());
 }
 
 Image<Rgba8> read_image(const std::filesystem::path& file) {

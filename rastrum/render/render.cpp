@@ -21,6 +21,7 @@
 #include <rastrum/render/scene_draws.hpp>
 #include <rastrum/render/shadows.hpp>
 #include <rastrum/render/surface_of_key.hpp>
+#include <rastrum/render/surroundings_pass.hpp>
 #include <rastrum/render/target_checks.hpp>
 #include <rastrum/render/tone_pass.hpp>
 
@@ -96,6 +97,8 @@ struct Renderer::Impl {
     std::string why_host{};              ///< FrameRequest::why_host
   };
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
+  /// The same without what is behind.
+  FrameStats render_alone(const SceneView& scene, const Camera& camera, Call call);
   FrameStats draw_depth(SceneDraws& scene, const Call& call);
   /// `scene`: what the draws are of; null: programs.
   FrameStats draw(std::span<raster::Draw> draws, const raster::Shading& shading,
@@ -190,7 +193,40 @@ FrameStats Renderer::draw(std::span<const raster::ProgramDraw> draws, const Fram
   return RendererAccess::draw(*this, own, {}, {}, frame, targets, std::move(stop));
 }
 
+namespace {
+
+double ms_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
+      .count();
+}
+
+/// Runs `pass` as the last stage of a frame.
+template <class Pass>
+void add_stage(FrameStats& stats, const char* label, const Pass& pass) {
+  const auto begin = std::chrono::steady_clock::now();
+  pass();
+  const double ms = ms_since(begin);
+  stats.stages.push_back({label, stats.frame_ms, stats.frame_ms + ms});
+  stats.frame_ms += ms;
+}
+
+}  // namespace
+
 FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, Call call) {
+  SurroundingsPass around;
+  if (!SurroundingsPass::wanted(call.frame, call.targets)) return render_alone(scene, camera, call);
+  check_targets(call.targets, call.frame);
+  FrameOptions over_nothing = call.frame;
+  over_nothing.background = {};
+  const Targets targets = around.targets(call.frame, call.targets);
+  FrameStats stats =
+      render_alone(scene, camera, {over_nothing, targets, call.in_place, call.part, call.why_host});
+  add_stage(stats, "environment",
+            [&] { around.draw(call.frame, camera, call.targets, threads.get()); });
+  return stats;
+}
+
+FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& camera, Call call) {
   const FrameOptions& o = call.frame;
   const Shader taken = shader_for(o.shader, scene);
   if (call.in_place) check_in_place(scene, call.targets, taken, o);
@@ -213,8 +249,7 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
   const auto begin = std::chrono::steady_clock::now();
   const auto shadowed =
       lit ? shadows.draw(scene, camera, o, options) : std::span<const raster::LightShadow>{};
-  const double shadows_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  const double shadows_ms = ms_since(begin);
   SceneDraws of(runs, camera, {o, targets, taken, call.in_place, shadowed}, textures,
                 threads.get());
   FrameStats stats = taken == Shader::depth ? draw_depth(of, drawn)
@@ -228,15 +263,7 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
     stats.stages.insert(stats.stages.begin(), {"shadows", 0, shadows_ms});
     stats.frame_ms += shadows_ms;
   }
-  if (tones) {
-    const auto frame_end = std::chrono::steady_clock::now();
-    tone.draw(o, call.targets, threads.get());
-    const double ms =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - frame_end)
-            .count();
-    stats.stages.push_back({"tone", stats.frame_ms, stats.frame_ms + ms});
-    stats.frame_ms += ms;
-  }
+  if (tones) add_stage(stats, "tone", [&] { tone.draw(o, call.targets, threads.get()); });
   return stats;
 }
 
@@ -262,12 +289,7 @@ FrameStats Renderer::Impl::draw_depth(SceneDraws& scene, const Call& call) {
   Call pass{o, first};
   pass.why_host = call.why_host;
   FrameStats stats = draw(scene.draws(), unused, scene.test(), pass, &scene);
-  const auto begin = std::chrono::steady_clock::now();
-  stretch_depth(first.depth, o.background, targets);
-  const double ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-  stats.stages.push_back({"stretch depth", stats.frame_ms, stats.frame_ms + ms});
-  stats.frame_ms += ms;
+  add_stage(stats, "stretch depth", [&] { stretch_depth(first.depth, o.background, targets); });
   return stats;
 }
 
@@ -358,6 +380,7 @@ std::optional<Pick> Renderer::pick(const SceneView& scene, const Camera& camera,
   targets.keys = keys;
   FrameOptions plain = frame;
   plain.lights.clear();
+  plain.environment_behind = false;
   // Grey by depth is of the same surfaces.
   if (plain.shader == Shader::depth) {
     plain.shader = Shader::flat;

@@ -86,6 +86,7 @@ void check_in_place(const SceneView& scene, const Targets& targets, Shader shade
           "of the targets there are color8, color, depth, ids and keys, in one pass");
   require(o.tone == ToneMapping{}, "tone mapping is the CPU's");
   require(o.lights.empty(), "lights of the frame's own are the CPU's");
+  require(!o.environment_behind, "an environment behind the picture is the CPU's");
   require(o.clip_planes.empty() &&
               std::ranges::all_of(scene.instances,
                                   [](const InstanceView& i) { return i.clip_planes.empty(); }),

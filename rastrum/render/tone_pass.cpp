@@ -58,6 +58,20 @@ Vec3 toned(Tone tone, Vec3 c) {
 
 }  // namespace
 
+ToneCurve::ToneCurve(const ToneMapping& mapping)
+    : tone_(mapping.tone),
+      exposure_(
+          static_cast<float>(elementary::pow(2, static_cast<double>(mapping.exposure_stops)))) {}
+
+Vec3 ToneCurve::operator()(Vec3 linear) const {
+  const auto exposed = [&](float x) {
+    const float e = x * exposure_;
+    return e > 0 ? std::min(e, kBrightest) : 0.0F;  // of NaN 0
+  };
+  const Vec3 t = toned(tone_, {exposed(linear.x), exposed(linear.y), exposed(linear.z)});
+  return each(t, raster::srgb_from_linear);
+}
+
 bool TonePass::wanted(const FrameOptions& frame, const Targets& targets, Shader taken) {
   if (frame.tone == ToneMapping{} || (targets.color8.empty() && targets.color.empty()))
     return false;
@@ -89,14 +103,9 @@ Targets TonePass::targets(const FrameOptions& frame, const Targets& asked) {
 
 void TonePass::draw(const FrameOptions& frame, const Targets& asked,
                     parallel::Threads* threads) const {
-  const auto exposure =
-      static_cast<float>(elementary::pow(2, static_cast<double>(frame.tone.exposure_stops)));
+  const ToneCurve curve(frame.tone);
   const Vec4 nothing = raster::premultiplied_from_straight(frame.background);
   const Rgba8 nothing8 = raster::to_straight_rgba8(nothing);
-  const auto exposed = [&](float x) {
-    const float e = x * exposure;
-    return e > 0 ? std::min(e, kBrightest) : 0.0F;  // of NaN 0
-  };
   const auto row = [&](std::size_t place) {
     const int y = static_cast<int>(place);
     for (int x = 0; x < frame.width; ++x) {
@@ -104,10 +113,8 @@ void TonePass::draw(const FrameOptions& frame, const Targets& asked,
       Rgba8 color8 = nothing8;
       if (depth_(x, y) > 0) {
         const Vec4 c = raster::straight_from_premultiplied(linear_(x, y));
-        const Vec3 t = toned(frame.tone.tone, {exposed(c.x), exposed(c.y), exposed(c.z)});
-        const Vec4 display{raster::srgb_from_linear(t.x), raster::srgb_from_linear(t.y),
-                           raster::srgb_from_linear(t.z), c.w};
-        color = raster::premultiplied_from_straight(display);
+        const Vec3 display = curve({c.x, c.y, c.z});
+        color = raster::premultiplied_from_straight({display.x, display.y, display.z, c.w});
         color8 = raster::to_straight_rgba8(color);
       }
       if (!asked.color.empty()) asked.color(x, y) = color;

@@ -8,6 +8,18 @@
 
 namespace rastrum {
 
+/// What a display shows of linear light.
+class ToneCurve {
+ public:
+  explicit ToneCurve(const ToneMapping& mapping);
+  /// Display values in [0, 1].
+  [[nodiscard]] Vec3 operator()(Vec3 linear) const;
+
+ private:
+  Tone tone_;
+  float exposure_;
+};
+
 /// The images of one frame that the pass reads and its caller did not ask for.
 class TonePass {
  public:

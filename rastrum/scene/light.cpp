@@ -39,6 +39,11 @@ struct Problem {
                       s.outer_rad <= std::numbers::pi_v<float> / 2;
     return cone ? nullptr : "its cone must have 0 <= inner < outer <= 90 degrees";
   }
+  const char* operator()(const EnvironmentLight& e) const {
+    if (!e.picture) return "its environment has no picture";
+    if (!is_direction(e.up)) return "its up must be finite and not zero";
+    return std::isfinite(e.turn_rad) ? nullptr : "its turn must be finite";
+  }
   static const char* placed(Vec3d p, float range) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       return "its position must be finite";
@@ -99,6 +104,8 @@ Light placed(const Light& light, const Mat4d& to_world) {
   } else if (auto* const s = std::get_if<SpotLight>(&moved.kind)) {
     s->position = move(s->position);
     s->direction = turn(s->direction);
+  } else if (auto* const e = std::get_if<EnvironmentLight>(&moved.kind)) {
+    e->up = turn(e->up);
   }
   return moved;
 }

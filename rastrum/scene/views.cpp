@@ -6,6 +6,7 @@
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/fit.hpp>
+#include <rastrum/scene/tilt.hpp>
 
 namespace rastrum {
 namespace {
@@ -31,15 +32,7 @@ std::vector<std::string_view> view_names() {
 
 View view_of(ViewName name, Vec3d up) {
   const Vec3d u = unit_up(up);
-  // The shortest way from +y to u (Rodrigues); the way back from −y is about x.
-  const auto with_up = [&](Vec3d v) {
-    if (u.y <= -1) return Vec3d{v.x, -v.y, -v.z};
-    const Vec3d axis{u.z, 0, -u.x};  // cross(+y, u)
-    // 1 + u.y, without its digits being lost where u is almost −y.
-    const double above = u.y < 0 ? (u.x * u.x + u.z * u.z) / (1 - u.y) : 1 + u.y;
-    return v * u.y + cross(axis, v) + axis * (dot(axis, v) / above);
-  };
-  const Vec3d front = with_up({0, 0, 1}), right = with_up({1, 0, 0});
+  const Vec3d front = tilted(u, {0, 0, 1}), right = tilted(u, {1, 0, 0});
   switch (name) {
     case ViewName::front:
       return {-front, u};

@@ -39,6 +39,30 @@ TEST_F(LightOptions, LightThePictureAndNothingElse) {
   EXPECT_TRUE(same_pixels(png("head.png"), png("same.png")));
 }
 
+TEST_F(LightOptions, EnvironmentsAreFilesOrOurOwn) {
+  // A picture of one grey, of the size that the format's runs begin with.
+  std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32 +X 64\n";
+  for (int i = 0; i < 32 * 64; ++i) hdr += "\x60\x60\x60\x80";
+  write("grey.hdr", hdr);
+  must(with({"--light", "environment:grey.hdr", "--shader", "lambert", "-o", "grey.png"}));
+  must(with({"--light", "ambient:intensity=0.375", "--shader", "lambert", "-o", "ambient.png"}));
+  const Image<Rgba8> grey = png("grey.png"), ambient = png("ambient.png");
+  for (std::size_t i = 0; i < grey.pixels().size(); ++i)
+    ASSERT_NEAR(grey.pixels()[i].r, ambient.pixels()[i].r, 1);
+  const auto corner = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> all = with(options);
+    all.insert(all.end(), {"-o", "behind.png"});
+    must(all);
+    return png("behind.png")(0, 0);
+  };
+  EXPECT_EQ(corner({"--light", "environment:grey.hdr"}).a, 0);
+  EXPECT_EQ(corner({"--light", "environment:grey.hdr", "--environment-behind"}),
+            (Rgba8{165, 165, 165, 255}));
+  const Rgba8 seen =
+      corner({"--light", "environment:room:turn=90:up=0,0,1", "--environment-behind"});
+  EXPECT_NE(seen, corner({"--light", "environment:room", "--environment-behind"}));
+}
+
 TEST_F(LightOptions, StudioIsWhatItSays) {
   const auto draw = [&](std::vector<std::string> args, const std::string& file) {
     args.insert(args.begin(), {"render", "builtin:teapot", "--size", "120x90", "-o", file});
@@ -105,6 +129,11 @@ TEST_F(LightOptions, RefuseWhatCannotBeMeant) {
   };
   refused({"--light", "laser:1,2,3", "-o", "a.png"}, "--light: expected ambient, hemisphere");
   refused({"--light", "point:1,2", "-o", "a.png"}, "--light");
+  refused({"--light", "environment", "-o", "a.png"}, "its environment has no picture");
+  refused({"--light", "environment:none.hdr", "-o", "a.png"}, "none.hdr");
+  refused({"--light", "environment:room:range=2", "-o", "a.png"}, "has no 'range=2'");
+  refused({"--light", "headlight", "--environment-behind", "-o", "a.png"},
+          "--environment-behind: is of --light environment");
   refused({"--light", "ambient:1,2,3", "-o", "a.png"}, "has no place");
   refused({"--light", "point:1,2,3:outer=4", "-o", "a.png"}, "has no 'outer=4'");
   refused({"--light", "point:1,2,3:range=-4", "-o", "a.png"}, "its range");

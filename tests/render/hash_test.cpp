@@ -13,6 +13,7 @@
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/digest.hpp>
+#include <rastrum/environment.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/family.hpp>
 #include <rastrum/light.hpp>
@@ -181,6 +182,34 @@ TEST(Hashes, Lights) {
                           picture.targets());
           picture.add_to(pictures);
         }
+    });
+  }
+}
+
+TEST(Hashes, Environments) {
+  Light sky, room;
+  sky.kind = EnvironmentLight{Environment(builtin_environment(BuiltinEnvironment::sky).view())};
+  room.kind = EnvironmentLight{
+      Environment(builtin_environment(BuiltinEnvironment::room).view()), {1, 1, 0}, 0.7F};
+  room.intensity = 0.5F;
+  for (const std::string spec : {"torus_knot", "spheres"}) {
+    const Scene scene = shapes::scene_from_spec(spec);
+    expect_golden("environments/" + spec, [&](Isa isa, Sum& pictures) {
+      Renderer renderer({.threads = 2, .isa = isa});
+      const SceneBinding binding(scene);
+      for (const Shader shader : {Shader::phong, Shader::material}) {
+        FrameOptions f;
+        f.width = 160;
+        f.height = 120;
+        f.shader = shader;
+        f.lights = {sky, room};
+        f.environment_behind = true;
+        if (shader == Shader::material) f.tone = {Tone::neutral, -0.5F};
+        Picture picture(f);
+        renderer.render(binding.view(), fit_camera(binding.view(), 0.8F, false), f,
+                        picture.targets());
+        picture.add_to(pictures);
+      }
     });
   }
 }

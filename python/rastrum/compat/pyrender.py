@@ -1,16 +1,17 @@
 """pyrender's names and flags over Rastrum: `import rastrum.compat.pyrender as pyrender`.
 
-For who draws off screen: no OpenGL, no OSMesa, no display. What differs: the light is Rastrum's own (lights are kept in the
-scene and not drawn, which is said once), there is no Viewer, and pictures are the same bits on every machine.
+For who draws off screen: no OpenGL, no OSMesa, no display. What differs: a scene without any light has Rastrum's own, light
+becomes display values by the sRGB curve, not a power of 1 / 2.2, point lights throw no shadows, there is no Viewer, and
+pictures are the same bits on every machine.
 """
-
-import warnings
 
 import numpy as np
 
 from .. import _things as _t
 from .._camera import Camera as _Camera
 from .._errors import ArgumentError, UnsupportedError
+from .._lights import Light as _Light
+from .._lights import display
 from .._render import Renderer as _Renderer
 
 __all__ = ["Camera", "DirectionalLight", "IntrinsicsCamera", "Light", "Material", "Mesh", "MetallicRoughnessMaterial", "Node",
@@ -85,23 +86,48 @@ class OrthographicCamera(Camera):
 
 
 class Light:
-    """Kept, not drawn."""
+    """color: linear, (3,), 0 to 1. intensity: lux, or candela where it has a place. It shines along its node's -z."""
 
-    def __init__(self, color=None, intensity=None, name=None, **other):
-        self.color, self.intensity, self.name = color, intensity, name
-        self.__dict__.update(other)
+    def __init__(self, color=None, intensity=None, name=None):
+        self.color = np.ones(3) if color is None else np.asarray(color, float)[:3]
+        self.intensity, self.name = 1.0 if intensity is None else intensity, name
+
+    def _look(self):
+        return {"color": tuple(display(self.color)), "intensity": self.intensity / np.pi}
+
+    def _placed(self, pose):
+        raise UnsupportedError(f"{type(self).__name__}: is of no kind; take DirectionalLight, PointLight or SpotLight")
 
 
 class DirectionalLight(Light):
-    pass
+    def _placed(self, pose):
+        return _Light.directional(-pose[:3, 2], **self._look())
 
 
 class PointLight(Light):
-    pass
+    """range: where it ends, None: nowhere."""
+
+    def __init__(self, color=None, intensity=None, range=None, name=None):
+        super().__init__(color, intensity, name)
+        self.range = range
+
+    def _reach(self):
+        return {} if self.range is None else {"range": self.range}
+
+    def _placed(self, pose):
+        return _Light.point(pose[:3, 3], **self._reach(), **self._look())
 
 
-class SpotLight(Light):
-    pass
+class SpotLight(PointLight):
+    """innerConeAngle, outerConeAngle: radians from the axis."""
+
+    def __init__(self, color=None, intensity=None, range=None, innerConeAngle=0.0, outerConeAngle=np.pi / 4.0, name=None):
+        super().__init__(color, intensity, range, name)
+        self.innerConeAngle, self.outerConeAngle = innerConeAngle, outerConeAngle
+
+    def _placed(self, pose):
+        return _Light.spot(pose[:3, 3], -pose[:3, 2], inner=np.degrees(self.innerConeAngle),
+                           outer=np.degrees(self.outerConeAngle), **self._reach(), **self._look())
 
 
 class Material:
@@ -121,6 +147,14 @@ class MetallicRoughnessMaterial(Material):
         self.alphaMode, self.alphaCutoff, self.doubleSided = alphaMode or "OPAQUE", alphaCutoff or 0.5, doubleSided
         self.smooth, self.wireframe = smooth, wireframe
 
+    def _made(self):
+        """Of the shader `material`. Its textures are not drawn."""
+        emissive = np.zeros(3) if self.emissiveFactor is None else np.asarray(self.emissiveFactor, float)[:3]
+        base = np.append(display(self.baseColorFactor[:3]), np.clip(self.baseColorFactor[3], 0, 1))
+        return _t.Material(tuple(base), metallic=self.metallicFactor, roughness=self.roughnessFactor,
+                           emissive=tuple(display(emissive)), alpha_mode=self.alphaMode.lower(),
+                           alpha_cutoff=self.alphaCutoff, double_sided=self.doubleSided)
+
 
 class Primitive:
     """positions (N, 3), normals, color_0, indices (M, 3), material, poses (K, 4, 4); mode 4: triangles, 0: points."""
@@ -131,8 +165,10 @@ class Primitive:
         self.indices, self.material, self.poses = indices, material, poses
         self.mode = 4 if mode is None else mode
 
-    def _geometry(self, point_size, smooth):
+    def _geometry(self, point_size, smooth, lit):
         look = {} if self.color_0 is None else {"colors": np.asarray(self.color_0)}
+        if lit and self.material is not None:
+            look["material"] = self.material._made()
         if self.mode == 0:
             return lambda **more: _t.Points(self.positions, size=point_size, round=False, normals=self.normals,
                                             **look, **more)
@@ -303,8 +339,6 @@ def _placed(camera, pose, size):
 class OffscreenRenderer:
     """viewport_width, viewport_height: pixels."""
 
-    _said = False
-
     def __init__(self, viewport_width, viewport_height, point_size=1.0):
         self.viewport_width, self.viewport_height, self.point_size = viewport_width, viewport_height, point_size
         self._renderer = _Renderer()
@@ -314,31 +348,33 @@ class OffscreenRenderer:
         of seg_node_map. depth: (H, W) float32 along the axis, 0 where nothing is."""
         if scene.main_camera_node is None:
             raise ValueError("the scene has no camera")
-        if scene.lights and not OffscreenRenderer._said:
-            OffscreenRenderer._said = True
-            warnings.warn("rastrum.compat.pyrender: lights are not drawn yet; the light is Rastrum's own", stacklevel=2)
         size = self.viewport_width, self.viewport_height
         node = scene.main_camera_node
         camera = _placed(node.camera, scene.get_pose(node), size)
+        segmented = bool(flags & RenderFlags.SEG)
+        shader = ("wireframe" if flags & RenderFlags.ALL_WIREFRAME else
+                  "flat" if flags & RenderFlags.FLAT or segmented else "auto")
+        lights = [n.light._placed(scene.get_pose(n)) for n in scene._parents if n.light is not None]
+        if scene.ambient_light is not None:
+            lights.append(_Light.ambient(color=tuple(display(np.asarray(scene.ambient_light)[:3]))))
+        lit = bool(lights) and shader == "auto" and not flags & RenderFlags.DEPTH_ONLY
         things, nodes = [], []
         for n in scene._parents:
             if n.mesh is None or not n.mesh.is_visible:
                 continue
             for primitive in n.mesh.primitives:
-                make = primitive._geometry(self.point_size, not flags & RenderFlags.FACE_NORMALS)
+                make = primitive._geometry(self.point_size, not flags & RenderFlags.FACE_NORMALS, lit)
                 poses = [np.eye(4)] if primitive.poses is None else np.asarray(primitive.poses, float).reshape(-1, 4, 4)
                 for pose in poses:
                     things.append(make(transform=scene.get_pose(n) @ pose, id=len(nodes)))
             nodes.append(n)
-        shader = ("wireframe" if flags & RenderFlags.ALL_WIREFRAME else
-                  "flat" if flags & (RenderFlags.FLAT | RenderFlags.SEG) else "auto")
-        segmented = bool(flags & RenderFlags.SEG)
         outputs = ["depth"]
         if not flags & RenderFlags.DEPTH_ONLY:
             outputs.append("instance" if segmented else "color")
         background = np.clip(np.append(scene.bg_color, 1.0)[:4] if scene.bg_color.shape == (3,) else scene.bg_color, 0, 1)
-        picture = self._renderer.render(_t.Scene(things), camera, size=size, outputs=outputs, shader=shader,
-                                        background=background, cull="none" if flags & RenderFlags.SKIP_CULL_FACES else "back")
+        picture = self._renderer.render(_t.Scene(things), camera, size=size, outputs=outputs,
+                                        shader="material" if lit else shader, lights=lights if lit else None,
+                                        shadows=lit and bool(flags & RenderFlags.SHADOWS_ALL), background=background, cull="none" if flags & RenderFlags.SKIP_CULL_FACES else "back")
         if flags & RenderFlags.DEPTH_ONLY:
             return picture.depth
         if segmented:

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include <rastrum/core/enum.hpp>
+#include <rastrum/core/srgb.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/draws/hooks.hpp>

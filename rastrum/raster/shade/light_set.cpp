@@ -6,6 +6,7 @@
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/mat.hpp>
+#include <rastrum/scene/tilt.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -19,8 +20,7 @@ Vec3d unit(Vec3d v) {
   return v * (1 / length(v));
 }
 
-Vec3d direction(const Standpoint& frame, bool of_camera, Vec3 v) {
-  const Vec3d d{v.x, v.y, v.z};
+Vec3d direction(const Standpoint& frame, bool of_camera, Vec3d d) {
   const auto& m = frame.camera_to_world.m;
   if (!of_camera) return unit(d);
   return unit({m[0][0] * d.x + m[0][1] * d.y + m[0][2] * d.z,
@@ -74,6 +74,13 @@ ShadowMap map_of(const LightShadow& shadow, const Mat4d& from_origin) {
   return map;
 }
 
+FrameLights::Axes axes_of(const EnvironmentLight& light, const Standpoint& frame, bool of_camera) {
+  const auto [sin, cos] = elementary::sin_cos(static_cast<double>(light.turn_rad));
+  const Vec3d up = unit({light.up.x, light.up.y, light.up.z});
+  const auto axis = [&](Vec3d v) { return direction(frame, of_camera, tilted(up, v)); };
+  return {axis({cos, 0, -sin}), axis({0, 1, 0}), axis({sin, 0, cos})};
+}
+
 }  // namespace
 
 FrameLights::FrameLights(std::span<const Light> lights, std::span<const LightShadow> shadows,
@@ -109,6 +116,10 @@ FrameLights::FrameLights(std::span<const Light> lights, std::span<const LightSha
       set_.rise_z = set_.rise_z + rise * up.z;
       continue;
     }
+    if (const auto* const e = std::get_if<EnvironmentLight>(&light.kind)) {
+      add_environment(*e, axes_of(*e, frame, light.of_camera), full);
+      continue;
+    }
     LightTerm& term = terms_.emplace_back();
     term.radiance = full;
     if (const auto* const d = std::get_if<DirectionalLight>(&light.kind)) {
@@ -130,6 +141,42 @@ FrameLights::FrameLights(std::span<const Light> lights, std::span<const LightSha
     set_.has_places |= term.kind != LightTerm::Kind::directional || term.shadow != nullptr;
   }
   set_.terms = terms_;
+  set_.surroundings = surroundings_;
+}
+
+void FrameLights::add_environment(const EnvironmentLight& light, const Axes& axes, Vec3 color) {
+  const environment_detail::Data& data = light.picture->data();
+  surroundings_.push_back({data.map, Vec3(axes.x), Vec3(axes.y), Vec3(axes.z), color});
+  // Turned: a vector r of the picture is R r in the world, and a form S is R S Rᵀ.
+  const environment_detail::Gathered& g = data.gathered;
+  GatheredLight& sum = set_.gathered;
+  const double of_color[3] = {color.x, color.y, color.z};
+  const double mean[3] = {g.mean.x, g.mean.y, g.mean.z};
+  double rise[3][3], bend[6][3];
+  for (int c = 0; c < 3; ++c) {
+    const Vec3d r = axes.x * g.rise[c].x + axes.y * g.rise[c].y + axes.z * g.rise[c].z;
+    const double(&s)[6] = g.bend[c];
+    // Columns of S, halves of the mixed terms.
+    const Vec3d column[3] = {
+        {s[0], s[3] / 2, s[5] / 2}, {s[3] / 2, s[1], s[4] / 2}, {s[5] / 2, s[4] / 2, s[2]}};
+    const auto entry = [&](const Vec3d& a, const Vec3d& b) {
+      return a.x * dot(column[0], b) + a.y * dot(column[1], b) + a.z * dot(column[2], b);
+    };
+    const Vec3d row[3] = {{axes.x.x, axes.y.x, axes.z.x},
+                          {axes.x.y, axes.y.y, axes.z.y},
+                          {axes.x.z, axes.y.z, axes.z.z}};
+    const double turned[6] = {entry(row[0], row[0]),     entry(row[1], row[1]),
+                              entry(row[2], row[2]),     2 * entry(row[0], row[1]),
+                              2 * entry(row[1], row[2]), 2 * entry(row[2], row[0])};
+    const double moved[3] = {r.x, r.y, r.z};
+    for (int k = 0; k < 3; ++k) rise[k][c] = moved[k] * of_color[c];
+    for (int k = 0; k < 6; ++k) bend[k][c] = turned[k] * of_color[c];
+  }
+  const auto rounded = [](const double(&v)[3]) { return Vec3(Vec3d{v[0], v[1], v[2]}); };
+  sum.mean =
+      sum.mean + Vec3(Vec3d{mean[0] * of_color[0], mean[1] * of_color[1], mean[2] * of_color[2]});
+  for (int k = 0; k < 3; ++k) sum.rise[k] = sum.rise[k] + rounded(rise[k]);
+  for (int k = 0; k < 6; ++k) sum.bend[k] = sum.bend[k] + rounded(bend[k]);
 }
 
 }  // namespace rastrum::raster

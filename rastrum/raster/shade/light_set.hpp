@@ -12,6 +12,7 @@
 #include <rastrum/light.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/raster/shade/shadow_map.hpp>
+#include <rastrum/scene/environment_map.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
@@ -33,8 +34,28 @@ struct PixelPlane {
   float constant = 0, x = 0, y = 0, depth = 0;
 };
 
+/// An environment, and how it stands in the world.
+struct Surrounding {
+  EnvironmentMap map;
+  Vec3 x, y, z;  ///< its axes in the world: a direction d of the world is (x·d, y·d, z·d) in it
+  Vec3 color;
+
+  /// What comes from direction `d` of the world, of any length, blurred by `roughness`.
+  [[nodiscard]] RASTRUM_HD Vec3 at(Vec3 d, float roughness) const {
+    return color * map.at({dot(x, d), dot(y, d), dot(z, d)}, roughness);
+  }
+};
+
+/// What matt surfaces gather of environments: by a normal n, mean + rise · n + bend · (xx, yy, zz,
+/// xy, yz, zx) of n.
+struct GatheredLight {
+  Vec3 mean, rise[3], bend[6];
+};
+
 struct LightSet {
   std::span<const LightTerm> terms;
+  std::span<const Surrounding> surroundings;
+  GatheredLight gathered;   ///< of all of them
   bool has_places = false;  ///< some term asks where a surface lies
   /// Of light from all around a direction n brings ambient + rise · n (each channel has its own).
   Vec3 ambient, rise_x, rise_y, rise_z;
@@ -53,7 +74,7 @@ struct LightShadow {
 /// What owns them.
 class FrameLights {
  public:
-  /// Lights that check_lights passes, seen by `camera`.
+  /// Lights that check_lights passes, seen by `camera`; their environments must outlive this.
   /// `shadows`: one a light, whose pictures must outlive this; empty: there are none.
   FrameLights(std::span<const Light> lights, std::span<const LightShadow> shadows,
               const Camera& camera, int width, int height);
@@ -61,9 +82,17 @@ class FrameLights {
   FrameLights& operator=(const FrameLights&) = delete;
   [[nodiscard]] const LightSet& set() const { return set_; }
 
+  /// Of an environment, in the world, of unit length.
+  struct Axes {
+    Vec3d x, y, z;
+  };
+
  private:
+  void add_environment(const EnvironmentLight& light, const Axes& axes, Vec3 color);
+
   std::vector<LightTerm> terms_;
   std::deque<ShadowMap> maps_;  ///< terms point to them
+  std::vector<Surrounding> surroundings_;
   LightSet set_;
 };
 

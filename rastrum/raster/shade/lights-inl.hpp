@@ -30,6 +30,25 @@ RASTRUM_LANES V3 from_around(const LightSet& lights, const V3& n) {
          set(lights.rise_z) * n.z;
 }
 
+/// What a matt surface with unit normal `n` gathers from all around. Where a small, bright lamp is
+/// opposite the bands of environments fall below 0, where they are cut.
+RASTRUM_LANES V3 gathered(const LightSet& lights, const V3& n) {
+  V3 sum = from_around(lights, n);
+  if (lights.surroundings.empty()) return sum;
+  const GatheredLight& g = lights.gathered;
+  const V3 bands =
+      set(g.mean) + set(g.rise[0]) * n.x + set(g.rise[1]) * n.y + set(g.rise[2]) * n.z +
+      set(g.bend[0]) * (n.x * n.x) + set(g.bend[1]) * (n.y * n.y) + set(g.bend[2]) * (n.z * n.z) +
+      set(g.bend[3]) * (n.x * n.y) + set(g.bend[4]) * (n.y * n.z) + set(g.bend[5]) * (n.z * n.x);
+  return sum + V3{at_least(bands.x, 0), at_least(bands.y, 0), at_least(bands.z, 0)};
+}
+/// What a surface of a roughness in [0, 1] mirrors that looks into direction `d`.
+RASTRUM_LANES V3 mirrored_around(const LightSet& lights, const V3& d, F roughness) {
+  V3 sum = from_around(lights, d);
+  for (const Surrounding& s : lights.surroundings) sum = sum + lane_by_lane(s, d, roughness);
+  return sum;
+}
+
 struct Incoming {
   V3 to_light;  ///< of unit length
   V3 radiance;

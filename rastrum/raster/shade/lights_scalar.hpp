@@ -10,6 +10,10 @@ template <class Of>
 RASTRUM_HD F lane_by_lane(const Of& of, const V3& a, const V3& b) {
   return of.at(a, b);
 }
+template <class Of>
+RASTRUM_HD V3 lane_by_lane(const Of& of, const V3& a, F b) {
+  return of.at(a, b);
+}
 #define RASTRUM_LANES RASTRUM_HD inline
 #include <rastrum/raster/shade/lights-inl.hpp>
 #undef RASTRUM_LANES

@@ -72,7 +72,7 @@ RASTRUM_LANES V3 light_by(const LightSet& lights, LitModel model, const ViewRays
   const V3 v = unit(-(set(rays.d) + set(rays.dx) * px + set(rays.dy) * py));
   const V3 n = turned_to(v, unit(normal));
   const V3 place = lights.has_places ? place_of(lights, px, py, depth) : v;
-  V3 diffuse = from_around(lights, n);
+  V3 diffuse = gathered(lights, n);
   V3 specular = set(Vec3{});
   for (const LightTerm& term : lights.terms) {
     const Incoming in = incoming(term, place);

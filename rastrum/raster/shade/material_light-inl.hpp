@@ -72,6 +72,7 @@ struct SeenSurface {
   F nv;      ///< the same, above 0
   Reflectance surface;
   V3 f;  ///< of light from all around
+  F roughness;
 };
 RASTRUM_LANES SeenSurface seen_from(const ViewRays& rays, const LitSurface& s, F px, F py) {
   const V3 away = set(rays.d) + set(rays.dx) * px + set(rays.dy) * py;
@@ -91,7 +92,7 @@ RASTRUM_LANES SeenSurface seen_from(const ViewRays& rays, const LitSurface& s, F
   const V3 f0 = surface.f0;
   const F smooth = set(1) - roughness;
   const V3 rise{at_least(smooth - f0.x, 0), at_least(smooth - f0.y, 0), at_least(smooth - f0.z, 0)};
-  return {n, v, facing, nv, surface, f0 + rise * pow5(clamp01(set(1) - nv))};
+  return {n, v, facing, nv, surface, f0 + rise * pow5(clamp01(set(1) - nv)), roughness};
 }
 
 /// Linear light at (px, py), px.
@@ -117,7 +118,7 @@ RASTRUM_LANES V3 light_by(const LightSet& lights, const ViewRays& rays, const Li
     direct = direct + r.share * (radiance * r.n_l);
   }
   const V3 mirrored = p.n * (set(2) * p.facing) - p.v;
-  const V3 ambient =
-      p.surface.diffuse * from_around(lights, p.n) + p.f * from_around(lights, mirrored);
+  const V3 ambient = p.surface.diffuse * gathered(lights, p.n) +
+                     p.f * mirrored_around(lights, mirrored, p.roughness);
   return direct + ambient * s.occlusion + s.emission;
 }

@@ -2,13 +2,9 @@
 
 #include <algorithm>
 
-#include <rastrum/core/elementary.hpp>
+#include <rastrum/core/srgb.hpp>
 
 namespace rastrum::raster {
-double linear_from_srgb(double s) {
-  return s <= 0.04045 ? s / 12.92 : elementary::pow((s + 0.055) / 1.055, 2.4);
-}
-
 float linear_from_display(float display) {
   constexpr std::size_t kSteps = 4096;
   static const std::array<double, kSteps + 2> table = [] {

@@ -9,10 +9,8 @@
 
 namespace rastrum::raster {
 
-/// Display value to linear light, both in [0, 1].
-[[nodiscard]] double linear_from_srgb(double display);
-
-/// The same of a float32 display value: of a table of 4096 steps, linearly between, within 2e-8.
+/// Linear light of a float32 display value: of a table of 4096 steps, linearly between, within
+/// 2e-8.
 [[nodiscard]] float linear_from_display(float display);
 
 /// 8-bit code to [0, 1]: sRGB to linear light, and plain code / 255.

@@ -1,0 +1,85 @@
+"""Files that the library does not read: by the vtk wheel or trimesh, where these are installed."""
+
+import os
+
+import numpy as np
+
+from ._errors import ArgumentError, FormatError, UnsupportedError
+
+_OURS = {".obj", ".ply", ".stl", ".off", ".gltf", ".glb"}
+# The reader of vtkmodules for what a name ends with.
+_VTK = {".vtp": ("vtkIOXML", "vtkXMLPolyDataReader"), ".vtu": ("vtkIOXML", "vtkXMLUnstructuredGridReader"),
+        ".vti": ("vtkIOXML", "vtkXMLImageDataReader"), ".vts": ("vtkIOXML", "vtkXMLStructuredGridReader"),
+        ".vtr": ("vtkIOXML", "vtkXMLRectilinearGridReader"), ".vtk": ("vtkIOLegacy", "vtkDataSetReader")}
+
+
+def reads(path):
+    """Whether the file is for read(): its name ends with a type, and that is none of the library's."""
+    ending = os.path.splitext(path)[1].lower()
+    if ending in _VTK:
+        return True
+    if not ending or ending in _OURS:
+        return False
+    try:
+        import trimesh
+    except ImportError:
+        return False
+    return ending[1:] in trimesh.available_formats()
+
+
+def read(path):
+    """What another library makes of it: a vtkPolyData, a thing of trimesh. Raises FormatError where it reads nothing,
+    UnsupportedError where it is not installed."""
+    ending = os.path.splitext(path)[1].lower()
+    if ending in _VTK:
+        return _vtk(path, *_VTK[ending])
+    import trimesh
+    try:
+        return trimesh.load(path)
+    except Exception as e:  # of any kind, by reader
+        raise FormatError(f"{path}: trimesh: {e}") from e
+
+
+def _vtk(path, module, reader):
+    try:
+        import importlib
+        made = getattr(importlib.import_module(f"vtkmodules.{module}"), reader)()
+        from vtkmodules.vtkCommonCore import vtkStringOutputWindow, vtkOutputWindow
+        from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
+    except ImportError as e:
+        raise UnsupportedError(f"{path}: the vtk wheel reads it, which is not installed (pip install rastrum[vtk])") from e
+    # What VTK says goes to the error, not to stderr.
+    said, before = vtkStringOutputWindow(), vtkOutputWindow.GetInstance()
+    vtkOutputWindow.SetInstance(said)
+    try:
+        made.SetFileName(path)
+        surface = vtkGeometryFilter()
+        surface.SetInputConnection(made.GetOutputPort())
+        surface.Update()
+    finally:
+        vtkOutputWindow.SetInstance(before)
+    found = surface.GetOutput()
+    if found is None or found.GetNumberOfPoints() == 0:
+        words = [line for line in (said.GetOutput() or "").splitlines() if line.strip()]
+        raise FormatError(f"{path}: VTK reads nothing from it" + (f": {words[0].strip()}" if words else ""))
+    return found
+
+
+def numbers_of(data, name):
+    """(at points, at cells) of a vtkPolyData: those of that name, or without one the active ones of the points; one of
+    them is None."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    of_points, of_cells = data.GetPointData(), data.GetCellData()
+    if name is None:
+        active = of_points.GetScalars()
+        one = active is not None and active.GetNumberOfComponents() == 1
+        return (vtk_to_numpy(active) if one else None), None
+    for place, of in enumerate((of_points, of_cells)):
+        array = of.GetArray(name)
+        if array is None:
+            continue
+        if array.GetNumberOfComponents() != 1:
+            raise ArgumentError(f"scalars: {name} has {array.GetNumberOfComponents()} numbers at each place, not one")
+        return (vtk_to_numpy(array), None) if place == 0 else (None, np.asarray(vtk_to_numpy(array)))
+    known = [of.GetArrayName(i) for of in (of_points, of_cells) for i in range(of.GetNumberOfArrays())]
+    raise ArgumentError(f"scalars: there is no {name!r}; there are {', '.join(map(str, known)) or 'none'}")

@@ -1,0 +1,70 @@
+"""The Python of docs/coming_from.md and docs/tour.ipynb runs, and shows what is there."""
+
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import types
+
+import numpy as np
+import pytest
+
+import rastrum as rr
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGE = ROOT / "docs" / "coming_from.md"
+TOUR = ROOT / "docs" / "tour.ipynb"
+
+
+def ball(n=24):
+    """A mesh as trimesh has them, without trimesh."""
+    u, v = np.meshgrid(np.linspace(0, 2 * np.pi, 2 * n), np.linspace(0, np.pi, n))
+    points = np.stack([np.cos(u) * np.sin(v), np.cos(v), np.sin(u) * np.sin(v)], -1).reshape(-1, 3)
+    i = (np.arange(n - 1)[:, None] * 2 * n + np.arange(2 * n - 1)).reshape(-1)
+    faces = np.concatenate([np.stack([i, i + 1, i + 2 * n], -1), np.stack([i + 1, i + 2 * n + 1, i + 2 * n], -1)])
+    return points, faces
+
+
+def test_every_block_runs(tmp_path, monkeypatch):
+    if not PAGE.exists():
+        pytest.skip("the pages are not beside the tests")
+    blocks = re.findall(r"^```python\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.M | re.S)
+    assert len(blocks) == 4
+    vertices, faces = ball()
+    try:
+        import trimesh
+        part = trimesh.Trimesh(vertices, faces, process=False)
+    except ImportError:
+        visual = types.SimpleNamespace(kind=None)
+        part = types.SimpleNamespace(vertices=vertices, faces=faces, vertex_normals=vertices, visual=visual)
+        blocks[1] = blocks[1].replace("rr.render(part,", "rr.render((part.vertices, part.faces),")
+        blocks[3] = blocks[3].replace("[part,", "[(part.vertices, part.faces),")
+    pose = np.eye(4)
+    pose[:3, 3] = 0.2, -0.1, 4
+    names = {"part": part, "pose": pose}
+    monkeypatch.chdir(tmp_path)
+    for block in blocks:
+        exec(compile(block, str(PAGE), "exec"), names)
+    assert (names["depth"] > 0).sum() > 20000 and names["color"].max() > 100
+    assert (tmp_path / "points.png").stat().st_size > 1000
+    assert names["mask"].any(axis=(1, 2)).all() and len(names["points"]) > 1000
+    assert isinstance(names["p"], rr.Pictures)
+
+
+def test_the_tour_shows_what_it_holds(tmp_path):
+    pytest.importorskip("PIL")
+    tool = ROOT / "tools" / "notebook.py"
+    if not TOUR.exists() or not tool.exists():
+        pytest.skip("the notebook is not beside the tests")
+    def check(file):
+        return subprocess.run([sys.executable, tool, "check", file], capture_output=True, text=True, cwd=tmp_path)
+    done = check(TOUR)
+    assert done.returncode == 0, done.stderr
+    # Another picture, and other words, are seen.
+    for old, new, cell in (("#c8a070", "#70a0c8", 1), ("nearest:", "farthest:", 4)):
+        notebook = json.loads(TOUR.read_text(encoding="utf-8"))
+        changed = json.dumps(notebook).replace(old, new, 1)
+        (tmp_path / "other.ipynb").write_text(changed)
+        done = check(tmp_path / "other.ipynb")
+        assert done.returncode == 1 and f"cell {cell} " in done.stderr, done.stderr

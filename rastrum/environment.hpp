@@ -1,0 +1,42 @@
+// What is around a scene: a picture over all directions, made into a light once and used by any
+// number of frames (docs/light.md, "Environments"; decision 0061).
+#pragma once
+
+#include <memory>
+
+#include <rastrum/image.hpp>
+#include <rastrum/vec.hpp>
+
+namespace rastrum {
+
+namespace environment_detail {
+struct Data;
+}
+
+/// Immutable; copies share what they hold.
+class Environment {
+ public:
+  /// `picture`: linear radiance over all directions, equirectangular, twice as wide as high: its
+  /// top row is straight up (+y), its middle lies at −z, and right of it at +x. So a camera that
+  /// looks along −z has the middle before it, the right way round. `threads` 0: all.
+  /// Throws Error{invalid_argument} for another shape, and for the first pixel with a value that is
+  /// not in [0, 1e12]. Cost: O(pixels), and about 0.3 s of one core for what rough surfaces mirror;
+  /// 16 B · min(height, 2048)² of memory.
+  explicit Environment(ImageView<const Vec3> picture, int threads = 0);
+
+  /// The mean of `picture` over all directions.
+  [[nodiscard]] Vec3 mean() const;
+  [[nodiscard]] const environment_detail::Data& data() const { return *data_; }
+
+ private:
+  std::shared_ptr<const environment_detail::Data> data_;
+};
+
+/// Skies of our own, 1024 × 512, for those who have no picture at hand.
+enum class BuiltinEnvironment {
+  sky,   ///< a clear sky over grey ground, with a sun from the upper right
+  room,  ///< a grey room whose ceiling and walls have lamps: soft light with shape
+};
+[[nodiscard]] Image<Vec3> builtin_environment(BuiltinEnvironment which);
+
+}  // namespace rastrum

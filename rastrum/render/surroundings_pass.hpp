@@ -1,0 +1,31 @@
+// What is around a scene, behind its picture: a pass over a frame that was drawn over nothing.
+#pragma once
+
+#include <rastrum/camera.hpp>
+#include <rastrum/frame.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/render.hpp>
+
+namespace rastrum {
+
+/// The images of one frame that the pass reads and its caller did not ask for.
+class SurroundingsPass {
+ public:
+  /// Whether the frame has FrameOptions::environment_behind and somewhere to show it. Throws
+  /// Error{invalid_argument} where its lights have no environment, Error{unsupported} for a pass
+  /// over a picture.
+  [[nodiscard]] static bool wanted(const FrameOptions& frame, const Targets& targets);
+
+  /// `asked` with float32 colours in the place of 8-bit ones, whose rounding would be added to.
+  [[nodiscard]] Targets targets(const FrameOptions& frame, const Targets& asked);
+  /// Puts the environments behind what targets() gave and fills all colours of `asked`.
+  void draw(const FrameOptions& frame, const Camera& camera, const Targets& asked,
+            parallel::Threads* threads) const;
+
+ private:
+  Image<Vec4> own_color_;
+  ImageView<Vec4> color_;
+};
+
+}  // namespace rastrum

@@ -1,0 +1,226 @@
+// Environments as lights of a frame, and behind it.
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/digest.hpp>
+#include <rastrum/environment.hpp>
+#include <rastrum/light.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/surfaces.hpp>
+
+#include "tests/support/refused.hpp"
+
+namespace rastrum::test::environment_light_test {
+namespace {
+
+constexpr int kSize = 96;
+constexpr float kQuarter = std::numbers::pi_v<float> / 2;
+
+struct Look {
+  Scene scene = shapes::scene_from_spec("spheres");
+  Camera camera;
+  Look() {
+    const SceneBinding binding(scene);
+    camera = fit_camera(binding.view(), 1, false);
+  }
+};
+
+Image<Vec4> draw(const Look& look, FrameOptions frame, RendererOptions options = {.threads = 2}) {
+  frame.width = frame.height = kSize;
+  Image<Vec4> color(kSize, kSize);
+  const SceneBinding binding(look.scene);
+  Renderer(options).render(binding.view(), look.camera, frame, {.color = color});
+  return color;
+}
+
+Light light_of(const Image<Vec3>& picture, float turn_rad = 0, Vec3 up = {0, 1, 0}) {
+  Light light;
+  light.kind = EnvironmentLight{Environment(picture.view()), up, turn_rad};
+  return light;
+}
+Image<Vec3> constant(Vec3 light) {
+  Image<Vec3> picture(128, 64);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 128; ++x) picture(x, y) = light;
+  return picture;
+}
+FrameOptions lit_by(std::vector<Light> lights, Shader shader) {
+  FrameOptions frame;
+  frame.shader = shader;
+  frame.lights = std::move(lights);
+  return frame;
+}
+double most_apart(const Image<Vec4>& a, const Image<Vec4>& b) {
+  double most = 0;
+  for (int y = 0; y < a.height(); ++y)
+    for (int x = 0; x < a.width(); ++x) {
+      const Vec4 d = a(x, y) + b(x, y) * -1.0F;
+      most = std::max({most, std::abs(static_cast<double>(d.x)), std::abs(static_cast<double>(d.y)),
+                       std::abs(static_cast<double>(d.z))});
+    }
+  return most;
+}
+
+TEST(EnvironmentLights, ThatAreTheSameEverywhereAreAmbient) {
+  const Look look;
+  for (const Shader shader : {Shader::lambert, Shader::phong, Shader::material}) {
+    Light ambient;
+    ambient.kind = AmbientLight{};
+    ambient.color = {0.3F, 0.5F, 0.7F};
+    const auto a = draw(look, lit_by({ambient}, shader));
+    const auto b = draw(look, lit_by({light_of(constant(ambient.color))}, shader));
+    EXPECT_LE(most_apart(a, b), 1e-4) << name(shader);
+  }
+}
+
+// A hemisphere light is a picture that rises linearly, whose bands are all of it: matt surfaces
+// gather 2/3 of the rise.
+TEST(EnvironmentLights, ThatRiseAreAHemisphere) {
+  const Look look;
+  Image<Vec3> picture(256, 128);
+  for (int y = 0; y < 128; ++y)
+    for (int x = 0; x < 256; ++x) {
+      const auto up = static_cast<float>(std::cos(std::numbers::pi * (y + 0.5) / 128));
+      picture(x, y) = {0.5F + 0.45F * up, 0.5F, 0.5F - 0.45F * up};
+    }
+  Light hemisphere;
+  hemisphere.kind = HemisphereLight{{0, 1, 0}, {0.2F, 0.5F, 0.8F}};
+  hemisphere.color = {0.8F, 0.5F, 0.2F};
+  const auto a = draw(look, lit_by({hemisphere}, Shader::lambert));
+  const auto b = draw(look, lit_by({light_of(picture)}, Shader::lambert));
+  EXPECT_LE(most_apart(a, b), 1.0 / 255);
+}
+
+// Turned by a quarter it is the picture whose columns were moved by a quarter.
+TEST(EnvironmentLights, TurnAboutTheirUp) {
+  const Look look;
+  const Image<Vec3> picture = builtin_environment(BuiltinEnvironment::room);
+  Image<Vec3> moved(picture.width(), picture.height());
+  for (int y = 0; y < picture.height(); ++y)
+    for (int x = 0; x < picture.width(); ++x)
+      moved(x, y) = picture((x + picture.width() / 4) % picture.width(), y);
+  for (const Shader shader : {Shader::lambert, Shader::material}) {
+    FrameOptions turned = lit_by({light_of(picture, kQuarter)}, shader);
+    FrameOptions of_moved = lit_by({light_of(moved)}, shader);
+    turned.environment_behind = of_moved.environment_behind = true;
+    EXPECT_LE(most_apart(draw(look, turned), draw(look, of_moved)), 0.02) << name(shader);
+    EXPECT_GT(most_apart(draw(look, turned), draw(look, lit_by({light_of(picture)}, shader))), 0.1);
+  }
+  // With another up and the camera turned the same way nothing changes: +y to +x takes x to −y.
+  Look rolled = look;
+  const auto roll = [](Vec3d v) { return Vec3d{v.y, -v.x, v.z}; };
+  rolled.camera.eye = roll(look.camera.eye);
+  rolled.camera.target = roll(look.camera.target);
+  rolled.camera.up = roll(look.camera.up);
+  FrameOptions behind = lit_by({light_of(picture, 0.4F)}, Shader::flat);
+  FrameOptions tilted = lit_by({light_of(picture, 0.4F, {1, 0, 0})}, Shader::flat);
+  behind.environment_behind = tilted.environment_behind = true;
+  const Scene nothing;
+  const auto seen = [&](const Camera& camera, FrameOptions frame) {
+    frame.width = frame.height = kSize;
+    Image<Vec4> color(kSize, kSize);
+    const SceneBinding binding(nothing);
+    Renderer({.threads = 1}).render(binding.view(), camera, frame, {.color = color});
+    return color;
+  };
+  EXPECT_LE(most_apart(seen(look.camera, behind), seen(rolled.camera, tilted)), 0.01);
+}
+
+TEST(EnvironmentLights, AreTheSameBitsForAllThatDraws) {
+  const Look look;
+  for (const Shader shader : {Shader::lambert, Shader::phong, Shader::material})
+    for (const int samples : {1, 4}) {
+      FrameOptions frame = lit_by(
+          {light_of(builtin_environment(BuiltinEnvironment::sky), 0.3F), headlight(0.2F)}, shader);
+      frame.samples = samples;
+      frame.environment_behind = true;
+      if (samples == 4) frame.opacity = 0.6F;
+      const auto first = digest(draw(look, frame, {.device = Device::serial, .threads = 1}));
+      for (const Isa isa : available_isas())
+        for (const int threads : {1, 3})
+          EXPECT_EQ(first.hex(), digest(draw(look, frame, {.threads = threads, .isa = isa})).hex())
+              << name(shader) << ", " << samples << " samples, " << name(isa);
+    }
+}
+
+TEST(EnvironmentLights, AreSeenBehindByTheirDirections) {
+  const Scene nothing;
+  const SceneBinding binding(nothing);
+  // Four colours by quarters of the horizon, from −z on.
+  Image<Vec3> picture(64, 32);
+  const Vec3 quarters[4] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 64; ++x) picture(x, y) = quarters[(x + 40) / 16 % 4];
+  FrameOptions frame = lit_by({light_of(picture)}, Shader::phong);
+  frame.width = frame.height = 9;
+  frame.environment_behind = true;
+  const Vec3d ways[4] = {{0, 0, -1}, {1, 0, 0}, {0, 0, 1}, {-1, 0, 0}};
+  for (int i = 0; i < 4; ++i)
+    for (const bool orthographic : {false, true}) {
+      Camera camera;
+      camera.eye = {5, 1, 2};
+      camera.target = camera.eye + ways[i];
+      camera.orthographic = orthographic;
+      if (orthographic) camera.far_plane = 10;
+      Image<Rgba8> color8(9, 9);
+      Renderer renderer({.threads = 1});
+      renderer.render(binding.view(), camera, frame, {.color8 = color8});
+      const Vec3 q = quarters[i];
+      const auto byte = [](float v) { return static_cast<std::uint8_t>(v * 255); };
+      EXPECT_EQ(color8(4, 4), (Rgba8{byte(q.x), byte(q.y), byte(q.z), 255})) << i;
+    }
+}
+
+TEST(EnvironmentLights, BehindTakeTheTone) {
+  const Scene nothing;
+  const SceneBinding binding(nothing);
+  FrameOptions frame = lit_by({light_of(constant({0.5F, 0.5F, 4}))}, Shader::material);
+  frame.width = frame.height = 4;
+  frame.environment_behind = true;
+  frame.tone = {Tone::reinhard, 1};
+  Image<Vec4> color(4, 4), linear(4, 4);
+  Renderer({.threads = 1})
+      .render(binding.view(), Camera{}, frame, {.color = color, .linear = linear});
+  const auto display = [](double x) { return 1.055 * std::pow(x, 1 / 2.4) - 0.055; };
+  EXPECT_NEAR(color(1, 2).x, display(0.5), 1e-4);
+  EXPECT_NEAR(color(1, 2).z, display(8.0 / 9), 1e-4);
+  EXPECT_NEAR(linear(1, 2).z, 4, 1e-5);
+  EXPECT_EQ(color(1, 2).w, 1);
+}
+
+TEST(EnvironmentLights, ThatCannotBeMeantAreRefused) {
+  const Look look;
+  Light none;
+  none.kind = EnvironmentLight{};
+  expect_refused("light 0: its environment has no picture",
+                 [&] { (void)draw(look, lit_by({none}, Shader::phong)); });
+  expect_refused("light 0: its up", [&] {
+    (void)draw(look, lit_by({light_of(constant({1, 1, 1}), 0, {0, 0, 0})}, Shader::phong));
+  });
+  expect_refused("light 0: its turn", [&] {
+    (void)draw(look, lit_by({light_of(constant({1, 1, 1}), NAN)}, Shader::phong));
+  });
+  FrameOptions behind = lit_by({headlight()}, Shader::phong);
+  behind.environment_behind = true;
+  expect_refused("no environment that could be seen behind", [&] { (void)draw(look, behind); });
+  behind = lit_by({light_of(constant({1, 1, 1}))}, Shader::phong);
+  behind.environment_behind = true;
+  behind.width = behind.height = 4;
+  Image<Rgba8> color8(4, 4);
+  Image<float> depth(4, 4);
+  const SceneBinding binding(look.scene);
+  expect_refused("behind a whole picture", Errc::unsupported, [&] {
+    Renderer({.threads = 1})
+        .render(binding.view(), look.camera, behind,
+                {.color8 = color8, .depth = depth, .over = true});
+  });
+}
+
+}  // namespace
+}  // namespace rastrum::test::environment_light_test
