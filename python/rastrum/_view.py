@@ -7,7 +7,7 @@ import time
 import numpy as np
 
 from . import _rastrum as _r
-from ._camera import Camera, as_camera
+from ._camera import Camera, as_camera, orbit
 from ._errors import ArgumentError, ArgumentTypeError, Error, UnsupportedError, raises_errors
 from ._render import Renderer, _size
 from ._things import as_scene
@@ -123,6 +123,8 @@ class _Session:
         self.start(camera)
 
     def start(self, camera):
+        if camera is None:  # nothing leaves the picture when it turns
+            camera, = orbit(self.scene, 1, fov=30)
         made = as_camera(camera, self.scene)._for_size(self.size)
         if made.has_matrix:
             raise ArgumentError("camera: View turns look_at, orthographic and fit, not matrices")
@@ -206,8 +208,8 @@ class View:
     """A widget for notebooks (pip install rastrum[jupyter]): drag to turn, with Shift or the middle button to pan, the
     wheel zooms, a double click goes back to the beginning.
 
-    what, camera, frame: as render has them; the camera is one of look_at, orthographic or fit. While it moves, pictures
-    have as many pixels as are drawn within target_ms; the whole one follows. threads: of Renderer.
+    what, camera, frame: as render has them; the camera is one of look_at, orthographic or fit, None: one that sees
+    all of it however it turns. While it moves, pictures have as many pixels as are drawn within target_ms; the whole one follows. threads: of Renderer.
     """
 
     @raises_errors
