@@ -30,8 +30,9 @@ TEST(ColorOf, NamesOfCss) {
     ASSERT_TRUE(color) << name;
     EXPECT_EQ(color->a, 255) << name;
     // Both spellings are one colour.
-    if (const std::size_t at = name.find("gray"); at != std::string_view::npos)
+    if (const std::size_t at = name.find("gray"); at != std::string_view::npos) {
       EXPECT_EQ(color_of(std::string(name).replace(at, 4, "grey")), color) << name;
+    }
   }
   EXPECT_EQ(color_of("aliceblue"), (Rgba8{0xF0, 0xF8, 0xFF, 255}));      // the first,
   EXPECT_EQ(color_of("yellowgreen"), (Rgba8{0x9A, 0xCD, 0x32, 255}));    // the last,
