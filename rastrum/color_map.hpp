@@ -89,6 +89,14 @@ class ScalarColors {
   /// As of a ScalarBar: one a step or category, or those of the map.
   [[nodiscard]] const std::vector<Vec4>& colors() const { return colors_; }
   [[nodiscard]] bool is_discrete() const { return discrete_; }
+  /// Whether colours are blended evenly over the range, at one opacity and without lines.
+  [[nodiscard]] bool is_ramp() const {
+    return !logarithmic_ && !discrete_ && categories_.empty() && opacity_.empty() &&
+           isolines_.empty();
+  }
+  [[nodiscard]] Vec4 below() const { return below_; }  ///< of numbers below the range
+  [[nodiscard]] Vec4 above() const { return above_; }
+  [[nodiscard]] Vec4 nan() const { return nan_; }
 
   [[nodiscard]] bool has_isolines() const { return !isolines_.empty(); }
   /// `color` with the isolines over it, where the number is `value` and changes by `per_px` from

@@ -152,6 +152,22 @@ RASTRUM_HD inline Weights weights_at(const WeightPlanes& w, int x, int y,
   return result;
 }
 
+/// A pixel, and a place in it, px from its centre.
+struct PixelPoint {
+  int x, y;
+  Vec2 from_centre;
+};
+/// Of element i of a block that begins at pixel (x0, y0); `points` as in VisibleBlock.
+inline PixelPoint pixel_point(int x0, int y0, int i, const ShadingPoints* points) {
+  PixelPoint at{x0 + i % kBlockSize, y0 + i / kBlockSize, {0, 0}};
+  if (points == nullptr) return at;
+  const Vec2 by{std::floor(points->dx[i] + 0.5F), std::floor(points->dy[i] + 0.5F)};
+  at.x += static_cast<int>(by.x);
+  at.y += static_cast<int>(by.y);
+  at.from_centre = {points->dx[i] - by.x, points->dy[i] - by.y};
+  return at;
+}
+
 /// Finds primitives and their weights for fragment after fragment; neighbours mostly share one,
 /// whose planes are then kept.
 class FragmentLocator {
@@ -163,14 +179,7 @@ class FragmentLocator {
   /// `changes` nobody asks how its weights change across pixels.
   Fragment& locate(std::uint64_t id, int x0, int y0, int i, const ShadingPoints* points,
                    bool changes = true) {
-    int x = x0 + i % kBlockSize, y = y0 + i / kBlockSize;
-    Vec2 from_centre{0, 0};
-    if (points != nullptr) {
-      const Vec2 by{std::floor(points->dx[i] + 0.5F), std::floor(points->dy[i] + 0.5F)};
-      x += static_cast<int>(by.x);
-      y += static_cast<int>(by.y);
-      from_centre = {points->dx[i] - by.x, points->dy[i] - by.y};
-    }
+    const auto [x, y, from_centre] = pixel_point(x0, y0, i, points);
     if (id != fragment_.id || fragment_.planes == nullptr) {
       const Draw& draw = frame_.draw_of(id);
       square_px_ = 0;

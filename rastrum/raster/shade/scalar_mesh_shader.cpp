@@ -7,6 +7,7 @@
 #include <rastrum/raster/shade/lit_scalar.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
 #include <rastrum/raster/shade/material_scalar.hpp>
+#include <rastrum/raster/shade/quadric_lanes.hpp>
 
 namespace rastrum::raster {
 
@@ -19,19 +20,32 @@ ScalarMeshShader::ScalarMeshShader(const SurfaceLook& look, const SceneView& sce
       materials_(scene, camera, width, height, textures) {
   lit_.lights = materials_.lights = look.lights;
   for (const SurfaceScalars& s : scalars_) isolines_ |= s.colors()->has_isolines();
+  const auto is_ramp = [](const SurfaceScalars& s) { return ScalarRamp::is_one(*s.colors()); };
+  if (!std::ranges::all_of(scalars_, is_ramp)) return;
+  std::vector<const ScalarColors*> mappings;
+  for (const SurfaceScalars& s : scalars_) {
+    auto at = std::ranges::find(mappings, s.colors());
+    if (at == mappings.end()) {
+      at = mappings.insert(at, s.colors());
+      ramps_.emplace_back(*s.colors());
+    }
+    ramp_of_.push_back(static_cast<std::uint32_t>(at - mappings.begin()));
+  }
 }
 
 std::size_t ScalarMeshShader::scratch_bytes() const noexcept {
   return sizeof(KeptTriangles);
 }
 
-bool ScalarMeshShader::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
-                             BlockColors& colors) const noexcept {
-  LitBlock surface;
-  if (block.covered != ~std::uint64_t{0}) std::fill_n(surface.base[0], 3 * 64, 0.0F);
-  alignas(64) float alpha[64];
-  FragmentLocator locator(frame);
+float ScalarMeshShader::opacity_of(const Fragment& f, std::size_t number) const {
   const MaterialView materials = materials_.view();
+  const MaterialDraw& of = materials.draws[number];
+  return look_.opacity * materials.material_of(of, f.triangle).opacity * of.opacity;
+}
+
+void ScalarMeshShader::color_each(const FrameGeometry& frame, const VisibleBlock& block,
+                                  LitBlock& surface, float (&alpha)[64]) const {
+  FragmentLocator locator(frame);
   const bool is_wire = look_.model == LitModel::wireframe;
   double corner[3] = {};
   std::uint64_t corners_of = kMaxId + 1;  // the triangle that they are of
@@ -54,13 +68,70 @@ bool ScalarMeshShader::shade(const FrameGeometry& frame, const VisibleBlock& blo
     surface.base[0][i] = base.x;
     surface.base[1][i] = base.y;
     surface.base[2][i] = base.z;
-    alpha[i] = 1;
-    if (look_.blends) {
-      const MaterialDraw& of = materials.draws[number];
-      const BoundMaterial& material = materials.material_of(of, f.triangle);
-      alpha[i] = clamped_alpha(look_.opacity * material.opacity * of.opacity * own.w);
+    alpha[i] = look_.blends ? clamped_alpha(opacity_of(f, number) * own.w) : 1;
+  }
+}
+
+void ScalarMeshShader::color_all(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
+                                 LitBlock& surface, float (&alpha)[64]) const {
+  const ScalarLanes& lanes = *scalar_lanes(isa);
+  const QuadricLanes& keys = *quadric_lanes(isa);
+  FragmentLocator locator(frame);
+  // The fragments of each triangle together, of draws of one colour ramp.
+  ScalarRun run;
+  int place[64];
+  float opacity[64];
+  const ScalarRamp* ramp = nullptr;
+  const auto finish = [&] {
+    if (run.n == 0) return;
+    run.pad();
+    lanes.interpolate(run);
+    RunColors colors;
+    lanes.map(*ramp, run, colors);
+    for (int k = 0; k < run.n; ++k) {
+      const int i = place[k];
+      surface.base[0][i] = look_.model ? colors.r[k] : linear_from_display(colors.r[k]);
+      surface.base[1][i] = look_.model ? colors.g[k] : linear_from_display(colors.g[k]);
+      surface.base[2][i] = look_.model ? colors.b[k] : linear_from_display(colors.b[k]);
+      alpha[i] = look_.blends ? clamped_alpha(opacity[k] * colors.a[k]) : 1;
+    }
+    run.n = 0;
+  };
+  for (std::uint64_t rest = block.covered; rest != 0;) {
+    const int first = std::countr_zero(rest);
+    const std::uint64_t low = block.keys[first] & kIdMask;
+    const Fragment& f = locator.locate(id_of_key(block.keys[first]), block.x0, block.y0, first,
+                                       block.points, false);
+    const std::size_t number = frame.draws[f.draw].number;
+    if (ramp != &ramps_[ramp_of_[number]]) finish();
+    ramp = &ramps_[ramp_of_[number]];
+    double corner[3] = {};
+    scalars_[number].at_corners(f, Topology::triangles, corner);
+    const float face_opacity = look_.blends ? opacity_of(f, number) : 1;
+    std::uint64_t same = keys.samples_of(block.keys, low) & rest;
+    rest &= ~same;
+    for (; same != 0; same &= same - 1) {
+      const int i = std::countr_zero(same);
+      const PixelPoint at = pixel_point(block.x0, block.y0, i, block.points);
+      place[run.n] = i;
+      opacity[run.n] = face_opacity;
+      run.add(at.x + 0.5 + static_cast<double>(at.from_centre.x),
+              at.y + 0.5 + static_cast<double>(at.from_centre.y), *f.planes, corner);
     }
   }
+  finish();
+}
+
+bool ScalarMeshShader::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
+                             BlockColors& colors) const noexcept {
+  LitBlock surface;
+  if (block.covered != ~std::uint64_t{0}) std::fill_n(surface.base[0], 3 * 64, 0.0F);
+  alignas(64) float alpha[64];
+  const bool is_final = look_.model == LitModel::wireframe || look_.model == LitModel::id;
+  if (!ramps_.empty() && !is_final && scalar_lanes(isa) != nullptr)
+    color_all(frame, block, isa, surface, alpha);
+  else
+    color_each(frame, block, surface, alpha);
   light(frame, block, isa, surface, colors);
   bool opaque = true;
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {

@@ -11,6 +11,7 @@
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/plain_surface.hpp>
+#include <rastrum/raster/shade/scalar_lanes.hpp>
 #include <rastrum/raster/shade/surface_scalars.hpp>
 #include <rastrum/scene.hpp>
 
@@ -37,6 +38,14 @@ class ScalarMeshShader final : public BlockShader, public FragmentTest {
                                    const ShadingPoints* points) const noexcept override;
 
  private:
+  /// Base colours and alpha of the covered samples, one after the other.
+  void color_each(const FrameGeometry& frame, const VisibleBlock& block, LitBlock& surface,
+                  float (&alpha)[64]) const;
+  /// The same in lanes, where `ramps_` are there; not of `wireframe` and `id`.
+  void color_all(const FrameGeometry& frame, const VisibleBlock& block, Isa isa, LitBlock& surface,
+                 float (&alpha)[64]) const;
+  /// What of alpha is the same all over a face.
+  [[nodiscard]] float opacity_of(const Fragment& f, std::size_t number) const;
   /// Colours of the covered samples, whose base colours `surface` holds; alpha 1.
   void light(const FrameGeometry& frame, const VisibleBlock& block, Isa isa, LitBlock& surface,
              BlockColors& colors) const;
@@ -45,6 +54,8 @@ class ScalarMeshShader final : public BlockShader, public FragmentTest {
   bool linear_ = false;
   bool isolines_ = false;                ///< some of them have some
   std::vector<SurfaceScalars> scalars_;  ///< by Draw::number
+  std::vector<ScalarRamp> ramps_;        ///< of all of them, or none at all
+  std::vector<std::uint32_t> ramp_of_;   ///< by Draw::number, into `ramps_`
   LitScene lit_;
   MaterialScene materials_;
 };
