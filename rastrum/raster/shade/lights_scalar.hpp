@@ -5,10 +5,28 @@
 #include <rastrum/raster/shade/light_set.hpp>
 
 namespace rastrum::raster::scalar_lane {
-/// What `of` says of two vectors; lanes have the same (kernels/lane_by_lane-inl.hpp).
-template <class Of>
-RASTRUM_HD F lane_by_lane(const Of& of, const V3& a, const V3& b) {
-  return of.at(a, b);
+// As kernels/lookups-inl.hpp has them of lanes.
+using Whole = int;
+RASTRUM_HD inline Whole truncated(F v) {
+  return static_cast<int>(v);
+}
+RASTRUM_HD inline F as_float(Whole v) {
+  return static_cast<float>(v);
+}
+RASTRUM_HD inline Whole times_plus(Whole a, int by, Whole b) {
+  return a * by + b;
+}
+RASTRUM_HD inline Whole plus(Whole a, int b) {
+  return a + b;
+}
+RASTRUM_HD inline F looked_up(const float* table, Whole place) {
+  return table[place];
+}
+RASTRUM_HD inline bool both(bool a, bool b) {
+  return a && b;
+}
+RASTRUM_HD inline bool none(bool mask) {
+  return !mask;
 }
 template <class Of>
 RASTRUM_HD V3 lane_by_lane(const Of& of, const V3& a, F b) {

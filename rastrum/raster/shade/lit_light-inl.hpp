@@ -77,7 +77,7 @@ RASTRUM_LANES V3 light_by(const LightSet& lights, LitModel model, const ViewRays
   for (const LightTerm& term : lights.terms) {
     const Incoming in = incoming(term, place);
     const F n_l = positive(dot(n, in.to_light));
-    const V3 radiance = unshadowed(term, in.radiance, place, n);
+    const V3 radiance = unshadowed(term, in.radiance, place, n, n_l);
     diffuse = diffuse + radiance * n_l;
     if (model == LitModel::lambert) continue;
     const F shine = highlight(n, v, in.to_light) * set(kSpecular / kDiffuse);

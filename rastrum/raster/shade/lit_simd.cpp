@@ -30,7 +30,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #include <rastrum/raster/kernels/lane_math-inl.hpp>
 
-#include <rastrum/raster/kernels/lane_by_lane-inl.hpp>
+#include <rastrum/raster/kernels/lookups-inl.hpp>
 #include <rastrum/raster/shade/lights-inl.hpp>
 
 #include <rastrum/raster/shade/lit_light-inl.hpp>  // after the lights

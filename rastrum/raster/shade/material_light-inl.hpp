@@ -114,7 +114,7 @@ RASTRUM_LANES V3 light_by(const LightSet& lights, const ViewRays& rays, const Li
   for (const LightTerm& term : lights.terms) {
     const Incoming in = incoming(term, place);
     const Reflected r = reflect(p.surface, p.n, p.v, p.nv, in.to_light);
-    const V3 radiance = unshadowed(term, in.radiance, place, p.n);
+    const V3 radiance = unshadowed(term, in.radiance, place, p.n, r.n_l);
     direct = direct + r.share * (radiance * r.n_l);
   }
   const V3 mirrored = p.n * (set(2) * p.facing) - p.v;

@@ -247,7 +247,7 @@ constexpr int kLanes = static_cast<int>(hn::MaxLanes(Floats{}));
 
 #include <rastrum/raster/kernels/lane_math-inl.hpp>
 
-#include <rastrum/raster/kernels/lane_by_lane-inl.hpp>
+#include <rastrum/raster/kernels/lookups-inl.hpp>
 #include <rastrum/raster/shade/lights-inl.hpp>
 #include <rastrum/raster/shade/srgb_curve-inl.hpp>
 
