@@ -131,7 +131,10 @@ class Renderer {
 
   /// The same where the scene's arrays (positions, indices, normals, colours) and the targets are
   /// memory of the device that draws: with `cuda` CUDA's, of which nothing is copied, else the
-  /// host's, as always. For opaque scenes without materials, by a shader of the device, into
+  /// host's, as always. The frame is drawn on a stream of its own, behind which no work of the
+  /// caller's streams is ordered: what writes the arrays must be complete before the call (with
+  /// PyTorch, torch.cuda.current_stream().synchronize()). When it returns the targets are complete.
+  /// For opaque scenes without materials, by a shader of the device, into
   /// color8, color, depth, ids and keys; throws Error{unsupported} for what else is asked for.
   FrameStats render_in_place(const SceneView& scene, const Camera& camera,
                              const FrameOptions& frame, const Targets& targets,

@@ -161,6 +161,16 @@ bool Parser::parsed() const {
 bool Parser::given(const std::string& name) const {
   return app_->count(name) != 0;
 }
+std::vector<Parser::Given> Parser::all_given() const {
+  std::vector<Given> all;
+  for (const CLI::Option* option : std::as_const(*app_).get_options()) {
+    if (option->count() == 0 || option->get_lnames().empty()) continue;
+    Given& given = all.emplace_back();
+    given.name = "--" + option->get_lnames().front();
+    if (option->get_items_expected_max() != 0) given.texts = option->results();
+  }
+  return all;
+}
 std::string Parser::given_subcommand() const {
   const auto given = app_->get_subcommands();
   return given.empty() ? "" : given.front()->get_name();

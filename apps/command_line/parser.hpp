@@ -82,8 +82,14 @@ class Parser {
   [[nodiscard]] bool parse(std::span<const std::string_view> arguments);
   /// One line of text, options parted by spaces and quoted as in a shell.
   [[nodiscard]] bool parse(const std::string& line);
-  [[nodiscard]] bool parsed() const;                           ///< this command was given
-  [[nodiscard]] bool given(const std::string& name) const;     ///< this option was
+  [[nodiscard]] bool parsed() const;                        ///< this command was given
+  [[nodiscard]] bool given(const std::string& name) const;  ///< this option was
+  /// Those that were given, --help's first name of each, and their texts; of a flag none.
+  struct Given {
+    std::string name;
+    std::vector<std::string> texts;
+  };
+  [[nodiscard]] std::vector<Given> all_given() const;
   [[nodiscard]] std::string given_subcommand() const;          ///< "": none
   [[nodiscard]] std::vector<std::string> subcommands() const;  ///< those that --help lists
 

@@ -40,7 +40,6 @@ namespace rastrum::cli {
 namespace {
 
 enum class DepthUnit { reversed, world };
-enum class Look { studio, plain };
 
 struct RenderArguments : SceneArguments {
   std::filesystem::path path;
@@ -57,9 +56,7 @@ struct RenderArguments : SceneArguments {
   std::optional<Format> color_format;
   Output color, depth, ids, objects, heatmap, errors, trace, stats;
   std::vector<FrameImage> images;
-  AnnotationOptions annotations;
   bool hash = false;
-  std::optional<Look> look;
 
   /// Whether one run draws many pictures.
   [[nodiscard]] bool is_sequence() const { return !path.empty() || turntable != 0; }
@@ -202,44 +199,9 @@ void check_sequence(RenderArguments& a) {
     static_cast<void>(read_json(a.path));  // a spoilt file is refused before a large scene is read
 }
 
-void add_look_option(Parser& app, RenderArguments& a) {
-  add(app, "--look", "NAME",
-      "studio: --view iso --fov 30 --lights studio --occlusion --samples 4, plain: --view front "
-      "--lights "
-      "default --samples 1, each unless something else is said (studio where -o alone is asked "
-      "for, "
-      "docs/light.md)",
-      [&a](const std::string& s) {
-        a.look = choose<Look>("--look", s, {{"studio", Look::studio}, {"plain", Look::plain}});
-      })
-      ->group("Picture");
-}
-
-/// Whether the light and the samples of a picture to show are for this one, where nothing is said
-/// of them: nobody compares it with others, and nothing but colours is asked for.
-bool is_to_be_shown(const RenderArguments& a) {
-  const family::Options& r = a.render;
-  return (r.device == Device::threads || r.device == Device::serial) && r.rasterizer == "auto" &&
-         r.visibility == "auto" && r.memory_limit == 0 && !a.depth && !a.ids && !a.objects &&
-         a.images.empty() && !a.heatmap && !a.errors;
-}
-
-/// The picture of those who do not say how (docs/light.md).
-void set_look(RenderArguments& a) {
-  if (a.look == Look::plain) return;
-  const bool studio = a.look == Look::studio;
-  ViewOptions& v = a.view;
-  if (!v.has_view() && !v.eye && !v.target && !v.file_camera && a.path.empty()) {
-    v.view = ViewName::iso;
-    // Wider lenses make what is near too large: looked at over twenty files.
-    if (!v.fov_deg) v.fov_deg = 30;
-  }
-  const bool shows = studio || is_to_be_shown(a);
-  if (!a.samples_given && shows) a.render.samples = 4;
-  const bool lights = studio || (shows && a.render.shader == Shader::automatic);
-  if (!a.lights.given && lights) a.render.lights = light_kit();
-  const bool occludes = studio || (lights && !a.lights.given);
-  if (occludes && (a.color || a.errors || a.hash)) a.annotations.occlusion = true;
+/// Whether numbers are asked for beside colours, which are compared with others.
+bool asks_for_numbers(const RenderArguments& a) {
+  return a.depth || a.ids || a.objects || !a.images.empty() || a.heatmap || a.errors;
 }
 
 /// What the parser cannot see by itself, before anything is read.
@@ -252,7 +214,8 @@ void check(RenderArguments& a) {
   if (!a.color && !a.depth && !a.ids && !a.objects && a.images.empty() && !a.heatmap && !a.errors &&
       !a.stats && !a.trace && !a.hash)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
-  set_look(a);
+  set_look(a, is_to_be_shown(a) && !asks_for_numbers(a), a.path.empty(),
+           a.color || a.errors || a.hash);
   check_scene_arguments(a);
   check_annotations(a.annotations, a.color || a.errors || a.hash);
   if (a.depth_unit && !a.depth) throw UsageError("--depth-unit", "is for --depth");

@@ -293,6 +293,43 @@ void add_machine_options(Parser& app, SceneArguments& a) {
       ->group(group);
 }
 
+void add_look_option(Parser& app, SceneArguments& a) {
+  add(app, "--look", "NAME",
+      "studio: --view iso --fov 30 --lights studio --occlusion --samples 4, plain: --view front "
+      "--lights "
+      "default --samples 1, each unless something else is said (studio where -o alone is asked "
+      "for, "
+      "docs/light.md)",
+      [&a](const std::string& s) {
+        a.look = choose<LookName>("--look", s,
+                                  {{"studio", LookName::studio}, {"plain", LookName::plain}});
+      })
+      ->group("Picture");
+}
+
+bool is_to_be_shown(const SceneArguments& a) {
+  const family::Options& r = a.render;
+  return (r.device == Device::threads || r.device == Device::serial) && r.rasterizer == "auto" &&
+         r.visibility == "auto" && r.memory_limit == 0;
+}
+
+void set_look(SceneArguments& a, bool shows, bool has_corner, bool has_colors) {
+  if (a.look == LookName::plain) return;
+  const bool studio = a.look == LookName::studio;
+  shows |= studio;
+  ViewOptions& v = a.view;
+  if (!v.has_view() && !v.eye && !v.target && !v.file_camera && has_corner) {
+    v.view = ViewName::iso;
+    // Wider lenses make what is near too large: looked at over twenty files.
+    if (!v.fov_deg) v.fov_deg = 30;
+  }
+  if (!a.samples_given && shows) a.render.samples = 4;
+  const bool lights = studio || (shows && a.render.shader == Shader::automatic);
+  if (!a.lights.given && lights) a.render.lights = light_kit();
+  const bool occludes = studio || (lights && !a.lights.given);
+  if (occludes && has_colors) a.annotations.occlusion = true;
+}
+
 std::string shapes_help() {
   std::string text = "Shapes and their defaults:\n";
   for (const shapes::ShapeInfo& shape : shapes::catalogue())

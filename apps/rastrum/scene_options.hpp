@@ -1,17 +1,22 @@
 // The options that say what is drawn and how, shared by the commands that draw meshes.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <rastrum/family.hpp>
 
+#include "annotations.hpp"
 #include "inputs.hpp"
 #include "light_options.hpp"
 #include "option.hpp"
 #include "view.hpp"
 
 namespace rastrum::cli {
+
+/// What stands for what is not said of the light, the corner and the samples (docs/light.md).
+enum class LookName { studio, plain };
 
 struct SceneArguments {
   std::vector<std::string> inputs;
@@ -24,6 +29,9 @@ struct SceneArguments {
   bool fit = false;
   bool samples_given = false;
   LightChoice lights;
+  AnnotationOptions annotations;
+  std::optional<LookName> look;
+  std::vector<Parser::Given> given;  ///< the options of the command line, where they are kept
 };
 
 /// Adds --format, for a command that reads meshes.
@@ -40,6 +48,14 @@ inline constexpr const char* kMachineGroup = "Machine";
 void add_shading_options(Parser& app, SceneArguments& a, const char* group);
 void add_blending_options(Parser& app, SceneArguments& a, const char* group);
 void add_rasterizer_options(Parser& app, SceneArguments& a, const char* group);
+
+void add_look_option(Parser& app, SceneArguments& a);
+/// Whether nothing is said of how a picture is found: then nobody compares it with others.
+[[nodiscard]] bool is_to_be_shown(const SceneArguments& a);
+/// The picture of those who do not say how. `shows`: light and samples are those of a picture to
+/// show, where `look` says neither; `has_corner`: a corner is chosen where nothing is said of the
+/// camera; `has_colors`: there are some to darken.
+void set_look(SceneArguments& a, bool shows, bool has_corner, bool has_colors);
 
 /// The shapes of INPUT and their defaults, for the end of --help.
 [[nodiscard]] std::string shapes_help();

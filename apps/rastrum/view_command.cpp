@@ -53,7 +53,9 @@ int show(std::unique_ptr<window::Subject> subject, WindowArguments& a, int width
 }
 
 int run(ViewArguments& a) {
+  set_look(a, is_to_be_shown(a), true, true);
   check_scene_arguments(a);
+  check_annotations(a.annotations, true);
   if (a.lights.of_files)
     throw UsageError("--lights", "the window has default, headlight and studio");
   const window::Display display;  // before a large file is read
@@ -151,8 +153,10 @@ Command add_view_command(Parser& app) {
   view.add_flag("--terrain", a.terrain, "fly over a terrain; see rastrum view --terrain --help");
   add_window_options(view, a.window);
   add_picture_options(view, a);
+  add_look_option(view, a);
   add_transparency_options(view, a);
   add_camera_options(view, a);
+  add_annotation_options(view, a.annotations);
   add_machine_options(view, a);
   view.footer(keys_help(window::MeshControl::keys(), window::MeshSubject::command_keys()) +
               "Drag to orbit, with the right button to look around, with the middle one or Shift\n"
@@ -162,7 +166,10 @@ Command add_view_command(Parser& app) {
               "  rastrum view engine.glb --opacity 0.3 --samples 4\n"
               "  rastrum view builtin:teapot --script flight.json\n"
               "  rastrum view --terrain --height alps.png --color alps.jpg --shadows sharp");
-  return {view, [arguments] { return run(*arguments); }};
+  return {view, [arguments, view] {
+            arguments->given = view.all_given();
+            return run(*arguments);
+          }};
 }
 
 Command add_view_terrain_command(Parser& app) {

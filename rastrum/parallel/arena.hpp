@@ -20,7 +20,8 @@ namespace rastrum::parallel {
 
 /// Where an arena's blocks come from. Both functions are thread-safe.
 struct MemorySource {
-  void* (*allocate)(std::size_t bytes) noexcept;  ///< null where there is none
+  /// Null where there is none; throws Error for what else goes wrong.
+  void* (*allocate)(std::size_t bytes);
   void (*release)(void* block) noexcept;
   const char* name;  ///< of the memory, in messages
   /// Asking for a block stops the device: all of any size are kept, and go back only to be asked
@@ -45,7 +46,7 @@ class Arena {
 
   /// At least `bytes`, 64-byte aligned, uninitialized; large ones in large pages where the system
   /// has them. Sizes are rounded up by at most a quarter, so that frames of about one size fit into
-  /// each other's blocks. Throws Error{out_of_memory} with what was asked for.
+  /// each other's blocks. Throws Error{out_of_memory} with what was asked for, and as the source.
   [[nodiscard]] void* allocate(std::size_t bytes);
   /// Takes back what allocate(bytes) returned.
   void release(void* block, std::size_t bytes) noexcept;

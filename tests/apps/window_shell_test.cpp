@@ -4,6 +4,7 @@
 //
 // Nothing here waits for a time to pass: what is waited for is the picture on the screen, the
 // window's title or a file, and whatever ends the program ends the waiting.
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdio>
@@ -55,6 +56,9 @@ class WindowTest : public Program {
   }
 
   void start(std::vector<std::string> args) {
+    // Small pictures that are drawn often: without a studio.
+    if (std::ranges::find(args, "--terrain") == args.end())
+      args.insert(args.end(), {"--look", "plain"});
     args.insert(args.begin(), {RASTRUM_PROGRAM, "view"});
     viewer_.start(args, path(""), err());
   }

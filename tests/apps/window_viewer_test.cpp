@@ -392,6 +392,72 @@ TEST_F(MeshViewerTest, ScreenshotsAreWhatRenderDraws) {
   EXPECT_TRUE(same_pixels(png("e.png"), png("heat.png")));
 }
 
+// Beside a screenshot lies what draws it again, whatever the window showed.
+TEST_F(MeshViewerTest, ACommandLineDrawsTheSamePicture) {
+  write(
+      "heights.ply",
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+      "z\nproperty float heat\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0 1\n1 0 0 2\n1 1 0.5 3\n0 1 0 4\n4 0 1 2 3\n");
+  const std::string file = path("heights.ply").string();
+  const std::vector<std::string> options{
+      "--shader phong --opacity 0.5 --samples 4",
+      "--scalars heat --cmap plasma --range 1.5,3 --bar Heat --axes",
+      "--lights studio --occlusion --silhouettes",
+      "--lights headlight --shadows --edges --edge-angle 20 --background white",
+      "--scalars z --cmap '#ff0000,#0000ff' --steps 5 --isolines 4 --samples 8",
+      "--shader material --light point:1,1,3:intensity=4 --tone aces --exposure 1"};
+  std::string events =
+      R"({"fps": 50, "events": [{"time": 0.1, "key_down": "right"}, {"time": 0.4, "key_up": "right"})";
+  for (std::size_t i = 0; i < options.size(); ++i)
+    events +=
+        R"(, {"options": ")" + options[i] + "\", " + shot("p" + std::to_string(i) + ".png") + "}";
+  EXPECT_EQ(replay(file, events + "]}"), "");
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    const std::string stem = "p" + std::to_string(i);
+    const Image<Rgba8> shown = png(stem + ".png");
+    std::filesystem::remove(path(stem + ".png"));
+    std::string line = read(stem + ".sh");
+    ASSERT_TRUE(line.starts_with("rastrum render ")) << line;
+    const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
+                                line.substr(std::string("rastrum").size(), line.size() - 8) +
+                                " --quiet";
+    ASSERT_EQ(std::system(command.c_str()), 0) << command;
+    EXPECT_TRUE(same_pixels(shown, png(stem + ".png"))) << line;
+  }
+}
+
+TEST_F(MeshViewerTest, SectionsAreClipPlanes) {
+  cli::SceneArguments a;
+  a.inputs = {"builtin:sphere"};
+  MeshSubject subject(a, load_scene(a));
+  subject.resize(60, 40);
+  MeshSubject::Settings s = subject.settings();
+  s.sections[0] = {true, 0.25, true};
+  s.sections[2] = {true, -0.5, false};
+  s.lights = "studio";
+  subject.set(s);
+  const auto drawn = subject.draw(60, 40)();
+  std::string line;
+  for (const auto& [ending, text] : subject.same_picture(60, 40, "cut.png"))
+    if (ending == ".sh") line = text;
+  EXPECT_NE(line.find("--clip-plane -1,0,0,0.25"), std::string::npos) << line;
+  EXPECT_NE(line.find("--clip-plane 0,0,1,0.5"), std::string::npos) << line;
+  const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
+                              line.substr(7, line.size() - 8) + " --quiet";
+  ASSERT_EQ(std::system(command.c_str()), 0) << command;
+  EXPECT_TRUE(same_pixels(drawn.image, png("cut.png")));
+}
+
+TEST_F(MeshViewerTest, AClickSaysTheNumberThere) {
+  EXPECT_EQ(replay("builtin:sphere", R"({"events": [{"options": "--scalars z"},
+      {"time": 0.1, "button_down": "left", "at": [60, 45]}, {"time": 0.2, "button_up": "left"}]})"),
+            "");
+  EXPECT_NE(title.find(", z = 0.99"), std::string::npos) << title;
+  EXPECT_NE(replay("builtin:sphere", R"({"events": [{"options": "--scalars heat"}]})").find("heat"),
+            std::string::npos);
+}
+
 TEST_F(MeshViewerTest, AClickOnAMeshNamesItsPrimitive) {
   const auto click = [&](const std::string& at) {
     EXPECT_EQ(replay("builtin:sphere", R"({"events": [{"button_down": "left", "at": )" + at +

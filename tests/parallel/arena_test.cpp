@@ -71,6 +71,49 @@ TEST(Arena, SaysWhatWasAskedForWhenThereIsNone) {
   EXPECT_EQ(arena.in_use(), 0U);
 }
 
+/// A source that has `left` blocks to give, then none, or a fault that is not for lack of memory.
+int left = 0;
+bool faults = false;
+MemorySource source_that_ends() {
+  MemorySource source = host_memory();
+  source.allocate = [](std::size_t bytes) -> void* {
+    if (left-- > 0) return host_memory().allocate(bytes);
+    if (faults) throw Error(Errc::no_device, "the device is gone");
+    return nullptr;
+  };
+  source.name = "device memory";
+  source.keeps_all = true;
+  return source;
+}
+
+TEST(Arena, TellsLackOfMemoryFromAFaultOfItsSource) {
+  for (const bool fault : {false, true})
+    for (int n = 0; n < 4; ++n) {
+      MemoryAccount account;
+      Arena arena(&account, source_that_ends());
+      left = n;
+      faults = fault;
+      std::vector<void*> blocks;
+      try {
+        for (;;) blocks.push_back(arena.allocate(kMiB));
+      } catch (const Error& error) {
+        EXPECT_EQ(error.code(), fault ? Errc::no_device : Errc::out_of_memory);
+        EXPECT_NE(std::string(error.what()).find(fault ? "device is gone" : "of device memory"),
+                  std::string::npos)
+            << error.what();
+      }
+      ASSERT_EQ(blocks.size(), static_cast<std::size_t>(n));
+      EXPECT_EQ(arena.in_use(), blocks.size() * kMiB);
+      // With a block that is kept and too small the source is asked again; as good as before.
+      for (void* const block : blocks) arena.release(block, kMiB);
+      EXPECT_THROW(static_cast<void>(arena.allocate(2 * kMiB)), Error);
+      left = 1;
+      arena.release(arena.allocate(2 * kMiB), 2 * kMiB);
+      arena.trim();
+      EXPECT_EQ(account.held(), 0U);
+    }
+}
+
 TEST(Arena, BuffersOutliveTheirBackend) {
   MemoryAccount account;
   Buffer<std::uint32_t> kept;

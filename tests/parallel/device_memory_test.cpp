@@ -44,6 +44,29 @@ TEST(DeviceMemory, BuffersMoveAndOutliveTheirContext) {
   EXPECT_EQ(account.held(), 0U);
 }
 
+// Thrust's exception is no rastrum::Error, and nobody outside of the device's code knows it.
+TEST(DeviceErrors, OfThrustComeOutAsError) {
+  try {
+    cuda_system::with_errors([]() -> int {
+      throw thrust::system_error(thrust::errc::io_error, thrust::generic_category(),
+                                 "for_each: failed to synchronize");
+    });
+    FAIL() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), Errc::no_device);
+    EXPECT_NE(std::string(error.what()).find("failed to synchronize"), std::string::npos)
+        << error.what();
+  }
+  try {
+    cuda_system::with_errors([] { throw Error(Errc::out_of_memory, "9 bytes"); });
+    FAIL() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), Errc::out_of_memory);
+    EXPECT_STREQ(error.what(), "9 bytes");
+  }
+  EXPECT_EQ(cuda_system::with_errors([] { return 7; }), 7);
+}
+
 TEST(Pending, IsTheSumThatAScanHadWhenItWasDone) {
   Cuda exec;
   std::vector<std::uint32_t> values = {1, 2, 3, 4};

@@ -2,7 +2,10 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <rastrum/parallel/exec.hpp>
@@ -65,6 +68,155 @@ bool choose_threads(RendererOptions& r) {
   return changed;
 }
 
+/// A map's colours as a strip of the panel's width.
+void draw_strip(const ScalarMapping& mapping) {
+  ScalarMapping shown;
+  shown.map = mapping.map;
+  shown.steps = mapping.steps;
+  const ScalarColors colors(shown, {0, 1});
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = ImGui::CalcItemWidth(), height = ImGui::GetTextLineHeight();
+  constexpr int kParts = 96;
+  for (int i = 0; i < kParts; ++i) {
+    const Vec4 c = colors((i + 0.5) / kParts);
+    const float x0 = std::floor(at.x + width * static_cast<float>(i) / kParts);
+    const float x1 = std::floor(at.x + width * static_cast<float>(i + 1) / kParts);
+    list.AddRectFilled({x0, at.y}, {x1, at.y + height},
+                       ImGui::ColorConvertFloat4ToU32({c.x, c.y, c.z, 1}));
+  }
+  ImGui::Dummy({width, height});
+}
+
+bool choose_scalars(const LoadedScene& scene, MeshSettings& s) {
+  ScalarOptions& o = s.notes.scalars;
+  std::vector<std::string> names{"none"};
+  for (const ScalarSummary& summary : scene.scalars) names.push_back(summary.name);
+  std::string now = o.name.empty() ? "none" : o.name;
+  bool changed = false;
+  if (choose_name("numbers", names, now)) {
+    o.name = now == "none" ? "" : now;
+    o.mapping.range.reset();
+    changed = true;
+  }
+  if (o.name.empty()) {
+    if (changed) o.bar_title.reset();
+    return changed;
+  }
+  std::vector<std::string> maps;
+  for (const std::string_view n : color_map_names()) maps.emplace_back(n);
+  if (choose_name("colours", maps, s.map)) {
+    o.mapping.map = color_map_or_list(s.map);
+    changed = true;
+  }
+  draw_strip(o.mapping);
+  const auto found = std::ranges::find(scene.scalars, o.name, &ScalarSummary::name);
+  const ScalarRange all = found == scene.scalars.end() ? ScalarRange{} : found->range;
+  ScalarRange range = o.mapping.range.value_or(all);
+  const auto speed = static_cast<float>((all.high - all.low) / 400);
+  bool moved =
+      ImGui::DragScalar("from", ImGuiDataType_Double, &range.low, speed, nullptr, nullptr, "%.6g");
+  moved |=
+      ImGui::DragScalar("to", ImGuiDataType_Double, &range.high, speed, nullptr, nullptr, "%.6g");
+  if (moved && range.low <= range.high) {
+    o.mapping.range = range;
+    changed = true;
+  }
+  if (o.mapping.range && ImGui::Button("all of them")) {
+    o.mapping.range.reset();
+    changed = true;
+  }
+  changed |=
+      ImGui::SliderInt("steps", &o.mapping.steps, 0, 20, o.mapping.steps == 0 ? "blended" : "%d");
+  if (range.low > 0) changed |= ImGui::Checkbox("logarithmic", &o.mapping.logarithmic);
+  bool bar = o.bar();
+  if (ImGui::Checkbox("bar", &bar)) {
+    if (bar)
+      o.bar_title = o.name;
+    else
+      o.bar_title.reset();
+    changed = true;
+  }
+  return changed;
+}
+
+bool choose_lights(const LoadedScene& scene, MeshSettings& s) {
+  const std::string said = "as given";
+  std::string now = s.lights.empty() ? said : s.lights;
+  bool changed = false;
+  if (choose_name("lights", {said, "default", "headlight", "studio"}, now)) {
+    s.lights = now == said ? "" : now;
+    changed = true;
+  }
+  changed |= ImGui::Checkbox("shadows", &s.render.shadows);
+  ImGui::SameLine();
+  changed |= ImGui::Checkbox("occlusion", &s.notes.occlusion);
+  ImGui::SameLine();
+  changed |= ImGui::Checkbox("eye-dome", &s.notes.dome);
+  std::vector<std::string> tones{"none", "reinhard", "aces", "neutral"};
+  std::string tone = tones[static_cast<std::size_t>(s.render.tone.tone)];
+  if (shader_of(s.render.shader, scene.has_materials) != Shader::material) return changed;
+  if (choose_name("tone", tones, tone)) {
+    s.render.tone.tone = static_cast<Tone>(std::ranges::find(tones, tone) - tones.begin());
+    changed = true;
+  }
+  if (s.render.tone.tone != Tone::none)
+    changed |= ImGui::SliderFloat("exposure", &s.render.tone.exposure_stops, -8, 8, "%.2f stops");
+  return changed;
+}
+
+bool choose_lines(AnnotationOptions& a) {
+  bool changed = ImGui::Checkbox("silhouettes", &a.silhouettes);
+  ImGui::SameLine();
+  changed |= ImGui::Checkbox("edges", &a.edges);
+  changed |= ImGui::Checkbox("axes", &a.axes);
+  ImGui::SameLine();
+  changed |= ImGui::Checkbox("bounds", &a.bounds);
+  return changed;
+}
+
+bool choose_sections(const Bounds& box, std::array<Section, 3>& sections) {
+  const double low[] = {box.min.x, box.min.y, box.min.z};
+  const double high[] = {box.max.x, box.max.y, box.max.z};
+  constexpr const char* kAxes[] = {"x", "y", "z"};
+  bool changed = false;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    Section& section = sections[axis];
+    ImGui::PushID(static_cast<int>(axis));
+    if (ImGui::Checkbox(kAxes[axis], &section.on)) {
+      changed = true;
+      if (section.at <= low[axis] || section.at >= high[axis])
+        section.at = (low[axis] + high[axis]) / 2;
+    }
+    if (section.on) {
+      ImGui::SameLine();
+      changed |= ImGui::SliderScalar("##at", ImGuiDataType_Double, &section.at, &low[axis],
+                                     &high[axis], "%.6g");
+      ImGui::SameLine();
+      if (ImGui::Button("turn")) {
+        section.below = !section.below;
+        changed = true;
+      }
+    }
+    ImGui::PopID();
+  }
+  return changed;
+}
+
+/// Onto the clipboard.
+void offer_texts(const MeshSubject& subject) {
+  const auto [width, height] = subject.size();
+  constexpr std::pair<const char*, const char*> kButtons[] = {{".sh", "copy command line"},
+                                                              {".py", "copy Python"}};
+  for (const auto& [ending, label] : kButtons) {
+    if (ImGui::Button(label))
+      for (const auto& [of, text] : subject.same_picture(width, height, "picture.png"))
+        if (of == ending) ImGui::SetClipboardText(text.c_str());
+    ImGui::SameLine();
+  }
+  ImGui::NewLine();
+}
+
 }  // namespace
 
 void draw_mesh_controls(MeshSubject& subject) {
@@ -77,9 +229,15 @@ void draw_mesh_controls(MeshSubject& subject) {
   changed |= choose_transparency(r.transparency);
   changed |= choose_samples(r.samples);
   changed |= choose_threads(r);
+  if (ImGui::CollapsingHeader("Numbers as colours")) changed |= choose_scalars(subject.scene(), s);
+  if (ImGui::CollapsingHeader("Light")) changed |= choose_lights(subject.scene(), s);
+  if (ImGui::CollapsingHeader("Lines")) changed |= choose_lines(s.notes);
+  if (ImGui::CollapsingHeader("Sections"))
+    changed |= choose_sections(subject.scene().box, s.sections);
   changed |= ImGui::Checkbox("heat map", &s.heat_map);
   ImGui::SameLine();
   if (ImGui::Button("home")) subject.control().go_home();
+  offer_texts(subject);
   if (changed) subject.set(std::move(s));
 }
 

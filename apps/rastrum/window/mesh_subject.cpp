@@ -12,6 +12,7 @@
 #include "heatmap.hpp"
 #include "progress.hpp"
 #include "render_job.hpp"
+#include "same_picture.hpp"
 #include "timeline.hpp"
 
 namespace rastrum::cli::window {
@@ -68,17 +69,60 @@ std::vector<std::string> axis_names(const std::vector<family::AxisInfo>& axis) {
 
 }  // namespace
 
-std::shared_ptr<const LoadedScene> load_scene(const SceneArguments& a) {
+LoadedScene::LoadedScene(Inputs inputs)
+    : scene(std::move(inputs.scene)),
+      has_materials(inputs.has_materials),
+      binding(scene),
+      sphere(bounding_sphere(binding.view())),
+      box(bounds(binding.view())),
+      scalars(scalar_summaries(scene)) {
+  const double low[] = {box.min.x, box.min.y, box.min.z};
+  const double high[] = {box.max.x, box.max.y, box.max.z};
+  constexpr const char* kNames[] = {"x", "y", "z"};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (std::ranges::find(scalars, kNames[axis], &ScalarSummary::name) == scalars.end())
+      scalars.push_back({kNames[axis], 0, {low[axis], high[axis]}, 0});
+  const Vec3d across = Vec3d(box.max) - Vec3d(box.min);
+  scalars.push_back({"distance", 0, {0, length(across) / 2}, 0});
+}
+
+void LoadedScene::show(const ScalarOptions& wanted, std::uint64_t version) {
+  if (version == shown_) return;
+  if (wanted.name.empty())
+    scene.scalar_mappings.clear();
+  else
+    set_scalars(wanted, scene);
+  binding = SceneBinding(scene);
+  shown_ = version;
+}
+
+std::shared_ptr<LoadedScene> load_scene(const SceneArguments& a) {
   Timeline timeline;
   Progress progress(true);
   Inputs inputs = load_inputs(a.inputs, a.normals, timeline, progress, a.format);
   set_sizes(inputs.scene, a.sizes);
-  return std::make_shared<const LoadedScene>(std::move(inputs));
+  return std::make_shared<LoadedScene>(std::move(inputs));
 }
 
 /// The renderer, made anew where its options or its row change.
 class MeshSubject::Painter {
  public:
+  /// `scene` as `notes` want it, with its numbers.
+  static SceneView view(LoadedScene& scene, const AnnotationOptions& notes, std::uint64_t version) {
+    scene.show(notes.scalars, version);
+    return scene.binding.view();
+  }
+  /// What is drawn over a picture.
+  void annotate(const MeshSettings& settings, const family::Options& options, Pictures& pictures,
+                const SceneView& scene, const Camera& camera) {
+    if (!settings.notes.any()) return;
+    if (!effects_ || effect_threads_ != options.threads)
+      effects_.emplace(effect_threads_ = options.threads, options.isa);
+    overlay::Canvas canvas;
+    canvas.color8 = pictures.color8.view();
+    cli::annotate(settings.notes, canvas, pictures.surface, pictures.depth.view(),
+                  pictures.ids.view(), scene, camera, options.background, *effects_);
+  }
   Renderer& get(const RendererOptions& options, const family::Row& row) {
     if (!renderer_ || options_ != options || row_ != row) {
       renderer_.reset();
@@ -93,20 +137,27 @@ class MeshSubject::Painter {
   std::optional<Renderer> renderer_;
   RendererOptions options_;
   family::Row row_;
+  std::optional<Effects> effects_;
+  int effect_threads_ = 0;
 };
 
-MeshSubject::MeshSubject(SceneArguments arguments, std::shared_ptr<const LoadedScene> scene)
+MeshSubject::MeshSubject(SceneArguments arguments, std::shared_ptr<LoadedScene> scene)
     : control_(Camera{}, {}, true), painter_(std::make_shared<Painter>()) {
   settings_.render = arguments.render;
+  settings_.notes = arguments.annotations;
+  for (const Parser::Given& g : arguments.given)
+    if (g.name == "--cmap") settings_.map = g.texts.back();
   show(std::move(arguments), std::move(scene));
 }
 
 MeshSubject::~MeshSubject() = default;
 
-void MeshSubject::show(SceneArguments arguments, std::shared_ptr<const LoadedScene> scene) {
+void MeshSubject::show(SceneArguments arguments, std::shared_ptr<LoadedScene> scene) {
   const ViewOptions& v = arguments.view;
-  const Camera camera = choose_camera(v, scene->scene, scene->binding.view(),
-                                      {arguments.render.width, arguments.render.height});
+  Camera camera = choose_camera(v, scene->scene, scene->binding.view(),
+                                {arguments.render.width, arguments.render.height});
+  if (!v.file_camera && !v.eye && !v.orthographic_height)
+    camera = with_room(settings_.notes, camera);
   arguments_ = std::move(arguments);
   scene_ = std::move(scene);
   base_version_ = version() + 1;
@@ -183,58 +234,75 @@ void MeshSubject::change(char key, bool back) {
 }
 
 family::Options MeshSubject::options_for(int width, int height) const {
-  family::Options options = settings_.render;
-  options.width = width;
-  options.height = height;
+  family::Options options = settings_.frame(width, height);
   options.shader = shader_of(options.shader, scene_->has_materials);
   return options;
 }
 
 std::function<std::string()> MeshSubject::pick(int x, int y, int width, int height) {
-  return [options = options_for(width, height), x, y, scene = scene_, camera = control_.camera(),
+  return [options = options_for(width, height), notes = settings_.notes,
+          version = settings_version_, x, y, scene = scene_, camera = control_.camera(),
           painter = painter_]() -> std::string {
     Renderer& renderer = painter->get(options, options);
-    const auto pick = renderer.pick(scene->binding.view(), camera, options, x, y);
+    const auto pick = renderer.pick(Painter::view(*scene, notes, version), camera, options, x, y);
     if (!pick) return "nothing is there";
     const Vec3d& p = pick->position;
-    return std::string("instance ")
-        .append(std::to_string(pick->instance_id))
-        .append(", primitive ")
-        .append(std::to_string(pick->primitive))
-        .append(" at (")
-        .append(text("%.6g", p.x))
-        .append(", ")
-        .append(text("%.6g", p.y))
-        .append(", ")
-        .append(text("%.6g", p.z))
-        .append(")");
+    std::string said = "instance " + std::to_string(pick->instance_id) + ", primitive " +
+                       std::to_string(pick->primitive) + " at (" + text("%.6g", p.x) + ", " +
+                       text("%.6g", p.y) + ", " + text("%.6g", p.z) + ")";
+    if (pick->scalar && !notes.scalars.name.empty())
+      said += ", " + notes.scalars.name + " = " + text("%.6g", *pick->scalar);
+    return said;
   };
 }
 
 std::function<Drawn()> MeshSubject::draw(int width, int height) {
-  return [options = options_for(width, height), heat_map = settings_.heat_map, scene = scene_,
+  MeshSettings settings = settings_;
+  family::Options frame = options_for(width, height);
+  // While something moves, a picture to steer by.
+  if (width < width_ || height < height_) {
+    frame.samples = 1;
+    frame.shadows = false;
+    settings.notes.occlusion = settings.notes.dome = false;
+  }
+  return [options = frame, settings, version = settings_version_, scene = scene_,
           camera = control_.camera(), painter = painter_]() -> Drawn {
     Renderer& renderer = painter->get(options, options);
-    Drawn drawn{Image<Rgba8>(options.width, options.height), options.background.w == 1, {}};
-    Image<std::uint32_t> overdraw;
-    Targets targets;
-    targets.color8 = drawn.image.view();
-    if (heat_map) {
-      overdraw = Image<std::uint32_t>(options.width, options.height);
-      targets.overdraw = overdraw.view();
-    }
+    const SceneView view = Painter::view(*scene, settings.notes, version);
+    const AnnotationOptions& notes = settings.notes;
+    Pictures pictures;
     Timeline timeline;
-    const FrameStats stats =
-        timed_render(renderer, scene->binding.view(), camera, options, targets, timeline, "frame");
-    drawn.figures = {stats.frame_ms, stats.stages, rows(stats)};
-    if (heat_map) {
-      Heatmap heat = make_heatmap(overdraw.view());
+    Progress silent(true);
+    const FrameStats stats = render_frames(renderer, view, camera, options,
+                                           {.color8 = true,
+                                            .depth = notes.bounds,
+                                            .ids = notes.edges,
+                                            .overdraw = settings.heat_map,
+                                            .images = {},
+                                            .surface = notes.effects(),
+                                            .edges = notes.silhouettes},
+                                           false, 1, pictures, timeline, silent)
+                                 .front();
+    painter->annotate(settings, options, pictures, view, camera);
+    Drawn drawn{std::move(pictures.color8),
+                options.background.w == 1 || options.environment_behind,
+                {stats.frame_ms, stats.stages, rows(stats)}};
+    if (settings.heat_map) {
+      Heatmap heat = make_heatmap(pictures.overdraw.view());
       drawn.image = std::move(heat.image);
       drawn.opaque = true;
       drawn.figures.rows.emplace_back("most fragments", std::to_string(heat.max));
     }
     return drawn;
   };
+}
+
+Subject::Texts MeshSubject::same_picture(int width, int height, const std::string& png) const {
+  const Camera camera = control_.camera();
+  MeshSettings settings = settings_;
+  settings.render.shader = shader_of(settings.render.shader, scene_->has_materials);
+  const ShownPicture shown{arguments_, settings, camera, width, height};
+  return {{".sh", command_line(shown, png)}, {".py", python_lines(shown, png)}};
 }
 
 Worker::Job MeshSubject::open(const std::filesystem::path& file) {
@@ -257,16 +325,36 @@ void MeshSubject::set_options(const std::string& options) {
   Parser app;
   SceneArguments changed;
   changed.render = settings_.render;
+  changed.render.lights.clear();
+  changed.annotations = settings_.notes;
   add_picture_options(app, changed);
   add_transparency_options(app, changed);
   add_machine_options(app, changed);
+  add_annotation_options(app, changed.annotations);
   try {
     if (!app.parse(options)) return;  // --help
+    check_annotations(changed.annotations, true);
   } catch (const UsageError& e) {
     throw Error(Errc::invalid_argument, options + ": " + e.what());
   }
   Settings s = settings_;
   s.render = changed.render;
+  s.notes = changed.annotations;
+  const auto is_light = [](const Parser::Given& g) {
+    return g.name == "--lights" || g.name == "--light";
+  };
+  // Said once more, they stand for what was said before.
+  if (changed.lights.given) {
+    s.lights.clear();
+    std::erase_if(arguments_.given, is_light);
+  } else {
+    s.render.lights = settings_.render.lights;
+  }
+  for (Parser::Given& g : app.all_given()) {
+    std::erase_if(arguments_.given, [&](const Parser::Given& old) { return old.name == g.name; });
+    if (g.name == "--cmap") s.map = g.texts.back();
+    arguments_.given.push_back(std::move(g));
+  }
   set(std::move(s));
 }
 

@@ -8,6 +8,7 @@
 
 #include "camera_path.hpp"
 #include "mesh_control.hpp"
+#include "mesh_settings.hpp"
 #include "scene_options.hpp"
 #include "subject.hpp"
 
@@ -15,39 +16,43 @@ namespace rastrum::cli::window {
 
 /// A scene with what is known about it; stays where it is, since the binding points into it.
 struct LoadedScene {
-  explicit LoadedScene(Inputs inputs)
-      : scene(std::move(inputs.scene)),
-        has_materials(inputs.has_materials),
-        binding(scene),
-        sphere(bounding_sphere(binding.view())) {}
+  explicit LoadedScene(Inputs inputs);
   LoadedScene(const LoadedScene&) = delete;
   LoadedScene& operator=(const LoadedScene&) = delete;
+
+  /// Shows these numbers, or none; `version` is another one where they are. Of the thread that
+  /// draws. Throws Error for a name that it has not.
+  void show(const ScalarOptions& scalars, std::uint64_t version);
 
   Scene scene;
   bool has_materials;  ///< of files
   SceneBinding binding;
   BoundingSphere sphere;
+  Bounds box;
+  std::vector<ScalarSummary> scalars;  ///< that can be shown, those of every scene last
+
+ private:
+  std::uint64_t shown_ = 0;
 };
 
 /// Reads the inputs of `a`, with their normals. Throws Error, UsageError.
-[[nodiscard]] std::shared_ptr<const LoadedScene> load_scene(const SceneArguments& a);
+[[nodiscard]] std::shared_ptr<LoadedScene> load_scene(const SceneArguments& a);
 
 class MeshSubject final : public Subject {
  public:
-  /// What the panel changes. Width, height and whatever it does not show stay as the command line
-  /// had them.
-  struct Settings {
-    family::Options render;
-    bool heat_map = false;  ///< fragments at each pixel instead of the picture
-  };
+  using Settings = MeshSettings;
 
   /// Throws UsageError where the camera options do not fit the scene.
-  MeshSubject(SceneArguments arguments, std::shared_ptr<const LoadedScene> scene);
+  MeshSubject(SceneArguments arguments, std::shared_ptr<LoadedScene> scene);
   ~MeshSubject() override;
 
   [[nodiscard]] const Settings& settings() const { return settings_; }
   void set(Settings settings);
   [[nodiscard]] MeshControl& control() { return control_; }
+  [[nodiscard]] const LoadedScene& scene() const { return *scene_; }
+  /// As the window shows it now.
+  [[nodiscard]] Texts same_picture(int width, int height, const std::string& png) const override;
+  [[nodiscard]] std::pair<int, int> size() const { return {width_, height_}; }
 
   void handle(const Event& event) override;
   void advance(double dt_s) override { control_.advance(dt_s); }
@@ -71,12 +76,12 @@ class MeshSubject final : public Subject {
   class Painter;  // of the worker's thread
   /// The options of a picture.
   [[nodiscard]] family::Options options_for(int width, int height) const;
-  void show(SceneArguments arguments, std::shared_ptr<const LoadedScene> scene);
+  void show(SceneArguments arguments, std::shared_ptr<LoadedScene> scene);
   /// What `key` stands for becomes the next one, with `back` the one before.
   void change(char key, bool back);
 
   SceneArguments arguments_;
-  std::shared_ptr<const LoadedScene> scene_;
+  std::shared_ptr<LoadedScene> scene_;
   MeshControl control_;
   int width_ = 1, height_ = 1;  ///< of the window
   Settings settings_;

@@ -60,6 +60,13 @@ class Subject {
 
   /// The path file of the camera as it stands: drawn again it gives the same picture.
   virtual void write_camera(const std::filesystem::path& file) const = 0;
+  /// What draws the picture of this size as it is to be seen now into `png`: endings of files, and
+  /// their texts.
+  using Texts = std::vector<std::pair<std::string, std::string>>;
+  [[nodiscard]] virtual Texts same_picture(int width, int height, const std::string& png) const {
+    static_cast<void>(width), static_cast<void>(height), static_cast<void>(png);
+    return {};
+  }
   /// Appends the camera to the path that is being recorded and writes all of it.
   virtual void record(const std::filesystem::path& file) = 0;
   /// Reads a path to follow; first and last second. Throws Error.

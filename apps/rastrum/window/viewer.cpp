@@ -231,6 +231,12 @@ void Viewer::draw(std::size_t step) {
 void Viewer::write_screenshot(const std::filesystem::path& file) {
   try {
     subject_->write_camera(std::filesystem::path(file).replace_extension(".json"));
+    for (const auto& [ending, text] :
+         subject_->same_picture(options_.width, options_.height, file.filename().string())) {
+      io::AtomicFile out(std::filesystem::path(file).replace_extension(ending));
+      out.write(text.data(), text.size());
+      out.commit();
+    }
   } catch (const std::exception& e) {
     error_ = e.what();
     return;

@@ -7,8 +7,10 @@
 #include <cstddef>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include <thrust/execution_policy.h>
+#include <thrust/system_error.h>
 
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/arena.hpp>
@@ -19,6 +21,7 @@
 #if THRUST_DEVICE_SYSTEM == THRUST_DEVICE_SYSTEM_CUDA
 #define RASTRUM_DEVICE_SYSTEM on_gpu
 #include <cuda_runtime_api.h>
+#include <thrust/system/cuda/error.h>
 #include <cub/device/device_radix_sort.cuh>
 #elif THRUST_DEVICE_SYSTEM == THRUST_DEVICE_SYSTEM_CPP
 #define RASTRUM_DEVICE_SYSTEM on_cpu
@@ -41,21 +44,60 @@ inline namespace RASTRUM_DEVICE_SYSTEM {
 using Stream = cudaStream_t;
 inline constexpr bool kOnHost = false;
 
-/// Throws Error{out_of_memory} or Error{no_device} that says what was being done.
-inline void check(cudaError_t error, const char* doing) {
-  if (error == cudaSuccess) return;
-  const Errc code = error == cudaErrorMemoryAllocation ? Errc::out_of_memory : Errc::no_device;
-  throw Error(code,
-              std::string("CUDA: ").append(doing).append(": ").append(cudaGetErrorString(error)));
+/// Whether a kernel went wrong before the call that reports it. The driver then refuses all that
+/// this process asks of the device, with the same error.
+[[nodiscard]] inline bool is_fault(cudaError_t error) {
+  switch (error) {
+    case cudaErrorIllegalAddress:
+    case cudaErrorMisalignedAddress:
+    case cudaErrorInvalidAddressSpace:
+    case cudaErrorInvalidPc:
+    case cudaErrorIllegalInstruction:
+    case cudaErrorHardwareStackError:
+    case cudaErrorLaunchFailure:
+    case cudaErrorLaunchTimeout:
+    case cudaErrorAssert:
+    case cudaErrorECCUncorrectable:
+      return true;
+    default:
+      return false;
+  }
 }
 
-/// Memory of the current device. Freeing it waits for all work on the device.
+/// Throws Error{out_of_memory} or Error{no_device} that says what was being done, and whether it
+/// was that or a kernel before it.
+[[noreturn]] inline void fail(cudaError_t error, const char* doing) {
+  const Errc code = error == cudaErrorMemoryAllocation ? Errc::out_of_memory : Errc::no_device;
+  std::string what("CUDA: ");
+  what.append(doing).append(": ").append(cudaGetErrorString(error));
+  if (is_fault(error))
+    what.append(
+        "; earlier work on the device failed, and this process can no longer use it (arrays of "
+        "render_in_place must be memory of that device, and stay until the frame is drawn)");
+  throw Error(code, what);
+}
+inline void check(cudaError_t error, const char* doing) {
+  if (error != cudaSuccess) fail(error, doing);
+}
+/// The same for what Thrust throws, whose codes are the runtime's.
+[[noreturn]] inline void fail(const thrust::system_error& error) {
+  static_cast<void>(cudaGetLastError());  // or the next call reports it again
+  if (error.code().category() == thrust::cuda_category())
+    fail(static_cast<cudaError_t>(error.code().value()), error.what());
+  throw Error(Errc::no_device, std::string("CUDA: ").append(error.what()));
+}
+
+/// Memory of the current device. Freeing it waits for all work on the device. What is not for lack
+/// of memory is an Error of its own: after a fault every allocation fails, and more memory would
+/// not help.
 [[nodiscard]] inline MemorySource memory_source() {
-  return {[](std::size_t bytes) noexcept -> void* {
+  return {[](std::size_t bytes) -> void* {
             void* block = nullptr;
-            if (cudaMalloc(&block, bytes) == cudaSuccess) return block;
-            static_cast<void>(cudaGetLastError());  // the arena says what happened
-            return nullptr;
+            const cudaError_t error = cudaMalloc(&block, bytes);
+            if (error == cudaSuccess) return block;
+            static_cast<void>(cudaGetLastError());  // or the next call reports it again
+            if (error == cudaErrorMemoryAllocation) return nullptr;  // the arena says for how much
+            fail(error, "allocating");
           },
           [](void* block) noexcept { static_cast<void>(cudaFree(block)); }, "CUDA memory", true};
 }
@@ -141,6 +183,10 @@ struct Stream {
 };
 inline constexpr bool kOnHost = true;
 
+[[noreturn]] inline void fail(const thrust::system_error& error) {
+  throw Error(Errc::no_device, std::string("device: ").append(error.what()));
+}
+
 [[nodiscard]] inline MemorySource memory_source() {
   MemorySource source = host_memory();
   source.name = "device memory";
@@ -218,6 +264,17 @@ void launch_teams(Stream, std::size_t n, F f) {
 }
 
 #endif
+
+/// f(), of which all that fails is an Error: Thrust's algorithms throw an exception of their own.
+/// Around what others call of the device's code, since no one else knows that type.
+template <class F>
+decltype(auto) with_errors(F&& f) {
+  try {
+    return std::forward<F>(f)();
+  } catch (const thrust::system_error& error) {
+    fail(error);
+  }
+}
 
 }  // namespace RASTRUM_DEVICE_SYSTEM
 }  // namespace rastrum::parallel::cuda_system

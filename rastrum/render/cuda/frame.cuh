@@ -127,6 +127,10 @@ class DeviceRasterizer final : public CudaRasterizer {
   };
 
   [[nodiscard]] FrameStats render(FrameRequest& request, const std::stop_token* stop) override {
+    return parallel::cuda_system::with_errors([&] { return draw_frame(request, stop); });
+  }
+
+  [[nodiscard]] FrameStats draw_frame(FrameRequest& request, const std::stop_token* stop) {
     const parallel::StopScope scope(stop);
     Frame frame(request, exec_);
     frame.totals = raster::begin_frame(request);

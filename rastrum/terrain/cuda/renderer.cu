@@ -70,6 +70,13 @@ class CudaRenderer final : public DeviceRenderer {
               const Roll* roll, const TerrainTargets& targets,
               const std::function<void(const char* stage)>& lap,
               const std::stop_token* stop) override {
+    return parallel::cuda_system::with_errors(
+        [&] { return draw_picture(terrain, options, camera, roll, targets, lap, stop); });
+  }
+  Counts draw_picture(const Terrain& terrain, const TerrainOptions& options,
+                      const TerrainCamera& camera, const Roll* roll, const TerrainTargets& targets,
+                      const std::function<void(const char* stage)>& lap,
+                      const std::stop_token* stop) {
     const parallel::StopScope scope(stop);
     if (terrain.is_map()) keep(terrain, options.filter == MapFilter::mip);
     lap("map");

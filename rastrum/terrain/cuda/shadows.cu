@@ -8,7 +8,7 @@ namespace {
 
 /// The result of compute(exec, map on the device), brought back.
 template <class T, class F>
-Image<T> on_device(ImageView<const float> heights, const std::stop_token* stop, const F& compute) {
+Image<T> computed(ImageView<const float> heights, const std::stop_token* stop, const F& compute) {
   const parallel::StopScope scope(stop);
   parallel::Cuda exec;
   const auto width = static_cast<std::size_t>(heights.width);
@@ -23,6 +23,10 @@ Image<T> on_device(ImageView<const float> heights, const std::stop_token* stop, 
                               result.size() * sizeof(T));
   exec.wait();
   return out;
+}
+template <class T, class F>
+Image<T> on_device(ImageView<const float> heights, const std::stop_token* stop, const F& compute) {
+  return parallel::cuda_system::with_errors([&] { return computed<T>(heights, stop, compute); });
 }
 
 Image<std::uint8_t> sharp(ImageView<const float> heights, const Sun& sun, Tiling tiling,

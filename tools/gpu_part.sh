@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# One part of what only a GPU can show, by the programs that `./dev gpu --pack` put beside this script,
+# on a machine that has a driver and nothing else. Each part ends within RASTRUM_PART_S seconds (570).
+#
+#   gpu_part.sh            list the parts, in the order in which they tell most
+#   gpu_part.sh PART OUT   run one; its log and what it writes go to the folder OUT
+set -euo pipefail
+
+here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
+readonly here
+readonly limit="${RASTRUM_PART_S:-570}"
+export LD_LIBRARY_PATH="$here/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
+
+readonly parts=(words rasterizer terrain bench memcheck racecheck synccheck initcheck)
+
+limited() { timeout --kill-after=10 "$limit" "$@"; }
+
+# Under one limit for all programs: what is left of it is the next one's.
+sanitize() {
+  local tool="$1" exit_code="$2" binary filter end=$((SECONDS + limit)) left
+  if ! command -v compute-sanitizer >/dev/null; then
+    echo "ERROR: this machine has no compute-sanitizer (package cuda-sanitizer)"
+    return 1
+  fi
+  while read -r binary filter; do
+    left=$((end - SECONDS))
+    ((left > 0)) || { echo "ERROR: no time was left for $binary"; return 124; }
+    timeout --kill-after=10 "$left" compute-sanitizer --tool "$tool" --error-exitcode "$exit_code" \
+      "$here/bin/$binary" --gtest_filter="$filter" </dev/null || return
+  done <"$here/sanitized.txt"
+}
+
+run_part() {
+  case "$1" in
+    words) limited "$here/bin/cuda_device_test" </dev/null ;;
+    rasterizer) limited "$here/bin/cuda_rasterizer_on_device" </dev/null ;;
+    terrain) limited "$here/bin/cuda_terrain_on_device" </dev/null ;;
+    bench) limited "$here/bin/rastrum" bench cuda --quick --out "$out" </dev/null ;;
+    memcheck | racecheck | synccheck) sanitize "$1" 1 ;;
+    # Padding and CUB's own tiles are known false alarms: its reports are to be read.
+    initcheck) sanitize "$1" 0 ;;
+    *) echo "gpu_part.sh: no part $1; there are ${parts[*]}" >&2; return 2 ;;
+  esac
+}
+
+if (($# == 0)); then
+  printf "%s\n" "${parts[@]}"
+  exit
+fi
+(($# == 2)) || { echo "usage: gpu_part.sh [PART OUT]" >&2; exit 2; }
+mkdir -p "$2"
+out="$(cd "$2" && pwd)"
+log="$out/$1.log"
+started=$SECONDS
+status=0
+run_part "$1" > >(tee "$log") 2>&1 || status=$?
+wait  # for the log
+# A test that finds no device is skipped, which here is a failure.
+if ((status == 0)) && grep -q 'no device: ' "$log"; then
+  echo "ERROR: tests found no device that they could use" | tee -a "$log"
+  status=1
+fi
+case "$status" in
+  0) result=passed ;;
+  124 | 137) result="FAILED: not done within $limit s" ;;
+  *) result="FAILED: exit status $status" ;;
+esac
+printf '%s: %s after %d s\n' "$1" "$result" $((SECONDS - started)) | tee -a "$out/results"
+exit "$status"
