@@ -27,7 +27,7 @@ struct Motion {
   std::shared_ptr<const Rig> rig{};
   Mat4d to_world = Mat4d::identity();  ///< of all that the file holds, its cameras apart
   /// Where the file's meshes, instances and cameras begin in the scene.
-  std::uint32_t first_mesh = 0, first_instance = 0, first_camera = 0;
+  std::uint32_t first_mesh = 0, first_instance = 0, first_camera = 0, first_light = 0;
 };
 
 /// Poses what moves in `scene` as it is `seconds` into animation `animation` of its file, counted

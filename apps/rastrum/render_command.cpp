@@ -489,8 +489,14 @@ int run(RenderArguments& a) {
   }
   if (!a.quiet && a.render.transparency.method == Transparency::none) report_blended(scene);
   if (!a.quiet) report_missing_glyphs(a.annotations.words);
-  if (a.lights.of_files) add_file_lights(scene, a.render.lights);
+  const std::vector<Light> said = a.render.lights;
+  const auto light_by_files = [&] {
+    if (!a.lights.of_files) return;
+    a.render.lights = said;
+    add_file_lights(scene, a.render.lights);
+  };
   const bool moves = pose_for(a, inputs);
+  light_by_files();
   set_scalars(a.annotations.scalars, inputs.scene);
   const SceneBinding binding(scene);
   a.render.shader = shader_of(a.render.shader, inputs.has_materials);
@@ -504,6 +510,7 @@ int run(RenderArguments& a) {
   if (moves)
     moving = [&](double seconds) {
       pose_inputs(inputs, a.normals, seconds, static_cast<std::size_t>(a.animation.value_or(0)));
+      light_by_files();
       return posed.emplace(scene).view();
     };
   if (a.is_sequence())

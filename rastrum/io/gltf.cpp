@@ -179,24 +179,25 @@ class GltfReader {
         }
       }
       if (const auto light = gltf::light_of_node(node, lights_.size()))
-        add_light(node, lights_[*light], to_world_[index]);
+        add_light(node, index, lights_[*light]);
       const auto children = node.get("children");
       if (!children) continue;
       for (std::size_t i = children->size(); i-- > 0;) stack.push_back(children->at(i).count());
     }
   }
 
-  void add_light(const Json& node, const std::optional<Light>& light, const Mat4d& to_world) {
+  void add_light(const Json& node, std::size_t index, const std::optional<Light>& light) {
     const auto leave_out = [&](const char* why) {
       scene_.warnings.push_back(node.path() + ": its light " + why + " and is left out");
     };
     if (!light) return leave_out("is of a kind that is not known");
-    const Light standing = placed(*light, to_world);
+    const Light standing = placed(*light, to_world_[index]);
     try {
       check_lights({&standing, 1});
     } catch (const Error&) {
       return leave_out("has no direction");
     }
+    rig_.lamps.push_back({size32(scene_.lights), static_cast<std::uint32_t>(index), *light});
     scene_.lights.push_back(standing);
   }
 

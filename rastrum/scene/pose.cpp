@@ -180,6 +180,9 @@ void pose(Scene& scene, const Motion& motion, const Rig::Clip* clip, double mome
         motion.to_world * to_file[p.node];
   for (const Rig::Seeing& c : rig.cameras)
     look_from(scene.cameras[motion.first_camera + c.camera], to_file[c.node]);
+  for (const Rig::Lamp& l : rig.lamps)
+    scene.lights[motion.first_light + l.light] =
+        placed(l.of_node, motion.to_world * to_file[l.node]);
 
   std::vector<std::vector<Affine>> joints(rig.skins.size());
   for (const Rig::Deformed& d : rig.deformed) {

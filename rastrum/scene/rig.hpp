@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <rastrum/camera.hpp>
+#include <rastrum/light.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/motion.hpp>
 #include <rastrum/transform.hpp>
@@ -15,8 +16,8 @@
 
 namespace rastrum {
 
-/// Indices are of the vectors beside them; `mesh`, `instance` and `camera` count from the file's
-/// first.
+/// Indices are of the vectors beside them; `mesh`, `instance`, `camera` and `light` count from the
+/// file's first.
 struct Rig {
   static constexpr std::int32_t kNone = -1;
 
@@ -71,6 +72,11 @@ struct Rig {
     std::uint32_t camera = 0, node = 0;
   };
   std::vector<Seeing> cameras;
+  struct Lamp {
+    std::uint32_t light = 0, node = 0;
+    Light of_node{};  ///< where the node's axes are the world's
+  };
+  std::vector<Lamp> lamps;
 
   enum class Path : std::uint8_t { translation, rotation, scale, weights };
   enum class Interpolation : std::uint8_t { step, linear, cubic_spline };

@@ -137,6 +137,7 @@ void Scene::append(Scene other) {
     motion.first_mesh += mesh_offset;
     motion.first_instance += static_cast<std::uint32_t>(instances.size());
     motion.first_camera += static_cast<std::uint32_t>(cameras.size());
+    motion.first_light += static_cast<std::uint32_t>(lights.size());
     motions.push_back(std::move(motion));
   }
   for (Mesh& mesh : other.meshes) {

@@ -92,6 +92,38 @@ TEST_F(Animations, AlongAPathEachPictureHasItsTime) {
   EXPECT_EQ(columns("h2.npy"), Columns(35, 44));
 }
 
+// A lamp that walks from x = 0 to x = 3 within a second, in a file of its own.
+TEST_F(Animations, LightsGoWithTheirNodes) {
+  GltfDocument d;
+  d.floats({0, 1}, "SCALAR");
+  d.floats({0, 1, 2, 3, 1, 2}, "VEC3");
+  write("lamp.gltf",
+        d.text(R"("extensionsUsed":["KHR_lights_punctual"],"extensions":{"KHR_lights_punctual":)"
+               R"({"lights":[{"type":"point","intensity":9}]}},"nodes":[{"translation":[0,1,2],)"
+               R"("extensions":{"KHR_lights_punctual":{"light":0}}}],"animations":[{"samplers":)"
+               R"([{"input":0,"output":1}],"channels":[{"sampler":0,"target":{"node":0,)"
+               R"("path":"translation"}}]}])"));
+  const auto draw = [&](std::vector<std::string> more) {
+    std::vector<std::string> args{"render", "--look", "plain", "builtin:sphere", "--eye", "0,0,5",
+                                  "--size", "60x40",  "-o",    "p.png"};
+    args.insert(args.end(), more.begin(), more.end());
+    must(args);
+    return png("p.png");
+  };
+  const auto at = [&](const std::string& x) {
+    return draw({"--light", "point:" + x + ",1,2:intensity=2.86478886"});
+  };
+  EXPECT_TRUE(same_pixels(draw({"lamp.gltf", "--lights", "file"}), at("0")));
+  EXPECT_TRUE(same_pixels(draw({"lamp.gltf", "--lights", "file", "--time", "1"}), at("3")));
+  EXPECT_TRUE(same_pixels(draw({"lamp.gltf@x=1", "--lights", "file", "--time", "0.5"}), at("2.5")));
+  write("still.json",
+        R"({"interpolation":"linear","keys":[{"time":0,"eye":[0,0,5],"target":[0,0,0]},)"
+        R"({"time":1,"eye":[0,0,5],"target":[0,0,0]}]})");
+  must({"render", "--look", "plain", "builtin:sphere", "lamp.gltf", "--lights", "file", "--path",
+        "still.json", "--fps", "2", "--size", "60x40", "-o", "f%d.png"});
+  EXPECT_TRUE(same_pixels(png("f1.png"), at("1.5")));
+}
+
 TEST_F(Animations, WhatCannotBeMeantIsRefused) {
   const auto refused = [&](const std::vector<std::string>& extra, const std::string& words) {
     const Outcome r = run(drawing(extra));
