@@ -8,12 +8,12 @@ REQUIREMENTS = ["open3d==0.20.0", "numpy"]
 def prepare(scene):
     made = o3d.t.geometry.RaycastingScene()
     made.add_triangles(o3d.core.Tensor(scene.vertices.astype(np.float32)), o3d.core.Tensor(scene.faces.astype(np.uint32)))
-    rays = made.create_rays_pinhole(fov_deg=scene.fov, center=scene.target, eye=scene.eye, up=[0, 1, 0], width_px=scene.size,
-                                    height_px=scene.size)
-    # A ray has a length of 1 along the axis, so that its parameter is the depth.
-    directions = rays.numpy()[..., 3:].astype(np.float64)
-    ahead = (scene.target - scene.eye) / np.linalg.norm(scene.target - scene.eye)
-    along = (directions @ ahead).astype(np.float32)
+    # A ray goes one unit along the axis, so that its parameter is the depth.
+    n, t = scene.size, np.tan(np.radians(scene.fov) / 2)
+    x = t * ((np.arange(n) + 0.5) / n * 2 - 1)
+    rays = np.empty((n, n, 6), np.float32)
+    rays[..., :3], rays[..., 3], rays[..., 4], rays[..., 5] = scene.eye, x, -x[:, None], -1
+    rays = o3d.core.Tensor(rays)
 
     def draw():
         hit = made.cast_rays(rays)
@@ -22,6 +22,6 @@ def prepare(scene):
 
     def images():
         found = draw()
-        return {"id": found["id"], "depth": np.where(found["id"] >= 0, found.pop("t") * along, 0)}
+        return {"id": found["id"], "depth": np.where(found["id"] >= 0, found["t"], 0)}
     draw.images = images
     return draw
