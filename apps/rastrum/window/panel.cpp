@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace rastrum::cli::window {
 namespace {
@@ -39,7 +40,7 @@ void draw_times(Viewer& viewer) {
   }
   const Figures& f = picture->figures;
   ImGui::Text("%.2f ms, %d x %d%s", f.frame_ms, picture->image.width(), picture->image.height(),
-              viewer.step() == 0 ? "" : " (moving)");
+              viewer.is_full() ? "" : " (moving)");
   const std::vector<float>& ms = viewer.history_ms();
   if (!ms.empty())
     ImGui::PlotLines("##times", ms.data(), static_cast<int>(ms.size()), 0, nullptr, 0,
@@ -72,6 +73,18 @@ void draw_moving(Viewer& viewer) {
     viewer.set_target(double{target});
 }
 
+void offer_texts(Viewer& viewer) {
+  constexpr std::pair<const char*, const char*> kButtons[] = {{".sh", "copy command line"},
+                                                              {".py", "copy Python"}};
+  for (const auto& [ending, label] : kButtons) {
+    if (ImGui::Button(label))
+      if (const std::string text = viewer.copy(ending); !text.empty())
+        ImGui::SetClipboardText(text.c_str());
+    ImGui::SameLine();
+  }
+  ImGui::NewLine();
+}
+
 void message_lines(const Viewer& viewer) {
   if (!viewer.error().empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, kErrorColor);
@@ -99,6 +112,7 @@ Area draw_panel(Viewer& viewer, const Controls& controls) {
   draw_times(viewer);
   ImGui::Separator();
   controls();
+  if (viewer.subject().has_same_picture()) offer_texts(viewer);
   draw_moving(viewer);
   if (viewer.picture() != nullptr && ImGui::CollapsingHeader("Figures"))
     draw_rows(viewer.picture()->figures);
