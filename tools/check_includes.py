@@ -32,7 +32,7 @@ MAY_INCLUDE = {
 }
 # The public headers, rastrum/NAME.hpp, by the floor that has their sources.
 PUBLIC = {
-    "core": {"array", "config", "digest", "error", "image", "mat", "scalars", "transform", "vec"},
+    "core": {"array", "color", "config", "digest", "error", "image", "mat", "scalars", "transform", "vec"},
     "parallel": {"device", "stop"},
     "scene": {"camera", "color_map", "environment", "fit", "light", "mesh", "motion", "points_and_lines", "scene",
               "shapes", "surfaces"},

@@ -1,7 +1,10 @@
 """Arrays as they come: what can be drawn in place stays where it is."""
 
+import difflib
+
 import numpy as np
 
+from . import _rastrum as _r
 from ._errors import ArgumentError, ArgumentTypeError
 
 
@@ -108,30 +111,15 @@ def matrix(value, name):
     return np.ascontiguousarray(array, np.float64)
 
 
-_NAMED = {
-    "black": 0x000000, "white": 0xFFFFFF, "grey": 0x808080, "gray": 0x808080, "silver": 0xC0C0C0,
-    "red": 0xFF0000, "green": 0x008000, "lime": 0x00FF00, "blue": 0x0000FF, "navy": 0x000080,
-    "yellow": 0xFFFF00, "orange": 0xFFA500, "gold": 0xFFD700, "purple": 0x800080, "magenta": 0xFF00FF,
-    "pink": 0xFFC0CB, "cyan": 0x00FFFF, "teal": 0x008080, "brown": 0xA52A2A, "tan": 0xD2B48C,
-}
-
-
 def color(value, name):
-    """Display values (r, g, b, a) in [0, 1] of '#rrggbb', '#rrggbbaa', '#rgb', a name, or 3 or 4 numbers."""
+    """Display values (r, g, b, a) in [0, 1] of '#rrggbb', '#rrggbbaa', '#rgb', a name of CSS's, or 3 or 4 numbers."""
     if isinstance(value, str):
-        if value in _NAMED:
-            rgb = _NAMED[value]
-            return (rgb >> 16) / 255, (rgb >> 8 & 255) / 255, (rgb & 255) / 255, 1.0
-        digits = value[1:] if value.startswith("#") else ""
-        if len(digits) in (3, 4):
-            digits = "".join(2 * d for d in digits)
-        try:
-            if len(digits) in (6, 8):
-                channels = [int(digits[i:i + 2], 16) / 255 for i in range(0, len(digits), 2)]
-                return tuple(channels + [1.0])[:4] if len(channels) == 3 else tuple(channels)
-        except ValueError:
-            pass
-        raise ArgumentError(f"{name}: {value!r} is no colour; take '#rrggbb' or one of {', '.join(_NAMED)}")
+        found = _r.color_of(value)
+        if found is None:
+            near = difflib.get_close_matches(value.lower(), _r.color_names(), 1)
+            raise ArgumentError(f"{name}: {value!r} is no colour; take '#rrggbb' or a name of CSS's" +
+                                (f", {near[0]!r} perhaps" if near else ""))
+        return tuple(v / 255 for v in found)
     try:
         channels = [float(v) for v in value]
     except (TypeError, ValueError) as e:

@@ -4,7 +4,7 @@ import numpy as np
 
 from ._arrays import _copied, _in_place, _numbers, integers
 from ._errors import ArgumentError, ArgumentTypeError, raises_errors
-from ._render import _kept
+from ._render import _kept, empty
 
 #: What float32 counts to without a gap.
 _MOST = 1 << 24
@@ -32,7 +32,7 @@ def rasterize(pos, tri, resolution, ranges=None, *, out=None, copy=None, threads
     pictures = len(rows) if rows else len(positions)
     expected = pictures, height, width, 4
     if out is None:
-        out = np.empty(expected, np.float32)
+        out = empty(expected, np.float32)
     elif not isinstance(out, np.ndarray) or out.dtype != np.float32 or not out.flags.writeable or not out.flags.c_contiguous:
         raise ArgumentTypeError("out: must be a C-contiguous NumPy array of float32 that can be written")
     elif out.shape != expected:

@@ -29,6 +29,8 @@ OUTPUTS = {
     "position": (np.float32, 3), "albedo": (np.float32, 4), "linear": (np.float32, 4), "scalars": (np.float32, 1),
 }
 _IDS = ("id", "instance", "face")
+# Numbers; below, memory is not new pages anyway.
+_LARGE = 1 << 16
 
 
 def digest(array):
@@ -282,6 +284,12 @@ def _text(value, name):
     return value
 
 
+def empty(shape, dtype):
+    """np.empty, where it is large in the place of an array that has died."""
+    pixels = math.prod(shape)
+    return _r.empty(shape, np.dtype(dtype).name) if pixels > _LARGE else np.empty(shape, dtype)
+
+
 def _is_many(camera):
     return isinstance(camera, (list, tuple)) or np.ndim(camera) == 3 and not isinstance(camera, Camera)
 
@@ -317,7 +325,7 @@ def _arrays(outputs, out, number, many, shape, primitives):
             arrays[name] = array
         else:
             wide = name in _IDS and primitives > 0x7FFFFFFF
-            arrays[name] = np.empty(expected, np.int64 if wide else dtype)
+            arrays[name] = empty(expected, np.int64 if wide else dtype)
     if not arrays:
         raise ArgumentError("outputs: nothing is asked for")
     return arrays

@@ -103,6 +103,7 @@ void bind_cameras(nb::module_& m) {
       .def_prop_ro("up", [](const Camera& c) { return numbers(c.up); })
       .def_prop_ro("fov",
                    [](const Camera& c) { return static_cast<double>(c.fov_rad) * 180 / kPi; })
+      .def_prop_ro("has_matrix", [](const Camera& c) { return c.matrix.has_value(); })
       .def_prop_ro("is_orthographic", [](const Camera& c) { return c.orthographic; })
       .def_prop_ro("orthographic_height", [](const Camera& c) { return c.orthographic_height; })
       .def_prop_ro("near", [](const Camera& c) { return c.near_plane; })

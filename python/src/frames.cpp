@@ -1,18 +1,11 @@
-// Frames: a renderer that keeps its threads and scratch, and arrays that it fills.
+// Frames: their options by name, drawn into arrays; what is under a pixel; triangles in clip space.
 #include <array>
-#include <atomic>
-#include <cmath>
 #include <cstdint>
-#include <exception>
 #include <functional>
-#include <limits>
 #include <map>
-#include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
-#include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -29,6 +22,9 @@
 #include <rastrum/stop.hpp>
 
 #include "annotations.hpp"
+#include "buffers.hpp"
+#include "frame_renderer.hpp"
+#include "outputs.hpp"
 #include "rasterize.hpp"
 #include "scenes.hpp"
 
@@ -97,140 +93,6 @@ FrameOptions frame(int width, int height, const std::string& shader, const std::
   return o;
 }
 
-/// A picture of a batch in the array that is to hold it: (N, H, W) or (N, H, W, channels), in C
-/// order.
-template <class T>
-ImageView<T> picture(const Output& array, std::size_t number, const FrameOptions& o) {
-  const std::size_t pixels = static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height);
-  return {static_cast<T*>(array.data()) + number * pixels, o.width, o.height};
-}
-
-/// What a frame leaves to be done with its images once it is drawn.
-using Finish = std::function<void()>;
-
-/// Ids of 32 bits: drawn in 64, then narrowed. Numbers that do not fit were refused before.
-struct Narrowed {
-  std::vector<std::int64_t> wide;
-
-  ImageView<std::int64_t> view(const FrameOptions& o) {
-    wide.resize(static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height));
-    return {wide.data(), o.width, o.height};
-  }
-  void into(ImageView<std::int32_t> to) const {
-    for (std::size_t i = 0; i < wide.size(); ++i) to.data[i] = static_cast<std::int32_t>(wide[i]);
-  }
-};
-
-/// The scratch of who draws one picture after the other.
-struct Scratch {
-  Narrowed ids, instances, primitives;
-  AnnotationScratch annotations;
-};
-
-struct Kind {
-  const char* name;
-  nb::dlpack::dtype type;
-  int channels;
-  /// Lets the frame fill it, and says what is left to do.
-  Finish (*attach)(Targets&, const Output&, std::size_t number, const FrameOptions&, Scratch&);
-};
-
-template <class T, auto member>
-Finish attach(Targets& t, const Output& a, std::size_t n, const FrameOptions& o, Scratch&) {
-  t.*member = picture<T>(a, n, o);
-  return {};
-}
-/// Where nothing is the renderer has infinity; here, as sensors do, 0.
-template <auto member>
-Finish attach_distance(Targets& t, const Output& a, std::size_t n, const FrameOptions& o,
-                       Scratch&) {
-  const ImageView<float> view = picture<float>(a, n, o);
-  t.*member = view;
-  return [view] {
-    const std::size_t pixels =
-        static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
-    for (std::size_t i = 0; i < pixels; ++i)
-      view.data[i] = view.data[i] == std::numeric_limits<float>::infinity() ? 0.0F : view.data[i];
-  };
-}
-template <auto member, auto scratch>
-Finish attach_ids(Targets& t, const Output& a, std::size_t n, const FrameOptions& o, Scratch& s) {
-  if (a.dtype() == nb::dtype<std::int64_t>()) {
-    t.*member = picture<std::int64_t>(a, n, o);
-    return {};
-  }
-  Narrowed& wide = s.*scratch;
-  t.*member = wide.view(o);
-  return [&wide, to = picture<std::int32_t>(a, n, o)] { wide.into(to); };
-}
-
-const Kind kKinds[] = {
-    {"color", nb::dtype<std::uint8_t>(), 4, attach<Rgba8, &Targets::color8>},
-    {"color_f32", nb::dtype<float>(), 4, attach<Vec4, &Targets::color>},
-    {"depth", nb::dtype<float>(), 1, attach_distance<&Targets::view_depth>},
-    {"depth_raw", nb::dtype<float>(), 1, attach<float, &Targets::depth>},
-    {"distance", nb::dtype<float>(), 1, attach_distance<&Targets::distance>},
-    {"id", nb::dtype<std::int32_t>(), 1, attach_ids<&Targets::ids, &Scratch::ids>},
-    {"instance", nb::dtype<std::int32_t>(), 1,
-     attach_ids<&Targets::instances, &Scratch::instances>},
-    {"face", nb::dtype<std::int32_t>(), 1, attach_ids<&Targets::primitives, &Scratch::primitives>},
-    {"barycentrics", nb::dtype<float>(), 2, attach<Vec2, &Targets::barycentrics>},
-    {"normal", nb::dtype<float>(), 3, attach<Vec3, &Targets::normals>},
-    {"camera_normal", nb::dtype<float>(), 3, attach<Vec3, &Targets::camera_normals>},
-    {"position", nb::dtype<float>(), 3, attach<Vec3, &Targets::positions>},
-    {"albedo", nb::dtype<float>(), 4, attach<Vec4, &Targets::albedo>},
-    {"linear", nb::dtype<float>(), 4, attach<Vec4, &Targets::linear>},
-    {"scalars", nb::dtype<float>(), 1, attach<float, &Targets::scalars>},
-};
-
-struct Wanted {
-  const Kind* kind;
-  Output array;
-};
-
-/// Checks type and shape of what is to be filled.
-std::vector<Wanted> wanted(const std::map<std::string, Output>& outputs, std::size_t pictures,
-                           const FrameOptions& o, std::uint64_t primitives) {
-  std::vector<Wanted> all;
-  for (const auto& [name, array] : outputs) {
-    const Kind* kind = nullptr;
-    for (const Kind& k : kKinds)
-      if (name == k.name) kind = &k;
-    if (kind == nullptr) {
-      std::string names;
-      for (const Kind& k : kKinds) names += (names.empty() ? "" : ", ") + std::string(k.name);
-      throw Error(Errc::invalid_argument,
-                  "outputs: there is no " + name + "; take some of " + names);
-    }
-    const bool ids = kind->type == nb::dtype<std::int32_t>();
-    const bool wide = ids && array.dtype() == nb::dtype<std::int64_t>();
-    if (array.dtype() != kind->type && !wide)
-      throw Error(
-          Errc::invalid_argument,
-          "out[" + name +
-              "]: the array is of another type; docs/python.md has the types of all outputs");
-    if (ids && !wide && primitives > 0x7fffffffU)
-      throw Error(Errc::invalid_argument,
-                  "out[" + name + "]: " + std::to_string(primitives) + " primitives want int64");
-    const std::size_t axes = kind->channels == 1 ? 3 : 4;
-    std::int64_t expected[4] = {static_cast<std::int64_t>(pictures), o.height, o.width,
-                                kind->channels};
-    bool right = array.ndim() == axes;
-    for (std::size_t i = 0; right && i < axes; ++i)
-      right = static_cast<std::int64_t>(array.shape(i)) == expected[i];
-    std::int64_t step = 1;
-    for (std::size_t i = axes; right && i-- > 0; step *= expected[i])
-      right = expected[i] == 1 || array.stride(i) == step;
-    if (!right)
-      throw Error(Errc::invalid_argument,
-                  "out[" + name + "]: must be C-contiguous, of shape (" + std::to_string(pictures) +
-                      ", " + std::to_string(o.height) + ", " + std::to_string(o.width) +
-                      (kind->channels == 1 ? ")" : ", " + std::to_string(kind->channels) + ")"));
-    all.push_back({kind, array});
-  }
-  return all;
-}
-
 nb::dict stats_of(const FrameStats& s) {
   nb::dict d, triangles;
   triangles["input"] = s.triangles.input;
@@ -246,103 +108,6 @@ nb::dict stats_of(const FrameStats& s) {
   d["shader"] = s.shader;
   return d;
 }
-
-/// Pictures of up to so many pixels are drawn side by side, a thread each.
-constexpr std::int64_t kSmall = 512 * 512;
-
-class FrameRenderer {
- public:
-  explicit FrameRenderer(const RendererOptions& options) : options_(options), renderer_(options) {}
-
-  std::vector<FrameStats> render(const SceneView& scene, const std::vector<Camera>& cameras,
-                                 const FrameOptions& o, const std::vector<Wanted>& outputs,
-                                 const Annotations* annotations, const std::stop_token& stop,
-                                 const std::function<void()>& after) {
-    std::vector<FrameStats> stats(cameras.size());
-    std::optional<SceneEdges> edges;
-    if (annotations != nullptr && annotations->edge_angle)
-      edges.emplace(scene, *annotations->edge_angle);
-    const auto draw = [&](Renderer& by, Scratch& scratch, std::size_t i) {
-      Targets targets;
-      std::vector<Finish> finish;
-      for (const Wanted& w : outputs)
-        if (Finish f = w.kind->attach(targets, w.array, i, o, scratch))
-          finish.push_back(std::move(f));
-      if (annotations != nullptr) scratch.annotations.attach(*annotations, o, targets);
-      stats[i] = by.render(scene, cameras[i], o, targets, stop);
-      if (annotations != nullptr)
-        scratch.annotations.draw(*annotations, edges ? &*edges : nullptr, scene, cameras[i], o,
-                                 by.options(), targets);
-      for (const Finish& f : finish) f();
-    };
-    const std::size_t threads = options_.threads > 0 ? static_cast<std::size_t>(options_.threads)
-                                                     : std::thread::hardware_concurrency();
-    const std::size_t workers = std::min(threads, cameras.size());
-    if (workers < 2 || std::int64_t{o.width} * o.height > kSmall ||
-        options_.device != Device::threads) {
-      const std::scoped_lock lock(mutex_);
-      for (std::size_t i = 0; i < cameras.size(); ++i) {
-        draw(renderer_, scratch_, i);
-        after();
-      }
-      return stats;
-    }
-    const std::scoped_lock lock(mutex_);
-    while (side_.size() < workers) {
-      RendererOptions one = options_;
-      one.threads = 1;
-      side_.push_back(std::make_unique<Side>(one));
-    }
-    std::atomic<std::size_t> next{0}, done{0};
-    std::mutex failing;
-    std::exception_ptr failure;
-    {
-      std::vector<std::jthread> running;
-      for (std::size_t w = 0; w < workers; ++w)
-        running.emplace_back([&, side = side_[w].get()] {
-          try {
-            for (std::size_t i; (i = next++) < cameras.size(); ++done)
-              draw(side->renderer, side->scratch, i);
-          } catch (...) {
-            const std::scoped_lock l(failing);
-            if (!failure) failure = std::current_exception();
-            next = cameras.size();
-          }
-        });
-    }
-    if (failure) std::rethrow_exception(failure);
-    after();
-    return stats;
-  }
-
-  std::optional<Pick> pick(const SceneView& scene, const Camera& camera, const FrameOptions& o,
-                           int x, int y) {
-    return renderer_.pick(scene, camera, o, x, y);
-  }
-
-  /// A picture for each of `what`, one behind the other.
-  void rasterize(std::span<const ClipTriangles> what, ImageView<Vec4> first,
-                 const std::stop_token& stop) {
-    const std::scoped_lock lock(mutex_);
-    for (const ClipTriangles& one : what) {
-      clip_.draw(renderer_, one, first, stop);
-      first.data += static_cast<std::size_t>(first.width) * static_cast<std::size_t>(first.height);
-    }
-  }
-
- private:
-  struct Side {
-    explicit Side(const RendererOptions& options) : renderer(options) {}
-    Renderer renderer;
-    Scratch scratch;
-  };
-  RendererOptions options_;
-  std::mutex mutex_;
-  Renderer renderer_;
-  Scratch scratch_;
-  ClipRasterizer clip_;
-  std::vector<std::unique_ptr<Side>> side_;
-};
 
 /// Draws again where a signal asked for a stop and Python's handler wants none.
 template <class Draw>
@@ -477,6 +242,7 @@ void bind_frames(nb::module_& m) {
            arg("annotations").none(), arg("progress").none())
       .def("pick", pick, arg("scene"), arg("camera"), arg("frame"), arg("x"), arg("y"))
       .def("rasterize", rasterize, arg("positions"), arg("triangles"), arg("ranges"), arg("out"));
+  m.def("empty", empty, arg("shape"), arg("type"));
   m.def("shader_names", [] {
     std::vector<std::string> names;
     for (const std::string_view n : shader_names()) names.emplace_back(n);

@@ -11,6 +11,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <rastrum/color.hpp>
 #include <rastrum/color_map.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/render.hpp>
@@ -239,6 +240,19 @@ void bind_scenes(nb::module_& m) {
   m.def("mapping", mapping, arg("colors"), arg("discrete"), arg("range").none(), arg("logarithmic"),
         arg("symmetric"), arg("steps"), arg("categories"), arg("below").none(), arg("above").none(),
         arg("nan"), arg("opacity"), arg("isolines"), arg("isoline_color"), arg("isoline_px"));
+  m.def(
+      "color_of",
+      [](const std::string& text) -> std::optional<std::array<int, 4>> {
+        const std::optional<Rgba8> c = color_of(text);
+        if (!c) return std::nullopt;
+        return std::array<int, 4>{c->r, c->g, c->b, c->a};
+      },
+      arg("text"));
+  m.def("color_names", [] {
+    std::vector<std::string> names;
+    for (const std::string_view n : color_names()) names.emplace_back(n);
+    return names;
+  });
   m.def("color_map", map_named, arg("name"));
   m.def("color_map_names", [] {
     std::vector<std::string> names;

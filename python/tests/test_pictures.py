@@ -163,6 +163,27 @@ def test_frames_leave_nothing_behind(sheet):
     assert peak_mb() - before < 2
 
 
+def test_large_arrays_take_the_place_of_dead_ones(sheet):
+    def place(array):
+        return array.__array_interface__["data"][0]
+    size, names = (400, 300), ("color", "depth", "id", "normal")
+    first = rr.render(sheet, size=size, outputs=names)
+    assert all(a.flags.c_contiguous and a.flags.writeable and place(a) % 64 == 0 for a in first.arrays.values())
+    places, part = {place(a) for a in first.arrays.values()}, first.depth[10:20]
+    expected = {name: a.copy() for name, a in first.arrays.items()}
+    # What is kept, and be it by a view, is nobody else's.
+    kept_color, depth_at, color_at = first.color, place(first.depth), place(first.color)
+    del first
+    for _ in range(3):
+        again = rr.render(sheet, size=size, outputs=names)
+        assert {place(a) for a in again.arrays.values()} & places and same(again, rr.Picture(expected, {}, None))
+        assert depth_at not in map(place, again.arrays.values()) and color_at not in map(place, again.arrays.values())
+        del again
+    assert np.array_equal(part, expected["depth"][10:20]) and np.array_equal(kept_color, expected["color"])
+    with pytest.raises(rr.OutOfMemoryError):
+        rr.render(sheet, [rr.Camera.look_at((0, 0, 3))] * 70000, size=(32768, 32768), outputs="position")
+
+
 def test_several_draw_at_once(sheet):
     expected = rr.render(sheet, size=SIZE, outputs="id").id
     wrong = []

@@ -116,3 +116,16 @@ def test_what_is_wrong_is_named(name):
     for value in BAD[name]:
         with pytest.raises(rr.Error, match=f"^{name}"):
             rr.rasterize(**{**good, name: value})
+
+
+def test_a_batch_is_its_pictures():
+    """Small pictures are drawn side by side."""
+    batch = np.stack([clip_triangles(seed, 12)[0] for seed in range(9)])
+    tri = clip_triangles(0, 12)[1]
+    one = np.concatenate([rr.rasterize(pos, tri, (HEIGHT, WIDTH), threads=1) for pos in batch])
+    for threads in (1, 2, 5):
+        assert np.array_equal(rr.rasterize(batch, tri, (HEIGHT, WIDTH), threads=threads), one)
+    wrong = tri.copy()
+    wrong[7, 1] = 36
+    with pytest.raises(rr.ArgumentError, match="index 36 of triangle 7"):
+        rr.rasterize(batch, wrong, (HEIGHT, WIDTH), threads=4)

@@ -17,6 +17,18 @@ def ids(thing, **more):
     return rr.render(thing, CAMERA, size=SIZE, outputs="id", **more).id
 
 
+def test_colours_have_the_names_of_css():
+    tables = pytest.importorskip("matplotlib.colors")
+    for name, code in tables.CSS4_COLORS.items():
+        both = [rr.render(rr.Mesh(np.eye(3), color=c), size=(8, 8), shader="flat").color for c in (name, code)]
+        assert np.array_equal(*both), name
+    white = rr.render(rr.Points(MIDDLE), CAMERA, size=(8, 8), background="white").color
+    for same in ("White", "fff", "#FFF", "ffffff", (1, 1, 1)):
+        assert np.array_equal(rr.render(rr.Points(MIDDLE), CAMERA, size=(8, 8), background=same).color, white)
+    with pytest.raises(rr.ArgumentError, match="background: 'bleu' is no colour.*'blue' perhaps"):
+        rr.render(rr.Points(MIDDLE), CAMERA, background="bleu")
+
+
 def test_each_primitive_is_seen():
     ends = np.array([[-1, 0, 0], [1, 0, 0], [1, 1, 0.0]])
     for thing, count in ((rr.Spheres(MIDDLE, 0.5), 1), (rr.Spheres(ends, np.array([0.1, 0.2, 0.3])), 3),

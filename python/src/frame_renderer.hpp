@@ -1,0 +1,58 @@
+// A renderer that keeps its threads and scratch, and draws many small pictures side by side.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include <rastrum/render.hpp>
+
+#include "annotations.hpp"
+#include "outputs.hpp"
+#include "rasterize.hpp"
+
+namespace rastrum::python {
+
+class FrameRenderer {
+ public:
+  explicit FrameRenderer(const RendererOptions& options) : options_(options), renderer_(options) {}
+
+  /// A picture for each camera. `after`: called after each that is drawn alone, once after all that
+  /// are drawn side by side.
+  std::vector<FrameStats> render(const SceneView& scene, const std::vector<Camera>& cameras,
+                                 const FrameOptions& o, const std::vector<Wanted>& outputs,
+                                 const Annotations* annotations, const std::stop_token& stop,
+                                 const std::function<void()>& after);
+  std::optional<Pick> pick(const SceneView& scene, const Camera& camera, const FrameOptions& o,
+                           int x, int y) {
+    return renderer_.pick(scene, camera, o, x, y);
+  }
+  /// A picture for each of `what`, one behind the other.
+  void rasterize(std::span<const ClipTriangles> what, ImageView<Vec4> first,
+                 const std::stop_token& stop);
+
+ private:
+  /// Who draws picture i.
+  using Draw = std::function<void(Renderer& by, Scratch& scratch, std::size_t i)>;
+  /// Small pictures a thread each, others one after the other by all threads.
+  void draw_all(std::size_t pictures, std::int64_t pixels, const Draw& draw,
+                const std::function<void()>& after);
+
+  struct Side {
+    explicit Side(const RendererOptions& options) : renderer(options) {}
+    Renderer renderer;
+    Scratch scratch{};
+  };
+  RendererOptions options_;
+  std::mutex mutex_{};
+  Renderer renderer_;
+  Scratch scratch_{};
+  std::vector<std::unique_ptr<Side>> side_{};
+};
+
+}  // namespace rastrum::python
