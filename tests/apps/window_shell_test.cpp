@@ -411,8 +411,8 @@ TEST_F(WindowTest, ThePanelChangesThePicture) {
   };
   // Opens or closes a part and waits for its place on the screen.
   const auto turn = [&](std::size_t part) {
-    const std::vector<int> before = heads();
-    ASSERT_GE(before.size(), 6U);
+    std::vector<int> before;
+    ASSERT_TRUE(comes_true([&] { return (before = heads()).size() == 6; }));
     at_window("200 " + std::to_string(before[part] + kHead_px / 2), "click 1");
     EXPECT_TRUE(comes_true([&] {
       const std::vector<int> now = heads();
