@@ -91,18 +91,21 @@ void draw_strip(const ColorMap& map, int steps, float width) {
 /// A list of maps, each beside its colours.
 bool choose_map(MeshSettings& s) {
   bool changed = false;
-  if (!ImGui::BeginCombo("colours", s.map.c_str())) return false;
+  if (!ImGui::BeginCombo("colours", s.map.c_str(), ImGuiComboFlags_HeightLargest)) return false;
   constexpr float kStrip = 110;
   for (const std::string_view n : color_map_names()) {
     const std::string name(n);
     const ColorMap map = color_map(n);
-    draw_strip(map, 0, kStrip);
-    ImGui::SameLine();
-    if (ImGui::Selectable(name.c_str(), name == s.map)) {
+    const ImVec2 at = ImGui::GetCursorPos();
+    if (ImGui::Selectable(("##" + name).c_str(), name == s.map)) {
       s.map = name;
       s.notes.scalars.mapping.map = map;
       changed = true;
     }
+    ImGui::SetCursorPos(at);
+    draw_strip(map, 0, kStrip);
+    ImGui::SameLine();
+    ImGui::TextUnformatted(name.c_str());
   }
   ImGui::EndCombo();
   return changed;
