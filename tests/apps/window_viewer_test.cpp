@@ -481,6 +481,34 @@ TEST_F(MeshViewerTest, SectionsAreClipPlanes) {
   EXPECT_TRUE(same_pixels(drawn.image, png("cut.png")));
 }
 
+TEST_F(MeshViewerTest, AFileWithoutTheNumbersIsShownWithoutThem) {
+  write("heat.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+        "float z\nproperty float heat\nelement face 1\nproperty list uchar int "
+        "vertex_indices\nend_header\n0 0 0 1\n1 0 0 2\n1 1 0 3\n3 0 1 2\n");
+  write("plain.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  cli::SceneArguments a;
+  a.inputs = {path("heat.ply").string()};
+  a.annotations.scalars.name = "heat";
+  a.annotations.scalars.bar_title = "Heat";
+  MeshSubject subject(a, load_scene(a));
+  subject.resize(60, 40);
+  MeshSubject::Settings s = subject.settings();
+  s.sections[0] = {true, 0.5, true};
+  subject.set(s);
+  static_cast<void>(subject.draw(60, 40, false)());
+  const auto open = [&](const char* name) {
+    subject.open(path(name))()();
+    const auto drawn = subject.draw(60, 40, false)();
+    EXPECT_FALSE(subject.settings().sections[0].on);
+    return subject.same_picture(60, 40, "a.png").front().second;
+  };
+  EXPECT_NE(open("heat.ply").find("--scalars heat"), std::string::npos);
+  const std::string line = open("plain.obj");
+  EXPECT_EQ(line.find("--scalars"), std::string::npos) << line;
+  EXPECT_EQ(line.find("--bar"), std::string::npos) << line;
+}
+
 // What a person changes in the panel alone is said, too.
 TEST_F(MeshViewerTest, ToneAndLightsOfThePanelAreSaid) {
   cli::SceneArguments a;

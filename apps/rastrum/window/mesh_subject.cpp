@@ -336,7 +336,17 @@ Worker::Job MeshSubject::open(const std::filesystem::path& file) {
   arguments.view.orthographic_height.reset();
   return [this, arguments]() -> Worker::Done {
     auto scene = load_scene(arguments);
-    return [this, arguments, scene] { show(arguments, scene); };
+    return [this, arguments, scene] {
+      // Numbers that it has not are not asked of it, and sections were of the other one.
+      ScalarOptions& s = settings_.notes.scalars;
+      if (std::ranges::find(scene->scalars, s.name, &ScalarSummary::name) == scene->scalars.end()) {
+        s.name.clear();
+        s.bar_title.reset();
+        s.given = nullptr;
+      }
+      settings_.sections = {};
+      show(arguments, scene);
+    };
   };
 }
 
