@@ -30,8 +30,9 @@ class FakeSubject final : public Subject {
   void resize(int, int) override {}
   [[nodiscard]] bool moving() const override { return is_moving; }
   [[nodiscard]] std::uint64_t version() const override { return version_; }
-  [[nodiscard]] std::function<Picture()> draw(int width, int height) override {
-    return [this, width, height]() -> Picture {
+  [[nodiscard]] bool has_glances() const override { return glances; }
+  [[nodiscard]] std::function<Picture()> draw(int width, int height, bool glance) override {
+    return [this, width, height, glance]() -> Picture {
       if (refuse) throw Error(Errc::invalid_argument, "these options do not fit");
       Picture d{Image<Rgba8>(width, height), true, {}};
       for (int row = 0; row < height; ++row) {
@@ -39,8 +40,9 @@ class FakeSubject final : public Subject {
         parallel::throw_if_stopped();
         if (width == hold_width) ++*rows;
       }
-      d.figures.frame_ms = ms_a_pixel * width * height;
+      d.figures.frame_ms = ms_a_pixel * width * height * (glances && !glance ? 100 : 1);
       ++pictures;
+      seen_glances += glance;
       return d;
     };
   }
@@ -72,7 +74,8 @@ class FakeSubject final : public Subject {
 
   bool is_moving = false, refuse = false, picks = true;
   double ms_a_pixel = 1;
-  int pictures = 0;
+  bool glances = false;  ///< of a hundredth of the time
+  int pictures = 0, seen_glances = 0;
 
   /// Pictures of this width wait in the middle, until they are let go or stopped.
   static constexpr int kHoldRow = 2;
@@ -160,6 +163,35 @@ TEST_F(ViewerTest, FewerPixelsWhileMovingAllWhenStill) {
   const int pictures = subject->pictures;
   run_for(0.2);
   EXPECT_EQ(subject->pictures, pictures) << "nothing has changed, nothing is drawn";
+}
+
+// A whole picture takes a second, a glance 10 ms: no whole one is drawn while the view moves.
+TEST_F(ViewerTest, AMovingViewIsDrawnInGlances) {
+  subject->glances = true;
+  subject->ms_a_pixel = 10.0 / (64 * 32);
+  run_for(0.5);
+  EXPECT_TRUE(viewer->is_full());
+  const auto whole = [&] { return subject->pictures - subject->seen_glances; };
+  EXPECT_EQ(whole(), 1);
+  viewer->handle(press("w"));
+  run_for(0.5);
+  EXPECT_EQ(viewer->picture()->image.width(), 64) << "all pixels can be had";
+  EXPECT_FALSE(viewer->is_full());
+  EXPECT_EQ(whole(), 1);
+  viewer->handle(press("p"));
+  run_for(0.1);
+  EXPECT_TRUE(files().empty()) << "no picture of a glance";
+  viewer->handle(press("w", Event::Kind::key_up));
+  run_for(0.5);
+  EXPECT_EQ(whole(), 2);
+  EXPECT_TRUE(viewer->is_full());
+  EXPECT_EQ(files().size(), 2U);
+  EXPECT_FALSE(viewer->busy());
+  viewer->set_adaptive(false);
+  const int glances = subject->seen_glances;
+  viewer->handle(press("w"));
+  run_for(0.2);
+  EXPECT_EQ(subject->seen_glances, glances);
 }
 
 TEST_F(ViewerTest, WithoutAdaptionEveryPictureIsFull) {
@@ -437,7 +469,7 @@ TEST_F(MeshViewerTest, SectionsAreClipPlanes) {
   s.sections[2] = {true, -0.5, false};
   s.lights = "studio";
   subject.set(s);
-  const auto drawn = subject.draw(60, 40)();
+  const auto drawn = subject.draw(60, 40, false)();
   std::string line;
   for (const auto& [ending, text] : subject.same_picture(60, 40, "cut.png"))
     if (ending == ".sh") line = text;
@@ -449,11 +481,88 @@ TEST_F(MeshViewerTest, SectionsAreClipPlanes) {
   EXPECT_TRUE(same_pixels(drawn.image, png("cut.png")));
 }
 
+TEST_F(MeshViewerTest, AFileWithoutTheNumbersIsShownWithoutThem) {
+  write("heat.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+        "float z\nproperty float heat\nelement face 1\nproperty list uchar int "
+        "vertex_indices\nend_header\n0 0 0 1\n1 0 0 2\n1 1 0 3\n3 0 1 2\n");
+  write("plain.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  cli::SceneArguments a;
+  a.inputs = {path("heat.ply").string()};
+  a.annotations.scalars.name = "heat";
+  a.annotations.scalars.bar_title = "Heat";
+  MeshSubject subject(a, load_scene(a));
+  subject.resize(60, 40);
+  MeshSubject::Settings s = subject.settings();
+  s.sections[0] = {true, 0.5, true};
+  subject.set(s);
+  static_cast<void>(subject.draw(60, 40, false)());
+  const auto open = [&](const char* name) {
+    subject.open(path(name))()();
+    const auto drawn = subject.draw(60, 40, false)();
+    EXPECT_FALSE(subject.settings().sections[0].on);
+    return subject.same_picture(60, 40, "a.png").front().second;
+  };
+  EXPECT_NE(open("heat.ply").find("--scalars heat"), std::string::npos);
+  const std::string line = open("plain.obj");
+  EXPECT_EQ(line.find("--scalars"), std::string::npos) << line;
+  EXPECT_EQ(line.find("--bar"), std::string::npos) << line;
+}
+
+// What a person changes in the panel alone is said, too.
+TEST_F(MeshViewerTest, ToneAndLightsOfThePanelAreSaid) {
+  cli::SceneArguments a;
+  a.inputs = {"builtin:sphere"};
+  MeshSubject subject(a, load_scene(a));
+  subject.resize(60, 40);
+  MeshSubject::Settings s = subject.settings();
+  s.render.shader = Shader::material;
+  s.render.tone = {Tone::aces, 1.5F};
+  s.lights = "headlight";
+  subject.set(s);
+  const auto texts = subject.same_picture(60, 40, "tone.png");
+  const std::string& line = texts.front().second;
+  EXPECT_NE(line.find("--tone aces --exposure 1.5"), std::string::npos) << line;
+  EXPECT_NE(texts.back().second.find("tone=\"aces\", exposure=1.5"), std::string::npos);
+  const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
+                              line.substr(7, line.size() - 8) + " --quiet";
+  ASSERT_EQ(std::system(command.c_str()), 0) << command;
+  EXPECT_TRUE(same_pixels(subject.draw(60, 40, false)().image, png("tone.png")));
+  EXPECT_TRUE(subject.has_glances() == (s.render.samples != 1));
+}
+
+TEST_F(MeshViewerTest, LightsOfFilesAreShown) {
+  EXPECT_NE(replay("builtin:sphere", R"({"events": [{"options": "--lights file"}]})")
+                .find("no lights of their own"),
+            std::string::npos);
+  cli::SceneArguments a;
+  a.inputs = {"builtin:sphere"};
+  const auto scene = load_scene(a);
+  scene->scene.lights = {headlight()};  // as a file has it
+  MeshSubject subject(a, scene);
+  subject.resize(60, 40);
+  MeshSubject::Settings s = subject.settings();
+  s.lights = "headlight";
+  subject.set(s);
+  const auto head = subject.draw(60, 40, false)();
+  s.lights = "";
+  subject.set(s);
+  EXPECT_FALSE(same_pixels(subject.draw(60, 40, false)().image, head.image));
+  s.lights = "file";
+  subject.set(s);
+  EXPECT_TRUE(same_pixels(subject.draw(60, 40, false)().image, head.image));
+  EXPECT_NE(subject.same_picture(60, 40, "a.png").front().second.find("--lights file"),
+            std::string::npos);
+  EXPECT_NE(subject.same_picture(60, 40, "a.png").back().second.find("no words for it: --lights"),
+            std::string::npos);
+}
+
 TEST_F(MeshViewerTest, AClickSaysTheNumberThere) {
-  EXPECT_EQ(replay("builtin:sphere", R"({"events": [{"options": "--scalars z"},
+  EXPECT_EQ(replay("builtin:sphere", R"({"events": [{"options": "--scalars z --bar z --bar-unit m"},
       {"time": 0.1, "button_down": "left", "at": [60, 45]}, {"time": 0.2, "button_up": "left"}]})"),
             "");
   EXPECT_NE(title.find(", z = 0.99"), std::string::npos) << title;
+  EXPECT_TRUE(title.ends_with(" m")) << title;
   EXPECT_NE(replay("builtin:sphere", R"({"events": [{"options": "--scalars heat"}]})").find("heat"),
             std::string::npos);
 }
