@@ -141,7 +141,7 @@ def test_the_widget(sheet):
     assert len(sent) == 3 and np.array_equal(eye(view.camera), (0, 0, 9))
     data, _ = view._repr_mimebundle_()
     assert np.array_equal(decoded(data["image/png"]), view.picture().color)
-    for wrong in ({"outputs": "id"}, {"target_ms": 0}, {"size": (0, 1)}, {"shader": 3}):
+    for wrong in ({"outputs": "id"}, {"target_ms": 0}, {"size": (0, 1)}, {"shader": 3}, {"no_such": 1}):
         with pytest.raises(rr.Error):
             rr.View(sheet, **wrong).picture()
 
