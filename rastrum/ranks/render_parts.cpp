@@ -217,7 +217,8 @@ void PartsFrame::draw_words(const Camera& camera) {
         renderer_.render(own_scene(0, own_->instances.size()), camera, plain, words);
     if (stats.visibility == "layers")
       throw Error(Errc::unsupported,
-                  "its surfaces are translucent, and layers are not exchanged between ranks; draw "
+                  "a picture of several ranks: its surfaces are translucent, and layers are not "
+                  "exchanged between ranks; draw "
                   "them opaque (Transparency::none)");
   });
 }

@@ -12,6 +12,7 @@
 #include <rastrum/ranks/gather.hpp>
 #include <rastrum/ranks/render_parts.hpp>
 #include <rastrum/shapes.hpp>
+#include <rastrum/transform.hpp>
 
 #include "tests/support/random.hpp"
 
@@ -41,10 +42,10 @@ inline testing::AssertionResult same_targets(const Targets& a, const Targets& b)
   std::string differs;
   std::vector<std::pair<const void*, std::size_t>> of_a;
   ranks::each_target(a, [&](const auto& view, std::uint32_t) {
-    of_a.emplace_back(view.data, view.empty() ? 0
-                                              : sizeof(*view.data) *
-                                                    static_cast<std::size_t>(view.width) *
-                                                    static_cast<std::size_t>(view.height));
+    of_a.emplace_back(view.data, view.empty()
+                                     ? 0
+                                     : sizeof(*view.data) * static_cast<std::size_t>(view.width) *
+                                           static_cast<std::size_t>(view.height));
   });
   std::size_t i = 0;
   ranks::each_target(b, [&](const auto& view, std::uint32_t bit) {
@@ -77,14 +78,13 @@ struct PartsScene {
         scene.geometries.emplace_back(std::move(spheres));
       } else {
         instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
-        scene.meshes.push_back(shapes::soup(40, 0.1F, 0.8F));
+        scene.meshes.push_back(
+            shapes::soup(40, 0.1F, 0.8F, random.bits()));
         const double angle = random.real(0, 3);
-        instance.object_to_world =
-            rotation({0.3, 1, 0.2}, angle);
+        instance.object_to_world = rotation(rotation_about({0.3, 1, 0.2}, angle));
       }
       if (!with_materials && random.chance(0.5)) instance.color = Vec4{0.9F, 0.3F, 0.1F, 1};
-      if (with_materials)
-        instance.material = static_cast<std::uint32_t>(random.integer(0, 1));
+      if (with_materials) instance.material = static_cast<std::uint32_t>(random.integer(0, 1));
       scene.instances.push_back(instance);
     }
     if (with_materials) {
@@ -113,9 +113,9 @@ inline RanksStats draw_dealt(LocalRanks& ranks, const Deal& deal, const SceneVie
     SceneView own = all;
     own.instances = instances;
     Renderer renderer({.device = Device::serial});
-    const RanksStats stats = ranks::render_parts(c, renderer, own, parts, camera, frame,
-                                                 c.rank() == options.root ? targets : Targets{},
-                                                 options, at);
+    const RanksStats stats =
+        ranks::render_parts(c, renderer, own, parts, camera, frame,
+                            c.rank() == options.root ? targets : Targets{}, options, at);
     if (c.rank() == options.root) of_root = stats;
   });
   return of_root;
