@@ -27,6 +27,8 @@ MAY_INCLUDE = {
     "render": {"core", "parallel", "scene", "raster", "transparency", "terrain", "overlay",
                "io"},
     "ranks": {"core", "parallel", "scene", "raster", "render"},
+    # A library of its own, where there is an MPI; nothing includes it.
+    "mpi": {"core", "ranks"},
     "family": {"core", "parallel", "scene", "raster", "transparency", "terrain", "render"},
     # The library of device code, opened by its file's name: nothing includes it.
     "cuda": {"core", "parallel", "render", "terrain", "family"},

@@ -198,7 +198,9 @@ TEST(Parts, TheExchangeIsChosenByBytes) {
     const std::uint64_t sparse = bytes(round_robin(4), camera, WordExchange::sparse, s);
     const std::uint64_t chosen = bytes(round_robin(4), camera, WordExchange::automatic, a);
     EXPECT_LE(chosen, std::min(dense, sparse) + 64) << far;  // the numbers that decide it
-    if (far) EXPECT_LT(sparse * 4, dense);
+    if (far) {
+      EXPECT_LT(sparse * 4, dense);
+    }
     EXPECT_EQ(s.words, d.words);
     EXPECT_GE(s.words, s.won);
   }
