@@ -21,8 +21,9 @@
 namespace rastrum::ranks {
 namespace {
 
-/// At a pixel that another rank has won: nearer than any surface, and of no pass.
-constexpr std::uint64_t kLost = std::uint64_t{std::bit_cast<std::uint32_t>(2.0F)}
+/// At a pixel that another rank has won: nearer than any surface, and of no pass. Below 2, whose
+/// bits would make a key negative to the kernels that compare signed numbers.
+constexpr std::uint64_t kLost = std::uint64_t{std::bit_cast<std::uint32_t>(1.5F)}
                                     << raster::kIdBits |
                                 (raster::kIdMask - raster::kMaxId);
 

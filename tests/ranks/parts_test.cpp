@@ -57,7 +57,7 @@ void expect_equal(std::uint64_t seed, bool with_materials, const FrameOptions& f
   const Camera camera = fit_camera(binding.view(), 1.0472F, false);
   const bool linear = shader_for(frame.shader, binding.view()) == Shader::material;
   const AllTargets one(frame.width, frame.height, linear);
-  Renderer renderer({.threads = 2});
+  Renderer renderer({.device = getenv("SER") ? Device::serial : Device::threads, .threads = 2});
   (void)renderer.render(binding.view(), camera, frame, one.targets());
   Random random(seed);
   for (const int n : counts) {
