@@ -16,7 +16,7 @@ struct OwnParts {
   /// Throws Error{invalid_argument} unless there is a number for each instance, below 2⁶³.
   OwnParts(const SceneView& scene, std::span<const std::uint64_t> parts);
 
-  std::vector<InstanceView> instances;
+  std::vector<InstanceView> instances;  ///< behind the parts there may be one without primitives
   std::vector<std::uint64_t> parts;
   /// The first local id of each, and behind the last.
   std::vector<std::uint64_t> first_ids;

@@ -94,6 +94,7 @@ class PartsFrame {
   }
   void begin(const SceneView& scene, std::span<const std::uint64_t> parts, const Camera& camera);
   void agree_on_shader();
+  void agree_on_colors();
   void ask(const Targets& targets);
   void list_parts();
   void draw_words(const Camera& camera);
@@ -101,7 +102,9 @@ class PartsFrame {
   void gather(std::span<const BlockMask> won);
   void finish(const Targets& targets);
 
+  /// Of own parts [first, last), and of a stand-in where it comes behind them.
   [[nodiscard]] SceneView own_scene(std::size_t first, std::size_t last) const {
+    if (last == own_->parts.size()) last = own_->instances.size();
     SceneView scene = scene_;
     scene.instances = std::span(own_->instances).subspan(first, last - first);
     return scene;
@@ -153,7 +156,7 @@ void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> pa
 }
 
 void PartsFrame::agree_on_shader() {
-  const bool has_parts = !own_->instances.empty(), has_materials = !scene_.materials.empty();
+  const bool has_parts = !own_->parts.empty(), has_materials = !scene_.materials.empty();
   const bool any_with = ranks_.max(has_parts && has_materials ? 1 : 0) != 0;
   const bool any_without = ranks_.max(has_parts && !has_materials ? 1 : 0) != 0;
   phase("compare materials", [&] {
@@ -163,6 +166,19 @@ void PartsFrame::agree_on_shader() {
                   "(add_plain_materials)");
     if (frame_.shader == Shader::automatic)
       frame_.shader = any_with ? Shader::material : Shader::phong;
+  });
+}
+
+/// Where some mesh of a scene has colours, shading interpolates the plain colour of all others,
+/// too, which is not the same float32 as that colour. So a mesh of nothing stands for other ranks'.
+void PartsFrame::agree_on_colors() {
+  const bool colored = std::ranges::any_of(own_->instances, [&](const InstanceView& i) {
+    return i.mesh() != nullptr && !shows_scalars(scene_, i) &&
+           (i.color || !i.mesh()->colors.empty());
+  });
+  const bool any = ranks_.max(colored ? 1 : 0) != 0;
+  phase("stand in", [&] {
+    if (any && !colored) own_->instances.push_back({.color = Vec4{1, 1, 1, 1}, .visible = false});
   });
 }
 
@@ -208,14 +224,14 @@ void PartsFrame::draw_words(const Camera& camera) {
   phase("draw", [&] {
     grid_.emplace(frame_.width, frame_.height, ranks_.size());
     keys_ = Image<std::uint64_t>(frame_.width, frame_.height);
-    if (own_->instances.empty()) return;
+    if (own_->parts.empty()) return;
     FrameOptions plain = frame_;
     plain.lights.clear();
     plain.tone = {};
     Targets words;
     words.keys = keys_;
     const FrameStats stats =
-        renderer_.render(own_scene(0, own_->instances.size()), camera, plain, words);
+        renderer_.render(own_scene(0, own_->parts.size()), camera, plain, words);
     if (stats.visibility == "layers")
       throw Error(Errc::unsupported,
                   "a picture of several ranks: its surfaces are translucent, and layers are not "
@@ -301,6 +317,7 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
                             const Camera& camera, const Targets& targets) {
   begin(scene, parts, camera);
   agree_on_shader();
+  agree_on_colors();
   ask(targets);
   list_parts();
   draw_words(camera);

@@ -63,7 +63,6 @@ inline testing::AssertionResult same_targets(const Targets& a, const Targets& b)
     for (int row = 0; row < x.height; ++row)
       for (int column = 0; column < x.width; ++column)
         if (!same(x(column, row), y(column, row))) {
-          if (std::getenv("DBG")) { std::uint32_t u[8]{}; std::memcpy(u,&x(column,row),sizeof(Pixel)); std::memcpy(u+4,&y(column,row),sizeof(Pixel)); std::printf("%u: %x %x %x %x | %x %x %x %x\n",bit,u[0],u[1],u[2],u[3],u[4],u[5],u[6],u[7]); }
           differs += " bit " + std::to_string(bit) + " at (" + std::to_string(column) + ", " +
                      std::to_string(row) + ");";
           return;

@@ -57,7 +57,7 @@ void expect_equal(std::uint64_t seed, bool with_materials, const FrameOptions& f
   const Camera camera = fit_camera(binding.view(), 1.0472F, false);
   const bool linear = shader_for(frame.shader, binding.view()) == Shader::material;
   const AllTargets one(frame.width, frame.height, linear);
-  Renderer renderer({.device = getenv("SER") ? Device::serial : Device::threads, .threads = 2});
+  Renderer renderer({.threads = 2});
   (void)renderer.render(binding.view(), camera, frame, one.targets());
   Random random(seed);
   for (const int n : counts) {
@@ -93,6 +93,13 @@ TEST(Parts, EqualOneRendererForManyRanksAndSizes) {
   expect_equal(21, false, frame_of(Shader::phong, 1, 1), {2, 8});
   expect_equal(22, false, frame_of(Shader::phong, 9, 200), {5, 16});
   expect_equal(23, true, frame_of(Shader::material, 131, 67), {8});
+}
+
+/// What a renderer decides for a whole scene shows in seeds: colours on some ranks alone.
+TEST(Parts, EqualOneRendererForManyScenes) {
+  for (std::uint64_t seed = 100; seed < 112; ++seed)
+    expect_equal(seed, seed % 4 == 0,
+                 frame_of(seed % 2 == 0 ? Shader::automatic : Shader::lambert, 48, 40), {5});
 }
 
 TEST(Parts, EqualOneRendererWithLightsAToneAndPlanes) {
