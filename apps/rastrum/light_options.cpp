@@ -161,6 +161,10 @@ void add_file_lights(const Scene& scene, std::vector<Light>& lights) {
                                      std::to_string(kMaxLights) + " are possible");
 }
 
+std::vector<std::string> tone_names() {
+  return {"none", "reinhard", "aces", "neutral"};
+}
+
 void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, const char* group) {
   std::vector<Light>& lights = frame.lights;
   add(app, "--lights", "NAME",
@@ -196,9 +200,9 @@ void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, co
       "of --shader material: how light above 1 is shown: none: cut (default), reinhard, aces, "
       "neutral (Khronos PBR Neutral)",
       [&frame](const std::string& s) {
-        constexpr const char* kNames[] = {"none", "reinhard", "aces", "neutral"};
-        for (std::size_t i = 0; i < std::size(kNames); ++i)
-          if (s == kNames[i]) {
+        const std::vector<std::string> names = tone_names();
+        for (std::size_t i = 0; i < names.size(); ++i)
+          if (s == names[i]) {
             frame.tone.tone = static_cast<Tone>(i);
             return;
           }

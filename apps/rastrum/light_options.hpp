@@ -24,6 +24,9 @@ void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, co
 /// Adds those of the inputs. Throws UsageError where they have none.
 void add_file_lights(const Scene& scene, std::vector<Light>& lights);
 
+/// In the order of Tone.
+[[nodiscard]] std::vector<std::string> tone_names();
+
 /// KIND[:PLACE][:NAME=VALUE]…, as --light has it. Throws UsageError.
 [[nodiscard]] Light parse_light(const std::string& text);
 

@@ -56,8 +56,6 @@ int run(ViewArguments& a) {
   set_look(a, is_to_be_shown(a), true, true);
   check_scene_arguments(a);
   check_annotations(a.annotations, true);
-  if (a.lights.of_files)
-    throw UsageError("--lights", "the window has default, headlight and studio");
   const window::Display display;  // before a large file is read
   auto subject = std::make_unique<window::MeshSubject>(a, window::load_scene(a));
   window::MeshSubject& meshes = *subject;

@@ -13,30 +13,34 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-ALL = ("rastrum", "opencv", "trimesh", "vtk", "pyvista")
+ALL = ("rastrum", "opencv", "trimesh", "vtk", "pyvista", "pyrender", "open3d", "mitsuba")
 SIZES = (512, 1024)
 TRIANGLES = (1_000, 70_000, 1_000_000)
 TIMEOUT_S = 180
 
 
 def requirements(name):
-    scope = {}
+    """What pip installs, and what it installs without asking what that needs."""
+    scope = {"WITHOUT_DEPENDENCIES": []}
     for line in (HERE / "contenders" / f"{name}.py").read_text().splitlines():
-        if line.startswith("REQUIREMENTS"):
+        if line.startswith(("REQUIREMENTS", "WITHOUT_DEPENDENCIES")):
             exec(line, scope)
-    return scope["REQUIREMENTS"]
+    return scope["REQUIREMENTS"], scope["WITHOUT_DEPENDENCIES"]
 
 
 class Contender:
     def __init__(self, name, out, wheel):
         self.name, self.folder = name, out / name
         self.python = self.folder / "bin" / "python"
-        wanted = [str(wheel)] if name == "rastrum" else requirements(name)
-        marker = self.folder / "installed.txt"
-        if not marker.exists() or marker.read_text() != "\n".join(wanted):
+        wanted, alone = ([str(wheel)], []) if name == "rastrum" else requirements(name)
+        marker, text = self.folder / "installed.txt", "\n".join(wanted + alone)
+        if not marker.exists() or marker.read_text() != text:
             subprocess.run([sys.executable, "-m", "venv", "--clear", self.folder], check=True)
-            subprocess.run([self.python, "-m", "pip", "install", "-q", "--disable-pip-version-check", *wanted], check=True)
-            marker.write_text("\n".join(wanted))
+            pip = [self.python, "-m", "pip", "install", "-q", "--disable-pip-version-check"]
+            subprocess.run([*pip, *wanted], check=True)
+            if alone:
+                subprocess.run([*pip, "--no-deps", *alone], check=True)
+            marker.write_text(text)
         packages = next((self.folder / "lib").glob("python*")) / "site-packages"
         files = [f for f in packages.rglob("*") if f.is_file() and "pip" not in f.relative_to(packages).parts[0]
                  and "setuptools" not in f.relative_to(packages).parts[0]]

@@ -1,5 +1,8 @@
-"""Files that the library does not read: by the vtk wheel or trimesh, where these are installed."""
+"""Files that the library does not read: by the vtk wheel, trimesh or meshio, where these are installed."""
 
+import contextlib
+import importlib.util
+import io
 import os
 
 import numpy as np
@@ -10,7 +13,11 @@ _OURS = {".obj", ".ply", ".stl", ".off", ".gltf", ".glb"}
 # The reader of vtkmodules for what a name ends with.
 _VTK = {".vtp": ("vtkIOXML", "vtkXMLPolyDataReader"), ".vtu": ("vtkIOXML", "vtkXMLUnstructuredGridReader"),
         ".vti": ("vtkIOXML", "vtkXMLImageDataReader"), ".vts": ("vtkIOXML", "vtkXMLStructuredGridReader"),
-        ".vtr": ("vtkIOXML", "vtkXMLRectilinearGridReader"), ".vtk": ("vtkIOLegacy", "vtkDataSetReader")}
+        ".vtr": ("vtkIOXML", "vtkXMLRectilinearGridReader"), ".vtk": ("vtkIOLegacy", "vtkDataSetReader"),
+        ".e": ("vtkIOExodus", "vtkExodusIIReader"), ".ex2": ("vtkIOExodus", "vtkExodusIIReader"),
+        ".exo": ("vtkIOExodus", "vtkExodusIIReader")}
+# What of these meshio reads, too.
+_MESHIO = {".vtu", ".vtk", ".e", ".ex2", ".exo"}
 
 
 def reads(path):
@@ -20,6 +27,10 @@ def reads(path):
         return True
     if not ending or ending in _OURS:
         return False
+    return _by_trimesh(ending) or _by_meshio(ending)
+
+
+def _by_trimesh(ending):
     try:
         import trimesh
     except ImportError:
@@ -27,12 +38,21 @@ def reads(path):
     return ending[1:] in trimesh.available_formats()
 
 
+def _by_meshio(ending):
+    if importlib.util.find_spec("meshio") is None:
+        return False
+    import meshio
+    return ending in meshio.extension_to_filetypes and ending != ".svg"
+
+
 def read(path):
-    """What another library makes of it: a vtkPolyData, a thing of trimesh. Raises FormatError where it reads nothing,
-    UnsupportedError where it is not installed."""
+    """What another library makes of it: a vtkPolyData, a thing of trimesh, a meshio.Mesh. Raises FormatError where it reads
+    nothing, UnsupportedError where it is not installed."""
     ending = os.path.splitext(path)[1].lower()
-    if ending in _VTK:
+    if ending in _VTK and (ending not in _MESHIO or importlib.util.find_spec("vtkmodules") or not _by_meshio(ending)):
         return _vtk(path, *_VTK[ending])
+    if _by_meshio(ending):  # trimesh names what it would have meshio read
+        return _meshio(path)
     import trimesh
     try:
         return trimesh.load(path)
@@ -40,12 +60,26 @@ def read(path):
         raise FormatError(f"{path}: trimesh: {e}") from e
 
 
+def _meshio(path):
+    import meshio
+    said = io.StringIO()
+    try:
+        # It prints what is wrong, and ends the interpreter.
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            return meshio.read(path)
+    except ImportError as e:
+        raise UnsupportedError(f"{path}: meshio wants {e.name or e} for it, which is not installed") from e
+    except (Exception, SystemExit) as e:  # of any kind, by reader
+        why = str(e) if not isinstance(e, SystemExit) else " ".join(said.getvalue().split())
+        raise FormatError(f"{path}: meshio: {why}") from e
+
+
 def _vtk(path, module, reader):
     try:
         import importlib
         made = getattr(importlib.import_module(f"vtkmodules.{module}"), reader)()
         from vtkmodules.vtkCommonCore import vtkStringOutputWindow, vtkOutputWindow
-        from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
+        from vtkmodules.vtkFiltersGeometry import vtkCompositeDataGeometryFilter, vtkGeometryFilter
     except ImportError as e:
         raise UnsupportedError(f"{path}: the vtk wheel reads it, which is not installed (pip install rastrum[vtk])") from e
     # What VTK says goes to the error, not to stderr.
@@ -53,7 +87,12 @@ def _vtk(path, module, reader):
     vtkOutputWindow.SetInstance(said)
     try:
         made.SetFileName(path)
-        surface = vtkGeometryFilter()
+        blocks = hasattr(made, "GetNumberOfTimeSteps") and hasattr(made, "SetAllArrayStatus")
+        if blocks:  # Exodus: several blocks, of which all numbers are read
+            made.UpdateInformation()
+            for kind in (made.NODAL, made.ELEM_BLOCK):
+                made.SetAllArrayStatus(kind, 1)
+        surface = vtkCompositeDataGeometryFilter() if blocks else vtkGeometryFilter()
         surface.SetInputConnection(made.GetOutputPort())
         surface.Update()
     finally:

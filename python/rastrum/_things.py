@@ -5,7 +5,7 @@ import os
 import numpy as np
 
 from . import _rastrum as _r
-from . import _readers
+from . import _readers, _surface
 from ._arrays import color as _color
 from ._arrays import floats, integers, linear, matrix, scalars as _scalars
 from ._errors import ArgumentError, ArgumentTypeError, NotFoundError, raises_errors
@@ -317,11 +317,12 @@ class Scene:
     def _read(path, copy, scalars, cmap, clim):
         """The things of a file that another library reads. Its meshes lie in memory that nobody changes."""
         read = _readers.read(path)
-        if not hasattr(read, "GetPolys"):
+        simulation = hasattr(read, "GetPolys") or hasattr(read, "cell_data")
+        if not simulation:
             return _of_others(read, copy)
         if scalars is not None and not isinstance(scalars, str):
             raise ArgumentTypeError(f"scalars: of files they have a name, {scalars!r} is none")
-        return _vtk(read, copy, scalars, cmap, clim)
+        return (_vtk if hasattr(read, "GetPolys") else _surface.things_of)(read, copy, scalars, cmap, clim)
 
     def _show(self, scalars, cmap, clim, mappings):
         if not isinstance(scalars, str):
@@ -399,6 +400,8 @@ def _of_others(what, copy):
         return _trimesh_scene(what, copy)
     if names & {"pyvista.PolyData", "vtkmodules.vtkPolyData", "pyvista.DataSet", "vtkmodules.vtkDataSet"}:
         return _vtk(what, copy)
+    if "meshio.Mesh" in names:
+        return _surface.things_of(what, copy)
     if "open3d.TriangleMesh" in names and hasattr(what, "vertex_normals"):
         return [Mesh(np.asarray(what.vertices), np.asarray(what.triangles),
                      normals=_some(np.asarray(what.vertex_normals)), colors=_some(np.asarray(what.vertex_colors)),

@@ -1,5 +1,6 @@
 """A scene in a notebook that turns with the mouse: the kernel draws, the browser shows (_view.js)."""
 
+import inspect
 import math
 import pathlib
 import time
@@ -214,9 +215,11 @@ class View:
 
     @raises_errors
     def __init__(self, what, camera=None, *, size=(800, 600), target_ms=33.0, threads=None, **frame):
-        for name in ("outputs", "out", "progress"):
-            if name in frame:
+        for name in frame:
+            if name in ("outputs", "out", "progress"):
                 raise ArgumentTypeError(f"{name}: View shows colours")
+            if name not in inspect.signature(Renderer.render).parameters:
+                raise ArgumentTypeError(f"{name}: render has no such option")
         if not 1 <= float(target_ms) <= 10000:
             raise ArgumentError(f"target_ms: {target_ms!r} must lie in 1 to 10000")
         self._session = _Session(as_scene(what), camera, _size(size), float(target_ms), Renderer(threads=threads), frame)

@@ -129,10 +129,14 @@ def test_arrays_are_viewed_not_copied(sheet):
     assert (rr.render(mesh, camera, size=SIZE, outputs="id").id >= 0).any()
 
 
+sanitized = pytest.mark.skipif("asan" in os.environ.get("LD_PRELOAD", ""), reason="a sanitizer keeps what is freed")
+
+
 def peak_mb():
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 
+@sanitized
 @pytest.mark.parametrize("floats", [np.float32, np.float64])
 @pytest.mark.parametrize("integers", [np.int32, np.uint32, np.int64, np.uint64])
 def test_large_meshes_take_no_second_place(floats, integers):
@@ -153,6 +157,7 @@ def test_large_meshes_take_no_second_place(floats, integers):
     assert peak_mb() - before < 4 + 1.5
 
 
+@sanitized
 def test_frames_leave_nothing_behind(sheet):
     renderer = rr.Renderer(threads=1)
     for _ in range(300):
@@ -204,6 +209,12 @@ def _in_child(sheet, queue):
     queue.put(rr.digest(rr.render(sheet, size=SIZE).color))
 
 
+def _draw_for_ever(sheet, drawn):
+    while True:
+        rr.render(sheet, size=SIZE)
+        drawn.value += 1
+
+
 def test_forked_workers_draw(sheet):
     expected = rr.digest(rr.render(sheet, size=SIZE).color)  # the parent has threads by now
     context = multiprocessing.get_context("fork")
@@ -215,11 +226,15 @@ def test_forked_workers_draw(sheet):
     for c in children:
         c.join(10)
         assert c.exitcode == 0
-    # One that is killed takes nothing with it.
-    child = context.Process(target=time.sleep, args=(60,))
+    # One that is killed while it draws takes nothing with it.
+    drawn = context.Value("i", 0)
+    child = context.Process(target=_draw_for_ever, args=(sheet, drawn))
     child.start()
+    while drawn.value < 5:
+        time.sleep(0.01)
     child.kill()
     child.join(10)
+    assert child.exitcode == -signal.SIGKILL
     assert rr.digest(rr.render(sheet, size=SIZE).color) == expected
 
 

@@ -213,6 +213,15 @@ def test_two_thousand_bad_calls():
     assert (ids(rr.Spheres(MIDDLE)) >= 0).any()
 
 
+def test_too_few_radii_are_refused_before_anything_looks_at_them():
+    five = np.arange(15.0).reshape(5, 3)
+    for thing in (rr.Spheres(five, [1, 2, 3]), rr.Discs(five, five, [1, 2, 3]), rr.Tubes(five, radius=[1, 2, 3]),
+                  rr.Cylinders(five, [[0, 1], [3, 4]], [1, 2, 3])):
+        for look in (lambda: rr.Scene(thing).bounds, lambda: rr.render(thing, rr.Camera.fit(thing)), lambda: rr.render(thing, CAMERA)):
+            with pytest.raises(rr.ArgumentError, match="radii"):
+                look()
+
+
 def test_numbers_that_are_not_finite_are_dropped_and_counted():
     v = np.random.default_rng(6).random((9, 3))
     v[4, 1] = np.nan

@@ -2,6 +2,7 @@
 
 import io
 import math
+import os
 import pathlib
 import shutil
 import subprocess
@@ -140,7 +141,7 @@ def test_the_widget(sheet):
     assert len(sent) == 3 and np.array_equal(eye(view.camera), (0, 0, 9))
     data, _ = view._repr_mimebundle_()
     assert np.array_equal(decoded(data["image/png"]), view.picture().color)
-    for wrong in ({"outputs": "id"}, {"target_ms": 0}, {"size": (0, 1)}, {"shader": 3}):
+    for wrong in ({"outputs": "id"}, {"target_ms": 0}, {"size": (0, 1)}, {"shader": 3}, {"no_such": 1}):
         with pytest.raises(rr.Error):
             rr.View(sheet, **wrong).picture()
 
@@ -151,5 +152,41 @@ def test_the_browsers_half():
         pytest.skip("no node here")
     here = pathlib.Path(__file__).resolve().parent
     done = subprocess.run([node, here / "view_test.mjs", pathlib.Path(_view.__file__).resolve().with_name("_view.js")],
-                          capture_output=True, text=True)
+                          capture_output=True, text=True,
+                          env={k: v for k, v in os.environ.items() if k != "LD_PRELOAD"})  # a sanitizer's, of the module
     assert done.returncode == 0, done.stderr
+
+
+def test_in_a_kernel(tmp_path):
+    """Jupyter's own messages: the widget is shown, what the mouse did goes in, a picture comes back."""
+    pytest.importorskip("anywidget")
+    pytest.importorskip("ipykernel")
+    jupyter = pytest.importorskip("jupyter_client")
+    manager, client = jupyter.manager.start_new_kernel(kernel_name="python3", cwd=str(tmp_path))
+    try:
+        def messages(until):
+            """What the kernel says, up to the first of which `until` holds."""
+            while True:
+                message = client.get_iopub_msg(timeout=60)
+                yield message
+                if until(message):
+                    return
+        asked = client.execute("import numpy as np, rastrum as rr\n"
+                               "rr.View((np.eye(3), np.array([[0, 1, 2]])), size=(64, 48), background='white')")
+        said = list(messages(lambda m: m["msg_type"] == "status" and m["content"]["execution_state"] == "idle" and
+                             m["parent_header"].get("msg_id") == asked))
+        assert not [m["content"] for m in said if m["msg_type"] == "error"]
+        (shown,) = [m["content"]["data"] for m in said if m["msg_type"] == "execute_result"]
+        model = shown["application/vnd.jupyter.widget-view+json"]["model_id"]
+        assert shown["image/png"]
+        (opened,) = [m["content"] for m in said if m["msg_type"] == "comm_open" and m["content"]["comm_id"] == model]
+        assert opened["data"]["state"]["width"] == 64 and "export default" in opened["data"]["state"]["_esm"]
+        client.shell_channel.send(client.session.msg("comm_msg", {
+            "comm_id": model, "data": {"method": "custom", "content": {"turn": [0.1, 0.05]}}}))
+        *_, answer = messages(lambda m: m["msg_type"] == "comm_msg" and m["content"]["data"].get("method") == "custom")
+        assert set(answer["content"]["data"]["content"]) == {"whole", "ms"}
+        picture = decoded(bytes(answer["buffers"][0]))
+        assert picture.shape == (24, 32, 4) and len(np.unique(picture[..., :3])) > 5
+    finally:
+        client.stop_channels()
+        manager.shutdown_kernel(now=True)

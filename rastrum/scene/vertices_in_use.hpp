@@ -18,11 +18,16 @@
 namespace rastrum {
 
 /// Calls f(centre, radius) for balls whose convex hull holds what a geometry that is no mesh draws.
-/// Indices and offsets must be in range.
+/// Indices and offsets must be in range. Throws Error{invalid_argument} for too few radii.
 template <class F>
 void for_each_ball(const GeometryView& geometry, F&& f) {
   const auto radius = [](const auto& g, std::size_t i) {
-    return g.radii.empty() ? g.radius : g.radii[i];
+    if (g.radii.empty()) return g.radius;
+    if (i >= g.radii.size())
+      throw Error(Errc::invalid_argument, "radii: there are " + std::to_string(g.radii.size()) +
+                                              ", and number " + std::to_string(i) +
+                                              " is asked for");
+    return g.radii[i];
   };
   const auto all = [&](const auto& g, const ArrayView<Vec3>& centres, std::size_t n) {
     for (std::size_t i = 0; i < n; ++i) f(centres.wide(i), radius(g, i));

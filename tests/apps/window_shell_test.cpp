@@ -21,6 +21,8 @@ namespace {
 
 /// The panel's column; what is right of it is the picture.
 constexpr int kPanel_px = 345;
+/// Of a part's head in the panel, and from one row to the next.
+constexpr int kHead_px = 19, kRow_px = 23;
 
 bool have(const char* program) {
   return std::system((std::string("command -v ") + program + " >/dev/null 2>&1").c_str()) == 0;
@@ -136,6 +138,35 @@ class WindowTest : public Program {
   void expect_rendered(const std::string& shot, std::vector<std::string> options) {
     options.insert(options.end(), {"--quiet", "--background", "#20242c"});
     expect_drawn("render", shot, options);
+  }
+  /// Whether the command line beside a screenshot draws it again.
+  void expect_line_draws(const std::string& shot) {
+    const Image<Rgba8> picture = png(shot + ".png");
+    std::filesystem::rename(path(shot + ".png"), path("shown.png"));
+    const std::string line = read(shot + ".sh");
+    const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
+                                line.substr(std::string("rastrum").size(), line.size() - 8) +
+                                " --quiet";
+    EXPECT_EQ(std::system(command.c_str()), 0) << command;
+    EXPECT_TRUE(same_pixels(picture, png(shot + ".png"))) << line;
+    std::filesystem::rename(path("shown.png"), path(shot + ".png"));
+  }
+  /// Where the heads of the panel's parts begin, px from above.
+  [[nodiscard]] std::vector<int> heads() const {
+    constexpr int kRight_px = 310, kTitle_px = 30, kHeight_px = 780, kBlue = 45;
+    const Image<Rgba8> column = server_->pixels(window_, kRight_px, 0, 1, kHeight_px);
+    std::vector<int> found;
+    for (int y = kTitle_px, begin = -1; y < column.height(); ++y) {
+      const Rgba8 p = column(0, y);
+      if (p.b > p.r + kBlue) {
+        if (begin < 0) begin = y;
+      } else if (begin >= 0) {
+        // Bars of stages are lower.
+        if (y - begin >= kHead_px - 2) found.push_back(begin);
+        begin = -1;
+      }
+    }
+    return found;
   }
   [[nodiscard]] nlohmann::ordered_json key_of(const std::string& shot) const {
     return json(shot + ".json")["keys"][0];
@@ -359,6 +390,65 @@ TEST_F(WindowTest, ADragOnThePanelIsThePanels) {
   EXPECT_EQ(key_of(screenshot()), home);
   at_window("100 60", "click 4");
   EXPECT_EQ(key_of(screenshot()), home);
+  tool("key ctrl+q");
+  expect_closed();
+}
+
+// A part of the panel is found by its head, which is as wide as the panel.
+TEST_F(WindowTest, ThePanelChangesThePicture) {
+  open({"builtin:teapot", "--size", "900x780"});
+  std::string shot = screenshot();
+  const auto changes = [&](const std::string& what, const std::string& place,
+                           const std::string& action) {
+    const Image<Rgba8> before = png(shot + ".png");
+    EXPECT_TRUE(comes_true([&] { return shows(before); })) << what;
+    at_window(place, action);
+    EXPECT_TRUE(comes_true([&] { return !shows(before); })) << what;
+    // A screenshot is of the picture that is wanted then, so it waits for the panel's frames.
+    shot = screenshot();
+    expect_line_draws(shot);
+    EXPECT_NE(read(shot + ".sh").find(what), std::string::npos) << read(shot + ".sh");
+  };
+  // Opens or closes a part and waits for its place on the screen.
+  const auto turn = [&](std::size_t part) {
+    std::vector<int> before;
+    ASSERT_TRUE(comes_true([&] { return (before = heads()).size() == 6; }));
+    at_window("200 " + std::to_string(before[part] + kHead_px / 2), "click 1");
+    EXPECT_TRUE(comes_true([&] {
+      const std::vector<int> now = heads();
+      return now.size() == before.size() && now[part + 1] != before[part + 1];
+    })) << part;
+  };
+  const auto row = [&](std::size_t part, int i) {
+    return heads()[part] + kRow_px * (i + 1) + kHead_px / 2;
+  };
+  constexpr std::size_t kNumbers = 0, kLines = 2, kSections = 3;
+
+  turn(kLines);
+  changes("--silhouettes", "26 " + std::to_string(row(kLines, 0)), "click 1");
+  turn(kLines);
+  turn(kSections);
+  changes("--clip-plane -1,0,0,", "26 " + std::to_string(row(kSections, 0)), "click 1");
+  const std::string half = read(shot + ".sh");
+  // The slider, beside its switch.
+  changes("--clip-plane -1,0,0,", "150 " + std::to_string(row(kSections, 0)), "click 1");
+  EXPECT_NE(read(shot + ".sh"), half);
+  turn(kSections);
+  turn(kNumbers);
+  // The list opens below: none, x, y, z, distance.
+  const int list = row(kNumbers, 0);
+  at_window("60 " + std::to_string(list), "click 1");
+  changes("--scalars y --cmap viridis",
+          "60 " + std::to_string(list + kHead_px / 2 + 8 + 17 * 2 + 6), "click 1");
+
+  tool("key ctrl+c");
+  std::string copied;
+  EXPECT_TRUE(comes_true([&] { return !(copied = server_->clipboard()).empty(); }));
+  std::string line = read(shot + ".sh");
+  line.replace(line.find(shot + ".png"), shot.size() + 4, "picture.png");
+  EXPECT_EQ(copied, line);
+  tool("key shift+ctrl+c");
+  EXPECT_TRUE(comes_true([&] { return server_->clipboard().starts_with("import rastrum"); }));
   tool("key ctrl+q");
   expect_closed();
 }

@@ -222,7 +222,7 @@ class TerrainInWindow : public Program {
     subject = std::make_unique<TerrainSubject>(arguments, std::vector{map, function});
   }
   /// What the window shows now.
-  [[nodiscard]] Image<Rgba8> shown() const { return subject->draw(96, 64)().image; }
+  [[nodiscard]] Image<Rgba8> shown() const { return subject->draw(96, 64, false)().image; }
   /// What `rastrum terrain` draws with the camera of the window.
   [[nodiscard]] Image<Rgba8> rendered(std::vector<std::string> options) const {
     subject->write_camera(path("camera.json"));

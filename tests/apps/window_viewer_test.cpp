@@ -1,5 +1,4 @@
-// The session of the window without a window: resolution while moving, screenshots, files, errors,
-// and scripts that replay the same way.
+// The session of the window without a window: resolution while moving, screenshots, files, errors.
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -7,10 +6,7 @@
 #include <rastrum/error.hpp>
 #include <rastrum/stop.hpp>
 
-#include "arguments.hpp"
 #include "program.hpp"
-#include "window/mesh_subject.hpp"
-#include "window/script.hpp"
 #include "window/viewer.hpp"
 
 namespace rastrum::test::window_viewer_test {
@@ -30,8 +26,9 @@ class FakeSubject final : public Subject {
   void resize(int, int) override {}
   [[nodiscard]] bool moving() const override { return is_moving; }
   [[nodiscard]] std::uint64_t version() const override { return version_; }
-  [[nodiscard]] std::function<Picture()> draw(int width, int height) override {
-    return [this, width, height]() -> Picture {
+  [[nodiscard]] bool has_glances() const override { return glances; }
+  [[nodiscard]] std::function<Picture()> draw(int width, int height, bool glance) override {
+    return [this, width, height, glance]() -> Picture {
       if (refuse) throw Error(Errc::invalid_argument, "these options do not fit");
       Picture d{Image<Rgba8>(width, height), true, {}};
       for (int row = 0; row < height; ++row) {
@@ -39,8 +36,9 @@ class FakeSubject final : public Subject {
         parallel::throw_if_stopped();
         if (width == hold_width) ++*rows;
       }
-      d.figures.frame_ms = ms_a_pixel * width * height;
+      d.figures.frame_ms = ms_a_pixel * width * height * (glances && !glance ? 100 : 1);
       ++pictures;
+      seen_glances += glance;
       return d;
     };
   }
@@ -72,7 +70,8 @@ class FakeSubject final : public Subject {
 
   bool is_moving = false, refuse = false, picks = true;
   double ms_a_pixel = 1;
-  int pictures = 0;
+  bool glances = false;  ///< of a hundredth of the time
+  int pictures = 0, seen_glances = 0;
 
   /// Pictures of this width wait in the middle, until they are let go or stopped.
   static constexpr int kHoldRow = 2;
@@ -160,6 +159,35 @@ TEST_F(ViewerTest, FewerPixelsWhileMovingAllWhenStill) {
   const int pictures = subject->pictures;
   run_for(0.2);
   EXPECT_EQ(subject->pictures, pictures) << "nothing has changed, nothing is drawn";
+}
+
+// A whole picture takes a second, a glance 10 ms: no whole one is drawn while the view moves.
+TEST_F(ViewerTest, AMovingViewIsDrawnInGlances) {
+  subject->glances = true;
+  subject->ms_a_pixel = 10.0 / (64 * 32);
+  run_for(0.5);
+  EXPECT_TRUE(viewer->is_full());
+  const auto whole = [&] { return subject->pictures - subject->seen_glances; };
+  EXPECT_EQ(whole(), 1);
+  viewer->handle(press("w"));
+  run_for(0.5);
+  EXPECT_EQ(viewer->picture()->image.width(), 64) << "all pixels can be had";
+  EXPECT_FALSE(viewer->is_full());
+  EXPECT_EQ(whole(), 1);
+  viewer->handle(press("p"));
+  run_for(0.1);
+  EXPECT_TRUE(files().empty()) << "no picture of a glance";
+  viewer->handle(press("w", Event::Kind::key_up));
+  run_for(0.5);
+  EXPECT_EQ(whole(), 2);
+  EXPECT_TRUE(viewer->is_full());
+  EXPECT_EQ(files().size(), 2U);
+  EXPECT_FALSE(viewer->busy());
+  viewer->set_adaptive(false);
+  const int glances = subject->seen_glances;
+  viewer->handle(press("w"));
+  run_for(0.2);
+  EXPECT_EQ(subject->seen_glances, glances);
 }
 
 TEST_F(ViewerTest, WithoutAdaptionEveryPictureIsFull) {
@@ -329,226 +357,6 @@ TEST_F(ViewerTest, EndsWhileAPictureIsDrawn) {
   viewer->advance(0);
   viewer->update();
   viewer.reset();  // waits for the thread, and is silent about the picture
-}
-
-class MeshViewerTest : public Program {
- protected:
-  /// A replay of `script` on `input`; the viewer's last error.
-  std::string replay(const std::string& input, const std::string& script) {
-    write("script.json", script);
-    cli::SceneArguments a;
-    a.inputs = {input};
-    a.render.background = cli::parse_color("", "#1a334d");
-    auto subject = std::make_unique<MeshSubject>(a, load_scene(a));
-    std::vector<KeyHelp> keys = subject->keys();
-    ViewerOptions options;
-    options.width = 120;
-    options.height = 90;
-    Viewer viewer(std::move(subject), options);
-    Replay replay(read_script(path("script.json"), keys), viewer);
-    while (!replay.finished()) replay.step();
-    title = viewer.title();
-    return viewer.error();
-  }
-  [[nodiscard]] std::string shot(const std::string& name) const {
-    return R"("screenshot": ")" + path(name).string() + "\"";
-  }
-  /// The picture that `rastrum render` makes of the camera file of a screenshot.
-  Image<Rgba8> rendered(const std::string& input, const std::string& name, const std::string& size,
-                        const std::vector<std::string>& more = {}) {
-    std::vector<std::string> args{"render",       "--look",       "plain",  input,
-                                  "--path",       name + ".json", "--size", size,
-                                  "--background", "#1a334d",      "-o",     "r.png"};
-    args.insert(args.end(), more.begin(), more.end());
-    must(args);
-    return png("r.png");
-  }
-  std::string title;
-};
-
-TEST_F(MeshViewerTest, ScreenshotsAreWhatRenderDraws) {
-  EXPECT_EQ(replay("builtin:teapot", R"({"fps": 50, "events": [
-      {)" + shot("a.png") + R"(},
-      {"time": 0.1, "key_down": "right"}, {"time": 0.1, "key_down": "w"},
-      {"time": 0.5, "key_up": "right"}, {"time": 0.5, "key_up": "w"},
-      {"time": 0.6, )" + shot("b.png") + R"(},
-      {"time": 0.7, "options": "--shader normal --opacity 0.5 --samples 4", )" +
-                                         shot("c.png") + R"(},
-      {"time": 0.8, "size": [50, 70], )" +
-                                         shot("d.png") + R"(},
-      {"time": 0.9, "key": "h", )" + shot("e.png") +
-                                         R"(}]})"),
-            "");
-  const std::string t = "builtin:teapot";
-  EXPECT_TRUE(same_pixels(png("a.png"), rendered(t, "a", "120x90")));
-  EXPECT_TRUE(same_pixels(png("b.png"), rendered(t, "b", "120x90")));
-  EXPECT_FALSE(same_pixels(png("a.png"), png("b.png")));
-  const std::vector<std::string> glass{"--shader", "normal", "--opacity", "0.5", "--samples", "4"};
-  EXPECT_TRUE(same_pixels(png("c.png"), rendered(t, "c", "120x90", glass)));
-  EXPECT_TRUE(same_pixels(png("d.png"), rendered(t, "d", "50x70", glass)));
-  auto heat = glass;
-  heat.insert(heat.end(), {"--heatmap", "heat.png"});
-  static_cast<void>(rendered(t, "e", "50x70", heat));
-  EXPECT_TRUE(same_pixels(png("e.png"), png("heat.png")));
-}
-
-// Beside a screenshot lies what draws it again, whatever the window showed.
-TEST_F(MeshViewerTest, ACommandLineDrawsTheSamePicture) {
-  write(
-      "heights.ply",
-      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
-      "z\nproperty float heat\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-      "0 0 0 1\n1 0 0 2\n1 1 0.5 3\n0 1 0 4\n4 0 1 2 3\n");
-  const std::string file = path("heights.ply").string();
-  const std::vector<std::string> options{
-      "--shader phong --opacity 0.5 --samples 4",
-      "--scalars heat --cmap plasma --range 1.5,3 --bar Heat --axes",
-      "--lights studio --occlusion --silhouettes",
-      "--lights headlight --shadows --edges --edge-angle 20 --background white",
-      "--scalars z --cmap '#ff0000,#0000ff' --steps 5 --isolines 4 --samples 8",
-      "--shader material --light point:1,1,3:intensity=4 --tone aces --exposure 1"};
-  std::string events =
-      R"({"fps": 50, "events": [{"time": 0.1, "key_down": "right"}, {"time": 0.4, "key_up": "right"})";
-  for (std::size_t i = 0; i < options.size(); ++i)
-    events +=
-        R"(, {"options": ")" + options[i] + "\", " + shot("p" + std::to_string(i) + ".png") + "}";
-  EXPECT_EQ(replay(file, events + "]}"), "");
-  for (std::size_t i = 0; i < options.size(); ++i) {
-    const std::string stem = "p" + std::to_string(i);
-    const Image<Rgba8> shown = png(stem + ".png");
-    std::filesystem::remove(path(stem + ".png"));
-    std::string line = read(stem + ".sh");
-    ASSERT_TRUE(line.starts_with("rastrum render ")) << line;
-    const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
-                                line.substr(std::string("rastrum").size(), line.size() - 8) +
-                                " --quiet";
-    ASSERT_EQ(std::system(command.c_str()), 0) << command;
-    EXPECT_TRUE(same_pixels(shown, png(stem + ".png"))) << line;
-  }
-}
-
-TEST_F(MeshViewerTest, SectionsAreClipPlanes) {
-  cli::SceneArguments a;
-  a.inputs = {"builtin:sphere"};
-  MeshSubject subject(a, load_scene(a));
-  subject.resize(60, 40);
-  MeshSubject::Settings s = subject.settings();
-  s.sections[0] = {true, 0.25, true};
-  s.sections[2] = {true, -0.5, false};
-  s.lights = "studio";
-  subject.set(s);
-  const auto drawn = subject.draw(60, 40)();
-  std::string line;
-  for (const auto& [ending, text] : subject.same_picture(60, 40, "cut.png"))
-    if (ending == ".sh") line = text;
-  EXPECT_NE(line.find("--clip-plane -1,0,0,0.25"), std::string::npos) << line;
-  EXPECT_NE(line.find("--clip-plane 0,0,1,0.5"), std::string::npos) << line;
-  const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
-                              line.substr(7, line.size() - 8) + " --quiet";
-  ASSERT_EQ(std::system(command.c_str()), 0) << command;
-  EXPECT_TRUE(same_pixels(drawn.image, png("cut.png")));
-}
-
-TEST_F(MeshViewerTest, AClickSaysTheNumberThere) {
-  EXPECT_EQ(replay("builtin:sphere", R"({"events": [{"options": "--scalars z"},
-      {"time": 0.1, "button_down": "left", "at": [60, 45]}, {"time": 0.2, "button_up": "left"}]})"),
-            "");
-  EXPECT_NE(title.find(", z = 0.99"), std::string::npos) << title;
-  EXPECT_NE(replay("builtin:sphere", R"({"events": [{"options": "--scalars heat"}]})").find("heat"),
-            std::string::npos);
-}
-
-TEST_F(MeshViewerTest, AClickOnAMeshNamesItsPrimitive) {
-  const auto click = [&](const std::string& at) {
-    EXPECT_EQ(replay("builtin:sphere", R"({"events": [{"button_down": "left", "at": )" + at +
-                                           R"(}, {"time": 0.1, "button_up": "left"}]})"),
-              "");
-  };
-  click("[60, 45]");
-  EXPECT_TRUE(title.starts_with("builtin:sphere: instance 0, primitive ")) << title;
-  EXPECT_NE(title.find(" at ("), std::string::npos) << title;
-  click("[1, 1]");
-  EXPECT_EQ(title, "builtin:sphere: nothing is there");
-}
-
-TEST_F(MeshViewerTest, TwoReplaysAreTheSame) {
-  const auto pictures = [&](const char* a, const char* b) {
-    EXPECT_EQ(replay("builtin:gyroid", R"({"keys": [{"eye": [3, 2, 3], "target": [0, 0, 0]},
-                                                    {"time": 1, "eye": [-3, 1, 3]}],
-        "fps": 10, "events": [{"time": 0.3, )" +
-                                           shot(a) + R"(}, {"time": 1, )" + shot(b) + "}]}"),
-              "");
-  };
-  pictures("a1.png", "b1.png");
-  pictures("a2.png", "b2.png");
-  EXPECT_TRUE(read("a1.png") == read("a2.png"));
-  EXPECT_TRUE(read("b1.png") == read("b2.png"));
-  EXPECT_FALSE(read("a1.png") == read("b1.png"));
-  // And those of the path: picture 3 of ten a second is the one at 0.3 s.
-  must({"render", "--look", "plain", "builtin:gyroid", "--path", "script.json", "--fps", "10",
-        "--size", "120x90", "--background", "#1a334d", "-o", "f%d.png"});
-  EXPECT_TRUE(same_pixels(png("a1.png"), png("f3.png")));
-  EXPECT_TRUE(same_pixels(png("b1.png"), png("f10.png")));
-}
-
-TEST_F(MeshViewerTest, OpensFilesAndSurvivesBadOnes) {
-  must({"make", "torus_knot", "-o", "knot.ply"});
-  write("bad.ply", "ply\nnonsense");
-  EXPECT_NE(replay("builtin:sphere", R"({"events": [{"open": ")" + path("bad.ply").string() +
-                                         R"("}, {"time": 0.1, )" + shot("a.png") + "}]}")
-                .find("bad.ply"),
-            std::string::npos);
-  EXPECT_TRUE(same_pixels(png("a.png"), rendered("builtin:sphere", "a", "120x90")));
-  EXPECT_EQ(title, "builtin:sphere");
-  EXPECT_EQ(replay("builtin:sphere", R"({"events": [{"open": ")" + path("knot.ply").string() +
-                                         R"("}, {"time": 0.1, )" + shot("b.png") + "}]}"),
-            "");
-  EXPECT_TRUE(same_pixels(png("b.png"), rendered("knot.ply", "b", "120x90")));
-  EXPECT_EQ(title, path("knot.ply").string());
-}
-
-TEST_F(MeshViewerTest, RefusedOptionsLeaveThePicture) {
-  EXPECT_NE(replay("builtin:sphere", R"({"events": [{"options": "--shader nonsense"},
-      {"time": 0.1, )" + shot("a.png") + "}]}")
-                .find("nonsense"),
-            std::string::npos);
-  EXPECT_TRUE(same_pixels(png("a.png"), rendered("builtin:sphere", "a", "120x90")));
-}
-
-TEST_F(MeshViewerTest, RecordedKeysAreAPath) {
-  EXPECT_EQ(replay("builtin:teapot", R"({"events": [{"key": "right"}]})"), "");
-  cli::SceneArguments a;
-  a.inputs = {"builtin:teapot"};
-  MeshSubject subject(a, load_scene(a));
-  subject.record(path("p.json"));
-  subject.handle(press("d"));
-  subject.advance(1);
-  subject.record(path("p.json"));
-  const auto p = cli::read_camera_path(path("p.json"), Camera{});
-  EXPECT_EQ(p.last_s(), 2);
-  EXPECT_EQ(p.at(2).eye, subject.control().camera().eye);
-  EXPECT_NE(p.at(0).eye, p.at(2).eye);
-}
-
-TEST_F(MeshViewerTest, ScriptsWithMistakesNameThePlace) {
-  const auto expect = [&](const std::string& script, const std::string& words) {
-    try {
-      replay("builtin:sphere", script);
-      ADD_FAILURE() << "accepted: " << script;
-    } catch (const Error& e) {
-      EXPECT_NE(std::string(e.what()).find("script.json"), std::string::npos) << e.what();
-      EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
-    }
-  };
-  expect("{}", "needs keys");
-  expect(R"({"events": [{"key": "hyper"}]})", "events[0]: key: there is no key 'hyper'");
-  expect(R"({"events": [{"time": 1}]})", "events[0]: the step does nothing");
-  expect(R"({"events": [{"time": 1, "key": "w"}, {"time": 0, "key": "w"}]})", "events[1]: time");
-  expect(R"({"events": [{"button_down": "fourth"}]})", "expected left, middle or right");
-  expect(R"({"events": [{"size": [0, 5]}]})", "events[0]: size");
-  expect(R"({"events": [{"presss": "w"}]})", "unknown name 'presss'");
-  expect(R"({"fps": 0, "events": [{"key": "w"}]})", "fps");
-  expect(R"({"keys": [{"fov": 999}]})", "keys[0]: fov");
 }
 
 }  // namespace

@@ -207,6 +207,28 @@ void XServer::close(XWindow window) const {
   XSync(display_, False);
 }
 
+std::string XServer::clipboard() const {
+  const Atom text = XInternAtom(display_, "UTF8_STRING", False);
+  const Window mine =
+      XCreateSimpleWindow(display_, DefaultRootWindow(display_), 0, 0, 1, 1, 0, 0, 0);
+  XConvertSelection(display_, XInternAtom(display_, "CLIPBOARD", False), text,
+                    XInternAtom(display_, "RASTRUM_TEXT", False), mine, CurrentTime);
+  XEvent answer{};
+  std::string found;
+  // The server answers where nobody has the clipboard, and who has it where somebody has.
+  if (wait_until([&] {
+        return XCheckTypedWindowEvent(display_, mine, SelectionNotify, &answer) == True;
+      }) &&
+      answer.xselection.property != 0) {
+    const Property property(display_, mine, "RASTRUM_TEXT", text);
+    if (property.data != nullptr)
+      found.assign(reinterpret_cast<const char*>(property.data), property.count);
+  }
+  XDestroyWindow(display_, mine);
+  XSync(display_, False);
+  return found;
+}
+
 Image<Rgba8> XServer::pixels(XWindow window, int x0, int y0, int width, int height) const {
   XImage* const x_image = XGetImage(display_, window, x0, y0, static_cast<unsigned>(width),
                                     static_cast<unsigned>(height), AllPlanes, ZPixmap);

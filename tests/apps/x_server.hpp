@@ -69,6 +69,8 @@ class XServer {
   void resize(XWindow window, int width, int height) const;
   /// Asks the window to close, as a window manager's button does.
   void close(XWindow window) const;
+  /// The text that somebody has copied; empty: nobody has.
+  [[nodiscard]] std::string clipboard() const;
   /// What a window shows from (x, y) on, as the server has it; empty where it has not.
   [[nodiscard]] Image<Rgba8> pixels(XWindow window, int x, int y, int width, int height) const;
 

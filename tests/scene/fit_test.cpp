@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -153,6 +154,13 @@ TEST(FitPicture, RefusesWhatNoPictureHas) {
   Scene broken = scene_of(shapes::boxes(1));
   broken.meshes[0].indices[0] = 99;
   EXPECT_THROW(static_cast<void>(fit_picture(SceneBinding(broken).view(), {}, 5, 5)), Error);
+  // Three balls, and radii for two.
+  const std::vector<Vec3> centers(3);
+  const std::vector<float> radii(2, 1.0F);
+  const InstanceView ball{SpheresView{.centers = centers, .radii = radii}};
+  SceneView balls;
+  balls.instances = {&ball, 1};
+  EXPECT_THROW(static_cast<void>(fit_picture(balls, {}, 5, 5)), Error);
 }
 
 TEST(FitTurntable, OneCameraServesEveryAngle) {

@@ -68,15 +68,15 @@ bool choose_threads(RendererOptions& r) {
   return changed;
 }
 
-/// A map's colours as a strip of the panel's width.
-void draw_strip(const ScalarMapping& mapping) {
+/// A map's colours from left to right.
+void draw_strip(const ColorMap& map, int steps, float width) {
   ScalarMapping shown;
-  shown.map = mapping.map;
-  shown.steps = mapping.steps;
+  shown.map = map;
+  shown.steps = steps;
   const ScalarColors colors(shown, {0, 1});
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float width = ImGui::CalcItemWidth(), height = ImGui::GetTextLineHeight();
+  const float height = ImGui::GetTextLineHeight();
   constexpr int kParts = 96;
   for (int i = 0; i < kParts; ++i) {
     const Vec4 c = colors((i + 0.5) / kParts);
@@ -86,6 +86,29 @@ void draw_strip(const ScalarMapping& mapping) {
                        ImGui::ColorConvertFloat4ToU32({c.x, c.y, c.z, 1}));
   }
   ImGui::Dummy({width, height});
+}
+
+/// A list of maps, each beside its colours.
+bool choose_map(MeshSettings& s) {
+  bool changed = false;
+  if (!ImGui::BeginCombo("colours", s.map.c_str(), ImGuiComboFlags_HeightLargest)) return false;
+  constexpr float kStrip = 110;
+  for (const std::string_view n : color_map_names()) {
+    const std::string name(n);
+    const ColorMap map = color_map(n);
+    const ImVec2 at = ImGui::GetCursorPos();
+    if (ImGui::Selectable(("##" + name).c_str(), name == s.map)) {
+      s.map = name;
+      s.notes.scalars.mapping.map = map;
+      changed = true;
+    }
+    ImGui::SetCursorPos(at);
+    draw_strip(map, 0, kStrip);
+    ImGui::SameLine();
+    ImGui::TextUnformatted(name.c_str());
+  }
+  ImGui::EndCombo();
+  return changed;
 }
 
 bool choose_scalars(const LoadedScene& scene, MeshSettings& s) {
@@ -103,13 +126,8 @@ bool choose_scalars(const LoadedScene& scene, MeshSettings& s) {
     if (changed) o.bar_title.reset();
     return changed;
   }
-  std::vector<std::string> maps;
-  for (const std::string_view n : color_map_names()) maps.emplace_back(n);
-  if (choose_name("colours", maps, s.map)) {
-    o.mapping.map = color_map_or_list(s.map);
-    changed = true;
-  }
-  draw_strip(o.mapping);
+  changed |= choose_map(s);
+  draw_strip(o.mapping.map, o.mapping.steps, ImGui::CalcItemWidth());
   const auto found = std::ranges::find(scene.scalars, o.name, &ScalarSummary::name);
   const ScalarRange all = found == scene.scalars.end() ? ScalarRange{} : found->range;
   ScalarRange range = o.mapping.range.value_or(all);
@@ -128,7 +146,8 @@ bool choose_scalars(const LoadedScene& scene, MeshSettings& s) {
   }
   changed |=
       ImGui::SliderInt("steps", &o.mapping.steps, 0, 20, o.mapping.steps == 0 ? "blended" : "%d");
-  if (range.low > 0) changed |= ImGui::Checkbox("logarithmic", &o.mapping.logarithmic);
+  if (range.low > 0 || o.mapping.logarithmic)
+    changed |= ImGui::Checkbox("logarithmic", &o.mapping.logarithmic);
   bool bar = o.bar();
   if (ImGui::Checkbox("bar", &bar)) {
     if (bar)
@@ -144,7 +163,9 @@ bool choose_lights(const LoadedScene& scene, MeshSettings& s) {
   const std::string said = "as given";
   std::string now = s.lights.empty() ? said : s.lights;
   bool changed = false;
-  if (choose_name("lights", {said, "default", "headlight", "studio"}, now)) {
+  std::vector<std::string> names{said, "default", "headlight", "studio"};
+  if (!s.file_lights.empty()) names.emplace_back("file");
+  if (choose_name("lights", names, now)) {
     s.lights = now == said ? "" : now;
     changed = true;
   }
@@ -153,7 +174,7 @@ bool choose_lights(const LoadedScene& scene, MeshSettings& s) {
   changed |= ImGui::Checkbox("occlusion", &s.notes.occlusion);
   ImGui::SameLine();
   changed |= ImGui::Checkbox("eye-dome", &s.notes.dome);
-  std::vector<std::string> tones{"none", "reinhard", "aces", "neutral"};
+  const std::vector<std::string> tones = tone_names();
   std::string tone = tones[static_cast<std::size_t>(s.render.tone.tone)];
   if (shader_of(s.render.shader, scene.has_materials) != Shader::material) return changed;
   if (choose_name("tone", tones, tone)) {
@@ -203,20 +224,6 @@ bool choose_sections(const Bounds& box, std::array<Section, 3>& sections) {
   return changed;
 }
 
-/// Onto the clipboard.
-void offer_texts(const MeshSubject& subject) {
-  const auto [width, height] = subject.size();
-  constexpr std::pair<const char*, const char*> kButtons[] = {{".sh", "copy command line"},
-                                                              {".py", "copy Python"}};
-  for (const auto& [ending, label] : kButtons) {
-    if (ImGui::Button(label))
-      for (const auto& [of, text] : subject.same_picture(width, height, "picture.png"))
-        if (of == ending) ImGui::SetClipboardText(text.c_str());
-    ImGui::SameLine();
-  }
-  ImGui::NewLine();
-}
-
 }  // namespace
 
 void draw_mesh_controls(MeshSubject& subject) {
@@ -237,7 +244,6 @@ void draw_mesh_controls(MeshSubject& subject) {
   changed |= ImGui::Checkbox("heat map", &s.heat_map);
   ImGui::SameLine();
   if (ImGui::Button("home")) subject.control().go_home();
-  offer_texts(subject);
   if (changed) subject.set(std::move(s));
 }
 

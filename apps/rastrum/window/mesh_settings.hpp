@@ -3,6 +3,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include <rastrum/family.hpp>
 
@@ -28,7 +29,10 @@ struct MeshSettings {
   family::Options render;
   AnnotationOptions notes;      ///< effects, axes, and with `scalars` numbers as colours
   std::string map = "viridis";  ///< of `notes.scalars`, as --cmap has it
-  std::string lights;           ///< default, headlight or studio; empty: as the command line had
+  /// default, headlight, studio or file; empty: as the command line had
+  std::string lights;
+  std::vector<Light> file_lights;  ///< of the inputs
+  bool adds_file_lights = false;   ///< the command line did
   std::array<Section, 3> sections;
   bool heat_map = false;  ///< fragments at each pixel instead of the picture
 

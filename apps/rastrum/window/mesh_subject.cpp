@@ -61,6 +61,12 @@ std::string next(const std::vector<std::string>& names, const std::string& now, 
   return names[(i + (back ? names.size() - 1 : 1)) % names.size()];
 }
 
+/// Throws UsageError where lights of files are wanted that have none.
+void check_file_lights(const SceneArguments& a, const Scene& scene) {
+  std::vector<Light> all = a.render.lights;
+  if (a.lights.of_files) add_file_lights(scene, all);
+}
+
 std::vector<std::string> axis_names(const std::vector<family::AxisInfo>& axis) {
   std::vector<std::string> names{"auto"};
   for (const family::AxisInfo& info : axis) names.push_back(info.name);
@@ -147,6 +153,7 @@ MeshSubject::MeshSubject(SceneArguments arguments, std::shared_ptr<LoadedScene> 
   settings_.notes = arguments.annotations;
   for (const Parser::Given& g : arguments.given)
     if (g.name == "--cmap") settings_.map = g.texts.back();
+  check_file_lights(arguments, scene->scene);
   show(std::move(arguments), std::move(scene));
 }
 
@@ -158,6 +165,8 @@ void MeshSubject::show(SceneArguments arguments, std::shared_ptr<LoadedScene> sc
                                 {arguments.render.width, arguments.render.height});
   if (!v.file_camera && !v.eye && !v.orthographic_height)
     camera = with_room(settings_.notes, camera);
+  settings_.file_lights = scene->scene.lights;
+  settings_.adds_file_lights = arguments.lights.of_files;
   arguments_ = std::move(arguments);
   scene_ = std::move(scene);
   base_version_ = version() + 1;
@@ -251,16 +260,21 @@ std::function<std::string()> MeshSubject::pick(int x, int y, int width, int heig
                        std::to_string(pick->primitive) + " at (" + text("%.6g", p.x) + ", " +
                        text("%.6g", p.y) + ", " + text("%.6g", p.z) + ")";
     if (pick->scalar && !notes.scalars.name.empty())
-      said += ", " + notes.scalars.name + " = " + text("%.6g", *pick->scalar);
+      said += ", " + notes.scalars.name + " = " + text("%.6g", *pick->scalar) +
+              (notes.scalars.bar_unit.empty() ? "" : " " + notes.scalars.bar_unit);
     return said;
   };
 }
 
-std::function<Drawn()> MeshSubject::draw(int width, int height) {
+bool MeshSubject::has_glances() const {
+  return settings_.render.samples != 1 || settings_.render.shadows || settings_.notes.occlusion ||
+         settings_.notes.dome;
+}
+
+std::function<Drawn()> MeshSubject::draw(int width, int height, bool glance) {
   MeshSettings settings = settings_;
   family::Options frame = options_for(width, height);
-  // While something moves, a picture to steer by.
-  if (width < width_ || height < height_) {
+  if (glance) {
     frame.samples = 1;
     frame.shadows = false;
     settings.notes.occlusion = settings.notes.dome = false;
@@ -283,10 +297,15 @@ std::function<Drawn()> MeshSubject::draw(int width, int height) {
                                             .edges = notes.silhouettes},
                                            false, 1, pictures, timeline, silent)
                                  .front();
+    const double begin_ms = timeline.now_ms();
     painter->annotate(settings, options, pictures, view, camera);
-    Drawn drawn{std::move(pictures.color8),
-                options.background.w == 1 || options.environment_behind,
-                {stats.frame_ms, stats.stages, rows(stats)}};
+    Figures figures{stats.frame_ms, stats.stages, rows(stats)};
+    if (notes.any()) {
+      figures.frame_ms += timeline.now_ms() - begin_ms;
+      figures.stages.push_back({"effects", stats.frame_ms, figures.frame_ms});
+    }
+    Drawn drawn{std::move(pictures.color8), options.background.w == 1 || options.environment_behind,
+                std::move(figures)};
     if (settings.heat_map) {
       Heatmap heat = make_heatmap(pictures.overdraw.view());
       drawn.image = std::move(heat.image);
@@ -317,7 +336,17 @@ Worker::Job MeshSubject::open(const std::filesystem::path& file) {
   arguments.view.orthographic_height.reset();
   return [this, arguments]() -> Worker::Done {
     auto scene = load_scene(arguments);
-    return [this, arguments, scene] { show(arguments, scene); };
+    return [this, arguments, scene] {
+      // Numbers that it has not are not asked of it, and sections were of the other one.
+      ScalarOptions& s = settings_.notes.scalars;
+      if (std::ranges::find(scene->scalars, s.name, &ScalarSummary::name) == scene->scalars.end()) {
+        s.name.clear();
+        s.bar_title.reset();
+        s.given = nullptr;
+      }
+      settings_.sections = {};
+      show(arguments, scene);
+    };
   };
 }
 
@@ -334,6 +363,7 @@ void MeshSubject::set_options(const std::string& options) {
   try {
     if (!app.parse(options)) return;  // --help
     check_annotations(changed.annotations, true);
+    check_file_lights(changed, scene_->scene);
   } catch (const UsageError& e) {
     throw Error(Errc::invalid_argument, options + ": " + e.what());
   }
@@ -346,6 +376,7 @@ void MeshSubject::set_options(const std::string& options) {
   // Said once more, they stand for what was said before.
   if (changed.lights.given) {
     s.lights.clear();
+    s.adds_file_lights = changed.lights.of_files;
     std::erase_if(arguments_.given, is_light);
   } else {
     s.render.lights = settings_.render.lights;

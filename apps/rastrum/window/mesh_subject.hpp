@@ -52,14 +52,15 @@ class MeshSubject final : public Subject {
   [[nodiscard]] const LoadedScene& scene() const { return *scene_; }
   /// As the window shows it now.
   [[nodiscard]] Texts same_picture(int width, int height, const std::string& png) const override;
-  [[nodiscard]] std::pair<int, int> size() const { return {width_, height_}; }
+  [[nodiscard]] bool has_same_picture() const override { return true; }
 
   void handle(const Event& event) override;
   void advance(double dt_s) override { control_.advance(dt_s); }
   void resize(int width, int height) override;
   [[nodiscard]] bool moving() const override { return control_.moving(); }
   [[nodiscard]] std::uint64_t version() const override;
-  [[nodiscard]] std::function<Drawn()> draw(int width, int height) override;
+  [[nodiscard]] std::function<Drawn()> draw(int width, int height, bool glance) override;
+  [[nodiscard]] bool has_glances() const override;
   [[nodiscard]] std::function<std::string()> pick(int x, int y, int width, int height) override;
   [[nodiscard]] Worker::Job open(const std::filesystem::path& file) override;
   void set_options(const std::string& options) override;

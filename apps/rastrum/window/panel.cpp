@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace rastrum::cli::window {
 namespace {
@@ -39,12 +40,11 @@ void draw_times(Viewer& viewer) {
   }
   const Figures& f = picture->figures;
   ImGui::Text("%.2f ms, %d x %d%s", f.frame_ms, picture->image.width(), picture->image.height(),
-              viewer.step() == 0 ? "" : " (moving)");
+              viewer.is_full() ? "" : " (moving)");
   const std::vector<float>& ms = viewer.history_ms();
   if (!ms.empty())
     ImGui::PlotLines("##times", ms.data(), static_cast<int>(ms.size()), 0, nullptr, 0,
                      *std::max_element(ms.begin(), ms.end()) * 1.1F, {-1, 40});
-  draw_stages(f);
 }
 
 void draw_rows(const Figures& figures) {
@@ -72,17 +72,23 @@ void draw_moving(Viewer& viewer) {
     viewer.set_target(double{target});
 }
 
-void message_lines(const Viewer& viewer) {
-  if (!viewer.error().empty()) {
-    ImGui::PushStyleColor(ImGuiCol_Text, kErrorColor);
-    ImGui::TextWrapped("%s", viewer.error().c_str());
-    ImGui::PopStyleColor();
+void offer_texts(Viewer& viewer) {
+  constexpr std::pair<const char*, const char*> kButtons[] = {{".sh", "copy command line"},
+                                                              {".py", "copy Python"}};
+  for (const auto& [ending, label] : kButtons) {
+    if (ImGui::Button(label))
+      if (const std::string text = viewer.copy(ending); !text.empty())
+        ImGui::SetClipboardText(text.c_str());
+    ImGui::SameLine();
   }
-  if (!viewer.notice().empty()) {
-    ImGui::PushStyleColor(ImGuiCol_Text, kQuiet);
-    ImGui::TextWrapped("%s", viewer.notice().c_str());
-    ImGui::PopStyleColor();
-  }
+  ImGui::NewLine();
+}
+
+void draw_message(const std::string& what, const ImVec4& color) {
+  if (what.empty()) return;
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  ImGui::TextWrapped("%s", what.c_str());
+  ImGui::PopStyleColor();
 }
 
 }  // namespace
@@ -95,13 +101,17 @@ Area draw_panel(Viewer& viewer, const Controls& controls) {
   ImGui::SetNextWindowBgAlpha(0.8F);
   ImGui::Begin("rastrum", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PushItemWidth(kPanelWidth * 0.55F);
-  message_lines(viewer);
+  draw_message(viewer.error(), kErrorColor);
   draw_times(viewer);
   ImGui::Separator();
   controls();
+  if (viewer.subject().has_same_picture()) offer_texts(viewer);
   draw_moving(viewer);
-  if (viewer.picture() != nullptr && ImGui::CollapsingHeader("Figures"))
+  // A glance has other stages than a whole picture: here they move nothing.
+  if (viewer.picture() != nullptr && ImGui::CollapsingHeader("Figures")) {
+    draw_stages(viewer.picture()->figures);
     draw_rows(viewer.picture()->figures);
+  }
   if (ImGui::CollapsingHeader("Keys")) {
     draw_keys(viewer.subject().keys());
     draw_keys(Viewer::keys());
@@ -110,6 +120,8 @@ Area draw_panel(Viewer& viewer, const Controls& controls) {
         "zoom.");
     ImGui::TextWrapped("Drop a file on the window to open it.");
   }
+  // Below, where it moves nothing that somebody is about to click.
+  draw_message(viewer.notice(), kQuiet);
   ImGui::PopItemWidth();
   const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
   ImGui::End();
@@ -121,7 +133,8 @@ void draw_messages(const Viewer& viewer) {
   ImGui::SetNextWindowPos({kMargin, kMargin});
   ImGui::SetNextWindowSize({kPanelWidth, 0});
   ImGui::Begin("error", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize);
-  message_lines(viewer);
+  draw_message(viewer.error(), kErrorColor);
+  draw_message(viewer.notice(), kQuiet);
   ImGui::End();
 }
 

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
 #include <numbers>
+#include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "transparency.hpp"
@@ -21,7 +24,7 @@ constexpr std::string_view kSaid[] = {
     "--near",       "--far",         "--orthographic", "--scalars", "--cmap",         "--range",
     "--log",        "--steps",       "--bar",          "--axes",    "--bounds",       "--occlusion",
     "--edl",        "--silhouettes", "--edges",        "--script",  "--screenshots",  "--target-ms",
-    "--lights"};
+    "--lights",     "--tone",        "--exposure"};
 
 /// Options that go with a switch of the window, and mean nothing without.
 struct Dependent {
@@ -142,11 +145,18 @@ std::string transparency_name(const TransparencyOptions& t) {
   return t.method == Transparency::filter ? name + ":" + std::to_string(t.filter) : name;
 }
 
+std::string tone_name(Tone tone) {
+  return tone_names()[static_cast<std::size_t>(tone)];
+}
+
 /// As --lights has it; empty: what --light says, or nothing.
 std::string lights_name(const ShownPicture& shown) {
   if (!shown.settings.lights.empty()) return shown.settings.lights;
   bool said = false;
   for (const Parser::Given& g : shown.arguments.given) {
+    // A file that was opened since need not have any.
+    if (g.name == "--lights" && g.texts.front() == "file" && shown.settings.file_lights.empty())
+      return "";
     if (g.name == "--lights") return g.texts.front();
     said |= g.name == "--light";
   }
@@ -185,25 +195,103 @@ std::string python_camera(const Camera& c) {
   return all + ")";
 }
 
+/// Options that the window repeats and Python has words for.
+constexpr std::string_view kPythonHas[] = {
+    "--clip-plane",    "--crease",     "--cull",           "--environment-behind",
+    "--title",         "--caption",    "--text-scale",     "--occlusion-radius",
+    "--edl-strength",  "--edge-angle", "--edge-width",     "--occlusion-strength",
+    "--symmetric",     "--categories", "--below",          "--above",
+    "--nan-color",     "--isolines",   "--scalar-opacity", "--isoline-color",
+    "--isoline-width", "--bar-unit"};
+
 /// What Python's render has no word for here.
 std::string without_words(const ShownPicture& shown) {
   const MeshSettings& s = shown.settings;
   std::string all;
   const auto add = [&](const std::string& option) { all += (all.empty() ? "" : ", ") + option; };
   for (const Parser::Given& g : shown.arguments.given)
-    if (g.name != "--clip-plane" && g.name != "--crease" && is_repeated(g.name, s)) add(g.name);
-  const ScalarMapping& m = s.notes.scalars.mapping;
-  if (!s.notes.scalars.name.empty() && (m.logarithmic || m.steps != 0)) add("--log, --steps");
+    if (std::ranges::find(kPythonHas, g.name) == std::end(kPythonHas) && is_repeated(g.name, s))
+      add(g.name);
+  if (lights_name(shown) == "file") add("--lights file");
+  const ScalarOptions& o = s.notes.scalars;
+  if (!o.name.empty() && o.isoline_count != 0) add("--isolines " + std::to_string(o.isoline_count));
+  if (!o.name.empty() && o.nan_given && o.bar()) add("--nan-color in the bar");
   for (const std::string& input : shown.arguments.inputs)
     if (input.starts_with("builtin:") || input.find('@') != std::string::npos || input == "-")
       add(input);
   return all;
 }
 
-std::string listed(const std::vector<std::string>& items) {
+std::string joined(const std::vector<std::string>& items) {
   std::string all;
   for (const std::string& item : items) all += (all.empty() ? "" : ", ") + item;
-  return "[" + all + "]";
+  return all;
+}
+std::string listed(const std::vector<std::string>& items) {
+  return "[" + joined(items) + "]";
+}
+std::string listed(const std::vector<double>& values) {
+  std::vector<std::string> items;
+  for (const double v : values) items.push_back(number(v));
+  return listed(items);
+}
+
+/// What stands behind `cmap=`.
+std::string python_mapping(const MeshSettings& s) {
+  const ScalarMapping& m = s.notes.scalars.mapping;
+  std::vector<std::string> colors;
+  if (s.map.find('#') != std::string::npos)
+    for (const Vec4& c : m.map.colors) colors.push_back(literal(hex(c)));
+  std::vector<std::string> said{colors.empty() ? literal(s.map) : listed(colors)};
+  if (m.range) said.push_back("(" + number(m.range->low) + ", " + number(m.range->high) + ")");
+  if (m.logarithmic) said.emplace_back("log=True");
+  if (m.symmetric) said.emplace_back("symmetric=True");
+  if (m.steps != 0) said.push_back("steps=" + std::to_string(m.steps));
+  if (!m.categories.empty()) said.push_back("categories=" + listed(m.categories));
+  if (m.below) said.push_back("below=" + literal(hex(*m.below)));
+  if (m.above) said.push_back("above=" + literal(hex(*m.above)));
+  const ScalarMapping usual;
+  if (m.nan != usual.nan && hex(m.nan) != hex(usual.nan))
+    said.push_back("nan=" + literal(hex(m.nan)));
+  std::vector<std::string> opacity;
+  for (const ScalarOpacity& o : m.opacity)
+    opacity.push_back("(" + number(o.value) + ", " + number(static_cast<double>(o.opacity)) + ")");
+  if (!opacity.empty()) said.push_back("opacity=" + listed(opacity));
+  if (!m.isolines.empty()) {
+    said.push_back("isolines=" + listed(m.isolines));
+    said.push_back("isoline_color=" + literal(hex(m.isoline_color)));
+    said.push_back("isoline_width=" + number(static_cast<double>(m.isoline_px)));
+  }
+  return said.size() == 1 ? said.front() : "rr.ColorMapping(" + joined(said) + ")";
+}
+
+/// What stands behind `annotate=`; empty: nothing.
+std::string python_notes(const AnnotationOptions& a) {
+  std::vector<std::string> notes;
+  const auto add = [&](const char* name, bool on,
+                       std::initializer_list<std::pair<const char*, std::optional<double>>> given) {
+    std::vector<std::string> options;
+    for (const auto& [option, value] : given)
+      if (value) options.push_back(literal(option) + ": " + number(*value));
+    if (on) notes.push_back(literal(name) + ": {" + joined(options) + "}");
+  };
+  add("occlusion", a.occlusion,
+      {{"radius", a.occlusion_radius}, {"strength", a.occlusion_strength}});
+  add("edl", a.dome, {{"strength", a.dome_strength}});
+  add("silhouettes", a.silhouettes, {});
+  add("edges", a.edges, {{"angle", a.edge_angle}, {"width", a.edge_width}});
+  add("axes", a.axes, {});
+  add("bounds", a.bounds, {});
+  if (const ScalarOptions& o = a.scalars; o.bar())
+    notes.push_back("\"bar\": {\"title\": " + literal(*o.bar_title) +
+                    ", \"unit\": " + literal(o.bar_unit) + "}");
+  if (!a.words.title.empty()) notes.push_back("\"title\": " + literal(a.words.title));
+  std::vector<std::string> captions;
+  for (const std::string& c : a.words.captions) captions.push_back(literal(c));
+  if (!captions.empty()) notes.push_back("\"captions\": " + listed(captions));
+  if (!notes.empty() && a.words.scale_given)
+    notes.push_back("\"text_scale\": " + number(a.words.scale));
+  return joined(notes);
 }
 
 }  // namespace
@@ -217,6 +305,9 @@ family::Options MeshSettings::frame(int width, int height) const {
     options.lights.clear();
     if (lights == "studio") options.lights = light_kit();
     if (lights == "headlight") options.lights = {headlight()};
+    if (lights == "file") options.lights = file_lights;
+  } else if (adds_file_lights) {
+    options.lights.insert(options.lights.end(), file_lights.begin(), file_lights.end());
   }
   if (options.lights.empty()) options.shadows = false;
   for (int axis = 0; axis < 3; ++axis)
@@ -243,6 +334,9 @@ std::string command_line(const ShownPicture& shown, const std::string& png) {
   if (frame.visibility != "auto") say("--visibility", frame.visibility);
   if (const std::string lights = lights_name(shown); !lights.empty()) say("--lights", lights);
   if (frame.shadows) say("--shadows");
+  if (frame.tone.tone != Tone::none) say("--tone", tone_name(frame.tone.tone));
+  if (frame.tone.exposure_stops != 0)
+    say("--exposure", number(static_cast<double>(frame.tone.exposure_stops)));
   say_scalars(say, s);
   say_notes(say, s.notes);
   for (int axis = 0; axis < 3; ++axis)
@@ -268,11 +362,7 @@ std::string python_lines(const ShownPicture& shown, const std::string& png) {
   all += "scene = rr.Scene(" + listed(files);
   if (shown.arguments.crease_given) all += ", crease=" + number(shown.arguments.normals.crease_deg);
   const ScalarOptions& o = s.notes.scalars;
-  if (!o.name.empty()) {
-    all += ", scalars=" + literal(o.name) + ", cmap=" + literal(s.map);
-    if (o.mapping.range)
-      all += ", clim=(" + number(o.mapping.range->low) + ", " + number(o.mapping.range->high) + ")";
-  }
+  if (!o.name.empty()) all += ", scalars=" + literal(o.name) + ", cmap=" + python_mapping(s);
   all += ")\ncamera = " + python_camera(shown.camera) + "\n";
   all += "picture = rr.render(scene, camera, size=(" + std::to_string(shown.width) + ", " +
          std::to_string(shown.height) + "), shader=" + literal(std::string(name(frame.shader)));
@@ -283,9 +373,12 @@ std::string python_lines(const ShownPicture& shown, const std::string& png) {
     all += ", transparency=" + literal(transparency_name(frame.transparency));
   if (frame.cull != Cull::none)
     all += std::string(", cull=") + (frame.cull == Cull::back ? "\"back\"" : "\"front\"");
-  if (const std::string lights = lights_name(shown); !lights.empty())
+  if (const std::string lights = lights_name(shown); !lights.empty() && lights != "file")
     all += ", lights=" + literal(lights);
   if (frame.shadows) all += ", shadows=True";
+  if (frame.tone.tone != Tone::none) all += ", tone=" + literal(tone_name(frame.tone.tone));
+  if (frame.tone.exposure_stops != 0)
+    all += ", exposure=" + number(static_cast<double>(frame.tone.exposure_stops));
   if (!frame.clip_planes.empty()) {
     std::vector<std::string> planes;
     for (const ClipPlane& p : frame.clip_planes)
@@ -293,19 +386,8 @@ std::string python_lines(const ShownPicture& shown, const std::string& png) {
                        number(p.normal.z) + ", " + number(p.offset) + ")");
     all += ", clip_planes=" + listed(planes);
   }
-  std::vector<std::string> notes;
-  const AnnotationOptions& a = s.notes;
-  const std::pair<const char*, bool> flags[] = {
-      {"occlusion", a.occlusion}, {"edl", a.dome},  {"silhouettes", a.silhouettes},
-      {"edges", a.edges},         {"axes", a.axes}, {"bounds", a.bounds}};
-  for (const auto& [name, on] : flags)
-    if (on) notes.push_back(literal(name) + ": {}");
-  if (o.bar()) notes.push_back("\"bar\": {\"title\": " + literal(*o.bar_title) + "}");
-  if (!notes.empty()) {
-    all += ", annotate={";
-    for (std::size_t i = 0; i < notes.size(); ++i) all += (i == 0 ? "" : ", ") + notes[i];
-    all += "}";
-  }
+  if (const std::string notes = python_notes(s.notes); !notes.empty())
+    all += ", annotate={" + notes + "}";
   return all + ")\npicture.save(" + literal(png) + ")\n";
 }
 

@@ -263,6 +263,11 @@ class Shell {
       quit_ = true;
       return;
     }
+    if (down && e.ctrl && e.key == "c" && !ImGui::GetIO().WantTextInput) {
+      if (const std::string text = viewer_.copy(e.shift ? ".py" : ".sh"); !text.empty())
+        SDL_SetClipboardText(text.c_str());
+      return;
+    }
     // While a text is edited keys are text; their releases still count.
     if (down && ImGui::GetIO().WantTextInput) return;
     if (down && e.key == "tab") {

@@ -47,8 +47,11 @@ class Subject {
   /// A number that is another one whenever the picture would be.
   [[nodiscard]] virtual std::uint64_t version() const = 0;
 
-  /// Draws what is to be seen now at this size; holds all that it needs. Throws Error.
-  [[nodiscard]] virtual std::function<Drawn()> draw(int width, int height) = 0;
+  /// Draws what is to be seen now at this size; holds all that it needs. Throws Error. `glance`:
+  /// quickly, without what needs time.
+  [[nodiscard]] virtual std::function<Drawn()> draw(int width, int height, bool glance) = 0;
+  /// Whether a glance differs from a whole picture of its size.
+  [[nodiscard]] virtual bool has_glances() const { return false; }
   /// Says what lies under pixel (x, y) of the picture of this size as it is to be seen now; holds
   /// all that it needs, and throws Error. None: the subject cannot tell.
   [[nodiscard]] virtual std::function<std::string()> pick(int x, int y, int width, int height) = 0;
@@ -67,6 +70,7 @@ class Subject {
     static_cast<void>(width), static_cast<void>(height), static_cast<void>(png);
     return {};
   }
+  [[nodiscard]] virtual bool has_same_picture() const { return false; }
   /// Appends the camera to the path that is being recorded and writes all of it.
   virtual void record(const std::filesystem::path& file) = 0;
   /// Reads a path to follow; first and last second. Throws Error.

@@ -158,7 +158,7 @@ void TerrainSubject::change(std::string_view key, bool back) {
   set(std::move(s));
 }
 
-std::function<Drawn()> TerrainSubject::draw(int width, int height) {
+std::function<Drawn()> TerrainSubject::draw(int width, int height, bool /*glance*/) {
   const TerrainPose& pose = control_.pose();
   TerrainLook o = settings_.options;
   terrain::Light light = settings_.light;

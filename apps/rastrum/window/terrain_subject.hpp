@@ -37,7 +37,7 @@ class TerrainSubject final : public Subject {
   void resize(int width, int height) override;
   [[nodiscard]] bool moving() const override { return control_.moving(); }
   [[nodiscard]] std::uint64_t version() const override;
-  [[nodiscard]] std::function<Drawn()> draw(int width, int height) override;
+  [[nodiscard]] std::function<Drawn()> draw(int width, int height, bool glance) override;
   [[nodiscard]] std::function<std::string()> pick(int, int, int, int) override { return {}; }
   [[nodiscard]] Worker::Job open(const std::filesystem::path& file) override;
   void set_options(const std::string& options) override;

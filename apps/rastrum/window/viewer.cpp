@@ -21,6 +21,8 @@ constexpr double kClick_px = 3;        ///< that a hand may shake between press 
 
 constexpr KeyHelp kViewerKeys[] = {{"p", "screenshot, with its camera as a path file"},
                                    {"k", "add the camera to a path that render --path draws"},
+                                   {"ctrl+c", "copy the command line that draws this picture"},
+                                   {"shift+ctrl+c", "copy the Python that does"},
                                    {"tab", "hide or show the panel"},
                                    {"ctrl+q", "quit"}};
 
@@ -123,6 +125,17 @@ void Viewer::record() {
   }
 }
 
+std::string Viewer::copy(const std::string& ending) {
+  for (const auto& [of, text] :
+       subject_->same_picture(options_.width, options_.height, "picture.png"))
+    if (of == ending) {
+      notice_ = (ending == ".py" ? "copied Python" : "copied a command line") +
+                std::string(" that draws this picture");
+      return text;
+    }
+  return "";
+}
+
 std::filesystem::path Viewer::free_name() const {
   constexpr std::size_t kMost = 1000000;
   std::error_code ignored;
@@ -148,28 +161,31 @@ void Viewer::advance(double dt_s) {
 }
 
 Viewer::State Viewer::now() const {
-  return {subject_->version(), options_.width, options_.height, 0};
+  return {subject_->version(), options_.width, options_.height, 0, false};
 }
 
 bool Viewer::resting() const {
   return !options_.adaptive || (still_s_ >= kRest_s && seen_version_ == subject_->version());
 }
 
-std::optional<std::size_t> Viewer::next_step() const {
-  const State wanted = now();
+std::optional<Viewer::State> Viewer::next() const {
+  State wanted = now();
   if (!wanted.same_view(shown_)) {
-    if (!options_.adaptive) return 0;
-    // Nothing drawn yet: a glance, which also tells how fast this scene is.
-    if (resolution_.expected_ms(0) == 0) return kScales.size() - 1;
-    return resolution_.moving_step();
+    if (!options_.adaptive) return wanted;
+    // Nothing drawn yet: a small one, which also tells how fast this scene is.
+    wanted.step = resolution_.expected_ms(0) == 0 ? kScales.size() - 1 : resolution_.moving_step();
+    wanted.glance = subject_->has_glances();
+    return wanted;
   }
-  if (shown_.step == 0 || !resting()) return std::nullopt;
-  return options_.adaptive ? resolution_.still_step(shown_.step) : 0;
+  if (shown_.is_full() || !resting()) return std::nullopt;
+  if (options_.adaptive && shown_.step != 0) wanted.step = resolution_.still_step(shown_.step);
+  wanted.glance = wanted.step != 0 && subject_->has_glances();
+  return wanted;
 }
 
 bool Viewer::busy() const {
   return worker_.busy() || pick_ || !screenshots_.empty() || !opens_.empty() ||
-         subject_->moving() || next_step().has_value() || (shown_.step != 0 && !resting());
+         subject_->moving() || next().has_value() || (!shown_.is_full() && !resting());
 }
 
 void Viewer::submit(Worker::Job job, std::function<void(const std::string&)> failed) {
@@ -186,18 +202,18 @@ void Viewer::submit(Worker::Job job, std::function<void(const std::string&)> fai
   });
 }
 
-void Viewer::draw(std::size_t step) {
-  State state = now();
-  state.step = step;
+void Viewer::draw(const State& state) {
   std::function<Drawn()> drawing;
   const auto show_nothing_new = [this, state](const std::string& what) {
     draw_error_ = what;
     shown_ = state;  // not tried again until something changes
     shown_.step = 0;
+    shown_.glance = false;
     failed_ = true;
   };
   try {
-    drawing = subject_->draw(scaled(state.width, step), scaled(state.height, step));
+    drawing = subject_->draw(scaled(state.width, state.step), scaled(state.height, state.step),
+                             state.glance);
   } catch (const std::exception& e) {
     show_nothing_new(e.what());
     return;
@@ -205,8 +221,11 @@ void Viewer::draw(std::size_t step) {
   refining_.reset();
   if (state.same_view(shown_)) refining_ = state;
   drawing_ = {};
+  // What a whole picture takes says nothing about the glances of a moving view.
+  const bool counts = state.glance || !subject_->has_glances();
   submit(
-      [this, drawing = std::move(drawing), state, stop = drawing_.get_token()]() -> Worker::Done {
+      [this, drawing = std::move(drawing), state, counts,
+       stop = drawing_.get_token()]() -> Worker::Done {
         std::shared_ptr<const Drawn> drawn;
         try {
           const parallel::StopScope scope(stop);
@@ -214,13 +233,13 @@ void Viewer::draw(std::size_t step) {
         } catch (const parallel::Stopped&) {
           return [] {};
         }
-        return [this, drawn, state] {
+        return [this, drawn, state, counts] {
           picture_ = drawn;
           shown_ = state;
           ++serial_;
           failed_ = false;
           draw_error_.clear();
-          resolution_.add(state.step, drawn->figures.frame_ms);
+          if (counts) resolution_.add(state.step, drawn->figures.frame_ms);
           if (history_ms_.size() == kHistory) history_ms_.erase(history_ms_.begin());
           history_ms_.push_back(static_cast<float>(drawn->figures.frame_ms));
         };
@@ -272,8 +291,8 @@ bool Viewer::update() {
         [this](const std::string& what) { error_ = what; });
     return true;
   }
-  if (const auto step = next_step()) {
-    draw(*step);
+  if (const auto state = next()) {
+    draw(*state);
     return true;
   }
   if (pick_) {
@@ -286,7 +305,7 @@ bool Viewer::update() {
           [this](const std::string& what) { error_ = what; });
     return true;
   }
-  if (!screenshots_.empty() && shown_.step == 0) {
+  if (!screenshots_.empty() && shown_.is_full()) {
     const std::filesystem::path file = screenshots_.front();
     screenshots_.erase(screenshots_.begin());
     if (failed_)
@@ -300,7 +319,7 @@ bool Viewer::update() {
 
 void Viewer::settle() {
   const bool adaptive = std::exchange(options_.adaptive, false);
-  while (worker_.busy() || next_step() || pick_ || !opens_.empty() || !screenshots_.empty()) {
+  while (worker_.busy() || next() || pick_ || !opens_.empty() || !screenshots_.empty()) {
     worker_.wait();
     update();
   }

@@ -42,6 +42,9 @@ class Viewer {
   void screenshot(const std::filesystem::path& file);
   /// Says in the title what lies at a pixel of the window.
   void pick(int x, int y);
+  /// What draws the picture that is seen: .sh or .py (Subject::same_picture). Says that it was
+  /// copied; empty where there is no such text.
+  [[nodiscard]] std::string copy(const std::string& ending);
   /// As the option line of a script; what is wrong becomes the message.
   void set_options(const std::string& options);
   /// `dt_s`: seconds since the last call.
@@ -54,9 +57,10 @@ class Viewer {
   [[nodiscard]] Subject& subject() { return *subject_; }
   /// What is shown, and what was clicked on.
   [[nodiscard]] std::string title() const;
-  /// The newest picture, or null before the first; `step` tells its resolution.
+  /// The newest picture, or null before the first; `is_full`: all its pixels are there, and not of
+  /// a glance.
   [[nodiscard]] const Drawn* picture() const { return picture_.get(); }
-  [[nodiscard]] std::size_t step() const { return shown_.step; }
+  [[nodiscard]] bool is_full() const { return shown_.is_full(); }
   /// Counts the pictures.
   [[nodiscard]] std::uint64_t serial() const { return serial_; }
   [[nodiscard]] const std::vector<float>& history_ms() const { return history_ms_; }
@@ -79,15 +83,17 @@ class Viewer {
     std::uint64_t version = ~std::uint64_t{0};
     int width = 0, height = 0;
     std::size_t step = 0;
+    bool glance = false;
+    [[nodiscard]] bool is_full() const { return step == 0 && !glance; }
     [[nodiscard]] bool same_view(const State& o) const {
       return version == o.version && width == o.width && height == o.height;
     }
   };
   [[nodiscard]] State now() const;
   [[nodiscard]] bool resting() const;
-  /// The step to draw next; none: nothing to draw.
-  [[nodiscard]] std::optional<std::size_t> next_step() const;
-  void draw(std::size_t step);
+  /// What to draw next; none: nothing.
+  [[nodiscard]] std::optional<State> next() const;
+  void draw(const State& state);
   /// Where the click began that `event` ends: a press and a release of the left button in one
   /// place.
   [[nodiscard]] std::optional<std::pair<double, double>> clicked(const Event& event);

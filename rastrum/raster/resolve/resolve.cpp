@@ -214,7 +214,7 @@ void store_distances(const FrameRequest& request, const VisibleBlock& block,
 
 /// `f`: null where nothing is.
 void store_point(const FrameRequest& request, const FrameGeometry& frame, const SeenFragment* f,
-                 int x, int y) {
+                 int x, int y, CornerNormals& corners) {
   const Targets& t = request.targets;
   const SurfaceScene* const scene = request.surface;
   const auto store = [&](const auto& target, auto nothing, const auto& value) {
@@ -225,7 +225,7 @@ void store_point(const FrameRequest& request, const FrameGeometry& frame, const 
   });
   store(t.positions, Vec3{}, [&] { return Vec3(scene->position(*f)); });
   if (!t.normals.empty() || !t.camera_normals.empty()) {
-    const Vec3d normal = f == nullptr ? Vec3d{} : scene->normal(*f);
+    const Vec3d normal = f == nullptr ? Vec3d{} : scene->normal(*f, corners);
     store(t.normals, Vec3{}, [&] { return Vec3(normal); });
     store(t.camera_normals, Vec3{}, [&] { return Vec3(scene->in_camera(normal)); });
   }
@@ -244,13 +244,15 @@ void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
   if (t.barycentrics.empty() && t.positions.empty() && t.normals.empty() &&
       t.camera_normals.empty() && t.albedo.empty() && t.scalars.empty())
     return;
-  SurfaceLocator locator(frame, request.samples);
+  SurfaceLocator locator(frame, request.samples, !t.albedo.empty());
+  CornerNormals corners;
   for (std::uint64_t m = touched; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const SeenFragment* found = nullptr;
     if ((block.covered >> i & 1) != 0)
       found = &locator.locate(block.keys[i], block.x0, block.y0, i);
-    store_point(request, frame, found, block.x0 + i % kBlockSize, block.y0 + i / kBlockSize);
+    store_point(request, frame, found, block.x0 + i % kBlockSize, block.y0 + i / kBlockSize,
+                corners);
   }
 }
 

@@ -34,7 +34,7 @@ const SeenFragment& SurfaceLocator::locate(std::uint64_t key, int x0, int y0, in
   const Draw& draw = *draw_;
   seen_.depth = std::bit_cast<float>(static_cast<std::uint32_t>(key >> kIdBits));
   if (draw.quadrics == nullptr) {
-    Fragment& f = locator_.locate(id, x0, y0, i, nullptr);
+    Fragment& f = locator_.locate(id, x0, y0, i, nullptr, changes_);
     f.depth = seen_.depth;
     static_cast<Fragment&>(seen_) = f;
     seen_.copy = draw.of_copy(id - draw.first_id).copy;
@@ -86,27 +86,33 @@ Vec3d SurfaceScene::to_viewer(int x, int y) const {
   return -(Vec3d(r.d) + Vec3d(r.dx) * (x + 0.5) + Vec3d(r.dy) * (y + 0.5));
 }
 
-Vec3d SurfaceScene::object_normal(const SeenFragment& f) const {
+Vec3d SurfaceScene::object_normal(const SeenFragment& f, CornerNormals& corners) const {
   if (f.quadric != nullptr) return f.quadric->point.normal;
   const GeometryView& geometry = scene.instances[f.draw].geometry;
   if (std::holds_alternative<LinesView>(geometry)) return {};
   if (const auto* const points = std::get_if<PointsView>(&geometry))
     return points->normals.empty() ? Vec3d{} : Vec3d(safe_normal(points->normals[f.vertex[0]]));
-  const MeshView& mesh = *lit.draws[f.draw].mesh;
-  Vec3 corners[3];
-  rounded_normals(mesh, mesh.place(f.triangle), f.vertex, corners);
-  return interpolate(f, {corners[0], corners[1], corners[2]});
+  if (corners.id != f.id) {
+    const MeshView& mesh = *lit.draws[f.draw].mesh;
+    Vec3 rounded[3];
+    rounded_normals(mesh, mesh.place(f.triangle), f.vertex, rounded);
+    for (int c = 0; c < 3; ++c) corners.at[c] = rounded[c];
+    corners.id = f.id;
+  }
+  return interpolate(f, corners.at);
 }
 
-Vec3d SurfaceScene::normal(const SeenFragment& f) const {
-  const Vec3d n = object_normal(f);
-  LitDraw own;
-  if (f.copy != 0) own = lit.draws[f.draw].of(instance(f.draw, f.copy));
-  const auto& m = (f.copy != 0 ? own : lit.draws[f.draw]).normal_matrix;
-  const auto row = [&](int i) {
-    return (double{m[i][0]} * n.x + double{m[i][1]} * n.y) + double{m[i][2]} * n.z;
+Vec3d SurfaceScene::normal(const SeenFragment& f, CornerNormals& corners) const {
+  const Vec3d n = object_normal(f, corners);
+  const LitDraw& draw = lit.draws[f.draw];
+  const auto turned = [&](const float(&m)[3][3]) {
+    const auto row = [&](int i) {
+      return (double{m[i][0]} * n.x + double{m[i][1]} * n.y) + double{m[i][2]} * n.z;
+    };
+    return Vec3d{row(0), row(1), row(2)};
   };
-  const Vec3d world{row(0), row(1), row(2)};
+  const Vec3d world = f.copy == 0 ? turned(draw.normal_matrix)
+                                  : turned(draw.of(instance(f.draw, f.copy)).normal_matrix);
   const double l = length(world);
   if (!(l > 0) || !std::isfinite(l)) return {};
   const double scale = dot(world, to_viewer(f.x, f.y)) < 0 ? -1 : 1;

@@ -33,9 +33,10 @@ struct SeenFragment : Fragment {
 /// Finds what is seen at one pixel after the other, by its key.
 class SurfaceLocator {
  public:
-  /// `samples`: a pixel, of the picture that has the keys.
-  SurfaceLocator(const FrameGeometry& frame, int samples)
-      : frame_(frame), samples_(samples), locator_(frame) {}
+  /// `samples`: a pixel, of the picture that has the keys. Without `changes` nobody asks how the
+  /// weights change across pixels, as textures and isolines do.
+  SurfaceLocator(const FrameGeometry& frame, int samples, bool changes = true)
+      : frame_(frame), samples_(samples), changes_(changes), locator_(frame) {}
 
   /// At pixel `i` of the block that begins at (x0, y0). Valid until the next call.
   [[nodiscard]] const SeenFragment& locate(std::uint64_t key, int x0, int y0, int i);
@@ -45,12 +46,19 @@ class SurfaceLocator {
 
   const FrameGeometry& frame_;
   int samples_;
+  bool changes_;
   FragmentLocator locator_;
   const Draw* draw_ = nullptr;  ///< that was asked for last
   SeenFragment seen_;
   QuadricHit hit_;
   QuadricSurface surface_;  ///< of primitive quadric_id_
   std::uint64_t quadric_id_ = kMaxId + 1;
+};
+
+/// The normals of the mesh's triangle that was asked for last: the pixels about share it.
+struct CornerNormals {
+  std::uint64_t id = kMaxId + 1;
+  Vec3d at[3];  ///< in object space
 };
 
 /// Where a fragment of a mesh, point or line lies in the world, by its corners and weights.
@@ -87,7 +95,7 @@ struct SurfaceScene {
                                 : position_on(instance(f.draw, f.copy), f);
   }
   /// Unit length, in the world, turned to the viewer; 0 where there is none.
-  [[nodiscard]] Vec3d normal(const SeenFragment& f) const;
+  [[nodiscard]] Vec3d normal(const SeenFragment& f, CornerNormals& corners) const;
   /// What its geometry has there; NaN: nothing.
   [[nodiscard]] double scalar(const FrameGeometry& frame, const SeenFragment& f) const;
   [[nodiscard]] Vec3d in_camera(Vec3d direction) const;
@@ -98,7 +106,7 @@ struct SurfaceScene {
 
  private:
   /// In object space, not of unit length.
-  [[nodiscard]] Vec3d object_normal(const SeenFragment& f) const;
+  [[nodiscard]] Vec3d object_normal(const SeenFragment& f, CornerNormals& corners) const;
   /// Towards the viewer, not normalized.
   [[nodiscard]] Vec3d to_viewer(int x, int y) const;
 };
