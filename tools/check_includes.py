@@ -26,6 +26,9 @@ MAY_INCLUDE = {
     "io": {"core", "parallel", "scene"},
     "render": {"core", "parallel", "scene", "raster", "transparency", "terrain", "overlay",
                "io"},
+    "ranks": {"core", "parallel", "scene", "raster", "render"},
+    # A library of its own, where there is an MPI; nothing includes it.
+    "mpi": {"core", "ranks"},
     "family": {"core", "parallel", "scene", "raster", "transparency", "terrain", "render"},
     # The library of device code, opened by its file's name: nothing includes it.
     "cuda": {"core", "parallel", "render", "terrain", "family"},
@@ -41,6 +44,7 @@ PUBLIC = {
     "overlay": {"effects", "overlay"},
     "io": {"io"},
     "render": {"on_terrain", "pick", "render", "tone"},
+    "ranks": {"ranks"},
     "family": {"family"},
 }
 FLOOR_OF = {f"{name}.hpp": floor for floor, names in PUBLIC.items() for name in names}

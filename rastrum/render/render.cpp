@@ -17,6 +17,7 @@
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/render/access.hpp>
+#include <rastrum/render/depth_greys.hpp>
 #include <rastrum/render/scene_checks.hpp>
 #include <rastrum/render/scene_draws.hpp>
 #include <rastrum/render/shadows.hpp>
@@ -26,35 +27,6 @@
 #include <rastrum/render/tone_pass.hpp>
 
 namespace rastrum {
-namespace {
-
-/// Nearest white, farthest black; one depth alone is white. A surface at depth 0 is left to the
-/// background, from which its depth does not tell it.
-void stretch_depth(ImageView<float> depth, Vec4 background, const Targets& targets) {
-  float nearest = 0;
-  float farthest = 1;
-  for (int y = 0; y < depth.height; ++y)
-    for (int x = 0; x < depth.width; ++x) {
-      const float d = depth(x, y);
-      if (!(d > 0)) continue;
-      nearest = std::max(nearest, d);
-      farthest = std::min(farthest, d);
-    }
-  const float scale = nearest > farthest ? 1 / (nearest - farthest) : 0.0F;
-  const Vec4 behind{background.x * background.w, background.y * background.w,
-                    background.z * background.w, background.w};
-  for (int y = 0; y < depth.height; ++y)
-    for (int x = 0; x < depth.width; ++x) {
-      const float d = depth(x, y);
-      const float grey = 1 - (nearest - d) * scale;
-      const Vec4 color = d > 0 ? Vec4{grey, grey, grey, 1} : behind;
-      if (!targets.color8.empty()) targets.color8(x, y) = raster::to_straight_rgba8(color);
-      if (!targets.color.empty()) targets.color(x, y) = color;
-    }
-}
-
-}  // namespace
-
 void check(const FrameOptions& o) {
   const auto require = [](bool ok, const char* what) {
     if (!ok) throw Error(Errc::invalid_argument, what);

@@ -256,13 +256,18 @@ void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
   }
 }
 
-/// The samples that hold a surface of this pass: ids count on from pass to pass.
-std::uint64_t of_this_pass(const std::uint64_t* keys, std::uint64_t covered,
-                           std::uint64_t first_id) {
+/// The samples that hold a surface of this pass: ids count on from pass to pass, and what others
+/// draw later may be there before (ranks/).
+std::uint64_t of_this_pass(const FrameRequest& request, const std::uint64_t* keys,
+                           std::uint64_t covered) {
+  if (request.draws.empty()) return 0;
+  const std::uint64_t first = request.targets.first_id;
+  const Draw& last = request.draws.back();
+  const std::uint64_t count = last.first_id + last.primitive_count - first;
   std::uint64_t mask = 0;
   for (std::uint64_t m = covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    mask |= std::uint64_t{id_of_key(keys[i]) >= first_id} << i;
+    mask |= std::uint64_t{id_of_key(keys[i]) - first < count} << i;
   }
   return mask;
 }
@@ -336,7 +341,7 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const
         samples_inside({0, 0, request.width, request.height}, x0 / kBlockSize, y0 / kBlockSize);
   covered &= touched;
   if (targets.over) touched = covered;
-  if (targets.load) touched = covered = of_this_pass(keys, covered, targets.first_id);
+  if (targets.load) touched = covered = of_this_pass(request, keys, covered);
   const VisibleBlock block{keys, covered, x0, y0, scratch};
   BlockColors colors;
   if (!targets.extra.empty()) {

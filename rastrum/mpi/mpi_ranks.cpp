@@ -1,0 +1,110 @@
+#include <rastrum/mpi/mpi_ranks.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstring>
+
+#include <rastrum/error.hpp>
+
+namespace rastrum::mpi {
+namespace {
+
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+constexpr int kTag = 1;
+
+MPI_Comm checked(MPI_Comm comm) {
+  int begun = 0, ended = 0;
+  MPI_Initialized(&begun);
+  if (begun != 0) MPI_Finalized(&ended);
+  if (begun == 0 || ended != 0)
+    throw Error(Errc::invalid_argument, "ranks of MPI are made between MPI_Init and MPI_Finalize");
+  if (comm == MPI_COMM_NULL)
+    throw Error(Errc::invalid_argument, "the communicator of MPI is MPI_COMM_NULL");
+  return comm;
+}
+
+}  // namespace
+
+MpiRanks::MpiRanks(MPI_Comm comm) {
+  check(MPI_Comm_dup(checked(comm), &comm_), "the duplication of the communicator");
+  check(MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN), "setting what errors do");
+  check(MPI_Comm_rank(comm_, &rank_), "asking for the rank");
+  check(MPI_Comm_size(comm_, &size_), "asking for the number of ranks");
+  counts_.resize(static_cast<std::size_t>(size_));
+}
+
+MpiRanks::~MpiRanks() {
+  MPI_Comm_free(&comm_);
+}
+
+void MpiRanks::check(int code, const char* what) const {
+  if (code == MPI_SUCCESS) return;
+  std::array<char, MPI_MAX_ERROR_STRING> text{};
+  int length = 0;
+  MPI_Error_string(code, text.data(), &length);
+  std::fprintf(stderr, "rastrum: rank %d: %s failed: %s\n", rank_, what, text.data());
+  MPI_Abort(comm_ == MPI_COMM_NULL ? MPI_COMM_WORLD : comm_, 1);
+}
+
+std::uint64_t MpiRanks::max(std::uint64_t value) {
+  std::uint64_t most = 0;
+  check(MPI_Allreduce(&value, &most, 1, MPI_UINT64_T, MPI_MAX, comm_), "agreeing on a number");
+  return most;
+}
+
+void MpiRanks::broadcast(std::span<std::byte> bytes, int root) {
+  while (!bytes.empty()) {
+    const std::size_t count = std::min(bytes.size(), kMostBytes);
+    check(MPI_Bcast(bytes.data(), static_cast<int>(count), MPI_BYTE, root, comm_),
+          "telling all ranks");
+    bytes = bytes.subspan(count);
+  }
+}
+
+void MpiRanks::exchange_sizes(std::span<const std::uint64_t> to, std::span<std::uint64_t> from) {
+  check(MPI_Alltoall(to.data(), 1, MPI_UINT64_T, from.data(), 1, MPI_UINT64_T, comm_),
+        "exchanging sizes");
+}
+
+void MpiRanks::exchange(std::span<const std::span<const std::byte>> to,
+                        std::span<const std::span<std::byte>> from) {
+  const auto me = static_cast<std::size_t>(rank_);
+  if (!from[me].empty()) std::memcpy(from[me].data(), to[me].data(), from[me].size());
+  for (int step = 1; step < size_; ++step) {
+    const int target = (rank_ + step) % size_, source = (rank_ - step + size_) % size_;
+    std::span<const std::byte> out = to[static_cast<std::size_t>(target)];
+    std::span<std::byte> in = from[static_cast<std::size_t>(source)];
+    // Piece k of one rank meets piece k of the other, so nobody waits for a later one.
+    while (!out.empty() || !in.empty()) {
+      const std::size_t sent = std::min(out.size(), kMostBytes);
+      const std::size_t received = std::min(in.size(), kMostBytes);
+      const int next = sent == 0 ? MPI_PROC_NULL : target;
+      const int previous = received == 0 ? MPI_PROC_NULL : source;
+      check(MPI_Sendrecv(out.data(), static_cast<int>(sent), MPI_BYTE, next, kTag, in.data(),
+                         static_cast<int>(received), MPI_BYTE, previous, kTag, comm_,
+                         MPI_STATUS_IGNORE),
+            "exchanging blocks");
+      out = out.subspan(sent);
+      in = in.subspan(received);
+    }
+  }
+}
+
+void MpiRanks::reduce_max(std::span<const std::uint64_t> words,
+                          std::span<const std::uint64_t> firsts, std::span<std::uint64_t> own) {
+  // The largest picture has 2^30 words, so an int holds them.
+  for (std::size_t r = 0; r < counts_.size(); ++r)
+    counts_[r] = static_cast<int>(firsts[r + 1] - firsts[r]);
+  check(MPI_Reduce_scatter(words.data(), own.data(), counts_.data(), MPI_UINT64_T, MPI_MAX, comm_),
+        "reducing words");
+}
+
+RanksStats render(MPI_Comm comm, Renderer& renderer, const SceneView& scene,
+                  std::span<const std::uint64_t> parts, const Camera& camera,
+                  const FrameOptions& frame, const Targets& targets, const RanksOptions& options) {
+  MpiRanks ranks(comm);
+  return render_parts(ranks, renderer, scene, parts, camera, frame, targets, options);
+}
+
+}  // namespace rastrum::mpi

@@ -1,0 +1,51 @@
+// Ranks of MPI: what render_parts (rastrum/ranks.hpp) needs of them. Link Rastrum::mpi, which is
+// there where CMake has found MPI.
+#pragma once
+
+#include <vector>
+
+#include <mpi.h>
+
+#include <rastrum/ranks.hpp>
+
+namespace rastrum::mpi {
+
+/// The ranks of a communicator of the caller's, by a duplicate of it: neither its messages nor its
+/// error handler are touched. Made and destroyed by all its ranks together, and used by one thread
+/// of each, between MPI_Init and MPI_Finalize; that thread is the one that MPI_THREAD_FUNNELED
+/// allows to call MPI. What MPI itself reports as failed ends the job (MPI_Abort) and says what was
+/// being done: MPI 3 cannot go on without a rank.
+class MpiRanks final : public Communicator {
+ public:
+  /// Throws Error{invalid_argument} where MPI has not begun or has ended.
+  explicit MpiRanks(MPI_Comm comm);
+  ~MpiRanks() override;
+  MpiRanks(const MpiRanks&) = delete;
+  MpiRanks& operator=(const MpiRanks&) = delete;
+
+  [[nodiscard]] int rank() const override { return rank_; }
+  [[nodiscard]] int size() const override { return size_; }
+  [[nodiscard]] std::uint64_t max(std::uint64_t value) override;
+  void broadcast(std::span<std::byte> bytes, int root) override;
+  void exchange_sizes(std::span<const std::uint64_t> to, std::span<std::uint64_t> from) override;
+  /// In pairs, in pieces of at most 1 GiB: MPI 3 counts in int.
+  void exchange(std::span<const std::span<const std::byte>> to,
+                std::span<const std::span<std::byte>> from) override;
+  void reduce_max(std::span<const std::uint64_t> words, std::span<const std::uint64_t> firsts,
+                  std::span<std::uint64_t> own) override;
+
+ private:
+  void check(int code, const char* what) const;
+
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  int rank_ = 0, size_ = 1;
+  std::vector<int> counts_;
+};
+
+/// render_parts for the ranks of `comm`. `root` and the rest as there.
+RanksStats render(MPI_Comm comm, Renderer& renderer, const SceneView& scene,
+                  std::span<const std::uint64_t> parts, const Camera& camera,
+                  const FrameOptions& frame, const Targets& targets,
+                  const RanksOptions& options = {});
+
+}  // namespace rastrum::mpi

@@ -1,0 +1,104 @@
+// A picture of parts that lie on several ranks: of processes, or of threads in one. The picture is
+// the one that a single renderer draws of all parts, bit for bit, however many ranks there are and
+// whichever holds a part. docs/scale.md has when to use it, what it sends, what it refuses.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <rastrum/camera.hpp>
+#include <rastrum/frame.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/scene.hpp>
+
+namespace rastrum {
+
+/// What ranks need of each other. All ranks call the same functions in the same order; each returns
+/// when its own part is done. Buffers are the caller's. What fails ends the frame on all ranks, or
+/// the job: a rank never goes on alone.
+class Communicator {
+ public:
+  virtual ~Communicator() = default;
+  [[nodiscard]] virtual int rank() const = 0;
+  [[nodiscard]] virtual int size() const = 0;
+  /// The greatest `value` of all ranks, on all of them.
+  [[nodiscard]] virtual std::uint64_t max(std::uint64_t value) = 0;
+  /// The root's bytes on all ranks; of one size everywhere.
+  virtual void broadcast(std::span<std::byte> bytes, int root) = 0;
+  /// One number to each rank, and one from each. Both have size() numbers.
+  virtual void exchange_sizes(std::span<const std::uint64_t> to, std::span<std::uint64_t> from) = 0;
+  /// A block to each rank and one from each, of the sizes that were exchanged. Empty ones are
+  /// legal.
+  virtual void exchange(std::span<const std::span<const std::byte>> to,
+                        std::span<const std::span<std::byte>> from) = 0;
+  /// Rank r gets, in `own`, the greatest words of all ranks at [firsts[r], firsts[r + 1]). `firsts`
+  /// has size() + 1 numbers, the last of which is words.size().
+  virtual void reduce_max(std::span<const std::uint64_t> words,
+                          std::span<const std::uint64_t> firsts, std::span<std::uint64_t> own) = 0;
+};
+
+/// Ranks that are threads of this process: for tests and to count what is sent.
+class LocalRanks {
+ public:
+  /// What a rank has sent to others, its own share left out.
+  struct Traffic {
+    std::uint64_t bytes = 0, messages = 0;
+  };
+  /// Throws Error{invalid_argument} unless 1 ≤ ranks ≤ 4096.
+  explicit LocalRanks(int ranks);
+  ~LocalRanks();
+  /// Calls f(communicator) on a thread for each rank and waits for all. A rank that leaves by an
+  /// exception ends the others' waiting by an Error that names it; the exception of who left first
+  /// is thrown here then. Traffic counts from 0.
+  void run(const std::function<void(Communicator&)>& f);
+  [[nodiscard]] std::span<const Traffic> traffic() const;
+
+ private:
+  struct Shared;
+  std::unique_ptr<Shared> shared_;
+};
+
+/// How words of depth and part meet at the owner of a pixel. All give the same bits.
+enum class WordExchange : std::uint8_t {
+  automatic,  ///< what sends fewer bytes from the rank that sends most
+  dense,      ///< all pixels, one reduction
+  sparse,     ///< blocks of 8 × 8 pixels with what a rank has drawn in them
+};
+
+struct RanksOptions {
+  int root = 0;  ///< who gets the picture
+  WordExchange exchange = WordExchange::automatic;
+};
+
+struct RanksStats {
+  WordExchange exchange = WordExchange::dense;  ///< what was taken
+  std::uint64_t primitives = 0;                 ///< of all ranks
+  std::uint64_t words = 0;                      ///< pixels that this rank has drawn something in
+  std::uint64_t won = 0;                        ///< pixels that show a part of this rank
+};
+
+/// Draws the instances of all ranks as one scene into the root's `targets`; those of other ranks
+/// are not looked at. All ranks call it, with the same camera, frame and options; a rank may have
+/// no instance. `parts`: the number of each instance, by which one renderer would draw all in
+/// rising order; no number occurs twice, on any rank. It stands for InstanceView::id where there is
+/// none, and ids count primitives of all ranks in that order. Instances refer to the materials and
+/// mappings of their own rank's scene; either all ranks with instances have materials or none.
+///
+/// Of `targets` there are color8, color, linear, depth, ids, instances, primitives, barycentrics,
+/// positions, normals, camera_normals, view_depth, distance, albedo and scalars.
+///
+/// What fails on one rank (an argument, memory, a stop) is thrown on all of them as the same Error,
+/// which begins with "rank 3: "; a stop is parallel::Stopped. Throws Error{unsupported} for what
+/// needs more of other ranks than the nearest surface: translucent surfaces that are blended,
+/// several samples, shadows, an environment behind, scalar mappings without a range.
+RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView& scene,
+                        std::span<const std::uint64_t> parts, const Camera& camera,
+                        const FrameOptions& frame, const Targets& targets,
+                        const RanksOptions& options = {});
+
+}  // namespace rastrum

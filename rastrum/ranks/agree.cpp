@@ -1,0 +1,69 @@
+#include <rastrum/ranks/agree.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <new>
+#include <string>
+
+#include <rastrum/error.hpp>
+#include <rastrum/stop.hpp>
+
+namespace rastrum::ranks {
+namespace {
+
+enum class Cause : std::int32_t { error, stopped, other };
+
+/// What the failing rank tells all others, of one size.
+struct Verdict {
+  Cause cause = Cause::other;
+  std::int32_t code = 0;  ///< Errc
+  std::array<char, 1016> text{};
+};
+
+void set_text(Verdict& v, const char* text) {
+  std::strncpy(v.text.data(), text, v.text.size() - 1);
+}
+
+Verdict verdict_of(const std::exception_ptr& failure) {
+  Verdict v;
+  try {
+    std::rethrow_exception(failure);
+  } catch (const Error& e) {
+    v.cause = Cause::error;
+    v.code = static_cast<std::int32_t>(e.code());
+    set_text(v, e.what());
+  } catch (const parallel::Stopped&) {
+    v.cause = Cause::stopped;
+  } catch (const std::bad_alloc&) {
+    v.cause = Cause::error;
+    v.code = static_cast<std::int32_t>(Errc::out_of_memory);
+    set_text(v, "no memory is left for the frame");
+  } catch (const std::exception& e) {
+    set_text(v, e.what());
+  } catch (...) {
+    set_text(v, "an exception that is none of the standard library's");
+  }
+  return v;
+}
+
+}  // namespace
+
+void agree(Communicator& ranks, const std::exception_ptr& failure) {
+  const auto size = static_cast<std::uint64_t>(ranks.size());
+  const auto rank = static_cast<std::uint64_t>(ranks.rank());
+  // The lowest failing rank has the greatest number; 0 is nobody.
+  const std::uint64_t worst = ranks.max(failure ? size - rank : 0);
+  if (worst == 0) return;
+  const auto speaker = static_cast<int>(size - worst);
+  Verdict v;
+  if (speaker == ranks.rank()) v = verdict_of(failure);
+  ranks.broadcast(std::as_writable_bytes(std::span(&v, 1)), speaker);
+  if (v.cause == Cause::stopped) throw parallel::Stopped{};
+  const std::string message =
+      std::string("rank ").append(std::to_string(speaker)).append(": ").append(v.text.data());
+  if (v.cause == Cause::error) throw Error(static_cast<Errc>(v.code), message);
+  throw std::runtime_error(message);
+}
+
+}  // namespace rastrum::ranks

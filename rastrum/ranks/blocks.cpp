@@ -1,0 +1,43 @@
+#include <rastrum/ranks/blocks.hpp>
+
+namespace rastrum::ranks {
+
+BlockGrid::BlockGrid(int width, int height, int ranks)
+    : width_(width),
+      height_(height),
+      columns_((width + kSide - 1) / kSide),
+      count_(static_cast<std::size_t>(columns_) *
+             static_cast<std::size_t>((height + kSide - 1) / kSide)) {
+  const auto n = static_cast<std::uint64_t>(ranks);
+  for (std::uint64_t r = 0; r <= n; ++r) {
+    firsts_.push_back(count_ * r / n);
+    first_words_.push_back(firsts_.back() * kPixels);
+  }
+}
+
+Mail::Mail(int ranks)
+    : to_(static_cast<std::size_t>(ranks)),
+      from_(to_.size()),
+      to_sizes_(to_.size()),
+      from_sizes_(to_.size()),
+      to_views_(to_.size()),
+      from_views_(to_.size()) {}
+
+void Mail::exchange_sizes(Communicator& ranks) {
+  for (std::size_t r = 0; r < to_.size(); ++r) to_sizes_[r] = to_[r].size();
+  ranks.exchange_sizes(to_sizes_, from_sizes_);
+}
+
+void Mail::make_room() {
+  for (std::size_t r = 0; r < to_.size(); ++r) {
+    from_[r].resize(from_sizes_[r]);
+    to_views_[r] = to_[r];
+    from_views_[r] = from_[r];
+  }
+}
+
+void Mail::exchange(Communicator& ranks) {
+  ranks.exchange(to_views_, from_views_);
+}
+
+}  // namespace rastrum::ranks

@@ -1,0 +1,108 @@
+// How pixels are dealt and told: the picture is cut into blocks of 8 × 8 pixels in rows, each rank
+// owns an even run of them, and a set of pixels is a list of blocks with a mask each.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include <rastrum/ranks.hpp>
+
+namespace rastrum::ranks {
+
+inline constexpr int kSide = 8;
+inline constexpr std::size_t kPixels = 64;
+
+struct BlockMask {
+  std::uint64_t mask = 0;  ///< bit 8 y + x
+  std::uint32_t block = 0;
+};
+/// Of a BlockMask between ranks, without padding.
+inline constexpr std::size_t kMaskBytes = 12;
+
+class BlockGrid {
+ public:
+  BlockGrid(int width, int height, int ranks);
+  [[nodiscard]] std::size_t count() const { return count_; }
+  /// Rank r owns blocks [firsts()[r], firsts()[r + 1]), and words of 64 times that.
+  [[nodiscard]] std::span<const std::uint64_t> firsts() const { return firsts_; }
+  [[nodiscard]] std::span<const std::uint64_t> first_words() const { return first_words_; }
+  /// Calls f(i, x, y) for the pixels of the block that `mask` names and the picture has, rising i.
+  template <class F>
+  void each_pixel(BlockMask b, const F& f) const {
+    const int x0 = static_cast<int>(b.block) % columns_ * kSide;
+    const int y0 = static_cast<int>(b.block) / columns_ * kSide;
+    for (std::uint64_t m = b.mask; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      const int x = x0 + i % kSide, y = y0 + i / kSide;
+      if (x < width_ && y < height_) f(i, x, y);
+    }
+  }
+
+ private:
+  int width_, height_, columns_;
+  std::size_t count_;
+  std::vector<std::uint64_t> firsts_, first_words_;
+};
+
+using Bytes = std::vector<std::byte>;
+
+template <class T>
+void put(Bytes& to, const T& value) {
+  const std::size_t at = to.size();
+  to.resize(at + sizeof(T));
+  std::memcpy(to.data() + at, &value, sizeof(T));
+}
+inline void put_mask(Bytes& to, BlockMask b) {
+  put(to, b.mask);
+  put(to, b.block);
+}
+
+/// Reads what put wrote, in the same order.
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : left_(bytes) {}
+  [[nodiscard]] bool at_end() const { return left_.empty(); }
+  template <class T>
+  T take() {
+    T value;
+    std::memcpy(&value, left_.data(), sizeof(T));
+    left_ = left_.subspan(sizeof(T));
+    return value;
+  }
+  BlockMask take_mask() {
+    BlockMask b;
+    b.mask = take<std::uint64_t>();
+    b.block = take<std::uint32_t>();
+    return b;
+  }
+
+ private:
+  std::span<const std::byte> left_;
+};
+
+/// What goes to each rank, and comes from each, in one exchange.
+class Mail {
+ public:
+  explicit Mail(int ranks);
+  [[nodiscard]] Bytes& to(std::size_t rank) { return to_[rank]; }
+  [[nodiscard]] std::size_t ranks() const { return to_.size(); }
+  /// A collective of its own that allocates nothing.
+  void exchange_sizes(Communicator& ranks);
+  /// Makes room for what will come.
+  void make_room();
+  /// The collective; allocates nothing.
+  void exchange(Communicator& ranks);
+  [[nodiscard]] Reader from(std::size_t rank) const { return Reader(from_[rank]); }
+
+ private:
+  std::vector<Bytes> to_, from_;
+  std::vector<std::uint64_t> to_sizes_, from_sizes_;
+  std::vector<std::span<const std::byte>> to_views_;
+  std::vector<std::span<std::byte>> from_views_;
+};
+
+}  // namespace rastrum::ranks

@@ -1,0 +1,45 @@
+#include <rastrum/ranks/gather.hpp>
+
+#include <type_traits>
+#include <utility>
+
+namespace rastrum::ranks {
+
+std::uint32_t targets_asked(const Targets& targets) {
+  std::uint32_t asked = 0;
+  each_target(targets,
+              [&](const auto& view, std::uint32_t bit) { asked |= view.empty() ? 0 : bit; });
+  return asked;
+}
+
+OwnImages::OwnImages(std::uint32_t asked, int width, int height) {
+  each_target(targets_, [&](auto& view, std::uint32_t bit) {
+    if ((asked & bit) == 0) return;
+    using Pixel = std::remove_cvref_t<decltype(*view.data)>;
+    auto& list = std::get<std::vector<Image<Pixel>>>(images_);
+    view = list.emplace_back(width, height).view();  // an image that moves keeps its pixels' place
+  });
+}
+
+void send_pixels(const BlockGrid& grid, std::span<const BlockMask> won, const Targets& own,
+                 Bytes& to) {
+  for (const BlockMask& b : won) {
+    put_mask(to, b);
+    each_target(own, [&](const auto& view, std::uint32_t) {
+      if (!view.empty()) grid.each_pixel(b, [&](int, int x, int y) { put(to, view(x, y)); });
+    });
+  }
+}
+
+void take_pixels(const BlockGrid& grid, Reader from, const Targets& targets) {
+  while (!from.at_end()) {
+    const BlockMask b = from.take_mask();
+    each_target(targets, [&](const auto& view, std::uint32_t) {
+      using Pixel = std::remove_cvref_t<decltype(*view.data)>;
+      if (!view.empty())
+        grid.each_pixel(b, [&](int, int x, int y) { view(x, y) = from.take<Pixel>(); });
+    });
+  }
+}
+
+}  // namespace rastrum::ranks

@@ -1,0 +1,52 @@
+// What the root asked for: which targets, images for them on a rank, and the way of won pixels from
+// who has shaded them into the root's targets.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include <rastrum/ranks/blocks.hpp>
+#include <rastrum/ranks/part_list.hpp>
+
+namespace rastrum::ranks {
+
+/// Calls f(view, bit) for each target that ranks can fill, in the order in which they are sent.
+template <class T, class F>
+void each_target(T& t, const F& f) {
+  std::uint32_t bit = 1;
+  const auto next = [&](auto& view) {
+    f(view, bit);
+    bit <<= 1;
+  };
+  next(t.depth), next(t.ids), next(t.color8), next(t.color), next(t.linear), next(t.instances);
+  next(t.primitives), next(t.barycentrics), next(t.positions), next(t.normals);
+  next(t.camera_normals), next(t.view_depth), next(t.distance), next(t.albedo), next(t.scalars);
+}
+/// Of `depth` and `ids`, which words and the list of parts tell.
+inline constexpr std::uint32_t kKnownTargets = 3;
+
+/// The bits of those that are not empty.
+[[nodiscard]] std::uint32_t targets_asked(const Targets& targets);
+
+/// Images of a rank's own for the targets of these bits.
+class OwnImages {
+ public:
+  OwnImages(std::uint32_t asked, int width, int height);
+  [[nodiscard]] const Targets& targets() const { return targets_; }
+
+ private:
+  template <class... T>
+  using Lists = std::tuple<std::vector<Image<T>>...>;
+  Lists<Rgba8, Vec2, Vec3, Vec4, float, std::int64_t> images_;
+  Targets targets_;
+};
+
+/// Packs the pixels of `won` that the rank has in `own`.
+void send_pixels(const BlockGrid& grid, std::span<const BlockMask> won, const Targets& own,
+                 Bytes& to);
+/// The other end: into the root's targets, which have the same ones.
+void take_pixels(const BlockGrid& grid, Reader from, const Targets& targets);
+
+}  // namespace rastrum::ranks

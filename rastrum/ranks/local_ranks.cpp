@@ -1,0 +1,194 @@
+#include <algorithm>
+#include <condition_variable>
+#include <cstring>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include <rastrum/error.hpp>
+#include <rastrum/ranks.hpp>
+
+namespace rastrum {
+
+/// What the threads share: where each has laid what the others read, and where they meet.
+struct LocalRanks::Shared {
+  /// A rank's own, which others read between two meetings.
+  struct Post {
+    std::uint64_t value = 0;
+    std::span<const std::byte> bytes{};
+    std::span<const std::uint64_t> words{};
+    std::span<const std::span<const std::byte>> blocks{};
+  };
+
+  explicit Shared(int n)
+      : posts(static_cast<std::size_t>(n)),
+        traffic(static_cast<std::size_t>(n)),
+        failures(static_cast<std::size_t>(n)) {}
+
+  /// Returns once all ranks are here. Throws once one has left.
+  void meet() {
+    std::unique_lock lock(mutex);
+    throw_if_left();
+    if (++arrived == posts.size()) {
+      arrived = 0;
+      ++meeting;
+      all_here.notify_all();
+      return;
+    }
+    const std::uint64_t mine = meeting;
+    all_here.wait(lock, [&] { return meeting != mine || left >= 0; });
+    if (meeting == mine) throw_if_left();
+  }
+
+  void leave(int rank) {
+    const std::lock_guard lock(mutex);
+    if (left < 0) left = rank;
+    all_here.notify_all();
+  }
+
+  void throw_if_left() const {
+    if (left >= 0)
+      throw Error(Errc::io, "rank " + std::to_string(left) + " has left the others waiting");
+  }
+
+  std::mutex mutex;
+  std::condition_variable all_here;
+  std::size_t arrived = 0;
+  std::uint64_t meeting = 0;
+  int left = -1;
+  std::vector<Post> posts;
+  std::vector<Traffic> traffic;
+  std::vector<std::exception_ptr> failures;
+};
+
+namespace {
+
+template <class Shared>
+class LocalRank final : public Communicator {
+ public:
+  LocalRank(Shared& shared, int rank)
+      : shared_(shared), rank_(rank), me_(static_cast<std::size_t>(rank)) {}
+
+  [[nodiscard]] int rank() const override { return rank_; }
+  [[nodiscard]] int size() const override { return static_cast<int>(shared_.posts.size()); }
+
+  [[nodiscard]] std::uint64_t max(std::uint64_t value) override {
+    shared_.posts[me_].value = value;
+    shared_.meet();
+    std::uint64_t most = 0;
+    for (const auto& post : shared_.posts) most = std::max(most, post.value);
+    count_to_all(sizeof(value));
+    shared_.meet();
+    return most;
+  }
+
+  void broadcast(std::span<std::byte> bytes, int root) override {
+    shared_.posts[me_].bytes = bytes;
+    shared_.meet();
+    if (root != rank_)
+      copy(shared_.posts[static_cast<std::size_t>(root)].bytes, bytes);
+    else
+      count_to_all(bytes.size());
+    shared_.meet();
+  }
+
+  void exchange_sizes(std::span<const std::uint64_t> to, std::span<std::uint64_t> from) override {
+    shared_.posts[me_].words = to;
+    shared_.meet();
+    for (std::size_t r = 0; r < from.size(); ++r) from[r] = shared_.posts[r].words[me_];
+    count_to_all(sizeof(std::uint64_t));
+    shared_.meet();
+  }
+
+  void exchange(std::span<const std::span<const std::byte>> to,
+                std::span<const std::span<std::byte>> from) override {
+    shared_.posts[me_].blocks = to;
+    shared_.meet();
+    for (std::size_t r = 0; r < from.size(); ++r) {
+      copy(shared_.posts[r].blocks[me_], from[r]);
+      if (r != me_ && !to[r].empty()) count(to[r].size());
+    }
+    shared_.meet();
+  }
+
+  /// Counted as pairs exchange it: to each owner its range.
+  void reduce_max(std::span<const std::uint64_t> words, std::span<const std::uint64_t> firsts,
+                  std::span<std::uint64_t> own) override {
+    shared_.posts[me_].words = words;
+    shared_.meet();
+    std::fill(own.begin(), own.end(), 0);
+    for (const auto& post : shared_.posts) {
+      const std::uint64_t* const from = post.words.data() + firsts[me_];
+      for (std::size_t i = 0; i < own.size(); ++i) own[i] = std::max(own[i], from[i]);
+    }
+    for (std::size_t r = 0; r + 1 < firsts.size(); ++r)
+      if (r != me_ && firsts[r] < firsts[r + 1])
+        count((firsts[r + 1] - firsts[r]) * sizeof(std::uint64_t));
+    shared_.meet();
+  }
+
+ private:
+  void count(std::uint64_t bytes) {
+    shared_.traffic[me_].bytes += bytes;
+    ++shared_.traffic[me_].messages;
+  }
+  void count_to_all(std::uint64_t bytes) {
+    for (std::size_t r = 1; r < shared_.posts.size(); ++r) count(bytes);
+  }
+  static void copy(std::span<const std::byte> from, std::span<std::byte> to) {
+    if (!to.empty()) std::memcpy(to.data(), from.data(), to.size());
+  }
+
+  Shared& shared_;
+  int rank_;
+  std::size_t me_;
+};
+
+}  // namespace
+
+LocalRanks::LocalRanks(int ranks) {
+  if (ranks < 1 || ranks > 4096)
+    throw Error(Errc::invalid_argument,
+                "ranks must lie between 1 and 4096, not " + std::to_string(ranks));
+  shared_ = std::make_unique<Shared>(ranks);
+}
+LocalRanks::~LocalRanks() = default;
+
+std::span<const LocalRanks::Traffic> LocalRanks::traffic() const {
+  return shared_->traffic;
+}
+
+void LocalRanks::run(const std::function<void(Communicator&)>& f) {
+  Shared& shared = *shared_;
+  shared.arrived = 0;
+  shared.left = -1;
+  std::fill(shared.traffic.begin(), shared.traffic.end(), Traffic{});
+  std::fill(shared.failures.begin(), shared.failures.end(), nullptr);
+  const auto as_rank = [&](int rank) {
+    LocalRank<Shared> own(shared, rank);
+    try {
+      f(own);
+    } catch (...) {
+      shared.failures[static_cast<std::size_t>(rank)] = std::current_exception();
+      shared.leave(rank);
+    }
+  };
+  {
+    std::vector<std::jthread> threads;
+    threads.reserve(shared.posts.size());
+    for (int r = 0; r < static_cast<int>(shared.posts.size()); ++r) {
+      try {
+        threads.emplace_back(as_rank, r);
+      } catch (...) {  // those that have begun must not wait for it
+        shared.leave(r);
+        throw;
+      }
+    }
+  }
+  // Who left first has thrown what the others only heard of.
+  if (shared.left >= 0)
+    std::rethrow_exception(shared.failures[static_cast<std::size_t>(shared.left)]);
+}
+
+}  // namespace rastrum

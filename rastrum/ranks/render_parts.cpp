@@ -1,0 +1,357 @@
+#include <rastrum/ranks/render_parts.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <rastrum/core/enum.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/ranks/blocks.hpp>
+#include <rastrum/ranks/gather.hpp>
+#include <rastrum/ranks/part_list.hpp>
+#include <rastrum/ranks/word_exchange.hpp>
+#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/render/depth_greys.hpp>
+#include <rastrum/render/target_checks.hpp>
+#include <rastrum/render/tone_pass.hpp>
+
+namespace rastrum::ranks {
+namespace {
+
+/// At a pixel that another rank has won: nearer than any surface, and of no pass. Below 2, whose
+/// bits would make a key negative to the kernels that compare signed numbers.
+constexpr std::uint64_t kLost = std::uint64_t{std::bit_cast<std::uint32_t>(1.5F)}
+                                    << raster::kIdBits |
+                                (raster::kIdMask - raster::kMaxId);
+
+void check_alone(const SceneView& scene, const FrameOptions& o) {
+  const auto require = [](bool ok, const char* what) {
+    if (!ok)
+      throw Error(Errc::unsupported, std::string("a picture of several ranks: ").append(what));
+  };
+  require(o.samples == 1, "several samples a pixel (samples) are not exchanged; draw with one");
+  require(!o.shadows, "shadows need the parts of all ranks; draw without");
+  require(!o.environment_behind, "the environment behind it (environment_behind) is not drawn");
+  require(std::ranges::all_of(
+              scene.scalar_mappings,
+              [](const ScalarMapping& m) { return m.range.has_value() || !m.categories.empty(); }),
+          "a scalar mapping without a range would take that of one rank; give it one");
+}
+
+void check_root_targets(const Targets& targets, const FrameOptions& o) {
+  check_targets(targets, o);
+  if (!targets.overdraw.empty() || !targets.errors.empty() || !targets.keys.empty() ||
+      !targets.extra.empty() || targets.load || targets.over || targets.first_id != 0)
+    throw Error(Errc::unsupported,
+                "a picture of several ranks has no targets overdraw, errors, keys and extra, and "
+                "is drawn at once (load, over, first_id)");
+}
+
+/// Of what must be the same on all ranks (FNV-1a); what differs nevertheless shows in the picture.
+std::uint64_t fingerprint(const Camera& camera, const FrameOptions& o, const RanksOptions& r) {
+  std::uint64_t hash = 0xCBF29CE484222325U;
+  const auto add = [&](const auto& value) {
+    for (const std::byte b : std::as_bytes(std::span(&value, 1)))
+      hash = (hash ^ std::to_integer<std::uint64_t>(b)) * 0x100000001B3U;
+  };
+  add(world_to_clip(camera, o.width, o.height));
+  for (const int number :
+       {o.width, o.height, r.root, static_cast<int>(o.shader), static_cast<int>(o.cull),
+        static_cast<int>(o.transparency.method), static_cast<int>(r.exchange),
+        static_cast<int>(o.tone.tone), static_cast<int>(o.lights.size())})
+    add(number);
+  for (const float number : {o.opacity, o.background.x, o.background.y, o.background.z,
+                             o.background.w, o.tone.exposure_stops})
+    add(number);
+  for (const ClipPlane& plane : o.clip_planes) add(plane);
+  return hash;
+}
+
+/// One frame of one rank.
+class PartsFrame {
+ public:
+  PartsFrame(Communicator& ranks, Renderer& renderer, const FrameOptions& frame,
+             const RanksOptions& options, const AtPhase& at)
+      : ranks_(ranks), renderer_(renderer), frame_(frame), options_(options), at_(at) {}
+
+  RanksStats draw(const SceneView& scene, std::span<const std::uint64_t> parts,
+                  const Camera& camera, const Targets& targets);
+
+ private:
+  [[nodiscard]] bool is_root() const { return ranks_.rank() == options_.root; }
+  template <class F>
+  void phase(std::string_view name, const F& f) {
+    in_phase(ranks_, at_, name, f);
+  }
+  /// Whether all ranks give the same number; all learn the same.
+  [[nodiscard]] bool is_equal(std::uint64_t number) {
+    const std::uint64_t greatest = ranks_.max(number);
+    const std::uint64_t least = ~ranks_.max(~number);
+    return least == greatest;
+  }
+  void begin(const SceneView& scene, std::span<const std::uint64_t> parts, const Camera& camera);
+  void agree_on_shader();
+  void agree_on_colors();
+  void ask(const Targets& targets);
+  void list_parts();
+  void draw_words(const Camera& camera);
+  void shade(const Camera& camera, std::span<const BlockMask> won);
+  void gather(std::span<const BlockMask> won);
+  void finish(const Targets& targets);
+
+  /// Of own parts [first, last), and of a stand-in where it comes behind them.
+  [[nodiscard]] SceneView own_scene(std::size_t first, std::size_t last) const {
+    if (last == own_->parts.size()) last = own_->instances.size();
+    SceneView scene = scene_;
+    scene.instances = std::span(own_->instances).subspan(first, last - first);
+    return scene;
+  }
+
+  Communicator& ranks_;
+  Renderer& renderer_;
+  FrameOptions frame_;  ///< the tone apart, by the shader that all ranks take
+  RanksOptions options_;
+  const AtPhase& at_;
+
+  SceneView scene_;
+  std::optional<OwnParts> own_;
+  std::optional<PartList> list_;
+  std::vector<std::size_t> places_;  ///< in the list, of own instances
+  std::uint32_t asked_ = 0;          ///< bits of targets that ranks send
+  Image<std::uint64_t> keys_;
+  std::optional<BlockGrid> grid_;
+  std::optional<OwnImages> images_;
+
+  // The root's.
+  TonePass tone_;
+  bool tones_ = false;
+  Targets filled_;  ///< by ranks: the caller's, and what greys or the tone are made from
+  Image<float> depth_;
+};
+
+void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> parts,
+                       const Camera& camera) {
+  std::uint64_t print = 0;
+  phase("check", [&] {
+    check(frame_);
+    check_enum(options_.exchange, WordExchange::sparse, "the exchange of words");
+    if (options_.root < 0 || options_.root >= ranks_.size())
+      throw Error(Errc::invalid_argument, "the root is rank " + std::to_string(options_.root) +
+                                              ", but there are " + std::to_string(ranks_.size()) +
+                                              " ranks");
+    check_alone(scene, frame_);
+    scene_ = scene;
+    own_.emplace(scene, parts);
+    print = fingerprint(camera, frame_, options_);
+  });
+  const bool same = is_equal(print);
+  phase("compare options", [&] {
+    if (!same)
+      throw Error(Errc::invalid_argument,
+                  "the ranks were given different cameras, frames or options");
+  });
+}
+
+void PartsFrame::agree_on_shader() {
+  const bool has_parts = !own_->parts.empty(), has_materials = !scene_.materials.empty();
+  const bool any_with = ranks_.max(has_parts && has_materials ? 1 : 0) != 0;
+  const bool any_without = ranks_.max(has_parts && !has_materials ? 1 : 0) != 0;
+  phase("compare materials", [&] {
+    if (any_with && any_without && has_parts && !has_materials)
+      throw Error(Errc::invalid_argument,
+                  "its scene has no materials, but that of another rank has; give it plain ones "
+                  "(add_plain_materials)");
+    if (frame_.shader == Shader::automatic)
+      frame_.shader = any_with ? Shader::material : Shader::phong;
+  });
+}
+
+/// Where some mesh of a scene has colours, shading interpolates the plain colour of all others,
+/// too, which is not the same float32 as that colour. So a mesh of nothing stands for other ranks'.
+void PartsFrame::agree_on_colors() {
+  const bool colored = std::ranges::any_of(own_->instances, [&](const InstanceView& i) {
+    return i.mesh() != nullptr && !shows_scalars(scene_, i) &&
+           (i.color || !i.mesh()->colors.empty());
+  });
+  const bool any = ranks_.max(colored ? 1 : 0) != 0;
+  phase("stand in", [&] {
+    if (any && !colored) own_->instances.push_back({.color = Vec4{1, 1, 1, 1}, .visible = false});
+  });
+}
+
+void PartsFrame::ask(const Targets& targets) {
+  phase("ask", [&] {
+    if (!is_root()) return;
+    check_root_targets(targets, frame_);
+    check_outputs(targets, true, frame_.shader == Shader::material);
+    filled_ = targets;
+    tones_ = TonePass::wanted(frame_, targets, frame_.shader);
+    if (tones_) filled_ = tone_.targets(frame_, targets);
+    const bool greys =
+        frame_.shader == Shader::depth && !(targets.color8.empty() && targets.color.empty());
+    if (greys) {
+      filled_.color8 = {};
+      filled_.color = {};
+      if (filled_.depth.empty()) {
+        depth_ = Image<float>(frame_.width, frame_.height);
+        filled_.depth = depth_;
+      }
+    }
+    asked_ = targets_asked(filled_);
+  });
+  ranks_.broadcast(std::as_writable_bytes(std::span(&asked_, 1)), options_.root);
+}
+
+void PartsFrame::list_parts() {
+  std::optional<Mail> mail;
+  phase("tell parts", [&] {
+    mail.emplace(ranks_.size());
+    PartList::tell(*own_, *mail);
+  });
+  mail->exchange_sizes(ranks_);
+  phase("make room for parts", [&] { mail->make_room(); });
+  mail->exchange(ranks_);
+  phase("list parts", [&] {
+    list_.emplace(*mail);
+    places_ = list_->places_of(ranks_.rank());
+  });
+}
+
+void PartsFrame::draw_words(const Camera& camera) {
+  phase("draw", [&] {
+    grid_.emplace(frame_.width, frame_.height, ranks_.size());
+    keys_ = Image<std::uint64_t>(frame_.width, frame_.height);
+    if (own_->parts.empty()) return;
+    FrameOptions plain = frame_;
+    plain.lights.clear();
+    plain.tone = {};
+    Targets words;
+    words.keys = keys_;
+    const FrameStats stats =
+        renderer_.render(own_scene(0, own_->parts.size()), camera, plain, words);
+    if (stats.visibility == "layers")
+      throw Error(Errc::unsupported,
+                  "a picture of several ranks: its surfaces are translucent, and layers are not "
+                  "exchanged between ranks; draw "
+                  "them opaque (Transparency::none)");
+  });
+}
+
+/// What this rank has won, drawn again over a picture whose other pixels are taken. Shader::id
+/// wants the ids of all ranks, which count on within a run of neighbouring parts alone.
+void PartsFrame::shade(const Camera& camera, std::span<const BlockMask> won) {
+  phase("shade", [&] {
+    images_.emplace(asked_, frame_.width, frame_.height);
+    Targets own = images_->targets();
+    for (const BlockMask& b : won)
+      grid_->each_pixel(b, [&](int, int x, int y) {
+        const std::uint64_t key = keys_(x, y), id = raster::id_of_key(key);
+        if (!own.depth.empty()) own.depth(x, y) = raster::depth_of_key(key);
+        if (own.ids.empty()) return;
+        const std::size_t i = own_->instance_of(id);
+        own.ids(x, y) = static_cast<std::int64_t>(list_->parts()[places_[i]].first_id + id -
+                                                  own_->first_ids[i]);
+      });
+    if ((asked_ & ~kKnownTargets) == 0 || won.empty()) return;
+    own.depth = {};
+    own.ids = {};
+    FrameOptions alone = frame_;
+    alone.tone = {};
+    Image<std::uint64_t> pass_keys(frame_.width, frame_.height);
+    for (std::size_t first = 0, last = 0; first < places_.size(); first = last) {
+      last = first + 1;
+      while (last < places_.size() &&
+             (frame_.shader != Shader::id || places_[last] == places_[last - 1] + 1))
+        ++last;
+      std::ranges::fill(pass_keys.pixels(), kLost);
+      bool any = false;
+      for (const BlockMask& b : won)
+        grid_->each_pixel(b, [&](int, int x, int y) {
+          const std::uint64_t id = raster::id_of_key(keys_(x, y));
+          if (id < own_->first_ids[first] || id >= own_->first_ids[last]) return;
+          pass_keys(x, y) = 0;
+          any = true;
+        });
+      if (!any) continue;
+      own.keys = pass_keys;
+      own.load = true;
+      own.first_id = frame_.shader == Shader::id ? list_->parts()[places_[first]].first_id : 0;
+      (void)renderer_.render(own_scene(first, last), camera, alone, own);
+    }
+  });
+}
+
+void PartsFrame::gather(std::span<const BlockMask> won) {
+  std::optional<Mail> mail;
+  phase("pack pixels", [&] {
+    mail.emplace(ranks_.size());
+    send_pixels(*grid_, won, images_->targets(), mail->to(static_cast<std::size_t>(options_.root)));
+    images_.reset();
+  });
+  mail->exchange_sizes(ranks_);
+  phase("make room for pixels", [&] { mail->make_room(); });
+  mail->exchange(ranks_);
+  phase("take pixels", [&] {
+    if (!is_root()) return;
+    // Where nothing is: what a scene without instances shows.
+    FrameOptions nothing = frame_;
+    nothing.tone = {};
+    (void)renderer_.render({}, Camera{}, nothing, filled_);
+    for (std::size_t r = 0; r < mail->ranks(); ++r) take_pixels(*grid_, mail->from(r), filled_);
+  });
+}
+
+void PartsFrame::finish(const Targets& targets) {
+  phase("finish", [&] {
+    if (!is_root()) return;
+    if (tones_) tone_.draw(frame_, targets, nullptr);
+    if (frame_.shader == Shader::depth && !filled_.depth.empty())
+      stretch_depth(filled_.depth, frame_.background, targets);
+  });
+}
+
+RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_t> parts,
+                            const Camera& camera, const Targets& targets) {
+  begin(scene, parts, camera);
+  agree_on_shader();
+  agree_on_colors();
+  ask(targets);
+  list_parts();
+  draw_words(camera);
+  std::optional<Words> words;
+  phase("make words", [&] { words.emplace(*grid_, keys_, *own_, places_); });
+  const Words::Won won = words->meet(ranks_, at_, *list_, options_.exchange);
+  words.reset();
+  shade(camera, won.blocks);
+  gather(won.blocks);
+  finish(targets);
+  RanksStats stats{.exchange = won.taken, .primitives = list_->primitives(), .words = won.words};
+  for (const BlockMask& b : won.blocks) stats.won += static_cast<unsigned>(std::popcount(b.mask));
+  return stats;
+}
+
+}  // namespace
+
+RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView& scene,
+                        std::span<const std::uint64_t> parts, const Camera& camera,
+                        const FrameOptions& frame, const Targets& targets,
+                        const RanksOptions& options, const AtPhase& at) {
+  return PartsFrame(ranks, renderer, frame, options, at).draw(scene, parts, camera, targets);
+}
+
+}  // namespace rastrum::ranks
+
+namespace rastrum {
+
+RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView& scene,
+                        std::span<const std::uint64_t> parts, const Camera& camera,
+                        const FrameOptions& frame, const Targets& targets,
+                        const RanksOptions& options) {
+  return rastrum::ranks::render_parts(ranks, renderer, scene, parts, camera, frame, targets,
+                                      options, {});
+}
+
+}  // namespace rastrum

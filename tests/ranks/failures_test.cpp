@@ -1,0 +1,151 @@
+// What fails on one rank ends the frame on all with the same error, in whichever phase, and the
+// ranks draw the next frame as if nothing had been.
+#include <atomic>
+#include <new>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/stop.hpp>
+
+#include "tests/ranks/parts_picture.hpp"
+#include "tests/support/refused.hpp"
+
+namespace rastrum::test::failures_test {
+namespace {
+
+/// What each rank says of one frame; "" where it has ended well.
+std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView& all,
+                                  const ranks::AtPhase& at) {
+  const Camera camera{.eye = {0, 0, 3}};
+  FrameOptions frame;
+  frame.width = frame.height = 16;
+  std::vector<std::string> said(static_cast<std::size_t>(count));
+  Image<Rgba8> image(16, 16);
+  ranks.run([&](Communicator& c) {
+    const auto r = static_cast<std::size_t>(c.rank());
+    SceneView own = all;
+    own.instances =
+        r < all.instances.size() ? all.instances.subspan(r, 1) : std::span<const InstanceView>{};
+    const std::uint64_t part = r;
+    Renderer renderer({.device = Device::serial});
+    Targets targets;
+    if (r == 0) targets.color8 = image;
+    try {
+      (void)ranks::render_parts(c, renderer, own, std::span(&part, own.instances.size()), camera,
+                                frame, targets, {}, at);
+    } catch (const std::exception& e) {
+      said[r] = e.what();
+    }
+  });
+  return said;
+}
+
+class Failures : public testing::Test {
+ protected:
+  PartsScene parts{9, 3, false};
+  SceneBinding binding{parts.scene};
+
+  std::set<std::string> phases() {
+    std::set<std::string> names;
+    LocalRanks alone(1);
+    messages(alone, 1, binding.view(), [&](std::string_view phase, int) { names.emplace(phase); });
+    return names;
+  }
+};
+
+TEST_F(Failures, EndTheFrameOnAllRanksInEachPhase) {
+  constexpr int kRanks = 4;
+  LocalRanks ranks(kRanks);
+  const auto names = phases();
+  ASSERT_GE(names.size(), 15U);
+  for (const std::string& name : names)
+    for (int rank = 0; rank < kRanks; ++rank) {
+      const auto said = messages(ranks, kRanks, binding.view(), [&](std::string_view phase, int r) {
+        if (phase == name && r == rank) throw Error(Errc::io, "wing.ply: cut short");
+      });
+      for (const std::string& message : said)
+        ASSERT_EQ(message, "rank " + std::to_string(rank) + ": wing.ply: cut short") << name;
+    }
+  for (const std::string& message : messages(ranks, kRanks, binding.view(), {}))
+    EXPECT_EQ(message, "");
+}
+
+/// Several ranks fail, in phases of their own, in one of several ways: all hear the same.
+TEST_F(Failures, AtRandomNeverHang) {
+  constexpr int kRanks = 3;
+  LocalRanks ranks(kRanks);
+  const auto set = phases();
+  const std::vector<std::string> names(set.begin(), set.end());
+  Random random(1);
+  for (int i = 0; i < 1000; ++i) {
+    struct Plan {
+      std::string phase;
+      int way = 0;
+    };
+    std::vector<Plan> plans(kRanks);
+    for (Plan& p : plans) {
+      p.phase =
+          names[static_cast<std::size_t>(random.integer(0, static_cast<int>(names.size()) - 1))];
+      p.way = random.integer(0, 4);
+    }
+    plans[static_cast<std::size_t>(random.integer(0, kRanks - 1))].way = random.integer(1, 4);
+    const auto said = messages(ranks, kRanks, binding.view(), [&](std::string_view phase, int r) {
+      const Plan& p = plans[static_cast<std::size_t>(r)];
+      if (p.phase != phase || p.way == 0) return;
+      if (p.way == 1) throw Error(Errc::bad_format, "not a file");
+      if (p.way == 2) throw std::bad_alloc();
+      if (p.way == 3) throw parallel::Stopped{};
+      throw 3;  // NOLINT: a caller's function may
+    });
+    ASSERT_NE(said[0], "") << i;
+    for (const std::string& message : said) ASSERT_EQ(message, said[0]) << i;
+  }
+}
+
+TEST_F(Failures, KeepCodeAndKind) {
+  LocalRanks ranks(3);
+  const Camera camera{.eye = {0, 0, 3}};
+  FrameOptions frame;
+  frame.width = frame.height = 16;
+  const auto draw = [&](const ranks::AtPhase& at) {
+    draw_dealt(ranks, {{0}, {1}, {2}}, binding.view(), camera, frame, {}, {}, at);
+  };
+  expect_refused("rank 2: no memory", Errc::out_of_memory, [&] {
+    draw([](std::string_view phase, int r) {
+      if (phase == "draw" && r == 2) throw std::bad_alloc();
+    });
+  });
+  EXPECT_THROW(draw([](std::string_view phase, int r) {
+                 if (phase == "shade" && r == 1) throw parallel::Stopped{};
+               }),
+               parallel::Stopped);
+  // Of two the lowest rank's.
+  expect_refused("rank 1: early", Errc::io, [&] {
+    draw([](std::string_view phase, int r) {
+      if (phase == "draw" && r > 0) throw Error(Errc::io, r == 1 ? "early" : "late");
+    });
+  });
+}
+
+TEST_F(Failures, DifferentOptionsAreRefusedEverywhere) {
+  LocalRanks ranks(3);
+  std::atomic<int> refused = 0;
+  ranks.run([&](Communicator& c) {
+    FrameOptions frame;
+    frame.width = frame.height = 16;
+    if (c.rank() == 1) frame.opacity = 0.5F;
+    Renderer renderer({.device = Device::serial});
+    try {
+      (void)render_parts(c, renderer, {}, {}, Camera{.eye = {0, 0, 3}}, frame, {});
+    } catch (const Error& e) {
+      refused += std::string(e.what()).find("different cameras") != std::string::npos ? 1 : 0;
+    }
+  });
+  EXPECT_EQ(refused, 3);
+}
+
+}  // namespace
+}  // namespace rastrum::test::failures_test

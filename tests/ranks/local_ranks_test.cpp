@@ -1,0 +1,107 @@
+// Ranks that are threads: each function of a Communicator does what it says, what is sent is
+// counted to the byte, and a rank that leaves ends the others' waiting.
+#include <cstdint>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/ranks.hpp>
+
+#include "tests/support/refused.hpp"
+
+namespace rastrum::test::local_ranks_test {
+namespace {
+
+std::uint64_t number_of(int rank) {
+  return static_cast<std::uint64_t>(rank);
+}
+
+TEST(LocalRanks, ExchangeWhatTheySay) {
+  for (const int n : {1, 2, 7}) {
+    LocalRanks ranks(n);
+    ranks.run([n](Communicator& c) {
+      const auto size = static_cast<std::size_t>(n);
+      const std::uint64_t me = number_of(c.rank());
+      ASSERT_EQ(c.size(), n);
+      EXPECT_EQ(c.max(10 + me), 9 + number_of(n));
+      std::uint32_t told = c.rank() == n - 1 ? 77 : 0;
+      c.broadcast(std::as_writable_bytes(std::span(&told, 1)), n - 1);
+      EXPECT_EQ(told, 77U);
+
+      // Rank r sends r bytes of its number to each rank but the first.
+      std::vector<std::uint64_t> to(size, me), from(size);
+      to[0] = 0;
+      c.exchange_sizes(to, from);
+      std::vector<std::vector<std::byte>> out(size), in(size);
+      std::vector<std::span<const std::byte>> out_views(size);
+      std::vector<std::span<std::byte>> in_views(size);
+      for (std::size_t r = 0; r < size; ++r) {
+        EXPECT_EQ(from[r], c.rank() == 0 ? 0 : r);
+        out[r].assign(to[r], std::byte(me));
+        in[r].resize(from[r]);
+        out_views[r] = out[r];
+        in_views[r] = in[r];
+      }
+      c.exchange(out_views, in_views);
+      for (std::size_t r = 0; r < size; ++r)
+        for (const std::byte b : in[r]) EXPECT_EQ(b, std::byte(r));
+
+      // Rank r owns r words; at word i rank (i mod n) has the greatest.
+      std::vector<std::uint64_t> firsts{0}, words;
+      for (std::uint64_t r = 0; r < size; ++r) firsts.push_back(firsts.back() + r);
+      for (std::uint64_t i = 0; i < firsts.back(); ++i)
+        words.push_back(i % size == me ? 1000 + i : i);
+      std::vector<std::uint64_t> own(me);
+      c.reduce_max(words, firsts, own);
+      for (std::uint64_t i = 0; i < me; ++i) EXPECT_EQ(own[i], 1000 + firsts[me] + i);
+    });
+  }
+}
+
+TEST(LocalRanks, CountWhatTheySendToOthers) {
+  LocalRanks ranks(3);
+  ranks.run([](Communicator& c) {
+    const std::vector<std::byte> five(5);
+    std::vector<std::byte> room(5);
+    std::vector<std::span<const std::byte>> to(3);
+    std::vector<std::span<std::byte>> from(3);
+    if (c.rank() == 0) to[0] = to[2] = five;
+    if (c.rank() == 0 || c.rank() == 2) from[0] = room;
+    c.exchange(to, from);
+  });
+  EXPECT_EQ(ranks.traffic()[0].bytes, 5U);
+  EXPECT_EQ(ranks.traffic()[0].messages, 1U);
+  EXPECT_EQ(ranks.traffic()[2].messages, 0U);
+  ranks.run([](Communicator& c) {
+    const std::vector<std::uint64_t> words(6), firsts{0, 1, 3, 6};
+    std::vector<std::uint64_t> own(number_of(c.rank()) + 1);
+    c.reduce_max(words, firsts, own);
+  });
+  for (std::size_t r = 0; r < 3; ++r) {
+    EXPECT_EQ(ranks.traffic()[r].bytes, 8 * (6 - (r + 1)));
+    EXPECT_EQ(ranks.traffic()[r].messages, 2U);
+  }
+}
+
+TEST(LocalRanks, ARankThatLeavesEndsTheWaiting) {
+  LocalRanks ranks(4);
+  for (int i = 0; i < 200; ++i) {
+    expect_refused("gone", Errc::not_found, [&] {
+      ranks.run([](Communicator& c) {
+        (void)c.max(1);
+        if (c.rank() == 2) throw Error(Errc::not_found, "gone");
+        (void)c.max(2);
+        ADD_FAILURE() << "nobody comes here";
+      });
+    });
+  }
+  ranks.run([](Communicator& c) { EXPECT_EQ(c.max(number_of(c.rank())), 3U); });
+}
+
+TEST(LocalRanks, HaveANumber) {
+  expect_refused("not 0", [] { LocalRanks ranks(0); });
+  expect_refused("4097", [] { LocalRanks ranks(4097); });
+}
+
+}  // namespace
+}  // namespace rastrum::test::local_ranks_test

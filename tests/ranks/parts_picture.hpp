@@ -1,0 +1,143 @@
+// Scenes of many parts, one picture of them by one renderer and one by ranks, and what differs.
+#pragma once
+
+#include <cmath>
+#include <cstring>
+#include <iterator>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/ranks.hpp>
+#include <rastrum/ranks/gather.hpp>
+#include <rastrum/ranks/render_parts.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/transform.hpp>
+
+#include "tests/support/random.hpp"
+
+namespace rastrum::test {
+
+/// Images for all targets that ranks can fill, full of nonsense.
+class AllTargets {
+ public:
+  AllTargets(int width, int height, bool linear)
+      : images_(linear ? ~std::uint32_t{0} : ~kLinear, width, height) {
+    ranks::each_target(images_.targets(), [](const auto& view, std::uint32_t) {
+      if (!view.empty())
+        std::memset(static_cast<void*>(view.data), 0x5A,
+                    sizeof(*view.data) * static_cast<std::size_t>(view.width) *
+                        static_cast<std::size_t>(view.height));
+    });
+  }
+  [[nodiscard]] const Targets& targets() const { return images_.targets(); }
+
+ private:
+  static constexpr std::uint32_t kLinear = 1U << 4;
+  ranks::OwnImages images_;
+};
+
+/// All bits of all targets, but for those of a NaN, whose sign and payload are the processor's. The
+/// message names the first pixel that differs.
+inline testing::AssertionResult same_targets(const Targets& a, const Targets& b) {
+  std::string differs;
+  const auto compare = [&](const auto& x, const auto& y, std::uint32_t bit) {
+    if (x.empty() != y.empty()) differs += " bit " + std::to_string(bit) + " is empty in one;";
+    if (x.empty() || y.empty()) return;
+    using Pixel = std::remove_cvref_t<decltype(*x.data)>;
+    const auto same = [](const Pixel& p, const Pixel& q) {
+      if (std::memcmp(&p, &q, sizeof(Pixel)) == 0) return true;
+      if constexpr (std::is_integral_v<Pixel> || std::is_same_v<Pixel, Rgba8>) return false;
+      float of_p[sizeof(Pixel) / sizeof(float)], of_q[sizeof(Pixel) / sizeof(float)];
+      std::memcpy(of_p, &p, sizeof(Pixel));
+      std::memcpy(of_q, &q, sizeof(Pixel));
+      for (std::size_t i = 0; i < std::size(of_p); ++i)
+        if (std::memcmp(&of_p[i], &of_q[i], sizeof(float)) != 0 &&
+            !(std::isnan(of_p[i]) && std::isnan(of_q[i])))
+          return false;
+      return true;
+    };
+    for (int row = 0; row < x.height; ++row)
+      for (int column = 0; column < x.width; ++column)
+        if (!same(x(column, row), y(column, row))) {
+          differs += " bit " + std::to_string(bit) + " at (" + std::to_string(column) + ", " +
+                     std::to_string(row) + ");";
+          return;
+        }
+  };
+  ranks::each_target(a, [&](const auto& x, std::uint32_t bit) {
+    ranks::each_target(b, [&](const auto& y, std::uint32_t of_b) {
+      if constexpr (std::is_same_v<decltype(x), decltype(y)>)
+        if (bit == of_b) compare(x, y, bit);
+    });
+  });
+  if (differs.empty()) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << "targets differ:" << differs;
+}
+
+/// Meshes that pass through each other, some of them twice at one place, and spheres.
+struct PartsScene {
+  explicit PartsScene(std::uint64_t seed, int count, bool with_materials) {
+    Random random(seed);
+    for (int i = 0; i < count; ++i) {
+      Instance instance;
+      if (i > 0 && random.chance(0.3)) {
+        instance = scene.instances[static_cast<std::size_t>(random.integer(0, i - 1))];
+      } else if (random.chance(0.25)) {
+        instance.geometry = static_cast<std::uint32_t>(scene.geometries.size());
+        Spheres spheres;
+        for (int k = 0; k < 5; ++k) {
+          const double x = random.real(-1, 1);
+          const double y = random.real(-1, 1);
+          spheres.centers.push_back({static_cast<float>(x), static_cast<float>(y), 0.1F});
+        }
+        spheres.radius = 0.2F;
+        scene.geometries.emplace_back(std::move(spheres));
+      } else {
+        instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
+        scene.meshes.push_back(shapes::soup(40, 0.1F, 0.8F, random.bits()));
+        const double angle = random.real(0, 3);
+        instance.object_to_world = rotation(rotation_about({0.3, 1, 0.2}, angle));
+      }
+      if (!with_materials && random.chance(0.5)) instance.color = Vec4{0.9F, 0.3F, 0.1F, 1};
+      if (with_materials) instance.material = static_cast<std::uint32_t>(random.integer(0, 1));
+      scene.instances.push_back(instance);
+    }
+    if (with_materials) {
+      scene.materials.resize(2);
+      scene.materials[1].base_color = {0.2F, 0.5F, 0.9F, 1};
+      scene.materials[1].metallic = 0.3F;
+      scene.materials[1].double_sided = true;
+    }
+  }
+  Scene scene;
+};
+
+/// What each rank holds: parts by their numbers.
+using Deal = std::vector<std::vector<std::uint64_t>>;
+
+/// The picture of `ranks` ranks into rank 0's targets.
+inline RanksStats draw_dealt(LocalRanks& ranks, const Deal& deal, const SceneView& all,
+                             const Camera& camera, const FrameOptions& frame,
+                             const Targets& targets, const RanksOptions& options = {},
+                             const ranks::AtPhase& at = {}) {
+  RanksStats of_root;
+  ranks.run([&](Communicator& c) {
+    const auto& parts = deal[static_cast<std::size_t>(c.rank())];
+    std::vector<InstanceView> instances;
+    for (const std::uint64_t p : parts) instances.push_back(all.instances[p]);
+    SceneView own = all;
+    own.instances = instances;
+    Renderer renderer({.device = Device::serial});
+    const RanksStats stats =
+        ranks::render_parts(c, renderer, own, parts, camera, frame,
+                            c.rank() == options.root ? targets : Targets{}, options, at);
+    if (c.rank() == options.root) of_root = stats;
+  });
+  return of_root;
+}
+
+}  // namespace rastrum::test

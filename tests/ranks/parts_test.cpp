@@ -1,0 +1,249 @@
+// A picture of several ranks is that of one renderer, bit for bit, in all its targets: for any
+// number of ranks and any deal of the parts, by both exchanges.
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/ranks/parts_picture.hpp"
+#include "tests/support/refused.hpp"
+
+namespace rastrum::test::parts_test {
+namespace {
+
+constexpr int kParts = 24;
+
+Deal contiguous(int ranks) {
+  Deal deal(static_cast<std::size_t>(ranks));
+  for (std::uint64_t p = 0; p < kParts; ++p) deal[p * deal.size() / kParts].push_back(p);
+  return deal;
+}
+Deal round_robin(int ranks) {
+  Deal deal(static_cast<std::size_t>(ranks));
+  for (std::uint64_t p = 0; p < kParts; ++p) deal[p % deal.size()].push_back(p);
+  return deal;
+}
+/// With empty ranks, and parts of a rank in any order.
+Deal random_deal(int ranks, Random& random) {
+  Deal deal(static_cast<std::size_t>(ranks));
+  for (std::uint64_t p = 0; p < kParts; ++p) {
+    auto& parts = deal[static_cast<std::size_t>(random.integer(0, ranks - 1) / 2)];
+    parts.insert(random.chance(0.5) ? parts.begin() : parts.end(), p);
+  }
+  return deal;
+}
+Deal all_on_last(int ranks) {
+  Deal deal(static_cast<std::size_t>(ranks));
+  for (std::uint64_t p = 0; p < kParts; ++p) deal.back().push_back(p);
+  return deal;
+}
+
+FrameOptions frame_of(Shader shader, int width, int height) {
+  FrameOptions frame;
+  frame.width = width;
+  frame.height = height;
+  frame.shader = shader;
+  frame.background = {0.1F, 0.2F, 0.3F, 0.5F};
+  return frame;
+}
+
+/// One picture of each deal, both exchanges, against one renderer's.
+void expect_equal(std::uint64_t seed, bool with_materials, const FrameOptions& frame,
+                  const std::vector<int>& counts) {
+  const PartsScene parts(seed, kParts, with_materials);
+  const SceneBinding binding(parts.scene);
+  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+  const bool linear = shader_for(frame.shader, binding.view()) == Shader::material;
+  const AllTargets one(frame.width, frame.height, linear);
+  Renderer renderer({.threads = 2});
+  (void)renderer.render(binding.view(), camera, frame, one.targets());
+  Random random(seed);
+  for (const int n : counts) {
+    LocalRanks ranks(n);
+    for (const Deal& deal : {contiguous(n), round_robin(n), random_deal(n, random), all_on_last(n)})
+      for (const WordExchange exchange : {WordExchange::dense, WordExchange::sparse}) {
+        const AllTargets many(frame.width, frame.height, linear);
+        RanksOptions options;
+        options.exchange = exchange;
+        options.root = n / 2;
+        const RanksStats stats =
+            draw_dealt(ranks, deal, binding.view(), camera, frame, many.targets(), options);
+        ASSERT_TRUE(same_targets(one.targets(), many.targets()))
+            << n << " ranks, " << name(frame.shader) << ", seed " << seed;
+        EXPECT_EQ(stats.exchange, exchange);
+        EXPECT_EQ(stats.primitives, parts.scene.primitive_count());
+      }
+  }
+}
+
+TEST(Parts, EqualOneRendererWithEveryShader) {
+  std::uint64_t seed = 1;
+  for (const Shader shader : {Shader::flat, Shader::depth, Shader::normal, Shader::id,
+                              Shader::lambert, Shader::phong, Shader::wireframe}) {
+    expect_equal(seed++, false, frame_of(shader, 75, 50), {1, 3});
+  }
+  expect_equal(seed, true, frame_of(Shader::material, 75, 50), {2, 5});
+  expect_equal(seed, true, frame_of(Shader::automatic, 75, 50), {3});
+}
+
+TEST(Parts, EqualOneRendererForManyRanksAndSizes) {
+  expect_equal(20, false, frame_of(Shader::id, 96, 64), {8, 16, 64});
+  expect_equal(21, false, frame_of(Shader::phong, 1, 1), {2, 8});
+  expect_equal(22, false, frame_of(Shader::phong, 9, 200), {5, 16});
+  expect_equal(23, true, frame_of(Shader::material, 131, 67), {8});
+}
+
+/// What a renderer decides for a whole scene shows in seeds: colours on some ranks alone.
+TEST(Parts, EqualOneRendererForManyScenes) {
+  for (std::uint64_t seed = 100; seed < 112; ++seed)
+    expect_equal(seed, seed % 4 == 0,
+                 frame_of(seed % 2 == 0 ? Shader::automatic : Shader::lambert, 48, 40), {5});
+}
+
+TEST(Parts, EqualOneRendererWithLightsAToneAndPlanes) {
+  FrameOptions frame = frame_of(Shader::material, 70, 70);
+  frame.lights.emplace_back();
+  frame.tone.tone = Tone::aces;
+  frame.clip_planes.push_back({{0, 0, -1}, 0.1});
+  expect_equal(30, true, frame, {3});
+}
+
+/// Meshes that are equal everywhere: the first part wins on whichever rank it is.
+TEST(Parts, OfEqualDepthTheFirstPartWins) {
+  PartsScene parts(3, 1, false);
+  parts.scene.instances.resize(4, parts.scene.instances.front());
+  const SceneBinding binding(parts.scene);
+  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+  const FrameOptions frame = frame_of(Shader::phong, 40, 40);
+  LocalRanks ranks(4);
+  for (const WordExchange exchange : {WordExchange::dense, WordExchange::sparse}) {
+    Image<std::int64_t> instances(40, 40);
+    Targets targets;
+    targets.instances = instances;
+    RanksOptions options;
+    options.exchange = exchange;
+    draw_dealt(ranks, {{3}, {1}, {0}, {2}}, binding.view(), camera, frame, targets, options);
+    EXPECT_EQ(std::ranges::max(instances.pixels()), 0);
+    EXPECT_EQ(std::ranges::min(instances.pixels()), -1);
+  }
+}
+
+/// Part numbers are an order and need not be near each other.
+TEST(Parts, NumbersMayHaveGaps) {
+  const PartsScene parts(4, 3, false);
+  const SceneBinding binding(parts.scene);
+  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+  const FrameOptions frame = frame_of(Shader::id, 40, 40);
+  Image<std::int64_t> ids(40, 40), one(40, 40);
+  Image<Vec4> color(40, 40), one_color(40, 40);
+  Renderer renderer;
+  (void)renderer.render(binding.view(), camera, frame, {.color = one_color, .ids = one});
+  LocalRanks ranks(3);
+  const std::vector<std::uint64_t> numbers{7, std::uint64_t{1} << 40, (std::uint64_t{1} << 63) - 1};
+  ranks.run([&](Communicator& c) {
+    const auto i = static_cast<std::size_t>(2 - c.rank());
+    SceneView own = binding.view();
+    own.instances = own.instances.subspan(i, 1);
+    Renderer of_rank({.device = Device::serial});
+    Targets targets;
+    if (c.rank() == 0) targets = {.color = color, .ids = ids};
+    (void)render_parts(c, of_rank, own, std::span(numbers).subspan(i, 1), camera, frame, targets);
+  });
+  EXPECT_TRUE(std::ranges::equal(ids.pixels(), one.pixels()));
+  EXPECT_TRUE(same_targets({.color = color}, {.color = one_color}));
+}
+
+TEST(Parts, KeepMemoryLimits) {
+  const PartsScene parts(5, kParts, false);
+  const SceneBinding binding(parts.scene);
+  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+  const FrameOptions frame = frame_of(Shader::phong, 300, 200);
+  const AllTargets one(300, 200, false), many(300, 200, false);
+  Renderer renderer;
+  (void)renderer.render(binding.view(), camera, frame, one.targets());
+  LocalRanks ranks(2);
+  ranks.run([&](Communicator& c) {
+    std::vector<InstanceView> instances;
+    std::vector<std::uint64_t> numbers;
+    for (std::uint64_t p = static_cast<std::uint64_t>(c.rank()); p < kParts; p += 2) {
+      instances.push_back(binding.view().instances[p]);
+      numbers.push_back(p);
+    }
+    SceneView own = binding.view();
+    own.instances = instances;
+    Renderer limited({.memory_limit = 4U << 20, .threads = 1});
+    (void)render_parts(c, limited, own, numbers, camera, frame,
+                       c.rank() == 0 ? many.targets() : Targets{});
+  });
+  EXPECT_TRUE(same_targets(one.targets(), many.targets()));
+}
+
+/// What is chosen sends fewer bytes than the other, and blocks little more than their words.
+TEST(Parts, TheExchangeIsChosenByBytes) {
+  const PartsScene parts(6, kParts, false);
+  const SceneBinding binding(parts.scene);
+  const FrameOptions frame = frame_of(Shader::phong, 256, 256);
+  Image<std::int64_t> ids(256, 256);
+  const Targets targets{.ids = ids};
+  LocalRanks ranks(4);
+  const auto bytes = [&](const Deal& deal, const Camera& camera, WordExchange exchange,
+                         RanksStats& stats) {
+    RanksOptions options;
+    options.exchange = exchange;
+    stats = draw_dealt(ranks, deal, binding.view(), camera, frame, targets, options);
+    std::uint64_t most = 0;
+    for (const auto& t : ranks.traffic()) most = std::max(most, t.bytes);
+    return most;
+  };
+  Camera camera = fit_camera(binding.view(), 1.0472F, false);
+  for (const bool far : {false, true}) {
+    if (far) camera.eye = camera.target + (camera.eye - camera.target) * 6.0;
+    RanksStats d, s, a;
+    const std::uint64_t dense = bytes(round_robin(4), camera, WordExchange::dense, d);
+    const std::uint64_t sparse = bytes(round_robin(4), camera, WordExchange::sparse, s);
+    const std::uint64_t chosen = bytes(round_robin(4), camera, WordExchange::automatic, a);
+    EXPECT_LE(chosen, std::min(dense, sparse) + 64) << far;  // the numbers that decide it
+    if (far) {
+      EXPECT_LT(sparse * 4, dense);
+    }
+    EXPECT_EQ(s.words, d.words);
+    EXPECT_GE(s.words, s.won);
+  }
+}
+
+TEST(Parts, RefuseWhatNeedsMoreOfOthers) {
+  PartsScene parts(7, 4, false);
+  const auto refused = [&](const char* text, Errc code, const FrameOptions& frame,
+                           const Deal& deal) {
+    const SceneBinding binding(parts.scene);
+    const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+    Image<Rgba8> image(32, 32);
+    LocalRanks ranks(2);
+    expect_refused(text, code, [&] {
+      draw_dealt(ranks, deal, binding.view(), camera, frame, {.color8 = image});
+    });
+  };
+  const Deal deal{{0, 1}, {2, 3}};
+  FrameOptions frame = frame_of(Shader::phong, 32, 32);
+  frame.samples = 4;
+  refused("samples", Errc::unsupported, frame, deal);
+  frame = frame_of(Shader::phong, 32, 32);
+  frame.shadows = true;
+  refused("shadows", Errc::unsupported, frame, deal);
+  frame = frame_of(Shader::phong, 32, 32);
+  refused("part 1 is on rank 0 and on rank 1", Errc::invalid_argument, frame, {{0, 1}, {1, 3}});
+  frame.width = 31;
+  refused("rank 0: the color8 target is 32x32 and must be 31x32", Errc::invalid_argument, frame,
+          deal);
+  frame.width = 32;
+  parts.scene.instances[3].opacity = 0.5F;
+  refused("rank 1: a picture of several ranks: its surfaces are translucent", Errc::unsupported,
+          frame, deal);
+  frame.transparency.method = Transparency::none;
+  expect_equal(7, false, frame, {2});
+}
+
+}  // namespace
+}  // namespace rastrum::test::parts_test
