@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <filesystem>
@@ -51,6 +52,22 @@ std::string not_a_command(std::string_view given, std::span<const std::string_vi
   return "there is no command '" + word + "'" + (meant.empty() ? "; there are " + known : meant);
 }
 
+/// Started by mpirun as one of several, `render` and `terrain` would write one file several times.
+void refuse_several_ranks(std::string_view command) {
+  if (command != "render" && command != "terrain") return;
+  for (const char* const name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
+    const char* const ranks = std::getenv(name);
+    if (ranks == nullptr || std::strtol(ranks, nullptr, 10) < 2) continue;
+    throw rastrum::Error(
+        rastrum::Errc::unsupported,
+        std::string("this program does not draw with several ranks, and was started as one of ")
+            .append(ranks)
+            .append(", each of which would write the same files; start it alone, or unset ")
+            .append(name)
+            .append(" where each draws a picture of its own"));
+  }
+}
+
 /// What was printed has arrived, or the reason is an error.
 int flushed(int status) {
   const bool ok = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
@@ -94,6 +111,7 @@ int main(int argc, char** argv) {
         std::ranges::find(known, args[0]) == known.end())
       return report_usage(not_a_command(args[0], known).c_str(), app);
     if (!app.parse(args)) return flushed(0);
+    if (!args.empty()) refuse_several_ranks(args[0]);
     for (const rastrum::cli::Command& command : commands)
       if (command.parser.parsed()) return flushed(command.run());
     return 0;

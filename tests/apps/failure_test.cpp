@@ -31,6 +31,21 @@ Args render(const Args& output) {
   return args;
 }
 
+/// Eight of them would write one file.
+TEST_F(Failure, OneOfSeveralRanksWritesNothing) {
+  const std::string render = R"("$RASTRUM" render builtin:boxes --size 20x20 -o p.png)";
+  for (const std::string name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
+    const Outcome r = shell(name + "=8 " + render);
+    EXPECT_EQ(r.status, 1) << r.err;
+    EXPECT_NE(r.err.find("one of 8"), std::string::npos) << r.err;
+    EXPECT_NE(r.err.find("unset " + name), std::string::npos) << r.err;
+    EXPECT_EQ(files(), Args{});
+    EXPECT_EQ(shell(name + "=1 " + render).status, 0);
+    EXPECT_EQ(files(), Args{"p.png"});
+    std::filesystem::remove(path("p.png"));
+  }
+}
+
 TEST_F(Failure, DiskFullLeavesNothing) {
   for (const auto& [file, output] : outputs()) {
     const Outcome r = run(render(output), {.file_bytes = 300});

@@ -9,6 +9,7 @@
 
 #include "tests/ranks/parts_picture.hpp"
 #include "tests/support/refused.hpp"
+#include "tests/support/shaded_scenes.hpp"
 
 namespace rastrum::test::parts_test {
 namespace {
@@ -100,6 +101,27 @@ TEST(Parts, EqualOneRendererForManyScenes) {
   for (std::uint64_t seed = 100; seed < 112; ++seed)
     expect_equal(seed, seed % 4 == 0,
                  frame_of(seed % 2 == 0 ? Shader::automatic : Shader::lambert, 48, 40), {5});
+}
+
+/// Scenes with all that can have a colour, textures too, drawn opaque with one sample; those with
+/// one instance beside ranks that have none.
+TEST(Parts, EqualOneRendererForGeneratedScenes) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    ShadedScene s = generate_shaded(seed);
+    s.frame.samples = 1;
+    s.frame.transparency.method = Transparency::none;
+    const SceneBinding binding(s.scene);
+    const bool linear = shader_for(s.frame.shader, binding.view()) == Shader::material;
+    const AllTargets one(s.frame.width, s.frame.height, linear);
+    const AllTargets many(s.frame.width, s.frame.height, linear);
+    Renderer renderer({.threads = 1});
+    (void)renderer.render(binding.view(), s.camera, s.frame, one.targets());
+    Deal deal(3);
+    for (std::uint64_t p = 0; p < s.scene.instances.size(); ++p) deal[(p + seed) % 3].push_back(p);
+    LocalRanks ranks(3);
+    (void)draw_dealt(ranks, deal, binding.view(), s.camera, s.frame, many.targets());
+    ASSERT_TRUE(same_targets(one.targets(), many.targets())) << s.kind << ", seed " << seed;
+  }
 }
 
 TEST(Parts, EqualOneRendererWithLightsAToneAndPlanes) {
