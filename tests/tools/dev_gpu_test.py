@@ -9,7 +9,8 @@ import unittest
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 PLAIN_TOOLS = ["awk", "bash", "cat", "dirname", "env", "grep", "head", "mktemp", "nproc", "rm", "sed", "tee"]
 PROGRAMS = ["cuda_device_test", "cuda_rasterizer_on_device", "cuda_terrain_on_device"]
-SANITIZERS = ["memcheck", "racecheck", "initcheck", "synccheck"]
+SANITIZERS = ["memcheck", "racecheck", "synccheck", "initcheck"]
+SANITIZED = REPOSITORY / "tests/cuda/sanitized.txt"
 
 
 class DevGpu(unittest.TestCase):
@@ -20,6 +21,8 @@ class DevGpu(unittest.TestCase):
         self.log = self.root / "log"
         self.log.touch()
         shutil.copy(REPOSITORY / "dev", self.root)
+        (self.root / "tests/cuda").mkdir(parents=True)
+        shutil.copy(SANITIZED, self.root / "tests/cuda")
         self.bin = self.root / "bin"
         self.bin.mkdir()
         for tool in PLAIN_TOOLS:
@@ -80,6 +83,14 @@ class DevGpu(unittest.TestCase):
         self.assertIn("6 passed, 1 failed", output)
         self.assertEqual(len(self.calls("rastrum")), 1)
 
+    def test_a_failure_of_one_program_is_one_of_its_tool(self):
+        self.fake_machine()
+        self.fake("compute-sanitizer", '[[ "$*" != *memcheck*cuda_device_test* ]]')
+        code, output = self.dev_gpu()
+        self.assertEqual(code, 1)
+        self.assertRegex(output, r"FAILED +\d+ s  compute-sanitizer, memcheck")
+        self.assertEqual(len(self.calls("compute-sanitizer")), len(SANITIZERS) * len(PROGRAMS))
+
     def test_skipped_tests_are_no_success(self):
         self.fake_machine()
         self.fake("ctest", 'echo "1/4 Test #1: cuda.words_on_a_device ...***Skipped 0.01 sec"')
@@ -88,8 +99,7 @@ class DevGpu(unittest.TestCase):
         self.assertRegex(output, r"FAILED +\d+ s  tests on the device")
 
     def test_the_sanitized_tests_exist(self):
-        text = (REPOSITORY / "dev").read_text()
-        lists = re.findall(r"^(cuda_\w+) (\S+)$", text, re.MULTILINE)
+        lists = re.findall(r"^(cuda_\w+) (\S+)$", SANITIZED.read_text(), re.MULTILINE)
         self.assertEqual([program for program, _ in lists], PROGRAMS)
         sources = "".join(file.read_text() for folder in ("cuda", "raster", "terrain", "transparency")
                           for file in (REPOSITORY / "tests" / folder).glob("*.cpp"))
