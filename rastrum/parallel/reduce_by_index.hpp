@@ -44,7 +44,9 @@ struct Maximum {
 RASTRUM_HD inline void atomic_maximum(std::uint64_t& word, std::uint64_t value) noexcept {
 #if defined(__CUDA_ARCH__)
   static_assert(sizeof(unsigned long long) == sizeof(std::uint64_t));
-  atomicMax(reinterpret_cast<unsigned long long*>(&word), value);
+  // Most are not larger. What is read may be old; words only rise.
+  if (*static_cast<const volatile std::uint64_t*>(&word) < value)
+    atomicMax(reinterpret_cast<unsigned long long*>(&word), value);
 #else
   const std::atomic_ref<std::uint64_t> shared(word);
   std::uint64_t now = shared.load(std::memory_order_relaxed);

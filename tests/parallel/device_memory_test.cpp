@@ -67,6 +67,39 @@ TEST(DeviceErrors, OfThrustComeOutAsError) {
   EXPECT_EQ(cuda_system::with_errors([] { return 7; }), 7);
 }
 
+// A context that was made for one device is used where another is current.
+TEST(DeviceContext, CallsItsOwnDevice) {
+  struct Restored {
+    ~Restored() { cuda_system::set_device(0); }
+  } restored;
+  if (!cuda_system::kOnHost) GTEST_SKIP() << "needs two devices";
+  cuda_system::set_device(1);
+  const Cuda exec;
+  cuda_system::set_device(0);
+  EXPECT_EQ(exec.device(), 1);
+  EXPECT_EQ(on_device_of(exec, [] { return cuda_system::current_device(); }), 1);
+  EXPECT_EQ(cuda_system::current_device(), 0);
+  EXPECT_THROW(on_device_of(exec, [] { throw Error(Errc::out_of_memory, "9 bytes"); }), Error);
+  EXPECT_EQ(cuda_system::current_device(), 0);
+}
+
+TEST(DeviceContext, CopiesRowsThatLieApart) {
+  Cuda exec;
+  const std::vector<int> values = {1, 2, 3, 4, 5, 6};  // two rows of three
+  auto buffer = to_device(exec, values);
+  std::vector<int> apart(2 * 5, 0);
+  copy_image(exec, buffer.data(), 3, apart.data(), 5, 2, false);
+  exec.wait();
+  EXPECT_EQ(apart, (std::vector<int>{1, 2, 3, 0, 0, 4, 5, 6, 0, 0}));
+  copy_image(exec, buffer.data(), 3, apart.data() + 5, -5, 2, false);
+  exec.wait();
+  EXPECT_EQ(apart, (std::vector<int>{4, 5, 6, 0, 0, 1, 2, 3, 0, 0}));
+  auto back = make_buffer<int>(exec, 6);
+  copy_image(exec, back.data(), 3, apart.data(), 5, 2, true);
+  exec.wait();
+  EXPECT_EQ(to_host(exec, back), (std::vector<int>{4, 5, 6, 1, 2, 3}));
+}
+
 TEST(Pending, IsTheSumThatAScanHadWhenItWasDone) {
   Cuda exec;
   std::vector<std::uint32_t> values = {1, 2, 3, 4};

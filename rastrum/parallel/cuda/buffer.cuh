@@ -86,6 +86,24 @@ template <class R>
   return out;
 }
 
+/// Rows of `width` pixels, dense on the device and `stride` pixels apart on the host (from the
+/// bottom up where it is negative), to one or the other. Does not wait.
+template <class T>
+void copy_image(Cuda& exec, T* on_device, std::size_t width, T* on_host, std::ptrdiff_t stride,
+                std::size_t rows, bool to_device) {
+  const std::size_t bytes = width * sizeof(T);
+  const auto once = [&](T* there, T* here, std::size_t pitch, std::size_t count) {
+    if (to_device)
+      cuda_system::copy_rows(exec.stream(), there, bytes, here, pitch, bytes, count);
+    else
+      cuda_system::copy_rows(exec.stream(), here, pitch, there, bytes, bytes, count);
+  };
+  if (stride > 0)
+    return once(on_device, on_host, static_cast<std::size_t>(stride) * sizeof(T), rows);
+  for (std::size_t y = 0; y < rows; ++y)
+    once(on_device + y * width, on_host + static_cast<std::ptrdiff_t>(y) * stride, bytes, 1);
+}
+
 /// A number that the device has yet to find. Asking for it waits.
 template <class T>
 class Pending {

@@ -21,9 +21,7 @@
 
 #include <cstddef>
 #include <memory>
-
-#include <thrust/for_each.h>
-#include <thrust/iterator/counting_iterator.h>
+#include <utility>
 
 #include <rastrum/parallel/cuda/system.cuh>
 #include <rastrum/parallel/exec.hpp>
@@ -38,10 +36,16 @@ class Cuda {
   /// which must outlive the context and the words' results. Throws Error{no_device}; whether there
   /// is a device says cuda_status() (status.hpp).
   explicit Cuda(MemoryAccount* account = nullptr)
-      : owned_(true), stream_(cuda_system::make_stream()), memory_(make_arena(account)) {}
-  /// On a stream of the caller's, which must outlive it and its results.
+      : owned_(true),
+        device_(cuda_system::current_device()),
+        stream_(cuda_system::make_stream()),
+        memory_(make_arena(account)) {}
+  /// On a stream of the caller's, of the current device, which must outlive it and its results.
   explicit Cuda(cuda_system::Stream stream, MemoryAccount* account = nullptr)
-      : owned_(false), stream_(stream), memory_(make_arena(account)) {}
+      : owned_(false),
+        device_(cuda_system::current_device()),
+        stream_(stream),
+        memory_(make_arena(account)) {}
   ~Cuda() {
     if (owned_) cuda_system::destroy_stream(stream_);
   }
@@ -50,6 +54,9 @@ class Cuda {
 
   [[nodiscard]] const std::shared_ptr<Arena>& memory() const { return memory_; }
   [[nodiscard]] cuda_system::Stream stream() const { return stream_; }
+  /// That was current where the context was made, and must be where words are called:
+  /// on_device_of().
+  [[nodiscard]] int device() const { return device_; }
   /// Until all work that was given to it is done. Throws Error{no_device} for what went wrong
   /// there.
   void wait() const { cuda_system::wait(stream_); }
@@ -72,6 +79,7 @@ class Cuda {
   }
 
   bool owned_;
+  int device_;
   cuda_system::Stream stream_;
   std::shared_ptr<Arena> memory_;
   Scratch scratch_{memory_.get()};
@@ -79,11 +87,18 @@ class Cuda {
 
 }  // namespace RASTRUM_DEVICE_SYSTEM
 
+/// f() where the context's device is current, whatever is current for the caller; all that fails is
+/// an Error. Around what others call of the device's code.
+template <class F>
+decltype(auto) on_device_of(const Cuda& exec, F&& f) {
+  const cuda_system::DeviceScope scope(exec.device());
+  return cuda_system::with_errors(std::forward<F>(f));
+}
+
 /// Calls f(i) for i in [0, n). Work O(n), span O(1).
 template <class F>
 void for_each_index(Cuda& exec, std::size_t n, F f) {
-  if (n == 0) return;
-  thrust::for_each_n(exec.policy(), thrust::counting_iterator<std::size_t>(0), n, f);
+  cuda_system::launch_indices(exec.stream(), n, f);
 }
 
 /// Calls f(i, T& scratch, team) for i in [0, n) by all members of a team together: a block of

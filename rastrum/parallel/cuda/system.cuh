@@ -102,6 +102,16 @@ inline void check(cudaError_t error, const char* doing) {
           [](void* block) noexcept { static_cast<void>(cudaFree(block)); }, "CUDA memory", true};
 }
 
+/// The device that this thread's calls are of.
+[[nodiscard]] inline int current_device() {
+  int device = 0;
+  check(cudaGetDevice(&device), "asking for the current device");
+  return device;
+}
+inline void set_device(int device) {
+  check(cudaSetDevice(device), "choosing a device");
+}
+
 [[nodiscard]] inline Stream make_stream() {
   Stream stream = nullptr;
   check(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "making a stream");
@@ -117,6 +127,14 @@ inline void wait(Stream stream) {
 /// Between host and device, either way; of pageable host memory it may wait for the stream.
 inline void copy(Stream stream, void* to, const void* from, std::size_t bytes) {
   check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, stream), "copying");
+}
+
+/// The same of `rows` rows of `bytes` bytes that lie `to_pitch` and `from_pitch` bytes apart,
+/// neither less than `bytes`.
+inline void copy_rows(Stream stream, void* to, std::size_t to_pitch, const void* from,
+                      std::size_t from_pitch, std::size_t bytes, std::size_t rows) {
+  check(cudaMemcpy2DAsync(to, to_pitch, from, from_pitch, bytes, rows, cudaMemcpyDefault, stream),
+        "copying rows");
 }
 
 template <class Allocator>
@@ -154,8 +172,30 @@ class Team {
 };
 
 #if defined(__CUDACC__)
+inline constexpr int kIndexThreads = 128;
+
+/// The functor stays where the launch has put it, in constant memory: CUB's agents take a copy of
+/// it, which a place in it that is known only at run time forces into each thread's own memory.
+template <class F>
+__global__ void __launch_bounds__(kIndexThreads)
+    index_kernel(std::size_t n, const __grid_constant__ F f) {
+  const std::size_t i = std::size_t{blockIdx.x} * kIndexThreads + threadIdx.x;
+  if (i < n) f(i);
+}
+
+/// Calls f(i) for i in [0, n), a thread each.
+template <class F>
+void launch_indices(Stream stream, std::size_t n, const F& f) {
+  if (n == 0) return;
+  const std::size_t blocks = (n - 1) / kIndexThreads + 1;
+  constexpr std::size_t kMostBlocks = (std::size_t{1} << 31) - 1;
+  if (blocks > kMostBlocks) throw Error(Errc::unsupported, "CUDA: a loop is too long");
+  index_kernel<<<static_cast<unsigned>(blocks), kIndexThreads, 0, stream>>>(n, f);
+  check(cudaGetLastError(), "starting a kernel");
+}
+
 template <class T, int kThreads, class F>
-__global__ void team_kernel(std::size_t n, F f) {
+__global__ void __launch_bounds__(kThreads) team_kernel(std::size_t n, F f) {
   __shared__ alignas(T) unsigned char room[sizeof(T)];
   T& scratch = *reinterpret_cast<T*>(room);
   const Team team;
@@ -193,6 +233,18 @@ inline constexpr bool kOnHost = true;
   source.keeps_all = true;
   return source;
 }
+/// Devices by number alone, so that tests see which one a call is of.
+[[nodiscard]] inline int& device_of_thread() {
+  thread_local int device = 0;
+  return device;
+}
+[[nodiscard]] inline int current_device() {
+  return device_of_thread();
+}
+inline void set_device(int device) {
+  device_of_thread() = device;
+}
+
 [[nodiscard]] inline Stream make_stream() {
   return {};
 }
@@ -200,6 +252,12 @@ inline void destroy_stream(Stream) noexcept {}
 inline void wait(Stream) {}
 inline void copy(Stream, void* to, const void* from, std::size_t bytes) {
   if (bytes > 0) std::memcpy(to, from, bytes);
+}
+inline void copy_rows(Stream stream, void* to, std::size_t to_pitch, const void* from,
+                      std::size_t from_pitch, std::size_t bytes, std::size_t rows) {
+  for (std::size_t y = 0; y < rows; ++y)
+    copy(stream, static_cast<char*>(to) + y * to_pitch,
+         static_cast<const char*>(from) + y * from_pitch, bytes);
 }
 template <class Allocator>
 [[nodiscard]] auto policy(Allocator& allocator, Stream) {
@@ -248,6 +306,11 @@ class Team {
   Host* host_;
 };
 
+template <class F>
+void launch_indices(Stream, std::size_t n, const F& f) {
+  for (std::size_t i = 0; i < n; ++i) f(i);
+}
+
 template <class T, int kThreads, class F>
 void launch_teams(Stream, std::size_t n, F f) {
   constexpr std::size_t kMembers = kTeamMembers<kThreads>;
@@ -264,6 +327,27 @@ void launch_teams(Stream, std::size_t n, F f) {
 }
 
 #endif
+
+/// While it lives, this thread's calls are of `device`.
+class DeviceScope {
+ public:
+  explicit DeviceScope(int device) : before_(current_device()), device_(device) {
+    if (device_ != before_) set_device(device_);
+  }
+  ~DeviceScope() {
+    if (device_ == before_) return;
+    try {
+      set_device(before_);
+    } catch (const Error&) {
+      // It was current before: a device that is lost says so to the next call.
+    }
+  }
+  DeviceScope(const DeviceScope&) = delete;
+  DeviceScope& operator=(const DeviceScope&) = delete;
+
+ private:
+  int before_, device_;
+};
 
 /// f(), of which all that fails is an Error: Thrust's algorithms throw an exception of their own.
 /// Around what others call of the device's code, since no one else knows that type.

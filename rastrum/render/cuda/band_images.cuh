@@ -23,10 +23,7 @@ class BandImage {
         view_(view),
         in_place_(in_place),
         pixels_(parallel::make_buffer<T>(exec, host.empty() || in_place ? 0 : area_of(view))) {
-    if (keeps && pixels_.size() > 0)
-      each_part([&](T* there, T* here, std::size_t n) {
-        parallel::cuda_system::copy(exec_.stream(), there, here, n * sizeof(T));
-      });
+    if (keeps && pixels_.size() > 0) copy(true);
   }
   [[nodiscard]] ImageView<T> on_device() {
     const int width = view_.x1 - view_.x0;
@@ -36,21 +33,14 @@ class BandImage {
   }
   /// Does not wait.
   void store() {
-    if (pixels_.size() > 0)
-      each_part([&](T* there, T* here, std::size_t n) {
-        parallel::cuda_system::copy(exec_.stream(), here, there, n * sizeof(T));
-      });
+    if (pixels_.size() > 0) copy(false);
   }
 
  private:
-  /// Calls f(device, host, pixels). Rows that lie together are one part.
-  template <class F>
-  void each_part(F&& f) {
-    const auto width = static_cast<std::size_t>(view_.x1 - view_.x0);
+  void copy(bool to_device) {
     const auto rows = static_cast<std::size_t>(view_.y1 - view_.y0);
-    const std::size_t at_once = host_.stride == view_.x1 ? rows : 1;
-    for (std::size_t y = 0; y < rows; y += at_once)
-      f(pixels_.data() + y * width, host_.row(view_.y0 + static_cast<int>(y)), at_once * width);
+    parallel::copy_image(exec_, pixels_.data(), static_cast<std::size_t>(view_.x1 - view_.x0),
+                         host_.row(view_.y0), host_.stride, rows, to_device);
   }
 
   parallel::Cuda& exec_;

@@ -127,7 +127,7 @@ class DeviceRasterizer final : public CudaRasterizer {
   };
 
   [[nodiscard]] FrameStats render(FrameRequest& request, const std::stop_token* stop) override {
-    return parallel::cuda_system::with_errors([&] { return draw_frame(request, stop); });
+    return parallel::on_device_of(exec_, [&] { return draw_frame(request, stop); });
   }
 
   [[nodiscard]] FrameStats draw_frame(FrameRequest& request, const std::stop_token* stop) {

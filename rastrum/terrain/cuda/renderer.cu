@@ -44,16 +44,10 @@ class DevicePicture {
                        cuda_detail::CellOfIndex<RollPixel<T>>{{roll, from}, wanted.width});
   }
   /// Does not wait.
-  void copy_to(parallel::Cuda& exec, const ImageView<T>& target) const {
+  void copy_to(parallel::Cuda& exec, const ImageView<T>& target) {
     if (target.empty()) return;
-    const auto width = static_cast<std::size_t>(target.width);
-    const bool whole = target.stride == target.width;
-    const int parts = whole ? 1 : target.height;
-    const std::size_t pixels = whole ? pixels_.size() : width;
-    for (int y = 0; y < parts; ++y)
-      parallel::cuda_system::copy(exec.stream(), target.row(y),
-                                  pixels_.data() + static_cast<std::size_t>(y) * width,
-                                  pixels * sizeof(T));
+    parallel::copy_image(exec, pixels_.data(), static_cast<std::size_t>(target.width), target.data,
+                         target.stride, static_cast<std::size_t>(target.height), false);
   }
 
  private:
@@ -70,8 +64,8 @@ class CudaRenderer final : public DeviceRenderer {
               const Roll* roll, const TerrainTargets& targets,
               const std::function<void(const char* stage)>& lap,
               const std::stop_token* stop) override {
-    return parallel::cuda_system::with_errors(
-        [&] { return draw_picture(terrain, options, camera, roll, targets, lap, stop); });
+    return parallel::on_device_of(
+        exec_, [&] { return draw_picture(terrain, options, camera, roll, targets, lap, stop); });
   }
   Counts draw_picture(const Terrain& terrain, const TerrainOptions& options,
                       const TerrainCamera& camera, const Roll* roll, const TerrainTargets& targets,
