@@ -136,8 +136,6 @@ class Renderer {
   /// PyTorch, torch.cuda.current_stream().synchronize()). When it returns the targets are complete.
   /// For opaque scenes without materials, by a shader of the device, into
   /// color8, color, depth, ids and keys; throws Error{unsupported} for what else is asked for.
-  /// What fills a GPU's arrays must be done before the call (cudaStreamSynchronize): the frame waits
-  /// for no stream of the caller's; the pictures are whole when it returns.
   FrameStats render_in_place(const SceneView& scene, const Camera& camera,
                              const FrameOptions& frame, const Targets& targets,
                              std::stop_token stop = {});

@@ -17,7 +17,7 @@ limited() { timeout --kill-after=10 "$limit" "$@"; }
 
 # Under one limit for all programs: what is left of it is the next one's.
 sanitize() {
-  local tool="$1" exit_code="$2" binary filter end=$((SECONDS + limit)) left
+  local tool="$1" exit_code="$2" binary filter end=$((SECONDS + limit)) left status=0
   if ! command -v compute-sanitizer >/dev/null; then
     echo "ERROR: this machine has no compute-sanitizer (package cuda-sanitizer)"
     return 1
@@ -26,8 +26,9 @@ sanitize() {
     left=$((end - SECONDS))
     ((left > 0)) || { echo "ERROR: no time was left for $binary"; return 124; }
     timeout --kill-after=10 "$left" compute-sanitizer --tool "$tool" --error-exitcode "$exit_code" \
-      "$here/bin/$binary" --gtest_filter="$filter" </dev/null || return
+      "$here/bin/$binary" --gtest_filter="$filter" </dev/null || status=$?
   done <"$here/sanitized.txt"
+  return "$status"
 }
 
 run_part() {

@@ -15,7 +15,7 @@ namespace rastrum::family {
 /// value = max(value, candidate), by many threads at once.
 RASTRUM_HD inline void raise_depth(std::uint32_t& value, std::uint32_t candidate) noexcept {
 #if defined(__CUDA_ARCH__)
-  atomicMax(&value, candidate);
+  if (*static_cast<const volatile std::uint32_t*>(&value) < candidate) atomicMax(&value, candidate);
 #else
   const std::atomic_ref<std::uint32_t> shared(value);
   std::uint32_t now = shared.load(std::memory_order_relaxed);

@@ -92,6 +92,11 @@ template <class T>
 void copy_image(Cuda& exec, T* on_device, std::size_t width, T* on_host, std::ptrdiff_t stride,
                 std::size_t rows, bool to_device) {
   const std::size_t bytes = width * sizeof(T);
+  if (stride == static_cast<std::ptrdiff_t>(width)) {  // one piece of memory
+    T* const to = to_device ? on_device : on_host;
+    const T* const from = to_device ? on_host : on_device;
+    return cuda_system::copy(exec.stream(), to, from, rows * bytes);
+  }
   const auto once = [&](T* there, T* here, std::size_t pitch, std::size_t count) {
     if (to_device)
       cuda_system::copy_rows(exec.stream(), there, bytes, here, pitch, bytes, count);

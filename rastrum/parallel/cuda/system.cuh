@@ -195,7 +195,8 @@ void launch_indices(Stream stream, std::size_t n, const F& f) {
 }
 
 template <class T, int kThreads, class F>
-__global__ void __launch_bounds__(kThreads) team_kernel(std::size_t n, F f) {
+__global__ void __launch_bounds__(kThreads)
+    team_kernel(std::size_t n, const __grid_constant__ F f) {
   __shared__ alignas(T) unsigned char room[sizeof(T)];
   T& scratch = *reinterpret_cast<T*>(room);
   const Team team;
