@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <unordered_map>
 
@@ -13,8 +12,7 @@
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
-#include <rastrum/raster/resolve/distances.hpp>
-#include <rastrum/raster/resolve/surface_point.hpp>
+#include <rastrum/raster/resolve/surfaces.hpp>
 #include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/scene/mesh_checks.hpp>
 
@@ -128,22 +126,6 @@ void shade_extra(const FrameRequest& request, const FrameGeometry& frame, Visibl
     }
 }
 
-/// Of a block its 64 values, but what is not `touched`.
-template <class T>
-void store_block(const ImageView<T>& target, const T* values, std::uint64_t touched, int x0,
-                 int y0) {
-  for (; touched != 0; touched >>= kBlockSize, values += kBlockSize, ++y0) {
-    if (touched % 256 == 255) {
-      std::copy_n(values, kBlockSize, target.row(y0) + x0);
-      continue;
-    }
-    for (std::uint64_t m = touched % 256; m != 0; m &= m - 1) {
-      const int i = std::countr_zero(m);
-      target(x0 + i, y0) = values[i];
-    }
-  }
-}
-
 void store_keys(const FrameRequest& request, const std::uint64_t* keys, std::uint64_t touched,
                 const Window& w) {
   const Targets& targets = request.targets;
@@ -162,98 +144,6 @@ void store_keys(const FrameRequest& request, const std::uint64_t* keys, std::uin
     store_block(targets.ids, ids, touched, x0, y0);
   }
   if (!targets.keys.empty()) store_block(targets.keys, keys, touched, x0, y0);
-}
-
-constexpr float kNowhere = std::numeric_limits<float>::infinity();
-constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
-
-/// What a key alone tells: which primitive of which draw.
-void store_numbers(const FrameRequest& request, const FrameGeometry& frame,
-                   const VisibleBlock& block, std::uint64_t touched) {
-  const Targets& t = request.targets;
-  const SurfaceScene* const scene = request.surface;
-  std::int64_t instances[64], primitives[64];
-  const Draw* draw = nullptr;
-  std::uint64_t copy = 0;
-  std::int64_t instance = -1;
-  for (std::uint64_t m = touched; m != 0; m &= m - 1) {
-    const int i = std::countr_zero(m);
-    instances[i] = primitives[i] = -1;
-    if ((block.covered >> i & 1) == 0) continue;
-    const std::uint64_t id = id_of_key(block.keys[i]);
-    const bool is_other = draw == nullptr || id - draw->first_id >= draw->primitive_count;
-    if (is_other) draw = &frame.draw_of(id);
-    const Draw::OfCopy of = draw->of_copy(id - draw->first_id);
-    if (is_other || of.copy != copy) {
-      const auto place = static_cast<std::size_t>(draw - frame.draws.data());
-      copy = of.copy;
-      instance =
-          scene == nullptr ? static_cast<std::int64_t>(place) : scene->instance_id(place, copy);
-    }
-    instances[i] = instance;
-    primitives[i] = static_cast<std::int64_t>(of.primitive);
-  }
-  if (!t.instances.empty()) store_block(t.instances, instances, touched, block.x0, block.y0);
-  if (!t.primitives.empty()) store_block(t.primitives, primitives, touched, block.x0, block.y0);
-}
-
-void store_distances(const FrameRequest& request, const VisibleBlock& block,
-                     std::uint64_t touched) {
-  const Targets& t = request.targets;
-  alignas(64) float view_depth[64], distance[64];
-  if (block.covered == 0) {
-    std::fill_n(view_depth, 64, kNowhere);
-    std::fill_n(distance, 64, kNowhere);
-  } else {
-    distance_kernel(request.isa)(*request.surface, block.keys, block.x0, block.y0, view_depth,
-                                 t.distance.empty() ? nullptr : distance);
-  }
-  if (!t.view_depth.empty()) store_block(t.view_depth, view_depth, touched, block.x0, block.y0);
-  if (!t.distance.empty()) store_block(t.distance, distance, touched, block.x0, block.y0);
-}
-
-/// `f`: null where nothing is.
-void store_point(const FrameRequest& request, const FrameGeometry& frame, const SeenFragment* f,
-                 int x, int y, CornerNormals& corners) {
-  const Targets& t = request.targets;
-  const SurfaceScene* const scene = request.surface;
-  const auto store = [&](const auto& target, auto nothing, const auto& value) {
-    if (!target.empty()) target(x, y) = f == nullptr ? nothing : value();
-  };
-  store(t.barycentrics, Vec2{}, [&] {
-    return Vec2{static_cast<float>(f->weights.b[1]), static_cast<float>(f->weights.b[2])};
-  });
-  store(t.positions, Vec3{}, [&] { return Vec3(scene->position(*f)); });
-  if (!t.normals.empty() || !t.camera_normals.empty()) {
-    const Vec3d normal = f == nullptr ? Vec3d{} : scene->normal(*f, corners);
-    store(t.normals, Vec3{}, [&] { return Vec3(normal); });
-    store(t.camera_normals, Vec3{}, [&] { return Vec3(scene->in_camera(normal)); });
-  }
-  store(t.albedo, Vec4{}, [&] { return scene->albedo(frame, *f); });
-  store(t.scalars, kNoNumber, [&] {
-    const double value = scene->scalar(frame, *f);
-    return std::isnan(value) ? kNoNumber : static_cast<float>(value);
-  });
-}
-
-void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
-                    const VisibleBlock& block, std::uint64_t touched) {
-  const Targets& t = request.targets;
-  if (!t.instances.empty() || !t.primitives.empty()) store_numbers(request, frame, block, touched);
-  if (!t.view_depth.empty() || !t.distance.empty()) store_distances(request, block, touched);
-  if (t.barycentrics.empty() && t.positions.empty() && t.normals.empty() &&
-      t.camera_normals.empty() && t.albedo.empty() && t.scalars.empty())
-    return;
-  SurfaceLocator locator(frame, request.samples, !t.albedo.empty());
-  CornerNormals corners;
-  for (std::uint64_t m = touched; m != 0; m &= m - 1) {
-    const int i = std::countr_zero(m);
-    const SeenFragment* found = nullptr;
-    if ((block.covered >> i & 1) != 0)
-      found = &locator.locate(block.keys[i], block.x0, block.y0, i);
-    store_point(request, frame, found, block.x0 + i % kBlockSize, block.y0 + i / kBlockSize,
-                corners);
-  }
 }
 
 /// The samples that hold a surface of this pass: ids count on from pass to pass, and what others
@@ -394,8 +284,8 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
     fill(targets.positions, y, Vec3{});
     fill(targets.normals, y, Vec3{});
     fill(targets.camera_normals, y, Vec3{});
-    fill(targets.view_depth, y, kNowhere);
-    fill(targets.distance, y, kNowhere);
+    fill(targets.view_depth, y, kNoDistance);
+    fill(targets.distance, y, kNoDistance);
     fill(targets.albedo, y, Vec4{});
     fill(targets.scalars, y, kNoNumber);
   }

@@ -86,6 +86,13 @@ Vec3d SurfaceScene::to_viewer(int x, int y) const {
   return -(Vec3d(r.d) + Vec3d(r.dx) * (x + 0.5) + Vec3d(r.dy) * (y + 0.5));
 }
 
+void SurfaceScene::normals_at_corners(const SeenFragment& f, Vec3d (&normals)[3]) const {
+  const MeshView& mesh = *lit.draws[f.draw].mesh;
+  Vec3 rounded[3];
+  rounded_normals(mesh, mesh.place(f.triangle), f.vertex, rounded);
+  for (int c = 0; c < 3; ++c) normals[c] = rounded[c];
+}
+
 Vec3d SurfaceScene::object_normal(const SeenFragment& f, CornerNormals& corners) const {
   if (f.quadric != nullptr) return f.quadric->point.normal;
   const GeometryView& geometry = scene.instances[f.draw].geometry;
@@ -93,10 +100,7 @@ Vec3d SurfaceScene::object_normal(const SeenFragment& f, CornerNormals& corners)
   if (const auto* const points = std::get_if<PointsView>(&geometry))
     return points->normals.empty() ? Vec3d{} : Vec3d(safe_normal(points->normals[f.vertex[0]]));
   if (corners.id != f.id) {
-    const MeshView& mesh = *lit.draws[f.draw].mesh;
-    Vec3 rounded[3];
-    rounded_normals(mesh, mesh.place(f.triangle), f.vertex, rounded);
-    for (int c = 0; c < 3; ++c) corners.at[c] = rounded[c];
+    normals_at_corners(f, corners.at);
     corners.id = f.id;
   }
   return interpolate(f, corners.at);

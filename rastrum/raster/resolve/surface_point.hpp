@@ -3,7 +3,7 @@
 //
 // In float64 and in one written order of operations, from what the key names and the pixel alone,
 // so the same bits however the key was found; rounded to float32 once, where it is stored. Scalar
-// code: a pixel costs about as much as a material without textures.
+// code; surface_lanes.hpp has the same of triangles for many pixels at once.
 #pragma once
 
 #include <cstdint>
@@ -96,6 +96,8 @@ struct SurfaceScene {
   }
   /// Unit length, in the world, turned to the viewer; 0 where there is none.
   [[nodiscard]] Vec3d normal(const SeenFragment& f, CornerNormals& corners) const;
+  /// Of a mesh's triangle, in object space.
+  void normals_at_corners(const SeenFragment& f, Vec3d (&normals)[3]) const;
   /// What its geometry has there; NaN: nothing.
   [[nodiscard]] double scalar(const FrameGeometry& frame, const SeenFragment& f) const;
   [[nodiscard]] Vec3d in_camera(Vec3d direction) const;

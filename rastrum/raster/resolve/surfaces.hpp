@@ -1,0 +1,38 @@
+// The images beside colour, depth and ids: of a block, from its keys.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <limits>
+
+#include <rastrum/image.hpp>
+#include <rastrum/raster/frame/request.hpp>
+
+namespace rastrum::raster {
+
+/// What distances and numbers are where nothing is.
+inline constexpr float kNoDistance = std::numeric_limits<float>::infinity();
+inline constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
+
+/// Of a block its 64 values, but what is not `touched`.
+template <class T>
+void store_block(const ImageView<T>& target, const T* values, std::uint64_t touched, int x0,
+                 int y0) {
+  for (; touched != 0; touched >>= kBlockSize, values += kBlockSize, ++y0) {
+    if (touched % 256 == 255) {
+      std::copy_n(values, kBlockSize, target.row(y0) + x0);
+      continue;
+    }
+    for (std::uint64_t m = touched % 256; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      target(x0 + i, y0) = values[i];
+    }
+  }
+}
+
+/// Those that are asked for, at the pixels that are `touched`.
+void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
+                    const VisibleBlock& block, std::uint64_t touched) noexcept;
+
+}  // namespace rastrum::raster
