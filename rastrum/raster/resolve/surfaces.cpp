@@ -182,7 +182,7 @@ class RunStorer {
   std::size_t draw_ = 0;    ///< of the run
   std::uint64_t copy_ = 0;  ///< the same
   LitDraw of_copy_;         ///< the same, if it is not its draw's first
-  decltype(VertexList::positions) positions_ = nullptr;
+  const ArrayView<Vec3>* positions_ = nullptr;
   std::uint64_t ids_[64];  ///< of the run's triangles
   int triangle_of_[64];    ///< of each pixel of the block; -1: none of this run
   int pixels_[64];         ///< of the block, of each of the run
