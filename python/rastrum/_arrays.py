@@ -1,7 +1,5 @@
 """Arrays as they come: what can be drawn in place stays where it is."""
 
-import difflib
-
 import numpy as np
 
 from . import _rastrum as _r
@@ -116,6 +114,7 @@ def color(value, name):
     if isinstance(value, str):
         found = _r.color_of(value)
         if found is None:
+            import difflib  # as other modules that few calls need: imports are a script's time
             near = difflib.get_close_matches(value.lower(), _r.color_names(), 1)
             raise ArgumentError(f"{name}: {value!r} is no colour; take '#rrggbb' or a name of CSS's" +
                                 (f", {near[0]!r} perhaps" if near else ""))

@@ -2,12 +2,9 @@
 
 import atexit
 import dataclasses
-import hashlib
 import math
 import os
-import pathlib
 import sys
-import tempfile
 import weakref
 
 import numpy as np
@@ -35,6 +32,7 @@ _LARGE = 1 << 16
 
 def digest(array):
     """SHA-256 of a picture's pixels in 64 hexadecimal digits, as C++'s digest() and the program's --hash have it."""
+    import hashlib
     array = np.ascontiguousarray(array)
     if array.dtype.kind == "f" and np.isnan(array).any():
         array = array.copy()
@@ -52,7 +50,8 @@ def _number_of_threads():
         return int(given)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     try:
-        quota, period = pathlib.Path("/sys/fs/cgroup/cpu.max").read_text().split()
+        with open("/sys/fs/cgroup/cpu.max", encoding="ascii") as file:
+            quota, period = file.read().split()
         if quota != "max":
             cores = min(cores, max(1, math.ceil(int(quota) / int(period))))
     except (OSError, ValueError):
@@ -131,6 +130,8 @@ class Picture(_Fields):
     def _repr_png_(self):
         if "color" not in self.arrays:
             return None
+        import pathlib
+        import tempfile
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "picture.png"
             self.save(file)

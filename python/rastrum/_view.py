@@ -2,7 +2,6 @@
 
 import inspect
 import math
-import pathlib
 import time
 
 import numpy as np
@@ -186,6 +185,8 @@ class _Session:
 def _widget(session):
     """An anywidget whose messages the session answers."""
     try:
+        import pathlib
+
         import anywidget
         import traitlets
     except ImportError as e:

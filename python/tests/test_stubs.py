@@ -3,6 +3,8 @@
 import ast
 import inspect
 import pathlib
+import subprocess
+import sys
 
 import rastrum as rr
 
@@ -45,3 +47,10 @@ def test_everything_public_is_documented():
     for name in rr.__all__:
         if callable(getattr(rr, name)):
             assert inspect.getdoc(getattr(rr, name)), name
+
+
+def test_an_import_loads_nothing_that_few_calls_need():
+    code = ("import sys, numpy; before = set(sys.modules); import rastrum; "
+            "print(*sorted((set(sys.modules) - before) & {'difflib', 'hashlib', 'pathlib', 'subprocess', 'tempfile', 'trimesh', 'PIL'}))")
+    asked = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert asked.stdout.split() == []
