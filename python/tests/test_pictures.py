@@ -72,6 +72,19 @@ def test_equal_values_give_equal_bits(sheet):
                                     outputs="id").id, expected.id)
 
 
+def test_pictures_are_the_same_bytes_for_every_python_and_numpy():
+    # Numbers that are exact, so that nothing but the package could differ.
+    y, x = np.mgrid[0:33, 0:33]
+    v = np.stack([x / 16 - 1, y / 16 - 1, (x * x * 7 + y * y * 5 + x * y * 3) % 64 / 256], -1).reshape(-1, 3)
+    corner = (np.arange(32)[:, None] * 33 + np.arange(32)).reshape(-1, 1)
+    f = np.concatenate([corner + [0, 1, 34], corner + [0, 34, 33]])
+    p = rr.render((v, f), rr.Camera.look_at((1, -2, 3), (0, 0, 0)), size=(200, 150), samples=1, shader="phong",
+                  outputs=("color", "depth", "id", "normal", "position", "barycentrics"))
+    assert {name: rr.digest(a)[:16] for name, a in p.arrays.items()} == {
+        "color": "24caa3d62073f54c", "depth": "fe99d3d69d37646f", "id": "55ed0363cdea478b",
+        "normal": "51e2a2dd74527cfe", "position": "7c6a6c7bf2a38a31", "barycentrics": "62f10806aaf6086d"}
+
+
 def test_files_arrays_and_the_program_agree(sheet, obj):
     a = rr.render(rr.load(obj, crease=None), size=SIZE)
     b = rr.render(sheet, size=SIZE)
