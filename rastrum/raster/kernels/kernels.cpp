@@ -43,15 +43,21 @@ SetupOutput setup_scalar(const SetupInput& in, Piece* pieces, BinFragment*,
     }
     if (needs_clip) {
       slow[out.slow++] = i;
-    } else if (make_piece(moved(v[0], in.at), moved(v[1], in.at), moved(v[2], in.at),
-                          in.first_id + t, in.flags, in.cull, in.view,
-                          pieces[out.pieces]) == SetupResult::drawn) {
-      ++out.pieces;
-      if (in.seen != nullptr) {
+      continue;
+    }
+    const auto draw = [&](SampleOffset at, std::uint32_t flags) {
+      const bool drawn =
+          make_piece(moved(v[0], at), moved(v[1], at), moved(v[2], at), in.first_id + t, flags,
+                     in.cull, in.view, pieces[out.pieces]) == SetupResult::drawn;
+      out.pieces += drawn;
+      return drawn;
+    };
+    if (in.samples.empty()) (void)draw({}, in.flags);
+    for (std::uint32_t s = 0; s < in.samples.size(); ++s)
+      if (draw(in.samples[s], in.flags | s << kSampleShift)) {
         const std::uint32_t bit = in.first_seen + i;
         in.seen[bit / 64] |= std::uint64_t{1} << bit % 64;
       }
-    }
   }
   return out;
 }

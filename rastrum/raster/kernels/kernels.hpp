@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include <rastrum/frame.hpp>
 #include <rastrum/mat.hpp>
@@ -33,16 +34,18 @@ struct SetupInput {
   Rect view;
   std::uint32_t bin_columns = 0;  ///< bins in a row of the image
   bool micro = false;             ///< micro triangles may become fragments
-  SampleOffset at{};              ///< with `seen`: from where in the pixels the vertices are seen
-  std::uint32_t first_bin = 0;    ///< of the fragments
-  /// A bit for each triangle of `count`, from bit `first_seen` on, is set where its box holds a
-  /// sample and it is not culled; null: nobody asks.
+  /// Several samples a pixel: a triangle is set up once, and drawn as each of them sees it, with
+  /// its number in the pieces' flags. Empty: the pixels' centres alone.
+  std::span<const SampleOffset> samples;
+  std::uint32_t image_bins = 0;  ///< so far apart are the bins of the samples' fragments
+  /// With `samples`: a bit for each triangle of `count`, from bit `first_seen` on, is set where its
+  /// box holds one of them and it is not culled.
   std::uint64_t* seen = nullptr;
   std::uint32_t first_seen = 0;
 };
 
-/// At most this many triangles a call; callers provide that many pieces and slow entries, and
-/// kMicroSize² times as many fragments.
+/// At most this many triangles a call, those of each sample counted; callers provide that many
+/// pieces and slow entries, and kMicroSize² times as many fragments.
 inline constexpr std::uint32_t kSetupBatch = 256;
 
 struct SetupOutput {

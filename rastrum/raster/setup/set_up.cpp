@@ -186,6 +186,38 @@ SetupOutput defer_quadrics(const Frame& frame, const Draw& draw, std::uint64_t f
   return result;
 }
 
+/// Room for what a kernel writes at most.
+Piece* make_room(Pieces& pieces, MicroSink* micro, BinFragment*& fragments) {
+  pieces.data.grow(std::size_t{pieces.count} + kSetupBatch, pieces.count);
+  fragments = micro == nullptr ? nullptr : micro->room(kSetupBatch * kMicroSize * kMicroSize);
+  return pieces.data.data() + pieces.count;
+}
+
+/// Triangles by the kernel, as many at a time as there is room for with all samples.
+SetupOutput set_up_triangles(const Frame& frame, const SetupInput& in, Pieces& pieces,
+                             MicroSink* micro, std::uint32_t* slow) {
+  const auto samples = static_cast<std::uint32_t>(std::max<std::size_t>(in.samples.size(), 1));
+  SetupOutput all;
+  for (std::uint32_t first = 0; first < in.count; first += kSetupBatch / samples) {
+    SetupInput some = in;
+    some.first += first;
+    some.count = std::min(in.count - first, kSetupBatch / samples);
+    some.first_seen = first;
+    BinFragment* fragments = nullptr;
+    Piece* const room = make_room(pieces, micro, fragments);
+    const SetupOutput out = frame.kernel.setup(some, room, fragments, slow + all.slow);
+    all.index_in_range = out.index_in_range;
+    if (!out.index_in_range) break;
+    pieces.count += out.pieces;
+    if (micro != nullptr) micro->written(out.fragments);
+    for (std::uint32_t k = 0; k < out.slow; ++k) slow[all.slow + k] += first;
+    all.pieces += out.pieces;
+    all.micro += out.micro;
+    all.slow += out.slow;
+  }
+  return all;
+}
+
 /// How many of the `count` primitives from `first` on have the flags of the first.
 std::uint32_t equal_flags(const FrameGeometry& frame, const Draw& draw, std::uint64_t first,
                           std::uint32_t count) {
@@ -316,36 +348,43 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
         input.bin_columns * static_cast<std::uint32_t>((geometry.height + kBinSize - 1) / kBinSize);
     TriangleSet seen, clipped, dropped;
     std::uint32_t seen_points = 0;
-    if (samples.size() > 1) input.seen = seen.bits;
+    input.flags = flags;
+    // Who draws translucent surfaces opaque knows no such fragments.
+    if (frame.request.transparency.method == Transparency::none) input.flags &= ~kTranslucent;
+    SetupOutput of_all;
+    const bool by_kernel = !as_points && draw.has_kernel();
+    if (by_kernel) {
+      if (samples.size() > 1) {
+        input.samples = samples;
+        input.image_bins = image_bins;
+        input.seen = seen.bits;
+      }
+      of_all = set_up_triangles(frame, input, pieces, micro, slow);
+      if (!of_all.index_in_range) return false;
+    }
     for (std::uint32_t sample = 0; sample < samples.size(); ++sample) {
       const SampleOffset at = samples[sample];
-      input.flags = flags | sample << kSampleShift;
-      input.at = at;
-      input.first_bin = sample * image_bins;
-      // Who draws translucent surfaces opaque knows no such fragments.
-      if (frame.request.transparency.method == Transparency::none) input.flags &= ~kTranslucent;
-      pieces.data.grow(std::size_t{pieces.count} + kSetupBatch, pieces.count);
-      BinFragment* const fragments =
-          micro == nullptr ? nullptr : micro->room(kSetupBatch * kMicroSize * kMicroSize);
-      Piece* const room = pieces.data.data() + pieces.count;
-      SetupOutput out;
-      if (as_points) {
-        std::int32_t sizes[kSetupBatch];
-        out = frame.kernel.points({corners.vertices, count, sizes_of(draw, t, count, sizes), id,
-                                   input.flags | (draw.is_round() ? kRound : 0), image,
-                                   input.bin_columns, input.first_bin},
-                                  fragments, slow);
-        seen_points = out.micro;
-      } else if (draw.has_kernel()) {
-        out = frame.kernel.setup(input, room, fragments, slow);
-      } else if (defers && may_defer(draw, input.flags)) {
-        out = defer_quadrics(frame, draw, t, count, input.flags, room, slow);
-      } else {
-        out = all_slow(draw, t, count, slow);
+      SetupOutput out = of_all;
+      if (!by_kernel) {
+        const std::uint32_t own_flags = input.flags | sample << kSampleShift;
+        BinFragment* fragments = nullptr;
+        Piece* const room = make_room(pieces, micro, fragments);
+        if (as_points) {
+          std::int32_t sizes[kSetupBatch];
+          out = frame.kernel.points({corners.vertices, count, sizes_of(draw, t, count, sizes), id,
+                                     own_flags | (draw.is_round() ? kRound : 0), image,
+                                     input.bin_columns, sample * image_bins},
+                                    fragments, slow);
+          seen_points = out.micro;
+        } else if (defers && may_defer(draw, own_flags)) {
+          out = defer_quadrics(frame, draw, t, count, own_flags, room, slow);
+        } else {
+          out = all_slow(draw, t, count, slow);
+        }
+        if (!out.index_in_range) return false;
+        pieces.count += out.pieces;
+        if (micro != nullptr) micro->written(out.fragments);
       }
-      if (!out.index_in_range) return false;
-      pieces.count += out.pieces;
-      if (micro != nullptr) micro->written(out.fragments);
       std::uint32_t slow_culled = 0;
       for (std::uint32_t k = 0; k < out.slow; ++k) {
         const Fate fate = assemble_primitive(

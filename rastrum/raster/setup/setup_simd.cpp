@@ -138,16 +138,18 @@ HWY_INLINE Corners load_corners(const SetupInput& in, const std::uint32_t* index
 #if HWY_MAX_BYTES >= 32
   hn::Vec<I128> x1, y1, depth1;
   transpose4(in.vertices, index + 4, x1, y1, depth1);
-  Corners c{hn::Combine(di, x1, x), hn::Combine(di, y1, y),
-            hn::BitCast(d, hn::Combine(di, depth1, depth))};
+  return {hn::Combine(di, x1, x), hn::Combine(di, y1, y),
+          hn::BitCast(d, hn::Combine(di, depth1, depth))};
 #else
-  Corners c{x, y, hn::BitCast(d, depth)};
+  return {x, y, hn::BitCast(d, depth)};
 #endif
-  if (in.seen == nullptr) return c;
-  // Several samples. What needs the clipper keeps saying so.
-  const auto clip = hn::Eq(c.x, hn::Set(di, kNeedsClip));
-  c.x = hn::IfThenElse(clip, c.x, hn::Sub(c.x, hn::Set(di, in.at.x)));
-  c.y = hn::Sub(c.y, hn::Set(di, in.at.y));
+}
+
+/// The corners as they are seen from the samples that lie at `by`; none needs the clipper.
+HWY_INLINE Corners moved_lanes(Corners c, SampleOffset by) {
+  const I32 d;
+  c.x = hn::Sub(c.x, hn::Set(d, by.x));
+  c.y = hn::Sub(c.y, hn::Set(d, by.y));
   return c;
 }
 
@@ -194,6 +196,28 @@ HWY_INLINE I negate_if(I v, I m) {
   return hn::Sub(hn::Xor(v, m), m);
 }
 
+/// Lanes of triangles that are culled for their winding, or for having no area. Exact in float64:
+/// differences have 25 bits, products 50.
+HWY_INLINE std::uint32_t culled_lanes(const Corners& a, const Corners& b, const Corners& c,
+                                      Cull cull) {
+  const I dx1 = hn::Sub(b.x, a.x), dy1 = hn::Sub(b.y, a.y);
+  const I dx2 = hn::Sub(c.x, a.x), dy2 = hn::Sub(c.y, a.y);
+  std::uint32_t culled = 0;
+  for (std::size_t h = 0; h < kHalves; ++h) {
+    const F64 dd;
+    const D area = hn::Sub(hn::Mul(half_to_double(dx1, h), half_to_double(dy2, h)),
+                           hn::Mul(half_to_double(dx2, h), half_to_double(dy1, h)));
+    const D zero = hn::Zero(dd);
+    auto out = hn::Eq(area, zero);
+    if (cull == Cull::back) out = hn::Or(out, hn::Gt(area, zero));
+    if (cull == Cull::front) out = hn::Or(out, hn::Lt(area, zero));
+    std::uint8_t bits = 0;
+    hn::StoreMaskBits(dd, out, &bits);
+    culled |= (bits & ((1U << kLanes64) - 1)) << (h * kLanes64);
+  }
+  return culled;
+}
+
 /// Coverage of micro triangles, a lane each: the sign bits of the edge functions at kMicroSize²
 /// samples from (x0, y0) on. Boxes of up to 5 px keep every product far inside int32.
 HWY_INLINE I micro_masks(const Corners& a, const Corners& b, const Corners& c, I x0, I y0, I area) {
@@ -234,6 +258,8 @@ HWY_INLINE I micro_masks(const Corners& a, const Corners& b, const Corners& c, I
   return hn::AndNot(outside, hn::Set(d, 0xFFFF));
 }
 
+/// kCulls: else those that are culled are known.
+template <bool kCulls>
 HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c,
                             const SetupInput& in) {
   const I32 d;
@@ -274,22 +300,8 @@ HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c
     hn::Store(hn::BitCast(U32{}, hn::IfThenElseZero(small, masks)), U32{}, classes.micro);
     classes.none = lane_bits(hn::Eq(masks, zero)) & micro & ~culled;
   }
-  if (micro != in_view) {
-    // Twice the area, exact in float64: differences have 25 bits, products 50.
-    std::uint32_t large_culled = 0;
-    for (std::size_t h = 0; h < kHalves; ++h) {
-      const F64 dd;
-      const D area = hn::Sub(hn::Mul(half_to_double(dx1, h), half_to_double(dy2, h)),
-                             hn::Mul(half_to_double(dx2, h), half_to_double(dy1, h)));
-      const D zero = hn::Zero(dd);
-      auto out = hn::Eq(area, zero);
-      if (in.cull == Cull::back) out = hn::Or(out, hn::Gt(area, zero));
-      if (in.cull == Cull::front) out = hn::Or(out, hn::Lt(area, zero));
-      std::uint8_t bits = 0;
-      hn::StoreMaskBits(dd, out, &bits);
-      large_culled |= (bits & ((1U << kLanes64) - 1)) << (h * kLanes64);
-    }
-    culled |= large_culled & ~micro;
+  if (kCulls && micro != in_view) {
+    culled |= culled_lanes(a, b, c, in.cull) & ~micro;
   }
   classes.drawn = in_view & ~culled & ~classes.none;
   return classes;
@@ -297,7 +309,7 @@ HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c
 
 /// The covered samples of a micro triangle as fragments. By value, so that it stays in registers.
 HWY_INLINE std::uint32_t write_fragments(const Piece p, std::uint32_t mask, const SetupInput& in,
-                                         BinFragment* out) {
+                                         std::uint32_t first_bin, BinFragment* out) {
   const int first_x = (min3(p.x[0], p.x[1], p.x[2]) + kHalfPixel - 1) >> kSubpixelBits;
   const int first_y = (min3(p.y[0], p.y[1], p.y[2]) + kHalfPixel - 1) >> kSubpixelBits;
   std::uint32_t n = 0;
@@ -306,7 +318,7 @@ HWY_INLINE std::uint32_t write_fragments(const Piece p, std::uint32_t mask, cons
     const int x = first_x + sample % kMicroSize, y = first_y + sample / kMicroSize;
     if (x < in.view.x0 || x >= in.view.x1 || y < in.view.y0 || y >= in.view.y1) continue;
     out[n++] = fragment_at(x, y, make_key(plane_depth_at(p, x, y), p.low), p.flags, in.bin_columns,
-                           in.first_bin);
+                           first_bin);
   }
   return n;
 }
@@ -335,17 +347,20 @@ struct Waiting {
   }
 };
 
-/// Sets up the triangles of `lanes`, which may cover a sample, in order. `triangle` and `micro` are
-/// by lane.
-HWY_INLINE void make_pieces(const SetupInput& in, const Corners& a, const Corners& b,
-                            const Corners& c, std::uint32_t lanes, const std::uint32_t* triangle,
-                            const std::uint32_t* micro, Piece* pieces, BinFragment* fragments,
-                            SetupOutput& out) {
+/// What of kLanes pieces is the same for every sample, but for where they are.
+struct PieceLanes {
+  HWY_ALIGN std::int32_t first[kLanes * 4], second[kLanes * 4];  ///< a piece's first eight numbers
+  HWY_ALIGN float zy[kLanes];
+  std::uint32_t facing_away;
+};
+
+HWY_INLINE void set_up_lanes(const Corners& a, const Corners& b, const Corners& c,
+                             PieceLanes& out) {
   const F32 df;
   const I32 di;
   const I dx1 = hn::Sub(b.x, a.x), dy1 = hn::Sub(b.y, a.y);
   const I dx2 = hn::Sub(c.x, a.x), dy2 = hn::Sub(c.y, a.y);
-  HWY_ALIGN float zx[kLanes], zy[kLanes], sign[kLanes];
+  HWY_ALIGN float zx[kLanes], sign[kLanes];
   for (std::size_t h = 0; h < kHalves; ++h) {
     const F64 dd;
     const hn::Half<F32> dh;
@@ -359,35 +374,101 @@ HWY_INLINE void make_pieces(const SetupInput& in, const Corners& a, const Corner
     const D gx = hn::Mul(hn::Div(hn::Sub(hn::Mul(z1, y2), hn::Mul(z2, y1)), det), scale);
     const D gy = hn::Mul(hn::Div(hn::Sub(hn::Mul(z2, x1), hn::Mul(z1, x2)), det), scale);
     hn::StoreU(hn::DemoteTo(dh, gx), dh, zx + h * kLanes64);
-    hn::StoreU(hn::DemoteTo(dh, gy), dh, zy + h * kLanes64);
+    hn::StoreU(hn::DemoteTo(dh, gy), dh, out.zy + h * kLanes64);
     hn::StoreU(hn::DemoteTo(dh, det), dh, sign + h * kLanes64);
   }
   // |det| ≥ 1, so its sign survives the rounding to float32.
   const auto keep = hn::RebindMask(di, hn::Gt(hn::LoadU(df, sign), hn::Zero(df)));
-  const std::uint32_t facing_away = lane_bits(keep);
+  out.facing_away = lane_bits(keep);
   const I sx = hn::IfThenElse(keep, b.x, c.x), sy = hn::IfThenElse(keep, b.y, c.y);
   const I tx = hn::IfThenElse(keep, c.x, b.x), ty = hn::IfThenElse(keep, c.y, b.y);
-  HWY_ALIGN std::int32_t first[kLanes * 4], second[kLanes * 4];
-  hn::StoreInterleaved4(a.x, sx, tx, a.y, di, first);
+  hn::StoreInterleaved4(a.x, sx, tx, a.y, di, out.first);
   hn::StoreInterleaved4(sy, ty, hn::BitCast(di, a.depth), hn::BitCast(di, hn::LoadU(df, zx)), di,
-                        second);
-  const I128 d128;
+                        out.second);
+}
+
+/// Writes the pieces of `lanes`, which may cover a sample, in order, or the fragments of those that
+/// have a mask in `micro`. `triangle` and `micro` are by lane; with kMoved as sample `number` of
+/// the pixels sees them.
+template <bool kMoved>
+HWY_INLINE void write_pieces(const SetupInput& in, const PieceLanes& from, std::uint32_t number,
+                             std::uint32_t lanes, const std::uint32_t* triangle,
+                             const std::uint32_t* micro, Piece* pieces, BinFragment* fragments,
+                             SetupOutput& out) {
+  const I128 d;
+  const SampleOffset at = kMoved ? in.samples[number] : SampleOffset{};
+  alignas(16) const std::int32_t by[2][4] = {{at.x, at.x, at.x, at.y}, {at.y, at.y, 0, 0}};
+  const std::uint32_t flags = in.flags | number << kSampleShift;
+  const auto load = [&](const std::int32_t* part, std::uint32_t i, int half) HWY_ATTR {
+    const auto v = hn::Load(d, part + i * 4);
+    return kMoved ? hn::Sub(v, hn::Load(d, by[half])) : v;
+  };
   for (; lanes != 0; lanes &= lanes - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(lanes));
     Piece& piece = pieces[out.pieces];
     auto* parts = reinterpret_cast<std::int32_t*>(&piece);
-    hn::Store(hn::Load(d128, first + i * 4), d128, parts);
-    hn::Store(hn::Load(d128, second + i * 4), d128, parts + 4);
-    piece.zy = zy[i];
-    piece.flags = in.flags | ((facing_away >> i & 1) * kFacesAway);
+    hn::Store(load(from.first, i, 0), d, parts);
+    hn::Store(load(from.second, i, 1), d, parts + 4);
+    piece.zy = from.zy[i];
+    piece.flags = flags | ((from.facing_away >> i & 1) * kFacesAway);
     piece.low = kIdMask - (in.first_id + in.first + triangle[i]);
     if (micro[i] == 0) {
       ++out.pieces;
       continue;
     }
     ++out.micro;
-    out.fragments += write_fragments(piece, micro[i], in, fragments + out.fragments);
+    out.fragments +=
+        write_fragments(piece, micro[i], in, number * in.image_bins, fragments + out.fragments);
   }
+}
+
+/// Sets up the triangles of `lanes` and draws them. Of several samples each finds its own classes;
+/// `micro` is of one alone.
+HWY_INLINE void make_pieces(const SetupInput& in, const Corners& a, const Corners& b,
+                            const Corners& c, std::uint32_t lanes, const std::uint32_t* triangle,
+                            const std::uint32_t* micro, Piece* pieces, BinFragment* fragments,
+                            SetupOutput& out) {
+  PieceLanes set_up;
+  set_up_lanes(a, b, c, set_up);
+  if (in.samples.empty())
+    return write_pieces<false>(in, set_up, 0, lanes, triangle, micro, pieces, fragments, out);
+  std::uint32_t seen = 0;
+  for (std::uint32_t s = 0; s < in.samples.size(); ++s) {
+    const SampleOffset at = in.samples[s];
+    const Classes classes =
+        classify<false>(moved_lanes(a, at), moved_lanes(b, at), moved_lanes(c, at), in);
+    const std::uint32_t none = classes.none & lanes;
+    out.micro += static_cast<std::uint32_t>(std::popcount(none));
+    seen |= (classes.drawn & lanes) | none;
+    write_pieces<true>(in, set_up, s, classes.drawn & lanes, triangle, classes.micro, pieces,
+                       fragments, out);
+  }
+  for (; seen != 0; seen &= seen - 1) {
+    const std::uint32_t bit = in.first_seen + triangle[std::countr_zero(seen)];
+    in.seen[bit / 64] |= std::uint64_t{1} << bit % 64;
+  }
+}
+
+/// Those that some sample of a pixel may see; the rest is asked of each sample.
+HWY_INLINE Classes classify_sampled(const Corners& a, const Corners& b, const Corners& c,
+                                    const SetupInput& in) {
+  const I32 d;
+  Classes classes;
+  const I needs_clip = hn::Set(d, kNeedsClip);
+  classes.slow = lane_bits(
+      hn::Or(hn::Eq(a.x, needs_clip), hn::Or(hn::Eq(b.x, needs_clip), hn::Eq(c.x, needs_clip))));
+  // Pixels of which the box touches something.
+  const I last = hn::Set(d, kSubpixels - 1);
+  const auto outside = [&](I p, I q, I r, int first, int end) HWY_ATTR {
+    const I least = min3_lanes(p, q, r), most = max3_lanes(p, q, r);
+    return hn::Or(hn::Lt(hn::ShiftRight<kSubpixelBits>(hn::Add(most, last)), hn::Set(d, first)),
+                  hn::Gt(hn::ShiftRight<kSubpixelBits>(least), hn::Set(d, end)));
+  };
+  const std::uint32_t away = lane_bits(hn::Or(outside(a.x, b.x, c.x, in.view.x0, in.view.x1),
+                                              outside(a.y, b.y, c.y, in.view.y0, in.view.y1)));
+  const std::uint32_t near_view = ((1U << kLanes) - 1) & ~(away | classes.slow);
+  if (near_view != 0) classes.drawn = near_view & ~culled_lanes(a, b, c, in.cull);
+  return classes;
 }
 
 /// Sets up the first `n` ≤ kLanes waiting triangles.
@@ -420,11 +501,8 @@ SetupOutput setup(const SetupInput& in, Piece* pieces, BinFragment* fragments,
     const Corners a = load_corners(in, index[0]);
     const Corners b = load_corners(in, index[1]);
     const Corners c = load_corners(in, index[2]);
-    const Classes classes = classify(a, b, c, in);
-    if (in.seen != nullptr) {
-      const std::uint32_t bit = in.first_seen + i;
-      in.seen[bit / 64] |= std::uint64_t{classes.drawn | classes.none} << bit % 64;
-    }
+    const Classes classes =
+        in.samples.empty() ? classify<true>(a, b, c, in) : classify_sampled(a, b, c, in);
     for (std::uint32_t rest = classes.slow; rest != 0; rest &= rest - 1)
       slow[result.slow++] = i + static_cast<std::uint32_t>(std::countr_zero(rest));
     result.micro += static_cast<std::uint32_t>(std::popcount(classes.none));
