@@ -304,41 +304,6 @@ TEST(Scalars, OfOpacityAreLayersInOrder) {
   EXPECT_EQ(draw(scene, square_camera(), o).color(kW / 2, kH / 2), (Vec4{1, 1, 1, 1}));
 }
 
-/// How much of a line a row of pixels has, where the ground is white and the line black.
-double darkness(const Picture& p, int y) {
-  double sum = 0;
-  for (int x = 0; x < p.color.width(); ++x) sum += 1 - double{p.color(x, y).x};
-  return sum;
-}
-
-TEST(Scalars, HaveIsolinesOfOneWidthAtEveryDistance) {
-  const std::vector<float> values{0, 1, 1, 0};
-  ScalarMapping mapping{.map = {"white", {{1, 1, 1, 1}}, false}, .range = ScalarRange{0, 1}};
-  mapping.isolines = {0.5};
-  mapping.isoline_px = 3;
-  InstanceView instance{square(values)};
-  const Picture p = draw(scene_of(instance, mapping), square_camera(), flat(101, 101));
-  for (int y = 2; y < 99; ++y) {
-    ASSERT_NEAR(darkness(p, y), 3, 1e-4) << y;
-    ASSERT_EQ(p.color(50, y).x, 0);
-  }
-  // In perspective, the square laid back: as wide far away as near.
-  Camera camera;
-  camera.eye = {0.5, -0.5, 0.4};
-  camera.target = {0.5, 0.5, 0};
-  camera.fov_rad = 0.8F;
-  camera.near_plane = 0.01F;
-  const Picture back = draw(scene_of(instance, mapping), camera, flat(101, 101));
-  int rows = 0;
-  for (int y = 0; y < 101; ++y) {
-    if (back.ids(50, y) < 0) continue;
-    ++rows;
-    ASSERT_GT(back.color(44, y).x, 0.99) << y;
-    ASSERT_EQ(back.color(50, y).x, 0) << y;
-  }
-  EXPECT_GT(rows, 20);
-}
-
 TEST(Scalars, KeepTheHolesOfMasks) {
   const std::vector<float> values{0, 1, 1, 0};
   const std::vector<Vec2> texcoords{{0, 0}, {1, 0}, {1, 1}, {0, 1}};

@@ -56,7 +56,7 @@ void SurfaceLocator::locate_quadric(const Draw& draw, int x, int y) {
     (void)surface_.find(*draw.quadrics, seen_.triangle, frame_.viewport);
     quadric_id_ = seen_.id;
   }
-  hit_ = seen_of(surface_, x, y, seen_.depth, samples_);
+  hit_ = seen_of(surface_, x, y, seen_.depth, samples_, changes_);
   seen_.weights = {};
   seen_.weights.b[0] = 1 - hit_.point.along;
   seen_.weights.b[1] = hit_.point.along;
@@ -136,18 +136,26 @@ double SurfaceScene::ray_length(int x, int y) const {
 
 double SurfaceScene::scalar(const FrameGeometry& frame, const SeenFragment& f) const {
   if (scalars.empty() || scalars[f.draw].empty()) return std::numeric_limits<double>::quiet_NaN();
-  const Draw& draw = frame.draws[f.draw];
-  if (f.quadric == nullptr) return scalars[f.draw].at(f, draw.topology);
+  if (f.quadric == nullptr) return scalars[f.draw].at(f, frame.draws[f.draw].topology);
   double ends[2];
-  scalars[f.draw].at_ends(axis_ends(draw.quadrics->geometry(), f.triangle), ends);
+  scalars_at_ends(frame, f, ends);
   return SurfaceScalars::between(ends, f.quadric->point.along);
+}
+
+void SurfaceScene::scalars_at_ends(const FrameGeometry& frame, const SeenFragment& f,
+                                   double (&ends)[2]) const {
+  const QuadricStage& stage = *frame.draws[f.draw].quadrics;
+  scalars[f.draw].at_ends(axis_ends(stage.geometry(), f.triangle), ends);
 }
 
 Vec4 SurfaceScene::albedo(const FrameGeometry& frame, const SeenFragment& f) const {
   const InstanceView& instance = scene.instances[f.draw];
-  if (!scalars.empty() && scalars[f.draw].colors() != nullptr)
-    return f.quadric != nullptr ? scalars[f.draw].color(scalar(frame, f), true)
-                                : scalars[f.draw].color(f, frame.draws[f.draw].topology, true);
+  if (!scalars.empty() && scalars[f.draw].colors() != nullptr) {
+    if (f.quadric == nullptr) return scalars[f.draw].color(f, frame.draws[f.draw].topology, true);
+    double ends[2];
+    scalars_at_ends(frame, f, ends);
+    return scalars[f.draw].color(ends, f.quadric->point.along, f.quadric->along_per_px, true);
+  }
   if (f.quadric != nullptr) {
     const QuadricGeometry& geometry = frame.draws[f.draw].quadrics->geometry();
     const Vec4 own = color_at(geometry, instance, f.triangle, f.quadric->point.along);

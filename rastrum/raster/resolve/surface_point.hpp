@@ -107,6 +107,8 @@ struct SurfaceScene {
   [[nodiscard]] Vec4 albedo(const FrameGeometry& frame, const SeenFragment& f) const;
 
  private:
+  /// Of a quadric's axis.
+  void scalars_at_ends(const FrameGeometry& frame, const SeenFragment& f, double (&ends)[2]) const;
   /// In object space, not of unit length.
   [[nodiscard]] Vec3d object_normal(const SeenFragment& f, CornerNormals& corners) const;
   /// Towards the viewer, not normalized.

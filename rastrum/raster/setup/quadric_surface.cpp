@@ -52,11 +52,39 @@ bool QuadricSurface::find(const QuadricStage& stage, std::uint64_t primitive,
          make_quadric(eye, shape, quadric, place, &rays);
 }
 
-QuadricHit seen_of(const QuadricSurface& surface, int x, int y, float depth, int samples) {
+double QuadricSurface::along_per_px(const RayFrame::Point& h, const QuadricPoint& on) const {
+  if (!has_two_ends(shape.kind)) return 0;
+  const Vec3d between = shape.p1 - shape.p0;
+  const double distance = length(between);
+  const Vec3d axis = between * (1 / distance);
+  double per_length = 1 / distance;  // of the axis, along the surface
+  if (shape.kind == QuadricKind::hull) {
+    if (on.along == 0 || on.along == 1) return 0;  // the balls
+    const double sine = (shape.r0 - shape.r1) / distance;
+    per_length = per_length / ((1 - sine) * (1 + sine));
+  } else if (on.normal == axis || on.normal == axis * -1) {
+    return 0;  // the flat ends
+  }
+  // The point moves with the ray and along it, so that it stays on the plane of the surface.
+  const Vec3d p = h.v * (1 / h.w);
+  const Vec3d by_depth = rays.depth.v - p * rays.depth.w;
+  const double off_plane = dot(on.normal, by_depth);
+  const auto change = [&](const RayFrame::Point& by) {
+    const Vec3d across = by.v - p * by.w;
+    const Vec3d moved = across - by_depth * (dot(on.normal, across) / off_plane);
+    return dot(axis, moved) / h.w * per_length;
+  };
+  const double dx = change(rays.x), dy = change(rays.y);
+  return std::sqrt(dx * dx + dy * dy);
+}
+
+QuadricHit seen_of(const QuadricSurface& surface, int x, int y, float depth, int samples,
+                   bool changes) {
   using Place = QuadricSurface::Place;
   const auto hit = [&](Place at, double e) {
     const RayFrame::Point h = surface.point(at, e);
-    return QuadricHit{h.v * (1 / h.w), point_on(surface.shape, h)};
+    const QuadricPoint on = point_on(surface.shape, h);
+    return QuadricHit{h.v * (1 / h.w), on, changes ? surface.along_per_px(h, on) : 0};
   };
   const Place centre = surface.at(x, y);
   constexpr float kPx = 1.0F / kSubpixels;

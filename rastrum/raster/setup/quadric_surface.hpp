@@ -53,18 +53,23 @@ struct QuadricSurface {
     return {((rays.o.v + rays.x.v * p.dx) + rays.y.v * p.dy) + rays.depth.v * e,
             ((rays.o.w + rays.x.w * p.dx) + rays.y.w * p.dy) + rays.depth.w * e};
   }
+  /// How much QuadricPoint::along changes from pixel to pixel along its steepest way, at the point
+  /// `h` of the surface, of which `on` is known; 0 where all about it belongs to one place of the
+  /// axis.
+  [[nodiscard]] double along_per_px(const RayFrame::Point& h, const QuadricPoint& on) const;
 };
 
 /// A point of what is seen of a quadric, in object space.
 struct QuadricHit {
   Vec3d position;
   QuadricPoint point;
+  double along_per_px = 0;
 };
 
 /// The point at the centre of pixel (x, y) whose side has `depth` there; of a picture of several
 /// samples a pixel it is the side that has it at a sample, and the point at that sample where the
-/// side does not cover the centre.
+/// side does not cover the centre. Without `changes` nobody asks for along_per_px.
 [[nodiscard]] QuadricHit seen_of(const QuadricSurface& surface, int x, int y, float depth,
-                                 int samples);
+                                 int samples, bool changes);
 
 }  // namespace rastrum::raster

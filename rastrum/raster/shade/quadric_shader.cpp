@@ -98,12 +98,14 @@ QuadricShader::Seen QuadricShader::seen(const Kept& k, std::uint64_t key,
   const float depth = depth_of_key(key);
   scalar_wide::Surface s = k.quadric.side(false, at);
   if (!s.covered || quadric_depth(k.quadric.quadric, s.e) != depth) s = k.quadric.side(true, at);
-  const QuadricPoint point = point_on(k.quadric.shape, k.quadric.point(at, s.e));
-  const Vec4 base = k.surface->shows_scalars()
-                        ? k.surface->scalars.color(SurfaceScalars::between(k.scalar, point.along),
-                                                   !look_.look().model)
-                        : lerp(k.color[0], k.color[1], static_cast<float>(point.along));
-  return {base, times(k.surface->plain.normal_matrix, Vec3(point.normal))};
+  const RayFrame::Point h = k.quadric.point(at, s.e);
+  const QuadricPoint point = point_on(k.quadric.shape, h);
+  const Vec3 normal = times(k.surface->plain.normal_matrix, Vec3(point.normal));
+  if (!k.surface->shows_scalars())
+    return {lerp(k.color[0], k.color[1], static_cast<float>(point.along)), normal};
+  const SurfaceScalars& scalars = k.surface->scalars;
+  const double per_px = scalars.colors()->has_isolines() ? k.quadric.along_per_px(h, point) : 0;
+  return {scalars.color(k.scalar, point.along, per_px, !look_.look().model), normal};
 }
 
 std::uint64_t QuadricShader::test(const FrameGeometry& frame, const Piece& piece,

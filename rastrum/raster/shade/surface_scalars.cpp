@@ -67,8 +67,9 @@ double SurfaceScalars::between(const double (&ends)[2], double along) {
   return weighted(weights, ends, 2);
 }
 
-Vec4 SurfaceScalars::color(double value, bool linear) const {
-  const Vec4 c = (*colors_)(value);
+Vec4 SurfaceScalars::color(double value, double per_px, bool linear) const {
+  Vec4 c = (*colors_)(value);
+  if (colors_->has_isolines()) c = colors_->with_isolines(c, value, per_px);
   return linear ? linear_light(c) : c;
 }
 
@@ -80,15 +81,21 @@ Vec4 SurfaceScalars::color(const Fragment& f, Topology topology, bool linear) co
 
 Vec4 SurfaceScalars::color(const double (&corner)[3], const Weights& weights, Topology topology,
                            bool linear) const {
-  const double value = weighted(weights.b, corner, static_cast<int>(topology));
-  if (topology != Topology::triangles || !colors_->has_isolines()) return color(value, linear);
+  const int n = static_cast<int>(topology);
+  const double value = weighted(weights.b, corner, n);
   double dx = 0, dy = 0;
-  for (int c = 0; c < 3; ++c) {
-    dx = dx + corner[c] * weights.db_dx[c];
-    dy = dy + corner[c] * weights.db_dy[c];
+  if (colors_->has_isolines()) {
+    for (int c = 0; c < n; ++c) {
+      dx = dx + corner[c] * weights.db_dx[c];
+      dy = dy + corner[c] * weights.db_dy[c];
+    }
   }
-  const Vec4 c = colors_->with_isolines((*colors_)(value), value, std::sqrt(dx * dx + dy * dy));
-  return linear ? linear_light(c) : c;
+  return color(value, std::sqrt(dx * dx + dy * dy), linear);
+}
+
+Vec4 SurfaceScalars::color(const double (&ends)[2], double along, double along_per_px,
+                           bool linear) const {
+  return color(between(ends, along), std::abs(ends[1] - ends[0]) * along_per_px, linear);
 }
 
 }  // namespace rastrum::raster

@@ -1,0 +1,212 @@
+// Isolines (docs/conventions.md, "Scalars"): as wide in pixels at any distance, on meshes, along
+// lines and along the axes of cylinders, cones and tubes; none where there is but one number.
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/camera.hpp>
+#include <rastrum/raster/setup/quadric_surface.hpp>
+#include <rastrum/render.hpp>
+
+#include "tests/support/random.hpp"
+
+namespace rastrum::test::isolines_test {
+
+constexpr int kSize = 101;
+
+/// White with black lines 3 px wide.
+ScalarMapping lines_at(std::vector<double> levels) {
+  ScalarMapping mapping{.map = {"white", {{1, 1, 1, 1}}, false}, .range = ScalarRange{0, 1}};
+  mapping.isolines = std::move(levels);
+  mapping.isoline_px = 3;
+  return mapping;
+}
+
+/// Sees the unit square from (0, 0) to (1, 1) as the whole picture.
+Camera square_camera() {
+  Camera camera;
+  camera.eye = {0.5, 0.5, 1};
+  camera.target = {0.5, 0.5, 0};
+  camera.orthographic = true;
+  camera.orthographic_height = 1;
+  camera.near_plane = 0.1F;
+  camera.far_plane = 2;
+  return camera;
+}
+/// The square laid back, in perspective.
+Camera camera_from_below() {
+  Camera camera;
+  camera.eye = {0.5, -0.5, 0.4};
+  camera.target = {0.5, 0.5, 0};
+  camera.fov_rad = 0.8F;
+  camera.near_plane = 0.01F;
+  return camera;
+}
+
+struct Picture {
+  Image<Vec4> color{kSize, kSize}, albedo{kSize, kSize};
+  Image<std::int64_t> ids{kSize, kSize};
+};
+
+Picture draw(const GeometryView& geometry, const ScalarMapping& mapping, const Camera& camera) {
+  InstanceView instance;
+  instance.geometry = geometry;
+  const SceneView scene{{&instance, 1}, {}, {}, {&mapping, 1}};
+  Picture p;
+  Renderer({.threads = 1})
+      .render(scene, camera, {.width = kSize, .height = kSize, .shader = Shader::flat},
+              {.color = p.color, .ids = p.ids, .albedo = p.albedo});
+  return p;
+}
+
+/// How much of a line a row of pixels has.
+double darkness(const Picture& p, int y) {
+  double sum = 0;
+  for (int x = 0; x < kSize; ++x)
+    if (p.ids(x, y) >= 0) sum += 1 - double{p.color(x, y).x};
+  return sum;
+}
+
+const std::vector<Vec3> kSquare{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+const std::vector<std::uint32_t> kTwoTriangles{0, 1, 2, 0, 2, 3};
+const std::vector<float> kAcross{0, 1, 1, 0};
+
+TEST(Isolines, AreAsWideAtEveryDistance) {
+  MeshView square{.positions = kSquare, .indices = kTwoTriangles};
+  square.scalars = {kAcross};
+  const ScalarMapping mapping = lines_at({0.5});
+  const Picture p = draw(square, mapping, square_camera());
+  for (int y = 2; y < 99; ++y) {
+    ASSERT_NEAR(darkness(p, y), 3, 1e-4) << y;
+    ASSERT_EQ(p.color(50, y).x, 0);
+  }
+  const Picture back = draw(square, mapping, camera_from_below());
+  int rows = 0;
+  for (int y = 0; y < kSize; ++y) {
+    if (back.ids(50, y) < 0) continue;
+    ++rows;
+    ASSERT_GT(back.color(44, y).x, 0.99) << y;
+    ASSERT_EQ(back.color(50, y).x, 0) << y;
+  }
+  EXPECT_GT(rows, 20);
+}
+
+const std::vector<Vec3> kAxis{{0.1F, 0.5F, 0}, {0.9F, 0.5F, 0}};
+const std::vector<float> kAlongAxis{2, 6};
+const std::vector<float> kRadii{0.2F, 0.05F};
+
+TEST(Isolines, CrossLinesAndTheAxesOfCylindersConesAndTubes) {
+  const ScalarMapping mapping = lines_at({4.5});
+  const auto check = [&](const char* name, const GeometryView& geometry, int row, double wide) {
+    SCOPED_TRACE(name);
+    const Picture p = draw(geometry, mapping, square_camera());
+    ASSERT_GE(p.ids(60, row), 0);
+    EXPECT_NEAR(darkness(p, row), wide, 1e-4);
+    EXPECT_EQ(p.color(60, row).x, 0);
+    EXPECT_EQ(p.albedo(60, row).x, 0);
+    EXPECT_EQ(p.color(50, row).x, 1);
+    EXPECT_EQ(p.albedo(50, row).x, 1);
+  };
+  check("lines", LinesView{.positions = kAxis, .line_width = 9, .scalars = kAlongAxis}, 52, 3);
+  const CylindersView cylinders{.positions = kAxis, .radius = 0.1F, .scalars = kAlongAxis};
+  check("cylinders", cylinders, 50, 3);
+  check("cylinders, off the middle", cylinders, 57, 3);
+  check("cones", CylindersView{.positions = kAxis, .radii = kRadii, .scalars = kAlongAxis}, 50, 3);
+  check("tubes", TubesView{.positions = kAxis, .radius = 0.1F, .scalars = kAlongAxis}, 55, 3);
+  // A number belongs to the normals' cone, not to a plane: along the ray through the axis alone it
+  // is a straight way.
+  check("tubes of two radii", TubesView{.positions = kAxis, .radii = kRadii, .scalars = kAlongAxis},
+        50, 3);
+}
+
+TEST(Isolines, AreNotWhereThereIsOneNumber) {
+  const std::vector<float> same{4.5F, 4.5F};
+  const ScalarMapping mapping = lines_at({4.5});
+  const std::vector<Vec3> up{{0, 0, 1}, {0, 0, 1}};
+  const auto check = [&](const char* name, const GeometryView& geometry) {
+    SCOPED_TRACE(name);
+    const Picture p = draw(geometry, mapping, square_camera());
+    ASSERT_GE(p.ids(10, 50), 0);
+    for (int y = 0; y < kSize; ++y) ASSERT_EQ(darkness(p, y), 0) << y;
+  };
+  check("points", PointsView{.positions = kAxis, .point_size = 9, .scalars = same});
+  check("lines", LinesView{.positions = kAxis, .line_width = 5, .scalars = same});
+  check("spheres", SpheresView{.centers = kAxis, .radius = 0.1F, .scalars = same});
+  check("discs", DiscsView{.centers = kAxis, .normals = up, .radius = 0.1F, .scalars = same});
+  check("cylinders", CylindersView{.positions = kAxis, .radius = 0.1F, .scalars = same});
+  check("tubes", TubesView{.positions = kAxis, .radius = 0.1F, .scalars = same});
+  // Nor on the flat end, all of which has the number of the level.
+  const std::vector<Vec3> towards{{0.1F, 0.5F, -0.5F}, {0.1F, 0.5F, 0}};
+  const std::vector<float> to_level{2, 4.5F};
+  check("an end", CylindersView{.positions = towards, .radius = 0.1F, .scalars = to_level});
+}
+
+/// Against differences of what point_on says beside the pixel, in perspective and under a matrix
+/// that shears.
+TEST(Isolines, KnowHowThePlaceOnTheAxisChanges) {
+  Camera camera;
+  camera.eye = {1.5, 2, 3};
+  camera.target = {0, 0, 0};
+  camera.fov_rad = 0.7F;
+  camera.near_plane = 0.5F;
+  Mat4d to_world = Mat4d::identity();
+  to_world.m[0][1] = 0.3;
+  to_world.m[2][0] = -0.2;
+  const Mat4d to_clip = world_to_clip(camera, kSize, kSize) * to_world;
+  const raster::Viewport viewport = raster::Viewport::of(kSize, kSize);
+  Random random(7);
+  int seen = 0, flat = 0;
+  for (int k = 0; k < 60; ++k) {
+    std::vector<Vec3> ends;
+    std::vector<float> radii;
+    for (int i = 0; i < 2; ++i) {
+      ends.push_back({static_cast<float>(random.real(-0.8, 0.8)),
+                      static_cast<float>(random.real(-0.8, 0.8)),
+                      static_cast<float>(random.real(-0.8, 0.8))});
+      radii.push_back(static_cast<float>(random.real(0.1, 0.3)));
+    }
+    const raster::QuadricGeometry kinds[] = {
+        CylindersView{.positions = ends, .radii = radii},
+        CylindersView{.positions = ends, .radii = radii, .caps = false},
+        TubesView{.positions = ends, .radii = radii}};
+    const raster::QuadricStage stage(kinds[k % 3], to_clip);
+    raster::QuadricSurface surface;
+    if (!surface.find(stage, 0, viewport)) continue;
+    for (int y = 1; y < kSize; y += 3)
+      for (int x = 1; x < kSize; x += 3)
+        for (const bool away : {false, true}) {
+          const auto along = [&](double dx, double dy, bool& there) {
+            raster::QuadricSurface::Place at = surface.at(x, y);
+            at.dx += dx;
+            at.dy += dy;
+            const raster::scalar_wide::Surface side = surface.side(away, at);
+            there &= side.covered;
+            return raster::point_on(surface.shape, surface.point(at, side.e)).along;
+          };
+          const raster::QuadricSurface::Place at = surface.at(x, y);
+          const raster::scalar_wide::Surface side = surface.side(away, at);
+          if (!side.covered) continue;
+          const raster::RayFrame::Point h = surface.point(at, side.e);
+          const double found = surface.along_per_px(h, raster::point_on(surface.shape, h));
+          constexpr double kStep = 1e-3;
+          bool there = true;
+          const double left = along(-kStep, 0, there), right = along(kStep, 0, there);
+          const double above = along(0, -kStep, there), below = along(0, kStep, there);
+          if (!there) continue;
+          const double middle = along(0, 0, there);
+          // Where an end meets a side, and near silhouettes, differences say little.
+          const double bent =
+              std::abs(left + right - 2 * middle) + std::abs(above + below - 2 * middle);
+          const double expected = std::hypot(right - left, below - above) / (2 * kStep);
+          if (bent > 1e-6 * expected * 2 * kStep + 1e-9) continue;
+          ++seen;
+          flat += found == 0 ? 1 : 0;
+          ASSERT_NEAR(found, expected, 1e-5 * expected + 1e-7) << k << ": " << x << ", " << y;
+        }
+  }
+  EXPECT_GT(seen, 1000);
+  EXPECT_GT(flat, 100);
+}
+
+}  // namespace rastrum::test::isolines_test
