@@ -133,3 +133,8 @@ def linear(rgba):
     def channel(v):
         return v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4
     return tuple(channel(v) for v in rgba[:3]) + (rgba[3],)
+
+
+def product(a, b):
+    """a @ b, added in one order: a BLAS has its own on each machine, with other bits."""
+    return sum(a[:, k, np.newaxis] * b[k] for k in range(len(b)))

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from . import _rastrum as _r
-from ._arrays import matrix
+from ._arrays import matrix, product
 from ._errors import ArgumentError, ArgumentTypeError, raises_errors
 from ._things import as_scene
 
@@ -77,7 +77,7 @@ class Camera:
         near and far plane become: opengl (-1, 1), zero_to_one (0, 1) or reversed (1, 0)."""
         clip = matrix(projection, "projection")
         if view is not None:
-            clip = np.ascontiguousarray(clip @ matrix(view, "view"))
+            clip = product(clip, matrix(view, "view"))
         made = _r.of_matrix(clip, depth)
         return Camera(lambda size: made)
 
@@ -86,6 +86,8 @@ class Camera:
 def orbit(what, n, *, elevation=25.0, up=(0, 1, 0), fov=60.0):
     """n cameras around all of `what` at one distance, so that it keeps its size; counter-clockwise as seen from above,
     `elevation` degrees up."""
+    if n < 1:
+        raise ArgumentError(f"n: {n!r} cameras; there is at least one")
     scene, up = as_scene(what), np.asarray(_triple(up, "up"))
     up = up / np.linalg.norm(up)
     side = np.cross(up, (0.0, 0.0, 1.0))

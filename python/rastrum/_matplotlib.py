@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ._arrays import product
 from ._camera import Camera
 from ._errors import ArgumentTypeError
 from ._render import Renderer
@@ -16,12 +17,12 @@ def camera_of(ax):
     """
     m = np.asarray(ax.get_proj(), float)
     # From the axes' plane to pixels, which is affine, and from there to the picture's -1 … 1.
-    to_px = ax.transData.get_affine().get_matrix() @ ax.transData.transform_non_affine(np.eye(3))
+    to_px = product(ax.transData.get_affine().get_matrix(), ax.transData.transform_non_affine(np.eye(3)))
     box = ax.bbox
     to_picture = np.array([[2 / box.width, 0, -2 * box.x0 / box.width - 1], [0, 2 / box.height, -2 * box.y0 / box.height - 1]])
-    place = np.stack([to_px[0] @ m[[0, 1, 3]], to_px[1] @ m[[0, 1, 3]], m[3]])
+    place = np.concatenate([product(to_px[:2], m[[0, 1, 3]]), m[3:]])
     clip = np.empty((4, 4))
-    clip[:2] = to_picture @ place
+    clip[:2] = product(to_picture, place)
     clip[3] = m[3]
     if np.abs(m[3, :3]).max() < 1e-12:
         clip[2] = m[2] - m[3]

@@ -1,4 +1,5 @@
 // Cameras: ours, and those of others.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -93,6 +94,14 @@ Camera of_matrix(const Array& world_to_clip, const std::string& depth) {
   return camera_from_matrix(matrix(world_to_clip, "matrix"), kind);
 }
 
+std::array<std::array<double, 4>, 4> inverse_of(const Array& array) {
+  const std::optional<Mat4d> found = inverse(matrix(array, "matrix"));
+  if (!found) throw Error(Errc::invalid_argument, "matrix: it has no inverse");
+  std::array<std::array<double, 4>, 4> rows{};
+  for (std::size_t i = 0; i < 4; ++i) std::copy_n(found->m[i], 4, rows[i].begin());
+  return rows;
+}
+
 }  // namespace
 
 void bind_cameras(nb::module_& m) {
@@ -113,6 +122,7 @@ void bind_cameras(nb::module_& m) {
   m.def("fit", fit, arg("scene"), arg("direction"), arg("up"), arg("fov"), arg("orthographic"),
         arg("width"), arg("height"));
   m.def("zoomed", zoomed, arg("camera"), arg("times"));
+  m.def("inverse", inverse_of, arg("matrix"));
   m.def("view", view, arg("name"), arg("up"));
   m.def("opencv", opencv, arg("K"), arg("pose"), arg("width"), arg("height"), arg("near"),
         arg("first_centre"));

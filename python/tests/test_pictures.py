@@ -4,6 +4,7 @@ import gc
 import hashlib
 import multiprocessing
 import os
+import pathlib
 import resource
 import signal
 import subprocess
@@ -72,17 +73,58 @@ def test_equal_values_give_equal_bits(sheet):
                                     outputs="id").id, expected.id)
 
 
-def test_pictures_are_the_same_bytes_for_every_python_and_numpy():
-    # Numbers that are exact, so that nothing but the package could differ.
+def exact_sheet():
+    """Numbers that are exact, so that nothing but what draws could differ; tests/render/as_python_test.cpp has it, too."""
     y, x = np.mgrid[0:33, 0:33]
     v = np.stack([x / 16 - 1, y / 16 - 1, (x * x * 7 + y * y * 5 + x * y * 3) % 64 / 256], -1).reshape(-1, 3)
     corner = (np.arange(32)[:, None] * 33 + np.arange(32)).reshape(-1, 1)
-    f = np.concatenate([corner + [0, 1, 34], corner + [0, 34, 33]])
-    p = rr.render((v, f), rr.Camera.look_at((1, -2, 3), (0, 0, 0)), size=(200, 150), samples=1, shader="phong",
-                  outputs=("color", "depth", "id", "normal", "position", "barycentrics"))
-    assert {name: rr.digest(a)[:16] for name, a in p.arrays.items()} == {
-        "color": "24caa3d62073f54c", "depth": "fe99d3d69d37646f", "id": "55ed0363cdea478b",
-        "normal": "51e2a2dd74527cfe", "position": "7c6a6c7bf2a38a31", "barycentrics": "62f10806aaf6086d"}
+    return v.astype(np.float32), np.concatenate([corner + [0, 1, 34], corner + [0, 34, 33]]).astype(np.uint32)
+
+
+def golden_digests():
+    """What the C++ test of the same picture compares with: {image: digest}."""
+    lines = (pathlib.Path(__file__).resolve().parents[2] / "tests" / "golden" / "hashes.txt").read_text(encoding="utf-8").split("\n")
+    return {name.removeprefix("as_python/"): digest for digest, name in (line.split() for line in lines if " as_python/" in line)}
+
+
+def test_pictures_are_the_same_bytes_for_cpp_every_python_and_numpy():
+    p = rr.render(exact_sheet(), rr.Camera.look_at((1, -2, 3), (0, 0, 0)), size=(200, 150), samples=1, shader="phong",
+                  outputs=("color", "depth_raw", "id", "normal", "position", "barycentrics"))
+    assert {"color": rr.digest(p.color), "depth": rr.digest(p.depth_raw), "ids": rr.digest(p.id.astype(np.int64)),
+            "normals": rr.digest(p.normal), "positions": rr.digest(p.position),
+            "barycentrics": rr.digest(p.barycentrics)} == golden_digests()
+
+
+@pytest.mark.skipif("RASTRUM_PROGRAM" not in os.environ, reason="the program was not built")
+def test_the_program_finds_the_same_bytes(tmp_path):
+    v, f = exact_sheet()
+    file = tmp_path / "sheet.obj"
+    file.write_text("".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in v.tolist()) +
+                    "".join(f"f {a} {b} {c}\n" for a, b, c in (f + 1).tolist()))
+    images = [word for name in ("normals", "positions", "barycentrics") for word in ("--image", f"{name}={tmp_path / name}.npy")]
+    said = subprocess.run(
+        [os.environ["RASTRUM_PROGRAM"], "render", "--look", "plain", "--samples", "1", str(file), "--size", "200x150", "--eye", "1,-2,3",
+         "--target", "0,0,0", "--fov", "60", "--near", "0.01", "--far", "inf", "--shader", "phong", "--normals", "face", "--hash", "--quiet",
+         "-o", str(tmp_path / "c.png"), "--depth", str(tmp_path / "d.npy"), "--ids", str(tmp_path / "i.npy"), *images],
+        capture_output=True, text=True, check=True).stdout
+    assert {name: digest for digest, name in (line.split() for line in said.splitlines())} == golden_digests()
+
+
+def test_types_of_equal_numbers_give_equal_bits_where_these_are_exact(sheet):
+    # A camera whose matrix has powers of two alone: float32 and float64 round nothing.
+    camera = rr.Camera.orthographic((0, 0, 4), height=4, near=1, far=9)
+    vertices, triangles = sheet
+    expected = rr.render((vertices, triangles), camera, size=(128, 128), outputs=ALL)
+    assert (expected.id >= 0).any()
+    for positions in (np.float32, np.float64):
+        for corners in (np.int32, np.uint32, np.int64, np.uint64):
+            assert same(expected, rr.render((vertices.astype(positions), triangles.astype(corners)), camera, size=(128, 128),
+                                            outputs=ALL)), (positions, corners)
+
+
+def test_an_orbit_of_no_camera_is_refused(sheet):
+    with pytest.raises(rr.ArgumentError, match="at least one"):
+        rr.orbit(sheet, 0)
 
 
 def test_files_arrays_and_the_program_agree(sheet, obj):

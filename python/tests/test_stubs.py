@@ -54,3 +54,12 @@ def test_an_import_loads_nothing_that_few_calls_need():
             "print(*sorted((set(sys.modules) - before) & {'difflib', 'hashlib', 'pathlib', 'subprocess', 'tempfile', 'trimesh', 'PIL'}))")
     asked = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert asked.stdout.split() == []
+
+
+def test_no_blas_is_on_the_way_to_a_pixel():
+    # It adds in an order of its own on each machine. What a hand does in a View is no matter.
+    for file in (STUB.parent).rglob("*.py"):
+        if file.name != "_view.py":
+            for word in (" @ ", "np.matmul", "np.dot", "einsum", "linalg.inv", "linalg.solve"):
+                assert word not in "\n".join(line for line in file.read_text(encoding="utf-8").split("\n")
+                                             if '"""' not in line), f"{file.name}: {word}"

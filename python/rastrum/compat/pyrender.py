@@ -7,7 +7,9 @@ pictures are the same bits on every machine.
 
 import numpy as np
 
+from .. import _rastrum as _r
 from .. import _things as _t
+from .._arrays import product as _product
 from .._camera import Camera as _Camera
 from .._errors import ArgumentError, UnsupportedError
 from .._lights import Light as _Light
@@ -317,7 +319,7 @@ class Scene:
             raise ValueError("the node is not in the scene")
         pose = node.matrix
         while (node := self._parents[node]) is not None:
-            pose = node.matrix @ pose
+            pose = _product(node.matrix, pose)
         return pose
 
     def set_pose(self, node, pose):
@@ -329,7 +331,7 @@ class Scene:
 
 def _placed(camera, pose, size):
     if not isinstance(camera, OrthographicCamera):
-        return _Camera.opengl(camera.get_projection_matrix(*size) @ np.linalg.inv(pose))
+        return _Camera.opengl(camera.get_projection_matrix(*size), np.array(_r.inverse(np.ascontiguousarray(pose, float))))
     # A parallel projection's matrix does not say where the eye is, from which depth counts.
     eye = pose[:3, 3]
     return _Camera.orthographic(eye, eye - pose[:3, 2], pose[:3, 1], height=2 * camera.ymag * min(1, size[0] / size[1]),
@@ -366,7 +368,7 @@ class OffscreenRenderer:
                 make = primitive._geometry(self.point_size, not flags & RenderFlags.FACE_NORMALS, lit)
                 poses = [np.eye(4)] if primitive.poses is None else np.asarray(primitive.poses, float).reshape(-1, 4, 4)
                 for pose in poses:
-                    things.append(make(transform=scene.get_pose(n) @ pose, id=len(nodes)))
+                    things.append(make(transform=_product(scene.get_pose(n), pose), id=len(nodes)))
             nodes.append(n)
         outputs = ["depth"]
         if not flags & RenderFlags.DEPTH_ONLY:
