@@ -52,7 +52,7 @@ class ColorMapping:
     clim: (low, high), None: from the least to the greatest finite number. log: by factors. symmetric: 0 in the middle.
     steps: so many colours. categories: numbers that have a colour each. below, above, nan: colours beyond the range and
     of what is no number. opacity: (number, opacity) pairs, linear between. isolines: numbers where lines are drawn on
-    meshes, isoline_width pixels wide. The picture: docs/scalars.md.
+    meshes, across lines and along axes, isoline_width pixels wide. The picture: docs/scalars.md.
     """
 
     @raises_errors
