@@ -1,6 +1,7 @@
 // Isolines (docs/conventions.md, "Scalars"): as wide in pixels at any distance, on meshes, along
 // lines and along the axes of cylinders, cones and tubes; none where there is but one number.
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include <rastrum/render.hpp>
 
 #include "tests/support/random.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace rastrum::test::isolines_test {
 
@@ -23,17 +25,6 @@ ScalarMapping lines_at(std::vector<double> levels) {
   return mapping;
 }
 
-/// Sees the unit square from (0, 0) to (1, 1) as the whole picture.
-Camera square_camera() {
-  Camera camera;
-  camera.eye = {0.5, 0.5, 1};
-  camera.target = {0.5, 0.5, 0};
-  camera.orthographic = true;
-  camera.orthographic_height = 1;
-  camera.near_plane = 0.1F;
-  camera.far_plane = 2;
-  return camera;
-}
 /// The square laid back, in perspective.
 Camera camera_from_below() {
   Camera camera;

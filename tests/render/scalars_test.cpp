@@ -55,18 +55,6 @@ RenderOptions flat(int w = kW, int h = kH) {
   return o;
 }
 
-/// A camera that sees the unit square from (0, 0) to (1, 1) as the whole picture.
-Camera square_camera() {
-  Camera camera;
-  camera.eye = {0.5, 0.5, 1};
-  camera.target = {0.5, 0.5, 0};
-  camera.orthographic = true;
-  camera.orthographic_height = 1;
-  camera.near_plane = 0.1F;
-  camera.far_plane = 2;
-  return camera;
-}
-
 const std::vector<Vec3> kSquare{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 const std::vector<std::uint32_t> kTwoTriangles{0, 1, 2, 0, 2, 3};
 

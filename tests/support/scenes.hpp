@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include <rastrum/camera.hpp>
 #include <rastrum/scene.hpp>
 
 namespace rastrum::test {
@@ -48,5 +49,17 @@ class Placer {
 
 /// One mesh, one instance, identity.
 [[nodiscard]] Scene single(Mesh mesh);
+
+/// Sees the unit square from (0, 0) to (1, 1) as the whole picture.
+inline Camera square_camera() {
+  Camera camera;
+  camera.eye = {0.5, 0.5, 1};
+  camera.target = {0.5, 0.5, 0};
+  camera.orthographic = true;
+  camera.orthographic_height = 1;
+  camera.near_plane = 0.1F;
+  camera.far_plane = 2;
+  return camera;
+}
 
 }  // namespace rastrum::test
