@@ -13,6 +13,12 @@ namespace rastrum {
 enum class Device : std::uint8_t { serial, threads, cuda, automatic };
 [[nodiscard]] std::string_view name(Device device);
 
+/// A stream of a caller's on the device that draws: CUDA's cudaStream_t, null for its default
+/// stream (PyTorch: torch.cuda.current_stream().cuda_stream).
+struct DeviceStream {
+  void* handle = nullptr;
+};
+
 /// Instruction sets that the SIMD leaves are compiled for. `scalar` is plain C++.
 enum class Isa : std::uint8_t { scalar, sse4, avx2, avx512, neon };
 [[nodiscard]] std::string_view name(Isa isa);

@@ -131,14 +131,15 @@ class Renderer {
 
   /// The same where the scene's arrays (positions, indices, normals, colours) and the targets are
   /// memory of the device that draws: with `cuda` CUDA's, of which nothing is copied, else the
-  /// host's, as always. The frame is drawn on a stream of its own, behind which no work of the
-  /// caller's streams is ordered: what writes the arrays must be complete before the call (with
-  /// PyTorch, torch.cuda.current_stream().synchronize()). When it returns the targets are complete.
+  /// host's, as always. The frame is drawn on a stream of its own, after all work that was given to
+  /// the stream `after` before the call: those of CUDA that write the arrays or read the targets.
+  /// Without one such work must be complete before the call. When it returns the targets are
+  /// complete.
   /// For opaque scenes without materials, by a shader of the device, into
   /// color8, color, depth, ids and keys; throws Error{unsupported} for what else is asked for.
   FrameStats render_in_place(const SceneView& scene, const Camera& camera,
                              const FrameOptions& frame, const Targets& targets,
-                             std::stop_token stop = {});
+                             std::stop_token stop = {}, std::optional<DeviceStream> after = {});
 
   /// What a frame shows at pixel (x, y), without drawing it whole; none where nothing is. Of the
   /// same bits as the frame's targets. Cost: O(vertices + triangles), and the pixels of one bin.

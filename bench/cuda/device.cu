@@ -48,6 +48,18 @@ void DeviceMemory::read(void* to, std::size_t bytes) const {
   copy(data_, to, bytes);
 }
 
+struct StreamOfACaller::Impl {
+  Cuda exec;
+};
+StreamOfACaller::StreamOfACaller() : impl_(std::make_unique<Impl>()) {}
+StreamOfACaller::~StreamOfACaller() = default;
+void* StreamOfACaller::handle() const {
+  return cuda_system::handle_of(impl_->exec.stream());
+}
+void StreamOfACaller::write(const DeviceMemory& to, const void* from, std::size_t bytes) {
+  cuda_system::copy(impl_->exec.stream(), to.data(), from, bytes);
+}
+
 struct DeviceWords::Impl {
   Cuda exec;
   DeviceBuffer<std::uint32_t> keys, values, index, counts, sorted_keys, sorted_values, sums, owners;

@@ -43,10 +43,33 @@ class DeviceArray {
   [[nodiscard]] std::span<const T> view() const {
     return {static_cast<const T*>(memory_.data()), size_};
   }
+  [[nodiscard]] const DeviceMemory& memory() const { return memory_; }
 
  private:
   DeviceMemory memory_;
   std::size_t size_;
+};
+
+/// A stream beside the renderer's, as a program that draws its own arrays has one. Not waited for
+/// until it is destroyed.
+class StreamOfACaller {
+ public:
+  StreamOfACaller();
+  ~StreamOfACaller();
+  StreamOfACaller(const StreamOfACaller&) = delete;
+  StreamOfACaller& operator=(const StreamOfACaller&) = delete;
+
+  [[nodiscard]] void* handle() const;
+  /// `from` must stay until the stream is done.
+  template <class T>
+  void write(const DeviceArray<T>& to, std::span<const T> from) {
+    write(to.memory(), from.data(), from.size_bytes());
+  }
+
+ private:
+  void write(const DeviceMemory& to, const void* from, std::size_t bytes);
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 /// The words that are timed, and a copy, which says what the device's memory gives.

@@ -61,15 +61,13 @@ std::size_t Arena::block_bytes(std::size_t bytes) const {
 void* Arena::allocate(std::size_t bytes) {
   const std::size_t size = bytes > SIZE_MAX / 2 ? bytes : block_bytes(bytes);
   const std::lock_guard lock(mutex_);
-  for (std::size_t i = kept_.size(); i-- > 0;)
-    if (kept_[i].bytes == size) {
-      void* const data = kept_[i].data;
-      kept_.erase(kept_.begin() + static_cast<std::ptrdiff_t>(i));
-      kept_bytes_ -= size;
-      in_use_ += size;
-      peak_ = std::max(peak_, in_use_);
-      return data;
-    }
+  if (const std::size_t at = fitting(size); at < kept_.size()) {
+    const Block block = kept_[at];
+    lend(block);
+    kept_.erase(kept_.begin() + static_cast<std::ptrdiff_t>(at));
+    kept_bytes_ -= block.bytes;
+    return block.data;
+  }
   while (!source_.keeps_all && !kept_.empty() &&
          in_use_ + size + kept_bytes_ > std::max(peak_, in_use_ + size))
     drop_oldest();
@@ -84,15 +82,42 @@ void* Arena::allocate(std::size_t bytes) {
                                          .append(" bytes of ")
                                          .append(source_.name)
                                          .append(" were asked for"));
-  in_use_ += size;
-  peak_ = std::max(peak_, in_use_);
+  try {
+    lend({data, size});
+  } catch (...) {
+    source_.release(data);
+    throw;
+  }
   if (account_ != nullptr) account_->add(size);
   return data;
 }
 
+/// The newest kept block of this size, or where all are kept the smallest up to twice as large:
+/// sizes change from frame to frame, and asking for a block stops the device. kept_.size(): none.
+std::size_t Arena::fitting(std::size_t size) const {
+  std::size_t best = kept_.size();
+  for (std::size_t i = kept_.size(); i-- > 0;) {
+    const std::size_t bytes = kept_[i].bytes;
+    if (bytes == size) return i;
+    if (!source_.keeps_all || bytes < size || bytes / 2 > size) continue;
+    if (best == kept_.size() || bytes < kept_[best].bytes) best = i;
+  }
+  return best;
+}
+
+void Arena::lend(Block block) {
+  if (source_.keeps_all) lent_.emplace(block.data, block.bytes);
+  in_use_ += block.bytes;
+  peak_ = std::max(peak_, in_use_);
+}
+
 void Arena::release(void* block, std::size_t bytes) noexcept {
-  const std::size_t size = block_bytes(bytes);
   const std::lock_guard lock(mutex_);
+  std::size_t size = block_bytes(bytes);
+  if (const auto lent = lent_.find(block); lent != lent_.end()) {
+    size = lent->second;
+    lent_.erase(lent);
+  }
   in_use_ -= size;
   if (source_.keeps_all || (kKeeps && size >= kSmallestKept)) {
     try {

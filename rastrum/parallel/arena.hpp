@@ -11,6 +11,7 @@
 #include <mutex>
 #include <new>
 #include <type_traits>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -46,7 +47,8 @@ class Arena {
 
   /// At least `bytes`, 64-byte aligned, uninitialized; large ones in large pages where the system
   /// has them. Sizes are rounded up by at most a quarter, so that frames of about one size fit into
-  /// each other's blocks. Throws Error{out_of_memory} with what was asked for, and as the source.
+  /// each other's blocks; where all blocks are kept, one of up to twice the size may come. Throws
+  /// Error{out_of_memory} with what was asked for, and as the source.
   [[nodiscard]] void* allocate(std::size_t bytes);
   /// Takes back what allocate(bytes) returned.
   void release(void* block, std::size_t bytes) noexcept;
@@ -66,12 +68,16 @@ class Arena {
     std::size_t bytes;
   };
   [[nodiscard]] std::size_t block_bytes(std::size_t bytes) const;
+  [[nodiscard]] std::size_t fitting(std::size_t size) const;
+  void lend(Block block);
   void drop_oldest() noexcept;
 
   MemoryAccount* account_;
   MemorySource source_;
   mutable std::mutex mutex_;
   std::vector<Block> kept_;  ///< oldest first
+  std::unordered_map<void*, std::size_t>
+      lent_;  ///< bytes; where a block may be larger than asked for
   std::uint64_t kept_bytes_ = 0, in_use_ = 0, peak_ = 0;
 };
 

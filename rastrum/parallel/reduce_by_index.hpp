@@ -67,6 +67,39 @@ requires(std::same_as<T, std::uint32_t> || std::same_as<T, std::uint64_t>) RASTR
 #endif
 }
 
+/// sum += value, by many threads at once, of which none reads the sum meanwhile. A warp's small
+/// values are added up before one thread of it goes to memory: 32 atomics of one address take 32
+/// turns.
+RASTRUM_HD inline void add_to_sum(std::uint64_t& sum, std::uint64_t value) noexcept {
+#if defined(__CUDA_ARCH__)
+  constexpr std::uint64_t kSmall = std::uint64_t{1} << 26;  // 32 of them fit 32 bits
+  if (value < kSmall) {
+    const unsigned here = __activemask();
+    const unsigned of_warp = __reduce_add_sync(here, static_cast<unsigned>(value));
+    if (static_cast<int>(threadIdx.x % 32) == __ffs(static_cast<int>(here)) - 1)
+      atomic_add(sum, std::uint64_t{of_warp});
+    return;
+  }
+#endif
+  atomic_add(sum, value);
+}
+
+/// The next place of a queue of which `count` are taken, for many threads at once: those of a warp
+/// that ask together ask once. May be beyond the queue's room.
+[[nodiscard]] RASTRUM_HD inline std::uint64_t take_place(std::uint64_t& count) noexcept {
+#if defined(__CUDA_ARCH__)
+  const unsigned here = __activemask(), lane = threadIdx.x % 32;
+  const int leader = __ffs(static_cast<int>(here)) - 1;
+  std::uint64_t first = 0;
+  if (static_cast<int>(lane) == leader)
+    first = atomic_add(count, std::uint64_t{static_cast<unsigned>(__popc(here))});
+  first = __shfl_sync(here, static_cast<unsigned long long>(first), leader);
+  return first + static_cast<unsigned>(__popc(here & ((1U << lane) - 1)));
+#else
+  return atomic_add(count, std::uint64_t{1});
+#endif
+}
+
 /// `dest` is a range of values, changed in place. Sizes of `indices` (integers, of any sign) and
 /// `values` agree.
 template <class Exec, Writable Dest, Readable Indices, Readable Values, class Op>

@@ -65,8 +65,13 @@ struct Renderer::Impl {
     const FrameOptions& frame;
     const Targets& targets;
     bool in_place = false;
-    std::optional<raster::Rect> part{};  ///< FrameRequest::part
-    std::string why_host{};              ///< FrameRequest::why_host
+    std::optional<DeviceStream> after{};  ///< what writes the arrays in place
+    std::optional<raster::Rect> part{};   ///< FrameRequest::part
+    std::string why_host{};               ///< FrameRequest::why_host
+
+    [[nodiscard]] Call with(const FrameOptions& other, const Targets& filled) const {
+      return {other, filled, in_place, after, part, why_host};
+    }
   };
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
   /// The same without what is behind.
@@ -143,10 +148,14 @@ FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const 
 
 FrameStats Renderer::render_in_place(const SceneView& scene, const Camera& camera,
                                      const FrameOptions& frame, const Targets& targets,
-                                     std::stop_token stop) {
+                                     std::stop_token stop, std::optional<DeviceStream> after) {
   const parallel::Turn turn(impl_->one_at_a_time, stop);
   check(frame);
-  return impl_->render(scene, camera, {frame, targets, impl_->options.device == Device::cuda});
+  return impl_->render(scene, camera,
+                       {.frame = frame,
+                        .targets = targets,
+                        .in_place = impl_->options.device == Device::cuda,
+                        .after = after});
 }
 
 FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draws,
@@ -191,8 +200,7 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
   FrameOptions over_nothing = call.frame;
   over_nothing.background = {};
   const Targets targets = around.targets(call.frame, call.targets);
-  FrameStats stats =
-      render_alone(scene, camera, {over_nothing, targets, call.in_place, call.part, call.why_host});
+  FrameStats stats = render_alone(scene, camera, call.with(over_nothing, targets));
   add_stage(stats, "environment",
             [&] { around.draw(call.frame, camera, call.targets, threads.get()); });
   return stats;
@@ -216,7 +224,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   const bool tones = TonePass::wanted(o, call.targets, taken);
   if (tones) check_targets(call.targets, o);
   const Targets targets = tones ? tone.targets(o, call.targets) : call.targets;
-  const Call drawn{o, targets, call.in_place, call.part, call.why_host};
+  const Call drawn = call.with(o, targets);
   const bool lit = taken == Shader::lambert || taken == Shader::phong || taken == Shader::material;
   const auto begin = std::chrono::steady_clock::now();
   const auto shadowed =
@@ -317,6 +325,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   request.background = o.background;
   request.targets = targets;
   request.in_place = call.in_place;
+  request.after = call.after;
   request.why_host = call.why_host;
   request.texture_bytes = textures.bytes();
   request.transparency = o.transparency;
@@ -359,7 +368,7 @@ std::optional<Pick> Renderer::pick(const SceneView& scene, const Camera& camera,
     plain.transparency.method = Transparency::none;
   }
   const parallel::Turn turn(impl_->one_at_a_time, stop);
-  (void)impl_->render(scene, camera, {plain, targets, false, bin});
+  (void)impl_->render(scene, camera, {.frame = plain, .targets = targets, .part = bin});
   const std::uint64_t key = keys(x - x0, y - y0);
   if (key == 0) return std::nullopt;
   return surface_of_key(scene, camera, frame, key, x, y);

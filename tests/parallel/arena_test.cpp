@@ -1,6 +1,7 @@
 // The words' memory: reused, bounded by what was out at one time, accounted.
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 
 #include <tests/parallel/backends.hpp>
 
@@ -112,6 +113,41 @@ TEST(Arena, TellsLackOfMemoryFromAFaultOfItsSource) {
       arena.trim();
       EXPECT_EQ(account.held(), 0U);
     }
+}
+
+// A camera that moves changes the sizes of a frame's lists; asking a device for memory stops it.
+TEST(Arena, SizesThatDriftTakeBlocksThatAreThere) {
+  constexpr int kFrames = 300, kLists = 6;
+  constexpr std::size_t kSmallest = 100000;
+  static int asked = 0;
+  asked = 0;
+  MemorySource source = host_memory();
+  source.allocate = [](std::size_t bytes) -> void* {
+    ++asked;
+    return host_memory().allocate(bytes);
+  };
+  source.keeps_all = true;
+  Arena arena(nullptr, source);
+  const auto sizes = random_values<std::uint32_t>(kFrames * kLists, 9 * kSmallest);
+  int after_half = 0;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    if (frame == kFrames / 2) after_half = asked;
+    std::vector<std::pair<void*, std::size_t>> lists;
+    for (int list = 0; list < kLists; ++list) {
+      const std::size_t bytes = kSmallest + sizes[static_cast<std::size_t>(frame * kLists + list)];
+      lists.emplace_back(arena.allocate(bytes), bytes);
+      std::memset(lists.back().first, list, bytes);
+    }
+    for (const auto& [block, bytes] : lists) {
+      const auto* const first = static_cast<const std::uint8_t*>(block);
+      ASSERT_TRUE(std::all_of(first, first + bytes, [&](std::uint8_t b) { return b == *first; }));
+      arena.release(block, bytes);
+    }
+    ASSERT_EQ(arena.in_use(), 0U);
+  }
+  EXPECT_EQ(asked, after_half) << "new blocks in the second half";
+  EXPECT_LE(asked, 4 * kLists);
+  EXPECT_LE(arena.held(), 2 * arena.peak());
 }
 
 TEST(Arena, BuffersOutliveTheirBackend) {

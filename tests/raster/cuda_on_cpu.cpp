@@ -1,12 +1,14 @@
 // A program whose device is the CPU: its code for devices is linked (tests/CMakeLists.txt) and
 // takes the place of the library that is opened, and this is its driver.
 #include <rastrum/parallel/cuda/driver.hpp>
+#include <rastrum/parallel/cuda/host_stream.hpp>
 #include <rastrum/parallel/cuda/library.hpp>
 
 namespace rastrum::parallel {
 namespace {
 
-[[maybe_unused]] const bool is_taken = (set_cuda_library(*rastrum_cuda_library()), true);
+[[maybe_unused]] const bool is_taken =
+    (set_cuda_library(*rastrum_cuda_library()), cuda_system::HostStream::be_late(true), true);
 
 }  // namespace
 

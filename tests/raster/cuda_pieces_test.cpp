@@ -140,22 +140,46 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
   }
   draws[1].draw.flags = raster::kTranslucent;
   parallel::Cuda exec;
-  const auto keys_of = [&](std::span<const raster::DeviceDraw> drawn, std::uint32_t skip) {
+  std::vector<std::uint64_t> fragments;
+  constexpr std::uint64_t kRoom = 1 << 16;
+  const auto keys_of = [&](std::span<const raster::DeviceDraw> drawn, std::uint32_t skip,
+                           std::uint64_t queued_pieces = kRoom,
+                           std::uint64_t queued_tiles = kRoom) {
     const raster::DeviceScene<parallel::Cuda> scene(exec, drawn, kSize, kSize);
     std::vector<std::uint64_t> keys(kSize * kSize);
     const raster::Rect view{0, 0, kSize, kSize};
     const raster::DeviceSurface surface{view, {0, 0, kSize / 8, keys.data(), nullptr}};
-    const auto plan = raster::DevicePlan::of(0, kSize, kSize, scene.primitives(), 0, 0);
+    auto plan = raster::DevicePlan::of(0, kSize, kSize, scene.primitives(), 0, 0);
+    plan.queued_pieces = queued_pieces;
+    plan.queued_tiles = queued_tiles;
     raster::BySize drawer;
-    EXPECT_GT(drawer.draw(exec, scene, surface, plan, {}, skip, {}).fragments, 0U);
+    std::vector<std::uint64_t> sums(raster::kBandSums);
+    drawer.draw(exec, scene, surface, plan, {}, skip, {}, sums.data());
+    exec.wait();
+    raster::BandSums counted;
+    std::ranges::copy(sums, counted.begin());
+    drawer.end_band(counted);
+    EXPECT_GT(counted[raster::kFragmentsSum], 0U);
+    EXPECT_EQ(counted[raster::kInvalidSum], 0U);
     FrameStats stats;
     drawer.end_frame(stats);
-    EXPECT_GT(counter(stats, "tile pairs"), 0U);
+    EXPECT_EQ(counter(stats, "tile pairs") > 0, queued_pieces > 0 && queued_tiles > 0);
+    EXPECT_EQ(counter(stats, "larger pieces") > 0, queued_pieces > 0);
+    fragments.push_back(counted[raster::kFragmentsSum]);
     return keys;
   };
   const auto all = keys_of(draws, 0), kept = keys_of(draws, raster::kTranslucent);
   EXPECT_EQ(kept, keys_of({draws, 1}, 0));
   EXPECT_NE(kept, all);
+
+  // What finds a queue full is drawn where it is found.
+  fragments.resize(1);
+  for (const std::uint64_t room_of_pieces : {kRoom, std::uint64_t{7}, std::uint64_t{0}})
+    for (const std::uint64_t room_of_tiles : {kRoom, std::uint64_t{21}, std::uint64_t{0}}) {
+      EXPECT_EQ(keys_of(draws, 0, room_of_pieces, room_of_tiles), all)
+          << room_of_pieces << ' ' << room_of_tiles;
+      EXPECT_EQ(fragments.back(), fragments.front());
+    }
 
   const raster::DeviceScene<parallel::Cuda> scene(exec, draws, kSize, kSize);
   const MadePieces made = make_pieces(exec, scene, KeepsAll{});

@@ -117,9 +117,14 @@ AssertionResult same_picture(const Frame& a, const Frame& b, int tolerance) {
            std::abs(x.b - y.b) <= tolerance && std::abs(x.a - y.a) <= tolerance;
   };
   if (tolerance == 0 && !a.color.empty() && !b.color.empty()) {
-    const auto same = [](const Vec4& x, const Vec4& y) {
-      using Bits = std::array<std::uint32_t, 4>;
-      return std::bit_cast<Bits>(x) == std::bit_cast<Bits>(y);
+    // A NaN is one everywhere; its sign and payload are the processor's (docs/conventions.md).
+    const auto same_float = [](float x, float y) {
+      return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y) ||
+             (x != x && y != y);
+    };
+    const auto same = [same_float](const Vec4& x, const Vec4& y) {
+      return same_float(x.x, y.x) && same_float(x.y, y.y) && same_float(x.z, y.z) &&
+             same_float(x.w, y.w);
     };
     auto floats = same_pixels("float colour", a.color.width(), a.color.pixels(), b.color.pixels(),
                               same, [](AssertionResult& r, const Vec4& v) {

@@ -40,6 +40,7 @@ TEST_F(CudaSpans, AreDrawnWhereTheyLie) {
   const auto heights = parallel::to_device(owner, map.heights.pixels());
   const auto colors = parallel::to_device(owner, map.colors.pixels());
   auto pixels = parallel::make_buffer<Rgba8>(owner, 90 * 50);
+  owner.wait();  // memory of one stream, used by another
   const DeviceMap on_device(exec, {view(heights, kWidth, kHeight), view(colors, kWidth, kHeight)},
                             false);
   EXPECT_LT(exec.memory()->held(), map.heights.pixels().size_bytes() / 16);

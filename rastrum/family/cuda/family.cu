@@ -44,6 +44,12 @@ struct IsDrawnIn {
   }
 };
 
+struct AddSums {
+  const std::uint64_t* from;
+  std::uint64_t* to;
+  RASTRUM_HD void operator()(std::size_t k) const { to[k] += from[k]; }
+};
+
 /// A point of the table. Counters: "batches of primitives", and the rows' own.
 class RowOnDevice final : public SurfaceDrawer {
  public:
@@ -62,16 +68,15 @@ class RowOnDevice final : public SurfaceDrawer {
             .shades = visibility_.shades};
   }
 
-  [[nodiscard]] DeviceCounts draw(Exec& exec, const DeviceScene<Exec>& scene,
-                                  const DeviceSurface& surface, const DevicePlan& plan,
-                                  const Tuning& tuning, std::uint32_t skip,
-                                  const FragmentColors& colors) override {
+  void draw(Exec& exec, const DeviceScene<Exec>& scene, const DeviceSurface& surface,
+            const DevicePlan& plan, const Tuning& tuning, std::uint32_t skip,
+            const FragmentColors& colors, std::uint64_t* sums) override {
     using parallel::view_of;
     FamilyFrame<Exec> frame(exec, surface, tuning, colors, plan.turn_bytes);
     const auto visibility = visibility_.make(frame);
     frame.visibility = visibility.get();
     const IsDrawnIn keep{surface.view, skip};
-    DeviceCounts counts;
+    Outcomes all;
     const std::uint64_t end = scene.first_id() + scene.primitives();
     for (std::uint64_t first = scene.first_id(); first < end; first += plan.batch) {
       parallel::throw_if_stopped();
@@ -81,8 +86,8 @@ class RowOnDevice final : public SurfaceDrawer {
       auto outcomes = parallel::make_buffer<Outcome>(exec, n);
       parallel::tabulate(exec, outcomes, cuda_detail::CountPieces<IsDrawnIn>{assembly, keep});
       const Outcomes sum = parallel::reduce(exec, outcomes, Outcomes{}, AddOutcomes{});
-      check_valid(sum);
-      counts.sum = AddOutcomes{}(counts.sum, sum);
+      check_valid(sum.invalid);
+      all = AddOutcomes{}(all, sum);
       if (sum.pieces == 0) continue;
       const auto drawn = parallel::filter(exec, parallel::counting<std::uint32_t>(n),
                                           cuda_detail::HasPieces{view_of(std::as_const(outcomes))});
@@ -97,9 +102,10 @@ class RowOnDevice final : public SurfaceDrawer {
                 });
     }
     visibility->finish(frame);
-    counts.fragments = frame.fragments;
+    const BandSums counted{all.dropped, all.culled, all.clipped, 0, frame.fragments};
+    const auto on_device = parallel::upload(exec, counted);
+    parallel::for_each_index(exec, kBandSums, AddSums{on_device.data(), sums});
     for (const auto& [name, value] : frame.counters) add_counter(counters_, name, value);
-    return counts;
   }
 
   void begin_frame() override {

@@ -40,7 +40,7 @@ struct Insert {
     std::uint64_t slot = slots.home(f.element / 64) + f.element % 64;
     for (std::uint64_t n = 1;; ++n, slot = slots.next(slot)) {
       const std::uint32_t held = take_slot(pixel[slot], f.element);
-      if (held == kNoPixel) parallel::atomic_add(*probes, n);
+      if (held == kNoPixel) parallel::add_to_sum(*probes, n);
       if (held == kNoPixel || held == f.element) break;
     }
     parallel::atomic_maximum(key[slot], f.key);

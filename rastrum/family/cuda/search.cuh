@@ -53,7 +53,7 @@ struct RaiseKeyOfDepth {
     const Fragment f = fragment_at(pieces, keys, b, i);
     if (depth[f.element] != depth_bits(f.key)) return;
     parallel::atomic_maximum(keys.keys[f.element], f.key);
-    parallel::atomic_add(*matches, std::uint64_t{1});
+    parallel::add_to_sum(*matches, 1);
   }
 };
 

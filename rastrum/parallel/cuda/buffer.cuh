@@ -56,23 +56,30 @@ class DeviceBuffer {
 
 template <class T>
 [[nodiscard]] DeviceBuffer<T> make_buffer(const Cuda& exec, std::size_t n = 0) {
-  return DeviceBuffer<T>(exec.memory(), n);
+  DeviceBuffer<T> buffer(exec.memory(), n);
+  cuda_system::spoil(exec.stream(), buffer.data(), n * sizeof(T));
+  return buffer;
 }
 
-/// A copy of `source`, contiguous memory of the host, which must stay as it is until the context
-/// was waited for.
+/// A copy of `source`, contiguous memory of the host, by way of another that the context keeps: for
+/// small arrays, which may go at once. Does not wait.
 template <class R>
 [[nodiscard]] auto upload(Cuda& exec, const R& source) {
+  using T = std::remove_cvref_t<decltype(*std::data(source))>;
+  const auto staged = std::make_shared<const std::vector<T>>(std::data(source),
+                                                             std::data(source) + std::size(source));
+  exec.keep(staged);
+  auto out = make_buffer<T>(exec, staged->size());
+  cuda_system::copy(exec.stream(), out.data(), staged->data(), out.size() * sizeof(T));
+  return out;
+}
+/// A copy of `source`, contiguous memory of the host. Waits.
+template <class R>
+[[nodiscard]] auto to_device(Cuda& exec, const R& source) {
   auto out =
       make_buffer<std::remove_cvref_t<decltype(*std::data(source))>>(exec, std::size(source));
   cuda_system::copy(exec.stream(), out.data(), std::data(source),
                     out.size() * sizeof(*std::data(source)));
-  return out;
-}
-/// The same, and waits: `source` may go when this returns.
-template <class R>
-[[nodiscard]] auto to_device(Cuda& exec, const R& source) {
-  auto out = upload(exec, source);
   exec.wait();
   return out;
 }

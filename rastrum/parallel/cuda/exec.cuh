@@ -22,7 +22,9 @@
 #include <cstddef>
 #include <memory>
 #include <utility>
+#include <vector>
 
+#include <rastrum/parallel/cuda/loop_count.hpp>
 #include <rastrum/parallel/cuda/system.cuh>
 #include <rastrum/parallel/exec.hpp>
 
@@ -59,7 +61,20 @@ class Cuda {
   [[nodiscard]] int device() const { return device_; }
   /// Until all work that was given to it is done. Throws Error{no_device} for what went wrong
   /// there.
-  void wait() const { cuda_system::wait(stream_); }
+  void wait() const {
+    cuda_system::wait(stream_);
+    staged_.clear();
+  }
+  /// The same after something went wrong: the stream no longer reads or writes what the host frees.
+  void settle() const noexcept {
+    try {
+      wait();
+    } catch (...) {
+      // What went wrong is known, and a device that failed does nothing more.
+    }
+  }
+  /// Keeps `source` until the stream was waited for.
+  void keep(std::shared_ptr<const void> source) { staged_.push_back(std::move(source)); }
 
   /// Thrust's, for algorithms beside the words: does not wait, and takes its scratch from memory().
   [[nodiscard]] auto policy() { return cuda_system::policy(scratch_, stream_); }
@@ -78,6 +93,7 @@ class Cuda {
     return std::make_shared<Arena>(account, cuda_system::memory_source());
   }
 
+  mutable std::vector<std::shared_ptr<const void>> staged_;  ///< sources of copies under way
   bool owned_;
   int device_;
   cuda_system::Stream stream_;
@@ -92,7 +108,12 @@ class Cuda {
 template <class F>
 decltype(auto) on_device_of(const Cuda& exec, F&& f) {
   const cuda_system::DeviceScope scope(exec.device());
-  return cuda_system::with_errors(std::forward<F>(f));
+  try {
+    return cuda_system::with_errors(std::forward<F>(f));
+  } catch (...) {
+    exec.settle();
+    throw;
+  }
 }
 
 /// Calls f(i) for i in [0, n). Work O(n), span O(1).
@@ -101,12 +122,20 @@ void for_each_index(Cuda& exec, std::size_t n, F f) {
   cuda_system::launch_indices(exec.stream(), n, f);
 }
 
+/// Calls f(i, local) for i in [0, n), by as many threads as the device holds at once, each of which
+/// has a Local of its own, empty at first, and at last calls f.end(local): for sums, which then go
+/// to memory once a thread. `n` may lie on the device. Work O(n).
+template <class Local, class F>
+void for_each_strided(Cuda& exec, LoopCount n, F f) {
+  cuda_system::launch_strided<Local>(exec.stream(), n, f);
+}
+
 /// Calls f(i, T& scratch, team) for i in [0, n) by all members of a team together: a block of
 /// kThreads threads, with `scratch` in shared memory, uninitialized and theirs alone. A member has
 /// team.rank() < team.size() and meets the others at team.sync(), which all must reach. A body is
 /// right for any size of team: shares of work are strides of it.
 template <class T, int kThreads = 128, class F>
-void for_each_team(Cuda& exec, std::size_t n, F&& f) {
+void for_each_team(Cuda& exec, LoopCount n, F&& f) {
   static_assert(std::is_trivially_default_constructible_v<T>);
   cuda_system::launch_teams<T, kThreads, std::decay_t<F>>(exec.stream(), n, f);
 }

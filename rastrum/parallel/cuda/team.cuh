@@ -17,11 +17,12 @@
 namespace rastrum::parallel {
 
 /// word |= bits, by many threads at once.
-RASTRUM_HD inline void atomic_or(std::uint64_t& word, std::uint64_t bits) noexcept {
+/// 32 bits, which shared memory has an instruction for.
+RASTRUM_HD inline void atomic_or(std::uint32_t& word, std::uint32_t bits) noexcept {
 #if defined(__CUDA_ARCH__)
-  atomicOr(reinterpret_cast<unsigned long long*>(&word), bits);
+  atomicOr(&word, bits);
 #else
-  std::atomic_ref<std::uint64_t>(word).fetch_or(bits, std::memory_order_relaxed);
+  std::atomic_ref<std::uint32_t>(word).fetch_or(bits, std::memory_order_relaxed);
 #endif
 }
 

@@ -152,6 +152,30 @@ Fate assemble_quadric(int width, int height, const Draw& draw, std::uint64_t p, 
   return front || back ? Fate::drawn : Fate::culled;
 }
 
+/// The piece of a triangle that needs no clipping, as assemble_primitive makes it at the pixels'
+/// centres, where most are: of the others nothing is done, and false is returned. Indices must be
+/// in range.
+template <class Geometry>
+RASTRUM_HD bool assemble_unclipped(const Geometry& frame, const Draw& draw, std::uint64_t p,
+                                   Fate& fate, Piece& piece) {
+  if (draw.topology != Topology::triangles) return false;
+  ProjectedVertex v[3];
+  bool inside = true;
+  for (int i = 0; i < 3; ++i) {
+    v[i] = frame.vertex(draw, draw.vertex(p, i));
+    inside = inside && v[i].x_fx8 != kNeedsClip;
+  }
+  if (!inside) return false;
+  fate = Fate::culled;
+  if (draw.visible && make_piece(v[0], v[1], v[2], draw.first_id + p, frame.flags_of(draw, p),
+                                 draw.effective_cull(), {0, 0, frame.width, frame.height},
+                                 piece) == SetupResult::drawn) {
+    add_depth_bias(piece, draw.depth_bias, draw.depth_bias_slope);
+    fate = Fate::drawn;
+  }
+  return true;
+}
+
 /// Calls emit(piece) for each piece of primitive `p` of `draw` at sample `sample`, which lies at
 /// `at`; says what became of it (`clipped` ones are drawn too). At most kMaxPieces of a primitive.
 /// Indices must be in range.

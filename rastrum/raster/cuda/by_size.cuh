@@ -1,21 +1,31 @@
-// by-size, the rasterizer of a device: a listing of keys.
+// by-size, the rasterizer of a device: a listing of keys, of which the host knows nothing until the
+// band is done. Counters and queues lie on the device, and who reads a queue reads its counter
+// there.
 //
 //   project            a thread a vertex                                           geometry.cuh
-//   set up, and draw   a thread a primitive: small pieces (a box up to small_px)   pieces.cuh,
-//                      at once, the others are counted                             cover.cuh
-//   write the others   scan, then a thread a primitive that has some
-//   draw them          a warp a piece of the middle; a block of threads for each
-//                      64 × 64 tile of a large one (a box from large_px on)
+//   draw the small     a thread a triangle that needs no clipping: a small one (a box up to
+//                      small_px) at once, larger ones into a queue of pieces, all else into one of
+//                      primitives
+//   draw the rest      a thread a primitive of that queue: the clipper, lines, points; with several
+//                      samples a pixel, all primitives
+//   draw the larger    a warp a piece of the middle; the 64 × 64 tiles of a large one (a box from
+//                      large_px on) go into a third queue
+//   draw the tiles     a block of threads each
 //   resolve            the caller's: a band of keys is ready
 //
-// Order does not matter to a maximum of keys, so neither the sizes nor the cut into bands of rows
-// and batches of primitives, which a memory limit asks for, change a bit. Culling of boxes that
-// miss every sample is setup's (make_piece). Sources: paper 1, hybrid; paper 2; decision 0014.
+// What finds a queue full is drawn where it is found: slower, the same keys. Two kernels for
+// triangles, since the clipper costs the registers of the first, which most are for (GPU.md of the
+// project's research: 60 and 128).
+//
+// Order does not matter to a maximum of keys, so neither queues, sizes nor the cut into bands of
+// rows and batches of primitives, which a memory limit asks for, change a bit. Culling of boxes
+// that miss every sample is setup's (make_piece). Sources: paper 1, hybrid; paper 2; decision 0014.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -46,81 +56,154 @@ struct DeviceSizes {
 
 namespace cuda_detail {
 
-/// Draws the small pieces of a primitive and counts the others.
-struct DrawSmall {
+/// A tile of a large piece.
+struct PieceTile {
+  std::uint32_t piece, tile;  ///< by number in the queue; row by row of those that its box touches
+};
+inline constexpr std::uint32_t kNoPiece = std::numeric_limits<std::uint32_t>::max();
+
+/// Of a batch, on the device. Counters may go beyond what there is room for.
+struct BySizeQueues {
+  std::span<std::uint32_t> primitives;
+  std::span<Piece> pieces;
+  std::span<PieceTile> tiles;
+  std::uint64_t* count;  ///< of each, in this order
+};
+
+/// What a thread has counted.
+struct BySizeLocal {
+  std::uint32_t dropped = 0, culled = 0, clipped = 0, invalid = 0;
+  std::uint64_t fragments = 0;
+
+  RASTRUM_HD void take(Fate fate) {
+    dropped += fate == Fate::dropped;
+    culled += fate == Fate::culled;
+    clipped += fate == Fate::clipped;
+  }
+};
+
+/// What the kernels for primitives have in common.
+struct BySizeBatch {
   Assembly assembly;
   DeviceSurface surface;
+  BySizeQueues queues;
   std::uint64_t small_px;
   std::uint32_t skip;
-  RASTRUM_HD Outcome operator()(std::size_t i) const {
-    int fragments = 0;
-    std::uint8_t larger = 0;
-    Outcome out = assembly.assemble(i, [&](const Piece& piece) {
-      if ((piece.flags & skip) != 0) return;
-      if (area_of(surface.bounds(piece)) > small_px)
-        ++larger;
-      else
-        surface.each_sample(piece, surface.view, [&](int s, const Piece& seen, Rect box) {
-          fragments += draw_by_thread(surface, seen, box, s);
-        });
-    });
-    out.fragments = static_cast<std::uint16_t>(fragments);
-    out.pieces = larger;
-    return out;
-  }
-};
-struct IsLarger {
-  DeviceSurface surface;
-  std::uint64_t than_px;
-  RASTRUM_HD bool operator()(const Piece& piece) const {
-    return area_of(surface.bounds(piece)) > than_px;
-  }
-};
+  std::uint64_t* sums;
 
-struct DrawMiddle {
-  std::span<const Piece> pieces;
-  DeviceSurface surface;
-  std::uint64_t large_px;
-  std::uint64_t* fragments;
-  template <class Team>
-  RASTRUM_HD void operator()(std::size_t i, TeamMasks& shared, const Team& team) const {
-    const Piece& piece = pieces[i];
-    if (area_of(surface.bounds(piece)) >= large_px) return;
+  RASTRUM_HD void draw(const Piece& piece, BySizeLocal& local) const {
+    if ((piece.flags & skip) != 0) return;
+    if (area_of(surface.bounds(piece)) > small_px) {
+      const std::uint64_t at = parallel::take_place(queues.count[1]);
+      if (at < queues.pieces.size()) {
+        queues.pieces[static_cast<std::size_t>(at)] = piece;
+        return;
+      }
+    }
     surface.each_sample(piece, surface.view, [&](int s, const Piece& seen, Rect box) {
-      draw_by_team(surface, seen, box, fragments, shared, team, s);
+      local.fragments += static_cast<std::uint64_t>(draw_by_thread(surface, seen, box, s));
     });
+  }
+  RASTRUM_HD void end(const BySizeLocal& local) const {
+    parallel::add_to_sum(sums[kDroppedSum], local.dropped);
+    parallel::add_to_sum(sums[kCulledSum], local.culled);
+    parallel::add_to_sum(sums[kClippedSum], local.clipped);
+    parallel::add_to_sum(sums[kInvalidSum], local.invalid);
+    parallel::add_to_sum(sums[kFragmentsSum], local.fragments);
   }
 };
 
-/// How many tiles a large piece touches; 0 of one that is not.
-struct CountTiles {
-  DeviceSurface surface;
-  std::uint64_t large_px;
-  RASTRUM_HD std::size_t operator()(const Piece& piece) const {
-    const Rect box = surface.bounds(piece);
-    if (area_of(box) < large_px) return 0;
-    return static_cast<std::size_t>(area_of(tiles_of(box, surface.view)));
+/// Primitive i of the batch, or its place in the queue of primitives. That has room for all.
+struct DrawUnclipped : BySizeBatch {
+  RASTRUM_HD void operator()(std::size_t i, BySizeLocal& local) const {
+    const std::uint64_t id = assembly.first + i;
+    const Draw& draw_of_it = assembly.geometry.draw_of(id);
+    const std::uint64_t p = id - draw_of_it.first_id;
+    if (!Assembly::is_valid(draw_of_it, p)) {
+      ++local.invalid;
+      return;
+    }
+    Fate fate = Fate::culled;
+    Piece piece;
+    if (!assemble_unclipped(assembly.geometry, draw_of_it, p, fate, piece)) {
+      const std::uint64_t at = parallel::take_place(queues.count[0]);
+      queues.primitives[static_cast<std::size_t>(at)] = static_cast<std::uint32_t>(i);
+      return;
+    }
+    local.take(fate);
+    if (fate == Fate::drawn) draw(piece, local);
   }
 };
-template <class Places>
-struct DrawTile {
-  std::span<const Piece> pieces;
+
+/// Any primitive: of the queue, or of the batch where there is none.
+struct DrawAny : BySizeBatch {
+  RASTRUM_HD void operator()(std::size_t k, BySizeLocal& local) const {
+    const std::size_t i = queues.primitives.empty() ? k : queues.primitives[k];
+    const Outcome out = assembly.assemble(i, [&](const Piece& piece) { draw(piece, local); });
+    if (!out.valid)
+      ++local.invalid;
+    else
+      local.take(out.fate);
+  }
+};
+
+/// A piece of the queue: drawn, or its tiles queued.
+struct DrawLarger {
   DeviceSurface surface;
-  Places places;
-  std::uint64_t* fragments;
+  BySizeQueues queues;
+  std::uint64_t large_px;
+  std::uint64_t* sums;
+
   template <class Team>
   RASTRUM_HD void operator()(std::size_t i, TeamMasks& shared, const Team& team) const {
-    const std::size_t k = places.segment_of(i);
-    const Piece& piece = pieces[k];
+    const Piece& piece = queues.pieces[i];
+    const Rect bounds = surface.bounds(piece);
+    if (i == 0 && team.rank() == 0) parallel::add_to_sum(sums[kLargerSum], queues.count[1]);
+    if (area_of(bounds) >= large_px) {
+      const auto tiles = static_cast<std::uint64_t>(area_of(tiles_of(bounds, surface.view)));
+      if (queue(i, tiles, shared, team)) return;
+    }
+    surface.each_sample(piece, surface.view, [&](int s, const Piece& seen, Rect box) {
+      draw_by_team(surface, seen, box, sums + kFragmentsSum, shared, team, s);
+    });
+  }
+
+ private:
+  /// Whether there was room for all.
+  template <class Team>
+  RASTRUM_HD bool queue(std::size_t piece, std::uint64_t tiles, TeamMasks& shared,
+                        const Team& team) const {
+    if (team.rank() == 0) shared.mask[0] = parallel::atomic_add(queues.count[2], tiles);
+    team.sync();
+    const std::uint64_t first = shared.mask[0], room = queues.tiles.size();
+    team.sync();
+    const bool fits = first + tiles <= room;
+    for (std::uint64_t k = team.rank(); k < tiles && first + k < room; k += team.size())
+      queues.tiles[static_cast<std::size_t>(first + k)] = {
+          fits ? static_cast<std::uint32_t>(piece) : kNoPiece, static_cast<std::uint32_t>(k)};
+    return fits;
+  }
+};
+
+struct DrawTile {
+  DeviceSurface surface;
+  BySizeQueues queues;
+  std::uint64_t* sums;
+  template <class Team>
+  RASTRUM_HD void operator()(std::size_t i, TeamMasks& shared, const Team& team) const {
+    if (i == 0 && team.rank() == 0) parallel::add_to_sum(sums[kTilesSum], queues.count[2]);
+    const PieceTile at = queues.tiles[i];
+    if (at.piece == kNoPiece) return;
+    const Piece& piece = queues.pieces[at.piece];
     const Rect view = surface.view;
     const Rect tiles = tiles_of(surface.bounds(piece), view);
-    const int j = static_cast<int>(i - places.first(k)), columns = tiles.x1 - tiles.x0;
+    const int j = static_cast<int>(at.tile), columns = tiles.x1 - tiles.x0;
     const int x0 = view.x0 + (tiles.x0 + j % columns) * kDeviceTile;
     const int y0 = view.y0 + (tiles.y0 + j / columns) * kDeviceTile;
     const Rect tile = common_of(view, {x0, y0, x0 + kDeviceTile, y0 + kDeviceTile});
     surface.each_sample(piece, tile, [&](int s, const Piece& seen, Rect part) {
       if (may_touch(edges_of(seen), part))
-        draw_by_team(surface, seen, part, fragments, shared, team, s);
+        draw_by_team(surface, seen, part, sums + kFragmentsSum, shared, team, s);
     });
   }
 };
@@ -138,46 +221,45 @@ class BySize final : public SurfaceDrawer {
             .has_samples = true};
   }
 
-  [[nodiscard]] DeviceCounts draw(parallel::Cuda& exec, const DeviceScene<parallel::Cuda>& scene,
-                                  const DeviceSurface& surface, const DevicePlan& plan,
-                                  const Tuning& tuning, std::uint32_t skip,
-                                  const FragmentColors& /*colors*/) override {
+  void draw(parallel::Cuda& exec, const DeviceScene<parallel::Cuda>& scene,
+            const DeviceSurface& surface, const DevicePlan& plan, const Tuning& tuning,
+            std::uint32_t skip, const FragmentColors& /*colors*/, std::uint64_t* sums) override {
+    using namespace cuda_detail;  // NOLINT: its kernels are the subject here
     using parallel::view_of;
     const DeviceSizes sizes = DeviceSizes::of(tuning, surface.samples.count);
-    DeviceCounts counts;
     const std::uint64_t end = scene.first_id() + scene.primitives();
-    auto fragments = parallel::make_buffer<std::uint64_t>(exec, 1);
-    parallel::tabulate(exec, fragments, parallel::range_detail::SameValue<std::uint64_t>{0});
+    const std::uint64_t most = std::min(plan.batch, scene.primitives());
+    const bool has_fast_path = surface.samples.count == 1;
+    auto primitives = parallel::make_buffer<std::uint32_t>(
+        exec, has_fast_path ? static_cast<std::size_t>(most) : 0);
+    auto pieces = parallel::make_buffer<Piece>(
+        exec, static_cast<std::size_t>(std::min(plan.queued_pieces, most * kMaxPieces)));
+    auto tiles =
+        parallel::make_buffer<PieceTile>(exec, static_cast<std::size_t>(plan.queued_tiles));
+    auto counts = parallel::make_buffer<std::uint64_t>(exec, 3);
+    const BySizeQueues queues{view_of(primitives), view_of(pieces), view_of(tiles), counts.data()};
     for (std::uint64_t first = scene.first_id(); first < end; first += plan.batch) {
       parallel::throw_if_stopped();
       ++batches_;
-      const Assembly assembly{scene.geometry(), first, surface.samples};
       const auto n = static_cast<std::size_t>(std::min(plan.batch, end - first));
-      auto outcomes = parallel::make_buffer<Outcome>(exec, n);
-      parallel::tabulate(exec, outcomes,
-                         cuda_detail::DrawSmall{assembly, surface, sizes.small_px, skip});
-      const Outcomes sum = parallel::reduce(exec, outcomes, Outcomes{}, AddOutcomes{});
-      check_valid(sum);
-      counts.sum = AddOutcomes{}(counts.sum, sum);
-      if (sum.pieces == 0) continue;
-
-      const auto larger =
-          parallel::filter(exec, parallel::counting<std::uint32_t>(n),
-                           cuda_detail::HasPieces{view_of(std::as_const(outcomes))});
-      for (std::size_t at = 0; at < larger.size(); at += plan.written) {
-        const std::span<const std::uint32_t> which =
-            view_of(larger).subspan(at, std::min(plan.written, larger.size() - at));
-        const auto pieces = write_pieces(
-            exec, assembly, which, parallel::permuted(view_of(std::as_const(outcomes)), which),
-            cuda_detail::IsLarger{surface, sizes.small_px});
-        draw_larger(exec, surface, sizes, view_of(pieces), fragments.data());
-      }
+      parallel::tabulate(exec, counts, parallel::range_detail::SameValue<std::uint64_t>{0});
+      const BySizeBatch batch{
+          {scene.geometry(), first, surface.samples}, surface, queues, sizes.small_px, skip, sums};
+      if (has_fast_path) parallel::for_each_strided<BySizeLocal>(exec, n, DrawUnclipped{batch});
+      parallel::for_each_strided<BySizeLocal>(
+          exec, has_fast_path ? parallel::LoopCount{n, &queues.count[0]} : n, DrawAny{batch});
+      parallel::for_each_team<TeamMasks, 32>(exec, {pieces.size(), &queues.count[1]},
+                                             DrawLarger{surface, queues, sizes.large_px, sums});
+      parallel::for_each_team<TeamMasks, 128>(exec, {tiles.size(), &queues.count[2]},
+                                              DrawTile{surface, queues, sums});
     }
-    counts.fragments = counts.sum.fragments + parallel::to_host(exec, fragments)[0];
-    return counts;
   }
 
   void begin_frame() override { batches_ = larger_pieces_ = tiles_ = 0; }
+  void end_band(const BandSums& sums) override {
+    larger_pieces_ += sums[kLargerSum];
+    tiles_ += sums[kTilesSum];
+  }
   void end_frame(FrameStats& stats) const override {
     stats.counters.insert(
         stats.counters.end(),
@@ -185,19 +267,6 @@ class BySize final : public SurfaceDrawer {
   }
 
  private:
-  void draw_larger(parallel::Cuda& exec, const DeviceSurface& surface, DeviceSizes sizes,
-                   std::span<const Piece> pieces, std::uint64_t* fragments) {
-    parallel::for_each_team<TeamMasks, 32>(
-        exec, pieces.size(), cuda_detail::DrawMiddle{pieces, surface, sizes.large_px, fragments});
-    const auto tiles =
-        parallel::make_expansion(exec, pieces, cuda_detail::CountTiles{surface, sizes.large_px});
-    parallel::for_each_team<TeamMasks, 128>(
-        exec, tiles.size(),
-        cuda_detail::DrawTile<decltype(tiles.view())>{pieces, surface, tiles.view(), fragments});
-    larger_pieces_ += pieces.size();
-    tiles_ += tiles.size();
-  }
-
   std::uint64_t batches_ = 0, larger_pieces_ = 0, tiles_ = 0;
 };
 

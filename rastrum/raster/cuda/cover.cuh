@@ -141,7 +141,7 @@ RASTRUM_HD void draw_by_team(const DeviceSurface& surface, const Piece& piece, R
     }
     team.sync();
   }
-  if (mine > 0) parallel::atomic_add(*fragments, mine);
+  parallel::add_to_sum(*fragments, mine);
 }
 
 }  // namespace rastrum::raster

@@ -97,7 +97,7 @@ class DeviceScene {
   /// `draws`: a list of the host's, of spans of the device's, which must outlive this. Ids count
   /// from `first_id`. With `project_first` vertices are projected once, 16 B each, else where they
   /// are read. Throws Error{invalid_argument} where there are more primitives than ids. Work
-  /// O(vertices + draws). Waits.
+  /// O(vertices + draws).
   DeviceScene(Exec& exec, std::span<const DeviceDraw> draws, int width, int height,
               std::uint64_t first_id = 0, bool project_first = true)
       : first_id_(first_id), width_(width), height_(height) {
@@ -123,9 +123,9 @@ class DeviceScene {
     }
     if (primitives_ > kMaxId || first_id > kMaxId - primitives_)
       throw Error(Errc::invalid_argument, "the scene has more primitives than there are ids");
-    draws_ = parallel::to_device(exec, numbered);
-    vertices_ = parallel::to_device(exec, vertices);
-    matrices_ = parallel::to_device(exec, matrices);
+    draws_ = parallel::upload(exec, numbered);
+    vertices_ = parallel::upload(exec, vertices);
+    matrices_ = parallel::upload(exec, matrices);
   }
 
   [[nodiscard]] std::uint64_t first_id() const { return first_id_; }

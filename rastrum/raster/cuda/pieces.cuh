@@ -57,6 +57,17 @@ struct Assembly {
   std::uint64_t first = 0;
   SamplePattern samples{};
 
+  /// Whether the indices of a primitive, and its material's number, are in range.
+  [[nodiscard]] RASTRUM_HD static bool is_valid(const Draw& draw, std::uint64_t p) {
+    bool valid = true;
+    for (int corner = 0; corner < static_cast<int>(draw.topology); ++corner)
+      valid = valid && draw.vertex(p, corner) < draw.vertex_count;
+    if (!draw.material_flags.empty())
+      valid = valid && p < draw.face_materials.size() &&
+              draw.face_materials[static_cast<std::size_t>(p)] < draw.material_flags.size();
+    return valid;
+  }
+
   /// Calls emit(piece) for the pieces of primitive first + i that have a sample of the image in
   /// their box, as they lie at the centres of pixels: moved() (samples.hpp) makes of them what a
   /// sample sees. `pieces` and `fragments` of the result are the caller's to fill.
@@ -66,11 +77,7 @@ struct Assembly {
     const Draw& draw = geometry.draw_of(id);
     const std::uint64_t p = id - draw.first_id;
     Outcome out;
-    for (int corner = 0; corner < static_cast<int>(draw.topology); ++corner)
-      out.valid = out.valid && draw.vertex(p, corner) < draw.vertex_count;
-    if (!draw.material_flags.empty())
-      out.valid = out.valid && p < draw.face_materials.size() &&
-                  draw.face_materials[static_cast<std::size_t>(p)] < draw.material_flags.size();
+    out.valid = is_valid(draw, p);
     if (!out.valid) return out;
     const Rect image{0, 0, geometry.width, geometry.height};
     for (int s = 0; s < samples.count; ++s) {
@@ -149,11 +156,11 @@ template <class Exec, class Which, class PieceCounts, class Keep>
 }
 
 /// Throws Error{invalid_argument} where an index or a face material was out of range.
-inline void check_valid(const Outcomes& sum) {
-  if (sum.invalid > 0)
+inline void check_valid(std::uint64_t invalid) {
+  if (invalid > 0)
     throw Error(Errc::invalid_argument,
-                std::to_string(sum.invalid)
-                    .append(" primitives have an index or a face material that is out of range"));
+                std::to_string(invalid).append(
+                    " primitives have an index or a face material that is out of range"));
 }
 
 }  // namespace rastrum::raster

@@ -21,6 +21,8 @@ struct DevicePlan {
   std::uint64_t batch = 0;       ///< primitives that are set up at once
   std::uint64_t written = 0;     ///< of those with larger pieces, whose pieces are there at once
   std::uint64_t turn_bytes = 0;  ///< of blocks and what makes them (SurfaceDrawer), 0: any
+  /// What by-size's queues have room for: pieces for teams, and tiles of large ones.
+  std::uint64_t queued_pieces = 0, queued_tiles = 0;
 
   /// `limit`: bytes, 0 for any. `pixel_bytes`: what is kept of a pixel beside its key. Throws
   /// Error{out_of_memory} where not even the least band fits.
@@ -28,11 +30,17 @@ struct DevicePlan {
                        std::uint64_t vertices, std::uint64_t pixel_bytes) {
     constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
     constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 19;
-    // An outcome, its place and CUB's flags; the pieces of a primitive and their places.
+    // Queues that are full cost time: what does not fit is drawn by the thread that found it. Of a
+    // picture's pieces few are for teams, but where there are few, all may be.
+    constexpr std::uint64_t kPieces = std::uint64_t{1} << 16, kTiles = std::uint64_t{1} << 20;
+    // An outcome, its place and CUB's flags, or a place of by-size's queue of primitives; the
+    // pieces of a primitive and their places.
     constexpr std::uint64_t kSetUpBytes = 24, kWrittenBytes = kMaxPieces * (sizeof(Piece) + 8) + 16;
     DevicePlan p;
     p.band_rows = (height + kDeviceTile - 1) / kDeviceTile * kDeviceTile;
     p.batch = p.written = std::clamp<std::uint64_t>(primitives, 1, kLargestBatch);
+    p.queued_pieces = kPieces + p.batch / 8;
+    p.queued_tiles = kTiles;
     if (limit == 0) return p;
     const auto columns = static_cast<std::uint64_t>(block_columns({0, 0, width, 1}));
     const std::uint64_t least_band =
@@ -52,6 +60,8 @@ struct DevicePlan {
         band_share / least_band * kDeviceTile, static_cast<std::uint64_t>(p.band_rows)));
     p.batch = std::min(p.batch, share / kSetUpBytes);
     p.written = std::min(p.written, share / 2 / kWrittenBytes);
+    p.queued_pieces = std::min(p.queued_pieces, share / 2 / sizeof(Piece));
+    p.queued_tiles = std::min(p.queued_tiles, share / 2 / sizeof(std::uint64_t));
     p.turn_bytes = share / 2;
     return p;
   }

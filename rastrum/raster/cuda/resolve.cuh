@@ -122,17 +122,28 @@ struct ResolvePixel {
   DeviceTargets targets;
   Shade shade;
   ResolveRules rules;
-  RASTRUM_HD std::uint32_t operator()(std::size_t i) const {
+  std::uint64_t* covered_sum;
+  /// How many pixels of a thread hold a surface.
+  struct Local {
+    std::uint32_t covered = 0;
+  };
+  RASTRUM_HD void end(const Local& local) const {
+    parallel::add_to_sum(*covered_sum, local.covered);
+  }
+  RASTRUM_HD void operator()(std::size_t i, Local& local) const {
     const Rect view = surface.view;
-    const auto width = static_cast<std::size_t>(view.x1 - view.x0);
-    const int x = view.x0 + static_cast<int>(i % width), y = view.y0 + static_cast<int>(i / width);
+    // An image has fewer than 2^32 pixels.
+    const auto width = static_cast<std::uint32_t>(view.x1 - view.x0);
+    const auto pixel = static_cast<std::uint32_t>(i);
+    const int x = view.x0 + static_cast<int>(pixel % width);
+    const int y = view.y0 + static_cast<int>(pixel / width);
     const std::uint64_t key = surface.keys.block(
         x / kBlockSize, y / kBlockSize)[y % kBlockSize * kBlockSize + x % kBlockSize];
     const auto put = [&](const auto& image, const auto& value) {
       if (image.data != nullptr) image.data[(y - view.y0) * image.stride + (x - view.x0)] = value;
     };
     const bool covered = rules.covers(key);
-    if (!covered && rules.keeps()) return 0;
+    if (!covered && rules.keeps()) return;
     if (covered && (targets.color8.data != nullptr || targets.color.data != nullptr)) {
       const Vec4 front = shade(key, x, y);
       const auto at = [&](const auto& image) {
@@ -154,22 +165,20 @@ struct ResolvePixel {
     put(targets.depth, std::bit_cast<float>(static_cast<std::uint32_t>(key >> kIdBits)));
     put(targets.ids, key == 0 ? std::int64_t{-1} : static_cast<std::int64_t>(id_of_key(key)));
     put(targets.keys, key);
-    return covered ? 1 : 0;
+    local.covered += covered ? 1 : 0;
   }
 };
 
 }  // namespace cuda_detail
 
 /// Fills `targets` from the keys of `surface`; where `rules` keep or are over something, they hold
-/// it. Returns how many pixels hold a surface. Work O(pixels). Waits.
+/// it. Adds how many pixels hold a surface to *covered, of the device. Work O(pixels).
 template <class Exec, class Shade>
-[[nodiscard]] std::uint64_t resolve_surface(Exec& exec, const DeviceSurface& surface,
-                                            const DeviceTargets& targets, const Shade& shade,
-                                            const ResolveRules& rules) {
-  auto covered = parallel::make_buffer<std::uint32_t>(exec, area_of(surface.view));
-  parallel::tabulate(exec, covered,
-                     cuda_detail::ResolvePixel<Shade>{surface, targets, shade, rules});
-  return parallel::reduce(exec, covered, std::uint64_t{0});
+void resolve_surface(Exec& exec, const DeviceSurface& surface, const DeviceTargets& targets,
+                     const Shade& shade, const ResolveRules& rules, std::uint64_t* covered) {
+  using Resolve = cuda_detail::ResolvePixel<Shade>;
+  parallel::for_each_strided<typename Resolve::Local>(
+      exec, area_of(surface.view), Resolve{surface, targets, shade, rules, covered});
 }
 
 namespace cuda_detail {
@@ -229,9 +238,9 @@ class LitUpload {
       draws.push_back(draw);
       meshes.push_back(mesh);
     }
-    meshes_ = parallel::to_device(exec, meshes);
+    meshes_ = parallel::upload(exec, meshes);
     for (std::size_t i = 0; i < draws.size(); ++i) draws[i].mesh = meshes_.data() + i;
-    draws_ = parallel::to_device(exec, draws);
+    draws_ = parallel::upload(exec, draws);
     view_ = {{draws_.data(), draws_.size()},
              lit.scene->rays,
              lit.scene->colored,

@@ -2,6 +2,7 @@
 // of the papers' (family/cuda). The frame around it (render/cuda/frame.cuh) knows no more of them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -43,11 +44,19 @@ struct ColorOfFragment {
   }
 };
 
-/// What became of the primitives of a band, and how many fragments their pieces had.
-struct DeviceCounts {
-  Outcomes sum;
-  std::uint64_t fragments = 0;
+/// What a band's kernels count, on the device: places of an array that is 0 when the band begins.
+enum BandSum : std::uint8_t {
+  kDroppedSum,  ///< primitives, as Outcomes
+  kCulledSum,
+  kClippedSum,
+  kInvalidSum,
+  kFragmentsSum,
+  kLargerSum,   ///< pieces that a team draws
+  kTilesSum,    ///< and tiles of large ones
+  kCoveredSum,  ///< pixels that hold a surface
+  kBandSums
 };
+using BandSums = std::array<std::uint64_t, kBandSums>;  ///< on the host
 
 /// Keeps counters from band to band of a frame. One frame at a time.
 class SurfaceDrawer {
@@ -66,15 +75,16 @@ class SurfaceDrawer {
 
   /// Draws all primitives of `scene` onto the keys of `surface`, which hold what was drawn before,
   /// or 0; pieces that have a flag of `skip` are left to others, though what became of them is
-  /// counted. `colors` as kind().shades says. Throws as check_valid, Error{out_of_memory}, and
-  /// parallel::Stopped between batches. Waits.
-  [[nodiscard]] virtual DeviceCounts draw(parallel::Cuda& exec,
-                                          const DeviceScene<parallel::Cuda>& scene,
-                                          const DeviceSurface& surface, const DevicePlan& plan,
-                                          const Tuning& tuning, std::uint32_t skip,
-                                          const FragmentColors& colors) = 0;
+  /// counted, in the BandSums at `sums` on the device. Of what is not valid nothing is drawn.
+  /// `colors` as kind().shades says. Throws Error{out_of_memory}, and parallel::Stopped between
+  /// batches. May return before it is done.
+  virtual void draw(parallel::Cuda& exec, const DeviceScene<parallel::Cuda>& scene,
+                    const DeviceSurface& surface, const DevicePlan& plan, const Tuning& tuning,
+                    std::uint32_t skip, const FragmentColors& colors, std::uint64_t* sums) = 0;
   /// Counts from 0; a frame may have ended early.
   virtual void begin_frame() = 0;
+  /// What a band had counted when it was done.
+  virtual void end_band(const BandSums& /*sums*/) {}
   /// Adds the frame's counters to `stats`.
   virtual void end_frame(FrameStats& stats) const = 0;
 };

@@ -46,12 +46,13 @@ struct DrawTested {
     const int bx = blocks.bx(static_cast<int>(j)), by = blocks.by(static_cast<int>(j));
     const std::uint64_t mask = cover_box(edges_of(piece), box, bx, by);
     if (mask == 0) return;
-    parallel::atomic_add(*fragments, static_cast<std::uint64_t>(parallel::popcount(mask)));
+    parallel::add_to_sum(*fragments, static_cast<std::uint64_t>(parallel::popcount(mask)));
     for (std::uint64_t m = mask; m != 0; m &= m - 1) {
       const int i = parallel::lowest_bit(m);
       const std::size_t at = surface.keys.index(bx, by) * 64 + static_cast<std::size_t>(i);
       if (surface.overdraw != nullptr) parallel::atomic_add(surface.overdraw[at], 1U);
       const std::uint64_t key = DeviceSurface::key(piece, bx, by, i);
+      // Others may raise it meanwhile: a key that is old only asks the test once more.
       if (key > surface.keys.keys[at] &&
           test(key, bx * kBlockSize + i % kBlockSize, by * kBlockSize + i / kBlockSize))
         parallel::atomic_maximum(surface.keys.keys[at], key);

@@ -30,7 +30,7 @@ struct Viewport {
 };
 
 /// A vertex after projection: 16 bytes, so that a triangle's corner is one aligned load.
-struct ProjectedVertex {
+struct alignas(16) ProjectedVertex {
   std::int32_t x_fx8 = 0,
                y_fx8 = 0;  ///< n.8 fixed point; x = kNeedsClip where there is no position
   float depth = 0;         ///< reversed, z / w

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include <rastrum/device.hpp>
 #include <rastrum/frame.hpp>
 #include <rastrum/raster/draws/draw.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
@@ -47,11 +48,12 @@ struct FrameRequest {
   /// none: all of it.
   std::optional<Rect> part;
   Tuning tuning;
-  bool in_place = false;             ///< arrays and targets are memory of the device that draws
-  std::string why_host;              ///< why no device draws it; empty: one may
-  std::uint64_t texture_bytes = 0;   ///< that a memory limit counts beside the frame's own
-  TransparencyOptions transparency;  ///< where layers are needed
-  int samples = 1;                   ///< a pixel; more want layers
+  bool in_place = false;              ///< arrays and targets are memory of the device that draws
+  std::optional<DeviceStream> after;  ///< of a caller's: what was given to it comes first
+  std::string why_host;               ///< why no device draws it; empty: one may
+  std::uint64_t texture_bytes = 0;    ///< that a memory limit counts beside the frame's own
+  TransparencyOptions transparency;   ///< where layers are needed
+  int samples = 1;                    ///< a pixel; more want layers
   /// The shader returns linear light: it is blended as such, also over the background, and the sRGB
   /// transfer is applied to the result.
   bool linear_light = false;

@@ -68,21 +68,19 @@ class BandImages {
     return {d.data, d.width, d.height, d.stride};
   }
 
-  /// Fills all, and the caller's. Returns how many pixels hold a surface. Waits.
+  /// Fills all, and the caller's once the device was waited for. Adds how many pixels hold a
+  /// surface to *covered, of the device.
   template <class Shade>
-  [[nodiscard]] std::uint64_t resolve(const FrameRequest& request, const Shade& shade,
-                                      const DeviceSurface& surface) {
+  void resolve(const FrameRequest& request, const Shade& shade, const DeviceSurface& surface,
+               std::uint64_t* covered) {
     const DeviceTargets targets{color8_.on_device(), color_.on_device(), depth_.on_device(),
                                 ids_.on_device(), keys_.on_device()};
-    const std::uint64_t covered =
-        resolve_surface(exec_, surface, targets, shade, ResolveRules::of(request));
+    resolve_surface(exec_, surface, targets, shade, ResolveRules::of(request), covered);
     color8_.store();
     color_.store();
     depth_.store();
     ids_.store();
     keys_.store();
-    exec_.wait();
-    return covered;
   }
 
  private:

@@ -86,6 +86,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     bool in_colors = false;         ///< layers need a colour; so does each of several samples
     bool shades_fragments = false;  ///< the drawer sets colours
     std::uint64_t textures_before = 0;
+    parallel::cuda_system::DeviceTally asked = parallel::cuda_system::device_tally();
     Uploads<Exec> uploads;
     std::vector<cuda_detail::HostVertices> made;
     std::vector<DeviceDraw> draws;
@@ -111,6 +112,7 @@ class DeviceRasterizer final : public CudaRasterizer {
           images(exec, frame.request, rows, frame.resolves),
           colors(parallel::make_buffer<Vec4>(
               exec, frame.in_colors || frame.shades_fragments ? keys.size() : 0)),
+          sums(parallel::make_buffer<std::uint64_t>(exec, kBandSums)),
           surface{view,
                   {0, view.y0 / kBlockSize, block_columns(view), keys.data(), nullptr},
                   overdraw.data(),
@@ -122,7 +124,8 @@ class DeviceRasterizer final : public CudaRasterizer {
     HostBand::Keys keys;   ///< a plane for each sample
     HostBand::Counts overdraw;
     BandImages images;
-    parallel::DeviceBuffer<Vec4> colors;  ///< in the places of the keys
+    parallel::DeviceBuffer<Vec4> colors;         ///< in the places of the keys
+    parallel::DeviceBuffer<std::uint64_t> sums;  ///< BandSums
     DeviceSurface surface;
   };
 
@@ -139,12 +142,20 @@ class DeviceRasterizer final : public CudaRasterizer {
       for (int y = 0; y < request.height; y += frame.plan.band_rows)
         draw_band(frame, {0, y, request.width, std::min(y + frame.plan.band_rows, request.height)});
     } catch (const Error& error) {
+      exec_.settle();
       // Which index was out of range is for the host to find.
       if (error.code() == Errc::invalid_argument && !request.in_place)
         check_indices(request.draws, request.names);
       throw;
+    } catch (...) {
+      exec_.settle();  // while the frame's own arrays are there
+      throw;
     }
     end_frame(frame);
+    // The driver sets local memory aside at the first launch of each kernel that wants more.
+    if (free_bytes_ != 0 && !has_drawn_)
+      free_bytes_ = parallel::driver_status().free_bytes + exec_.memory()->held();
+    has_drawn_ = true;
     return std::move(frame.stats);
   }
 
@@ -168,6 +179,7 @@ class DeviceRasterizer final : public CudaRasterizer {
   /// Arrays over, and all that the bands have in common.
   void begin_frame(Frame& f) {
     FrameRequest& request = f.request;
+    if (request.after) parallel::cuda_system::wait_for(exec_.stream(), request.after->handle);
     drawer_->begin_frame();
     f.draws = upload(f.uploads, request, threads_, f.made);
     f.watch.lap(f.stats, "upload");
@@ -185,7 +197,6 @@ class DeviceRasterizer final : public CudaRasterizer {
                             f.totals.vertices, pixel_bytes(f));
     f.scene.emplace(exec_, f.draws, request.width, request.height, request.targets.first_id,
                     f.plan.project_first);
-    exec_.wait();
     f.watch.lap(f.stats, "project");
     f.geometry = {request.width, request.height, Viewport::of(request.width, request.height),
                   request.draws, nullptr,        request.isa};
@@ -203,6 +214,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     else
       parallel::tabulate(exec_, band.keys, parallel::range_detail::SameValue<std::uint64_t>{0});
     parallel::tabulate(exec_, band.overdraw, parallel::range_detail::SameValue<std::uint32_t>{0});
+    parallel::tabulate(exec_, band.sums, parallel::range_detail::SameValue<std::uint64_t>{0});
   }
 
   void draw_band(Frame& f, Rect view) {
@@ -217,32 +229,46 @@ class DeviceRasterizer final : public CudaRasterizer {
         colors = {shade_fragments(band.surface.keys, shade), parallel::view_of(band.colors)};
       });
     const std::uint32_t skip = f.has_layers ? kTranslucent : 0;
-    const DeviceCounts counts = drawer_->draw(exec_, *f.scene, band.surface, f.plan, request.tuning,
-                                              skip | (f.look->has_test() ? kMayDrop : 0), colors);
-    f.stats.fragments += counts.fragments;
+    drawer_->draw(exec_, *f.scene, band.surface, f.plan, request.tuning,
+                  skip | (f.look->has_test() ? kMayDrop : 0), colors, band.sums.data());
     if (f.look->has_test())
       f.stats.fragments += draw_tested(exec_, *f.scene, band.surface, f.plan, skip, test);
-    // Each band sets all primitives up.
-    if (f.bands++ == 0) count_primitives(f, counts.sum);
     f.watch.lap(f.stats, "rasterize");
     if (band.overdraw.size() > 0) host_.store_overdraw(exec_, request.targets, view, band.overdraw);
     if (f.resolves)
       f.look->with(f.scene->geometry(), test, [&](const auto& shade, const auto& keeps) {
-        f.stats.pixels_covered += resolve_band(f, band, shade, keeps);
+        resolve_band(f, band, shade, keeps);
       });
     else
       f.stats.pixels_covered +=
           host_.resolve(exec_, request, f.geometry, view, band.keys, *f.shaders);
+    end_band(f, band);
     f.watch.lap(f.stats, "shade");
   }
 
-  /// The colours of a band, its layers and samples, and its targets. Returns how many pixels hold a
-  /// surface.
+  /// Waits for the band, which is the frame's one wait where nothing is blended or tested.
+  void end_band(Frame& f, const Band& band) {
+    BandSums sums{};
+    parallel::cuda_system::copy(exec_.stream(), sums.data(), band.sums.data(), sizeof sums);
+    exec_.wait();
+    check_valid(sums[kInvalidSum]);
+    drawer_->end_band(sums);
+    f.stats.fragments += sums[kFragmentsSum];
+    f.stats.pixels_covered += sums[kCoveredSum];
+    // Each band sets all primitives up.
+    if (f.bands++ > 0) return;
+    FrameStats::Triangles& t = f.stats.triangles;
+    t.dropped = sums[kDroppedSum];
+    t.culled = sums[kCulledSum];
+    t.clipped = sums[kClippedSum];
+  }
+
+  /// The colours of a band, its layers and samples, and its targets.
   template <class Shade, class Keeps>
-  [[nodiscard]] std::uint64_t resolve_band(Frame& f, Band& band, const Shade& shade,
-                                           const Keeps& keeps) {
+  void resolve_band(Frame& f, Band& band, const Shade& shade, const Keeps& keeps) {
+    std::uint64_t* const covered = band.sums.data() + kCoveredSum;
     if (!f.in_colors && !f.shades_fragments)
-      return band.images.resolve(f.request, shade, band.surface);
+      return band.images.resolve(f.request, shade, band.surface, covered);
     const std::span<Vec4> colors = parallel::view_of(band.colors);
     const auto blend = [&](const auto& shader) {
       f.layers.blend(exec_, *f.scene, band.surface, colors, f.request.transparency, shader, keeps,
@@ -264,8 +290,8 @@ class DeviceRasterizer final : public CudaRasterizer {
       mean_of_samples(exec_, band.surface, colors);
       f.watch.lap(f.stats, "samples");
     }
-    return band.images.resolve(f.request, ColorsOfSurface{band.surface, band.colors.data()},
-                               band.surface);
+    band.images.resolve(f.request, ColorsOfSurface{band.surface, band.colors.data()}, band.surface,
+                        covered);
   }
 
   /// FragmentColors::shade; must not outlive the arrays of `shade`.
@@ -275,13 +301,6 @@ class DeviceRasterizer final : public CudaRasterizer {
                                std::span<const std::uint64_t> key, std::span<Vec4> colors) {
       parallel::tabulate(exec_, colors, ColorOfFragment<Shade>{keys, element, key, shade});
     };
-  }
-
-  static void count_primitives(Frame& f, const Outcomes& sum) {
-    FrameStats::Triangles& t = f.stats.triangles;
-    t.dropped = sum.dropped;
-    t.culled = sum.culled;
-    t.clipped = sum.clipped;
   }
 
   /// What the statistics say of it.
@@ -294,8 +313,16 @@ class DeviceRasterizer final : public CudaRasterizer {
     stats.device = Device::cuda;
     stats.why = std::string(kind_.why).append(f.resolves ? "; shaded on the device"
                                                          : "; shaded by the host's threads");
+    const parallel::cuda_system::DeviceTally asked =
+        parallel::cuda_system::device_tally() - f.asked;
     stats.counters = {{"bands", f.bands},
-                      {"textures copied", textures_.copies() - f.textures_before}};
+                      {"textures copied", textures_.copies() - f.textures_before},
+                      {"launches", asked.launches},
+                      {"device algorithms", asked.algorithms},
+                      {"device waits", asked.waits},
+                      {"device copies", asked.copies},
+                      {"bytes copied", asked.copied_bytes},
+                      {"blocks allocated", asked.blocks}};
     drawer_->end_frame(stats);
     if (f.has_layers) f.layers.count(stats);
   }
@@ -303,7 +330,9 @@ class DeviceRasterizer final : public CudaRasterizer {
   std::unique_ptr<SurfaceDrawer> drawer_;
   SurfaceDrawer::Kind kind_;
   std::uint64_t memory_limit_;
-  std::uint64_t free_bytes_ = parallel::driver_status().free_bytes;  ///< before the first frame
+  /// Of the device, without what this has taken; asked again after the first frame. 0: not known.
+  std::uint64_t free_bytes_ = parallel::driver_status().free_bytes;
+  bool has_drawn_ = false;
   parallel::Threads& threads_;
   Exec exec_;
   DeviceTextures<Exec> textures_;

@@ -69,7 +69,7 @@ struct HighDensity {
 
 template <class Density, std::size_t samples>
 struct BlockScratch {
-  static constexpr std::size_t kSegmentWords = Density::kSegment / 64;
+  static constexpr std::size_t kSegmentWords = Density::kSegment / 32;
   static constexpr std::size_t kPlaces = 64 * samples;  ///< the pixels of each sample
 
   std::uint64_t sort_keys[Density::kRecords];
@@ -77,7 +77,7 @@ struct BlockScratch {
   std::uint32_t first[Density::kRecords + 1];      ///< sample of each sorted record
   std::uint64_t keys[samples][Density::kSegment];  ///< of its samples, 0: not there; colours
   float r[Density::kSegment], g[Density::kSegment], b[Density::kSegment], a[Density::kSegment];
-  std::uint64_t takers[64][kSegmentWords];  ///< which samples of the segment a pixel has
+  std::uint32_t takers[64][kSegmentWords];  ///< which samples of the segment a pixel has
   std::uint64_t opaque[kPlaces], limit[kPlaces];
   std::uint32_t layers[kPlaces], repaired;
 };
@@ -145,7 +145,7 @@ struct BlendBlock {
 
   RASTRUM_HD static void clear_takers(std::size_t q, Scratch& s) {
     if (q < 64)
-      for (std::uint64_t& bits : s.takers[q]) bits = 0;
+      for (std::uint32_t& bits : s.takers[q]) bits = 0;
   }
 
   template <class Team>
@@ -205,14 +205,14 @@ struct BlendBlock {
       s.g[i] = color.y;
       s.b[i] = color.z;
       s.a[i] = color.w;
-      parallel::atomic_or(s.takers[p][i / 64], std::uint64_t{1} << i % 64);
+      parallel::atomic_or(s.takers[p][i / 32], std::uint32_t{1} << i % 32);
     }
   }
 
   RASTRUM_HD void take(Pixel& pixel, std::size_t q, Scratch& s) const {
     for (std::size_t w = 0; w < Scratch::kSegmentWords; ++w)
-      for (std::uint64_t bits = s.takers[q % 64][w]; bits != 0; bits &= bits - 1) {
-        const std::size_t i = w * 64 + static_cast<std::size_t>(parallel::lowest_bit(bits));
+      for (std::uint32_t bits = s.takers[q % 64][w]; bits != 0; bits &= bits - 1) {
+        const std::size_t i = w * 32 + static_cast<std::size_t>(parallel::lowest_bit(bits));
         const std::uint64_t key = s.keys[q / 64][i];
         if (key == 0) continue;
         pixel.take({key, {s.r[i], s.g[i], s.b[i], s.a[i]}}, frame.opaque_at);

@@ -1,0 +1,79 @@
+// A device's stream on the CPU, for the tests: it does late what a GPU does late, and fails on
+// request where a driver may.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace rastrum::parallel::cuda_system {
+
+/// Which call of a device fails, of those that a driver may refuse: memory, copies, launches,
+/// waits, Thrust's algorithms. Counted for each thread.
+struct DeviceFaults {
+  std::uint64_t calls = 0;
+  std::uint64_t fails_at = 0;  ///< 0: none
+
+  /// Whether this call is the one.
+  [[nodiscard]] static bool strikes() {
+    DeviceFaults& faults = of_thread();
+    return ++faults.calls == faults.fails_at;
+  }
+  [[nodiscard]] static DeviceFaults& of_thread() {
+    thread_local DeviceFaults faults;
+    return faults;
+  }
+};
+
+/// Work in order. Where streams are late it is done when the host waits for it and no sooner, so
+/// that a result which is read too early, or a source that is gone too soon, is wrong at every run.
+class HostStream {
+ public:
+  /// Of all streams from here on; not while one has work.
+  static void be_late(bool late) { late_ = late; }
+
+  HostStream() {
+    const std::lock_guard lock(all_mutex_);
+    all_.push_back(this);
+  }
+  ~HostStream() {
+    const std::lock_guard lock(all_mutex_);
+    all_.erase(std::find(all_.begin(), all_.end(), this));
+  }
+  HostStream(const HostStream&) = delete;
+  HostStream& operator=(const HostStream&) = delete;
+
+  template <class F>
+  void add(F work) {
+    if (!late_) return work();
+    const std::lock_guard lock(mutex_);
+    work_.emplace_back(std::move(work));
+  }
+  void run() {
+    const std::lock_guard lock(mutex_);
+    for (const auto& work : work_) work();
+    work_.clear();
+  }
+  /// A device that has failed does nothing of what waits.
+  void drop() {
+    const std::lock_guard lock(mutex_);
+    work_.clear();
+  }
+  /// Giving memory back waits for all of a device's work.
+  static void run_all() {
+    const std::lock_guard lock(all_mutex_);
+    for (HostStream* const stream : all_) stream->run();
+  }
+
+ private:
+  static inline bool late_ = false;
+  static inline std::mutex all_mutex_;
+  static inline std::vector<HostStream*> all_;
+  std::mutex mutex_;
+  std::vector<std::function<void()>> work_;
+};
+
+}  // namespace rastrum::parallel::cuda_system

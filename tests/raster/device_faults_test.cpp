@@ -1,0 +1,130 @@
+// What a device refuses ends a frame with an Error and nothing else: each call that a driver may
+// refuse is refused once, and the frame after it is right. On the CPU alone (host_stream.hpp).
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/error.hpp>
+#include <rastrum/parallel/cuda/host_stream.hpp>
+#include <rastrum/render.hpp>
+
+#include "tests/support/cuda_test.hpp"
+#include "tests/support/frame.hpp"
+#include "tests/support/painter.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test::device_faults_test {
+namespace {
+
+using parallel::cuda_system::DeviceFaults;
+
+constexpr int kWidth = 72, kHeight = 40;
+
+/// The n-th call of this thread is refused while it lives.
+struct Refused {
+  explicit Refused(std::uint64_t n) { DeviceFaults::of_thread() = {0, n}; }
+  ~Refused() { DeviceFaults::of_thread() = {}; }
+  Refused(const Refused&) = delete;
+  Refused& operator=(const Refused&) = delete;
+};
+
+/// Of all sizes, so that each queue has work; some clipped.
+Scene triangles() {
+  Random random(11);
+  Mesh mesh;
+  for (int t = 0; t < 60; ++t) {
+    const double size = t % 20 == 0 ? 90 : t % 4 == 0 ? 20 : random.real(0.5, 6);
+    const double x = random.real(0, kWidth), y = random.real(0, kHeight);
+    for (int c = 0; c < 3; ++c)
+      mesh.positions.push_back(at_pixel(x + random.real(-size, size), y + random.real(-size, size),
+                                        random.real(0.1, 0.9), kWidth, kHeight));
+  }
+  return single(std::move(mesh));
+}
+
+struct Look {
+  const char* name;
+  float opacity;
+  int samples;
+  const char* rasterizer;
+};
+class FaultsOfADevice : public CudaTest, public testing::WithParamInterface<Look> {};
+
+/// Without overdraw, which is not counted for layers.
+Frame drawn(Painter& painter, const SceneView& scene, const Camera& camera) {
+  Frame frame{Image<Rgba8>(kWidth, kHeight),
+              Image<Vec4>(kWidth, kHeight),
+              Image<float>(kWidth, kHeight),
+              Image<std::int64_t>(kWidth, kHeight),
+              {},
+              {}};
+  frame.stats = painter.render(
+      scene, camera,
+      {.color8 = frame.color8, .color = frame.color, .depth = frame.depth, .ids = frame.ids});
+  return frame;
+}
+
+TEST_P(FaultsOfADevice, EndAFrameAndNoMore) {
+  const Look look = GetParam();
+  RenderOptions o = device_options(kWidth, kHeight, Device::serial);
+  o.opacity = look.opacity;
+  o.samples = look.samples;
+  o.threads = 1;
+  const Scene scene = triangles();
+  const SceneBinding binding(scene);
+  const Camera camera = pixel_camera(kWidth, kHeight);
+  Painter serial(o);
+  const Frame expected = drawn(serial, binding.view(), camera);
+  o.device = Device::cuda;
+  o.rasterizer = look.rasterizer;
+
+  std::uint64_t refused = 0;
+  for (std::uint64_t n = 1;; ++n, ++refused) {
+    ASSERT_LT(n, 2000U) << "the frame does not end";
+    // From nothing, so that memory is asked for, too.
+    Painter cuda(o);
+    bool ended = false;
+    try {
+      const Refused fault(n);
+      const Frame frame = drawn(cuda, binding.view(), camera);
+      ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
+      ended = true;
+    } catch (const Error& error) {
+      ASSERT_TRUE(error.code() == Errc::no_device || error.code() == Errc::out_of_memory)
+          << "call " << n << ": " << error.what();
+      ASSERT_NE(std::string(error.what()).find("device"), std::string::npos)
+          << "call " << n << ": " << error.what();
+    }
+    const Frame after = drawn(cuda, binding.view(), camera);
+    ASSERT_TRUE(same_picture(after, expected, 0)) << "after call " << n;
+    ASSERT_TRUE(same_surfaces(after, expected)) << "after call " << n;
+    if (ended) break;
+  }
+  EXPECT_GT(refused, 20U);
+}
+INSTANTIATE_TEST_SUITE_P(Looks, FaultsOfADevice,
+                         testing::Values(Look{"opaque", 1, 1, "auto"},
+                                         Look{"layers", 0.5F, 1, "auto"},
+                                         Look{"samples", 1, 4, "auto"},
+                                         Look{"tiled", 1, 1, "tiled"}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST_F(CudaTest, ARendererWithoutItsStreamIsRefused) {
+  for (std::uint64_t n = 1; n < 3; ++n) {
+    bool is_made = true;
+    try {
+      const Refused fault(n);
+      const Painter cuda(device_options(8, 8, Device::cuda));
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), Errc::no_device) << error.what();
+      is_made = false;
+    }
+    EXPECT_EQ(is_made, n > 1);
+  }
+}
+
+}  // namespace
+}  // namespace rastrum::test::device_faults_test
