@@ -1,6 +1,7 @@
 #include "annotations.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -20,7 +21,9 @@ void add_number(Parser& app, const char* option, const char* type, const char* h
   add(app, option, type, help, [option, most, &value](const std::string& s) {
     value = parse_number(option, s);
     if (!(*value > 0 && *value <= most))
-      throw UsageError(option, "must be > 0 and finite, got '" + s + "'");
+      throw UsageError(option, (most < 1e300 ? "must be > 0 and at most " + std::to_string(std::lround(most))
+                                             : std::string("must be > 0 and finite")) +
+                                   ", got '" + s + "'");
   })->group(kGroup);
 }
 
@@ -114,8 +117,8 @@ void check_annotations(const AnnotationOptions& a, bool has_colors) {
     throw UsageError("--text-scale", "is for --title, --caption, --bar, --axes and --bounds");
 }
 
-void report_missing_glyphs(const WordOptions& a) {
-  std::string all = a.title;
+void report_missing_glyphs(const WordOptions& a, const std::string& more) {
+  std::string all = a.title + more;
   for (const std::string& caption : a.captions) all += caption;
   std::string codes;
   for (const char32_t code : overlay::missing_glyphs(all)) {

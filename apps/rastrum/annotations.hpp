@@ -48,7 +48,7 @@ void add_annotation_options(Parser& app, AnnotationOptions& a);
 void check_words(const WordOptions& a, bool has_colors);
 void check_annotations(const AnnotationOptions& a, bool has_colors);
 /// Warns of letters that the font has not.
-void report_missing_glyphs(const WordOptions& a);
+void report_missing_glyphs(const WordOptions& a, const std::string& more = {});
 
 /// `look` at the size that was asked for.
 [[nodiscard]] overlay::Look look_of(const WordOptions& a, Vec4 background);

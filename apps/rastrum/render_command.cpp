@@ -488,7 +488,7 @@ int run(RenderArguments& a) {
     for (const std::string& w : scene.warnings) warn(w);
   }
   if (!a.quiet && a.render.transparency.method == Transparency::none) report_blended(scene);
-  if (!a.quiet) report_missing_glyphs(a.annotations.words);
+  if (!a.quiet) report_missing_glyphs(a.annotations.words, a.annotations.scalars.words());
   const std::vector<Light> said = a.render.lights;
   const auto light_by_files = [&] {
     if (!a.lights.of_files) return;
