@@ -53,7 +53,7 @@ struct ScalarMapping {
       range{};               ///< none: from the least to the greatest finite number in use
   bool logarithmic = false;  ///< even steps of the map are even factors; range above 0
   bool symmetric = false;    ///< the range is widened, so that 0 lies in its middle
-  int steps = 0;             ///< so many colours of equal parts of the range, up to 65536; 0: blended
+  int steps = 0;  ///< so many colours of equal parts of the range, up to 65536; 0: blended
   /// Number i has colour i of the map (the same colours again where there are too few of a discrete
   /// one; of a blended one as far apart as can be), all others are `nan`. No range is asked for.
   /// Between vertices of different categories lie numbers that are none: give them one a face.

@@ -1,7 +1,6 @@
 #include "annotations.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -16,14 +15,16 @@ namespace {
 
 constexpr const char* kGroup = "Words and effects";
 
+/// A number in [least, most], or where least is 0 above it.
 void add_number(Parser& app, const char* option, const char* type, const char* help,
-                std::optional<double>& value, double most) {
-  add(app, option, type, help, [option, most, &value](const std::string& s) {
+                std::optional<double>& value, double least, double most) {
+  add(app, option, type, help, [option, least, most, &value](const std::string& s) {
     value = parse_number(option, s);
-    if (!(*value > 0 && *value <= most))
-      throw UsageError(option, (most < 1e300 ? "must be > 0 and at most " + std::to_string(std::lround(most))
-                                             : std::string("must be > 0 and finite")) +
-                                   ", got '" + s + "'");
+    if (*value > 0 && *value >= least && *value <= most) return;
+    char range[64];
+    std::snprintf(range, sizeof range,
+                  least > 0 ? "must lie in %g to %g" : "must lie above %g, up to %g", least, most);
+    throw UsageError(option, std::string(range) + ", got '" + s + "'");
   })->group(kGroup);
 }
 
@@ -68,12 +69,12 @@ void add_annotation_options(Parser& app, AnnotationOptions& a) {
       ->group(kGroup);
   add_number(app, "--occlusion-radius", "R",
              "how far surfaces take light, in the scene's units (0.15 of the scene's radius)",
-             a.occlusion_radius, 1e300);
-  add_number(app, "--occlusion-strength", "S", "how much (1)", a.occlusion_strength, 16);
+             a.occlusion_radius, 1e-18, 1e18);
+  add_number(app, "--occlusion-strength", "S", "how much (1)", a.occlusion_strength, 0, 16);
   app.add_flag("--edl", a.dome,
                "darken what lies behind its neighbours (eye-dome lighting): shape for points")
       ->group(kGroup);
-  add_number(app, "--edl-strength", "S", "how much (1)", a.dome_strength, 100);
+  add_number(app, "--edl-strength", "S", "how much (1)", a.dome_strength, 0, 100);
   app.add_flag("--silhouettes", a.silhouettes,
                "black lines where surfaces end, bend by more than 35 degrees or another begins")
       ->group(kGroup);
@@ -87,7 +88,7 @@ void add_annotation_options(Parser& app, AnnotationOptions& a) {
           throw UsageError("--edge-angle", "must lie in 0 to 180 degrees, got '" + s + "'");
       })
       ->group(kGroup);
-  add_number(app, "--edge-width", "PX", "how wide (1)", a.edge_width, 64);
+  add_number(app, "--edge-width", "PX", "how wide (1)", a.edge_width, 0, 64);
 }
 
 void check_words(const WordOptions& a, bool has_colors) {

@@ -166,7 +166,8 @@ void add_scalar_options(Parser& app, ScalarOptions& s) {
 
 void check_scalars(const ScalarOptions& s, bool has_colors) {
   if (s.name.empty()) {
-    if (s.name_given) throw UsageError("--scalars", "is empty; rastrum info lists a file's numbers");
+    if (s.name_given)
+      throw UsageError("--scalars", "is empty; rastrum info lists a file's numbers");
     const char* const option = s.given != nullptr      ? s.given
                                : s.mapping.logarithmic ? "--log"
                                : s.mapping.symmetric   ? "--symmetric"

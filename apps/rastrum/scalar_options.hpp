@@ -20,7 +20,7 @@ struct ScalarOptions {
   int isoline_count = 0;   ///< about so many, where the bar has its ticks
   std::optional<std::string> bar_title;
   std::string bar_unit;
-  const char* given = nullptr;    ///< an option that needs --scalars
+  const char* given = nullptr;     ///< an option that needs --scalars
   const char* of_lines = nullptr;  ///< one that needs --isolines
 
   [[nodiscard]] bool bar() const { return bar_title.has_value(); }

@@ -62,9 +62,9 @@ ColorMap color_map(std::string_view name) {
   std::string names;
   for (const std::string_view n : known) names.append(" ").append(n);
   known.insert(known.end(), reverses.begin(), reverses.end());
-  throw Error(Errc::not_found,
-              "no colour map is called '" + std::string(name) + "'" + did_you_mean(name, known) +
-                  " (there are, each also with _r for its reverse:" + names + ")");
+  throw Error(Errc::not_found, "no colour map is called '" + std::string(name) + "'" +
+                                   did_you_mean(name, known) +
+                                   " (there are, each also with _r for its reverse:" + names + ")");
 }
 
 ColorMap color_map_or_list(std::string_view text) {

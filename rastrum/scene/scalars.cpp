@@ -175,10 +175,10 @@ void show_scalars(Scene& scene, const std::string& name) {
         names.append(s.name).append(", ");
         words.push_back(s.name);
       }
-      throw Error(Errc::not_found,
-                  "there are no scalars called '" + name + "'" + did_you_mean(name, words) +
-                      " (there are " + (names.empty() ? "none but those" : names + "and those") +
-                      " of every scene: x, y, z, distance)");
+      throw Error(Errc::not_found, "there are no scalars called '" + name + "'" +
+                                       did_you_mean(name, words) + " (there are " +
+                                       (names.empty() ? "none but those" : names + "and those") +
+                                       " of every scene: x, y, z, distance)");
     }
   }
   scene.shown_scalars = name;

@@ -133,12 +133,13 @@ TEST(Effects, OcclusionIsTheSameBitsHoweverRowsAreCut) {
     const overlay::OcclusionFrame frame = overlay::occlusion_frame(surface, d.camera, options);
     Image<float> rows(kWidth, kHeight), across(kWidth, kHeight), whole(kWidth, kHeight);
     for (int y = 0; y < kHeight; ++y) {
-      overlay::occlusion_plain(frame, y, 0, kWidth, rows.row(y));
-      overlay::blur_plain(frame, rows.row(y), y, {false, 1}, 0, kWidth, across.row(y));
+      overlay::occlusion_plain(frame, y, 0, kWidth, rows.view().row(y));
+      overlay::blur_plain(frame, rows.view().row(y), y, {false, 1}, 0, kWidth,
+                          across.view().row(y));
     }
     for (int y = 0; y < kHeight; ++y)
-      overlay::blur_plain(frame, across.row(y), y, {true, across.view().stride}, 0, kWidth,
-                          whole.row(y));
+      overlay::blur_plain(frame, across.view().row(y), y, {true, across.view().stride}, 0, kWidth,
+                          whole.view().row(y));
     EXPECT_LT(least(whole), 0.85F);
     for (const Isa isa : available_isas()) {
       Image<float> factor(kWidth, kHeight), cut(kWidth, kHeight);
@@ -149,7 +150,7 @@ TEST(Effects, OcclusionIsTheSameBitsHoweverRowsAreCut) {
         for (int x = 0, end = 0; x < kWidth; x = end) {
           state = state * 1664525 + 1013904223;
           end = std::min(kWidth, x + 16 * static_cast<int>(1 + (state >> 24) % 5));
-          overlay::occlusion_kernel(isa)(frame, y, x, end, cut.row(y));
+          overlay::occlusion_kernel(isa)(frame, y, x, end, cut.view().row(y));
         }
       EXPECT_EQ(digest(cut.view()), digest(rows.view())) << name(isa);
     }
@@ -400,7 +401,17 @@ TEST(Effects, RefuseWhatIsOutOfRange) {
   Effects effects;
   Image<float> factor(16, 12), other(16, 13);
   EXPECT_THROW(occlusion(effects, d, {}), Error);  // no radius
-  EXPECT_THROW(occlusion(effects, d, {.radius = std::nan("")}), Error);
+  for (const double radius : {-1.0, std::nan(""), 1e-19, 1e19, HUGE_VAL})
+    EXPECT_THROW(occlusion(effects, d, {.radius = radius}), Error) << radius;
+  // What can be said has no factor but in [0, 1].
+  for (const double radius : {1e-18, 1e18}) {
+    const Image<float> factors = occlusion(effects, d, {.radius = radius, .strength = 16});
+    for (const float f : factors.pixels()) ASSERT_TRUE(f >= 0 && f <= 1) << radius;
+  }
+  EXPECT_THROW(occlusion(effects, d, {.radius = 1, .strength = std::nan("")}), Error);
+  EXPECT_THROW(effects.eye_dome(d.surface(), d.camera, {.strength = std::nan("")}, factor), Error);
+  EXPECT_THROW(effects.silhouettes(d.surface(), d.camera, {.depth = std::nan("")}, factor), Error);
+  EXPECT_THROW(effects.silhouettes(d.surface(), d.camera, {.width_px = 17}, factor), Error);
   EXPECT_THROW(occlusion(effects, d, {.radius = 1, .strength = -1}), Error);
   EXPECT_THROW(occlusion(effects, d, {.radius = 1, .samples = 0}), Error);
   Surface surface = d.surface();

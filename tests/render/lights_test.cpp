@@ -98,8 +98,8 @@ Environment sky_picture() {
     for (int x = 0; x < 2 * kRows; ++x) {
       const double across = std::numbers::pi * ((x + 0.5) / kRows - 1),
                    down = std::numbers::pi * (y + 0.5) / kRows;
-      picture(x, y) = Vec3(sky({std::sin(down) * std::sin(across), std::cos(down),
-                                -std::sin(down) * std::cos(across)}));
+      picture(x, y) = Vec3(sky(
+          {std::sin(down) * std::sin(across), std::cos(down), -std::sin(down) * std::cos(across)}));
     }
   return Environment(picture.view());
 }
@@ -270,7 +270,8 @@ std::vector<std::vector<Light>> sets_of_lights() {
       {headlight(0.8F)},
       light_kit()};
   for (Light l : {light(HemisphereLight{{1, 2, -1}, {0.3F, 0.1F, 0}}, 0.7F),
-                  light(PointLight{{-0.8, 1, -2}}, 1.5F), light(SpotLight{{1, 1, 0}, {-0.2F, -0.3F, -1}}, 5)}) {
+                  light(PointLight{{-0.8, 1, -2}}, 1.5F),
+                  light(SpotLight{{1, 1, 0}, {-0.2F, -0.3F, -1}}, 5)}) {
     l.of_camera = true;
     sets.push_back({l});
   }
