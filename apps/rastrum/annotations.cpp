@@ -145,9 +145,13 @@ void draw_words(const WordOptions& a, const overlay::Canvas& canvas, const overl
     overlay::draw_caption(canvas, a.captions[i], kCorners[i], look);
 }
 
-Camera with_room(const AnnotationOptions& a, Camera camera) {
-  if (!a.bounds && !a.scalars.bar()) return camera;
-  const double room = a.bounds ? 1.5 : 1.25;
+Camera with_room(const AnnotationOptions& a, Camera camera, const SceneView& scene, int width,
+                 int height) {
+  double room = a.scalars.bar() ? 1.25 : 1;
+  if (a.bounds)
+    if (const Bounds box = bounds(scene); box.vertices_in_use != 0)
+      room = overlay::room_for_bounds(camera, wide(box.min), wide(box.max), width, height);
+  if (room == 1) return camera;
   camera.orthographic_height = static_cast<float>(camera.orthographic_height * room);
   const double half = room * elementary::tan(static_cast<double>(camera.fov_rad) / 2);
   camera.fov_rad = static_cast<float>(2 * elementary::atan(half));

@@ -56,7 +56,8 @@ void draw_words(const WordOptions& a, const overlay::Canvas& canvas, const overl
 
 /// A camera that leaves a margin for the numbers of --bounds, or for --bar, around what it was
 /// fitted to.
-[[nodiscard]] Camera with_room(const AnnotationOptions& a, Camera camera);
+[[nodiscard]] Camera with_room(const AnnotationOptions& a, Camera camera, const SceneView& scene,
+                               int width, int height);
 
 /// Effects, then the box, axes and words, onto `canvas`. `surface` must be there for effects,
 /// `depth` (reversed) for bounds, `ids` for edges.

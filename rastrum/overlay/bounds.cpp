@@ -281,4 +281,22 @@ void draw_bounds(const Canvas& canvas, const Camera& camera, Vec3d low, Vec3d hi
                   {static_cast<float>(middle->x), static_cast<float>(middle->y)}, m, look, taken);
 }
 
+double room_for_bounds(const Camera& fitted, Vec3d low, Vec3d high, int width, int height) {
+  const Mat4d to_clip = world_to_clip(fitted, width, height);
+  double farthest = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const double p[3] = {(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
+                         (corner & 4) != 0 ? high.z : low.z};
+    const auto row = [&](int i) {
+      return to_clip.m[i][0] * p[0] + to_clip.m[i][1] * p[1] + to_clip.m[i][2] * p[2] +
+             to_clip.m[i][3];
+    };
+    const double w = row(3);
+    if (w > 0) farthest = std::max({farthest, std::fabs(row(0)) / w, std::fabs(row(1)) / w});
+  }
+  // Numbers and names take five letters of 1/40 of the picture: a tenth of it on either side.
+  constexpr double kBoxPart = 0.8;
+  return std::clamp(farthest / kBoxPart, 1.5, 8.0);
+}
+
 }  // namespace rastrum::overlay

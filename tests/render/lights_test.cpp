@@ -91,7 +91,7 @@ Vec3d sky(Vec3d w, double first = 1, double second = 1) {
   return {0.5 + first * (0.3 * w.y - 0.1 * w.x), 0.5 + second * 0.7 * w.x * w.z,
           0.4 + first * 0.1 * w.z + second * 0.4 * (w.y * w.y - 1.0 / 3)};
 }
-Environment sky_picture() {
+Environment made_sky() {
   constexpr int kRows = 128;
   Image<Vec3> picture(2 * kRows, kRows);
   for (int y = 0; y < kRows; ++y)
@@ -102,6 +102,10 @@ Environment sky_picture() {
           {std::sin(down) * std::sin(across), std::cos(down), -std::sin(down) * std::cos(across)}));
     }
   return Environment(picture.view());
+}
+const Environment& sky_picture() {
+  static const Environment once = made_sky();
+  return once;
 }
 /// What facets of a roughness, seen from above, leave of bands 1 and 2: as they turn the light by
 /// twice their own angle, weighed by GGX's density of facets and the cosine of the light.
