@@ -296,7 +296,7 @@ double room_for_bounds(const Camera& fitted, Vec3d low, Vec3d high, int width, i
   }
   // Numbers and names take five letters of 1/40 of the picture: a tenth of it on either side.
   constexpr double kBoxPart = 0.8;
-  return std::clamp(farthest / kBoxPart, 1.5, 8.0);
+  return std::clamp(farthest / kBoxPart, 1.5, 3.0);
 }
 
 }  // namespace rastrum::overlay

@@ -165,9 +165,10 @@ TEST(Bounds, HaveRoomInTheirPicture) {
   const Bounds box = bounds(binding.view());
   for (const bool orthographic : {false, true}) {
     Camera view{.eye = {5, 4, 3}};
+    view.fov_rad = 0.5F;
     view.orthographic = orthographic;
     const Camera fitted = fit_picture(binding.view(), view, 200, 150);
-    const Vec3d low = box.min, high{box.max.x, box.max.y, 4.0 * box.max.z};
+    const Vec3d low = box.min, high{box.max.x, box.max.y, 1.3 * box.max.z};
     const double room = overlay::room_for_bounds(fitted, low, high, 200, 150);
     EXPECT_GT(room, 1.5);
     EXPECT_EQ(overlay::room_for_bounds(fitted, {}, {}, 200, 150), 1.5);
