@@ -7,6 +7,7 @@ Molecules are read here; the files of VTK need its Python package (Debian: pytho
 without. Prints the names of the files that it wrote.
 """
 import array
+import math
 import pathlib
 import sys
 
@@ -46,6 +47,26 @@ def molecule(pdb, file):
             chain.append(ord(line[21]))
             factor.append(float(line[60:66]))
     write_ply(file, points, [("element", "uchar", element), ("chain", "uchar", chain), ("bfactor", "float", factor)])
+
+
+def balls(file):
+    """Two rows of three balls, metal above and varnished below, rougher to the right: OBJ and MTL."""
+    materials, lines, rows, columns = [], [f"mtllib {file.stem}.mtl"], 48, 96
+    for k in range(6):
+        metal, rough = k < 3, k % 3 * 0.3 + 0.06
+        materials += [f"newmtl m{k}", f"Kd {'0.95 0.78 0.5' if metal else '0.6 0.06 0.05'}", f"Pm {int(metal)}", f"Pr {rough:g}"]
+        lines.append(f"usemtl m{k}")
+        for j in range(rows + 1):
+            for i in range(columns + 1):
+                down, across = math.pi * j / rows, 2 * math.pi * i / columns
+                x, y, z = math.sin(down) * math.sin(across), math.cos(down), math.sin(down) * math.cos(across)
+                lines += [f"v {x + k % 3 * 2.3:.6f} {y - k // 3 * 2.3:.6f} {z:.6f}", f"vn {x:.6f} {y:.6f} {z:.6f}"]
+        for j in range(rows):
+            for i in range(columns):
+                a = k * (rows + 1) * (columns + 1) + j * (columns + 1) + i + 1
+                lines.append("f " + " ".join(f"{c}//{c}" for c in (a, a + columns + 1, a + columns + 2, a + 1)))
+    file.write_text("\n".join([*lines, ""]))
+    file.with_suffix(".mtl").write_text("\n".join([*materials, ""]))
 
 
 class OfVtk:
@@ -91,10 +112,8 @@ class OfVtk:
         surface = self.then(vtk.vtkDataSetSurfaceFilter(), grid, SetNonlinearSubdivisionLevel=(1,))
         self.write("notch.ply", surface, [("Nodal Stress-normed", "stress", "double")])
         grid = self.read(vtk.vtkXMLUnstructuredGridReader(), "can.vtu")
-        warp = vtk.vtkWarpVector()
-        warp.SetInputArrayToProcess(0, 0, 0, 0, "DISPL")
-        crushed = self.then(vtk.vtkDataSetSurfaceFilter(), self.then(warp, grid))
-        self.write("can.ply", crushed, [("DISPL", "displacement", "double"), ("VEL", "speed", "float")],
+        # As the file has it: the mesh before it moved, with how far and fast it does.
+        self.write("can.ply", self.then(vtk.vtkDataSetSurfaceFilter(), grid), [("DISPL", "displacement", "double"), ("VEL", "speed", "float")],
                    [("EQPS", "strain", "float")])
         disk = self.read(vtk.vtkXMLPolyDataReader(), "disk_out_ref_surface.vtp")
         self.write("disk.ply", disk, [("Temp", "temperature", "float"), ("Pres", "pressure", "float"),
@@ -112,7 +131,7 @@ class OfVtk:
             reader.SetFileName(str(brain))
             reader.Update()
             points = reader.GetOutput().GetPoints()
-            write_ply(self.out / "brain_points.ply", [points.GetPoint(i) for i in range(0, points.GetNumberOfPoints(), 2)], [])
+            write_ply(self.out / "brain_points.ply", [points.GetPoint(i) for i in range(points.GetNumberOfPoints())], [])
         self.write("hydrogen.ply", self.then(contour, density), [("probability_density", "density", "float")])
 
 
@@ -121,6 +140,7 @@ def main():
         sys.exit(__doc__)
     data, out = map(pathlib.Path, sys.argv[1:])
     out.mkdir(parents=True, exist_ok=True)
+    balls(out / "balls.obj")
     if (data / "mol").is_dir():
         molecule(data / "mol" / "7DDO.pdb", out / "protein.ply")
         molecule(data / "mol" / "1LCD.pdb", out / "dna.ply")
@@ -131,8 +151,7 @@ def main():
     else:
         if (data / "sci").is_dir():
             of_vtk.make()
-    for file in sorted(out.glob("*.ply")):
-        print(file.name)
+    print(*sorted(file.name for file in out.iterdir()))
 
 
 if __name__ == "__main__":

@@ -187,16 +187,17 @@ struct Taken {
   double left, top, right, bottom;
 };
 
-/// Where letters at (x, y) lie, with a little air.
+/// Where letters at (x, y) lie, with air: numbers of two axes side by side are not read as one.
 Taken room_of(double x, double y, const TextExtent& extent, const TextStyle& style) {
-  const double air = style.size_px * 0.15, w = extent.width_px, h = extent.height_px;
+  const double air = style.size_px * 0.15, aside = style.size_px * 0.5;
+  const double w = extent.width_px, h = extent.height_px;
   const double left = style.align_x == AlignX::left     ? x
                       : style.align_x == AlignX::center ? x - w / 2
                                                         : x - w;
   const double top = style.align_y == AlignY::top      ? y
                      : style.align_y == AlignY::middle ? y - h / 2
                                                        : y - h;
-  return {left - air, top - air, left + w + air, top + h + air};
+  return {left - aside, top - air, left + w + aside, top + h + air};
 }
 
 bool overlap(const Taken& a, const Taken& b) {
