@@ -1,17 +1,24 @@
-// `rastrum bench effects`: what ambient occlusion, eye-dome lighting, silhouettes, edges, lights
-// and shadows add to a frame at 1920 × 1080, and the whole of --studio. Each factor and lit picture
-// is compared with the plain code's before anything is timed.
+// `rastrum bench effects`: what ambient occlusion, eye-dome lighting, silhouettes, edges, lights,
+// shadows, environments, numbers and layers add to a frame at 1920 × 1080, the whole of --studio,
+// and VTK's occlusion and depth peeling beside them. Each factor and picture of ours is compared
+// with the plain code's before anything is timed; VTK's by what it covers.
 #include <algorithm>
+#include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <rastrum/digest.hpp>
 #include <rastrum/effects.hpp>
+#include <rastrum/environment.hpp>
 #include <rastrum/fit.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
 #include "measure.hpp"
+#include "peers/started.hpp"
+#include "peers/vtk_peer.hpp"
 #include "registry.hpp"
 #include "report.hpp"
 #include "scenes.hpp"
@@ -38,6 +45,7 @@ struct Pictures {
 };
 
 constexpr int kEffects = 4;
+constexpr const char* kGlass = "translucent, exact";
 constexpr const char* kNames[kEffects] = {"occlusion", "eye dome", "silhouettes", "edges"};
 
 void apply(Effects& effects, int which, Pictures& p, const Camera& camera, double radius,
@@ -49,20 +57,42 @@ void apply(Effects& effects, int which, Pictures& p, const Camera& camera, doubl
   if (which == 3) effects.edges(p.primitives.view(), edges, camera, 1, p.factor);
 }
 
-/// Frames of other lights than the fixed one, and what --studio draws.
+/// Frames of other lights than the fixed one, of numbers, of layers, and what --studio draws.
 struct LitFrame {
   const char* name;
   FrameOptions options;
   bool occlusion = false;
+  int numbers = 0;  ///< 1: as colours, 2: with isolines as well
 };
 
 std::vector<LitFrame> lit_frames(const FrameOptions& plain) {
-  FrameOptions kit = plain, shadows = plain, studio = plain;
+  FrameOptions kit = plain, shadows = plain, environment = plain, glass = plain, studio = plain;
   kit.lights = studio.lights = light_kit();
   shadows.lights = {Light{.kind = DirectionalLight{{-0.4F, -0.6F, -1}}, .of_camera = true}};
   shadows.shadows = true;
+  const Image<Vec3> room = builtin_environment(BuiltinEnvironment::room);
+  environment.lights = {Light{.kind = EnvironmentLight{Environment(room.view())}}};
+  glass.opacity = 0.5F;
   studio.samples = 4;
-  return {{"studio's lights", kit}, {"one light, shadows", shadows}, {"studio", studio, true}};
+  return {{"studio's lights", kit},
+          {"one light, shadows", shadows},
+          {"an environment", environment},
+          {"numbers as colours", plain, false, 1},
+          {"numbers, isolines", plain, false, 2},
+          {kGlass, glass},
+          {"studio", studio, true}};
+}
+
+/// The scene with heights as numbers.
+Scene with_numbers(const Scene& scene, bool isolines) {
+  Scene numbers = scene;
+  show_scalars(numbers, "y");
+  numbers.scalar_mappings.resize(1);
+  if (!isolines) return numbers;
+  const ScalarRange range = scalar_colors(SceneBinding(numbers).view()).range();
+  for (int i = 1; i < 10; ++i)
+    numbers.scalar_mappings[0].isolines.push_back(range.low + i * (range.high - range.low) / 10);
+  return numbers;
 }
 
 void draw(Renderer& renderer, Effects& effects, const LitFrame& frame, const SceneView& scene,
@@ -75,13 +105,65 @@ void draw(Renderer& renderer, Effects& effects, const LitFrame& frame, const Sce
   effects.darken(p.color, {}, p.factor.view());
 }
 
+/// The mean of red, green and blue where something is seen, of 255.
+double brightness(const Image<Vec4>& picture) {
+  double sum = 0, count = 0;
+  for (const Vec4& c : picture.pixels()) {
+    if (c.w == 0) continue;
+    sum += 85.0 * (static_cast<double>(c.x) + c.y + c.z);
+    ++count;
+  }
+  return count == 0 ? 0 : sum / count;
+}
+
+/// A row for each thing that is timed, a column for each scene; what is missing is empty.
+struct Rows {
+  std::vector<std::string> names{};
+  std::vector<std::vector<std::string>> cells{};  ///< by row, then by scene
+
+  void set(const std::string& name, std::size_t scene, const std::string& cell) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    const auto row = static_cast<std::size_t>(at - names.begin());
+    if (at == names.end()) {
+      names.push_back(name);
+      cells.emplace_back();
+    }
+    cells[row].resize(std::max(cells[row].size(), scene + 1));
+    cells[row][scene] = cell;
+  }
+};
+
+/// VTK beside ours on one scene: its own `phong`, with its occlusion, and peeling layers.
+void time_vtk(VtkPeer& vtk, const Mesh& mesh, const Camera& camera, const FrameOptions& frame,
+              double radius, const Image<Rgba8>& ours, std::vector<Contender>& contenders,
+              const std::function<void(const std::string&, const std::string&)>& say) {
+  vtk.set_mesh(mesh.view());
+  vtk.set_view(camera, frame.width, frame.height);
+  vtk.set_occlusion(0);
+  vtk.draw(1);
+  const Image<Vec4> open = vtk.picture();
+  vtk.set_occlusion(radius);
+  vtk.draw(1);
+  say("VTK covers of what either does", significant(common_coverage(ours, open), 4));
+  say("VTK's brightness with occlusion",
+      significant(brightness(vtk.picture()) / brightness(open), 3));
+  contenders.push_back({"VTK, phong", [&vtk] {
+                          vtk.set_occlusion(0);
+                          vtk.draw(1);
+                        }});
+  contenders.push_back({"VTK, occlusion", [&vtk, radius] {
+                          vtk.set_occlusion(radius);
+                          vtk.draw(1);
+                        }});
+}
+
 }  // namespace
 
 int run_effects(std::span<const std::string_view> arguments) {
   TableOptions options;
   OptionParser parser("effects",
-                      "Occlusion, eye-dome lighting, silhouettes, edges, lights, shadows and "
-                      "--studio at 1920 × 1080.");
+                      "Occlusion, eye-dome lighting, silhouettes, edges, lights, shadows, numbers, "
+                      "layers and --studio at 1920 × 1080, beside VTK's occlusion and peeling.");
   options.add_to(parser, false);
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
@@ -95,11 +177,14 @@ int run_effects(std::span<const std::string_view> arguments) {
       std::to_string(frame.width) + " × " + std::to_string(frame.height) + ", " + options.here() +
       ", ms; an effect with its way into the colours; the factors are the plain "
       "code's, bit by bit.");
-  Grid grid{"",
-            {"scene", "phong", "with view depth", "and ids, normals, instances", "occlusion",
-             "eye dome", "silhouettes", "edges", "studio's lights", "one light, shadows", "studio",
-             "with occlusion ÷ phong", "studio ÷ phong"},
-            {}};
+  Started<VtkPeer> vtk_started(options.threads);
+  std::optional<VtkPeer>& vtk = vtk_started.peer;
+  document.notes.push_back(
+      vtk_started.note +
+      ": the peers' phong; its occlusion has as many samples (16) and as wide "
+      "a reach as ours, and its peeling takes all layers, three frames of it.");
+  Rows rows;
+  std::vector<std::string> head{"ms"};
   Plot plot;
   plot.title = document.title;
   plot.note = options.here();
@@ -143,9 +228,13 @@ int run_effects(std::span<const std::string_view> arguments) {
     }
     const std::vector<LitFrame> lit = lit_frames(frame);
     Renderer scalar({.threads = options.threads, .isa = Isa::scalar});
+    const Scene numbers[2] = {with_numbers(scene, false), with_numbers(scene, true)};
+    const SceneBinding bindings[3] = {SceneBinding(scene), SceneBinding(numbers[0]),
+                                      SceneBinding(numbers[1])};
     for (const LitFrame& l : lit) {
-      draw(renderer, effects, l, binding.view(), camera, radius, p);
-      draw(scalar, reference, l, binding.view(), camera, radius, plain);
+      const SceneView view = bindings[l.numbers].view();
+      draw(renderer, effects, l, view, camera, radius, p);
+      draw(scalar, reference, l, view, camera, radius, plain);
       right = right && digest(p.color.view()) == digest(plain.color.view());
     }
     std::vector<Contender> contenders{
@@ -165,25 +254,68 @@ int run_effects(std::span<const std::string_view> arguments) {
                             }});
     for (const LitFrame& l : lit)
       contenders.push_back(
-          {l.name, [&] { draw(renderer, effects, l, binding.view(), camera, radius, p); }});
-    const std::vector<Timing> timings = measure_interleaved(contenders, options.plan());
-    std::vector<std::string> row{std::string(info.name)};
-    for (std::size_t i = 0; i < timings.size(); ++i) {
-      row.push_back(significant(timings[i].median_ms()));
-      document.figures.push_back(
-          {{"scene", info.name}, {"what", timings[i].name}, {"ms", timings[i].median_ms()}});
+          {l.name,
+           [&] { draw(renderer, effects, l, bindings[l.numbers].view(), camera, radius, p); }});
+    const std::size_t column = head.size() - 1;
+    head.emplace_back(info.name);
+    const auto say = [&](const std::string& what, const std::string& cell) {
+      rows.set(what, column, cell);
+    };
+    Rows of_vtk;
+    if (vtk) {
+      (void)renderer.render(binding.view(), camera, frame, {.color8 = p.color});
+      time_vtk(
+          *vtk, scene.meshes[0], camera, frame, radius, p.color, contenders,
+          [&](const std::string& what, const std::string& cell) { of_vtk.set(what, 0, cell); });
     }
+    progress(std::string(info.name));
+    std::vector<Timing> timings = measure_interleaved(contenders, options.plan());
+    if (vtk) {
+      // Seconds a frame: beside ours, few of them.
+      const LitFrame& glass =
+          *std::find_if(lit.begin(), lit.end(), [](const LitFrame& l) { return l.name == kGlass; });
+      vtk->set_occlusion(0);
+      const std::vector<Contender> two{
+          {kGlass, [&] { draw(renderer, effects, glass, binding.view(), camera, radius, p); }},
+          {"VTK, peeling", [&] { vtk->draw(0.5F); }}};
+      Plan plan = options.plan();
+      plan.rounds = std::min(plan.rounds, 3);
+      const std::vector<Timing> peeled = measure_interleaved(two, plan);
+      timings.push_back(peeled[1]);
+      of_vtk.set("VTK, peeling ÷ translucent, exact", 0,
+                 significant(median_ratio(peeled[1], peeled[0])));
+    }
+    const auto named = [&](std::string_view name) -> const Timing& {
+      return *std::find_if(timings.begin(), timings.end(),
+                           [&](const Timing& t) { return t.name == name; });
+    };
     plot.places.emplace_back(info.name);
     panel.series.resize(timings.size());
     for (std::size_t i = 0; i < timings.size(); ++i) {
+      const double ms = timings[i].median_ms();
+      say(timings[i].name, significant(ms));
+      document.figures.push_back({{"scene", info.name}, {"what", timings[i].name}, {"ms", ms}});
       panel.series[i].name = timings[i].name;
       panel.series[i].color = static_cast<int>(i);
-      panel.series[i].values.push_back(timings[i].median_ms());
+      panel.series[i].values.push_back(ms);
     }
-    row.push_back(
-        significant((timings[1].median_ms() + timings[3].median_ms()) / timings[0].median_ms()));
-    row.push_back(significant(median_ratio(timings.back(), timings[0])));
-    grid.rows.push_back(std::move(row));
+    const double phong = named("phong").median_ms(),
+                 occluded = named("with view depth").median_ms() + named("occlusion").median_ms();
+    say("with occlusion ÷ phong", significant(occluded / phong));
+    say("studio ÷ phong", significant(median_ratio(named("studio"), named("phong"))));
+    if (vtk) {
+      say("VTK, phong ÷ phong", significant(median_ratio(named("VTK, phong"), named("phong"))));
+      say("VTK, occlusion ÷ with occlusion",
+          significant(named("VTK, occlusion").median_ms() / occluded));
+      for (std::size_t i = 0; i < of_vtk.names.size(); ++i)
+        say(of_vtk.names[i], of_vtk.cells[i][0]);
+    }
+  }
+  Grid grid{"", head, {}};
+  for (std::size_t i = 0; i < rows.names.size(); ++i) {
+    grid.rows.push_back({rows.names[i]});
+    rows.cells[i].resize(head.size() - 1);
+    grid.rows.back().insert(grid.rows.back().end(), rows.cells[i].begin(), rows.cells[i].end());
   }
   document.grids.push_back(std::move(grid));
   plot.panels = {std::move(panel)};

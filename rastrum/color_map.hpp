@@ -28,7 +28,8 @@ struct ColorMap {
 /// A map by its usual name: viridis, plasma, inferno, magma, cividis, turbo, gray, hot, bone, jet,
 /// ColorBrewer's Blues, RdBu, Spectral and more, coolwarm, twilight, hsv, and of colours that mean
 /// categories tab10, tab20, Set1, Set2, Dark2, Paired (`discrete`). NAME_r is it from high to low.
-/// Colours are the published ones in 8 bits. Throws Error{not_found}, which lists the names.
+/// Colours are the published ones in 8 bits. Throws Error{not_found}, which says the nearest
+/// name and lists them all.
 [[nodiscard]] ColorMap color_map(std::string_view name);
 
 /// The same, or a list of the caller's own: #RRGGBB or #RRGGBBAA, separated by commas or spaces.
@@ -52,7 +53,7 @@ struct ScalarMapping {
       range{};               ///< none: from the least to the greatest finite number in use
   bool logarithmic = false;  ///< even steps of the map are even factors; range above 0
   bool symmetric = false;    ///< the range is widened, so that 0 lies in its middle
-  int steps = 0;             ///< so many colours of equal parts of the range; 0: blended
+  int steps = 0;  ///< so many colours of equal parts of the range, up to 65536; 0: blended
   /// Number i has colour i of the map (the same colours again where there are too few of a discrete
   /// one; of a blended one as far apart as can be), all others are `nan`. No range is asked for.
   /// Between vertices of different categories lie numbers that are none: give them one a face.
@@ -74,7 +75,8 @@ class ScalarColors {
   /// `in_use`: the range where the mapping has none, so that of finite_range(). Throws
   /// Error{invalid_argument}, which names the field, for a map without colours, colours and
   /// opacities that are not in [0, 1], a range upside down, not finite, so wide that high − low is
-  /// not, or with a logarithm not above 0; a logarithm beside `symmetric`; steps below 0;
+  /// not, or with a logarithm not above 0; a logarithm beside `symmetric`; steps below 0 or
+  /// beyond 65536;
   /// categories that are not finite or twice there; values of opacity that do not rise.
   ScalarColors(const ScalarMapping& mapping, ScalarRange in_use);
 

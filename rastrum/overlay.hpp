@@ -173,6 +173,11 @@ void draw_axes(const Canvas& canvas, const Camera& camera, Corner corner = Corne
 void draw_bounds(const Canvas& canvas, const Camera& camera, Vec3d low, Vec3d high,
                  ImageView<const float> depth = {}, const Look& look = {});
 
+/// How many times as much as a camera that is fitted to a scene one sees that has this box and the
+/// numbers around it in its picture (`zoomed`): 1.5, or what the farthest corner needs, up to 3.
+[[nodiscard]] double room_for_bounds(const Camera& fitted, Vec3d low, Vec3d high, int width,
+                                     int height);
+
 /// Words at the top of the picture, in the middle, above all else.
 void draw_title(const Canvas& canvas, std::string_view text, const Look& look = {});
 /// Smaller words in a corner.

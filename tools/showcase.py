@@ -2,12 +2,13 @@
 """Draws the showcase: what a first picture of real and procedural data looks like, beside what f3d and
 VTK make of the same files by default.
 
-usage: showcase.py [--build DIR] [--data DIR] [--out DIR] [--no-peers] [--only NAME]
+usage: showcase.py [--build DIR] [--data DIR] [--out DIR] [--no-peers] [--new-peers] [--only NAME]
 
 Writes DIR/index.html and DIR/showcase.md: thumbnails that lead to the pictures, the command under each,
 and, where f3d and VTK are installed (Debian: f3d, python3-vtk9, xvfb), their pictures of the same file. DATA is
 ../shared/data; entries whose file is not there are left out, and named. Peers' pictures are made here and
-nowhere kept.
+nowhere kept but in DIR, where they are taken again unless --new-peers is said. Scientific files become PLY files
+with numbers by tools/showcase_data.py, which needs VTK's Python package as well.
 """
 import argparse
 import dataclasses
@@ -24,6 +25,7 @@ import showcase_entries
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TIMEOUT_S = 120
 THUMBNAIL = "320:-2"
+PYTHON = "/usr/bin/python3"  # Debian's, which has Debian's VTK
 
 # What VTK draws without being asked for anything: reader, mapper, actor, renderer.
 VTK = """
@@ -78,7 +80,8 @@ def run(command, **more):
 class Maker:
     def __init__(self, options):
         self.program = options.build / "apps" / "rastrum" / "rastrum"
-        self.data, self.out = options.data, options.out
+        self.data, self.out, self.new_peers = options.data, options.out, options.new_peers
+        self.made = options.out / "made"
         self.peers = [] if options.no_peers else self.find_peers()
 
     @staticmethod
@@ -90,12 +93,23 @@ class Maker:
         if shutil.which("f3d"):
             peers.append(("f3d", lambda file, picture, size: [
                 "f3d", file, f"--output={picture}", f"--resolution={size[0]},{size[1]}"]))
-        if subprocess.run(["/usr/bin/python3", "-c", "import vtk"], capture_output=True).returncode == 0:
+        if subprocess.run([PYTHON, "-c", "import vtk"], capture_output=True).returncode == 0:
             peers.append(("VTK", lambda file, picture, size: [
-                "/usr/bin/python3", "-c", VTK, file, picture, str(size[0]), str(size[1])]))
+                PYTHON, "-c", VTK, file, picture, str(size[0]), str(size[1])]))
         for name in {"f3d", "VTK"} - {name for name, _ in peers}:
             print(f"note: {name} is not installed", file=sys.stderr)
         return peers
+
+    def make_data(self):
+        """PLY files of the scientific ones."""
+        _, wrong = run([PYTHON, ROOT / "tools" / "showcase_data.py", self.data, self.made])
+        if wrong:
+            print(f"note: showcase_data.py: {wrong.splitlines()[-1]}", file=sys.stderr)
+
+    def path(self, file):
+        """Of DATA/… or MADE/…."""
+        folder, name = file.split("/", 1)
+        return (self.data if folder == "DATA" else self.made) / name
 
     def thumbnail(self, name):
         small = f"small/{name}.png"
@@ -106,7 +120,8 @@ class Maker:
         return small
 
     def ours(self, entry):
-        words = [word.replace("DATA", str(self.data)) for word in shlex.split(entry.command)]
+        words = [word.replace("DATA/", f"{self.data}/").replace("MADE/", f"{self.made}/")
+                 for word in shlex.split(entry.command)]
         seconds, wrong = run([self.program, *words, "-o", f"{entry.name}.png"], cwd=self.out)
         if wrong:
             raise SystemExit(f"{entry.name}: rastrum {entry.command}\n{wrong}")
@@ -118,12 +133,17 @@ class Maker:
         if entry.peer_file:
             for peer, command in self.peers:
                 name = f"{entry.name}_{peer.lower()}"
-                line = command(str(self.data / entry.peer_file), f"{name}.png", entry.size)
+                took = self.out / f"{name}.seconds"
+                if took.exists() and (self.out / f"{name}.png").exists() and not self.new_peers:
+                    made[peer] = Picture(f"{name}.png", f"small/{name}.png", f"{peer}, by default", float(took.read_text()))
+                    continue
+                line = command(str(self.path(entry.peer_file)), f"{name}.png", entry.size)
                 seconds, wrong = run(["xvfb-run", "-a", *line], cwd=self.out)
                 if wrong or not (self.out / f"{name}.png").exists():
                     print(f"note: {peer} draws no {entry.peer_file}: {wrong.splitlines()[-1:]}", file=sys.stderr)
                 else:
                     made[peer] = Picture(f"{name}.png", self.thumbnail(name), f"{peer}, by default", seconds)
+                    took.write_text(f"{seconds:.3f}")
         return made
 
 
@@ -158,15 +178,17 @@ def main():
     parser.add_argument("--data", type=pathlib.Path, default=ROOT.parent / "shared" / "data")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out" / "showcase")
     parser.add_argument("--no-peers", action="store_true")
+    parser.add_argument("--new-peers", action="store_true")
     parser.add_argument("--only", help="the entries whose name contains this")
     options = parser.parse_args()
     for name in ("build", "data", "out"):
         setattr(options, name, getattr(options, name).resolve())
     (options.out / "small").mkdir(parents=True, exist_ok=True)
     maker, made, left_out = Maker(options), [], []
+    maker.make_data()
     entries = [e for e in showcase_entries.ENTRIES if (options.only or "") in e.name]
     for number, entry in enumerate(entries, 1):
-        if entry.needs and not all((options.data / file).exists() for file in entry.needs):
+        if not all(maker.path(file).exists() for file in entry.files):
             left_out.append(entry.name)
             continue
         if sys.stderr.isatty():

@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "suggest.hpp"
+#include <rastrum/core/nearest_word.hpp>
 
 namespace rastrum::cli {
 

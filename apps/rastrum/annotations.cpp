@@ -15,12 +15,16 @@ namespace {
 
 constexpr const char* kGroup = "Words and effects";
 
+/// A number in [least, most], or where least is 0 above it.
 void add_number(Parser& app, const char* option, const char* type, const char* help,
-                std::optional<double>& value, double most) {
-  add(app, option, type, help, [option, most, &value](const std::string& s) {
+                std::optional<double>& value, double least, double most) {
+  add(app, option, type, help, [option, least, most, &value](const std::string& s) {
     value = parse_number(option, s);
-    if (!(*value > 0 && *value <= most))
-      throw UsageError(option, "must be > 0 and finite, got '" + s + "'");
+    if (*value > 0 && *value >= least && *value <= most) return;
+    char range[64];
+    std::snprintf(range, sizeof range,
+                  least > 0 ? "must lie in %g to %g" : "must lie above %g, up to %g", least, most);
+    throw UsageError(option, std::string(range) + ", got '" + s + "'");
   })->group(kGroup);
 }
 
@@ -65,12 +69,12 @@ void add_annotation_options(Parser& app, AnnotationOptions& a) {
       ->group(kGroup);
   add_number(app, "--occlusion-radius", "R",
              "how far surfaces take light, in the scene's units (0.15 of the scene's radius)",
-             a.occlusion_radius, 1e300);
-  add_number(app, "--occlusion-strength", "S", "how much (1)", a.occlusion_strength, 16);
+             a.occlusion_radius, 1e-18, 1e18);
+  add_number(app, "--occlusion-strength", "S", "how much (1)", a.occlusion_strength, 0, 16);
   app.add_flag("--edl", a.dome,
                "darken what lies behind its neighbours (eye-dome lighting): shape for points")
       ->group(kGroup);
-  add_number(app, "--edl-strength", "S", "how much (1)", a.dome_strength, 100);
+  add_number(app, "--edl-strength", "S", "how much (1)", a.dome_strength, 0, 100);
   app.add_flag("--silhouettes", a.silhouettes,
                "black lines where surfaces end, bend by more than 35 degrees or another begins")
       ->group(kGroup);
@@ -84,7 +88,7 @@ void add_annotation_options(Parser& app, AnnotationOptions& a) {
           throw UsageError("--edge-angle", "must lie in 0 to 180 degrees, got '" + s + "'");
       })
       ->group(kGroup);
-  add_number(app, "--edge-width", "PX", "how wide (1)", a.edge_width, 64);
+  add_number(app, "--edge-width", "PX", "how wide (1)", a.edge_width, 0, 64);
 }
 
 void check_words(const WordOptions& a, bool has_colors) {
@@ -114,8 +118,8 @@ void check_annotations(const AnnotationOptions& a, bool has_colors) {
     throw UsageError("--text-scale", "is for --title, --caption, --bar, --axes and --bounds");
 }
 
-void report_missing_glyphs(const WordOptions& a) {
-  std::string all = a.title;
+void report_missing_glyphs(const WordOptions& a, const std::string& more) {
+  std::string all = a.title + more;
   for (const std::string& caption : a.captions) all += caption;
   std::string codes;
   for (const char32_t code : overlay::missing_glyphs(all)) {
@@ -141,9 +145,13 @@ void draw_words(const WordOptions& a, const overlay::Canvas& canvas, const overl
     overlay::draw_caption(canvas, a.captions[i], kCorners[i], look);
 }
 
-Camera with_room(const AnnotationOptions& a, Camera camera) {
-  if (!a.bounds && !a.scalars.bar()) return camera;
-  const double room = a.bounds ? 1.5 : 1.25;
+Camera with_room(const AnnotationOptions& a, Camera camera, const SceneView& scene, int width,
+                 int height) {
+  double room = a.scalars.bar() ? 1.25 : 1;
+  if (a.bounds)
+    if (const Bounds box = bounds(scene); box.vertices_in_use != 0)
+      room = overlay::room_for_bounds(camera, wide(box.min), wide(box.max), width, height);
+  if (room == 1) return camera;
   camera.orthographic_height = static_cast<float>(camera.orthographic_height * room);
   const double half = room * elementary::tan(static_cast<double>(camera.fov_rad) / 2);
   camera.fov_rad = static_cast<float>(2 * elementary::atan(half));

@@ -48,7 +48,7 @@ void add_annotation_options(Parser& app, AnnotationOptions& a);
 void check_words(const WordOptions& a, bool has_colors);
 void check_annotations(const AnnotationOptions& a, bool has_colors);
 /// Warns of letters that the font has not.
-void report_missing_glyphs(const WordOptions& a);
+void report_missing_glyphs(const WordOptions& a, const std::string& more = {});
 
 /// `look` at the size that was asked for.
 [[nodiscard]] overlay::Look look_of(const WordOptions& a, Vec4 background);
@@ -56,7 +56,8 @@ void draw_words(const WordOptions& a, const overlay::Canvas& canvas, const overl
 
 /// A camera that leaves a margin for the numbers of --bounds, or for --bar, around what it was
 /// fitted to.
-[[nodiscard]] Camera with_room(const AnnotationOptions& a, Camera camera);
+[[nodiscard]] Camera with_room(const AnnotationOptions& a, Camera camera, const SceneView& scene,
+                               int width, int height);
 
 /// Effects, then the box, axes and words, onto `canvas`. `surface` must be there for effects,
 /// `depth` (reversed) for bounds, `ids` for edges.

@@ -2,7 +2,7 @@
 #include <string>
 #include <string_view>
 
-#include <apps/command_line/suggest.hpp>
+#include <rastrum/core/nearest_word.hpp>
 #include <rastrum/color.hpp>
 #include "arguments.hpp"
 

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include <apps/command_line/parser.hpp>
-#include <apps/command_line/suggest.hpp>
+#include <rastrum/core/nearest_word.hpp>
 #include <rastrum/error.hpp>
 
 #include "arguments.hpp"
@@ -48,7 +48,7 @@ std::string not_a_command(std::string_view given, std::span<const std::string_vi
   if (std::filesystem::exists(word, ignored))
     return "'" + word + "' is a file, not a command: `rastrum render " + word +
            " -o picture.png` draws it";
-  const std::string meant = rastrum::cli::did_you_mean(word, commands);
+  const std::string meant = rastrum::did_you_mean(word, commands);
   return "there is no command '" + word + "'" + (meant.empty() ? "; there are " + known : meant);
 }
 

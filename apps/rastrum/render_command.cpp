@@ -488,7 +488,7 @@ int run(RenderArguments& a) {
     for (const std::string& w : scene.warnings) warn(w);
   }
   if (!a.quiet && a.render.transparency.method == Transparency::none) report_blended(scene);
-  if (!a.quiet) report_missing_glyphs(a.annotations.words);
+  if (!a.quiet) report_missing_glyphs(a.annotations.words, a.annotations.scalars.words());
   const std::vector<Light> said = a.render.lights;
   const auto light_by_files = [&] {
     if (!a.lights.of_files) return;
@@ -503,7 +503,7 @@ int run(RenderArguments& a) {
   a.view.turns = a.turntable != 0;
   Camera camera = choose_camera(a.view, scene, binding.view(), {a.render.width, a.render.height});
   if (!a.view.file_camera && !a.view.eye && !a.view.orthographic_height)
-    camera = with_room(a.annotations, camera);
+    camera = with_room(a.annotations, camera, binding.view(), a.render.width, a.render.height);
 
   std::optional<SceneBinding> posed;
   SceneAt moving;

@@ -1,6 +1,7 @@
 #include "scalar_options.hpp"
 
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <rastrum/error.hpp>
@@ -57,6 +58,34 @@ ColorMap parse_map(const std::string& text) {
   }
 }
 
+/// What a mapping refuses, said of the option that its field comes from.
+UsageError of_option(const Error& e) {
+  constexpr std::pair<std::string_view, const char*> kOptions[] = {
+      {"map", "--cmap"},
+      {"range", "--range"},
+      {"logarithmic", "--log"},
+      {"steps", "--steps"},
+      {"categories", "--categories"},
+      {"below", "--below"},
+      {"above", "--above"},
+      {"nan", "--nan-color"},
+      {"opacity", "--scalar-opacity"},
+      {"isolines", "--isolines"},
+      {"isoline_color", "--isoline-color"},
+      {"isoline_px", "--isoline-width"}};
+  constexpr std::string_view kBegin = "ScalarMapping::";
+  std::string_view what = e.what();
+  if (what.starts_with(kBegin)) what.remove_prefix(kBegin.size());
+  const std::string_view field = what.substr(0, what.find_first_of(":["));
+  for (const auto& [name, option] : kOptions)
+    if (name == field) {
+      what.remove_prefix(field.size());
+      if (what.starts_with(": ")) what.remove_prefix(2);
+      return {option, std::string(what)};
+    }
+  return {"--scalars", e.what()};
+}
+
 std::string map_names() {
   std::string names;
   for (const std::string_view n : color_map_names())
@@ -69,7 +98,10 @@ std::string map_names() {
 void add_scalar_options(Parser& app, ScalarOptions& s) {
   add(app, "--scalars", "NAME",
       "colours by numbers of the files (rastrum info lists them), or by x, y, z, distance",
-      [&s](const std::string& v) { s.name = v; })
+      [&s](const std::string& v) {
+        s.name = v;
+        s.name_given = true;
+      })
       ->group(kScalarGroup);
   const auto add_one = [&](const char* option, const char* type, const std::string& help,
                            auto&& set) {
@@ -118,11 +150,13 @@ void add_scalar_options(Parser& app, ScalarOptions& s) {
               all.mapping.isolines =
                   parse_numbers("--isolines", v.back() == ',' ? v.substr(0, v.size() - 1) : v);
           });
-  add_one("--isoline-color", "COLOUR", "(black)", [&m](ScalarOptions&, const std::string& v) {
-    m.isoline_color = parse_color("--isoline-color", v);
+  add_one("--isoline-color", "COLOUR", "(black)", [](ScalarOptions& all, const std::string& v) {
+    all.mapping.isoline_color = parse_color("--isoline-color", v);
+    all.of_lines = "--isoline-color";
   });
-  add_one("--isoline-width", "PX", "(1)", [&m](ScalarOptions&, const std::string& v) {
-    m.isoline_px = static_cast<float>(parse_number("--isoline-width", v));
+  add_one("--isoline-width", "PX", "(1)", [](ScalarOptions& all, const std::string& v) {
+    all.mapping.isoline_px = static_cast<float>(parse_number("--isoline-width", v));
+    all.of_lines = "--isoline-width";
   });
   add_one("--bar", "TITLE", "a bar beside the picture that says which colour is which number",
           [](ScalarOptions& all, const std::string& v) { all.bar_title = v; });
@@ -132,6 +166,8 @@ void add_scalar_options(Parser& app, ScalarOptions& s) {
 
 void check_scalars(const ScalarOptions& s, bool has_colors) {
   if (s.name.empty()) {
+    if (s.name_given)
+      throw UsageError("--scalars", "is empty; rastrum info lists a file's numbers");
     const char* const option = s.given != nullptr      ? s.given
                                : s.mapping.logarithmic ? "--log"
                                : s.mapping.symmetric   ? "--symmetric"
@@ -141,13 +177,15 @@ void check_scalars(const ScalarOptions& s, bool has_colors) {
   }
   if (s.bar() && !has_colors) throw UsageError("--bar", "is drawn into a picture: give -o");
   if (!s.bar() && !s.bar_unit.empty()) throw UsageError("--bar-unit", "is for --bar");
+  if (s.of_lines != nullptr && s.isoline_count == 0 && s.mapping.isolines.empty())
+    throw UsageError(s.of_lines, "is for --isolines");
   try {
     // What cannot be meant whatever the numbers are.
     ScalarMapping m = s.mapping;
     if (!m.range) m.range = ScalarRange{1, 2};
     static_cast<void>(ScalarColors(m, {}));
   } catch (const Error& e) {
-    throw UsageError("--scalars", e.what());
+    throw of_option(e);
   }
 }
 

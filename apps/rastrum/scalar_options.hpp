@@ -14,14 +14,18 @@ namespace rastrum::cli {
 
 struct ScalarOptions {
   std::string name;  ///< empty: none are shown
+  bool name_given = false;
   ScalarMapping mapping;
   bool nan_given = false;  ///< its colour, which the bar then shows
   int isoline_count = 0;   ///< about so many, where the bar has its ticks
   std::optional<std::string> bar_title;
   std::string bar_unit;
-  const char* given = nullptr;  ///< an option that needs --scalars
+  const char* given = nullptr;     ///< an option that needs --scalars
+  const char* of_lines = nullptr;  ///< one that needs --isolines
 
   [[nodiscard]] bool bar() const { return bar_title.has_value(); }
+  /// What the bar has in letters.
+  [[nodiscard]] std::string words() const { return bar_title.value_or("") + bar_unit; }
 };
 
 void add_scalar_options(Parser& app, ScalarOptions& s);

@@ -149,17 +149,22 @@ void VtkPeer::set_points(std::span<const Vec3> positions) {
 }
 
 void VtkPeer::set_view(const Camera& camera, int width, int height) {
-  const Vec3d way = camera.target - camera.eye;
-  if (camera.orthographic || way.x != 0 || way.y != 0 || !(way.z < 0) || camera.up.x != 0 ||
-      !(camera.up.y > 0))
-    throw Error(Errc::unsupported, "VtkPeer: the camera does not look along -z");
+  if (camera.orthographic || camera.matrix)
+    throw Error(Errc::unsupported, "VtkPeer: the camera is no perspective one");
   char numbers[400];
-  std::snprintf(numbers, sizeof numbers, "%.9g %.9g %.9g %.9g %.9g %.9g %.9g 0 1 0",
+  std::snprintf(numbers, sizeof numbers, "%.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g",
                 static_cast<double>(camera.fov_rad), camera.eye.x, camera.eye.y, camera.eye.z,
-                camera.target.x, camera.target.y, camera.target.z);
+                camera.target.x, camera.target.y, camera.target.z, camera.up.x, camera.up.y,
+                camera.up.z);
   impl_->tell("view " + std::to_string(width) + " " + std::to_string(height) + " " + numbers);
   impl_->width = width;
   impl_->height = height;
+}
+
+void VtkPeer::set_occlusion(double radius) {
+  char text[64];
+  std::snprintf(text, sizeof text, "occlusion %.9g", radius);
+  impl_->tell(text);
 }
 
 void VtkPeer::draw(float opacity) {

@@ -1,5 +1,5 @@
 // VTK's depth peeling (dual where the driver can, which llvmpipe does), which is how scientists
-// draw translucent surfaces on CPUs today, its spheres and its points: Debian's python3-vtk9 in a
+// draw translucent surfaces on CPUs today, its spheres, its points and its ambient occlusion: Debian's python3-vtk9 in a
 // child process (vtk_peer.py), so that nothing is built against VTK.
 #pragma once
 
@@ -29,8 +29,12 @@ class VtkPeer {
   void set_spheres(std::span<const Vec3> centers, std::span<const float> radii);
   /// Points of one pixel instead, by VTK's point gaussian mapper without its splats.
   void set_points(std::span<const Vec3> positions);
-  /// The camera is a perspective one along −z with +y up; else Error{unsupported}.
+  /// The camera is a perspective one; else Error{unsupported}.
   void set_view(const Camera& camera, int width, int height);
+
+  /// From now on frames have screen-space ambient occlusion of this reach in the world, of 16
+  /// samples and blurred; 0: none.
+  void set_occlusion(double radius);
 
   /// Draws with the peers' `phong`, until no layer is left where the opacity is not 1; waits for
   /// the end.

@@ -1,5 +1,5 @@
-"""VTK's depth peeling, its sphere mapper and its points, drawn for `rastrum bench transparency`,
-`spheres` and `points` by a child process.
+"""VTK's depth peeling, its sphere mapper, its points and its ambient occlusion, drawn for `rastrum bench
+transparency`, `spheres`, `points` and `effects` by a child process.
 
 Debian's package (python3-vtk9) is built for X11: where there is no DISPLAY, Xvfb is started. Lines on
 stdin are commands, each is answered by one line on stdout, "done" or "error …":
@@ -8,11 +8,12 @@ stdin are commands, each is answered by one line on stdout, "done" or "error …
     spheres FILE COUNT             instead: places (float32 × 3), radii (float32), raw
     points FILE COUNT              instead: places (float32 × 3), raw; one pixel each
     view WIDTH HEIGHT FOV_RAD EX EY EZ TX TY TZ UX UY UZ
+    occlusion RADIUS               from now on by its pass for screen-space ambient occlusion; 0: without
     draw OPACITY                   one frame, finished; peeled where it is not 1
     picture FILE                   the frame as RGBA8, row 0 at the top, raw
 
-VTK's own light is replaced by the peers' `phong` (gl_context.cpp), so that all shade alike. The
-camera must look along −z with +y up, as the bench's do: normals are in camera space here.
+VTK's own light is replaced by the peers' `phong` (gl_context.cpp), so that all shade alike; normals are in
+camera space here, so its direction is turned into it.
 """
 
 import array
@@ -28,7 +29,7 @@ PHONG = """
   vec3 to_eye = cameraParallel != 0 ? vec3(0.0, 0.0, 1.0) : normalize(-vertexVC.xyz);
   vec3 way = normalize(normalVCVSOutput);
   if (dot(way, to_eye) < 0.0) way = -way;
-  vec3 towards = normalize(vec3(0.4, 0.6, 1.0));
+  vec3 towards = normalize(vec3(TOWARDS));
   vec3 halfway = normalize(towards + to_eye);
   float lit = 0.1 + 0.8 * max(dot(way, towards), 0.0);
   float highlight = 0.3 * pow(max(dot(way, halfway), 0.0), 32.0);
@@ -56,6 +57,7 @@ class Peer:
         import vtk
 
         self.vtk = vtk
+        self.towards = (0.4, 0.6, 1.0)
         self.actor = vtk.vtkActor()
         self.draw_by(vtk.vtkPolyDataMapper())
         self.actor.GetProperty().SetInterpolationToPhong()
@@ -74,11 +76,16 @@ class Peer:
         self.window.SetMultiSamples(0)
         self.window.AddRenderer(self.renderer)
 
-    def draw_by(self, mapper, phong=True):
+    def light(self):
         shader = self.actor.GetShaderProperty()
         shader.ClearAllFragmentShaderReplacements()
-        if phong:
-            shader.AddFragmentShaderReplacement("//VTK::Light::Impl", True, PHONG, False)
+        if self.phong:
+            text = PHONG.replace("TOWARDS", ", ".join(f"{v:.9f}" for v in self.towards))
+            shader.AddFragmentShaderReplacement("//VTK::Light::Impl", True, text, False)
+
+    def draw_by(self, mapper, phong=True):
+        self.phong = phong
+        self.light()
         self.actor.GetProperty().SetLighting(phong)
         self.actor.SetMapper(mapper)
 
@@ -173,6 +180,24 @@ class Peer:
         camera.SetViewAngle(math.degrees(float(fov)))
         camera.SetUseHorizontalViewAngle(width < height)
         self.renderer.ResetCameraClippingRange()
+        to_camera = camera.GetViewTransformMatrix()
+        towards = tuple(sum(to_camera.GetElement(i, j) * v for j, v in enumerate((0.4, 0.6, 1.0))) for i in range(3))
+        if any(abs(a - b) > 1e-9 for a, b in zip(towards, self.towards)):
+            self.towards = towards
+            self.light()
+
+    def occlusion(self, radius):
+        radius = float(radius)
+        if radius == 0:
+            self.renderer.SetPass(None)
+            return
+        steps, occluded = self.vtk.vtkRenderStepsPass(), self.vtk.vtkSSAOPass()
+        occluded.SetDelegatePass(steps)
+        occluded.SetRadius(radius)
+        occluded.SetBias(0.02 * radius)
+        occluded.SetKernelSize(16)  # as many samples as ours
+        occluded.SetBlur(True)
+        self.renderer.SetPass(occluded)
 
     def draw(self, opacity):
         opacity = float(opacity)
@@ -200,7 +225,7 @@ def main():
         peer = Peer()
         print("done", peer.describe(), file=answers)
         commands = {"mesh": peer.mesh, "spheres": peer.spheres,
-                    "points": peer.points, "view": peer.view,
+                    "points": peer.points, "view": peer.view, "occlusion": peer.occlusion,
                     "draw": peer.draw, "picture": peer.picture}
         for line in sys.stdin:
             command, *arguments = line.split()

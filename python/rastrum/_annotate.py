@@ -54,6 +54,12 @@ def annotations(wanted):
     captions = [captions] if isinstance(captions, str) else list(captions)
     if not isinstance(title, str) or not all(isinstance(c, str) for c in captions):
         raise ArgumentTypeError("annotate: title and captions are words")
+    bar = effects.get("bar", {})
+    for text in [title, *captions, *(v for v in bar.values() if isinstance(v, str))]:
+        try:
+            text.encode()
+        except UnicodeEncodeError as e:
+            raise ArgumentError(f"annotate: {text!r} has half of a surrogate pair, which is no letter") from e
     if not effects and not title and not captions:
         return None
 
@@ -70,9 +76,7 @@ def annotations(wanted):
     radius = strength = None
     if has("occlusion"):
         # 0 is C++'s word for the scene's own.
-        given = option("occlusion", "radius", 0, 1e300)
-        if given == 0:
-            raise ArgumentError("annotate['occlusion']['radius']: must be > 0")
+        given = option("occlusion", "radius", 1e-18, 1e18)
         radius, strength = given or 0.0, option("occlusion", "strength", 0, 16)
     return _r.annotations(
         radius, strength or 0.0, option("edl", "strength", 0, 100) if has("edl") else None, has("silhouettes"),

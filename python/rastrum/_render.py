@@ -274,8 +274,9 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
                      _lights(lights), bool(shadows), _text(tone, "tone"), float(exposure), bool(environment_behind))
     made = [c._for_size((width, height)) for c in cameras]
     notes = _annotations(annotate)
-    if notes is not None and notes.room != 1 and camera is None:
-        made = [_r.zoomed(c, 1 / notes.room) for c in made]
+    if notes is not None and camera is None:
+        rooms = [notes.room(c, scene._made, width, height) for c in made]
+        made = [c if room == 1 else _r.zoomed(c, 1 / room) for c, room in zip(made, rooms)]
     return scene, made, frame, _arrays(outputs, out, len(made), many, (height, width), scene.primitives), many, notes
 
 

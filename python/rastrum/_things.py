@@ -1,6 +1,7 @@
 """What is drawn: geometries over arrays, materials, scenes, and how things of other libraries become them."""
 
 import os
+import re
 
 import numpy as np
 
@@ -45,6 +46,11 @@ class Material:
             self.double_sided, self.unlit, self.opacity, numbers))
 
 
+#: What C++ calls the arguments of ColorMapping.
+_FIELD = re.compile(r"^ScalarMapping::(\w+)")
+_ARGUMENT = {"map": "cmap", "range": "clim", "logarithmic": "log", "isoline_px": "isoline_width"}
+
+
 class ColorMapping:
     """How numbers become colours; give one to several things, and one range holds for all of them.
 
@@ -63,12 +69,17 @@ class ColorMapping:
             clim = tuple(float(v) for v in clim)
             if len(clim) != 2:
                 raise ArgumentError(f"clim: {clim!r} must be (low, high)")
-        self._made = _r.mapping(
-            colors, discrete, clim, bool(log), bool(symmetric), steps, [float(v) for v in categories],
-            None if below is None else list(_color(below, "below")),
-            None if above is None else list(_color(above, "above")), list(_color(nan, "nan")),
-            [(float(v), float(a)) for v, a in opacity], [float(v) for v in isolines],
-            list(_color(isoline_color, "isoline_color")), float(isoline_width))
+        if not isinstance(steps, (int, np.integer)) or abs(int(steps)) >= 2**31:
+            raise ArgumentError(f"steps: must be a whole number up to 65536, got {steps!r}")
+        try:
+            self._made = _r.mapping(
+                colors, discrete, clim, bool(log), bool(symmetric), int(steps), [float(v) for v in categories],
+                None if below is None else list(_color(below, "below")),
+                None if above is None else list(_color(above, "above")), list(_color(nan, "nan")),
+                [(float(v), float(a)) for v, a in opacity], [float(v) for v in isolines],
+                list(_color(isoline_color, "isoline_color")), float(isoline_width))
+        except ArgumentError as e:
+            raise ArgumentError(_FIELD.sub(lambda m: _ARGUMENT.get(m[1], m[1]), str(e))) from None
 
 
 def color_maps():
@@ -83,7 +94,11 @@ def _map(cmap):
     if callable(cmap):  # matplotlib
         n = getattr(cmap, "N", 256)
         return [tuple(float(c) for c in cmap(i)) for i in range(n)], n < 64
-    return [list(_color(c, "cmap")) for c in cmap], False
+    try:
+        colors = list(cmap)
+    except TypeError:
+        raise ArgumentTypeError(f"cmap: must be a name, colours or a map of matplotlib's, not {cmap!r}") from None
+    return [list(_color(c, "cmap")) for c in colors], False
 
 
 class _Thing:

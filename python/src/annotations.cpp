@@ -9,6 +9,8 @@
 
 #include <rastrum/scene.hpp>
 
+#include "scenes.hpp"
+
 namespace rastrum::python {
 namespace {
 
@@ -120,9 +122,18 @@ void AnnotationScratch::draw(const Annotations& a, const SceneEdges* edges, cons
 
 void bind_annotations(nb::module_& m) {
   using nb::arg;
-  nb::class_<Annotations>(m, "Annotations").def_prop_ro("room", [](const Annotations& a) {
-    return a.bounds ? 1.5 : a.bar ? 1.25 : 1.0;
-  });
+  nb::class_<Annotations>(m, "Annotations")
+      .def(
+          "room",
+          [](const Annotations& a, const Camera& camera, const ArrayScene& scene, int width,
+             int height) {
+            const Bounds box = a.bounds ? bounds(scene.view()) : Bounds{};
+            return box.vertices_in_use != 0
+                       ? overlay::room_for_bounds(camera, box.min, box.max, width, height)
+                   : a.bar ? 1.25
+                           : 1.0;
+          },
+          arg("camera"), arg("scene"), arg("width"), arg("height"));
   m.def("annotations", annotations, arg("occlusion_radius").none(), arg("occlusion_strength"),
         arg("edl_strength").none(), arg("silhouettes"), arg("edge_angle").none(), arg("edge_width"),
         arg("axes"), arg("bounds"), arg("bar").none(), arg("title"), arg("captions"),

@@ -87,7 +87,7 @@ ScalarMapping mapping(const std::vector<Numbers4>& colors, bool discrete,
   m.isolines = isolines;
   m.isoline_color = vec4(isoline_color);
   m.isoline_px = static_cast<float>(isoline_px);
-  (void)ScalarColors(m, {0, 1});  // throws where a field is wrong
+  (void)ScalarColors(m, {1, 2});  // throws where a field is wrong, whatever the numbers are
   return m;
 }
 

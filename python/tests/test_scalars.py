@@ -155,6 +155,27 @@ def test_bad_mappings(bad):
         rr.ColorMapping(**bad)
 
 
+@pytest.mark.parametrize("bad, says", [
+    (dict(cmap="viridi"), "did you mean 'viridis'"), (dict(cmap="coolwarn_r"), "'coolwarm_r'"), (dict(cmap=[]), "^cmap: .*no colours"),
+    (dict(cmap=3), "^cmap: must be a name"), (dict(clim=(1, 0)), "^clim: upside down: 1 to 0"), (dict(clim=(0, np.inf)), "^clim: not finite"),
+    (dict(clim=(-1e308, 1e308)), "^clim: too wide"), (dict(log=True, clim=(0, 1)), "^clim: must lie above 0"),
+    (dict(log=True, symmetric=True), "^log: "), (dict(steps=10**9), "^steps: "), (dict(steps=10**12), "^steps: "), (dict(steps=2.5), "^steps: "),
+    (dict(isolines=[1], isoline_width=65), "^isoline_width: ")])
+def test_bad_mappings_are_said_of_their_argument(bad, says):
+    with pytest.raises(rr.Error, match=says):
+        rr.ColorMapping(**bad)
+
+
+def test_a_logarithm_without_a_range_takes_the_numbers_above_0(sheet):
+    """Its range is not known before there are numbers; where there are none above 0, all have the colour of NaN."""
+    vertices, triangles = sheet
+    mapping = rr.ColorMapping("gray", log=True, nan="red")
+    rr.render(rr.Mesh(vertices, triangles, scalars=np.exp(heat(vertices)), cmap=mapping), size=SIZE)
+    below = rr.render(rr.Mesh(vertices, triangles, scalars=np.full(len(vertices), -1.0), cmap=mapping), size=SIZE, shader="flat").color
+    seen = below[below[..., 3] > 0]
+    assert len(seen) > 1000 and (seen == (255, 0, 0, 255)).all()
+
+
 def test_bad_scalars(sheet):
     vertices, triangles = sheet
     for scalars in (np.zeros(7), np.zeros((len(vertices), 2)), np.array(["a"] * len(vertices)), np.zeros(len(vertices), complex)):

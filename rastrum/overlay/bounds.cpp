@@ -187,16 +187,17 @@ struct Taken {
   double left, top, right, bottom;
 };
 
-/// Where letters at (x, y) lie, with a little air.
+/// Where letters at (x, y) lie, with air: numbers of two axes side by side are not read as one.
 Taken room_of(double x, double y, const TextExtent& extent, const TextStyle& style) {
-  const double air = style.size_px * 0.15, w = extent.width_px, h = extent.height_px;
+  const double air = style.size_px * 0.15, aside = style.size_px * 0.5;
+  const double w = extent.width_px, h = extent.height_px;
   const double left = style.align_x == AlignX::left     ? x
                       : style.align_x == AlignX::center ? x - w / 2
                                                         : x - w;
   const double top = style.align_y == AlignY::top      ? y
                      : style.align_y == AlignY::middle ? y - h / 2
                                                        : y - h;
-  return {left - air, top - air, left + w + air, top + h + air};
+  return {left - aside, top - air, left + w + aside, top + h + air};
 }
 
 bool overlap(const Taken& a, const Taken& b) {
@@ -279,6 +280,24 @@ void draw_bounds(const Canvas& canvas, const Camera& camera, Vec3d low, Vec3d hi
     if (const auto edge = edge_for_labels(box, axis))
       draw_labels(canvas, box, *edge,
                   {static_cast<float>(middle->x), static_cast<float>(middle->y)}, m, look, taken);
+}
+
+double room_for_bounds(const Camera& fitted, Vec3d low, Vec3d high, int width, int height) {
+  const Mat4d to_clip = world_to_clip(fitted, width, height);
+  double farthest = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const double p[3] = {(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
+                         (corner & 4) != 0 ? high.z : low.z};
+    const auto row = [&](int i) {
+      return to_clip.m[i][0] * p[0] + to_clip.m[i][1] * p[1] + to_clip.m[i][2] * p[2] +
+             to_clip.m[i][3];
+    };
+    const double w = row(3);
+    if (w > 0) farthest = std::max({farthest, std::fabs(row(0)) / w, std::fabs(row(1)) / w});
+  }
+  // Numbers and names take five letters of 1/40 of the picture: a tenth of it on either side.
+  constexpr double kBoxPart = 0.8;
+  return std::clamp(farthest / kBoxPart, 1.5, 3.0);
 }
 
 }  // namespace rastrum::overlay

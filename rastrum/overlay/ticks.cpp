@@ -88,7 +88,8 @@ std::vector<Tick> linear_ticks(double low, double high, int wanted) {
   const auto first = static_cast<std::int64_t>(std::ceil(low / step - 1e-6)),
              last = static_cast<std::int64_t>(std::floor(high / step + 1e-6));
   std::vector<Tick> found;
-  if (first > last) return ends(low, high);
+  // Steps are at most 2.5 times as long as asked for: with three wanted one lies within.
+  if (first > last) return wanted < 3 ? linear_ticks(low, high, wanted + 1) : ends(low, high);
   const double largest =
       std::max(std::fabs(static_cast<double>(first)), std::fabs(static_cast<double>(last))) * step;
   const int magnitude = largest > 0 ? floor_log10(largest * (1 + 1e-9)) : 0;

@@ -3,6 +3,7 @@
 #include <string>
 
 #include <rastrum/color_map.hpp>
+#include <rastrum/core/nearest_word.hpp>
 #include <rastrum/error.hpp>
 
 namespace rastrum {
@@ -55,10 +56,15 @@ ColorMap color_map(std::string_view name) {
     if (reversed) std::reverse(map.colors.begin(), map.colors.end());
     return map;
   }
+  std::vector<std::string> reverses;
+  for (const PublishedMap& m : kPublishedMaps) reverses.push_back(std::string(m.name) + "_r");
+  std::vector<std::string_view> known = color_map_names();
   std::string names;
-  for (const std::string_view n : color_map_names()) names.append(" ").append(n);
-  throw Error(Errc::not_found, "no colour map is called '" + std::string(name) +
-                                   "'; there are, each also with _r for its reverse:" + names);
+  for (const std::string_view n : known) names.append(" ").append(n);
+  known.insert(known.end(), reverses.begin(), reverses.end());
+  throw Error(Errc::not_found, "no colour map is called '" + std::string(name) + "'" +
+                                   did_you_mean(name, known) +
+                                   " (there are, each also with _r for its reverse:" + names + ")");
 }
 
 ColorMap color_map_or_list(std::string_view text) {

@@ -1,6 +1,7 @@
 // What of a colour map a number is; see color_map.hpp. In float64, in the order that is written
 // here, rounded to float32 once: docs/conventions.md has the formula.
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -11,6 +12,8 @@
 
 namespace rastrum {
 namespace {
+
+constexpr int kMostSteps = 65536;  ///< more than eyes, and 8 bits, tell apart
 
 [[noreturn]] void refuse(const std::string& what) {
   throw Error(Errc::invalid_argument, "ScalarMapping::" + what);
@@ -52,9 +55,15 @@ std::vector<Vec4> chosen(const ColorMap& map, std::size_t count) {
   return colors;
 }
 
+/// The fewest digits that are this number and no other.
+std::string shortest(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
 ScalarRange checked_range(const ScalarMapping& m, ScalarRange in_use) {
   ScalarRange r = m.range.value_or(in_use);
-  const std::string said = std::to_string(r.low) + " to " + std::to_string(r.high);
+  const std::string said = shortest(r.low) + " to " + shortest(r.high);
   if (!std::isfinite(r.low) || !std::isfinite(r.high)) refuse("range: not finite: " + said);
   if (r.low > r.high) refuse("range: upside down: " + said);
   if (m.logarithmic && m.symmetric) refuse("logarithmic: a range around 0 has no logarithm");
@@ -86,7 +95,9 @@ ScalarColors::ScalarColors(const ScalarMapping& m, ScalarRange in_use)
   for (std::size_t i = 0; i < isolines_.size(); ++i)
     if (!std::isfinite(isolines_[i])) refuse("isolines[" + std::to_string(i) + "]: not finite");
   std::sort(isolines_.begin(), isolines_.end());
-  if (m.steps < 0) refuse("steps: " + std::to_string(m.steps) + " is below 0");
+  if (m.steps < 0 || m.steps > kMostSteps)
+    refuse("steps: must lie in 0 to " + std::to_string(kMostSteps) + ", got " +
+           std::to_string(m.steps));
   for (std::size_t i = 0; i < m.opacity.size(); ++i) {
     if (!std::isfinite(m.opacity[i].value) || !in_unit(m.opacity[i].opacity))
       refuse("opacity[" + std::to_string(i) + "]: not a finite number and an opacity in [0, 1]");

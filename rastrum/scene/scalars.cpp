@@ -5,6 +5,7 @@
 #include <string>
 #include <type_traits>
 
+#include <rastrum/core/nearest_word.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/scene/scalars.hpp>
@@ -168,10 +169,16 @@ void show_scalars(Scene& scene, const std::string& name) {
       const Vec3d middle = (Vec3d(box.min) + Vec3d(box.max)) * 0.5;
       make_scalars(scene, name, [&](const Vec3d& p) { return length(p - middle); });
     } else {
-      for (const ScalarSummary& s : scalar_summaries(scene)) names.append(s.name).append(", ");
-      throw Error(Errc::not_found, "there are no scalars called '" + name + "'; there are " +
+      const std::vector<ScalarSummary> all = scalar_summaries(scene);
+      std::vector<std::string_view> words{"distance"};
+      for (const ScalarSummary& s : all) {
+        names.append(s.name).append(", ");
+        words.push_back(s.name);
+      }
+      throw Error(Errc::not_found, "there are no scalars called '" + name + "'" +
+                                       did_you_mean(name, words) + " (there are " +
                                        (names.empty() ? "none but those" : names + "and those") +
-                                       " of every scene: x, y, z, distance");
+                                       " of every scene: x, y, z, distance)");
     }
   }
   scene.shown_scalars = name;

@@ -1,7 +1,9 @@
 // Words and effects as options of the program: colours alone change, and what cannot be meant is
 // refused.
+#include <initializer_list>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "program.hpp"
@@ -74,6 +76,16 @@ TEST_F(Annotations, TerrainHasWords) {
 TEST_F(Annotations, SayWhatTheFontHasNot) {
   const std::string said = must(with({"--title", "漢 a", "-o", "a.png"}));
   EXPECT_NE(said.find("the font has no U+6F22"), std::string::npos) << said;
+  // Bytes that are no UTF-8, control characters, marks that combine, what is written from the
+  // right.
+  for (const auto& [text, code] :
+       std::initializer_list<std::pair<std::string, std::string>>{{"a\xff", "U+FFFD"},
+                                                                  {"\x01", "U+0001"},
+                                                                  {"e\xcc\x81", "U+0301"},
+                                                                  {"\xd7\xa9", "U+05E9"}}) {
+    const std::string of = must(with({"--scalars", "z", "--bar", text, "-o", "a.png"}));
+    EXPECT_NE(of.find("the font has no " + code), std::string::npos) << of;
+  }
 }
 
 TEST_F(Annotations, RefuseWhatCannotBeMeant) {
@@ -86,6 +98,12 @@ TEST_F(Annotations, RefuseWhatCannotBeMeant) {
   refused(with({"--title", "a", "--depth", "d.npy"}), "--title");
   refused(with({"--occlusion-radius", "2", "-o", "a.png"}), "--occlusion-radius");
   refused(with({"--occlusion", "--occlusion-radius", "-2", "-o", "a.png"}), "--occlusion-radius");
+  refused(with({"--occlusion", "--occlusion-radius", "0", "-o", "a.png"}), "--occlusion-radius");
+  refused(with({"--occlusion", "--occlusion-radius", "nan", "-o", "a.png"}), "--occlusion-radius");
+  refused(with({"--occlusion", "--occlusion-strength", "17", "-o", "a.png"}),
+          "--occlusion-strength: must lie above 0, up to 16");
+  refused(with({"--edl", "--edl-strength", "1e9", "-o", "a.png"}),
+          "--edl-strength: must lie above 0, up to 100");
   refused(with({"--edl-strength", "2", "-o", "a.png"}), "--edl-strength");
   refused(with({"--edge-angle", "30", "-o", "a.png"}), "--edge-angle");
   refused(with({"--edges", "--edge-angle", "181", "-o", "a.png"}), "--edge-angle");

@@ -93,6 +93,38 @@ TEST_F(LightOptions, StudioIsWhatItSays) {
       draw({"--look", "plain", "--fit", "sphere"}, "said.png")));
 }
 
+// What was the default picture before there were lights to choose: printed by `rastrum render
+// builtin:SHAPE --size 120x90 --hash` of 9d2794e (2026-11-23), with and without `--fit sphere`.
+TEST_F(LightOptions, ThePictureOfBeforeIsThereByItsName) {
+  const struct {
+    std::string shape, sphere, tight;
+  } kBefore[] = {
+      {"teapot", "f9e3b6772bb9c951db7c0bc8e60841c0bad4011b3d3a38590ee6793a8469d69f",
+       "78639677292b44ce32e4e9a6c3095beb0f995e5cf9744dad321dca49523030f8"},
+      {"torus_knot", "9ecb00886e9c84c090206de0684f1b20df5feab51bcd09cf176e1c0b1bd9aa67",
+       "b1a68bef41efbb8785189068ca7534ece3413178683d7720584d2ec78b213ac6"},
+      {"gyroid?cells=24", "28116e9fbc9c6c11d9b280592096358d41270c212ea49dc85183e3a0601f5e3c",
+       "1a32ca10780b4d0bae7a8268fb0a3b999f06c52910e28bc51ad115db8bb35aab"},
+      {"spheres", "54631268bc42750c1ea77b4589206331b92463737fe7996cfdbb3a8e1d7b0d9a",
+       "14abe0e1f21fe86e9f477decac5715cd76046b2889ef91f74570326fadd33e83"},
+      {"tube", "5d11da8118d9e8e75f72cb7eb16bb20564a5ed7c03a8c8b253b7a62322c73cd3",
+       "2e87bc8e9ff7d217464b9b201c005de33a10bdf99cbff0d8e915e59a80e82923"}};
+  const auto hash = [&](const std::string& shape, std::vector<std::string> how) {
+    how.insert(how.begin(),
+               {"render", "builtin:" + shape, "--size", "120x90", "--hash", "-o", "b.png"});
+    const Outcome outcome = run(how);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out.substr(0, 64);
+  };
+  for (const auto& before : kBefore) {
+    EXPECT_EQ(hash(before.shape,
+                   {"--fit", "sphere", "--view", "front", "--samples", "1", "--shader", "phong"}),
+              before.sphere)
+        << before.shape;
+    EXPECT_EQ(hash(before.shape, {"--look", "plain"}), before.tight) << before.shape;
+  }
+}
+
 // Numbers, and frames that are compared, have one sample and the fixed light.
 TEST_F(LightOptions, MoreThanAPictureIsPlain) {
   const std::vector<std::vector<std::string>> more{

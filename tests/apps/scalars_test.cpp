@@ -130,7 +130,22 @@ TEST_F(Scalars, RefuseWhatCannotBeMeant) {
   refused({"--scalars", "z", "--scalar-opacity", "1:0,0:1"}, "must rise");
   refused({"--scalars", "z", "--scalar-opacity", "1"}, "VALUE:OPACITY");
   refused({"--scalars", "z", "--bar-unit", "m"}, "is for --bar");
-  refused({"--scalars", "z", "--isoline-width", "0"}, "isoline_px");
+  refused({"--scalars", "z", "--scalar-opacity", "0:2"}, "--scalar-opacity: [0]");
+  refused({"--scalars", "z", "--isoline-width", "3"}, "--isoline-width: is for --isolines");
+  refused({"--scalars", "z", "--isolines", "3", "--isoline-width", "0"},
+          "--isoline-width: must lie in (0, 64]");
+  refused({"--scalars", ""}, "--scalars: is empty");
+  refused({"--scalars", "distence"}, "did you mean 'distance'?", 1);
+  refused({"--scalars", "z", "--cmap", "Viridis"}, "did you mean 'viridis'?");
+  refused({"--scalars", "z", "--cmap", "coolwarn_r"}, "did you mean 'coolwarm_r'?");
+  refused({"--scalars", "z", "--cmap", ""}, "--cmap");
+  refused({"--scalars", "z", "--range", ""}, "--range");
+  refused({"--scalars", "z", "--range", "-1e308,1e308"}, "--range: too wide");
+  refused({"--scalars", "z", "--range", "0,inf"}, "--range");
+  refused({"--scalars", "z", "--steps", "0"}, "--steps");
+  refused({"--scalars", "z", "--steps", "1000000000"}, "--steps");
+  refused({"--scalars", "z", "--categories", "1,1"}, "--categories: [1]: is there already");
+  refused({"--scalars", "z", "--isolines", "nan,"}, "--isolines");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // "Did you mean", and what leads to it on the command line.
-#include <apps/command_line/suggest.hpp>
+#include <rastrum/core/nearest_word.hpp>
 
 #include <vector>
 
@@ -27,10 +27,10 @@ TEST(NearestWord, IsTheOneThatWasMeant) {
            {"xx", ""},
            {"", ""},
        })
-    EXPECT_EQ(cli::nearest_word(given, kWords), meant) << given;
-  EXPECT_EQ(cli::nearest_word("a", {}), "");
-  EXPECT_EQ(cli::did_you_mean("rendr", kWords), "; did you mean 'render'?");
-  EXPECT_EQ(cli::did_you_mean("paint", kWords), "");
+    EXPECT_EQ(nearest_word(given, kWords), meant) << given;
+  EXPECT_EQ(nearest_word("a", {}), "");
+  EXPECT_EQ(did_you_mean("rendr", kWords), "; did you mean 'render'?");
+  EXPECT_EQ(did_you_mean("paint", kWords), "");
 }
 
 class Suggestions : public Program {

@@ -1,5 +1,6 @@
 // Ticks and how they are written; bars, axes and boxes: where they lie, what hides them, and golden
 // pictures.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -37,6 +38,8 @@ TEST(Ticks, AreRoundNumbersWrittenAlike) {
   EXPECT_EQ(joined(ticks(1000.1, 1000.3, 2)), "1000.1 1000.2 1000.3");
   EXPECT_EQ(ticks(0, 0.3, 3)[3].value, 0.3);
   EXPECT_EQ(joined(ticks(7, 7, 5)), "7");
+  // One is wanted, and no multiple of 10 lies within.
+  EXPECT_EQ(joined(ticks(220.54299926757812, 226.43099975585938, 1)), "225");
   EXPECT_EQ(joined(ticks(1e300, 1e300 * (1 + 1e-15), 5)).substr(0, 6), "1e+300");
 }
 
@@ -152,6 +155,35 @@ TEST(Bounds, AreHiddenBehindWhatIsNearer) {
   // From within, and with the box behind the eye, nothing goes astray.
   overlay::draw_bounds(canvas, {.eye = {0, 0, 0.5}}, {-1, -1, -1}, {1, 1, 1});
   overlay::draw_bounds(canvas, {.eye = {0, 0, -5}, .target = {0, 0, -6}}, {-1, -1, -1}, {1, 1, 1});
+}
+
+// A fitted camera that sees so much more has all corners of the box in the picture, and a tenth of
+// it around them.
+TEST(Bounds, HaveRoomInTheirPicture) {
+  const Scene scene = shapes::scene_from_spec("torus_knot");
+  const SceneBinding binding(scene);
+  const Bounds box = bounds(binding.view());
+  for (const bool orthographic : {false, true}) {
+    Camera view{.eye = {5, 4, 3}};
+    view.fov_rad = 0.5F;
+    view.orthographic = orthographic;
+    const Camera fitted = fit_picture(binding.view(), view, 200, 150);
+    const Vec3d low = box.min, high{box.max.x, box.max.y, 1.3 * box.max.z};
+    const double room = overlay::room_for_bounds(fitted, low, high, 200, 150);
+    EXPECT_GT(room, 1.5);
+    EXPECT_EQ(overlay::room_for_bounds(fitted, {}, {}, 200, 150), 1.5);
+    const Mat4d to_clip = world_to_clip(zoomed(fitted, 1 / room), 200, 150);
+    double farthest = 0;
+    for (int i = 0; i < 8; ++i) {
+      const double p[4] = {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z,
+                           1};
+      double c[4] = {};
+      for (int j = 0; j < 4; ++j)
+        for (int k = 0; k < 4; ++k) c[j] += to_clip.m[j][k] * p[k];
+      farthest = std::max({farthest, std::fabs(c[0] / c[3]), std::fabs(c[1] / c[3])});
+    }
+    EXPECT_NEAR(farthest, 0.8, 1e-5);
+  }
 }
 
 TEST(Annotations, AreTheSameBits) {

@@ -1,10 +1,12 @@
 // Ambient occlusion, eye-dome lighting, silhouettes: the same bits over threads, instruction sets
 // and layouts, and their formulas against float64.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -117,6 +119,72 @@ TEST(Effects, AreTheSameBitsForThreadsInstructionSetsAndLayouts) {
         EXPECT_LT(least(occluded[0]), 0.85F);
       }
     }
+}
+
+// Occlusion works on tiles of 128 × 32 px in bands for threads: rows at once, and rows cut where
+// lanes may begin, are the same bits.
+TEST(Effects, OcclusionIsTheSameBitsHoweverRowsAreCut) {
+  constexpr int kWidth = 301, kHeight = 71;
+  for (const bool by_depth : {false, true}) {
+    const Drawn d = drawn("gyroid?cells=24", kWidth, kHeight);
+    Surface surface = d.surface();
+    if (by_depth) surface = {.view_depth = d.depth.view()};
+    const AmbientOcclusion options{.radius = 0.5};
+    const overlay::OcclusionFrame frame = overlay::occlusion_frame(surface, d.camera, options);
+    Image<float> rows(kWidth, kHeight), across(kWidth, kHeight), whole(kWidth, kHeight);
+    for (int y = 0; y < kHeight; ++y) {
+      overlay::occlusion_plain(frame, y, 0, kWidth, rows.view().row(y));
+      overlay::blur_plain(frame, rows.view().row(y), y, {false, 1}, 0, kWidth,
+                          across.view().row(y));
+    }
+    for (int y = 0; y < kHeight; ++y)
+      overlay::blur_plain(frame, across.view().row(y), y, {true, across.view().stride}, 0, kWidth,
+                          whole.view().row(y));
+    EXPECT_LT(least(whole), 0.85F);
+    for (const Isa isa : available_isas()) {
+      Image<float> factor(kWidth, kHeight), cut(kWidth, kHeight);
+      Effects(3, isa).ambient_occlusion(surface, d.camera, options, factor);
+      EXPECT_EQ(digest(factor.view()), digest(whole.view())) << name(isa);
+      std::uint32_t state = 9;
+      for (int y = 0; y < kHeight; ++y)
+        for (int x = 0, end = 0; x < kWidth; x = end) {
+          state = state * 1664525 + 1013904223;
+          end = std::min(kWidth, x + 16 * static_cast<int>(1 + (state >> 24) % 5));
+          overlay::occlusion_kernel(isa)(frame, y, x, end, cut.view().row(y));
+        }
+      EXPECT_EQ(digest(cut.view()), digest(rows.view())) << name(isa);
+    }
+  }
+}
+
+// Of a part of the picture, with as much around it as they look at, they are that part.
+TEST(Effects, DomesAndSilhouettesOfAPartAreThatPart) {
+  constexpr int kWidth = 150, kHeight = 90, kAround = 2;
+  const Drawn d = drawn("gyroid?cells=24", kWidth, kHeight);
+  Effects effects(2);
+  Image<float> dome(kWidth, kHeight), lines(kWidth, kHeight);
+  effects.eye_dome(d.surface(), d.camera, {.radius_px = kAround}, dome);
+  effects.silhouettes(d.surface(), d.camera, {.width_px = 1}, lines);
+  EXPECT_LT(least(dome), 0.5F);
+  const auto part = [](const auto& view, int x, int y, int w, int h) {
+    return std::remove_cvref_t<decltype(view)>{view.data + y * view.stride + x, w, h, view.stride};
+  };
+  for (const auto& [x0, y0, w, h] : {std::array{0, 0, 64, 90}, {60, 0, 90, 33}, {60, 29, 90, 61}}) {
+    Surface surface = d.surface();
+    surface = {part(surface.view_depth, x0, y0, w, h), part(surface.normals, x0, y0, w, h),
+               part(surface.ids, x0, y0, w, h)};
+    Image<float> of_part(w, h), lines_of_part(w, h);
+    effects.eye_dome(surface, d.camera, {.radius_px = kAround}, of_part);
+    effects.silhouettes(surface, d.camera, {.width_px = 1}, lines_of_part);
+    // Where the part ends inside of the picture, what lies around is missing.
+    const int left = x0 > 0 ? kAround : 0, top = y0 > 0 ? kAround : 0,
+              right = x0 + w < kWidth ? kAround : 0, bottom = y0 + h < kHeight ? kAround : 0;
+    for (int y = top; y < h - bottom; ++y)
+      for (int x = left; x < w - right; ++x) {
+        ASSERT_EQ(of_part(x, y), dome(x0 + x, y0 + y)) << x << ", " << y;
+        ASSERT_EQ(lines_of_part(x, y), lines(x0 + x, y0 + y)) << x << ", " << y;
+      }
+  }
 }
 
 TEST(Effects, LensFindsPointsAgain) {
@@ -333,7 +401,17 @@ TEST(Effects, RefuseWhatIsOutOfRange) {
   Effects effects;
   Image<float> factor(16, 12), other(16, 13);
   EXPECT_THROW(occlusion(effects, d, {}), Error);  // no radius
-  EXPECT_THROW(occlusion(effects, d, {.radius = std::nan("")}), Error);
+  for (const double radius : {-1.0, std::nan(""), 1e-19, 1e19, HUGE_VAL})
+    EXPECT_THROW(occlusion(effects, d, {.radius = radius}), Error) << radius;
+  // What can be said has no factor but in [0, 1].
+  for (const double radius : {1e-18, 1e18}) {
+    const Image<float> factors = occlusion(effects, d, {.radius = radius, .strength = 16});
+    for (const float f : factors.pixels()) ASSERT_TRUE(f >= 0 && f <= 1) << radius;
+  }
+  EXPECT_THROW(occlusion(effects, d, {.radius = 1, .strength = std::nan("")}), Error);
+  EXPECT_THROW(effects.eye_dome(d.surface(), d.camera, {.strength = std::nan("")}, factor), Error);
+  EXPECT_THROW(effects.silhouettes(d.surface(), d.camera, {.depth = std::nan("")}, factor), Error);
+  EXPECT_THROW(effects.silhouettes(d.surface(), d.camera, {.width_px = 17}, factor), Error);
   EXPECT_THROW(occlusion(effects, d, {.radius = 1, .strength = -1}), Error);
   EXPECT_THROW(occlusion(effects, d, {.radius = 1, .samples = 0}), Error);
   Surface surface = d.surface();

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/digest.hpp>
+#include <rastrum/environment.hpp>
 #include <rastrum/light.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
@@ -84,13 +85,77 @@ Vec3d times(Vec3d a, Vec3d b) {
   return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
 
+/// An environment of three polynomials of degree 2, whose bands 1 and 2 are weighed: by 1 the light
+/// itself, by what a surface makes of the bands what it gathers or mirrors.
+Vec3d sky(Vec3d w, double first = 1, double second = 1) {
+  return {0.5 + first * (0.3 * w.y - 0.1 * w.x), 0.5 + second * 0.7 * w.x * w.z,
+          0.4 + first * 0.1 * w.z + second * 0.4 * (w.y * w.y - 1.0 / 3)};
+}
+Environment made_sky() {
+  constexpr int kRows = 128;
+  Image<Vec3> picture(2 * kRows, kRows);
+  for (int y = 0; y < kRows; ++y)
+    for (int x = 0; x < 2 * kRows; ++x) {
+      const double across = std::numbers::pi * ((x + 0.5) / kRows - 1),
+                   down = std::numbers::pi * (y + 0.5) / kRows;
+      picture(x, y) = Vec3(sky(
+          {std::sin(down) * std::sin(across), std::cos(down), -std::sin(down) * std::cos(across)}));
+    }
+  return Environment(picture.view());
+}
+const Environment& sky_picture() {
+  static const Environment once = made_sky();
+  return once;
+}
+/// What facets of a roughness, seen from above, leave of bands 1 and 2: as they turn the light by
+/// twice their own angle, weighed by GGX's density of facets and the cosine of the light.
+std::pair<double, double> mirrored_bands(double roughness) {
+  const double alpha2 = std::pow(roughness, 4);
+  double sum = 0, first = 0, second = 0;
+  constexpr int kSteps = 400;
+  for (int i = 0; i < kSteps; ++i) {
+    const double facet = (i + 0.5) / kSteps * std::numbers::pi / 4, c = std::cos(facet);
+    const double lobe = c * c * (alpha2 - 1) + 1, light = std::cos(2 * facet);
+    const double share = c * std::sin(facet) / (lobe * lobe) * light;
+    sum += share;
+    first += share * light;
+    second += share * (3 * light * light - 1) / 2;
+  }
+  return {first / sum, second / sum};
+}
+
+/// The same light of the world, where it moves with the camera.
+Light in_world(Light l, const Camera& c) {
+  if (!l.of_camera) return l;
+  const Mat4d m = world_to_camera(c);
+  const auto turned = [&](Vec3d v) {
+    return Vec3d{m.m[0][0] * v.x + m.m[1][0] * v.y + m.m[2][0] * v.z,
+                 m.m[0][1] * v.x + m.m[1][1] * v.y + m.m[2][1] * v.z,
+                 m.m[0][2] * v.x + m.m[1][2] * v.y + m.m[2][2] * v.z};
+  };
+  if (auto* const d = std::get_if<DirectionalLight>(&l.kind))
+    d->direction = Vec3(turned(wide(d->direction)));
+  if (auto* const h = std::get_if<HemisphereLight>(&l.kind)) h->up = Vec3(turned(wide(h->up)));
+  if (auto* const p = std::get_if<PointLight>(&l.kind)) p->position = turned(p->position) + c.eye;
+  if (auto* const s = std::get_if<SpotLight>(&l.kind)) {
+    s->position = turned(s->position) + c.eye;
+    s->direction = Vec3(turned(wide(s->direction)));
+  }
+  return l;
+}
+
 struct Arrived {
   Vec3d to_light;
   Vec3d radiance;
 };
-/// From around: what a direction gathers.
-std::optional<Vec3d> around(const Light& l, Vec3d d) {
+/// From around: what a direction gathers, or a surface of a roughness mirrors from there.
+std::optional<Vec3d> around(const Light& l, Vec3d d, std::optional<double> roughness = {}) {
   const Vec3d full = wide(l.color) * l.intensity;
+  if (std::holds_alternative<EnvironmentLight>(l.kind)) {
+    const auto [first, second] =
+        roughness ? mirrored_bands(*roughness) : std::pair{2.0 / 3, 1.0 / 4};
+    return times(full, sky(d, first, second));
+  }
   if (std::holds_alternative<AmbientLight>(l.kind)) return full;
   if (const auto* const h = std::get_if<HemisphereLight>(&l.kind)) {
     const double share = (1 + dot(unit(wide(h->up)), d)) / 2;
@@ -149,7 +214,7 @@ Vec3d expected_linear(const std::vector<Light>& lights, const Material& m, Vec3d
   Vec3d sum;
   for (const Light& l : lights) {
     if (const auto of_n = around(l, n)) {
-      const Vec3d of_r = *around(l, n * (2 * dot(n, v)) - v);
+      const Vec3d of_r = *around(l, n * (2 * dot(n, v)) - v, m.roughness);
       const auto rise = [&](double c) { return std::max(1 - m.roughness - c, 0.0); };
       const Vec3d f =
           f0 + Vec3d{rise(f0.x), rise(f0.y), rise(f0.z)} * std::pow(std::max(1 - nv, 0.0), 5);
@@ -205,7 +270,17 @@ std::vector<std::vector<Light>> sets_of_lights() {
       {light(PointLight{{0.8, 1.2, 1.1}}, 0.6F)},
       {light(PointLight{{-0.5, 1, 2}, 2.2F}, 2, {0.5F, 1, 0.5F})},
       {light(SpotLight{{1, 1.5, 2}, {-1, -1.4F, -1.6F}}, 3)},
-      {light(SpotLight{{1, 1.5, 2}, {-1, -1.4F, -1.6F}, 4, 0.2F, 0.3F}, 3, {1, 0, 0.5F})}};
+      {light(SpotLight{{1, 1.5, 2}, {-1, -1.4F, -1.6F}, 4, 0.2F, 0.3F}, 3, {1, 0, 0.5F})},
+      {headlight(0.8F)},
+      light_kit()};
+  for (Light l : {light(HemisphereLight{{1, 2, -1}, {0.3F, 0.1F, 0}}, 0.7F),
+                  light(PointLight{{-0.8, 1, -2}}, 1.5F),
+                  light(SpotLight{{1, 1, 0}, {-0.2F, -0.3F, -1}}, 5)}) {
+    l.of_camera = true;
+    sets.push_back({l});
+  }
+  Light all_around = light(EnvironmentLight{sky_picture()}, 0.9F, {1, 0.9F, 0.8F});
+  sets.push_back({all_around});
   std::vector<Light> all;
   for (const auto& set : sets)
     for (Light l : set) {
@@ -229,6 +304,8 @@ TEST(Lights, AreTheirFormulasOnASphere) {
         ball.materials.clear();
         if (is_material) ball.materials.push_back(matt);
         const Camera seen_by = camera(orthographic);
+        std::vector<Light> placed_lights;
+        for (const Light& l : lights) placed_lights.push_back(in_world(l, seen_by));
         const Image<Vec4> color = draw(ball.view(), seen_by, lit_by(lights, shader));
         double worst = 0;
         int seen = 0;
@@ -236,8 +313,8 @@ TEST(Lights, AreTheirFormulasOnASphere) {
           const Vec4 c = color(x, y);
           if (c.w == 0) return;  // where rounding decides that the ball ends
           ++seen;
-          Vec3d e = is_material ? expected_linear(lights, matt, p, p, v)
-                                : expected_display(lights, shader == Shader::phong, p, p, v);
+          Vec3d e = is_material ? expected_linear(placed_lights, matt, p, p, v)
+                                : expected_display(placed_lights, shader == Shader::phong, p, p, v);
           if (is_material) e = {display(e.x), display(e.y), display(e.z)};
           worst = std::max({worst, std::abs(c.x - e.x), std::abs(c.y - e.y), std::abs(c.z - e.z)});
         });

@@ -60,8 +60,8 @@ TEST(ColorMap, HasThePublishedColours) {
         m.range = ScalarRange{-0.5, p.count - 0.5};
       }
       const Vec4 got = ScalarColors(m, {})(c.place);
-      // 8 bits of each colour, blended where the table has fewer than Matplotlib samples.
-      const double within = 1.01 / 255;
+      // To the nearest of 8 bits, and 1/65535 of how they are written here.
+      const double within = 0.51 / 255;
       ASSERT_NEAR(got.x, c.r / 65535.0, within) << c.place;
       ASSERT_NEAR(got.y, c.g / 65535.0, within) << c.place;
       ASSERT_NEAR(got.z, c.b / 65535.0, within) << c.place;
@@ -82,6 +82,9 @@ TEST(ColorMap, OfAUsersOwnColours) {
   expect_refused("'#12' is none", [] { (void)color_map_or_list("#ff0000,#12"); });
   expect_refused("'red' is none", [] { (void)color_map_or_list("#ff0000 red"); });
   expect_refused("RdYlBu", Errc::not_found, [] { (void)color_map("vridis"); });
+  expect_refused("did you mean 'viridis'?", Errc::not_found, [] { (void)color_map("vridis"); });
+  expect_refused("did you mean 'RdBu_r'?", Errc::not_found, [] { (void)color_map("rdbu_r"); });
+  expect_refused("'' (there are", Errc::not_found, [] { (void)color_map(""); });
   expect_refused("viridis_r_r", Errc::not_found, [] { (void)color_map("viridis_r_r"); });
 }
 
@@ -206,7 +209,10 @@ TEST(ScalarColors, RefuseWhatIsNoMapping) {
   refuse("range: too wide", {.range = ScalarRange{-1.7e308, 1.7e308}});
   refuse("range: must lie above 0", {.range = ScalarRange{0, 1}, .logarithmic = true});
   refuse("logarithmic", {.range = ScalarRange{1, 2}, .logarithmic = true, .symmetric = true});
-  refuse("steps: -1", {.steps = -1});
+  refuse("steps: must lie in 0 to 65536, got -1", {.steps = -1});
+  refuse("got 2147483647", {.steps = std::numeric_limits<int>::max()});
+  refuse("range: too wide for float64: -1.7e+308 to 1.7e+308",
+         {.range = ScalarRange{-1.7e308, 1.7e308}});
   refuse("categories[1]: not finite", {.categories = {0, kNan}});
   refuse("categories[2]: is there already", {.categories = {1, 0, 1}});
   refuse("below", {.below = Vec4{0, 0, 0, 2}});
@@ -267,6 +273,7 @@ TEST(SceneScalars, AreShownByName) {
   EXPECT_EQ(scalar_colors(binding.view()).range(), (ScalarRange{1, 2}));
   expect_refused("there are heat, and those of every scene: x, y, z, distance", Errc::not_found,
                  [&] { show_scalars(scene, "cold"); });
+  expect_refused("did you mean 'heat'?", Errc::not_found, [&] { show_scalars(scene, "haet"); });
 }
 
 TEST(SceneScalars, OfPlacesAreThoseOfEachInstance) {

@@ -21,8 +21,9 @@ class Showcase(unittest.TestCase):
         if not data.is_dir():
             self.skipTest("there is no shared/data")
         for entry in showcase_entries.ENTRIES:
-            for file in entry.needs + [entry.peer_file] * bool(entry.peer_file):
-                self.assertTrue((data / file).exists(), f"{entry.name}: {file}")
+            for file in entry.files + [entry.peer_file] * bool(entry.peer_file):
+                if file.startswith("DATA/"):
+                    self.assertTrue((data / file.removeprefix("DATA/")).exists(), f"{entry.name}: {file}")
 
     def test_a_page_has_its_pictures(self):
         entry = showcase_entries.Entry("a", "A & B", "render x --background '#fff'")
@@ -36,7 +37,7 @@ class Showcase(unittest.TestCase):
     def test_without_its_program_it_says_so(self):
         with tempfile.TemporaryDirectory() as folder:
             options = argparse.Namespace(build=pathlib.Path(folder), data=pathlib.Path(folder), out=pathlib.Path(folder),
-                                         no_peers=True)
+                                         no_peers=True, new_peers=False)
             with self.assertRaises(SystemExit) as ended:
                 showcase.Maker(options).ours(showcase_entries.Entry("a", "A", "render builtin:teapot"))
             self.assertIn("rastrum render builtin:teapot", str(ended.exception))

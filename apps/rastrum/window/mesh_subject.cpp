@@ -164,7 +164,8 @@ void MeshSubject::show(SceneArguments arguments, std::shared_ptr<LoadedScene> sc
   Camera camera = choose_camera(v, scene->scene, scene->binding.view(),
                                 {arguments.render.width, arguments.render.height});
   if (!v.file_camera && !v.eye && !v.orthographic_height)
-    camera = with_room(settings_.notes, camera);
+    camera = with_room(settings_.notes, camera, scene->binding.view(), arguments.render.width,
+                       arguments.render.height);
   settings_.file_lights = scene->scene.lights;
   settings_.adds_file_lights = arguments.lights.of_files;
   arguments_ = std::move(arguments);

@@ -131,8 +131,9 @@ OcclusionFrame occlusion_frame(const Surface& surface, const Camera& camera,
     throw Error(Errc::invalid_argument,
                 std::string("AmbientOcclusion::") + what + ", got " + std::to_string(got));
   };
-  if (!(options.radius > 0 && std::isfinite(options.radius)))
-    refuse("radius must be > 0 and finite", options.radius);
+  // Beyond, lengths in radii are not finite as float32.
+  if (!(options.radius >= 1e-18 && options.radius <= 1e18))
+    refuse("radius must lie in [1e-18, 1e18]", options.radius);
   if (!(options.strength >= 0 && options.strength <= 16))
     refuse("strength must lie in [0, 16]", options.strength);
   if (options.samples < 1 || options.samples > kMostSamples)

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace rastrum::cli {
+namespace rastrum {
 
 /// The first of the nearest words, where one is near enough to be meant: it begins with `given` (of
 /// at least three letters), or at most a third of its letters are left out, added, changed or
@@ -18,4 +18,4 @@ namespace rastrum::cli {
 [[nodiscard]] std::string did_you_mean(std::string_view given,
                                        std::span<const std::string_view> words);
 
-}  // namespace rastrum::cli
+}  // namespace rastrum

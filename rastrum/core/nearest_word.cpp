@@ -1,13 +1,13 @@
 // The distance is Damerau's and Levenshtein's in its restricted form (optimal string alignment):
 // no letter is edited twice.
-#include "suggest.hpp"
+#include <rastrum/core/nearest_word.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <vector>
 
-namespace rastrum::cli {
+namespace rastrum {
 namespace {
 
 char lower(char c) {
@@ -61,4 +61,4 @@ std::string did_you_mean(std::string_view given, std::span<const std::string_vie
   return word.empty() ? std::string() : "; did you mean '" + std::string(word) + "'?";
 }
 
-}  // namespace rastrum::cli
+}  // namespace rastrum
