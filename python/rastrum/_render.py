@@ -231,7 +231,7 @@ class Renderer:
         none, reinhard, aces or neutral for what is brighter than white, after `exposure` stops. environment_behind: the environments among lights are seen where nothing is.
         annotate: what is drawn over the colours, by name, or {name: options}: "occlusion" (radius, in world units,
         strength), "edl" (strength), "silhouettes", "edges" (angle, in degrees: creases and borders alone; width, px),
-        "axes", "bounds" and "bar" (of scalars; a camera of None leaves a margin for their numbers), "title", "captions" (a list), "text_scale".
+        "axes", "bounds" and "bar" (of scalars: title, unit, nan: with the colour of what is no number; a camera of None leaves a margin for their numbers), "title", "captions" (a list), "text_scale".
         out: {name: array} to be filled, (H, W, ...) or with a leading N. progress: called with (done, total) after each
         frame, or True: a count on a terminal.
         Raises rastrum.Error of the natural class; KeyboardInterrupt in a frame leaves the arrays partly filled.
@@ -274,9 +274,12 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
                      _lights(lights), bool(shadows), _text(tone, "tone"), float(exposure), bool(environment_behind))
     made = [c._for_size((width, height)) for c in cameras]
     notes = _annotations(annotate)
-    if notes is not None and notes.room != 1 and camera is None:
-        made = [_r.zoomed(c, 1 / notes.room) for c in made]
-    return scene, made, frame, _arrays(outputs, out, len(made), many, (height, width), scene.primitives), many, notes
+    if notes is not None and camera is None:
+        made = [notes.with_room(c) for c in made]
+    arrays = _arrays(outputs, out, len(made), many, (height, width), scene.primitives)
+    if notes is not None and not {"color", "color_f32"} & set(arrays):
+        raise ArgumentError("annotate: is drawn into color or color_f32; ask for it by outputs")
+    return scene, made, frame, arrays, many, notes
 
 
 def _text(value, name):

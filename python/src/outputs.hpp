@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include <rastrum/annotate.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/render.hpp>
 
-#include "annotations.hpp"
 #include "bindings.hpp"
 #include "rasterize.hpp"
 
@@ -27,8 +27,10 @@ struct Narrowed {
 
 /// The scratch of who draws one picture after the other.
 struct Scratch {
+  explicit Scratch(const RendererOptions& o) : annotator(o.threads, o.isa) {}
+
   Narrowed ids{}, instances{}, primitives{};
-  AnnotationScratch annotations{};
+  Annotator annotator;
   ClipRasterizer clip{};
 };
 
