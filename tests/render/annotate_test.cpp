@@ -19,7 +19,7 @@ namespace {
 constexpr int kW = 96, kH = 72;
 
 struct Subject {
-  Scene scene = shapes::scene_from_spec("builtin:boxes?count=2");
+  Scene scene = shapes::scene_from_spec("boxes?count=2");
   Camera camera;
 
   Subject() {
@@ -152,7 +152,7 @@ TEST(Annotator, KeepsNothingOfAnotherFrame) {
   Image<Rgba8> small(20, 30);
   Annotations other = everything();
   other.bar.reset();
-  const Scene ball = shapes::scene_from_spec("builtin:sphere");
+  const Scene ball = shapes::scene_from_spec("sphere");
   annotator.render(renderer, SceneBinding(ball).view(), s.camera, {.width = 20, .height = 30},
                    other, {.color8 = small});
   Colors one, two;
@@ -208,7 +208,7 @@ TEST(Annotator, RefusesWhatCannotBeDrawn) {
   Annotations large = everything();
   large.text_scale = 101;
   EXPECT_NE(refused(large, binding.view(), colors.targets()).find("text_scale"), std::string::npos);
-  const Scene plain = shapes::scene_from_spec("builtin:sphere");
+  const Scene plain = shapes::scene_from_spec("sphere");
   EXPECT_NE(refused(everything(), SceneBinding(plain).view(), colors.targets()).find("bar"),
             std::string::npos);
 }
