@@ -83,7 +83,8 @@ class Annotator {
   /// The same in two steps, for who draws the frame in another way (several passes, ranks). Adds
   /// to `targets` images of this object, which the next call may reuse.
   void add_targets(const Annotations& annotations, int width, int height, Targets& targets);
-  /// Into the colours of `targets`, which hold a frame with all that add_targets() added.
+  /// Into the colours of `targets`, which hold a frame with all that add_targets() added. Their
+  /// no_distance must be infinity.
   void draw(const Annotations& annotations, const SceneView& scene, const Camera& camera,
             Vec4 background, const Targets& targets, const SceneEdges* edges = nullptr);
 

@@ -63,15 +63,11 @@ std::vector<FrameStats> FrameRenderer::render(
     edges.emplace(scene, annotations->edges->angle_degrees);
   const auto draw = [&](Renderer& by, Scratch& scratch, std::size_t i) {
     Targets targets;
-    std::vector<Finish> finish;
-    for (const Wanted& w : outputs)
-      if (Finish f = w.kind->attach(targets, w.array, i, o, scratch))
-        finish.push_back(std::move(f));
+    for (const Wanted& w : outputs) w.kind->attach(targets, w.array, i, o);
     stats[i] = annotations == nullptr
                    ? by.render(scene, cameras[i], o, targets, stop)
                    : scratch.annotator.render(by, scene, cameras[i], o, *annotations, targets,
                                               edges ? &*edges : nullptr, stop);
-    for (const Finish& f : finish) f();
   };
   draw_all(cameras.size(), std::int64_t{o.width} * o.height, draw, after);
   return stats;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -170,8 +171,14 @@ FrameStats Annotator::render(Renderer& renderer, const SceneView& scene, const C
                 "Annotations: are drawn into Targets::color8 or Targets::color; both are empty");
   Targets all = targets;
   add_targets(a, frame.width, frame.height, all);
+  // What effects look at.
+  all.no_distance = std::numeric_limits<float>::infinity();
   FrameStats stats = renderer.render(scene, camera, frame, all, std::move(stop));
   draw(a, scene, camera, frame.background, all, edges);
+  if (targets.no_distance == all.no_distance) return stats;
+  for (const ImageView<float>& image : {targets.view_depth, targets.distance})
+    for (int y = 0; y < image.height && !image.empty(); ++y)
+      std::replace(image.row(y), image.row(y) + image.width, all.no_distance, targets.no_distance);
   return stats;
 }
 
