@@ -26,7 +26,7 @@ struct Numbers {
 
 /// Two meshes and spheres, so that ids, instances and primitives differ.
 Scene subject() {
-  Scene scene = shapes::scene_from_spec("torus_knot?n=24");
+  Scene scene = shapes::scene_from_spec("torus_knot?segments=60");
   scene.append(shapes::scene_from_spec("spheres?count=20"));
   scene.append(shapes::scene_from_spec("boxes?count=2"));
   return scene;
