@@ -1,10 +1,10 @@
 """Pictures: what is drawn, by whom, and into which arrays."""
 
 import atexit
-import dataclasses
 import math
 import os
 import sys
+import typing
 import weakref
 
 import numpy as np
@@ -59,8 +59,7 @@ def _number_of_threads():
     return cores
 
 
-@dataclasses.dataclass(frozen=True)
-class Hit:
+class Hit(typing.NamedTuple):
     """What is under a pixel. barycentrics: of the three corners; position, normal: in the world; depth: along the
     camera's axis; distance: from the eye; scalar: of its numbers, None where it has none."""
     id: int
