@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -54,9 +55,13 @@ struct Targets {
 
   // Of the surface that `ids` names, at the pixel's centre, whatever the shader and its alpha
   // (docs/conventions.md, "Outputs"). The CPU fills them, from the keys: nothing is computed that
-  // is not asked for. Without a scene, for draws of programs, there are the first three.
+  // is not asked for. Without a scene, for draws of programs, there are the numbers and
+  // the barycentrics.
   ImageView<std::int64_t> instances{};   ///< InstanceView::id, −1 where nothing is
   ImageView<std::int64_t> primitives{};  ///< within its instance (its draw), −1 where nothing is
+  /// `ids`, `instances` and `primitives` in 32 bits. Frames whose numbers do not fit throw
+  /// Error{invalid_argument}.
+  ImageView<std::int32_t> ids32{}, instances32{}, primitives32{};
   /// Perspective-correct weights of the second and the third corner of the snapped triangle that
   /// was drawn: position = (1 − x − y) p0 + x p1 + y p2. (0, 0) where nothing is.
   ImageView<Vec2> barycentrics{};
@@ -69,6 +74,8 @@ struct Targets {
   /// From the eye, by `view_depth` along the ray through the pixel's centre; the same as that for
   /// an orthographic camera.
   ImageView<float> distance{};
+  /// What both hold where nothing is: 0 is what sensors say.
+  float no_distance = std::numeric_limits<float>::infinity();
   /// Linear light, straight alpha: the material's base colour times its texture's and the vertex
   /// colours, white where there are none of them, with a fragment's own alpha. Before light, and
   /// without FrameOptions::opacity. 0 where nothing is.

@@ -43,7 +43,7 @@ PUBLIC = {
     "terrain": {"terrain", "terrain_light"},
     "overlay": {"effects", "overlay"},
     "io": {"io"},
-    "render": {"on_terrain", "pick", "render", "tone"},
+    "render": {"annotate", "on_terrain", "pick", "render", "tone"},
     "ranks": {"ranks"},
     "family": {"family"},
 }

@@ -1,14 +1,10 @@
 #include "annotations.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <string>
 
-#include <rastrum/core/elementary.hpp>
-
 #include "arguments.hpp"
 #include "progress.hpp"
-#include "view.hpp"
 
 namespace rastrum::cli {
 namespace {
@@ -26,10 +22,6 @@ void add_number(Parser& app, const char* option, const char* type, const char* h
                   least > 0 ? "must lie in %g to %g" : "must lie above %g, up to %g", least, most);
     throw UsageError(option, std::string(range) + ", got '" + s + "'");
   })->group(kGroup);
-}
-
-Vec3d wide(Vec3 v) {
-  return {v.x, v.y, v.z};
 }
 
 }  // namespace
@@ -130,73 +122,32 @@ void report_missing_glyphs(const WordOptions& a, const std::string& more) {
   if (!codes.empty()) warn("the font has no " + codes + ": drawn as boxes");
 }
 
-overlay::Look look_of(const WordOptions& a, Vec4 background) {
-  overlay::Look look = overlay::look_on(background);
-  look.scale = a.scale;
-  return look;
+Annotations meant(const WordOptions& a) {
+  Annotations meant;
+  meant.title = a.title;
+  meant.captions = a.captions;
+  meant.text_scale = a.scale;
+  return meant;
 }
 
-void draw_words(const WordOptions& a, const overlay::Canvas& canvas, const overlay::Look& look) {
-  using overlay::Corner;
-  constexpr Corner kCorners[] = {Corner::bottom_right, Corner::top_left, Corner::top_right,
-                                 Corner::bottom_left};
-  if (!a.title.empty()) overlay::draw_title(canvas, a.title, look);
-  for (std::size_t i = 0; i < a.captions.size(); ++i)
-    overlay::draw_caption(canvas, a.captions[i], kCorners[i], look);
-}
-
-Camera with_room(const AnnotationOptions& a, Camera camera, const SceneView& scene, int width,
-                 int height) {
-  double room = a.scalars.bar() ? 1.25 : 1;
-  if (a.bounds)
-    if (const Bounds box = bounds(scene); box.vertices_in_use != 0)
-      room = overlay::room_for_bounds(camera, wide(box.min), wide(box.max), width, height);
-  if (room == 1) return camera;
-  camera.orthographic_height = static_cast<float>(camera.orthographic_height * room);
-  const double half = room * elementary::tan(static_cast<double>(camera.fov_rad) / 2);
-  camera.fov_rad = static_cast<float>(2 * elementary::atan(half));
-  return camera;
-}
-
-void annotate(const AnnotationOptions& a, const overlay::Canvas& canvas, const Surface& surface,
-              ImageView<const float> depth, ImageView<const std::int64_t> ids,
-              const SceneView& scene, const Camera& camera, Vec4 background, Effects& effects) {
-  if (a.effects()) {
-    Image<float> factor(canvas.width(), canvas.height());
-    if (a.occlusion) {
-      AmbientOcclusion options;
-      options.radius = a.occlusion_radius.value_or(0.15 * bounding_sphere(scene).radius);
-      options.strength = a.occlusion_strength.value_or(options.strength);
-      // By depth alone: the frame need not find normals.
-      effects.ambient_occlusion({.view_depth = surface.view_depth}, camera, options, factor);
-      effects.darken(canvas.color8, canvas.color, factor.view());
-    }
-    if (a.dome) {
-      EyeDome options;
-      options.strength = a.dome_strength.value_or(options.strength);
-      // As wide in a large picture as in a small one.
-      options.radius_px = std::clamp(std::min(canvas.width(), canvas.height()) / 360, 1, 64);
-      effects.eye_dome(surface, camera, options, factor);
-      effects.darken(canvas.color8, canvas.color, factor.view());
-    }
-    if (a.silhouettes) {
-      effects.silhouettes(surface, camera, {}, factor);
-      effects.darken(canvas.color8, canvas.color, factor.view());
-    }
+Annotations meant(const AnnotationOptions& a) {
+  Annotations meant = cli::meant(a.words);
+  if (a.occlusion) {
+    meant.occlusion.emplace();
+    meant.occlusion->radius = a.occlusion_radius.value_or(0);
+    meant.occlusion->strength = a.occlusion_strength.value_or(meant.occlusion->strength);
   }
-  if (a.edges) {
-    Image<float> factor(canvas.width(), canvas.height());
-    effects.edges(ids, SceneEdges(scene, a.edge_angle.value_or(0)), camera,
-                  a.edge_width.value_or(1), factor);
-    effects.darken(canvas.color8, canvas.color, factor.view());
+  if (a.dome) {
+    meant.dome.emplace();
+    meant.dome->strength = a.dome_strength.value_or(meant.dome->strength);
+    meant.dome->radius_px = 0;
   }
-  const overlay::Look look = look_of(a.words, background);
-  if (a.bounds)
-    if (const Bounds box = bounds(scene); box.vertices_in_use != 0)
-      overlay::draw_bounds(canvas, camera, wide(box.min), wide(box.max), depth, look);
-  if (a.axes) overlay::draw_axes(canvas, camera, overlay::Corner::bottom_left, look);
-  draw_bar(a.scalars, scene, canvas, look);
-  draw_words(a.words, canvas, look);
+  if (a.silhouettes) meant.silhouettes.emplace();
+  if (a.edges) meant.edges = {a.edge_angle.value_or(0), a.edge_width.value_or(1)};
+  meant.bounds = a.bounds;
+  meant.axes = a.axes;
+  if (a.scalars.bar()) meant.bar = {*a.scalars.bar_title, a.scalars.bar_unit, a.scalars.nan_given};
+  return meant;
 }
 
 }  // namespace rastrum::cli

@@ -5,10 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <rastrum/camera.hpp>
-#include <rastrum/effects.hpp>
-#include <rastrum/overlay.hpp>
-#include <rastrum/scene.hpp>
+#include <rastrum/annotate.hpp>
 
 #include "option.hpp"
 #include "scalar_options.hpp"
@@ -34,10 +31,9 @@ struct AnnotationOptions {
   std::optional<double> occlusion_radius, occlusion_strength, dome_strength;
   std::optional<double> edge_angle, edge_width;
 
-  /// Those that look at depth.
-  [[nodiscard]] bool effects() const { return occlusion || dome || silhouettes; }
   [[nodiscard]] bool any() const {
-    return words.any() || scalars.bar() || axes || bounds || edges || effects();
+    return words.any() || scalars.bar() || axes || bounds || edges || occlusion || dome ||
+           silhouettes;
   }
 };
 
@@ -50,19 +46,8 @@ void check_annotations(const AnnotationOptions& a, bool has_colors);
 /// Warns of letters that the font has not.
 void report_missing_glyphs(const WordOptions& a, const std::string& more = {});
 
-/// `look` at the size that was asked for.
-[[nodiscard]] overlay::Look look_of(const WordOptions& a, Vec4 background);
-void draw_words(const WordOptions& a, const overlay::Canvas& canvas, const overlay::Look& look);
-
-/// A camera that leaves a margin for the numbers of --bounds, or for --bar, around what it was
-/// fitted to.
-[[nodiscard]] Camera with_room(const AnnotationOptions& a, Camera camera, const SceneView& scene,
-                               int width, int height);
-
-/// Effects, then the box, axes and words, onto `canvas`. `surface` must be there for effects,
-/// `depth` (reversed) for bounds, `ids` for edges.
-void annotate(const AnnotationOptions& a, const overlay::Canvas& canvas, const Surface& surface,
-              ImageView<const float> depth, ImageView<const std::int64_t> ids,
-              const SceneView& scene, const Camera& camera, Vec4 background, Effects& effects);
+/// What the library is to draw (rastrum/annotate.hpp).
+[[nodiscard]] Annotations meant(const WordOptions& a);
+[[nodiscard]] Annotations meant(const AnnotationOptions& a);
 
 }  // namespace rastrum::cli

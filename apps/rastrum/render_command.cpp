@@ -274,31 +274,27 @@ bool hashes_alone(RenderArguments a) {
   return a.hash && picture_outputs(a).empty();
 }
 
-Wanted wanted_of(const RenderArguments& a) {
+Wanted wanted_of(const RenderArguments& a, const Annotations* notes = nullptr,
+                 Annotator* annotator = nullptr) {
   const bool floats = a.color.format == Format::exr || a.color.format == Format::npy;
   Wanted wanted{.color8 = (a.color && !floats) || a.errors || hashes_alone(a),
                 .color = a.color && floats,
-                .depth = a.depth || a.annotations.bounds,
-                .ids = a.ids || a.objects || a.annotations.edges,
+                .depth = static_cast<bool>(a.depth),
+                .ids = a.ids || a.objects,
                 .overdraw = static_cast<bool>(a.heatmap),
                 .errors = static_cast<bool>(a.errors),
                 .images = {},
-                .surface = a.annotations.effects(),
-                .edges = a.annotations.silhouettes};
+                .notes = notes,
+                .annotator = annotator};
   for (const FrameImage& image : a.images) wanted.images.push_back(image.kind);
   return wanted;
 }
 
 /// Words and effects, into the colours alone.
-void annotate_pictures(const RenderArguments& a, Pictures& p, const SceneView& scene,
-                       const Camera& camera, std::optional<Effects>& effects) {
-  if (!a.annotations.any() || (p.color8.empty() && p.color.empty())) return;
-  if (!effects) effects.emplace(a.render.threads, a.render.isa);
-  overlay::Canvas canvas;
-  if (!p.color8.empty()) canvas.color8 = p.color8.view();
-  if (!p.color.empty()) canvas.color = p.color.view();
-  annotate(a.annotations, canvas, p.surface, p.depth.view(), p.ids.view(), scene, camera,
-           a.render.background, *effects);
+void annotate_pictures(const RenderArguments& a, const Annotations& notes, const Pictures& p,
+                       const SceneView& scene, const Camera& camera, Annotator& annotator) {
+  if (!p.color8.empty() || !p.color.empty())
+    annotator.draw(notes, scene, camera, a.render.background, p.targets);
 }
 
 /// Into `files`, which the caller commits. `number`: of a picture of many.
@@ -416,17 +412,19 @@ int run_sequence(const RenderArguments& a, Renderer& renderer, const Sequence& s
   Pictures pictures;
   std::vector<FrameStats> frames;
   std::vector<Camera> cameras;
-  std::optional<Effects> effects;
+  const Annotations notes = meant(a.annotations);
+  Annotator annotator(a.render.threads, a.render.isa);
   std::size_t empty = 0, first_empty = 0;
   for (std::size_t i = 0; i < sequence.count; ++i) {
     progress.show("picture " + std::to_string(i + 1) + " of " + std::to_string(sequence.count));
     const auto [scene, camera] = sequence.shot(i);
-    const auto stats = render_frames(renderer, scene, camera, a.render, wanted_of(a), false, 1,
-                                     pictures, timeline, progress);
+    const auto stats =
+        render_frames(renderer, scene, camera, a.render, wanted_of(a, &notes, &annotator), false, 1,
+                      pictures, timeline, progress);
     frames.push_back(stats.front());
     cameras.push_back(camera);
     if (is_empty(stats.front(), a.render) && empty++ == 0) first_empty = i;
-    annotate_pictures(a, pictures, scene, camera, effects);
+    annotate_pictures(a, notes, pictures, scene, camera, annotator);
     OutputFiles files;
     write_images(with_numbers(a, i, sequence.count), pictures, camera, inputs, i, files, timeline,
                  progress);
@@ -503,7 +501,8 @@ int run(RenderArguments& a) {
   a.view.turns = a.turntable != 0;
   Camera camera = choose_camera(a.view, scene, binding.view(), {a.render.width, a.render.height});
   if (!a.view.file_camera && !a.view.eye && !a.view.orthographic_height)
-    camera = with_room(a.annotations, camera, binding.view(), a.render.width, a.render.height);
+    camera = with_room(meant(a.annotations), camera, binding.view(), a.render.width,
+                       a.render.height);
 
   std::optional<SceneBinding> posed;
   SceneAt moving;
@@ -520,10 +519,12 @@ int run(RenderArguments& a) {
                             : along_path(a.path, a.fps, binding.view(), moving, a.view, camera),
                         inputs, load_ms, timeline, progress);
   const bool timed = a.frames_given || a.stats || a.trace;
+  const Annotations notes = meant(a.annotations);
+  Annotator annotator(a.render.threads, a.render.isa);
   Pictures pictures;
   const std::vector<FrameStats> frames =
-      render_frames(renderer, binding.view(), camera, a.render, wanted_of(a), timed, a.frames,
-                    pictures, timeline, progress);
+      render_frames(renderer, binding.view(), camera, a.render, wanted_of(a, &notes, &annotator),
+                    timed, a.frames, pictures, timeline, progress);
   const FrameStats& median = frames[median_frame(frames)];
   progress.clear();
   if (!a.quiet) {
@@ -534,9 +535,9 @@ int run(RenderArguments& a) {
     }
   }
 
-  std::optional<Effects> effects;
-  timeline.measure("words and effects", "annotate",
-                   [&] { annotate_pictures(a, pictures, binding.view(), camera, effects); });
+  timeline.measure("words and effects", "annotate", [&] {
+    annotate_pictures(a, notes, pictures, binding.view(), camera, annotator);
+  });
   OutputFiles files;
   write_images(a, pictures, camera, inputs, {}, files, timeline, progress);
   progress.clear();

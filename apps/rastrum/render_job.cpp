@@ -24,13 +24,9 @@ Targets make_targets(const Wanted& wanted, const FrameOptions& options, Pictures
   add(wanted.overdraw, pictures.overdraw, targets.overdraw);
   add(wanted.errors, pictures.errors, targets.errors);
   add_frame_images(wanted.images, options.width, options.height, pictures.images, targets);
-  if (wanted.surface) {
-    add(targets.view_depth.empty(), pictures.view_depth, targets.view_depth);
-    add(wanted.edges && targets.camera_normals.empty(), pictures.camera_normals,
-        targets.camera_normals);
-    add(wanted.edges && targets.instances.empty(), pictures.instances, targets.instances);
-    pictures.surface = {targets.view_depth, targets.camera_normals, targets.instances};
-  }
+  if (wanted.notes != nullptr)
+    wanted.annotator->add_targets(*wanted.notes, options.width, options.height, targets);
+  pictures.targets = targets;
   return targets;
 }
 
@@ -71,12 +67,13 @@ std::vector<FrameStats> render_frames(Renderer& renderer, const SceneView& scene
                                  "frame " + std::to_string(i)));
   }
   wanted.color8 = false;
+  const Targets others = make_targets(wanted, frame, pictures);
   if (wanted.color || wanted.depth || wanted.ids || wanted.overdraw || wanted.errors ||
-      wanted.surface || !wanted.images.empty()) {
-    const Targets others = make_targets(wanted, frame, pictures);
+      !wanted.images.empty() || !others.view_depth.empty() || !others.ids.empty() ||
+      !others.depth.empty())
     timeline.measure("other images", "images",
                      [&] { renderer.render(scene, camera, frame, others); });
-  }
+  pictures.targets.color8 = color8.color8;
   return stats;
 }
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include <rastrum/effects.hpp>
+#include <rastrum/annotate.hpp>
 #include <rastrum/render.hpp>
 
 #include "frame_images.hpp"
@@ -17,8 +17,8 @@ class Timeline;
 struct Wanted {
   bool color8 = false, color = false, depth = false, ids = false, overdraw = false, errors = false;
   std::vector<const FrameImageKind*> images{};
-  bool surface = false;  ///< the depth that effects look at
-  bool edges = false;    ///< normals and instances beside it
+  const Annotations* notes = nullptr;  ///< what is drawn over it, by `annotator`, looks at more
+  Annotator* annotator = nullptr;      ///< with `notes`
 };
 
 struct Pictures {
@@ -29,10 +29,7 @@ struct Pictures {
   Image<std::uint32_t> overdraw;
   Image<std::uint8_t> errors;
   std::vector<FrameImagePixels> images;  ///< as Wanted's
-  Image<float> view_depth;               ///< of these what is no image of Wanted's
-  Image<Vec3> camera_normals;
-  Image<std::int64_t> instances;
-  Surface surface;  ///< with Wanted::surface; of this object's images, or of its frame's
+  Targets targets;                       ///< all of these, and what Wanted::annotator added
 };
 
 /// `frame_ms` and the stages are of the whole call, from the caller's mesh in memory to the

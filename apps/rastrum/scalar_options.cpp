@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <rastrum/error.hpp>
+#include <rastrum/overlay.hpp>
 
 #include "arguments.hpp"
 
@@ -198,16 +199,6 @@ void set_scalars(const ScalarOptions& s, Scene& scene) {
   for (const overlay::Tick& tick :
        overlay::ticks(range.low, range.high, s.isoline_count, s.mapping.logarithmic))
     scene.scalar_mappings[0].isolines.push_back(tick.value);
-}
-
-void draw_bar(const ScalarOptions& s, const SceneView& scene, const overlay::Canvas& canvas,
-              const overlay::Look& look) {
-  if (!s.bar()) return;
-  overlay::ScalarBar bar = overlay::scalar_bar(scene.scalar_mappings[0], scalar_colors(scene));
-  bar.title = *s.bar_title;
-  bar.unit = s.bar_unit;
-  if (s.nan_given) bar.nan = scene.scalar_mappings[0].nan;
-  overlay::draw_scalar_bar(canvas, bar, look);
 }
 
 }  // namespace rastrum::cli

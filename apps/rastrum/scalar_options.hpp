@@ -5,7 +5,6 @@
 #include <string>
 
 #include <rastrum/color_map.hpp>
-#include <rastrum/overlay.hpp>
 #include <rastrum/scene.hpp>
 
 #include "option.hpp"
@@ -33,8 +32,5 @@ void add_scalar_options(Parser& app, ScalarOptions& s);
 void check_scalars(const ScalarOptions& s, bool has_colors);
 /// Makes the scene show them. Throws Error for a name that it has not.
 void set_scalars(const ScalarOptions& s, Scene& scene);
-/// The bar of the scene's first mapping.
-void draw_bar(const ScalarOptions& s, const SceneView& scene, const overlay::Canvas& canvas,
-              const overlay::Look& look);
 
 }  // namespace rastrum::cli

@@ -201,7 +201,9 @@ struct TerrainPictures {
   }
   /// Over sky and ground alike: light letters with a dark rim.
   void write_words(const WordOptions& words) {
-    if (words.any()) draw_words(words, {.color8 = color.view()}, look_of(words, {}));
+    if (!words.any()) return;
+    const Annotations all = meant(words);
+    draw_words(all, {.color8 = color.view()}, look_of(all, {}));
   }
   /// `number`: of a picture of many.
   void print_hashes(const TerrainArguments& a, std::optional<std::size_t> number) const {

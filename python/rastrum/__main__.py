@@ -11,6 +11,11 @@ def _size(text):
     return int(width), int(height)
 
 
+def _range(text):
+    low, _, high = text.partition(",")
+    return float(low), float(high)
+
+
 def main(arguments=None):
     parser = argparse.ArgumentParser(prog="python -m rastrum", description="Pictures of meshes and point clouds.",
                                      epilog="example: python -m rastrum views part.stl -o views.png")
@@ -27,6 +32,10 @@ def main(arguments=None):
             command.add_argument("--shader", default="auto",
                                  help="auto: a picture to show, with studio lights, occlusion and four samples")
             command.add_argument("--background", default=None, help="#rrggbb or a name (transparent)")
+            command.add_argument("--scalars", metavar="NAME",
+                                 help="colours by numbers of the files (info lists them), or by x, y, z, distance")
+            command.add_argument("--cmap", default="viridis", metavar="NAME", help="their colours (viridis)")
+            command.add_argument("--range", type=_range, metavar="LOW,HIGH", help="of the first and last colour (least, greatest)")
         if name == "render":
             command.add_argument("--view", default="iso", help="front, back, left, right, top, bottom, iso (iso)")
         if name == "video":
@@ -35,15 +44,23 @@ def main(arguments=None):
             command.add_argument("--elevation", type=float, default=25.0, help="degrees (25)")
     options = parser.parse_args(arguments)
     try:
-        scene = Scene(options.files)
+        numbers = {}
+        if getattr(options, "scalars", None) is not None:
+            numbers = {"scalars": options.scalars, "cmap": options.cmap, "clim": options.range}
+        scene = Scene(options.files, **numbers)
         for warning in scene.warnings:
             print(f"note: {warning}", file=sys.stderr)
         if options.command == "info":
             print(scene._made.describe(), end="")
             return 0
         look = {"size": options.size, "shader": options.shader, "background": options.background}
+        notes = {}
+        if numbers and options.command != "views":  # where it would be there four times
+            notes["bar"] = options.scalars
         if options.shader == "auto":  # as the program alone
-            look |= {"lights": "studio", "samples": 4, "annotate": "occlusion"}
+            look |= {"lights": "studio", "samples": 4}
+            notes["occlusion"] = True
+        look["annotate"] = notes
         if options.command == "video":
             if options.frames < 1 or not 0 < options.fps <= 1000:
                 raise ArgumentError("--frames, --fps: must be greater than 0")

@@ -1,7 +1,6 @@
 """Files that the library does not read: by the vtk wheel, trimesh or meshio, where these are installed."""
 
 import contextlib
-import importlib.util
 import io
 import os
 
@@ -30,6 +29,11 @@ def reads(path):
     return _by_trimesh(ending) or _by_meshio(ending)
 
 
+def _is_there(package):
+    from importlib.util import find_spec
+    return find_spec(package) is not None
+
+
 def _by_trimesh(ending):
     try:
         import trimesh
@@ -39,7 +43,7 @@ def _by_trimesh(ending):
 
 
 def _by_meshio(ending):
-    if importlib.util.find_spec("meshio") is None:
+    if not _is_there("meshio"):
         return False
     import meshio
     return ending in meshio.extension_to_filetypes and ending != ".svg"
@@ -49,7 +53,7 @@ def read(path):
     """What another library makes of it: a vtkPolyData, a thing of trimesh, a meshio.Mesh. Raises FormatError where it reads
     nothing, UnsupportedError where it is not installed."""
     ending = os.path.splitext(path)[1].lower()
-    if ending in _VTK and (ending not in _MESHIO or importlib.util.find_spec("vtkmodules") or not _by_meshio(ending)):
+    if ending in _VTK and (ending not in _MESHIO or _is_there("vtkmodules") or not _by_meshio(ending)):
         return _vtk(path, *_VTK[ending])
     if _by_meshio(ending):  # trimesh names what it would have meshio read
         return _meshio(path)

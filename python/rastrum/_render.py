@@ -1,10 +1,10 @@
 """Pictures: what is drawn, by whom, and into which arrays."""
 
 import atexit
-import dataclasses
 import math
 import os
 import sys
+import typing
 import weakref
 
 import numpy as np
@@ -59,8 +59,7 @@ def _number_of_threads():
     return cores
 
 
-@dataclasses.dataclass(frozen=True)
-class Hit:
+class Hit(typing.NamedTuple):
     """What is under a pixel. barycentrics: of the three corners; position, normal: in the world; depth: along the
     camera's axis; distance: from the eye; scalar: of its numbers, None where it has none."""
     id: int
@@ -231,7 +230,7 @@ class Renderer:
         none, reinhard, aces or neutral for what is brighter than white, after `exposure` stops. environment_behind: the environments among lights are seen where nothing is.
         annotate: what is drawn over the colours, by name, or {name: options}: "occlusion" (radius, in world units,
         strength), "edl" (strength), "silhouettes", "edges" (angle, in degrees: creases and borders alone; width, px),
-        "axes", "bounds" and "bar" (of scalars; a camera of None leaves a margin for their numbers), "title", "captions" (a list), "text_scale".
+        "axes", "bounds" and "bar" (of scalars: title, unit, nan: with the colour of what is no number; a camera of None leaves a margin for their numbers), "title", "captions" (a list), "text_scale".
         out: {name: array} to be filled, (H, W, ...) or with a leading N. progress: called with (done, total) after each
         frame, or True: a count on a terminal.
         Raises rastrum.Error of the natural class; KeyboardInterrupt in a frame leaves the arrays partly filled.
@@ -275,9 +274,11 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
     made = [c._for_size((width, height)) for c in cameras]
     notes = _annotations(annotate)
     if notes is not None and camera is None:
-        rooms = [notes.room(c, scene._made, width, height) for c in made]
-        made = [c if room == 1 else _r.zoomed(c, 1 / room) for c, room in zip(made, rooms)]
-    return scene, made, frame, _arrays(outputs, out, len(made), many, (height, width), scene.primitives), many, notes
+        made = [notes.with_room(c, scene._made, width, height) for c in made]
+    arrays = _arrays(outputs, out, len(made), many, (height, width), scene.primitives)
+    if notes is not None and not {"color", "color_f32"} & set(arrays):
+        raise ArgumentError("annotate: is drawn into color or color_f32; ask for it by outputs")
+    return scene, made, frame, arrays, many, notes
 
 
 def _text(value, name):

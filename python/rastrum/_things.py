@@ -466,10 +466,12 @@ def _vtk(data, copy, scalars=None, cmap="viridis", clim=None):
     """Of a vtkPolyData its polygons, strips aside, lines and points; of other data sets their outer surface. scalars: a
     name of its numbers, None: the active ones of the points."""
     if not hasattr(data, "GetPolys"):
-        if not hasattr(data, "extract_surface"):
-            raise ArgumentTypeError("a VTK data set that is no vtkPolyData: pyvista.wrap(data), or its surface by "
-                                    "vtkGeometryFilter")
-        data = data.extract_surface()
+        from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
+
+        outer = vtkGeometryFilter()
+        outer.SetInputDataObject(data)
+        outer.Update()
+        data = outer.GetOutput()
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     positions = vtk_to_numpy(data.GetPoints().GetData()) if data.GetNumberOfPoints() else np.empty((0, 3), np.float32)

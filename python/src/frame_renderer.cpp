@@ -59,20 +59,15 @@ std::vector<FrameStats> FrameRenderer::render(
     const std::function<void()>& after) {
   std::vector<FrameStats> stats(cameras.size());
   std::optional<SceneEdges> edges;
-  if (annotations != nullptr && annotations->edge_angle)
-    edges.emplace(scene, *annotations->edge_angle);
+  if (annotations != nullptr && annotations->edges)
+    edges.emplace(scene, annotations->edges->angle_degrees);
   const auto draw = [&](Renderer& by, Scratch& scratch, std::size_t i) {
     Targets targets;
-    std::vector<Finish> finish;
-    for (const Wanted& w : outputs)
-      if (Finish f = w.kind->attach(targets, w.array, i, o, scratch))
-        finish.push_back(std::move(f));
-    if (annotations != nullptr) scratch.annotations.attach(*annotations, o, targets);
-    stats[i] = by.render(scene, cameras[i], o, targets, stop);
-    if (annotations != nullptr)
-      scratch.annotations.draw(*annotations, edges ? &*edges : nullptr, scene, cameras[i], o,
-                               by.options(), targets);
-    for (const Finish& f : finish) f();
+    for (const Wanted& w : outputs) w.kind->attach(targets, w.array, i, o);
+    stats[i] = annotations == nullptr
+                   ? by.render(scene, cameras[i], o, targets, stop)
+                   : scratch.annotator.render(by, scene, cameras[i], o, *annotations, targets,
+                                              edges ? &*edges : nullptr, stop);
   };
   draw_all(cameras.size(), std::int64_t{o.width} * o.height, draw, after);
   return stats;

@@ -12,7 +12,6 @@
 
 #include <rastrum/render.hpp>
 
-#include "annotations.hpp"
 #include "outputs.hpp"
 #include "rasterize.hpp"
 
@@ -20,7 +19,8 @@ namespace rastrum::python {
 
 class FrameRenderer {
  public:
-  explicit FrameRenderer(const RendererOptions& options) : options_(options), renderer_(options) {}
+  explicit FrameRenderer(const RendererOptions& options)
+      : options_(options), renderer_(options), scratch_(options) {}
 
   /// A picture for each camera. `after`: called after each that is drawn alone, once after all that
   /// are drawn side by side.
@@ -44,14 +44,14 @@ class FrameRenderer {
                 const std::function<void()>& after);
 
   struct Side {
-    explicit Side(const RendererOptions& options) : renderer(options) {}
+    explicit Side(const RendererOptions& options) : renderer(options), scratch(options) {}
     Renderer renderer;
-    Scratch scratch{};
+    Scratch scratch;
   };
   RendererOptions options_;
   std::mutex mutex_{};
   Renderer renderer_;
-  Scratch scratch_{};
+  Scratch scratch_;
   std::vector<std::unique_ptr<Side>> side_{};
 };
 

@@ -21,7 +21,6 @@
 #include <rastrum/render.hpp>
 #include <rastrum/stop.hpp>
 
-#include "annotations.hpp"
 #include "buffers.hpp"
 #include "frame_renderer.hpp"
 #include "outputs.hpp"

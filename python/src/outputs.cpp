@@ -1,7 +1,5 @@
 #include "outputs.hpp"
 
-#include <limits>
-
 #include <rastrum/error.hpp>
 
 namespace rastrum::python {
@@ -16,32 +14,21 @@ ImageView<T> picture(const Output& array, std::size_t number, const FrameOptions
 }
 
 template <class T, auto member>
-Finish attach(Targets& t, const Output& a, std::size_t n, const FrameOptions& o, Scratch&) {
+void attach(Targets& t, const Output& a, std::size_t n, const FrameOptions& o) {
   t.*member = picture<T>(a, n, o);
-  return {};
 }
-/// Where nothing is the renderer has infinity; here, as sensors do, 0.
+/// As sensors do, 0 where nothing is.
 template <auto member>
-Finish attach_distance(Targets& t, const Output& a, std::size_t n, const FrameOptions& o,
-                       Scratch&) {
-  const ImageView<float> view = picture<float>(a, n, o);
-  t.*member = view;
-  return [view] {
-    const std::size_t pixels =
-        static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
-    for (std::size_t i = 0; i < pixels; ++i)
-      view.data[i] = view.data[i] == std::numeric_limits<float>::infinity() ? 0.0F : view.data[i];
-  };
+void attach_distance(Targets& t, const Output& a, std::size_t n, const FrameOptions& o) {
+  t.*member = picture<float>(a, n, o);
+  t.no_distance = 0;
 }
-template <auto member, auto scratch>
-Finish attach_ids(Targets& t, const Output& a, std::size_t n, const FrameOptions& o, Scratch& s) {
-  if (a.dtype() == nb::dtype<std::int64_t>()) {
-    t.*member = picture<std::int64_t>(a, n, o);
-    return {};
-  }
-  Narrowed& wide = s.*scratch;
-  t.*member = wide.view(o);
-  return [&wide, to = picture<std::int32_t>(a, n, o)] { wide.into(to); };
+template <auto wide, auto narrow>
+void attach_ids(Targets& t, const Output& a, std::size_t n, const FrameOptions& o) {
+  if (a.dtype() == nb::dtype<std::int64_t>())
+    t.*wide = picture<std::int64_t>(a, n, o);
+  else
+    t.*narrow = picture<std::int32_t>(a, n, o);
 }
 
 const OutputKind kKinds[] = {
@@ -50,10 +37,11 @@ const OutputKind kKinds[] = {
     {"depth", nb::dtype<float>(), 1, attach_distance<&Targets::view_depth>},
     {"depth_raw", nb::dtype<float>(), 1, attach<float, &Targets::depth>},
     {"distance", nb::dtype<float>(), 1, attach_distance<&Targets::distance>},
-    {"id", nb::dtype<std::int32_t>(), 1, attach_ids<&Targets::ids, &Scratch::ids>},
+    {"id", nb::dtype<std::int32_t>(), 1, attach_ids<&Targets::ids, &Targets::ids32>},
     {"instance", nb::dtype<std::int32_t>(), 1,
-     attach_ids<&Targets::instances, &Scratch::instances>},
-    {"face", nb::dtype<std::int32_t>(), 1, attach_ids<&Targets::primitives, &Scratch::primitives>},
+     attach_ids<&Targets::instances, &Targets::instances32>},
+    {"face", nb::dtype<std::int32_t>(), 1,
+     attach_ids<&Targets::primitives, &Targets::primitives32>},
     {"barycentrics", nb::dtype<float>(), 2, attach<Vec2, &Targets::barycentrics>},
     {"normal", nb::dtype<float>(), 3, attach<Vec3, &Targets::normals>},
     {"camera_normal", nb::dtype<float>(), 3, attach<Vec3, &Targets::camera_normals>},
@@ -64,15 +52,6 @@ const OutputKind kKinds[] = {
 };
 
 }  // namespace
-
-ImageView<std::int64_t> Narrowed::view(const FrameOptions& o) {
-  wide.resize(static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height));
-  return {wide.data(), o.width, o.height};
-}
-
-void Narrowed::into(ImageView<std::int32_t> to) const {
-  for (std::size_t i = 0; i < wide.size(); ++i) to.data[i] = static_cast<std::int32_t>(wide[i]);
-}
 
 /// Checks type and shape of what is to be filled.
 std::vector<Wanted> wanted(const std::map<std::string, Output>& outputs, std::size_t pictures,

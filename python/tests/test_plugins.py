@@ -61,10 +61,55 @@ def test_pyvista():
     plotter.camera_position = "xy"
     p = plotter.rastrum.screenshot(outputs=("color", "instance"))
     assert set(np.unique(p.instance)) == {-1, 0, 1, 2, 3, 4}
-    assert any("Text" in name or "Annotation" in name for name in plotter.rastrum.left_out)
+    # The first table is the cube's, who has no bar.
+    assert set(plotter.rastrum.left_out) == {"a scalar bar of another lookup table"}
     assert p.color[p.instance == 1][:, :3].std(axis=0).max() < 60  # one side of the cube: one colour but for the light
     middle = p.color[p.instance == 0].mean(axis=0)
     assert middle[0] > middle[1] + 30
+
+
+def test_what_a_plotter_draws_over_its_picture():
+    pv = pytest.importorskip("pyvista")
+    import rastrum.pyvista_plugin  # noqa: F401
+
+    def plotter():
+        made = pv.Plotter(off_screen=True, window_size=(200, 150))
+        made.camera_position = [(3, 2, 4), (0, 0, 0), (0, 1, 0)]
+        return made
+    sphere = pv.Sphere(theta_resolution=40, phi_resolution=40)
+    numbers = sphere.points[:, 2].astype(np.float64)
+    numbers[:3] = np.nan
+    sphere["z"] = numbers
+    full = plotter()
+    full.add_mesh(sphere, scalars="z", cmap="coolwarm", clim=(-0.4, 0.3), below_color="green", above_color="black", nan_color="red",
+                  scalar_bar_args={"title": "Height"}, show_edges=True)
+    full.add_text("corner", position="lower_right")
+    full.add_title("Title")
+    full.add_axes()
+    full.show_bounds()
+    picture = full.rastrum.screenshot()
+    assert not full.rastrum.left_out, full.rastrum.left_out
+    assert full.rastrum.annotations() == {"bar": {"title": "Height"}, "title": "Title", "captions": ["corner", "", "", ""],
+                                          "axes": True, "bounds": True, "edges": {"width": 1.0}}
+    # Without what is drawn over it the picture is of the numbers, by the table that PyVista made.
+    table = [tuple(c) for c in full.mapper.lookup_table.values / 255.0]
+    mapping = rr.ColorMapping(table, (-0.4, 0.3), below="green", above="black", nan="red")
+    mesh = rr.Mesh(np.asarray(sphere.points), sphere.regular_faces, normals=np.asarray(sphere.point_normals), scalars=numbers,
+                   cmap=mapping)
+    direct = rr.render(mesh, full.rastrum.camera(), size=(200, 150), shader="flat", outputs=("color", "scalars"))
+    mine = full.rastrum.screenshot(shader="flat", lights=None, samples=1, annotate=(), background=None,
+                                   outputs=("color", "scalars"))
+    assert np.array_equal(mine.scalars, direct.scalars, equal_nan=True) and np.array_equal(mine.color, direct.color)
+    assert (picture.color[:, :, :3] != mine.color[:, :, :3]).any(axis=2).mean() > 0.1
+    # What can not be said is named.
+    other = plotter()
+    other.add_mesh(sphere, scalars="z", show_edges=True, scalar_bar_args={"title": "Height"})
+    other.add_mesh(pv.Cube(), color="red")
+    other.add_text("here", position=(30, 40))
+    other.add_text("edge", position="left_edge")
+    other.rastrum.screenshot()
+    assert sorted(other.rastrum.left_out)[0] == "edges of some surfaces"
+    assert any("Text" in name for name in other.rastrum.left_out) and "words at an edge" in other.rastrum.left_out
 
 
 def test_the_plotters_lights():

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -43,6 +44,10 @@ void check_alone(const SceneView& scene, const FrameOptions& o) {
 
 void check_root_targets(const Targets& targets, const FrameOptions& o) {
   check_targets(targets, o);
+  if (!targets.ids32.empty() || !targets.instances32.empty() || !targets.primitives32.empty() ||
+      std::isfinite(targets.no_distance))
+    throw Error(Errc::unsupported,
+                "a picture of several ranks has numbers of 64 bits, and infinity where nothing is");
   if (!targets.overdraw.empty() || !targets.errors.empty() || !targets.keys.empty() ||
       !targets.extra.empty() || targets.load || targets.over || targets.first_id != 0)
     throw Error(Errc::unsupported,

@@ -220,6 +220,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   raster::check_materials(runs);
   check_surfaces(runs);
   check_outputs(call.targets, true, taken == Shader::material);
+  check_instance_ids(call.targets, scene);
   TonePass tone;
   const bool tones = TonePass::wanted(o, call.targets, taken);
   if (tones) check_targets(call.targets, o);
@@ -285,6 +286,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
       throw Error(Errc::unsupported,
                   "clip planes are of a scene's world; a program discards fragments itself");
   }
+  check_ids(targets, draws);
   raster::MixedDraws mixed(draws, shading, test);
   draws = mixed.draws();
   if (const std::size_t outputs = mixed.shading().extra_count(); targets.extra.size() > outputs)

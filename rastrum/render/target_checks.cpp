@@ -25,8 +25,18 @@ template <class F>
 void each_target_of_surface(const Targets& t, const F& f) {
   f(t.instances, "instances");
   f(t.primitives, "primitives");
+  f(t.ids32, "ids32");
+  f(t.instances32, "instances32");
+  f(t.primitives32, "primitives32");
   f(t.barycentrics, "barycentrics");
   each_target_of_scene(t, f);
+}
+
+constexpr std::uint64_t kMost32 = 0x7fffffff;
+
+[[noreturn]] void refuse_narrow(const char* target, const std::string& why) {
+  throw Error(Errc::invalid_argument,
+              std::string("the ").append(target).append(" target has 32 bits: ").append(why));
 }
 
 }  // namespace
@@ -67,6 +77,22 @@ void check_outputs(const Targets& targets, bool has_scene, bool shades_materials
   if (!targets.linear.empty() && !shades_materials)
     throw Error(Errc::unsupported,
                 "the linear target is of the shader 'material': the others compute display values");
+}
+
+void check_ids(const Targets& targets, std::span<const raster::Draw> draws) {
+  if (targets.ids32.empty() && targets.primitives32.empty()) return;
+  std::uint64_t primitives = targets.first_id;
+  for (const raster::Draw& d : draws) primitives += d.primitive_count;
+  if (primitives > kMost32)
+    refuse_narrow(targets.ids32.empty() ? "primitives32" : "ids32",
+                  "there are " + std::to_string(primitives) + " primitives");
+}
+
+void check_instance_ids(const Targets& targets, const SceneView& scene) {
+  if (targets.instances32.empty()) return;
+  for (const InstanceView& i : scene.instances)
+    if (i.id && *i.id != static_cast<std::int32_t>(*i.id))
+      refuse_narrow("instances32", "an instance's id is " + std::to_string(*i.id));
 }
 
 void check_in_place(const SceneView& scene, const Targets& targets, Shader shader,

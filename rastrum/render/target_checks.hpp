@@ -1,6 +1,9 @@
 // What a frame is asked to write, looked at before it is begun.
 #pragma once
 
+#include <span>
+
+#include <rastrum/raster/draws/draw.hpp>
 #include <rastrum/render.hpp>
 
 namespace rastrum {
@@ -10,6 +13,11 @@ namespace rastrum {
 
 /// Throws Error{invalid_argument} for a target that is not of the frame's size, and names it.
 void check_targets(const Targets& targets, const FrameOptions& frame);
+
+/// Throws Error{invalid_argument} where numbers of primitives, or of instances, do not fit into a
+/// target of 32 bits.
+void check_ids(const Targets& targets, std::span<const raster::Draw> draws);
+void check_instance_ids(const Targets& targets, const SceneView& scene);
 
 /// What only a scene has, or only materials have: Error{unsupported}.
 void check_outputs(const Targets& targets, bool has_scene, bool shades_materials);

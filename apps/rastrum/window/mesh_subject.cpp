@@ -118,16 +118,11 @@ class MeshSubject::Painter {
     scene.show(notes.scalars, version);
     return scene.binding.view();
   }
-  /// What is drawn over a picture.
-  void annotate(const MeshSettings& settings, const family::Options& options, Pictures& pictures,
-                const SceneView& scene, const Camera& camera) {
-    if (!settings.notes.any()) return;
-    if (!effects_ || effect_threads_ != options.threads)
-      effects_.emplace(effect_threads_ = options.threads, options.isa);
-    overlay::Canvas canvas;
-    canvas.color8 = pictures.color8.view();
-    cli::annotate(settings.notes, canvas, pictures.surface, pictures.depth.view(),
-                  pictures.ids.view(), scene, camera, options.background, *effects_);
+  /// Who draws over a picture.
+  Annotator& annotator(const RendererOptions& options) {
+    if (!annotator_ || annotator_threads_ != options.threads)
+      annotator_.emplace(annotator_threads_ = options.threads, options.isa);
+    return *annotator_;
   }
   Renderer& get(const RendererOptions& options, const family::Row& row) {
     if (!renderer_ || options_ != options || row_ != row) {
@@ -143,8 +138,8 @@ class MeshSubject::Painter {
   std::optional<Renderer> renderer_;
   RendererOptions options_;
   family::Row row_;
-  std::optional<Effects> effects_;
-  int effect_threads_ = 0;
+  std::optional<Annotator> annotator_;
+  int annotator_threads_ = 0;
 };
 
 MeshSubject::MeshSubject(SceneArguments arguments, std::shared_ptr<LoadedScene> scene)
@@ -164,8 +159,8 @@ void MeshSubject::show(SceneArguments arguments, std::shared_ptr<LoadedScene> sc
   Camera camera = choose_camera(v, scene->scene, scene->binding.view(),
                                 {arguments.render.width, arguments.render.height});
   if (!v.file_camera && !v.eye && !v.orthographic_height)
-    camera = with_room(settings_.notes, camera, scene->binding.view(), arguments.render.width,
-                       arguments.render.height);
+    camera = with_room(meant(settings_.notes), camera, scene->binding.view(),
+                       arguments.render.width, arguments.render.height);
   settings_.file_lights = scene->scene.lights;
   settings_.adds_file_lights = arguments.lights.of_files;
   arguments_ = std::move(arguments);
@@ -284,22 +279,21 @@ std::function<Drawn()> MeshSubject::draw(int width, int height, bool glance) {
           camera = control_.camera(), painter = painter_]() -> Drawn {
     Renderer& renderer = painter->get(options, options);
     const SceneView view = Painter::view(*scene, settings.notes, version);
-    const AnnotationOptions& notes = settings.notes;
+    const Annotations notes = meant(settings.notes);
+    Annotator& annotator = painter->annotator(options);
     Pictures pictures;
     Timeline timeline;
     Progress silent(true);
     const FrameStats stats = render_frames(renderer, view, camera, options,
                                            {.color8 = true,
-                                            .depth = notes.bounds,
-                                            .ids = notes.edges,
                                             .overdraw = settings.heat_map,
                                             .images = {},
-                                            .surface = notes.effects(),
-                                            .edges = notes.silhouettes},
+                                            .notes = &notes,
+                                            .annotator = &annotator},
                                            false, 1, pictures, timeline, silent)
                                  .front();
     const double begin_ms = timeline.now_ms();
-    painter->annotate(settings, options, pictures, view, camera);
+    annotator.draw(notes, view, camera, options.background, pictures.targets);
     Figures figures{stats.frame_ms, stats.stages, rows(stats)};
     if (notes.any()) {
       figures.frame_ms += timeline.now_ms() - begin_ms;

@@ -18,6 +18,7 @@ struct FrameGeometry {
   std::span<const Draw> draws;
   const ProjectedVertex* projected = nullptr;  ///< null: vertices are projected where they are read
   Isa isa = Isa::scalar;
+  std::uint64_t number = 0;  ///< tells a process's frames apart, for who keeps things of one; 0: no
 
   /// The projected vertices of a draw; null: they are projected where they are read.
   [[nodiscard]] const ProjectedVertex* projected_of(const Draw& draw) const {

@@ -1,6 +1,7 @@
 #include <rastrum/raster/frame/driver.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <string>
 #include <utility>
 
@@ -24,6 +25,9 @@ constexpr std::uint64_t kThreadBytes = std::uint64_t{1} << 17;
 
 /// Pieces of a batch are counted in 32 bits, and the clipper makes fewer than 16 of a triangle.
 constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
+
+/// FrameGeometry::number, of all drivers.
+std::atomic<std::uint64_t> frames_of_all = 0;
 
 [[noreturn]] void refuse_limit(std::uint64_t limit, const std::string& why) {
   throw Error(Errc::out_of_memory, std::string("a memory limit of ")
@@ -241,7 +245,7 @@ FrameStats FrameDriver::draw(FrameRequest& request) {
   Frame frame{
       .request = request,
       .geometry = {request.width, request.height, Viewport::of(request.width, request.height),
-                   request.draws, nullptr, request.isa},
+                   request.draws, nullptr, request.isa, ++frames_of_all},
       .kernel = kernels(request.isa),
       .threads = threads_,
       .shaders = shaders_,

@@ -10,14 +10,14 @@ namespace rastrum::raster {
 
 struct SurfaceScene;
 
-/// Of the 64 `keys` of the block that begins at pixel (x0, y0); infinity where a key has no depth.
+/// Of the 64 `keys` of the block that begins at pixel (x0, y0); `nothing` where a key has no depth.
 /// `view_depth` and `distance`: 64 numbers each, aligned to 64 bytes; `distance` may be null.
 /// In float64 and rounded once; the same bits for every instruction set.
 using DistanceKernel = void (*)(const SurfaceScene& scene, const std::uint64_t* keys, int x0,
-                                int y0, float* view_depth, float* distance);
+                                int y0, float nothing, float* view_depth, float* distance);
 
 void distances_plain(const SurfaceScene& scene, const std::uint64_t* keys, int x0, int y0,
-                     float* view_depth, float* distance);
+                     float nothing, float* view_depth, float* distance);
 
 [[nodiscard]] DistanceKernel distance_kernel(Isa isa) noexcept;
 

@@ -42,7 +42,7 @@ HWY_INLINE D ray_length(const SurfaceScene& scene, D x, double y) {
                      hn::Mul(hn::Set(d, z[2]), vz)));
 }
 
-void distances(const SurfaceScene& scene, const std::uint64_t* keys, int x0, int y0,
+void distances(const SurfaceScene& scene, const std::uint64_t* keys, int x0, int y0, float nothing,
                float* view_depth, float* distance) {
   const F64 d;
   const F32 df;
@@ -50,7 +50,7 @@ void distances(const SurfaceScene& scene, const std::uint64_t* keys, int x0, int
   const hn::RebindToUnsigned<F32> du32;
   const DistanceByDepth& by = scene.distance_by_depth;
   const D p = hn::Set(d, by.p), q = hn::Set(d, by.q), r = hn::Set(d, by.r), s = hn::Set(d, by.s);
-  const auto nowhere = hn::Inf(df);
+  const auto nowhere = hn::Set(df, nothing);
   for (int i = 0; i < 64; i += kLanes) {
     const auto bits = hn::TruncateTo(du32, hn::ShiftRight<kIdBits>(hn::Load(du64, keys + i)));
     const auto depth = hn::BitCast(df, bits);

@@ -143,6 +143,12 @@ void store_keys(const FrameRequest& request, const std::uint64_t* keys, std::uin
       ids[i] = keys[i] == 0 ? -1 : static_cast<std::int64_t>(id_of_key(keys[i]));
     store_block(targets.ids, ids, touched, x0, y0);
   }
+  if (!targets.ids32.empty()) {
+    std::int32_t ids[64];
+    for (int i = 0; i < 64; ++i)
+      ids[i] = keys[i] == 0 ? -1 : static_cast<std::int32_t>(id_of_key(keys[i]));
+    store_block(targets.ids32, ids, touched, x0, y0);
+  }
   if (!targets.keys.empty()) store_block(targets.keys, keys, touched, x0, y0);
 }
 
@@ -240,7 +246,8 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const
   }
   if (request.wants_colors())
     resolve_colors(request, frame, block, touched, shaded, backdrop, window);
-  if (!targets.depth.empty() || !targets.ids.empty() || !targets.keys.empty())
+  if (!targets.depth.empty() || !targets.ids.empty() || !targets.ids32.empty() ||
+      !targets.keys.empty())
     store_keys(request, keys, touched, window);
   if (request.wants_surface) store_surfaces(request, frame, block, touched);
   return parallel::popcount(covered);
@@ -280,12 +287,15 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
     if (!request.wants_surface) continue;
     fill(targets.instances, y, std::int64_t{-1});
     fill(targets.primitives, y, std::int64_t{-1});
+    fill(targets.ids32, y, std::int32_t{-1});
+    fill(targets.instances32, y, std::int32_t{-1});
+    fill(targets.primitives32, y, std::int32_t{-1});
     fill(targets.barycentrics, y, Vec2{});
     fill(targets.positions, y, Vec3{});
     fill(targets.normals, y, Vec3{});
     fill(targets.camera_normals, y, Vec3{});
-    fill(targets.view_depth, y, kNoDistance);
-    fill(targets.distance, y, kNoDistance);
+    fill(targets.view_depth, y, targets.no_distance);
+    fill(targets.distance, y, targets.no_distance);
     fill(targets.albedo, y, Vec4{});
     fill(targets.scalars, y, kNoNumber);
   }

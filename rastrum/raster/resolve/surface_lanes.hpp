@@ -23,37 +23,21 @@ struct alignas(64) SurfaceRun {
   };
   static constexpr int kStride = sizeof(Triangle) / sizeof(double);
 
-  Triangle triangles[64];
-  double x[64], y[64];     ///< centres of the pixels, px
-  std::int64_t place[64];  ///< of its triangle among all numbers of `triangles`
-  float b1[64], b2[64];
-  float position[3][64], normal[3][64], camera_normal[3][64];
+  /// Lanes are written eight at once, from any pixel on.
+  static constexpr int kRoom = 64 + 8;
+
+  const Triangle* triangles = nullptr;
+  double x[kRoom], y[kRoom];  ///< centres of the pixels, px
+  /// Of its triangle among all numbers of `triangles`. Pixels of one triangle lie one behind the
+  /// other where that is easy to have.
+  std::int64_t place[kRoom];
+  float b1[kRoom], b2[kRoom];
+  Vec3 position[kRoom], normal[kRoom], camera_normal[kRoom];
   const float (*normal_matrix)[3] = nullptr;  ///< null: no normals
   const Mat4d* object_to_world = nullptr;     ///< null: no places
   const SurfaceScene* scene = nullptr;        ///< required for normals
   bool in_camera = false;                     ///< camera_normal, too
-  int triangle_count = 0;
-  int n = 0;  ///< pixels
-
-  [[nodiscard]] bool is_full() const { return n == 64; }
-  /// Of the pixel at (px, py) and of triangle `t`.
-  void add(int px, int py, int t) {
-    x[n] = px + 0.5;
-    y[n] = py + 0.5;
-    place[n++] = std::int64_t{t} * kStride;
-  }
-  Triangle& add_triangle(const WeightPlanes& w) {
-    Triangle& t = triangles[triangle_count++];
-    t.x0 = w.x0;
-    t.y0 = w.y0;
-    for (int c = 0; c < 3; ++c) {
-      t.r[c] = w.r[c];
-      t.p[c] = w.p[c];
-      t.q[c] = w.q[c];
-    }
-    return t;
-  }
-  void clear() { triangle_count = n = 0; }
+  int n = 0;                                  ///< pixels, at most 64
 };
 
 /// Fills what is asked for of a run's pixels, n > 0.

@@ -41,11 +41,10 @@ template <class Row>
 HWY_INLINE D row_of(const Row& m, const Vectors& v) {
   return dot(set(double{m[0]}), set(double{m[1]}), set(double{m[2]}), v);
 }
-HWY_INLINE void store(const Vectors& v, int k, float (&to)[3][64]) {
+HWY_INLINE void store(const Vectors& v, Vec3* to) {
   const F32 df;
-  hn::Store(hn::DemoteTo(df, v.x), df, to[0] + k);
-  hn::Store(hn::DemoteTo(df, v.y), df, to[1] + k);
-  hn::Store(hn::DemoteTo(df, v.z), df, to[2] + k);
+  hn::StoreInterleaved3(hn::DemoteTo(df, v.x), hn::DemoteTo(df, v.y), hn::DemoteTo(df, v.z), df,
+                        &to->x);
 }
 
 /// Number `number` of each lane's triangle.
@@ -115,42 +114,49 @@ HWY_INLINE void pixels(SurfaceRun& run, int k, const Numbers& number) {
   using T = SurfaceRun::Triangle;
   const F64 d;
   const F32 df;
-  const D x = hn::Load(d, run.x + k), y = hn::Load(d, run.y + k);
+  const D x = hn::LoadU(d, run.x + k), y = hn::LoadU(d, run.y + k);
   D b[3];
   shares(number, x, y, b);
-  hn::Store(hn::DemoteTo(df, b[1]), df, run.b1 + k);
-  hn::Store(hn::DemoteTo(df, b[2]), df, run.b2 + k);
+  hn::StoreU(hn::DemoteTo(df, b[1]), df, run.b1 + k);
+  hn::StoreU(hn::DemoteTo(df, b[2]), df, run.b2 + k);
   if (run.object_to_world != nullptr) {
     const Vectors p = interpolate(number, offsetof(T, position) / 8, b);
     const auto& m = run.object_to_world->m;
     store({row_of(m[0], p) + set(m[0][3]), row_of(m[1], p) + set(m[1][3]),
            row_of(m[2], p) + set(m[2][3])},
-          k, run.position);
+          run.position + k);
   }
   if (run.normal_matrix == nullptr) return;
   const Vectors n = normal_of(run, interpolate(number, offsetof(T, normal) / 8, b), x, y);
-  store(n, k, run.normal);
+  store(n, run.normal + k);
   if (!run.in_camera) return;
   const auto& m = run.scene->to_camera.m;
-  store({row_of(m[0], n), row_of(m[1], n), row_of(m[2], n)}, k, run.camera_normal);
+  store({row_of(m[0], n), row_of(m[1], n), row_of(m[2], n)}, run.camera_normal + k);
 }
 
 void fill(SurfaceRun& run) noexcept {
   const auto* const all = reinterpret_cast<const double*>(run.triangles);
   // Lanes beyond the last pixel repeat it.
-  for (int k = run.n; k % kLanes != 0; ++k) {
+  for (int k = run.n; k < run.n + kLanes; ++k) {
     run.x[k] = run.x[run.n - 1];
     run.y[k] = run.y[run.n - 1];
     run.place[k] = run.place[run.n - 1];
   }
-  for (int k = 0; k < run.n; k += kLanes) {
+  // Gathering what a triangle has takes three times as long as all that is computed of it: so as
+  // soon as a few lanes have one triangle they are computed alone, and what is written beyond them
+  // is written again.
+  constexpr int kAlone = kLanes == 8 ? 3 : 1;
+  for (int k = 0; k < run.n;) {
     const std::int64_t first = run.place[k];
-    const I64 di;
-    const auto place = hn::Load(di, run.place + k);
-    if (hn::AllTrue(di, hn::Eq(place, hn::Set(di, first))))
-      pixels(run, k, Shared{all + first});
-    else
-      pixels(run, k, Gathered{all, place});
+    int end = k + 1;
+    while (end < run.n && run.place[end] == first) ++end;
+    if (end - k < kAlone) {
+      pixels(run, k, Gathered{all, hn::LoadU(I64{}, run.place + k)});
+      k += kLanes;
+      continue;
+    }
+    for (; k < end; k += kLanes) pixels(run, k, Shared{all + first});
+    k = end;
   }
 }
 

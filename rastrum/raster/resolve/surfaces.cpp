@@ -1,7 +1,11 @@
 #include <rastrum/raster/resolve/surfaces.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <type_traits>
 
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/draws/vertices_of.hpp>
@@ -17,7 +21,7 @@ void store_numbers(const FrameRequest& request, const FrameGeometry& frame,
                    const VisibleBlock& block, std::uint64_t touched) {
   const Targets& t = request.targets;
   const SurfaceScene* const scene = request.surface;
-  std::int64_t instances[64], primitives[64];
+  std::int64_t instances[64]{}, primitives[64]{};
   const Draw* draw = nullptr;
   std::uint64_t copy = 0;
   std::int64_t instance = -1;
@@ -38,8 +42,17 @@ void store_numbers(const FrameRequest& request, const FrameGeometry& frame,
     instances[i] = instance;
     primitives[i] = static_cast<std::int64_t>(of.primitive);
   }
-  if (!t.instances.empty()) store_block(t.instances, instances, touched, block.x0, block.y0);
-  if (!t.primitives.empty()) store_block(t.primitives, primitives, touched, block.x0, block.y0);
+  const auto store = [&](const auto& target, const std::int64_t(&numbers)[64]) {
+    if (target.empty()) return;
+    using Number = std::remove_pointer_t<decltype(target.data)>;
+    Number own[64];
+    for (int i = 0; i < 64; ++i) own[i] = static_cast<Number>(numbers[i]);
+    store_block(target, own, touched, block.x0, block.y0);
+  };
+  store(t.instances, instances);
+  store(t.instances32, instances);
+  store(t.primitives, primitives);
+  store(t.primitives32, primitives);
 }
 
 void store_distances(const FrameRequest& request, const VisibleBlock& block,
@@ -47,126 +60,232 @@ void store_distances(const FrameRequest& request, const VisibleBlock& block,
   const Targets& t = request.targets;
   alignas(64) float view_depth[64], distance[64];
   if (block.covered == 0) {
-    std::fill_n(view_depth, 64, kNoDistance);
-    std::fill_n(distance, 64, kNoDistance);
+    std::fill_n(view_depth, 64, t.no_distance);
+    std::fill_n(distance, 64, t.no_distance);
   } else {
-    distance_kernel(request.isa)(*request.surface, block.keys, block.x0, block.y0, view_depth,
-                                 t.distance.empty() ? nullptr : distance);
+    distance_kernel(request.isa)(*request.surface, block.keys, block.x0, block.y0, t.no_distance,
+                                 view_depth, t.distance.empty() ? nullptr : distance);
   }
   if (!t.view_depth.empty()) store_block(t.view_depth, view_depth, touched, block.x0, block.y0);
   if (!t.distance.empty()) store_block(t.distance, distance, touched, block.x0, block.y0);
 }
 
-/// `f`: null where nothing is.
-void store_point(const FrameRequest& request, const FrameGeometry& frame, const SeenFragment* f,
+void store_point(const FrameRequest& request, const FrameGeometry& frame, const SeenFragment& f,
                  int x, int y, CornerNormals& corners) {
   const Targets& t = request.targets;
   const SurfaceScene* const scene = request.surface;
-  const auto store = [&](const auto& target, auto nothing, const auto& value) {
-    if (!target.empty()) target(x, y) = f == nullptr ? nothing : value();
+  const auto store = [&](const auto& target, const auto& value) {
+    if (!target.empty()) target(x, y) = value();
   };
-  store(t.barycentrics, Vec2{}, [&] {
-    return Vec2{static_cast<float>(f->weights.b[1]), static_cast<float>(f->weights.b[2])};
+  store(t.barycentrics, [&] {
+    return Vec2{static_cast<float>(f.weights.b[1]), static_cast<float>(f.weights.b[2])};
   });
-  store(t.positions, Vec3{}, [&] { return Vec3(scene->position(*f)); });
+  store(t.positions, [&] { return Vec3(scene->position(f)); });
   if (!t.normals.empty() || !t.camera_normals.empty()) {
-    const Vec3d normal = f == nullptr ? Vec3d{} : scene->normal(*f, corners);
-    store(t.normals, Vec3{}, [&] { return Vec3(normal); });
-    store(t.camera_normals, Vec3{}, [&] { return Vec3(scene->in_camera(normal)); });
+    const Vec3d normal = scene->normal(f, corners);
+    store(t.normals, [&] { return Vec3(normal); });
+    store(t.camera_normals, [&] { return Vec3(scene->in_camera(normal)); });
   }
-  store(t.albedo, Vec4{}, [&] { return scene->albedo(frame, *f); });
-  store(t.scalars, kNoNumber, [&] {
-    const double value = scene->scalar(frame, *f);
+  store(t.albedo, [&] { return scene->albedo(frame, f); });
+  store(t.scalars, [&] {
+    const double value = scene->scalar(frame, f);
     return std::isnan(value) ? kNoNumber : static_cast<float>(value);
   });
 }
+
+/// What store_point stores, where nothing is.
+void store_nothing(const Targets& t, std::uint64_t where, int x0, int y0) {
+  const auto store = [&](const auto& target, const auto& nothing) {
+    if (target.empty()) return;
+    for (std::uint64_t rows = where, y = 0; rows != 0; rows >>= kBlockSize, ++y) {
+      auto* const row = target.row(y0 + static_cast<int>(y)) + x0;
+      if (rows % 256 == 255) {
+        std::fill_n(row, kBlockSize, nothing);
+        continue;
+      }
+      for (std::uint64_t m = rows % 256; m != 0; m &= m - 1) row[std::countr_zero(m)] = nothing;
+    }
+  };
+  store(t.barycentrics, Vec2{});
+  store(t.positions, Vec3{});
+  store(t.normals, Vec3{});
+  store(t.camera_normals, Vec3{});
+  store(t.albedo, Vec4{});
+  store(t.scalars, kNoNumber);
+}
+
+/// Triangles of a frame as lanes read them, which a thread has found: blocks side by side see the
+/// same ones. A place for each id modulo kPlaces.
+struct TriangleCache {
+  static constexpr std::size_t kPlaces = 256;  // 60 KiB; a bin of 64² px sees about as many at once
+
+  struct Owner {
+    std::size_t draw = 0;
+    std::uint64_t copy = 0;
+    std::uint64_t run = 0;  ///< the last that used it
+  };
+  std::uint64_t frame = 0;  ///< FrameGeometry::number of what is here
+  std::uint64_t runs = 0;   ///< so far
+  std::uint64_t ids[kPlaces];
+  Owner owners[kPlaces];
+  SurfaceRun::Triangle triangles[kPlaces];
+  SurfaceRun run;  ///< here, so that its arrays are not made anew for each block
+
+  void begin(std::uint64_t number) {
+    if (number == frame && number != 0) return;
+    frame = number;
+    std::fill_n(ids, kPlaces, kMaxId + 1);
+  }
+};
 
 /// What store_point stores, of many pixels of triangles at once.
 class RunStorer {
  public:
   RunStorer(const FrameRequest& request, const FrameGeometry& frame, const VisibleBlock& block,
-            SurfaceLanes lanes)
+            SurfaceLanes lanes, TriangleCache& cache)
       : request_(request),
         block_(block),
         lanes_(lanes),
-        locator_(frame, request.samples, false),
-        frame_(frame) {
-    std::fill_n(triangle_of_, 64, -1);
+        frame_(frame),
+        cache_(cache),
+        run_(cache.run) {
+    cache.begin(frame.number);
+    ++cache.runs;
     run_.scene = request.surface;
+    run_.triangles = cache.triangles;
     run_.in_camera = !request.targets.camera_normals.empty();
+    run_.normal_matrix = nullptr;
+    run_.object_to_world = nullptr;
   }
 
   /// What lies at pixel i of the block.
   void add(int i) {
     const std::uint64_t id = id_of_key(block_.keys[i]);
-    int t = run_.triangle_count - 1;
-    if (t < 0 || id != ids_[t]) t = i < kBlockSize ? -1 : triangle_of_[i - kBlockSize];
-    if (t < 0 || id != ids_[t]) {
-      const SeenFragment& f = locator_.locate(block_.keys[i], block_.x0, block_.y0, i);
-      if (frame_.draws[f.draw].topology != Topology::triangles || f.quadric != nullptr) {
-        store_point(request_, frame_, &f, block_.x0 + i % kBlockSize, block_.y0 + i / kBlockSize,
-                    corners_);
-        return;
-      }
-      t = add_triangle(f);
+    const std::size_t place = id % TriangleCache::kPlaces;
+    if (cache_.ids[place] != id && !fetch(id, place)) {
+      if (!locator_) locator_.emplace(frame_, request_.samples, false);
+      const SeenFragment& f = locator_->locate(block_.keys[i], block_.x0, block_.y0, i);
+      store_point(request_, frame_, f, block_.x0 + i % kBlockSize, block_.y0 + i / kBlockSize,
+                  corners_);
+      return;
     }
-    triangle_of_[i] = t;
-    pixels_[run_.n] = i;
-    run_.add(block_.x0 + i % kBlockSize, block_.y0 + i / kBlockSize, t);
+    if (cache_.owners[place].run != cache_.runs) join(place);
+    ++pixels_of_[number_of_[place]];
+    place_of_[n_] = static_cast<std::uint8_t>(place);
+    pixel_of_[n_++] = static_cast<std::uint8_t>(i);
   }
 
   void finish() {
-    if (run_.n == 0) return;
+    if (n_ == 0) return;
+    sort();
     lanes_(run_);
     const Targets& t = request_.targets;
-    for (int k = 0; k < run_.n; ++k) {
-      const int x = block_.x0 + pixels_[k] % kBlockSize, y = block_.y0 + pixels_[k] / kBlockSize;
-      const auto vector = [&](const float(&v)[3][64]) { return Vec3{v[0][k], v[1][k], v[2][k]}; };
-      if (!t.barycentrics.empty()) t.barycentrics(x, y) = {run_.b1[k], run_.b2[k]};
-      if (!t.positions.empty()) t.positions(x, y) = vector(run_.position);
-      if (!t.normals.empty()) t.normals(x, y) = vector(run_.normal);
-      if (!t.camera_normals.empty()) t.camera_normals(x, y) = vector(run_.camera_normal);
-    }
+    store(t.barycentrics, [&](int k) { return Vec2{run_.b1[k], run_.b2[k]}; });
+    store(t.positions, [&](int k) { return run_.position[k]; });
+    store(t.normals, [&](int k) { return run_.normal[k]; });
+    store(t.camera_normals, [&](int k) { return run_.camera_normal[k]; });
+    n_ = triangles_ = 0;
+    ++cache_.runs;
   }
 
  private:
-  /// Its number. What is of another instance begins a run of its own.
-  int add_triangle(const SeenFragment& f) {
-    if (run_.n > 0 && (f.draw != draw_ || f.copy != copy_)) {
-      finish();
-      run_.clear();
-      std::fill_n(triangle_of_, 64, -1);
+  template <class T, class Value>
+  void store(const ImageView<T>& target, const Value& value) const {
+    if (target.empty()) return;
+    T* const first = target.row(block_.y0) + block_.x0;
+    if (n_ == 64 && triangles_ == 1) {
+      for (int y = 0; y < kBlockSize; ++y)
+        for (int x = 0; x < kBlockSize; ++x)
+          first[target.stride * y + x] = value(y * kBlockSize + x);
+      return;
     }
-    if (run_.n == 0) begin(f);
-    ids_[run_.triangle_count] = f.id;
-    SurfaceRun::Triangle& t = run_.add_triangle(*f.planes);
-    if (run_.normal_matrix != nullptr) {
-      Vec3d normals[3];
-      request_.surface->normals_at_corners(f, normals);
-      for (int c = 0; c < 3; ++c) set(t.normal[c], normals[c]);
-    }
-    if (run_.object_to_world != nullptr)
-      for (int c = 0; c < 3; ++c) set(t.position[c], positions_->wide(f.vertex[c]));
-    return run_.triangle_count - 1;
+    for (int k = 0; k < n_; ++k) first[target.stride * (order_[k] / 8) + order_[k] % 8] = value(k);
   }
 
-  void begin(const SeenFragment& f) {
-    const Targets& t = request_.targets;
-    draw_ = f.draw;
-    copy_ = f.copy;
-    if (!t.positions.empty()) {
-      const InstanceView& instance = request_.surface->instance(f.draw, f.copy);
-      run_.object_to_world = &instance.object_to_world;
-      positions_ = vertices_of(instance.geometry).positions;
+  /// The pixels of a triangle one behind the other, the triangles by their first pixels.
+  void sort() {
+    int next[64];
+    if (triangles_ > 1) {
+      for (int t = 0, sum = 0; t < triangles_; ++t) {
+        next[t] = sum;
+        sum += pixels_of_[t];
+      }
+    } else {
+      next[0] = 0;
     }
-    if (t.normals.empty() && t.camera_normals.empty()) return;
-    const LitDraw& lit = request_.surface->lit.draws[f.draw];
+    for (int k = 0; k < n_; ++k) {
+      const std::uint8_t place = place_of_[k], pixel = pixel_of_[k];
+      const int to = next[number_of_[place]]++;
+      order_[to] = pixel;
+      run_.x[to] = block_.x0 + pixel % kBlockSize + 0.5;
+      run_.y[to] = block_.y0 + pixel / kBlockSize + 0.5;
+      run_.place[to] = std::int64_t{place} * SurfaceRun::kStride;
+    }
+    run_.n = n_;
+  }
+
+  /// Finds a triangle anew and keeps it. Whether it is one.
+  bool fetch(std::uint64_t id, std::size_t place) {
+    if (draw_ == nullptr || id - draw_->first_id >= draw_->primitive_count)
+      draw_ = &frame_.draw_of(id);
+    if (draw_->topology != Topology::triangles || draw_->quadrics != nullptr) return false;
+    TriangleCache::Owner& owner = cache_.owners[place];
+    if (owner.run == cache_.runs) finish();  // which lanes still need
+    const Draw::OfCopy of = draw_->of_copy(id - draw_->first_id);
+    cache_.ids[place] = id;
+    owner = {static_cast<std::size_t>(draw_ - frame_.draws.data()), of.copy, 0};
+    found_.draw = owner.draw;
+    found_.triangle = of.primitive;
+    draw_->vertices(id - draw_->first_id, found_.vertex);
+    const WeightPlanes w = weight_planes(frame_, *draw_, found_.vertex);
+    if (draw_->is_copied())
+      for (std::uint32_t& v : found_.vertex) v %= draw_->copies.vertices;
+    SurfaceRun::Triangle& t = cache_.triangles[place];
+    t.x0 = w.x0;
+    t.y0 = w.y0;
+    for (int c = 0; c < 3; ++c) {
+      t.r[c] = w.r[c];
+      t.p[c] = w.p[c];
+      t.q[c] = w.q[c];
+    }
+    if (wants_normals()) {
+      Vec3d normals[3];
+      request_.surface->normals_at_corners(found_, normals);
+      for (int c = 0; c < 3; ++c) set(t.normal[c], normals[c]);
+    }
+    if (request_.targets.positions.empty()) return true;
+    const InstanceView& instance = request_.surface->instance(owner.draw, of.copy);
+    const ArrayView<Vec3>& positions = *vertices_of(instance.geometry).positions;
+    for (int c = 0; c < 3; ++c) set(t.position[c], positions.wide(found_.vertex[c]));
+    return true;
+  }
+
+  /// The first pixel of a triangle in this run. What is of another instance begins one of its own.
+  void join(std::size_t place) {
+    TriangleCache::Owner& owner = cache_.owners[place];
+    if (n_ > 0 && (owner.draw != run_draw_ || owner.copy != run_copy_)) finish();
+    if (n_ == 0) begin(owner.draw, owner.copy);
+    owner.run = cache_.runs;
+    number_of_[place] = static_cast<std::uint8_t>(triangles_);
+    pixels_of_[triangles_++] = 0;
+  }
+
+  void begin(std::size_t draw, std::uint64_t copy) {
+    run_draw_ = draw;
+    run_copy_ = copy;
+    if (!request_.targets.positions.empty())
+      run_.object_to_world = &request_.surface->instance(draw, copy).object_to_world;
+    if (!wants_normals()) return;
+    const LitDraw& lit = request_.surface->lit.draws[draw];
     run_.normal_matrix = lit.normal_matrix;
-    if (f.copy == 0) return;
-    of_copy_ = lit.of(request_.surface->instance(f.draw, f.copy));
+    if (copy == 0) return;
+    of_copy_ = lit.of(request_.surface->instance(draw, copy));
     run_.normal_matrix = of_copy_.normal_matrix;
   }
 
+  [[nodiscard]] bool wants_normals() const {
+    return !request_.targets.normals.empty() || !request_.targets.camera_normals.empty();
+  }
   static void set(double (&to)[3], Vec3d v) {
     to[0] = v.x;
     to[1] = v.y;
@@ -176,48 +295,59 @@ class RunStorer {
   const FrameRequest& request_;
   const VisibleBlock& block_;
   SurfaceLanes lanes_;
-  SurfaceLocator locator_;
+  std::optional<SurfaceLocator> locator_;  ///< of what is stored one by one
   const FrameGeometry& frame_;
-  CornerNormals corners_;   ///< of what is stored one by one
-  std::size_t draw_ = 0;    ///< of the run
-  std::uint64_t copy_ = 0;  ///< the same
-  LitDraw of_copy_;         ///< the same, if it is not its draw's first
-  const ArrayView<Vec3>* positions_ = nullptr;
-  std::uint64_t ids_[64];  ///< of the run's triangles
-  int triangle_of_[64];    ///< of each pixel of the block; -1: none of this run
-  int pixels_[64];         ///< of the block, of each of the run
-  SurfaceRun run_;
+  TriangleCache& cache_;
+  const Draw* draw_ = nullptr;  ///< of what was fetched last
+  SeenFragment found_;          ///< the same: its triangle and vertices
+  CornerNormals corners_;       ///< of what is stored one by one
+  std::size_t run_draw_ = 0;    ///< whose pixels the run has
+  std::uint64_t run_copy_ = 0;
+  LitDraw of_copy_;  ///< the same, if it is not its draw's first
+  int n_ = 0;        ///< pixels of the run
+  int triangles_ = 0;
+  std::uint8_t place_of_[64], pixel_of_[64];        ///< of the run's pixels: in cache and block
+  std::uint8_t order_[64];                          ///< pixels of the block, as lanes have them
+  std::uint8_t pixels_of_[64];                      ///< how many, of the run's triangles
+  std::uint8_t number_of_[TriangleCache::kPlaces];  ///< in the run
+  SurfaceRun& run_;
 };
+
+/// A thread's. Large, but made once: frames tell themselves apart by their numbers.
+TriangleCache& triangle_cache() {
+  static thread_local TriangleCache cache;
+  return cache;
+}
 
 }  // namespace
 
 void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
                     const VisibleBlock& block, std::uint64_t touched) noexcept {
   const Targets& t = request.targets;
-  if (!t.instances.empty() || !t.primitives.empty()) store_numbers(request, frame, block, touched);
+  if (!t.instances.empty() || !t.primitives.empty() || !t.instances32.empty() ||
+      !t.primitives32.empty())
+    store_numbers(request, frame, block, touched);
   if (!t.view_depth.empty() || !t.distance.empty()) store_distances(request, block, touched);
   if (t.barycentrics.empty() && t.positions.empty() && t.normals.empty() &&
       t.camera_normals.empty() && t.albedo.empty() && t.scalars.empty())
     return;
-  CornerNormals corners;
-  const auto store = [&](const SeenFragment* f, int i) {
-    store_point(request, frame, f, block.x0 + i % kBlockSize, block.y0 + i / kBlockSize, corners);
-  };
-  for (std::uint64_t m = touched & ~block.covered; m != 0; m &= m - 1)
-    store(nullptr, std::countr_zero(m));
+  if (const std::uint64_t empty = touched & ~block.covered; empty != 0)
+    store_nothing(t, empty, block.x0, block.y0);
   const std::uint64_t seen = touched & block.covered;
   if (seen == 0) return;
   const SurfaceLanes lanes = surface_lanes(request.isa);
   if (lanes != nullptr && t.albedo.empty() && t.scalars.empty()) {
-    RunStorer run(request, frame, block, lanes);
+    RunStorer run(request, frame, block, lanes, triangle_cache());
     for (std::uint64_t m = seen; m != 0; m &= m - 1) run.add(std::countr_zero(m));
     run.finish();
     return;
   }
   SurfaceLocator locator(frame, request.samples, !t.albedo.empty());
+  CornerNormals corners;
   for (std::uint64_t m = seen; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    store(&locator.locate(block.keys[i], block.x0, block.y0, i), i);
+    store_point(request, frame, locator.locate(block.keys[i], block.x0, block.y0, i),
+                block.x0 + i % kBlockSize, block.y0 + i / kBlockSize, corners);
   }
 }
 

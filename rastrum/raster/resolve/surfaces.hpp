@@ -11,8 +11,7 @@
 
 namespace rastrum::raster {
 
-/// What distances and numbers are where nothing is.
-inline constexpr float kNoDistance = std::numeric_limits<float>::infinity();
+/// What numbers are where nothing is.
 inline constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
 
 /// Of a block its 64 values, but what is not `touched`.

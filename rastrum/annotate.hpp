@@ -1,0 +1,98 @@
+// A frame and what is drawn over it, in one call: occlusion, eye-dome lighting, silhouettes, edges,
+// a box with numbers, axes, a bar, words. What each of these is: effects.hpp and overlay.hpp
+// (docs/overlay.md, decision 0064).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include <rastrum/effects.hpp>
+#include <rastrum/frame.hpp>
+#include <rastrum/overlay.hpp>
+#include <rastrum/render.hpp>
+
+namespace rastrum {
+
+/// What is drawn over a picture, in this order. Lengths follow the picture's size where they are
+/// not given.
+struct Annotations {
+  std::optional<AmbientOcclusion> occlusion{};  ///< radius 0: 0.15 of the scene's
+  /// radius_px 0: by the picture's smaller side, 1/360 of it from 1 to 64.
+  std::optional<EyeDome> dome{};
+  std::optional<Silhouettes> silhouettes{};
+  struct Edges {
+    double angle_degrees = 0;  ///< as SceneEdges
+    double width_px = 1;       ///< (0, 64]
+    bool operator==(const Edges&) const = default;
+  };
+  std::optional<Edges> edges{};  ///< of the meshes, as black lines
+  bool bounds = false;           ///< the box of the vertices in use
+  bool axes = false;             ///< in the bottom left corner
+  struct Bar {
+    std::string title{}, unit{};
+    bool nan = false;  ///< with a swatch of ScalarMapping::nan
+  };
+  std::optional<Bar> bar{};  ///< of SceneView::scalar_mappings[0]
+  std::string title{};       ///< UTF-8, with \n between lines
+  /// At most four: in the bottom right corner, the top left, the top right, the bottom left.
+  std::vector<std::string> captions{};
+  double text_scale = 1;  ///< of all words and lines of these, (0, 100]
+
+  /// Whether anything is drawn.
+  [[nodiscard]] bool any() const;
+};
+
+/// Throws Error{invalid_argument} for more than four captions and a text_scale out of range. The
+/// options of effects are checked by these.
+void check(const Annotations& annotations);
+
+/// A camera that leaves a margin for the numbers of `bounds` (overlay::room_for_bounds), or for `bar`
+/// (1.25 times as much is seen), around the scene that it was fitted to. As it is where neither is
+/// drawn. O(vertices) for bounds.
+[[nodiscard]] Camera with_room(const Annotations& annotations, Camera camera,
+                               const SceneView& scene, int width, int height);
+
+/// The look of all words on a background: Annotations::text_scale, dark on a light ground.
+[[nodiscard]] overlay::Look look_of(const Annotations& annotations, Vec4 background);
+/// Title and captions alone, for pictures that are of no scene.
+void draw_words(const Annotations& annotations, const overlay::Canvas& canvas,
+                const overlay::Look& look);
+
+/// Draws over frames; keeps threads and the images that the drawing looks at. One call at a time.
+class Annotator {
+ public:
+  /// `threads` 0: all. Throws Error{no_device} for an instruction set that is not there.
+  explicit Annotator(int threads = 0, std::optional<Isa> isa = {});
+  ~Annotator();
+  Annotator(Annotator&&) noexcept;
+  Annotator& operator=(Annotator&&) noexcept;
+
+  /// A frame by `renderer`, and `annotations` in its colours: Targets::color8, Targets::color or
+  /// both; the other targets are as without. What the drawing looks at and `targets` lack is found
+  /// beside them (view depth, camera normals, ids, depth). `edges`: of this scene by
+  /// Annotations::Edges::angle_degrees, for who draws many frames; else they are looked for in
+  /// each. The same bits for every number of threads and instruction set. Throws
+  /// Error{invalid_argument} without colours, as check() and for a bar of a scene without numbers;
+  /// else as Renderer::render.
+  FrameStats render(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                    const FrameOptions& frame, const Annotations& annotations,
+                    const Targets& targets, const SceneEdges* edges = nullptr,
+                    std::stop_token stop = {});
+
+  /// The same in two steps, for who draws the frame in another way (several passes, ranks). Adds
+  /// to `targets` images of this object, which the next call may reuse.
+  void add_targets(const Annotations& annotations, int width, int height, Targets& targets);
+  /// Into the colours of `targets`, which hold a frame with all that add_targets() added. Their
+  /// no_distance must be infinity.
+  void draw(const Annotations& annotations, const SceneView& scene, const Camera& camera,
+            Vec4 background, const Targets& targets, const SceneEdges* edges = nullptr);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rastrum

@@ -1,0 +1,189 @@
+// What the program, Python and the window draw over a frame: which images it looks at, what comes
+// above what, and the sizes that nobody gave.
+#include <rastrum/annotate.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include <rastrum/core/elementary.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/parallel/device.hpp>
+
+namespace rastrum {
+namespace {
+
+/// An image of that size, the old one where it has it.
+template <class T>
+ImageView<T> sized(Image<T>& image, int width, int height) {
+  if (image.width() != width || image.height() != height) image = Image<T>(width, height);
+  return image.view();
+}
+
+/// As the camera around a sphere has it (fit_camera), which --fit sphere fills the picture with.
+double radius_of(const SceneView& scene) {
+  constexpr float kFov = 1;
+  const Camera fit = fit_camera(scene, kFov, false);
+  return length(Vec3d(fit.eye) - Vec3d(fit.target)) * elementary::sin(double{kFov} / 2);
+}
+
+}  // namespace
+
+bool Annotations::any() const {
+  return occlusion || dome || silhouettes || edges || bounds || axes || bar || !title.empty() ||
+         !captions.empty();
+}
+
+void check(const Annotations& a) {
+  if (a.captions.size() > 4)
+    throw Error(Errc::invalid_argument, "Annotations::captions: there are four captions at most");
+  if (!(a.text_scale > 0 && a.text_scale <= 100))
+    throw Error(Errc::invalid_argument, "Annotations::text_scale must lie in 0 to 100, got " +
+                                            std::to_string(a.text_scale));
+}
+
+Camera with_room(const Annotations& a, Camera camera, const SceneView& scene, int width,
+                 int height) {
+  double room = a.bar ? 1.25 : 1;
+  if (a.bounds)
+    if (const Bounds box = bounds(scene); box.vertices_in_use != 0)
+      room = overlay::room_for_bounds(camera, box.min, box.max, width, height);
+  if (room == 1) return camera;
+  camera.orthographic_height = static_cast<float>(camera.orthographic_height * room);
+  const double half = room * elementary::tan(static_cast<double>(camera.fov_rad) / 2);
+  camera.fov_rad = static_cast<float>(2 * elementary::atan(half));
+  return camera;
+}
+
+overlay::Look look_of(const Annotations& a, Vec4 background) {
+  overlay::Look look = overlay::look_on(background);
+  look.scale = a.text_scale;
+  return look;
+}
+
+void draw_words(const Annotations& a, const overlay::Canvas& canvas, const overlay::Look& look) {
+  using overlay::Corner;
+  constexpr Corner kCorners[] = {Corner::bottom_right, Corner::top_left, Corner::top_right,
+                                 Corner::bottom_left};
+  check(a);
+  if (!a.title.empty()) overlay::draw_title(canvas, a.title, look);
+  for (std::size_t i = 0; i < a.captions.size(); ++i)
+    overlay::draw_caption(canvas, a.captions[i], kCorners[i], look);
+}
+
+struct Annotator::Impl {
+  int threads;
+  std::optional<Isa> isa;
+  std::optional<Effects> effects;  ///< once there are some
+  Image<float> view_depth, depth, factor;
+  Image<Vec3> normals;
+  Image<std::int64_t> ids, instances;
+
+  void draw_effects(const Annotations& a, const SceneView& scene, const Camera& camera,
+                    const Targets& targets, const overlay::Canvas& canvas,
+                    const SceneEdges* edges) {
+    if (!a.occlusion && !a.dome && !a.silhouettes && !a.edges) return;
+    if (!effects) effects.emplace(threads, isa);
+    const int width = canvas.width(), height = canvas.height();
+    const ImageView<float> to = sized(factor, width, height);
+    const Surface surface{targets.view_depth, targets.camera_normals, targets.instances};
+    const auto darken = [&] { effects->darken(canvas.color8, canvas.color, to); };
+    if (a.occlusion) {
+      AmbientOcclusion o = *a.occlusion;
+      if (o.radius == 0) o.radius = 0.15 * radius_of(scene);
+      // By depth alone: the frame need not find normals.
+      effects->ambient_occlusion({.view_depth = targets.view_depth}, camera, o, to);
+      darken();
+    }
+    if (a.dome) {
+      EyeDome o = *a.dome;
+      // As wide in a large picture as in a small one.
+      if (o.radius_px == 0) o.radius_px = std::clamp(std::min(width, height) / 360, 1, 64);
+      effects->eye_dome(surface, camera, o, to);
+      darken();
+    }
+    if (a.silhouettes) {
+      effects->silhouettes(surface, camera, *a.silhouettes, to);
+      darken();
+    }
+    if (a.edges) {
+      std::optional<SceneEdges> own;
+      if (edges == nullptr) edges = &own.emplace(scene, a.edges->angle_degrees);
+      effects->edges(targets.ids, *edges, camera, a.edges->width_px, to);
+      darken();
+    }
+  }
+};
+
+Annotator::Annotator(int threads, std::optional<Isa> isa) : impl_(std::make_unique<Impl>()) {
+  if (isa) static_cast<void>(choose_isa(isa));
+  impl_->threads = threads;
+  impl_->isa = isa;
+}
+Annotator::~Annotator() = default;
+Annotator::Annotator(Annotator&&) noexcept = default;
+Annotator& Annotator::operator=(Annotator&&) noexcept = default;
+
+void Annotator::add_targets(const Annotations& a, int width, int height, Targets& targets) {
+  const auto add = [&](bool wanted, auto& target, auto& image) {
+    if (wanted && target.empty()) target = sized(image, width, height);
+  };
+  add(a.occlusion || a.dome || a.silhouettes, targets.view_depth, impl_->view_depth);
+  add(a.silhouettes.has_value(), targets.camera_normals, impl_->normals);
+  add(a.silhouettes.has_value(), targets.instances, impl_->instances);
+  add(a.edges.has_value(), targets.ids, impl_->ids);
+  add(a.bounds, targets.depth, impl_->depth);
+}
+
+void Annotator::draw(const Annotations& a, const SceneView& scene, const Camera& camera,
+                     Vec4 background, const Targets& targets, const SceneEdges* edges) {
+  check(a);
+  if (!a.any()) return;
+  const overlay::Canvas canvas{.color8 = targets.color8, .color = targets.color};
+  if (canvas.color8.empty() && canvas.color.empty())
+    throw Error(Errc::invalid_argument,
+                "Annotations: are drawn into Targets::color8 or Targets::color; both are empty");
+  if (a.bar && scene.scalar_mappings.empty())
+    throw Error(Errc::invalid_argument,
+                "Annotations::bar: is of things with scalars; none has any");
+  impl_->draw_effects(a, scene, camera, targets, canvas, edges);
+  const overlay::Look look = look_of(a, background);
+  if (a.bounds)
+    if (const Bounds box = bounds(scene); box.vertices_in_use != 0)
+      overlay::draw_bounds(canvas, camera, box.min, box.max, targets.depth, look);
+  if (a.axes) overlay::draw_axes(canvas, camera, overlay::Corner::bottom_left, look);
+  if (a.bar) {
+    const ScalarMapping& mapping = scene.scalar_mappings[0];
+    overlay::ScalarBar bar = overlay::scalar_bar(mapping, scalar_colors(scene));
+    bar.title = a.bar->title;
+    bar.unit = a.bar->unit;
+    if (a.bar->nan) bar.nan = mapping.nan;
+    overlay::draw_scalar_bar(canvas, bar, look);
+  }
+  draw_words(a, canvas, look);
+}
+
+FrameStats Annotator::render(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                             const FrameOptions& frame, const Annotations& a,
+                             const Targets& targets, const SceneEdges* edges,
+                             std::stop_token stop) {
+  check(a);
+  if (targets.color8.empty() && targets.color.empty())
+    throw Error(Errc::invalid_argument,
+                "Annotations: are drawn into Targets::color8 or Targets::color; both are empty");
+  Targets all = targets;
+  add_targets(a, frame.width, frame.height, all);
+  // What effects look at.
+  all.no_distance = std::numeric_limits<float>::infinity();
+  FrameStats stats = renderer.render(scene, camera, frame, all, std::move(stop));
+  draw(a, scene, camera, frame.background, all, edges);
+  if (targets.no_distance == all.no_distance) return stats;
+  for (const ImageView<float>& image : {targets.view_depth, targets.distance})
+    for (int y = 0; y < image.height && !image.empty(); ++y)
+      std::replace(image.row(y), image.row(y) + image.width, all.no_distance, targets.no_distance);
+  return stats;
+}
+
+}  // namespace rastrum
