@@ -4,9 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -17,10 +15,13 @@
 #include <rastrum/shapes.hpp>
 #include <rastrum/surfaces.hpp>
 
+#include "tests/support/light_oracle.hpp"
 #include "tests/support/refused.hpp"
 
 namespace rastrum::test::lights_test {
 namespace {
+
+using namespace light_oracle;
 
 constexpr int kSize = 96;
 
@@ -62,60 +63,6 @@ FrameOptions lit_by(std::vector<Light> lights, Shader shader) {
   frame.shader = shader;
   frame.lights = std::move(lights);
   return frame;
-}
-
-Light light(decltype(Light::kind) kind, float intensity = 1, Vec3 color = {1, 1, 1}) {
-  Light l;
-  l.kind = kind;
-  l.intensity = intensity;
-  l.color = color;
-  return l;
-}
-
-// The formulas of docs/light.md.
-
-Vec3d wide(Vec3 v) {
-  return {v.x, v.y, v.z};
-}
-Vec3d unit(Vec3d v) {
-  return v * (1 / length(v));
-}
-Vec3d times(Vec3d a, Vec3d b) {
-  return {a.x * b.x, a.y * b.y, a.z * b.z};
-}
-
-struct Arrived {
-  Vec3d to_light;
-  Vec3d radiance;
-};
-/// From around: what a direction gathers.
-std::optional<Vec3d> around(const Light& l, Vec3d d) {
-  const Vec3d full = wide(l.color) * l.intensity;
-  if (std::holds_alternative<AmbientLight>(l.kind)) return full;
-  if (const auto* const h = std::get_if<HemisphereLight>(&l.kind)) {
-    const double share = (1 + dot(unit(wide(h->up)), d)) / 2;
-    return full * share + wide(h->below) * (l.intensity * (1 - share));
-  }
-  return {};
-}
-Arrived arrived(const Light& l, Vec3d p) {
-  const Vec3d full = wide(l.color) * l.intensity;
-  if (const auto* const d = std::get_if<DirectionalLight>(&l.kind))
-    return {unit(wide(d->direction)) * -1, full};
-  const auto* const point = std::get_if<PointLight>(&l.kind);
-  const auto* const spot = std::get_if<SpotLight>(&l.kind);
-  const Vec3d away = (point != nullptr ? point->position : spot->position) - p;
-  const double range = point != nullptr ? point->range : spot->range;
-  const double d = length(away);
-  double share = std::max(std::min(1 - std::pow(d / range, 4), 1.0), 0.0) / (d * d);
-  if (spot != nullptr) {
-    const double inner = std::cos(spot->inner_rad), outer = std::cos(spot->outer_rad);
-    const double scale = 1 / std::max(0.001, inner - outer);
-    const double cosine = dot(unit(away) * -1, unit(wide(spot->direction)));
-    const double cone = std::clamp(cosine * scale - outer * scale, 0.0, 1.0);
-    share *= cone * cone;
-  }
-  return {unit(away), full * share};
 }
 
 /// Of `lambert` and `phong`.
@@ -168,11 +115,6 @@ Vec3d expected_linear(const std::vector<Light>& lights, const Material& m, Vec3d
     sum = sum + times(times(diffuse, one - f) + f * specular, in.radiance) * nl;
   }
   return sum;
-}
-
-double display(double linear) {
-  const double x = std::clamp(linear, 0.0, 1.0);
-  return x < 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
 }
 
 /// Calls f(x, y, place, to the viewer) where the centre of a pixel sees the ball.
