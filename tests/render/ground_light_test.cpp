@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <rastrum/core/elementary.hpp>
 #include <rastrum/digest.hpp>
 #include <rastrum/environment.hpp>
 #include <rastrum/on_terrain.hpp>
@@ -32,7 +33,7 @@ using terrain::Tiling;
 constexpr int kMap = 48;
 
 double wave(double x, double y) {
-  return 6 + 5 * std::sin(x * 0.31) * std::cos(y * 0.23) + 0.04 * x;
+  return 6 + 5 * elementary::sin(x * 0.31) * elementary::cos(y * 0.23) + 0.04 * x;
 }
 
 /// Round hills with one hole, under a colour of its own for each cell.
@@ -46,6 +47,30 @@ HeightMap hills() {
     }
   map.heights(20, 30) = std::numeric_limits<float>::quiet_NaN();
   return map;
+}
+
+/// Red grows to the east, green upwards, blue to the south. Made once: that takes its time.
+const Environment& directions() {
+  static const Environment environment([] {
+    Image<Vec3> picture(256, 128);
+    for (int y = 0; y < 128; ++y)
+      for (int x = 0; x < 256; ++x) {
+        const auto [flat, up] = elementary::sin_cos((y + 0.5) / 128 * std::numbers::pi);
+        // 0: −z, π/2: +x
+        const auto [east, north] =
+            elementary::sin_cos(((x + 0.5) / 256 - 0.5) * 2 * std::numbers::pi);
+        picture(x, y) =
+            Vec3(Vec3d{0.5 + 0.5 * flat * east, 0.5 + 0.5 * up, 0.5 - 0.5 * flat * north});
+      }
+    return picture;
+  }()
+                                           .view());
+  return environment;
+}
+
+const Environment& blue_sky() {
+  static const Environment environment(builtin_environment(BuiltinEnvironment::sky).view());
+  return environment;
 }
 
 /// Lights of every kind, alone and together.
@@ -179,7 +204,7 @@ TEST(GroundLights, SayTheSun) {
 
 TEST(GroundLights, CastTheShadowsOfTerrains) {
   HeightMap map = hills();
-  const terrain::Sun sun{250, 15};
+  const terrain::Sun sun{250, 30};
   const std::vector<Light> one{sunlight(sun, 1)};
   const auto open = lit_colors(map, {.lights = one});
   const Image<std::uint8_t> dark = terrain::sharp_shadows(map.heights.view(), sun);
@@ -191,9 +216,9 @@ TEST(GroundLights, CastTheShadowsOfTerrains) {
       ASSERT_EQ(sharp(x, y), dark(x, y) != 0 ? (Rgba8{0, 0, 0, 255}) : open(x, y)) << x << " " << y;
     }
   EXPECT_GT(hidden, 100);
-  EXPECT_LT(hidden, kMap * kMap / 2);
+  EXPECT_LT(hidden, kMap * kMap * 3 / 4);
   // Each light has its own: where both are hidden it is dark, else at most one is left.
-  const terrain::Sun other{70, 15};
+  const terrain::Sun other{70, 30};
   const auto both = lit_colors(
       map, {.lights = {sunlight(sun, 1), sunlight(other, 1)}, .shadows = terrain::Shadows::sharp});
   const Image<std::uint8_t> dark_too = terrain::sharp_shadows(map.heights.view(), other);
@@ -219,8 +244,7 @@ TEST(GroundLights, AreTheSameBitsWhoeverLights) {
   GroundLights ground{.lights = sets_of_lights().back(), .shadows = terrain::Shadows::soft};
   const std::vector<Light> kit = light_kit();
   ground.lights.insert(ground.lights.end(), kit.begin(), kit.end());
-  ground.lights.push_back(
-      light(EnvironmentLight{Environment(builtin_environment(BuiltinEnvironment::sky).view())}));
+  ground.lights.push_back(light(EnvironmentLight{blue_sky()}));
   ground.smooth = true;
   ground.camera = {20, 40, 30, 0.4, 20, 0.2};
   for (const ToneMapping tone : {ToneMapping{}, ToneMapping{Tone::aces, 0.5F}}) {
@@ -370,20 +394,6 @@ TEST(HeightNumbers, AreMappedWhereTheyLie) {
 
 // --- What is around -----------------------------------------------------------------------------
 
-/// Red grows to the east, green upwards, blue to the south.
-Environment directions() {
-  Image<Vec3> picture(512, 256);
-  for (int y = 0; y < 256; ++y)
-    for (int x = 0; x < 512; ++x) {
-      const double up = std::cos((y + 0.5) / 256 * std::numbers::pi);
-      const double flat = std::sin((y + 0.5) / 256 * std::numbers::pi);
-      const double a = ((x + 0.5) / 512 - 0.5) * 2 * std::numbers::pi;  // 0: −z, π/2: +x
-      picture(x, y) = Vec3(
-          Vec3d{0.5 + 0.5 * flat * std::sin(a), 0.5 + 0.5 * up, 0.5 - 0.5 * flat * std::cos(a)});
-    }
-  return Environment(picture.view());
-}
-
 struct Sky {
   terrain::TerrainOptions options;
   terrain::TerrainCamera camera{24, 30, 20, 0.6, 30, 0};
@@ -460,8 +470,7 @@ TEST(TerrainSky, IsTheEnvironmentWhereNoGroundIs) {
 }
 
 TEST(TerrainSky, IsTheSameBitsOnManyThreadsAndTakesTheTone) {
-  std::vector<Light> lights{
-      light(EnvironmentLight{Environment(builtin_environment(BuiltinEnvironment::sky).view())}, 2)};
+  std::vector<Light> lights{light(EnvironmentLight{blue_sky()}, 2)};
   lights.push_back(light(AmbientLight{}));
   Sky one, many, mapped;
   one.camera.roll_rad = many.camera.roll_rad = mapped.camera.roll_rad = 0.2;
