@@ -165,10 +165,16 @@ void set_scalars(const ScalarOptions& s, Scene& scene) {
 void draw_bar(const ScalarOptions& s, const SceneView& scene, const overlay::Canvas& canvas,
               const overlay::Look& look) {
   if (!s.bar()) return;
-  overlay::ScalarBar bar = overlay::scalar_bar(scene.scalar_mappings[0], scalar_colors(scene));
+  draw_bar(s, scene.scalar_mappings[0], scalar_colors(scene), canvas, look);
+}
+
+void draw_bar(const ScalarOptions& s, const ScalarMapping& mapping, const ScalarColors& colors,
+              const overlay::Canvas& canvas, const overlay::Look& look) {
+  if (!s.bar()) return;
+  overlay::ScalarBar bar = overlay::scalar_bar(mapping, colors);
   bar.title = *s.bar_title;
   bar.unit = s.bar_unit;
-  if (s.nan_given) bar.nan = scene.scalar_mappings[0].nan;
+  if (s.nan_given) bar.nan = mapping.nan;
   overlay::draw_scalar_bar(canvas, bar, look);
 }
 

@@ -32,5 +32,7 @@ void set_scalars(const ScalarOptions& s, Scene& scene);
 /// The bar of the scene's first mapping.
 void draw_bar(const ScalarOptions& s, const SceneView& scene, const overlay::Canvas& canvas,
               const overlay::Look& look);
+void draw_bar(const ScalarOptions& s, const ScalarMapping& mapping, const ScalarColors& colors,
+              const overlay::Canvas& canvas, const overlay::Look& look);
 
 }  // namespace rastrum::cli
