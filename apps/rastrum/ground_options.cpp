@@ -55,7 +55,8 @@ void check_lights_of(const TerrainSceneArguments& a, const FrameOptions& frame,
     throw UsageError("--sun",
                      "--lights and --light take its place: say it as one of them, --light " +
                          direction_of(a.light.sun));
-  if (a.dim_sky) throw UsageError("--dim-sky", "is with the sun, whose place other lights take");
+  if (a.dim_sky)
+    throw UsageError("--dim-sky", "the sky dims with the sun, whose place other lights take");
 }
 
 void check_numbers(GroundOptions& ground, const TerrainSceneArguments& a, bool has_colors,
