@@ -14,6 +14,7 @@
 
 #include <rastrum/color_map.hpp>
 #include <rastrum/light.hpp>
+#include <rastrum/overlay.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/terrain.hpp>
 #include <rastrum/terrain_light.hpp>
@@ -64,6 +65,20 @@ void draw_environment_behind(std::span<const Light> lights, const ToneMapping& t
 /// fog. Throws as draw_environment_behind.
 [[nodiscard]] Rgba8 horizon_color(std::span<const Light> lights, const ToneMapping& tone,
                                   const terrain::TerrainCamera& camera = {});
+
+/// overlay::draw_axes over a picture of a terrain: x, height and y. Throws as
+/// terrain::world_to_clip.
+void draw_terrain_axes(const terrain::TerrainOptions& options, const terrain::TerrainCamera& camera,
+                       const terrain::TerrainTargets& picture,
+                       overlay::Corner corner = overlay::Corner::bottom_left,
+                       const overlay::Look& look = {});
+/// overlay::draw_bounds around a map, in cells and in units of which each is so many cells high,
+/// hidden by what is nearer where the picture has depth. Throws Error{invalid_argument} for a
+/// function; as terrain::world_to_clip.
+void draw_terrain_bounds(const terrain::Terrain& map, double cells_a_unit,
+                         const terrain::TerrainOptions& options,
+                         const terrain::TerrainCamera& camera,
+                         const terrain::TerrainTargets& picture, const overlay::Look& look = {});
 
 /// What stands on a terrain, in its world.
 struct TerrainScene {

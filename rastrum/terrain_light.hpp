@@ -107,8 +107,9 @@ inline constexpr int kMaxFiner = 16;
 /// The colours of a map by its heights as numbers, in units of which each is so many cells high;
 /// opaque, whatever the colours' alpha. `finer` times as many texels along each side: heights lie
 /// between the cells' centres then, as MapFilter::bilinear reads them, and are mapped at each
-/// texel, so that steps stay steps. Holes are ScalarColors::nan. Cost: O(cells · finer²) on
-/// `threads` (0: all). Throws Error{invalid_argument} for colours beyond the largest image.
+/// texel, so that steps stay steps; 0: as fine as 2²⁴ texels let it be, 1 to 4. Holes are
+/// ScalarColors::nan. Cost: O(cells · finer²) on `threads` (0: all). Throws Error{invalid_argument}
+/// for colours beyond the largest image.
 [[nodiscard]] Image<Rgba8> colors_of_heights(ImageView<const float> heights,
                                              const ScalarColors& colors, double cells_a_unit = 1,
                                              int finer = 1, Tiling tiling = Tiling::repeat,

@@ -121,34 +121,16 @@ GroundLights ground_lights(const TerrainSceneArguments& a, const FrameOptions& f
 }
 
 void draw_ground_annotations(const GroundOptions& ground, const LoadedTerrain& source,
+                             const terrain::Terrain& terrain,
                              const terrain::TerrainOptions& options,
-                             const terrain::TerrainCamera& camera, ImageView<Rgba8> color,
-                             ImageView<const float> depth, const overlay::Look& look) {
-  constexpr overlay::AxisNames kNames{"x", "height", "y"};
-  const overlay::Canvas canvas{.color8 = color};
-  Camera lens;
-  if (ground.axes || ground.bounds)
-    lens.matrix = terrain::world_to_clip(options, camera, SceneOnTerrain::kNear);
-  if (ground.bounds) {
-    Image<float> reversed(options.width, options.height);
-    for (int y = 0; y < options.height; ++y)
-      for (int x = 0; x < options.width; ++x)
-        reversed(x, y) = terrain::reversed_depth(depth(x, y), SceneOnTerrain::kNear);
-    // Heights as the file has them.
-    Camera in_units = lens;
-    Mat4d units = Mat4d::identity();
-    units.m[1][1] = source.cells_a_unit();
-    in_units.matrix = *lens.matrix * units;
-    const double a = source.lowest() / source.cells_a_unit(),
-                 b = source.highest() / source.cells_a_unit();
-    overlay::draw_bounds(
-        canvas, in_units, {0, std::min(a, b), 0},
-        {static_cast<double>(source.width()), std::max(a, b), static_cast<double>(source.height())},
-        reversed.view(), look, kNames);
-  }
-  if (ground.axes) overlay::draw_axes(canvas, lens, overlay::Corner::bottom_left, look, kNames);
+                             const terrain::TerrainCamera& camera,
+                             const terrain::TerrainTargets& picture, const overlay::Look& look) {
+  if (ground.bounds)
+    draw_terrain_bounds(terrain, source.cells_a_unit(), options, camera, picture, look);
+  if (ground.axes) draw_terrain_axes(options, camera, picture, overlay::Corner::bottom_left, look);
   if (source.numbers() != nullptr)
-    draw_bar(ground.heights, ground.heights.mapping, *source.numbers(), canvas, look);
+    draw_bar(ground.heights, ground.heights.mapping, *source.numbers(), {.color8 = picture.color8},
+             look);
 }
 
 }  // namespace rastrum::cli

@@ -41,10 +41,11 @@ void check_ground(GroundOptions& ground, const TerrainSceneArguments& a, const F
 /// The frame's lights over ground, with the terrain's own shadows.
 [[nodiscard]] GroundLights ground_lights(const TerrainSceneArguments& a, const FrameOptions& frame);
 
-/// The bar, the axes and the box over a finished picture; `depth`: its distances, for the box.
+/// The bar, the axes and the box over a finished picture, whose depth hides the box.
 void draw_ground_annotations(const GroundOptions& ground, const LoadedTerrain& source,
+                             const terrain::Terrain& terrain,
                              const terrain::TerrainOptions& options,
-                             const terrain::TerrainCamera& camera, ImageView<Rgba8> color,
-                             ImageView<const float> depth, const overlay::Look& look);
+                             const terrain::TerrainCamera& camera,
+                             const terrain::TerrainTargets& picture, const overlay::Look& look);
 
 }  // namespace rastrum::cli

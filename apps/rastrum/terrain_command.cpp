@@ -268,8 +268,10 @@ struct TerrainPictures {
   void annotate(const Stage& stage, const terrain::TerrainCamera& camera) {
     const WordOptions& words = stage.arguments.words;
     const overlay::Look look = look_of(words, {});
-    draw_ground_annotations(stage.arguments.ground, stage.source, stage.options, camera,
-                            color.view(), std::as_const(depth).view(), look);
+    terrain::TerrainTargets picture{.color8 = color.view()};
+    if (stage.needs_depth()) picture.depth = depth.view();
+    draw_ground_annotations(stage.arguments.ground, stage.source, stage.ground.terrain(),
+                            stage.options, camera, picture, look);
     if (words.any()) draw_words(words, {.color8 = color.view()}, look);
   }
   /// `number`: of a picture of many.

@@ -111,12 +111,8 @@ void LoadedTerrain::show_numbers(const ScalarMapping& mapping, const TerrainLook
   }
   numbers_.emplace(mapping, in_use);
   if (!is_map()) return;
-  // Steps stay steps between cells, as far as 64 MiB of colours let them.
-  constexpr double kMostTexels = 1 << 24;
-  const double cells = static_cast<double>(width()) * height();
-  const int finer = o.filter != terrain::MapFilter::bilinear
-                        ? 1
-                        : static_cast<int>(std::clamp(std::sqrt(kMostTexels / cells), 1.0, 4.0));
+  // Steps stay steps between cells.
+  const int finer = o.filter == terrain::MapFilter::bilinear ? 0 : 1;
   map_.colors = terrain::colors_of_heights(map_.heights.view(), *numbers_, cells_a_unit_, finer,
                                            o.tiling, o.threads);
 }

@@ -81,8 +81,11 @@ Image<Rgba8> colors_of_heights(ImageView<const float> heights, const ScalarColor
   if (!(std::isfinite(cells_a_unit) && cells_a_unit != 0))
     throw Error(Errc::invalid_argument, "colours of heights: a unit must be some cells high, got " +
                                             std::to_string(cells_a_unit));
+  if (finer == 0 && !heights.empty())
+    finer =
+        static_cast<int>(std::clamp(std::sqrt(0x1p24 / heights.width / heights.height), 1.0, 4.0));
   if (finer < 1 || finer > kMaxFiner)
-    throw Error(Errc::invalid_argument, "colours of heights: finer must lie in 1 to " +
+    throw Error(Errc::invalid_argument, "colours of heights: finer must lie in 0 to " +
                                             std::to_string(kMaxFiner) + ", got " +
                                             std::to_string(finer));
   if (heights.width > kMaxImageSize / finer || heights.height > kMaxImageSize / finer)

@@ -382,13 +382,15 @@ TEST(HeightNumbers, AreMappedWhereTheyLie) {
   for (const Rgba8 c : fine.pixels())
     ASSERT_NE(std::ranges::find(all, c), all.end()) << int{c.r} << " " << int{c.g};
   EXPECT_EQ(fine(3 * 20 + 1, 3 * 30 + 1), all[0]) << "the hole";
+  EXPECT_TRUE(digest(terrain::colors_of_heights(map.heights.view(), colors, 0.2, 0)) ==
+              digest(terrain::colors_of_heights(map.heights.view(), colors, 0.2, 4)));
   const auto refused = [&](const char* part, double unit, int finer) {
     expect_refused(part, [&] {
       static_cast<void>(terrain::colors_of_heights(map.heights.view(), colors, unit, finer));
     });
   };
   refused("a unit", 0, 1);
-  refused("finer", 1, 0);
+  refused("finer", 1, -1);
   refused("finer", 1, 17);
 }
 
