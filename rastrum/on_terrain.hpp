@@ -1,19 +1,86 @@
-// Meshes and sprites on a terrain (paper 3's future work): what `Renderer` draws, composed by depth
-// with a picture of `TerrainRenderer`. Here the two rooms meet, which know nothing of each other.
+// Where the two rooms meet that know nothing of each other, meshes and terrains: ground under the
+// lights that meshes have and what is around it, and meshes and sprites that stand on it (paper 3's
+// future work), which `Renderer` draws, composed by depth with a picture of `TerrainRenderer`.
+// A terrain's world is (x, height, y): x east and y south in cells of the map, which is Rastrum's
+// world with +y up and the map's rows along +z.
 #pragma once
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stop_token>
+#include <vector>
 
+#include <rastrum/color_map.hpp>
+#include <rastrum/light.hpp>
+#include <rastrum/overlay.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/terrain.hpp>
+#include <rastrum/terrain_light.hpp>
+#include <rastrum/tone.hpp>
 
 namespace rastrum {
 
-/// What stands on a terrain. Its world is (x, height, y): x east and y south in cells of the map,
-/// which is Rastrum's world with +y up and the map's rows along +z.
+/// Lights over ground: those of FrameOptions::lights in the terrain's world, in the place of
+/// terrain::Light. Ground is matt, as Shader::lambert has surfaces (docs/light.md): its colours as
+/// display values times what their normal gathers; where `tone` maps light, as Shader::material has
+/// what neither shines nor mirrors, in linear light that is mapped then.
+struct GroundLights {
+  std::vector<Light> lights{};
+  /// Of directional lights, each by itself: what of it a cell sees. `accumulated` leaves √(1 / (1 +
+  /// n)) of it. Lights with a place and those from all around cast none on ground.
+  terrain::Shadows shadows = terrain::Shadows::none;
+  double sun_radius_deg = 0.2666;  ///< of a directional light, for soft shadows
+  terrain::March march{};          ///< of accumulated ones, and of all shadows of functions
+  ToneMapping tone{};
+  bool smooth = false;  ///< as terrain::Light::smooth
+  /// Who looks, of whom Light::of_camera lights are: the ground is lit again where that moves.
+  terrain::TerrainCamera camera{};
+};
+
+/// The colours of a map under these lights, opaque, as terrain::lit_colors gives them: the same
+/// bits for every device, number of threads and instruction set. Cost: the shadows of each
+/// directional light, and O(cells · lights). Throws Error{invalid_argument} for lights that
+/// check_lights refuses, a tone, an ambient, a sun's radius or a march out of range.
+[[nodiscard]] Image<Rgba8> lit_colors(const terrain::HeightMap& map, const GroundLights& lights,
+                                      const terrain::ShadowOptions& options = {});
+
+/// A terrain of a function under these lights, lit where it is seen; else as
+/// terrain::function_terrain. A device leaves it to the CPU.
+[[nodiscard]] terrain::Terrain function_terrain(terrain::HeightFunction function, double low,
+                                                double high, const GroundLights& lights,
+                                                std::optional<ScalarColors> colors = {});
+
+/// Draws the environments among `lights`, as `tone` shows them, where a finished picture of a
+/// terrain has no ground: at an infinite depth. `options` and `camera` are those of the picture
+/// (TerrainStats::camera), of any projection. `threads` 0: all. Throws Error{invalid_argument}
+/// where there is no environment, or the picture has no depth.
+void draw_environment_behind(std::span<const Light> lights, const ToneMapping& tone,
+                             const terrain::TerrainOptions& options,
+                             const terrain::TerrainCamera& camera,
+                             const terrain::TerrainTargets& picture, int threads = 0);
+
+/// What these environments show at the horizon, the mean all around: what far ground fades to in
+/// fog. Throws as draw_environment_behind.
+[[nodiscard]] Rgba8 horizon_color(std::span<const Light> lights, const ToneMapping& tone,
+                                  const terrain::TerrainCamera& camera = {});
+
+/// overlay::draw_axes over a picture of a terrain: x, height and y. Throws as
+/// terrain::world_to_clip.
+void draw_terrain_axes(const terrain::TerrainOptions& options, const terrain::TerrainCamera& camera,
+                       const terrain::TerrainTargets& picture,
+                       overlay::Corner corner = overlay::Corner::bottom_left,
+                       const overlay::Look& look = {});
+/// overlay::draw_bounds around a map, in cells and in units of which each is so many cells high,
+/// hidden by what is nearer where the picture has depth. Throws Error{invalid_argument} for a
+/// function; as terrain::world_to_clip.
+void draw_terrain_bounds(const terrain::Terrain& map, double cells_a_unit,
+                         const terrain::TerrainOptions& options,
+                         const terrain::TerrainCamera& camera,
+                         const terrain::TerrainTargets& picture, const overlay::Look& look = {});
+
+/// What stands on a terrain, in its world.
 struct TerrainScene {
   SceneView scene{};
   /// Indices of instances that turn about their own +y until their +z looks at the picture's plane:
@@ -36,11 +103,13 @@ class SceneOnTerrain {
   /// stood (TerrainStats::camera); both have the same size. A pixel of the scene is seen where it
   /// is nearer than the terrain's sample there, `kNear` / z in float32; of equal depths the
   /// terrain's wins. What is translucent is blended over the terrain, in linear light with
-  /// Shader::material. `picture.depth` must hold the terrain's distances; it is that of the nearest
-  /// surface afterwards, whatever its alpha. Classic pictures, rolled ones and every horizon are
-  /// met by their matrix (terrain::world_to_clip). Throws Error{invalid_argument} for the
-  /// cylindrical projection, Shader::depth, an index of `facing` out of range; else as
-  /// Renderer::render.
+  /// Shader::material, as display values where `frame.tone` maps that light first. Its lights and
+  /// their shadows are of the scene alone; `frame.environment_behind` draws the environment behind
+  /// ground and scene (draw_environment_behind). `picture.depth` must hold the terrain's distances;
+  /// it is that of the nearest surface afterwards, whatever its alpha. Classic pictures, rolled
+  /// ones and every horizon are met by their matrix (terrain::world_to_clip). Throws
+  /// Error{invalid_argument} for the cylindrical projection, Shader::depth, a tone without
+  /// Shader::material, an index of `facing` out of range; else as Renderer::render.
   FrameStats draw(const TerrainScene& scene, const FrameOptions& frame,
                   const terrain::TerrainOptions& options, const terrain::TerrainCamera& camera,
                   const terrain::TerrainTargets& picture, std::stop_token stop = {});

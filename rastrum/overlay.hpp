@@ -6,6 +6,7 @@
 // written by one call at a time.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -162,16 +163,21 @@ struct ScalarBar {
 /// down or, with a logarithm, not above 0, and categories that are not as many as colours.
 void draw_scalar_bar(const Canvas& canvas, const ScalarBar& bar, const Look& look = {});
 
+/// What the axes of the world are called, where it is not x, y and z.
+using AxisNames = std::array<std::string_view, 3>;
+inline constexpr AxisNames kAxisNames{"x", "y", "z"};
+
 /// The directions of x, y and z in a corner: red, green and blue, those that point away behind.
 void draw_axes(const Canvas& canvas, const Camera& camera, Corner corner = Corner::bottom_left,
-               const Look& look = {});
+               const Look& look = {}, const AxisNames& names = kAxisNames);
 
 /// The box from `low` to `high` in the world with ticks: its edges but for those that nothing but
 /// faces towards the viewer meet, hidden where `depth` (reversed, the picture's own; may be empty)
 /// is nearer, and numbers along one silhouette edge of each axis. Throws Error{invalid_argument}
 /// for a box that is not finite or upside down.
 void draw_bounds(const Canvas& canvas, const Camera& camera, Vec3d low, Vec3d high,
-                 ImageView<const float> depth = {}, const Look& look = {});
+                 ImageView<const float> depth = {}, const Look& look = {},
+                 const AxisNames& names = kAxisNames);
 
 /// How many times as much as a camera that is fitted to a scene one sees that has this box and the
 /// numbers around it in its picture (`zoomed`): 1.5, or what the farthest corner needs, up to 3.

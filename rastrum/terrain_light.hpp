@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include <rastrum/color_map.hpp>
 #include <rastrum/config.hpp>
 #include <rastrum/device.hpp>
 #include <rastrum/image.hpp>
@@ -100,6 +101,20 @@ struct Light {
 [[nodiscard]] Image<Rgba8> lit_colors(const HeightMap& map, const Light& light,
                                       const ShadowOptions& options = {});
 
+/// How much finer than the heights colors_of_heights may be.
+inline constexpr int kMaxFiner = 16;
+
+/// The colours of a map by its heights as numbers, in units of which each is so many cells high;
+/// opaque, whatever the colours' alpha. `finer` times as many texels along each side: heights lie
+/// between the cells' centres then, as MapFilter::bilinear reads them, and are mapped at each
+/// texel, so that steps stay steps; 0: as fine as 2²⁴ texels let it be, 1 to 4. Holes are
+/// ScalarColors::nan. Cost: O(cells · finer²) on `threads` (0: all). Throws Error{invalid_argument}
+/// for colours beyond the largest image.
+[[nodiscard]] Image<Rgba8> colors_of_heights(ImageView<const float> heights,
+                                             const ScalarColors& colors, double cells_a_unit = 1,
+                                             int finer = 1, Tiling tiling = Tiling::repeat,
+                                             int threads = 0);
+
 /// Heights of n points of the plane; called from several threads at once.
 using HeightFunction =
     std::function<void(const double* x, const double* y, std::size_t n, float* heights)>;
@@ -107,9 +122,10 @@ using HeightFunction =
 /// A terrain of a function: height_color between `low` and `high`, with slopes by central
 /// differences, in this light. Shadows are by the march of each visible sample (paper 3's
 /// generate_shadowmap with a function), `sharp` dark where any sample hides the sun and `soft`
-/// where more and more do: there are no cells that could be traversed.
+/// where more and more do: there are no cells that could be traversed. `colors`: of the heights, in
+/// the place of height_color; a device then leaves the terrain to the CPU.
 [[nodiscard]] Terrain function_terrain(HeightFunction function, double low, double high,
-                                       const Light& light);
+                                       const Light& light, std::optional<ScalarColors> colors = {});
 
 // Terrains that are functions of the plane, by name; expression.hpp has those of a text.
 

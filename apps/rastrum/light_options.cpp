@@ -26,7 +26,7 @@ std::vector<std::string> parts_of(const std::string& text) {
   return parts;
 }
 
-Vec3 linear(Vec4 display) {
+Vec3 linear_light(Vec4 display) {
   const auto channel = [](float v) {
     return static_cast<float>(linear_from_srgb(static_cast<double>(v)));
   };
@@ -104,13 +104,13 @@ bool set_value(Light& light, const std::string& name, const std::string& value) 
   if (name == "intensity") {
     light.intensity = number(value);
   } else if (name == "color") {
-    light.color = linear(parse_color(kOption, value));
+    light.color = linear_light(parse_color(kOption, value));
   } else if (name == "of") {
     if (value != "camera" && value != "world")
       throw UsageError(kOption, "of= is camera or world, got '" + value + "'");
     light.of_camera = value == "camera";
   } else if (name == "below" && hemisphere != nullptr) {
-    hemisphere->below = linear(parse_color(kOption, value));
+    hemisphere->below = linear_light(parse_color(kOption, value));
   } else if (name == "range" && (point != nullptr || spot != nullptr)) {
     (point != nullptr ? point->range : spot->range) = number(value);
   } else if (name == "towards" && spot != nullptr) {
@@ -165,7 +165,8 @@ std::vector<std::string> tone_names() {
   return {"none", "reinhard", "aces", "neutral"};
 }
 
-void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, const char* group) {
+void add_own_light_options(Parser& app, FrameOptions& frame, LightChoice& choice,
+                           const char* group) {
   std::vector<Light>& lights = frame.lights;
   add(app, "--lights", "NAME",
       "of lambert, phong and material: default: the fixed light of each; headlight: one at the "
@@ -219,6 +220,10 @@ void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, co
   app.add_flag("--environment-behind", frame.environment_behind,
                "what --light environment shows is seen where nothing else is")
       ->group(group);
+}
+
+void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, const char* group) {
+  add_own_light_options(app, frame, choice, group);
   app.add_flag("--shadows", frame.shadows,
                "of directional lights and spots that --lights and --light say")
       ->group(group);

@@ -32,5 +32,8 @@ void add_scalar_options(Parser& app, ScalarOptions& s);
 void check_scalars(const ScalarOptions& s, bool has_colors);
 /// Makes the scene show them. Throws Error for a name that it has not.
 void set_scalars(const ScalarOptions& s, Scene& scene);
+/// The bar of numbers that are no scene's (Annotations::bar is of one's).
+void draw_bar(const ScalarOptions& s, const ScalarMapping& mapping, const ScalarColors& colors,
+              const overlay::Canvas& canvas, const overlay::Look& look);
 
 }  // namespace rastrum::cli

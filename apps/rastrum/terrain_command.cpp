@@ -3,16 +3,19 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include <rastrum/family.hpp>
 #include <rastrum/io.hpp>
+#include <rastrum/on_terrain.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/terrain.hpp>
 
@@ -20,6 +23,7 @@
 #include "arguments.hpp"
 #include "camera_path.hpp"
 #include "commands.hpp"
+#include "ground_options.hpp"
 #include "json_fields.hpp"
 #include "json_file.hpp"
 #include "mp4.hpp"
@@ -39,7 +43,13 @@ using terrain::TerrainStats;
 
 struct TerrainArguments : TerrainSceneArguments {
   TerrainObjectArguments objects;
+  GroundOptions ground;
   WordOptions words;
+  std::function<bool(const char*)> given;  ///< whether an option was
+
+  /// Of the ground and of what stands on it: lights, tone, environment.
+  [[nodiscard]] FrameOptions& frame() { return objects.scene.render; }
+  [[nodiscard]] const FrameOptions& frame() const { return objects.scene.render; }
   std::filesystem::path path;
   std::optional<double> fps;
   std::optional<int> frames;
@@ -102,7 +112,7 @@ void check_path(const TerrainArguments& a) {
   static_cast<void>(read_json(a.path));  // a spoilt file is refused before a large map is read
 }
 
-void check(const TerrainArguments& a) {
+void check(TerrainArguments& a) {
   if (!a.color && !a.depth && !a.stats && !a.hash)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
   if (a.path.empty() && a.fps) throw UsageError("--fps", "is for --path");
@@ -110,9 +120,10 @@ void check(const TerrainArguments& a) {
     throw UsageError("-o", "an .mp4 is drawn along a camera path: give --path");
   if (!a.path.empty()) check_path(a);
   check_terrain_objects(a.objects, a.options);
+  check_ground(a.ground, a, a.frame(), a.objects.scene.lights, a.color || a.hash, a.given);
   check_words(a.words, a.color || a.hash);
-  if (a.words.scale_given && !a.words.any())
-    throw UsageError("--text-scale", "is for --title and --caption");
+  if (a.words.scale_given && !a.words.any() && !a.ground.draws())
+    throw UsageError("--text-scale", "is for --title, --caption, --bar, --axes and --bounds");
   const Output* const outputs[] = {&a.color, &a.depth, &a.stats};
   check_outputs(outputs);
   if (a.hash) check_hash(outputs);
@@ -165,45 +176,103 @@ nlohmann::ordered_json terrain_stats(std::vector<TerrainStats> frames, const Ter
             {"frames", frames.size()}}}};
 }
 
+/// The terrain in its light, lit again where lights move with the camera.
+class LitGround {
+ public:
+  LitGround(const TerrainArguments& a, const LoadedTerrain& source,
+            const terrain::TerrainCamera& camera)
+      : source_(source),
+        options_(a.options),
+        by_sun_(a.frame().lights.empty()),
+        moves_(std::ranges::any_of(a.frame().lights, &Light::of_camera)),
+        lights_(ground_lights(a, a.frame())),
+        lit_(by_sun_ ? source.lit(a.light, a.options) : source.lit(at(camera), a.options)) {}
+
+  [[nodiscard]] const terrain::Terrain& terrain() const { return lit_; }
+  /// As `camera` sees it.
+  const terrain::Terrain& seen_from(const terrain::TerrainCamera& camera) {
+    if (!moves_) return lit_;
+    const std::optional<double> clearance = options_.classic ? 10 : options_.ground_clearance;
+    const terrain::TerrainCamera stands =
+        clearance ? terrain::above_ground(lit_, camera, *clearance, options_.tiling) : camera;
+    if (stands != lights_.camera) lit_ = source_.lit(at(stands), options_);
+    return lit_;
+  }
+
+ private:
+  const GroundLights& at(const terrain::TerrainCamera& camera) {
+    lights_.camera = camera;
+    return lights_;
+  }
+
+  const LoadedTerrain& source_;
+  const TerrainLook& options_;
+  bool by_sun_, moves_;
+  GroundLights lights_;
+  terrain::Terrain lit_;
+};
+
 /// A lit terrain and what draws it; times of loading and lighting for the statistics.
 struct Stage {
+  const TerrainArguments& arguments;
   const LoadedTerrain& source;
-  const terrain::Terrain& terrain;
+  LitGround& ground;
   terrain::TerrainRenderer& renderer;
   const terrain::TerrainOptions& options;
   TerrainObjects* objects;  ///< null: none
   double load_ms, light_ms;
+
+  /// Whether a picture needs the depth of its ground.
+  [[nodiscard]] bool needs_depth() const {
+    return objects != nullptr || arguments.frame().environment_behind || arguments.ground.bounds;
+  }
 };
 
-/// The terrain and what stands on it. Colours alone are timed, but objects need the depth.
+/// The terrain, what is around it and what stands on it. Colours alone are timed, but for what
+/// needs the depth.
 struct TerrainPictures {
   Image<Rgba8> color;
   Image<float> depth;
 
   TerrainPictures(const Stage& stage, bool wants_depth)
       : color(stage.options.width, stage.options.height) {
-    if (wants_depth || stage.objects != nullptr)
-      depth = Image<float>(color.width(), color.height());
+    if (wants_depth || stage.needs_depth()) depth = Image<float>(color.width(), color.height());
   }
   TerrainStats draw(const Stage& stage, const terrain::TerrainCamera& camera) {
     terrain::TerrainTargets targets{.color8 = color.view()};
-    if (stage.objects != nullptr) targets.depth = depth.view();
-    TerrainStats stats = stage.renderer.render(stage.terrain, camera, stage.options, targets);
+    if (stage.needs_depth()) targets.depth = depth.view();
+    TerrainStats stats =
+        stage.renderer.render(stage.ground.seen_from(camera), camera, stage.options, targets);
+    const FrameOptions& frame = stage.arguments.frame();
+    if (frame.environment_behind) {
+      Timeline timeline;
+      const int threads =
+          stage.arguments.options.device == Device::serial ? 1 : stage.arguments.options.threads;
+      draw_environment_behind(frame.lights, frame.tone, stage.options, stats.camera, targets,
+                              threads);
+      const double begin_ms = stats.frame_ms;
+      stats.frame_ms += timeline.now_ms();
+      stats.stages.push_back({"environment", begin_ms, stats.frame_ms});
+    }
     if (stage.objects != nullptr) stage.objects->draw(targets, stats);
     return stats;
   }
-  /// Requires draw() of the same frame, which leaves the depth where there are objects.
+  /// Requires draw() of the same frame, which leaves the depth where something needs it.
   void write_depth(const Stage& stage, const terrain::TerrainCamera& camera, const Output& output,
                    OutputFiles& files) {
-    if (stage.objects == nullptr)
-      stage.renderer.render(stage.terrain, camera, stage.options, {.depth = depth.view()});
+    if (!stage.needs_depth())
+      stage.renderer.render(stage.ground.terrain(), camera, stage.options, {.depth = depth.view()});
     cli::write_depth(files.begin(output), output.format, depth.view());
   }
-  /// Over sky and ground alike: light letters with a dark rim.
-  void write_words(const WordOptions& words) {
-    if (!words.any()) return;
-    const Annotations all = meant(words);
-    draw_words(all, {.color8 = color.view()}, look_of(all, {}));
+  /// Over sky and ground alike: light letters with a dark rim. `camera`: as drawn.
+  void annotate(const Stage& stage, const terrain::TerrainCamera& camera) {
+    const WordOptions& words = stage.arguments.words;
+    const overlay::Look look = look_of(meant(words), {});
+    terrain::TerrainTargets picture{.color8 = color.view()};
+    if (stage.needs_depth()) picture.depth = depth.view();
+    draw_ground_annotations(stage.arguments.ground, stage.source, stage.ground.terrain(),
+                            stage.options, camera, picture, look);
+    if (words.any()) draw_words(meant(words), {.color8 = color.view()}, look);
   }
   /// `number`: of a picture of many.
   void print_hashes(const TerrainArguments& a, std::optional<std::size_t> number) const {
@@ -245,7 +314,7 @@ int run_path(const TerrainArguments& a, const Stage& stage, const terrain::Terra
     progress.show("picture " + std::to_string(i + 1) + " of " + std::to_string(count));
     const terrain::TerrainCamera camera = path.at(times[i]);
     frames.push_back(pictures.draw(stage, camera));
-    pictures.write_words(a.words);
+    pictures.annotate(stage, frames.back().camera);
     OutputFiles files;
     if (video)
       video->add(pictures.color.view());
@@ -269,7 +338,9 @@ int run_path(const TerrainArguments& a, const Stage& stage, const terrain::Terra
 int run(TerrainArguments& a) {
   check(a);
   settle(a);
-  a.options.sky = sky_of(a.options, a.light.sun, a.sky_dims || a.dim_sky);
+  FrameOptions& frame = a.frame();
+  frame.shadows = !frame.lights.empty() && a.light.shadows != Shadows::none;
+  if (frame.lights.empty()) a.options.sky = sky_of(a.options, a.light.sun, a.sky_dims || a.dim_sky);
   Timeline timeline;
   Progress progress(a.quiet);
   // Refuses what cannot be drawn before a large file is read.
@@ -280,7 +351,8 @@ int run(TerrainArguments& a) {
   std::optional<TerrainObjects> objects;
   if (!a.objects.objects.empty()) objects.emplace(a.objects, a.options, timeline, progress);
   progress.show("loading");
-  const LoadedTerrain source(a.input);
+  LoadedTerrain source(a.input);
+  if (!a.ground.heights.name.empty()) source.show_numbers(a.ground.heights.mapping, a.options);
   if (!a.quiet && !source.scale_note().empty()) {
     progress.clear();
     note(source.scale_note());
@@ -288,22 +360,21 @@ int run(TerrainArguments& a) {
   if (!a.quiet) report_missing_glyphs(a.words);
   const double load_ms = timeline.now_ms();
   progress.show("lighting");
-  const terrain::Terrain terrain = source.lit(a.light, a.options);
+  const terrain::TerrainCamera camera = camera_of(a, source);
+  // Far ground in fog becomes what is behind it.
+  if (frame.environment_behind) a.options.sky = horizon_color(frame.lights, frame.tone, camera);
+  LitGround ground(a, source, camera);
   if (objects) {
-    objects->place(terrain);
+    objects->place(ground.terrain());
     if (!a.quiet && !objects->warnings().empty()) {
       progress.clear();
       for (const std::string& w : objects->warnings()) warn(w);
     }
   }
-  const Stage stage{source,
-                    terrain,
-                    renderer,
-                    a.options,
-                    objects ? &*objects : nullptr,
-                    load_ms,
-                    timeline.now_ms() - load_ms};
-  const terrain::TerrainCamera camera = camera_of(a, source);
+  const Stage stage{a,         source,
+                    ground,    renderer,
+                    a.options, objects ? &*objects : nullptr,
+                    load_ms,   timeline.now_ms() - load_ms};
   if (!a.path.empty()) return run_path(a, stage, camera, progress);
 
   TerrainPictures pictures(stage, static_cast<bool>(a.depth));
@@ -313,7 +384,7 @@ int run(TerrainArguments& a) {
     progress.show("rendering frame " + std::to_string(i + 1) + " of " + std::to_string(count));
     frames.push_back(pictures.draw(stage, camera));
   }
-  pictures.write_words(a.words);
+  pictures.annotate(stage, frames.back().camera);
   OutputFiles files;
   if (a.color) io::write_png(files.begin(a.color), pictures.color.view());
   if (a.depth) pictures.write_depth(stage, camera, a.depth, files);
@@ -341,7 +412,9 @@ Command add_terrain_command(Parser& app) {
   add_path(command, *arguments);
   add_terrain_picture(command, *arguments);
   add_terrain_light(command, *arguments);
+  add_ground_lights(command, arguments->frame(), arguments->objects.scene.lights);
   add_terrain_objects(command, arguments->objects);
+  add_ground_options(command, arguments->ground);
   add_word_options(command, arguments->words, "Words");
   add_terrain_machine(command, *arguments);
   add_frames(command, *arguments);
@@ -358,6 +431,12 @@ Command add_terrain_command(Parser& app) {
       "  rastrum terrain --height D1.png --color C1W.png --classic --size 800x450 -o original.png\n"
       "  rastrum terrain --height SainteHelens.dem --tile clamp --sun 250,25 --shadows sharp -o "
       "h.png\n"
+      "  rastrum terrain --height alps.png --light environment:sky --light "
+      "directional:1,-1,0.5:intensity=2 --tone aces --shadows sharp --environment-behind -o "
+      "sky.png\n"
+      "  rastrum terrain --height h.dem --cmap viridis --steps 10 --bar Height --bar-unit m "
+      "--bounds "
+      "-o map.png\n"
       "  rastrum terrain --function noise --filter bilinear --fog 0.002 --distance 2000 -o "
       "noise.png\n"
       "  rastrum terrain --function '30*sin(x/40)*cos(y/40)' --altitude 60 -o eggs.png\n"
@@ -366,7 +445,10 @@ Command add_terrain_command(Parser& app) {
       "  rastrum terrain --height D1.png --mesh 'tower.obj@x=510,y=640,scale=3' --opacity 0.5 \\\n"
       "      --sprite 'tree.png@x=500,y=700,size=9' -o inhabited.png";
   command.footer(footer);
-  return {command, [arguments] { return run(*arguments); }};
+  return {command, [arguments, command] {
+            arguments->given = [command](const char* option) { return command.given(option); };
+            return run(*arguments);
+          }};
 }
 
 }  // namespace rastrum::cli

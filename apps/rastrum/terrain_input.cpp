@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
@@ -87,25 +89,50 @@ LoadedTerrain::LoadedTerrain(const TerrainInput& input) {
               : static_cast<float>(static_cast<double>(h) / grid.units_per_cell);
     if (!std::isfinite(h)) h = std::numeric_limits<float>::quiet_NaN();
   }
+  cells_a_unit_ = scale ? static_cast<double>(static_cast<float>(*scale)) : 1 / grid.units_per_cell;
   const Relief cells = relief_of(grid.heights);
   low_ = cells.low;
   high_ = cells.high;
   if (!(low_ <= high_))
     throw Error(Errc::unsupported, input.height->string() + ": has no height that is a number");
   map_.heights = std::move(grid.heights);
-  if (input.color) map_.colors = io::read_image(*input.color);
+  painted_ = input.color.has_value();
+  if (painted_) map_.colors = io::read_image(*input.color);
+}
+
+void LoadedTerrain::show_numbers(const ScalarMapping& mapping, const TerrainLook& o) {
+  ScalarRange in_use{low_, high_};
+  if (is_map()) {
+    std::vector<double> numbers;
+    numbers.reserve(map_.heights.pixels().size());
+    for (const float h : map_.heights.pixels())
+      numbers.push_back(static_cast<double>(h) / cells_a_unit_);
+    in_use = finite_range(numbers, mapping.logarithmic);
+  }
+  numbers_.emplace(mapping, in_use);
+  if (!is_map()) return;
+  // Steps stay steps between cells.
+  const int finer = o.filter == terrain::MapFilter::bilinear ? 0 : 1;
+  map_.colors = terrain::colors_of_heights(map_.heights.view(), *numbers_, cells_a_unit_, finer,
+                                           o.tiling, o.threads);
 }
 
 terrain::Terrain LoadedTerrain::lit(terrain::Light light, const TerrainLook& o) const {
-  light.hill_shading = map_.colors.empty();
+  light.hill_shading = !painted_;
   light.smooth = o.filter == terrain::MapFilter::bilinear;
-  if (!is_map()) return terrain::function_terrain(function_, low_, high_, light);
+  if (!is_map()) return terrain::function_terrain(function_, low_, high_, light, numbers_);
   terrain::HeightMap map{map_.heights, {}};
   if (light.shadows == terrain::Shadows::none && !light.hill_shading)
     map.colors = map_.colors;
   else
     map.colors = terrain::lit_colors(map_, light, {o.tiling, o.device, o.threads, o.isa});
   return terrain::Terrain(std::move(map));
+}
+
+terrain::Terrain LoadedTerrain::lit(const GroundLights& lights, const TerrainLook& o) const {
+  if (!is_map()) return function_terrain(function_, low_, high_, lights, numbers_);
+  return terrain::Terrain(terrain::HeightMap{
+      map_.heights, lit_colors(map_, lights, {o.tiling, o.device, o.threads, o.isa})});
 }
 
 }  // namespace rastrum::cli

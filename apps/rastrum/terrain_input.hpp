@@ -6,7 +6,9 @@
 #include <optional>
 #include <string>
 
+#include <rastrum/color_map.hpp>
 #include <rastrum/io.hpp>
+#include <rastrum/on_terrain.hpp>
 #include <rastrum/terrain.hpp>
 #include <rastrum/terrain_light.hpp>
 
@@ -32,8 +34,17 @@ class LoadedTerrain {
   /// file and a function, and colours only with a file.
   explicit LoadedTerrain(const TerrainInput& input);
 
+  /// Colours by the heights as numbers, as the file has them, in the place of hypsometric ones.
+  /// Requires that the input had no colours. Throws Error{invalid_argument} for what ScalarColors
+  /// refuses.
+  void show_numbers(const ScalarMapping& mapping, const TerrainLook& options);
+  /// What colours the numbers; null: they are not shown.
+  [[nodiscard]] const ScalarColors* numbers() const { return numbers_ ? &*numbers_ : nullptr; }
+
   /// What is drawn. Where there are no colours, they are by height and slopes are shaded.
   [[nodiscard]] terrain::Terrain lit(terrain::Light light, const TerrainLook& options) const;
+  /// The same under these lights, of which each slope takes what it faces.
+  [[nodiscard]] terrain::Terrain lit(const GroundLights& lights, const TerrainLook& options) const;
 
   [[nodiscard]] bool is_map() const { return !map_.heights.empty(); }
   [[nodiscard]] int width() const { return is_map() ? map_.heights.width() : 1024; }
@@ -41,13 +52,17 @@ class LoadedTerrain {
   /// The range of the heights, in cells; of functions as far as it is known.
   [[nodiscard]] double lowest() const { return low_; }
   [[nodiscard]] double highest() const { return high_; }
+  /// How high one of the file's numbers is.
+  [[nodiscard]] double cells_a_unit() const { return cells_a_unit_; }
   /// What was chosen for want of a scale in the file, a line to show; empty: nothing was.
   [[nodiscard]] const std::string& scale_note() const { return scale_note_; }
 
  private:
   terrain::HeightMap map_;
   terrain::HeightFunction function_;
-  double low_ = 0, high_ = 0;
+  bool painted_ = false;  ///< the input has colours of its own
+  std::optional<ScalarColors> numbers_;
+  double low_ = 0, high_ = 0, cells_a_unit_ = 1;
   std::string scale_note_;
 };
 

@@ -142,6 +142,9 @@ void check_terrain_objects(const TerrainObjectArguments& a,
     throw UsageError(option, "triangles stay straight only with --projection planar");
   if (a.scene.render.shader == Shader::depth)
     throw UsageError("--shader", "depth is of a whole picture; on a terrain take another");
+  if (a.scene.render.tone != ToneMapping{} && a.scene.render.shader != Shader::automatic &&
+      a.scene.render.shader != Shader::material)
+    throw UsageError("--shader", "--tone is of linear light, which material has; take that");
 }
 
 TerrainObjects::TerrainObjects(const TerrainObjectArguments& a, const TerrainLook& options,
@@ -170,8 +173,12 @@ TerrainObjects::TerrainObjects(const TerrainObjectArguments& a, const TerrainLoo
   render.device = options.device == Device::serial ? Device::serial : Device::threads;
   render.threads = options.threads;
   render.isa = options.isa;
+  // Light that is mapped is the material shader's.
+  if (render.shader == Shader::automatic && render.tone != ToneMapping{})
+    render.shader = Shader::material;
   render.shader = shader_of(render.shader, has_materials);
   frame_ = render;
+  frame_.environment_behind = false;  // it lies behind the ground already
   painter_.emplace(family::make_renderer(render, render));
 }
 

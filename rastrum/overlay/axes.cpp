@@ -1,6 +1,7 @@
 // The triad of axes in a corner: the camera's rotation alone, so it never leaves its place.
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include <rastrum/mat.hpp>
 #include <rastrum/overlay.hpp>
@@ -10,7 +11,7 @@ namespace rastrum::overlay {
 namespace {
 
 struct Axis {
-  const char* name;
+  std::string_view name;
   Rgba8 color;
   double x, y, towards;  ///< in the picture, y down; towards the viewer
 };
@@ -34,13 +35,14 @@ void add_arrow(Path& path, double x, double y, const Axis& axis, double length, 
 
 }  // namespace
 
-void draw_axes(const Canvas& canvas, const Camera& camera, Corner corner, const Look& look) {
+void draw_axes(const Canvas& canvas, const Camera& camera, Corner corner, const Look& look,
+               const AxisNames& names) {
   check(canvas);
   const Measures m = measures_of(canvas, look);
   const Mat4d to_camera = world_to_camera(camera);
-  Axis axes[] = {{"x", {226, 74, 61, 255}, 0, 0, 0},
-                 {"y", {104, 178, 62, 255}, 0, 0, 0},
-                 {"z", {72, 134, 235, 255}, 0, 0, 0}};
+  Axis axes[] = {{names[0], {226, 74, 61, 255}, 0, 0, 0},
+                 {names[1], {104, 178, 62, 255}, 0, 0, 0},
+                 {names[2], {72, 134, 235, 255}, 0, 0, 0}};
   for (int i = 0; i < 3; ++i) {
     axes[i].x = to_camera.m[0][i];
     axes[i].y = -to_camera.m[1][i];
@@ -63,7 +65,8 @@ void draw_axes(const Canvas& canvas, const Camera& camera, Corner corner, const 
     style.align_y = AlignY::middle;
     const double across = std::sqrt(axis.x * axis.x + axis.y * axis.y);
     if (across < 0.05) continue;
-    const double reach = across * length + m.letter * 0.65;
+    const double reach = across * length + m.letter * 0.65 +
+                         std::fabs(axis.x / across) * half_of_word(axis.name, m.letter);
     draw_text(canvas, x + axis.x / across * reach, y + axis.y / across * reach, axis.name, style);
   }
 }

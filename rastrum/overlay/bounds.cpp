@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -206,7 +207,8 @@ bool overlap(const Taken& a, const Taken& b) {
 
 /// A number that would lie on one that is there already, as at corners, is left out.
 void draw_labels(const Canvas& canvas, const Box& box, const BoxEdge& edge, Vec2 centre,
-                 const Measures& m, const Look& look, std::vector<Taken>& taken) {
+                 const Measures& m, const Look& look, std::string_view name,
+                 std::vector<Taken>& taken) {
   const Screen a = edge.ends[0], b = edge.ends[1];
   if (edge.length < 2 * m.letter) return;
   // Away from the middle of the box, across the edge.
@@ -240,17 +242,18 @@ void draw_labels(const Canvas& canvas, const Box& box, const BoxEdge& edge, Vec2
     draw_text(canvas, x, y, t.label, style);
   }
   // Beyond the numbers, as far as they reach in that direction.
-  const double out = gap + m.letter * 1.1 + std::fabs(ox) * widest + std::fabs(oy) * m.letter * 0.7;
+  const double out = gap + m.letter * 1.1 +
+                     std::fabs(ox) * (widest + half_of_word(name, m.letter)) +
+                     std::fabs(oy) * m.letter * 0.7;
   style.align_x = AlignX::center;
   style.align_y = AlignY::middle;
-  constexpr const char* kNames[] = {"x", "y", "z"};
-  draw_text(canvas, mx + ox * out, my + oy * out, kNames[edge.axis], style);
+  draw_text(canvas, mx + ox * out, my + oy * out, name, style);
 }
 
 }  // namespace
 
 void draw_bounds(const Canvas& canvas, const Camera& camera, Vec3d low, Vec3d high,
-                 ImageView<const float> depth, const Look& look) {
+                 ImageView<const float> depth, const Look& look, const AxisNames& names) {
   check(canvas);
   check_size(depth, canvas.width(), canvas.height(), "draw_bounds: depth");
   for (const auto& [from, to] : {std::pair{low.x, high.x}, {low.y, high.y}, {low.z, high.z}})
@@ -279,7 +282,8 @@ void draw_bounds(const Canvas& canvas, const Camera& camera, Vec3d low, Vec3d hi
   for (int axis = 0; axis < 3; ++axis)
     if (const auto edge = edge_for_labels(box, axis))
       draw_labels(canvas, box, *edge,
-                  {static_cast<float>(middle->x), static_cast<float>(middle->y)}, m, look, taken);
+                  {static_cast<float>(middle->x), static_cast<float>(middle->y)}, m, look,
+                  names[static_cast<std::size_t>(axis)], taken);
 }
 
 double room_for_bounds(const Camera& fitted, Vec3d low, Vec3d high, int width, int height) {

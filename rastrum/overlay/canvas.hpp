@@ -37,4 +37,10 @@ void fill_with_halo(const Canvas& canvas, const Measures& m, const Look& look, R
   fill(canvas, path, color, test);
 }
 
+/// How far an axis's name reaches to each side of its place, where it is more than a letter, for
+/// which there is room anyway.
+[[nodiscard]] inline double half_of_word(std::string_view name, double size_px) {
+  return name.size() > 1 ? measure_text(name, size_px).width_px / 2 : 0;
+}
+
 }  // namespace rastrum::overlay

@@ -51,9 +51,7 @@ void check(const FrameOptions& o) {
           "samples must be 1, 4, 8 or 16");
   raster::check_clip_planes(o.clip_planes, "the frame: ");
   check_lights(o.lights);
-  check_enum(o.tone.tone, Tone::neutral, "the tone");
-  require(o.tone.exposure_stops >= -32 && o.tone.exposure_stops <= 32,
-          "the exposure must lie in [-32, 32] stops");
+  check_tone(o.tone);
 }
 
 struct Renderer::Impl {

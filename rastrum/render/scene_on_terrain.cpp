@@ -1,5 +1,6 @@
 #include <rastrum/on_terrain.hpp>
 
+#include <algorithm>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -9,6 +10,9 @@
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/turn.hpp>
+#include <rastrum/raster/shade/color.hpp>
+#include <rastrum/render/tone_pass.hpp>
+#include <rastrum/stop.hpp>
 #include <rastrum/terrain.hpp>
 #include <rastrum/transform.hpp>
 
@@ -22,11 +26,23 @@ struct SceneOnTerrain::Impl {
 
   template <class Row>
   void for_each_row(const Row& row);
+  /// Throws where the shader has no linear light to be mapped.
+  [[nodiscard]] static bool maps_light(const SceneView& scene, const FrameOptions& frame) {
+    if (frame.tone == ToneMapping{}) return false;
+    const Shader taken = shader_for(frame.shader, scene);
+    if (taken != Shader::material)
+      throw Error(Errc::invalid_argument,
+                  "what stands on ground whose light is mapped is drawn by "
+                  "the shader 'material', which has linear light, not by '" +
+                      std::string(name(taken)) + "'");
+    return true;
+  }
 
   std::mutex one_at_a_time;
   Renderer renderer;
   std::optional<parallel::Threads> threads;  ///< none: serial
   Image<float> depth;                        ///< reversed
+  Image<Vec4> linear;                        ///< of a frame whose tone is mapped
   std::vector<InstanceView> instances;
 };
 
@@ -37,7 +53,10 @@ void SceneOnTerrain::Impl::for_each_row(const Row& row) {
   if (threads)
     parallel::for_each_index(*threads, rows, call);
   else
-    for (std::size_t y = 0; y < rows; ++y) call(y);
+    for (std::size_t y = 0; y < rows; ++y) {
+      parallel::throw_if_stopped();  // as loops on threads do
+      call(y);
+    }
 }
 
 SceneOnTerrain::SceneOnTerrain(Renderer renderer)
@@ -64,6 +83,7 @@ FrameStats SceneOnTerrain::draw(const TerrainScene& given, const FrameOptions& f
   check_size(picture.depth, width, height, "the depth target");
   check_size(picture.color8, width, height, "the color8 target");
   Image<float>& depth = impl_->depth;
+  Image<Vec4>& linear = impl_->linear;
   if (depth.width() != width || depth.height() != height) depth = Image<float>(width, height);
   std::vector<InstanceView>& instances = impl_->instances;
   Camera view;
@@ -82,15 +102,43 @@ FrameStats SceneOnTerrain::draw(const TerrainScene& given, const FrameOptions& f
   SceneView scene = given.scene;
   scene.instances = instances;
 
+  if (frame.environment_behind)
+    draw_environment_behind(frame.lights, frame.tone, options, camera, picture,
+                            impl_->threads ? impl_->renderer.options().threads : 1);
   impl_->for_each_row([&](int y) {
     for (int x = 0; x < width; ++x)
       depth(x, y) = terrain::reversed_depth(picture.depth(x, y), kNear);
   });
   Targets targets;
-  targets.color8 = picture.color8;
   targets.depth = depth.view();
   targets.over = true;
-  const FrameStats stats = impl_->renderer.render(scene, view, frame, targets);
+  FrameOptions over = frame;
+  over.environment_behind = false;
+  over.tone = {};
+  if (!impl_->maps_light(scene, frame)) {
+    targets.color8 = picture.color8;
+  } else {
+    // Linear light over nothing; it is mapped and then laid over the ground, as over a background.
+    if (linear.width() != width || linear.height() != height) linear = Image<Vec4>(width, height);
+    std::ranges::fill(linear.pixels(), Vec4{});
+    targets.linear = linear.view();
+  }
+  const FrameStats stats = impl_->renderer.render(scene, view, over, targets);
+  if (!targets.linear.empty() && !picture.color8.empty()) {
+    const ToneCurve curve(frame.tone);
+    impl_->for_each_row([&](int y) {
+      for (int x = 0; x < width; ++x) {
+        if (!(linear(x, y).w > 0)) continue;
+        const Vec4 light = raster::straight_from_premultiplied(linear(x, y));
+        const Vec3 display = curve({light.x, light.y, light.z});
+        const Vec4 front =
+            raster::premultiplied_from_straight({display.x, display.y, display.z, light.w});
+        const raster::Backdrop ground =
+            raster::Backdrop::of(raster::straight_from_rgba8(picture.color8(x, y)));
+        picture.color8(x, y) = ground.color8_over(front);
+      }
+    });
+  }
   impl_->for_each_row([&](int y) {
     for (int x = 0; x < width; ++x)
       // What is the terrain's keeps its bits.

@@ -1,23 +1,17 @@
 #include <rastrum/render/surroundings_pass.hpp>
 
-#include <algorithm>
 #include <cstddef>
-#include <variant>
 
 #include <rastrum/error.hpp>
 #include <rastrum/raster/shade/color.hpp>
-#include <rastrum/raster/shade/light_set.hpp>
 #include <rastrum/raster/shade/lit.hpp>
-#include <rastrum/render/tone_pass.hpp>
+#include <rastrum/render/around.hpp>
 
 namespace rastrum {
 
 bool SurroundingsPass::wanted(const FrameOptions& frame, const Targets& targets) {
   if (!frame.environment_behind) return false;
-  const auto is_environment = [](const Light& light) {
-    return std::holds_alternative<EnvironmentLight>(light.kind);
-  };
-  if (std::ranges::none_of(frame.lights, is_environment))
+  if (!has_environment(frame.lights))
     throw Error(Errc::invalid_argument,
                 "the frame's lights have no environment that could be seen behind");
   if (targets.over || targets.load)
@@ -39,9 +33,8 @@ Targets SurroundingsPass::targets(const FrameOptions& frame, const Targets& aske
 
 void SurroundingsPass::draw(const FrameOptions& frame, const Camera& camera, const Targets& asked,
                             parallel::Threads* threads) const {
-  const raster::FrameLights lights(frame.lights, {}, camera, frame.width, frame.height);
+  const Around around(frame.lights, frame.tone, camera, frame.width, frame.height);
   const raster::ViewRays rays = raster::ViewRays::of(camera, frame.width, frame.height);
-  const ToneCurve curve(frame.tone);
   const auto behind = [](Vec4 c, Vec3 light) {
     const float left = 1 - c.w;
     return Vec4{c.x + light.x * left, c.y + light.y * left, c.z + light.z * left, c.w + left};
@@ -53,10 +46,8 @@ void SurroundingsPass::draw(const FrameOptions& frame, const Camera& camera, con
       if (alpha < 1) {
         const Vec3 seen = rays.d + rays.dx * (static_cast<float>(x) + 0.5F) +
                           rays.dy * (static_cast<float>(y) + 0.5F);
-        Vec3 light;
-        for (const raster::Surrounding& s : lights.set().surroundings)
-          light = light + s.at(seen, 0);
-        if (!color_.empty()) color_(x, y) = behind(color_(x, y), curve(light));
+        const Vec3 light = around.light(seen);
+        if (!color_.empty()) color_(x, y) = behind(color_(x, y), around.shown(light));
         if (!asked.linear.empty()) asked.linear(x, y) = behind(asked.linear(x, y), light);
       }
       if (!asked.color8.empty()) asked.color8(x, y) = raster::to_straight_rgba8(color_(x, y));

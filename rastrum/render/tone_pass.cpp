@@ -5,6 +5,7 @@
 #include <string>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/raster/shade/color.hpp>
 
@@ -57,6 +58,12 @@ Vec3 toned(Tone tone, Vec3 c) {
 }
 
 }  // namespace
+
+void check_tone(const ToneMapping& mapping) {
+  check_enum(mapping.tone, Tone::neutral, "the tone");
+  if (!(mapping.exposure_stops >= -32 && mapping.exposure_stops <= 32))
+    throw Error(Errc::invalid_argument, "the exposure must lie in [-32, 32] stops");
+}
 
 ToneCurve::ToneCurve(const ToneMapping& mapping)
     : tone_(mapping.tone),

@@ -8,6 +8,9 @@
 
 namespace rastrum {
 
+/// Throws Error{invalid_argument} for a curve that is none, and an exposure out of range.
+void check_tone(const ToneMapping& mapping);
+
 /// What a display shows of linear light.
 class ToneCurve {
  public:

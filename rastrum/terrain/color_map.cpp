@@ -4,9 +4,14 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/parallel/exec.hpp>
 #include <rastrum/terrain/shadow_ray.hpp>
+#include <rastrum/terrain/under_light.hpp>
 
 namespace rastrum::terrain {
 ToSun ToSun::of(const Sun& sun) {
@@ -37,24 +42,69 @@ Image<Rgba8> colors_by_height(ImageView<const float> heights) {
   return colors;
 }
 
+Vec2 Slopes::at(int x, int y) const {
+  const float own = heights(x, y);
+  const auto height = [&](std::int64_t u, std::int64_t v) {
+    const float h = heights(static_cast<int>(tiled(u, heights.width, tiling)),
+                            static_cast<int>(tiled(v, heights.height, tiling)));
+    return std::isfinite(h) ? h : own;
+  };
+  const std::int64_t i = x, j = y;
+  return {(height(i + 1, j) - height(i - 1, j)) / 2, (height(i, j + 1) - height(i, j - 1)) / 2};
+}
+
 Image<float> hill_shading(ImageView<const float> heights, const Sun& sun, float ambient,
                           Tiling tiling) {
   check_stride(heights, "the height map");
   const ToSun to = ToSun::of(sun);
+  const Slopes slopes{heights, tiling};
   Image<float> light(heights.width, heights.height);
-  const auto at = [&](std::int64_t x, std::int64_t y, float own) {
-    const float h = heights(static_cast<int>(tiled(x, heights.width, tiling)),
-                            static_cast<int>(tiled(y, heights.height, tiling)));
-    return std::isfinite(h) ? h : own;
-  };
   for (int y = 0; y < heights.height; ++y)
     for (int x = 0; x < heights.width; ++x) {
-      const float own = heights(x, y);
-      if (!std::isfinite(own)) continue;
-      light(x, y) = to.shade((at(x + 1, y, own) - at(x - 1, y, own)) / 2,
-                             (at(x, y + 1, own) - at(x, y - 1, own)) / 2, ambient);
+      if (!std::isfinite(heights(x, y))) continue;
+      const Vec2 slope = slopes.at(x, y);
+      light(x, y) = to.shade(slope.x, slope.y, ambient);
     }
   return light;
+}
+
+Rgba8 shown(Vec4 display) {
+  const auto channel = [](float v) {
+    return static_cast<std::uint8_t>((v > 0 ? (v < 1 ? v : 1.0F) : 0.0F) * 255 + 0.5F);
+  };
+  return {channel(display.x), channel(display.y), channel(display.z), 255};
+}
+
+Image<Rgba8> colors_of_heights(ImageView<const float> heights, const ScalarColors& colors,
+                               double cells_a_unit, int finer, Tiling tiling, int threads) {
+  check_stride(heights, "the height map");
+  if (!(std::isfinite(cells_a_unit) && cells_a_unit != 0))
+    throw Error(Errc::invalid_argument, "colours of heights: a unit must be some cells high, got " +
+                                            std::to_string(cells_a_unit));
+  if (finer == 0 && !heights.empty())
+    finer =
+        static_cast<int>(std::clamp(std::sqrt(0x1p24 / heights.width / heights.height), 1.0, 4.0));
+  if (finer < 1 || finer > kMaxFiner)
+    throw Error(Errc::invalid_argument, "colours of heights: finer must lie in 0 to " +
+                                            std::to_string(kMaxFiner) + ", got " +
+                                            std::to_string(finer));
+  if (heights.width > kMaxImageSize / finer || heights.height > kMaxImageSize / finer)
+    throw Error(Errc::invalid_argument, "colours of heights: " + std::to_string(heights.width) +
+                                            "x" + std::to_string(heights.height) + " cells, " +
+                                            std::to_string(finer) +
+                                            " times as fine, are beyond 32768x32768");
+  Image<Rgba8> out(heights.width * finer, heights.height * finer);
+  const std::vector<Tap> across = scaled_taps(heights.width, out.width(), finer > 1, tiling),
+                         down = scaled_taps(heights.height, out.height(), finer > 1, tiling);
+  parallel::Threads exec(threads);
+  parallel::for_each_index(exec, static_cast<std::size_t>(out.height()), [&](std::size_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < out.width(); ++x) {
+      const float h = between(heights, across[static_cast<std::size_t>(x)], down[row]);
+      out(x, y) = shown(colors(static_cast<double>(h) / cells_a_unit));
+    }
+  });
+  return out;
 }
 
 }  // namespace rastrum::terrain

@@ -7,6 +7,7 @@
 #include <rastrum/config.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/terrain_light.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::terrain {
 
@@ -47,9 +48,21 @@ struct ToSun {
   }
 };
 
-/// ToSun::shade of each cell, by central differences within the tiled map; holes next to a cell
+/// How a map rises at its cells: central differences within the tiled map; holes next to a cell
 /// count as its own height.
+struct Slopes {
+  ImageView<const float> heights;
+  Tiling tiling = Tiling::repeat;
+
+  /// Change of the height over a cell to the east and to the south, at a cell that is no hole.
+  [[nodiscard]] Vec2 at(int x, int y) const;
+};
+
+/// ToSun::shade of each cell, by its Slopes; 0 in holes.
 [[nodiscard]] Image<float> hill_shading(ImageView<const float> heights, const Sun& sun,
                                         float ambient, Tiling tiling);
+
+/// As a cell shows what colours its number; opaque.
+[[nodiscard]] Rgba8 shown(Vec4 display);
 
 }  // namespace rastrum::terrain

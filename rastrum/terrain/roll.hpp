@@ -28,6 +28,17 @@ class Roll {
  public:
   Roll(double roll_rad, int width, int height);
 
+  struct Position {
+    double x, y;  ///< px in the upright picture
+  };
+  /// Where in the upright picture the centre of a pixel lies.
+  [[nodiscard]] RASTRUM_HD Position position(int upright_width, int upright_height, int x,
+                                             int y) const {
+    const double dx = x + 0.5 - width_ / 2.0, dy = y + 0.5 - height_ / 2.0;
+    return {upright_width / 2.0 + (dx * cos_ - dy * sin_),
+            upright_height / 2.0 + (dx * sin_ + dy * cos_)};
+  }
+
   [[nodiscard]] RASTRUM_HD Rgba8 operator()(const ImageView<const Rgba8>& upright, int x,
                                             int y) const {
     const Position at = position(upright.width, upright.height, x, y);
@@ -59,16 +70,6 @@ class Roll {
   }
 
  private:
-  struct Position {
-    double x, y;  ///< px in the upright picture
-  };
-  [[nodiscard]] RASTRUM_HD Position position(int upright_width, int upright_height, int x,
-                                             int y) const {
-    const double dx = x + 0.5 - width_ / 2.0, dy = y + 0.5 - height_ / 2.0;
-    return {upright_width / 2.0 + (dx * cos_ - dy * sin_),
-            upright_height / 2.0 + (dx * sin_ + dy * cos_)};
-  }
-
   double cos_, sin_;
   int width_, height_;
 };

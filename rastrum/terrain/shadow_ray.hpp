@@ -21,6 +21,10 @@ struct SunRay {
 /// Throws Error{invalid_argument} for angles that are not finite, or an elevation above 90°.
 [[nodiscard]] SunRay sun_ray(const Sun& sun);
 
+/// Throws Error{invalid_argument} for one that is not above 0 to kLongestShadow cells long, or
+/// whose steps are out of range.
+void check(const March& march);
+
 /// The longest shadow, in cells of the axis that the ray follows.
 inline constexpr int kLongestShadow = 65536;
 

@@ -285,12 +285,16 @@ Image<std::uint8_t> soft_light(ImageView<const float> heights, const Sun& sun, d
   return light;
 }
 
-std::vector<MarchSample> march_samples(const Sun& sun, const March& march) {
-  check(sun);
+void check(const March& march) {
   if (!(march.distance > 0 && march.distance <= kLongestShadow) || march.steps < 2 ||
       march.steps > 65536)
     throw Error(Errc::invalid_argument,
                 "a march must be above 0 to 65536 cells long and have 2 to 65536 steps");
+}
+
+std::vector<MarchSample> march_samples(const Sun& sun, const March& march) {
+  check(sun);
+  check(march);
   const auto [east, north] = sin_cos_deg(sun.azimuth_deg);
   const auto [up, flat] = sin_cos_deg(sun.elevation_deg);
   std::vector<MarchSample> samples;

@@ -4,9 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -18,10 +16,13 @@
 #include <rastrum/shapes.hpp>
 #include <rastrum/surfaces.hpp>
 
+#include "tests/support/light_oracle.hpp"
 #include "tests/support/refused.hpp"
 
 namespace rastrum::test::lights_test {
 namespace {
+
+using namespace light_oracle;
 
 constexpr int kSize = 96;
 
@@ -63,26 +64,6 @@ FrameOptions lit_by(std::vector<Light> lights, Shader shader) {
   frame.shader = shader;
   frame.lights = std::move(lights);
   return frame;
-}
-
-Light light(decltype(Light::kind) kind, float intensity = 1, Vec3 color = {1, 1, 1}) {
-  Light l;
-  l.kind = kind;
-  l.intensity = intensity;
-  l.color = color;
-  return l;
-}
-
-// The formulas of docs/light.md.
-
-Vec3d wide(Vec3 v) {
-  return {v.x, v.y, v.z};
-}
-Vec3d unit(Vec3d v) {
-  return v * (1 / length(v));
-}
-Vec3d times(Vec3d a, Vec3d b) {
-  return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
 
 /// An environment of three polynomials of degree 2, whose bands 1 and 2 are weighed: by 1 the light
@@ -144,43 +125,12 @@ Light in_world(Light l, const Camera& c) {
   return l;
 }
 
-struct Arrived {
-  Vec3d to_light;
-  Vec3d radiance;
-};
-/// From around: what a direction gathers, or a surface of a roughness mirrors from there.
-std::optional<Vec3d> around(const Light& l, Vec3d d, std::optional<double> roughness = {}) {
-  const Vec3d full = wide(l.color) * l.intensity;
-  if (std::holds_alternative<EnvironmentLight>(l.kind)) {
-    const auto [first, second] =
-        roughness ? mirrored_bands(*roughness) : std::pair{2.0 / 3, 1.0 / 4};
-    return times(full, sky(d, first, second));
-  }
-  if (std::holds_alternative<AmbientLight>(l.kind)) return full;
-  if (const auto* const h = std::get_if<HemisphereLight>(&l.kind)) {
-    const double share = (1 + dot(unit(wide(h->up)), d)) / 2;
-    return full * share + wide(h->below) * (l.intensity * (1 - share));
-  }
-  return {};
-}
-Arrived arrived(const Light& l, Vec3d p) {
-  const Vec3d full = wide(l.color) * l.intensity;
-  if (const auto* const d = std::get_if<DirectionalLight>(&l.kind))
-    return {unit(wide(d->direction)) * -1, full};
-  const auto* const point = std::get_if<PointLight>(&l.kind);
-  const auto* const spot = std::get_if<SpotLight>(&l.kind);
-  const Vec3d away = (point != nullptr ? point->position : spot->position) - p;
-  const double range = point != nullptr ? point->range : spot->range;
-  const double d = length(away);
-  double share = std::max(std::min(1 - std::pow(d / range, 4), 1.0), 0.0) / (d * d);
-  if (spot != nullptr) {
-    const double inner = std::cos(spot->inner_rad), outer = std::cos(spot->outer_rad);
-    const double scale = 1 / std::max(0.001, inner - outer);
-    const double cosine = dot(unit(away) * -1, unit(wide(spot->direction)));
-    const double cone = std::clamp(cosine * scale - outer * scale, 0.0, 1.0);
-    share *= cone * cone;
-  }
-  return {unit(away), full * share};
+/// light_oracle::around, and of that environment what a direction gathers, or a surface of a
+/// roughness mirrors from there.
+std::optional<Vec3d> all_around(const Light& l, Vec3d d, std::optional<double> roughness = {}) {
+  if (!std::holds_alternative<EnvironmentLight>(l.kind)) return around(l, d);
+  const auto [first, second] = roughness ? mirrored_bands(*roughness) : std::pair{2.0 / 3, 1.0 / 4};
+  return times(wide(l.color) * l.intensity, sky(d, first, second));
 }
 
 /// Of `lambert` and `phong`.
@@ -188,8 +138,8 @@ Vec3d expected_display(const std::vector<Light>& lights, bool shines, Vec3d p, V
   const Vec3d base{0.8, 0.7, 0.6};
   Vec3d sum;
   for (const Light& l : lights) {
-    if (const auto all_around = around(l, n)) {
-      sum = sum + times(base, *all_around);
+    if (const auto from_around = all_around(l, n)) {
+      sum = sum + times(base, *from_around);
       continue;
     }
     const Arrived in = arrived(l, p);
@@ -213,8 +163,8 @@ Vec3d expected_linear(const std::vector<Light>& lights, const Material& m, Vec3d
   const double nv = std::max(dot(n, v), 1e-4);
   Vec3d sum;
   for (const Light& l : lights) {
-    if (const auto of_n = around(l, n)) {
-      const Vec3d of_r = *around(l, n * (2 * dot(n, v)) - v, m.roughness);
+    if (const auto of_n = all_around(l, n)) {
+      const Vec3d of_r = *all_around(l, n * (2 * dot(n, v)) - v, m.roughness);
       const auto rise = [&](double c) { return std::max(1 - m.roughness - c, 0.0); };
       const Vec3d f =
           f0 + Vec3d{rise(f0.x), rise(f0.y), rise(f0.z)} * std::pow(std::max(1 - nv, 0.0), 5);
@@ -233,11 +183,6 @@ Vec3d expected_linear(const std::vector<Light>& lights, const Material& m, Vec3d
     sum = sum + times(times(diffuse, one - f) + f * specular, in.radiance) * nl;
   }
   return sum;
-}
-
-double display(double linear) {
-  const double x = std::clamp(linear, 0.0, 1.0);
-  return x < 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
 }
 
 /// Calls f(x, y, place, to the viewer) where the centre of a pixel sees the ball.

@@ -14,6 +14,7 @@
 #include <rastrum/raster/frame/bins.hpp>
 #include <rastrum/raster/frame/frame.hpp>
 #include <rastrum/render.hpp>
+#include <rastrum/render/access.hpp>
 #include <rastrum/shapes.hpp>
 #include <rastrum/stop.hpp>
 #include <rastrum/terrain.hpp>
@@ -240,6 +241,48 @@ TEST(StopToken, IsTakenByAllThatDrawFrames) {
   // A frame without a token heeds the scope around it, as before.
   const parallel::StopScope scope(token);
   EXPECT_THROW(renderer.render(binding.view(), camera, targets), parallel::Stopped);
+}
+
+/// Draws nothing, and is asked to stop meanwhile.
+class AskedMeanwhile final : public raster::FrameDrawer {
+ public:
+  explicit AskedMeanwhile(std::stop_source& source) : source_(source) {}
+  FrameStats draw(raster::FrameRequest& /*request*/) override {
+    source_.request_stop();
+    asked = parallel::stop_requested();
+    return {};
+  }
+  static inline bool asked = false;  ///< whether the frame knew of it
+
+ private:
+  std::stop_source& source_;
+};
+
+TEST(StopToken, IsInForceInTheMiddleOfWhatStandsOnATerrain) {
+  constexpr int kSide = 48;
+  const Scene scene = single(shapes::from_spec("boxes"));
+  const SceneBinding binding(scene);
+  for (const Device device : {Device::serial, Device::threads}) {
+    SCOPED_TRACE(name(device));
+    std::stop_source source;
+    const std::stop_token token = source.get_token();
+    SceneOnTerrain on_terrain(
+        RendererAccess::make({.device = device}, {device, ""}, false,
+                             [&](const DrawerOptions&, MemoryAccount&, parallel::Threads*) {
+                               return std::make_unique<AskedMeanwhile>(source);
+                             }));
+    Image<Rgba8> color(kSide, kSide);
+    Image<float> depth(kSide, kSide);
+    FrameOptions frame;
+    frame.width = frame.height = kSide;
+    terrain::TerrainOptions how;
+    how.width = how.height = kSide;
+    AskedMeanwhile::asked = false;
+    EXPECT_THROW(on_terrain.draw({.scene = binding.view()}, frame, how, {},
+                                 {.color8 = color, .depth = depth}, token),
+                 parallel::Stopped);
+    EXPECT_TRUE(AskedMeanwhile::asked);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,30 @@
+// Who looks at a terrain, as meshes and lights know a camera.
+#pragma once
+
+#include <algorithm>
+#include <span>
+
+#include <rastrum/camera.hpp>
+#include <rastrum/core/elementary.hpp>
+#include <rastrum/light.hpp>
+#include <rastrum/terrain.hpp>
+
+namespace rastrum {
+
+/// Its place and its axes in the terrain's world: level, for a horizon off the middle is a shear of
+/// the picture. Not its lens.
+[[nodiscard]] inline Camera terrain_camera(const terrain::TerrainCamera& of) {
+  const auto [sin, cos] = elementary::sin_cos(of.angle_rad);
+  const auto [roll_sin, roll_cos] = elementary::sin_cos(of.roll_rad);
+  Camera camera;
+  camera.eye = {of.x, of.altitude, of.y};
+  camera.target = camera.eye + Vec3d{-sin, 0, -cos};
+  camera.up = {roll_sin * cos, roll_cos, -roll_sin * sin};
+  return camera;
+}
+
+[[nodiscard]] inline bool is_of_camera(std::span<const Light> lights) {
+  return std::ranges::any_of(lights, &Light::of_camera);
+}
+
+}  // namespace rastrum

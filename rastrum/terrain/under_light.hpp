@@ -1,0 +1,89 @@
+// A map's colours under light that each of its cells has: both are stretched to the size of the
+// finer one. What a light is, one number or one for each channel, is the caller's.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include <rastrum/image.hpp>
+#include <rastrum/terrain.hpp>
+#include <rastrum/vec.hpp>
+
+namespace rastrum::terrain {
+
+/// What a cell of a stretched image is made of along one axis: cells `a` and `b`, `share` of `b`.
+struct Tap {
+  int a = 0, b = 0;
+  float share = 0;
+};
+
+/// The cells of an axis that is scaled from `from` to `to` cells: the cell that each lies in, or
+/// what lies between centres.
+[[nodiscard]] inline std::vector<Tap> scaled_taps(int from, int to, bool smooth, Tiling tiling) {
+  std::vector<Tap> taps(static_cast<std::size_t>(to));
+  for (std::int64_t i = 0; i < to; ++i) {
+    Tap& tap = taps[static_cast<std::size_t>(i)];
+    // The centre in cells of `from`, less one half, times 2 · to: exact, so that equal sizes stay.
+    const std::int64_t at = (2 * i + 1) * from - to, unit = std::int64_t{2} * to;
+    const std::int64_t below = (at + unit) / unit - 1;  // at > −unit: the floor
+    if (smooth) {
+      tap = {static_cast<int>(tiled(below, from, tiling)),
+             static_cast<int>(tiled(below + 1, from, tiling)),
+             static_cast<float>(at - below * unit) / static_cast<float>(unit)};
+    } else {
+      tap.a = tap.b = static_cast<int>(i * from / to);
+    }
+  }
+  return taps;
+}
+
+[[nodiscard]] inline float mix(float a, float b, float share) {
+  return a + share * (b - a);
+}
+[[nodiscard]] inline Vec3 mix(Vec3 a, Vec3 b, float share) {
+  return {mix(a.x, b.x, share), mix(a.y, b.y, share), mix(a.z, b.z, share)};
+}
+[[nodiscard]] inline Rgba8 mix(Rgba8 a, Rgba8 b, float share) {
+  const auto channel = [share](std::uint8_t u, std::uint8_t v) {
+    return static_cast<std::uint8_t>(mix(static_cast<float>(u), static_cast<float>(v), share) +
+                                     0.5F);
+  };
+  return {channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b), channel(a.a, b.a)};
+}
+
+template <class T>
+[[nodiscard]] std::remove_const_t<T> between(const ImageView<T>& image, const Tap& x,
+                                             const Tap& y) {
+  if (x.share == 0 && y.share == 0) return image(x.a, y.a);
+  return mix(mix(image(x.a, y.a), image(x.b, y.a), x.share),
+             mix(image(x.a, y.b), image(x.b, y.b), x.share), y.share);
+}
+
+/// `lit(colour, light)` of each texel of the finer image. `each_row(rows, f)` calls f(row) for
+/// each.
+template <class Light, class Lit, class EachRow>
+[[nodiscard]] Image<Rgba8> under_light(const Image<Rgba8>& colors, const Image<Light>& light,
+                                       bool smooth, Tiling tiling, const Lit& lit,
+                                       const EachRow& each_row) {
+  Image<Rgba8> out(std::max(colors.width(), light.width()),
+                   std::max(colors.height(), light.height()));
+  const auto taps = [&](int from, int to) { return scaled_taps(from, to, smooth, tiling); };
+  const std::vector<Tap> color_x = taps(colors.width(), out.width()),
+                         color_y = taps(colors.height(), out.height()),
+                         light_x = taps(light.width(), out.width()),
+                         light_y = taps(light.height(), out.height());
+  each_row(static_cast<std::size_t>(out.height()), [&](std::size_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < out.width(); ++x) {
+      const auto column = static_cast<std::size_t>(x);
+      out(x, y) = lit(between(colors.view(), color_x[column], color_y[row]),
+                      between(light.view(), light_x[column], light_y[row]));
+    }
+  });
+  return out;
+}
+
+}  // namespace rastrum::terrain

@@ -1,0 +1,624 @@
+// Ground under lights of its own: against their formulas in float64, against the sun that they can
+// say, and the same bits whoever lights it; the sky behind it, and what stands on it.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/elementary.hpp>
+#include <rastrum/digest.hpp>
+#include <rastrum/environment.hpp>
+#include <rastrum/on_terrain.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/terrain.hpp>
+#include <rastrum/terrain_light.hpp>
+
+#include "tests/support/golden.hpp"
+#include "tests/support/light_oracle.hpp"
+#include "tests/support/refused.hpp"
+
+namespace rastrum::test::ground_light_test {
+namespace {
+
+using namespace light_oracle;
+using terrain::HeightMap;
+using terrain::ShadowOptions;
+using terrain::Tiling;
+
+constexpr int kMap = 48;
+
+double wave(double x, double y) {
+  return 6 + 5 * elementary::sin(x * 0.31) * elementary::cos(y * 0.23) + 0.04 * x;
+}
+
+/// Round hills with one hole, under a colour of its own for each cell.
+HeightMap hills() {
+  HeightMap map{Image<float>(kMap, kMap), Image<Rgba8>(kMap, kMap)};
+  for (int y = 0; y < kMap; ++y)
+    for (int x = 0; x < kMap; ++x) {
+      map.heights(x, y) = static_cast<float>(wave(x, y));
+      map.colors(x, y) = {static_cast<std::uint8_t>(90 + 3 * x),
+                          static_cast<std::uint8_t>(60 + 2 * y), 120, 255};
+    }
+  map.heights(20, 30) = std::numeric_limits<float>::quiet_NaN();
+  return map;
+}
+
+/// Red grows to the east, green upwards, blue to the south. Made once: that takes its time.
+const Environment& directions() {
+  static const Environment environment([] {
+    Image<Vec3> picture(256, 128);
+    for (int y = 0; y < 128; ++y)
+      for (int x = 0; x < 256; ++x) {
+        const auto [flat, up] = elementary::sin_cos((y + 0.5) / 128 * std::numbers::pi);
+        // 0: −z, π/2: +x
+        const auto [east, north] =
+            elementary::sin_cos(((x + 0.5) / 256 - 0.5) * 2 * std::numbers::pi);
+        picture(x, y) =
+            Vec3(Vec3d{0.5 + 0.5 * flat * east, 0.5 + 0.5 * up, 0.5 - 0.5 * flat * north});
+      }
+    return picture;
+  }()
+                                           .view());
+  return environment;
+}
+
+const Environment& blue_sky() {
+  static const Environment environment(builtin_environment(BuiltinEnvironment::sky).view());
+  return environment;
+}
+
+/// Lights of every kind, alone and together.
+std::vector<std::vector<Light>> sets_of_lights() {
+  std::vector<std::vector<Light>> sets{
+      {light(AmbientLight{}, 0.6F, {1, 0.5F, 0.25F})},
+      {light(HemisphereLight{{1, 2, -1}, {0.3F, 0.1F, 0}}, 0.9F, {0.4F, 0.6F, 1})},
+      {light(DirectionalLight{{-3, -2, -1}}, 0.9F, {1, 0.9F, 0.8F})},
+      {light(PointLight{{20, 16, 24}}, 90)},
+      {light(PointLight{{8, 20, 40}, 31}, 200, {0.5F, 1, 0.5F})},
+      {light(SpotLight{{30, 25, 10}, {-0.4F, -1, 0.6F}}, 300)},
+      {light(SpotLight{{30, 25, 10}, {-0.4F, -1, 0.6F}, 60, 0.2F, 0.4F}, 300, {1, 0, 0.5F})}};
+  std::vector<Light> all;
+  for (const auto& set : sets)
+    for (Light l : set) {
+      l.intensity *= 0.3F;
+      all.push_back(l);
+    }
+  sets.push_back(all);
+  return sets;
+}
+
+/// The normal of a cell by central differences of what is around it.
+Vec3d normal_at(const HeightMap& map, int x, int y) {
+  const auto at = [&](int i, int j) {
+    const float h = map.heights(std::clamp(i, 0, kMap - 1), std::clamp(j, 0, kMap - 1));
+    return static_cast<double>(std::isfinite(h) ? h : map.heights(x, y));
+  };
+  return unit({-(at(x + 1, y) - at(x - 1, y)) / 2, 1, -(at(x, y + 1) - at(x, y - 1)) / 2});
+}
+
+/// What a white, matt surface gathers.
+Vec3d arriving(const std::vector<Light>& lights, Vec3d p, Vec3d n) {
+  Vec3d sum;
+  for (const Light& l : lights) {
+    if (const auto all_around = around(l, n)) {
+      sum = sum + *all_around;
+      continue;
+    }
+    const Arrived in = arrived(l, p);
+    sum = sum + in.radiance * std::max(dot(n, in.to_light), 0.0);
+  }
+  return sum;
+}
+
+double linear_of(std::uint8_t code) {
+  const double v = code / 255.0;
+  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
+double reinhard(double x) {
+  return x / (1 + x);
+}
+
+/// The largest difference of a channel, in codes, where f says what is expected in [0, 1].
+template <class Expected>
+double worst_difference(const Image<Rgba8>& lit, const HeightMap& map, const Expected& expected) {
+  double worst = 0;
+  for (int y = 0; y < kMap; ++y)
+    for (int x = 0; x < kMap; ++x) {
+      if (!std::isfinite(map.heights(x, y))) continue;
+      const Vec3d e = expected(x, y);
+      const Rgba8 c = lit(x, y);
+      for (const auto& [got, want] : {std::pair{c.r, e.x}, {c.g, e.y}, {c.b, e.z}})
+        worst = std::max(worst, std::abs(got - 255 * std::clamp(want, 0.0, 1.0)));
+    }
+  return worst;
+}
+
+TEST(GroundLights, AreTheirFormulas) {
+  const HeightMap map = hills();
+  for (const std::vector<Light>& lights : sets_of_lights()) {
+    SCOPED_TRACE(std::to_string(lights.size()) + " of kind " +
+                 std::to_string(lights.front().kind.index()));
+    const auto light_at = [&](int x, int y) {
+      return arriving(lights, {x + 0.5, map.heights(x, y), y + 0.5}, normal_at(map, x, y));
+    };
+    const auto display_value = [&](int x, int y) {
+      const Rgba8 c = map.colors(x, y);
+      return times({c.r / 255.0, c.g / 255.0, c.b / 255.0}, light_at(x, y));
+    };
+    const ShadowOptions clamped{.tiling = Tiling::clamp};
+    EXPECT_LE(worst_difference(lit_colors(map, {.lights = lights}, clamped), map, display_value),
+              1.0);
+    // Mapped, in linear light.
+    const auto mapped = [&](int x, int y) {
+      const Rgba8 c = map.colors(x, y);
+      const Vec3d l = times({linear_of(c.r), linear_of(c.g), linear_of(c.b)}, light_at(x, y)) * 2;
+      return Vec3d{display(reinhard(l.x)), display(reinhard(l.y)), display(reinhard(l.z))};
+    };
+    EXPECT_LE(
+        worst_difference(lit_colors(map, {.lights = lights, .tone = {Tone::reinhard, 1}}, clamped),
+                         map, mapped),
+        1.0);
+  }
+}
+
+/// A directional light from where the sun stands.
+Light sunlight(const terrain::Sun& sun, float intensity) {
+  const double a = sun.azimuth_deg * std::numbers::pi / 180,
+               e = sun.elevation_deg * std::numbers::pi / 180;
+  return light(DirectionalLight{Vec3(
+                   Vec3d{-std::sin(a) * std::cos(e), -std::sin(e), std::cos(a) * std::cos(e)})},
+               intensity);
+}
+
+int difference(Rgba8 a, Rgba8 b) {
+  return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
+}
+
+TEST(GroundLights, SayTheSun) {
+  HeightMap map = hills();
+  map.heights(20, 30) = static_cast<float>(wave(20, 30));
+  for (const terrain::Sun sun : {terrain::Sun{315, 35}, {0, 12}, {90, 20}, {200, 8}, {45, 60}}) {
+    SCOPED_TRACE(std::to_string(sun.azimuth_deg));
+    constexpr float kAmbient = 0.45F;
+    const std::vector<Light> lights{light(AmbientLight{}, kAmbient), sunlight(sun, 1 - kAmbient)};
+    for (const terrain::Shadows kind : {terrain::Shadows::none, terrain::Shadows::sharp}) {
+      terrain::Light said;
+      said.sun = sun;
+      said.hill_shading = true;
+      said.shadows = kind;
+      const auto by_sun = lit_colors(map, said);
+      const auto by_lights = lit_colors(map, {.lights = lights, .shadows = kind});
+      int wrong = 0;
+      for (std::size_t i = 0; i < by_sun.pixels().size(); ++i)
+        wrong += difference(by_sun.pixels()[i], by_lights.pixels()[i]) > 1 ? 1 : 0;
+      EXPECT_EQ(wrong, 0);
+    }
+  }
+}
+
+TEST(GroundLights, CastTheShadowsOfTerrains) {
+  HeightMap map = hills();
+  const terrain::Sun sun{250, 30};
+  const std::vector<Light> one{sunlight(sun, 1)};
+  const auto open = lit_colors(map, {.lights = one});
+  const Image<std::uint8_t> dark = terrain::sharp_shadows(map.heights.view(), sun);
+  const auto sharp = lit_colors(map, {.lights = one, .shadows = terrain::Shadows::sharp});
+  int hidden = 0;
+  for (int y = 0; y < kMap; ++y)
+    for (int x = 0; x < kMap; ++x) {
+      hidden += dark(x, y);
+      ASSERT_EQ(sharp(x, y), dark(x, y) != 0 ? (Rgba8{0, 0, 0, 255}) : open(x, y)) << x << " " << y;
+    }
+  EXPECT_GT(hidden, 100);
+  EXPECT_LT(hidden, kMap * kMap * 3 / 4);
+  // Each light has its own: where both are hidden it is dark, else at most one is left.
+  const terrain::Sun other{70, 30};
+  const auto both = lit_colors(
+      map, {.lights = {sunlight(sun, 1), sunlight(other, 1)}, .shadows = terrain::Shadows::sharp});
+  const Image<std::uint8_t> dark_too = terrain::sharp_shadows(map.heights.view(), other);
+  for (int y = 0; y < kMap; ++y)
+    for (int x = 0; x < kMap; ++x)
+      if (dark_too(x, y) != 0) {
+        ASSERT_EQ(both(x, y), sharp(x, y));
+      }
+  // Soft and accumulated ones lie between.
+  for (const terrain::Shadows kind : {terrain::Shadows::soft, terrain::Shadows::accumulated}) {
+    const auto some = lit_colors(map, {.lights = one, .shadows = kind, .sun_radius_deg = 4});
+    int between = 0;
+    for (std::size_t i = 0; i < some.pixels().size(); ++i) {
+      ASSERT_LE(some.pixels()[i].r, open.pixels()[i].r);
+      between += some.pixels()[i].r > 0 && some.pixels()[i].r < open.pixels()[i].r ? 1 : 0;
+    }
+    EXPECT_GT(between, 50);
+  }
+}
+
+TEST(GroundLights, AreTheSameBitsWhoeverLights) {
+  const HeightMap map = hills();
+  GroundLights ground{.lights = sets_of_lights().back(), .shadows = terrain::Shadows::soft};
+  const std::vector<Light> kit = light_kit();
+  ground.lights.insert(ground.lights.end(), kit.begin(), kit.end());
+  ground.lights.push_back(light(EnvironmentLight{blue_sky()}));
+  ground.smooth = true;
+  ground.camera = {20, 40, 30, 0.4, 20, 0.2};
+  for (const ToneMapping tone : {ToneMapping{}, ToneMapping{Tone::aces, 0.5F}}) {
+    ground.tone = tone;
+    const Digest first = digest(lit_colors(map, ground, {.device = Device::serial, .threads = 1}));
+    for (const Isa isa : available_isas())
+      for (const int threads : {1, 3})
+        EXPECT_TRUE(first == digest(lit_colors(map, ground, {.threads = threads, .isa = isa})))
+            << name(isa) << ", " << threads;
+    EXPECT_TRUE(matches_golden(tone == ToneMapping{} ? "ground/display" : "ground/mapped", first));
+  }
+}
+
+TEST(GroundLights, OfTheCameraMoveWithIt) {
+  const HeightMap map = hills();
+  GroundLights of_camera{.lights = {headlight()}};
+  of_camera.camera.angle_rad = 0.7;
+  // It looks along (−sin a, −cos a) over the map.
+  const std::vector<Light> in_world{
+      light(DirectionalLight{Vec3(Vec3d{-std::sin(0.7), 0, -std::cos(0.7)})})};
+  const auto a = lit_colors(map, of_camera), b = lit_colors(map, {.lights = in_world});
+  for (std::size_t i = 0; i < a.pixels().size(); ++i)
+    ASSERT_LE(difference(a.pixels()[i], b.pixels()[i]), 1);
+  // One with a place, to the right of who looks north and above him.
+  GroundLights lamp{.lights = {light(PointLight{{5, 9, 0}}, 60)}};
+  lamp.lights[0].of_camera = true;
+  lamp.camera = {20, 30, 4, 0, 0, 0};
+  const auto c = lit_colors(map, lamp);
+  const auto d = lit_colors(map, {.lights = {light(PointLight{{25, 13, 30}}, 60)}});
+  for (std::size_t i = 0; i < c.pixels().size(); ++i)
+    ASSERT_LE(difference(c.pixels()[i], d.pixels()[i]), 1);
+}
+
+TEST(GroundLights, LieBetweenTheCellsOfCoarseMaps) {
+  HeightMap map = hills();
+  map.heights(20, 30) = 5;
+  map.colors = Image<Rgba8>(4 * kMap, 4 * kMap);
+  std::ranges::fill(map.colors.pixels(), Rgba8{200, 200, 200, 255});
+  const std::vector<Light> one{sunlight({250, 30}, 1)};
+  const auto steps = lit_colors(map, {.lights = one});
+  const auto smooth = lit_colors(map, {.lights = one, .smooth = true});
+  int equal = 0, pairs = 0;
+  for (int y = 0; y < 4 * kMap; ++y)
+    for (int x = 4; x + 2 < 4 * kMap; x += 4) {
+      ASSERT_EQ(steps(x, y), steps(x + 1, y));
+      ++pairs;
+      equal += smooth(x, y) == smooth(x + 3, y) ? 1 : 0;
+    }
+  EXPECT_LT(equal, pairs / 2);
+}
+
+TEST(GroundLights, LightFunctionsWhereTheyAreSeen) {
+  const terrain::HeightFunction function = [](const double* x, const double* y, std::size_t n,
+                                              float* out) {
+    for (std::size_t i = 0; i < n; ++i) out[i] = static_cast<float>(wave(x[i], y[i]));
+  };
+  for (const std::vector<Light>& lights : sets_of_lights()) {
+    const ScalarMapping grey{.map = color_map("gray"), .range = ScalarRange{0, 20}};
+    const terrain::Terrain lit =
+        function_terrain(function, 0, 20, {.lights = lights}, ScalarColors(grey, {}));
+    double worst = 0;
+    for (double y = 1.25; y < 40; y += 3)
+      for (double x = 0.5; x < 40; x += 2) {
+        const auto h = static_cast<double>(lit.height_at(x, y));
+        const Vec3d n = unit(
+            {-(wave(x + 1, y) - wave(x - 1, y)) / 2, 1, -(wave(x, y + 1) - wave(x, y - 1)) / 2});
+        const Vec3d e = arriving(lights, {x, h, y}, n) * (h / 20);
+        const Rgba8 c = lit.color_at(x, y);
+        // The colour before light is rounded to 8 bits, too.
+        const Vec3d most = arriving(lights, {x, h, y}, n);
+        for (const auto& [got, want, of] :
+             {std::tuple{c.r, e.x, most.x}, {c.g, e.y, most.y}, {c.b, e.z, most.z}})
+          worst = std::max(
+              worst, std::abs(got - 255 * std::clamp(want, 0.0, 1.0)) - 0.5 * std::max(of, 1.0));
+      }
+    EXPECT_LE(worst, 0.6) << lights.front().kind.index();
+  }
+  // The march of each directional light: a wall takes the light behind it.
+  const terrain::HeightFunction wall = [](const double* x, const double*, std::size_t n,
+                                          float* out) {
+    for (std::size_t i = 0; i < n; ++i) out[i] = x[i] > 10 && x[i] < 14 ? 30.0F : 0.0F;
+  };
+  const GroundLights low{.lights = {sunlight({90, 30}, 1)}, .shadows = terrain::Shadows::sharp};
+  const terrain::Terrain shaded = function_terrain(wall, 0, 30, low);
+  EXPECT_EQ(shaded.color_at(0, 5), (Rgba8{0, 0, 0, 255})) << "the sun is in the east";
+  EXPECT_GT(shaded.color_at(30, 5).r, 10);
+}
+
+TEST(GroundLights, ThatCannotBeMeantAreRefused) {
+  const HeightMap map = hills();
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  const auto refused = [&](const char* part, const GroundLights& bad) {
+    expect_refused(part, [&] { static_cast<void>(lit_colors(map, bad)); });
+    expect_refused(part, [&] {
+      static_cast<void>(function_terrain(terrain::named_function("noise"), 0, 160, bad));
+    });
+  };
+  for (const float bad : {-1.0F, kNan, kInf})
+    refused("light 1: its intensity",
+            {.lights = {light(AmbientLight{}), light(AmbientLight{}, bad)}});
+  refused("light 0: its environment has no picture", {.lights = {light(EnvironmentLight{})}});
+  refused("257 lights", {.lights = std::vector<Light>(257)});
+  refused("the tone", {.tone = {static_cast<Tone>(9)}});
+  refused("the exposure", {.tone = {Tone::aces, kNan}});
+  refused("shadows", {.shadows = static_cast<terrain::Shadows>(9)});
+  const std::vector<Light> one{sunlight({250, 30}, 1)};
+  expect_refused("the sun's radius", [&] {
+    static_cast<void>(
+        lit_colors(map, {.lights = one, .shadows = terrain::Shadows::soft, .sun_radius_deg = -1}));
+  });
+  refused("a march", {.lights = one, .shadows = terrain::Shadows::accumulated, .march = {-3, 20}});
+  expect_refused("no cell", [&] { static_cast<void>(lit_colors(HeightMap{}, {.lights = one})); });
+}
+
+TEST(HeightNumbers, AreMappedWhereTheyLie) {
+  HeightMap map = hills();
+  const ScalarMapping steps{.map = color_map("viridis"), .range = ScalarRange{0, 50}, .steps = 5};
+  const ScalarColors colors(steps, {});
+  // In units of which each is a fifth of a cell high.
+  const auto cells = terrain::colors_of_heights(map.heights.view(), colors, 0.2);
+  const auto code = [](float v) { return static_cast<std::uint8_t>(v * 255 + 0.5F); };
+  const auto shown = [&](double number) {
+    const Vec4 c = colors(number);
+    return Rgba8{code(c.x), code(c.y), code(c.z), 255};
+  };
+  for (int y = 0; y < kMap; ++y)
+    for (int x = 0; x < kMap; ++x)
+      ASSERT_EQ(cells(x, y), shown(static_cast<double>(map.heights(x, y)) / 0.2));
+  // Finer ones are mapped after heights were interpolated: no colour lies between two steps.
+  const auto fine = terrain::colors_of_heights(map.heights.view(), colors, 0.2, 3);
+  ASSERT_EQ(fine.width(), 3 * kMap);
+  std::vector<Rgba8> all{shown(std::nan(""))};
+  for (int i = 0; i < 5; ++i) all.push_back(shown(10 * i + 5));
+  for (const Rgba8 c : fine.pixels())
+    ASSERT_NE(std::ranges::find(all, c), all.end()) << int{c.r} << " " << int{c.g};
+  EXPECT_EQ(fine(3 * 20 + 1, 3 * 30 + 1), all[0]) << "the hole";
+  EXPECT_TRUE(digest(terrain::colors_of_heights(map.heights.view(), colors, 0.2, 0)) ==
+              digest(terrain::colors_of_heights(map.heights.view(), colors, 0.2, 4)));
+  const auto refused = [&](const char* part, double unit, int finer) {
+    expect_refused(part, [&] {
+      static_cast<void>(terrain::colors_of_heights(map.heights.view(), colors, unit, finer));
+    });
+  };
+  refused("a unit", 0, 1);
+  refused("finer", 1, -1);
+  refused("finer", 1, 17);
+}
+
+// --- What is around -----------------------------------------------------------------------------
+
+struct Sky {
+  terrain::TerrainOptions options;
+  terrain::TerrainCamera camera{24, 30, 20, 0.6, 30, 0};
+  Image<Rgba8> color;
+  Image<float> depth;
+
+  Sky() {
+    options.width = 90;
+    options.height = 60;
+    options.distance = 60;
+  }
+  void draw(std::span<const Light> lights, const ToneMapping& tone = {}, int threads = 0) {
+    color = Image<Rgba8>(options.width, options.height);
+    depth = Image<float>(options.width, options.height);
+    terrain::TerrainTargets targets{.color8 = color, .depth = depth};
+    const terrain::Terrain ground(hills());
+    terrain::TerrainRenderer({.threads = 1}).render(ground, camera, options, targets);
+    before = color;
+    draw_environment_behind(lights, tone, options, camera, targets, threads);
+  }
+  Image<Rgba8> before;
+};
+
+/// The direction of a pixel by the rules of docs/terrain.md.
+Vec3d direction_of(const terrain::TerrainOptions& o, const terrain::TerrainCamera& c, int x,
+                   int y) {
+  const double dx = x + 0.5 - o.width / 2.0, dy = y + 0.5 - o.height / 2.0;
+  const double u = dx * std::cos(c.roll_rad) - dy * std::sin(c.roll_rad);
+  const double v = dx * std::sin(c.roll_rad) + dy * std::cos(c.roll_rad) + o.height / 2.0;
+  const bool planar = o.projection == terrain::Projection::planar;
+  const double half = planar ? std::tan(o.fov_rad / 2) : o.fov_rad / 2;
+  double right = u * 2 / o.width * half, ahead = 1;
+  if (!planar) {
+    ahead = std::cos(right);
+    right = std::sin(right);
+  }
+  const double scale = o.width / 2.0 / half;
+  const double sin = std::sin(c.angle_rad), cos = std::cos(c.angle_rad);
+  return unit({cos * right - sin * ahead, (c.horizon_px - v) / scale, -sin * right - cos * ahead});
+}
+
+TEST(TerrainSky, IsTheEnvironmentWhereNoGroundIs) {
+  const std::vector<Light> lights{light(EnvironmentLight{directions()})};
+  for (const bool cylinder : {false, true})
+    for (const double roll : {0.0, 0.5}) {
+      SCOPED_TRACE(std::to_string(cylinder) + ", " + std::to_string(roll));
+      Sky sky;
+      sky.camera.roll_rad = roll;
+      if (cylinder) {
+        sky.options.projection = terrain::Projection::cylindrical;
+        sky.options.fov_rad = 5;
+      }
+      sky.draw(lights);
+      int seen = 0;
+      double worst = 0;
+      for (int y = 0; y < sky.options.height; ++y)
+        for (int x = 0; x < sky.options.width; ++x) {
+          const Rgba8 c = sky.color(x, y);
+          if (std::isfinite(sky.depth(x, y))) {
+            ASSERT_EQ(c, sky.before(x, y));
+            continue;
+          }
+          ++seen;
+          const Vec3d d = direction_of(sky.options, sky.camera, x, y);
+          const double want[3] = {0.5 + 0.5 * d.x, 0.5 + 0.5 * d.y, 0.5 + 0.5 * d.z};
+          const int got[3] = {c.r, c.g, c.b};
+          for (int i = 0; i < 3; ++i)
+            worst = std::max(worst, std::abs(got[i] - 255 * display(want[i])));
+          ASSERT_EQ(c.a, 255);
+        }
+      EXPECT_GT(seen, 1000);
+      EXPECT_LE(worst, 2.5);  // between the texels of an octahedral map
+    }
+}
+
+TEST(TerrainSky, IsTheSameBitsOnManyThreadsAndTakesTheTone) {
+  std::vector<Light> lights{light(EnvironmentLight{blue_sky()}, 2)};
+  lights.push_back(light(AmbientLight{}));
+  Sky one, many, mapped;
+  one.camera.roll_rad = many.camera.roll_rad = mapped.camera.roll_rad = 0.2;
+  one.draw(lights, {}, 1);
+  many.draw(lights, {}, 3);
+  EXPECT_TRUE(digest(one.color) == digest(many.color));
+  EXPECT_TRUE(matches_golden("ground/sky", digest(one.color)));
+  mapped.draw(lights, {Tone::neutral, 1});
+  EXPECT_FALSE(digest(one.color) == digest(mapped.color));
+  EXPECT_TRUE(matches_golden("ground/sky_mapped", digest(mapped.color)));
+}
+
+TEST(TerrainSky, HasAColourAtTheHorizon) {
+  const std::vector<Light> lights{light(EnvironmentLight{directions()})};
+  const Rgba8 c = horizon_color(lights, {});
+  const int middle = static_cast<int>(std::lround(255 * display(0.5)));
+  for (const int channel : {c.r, c.g, c.b}) EXPECT_NEAR(channel, middle, 1);
+  Light turned = lights[0];
+  turned.intensity = 0.5F;
+  EXPECT_NEAR(horizon_color({&turned, 1}, {}).g, 255 * display(0.25), 1);
+}
+
+TEST(TerrainSky, IsRefusedWithoutAnEnvironmentOrADepth) {
+  Sky sky;
+  const std::vector<Light> none{light(AmbientLight{})};
+  expect_refused("no environment", [&] { sky.draw(none); });
+  expect_refused("no environment", [&] { static_cast<void>(horizon_color(none, {})); });
+  const std::vector<Light> lights{light(EnvironmentLight{directions()})};
+  Image<Rgba8> color(90, 60);
+  expect_refused("depth", [&] {
+    draw_environment_behind(lights, {}, sky.options, sky.camera, {.color8 = color});
+  });
+  expect_refused("the tone", [&] { sky.draw(lights, {static_cast<Tone>(9)}); });
+  Image<float> small(20, 20);
+  expect_refused("the depth target", [&] {
+    draw_environment_behind(lights, {}, sky.options, sky.camera, {.color8 = color, .depth = small});
+  });
+}
+
+// --- What stands on it --------------------------------------------------------------------------
+
+struct Standing {
+  Scene scene;
+  FrameOptions frame;
+  Sky sky;
+
+  explicit Standing(float opacity = 1) {
+    Mesh ball = shapes::sphere(12, 16);
+    scene.meshes.push_back(std::move(ball));
+    scene.instances.push_back({0, Mat4d::identity()});
+    Mat4d& m = scene.instances[0].object_to_world;
+    for (int i = 0; i < 3; ++i) m.m[i][i] = 4;
+    m.m[0][3] = 14;
+    m.m[1][3] = 18;
+    m.m[2][3] = 14;
+    Material matt;
+    matt.base_color = {0.8F, 0.5F, 0.2F, opacity};
+    matt.alpha_mode = opacity < 1 ? AlphaMode::blend : AlphaMode::opaque;
+    matt.roughness = 1;
+    matt.metallic = 0;
+    scene.materials.push_back(matt);
+    scene.meshes[0].material = 0;
+    frame.width = sky.options.width;
+    frame.height = sky.options.height;
+    frame.shader = Shader::material;
+    frame.lights = {light(EnvironmentLight{directions()}),
+                    light(DirectionalLight{{-1, -1, -0.3F}}, 3)};
+    frame.tone = {Tone::reinhard, 0};
+    frame.environment_behind = true;
+  }
+  Image<Rgba8> draw(RendererOptions how = {.threads = 1}) {
+    Image<Rgba8> color(frame.width, frame.height);
+    Image<float> depth(frame.width, frame.height);
+    const terrain::TerrainTargets targets{.color8 = color, .depth = depth};
+    const terrain::Terrain ground(hills());
+    terrain::TerrainRenderer({.threads = 1}).render(ground, sky.camera, sky.options, targets);
+    ground_depth = depth;
+    const SceneBinding binding(scene);
+    SceneOnTerrain(Renderer(how))
+        .draw({.scene = binding.view()}, frame, sky.options, sky.camera, targets);
+    return color;
+  }
+  Image<float> ground_depth;
+};
+
+TEST(OnTerrainLights, AreThoseOfTheScenePictureByItself) {
+  Standing on;
+  const Image<Rgba8> color = on.draw();
+  Camera view;
+  view.matrix = terrain::world_to_clip(on.sky.options, on.sky.camera, SceneOnTerrain::kNear);
+  const SceneBinding binding(on.scene);
+  Image<Rgba8> alone(on.frame.width, on.frame.height);
+  Image<float> depth(on.frame.width, on.frame.height);
+  Renderer().render(binding.view(), view, on.frame, {.color8 = alone, .depth = depth});
+  on.sky.draw(on.frame.lights, on.frame.tone);
+  int ball = 0, sky = 0, ground = 0;
+  for (int y = 0; y < on.frame.height; ++y)
+    for (int x = 0; x < on.frame.width; ++x) {
+      const float of_ground = terrain::reversed_depth(on.ground_depth(x, y), SceneOnTerrain::kNear);
+      const bool is_ball = depth(x, y) > of_ground;
+      (is_ball ? ball : of_ground == 0 ? sky : ground) += 1;
+      ASSERT_EQ(color(x, y), is_ball ? alone(x, y) : on.sky.color(x, y)) << x << ", " << y;
+    }
+  EXPECT_GT(ball, 100);
+  EXPECT_GT(sky, 500);
+  EXPECT_GT(ground, 500);
+}
+
+TEST(OnTerrainLights, BlendMappedLightOverTheGround) {
+  Standing solid, glass(0.25F);
+  solid.frame.cull = glass.frame.cull = Cull::back;
+  const Image<Rgba8> opaque = solid.draw(), blended = glass.draw();
+  solid.sky.draw(solid.frame.lights, solid.frame.tone);
+  int seen = 0;
+  for (int y = 0; y < solid.frame.height; ++y)
+    for (int x = 0; x < solid.frame.width; ++x) {
+      const Rgba8 front = opaque(x, y), behind = solid.sky.color(x, y);
+      if (front == behind) continue;
+      ++seen;
+      ASSERT_NEAR(blended(x, y).r, 0.25 * front.r + 0.75 * behind.r, 1.01);
+      ASSERT_NEAR(blended(x, y).g, 0.25 * front.g + 0.75 * behind.g, 1.01);
+    }
+  EXPECT_GT(seen, 100);
+  EXPECT_TRUE(matches_golden("ground/glass", digest(blended)));
+}
+
+TEST(OnTerrainLights, AreTheSameBitsWhateverDraws) {
+  for (const float opacity : {1.0F, 0.5F}) {
+    Standing on(opacity);
+    on.frame.shadows = true;
+    const Digest first = digest(on.draw({.device = Device::serial}));
+    for (const Isa isa : available_isas())
+      for (const int threads : {1, 3})
+        EXPECT_TRUE(first == digest(on.draw({.threads = threads, .isa = isa}))) << name(isa);
+  }
+}
+
+TEST(OnTerrainLights, RefuseATonesOfOtherShaders) {
+  Standing on;
+  on.frame.shader = Shader::phong;
+  expect_refused("'material'", [&] { static_cast<void>(on.draw()); });
+  on.frame.tone = {};
+  EXPECT_NO_THROW(static_cast<void>(on.draw()));
+  on.frame.lights = {light(AmbientLight{})};
+  expect_refused("no environment", [&] { static_cast<void>(on.draw()); });
+}
+
+}  // namespace
+}  // namespace rastrum::test::ground_light_test

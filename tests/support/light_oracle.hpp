@@ -1,0 +1,73 @@
+// The formulas of docs/light.md in float64, for tests: what arrives of a light, and what a display
+// shows of it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <variant>
+
+#include <rastrum/light.hpp>
+#include <rastrum/vec.hpp>
+
+namespace rastrum::test::light_oracle {
+
+[[nodiscard]] inline Light light(decltype(Light::kind) kind, float intensity = 1,
+                                 Vec3 color = {1, 1, 1}) {
+  Light l;
+  l.kind = kind;
+  l.intensity = intensity;
+  l.color = color;
+  return l;
+}
+
+[[nodiscard]] inline Vec3d wide(Vec3 v) {
+  return {v.x, v.y, v.z};
+}
+[[nodiscard]] inline Vec3d unit(Vec3d v) {
+  return v * (1 / length(v));
+}
+[[nodiscard]] inline Vec3d times(Vec3d a, Vec3d b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+
+struct Arrived {
+  Vec3d to_light;
+  Vec3d radiance;
+};
+/// From around: what a direction gathers.
+[[nodiscard]] inline std::optional<Vec3d> around(const Light& l, Vec3d d) {
+  const Vec3d full = wide(l.color) * l.intensity;
+  if (std::holds_alternative<AmbientLight>(l.kind)) return full;
+  if (const auto* const h = std::get_if<HemisphereLight>(&l.kind)) {
+    const double share = (1 + dot(unit(wide(h->up)), d)) / 2;
+    return full * share + wide(h->below) * (l.intensity * (1 - share));
+  }
+  return {};
+}
+[[nodiscard]] inline Arrived arrived(const Light& l, Vec3d p) {
+  const Vec3d full = wide(l.color) * l.intensity;
+  if (const auto* const d = std::get_if<DirectionalLight>(&l.kind))
+    return {unit(wide(d->direction)) * -1, full};
+  const auto* const point = std::get_if<PointLight>(&l.kind);
+  const auto* const spot = std::get_if<SpotLight>(&l.kind);
+  const Vec3d away = (point != nullptr ? point->position : spot->position) - p;
+  const double range = point != nullptr ? point->range : spot->range;
+  const double d = length(away);
+  double share = std::max(std::min(1 - std::pow(d / range, 4), 1.0), 0.0) / (d * d);
+  if (spot != nullptr) {
+    const double inner = std::cos(spot->inner_rad), outer = std::cos(spot->outer_rad);
+    const double scale = 1 / std::max(0.001, inner - outer);
+    const double cosine = dot(unit(away) * -1, unit(wide(spot->direction)));
+    const double cone = std::clamp(cosine * scale - outer * scale, 0.0, 1.0);
+    share *= cone * cone;
+  }
+  return {unit(away), full * share};
+}
+
+[[nodiscard]] inline double display(double linear) {
+  const double x = std::clamp(linear, 0.0, 1.0);
+  return x < 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+}
+
+}  // namespace rastrum::test::light_oracle
