@@ -34,7 +34,7 @@ class Grouped final : public Coverage {
                                      [&](const Group& g) { return g.is_empty(lists, bin); });
         },
         [&](std::size_t bin, Emitter& emitter) {
-          enumerate_bin(frame.base, lists, groups, bin, 0, lists.bins.rect(bin), emitter);
+          enumerate_bin(frame.base, lists, groups, bin, lists.bins.rect(bin), emitter);
         });
     frame.watch.lap(frame.stats, frame.has_surface() ? "draw" : "draw and shade");
   }

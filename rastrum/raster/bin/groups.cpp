@@ -1,6 +1,7 @@
 #include <rastrum/raster/bin/groups.hpp>
 
 #include <atomic>
+#include <cstdlib>
 #include <limits>
 
 #include <rastrum/raster/cover/rules.hpp>
@@ -41,12 +42,19 @@ void bin_deferred(const Piece& piece, const BinTable& lists, Collected<DeferredI
   out.added(touched);
 }
 
+/// The pixels of the view in which the piece may cover a sample.
+Rect bounds_of(const Piece& piece, const BinTable& lists) {
+  const Rect view = lists.bins.view;
+  return (piece.flags & kAllSamples) != 0 ? bounds_within(piece.x, piece.y, lists.reach, view)
+                                          : piece_bounds(piece, view);
+}
+
 /// Adds the pairs of a piece with the bins of its box that it may touch.
 void bin_piece(const Piece& piece, std::uint32_t index, const BinTable& lists,
                Collected<PieceInBin>& pairs) {
   const BinNumbers numbers = lists.numbers();
   const Rect view = numbers.view;
-  const Rect box = piece_bounds(piece, view);
+  const Rect box = bounds_of(piece, lists);
   if (box.empty()) return;
   const int bx0 = box.x0 / kBinSize, by0 = box.y0 / kBinSize;
   const int bx1 = (box.x1 - 1) / kBinSize, by1 = (box.y1 - 1) / kBinSize;
@@ -56,7 +64,13 @@ void bin_piece(const Piece& piece, std::uint32_t index, const BinTable& lists,
   std::size_t n = 0;
   // A box in two bins has a vertex in each, unless the view cuts it: not worth asking.
   const bool asks = touched > 2 && !is_quadric(piece);
-  const Edges edges = asks ? edges_of(piece) : Edges{};
+  Edges edges = asks ? edges_of(piece) : Edges{};
+  if ((piece.flags & kAllSamples) != 0)
+    for (int i = 0; i < edges.count; ++i) {  // at the sample where it is largest
+      Edge& e = edges.edge[i];
+      const std::int64_t steep = std::int64_t{std::abs(e.a)} + std::abs(e.b);
+      e.base += (steep * lists.reach >> kSubpixelBits) + 1;
+    }
   for (int by = by0; by <= by1; ++by)
     for (int bx = bx0; bx <= bx1; ++bx) {
       const int x0 = bx * kBinSize, y0 = by * kBinSize;
@@ -115,10 +129,10 @@ std::size_t most_pairs(const Frame& frame, const BinTable& lists, std::size_t gr
 }
 
 /// Leaves out the pieces that do not touch the view.
-void keep_in_view(Pieces& pieces, Rect view) {
+void keep_in_view(Pieces& pieces, const BinTable& lists) {
   std::uint32_t kept = 0;
   for (std::uint32_t i = 0; i < pieces.count; ++i)
-    if (!piece_bounds(pieces.data[i], view).empty()) pieces.data[kept++] = pieces.data[i];
+    if (!bounds_of(pieces.data[i], lists).empty()) pieces.data[kept++] = pieces.data[i];
   pieces.count = kept;
 }
 
@@ -134,19 +148,17 @@ struct TriangleGroups::Filler final : MicroSink {
   Collected<DeferredInBin> deferred;
   bool whole = true;        ///< the view is the image, whose bins setup numbers; else:
   int image_columns = 0;    ///< bins in a row of it
-  int image_bins = 0;       ///< that each sample has
   int column = 0, row = 0;  ///< the view's first bin
   int columns = 0, rows = 0;
 
   void restart(const Frame& frame, const BinTable& lists) {
     const TileGrid& bins = lists.bins;
     pairs.restart(lists.count());
-    micro.restart(lists.fragment_count());
+    micro.restart(bins.count());
     deferred.restart(lists.defers ? bins.count() : 0);
     const TileGrid image{{0, 0, frame.request.width, frame.request.height}, kBinSize};
     whole = bins.count() == image.count();
     image_columns = image.columns();
-    image_bins = image_columns * image.rows();
     column = bins.view.x0 / kBinSize;
     row = bins.view.y0 / kBinSize;
     columns = bins.columns();
@@ -163,10 +175,9 @@ struct TriangleGroups::Filler final : MicroSink {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < n; ++i) {
       const auto bin = static_cast<int>(all[i].bin);
-      const int x = bin % image_columns - column, y = bin % image_bins / image_columns - row;
+      const int x = bin % image_columns - column, y = bin / image_columns - row;
       all[kept] = all[i];
-      all[kept].bin =
-          static_cast<std::uint32_t>(bin / image_bins * columns * rows + y * columns + x);
+      all[kept].bin = static_cast<std::uint32_t>(y * columns + x);
       kept += x >= 0 && x < columns && y >= 0 && y < rows;
     }
     micro.added(kept);
@@ -182,9 +193,8 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
                                                        std::uint64_t last) {
   if (frame.view_bytes != 0) groups_.clear();  // what other views needed
   const std::size_t bin_count = lists.bins.count(), list_count = lists.count();
-  const std::size_t fragment_lists = lists.fragment_count();
   const std::uint64_t most_groups =
-      std::max<std::uint64_t>(kMaxBinTables / (2 * bin_count * lists.samples), 1);
+      std::max<std::uint64_t>(kMaxBinTables / (2 * bin_count), 1);
   const std::uint64_t group_size =
       std::max(kMinGroup, (last - first + most_groups - 1) / most_groups);
   const auto group_count = static_cast<std::size_t>((last - first + group_size - 1) / group_size);
@@ -202,18 +212,18 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
     scratch.restart(frame, lists);
     const std::uint64_t begin = first + g * group_size;
     if (!raster::set_up(frame, begin, std::min(begin + group_size, last), pieces,
-                        micro ? &scratch : nullptr, lists.defers)) {
+                        micro ? &scratch : nullptr, lists.defers, lists.reach != 0)) {
       in_range = false;
       return;
     }
-    if (limited) keep_in_view(pieces, frame.view);
+    if (limited) keep_in_view(pieces, lists);
     group.binned =
         bin_pieces(frame.kernel, pieces.span(), 0, most, lists, scratch.pairs, scratch.deferred);
     const std::size_t n = scratch.pairs.entries().size(), m = scratch.micro.entries().size();
     if (limited) {
       const std::uint64_t own =
           pieces.count * sizeof(Piece) + n * sizeof(PieceInBin) + m * sizeof(BinFragment) +
-          (list_count + fragment_lists) * sizeof(std::uint32_t) + pieces.quadric_bytes();
+          (list_count + bin_count) * sizeof(std::uint32_t) + pieces.quadric_bytes();
       if (bytes.fetch_add(own, std::memory_order_relaxed) + own > frame.view_bytes) return;
       group.pieces.data.reserve(pieces.count);
       group.pieces.restart();
@@ -221,7 +231,7 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
       group.pieces.triangles = pieces.triangles;
     }
     group.by_bin.sort(scratch.pairs, list_count);
-    group.fragments.sort(scratch.micro, fragment_lists);
+    group.fragments.sort(scratch.micro, bin_count);
     if (lists.defers) group.deferred.sort(scratch.deferred, bin_count);
     pairs.fetch_add(n + scratch.deferred.entries().size(), std::memory_order_relaxed);
     micro_fragments.fetch_add(m, std::memory_order_relaxed);
@@ -251,7 +261,7 @@ void TriangleGroups::bin_more(Frame& frame, const BinTable& lists, std::span<Gro
     group.binned = bin_pieces(frame.kernel, group.pieces.span(), group.binned, most, lists,
                               scratch.pairs, scratch.deferred);
     group.by_bin.sort(scratch.pairs, lists.count());
-    group.fragments.sort(scratch.micro, lists.fragment_count());
+    group.fragments.sort(scratch.micro, lists.bins.count());
     if (lists.defers) group.deferred.sort(scratch.deferred, lists.bins.count());
     pairs.fetch_add(scratch.pairs.entries().size() + scratch.deferred.entries().size(),
                     std::memory_order_relaxed);

@@ -32,29 +32,17 @@ struct BinTable {
   bool two = false;
   /// Setup may make deferred pieces (cover/bin_quadrics.hpp).
   bool defers = false;
-  /// Of a pixel, each of which has lists of its own; 1: those of all are in one.
-  std::size_t samples = 1;
+  /// Triangles make one piece for all samples of the pixels (kAllSamples), which lie so far from
+  /// the centres at most, n.8; 0: they do not.
+  int reach = 0;
 
-  [[nodiscard]] std::size_t count() const { return samples * of_sample(); }
-  [[nodiscard]] std::size_t fragment_count() const { return samples * bins.count(); }
-  /// That of the pieces of bin `b`, or of those that face the viewer where there are two.
-  [[nodiscard]] std::size_t list(std::size_t b, std::size_t sample) const {
-    return sample * of_sample() + b;
-  }
-  /// That of the pieces that face away, where there are two.
-  [[nodiscard]] std::size_t away(std::size_t b, std::size_t sample) const {
-    return list(b, sample) + bins.count();
-  }
-  [[nodiscard]] std::size_t fragments(std::size_t b, std::size_t sample) const {
-    return sample * bins.count() + b;
-  }
+  [[nodiscard]] std::size_t count() const { return bins.count() * (two ? 2 : 1); }
+  /// The list of the pieces of bin `b` that face away, where there are two; `b` is that of the
+  /// others.
+  [[nodiscard]] std::size_t away(std::size_t b) const { return b + bins.count(); }
   [[nodiscard]] BinNumbers numbers() const {
-    return {bins.view, two ? static_cast<std::uint32_t>(bins.count()) : 0,
-            samples > 1 ? static_cast<std::uint32_t>(of_sample()) : 0};
+    return {bins.view, two ? static_cast<std::uint32_t>(bins.count()) : 0, reach};
   }
-
- private:
-  [[nodiscard]] std::size_t of_sample() const { return bins.count() * (two ? 2 : 1); }
 };
 
 /// What became of the triangles [first, last) of the frame.
@@ -69,17 +57,14 @@ struct Group {
   BinLists<DeferredInBin> deferred;  ///< only where lists defer
 
   [[nodiscard]] bool is_empty(const BinTable& lists, std::size_t bin) const {
-    for (std::size_t s = 0; s < lists.samples; ++s)
-      if (!by_bin.bin(lists.list(bin, s)).empty() ||
-          !fragments.bin(lists.fragments(bin, s)).empty() ||
-          (lists.two && !by_bin.bin(lists.away(bin, s)).empty()))
-        return false;
-    return !lists.defers || deferred.bin(bin).empty();
+    return by_bin.bin(bin).empty() && fragments.bin(bin).empty() &&
+           (!lists.two || by_bin.bin(lists.away(bin)).empty()) &&
+           (!lists.defers || deferred.bin(bin).empty());
   }
 };
 
 /// Sets up and bins the triangles of a view. Keeps its memory.
-/// Work O(triangles + (bin, piece) pairs), times the samples; memory 48 bytes a drawn triangle, 8 a
+/// Work O(triangles + (bin, piece) pairs); memory 48 bytes a drawn triangle, 8 a
 /// pair, 16 a fragment of a micro triangle.
 class TriangleGroups {
  public:
@@ -152,18 +137,17 @@ void enumerate_pieces(const Frame& frame, const Group& group, std::size_t list_n
 /// Enumerates what groups have in the lists of a bin, or in the part `rect` of it.
 template <class Sink>
 void enumerate_bin(const Frame& frame, const BinTable& lists, std::span<const Group> groups,
-                   std::size_t bin, std::size_t sample, Rect rect, Sink& sink) {
+                   std::size_t bin, Rect rect, Sink& sink) {
   const Rect whole = lists.bins.rect(bin);
-  const std::size_t list = lists.list(bin, sample), list_away = lists.away(bin, sample);
   std::size_t away = 0;
   for (const Group& group : groups) {
-    emit_fragments(group.fragments.bin(lists.fragments(bin, sample)), whole, rect, sink);
-    enumerate_pieces(frame, group, list, rect, sink);
-    if (lists.two) away += group.by_bin.bin(list_away).size();
+    emit_fragments(group.fragments.bin(bin), whole, rect, sink);
+    enumerate_pieces(frame, group, bin, rect, sink);
+    if (lists.two) away += group.by_bin.bin(lists.away(bin)).size();
   }
   if (away == 0) return;
   if (away >= kWorthALook) sink.find_bounds();
-  for (const Group& group : groups) enumerate_pieces(frame, group, list_away, rect, sink);
+  for (const Group& group : groups) enumerate_pieces(frame, group, lists.away(bin), rect, sink);
 }
 
 }  // namespace rastrum::raster

@@ -232,38 +232,11 @@ std::uint64_t covered(const std::uint64_t* keys) noexcept {
   return mask;
 }
 
-SeenBySamples merge(const std::uint64_t* planes, std::size_t plane, int samples,
-                    std::uint64_t* largest) noexcept {
-  const hn::RebindToUnsigned<I64> d;
-  const I64 ds;
-  const auto id = hn::Set(d, kIdMask);
-  SeenBySamples seen;
-  for (std::size_t i = 0; i < 64; i += kLanes64) {
-    const auto first = hn::Load(d, planes + i);
-    auto most = first, differs = hn::Zero(d);
-    for (std::size_t s = 1; s < static_cast<std::size_t>(samples); ++s) {
-      const auto key = hn::Load(d, planes + s * plane + i);
-      differs = hn::Or(differs, hn::Xor(key, first));
-      // Keys stay below 2^63.
-      most = hn::BitCast(d, hn::Max(hn::BitCast(ds, most), hn::BitCast(ds, key)));
-    }
-    hn::Store(most, d, largest + i);
-    std::uint8_t empty = 0, same = 0;
-    hn::StoreMaskBits(d, hn::Eq(most, hn::Zero(d)), &empty);
-    hn::StoreMaskBits(d, hn::Eq(hn::And(differs, id), hn::Zero(d)), &same);
-    constexpr std::uint32_t kAll = (1U << kLanes64) - 1;
-    seen.covered |= static_cast<std::uint64_t>(~empty & kAll) << i;
-    seen.mixed |= static_cast<std::uint64_t>(~same & kAll) << i;
-  }
-  return seen;
-}
-
 void fill(Kernels& table) {
   table.keys = keys;
   table.maximum = maximum;
   table.lowest = lowest;
   table.covered = covered;
-  table.merge = merge;
   table.store_opaque = store_opaque;
   table.store_blended = store_blended;
 }

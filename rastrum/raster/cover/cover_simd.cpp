@@ -15,6 +15,7 @@
 #include <rastrum/raster/cover/depth_bounds.hpp>
 #include <rastrum/raster/cover/quadric_kernels-inl.hpp>
 #include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/cover/triangle_lanes-inl.hpp>
 #include <rastrum/raster/kernels/kernels_simd.hpp>
 #include <rastrum/raster/kernels/lanes-inl.hpp>
 
@@ -182,58 +183,6 @@ HWY_NOINLINE std::size_t cover_large(const Piece& piece, std::uint32_t index, Re
   return n;
 }
 
-/// Numbers [4 part, 4 part + 4) of kLanes pieces as four vectors.
-HWY_INLINE void load_numbers(const Piece* const (&pieces)[kLanes], int part, I (&out)[4]) {
-  const I128 d;
-  const hn::Repartition<std::int64_t, I128> d64;
-  const auto load = [&](std::size_t lane) HWY_ATTR {
-    return hn::Load(d, reinterpret_cast<const std::int32_t*>(pieces[lane]) + part * 4);
-  };
-  const auto transpose = [&](std::size_t lane, hn::Vec<I128>(&to)[4]) HWY_ATTR {
-    const auto v0 = load(lane), v1 = load(lane + 1), v2 = load(lane + 2), v3 = load(lane + 3);
-    const auto low01 = hn::BitCast(d64, hn::InterleaveLower(d, v0, v1));
-    const auto low23 = hn::BitCast(d64, hn::InterleaveLower(d, v2, v3));
-    const auto high01 = hn::BitCast(d64, hn::InterleaveUpper(d, v0, v1));
-    const auto high23 = hn::BitCast(d64, hn::InterleaveUpper(d, v2, v3));
-    to[0] = hn::BitCast(d, hn::InterleaveLower(d64, low01, low23));
-    to[1] = hn::BitCast(d, hn::InterleaveUpper(d64, low01, low23));
-    to[2] = hn::BitCast(d, hn::InterleaveLower(d64, high01, high23));
-    to[3] = hn::BitCast(d, hn::InterleaveUpper(d64, high01, high23));
-  };
-#if HWY_MAX_BYTES >= 32
-  hn::Vec<I128> low[4], high[4];
-  transpose(0, low);
-  transpose(4, high);
-  for (int i = 0; i < 4; ++i) out[i] = hn::Combine(I32{}, high[i], low[i]);
-#else
-  transpose(0, out);
-#endif
-}
-
-/// Vertices of kLanes triangles, the first and last samples of their boxes, and their depths.
-struct Triangles {
-  I x[3], y[3];
-  I x0, y0, x1, y1;
-  F z0, zx;
-};
-
-HWY_INLINE Triangles load_triangles(const Piece* const (&pieces)[kLanes]) {
-  const I32 d;
-  I first[4], second[4];
-  load_numbers(pieces, 0, first);
-  load_numbers(pieces, 1, second);
-  Triangles t{{first[0], first[1], first[2]}, {first[3], second[0], second[1]}, {}, {}, {}, {},
-              hn::BitCast(F32{}, second[2]),  hn::BitCast(F32{}, second[3])};
-  const I before = hn::Set(d, kHalfPixel - 1), half = hn::Set(d, kHalfPixel);
-  const auto least = [](const I(&v)[3]) HWY_ATTR { return hn::Min(v[0], hn::Min(v[1], v[2])); };
-  const auto most = [](const I(&v)[3]) HWY_ATTR { return hn::Max(v[0], hn::Max(v[1], v[2])); };
-  t.x0 = hn::ShiftRight<kSubpixelBits>(hn::Add(least(t.x), before));
-  t.y0 = hn::ShiftRight<kSubpixelBits>(hn::Add(least(t.y), before));
-  t.x1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(most(t.x), half));
-  t.y1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(most(t.y), half));
-  return t;
-}
-
 void bins(const Piece* pieces, std::size_t n, const BinNumbers& numbers,
           std::uint32_t* out) noexcept {
   const I32 d;
@@ -247,7 +196,7 @@ void bins(const Piece* pieces, std::size_t n, const BinNumbers& numbers,
     const Piece* lanes[kLanes];
     const std::size_t count = std::min(kLanes, n - i);
     for (std::size_t k = 0; k < kLanes; ++k) lanes[k] = pieces + i + (k < count ? k : 0);
-    const Triangles t = load_triangles(lanes);
+    const Triangles t = load_triangles(lanes, numbers.reach);
     const I x0 = hn::Max(t.x0, hn::Set(d, view.x0)), x1 = hn::Min(t.x1, hn::Set(d, view.x1 - 1));
     const I y0 = hn::Max(t.y0, hn::Set(d, view.y0)), y1 = hn::Min(t.y1, hn::Set(d, view.y1 - 1));
     const I column = bin_of(x0, view.x0), row = bin_of(y0, view.y0);
@@ -411,15 +360,6 @@ HWY_NOINLINE std::size_t split_small(std::uint64_t mask, int x0, int y0, std::ui
   return n;
 }
 
-/// Whether anything is known of the bin's depths.
-HWY_INLINE bool knows_depths(const DepthBounds& bounds) {
-  const F32 d;
-  F most = hn::Zero(d);
-  for (std::size_t i = 0; i < kBlocksPerBin; i += kLanes)
-    most = hn::Max(most, hn::LoadU(d, bounds.block + i));
-  return !hn::AllTrue(d, hn::Eq(most, hn::Zero(d)));
-}
-
 /// Leaves the samples in `bin`; returns how many blocks still have some.
 HWY_NOINLINE std::size_t cut_blocks(Rect bin, Block* blocks, std::size_t n) {
   std::size_t kept = 0;
@@ -430,75 +370,6 @@ HWY_NOINLINE std::size_t cut_blocks(Rect bin, Block* blocks, std::size_t n) {
     kept += block.mask != 0;
   }
   return kept;
-}
-
-/// The lowest bound in each square of 2 × 2 blocks of a bin, from its first block on.
-struct SquareBounds {
-  static constexpr std::size_t kPitch = 2 * kBlocksPerBinRow;
-  HWY_ALIGN float lowest[kBlocksPerBinRow * kPitch];
-
-  HWY_INLINE void find(const DepthBounds& bounds) {
-    const F32 d;
-    for (std::size_t row = 0; row < kBlocksPerBinRow; ++row) {
-      float* const out = lowest + row * kPitch;
-      const float* const upper = bounds.block + row * kBlocksPerBinRow;
-      const float* const lower = row + 1 < kBlocksPerBinRow ? upper + kBlocksPerBinRow : upper;
-      for (std::size_t i = 0; i < kBlocksPerBinRow; i += kLanes)
-        hn::Store(hn::Min(hn::LoadU(d, upper + i), hn::LoadU(d, lower + i)), d, out + i);
-      out[kBlocksPerBinRow] = out[kBlocksPerBinRow - 1];
-      for (std::size_t i = 0; i < kBlocksPerBinRow; i += kLanes)
-        hn::Store(hn::Min(hn::Load(d, out + i), hn::LoadU(d, out + i + 1)), d, out + i);
-    }
-  }
-};
-
-/// Lanes of triangles that no sample of `bin` can show: HiddenTest::hides_piece in lanes, by the
-/// bounds of the blocks that the box touches, if they are 4 × 4 at most.
-HWY_INLINE std::uint32_t hidden_lanes(const Piece* const (&pieces)[kLanes], const Triangles& t,
-                                      Rect bin, const SquareBounds& bounds) {
-  constexpr float kPxPerSubpixel = 1.0F / kSubpixels;
-  const F32 d;
-  const I32 di;
-  I third[4];
-  load_numbers(pieces, 2, third);
-  const F zy = hn::BitCast(d, third[0]);
-  const auto inside = [&](I v, int begin, int end) HWY_ATTR {
-    return hn::Min(hn::Max(v, hn::Set(di, begin)), hn::Set(di, end - 1));
-  };
-  const I x0 = inside(t.x0, bin.x0, bin.x1), x1 = inside(t.x1, bin.x0, bin.x1);
-  const I y0 = inside(t.y0, bin.y0, bin.y1), y1 = inside(t.y1, bin.y0, bin.y1);
-  // highest_depth, not clamped.
-  const auto farther = [&](F slope, I first, I last, I origin) HWY_ATTR {
-    const auto rises = hn::RebindMask(di, hn::Gt(slope, hn::Zero(d)));
-    const F px = hn::Add(hn::ConvertTo(d, hn::IfThenElse(rises, last, first)), hn::Set(d, 0.5F));
-    return hn::Mul(slope,
-                   hn::Sub(px, hn::Mul(hn::ConvertTo(d, origin), hn::Set(d, kPxPerSubpixel))));
-  };
-  const F depth =
-      hn::Add(hn::Add(t.z0, farther(t.zx, x0, x1, t.x[0])), farther(zy, y0, y1, t.y[0]));
-
-  const I column = hn::ShiftRight<3>(hn::Sub(x0, hn::Set(di, bin.x0)));
-  const I last_column = hn::ShiftRight<3>(hn::Sub(x1, hn::Set(di, bin.x0)));
-  const I row = hn::ShiftRight<3>(hn::Sub(y0, hn::Set(di, bin.y0)));
-  const I last_row = hn::ShiftRight<3>(hn::Sub(y1, hn::Set(di, bin.y0)));
-  const I one = hn::Set(di, 1), four = hn::Set(di, 4);
-  const I right = hn::Max(hn::Sub(last_column, one), column);
-  const I down = hn::Max(hn::Sub(last_row, one), row);
-  const auto lowest = [&](I r, I c) HWY_ATTR {
-    static_assert(SquareBounds::kPitch == 16);
-    return hn::GatherIndex(d, bounds.lowest, hn::Add(hn::ShiftLeft<4>(r), c));
-  };
-  const F bound = hn::Min(hn::Min(lowest(row, column), lowest(row, right)),
-                          hn::Min(lowest(down, column), lowest(down, right)));
-  const auto few =
-      hn::And(hn::Lt(hn::Sub(last_column, column), four), hn::Lt(hn::Sub(last_row, row), four));
-  const auto triangle =
-      hn::Eq(hn::And(third[1], hn::Set(di, static_cast<std::int32_t>(kLine | kPoint | kQuadric))),
-             hn::Zero(di));
-  const auto is_finite = [&](F v) HWY_ATTR { return hn::Eq(hn::Sub(v, v), hn::Zero(d)); };
-  const auto below = hn::And(hn::Gt(bound, hn::Zero(d)), hn::Lt(depth, bound));
-  return lane_bits(hn::And(few, triangle)) &
-         lane_bits(hn::RebindMask(di, hn::And(below, hn::And(is_finite(t.zx), is_finite(zy)))));
 }
 
 std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,

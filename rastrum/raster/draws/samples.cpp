@@ -1,5 +1,8 @@
 #include <rastrum/raster/draws/samples.hpp>
 
+#include <algorithm>
+#include <cstdlib>
+
 namespace rastrum::raster {
 namespace {
 
@@ -31,6 +34,12 @@ std::span<const SampleOffset> sample_offsets(int samples) noexcept {
     default:
       return {};
   }
+}
+
+int reach_of(std::span<const SampleOffset> samples) noexcept {
+  int reach = 0;
+  for (const SampleOffset at : samples) reach = std::max({reach, std::abs(at.x), std::abs(at.y)});
+  return reach;
 }
 
 }  // namespace rastrum::raster

@@ -4,7 +4,8 @@
 // A sample that lies (dx, dy) from its pixel's centre is covered by a triangle, and sees the depth,
 // that the centre is covered by and sees once the triangle is moved by (−dx, −dy): edge functions
 // are integers, and the depth formula reads only the difference of the two. So a picture of S
-// samples a pixel is drawn as S pictures of moved pieces, and nothing but setup knows it.
+// samples a pixel may be drawn as S pictures of moved pieces; the fast path moves triangles in
+// lanes, where it covers them (cover/sampled_keys.hpp).
 #pragma once
 
 #include <cstdint>
@@ -31,6 +32,25 @@ RASTRUM_HD constexpr int sample_of(const Piece& p) {
   return static_cast<int>(p.flags >> kSampleShift & (kMaxSamples - 1));
 }
 
+/// Whether the centre lies halfway between the two.
+constexpr bool are_opposite(SampleOffset a, SampleOffset b) {
+  return a.x == -b.x && a.y == -b.y;
+}
+/// How far from the centre they lie at most, in x or y, n.8.
+[[nodiscard]] int reach_of(std::span<const SampleOffset> samples) noexcept;
+
+/// The pixels of `view` of which the closed box of the vertices may hold a sample that lies within
+/// `reach` of the centre.
+inline Rect bounds_within(const std::int32_t (&x)[3], const std::int32_t (&y)[3], int reach,
+                          Rect view) {
+  const int x0 = (min3(x[0], x[1], x[2]) + kHalfPixel - 1 - reach) >> kSubpixelBits;
+  const int y0 = (min3(y[0], y[1], y[2]) + kHalfPixel - 1 - reach) >> kSubpixelBits;
+  const int x1 = ((max3(x[0], x[1], x[2]) - kHalfPixel + reach) >> kSubpixelBits) + 1;
+  const int y1 = ((max3(y[0], y[1], y[2]) - kHalfPixel + reach) >> kSubpixelBits) + 1;
+  return {x0 > view.x0 ? x0 : view.x0, y0 > view.y0 ? y0 : view.y0, x1 < view.x1 ? x1 : view.x1,
+          y1 < view.y1 ? y1 : view.y1};
+}
+
 /// The vertex as it is seen from the samples that lie at `by`.
 RASTRUM_HD inline ProjectedVertex moved(ProjectedVertex v, SampleOffset by) {
   v.x_fx8 -= by.x;
@@ -45,6 +65,16 @@ RASTRUM_HD inline Piece moved(Piece p, SampleOffset by) {
     p.y[c] -= by.y;
   }
   return p;
+}
+/// Whether Kernels::raise_samples draws it.
+constexpr bool is_raised_at_once(const Piece& p) {
+  return (p.flags & (kAllSamples | kMayDrop)) == kAllSamples;
+}
+/// Of a piece of all samples (kAllSamples), that of sample `number`, which lies at `at`.
+inline Piece piece_at(const Piece& p, int number, SampleOffset at) {
+  Piece own = moved(p, at);
+  own.flags = (p.flags & ~kAllSamples) | static_cast<std::uint32_t>(number) << kSampleShift;
+  return own;
 }
 
 /// Where 64 fragments of a block are shaded, px from the centre of the pixel 8 · row + column that

@@ -19,8 +19,7 @@ namespace rastrum::raster {
 /// `Bin` is made from a MemoryAccount& and has begin(context, surface, rect), blocks(pieces,
 /// blocks), fragments(f), bounds(), find_bounds(), finish() and collect(counters) as BinKeys has
 /// them; kColors: it fills the surface's colours. Where lists defer (BinTable) it has
-/// deferred(frame, groups, bin, rect), which draws those quadrics; where samples have lists of
-/// their own, see(sample), which says whose blocks and fragments follow.
+/// deferred(frame, groups, bin, rect), which draws those quadrics.
 template <class Bin>
 class Bins {
  public:
@@ -47,11 +46,8 @@ class Bins {
     if constexpr (requires { worker.bin.deferred(frame, groups, bin, rect); })
       if (lists.defers) worker.bin.deferred(frame, groups, bin, rect);
     Sink sink(frame, worker);
-    for (std::size_t sample = 0; sample < lists.samples; ++sample) {
-      if constexpr (requires { worker.bin.see(sample); }) worker.bin.see(sample);
-      enumerate_bin(frame, lists, groups, bin, sample, rect, sink);
-      sink.flush();
-    }
+    enumerate_bin(frame, lists, groups, bin, rect, sink);
+    sink.flush();
     worker.bin.finish();
     if (local) frame.shade(surface, rect);
   }

@@ -1,71 +1,176 @@
 #include <rastrum/raster/frame/sampled_path.hpp>
 
 #include <algorithm>
+#include <bit>
+#include <utility>
 
-#include <rastrum/raster/cover/bin_keys.hpp>
-#include <rastrum/raster/frame/bins.hpp>
+#include <rastrum/parallel/scratch.hpp>
+#include <rastrum/raster/bin/groups.hpp>
+#include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/frame/tile_surface.hpp>
 #include <rastrum/raster/resolve/sampled_colors.hpp>
+#include <rastrum/stop.hpp>
 
 namespace rastrum::raster {
 namespace {
 
-/// The nearest surfaces of a bin, at each sample.
-class NearestSamplesInBin {
+/// A look at what hides costs about as much as drawing some ten triangles for each block.
+constexpr std::size_t kLookAfter = 512;
+
+/// The nearest surfaces of a bin, at all samples. A thread's own.
+class SampledBin {
  public:
-  static constexpr bool kColors = true;
+  explicit SampledBin(MemoryAccount& memory) : tile_(memory), memory_(memory) {}
 
-  explicit NearestSamplesInBin(MemoryAccount& memory) : planes_(memory) {}
-
-  void begin(const BinContext& context, const SurfaceView& surface, Rect rect) {
-    context_ = context;
-    surface_ = surface;
-    rect_ = rect;
-    plane_ =
-        static_cast<std::size_t>(surface.columns) * static_cast<std::size_t>(block_rows(rect)) * 64;
-    const std::size_t keys = plane_ * static_cast<std::size_t>(context.request->samples);
-    planes_.reserve(keys);
-    std::fill_n(planes_.data(), keys, std::uint64_t{0});
+  void draw(Frame& frame, const BinTable& lists, std::span<const Group> groups, std::size_t bin) {
+    const Rect rect = lists.bins.rect(bin);
+    const bool local = !frame.has_surface();
+    const bool is_empty = std::ranges::all_of(
+        groups, [&](const Group& group) { return group.is_empty(lists, bin); });
+    if (is_empty && local) return frame.shade_nothing(rect);
+    if (is_empty) return;
+    const SurfaceView surface =
+        local ? tile_.begin(frame.request.targets, rect, kBinSize, true)
+              : frame.surface.part(rect.x0 / kBlockSize, rect.y0 / kBlockSize);
+    begin(frame, rect);
+    for (const Group& group : groups) raise_fragments(frame, group.fragments.bin(bin));
+    for (const Group& group : groups) raise(frame, group, group.by_bin.bin(bin));
+    std::size_t away = 0;
+    if (lists.two)
+      for (const Group& group : groups) away += group.by_bin.bin(lists.away(bin)).size();
+    if (away >= kWorthALook) look(frame);
+    if (away != 0)
+      for (const Group& group : groups) raise(frame, group, group.by_bin.bin(lists.away(bin)));
+    resolve(surface);
+    if (local) frame.shade(surface, rect);
   }
-  void see(std::size_t sample) {
-    SurfaceView plane = surface_;
-    plane.keys = planes_.data() + sample * plane_;
-    keys_.begin(*context_.kernel, plane, rect_, context_.request->targets.overdraw.empty());
+  void collect(Counters& counters) {
+    add_counter(counters, "hidden pieces", std::exchange(bounds_.hidden_pieces, 0));
+    add_counter(counters, "hidden blocks", std::exchange(bounds_.hidden_blocks, 0));
   }
-  void blocks(const Piece* pieces, std::span<Block> blocks) {
-    if (!context_.request->has_tests()) return keys_.blocks(pieces, blocks);
-    std::size_t kept = 0;
-    for (Block block : blocks) {
-      const Piece& piece = pieces[block.piece];
-      if ((piece.flags & kMayDrop) != 0) block.mask = colors_.test(context_, piece, block);
-      blocks[kept] = block;
-      kept += block.mask != 0;
-    }
-    if (kept != 0) keys_.blocks(pieces, blocks.first(kept));
-  }
-  void fragments(std::span<const BinFragment> fragments) { keys_.fragments(fragments); }
-  DepthBounds* bounds() { return keys_.bounds(); }
-  void find_bounds() { keys_.find_bounds(); }
-  void finish() {
-    for (int by = rect_.y0 / kBlockSize; by * kBlockSize < rect_.y1; ++by)
-      for (int bx = rect_.x0 / kBlockSize; bx * kBlockSize < rect_.x1; ++bx)
-        colors_.resolve(context_, planes_.data() + surface_.index(bx, by) * 64, plane_, bx, by,
-                        surface_.block(bx, by), *surface_.colors_of(bx, by));
-  }
-  void collect(Counters& counters) { keys_.collect(counters); }
 
  private:
+  void begin(Frame& frame, Rect rect) {
+    context_ = frame.context();
+    rect_ = rect;
+    keys_.x0 = rect.x0;
+    keys_.y0 = rect.y0;
+    keys_.samples = sample_offsets(frame.request.samples);
+    const std::size_t fours = keys_.samples.size() / 4;
+    memory_.reserve(fours * SampledKeys::kFour);
+    keys_.keys = memory_.data();
+    // Whole blocks are read.
+    const std::size_t rows = static_cast<std::size_t>(block_rows(rect)) * kBlockSize;
+    for (std::size_t k = 0; k < fours; ++k)
+      std::fill_n(keys_.keys + k * SampledKeys::kFour, rows * SampledKeys::kRow, std::uint64_t{0});
+    bounds_.restart();
+    seen_ = 0;
+    // Blocks outside of the image hide everything.
+    for (int i = 0; i < kBlocksPerBin; ++i)
+      if (i % kBlocksPerBinRow >= block_columns(rect) || i / kBlocksPerBinRow >= block_rows(rect))
+        bounds_.block[i] = 1;
+  }
+  void look(const Frame& frame) {
+    seen_ = 0;
+    frame.kernel.find_sampled_bounds(keys_, rect_, bounds_);
+  }
+  /// Of points, which are at all samples of their pixels.
+  void raise_fragments(Frame& frame, std::span<const BinFragment> fragments) {
+    for (std::size_t s = 0; s < keys_.samples.size() && !fragments.empty(); ++s) {
+      frame.count_fragments(rect_, fragments);
+      for (const BinFragment& f : fragments) {
+        std::uint64_t& key =
+            keys_.at(rect_.x0 + column_in_bin(f), rect_.y0 + row_in_bin(f), s);
+        key = std::max(key, f.key);
+      }
+    }
+  }
+  void raise(Frame& frame, const Group& group, std::span<const PieceInBin> list) {
+    const PieceList pieces{group.pieces.data.data(), list.data(), list.size()};
+    const bool counts = !frame.request.targets.overdraw.empty();
+    for (std::size_t first = 0; first < list.size();) {
+      parallel::throw_if_stopped();
+      const std::size_t end = std::min(first + kLookAfter, list.size());
+      if (!counts)
+        frame.fragments.fetch_add(
+            frame.kernel.raise_samples(pieces, first, end, rect_, keys_, &bounds_),
+            std::memory_order_relaxed);
+      for (std::size_t i = first; i < end; ++i) {
+        const Piece& piece = pieces.pieces[list[i].piece];
+        if (!counts && is_raised_at_once(piece)) continue;
+        others_[other_count_++] = piece;
+        if (other_count_ == std::size(others_)) raise_others(frame);
+      }
+      seen_ += end - first;
+      first = end;
+      if (!counts && seen_ >= kLookAfter && first < list.size()) look(frame);
+    }
+    raise_others(frame);
+  }
+  /// Sample by sample, block by block: what is tested or counted, and what is no triangle.
+  void raise_others(Frame& frame) {
+    const std::size_t count = std::exchange(other_count_, 0);
+    for (std::size_t s = 0; s < keys_.samples.size() && count != 0; ++s) {
+      const int sample = static_cast<int>(s);
+      std::size_t n = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const Piece& piece = others_[i];
+        const bool of_all = (piece.flags & kAllSamples) != 0;
+        if (!of_all && sample_of(piece) != sample) continue;
+        moved_[n] = of_all ? piece_at(piece, sample, keys_.samples[s]) : piece;
+        list_[n] = {0, static_cast<std::uint32_t>(n)};
+        ++n;
+      }
+      const PieceList pieces{moved_, list_, n};
+      DepthBounds* const bounds =
+          frame.request.targets.overdraw.empty() ? &bounds_ : nullptr;
+      for (std::size_t cursor = 0; cursor < n;) {
+        const std::size_t written = frame.kernel.cover(pieces, cursor, rect_, blocks_,
+                                                       std::size(blocks_), bounds);
+        const std::span<Block> blocks(blocks_, written);
+        frame.count_fragments(blocks);
+        for (const Block& block : blocks) raise_block(s, moved_[block.piece], block);
+      }
+    }
+  }
+  void raise_block(std::size_t sample, const Piece& piece, Block block) {
+    if (context_.request->has_tests() && (piece.flags & kMayDrop) != 0)
+      block.mask = colors_.test(context_, piece, block);
+    if (block.mask == 0) return;
+    alignas(64) std::uint64_t own[64];
+    context_.kernel->keys(piece, block, own);
+    for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      std::uint64_t& key = keys_.at(block.bx * kBlockSize + i % kBlockSize,
+                                    block.by * kBlockSize + i / kBlockSize, sample);
+      key = std::max(key, own[i]);
+    }
+  }
+  void resolve(const SurfaceView& surface) {
+    for (int by = rect_.y0 / kBlockSize; by * kBlockSize < rect_.y1; ++by)
+      for (int bx = rect_.x0 / kBlockSize; bx * kBlockSize < rect_.x1; ++bx)
+        colors_.resolve(context_, keys_, bx, by, surface.block(bx, by),
+                        *surface.colors_of(bx, by));
+  }
+
+  TileSurface tile_;
+  ScratchBuffer<std::uint64_t> memory_;
   BinContext context_;
-  SurfaceView surface_;
   Rect rect_;
-  std::size_t plane_ = 0;
-  ScratchBuffer<std::uint64_t> planes_;
+  SampledKeys keys_;
+  DepthBounds bounds_;
+  std::size_t seen_ = 0;  ///< pieces since the last look
   SampledColors colors_;
-  BinKeys keys_;
+  alignas(64) Block blocks_[kBlockCapacity];
+  std::size_t other_count_ = 0;
+  Piece others_[64], moved_[64];
+  PieceInBin list_[64];
 };
 
 class SampledPath final : public Method {
  public:
-  explicit SampledPath(MemoryAccount& memory) : groups_(memory), bins_(memory) {}
+  explicit SampledPath(MemoryAccount& memory) : groups_(memory), bins_([&memory] { return SampledBin(memory); }) {}
 
   [[nodiscard]] Needs needs() const override {
     return {.rasterizer = "grouped",
@@ -83,26 +188,30 @@ class SampledPath final : public Method {
   void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
     const bool hides = frame.request.targets.overdraw.empty();
     const BinTable lists{
-        {frame.view, kBinSize}, hides, false, static_cast<std::size_t>(frame.request.samples)};
+        {frame.view, kBinSize}, hides, false, reach_of(sample_offsets(frame.request.samples))};
     const auto groups = groups_.set_up(frame, lists, true, first, last);
     frame.watch.lap(frame.stats, "setup and bin");
     frame.fits = groups.has_value();
     if (!frame.fits) return;
     frame.for_each_index(lists.bins.count(), [&](std::size_t bin) {
-      bins_.draw(frame, lists, *groups, bin, lists.bins.rect(bin), kBinSize);
+      bins_.local().draw(frame, lists, *groups, bin);
     });
-    bins_.collect(frame.counters);
+    collect(frame.counters);
     frame.watch.lap(frame.stats, "draw and shade");
   }
 
   void abandon() override {
     Counters dropped;
-    bins_.collect(dropped);
+    collect(dropped);
   }
 
  private:
+  void collect(Counters& counters) {
+    bins_.for_each([&](SampledBin& bin) { bin.collect(counters); });
+  }
+
   TriangleGroups groups_;
-  Bins<NearestSamplesInBin> bins_;
+  parallel::ScratchPool<SampledBin> bins_;
 };
 
 }  // namespace

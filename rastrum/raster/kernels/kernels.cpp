@@ -53,11 +53,16 @@ SetupOutput setup_scalar(const SetupInput& in, Piece* pieces, BinFragment*,
       return drawn;
     };
     if (in.samples.empty()) (void)draw({}, in.flags);
-    for (std::uint32_t s = 0; s < in.samples.size(); ++s)
-      if (draw(in.samples[s], in.flags | s << kSampleShift)) {
-        const std::uint32_t bit = in.first_seen + i;
-        in.seen[bit / 64] |= std::uint64_t{1} << bit % 64;
-      }
+    for (std::uint32_t s = 0; s < in.samples.size(); ++s) {
+      const std::uint32_t flags = in.together ? kAllSamples : s << kSampleShift;
+      if (!draw(in.samples[s], in.flags | flags)) continue;
+      const std::uint32_t bit = in.first_seen + i;
+      in.seen[bit / 64] |= std::uint64_t{1} << bit % 64;
+      if (!in.together) continue;
+      Piece& piece = pieces[out.pieces - 1];
+      piece = moved(piece, {-in.samples[s].x, -in.samples[s].y});
+      break;
+    }
   }
   return out;
 }
@@ -76,7 +81,7 @@ SetupOutput points_scalar(const PointsInput& in, BinFragment* fragments,
       const std::uint64_t key = make_key(plane_depth_at(piece, 0, 0), piece.low);
       ++out.micro;
       for_each_covered(piece, in.view, [&](int x, int y) {
-        fragments[out.fragments++] = fragment_at(x, y, key, in.flags, in.bin_columns, in.first_bin);
+        fragments[out.fragments++] = fragment_at(x, y, key, in.flags, in.bin_columns);
       });
     }
   }
@@ -144,21 +149,64 @@ std::uint64_t covered_scalar(const std::uint64_t* keys) noexcept {
   return mask;
 }
 
-SeenBySamples merge_scalar(const std::uint64_t* planes, std::size_t plane, int samples,
-                           std::uint64_t* largest) noexcept {
-  SeenBySamples seen;
-  for (std::size_t i = 0; i < 64; ++i) {
-    std::uint64_t most = planes[i], differs = 0;
-    for (std::size_t s = 1; s < static_cast<std::size_t>(samples); ++s) {
-      const std::uint64_t key = planes[s * plane + i];
-      differs |= (key ^ planes[i]) & kIdMask;
-      most = std::max(most, key);
+std::uint64_t raise_samples_scalar(const PieceList& in, std::size_t begin, std::size_t end,
+                                   Rect bin, const SampledKeys& keys, DepthBounds*) noexcept {
+  std::uint64_t covered = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const Piece& piece = in.pieces[in.list[i].piece];
+    if (!is_raised_at_once(piece)) continue;
+    for (std::size_t s = 0; s < keys.samples.size(); ++s) {
+      const Piece own = moved(piece, keys.samples[s]);
+      for_each_covered(own, bin, [&](int x, int y) {
+        std::uint64_t& key = keys.at(x, y, s);
+        key = std::max(key, make_key(plane_depth_at(own, x, y), own.low));
+        ++covered;
+      });
+    }
+  }
+  return covered;
+}
+
+void find_sampled_bounds_scalar(const SampledKeys& keys, Rect bin, DepthBounds& bounds) noexcept {
+  for (int i = 0; i < kBlocksPerBin; ++i) {
+    const int x0 = bin.x0 + i % kBlocksPerBinRow * kBlockSize;
+    const int y0 = bin.y0 + i / kBlocksPerBinRow * kBlockSize;
+    if (x0 >= bin.x1 || y0 >= bin.y1) continue;
+    std::uint64_t least = ~std::uint64_t{0};
+    for (int y = y0; y < y0 + kBlockSize; ++y)
+      for (int x = x0; x < x0 + kBlockSize; ++x)
+        for (std::size_t s = 0; s < keys.samples.size(); ++s)
+          least = std::min(least, keys.at(x, y, s));
+    bounds.block[i] = std::max(bounds.block[i], depth_of_key(least));
+  }
+}
+
+void merge_scalar(const SampledKeys& keys, int x, int y, std::uint64_t* largest,
+                  std::uint64_t* first, SeenBySamples& seen) noexcept {
+  seen.covered = seen.mixed = 0;
+  const std::size_t samples = keys.samples.size();
+  for (int i = 0; i < 64; ++i) {
+    std::uint64_t key[kMaxSamples] = {}, most = 0, firsts = 0, centred = 0;
+    bool differs = false;
+    for (std::size_t s = 0; s < samples; ++s) {
+      key[s] = keys.at(x + i % kBlockSize, y + i / kBlockSize, s);
+      most = std::max(most, key[s]);
+      const auto same = [&](std::size_t t) { return ((key[s] ^ key[t]) & kIdMask) == 0; };
+      differs = differs || !same(0);
+      std::size_t t = 0;
+      while (!same(t)) ++t;
+      firsts |= std::uint64_t{t} << (4 * s);
+      for (std::size_t u = t; u < s; ++u)
+        if (same(u) && are_opposite(keys.samples[u], keys.samples[s]))
+          centred |= std::uint64_t{1} << t;
     }
     largest[i] = most;
+    first[i] = key[0];
     seen.covered |= std::uint64_t{most != 0} << i;
-    seen.mixed |= std::uint64_t{differs != 0} << i;
+    seen.mixed |= std::uint64_t{differs} << i;
+    seen.first[i] = firsts;
+    seen.centred[i] = centred;
   }
-  return seen;
 }
 
 void store_opaque_scalar(const BlockColors& colors, std::uint64_t covered, Rgba8 background,
@@ -198,7 +246,7 @@ constexpr std::size_t kIsaCount = static_cast<std::size_t>(Isa::neon) + 1;
 
 constexpr Kernels kScalar{project_scalar,       project64_scalar, setup_scalar, points_scalar,
                           cover_scalar,         masks_scalar,     keys_scalar,  maximum_scalar,
-                          lowest_scalar,        covered_scalar,   merge_scalar, store_opaque_scalar,
+                          lowest_scalar,        covered_scalar,   raise_samples_scalar, find_sampled_bounds_scalar, merge_scalar, store_opaque_scalar,
                           store_blended_scalar, bins_scalar,      defer_scalar, raise_scalar};
 
 }  // namespace
@@ -212,7 +260,8 @@ const Kernels& kernels(Isa isa) noexcept {
       Kernels& table = all[static_cast<std::size_t>(available)];
       for (const FillKernels fill :
            {fill_setup_kernels(available), fill_cover_kernels(available),
-            fill_block_kernels(available), fill_quadric_kernels(available)})
+            fill_block_kernels(available), fill_quadric_kernels(available),
+            fill_sampled_kernels(available)})
         if (fill != nullptr) fill(table);
     }
     return all;

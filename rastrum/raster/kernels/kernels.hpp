@@ -37,7 +37,7 @@ struct SetupInput {
   /// Several samples a pixel: a triangle is set up once, and drawn as each of them sees it, with
   /// its number in the pieces' flags. Empty: the pixels' centres alone.
   std::span<const SampleOffset> samples;
-  std::uint32_t image_bins = 0;  ///< so far apart are the bins of the samples' fragments
+  bool together = false;  ///< with `samples`: one piece for all of them (kAllSamples)
   /// With `samples`: a bit for each triangle of `count`, from bit `first_seen` on, is set where its
   /// box holds one of them and it is not culled.
   std::uint64_t* seen = nullptr;
@@ -66,7 +66,6 @@ struct PointsInput {
   std::uint32_t flags = 0;  ///< without any of kMayDrop
   Rect view;
   std::uint32_t bin_columns = 0;  ///< bins in a row of the image
-  std::uint32_t first_bin = 0;    ///< of the fragments
 };
 /// The largest of them, n.8: nine fragments take no more memory than a piece and its places.
 inline constexpr std::int32_t kMicroPoint = 3 * kSubpixels;
@@ -92,24 +91,22 @@ inline constexpr int kBlocksPerBin = kBlocksPerBinRow * kBlocksPerBinRow;
 inline constexpr std::uint32_t kManyBins = 0xFFFFFFFF;
 
 /// The bins of a view are numbered row by row; `view` begins at a corner of a bin. Pieces with
-/// kFacesAway are in lists of their own, `away` numbers further; 0: they are not. Those of each
-/// sample are `sample` numbers behind those of the one before; 0: there are no such lists.
+/// kFacesAway are in lists of their own, `away` numbers further; 0: they are not.
 struct BinNumbers {
   Rect view;
-  std::uint32_t away = 0, sample = 0;
+  std::uint32_t away = 0;
+  int reach = 0;  ///< how far from the pixels' centres samples lie at most, n.8
 
   [[nodiscard]] std::uint32_t of(const Piece& piece, std::uint32_t bin) const {
-    return bin + ((piece.flags & kFacesAway) != 0 ? away : 0) +
-           static_cast<std::uint32_t>(sample_of(piece)) * sample;
+    return bin + ((piece.flags & kFacesAway) != 0 ? away : 0);
   }
 };
 
-/// A fragment at pixel (x, y) of an image with so many bins in a row, numbered from `first_bin` on;
-/// `flags` are its piece's.
+/// A fragment at pixel (x, y) of an image with so many bins in a row; `flags` are its piece's.
 RASTRUM_HD inline BinFragment fragment_at(int x, int y, std::uint64_t key, std::uint32_t flags,
-                                          std::uint32_t bin_columns, std::uint32_t first_bin) {
+                                          std::uint32_t bin_columns) {
   const auto ux = static_cast<std::uint32_t>(x), uy = static_cast<std::uint32_t>(y);
-  return {key, first_bin + uy / kBinSize * bin_columns + ux / kBinSize,
+  return {key, uy / kBinSize * bin_columns + ux / kBinSize,
           ((uy % kBinSize / kBlockSize * kBlocksPerBinRow + ux % kBinSize / kBlockSize) * 64 +
            uy % kBlockSize * kBlockSize + ux % kBlockSize) |
               ((flags & kTranslucent) != 0 ? kTranslucentFragment : 0)};
@@ -167,10 +164,36 @@ struct QuadricBatch {
   DeferredInBin places[kCapacity];
 };
 
+/// The keys of a bin's samples, four samples of a pixel side by side: a row of a small triangle is
+/// one run of memory. `keys` is aligned to 64 bytes.
+struct SampledKeys {
+  /// From one row of pixels to the next. A line more than they take, so that those of a column do
+  /// not all fall on the same places of a cache.
+  static constexpr std::size_t kRow = 4 * kBinSize + 8;
+  static constexpr std::size_t kFour = kRow * kBinSize;  ///< from four samples to the next four
+
+  std::uint64_t* keys = nullptr;
+  int x0 = 0, y0 = 0;  ///< the bin's first pixel
+  std::span<const SampleOffset> samples;
+
+  /// The first four of pixel (x, y).
+  [[nodiscard]] std::uint64_t* at(int x, int y) const {
+    return keys + static_cast<std::size_t>(y - y0) * kRow + static_cast<std::size_t>(x - x0) * 4;
+  }
+  [[nodiscard]] std::uint64_t& at(int x, int y, std::size_t sample) const {
+    return at(x, y)[sample / 4 * kFour + sample % 4];
+  }
+};
+
 /// What the samples of a block's pixels see.
 struct SeenBySamples {
   std::uint64_t covered = 0;  ///< something, at some sample
   std::uint64_t mixed = 0;    ///< not all of them the same primitive, or nothing
+  /// Where they are mixed: in four bits for each sample the first one that sees the same, …
+  alignas(64) std::uint64_t first[64];
+  /// … and a bit for each first one where two opposite samples do, so that the centre, which lies
+  /// halfway between them, is covered, too.
+  alignas(64) std::uint64_t centred[64];
 };
 
 /// What became of the keys of a bin.
@@ -221,9 +244,19 @@ struct Kernels {
   /// Which of 64 keys are not 0.
   std::uint64_t (*covered)(const std::uint64_t* keys) noexcept;
 
-  /// Of 64 keys for each of `samples`, `plane` apart, the largest of each pixel.
-  SeenBySamples (*merge)(const std::uint64_t* planes, std::size_t plane, int samples,
-                         std::uint64_t* largest) noexcept;
+  /// Raises the keys of `bin` by those pieces in [begin, end) of a list that are of all samples and
+  /// have no fragment test; returns how many samples they cover. `bounds` may be null; those of
+  /// blocks that a large triangle fills are raised.
+  std::uint64_t (*raise_samples)(const PieceList& pieces, std::size_t begin, std::size_t end,
+                                 Rect bin, const SampledKeys& keys, DepthBounds* bounds) noexcept;
+
+  /// The least depths of the blocks of `bin`, as far as something is seen everywhere in them.
+  void (*find_sampled_bounds)(const SampledKeys& keys, Rect bin, DepthBounds& bounds) noexcept;
+
+  /// Of the block that begins at pixel (x, y) the largest key of each pixel, that of its first
+  /// sample, and what the others see.
+  void (*merge)(const SampledKeys& keys, int x, int y, std::uint64_t* largest, std::uint64_t* first,
+                SeenBySamples& seen) noexcept;
 
   /// A whole block of opaque colours in 8 bits, `background` where nothing is covered.
   void (*store_opaque)(const BlockColors& colors, std::uint64_t covered, Rgba8 background,

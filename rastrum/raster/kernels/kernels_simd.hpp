@@ -13,5 +13,6 @@ using FillKernels = void (*)(Kernels&);
 [[nodiscard]] FillKernels fill_cover_kernels(Isa isa) noexcept;
 [[nodiscard]] FillKernels fill_block_kernels(Isa isa) noexcept;
 [[nodiscard]] FillKernels fill_quadric_kernels(Isa isa) noexcept;
+[[nodiscard]] FillKernels fill_sampled_kernels(Isa isa) noexcept;
 
 }  // namespace rastrum::raster

@@ -149,40 +149,45 @@ SampledColors::SampledColors() : kept_(std::make_unique<Primitive[]>(kKept)) {}
 SampledColors::SampledColors(SampledColors&&) noexcept = default;
 SampledColors::~SampledColors() = default;
 
-void SampledColors::resolve(const BinContext& context, const std::uint64_t* planes,
-                            std::size_t plane, int bx, int by, std::uint64_t* nearest,
-                            BlockColors& out) {
-  const auto samples = static_cast<std::size_t>(context.request->samples);
-  const auto [covered, mixed] =
-      context.kernel->merge(planes, plane, context.request->samples, nearest);
+void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, int bx, int by,
+                            std::uint64_t* nearest, BlockColors& out) {
+  const std::size_t samples = keys.samples.size();
+  const int x0 = bx * kBlockSize, y0 = by * kBlockSize;
+  context.kernel->merge(keys, x0, y0, nearest, centre_keys_, seen_);
+  const std::uint64_t covered = seen_.covered, mixed = seen_.mixed;
   if (!context.request->wants_colors() || covered == 0) return;
 
   bx_ = bx;
   by_ = by;
   centred_ = 0;
   packed_ = groups_ = 0;
-  if (!context.clips && !context.request->shading.wants_depth()) {
-    // All samples lie about the centre, so a triangle that covers them covers it.
-    centred_ = covered & ~mixed;
-    std::copy_n(planes, 64, centre_keys_);
-  }
+  // A triangle that two opposite samples see, or all, covers the centre between them.
+  const bool knows = !context.clips && !context.request->shading.wants_depth();
+  if (knows) centred_ = covered & ~mixed;
   const std::uint64_t alike = centred_;
   Finder finder(context, kept_.get());
-  std::uint16_t places[kMaxSamples][64];
+  std::uint16_t places[64][kMaxSamples];
   for (std::uint64_t m = covered & ~alike; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    const int x = bx * kBlockSize + i % kBlockSize, y = by * kBlockSize + i / kBlockSize;
-    const bool one = (mixed >> i & 1) == 0;
+    const int x = x0 + i % kBlockSize, y = y0 + i / kBlockSize;
+    std::uint16_t(&at)[kMaxSamples] = places[i];
+    if ((mixed >> i & 1) == 0) {
+      add(context, i, finder.find(keys.at(x, y, 0), x, y, true), at[0]);
+      continue;
+    }
+    const std::uint64_t first = seen_.first[i];
+    const std::uint64_t centred = knows ? seen_.centred[i] : 0;
     for (std::size_t s = 0; s < samples; ++s) {
-      const std::uint64_t key = planes[s * plane + static_cast<std::size_t>(i)];
-      std::uint16_t& at = places[s][i];
-      at = kNoPlace;
-      if (key == 0) continue;
-      for (std::size_t t = 0; t < s && at == kNoPlace; ++t)
-        if (((planes[t * plane + static_cast<std::size_t>(i)] ^ key) & kIdMask) == 0)
-          at = places[t][i];
-      if (at == kNoPlace) add(context, i, finder.find(key, x, y, one), at);
-      if (one) break;
+      const std::size_t same = first >> (4 * s) & 15;
+      if (same != s) {
+        at[s] = at[same];
+        continue;
+      }
+      const std::uint64_t key = keys.at(x, y, s);
+      at[s] = kNoPlace;
+      if (key != 0)
+        add(context, i, (centred >> s & 1) != 0 ? Place{key, {}} : finder.find(key, x, y, false),
+            at[s]);
     }
   }
   flush(context);
@@ -206,7 +211,7 @@ void SampledColors::resolve(const BinContext& context, const std::uint64_t* plan
     const bool one = (mixed >> i & 1) == 0;
     Vec4 sum;
     for (std::size_t s = 0; s < samples; ++s) {
-      const std::uint16_t at = places[one ? 0 : s][i];
+      const std::uint16_t at = places[i][one ? 0 : s];
       if (at == kNoPlace) continue;
       const BlockColors& c = colors_[at / 64];
       const std::size_t k = at % 64;

@@ -10,6 +10,7 @@
 
 #include <rastrum/raster/draws/samples.hpp>
 #include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/kernels/kernels.hpp>
 
 namespace rastrum::raster {
 
@@ -20,11 +21,11 @@ class SampledColors {
   SampledColors(SampledColors&&) noexcept;
   ~SampledColors();
 
-  /// `planes`: 64 keys of each sample, `plane` keys apart; `bx`, `by`: the block. Sets `nearest` to
-  /// the largest key of each pixel and, where the frame wants colours, `out` to the mean of the
-  /// samples' premultiplied colours. Requires triangles, points and lines.
-  void resolve(const BinContext& context, const std::uint64_t* planes, std::size_t plane, int bx,
-               int by, std::uint64_t* nearest, BlockColors& out);
+  /// `bx`, `by`: the block. Sets `nearest` to the largest key of each pixel and, where the frame
+  /// wants colours, `out` to the mean of the samples' premultiplied colours. Requires triangles,
+  /// points and lines.
+  void resolve(const BinContext& context, const SampledKeys& keys, int bx, int by,
+               std::uint64_t* nearest, BlockColors& out);
   /// Of what a piece with a fragment test covers at a sample, the pixels that the test keeps: it is
   /// asked where the primitive is shaded, and says the same for every sample.
   [[nodiscard]] std::uint64_t test(const BinContext& context, const Piece& piece,
@@ -45,6 +46,7 @@ class SampledColors {
   /// others one after the other.
   BlockColors colors_[1 + kMaxSamples];
   alignas(64) std::uint64_t centre_keys_[64];
+  SeenBySamples seen_;
   std::uint64_t centred_ = 0;  ///< pixels of group 0
   alignas(64) std::uint64_t packed_keys_[64];
   ShadingPoints packed_points_;

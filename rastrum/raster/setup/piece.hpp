@@ -60,6 +60,8 @@ inline constexpr int kLineWidthShift = 16;
 inline constexpr std::uint32_t kFacesAway = 16;
 /// One of those that a triangle was clipped to.
 inline constexpr std::uint32_t kClipped = 1U << 14;
+/// A triangle as the pixels' centres see it, for all of their samples (draws/samples.hpp).
+inline constexpr std::uint32_t kAllSamples = 1U << 15;
 /// With kQuadric: its quadric is made by the bins that see it (cover/bin_quadrics.hpp). Of the
 /// piece there are the box and, in z0, Quadric::highest; it faces the viewer.
 inline constexpr std::uint32_t kDeferred = 1U << 13;

@@ -196,7 +196,8 @@ Piece* make_room(Pieces& pieces, MicroSink* micro, BinFragment*& fragments) {
 /// Triangles by the kernel, as many at a time as there is room for with all samples.
 SetupOutput set_up_triangles(const Frame& frame, const SetupInput& in, Pieces& pieces,
                              MicroSink* micro, std::uint32_t* slow) {
-  const auto samples = static_cast<std::uint32_t>(std::max<std::size_t>(in.samples.size(), 1));
+  const auto samples = static_cast<std::uint32_t>(
+      in.together ? 1 : std::max<std::size_t>(in.samples.size(), 1));
   SetupOutput all;
   for (std::uint32_t first = 0; first < in.count; first += kSetupBatch / samples) {
     SetupInput some = in;
@@ -272,7 +273,7 @@ std::size_t Pieces::quadric_bytes() const {
 }
 
 bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces& pieces,
-            MicroSink* micro, bool defers) {
+            MicroSink* micro, bool defers, bool together) {
   const FrameGeometry& geometry = frame.geometry;
   const Rect image{0, 0, geometry.width, geometry.height};
   const std::span<const SampleOffset> samples = sample_offsets(frame.request.samples);
@@ -340,23 +341,21 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
     input.cull = draw.effective_cull();
     input.view = image;
     input.bin_columns = static_cast<std::uint32_t>((geometry.width + kBinSize - 1) / kBinSize);
-    input.micro = micro != nullptr;
+    input.micro = micro != nullptr && !together;
     const bool as_points = micro != nullptr && (flags & kMayDrop) == 0 && has_small_points(draw);
     if (as_points && !corners.load_points(geometry, draw, t, count)) return false;
 
-    const std::uint32_t image_bins =
-        input.bin_columns * static_cast<std::uint32_t>((geometry.height + kBinSize - 1) / kBinSize);
     TriangleSet seen, clipped, dropped;
     std::uint32_t seen_points = 0;
     input.flags = flags;
     // Who draws translucent surfaces opaque knows no such fragments.
     if (frame.request.transparency.method == Transparency::none) input.flags &= ~kTranslucent;
-    SetupOutput of_all;
+    SetupOutput of_all, of_points;
     const bool by_kernel = !as_points && draw.has_kernel();
     if (by_kernel) {
       if (samples.size() > 1) {
         input.samples = samples;
-        input.image_bins = image_bins;
+        input.together = together;
         input.seen = seen.bits;
       }
       of_all = set_up_triangles(frame, input, pieces, micro, slow);
@@ -365,7 +364,10 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
     for (std::uint32_t sample = 0; sample < samples.size(); ++sample) {
       const SampleOffset at = samples[sample];
       SetupOutput out = of_all;
-      if (!by_kernel) {
+      // A point is at all samples of its pixels: its fragments are of all of them.
+      if (as_points && together && sample > 0) {
+        out = of_points;
+      } else if (!by_kernel) {
         const std::uint32_t own_flags = input.flags | sample << kSampleShift;
         BinFragment* fragments = nullptr;
         Piece* const room = make_room(pieces, micro, fragments);
@@ -373,9 +375,10 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
           std::int32_t sizes[kSetupBatch];
           out = frame.kernel.points({corners.vertices, count, sizes_of(draw, t, count, sizes), id,
                                      own_flags | (draw.is_round() ? kRound : 0), image,
-                                     input.bin_columns, sample * image_bins},
+                                     input.bin_columns},
                                     fragments, slow);
           seen_points = out.micro;
+          of_points = out;
         } else if (defers && may_defer(draw, own_flags)) {
           out = defer_quadrics(frame, draw, t, count, own_flags, room, slow);
         } else {

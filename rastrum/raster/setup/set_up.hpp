@@ -54,11 +54,14 @@ class MicroSink {
 };
 
 /// Sets up triangles [first, last), which may span draws, behind those that `pieces` holds: of each
-/// sample a piece. With `micro`, micro triangles become its fragments, in bins that are numbered
-/// sample by sample; with `defers`, quadrics become deferred pieces where they can. Returns whether
-/// all indices were in range; where not, the pieces are incomplete.
+/// sample a piece. With `micro`, micro triangles and points become its fragments; with `defers`,
+/// quadrics become deferred pieces where they can. `together`, for several samples: triangles that
+/// are not clipped become one piece for all of them (kAllSamples), and none of them fragments;
+/// those of points are of all samples. Returns whether all indices were in range; where not, the
+/// pieces are incomplete.
 [[nodiscard]] bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last,
-                          Pieces& pieces, MicroSink* micro = nullptr, bool defers = false);
+                          Pieces& pieces, MicroSink* micro = nullptr, bool defers = false,
+                          bool together = false);
 
 /// Adds what became of the triangles of a group to the frame's statistics, once for all bands.
 void count_triangles(Frame& frame, const FrameStats::Triangles& triangles);

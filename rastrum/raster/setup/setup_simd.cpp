@@ -309,7 +309,7 @@ HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c
 
 /// The covered samples of a micro triangle as fragments. By value, so that it stays in registers.
 HWY_INLINE std::uint32_t write_fragments(const Piece p, std::uint32_t mask, const SetupInput& in,
-                                         std::uint32_t first_bin, BinFragment* out) {
+                                         BinFragment* out) {
   const int first_x = (min3(p.x[0], p.x[1], p.x[2]) + kHalfPixel - 1) >> kSubpixelBits;
   const int first_y = (min3(p.y[0], p.y[1], p.y[2]) + kHalfPixel - 1) >> kSubpixelBits;
   std::uint32_t n = 0;
@@ -317,8 +317,8 @@ HWY_INLINE std::uint32_t write_fragments(const Piece p, std::uint32_t mask, cons
     const int sample = std::countr_zero(mask);
     const int x = first_x + sample % kMicroSize, y = first_y + sample / kMicroSize;
     if (x < in.view.x0 || x >= in.view.x1 || y < in.view.y0 || y >= in.view.y1) continue;
-    out[n++] = fragment_at(x, y, make_key(plane_depth_at(p, x, y), p.low), p.flags, in.bin_columns,
-                           first_bin);
+    out[n++] =
+        fragment_at(x, y, make_key(plane_depth_at(p, x, y), p.low), p.flags, in.bin_columns);
   }
   return n;
 }
@@ -398,7 +398,8 @@ HWY_INLINE void write_pieces(const SetupInput& in, const PieceLanes& from, std::
   const I128 d;
   const SampleOffset at = kMoved ? in.samples[number] : SampleOffset{};
   alignas(16) const std::int32_t by[2][4] = {{at.x, at.x, at.x, at.y}, {at.y, at.y, 0, 0}};
-  const std::uint32_t flags = in.flags | number << kSampleShift;
+  const std::uint32_t flags =
+      in.flags | (in.together ? kAllSamples : 0) | number << kSampleShift;
   const auto load = [&](const std::int32_t* part, std::uint32_t i, int half) HWY_ATTR {
     const auto v = hn::Load(d, part + i * 4);
     return kMoved ? hn::Sub(v, hn::Load(d, by[half])) : v;
@@ -417,9 +418,27 @@ HWY_INLINE void write_pieces(const SetupInput& in, const PieceLanes& from, std::
       continue;
     }
     ++out.micro;
-    out.fragments +=
-        write_fragments(piece, micro[i], in, number * in.image_bins, fragments + out.fragments);
+    out.fragments += write_fragments(piece, micro[i], in, fragments + out.fragments);
   }
+}
+
+/// Lanes of triangles whose boxes hold some sample of the view.
+HWY_INLINE std::uint32_t seen_lanes(const Corners& a, const Corners& b, const Corners& c,
+                                    const SetupInput& in) {
+  const I32 d;
+  const I left = min3_lanes(a.x, b.x, c.x), right = max3_lanes(a.x, b.x, c.x);
+  const I top = min3_lanes(a.y, b.y, c.y), bottom = max3_lanes(a.y, b.y, c.y);
+  // First and last sample of the box lie apart.
+  const auto empty = [&](I least, I most, int at, int begin, int end) HWY_ATTR {
+    const I first = hn::ShiftRight<kSubpixelBits>(hn::Add(least, hn::Set(d, kHalfPixel - 1 - at)));
+    const I last = hn::ShiftRight<kSubpixelBits>(hn::Sub(most, hn::Set(d, kHalfPixel + at)));
+    return hn::Gt(hn::Max(first, hn::Set(d, begin)), hn::Min(last, hn::Set(d, end - 1)));
+  };
+  std::uint32_t seen = 0;
+  for (const SampleOffset at : in.samples)
+    seen |= ~lane_bits(hn::Or(empty(left, right, at.x, in.view.x0, in.view.x1),
+                              empty(top, bottom, at.y, in.view.y0, in.view.y1)));
+  return seen;
 }
 
 /// Sets up the triangles of `lanes` and draws them. Of several samples each finds its own classes;
@@ -433,7 +452,12 @@ HWY_INLINE void make_pieces(const SetupInput& in, const Corners& a, const Corner
   if (in.samples.empty())
     return write_pieces<false>(in, set_up, 0, lanes, triangle, micro, pieces, fragments, out);
   std::uint32_t seen = 0;
-  for (std::uint32_t s = 0; s < in.samples.size(); ++s) {
+  if (in.together) {
+    seen = lanes & seen_lanes(a, b, c, in);
+    static constexpr std::uint32_t kNoMicro[kLanes] = {};
+    write_pieces<false>(in, set_up, 0, seen, triangle, kNoMicro, pieces, fragments, out);
+  }
+  for (std::uint32_t s = 0; !in.together && s < in.samples.size(); ++s) {
     const SampleOffset at = in.samples[s];
     const Classes classes =
         classify<false>(moved_lanes(a, at), moved_lanes(b, at), moved_lanes(c, at), in);
@@ -559,7 +583,7 @@ HWY_INLINE void one_pixel_points(const PointsInput& in, std::uint32_t first, Bin
   const F z = hn::BitCast(df, bits);
   const F depth = hn::Min(hn::IfThenElseZero(hn::Gt(z, hn::Zero(df)), z), hn::Set(df, 1.0F));
   const I row = hn::Mul(hn::ShiftRight<6>(y), set(static_cast<int>(in.bin_columns)));
-  const I bin = hn::Add(hn::Add(row, hn::ShiftRight<6>(x)), set(static_cast<int>(in.first_bin)));
+  const I bin = hn::Add(row, hn::ShiftRight<6>(x));
   static_assert(kBinSize == 64 && kBlockSize == 8);
   const auto part = [&](I v, int mask) HWY_ATTR { return hn::And(v, set(mask)); };
   const I pixel = hn::Or(hn::Or(hn::ShiftLeft<6>(part(y, 0x38)), hn::ShiftLeft<3>(part(x, 0x38))),

@@ -61,8 +61,10 @@ std::optional<float> Shading::alpha() const noexcept {
 }
 
 bool Shading::wants_depth() const noexcept {
-  if (const LitShading* const l = lit()) return l->scene->lights != nullptr;
-  if (const MaterialShading* const m = material()) return m->scene->lights != nullptr;
+  // Light from a direction does not ask where a surface lies.
+  const auto asks = [](const LightSet* lights) { return lights != nullptr && lights->has_places; };
+  if (const LitShading* const l = lit()) return asks(l->scene->lights);
+  if (const MaterialShading* const m = material()) return asks(m->scene->lights);
   const BlockShader* const shader = own();
   return shader != nullptr && shader->wants_depth();
 }
