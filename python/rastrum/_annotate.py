@@ -10,7 +10,7 @@ from ._errors import ArgumentError, ArgumentTypeError
 #: name: its options and their defaults; None: by the scene
 _EFFECTS = {"occlusion": {"radius": None, "strength": 1.0}, "edl": {"strength": 1.0}, "silhouettes": {},
             "edges": {"angle": 0.0, "width": 1.0}, "axes": {}, "bounds": {},
-            "bar": {"title": "", "unit": ""}}
+            "bar": {"title": "", "unit": "", "nan": False}}
 _WORDS = ("title", "captions", "text_scale")
 
 
@@ -23,9 +23,10 @@ def _number(value, name):
 def _bar(options):
     if options is None:
         return None
-    if not all(isinstance(v, str) for v in options.values()):
-        raise ArgumentTypeError("annotate['bar']: title and unit are words")
-    return options["title"], options["unit"]
+    title, unit, nan = options["title"], options["unit"], options["nan"]
+    if not isinstance(title, str) or not isinstance(unit, str) or not isinstance(nan, bool):
+        raise ArgumentTypeError("annotate['bar']: title and unit are words, nan is True or False")
+    return title, unit, nan
 
 
 def annotations(wanted):

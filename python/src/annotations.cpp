@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <rastrum/scene.hpp>
@@ -27,7 +27,7 @@ double radius_of(const SceneView& scene) {
 Annotations annotations(std::optional<double> occlusion_radius, double occlusion_strength,
                         std::optional<double> edl_strength, bool silhouettes,
                         std::optional<double> edge_angle, double edge_width, bool axes, bool bounds,
-                        const std::optional<std::pair<std::string, std::string>>& bar,
+                        const std::optional<std::tuple<std::string, std::string, bool>>& bar,
                         const std::string& title, const std::vector<std::string>& captions,
                         double text_scale) {
   Annotations a;
@@ -39,7 +39,7 @@ Annotations annotations(std::optional<double> occlusion_radius, double occlusion
   a.edge_width = edge_width;
   a.axes = axes;
   a.bounds = bounds;
-  if (bar) a.bar = {bar->first, bar->second};
+  if (bar) a.bar = {std::get<0>(*bar), std::get<1>(*bar), std::get<2>(*bar)};
   a.title = title;
   a.captions = captions;
   a.text_scale = text_scale;
@@ -108,6 +108,7 @@ void AnnotationScratch::draw(const Annotations& a, const SceneEdges* edges, cons
     overlay::ScalarBar bar = overlay::scalar_bar(scene.scalar_mappings[0], scalar_colors(scene));
     bar.title = a.bar->title;
     bar.unit = a.bar->unit;
+    if (a.bar->nan) bar.nan = scene.scalar_mappings[0].nan;
     overlay::draw_scalar_bar(canvas, bar, look);
   }
   using overlay::Corner;

@@ -24,6 +24,7 @@ struct Annotations {
   bool axes = false, bounds = false;
   struct Bar {
     std::string title, unit;
+    bool nan = false;  ///< with the colour of what is no number
   };
   std::optional<Bar> bar{};  ///< of the scene's first mapping
   std::string title{};
