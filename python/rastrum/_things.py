@@ -58,7 +58,7 @@ class ColorMapping:
 
     @raises_errors
     def __init__(self, cmap="viridis", clim=None, *, log=False, symmetric=False, steps=0, categories=(), below=None,
-                 above=None, nan="gray", opacity=(), isolines=(), isoline_color="black", isoline_width=1.0):
+                 above=None, nan=(0.5, 0.5, 0.5), opacity=(), isolines=(), isoline_color="black", isoline_width=1.0):
         colors, discrete = _map(cmap)
         if clim is not None:
             clim = tuple(float(v) for v in clim)

@@ -216,6 +216,7 @@ std::string python_lines(const ShownPicture& shown, const std::string& png) {
     all += std::string(", cull=") + (frame.cull == Cull::back ? "\"back\"" : "\"front\"");
   if (const std::string lights = python_lights(shown); !lights.empty()) all += ", lights=" + lights;
   if (frame.shadows) all += ", shadows=True";
+  if (frame.environment_behind) all += ", environment_behind=True";
   if (frame.tone.tone != Tone::none) all += ", tone=" + literal(tone_name(frame.tone.tone));
   if (frame.tone.exposure_stops != 0)
     all += ", exposure=" + number(static_cast<double>(frame.tone.exposure_stops));
