@@ -35,7 +35,7 @@ class Material:
 class ColorMapping:
     def __init__(self, cmap: Any = "viridis", clim: Sequence[float] | None = None, *, log: bool = False, symmetric: bool = False,
                  steps: int = 0, categories: Iterable[float] = (), below: Color | None = None, above: Color | None = None,
-                 nan: Color = "gray", opacity: Iterable[tuple[float, float]] = (), isolines: Iterable[float] = (),
+                 nan: Color = (0.5, 0.5, 0.5), opacity: Iterable[tuple[float, float]] = (), isolines: int | Iterable[float] = (),
                  isoline_color: Color = "black", isoline_width: float = 1.0) -> None: ...
 
 def color_maps() -> list[str]: ...

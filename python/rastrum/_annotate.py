@@ -23,9 +23,10 @@ def _number(value, name):
 def _bar(options):
     if options is None:
         return None
-    if not isinstance(options["title"], str) or not isinstance(options["unit"], str):
-        raise ArgumentTypeError("annotate['bar']: title and unit are words")
-    return options["title"], options["unit"], bool(options["nan"])
+    title, unit, nan = options["title"], options["unit"], options["nan"]
+    if not isinstance(title, str) or not isinstance(unit, str) or not isinstance(nan, bool):
+        raise ArgumentTypeError("annotate['bar']: title and unit are words, nan is True or False")
+    return title, unit, nan
 
 
 def annotations(wanted):

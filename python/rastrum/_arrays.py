@@ -129,10 +129,8 @@ def color(value, name):
 
 
 def linear(rgba):
-    """Display values as linear light (sRGB)."""
-    def channel(v):
-        return v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4
-    return tuple(channel(v) for v in rgba[:3]) + (rgba[3],)
+    """Display values as linear light (sRGB), the same bits on every machine."""
+    return tuple(_r.linear_from_srgb(float(v)) for v in rgba[:3]) + (rgba[3],)
 
 
 def product(a, b):

@@ -10,7 +10,7 @@ from ._arrays import color as _color
 from ._arrays import linear
 from ._errors import ArgumentError, ArgumentTypeError, raises_errors
 
-_NAMES = ("default", "headlight", "studio")
+_NAMES = ("default", "headlight", "studio", "file")
 
 
 def _three(value, name):
@@ -18,6 +18,11 @@ def _three(value, name):
     if array.shape != (3,):
         raise ArgumentError(f"{name}: must be three numbers, not {value!r}")
     return array.tolist()
+
+
+def _linear(value, name):
+    """Linear light of a colour; float32 before it is, as the program's --light has it."""
+    return list(linear([float(np.float32(c)) for c in _color(value, name)])[:3])
 
 
 def display(linear):
@@ -38,8 +43,8 @@ class Light:
     def __init__(self, kind, place=(0, 0, 0), direction=(0, 0, -1), below="black", range=math.inf, inner=0.0, outer=45.0, *,
                  color="white", intensity=1.0, of_camera=False):
         self._made = _r.light(kind, _three(place, "position"), _three(direction, "direction"),
-                              list(linear(_color(below, "below"))[:3]), float(range), math.radians(inner),
-                              math.radians(outer), list(linear(_color(color, "color"))[:3]), float(intensity),
+                              _linear(below, "below"), float(range), math.radians(inner),
+                              math.radians(outer), _linear(color, "color"), float(intensity),
                               bool(of_camera))
 
     @classmethod
@@ -80,13 +85,13 @@ class Light:
         else:
             made = _r.environment_of_array(np.ascontiguousarray(picture, np.float32))
         light = cls.__new__(cls)
-        light._made = _r.environment(made, _three(up, "up"), math.radians(turn), list(linear(_color(color, "color"))[:3]),
+        light._made = _r.environment(made, _three(up, "up"), math.radians(turn), _linear(color, "color"),
                                      float(intensity), bool(of_camera))
         return light
 
 
-def lights(wanted):
-    """What `lights` of render means, for C++."""
+def lights(wanted, scene):
+    """What `lights` of render means, for C++. `scene`: C++'s, whose files may have some."""
     if wanted is None:
         return []
     if isinstance(wanted, (str, Light)):
@@ -101,6 +106,11 @@ def lights(wanted):
             made.append(_r.headlight())
         elif light == "studio":
             made += _r.light_kit()
+        elif light == "file":
+            of_files = scene.lights
+            if not of_files:
+                raise ArgumentError("lights: the scene's files have no lights of their own")
+            made += of_files
         elif light != "default":
             raise ArgumentError(f"lights: there is no {light!r}; take some of {', '.join(_NAMES)}, or a rastrum.Light")
     return made

@@ -225,8 +225,8 @@ class Renderer:
         outputs: names of Picture's fields. shader: auto, flat, depth, normal, id, lambert, phong, material, wireframe.
         background: a colour, None: transparent. samples: 1, 4, 8 or 16 a pixel. transparency: exact, unsorted, none.
         cull: none, back, front. clip_planes: rows (x, y, z, d) of the world; kept is x X + y Y + z Z + d >= 0.
-        lights: of lambert, phong and material: headlight, studio (key, fill, back and head light), Lights, a list of
-        these; None: the fixed light of each. shadows: of directional lights and spots. tone, exposure: of material:
+        lights: of lambert, phong and material: headlight, studio (key, fill, back and head light), file (those of glTF
+        files), Lights, a list of these; None: the fixed light of each. shadows: of directional lights and spots. tone, exposure: of material:
         none, reinhard, aces or neutral for what is brighter than white, after `exposure` stops. environment_behind: the environments among lights are seen where nothing is.
         annotate: what is drawn over the colours, by name, or {name: options}: "occlusion" (radius, in world units,
         strength), "edl" (strength), "silhouettes", "edges" (angle, in degrees: creases and borders alone; width, px),
@@ -270,7 +270,7 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
                      [0.0] * 4 if background is None else list(_color(background, "background")), float(opacity),
                      _text(transparency, "transparency"), samples,
                      [] if len(clip_planes) == 0 else floats(clip_planes, "clip_planes", (4,)).tolist(),
-                     _lights(lights), bool(shadows), _text(tone, "tone"), float(exposure), bool(environment_behind))
+                     _lights(lights, scene._made), bool(shadows), _text(tone, "tone"), float(exposure), bool(environment_behind))
     made = [c._for_size((width, height)) for c in cameras]
     notes = _annotations(annotate)
     if notes is not None and camera is None:

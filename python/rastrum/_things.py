@@ -58,12 +58,13 @@ class ColorMapping:
     clim: (low, high), None: from the least to the greatest finite number. log: by factors. symmetric: 0 in the middle.
     steps: so many colours. categories: numbers that have a colour each. below, above, nan: colours beyond the range and
     of what is no number. opacity: (number, opacity) pairs, linear between. isolines: numbers where lines are drawn on
-    meshes, across lines and along axes, isoline_width pixels wide. The picture: docs/scalars.md.
+    meshes, across lines and along axes, isoline_width pixels wide; or about how many, at round numbers of the range that
+    a Scene finds when it is made. The picture: docs/scalars.md.
     """
 
     @raises_errors
     def __init__(self, cmap="viridis", clim=None, *, log=False, symmetric=False, steps=0, categories=(), below=None,
-                 above=None, nan="gray", opacity=(), isolines=(), isoline_color="black", isoline_width=1.0):
+                 above=None, nan=(0.5, 0.5, 0.5), opacity=(), isolines=(), isoline_color="black", isoline_width=1.0):
         colors, discrete = _map(cmap)
         if clim is not None:
             clim = tuple(float(v) for v in clim)
@@ -71,15 +72,29 @@ class ColorMapping:
                 raise ArgumentError(f"clim: {clim!r} must be (low, high)")
         if not isinstance(steps, (int, np.integer)) or abs(int(steps)) >= 2**31:
             raise ArgumentError(f"steps: must be a whole number up to 65536, got {steps!r}")
+        self.isoline_count, values = 0, ()
+        if np.ndim(isolines) == 0:
+            if isinstance(isolines, bool) or not isinstance(isolines, (int, np.integer)) or not 1 <= isolines <= 1000:
+                raise ArgumentError(f"isolines: {isolines!r} must be numbers, or how many, from 1 to 1000")
+            self.isoline_count = int(isolines)
+        else:
+            values = [float(v) for v in isolines]
         try:
             self._made = _r.mapping(
                 colors, discrete, clim, bool(log), bool(symmetric), int(steps), [float(v) for v in categories],
                 None if below is None else list(_color(below, "below")),
                 None if above is None else list(_color(above, "above")), list(_color(nan, "nan")),
-                [(float(v), float(a)) for v, a in opacity], [float(v) for v in isolines],
+                [(float(v), float(a)) for v, a in opacity], values,
                 list(_color(isoline_color, "isoline_color")), float(isoline_width))
         except ArgumentError as e:
             raise ArgumentError(_FIELD.sub(lambda m: _ARGUMENT.get(m[1], m[1]), str(e))) from None
+
+    def _add_to(self, scene, mappings):
+        """Its number among the scene's. `mappings`: (mapping, number) of those that are there, by id()."""
+        if id(self) not in mappings:
+            mappings[id(self)] = self, len(mappings)
+            scene.add_mapping(self._made)
+        return mappings[id(self)][1]
 
 
 def color_maps():
@@ -135,10 +150,7 @@ class _Thing:
     def _add_to(self, scene, materials, mappings):
         mapping = 0
         if self.mapping is not None:
-            if id(self.mapping) not in mappings:
-                mappings[id(self.mapping)] = len(mappings)
-                scene.add_mapping(self.mapping._made)
-            mapping = mappings[id(self.mapping)]
+            mapping = self.mapping._add_to(scene, mappings)
         transform = None if self.transform is None else matrix(self.transform, "transform")
         both = None
         if self.color is not None:
@@ -295,6 +307,9 @@ class Discs(_Thing):
 class Scene:
     """Things drawn together, in this order: ids count their primitives one after the other.
 
+    A path may be "builtin:SHAPE" or "builtin:SHAPE?key=value&...", a procedural shape as the program has it (`rastrum make
+    --help` lists them).
+
     crease: meshes of files without normals are smooth where their faces meet at no more than this angle (degrees);
     180: everywhere; None: nowhere. scalars: which numbers of files become colours, by name; x, y, z and distance are made
     where no file has them. cmap, clim: as things have them.
@@ -308,9 +323,10 @@ class Scene:
         for thing in _flat(things, copy):
             if isinstance(thing, (str, os.PathLike)):
                 path = os.fspath(thing)
-                if not os.path.exists(path):
+                builtin = path.startswith("builtin:")
+                if not builtin and not os.path.exists(path):
                     raise NotFoundError(f"{path}: there is no such file")
-                if not _readers.reads(path):
+                if builtin or not _readers.reads(path):
                     self._made.add_file(path, crease)
                     self.files.append(path)
                     continue
@@ -327,6 +343,9 @@ class Scene:
             self.things.append(thing)
         if scalars is not None and (self.files or not others):
             self._show(scalars, cmap, clim, mappings)
+        for mapping, number in mappings.values():
+            if mapping.isoline_count:
+                self._made.spread_isolines(number, mapping.isoline_count)
 
     @staticmethod
     def _read(path, copy, scalars, cmap, clim):
@@ -347,10 +366,7 @@ class Scene:
         if isinstance(cmap, ColorMapping) and clim is not None:
             raise ArgumentError("clim: the range is the ColorMapping's")
         mapping = cmap if isinstance(cmap, ColorMapping) else ColorMapping(cmap, clim)
-        if id(mapping) not in mappings:
-            self._made.add_mapping(mapping._made)
-            mappings[id(mapping)] = len(mappings)
-        self._made.show_scalars(scalars, mappings[id(mapping)])
+        self._made.show_scalars(scalars, mapping._add_to(self._made, mappings))
 
     @property
     def primitives(self):

@@ -7,6 +7,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <rastrum/core/srgb.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/light.hpp>
 
@@ -87,6 +88,7 @@ Environment environment_of_file(const std::string& file) {
 
 void bind_lights(nb::module_& m) {
   using nb::arg;
+  m.def("linear_from_srgb", linear_from_srgb, arg("display"));
   nb::class_<Environment>(m, "Environment");
   m.def("environment_of_array", environment_of_array, arg("picture"));
   m.def("environment_of_file", environment_of_file, arg("file"));

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstring>
+#include <string_view>
 #include <utility>
 
 #include <nanobind/stl/array.h>
@@ -14,10 +15,15 @@
 #include <rastrum/color.hpp>
 #include <rastrum/color_map.hpp>
 #include <rastrum/io.hpp>
+#include <rastrum/overlay.hpp>
 #include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 namespace rastrum::python {
 namespace {
+
+/// What begins the name of a shape in the place of a file, as the program has it.
+constexpr std::string_view kBuiltin = "builtin:";
 
 using Numbers4 = std::array<double, 4>;
 using Numbers3 = std::array<double, 3>;
@@ -101,7 +107,8 @@ std::pair<std::vector<Numbers4>, bool> map_named(const std::string& name) {
 }  // namespace
 
 void ArrayScene::add_file(const std::string& file, std::optional<double> crease_deg) {
-  Scene read = io::read_scene(file);
+  Scene read = file.starts_with(kBuiltin) ? shapes::scene_from_spec(file.substr(kBuiltin.size()))
+                                          : io::read_scene(file);
   if (crease_deg)
     for (Mesh& mesh : read.meshes)
       if (mesh.normals.empty())
@@ -116,6 +123,14 @@ void ArrayScene::add_file(const std::string& file, std::optional<double> crease_
 void ArrayScene::show_scalars(const std::string& name, std::uint32_t mapping) {
   rastrum::show_scalars(files_, name);
   for (Instance& i : files_.instances) i.scalar_mapping = mapping;
+  bound_ = false;
+}
+
+void ArrayScene::spread_isolines(std::size_t mapping, int count) {
+  const ScalarRange range = scalar_colors(view(), mapping).range();
+  ScalarMapping& m = mappings_.at(mapping);
+  for (const overlay::Tick& tick : overlay::ticks(range.low, range.high, count, m.logarithmic))
+    m.isolines.push_back(tick.value);
   bound_ = false;
 }
 
@@ -267,6 +282,8 @@ void bind_scenes(nb::module_& m) {
       .def("add_texture", &ArrayScene::add_texture, arg("pixels"))
       .def("add_material", &ArrayScene::add_material, arg("material"))
       .def("add_mapping", &ArrayScene::add_mapping, arg("mapping"))
+      .def("spread_isolines", &ArrayScene::spread_isolines, arg("mapping"), arg("count"))
+      .def_prop_ro("lights", [](const ArrayScene& s) { return s.files().lights; })
       .def(
           "scalar_range",
           [](const ArrayScene& s, std::size_t mapping) {

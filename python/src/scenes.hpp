@@ -20,11 +20,13 @@ struct Colors {
 class ArrayScene {
  public:
   /// Meshes without normals get crease_normals, unless there is no `crease_deg`. Throws as
-  /// io::read_scene.
+  /// io::read_scene, for builtin:SHAPE as shapes::scene_from_spec.
   void add_file(const std::string& file, std::optional<double> crease_deg);
   /// Files show their numbers of that name by `mapping` (of add_mapping); x, y, z and distance are
   /// made. Throws as rastrum::show_scalars.
   void show_scalars(const std::string& name, std::uint32_t mapping);
+  /// About `count` isolines of a mapping at round numbers of its range, as it is now.
+  void spread_isolines(std::size_t mapping, int count);
   void add_texture(const Array& pixels);
   void add_material(const Material& material) { materials_.push_back(material); }
   void add_mapping(const ScalarMapping& mapping) { mappings_.push_back(mapping); }

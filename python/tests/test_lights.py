@@ -112,3 +112,8 @@ def test_the_program_draws_the_same(sheet, obj):
 def test_bad_lights(bad):
     with pytest.raises(rr.Error):
         bad()
+
+
+def test_lights_of_files_are_asked_for_by_name():
+    with pytest.raises(rr.ArgumentError, match="no lights of their own"):
+        draw("file")

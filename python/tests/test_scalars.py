@@ -185,3 +185,22 @@ def test_bad_scalars(sheet):
         rr.Mesh(vertices, triangles, scalars=heat(vertices), cmap=rr.ColorMapping(), clim=(0, 1))
     with pytest.raises(rr.Error):
         rr.render(rr.Spheres(vertices, 0.1, scalars=[1.0]), size=SIZE)
+
+
+def test_a_number_of_isolines_lies_at_round_numbers():
+    def drawn(isolines):
+        scene = rr.Scene("builtin:sphere", scalars="z", cmap=rr.ColorMapping(clim=(-1, 1), isolines=isolines))
+        return rr.render(scene, size=(60, 40)).color
+    assert (drawn(4) == drawn([-1, -0.5, 0, 0.5, 1])).all() and (drawn(4) != drawn([])).any()
+    for bad in (0, -1, 1001, True, 1.5):
+        with pytest.raises(rr.ArgumentError, match="isolines"):
+            rr.ColorMapping(isolines=bad)
+
+
+def test_a_bar_shows_the_colour_of_no_number(sheet):
+    scene = rr.Scene("builtin:sphere", scalars="z", cmap=rr.ColorMapping(nan="red"))
+    plain, more = (rr.render(scene, size=(120, 90), annotate={"bar": {"nan": nan}}).color for nan in (False, True))
+    red = (255, 0, 0, 255)
+    assert not (plain == red).all(-1).any() and (more == red).all(-1).any()
+    with pytest.raises(rr.ArgumentTypeError, match="nan"):
+        rr.render(scene, size=(12, 9), annotate={"bar": {"nan": "red"}})

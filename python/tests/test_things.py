@@ -226,3 +226,12 @@ def test_numbers_that_are_not_finite_are_dropped_and_counted():
     v = np.random.default_rng(6).random((9, 3))
     v[4, 1] = np.nan
     assert rr.render((v, np.arange(9).reshape(3, 3)), CAMERA, size=SIZE).stats["triangles"]["dropped"] == 1
+
+
+def test_shapes_have_names():
+    scene = rr.load("builtin:sphere?rings=4&segments=8")
+    assert scene.primitives == 2 * 3 * 8 and scene.files == ["builtin:sphere?rings=4&segments=8"]
+    assert (rr.render(["builtin:teapot?n=2"], size=(9, 9)).color[..., 3] != 0).any()
+    for bad, what in (("builtin:cube", "cube"), ("builtin:sphere?ring=4", "ring")):
+        with pytest.raises(rr.ArgumentError, match=what):
+            rr.load(bad)

@@ -1,11 +1,25 @@
 """The Python that the program's window writes beside a screenshot draws the same picture."""
 
+import base64
 import json
 import os
 import subprocess
 import sys
 
+import numpy as np
 import pytest
+
+
+# A triangle under a lamp of its own.
+POSITIONS = base64.b64encode(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], "<f4").tobytes()).decode()
+LAMP = {"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 2, "color": [0.2, 0.7, 0.9]}]}},
+        "scenes": [{"nodes": [0, 1]}], "scene": 0,
+        "nodes": [{"mesh": 0}, {"translation": [0.3, 0.3, 0.8], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + POSITIONS}]}
 
 
 @pytest.mark.parametrize("options", [
@@ -20,6 +34,15 @@ import pytest
     " --edge-width 2 --cull back",
     "--look plain --shader material --tone aces --exposure 0.5 --lights headlight --edl --edl-strength 2",
     "--look plain --lights studio --shadows --occlusion --edges --clip-plane 1,0,0,0.2 --orthographic fit",
+    "--look plain --light point:1,2,3:intensity=9:color=#ff8040:range=7 --light hemisphere:0,0,1:below=#402000:color=skyblue"
+    " --light spot:0,3,3:towards=0,-1,-1:inner=5:outer=33.3:intensity=9 --lights headlight --shadows",
+    "--look plain --light environment:sky:turn=30:up=0,0,1:color=gold --light ambient:intensity=0.1 --environment-behind"
+    " --shader material",
+    "--look plain --light directional:0.3,-1,-1:of=camera:intensity=0.7 --light headlight:color=#102030",
+    "--look plain --scalars z --isolines 7 --isoline-color white --bar z --nan-color red",
+    "--look plain --scalars x --isolines 5 --log --range 0.2,2 --cmap coolwarm",
+    "lamp.gltf --look plain --shader material --lights file --light ambient:intensity=0.05",
+    "builtin:teapot?n=5 builtin:tube?radius=0.05,segments=64 --look plain",
 ])
 def test_the_lines_of_a_window_draw_its_picture(tmp_path, options):
     program = os.environ.get("RASTRUM_PROGRAM")
@@ -29,6 +52,7 @@ def test_the_lines_of_a_window_draw_its_picture(tmp_path, options):
     script = {"fps": 50, "events": [{"time": 0.1, "key_down": "right"}, {"time": 0.4, "key_up": "right"},
                                     {"time": 0.5, "screenshot": "shown.png"}, {"time": 0.6, "quit": True}]}
     (tmp_path / "script.json").write_text(json.dumps(script))
+    (tmp_path / "lamp.gltf").write_text(json.dumps(LAMP))
     run = subprocess.run([program, "view", "knot.ply", "--size", "160x120", "--script", "script.json", *options.split()],
                          cwd=tmp_path, env={**os.environ, "SDL_VIDEODRIVER": "dummy"}, capture_output=True, text=True)
     if "without a window" in run.stderr:

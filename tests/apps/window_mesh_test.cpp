@@ -32,6 +32,7 @@ class MeshViewerTest : public Program {
     Replay replay(read_script(path("script.json"), keys), viewer);
     while (!replay.finished()) replay.step();
     title = viewer.title();
+    if (viewer.hovered() != nullptr) hovered = *viewer.hovered();
     return viewer.error();
   }
   [[nodiscard]] std::string shot(const std::string& name) const {
@@ -48,6 +49,7 @@ class MeshViewerTest : public Program {
     return png("r.png");
   }
   std::string title;
+  Picked hovered;
 };
 
 TEST_F(MeshViewerTest, ScreenshotsAreWhatRenderDraws) {
@@ -205,7 +207,7 @@ TEST_F(MeshViewerTest, LightsOfFilesAreShown) {
   EXPECT_TRUE(same_pixels(subject.draw(60, 40, false)().image, head.image));
   EXPECT_NE(subject.same_picture(60, 40, "a.png").front().second.find("--lights file"),
             std::string::npos);
-  EXPECT_NE(subject.same_picture(60, 40, "a.png").back().second.find("no words for it: --lights"),
+  EXPECT_NE(subject.same_picture(60, 40, "a.png").back().second.find(", lights=\"file\""),
             std::string::npos);
 }
 
@@ -217,6 +219,17 @@ TEST_F(MeshViewerTest, AClickSaysTheNumberThere) {
   EXPECT_TRUE(title.ends_with(" m")) << title;
   EXPECT_NE(replay("builtin:sphere", R"({"events": [{"options": "--scalars heat"}]})").find("heat"),
             std::string::npos);
+}
+
+TEST_F(MeshViewerTest, APointerThatRestsSaysTheNumberThere) {
+  EXPECT_EQ(replay("builtin:sphere", R"({"events": [{"options": "--scalars z --bar z --bar-unit m"},
+      {"time": 0.1, "move": [60, 45]}, {"time": 0.5, "move": [60, 45]}]})"),
+            "");
+  EXPECT_EQ(title, "builtin:sphere") << "that is for clicks";
+  EXPECT_TRUE(hovered.value.starts_with("z = 0.99")) << hovered.value;
+  EXPECT_TRUE(hovered.value.ends_with(" m")) << hovered.value;
+  EXPECT_TRUE(hovered.what.starts_with("instance 0, primitive ")) << hovered.what;
+  EXPECT_TRUE(hovered.where.starts_with("(")) << hovered.where;
 }
 
 TEST_F(MeshViewerTest, AClickOnAMeshNamesItsPrimitive) {

@@ -19,6 +19,7 @@ using Picture = cli::window::Drawn;  // program.hpp has a Drawn of its own
 class FakeSubject final : public Subject {
  public:
   void handle(const Event& event) override {
+    if (event.kind != Event::Kind::key_down && event.kind != Event::Kind::key_up) return;
     is_moving = event.kind == Event::Kind::key_down;
     ++version_;
   }
@@ -42,11 +43,19 @@ class FakeSubject final : public Subject {
       return d;
     };
   }
-  [[nodiscard]] std::function<std::string()> pick(int x, int y, int width, int height) override {
+  [[nodiscard]] std::function<Picked()> pick(int x, int y, int width, int height) override {
     if (!picks) return {};
-    return [=] {
-      return std::to_string(x) + "," + std::to_string(y) + " of " + std::to_string(width) + "x" +
-             std::to_string(height);
+    return [=, this]() -> Picked {
+      ++looks;
+      if (hold_picks) {
+        hold();
+        parallel::throw_if_stopped();
+      }
+      if (x == 0) return {};
+      return {"",
+              std::to_string(x) + "," + std::to_string(y) + " of " + std::to_string(width) + "x" +
+                  std::to_string(height),
+              ""};
     };
   }
   [[nodiscard]] Worker::Job open(const std::filesystem::path& file) override {
@@ -72,6 +81,8 @@ class FakeSubject final : public Subject {
   double ms_a_pixel = 1;
   bool glances = false;  ///< of a hundredth of the time
   int pictures = 0, seen_glances = 0;
+  std::atomic<int> looks = 0;
+  std::atomic<bool> hold_picks = false;
 
   /// Pictures of this width wait in the middle, until they are let go or stopped.
   static constexpr int kHoldRow = 2;
@@ -124,6 +135,17 @@ class ViewerTest : public Program {
       for (int i = 0; i < 200 && !viewer->update(); ++i)
         std::this_thread::sleep_for(std::chrono::microseconds(50));
     }
+  }
+  /// The same quickly, until all is done.
+  void rest_for(double seconds) {
+    constexpr double kStep = 0.01;
+    const auto step = [&] {
+      viewer->advance(kStep);
+      viewer->update();
+      std::this_thread::sleep_for(std::chrono::microseconds(50));
+    };
+    for (double t = 0; t < seconds; t += kStep) step();
+    for (int i = 0; i < 20000 && viewer->busy(); ++i) step();
   }
   /// Runs until a picture is held in its middle.
   void run_until_held() {
@@ -351,6 +373,87 @@ TEST_F(ViewerTest, AClickNamesWhatIsThere) {
   subject->picks = false;
   from_to(up(1, 1), up(1, 1));
   EXPECT_EQ(viewer->title(), "fake");
+}
+
+TEST_F(ViewerTest, AnythingUnderAPointerThatRestsIsNamed) {
+  const auto seen = [&] { return viewer->hovered() == nullptr ? "" : viewer->hovered()->what; };
+  const auto move = [&](double x, double y) { viewer->handle(mouse(Event::Kind::move, x, y)); };
+  rest_for(0.5);
+  move(20, 30);
+  EXPECT_TRUE(viewer->busy());
+  run_for(0.1);
+  EXPECT_EQ(subject->looks, 0) << "it may go on";
+  rest_for(0.5);
+  EXPECT_EQ(seen(), "20,30 of 64x32");
+  EXPECT_EQ(subject->looks, 1);
+  EXPECT_FALSE(viewer->busy());
+  move(20.4, 30.3);
+  EXPECT_EQ(seen(), "20,30 of 64x32") << "the same pixel";
+  move(21, 30);
+  EXPECT_EQ(seen(), "");
+  rest_for(0.5);
+  EXPECT_EQ(seen(), "21,30 of 64x32");
+
+  // Never while a picture is wanted.
+  viewer->handle(press("w"));
+  EXPECT_EQ(seen(), "");
+  run_for(0.3);
+  EXPECT_EQ(subject->looks, 2);
+  viewer->handle(press("w", Event::Kind::key_up));
+  rest_for(1);
+  EXPECT_EQ(seen(), "21,30 of 64x32");
+  EXPECT_EQ(subject->looks, 3);
+
+  viewer->handle(mouse(Event::Kind::button_down, 21, 30));
+  rest_for(1);
+  EXPECT_EQ(seen(), "") << "a drag";
+  viewer->handle(mouse(Event::Kind::button_up, 21, 30));
+  rest_for(1);
+  EXPECT_EQ(seen(), "21,30 of 64x32");
+  for (const auto& [x, y] : {std::pair{0, 5}, {-1, 5}, {64, 5}, {5, 32}}) {
+    move(x, y);
+    rest_for(1);
+    EXPECT_EQ(seen(), "") << "nothing is at " << x << ", " << y;
+    EXPECT_FALSE(viewer->busy());
+  }
+  move(5, 5);
+  viewer->point_nowhere();
+  rest_for(0.5);
+  EXPECT_EQ(seen(), "");
+  move(5, 5);
+  viewer->set_hovers(false);
+  rest_for(0.5);
+  EXPECT_EQ(seen(), "");
+  subject->picks = false;
+  viewer->set_hovers(true);
+  rest_for(0.5);
+  EXPECT_EQ(seen(), "");
+  EXPECT_FALSE(viewer->busy()) << "asked again without end";
+}
+
+TEST_F(ViewerTest, ALookIsGivenUpWhenTheViewMoves) {
+  rest_for(0.5);
+  subject->hold_picks = true;
+  viewer->handle(mouse(Event::Kind::move, 20, 30));
+  for (int i = 0; i < 20000 && !subject->held; ++i) {
+    viewer->advance(0.01);
+    viewer->update();
+    std::this_thread::sleep_for(std::chrono::microseconds(50));
+  }
+  ASSERT_TRUE(subject->held);
+  const std::uint64_t serial = viewer->serial();
+  viewer->handle(press("w"));
+  viewer->update();
+  // Nobody lets it go: it waits until it is stopped.
+  while (!viewer->update()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  subject->hold_picks = false;
+  run_for(0.05);
+  EXPECT_GT(viewer->serial(), serial);
+  EXPECT_EQ(viewer->hovered(), nullptr);
+  viewer->handle(press("w", Event::Kind::key_up));
+  rest_for(1);
+  EXPECT_NE(viewer->hovered(), nullptr) << "and it is looked up once the view rests";
+  EXPECT_EQ(viewer->error(), "");
 }
 
 TEST_F(ViewerTest, EndsWhileAPictureIsDrawn) {

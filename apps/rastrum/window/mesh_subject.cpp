@@ -244,20 +244,22 @@ family::Options MeshSubject::options_for(int width, int height) const {
   return options;
 }
 
-std::function<std::string()> MeshSubject::pick(int x, int y, int width, int height) {
+std::function<Picked()> MeshSubject::pick(int x, int y, int width, int height) {
   return [options = options_for(width, height), notes = settings_.notes,
           version = settings_version_, x, y, scene = scene_, camera = control_.camera(),
-          painter = painter_]() -> std::string {
+          painter = painter_]() -> Picked {
     Renderer& renderer = painter->get(options, options);
     const auto pick = renderer.pick(Painter::view(*scene, notes, version), camera, options, x, y);
-    if (!pick) return "nothing is there";
+    if (!pick) return {};
     const Vec3d& p = pick->position;
-    std::string said = "instance " + std::to_string(pick->instance_id) + ", primitive " +
-                       std::to_string(pick->primitive) + " at (" + text("%.6g", p.x) + ", " +
-                       text("%.6g", p.y) + ", " + text("%.6g", p.z) + ")";
+    Picked said;
+    said.what = "instance " + std::to_string(pick->instance_id) + ", primitive " +
+                std::to_string(pick->primitive);
+    said.where =
+        "(" + text("%.6g", p.x) + ", " + text("%.6g", p.y) + ", " + text("%.6g", p.z) + ")";
     if (pick->scalar && !notes.scalars.name.empty())
-      said += ", " + notes.scalars.name + " = " + text("%.6g", *pick->scalar) +
-              (notes.scalars.bar_unit.empty() ? "" : " " + notes.scalars.bar_unit);
+      said.value = notes.scalars.name + " = " + text("%.6g", *pick->scalar) +
+                   (notes.scalars.bar_unit.empty() ? "" : " " + notes.scalars.bar_unit);
     return said;
   };
 }

@@ -61,7 +61,7 @@ class MeshSubject final : public Subject {
   [[nodiscard]] std::uint64_t version() const override;
   [[nodiscard]] std::function<Drawn()> draw(int width, int height, bool glance) override;
   [[nodiscard]] bool has_glances() const override;
-  [[nodiscard]] std::function<std::string()> pick(int x, int y, int width, int height) override;
+  [[nodiscard]] std::function<Picked()> pick(int x, int y, int width, int height) override;
   [[nodiscard]] Worker::Job open(const std::filesystem::path& file) override;
   void set_options(const std::string& options) override;
   void write_camera(const std::filesystem::path& file) const override;

@@ -64,6 +64,11 @@ void draw_keys(const std::vector<KeyHelp>& keys) {
     ImGui::TextWrapped("%s: %s", std::string(k.keys).c_str(), std::string(k.what).c_str());
 }
 
+void choose_hovering(Viewer& viewer) {
+  bool hovers = viewer.hovers();
+  if (ImGui::Checkbox("values under the pointer", &hovers)) viewer.set_hovers(hovers);
+}
+
 void draw_moving(Viewer& viewer) {
   bool adaptive = viewer.options().adaptive;
   if (ImGui::Checkbox("fewer pixels while moving", &adaptive)) viewer.set_adaptive(adaptive);
@@ -106,6 +111,7 @@ Area draw_panel(Viewer& viewer, const Controls& controls) {
   ImGui::Separator();
   controls();
   if (viewer.subject().has_same_picture()) offer_texts(viewer);
+  choose_hovering(viewer);
   draw_moving(viewer);
   // A glance has other stages than a whole picture: here they move nothing.
   if (viewer.picture() != nullptr && ImGui::CollapsingHeader("Figures")) {
@@ -126,6 +132,19 @@ Area draw_panel(Viewer& viewer, const Controls& controls) {
   const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
   ImGui::End();
   return {at.x, at.y, at.x + size.x, at.y + size.y};
+}
+
+void draw_hovered(const Viewer& viewer) {
+  const Picked* const picked = viewer.hovered();
+  if (picked == nullptr) return;
+  ImGui::BeginTooltip();
+  if (!picked->value.empty()) ImGui::TextUnformatted(picked->value.c_str());
+  ImGui::PushStyleColor(ImGuiCol_Text,
+                        picked->value.empty() ? ImGui::GetStyleColorVec4(ImGuiCol_Text) : kQuiet);
+  ImGui::TextUnformatted(picked->what.c_str());
+  if (!picked->where.empty()) ImGui::TextUnformatted(picked->where.c_str());
+  ImGui::PopStyleColor();
+  ImGui::EndTooltip();
 }
 
 void draw_messages(const Viewer& viewer) {

@@ -23,6 +23,8 @@ struct Area {
 Area draw_panel(Viewer& viewer, const Controls& controls);
 /// Errors and notices alone, where the panel is hidden.
 void draw_messages(const Viewer& viewer);
+/// Beside the pointer, what lies under it.
+void draw_hovered(const Viewer& viewer);
 
 /// A list to choose from; true where `now` has changed.
 bool choose_name(const char* label, const std::vector<std::string>& names, std::string& now);

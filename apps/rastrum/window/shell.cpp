@@ -231,7 +231,9 @@ class Shell {
         e.kind = Event::Kind::move;
         e.x = event.motion.x;
         e.y = event.motion.y;
-        return send(e);
+        send(e);
+        if (!replay_ && is_panels(event.motion.x, event.motion.y)) viewer_.point_nowhere();
+        return;
       case SDL_MOUSEWHEEL:
         e.kind = Event::Kind::wheel;
         e.y = double{event.wheel.preciseY};
@@ -254,6 +256,8 @@ class Shell {
       viewer_.resize(width, height);
     } else if (event.event == SDL_WINDOWEVENT_FOCUS_LOST) {
       send({.kind = Event::Kind::leave});
+    } else if (event.event == SDL_WINDOWEVENT_LEAVE && !replay_) {
+      viewer_.point_nowhere();
     }
   }
 
@@ -303,6 +307,7 @@ class Shell {
       area_ = draw_panel(viewer_, controls_);
     else
       draw_messages(viewer_);
+    draw_hovered(viewer_);
     screen_.present(viewer_.picture(), viewer_.serial());
   }
 

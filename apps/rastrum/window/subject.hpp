@@ -31,6 +31,18 @@ struct Drawn {
   Figures figures;
 };
 
+/// What lies under a pixel, in words; all empty: nothing.
+struct Picked {
+  std::string value;  ///< the number shown there with its unit, where numbers are shown
+  std::string what, where;
+
+  [[nodiscard]] bool any() const { return !what.empty(); }
+  [[nodiscard]] std::string line() const {
+    if (!any()) return "nothing is there";
+    return what + (where.empty() ? "" : " at " + where) + (value.empty() ? "" : ", " + value);
+  }
+};
+
 /// All members are of the window's thread. What `draw` and `open` return runs on the worker's.
 class Subject {
  public:
@@ -54,7 +66,7 @@ class Subject {
   [[nodiscard]] virtual bool has_glances() const { return false; }
   /// Says what lies under pixel (x, y) of the picture of this size as it is to be seen now; holds
   /// all that it needs, and throws Error. None: the subject cannot tell.
-  [[nodiscard]] virtual std::function<std::string()> pick(int x, int y, int width, int height) = 0;
+  [[nodiscard]] virtual std::function<Picked()> pick(int x, int y, int width, int height) = 0;
   /// Reads a file and, back on the window's thread, shows it. Throws Error.
   [[nodiscard]] virtual Worker::Job open(const std::filesystem::path& file) = 0;
   /// Options as on the command line, as in "--shader normal --opacity 0.5". Throws Error and leaves

@@ -38,7 +38,7 @@ class TerrainSubject final : public Subject {
   [[nodiscard]] bool moving() const override { return control_.moving(); }
   [[nodiscard]] std::uint64_t version() const override;
   [[nodiscard]] std::function<Drawn()> draw(int width, int height, bool glance) override;
-  [[nodiscard]] std::function<std::string()> pick(int, int, int, int) override { return {}; }
+  [[nodiscard]] std::function<Picked()> pick(int, int, int, int) override { return {}; }
   [[nodiscard]] Worker::Job open(const std::filesystem::path& file) override;
   void set_options(const std::string& options) override;
   void write_camera(const std::filesystem::path& file) const override;

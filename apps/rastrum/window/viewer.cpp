@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kRest_s = 0.15;       ///< without change, before the full picture is drawn
 constexpr std::size_t kHistory = 120;  ///< frame times that are kept
+constexpr double kHover_s = 0.2;       ///< that a pointer rests before what is there is looked up
 constexpr double kClick_px = 3;        ///< that a hand may shake between press and release
 
 constexpr KeyHelp kViewerKeys[] = {{"p", "screenshot, with its camera as a path file"},
@@ -39,6 +40,7 @@ Viewer::Viewer(std::unique_ptr<Subject> subject, ViewerOptions options)
 
 Viewer::~Viewer() {
   drawing_.request_stop();
+  look_stop_.request_stop();
 }
 
 std::string Viewer::title() const {
@@ -61,6 +63,7 @@ void Viewer::handle(const Event& event) {
     record();
   else
     subject_->handle(event);
+  follow_pointer(event);
   if (const auto at = clicked(event))
     pick(static_cast<int>(at->first), static_cast<int>(at->second));
 }
@@ -90,6 +93,78 @@ std::optional<std::pair<double, double>> Viewer::clicked(const Event& event) {
 
 void Viewer::pick(int x, int y) {
   if (x >= 0 && x < options_.width && y >= 0 && y < options_.height) pick_ = {x, y};
+}
+
+void Viewer::follow_pointer(const Event& event) {
+  switch (event.kind) {
+    case Event::Kind::move: {
+      const std::pair at{static_cast<int>(std::floor(event.x)),
+                         static_cast<int>(std::floor(event.y))};
+      if (pointer_ == at) return;
+      pointer_ = at;
+      break;
+    }
+    case Event::Kind::button_down:
+      pressed_ = true;
+      break;
+    case Event::Kind::button_up:
+      pressed_ = false;
+      break;
+    case Event::Kind::leave:
+      pressed_ = false;
+      pointer_.reset();
+      break;
+    default:
+      return;
+  }
+  rested_s_ = 0;
+}
+
+bool Viewer::is_under_pointer(const Look& look) const {
+  return pointer_ && look.x == pointer_->first && look.y == pointer_->second &&
+         look.view.same_view(now());
+}
+
+const Picked* Viewer::hovered() const {
+  return hovers_ && !pressed_ && looked_ && is_under_pointer(*looked_) && looked_->picked.any()
+             ? &looked_->picked
+             : nullptr;
+}
+
+bool Viewer::has_pointer_news() const {
+  return hovers_ && pointer_ && !pressed_ && !failed_ && pointer_->first >= 0 &&
+         pointer_->first < options_.width && pointer_->second >= 0 &&
+         pointer_->second < options_.height && !(looked_ && is_under_pointer(*looked_));
+}
+
+bool Viewer::wants_look() const {
+  return has_pointer_news() && rested_s_ >= kHover_s && shown_.is_full() && shown_.same_view(now());
+}
+
+/// Cheap beside a frame, but it goes over the whole scene: it is given up for whatever is to be
+/// drawn.
+void Viewer::look() {
+  looking_ = Look{now(), pointer_->first, pointer_->second};
+  auto job = subject_->pick(looking_->x, looking_->y, options_.width, options_.height);
+  if (!job) {
+    looked_ = std::exchange(looking_, std::nullopt);
+    return;
+  }
+  look_stop_ = {};
+  submit(
+      [this, job = std::move(job), stop = look_stop_.get_token()]() -> Worker::Done {
+        try {
+          const parallel::StopScope scope(stop);
+          return [this, picked = job()] {
+            looked_ = std::exchange(looking_, std::nullopt);
+            looked_->picked = picked;
+          };
+        } catch (const parallel::Stopped&) {
+          return [this] { looking_.reset(); };
+        }
+      },
+      // The picture's own errors are said; a second one would hide them.
+      [this](const std::string&) { looked_ = std::exchange(looking_, std::nullopt); });
 }
 
 void Viewer::resize(int width, int height) {
@@ -157,6 +232,7 @@ void Viewer::advance(double dt_s) {
   const std::uint64_t version = subject_->version();
   const bool changed = version != seen_version_;
   seen_version_ = version;
+  rested_s_ = changed ? 0 : rested_s_ + dt_s;
   still_s_ = changed || subject_->moving() ? 0 : still_s_ + dt_s;
 }
 
@@ -185,7 +261,8 @@ std::optional<Viewer::State> Viewer::next() const {
 
 bool Viewer::busy() const {
   return worker_.busy() || pick_ || !screenshots_.empty() || !opens_.empty() ||
-         subject_->moving() || next().has_value() || (!shown_.is_full() && !resting());
+         subject_->moving() || has_pointer_news() || next().has_value() ||
+         (!shown_.is_full() && !resting());
 }
 
 void Viewer::submit(Worker::Job job, std::function<void(const std::string&)> failed) {
@@ -272,6 +349,8 @@ bool Viewer::update() {
   const bool news = worker_.poll();
   if (worker_.busy()) {
     if (refining_ && (!refining_->same_view(now()) || !opens_.empty())) drawing_.request_stop();
+    if (looking_ && (pressed_ || !opens_.empty() || pick_ || !is_under_pointer(*looking_)))
+      look_stop_.request_stop();
     return news;
   }
   if (!opens_.empty()) {
@@ -300,7 +379,7 @@ bool Viewer::update() {
     if (auto job = subject_->pick(x, y, options_.width, options_.height))
       submit(
           [this, job = std::move(job)]() -> Worker::Done {
-            return [this, what = job()] { picked_ = what; };
+            return [this, what = job().line()] { picked_ = what; };
           },
           [this](const std::string& what) { error_ = what; });
     return true;
@@ -314,12 +393,14 @@ bool Viewer::update() {
       write_screenshot(file);
     return true;
   }
+  if (wants_look()) look();
   return news;
 }
 
 void Viewer::settle() {
   const bool adaptive = std::exchange(options_.adaptive, false);
-  while (worker_.busy() || next() || pick_ || !opens_.empty() || !screenshots_.empty()) {
+  while (worker_.busy() || next() || pick_ || !opens_.empty() || !screenshots_.empty() ||
+         wants_look()) {
     worker_.wait();
     update();
   }

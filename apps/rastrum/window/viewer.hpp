@@ -42,6 +42,10 @@ class Viewer {
   void screenshot(const std::filesystem::path& file);
   /// Says in the title what lies at a pixel of the window.
   void pick(int x, int y);
+  /// The pointer is not over the picture any more; a move brings it back.
+  void point_nowhere() { pointer_.reset(); }
+  /// What lies under the pointer, once it and the whole picture rest; null: not known, or nothing.
+  [[nodiscard]] const Picked* hovered() const;
   /// What draws the picture that is seen: .sh or .py (Subject::same_picture). Says that it was
   /// copied; empty where there is no such text.
   [[nodiscard]] std::string copy(const std::string& ending);
@@ -75,6 +79,9 @@ class Viewer {
   void set_adaptive(bool adaptive) { options_.adaptive = adaptive; }
   [[nodiscard]] const ViewerOptions& options() const { return options_; }
   void set_target(double ms);
+  /// Whether what lies under a resting pointer is looked up.
+  void set_hovers(bool hovers) { hovers_ = hovers; }
+  [[nodiscard]] bool hovers() const { return hovers_; }
 
   [[nodiscard]] static std::vector<KeyHelp> keys();
 
@@ -97,6 +104,20 @@ class Viewer {
   /// Where the click began that `event` ends: a press and a release of the left button in one
   /// place.
   [[nodiscard]] std::optional<std::pair<double, double>> clicked(const Event& event);
+  /// A pixel of a picture, and what is there.
+  struct Look {
+    State view;
+    int x = 0, y = 0;
+    Picked picked{};
+  };
+  /// Whether it is of the pixel under the pointer as it is to be seen now.
+  [[nodiscard]] bool is_under_pointer(const Look& look) const;
+  /// Whether the pixel under the pointer has not been looked at.
+  [[nodiscard]] bool has_pointer_news() const;
+  /// Whether to do so now.
+  [[nodiscard]] bool wants_look() const;
+  void look();
+  void follow_pointer(const Event& event);
   void write_screenshot(const std::filesystem::path& file);
   /// Runs `job` on the worker; what it throws becomes the error.
   void submit(Worker::Job job, std::function<void(const std::string& what)> failed);
@@ -121,6 +142,11 @@ class Viewer {
   std::vector<std::filesystem::path> screenshots_, opens_;
   std::optional<std::pair<int, int>> pick_;         ///< asked for; the newest counts
   std::optional<std::pair<double, double>> press_;  ///< of a click that may come
+  bool hovers_ = true, pressed_ = false;
+  std::optional<std::pair<int, int>> pointer_;  ///< where it is over the picture
+  double rested_s_ = 0;
+  std::optional<Look> looking_, looked_;  ///< under way; the newest answer
+  std::stop_source look_stop_;
   std::filesystem::path recording_;
   Worker worker_;  ///< last: its thread uses what is above
 };

@@ -1,0 +1,45 @@
+// Values as texts that give back the same bits, for a shell and for Python.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <rastrum/vec.hpp>
+
+namespace rastrum::cli::window {
+
+/// The shortest that is the same number.
+[[nodiscard]] std::string number(double v);
+/// X,Y,Z
+[[nodiscard]] std::string numbers(const Vec3d& v);
+/// Degrees that options and Python make the same float32 of radians of.
+[[nodiscard]] double degrees(float rad);
+/// #rrggbbaa of a display value.
+[[nodiscard]] std::string hex(Vec4 c);
+
+/// As one word of a shell.
+[[nodiscard]] std::string quoted(const std::string& text);
+/// A command line, word by word.
+class Words {
+ public:
+  Words& operator()(const std::string& option) {
+    all_ += (all_.empty() ? "" : " ") + option;
+    return *this;
+  }
+  Words& operator()(const std::string& option, const std::string& text) {
+    return (*this)(option)(quoted(text));
+  }
+  [[nodiscard]] std::string take() { return std::move(all_); }
+
+ private:
+  std::string all_;
+};
+
+// Python's.
+[[nodiscard]] std::string literal(const std::string& text);
+[[nodiscard]] std::string tuple(const Vec3d& v);
+[[nodiscard]] std::string joined(const std::vector<std::string>& items);
+[[nodiscard]] std::string listed(const std::vector<std::string>& items);
+[[nodiscard]] std::string listed(const std::vector<double>& values);
+
+}  // namespace rastrum::cli::window

@@ -1,0 +1,203 @@
+// A window under a virtual X server, with real keys and buttons by xdotool, for the tests of the
+// window.
+//
+// Nothing here waits for a time to pass: what is waited for is the picture on the screen, the
+// window's title or a file, and whatever ends the program ends the waiting.
+#pragma once
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+
+#include "program.hpp"
+#include "x_server.hpp"
+
+namespace rastrum::test {
+
+/// The panel's column; what is right of it is the picture.
+inline constexpr int kPanel_px = 345;
+/// Of a part's head in the panel, and from one row to the next.
+inline constexpr int kHead_px = 19, kRow_px = 23;
+
+inline bool have_program(const char* program) {
+  return std::system((std::string("command -v ") + program + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+class WindowTest : public Program {
+ protected:
+  static void TearDownTestSuite() { server_.reset(); }
+  void SetUp() override {
+    Program::SetUp();
+#ifndef RASTRUM_HAS_WINDOW
+    GTEST_SKIP() << "built without the window (Debian: libsdl2-dev libimgui-dev)";
+#endif
+    for (const char* program : {"Xvfb", "xdotool"})
+      if (!have_program(program)) GTEST_SKIP() << program << " is missing (Debian: xvfb, xdotool)";
+    if (!server_) server_ = std::make_unique<XServer>();
+    if (server_->display() == nullptr)
+      GTEST_SKIP() << "Xvfb does not start here: " << server_->said();
+    ::setenv("DISPLAY", server_->name().c_str(), 1);
+    ::setenv("SDL_VIDEODRIVER", "x11", 1);
+    ::unsetenv("DBUS_SESSION_BUS_ADDRESS");
+    ::setenv("LSAN_OPTIONS", "suppressions=" RASTRUM_LSAN_SUPPRESSIONS ":print_suppressions=0", 1);
+  }
+  void TearDown() override {
+    viewer_.stop(SIGKILL);
+    std::filesystem::remove(err());
+    Program::TearDown();
+  }
+
+  /// Beside the folder, which is the program's.
+  [[nodiscard]] std::filesystem::path err() const {
+    return path("").parent_path().string() + ".view.err";
+  }
+
+  void start(std::vector<std::string> args) {
+    // Small pictures that are drawn often: without a studio.
+    if (std::ranges::find(args, "--terrain") == args.end())
+      args.insert(args.end(), {"--look", "plain"});
+    args.insert(args.begin(), {RASTRUM_PROGRAM, "view"});
+    viewer_.start(args, path(""), err());
+  }
+  /// The same, until its window has the keyboard.
+  void open(std::vector<std::string> args) {
+    start(std::move(args));
+    ASSERT_TRUE(comes_true([&] {
+      window_ = server_->window_of(viewer_.id());
+      return window_ != 0 && server_->focus(window_);
+    })) << said();
+    // In the corner, where nothing is under it.
+    at_window("2 2", "");
+  }
+  /// Waits, as long as the program runs.
+  bool comes_true(const std::function<bool()>& what) {
+    bool is_true = false;
+    wait_until([&] {
+      is_true = what();
+      return is_true || !viewer_.running();
+    });
+    return is_true;
+  }
+  /// What the program wrote.
+  [[nodiscard]] std::string said() const {
+    std::ifstream in(err());
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  /// Runs xdotool.
+  static void tool(const std::string& args) {
+    EXPECT_EQ(std::system(("xdotool " + args + " >/dev/null 2>&1").c_str()), 0) << args;
+  }
+  void at_window(const std::string& place, const std::string& actions) const {
+    tool("mousemove --window " + std::to_string(window_) + " " + place + " " + actions);
+  }
+  /// Presses P and waits for the picture and its camera; its name without the ending.
+  std::string screenshot() {
+    char stem[32];
+    std::snprintf(stem, sizeof stem, "rastrum_%04d", shots_++);
+    tool("key p");
+    const std::string png_name = std::string(stem) + ".png";
+    EXPECT_TRUE(comes_true([&] { return std::filesystem::exists(path(png_name)); }))
+        << png_name << said();
+    return stem;
+  }
+  /// The screen where it shows the picture and nothing else.
+  [[nodiscard]] Image<Rgba8> seen(const Image<Rgba8>& like) const {
+    return server_->pixels(window_, kPanel_px, 0, like.width() - kPanel_px, like.height());
+  }
+  [[nodiscard]] bool shows(const Image<Rgba8>& picture) const {
+    Image<Rgba8> part(picture.width() - kPanel_px, picture.height());
+    for (int y = 0; y < part.height(); ++y)
+      for (int x = 0; x < part.width(); ++x) part(x, y) = picture(x + kPanel_px, y);
+    return same_pixels(part, seen(picture));
+  }
+  /// Holds a key until something else than `shot` is on the screen.
+  void hold(const std::string& key, const std::string& shot) {
+    const Image<Rgba8> picture = png(shot + ".png");
+    EXPECT_TRUE(comes_true([&] { return shows(picture); })) << shot;
+    tool("keydown " + key);
+    EXPECT_TRUE(comes_true([&] { return !shows(picture); })) << key;
+    tool("keyup " + key);
+  }
+  /// Whether a screenshot is, bit for bit, what `rastrum COMMAND` draws with its camera.
+  void expect_drawn(const std::string& command, const std::string& shot,
+                    const std::vector<std::string>& options) {
+    const Image<Rgba8> picture = png(shot + ".png");
+    const std::string size =
+        std::to_string(picture.width()) + "x" + std::to_string(picture.height());
+    std::vector<std::string> args{command, "--path", shot + ".json", "--size",
+                                  size,    "-o",     "rendered.png"};
+    if (command == "render") args.insert(args.end(), {"--look", "plain"});
+    args.insert(args.end(), options.begin(), options.end());
+    must(args);
+    EXPECT_TRUE(same_pixels(picture, png("rendered.png"))) << shot;
+    std::filesystem::remove(path("rendered.png"));
+  }
+  void expect_rendered(const std::string& shot, std::vector<std::string> options) {
+    options.insert(options.end(), {"--quiet", "--background", "#20242c"});
+    expect_drawn("render", shot, options);
+  }
+  /// Whether the command line beside a screenshot draws it again.
+  void expect_line_draws(const std::string& shot) {
+    const Image<Rgba8> picture = png(shot + ".png");
+    std::filesystem::rename(path(shot + ".png"), path("shown.png"));
+    const std::string line = read(shot + ".sh");
+    const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
+                                line.substr(std::string("rastrum").size(), line.size() - 8) +
+                                " --quiet";
+    EXPECT_EQ(std::system(command.c_str()), 0) << command;
+    EXPECT_TRUE(same_pixels(picture, png(shot + ".png"))) << line;
+    std::filesystem::rename(path("shown.png"), path(shot + ".png"));
+  }
+  /// Where the heads of the panel's parts begin, px from above.
+  [[nodiscard]] std::vector<int> heads() const {
+    constexpr int kRight_px = 310, kTitle_px = 30, kHeight_px = 780, kBlue = 45;
+    const Image<Rgba8> column = server_->pixels(window_, kRight_px, 0, 1, kHeight_px);
+    std::vector<int> found;
+    for (int y = kTitle_px, begin = -1; y < column.height(); ++y) {
+      const Rgba8 p = column(0, y);
+      if (p.b > p.r + kBlue) {
+        if (begin < 0) begin = y;
+      } else if (begin >= 0) {
+        // Bars of stages are lower.
+        if (y - begin >= kHead_px - 2) found.push_back(begin);
+        begin = -1;
+      }
+    }
+    return found;
+  }
+  [[nodiscard]] nlohmann::ordered_json key_of(const std::string& shot) const {
+    return json(shot + ".json")["keys"][0];
+  }
+  void drop(const std::string& name) {
+    EXPECT_EQ(drop_file(*server_, window_, path(name)), "") << name << said();
+  }
+  void expect_title(const std::string& what) {
+    EXPECT_TRUE(comes_true([&] { return server_->title(window_) == "rastrum " + what; }))
+        << server_->title(window_) << said();
+  }
+  /// Whether a message in the colour of errors is on the screen.
+  [[nodiscard]] bool shows_error(int width, int height) const {
+    const auto near = [](int a, int b) { return a >= b - 2 && a <= b + 2; };
+    int red = 0;
+    const Image<Rgba8> screen = server_->pixels(window_, 0, 0, width, height);
+    for (const Rgba8 p : screen.pixels()) red += near(p.r, 255) && near(p.g, 115) && near(p.b, 102);
+    return red > 50;
+  }
+  /// Its end, which must be a clean one: under a sanitizer a leak is not.
+  void expect_closed() {
+    EXPECT_TRUE(wait_until([&] { return !viewer_.running(); }));
+    EXPECT_EQ(viewer_.status(), 0) << said();
+    EXPECT_EQ(said(), "");
+  }
+
+  static inline std::unique_ptr<XServer> server_;
+  Process viewer_;
+  XWindow window_ = 0;
+  int shots_ = 0;
+};
+
+inline const std::vector<std::string> kTeapot{"builtin:teapot"};
+
+}  // namespace rastrum::test
