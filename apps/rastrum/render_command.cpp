@@ -501,8 +501,8 @@ int run(RenderArguments& a) {
   a.view.turns = a.turntable != 0;
   Camera camera = choose_camera(a.view, scene, binding.view(), {a.render.width, a.render.height});
   if (!a.view.file_camera && !a.view.eye && !a.view.orthographic_height)
-    camera = with_room(meant(a.annotations), camera, binding.view(), a.render.width,
-                       a.render.height);
+    camera =
+        with_room(meant(a.annotations), camera, binding.view(), a.render.width, a.render.height);
 
   std::optional<SceneBinding> posed;
   SceneAt moving;
