@@ -54,10 +54,10 @@ def kernels_of(root, source, folder):
     free = sorted(set(ROUNDS_FREELY.findall(ptx.read_text(encoding="utf-8"))))
     log = run(["ptxas", "-arch=sm_90", "-v", ptx, "-o", cubin])
     sizes = {}
-    for line in run(["cuobjdump", "-elf", cubin]).splitlines():
-        words = line.split()
-        if len(words) >= 4 and words[-1].startswith(".text."):
-            sizes[words[-1][len(".text."):]] = int(words[2], 16)
+    for line in run(["readelf", "-S", "-W", cubin]).splitlines():
+        words = line.replace("[ ", "[").split()
+        if len(words) > 5 and words[1].startswith(".text."):
+            sizes[words[1][len(".text."):]] = int(words[5], 16)
     found, entry, stack = {}, "", (0, 0)
     for line in log.splitlines():
         if match := ENTRY.search(line):
@@ -66,7 +66,7 @@ def kernels_of(root, source, folder):
             stack = (int(match[1]), int(match[2]))
         elif match := USED.search(line):
             found[entry] = (int(match[1]), *stack, sizes.get(entry, 0))
-    names = run(["cu++filt", *found]).splitlines()
+    names = run(["c++filt", *found]).splitlines()
     ours = {}
     for name, figures in zip(names, found.values()):
         if not OURS.search(name):

@@ -225,9 +225,9 @@ void launch_strided(Stream stream, LoopCount n, const F& f) {
   if (n.most == 0) return;
   const std::size_t wanted = (n.most - 1) / kIndexThreads + 1;
   const unsigned resident = resident_blocks(strided_kernel<Local, F>, kIndexThreads);
+  const unsigned blocks = wanted < resident ? static_cast<unsigned>(wanted) : resident;
   ++device_tally().launches;
-  strided_kernel<Local, F> < <<wanted<resident ? static_cast<unsigned>(wanted) : resident,
-                                      kIndexThreads, 0, stream>>>(n, f);
+  strided_kernel<Local, F><<<blocks, kIndexThreads, 0, stream>>>(n, f);
   check(cudaGetLastError(), "starting a kernel");
 }
 

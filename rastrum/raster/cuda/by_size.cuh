@@ -91,15 +91,16 @@ struct BySizeBatch {
   std::uint32_t skip;
   std::uint64_t* sums;
 
+  /// Whether the piece went into its queue, being large enough and finding room.
+  RASTRUM_HD bool queue(const Piece& piece, Rect bounds) const {
+    if (area_of(bounds) <= small_px) return false;
+    const std::uint64_t at = parallel::take_place(queues.count[1]);
+    if (at >= queues.pieces.size()) return false;
+    queues.pieces[static_cast<std::size_t>(at)] = piece;
+    return true;
+  }
   RASTRUM_HD void draw(const Piece& piece, BySizeLocal& local) const {
-    if ((piece.flags & skip) != 0) return;
-    if (area_of(surface.bounds(piece)) > small_px) {
-      const std::uint64_t at = parallel::take_place(queues.count[1]);
-      if (at < queues.pieces.size()) {
-        queues.pieces[static_cast<std::size_t>(at)] = piece;
-        return;
-      }
-    }
+    if ((piece.flags & skip) != 0 || queue(piece, surface.bounds(piece))) return;
     surface.each_sample(piece, surface.view, [&](int s, const Piece& seen, Rect box) {
       local.fragments += static_cast<std::uint64_t>(draw_by_thread(surface, seen, box, s));
     });
@@ -113,7 +114,8 @@ struct BySizeBatch {
   }
 };
 
-/// Primitive i of the batch, or its place in the queue of primitives. That has room for all.
+/// Primitive i of the batch, with one sample a pixel, or its place in the queue of primitives. That
+/// has room for all.
 struct DrawUnclipped : BySizeBatch {
   RASTRUM_HD void operator()(std::size_t i, BySizeLocal& local) const {
     const std::uint64_t id = assembly.first + i;
@@ -131,7 +133,10 @@ struct DrawUnclipped : BySizeBatch {
       return;
     }
     local.take(fate);
-    if (fate == Fate::drawn) draw(piece, local);
+    if (fate != Fate::drawn || (piece.flags & skip) != 0) return;
+    const Rect box = piece_bounds(piece, surface.view);
+    if (box.empty() || queue(piece, box)) return;
+    local.fragments += static_cast<std::uint64_t>(draw_by_thread(surface, piece, box));
   }
 };
 
