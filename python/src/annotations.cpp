@@ -110,6 +110,10 @@ void AnnotationScratch::draw(const Annotations& a, const SceneEdges* edges, cons
     bar.unit = a.bar->unit;
     overlay::draw_scalar_bar(canvas, bar, look);
   }
+  draw_words(a, canvas, look);
+}
+
+void draw_words(const Annotations& a, const overlay::Canvas& canvas, const overlay::Look& look) {
   using overlay::Corner;
   constexpr Corner kCorners[] = {Corner::bottom_right, Corner::top_left, Corner::top_right,
                                  Corner::bottom_left};

@@ -47,6 +47,9 @@ struct AnnotationScratch {
             const Targets& targets);
 };
 
+/// The title and the captions.
+void draw_words(const Annotations& a, const overlay::Canvas& canvas, const overlay::Look& look);
+
 void bind_annotations(nb::module_& m);
 
 }  // namespace rastrum::python
