@@ -81,11 +81,11 @@ void check_numbers(GroundOptions& ground, const TerrainSceneArguments& a, bool h
 }  // namespace
 
 void add_ground_lights(Parser& app, FrameOptions& frame, LightChoice& choice) {
-  add_own_light_options(app, frame, choice, "Light");
+  add_ground_light_options(app, frame, choice, "Light");
 }
 
 void add_ground_options(Parser& app, GroundOptions& ground) {
-  add_scalar_options(app, ground.heights);
+  add_scalar_options(app, ground.heights, NumbersOf::terrain);
   const char* group = "Words";
   app.add_flag("--axes", ground.axes, "the directions of x, height and y in the bottom left corner")
       ->group(group);

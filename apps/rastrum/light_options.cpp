@@ -165,41 +165,56 @@ std::vector<std::string> tone_names() {
   return {"none", "reinhard", "aces", "neutral"};
 }
 
-void add_own_light_options(Parser& app, FrameOptions& frame, LightChoice& choice,
-                           const char* group) {
+namespace {
+
+/// What --help says of options that meshes and ground have alike.
+struct LightHelp {
+  const char *lights, *instead, *tone, *exposure;
+};
+constexpr LightHelp kOfMeshes{
+    "of lambert, phong and material: default: the fixed light of each; headlight: one at the "
+    "viewer; studio: key, fill, back and head light; file: those of glTF files (studio where -o "
+    "alone and no --shader is asked for, docs/light.md; else default)",
+    "instead of the fixed light, or beside --lights: ", "of --shader material: ",
+    "of --shader material: light is doubled so many times (0)"};
+constexpr LightHelp kOfGround{
+    "in the sun's place, of ground and meshes: headlight: one at the viewer; studio: key, fill, "
+    "back and head light; default: the sun (default)",
+    "in the sun's place, where x is east, y the height and z south, or beside --lights: ",
+    "of --light and --lights, whose light is linear then, meshes are drawn by material: ",
+    "of --light and --lights: light is doubled so many times (0)"};
+
+void add_lights(Parser& app, FrameOptions& frame, LightChoice& choice, const char* group,
+                const LightHelp& help) {
   std::vector<Light>& lights = frame.lights;
-  add(app, "--lights", "NAME",
-      "of lambert, phong and material: default: the fixed light of each; headlight: one at the "
-      "viewer; studio: key, fill, back and head light; file: those of glTF files (studio where -o "
-      "alone and no --shader is asked for, docs/light.md; else default)",
-      [&lights, &choice](const std::string& s) {
-        choice.given = true;
-        if (s == "headlight")
-          lights.push_back(headlight());
-        else if (s == "studio")
-          std::ranges::copy(light_kit(), std::back_inserter(lights));
-        else if (s == "file")
-          choice.of_files = true;
-        else if (s != "default")
-          throw UsageError("--lights",
-                           "expected default, headlight, studio or file, got '" + s + "'");
-      })
-      ->group(group);
-  app.add_repeated("--light", "KIND:X,Y,Z:...",
-                   "instead of the fixed light, or beside --lights: ambient, hemisphere:UP, "
-                   "directional:DIRECTION, point:PLACE, spot:PLACE:towards=DIRECTION, headlight, "
-                   "environment:FILE (.hdr, .exr, .png, .jpg; or sky, room), "
-                   "with :intensity=I:color=COLOUR:of=camera (docs/light.md); may be repeated",
-                   [&lights, &choice](const std::string& s) {
-                     choice.given = true;
-                     if (lights.size() >= kMaxLights)
-                       throw UsageError("--light", "there are at most 256");
-                     lights.push_back(parse_light(s));
-                   })
+  add(app, "--lights", "NAME", help.lights, [&lights, &choice](const std::string& s) {
+    choice.given = true;
+    if (s == "headlight")
+      lights.push_back(headlight());
+    else if (s == "studio")
+      std::ranges::copy(light_kit(), std::back_inserter(lights));
+    else if (s == "file")
+      choice.of_files = true;
+    else if (s != "default")
+      throw UsageError("--lights", "expected default, headlight, studio or file, got '" + s + "'");
+  })->group(group);
+  app.add_repeated(
+         "--light", "KIND:X,Y,Z:...",
+         std::string(help.instead) +
+             "ambient, hemisphere:UP, "
+             "directional:DIRECTION, point:PLACE, spot:PLACE:towards=DIRECTION, headlight, "
+             "environment:FILE (.hdr, .exr, .png, .jpg; or sky, room), "
+             "with :intensity=I:color=COLOUR:of=camera (docs/light.md); may be repeated",
+         [&lights, &choice](const std::string& s) {
+           choice.given = true;
+           if (lights.size() >= kMaxLights) throw UsageError("--light", "there are at most 256");
+           lights.push_back(parse_light(s));
+         })
       ->group(group);
   add(app, "--tone", "NAME",
-      "of --shader material: how light above 1 is shown: none: cut (default), reinhard, aces, "
-      "neutral (Khronos PBR Neutral)",
+      std::string(help.tone) +
+          "how light above 1 is shown: none: cut (default), reinhard, aces, "
+          "neutral (Khronos PBR Neutral)",
       [&frame](const std::string& s) {
         const std::vector<std::string> names = tone_names();
         for (std::size_t i = 0; i < names.size(); ++i)
@@ -210,20 +225,25 @@ void add_own_light_options(Parser& app, FrameOptions& frame, LightChoice& choice
         throw UsageError("--tone", "expected none, reinhard, aces or neutral, got '" + s + "'");
       })
       ->group(group);
-  add(app, "--exposure", "STOPS", "of --shader material: light is doubled so many times (0)",
-      [&frame](const std::string& s) {
-        frame.tone.exposure_stops = static_cast<float>(parse_number("--exposure", s));
-        if (!(frame.tone.exposure_stops >= -32 && frame.tone.exposure_stops <= 32))
-          throw UsageError("--exposure", "must lie in -32 to 32, got '" + s + "'");
-      })
-      ->group(group);
+  add(app, "--exposure", "STOPS", help.exposure, [&frame](const std::string& s) {
+    frame.tone.exposure_stops = static_cast<float>(parse_number("--exposure", s));
+    if (!(frame.tone.exposure_stops >= -32 && frame.tone.exposure_stops <= 32))
+      throw UsageError("--exposure", "must lie in -32 to 32, got '" + s + "'");
+  })->group(group);
   app.add_flag("--environment-behind", frame.environment_behind,
                "what --light environment shows is seen where nothing else is")
       ->group(group);
 }
 
+}  // namespace
+
+void add_ground_light_options(Parser& app, FrameOptions& frame, LightChoice& choice,
+                              const char* group) {
+  add_lights(app, frame, choice, group, kOfGround);
+}
+
 void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, const char* group) {
-  add_own_light_options(app, frame, choice, group);
+  add_lights(app, frame, choice, group, kOfMeshes);
   app.add_flag("--shadows", frame.shadows,
                "of directional lights and spots that --lights and --light say")
       ->group(group);

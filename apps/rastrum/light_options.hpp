@@ -21,9 +21,9 @@ struct LightChoice {
 /// Fills the frame's lights; both options may be given, and add up. `of_files`: those of the inputs
 /// count, too.
 void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, const char* group);
-/// The same without --shadows, for who has shadows of another kind.
-void add_own_light_options(Parser& app, FrameOptions& frame, LightChoice& choice,
-                           const char* group);
+/// The same over ground, whose --shadows are of another kind.
+void add_ground_light_options(Parser& app, FrameOptions& frame, LightChoice& choice,
+                              const char* group);
 /// Adds those of the inputs. Throws UsageError where they have none.
 void add_file_lights(const Scene& scene, std::vector<Light>& lights);
 

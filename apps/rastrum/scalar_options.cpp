@@ -96,20 +96,24 @@ std::string map_names() {
 
 }  // namespace
 
-void add_scalar_options(Parser& app, ScalarOptions& s) {
+void add_scalar_options(Parser& app, ScalarOptions& s, NumbersOf of) {
+  const bool is_terrain = of == NumbersOf::terrain;
+  const char* const of_meshes = is_terrain ? "" : kScalarGroup;
   add(app, "--scalars", "NAME",
-      "colours by numbers of the files (rastrum info lists them), or by x, y, z, distance",
+      is_terrain
+          ? "height: colours by the heights as the file has them; so have the options below"
+          : "colours by numbers of the files (rastrum info lists them), or by x, y, z, distance",
       [&s](const std::string& v) {
         s.name = v;
         s.name_given = true;
       })
       ->group(kScalarGroup);
   const auto add_one = [&](const char* option, const char* type, const std::string& help,
-                           auto&& set) {
+                           auto&& set, const char* group = kScalarGroup) {
     add(app, option, type, help.c_str(), [&s, option, set](const std::string& v) {
       s.given = option;
       set(s, v);
-    })->group(kScalarGroup);
+    })->group(group);
   };
   ScalarMapping& m = s.mapping;
   add_one(
@@ -140,25 +144,34 @@ void add_scalar_options(Parser& app, ScalarOptions& s) {
             all.mapping.nan = parse_color("--nan-color", v);
             all.nan_given = true;
           });
-  add_one("--scalar-opacity", "V:A,V:A,...", "opacity at these numbers, linear between them",
-          [&m](ScalarOptions&, const std::string& v) { m.opacity = parse_opacity(v); });
-  add_one("--isolines", "N|V,V,...",
-          "lines on meshes: about N of them, or where these numbers are (V, for one alone)",
-          [](ScalarOptions& all, const std::string& v) {
-            if (v.find(',') == std::string::npos)
-              all.isoline_count = parse_integer("--isolines", v, 1, 1000);
-            else
-              all.mapping.isolines =
-                  parse_numbers("--isolines", v.back() == ',' ? v.substr(0, v.size() - 1) : v);
-          });
-  add_one("--isoline-color", "COLOUR", "(black)", [](ScalarOptions& all, const std::string& v) {
-    all.mapping.isoline_color = parse_color("--isoline-color", v);
-    all.of_lines = "--isoline-color";
-  });
-  add_one("--isoline-width", "PX", "(1)", [](ScalarOptions& all, const std::string& v) {
-    all.mapping.isoline_px = static_cast<float>(parse_number("--isoline-width", v));
-    all.of_lines = "--isoline-width";
-  });
+  add_one(
+      "--scalar-opacity", "V:A,V:A,...", "opacity at these numbers, linear between them",
+      [&m](ScalarOptions&, const std::string& v) { m.opacity = parse_opacity(v); }, of_meshes);
+  add_one(
+      "--isolines", "N|V,V,...",
+      "lines on meshes: about N of them, or where these numbers are (V, for one alone)",
+      [](ScalarOptions& all, const std::string& v) {
+        if (v.find(',') == std::string::npos)
+          all.isoline_count = parse_integer("--isolines", v, 1, 1000);
+        else
+          all.mapping.isolines =
+              parse_numbers("--isolines", v.back() == ',' ? v.substr(0, v.size() - 1) : v);
+      },
+      of_meshes);
+  add_one(
+      "--isoline-color", "COLOUR", "(black)",
+      [](ScalarOptions& all, const std::string& v) {
+        all.mapping.isoline_color = parse_color("--isoline-color", v);
+        all.of_lines = "--isoline-color";
+      },
+      of_meshes);
+  add_one(
+      "--isoline-width", "PX", "(1)",
+      [](ScalarOptions& all, const std::string& v) {
+        all.mapping.isoline_px = static_cast<float>(parse_number("--isoline-width", v));
+        all.of_lines = "--isoline-width";
+      },
+      of_meshes);
   add_one("--bar", "TITLE", "a bar beside the picture that says which colour is which number",
           [](ScalarOptions& all, const std::string& v) { all.bar_title = v; });
   add_one("--bar-unit", "UNIT", "behind the title",

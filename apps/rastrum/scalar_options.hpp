@@ -27,7 +27,9 @@ struct ScalarOptions {
   [[nodiscard]] std::string words() const { return bar_title.value_or("") + bar_unit; }
 };
 
-void add_scalar_options(Parser& app, ScalarOptions& s);
+enum class NumbersOf { meshes, terrain };
+/// Of a terrain what is of meshes alone is read, to be refused by name, but not in --help.
+void add_scalar_options(Parser& app, ScalarOptions& s, NumbersOf of = NumbersOf::meshes);
 /// What the parser cannot see by itself. Throws UsageError.
 void check_scalars(const ScalarOptions& s, bool has_colors);
 /// Makes the scene show them. Throws Error for a name that it has not.

@@ -5,10 +5,13 @@ import os
 import numpy as np
 
 from . import _rastrum as _r
+from ._annotate import annotations as _annotations
 from ._arrays import _numbers
 from ._arrays import color as _color
 from ._errors import ArgumentError, ArgumentTypeError, UnsupportedError, raises_errors
+from ._lights import lights as _lights
 from ._render import Picture, _number_of_threads, _size, _text
+from ._things import ColorMapping
 
 
 def _rgb(value, name):
@@ -19,14 +22,17 @@ class Terrain:
     """A map of heights, (H, W) in cells, row 0 in the north; NaN is a hole. It is copied, and lit here.
 
     colors: (h, w, 3 or 4) of uint8, of any size, stretched over the map; None: by height, with shaded slopes. sun: (azimuth
-    clockwise from north, elevation) in degrees. shadows: none, accumulated, sharp, soft; ambient: of a colour where no sun
-    is; sun_radius: of soft shadows, degrees. filter: none, bilinear, mip. tiling: what lies beyond the edge: repeat,
-    mirror, clamp. threads: None takes RASTRUM_NUM_THREADS or the cores that this process may use.
+    clockwise from north, elevation) in degrees, None: (315, 35). shadows: none, accumulated, sharp, soft; ambient: of a
+    colour where no sun is; sun_radius: of soft shadows, degrees. filter: none, bilinear, mip. tiling: what lies beyond the
+    edge: repeat, mirror, clamp. threads: None takes RASTRUM_NUM_THREADS or the cores that this process may use.
+    lights: in the sun's place, as of Renderer.render, in the terrain's world: x, the height, y; shadows are then of the
+    directional ones. tone, exposure: none, reinhard, aces or neutral of that light, after `exposure` stops. cmap, clim:
+    heights as numbers that have colours, a ColorMapping or what that takes; in the place of `colors`.
     """
 
     @raises_errors
-    def __init__(self, heights, colors=None, *, sun=(315.0, 35.0), shadows="none", ambient=0.45, sun_radius=0.2666,
-                 filter="bilinear", tiling="repeat", threads=None):
+    def __init__(self, heights, colors=None, *, sun=None, shadows="none", ambient=0.45, sun_radius=0.2666, filter="bilinear",
+                 tiling="repeat", threads=None, lights=None, tone="none", exposure=0.0, cmap=None, clim=None):
         array = _numbers(heights, "heights")
         if array.dtype.kind not in "fiu" or array.ndim != 2:
             raise ArgumentError(f"heights: must be (H, W) numbers, not {array.shape} of {array.dtype}")
@@ -40,10 +46,23 @@ class Terrain:
         self._threads = _number_of_threads() if threads is None else threads
         if not isinstance(self._threads, int) or not 1 <= self._threads <= 1024:
             raise ArgumentError(f"threads: {threads!r} must be a whole number from 1 to 1024")
+        made = _lights(lights)
+        if made and sun is not None:
+            raise ArgumentError("sun: lights take its place; say it as one of them, rastrum.Light.directional")
+        if not made and (tone != "none" or exposure != 0):
+            raise ArgumentError("tone: is of lights, and there are none; the sun lights colours as a display shows them")
+        if cmap is not None and colors is not None:
+            raise ArgumentError("cmap: colours the ground by its heights; leave out colors, or this")
+        if isinstance(cmap, ColorMapping) and clim is not None:
+            raise ArgumentError("clim: the ColorMapping has it")
+        if cmap is None and clim is not None:
+            raise ArgumentError("clim: is of a cmap")
+        mapping = cmap if cmap is None or isinstance(cmap, ColorMapping) else ColorMapping(cmap, clim)
         with np.errstate(over="ignore"):  # what float32 has no number for is a hole
             array = np.ascontiguousarray(array, np.float32)
-        self._made = _r.lit_terrain(array, colors, list(sun), _text(shadows, "shadows"), ambient, sun_radius,
-                                    _text(filter, "filter"), _text(tiling, "tiling"), self._threads)
+        self._made = _r.lit_terrain(array, colors, [315.0, 35.0] if sun is None else list(sun), _text(shadows, "shadows"),
+                                    ambient, sun_radius, _text(filter, "filter"), _text(tiling, "tiling"), self._threads, made,
+                                    _text(tone, "tone"), float(exposure), None if mapping is None else mapping._made)
         self._renderer = None, None
 
     @property
@@ -58,7 +77,8 @@ class Terrain:
 
     @raises_errors
     def render(self, position=None, *, altitude=None, angle=0.0, horizon=None, roll=0.0, clearance=None, size=(1280, 720),
-               distance=800.0, fov=90.0, scale=0.0, projection="planar", sky=None, fog=None, depth=False):
+               distance=800.0, fov=90.0, scale=0.0, projection="planar", sky=None, fog=None, depth=False,
+               environment_behind=False, annotate=()):
         """A Picture: `color`, and with depth=True `depth`, in cells along the view, 0 where the sky is.
 
         position: (x, y) in cells, x east and y south (half of the width, 0.78 of the height). altitude: in cells (a tenth of
@@ -66,18 +86,22 @@ class Terrain:
         degrees counter-clockwise. clearance: lifts the camera to so much above the ground. distance: cells that are seen.
         fov: across, degrees. scale: rows that a height of 1 takes at distance 1, 0: as lenses have it. projection:
         planar, cylindrical. sky: a colour, None: one that dims with a low sun. fog: density a cell, or (density, start),
-        or (density, start, colour). The program's `terrain` draws the same bits.
+        or (density, start, colour). environment_behind: the environments among the terrain's lights are seen where no
+        ground is, and fog fades to their horizon. annotate: as of Renderer.render, of "axes", "bounds", "bar" (with a cmap),
+        "title", "captions", "text_scale". The program's `terrain` draws the same bits.
         """
+        notes = _notes(annotate)
         width, height = _size(size)
         density, start, fog_color = _fog(fog)
         frame = _r.terrain_frame(self._made, width, height, distance, fov, scale, _text(projection, "projection"),
-                                 _rgb(sky, "sky"), density, start, _rgb(fog_color, "fog"), clearance)
+                                 _rgb(sky, "sky"), density, start, _rgb(fog_color, "fog"), clearance, bool(environment_behind))
         camera = _r.terrain_camera(self._made, height, None if position is None else list(position), altitude, angle, horizon,
                                    roll)
         arrays = {"color": np.empty((height, width, 4), np.uint8)}
         if depth:
             arrays["depth"] = np.empty((height, width), np.float32)
-        stats = self._drawer().render(self._made, camera, frame, arrays["color"], arrays.get("depth"))
+        stats = self._drawer().render(self._made, camera, frame, arrays["color"], arrays.get("depth"), bool(environment_behind),
+                                      notes)
         if depth:
             arrays["depth"][np.isinf(arrays["depth"])] = 0
         return Picture(arrays, stats, _no_pick)
@@ -93,6 +117,14 @@ class Terrain:
             renderer = _r.TerrainRenderer(self._threads)
             self._renderer = os.getpid(), renderer
         return renderer
+
+
+def _notes(annotate):
+    names = [annotate] if isinstance(annotate, str) else list(annotate)
+    for name in names:
+        if name in ("occlusion", "edl", "silhouettes", "edges"):
+            raise ArgumentError(f"annotate: {name!r} is of meshes; a terrain has axes, bounds, bar, title and captions")
+    return _annotations(annotate)
 
 
 def _no_pick(x, y):

@@ -8,15 +8,22 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
+#include <rastrum/color_map.hpp>
+#include <rastrum/light.hpp>
+#include <rastrum/on_terrain.hpp>
+#include <rastrum/overlay.hpp>
 #include <rastrum/stop.hpp>
 #include <rastrum/terrain.hpp>
 #include <rastrum/terrain_light.hpp>
 
+#include "annotations.hpp"
 #include "bindings.hpp"
 
 namespace rastrum::python {
@@ -62,12 +69,22 @@ struct LitTerrain {
   terrain::Tiling tiling;
   int width, height;
   double low, high;
+  GroundLights ground;  ///< without lights: the sun's
+  /// Of a map under lights of the camera, which is lit again for each picture; else empty.
+  terrain::HeightMap unlit{};
+  ScalarMapping mapping{};
+  std::optional<ScalarColors> numbers{};  ///< none: heights are not shown as numbers
+  int threads = 0;
+
+  [[nodiscard]] terrain::ShadowOptions by() const { return {tiling, Device::threads, threads, {}}; }
 };
 
+/// Over the sun, or under lights where there are any.
 LitTerrain lit(const Array& heights, const std::optional<Array>& colors,
                const std::array<double, 2>& sun, const std::string& shadows, double ambient,
                double sun_radius_deg, const std::string& filter, const std::string& tiling,
-               int threads) {
+               int threads, const std::vector<Light>& lights, const std::string& tone,
+               double exposure, const std::optional<ScalarMapping>& mapping) {
   terrain::Light light;
   light.sun = {sun[0], sun[1]};
   if (!std::isfinite(sun[0]) || !std::isfinite(sun[1]) || sun[1] > 90)
@@ -95,9 +112,54 @@ LitTerrain lit(const Array& heights, const std::optional<Array>& colors,
   }
   if (!(low <= high)) throw Error(Errc::invalid_argument, "heights: none of them is a number");
   const int width = map.heights.width(), height = map.heights.height();
-  if (light.hill_shading || light.shadows != terrain::Shadows::none)
-    map.colors = terrain::lit_colors(map, light, {tiles, Device::threads, threads, {}});
-  return {terrain::Terrain(std::move(map)), light.sun, filtered, tiles, width, height, low, high};
+  std::optional<ScalarColors> numbers;
+  if (mapping) {
+    if (!mapping->isolines.empty() || !mapping->opacity.empty())
+      throw Error(Errc::invalid_argument,
+                  "cmap: isolines and opacities are of meshes; on a terrain steps show where a "
+                  "height is");
+    const std::vector<double> all(map.heights.pixels().begin(), map.heights.pixels().end());
+    numbers.emplace(*mapping, finite_range(all, mapping->logarithmic));
+    map.colors = terrain::colors_of_heights(map.heights.view(), *numbers, 1, light.smooth ? 0 : 1,
+                                            tiles, threads);
+  }
+  const terrain::ShadowOptions by{tiles, Device::threads, threads, {}};
+  GroundLights ground{.lights = lights,
+                      .shadows = light.shadows,
+                      .sun_radius_deg = sun_radius_deg,
+                      .tone = {named<Tone>("tone", tone, {"none", "reinhard", "aces", "neutral"}),
+                               static_cast<float>(exposure)},
+                      .smooth = light.smooth};
+  terrain::HeightMap unlit;
+  if (!lights.empty()) {
+    if (std::ranges::any_of(lights, &Light::of_camera)) unlit = {map.heights, map.colors};
+    map.colors = lit_colors(map, ground, by);
+  } else if (light.hill_shading || light.shadows != terrain::Shadows::none) {
+    map.colors = terrain::lit_colors(map, light, by);
+  }
+  return {terrain::Terrain(std::move(map)),
+          light.sun,
+          filtered,
+          tiles,
+          width,
+          height,
+          low,
+          high,
+          std::move(ground),
+          std::move(unlit),
+          mapping.value_or(ScalarMapping{}),
+          std::move(numbers),
+          threads};
+}
+
+/// As `camera` sees it.
+terrain::Terrain seen_from(const LitTerrain& t, TerrainCamera camera, const TerrainOptions& o) {
+  if (t.unlit.heights.empty()) return t.map;
+  if (o.ground_clearance)
+    camera = terrain::above_ground(t.map, camera, *o.ground_clearance, o.tiling);
+  GroundLights ground = t.ground;
+  ground.camera = camera;
+  return t.map.with_colors(lit_colors(t.unlit, ground, t.by()));
 }
 
 /// Of who did not say: over the south of the map, looking down on all of it.
@@ -117,7 +179,7 @@ TerrainCamera camera(const LitTerrain& t, int rows, const std::optional<std::arr
 TerrainOptions frame(const LitTerrain& t, int width, int height, double distance, double fov_deg,
                      double scale_px, const std::string& projection, const std::optional<Rgb>& sky,
                      double fog_density, double fog_start, const std::optional<Rgb>& fog_color,
-                     const std::optional<double>& clearance) {
+                     const std::optional<double>& clearance, bool environment_behind) {
   TerrainOptions o;
   o.width = width;
   o.height = height;
@@ -129,7 +191,13 @@ TerrainOptions frame(const LitTerrain& t, int width, int height, double distance
   o.tiling = t.tiling;
   o.projection = named<terrain::Projection>("projection", projection, {"planar", "cylindrical"});
   const auto opaque = [](const Rgb& c) { return Rgba8{c[0], c[1], c[2], 255}; };
-  o.sky = sky ? opaque(*sky) : terrain::sky_in(o.sky, t.sun);
+  if (environment_behind && sky)
+    throw Error(Errc::invalid_argument,
+                "sky: is where environment_behind shows the environment; give fog its colour");
+  if (sky)
+    o.sky = opaque(*sky);
+  else if (t.ground.lights.empty())
+    o.sky = terrain::sky_in(o.sky, t.sun);
   o.fog = {fog_density, fog_start, {}};
   if (fog_color) o.fog.color = opaque(*fog_color);
   o.ground_clearance = clearance;
@@ -137,21 +205,55 @@ TerrainOptions frame(const LitTerrain& t, int width, int height, double distance
   return o;
 }
 
+/// What a terrain's picture is given. Effects are refused before.
+void annotate(const Annotations& a, const LitTerrain& t, const TerrainCamera& camera,
+              const TerrainOptions& o, const terrain::TerrainTargets& picture) {
+  const overlay::Look look = look_of(a, {});
+  if (a.bounds) draw_terrain_bounds(t.map, 1, o, camera, picture, look);
+  if (a.axes) draw_terrain_axes(o, camera, picture, overlay::Corner::bottom_left, look);
+  const overlay::Canvas canvas{.color8 = picture.color8};
+  if (a.bar) {
+    if (!t.numbers)
+      throw Error(Errc::invalid_argument,
+                  "annotate: bar is of heights as numbers; give the terrain a cmap");
+    overlay::ScalarBar bar = overlay::scalar_bar(t.mapping, *t.numbers);
+    bar.title = a.bar->title;
+    bar.unit = a.bar->unit;
+    if (a.bar->nan) bar.nan = t.mapping.nan;
+    overlay::draw_scalar_bar(canvas, bar, look);
+  }
+  draw_words(a, canvas, look);
+}
+
 class TerrainDrawer {
  public:
   explicit TerrainDrawer(int threads) : renderer_({Device::threads, threads, {}}) {}
 
-  terrain::TerrainStats render(const LitTerrain& t, const TerrainCamera& from,
-                               const TerrainOptions& o, const Output& color,
-                               const std::optional<Output>& depth) {
+  terrain::TerrainStats render(const LitTerrain& t, const TerrainCamera& from, TerrainOptions o,
+                               const Output& color, const std::optional<Output>& depth,
+                               bool environment_behind, const std::optional<Annotations>& notes) {
     terrain::TerrainTargets targets;
     targets.color8 = {static_cast<Rgba8*>(color.data()), o.width, o.height};
-    if (depth) targets.depth = {static_cast<float*>(depth->data()), o.width, o.height};
+    Image<float> own_depth;
+    if (depth) {
+      targets.depth = {static_cast<float*>(depth->data()), o.width, o.height};
+    } else if (environment_behind || (notes && notes->bounds)) {
+      own_depth = Image<float>(o.width, o.height);
+      targets.depth = own_depth.view();
+    }
     for (;;) {
       const StopOnInterrupt interrupt;
       try {
         const nb::gil_scoped_release unlock;
-        return renderer_.render(t.map, from, o, targets, interrupt.token());
+        const terrain::Terrain map = seen_from(t, from, o);
+        // Far ground in fog becomes what is behind it.
+        if (environment_behind) o.sky = horizon_color(t.ground.lights, t.ground.tone, from);
+        terrain::TerrainStats stats = renderer_.render(map, from, o, targets, interrupt.token());
+        if (environment_behind)
+          draw_environment_behind(t.ground.lights, t.ground.tone, o, stats.camera, targets,
+                                  t.threads);
+        if (notes) annotate(*notes, t, stats.camera, o, targets);
+        return stats;
       } catch (const parallel::Stopped&) {
       }
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
@@ -177,6 +279,7 @@ void bind_terrains(nb::module_& m) {
       });
   m.def("lit_terrain", lit, arg("heights"), arg("colors").none(), arg("sun"), arg("shadows"),
         arg("ambient"), arg("sun_radius"), arg("filter"), arg("tiling"), arg("threads"),
+        arg("lights"), arg("tone"), arg("exposure"), arg("mapping").none(),
         nb::call_guard<nb::gil_scoped_release>());
   nb::class_<TerrainCamera>(m, "TerrainCamera");
   m.def("terrain_camera", camera, arg("terrain"), arg("rows"), arg("position").none(),
@@ -184,14 +287,17 @@ void bind_terrains(nb::module_& m) {
   nb::class_<TerrainOptions>(m, "TerrainFrame");
   m.def("terrain_frame", frame, arg("terrain"), arg("width"), arg("height"), arg("distance"),
         arg("fov"), arg("scale"), arg("projection"), arg("sky").none(), arg("fog_density"),
-        arg("fog_start"), arg("fog_color").none(), arg("clearance").none());
+        arg("fog_start"), arg("fog_color").none(), arg("clearance").none(),
+        arg("environment_behind"));
   nb::class_<TerrainDrawer>(m, "TerrainRenderer")
       .def(nb::init<int>(), arg("threads"))
       .def(
           "render",
           [](TerrainDrawer& by, const LitTerrain& t, const TerrainCamera& from,
-             const TerrainOptions& o, const Output& color, const std::optional<Output>& depth) {
-            const terrain::TerrainStats s = by.render(t, from, o, color, depth);
+             const TerrainOptions& o, const Output& color, const std::optional<Output>& depth,
+             bool environment_behind, const std::optional<Annotations>& notes) {
+            const terrain::TerrainStats s =
+                by.render(t, from, o, color, depth, environment_behind, notes);
             nb::dict d;
             d["samples"] = s.samples;
             d["peak_bytes"] = s.peak_bytes;
@@ -199,7 +305,8 @@ void bind_terrains(nb::module_& m) {
             d["camera"] = nb::make_tuple(s.camera.x, s.camera.y, s.camera.altitude);
             return d;
           },
-          arg("terrain"), arg("camera"), arg("frame"), arg("color"), arg("depth").none());
+          arg("terrain"), arg("camera"), arg("frame"), arg("color"), arg("depth").none(),
+          arg("environment_behind"), arg("annotations").none());
 }
 
 }  // namespace rastrum::python

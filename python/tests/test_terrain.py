@@ -37,6 +37,16 @@ def colors_of(heights):
     ({"filter": "none"}, {"projection": "cylindrical", "fov": 200, "sky": "#204060", "clearance": 2, "altitude": 0},
      ["--filter", "none", "--projection", "cylindrical", "--fov", "200", "--sky", "#204060", "--clearance", "2",
       "--altitude", "0"]),
+    ({"lights": [rr.Light.ambient(intensity=0.2), rr.Light.directional((-1, -1, 0.4), intensity=0.8),
+                 rr.Light.point((60, 40, 50), color="#ff8000", intensity=400)], "shadows": "sharp"},
+     {"annotate": {"axes": True, "bounds": True, "title": "Ridge"}},
+     ["--light", "ambient:intensity=0.2", "--light", "directional:-1,-1,0.4:intensity=0.8", "--light",
+      "point:60,40,50:color=#ff8000:intensity=400", "--shadows", "sharp", "--axes", "--bounds", "--title", "Ridge"]),
+    ({"lights": "headlight", "tone": "neutral", "exposure": 1}, {"angle": 40, "fog": 0.003, "clearance": 4, "altitude": 1},
+     ["--lights", "headlight", "--tone", "neutral", "--exposure", "1", "--angle", "40", "--fog", "0.003", "--clearance", "4",
+      "--altitude", "1"]),
+    ({"lights": rr.Light.environment("room"), "tone": "aces"}, {"environment_behind": True, "fog": 0.003, "roll": 10},
+     ["--light", "environment:room", "--tone", "aces", "--environment-behind", "--fog", "0.003", "--roll", "10"]),
 ])
 @pytest.mark.parametrize("painted", [False, True])
 def test_it_is_the_programs_picture(tmp_path, heights, look, options, arguments, painted):
@@ -57,6 +67,19 @@ def test_it_is_the_programs_picture(tmp_path, heights, look, options, arguments,
     depth = np.where(picture.depth == 0, np.float32(np.inf), picture.depth)
     assert rr.digest(picture.color) in printed and rr.digest(depth) in printed
     assert len(np.unique(picture.color.reshape(-1, 4), axis=0)) > 50
+
+
+def test_heights_are_numbers_as_in_the_program(tmp_path, heights):
+    program = os.environ.get("RASTRUM_PROGRAM")
+    if not program or not pathlib.Path(program).exists():
+        pytest.skip("RASTRUM_PROGRAM does not name the program")
+    np.save(tmp_path / "h.npy", heights)
+    mapping = rr.ColorMapping("plasma", steps=6, symmetric=True)
+    picture = rr.Terrain(heights, cmap=mapping).render(size=SIZE, annotate={"bar": {"title": "Height", "unit": "m"}})
+    printed = subprocess.run([program, "terrain", "--height", tmp_path / "h.npy", "--height-scale", "1", "--size", "160x100",
+                              "--cmap", "plasma", "--steps", "6", "--symmetric", "--bar", "Height", "--bar-unit", "m", "--hash",
+                              "--quiet"], capture_output=True, text=True, check=True).stdout
+    assert rr.digest(picture.color) in printed
 
 
 def test_types_threads_and_views_are_the_same_bits(heights):
@@ -103,6 +126,11 @@ def test_a_forked_child_draws_the_same(heights):
     ({"colors": np.zeros((4, 4), np.uint8)}, "colors"), ({"colors": np.zeros((0, 4, 3), np.uint8)}, "colors"),
     ({"colors": np.zeros((4, 4, 3))}, "colors"), ({"sun": (0, 91)}, "sun"), ({"sun": (np.nan, 10)}, "sun"),
     ({"shadows": "long"}, "shadows"), ({"filter": "cubic"}, "filter"), ({"tiling": 3}, "tiling"), ({"threads": 0}, "threads"),
+    ({"lights": "moon"}, "lights"), ({"lights": "studio", "sun": (0, 20)}, "sun"), ({"tone": "aces"}, "tone"),
+    ({"lights": "studio", "tone": "loud"}, "tone"), ({"lights": "studio", "exposure": np.inf}, "exposure"),
+    ({"lights": [rr.Light.ambient()] * 257}, "257 lights"), ({"clim": (0, 1)}, "clim"), ({"cmap": "nope"}, "nope"),
+    ({"cmap": "gray", "colors": np.zeros((4, 4, 3), np.uint8)}, "cmap"),
+    ({"cmap": rr.ColorMapping("gray", isolines=[1])}, "isolines"), ({"cmap": "gray", "clim": (3, 1)}, "range"),
 ])
 def test_what_cannot_be_lit_is_named(heights, given, match):
     with pytest.raises(rr.Error, match=match):
@@ -111,7 +139,8 @@ def test_what_cannot_be_lit_is_named(heights, given, match):
 
 @pytest.mark.parametrize("given", [
     {"size": (0, 4)}, {"distance": -1}, {"distance": np.inf}, {"fov": 180}, {"projection": "round"}, {"position": (np.nan, 1)},
-    {"altitude": np.inf}, {"sky": "no colour"}, {"fog": (1, 2, "red", 3)}, {"fog": -1}, {"position": (1,)}, {"scale": -1},
+    {"altitude": np.inf}, {"sky": "no colour"}, {"fog": (1, 2, "red", 3)}, {"fog": -1}, {"position": (1,)}, {"scale": -1}, {"environment_behind": True}, {"annotate": "edl"},
+    {"annotate": {"bar": "Height"}}, {"annotate": "compass"}, {"annotate": "bounds", "projection": "cylindrical"},
 ])
 def test_what_cannot_be_drawn_is_refused(heights, given):
     with pytest.raises(rr.Error):

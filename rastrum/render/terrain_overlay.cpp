@@ -58,7 +58,7 @@ void draw_terrain_bounds(const terrain::Terrain& map, double cells_a_unit,
   Mat4d units = Mat4d::identity();
   units.m[1][1] = cells_a_unit;
   lens.matrix = *lens.matrix * units;
-  const auto [low, high] = std::minmax(lowest / cells_a_unit, highest / cells_a_unit);
+  const auto [low, high] = std::minmax({lowest / cells_a_unit, highest / cells_a_unit});
   overlay::draw_bounds({.color8 = picture.color8}, lens, {0, low, 0},
                        {static_cast<double>(map.heights()->width()), high,
                         static_cast<double>(map.heights()->height())},

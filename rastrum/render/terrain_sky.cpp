@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/error.hpp>
@@ -40,26 +41,35 @@ class TerrainRays {
     upright_ = terrain::upright_of(options, camera);
     roll_.emplace(camera.roll_rad, options.width, options.height);
     scale_px_ = terrain::scale_px(upright_->options);
+    if (camera.roll_rad == 0)
+      for (int x = 0; x < options.width; ++x)
+        columns_.push_back(turn(roll_->position(options.width, options.height, x, 0).x));
   }
 
   [[nodiscard]] Vec3 at(int x, int y) const {
     if (planar_)
       return planar_->d + planar_->dx * (static_cast<float>(x) + 0.5F) +
              planar_->dy * (static_cast<float>(y) + 0.5F);
+    // Columns are equal angles, rows equal heights on a cylinder.
     const terrain::TerrainOptions& o = upright_->options;
     const terrain::TerrainCamera& c = upright_->camera;
     const terrain::Roll::Position p = roll_->position(o.width, o.height, x, y);
-    // Columns are equal angles, rows equal heights on a cylinder.
-    const double angle = c.angle_rad - (p.x / o.width - 0.5) * o.fov_rad;
-    const auto [sin, cos] = elementary::sin_cos(angle);
+    const auto [sin, cos] = columns_.empty() ? turn(p.x) : columns_[static_cast<std::size_t>(x)];
     return Vec3(Vec3d{-sin, (c.horizon_px - p.y) / scale_px_, -cos});
   }
 
  private:
+  /// Which way one looks at `x_px` of the upright picture.
+  [[nodiscard]] elementary::SinCos turn(double x_px) const {
+    return elementary::sin_cos(upright_->camera.angle_rad -
+                               (x_px / upright_->options.width - 0.5) * upright_->options.fov_rad);
+  }
+
   std::optional<raster::ViewRays> planar_;
   std::optional<terrain::Upright> upright_;
   std::optional<terrain::Roll> roll_;
   double scale_px_ = 1;
+  std::vector<elementary::SinCos> columns_;  ///< of a picture that is not rolled: a turn each
 };
 
 }  // namespace

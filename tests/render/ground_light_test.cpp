@@ -1,77 +1,34 @@
 // Ground under lights of its own: against their formulas in float64, against the sun that they can
-// say, and the same bits whoever lights it; the sky behind it, and what stands on it.
+// say, and the same bits whoever lights it; its heights as numbers.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <rastrum/core/elementary.hpp>
 #include <rastrum/digest.hpp>
-#include <rastrum/environment.hpp>
 #include <rastrum/on_terrain.hpp>
-#include <rastrum/shapes.hpp>
 #include <rastrum/terrain.hpp>
 #include <rastrum/terrain_light.hpp>
 
 #include "tests/support/golden.hpp"
+#include "tests/support/ground.hpp"
 #include "tests/support/light_oracle.hpp"
 #include "tests/support/refused.hpp"
 
 namespace rastrum::test::ground_light_test {
 namespace {
 
+using namespace ground;
 using namespace light_oracle;
 using terrain::HeightMap;
 using terrain::ShadowOptions;
 using terrain::Tiling;
-
-constexpr int kMap = 48;
-
-double wave(double x, double y) {
-  return 6 + 5 * elementary::sin(x * 0.31) * elementary::cos(y * 0.23) + 0.04 * x;
-}
-
-/// Round hills with one hole, under a colour of its own for each cell.
-HeightMap hills() {
-  HeightMap map{Image<float>(kMap, kMap), Image<Rgba8>(kMap, kMap)};
-  for (int y = 0; y < kMap; ++y)
-    for (int x = 0; x < kMap; ++x) {
-      map.heights(x, y) = static_cast<float>(wave(x, y));
-      map.colors(x, y) = {static_cast<std::uint8_t>(90 + 3 * x),
-                          static_cast<std::uint8_t>(60 + 2 * y), 120, 255};
-    }
-  map.heights(20, 30) = std::numeric_limits<float>::quiet_NaN();
-  return map;
-}
-
-/// Red grows to the east, green upwards, blue to the south. Made once: that takes its time.
-const Environment& directions() {
-  static const Environment environment([] {
-    Image<Vec3> picture(256, 128);
-    for (int y = 0; y < 128; ++y)
-      for (int x = 0; x < 256; ++x) {
-        const auto [flat, up] = elementary::sin_cos((y + 0.5) / 128 * std::numbers::pi);
-        // 0: −z, π/2: +x
-        const auto [east, north] =
-            elementary::sin_cos(((x + 0.5) / 256 - 0.5) * 2 * std::numbers::pi);
-        picture(x, y) =
-            Vec3(Vec3d{0.5 + 0.5 * flat * east, 0.5 + 0.5 * up, 0.5 - 0.5 * flat * north});
-      }
-    return picture;
-  }()
-                                           .view());
-  return environment;
-}
-
-const Environment& blue_sky() {
-  static const Environment environment(builtin_environment(BuiltinEnvironment::sky).view());
-  return environment;
-}
 
 /// Lights of every kind, alone and together.
 std::vector<std::vector<Light>> sets_of_lights() {
@@ -392,232 +349,6 @@ TEST(HeightNumbers, AreMappedWhereTheyLie) {
   refused("a unit", 0, 1);
   refused("finer", 1, -1);
   refused("finer", 1, 17);
-}
-
-// --- What is around -----------------------------------------------------------------------------
-
-struct Sky {
-  terrain::TerrainOptions options;
-  terrain::TerrainCamera camera{24, 30, 20, 0.6, 30, 0};
-  Image<Rgba8> color;
-  Image<float> depth;
-
-  Sky() {
-    options.width = 90;
-    options.height = 60;
-    options.distance = 60;
-  }
-  void draw(std::span<const Light> lights, const ToneMapping& tone = {}, int threads = 0) {
-    color = Image<Rgba8>(options.width, options.height);
-    depth = Image<float>(options.width, options.height);
-    terrain::TerrainTargets targets{.color8 = color, .depth = depth};
-    const terrain::Terrain ground(hills());
-    terrain::TerrainRenderer({.threads = 1}).render(ground, camera, options, targets);
-    before = color;
-    draw_environment_behind(lights, tone, options, camera, targets, threads);
-  }
-  Image<Rgba8> before;
-};
-
-/// The direction of a pixel by the rules of docs/terrain.md.
-Vec3d direction_of(const terrain::TerrainOptions& o, const terrain::TerrainCamera& c, int x,
-                   int y) {
-  const double dx = x + 0.5 - o.width / 2.0, dy = y + 0.5 - o.height / 2.0;
-  const double u = dx * std::cos(c.roll_rad) - dy * std::sin(c.roll_rad);
-  const double v = dx * std::sin(c.roll_rad) + dy * std::cos(c.roll_rad) + o.height / 2.0;
-  const bool planar = o.projection == terrain::Projection::planar;
-  const double half = planar ? std::tan(o.fov_rad / 2) : o.fov_rad / 2;
-  double right = u * 2 / o.width * half, ahead = 1;
-  if (!planar) {
-    ahead = std::cos(right);
-    right = std::sin(right);
-  }
-  const double scale = o.width / 2.0 / half;
-  const double sin = std::sin(c.angle_rad), cos = std::cos(c.angle_rad);
-  return unit({cos * right - sin * ahead, (c.horizon_px - v) / scale, -sin * right - cos * ahead});
-}
-
-TEST(TerrainSky, IsTheEnvironmentWhereNoGroundIs) {
-  const std::vector<Light> lights{light(EnvironmentLight{directions()})};
-  for (const bool cylinder : {false, true})
-    for (const double roll : {0.0, 0.5}) {
-      SCOPED_TRACE(std::to_string(cylinder) + ", " + std::to_string(roll));
-      Sky sky;
-      sky.camera.roll_rad = roll;
-      if (cylinder) {
-        sky.options.projection = terrain::Projection::cylindrical;
-        sky.options.fov_rad = 5;
-      }
-      sky.draw(lights);
-      int seen = 0;
-      double worst = 0;
-      for (int y = 0; y < sky.options.height; ++y)
-        for (int x = 0; x < sky.options.width; ++x) {
-          const Rgba8 c = sky.color(x, y);
-          if (std::isfinite(sky.depth(x, y))) {
-            ASSERT_EQ(c, sky.before(x, y));
-            continue;
-          }
-          ++seen;
-          const Vec3d d = direction_of(sky.options, sky.camera, x, y);
-          const double want[3] = {0.5 + 0.5 * d.x, 0.5 + 0.5 * d.y, 0.5 + 0.5 * d.z};
-          const int got[3] = {c.r, c.g, c.b};
-          for (int i = 0; i < 3; ++i)
-            worst = std::max(worst, std::abs(got[i] - 255 * display(want[i])));
-          ASSERT_EQ(c.a, 255);
-        }
-      EXPECT_GT(seen, 1000);
-      EXPECT_LE(worst, 2.5);  // between the texels of an octahedral map
-    }
-}
-
-TEST(TerrainSky, IsTheSameBitsOnManyThreadsAndTakesTheTone) {
-  std::vector<Light> lights{light(EnvironmentLight{blue_sky()}, 2)};
-  lights.push_back(light(AmbientLight{}));
-  Sky one, many, mapped;
-  one.camera.roll_rad = many.camera.roll_rad = mapped.camera.roll_rad = 0.2;
-  one.draw(lights, {}, 1);
-  many.draw(lights, {}, 3);
-  EXPECT_TRUE(digest(one.color) == digest(many.color));
-  EXPECT_TRUE(matches_golden("ground/sky", digest(one.color)));
-  mapped.draw(lights, {Tone::neutral, 1});
-  EXPECT_FALSE(digest(one.color) == digest(mapped.color));
-  EXPECT_TRUE(matches_golden("ground/sky_mapped", digest(mapped.color)));
-}
-
-TEST(TerrainSky, HasAColourAtTheHorizon) {
-  const std::vector<Light> lights{light(EnvironmentLight{directions()})};
-  const Rgba8 c = horizon_color(lights, {});
-  const int middle = static_cast<int>(std::lround(255 * display(0.5)));
-  for (const int channel : {c.r, c.g, c.b}) EXPECT_NEAR(channel, middle, 1);
-  Light turned = lights[0];
-  turned.intensity = 0.5F;
-  EXPECT_NEAR(horizon_color({&turned, 1}, {}).g, 255 * display(0.25), 1);
-}
-
-TEST(TerrainSky, IsRefusedWithoutAnEnvironmentOrADepth) {
-  Sky sky;
-  const std::vector<Light> none{light(AmbientLight{})};
-  expect_refused("no environment", [&] { sky.draw(none); });
-  expect_refused("no environment", [&] { static_cast<void>(horizon_color(none, {})); });
-  const std::vector<Light> lights{light(EnvironmentLight{directions()})};
-  Image<Rgba8> color(90, 60);
-  expect_refused("depth", [&] {
-    draw_environment_behind(lights, {}, sky.options, sky.camera, {.color8 = color});
-  });
-  expect_refused("the tone", [&] { sky.draw(lights, {static_cast<Tone>(9)}); });
-  Image<float> small(20, 20);
-  expect_refused("the depth target", [&] {
-    draw_environment_behind(lights, {}, sky.options, sky.camera, {.color8 = color, .depth = small});
-  });
-}
-
-// --- What stands on it --------------------------------------------------------------------------
-
-struct Standing {
-  Scene scene;
-  FrameOptions frame;
-  Sky sky;
-
-  explicit Standing(float opacity = 1) {
-    Mesh ball = shapes::sphere(12, 16);
-    scene.meshes.push_back(std::move(ball));
-    scene.instances.push_back({0, Mat4d::identity()});
-    Mat4d& m = scene.instances[0].object_to_world;
-    for (int i = 0; i < 3; ++i) m.m[i][i] = 4;
-    m.m[0][3] = 14;
-    m.m[1][3] = 18;
-    m.m[2][3] = 14;
-    Material matt;
-    matt.base_color = {0.8F, 0.5F, 0.2F, opacity};
-    matt.alpha_mode = opacity < 1 ? AlphaMode::blend : AlphaMode::opaque;
-    matt.roughness = 1;
-    matt.metallic = 0;
-    scene.materials.push_back(matt);
-    scene.meshes[0].material = 0;
-    frame.width = sky.options.width;
-    frame.height = sky.options.height;
-    frame.shader = Shader::material;
-    frame.lights = {light(EnvironmentLight{directions()}),
-                    light(DirectionalLight{{-1, -1, -0.3F}}, 3)};
-    frame.tone = {Tone::reinhard, 0};
-    frame.environment_behind = true;
-  }
-  Image<Rgba8> draw(RendererOptions how = {.threads = 1}) {
-    Image<Rgba8> color(frame.width, frame.height);
-    Image<float> depth(frame.width, frame.height);
-    const terrain::TerrainTargets targets{.color8 = color, .depth = depth};
-    const terrain::Terrain ground(hills());
-    terrain::TerrainRenderer({.threads = 1}).render(ground, sky.camera, sky.options, targets);
-    ground_depth = depth;
-    const SceneBinding binding(scene);
-    SceneOnTerrain(Renderer(how))
-        .draw({.scene = binding.view()}, frame, sky.options, sky.camera, targets);
-    return color;
-  }
-  Image<float> ground_depth;
-};
-
-TEST(OnTerrainLights, AreThoseOfTheScenePictureByItself) {
-  Standing on;
-  const Image<Rgba8> color = on.draw();
-  Camera view;
-  view.matrix = terrain::world_to_clip(on.sky.options, on.sky.camera, SceneOnTerrain::kNear);
-  const SceneBinding binding(on.scene);
-  Image<Rgba8> alone(on.frame.width, on.frame.height);
-  Image<float> depth(on.frame.width, on.frame.height);
-  Renderer().render(binding.view(), view, on.frame, {.color8 = alone, .depth = depth});
-  on.sky.draw(on.frame.lights, on.frame.tone);
-  int ball = 0, sky = 0, ground = 0;
-  for (int y = 0; y < on.frame.height; ++y)
-    for (int x = 0; x < on.frame.width; ++x) {
-      const float of_ground = terrain::reversed_depth(on.ground_depth(x, y), SceneOnTerrain::kNear);
-      const bool is_ball = depth(x, y) > of_ground;
-      (is_ball ? ball : of_ground == 0 ? sky : ground) += 1;
-      ASSERT_EQ(color(x, y), is_ball ? alone(x, y) : on.sky.color(x, y)) << x << ", " << y;
-    }
-  EXPECT_GT(ball, 100);
-  EXPECT_GT(sky, 500);
-  EXPECT_GT(ground, 500);
-}
-
-TEST(OnTerrainLights, BlendMappedLightOverTheGround) {
-  Standing solid, glass(0.25F);
-  solid.frame.cull = glass.frame.cull = Cull::back;
-  const Image<Rgba8> opaque = solid.draw(), blended = glass.draw();
-  solid.sky.draw(solid.frame.lights, solid.frame.tone);
-  int seen = 0;
-  for (int y = 0; y < solid.frame.height; ++y)
-    for (int x = 0; x < solid.frame.width; ++x) {
-      const Rgba8 front = opaque(x, y), behind = solid.sky.color(x, y);
-      if (front == behind) continue;
-      ++seen;
-      ASSERT_NEAR(blended(x, y).r, 0.25 * front.r + 0.75 * behind.r, 1.01);
-      ASSERT_NEAR(blended(x, y).g, 0.25 * front.g + 0.75 * behind.g, 1.01);
-    }
-  EXPECT_GT(seen, 100);
-  EXPECT_TRUE(matches_golden("ground/glass", digest(blended)));
-}
-
-TEST(OnTerrainLights, AreTheSameBitsWhateverDraws) {
-  for (const float opacity : {1.0F, 0.5F}) {
-    Standing on(opacity);
-    on.frame.shadows = true;
-    const Digest first = digest(on.draw({.device = Device::serial}));
-    for (const Isa isa : available_isas())
-      for (const int threads : {1, 3})
-        EXPECT_TRUE(first == digest(on.draw({.threads = threads, .isa = isa}))) << name(isa);
-  }
-}
-
-TEST(OnTerrainLights, RefuseATonesOfOtherShaders) {
-  Standing on;
-  on.frame.shader = Shader::phong;
-  expect_refused("'material'", [&] { static_cast<void>(on.draw()); });
-  on.frame.tone = {};
-  EXPECT_NO_THROW(static_cast<void>(on.draw()));
-  on.frame.lights = {light(AmbientLight{})};
-  expect_refused("no environment", [&] { static_cast<void>(on.draw()); });
 }
 
 }  // namespace

@@ -1,0 +1,57 @@
+// Ground for tests of its light, and what is around it.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <numbers>
+
+#include <rastrum/core/elementary.hpp>
+#include <rastrum/environment.hpp>
+#include <rastrum/terrain.hpp>
+
+namespace rastrum::test::ground {
+
+inline constexpr int kMap = 48;
+
+[[nodiscard]] inline double wave(double x, double y) {
+  return 6 + 5 * elementary::sin(x * 0.31) * elementary::cos(y * 0.23) + 0.04 * x;
+}
+
+/// Round hills with one hole, under a colour of its own for each cell.
+[[nodiscard]] inline terrain::HeightMap hills() {
+  terrain::HeightMap map{Image<float>(kMap, kMap), Image<Rgba8>(kMap, kMap)};
+  for (int y = 0; y < kMap; ++y)
+    for (int x = 0; x < kMap; ++x) {
+      map.heights(x, y) = static_cast<float>(wave(x, y));
+      map.colors(x, y) = {static_cast<std::uint8_t>(90 + 3 * x),
+                          static_cast<std::uint8_t>(60 + 2 * y), 120, 255};
+    }
+  map.heights(20, 30) = std::numeric_limits<float>::quiet_NaN();
+  return map;
+}
+
+/// Red grows to the east, green upwards, blue to the south. Made once: that takes its time.
+[[nodiscard]] inline const Environment& directions() {
+  static const Environment environment([] {
+    Image<Vec3> picture(256, 128);
+    for (int y = 0; y < 128; ++y)
+      for (int x = 0; x < 256; ++x) {
+        const auto [flat, up] = elementary::sin_cos((y + 0.5) / 128 * std::numbers::pi);
+        // 0: −z, π/2: +x
+        const auto [east, north] =
+            elementary::sin_cos(((x + 0.5) / 256 - 0.5) * 2 * std::numbers::pi);
+        picture(x, y) =
+            Vec3(Vec3d{0.5 + 0.5 * flat * east, 0.5 + 0.5 * up, 0.5 - 0.5 * flat * north});
+      }
+    return picture;
+  }()
+                                           .view());
+  return environment;
+}
+
+[[nodiscard]] inline const Environment& blue_sky() {
+  static const Environment environment(builtin_environment(BuiltinEnvironment::sky).view());
+  return environment;
+}
+
+}  // namespace rastrum::test::ground
