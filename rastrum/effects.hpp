@@ -80,6 +80,11 @@ class SceneEdges {
   std::vector<std::vector<std::uint8_t>> tables_;  ///< empty: all sides
 };
 
+/// The materials by which a frame has the surface that effects look at, where textures blend: as
+/// masks that are cut at an alpha of 0.5, since what lies around a leaf on its quad is no surface.
+/// Empty where no texture does, so that the frame's own surface is that. Cost: O(materials).
+[[nodiscard]] std::vector<Material> materials_of_surface(const SceneView& scene);
+
 /// Keeps threads and scratch between pictures. One call at a time.
 class Effects {
  public:

@@ -1,6 +1,8 @@
 #include "render_job.hpp"
 
 #include <string>
+#include <type_traits>
+#include <vector>
 
 #include "progress.hpp"
 #include "timeline.hpp"
@@ -34,6 +36,27 @@ Targets make_targets(const Wanted& wanted, const FrameOptions& options, Pictures
   return targets;
 }
 
+/// The surface for effects once more, where textures blend.
+void draw_solid_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                        const FrameOptions& frame, const Wanted& wanted, Pictures& pictures) {
+  if (!wanted.surface || frame.transparency.method == Transparency::none) return;
+  const std::vector<Material> materials = materials_of_surface(scene);
+  if (materials.empty()) return;
+  const auto view = [&](auto& image) {
+    if (image.empty()) image = std::remove_reference_t<decltype(image)>(frame.width, frame.height);
+    return image.view();
+  };
+  SceneView solid = scene;
+  solid.materials = materials;
+  Targets targets{.view_depth = view(pictures.solid_depth)};
+  if (wanted.edges) {
+    targets.camera_normals = view(pictures.solid_normals);
+    targets.instances = view(pictures.solid_instances);
+  }
+  renderer.render(solid, camera, frame, targets);
+  pictures.surface = {targets.view_depth, targets.camera_normals, targets.instances};
+}
+
 }  // namespace
 
 FrameStats timed_render(Renderer& renderer, const SceneView& scene, const Camera& camera,
@@ -62,6 +85,7 @@ std::vector<FrameStats> render_frames(Renderer& renderer, const SceneView& scene
     progress.show("rendering");
     const Targets all = make_targets(wanted, frame, pictures);
     stats.push_back(timed_render(renderer, scene, camera, frame, all, timeline, "frame"));
+    draw_solid_surface(renderer, scene, camera, frame, wanted, pictures);
     return stats;
   }
   const Targets color8 = make_targets({.color8 = true, .images = {}}, frame, pictures);
@@ -76,6 +100,7 @@ std::vector<FrameStats> render_frames(Renderer& renderer, const SceneView& scene
     const Targets others = make_targets(wanted, frame, pictures);
     timeline.measure("other images", "images",
                      [&] { renderer.render(scene, camera, frame, others); });
+    draw_solid_surface(renderer, scene, camera, frame, wanted, pictures);
   }
   return stats;
 }

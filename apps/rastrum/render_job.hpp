@@ -32,7 +32,10 @@ struct Pictures {
   Image<float> view_depth;               ///< of these what is no image of Wanted's
   Image<Vec3> camera_normals;
   Image<std::int64_t> instances;
-  Surface surface;  ///< with Wanted::surface; of this object's images, or of its frame's
+  Surface surface;           ///< with Wanted::surface; of this object's images, or of its frame's
+  Image<float> solid_depth;  ///< where textures blend; see materials_of_surface
+  Image<Vec3> solid_normals;
+  Image<std::int64_t> solid_instances;
 };
 
 /// `frame_ms` and the stages are of the whole call, from the caller's mesh in memory to the

@@ -68,18 +68,37 @@ void AnnotationScratch::attach(const Annotations& a, const FrameOptions& frame, 
   add(a.bounds, targets.depth, depth);
 }
 
+Surface AnnotationScratch::surface_of(const Annotations& a, const SceneView& scene,
+                                      const Camera& camera, const FrameOptions& frame,
+                                      Renderer& renderer, const Targets& targets) {
+  const Surface frames_own{targets.view_depth, targets.camera_normals, targets.instances};
+  if (frame.transparency.method == Transparency::none || !(a.occlusion || a.dome || a.silhouettes))
+    return frames_own;
+  const std::vector<Material> materials = materials_of_surface(scene);
+  if (materials.empty()) return frames_own;
+  SceneView solid = scene;
+  solid.materials = materials;
+  Targets again{.view_depth = own(solid_depth, frame)};
+  if (a.silhouettes) {
+    again.camera_normals = own(solid_normals, frame);
+    again.instances = own(solid_instances, frame);
+  }
+  renderer.render(solid, camera, frame, again);
+  return {again.view_depth, again.camera_normals, again.instances};
+}
+
 void AnnotationScratch::draw(const Annotations& a, const SceneEdges* edges, const SceneView& scene,
-                             const Camera& camera, const FrameOptions& frame,
-                             const RendererOptions& options, const Targets& targets) {
-  if (!effects) effects.emplace(options.threads, options.isa);
+                             const Camera& camera, const FrameOptions& frame, Renderer& renderer,
+                             const Targets& targets) {
+  if (!effects) effects.emplace(renderer.options().threads, renderer.options().isa);
   const ImageView<float> to = own(factor, frame);
-  const Surface surface{targets.view_depth, targets.camera_normals, targets.instances};
+  const Surface surface = surface_of(a, scene, camera, frame, renderer, targets);
   const auto darken = [&] { effects->darken(targets.color8, targets.color, to); };
   if (a.occlusion) {
     AmbientOcclusion o = *a.occlusion;
     if (o.radius == 0) o.radius = 0.15 * radius_of(scene);
     // By depth alone, as the program does.
-    effects->ambient_occlusion({.view_depth = targets.view_depth}, camera, o, to);
+    effects->ambient_occlusion({.view_depth = surface.view_depth}, camera, o, to);
     darken();
   }
   if (a.dome) {

@@ -36,6 +36,9 @@ struct AnnotationScratch {
   Image<float> view_depth, depth, factor;
   Image<Vec3> normals;
   Image<std::int64_t> ids, instances;
+  Image<float> solid_depth;  ///< where textures blend; see materials_of_surface
+  Image<Vec3> solid_normals;
+  Image<std::int64_t> solid_instances;
   std::optional<Effects> effects;
 
   /// Adds to `targets` what `a` looks at. Throws Error{invalid_argument} without colours.
@@ -43,8 +46,13 @@ struct AnnotationScratch {
   /// Into the colours of `targets`, as the frame left them. `edges`: of the scene, where there are
   /// any in `a`.
   void draw(const Annotations& a, const SceneEdges* edges, const SceneView& scene,
-            const Camera& camera, const FrameOptions& frame, const RendererOptions& options,
+            const Camera& camera, const FrameOptions& frame, Renderer& renderer,
             const Targets& targets);
+
+ private:
+  [[nodiscard]] Surface surface_of(const Annotations& a, const SceneView& scene,
+                                   const Camera& camera, const FrameOptions& frame,
+                                   Renderer& renderer, const Targets& targets);
 };
 
 void bind_annotations(nb::module_& m);

@@ -70,8 +70,8 @@ std::vector<FrameStats> FrameRenderer::render(
     if (annotations != nullptr) scratch.annotations.attach(*annotations, o, targets);
     stats[i] = by.render(scene, cameras[i], o, targets, stop);
     if (annotations != nullptr)
-      scratch.annotations.draw(*annotations, edges ? &*edges : nullptr, scene, cameras[i], o,
-                               by.options(), targets);
+      scratch.annotations.draw(*annotations, edges ? &*edges : nullptr, scene, cameras[i], o, by,
+                               targets);
     for (const Finish& f : finish) f();
   };
   draw_all(cameras.size(), std::int64_t{o.width} * o.height, draw, after);

@@ -396,6 +396,35 @@ TEST(Effects, DarkenIsTheSameOnEveryInstructionSet) {
     }
 }
 
+// A leaf on the left half of a quad that blends: effects see the leaf, and beside it nothing.
+TEST(Effects, LookAtTexturesThatBlendWhereTheyAreSolid) {
+  Scene scene;
+  Mesh& mesh = scene.meshes.emplace_back();
+  mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  mesh.texcoords.values = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  scene.instances.resize(1);
+  Texture& texture = scene.textures.emplace_back();
+  texture.image = Image<Rgba8>(8, 1);
+  for (int x = 0; x < 8; ++x)
+    texture.image(x, 0) = {0, 255, 0, static_cast<std::uint8_t>(x < 4 ? 255 : 0)};
+  Material& material = scene.materials.emplace_back();
+  EXPECT_TRUE(materials_of_surface(SceneBinding(scene).view()).empty());
+  material.alpha_mode = AlphaMode::blend;
+  EXPECT_TRUE(materials_of_surface(SceneBinding(scene).view()).empty());
+  material.base_color_texture = 0;
+  const SceneBinding binding(scene);
+  const std::vector<Material> solid = materials_of_surface(binding.view());
+  ASSERT_EQ(solid.size(), 1U);
+  SceneView view = binding.view();
+  view.materials = solid;
+  Image<float> depth(40, 40);
+  Renderer({.threads = 1})
+      .render(view, Camera{.eye = {0, 0, 2}}, {.width = 40, .height = 40}, {.view_depth = depth});
+  EXPECT_NEAR(depth(10, 20), 2, 1e-5);
+  EXPECT_EQ(depth(30, 20), kInfinity);
+}
+
 TEST(Effects, RefuseWhatIsOutOfRange) {
   const Drawn d = drawn("teapot", 16, 12);
   Effects effects;
