@@ -79,9 +79,9 @@ LIGHT = [
           "--light 'spot:2,0.6,2.4:towards=-2,-1,-2.4:inner=6:outer=9:intensity=3'"),
     Entry("hemisphere", "Sky above, earth below", f"render DATA/small/suzanne.obj {PAGE} {SMOOTH} --light "
           "'hemisphere:0,1,0:color=#c8dcff:below=#503820:intensity=0.8' --light directional:-1,-1,-1:intensity=0.4 --azimuth -20"),
-    Entry("spot_shadows", "A spot's shadows", f"render DATA/sponza/sponza.obj {SIZE} {SMOOTH} --eye -1100,180,0 --target 0,260,-40 "
-          "--fov 65 --shader material --light ambient:intensity=0.15 --light 'spot:900,900,0:towards=-900,-700,0:outer=55:inner=20:intensity=4000000"
-          ":color=#ffe0b0' --shadows --tone aces --exposure 1"),
+    Entry("spot_shadows", "A spot's shadows", "render MADE/floor.obj builtin:teapot builtin:torus_knot@x=-3.4,y=1,z=1.6 "
+          f"{SIZE} --background '#101418' {SMOOTH} --eye 3,6,8 --target -0.6,0.8,0 --fov 45 --light ambient:intensity=0.12 "
+          "--light 'spot:4,6,5:towards=-5,-5.4,-5:inner=14:outer=24:intensity=75:color=#ffe8c8' --shadows"),
     Entry("environment_room", "Metal and varnish in a room, rougher to the right", f"render MADE/balls.obj {SIZE} {SMOOTH} --view front "
           "--azimuth 25 --elevation 8 --fov 40 --shader material --light environment:room --environment-behind"),
     Entry("environment_sky", "The same under the sky", f"render MADE/balls.obj {SIZE} {SMOOTH} --view front "
