@@ -262,7 +262,9 @@ int run_effects(std::span<const std::string_view> arguments) {
       rows.set(what, column, cell);
     };
     Rows of_vtk;
-    if (vtk) {
+    // Peeling takes seconds: a smoke test has it once.
+    const bool beside_vtk = vtk && (!options.quick || column == 0);
+    if (beside_vtk) {
       (void)renderer.render(binding.view(), camera, frame, {.color8 = p.color});
       time_vtk(
           *vtk, scene.meshes[0], camera, frame, radius, p.color, contenders,
@@ -270,7 +272,7 @@ int run_effects(std::span<const std::string_view> arguments) {
     }
     progress(std::string(info.name));
     std::vector<Timing> timings = measure_interleaved(contenders, options.plan());
-    if (vtk) {
+    if (beside_vtk) {
       // Seconds a frame: beside ours, few of them.
       const LitFrame& glass =
           *std::find_if(lit.begin(), lit.end(), [](const LitFrame& l) { return l.name == kGlass; });
@@ -303,7 +305,7 @@ int run_effects(std::span<const std::string_view> arguments) {
                  occluded = named("with view depth").median_ms() + named("occlusion").median_ms();
     say("with occlusion ÷ phong", significant(occluded / phong));
     say("studio ÷ phong", significant(median_ratio(named("studio"), named("phong"))));
-    if (vtk) {
+    if (beside_vtk) {
       say("VTK, phong ÷ phong", significant(median_ratio(named("VTK, phong"), named("phong"))));
       say("VTK, occlusion ÷ with occlusion",
           significant(named("VTK, occlusion").median_ms() / occluded));
