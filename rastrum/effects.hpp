@@ -24,7 +24,7 @@ namespace rastrum {
 /// How much of the light from all around reaches a point: McGuire, Mara and Luebke, Scalable
 /// Ambient Obscurance (HPG 2012), with a fixed pattern of samples.
 struct AmbientOcclusion {
-  double radius = 0;    ///< in the world, of what takes light from a point; 1e-18 to 1e18
+  double radius = 0;    ///< in the world, of what takes light from a point; 1e-37 to 1e37
   double strength = 1;  ///< [0, 16]
   int samples =
       16;  ///< a pixel, 1 to 64; the blur spans 4 × 4 pixels, so that many times as many count
