@@ -2,8 +2,8 @@
 #include <string>
 #include <string_view>
 
-#include <rastrum/core/nearest_word.hpp>
 #include <rastrum/color.hpp>
+#include <rastrum/core/nearest_word.hpp>
 #include "arguments.hpp"
 
 namespace rastrum::cli {
