@@ -49,9 +49,9 @@ struct Annotations {
 /// options of effects are checked by these.
 void check(const Annotations& annotations);
 
-/// A camera that leaves a margin for the numbers of `bounds` (overlay::room_for_bounds), or for `bar`
-/// (1.25 times as much is seen), around the scene that it was fitted to. As it is where neither is
-/// drawn. O(vertices) for bounds.
+/// A camera that leaves a margin for the numbers of `bounds` (overlay::room_for_bounds), or for
+/// `bar` (1.25 times as much is seen), around the scene that it was fitted to. As it is where
+/// neither is drawn. O(vertices) for bounds.
 [[nodiscard]] Camera with_room(const Annotations& annotations, Camera camera,
                                const SceneView& scene, int width, int height);
 
@@ -82,9 +82,14 @@ class Annotator {
                     const Targets& targets, const SceneEdges* edges = nullptr,
                     std::stop_token stop = {});
 
-  /// The same in two steps, for who draws the frame in another way (several passes, ranks). Adds
+  /// The same in steps, for who draws the frame in another way (several passes, ranks). Adds
   /// to `targets` images of this object, which the next call may reuse.
   void add_targets(const Annotations& annotations, int width, int height, Targets& targets);
+  /// Where textures blend, draws the surface that effects look at once more, as
+  /// materials_of_surface() has it, for the draw() that follows; elsewhere nothing.
+  void add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                   const FrameOptions& frame, const Annotations& annotations,
+                   std::stop_token stop = {});
   /// Into the colours of `targets`, which hold a frame with all that add_targets() added. Their
   /// no_distance must be infinity.
   void draw(const Annotations& annotations, const SceneView& scene, const Camera& camera,

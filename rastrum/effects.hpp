@@ -24,7 +24,7 @@ namespace rastrum {
 /// How much of the light from all around reaches a point: McGuire, Mara and Luebke, Scalable
 /// Ambient Obscurance (HPG 2012), with a fixed pattern of samples.
 struct AmbientOcclusion {
-  double radius = 0;    ///< in the world, of what takes light from a point; 1e-18 to 1e18
+  double radius = 0;    ///< in the world, of what takes light from a point; 1e-37 to 1e37
   double strength = 1;  ///< [0, 16]
   int samples =
       16;  ///< a pixel, 1 to 64; the blur spans 4 × 4 pixels, so that many times as many count
@@ -79,6 +79,11 @@ class SceneEdges {
   std::vector<std::size_t> table_of_;              ///< of an instance
   std::vector<std::vector<std::uint8_t>> tables_;  ///< empty: all sides
 };
+
+/// The materials by which a frame has the surface that effects look at, where textures blend: as
+/// masks that are cut at an alpha of 0.5, since what lies around a leaf on its quad is no surface.
+/// Empty where no texture does, so that the frame's own surface is that. Cost: O(materials).
+[[nodiscard]] std::vector<Material> materials_of_surface(const SceneView& scene);
 
 /// Keeps threads and scratch between pictures. One call at a time.
 class Effects {

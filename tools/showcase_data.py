@@ -141,6 +141,7 @@ def main():
     data, out = map(pathlib.Path, sys.argv[1:])
     out.mkdir(parents=True, exist_ok=True)
     balls(out / "balls.obj")
+    (out / "floor.obj").write_text("v -8 0 -8\nv -8 0 8\nv 8 0 8\nv 8 0 -8\nf 1 2 3 4\n")
     if (data / "mol").is_dir():
         molecule(data / "mol" / "7DDO.pdb", out / "protein.ply")
         molecule(data / "mol" / "1LCD.pdb", out / "dna.ply")

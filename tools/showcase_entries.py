@@ -42,7 +42,7 @@ NUMBERS = [
     Entry("notch", "Stress around a notch, with isolines", f"render MADE/notch.ply {PAGE} {SMOOTH} --scalars stress "
           "--cmap turbo --isolines 12 --bar Stress --bar-unit Pa", "MADE/notch.ply"),
     Entry("can", "A crushed can: strain, a number for each face", f"render MADE/can.ply {PAGE} {SMOOTH} --scalars strain "
-          "--cmap inferno --bar 'Plastic strain' --occlusion --up z --azimuth 60 --elevation 10", "MADE/can.ply"),
+          "--cmap inferno --bar 'Plastic strain' --occlusion --up z --azimuth 30", "MADE/can.ply"),
     Entry("carotid", "Speed of blood at a carotid's wall", f"render MADE/carotid.ply {PAGE} {SMOOTH} --scalars speed --cmap plasma "
           "--bar Speed --bar-unit cm/s --up z", "MADE/carotid.ply"),
     Entry("carotid_log", "The same by factors, and what lies beyond a range", f"render MADE/carotid.ply {PAGE} {SMOOTH} "
@@ -57,7 +57,7 @@ NUMBERS = [
     Entry("knot_opacity", "Glass below, stone above", f"render builtin:torus_knot {PAGE} {SMOOTH} --scalars z --cmap coolwarm --symmetric "
           "--scalar-opacity -0.6:0.15,0.6:1 --bar z"),
     Entry("protein", "A protein's atoms by chain: categories", f"render MADE/protein.ply {NIGHT} {SMOOTH} --scalars chain "
-          "--cmap Set2 --categories 65,66,67 --point-size 7 --edl --edl-strength 0.03 --shader flat --title '7DDO, three chains'"),
+          "--cmap Set2 --categories 65,66,67 --point-size 7 --edl --edl-strength 0.03 --shader flat --title '7DDO by chain'"),
     Entry("dna", "DNA and its repressor by element", f"render MADE/dna.ply {PAGE} {SMOOTH} --scalars element --cmap tab10 "
           "--categories 1,6,7,8,15,16 --point-size 11 --edl --edl-strength 0.03 --shader flat --bar 'Atomic number'"),
     Entry("protein_factor", "The protein's temperature factors", f"render MADE/protein.ply {NIGHT} {SMOOTH} --scalars bfactor "
@@ -79,9 +79,9 @@ LIGHT = [
           "--light 'spot:2,0.6,2.4:towards=-2,-1,-2.4:inner=6:outer=9:intensity=3'"),
     Entry("hemisphere", "Sky above, earth below", f"render DATA/small/suzanne.obj {PAGE} {SMOOTH} --light "
           "'hemisphere:0,1,0:color=#c8dcff:below=#503820:intensity=0.8' --light directional:-1,-1,-1:intensity=0.4 --azimuth -20"),
-    Entry("spot_shadows", "A spot's shadows", f"render DATA/sponza/sponza.obj {SIZE} {SMOOTH} --eye -1100,180,0 --target 0,260,-40 "
-          "--fov 65 --shader material --light ambient:intensity=0.15 --light 'spot:900,900,0:towards=-900,-700,0:outer=55:inner=20:intensity=4000000"
-          ":color=#ffe0b0' --shadows --tone aces --exposure 1"),
+    Entry("spot_shadows", "A spot's shadows", "render MADE/floor.obj builtin:teapot builtin:torus_knot@x=-3.4,y=1,z=1.6 "
+          f"{SIZE} --background '#101418' {SMOOTH} --eye 3,6,8 --target -0.6,0.8,0 --fov 45 --light ambient:intensity=0.12 "
+          "--light 'spot:4,6,5:towards=-5,-5.4,-5:inner=14:outer=24:intensity=75:color=#ffe8c8' --shadows"),
     Entry("environment_room", "Metal and varnish in a room, rougher to the right", f"render MADE/balls.obj {SIZE} {SMOOTH} --view front "
           "--azimuth 25 --elevation 8 --fov 40 --shader material --light environment:room --environment-behind"),
     Entry("environment_sky", "The same under the sky", f"render MADE/balls.obj {SIZE} {SMOOTH} --view front "
@@ -124,7 +124,7 @@ LAYERS = [
           "--view front --azimuth 20 --elevation 25 --clip-plane 0,0,-1,0"),
     Entry("hair", "Ribbons of hair, blended", "render DATA/depth/ratboy_mohawk_ribbons_138k.ply@color=#7a4a1c "
           f"{PAGE} {SMOOTH} --lights studio --opacity 0.8 --view right --zoom 1.1"),
-    Entry("pine", "Cut-out leaves", f"render DATA/alpha/smallpine/scene.gltf {PAGE}", "DATA/alpha/smallpine/scene.gltf"),
+    Entry("pine", "Cut-out leaves", f"render DATA/alpha/smallpine/scene.gltf {PAGE}"),
     Entry("alpha", "glTF's alpha modes", f"render DATA/alpha/AlphaBlendModeTest.glb {PAGE} --view front", "DATA/alpha/AlphaBlendModeTest.glb"),
     Entry("glass", "Glass around stone", "render 'builtin:torus_knot@color=#5b8fd6,opacity=0.4' 'builtin:sphere@scale=0.7,color=#d6a35b' "
           f"{PAGE} {SMOOTH} --lights studio"),

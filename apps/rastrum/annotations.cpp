@@ -61,7 +61,7 @@ void add_annotation_options(Parser& app, AnnotationOptions& a) {
       ->group(kGroup);
   add_number(app, "--occlusion-radius", "R",
              "how far surfaces take light, in the scene's units (0.15 of the scene's radius)",
-             a.occlusion_radius, 1e-18, 1e18);
+             a.occlusion_radius, 1e-37, 1e37);
   add_number(app, "--occlusion-strength", "S", "how much (1)", a.occlusion_strength, 0, 16);
   app.add_flag("--edl", a.dome,
                "darken what lies behind its neighbours (eye-dome lighting): shape for points")

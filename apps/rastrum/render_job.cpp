@@ -1,6 +1,8 @@
 #include "render_job.hpp"
 
 #include <string>
+#include <type_traits>
+#include <vector>
 
 #include "progress.hpp"
 #include "timeline.hpp"
@@ -28,6 +30,13 @@ Targets make_targets(const Wanted& wanted, const FrameOptions& options, Pictures
     wanted.annotator->add_targets(*wanted.notes, options.width, options.height, targets);
   pictures.targets = targets;
   return targets;
+}
+
+/// What annotations look at besides a frame's own targets.
+void add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                 const FrameOptions& frame, const Wanted& wanted) {
+  if (wanted.notes != nullptr)
+    wanted.annotator->add_surface(renderer, scene, camera, frame, *wanted.notes);
 }
 
 }  // namespace
@@ -58,6 +67,7 @@ std::vector<FrameStats> render_frames(Renderer& renderer, const SceneView& scene
     progress.show("rendering");
     const Targets all = make_targets(wanted, frame, pictures);
     stats.push_back(timed_render(renderer, scene, camera, frame, all, timeline, "frame"));
+    add_surface(renderer, scene, camera, frame, wanted);
     return stats;
   }
   const Targets color8 = make_targets({.color8 = true, .images = {}}, frame, pictures);
@@ -73,6 +83,7 @@ std::vector<FrameStats> render_frames(Renderer& renderer, const SceneView& scene
       !others.depth.empty())
     timeline.measure("other images", "images",
                      [&] { renderer.render(scene, camera, frame, others); });
+  add_surface(renderer, scene, camera, frame, wanted);
   pictures.targets.color8 = color8.color8;
   return stats;
 }

@@ -58,6 +58,7 @@ class Peer:
 
         self.vtk = vtk
         self.towards = (0.4, 0.6, 1.0)
+        self.occluded = None
         self.actor = vtk.vtkActor()
         self.draw_by(vtk.vtkPolyDataMapper())
         self.actor.GetProperty().SetInterpolationToPhong()
@@ -80,7 +81,8 @@ class Peer:
         shader = self.actor.GetShaderProperty()
         shader.ClearAllFragmentShaderReplacements()
         if self.phong:
-            text = PHONG.replace("TOWARDS", ", ".join(f"{v:.9f}" for v in self.towards))
+            # The pass for occlusion writes places and normals where VTK's own light stands, which ours then overwrites.
+            text = ("//VTK::Light::Impl\n" if self.occluded else "") + PHONG.replace("TOWARDS", ", ".join(f"{v:.9f}" for v in self.towards))
             shader.AddFragmentShaderReplacement("//VTK::Light::Impl", True, text, False)
 
     def draw_by(self, mapper, phong=True):
@@ -191,13 +193,15 @@ class Peer:
         if radius == 0:
             self.renderer.SetPass(None)
             return
-        steps, occluded = self.vtk.vtkRenderStepsPass(), self.vtk.vtkSSAOPass()
-        occluded.SetDelegatePass(steps)
-        occluded.SetRadius(radius)
-        occluded.SetBias(0.02 * radius)
-        occluded.SetKernelSize(16)  # as many samples as ours
-        occluded.SetBlur(True)
-        self.renderer.SetPass(occluded)
+        if self.occluded is None:
+            steps, self.occluded = self.vtk.vtkRenderStepsPass(), self.vtk.vtkSSAOPass()
+            self.occluded.SetDelegatePass(steps)
+            self.occluded.SetKernelSize(16)  # as many samples as ours
+            self.occluded.SetBlur(True)
+            self.light()
+        self.occluded.SetRadius(radius)
+        self.occluded.SetBias(0.02 * radius)
+        self.renderer.SetPass(self.occluded)
 
     def draw(self, opacity):
         opacity = float(opacity)

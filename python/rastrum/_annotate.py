@@ -77,7 +77,7 @@ def annotations(wanted):
     radius = strength = None
     if has("occlusion"):
         # 0 is C++'s word for the scene's own.
-        given = option("occlusion", "radius", 1e-18, 1e18)
+        given = option("occlusion", "radius", 1e-37, 1e37)
         radius, strength = given or 0.0, option("occlusion", "strength", 0, 16)
     return _r.annotations(
         radius, strength or 0.0, option("edl", "strength", 0, 100) if has("edl") else None, has("silhouettes"),

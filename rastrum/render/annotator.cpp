@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/error.hpp>
@@ -80,6 +81,10 @@ struct Annotator::Impl {
   Image<float> view_depth, depth, factor;
   Image<Vec3> normals;
   Image<std::int64_t> ids, instances;
+  Image<float> solid_depth;  ///< of add_surface()
+  Image<Vec3> solid_normals;
+  Image<std::int64_t> solid_instances;
+  std::optional<Surface> solid;  ///< of these, for one draw()
 
   void draw_effects(const Annotations& a, const SceneView& scene, const Camera& camera,
                     const Targets& targets, const overlay::Canvas& canvas,
@@ -88,13 +93,15 @@ struct Annotator::Impl {
     if (!effects) effects.emplace(threads, isa);
     const int width = canvas.width(), height = canvas.height();
     const ImageView<float> to = sized(factor, width, height);
-    const Surface surface{targets.view_depth, targets.camera_normals, targets.instances};
+    const Surface surface =
+        solid.value_or(Surface{targets.view_depth, targets.camera_normals, targets.instances});
+    solid.reset();
     const auto darken = [&] { effects->darken(canvas.color8, canvas.color, to); };
     if (a.occlusion) {
       AmbientOcclusion o = *a.occlusion;
       if (o.radius == 0) o.radius = 0.15 * radius_of(scene);
       // By depth alone: the frame need not find normals.
-      effects->ambient_occlusion({.view_depth = targets.view_depth}, camera, o, to);
+      effects->ambient_occlusion({.view_depth = surface.view_depth}, camera, o, to);
       darken();
     }
     if (a.dome) {
@@ -137,6 +144,25 @@ void Annotator::add_targets(const Annotations& a, int width, int height, Targets
   add(a.bounds, targets.depth, impl_->depth);
 }
 
+void Annotator::add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                            const FrameOptions& frame, const Annotations& a, std::stop_token stop) {
+  impl_->solid.reset();
+  if (frame.transparency.method == Transparency::none || !(a.occlusion || a.dome || a.silhouettes))
+    return;
+  const std::vector<Material> materials = materials_of_surface(scene);
+  if (materials.empty()) return;
+  SceneView solid = scene;
+  solid.materials = materials;
+  Targets targets{.view_depth = sized(impl_->solid_depth, frame.width, frame.height)};
+  targets.no_distance = std::numeric_limits<float>::infinity();
+  if (a.silhouettes) {
+    targets.camera_normals = sized(impl_->solid_normals, frame.width, frame.height);
+    targets.instances = sized(impl_->solid_instances, frame.width, frame.height);
+  }
+  renderer.render(solid, camera, frame, targets, std::move(stop));
+  impl_->solid = {targets.view_depth, targets.camera_normals, targets.instances};
+}
+
 void Annotator::draw(const Annotations& a, const SceneView& scene, const Camera& camera,
                      Vec4 background, const Targets& targets, const SceneEdges* edges) {
   check(a);
@@ -177,7 +203,8 @@ FrameStats Annotator::render(Renderer& renderer, const SceneView& scene, const C
   add_targets(a, frame.width, frame.height, all);
   // What effects look at.
   all.no_distance = std::numeric_limits<float>::infinity();
-  FrameStats stats = renderer.render(scene, camera, frame, all, std::move(stop));
+  FrameStats stats = renderer.render(scene, camera, frame, all, stop);
+  add_surface(renderer, scene, camera, frame, a, std::move(stop));
   draw(a, scene, camera, frame.background, all, edges);
   if (targets.no_distance == all.no_distance) return stats;
   for (const ImageView<float>& image : {targets.view_depth, targets.distance})

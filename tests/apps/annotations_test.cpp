@@ -57,6 +57,15 @@ TEST_F(Annotations, FloatsAreAnnotatedToo) {
   EXPECT_NE(read("plain.npy"), read("a.npy"));
 }
 
+// As large and as small as numbers of a file are: the picture that is drawn unasked has occlusion.
+TEST_F(Annotations, OfScenesOfAnySize) {
+  for (const std::string size : {"1e-30", "1e30"}) {
+    write("size.obj", "v " + size + " 0 0\nv 0 " + size + " 0\nv 0 0 " + size + "\nf 1 2 3\n");
+    must({"render", "size.obj", "--size", "40x30", "--bounds", "--axes", "-o", "a.png"});
+    EXPECT_GT(png("a.png")(20, 15).a, 0) << size;
+  }
+}
+
 TEST_F(Annotations, AreInEachPictureOfATurn) {
   must({"render", "--look", "plain", "builtin:teapot", "--size", "80x60", "--bounds", "--turntable",
         "2", "-o", "t_%d.png"});

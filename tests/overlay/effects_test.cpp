@@ -396,15 +396,44 @@ TEST(Effects, DarkenIsTheSameOnEveryInstructionSet) {
     }
 }
 
+// A leaf on the left half of a quad that blends: effects see the leaf, and beside it nothing.
+TEST(Effects, LookAtTexturesThatBlendWhereTheyAreSolid) {
+  Scene scene;
+  Mesh& mesh = scene.meshes.emplace_back();
+  mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  mesh.texcoords.values = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  scene.instances.resize(1);
+  Texture& texture = scene.textures.emplace_back();
+  texture.image = Image<Rgba8>(8, 1);
+  for (int x = 0; x < 8; ++x)
+    texture.image(x, 0) = {0, 255, 0, static_cast<std::uint8_t>(x < 4 ? 255 : 0)};
+  Material& material = scene.materials.emplace_back();
+  EXPECT_TRUE(materials_of_surface(SceneBinding(scene).view()).empty());
+  material.alpha_mode = AlphaMode::blend;
+  EXPECT_TRUE(materials_of_surface(SceneBinding(scene).view()).empty());
+  material.base_color_texture = 0;
+  const SceneBinding binding(scene);
+  const std::vector<Material> solid = materials_of_surface(binding.view());
+  ASSERT_EQ(solid.size(), 1U);
+  SceneView view = binding.view();
+  view.materials = solid;
+  Image<float> depth(40, 40);
+  Renderer({.threads = 1})
+      .render(view, Camera{.eye = {0, 0, 2}}, {.width = 40, .height = 40}, {.view_depth = depth});
+  EXPECT_NEAR(depth(10, 20), 2, 1e-5);
+  EXPECT_EQ(depth(30, 20), kInfinity);
+}
+
 TEST(Effects, RefuseWhatIsOutOfRange) {
   const Drawn d = drawn("teapot", 16, 12);
   Effects effects;
   Image<float> factor(16, 12), other(16, 13);
   EXPECT_THROW(occlusion(effects, d, {}), Error);  // no radius
-  for (const double radius : {-1.0, std::nan(""), 1e-19, 1e19, HUGE_VAL})
+  for (const double radius : {-1.0, std::nan(""), 1e-38, 1e-32, 1e38, HUGE_VAL})
     EXPECT_THROW(occlusion(effects, d, {.radius = radius}), Error) << radius;
   // What can be said has no factor but in [0, 1].
-  for (const double radius : {1e-18, 1e18}) {
+  for (const double radius : {1e-29, 1e37}) {
     const Image<float> factors = occlusion(effects, d, {.radius = radius, .strength = 16});
     for (const float f : factors.pixels()) ASSERT_TRUE(f >= 0 && f <= 1) << radius;
   }

@@ -79,6 +79,20 @@ struct Steps {
 
 }  // namespace
 
+std::vector<Material> materials_of_surface(const SceneView& scene) {
+  const auto blends = [](const Material& m) {
+    return m.alpha_mode == AlphaMode::blend && m.base_color_texture >= 0;
+  };
+  if (std::none_of(scene.materials.begin(), scene.materials.end(), blends)) return {};
+  std::vector<Material> materials(scene.materials.begin(), scene.materials.end());
+  for (Material& m : materials) {
+    if (!blends(m)) continue;
+    m.alpha_mode = AlphaMode::mask;
+    m.alpha_cutoff = 0.5F;
+  }
+  return materials;
+}
+
 Effects::Effects(int threads, std::optional<Isa> isa)
     : impl_(std::make_unique<Impl>(threads, isa)) {}
 Effects::~Effects() = default;

@@ -8,6 +8,7 @@
 #include <rastrum/overlay/effects/occlusion.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <string>
 
@@ -125,15 +126,35 @@ Vec3 normal_from_depth(const OcclusionFrame& f, int x, int y) {
   return {n.x / length, n.y / length, n.z / length};
 }
 
+namespace {
+
+// Places in radii are float32: what is farther has none. Only small radii are looked at, since
+// depths beyond 10¹² are those of scenes whose radius is as large.
+constexpr double kSmallRadius = 1e-18, kMostRadii = 1e30;
+
+double farthest(ImageView<const float> depth) {
+  float most = 0;
+  for (int y = 0; y < depth.height; ++y)
+    for (int x = 0; x < depth.width; ++x)
+      if (const float d = depth(x, y); d < kFarthest) most = std::max(most, d);
+  return double{most};
+}
+
+}  // namespace
+
 OcclusionFrame occlusion_frame(const Surface& surface, const Camera& camera,
                                const AmbientOcclusion& options) {
   const auto refuse = [](const char* what, double got) {
-    throw Error(Errc::invalid_argument,
-                std::string("AmbientOcclusion::") + what + ", got " + std::to_string(got));
+    char number[32];
+    const char* const end = std::to_chars(number, number + sizeof number, got).ptr;
+    throw Error(Errc::invalid_argument, std::string("AmbientOcclusion::") + what + ", got " +
+                                            std::string(static_cast<const char*>(number), end));
   };
-  // Beyond, lengths in radii are not finite as float32.
-  if (!(options.radius >= 1e-18 && options.radius <= 1e18))
-    refuse("radius must lie in [1e-18, 1e18]", options.radius);
+  // Beyond, 1 / radius is no float32.
+  if (!(options.radius >= 1e-37 && options.radius <= 1e37))
+    refuse("radius must lie in [1e-37, 1e37]", options.radius);
+  if (options.radius < kSmallRadius && farthest(surface.view_depth) > options.radius * kMostRadii)
+    refuse("radius must be at least 1e-30 of the picture's depths", options.radius);
   if (!(options.strength >= 0 && options.strength <= 16))
     refuse("strength must lie in [0, 16]", options.strength);
   if (options.samples < 1 || options.samples > kMostSamples)
