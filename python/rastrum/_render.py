@@ -133,7 +133,7 @@ class Picture(_Fields):
         """A .png of `color`, or a .npy of any output (the only one there is, or `color`)."""
         path = os.fspath(path)
         if path.lower().endswith(".png"):
-            _r.write_png(path, np.ascontiguousarray(self.color))
+            _r.write_png(path, np.ascontiguousarray(self.color), _number_of_threads())
         elif path.lower().endswith(".npy"):
             _save_npy(self, path, output)
         else:
