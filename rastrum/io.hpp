@@ -46,7 +46,7 @@ class AtomicFile;
 /// Writers write to a temporary name beside `file` and rename it, so that a file is whole or
 /// absent. Throws Error{io} naming the file, Error{invalid_argument} for an empty image or rows
 /// that overlap.
-/// PNG: `threads` (0: all) compress bands of 256 KiB side by side; the file is the same for every
+/// PNG: `threads` (0: all) compress bands of 128 KiB side by side; the file is the same for every
 /// number. Cost: about 5 ms a megabyte of pixels and thread.
 void write_png(const std::filesystem::path& file, ImageView<const Rgba8> image, int threads = 1);
 /// float32 RGBA, premultiplied: an RGBA EXR (32 bit), or NPY of shape (H, W, 4).

@@ -25,7 +25,7 @@ namespace {
 constexpr int kLevel = 1;
 constexpr unsigned char kFilterUp = 2;
 
-constexpr std::size_t kBandBytes = std::size_t{1} << 18;
+constexpr std::size_t kBandBytes = std::size_t{1} << 17;
 constexpr std::size_t kWindow = std::size_t{1} << 15;
 
 std::array<unsigned char, 4> big_endian(std::uint32_t v) {
