@@ -147,9 +147,9 @@ void OutputFiles::commit() {
 }
 
 void write_color(io::AtomicFile& file, Format format, ImageView<const Rgba8> color8,
-                 ImageView<const Vec4> color) {
+                 ImageView<const Vec4> color, int threads) {
   if (format == Format::png)
-    io::write_png(file, color8);
+    io::write_png(file, color8, threads);
   else if (format == Format::exr)
     io::write_exr(file, color);
   else

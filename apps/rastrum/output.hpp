@@ -60,7 +60,7 @@ class OutputFiles {
 };
 
 void write_color(io::AtomicFile& file, Format format, ImageView<const Rgba8> color8,
-                 ImageView<const Vec4> color);
+                 ImageView<const Vec4> color, int threads);
 void write_depth(io::AtomicFile& file, Format format, ImageView<const float> depth);
 
 }  // namespace rastrum::cli

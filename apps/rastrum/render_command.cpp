@@ -319,7 +319,7 @@ void write_images(const RenderArguments& a, const Pictures& p, const Camera& cam
   }
   if (a.color.format != Format::mp4)
     write(a.color, [&](io::AtomicFile& file) {
-      write_color(file, a.color.format, p.color8.view(), p.color.view());
+      write_color(file, a.color.format, p.color8.view(), p.color.view(), a.render.threads);
     });
   write(a.depth, [&](io::AtomicFile& file) {
     Image<float> in_world;

@@ -7,8 +7,8 @@
 """
 
 from ._camera import Camera, orbit
-from ._errors import (ArgumentError, ArgumentTypeError, DeviceError, Error, FileError, FormatError, NotFoundError,
-                      OutOfMemoryError, UnsupportedError)
+from ._errors import (ArgumentError, ArgumentTypeError, DeviceError, Error, FileError, FormatError, MissingOutputError, NotFoundError,
+                      OutOfMemoryError, PictureIndexError, UnsupportedError)
 from ._lights import Light
 from ._matplotlib import draw_behind
 from ._rasterize import rasterize
@@ -21,7 +21,7 @@ from ._view import View
 __version__ = "0.1.0"
 __all__ = [
     "OUTPUTS", "ArgumentError", "ArgumentTypeError", "Camera", "ColorMapping", "Cylinders", "DeviceError", "Discs", "Error", "FileError",
-    "FormatError", "Hit", "Light", "Lines", "Material", "Mesh", "NotFoundError", "OutOfMemoryError", "Picture", "Pictures", "Points",
+    "FormatError", "Hit", "Light", "Lines", "Material", "Mesh", "MissingOutputError", "NotFoundError", "OutOfMemoryError", "Picture", "PictureIndexError", "Pictures", "Points",
     "Renderer", "Scene", "Spheres", "Terrain", "Tubes", "UnsupportedError", "View", "as_scene", "color_maps", "digest", "draw_behind", "load", "orbit", "rasterize", "render",
     "trimesh_viewer", "views4",
 ]

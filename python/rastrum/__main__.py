@@ -42,6 +42,10 @@ def main(arguments=None):
             command.add_argument("--frames", type=int, default=72, help="pictures of the whole turn (72)")
             command.add_argument("--fps", type=float, default=24.0, help="(24)")
             command.add_argument("--elevation", type=float, default=25.0, help="degrees (25)")
+    arguments = list(sys.argv[1:] if arguments is None else arguments)
+    if "--range" in arguments[:-1]:  # or argparse takes -5,5 for an option
+        at = arguments.index("--range")
+        arguments[at:at + 2] = [f"--range={arguments[at + 1]}"]
     options = parser.parse_args(arguments)
     try:
         numbers = {}

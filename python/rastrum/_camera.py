@@ -66,6 +66,10 @@ class Camera:
         first_centre: u and v of the centre of the top left pixel, 0.5 where cx = W / 2 is the middle."""
         k = np.ascontiguousarray(K, np.float64)
         pose = np.eye(4)
+        if R is not None and np.shape(R) != (3, 3):
+            raise ArgumentError(f"R: the shape is {np.shape(R)} and must be (3, 3); of a rotation vector cv2.Rodrigues makes one")
+        if t is not None and np.size(t) != 3:
+            raise ArgumentError(f"t: the shape is {np.shape(t)}; there are three numbers")
         pose[:3, :3] = np.eye(3) if R is None else np.asarray(R, np.float64)
         pose[:3, 3] = 0 if t is None else np.asarray(t, np.float64).reshape(3)
         return Camera(lambda size: _r.opencv(k, pose, *size, near, first_centre))
@@ -86,6 +90,8 @@ class Camera:
 def orbit(what, n, *, elevation=25.0, up=(0, 1, 0), fov=60.0):
     """n cameras around all of `what` at one distance, so that it keeps its size; counter-clockwise as seen from above,
     `elevation` degrees up."""
+    if isinstance(n, bool) or not isinstance(n, (int, np.integer)):
+        raise ArgumentTypeError(f"n: must be a whole number of cameras, not {n!r}")
     if n < 1:
         raise ArgumentError(f"n: {n!r} cameras; there is at least one")
     scene, up = as_scene(what), np.asarray(_triple(up, "up"))

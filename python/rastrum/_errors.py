@@ -19,6 +19,14 @@ class NotFoundError(Error, FileNotFoundError):
     """A file that is not there."""
 
 
+class MissingOutputError(Error, AttributeError):
+    """A field of a picture that was not asked for."""
+
+
+class PictureIndexError(Error, IndexError):
+    """A picture that is not among these."""
+
+
 class FileError(Error, OSError):
     """Reading or writing failed."""
 
@@ -37,6 +45,20 @@ class OutOfMemoryError(Error, MemoryError):
 
 class DeviceError(Error, RuntimeError):
     """A backend or instruction set that is not here."""
+
+
+def names_arguments(function):
+    """What Python says of arguments that `function` has not becomes an Error, too; what is raised within, by a caller's
+    own function perhaps, stays as it is."""
+    @functools.wraps(function)
+    def wrapped(*arguments, **named):
+        try:
+            return function(*arguments, **named)
+        except TypeError as e:
+            if e.__traceback__.tb_next is not None or isinstance(e, Error):
+                raise
+            raise ArgumentTypeError(str(e)) from e
+    return wrapped
 
 
 def raises_errors(function):

@@ -2,10 +2,12 @@
 
 import atexit
 import math
+import operator
 import os
 import sys
 import typing
 import weakref
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -14,7 +16,7 @@ from ._annotate import annotations as _annotations
 from ._arrays import color as _color
 from ._arrays import floats
 from ._camera import Camera, as_camera
-from ._errors import ArgumentError, ArgumentTypeError, raises_errors
+from ._errors import ArgumentError, ArgumentTypeError, FileError, MissingOutputError, PictureIndexError, names_arguments, raises_errors
 from ._lights import lights as _lights
 from ._things import as_scene
 
@@ -34,6 +36,8 @@ def digest(array):
     """SHA-256 of a picture's pixels in 64 hexadecimal digits, as C++'s digest() and the program's --hash have it."""
     import hashlib
     array = np.ascontiguousarray(array)
+    if array.dtype.kind not in "biuf":
+        raise ArgumentTypeError(f"digest: is of an array of numbers, as a picture's color, not of {array.dtype}")
     if array.dtype.kind == "f" and np.isnan(array).any():
         array = array.copy()
         array.view(np.uint32)[np.isnan(array)] = 0x7FC00000
@@ -84,11 +88,27 @@ class _Fields:
         if name in arrays:
             return arrays[name]
         if name in OUTPUTS:
-            raise AttributeError(f"{name}: not drawn; ask for it by outputs=({name!r}, ...)")
+            raise MissingOutputError(f"{name}: not drawn; ask for it by outputs=({name!r}, ...)")
         raise AttributeError(name)
 
     def __dir__(self):
         return [*super().__dir__(), *self.arrays]
+
+
+def _save_npy(of, path, output):
+    name = output or ("color" if "color" in of.arrays or len(of.arrays) != 1 else next(iter(of.arrays)))
+    try:
+        np.save(path, getattr(of, name))
+    except OSError as e:
+        raise FileError(f"{path}: cannot be written: {e.strerror}") from e
+
+
+def _numbered(path, i):
+    try:
+        name = path % i
+    except (TypeError, ValueError) as e:
+        raise ArgumentError(f"{path}: one number is expected, as in frame_%03d.png") from e
+    return name
 
 
 class Picture(_Fields):
@@ -113,10 +133,9 @@ class Picture(_Fields):
         """A .png of `color`, or a .npy of any output (the only one there is, or `color`)."""
         path = os.fspath(path)
         if path.lower().endswith(".png"):
-            _r.write_png(path, np.ascontiguousarray(self.color))
+            _r.write_png(path, np.ascontiguousarray(self.color), _number_of_threads())
         elif path.lower().endswith(".npy"):
-            name = output or ("color" if "color" in self.arrays or len(self.arrays) != 1 else next(iter(self.arrays)))
-            np.save(path, getattr(self, name))
+            _save_npy(self, path, output)
         else:
             raise ArgumentError(f"{path}: pictures are saved as .png or .npy")
         return self
@@ -148,7 +167,27 @@ class Pictures(_Fields):
         return len(self.stats)
 
     def __getitem__(self, i):
+        if isinstance(i, slice):
+            return Pictures({name: a[i] for name, a in self.arrays.items()}, self.stats[i], self._picks[i])
+        if not -len(self) <= operator.index(i) < len(self):
+            raise PictureIndexError(f"there are {len(self)} pictures, and none has number {i}")
         return Picture({name: a[i] for name, a in self.arrays.items()}, self.stats[i], self._picks[i])
+
+    def save(self, path, output=None):
+        """A picture each, where the name has a number (frame_%03d.png, counted from 0); else a .npy of all of one output."""
+        path = os.fspath(path)
+        if "%" in path:
+            names = [_numbered(path, i) for i in range(len(self))]
+            for name, picture in zip(names, self):
+                picture.save(name, output)
+        elif path.lower().endswith(".npy"):
+            _save_npy(self, path, output)
+        else:
+            raise ArgumentError(f"{path}: there are {len(self)} pictures; number them, as in frame_%03d.png, or save sheet()")
+        return self
+
+    def _repr_png_(self):
+        return self.sheet()._repr_png_() if "color" in self.arrays else None
 
     def sheet(self, columns=None):
         """All colours side by side, one Picture."""
@@ -216,6 +255,7 @@ class Renderer:
         Renderer._lost.append(self._made)
         self._made = None
 
+    @names_arguments
     def render(self, what, camera=None, *, size=(1280, 720), outputs="color", shader="auto", background=None, samples=1,
                transparency="exact", cull="none", opacity=1.0, clip_planes=(), lights=None, shadows=False, tone="none",
                exposure=0.0, environment_behind=False, annotate=(), out=None, progress=None):
@@ -266,6 +306,8 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
     if not cameras:
         raise ArgumentError("camera: a sequence of none")
     width, height = _size(size)
+    if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)):
+        raise ArgumentTypeError(f"samples: must be 1, 4, 8 or 16, not {samples!r}")
     frame = _r.frame(width, height, _text(shader, "shader"), _text(cull, "cull"),
                      [0.0] * 4 if background is None else list(_color(background, "background")), float(opacity),
                      _text(transparency, "transparency"), samples,
@@ -310,6 +352,8 @@ def _size(size):
 
 def _arrays(outputs, out, number, many, shape, primitives):
     names = [outputs] if isinstance(outputs, str) else list(outputs)
+    if out is not None and not isinstance(out, Mapping):
+        raise ArgumentTypeError(f"out: must be arrays by name, as in {{'depth': array}}, not {type(out).__qualname__}")
     given = {} if out is None else dict(out)
     if out is not None and outputs == "color" and "color" not in given:
         names = []
@@ -347,6 +391,7 @@ def _kept(threads, device, memory_limit, isa):
     return _default[key]
 
 
+@names_arguments
 def render(what, camera=None, *, threads=None, device="threads", memory_limit=0, isa=None, **frame):
     """One frame, or one a camera; Renderer.render has the parameters, Renderer these. A Renderer is kept for each
     set of them."""

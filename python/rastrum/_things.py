@@ -105,7 +105,10 @@ def color_maps():
 def _map(cmap):
     """(colours, whether each has a part of the range for itself)"""
     if isinstance(cmap, str):
-        return _r.color_map(cmap)
+        try:
+            return _r.color_map(cmap)
+        except NotFoundError as e:  # no file is meant
+            raise ArgumentError(f"cmap: {e}") from None
     if callable(cmap):  # matplotlib
         n = getattr(cmap, "N", 256)
         return [tuple(float(c) for c in cmap(i)) for i in range(n)], n < 64
@@ -384,7 +387,8 @@ class Scene:
     @property
     def bounds(self):
         """((x, y, z), (x, y, z)) of all that is finite, in the world; None where nothing is."""
-        return self._made.bounds()
+        found = self._made.bounds()
+        return None if found is None else tuple(tuple(corner) for corner in found)
 
 
 def load(path, *, crease=40.0, scalars=None, cmap="viridis", clim=None):

@@ -197,17 +197,19 @@ void rasterize(FrameRenderer& renderer, const std::vector<Array>& positions, con
   interruptible([&](const std::stop_token& stop) { renderer.rasterize(all, first, stop); });
 }
 
-void write_png(const std::string& file, const Array& pixels) {
+void write_png(const std::string& file, const Array& pixels, int threads) {
   if (pixels.ndim() != 3 || pixels.shape(2) != 4 || pixels.dtype() != nb::dtype<std::uint8_t>() ||
       pixels.stride(2) != 1 || pixels.stride(1) != 4 ||
       pixels.shape(0) > static_cast<std::size_t>(kMaxImageSize) ||
       pixels.shape(1) > static_cast<std::size_t>(kMaxImageSize) || pixels.stride(0) % 4 != 0)
     throw Error(Errc::invalid_argument,
                 "png: must be (H, W, 4) of uint8, a pixel behind the other");
-  io::write_png(file, ImageView<const Rgba8>{static_cast<const Rgba8*>(pixels.data()),
-                                             static_cast<int>(pixels.shape(1)),
-                                             static_cast<int>(pixels.shape(0)),
-                                             static_cast<std::ptrdiff_t>(pixels.stride(0) / 4)});
+  io::write_png(
+      file,
+      ImageView<const Rgba8>{static_cast<const Rgba8*>(pixels.data()),
+                             static_cast<int>(pixels.shape(1)), static_cast<int>(pixels.shape(0)),
+                             static_cast<std::ptrdiff_t>(pixels.stride(0) / 4)},
+      threads);
 }
 
 }  // namespace
@@ -254,7 +256,7 @@ void bind_frames(nb::module_& m) {
                                  static_cast<std::size_t>(image->width()), 4};
     return nb::ndarray<nb::numpy, std::uint8_t>(image->pixels().data(), 3, shape, owner);
   });
-  m.def("write_png", write_png, arg("file"), arg("pixels"),
+  m.def("write_png", write_png, arg("file"), arg("pixels"), arg("threads") = 1,
         nb::call_guard<nb::gil_scoped_release>());
 }
 

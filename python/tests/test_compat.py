@@ -128,3 +128,66 @@ def test_trimesh():
                     rr.Camera.opengl(camera.get_projection_matrix(64, 64) @ np.linalg.inv(at(0, 0, 4))), size=(64, 64),
                     outputs="depth", cull="back").depth
     assert np.array_equal(depth, own)
+
+
+def test_bounds_are_of_all_that_is_placed():
+    scene = pyrender.Scene()
+    mesh = box()
+    assert np.array_equal(mesh.bounds, [[-1, -1, -1], [1, 1, 1]]) and np.isclose(mesh.scale, np.sqrt(12))
+    assert np.array_equal(scene.bounds, np.zeros((2, 3)))
+    scene.add(mesh, pose=at(5, 0, 0))
+    turned = np.array([[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
+    flat = pyrender.Mesh([pyrender.Primitive([[0, 0, 0], [4, 0, 0], [0, 1, 0]], poses=[turned, at(0, 0, -9)])])
+    scene.add(flat)
+    assert np.allclose(scene.bounds, [[-1, -1, -9], [6, 4, 1]])
+    assert np.allclose(scene.centroid, [2.5, 1.5, -4]) and np.allclose(scene.extents, [7, 5, 10])
+
+
+def test_a_nodes_parts_can_be_set():
+    quaternion = np.array([0.1, -0.5, 0.3, 0.7])
+    quaternion /= np.linalg.norm(quaternion)
+    node = pyrender.Node(rotation=quaternion, scale=[1, 2, 3], translation=[4, 5, 6])
+    assert np.allclose(node.rotation, quaternion) and np.allclose(node.scale, [1, 2, 3])
+    for q in np.vstack([np.eye(4), quaternion]):
+        node.rotation = q
+        assert np.allclose(node.rotation, q) and np.allclose(node.scale, [1, 2, 3]) and np.allclose(node.translation, [4, 5, 6])
+    node.scale, node.translation = [2, 2, 2], [0, 1, 0]
+    assert np.allclose(node.matrix, pyrender.Node(rotation=quaternion, scale=[2, 2, 2], translation=[0, 1, 0]).matrix)
+
+
+def test_textures_of_meshes_are_drawn():
+    trimesh = pytest.importorskip("trimesh")
+    from PIL import Image
+    # v is counted from the bottom: red above, blue below.
+    image = Image.fromarray(np.array([[[255, 0, 0]] * 2, [[0, 0, 255]] * 2], np.uint8))
+    square = trimesh.Trimesh([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], [[0, 1, 2], [0, 2, 3]], process=False)
+    uv = np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]])
+    square.visual = trimesh.visual.TextureVisuals(uv=uv, image=image)
+    of_arrays = pyrender.Mesh([pyrender.Primitive(
+        square.vertices, indices=square.faces, normals=square.vertex_normals, texcoord_0=uv,
+        material=pyrender.MetallicRoughnessMaterial(baseColorTexture=pyrender.Texture(source=np.asarray(image) / 255.0), metallicFactor=0.0,
+                                                    roughnessFactor=0.9))])
+    pictures = []
+    for mesh in (pyrender.Mesh.from_trimesh(square), of_arrays):
+        for lights in ([], [pyrender.DirectionalLight(intensity=3.0)]):
+            scene = pyrender.Scene()
+            scene.add(mesh)
+            scene.add(pyrender.PerspectiveCamera(yfov=np.pi / 3), pose=at(0, 0, 3))
+            for light in lights:
+                scene.add(light, pose=at(0, 0, 3))
+            color, _ = pyrender.OffscreenRenderer(60, 60).render(scene)
+            assert color[22, 30, 0] > color[22, 30, 2] + 50 and color[38, 30, 2] > color[38, 30, 0] + 50
+            pictures.append(color)
+    assert np.array_equal(pictures[0], pictures[2]) and np.array_equal(pictures[1], pictures[3])
+    with pytest.raises(rr.ArgumentError, match="Texture"):
+        pyrender.Texture(source=np.zeros((2, 2, 5), np.uint8))._pixels()
+
+
+def test_errors_are_rastrums_too():
+    scene = pyrender.Scene()
+    with pytest.raises(TypeError, match="no mesh, camera or light") as raised:
+        scene.add("box")
+    assert isinstance(raised.value, rr.Error)
+    with pytest.raises(ValueError, match="not in the scene") as raised:
+        scene.get_pose(pyrender.Node())
+    assert isinstance(raised.value, rr.Error)

@@ -87,3 +87,28 @@ def test_real_files(name):
         pytest.skip("no shared data")
     picture = rr.render(SHARED / name, rr.Camera.fit(SHARED / name, "iso"), size=SIZE, outputs=("color", "id"))
     assert (picture.id >= 0).mean() > 0.05 and picture.color[picture.id >= 0][:, :3].std() > 2
+
+
+def test_any_vtk_data_set_by_its_outer_surface():
+    pytest.importorskip("vtkmodules")
+    from vtkmodules.vtkCommonDataModel import vtkImageData
+    image = vtkImageData()
+    image.SetDimensions(3, 4, 5)
+    scene = rr.as_scene(image)
+    assert scene.primitives == 2 * 2 * (2 * 3 + 2 * 4 + 3 * 4) and scene.bounds == ((0, 0, 0), (2, 3, 4))
+
+
+def test_numbers_on_the_command_line(obj, tmp_path):
+    from rastrum.__main__ import main
+    options = [str(obj), "--size", "160x120", "--shader", "phong", "--scalars", "z", "--cmap", "turbo"]
+    assert main(["render", *options, "-o", str(tmp_path / "p.png")]) == 0
+    scene = rr.Scene([obj], scalars="z", cmap="turbo")
+    drawn = rr.render(scene, rr.Camera.fit(scene, "iso", fov=30), size=(160, 120), shader="phong", annotate={"bar": "z"})
+    assert np.array_equal(rr._rastrum.read_image(str(tmp_path / "p.png")), drawn.color)
+    # A range of its own is another picture; four views have no bar.
+    assert main(["render", *options, "--range", "-5,5", "-o", str(tmp_path / "r.png")]) == 0
+    assert not np.array_equal(rr._rastrum.read_image(str(tmp_path / "r.png")), drawn.color)
+    assert main(["views", *options, "-o", str(tmp_path / "v.png")]) == 0
+    plain = rr.views4(scene, size=(160, 120), shader="phong")
+    assert np.array_equal(rr._rastrum.read_image(str(tmp_path / "v.png")), plain.color)
+    assert main(["render", *options[:-4], "--scalars", "heat", "-o", str(tmp_path / "n.png")]) == 1

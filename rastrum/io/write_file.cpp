@@ -13,8 +13,8 @@ void write_whole(const std::filesystem::path& file, Write write) {
 
 }  // namespace
 
-void write_png(const std::filesystem::path& file, ImageView<const Rgba8> image) {
-  write_whole(file, [&](AtomicFile& out) { write_png(out, image); });
+void write_png(const std::filesystem::path& file, ImageView<const Rgba8> image, int threads) {
+  write_whole(file, [&](AtomicFile& out) { write_png(out, image, threads); });
 }
 
 void write_exr(const std::filesystem::path& file, ImageView<const Vec4> image) {

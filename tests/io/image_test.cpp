@@ -1,6 +1,7 @@
 // Images in and out, and what writers leave behind.
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -49,6 +50,32 @@ TEST(Png, RoundTripsStraightAlpha) {
   for (std::size_t i = 0; i < image.pixels().size(); ++i)
     EXPECT_EQ(back.pixels()[i], image.pixels()[i]);
   EXPECT_EQ(files_in(folder.path("")), 1U);
+}
+
+TEST(Png, OfManyBandsIsTheSameFileForEveryNumberOfThreads) {
+  const test::TempFolder folder;
+  // Smooth, so that the dictionary of a band matters; bands of 64, 1 and 47 rows, the last one cut.
+  for (const auto& [width, height] :
+       {std::pair{512, 700}, {32768, 5}, {700, 94}, {700, 93}, {1, 3}}) {
+    Image<Rgba8> image(width, height);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        image(x, y) = {static_cast<std::uint8_t>(x / 3 + y), static_cast<std::uint8_t>(x * y),
+                       static_cast<std::uint8_t>(y / 5), 255};
+    io::write_png(folder.path("1.png"), image.view());
+    const Image<Rgba8> back = io::read_image(folder.path("1.png"));
+    ASSERT_EQ(back.width(), width);
+    ASSERT_EQ(back.height(), height);
+    ASSERT_TRUE(std::ranges::equal(back.pixels(), image.pixels()));
+    for (const int threads : {0, 2, 5}) {
+      io::write_png(folder.path("n.png"), image.view(), threads);
+      EXPECT_EQ(test::slurp(folder.path("n.png")), test::slurp(folder.path("1.png"))) << threads;
+    }
+  }
+  // What cannot be compressed: no band may grow beyond its room.
+  const Image<Rgba8> noise = random_image(600, 400);
+  io::write_png(folder.path("r.png"), noise.view(), 2);
+  EXPECT_TRUE(std::ranges::equal(io::read_image(folder.path("r.png")).pixels(), noise.pixels()));
 }
 
 TEST(Png, WritesAPartOfAnImage) {

@@ -11,14 +11,14 @@ from .. import _rastrum as _r
 from .. import _things as _t
 from .._arrays import product as _product
 from .._camera import Camera as _Camera
-from .._errors import ArgumentError, UnsupportedError
+from .._errors import ArgumentError, ArgumentTypeError, UnsupportedError
 from .._lights import Light as _Light
 from .._lights import display
 from .._render import Renderer as _Renderer
 
 __all__ = ["Camera", "DirectionalLight", "IntrinsicsCamera", "Light", "Material", "Mesh", "MetallicRoughnessMaterial", "Node",
            "OffscreenRenderer", "OrthographicCamera", "PerspectiveCamera", "PointLight", "Primitive", "RenderFlags", "Scene",
-           "SpotLight", "Viewer"]
+           "Sampler", "SpotLight", "Texture", "Viewer"]
 
 
 class RenderFlags:
@@ -132,6 +132,40 @@ class SpotLight(PointLight):
                            outer=np.degrees(self.outerConeAngle), **self._reach(), **self._look())
 
 
+class Sampler:
+    """Kept; textures are filtered and repeated as Rastrum does it."""
+
+    def __init__(self, name=None, magFilter=None, minFilter=None, wrapS=10497, wrapT=10497):
+        self.name, self.magFilter, self.minFilter, self.wrapS, self.wrapT = name, magFilter, minFilter, wrapS, wrapT
+
+
+class Texture:
+    """source: an array (H, W) or (H, W, 1 to 4) of uint8 or floats in [0, 1], or a PIL image."""
+
+    def __init__(self, name=None, sampler=None, source=None, source_channels=None, width=None, height=None, tex_type=3553,
+                 data_format=5121):
+        self.name, self.sampler, self.source, self.source_channels = name, sampler, source, source_channels
+
+    def _pixels(self):
+        if hasattr(self.source, "convert"):
+            return np.asarray(self.source.convert("RGBA"))
+        pixels = np.asarray(self.source)
+        if pixels.dtype.kind == "f":
+            pixels = np.round(np.clip(pixels, 0, 1) * 255).astype(np.uint8)
+        if pixels.ndim == 2 or pixels.ndim == 3 and pixels.shape[2] == 1:
+            pixels = np.repeat(pixels.reshape(*pixels.shape[:2], 1), 3, axis=2)
+        elif pixels.ndim == 3 and pixels.shape[2] == 2:  # grey and alpha
+            pixels = pixels[..., (0, 0, 0, 1)]
+        if pixels.ndim != 3 or pixels.shape[2] not in (3, 4) or pixels.dtype != np.uint8:
+            raise ArgumentError(f"Texture: source is {np.shape(self.source)} of {np.asarray(self.source).dtype}; (H, W) or "
+                                "(H, W, 1 to 4) of uint8 or float are drawn")
+        return pixels
+
+
+def _texture(source):
+    return source if source is None or isinstance(source, Texture) else Texture(source=source)
+
+
 class Material:
     pass
 
@@ -139,7 +173,7 @@ class Material:
 class MetallicRoughnessMaterial(Material):
     def __init__(self, name=None, baseColorFactor=None, baseColorTexture=None, metallicFactor=1.0, roughnessFactor=1.0,
                  emissiveFactor=None, alphaMode=None, alphaCutoff=None, doubleSided=False, smooth=True, wireframe=False, **other):
-        self.name, self.baseColorTexture = name, baseColorTexture
+        self.name, self.baseColorTexture = name, _texture(baseColorTexture)
         self.baseColorFactor = np.ones(4) if baseColorFactor is None else np.asarray(baseColorFactor, float)
         if self.baseColorFactor.dtype.kind in "f" and self.baseColorFactor.max() > 1:
             self.baseColorFactor = self.baseColorFactor / 255
@@ -149,13 +183,14 @@ class MetallicRoughnessMaterial(Material):
         self.alphaMode, self.alphaCutoff, self.doubleSided = alphaMode or "OPAQUE", alphaCutoff or 0.5, doubleSided
         self.smooth, self.wireframe = smooth, wireframe
 
-    def _made(self):
-        """Of the shader `material`. Its textures are not drawn."""
+    def _made(self, textured=False):
+        """Of the shader `material`. Of its textures the base colour's is drawn."""
         emissive = np.zeros(3) if self.emissiveFactor is None else np.asarray(self.emissiveFactor, float)[:3]
         base = np.append(display(self.baseColorFactor[:3]), np.clip(self.baseColorFactor[3], 0, 1))
         return _t.Material(tuple(base), metallic=self.metallicFactor, roughness=self.roughnessFactor,
                            emissive=tuple(display(emissive)), alpha_mode=self.alphaMode.lower(),
-                           alpha_cutoff=self.alphaCutoff, double_sided=self.doubleSided)
+                           alpha_cutoff=self.alphaCutoff, double_sided=self.doubleSided,
+                           base_color_texture=self.baseColorTexture._pixels() if textured else None)
 
 
 class Primitive:
@@ -169,8 +204,11 @@ class Primitive:
 
     def _geometry(self, point_size, smooth, lit):
         look = {} if self.color_0 is None else {"colors": np.asarray(self.color_0)}
-        if lit and self.material is not None:
-            look["material"] = self.material._made()
+        textured = self.texcoord_0 is not None and self.material is not None and self.material.baseColorTexture is not None
+        if self.material is not None and (lit or textured and self.mode == 4):
+            look["material"] = self.material._made(textured)
+        if textured and self.mode == 4:  # v is counted from the bottom, here from the top
+            look["uv"] = np.asarray(self.texcoord_0, float) * (1.0, -1.0) + (0.0, 1.0)
         if self.mode == 0:
             return lambda **more: _t.Points(self.positions, size=point_size, round=False, normals=self.normals,
                                             **look, **more)
@@ -182,9 +220,37 @@ class Primitive:
         return lambda **more: _t.Mesh(self.positions, self.indices, normals=normals, **look, **more)
 
 
+def _bounds(positions):
+    filled = [p for p in positions if len(p)]
+    if not filled:
+        return np.zeros((2, 3))
+    return np.array([np.min([p.min(axis=0) for p in filled], axis=0), np.max([p.max(axis=0) for p in filled], axis=0)])
+
+
+def _material_of(visual):
+    """Of a trimesh with a texture; None: it has none."""
+    theirs = getattr(visual, "material", None)
+    image = getattr(theirs, "baseColorTexture", None)
+    image = image if image is not None else getattr(theirs, "image", None)
+    if image is None or getattr(visual, "uv", None) is None:
+        return None
+    def given(name, default):
+        value = getattr(theirs, name, None)
+        return default if value is None else value
+    return MetallicRoughnessMaterial(baseColorTexture=image, baseColorFactor=given("baseColorFactor", None),
+                                     metallicFactor=given("metallicFactor", 0.0), roughnessFactor=given("roughnessFactor", 0.9),
+                                     alphaMode=given("alphaMode", None), doubleSided=bool(given("doubleSided", False)))
+
+
 class Mesh:
     def __init__(self, primitives, name=None, weights=None, is_visible=True):
         self.primitives, self.name, self.is_visible = list(primitives), name, is_visible
+
+    bounds = property(lambda self: _bounds([np.asarray(p.positions) for p in self.primitives]),
+                      doc="(2, 3): least and greatest of the positions.")
+    extents = property(lambda self: np.diff(self.bounds, axis=0).reshape(-1))
+    centroid = property(lambda self: np.mean(self.bounds, axis=0))
+    scale = property(lambda self: np.linalg.norm(self.extents), doc="Of the box's diagonal.")
 
     @staticmethod
     def from_points(points, colors=None, normals=None, is_visible=True, poses=None):
@@ -200,9 +266,10 @@ class Mesh:
                 colors = np.asarray(m.visual.vertex_colors)
             elif material is None and kind == "face":
                 colors = np.asarray(m.visual.face_colors)
+            theirs = _material_of(m.visual) if material is None and kind == "texture" else material
             primitives.append(Primitive(np.asarray(m.vertices), indices=np.asarray(m.faces), color_0=colors,
-                                        normals=np.asarray(m.vertex_normals) if smooth else None, material=material,
-                                        poses=poses))
+                                        normals=np.asarray(m.vertex_normals) if smooth else None, material=theirs,
+                                        texcoord_0=getattr(m.visual, "uv", None) if kind == "texture" else None, poses=poses))
         return Mesh(primitives, is_visible=is_visible)
 
 
@@ -226,6 +293,36 @@ class Node:
     @property
     def translation(self):
         return self.matrix[:3, 3]
+
+    @translation.setter
+    def translation(self, value):
+        self.matrix[:3, 3] = value
+
+    @property
+    def scale(self):
+        return np.linalg.norm(self.matrix[:3, :3], axis=0)
+
+    @scale.setter
+    def scale(self, value):
+        self.matrix[:3, :3] = self.matrix[:3, :3] / self.scale * np.asarray(value, float)
+
+    @property
+    def rotation(self):
+        """(x, y, z, w)."""
+        m = self.matrix[:3, :3] / self.scale
+        # The largest of the four is found first, so that no division is by little.
+        squares = np.array([1 + m[0, 0] - m[1, 1] - m[2, 2], 1 - m[0, 0] + m[1, 1] - m[2, 2],
+                            1 - m[0, 0] - m[1, 1] + m[2, 2], 1 + m[0, 0] + m[1, 1] + m[2, 2]])
+        i = int(np.argmax(squares))
+        four = 2 * np.sqrt(squares[i])  # 4 times it
+        products = {(0, 1): m[0, 1] + m[1, 0], (0, 2): m[0, 2] + m[2, 0], (1, 2): m[1, 2] + m[2, 1],
+                    (0, 3): m[2, 1] - m[1, 2], (1, 3): m[0, 2] - m[2, 0], (2, 3): m[1, 0] - m[0, 1]}
+        return np.array([four / 4 if k == i else products[min(i, k), max(i, k)] / four for k in range(4)])
+
+    @rotation.setter
+    def rotation(self, value):
+        turned = Node(rotation=value, scale=self.scale).matrix[:3, :3]
+        self.matrix[:3, :3] = turned
 
 
 class Scene:
@@ -260,6 +357,24 @@ class Scene:
     def light_nodes(self):
         return {n for n in self._parents if n.light is not None}
 
+    @property
+    def bounds(self):
+        """(2, 3): of all positions, in the world."""
+        corners = []
+        for node in self.mesh_nodes:
+            pose = self.get_pose(node)
+            for primitive in node.mesh.primitives:
+                poses = [np.eye(4)] if primitive.poses is None else np.asarray(primitive.poses, float).reshape(-1, 4, 4)
+                box = _bounds([np.asarray(primitive.positions)])
+                eight = np.array([[box[i, 0], box[j, 1], box[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+                for own in poses:
+                    m = _product(pose, own)
+                    corners.append((eight[:, None, :] * m[:3, :3]).sum(axis=2) + m[:3, 3])
+        return _bounds(corners)
+
+    extents = property(lambda self: np.diff(self.bounds, axis=0).reshape(-1))
+    centroid = property(lambda self: np.mean(self.bounds, axis=0))
+    scale = property(lambda self: np.linalg.norm(self.extents), doc="Of the box's diagonal.")
     meshes = property(lambda self: {n.mesh for n in self.mesh_nodes})
     cameras = property(lambda self: {n.camera for n in self.camera_nodes})
     lights = property(lambda self: {n.light for n in self.light_nodes})
@@ -268,18 +383,18 @@ class Scene:
         kind = "mesh" if isinstance(obj, Mesh) else "camera" if isinstance(obj, Camera) else "light" if isinstance(
             obj, Light) else None
         if kind is None:
-            raise TypeError(f"Scene.add: {type(obj).__qualname__} is no mesh, camera or light")
+            raise ArgumentTypeError(f"Scene.add: {type(obj).__qualname__} is no mesh, camera or light")
         if parent_name is not None:
             parent_node = next(iter(self.get_nodes(name=parent_name)), None)
             if parent_node is None:
-                raise ValueError(f"parent_name: there is no node {parent_name}")
+                raise ArgumentError(f"parent_name: there is no node {parent_name}")
         node = Node(name=name, matrix=np.eye(4) if pose is None else pose, **{kind: obj})
         self.add_node(node, parent_node)
         return node
 
     def add_node(self, node, parent_node=None):
         if node in self._parents:
-            raise ValueError("the node is in the scene already")
+            raise ArgumentError("the node is in the scene already")
         self._parents[node] = parent_node
         if parent_node is not None and node not in parent_node.children:
             parent_node.children.append(node)
@@ -300,7 +415,7 @@ class Scene:
 
     def remove_node(self, node):
         if node not in self._parents:
-            raise ValueError("the node is not in the scene")
+            raise ArgumentError("the node is not in the scene")
         for child in list(node.children):
             if child in self._parents:
                 self.remove_node(child)
@@ -316,7 +431,7 @@ class Scene:
 
     def get_pose(self, node):
         if node not in self._parents:
-            raise ValueError("the node is not in the scene")
+            raise ArgumentError("the node is not in the scene")
         pose = node.matrix
         while (node := self._parents[node]) is not None:
             pose = _product(node.matrix, pose)
@@ -325,7 +440,7 @@ class Scene:
     def set_pose(self, node, pose):
         """Within its parent."""
         if node not in self._parents:
-            raise ValueError("the node is not in the scene")
+            raise ArgumentError("the node is not in the scene")
         node.matrix = np.asarray(pose, float)
 
 
@@ -349,7 +464,7 @@ class OffscreenRenderer:
         """(color, depth), or depth alone with DEPTH_ONLY. color: (H, W, 3) uint8, with RGBA (H, W, 4), with SEG the colours
         of seg_node_map. depth: (H, W) float32 along the axis, 0 where nothing is."""
         if scene.main_camera_node is None:
-            raise ValueError("the scene has no camera")
+            raise ArgumentError("the scene has no camera")
         size = self.viewport_width, self.viewport_height
         node = scene.main_camera_node
         camera = _placed(node.camera, scene.get_pose(node), size)

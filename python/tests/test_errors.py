@@ -1,0 +1,66 @@
+"""What users get wrong: an exception of the natural class that is an rr.Error as well, and says what to do."""
+
+import numpy as np
+import pytest
+
+import rastrum as rr
+
+V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
+F = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+SIZE = (16, 12)
+
+
+def draw(**more):
+    return rr.render((V, F), size=SIZE, **more)
+
+
+def three(**more):
+    return rr.render((V, F), rr.orbit((V, F), 3), size=SIZE, **more)
+
+
+@pytest.mark.parametrize("call, natural, says", [
+    (lambda: draw().depth, AttributeError, "outputs="),
+    (lambda: draw(outputs="depth").save("x.png"), AttributeError, "color"),
+    (lambda: three(outputs="id").sheet(), AttributeError, "color"),
+    (lambda: rr.render((V, F), sise=SIZE), TypeError, "'sise'"),
+    (lambda: rr.render(), TypeError, "what"),
+    (lambda: rr.Renderer().render((V, F), sise=SIZE), TypeError, "'sise'"),
+    (lambda: three()[3], IndexError, "there are 3 pictures"),
+    (lambda: three().save("x.png"), ValueError, "frame_%03d.png"),
+    (lambda: three().save("%d_%d.png"), ValueError, "one number"),
+    (lambda: draw().save("/nowhere/x.npy"), OSError, "/nowhere/x.npy"),
+    (lambda: draw(samples="4"), TypeError, "samples"),
+    (lambda: draw(out=np.zeros((12, 16, 4), np.uint8)), TypeError, "out: must be arrays by name"),
+    (lambda: rr.Mesh(V, F, scalars=[1, 2, 3, 4], cmap="jetty"), ValueError, "jetty"),
+    (lambda: rr.digest(object()), TypeError, "digest"),
+    (lambda: rr.orbit((V, F), 2.5), TypeError, "whole number"),
+    (lambda: rr.orbit((V, F), "a"), TypeError, "whole number"),
+    (lambda: rr.Camera.opencv(np.eye(3), np.zeros(3)), ValueError, "Rodrigues"),
+    (lambda: rr.Camera.opencv(np.eye(3), None, [1, 2]), ValueError, "t: "),
+])
+def test_errors_are_of_the_natural_class(call, natural, says):
+    with pytest.raises(natural, match=says) as raised:
+        call()
+    assert isinstance(raised.value, rr.Error)
+
+
+def test_what_a_callers_own_function_raises_stays_as_it_is():
+    def progress(done, total):
+        raise TypeError("mine")
+    with pytest.raises(TypeError, match="mine") as raised:
+        draw(progress=progress)
+    assert not isinstance(raised.value, rr.Error)
+
+
+def test_pictures_are_taken_apart_and_saved(tmp_path):
+    pictures = three()
+    some = pictures[1:]
+    assert isinstance(some, rr.Pictures) and len(some) == 2 and np.array_equal(some[0].color, pictures[1].color)
+    assert np.array_equal(pictures[-1].color, pictures[2].color) and len(list(pictures)) == 3
+    assert some[0].pick(8, 6) == pictures[1].pick(8, 6)
+    pictures.save(tmp_path / "f_%02d.png").save(tmp_path / "all.npy")
+    assert np.array_equal(np.load(tmp_path / "all.npy"), pictures.color)
+    for i in range(3):
+        assert np.array_equal(rr._rastrum.read_image(str(tmp_path / f"f_{i:02d}.png")), pictures.color[i])
+    pictures.sheet().save(tmp_path / "sheet.png")
+    assert pictures._repr_png_() == (tmp_path / "sheet.png").read_bytes()
