@@ -1,6 +1,7 @@
 // Several samples of opaque surfaces (raster/frame/sampled_path.hpp) are the reference's, which
 // blends layers, bit for bit: of every instruction set, number of threads and memory limit, with
 // and without what hides.
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -15,6 +16,7 @@
 #include "tests/support/environment.hpp"
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/point_line_scenes.hpp"
+#include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test::samples_test {
@@ -126,14 +128,16 @@ int scene_count(int daily) {
 }
 
 TEST_F(Samples, OfGeneratedScenesAreTheReferences) {
-  const std::vector<Light> lights = light_kit();
+  const std::vector<Light> kit = light_kit();
+  std::vector<Light> lights = kit;
+  lights.push_back({.kind = PointLight{.position = {1, 2, 3}}});
   for (int i = 0; i < scene_count(600); ++i) {
     FrameOptions o = options_of(i);
     const GeneratedScene g = generate(static_cast<std::uint64_t>(i), o.width, o.height);
     SCOPED_TRACE(std::to_string(i).append(", ").append(g.kind));
     o.cull = i % 7 == 0 ? Cull::back : i % 11 == 0 ? Cull::front : Cull::none;
-    // Then the place of a fragment counts, too, which comes from its depth.
-    if (i % 3 == 0) o.lights = lights;
+    // With a position the place of a fragment counts, too, which comes from its depth.
+    if (i % 3 == 0) o.lights = i % 2 == 0 ? lights : kit;
     const SceneBinding binding(g.scene);
     ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), g.camera, o, i));
   }
@@ -178,6 +182,87 @@ TEST_F(Samples, OfSmallTrianglesAreTheReferences) {
     o.shader = i % 2 == 0 ? Shader::phong : Shader::id;
     ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), camera, o, i));
   }
+}
+
+// Triangles from a pixel to many times the picture, through one another, so that blocks are filled,
+// cut and hidden; the picture's last bins are cut, too.
+TEST_F(Samples, OfTrianglesOfAllSizesAreTheReferences) {
+  Random random(17);
+  for (int i = 0; i < 2 * static_cast<int>(all_.size()); ++i) {
+    SCOPED_TRACE(i);
+    FrameOptions o = options_of(i);
+    o.width = 131 + i % 2;
+    o.height = 93;
+    o.shader = i % 2 == 0 ? Shader::phong : Shader::id;
+    Mesh mesh;
+    for (int t = 0; t < 60; ++t) {
+      const double x = random.real(-20, 150), y = random.real(-20, 110);
+      const double size = std::exp(random.real(0, 8));
+      for (std::uint32_t c = 0; c < 3; ++c) {
+        mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+        mesh.positions.push_back(at_pixel(x + random.real(-size, size),
+                                          y + random.real(-size, size),
+                                          random.real(0.05, 0.95), o.width, o.height));
+      }
+    }
+    const Scene scene = single(mesh);
+    const SceneBinding binding(scene);
+    // Odd, so that nothing is counted and what hides is asked; each renderer in turn.
+    ASSERT_NO_FATAL_FAILURE(
+        expect_same(binding.view(), pixel_camera(o.width, o.height), o, 2 * i + 1));
+  }
+}
+
+// A far wall behind a near one, both of small triangles: it is left out. Of the near one alone as
+// many samples are counted as the reference covers.
+TEST_F(Samples, WhatIsHiddenIsLeftOut) {
+  constexpr int kWidth = 131, kHeight = 70;
+  const auto wall = [](double depth, bool away, Mesh& mesh) {
+    for (int y = -8; y < kHeight + 8; y += 4)
+      for (int x = -8; x < kWidth + 8; x += 4) {
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        for (const int k : {0, 1, 2, 3})
+          mesh.positions.push_back(
+              at_pixel(x + 4 * (k % 2) + 0.3, y + 4 * (k / 2) + 0.3, depth, kWidth, kHeight));
+        for (const std::uint32_t k : {0U, 1U, 2U, 3U, 2U, 1U})
+          mesh.indices.push_back(first + (away && k % 3 != 0 ? 3 - k : k));
+      }
+  };
+  Mesh near, both;
+  wall(0.8, false, near);
+  const std::size_t hidden = near.indices.size() / 3;
+  const bool faces = [&] {  // whichever way is towards the viewer
+    const Scene scene = single(near);
+    const SceneBinding binding(scene);
+    FrameOptions o = options_of(0);
+    o.cull = Cull::back;
+    const Picture p = draw(reference_, binding.view(), pixel_camera(o.width, o.height), o, false);
+    return p.stats.triangles.culled < hidden / 2;
+  }();
+  near = {};
+  wall(0.8, !faces, near);
+  wall(0.3, faces, both);
+  wall(0.8, !faces, both);
+  for (const int samples : kSamples)
+    for (Renderer& renderer : all_) {
+      FrameOptions o = options_of(0);
+      o.width = kWidth;
+      o.height = kHeight;
+      o.samples = samples;
+      const Camera camera = pixel_camera(kWidth, kHeight);
+      const Scene one = single(near), two = single(both);
+      const SceneBinding of_one(one), of_two(two);
+      const Picture want = draw(reference_, of_one.view(), camera, o, false);
+      const Picture got = draw(renderer, of_one.view(), camera, o, false);
+      ASSERT_TRUE(same(got, want, false));
+      ASSERT_EQ(got.stats.fragments, want.stats.fragments);
+      ASSERT_GE(got.stats.fragments, static_cast<std::uint64_t>(kWidth * kHeight * samples));
+      const Picture of_both = draw(renderer, of_two.view(), camera, o, false);
+      ASSERT_TRUE(same_pixels(of_both.color, want.color));
+      if (renderer.options().isa == Isa::scalar) continue;
+      // Bins with few triangles do not look what hides them.
+      ASSERT_LE(of_both.stats.fragments, want.stats.fragments * 9 / 8);
+    }
 }
 
 // Clip planes, asked where a triangle is shaded; and what the path leaves to layers.

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 #include <rastrum/raster/cover/depth_bounds.hpp>
 #include <rastrum/raster/cover/rules.hpp>
@@ -350,7 +351,7 @@ void find_sampled_bounds(const SampledKeys& keys, Rect bin, DepthBounds& bounds)
     const int x0 = bin.x0 + i % kBlocksPerBinRow * kBlockSize;
     const int y0 = bin.y0 + i / kBlocksPerBinRow * kBlockSize;
     if (x0 >= bin.x1 || y0 >= bin.y1 || bounds.block[i] >= 1) continue;
-    auto least = hn::Set(d, std::int64_t{1} << 62);
+    auto least = hn::Set(d, std::numeric_limits<std::int64_t>::max());
     bool empty = false;
     for (std::size_t four = 0; four < keys.samples.size() / 4; ++four)
       for (int y = 0; y < kBlockSize && !empty; ++y) {

@@ -64,6 +64,7 @@ class SampledBin {
     const std::size_t rows = static_cast<std::size_t>(block_rows(rect)) * kBlockSize;
     for (std::size_t k = 0; k < fours; ++k)
       std::fill_n(keys_.keys + k * SampledKeys::kFour, rows * SampledKeys::kRow, std::uint64_t{0});
+    colors_.begin();
     bounds_.restart();
     seen_ = 0;
     // Blocks outside of the image hide everything.

@@ -30,10 +30,10 @@ struct SampledColors::Primitive {
   ProjectedVertex vertices[3];
   std::int64_t area;
   SubpixelEdge edges[3];
-  Piece piece;  ///< at the centres; its `low` is always set
+  Piece piece;  ///< at the centres; its `low` is always set, 0 where nothing is kept
 };
 
-/// Finds places. Neighbours, also those of the next row, mostly share their primitives, of which
+/// Finds places. Neighbours, also those of the next block, mostly share their primitives, of which
 /// some are kept.
 class SampledColors::Finder {
  public:
@@ -41,20 +41,14 @@ class SampledColors::Finder {
       : frame_(*context.frame),
         offsets_(sample_offsets(context.request->samples)),
         wants_depth_(context.request->shading.wants_depth()),
-        kept_(kept) {
-    std::fill_n(lows_, kKept, ~std::uint64_t{0});
-  }
+        kept_(kept) {}
 
   /// Of the primitive of `key`, which some sample of the pixel sees; `all`: all of them do, and so
   /// would the centre, about which they lie.
   Place find(std::uint64_t key, int x, int y, bool all) {
     const std::uint64_t low = key & kIdMask;
-    const std::size_t slot = low % kKept;
-    Primitive& p = kept_[slot];
-    if (lows_[slot] != low) {
-      lows_[slot] = low;
-      begin(low, p);
-    }
+    Primitive& p = kept_[low % kKept];
+    if (p.piece.low != low) begin(low, p);
     // A point or line is at all samples of its pixels.
     if (p.draw->topology != Topology::triangles) return {key, {}};
     if (p.is_clipped) return find_clipped(p, key, x, y);
@@ -142,12 +136,15 @@ class SampledColors::Finder {
   bool wants_depth_;  ///< else any key of the primitive will do
   const Draw* draw_ = nullptr;
   Primitive* kept_;  ///< kKept, by the last bits of `low`
-  std::uint64_t lows_[kKept];
 };
 
 SampledColors::SampledColors() : kept_(std::make_unique<Primitive[]>(kKept)) {}
 SampledColors::SampledColors(SampledColors&&) noexcept = default;
 SampledColors::~SampledColors() = default;
+
+void SampledColors::begin() {
+  for (std::size_t i = 0; i < kKept; ++i) kept_[i].piece.low = 0;
+}
 
 void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, int bx, int by,
                             std::uint64_t* nearest, BlockColors& out) {
@@ -196,17 +193,21 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
   // Sample after sample, as layers add them up.
   const float share = 1.0F / static_cast<float>(samples);
   const auto mean = [&](const float* of_centres, float* to) {
-    float sum[64] = {};
-    for (std::size_t s = 0; s < samples; ++s)
-      for (std::size_t i = 0; i < 64; ++i) sum[i] += of_centres[i];
-    for (std::size_t i = 0; i < 64; ++i) to[i] = sum[i] * share;
+    for (std::size_t i = 0; i < 64; ++i) {
+      float sum = 0;
+      for (std::size_t s = 0; s < samples; s += 4)
+        sum = (((sum + of_centres[i]) + of_centres[i]) + of_centres[i]) + of_centres[i];
+      to[i] = sum * share;
+    }
   };
-  mean(colors_[0].r, out.r);
-  mean(colors_[0].g, out.g);
-  mean(colors_[0].b, out.b);
-  mean(colors_[0].a, out.a);
+  if (alike != 0) {
+    mean(colors_[0].r, out.r);
+    mean(colors_[0].g, out.g);
+    mean(colors_[0].b, out.b);
+    mean(colors_[0].a, out.a);
+  }
   // All others, where a sample sees something else.
-  for (std::uint64_t m = (mixed | ~centred_) & covered; m != 0; m &= m - 1) {
+  for (std::uint64_t m = covered & ~alike; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const bool one = (mixed >> i & 1) == 0;
     Vec4 sum;

@@ -21,6 +21,8 @@ class SampledColors {
   SampledColors(SampledColors&&) noexcept;
   ~SampledColors();
 
+  /// Forgets what was found in another bin, which may be of another frame.
+  void begin();
   /// `bx`, `by`: the block. Sets `nearest` to the largest key of each pixel and, where the frame
   /// wants colours, `out` to the mean of the samples' premultiplied colours. Requires triangles,
   /// points and lines.
@@ -35,7 +37,7 @@ class SampledColors {
   struct Place;
   struct Primitive;
   class Finder;
-  static constexpr std::size_t kKept = 64;
+  static constexpr std::size_t kKept = 256;
 
   void add(const BinContext& context, int pixel, const Place& place, std::uint16_t& at);
   void flush(const BinContext& context);
