@@ -67,6 +67,7 @@ TEST_F(WindowTest, ThePanelChangesThePicture) {
   // The slider, beside its switch.
   changes("--clip-plane -1,0,0,", "150 " + std::to_string(row(kSections, 0)), "click 1");
   EXPECT_NE(read(shot + ".sh"), half);
+  changes("--clip-plane 0,0,-1,", "26 " + std::to_string(row(kSections, 3)), "click 1");
   turn(kSections);
   turn(kNumbers);
   // The list opens below: none, x, y, z, distance.
