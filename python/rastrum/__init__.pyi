@@ -201,7 +201,8 @@ class Renderer:
                progress: Callable[[int, int], None] | bool | None = None) -> Pictures: ...
 
 class Terrain:
-    def __init__(self, heights: ArrayLike, colors: ArrayLike | None = None, *, sun: Sequence[float] = (315.0, 35.0),
+    def __init__(self, heights: ArrayLike | str | PathLike[str], colors: ArrayLike | str | PathLike[str] | None = None, *,
+                 height_scale: float | None = None, sun: Sequence[float] = (315.0, 35.0),
                  shadows: str = "none", ambient: float = 0.45, sun_radius: float = 0.2666, filter: str = "bilinear",
                  tiling: str = "repeat", threads: int | None = None) -> None: ...
     @property

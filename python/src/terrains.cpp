@@ -13,6 +13,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
+#include <rastrum/io.hpp>
 #include <rastrum/stop.hpp>
 #include <rastrum/terrain.hpp>
 #include <rastrum/terrain_light.hpp>
@@ -64,10 +65,9 @@ struct LitTerrain {
   double low, high;
 };
 
-LitTerrain lit(const Array& heights, const std::optional<Array>& colors,
-               const std::array<double, 2>& sun, const std::string& shadows, double ambient,
-               double sun_radius_deg, const std::string& filter, const std::string& tiling,
-               int threads) {
+LitTerrain lit_map(terrain::HeightMap map, const std::array<double, 2>& sun,
+                   const std::string& shadows, double ambient, double sun_radius_deg,
+                   const std::string& filter, const std::string& tiling, int threads) {
   terrain::Light light;
   light.sun = {sun[0], sun[1]};
   if (!std::isfinite(sun[0]) || !std::isfinite(sun[1]) || sun[1] > 90)
@@ -75,15 +75,13 @@ LitTerrain lit(const Array& heights, const std::optional<Array>& colors,
                 "sun: azimuth and elevation must be finite, the elevation at most 90 degrees");
   light.shadows =
       named<terrain::Shadows>("shadows", shadows, {"none", "accumulated", "sharp", "soft"});
-  light.hill_shading = !colors;
+  light.hill_shading = map.colors.empty();
   light.ambient = static_cast<float>(ambient);
   light.sun_radius_deg = sun_radius_deg;
   const auto filtered = named<terrain::MapFilter>("filter", filter, {"none", "bilinear", "mip"});
   const auto tiles = named<terrain::Tiling>("tiling", tiling, {"repeat", "mirror", "clamp"});
   light.smooth = filtered == terrain::MapFilter::bilinear;
 
-  terrain::HeightMap map{image<float>(heights, "heights"), {}};
-  if (colors) map.colors = image<Rgba8>(*colors, "colors");
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (float& h : map.heights.pixels()) {
     if (!std::isfinite(h)) {
@@ -98,6 +96,34 @@ LitTerrain lit(const Array& heights, const std::optional<Array>& colors,
   if (light.hill_shading || light.shadows != terrain::Shadows::none)
     map.colors = terrain::lit_colors(map, light, {tiles, Device::threads, threads, {}});
   return {terrain::Terrain(std::move(map)), light.sun, filtered, tiles, width, height, low, high};
+}
+
+LitTerrain lit(const Array& heights, const std::optional<Array>& colors,
+               const std::array<double, 2>& sun, const std::string& shadows, double ambient,
+               double sun_radius_deg, const std::string& filter, const std::string& tiling,
+               int threads) {
+  terrain::HeightMap map{image<float>(heights, "heights"), {}};
+  if (colors) map.colors = image<Rgba8>(*colors, "colors");
+  return lit_map(std::move(map), sun, shadows, ambient, sun_radius_deg, filter, tiling, threads);
+}
+
+LitTerrain lit_file(const std::string& file, const std::optional<std::string>& colors,
+                    const std::optional<double>& scale, const std::array<double, 2>& sun,
+                    const std::string& shadows, double ambient, double sun_radius_deg,
+                    const std::string& filter, const std::string& tiling, int threads) {
+  io::HeightGrid grid = io::read_heights(file, {});
+  if (!scale && !grid.scale_known)
+    throw Error(Errc::invalid_argument,
+                file +
+                    ": does not say how long a cell is; give height_scale, the cells that a "
+                    "unit of it is high");
+  // As the program has them.
+  for (float& h : grid.heights.pixels())
+    h = scale ? h * static_cast<float>(*scale)
+              : static_cast<float>(static_cast<double>(h) / grid.units_per_cell);
+  terrain::HeightMap map{std::move(grid.heights), {}};
+  if (colors) map.colors = io::read_image(*colors);
+  return lit_map(std::move(map), sun, shadows, ambient, sun_radius_deg, filter, tiling, threads);
 }
 
 /// Of who did not say: over the south of the map, looking down on all of it.
@@ -178,6 +204,9 @@ void bind_terrains(nb::module_& m) {
   m.def("lit_terrain", lit, arg("heights"), arg("colors").none(), arg("sun"), arg("shadows"),
         arg("ambient"), arg("sun_radius"), arg("filter"), arg("tiling"), arg("threads"),
         nb::call_guard<nb::gil_scoped_release>());
+  m.def("lit_terrain_of_file", lit_file, arg("heights"), arg("colors").none(), arg("scale").none(),
+        arg("sun"), arg("shadows"), arg("ambient"), arg("sun_radius"), arg("filter"), arg("tiling"),
+        arg("threads"), nb::call_guard<nb::gil_scoped_release>());
   nb::class_<TerrainCamera>(m, "TerrainCamera");
   m.def("terrain_camera", camera, arg("terrain"), arg("rows"), arg("position").none(),
         arg("altitude").none(), arg("angle"), arg("horizon").none(), arg("roll"));
