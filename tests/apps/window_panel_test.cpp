@@ -97,6 +97,10 @@ TEST_F(WindowTest, AnythingUnderAPointerThatRestsIsSaid) {
   EXPECT_TRUE(comes_true([&] { return !shows(picture); }));
   at_window("690 490", "");
   EXPECT_TRUE(comes_true([&] { return shows(picture); })) << "nothing is there";
+  // Straight from the panel, which has its own use for the pointer.
+  at_window("100 20", "click 1 click 1");
+  at_window("480 250", "");
+  EXPECT_TRUE(comes_true([&] { return !shows(picture); }));
   tool("key ctrl+q");
   expect_closed();
 }

@@ -93,7 +93,7 @@ void draw_strip(const ColorMap& map, int steps, float width) {
 bool choose_map(MeshSettings& s) {
   bool changed = false;
   if (!ImGui::BeginCombo("colours", s.map.c_str(), ImGuiComboFlags_HeightLargest)) return false;
-  constexpr float kStrip = 110;
+  constexpr float kStrip = 94;
   for (const std::string_view n : color_map_names()) {
     const std::string name(n);
     const ColorMap map = color_map(n);

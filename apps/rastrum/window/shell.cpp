@@ -229,7 +229,9 @@ class Shell {
         e.x = event.motion.x;
         e.y = event.motion.y;
         send(e);
-        if (!replay_ && is_panels(event.motion.x, event.motion.y)) viewer_.point_nowhere();
+        // Where it rests counts, and ImGui learns of that too late.
+        if (!replay_ && panel_ && (list_ || area_.holds(event.motion.x, event.motion.y)))
+          viewer_.point_nowhere();
         return;
       case SDL_MOUSEWHEEL:
         e.kind = Event::Kind::wheel;
@@ -304,6 +306,7 @@ class Shell {
       area_ = draw_panel(viewer_, controls_);
     else
       draw_messages(viewer_);
+    list_ = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
     draw_hovered(viewer_);
     screen_.present(viewer_.picture(), viewer_.serial());
   }
@@ -314,7 +317,8 @@ class Shell {
   std::optional<Replay> replay_;
   unsigned modifiers_ = 0;  ///< held at the event that is being taken
   bool panel_ = true;
-  Area area_;  ///< of the panel, as it was drawn last
+  Area area_;          ///< of the panel, as it was drawn last
+  bool list_ = false;  ///< one of the panel is open
   bool quit_ = false;
 };
 
