@@ -127,8 +127,8 @@ TEST_F(MeshViewerTest, SectionsAreClipPlanes) {
   std::string line;
   for (const auto& [ending, text] : subject.same_picture(60, 40, "cut.png"))
     if (ending == ".sh") line = text;
-  EXPECT_NE(line.find("--clip-plane -1,0,0,0.25"), std::string::npos) << line;
-  EXPECT_NE(line.find("--clip-plane 0,0,1,0.5"), std::string::npos) << line;
+  EXPECT_NE(line.find("--clip-plane -1,0,0,0.25 "), std::string::npos) << line;
+  EXPECT_NE(line.find("--clip-plane 0,0,1,0.5 "), std::string::npos) << line;
   const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
                               line.substr(7, line.size() - 8) + " --quiet";
   ASSERT_EQ(std::system(command.c_str()), 0) << command;

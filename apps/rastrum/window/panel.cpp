@@ -122,7 +122,8 @@ Area draw_panel(Viewer& viewer, const Controls& controls) {
     draw_keys(viewer.subject().keys());
     draw_keys(Viewer::keys());
     ImGui::TextWrapped(
-        "Click: name what is there. Drag: orbit; right: look around; middle or Shift: pan; wheel: "
+        "Rest: what is there; click: the same in the title. Drag: orbit; right: look around; "
+        "middle or Shift: pan; wheel: "
         "zoom.");
     ImGui::TextWrapped("Drop a file on the window to open it.");
   }
