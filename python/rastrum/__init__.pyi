@@ -207,7 +207,8 @@ class Renderer:
                progress: Callable[[int, int], None] | bool | None = None) -> Pictures: ...
 
 class Terrain:
-    def __init__(self, heights: ArrayLike, colors: ArrayLike | None = None, *, sun: Sequence[float] | None = None,
+    def __init__(self, heights: ArrayLike | str | PathLike[str], colors: ArrayLike | str | PathLike[str] | None = None, *,
+                 height_scale: float | None = None, sun: Sequence[float] | None = None,
                  shadows: str = "none", ambient: float = 0.45, sun_radius: float = 0.2666, filter: str = "bilinear",
                  tiling: str = "repeat", threads: int | None = None, lights: Any = None, tone: str = "none",
                  exposure: float = 0.0, cmap: Any = None, clim: tuple[float, float] | None = None) -> None: ...

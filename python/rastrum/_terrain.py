@@ -18,31 +18,39 @@ def _rgb(value, name):
     return None if value is None else [round(255 * c) for c in _color(value, name)[:3]]
 
 
-class Terrain:
-    """A map of heights, (H, W) in cells, row 0 in the north; NaN is a hole. It is copied, and lit here.
+def _arrays(heights, colors):
+    """What C++ copies."""
+    array = _numbers(heights, "heights")
+    if array.dtype.kind not in "fiu" or array.ndim != 2:
+        raise ArgumentError(f"heights: must be (H, W) numbers, not {array.shape} of {array.dtype}")
+    if colors is not None:
+        colors = _numbers(colors, "colors")
+        if colors.dtype != np.uint8 or colors.ndim != 3 or colors.shape[2] not in (3, 4):
+            raise ArgumentError(f"colors: must be (h, w, 3 or 4) of uint8, not {colors.shape} of {colors.dtype}")
+        opaque = np.full((*colors.shape[:2], 4), 255, np.uint8)
+        opaque[..., :3] = colors[..., :3]
+        colors = opaque
+    with np.errstate(over="ignore"):  # what float32 has no number for is a hole
+        return np.ascontiguousarray(array, np.float32), colors
 
-    colors: (h, w, 3 or 4) of uint8, of any size, stretched over the map; None: by height, with shaded slopes. sun: (azimuth
-    clockwise from north, elevation) in degrees, None: (315, 35). shadows: none, accumulated, sharp, soft; ambient: of a
-    colour where no sun is; sun_radius: of soft shadows, degrees. filter: none, bilinear, mip. tiling: what lies beyond the
-    edge: repeat, mirror, clamp. threads: None takes RASTRUM_NUM_THREADS or the cores that this process may use.
+
+class Terrain:
+    """A map of heights, (H, W) in cells, row 0 in the north; NaN is a hole. It is copied, and lit here. Or a file (.png,
+    .npy, .dem, .tif) as the program reads it; height_scale: cells that its unit is high, where it does not say.
+
+    colors: (h, w, 3 or 4) of uint8, of any size, stretched over the map, or of a file a .png or .jpg; None: by height,
+    with shaded slopes. sun: (azimuth clockwise from north, elevation) in degrees, None: (315, 35). shadows: none,
+    accumulated, sharp, soft; ambient: of a colour where no sun is; sun_radius: of soft shadows, degrees. filter: none,
+    bilinear, mip. tiling: what lies beyond the edge: repeat, mirror, clamp. threads: None takes RASTRUM_NUM_THREADS or the cores that this process may use.
     lights: in the sun's place, as of Renderer.render, in the terrain's world: x, the height, y; shadows are then of the
     directional ones. tone, exposure: none, reinhard, aces or neutral of that light, after `exposure` stops. cmap, clim:
     heights as numbers that have colours, a ColorMapping or what that takes; in the place of `colors`.
     """
 
     @raises_errors
-    def __init__(self, heights, colors=None, *, sun=None, shadows="none", ambient=0.45, sun_radius=0.2666, filter="bilinear",
-                 tiling="repeat", threads=None, lights=None, tone="none", exposure=0.0, cmap=None, clim=None):
-        array = _numbers(heights, "heights")
-        if array.dtype.kind not in "fiu" or array.ndim != 2:
-            raise ArgumentError(f"heights: must be (H, W) numbers, not {array.shape} of {array.dtype}")
-        if colors is not None:
-            colors = _numbers(colors, "colors")
-            if colors.dtype != np.uint8 or colors.ndim != 3 or colors.shape[2] not in (3, 4):
-                raise ArgumentError(f"colors: must be (h, w, 3 or 4) of uint8, not {colors.shape} of {colors.dtype}")
-            opaque = np.full((*colors.shape[:2], 4), 255, np.uint8)
-            opaque[..., :3] = colors[..., :3]
-            colors = opaque
+    def __init__(self, heights, colors=None, *, height_scale=None, sun=None, shadows="none", ambient=0.45,
+                 sun_radius=0.2666, filter="bilinear", tiling="repeat", threads=None, lights=None, tone="none", exposure=0.0,
+                 cmap=None, clim=None):
         self._threads = _number_of_threads() if threads is None else threads
         if not isinstance(self._threads, int) or not 1 <= self._threads <= 1024:
             raise ArgumentError(f"threads: {threads!r} must be a whole number from 1 to 1024")
@@ -58,11 +66,18 @@ class Terrain:
         if cmap is None and clim is not None:
             raise ArgumentError("clim: is of a cmap")
         mapping = cmap if cmap is None or isinstance(cmap, ColorMapping) else ColorMapping(cmap, clim)
-        with np.errstate(over="ignore"):  # what float32 has no number for is a hole
-            array = np.ascontiguousarray(array, np.float32)
-        self._made = _r.lit_terrain(array, colors, [315.0, 35.0] if sun is None else list(sun), _text(shadows, "shadows"),
-                                    ambient, sun_radius, _text(filter, "filter"), _text(tiling, "tiling"), self._threads, made,
-                                    _text(tone, "tone"), float(exposure), None if mapping is None else mapping._made)
+        light = ([315.0, 35.0] if sun is None else list(sun), _text(shadows, "shadows"), ambient, sun_radius,
+                 _text(filter, "filter"), _text(tiling, "tiling"), self._threads, made, _text(tone, "tone"), float(exposure),
+                 None if mapping is None else mapping._made)
+        if isinstance(heights, (str, os.PathLike)):
+            if colors is not None and not isinstance(colors, (str, os.PathLike)):
+                raise ArgumentTypeError("colors: of a file of heights they are a file, too")
+            self._made = _r.lit_terrain_of_file(os.fspath(heights), None if colors is None else os.fspath(colors),
+                                                None if height_scale is None else float(height_scale), *light)
+        else:
+            if height_scale is not None:
+                raise ArgumentError("height_scale: is for files; an array's heights are in cells")
+            self._made = _r.lit_terrain(*_arrays(heights, colors), *light)
         self._renderer = None, None
 
     @property

@@ -16,6 +16,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <rastrum/color_map.hpp>
+#include <rastrum/io.hpp>
 #include <rastrum/light.hpp>
 #include <rastrum/on_terrain.hpp>
 #include <rastrum/overlay.hpp>
@@ -80,11 +81,11 @@ struct LitTerrain {
 };
 
 /// Over the sun, or under lights where there are any.
-LitTerrain lit(const Array& heights, const std::optional<Array>& colors,
-               const std::array<double, 2>& sun, const std::string& shadows, double ambient,
-               double sun_radius_deg, const std::string& filter, const std::string& tiling,
-               int threads, const std::vector<Light>& lights, const std::string& tone,
-               double exposure, const std::optional<ScalarMapping>& mapping) {
+LitTerrain lit_map(terrain::HeightMap map, const std::array<double, 2>& sun,
+                   const std::string& shadows, double ambient, double sun_radius_deg,
+                   const std::string& filter, const std::string& tiling, int threads,
+                   const std::vector<Light>& lights, const std::string& tone, double exposure,
+                   const std::optional<ScalarMapping>& mapping) {
   terrain::Light light;
   light.sun = {sun[0], sun[1]};
   if (!std::isfinite(sun[0]) || !std::isfinite(sun[1]) || sun[1] > 90)
@@ -92,15 +93,13 @@ LitTerrain lit(const Array& heights, const std::optional<Array>& colors,
                 "sun: azimuth and elevation must be finite, the elevation at most 90 degrees");
   light.shadows =
       named<terrain::Shadows>("shadows", shadows, {"none", "accumulated", "sharp", "soft"});
-  light.hill_shading = !colors;
+  light.hill_shading = map.colors.empty();
   light.ambient = static_cast<float>(ambient);
   light.sun_radius_deg = sun_radius_deg;
   const auto filtered = named<terrain::MapFilter>("filter", filter, {"none", "bilinear", "mip"});
   const auto tiles = named<terrain::Tiling>("tiling", tiling, {"repeat", "mirror", "clamp"});
   light.smooth = filtered == terrain::MapFilter::bilinear;
 
-  terrain::HeightMap map{image<float>(heights, "heights"), {}};
-  if (colors) map.colors = image<Rgba8>(*colors, "colors");
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (float& h : map.heights.pixels()) {
     if (!std::isfinite(h)) {
@@ -160,6 +159,39 @@ terrain::Terrain seen_from(const LitTerrain& t, TerrainCamera camera, const Terr
   GroundLights ground = t.ground;
   ground.camera = camera;
   return t.map.with_colors(lit_colors(t.unlit, ground, t.by()));
+}
+
+LitTerrain lit(const Array& heights, const std::optional<Array>& colors,
+               const std::array<double, 2>& sun, const std::string& shadows, double ambient,
+               double sun_radius_deg, const std::string& filter, const std::string& tiling,
+               int threads, const std::vector<Light>& lights, const std::string& tone,
+               double exposure, const std::optional<ScalarMapping>& mapping) {
+  terrain::HeightMap map{image<float>(heights, "heights"), {}};
+  if (colors) map.colors = image<Rgba8>(*colors, "colors");
+  return lit_map(std::move(map), sun, shadows, ambient, sun_radius_deg, filter, tiling, threads,
+                 lights, tone, exposure, mapping);
+}
+
+LitTerrain lit_file(const std::string& file, const std::optional<std::string>& colors,
+                    const std::optional<double>& scale, const std::array<double, 2>& sun,
+                    const std::string& shadows, double ambient, double sun_radius_deg,
+                    const std::string& filter, const std::string& tiling, int threads,
+                    const std::vector<Light>& lights, const std::string& tone, double exposure,
+                    const std::optional<ScalarMapping>& mapping) {
+  io::HeightGrid grid = io::read_heights(file, {});
+  if (!scale && !grid.scale_known)
+    throw Error(Errc::invalid_argument,
+                file +
+                    ": does not say how long a cell is; give height_scale, the cells that a "
+                    "unit of it is high");
+  // As the program has them.
+  for (float& h : grid.heights.pixels())
+    h = scale ? h * static_cast<float>(*scale)
+              : static_cast<float>(static_cast<double>(h) / grid.units_per_cell);
+  terrain::HeightMap map{std::move(grid.heights), {}};
+  if (colors) map.colors = io::read_image(*colors);
+  return lit_map(std::move(map), sun, shadows, ambient, sun_radius_deg, filter, tiling, threads,
+                 lights, tone, exposure, mapping);
 }
 
 /// Of who did not say: over the south of the map, looking down on all of it.
@@ -280,6 +312,10 @@ void bind_terrains(nb::module_& m) {
   m.def("lit_terrain", lit, arg("heights"), arg("colors").none(), arg("sun"), arg("shadows"),
         arg("ambient"), arg("sun_radius"), arg("filter"), arg("tiling"), arg("threads"),
         arg("lights"), arg("tone"), arg("exposure"), arg("mapping").none(),
+        nb::call_guard<nb::gil_scoped_release>());
+  m.def("lit_terrain_of_file", lit_file, arg("heights"), arg("colors").none(), arg("scale").none(),
+        arg("sun"), arg("shadows"), arg("ambient"), arg("sun_radius"), arg("filter"), arg("tiling"),
+        arg("threads"), arg("lights"), arg("tone"), arg("exposure"), arg("mapping").none(),
         nb::call_guard<nb::gil_scoped_release>());
   nb::class_<TerrainCamera>(m, "TerrainCamera");
   m.def("terrain_camera", camera, arg("terrain"), arg("rows"), arg("position").none(),

@@ -145,3 +145,19 @@ def test_what_cannot_be_lit_is_named(heights, given, match):
 def test_what_cannot_be_drawn_is_refused(heights, given):
     with pytest.raises(rr.Error):
         rr.Terrain(heights).render(**{"size": SIZE, **given})
+
+
+def test_maps_are_read_from_files(tmp_path):
+    heights = np.arange(48.0, dtype=np.float32).reshape(6, 8)
+    np.save(tmp_path / "map.npy", heights)
+    of_file = rr.Terrain(tmp_path / "map.npy", height_scale=0.5)
+    assert of_file.heights == (0, 23.5)
+    assert (of_file.render(size=(40, 30)).color == rr.Terrain(heights / 2).render(size=(40, 30)).color).all()
+    with pytest.raises(rr.ArgumentError, match="map.npy.*height_scale"):
+        rr.Terrain(tmp_path / "map.npy")
+    with pytest.raises(rr.NotFoundError, match="none.png"):
+        rr.Terrain(tmp_path / "none.png")
+    with pytest.raises(rr.ArgumentError, match="height_scale"):
+        rr.Terrain(heights, height_scale=2)
+    with pytest.raises(rr.ArgumentTypeError, match="colors"):
+        rr.Terrain(tmp_path / "map.npy", np.zeros((2, 2, 3), np.uint8), height_scale=1)

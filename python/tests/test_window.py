@@ -9,6 +9,8 @@ import sys
 import numpy as np
 import pytest
 
+import rastrum as rr
+
 
 # A triangle under a lamp of its own.
 POSITIONS = base64.b64encode(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], "<f4").tobytes()).decode()
@@ -45,15 +47,29 @@ LAMP = {"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_punctual"],
     "builtin:teapot?n=5 builtin:tube?radius=0.05,segments=64 --look plain",
 ])
 def test_the_lines_of_a_window_draw_its_picture(tmp_path, options):
-    program = os.environ.get("RASTRUM_PROGRAM")
-    if not program:
+    subject(tmp_path)
+    (tmp_path / "lamp.gltf").write_text(json.dumps(LAMP))
+    shown_again(tmp_path, f"knot.ply {options}", "right")
+
+
+def subject(tmp_path):
+    """A mesh to look at."""
+    subprocess.run([program(), "make", "torus_knot", "-o", "knot.ply", "--quiet"], cwd=tmp_path, check=True)
+
+
+def program():
+    found = os.environ.get("RASTRUM_PROGRAM")
+    if not found:
         pytest.skip("RASTRUM_PROGRAM does not name the program")
-    subprocess.run([program, "make", "torus_knot", "-o", "knot.ply", "--quiet"], cwd=tmp_path, check=True)
-    script = {"fps": 50, "events": [{"time": 0.1, "key_down": "right"}, {"time": 0.4, "key_up": "right"},
+    return found
+
+
+def shown_again(tmp_path, options, key):
+    """Looks at what the options say, moves by a key, and draws the picture with the Python beside it."""
+    script = {"fps": 50, "events": [{"time": 0.1, "key_down": key}, {"time": 0.4, "key_up": key},
                                     {"time": 0.5, "screenshot": "shown.png"}, {"time": 0.6, "quit": True}]}
     (tmp_path / "script.json").write_text(json.dumps(script))
-    (tmp_path / "lamp.gltf").write_text(json.dumps(LAMP))
-    run = subprocess.run([program, "view", "knot.ply", "--size", "160x120", "--script", "script.json", *options.split()],
+    run = subprocess.run([program(), "view", "--size", "160x120", "--script", "script.json", *options.split()],
                          cwd=tmp_path, env={**os.environ, "SDL_VIDEODRIVER": "dummy"}, capture_output=True, text=True)
     if "without a window" in run.stderr:
         pytest.skip(run.stderr)
@@ -65,3 +81,19 @@ def test_the_lines_of_a_window_draw_its_picture(tmp_path, options):
     assert done.returncode == 0, done.stderr + (tmp_path / "shown.py").read_text()
     now = (tmp_path / "shown.png").read_bytes()
     assert now == shown, (tmp_path / "shown.py").read_text()
+
+
+@pytest.mark.parametrize(("key", "options"), [
+    ("a", "--height hills.png"),
+    ("left", "--height hills.png --color colors.png --shadows sharp --sun 200,20 --fog 0.003,20,#405060 --sky #ffb070"),
+    ("a", "--height hills.npy --height-scale 0.3 --filter mip --tile mirror --projection cylindrical --clearance 5 --roll 7"
+     " --dim-sky --sky #ffb070 --sun 270,6 --fov 71.3"),
+    ("o", "--height hills.npy --height-scale 0.7 --shadows soft --sun-radius 2 --filter none --scale 90 --distance 333"),
+])
+def test_the_lines_of_a_terrain_draw_its_picture(tmp_path, key, options):
+    x, y = np.meshgrid(np.arange(60), np.arange(60))
+    heights = (16 + 15 * np.sin(x * 0.21) * np.cos(y * 0.17)).astype(np.uint8)
+    np.save(tmp_path / "hills.npy", heights * np.float32(3.3))
+    for name, channels in (("hills.png", (heights, heights, heights)), ("colors.png", (4 * x, 4 * y, 0 * x + 90))):
+        rr._rastrum.write_png(str(tmp_path / name), np.dstack([*channels, 0 * x + 255]).astype(np.uint8))
+    shown_again(tmp_path, f"--terrain {options}", key)

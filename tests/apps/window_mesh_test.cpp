@@ -127,12 +127,58 @@ TEST_F(MeshViewerTest, SectionsAreClipPlanes) {
   std::string line;
   for (const auto& [ending, text] : subject.same_picture(60, 40, "cut.png"))
     if (ending == ".sh") line = text;
-  EXPECT_NE(line.find("--clip-plane -1,0,0,0.25"), std::string::npos) << line;
-  EXPECT_NE(line.find("--clip-plane 0,0,1,0.5"), std::string::npos) << line;
+  EXPECT_NE(line.find("--clip-plane -1,0,0,0.25 "), std::string::npos) << line;
+  EXPECT_NE(line.find("--clip-plane 0,0,1,0.5 "), std::string::npos) << line;
   const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
                               line.substr(7, line.size() - 8) + " --quiet";
   ASSERT_EQ(std::system(command.c_str()), 0) << command;
   EXPECT_TRUE(same_pixels(drawn.image, png("cut.png")));
+}
+
+// Whatever the direction, the numbers are the same bits in both texts.
+TEST_F(MeshViewerTest, ASectionAcrossTheViewIsAClipPlane) {
+  cli::SceneArguments a;
+  a.inputs = {"builtin:torus_knot"};
+  MeshSubject subject(a, load_scene(a));
+  subject.resize(60, 40);
+  Event key;
+  key.kind = Event::Kind::key_down;
+  for (const char* name : {"right", "up"}) {
+    key.key = name;
+    subject.handle(key);
+  }
+  subject.advance(0.37);
+  const auto whole = subject.draw(60, 40, false)();
+  const Camera camera = subject.control().camera();
+  MeshSubject::Settings s = subject.settings();
+  s.view_section = section_of_view(camera, subject.scene().box);
+  const Vec3d d = s.view_section.direction;
+  EXPECT_NEAR(length(d), 1, 1e-15);
+  EXPECT_NEAR(dot(d, camera.target - camera.eye), length(camera.target - camera.eye), 1e-12);
+  const auto cut = [&](double part, bool below) {
+    const ScalarRange all = reach(subject.scene().box, d);
+    s.view_section.at = all.low + part * (all.high - all.low);
+    s.view_section.below = below;
+    subject.set(s);
+    const auto drawn = subject.draw(60, 40, false)();
+    const auto texts = subject.same_picture(60, 40, "cut.png");
+    const std::string& line = texts.front().second;
+    const std::size_t begin = line.find("--clip-plane ") + 13;
+    std::string plane = line.substr(begin, line.find(' ', begin) - begin);
+    const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
+                                line.substr(7, line.size() - 8) + " --quiet";
+    EXPECT_EQ(std::system(command.c_str()), 0) << command;
+    EXPECT_TRUE(same_pixels(drawn.image, png("cut.png"))) << line;
+    for (std::size_t i = 0; (i = plane.find(',', i)) != std::string::npos; i += 2)
+      plane.replace(i, 1, ", ");
+    EXPECT_NE(texts.back().second.find("clip_planes=[(" + plane + ")]"), std::string::npos)
+        << plane << texts.back().second;
+    return drawn.image;
+  };
+  const Image<Rgba8> back = cut(0.5, false), front = cut(0.5, true);
+  EXPECT_FALSE(same_pixels(back, whole.image));
+  EXPECT_FALSE(same_pixels(back, front));
+  EXPECT_TRUE(same_pixels(cut(0, false), whole.image)) << "nothing lies before the box";
 }
 
 TEST_F(MeshViewerTest, AFileWithoutTheNumbersIsShownWithoutThem) {

@@ -67,6 +67,7 @@ TEST_F(WindowTest, ThePanelChangesThePicture) {
   // The slider, beside its switch.
   changes("--clip-plane -1,0,0,", "150 " + std::to_string(row(kSections, 0)), "click 1");
   EXPECT_NE(read(shot + ".sh"), half);
+  changes("--clip-plane 0,0,-1,", "26 " + std::to_string(row(kSections, 3)), "click 1");
   turn(kSections);
   turn(kNumbers);
   // The list opens below: none, x, y, z, distance.
@@ -96,6 +97,10 @@ TEST_F(WindowTest, AnythingUnderAPointerThatRestsIsSaid) {
   EXPECT_TRUE(comes_true([&] { return !shows(picture); }));
   at_window("690 490", "");
   EXPECT_TRUE(comes_true([&] { return shows(picture); })) << "nothing is there";
+  // Straight from the panel, which has its own use for the pointer.
+  at_window("100 20", "click 1 click 1");
+  at_window("480 250", "");
+  EXPECT_TRUE(comes_true([&] { return !shows(picture); }));
   tool("key ctrl+q");
   expect_closed();
 }

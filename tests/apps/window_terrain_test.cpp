@@ -2,6 +2,8 @@
 // are, bit for bit, those of `rastrum terrain`.
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <numbers>
 
 #include <rastrum/error.hpp>
@@ -9,6 +11,7 @@
 
 #include "program.hpp"
 #include "terrain_path.hpp"
+#include "window/same_terrain.hpp"
 #include "window/terrain_control.hpp"
 #include "window/terrain_subject.hpp"
 
@@ -247,6 +250,72 @@ TEST_F(TerrainInWindow, PicturesAreTheCommands) {
   subject->set_options("--shadows sharp --sun 200,20 --distance 300");
   EXPECT_TRUE(same_pixels(shown(), rendered({"--height", "h.png", "--shadows", "sharp", "--sun",
                                              "200,20", "--distance", "300"})));
+}
+
+// Whatever the window shows, a line says it, angles of keys and drags too.
+TEST_F(TerrainInWindow, ACommandLineDrawsTheSamePicture) {
+  const auto expect_said = [&](const std::string& words) {
+    const auto texts = subject->same_picture(96, 64, "said.png");
+    const std::string& line = texts.front().second;
+    ASSERT_TRUE(line.starts_with("rastrum terrain --")) << line;
+    EXPECT_NE(line.find(words), std::string::npos) << line;
+    const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
+                                line.substr(7, line.size() - 8) + " --quiet";
+    ASSERT_EQ(std::system(command.c_str()), 0) << command;
+    EXPECT_TRUE(same_pixels(shown(), png("said.png"))) << line;
+    std::filesystem::remove(path("said.png"));
+  };
+  expect_said("--height ");
+  for (const char* name : {"a", "w", "left", "o", "m", "j", "down", "q"}) {
+    subject->handle(key(name));
+    subject->advance(0.173);
+    subject->handle(key(name, Event::Kind::key_up));
+    expect_said("--angle ");
+  }
+  subject->handle(mouse(Event::Kind::button_down, 40, 30));
+  for (int i = 1; i < 12; ++i) subject->handle(mouse(Event::Kind::move, 40 + 1.37 * i, 30 - i));
+  subject->handle(mouse(Event::Kind::button_up, 55, 19));
+  expect_said("--horizon ");
+  subject->set_options("--shadows soft --sun-radius 3 --sky #ffb070 --fog 0.003,20,#405060");
+  expect_said("--fog '0.003,20,#405060'");
+  subject->set_options("--sun 270,6 --dim-sky --projection cylindrical --filter mip");
+  expect_said("--dim-sky");
+  subject->set_options("--step 0.75 --dz 0.01 --scale 90 --filter bilinear --projection planar");
+  subject->handle(key("t"));
+  expect_said("--tile mirror");
+  EXPECT_NE(
+      subject->same_picture(9, 9, "a.png").back().second.find("no words for it: --step, --dz"),
+      std::string::npos);
+}
+
+TEST_F(TerrainInWindow, OtherInputsAreSaidToo) {
+  for (const auto& options :
+       {std::vector<std::string>{"--function", "noise"}, {"--function", "20*sin(x/9)"}}) {
+    cli::TerrainSceneArguments a;
+    a.options.width = 96;
+    a.options.height = 64;
+    TerrainInput input;
+    input.function = options[1];
+    subject = std::make_unique<TerrainSubject>(a, std::vector<TerrainInput>{input});
+    const std::string line = subject->same_picture(96, 64, "said.png").front().second;
+    const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
+                                line.substr(7, line.size() - 8) + " --quiet";
+    ASSERT_EQ(std::system(command.c_str()), 0) << command;
+    EXPECT_TRUE(same_pixels(shown(), png("said.png"))) << line;
+  }
+}
+
+// Degrees lead to every angle that a hand leaves.
+TEST(TerrainAngles, AreThoseThatDegreesLeadTo) {
+  double rad = -7;
+  int others = 0;
+  for (int i = 0; i < 2000; ++i, rad += 0.00717) {
+    const double angle = angle_in_degrees(rad);
+    EXPECT_NEAR(angle, rad, 2e-15);
+    EXPECT_EQ(angle_in_degrees(angle), angle);
+    others += angle != rad;
+  }
+  EXPECT_GT(others, 0) << "some have no degrees, else none of this is needed";
 }
 
 // Sun, distance and field of view belong to the keys, not to the options that began.

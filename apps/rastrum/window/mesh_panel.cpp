@@ -2,7 +2,6 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -16,6 +15,8 @@
 
 namespace rastrum::cli::window {
 namespace {
+
+constexpr float kSectionName = 70;  ///< px that the switch of a section takes
 
 std::vector<std::string> with_auto(const std::vector<family::AxisInfo>& axis) {
   std::vector<std::string> names{"auto"};
@@ -92,7 +93,7 @@ void draw_strip(const ColorMap& map, int steps, float width) {
 bool choose_map(MeshSettings& s) {
   bool changed = false;
   if (!ImGui::BeginCombo("colours", s.map.c_str(), ImGuiComboFlags_HeightLargest)) return false;
-  constexpr float kStrip = 110;
+  constexpr float kStrip = 94;
   for (const std::string_view n : color_map_names()) {
     const std::string name(n);
     const ColorMap map = color_map(n);
@@ -196,31 +197,43 @@ bool choose_lines(AnnotationOptions& a) {
   return changed;
 }
 
-bool choose_sections(const Bounds& box, std::array<Section, 3>& sections) {
-  const double low[] = {box.min.x, box.min.y, box.min.z};
-  const double high[] = {box.max.x, box.max.y, box.max.z};
+/// The slider and the button of a section that is on, behind its switch.
+bool drag_section(Section& section, const ScalarRange& all) {
+  ImGui::SameLine(kSectionName);
+  bool changed =
+      ImGui::SliderScalar("##at", ImGuiDataType_Double, &section.at, &all.low, &all.high, "%.6g");
+  ImGui::SameLine();
+  if (ImGui::Button("turn")) {
+    section.below = !section.below;
+    changed = true;
+  }
+  return changed;
+}
+
+bool choose_sections(const Bounds& box, const Camera& camera, MeshSettings& s) {
   constexpr const char* kAxes[] = {"x", "y", "z"};
+  constexpr Vec3d kDirections[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   bool changed = false;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    Section& section = sections[axis];
+    Section& section = s.sections[axis];
+    const ScalarRange all = reach(box, kDirections[axis]);
     ImGui::PushID(static_cast<int>(axis));
     if (ImGui::Checkbox(kAxes[axis], &section.on)) {
       changed = true;
-      if (section.at <= low[axis] || section.at >= high[axis])
-        section.at = (low[axis] + high[axis]) / 2;
+      if (section.at <= all.low || section.at >= all.high) section.at = (all.low + all.high) / 2;
     }
-    if (section.on) {
-      ImGui::SameLine();
-      changed |= ImGui::SliderScalar("##at", ImGuiDataType_Double, &section.at, &low[axis],
-                                     &high[axis], "%.6g");
-      ImGui::SameLine();
-      if (ImGui::Button("turn")) {
-        section.below = !section.below;
-        changed = true;
-      }
-    }
+    if (section.on) changed |= drag_section(section, all);
     ImGui::PopID();
   }
+  ImGui::PushID("view");
+  ViewSection& view = s.view_section;
+  if (ImGui::Checkbox("view", &view.on)) {
+    // Each time as one looks then.
+    if (view.on) view = section_of_view(camera, box);
+    changed = true;
+  }
+  if (view.on) changed |= drag_section(view, reach(box, view.direction));
+  ImGui::PopID();
   return changed;
 }
 
@@ -240,7 +253,7 @@ void draw_mesh_controls(MeshSubject& subject) {
   if (ImGui::CollapsingHeader("Light")) changed |= choose_lights(subject.scene(), s);
   if (ImGui::CollapsingHeader("Lines")) changed |= choose_lines(s.notes);
   if (ImGui::CollapsingHeader("Sections"))
-    changed |= choose_sections(subject.scene().box, s.sections);
+    changed |= choose_sections(subject.scene().box, subject.control().camera(), s);
   changed |= ImGui::Checkbox("heat map", &s.heat_map);
   ImGui::SameLine();
   if (ImGui::Button("home")) subject.control().go_home();

@@ -11,18 +11,26 @@
 
 namespace rastrum::cli::window {
 
-/// A plane across an axis of the world, which leaves out one side.
+/// A plane across a direction, which leaves out one side.
 struct Section {
   bool on = false;
-  double at = 0;      ///< where on the axis
+  double at = 0;      ///< where along the direction
   bool below = true;  ///< keeps what lies below it
 
-  [[nodiscard]] ClipPlane plane(int axis) const {
-    const double side = below ? -1 : 1;
-    const Vec3d normal{axis == 0 ? side : 0, axis == 1 ? side : 0, axis == 2 ? side : 0};
-    return {normal, -side * at};
-  }
+  /// `direction`: of length 1.
+  [[nodiscard]] ClipPlane plane(const Vec3d& direction) const;
 };
+
+/// One across the way in which somebody looked.
+struct ViewSection : Section {
+  Vec3d direction{0, 0, -1};
+};
+
+/// How far a box reaches along a direction.
+[[nodiscard]] ScalarRange reach(const Bounds& box, const Vec3d& direction);
+/// Across the way in which the camera looks, through the middle of the box: what is nearer is left
+/// out.
+[[nodiscard]] ViewSection section_of_view(const Camera& camera, const Bounds& box);
 
 /// What a panel does not show stays as the command line had it.
 struct MeshSettings {
@@ -31,11 +39,14 @@ struct MeshSettings {
   std::string map = "viridis";  ///< of `notes.scalars`, as --cmap has it
   /// default, headlight, studio or file; empty: as the command line had
   std::string lights;
-  std::vector<Light> file_lights;  ///< of the inputs
-  bool adds_file_lights = false;   ///< the command line did
-  std::array<Section, 3> sections;
+  std::vector<Light> file_lights;   ///< of the inputs
+  bool adds_file_lights = false;    ///< the command line did
+  std::array<Section, 3> sections;  ///< across x, y, z
+  ViewSection view_section;
   bool heat_map = false;  ///< fragments at each pixel instead of the picture
 
+  /// The planes of the sections that are on.
+  [[nodiscard]] std::vector<ClipPlane> cuts() const;
   /// `render` with lights and sections, of a picture of this size.
   [[nodiscard]] family::Options frame(int width, int height) const;
 };

@@ -342,6 +342,7 @@ Worker::Job MeshSubject::open(const std::filesystem::path& file) {
         s.given = nullptr;
       }
       settings_.sections = {};
+      settings_.view_section = {};
       show(arguments, scene);
     };
   };

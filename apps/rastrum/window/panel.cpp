@@ -122,7 +122,8 @@ Area draw_panel(Viewer& viewer, const Controls& controls) {
     draw_keys(viewer.subject().keys());
     draw_keys(Viewer::keys());
     ImGui::TextWrapped(
-        "Click: name what is there. Drag: orbit; right: look around; middle or Shift: pan; wheel: "
+        "Rest: what is there; click: the same in the title. Drag: orbit; right: look around; "
+        "middle or Shift: pan; wheel: "
         "zoom.");
     ImGui::TextWrapped("Drop a file on the window to open it.");
   }
@@ -137,6 +138,14 @@ Area draw_panel(Viewer& viewer, const Controls& controls) {
 void draw_hovered(const Viewer& viewer) {
   const Picked* const picked = viewer.hovered();
   if (picked == nullptr) return;
+  // Where the viewer has it, towards the middle; ImGui asks the screen, which may be late.
+  const auto x = static_cast<float>(viewer.pointer()->first);
+  const auto y = static_cast<float>(viewer.pointer()->second);
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const bool right = x > size.x / 2, low = y > size.y / 2;
+  constexpr float kBeside = 14;
+  ImGui::SetNextWindowPos({x + (right ? -kBeside : kBeside), y + (low ? -kBeside : kBeside)},
+                          ImGuiCond_Always, {right ? 1.0F : 0.0F, low ? 1.0F : 0.0F});
   ImGui::BeginTooltip();
   if (!picked->value.empty()) ImGui::TextUnformatted(picked->value.c_str());
   ImGui::PushStyleColor(ImGuiCol_Text,

@@ -1,6 +1,7 @@
 #include "picture_text.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -10,14 +11,7 @@ namespace rastrum::cli::window {
 
 std::string number(double v) {
   char text[40];
-  std::snprintf(text, sizeof text, "%.17g", v);
-  // The shortest that is the same number.
-  for (int digits = 1; digits < 17; ++digits) {
-    char shorter[40];
-    std::snprintf(shorter, sizeof shorter, "%.*g", digits, v);
-    if (std::stod(shorter) == v) return shorter;
-  }
-  return text;
+  return {text, std::to_chars(text, text + sizeof text, v).ptr};
 }
 std::string numbers(const Vec3d& v) {
   return number(v.x) + "," + number(v.y) + "," + number(v.z);
@@ -55,13 +49,16 @@ std::string literal(const std::string& text) {
   return all + "\"";
 }
 std::string tuple(const Vec3d& v) {
-  return std::string("(").append(joined({number(v.x), number(v.y), number(v.z)})).append(")");
+  return in_brackets({number(v.x), number(v.y), number(v.z)});
 }
 
 std::string joined(const std::vector<std::string>& items) {
   std::string all;
   for (const std::string& item : items) all += (all.empty() ? "" : ", ") + item;
   return all;
+}
+std::string in_brackets(const std::vector<std::string>& items) {
+  return std::string("(").append(joined(items)).append(")");
 }
 std::string listed(const std::vector<std::string>& items) {
   return std::string("[").append(joined(items)).append("]");

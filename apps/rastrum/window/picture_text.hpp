@@ -39,6 +39,7 @@ class Words {
 [[nodiscard]] std::string literal(const std::string& text);
 [[nodiscard]] std::string tuple(const Vec3d& v);
 [[nodiscard]] std::string joined(const std::vector<std::string>& items);
+[[nodiscard]] std::string in_brackets(const std::vector<std::string>& items);
 [[nodiscard]] std::string listed(const std::vector<std::string>& items);
 [[nodiscard]] std::string listed(const std::vector<double>& values);
 

@@ -67,9 +67,7 @@ std::string command_line(const ShownPicture& shown, const std::string& png) {
     say("--exposure", number(static_cast<double>(frame.tone.exposure_stops)));
   say_scalars(say, s);
   say_notes(say, s.notes);
-  for (int axis = 0; axis < 3; ++axis)
-    if (const Section& section = s.sections[static_cast<std::size_t>(axis)]; section.on)
-      say("--clip-plane", plane_text(section.plane(axis)));
+  for (const ClipPlane& plane : s.cuts()) say("--clip-plane", plane_text(plane));
   for (const Parser::Given& g : shown.arguments.given) {
     if (!is_repeated(g.name, s)) continue;
     if (g.texts.empty()) say(g.name);

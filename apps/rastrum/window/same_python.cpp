@@ -137,7 +137,7 @@ std::string python_mapping(const MeshSettings& s) {
   if (s.map.find('#') != std::string::npos)
     for (const Vec4& c : m.map.colors) colors.push_back(literal(hex(c)));
   std::vector<std::string> said{colors.empty() ? literal(s.map) : listed(colors)};
-  if (m.range) said.push_back("(" + number(m.range->low) + ", " + number(m.range->high) + ")");
+  if (m.range) said.push_back(in_brackets({number(m.range->low), number(m.range->high)}));
   if (m.logarithmic) said.emplace_back("log=True");
   if (m.symmetric) said.emplace_back("symmetric=True");
   if (m.steps != 0) said.push_back("steps=" + std::to_string(m.steps));
@@ -149,7 +149,7 @@ std::string python_mapping(const MeshSettings& s) {
     said.push_back("nan=" + literal(hex(m.nan)));
   std::vector<std::string> opacity;
   for (const ScalarOpacity& o : m.opacity)
-    opacity.push_back("(" + number(o.value) + ", " + number(static_cast<double>(o.opacity)) + ")");
+    opacity.push_back(in_brackets({number(o.value), number(static_cast<double>(o.opacity))}));
   if (!opacity.empty()) said.push_back("opacity=" + listed(opacity));
   const int count = s.notes.scalars.isoline_count;
   if (!m.isolines.empty() || count != 0) {
@@ -223,8 +223,8 @@ std::string python_lines(const ShownPicture& shown, const std::string& png) {
   if (!frame.clip_planes.empty()) {
     std::vector<std::string> planes;
     for (const ClipPlane& p : frame.clip_planes)
-      planes.push_back("(" + number(p.normal.x) + ", " + number(p.normal.y) + ", " +
-                       number(p.normal.z) + ", " + number(p.offset) + ")");
+      planes.push_back(in_brackets(
+          {number(p.normal.x), number(p.normal.y), number(p.normal.z), number(p.offset)}));
     all += ", clip_planes=" + listed(planes);
   }
   if (const std::string notes = python_notes(s.notes); !notes.empty())

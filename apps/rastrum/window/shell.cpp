@@ -17,13 +17,10 @@
 namespace rastrum::cli::window {
 namespace {
 
-constexpr int kIdle_ms = 100;  ///< between looks at the clock where nothing moves
-/// Where something does. The thread that draws does not wake the window: SDL would send the window
-/// a message for it, which may come when the window is gone, and X ends the program for that.
-constexpr int kFrame_ms = 2;
-constexpr double kLongest_s = 0.1;     ///< a step of motion, so that a pause is not a leap
-constexpr int kImguiFrames = 3;        ///< until ImGui has settled after an event
-constexpr unsigned kMessages_ms = 20;  ///< until messages under way have been read
+constexpr int kIdle_ms = 10;        ///< between looks at the events where nothing moves
+constexpr int kFrame_ms = 2;        ///< where something does
+constexpr double kLongest_s = 0.1;  ///< a step of motion, so that a pause is not a leap
+constexpr int kImguiFrames = 3;     ///< until ImGui has settled after an event
 
 [[noreturn]] void fail(const char* what) {
   throw Error(Errc::no_device, std::string(what) + ": " + SDL_GetError());
@@ -109,13 +106,7 @@ class Screen {
     }
     if (texture_ != nullptr) SDL_DestroyTexture(texture_);
     if (renderer_ != nullptr) SDL_DestroyRenderer(renderer_);
-    if (window_ != nullptr) {
-      // SDL wakes itself by a message to the window, over a connection of its own. One that the X
-      // server reads after the window is gone would end the program with an error.
-      SDL_HideWindow(window_);
-      SDL_Delay(kMessages_ms);
-      SDL_DestroyWindow(window_);
-    }
+    if (window_ != nullptr) SDL_DestroyWindow(window_);
   }
   [[noreturn]] void undo_and_fail(const char* what) {
     const std::string why = SDL_GetError();
@@ -182,15 +173,21 @@ class Shell {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// Whether there was one that may change what is seen.
+  /// Whether there was one that may change what is seen. Asks and sleeps: where SDL waits it wakes
+  /// itself by messages to the window over a connection of their own, and one that the X server
+  /// reads after the window is gone ends the program with an error.
   bool wait_for_events(int timeout_ms) {
     SDL_Event event;
     bool any = false;
-    for (bool more = SDL_WaitEventTimeout(&event, timeout_ms) == 1; more;
-         more = SDL_PollEvent(&event) == 1) {
+    if (SDL_PollEvent(&event) == 0) {
+      if (timeout_ms == 0) return false;
+      SDL_Delay(static_cast<Uint32>(timeout_ms));
+      if (SDL_PollEvent(&event) == 0) return false;
+    }
+    do {
       any = true;
       take(event);
-    }
+    } while (SDL_PollEvent(&event) == 1);
     return any;
   }
 
@@ -232,7 +229,9 @@ class Shell {
         e.x = event.motion.x;
         e.y = event.motion.y;
         send(e);
-        if (!replay_ && is_panels(event.motion.x, event.motion.y)) viewer_.point_nowhere();
+        // Where it rests counts, and ImGui learns of that too late.
+        if (!replay_ && panel_ && (list_ || area_.holds(event.motion.x, event.motion.y)))
+          viewer_.point_nowhere();
         return;
       case SDL_MOUSEWHEEL:
         e.kind = Event::Kind::wheel;
@@ -307,6 +306,7 @@ class Shell {
       area_ = draw_panel(viewer_, controls_);
     else
       draw_messages(viewer_);
+    list_ = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
     draw_hovered(viewer_);
     screen_.present(viewer_.picture(), viewer_.serial());
   }
@@ -317,7 +317,8 @@ class Shell {
   std::optional<Replay> replay_;
   unsigned modifiers_ = 0;  ///< held at the event that is being taken
   bool panel_ = true;
-  Area area_;  ///< of the panel, as it was drawn last
+  Area area_;          ///< of the panel, as it was drawn last
+  bool list_ = false;  ///< one of the panel is open
   bool quit_ = false;
 };
 

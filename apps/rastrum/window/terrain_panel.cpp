@@ -42,7 +42,7 @@ bool edit_pose(TerrainPose& p) {
 
 void draw_terrain_controls(TerrainSubject& subject) {
   TerrainPose pose = subject.control().pose();
-  if (edit_pose(pose)) subject.control().place(pose);
+  if (edit_pose(pose)) subject.place(pose);
   TerrainSubject::Settings s = subject.settings();
   terrain::TerrainOptions& o = s.options;
   bool changed = choose_value("filter", {"none", "bilinear", "mip"}, o.filter);

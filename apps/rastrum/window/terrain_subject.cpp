@@ -11,6 +11,7 @@
 #include <rastrum/family.hpp>
 
 #include "progress.hpp"
+#include "same_terrain.hpp"
 
 namespace rastrum::cli::window {
 namespace {
@@ -129,7 +130,26 @@ void TerrainSubject::handle(const Event& event) {
   if (event.kind == Event::Kind::key_down && !event.ctrl)
     for (const KeyHelp& help : kTerrainSubjectKeys)
       if (help.has(event.key)) return change(event.key, event.shift);
+  const bool was_moving = control_.moving();
   control_.handle(event);
+  if (was_moving && event.kind == Event::Kind::move) place(control_.pose());
+}
+
+void TerrainSubject::advance(double dt_s) {
+  const unsigned long before = control_.version();
+  control_.advance(dt_s);
+  if (control_.version() != before) place(control_.pose());
+}
+
+void TerrainSubject::place(const TerrainPose& pose) {
+  control_.place(sayable(pose));
+}
+
+Subject::Texts TerrainSubject::same_picture(int width, int height, const std::string& png) const {
+  const ShownTerrain shown{
+      maps_[map_], settings_.options, settings_.light, settings_.sky_dims, control_.pose(), width,
+      height};
+  return {{".sh", terrain_command_line(shown, png)}, {".py", terrain_python(shown, png)}};
 }
 
 void TerrainSubject::change(std::string_view key, bool back) {

@@ -33,7 +33,11 @@ class TerrainSubject final : public Subject {
   void next_map();
 
   void handle(const Event& event) override;
-  void advance(double dt_s) override { control_.advance(dt_s); }
+  void advance(double dt_s) override;
+  /// Where a person has put it, at angles that a command line can say.
+  void place(const TerrainPose& pose);
+  [[nodiscard]] Texts same_picture(int width, int height, const std::string& png) const override;
+  [[nodiscard]] bool has_same_picture() const override { return true; }
   void resize(int width, int height) override;
   [[nodiscard]] bool moving() const override { return control_.moving(); }
   [[nodiscard]] std::uint64_t version() const override;

@@ -46,6 +46,8 @@ class Viewer {
   void point_nowhere() { pointer_.reset(); }
   /// What lies under the pointer, once it and the whole picture rest; null: not known, or nothing.
   [[nodiscard]] const Picked* hovered() const;
+  /// The pixel of the window where the pointer is over the picture.
+  [[nodiscard]] std::optional<std::pair<int, int>> pointer() const { return pointer_; }
   /// What draws the picture that is seen: .sh or .py (Subject::same_picture). Says that it was
   /// copied; empty where there is no such text.
   [[nodiscard]] std::string copy(const std::string& ending);

@@ -1,0 +1,202 @@
+#include "same_terrain.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "picture_text.hpp"
+
+namespace rastrum::cli::window {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180;
+
+/// Degrees that are made exactly `rad` of, where there are such.
+std::optional<double> exact_degrees(double rad) {
+  const double near = rad / kRadians;
+  if (near * kRadians == rad) return near;
+  constexpr int kSteps = 4;
+  for (const double end :
+       {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()}) {
+    double d = near;
+    for (int i = 0; i < kSteps; ++i) {
+      d = std::nextafter(d, end);
+      if (d * kRadians == rad) return d;
+    }
+  }
+  return std::nullopt;
+}
+
+double degrees_of(double rad) {
+  return exact_degrees(rad).value_or(rad / kRadians);
+}
+
+std::string hex(Rgba8 c) {
+  return window::hex({static_cast<float>(c.r) / 255, static_cast<float>(c.g) / 255,
+                      static_cast<float>(c.b) / 255, 1})
+      .substr(0, 7);
+}
+
+template <class T>
+std::string name_of(T value, std::initializer_list<const char*> names) {
+  return std::data(names)[static_cast<std::size_t>(value)];
+}
+std::string filter_name(terrain::MapFilter filter) {
+  return name_of(filter, {"none", "bilinear", "mip"});
+}
+std::string tiling_name(terrain::Tiling tiling) {
+  return name_of(tiling, {"repeat", "mirror", "clamp"});
+}
+std::string shadows_name(terrain::Shadows shadows) {
+  return name_of(shadows, {"none", "accumulated", "sharp", "soft"});
+}
+
+/// The original program's field of view is its own.
+double fov_of(const ShownTerrain& t) {
+  return t.look.classic ? t.look.fov_rad : t.pose.fov_rad;
+}
+
+void say_place(Words& say, const TerrainPose& pose) {
+  const terrain::TerrainCamera& c = pose.camera;
+  say("--position", number(c.x) + "," + number(c.y))("--altitude", number(c.altitude));
+  say("--angle", number(degrees_of(c.angle_rad)))("--horizon", number(c.horizon_px));
+  if (c.roll_rad != 0) say("--roll", number(degrees_of(c.roll_rad)));
+}
+
+void say_look(Words& say, const ShownTerrain& t) {
+  const TerrainLook& o = t.look;
+  const TerrainLook usual;
+  say("--distance", number(t.pose.distance));
+  if (fov_of(t) != usual.fov_rad) say("--fov", number(degrees_of(fov_of(t))));
+  if (o.scale_px != 0) say("--scale", number(o.scale_px));
+  if (o.step != 0 && !o.classic) say("--step", number(o.step));
+  if (o.dz != usual.dz) say("--dz", number(o.dz));
+  if (o.classic)
+    say("--classic");
+  else
+    say("--filter", filter_name(o.filter));
+  if (o.projection == terrain::Projection::cylindrical) say("--projection", "cylindrical");
+  if (o.sky != usual.sky || !t.sky_dims) {
+    say("--sky", hex(o.sky));
+    if (t.sky_dims && !o.classic) say("--dim-sky");
+  }
+  if (o.fog.density != 0) {
+    std::string fog = number(o.fog.density) + "," + number(o.fog.start);
+    if (o.fog.color) fog += "," + hex(*o.fog.color);
+    say("--fog", fog);
+  }
+  if (o.ground_clearance) say("--clearance", number(*o.ground_clearance));
+}
+
+void say_light(Words& say, const ShownTerrain& t) {
+  const terrain::Light usual;
+  const terrain::Sun& sun = t.pose.sun;
+  if (sun.azimuth_deg != usual.sun.azimuth_deg || sun.elevation_deg != usual.sun.elevation_deg)
+    say("--sun", number(sun.azimuth_deg) + "," + number(sun.elevation_deg));
+  if (t.light.shadows != usual.shadows) say("--shadows", shadows_name(t.light.shadows));
+  if (t.light.sun_radius_deg != usual.sun_radius_deg)
+    say("--sun-radius", number(t.light.sun_radius_deg));
+}
+
+/// What neither says; a comment.
+std::string without_words(const ShownTerrain& t) {
+  std::string all;
+  const terrain::TerrainCamera& c = t.pose.camera;
+  for (const double rad : {c.angle_rad, c.roll_rad, fov_of(t)})
+    if (!exact_degrees(rad))
+      all += "# An angle has no such number of degrees: the next one is said.\n";
+  if (t.input.height && !t.input.height_scale && t.input.classic_scale != t.look.classic)
+    all += "# Heights are as they were read before the classic picture was switched.\n";
+  return all;
+}
+
+}  // namespace
+
+double angle_in_degrees(double rad) {
+  return exact_degrees(rad) ? rad : rad / kRadians * kRadians;
+}
+
+TerrainPose sayable(TerrainPose pose) {
+  for (double* const angle : {&pose.camera.angle_rad, &pose.camera.roll_rad, &pose.fov_rad})
+    *angle = angle_in_degrees(*angle);
+  return pose;
+}
+
+std::string terrain_command_line(const ShownTerrain& t, const std::string& png) {
+  Words say;
+  say("rastrum terrain");
+  if (t.input.height) say("--height", t.input.height->string());
+  if (t.input.color) say("--color", t.input.color->string());
+  if (!t.input.height) say("--function", t.input.function);
+  if (t.input.raw_size.width > 0)
+    say("--height-size",
+        std::to_string(t.input.raw_size.width) + "x" + std::to_string(t.input.raw_size.height));
+  if (t.input.height_scale) say("--height-scale", number(*t.input.height_scale));
+  if (t.look.tiling != terrain::Tiling::repeat) say("--tile", tiling_name(t.look.tiling));
+  say("--size", std::to_string(t.width) + "x" + std::to_string(t.height));
+  say_place(say, t.pose);
+  say_look(say, t);
+  say_light(say, t);
+  return without_words(t) + say("-o", png).take() + "\n";
+}
+
+std::string terrain_python(const ShownTerrain& t, const std::string& png) {
+  const TerrainLook& o = t.look;
+  const TerrainLook usual;
+  const terrain::Light usual_light;
+  std::string all = "import rastrum as rr\n\n" + without_words(t);
+  std::string missing;
+  const auto lacks = [&](const char* option, bool said) {
+    if (said) missing += (missing.empty() ? "" : ", ") + std::string(option);
+  };
+  lacks("--function", !t.input.height);
+  lacks("--height-size", t.input.raw_size.width > 0);
+  lacks("--classic", o.classic);
+  lacks("--step", o.step != 0 && !o.classic);
+  lacks("--dz", o.dz != usual.dz);
+  if (!missing.empty()) all += "# Not said here, for Python has no words for it: " + missing + "\n";
+  if (t.input.height && !t.input.height_scale)
+    all +=
+        "# A file that does not say how high its unit is wants height_scale=, as the program "
+        "prints it.\n";
+  std::vector<std::string> map{
+      literal(t.input.height ? t.input.height->string() : t.input.function)};
+  if (t.input.color) map.push_back(literal(t.input.color->string()));
+  const auto add = [](std::vector<std::string>& to, const char* name, const std::string& value) {
+    to.push_back(std::string(name).append("=").append(value));
+  };
+  if (t.input.height_scale) add(map, "height_scale", number(*t.input.height_scale));
+  add(map, "sun", in_brackets({number(t.pose.sun.azimuth_deg), number(t.pose.sun.elevation_deg)}));
+  if (t.light.shadows != usual_light.shadows)
+    add(map, "shadows", literal(shadows_name(t.light.shadows)));
+  if (t.light.sun_radius_deg != usual_light.sun_radius_deg)
+    add(map, "sun_radius", number(t.light.sun_radius_deg));
+  add(map, "filter", literal(filter_name(o.filter)));
+  if (o.tiling != terrain::Tiling::repeat) add(map, "tiling", literal(tiling_name(o.tiling)));
+  all += "terrain = rr.Terrain(" + joined(map) + ")\n";
+  const terrain::TerrainCamera& c = t.pose.camera;
+  std::vector<std::string> frame{in_brackets({number(c.x), number(c.y)})};
+  add(frame, "altitude", number(c.altitude));
+  add(frame, "angle", number(degrees_of(c.angle_rad)));
+  add(frame, "horizon", number(c.horizon_px));
+  if (c.roll_rad != 0) add(frame, "roll", number(degrees_of(c.roll_rad)));
+  if (o.ground_clearance) add(frame, "clearance", number(*o.ground_clearance));
+  add(frame, "size", in_brackets({number(t.width), number(t.height)}));
+  add(frame, "distance", number(t.pose.distance));
+  add(frame, "fov", number(degrees_of(fov_of(t))));
+  if (o.scale_px != 0) add(frame, "scale", number(o.scale_px));
+  if (o.projection == terrain::Projection::cylindrical) add(frame, "projection", "\"cylindrical\"");
+  if (o.sky != usual.sky || !t.sky_dims)
+    add(frame, "sky", literal(hex(sky_of(o, t.pose.sun, t.sky_dims))));
+  if (o.fog.density != 0) {
+    std::vector<std::string> fog{number(o.fog.density), number(o.fog.start)};
+    if (o.fog.color) fog.push_back(literal(hex(*o.fog.color)));
+    add(frame, "fog", in_brackets(fog));
+  }
+  return all + "picture = terrain.render(" + joined(frame) + ")\npicture.save(" + literal(png) +
+         ")\n";
+}
+
+}  // namespace rastrum::cli::window
