@@ -90,8 +90,8 @@ class Light:
         return light
 
 
-def lights(wanted, scene):
-    """What `lights` of render means, for C++. `scene`: C++'s, whose files may have some."""
+def lights(wanted, scene=None):
+    """What `lights` of render means, for C++. `scene`: C++'s, whose files may have some; none of a terrain."""
     if wanted is None:
         return []
     if isinstance(wanted, (str, Light)):
@@ -107,7 +107,7 @@ def lights(wanted, scene):
         elif light == "studio":
             made += _r.light_kit()
         elif light == "file":
-            of_files = scene.lights
+            of_files = [] if scene is None else scene.lights
             if not of_files:
                 raise ArgumentError("lights: the scene's files have no lights of their own")
             made += of_files
