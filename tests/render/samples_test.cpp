@@ -201,8 +201,8 @@ TEST_F(Samples, OfTrianglesOfAllSizesAreTheReferences) {
       for (std::uint32_t c = 0; c < 3; ++c) {
         mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
         mesh.positions.push_back(at_pixel(x + random.real(-size, size),
-                                          y + random.real(-size, size),
-                                          random.real(0.05, 0.95), o.width, o.height));
+                                          y + random.real(-size, size), random.real(0.05, 0.95),
+                                          o.width, o.height));
       }
     }
     const Scene scene = single(mesh);

@@ -193,8 +193,7 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
                                                        std::uint64_t last) {
   if (frame.view_bytes != 0) groups_.clear();  // what other views needed
   const std::size_t bin_count = lists.bins.count(), list_count = lists.count();
-  const std::uint64_t most_groups =
-      std::max<std::uint64_t>(kMaxBinTables / (2 * bin_count), 1);
+  const std::uint64_t most_groups = std::max<std::uint64_t>(kMaxBinTables / (2 * bin_count), 1);
   const std::uint64_t group_size =
       std::max(kMinGroup, (last - first + most_groups - 1) / most_groups);
   const auto group_count = static_cast<std::size_t>((last - first + group_size - 1) / group_size);

@@ -1,7 +1,7 @@
 // Several samples at once with Highway, compiled once per instruction set: triangles raise the keys
 // of all samples of a bin, a vector of pixels times four samples each. Edge functions are those of
-// rules.hpp and depths those of make_piece.hpp, at vertices that are moved as samples lie, operation
-// by operation, so they give the same bits.
+// rules.hpp and depths those of make_piece.hpp, at vertices that are moved as samples lie,
+// operation by operation, so they give the same bits.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -178,8 +178,8 @@ HWY_INLINE std::uint64_t raise_small(const Piece& p, const SmallTriangles& t, st
 struct SampledEdge {
   std::int64_t base;  ///< at the centre of pixel (0, 0)
   std::int32_t a, b;
-  std::int32_t least, most;                  ///< of what samples have more than the centre
-  HWY_ALIGN std::int32_t more[kLanes];       ///< by lane, from the first pixel's centre
+  std::int32_t least, most;             ///< of what samples have more than the centre
+  HWY_ALIGN std::int32_t more[kLanes];  ///< by lane, from the first pixel's centre
   [[nodiscard]] std::int64_t at(int x, int y) const {
     return base + std::int64_t{a} * x + std::int64_t{b} * y;
   }
@@ -194,8 +194,8 @@ struct SampledEdge {
     base = centre >> kSubpixelBits;
     std::int32_t of_sample[4];
     for (int s = 0; s < 4; ++s) {
-      const std::int64_t there = centre + std::int64_t{a} * lanes.offset_x[s] +
-                                 std::int64_t{b} * lanes.offset_y[s];
+      const std::int64_t there =
+          centre + std::int64_t{a} * lanes.offset_x[s] + std::int64_t{b} * lanes.offset_y[s];
       of_sample[s] = static_cast<std::int32_t>((there >> kSubpixelBits) - base);
     }
     least = std::min({of_sample[0], of_sample[1], of_sample[2], of_sample[3]});
@@ -216,8 +216,7 @@ HWY_INLINE std::uint64_t raise_block(const SampledEdge (&edges)[3], const DepthL
   const I32 d;
   I row[3], across[3], down[3];
   for (int i = 0; i < 3; ++i) {
-    const auto base =
-        static_cast<std::int32_t>(std::clamp(edges[i].at(x0, y0), -kClamp, kClamp));
+    const auto base = static_cast<std::int32_t>(std::clamp(edges[i].at(x0, y0), -kClamp, kClamp));
     row[i] = hn::Add(hn::Set(d, base), hn::Load(d, edges[i].more));
     across[i] = hn::Set(d, edges[i].a * kPixels);
     down[i] = hn::Set(d, edges[i].b);
@@ -266,10 +265,10 @@ HWY_NOINLINE std::uint64_t raise_large(const Piece& p, Rect bin, const SampledKe
         for (const SampledEdge& e : edges) {
           const std::int64_t at = e.at(x0, y0);
           const std::int64_t a = 7 * std::int64_t{e.a}, b = 7 * std::int64_t{e.b};
-          some = some && at + std::max<std::int64_t>(a, 0) + std::max<std::int64_t>(b, 0) +
-                                 e.most >= 0;
-          full = full && at + std::min<std::int64_t>(a, 0) + std::min<std::int64_t>(b, 0) +
-                                 e.least >= 0;
+          some = some &&
+                 at + std::max<std::int64_t>(a, 0) + std::max<std::int64_t>(b, 0) + e.most >= 0;
+          full = full &&
+                 at + std::min<std::int64_t>(a, 0) + std::min<std::int64_t>(b, 0) + e.least >= 0;
         }
         if (!some) continue;
         const Rect block{x0 - 1, y0 - 1, x0 + kBlockSize + 1, y0 + kBlockSize + 1};
@@ -355,8 +354,8 @@ void find_sampled_bounds(const SampledKeys& keys, Rect bin, DepthBounds& bounds)
     bool empty = false;
     for (std::size_t four = 0; four < keys.samples.size() / 4; ++four)
       for (int y = 0; y < kBlockSize && !empty; ++y) {
-        const auto* const row = reinterpret_cast<const std::int64_t*>(
-            keys.at(x0, y0 + y) + four * SampledKeys::kFour);
+        const auto* const row =
+            reinterpret_cast<const std::int64_t*>(keys.at(x0, y0 + y) + four * SampledKeys::kFour);
         for (std::size_t k = 0; k < 4 * kBlockSize; k += kLanes64)
           least = hn::Min(least, hn::Load(d, row + k));
         empty = !hn::AllFalse(d, hn::Eq(least, hn::Zero(d)));
@@ -413,8 +412,8 @@ void merge(const SampledKeys& keys, int x, int y, std::uint64_t* largest, std::u
       firsts = hn::Or(firsts, hn::Shl(own, hn::Set(d, 4 * s)));
       for (std::size_t t = 0; t < s; ++t)
         if (are_opposite(keys.samples[t], keys.samples[s]))
-          centred = hn::Or(centred, hn::IfThenElseZero(hn::Eq(key[s], key[t]),
-                                                       hn::Shl(hn::Set(d, 1), own)));
+          centred = hn::Or(centred,
+                           hn::IfThenElseZero(hn::Eq(key[s], key[t]), hn::Shl(hn::Set(d, 1), own)));
     }
     hn::Store(firsts, d, seen.first + i);
     hn::Store(centred, d, seen.centred + i);

@@ -62,8 +62,7 @@ HWY_INLINE Triangles load_triangles(const Piece* const (&pieces)[kLanes], int re
   load_numbers(pieces, 1, second);
   Triangles t{{first[0], first[1], first[2]}, {first[3], second[0], second[1]}, {}, {}, {}, {},
               hn::BitCast(F32{}, second[2]),  hn::BitCast(F32{}, second[3])};
-  const I before = hn::Set(d, kHalfPixel - 1 - reach),
-          half = hn::Set(d, kHalfPixel - reach);
+  const I before = hn::Set(d, kHalfPixel - 1 - reach), half = hn::Set(d, kHalfPixel - reach);
   const auto least = [](const I(&v)[3]) HWY_ATTR { return hn::Min(v[0], hn::Min(v[1], v[2])); };
   const auto most = [](const I(&v)[3]) HWY_ATTR { return hn::Max(v[0], hn::Max(v[1], v[2])); };
   t.x0 = hn::ShiftRight<kSubpixelBits>(hn::Add(least(t.x), before));

@@ -26,8 +26,8 @@ class SampledBin {
   void draw(Frame& frame, const BinTable& lists, std::span<const Group> groups, std::size_t bin) {
     const Rect rect = lists.bins.rect(bin);
     const bool local = !frame.has_surface();
-    const bool is_empty = std::ranges::all_of(
-        groups, [&](const Group& group) { return group.is_empty(lists, bin); });
+    const bool is_empty =
+        std::ranges::all_of(groups, [&](const Group& group) { return group.is_empty(lists, bin); });
     if (is_empty && local) return frame.shade_nothing(rect);
     if (is_empty) return;
     const SurfaceView surface =
@@ -81,8 +81,7 @@ class SampledBin {
     for (std::size_t s = 0; s < keys_.samples.size() && !fragments.empty(); ++s) {
       frame.count_fragments(rect_, fragments);
       for (const BinFragment& f : fragments) {
-        std::uint64_t& key =
-            keys_.at(rect_.x0 + column_in_bin(f), rect_.y0 + row_in_bin(f), s);
+        std::uint64_t& key = keys_.at(rect_.x0 + column_in_bin(f), rect_.y0 + row_in_bin(f), s);
         key = std::max(key, f.key);
       }
     }
@@ -124,11 +123,10 @@ class SampledBin {
         ++n;
       }
       const PieceList pieces{moved_, list_, n};
-      DepthBounds* const bounds =
-          frame.request.targets.overdraw.empty() ? &bounds_ : nullptr;
+      DepthBounds* const bounds = frame.request.targets.overdraw.empty() ? &bounds_ : nullptr;
       for (std::size_t cursor = 0; cursor < n;) {
-        const std::size_t written = frame.kernel.cover(pieces, cursor, rect_, blocks_,
-                                                       std::size(blocks_), bounds);
+        const std::size_t written =
+            frame.kernel.cover(pieces, cursor, rect_, blocks_, std::size(blocks_), bounds);
         const std::span<Block> blocks(blocks_, written);
         frame.count_fragments(blocks);
         for (const Block& block : blocks) raise_block(s, moved_[block.piece], block);
@@ -151,8 +149,7 @@ class SampledBin {
   void resolve(const SurfaceView& surface) {
     for (int by = rect_.y0 / kBlockSize; by * kBlockSize < rect_.y1; ++by)
       for (int bx = rect_.x0 / kBlockSize; bx * kBlockSize < rect_.x1; ++bx)
-        colors_.resolve(context_, keys_, bx, by, surface.block(bx, by),
-                        *surface.colors_of(bx, by));
+        colors_.resolve(context_, keys_, bx, by, surface.block(bx, by), *surface.colors_of(bx, by));
   }
 
   TileSurface tile_;
@@ -171,7 +168,8 @@ class SampledBin {
 
 class SampledPath final : public Method {
  public:
-  explicit SampledPath(MemoryAccount& memory) : groups_(memory), bins_([&memory] { return SampledBin(memory); }) {}
+  explicit SampledPath(MemoryAccount& memory)
+      : groups_(memory), bins_([&memory] { return SampledBin(memory); }) {}
 
   [[nodiscard]] Needs needs() const override {
     return {.rasterizer = "grouped",
@@ -194,9 +192,8 @@ class SampledPath final : public Method {
     frame.watch.lap(frame.stats, "setup and bin");
     frame.fits = groups.has_value();
     if (!frame.fits) return;
-    frame.for_each_index(lists.bins.count(), [&](std::size_t bin) {
-      bins_.local().draw(frame, lists, *groups, bin);
-    });
+    frame.for_each_index(lists.bins.count(),
+                         [&](std::size_t bin) { bins_.local().draw(frame, lists, *groups, bin); });
     collect(frame.counters);
     frame.watch.lap(frame.stats, "draw and shade");
   }

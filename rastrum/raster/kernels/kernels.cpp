@@ -244,10 +244,12 @@ RaisedKeys raise_scalar(const QuadricBatch&, Rect, const DepthBounds*,
 
 constexpr std::size_t kIsaCount = static_cast<std::size_t>(Isa::neon) + 1;
 
-constexpr Kernels kScalar{project_scalar,       project64_scalar, setup_scalar, points_scalar,
-                          cover_scalar,         masks_scalar,     keys_scalar,  maximum_scalar,
-                          lowest_scalar,        covered_scalar,   raise_samples_scalar, find_sampled_bounds_scalar, merge_scalar, store_opaque_scalar,
-                          store_blended_scalar, bins_scalar,      defer_scalar, raise_scalar};
+constexpr Kernels kScalar{project_scalar, project64_scalar,     setup_scalar,
+                          points_scalar,  cover_scalar,         masks_scalar,
+                          keys_scalar,    maximum_scalar,       lowest_scalar,
+                          covered_scalar, raise_samples_scalar, find_sampled_bounds_scalar,
+                          merge_scalar,   store_opaque_scalar,  store_blended_scalar,
+                          bins_scalar,    defer_scalar,         raise_scalar};
 
 }  // namespace
 
@@ -258,10 +260,9 @@ const Kernels& kernels(Isa isa) noexcept {
     // Only those of this machine: filling a table is compiled for its instruction set, too.
     for (const Isa available : available_isas()) {
       Kernels& table = all[static_cast<std::size_t>(available)];
-      for (const FillKernels fill :
-           {fill_setup_kernels(available), fill_cover_kernels(available),
-            fill_block_kernels(available), fill_quadric_kernels(available),
-            fill_sampled_kernels(available)})
+      for (const FillKernels fill : {fill_setup_kernels(available), fill_cover_kernels(available),
+                                     fill_block_kernels(available), fill_quadric_kernels(available),
+                                     fill_sampled_kernels(available)})
         if (fill != nullptr) fill(table);
     }
     return all;

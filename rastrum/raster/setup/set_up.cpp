@@ -196,8 +196,8 @@ Piece* make_room(Pieces& pieces, MicroSink* micro, BinFragment*& fragments) {
 /// Triangles by the kernel, as many at a time as there is room for with all samples.
 SetupOutput set_up_triangles(const Frame& frame, const SetupInput& in, Pieces& pieces,
                              MicroSink* micro, std::uint32_t* slow) {
-  const auto samples = static_cast<std::uint32_t>(
-      in.together ? 1 : std::max<std::size_t>(in.samples.size(), 1));
+  const auto samples =
+      static_cast<std::uint32_t>(in.together ? 1 : std::max<std::size_t>(in.samples.size(), 1));
   SetupOutput all;
   for (std::uint32_t first = 0; first < in.count; first += kSetupBatch / samples) {
     SetupInput some = in;
@@ -373,10 +373,10 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
         Piece* const room = make_room(pieces, micro, fragments);
         if (as_points) {
           std::int32_t sizes[kSetupBatch];
-          out = frame.kernel.points({corners.vertices, count, sizes_of(draw, t, count, sizes), id,
-                                     own_flags | (draw.is_round() ? kRound : 0), image,
-                                     input.bin_columns},
-                                    fragments, slow);
+          out = frame.kernel.points(
+              {corners.vertices, count, sizes_of(draw, t, count, sizes), id,
+               own_flags | (draw.is_round() ? kRound : 0), image, input.bin_columns},
+              fragments, slow);
           seen_points = out.micro;
           of_points = out;
         } else if (defers && may_defer(draw, own_flags)) {

@@ -317,8 +317,7 @@ HWY_INLINE std::uint32_t write_fragments(const Piece p, std::uint32_t mask, cons
     const int sample = std::countr_zero(mask);
     const int x = first_x + sample % kMicroSize, y = first_y + sample / kMicroSize;
     if (x < in.view.x0 || x >= in.view.x1 || y < in.view.y0 || y >= in.view.y1) continue;
-    out[n++] =
-        fragment_at(x, y, make_key(plane_depth_at(p, x, y), p.low), p.flags, in.bin_columns);
+    out[n++] = fragment_at(x, y, make_key(plane_depth_at(p, x, y), p.low), p.flags, in.bin_columns);
   }
   return n;
 }
@@ -398,8 +397,7 @@ HWY_INLINE void write_pieces(const SetupInput& in, const PieceLanes& from, std::
   const I128 d;
   const SampleOffset at = kMoved ? in.samples[number] : SampleOffset{};
   alignas(16) const std::int32_t by[2][4] = {{at.x, at.x, at.x, at.y}, {at.y, at.y, 0, 0}};
-  const std::uint32_t flags =
-      in.flags | (in.together ? kAllSamples : 0) | number << kSampleShift;
+  const std::uint32_t flags = in.flags | (in.together ? kAllSamples : 0) | number << kSampleShift;
   const auto load = [&](const std::int32_t* part, std::uint32_t i, int half) HWY_ATTR {
     const auto v = hn::Load(d, part + i * 4);
     return kMoved ? hn::Sub(v, hn::Load(d, by[half])) : v;
