@@ -139,10 +139,10 @@ class SampledBin {
     if (block.mask == 0) return;
     alignas(64) std::uint64_t own[64];
     context_.kernel->keys(piece, block, own);
+    std::uint64_t* const place = &keys_.at(block.bx * kBlockSize, block.by * kBlockSize, sample);
     for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
-      const int i = std::countr_zero(m);
-      std::uint64_t& key = keys_.at(block.bx * kBlockSize + i % kBlockSize,
-                                    block.by * kBlockSize + i / kBlockSize, sample);
+      const auto i = static_cast<std::size_t>(std::countr_zero(m));
+      std::uint64_t& key = place[i / kBlockSize * SampledKeys::kRow + i % kBlockSize * 4];
       key = std::max(key, own[i]);
     }
   }

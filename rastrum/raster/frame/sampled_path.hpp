@@ -1,7 +1,8 @@
-// Several samples a pixel of opaque surfaces: the fast path (fast_path.hpp) for each sample, since
-// what a sample sees is what the pixels' centres see of moved triangles (draws/samples.hpp). Every
-// sample has its own lists of pieces and its own keys of a bin, which stay in the thread's cache;
-// a pixel's colour is found from them at once (resolve/sampled_colors.hpp).
+// Several samples a pixel of opaque surfaces: the fast path (fast_path.hpp) with keys for each
+// sample of a bin, side by side in the thread's cache. A triangle is set up, binned and tested
+// against what hides once, and raises the keys of all samples at once (Kernels::raise_samples,
+// decision 0063); what is tested, clipped or no triangle goes sample by sample, moved as samples lie
+// (draws/samples.hpp). A pixel's colour is found from all its keys (resolve/sampled_colors.hpp).
 #pragma once
 
 #include <memory>
@@ -15,8 +16,8 @@ namespace rastrum::raster {
 /// are not drawn over a picture. That nothing blends is for the caller to know.
 [[nodiscard]] bool is_sampled(const FrameRequest& request);
 
-/// Work O(samples · (triangles + (bin, piece) pairs + blocks)); memory that of the fast path times
-/// the samples. All triangles of a view are kept at once.
+/// Work O(triangles + (bin, piece) pairs + samples · samples in boxes); memory that of the fast
+/// path, and a thread's 34 KB for each sample. All triangles of a view are kept at once.
 [[nodiscard]] std::unique_ptr<Method> make_sampled_path(MemoryAccount& memory);
 
 }  // namespace rastrum::raster
