@@ -145,6 +145,12 @@ TERRAIN = [
           f"--fog 0.0012,400 --shadows sharp --sun 300,25 --sky '#98b4e0' {SIZE}"),
     Entry("hills_soft", "The same by a low sun with soft shadows", "terrain --function noise --position 300,900 --distance 2500 "
           f"--fog 0.0008,600 --shadows soft --sun 280,8 --sky '#c8a888' {SIZE}"),
+    Entry("hills_lights", "The same under a sky, with a sun of its own and a tone", "terrain --function noise --position 300,900 "
+          "--altitude 112 --horizon 110 --distance 2500 --light environment:sky --light directional:0.8,-0.5,0.3:intensity=2 "
+          f"--tone aces --exposure -0.8 --shadows sharp --environment-behind --mesh builtin:teapot@x=345,y=780,scale=9 {SIZE}"),
+    Entry("jotunheimen_heights", "Their heights as numbers, with a bar, axes and the map's box", "terrain --height "
+          "DATA/terrain/jotunheimen512.bin --scalars height --cmap viridis --bar Height --tile clamp --axes --bounds --shadows sharp "
+          f"--sun 300,30 {SIZE}"),
     Entry("jotunheimen", "Real mountains", "terrain --height DATA/terrain/jotunheimen512.bin --color "
           f"DATA/terrain/jotunheimen-texture.jpg --shadows soft --sun 300,20 --sky '#98b4e0' {SIZE}"),
 ]

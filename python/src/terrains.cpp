@@ -15,6 +15,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <rastrum/annotate.hpp>
 #include <rastrum/color_map.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/light.hpp>
