@@ -130,7 +130,7 @@ def test_a_forked_child_draws_the_same(heights):
     ({"lights": "studio", "tone": "loud"}, "tone"), ({"lights": "studio", "exposure": np.inf}, "exposure"),
     ({"lights": [rr.Light.ambient()] * 257}, "257 lights"), ({"clim": (0, 1)}, "clim"), ({"cmap": "nope"}, "nope"),
     ({"cmap": "gray", "colors": np.zeros((4, 4, 3), np.uint8)}, "cmap"),
-    ({"cmap": rr.ColorMapping("gray", isolines=[1])}, "isolines"), ({"cmap": "gray", "clim": (3, 1)}, "range"),
+    ({"cmap": rr.ColorMapping("gray", isolines=[1])}, "isolines"), ({"cmap": "gray", "clim": (3, 1)}, "clim"),
 ])
 def test_what_cannot_be_lit_is_named(heights, given, match):
     with pytest.raises(rr.Error, match=match):
