@@ -56,15 +56,15 @@ TEST(Distances, AreTheFormulasBitsOnEveryInstructionSet) {
       const int x0 = static_cast<int>(seed) % 40 * 8, y0 = static_cast<int>(seed) % 25 * 8;
       for (const Isa isa : available_isas()) {
         alignas(64) float z[64], away[64], alone[64];
-        const float nothing = seed % 2 == 0 ? kInfinity : 0;
-        distance_kernel(isa)(scene, keys, x0, y0, nothing, z, away);
-        distance_kernel(isa)(scene, keys, x0, y0, nothing, alone, nullptr);
+        const float no_distance = seed % 2 == 0 ? kInfinity : 0;
+        distance_kernel(isa)(scene, keys, x0, y0, no_distance, z, away);
+        distance_kernel(isa)(scene, keys, x0, y0, no_distance, alone, nullptr);
         for (int i = 0; i < 64; ++i) {
           const auto d = std::bit_cast<float>(static_cast<std::uint32_t>(keys[i] >> kIdBits));
           ASSERT_EQ(alone[i], z[i]);
           if (!(d > 0)) {
-            ASSERT_EQ(z[i], nothing);
-            ASSERT_EQ(away[i], nothing);
+            ASSERT_EQ(z[i], no_distance);
+            ASSERT_EQ(away[i], no_distance);
             continue;
           }
           const double wide = view_distance(camera, d);
