@@ -91,7 +91,9 @@ TEST(NarrowOutputs, CountFromPassToPass) {
   renderer.render(binding.view(), camera, frame,
                   {.ids32 = ids, .keys = keys, .load = true, .first_id = 100});
   for (std::size_t i = 0; i < wide.pixels().size(); ++i)
-    if (wide.pixels()[i] >= 0) ASSERT_EQ(ids.pixels()[i], wide.pixels()[i] + 100);
+    if (wide.pixels()[i] >= 0) {
+      ASSERT_EQ(ids.pixels()[i], wide.pixels()[i] + 100);
+    }
 }
 
 TEST(NarrowOutputs, RefuseNumbersThatDoNotFit) {
