@@ -109,23 +109,12 @@ void check_ground(GroundOptions& ground, const TerrainSceneArguments& a, const F
     throw UsageError("--bounds", "a function has no ends; it is of --height");
 }
 
-GroundLights ground_lights(const TerrainSceneArguments& a, const FrameOptions& frame) {
-  GroundLights ground;
-  ground.lights = frame.lights;
-  ground.shadows = a.light.shadows;
-  ground.sun_radius_deg = a.light.sun_radius_deg;
-  ground.march = a.light.march;
-  ground.tone = frame.tone;
-  ground.smooth = a.options.filter == terrain::MapFilter::bilinear;
-  return ground;
-}
-
 void draw_ground_annotations(const GroundOptions& ground, const LoadedTerrain& source,
                              const terrain::Terrain& terrain,
                              const terrain::TerrainOptions& options,
                              const terrain::TerrainCamera& camera,
                              const terrain::TerrainTargets& picture, const overlay::Look& look) {
-  if (ground.bounds)
+  if (ground.bounds && terrain.is_map())  // a function has no ends
     draw_terrain_bounds(terrain, source.cells_a_unit(), options, camera, picture, look);
   if (ground.axes) draw_terrain_axes(options, camera, picture, overlay::Corner::bottom_left, look);
   if (source.numbers() != nullptr)

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include <rastrum/frame.hpp>
 #include <rastrum/on_terrain.hpp>
@@ -26,6 +27,13 @@ struct GroundOptions {
   [[nodiscard]] bool draws() const { return axes || bounds || heights.bar(); }
 };
 
+/// What a window shows of it, and how it was said.
+struct GroundShown {
+  FrameOptions frame;  ///< lights, their tone, and whether the environment is behind
+  GroundOptions ground;
+  std::vector<Parser::Given> given;
+};
+
 /// Adds --lights, --light, --tone, --exposure and --environment-behind, which fill `frame`: that of
 /// what stands on the ground has the same.
 void add_ground_lights(Parser& app, FrameOptions& frame, LightChoice& choice);
@@ -37,9 +45,6 @@ void add_ground_options(Parser& app, GroundOptions& ground);
 void check_ground(GroundOptions& ground, const TerrainSceneArguments& a, const FrameOptions& frame,
                   const LightChoice& choice, bool has_colors,
                   const std::function<bool(const char*)>& given);
-
-/// The frame's lights over ground, with the terrain's own shadows.
-[[nodiscard]] GroundLights ground_lights(const TerrainSceneArguments& a, const FrameOptions& frame);
 
 /// The bar, the axes and the box over a finished picture, whose depth hides the box.
 void draw_ground_annotations(const GroundOptions& ground, const LoadedTerrain& source,

@@ -26,6 +26,7 @@
 #include "ground_options.hpp"
 #include "json_fields.hpp"
 #include "json_file.hpp"
+#include "lit_ground.hpp"
 #include "mp4.hpp"
 #include "numbered.hpp"
 #include "output.hpp"
@@ -175,42 +176,6 @@ nlohmann::ordered_json terrain_stats(std::vector<TerrainStats> frames, const Ter
             {"max", frames.back().frame_ms},
             {"frames", frames.size()}}}};
 }
-
-/// The terrain in its light, lit again where lights move with the camera.
-class LitGround {
- public:
-  LitGround(const TerrainArguments& a, const LoadedTerrain& source,
-            const terrain::TerrainCamera& camera)
-      : source_(source),
-        options_(a.options),
-        by_sun_(a.frame().lights.empty()),
-        moves_(std::ranges::any_of(a.frame().lights, &Light::of_camera)),
-        lights_(ground_lights(a, a.frame())),
-        lit_(by_sun_ ? source.lit(a.light, a.options) : source.lit(at(camera), a.options)) {}
-
-  [[nodiscard]] const terrain::Terrain& terrain() const { return lit_; }
-  /// As `camera` sees it.
-  const terrain::Terrain& seen_from(const terrain::TerrainCamera& camera) {
-    if (!moves_) return lit_;
-    const std::optional<double> clearance = options_.classic ? 10 : options_.ground_clearance;
-    const terrain::TerrainCamera stands =
-        clearance ? terrain::above_ground(lit_, camera, *clearance, options_.tiling) : camera;
-    if (stands != lights_.camera) lit_ = source_.lit(at(stands), options_);
-    return lit_;
-  }
-
- private:
-  const GroundLights& at(const terrain::TerrainCamera& camera) {
-    lights_.camera = camera;
-    return lights_;
-  }
-
-  const LoadedTerrain& source_;
-  const TerrainLook& options_;
-  bool by_sun_, moves_;
-  GroundLights lights_;
-  terrain::Terrain lit_;
-};
 
 /// A lit terrain and what draws it; times of loading and lighting for the statistics.
 struct Stage {
@@ -363,7 +328,7 @@ int run(TerrainArguments& a) {
   const terrain::TerrainCamera camera = camera_of(a, source);
   // Far ground in fog becomes what is behind it.
   if (frame.environment_behind) a.options.sky = horizon_color(frame.lights, frame.tone, camera);
-  LitGround ground(a, source, camera);
+  LitGround ground(source, a.options, a.light, frame, camera);
   if (objects) {
     objects->place(ground.terrain());
     if (!a.quiet && !objects->warnings().empty()) {

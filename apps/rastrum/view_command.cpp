@@ -32,6 +32,9 @@ struct ViewArguments : SceneArguments {
 };
 struct ViewTerrainArguments : TerrainSceneArguments {
   std::vector<std::string> maps;
+  GroundShown shown;
+  LightChoice lights;
+  std::function<bool(const char*)> is_given;  ///< whether an option was
   WindowArguments window;
 };
 
@@ -88,8 +91,11 @@ std::vector<TerrainInput> maps_of(const ViewTerrainArguments& a) {
 int run(ViewTerrainArguments& a) {
   settle(a);
   std::vector<TerrainInput> maps = maps_of(a);
+  TerrainSceneArguments first = a;
+  first.input = maps.front();
+  check_ground(a.shown.ground, first, a.shown.frame, a.lights, true, a.is_given);
   const window::Display display;  // before a large file is read
-  auto subject = std::make_unique<window::TerrainSubject>(a, std::move(maps));
+  auto subject = std::make_unique<window::TerrainSubject>(a, a.shown, std::move(maps));
   window::TerrainSubject& terrain = *subject;
   return show(std::move(subject), a.window, a.options.width, a.options.height,
               [&terrain] { window::draw_terrain_controls(terrain); });
@@ -181,13 +187,21 @@ Command add_view_terrain_command(Parser& app) {
   add_terrain_camera(view, a);
   add_terrain_picture(view, a);
   add_terrain_light(view, a);
+  add_ground_lights(view, a.shown.frame, a.lights);
+  add_ground_options(view, a.shown.ground);
   add_terrain_machine(view, a);
-  view.footer(keys_help(window::TerrainControl::keys(), window::TerrainSubject::command_keys()) +
-              "Drag to turn, the wheel climbs; a height map dropped on the window is opened.\n"
-              "\nExamples:\n"
-              "  rastrum view --terrain --height alps.png --color alps.jpg --shadows sharp\n"
-              "  rastrum view --terrain one.dem two.tif --function noise");
-  return {view, [arguments] { return run(*arguments); }};
+  view.footer(
+      keys_help(window::TerrainControl::keys(), window::TerrainSubject::command_keys()) +
+      "Drag to turn, the wheel climbs; a height map dropped on the window is opened.\n"
+      "\nExamples:\n"
+      "  rastrum view --terrain --height alps.png --color alps.jpg --shadows sharp\n"
+      "  rastrum view --terrain one.dem two.tif --function noise\n"
+      "  rastrum view --terrain --height alps.dem --lights studio --cmap viridis --bar Height");
+  return {view, [arguments, view] {
+            arguments->shown.given = view.all_given();
+            arguments->is_given = [view](const char* option) { return view.given(option); };
+            return run(*arguments);
+          }};
 }
 
 }  // namespace rastrum::cli

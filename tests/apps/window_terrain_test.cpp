@@ -222,7 +222,8 @@ class TerrainInWindow : public Program {
     TerrainInput map, function;
     map.height = path("h.png");
     function.function = "noise";
-    subject = std::make_unique<TerrainSubject>(arguments, std::vector{map, function});
+    subject =
+        std::make_unique<TerrainSubject>(arguments, cli::GroundShown{}, std::vector{map, function});
   }
   /// What the window shows now.
   [[nodiscard]] Image<Rgba8> shown() const { return subject->draw(96, 64, false)().image; }
@@ -233,6 +234,18 @@ class TerrainInWindow : public Program {
                    {"terrain", "--size", "96x64", "--path", "camera.json", "-o", "r.png"});
     must(options);
     return png("r.png");
+  }
+  /// The line has these words, and draws what the window shows.
+  void expect_said(const std::string& words) const {
+    const auto texts = subject->same_picture(96, 64, "said.png");
+    const std::string& line = texts.front().second;
+    ASSERT_TRUE(line.starts_with("rastrum terrain --")) << line;
+    EXPECT_NE(line.find(words), std::string::npos) << line;
+    const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
+                                line.substr(7, line.size() - 8) + " --quiet";
+    ASSERT_EQ(std::system(command.c_str()), 0) << command;
+    EXPECT_TRUE(same_pixels(shown(), png("said.png"))) << line;
+    std::filesystem::remove(path("said.png"));
   }
   cli::TerrainSceneArguments arguments;
   std::unique_ptr<TerrainSubject> subject;
@@ -254,17 +267,6 @@ TEST_F(TerrainInWindow, PicturesAreTheCommands) {
 
 // Whatever the window shows, a line says it, angles of keys and drags too.
 TEST_F(TerrainInWindow, ACommandLineDrawsTheSamePicture) {
-  const auto expect_said = [&](const std::string& words) {
-    const auto texts = subject->same_picture(96, 64, "said.png");
-    const std::string& line = texts.front().second;
-    ASSERT_TRUE(line.starts_with("rastrum terrain --")) << line;
-    EXPECT_NE(line.find(words), std::string::npos) << line;
-    const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
-                                line.substr(7, line.size() - 8) + " --quiet";
-    ASSERT_EQ(std::system(command.c_str()), 0) << command;
-    EXPECT_TRUE(same_pixels(shown(), png("said.png"))) << line;
-    std::filesystem::remove(path("said.png"));
-  };
   expect_said("--height ");
   for (const char* name : {"a", "w", "left", "o", "m", "j", "down", "q"}) {
     subject->handle(key(name));
@@ -288,6 +290,63 @@ TEST_F(TerrainInWindow, ACommandLineDrawsTheSamePicture) {
       std::string::npos);
 }
 
+TEST_F(TerrainInWindow, LightsAndWhatIsOverTheGroundAreTheCommands) {
+  const std::vector<std::string> sky{"--height",
+                                     "h.png",
+                                     "--light",
+                                     "environment:sky",
+                                     "--light",
+                                     "directional:1,-1,0.3:intensity=2",
+                                     "--shadows",
+                                     "sharp",
+                                     "--tone",
+                                     "aces",
+                                     "--exposure",
+                                     "-0.5",
+                                     "--environment-behind",
+                                     "--axes",
+                                     "--bounds"};
+  const Image<Rgba8> by_sun = shown();
+  std::string line;
+  for (std::size_t i = 2; i < sky.size(); ++i) line += (i == 2 ? "" : " ") + sky[i];
+  subject->set_options(line);
+  const Image<Rgba8> lit = shown();
+  EXPECT_FALSE(same_pixels(lit, by_sun));
+  EXPECT_TRUE(same_pixels(lit, rendered(sky)));
+  expect_said("--environment-behind");
+  const std::string python = subject->same_picture(96, 64, "said.png").back().second;
+  for (const char* const part :
+       {"lights=[rr.Light.environment(\"sky\"", "rr.Light.directional((1, -1, 0.3", "tone=\"aces\"",
+        "exposure=-0.5", "environment_behind=True", "\"axes\"", "no words for it: --bounds"})
+    EXPECT_NE(python.find(part), std::string::npos) << part << '\n' << python;
+
+  // What the panel has, in the place of what was given; a headlight goes where one goes.
+  for (const char* const name : {"studio", "headlight", "sun"}) {
+    TerrainSubject::Settings s = subject->settings();
+    s.lights = name;
+    s.shown.ground.bounds = false;
+    subject->set(s);
+    expect_said(std::string(name) == "sun" ? "--shadows sharp" : name);
+    subject->handle(key("w"));
+    subject->advance(0.1);
+    subject->handle(key("w", Event::Kind::key_up));
+    expect_said("--axes");
+  }
+  EXPECT_EQ(subject->same_picture(9, 9, "a.png").front().second.find("--light"), std::string::npos);
+  TerrainSubject::Settings s = subject->settings();
+  s.lights.clear();
+  subject->set(s);
+  expect_said("environment:sky");
+
+  subject->set_options("--cmap plasma --steps 6 --bar Height --bar-unit m");
+  expect_said("--cmap plasma");
+  EXPECT_NE(subject->same_picture(9, 9, "a.png").back().second.find("--cmap, --bar"),
+            std::string::npos);
+  EXPECT_THROW(subject->set_options("--sun 10,10"), Error) << "lights are in its place";
+  EXPECT_THROW(subject->set_options("--light point:0,0,0:intensity=-1"), Error);
+  expect_said("--cmap plasma");
+}
+
 TEST_F(TerrainInWindow, OtherInputsAreSaidToo) {
   for (const auto& options :
        {std::vector<std::string>{"--function", "noise"}, {"--function", "20*sin(x/9)"}}) {
@@ -296,7 +355,8 @@ TEST_F(TerrainInWindow, OtherInputsAreSaidToo) {
     a.options.height = 64;
     TerrainInput input;
     input.function = options[1];
-    subject = std::make_unique<TerrainSubject>(a, std::vector<TerrainInput>{input});
+    subject =
+        std::make_unique<TerrainSubject>(a, cli::GroundShown{}, std::vector<TerrainInput>{input});
     const std::string line = subject->same_picture(96, 64, "said.png").front().second;
     const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
                                 line.substr(7, line.size() - 8) + " --quiet";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "same_picture.hpp"
 
@@ -13,5 +14,11 @@ namespace rastrum::cli::window {
 [[nodiscard]] std::string tone_name(Tone tone);
 /// As --lights has it; empty: what --light says, or nothing.
 [[nodiscard]] std::string lights_name(const ShownPicture& shown);
+
+/// What stands behind Python's `lights=`, in the order in which they are added up; empty: nothing.
+/// `name`: of --lights; `as_given`: those of --light are among `lights`, the last of them.
+[[nodiscard]] std::string python_lights(const std::string& name, bool as_given,
+                                        const std::vector<Light>& lights,
+                                        const std::vector<Parser::Given>& given);
 
 }  // namespace rastrum::cli::window

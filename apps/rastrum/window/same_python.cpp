@@ -87,24 +87,25 @@ std::string python_light(const Light& light, const std::string& text) {
   return std::string("rr.Light.").append(kind).append("(").append(joined(said)).append(")");
 }
 
-/// What stands behind `lights=`, in the order in which they are added up; empty: nothing.
-std::string python_lights(const ShownPicture& shown) {
-  const MeshSettings& s = shown.settings;
+}  // namespace
+
+std::string python_lights(const std::string& name, bool as_given, const std::vector<Light>& lights,
+                          const std::vector<Parser::Given>& given) {
   std::vector<std::string> all;
-  const std::string name = lights_name(shown);
   if (!name.empty() && name != "file") all.push_back(literal(name));
-  if (s.lights.empty()) {
+  if (as_given) {
     // Those of --light stand behind those of --lights.
     std::vector<std::string> texts;
-    for (const Parser::Given& g : shown.arguments.given)
+    for (const Parser::Given& g : given)
       if (g.name == "--light") texts.insert(texts.end(), g.texts.begin(), g.texts.end());
-    const std::vector<Light>& lights = s.render.lights;
     for (std::size_t i = 0; i < texts.size(); ++i)
       all.push_back(python_light(lights[lights.size() - texts.size() + i], texts[i]));
   }
   if (name == "file") all.push_back(literal(name));
   return all.size() == 1 ? all.front() : all.empty() ? "" : listed(all);
 }
+
+namespace {
 
 /// Options that the window repeats and Python has words for.
 constexpr std::string_view kPythonHas[] = {
@@ -214,7 +215,10 @@ std::string python_lines(const ShownPicture& shown, const std::string& png) {
     all += ", transparency=" + literal(transparency_name(frame.transparency));
   if (frame.cull != Cull::none)
     all += std::string(", cull=") + (frame.cull == Cull::back ? "\"back\"" : "\"front\"");
-  if (const std::string lights = python_lights(shown); !lights.empty()) all += ", lights=" + lights;
+  if (const std::string lights = python_lights(lights_name(shown), s.lights.empty(),
+                                               s.render.lights, shown.arguments.given);
+      !lights.empty())
+    all += ", lights=" + lights;
   if (frame.shadows) all += ", shadows=True";
   if (frame.environment_behind) all += ", environment_behind=True";
   if (frame.tone.tone != Tone::none) all += ", tone=" + literal(tone_name(frame.tone.tone));

@@ -1,12 +1,17 @@
 #include "same_terrain.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <string_view>
 #include <vector>
 
+#include "light_options.hpp"
 #include "picture_text.hpp"
+#include "same_parts.hpp"
 
 namespace rastrum::cli::window {
 namespace {
@@ -58,6 +63,14 @@ double fov_of(const ShownTerrain& t) {
   return t.look.classic ? t.look.fov_rad : t.pose.fov_rad;
 }
 
+/// As --lights has it; empty: what --light says.
+std::string lights_name(const ShownTerrain& t) {
+  if (!t.lights.empty()) return t.lights;
+  for (const Parser::Given& g : t.shown.given)
+    if (g.name == "--lights") return g.texts.front();
+  return "";
+}
+
 void say_place(Words& say, const TerrainPose& pose) {
   const terrain::TerrainCamera& c = pose.camera;
   say("--position", number(c.x) + "," + number(c.y))("--altitude", number(c.altitude));
@@ -78,9 +91,11 @@ void say_look(Words& say, const ShownTerrain& t) {
   else
     say("--filter", filter_name(o.filter));
   if (o.projection == terrain::Projection::cylindrical) say("--projection", "cylindrical");
-  if (o.sky != usual.sky || !t.sky_dims) {
+  const bool by_sun = t.frame.lights.empty();
+  if (by_sun ? o.sky != usual.sky || !t.sky_dims
+             : o.sky != usual.sky && !t.frame.environment_behind) {
     say("--sky", hex(o.sky));
-    if (t.sky_dims && !o.classic) say("--dim-sky");
+    if (by_sun && t.sky_dims && !o.classic) say("--dim-sky");
   }
   if (o.fog.density != 0) {
     std::string fog = number(o.fog.density) + "," + number(o.fog.start);
@@ -93,11 +108,39 @@ void say_look(Words& say, const ShownTerrain& t) {
 void say_light(Words& say, const ShownTerrain& t) {
   const terrain::Light usual;
   const terrain::Sun& sun = t.pose.sun;
-  if (sun.azimuth_deg != usual.sun.azimuth_deg || sun.elevation_deg != usual.sun.elevation_deg)
+  if (t.frame.lights.empty() &&
+      (sun.azimuth_deg != usual.sun.azimuth_deg || sun.elevation_deg != usual.sun.elevation_deg))
     say("--sun", number(sun.azimuth_deg) + "," + number(sun.elevation_deg));
   if (t.light.shadows != usual.shadows) say("--shadows", shadows_name(t.light.shadows));
   if (t.light.sun_radius_deg != usual.sun_radius_deg)
     say("--sun-radius", number(t.light.sun_radius_deg));
+}
+
+/// Options of the ground that are said again as they were given.
+constexpr std::string_view kNumberOptions[] = {
+    "--scalars",    "--cmap",  "--range", "--log",       "--symmetric", "--steps",
+    "--categories", "--below", "--above", "--nan-color", "--bar",       "--bar-unit"};
+
+bool shows_numbers(const ShownTerrain& t) {
+  return !t.shown.ground.heights.name.empty() && !t.input.color;
+}
+
+void say_ground(Words& say, const ShownTerrain& t) {
+  if (!t.lights.empty() && t.lights != "sun") say("--lights", t.lights);
+  for (const Parser::Given& g : t.shown.given) {
+    const bool repeated =
+        (t.lights.empty() && (g.name == "--light" || g.name == "--lights")) ||
+        (shows_numbers(t) && std::ranges::find(kNumberOptions, g.name) != std::end(kNumberOptions));
+    if (!repeated) continue;
+    if (g.texts.empty()) say(g.name);
+    for (const std::string& text : g.texts) say(g.name, text);
+  }
+  const ToneMapping& tone = t.frame.tone;
+  if (tone.tone != Tone::none) say("--tone", tone_names()[static_cast<std::size_t>(tone.tone)]);
+  if (tone.exposure_stops != 0) say("--exposure", number(static_cast<double>(tone.exposure_stops)));
+  if (t.frame.environment_behind) say("--environment-behind");
+  if (t.shown.ground.axes) say("--axes");
+  if (t.shown.ground.bounds && t.input.height) say("--bounds");
 }
 
 /// What neither says; a comment.
@@ -139,6 +182,7 @@ std::string terrain_command_line(const ShownTerrain& t, const std::string& png) 
   say_place(say, t.pose);
   say_look(say, t);
   say_light(say, t);
+  say_ground(say, t);
   return without_words(t) + say("-o", png).take() + "\n";
 }
 
@@ -156,6 +200,9 @@ std::string terrain_python(const ShownTerrain& t, const std::string& png) {
   lacks("--classic", o.classic);
   lacks("--step", o.step != 0 && !o.classic);
   lacks("--dz", o.dz != usual.dz);
+  // Python's numbers are cells.
+  lacks("--cmap, --bar", shows_numbers(t));
+  lacks("--bounds", t.shown.ground.bounds && t.input.height);
   if (!missing.empty()) all += "# Not said here, for Python has no words for it: " + missing + "\n";
   if (t.input.height && !t.input.height_scale)
     all +=
@@ -168,7 +215,16 @@ std::string terrain_python(const ShownTerrain& t, const std::string& png) {
     to.push_back(std::string(name).append("=").append(value));
   };
   if (t.input.height_scale) add(map, "height_scale", number(*t.input.height_scale));
-  add(map, "sun", in_brackets({number(t.pose.sun.azimuth_deg), number(t.pose.sun.elevation_deg)}));
+  const bool by_sun = t.frame.lights.empty();
+  if (by_sun)
+    add(map, "sun",
+        in_brackets({number(t.pose.sun.azimuth_deg), number(t.pose.sun.elevation_deg)}));
+  else
+    add(map, "lights",
+        python_lights(lights_name(t), t.lights.empty(), t.frame.lights, t.shown.given));
+  if (t.frame.tone.tone != Tone::none) add(map, "tone", literal(tone_name(t.frame.tone.tone)));
+  if (t.frame.tone.exposure_stops != 0)
+    add(map, "exposure", number(static_cast<double>(t.frame.tone.exposure_stops)));
   if (t.light.shadows != usual_light.shadows)
     add(map, "shadows", literal(shadows_name(t.light.shadows)));
   if (t.light.sun_radius_deg != usual_light.sun_radius_deg)
@@ -188,8 +244,12 @@ std::string terrain_python(const ShownTerrain& t, const std::string& png) {
   add(frame, "fov", number(degrees_of(fov_of(t))));
   if (o.scale_px != 0) add(frame, "scale", number(o.scale_px));
   if (o.projection == terrain::Projection::cylindrical) add(frame, "projection", "\"cylindrical\"");
-  if (o.sky != usual.sky || !t.sky_dims)
+  if (by_sun && (o.sky != usual.sky || !t.sky_dims))
     add(frame, "sky", literal(hex(sky_of(o, t.pose.sun, t.sky_dims))));
+  if (!by_sun && o.sky != usual.sky && !t.frame.environment_behind)
+    add(frame, "sky", literal(hex(o.sky)));
+  if (t.frame.environment_behind) add(frame, "environment_behind", "True");
+  if (t.shown.ground.axes) add(frame, "annotate", "{\"axes\": {}}");
   if (o.fog.density != 0) {
     std::vector<std::string> fog{number(o.fog.density), number(o.fog.start)};
     if (o.fog.color) fog.push_back(literal(hex(*o.fog.color)));

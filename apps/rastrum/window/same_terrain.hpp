@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "ground_options.hpp"
 #include "terrain_control.hpp"
 #include "terrain_options.hpp"
 
@@ -13,6 +14,9 @@ struct ShownTerrain {
   const TerrainLook& look;      ///< but for what the pose has
   const terrain::Light& light;  ///< but for the sun
   bool sky_dims;
+  const GroundShown& shown;   ///< as the command line had it, but for what follows
+  const std::string& lights;  ///< sun, headlight, studio; empty: as given
+  const FrameOptions& frame;  ///< with these lights
   const TerrainPose& pose;
   int width = 0, height = 0;
 };

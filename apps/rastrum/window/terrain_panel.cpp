@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "light_options.hpp"
 #include "panel.hpp"
 #include "terrain_subject.hpp"
 
@@ -28,6 +29,23 @@ bool slide(const char* label, double& value, float least, float most, const char
   return true;
 }
 
+/// Lights in the sun's place, and what is drawn over the ground.
+bool edit_ground(TerrainSubject::Settings& s) {
+  const std::string said = "as given";
+  std::string now = s.lights.empty() ? said : s.lights;
+  bool changed = choose_name("lights", {said, "sun", "headlight", "studio"}, now);
+  if (changed) s.lights = now == said ? "" : now;
+  if (!s.frame().lights.empty()) {
+    ToneMapping& tone = s.shown.frame.tone;
+    changed |= choose_value("tone", tone_names(), tone.tone);
+    if (tone.tone != Tone::none)
+      changed |= ImGui::SliderFloat("exposure", &tone.exposure_stops, -4, 4, "%.1f stops");
+  }
+  changed |= ImGui::Checkbox("axes", &s.shown.ground.axes);
+  ImGui::SameLine();
+  return ImGui::Checkbox("bounds", &s.shown.ground.bounds) || changed;
+}
+
 bool edit_pose(TerrainPose& p) {
   bool changed = slide("distance", p.distance, 10, 10000, "%.0f", ImGuiSliderFlags_Logarithmic);
   changed |= slide("field of view", p.fov_rad, 0.1F, 3, "%.2f rad");
@@ -47,6 +65,7 @@ void draw_terrain_controls(TerrainSubject& subject) {
   terrain::TerrainOptions& o = s.options;
   bool changed = choose_value("filter", {"none", "bilinear", "mip"}, o.filter);
   changed |= choose_value("shadows", {"none", "accumulated", "sharp", "soft"}, s.light.shadows);
+  changed |= edit_ground(s);
   changed |= slide("fog", o.fog.density, 0, 0.02F, "%.4f");
   changed |= slide("fog begins", o.fog.start, 0, 2000, "%.0f");
   changed |= choose_value("tiling", {"repeat", "mirror", "clamp"}, o.tiling);

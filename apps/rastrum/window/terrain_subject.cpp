@@ -9,7 +9,11 @@
 
 #include <rastrum/error.hpp>
 #include <rastrum/family.hpp>
+#include <rastrum/light.hpp>
+#include <rastrum/on_terrain.hpp>
+#include <rastrum/overlay.hpp>
 
+#include "lit_ground.hpp"
 #include "progress.hpp"
 #include "same_terrain.hpp"
 
@@ -23,11 +27,13 @@ constexpr KeyHelp kTerrainSubjectKeys[] = {
     {"c", "next kind of shadows"}, {"g", "fog"},       {"v", "fast, or paper 3's scans"},
     {"t", "next tiling"}};
 
-/// What a lit terrain depends on beside its map.
-auto light_key(const terrain::Light& l, const TerrainOptions& o) {
+/// What a lit terrain depends on beside its map, its numbers and the lights that were said.
+auto light_key(const terrain::Light& l, const TerrainOptions& o, const std::string& lights,
+               const ToneMapping& tone) {
   return std::make_tuple(l.sun.azimuth_deg, l.sun.elevation_deg, l.shadows, l.hill_shading,
                          l.ambient, l.sun_radius_deg, l.march.distance, l.march.steps, o.tiling,
-                         o.filter == terrain::MapFilter::bilinear);
+                         o.filter == terrain::MapFilter::bilinear, o.classic, o.ground_clearance,
+                         lights, tone.tone, tone.exposure_stops);
 }
 
 template <class T>
@@ -46,7 +52,7 @@ std::string name_of(const TerrainInput& input) {
 class TerrainSubject::Stage {
  public:
   /// Reads the map unless it is the one that is there.
-  const LoadedTerrain& map(const TerrainInput& input) {
+  LoadedTerrain& map(const TerrainInput& input) {
     const std::string name = name_of(input);
     if (!source_ || name != name_) {
       lit_.reset();
@@ -61,11 +67,18 @@ class TerrainSubject::Stage {
     source_ = std::move(source);
     name_ = name_of(input);
   }
-  const terrain::Terrain& lit(const terrain::Light& light, const TerrainLook& o) {
-    const auto key = light_key(light, o);
-    if (!lit_ || key != key_) {
-      lit_.emplace(source_->lit(light, o));
+  /// The map that is there, whose heights are numbers where `s` says so and it has no colours.
+  LitGround& lit(const Settings& s, const terrain::Light& light, const TerrainLook& o,
+                 const TerrainInput& input, const terrain::TerrainCamera& camera) {
+    const FrameOptions frame = s.frame();
+    const auto key = light_key(light, o, s.lights, frame.tone);
+    if (!lit_ || key != key_ || said_ != s.said) {
+      lit_.reset();
+      const ScalarOptions& numbers = s.shown.ground.heights;
+      if (!numbers.name.empty() && !input.color) source_->show_numbers(numbers.mapping, o);
+      lit_.emplace(*source_, o, light, frame, camera);
       key_ = key;
+      said_ = s.said;
     }
     return *lit_;
   }
@@ -81,16 +94,29 @@ class TerrainSubject::Stage {
  private:
   std::string name_;
   std::unique_ptr<LoadedTerrain> source_;
-  std::optional<terrain::Terrain> lit_;
-  decltype(light_key({}, {})) key_;
+  std::optional<LitGround> lit_;
+  decltype(light_key({}, {}, {}, {})) key_;
+  std::uint64_t said_ = 0;  ///< Settings::said
   std::optional<terrain::TerrainRenderer> renderer_;
   terrain::TerrainRendererOptions options_;
 };
 
-TerrainSubject::TerrainSubject(const TerrainSceneArguments& arguments,
+FrameOptions TerrainSubject::Settings::frame() const {
+  FrameOptions seen = shown.frame;
+  if (!lights.empty()) {
+    seen.lights.clear();
+    if (lights == "headlight") seen.lights = {headlight()};
+    if (lights == "studio") seen.lights = light_kit();
+    seen.environment_behind = false;
+  }
+  if (seen.lights.empty()) seen.tone = {};
+  return seen;
+}
+
+TerrainSubject::TerrainSubject(const TerrainSceneArguments& arguments, const GroundShown& shown,
                                std::vector<TerrainInput> maps)
     : maps_(std::move(maps)),
-      settings_{arguments.options, arguments.light, arguments.sky_dims || arguments.dim_sky},
+      settings_{arguments.options, arguments.light, arguments.sky_dims || arguments.dim_sky, shown},
       control_(TerrainPose{}),
       width_(arguments.options.width),
       height_(arguments.options.height),
@@ -146,9 +172,16 @@ void TerrainSubject::place(const TerrainPose& pose) {
 }
 
 Subject::Texts TerrainSubject::same_picture(int width, int height, const std::string& png) const {
-  const ShownTerrain shown{
-      maps_[map_], settings_.options, settings_.light, settings_.sky_dims, control_.pose(), width,
-      height};
+  const ShownTerrain shown{maps_[map_],
+                           settings_.options,
+                           settings_.light,
+                           settings_.sky_dims,
+                           settings_.shown,
+                           settings_.lights,
+                           settings_.frame(),
+                           control_.pose(),
+                           width,
+                           height};
   return {{".sh", terrain_command_line(shown, png)}, {".py", terrain_python(shown, png)}};
 }
 
@@ -185,7 +218,8 @@ std::function<Drawn()> TerrainSubject::draw(int width, int height, bool /*glance
   terrain::TerrainCamera camera = pose.camera;
   light.sun = pose.sun;
   o.distance = pose.distance;
-  o.sky = sky_of(o, light.sun, settings_.sky_dims);
+  const FrameOptions frame = settings_.frame();
+  if (frame.lights.empty()) o.sky = sky_of(o, light.sun, settings_.sky_dims);
   if (o.classic)
     o.filter = terrain::MapFilter::none;
   else
@@ -201,13 +235,28 @@ std::function<Drawn()> TerrainSubject::draw(int width, int height, bool /*glance
   o.scale_px *= shrunk;
   o.width = width;
   o.height = height;
-  return [o, light, camera, input = maps_[map_], stage = stage_]() -> Drawn {
+  // Far ground in fog becomes what is behind it.
+  if (frame.environment_behind) o.sky = horizon_color(frame.lights, frame.tone, camera);
+  return [o, light, camera, frame, settings = settings_, input = maps_[map_],
+          stage = stage_]() -> Drawn {
     terrain::TerrainRenderer& renderer = stage->renderer(o);
-    static_cast<void>(stage->map(input));
-    const terrain::Terrain& lit = stage->lit(light, o);
+    const LoadedTerrain& source = stage->map(input);
+    const GroundOptions& ground = settings.shown.ground;
+    LitGround& lit = stage->lit(settings, light, o, input, camera);
     Drawn drawn{Image<Rgba8>(o.width, o.height), true, {}};
+    Image<float> depth;
+    terrain::TerrainTargets picture{.color8 = drawn.image};
+    if (frame.environment_behind || ground.bounds) {
+      depth = Image<float>(o.width, o.height);
+      picture.depth = depth.view();
+    }
     const auto begin = std::chrono::steady_clock::now();
-    const terrain::TerrainStats s = renderer.render(lit, camera, o, {.color8 = drawn.image});
+    const terrain::TerrainStats s = renderer.render(lit.seen_from(camera), camera, o, picture);
+    if (frame.environment_behind)
+      draw_environment_behind(frame.lights, frame.tone, o, s.camera, picture,
+                              o.device == Device::serial ? 1 : o.threads);
+    draw_ground_annotations(ground, source, lit.terrain(), o, s.camera, picture,
+                            overlay::look_on({}));
     const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - begin;
     const auto count = [](std::uint64_t n) { return std::to_string(n); };
     drawn.figures = {ms.count(),
@@ -246,11 +295,21 @@ void TerrainSubject::set_options(const std::string& options) {
   changed.light = settings_.light;
   changed.sky_dims = settings_.sky_dims;
   changed.light.sun = pose.sun;
+  changed.input = maps_[map_];
+  GroundShown shown = settings_.shown;
+  std::vector<Light> lights = std::exchange(shown.frame.lights, {});
+  LightChoice choice;
+  shown.ground.heights.given = nullptr;
   add_terrain_picture(app, changed);
   add_terrain_light(app, changed);
+  add_ground_lights(app, shown.frame, choice);
+  add_ground_options(app, shown.ground);
   add_terrain_machine(app, changed);
   try {
     if (!app.parse(options)) return;  // --help
+    if (!choice.given) shown.frame.lights = std::move(lights);
+    check_ground(shown.ground, changed, shown.frame, choice, true,
+                 [&app](const char* option) { return app.given(option); });
   } catch (const UsageError& e) {
     throw Error(Errc::invalid_argument, options + ": " + e.what());
   }
@@ -259,7 +318,22 @@ void TerrainSubject::set_options(const std::string& options) {
   now.fov_rad = changed.options.fov_rad;
   now.sun = changed.light.sun;
   control_.place(now);
-  set({changed.options, changed.light, changed.sky_dims || changed.dim_sky});
+  const auto is_light = [](const Parser::Given& g) {
+    return g.name == "--light" || g.name == "--lights";
+  };
+  if (choice.given) std::erase_if(shown.given, is_light);
+  for (Parser::Given& g : app.all_given()) {
+    std::erase_if(shown.given, [&](const Parser::Given& old) { return old.name == g.name; });
+    shown.given.push_back(std::move(g));
+  }
+  Settings s = settings_;
+  s.options = changed.options;
+  s.light = changed.light;
+  s.sky_dims = changed.sky_dims || changed.dim_sky;
+  s.shown = std::move(shown);
+  if (choice.given) s.lights.clear();
+  ++s.said;
+  set(std::move(s));
 }
 
 void TerrainSubject::write_camera(const std::filesystem::path& file) const {

@@ -1,11 +1,14 @@
 // A terrain in the window: its maps, options, light and camera.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <rastrum/terrain.hpp>
 
+#include "ground_options.hpp"
 #include "subject.hpp"
 #include "terrain_control.hpp"
 #include "terrain_options.hpp"
@@ -20,11 +23,19 @@ class TerrainSubject final : public Subject {
     TerrainLook options;
     terrain::Light light;
     bool sky_dims = true;
+    GroundShown shown{};
+    /// sun, headlight or studio; empty: as the command line had.
+    std::string lights{};
+    std::uint64_t said = 0;  ///< changes where `shown` is another one's words
+
+    /// `shown.frame` with these lights; without any the sun shines.
+    [[nodiscard]] FrameOptions frame() const;
   };
 
   /// `maps`: what F1 goes through, at least one; the first is read here. `arguments.input` is not
   /// used. Throws Error, UsageError.
-  TerrainSubject(const TerrainSceneArguments& arguments, std::vector<TerrainInput> maps);
+  TerrainSubject(const TerrainSceneArguments& arguments, const GroundShown& shown,
+                 std::vector<TerrainInput> maps);
   ~TerrainSubject() override;
 
   [[nodiscard]] const Settings& settings() const { return settings_; }
