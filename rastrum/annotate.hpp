@@ -16,6 +16,18 @@
 
 namespace rastrum {
 
+/// Edges of the meshes, as black lines.
+struct EdgeLines {
+  double angle_degrees = 0;  ///< as SceneEdges
+  double width_px = 1;       ///< (0, 64]
+  bool operator==(const EdgeLines&) const = default;
+};
+/// A bar of SceneView::scalar_mappings[0].
+struct BarWords {
+  std::string title{}, unit{};
+  bool nan = false;  ///< with a swatch of ScalarMapping::nan
+};
+
 /// What is drawn over a picture, in this order. Lengths follow the picture's size where they are
 /// not given.
 struct Annotations {
@@ -23,20 +35,11 @@ struct Annotations {
   /// radius_px 0: by the picture's smaller side, 1/360 of it from 1 to 64.
   std::optional<EyeDome> dome{};
   std::optional<Silhouettes> silhouettes{};
-  struct Edges {
-    double angle_degrees = 0;  ///< as SceneEdges
-    double width_px = 1;       ///< (0, 64]
-    bool operator==(const Edges&) const = default;
-  };
-  std::optional<Edges> edges{};  ///< of the meshes, as black lines
-  bool bounds = false;           ///< the box of the vertices in use
-  bool axes = false;             ///< in the bottom left corner
-  struct Bar {
-    std::string title{}, unit{};
-    bool nan = false;  ///< with a swatch of ScalarMapping::nan
-  };
-  std::optional<Bar> bar{};  ///< of SceneView::scalar_mappings[0]
-  std::string title{};       ///< UTF-8, with \n between lines
+  std::optional<EdgeLines> edges{};
+  bool bounds = false;  ///< the box of the vertices in use
+  bool axes = false;    ///< in the bottom left corner
+  std::optional<BarWords> bar{};
+  std::string title{};  ///< UTF-8, with \n between lines
   /// At most four: in the bottom right corner, the top left, the top right, the bottom left.
   std::vector<std::string> captions{};
   double text_scale = 1;  ///< of all words and lines of these, (0, 100]
@@ -73,7 +76,7 @@ class Annotator {
   /// A frame by `renderer`, and `annotations` in its colours: Targets::color8, Targets::color or
   /// both; the other targets are as without. What the drawing looks at and `targets` lack is found
   /// beside them (view depth, camera normals, ids, depth). `edges`: of this scene by
-  /// Annotations::Edges::angle_degrees, for who draws many frames; else they are looked for in
+  /// EdgeLines::angle_degrees, for who draws many frames; else they are looked for in
   /// each. The same bits for every number of threads and instruction set. Throws
   /// Error{invalid_argument} without colours, as check() and for a bar of a scene without numbers;
   /// else as Renderer::render.
