@@ -64,8 +64,8 @@ struct DrawTested {
 
 /// Draws the pieces of `scene` that have one of kMayDrop, and no flag of `skip`, onto the keys of
 /// `surface`, where test(key, x, y) holds. Returns the number of fragments before the test. What
-/// became of the primitives is the SurfaceDrawer's to count, and to check. Memory as of its draw().
-/// Work O(primitives + blocks of boxes + fragments). Waits.
+/// became of the primitives is the SurfaceDrawer's to count, the frame's to check. Memory as of
+/// draw(). Work O(primitives + blocks of boxes + fragments). Waits.
 template <class Exec, class Test>
 [[nodiscard]] std::uint64_t draw_tested(Exec& exec, const DeviceScene<Exec>& scene,
                                         const DeviceSurface& surface, const DevicePlan& plan,
