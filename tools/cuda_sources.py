@@ -17,27 +17,33 @@ INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.MULTILIN
 COMMENT = re.compile(r"//[^\n]*")
 FOLDERS = ("rastrum", "bench", "tests")
 BUILD = ("cmake/RastrumCuda.cmake", "rastrum/cuda/CMakeLists.txt")
+NOT_NVCCS = ("rastrum/parallel/cuda/system_cpu.cuh",)  # the half of system.cuh that nvcc does not take
 RECORD = pathlib.Path("tests/cuda/compiled.txt")
 
 
-def sources(root):
-    """How the .cu files are built, they, and every file of the project that they include, directly or not."""
-    waiting = [file for folder in FOLDERS for file in (root / folder).rglob("*.cu")]
-    found = set()
+def device_files(root):
+    """All .cu files of the project."""
+    return sorted(file for folder in FOLDERS for file in (root / folder).rglob("*.cu"))
+
+
+def closure(root, files):
+    """They and every file of the project that nvcc includes for them, directly or not."""
+    waiting, found = list(files), set()
+    left_out = {(root / file).resolve() for file in NOT_NVCCS}
     while waiting:
         file = waiting.pop().resolve()
-        if file in found:
+        if file in found or file in left_out:
             continue
         found.add(file)
         for name in INCLUDE.findall(file.read_text(encoding="utf-8")):
             waiting += [p for p in (file.parent / name, root / name) if p.is_file()]
-    return sorted(found | {(root / file).resolve() for file in BUILD})
+    return sorted(found)
 
 
-def digest(root):
-    """Hexadecimal SHA-256 of the sources' names and texts."""
+def digest(root, files):
+    """Hexadecimal SHA-256 of the files' names and texts, comments left out."""
     total = hashlib.sha256()
-    for file in sources(root):
+    for file in files:
         text = COMMENT.sub("", file.read_text(encoding="utf-8"))
         lines = [line.strip() for line in text.splitlines() if line.strip()]
         total.update(f"{file.relative_to(root.resolve())}\n".encode())
@@ -50,7 +56,8 @@ def main(arguments):
         print(__doc__.split("\n\n")[1], file=sys.stderr)
         return 2
     root = pathlib.Path(arguments[1])
-    now = digest(root)
+    build = {(root / file).resolve() for file in BUILD}
+    now = digest(root, sorted(build.union(closure(root, device_files(root)))))
     if arguments[0] == "record":
         (root / RECORD).write_text(now + "\n", encoding="utf-8")
         return 0

@@ -1,26 +1,39 @@
 #!/usr/bin/env python3
 """What each kernel of ours takes of a GPU, held to what it took when that was last written down.
 
-usage: kernel_budget.py check|record ROOT
+usage: kernel_budget.py check|record [all] ROOT
 
-Compiles the library of device code to PTX and from there for the H100 (sm_90): a minute or more a
-source, and needs nvcc, not a GPU. `record` writes tests/cuda/kernels.txt: registers, bytes of stack,
-of spills, of code a kernel. `check` fails, and names the kernel, where one takes more registers or
-stack, spills more, has a tenth more code than that, or is new; and where PTX has an instruction that
-would round as the processor likes (fma, .approx, .ftz).
+Compiles every .cu file to PTX, and those of the library of device code from there for the H100
+(sm_90): a minute or more a file, and needs nvcc, not a GPU. A file whose text and headers are those
+of the record, comments left out, is not compiled again unless `all` says so; nor is what was
+compiled before, whose results stay in build/budget. RASTRUM_JOBS files are compiled at once.
+
+`record` writes tests/cuda/kernels.txt: registers, bytes of stack, of spills, of code a kernel.
+`check` fails, and names the kernel, where one takes more registers or stack, spills more, has a
+tenth more code than that, or is new. Both print all that differs, and both fail where PTX has an
+instruction of floats that may round in more than one way: fma, mad, .approx, .ftz.
 """
+import concurrent.futures
+import hashlib
+import json
+import os
 import pathlib
 import re
 import subprocess
 import sys
 import tempfile
 
+import cuda_sources
+
 RECORD = pathlib.Path("tests/cuda/kernels.txt")
-FLAGS = ["-std=c++20", "-O3", "-DNDEBUG", "--fmad=false", "--expt-relaxed-constexpr",
-         "-Xcompiler=-ffp-contract=off", "-DRASTRUM_CUDA_LIBRARY_VERSION=\"budget\""]
-ROUNDS_FREELY = re.compile(r"^\s*(?:@%?!?\w+\s+)?((?:fma\.\w+\.f\w+|mad\.\w+\.f\w+|\S*\.approx\S*|\S*\.ftz\S*))\s",
-                           re.MULTILINE)
-OURS = re.compile(r"\b(index_kernel|team_kernel)<")
+CACHE = pathlib.Path("build/budget")
+FORMAT = "1"  # another one where `compiled` changes, so that nothing of before is taken for its result
+LIBRARY = "rastrum"  # the folder whose kernels are counted; the others' are tests' and benchmarks'
+FLAGS = re.compile(r"set\(cuda_flags\s+([^)]*)\)")
+FIGURES = ("registers", "bytes of stack", "bytes of spills", "bytes of code")
+# An instruction of PTX with its types, behind a predicate where it has one: not a name or directive.
+INSTRUCTION = re.compile(r"^\s*(?:@!?%\w+\s+)?([a-z]\w*(?:\.\w+)+)\s", re.MULTILINE)
+OURS = re.compile(r"\bcuda_system::(?:on_gpu::)?(\w+_kernel)<")
 ENTRY = re.compile(r"Compiling entry function '(\w+)'")
 USED = re.compile(r"Used (\d+) registers")
 STACK = re.compile(r"(\d+) bytes stack frame, (\d+) bytes spill stores")
@@ -31,6 +44,24 @@ def run(command):
     if result.returncode != 0:
         raise SystemExit(f"{' '.join(map(str, command))}\n{result.stdout}{result.stderr}")
     return result.stdout + result.stderr
+
+
+def rounds_freely(instruction):
+    """Whether the processor may round it as it likes: one rounding for two, an estimate, or no
+    denormals. Integers' mad is exact, and so is what is named .rn otherwise."""
+    name, *parts = instruction.split(".")
+    floats = any(re.fullmatch(r"f(16|32|64)(x2)?|bf16(x2)?", part) for part in parts)
+    return (name in ("fma", "mad") and floats) or "approx" in parts or "ftz" in parts
+
+
+def instructions_of(ptx):
+    """How many instructions of floats there are, and those that round freely, with how often."""
+    floats, free = 0, {}
+    for instruction in INSTRUCTION.findall(ptx):
+        floats += bool(re.search(r"\.f(32|64)\b", instruction))
+        if rounds_freely(instruction):
+            free[instruction] = free.get(instruction, 0) + 1
+    return floats, free
 
 
 def short(name):
@@ -47,70 +78,147 @@ def short(name):
     return re.sub(r"\s+", " ", name)
 
 
-def kernels_of(root, source, folder):
-    """{name: (registers, stack, spills, code)} of one source, and the instructions that it may not have."""
-    ptx, cubin = folder / "k.ptx", folder / "k.cubin"
-    run(["nvcc", "-ptx", "-arch=compute_90", *FLAGS, "-I", root, source, "-o", ptx])
-    free = sorted(set(ROUNDS_FREELY.findall(ptx.read_text(encoding="utf-8"))))
-    log = run(["ptxas", "-arch=sm_90", "-v", ptx, "-o", cubin])
+def code_bytes(cubin):
+    """{mangled name: bytes of machine code}."""
     sizes = {}
     for line in run(["readelf", "-S", "-W", cubin]).splitlines():
         words = line.replace("[ ", "[").split()
         if len(words) > 5 and words[1].startswith(".text."):
             sizes[words[1][len(".text."):]] = int(words[5], 16)
+    return sizes
+
+
+def kernels_of(log, sizes):
+    """{short name: figures} of our kernels in ptxas's log; several of one name have the largest."""
     found, entry, stack = {}, "", (0, 0)
     for line in log.splitlines():
         if match := ENTRY.search(line):
-            entry = match[1]
+            entry, stack = match[1], (0, 0)
         elif match := STACK.search(line):
             stack = (int(match[1]), int(match[2]))
         elif match := USED.search(line):
             found[entry] = (int(match[1]), *stack, sizes.get(entry, 0))
-    names = run(["c++filt", *found]).splitlines()
+    names = run(["c++filt", *found]).splitlines() if found else []
     ours = {}
     for name, figures in zip(names, found.values()):
-        if not OURS.search(name):
+        if OURS.search(name):
+            key = short(name)
+            ours[key] = [max(a, b) for a, b in zip(ours.get(key, figures), figures)]
+    return ours
+
+
+def compiled(root, source, flags):
+    """What is written down of one source."""
+    with tempfile.TemporaryDirectory() as folder:
+        ptx, cubin = pathlib.Path(folder) / "k.ptx", pathlib.Path(folder) / "k.cubin"
+        run(["nvcc", "-ptx", "-arch=compute_90", *flags, "-I", root, source, "-o", ptx])
+        floats, free = instructions_of(ptx.read_text(encoding="utf-8"))
+        kernels = {}
+        if source.relative_to(root).parts[0] == LIBRARY:
+            log = run(["ptxas", "-arch=sm_90", "-v", ptx, "-o", cubin])
+            kernels = kernels_of(log, code_bytes(cubin))
+    return {"floats": floats, "free": free, "kernels": kernels}
+
+
+def of_source(root, source, flags, digest):
+    """The same, from build/budget where it is there."""
+    kept = root / CACHE / f"{digest}.json"
+    if kept.is_file():
+        return json.loads(kept.read_text(encoding="utf-8"))
+    result = compiled(root, source, flags)
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    kept.write_text(json.dumps(result), encoding="utf-8")
+    return result
+
+
+class Record:
+    """tests/cuda/kernels.txt: a digest a source, figures a kernel, by 'source: kernel'."""
+
+    def __init__(self, file):
+        self.digests, self.kernels = {}, {}
+        for line in file.read_text(encoding="utf-8").splitlines() if file.is_file() else []:
+            if line.startswith("## "):
+                source, digest = line[3:].split()
+                self.digests[source] = digest
+            elif not line.startswith("#"):
+                figures, name = line.split("\t")
+                self.kernels[name] = [int(figure) for figure in figures.split()]
+
+    def text(self):
+        lines = ["# Written by tools/kernel_budget.py record, with nvcc for sm_90: a line with ## for each",
+                 "# source and what it was, then registers, bytes of stack, of spills, of code a kernel."]
+        for source, digest in sorted(self.digests.items()):
+            lines.append(f"## {source} {digest}")
+            lines += [f"{' '.join(map(str, figures))}\t{name}" for name, figures in sorted(self.kernels.items())
+                      if name.startswith(f"{source}: ")]
+        return "\n".join(lines) + "\n"
+
+
+def differences(before, now):
+    """(what is worse, what is better or gone), a line each."""
+    worse, other = [], []
+    for name, figures in sorted(now.items()):
+        known = before.get(name)
+        if known is None:
+            worse.append(f"{name}: is new, {', '.join(f'{n} {what}' for n, what in zip(figures, FIGURES))}")
             continue
-        before = ours.get(short(name), figures)
-        ours[short(name)] = tuple(map(max, before, figures))
-    return ours, free
+        changes = [f"{may} → {has} {what}" for has, may, what in zip(figures, known, FIGURES) if has != may]
+        grown = any(has > may for has, may in zip(figures[:3], known)) or figures[3] > known[3] * 1.1
+        if changes:
+            (worse if grown else other).append(f"{name}: {', '.join(changes)}")
+    other += [f"{name}: is gone" for name in sorted(before.keys() - now.keys())]
+    return worse, other
+
+
+def compare(root, command, everything):
+    record = Record(root / RECORD)
+    text = (root / cuda_sources.BUILD[0]).read_text(encoding="utf-8")
+    flags = ["-std=c++20", "-O3", "-DNDEBUG",
+             *(flag for flag in FLAGS.search(text)[1].split() if not flag.startswith("-Werror"))]
+    how = " ".join([FORMAT, *flags]) + run(["nvcc", "--version"])
+    digests, todo = {}, []
+    for source in cuda_sources.device_files(root):
+        where = str(source.relative_to(root))
+        files = cuda_sources.digest(root, cuda_sources.closure(root, [source]))
+        digests[where] = hashlib.sha256((how + files).encode()).hexdigest()[:16]
+        if everything or record.digests.get(where) != digests[where]:
+            todo.append(source)
+    jobs = int(os.environ.get("RASTRUM_JOBS", os.cpu_count() or 1))
+    print(f"{len(digests) - len(todo)} of {len(digests)} files are as they were recorded", flush=True)
+    changed, free = {}, []
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        results = {str(source.relative_to(root)): pool.submit(
+            of_source, root, source, flags, digests[str(source.relative_to(root))]) for source in todo}
+        for where, future in results.items():
+            result = future.result()
+            changed.update({f"{where}: {name}": figures for name, figures in result["kernels"].items()})
+            free += [f"{where}: PTX has {count} × {name}" for name, count in result["free"].items()]
+            print(f"{where}: {len(result['kernels'])} kernels of ours, "
+                  f"{result['floats']} instructions of floats", flush=True)
+    now = {name: figures for name, figures in record.kernels.items()
+           if name.split(": ")[0] in digests and name.split(": ")[0] not in results}
+    now.update(changed)
+    worse, other = differences(record.kernels, now)
+    for line in free + worse + other:
+        print(line)
+    print(f"{len(now)} kernels: {len(worse)} new or larger, {len(other)} smaller or gone; "
+          f"{len(free)} kinds of instructions that round freely")
+    if command == "check":
+        return 1 if free or worse else 0
+    if free:
+        print(f"{RECORD} is not written")
+        return 1
+    record.digests, record.kernels = digests, now
+    (root / RECORD).write_text(record.text(), encoding="utf-8")
+    return 0
 
 
 def main(arguments):
-    if len(arguments) != 2 or arguments[0] not in ("check", "record"):
+    everything = arguments[1:2] == ["all"]
+    if len(arguments) != 2 + everything or arguments[0] not in ("check", "record"):
         print(__doc__.split("\n\n")[1], file=sys.stderr)
         return 2
-    root = pathlib.Path(arguments[1])
-    now, wrong = {}, []
-    for source in sorted((root / "rastrum").rglob("*.cu")):
-        with tempfile.TemporaryDirectory() as folder:
-            ours, free = kernels_of(root, source, pathlib.Path(folder))
-        where = source.relative_to(root)
-        wrong += [f"{where}: PTX has {instruction}" for instruction in free]
-        now.update({f"{where.stem}: {name}": figures for name, figures in ours.items()})
-    text = ["# registers, bytes of stack, of spills, of code on sm_90; written by tools/kernel_budget.py record"]
-    text += [f"{' '.join(map(str, figures))}\t{name}" for name, figures in sorted(now.items())]
-    if arguments[0] == "record":
-        (root / RECORD).write_text("\n".join(text) + "\n", encoding="utf-8")
-    else:
-        known = {}
-        for line in (root / RECORD).read_text(encoding="utf-8").splitlines()[1:]:
-            figures, name = line.split("\t")
-            known[name] = tuple(map(int, figures.split()))
-        for name, figures in now.items():
-            allowed = known.get(name)
-            if allowed is None:
-                wrong.append(f"{name}: is not in {RECORD}")
-                continue
-            for what, has, may in zip(("registers", "bytes of stack", "bytes of spills"), figures, allowed):
-                if has > may:
-                    wrong.append(f"{name}: {has} {what}, {may} before")
-            if figures[3] > allowed[3] * 1.1:
-                wrong.append(f"{name}: {figures[3]} bytes of code, {allowed[3]} before")
-    for line in wrong:
-        print(line)
-    print(f"{len(now)} kernels")
-    return 1 if wrong else 0
+    return compare(pathlib.Path(arguments[-1]).resolve(), arguments[0], everything)
 
 
 if __name__ == "__main__":

@@ -2,13 +2,15 @@
 // takes the place of the library that is opened, and this is its driver.
 #include <rastrum/parallel/cuda/driver.hpp>
 #include <rastrum/parallel/cuda/host_stream.hpp>
+#include <rastrum/parallel/cuda/host_walls.hpp>
 #include <rastrum/parallel/cuda/library.hpp>
 
 namespace rastrum::parallel {
 namespace {
 
 [[maybe_unused]] const bool is_taken =
-    (set_cuda_library(*rastrum_cuda_library()), cuda_system::HostStream::be_late(true), true);
+    (set_cuda_library(*rastrum_cuda_library()), cuda_system::HostStream::be_late(true),
+     cuda_system::Walls::stand(), true);
 
 }  // namespace
 

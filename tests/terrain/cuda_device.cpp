@@ -4,14 +4,16 @@
 
 #include <rastrum/parallel/cuda/driver.hpp>
 #include <rastrum/parallel/cuda/host_stream.hpp>
+#include <rastrum/parallel/cuda/host_walls.hpp>
 #include <rastrum/parallel/cuda/library.hpp>
 
 namespace rastrum {
 namespace {
 std::uint64_t free_bytes = 0;
 
-[[maybe_unused]] const bool is_taken = (parallel::set_cuda_library(*rastrum_cuda_library()),
-                                        parallel::cuda_system::HostStream::be_late(true), true);
+[[maybe_unused]] const bool is_taken =
+    (parallel::set_cuda_library(*rastrum_cuda_library()),
+     parallel::cuda_system::HostStream::be_late(true), parallel::cuda_system::Walls::stand(), true);
 }  // namespace
 
 namespace parallel {

@@ -53,6 +53,15 @@ class CudaSources(unittest.TestCase):
         self.write("tests/cuda/more.cu", "")
         self.assertEqual(run("changed", self.root)[0], 1)
 
+    def test_the_half_for_the_cpu_does_not(self):
+        self.write("rastrum/raster/draw.cu", '#include <rastrum/parallel/cuda/system_cpu.cuh>\n')
+        self.write("rastrum/parallel/cuda/system_cpu.cuh", '#include "stream.hpp"\n')
+        self.write("rastrum/parallel/cuda/stream.hpp", "struct Stream;\n")
+        run("record", self.root)
+        self.write("rastrum/parallel/cuda/system_cpu.cuh", '#include "stream.hpp"\nstruct Other;\n')
+        self.write("rastrum/parallel/cuda/stream.hpp", "struct Changed;\n")
+        self.assertEqual(run("changed", self.root)[0], 0)
+
     def test_comments_and_other_headers_do_not(self):
         self.write("rastrum/core/vec.hpp", "// of floats\nstruct Vec3;\n")
         self.write("rastrum/core/other.hpp", "struct Changed;\n")

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/parallel/cuda/host_walls.hpp>
+
 namespace rastrum::parallel::cuda_system {
 
 /// Which call of a device fails, of those that a driver may refuse: memory, copies, launches,
@@ -54,6 +56,8 @@ class HostStream {
   }
   void run() {
     const std::lock_guard lock(mutex_);
+    if (work_.empty()) return;
+    const Walls::Device open;
     for (const auto& work : work_) work();
     work_.clear();
   }

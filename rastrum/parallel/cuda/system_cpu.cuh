@@ -1,5 +1,6 @@
 // The half of system.cuh for the CPU: the device's memory is the heap, a team is coroutines, a
-// stream is a list (host_stream.hpp), and what was not set is garbage.
+// stream is a list (host_stream.hpp), what was not set is garbage, and under the address sanitizer
+// neither side reads the other's memory (host_walls.hpp).
 #pragma once
 
 #include <cstddef>
@@ -42,10 +43,14 @@ inline constexpr bool kOnHost = true;
 [[nodiscard]] inline MemorySource memory_source() {
   return {[](std::size_t bytes) -> void* {
             ++device_tally().blocks;
-            return DeviceFaults::strikes() ? nullptr : host_memory().allocate(bytes);
+            if (DeviceFaults::strikes()) return nullptr;
+            void* const block = host_memory().allocate(bytes);
+            Walls::add(block, bytes);
+            return block;
           },
           [](void* block) noexcept {
             HostStream::run_all();
+            Walls::remove(block);
             host_memory().release(block);
           },
           "device memory", true};
@@ -78,6 +83,25 @@ void give(Stream stream, F work) {
   if (stream.work == nullptr) return work();
   stream.work->add(std::move(work));
 }
+/// A launch of a kernel, whose parameters are its own: they are no memory of the host.
+template <class F>
+void give_kernel(Stream stream, F kernel) {
+  ++device_tally().launches;
+  if (DeviceFaults::strikes()) refuse("starting a kernel");
+  give(stream, [kernel = std::move(kernel)] {
+    const F own = kernel;
+    const Walls::Kernel walls;
+    own();
+  });
+}
+/// Bytes from here to there, on either side.
+template <class F>
+void give_copy(Stream stream, F copy) {
+  give(stream, [copy] {
+    const Walls::Device open;
+    copy();
+  });
+}
 inline void wait(Stream stream) {
   ++device_tally().waits;
   if (stream.work == nullptr) return;
@@ -93,18 +117,18 @@ inline void wait_for(Stream, void* other) {
 }
 /// What nobody sets is garbage, also where the memory was another buffer's.
 inline void spoil(Stream stream, void* data, std::size_t bytes) {
-  if (bytes > 0) give(stream, [=] { std::memset(data, 0xA5, bytes); });
+  if (bytes > 0) give_copy(stream, [=] { std::memset(data, 0xA5, bytes); });
 }
 inline void copy(Stream stream, void* to, const void* from, std::size_t bytes) {
   count_copy(bytes);
   if (DeviceFaults::strikes()) refuse("copying");
-  if (bytes > 0) give(stream, [=] { std::memcpy(to, from, bytes); });
+  if (bytes > 0) give_copy(stream, [=] { std::memcpy(to, from, bytes); });
 }
 inline void copy_rows(Stream stream, void* to, std::size_t to_pitch, const void* from,
                       std::size_t from_pitch, std::size_t bytes, std::size_t rows) {
   count_copy(bytes * rows);
   if (DeviceFaults::strikes()) refuse("copying rows");
-  give(stream, [=] {
+  give_copy(stream, [=] {
     for (std::size_t y = 0; y < rows; ++y)
       std::memcpy(static_cast<char*>(to) + y * to_pitch,
                   static_cast<const char*>(from) + y * from_pitch, bytes);
@@ -121,7 +145,12 @@ inline void begin_algorithm(Stream stream) {
 template <class Allocator>
 [[nodiscard]] auto policy(Allocator& allocator, Stream stream) {
   begin_algorithm(stream);
-  return thrust::cpp::par(allocator);
+  using Policy = std::remove_cvref_t<decltype(thrust::cpp::par(allocator))>;
+  struct Open : Policy {
+    Walls::Device open;
+    explicit Open(const Policy& policy) : Policy(policy) {}
+  };
+  return Open(thrust::cpp::par(allocator));
 }
 
 template <class K>
@@ -136,6 +165,7 @@ template <class K, class V, class Allocate>
                              Allocate&& allocate) {
   auto order = allocate(n * sizeof(std::size_t));
   begin_algorithm(stream);
+  const Walls::Device open;
   auto* const index = static_cast<std::size_t*>(static_cast<void*>(order.data()));
   std::iota(index, index + n, std::size_t{0});
   const auto all = std::numeric_limits<K>::digits;
@@ -149,9 +179,11 @@ template <class K, class V, class Allocate>
   return 1;
 }
 
-/// Few and odd: shares that are not a whole number show.
+/// Few and odd: shares that are not a whole number show. More where races are looked for: what two
+/// elements share is seen where they are not of one member.
+inline constexpr int kMostMembers = kRacesAreSeen ? 7 : 3;
 template <int kThreads>
-inline constexpr std::size_t kTeamMembers = kThreads < 3 ? kThreads : 3;
+inline constexpr std::size_t kTeamMembers = kThreads < kMostMembers ? kThreads : kMostMembers;
 
 /// A member of a team of coroutines.
 template <class Host>
@@ -170,9 +202,7 @@ class Team {
 template <class F>
 void launch_indices(Stream stream, std::size_t n, const F& f) {
   if (n == 0) return;
-  ++device_tally().launches;
-  if (DeviceFaults::strikes()) refuse("starting a kernel");
-  give(stream, [n, f] {
+  give_kernel(stream, [n, f] {
     for (std::size_t i = 0; i < n; ++i) f(i);
   });
 }
@@ -181,9 +211,7 @@ void launch_indices(Stream stream, std::size_t n, const F& f) {
 template <class Local, class F>
 void launch_strided(Stream stream, LoopCount n, const F& f) {
   if (n.most == 0) return;
-  ++device_tally().launches;
-  if (DeviceFaults::strikes()) refuse("starting a kernel");
-  give(stream, [n, f] {
+  give_kernel(stream, [n, f] {
     constexpr std::size_t kStride = 3;
     const std::size_t end = n.get();
     for (std::size_t first = 0; first < kStride; ++first) {
@@ -198,9 +226,7 @@ template <class T, int kThreads, class F>
 void launch_teams(Stream stream, LoopCount n, F f) {
   constexpr std::size_t kMembers = kTeamMembers<kThreads>;
   if (n.most == 0) return;
-  ++device_tally().launches;
-  if (DeviceFaults::strikes()) refuse("starting teams");
-  give(stream, [n, f] {
+  give_kernel(stream, [n, f] {
     const std::size_t end = n.get();
     T scratch;
     std::memset(static_cast<void*>(&scratch), 0xA5, sizeof scratch);

@@ -2,18 +2,46 @@
 // which runs until it syncs. So what is missing a sync is wrong at every run: a member that is
 // first reads what the others have yet to write. Who is first changes with every sync. POSIX's
 // ucontext: it wants no compiler's help and is deterministic; threads with a barrier took a
-// scheduler's turn for each sync, minutes on a busy machine.
+// scheduler's turn for each sync, minutes on a busy machine. The thread sanitizer is told that they
+// are threads (team_fibers.hpp): what the members and their caller share is atomic for that.
 #pragma once
 
 #include <ucontext.h>
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
+#include <rastrum/parallel/cuda/team_fibers.hpp>
+
 namespace rastrum::parallel::cuda_system {
+
+/// The stack of a coroutine. Those of one team serve the next: fresh memory for each costs more
+/// than the small bodies of tests, under a sanitizer most of all.
+class TeamStack {
+ public:
+  static constexpr std::size_t kBytes = std::size_t{1} << 18;
+  TeamStack() {
+    if (spare().empty()) spare().push_back(std::make_unique_for_overwrite<char[]>(kBytes));
+    room_ = std::move(spare().back());
+    spare().pop_back();
+  }
+  ~TeamStack() { spare().push_back(std::move(room_)); }
+  TeamStack(const TeamStack&) = delete;
+  TeamStack& operator=(const TeamStack&) = delete;
+  [[nodiscard]] char* data() { return room_.get(); }
+
+ private:
+  static std::vector<std::unique_ptr<char[]>>& spare() {
+    thread_local std::vector<std::unique_ptr<char[]>> spare;
+    return spare;
+  }
+  std::unique_ptr<char[]> room_;
+};
 
 /// kMembers coroutines that run one body.
 template <std::size_t kMembers, class Body>
@@ -23,52 +51,66 @@ class TeamOnHost {
   /// one ends while another waits.
   static void run(const Body& body) { TeamOnHost(body).run_all(); }
 
-  void sync(std::size_t rank) { swapcontext(&members_[rank].context, &caller_); }
+  void sync(std::size_t rank) {
+    fibers_.arrive(rank);
+    fibers_.back();
+    swapcontext(&members_[rank].context, &caller_);
+    fibers_.depart(rank);
+  }
 
  private:
-  static constexpr std::size_t kStackBytes = std::size_t{1} << 18;
   struct Member {
     ucontext_t context;
-    std::vector<char> stack = std::vector<char>(kStackBytes);
-    bool done = false;
+    TeamStack stack;
+    std::atomic<bool> done = false;
   };
 
   explicit TeamOnHost(const Body& body) : body_(&body) {}
 
   void run_all() {
-    TeamOnHost* const outer = current_;
+    TeamOnHost* const outer = current_.load();
     current_ = this;
     for (std::size_t rank = 0; rank < kMembers; ++rank) {
       Member& member = members_[rank];
       getcontext(&member.context);
       member.context.uc_stack.ss_sp = member.stack.data();
-      member.context.uc_stack.ss_size = member.stack.size();
+      member.context.uc_stack.ss_size = TeamStack::kBytes;
       member.context.uc_link = &caller_;
       makecontext(&member.context, start, 0);
     }
     std::size_t done = 0;
     for (bool forward = true; done == 0; forward = !forward) {
       for (std::size_t k = 0; k < kMembers; ++k) {
-        starting_ = forward ? k : kMembers - 1 - k;
-        swapcontext(&caller_, &members_[starting_].context);
+        const std::size_t rank = forward ? k : kMembers - 1 - k;
+        starting_ = rank;
+        fibers_.to(rank);
+        swapcontext(&caller_, &members_[rank].context);
       }
-      for (const Member& member : members_) done += member.done ? 1 : 0;
+      for (const Member& member : members_) done += member.done ? 1U : 0U;
     }
+    fibers_.joined();
     current_ = outer;
     if (done != kMembers) throw std::logic_error("a member of a team missed a sync of the others");
   }
-  static void start() {
-    TeamOnHost& team = *current_;
-    const std::size_t rank = team.starting_;
-    (*team.body_)(rank, team);
-    team.members_[rank].done = true;
+  /// A coroutine's first function returns to the caller's context, so no one may watch it return.
+  RASTRUM_NOT_SEEN static void start() {
+    TeamOnHost& team = *current_.load();
+    team.be_member(team.starting_);
+    team.fibers_.back();
+  }
+  void be_member(std::size_t rank) {
+    fibers_.enter();
+    (*body_)(rank, *this);
+    members_[rank].done = true;
+    fibers_.leave();
   }
 
-  static inline thread_local TeamOnHost* current_ = nullptr;
+  static inline thread_local std::atomic<TeamOnHost*> current_ = nullptr;
   const Body* body_;
   std::array<Member, kMembers> members_;
   ucontext_t caller_;
-  std::size_t starting_ = 0;
+  std::atomic<std::size_t> starting_ = 0;
+  TeamFibers<kMembers> fibers_;
 };
 
 }  // namespace rastrum::parallel::cuda_system

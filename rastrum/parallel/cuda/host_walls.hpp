@@ -1,0 +1,167 @@
+// Walls between the two memories where the CPU stands for a device, for the tests under the address
+// sanitizer: the device's blocks are poisoned but while kernels, copies and algorithms run, and the
+// host's heap is while kernels do. So host code that reads what lies on the device, and a functor
+// that refers to memory of the host, are reported where they do it, as use of poisoned memory.
+// Without that sanitizer nothing stands.
+#pragma once
+
+#include <cstddef>
+
+#if defined(__SANITIZE_ADDRESS__)
+#define RASTRUM_WALLS 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define RASTRUM_WALLS 1
+#endif
+#endif
+
+#if defined(RASTRUM_WALLS)
+#include <sanitizer/allocator_interface.h>
+#include <sanitizer/asan_interface.h>
+
+#include <mutex>
+#include <unordered_map>
+#endif
+
+namespace rastrum::parallel::cuda_system {
+
+#if defined(RASTRUM_WALLS)
+
+class Walls {
+ public:
+  static constexpr bool kCanStand = true;
+
+  /// From here on, for what is allocated from here on: for programs that keep the two apart, and
+  /// whose other threads rest while a kernel runs.
+  static void stand() {
+    State& s = state();
+    const std::lock_guard lock(s.mutex);
+    if (s.stand) return;
+    s.stand = true;
+    __sanitizer_install_malloc_and_free_hooks(on_malloc, on_free);
+  }
+  /// A block becomes the device's, or the heap's again.
+  static void add(void* block, std::size_t bytes) {
+    State& s = state();
+    const Own own;
+    const std::lock_guard lock(s.mutex);
+    if (!s.stand || block == nullptr) return;
+    s.host.erase(block);
+    s.device[block] = bytes;
+    if (s.inside == 0) ASAN_POISON_MEMORY_REGION(block, bytes);
+  }
+  static void remove(void* block) noexcept {
+    State& s = state();
+    const Own own;
+    const std::lock_guard lock(s.mutex);
+    const auto at = s.device.find(block);
+    if (at == s.device.end()) return;
+    ASAN_UNPOISON_MEMORY_REGION(block, at->second);
+    s.device.erase(at);
+  }
+
+  /// While one lives, the device's memory is open: for copies, and for algorithms, which take their
+  /// scratch from the host's arena.
+  class Device {
+   public:
+    Device() { enter(); }
+    Device(const Device&) : Device() {}
+    Device& operator=(const Device&) = default;
+    ~Device() {
+      State& s = state();
+      const std::lock_guard lock(s.mutex);
+      if (--s.inside > 0) return;
+      for (const auto& [block, bytes] : s.device) ASAN_POISON_MEMORY_REGION(block, bytes);
+    }
+
+   private:
+    static void enter() {
+      State& s = state();
+      const std::lock_guard lock(s.mutex);
+      if (s.inside++ > 0) return;
+      for (const auto& [block, bytes] : s.device) ASAN_UNPOISON_MEMORY_REGION(block, bytes);
+    }
+  };
+  /// While one lives, the host's heap is closed as well, but for blocks of less than kLeast and
+  /// what is allocated meanwhile.
+  class Kernel {
+   public:
+    Kernel() {
+      State& s = state();
+      const std::lock_guard lock(s.mutex);
+      if (s.in_kernels++ > 0) return;
+      for (const auto& [block, bytes] : s.host) ASAN_POISON_MEMORY_REGION(block, bytes);
+    }
+    Kernel(const Kernel&) = delete;
+    Kernel& operator=(const Kernel&) = delete;
+    ~Kernel() {
+      State& s = state();
+      const std::lock_guard lock(s.mutex);
+      if (--s.in_kernels > 0) return;
+      for (const auto& [block, bytes] : s.host) ASAN_UNPOISON_MEMORY_REGION(block, bytes);
+    }
+
+   private:
+    Device device_;
+  };
+
+ private:
+  /// Smaller ones are too many.
+  static constexpr std::size_t kLeast = 256;
+  struct State {
+    std::mutex mutex;
+    bool stand = false;
+    int inside = 0, in_kernels = 0;
+    std::unordered_map<void*, std::size_t> device, host;
+  };
+  /// Never destroyed: the hooks outlive all else.
+  static State& state() {
+    static State* const state = new State;
+    return *state;
+  }
+  /// What this class allocates itself is no one's block.
+  struct Own {
+    Own() { ++depth(); }
+    ~Own() { --depth(); }
+    Own(const Own&) = delete;
+    Own& operator=(const Own&) = delete;
+    static int& depth() {
+      thread_local int depth = 0;
+      return depth;
+    }
+  };
+  static void on_malloc(const volatile void* block, std::size_t bytes) {
+    if (Own::depth() > 0 || bytes < kLeast || block == nullptr) return;
+    const Own own;
+    State& s = state();
+    const std::lock_guard lock(s.mutex);
+    s.host[const_cast<void*>(block)] = bytes;
+  }
+  static void on_free(const volatile void* block) {
+    if (Own::depth() > 0 || block == nullptr || __sanitizer_get_allocated_size(block) < kLeast)
+      return;
+    const Own own;
+    State& s = state();
+    const std::lock_guard lock(s.mutex);
+    s.host.erase(const_cast<void*>(block));
+  }
+};
+
+#else
+
+struct Walls {
+  static constexpr bool kCanStand = false;
+  static void stand() {}
+  static void add(void*, std::size_t) {}
+  static void remove(void*) noexcept {}
+  struct Device {
+    Device() {}  // so that no one of them is an unused variable
+  };
+  struct Kernel {
+    Kernel() {}
+  };
+};
+
+#endif
+
+}  // namespace rastrum::parallel::cuda_system
