@@ -1,5 +1,5 @@
-// What a device refuses ends a frame with an Error and nothing else: each call that a driver may
-// refuse is refused once, and the frame after it is right. On the CPU alone (host_stream.hpp).
+// Each call of a frame that a driver may refuse is refused once, and the frame after it is right
+// (support/device_faults.hpp).
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/error.hpp>
-#include <rastrum/parallel/cuda/host_stream.hpp>
 #include <rastrum/render.hpp>
 
 #include "tests/support/cuda_test.hpp"
+#include "tests/support/device_faults.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
@@ -19,17 +19,7 @@
 namespace rastrum::test::device_faults_test {
 namespace {
 
-using parallel::cuda_system::DeviceFaults;
-
 constexpr int kWidth = 72, kHeight = 40;
-
-/// The n-th call of this thread is refused while it lives.
-struct Refused {
-  explicit Refused(std::uint64_t n) { DeviceFaults::of_thread() = {0, n}; }
-  ~Refused() { DeviceFaults::of_thread() = {}; }
-  Refused(const Refused&) = delete;
-  Refused& operator=(const Refused&) = delete;
-};
 
 /// Of all sizes, so that each queue has work; some clipped.
 Scene triangles() {
@@ -81,28 +71,18 @@ TEST_P(FaultsOfADevice, EndAFrameAndNoMore) {
   o.device = Device::cuda;
   o.rasterizer = look.rasterizer;
 
-  std::uint64_t refused = 0;
-  for (std::uint64_t n = 1;; ++n, ++refused) {
-    ASSERT_LT(n, 2000U) << "the frame does not end";
-    // From nothing, so that memory is asked for, too.
-    Painter cuda(o);
-    bool ended = false;
-    try {
-      const Refused fault(n);
-      const Frame frame = drawn(cuda, binding.view(), camera);
-      ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
-      ended = true;
-    } catch (const Error& error) {
-      ASSERT_TRUE(error.code() == Errc::no_device || error.code() == Errc::out_of_memory)
-          << "call " << n << ": " << error.what();
-      ASSERT_NE(std::string(error.what()).find("device"), std::string::npos)
-          << "call " << n << ": " << error.what();
-    }
-    const Frame after = drawn(cuda, binding.view(), camera);
-    ASSERT_TRUE(same_picture(after, expected, 0)) << "after call " << n;
-    ASSERT_TRUE(same_surfaces(after, expected)) << "after call " << n;
-    if (ended) break;
-  }
+  // From nothing, so that memory is asked for, too.
+  const std::uint64_t refused =
+      refuse_each_call([&] { return Painter(o); },
+                       [&](Painter& cuda) {
+                         const Frame frame = drawn(cuda, binding.view(), camera);
+                         EXPECT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
+                       },
+                       [&](Painter& cuda) {
+                         const Frame after = drawn(cuda, binding.view(), camera);
+                         EXPECT_TRUE(same_picture(after, expected, 0));
+                         EXPECT_TRUE(same_surfaces(after, expected));
+                       });
   EXPECT_GT(refused, 20U);
 }
 INSTANTIATE_TEST_SUITE_P(Looks, FaultsOfADevice,

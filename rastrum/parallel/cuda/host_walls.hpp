@@ -40,10 +40,21 @@ class Walls {
     s.stand = true;
     __sanitizer_install_malloc_and_free_hooks(on_malloc, on_free);
   }
+  /// What is allocated while one lives is no one's: of this class itself, and stacks of kernels.
+  struct Unseen {
+    Unseen() { ++depth(); }
+    ~Unseen() { --depth(); }
+    Unseen(const Unseen&) = delete;
+    Unseen& operator=(const Unseen&) = delete;
+    static int& depth() {
+      thread_local int depth = 0;
+      return depth;
+    }
+  };
   /// A block becomes the device's, or the heap's again.
   static void add(void* block, std::size_t bytes) {
     State& s = state();
-    const Own own;
+    const Unseen unseen;
     const std::lock_guard lock(s.mutex);
     if (!s.stand || block == nullptr) return;
     s.host.erase(block);
@@ -52,7 +63,7 @@ class Walls {
   }
   static void remove(void* block) noexcept {
     State& s = state();
-    const Own own;
+    const Unseen unseen;
     const std::lock_guard lock(s.mutex);
     const auto at = s.device.find(block);
     if (at == s.device.end()) return;
@@ -119,28 +130,17 @@ class Walls {
     static State* const state = new State;
     return *state;
   }
-  /// What this class allocates itself is no one's block.
-  struct Own {
-    Own() { ++depth(); }
-    ~Own() { --depth(); }
-    Own(const Own&) = delete;
-    Own& operator=(const Own&) = delete;
-    static int& depth() {
-      thread_local int depth = 0;
-      return depth;
-    }
-  };
   static void on_malloc(const volatile void* block, std::size_t bytes) {
-    if (Own::depth() > 0 || bytes < kLeast || block == nullptr) return;
-    const Own own;
+    if (Unseen::depth() > 0 || bytes < kLeast || block == nullptr) return;
+    const Unseen unseen;
     State& s = state();
     const std::lock_guard lock(s.mutex);
     s.host[const_cast<void*>(block)] = bytes;
   }
   static void on_free(const volatile void* block) {
-    if (Own::depth() > 0 || block == nullptr || __sanitizer_get_allocated_size(block) < kLeast)
+    if (Unseen::depth() > 0 || block == nullptr || __sanitizer_get_allocated_size(block) < kLeast)
       return;
-    const Own own;
+    const Unseen unseen;
     State& s = state();
     const std::lock_guard lock(s.mutex);
     s.host.erase(const_cast<void*>(block));
@@ -154,8 +154,11 @@ struct Walls {
   static void stand() {}
   static void add(void*, std::size_t) {}
   static void remove(void*) noexcept {}
+  struct Unseen {
+    Unseen() {}  // so that no one of these is an unused variable
+  };
   struct Device {
-    Device() {}  // so that no one of them is an unused variable
+    Device() {}
   };
   struct Kernel {
     Kernel() {}

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/parallel/cuda/host_walls.hpp>
 #include <rastrum/parallel/cuda/team_fibers.hpp>
 
 namespace rastrum::parallel::cuda_system {
@@ -26,6 +27,7 @@ class TeamStack {
  public:
   static constexpr std::size_t kBytes = std::size_t{1} << 18;
   TeamStack() {
+    const Walls::Unseen unseen;
     if (spare().empty()) spare().push_back(std::make_unique_for_overwrite<char[]>(kBytes));
     room_ = std::move(spare().back());
     spare().pop_back();

@@ -8,9 +8,7 @@ namespace {
 
 /// The result of compute(exec, map on the device), brought back.
 template <class T, class F>
-Image<T> computed(ImageView<const float> heights, const std::stop_token* stop, const F& compute) {
-  const parallel::StopScope scope(stop);
-  parallel::Cuda exec;
+Image<T> computed(parallel::Cuda& exec, ImageView<const float> heights, const F& compute) {
   const auto width = static_cast<std::size_t>(heights.width);
   auto cells = parallel::make_buffer<float>(exec, width * static_cast<std::size_t>(heights.height));
   for (int y = 0; y < heights.height; ++y)
@@ -26,7 +24,9 @@ Image<T> computed(ImageView<const float> heights, const std::stop_token* stop, c
 }
 template <class T, class F>
 Image<T> on_device(ImageView<const float> heights, const std::stop_token* stop, const F& compute) {
-  return parallel::cuda_system::with_errors([&] { return computed<T>(heights, stop, compute); });
+  const parallel::StopScope scope(stop);
+  parallel::Cuda exec;
+  return parallel::on_device_of(exec, [&] { return computed<T>(exec, heights, compute); });
 }
 
 Image<std::uint8_t> sharp(ImageView<const float> heights, const Sun& sun, Tiling tiling,
