@@ -68,7 +68,7 @@ def short(name):
     """Without what every kernel's name has; types of the project alone."""
     name = re.sub(r"\(anonymous namespace\)::|<unnamed>::", "", name)
     name = re.sub(r"\b(?:rastrum|parallel|raster|terrain|family|transparency|cuda_detail|cuda_system|on_gpu)::", "", name)
-    name = re.sub(r"^void\s+", "", name)
+    name = re.sub(r"^void\s+|, 18446744073709551615ul(?=>)", "", name)  # the latter of every span
     depth = 0
     for at, letter in enumerate(name):  # the parameters, which repeat the template's arguments
         depth += {"<": 1, ">": -1}.get(letter, 0)

@@ -53,6 +53,8 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
     std::vector<raster::Draw> draws;
     std::vector<raster::DeviceDraw> device_draws;
     parallel::Cuda exec;
+    std::vector<parallel::DeviceBuffer<std::uint32_t>> indices;
+    std::vector<parallel::DeviceBuffer<Vec3>> positions;
     for (const InstanceView& instance : binding.view().instances) {
       const Mat4d matrix = to_clip * instance.object_to_world;
       raster::Draw& d = draws.emplace_back();
@@ -60,7 +62,11 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
       d.vertex_count = instance.mesh()->positions.size();
       d.indices = instance.mesh()->indices.packed();
       d.primitive_count = instance.mesh()->triangle_count();
-      device_draws.push_back({d, {instance.mesh()->positions.packed(), matrix, {}, {}}});
+      raster::Draw there = d;
+      there.indices = parallel::view_of(indices.emplace_back(parallel::to_device(exec, d.indices)));
+      const auto& vertices =
+          positions.emplace_back(parallel::to_device(exec, instance.mesh()->positions.packed()));
+      device_draws.push_back({there, {parallel::view_of(vertices), matrix, {}, {}}});
     }
     const auto total = raster::number_draws(draws).primitives;
     raster::FrameGeometry frame{kWidth, kHeight, raster::Viewport::of(kWidth, kHeight), draws};
@@ -131,33 +137,34 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
                                           kSize, kSize));
   }
   const Mat4d to_clip = world_to_clip(pixel_camera(kSize, kSize), kSize, kSize);
+  parallel::Cuda exec;
+  const parallel::DeviceBuffer<Vec3> there[2] = {parallel::to_device(exec, positions[0]),
+                                                 parallel::to_device(exec, positions[1])};
   raster::DeviceDraw draws[2];
   for (int d = 0; d < 2; ++d) {
     draws[d].draw.vertex_count = positions[d].size();
     draws[d].draw.primitive_count = positions[d].size() / 3;
-    draws[d].vertices.positions = positions[d];
+    draws[d].vertices.positions = parallel::view_of(there[d]);
     draws[d].vertices.object_to_clip = to_clip;
   }
   draws[1].draw.flags = raster::kTranslucent;
-  parallel::Cuda exec;
   std::vector<std::uint64_t> fragments;
   constexpr std::uint64_t kRoom = 1 << 16;
   const auto keys_of = [&](std::span<const raster::DeviceDraw> drawn, std::uint32_t skip,
                            std::uint64_t queued_pieces = kRoom,
                            std::uint64_t queued_tiles = kRoom) {
     const raster::DeviceScene<parallel::Cuda> scene(exec, drawn, kSize, kSize);
-    std::vector<std::uint64_t> keys(kSize * kSize);
+    auto keys = parallel::to_device(exec, std::vector<std::uint64_t>(kSize * kSize));
     const raster::Rect view{0, 0, kSize, kSize};
     const raster::DeviceSurface surface{view, {0, 0, kSize / 8, keys.data(), nullptr}};
     auto plan = raster::DevicePlan::of(0, kSize, kSize, scene.primitives(), 0, 0);
     plan.queued_pieces = queued_pieces;
     plan.queued_tiles = queued_tiles;
     raster::BySize drawer;
-    std::vector<std::uint64_t> sums(raster::kBandSums);
+    auto sums = parallel::to_device(exec, std::vector<std::uint64_t>(raster::kBandSums));
     drawer.draw(exec, scene, surface, plan, {}, skip, {}, sums.data());
-    exec.wait();
     raster::BandSums counted;
-    std::ranges::copy(sums, counted.begin());
+    std::ranges::copy(parallel::to_host(exec, sums), counted.begin());
     drawer.end_band(counted);
     EXPECT_GT(counted[raster::kFragmentsSum], 0U);
     EXPECT_EQ(counted[raster::kInvalidSum], 0U);
@@ -166,7 +173,7 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
     EXPECT_EQ(counter(stats, "tile pairs") > 0, queued_pieces > 0 && queued_tiles > 0);
     EXPECT_EQ(counter(stats, "larger pieces") > 0, queued_pieces > 0);
     fragments.push_back(counted[raster::kFragmentsSum]);
-    return keys;
+    return parallel::to_host(exec, keys);
   };
   const auto all = keys_of(draws, 0), kept = keys_of(draws, raster::kTranslucent);
   EXPECT_EQ(kept, keys_of({draws, 1}, 0));
