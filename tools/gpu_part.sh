@@ -4,10 +4,12 @@
 #
 #   gpu_part.sh            list the parts, in the order in which they tell most
 #   gpu_part.sh PART OUT   run one; its log and what it writes go to the folder OUT
+#   gpu_part.sh all OUT    run all in that order, within RASTRUM_ALL_S seconds (1800) together; what fails
+#                          stops no other, and what has no time left fails
 set -euo pipefail
 
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
-readonly here
+readonly here self="$here/$(basename "${BASH_SOURCE[0]}")"
 readonly limit="${RASTRUM_PART_S:-570}"
 export LD_LIBRARY_PATH="$here/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
 
@@ -44,6 +46,22 @@ run_part() {
   esac
 }
 
+run_all() {
+  local part left end=$((SECONDS + ${RASTRUM_ALL_S:-1800})) failed=0
+  for part in "${parts[@]}"; do
+    left=$((end - SECONDS))
+    if ((left <= 0)); then
+      echo "$part: FAILED: no time was left" | tee -a "$out/results"
+      failed=$((failed + 1))
+    else
+      RASTRUM_PART_S=$((left < limit ? left : limit)) bash "$self" "$part" "$out" || failed=$((failed + 1))
+    fi
+  done
+  printf '\n%s:\n' "$out/results"
+  cat "$out/results"
+  ((failed == 0))
+}
+
 if (($# == 0)); then
   printf "%s\n" "${parts[@]}"
   exit
@@ -51,10 +69,19 @@ fi
 (($# == 2)) || { echo "usage: gpu_part.sh [PART OUT]" >&2; exit 2; }
 mkdir -p "$2"
 out="$(cd "$2" && pwd)"
+if [[ $1 == all ]]; then
+  : >"$out/results"
+  run_all
+  exit
+fi
 log="$out/$1.log"
 started=$SECONDS
 status=0
-run_part "$1" > >(tee "$log") 2>&1 || status=$?
+{
+  command -v nvidia-smi >/dev/null && nvidia-smi -L || echo "no nvidia-smi"
+  date -u +%FT%TZ
+} >"$log" 2>&1
+run_part "$1" > >(tee -a "$log") 2>&1 || status=$?
 wait  # for the log
 # A test that finds no device is skipped, which here is a failure.
 if ((status == 0)) && grep -q 'no device: ' "$log"; then

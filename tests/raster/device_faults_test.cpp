@@ -89,6 +89,7 @@ INSTANTIATE_TEST_SUITE_P(Looks, FaultsOfADevice,
                          testing::Values(Look{"opaque", 1, 1, "auto"},
                                          Look{"layers", 0.5F, 1, "auto"},
                                          Look{"samples", 1, 4, "auto"},
+                                         Look{"layers_of_samples", 0.5F, 4, "auto"},
                                          Look{"tiled", 1, 1, "tiled"}),
                          [](const auto& info) { return std::string(info.param.name); });
 
