@@ -54,6 +54,13 @@ string(SHA256 digest "${digests}")
 string(SUBSTRING ${digest} 0 12 digest)
 set(RASTRUM_CUDA_LIBRARY_VERSION ${PROJECT_VERSION}-${digest})
 
+# rastrum_device_version(TARGET): its library.cpp alone knows the version, which changes with every
+# header: no kernel is to be compiled again for that.
+function(rastrum_device_version target)
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/rastrum/cuda/library.cpp TARGET_DIRECTORY ${target}
+    PROPERTIES COMPILE_DEFINITIONS "RASTRUM_CUDA_LIBRARY_VERSION=\"${RASTRUM_CUDA_LIBRARY_VERSION}\"")
+endfunction()
+
 # rastrum_device_module(TARGET): a module that programs open by the name of parallel/cuda/library.hpp.
 # Nothing of it is seen but the one function that they look for.
 function(rastrum_device_module target)
@@ -61,8 +68,7 @@ function(rastrum_device_module target)
     OUTPUT_NAME rastrum_cuda PREFIX lib
     CXX_VISIBILITY_PRESET hidden CUDA_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   target_link_options(${target} PRIVATE LINKER:--exclude-libs,ALL)
-  target_compile_definitions(${target} PRIVATE
-    RASTRUM_CUDA_LIBRARY_VERSION="${RASTRUM_CUDA_LIBRARY_VERSION}")
+  rastrum_device_version(${target})
 endfunction()
 
 # Programs find the module where it is built, and where it is installed (RastrumInstall.cmake).
