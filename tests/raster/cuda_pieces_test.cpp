@@ -18,6 +18,9 @@
 namespace rastrum::test::cuda_pieces_test {
 namespace {
 
+/// Of a queue, for more than there is.
+constexpr std::uint64_t kRoom = 1 << 16;
+
 struct KeepsAll {
   bool operator()(const raster::Piece&) const { return true; }
 };
@@ -149,7 +152,6 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
   }
   draws[1].draw.flags = raster::kTranslucent;
   std::vector<std::uint64_t> fragments;
-  constexpr std::uint64_t kRoom = 1 << 16;
   const auto keys_of = [&](std::span<const raster::DeviceDraw> drawn, std::uint32_t skip,
                            std::uint64_t queued_pieces = kRoom,
                            std::uint64_t queued_tiles = kRoom) {

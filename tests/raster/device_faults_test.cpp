@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Looks, FaultsOfADevice,
                                          Look{"samples", 1, 4, "auto"},
                                          Look{"layers_of_samples", 0.5F, 4, "auto"},
                                          Look{"tiled", 1, 1, "tiled"}),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST_F(CudaTest, ARendererWithoutItsStreamIsRefused) {
   for (std::uint64_t n = 1; n < 3; ++n) {

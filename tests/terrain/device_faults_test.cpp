@@ -88,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Look{"words", Method::words, MapFilter::bilinear, false, 0, false},
                     Look{"classic", Method::fast, MapFilter::none, true, 0, false},
                     Look{"function", Method::fast, MapFilter::none, false, 0, true}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 class ShadowFaults : public test::TerrainOnDevice {};
 
