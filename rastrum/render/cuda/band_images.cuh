@@ -68,14 +68,15 @@ class BandImages {
     return {d.data, d.width, d.height, d.stride};
   }
 
-  /// Fills all, and the caller's once the device was waited for. Adds how many pixels hold a
-  /// surface to *covered, of the device.
+  /// Fills all, and the caller's once the device was waited for; adds how many pixels hold a
+  /// surface to *covered, of the device. Where *held is not 0 it leaves them (resolve_surface), and
+  /// is to be called again.
   template <class Shade>
   void resolve(const FrameRequest& request, const Shade& shade, const DeviceSurface& surface,
-               std::uint64_t* covered) {
+               std::uint64_t* covered, const std::uint64_t* held) {
     const DeviceTargets targets{color8_.on_device(), color_.on_device(), depth_.on_device(),
                                 ids_.on_device(), keys_.on_device()};
-    resolve_surface(exec_, surface, targets, shade, ResolveRules::of(request), covered);
+    resolve_surface(exec_, surface, targets, shade, ResolveRules::of(request), covered, held);
     color8_.store();
     color_.store();
     depth_.store();
