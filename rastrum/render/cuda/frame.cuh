@@ -97,7 +97,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     FrameGeometry geometry;  ///< for the host
     std::optional<parallel::ScratchPool<ShaderScratch>> shaders;
     transparency::SceneLayers layers;
-    std::uint64_t bands = 0;
+    std::uint64_t bands = 0, listed = 0;
   };
 
   /// What a band has counted, in the order of the device's array.
@@ -259,9 +259,12 @@ class DeviceRasterizer final : public CudaRasterizer {
     drawer_->draw(exec_, *f.scene, band.surface, f.plan, request.tuning, skipped(f), band.left(),
                   colors, band.sums.data());
     if (band.left_room.size() == 0 || !finish_band(f, band, test, true)) {
-      // A queue was too small: pieces are made again, as many at once as memory holds.
-      band.left_room = {};
-      if (memory_limit_ != 0) exec_.memory()->trim();
+      // There is no queue, or one was too small: pieces are made again, as memory holds them.
+      if (band.left_room.size() > 0) {
+        ++f.listed;
+        band.left_room = {};
+        if (memory_limit_ != 0) exec_.memory()->trim();
+      }
       finish_band(f, band, test, false);
     }
     if (band.overdraw.size() > 0) host_.store_overdraw(exec_, request.targets, view, band.overdraw);
@@ -408,6 +411,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     const parallel::cuda_system::DeviceTally asked =
         parallel::cuda_system::device_tally() - f.asked;
     stats.counters = {{"bands", f.bands},
+                      {"bands listed", f.listed},
                       {"textures copied", textures_.copies() - f.textures_before},
                       {"launches", asked.launches},
                       {"device algorithms", asked.algorithms},
