@@ -83,6 +83,21 @@ inline void check(cudaError_t error, const char* doing) {
           [](void* block) noexcept { static_cast<void>(cudaFree(block)); }, "CUDA memory", true};
 }
 
+/// Memory of the host that stays where it is, which a device writes at its own speed and without
+/// the host: copies into other memory go through the driver's, and wait for the stream.
+[[nodiscard]] inline MemorySource pinned_source() {
+  return {[](std::size_t bytes) -> void* {
+            void* block = nullptr;
+            const cudaError_t error = cudaHostAlloc(&block, bytes, cudaHostAllocDefault);
+            if (error == cudaSuccess) return block;
+            static_cast<void>(cudaGetLastError());
+            if (error == cudaErrorMemoryAllocation) return nullptr;
+            fail(error, "allocating pinned memory");
+          },
+          [](void* block) noexcept { static_cast<void>(cudaFreeHost(block)); },
+          "pinned memory for a device", true};
+}
+
 /// The device that this thread's calls are of.
 [[nodiscard]] inline int current_device() {
   int device = 0;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <span>
@@ -48,6 +49,7 @@ class DeviceRasterizer final : public CudaRasterizer {
         memory_limit_(memory_limit),
         threads_(threads),
         exec_(&memory),
+        counts_(parallel::pinned_buffer(exec_, 0)),
         textures_(exec_),
         host_(memory, threads) {}
 
@@ -302,8 +304,10 @@ class DeviceRasterizer final : public CudaRasterizer {
   [[nodiscard]] BandCounts wait_for(const Band& band) {
     static_assert(sizeof(BandCounts) % sizeof(std::uint64_t) == 0);
     BandCounts counts;
-    parallel::cuda_system::copy(exec_.stream(), &counts, band.sums.data(), sizeof counts);
+    counts_.resize(sizeof counts);
+    parallel::cuda_system::copy(exec_.stream(), counts_.data(), band.sums.data(), sizeof counts);
     exec_.wait();
+    std::memcpy(&counts, counts_.data(), sizeof counts);
     check_valid(counts.sums[kInvalidSum]);
     return counts;
   }
@@ -326,7 +330,9 @@ class DeviceRasterizer final : public CudaRasterizer {
     const auto finish = [&](const auto& shader, const std::uint64_t* held) {
       band.images.resolve(f.request, shader, band.surface, band.covered(), held);
       counts = wait_for(band);
-      return held == nullptr || counts.sums[kHeldSum] == 0;
+      const bool done = held == nullptr || counts.sums[kHeldSum] == 0;
+      if (done) band.images.deliver(threads_);
+      return done;
     };
     const auto end = [&](bool done) {
       if (done) end_band(f, counts.sums);
@@ -434,6 +440,7 @@ class DeviceRasterizer final : public CudaRasterizer {
   std::uint64_t layer_records_ = 0;  ///< most of a band of the frame before that had layers
   parallel::Threads& threads_;
   Exec exec_;
+  parallel::Buffer<std::byte> counts_;  ///< BandCounts, pinned
   DeviceTextures<Exec> textures_;
   HostBand host_;
 };
