@@ -135,8 +135,9 @@ class Renderer {
   /// the stream `after` before the call: those of CUDA that write the arrays or read the targets.
   /// Without one such work must be complete before the call. When it returns the targets are
   /// complete.
-  /// For opaque scenes without materials, by a shader of the device, into
-  /// color8, color, depth, ids and keys; throws Error{unsupported} for what else is asked for.
+  /// For scenes without materials, opaque or translucent (exact, unsorted), by a shader of the
+  /// device, into color8, color, depth, ids and keys; throws Error{unsupported} for what else is
+  /// asked for.
   FrameStats render_in_place(const SceneView& scene, const Camera& camera,
                              const FrameOptions& frame, const Targets& targets,
                              std::stop_token stop = {}, std::optional<DeviceStream> after = {});

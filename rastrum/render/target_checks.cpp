@@ -106,7 +106,6 @@ void check_in_place(const SceneView& scene, const Targets& targets, Shader shade
           "the shaders depth, material and wireframe need them in the host's");
   require(scene.materials.empty(), "materials need them in the host's");
   if (const std::string why = why_not_on_device(scene); !why.empty()) require(false, why.c_str());
-  require(o.opacity == 1 && o.samples == 1, "surfaces must be opaque, with one sample a pixel");
   require(targets.overdraw.empty() && targets.errors.empty() && targets.extra.empty() &&
               targets.linear.empty() && !wants_surface(targets) && !targets.load && !targets.over,
           "of the targets there are color8, color, depth, ids and keys, in one pass");

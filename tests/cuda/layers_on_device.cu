@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <span>
+#include <stdexcept>
+#include <utility>
 
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/transparency/cuda/device_layers.cuh>
@@ -68,9 +70,46 @@ class OnDevice {
     using parallel::view_of;
     const transparency::DeviceLayers layers{view_, view_of(std::as_const(pieces_)), view_of(keys_),
                                             view_of(colors_)};
-    const PaintFragment shade{view_of(std::as_const(paint_)), view_of(std::as_const(opaque_)),
-                              by_pixel_};
-    return transparency::blend_layers(exec_, layers, options, shade, IsNoHole{}, tuning);
+    return transparency::blend_layers(exec_, layers, options, painter(), IsNoHole{}, tuning);
+  }
+  /// The same by queues, which a rasterizer has filled; where one is too small, as above.
+  transparency::DeviceLayerCounts blend(const TransparencyOptions& options,
+                                        const transparency::DeviceLayerTuning& tuning,
+                                        const QueueRooms& rooms) {
+    using parallel::view_of;
+    namespace cuda = transparency::cuda;
+    const std::size_t room = rooms.pieces == 0 ? pieces_.size() + 1 : rooms.pieces;
+    auto pieces = parallel::make_buffer<raster::Piece>(exec_, room);
+    parallel::cuda_system::copy(exec_.stream(), pieces.data(), pieces_.data(),
+                                std::min(room, pieces_.size()) * sizeof(raster::Piece));
+    // The queue's counter, *held, and those of the layers.
+    std::vector<std::uint64_t> begin(2 + cuda::kQueueCounters, 0);
+    begin[0] = pieces_.size();
+    auto counters = parallel::to_device(exec_, begin);
+    transparency::LeftLayers left;
+    left.pieces = {view_of(pieces), counters.data()};
+    left.records = rooms.records == 0 ? std::size_t{1} << 16 : rooms.records;
+    left.held = counters.data() + 1;
+    left.counters = counters.data() + 2;
+    const transparency::DeviceLayers layers{view_, view_of(std::as_const(pieces)), view_of(keys_),
+                                            view_of(colors_)};
+    transparency::LayerQueueCounts last;
+    const auto finish = [&](const std::uint64_t* held) {
+      const auto now = parallel::to_host(exec_, counters);
+      last.pieces = now[0];
+      std::copy(now.begin() + 2, now.end(), last.of.begin());
+      // Who makes the picture looks at *held.
+      is_held_ = held != nullptr && now[1] != 0;
+      return last;
+    };
+    if (!transparency::blend_left_layers(exec_, layers, left, options, painter(), IsNoHole{},
+                                         tuning, finish)) {
+      if (!is_held_) throw std::logic_error("a picture that is not done was not held");
+      ++rooms.too_small;
+      return blend(options, tuning);
+    }
+    if (is_held_) throw std::logic_error("a picture that is done was held");
+    return last.layers();
   }
   void fetch(LayersFrame& out) {
     const auto keys = parallel::to_host(exec_, keys_);
@@ -82,6 +121,9 @@ class OnDevice {
   }
 
  private:
+  [[nodiscard]] PaintFragment painter() const {
+    return {parallel::view_of(paint_), parallel::view_of(opaque_), by_pixel_};
+  }
   /// f(place in the frame's rows, place in the blocks of the view).
   template <class F>
   void each_pixel(F f) const {
@@ -104,6 +146,7 @@ class OnDevice {
   parallel::Cuda& exec_;
   const raster::Rect view_;
   const bool by_pixel_;
+  bool is_held_ = false;
   parallel::DeviceBuffer<raster::Piece> pieces_;
   parallel::DeviceBuffer<std::uint64_t> keys_;
   parallel::DeviceBuffer<Vec4> colors_, paint_;
@@ -138,22 +181,16 @@ struct TeamKeys {
 transparency::DeviceLayerCounts blend_on_device(LayersFrame& frame,
                                                 const TransparencyOptions& options,
                                                 const transparency::DeviceLayerTuning& tuning,
-                                                int band_rows) {
+                                                int band_rows, const QueueRooms& rooms) {
   parallel::Cuda exec;
   transparency::DeviceLayerCounts sum;
   const int rows = band_rows == 0 ? frame.height : band_rows;
   for (int y = 0; y < frame.height; y += rows) {
     OnDevice band(exec, frame, y, std::min(y + rows, frame.height));
-    const transparency::DeviceLayerCounts c = band.blend(options, tuning);
+    const transparency::DeviceLayerCounts c =
+        rooms.are_there ? band.blend(options, tuning, rooms) : band.blend(options, tuning);
     band.fetch(frame);
-    sum.fragments += c.fragments;
-    sum.deepest = std::max(sum.deepest, c.deepest);
-    sum.repaired += c.repaired;
-    sum.records += c.records;
-    sum.low_blocks += c.low_blocks;
-    sum.high_blocks += c.high_blocks;
-    sum.deep_blocks += c.deep_blocks;
-    sum.turns += c.turns;
+    sum.add(c);
   }
   return sum;
 }

@@ -22,12 +22,19 @@ struct LayersFrame {
   bool by_pixel = false;             ///< Paint::pixel; else Paint::triangle
 };
 
+/// Room of the queues by which layers are blended without the host (layer_queues.cuh).
+struct QueueRooms {
+  bool are_there = false;               ///< else the listing blends them
+  std::size_t pieces = 0, records = 0;  ///< of these; 0: as many as a frame of any test needs
+  mutable std::uint64_t too_small = 0;  ///< bands of which a queue was, so that they were listed
+};
+
 /// Changes keys and colours, which are rows of pixels here, as blend_layers does: in bands of
 /// `band_rows` rows, whole blocks; 0: at once. Counts are those of all bands.
 transparency::DeviceLayerCounts blend_on_device(LayersFrame& frame,
                                                 const TransparencyOptions& options,
                                                 const transparency::DeviceLayerTuning& tuning,
-                                                int band_rows = 0);
+                                                int band_rows = 0, const QueueRooms& rooms = {});
 /// Two frames alike, one after the other: by how many bytes the second made the device's memory
 /// grow.
 std::uint64_t growth_of_a_second_frame(const LayersFrame& frame);

@@ -18,7 +18,6 @@
 namespace rastrum::test::cuda_pieces_test {
 namespace {
 
-/// Of a queue, for more than there is.
 constexpr std::uint64_t kRoom = 1 << 16;
 
 struct KeepsAll {
@@ -164,7 +163,7 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
     plan.queued_tiles = queued_tiles;
     raster::BySize drawer;
     auto sums = parallel::to_device(exec, std::vector<std::uint64_t>(raster::kBandSums));
-    drawer.draw(exec, scene, surface, plan, {}, skip, {}, sums.data());
+    drawer.draw(exec, scene, surface, plan, {}, skip, {}, {}, sums.data());
     raster::BandSums counted;
     std::ranges::copy(parallel::to_host(exec, sums), counted.begin());
     drawer.end_band(counted);
@@ -199,6 +198,84 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
   for (const raster::Piece& p : flagged.pieces) ids.push_back(raster::id_of_key(p.low));
   EXPECT_EQ(ids, expected);
   EXPECT_GT(ids.size(), 150U);
+}
+
+// What by-size leaves out lies in the queue of others, each piece once, those of a clipped triangle
+// side by side and before one of another; and its counter says when the queue was too small.
+TEST(CudaPieces, WhatIsLeftToOthersIsInTheirQueue) {
+  constexpr int kWidth = 200, kHeight = 120;
+  const auto before = [](const raster::Piece& a, const raster::Piece& b) {
+    return std::memcmp(&a, &b, sizeof a) < 0;
+  };
+  std::uint64_t clipped = 0, too_many = 0;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    const GeneratedScene g = generate(seed, kWidth, kHeight);
+    SCOPED_TRACE(g.kind);
+    const SceneBinding binding(g.scene);
+    const Mat4d to_clip = world_to_clip(g.camera, kWidth, kHeight);
+    std::vector<raster::DeviceDraw> draws;
+    for (const InstanceView& instance : binding.view().instances) {
+      raster::DeviceDraw& d = draws.emplace_back();
+      d.draw.vertex_count = instance.mesh()->positions.size();
+      d.draw.indices = instance.mesh()->indices.packed();
+      d.draw.primitive_count = instance.mesh()->triangle_count();
+      d.draw.flags = raster::kTranslucent;
+      d.vertices = {
+          instance.mesh()->positions.packed(), to_clip * instance.object_to_world, {}, {}};
+    }
+    parallel::Cuda exec;
+    const raster::DeviceScene<parallel::Cuda> scene(exec, draws, kWidth, kHeight);
+    for (const int samples : {1, 4}) {
+      const auto pattern = raster::SamplePattern::of(samples);
+      std::vector<raster::Piece> expected = make_pieces(exec, scene, KeepsAll{}, pattern).pieces;
+      std::ranges::sort(expected, before);
+      for (const std::size_t room : {std::size_t{kRoom}, expected.size() / 2 + 1}) {
+        const raster::Rect view{0, 0, kWidth, kHeight};
+        std::vector<std::uint64_t> keys(raster::block_count(view) * 64 * pattern.count);
+        const raster::DeviceSurface surface{view,
+                                            {0, 0, kWidth / 8, keys.data(), nullptr},
+                                            nullptr,
+                                            raster::block_count(view) * 64,
+                                            pattern};
+        const auto plan = raster::DevicePlan::of(0, kWidth, kHeight, scene.primitives(), 0, 0);
+        std::vector<std::uint64_t> sums(raster::kBandSums);
+        std::vector<raster::Piece> queue(room);
+        raster::BySize drawer;
+        drawer.draw(exec, scene, surface, plan, {}, raster::kTranslucent,
+                    {queue, &sums[raster::kLeftSum]}, {}, sums.data());
+        exec.wait();
+        EXPECT_EQ(sums[raster::kFragmentsSum], 0U);
+        if (sums[raster::kLeftSum] > room) {
+          ++too_many;
+          EXPECT_LT(room, kRoom);
+          continue;
+        }
+        std::vector<raster::Piece> left;
+        for (std::size_t i = 0; i < sums[raster::kLeftSum]; ++i) {
+          if (queue[i].flags == 0) continue;
+          left.push_back(queue[i]);
+          if ((queue[i].flags & raster::kClipped) == 0) continue;
+          ++clipped;
+          std::size_t last = i;
+          while (queue[last + 1].low == queue[i].low) ++last;
+          ASSERT_LT(last + 1, sums[raster::kLeftSum]);
+          EXPECT_EQ(
+              std::count_if(expected.begin(), expected.end(),
+                            [&](const raster::Piece& p) { return p.low == queue[i].low; }),
+              std::count_if(queue.begin(), queue.begin() + static_cast<std::ptrdiff_t>(last) + 1,
+                            [&](const raster::Piece& p) { return p.low == queue[i].low; }));
+        }
+        std::ranges::sort(left, before);
+        ASSERT_EQ(left.size(), expected.size());
+        if (!left.empty()) {
+          EXPECT_EQ(std::memcmp(left.data(), expected.data(), left.size() * sizeof(raster::Piece)),
+                    0);
+        }
+      }
+    }
+  }
+  EXPECT_GT(clipped, 20U);
+  EXPECT_GT(too_many, 10U);
 }
 
 }  // namespace

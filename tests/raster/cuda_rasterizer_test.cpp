@@ -387,6 +387,51 @@ TEST_F(InPlace, LaunchesAndWaitsOfAFrame) {
   EXPECT_EQ(counter(stats, "blocks allocated"), 0U);
 }
 
+// The same of translucent triangles, the third: the first frame guesses how many records there are.
+TEST_F(InPlace, LaunchesAndWaitsOfALayeredFrame) {
+  mesh.colors = {};
+  const OnDevice there(mesh, kWidth, kHeight);
+  for (const Transparency method : {Transparency::exact, Transparency::unsorted}) {
+    options.opacity = 0.5F;
+    options.transparency.method = method;
+    Frame frame = on_serial();
+    const Frame expected = frame;
+    Painter in_place(InPlace::in_place(options));
+    for (int i = 0; i < 2; ++i) (void)in_place.render(there.scene(), camera, there.targets);
+    const FrameStats stats = in_place.render(there.scene(), camera, there.targets);
+    there.read(frame);
+    EXPECT_TRUE(same_surfaces(frame, expected));
+    EXPECT_TRUE(same_picture(frame, expected, 0));
+    EXPECT_GT(counter(stats, "translucent fragments"), 100000U);
+    EXPECT_EQ(counter(stats, "bands listed"), 0U);
+    // Of opaque frames nine, the colours of the surface, and for layers eight.
+    EXPECT_EQ(counter(stats, "launches"), 18U);
+    EXPECT_EQ(counter(stats, "device algorithms"), 0U);
+    EXPECT_EQ(counter(stats, "device waits"), 1U);
+    EXPECT_EQ(counter(stats, "device copies"), 6U);
+    EXPECT_EQ(counter(stats, "blocks allocated"), 0U);
+  }
+}
+
+// And of triangles that are drawn over what a picture holds, which asks for each fragment. They
+// come from the host, by two copies, and the picture goes there and back.
+TEST_F(InPlace, LaunchesAndWaitsOfATestedFrame) {
+  mesh.colors = {};
+  const SceneBinding binding(scene);
+  Frame frame = on_serial();
+  options.device = Device::cuda;
+  Painter cuda(options);
+  const Targets over{.color8 = frame.color8, .depth = frame.depth, .over = true};
+  (void)cuda.render(binding.view(), camera, over);
+  const FrameStats stats = cuda.render(binding.view(), camera, over);
+  // Those of opaque frames, and two for tested pieces.
+  EXPECT_EQ(counter(stats, "launches"), 11U);
+  EXPECT_EQ(counter(stats, "device algorithms"), 0U);
+  EXPECT_EQ(counter(stats, "device waits"), 3U);
+  EXPECT_EQ(counter(stats, "device copies"), 12U);
+  EXPECT_EQ(counter(stats, "blocks allocated"), 0U);
+}
+
 /// Points, lines and triangles over one vertex function, some behind the eye, beyond the guard band
 /// or not finite; with widths, biases and windings.
 struct Mix {

@@ -74,11 +74,13 @@ TEST_F(CudaLayeredFrame, AMemoryLimitChangesNothing) {
   Painter free(o);
   const LayerPicture expected = take(free, binding.view(), camera);
   EXPECT_EQ(expected.counter("turns"), 1U);
+  EXPECT_EQ(expected.counter("bands listed"), 0U);
   o.memory_limit = std::uint64_t{3} << 20;
   Painter limited(o);
   const LayerPicture frame = take(limited, binding.view(), camera);
   EXPECT_TRUE(same_bits(frame, expected));
   EXPECT_GT(frame.counter("turns"), frame.counter("bands"));
+  EXPECT_GT(frame.counter("bands listed"), 0U);
   // The mesh's copy is not counted, as the mesh is not.
   EXPECT_LE(frame.stats.peak_bytes, o.memory_limit + 60000 * sizeof(Vec3));
   EXPECT_GT(expected.stats.peak_bytes, o.memory_limit + 60000 * sizeof(Vec3));

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -28,6 +30,8 @@
 
 #if !defined(RASTRUM_TEST_DEVICE_WORDS)
 #include <rastrum/parallel/cuda/status.hpp>
+#else
+#include <rastrum/parallel/cuda/host_stream.hpp>
 #endif
 
 namespace rastrum::test::cuda_layers_test {
@@ -140,6 +144,8 @@ class CudaLayers : public testing::Test {
 #if !defined(RASTRUM_TEST_DEVICE_WORDS)
     const parallel::CudaStatus status = parallel::cuda_status();
     if (!status.usable) GTEST_SKIP() << "no device: " << status.why_not;
+#else
+    parallel::cuda_system::HostStream::be_late(true);
 #endif
   }
 };
@@ -224,7 +230,6 @@ int pixels_covered_twice(const LayersFrame& f) {
   return count;
 }
 
-// Pieces of one clipped triangle may overlap by a snapped vertex; they are one layer.
 // Pieces of one clipped triangle may overlap by a snapped vertex; they are one layer.
 TEST_F(CudaLayers, OverlappingPiecesOfAClippedTriangleAreOneLayer) {
   const int size = 64;
@@ -320,6 +325,63 @@ TEST_F(CudaLayers, ASteadyFrameAllocatesNothing) {
   const LayerScene scene = scene_of(0, size, size, 100000);
   LayerProgram program(scene, size, size);
   EXPECT_EQ(growth_of_a_second_frame(frame_of(scene, program, size, size)), 0U);
+}
+
+// Queues and counters on the device instead of sizes that the host waits for: the listing's keys,
+// colours and counts, whether the queues have room, or one of them has not.
+TEST_F(CudaLayers, QueuesEqualTheListing) {
+  struct Room {
+    const char* name;
+    std::size_t pieces, records;
+  };
+  std::uint64_t listed = 0, queued = 0, deep = 0, high = 0, repaired = 0;
+  TransparencyOptions unsorted;
+  unsorted.method = Transparency::unsorted;
+  for (const auto& [width, height] : {std::pair{37, 53}, {300, 130}})
+    for (int i = 0; i < kLayerKinds; ++i) {
+      const LayerScene scene = scene_of(static_cast<std::uint64_t>(i), width, height, 30000);
+      SCOPED_TRACE(scene.kind);
+      LayerProgram program(scene, width, height);
+      const LayersFrame start = frame_of(scene, program, width, height);
+      for (const TransparencyOptions& options : {TransparencyOptions{}, unsorted})
+        for (const Way& way : {kWays[0], kWays[6]}) {
+          LayersFrame expected = start;
+          const DeviceLayerCounts counts =
+              blend_on_device(expected, options, way.tuning, way.band_rows);
+          for (const Room& room : {Room{"enough", 0, 0},
+                                   {"of pieces", start.pieces.size() / 2 + 1, 0},
+                                   {"of records", 0, 7}}) {
+            LayersFrame f = start;
+            const QueueRooms rooms{true, room.pieces, room.records};
+            const DeviceLayerCounts c =
+                blend_on_device(f, options, way.tuning, way.band_rows, rooms);
+            ASSERT_EQ(f.keys, expected.keys) << way.name << ", " << room.name;
+            for (std::size_t p = 0; p < f.colors.size(); ++p)
+              ASSERT_EQ(std::memcmp(&f.colors[p], &expected.colors[p], sizeof(Vec4)), 0)
+                  << way.name << ", " << room.name;
+            EXPECT_EQ(c.fragments, counts.fragments);
+            EXPECT_EQ(c.deepest, counts.deepest);
+            EXPECT_EQ(c.repaired, counts.repaired);
+            EXPECT_EQ(c.records, counts.records);
+            EXPECT_EQ(c.low_blocks, counts.low_blocks);
+            EXPECT_EQ(c.high_blocks, counts.high_blocks);
+            EXPECT_EQ(c.deep_blocks, counts.deep_blocks);
+            listed += rooms.too_small;
+            if (room.pieces + room.records == 0) {
+              EXPECT_EQ(rooms.too_small, 0U);
+              ++queued;
+            }
+          }
+          deep += counts.deep_blocks;
+          high += counts.high_blocks;
+          repaired += counts.repaired;
+        }
+    }
+  EXPECT_GT(listed, 0U);
+  EXPECT_GT(queued, 0U);
+  EXPECT_GT(deep, 0U);
+  EXPECT_GT(high, 0U);
+  EXPECT_GT(repaired, 0U);
 }
 
 TEST_F(CudaLayers, WhatADeviceDoesNotHaveIsRefused) {

@@ -70,7 +70,8 @@ class RowOnDevice final : public SurfaceDrawer {
 
   void draw(Exec& exec, const DeviceScene<Exec>& scene, const DeviceSurface& surface,
             const DevicePlan& plan, const Tuning& tuning, std::uint32_t skip,
-            const FragmentColors& colors, std::uint64_t* sums) override {
+            const LeftPieces& /*left*/, const FragmentColors& colors,
+            std::uint64_t* sums) override {
     using parallel::view_of;
     FamilyFrame<Exec> frame(exec, surface, tuning, colors, plan.turn_bytes);
     const auto visibility = visibility_.make(frame);

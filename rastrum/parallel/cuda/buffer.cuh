@@ -61,6 +61,12 @@ template <class T>
   return buffer;
 }
 
+/// `n` uninitialized bytes of the host to which the device copies without waiting. To be kept until
+/// the stream was waited for.
+[[nodiscard]] inline Buffer<std::byte> pinned_buffer(const Cuda& exec, std::size_t n) {
+  return Buffer<std::byte>(n, ArenaAllocator<std::byte>(exec.pinned()));
+}
+
 /// A copy of `source`, contiguous memory of the host, by way of another that the context keeps: for
 /// small arrays, which may go at once. Does not wait.
 template <class R>

@@ -41,13 +41,15 @@ class Cuda {
       : owned_(true),
         device_(cuda_system::current_device()),
         stream_(cuda_system::make_stream()),
-        memory_(make_arena(account)) {}
+        memory_(make_arena(account, cuda_system::memory_source())),
+        pinned_(make_arena(nullptr, cuda_system::pinned_source())) {}
   /// On a stream of the caller's, of the current device, which must outlive it and its results.
   explicit Cuda(cuda_system::Stream stream, MemoryAccount* account = nullptr)
       : owned_(false),
         device_(cuda_system::current_device()),
         stream_(stream),
-        memory_(make_arena(account)) {}
+        memory_(make_arena(account, cuda_system::memory_source())),
+        pinned_(make_arena(nullptr, cuda_system::pinned_source())) {}
   ~Cuda() {
     if (owned_) cuda_system::destroy_stream(stream_);
   }
@@ -55,6 +57,9 @@ class Cuda {
   Cuda& operator=(const Cuda&) = delete;
 
   [[nodiscard]] const std::shared_ptr<Arena>& memory() const { return memory_; }
+  /// Of the host, where copies from the device go without waiting (pinned_buffer). Not accounted:
+  /// it is as large as what the caller has to hold it.
+  [[nodiscard]] const std::shared_ptr<Arena>& pinned() const { return pinned_; }
   [[nodiscard]] cuda_system::Stream stream() const { return stream_; }
   /// That was current where the context was made, and must be where words are called:
   /// on_device_of().
@@ -89,15 +94,15 @@ class Cuda {
     }
     void deallocate(char* p, std::size_t n) noexcept { arena->release(p, n); }
   };
-  static std::shared_ptr<Arena> make_arena(MemoryAccount* account) {
-    return std::make_shared<Arena>(account, cuda_system::memory_source());
+  static std::shared_ptr<Arena> make_arena(MemoryAccount* account, MemorySource source) {
+    return std::make_shared<Arena>(account, source);
   }
 
   mutable std::vector<std::shared_ptr<const void>> staged_;  ///< sources of copies under way
   bool owned_;
   int device_;
   cuda_system::Stream stream_;
-  std::shared_ptr<Arena> memory_;
+  std::shared_ptr<Arena> memory_, pinned_;
   Scratch scratch_{memory_.get()};
 };
 

@@ -55,6 +55,16 @@ inline constexpr bool kOnHost = true;
           },
           "device memory", true};
 }
+[[nodiscard]] inline MemorySource pinned_source() {
+  return {[](std::size_t bytes) -> void* {
+            return DeviceFaults::strikes() ? nullptr : host_memory().allocate(bytes);
+          },
+          [](void* block) noexcept {
+            HostStream::run_all();
+            host_memory().release(block);
+          },
+          "pinned memory for a device", true};
+}
 /// Devices by number alone, so that tests see which one a call is of.
 [[nodiscard]] inline int& device_of_thread() {
   thread_local int device = 0;

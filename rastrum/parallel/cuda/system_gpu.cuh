@@ -2,6 +2,7 @@
 // them.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <string>
 #include <type_traits>
@@ -80,6 +81,21 @@ inline void check(cudaError_t error, const char* doing) {
             fail(error, "allocating");
           },
           [](void* block) noexcept { static_cast<void>(cudaFree(block)); }, "CUDA memory", true};
+}
+
+/// Memory of the host that stays where it is, which a device writes at its own speed and without
+/// the host: copies into other memory go through the driver's, and wait for the stream.
+[[nodiscard]] inline MemorySource pinned_source() {
+  return {[](std::size_t bytes) -> void* {
+            void* block = nullptr;
+            const cudaError_t error = cudaHostAlloc(&block, bytes, cudaHostAllocDefault);
+            if (error == cudaSuccess) return block;
+            static_cast<void>(cudaGetLastError());
+            if (error == cudaErrorMemoryAllocation) return nullptr;
+            fail(error, "allocating pinned memory");
+          },
+          [](void* block) noexcept { static_cast<void>(cudaFreeHost(block)); },
+          "pinned memory for a device", true};
 }
 
 /// The device that this thread's calls are of.
@@ -196,17 +212,39 @@ void launch_indices(Stream stream, std::size_t n, const F& f) {
   check(cudaGetLastError(), "starting a kernel");
 }
 
-/// What a kernel of as many blocks as the device holds at once is launched with.
-template <class Kernel>
-[[nodiscard]] unsigned resident_blocks(Kernel kernel, int threads) {
-  int device = 0, processors = 0, each = 0;
-  check(cudaGetDevice(&device), "asking for the current device");
-  check(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device),
-        "asking for a device's processors");
-  check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, kernel, threads, 0),
-        "asking for a kernel's blocks");
-  return static_cast<unsigned>(processors) * static_cast<unsigned>(each > 0 ? each : 1);
-}
+/// How many blocks of a kernel a device holds at once: asked of the driver once a device, since it
+/// takes microseconds. One for each kernel; zero-initialized. Threads that ask together find the
+/// same.
+class ResidentBlocks {
+ public:
+  template <class Kernel>
+  [[nodiscard]] unsigned of(Kernel kernel, int threads) {
+    int device = 0;
+    check(cudaGetDevice(&device), "asking for the current device");
+    const auto d = static_cast<std::size_t>(device);
+    if (d >= kDevices) return asked(kernel, threads, device);
+    const unsigned known = blocks_[d].load(std::memory_order_relaxed);
+    if (known != 0) return known;
+    const unsigned blocks = asked(kernel, threads, device);
+    blocks_[d].store(blocks, std::memory_order_relaxed);
+    return blocks;
+  }
+
+ private:
+  static constexpr std::size_t kDevices = 64;  ///< those beyond are asked each time
+
+  template <class Kernel>
+  [[nodiscard]] static unsigned asked(Kernel kernel, int threads, int device) {
+    int processors = 0, each = 0;
+    check(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device),
+          "asking for a device's processors");
+    check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, kernel, threads, 0),
+          "asking for a kernel's blocks");
+    return static_cast<unsigned>(processors) * static_cast<unsigned>(each > 0 ? each : 1);
+  }
+
+  std::atomic<unsigned> blocks_[kDevices] = {};  ///< 0: not asked yet
+};
 
 template <class Local, class F>
 __global__ void __launch_bounds__(kIndexThreads)
@@ -224,7 +262,8 @@ template <class Local, class F>
 void launch_strided(Stream stream, LoopCount n, const F& f) {
   if (n.most == 0) return;
   const std::size_t wanted = (n.most - 1) / kIndexThreads + 1;
-  const unsigned resident = resident_blocks(strided_kernel<Local, F>, kIndexThreads);
+  static ResidentBlocks known;
+  const unsigned resident = known.of(strided_kernel<Local, F>, kIndexThreads);
   const unsigned blocks = wanted < resident ? static_cast<unsigned>(wanted) : resident;
   ++device_tally().launches;
   strided_kernel<Local, F><<<blocks, kIndexThreads, 0, stream>>>(n, f);
@@ -251,7 +290,8 @@ void launch_teams(Stream stream, LoopCount n, F f) {
   auto blocks = static_cast<unsigned>(n.most < kMostBlocks ? n.most : kMostBlocks);
   // Most of what a queue has room for is not there.
   if (n.count != nullptr) {
-    const unsigned resident = resident_blocks(team_kernel<T, kThreads, F>, kThreads);
+    static ResidentBlocks known;
+    const unsigned resident = known.of(team_kernel<T, kThreads, F>, kThreads);
     if (resident < blocks) blocks = resident;
   }
   ++device_tally().launches;

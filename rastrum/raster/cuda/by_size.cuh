@@ -31,6 +31,7 @@
 
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/raster/cuda/cover.cuh>
+#include <rastrum/raster/cuda/left_pieces.cuh>
 #include <rastrum/raster/cuda/pieces.cuh>
 #include <rastrum/raster/cuda/plan.cuh>
 #include <rastrum/raster/cuda/surface_drawer.cuh>
@@ -89,6 +90,7 @@ struct BySizeBatch {
   BySizeQueues queues;
   std::uint64_t small_px;
   std::uint32_t skip;
+  LeftPieces left;
   std::uint64_t* sums;
 
   /// Whether the piece went into its queue, being large enough and finding room.
@@ -99,8 +101,15 @@ struct BySizeBatch {
     queues.pieces[static_cast<std::size_t>(at)] = piece;
     return true;
   }
+  /// Whether the piece is for others, who find it in `queue`.
+  template <class Queue>
+  RASTRUM_HD bool leave(const Piece& piece, Queue& queue) const {
+    if ((piece.flags & skip) == 0) return false;
+    if (!left.pieces.empty() && !surface.bounds(piece).empty()) queue.put(piece);
+    return true;
+  }
   RASTRUM_HD void draw(const Piece& piece, BySizeLocal& local) const {
-    if ((piece.flags & skip) != 0 || queue(piece, surface.bounds(piece))) return;
+    if (queue(piece, surface.bounds(piece))) return;
     surface.each_sample(piece, surface.view, [&](int s, const Piece& seen, Rect box) {
       local.fragments += static_cast<std::uint64_t>(draw_by_thread(surface, seen, box, s));
     });
@@ -133,7 +142,7 @@ struct DrawUnclipped : BySizeBatch {
       return;
     }
     local.take(fate);
-    if (fate != Fate::drawn || (piece.flags & skip) != 0) return;
+    if (fate != Fate::drawn || leave(piece, left)) return;
     const Rect box = piece_bounds(piece, surface.view);
     if (box.empty() || queue(piece, box)) return;
     local.fragments += static_cast<std::uint64_t>(draw_by_thread(surface, piece, box));
@@ -144,7 +153,11 @@ struct DrawUnclipped : BySizeBatch {
 struct DrawAny : BySizeBatch {
   RASTRUM_HD void operator()(std::size_t k, BySizeLocal& local) const {
     const std::size_t i = queues.primitives.empty() ? k : queues.primitives[k];
-    const Outcome out = assembly.assemble(i, [&](const Piece& piece) { draw(piece, local); });
+    LeaveOfPrimitive others(left);
+    const Outcome out = assembly.assemble(i, [&](const Piece& piece) {
+      if (!leave(piece, others)) draw(piece, local);
+    });
+    others.end();
     if (!out.valid)
       ++local.invalid;
     else
@@ -223,12 +236,14 @@ class BySize final : public SurfaceDrawer {
     return {.rasterizer = "by-size",
             .visibility = "atomic",
             .why = "cuda has by-size: a thread, a warp or blocks of threads a triangle",
-            .has_samples = true};
+            .has_samples = true,
+            .leaves_pieces = true};
   }
 
   void draw(parallel::Cuda& exec, const DeviceScene<parallel::Cuda>& scene,
             const DeviceSurface& surface, const DevicePlan& plan, const Tuning& tuning,
-            std::uint32_t skip, const FragmentColors& /*colors*/, std::uint64_t* sums) override {
+            std::uint32_t skip, const LeftPieces& left, const FragmentColors& /*colors*/,
+            std::uint64_t* sums) override {
     using namespace cuda_detail;  // NOLINT: its kernels are the subject here
     using parallel::view_of;
     const DeviceSizes sizes = DeviceSizes::of(tuning, surface.samples.count);
@@ -248,8 +263,13 @@ class BySize final : public SurfaceDrawer {
       ++batches_;
       const auto n = static_cast<std::size_t>(std::min(plan.batch, end - first));
       parallel::tabulate(exec, counts, parallel::range_detail::SameValue<std::uint64_t>{0});
-      const BySizeBatch batch{
-          {scene.geometry(), first, surface.samples}, surface, queues, sizes.small_px, skip, sums};
+      const BySizeBatch batch{{scene.geometry(), first, surface.samples},
+                              surface,
+                              queues,
+                              sizes.small_px,
+                              skip,
+                              left,
+                              sums};
       if (has_fast_path) parallel::for_each_strided<BySizeLocal>(exec, n, DrawUnclipped{batch});
       parallel::for_each_strided<BySizeLocal>(
           exec, has_fast_path ? parallel::LoopCount{n, &queues.count[0]} : n, DrawAny{batch});

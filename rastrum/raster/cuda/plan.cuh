@@ -23,11 +23,14 @@ struct DevicePlan {
   std::uint64_t turn_bytes = 0;  ///< of blocks and what makes them (SurfaceDrawer), 0: any
   /// What by-size's queues have room for: pieces for teams, and tiles of large ones.
   std::uint64_t queued_pieces = 0, queued_tiles = 0;
+  std::uint64_t left_pieces = 0;  ///< room of LeftPieces
+  std::uint64_t left_bytes = 0;   ///< for what is made of them, twice; 0: any
 
-  /// `limit`: bytes, 0 for any. `pixel_bytes`: what is kept of a pixel beside its key. Throws
-  /// Error{out_of_memory} where not even the least band fits.
+  /// `limit`: bytes, 0 for any. `pixel_bytes`: what is kept of a pixel beside its key. `left`: of
+  /// the primitives those whose pieces are left to others. Throws Error{out_of_memory} where not
+  /// even the least band fits.
   static DevicePlan of(std::uint64_t limit, int width, int height, std::uint64_t primitives,
-                       std::uint64_t vertices, std::uint64_t pixel_bytes) {
+                       std::uint64_t vertices, std::uint64_t pixel_bytes, std::uint64_t left = 0) {
     constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
     constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 19;
     // Queues that are full cost time: what does not fit is drawn by the thread that found it. Of a
@@ -41,6 +44,9 @@ struct DevicePlan {
     p.batch = p.written = std::clamp<std::uint64_t>(primitives, 1, kLargestBatch);
     p.queued_pieces = kPieces + p.batch / 8;
     p.queued_tiles = kTiles;
+    // More than a piece a primitive have clipped ones alone. Pieces are numbered in 32 bits.
+    constexpr std::uint64_t kMostLeft = std::uint64_t{1} << 31;
+    if (left > 0) p.left_pieces = std::min(left + left / 8 + 1024, kMostLeft);
     if (limit == 0) return p;
     const auto columns = static_cast<std::uint64_t>(block_columns({0, 0, width, 1}));
     const std::uint64_t least_band =
@@ -63,6 +69,10 @@ struct DevicePlan {
     p.queued_pieces = std::min(p.queued_pieces, share / 2 / sizeof(Piece));
     p.queued_tiles = std::min(p.queued_tiles, share / 2 / sizeof(std::uint64_t));
     p.turn_bytes = share / 2;
+    // While they are filled the batch takes a sixth of its share; while they are gone through, of
+    // the shares there is the vertices' alone.
+    p.left_pieces = std::min(p.left_pieces, share / 2 / sizeof(Piece));
+    p.left_bytes = share / 2;
     return p;
   }
 };

@@ -39,6 +39,16 @@ struct DeviceTargets {
   }
 };
 
+/// What the lit shaders read of a triangle, in float32: LitTriangle (lit_triangle.hpp) without what
+/// only thin and clipped ones have.
+struct alignas(16) LitRecord {
+  float x0, y0, p1, q1, p2, q2;
+  float inv_w[3];
+  Vec3 normal[3], color[3];
+  std::uint32_t exact;  ///< it is thin or clipped, so the rest is not set
+};
+static_assert(sizeof(LitRecord) == 112);
+
 /// The lit shaders for which has() says so, at one opacity as Shading has it; at 0 nothing is
 /// read. `scene`: spans of the device's.
 struct LitOnDevice {
@@ -53,6 +63,55 @@ struct LitOnDevice {
     const Vec3 c = color(key, x, y, from_centre);
     if (opacity == 1) return {c.x, c.y, c.z, 1};
     return {c.x * opacity, c.y * opacity, c.z * opacity, opacity};
+  }
+  /// The same colour by what was read of its triangle before.
+  using Record = LitRecord;
+  RASTRUM_HD Vec4 operator()(const LitRecord& record, std::uint64_t key, int x, int y,
+                             Vec2 from_centre = {0, 0}) const {
+    if (record.exact != 0) return (*this)(key, x, y, from_centre);
+    const Vec3 c = color(record, x, y, from_centre);
+    if (opacity == 1) return {c.x, c.y, c.z, 1};
+    return {c.x * opacity, c.y * opacity, c.z * opacity, opacity};
+  }
+  /// Whether records save reads.
+  [[nodiscard]] bool wants_records() const {
+    return opacity > 0 && model != LitModel::id && (model != LitModel::flat || scene.colored);
+  }
+  /// Of the triangle whose keys end in `low`.
+  RASTRUM_HD_CALL LitRecord record(std::uint64_t low) const {
+    LitTriangle t;
+    fetch_triangle(scene, geometry, low, model != LitModel::flat, t);
+    LitRecord r{};
+    r.exact = t.exact ? 1 : 0;
+    if (t.exact) return r;
+    r.x0 = t.x0;
+    r.y0 = t.y0;
+    r.p1 = t.p1;
+    r.q1 = t.q1;
+    r.p2 = t.p2;
+    r.q2 = t.q2;
+    for (int c = 0; c < 3; ++c) {
+      r.inv_w[c] = t.inv_w[c];
+      if (model != LitModel::flat) r.normal[c] = t.normal[c];
+      if (scene.colored) r.color[c] = t.color[c];
+    }
+    return r;
+  }
+  RASTRUM_HD_CALL Vec3 color(const LitRecord& r, int x, int y, Vec2 from_centre) const {
+    LitTriangle t;
+    t.exact = false;
+    t.x0 = r.x0;
+    t.y0 = r.y0;
+    t.p1 = r.p1;
+    t.q1 = r.q1;
+    t.p2 = r.p2;
+    t.q2 = r.q2;
+    for (int c = 0; c < 3; ++c) {
+      t.inv_w[c] = r.inv_w[c];
+      t.normal[c] = r.normal[c];
+      t.color[c] = r.color[c];
+    }
+    return shade_lit(model, scene, t, x, y, from_centre);
   }
   RASTRUM_HD_CALL Vec3 color(std::uint64_t key, int x, int y, Vec2 from_centre) const {
     if (model == LitModel::id) return id_color(id_of_key(key));
@@ -123,6 +182,7 @@ struct ResolvePixel {
   Shade shade;
   ResolveRules rules;
   std::uint64_t* covered_sum;
+  const std::uint64_t* held;
   /// How many pixels of a thread hold a surface.
   struct Local {
     std::uint32_t covered = 0;
@@ -131,6 +191,7 @@ struct ResolvePixel {
     parallel::add_to_sum(*covered_sum, local.covered);
   }
   RASTRUM_HD void operator()(std::size_t i, Local& local) const {
+    if (held != nullptr && *held != 0) return;
     const Rect view = surface.view;
     // An image has fewer than 2^32 pixels.
     const auto width = static_cast<std::uint32_t>(view.x1 - view.x0);
@@ -172,13 +233,15 @@ struct ResolvePixel {
 }  // namespace cuda_detail
 
 /// Fills `targets` from the keys of `surface`; where `rules` keep or are over something, they hold
-/// it. Adds how many pixels hold a surface to *covered, of the device. Work O(pixels).
+/// it. Adds how many pixels hold a surface to *covered, of the device. Does nothing where *held, of
+/// the device, is not 0; null: there is none. Work O(pixels).
 template <class Exec, class Shade>
 void resolve_surface(Exec& exec, const DeviceSurface& surface, const DeviceTargets& targets,
-                     const Shade& shade, const ResolveRules& rules, std::uint64_t* covered) {
+                     const Shade& shade, const ResolveRules& rules, std::uint64_t* covered,
+                     const std::uint64_t* held = nullptr) {
   using Resolve = cuda_detail::ResolvePixel<Shade>;
   parallel::for_each_strided<typename Resolve::Local>(
-      exec, area_of(surface.view), Resolve{surface, targets, shade, rules, covered});
+      exec, area_of(surface.view), Resolve{surface, targets, shade, rules, covered, held});
 }
 
 namespace cuda_detail {

@@ -68,6 +68,17 @@ struct ShadedOnce {
             : shading_place(geometry, samples, id_of_key(key), x, y);
     return shade(place.key, x, y, place.from_centre);
   }
+  /// And what was read of the primitive before.
+  using Record = typename Shade::Record;
+  RASTRUM_HD Vec4 operator()(const Piece& piece, const Record& record, std::uint64_t key, int x,
+                             int y) const {
+    if (covers_centre(edges_of(piece), x, y))
+      return shade(record, make_key(depth_at(piece, x, y), piece.low), x, y);
+    const ShadingPlace place = shading_place(geometry, samples, id_of_key(key), x, y);
+    return shade(record, place.key, x, y, place.from_centre);
+  }
+  [[nodiscard]] bool wants_records() const { return shade.wants_records(); }
+  RASTRUM_HD Record record(std::uint64_t low) const { return shade.record(low); }
 };
 
 template <class Shade>
@@ -107,7 +118,9 @@ struct ShadeSamples {
 struct MeanOfSamples {
   DeviceSurface surface;
   Vec4* colors;
+  const std::uint64_t* held;
   RASTRUM_HD void operator()(std::size_t i) const {
+    if (held != nullptr && *held != 0) return;
     Vec4 sum{0, 0, 0, 0};
     std::uint64_t nearest = 0;
     for (int s = 0; s < surface.samples.count; ++s) {
@@ -133,9 +146,12 @@ void shade_samples(Exec& exec, const DeviceSurface& surface, std::span<Vec4> col
 }
 
 /// Makes the first plane the picture: the largest key of a pixel's samples and their mean colour.
+/// Does nothing where *held, of the device, is not 0; null: there is none.
 template <class Exec>
-void mean_of_samples(Exec& exec, const DeviceSurface& surface, std::span<Vec4> colors) {
-  parallel::for_each_index(exec, surface.plane, cuda_detail::MeanOfSamples{surface, colors.data()});
+void mean_of_samples(Exec& exec, const DeviceSurface& surface, std::span<Vec4> colors,
+                     const std::uint64_t* held = nullptr) {
+  parallel::for_each_index(exec, surface.plane,
+                           cuda_detail::MeanOfSamples{surface, colors.data(), held});
 }
 
 }  // namespace rastrum::raster

@@ -11,6 +11,7 @@
 #include <rastrum/frame.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/raster/cuda/cover.cuh>
+#include <rastrum/raster/cuda/left_pieces.cuh>
 #include <rastrum/raster/cuda/pieces.cuh>
 #include <rastrum/raster/cuda/plan.cuh>
 #include <rastrum/tuning.hpp>
@@ -54,6 +55,9 @@ enum BandSum : std::uint8_t {
   kLargerSum,   ///< pieces that a team draws
   kTilesSum,    ///< and tiles of large ones
   kCoveredSum,  ///< pixels that hold a surface
+  kLeftSum,     ///< places of LeftPieces
+  kRunsSum,     ///< of the boxes of those that are tested
+  kHeldSum,     ///< not 0: pieces of the band are still to be drawn, so its images are not made
   kBandSums
 };
 using BandSums = std::array<std::uint64_t, kBandSums>;  ///< on the host
@@ -68,19 +72,22 @@ class SurfaceDrawer {
     std::uint64_t pixel_bytes = 0;            ///< of a band, beside its keys
     bool shades = false;                      ///< it wants FragmentColors, and sets them
     bool has_samples = false;                 ///< it draws several samples a pixel
+    bool leaves_pieces = false;               ///< it fills LeftPieces
   };
 
   virtual ~SurfaceDrawer() = default;
   [[nodiscard]] virtual Kind kind() const = 0;
 
   /// Draws all primitives of `scene` onto the keys of `surface`, which hold what was drawn before,
-  /// or 0; pieces that have a flag of `skip` are left to others, though what became of them is
-  /// counted, in the BandSums at `sums` on the device. Of what is not valid nothing is drawn.
+  /// or 0; pieces that have a flag of `skip` are left to others, in `left` where there is room and
+  /// kind().leaves_pieces says so, though what became of them is counted, in the BandSums at `sums`
+  /// on the device. Of what is not valid nothing is drawn.
   /// `colors` as kind().shades says. Throws Error{out_of_memory}, and parallel::Stopped between
   /// batches. May return before it is done.
   virtual void draw(parallel::Cuda& exec, const DeviceScene<parallel::Cuda>& scene,
                     const DeviceSurface& surface, const DevicePlan& plan, const Tuning& tuning,
-                    std::uint32_t skip, const FragmentColors& colors, std::uint64_t* sums) = 0;
+                    std::uint32_t skip, const LeftPieces& left, const FragmentColors& colors,
+                    std::uint64_t* sums) = 0;
   /// Counts from 0; a frame may have ended early.
   virtual void begin_frame() = 0;
   /// What a band had counted when it was done.

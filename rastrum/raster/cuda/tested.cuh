@@ -1,7 +1,9 @@
-// Pieces with a fragment test on a device: a thread for each 8 × 8 block that a piece's box
-// touches, whatever the piece's size, puts the keys of the fragments that the test keeps. What
-// lies behind the key that is there already is not asked for. Order does not matter to a maximum
-// of keys.
+// Pieces with a fragment test on a device: the keys of the fragments that the test keeps, by the
+// 8 × 8 blocks that a piece's box touches. What lies behind the key that is there already is not
+// asked for. Order does not matter to a maximum of keys.
+//
+// Pieces come from a queue that who drew the others has filled (left_pieces.cuh), and the host does
+// not wait. Where there is none, or it was too small, they are made by a listing, batch by batch.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +15,10 @@
 #include <rastrum/parallel/cuda/expand.cuh>
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/raster/cuda/cover.cuh>
+#include <rastrum/raster/cuda/left_pieces.cuh>
 #include <rastrum/raster/cuda/pieces.cuh>
 #include <rastrum/raster/cuda/plan.cuh>
+#include <rastrum/raster/cuda/surface_drawer.cuh>
 #include <rastrum/stop.hpp>
 
 namespace rastrum::raster {
@@ -35,6 +39,24 @@ struct BlocksOfBox {
     return static_cast<std::size_t>(BlocksOf(piece_bounds(piece, view)).count());
   }
 };
+/// Puts those fragments of block (bx, by) of a piece whose box in the view is `box` that the test
+/// keeps. Returns how many there are before the test.
+template <class Test>
+RASTRUM_HD std::uint64_t draw_tested_block(const DeviceSurface& surface, const Test& test,
+                                           const Piece& piece, Rect box, int bx, int by) {
+  const std::uint64_t mask = cover_box(edges_of(piece), box, bx, by);
+  for (std::uint64_t m = mask; m != 0; m &= m - 1) {
+    const int i = parallel::lowest_bit(m);
+    const std::size_t at = surface.keys.index(bx, by) * 64 + static_cast<std::size_t>(i);
+    if (surface.overdraw != nullptr) parallel::atomic_add(surface.overdraw[at], 1U);
+    const std::uint64_t key = DeviceSurface::key(piece, bx, by, i);
+    // Others may raise it meanwhile: a key that is old only asks the test once more.
+    if (key > surface.keys.keys[at] &&
+        test(key, bx * kBlockSize + i % kBlockSize, by * kBlockSize + i / kBlockSize))
+      parallel::atomic_maximum(surface.keys.keys[at], key);
+  }
+  return static_cast<std::uint64_t>(parallel::popcount(mask));
+}
 template <class Test>
 struct DrawTested {
   DeviceSurface surface;
@@ -44,19 +66,35 @@ struct DrawTested {
     const Rect box = piece_bounds(piece, surface.view);
     const BlocksOf blocks(box);
     const int bx = blocks.bx(static_cast<int>(j)), by = blocks.by(static_cast<int>(j));
-    const std::uint64_t mask = cover_box(edges_of(piece), box, bx, by);
-    if (mask == 0) return;
-    parallel::add_to_sum(*fragments, static_cast<std::uint64_t>(parallel::popcount(mask)));
-    for (std::uint64_t m = mask; m != 0; m &= m - 1) {
-      const int i = parallel::lowest_bit(m);
-      const std::size_t at = surface.keys.index(bx, by) * 64 + static_cast<std::size_t>(i);
-      if (surface.overdraw != nullptr) parallel::atomic_add(surface.overdraw[at], 1U);
-      const std::uint64_t key = DeviceSurface::key(piece, bx, by, i);
-      // Others may raise it meanwhile: a key that is old only asks the test once more.
-      if (key > surface.keys.keys[at] &&
-          test(key, bx * kBlockSize + i % kBlockSize, by * kBlockSize + i / kBlockSize))
-        parallel::atomic_maximum(surface.keys.keys[at], key);
-    }
+    const std::uint64_t count = draw_tested_block(surface, test, piece, box, bx, by);
+    if (count != 0) parallel::add_to_sum(*fragments, count);
+  }
+};
+
+/// The same for visit_blocks.
+template <class Test>
+struct VisitTested {
+  DeviceSurface surface;
+  Test test;
+  IsTestedIn keep;
+  std::span<const Piece> pieces;
+  std::uint64_t* fragments;
+
+  struct Local {
+    std::uint64_t fragments = 0;
+  };
+  RASTRUM_HD std::uint64_t blocks(std::uint32_t i) const {
+    if (!keep(pieces[i])) return 0;
+    return static_cast<std::uint64_t>(BlocksOf(piece_bounds(pieces[i], surface.view)).count());
+  }
+  RASTRUM_HD void operator()(std::uint32_t i, std::size_t j, Local& local) const {
+    const Rect box = piece_bounds(pieces[i], surface.view);
+    const BlocksOf blocks(box);
+    const int bx = blocks.bx(static_cast<int>(j)), by = blocks.by(static_cast<int>(j));
+    local.fragments += draw_tested_block(surface, test, pieces[i], box, bx, by);
+  }
+  RASTRUM_HD void end(const Local& local) const {
+    parallel::add_to_sum(*fragments, local.fragments);
   }
 };
 
@@ -97,6 +135,18 @@ template <class Exec, class Test>
     }
   }
   return parallel::to_host(exec, fragments)[0];
+}
+
+/// The same of pieces that lie in a queue; of all of them, or where some are missing of none. Adds
+/// to the BandSums at `sums`. Does not wait.
+template <class Test>
+void draw_tested(parallel::Cuda& exec, const DeviceSurface& surface, const LeftPieces& left,
+                 std::uint32_t skip, const Test& test, std::uint64_t* sums) {
+  const std::span<const Piece> pieces = left.pieces;
+  visit_blocks(exec, left,
+               cuda_detail::VisitTested<Test>{
+                   surface, test, {surface.view, skip}, pieces, sums + kFragmentsSum},
+               sums + kRunsSum, sums + kHeldSum);
 }
 
 }  // namespace rastrum::raster

@@ -1,12 +1,15 @@
 // The targets of a band of rows on a device: copies of what the caller has on the host, or in place
-// the caller's own.
+// the caller's own. They come back through pinned memory, so that the host does not wait for each,
+// and its threads bring them from there to where the caller wants them.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include <rastrum/image.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
+#include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/cuda/resolve.cuh>
 #include <rastrum/raster/frame/request.hpp>
 
@@ -23,7 +26,7 @@ class BandImage {
         view_(view),
         in_place_(in_place),
         pixels_(parallel::make_buffer<T>(exec, host.empty() || in_place ? 0 : area_of(view))) {
-    if (keeps && pixels_.size() > 0) copy(true);
+    if (keeps && pixels_.size() > 0) load();
   }
   [[nodiscard]] ImageView<T> on_device() {
     const int width = view_.x1 - view_.x0;
@@ -31,16 +34,32 @@ class BandImage {
       return {host_.row(view_.y0), width, view_.y1 - view_.y0, host_.stride};
     return {pixels_.data(), width, view_.y1 - view_.y0, width};
   }
-  /// Does not wait.
+  /// To the host, where it is once the device was waited for. Does not wait.
   void store() {
-    if (pixels_.size() > 0) copy(false);
+    const std::size_t bytes = pixels_.size() * sizeof(T);
+    if (bytes == 0) return;
+    staged_ = parallel::pinned_buffer(exec_, bytes);
+    parallel::cuda_system::copy(exec_.stream(), staged_.data(), pixels_.data(), bytes);
+  }
+  /// Then: to the caller.
+  void deliver(parallel::Threads& threads) {
+    if (staged_.empty()) return;
+    constexpr std::size_t kRowGrain = 16;
+    const std::size_t row_bytes = static_cast<std::size_t>(view_.x1 - view_.x0) * sizeof(T);
+    parallel::for_each_index(
+        threads, static_cast<std::size_t>(view_.y1 - view_.y0),
+        [&](std::size_t y) {
+          std::memcpy(static_cast<void*>(host_.row(view_.y0 + static_cast<int>(y))),
+                      staged_.data() + y * row_bytes, row_bytes);
+        },
+        kRowGrain);
   }
 
  private:
-  void copy(bool to_device) {
+  void load() {
     const auto rows = static_cast<std::size_t>(view_.y1 - view_.y0);
     parallel::copy_image(exec_, pixels_.data(), static_cast<std::size_t>(view_.x1 - view_.x0),
-                         host_.row(view_.y0), host_.stride, rows, to_device);
+                         host_.row(view_.y0), host_.stride, rows, true);
   }
 
   parallel::Cuda& exec_;
@@ -48,6 +67,7 @@ class BandImage {
   Rect view_;
   bool in_place_;
   parallel::DeviceBuffer<T> pixels_;
+  parallel::Buffer<std::byte> staged_;
 };
 
 /// A band of all targets; with what they hold, where they keep it.
@@ -68,19 +88,28 @@ class BandImages {
     return {d.data, d.width, d.height, d.stride};
   }
 
-  /// Fills all, and the caller's once the device was waited for. Adds how many pixels hold a
-  /// surface to *covered, of the device.
+  /// Fills all; adds how many pixels hold a
+  /// surface to *covered, of the device. Where *held is not 0 it leaves them (resolve_surface), and
+  /// is to be called again.
   template <class Shade>
   void resolve(const FrameRequest& request, const Shade& shade, const DeviceSurface& surface,
-               std::uint64_t* covered) {
+               std::uint64_t* covered, const std::uint64_t* held) {
     const DeviceTargets targets{color8_.on_device(), color_.on_device(), depth_.on_device(),
                                 ids_.on_device(), keys_.on_device()};
-    resolve_surface(exec_, surface, targets, shade, ResolveRules::of(request), covered);
+    resolve_surface(exec_, surface, targets, shade, ResolveRules::of(request), covered, held);
     color8_.store();
     color_.store();
     depth_.store();
     ids_.store();
     keys_.store();
+  }
+  /// What was filled, to the caller, once the device was waited for.
+  void deliver(parallel::Threads& threads) {
+    color8_.deliver(threads);
+    color_.deliver(threads);
+    depth_.deliver(threads);
+    ids_.deliver(threads);
+    keys_.deliver(threads);
   }
 
  private:

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <span>
@@ -48,6 +49,7 @@ class DeviceRasterizer final : public CudaRasterizer {
         memory_limit_(memory_limit),
         threads_(threads),
         exec_(&memory),
+        counts_(parallel::pinned_buffer(exec_, 0)),
         textures_(exec_),
         host_(memory, threads) {}
 
@@ -97,7 +99,13 @@ class DeviceRasterizer final : public CudaRasterizer {
     FrameGeometry geometry;  ///< for the host
     std::optional<parallel::ScratchPool<ShaderScratch>> shaders;
     transparency::SceneLayers layers;
-    std::uint64_t bands = 0;
+    std::uint64_t bands = 0, listed = 0;
+  };
+
+  /// What a band has counted, in the order of the device's array.
+  struct BandCounts {
+    BandSums sums{};
+    decltype(transparency::LayerQueueCounts::of) layers{};
   };
 
   /// A band that is being drawn, on the device.
@@ -112,7 +120,9 @@ class DeviceRasterizer final : public CudaRasterizer {
           images(exec, frame.request, rows, frame.resolves),
           colors(parallel::make_buffer<Vec4>(
               exec, frame.in_colors || frame.shades_fragments ? keys.size() : 0)),
-          sums(parallel::make_buffer<std::uint64_t>(exec, kBandSums)),
+          sums(parallel::make_buffer<std::uint64_t>(exec, sizeof(BandCounts) / 8)),
+          left_room(
+              parallel::make_buffer<Piece>(exec, static_cast<std::size_t>(frame.plan.left_pieces))),
           surface{view,
                   {0, view.y0 / kBlockSize, block_columns(view), keys.data(), nullptr},
                   overdraw.data(),
@@ -125,8 +135,15 @@ class DeviceRasterizer final : public CudaRasterizer {
     HostBand::Counts overdraw;
     BandImages images;
     parallel::DeviceBuffer<Vec4> colors;         ///< in the places of the keys
-    parallel::DeviceBuffer<std::uint64_t> sums;  ///< BandSums
+    parallel::DeviceBuffer<std::uint64_t> sums;  ///< BandCounts
+    parallel::DeviceBuffer<Piece> left_room;     ///< empty: pieces are not queued
     DeviceSurface surface;
+
+    [[nodiscard]] LeftPieces left() {
+      return {parallel::view_of(left_room), sums.data() + kLeftSum};
+    }
+    [[nodiscard]] std::uint64_t* covered() { return sums.data() + kCoveredSum; }
+    [[nodiscard]] std::uint64_t* held() { return sums.data() + kHeldSum; }
   };
 
   [[nodiscard]] FrameStats render(FrameRequest& request, const std::stop_token* stop) override {
@@ -194,7 +211,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     f.in_colors = f.has_layers || f.samples.count > 1;
     f.shades_fragments = kind_.shades && f.resolves && wants_colors(request.targets);
     f.plan = DevicePlan::of(limit(), request.width, request.height, f.totals.primitives,
-                            f.totals.vertices, pixel_bytes(f));
+                            f.totals.vertices, pixel_bytes(f), left_primitives(f));
     f.scene.emplace(exec_, f.draws, request.width, request.height, request.targets.first_id,
                     f.plan.project_first);
     f.watch.lap(f.stats, "project");
@@ -205,6 +222,19 @@ class DeviceRasterizer final : public CudaRasterizer {
       scratch.begin(request.shading.scratch_bytes());
       return scratch;
     });
+  }
+
+  /// The pieces that the drawer leaves to others.
+  [[nodiscard]] static std::uint32_t skipped(const Frame& f) {
+    return (f.has_layers ? kTranslucent : 0) | (f.look->has_test() ? kMayDrop : 0);
+  }
+  /// Of how many primitives they may be; 0: the drawer keeps none.
+  [[nodiscard]] std::uint64_t left_primitives(const Frame& f) const {
+    if (!kind_.leaves_pieces) return 0;
+    std::uint64_t n = 0;
+    for (const Draw& draw : f.request.draws)
+      if ((draw.any_flags() & skipped(f)) != 0) n += draw.primitive_count;
+    return n;
   }
 
   /// Nothing, or the keys of the passes before.
@@ -228,30 +258,60 @@ class DeviceRasterizer final : public CudaRasterizer {
       f.look->with(f.scene->geometry(), test, [&](const auto& shade, const auto&) {
         colors = {shade_fragments(band.surface.keys, shade), parallel::view_of(band.colors)};
       });
-    const std::uint32_t skip = f.has_layers ? kTranslucent : 0;
-    drawer_->draw(exec_, *f.scene, band.surface, f.plan, request.tuning,
-                  skip | (f.look->has_test() ? kMayDrop : 0), colors, band.sums.data());
-    if (f.look->has_test())
-      f.stats.fragments += draw_tested(exec_, *f.scene, band.surface, f.plan, skip, test);
-    f.watch.lap(f.stats, "rasterize");
+    drawer_->draw(exec_, *f.scene, band.surface, f.plan, request.tuning, skipped(f), band.left(),
+                  colors, band.sums.data());
+    if (band.left_room.size() == 0 || !finish_band(f, band, test, true)) {
+      // There is no queue, or one was too small: pieces are made again, as memory holds them.
+      if (band.left_room.size() > 0) {
+        ++f.listed;
+        band.left_room = {};
+        if (memory_limit_ != 0) exec_.memory()->trim();
+      }
+      finish_band(f, band, test, false);
+    }
     if (band.overdraw.size() > 0) host_.store_overdraw(exec_, request.targets, view, band.overdraw);
-    if (f.resolves)
-      f.look->with(f.scene->geometry(), test, [&](const auto& shade, const auto& keeps) {
-        resolve_band(f, band, shade, keeps);
-      });
-    else
-      f.stats.pixels_covered +=
-          host_.resolve(exec_, request, f.geometry, view, band.keys, *f.shaders);
-    end_band(f, band);
     f.watch.lap(f.stats, "shade");
   }
 
-  /// Waits for the band, which is the frame's one wait where nothing is blended or tested.
-  void end_band(Frame& f, const Band& band) {
-    BandSums sums{};
-    parallel::cuda_system::copy(exec_.stream(), sums.data(), band.sums.data(), sizeof sums);
+  /// What comes after the drawer: tested pieces, colours and layers, and the targets. `by_queues`:
+  /// what the drawer left lies in the band's queue, and the one wait is that for the picture.
+  /// False: it was too small, and nothing of what was left is drawn.
+  bool finish_band(Frame& f, Band& band, const TestOnDevice& test, bool by_queues) {
+    const std::uint32_t layers = f.has_layers ? kTranslucent : 0;
+    if (f.look->has_test()) {
+      if (by_queues)
+        draw_tested(exec_, band.surface, band.left(), layers, test, band.sums.data());
+      else
+        f.stats.fragments += draw_tested(exec_, *f.scene, band.surface, f.plan, layers, test);
+    }
+    f.watch.lap(f.stats, "rasterize");
+    if (!f.resolves) {
+      const BandCounts counts = wait_for(band);
+      if (by_queues && counts.sums[kHeldSum] != 0) return false;
+      f.stats.pixels_covered +=
+          host_.resolve(exec_, f.request, f.geometry, band.view, band.keys, *f.shaders);
+      end_band(f, counts.sums);
+      return true;
+    }
+    bool done = true;
+    f.look->with(f.scene->geometry(), test, [&](const auto& shade, const auto& keeps) {
+      done = resolve_band(f, band, shade, keeps, by_queues);
+    });
+    return done;
+  }
+
+  /// Waits for all that the band was given.
+  [[nodiscard]] BandCounts wait_for(const Band& band) {
+    static_assert(sizeof(BandCounts) % sizeof(std::uint64_t) == 0);
+    BandCounts counts;
+    counts_.resize(sizeof counts);
+    parallel::cuda_system::copy(exec_.stream(), counts_.data(), band.sums.data(), sizeof counts);
     exec_.wait();
-    check_valid(sums[kInvalidSum]);
+    std::memcpy(&counts, counts_.data(), sizeof counts);
+    check_valid(counts.sums[kInvalidSum]);
+    return counts;
+  }
+  void end_band(Frame& f, const BandSums& sums) {
     drawer_->end_band(sums);
     f.stats.fragments += sums[kFragmentsSum];
     f.stats.pixels_covered += sums[kCoveredSum];
@@ -263,35 +323,76 @@ class DeviceRasterizer final : public CudaRasterizer {
     t.clipped = sums[kClippedSum];
   }
 
-  /// The colours of a band, its layers and samples, and its targets.
+  /// The colours of a band, its layers and samples, and its targets. As finish_band.
   template <class Shade, class Keeps>
-  void resolve_band(Frame& f, Band& band, const Shade& shade, const Keeps& keeps) {
-    std::uint64_t* const covered = band.sums.data() + kCoveredSum;
-    if (!f.in_colors && !f.shades_fragments)
-      return band.images.resolve(f.request, shade, band.surface, covered);
-    const std::span<Vec4> colors = parallel::view_of(band.colors);
-    const auto blend = [&](const auto& shader) {
-      f.layers.blend(exec_, *f.scene, band.surface, colors, f.request.transparency, shader, keeps,
-                     f.plan.batch, limit() / 8);
+  bool resolve_band(Frame& f, Band& band, const Shade& shade, const Keeps& keeps, bool by_queues) {
+    BandCounts counts;
+    const auto finish = [&](const auto& shader, const std::uint64_t* held) {
+      band.images.resolve(f.request, shader, band.surface, band.covered(), held);
+      counts = wait_for(band);
+      const bool done = held == nullptr || counts.sums[kHeldSum] == 0;
+      if (done) band.images.deliver(threads_);
+      return done;
     };
+    const auto end = [&](bool done) {
+      if (done) end_band(f, counts.sums);
+      return done;
+    };
+    if (!f.in_colors && !f.shades_fragments)
+      return end(finish(shade, by_queues ? band.held() : nullptr));
+    const std::span<Vec4> colors = parallel::view_of(band.colors);
+    const ColorsOfSurface drawn{band.surface, band.colors.data()};
+    const auto finish_colors = [&](const std::uint64_t* held) {
+      if (f.samples.count > 1) mean_of_samples(exec_, band.surface, colors, held);
+      finish(drawn, held);
+      return transparency::LayerQueueCounts{counts.layers, counts.sums[kLeftSum]};
+    };
+    const auto blend = [&](const auto& shader) {
+      if (!f.has_layers || !by_queues) {
+        if (f.has_layers)
+          f.layers.blend(exec_, *f.scene, band.surface, colors, f.request.transparency, shader,
+                         keeps, f.plan.batch, limit() / 8);
+        finish_colors(nullptr);
+        return true;
+      }
+      return f.layers.blend_left(exec_, queues_of(f, band, shader), band.surface, colors,
+                                 f.request.transparency, shader, keeps, limit() / 8, finish_colors);
+    };
+    bool done = true;
     if (f.samples.count == 1) {
       // Tested pieces are drawn after the others, without colours.
       if (f.shades_fragments ? f.look->has_test() : f.has_layers)
         parallel::tabulate(exec_, band.colors,
                            cuda_detail::ColorOfElement<Shade>{band.surface.keys, shade});
-      if (f.has_layers) {
-        blend(shade);
-        f.watch.lap(f.stats, "layers");
-      }
+      done = blend(shade);
     } else if constexpr (std::is_same_v<Shade, LitOnDevice>) {
       const ShadedOnce<Shade> once{f.scene->geometry(), f.samples, shade};
       shade_samples(exec_, band.surface, colors, once);
-      if (f.has_layers) blend(once);
-      mean_of_samples(exec_, band.surface, colors);
-      f.watch.lap(f.stats, "samples");
+      done = blend(once);
     }
-    band.images.resolve(f.request, ColorsOfSurface{band.surface, band.colors.data()}, band.surface,
-                        covered);
+    if (f.samples.count > 1 || f.has_layers)
+      f.watch.lap(f.stats, f.samples.count > 1 ? "samples" : "layers");
+    return end(done);
+  }
+
+  /// Queues of a band's layers. Of records there are so many as in the frame before, or a guess.
+  template <class Shade>
+  [[nodiscard]] transparency::LeftLayers queues_of(const Frame& f, Band& band,
+                                                   const Shade& shade) const {
+    constexpr std::uint64_t kRecordBytes = 2 * sizeof(Block) + sizeof(std::uint32_t);
+    const std::uint64_t blocks = block_count(band.view), pieces = f.plan.left_pieces;
+    std::uint64_t records =
+        layer_records_ == 0 ? 2 * pieces + 8 * blocks : layer_records_ + layer_records_ / 4;
+    records = std::max<std::uint64_t>(records, 1024);
+    bool stores = false;
+    if constexpr (transparency::cuda::kHasRecords<Shade>) {
+      stores = shade.wants_records();
+      if (f.plan.left_bytes != 0)
+        stores = stores && pieces <= f.plan.left_bytes / sizeof(typename Shade::Record);
+    }
+    if (f.plan.left_bytes != 0) records = std::min(records, f.plan.left_bytes / kRecordBytes);
+    return {band.left(), static_cast<std::size_t>(records), stores, band.sums.data() + kBandSums,
+            band.held()};
   }
 
   /// FragmentColors::shade; must not outlive the arrays of `shade`.
@@ -316,6 +417,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     const parallel::cuda_system::DeviceTally asked =
         parallel::cuda_system::device_tally() - f.asked;
     stats.counters = {{"bands", f.bands},
+                      {"bands listed", f.listed},
                       {"textures copied", textures_.copies() - f.textures_before},
                       {"launches", asked.launches},
                       {"device algorithms", asked.algorithms},
@@ -324,7 +426,9 @@ class DeviceRasterizer final : public CudaRasterizer {
                       {"bytes copied", asked.copied_bytes},
                       {"blocks allocated", asked.blocks}};
     drawer_->end_frame(stats);
-    if (f.has_layers) f.layers.count(stats);
+    if (!f.has_layers) return;
+    f.layers.count(stats);
+    layer_records_ = f.layers.most_records();
   }
 
   std::unique_ptr<SurfaceDrawer> drawer_;
@@ -333,8 +437,10 @@ class DeviceRasterizer final : public CudaRasterizer {
   /// Of the device, without what this has taken; asked again after the first frame. 0: not known.
   std::uint64_t free_bytes_ = parallel::driver_status().free_bytes;
   bool has_drawn_ = false;
+  std::uint64_t layer_records_ = 0;  ///< most of a band of the frame before that had layers
   parallel::Threads& threads_;
   Exec exec_;
+  parallel::Buffer<std::byte> counts_;  ///< BandCounts, pinned
   DeviceTextures<Exec> textures_;
   HostBand host_;
 };

@@ -3,8 +3,8 @@
 
 namespace rastrum::transparency {
 
-RASTRUM_BLEND(raster::LitOnDevice, raster::KeepsFragments);
-RASTRUM_BLEND(raster::MaterialOnDevice, raster::TestOnDevice);
-RASTRUM_BLEND(raster::ShadedOnce<raster::LitOnDevice>, raster::KeepsFragments);
+RASTRUM_BLEND(, raster::LitOnDevice, raster::KeepsFragments);
+RASTRUM_BLEND(, raster::MaterialOnDevice, raster::TestOnDevice);
+RASTRUM_BLEND(, raster::ShadedOnce<raster::LitOnDevice>, raster::KeepsFragments);
 
 }  // namespace rastrum::transparency

@@ -7,16 +7,19 @@
 #include <rastrum/raster/cuda/shading.cuh>
 #include <rastrum/transparency/cuda/scene_layers.cuh>
 
-#define RASTRUM_BLEND(Shade, Test)                                                              \
-  template void SceneLayers::blend(parallel::Cuda&, const raster::DeviceScene<parallel::Cuda>&, \
-                                   const raster::DeviceSurface&, std::span<Vec4>,               \
-                                   const TransparencyOptions&, const Shade&, const Test&,       \
-                                   std::uint64_t, std::uint64_t)
+#define RASTRUM_BLEND(Prefix, Shade, Test)                                                       \
+  Prefix template void SceneLayers::blend(                                                       \
+      parallel::Cuda&, const raster::DeviceScene<parallel::Cuda>&, const raster::DeviceSurface&, \
+      std::span<Vec4>, const TransparencyOptions&, const Shade&, const Test&, std::uint64_t,     \
+      std::uint64_t);                                                                            \
+  Prefix template bool SceneLayers::blend_left(                                                  \
+      parallel::Cuda&, const LeftLayers&, const raster::DeviceSurface&, std::span<Vec4>,         \
+      const TransparencyOptions&, const Shade&, const Test&, std::uint64_t, const FinishBand&)
 
 namespace rastrum::transparency {
 
-extern RASTRUM_BLEND(raster::LitOnDevice, raster::KeepsFragments);
-extern RASTRUM_BLEND(raster::MaterialOnDevice, raster::TestOnDevice);
-extern RASTRUM_BLEND(raster::ShadedOnce<raster::LitOnDevice>, raster::KeepsFragments);
+RASTRUM_BLEND(extern, raster::LitOnDevice, raster::KeepsFragments);
+RASTRUM_BLEND(extern, raster::MaterialOnDevice, raster::TestOnDevice);
+RASTRUM_BLEND(extern, raster::ShadedOnce<raster::LitOnDevice>, raster::KeepsFragments);
 
 }  // namespace rastrum::transparency

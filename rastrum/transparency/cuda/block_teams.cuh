@@ -29,20 +29,34 @@
 
 namespace rastrum::transparency::cuda {
 
-/// The records of blocks that lie side by side: those of block b are [first[b], first[b + 1]) less
-/// `skipped`.
+/// The records of blocks: those of block b begin at first[b] less `skipped`. `counts` says how many
+/// there are of each; where it is empty, blocks lie side by side, up to first[b + 1].
 struct RecordView {
   const raster::Block* records;
   std::span<const std::uint64_t> first;
-  std::uint64_t skipped;
+  std::uint64_t skipped = 0;
+  std::span<const std::uint32_t> counts{};
 
   RASTRUM_HD std::span<const raster::Block> of(std::size_t b) const {
-    return {records + (first[b] - skipped), static_cast<std::size_t>(first[b + 1] - first[b])};
+    const std::uint64_t n = counts.empty() ? first[b + 1] - first[b] : counts[b];
+    return {records + (first[b] - skipped), static_cast<std::size_t>(n)};
   }
 };
 
-/// Counters of a frame, on the device.
-enum Counter : std::size_t { kFragments, kDeepest, kRepaired, kCounters };
+/// Counters of a frame, on the device: of what is blended, and of the queues (layer_queues.cuh).
+enum Counter : std::size_t {
+  kFragments,
+  kDeepest,
+  kRepaired,
+  kCounters,
+  kStaged = kCounters,  ///< records that were found
+  kPlaced,              ///< and have their place
+  kBoxRuns,
+  kLowBlocks,
+  kHighBlocks,
+  kDeepBlocks,
+  kQueueCounters
+};
 
 /// Adds what a team or a thread has counted.
 RASTRUM_HD inline void count_layers(std::uint64_t* counters, std::uint64_t fragments,
@@ -186,7 +200,6 @@ struct BlendBlock {
       const auto p = static_cast<std::size_t>(
           parallel::select_bit<64>(record.mask, static_cast<int>(begin + i - first[r])));
       const int x = frame.x_of(b, p), y = frame.y_of(b, p);
-      const raster::Piece& piece = frame.pieces[record.piece];
       std::uint64_t seen = 0;
       for (int sample = 0; sample < kSamples; ++sample) {
         const std::size_t q = static_cast<std::size_t>(sample) * 64 + p;
@@ -200,7 +213,7 @@ struct BlendBlock {
           seen = key;
       }
       if (seen == 0) continue;
-      const Vec4 color = frame.color(piece, seen, x, y);
+      const Vec4 color = frame.color(record.piece, seen, x, y);
       s.r[i] = color.x;
       s.g[i] = color.y;
       s.b[i] = color.z;

@@ -1,5 +1,6 @@
 // Exact transparency on a device: LucidRaster's pipeline (paper 4, "Pipeline description", stages 2
-// and 3) over pieces that are set up.
+// and 3) over pieces that are set up; with the host, which waits for sizes, in the memory that it
+// is given, or without (layer_queues.cuh).
 //
 //   pieces ──count──▶ records a block ──scan──▶ places ──write──▶ records: (piece, block, mask)
 //          ──by density──▶ low, high: a team a block, in shared memory     block_teams.cuh
@@ -14,9 +15,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <string>
@@ -25,9 +28,11 @@
 #include <rastrum/parallel/cuda/select.cuh>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cuda/sample_pattern.hpp>
+#include <rastrum/transparency/cuda/block_boxes.cuh>
 #include <rastrum/transparency/cuda/block_teams.cuh>
 #include <rastrum/transparency/cuda/deep_pixels.cuh>
 #include <rastrum/transparency/cuda/device_layers.hpp>
+#include <rastrum/transparency/cuda/layer_queues.cuh>
 #include <rastrum/transparency/cuda/turns.cuh>
 
 namespace rastrum::transparency {
@@ -50,74 +55,36 @@ struct DeviceSampledLayers : DeviceLayers {
   std::size_t plane = 0;
 };
 
+/// Queues of a band whose layers are blended without the host.
+struct LeftLayers {
+  raster::LeftPieces pieces;
+  std::size_t records = 0;            ///< room for so many
+  bool stores_shading = false;        ///< a Shade::Record for each piece, of a shader that has them
+  std::uint64_t* counters = nullptr;  ///< of the device: cuda::kQueueCounters, 0
+  std::uint64_t* held = nullptr;      ///< of the device, 0: raised where the host has to go on
+};
+
+/// What was counted of them; on the host.
+struct LayerQueueCounts {
+  std::array<std::uint64_t, cuda::kQueueCounters> of{};
+  std::uint64_t pieces = 0;  ///< places of the queue of pieces
+
+  /// Whether all was blended but deep blocks.
+  [[nodiscard]] bool fit(const LeftLayers& left) const {
+    return pieces <= left.pieces.pieces.size() && of[cuda::kStaged] <= left.records;
+  }
+  [[nodiscard]] DeviceLayerCounts layers() const {
+    return {of[cuda::kFragments],  of[cuda::kDeepest],   of[cuda::kRepaired],
+            of[cuda::kStaged],     of[cuda::kLowBlocks], of[cuda::kHighBlocks],
+            of[cuda::kDeepBlocks], of[cuda::kStaged] > 0};
+  }
+};
+
+/// Gives what follows the layers to the stream, which does nothing where *held (of the device;
+/// null: there is none) is not 0. Waits, and returns what was counted.
+using FinishBand = std::function<LayerQueueCounts(const std::uint64_t* held)>;
+
 namespace cuda {
-
-/// The smallest key of a block at any sample: what lies behind it is hidden in all of it.
-struct FarthestOfBlock {
-  raster::Rect view;
-  std::size_t columns;
-  const std::uint64_t* keys;
-  std::size_t plane;
-  int samples;
-  RASTRUM_HD std::uint64_t operator()(std::size_t b) const {
-    const int bx = view.x0 / raster::kBlockSize + static_cast<int>(b % columns);
-    const int by = view.y0 / raster::kBlockSize + static_cast<int>(b / columns);
-    std::uint64_t farthest = ~std::uint64_t{0};
-    for (int s = 0; s < samples; ++s)
-      for (std::uint64_t m = raster::samples_inside(view, bx, by); m != 0; m &= m - 1) {
-        const std::uint64_t key = keys[static_cast<std::size_t>(s) * plane + b * 64 +
-                                       static_cast<std::size_t>(parallel::lowest_bit(m))];
-        if (key < farthest) farthest = key;
-      }
-    return farthest;
-  }
-};
-
-/// The blocks of a piece's box in the rows of `view`; none of an opaque piece.
-struct BlocksOfPiece {
-  std::span<const raster::Piece> pieces;
-  std::span<const std::uint64_t> farthest;
-  std::size_t columns;  ///< of blocks
-  int bx0, by0;         ///< the first block
-  raster::Rect view;
-  raster::SamplePattern samples;
-
-  RASTRUM_HD raster::Rect box(std::uint32_t piece) const {
-    const raster::Rect px = raster::sampled_bounds(pieces[piece], view, samples);
-    if (px.empty()) return {};
-    return {px.x0 / raster::kBlockSize, px.y0 / raster::kBlockSize,
-            (px.x1 - 1) / raster::kBlockSize + 1, (px.y1 - 1) / raster::kBlockSize + 1};
-  }
-  RASTRUM_HD std::size_t operator()(std::uint32_t piece) const {
-    if ((pieces[piece].flags & raster::kTranslucent) == 0) return 0;
-    const raster::Rect b = box(piece);
-    return static_cast<std::size_t>(b.x1 - b.x0) * static_cast<std::size_t>(b.y1 - b.y0);
-  }
-  RASTRUM_HD std::size_t number(const raster::Block& b) const {
-    return static_cast<std::size_t>(b.by - by0) * columns + static_cast<std::size_t>(b.bx - bx0);
-  }
-  /// The j-th of them, with the pixels of which a sample is covered; none where nothing of the
-  /// piece is seen.
-  RASTRUM_HD raster::Block block(std::uint32_t piece, std::size_t j) const {
-    const raster::Rect b = box(piece);
-    const auto across = static_cast<std::size_t>(b.x1 - b.x0);
-    const int bx = b.x0 + static_cast<int>(j % across), by = b.y0 + static_cast<int>(j / across);
-    raster::Block out{piece, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), 0};
-    const int x0 = bx * raster::kBlockSize, y0 = by * raster::kBlockSize;
-    const raster::Rect px{x0, y0, x0 + raster::kBlockSize, y0 + raster::kBlockSize};
-    for (int s = 0; s < samples.count; ++s) {
-      const raster::Piece p = raster::moved(pieces[piece], samples.at[s]);
-      const raster::Edges edges = raster::edges_of(p);
-      if (!raster::may_touch(edges, px)) continue;
-      if (raster::has_depth_bounds(p) &&
-          raster::make_key(raster::highest_depth(p, px), p.low) <= farthest[number(out)])
-        continue;
-      out.mask |= raster::cover_8x8(edges, bx, by);
-    }
-    out.mask &= raster::samples_inside(view, bx, by);
-    return out;
-  }
-};
 
 struct CountRecord {
   BlocksOfPiece blocks;
@@ -170,16 +137,9 @@ class LayerListing {
         frame_(frame),
         samples_(samples),
         plane_(plane),
-        tuning_(tuning),
+        tuning_(tuning.within_teams(LowDensity::kRecords, HighDensity::kRecords)),
         blocks_(frame.columns() * frame.rows()) {
-    constexpr std::uint64_t kDefaultBytes = std::uint64_t{1} << 29;
-    const std::uint64_t bytes = tuning.bytes == 0 ? kDefaultBytes : tuning.bytes;
-    // Half for records; a fragment has a sort_key and an owner, twice while they are sorted.
-    most_records_ = std::max<std::uint64_t>(bytes / 2 / sizeof(raster::Block), 1);
-    most_fragments_ = std::max<std::uint64_t>(bytes / 2 / 24, 1);
-    tuning_.low_records = std::min(tuning_.low_records, LowDensity::kRecords);
-    tuning_.high_records =
-        std::max(std::min(tuning_.high_records, HighDensity::kRecords), tuning_.low_records);
+    static_assert(sizeof(raster::Block) == 16);  // most_records()
   }
 
   [[nodiscard]] DeviceLayerCounts operator()() {
@@ -206,7 +166,7 @@ class LayerListing {
     auto first = parallel::make_buffer<std::uint64_t>(exec_, blocks_ + 1);
     out_.records = parallel::exclusive_scan(exec_, counts, first, std::uint64_t{0});
     const auto places = parallel::view_of(std::as_const(first));
-    for (Turn turn; next_turn(exec_, places, out_.records, most_records_, turn);) {
+    for (Turn turn; next_turn(exec_, places, out_.records, tuning_.most_records(), turn);) {
       ++out_.turns;
       if (turn.items != out_.records) {
         boxes.view = rows(turn.begin, turn.end);
@@ -246,8 +206,8 @@ class LayerListing {
       blend_teams<LowDensity>(frame, records, parallel::view_of(low_blocks), counters);
       blend_teams<HighDensity>(frame, records, parallel::view_of(high_blocks), counters);
       for (int s = 0; s < Frame::kSamples; ++s)
-        blend_deep<Pixel>(exec_, frame, records, parallel::view_of(deep_blocks), s, most_fragments_,
-                          counters);
+        blend_deep<Pixel>(exec_, frame, records, parallel::view_of(deep_blocks), s,
+                          tuning_.most_fragments(), counters);
     }
     out_.low_blocks += low_blocks.size();
     out_.high_blocks += high_blocks.size();
@@ -271,21 +231,25 @@ class LayerListing {
   const Frame frame_;
   const raster::SamplePattern samples_;
   const std::size_t plane_;
-  DeviceLayerTuning tuning_;
+  const DeviceLayerTuning tuning_;
   const std::size_t blocks_;
-  std::uint64_t most_records_ = 0, most_fragments_ = 0;
   DeviceLayerCounts out_;
 };
 
-/// Both functions below: frames of one sample and of several.
-template <class Frame>
-DeviceLayerCounts blend(parallel::Cuda& exec, const DeviceLayers& layers, const Frame& frame,
-                        const raster::SamplePattern& samples, std::size_t plane,
-                        Transparency method, const DeviceLayerTuning& tuning) {
+/// Throws where a device has no such method.
+inline void require_method(Transparency method) {
   if (method != Transparency::exact && method != Transparency::unsorted)
     throw Error(Errc::invalid_argument,
                 std::string("transparency on a device is exact or unsorted: ")
                     .append(why_not_on_a_device(method)));
+}
+
+/// The two functions below: frames of one sample and of several.
+template <class Frame>
+DeviceLayerCounts blend(parallel::Cuda& exec, const DeviceLayers& layers, const Frame& frame,
+                        const raster::SamplePattern& samples, std::size_t plane,
+                        Transparency method, const DeviceLayerTuning& tuning) {
+  require_method(method);
   if (layers.pieces.size() > std::numeric_limits<std::uint32_t>::max())
     throw Error(Errc::invalid_argument,
                 "a device blends at most 2^32 - 1 pieces at a time; draw the picture in bands");
@@ -294,6 +258,45 @@ DeviceLayerCounts blend(parallel::Cuda& exec, const DeviceLayers& layers, const 
   if (method == Transparency::unsorted)
     return LayerListing<AsSubmittedPixel, Frame>(exec, frame, samples, plane, tuning)();
   return LayerListing<FrontToBackPixel, Frame>(exec, frame, samples, plane, tuning)();
+}
+
+/// The same by queues, for the functions below that are so named.
+template <class Pixel, class Shade, class Frame>
+bool run_queues(parallel::Cuda& exec, const Frame& frame, const raster::SamplePattern& samples,
+                std::size_t plane, const LeftLayers& left, const DeviceLayerTuning& tuning,
+                const FinishBand& finish) {
+  LayerQueues<Pixel, Frame, Shade> queues(exec, frame, samples, plane, left.pieces, left.records,
+                                          left.stores_shading, tuning, left.counters, left.held);
+  queues();
+  const LayerQueueCounts c = finish(left.held);
+  if (!c.fit(left)) return false;
+  if (c.of[kDeepBlocks] > 0) {
+    queues.blend_deep_blocks(c.of[kDeepBlocks]);
+    finish(nullptr);
+  }
+  return true;
+}
+template <class Shade, class Frame>
+bool blend_left(parallel::Cuda& exec, const Frame& frame, const raster::SamplePattern& samples,
+                std::size_t plane, const LeftLayers& left, Transparency method,
+                const DeviceLayerTuning& tuning, const FinishBand& finish) {
+  require_method(method);
+  if (method == Transparency::unsorted)
+    return run_queues<AsSubmittedPixel, Shade>(exec, frame, samples, plane, left, tuning, finish);
+  return run_queues<FrontToBackPixel, Shade>(exec, frame, samples, plane, left, tuning, finish);
+}
+
+template <class Shade, class Test>
+[[nodiscard]] FrameView<Shade, Test> frame_view(const DeviceLayers& layers,
+                                                const TransparencyOptions& options,
+                                                const Shade& shade, const Test& test) {
+  return {layers.view,
+          layers.pieces,
+          layers.keys.data(),
+          layers.colors.data(),
+          1 - options.alpha_threshold,
+          shade,
+          test};
 }
 
 }  // namespace cuda
@@ -311,15 +314,8 @@ template <class Shade, class Test = cuda::KeepAll>
 DeviceLayerCounts blend_layers(parallel::Cuda& exec, const DeviceLayers& layers,
                                const TransparencyOptions& options, const Shade& shade,
                                const Test& test = {}, const DeviceLayerTuning& tuning = {}) {
-  using Frame = cuda::FrameView<Shade, Test>;
-  const Frame frame{layers.view,
-                    layers.pieces,
-                    layers.keys.data(),
-                    layers.colors.data(),
-                    1 - options.alpha_threshold,
-                    shade,
-                    test};
-  return cuda::blend(exec, layers, frame, {}, 0, options.method, tuning);
+  return cuda::blend(exec, layers, cuda::frame_view(layers, options, shade, test), {}, 0,
+                     options.method, tuning);
 }
 
 /// The same at each of several samples, which have their own planes of keys and colours. `shade`
@@ -332,12 +328,33 @@ DeviceLayerCounts blend_sampled_layers(parallel::Cuda& exec, const DeviceSampled
                                        const TransparencyOptions& options, const Shade& shade,
                                        const Test& test = {},
                                        const DeviceLayerTuning& tuning = {}) {
-  using Frame = cuda::SampledView<Shade, Test>;
-  const Frame frame{{layers.view, layers.pieces, layers.keys.data(), layers.colors.data(),
-                     1 - options.alpha_threshold, shade, test},
-                    {},
-                    0};
+  const cuda::SampledView<Shade, Test> frame{cuda::frame_view(layers, options, shade, test), {}, 0};
   return cuda::blend(exec, layers, frame, layers.samples, layers.plane, options.method, tuning);
+}
+
+/// blend_layers of pieces in a queue, layers.pieces being its room, without the host: it calls
+/// finish(left.held), which gives what follows to the stream, waits, and returns what was counted;
+/// what follows does nothing where *held is not 0, and then finish(nullptr) comes after what the
+/// host had to see to (deep blocks). False: a queue was too small, and nothing was blended.
+template <class Shade, class Test = cuda::KeepAll>
+[[nodiscard]] bool blend_left_layers(parallel::Cuda& exec, const DeviceLayers& layers,
+                                     const LeftLayers& left, const TransparencyOptions& options,
+                                     const Shade& shade, const Test& test,
+                                     const DeviceLayerTuning& tuning, const FinishBand& finish) {
+  return cuda::blend_left<Shade>(exec, cuda::frame_view(layers, options, shade, test), {}, 0, left,
+                                 options.method, tuning, finish);
+}
+/// And blend_sampled_layers.
+template <class Shade, class Test = cuda::KeepAll>
+[[nodiscard]] bool blend_left_sampled_layers(parallel::Cuda& exec,
+                                             const DeviceSampledLayers& layers,
+                                             const LeftLayers& left,
+                                             const TransparencyOptions& options, const Shade& shade,
+                                             const Test& test, const DeviceLayerTuning& tuning,
+                                             const FinishBand& finish) {
+  const cuda::SampledView<Shade, Test> frame{cuda::frame_view(layers, options, shade, test), {}, 0};
+  return cuda::blend_left<Shade>(exec, frame, layers.samples, layers.plane, left, options.method,
+                                 tuning, finish);
 }
 
 }  // namespace rastrum::transparency

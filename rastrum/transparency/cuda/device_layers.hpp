@@ -1,6 +1,7 @@
 // What layers on a device are asked for and what they tell, for code that needs no CUDA header.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -17,6 +18,24 @@ struct DeviceLayerTuning {
   /// Most that records and fragments may take of the device's memory at a time; more only where one
   /// block's records, or one pixel's fragments, need it. 0: half a GiB.
   std::uint64_t bytes = 0;
+
+  /// Half of the bytes are for records of 16; a fragment has a sort_key and an owner, twice while
+  /// they are sorted.
+  [[nodiscard]] std::uint64_t most_records() const { return share(16); }
+  [[nodiscard]] std::uint64_t most_fragments() const { return share(24); }
+  /// Of densities that teams are cut for.
+  [[nodiscard]] DeviceLayerTuning within_teams(std::size_t low, std::size_t high) const {
+    DeviceLayerTuning t = *this;
+    t.low_records = std::min(low_records, low);
+    t.high_records = std::max(std::min(high_records, high), t.low_records);
+    return t;
+  }
+
+ private:
+  [[nodiscard]] std::uint64_t share(std::uint64_t each) const {
+    constexpr std::uint64_t kDefaultBytes = std::uint64_t{1} << 29;
+    return std::max<std::uint64_t>((bytes == 0 ? kDefaultBytes : bytes) / 2 / each, 1);
+  }
 };
 
 struct DeviceLayerCounts {
@@ -26,6 +45,18 @@ struct DeviceLayerCounts {
   std::uint64_t records = 0;    ///< pieces in blocks
   std::uint64_t low_blocks = 0, high_blocks = 0, deep_blocks = 0;
   std::uint64_t turns = 0;
+
+  /// Of another part of the picture.
+  void add(const DeviceLayerCounts& c) {
+    fragments += c.fragments;
+    deepest = std::max(deepest, c.deepest);
+    repaired += c.repaired;
+    records += c.records;
+    low_blocks += c.low_blocks;
+    high_blocks += c.high_blocks;
+    deep_blocks += c.deep_blocks;
+    turns += c.turns;
+  }
 };
 
 /// Why a frame's layers are left to the CPU, for the statistics; empty: the device has them.

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cuda/sample_pattern.hpp>
@@ -40,6 +41,26 @@ RASTRUM_HD bool is_nearest_of_clipped(std::span<const raster::Piece> pieces, std
   return true;
 }
 
+/// What a shader reads of a triangle, made once for all of its fragments, by those that have such a
+/// thing (Shade::Record; Shade::wants_records, record, and record in the place of a key's
+/// triangle).
+struct NoRecord {};
+template <class Shade>
+struct RecordOfShade {
+  using Type = NoRecord;
+};
+template <class Shade>
+requires requires {
+  typename Shade::Record;
+}
+struct RecordOfShade<Shade> {
+  using Type = typename Shade::Record;
+};
+template <class Shade>
+using RecordOf = typename RecordOfShade<Shade>::Type;
+template <class Shade>
+inline constexpr bool kHasRecords = !std::is_same_v<RecordOf<Shade>, NoRecord>;
+
 /// A frame, or a band of it, as kernels see it. Memory of the device: 8 × 8 blocks, row by row, of
 /// 64 pixels each, element 8 · row + column.
 template <class Shade, class Test>
@@ -51,6 +72,7 @@ struct FrameView {
   float opaque_at;      ///< a pixel is finished where no more is seen through its layers
   Shade shade;          ///< (key, x, y) → premultiplied colour
   Test test;            ///< (key, x, y) → whether a fragment of a piece with kMayDrop is there
+  const RecordOf<Shade>* shaded = nullptr;  ///< of each piece; null: none
 
   RASTRUM_HD std::size_t columns() const {
     return static_cast<std::size_t>((view.x1 - view.x0 + raster::kBlockSize - 1) /
@@ -84,7 +106,9 @@ struct FrameView {
     return kept(record, w, x, y, key_at);
   }
   /// The colour of a piece in a pixel; `key` is its key there, of any sample.
-  RASTRUM_HD Vec4 color(const raster::Piece&, std::uint64_t key, int x, int y) const {
+  RASTRUM_HD Vec4 color(std::uint32_t piece, std::uint64_t key, int x, int y) const {
+    if constexpr (kHasRecords<Shade>)
+      if (shaded != nullptr) return shade(shaded[piece], key, x, y);
     return shade(key, x, y);
   }
 
@@ -130,8 +154,11 @@ struct SampledView : FrameView<Shade, Test> {
   RASTRUM_HD Vec4& color_of(int s, std::size_t i) const {
     return this->colors[static_cast<std::size_t>(s) * plane + i];
   }
-  RASTRUM_HD Vec4 color(const raster::Piece& piece, std::uint64_t key, int x, int y) const {
-    return this->shade(piece, key, x, y);
+  RASTRUM_HD Vec4 color(std::uint32_t piece, std::uint64_t key, int x, int y) const {
+    if constexpr (kHasRecords<Shade>)
+      if (this->shaded != nullptr)
+        return this->shade(this->pieces[piece], this->shaded[piece], key, x, y);
+    return this->shade(this->pieces[piece], key, x, y);
   }
   RASTRUM_HD std::uint64_t key(const raster::Block& record, int x, int y, int s) const {
     const auto key_at = [&](const raster::Piece& piece) {
@@ -158,10 +185,12 @@ class FrontToBackPixel {
   static constexpr std::size_t kAnyOrder = kHeld + 1;
 
   /// The sort_key by which records are sorted; ascending is the order in which fragments should
-  /// come. The piece's number makes it one order, whoever wrote the records.
+  /// come. The primitive's id makes it one order, whoever wrote the pieces and the records; pieces
+  /// of one triangle have no pixel in common.
   static RASTRUM_HD std::uint64_t record_sort_key(const raster::Piece& piece,
                                                   const raster::Block& b) {
-    return near_first(piece, b.mask, b.bx, b.by) | b.piece;
+    return near_first(piece, b.mask, b.bx, b.by) |
+           static_cast<std::uint32_t>(raster::kIdMask - piece.low);
   }
   /// The same for fragments, and back.
   static RASTRUM_HD std::uint64_t fragment_sort_key(std::uint64_t key) { return ~key; }

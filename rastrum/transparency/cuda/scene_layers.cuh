@@ -1,6 +1,6 @@
-// The layers of a scene on a device: the translucent pieces of a band of rows are set up and
-// blended over its opaque surface (device_layers.cuh). A band whose pieces take too much memory is
-// cut in two, down to a row of blocks.
+// The layers of a scene on a device: the translucent pieces of a band of rows, left by the
+// rasterizer or set up here, are blended over its opaque surface (device_layers.cuh). A band whose
+// pieces take too much memory is set up here, and cut in two, down to a row of blocks.
 #pragma once
 
 #include <algorithm>
@@ -46,6 +46,15 @@ class SceneLayers {
              const raster::DeviceSurface& surface, std::span<Vec4> colors,
              const TransparencyOptions& options, const Shade& shade, const Test& test,
              std::uint64_t batch, std::uint64_t bytes);
+  /// The same of pieces that the rasterizer has left in a queue, without a wait but that of
+  /// `finish` (blend_left_layers). False: nothing was blended, and blend() is to.
+  template <class Shade, class Test>
+  [[nodiscard]] bool blend_left(parallel::Cuda& exec, const LeftLayers& left,
+                                const raster::DeviceSurface& surface, std::span<Vec4> colors,
+                                const TransparencyOptions& options, const Shade& shade,
+                                const Test& test, std::uint64_t bytes, const FinishBand& finish);
+  /// Most records of a band so far.
+  [[nodiscard]] std::uint64_t most_records() const { return most_records_; }
   void count(FrameStats& stats) const {
     stats.visibility = "layers";
     stats.fragments += counts_.fragments;
@@ -130,17 +139,11 @@ class SceneLayers {
                                band.options, band.shade, band.test, tuning);
     else
       c = blend_layers(exec, layers, band.options, band.shade, band.test, tuning);
-    counts_.fragments += c.fragments;
-    counts_.deepest = std::max(counts_.deepest, c.deepest);
-    counts_.repaired += c.repaired;
-    counts_.records += c.records;
-    counts_.low_blocks += c.low_blocks;
-    counts_.high_blocks += c.high_blocks;
-    counts_.deep_blocks += c.deep_blocks;
-    counts_.turns += c.turns;
+    counts_.add(c);
   }
 
   DeviceLayerCounts counts_;
+  std::uint64_t most_records_ = 0;
 };
 
 // Out of the class, so that it is not inline and one source can instantiate it for others.
@@ -149,9 +152,38 @@ void SceneLayers::blend(Exec& exec, const raster::DeviceScene<Exec>& scene,
                         const raster::DeviceSurface& surface, std::span<Vec4> colors,
                         const TransparencyOptions& options, const Shade& shade, const Test& test,
                         std::uint64_t batch, std::uint64_t bytes) {
+  const std::uint64_t before = counts_.records;
   blend_rows(
       Band<Exec, Shade, Test>{exec, scene, surface, colors, options, shade, test, batch, bytes},
       surface.view);
+  most_records_ = std::max(most_records_, counts_.records - before);
+}
+
+template <class Shade, class Test>
+bool SceneLayers::blend_left(parallel::Cuda& exec, const LeftLayers& left,
+                             const raster::DeviceSurface& surface, std::span<Vec4> colors,
+                             const TransparencyOptions& options, const Shade& shade,
+                             const Test& test, std::uint64_t bytes, const FinishBand& finish) {
+  const DeviceLayers layers{
+      surface.view,
+      left.pieces.pieces,
+      {surface.keys.keys, static_cast<std::size_t>(surface.samples.count) * surface.plane},
+      colors};
+  DeviceLayerTuning tuning;
+  tuning.bytes = bytes;
+  LayerQueueCounts last;
+  const FinishBand keep = [&](const std::uint64_t* held) { return last = finish(held); };
+  bool done = false;
+  if constexpr (raster::kIsShadedOnce<Shade>)
+    done = blend_left_sampled_layers(exec, {layers, surface.samples, surface.plane}, left, options,
+                                     shade, test, tuning, keep);
+  else
+    done = blend_left_layers(exec, layers, left, options, shade, test, tuning, keep);
+  if (!done) return false;
+  const DeviceLayerCounts counts = last.layers();
+  counts_.add(counts);
+  most_records_ = std::max(most_records_, counts.records);
+  return true;
 }
 
 }  // namespace rastrum::transparency
