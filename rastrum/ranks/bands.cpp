@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/ranks/fragments.hpp>
+#include <rastrum/raster/kernels/kernels.hpp>
 
 namespace rastrum::ranks {
 

@@ -57,10 +57,10 @@ std::uint64_t FragmentBytes::pack(Mail& mail) {
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     Bytes bytes = std::exchange(blocks_[b], {});
     if (bytes.empty()) continue;
-    const auto block = static_cast<std::uint32_t>(
-        (static_cast<std::size_t>(band_.y0 / kSide) + b / columns) *
-            static_cast<std::size_t>(columns_) +
-        static_cast<std::size_t>(band_.x0 / kSide) + b % columns);
+    const auto block =
+        static_cast<std::uint32_t>((static_cast<std::size_t>(band_.y0 / kSide) + b / columns) *
+                                       static_cast<std::size_t>(columns_) +
+                                   static_cast<std::size_t>(band_.x0 / kSide) + b % columns);
     Bytes& to = mail.to(layer_owner(block, mail.ranks()));
     put(to, block);
     put(to, static_cast<std::uint64_t>(bytes.size()));

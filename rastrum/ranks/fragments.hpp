@@ -72,7 +72,8 @@ struct SeenBlock {
 /// renderer: the nearest first, of equal depths the part that comes first.
 class LayerMerge {
  public:
-  LayerMerge(Isa isa, float opaque_at) : kernel_(transparency::blend_kernels(isa)), opaque_at_(opaque_at) {}
+  LayerMerge(Isa isa, float opaque_at)
+      : kernel_(transparency::blend_kernels(isa)), opaque_at_(opaque_at) {}
   /// Calls f(const SeenBlock&) for each block, in rising order.
   void blend(const Mail& mail, const std::function<void(const SeenBlock&)>& f);
 

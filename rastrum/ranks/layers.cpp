@@ -77,8 +77,7 @@ void PartsFrame::layers(const Camera& camera) {
         for (Reader from = seen->from(r); !from.at_end();) {
           const SeenBlock block = take_seen(*grid_, from);
           raster::BlockColors behind{}, out;
-          grid_->each_pixel(block.where,
-                            [&](int i, int x, int y) { behind.set(i, front_(x, y)); });
+          grid_->each_pixel(block.where, [&](int i, int x, int y) { behind.set(i, front_(x, y)); });
           kernel.finish(block.seen, behind, out);
           grid_->each_pixel(block.where, [&](int i, int x, int y) { front_(x, y) = out.at(i); });
           covered_[block.where.block] |= block.where.mask;
@@ -136,8 +135,7 @@ void PartsFrame::ask_what_hides(const std::vector<std::uint64_t>& own_words) {
       for (Reader from = asked->from(r); !from.at_end();) {
         const BlockMask b = from.take_mask();
         grid_->each_pixel(b, [&](int i, int, int) {
-          put(answers->to(r),
-              own_words[(b.block - first) * kPixels + static_cast<std::size_t>(i)]);
+          put(answers->to(r), own_words[(b.block - first) * kPixels + static_cast<std::size_t>(i)]);
         });
       }
   });
@@ -196,9 +194,8 @@ std::vector<Rect> PartsFrame::plan_bands() {
     bytes = std::min(bytes, limit / 4);
   bytes = ~ranks_.max(~bytes);
   std::vector<Rect> bands;
-  phase("plan bands", [&] {
-    bands = bands_of(frame_.width, frame_.height, bins, mail->ranks(), bytes);
-  });
+  phase("plan bands",
+        [&] { bands = bands_of(frame_.width, frame_.height, bins, mail->ranks(), bytes); });
   return bands;
 }
 
@@ -225,12 +222,11 @@ Image<std::uint64_t> PartsFrame::keys_that_hide(Rect band, std::size_t first,
       key = 0;
       if (word == 0) return;
       const std::uint64_t place = raster::id_of_key(word);
-      const auto part = static_cast<std::size_t>(std::ranges::lower_bound(places_, place) -
-                                                 places_.begin());
+      const auto part =
+          static_cast<std::size_t>(std::ranges::lower_bound(places_, place) - places_.begin());
       const bool is_own = part < places_.size() && places_[part] == place;
       const std::uint64_t id = is_own ? raster::id_of_key(keys_(x, y)) : own_->first_ids[part];
-      const std::uint64_t of_pass =
-          base + std::clamp(id, lowest, own_->first_ids[last]) - lowest;
+      const std::uint64_t of_pass = base + std::clamp(id, lowest, own_->first_ids[last]) - lowest;
       key = (word & ~raster::kIdMask) | (raster::kIdMask - of_pass);
     });
   }

@@ -125,7 +125,7 @@ class PartsFrame {
   bool tones_ = false;
   Targets filled_;  ///< by ranks: the caller's, and what greys or the tone are made from
   Image<float> depth_;
-  Image<Vec4> front_;                    ///< where layers are: the blended colours
+  Image<Vec4> front_;                   ///< where layers are: the blended colours
   std::vector<std::uint64_t> covered_;  ///< by block: where it has some
 };
 

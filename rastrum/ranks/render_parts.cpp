@@ -170,9 +170,8 @@ bool PartsFrame::survey(const Camera& camera) {
     plain.tone = {};
     Targets words;
     words.keys = keys_;
-    const FrameStats stats =
-        RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera, plain, words,
-                               {.sink = &*survey_});
+    const FrameStats stats = RendererAccess::render(renderer_, own_scene(0, own_->parts.size()),
+                                                    camera, plain, words, {.sink = &*survey_});
     translucent_ = stats.visibility == "layers";
     if (!translucent_) survey_.reset();
   });

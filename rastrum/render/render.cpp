@@ -63,9 +63,9 @@ struct Renderer::Impl {
     const FrameOptions& frame;
     const Targets& targets;
     bool in_place = false;
-    std::optional<DeviceStream> after{};  ///< what writes the arrays in place
-    std::optional<raster::Rect> part{};   ///< FrameRequest::part
-    std::string why_host{};               ///< FrameRequest::why_host
+    std::optional<DeviceStream> after{};   ///< what writes the arrays in place
+    std::optional<raster::Rect> part{};    ///< FrameRequest::part
+    std::string why_host{};                ///< FrameRequest::why_host
     raster::FragmentSink* sink = nullptr;  ///< FrameRequest::sink
 
     [[nodiscard]] Call with(const FrameOptions& other, const Targets& filled) const {
@@ -163,9 +163,8 @@ FrameStats RendererAccess::render(Renderer& renderer, const SceneView& scene, co
   Renderer::Impl& impl = *renderer.impl_;
   const parallel::Turn turn(impl.one_at_a_time, stop);
   check(frame);
-  return impl.render(
-      scene, camera,
-      {.frame = frame, .targets = targets, .part = apart.part, .sink = apart.sink});
+  return impl.render(scene, camera,
+                     {.frame = frame, .targets = targets, .part = apart.part, .sink = apart.sink});
 }
 
 FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draws,

@@ -24,6 +24,7 @@ std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView&
   frame.width = frame.height = 16;
   std::vector<std::string> said(static_cast<std::size_t>(count));
   Image<Rgba8> image(16, 16);
+  Image<std::int64_t> ids(16, 16);
   ranks.run([&](Communicator& c) {
     const auto r = static_cast<std::size_t>(c.rank());
     SceneView own = all;
@@ -32,7 +33,7 @@ std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView&
     const std::uint64_t part = r;
     Renderer renderer({.device = Device::serial});
     Targets targets;
-    if (r == 0) targets.color8 = image;
+    if (r == 0) targets = {.color8 = image, .ids = ids};
     try {
       (void)ranks::render_parts(c, renderer, own, std::span(&part, own.instances.size()), camera,
                                 frame, targets, {}, at);
@@ -45,6 +46,9 @@ std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView&
 
 class Failures : public testing::Test {
  protected:
+  /// With a translucent part, the first, so that there are the phases of layers.
+  Failures() { parts.scene.instances[0].opacity = 0.5F; }
+
   PartsScene parts{9, 3, false};
   SceneBinding binding{parts.scene};
 
@@ -60,7 +64,7 @@ TEST_F(Failures, EndTheFrameOnAllRanksInEachPhase) {
   constexpr int kRanks = 4;
   LocalRanks ranks(kRanks);
   const auto names = phases();
-  ASSERT_GE(names.size(), 15U);
+  ASSERT_GE(names.size(), 34U);
   for (const std::string& name : names)
     for (int rank = 0; rank < kRanks; ++rank) {
       const auto said = messages(ranks, kRanks, binding.view(), [&](std::string_view phase, int r) {

@@ -11,9 +11,9 @@ namespace rastrum::raster {
 /// At most one fragment a pixel of block (bx, by).
 struct FragmentPlane {
   int bx, by;
-  const std::uint64_t* keys;   ///< 64; those outside of `mask` are of no fragment
-  std::uint64_t mask;          ///< not empty
-  const BlockColors* colors;   ///< premultiplied; null where the sink takes keys alone
+  const std::uint64_t* keys;  ///< 64; those outside of `mask` are of no fragment
+  std::uint64_t mask;         ///< not empty
+  const BlockColors* colors;  ///< premultiplied; null where the sink takes keys alone
 };
 
 /// A frame with one draws its opaque surfaces as always, and leaves the keys of these alone. Its
