@@ -47,9 +47,13 @@ std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView&
 class Failures : public testing::Test {
  protected:
   /// With a translucent part, the first, so that there are the phases of layers.
-  Failures() { parts.scene.instances[0].opacity = 0.5F; }
+  static PartsScene glass() {
+    PartsScene parts{9, 3, false};
+    parts.scene.instances[0].opacity = 0.5F;
+    return parts;
+  }
 
-  PartsScene parts{9, 3, false};
+  PartsScene parts = glass();
   SceneBinding binding{parts.scene};
 
   std::set<std::string> phases() {
