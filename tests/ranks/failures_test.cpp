@@ -118,8 +118,9 @@ TEST_F(Failures, KeepCodeAndKind) {
   const Camera camera{.eye = {0, 0, 3}};
   FrameOptions frame;
   frame.width = frame.height = 16;
+  Image<Rgba8> image(16, 16);
   const auto draw = [&](const ranks::AtPhase& at) {
-    draw_dealt(ranks, {{0}, {1}, {2}}, binding.view(), camera, frame, {}, {}, at);
+    draw_dealt(ranks, {{0}, {1}, {2}}, binding.view(), camera, frame, {.color8 = image}, {}, at);
   };
   expect_refused("rank 2: no memory", Errc::out_of_memory, [&] {
     draw([](std::string_view phase, int r) {
