@@ -19,7 +19,8 @@ namespace {
 using raster::kBinSize;
 using raster::Rect;
 
-/// Opaque colours as blends want them: premultiplied, in linear light for `material`, over nothing.
+/// Opaque colours as blends want them: premultiplied, over nothing, in linear light for `material`.
+/// Who is asked for that shades all of it so, as where something is translucent.
 constexpr std::uint32_t kColor = 8, kLinear = 16;
 
 /// The image of them among a rank's own or the root's.
@@ -29,21 +30,13 @@ ImageView<Vec4> behind_of(const Targets& targets) {
 
 }  // namespace
 
-/// With a translucent surface somewhere a renderer shades all materials in linear light. A mesh of
-/// nothing stands for other ranks'.
-void PartsFrame::agree_on_linear_light() {
-  phase("stand in for layers", [&] {
+void PartsFrame::layers(const Camera& camera) {
+  phase("check layers", [&] {
     if (frame_.transparency.method != Transparency::exact)
       throw Error(Errc::unsupported,
                   "a picture of several ranks: translucent surfaces are blended exactly; draw with "
                   "Transparency::exact or none");
-    if (!translucent_ && !own_->parts.empty() && frame_.shader == Shader::material)
-      own_->instances.push_back({.opacity = 0.5F});
   });
-}
-
-void PartsFrame::layers(const Camera& camera) {
-  agree_on_linear_light();
   {
     Words::Won won = meet();
     note(won);

@@ -73,7 +73,6 @@ class PartsFrame {
 
   // Colours where layers are (layers.cpp).
   void layers(const Camera& camera);
-  void agree_on_linear_light();
   void gather_behind(std::span<const BlockMask> won);
   void ask_what_hides(const std::vector<std::uint64_t>& own_words);
   [[nodiscard]] std::vector<raster::Rect> plan_bands();

@@ -2,6 +2,7 @@
 // targets have the same bits, for any number of ranks and any deal, in one band or in many.
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -18,10 +19,22 @@ namespace {
 
 constexpr RendererOptions kSerial{.device = Device::serial}, kThreads{.threads = 1};
 
-/// Some parts are translucent, by their opacity or their colour; others are opaque.
+/// Triangles, spheres and a tube; some parts are translucent, by their opacity or their colour.
 Scene glass(std::uint64_t seed, bool with_materials) {
   Scene scene = PartsScene(seed, kParts, with_materials).scene;
   Random random(seed + 1000);
+  Tubes tubes;
+  for (int k = 0; k < 6; ++k) {
+    const double x = random.real(-1, 1);
+    const double y = random.real(-1, 1);
+    const double z = random.real(-1, 1);
+    tubes.positions.push_back(
+        {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
+  }
+  tubes.radius = 0.15F;
+  scene.instances[seed % kParts] = {};
+  scene.instances[seed % kParts].geometry = static_cast<std::uint32_t>(scene.geometries.size());
+  scene.geometries.emplace_back(std::move(tubes));
   for (Instance& i : scene.instances) {
     if (random.chance(0.5)) i.opacity = static_cast<float>(random.real(0.1, 0.9));
     if (!with_materials && random.chance(0.3)) i.color = Vec4{0.2F, 0.4F, 0.9F, 0.6F};
